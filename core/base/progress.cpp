@@ -1,0 +1,26 @@
+#include "core/base/progress.h"
+
+#include "core/base/error.h"
+
+namespace evical {
+namespace {
+
+class SilentProgress final : public ProgressSink {
+ public:
+  void stageStarted(std::string_view) override {}
+  void stageProgress(double) override {}
+  void log(LogLevel, std::string_view) override {}
+};
+
+}  // namespace
+
+ProgressSink& silentProgress() {
+  static SilentProgress sink;
+  return sink;
+}
+
+void RunContext::throwIfStopped() const {
+  if (stop.stop_requested()) throw Cancelled{};
+}
+
+}  // namespace evical

@@ -1,0 +1,19 @@
+// Times are integer nanoseconds in files and streams, and seconds since the recording's start in the estimator.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+namespace evical {
+
+inline constexpr double kNanosecondsPerSecond = 1e9;
+
+inline double secondsSince(std::int64_t start_ns, std::int64_t time_ns) {
+  return static_cast<double>(time_ns - start_ns) / kNanosecondsPerSecond;
+}
+
+inline std::int64_t nanosecondsFrom(double seconds) {
+  return static_cast<std::int64_t>(std::llround(seconds * kNanosecondsPerSecond));
+}
+
+}  // namespace evical

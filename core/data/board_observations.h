@@ -1,0 +1,69 @@
+// What the front end found: circles of the board over time, each with its own time, covariance and velocity.
+#pragma once
+
+#include "core/geometry/camera_model.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace evical {
+
+// One circle in one window. All pixel quantities are *ideal* pixels (camera_model.h) where the camera's intrinsics are
+// known, and the sensor's own otherwise.
+struct CircleObservation {
+  int circle = 0;      // index on the board, CircleBoard::index
+  double time_s = 0.0;  // camera clock, since the recording's start: where centre and velocity are uncorrelated
+  Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();  // of the ellipse
+  Eigen::Matrix2d covariance_px2 = Eigen::Matrix2d::Identity();
+  Eigen::Vector2d velocity_px_s = Eigen::Vector2d::Zero();
+  Eigen::Vector2d semi_axes_px = Eigen::Vector2d::Zero();  // major, minor
+  double angle_rad = 0.0;                                  // of the major axis, from x towards y
+  int events = 0;                                          // edge bursts that the fit rests on
+  double residual_rms_px = 0.0;                            // of those, normal to the ellipse
+};
+
+enum class ViewKind { Complete, Partial };
+
+// The board in one window.
+struct BoardView {
+  double time_s = 0.0;  // middle of the window
+  ViewKind kind = ViewKind::Complete;
+  std::vector<CircleObservation> circles;  // by circle index, without gaps in neither order nor time
+};
+
+// Why a window has no board: the first stage at which it was lost.
+enum class WindowOutcome {
+  Complete,
+  Partial,
+  TooFewEvents,      // near standstill, or nothing in view
+  TooFewCircles,     // fewer candidates than a partial grid needs
+  NoLattice,         // candidates that make no lattice
+  TooFewInGrid,      // lattice found, too few circles on it
+  Ambiguous,         // several placements on the board fit as well
+  RefinementFailed,  // circles lost when all were fitted together
+};
+inline constexpr std::size_t kWindowOutcomeCount = 8;
+const char* windowOutcomeName(WindowOutcome outcome);  // in plain words, for tables and logs
+
+struct WindowReport {
+  double time_s = 0.0;  // middle
+  double half_width_s = 0.0;
+  WindowOutcome outcome = WindowOutcome::TooFewEvents;
+  int events = 0;      // bursts in it
+  int candidates = 0;  // circles proposed
+  int circles = 0;     // in the final grid
+  bool tracked = false;  // found from its neighbour in time instead of from nothing
+};
+
+struct BoardObservations {
+  std::string camera;
+  std::vector<BoardView> views;       // in time order
+  std::vector<WindowReport> windows;  // all of them, in time order
+  std::uint64_t events = 0;           // read
+};
+
+}  // namespace evical

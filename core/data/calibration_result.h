@@ -1,0 +1,92 @@
+// What a calibration says: the state, how sure it is, and how well it explains the data.
+#pragma once
+
+#include "core/data/calibration_state.h"
+
+#include <Eigen/Core>
+
+#include <string>
+#include <vector>
+
+namespace evical {
+
+enum class CalibrationStatus { Ok, Doubtful, Failed };
+
+struct Timing {
+  double read_s = 0.0, detect_s = 0.0, initialise_s = 0.0, optimise_s = 0.0, total_s = 0.0;
+};
+
+struct CameraUncertainty {
+  Eigen::Vector3d rotation_std_rad = Eigen::Vector3d::Zero();   // about the reference's axes
+  Eigen::Vector3d translation_std_m = Eigen::Vector3d::Zero();  // in the reference
+  double time_offset_std_s = 0.0;
+  double edge_lead_std_px = 0.0;
+};
+
+struct ImuUncertainty {
+  Eigen::Vector3d rotation_std_rad = Eigen::Vector3d::Zero();
+  Eigen::Vector3d translation_std_m = Eigen::Vector3d::Zero();
+  double time_offset_std_s = 0.0;
+  Eigen::Vector3d gyroscope_bias_std_rad_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d accelerometer_bias_std_m_s2 = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d gyroscope_mapping_std = Eigen::Matrix3d::Zero();  // upper triangle
+  Eigen::Matrix3d accelerometer_mapping_std = Eigen::Matrix3d::Zero();
+};
+
+// Over all calibrated quantities, in one order that `names` gives ("left.rotation.x [rad]", ...).
+struct UncertaintyReport {
+  std::vector<std::string> names;
+  Eigen::VectorXd standard_deviations;
+  Eigen::MatrixXd correlation;
+  std::vector<CameraUncertainty> cameras;
+  std::vector<ImuUncertainty> imus;
+  double gravity_direction_std_rad = 0.0;
+
+  // Eigenvalues of the information matrix in units of what a user needs (0.1 deg, 1 mm, 0.1 ms): below 1, the need is
+  // not met in that direction. Ascending.
+  std::vector<double> observability;
+  std::string weakest;  // in plain words: "translation along the camera's z axis"
+};
+
+struct CameraFit {
+  double reprojection_rms_px = 0.0;
+  double normalised_rms = 0.0;  // of residuals divided by their sigma, as weighted
+  int windows_total = 0, windows_complete = 0, windows_partial = 0, windows_used = 0;
+  int circles_used = 0, circles_rejected = 0;
+};
+
+struct ImuFit {
+  double gyroscope_rms_rad_s = 0.0;
+  double accelerometer_rms_m_s2 = 0.0;
+};
+
+// One line per optimiser iteration, for convergence curves.
+struct IterationRecord {
+  int stage = 0, iteration = 0;
+  double cost = 0.0, gradient = 0.0, step = 0.0;
+  std::vector<CameraState> cameras;
+};
+
+// One residual of one circle, for plots and CSV.
+struct CircleResidual {
+  int camera = 0, view = 0, circle = 0;
+  double time_s = 0.0;
+  Eigen::Vector2d centre_px, residual_px, sigma_px;
+  bool used = true;
+};
+
+struct CalibrationResult {
+  CalibrationStatus status = CalibrationStatus::Ok;
+  std::string reason;  // why not ok, in plain words
+  CalibrationState state;
+  UncertaintyReport uncertainty;
+  std::vector<CameraFit> cameras;
+  std::vector<ImuFit> imus;
+  std::vector<IterationRecord> iterations;
+  std::vector<CircleResidual> circle_residuals;
+  std::vector<std::string> notes;  // what initialisation and data checks had to say
+  Timing timing;
+  double memory_peak_mb = 0.0;
+};
+
+}  // namespace evical

@@ -1,0 +1,48 @@
+// What is known before a calibration: the sensors by name, the board, the noise. Lists of cameras and IMUs throughout.
+#pragma once
+
+#include "core/data/board_observations.h"
+#include "core/data/imu_sample.h"
+#include "core/geometry/circle_board.h"
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace evical {
+
+// Continuous-time densities, Kalibr's model: a sample's sigma is density * sqrt(rate).
+struct ImuNoise {
+  double gyroscope_density = 1.87e-4;      // rad/s/sqrt(Hz)
+  double accelerometer_density = 1.86e-3;  // m/s^2/sqrt(Hz)
+};
+
+struct ImuData {
+  std::string name;
+  ImuNoise noise;
+  std::vector<ImuSample> samples;  // in time order
+
+  double rate_hz() const {
+    return samples.size() < 2 ? 0.0
+                              : static_cast<double>(samples.size() - 1) * 1e9 /
+                                    static_cast<double>(samples.back().time_ns - samples.front().time_ns);
+  }
+};
+
+struct CameraData {
+  std::string name;
+  std::optional<CameraIntrinsics> intrinsics;
+  BoardObservations observations;
+};
+
+// The estimator's input. Times of observations are seconds since start_ns; IMU samples keep their nanoseconds.
+struct CalibrationInput {
+  std::int64_t start_ns = 0;
+  CircleBoard board;
+  std::vector<CameraData> cameras;
+  std::vector<ImuData> imus;
+  std::size_t reference_imu = 0;  // index into imus
+};
+
+}  // namespace evical

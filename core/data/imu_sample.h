@@ -1,0 +1,16 @@
+// One IMU sample in SI units, in the IMU's own frame.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstdint>
+
+namespace evical {
+
+struct ImuSample {
+  std::int64_t time_ns = 0;
+  Eigen::Vector3d angular_rate_rad_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d specific_force_m_s2 = Eigen::Vector3d::Zero();  // +g upwards at rest
+};
+
+}  // namespace evical

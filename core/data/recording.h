@@ -1,0 +1,40 @@
+// A recording as the stages see it: named streams that go by once, in packets.
+#pragma once
+
+#include "core/data/event.h"
+#include "core/data/imu_sample.h"
+#include "core/geometry/camera_model.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace evical {
+
+enum class StreamType { Events, Imu, Frames, Triggers, Other };
+
+struct StreamInfo {
+  std::string name;     // topic, or the stream's name in the file
+  StreamType type = StreamType::Other;
+  std::string message;  // what the file calls its content, e.g. dvs_msgs/EventArray
+  Resolution resolution_px;  // of events and frames, where the file says it
+  std::uint64_t messages = 0;  // 0 if unknown
+};
+
+// What one call of RecordingReader::read hands out: some events or some samples of one stream.
+struct Packet {
+  std::size_t stream = 0;  // index into RecordingReader::streams()
+  std::vector<Event> events;
+  std::vector<ImuSample> imu_samples;
+};
+
+// What goes wrong in recordings and is reported but not repaired.
+struct RecordingFault {
+  std::string stream;  // empty: the file as a whole
+  std::string kind;    // gap, backward_time, jitter, truncated, corrupt, stuck_axis, saturated_axis, unit, hot_pixels, ...
+  double at_s = 0.0;   // since the stream's first time; 0 where it has no place
+  std::string text;    // one sentence for people
+};
+
+}  // namespace evical

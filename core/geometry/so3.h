@@ -1,0 +1,22 @@
+// Rotations: exponential, logarithm and their Jacobians. Right-hand perturbations throughout: R -> R Exp(delta).
+// Formulas: Sola, Deray, Atchuthan, "A micro Lie theory for state estimation in robotics" (2018), section IV.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace evical {
+
+Eigen::Matrix3d skew(const Eigen::Vector3d& v);  // skew(v) w = v x w
+
+Eigen::Matrix3d so3Exp(const Eigen::Vector3d& rotation_vector_rad);
+Eigen::Vector3d so3Log(const Eigen::Matrix3d& rotation);  // norm in [0, pi]
+
+// Exp(v + d) = Exp(v) Exp(rightJacobian(v) d) to first order in d; and its inverse.
+Eigen::Matrix3d so3RightJacobian(const Eigen::Vector3d& rotation_vector_rad);
+Eigen::Matrix3d so3RightJacobianInverse(const Eigen::Vector3d& rotation_vector_rad);
+
+Eigen::Quaterniond quaternionExp(const Eigen::Vector3d& rotation_vector_rad);
+Eigen::Vector3d quaternionLog(const Eigen::Quaterniond& rotation);
+
+}  // namespace evical
