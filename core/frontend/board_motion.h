@@ -1,0 +1,103 @@
+// All circles of a window together: the board's homography at the window's middle, the velocity field of its
+// image, and how far burst medians lie outside or inside the true edges. Fitted to the bursts themselves.
+#pragma once
+
+#include "core/frontend/burst_window.h"
+#include "core/frontend/detection_options.h"
+#include "core/geometry/circle_board.h"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace evical {
+
+// Field of a plane's image motion, in px or px/s over the image: with x, y = (pixel - centre) / scale,
+//   (f0 + f1 x + f2 y + x (f6 x + f7 y),  f3 + f4 x + f5 y + y (f6 x + f7 y)).
+using PlaneFlow = Eigen::Matrix<double, 8, 1>;
+using PlaneFlowBasis = Eigen::Matrix<double, 2, 8>;
+
+struct ImageFrame {
+  Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();
+  double scale_px = 1.0;
+
+  PlaneFlowBasis basis(const Eigen::Vector2d& pixel) const;
+  Eigen::Vector2d flow(const PlaneFlow& coefficients, const Eigen::Vector2d& pixel) const;
+};
+
+struct BoardMotion {
+  std::int64_t time_ns = 0;
+  Eigen::Matrix3d ideal_from_board =
+      Eigen::Matrix3d::Identity();  // homography: metres on the board to ideal pixels
+  ImageFrame frame;
+  PlaneFlow velocity_px_s = PlaneFlow::Zero();
+  double radius_offset_px = 0.0;  // burst medians lie this far outside the edges, in pixels
+  double residual_rms_px = 0.0;
+  int bursts = 0;
+
+  Eigen::Vector2d velocityAt(const Eigen::Vector2d& ideal_pixel) const {
+    return frame.flow(velocity_px_s, ideal_pixel);
+  }
+};
+
+// The board as it should be at another time, moving on as it does.
+BoardMotion predicted(const BoardMotion& motion, std::int64_t time_ns);
+
+// Homography moved by a small plane flow: H <- (I + E) H.
+Eigen::Matrix3d moved(const Eigen::Matrix3d& ideal_from_board, const ImageFrame& frame,
+                      const PlaneFlow& shift_px);
+
+// Image of one circle: {q : (q - centre)^T shape (q - centre) = 1}, in ideal pixels.
+struct ProjectedCircle {
+  int circle = 0;
+  Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d shape = Eigen::Matrix2d::Identity();
+  double largest_radius_px = 0.0;
+  Eigen::Vector2d sensor_centre_px = Eigen::Vector2d::Zero();  // in the sensor's own pixels
+  double sensor_radius_px = 0.0;
+};
+std::optional<ProjectedCircle> projectCircle(const Eigen::Matrix3d& ideal_from_board,
+                                             const CircleBoard& board, int circle,
+                                             const std::optional<CameraIntrinsics>& camera);
+
+// Circles that touch the image.
+std::vector<ProjectedCircle> projectBoard(const Eigen::Matrix3d& ideal_from_board, const CircleBoard& board,
+                                          const std::optional<CameraIntrinsics>& camera,
+                                          Resolution resolution_px);
+
+// True if the whole circle lies in the image.
+bool insideImage(const ProjectedCircle& circle, Resolution resolution_px);
+
+// A burst held against a projected circle.
+struct EdgeDistance {
+  double distance_px;      // outwards positive, ideal pixels
+  Eigen::Vector2d normal;  // outwards, unit
+};
+inline EdgeDistance distanceToEdge(const ProjectedCircle& circle, const Eigen::Vector2d& ideal_pixel) {
+  const Eigen::Vector2d from_centre = ideal_pixel - circle.centre_px;
+  const Eigen::Vector2d gradient = circle.shape * from_centre;
+  const double slope = gradient.norm();
+  if (slope < 1e-12) return {-circle.largest_radius_px, Eigen::Vector2d::UnitX()};
+  const double level = std::sqrt(std::max(from_centre.dot(gradient), 1e-12));
+  return {level * (level - 1.0) / slope, gradient / slope};
+}
+
+// Mean speed of the board's circles in the image, in the sensor's pixels.
+double boardSpeed_px_s(const BoardMotion& motion, const CircleBoard& board,
+                       const std::optional<CameraIntrinsics>& camera, Resolution resolution_px);
+
+// Bursts no further than this from the window's middle are fitted at that speed.
+double fitHalfWindow_s(double speed_px_s, const TrackingOptions& options);
+
+// Fits homography, velocity field and radius offset to the bursts of a window whose middle is start.time_ns.
+// `first_gate_px` as in the options, or wider after a search. Nothing if too few bursts lie near the edges.
+std::optional<BoardMotion> fitBoardMotion(const BurstWindow& window, const BoardMotion& start,
+                                          const CircleBoard& board,
+                                          const std::optional<CameraIntrinsics>& camera, double first_gate_px,
+                                          const TrackingOptions& options);
+
+}  // namespace evical

@@ -1,0 +1,228 @@
+#include "core/frontend/board_placement.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace evical {
+namespace {
+
+using LatticePlace = std::pair<int, int>;
+using LatticeMap = std::array<int, 4>;  // row by row
+
+// Turns of the lattice, each also sheared: a tilted board's shortest steps may not be its square's sides.
+std::vector<LatticeMap> latticeMaps() {
+  constexpr std::array<LatticeMap, 5> kShears = {
+      {{1, 0, 0, 1}, {1, 1, 0, 1}, {1, -1, 0, 1}, {1, 0, 1, 1}, {1, 0, -1, 1}}};
+  constexpr std::array<LatticeMap, 4> kTurns = {{{1, 0, 0, 1}, {0, -1, 1, 0}, {-1, 0, 0, -1}, {0, 1, -1, 0}}};
+  std::vector<LatticeMap> maps;
+  for (const LatticeMap& s : kShears) {
+    for (const LatticeMap& t : kTurns) {
+      maps.push_back({t[0] * s[0] + t[1] * s[2], t[0] * s[1] + t[1] * s[3],  //
+                      t[2] * s[0] + t[3] * s[2], t[2] * s[1] + t[3] * s[3]});
+    }
+  }
+  return maps;
+}
+
+// The board's circles in steps of its own square lattice, positively oriented like the image's.
+std::map<LatticePlace, int> boardLattice(const CircleBoard& board) {
+  std::map<LatticePlace, int> lattice;
+  for (int row = 0; row < board.rows; ++row) {
+    for (int col = 0; col < board.cols; ++col) {
+      const int x = 2 * col + row % 2, y = row;
+      const bool asymmetric = board.type == BoardType::AsymmetricCircles;
+      const LatticePlace place = asymmetric ? LatticePlace{(x - y) / 2, (x + y) / 2} : LatticePlace{col, row};
+      lattice[place] = board.index(row, col);
+    }
+  }
+  return lattice;
+}
+
+struct Shifted {
+  LatticeMap map;
+  LatticePlace shift;
+  int count;
+};
+
+LatticePlace apply(const LatticeMap& map, const LatticeNode& node) {
+  return {map[0] * node.i + map[1] * node.j, map[2] * node.i + map[3] * node.j};
+}
+
+std::vector<Shifted> bestShifts(const CircleLattice& lattice, const std::map<LatticePlace, int>& board) {
+  std::vector<Shifted> shifts;
+  int best = 0;
+  for (const LatticeMap& map : latticeMaps()) {
+    std::map<LatticePlace, int> counts;
+    for (const LatticeNode& node : lattice) {
+      const LatticePlace at = apply(map, node);
+      for (const auto& [place, circle] : board) ++counts[{place.first - at.first, place.second - at.second}];
+    }
+    for (const auto& [shift, count] : counts) {
+      best = std::max(best, count);
+      shifts.push_back({map, shift, count});
+    }
+  }
+  constexpr double kNearlyBest = 0.8;
+  std::erase_if(shifts, [&](const Shifted& s) { return s.count < kNearlyBest * best; });
+  std::sort(shifts.begin(), shifts.end(),
+            [](const Shifted& a, const Shifted& b) { return a.count > b.count; });
+  return shifts;
+}
+
+// The board's two axes as the camera sees them must be about equally long and perpendicular.
+bool looksSquare(const Eigen::Matrix3d& ideal_from_board, const CameraIntrinsics& camera) {
+  constexpr double kTolerance = 0.2;
+  Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
+  k(0, 0) = camera.focal_length_px.x();
+  k(1, 1) = camera.focal_length_px.y();
+  k.topRightCorner<2, 1>() = camera.principal_point_px;
+  const Eigen::Matrix3d axes = k.inverse() * ideal_from_board;
+  const double x = axes.col(0).norm(), y = axes.col(1).norm();
+  return std::abs(std::log(x / y)) < kTolerance &&
+         std::abs(axes.col(0).dot(axes.col(1))) < kTolerance * x * y;
+}
+
+struct IdealCircle {
+  Eigen::Vector2d centre_px, velocity_px_s;
+};
+
+IdealCircle toIdeal(const MovingCircle& circle, const std::optional<CameraIntrinsics>& camera) {
+  if (!camera) return {circle.centre_px, circle.velocity_px_s};
+  const std::optional<Eigen::Vector2d> ideal = idealPixel(*camera, circle.centre_px);
+  if (!ideal) return {Eigen::Vector2d::Constant(NAN), Eigen::Vector2d::Zero()};
+  return {*ideal, idealPixelScale(*camera, *ideal) * circle.velocity_px_s};
+}
+
+PlaneFlow fitFlow(const ImageFrame& frame, const std::vector<IdealCircle>& circles) {
+  Eigen::Matrix<double, 8, 8> matrix = Eigen::Matrix<double, 8, 8>::Zero();
+  PlaneFlow flow = PlaneFlow::Zero();
+  constexpr int kRounds = 5;
+  constexpr double kScale_px_s = 20.0;
+  for (int round = 0; round < kRounds; ++round) {
+    matrix.setZero();
+    PlaneFlow vector = PlaneFlow::Zero();
+    matrix.diagonal() << 1e-3, 0.05, 0.05, 1e-3, 0.05, 0.05, 1.0, 1.0;
+    for (const IdealCircle& circle : circles) {
+      const PlaneFlowBasis basis = frame.basis(circle.centre_px);
+      const Eigen::Vector2d error = circle.velocity_px_s - basis * flow;
+      const double w = round == 0 ? 1.0 : 1.0 / (1.0 + error.squaredNorm() / (kScale_px_s * kScale_px_s));
+      matrix += w * basis.transpose() * basis;
+      vector += w * basis.transpose() * circle.velocity_px_s;
+    }
+    flow = matrix.ldlt().solve(vector);
+  }
+  return flow;
+}
+
+// Homography with the circles that agree; drops the others from the placement.
+std::optional<Eigen::Matrix3d> fitAgreeing(std::vector<std::pair<int, std::size_t>>& placed,
+                                           const std::vector<IdealCircle>& ideal, const CircleBoard& board,
+                                           const GridOptions& options) {
+  for (;;) {
+    if (static_cast<int>(placed.size()) < options.least_circles) return std::nullopt;
+    std::vector<Eigen::Vector2d> from, to;
+    for (const auto& [circle, index] : placed) {
+      from.push_back(board.centre_m(circle));
+      to.push_back(ideal[index].centre_px);
+    }
+    const std::optional<Eigen::Matrix3d> h = fitHomography(from, to);
+    if (!h) return std::nullopt;
+    std::size_t worst = placed.size();
+    double worst_error = options.step_tolerance;
+    for (std::size_t k = 0; k < placed.size(); ++k) {
+      const Eigen::Vector2d predicted_px = ((*h) * from[k].homogeneous()).hnormalized();
+      const Eigen::Vector2d beside_px =
+          ((*h) * (from[k] + Eigen::Vector2d(board.spacing_m, 0)).homogeneous()).hnormalized();
+      const double error = (predicted_px - to[k]).norm() / (beside_px - predicted_px).norm();
+      if (error > worst_error) {
+        worst_error = error;
+        worst = k;
+      }
+    }
+    if (worst == placed.size()) return h;
+    placed.erase(placed.begin() + static_cast<std::ptrdiff_t>(worst));
+  }
+}
+
+}  // namespace
+
+std::optional<Eigen::Matrix3d> fitHomography(const std::vector<Eigen::Vector2d>& from,
+                                             const std::vector<Eigen::Vector2d>& to) {
+  const auto normaliser = [](const std::vector<Eigen::Vector2d>& points) {
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    for (const Eigen::Vector2d& p : points) mean += p;
+    mean /= static_cast<double>(points.size());
+    double spread = 0.0;
+    for (const Eigen::Vector2d& p : points) spread += (p - mean).squaredNorm();
+    const double s = std::sqrt(2.0 * static_cast<double>(points.size()) / std::max(spread, 1e-30));
+    return (Eigen::Matrix3d() << s, 0, -s * mean.x(), 0, s, -s * mean.y(), 0, 0, 1).finished();
+  };
+  if (from.size() < 4) return std::nullopt;
+  const Eigen::Matrix3d nf = normaliser(from), nt = normaliser(to);
+  Eigen::Matrix<double, 9, 9> sums = Eigen::Matrix<double, 9, 9>::Zero();
+  for (std::size_t k = 0; k < from.size(); ++k) {
+    const Eigen::Vector3d f = nf * from[k].homogeneous();
+    const Eigen::Vector2d t = (nt * to[k].homogeneous()).hnormalized();
+    Eigen::Matrix<double, 2, 9> rows;
+    rows << f.transpose(), Eigen::RowVector3d::Zero(), -t.x() * f.transpose(),  //
+        Eigen::RowVector3d::Zero(), f.transpose(), -t.y() * f.transpose();
+    sums += rows.transpose() * rows;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> eigen(sums);
+  if (!(eigen.eigenvalues()(1) > 1e-9)) return std::nullopt;
+  const Eigen::Matrix<double, 9, 1> v = eigen.eigenvectors().col(0);
+  Eigen::Matrix3d h;
+  h << v(0), v(1), v(2), v(3), v(4), v(5), v(6), v(7), v(8);
+  h = nt.inverse() * h * nf;
+  if (std::abs(h(2, 2)) < 1e-12) return std::nullopt;
+  return h / h(2, 2);
+}
+
+std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
+                                         const std::vector<MovingCircle>& circles, const CircleBoard& board,
+                                         const std::optional<CameraIntrinsics>& camera, std::int64_t time_ns,
+                                         const GridOptions& options) {
+  std::vector<BoardPlacement> placements;
+  const std::map<LatticePlace, int> board_lattice = boardLattice(board);
+  std::vector<IdealCircle> ideal;
+  for (const MovingCircle& circle : circles) ideal.push_back(toIdeal(circle, camera));
+  for (const Shifted& shifted : bestShifts(lattice, board_lattice)) {
+    BoardPlacement placement;
+    for (const LatticeNode& node : lattice) {
+      const LatticePlace at = apply(shifted.map, node);
+      const auto found =
+          board_lattice.find({at.first + shifted.shift.first, at.second + shifted.shift.second});
+      if (found == board_lattice.end() || !ideal[node.circle].centre_px.allFinite()) continue;
+      placement.circles.emplace_back(found->second, node.circle);
+    }
+    const std::optional<Eigen::Matrix3d> h = fitAgreeing(placement.circles, ideal, board, options);
+    if (!h || (camera && !looksSquare(*h, *camera))) continue;
+    std::vector<IdealCircle> placed;
+    Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
+    for (const auto& [circle, index] : placement.circles) {
+      placed.push_back(ideal[index]);
+      low = low.cwiseMin(ideal[index].centre_px);
+      high = high.cwiseMax(ideal[index].centre_px);
+    }
+    BoardMotion& motion = placement.motion;
+    motion.time_ns = time_ns;
+    motion.ideal_from_board = *h;
+    motion.frame = {0.5 * (low + high), std::max(0.5 * (high - low).norm(), 1.0)};
+    motion.velocity_px_s = fitFlow(motion.frame, placed);
+    placements.push_back(std::move(placement));
+  }
+  std::stable_sort(
+      placements.begin(), placements.end(),
+      [](const BoardPlacement& a, const BoardPlacement& b) { return a.circles.size() > b.circles.size(); });
+  return placements;
+}
+
+}  // namespace evical

@@ -1,0 +1,29 @@
+// Where a lattice of circles lies on the board: rotations, shifts, and the homography each of them means.
+#pragma once
+
+#include "core/frontend/board_motion.h"
+#include "core/frontend/circle_lattice.h"
+
+#include <optional>
+#include <vector>
+
+namespace evical {
+
+// One way to lay the lattice on the board.
+struct BoardPlacement {
+  std::vector<std::pair<int, std::size_t>> circles;  // board circle, index of the moving circle
+  BoardMotion motion;                                // rough: from centres and velocities alone
+};
+
+// All placements with nearly the best number of circles on the board, most circles first. Where the camera is
+// known, only those that a camera can see: two equal, perpendicular axes behind the homography.
+std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
+                                         const std::vector<MovingCircle>& circles, const CircleBoard& board,
+                                         const std::optional<CameraIntrinsics>& camera, std::int64_t time_ns,
+                                         const GridOptions& options);
+
+// Homography from points to points (normalised direct linear transform); nothing if degenerate.
+std::optional<Eigen::Matrix3d> fitHomography(const std::vector<Eigen::Vector2d>& from,
+                                             const std::vector<Eigen::Vector2d>& to);
+
+}  // namespace evical

@@ -1,0 +1,169 @@
+#include "core/frontend/board_search.h"
+
+#include "core/base/time.h"
+#include "core/frontend/circle_measurement.h"
+#include "core/frontend/ring_vote.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace evical {
+namespace {
+
+constexpr double kSpeedWindow_s = 0.04;  // half window in which the typical speed is looked up
+constexpr double kSlowest_px_s = 10.0;
+constexpr std::size_t kMostPlacements = 8;
+
+std::vector<CircleCandidate> findCandidates(const BurstWindow& window, const FrontEndOptions& options) {
+  return voteForCircles(window, options.ring_vote);
+}
+
+// A fitted placement: how many circles it explains, and how many of those in view it does not.
+struct Judged {
+  BoardMotion motion;
+  int measured = 0, missing = 0;
+};
+
+std::optional<Judged> judge(const BoardPlacement& placement, const BurstWindow& window,
+                            const BoardScene& scene, double half_window_s, const FrontEndOptions& options) {
+  const std::optional<BoardMotion> rough =
+      fitBoardMotion(window, placement.motion, scene.board, scene.camera,
+                     1.5 * options.tracking.first_gate_px, options.tracking);
+  if (!rough) return std::nullopt;
+  const std::optional<BoardMotion> motion = fitBoardMotion(window, *rough, scene.board, scene.camera,
+                                                           options.tracking.first_gate_px, options.tracking);
+  if (!motion) return std::nullopt;
+  const std::vector<CircleObservation> circles =
+      measureCircles(window, *motion, scene.board, scene.camera, half_window_s, 0, options.tracking);
+  Judged judged{*motion, static_cast<int>(circles.size()), 0};
+  int inside = 0;
+  for (const ProjectedCircle& circle :
+       projectBoard(motion->ideal_from_board, scene.board, scene.camera, scene.resolution_px)) {
+    inside += insideImage(circle, scene.resolution_px);
+  }
+  judged.missing = inside - judged.measured;
+  return judged;
+}
+
+WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& scene,
+                              const FrontEndOptions& options, BoardSearch& search) {
+  std::vector<Judged> judged;
+  for (std::size_t k = 0; k < std::min(search.placements.size(), kMostPlacements); ++k) {
+    if (std::optional<Judged> j = judge(search.placements[k], window, scene, search.half_window_s, options)) {
+      judged.push_back(std::move(*j));
+    }
+  }
+  if (judged.empty()) return WindowOutcome::RefinementFailed;
+  const auto value = [](const Judged& j) { return j.measured - 0.5 * j.missing; };
+  std::sort(judged.begin(), judged.end(),
+            [&](const Judged& a, const Judged& b) { return value(a) > value(b); });
+  const Judged& best = judged.front();
+  const int count = scene.board.circleCount();
+  if (best.measured < std::max<double>(options.grid.least_circles, options.grid.least_partial * count) ||
+      best.missing > best.measured / 2) {
+    return WindowOutcome::TooFewInGrid;
+  }
+  if (best.measured < count) {
+    for (std::size_t k = 1; k < judged.size(); ++k) {
+      // Two starts that end in the same place are no rivals.
+      const Eigen::Vector2d middle = 0.5 * (scene.board.centre_m(0) + scene.board.centre_m(count - 1));
+      const Eigen::Vector2d here = (best.motion.ideal_from_board * middle.homogeneous()).hnormalized();
+      const Eigen::Vector2d there = (judged[k].motion.ideal_from_board * middle.homogeneous()).hnormalized();
+      const Eigen::Vector2d first_here =
+          (best.motion.ideal_from_board * Eigen::Vector3d::UnitZ()).hnormalized();
+      const Eigen::Vector2d first_there =
+          (judged[k].motion.ideal_from_board * Eigen::Vector3d::UnitZ()).hnormalized();
+      if ((here - there).norm() < 3.0 && (first_here - first_there).norm() < 3.0) continue;
+      if (value(judged[k]) > value(best) - options.grid.ambiguity_margin) return WindowOutcome::Ambiguous;
+    }
+  }
+  search.motion = best.motion;
+  return best.measured == count ? WindowOutcome::Complete : WindowOutcome::Partial;
+}
+
+void searchWindow(BurstWindow& window, std::vector<EdgeBurst>& bursts, std::int64_t middle_ns,
+                  double speed_px_s, const BoardScene& scene, const FrontEndOptions& options,
+                  BoardSearch& search) {
+  keepSupported(scene.resolution_px, options.ring_vote.least_support, bursts);
+  window.assign(bursts, middle_ns);
+  search.bursts = static_cast<int>(bursts.size());
+  if (search.bursts < options.detection.least_window_bursts) {
+    search.outcome = WindowOutcome::TooFewEvents;
+    return;
+  }
+  search.candidates = findCandidates(window, options);
+  search.circles = fitMovingCircles(window, search.candidates, speed_px_s, options.moving_circle);
+  if (static_cast<int>(search.circles.size()) < options.grid.least_circles) {
+    search.outcome = WindowOutcome::TooFewCircles;
+    return;
+  }
+  search.lattice = findCircleLattice(search.circles, options.grid);
+  if (search.lattice.size() < 4) {
+    search.outcome = WindowOutcome::NoLattice;
+    return;
+  }
+  if (static_cast<int>(search.lattice.size()) < options.grid.least_circles) {
+    search.outcome = WindowOutcome::TooFewInGrid;
+    return;
+  }
+  search.placements =
+      placeOnBoard(search.lattice, search.circles, scene.board, scene.camera, middle_ns, options.grid);
+  if (search.placements.empty()) {
+    search.outcome = WindowOutcome::NoLattice;
+    return;
+  }
+  search.outcome = choosePlacement(window, scene, options, search);
+}
+
+}  // namespace
+
+BoardScene::BoardScene(const CircleBoard& the_board, Resolution resolution,
+                       std::optional<CameraIntrinsics> intrinsics)
+    : board(the_board), resolution_px(resolution), camera(std::move(intrinsics)) {
+  if (!camera) return;
+  ideal = UndistortionTable(*camera);
+  ideal_scale.reserve(static_cast<std::size_t>(resolution.pixelCount()));
+  for (int y = 0; y < resolution.height_px; ++y) {
+    for (int x = 0; x < resolution.width_px; ++x) {
+      const Eigen::Vector2d pixel = ideal(x, y).cast<double>();
+      ideal_scale.push_back(pixel.allFinite() ? static_cast<float>(std::sqrt(
+                                                    std::abs(idealPixelScale(*camera, pixel).determinant())))
+                                              : std::numeric_limits<float>::quiet_NaN());
+    }
+  }
+}
+
+BoardSearch searchBoard(const BurstHistory& history, std::int64_t middle_ns, const BoardScene& scene,
+                        const FrontEndOptions& options) {
+  constexpr std::array kWindowFactors = {1.0, 2.0, 0.5};
+  BurstWindow window(scene.resolution_px, scene.ideal, scene.ideal_scale, scene.board.circles);
+  std::vector<EdgeBurst> bursts;
+  const auto gather = [&](double half_window_s) {
+    const std::int64_t half_ns = nanosecondsFrom(half_window_s);
+    bursts.clear();
+    history.gather(middle_ns - half_ns, middle_ns + half_ns, bursts);
+  };
+  gather(kSpeedWindow_s);
+  window.assign(bursts, middle_ns);
+  const double speed_px_s = std::max(typicalEdgeSpeed_px_s(window), kSlowest_px_s);
+  BoardSearch search;
+  for (const double factor : kWindowFactors) {
+    const double half_s = std::clamp(factor * options.ring_vote.window_travel_px / (2.0 * speed_px_s),
+                                     0.5 * options.detection.shortest_window_s, 0.08);
+    if (factor > 1.0 && half_s == search.half_window_s) continue;
+    search = BoardSearch{};
+    search.half_window_s = half_s;
+    gather(half_s);
+    searchWindow(window, bursts, middle_ns, speed_px_s, scene, options, search);
+    if (search.motion) break;
+  }
+  return search;
+}
+
+}  // namespace evical

@@ -1,0 +1,53 @@
+// Finds the board in one window from nothing: circle candidates, moving circles, lattice, placement, and the
+// joint fit that decides between placements.
+#pragma once
+
+#include "core/data/board_observations.h"
+#include "core/frontend/board_motion.h"
+#include "core/frontend/board_placement.h"
+#include "core/frontend/circle_candidate.h"
+#include "core/frontend/circle_lattice.h"
+
+#include <optional>
+#include <vector>
+
+namespace evical {
+
+struct FrontEndOptions {
+  DetectionOptions detection;
+  BurstOptions bursts;
+  RingVoteOptions ring_vote;
+  MovingCircleOptions moving_circle;
+  GridOptions grid;
+  TrackingOptions tracking;
+  bool operator==(const FrontEndOptions&) const = default;
+};
+
+// What does not change from window to window.
+struct BoardScene {
+  CircleBoard board;
+  Resolution resolution_px;
+  std::optional<CameraIntrinsics> camera;
+  UndistortionTable ideal;
+  std::vector<float> ideal_scale;  // ideal pixels per pixel, per pixel
+
+  BoardScene(const CircleBoard& board, Resolution resolution_px, std::optional<CameraIntrinsics> camera);
+};
+
+// Everything a drawing may want to show; the outcome says how far it came.
+struct BoardSearch {
+  WindowOutcome outcome = WindowOutcome::TooFewEvents;
+  double half_window_s = 0.0;
+  int bursts = 0;
+  std::vector<CircleCandidate> candidates;
+  std::vector<MovingCircle> circles;
+  CircleLattice lattice;
+  std::vector<BoardPlacement> placements;
+  std::optional<BoardMotion> motion;
+};
+
+// Tries window lengths until one shows the board; the last try is returned if none does.
+BoardSearch searchBoard(const BurstHistory& history, std::int64_t middle_ns, const BoardScene& scene,
+                        const FrontEndOptions& options);
+
+}  // namespace evical

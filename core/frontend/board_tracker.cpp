@@ -1,0 +1,213 @@
+#include "core/frontend/board_tracker.h"
+
+#include "core/base/time.h"
+#include "core/frontend/circle_measurement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace evical {
+namespace {
+
+constexpr std::int64_t kLongAgo = std::numeric_limits<std::int64_t>::min() / 2;
+constexpr double kLostGateFactor = 2.0;  // after windows that were missed, predictions are worse
+
+}  // namespace
+
+BoardTracker::BoardTracker(const CircleBoard& board, Resolution resolution_px,
+                           std::optional<CameraIntrinsics> camera, const FrontEndOptions& options,
+                           std::int64_t start_ns)
+    : scene_(board, resolution_px, std::move(camera)),
+      options_(options),
+      start_ns_(start_ns),
+      extractor_(resolution_px, options.bursts),
+      window_(resolution_px, scene_.ideal, scene_.ideal_scale, board.circles),
+      last_search_ns_(kLongAgo),
+      tracked_until_ns_(kLongAgo) {}
+
+void BoardTracker::add(EventSpan events) {
+  if (events.empty()) return;
+  if (!started_) {
+    next_begin_ns_ = events.front().time_ns;
+    started_ = true;
+  }
+  new_bursts_.clear();
+  extractor_.add(events, new_bursts_);
+  history_.add(new_bursts_);
+  processWindows();
+}
+
+BoardObservations BoardTracker::finish() {
+  new_bursts_.clear();
+  extractor_.finish(new_bursts_);
+  std::int64_t last_ns = next_begin_ns_;
+  for (const EdgeBurst& burst : new_bursts_) last_ns = std::max(last_ns, burst.time_ns);
+  history_.add(new_bursts_);
+  while (started_ && next_begin_ns_ + nanosecondsFrom(options_.detection.shortest_window_s) < last_ns) {
+    const Slot slot{next_begin_ns_, next_begin_ns_ + slotLength_ns(motion_ ? &*motion_ : nullptr)};
+    processSlot(slot);
+    next_begin_ns_ = slot.end_ns;
+  }
+  observations_.events = extractor_.eventCount();
+  const auto earlier = [](const auto& a, const auto& b) { return a.time_s < b.time_s; };
+  std::sort(observations_.views.begin(), observations_.views.end(), earlier);
+  std::sort(observations_.windows.begin(), observations_.windows.end(), earlier);
+  return std::move(observations_);
+}
+
+std::int64_t BoardTracker::slotLength_ns(const BoardMotion* motion) const {
+  const DetectionOptions& d = options_.detection;
+  if (!motion) return nanosecondsFrom(0.5 * (d.shortest_window_s + d.longest_window_s));
+  const double speed = std::max(speed_px_s(*motion), 1.0);
+  return nanosecondsFrom(std::clamp(d.window_travel_px / speed, d.shortest_window_s, d.longest_window_s));
+}
+
+double BoardTracker::speed_px_s(const BoardMotion& motion) const {
+  return boardSpeed_px_s(motion, scene_.board, scene_.camera, scene_.resolution_px);
+}
+
+void BoardTracker::processWindows() {
+  const std::int64_t margin_ns = nanosecondsFrom(options_.tracking.longest_fit_half_window_s);
+  for (;;) {
+    const Slot slot{next_begin_ns_, next_begin_ns_ + slotLength_ns(motion_ ? &*motion_ : nullptr)};
+    if (slot.end_ns + margin_ns > extractor_.completeUntil_ns()) return;
+    processSlot(slot);
+    next_begin_ns_ = slot.end_ns;
+    history_.dropBefore(slot.begin_ns - margin_ns - nanosecondsFrom(options_.detection.history_s));
+  }
+}
+
+void BoardTracker::processSlot(const Slot& slot) {
+  const std::int64_t middle_ns = slot.middle_ns();
+  if (motion_) {
+    const bool lost =
+        motion_->time_ns < next_begin_ns_ - nanosecondsFrom(2.0 * options_.detection.longest_window_s);
+    const double gate_px = options_.tracking.first_gate_px * (lost ? kLostGateFactor : 1.0);
+    TrackedWindow tracked = track(slot, predicted(*motion_, middle_ns), gate_px);
+    if (tracked.held) {
+      motion_ = tracked.motion;
+      tracked_until_ns_ = slot.end_ns;
+      keep(tracked);
+      return;
+    }
+    if (static_cast<double>(middle_ns - motion_->time_ns) * 1e-9 > options_.tracking.longest_gap_s)
+      motion_.reset();
+  }
+  if (middle_ns - last_search_ns_ < nanosecondsFrom(options_.detection.search_interval_s)) {
+    miss(slot, nullptr);
+    return;
+  }
+  last_search_ns_ = middle_ns;
+  const BoardSearch search = searchBoard(history_, middle_ns, scene_, options_);
+  if (observer_) observer_->windowSearched(search, middle_ns);
+  if (search.motion) {
+    acquire(slot, *search.motion);
+  } else {
+    miss(slot, &search);
+  }
+}
+
+void BoardTracker::acquire(const Slot& slot, const BoardMotion& motion) {
+  TrackedWindow tracked = track(slot, motion, options_.tracking.first_gate_px);
+  if (!tracked.held) {
+    miss(slot, nullptr);
+    return;
+  }
+  tracked.report.tracked = false;
+  motion_ = tracked.motion;
+  trackBackwards(slot, tracked.motion);
+  tracked_until_ns_ = slot.end_ns;
+  keep(tracked);
+}
+
+void BoardTracker::trackBackwards(const Slot& from, BoardMotion motion) {
+  const std::int64_t oldest_ns =
+      std::max(tracked_until_ns_, from.begin_ns - nanosecondsFrom(options_.detection.history_s));
+  std::int64_t end_ns = from.begin_ns;
+  while (end_ns > oldest_ns) {
+    const std::int64_t length_ns = slotLength_ns(&motion);
+    Slot slot{std::max(end_ns - length_ns, oldest_ns), end_ns};
+    if (slot.end_ns - slot.begin_ns < nanosecondsFrom(0.5 * options_.detection.shortest_window_s)) break;
+    TrackedWindow tracked = track(slot, predicted(motion, slot.middle_ns()), options_.tracking.first_gate_px);
+    if (!tracked.held) break;
+    motion = tracked.motion;
+    std::erase_if(observations_.windows, [&](const WindowReport& report) {
+      return report.time_s >= secondsSince(start_ns_, slot.begin_ns) &&
+             report.time_s < secondsSince(start_ns_, end_ns) && !report.tracked;
+    });
+    keep(tracked);
+    end_ns = slot.begin_ns;
+  }
+}
+
+TrackedWindow BoardTracker::track(const Slot& slot, const BoardMotion& prediction, double first_gate_px) {
+  TrackedWindow tracked;
+  const std::int64_t middle_ns = slot.middle_ns();
+  // A little wider than the predicted speed asks for: the fit may find a slower board.
+  const double half_fit_s = std::min(1.5 * fitHalfWindow_s(speed_px_s(prediction), options_.tracking),
+                                     options_.tracking.longest_fit_half_window_s);
+  window_bursts_.clear();
+  const std::int64_t half_ns = nanosecondsFrom(std::max(half_fit_s, slot.half_s()));
+  history_.gather(middle_ns - half_ns, middle_ns + half_ns, window_bursts_);
+  window_.assign(window_bursts_, middle_ns);
+  tracked.report.time_s = secondsSince(start_ns_, middle_ns);
+  tracked.report.half_width_s = slot.half_s();
+  tracked.report.events = static_cast<int>(window_bursts_.size());
+  tracked.report.tracked = true;
+  const std::optional<BoardMotion> motion =
+      fitBoardMotion(window_, prediction, scene_.board, scene_.camera, first_gate_px, options_.tracking);
+  if (!motion) return tracked;
+  tracked.motion = *motion;
+  tracked.circles = measureCircles(window_, *motion, scene_.board, scene_.camera, slot.half_s(), start_ns_,
+                                   options_.tracking);
+  tracked.report.circles = static_cast<int>(tracked.circles.size());
+  int expected = 0;
+  for (const ProjectedCircle& circle :
+       projectBoard(motion->ideal_from_board, scene_.board, scene_.camera, scene_.resolution_px)) {
+    constexpr double kLeastTravel_px = 0.7;  // a circle that hardly moves fires no events
+    const double travel_px = motion->velocityAt(circle.centre_px).norm() * 2.0 * slot.half_s();
+    expected += insideImage(circle, scene_.resolution_px) && travel_px > kLeastTravel_px;
+  }
+  const int found = static_cast<int>(tracked.circles.size());
+  tracked.held = found >= options_.grid.least_circles && 2 * found >= expected;
+  if (observer_) observer_->windowTracked(window_, tracked);
+  return tracked;
+}
+
+bool BoardTracker::keep(TrackedWindow& tracked) {
+  const int found = static_cast<int>(tracked.circles.size());
+  const int count = scene_.board.circleCount();
+  const bool enough = found >= std::max(4.0, options_.grid.least_partial * count);
+  tracked.report.outcome = !enough          ? WindowOutcome::TooFewInGrid
+                           : found == count ? WindowOutcome::Complete
+                                            : WindowOutcome::Partial;
+  observations_.windows.push_back(tracked.report);
+  if (!enough) return false;
+  observations_.views.push_back({tracked.report.time_s,
+                                 found == count ? ViewKind::Complete : ViewKind::Partial,
+                                 std::move(tracked.circles)});
+  return true;
+}
+
+void BoardTracker::miss(const Slot& slot, const BoardSearch* search) {
+  WindowReport report;
+  report.time_s = secondsSince(start_ns_, slot.middle_ns());
+  report.half_width_s = slot.half_s();
+  report.events = static_cast<int>(history_.count(slot.begin_ns, slot.end_ns));
+  if (search) {
+    report.outcome = search->outcome;
+    report.candidates = static_cast<int>(search->candidates.size());
+  } else if (report.events >= options_.detection.least_window_bursts) {
+    // Between two searches: the same reason as the search before.
+    report.outcome =
+        observations_.windows.empty() ? WindowOutcome::TooFewCircles : observations_.windows.back().outcome;
+    if (report.outcome == WindowOutcome::Complete || report.outcome == WindowOutcome::Partial) {
+      report.outcome = WindowOutcome::RefinementFailed;
+    }
+  }
+  observations_.windows.push_back(report);
+}
+
+}  // namespace evical

@@ -1,0 +1,81 @@
+// The front end over time: events in, board views out, in bounded memory. The board is searched once, then
+// tracked from window to window; windows that were missed before it was found are tracked backwards.
+#pragma once
+
+#include "core/data/board_observations.h"
+#include "core/frontend/board_search.h"
+#include "core/frontend/edge_bursts.h"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace evical {
+
+// One window of the board, tracked from a prediction.
+struct TrackedWindow {
+  BoardMotion motion;
+  std::vector<CircleObservation> circles;
+  WindowReport report;
+  bool held = false;  // good enough to go on from
+};
+
+// Sees every window as it is looked at: for drawings and live views. Called from the thread that adds events.
+class FrontEndObserver {
+ public:
+  virtual ~FrontEndObserver() = default;
+  virtual void windowTracked(const BurstWindow& window, const TrackedWindow& tracked) = 0;
+  virtual void windowSearched(const BoardSearch& search, std::int64_t middle_ns) = 0;
+};
+
+class BoardTracker {
+ public:
+  // Times in the observations are seconds since start_ns. Without a camera all pixels are the sensor's own.
+  BoardTracker(const CircleBoard& board, Resolution resolution_px, std::optional<CameraIntrinsics> camera,
+               const FrontEndOptions& options, std::int64_t start_ns);
+
+  // Events in time order, inside the resolution.
+  void add(EventSpan events);
+  BoardObservations finish();
+
+  void observeWith(FrontEndObserver* observer) { observer_ = observer; }  // not owned; null: nobody
+
+  const BoardScene& scene() const { return scene_; }
+  const BurstHistory& history() const { return history_; }
+  // Views so far; complete but for windows that may still be found backwards.
+  const BoardObservations& observations() const { return observations_; }
+
+ private:
+  struct Slot {
+    std::int64_t begin_ns, end_ns;
+    std::int64_t middle_ns() const { return begin_ns + (end_ns - begin_ns) / 2; }
+    double half_s() const { return 0.5e-9 * static_cast<double>(end_ns - begin_ns); }
+  };
+
+  void processWindows();
+  void processSlot(const Slot& slot);
+  void acquire(const Slot& slot, const BoardMotion& motion);
+  void trackBackwards(const Slot& from, BoardMotion motion);
+  TrackedWindow track(const Slot& slot, const BoardMotion& prediction, double first_gate_px);
+  bool keep(TrackedWindow& tracked);
+  void miss(const Slot& slot, const BoardSearch* search);
+  double speed_px_s(const BoardMotion& motion) const;
+  std::int64_t slotLength_ns(const BoardMotion* motion) const;
+
+  BoardScene scene_;
+  FrontEndOptions options_;
+  std::int64_t start_ns_;
+  BurstExtractor extractor_;
+  BurstHistory history_;
+  BurstWindow window_;
+  std::vector<EdgeBurst> new_bursts_, window_bursts_;
+  std::optional<BoardMotion> motion_;  // last window that held
+  std::int64_t next_begin_ns_ = 0;     // of the next slot
+  std::int64_t last_search_ns_;
+  std::int64_t tracked_until_ns_;  // end of the last slot that held
+  FrontEndObserver* observer_ = nullptr;
+  bool started_ = false;
+  BoardObservations observations_;
+};
+
+}  // namespace evical

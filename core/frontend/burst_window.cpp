@@ -1,0 +1,97 @@
+#include "core/frontend/burst_window.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace evical {
+namespace {
+
+constexpr std::int64_t kSlice_ns = 5'000'000;  // storage only: results do not depend on it
+
+}  // namespace
+
+std::int64_t BurstHistory::sliceOf(std::int64_t time_ns) const {
+  return time_ns >= 0 ? time_ns / kSlice_ns : (time_ns - kSlice_ns + 1) / kSlice_ns;
+}
+
+void BurstHistory::add(const std::vector<EdgeBurst>& bursts) {
+  for (const EdgeBurst& burst : bursts) {
+    const std::int64_t slice = sliceOf(burst.time_ns);
+    if (slices_.empty()) {
+      first_slice_ = slice;
+      slices_.emplace_back();
+    }
+    while (slice < first_slice_) {
+      slices_.emplace_front();
+      --first_slice_;
+    }
+    while (slice >= first_slice_ + static_cast<std::int64_t>(slices_.size())) slices_.emplace_back();
+    slices_[static_cast<std::size_t>(slice - first_slice_)].push_back(burst);
+  }
+}
+
+void BurstHistory::dropBefore(std::int64_t time_ns) {
+  const std::int64_t slice = sliceOf(time_ns);
+  while (!slices_.empty() && first_slice_ < slice) {
+    slices_.pop_front();
+    ++first_slice_;
+  }
+}
+
+void BurstHistory::gather(std::int64_t begin_ns, std::int64_t end_ns, std::vector<EdgeBurst>& bursts) const {
+  const std::int64_t end_slice =
+      std::min(sliceOf(end_ns - 1) + 1, first_slice_ + static_cast<std::int64_t>(slices_.size()));
+  for (std::int64_t slice = std::max(sliceOf(begin_ns), first_slice_); slice < end_slice; ++slice) {
+    for (const EdgeBurst& burst : slices_[static_cast<std::size_t>(slice - first_slice_)]) {
+      if (burst.time_ns >= begin_ns && burst.time_ns < end_ns) bursts.push_back(burst);
+    }
+  }
+}
+
+std::size_t BurstHistory::count(std::int64_t begin_ns, std::int64_t end_ns) const {
+  std::size_t sum = 0;
+  const std::int64_t end_slice =
+      std::min(sliceOf(end_ns - 1) + 1, first_slice_ + static_cast<std::int64_t>(slices_.size()));
+  for (std::int64_t slice = std::max(sliceOf(begin_ns), first_slice_); slice < end_slice; ++slice) {
+    sum += slices_[static_cast<std::size_t>(slice - first_slice_)].size();
+  }
+  return sum;
+}
+
+BurstWindow::BurstWindow(Resolution resolution_px, const UndistortionTable& ideal,
+                         const std::vector<float>& scale, CircleShade circles)
+    : resolution_px_(resolution_px),
+      ideal_(&ideal),
+      scale_(&scale),
+      dark_circles_(circles == CircleShade::Dark),
+      columns_((resolution_px.width_px >> kCellShift) + 1),
+      rows_((resolution_px.height_px >> kCellShift) + 1) {}
+
+void BurstWindow::assign(const std::vector<EdgeBurst>& bursts, std::int64_t middle_ns) {
+  middle_ns_ = middle_ns;
+  cell_begin_.assign(static_cast<std::size_t>(columns_ * rows_) + 2, 0);
+  const auto cellOf = [&](const EdgeBurst& burst) {
+    return static_cast<std::size_t>((burst.y_px >> kCellShift) * columns_ + (burst.x_px >> kCellShift));
+  };
+  for (const EdgeBurst& burst : bursts) ++cell_begin_[cellOf(burst) + 2];
+  for (std::size_t i = 2; i < cell_begin_.size(); ++i) cell_begin_[i] += cell_begin_[i - 1];
+  bursts_.resize(bursts.size());
+  for (const EdgeBurst& burst : bursts) {
+    WindowBurst& out = bursts_[cell_begin_[cellOf(burst) + 1]++];
+    out.x_px = burst.x_px;
+    out.y_px = burst.y_px;
+    out.ideal_x_px = out.x_px;
+    out.ideal_y_px = out.y_px;
+    out.scale = 1.0f;
+    if (!ideal_->empty()) {
+      const Eigen::Vector2f& ideal = (*ideal_)(burst.x_px, burst.y_px);
+      out.ideal_x_px = ideal.x();
+      out.ideal_y_px = ideal.y();
+      out.scale = (*scale_)[static_cast<std::size_t>(burst.y_px * resolution_px_.width_px + burst.x_px)];
+    }
+    out.time_s = static_cast<float>(static_cast<double>(burst.time_ns - middle_ns) * 1e-9);
+    out.lead = burst.brighter == dark_circles_ ? -1.0f : 1.0f;
+  }
+}
+
+}  // namespace evical

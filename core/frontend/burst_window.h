@@ -1,0 +1,100 @@
+// The bursts around one instant, ready to be asked for by place.
+#pragma once
+
+#include "core/frontend/edge_bursts.h"
+#include "core/geometry/circle_board.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <utility>
+#include <vector>
+
+namespace evical {
+
+// Recent bursts in slices of time, so that any window of the kept history can be gathered.
+class BurstHistory {
+ public:
+  void add(const std::vector<EdgeBurst>& bursts);
+  void dropBefore(std::int64_t time_ns);
+
+  // Appends all bursts with begin_ns <= time < end_ns.
+  void gather(std::int64_t begin_ns, std::int64_t end_ns, std::vector<EdgeBurst>& bursts) const;
+  std::size_t count(std::int64_t begin_ns, std::int64_t end_ns) const;  // to a slice's accuracy
+  bool empty() const { return slices_.empty(); }
+
+ private:
+  std::int64_t sliceOf(std::int64_t time_ns) const;
+
+  std::int64_t first_slice_ = 0;
+  std::deque<std::vector<EdgeBurst>> slices_;
+};
+
+// A burst in a window. Pixels are the sensor's; ideal pixels as in camera_model.h (the same where nothing is
+// known).
+struct WindowBurst {
+  float x_px, y_px;
+  float ideal_x_px, ideal_y_px;
+  float scale;   // ideal pixels per pixel
+  float time_s;  // since the window's middle
+  float lead;    // +1 if a circle's leading edge fires so, -1 if its trailing edge does
+};
+
+// Bursts sorted into cells of 8 x 8 pixels.
+class BurstWindow {
+ public:
+  static constexpr int kCellShift = 3;
+
+  // `ideal` may be empty: ideal pixels then are pixels.
+  BurstWindow(Resolution resolution_px, const UndistortionTable& ideal, const std::vector<float>& scale,
+              CircleShade circles);
+
+  void assign(const std::vector<EdgeBurst>& bursts, std::int64_t middle_ns);
+
+  const std::vector<WindowBurst>& bursts() const { return bursts_; }
+  Resolution resolution_px() const { return resolution_px_; }
+  std::int64_t middle_ns() const { return middle_ns_; }
+
+  // Calls visit(index of burst) for all bursts in the cells that the box touches.
+  template <class Visit>
+  void visitBox(double x_low_px, double x_high_px, double y_low_px, double y_high_px, Visit&& visit) const;
+
+ private:
+  int cellColumn(double x_px) const;
+  int cellRow(double y_px) const;
+
+  Resolution resolution_px_;
+  const UndistortionTable* ideal_;
+  const std::vector<float>* scale_;
+  bool dark_circles_;
+  int columns_, rows_;
+  std::int64_t middle_ns_ = 0;
+  std::vector<WindowBurst> bursts_;
+  std::vector<std::uint32_t> cell_begin_;  // columns_ * rows_ + 1
+};
+
+inline int BurstWindow::cellColumn(double x_px) const {
+  return x_px <= 0.0 ? 0 : std::min(static_cast<int>(x_px) >> kCellShift, columns_ - 1);
+}
+
+inline int BurstWindow::cellRow(double y_px) const {
+  return y_px <= 0.0 ? 0 : std::min(static_cast<int>(y_px) >> kCellShift, rows_ - 1);
+}
+
+template <class Visit>
+void BurstWindow::visitBox(double x_low_px, double x_high_px, double y_low_px, double y_high_px,
+                           Visit&& visit) const {
+  if (x_high_px < 0.0 || y_high_px < 0.0 || x_low_px > resolution_px_.width_px ||
+      y_low_px > resolution_px_.height_px)
+    return;
+  const int column_end = cellColumn(x_high_px) + 1;
+  const int column_begin = cellColumn(x_low_px);
+  const int row_end = cellRow(y_high_px) + 1;
+  for (int row = cellRow(y_low_px); row < row_end; ++row) {
+    const std::uint32_t begin = cell_begin_[static_cast<std::size_t>(row * columns_ + column_begin)];
+    const std::uint32_t end = cell_begin_[static_cast<std::size_t>(row * columns_ + column_end)];
+    for (std::uint32_t i = begin; i < end; ++i) visit(i);
+  }
+}
+
+}  // namespace evical

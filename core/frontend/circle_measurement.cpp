@@ -1,0 +1,149 @@
+#include "core/frontend/circle_measurement.h"
+
+#include "core/base/time.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace evical {
+namespace {
+
+constexpr int kSectors = 16;
+constexpr int kMeasureIterations = 4;
+
+struct EdgePoint {
+  Eigen::Vector2d at_middle;  // ideal pixels, moved to the window's middle
+  double time_s, scale, weight;
+  Eigen::Vector2d normal;
+  double residual_px;
+};
+
+void gatherEdgePoints(const BurstWindow& window, const ProjectedCircle& circle, const BoardMotion& motion,
+                      double half_slot_s, const TrackingOptions& options, std::vector<EdgePoint>& points) {
+  points.clear();
+  const Eigen::Vector2d velocity = motion.velocityAt(circle.centre_px);
+  const double speed = velocity.norm();
+  if (speed < 1e-3) return;
+  const double sensor_scale = circle.sensor_radius_px / circle.largest_radius_px;
+  // Wider than the fit's last gate by what a circle may lie off the board's fit.
+  const double gate_px = options.last_gate_px + 0.5 * options.largest_centre_shift_px;
+  const double reach = circle.sensor_radius_px + gate_px + speed * half_slot_s * sensor_scale;
+  const Eigen::Vector2d& middle = circle.sensor_centre_px;
+  window.visitBox(middle.x() - reach, middle.x() + reach, middle.y() - reach, middle.y() + reach,
+                  [&](std::uint32_t i) {
+                    const WindowBurst& burst = window.bursts()[i];
+                    const double time_s = burst.time_s;
+                    if (std::abs(time_s) > half_slot_s) return;
+                    const Eigen::Vector2d pixel(burst.ideal_x_px, burst.ideal_y_px);
+                    const Eigen::Vector2d at_middle = pixel - motion.velocityAt(pixel) * time_s;
+                    const EdgeDistance edge = distanceToEdge(circle, at_middle);
+                    if (!(std::abs(edge.distance_px / burst.scale - motion.radius_offset_px) < gate_px))
+                      return;
+                    if (burst.lead * edge.normal.dot(velocity) < options.least_polarity_cosine * speed)
+                      return;
+                    points.push_back({at_middle, time_s, burst.scale, 1.0, edge.normal, 0.0});
+                  });
+}
+
+struct CentreFit {
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  // centre x, y in ideal pixels; radius offset in pixels
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  double weight = 0.0, squares = 0.0, time_s = 0.0;
+  int points = 0;
+  unsigned sectors = 0;
+};
+
+// Residuals are linear in the shift as long as it is small against the radius; a few rounds settle the
+// weights.
+CentreFit fitCentre(ProjectedCircle circle, const BoardMotion& motion, const TrackingOptions& options,
+                    std::vector<EdgePoint>& points) {
+  CentreFit fit;
+  const Eigen::Vector2d centre_at_start = circle.centre_px;
+  const double prior = 1.0 / (options.radius_offset_sigma_px * options.radius_offset_sigma_px);
+  const double noise2 = std::max(motion.residual_rms_px * motion.residual_rms_px, 1e-3);
+  const double inverse_scale2 = 1.0 / (options.robust_scale_px * options.robust_scale_px);
+  for (int iteration = 0; iteration < kMeasureIterations; ++iteration) {
+    circle.centre_px = centre_at_start + fit.shift.head<2>();
+    const double offset_px = motion.radius_offset_px + fit.shift.z();
+    Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d vector = Eigen::Vector3d::Zero();
+    matrix(2, 2) = prior * noise2;
+    vector(2) = -prior * noise2 * fit.shift.z();
+    fit.weight = fit.squares = fit.time_s = 0.0;
+    fit.points = 0;
+    fit.sectors = 0;
+    for (EdgePoint& point : points) {
+      const EdgeDistance edge = distanceToEdge(circle, point.at_middle);
+      const double r = edge.distance_px / point.scale - offset_px;
+      const double w = std::abs(r) < options.last_gate_px ? 1.0 / (1.0 + r * r * inverse_scale2) : 0.0;
+      if (w == 0.0) continue;
+      const Eigen::Vector3d row(-edge.normal.x() / point.scale, -edge.normal.y() / point.scale, -1.0);
+      matrix += w * row * row.transpose();
+      vector -= w * r * row;
+      fit.weight += w;
+      fit.squares += w * r * r;
+      fit.time_s += w * point.time_s;
+      ++fit.points;
+      const double angle = std::atan2(edge.normal.y(), edge.normal.x());
+      fit.sectors |= 1u << (static_cast<int>((angle / (2.0 * M_PI) + 1.0) * kSectors) % kSectors);
+    }
+    if (fit.points < options.least_circle_bursts) return fit;
+    fit.shift += matrix.ldlt().solve(vector);
+    fit.information = matrix;
+  }
+  fit.time_s /= fit.weight;
+  return fit;
+}
+
+CircleObservation observation(const ProjectedCircle& circle, const CentreFit& fit, const BoardMotion& motion,
+                              double noise2, std::int64_t start_ns) {
+  CircleObservation out;
+  out.circle = circle.circle;
+  const Eigen::Vector2d centre = circle.centre_px + fit.shift.head<2>();
+  out.velocity_px_s = motion.velocityAt(centre);
+  out.time_s = secondsSince(start_ns, motion.time_ns) + fit.time_s;
+  out.centre_px = centre + out.velocity_px_s * fit.time_s;
+  out.covariance_px2 = noise2 * fit.information.inverse().topLeftCorner<2, 2>();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(circle.shape);
+  out.semi_axes_px = eigen.eigenvalues().cwiseSqrt().cwiseInverse();  // ascending shape: major axis first
+  out.angle_rad = std::atan2(eigen.eigenvectors()(1, 0), eigen.eigenvectors()(0, 0));
+  out.events = fit.points;
+  out.residual_rms_px = std::sqrt(fit.squares / fit.weight);
+  return out;
+}
+
+}  // namespace
+
+std::vector<CircleObservation> measureCircles(const BurstWindow& window, const BoardMotion& motion,
+                                              const CircleBoard& board,
+                                              const std::optional<CameraIntrinsics>& camera,
+                                              double half_slot_s, std::int64_t start_ns,
+                                              const TrackingOptions& options) {
+  std::vector<CircleObservation> circles;
+  std::vector<EdgePoint> points;
+  // The window's own scatter, not one circle's: a dozen points say little about their noise.
+  const double noise2 = std::max(motion.residual_rms_px * motion.residual_rms_px, 1e-3);
+  const double largest_variance = options.largest_centre_sigma_px * options.largest_centre_sigma_px;
+  for (const ProjectedCircle& circle :
+       projectBoard(motion.ideal_from_board, board, camera, window.resolution_px())) {
+    if (!insideImage(circle, window.resolution_px())) continue;
+    gatherEdgePoints(window, circle, motion, half_slot_s, options, points);
+    if (static_cast<int>(points.size()) < options.least_circle_bursts) continue;
+    const CentreFit fit = fitCentre(circle, motion, options, points);
+    if (fit.points < options.least_circle_bursts) continue;
+    if (std::popcount(fit.sectors) < options.least_arc * kSectors) continue;
+    const double scale = circle.largest_radius_px / circle.sensor_radius_px;
+    if (!(fit.shift.head<2>().norm() < options.largest_centre_shift_px * scale)) continue;
+    CircleObservation out = observation(circle, fit, motion, noise2, start_ns);
+    if (!(out.covariance_px2.trace() < 2.0 * largest_variance * scale * scale)) continue;
+    circles.push_back(out);
+  }
+  return circles;
+}
+
+}  // namespace evical

@@ -1,0 +1,70 @@
+// An edge that crosses a pixel fires a burst of events of one polarity. The burst's median time says when the
+// edge was in the middle of the pixel, much better than its first event does (docs/maths.md, edge timing).
+#pragma once
+
+#include "core/data/event.h"
+#include "core/frontend/detection_options.h"
+#include "core/geometry/camera_model.h"
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+namespace evical {
+
+struct EdgeBurst {
+  std::int64_t time_ns;      // median of its events' times
+  std::int32_t duration_ns;  // from its first to its last event
+  std::uint16_t x_px, y_px;
+  std::uint16_t events;
+  bool brighter;
+};
+
+// Turns events into bursts, in one pass and constant memory. A burst ends with an event of the other polarity
+// or with a pause that is long against its own pace.
+class BurstExtractor {
+ public:
+  BurstExtractor(Resolution resolution_px, const BurstOptions& options);
+
+  // Events in time order, inside the resolution; finished bursts are appended to `bursts`, in order of their
+  // ends.
+  void add(EventSpan events, std::vector<EdgeBurst>& bursts);
+  void finish(std::vector<EdgeBurst>& bursts);
+
+  // Bursts with a median before this time have all been handed out.
+  std::int64_t completeUntil_ns() const { return complete_until_ns_; }
+  std::uint64_t eventCount() const { return event_count_; }
+
+ private:
+  static constexpr int kKeptTimes = 16;  // thinned by halves when a burst has more events
+
+  struct Pixel {
+    std::int64_t first_ns = 0, last_ns = 0;
+    std::uint16_t events = 0;  // 0: no burst under way
+    std::uint8_t kept = 0, stride_log2 = 0;
+    bool brighter = false;
+    std::array<std::int32_t, kKeptTimes> times_ns;  // since first_ns
+  };
+  struct Check {
+    std::uint32_t pixel;
+    std::int64_t at_ns;
+  };
+
+  void start(Pixel& pixel, std::uint32_t index, const Event& event);
+  void extend(Pixel& pixel, const Event& event);
+  void end(Pixel& pixel, std::uint32_t index, std::vector<EdgeBurst>& bursts) const;
+  bool pausedAt(const Pixel& pixel, std::int64_t time_ns) const;
+  void endPaused(std::int64_t now_ns, std::vector<EdgeBurst>& bursts);
+
+  Resolution resolution_px_;
+  std::int64_t longest_gap_ns_, shortest_gap_ns_, longest_burst_ns_, check_interval_ns_;
+  double gap_to_pace_;
+  int least_events_;
+  std::vector<Pixel> pixels_;
+  std::deque<Check> checks_;
+  std::int64_t complete_until_ns_;
+  std::uint64_t event_count_ = 0;
+};
+
+}  // namespace evical

@@ -1,0 +1,21 @@
+// Circle candidates by signed votes: a burst at the leading edge votes along the line from the circle's
+// centre, one at the trailing edge against it. Over a moving circle's ring the votes add up to a vector along
+// the motion; over texture they cancel. Needs no flow and no complete outline (docs/maths.md, ring vote).
+#pragma once
+
+#include "core/frontend/burst_window.h"
+#include "core/frontend/circle_candidate.h"
+#include "core/frontend/detection_options.h"
+
+#include <vector>
+
+namespace evical {
+
+// Best candidates first, by the largest radius the image allows.
+std::vector<CircleCandidate> voteForCircles(const BurstWindow& window, const RingVoteOptions& options);
+
+// Drops bursts that stand alone: fewer than `least_support` of their kind in a 3x3 neighbourhood, themselves
+// included.
+void keepSupported(Resolution resolution_px, int least_support, std::vector<EdgeBurst>& bursts);
+
+}  // namespace evical
