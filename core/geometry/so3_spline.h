@@ -1,18 +1,21 @@
-// Uniform cumulative cubic B-spline on SO(3) (Sommer et al., CVPR 2020). Between knots i and i + 1, with u in [0, 1):
+// Uniform cumulative cubic B-spline on SO(3) (Sommer et al., "Efficient derivative computation for cumulative
+// B-splines on Lie groups", CVPR 2020). Between knots i and i + 1, with u in [0, 1):
 //   R(t) = R_i A_1 A_2 A_3,  A_j = Exp(l_j(u) d_j),  d_j = Log(R_{i+j-1}^T R_{i+j})
-// The spline is defined for start_s <= t <= endTime(); segment s uses control points s .. s + 3.
+// The spline is defined for start_s <= t <= endTime(); segment s uses control points s .. s + 3, so control
+// point k weighs most at start_s + (k - 1) * knot_spacing_s.
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
 #include <array>
+#include <span>
 #include <vector>
 
 namespace evical {
 
 struct So3Spline {
-  double start_s = 0.0;         // time of the first segment's begin
+  double start_s = 0.0;  // time of the first segment's begin
   double knot_spacing_s = 0.02;
   std::vector<Eigen::Quaterniond> control_points;
 
@@ -21,11 +24,65 @@ struct So3Spline {
   bool contains(double time_s) const { return time_s >= start_s && time_s <= endTime_s(); }
 };
 
-// A time in a uniform spline: the segment (clamped to those there are) and u within it.
+// A time in a uniform spline: the segment (clamped to those there are) and u within it. Outside the spline u
+// leaves [0, 1], and evaluating there continues the first or last segment's polynomial.
 struct SplinePlace {
   int segment = 0;
   double u = 0.0;
 };
 SplinePlace placeInSpline(double start_s, double knot_spacing_s, int segment_count, double time_s);
+SplinePlace placeInSpline(const So3Spline& spline, double time_s);
+
+// How many segments of this spacing cover [begin_s, end_s].
+int segmentsToCover(double begin_s, double end_s, double knot_spacing_s);
+
+// All control points the same; covers [begin_s, end_s], starting at begin_s.
+So3Spline makeUniformSo3Spline(double begin_s, double end_s, double knot_spacing_s,
+                               const Eigen::Quaterniond& rotation = Eigen::Quaterniond::Identity());
+
+struct RotationSample {
+  Eigen::Matrix3d rotation;                     // R(t)
+  Eigen::Vector3d angular_velocity_rad_s;       // in the body frame
+  Eigen::Vector3d angular_acceleration_rad_s2;  // in the body frame
+};
+
+// Derivatives with respect to the segment's four control points, each perturbed as R_k Exp(delta).
+// `rotation[k]` maps delta to the perturbation of the value: R(t) -> R(t) Exp(rotation[k] delta).
+struct RotationJacobians {
+  std::array<Eigen::Matrix3d, 4> rotation, velocity, acceleration;
+};
+
+// What to compute; each includes those before it.
+enum class RotationOrder { Rotation, Velocity, Acceleration };
+
+// What all times in one segment share. Build it once where many samples fall into the same segment.
+class So3Segment {
+ public:
+  // Quaternions as Eigen stores them (x y z w), as Ceres parameter blocks hold them.
+  So3Segment(const double* r0_xyzw, const double* r1_xyzw, const double* r2_xyzw, const double* r3_xyzw,
+             double knot_spacing_s, bool with_jacobians);
+  So3Segment(const So3Spline& spline, int segment, bool with_jacobians);
+
+  // `jacobians` only if built with them; fields beyond `order` are left as they are.
+  void evaluate(double u, RotationOrder order, RotationSample& sample,
+                RotationJacobians* jacobians = nullptr) const;
+
+ private:
+  void initialise(const std::array<Eigen::Quaterniond, 4>& rotations, bool with_jacobians);
+
+  double knot_spacing_s_;
+  Eigen::Matrix3d first_;
+  std::array<Eigen::Vector3d, 3> steps_;              // d_1 .. d_3
+  std::array<Eigen::Matrix3d, 3> inverse_jacobians_;  // right Jacobian's inverse at d_j
+};
+
+RotationSample evaluate(const So3Spline& spline, double time_s,
+                        RotationOrder order = RotationOrder::Acceleration,
+                        RotationJacobians* jacobians = nullptr);
+
+// Least squares fit to rotations at times (ascending or not) within the spline's range, by Gauss-Newton from
+// the interpolated rotations; a weak pull towards constant angular velocity bridges stretches without data.
+So3Spline fitSo3Spline(std::span<const double> times_s, std::span<const Eigen::Quaterniond> rotations,
+                       double begin_s, double end_s, double knot_spacing_s);
 
 }  // namespace evical

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include <span>
 #include <vector>
 
 namespace evical {
@@ -16,5 +17,28 @@ struct VectorSpline {
   double endTime_s() const { return start_s + knot_spacing_s * segmentCount(); }
   bool contains(double time_s) const { return time_s >= start_s && time_s <= endTime_s(); }
 };
+
+// Value and time derivatives, with the four weights they have of the control points segment .. segment + 3:
+// the Jacobian with respect to control point k is weight[k] times the identity.
+struct VectorSample {
+  Eigen::Vector3d value, velocity, acceleration;
+  Eigen::Vector4d value_weights, velocity_weights, acceleration_weights;
+  int segment = 0;
+};
+VectorSample evaluate(const VectorSpline& spline, double time_s);
+
+// The same from the four control points of a segment, three doubles each.
+VectorSample evaluateVectorSegment(const double* p0, const double* p1, const double* p2, const double* p3,
+                                   double u, double knot_spacing_s);
+
+// All control points the same; covers [begin_s, end_s], starting at begin_s.
+VectorSpline makeUniformVectorSpline(double begin_s, double end_s, double knot_spacing_s,
+                                     const Eigen::Vector3d& value = Eigen::Vector3d::Zero());
+
+// Linear least squares to values at times within [begin_s, end_s]. `smoothness` weighs the integrated squared
+// second difference of the control points against one sample; the default only bridges stretches without
+// data.
+VectorSpline fitVectorSpline(std::span<const double> times_s, std::span<const Eigen::Vector3d> values,
+                             double begin_s, double end_s, double knot_spacing_s, double smoothness = 1e-8);
 
 }  // namespace evical
