@@ -1,96 +1,11 @@
 #include "core/frontend/board_motion.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
 
 namespace evical {
-namespace {
-
-constexpr int kFlowTerms = 8;
-constexpr int kUnknowns = 2 * kFlowTerms + 1;  // shift, velocity, radius offset
-using NormalMatrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
-using NormalVector = Eigen::Matrix<double, kUnknowns, 1>;
-
-struct NormalEquations {
-  NormalMatrix matrix = NormalMatrix::Zero();
-  NormalVector vector = NormalVector::Zero();
-  double weighted_squares = 0.0, weight = 0.0;
-  int bursts = 0;
-};
-
-// How far velocities may change from one window to the next, in px/s; the prior only keeps what the bursts do
-// not see.
-constexpr double kVelocitySigmaPerPixel = 40.0;
-
-void addPriors(const TrackingOptions& options, const NormalVector& from_start, NormalEquations& equations) {
-  for (int i = 0; i < kUnknowns; ++i) {
-    const bool perspective = (i % kFlowTerms) >= 6 && i < 2 * kFlowTerms;
-    double sigma = options.prediction_sigma_px;
-    if (i >= kFlowTerms) sigma *= kVelocitySigmaPerPixel;
-    if (perspective) sigma *= 0.5;
-    if (i == kUnknowns - 1) sigma = 1.0;
-    const double weight = 1.0 / (sigma * sigma);
-    equations.matrix(i, i) += weight;
-    equations.vector(i) -= weight * from_start(i);
-  }
-}
-
-void addCircle(const BurstWindow& window, const ProjectedCircle& circle, const BoardMotion& motion,
-               double half_window_s, double gate_px, const TrackingOptions& options,
-               NormalEquations& equations) {
-  const Eigen::Vector2d velocity = motion.velocityAt(circle.centre_px);
-  const double speed = velocity.norm();
-  if (speed < 1e-3) return;
-  const Eigen::Vector2d direction = velocity / speed;
-  const double inverse_scale2 = 1.0 / (options.robust_scale_px * options.robust_scale_px);
-  const double sensor_scale = circle.sensor_radius_px / circle.largest_radius_px;
-  const double reach = circle.sensor_radius_px + gate_px + speed * half_window_s * sensor_scale;
-  const Eigen::Vector2d& middle = circle.sensor_centre_px;
-  window.visitBox(
-      middle.x() - reach, middle.x() + reach, middle.y() - reach, middle.y() + reach, [&](std::uint32_t i) {
-        const WindowBurst& burst = window.bursts()[i];
-        if (std::abs(burst.time_s) > half_window_s) return;
-        const Eigen::Vector2d pixel(burst.ideal_x_px, burst.ideal_y_px);
-        const Eigen::Vector2d at_middle = pixel - velocity * static_cast<double>(burst.time_s);
-        // The circle's own velocity tells quickly what is far away; the field's decides.
-        if ((at_middle - circle.centre_px).norm() > circle.largest_radius_px + 2.0 * gate_px * burst.scale)
-          return;
-        const PlaneFlowBasis basis = motion.frame.basis(pixel);
-        const Eigen::Vector2d warped =
-            pixel - basis * motion.velocity_px_s * static_cast<double>(burst.time_s);
-        const EdgeDistance edge = distanceToEdge(circle, warped);
-        const double scale = burst.scale;
-        const double residual = edge.distance_px / scale - motion.radius_offset_px;
-        if (!(std::abs(residual) < gate_px)) return;
-        if (burst.lead * edge.normal.dot(direction) < options.least_polarity_cosine) return;
-        const double weight = 1.0 / (1.0 + residual * residual * inverse_scale2);
-        const Eigen::Matrix<double, 1, 8> along = edge.normal.transpose() * basis / scale;
-        Eigen::Matrix<double, 1, kUnknowns> row;
-        row << -along, -along * static_cast<double>(burst.time_s), -1.0;
-        equations.matrix.selfadjointView<Eigen::Lower>().rankUpdate(row.transpose(), weight);
-        equations.vector -= weight * residual * row.transpose();
-        equations.weighted_squares += weight * residual * residual;
-        equations.weight += weight;
-        ++equations.bursts;
-      });
-}
-
-// Mean speed of the circles in the sensor's pixels.
-double meanSpeed_px_s(const std::vector<ProjectedCircle>& circles, const BoardMotion& motion) {
-  double sum = 0.0;
-  for (const ProjectedCircle& circle : circles) {
-    const double sensor_scale = circle.sensor_radius_px / circle.largest_radius_px;
-    sum += motion.velocityAt(circle.centre_px).norm() * sensor_scale;
-  }
-  return circles.empty() ? 0.0 : sum / static_cast<double>(circles.size());
-}
-
-}  // namespace
-
 namespace {
 
 Eigen::Matrix3d normaliser(const ImageFrame& frame) {
@@ -129,6 +44,14 @@ Eigen::Vector2d ImageFrame::flow(const PlaneFlow& f, const Eigen::Vector2d& pixe
   return {f(0) + f(1) * x + f(2) * y + x * bend, f(3) + f(4) * x + f(5) * y + y * bend};
 }
 
+Eigen::Matrix2d ImageFrame::gradient(const PlaneFlow& f, const Eigen::Vector2d& pixel) const {
+  const Eigen::Vector2d n = (pixel - centre_px) / scale_px;
+  const double x = n.x(), y = n.y();
+  Eigen::Matrix2d g;
+  g << f(1) + 2.0 * f(6) * x + f(7) * y, f(2) + f(7) * x, f(4) + f(6) * y, f(5) + f(6) * x + 2.0 * f(7) * y;
+  return g / scale_px;
+}
+
 Eigen::Matrix3d moved(const Eigen::Matrix3d& ideal_from_board, const ImageFrame& frame, const PlaneFlow& f) {
   const double s = frame.scale_px;
   const Eigen::Matrix3d n = normaliser(frame);
@@ -142,10 +65,13 @@ BoardMotion predicted(const BoardMotion& motion, std::int64_t time_ns) {
   BoardMotion next = motion;
   const double dt = static_cast<double>(time_ns - motion.time_ns) * 1e-9;
   next.time_ns = time_ns;
-  next.ideal_from_board = moved(motion.ideal_from_board, motion.frame, motion.velocity_px_s * dt);
+  const PlaneFlow travel_px = dt * (motion.velocity_px_s + 0.5 * dt * motion.acceleration_px_s2);
+  next.ideal_from_board = moved(motion.ideal_from_board, motion.frame, travel_px);
   // The frame goes with the board.
-  next.frame.centre_px += motion.frame.flow(motion.velocity_px_s, motion.frame.centre_px) * dt;
-  next.velocity_px_s = reframed(motion.velocity_px_s, motion.frame, next.frame);
+  next.frame.centre_px += motion.frame.flow(travel_px, motion.frame.centre_px);
+  next.velocity_px_s =
+      reframed(motion.velocity_px_s + dt * motion.acceleration_px_s2, motion.frame, next.frame);
+  next.acceleration_px_s2 = reframed(motion.acceleration_px_s2, motion.frame, next.frame);
   return next;
 }
 
@@ -204,47 +130,19 @@ bool insideImage(const ProjectedCircle& circle, Resolution resolution_px) {
 
 double boardSpeed_px_s(const BoardMotion& motion, const CircleBoard& board,
                        const std::optional<CameraIntrinsics>& camera, Resolution resolution_px) {
-  return meanSpeed_px_s(projectBoard(motion.ideal_from_board, board, camera, resolution_px), motion);
+  const std::vector<ProjectedCircle> circles =
+      projectBoard(motion.ideal_from_board, board, camera, resolution_px);
+  double sum = 0.0;
+  for (const ProjectedCircle& circle : circles) {
+    const double sensor_scale = circle.sensor_radius_px / circle.largest_radius_px;
+    sum += motion.velocityAt(circle.centre_px).norm() * sensor_scale;
+  }
+  return circles.empty() ? 0.0 : sum / static_cast<double>(circles.size());
 }
 
 double fitHalfWindow_s(double speed_px_s, const TrackingOptions& options) {
   return std::min(options.fit_travel_px / (2.0 * std::max(speed_px_s, 1.0)),
                   options.longest_fit_half_window_s);
-}
-
-std::optional<BoardMotion> fitBoardMotion(const BurstWindow& window, const BoardMotion& start,
-                                          const CircleBoard& board,
-                                          const std::optional<CameraIntrinsics>& camera, double first_gate_px,
-                                          const TrackingOptions& options) {
-  BoardMotion motion = start;
-  std::vector<ProjectedCircle> circles =
-      projectBoard(motion.ideal_from_board, board, camera, window.resolution_px());
-  if (circles.empty()) return std::nullopt;
-  const double half_window_s = fitHalfWindow_s(meanSpeed_px_s(circles, motion), options);
-  NormalVector from_start = NormalVector::Zero();
-  const double gate_ratio =
-      std::pow(options.last_gate_px / first_gate_px, 1.0 / std::max(options.iterations - 2, 1));
-  double gate_px = first_gate_px;
-  for (int iteration = 0; iteration < options.iterations; ++iteration) {
-    NormalEquations equations;
-    for (const ProjectedCircle& circle : circles) {
-      addCircle(window, circle, motion, half_window_s, gate_px, options, equations);
-    }
-    if (equations.bursts < 3 * kUnknowns) return std::nullopt;
-    addPriors(options, from_start, equations);
-    const NormalVector step = equations.matrix.selfadjointView<Eigen::Lower>().ldlt().solve(equations.vector);
-    if (!step.allFinite()) return std::nullopt;
-    from_start += step;
-    motion.ideal_from_board = moved(motion.ideal_from_board, motion.frame, step.head<kFlowTerms>());
-    motion.velocity_px_s += step.segment<kFlowTerms>(kFlowTerms);
-    motion.radius_offset_px += step(kUnknowns - 1);
-    motion.residual_rms_px = std::sqrt(equations.weighted_squares / equations.weight);
-    motion.bursts = equations.bursts;
-    circles = projectBoard(motion.ideal_from_board, board, camera, window.resolution_px());
-    if (circles.empty()) return std::nullopt;
-    gate_px = std::max(gate_px * gate_ratio, options.last_gate_px);
-  }
-  return motion;
 }
 
 }  // namespace evical

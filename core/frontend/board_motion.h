@@ -27,6 +27,8 @@ struct ImageFrame {
 
   PlaneFlowBasis basis(const Eigen::Vector2d& pixel) const;
   Eigen::Vector2d flow(const PlaneFlow& coefficients, const Eigen::Vector2d& pixel) const;
+  Eigen::Matrix2d gradient(const PlaneFlow& coefficients,
+                           const Eigen::Vector2d& pixel) const;  // of flow, per px
 };
 
 struct BoardMotion {
@@ -35,12 +37,20 @@ struct BoardMotion {
       Eigen::Matrix3d::Identity();  // homography: metres on the board to ideal pixels
   ImageFrame frame;
   PlaneFlow velocity_px_s = PlaneFlow::Zero();
+  PlaneFlow acceleration_px_s2 = PlaneFlow::Zero();
   double radius_offset_px = 0.0;  // burst medians lie this far outside the edges, in pixels
   double residual_rms_px = 0.0;
   int bursts = 0;
 
   Eigen::Vector2d velocityAt(const Eigen::Vector2d& ideal_pixel) const {
     return frame.flow(velocity_px_s, ideal_pixel);
+  }
+  Eigen::Vector2d accelerationAt(const Eigen::Vector2d& ideal_pixel) const {
+    return frame.flow(acceleration_px_s2, ideal_pixel);
+  }
+  // How far a point of the board's image moves from the window's middle to `after_s` later.
+  Eigen::Vector2d travel(const Eigen::Vector2d& ideal_pixel, double after_s) const {
+    return frame.flow(after_s * (velocity_px_s + 0.5 * after_s * acceleration_px_s2), ideal_pixel);
   }
 };
 

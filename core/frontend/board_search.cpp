@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kSpeedWindow_s = 0.04;  // half window in which the typical speed is looked up
 constexpr double kSlowest_px_s = 10.0;
-constexpr std::size_t kMostPlacements = 8;
+constexpr std::size_t kMostPlacements = 48;
 
 std::vector<CircleCandidate> findCandidates(const BurstWindow& window, const FrontEndOptions& options) {
   return voteForCircles(window, options.ring_vote);

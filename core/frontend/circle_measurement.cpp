@@ -27,8 +27,8 @@ void gatherEdgePoints(const BurstWindow& window, const ProjectedCircle& circle, 
                       double half_slot_s, const TrackingOptions& options, std::vector<EdgePoint>& points) {
   points.clear();
   const Eigen::Vector2d velocity = motion.velocityAt(circle.centre_px);
-  const double speed = velocity.norm();
-  if (speed < 1e-3) return;
+  const Eigen::Vector2d acceleration = motion.accelerationAt(circle.centre_px);
+  const double speed = velocity.norm() + 0.5 * half_slot_s * acceleration.norm();
   const double sensor_scale = circle.sensor_radius_px / circle.largest_radius_px;
   // Wider than the fit's last gate by what a circle may lie off the board's fit.
   const double gate_px = options.last_gate_px + 0.5 * options.largest_centre_shift_px;
@@ -40,7 +40,7 @@ void gatherEdgePoints(const BurstWindow& window, const ProjectedCircle& circle, 
                     const double time_s = burst.time_s;
                     if (std::abs(time_s) > half_slot_s) return;
                     const Eigen::Vector2d pixel(burst.ideal_x_px, burst.ideal_y_px);
-                    const Eigen::Vector2d at_middle = pixel - motion.velocityAt(pixel) * time_s;
+                    const Eigen::Vector2d at_middle = pixel - motion.travel(pixel, time_s);
                     const EdgeDistance edge = distanceToEdge(circle, at_middle);
                     if (!(std::abs(edge.distance_px / burst.scale - motion.radius_offset_px) < gate_px))
                       return;
@@ -105,9 +105,9 @@ CircleObservation observation(const ProjectedCircle& circle, const CentreFit& fi
   CircleObservation out;
   out.circle = circle.circle;
   const Eigen::Vector2d centre = circle.centre_px + fit.shift.head<2>();
-  out.velocity_px_s = motion.velocityAt(centre);
+  out.velocity_px_s = motion.velocityAt(centre) + fit.time_s * motion.accelerationAt(centre);
   out.time_s = secondsSince(start_ns, motion.time_ns) + fit.time_s;
-  out.centre_px = centre + out.velocity_px_s * fit.time_s;
+  out.centre_px = centre + motion.travel(centre, fit.time_s);
   out.covariance_px2 = noise2 * fit.information.inverse().topLeftCorner<2, 2>();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(circle.shape);
   out.semi_axes_px = eigen.eigenvalues().cwiseSqrt().cwiseInverse();  // ascending shape: major axis first

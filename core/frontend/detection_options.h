@@ -151,6 +151,7 @@ struct TrackingOptions {
   double longest_fit_half_window_s = 0.06;
   double first_gate_px = 3.0;
   double last_gate_px = 1.0;
+  double gate_ratio = 0.6;
   double robust_scale_px = 0.4;
   int iterations = 8;
   double least_polarity_cosine = 0.25;
@@ -160,6 +161,8 @@ struct TrackingOptions {
   double largest_centre_shift_px = 1.5;
   double radius_offset_sigma_px = 0.15;
   double prediction_sigma_px = 4.0;
+  double velocity_sigma_px_s = 150.0;
+  double acceleration_sigma_px_s2 = 1500.0;
   double longest_gap_s = 0.3;
   bool operator==(const TrackingOptions&) const = default;
 };
@@ -172,6 +175,8 @@ inline constexpr auto kTrackingFields = std::tuple{
           "Bursts this near an edge, at first."},
     Field{"last_gate_px", &TrackingOptions::last_gate_px, 0.3, 20.0, "px",
           "Bursts this near an edge, at last."},
+    Field{"gate_ratio", &TrackingOptions::gate_ratio, 0.1, 1.0, "",
+          "By which the gate narrows from step to step."},
     Field{"robust_scale_px", &TrackingOptions::robust_scale_px, 0.05, 5.0, "px",
           "Scale of the Cauchy weight."},
     Field{"iterations", &TrackingOptions::iterations, 2, 50, "", "Gauss-Newton steps of the joint fit."},
@@ -189,6 +194,10 @@ inline constexpr auto kTrackingFields = std::tuple{
           "How far one circle's radius may differ from what all show."},
     Field{"prediction_sigma_px", &TrackingOptions::prediction_sigma_px, 0.1, 50.0, "px",
           "How far the prediction from the window before is trusted."},
+    Field{"velocity_sigma_px_s", &TrackingOptions::velocity_sigma_px_s, 1.0, 1e5, "px/s",
+          "How far the velocity may differ from the prediction."},
+    Field{"acceleration_sigma_px_s2", &TrackingOptions::acceleration_sigma_px_s2, 1.0, 1e6, "px/s^2",
+          "How large accelerations are."},
     Field{"longest_gap_s", &TrackingOptions::longest_gap_s, 0.0, 5.0, "s",
           "A lost board is predicted for this long before it is searched anew."}};
 static_assert(fieldCount<TrackingOptions>() == std::tuple_size_v<decltype(kTrackingFields)>);

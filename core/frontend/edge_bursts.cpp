@@ -12,7 +12,7 @@ BurstExtractor::BurstExtractor(Resolution resolution_px, const BurstOptions& opt
       longest_gap_ns_(nanosecondsFrom(options.longest_gap_s)),
       shortest_gap_ns_(nanosecondsFrom(options.shortest_gap_s)),
       longest_burst_ns_(nanosecondsFrom(options.longest_burst_s)),
-      check_interval_ns_(longest_gap_ns_ / 2),
+      check_interval_ns_(longest_gap_ns_),
       gap_to_pace_(options.gap_to_pace),
       least_events_(options.least_events),
       pixels_(static_cast<std::size_t>(resolution_px.pixelCount())),

@@ -1,0 +1,215 @@
+// The joint fit of all circles of a window. Bursts are summed up by circle and sector of its outline: within
+// a sector the normals agree to a few degrees, so the normal equations (25 unknowns) are built from a few
+// hundred sectors instead of thousands of bursts. Gradients keep every burst's own normal: the optimum is not
+// touched by it.
+#include "core/frontend/board_motion.h"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace evical {
+namespace {
+
+constexpr int kFlowTerms = 8;
+constexpr int kUnknowns = 3 * kFlowTerms + 1;  // shift, velocity, acceleration, radius offset
+constexpr int kSectors = 16;
+using NormalMatrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+using NormalVector = Eigen::Matrix<double, kUnknowns, 1>;
+
+struct NormalEquations {
+  NormalMatrix matrix = NormalMatrix::Zero();
+  NormalVector vector = NormalVector::Zero();
+  double weighted_squares = 0.0, weight = 0.0;
+  int bursts = 0;
+};
+
+// Sums of w t^k, of w r t^k n, and of w r over the bursts of one sector.
+struct SectorSums {
+  std::array<double, 5> w = {};
+  std::array<Eigen::Vector2d, 3> wrn = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(),
+                                        Eigen::Vector2d::Zero()};
+  Eigen::Vector2d wn = Eigen::Vector2d::Zero(), wx = Eigen::Vector2d::Zero();
+  double wr = 0.0;
+};
+
+struct FitPoint {
+  double x, y, t, inverse_scale, lead;
+};
+
+// The priors only hold what the bursts do not see. Perspective terms are the least sure and the least needed.
+NormalVector priorSigmas(const TrackingOptions& options) {
+  NormalVector sigmas;
+  for (int i = 0; i < kFlowTerms; ++i) {
+    const double factor = i < 6 ? 1.0 : 0.5;
+    sigmas(i) = factor * options.prediction_sigma_px;
+    sigmas(kFlowTerms + i) = factor * options.velocity_sigma_px_s;
+    sigmas(2 * kFlowTerms + i) = factor * options.acceleration_sigma_px_s2;
+  }
+  sigmas(kUnknowns - 1) = 1.0;
+  return sigmas;
+}
+
+void addPriors(const NormalVector& sigmas, const NormalVector& from_prior, double noise2,
+               NormalEquations& equations) {
+  // Bursts count in units of the robust scale, so the priors do too.
+  const NormalVector weights = noise2 * sigmas.cwiseAbs2().cwiseInverse();
+  equations.matrix.diagonal() += weights;
+  equations.vector -= weights.cwiseProduct(from_prior);
+}
+
+// One circle and how it moves: the field to first order around its centre.
+struct CircleMotion {
+  ProjectedCircle circle;
+  Eigen::Vector2d velocity, acceleration;
+  Eigen::Matrix2d velocity_gradient, acceleration_gradient;  // per px
+
+  CircleMotion(const ProjectedCircle& projected, const BoardMotion& motion)
+      : circle(projected),
+        velocity(motion.velocityAt(projected.centre_px)),
+        acceleration(motion.accelerationAt(projected.centre_px)),
+        velocity_gradient(motion.frame.gradient(motion.velocity_px_s, projected.centre_px)),
+        acceleration_gradient(motion.frame.gradient(motion.acceleration_px_s2, projected.centre_px)) {}
+};
+
+int sectorOf(const Eigen::Vector2d& n) {
+  constexpr double kTan22 = 0.41421356237309503;
+  const double ax = std::abs(n.x()), ay = std::abs(n.y());
+  const int part = ay < ax ? (ay < kTan22 * ax ? 0 : 1) : (ax < kTan22 * ay ? 3 : 2);
+  return part + (n.x() < 0.0 ? 4 : 0) + (n.y() < 0.0 ? 8 : 0);
+}
+
+// Bursts that may lie near the circle's edge at any time of the fit.
+void gatherPoints(const BurstWindow& window, const CircleMotion& moving, double half_window_s,
+                  double slack_px, std::vector<FitPoint>& points) {
+  points.clear();
+  const ProjectedCircle& circle = moving.circle;
+  const double speed = moving.velocity.norm() + 0.5 * half_window_s * moving.acceleration.norm();
+  const double sensor_scale = circle.sensor_radius_px / circle.largest_radius_px;
+  const double reach = circle.sensor_radius_px + slack_px + speed * half_window_s * sensor_scale;
+  const Eigen::Vector2d& middle = circle.sensor_centre_px;
+  window.visitBox(
+      middle.x() - reach, middle.x() + reach, middle.y() - reach, middle.y() + reach, [&](auto i) {
+        const WindowBurst& burst = window.bursts()[i];
+        const double t = burst.time_s;
+        if (std::abs(t) > half_window_s) return;
+        const Eigen::Vector2d pixel(burst.ideal_x_px, burst.ideal_y_px);
+        const Eigen::Vector2d at_middle = pixel - t * (moving.velocity + 0.5 * t * moving.acceleration);
+        const double distance = distanceToEdge(circle, at_middle).distance_px;
+        if (!(std::abs(distance) < slack_px * burst.scale)) return;
+        points.push_back({pixel.x(), pixel.y(), t, 1.0 / burst.scale, burst.lead});
+      });
+}
+
+void sumSectors(const CircleMotion& moving, const std::vector<FitPoint>& points, double radius_offset_px,
+                double gate_px, const TrackingOptions& options, std::array<SectorSums, kSectors>& sectors,
+                NormalEquations& equations) {
+  const double inverse_noise2 = 1.0 / (options.robust_scale_px * options.robust_scale_px);
+  for (const FitPoint& point : points) {
+    const Eigen::Vector2d pixel(point.x, point.y);
+    const double t = point.t;
+    Eigen::Vector2d at_middle = pixel - t * (moving.velocity + 0.5 * t * moving.acceleration);
+    const Eigen::Vector2d beside = at_middle - moving.circle.centre_px;
+    at_middle -= t * (moving.velocity_gradient * beside + 0.5 * t * (moving.acceleration_gradient * beside));
+    const EdgeDistance edge = distanceToEdge(moving.circle, at_middle);
+    const double r = edge.distance_px * point.inverse_scale - radius_offset_px;
+    if (!(std::abs(r) < gate_px)) continue;
+    const Eigen::Vector2d velocity_then = moving.velocity + t * moving.acceleration;
+    const double leads = point.lead * edge.normal.dot(velocity_then);
+    if (leads < 0.0 || leads * leads < options.least_polarity_cosine * options.least_polarity_cosine *
+                                           velocity_then.squaredNorm())
+      continue;
+    const double w = 1.0 / (1.0 + r * r * inverse_noise2);
+    SectorSums& sums = sectors[static_cast<std::size_t>(sectorOf(edge.normal))];
+    // Rows carry 1 / scale; it is folded into the normal.
+    const Eigen::Vector2d n = edge.normal * point.inverse_scale;
+    double wt = w;
+    for (int k = 0; k < 5; ++k, wt *= t) sums.w[static_cast<std::size_t>(k)] += wt;
+    const Eigen::Vector2d wrn = w * r * n;
+    sums.wrn[0] += wrn;
+    sums.wrn[1] += t * wrn;
+    sums.wrn[2] += t * t * wrn;
+    sums.wn += w * n;
+    sums.wx += w * at_middle;
+    sums.wr += w * r;
+    equations.weighted_squares += w * r * r;
+    equations.weight += w;
+    ++equations.bursts;
+  }
+}
+
+// row = (-a, -t a, -t^2 / 2 a, -1) with a = n^T basis.
+void addSector(const SectorSums& sums, const ImageFrame& frame, NormalEquations& equations) {
+  const double weight = sums.w[0];
+  if (weight <= 0.0) return;
+  const PlaneFlowBasis basis = frame.basis(sums.wx / weight);
+  const PlaneFlow a = basis.transpose() * (sums.wn / weight);
+  const Eigen::Matrix<double, 8, 8> aa = a * a.transpose();
+  constexpr std::array<double, 3> kTaylor = {1.0, 1.0, 0.5};
+  for (int p = 0; p < 3; ++p) {
+    const auto row = static_cast<Eigen::Index>(p * kFlowTerms);
+    const double factor = kTaylor[static_cast<std::size_t>(p)];
+    for (int q = 0; q <= p; ++q) {
+      equations.matrix.block<8, 8>(row, q * kFlowTerms) +=
+          factor * kTaylor[static_cast<std::size_t>(q)] * sums.w[static_cast<std::size_t>(p + q)] * aa;
+    }
+    equations.matrix.block<1, 8>(kUnknowns - 1, row) +=
+        factor * sums.w[static_cast<std::size_t>(p)] * a.transpose();
+    equations.vector.segment<8>(row) += factor * basis.transpose() * sums.wrn[static_cast<std::size_t>(p)];
+  }
+  equations.matrix(kUnknowns - 1, kUnknowns - 1) += weight;
+  equations.vector(kUnknowns - 1) += sums.wr;
+}
+
+void apply(const NormalVector& step, BoardMotion& motion) {
+  motion.ideal_from_board = moved(motion.ideal_from_board, motion.frame, step.head<kFlowTerms>());
+  motion.velocity_px_s += step.segment<kFlowTerms>(kFlowTerms);
+  motion.acceleration_px_s2 += step.segment<kFlowTerms>(2 * kFlowTerms);
+  motion.radius_offset_px += step(kUnknowns - 1);
+}
+
+}  // namespace
+
+std::optional<BoardMotion> fitBoardMotion(const BurstWindow& window, const BoardMotion& start,
+                                          const CircleBoard& board,
+                                          const std::optional<CameraIntrinsics>& camera, double first_gate_px,
+                                          const TrackingOptions& options) {
+  constexpr double kSettled_px = 0.01;
+  BoardMotion motion = start;
+  const NormalVector sigmas = priorSigmas(options);
+  // The prediction is the prior of shift and velocity; acceleration is drawn towards zero.
+  NormalVector from_prior = NormalVector::Zero();
+  from_prior.segment<kFlowTerms>(2 * kFlowTerms) = motion.acceleration_px_s2;
+  const double half_window_s =
+      fitHalfWindow_s(boardSpeed_px_s(motion, board, camera, window.resolution_px()), options);
+  std::vector<std::vector<FitPoint>> points(static_cast<std::size_t>(board.circleCount()));
+  double gate_px = first_gate_px;
+  for (int iteration = 0; iteration < options.iterations; ++iteration) {
+    NormalEquations equations;
+    for (const ProjectedCircle& circle :
+         projectBoard(motion.ideal_from_board, board, camera, window.resolution_px())) {
+      const CircleMotion moving(circle, motion);
+      std::vector<FitPoint>& near = points[static_cast<std::size_t>(circle.circle)];
+      if (iteration == 0) gatherPoints(window, moving, half_window_s, 2.0 * first_gate_px, near);
+      std::array<SectorSums, kSectors> sectors;
+      sumSectors(moving, near, motion.radius_offset_px, gate_px, options, sectors, equations);
+      for (const SectorSums& sums : sectors) addSector(sums, motion.frame, equations);
+    }
+    if (equations.bursts < 3 * kUnknowns) return std::nullopt;
+    addPriors(sigmas, from_prior, options.robust_scale_px * options.robust_scale_px, equations);
+    const NormalVector step = equations.matrix.selfadjointView<Eigen::Lower>().ldlt().solve(equations.vector);
+    if (!step.allFinite()) return std::nullopt;
+    from_prior += step;
+    apply(step, motion);
+    motion.residual_rms_px = std::sqrt(equations.weighted_squares / equations.weight);
+    motion.bursts = equations.bursts;
+    const bool at_last_gate = gate_px <= options.last_gate_px;
+    if (at_last_gate && step.head<kFlowTerms>().cwiseAbs().maxCoeff() < kSettled_px) break;
+    gate_px = std::max(gate_px * options.gate_ratio, options.last_gate_px);
+  }
+  return motion;
+}
+
+}  // namespace evical
