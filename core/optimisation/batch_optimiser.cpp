@@ -1,0 +1,271 @@
+#include "core/optimisation/batch_optimiser.h"
+
+#include "core/base/error.h"
+#include "core/base/time.h"
+#include "core/optimisation/calibration_problem.h"
+#include "core/optimisation/circle_errors.h"
+#include "core/optimisation/sample_errors.h"
+
+#include <ceres/iteration_callback.h>
+#include <ceres/solver.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace evical {
+namespace {
+
+// Beyond this a segment's polynomial, continued, says nothing of the trajectory any more: assign anew at
+// once.
+constexpr double kFurthestDrift_knots = 0.5;
+// Bounds of the noise scales: beyond them something else is wrong, and a sensor must not rule or vanish.
+constexpr double kLeastScale = 0.05, kLargestScale = 50.0;
+
+class IterationReporter final : public ceres::IterationCallback {
+ public:
+  IterationReporter(const CalibrationProblem& problem, const RunContext& context, int stage, int stage_count,
+                    std::vector<IterationRecord>& records)
+      : problem_(problem), context_(context), stage_(stage), stage_count_(stage_count), records_(records) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    constexpr double kTypicalIterations = 8.0;
+    const double share = std::min(1.0, (iterations_++ + 1.0) / kTypicalIterations);
+    context_.progress.stageProgress((stage_ + share) / stage_count_);
+    records_.push_back({stage_ + 1, static_cast<int>(records_.size()), summary.cost,
+                        summary.gradient_max_norm, summary.step_norm, problem_.state().cameras});
+    if (context_.stop.stop_requested()) return ceres::SOLVER_ABORT;
+    return problem_.segmentDrift_knots() > kFurthestDrift_knots ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+                                                                : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const CalibrationProblem& problem_;
+  const RunContext& context_;
+  int stage_, stage_count_, iterations_ = 0;
+  std::vector<IterationRecord>& records_;
+};
+
+ceres::Solver::Options solverOptions(const OptimisationOptions& options, double tolerance) {
+  ceres::Solver::Options solver;
+  solver.minimizer_type = ceres::TRUST_REGION;
+  solver.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
+  solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
+  solver.num_threads = options.threads;
+  solver.max_num_iterations = options.max_iterations;
+  solver.function_tolerance = tolerance;
+  solver.gradient_tolerance = 1e-12;
+  solver.parameter_tolerance = 1e-12;
+  solver.initial_trust_region_radius = 1e6;  // initialisation leaves us where Gauss-Newton works
+  solver.logging_type = ceres::SILENT;
+  solver.update_state_every_iteration = true;  // the callback reads it
+  return solver;
+}
+
+class Batch {
+ public:
+  Batch(const CalibrationInput& input, const CalibrationState& initial, const OptimisationOptions& options,
+        const RunContext& context)
+      : input_(input), options_(options), context_(context), problem_(input, options, initial) {}
+
+  BatchSolution run();
+
+ private:
+  std::vector<ReleaseStages> stages() const;
+  void solveStage(ReleaseStages stage, int index, double tolerance);
+  bool updateWeights();
+  void reportFits();
+  void reportNotes();
+  std::vector<ImuFit> imuFits(NoiseScales& scales) const;
+
+  const CalibrationInput& input_;
+  const OptimisationOptions& options_;
+  const RunContext& context_;
+  CalibrationProblem problem_;
+  BatchSolution solution_;
+};
+
+std::vector<ReleaseStages> Batch::stages() const {
+  std::vector<ReleaseStages> all = {ReleaseStages::Extrinsics};
+  if (input_.imus.size() > 1 && options_.last_stage >= ReleaseStages::FurtherImus) {
+    all.push_back(ReleaseStages::FurtherImus);
+  }
+  if (options_.last_stage >= ReleaseStages::Mappings) all.push_back(ReleaseStages::Mappings);
+  return all;
+}
+
+void Batch::solveStage(ReleaseStages stage, int index, double tolerance) {
+  const int stage_count = static_cast<int>(stages().size());
+  IterationReporter reporter(problem_, context_, index, stage_count, solution_.iterations);
+  ceres::Solver::Options solver = solverOptions(options_, tolerance);
+  solver.callbacks.push_back(&reporter);
+  solution_.converged = false;
+  for (int round = 0; round < options_.max_rounds; ++round) {
+    context_.throwIfStopped();
+    problem_.build(stage);
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem_.problem(), &summary);
+    context_.throwIfStopped();
+    if (summary.termination_type == ceres::FAILURE) {
+      throw calibrationFailed("optimisation", "the batch could not be solved: " + summary.message,
+                              "Check the noise densities, the board's size and the camera's intrinsics");
+    }
+    context_.progress.log(LogLevel::Debug,
+                          fmt::format("stage {} round {}: {}", index + 1, round + 1, summary.BriefReport()));
+    if (problem_.segmentDrift_knots() <= options_.segment_drift) {
+      solution_.converged = summary.termination_type == ceres::CONVERGENCE;
+      return;
+    }
+  }
+}
+
+// Noise scales and outliers, both from all circles and samples; true if anything changed enough to solve
+// again.
+bool Batch::updateWeights() {
+  const std::vector<CircleError> errors = circleErrors(input_, problem_.state(), options_);
+  NoiseScales scales = problem_.scales;
+  for (std::size_t i = 0; i < scales.circles.size(); ++i) scales.circles[i] = robustScale(errors, i);
+  imuFits(scales);
+  bool changed = false;
+  const auto update = [&](std::vector<double>& old, const std::vector<double>& fresh) {
+    constexpr double kNoticeable = 0.05;
+    for (std::size_t i = 0; i < old.size(); ++i) {
+      const double scale = std::clamp(fresh[i], kLeastScale, kLargestScale);
+      changed = changed || std::abs(scale / old[i] - 1.0) > kNoticeable;
+      old[i] = scale;
+    }
+  };
+  update(problem_.scales.circles, scales.circles);
+  update(problem_.scales.gyroscopes, scales.gyroscopes);
+  update(problem_.scales.accelerometers, scales.accelerometers);
+  CircleSelection selection = selectCircles(input_, errors, problem_.scales.circles, options_);
+  changed = changed || selection != problem_.used_circles;
+  problem_.used_circles = std::move(selection);
+  return changed;
+}
+
+// RMS by IMU in SI units, and the scales that go with it: RMS in units of the given noise.
+std::vector<ImuFit> Batch::imuFits(NoiseScales& scales) const {
+  const CalibrationState& state = problem_.state();
+  std::vector<ImuFit> fits(input_.imus.size());
+  for (std::size_t i = 0; i < input_.imus.size(); ++i) {
+    const ImuData& data = input_.imus[i];
+    const SampleErrors errors = sampleErrors(input_, state, i);
+    fits[i] = {errors.gyroscope_rms_rad_s, errors.accelerometer_rms_m_s2};
+    const double root_rate = std::sqrt(data.rate_hz());
+    scales.gyroscopes[i] = errors.gyroscope_rms_rad_s / (data.noise.gyroscope_density * root_rate);
+    scales.accelerometers[i] = errors.accelerometer_rms_m_s2 / (data.noise.accelerometer_density * root_rate);
+  }
+  return fits;
+}
+
+BatchSolution Batch::run() {
+  const std::vector<ReleaseStages> all = stages();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool last = i + 1 == all.size();
+    solveStage(all[i], static_cast<int>(i), last ? options_.function_tolerance : options_.stage_tolerance);
+    if (!last) updateWeights();
+  }
+  constexpr int kMostReweightings = 3;
+  for (int i = 0; i < kMostReweightings && updateWeights(); ++i) {
+    solveStage(all.back(), static_cast<int>(all.size()) - 1, options_.function_tolerance);
+  }
+  solution_.state = problem_.state();
+  solution_.scales = problem_.scales;
+  solution_.used_circles = problem_.used_circles;
+  reportFits();
+  reportNotes();
+  return std::move(solution_);
+}
+
+void Batch::reportFits() {
+  NoiseScales scales = solution_.scales;
+  solution_.imus = imuFits(scales);
+  for (const CameraData& camera : input_.cameras) {
+    CameraFit& fit = solution_.cameras.emplace_back();
+    fit.windows_total = static_cast<int>(camera.observations.windows.size());
+    for (const BoardView& view : camera.observations.views) {
+      ++(view.kind == ViewKind::Complete ? fit.windows_complete : fit.windows_partial);
+    }
+  }
+  std::vector<std::vector<std::uint8_t>> view_used;
+  for (const CameraData& camera : input_.cameras) view_used.emplace_back(camera.observations.views.size());
+  std::vector<double> normalised2(input_.cameras.size());
+  for (const CircleError& error : circleErrors(input_, solution_.state, options_)) {
+    const CircleObservation& circle =
+        input_.cameras[error.camera].observations.views[error.view].circles[error.index];
+    const bool used = solution_.used_circles[error.camera][error.view][error.index] != 0;
+    CameraFit& fit = solution_.cameras[error.camera];
+    ++(used ? fit.circles_used : fit.circles_rejected);
+    solution_.circle_residuals.push_back({static_cast<int>(error.camera), static_cast<int>(error.view),
+                                          circle.circle, circle.time_s, circle.centre_px, error.error_px,
+                                          circle.covariance_px2.diagonal().cwiseSqrt(), used});
+    if (!used) continue;
+    fit.reprojection_rms_px += error.error_px.squaredNorm();
+    normalised2[error.camera] += error.normalised2;
+    fit.windows_used += view_used[error.camera][error.view] ? 0 : 1;
+    view_used[error.camera][error.view] = 1;
+  }
+  for (std::size_t i = 0; i < input_.cameras.size(); ++i) {
+    CameraFit& fit = solution_.cameras[i];
+    const double coordinates = 2.0 * std::max(1, fit.circles_used);
+    fit.reprojection_rms_px = std::sqrt(2.0 * fit.reprojection_rms_px / coordinates);  // of distances
+    fit.normalised_rms = std::sqrt(normalised2[i] / coordinates);
+  }
+}
+
+void Batch::reportNotes() {
+  constexpr double kWorthSaying = 2.0;
+  const auto say = [&](const std::string& sensor, const char* what, double scale) {
+    if (scale > 1.0 / kWorthSaying && scale < kWorthSaying) return;
+    solution_.notes.push_back(
+        fmt::format("{}: {} is {:.2g} times what was given for it; the weights follow what was found", sensor,
+                    what, scale));
+  };
+  for (std::size_t i = 0; i < input_.cameras.size(); ++i) {
+    say(input_.cameras[i].name, "the spread of circle centres", solution_.scales.circles[i]);
+    const CameraFit& fit = solution_.cameras[i];
+    if (fit.circles_rejected > 0) {
+      solution_.notes.push_back(fmt::format("{}: {} of {} circles dropped as outliers",
+                                            input_.cameras[i].name, fit.circles_rejected,
+                                            fit.circles_rejected + fit.circles_used));
+    }
+  }
+  for (std::size_t i = 0; i < input_.imus.size(); ++i) {
+    say(input_.imus[i].name, "the gyroscope's residual", solution_.scales.gyroscopes[i]);
+    say(input_.imus[i].name, "the accelerometer's residual", solution_.scales.accelerometers[i]);
+  }
+  if (!solution_.converged) {
+    solution_.notes.push_back("the optimiser stopped at its iteration limit before it converged");
+  }
+}
+
+void checkInput(const CalibrationInput& input, const CalibrationState& initial) {
+  if (input.imus.empty() || input.cameras.empty()) {
+    throw badInput("optimisation", "the batch needs a camera and an IMU");
+  }
+  if (initial.cameras.size() != input.cameras.size() || initial.imus.size() != input.imus.size()) {
+    throw badInput("optimisation", "the initial state does not list the input's cameras and IMUs");
+  }
+  if (initial.world_from_imu_rotation.segmentCount() < 1 || initial.imu_in_world_m.segmentCount() < 1) {
+    throw badInput("optimisation", "the initial state has no splines");
+  }
+  for (const CameraData& camera : input.cameras) {
+    if (!camera.intrinsics) throw badInput(camera.name, "the batch needs the camera's intrinsics");
+  }
+}
+
+}  // namespace
+
+BatchSolution optimiseBatch(const CalibrationInput& input, const CalibrationState& initial,
+                            const OptimisationOptions& options, const RunContext& context) {
+  checkInput(input, initial);
+  if (circleErrors(input, initial, options).empty()) {
+    throw calibrationFailed("optimisation", "no view of the board lies in the trajectory's time range",
+                            "Check that camera and IMU recorded at the same time");
+  }
+  return Batch(input, initial, options, context).run();
+}
+
+}  // namespace evical

@@ -1,0 +1,43 @@
+// Batch optimisation of everything at once (method section 6): splines, cameras, IMUs and gravity against
+// every circle and every IMU sample. Staged release: (1) splines, gravity, cameras, biases; (2) further IMUs;
+// (3) scale and misalignment.
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/data/calibration_result.h"
+#include "core/data/calibration_setup.h"
+#include "core/data/calibration_state.h"
+#include "core/optimisation/optimisation_options.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace evical {
+
+// How much larger residuals are than the sigmas given for them, per sensor. The batch divides its weights by
+// these, so that wrong noise densities or circle covariances don't decide between camera and IMU.
+struct NoiseScales {
+  std::vector<double> circles;                     // by camera
+  std::vector<double> gyroscopes, accelerometers;  // by IMU
+};
+
+struct BatchSolution {
+  CalibrationState state;
+  std::vector<CameraFit> cameras;  // normalised_rms: against the front end's own covariances
+  std::vector<ImuFit> imus;
+  std::vector<IterationRecord> iterations;
+  std::vector<CircleResidual> circle_residuals;  // all circles within the splines' range, also those not used
+  std::vector<std::string> notes;
+  bool converged = false;
+  NoiseScales scales;
+  // used_circles[camera][view][i]: whether circle i of the view's list took part.
+  std::vector<std::vector<std::vector<std::uint8_t>>> used_circles;
+};
+
+// `initial` gives the splines' range and knots: both cover the views with a margin for the time offset to
+// move. Throws CalibrationError when nothing can be solved, and Cancelled when asked to stop.
+BatchSolution optimiseBatch(const CalibrationInput& input, const CalibrationState& initial,
+                            const OptimisationOptions& options, const RunContext& context);
+
+}  // namespace evical

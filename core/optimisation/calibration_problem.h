@@ -1,0 +1,103 @@
+// The batch's unknowns and cost functions as a Ceres problem. Holds the state that Ceres moves.
+#pragma once
+
+#include "core/data/calibration_setup.h"
+#include "core/data/calibration_state.h"
+#include "core/optimisation/batch_optimiser.h"
+#include "core/optimisation/circle_cost.h"
+#include "core/optimisation/inertial_cost.h"
+#include "core/optimisation/optimisation_options.h"
+#include "core/optimisation/so3_manifold.h"
+
+#include <ceres/problem.h>
+#include <ceres/sphere_manifold.h>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace evical {
+
+enum class SensorKind { Circles, Gyroscope, Accelerometer, Prior };
+
+// What one residual block of the problem measures, and when.
+struct BlockInfo {
+  ceres::ResidualBlockId id = nullptr;
+  SensorKind kind = SensorKind::Prior;
+  std::size_t sensor = 0;  // index of the camera or IMU
+  double time_s = 0.0;     // of its first measurement, on the reference IMU's clock
+  const CircleCost* circles = nullptr;
+};
+
+// One calibrated quantity's parameter block; names without the sensor's name.
+enum class QuantityKind {
+  CameraRotation,
+  CameraTranslation,
+  CameraTimeOffset,
+  EdgeLead,
+  ImuRotation,
+  ImuTranslation,
+  ImuTimeOffset,
+  GyroscopeBias,
+  AccelerometerBias,
+  GyroscopeMapping,
+  AccelerometerMapping,
+  GravityDirection,
+};
+struct Quantity {
+  QuantityKind kind;
+  std::size_t sensor;
+  double* block;
+};
+
+class CalibrationProblem {
+ public:
+  // Keeps a reference to input and options.
+  CalibrationProblem(const CalibrationInput& input, const OptimisationOptions& options,
+                     const CalibrationState& initial);
+  CalibrationProblem(const CalibrationProblem&) = delete;
+  CalibrationProblem& operator=(const CalibrationProblem&) = delete;
+
+  // Assigns every measurement to the spline segment where the time offsets put it now, with the current
+  // selection of circles and noise scales. `with_rejected` adds all circles in range, for reports only.
+  enum class Circles { Used, All };
+  void build(ReleaseStages stage, Circles circles = Circles::Used);
+
+  ceres::Problem& problem() { return *problem_; }
+  const std::vector<BlockInfo>& blocks() const { return blocks_; }
+
+  // How far the time offsets have moved since build(), in knots.
+  double segmentDrift_knots() const;
+
+  const CalibrationState& state() const;  // as Ceres left it
+  std::vector<Quantity> quantities();     // those free in the built problem
+  std::vector<double*> splineBlocks();    // those in the built problem, in order of time
+
+  std::vector<std::vector<std::vector<std::uint8_t>>> used_circles;
+  NoiseScales scales;
+
+ private:
+  void addCircles(std::size_t camera, Circles circles);
+  void addImu(std::size_t imu, ReleaseStages stage);
+  void addPriors(ReleaseStages stage);
+  void setManifolds(ReleaseStages stage);
+  bool isReference(std::size_t imu) const { return imu == input_.reference_imu; }
+  SegmentTimes segmentAt(double time_s) const;
+  CircleMeasurement measurement(std::size_t camera, std::size_t view, std::size_t circle) const;
+  void appendRotationBlocks(const SegmentTimes& segment, std::vector<double*>& blocks);
+  void appendPositionBlocks(const SegmentTimes& segment, std::vector<double*>& blocks);
+
+  const CalibrationInput& input_;
+  const OptimisationOptions& options_;
+  mutable CalibrationState state_;
+  std::vector<std::array<double, 6>> gyroscope_mappings_, accelerometer_mappings_;
+  std::vector<double> assigned_offsets_s_;  // cameras, then IMUs
+
+  So3Manifold so3_;
+  ceres::SphereManifold<3> sphere_;
+  std::vector<std::unique_ptr<CircleModel>> circle_models_;
+  std::vector<BlockInfo> blocks_;
+  std::unique_ptr<ceres::Problem> problem_;  // after what it points to
+};
+
+}  // namespace evical

@@ -1,0 +1,67 @@
+// Zero when the measured ellipse centres are those of the projected circles, leading by the edge lead along
+// their image motion (method section 6):
+//   r = L^-1 [ centre(camera_from_world(t), circle) + edge_lead * v / sqrt(|v|^2 + v_rest^2) - measured ],
+//   t = t_measured + time_offset,  camera_from_world(t) = (world_from_imu(t) imu_from_camera)^-1,
+// L the Cholesky factor of the centre's covariance, ideal pixels; each circle's residual is shortened so that
+// its square is Huber's loss. One cost function holds all circles of one camera whose times fall into one
+// spline segment: they share parameter blocks, and a block per circle would leave Ceres with bookkeeping
+// only.
+//
+// Blocks: 4 rotation control points (x y z w), 4 position control points [m], imu_from_camera rotation (x y z
+// w) and translation [m], time offset [s], edge lead [px]. Without unit. Quaternion blocks as in
+// so3_manifold.h.
+//
+// v is the measured image velocity: of the right direction to a percent or so where it matters, and it keeps
+// the lead linear.
+#pragma once
+
+#include "core/geometry/camera_model.h"
+
+#include <ceres/cost_function.h>
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace evical {
+
+struct CircleMeasurement {
+  double time_s = 0.0;  // camera clock
+  Eigen::Vector2d on_board_m, centre_px;
+  Eigen::Matrix2d whitening_px;    // L^-1
+  Eigen::Vector2d lead_direction;  // v / sqrt(|v|^2 + v_rest^2)
+  int view = 0, circle = 0;        // circle: position in the view's list
+};
+
+// What circles of one camera share.
+struct CircleModel {
+  CameraIntrinsics camera;
+  double radius_m = 0.0;
+  double huber_sigma = 0.0;
+};
+
+// The segments of both splines that a cost function's times lie in.
+struct SegmentTimes {
+  int rotation = 0, position = 0;                         // segment indices
+  double rotation_start_s = 0.0, position_start_s = 0.0;  // where the segments begin
+  double rotation_spacing_s = 0.0, position_spacing_s = 0.0;
+};
+
+class CircleCost final : public ceres::CostFunction {
+ public:
+  CircleCost(const CircleModel& model, const SegmentTimes& segment, std::vector<CircleMeasurement> circles);
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+  const std::vector<CircleMeasurement>& circles() const { return circles_; }
+
+ private:
+  const CircleModel& model_;
+  SegmentTimes segment_;
+  std::vector<CircleMeasurement> circles_;
+};
+
+// Shortens r so that |result|^2 is Huber's loss of |r|^2 (r^2 up to the threshold d, 2 d |r| - d^2 beyond)
+// and returns the derivative of the result by r.
+Eigen::Matrix2d shortenByHuber(double threshold, Eigen::Vector2d& residual);
+
+}  // namespace evical

@@ -1,0 +1,89 @@
+#include "core/optimisation/circle_errors.h"
+
+#include "core/geometry/circle_conic.h"
+#include "core/geometry/trajectory.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace evical {
+namespace {
+
+constexpr double kMedianOfChi2With2 = 1.3862943611198906;  // 2 ln 2
+
+}  // namespace
+
+std::vector<CircleError> circleErrors(const CalibrationInput& input, const CalibrationState& state,
+                                      const OptimisationOptions& options) {
+  std::vector<CircleError> errors;
+  const So3Spline& rotation = state.world_from_imu_rotation;
+  const VectorSpline& position = state.imu_in_world_m;
+  const double floor_px2 = options.least_centre_sigma_px * options.least_centre_sigma_px;
+  for (std::size_t c = 0; c < input.cameras.size(); ++c) {
+    const CameraData& camera = input.cameras[c];
+    const CameraState& camera_state = state.cameras[c];
+    for (std::size_t v = 0; v < camera.observations.views.size(); ++v) {
+      const auto& circles = camera.observations.views[v].circles;
+      for (std::size_t i = 0; i < circles.size(); ++i) {
+        const CircleObservation& circle = circles[i];
+        const double time_s = circle.time_s + camera_state.time_offset_s;
+        if (!rotation.contains(time_s) || !position.contains(time_s)) continue;
+        CircleError error{c, v, i, Eigen::Vector2d::Zero(), std::numeric_limits<double>::infinity()};
+        const auto centre_px =
+            projectedCircleCentre(*camera.intrinsics,
+                                  cameraFromWorld(rotation, position, camera_state.imu_from_camera,
+                                                  camera_state.time_offset_s, circle.time_s),
+                                  input.board.centre_m(circle.circle), input.board.radius_m);
+        if (centre_px) {
+          const Eigen::Vector2d lead = camera_state.edge_lead_px * circle.velocity_px_s /
+                                       std::hypot(circle.velocity_px_s.norm(), options.rest_speed_px_s);
+          error.error_px = *centre_px + lead - circle.centre_px;
+          const Eigen::Matrix2d covariance = circle.covariance_px2 + floor_px2 * Eigen::Matrix2d::Identity();
+          error.normalised2 = error.error_px.dot(covariance.inverse() * error.error_px);
+        }
+        errors.push_back(error);
+      }
+    }
+  }
+  return errors;
+}
+
+double robustScale(const std::vector<CircleError>& errors, std::size_t camera) {
+  std::vector<double> normalised2;
+  for (const CircleError& error : errors) {
+    if (error.camera == camera) normalised2.push_back(error.normalised2);
+  }
+  if (normalised2.empty()) return 1.0;
+  const auto middle = normalised2.begin() + static_cast<std::ptrdiff_t>(normalised2.size() / 2);
+  std::nth_element(normalised2.begin(), middle, normalised2.end());
+  return std::sqrt(*middle / kMedianOfChi2With2);
+}
+
+CircleSelection selectCircles(const CalibrationInput& input, const std::vector<CircleError>& errors,
+                              const std::vector<double>& scales, const OptimisationOptions& options) {
+  CircleSelection used;
+  for (const CameraData& camera : input.cameras) {
+    auto& views = used.emplace_back();
+    for (const BoardView& view : camera.observations.views)
+      views.emplace_back(view.circles.size(), std::uint8_t{1});
+  }
+  for (const CircleError& error : errors) {
+    const double bound = options.outlier_sigma * scales[error.camera];
+    if (!(error.normalised2 <= bound * bound)) used[error.camera][error.view][error.index] = 0;
+  }
+  for (auto& views : used) {
+    for (auto& circles : views) {
+      const auto dropped = std::count(circles.begin(), circles.end(), std::uint8_t{0});
+      if (static_cast<double>(dropped) >
+          options.outlier_window_fraction * static_cast<double>(circles.size())) {
+        std::fill(circles.begin(), circles.end(), std::uint8_t{0});
+      }
+    }
+  }
+  return used;
+}
+
+}  // namespace evical

@@ -1,0 +1,36 @@
+// How far every measured circle lies from where the state puts it, and which of them to trust.
+#pragma once
+
+#include "core/data/calibration_result.h"
+#include "core/data/calibration_setup.h"
+#include "core/data/calibration_state.h"
+#include "core/optimisation/optimisation_options.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace evical {
+
+// used[camera][view][i]: circle i of the view's list takes part.
+using CircleSelection = std::vector<std::vector<std::vector<std::uint8_t>>>;
+
+struct CircleError {
+  std::size_t camera = 0, view = 0, index = 0;         // index: position in the view's list
+  Eigen::Vector2d error_px = Eigen::Vector2d::Zero();  // predicted - measured, edge lead included
+  double normalised2 = 0.0;  // error^T covariance^-1 error; infinite behind the camera
+};
+
+// All circles whose times lie in both splines' range, in order of camera, view and list.
+std::vector<CircleError> circleErrors(const CalibrationInput& input, const CalibrationState& state,
+                                      const OptimisationOptions& options);
+
+// Spread of a camera's errors in units of their sigmas, from the median, so that outliers don't matter; 1
+// without circles.
+double robustScale(const std::vector<CircleError>& errors, std::size_t camera);
+
+// Drops gross outliers, and windows most of whose circles are. Circles outside the splines' range stay
+// selected.
+CircleSelection selectCircles(const CalibrationInput& input, const std::vector<CircleError>& errors,
+                              const std::vector<double>& scales, const OptimisationOptions& options);
+
+}  // namespace evical

@@ -1,0 +1,62 @@
+// Zero when an IMU measures what its sensor model says of the trajectory (method section 3):
+//   gyroscope      r = [ M_g w_j + b_g - measured ] / sigma,   w_j = R^T w(t)
+//   accelerometer  r = [ M_a f_j + b_a - measured ] / sigma,
+//                  f_j = R^T [ R_wb(t)^T (p''(t) - g) + (a(t)^ + w(t)^ w(t)^) l ]
+// with R, l = reference_from_imu and t = t_measured + time_offset. For the reference IMU R = 1, l = 0, offset
+// 0, and the last blocks are absent. One cost function holds all samples whose times fall into one spline
+// segment.
+//
+// Blocks of the gyroscope: 4 rotation control points (x y z w), bias [rad/s], mapping; further IMUs: rotation
+// (x y z w), time offset [s]. Blocks of the accelerometer: 4 rotation and 4 position control points [m],
+// gravity in the world [m/s^2], bias [m/s^2], mapping; further IMUs: rotation, lever arm l [m], time offset.
+// Without unit. Mapping: the upper triangle row by row (m00 m01 m02 m11 m12 m22). Quaternion blocks as in
+// so3_manifold.h.
+#pragma once
+
+#include "core/optimisation/circle_cost.h"
+
+#include <ceres/cost_function.h>
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace evical {
+
+struct InertialMeasurement {
+  double time_s = 0.0;    // this IMU's clock, since the recording's start
+  Eigen::Vector3d value;  // rad/s or m/s^2
+};
+
+enum class ImuRole { Reference, Further };
+
+class GyroscopeCost final : public ceres::CostFunction {
+ public:
+  GyroscopeCost(ImuRole role, double sigma_rad_s, const SegmentTimes& segment,
+                std::vector<InertialMeasurement> samples);
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  ImuRole role_;
+  double weight_;
+  SegmentTimes segment_;
+  std::vector<InertialMeasurement> samples_;
+};
+
+class AccelerometerCost final : public ceres::CostFunction {
+ public:
+  AccelerometerCost(ImuRole role, double sigma_m_s2, const SegmentTimes& segment,
+                    std::vector<InertialMeasurement> samples);
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  ImuRole role_;
+  double weight_;
+  SegmentTimes segment_;
+  std::vector<InertialMeasurement> samples_;
+};
+
+// Upper triangle, row by row.
+Eigen::Matrix3d mappingFromParameters(const double* parameters);
+void parametersFromMapping(const Eigen::Matrix3d& mapping, double* parameters);
+
+}  // namespace evical

@@ -1,0 +1,78 @@
+// What the batch optimisation lets people choose.
+#pragma once
+
+#include "core/base/option_field.h"
+
+namespace evical {
+
+// How far the staged release goes.
+enum class ReleaseStages { Extrinsics, FurtherImus, Mappings };
+
+struct OptimisationOptions {
+  ReleaseStages last_stage = ReleaseStages::Mappings;
+  double huber_sigma = 2.5;
+  double outlier_sigma = 6.0;
+  double outlier_window_fraction = 0.5;
+  double edge_lead_sigma_px = 0.5;
+  double rest_speed_px_s = 5.0;
+  double least_centre_sigma_px = 0.01;
+  double mapping_sigma = 0.05;
+  double gyroscope_bias_sigma_rad_s = 1.0;
+  double accelerometer_bias_sigma_m_s2 = 1.0;
+  double segment_drift = 0.05;
+  double function_tolerance = 1e-7;
+  double stage_tolerance = 1e-4;
+  int max_iterations = 50;
+  int max_rounds = 8;
+  int threads = 2;
+  double correlation_time_s = 0.1;
+  double needed_rotation_deg = 0.1;
+  double needed_translation_mm = 1.0;
+  double needed_time_offset_ms = 0.1;
+
+  bool operator==(const OptimisationOptions&) const = default;
+};
+
+inline constexpr auto kOptimisationFields = std::tuple{
+    Choice{"last_stage", &OptimisationOptions::last_stage,
+           std::array{"extrinsics", "further_imus", "mappings"},
+           "Where the staged release ends: cameras and biases, further IMUs, or scale and misalignment."},
+    Field{"huber_sigma", &OptimisationOptions::huber_sigma, 0.5, 100.0, "sigma",
+          "Circle residuals beyond this pull with constant force."},
+    Field{"outlier_sigma", &OptimisationOptions::outlier_sigma, 2.0, 1000.0, "sigma",
+          "Circles further from their place, in units of the spread of all, are dropped between stages."},
+    Field{"outlier_window_fraction", &OptimisationOptions::outlier_window_fraction, 0.1, 1.0, "",
+          "A window loses all its circles if more than this share of them is dropped."},
+    Field{"edge_lead_sigma_px", &OptimisationOptions::edge_lead_sigma_px, 1e-6, 10.0, "px",
+          "Prior on the lead of measured centres along their image motion, around 0."},
+    Field{"rest_speed_px_s", &OptimisationOptions::rest_speed_px_s, 0.1, 1000.0, "px/s",
+          "Below this image speed the edge lead fades to 0."},
+    Field{"least_centre_sigma_px", &OptimisationOptions::least_centre_sigma_px, 0.0, 10.0, "px",
+          "Added in squares to the covariance of each measured centre."},
+    Field{"mapping_sigma", &OptimisationOptions::mapping_sigma, 1e-6, 10.0, "",
+          "Weak prior on each entry of M_g and M_a around the identity."},
+    Field{"gyroscope_bias_sigma_rad_s", &OptimisationOptions::gyroscope_bias_sigma_rad_s, 1e-6, 100.0,
+          "rad/s", "Weak prior on gyroscope biases around 0."},
+    Field{"accelerometer_bias_sigma_m_s2", &OptimisationOptions::accelerometer_bias_sigma_m_s2, 1e-6, 100.0,
+          "m/s^2", "Weak prior on accelerometer biases around 0."},
+    Field{"segment_drift", &OptimisationOptions::segment_drift, 0.001, 0.5, "knots",
+          "A time offset may move this far before measurements are assigned to spline segments anew."},
+    Field{"function_tolerance", &OptimisationOptions::function_tolerance, 1e-14, 1e-2, "",
+          "The last stage ends when the cost changes by less than this fraction."},
+    Field{"stage_tolerance", &OptimisationOptions::stage_tolerance, 1e-14, 1e-1, "",
+          "The same for the stages before the last."},
+    Field{"max_iterations", &OptimisationOptions::max_iterations, 1, 1000, "", "Iterations of one solve."},
+    Field{"max_rounds", &OptimisationOptions::max_rounds, 1, 100, "",
+          "Solves of one stage, each with measurements assigned to spline segments anew."},
+    Field{"threads", &OptimisationOptions::threads, 1, 256, "", "Threads that evaluate residuals."},
+    Field{"correlation_time_s", &OptimisationOptions::correlation_time_s, 0.001, 10.0, "s",
+          "Residuals nearer in time than this may be correlated; the reported sigmas allow for it."},
+    Field{"needed_rotation_deg", &OptimisationOptions::needed_rotation_deg, 1e-4, 90.0, "deg",
+          "Rotations less certain than this make the result doubtful."},
+    Field{"needed_translation_mm", &OptimisationOptions::needed_translation_mm, 1e-3, 1e4, "mm",
+          "Translations less certain than this make the result doubtful."},
+    Field{"needed_time_offset_ms", &OptimisationOptions::needed_time_offset_ms, 1e-4, 1e4, "ms",
+          "Time offsets less certain than this make the result doubtful."}};
+static_assert(fieldCount<OptimisationOptions>() == std::tuple_size_v<decltype(kOptimisationFields)>);
+
+}  // namespace evical
