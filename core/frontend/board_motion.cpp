@@ -140,6 +140,19 @@ double boardSpeed_px_s(const BoardMotion& motion, const CircleBoard& board,
   return circles.empty() ? 0.0 : sum / static_cast<double>(circles.size());
 }
 
+int expectedCircles(const BoardMotion& motion, const CircleBoard& board,
+                    const std::optional<CameraIntrinsics>& camera, Resolution resolution_px,
+                    double half_window_s) {
+  constexpr double kLeastTravel_px = 1.2;  // an edge that stays within its pixel fires few events or none
+  int expected = 0;
+  for (const ProjectedCircle& circle : projectBoard(motion.ideal_from_board, board, camera, resolution_px)) {
+    const double sensor_scale = circle.sensor_radius_px / circle.largest_radius_px;
+    const double travel_px = motion.velocityAt(circle.centre_px).norm() * sensor_scale * 2.0 * half_window_s;
+    expected += insideImage(circle, resolution_px) && travel_px > kLeastTravel_px;
+  }
+  return expected;
+}
+
 double fitHalfWindow_s(double speed_px_s, const TrackingOptions& options) {
   return std::min(options.fit_travel_px / (2.0 * std::max(speed_px_s, 1.0)),
                   options.longest_fit_half_window_s);

@@ -100,8 +100,23 @@ inline EdgeDistance distanceToEdge(const ProjectedCircle& circle, const Eigen::V
 double boardSpeed_px_s(const BoardMotion& motion, const CircleBoard& board,
                        const std::optional<CameraIntrinsics>& camera, Resolution resolution_px);
 
+// Circles that lie in the image and move far enough in a window of this half width to fire events.
+int expectedCircles(const BoardMotion& motion, const CircleBoard& board,
+                    const std::optional<CameraIntrinsics>& camera, Resolution resolution_px,
+                    double half_window_s);
+
 // Bursts no further than this from the window's middle are fitted at that speed.
 double fitHalfWindow_s(double speed_px_s, const TrackingOptions& options);
+
+// Weight of an edge by how squarely it moves: a grazing edge never crosses its pixels, and its bursts come
+// too early. `leads` is the cosine between outward normal and motion, negative if the polarity says
+// otherwise.
+inline double grazingWeight(double leads, const TrackingOptions& options) {
+  if (leads <= options.least_polarity_cosine) return 0.0;
+  if (leads >= options.full_polarity_cosine) return 1.0;
+  return (leads - options.least_polarity_cosine) /
+         (options.full_polarity_cosine - options.least_polarity_cosine);
+}
 
 // Fits homography, velocity field and radius offset to the bursts of a window whose middle is start.time_ns.
 // `first_gate_px` as in the options, or wider after a search. Nothing if too few bursts lie near the edges.

@@ -117,11 +117,9 @@ void sumSectors(const CircleMotion& moving, const std::vector<FitPoint>& points,
     const double r = edge.distance_px * point.inverse_scale - radius_offset_px;
     if (!(std::abs(r) < gate_px)) continue;
     const Eigen::Vector2d velocity_then = moving.velocity + t * moving.acceleration;
-    const double leads = point.lead * edge.normal.dot(velocity_then);
-    if (leads < 0.0 || leads * leads < options.least_polarity_cosine * options.least_polarity_cosine *
-                                           velocity_then.squaredNorm())
-      continue;
-    const double w = 1.0 / (1.0 + r * r * inverse_noise2);
+    const double leads = point.lead * edge.normal.dot(velocity_then) / (velocity_then.norm() + 1e-9);
+    const double w = grazingWeight(leads, options) / (1.0 + r * r * inverse_noise2);
+    if (w <= 0.0) continue;
     SectorSums& sums = sectors[static_cast<std::size_t>(sectorOf(edge.normal))];
     // Rows carry 1 / scale; it is folded into the normal.
     const Eigen::Vector2d n = edge.normal * point.inverse_scale;

@@ -42,12 +42,10 @@ std::optional<Judged> judge(const BoardPlacement& placement, const BurstWindow& 
   const std::vector<CircleObservation> circles =
       measureCircles(window, *motion, scene.board, scene.camera, half_window_s, 0, options.tracking);
   Judged judged{*motion, static_cast<int>(circles.size()), 0};
-  int inside = 0;
-  for (const ProjectedCircle& circle :
-       projectBoard(motion->ideal_from_board, scene.board, scene.camera, scene.resolution_px)) {
-    inside += insideImage(circle, scene.resolution_px);
-  }
-  judged.missing = inside - judged.measured;
+  judged.missing =
+      std::max(expectedCircles(*motion, scene.board, scene.camera, scene.resolution_px, half_window_s) -
+                   judged.measured,
+               0);
   return judged;
 }
 
@@ -60,13 +58,13 @@ WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& scene
     }
   }
   if (judged.empty()) return WindowOutcome::RefinementFailed;
-  const auto value = [](const Judged& j) { return j.measured - 0.5 * j.missing; };
+  const auto value = [](const Judged& j) { return j.measured - j.missing; };
   std::sort(judged.begin(), judged.end(),
             [&](const Judged& a, const Judged& b) { return value(a) > value(b); });
   const Judged& best = judged.front();
   const int count = scene.board.circleCount();
   if (best.measured < std::max<double>(options.grid.least_circles, options.grid.least_partial * count) ||
-      best.missing > best.measured / 2) {
+      best.missing > options.grid.most_missing * best.measured) {
     return WindowOutcome::TooFewInGrid;
   }
   if (best.measured < count) {

@@ -163,13 +163,8 @@ TrackedWindow BoardTracker::track(const Slot& slot, const BoardMotion& predictio
   tracked.circles = measureCircles(window_, *motion, scene_.board, scene_.camera, slot.half_s(), start_ns_,
                                    options_.tracking);
   tracked.report.circles = static_cast<int>(tracked.circles.size());
-  int expected = 0;
-  for (const ProjectedCircle& circle :
-       projectBoard(motion->ideal_from_board, scene_.board, scene_.camera, scene_.resolution_px)) {
-    constexpr double kLeastTravel_px = 0.7;  // a circle that hardly moves fires no events
-    const double travel_px = motion->velocityAt(circle.centre_px).norm() * 2.0 * slot.half_s();
-    expected += insideImage(circle, scene_.resolution_px) && travel_px > kLeastTravel_px;
-  }
+  const int expected =
+      expectedCircles(*motion, scene_.board, scene_.camera, scene_.resolution_px, slot.half_s());
   const int found = static_cast<int>(tracked.circles.size());
   tracked.held = found >= options_.grid.least_circles && 2 * found >= expected;
   if (observer_) observer_->windowTracked(window_, tracked);

@@ -19,8 +19,6 @@ constexpr int kMeasureIterations = 4;
 struct EdgePoint {
   Eigen::Vector2d at_middle;  // ideal pixels, moved to the window's middle
   double time_s, scale, weight;
-  Eigen::Vector2d normal;
-  double residual_px;
 };
 
 void gatherEdgePoints(const BurstWindow& window, const ProjectedCircle& circle, const BoardMotion& motion,
@@ -34,34 +32,34 @@ void gatherEdgePoints(const BurstWindow& window, const ProjectedCircle& circle, 
   const double gate_px = options.last_gate_px + 0.5 * options.largest_centre_shift_px;
   const double reach = circle.sensor_radius_px + gate_px + speed * half_slot_s * sensor_scale;
   const Eigen::Vector2d& middle = circle.sensor_centre_px;
-  window.visitBox(middle.x() - reach, middle.x() + reach, middle.y() - reach, middle.y() + reach,
-                  [&](std::uint32_t i) {
-                    const WindowBurst& burst = window.bursts()[i];
-                    const double time_s = burst.time_s;
-                    if (std::abs(time_s) > half_slot_s) return;
-                    const Eigen::Vector2d pixel(burst.ideal_x_px, burst.ideal_y_px);
-                    const Eigen::Vector2d at_middle = pixel - motion.travel(pixel, time_s);
-                    const EdgeDistance edge = distanceToEdge(circle, at_middle);
-                    if (!(std::abs(edge.distance_px / burst.scale - motion.radius_offset_px) < gate_px))
-                      return;
-                    if (burst.lead * edge.normal.dot(velocity) < options.least_polarity_cosine * speed)
-                      return;
-                    points.push_back({at_middle, time_s, burst.scale, 1.0, edge.normal, 0.0});
-                  });
+  const auto visit = [&](std::uint32_t i) {
+    const WindowBurst& burst = window.bursts()[i];
+    const double time_s = burst.time_s;
+    if (std::abs(time_s) > half_slot_s) return;
+    const Eigen::Vector2d pixel(burst.ideal_x_px, burst.ideal_y_px);
+    const Eigen::Vector2d at_middle = pixel - motion.travel(pixel, time_s);
+    const EdgeDistance edge = distanceToEdge(circle, at_middle);
+    if (!(std::abs(edge.distance_px / burst.scale - motion.radius_offset_px) < gate_px)) return;
+    const Eigen::Vector2d velocity_then = velocity + time_s * acceleration;
+    const double leads = burst.lead * edge.normal.dot(velocity_then) / (velocity_then.norm() + 1e-9);
+    const double weight = grazingWeight(leads, options);
+    if (weight > 0.0) points.push_back({at_middle, time_s, burst.scale, weight});
+  };
+  window.visitBox(middle.x() - reach, middle.x() + reach, middle.y() - reach, middle.y() + reach, visit);
 }
 
 struct CentreFit {
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();  // centre x, y in ideal pixels; radius offset in pixels
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   double weight = 0.0, squares = 0.0, time_s = 0.0;
-  int points = 0;
+  int points = 0, inliers = 0;
   unsigned sectors = 0;
 };
 
 // Residuals are linear in the shift as long as it is small against the radius; a few rounds settle the
 // weights.
 CentreFit fitCentre(ProjectedCircle circle, const BoardMotion& motion, const TrackingOptions& options,
-                    std::vector<EdgePoint>& points) {
+                    const std::vector<EdgePoint>& points) {
   CentreFit fit;
   const Eigen::Vector2d centre_at_start = circle.centre_px;
   const double prior = 1.0 / (options.radius_offset_sigma_px * options.radius_offset_sigma_px);
@@ -75,13 +73,13 @@ CentreFit fitCentre(ProjectedCircle circle, const BoardMotion& motion, const Tra
     matrix(2, 2) = prior * noise2;
     vector(2) = -prior * noise2 * fit.shift.z();
     fit.weight = fit.squares = fit.time_s = 0.0;
-    fit.points = 0;
+    fit.points = fit.inliers = 0;
     fit.sectors = 0;
-    for (EdgePoint& point : points) {
+    for (const EdgePoint& point : points) {
       const EdgeDistance edge = distanceToEdge(circle, point.at_middle);
       const double r = edge.distance_px / point.scale - offset_px;
-      const double w = std::abs(r) < options.last_gate_px ? 1.0 / (1.0 + r * r * inverse_scale2) : 0.0;
-      if (w == 0.0) continue;
+      if (std::abs(r) >= options.last_gate_px) continue;
+      const double w = point.weight / (1.0 + r * r * inverse_scale2);
       const Eigen::Vector3d row(-edge.normal.x() / point.scale, -edge.normal.y() / point.scale, -1.0);
       matrix += w * row * row.transpose();
       vector -= w * r * row;
@@ -89,6 +87,7 @@ CentreFit fitCentre(ProjectedCircle circle, const BoardMotion& motion, const Tra
       fit.squares += w * r * r;
       fit.time_s += w * point.time_s;
       ++fit.points;
+      fit.inliers += std::abs(r) < options.robust_scale_px;
       const double angle = std::atan2(edge.normal.y(), edge.normal.x());
       fit.sectors |= 1u << (static_cast<int>((angle / (2.0 * M_PI) + 1.0) * kSectors) % kSectors);
     }
@@ -136,6 +135,7 @@ std::vector<CircleObservation> measureCircles(const BurstWindow& window, const B
     if (static_cast<int>(points.size()) < options.least_circle_bursts) continue;
     const CentreFit fit = fitCentre(circle, motion, options, points);
     if (fit.points < options.least_circle_bursts) continue;
+    if (fit.inliers < options.least_inliers * static_cast<double>(points.size())) continue;
     if (std::popcount(fit.sectors) < options.least_arc * kSectors) continue;
     const double scale = circle.largest_radius_px / circle.sensor_radius_px;
     if (!(fit.shift.head<2>().norm() < options.largest_centre_shift_px * scale)) continue;

@@ -38,7 +38,7 @@ struct DetectionOptions {
   double window_travel_px = 2.5;
   double shortest_window_s = 0.005;
   double longest_window_s = 0.05;
-  double search_interval_s = 0.1;
+  double search_interval_s = 0.05;
   double history_s = 2.0;
   int least_window_bursts = 60;
   bool operator==(const DetectionOptions&) const = default;
@@ -126,6 +126,7 @@ struct GridOptions {
   double least_partial = 0.4;
   int least_circles = 6;
   int ambiguity_margin = 2;
+  double most_missing = 0.2;
   bool operator==(const GridOptions&) const = default;
 };
 inline constexpr auto kGridFields = std::tuple{
@@ -142,7 +143,9 @@ inline constexpr auto kGridFields = std::tuple{
           "Part of the circles that makes a partial grid."},
     Field{"least_circles", &GridOptions::least_circles, 4, 1000, "", "A grid with fewer circles is none."},
     Field{"ambiguity_margin", &GridOptions::ambiguity_margin, 0, 100, "",
-          "An incomplete grid needs this many circles more than its runner-up placement."}};
+          "An incomplete grid needs this many circles more than its runner-up placement."},
+    Field{"most_missing", &GridOptions::most_missing, 0.0, 1.0, "",
+          "Circles that should be seen and are not, as part of those that are, for a board to be believed."}};
 static_assert(fieldCount<GridOptions>() == std::tuple_size_v<decltype(kGridFields)>);
 
 // All circles of a window together, and from window to window.
@@ -154,9 +157,11 @@ struct TrackingOptions {
   double gate_ratio = 0.6;
   double robust_scale_px = 0.4;
   int iterations = 8;
-  double least_polarity_cosine = 0.25;
+  double least_polarity_cosine = 0.35;
+  double full_polarity_cosine = 0.7;
   double least_arc = 0.25;
   int least_circle_bursts = 8;
+  double least_inliers = 0.6;
   double largest_centre_sigma_px = 0.5;
   double largest_centre_shift_px = 1.5;
   double radius_offset_sigma_px = 0.15;
@@ -181,11 +186,15 @@ inline constexpr auto kTrackingFields = std::tuple{
           "Scale of the Cauchy weight."},
     Field{"iterations", &TrackingOptions::iterations, 2, 50, "", "Gauss-Newton steps of the joint fit."},
     Field{"least_polarity_cosine", &TrackingOptions::least_polarity_cosine, 0.0, 1.0, "",
-          "Cosine between edge normal and motion below which an edge is left out."},
+          "Cosine between edge normal and motion below which an edge is left out: it grazes pixels."},
+    Field{"full_polarity_cosine", &TrackingOptions::full_polarity_cosine, 0.0, 1.0, "",
+          "Cosine from which an edge has its full weight."},
     Field{"least_arc", &TrackingOptions::least_arc, 0.05, 1.0, "",
           "Part of a circle's 16 sectors that must hold bursts."},
     Field{"least_circle_bursts", &TrackingOptions::least_circle_bursts, 3, 1000, "",
           "Bursts that a circle must have."},
+    Field{"least_inliers", &TrackingOptions::least_inliers, 0.0, 1.0, "",
+          "Part of the bursts around a circle's edge that must lie on it, within the robust scale."},
     Field{"largest_centre_sigma_px", &TrackingOptions::largest_centre_sigma_px, 0.05, 5.0, "px",
           "A circle's centre less sure than this is left out."},
     Field{"largest_centre_shift_px", &TrackingOptions::largest_centre_shift_px, 0.2, 10.0, "px",
