@@ -20,7 +20,7 @@ namespace {
 // once.
 constexpr double kFurthestDrift_knots = 0.5;
 // Bounds of the noise scales: beyond them something else is wrong, and a sensor must not rule or vanish.
-constexpr double kLeastScale = 0.05, kLargestScale = 50.0;
+constexpr double kLeastScale = 0.05, kLargestScale = 1000.0;
 
 class IterationReporter final : public ceres::IterationCallback {
  public:
@@ -57,7 +57,8 @@ ceres::Solver::Options solverOptions(const OptimisationOptions& options, double 
   solver.function_tolerance = tolerance;
   solver.gradient_tolerance = 1e-12;
   solver.parameter_tolerance = 1e-12;
-  solver.initial_trust_region_radius = 1e6;  // initialisation leaves us where Gauss-Newton works
+  solver.max_num_consecutive_invalid_steps = 20;  // a motion that leaves directions open needs damping, found by trial
+  solver.initial_trust_region_radius = 1e12;  // weak directions (biases against gravity) need undamped steps
   solver.logging_type = ceres::SILENT;
   solver.update_state_every_iteration = true;  // the callback reads it
   return solver;
@@ -162,6 +163,7 @@ std::vector<ImuFit> Batch::imuFits(NoiseScales& scales) const {
 
 BatchSolution Batch::run() {
   const std::vector<ReleaseStages> all = stages();
+  updateWeights();  // by the initial errors: else most circles would start in the flat part of Huber's loss
   for (std::size_t i = 0; i < all.size(); ++i) {
     const bool last = i + 1 == all.size();
     solveStage(all[i], static_cast<int>(i), last ? options_.function_tolerance : options_.stage_tolerance);
