@@ -39,6 +39,7 @@ struct BoardMotion {
   PlaneFlow velocity_px_s = PlaneFlow::Zero();
   PlaneFlow acceleration_px_s2 = PlaneFlow::Zero();
   double radius_offset_px = 0.0;  // burst medians lie this far outside the edges, in pixels
+  double typical_events = 0.0;    // of a burst at an edge that crosses its pixel squarely; 0: not known yet
   double residual_rms_px = 0.0;
   int bursts = 0;
 
@@ -108,14 +109,17 @@ int expectedCircles(const BoardMotion& motion, const CircleBoard& board,
 // Bursts no further than this from the window's middle are fitted at that speed.
 double fitHalfWindow_s(double speed_px_s, const TrackingOptions& options);
 
-// Weight of an edge by how squarely it moves: a grazing edge never crosses its pixels, and its bursts come
-// too early. `leads` is the cosine between outward normal and motion, negative if the polarity says
-// otherwise.
-inline double grazingWeight(double leads, const TrackingOptions& options) {
-  if (leads <= options.least_polarity_cosine) return 0.0;
-  if (leads >= options.full_polarity_cosine) return 1.0;
-  return (leads - options.least_polarity_cosine) /
-         (options.full_polarity_cosine - options.least_polarity_cosine);
+// Weight of a burst by how squarely its edge crossed the pixel: where an edge only grazes a pixel, its burst
+// is short and comes too early. `leads` is the cosine between outward normal and motion, negative if the
+// polarity says otherwise.
+inline double crossingWeight(double leads, double events, double typical_events,
+                             const TrackingOptions& options) {
+  const auto ramp = [](double value, double zero, double one) {
+    return value <= zero ? 0.0 : (value >= one ? 1.0 : (value - zero) / (one - zero));
+  };
+  const double weight = ramp(leads, options.least_polarity_cosine, options.full_polarity_cosine);
+  if (typical_events <= 0.0) return weight;
+  return weight * ramp(events / typical_events, options.least_event_part, options.full_event_part);
 }
 
 // Fits homography, velocity field and radius offset to the bursts of a window whose middle is start.time_ns.

@@ -16,6 +16,7 @@ namespace {
 constexpr int kFlowTerms = 8;
 constexpr int kUnknowns = 3 * kFlowTerms + 1;  // shift, velocity, acceleration, radius offset
 constexpr int kSectors = 16;
+constexpr double kSquare = 0.8;  // cosine
 using NormalMatrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 using NormalVector = Eigen::Matrix<double, kUnknowns, 1>;
 
@@ -24,6 +25,7 @@ struct NormalEquations {
   NormalVector vector = NormalVector::Zero();
   double weighted_squares = 0.0, weight = 0.0;
   int bursts = 0;
+  std::vector<double> square_events;  // of bursts whose edges cross squarely
 };
 
 // Sums of w t^k, of w r t^k n, and of w r over the bursts of one sector.
@@ -36,7 +38,7 @@ struct SectorSums {
 };
 
 struct FitPoint {
-  double x, y, t, inverse_scale, lead;
+  double x, y, t, inverse_scale, events, lead;
 };
 
 // The priors only hold what the bursts do not see. Perspective terms are the least sure and the least needed.
@@ -99,11 +101,11 @@ void gatherPoints(const BurstWindow& window, const CircleMotion& moving, double 
         const Eigen::Vector2d at_middle = pixel - t * (moving.velocity + 0.5 * t * moving.acceleration);
         const double distance = distanceToEdge(circle, at_middle).distance_px;
         if (!(std::abs(distance) < slack_px * burst.scale)) return;
-        points.push_back({pixel.x(), pixel.y(), t, 1.0 / burst.scale, burst.lead});
+        points.push_back({pixel.x(), pixel.y(), t, 1.0 / burst.scale, burst.events, burst.lead});
       });
 }
 
-void sumSectors(const CircleMotion& moving, const std::vector<FitPoint>& points, double radius_offset_px,
+void sumSectors(const CircleMotion& moving, const std::vector<FitPoint>& points, const BoardMotion& motion,
                 double gate_px, const TrackingOptions& options, std::array<SectorSums, kSectors>& sectors,
                 NormalEquations& equations) {
   const double inverse_noise2 = 1.0 / (options.robust_scale_px * options.robust_scale_px);
@@ -114,11 +116,13 @@ void sumSectors(const CircleMotion& moving, const std::vector<FitPoint>& points,
     const Eigen::Vector2d beside = at_middle - moving.circle.centre_px;
     at_middle -= t * (moving.velocity_gradient * beside + 0.5 * t * (moving.acceleration_gradient * beside));
     const EdgeDistance edge = distanceToEdge(moving.circle, at_middle);
-    const double r = edge.distance_px * point.inverse_scale - radius_offset_px;
+    const double r = edge.distance_px * point.inverse_scale - motion.radius_offset_px;
     if (!(std::abs(r) < gate_px)) continue;
     const Eigen::Vector2d velocity_then = moving.velocity + t * moving.acceleration;
     const double leads = point.lead * edge.normal.dot(velocity_then) / (velocity_then.norm() + 1e-9);
-    const double w = grazingWeight(leads, options) / (1.0 + r * r * inverse_noise2);
+    const double w =
+        crossingWeight(leads, point.events, motion.typical_events, options) / (1.0 + r * r * inverse_noise2);
+    if (leads > kSquare) equations.square_events.push_back(point.events);
     if (w <= 0.0) continue;
     SectorSums& sums = sectors[static_cast<std::size_t>(sectorOf(edge.normal))];
     // Rows carry 1 / scale; it is folded into the normal.
@@ -161,6 +165,13 @@ void addSector(const SectorSums& sums, const ImageFrame& frame, NormalEquations&
   equations.vector(kUnknowns - 1) += sums.wr;
 }
 
+double median(std::vector<double>& values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 void apply(const NormalVector& step, BoardMotion& motion) {
   motion.ideal_from_board = moved(motion.ideal_from_board, motion.frame, step.head<kFlowTerms>());
   motion.velocity_px_s += step.segment<kFlowTerms>(kFlowTerms);
@@ -192,7 +203,7 @@ std::optional<BoardMotion> fitBoardMotion(const BurstWindow& window, const Board
       std::vector<FitPoint>& near = points[static_cast<std::size_t>(circle.circle)];
       if (iteration == 0) gatherPoints(window, moving, half_window_s, 2.0 * first_gate_px, near);
       std::array<SectorSums, kSectors> sectors;
-      sumSectors(moving, near, motion.radius_offset_px, gate_px, options, sectors, equations);
+      sumSectors(moving, near, motion, gate_px, options, sectors, equations);
       for (const SectorSums& sums : sectors) addSector(sums, motion.frame, equations);
     }
     if (equations.bursts < 3 * kUnknowns) return std::nullopt;
@@ -203,6 +214,7 @@ std::optional<BoardMotion> fitBoardMotion(const BurstWindow& window, const Board
     apply(step, motion);
     motion.residual_rms_px = std::sqrt(equations.weighted_squares / equations.weight);
     motion.bursts = equations.bursts;
+    motion.typical_events = median(equations.square_events);
     const bool at_last_gate = gate_px <= options.last_gate_px;
     if (at_last_gate && step.head<kFlowTerms>().cwiseAbs().maxCoeff() < kSettled_px) break;
     gate_px = std::max(gate_px * options.gate_ratio, options.last_gate_px);

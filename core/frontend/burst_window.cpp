@@ -90,6 +90,7 @@ void BurstWindow::assign(const std::vector<EdgeBurst>& bursts, std::int64_t midd
       out.scale = (*scale_)[static_cast<std::size_t>(burst.y_px * resolution_px_.width_px + burst.x_px)];
     }
     out.time_s = static_cast<float>(static_cast<double>(burst.time_ns - middle_ns) * 1e-9);
+    out.events = burst.events;
     out.lead = burst.brighter == dark_circles_ ? -1.0f : 1.0f;
   }
 }

@@ -37,6 +37,7 @@ struct WindowBurst {
   float ideal_x_px, ideal_y_px;
   float scale;   // ideal pixels per pixel
   float time_s;  // since the window's middle
+  float events;  // that the edge fired here
   float lead;    // +1 if a circle's leading edge fires so, -1 if its trailing edge does
 };
 

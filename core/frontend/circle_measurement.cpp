@@ -42,7 +42,7 @@ void gatherEdgePoints(const BurstWindow& window, const ProjectedCircle& circle, 
     if (!(std::abs(edge.distance_px / burst.scale - motion.radius_offset_px) < gate_px)) return;
     const Eigen::Vector2d velocity_then = velocity + time_s * acceleration;
     const double leads = burst.lead * edge.normal.dot(velocity_then) / (velocity_then.norm() + 1e-9);
-    const double weight = grazingWeight(leads, options);
+    const double weight = crossingWeight(leads, burst.events, motion.typical_events, options);
     if (weight > 0.0) points.push_back({at_middle, time_s, burst.scale, weight});
   };
   window.visitBox(middle.x() - reach, middle.x() + reach, middle.y() - reach, middle.y() + reach, visit);

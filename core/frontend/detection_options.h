@@ -159,6 +159,8 @@ struct TrackingOptions {
   int iterations = 8;
   double least_polarity_cosine = 0.35;
   double full_polarity_cosine = 0.7;
+  double least_event_part = 0.5;
+  double full_event_part = 0.8;
   double least_arc = 0.25;
   int least_circle_bursts = 8;
   double least_inliers = 0.6;
@@ -189,6 +191,11 @@ inline constexpr auto kTrackingFields = std::tuple{
           "Cosine between edge normal and motion below which an edge is left out: it grazes pixels."},
     Field{"full_polarity_cosine", &TrackingOptions::full_polarity_cosine, 0.0, 1.0, "",
           "Cosine from which an edge has its full weight."},
+    Field{"least_event_part", &TrackingOptions::least_event_part, 0.0, 1.0, "",
+          "Bursts with fewer events than this part of a typical one are left out: their edges graze the "
+          "pixel."},
+    Field{"full_event_part", &TrackingOptions::full_event_part, 0.0, 1.0, "",
+          "Bursts from this part of the typical number of events have their full weight."},
     Field{"least_arc", &TrackingOptions::least_arc, 0.05, 1.0, "",
           "Part of a circle's 16 sectors that must hold bursts."},
     Field{"least_circle_bursts", &TrackingOptions::least_circle_bursts, 3, 1000, "",
