@@ -57,7 +57,8 @@ ceres::Solver::Options solverOptions(const OptimisationOptions& options, double 
   solver.function_tolerance = tolerance;
   solver.gradient_tolerance = 1e-12;
   solver.parameter_tolerance = 1e-12;
-  solver.max_num_consecutive_invalid_steps = 20;  // a motion that leaves directions open needs damping, found by trial
+  solver.max_num_consecutive_invalid_steps =
+      20;  // a motion that leaves directions open needs damping, found by trial
   solver.initial_trust_region_radius = 1e12;  // weak directions (biases against gravity) need undamped steps
   solver.logging_type = ceres::SILENT;
   solver.update_state_every_iteration = true;  // the callback reads it

@@ -1,0 +1,34 @@
+// Cholesky factor of a symmetric positive definite band matrix: what a spline's information matrix is, with
+// the control points in order of time.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace evical {
+
+class BandCholesky {
+ public:
+  // `half_bandwidth`: largest distance of an entry from the diagonal.
+  BandCholesky(Eigen::Index size, Eigen::Index half_bandwidth);
+
+  Eigen::Index size() const { return size_; }
+  void add(Eigen::Index row, Eigen::Index col, double value) { at(row, col) += value; }  // col <= row
+
+  // Directions without information (pivots that cancel to nothing) get a solution of 0 instead of infinity.
+  void factorise();
+  void solveInPlace(Eigen::MatrixXd& right) const;
+
+ private:
+  double& at(Eigen::Index row, Eigen::Index col) { return band_[index(row, col)]; }
+  double at(Eigen::Index row, Eigen::Index col) const { return band_[index(row, col)]; }
+  std::size_t index(Eigen::Index row, Eigen::Index col) const {
+    return static_cast<std::size_t>(row * (half_bandwidth_ + 1) + half_bandwidth_ + col - row);
+  }
+
+  Eigen::Index size_, half_bandwidth_;
+  std::vector<double> band_;  // row by row, the diagonal last
+};
+
+}  // namespace evical

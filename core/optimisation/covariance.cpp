@@ -1,0 +1,275 @@
+#include "core/optimisation/covariance.h"
+
+#include "core/optimisation/observability.h"
+#include "core/optimisation/projected_information.h"
+
+#include <fmt/format.h>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace evical {
+namespace {
+
+// Sizes that make all quantities comparable, so that "no information" means the same for each.
+double unitOf(QuantityKind kind) {
+  switch (kind) {
+    case QuantityKind::CameraTranslation:
+    case QuantityKind::ImuTranslation:
+      return 1e-3;
+    case QuantityKind::CameraTimeOffset:
+    case QuantityKind::ImuTimeOffset:
+      return 1e-4;
+    case QuantityKind::EdgeLead:
+      return 0.1;
+    case QuantityKind::AccelerometerBias:
+      return 1e-2;
+    default:
+      return 1e-3;
+  }
+}
+
+// Below this information in the units above a direction counts as open, and its sigma is 1e4 units.
+constexpr double kLeastInformation = 1e-8;
+
+// Inverse of the information, safe against directions without any: they count as having the least, which
+// `open` holds.
+struct SafeInverse {
+  Eigen::MatrixXd inverse, open;
+};
+SafeInverse safeInverse(const Eigen::MatrixXd& information, const Eigen::VectorXd& units) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(units.asDiagonal() * information *
+                                                              units.asDiagonal());
+  const Eigen::MatrixXd& v = solver.eigenvectors();
+  const Eigen::VectorXd known = solver.eigenvalues().cwiseMax(kLeastInformation);
+  const Eigen::VectorXd missing = known - solver.eigenvalues();
+  const Eigen::VectorXd per_unit = units.cwiseInverse();
+  return {units.asDiagonal() * (v * known.cwiseInverse().asDiagonal() * v.transpose()) * units.asDiagonal(),
+          per_unit.asDiagonal() * (v * missing.asDiagonal() * v.transpose()) * per_unit.asDiagonal()};
+}
+
+// Newey and West's estimate of the scores' covariance; stretches of the correlation time, weights falling to
+// zero over the next three, so that correlation over up to about that time is seen in full.
+Eigen::MatrixXd correlatedScores(const std::vector<Eigen::VectorXd>& scores, Eigen::Index size) {
+  constexpr std::size_t kLags = 3;
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size, size);
+  for (std::size_t lag = 0; lag <= kLags; ++lag) {
+    const double weight = 1.0 - static_cast<double>(lag) / (kLags + 1.0);
+    for (std::size_t i = 0; i + lag < scores.size(); ++i) {
+      const Eigen::MatrixXd product = scores[i] * scores[i + lag].transpose();
+      if (lag == 0) {
+        sum += product;
+      } else {
+        sum += weight * (product + product.transpose());
+      }
+    }
+  }
+  return sum;
+}
+
+// From tangent space as Ceres has it to the report's coordinates.
+Eigen::MatrixXd reportFromTangent(const Quantity& quantity, Eigen::Index size, const CalibrationState& state,
+                                  ceres::Problem& problem) {
+  if (quantity.kind == QuantityKind::CameraRotation) {
+    return state.cameras[quantity.sensor].imu_from_camera.rotation.toRotationMatrix();
+  }
+  if (quantity.kind == QuantityKind::ImuRotation) {
+    return state.imus[quantity.sensor].reference_from_imu.rotation.toRotationMatrix();
+  }
+  if (quantity.kind == QuantityKind::GravityDirection) {
+    Eigen::Matrix<double, 3, 2, Eigen::RowMajor> plus;
+    problem.GetManifold(quantity.block)->PlusJacobian(quantity.block, plus.data());
+    const Eigen::Vector3d& gravity = state.gravity_in_world_m_s2;
+    return gravityTilts(gravity).transpose() * plus / gravity.norm();
+  }
+  return Eigen::MatrixXd::Identity(size, size);
+}
+
+QuantityCovariance quantityCovariance(const ProjectedInformation& information, const CalibrationState& state,
+                                      ceres::Problem& problem) {
+  const Eigen::Index size = information.total.rows();
+  Eigen::VectorXd units(size);
+  Eigen::MatrixXd report_from_tangent = Eigen::MatrixXd::Zero(size, size);
+  for (std::size_t i = 0; i < information.quantities.size(); ++i) {
+    const Quantity& quantity = information.quantities[i];
+    const Eigen::Index first = information.first_column[i], count = information.first_column[i + 1] - first;
+    units.segment(first, count).setConstant(unitOf(quantity.kind));
+    report_from_tangent.block(first, first, count, count) =
+        reportFromTangent(quantity, count, state, problem);
+  }
+  const SafeInverse safe = safeInverse(information.total, units);
+  // What the data doesn't say of its own: priors, and the floor under open directions.
+  Eigen::MatrixXd given = safe.open, measured = Eigen::MatrixXd::Zero(size, size);
+  for (const MeasurementGroup& group : information.groups) {
+    (group.kind == SensorKind::Prior ? given : measured) += group.variance() * group.information;
+  }
+  const Eigen::MatrixXd inverse = report_from_tangent * safe.inverse;
+  Eigen::MatrixXd covariance = inverse * (measured + given) * inverse.transpose();
+  const Eigen::MatrixXd correlated =
+      inverse * (correlatedScores(information.scores, size) + given) * inverse.transpose();
+  Eigen::VectorXd growth(size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const double asked = std::max(covariance(i, i), correlated(i, i));
+    growth[i] = std::sqrt(std::max(1.0, asked / std::max(covariance(i, i), 1e-300)));
+  }
+  covariance = (growth.asDiagonal() * covariance * growth.asDiagonal()).eval();
+  return {information.quantities, information.first_column, covariance};
+}
+
+constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+constexpr std::array<const char*, 6> kMappingEntries = {"xx", "xy", "xz", "yy", "yz", "zz"};
+
+struct Naming {
+  const char* name;
+  const char* unit;
+};
+Naming namingOf(QuantityKind kind) {
+  switch (kind) {
+    case QuantityKind::CameraRotation:
+    case QuantityKind::ImuRotation:
+      return {"rotation", "rad"};
+    case QuantityKind::CameraTranslation:
+    case QuantityKind::ImuTranslation:
+      return {"translation", "m"};
+    case QuantityKind::CameraTimeOffset:
+    case QuantityKind::ImuTimeOffset:
+      return {"time_offset", "s"};
+    case QuantityKind::EdgeLead:
+      return {"edge_lead", "px"};
+    case QuantityKind::GyroscopeBias:
+      return {"gyroscope_bias", "rad/s"};
+    case QuantityKind::AccelerometerBias:
+      return {"accelerometer_bias", "m/s^2"};
+    case QuantityKind::GyroscopeMapping:
+      return {"gyroscope_mapping", "1"};
+    case QuantityKind::AccelerometerMapping:
+      return {"accelerometer_mapping", "1"};
+    case QuantityKind::GravityDirection:
+      break;
+  }
+  return {"direction", "rad"};
+}
+
+bool isCameraQuantity(QuantityKind kind) {
+  return kind == QuantityKind::CameraRotation || kind == QuantityKind::CameraTranslation ||
+         kind == QuantityKind::CameraTimeOffset || kind == QuantityKind::EdgeLead;
+}
+
+void appendNames(const Quantity& quantity, Eigen::Index size, const CalibrationInput& input,
+                 std::vector<std::string>& names) {
+  const Naming naming = namingOf(quantity.kind);
+  const std::string sensor = quantity.kind == QuantityKind::GravityDirection ? "gravity"
+                             : isCameraQuantity(quantity.kind) ? input.cameras[quantity.sensor].name
+                                                               : input.imus[quantity.sensor].name;
+  for (Eigen::Index k = 0; k < size; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const std::string part = size == 1   ? ""
+                             : size == 2 ? fmt::format(".{}", k + 1)
+                             : size == 3 ? fmt::format(".{}", kAxes[i])
+                                         : fmt::format(".{}", kMappingEntries[i]);
+    names.push_back(fmt::format("{}.{}{} [{}]", sensor, naming.name, part, naming.unit));
+  }
+}
+
+Eigen::Matrix3d upperTriangle(const Eigen::VectorXd& row_by_row) {
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+  matrix.row(0) = row_by_row.head<3>();
+  matrix.row(1).tail<2>() = row_by_row.segment<2>(3);
+  matrix(2, 2) = row_by_row[5];
+  return matrix;
+}
+
+void storeStandardDeviations(const Quantity& quantity, const Eigen::VectorXd& sigma,
+                             UncertaintyReport& report) {
+  switch (quantity.kind) {
+    case QuantityKind::CameraRotation:
+      report.cameras[quantity.sensor].rotation_std_rad = sigma;
+      break;
+    case QuantityKind::CameraTranslation:
+      report.cameras[quantity.sensor].translation_std_m = sigma;
+      break;
+    case QuantityKind::CameraTimeOffset:
+      report.cameras[quantity.sensor].time_offset_std_s = sigma[0];
+      break;
+    case QuantityKind::EdgeLead:
+      report.cameras[quantity.sensor].edge_lead_std_px = sigma[0];
+      break;
+    case QuantityKind::ImuRotation:
+      report.imus[quantity.sensor].rotation_std_rad = sigma;
+      break;
+    case QuantityKind::ImuTranslation:
+      report.imus[quantity.sensor].translation_std_m = sigma;
+      break;
+    case QuantityKind::ImuTimeOffset:
+      report.imus[quantity.sensor].time_offset_std_s = sigma[0];
+      break;
+    case QuantityKind::GyroscopeBias:
+      report.imus[quantity.sensor].gyroscope_bias_std_rad_s = sigma;
+      break;
+    case QuantityKind::AccelerometerBias:
+      report.imus[quantity.sensor].accelerometer_bias_std_m_s2 = sigma;
+      break;
+    case QuantityKind::GyroscopeMapping:
+      report.imus[quantity.sensor].gyroscope_mapping_std = upperTriangle(sigma);
+      break;
+    case QuantityKind::AccelerometerMapping:
+      report.imus[quantity.sensor].accelerometer_mapping_std = upperTriangle(sigma);
+      break;
+    case QuantityKind::GravityDirection:
+      report.gravity_direction_std_rad = sigma.norm() / std::sqrt(2.0);
+      break;
+  }
+}
+
+UncertaintyReport makeReport(const CalibrationInput& input, const QuantityCovariance& quantities) {
+  UncertaintyReport report;
+  report.cameras.resize(input.cameras.size());
+  report.imus.resize(input.imus.size());
+  report.standard_deviations = quantities.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::VectorXd inverse = report.standard_deviations.cwiseMax(1e-300).cwiseInverse();
+  report.correlation = inverse.asDiagonal() * quantities.covariance * inverse.asDiagonal();
+  report.correlation.diagonal().setOnes();
+  for (std::size_t i = 0; i < quantities.quantities.size(); ++i) {
+    const Eigen::Index first = quantities.first_column[i], size = quantities.first_column[i + 1] - first;
+    appendNames(quantities.quantities[i], size, input, report.names);
+    storeStandardDeviations(quantities.quantities[i], report.standard_deviations.segment(first, size),
+                            report);
+  }
+  return report;
+}
+
+}  // namespace
+
+Eigen::Matrix<double, 3, 2> gravityTilts(const Eigen::Vector3d& gravity) {
+  const Eigen::Vector3d down = gravity.normalized();
+  const Eigen::Vector3d seed = std::abs(down.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
+  Eigen::Matrix<double, 3, 2> tilts;
+  tilts.col(0) = (seed - seed.dot(down) * down).normalized();
+  tilts.col(1) = down.cross(tilts.col(0));
+  return tilts;
+}
+
+UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const BatchSolution& solution,
+                                        const OptimisationOptions& options, const RunContext& context) {
+  context.throwIfStopped();
+  CalibrationProblem problem(input, options, solution.state);
+  problem.used_circles = solution.used_circles;
+  problem.scales = solution.scales;
+  problem.build(options.last_stage);
+  const ProjectedInformation information = projectInformation(problem, options.correlation_time_s);
+  context.throwIfStopped();
+  const QuantityCovariance covariance = quantityCovariance(information, solution.state, problem.problem());
+  UncertaintyEstimate estimate;
+  estimate.report = makeReport(input, covariance);
+  const Observability observability = judgeObservability(input, solution.state, covariance, options);
+  estimate.report.observability = observability.eigenvalues;
+  estimate.report.weakest = observability.weakest;
+  estimate.status = observability.status;
+  estimate.reason = observability.reason;
+  return estimate;
+}
+
+}  // namespace evical

@@ -1,0 +1,33 @@
+// How sure the calibration is (method section 7), and whether the motion supports it.
+//
+// Sigmas come from the Schur complement over the splines of the whitened Gauss-Newton information. Two
+// corrections keep them honest: each sensor's measurements count with the variance that their residuals show,
+// and residuals near in time may be correlated (W. Newey, K. West, "A simple, positive semi-definite,
+// heteroskedasticity and autocorrelation consistent covariance matrix", Econometrica 1987): where that asks
+// for more than the first, it prevails.
+#pragma once
+
+#include "core/data/calibration_result.h"
+#include "core/data/calibration_setup.h"
+#include "core/optimisation/batch_optimiser.h"
+#include "core/optimisation/optimisation_options.h"
+
+#include <string>
+
+namespace evical {
+
+struct UncertaintyEstimate {
+  UncertaintyReport report;
+  CalibrationStatus status = CalibrationStatus::Ok;
+  std::string reason;  // why not Ok, and what to do; empty if it is
+};
+
+// The two directions, in the world, in which the report gives gravity's tilt ("gravity.direction.1", ".2").
+Eigen::Matrix<double, 3, 2> gravityTilts(const Eigen::Vector3d& gravity_in_world);
+
+// Never fails for want of information: directions that the recording leaves open get sigmas far beyond any
+// need.
+UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const BatchSolution& solution,
+                                        const OptimisationOptions& options, const RunContext& context);
+
+}  // namespace evical

@@ -1,0 +1,190 @@
+#include "core/optimisation/observability.h"
+
+#include <fmt/format.h>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
+namespace evical {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+enum class Need { None, Rotation, Translation, TimeOffset };
+
+Need needOf(QuantityKind kind) {
+  switch (kind) {
+    case QuantityKind::CameraRotation:
+    case QuantityKind::ImuRotation:
+      return Need::Rotation;
+    case QuantityKind::CameraTranslation:
+    case QuantityKind::ImuTranslation:
+      return Need::Translation;
+    case QuantityKind::CameraTimeOffset:
+    case QuantityKind::ImuTimeOffset:
+      return Need::TimeOffset;
+    default:
+      return Need::None;
+  }
+}
+
+double needed(Need need, const OptimisationOptions& options) {
+  switch (need) {
+    case Need::Rotation:
+      return options.needed_rotation_deg * kPi / 180.0;
+    case Need::Translation:
+      return options.needed_translation_mm * 1e-3;
+    default:
+      return options.needed_time_offset_ms * 1e-3;
+  }
+}
+
+bool isCamera(QuantityKind kind) {
+  return kind == QuantityKind::CameraRotation || kind == QuantityKind::CameraTranslation ||
+         kind == QuantityKind::CameraTimeOffset;
+}
+
+class Judge {
+ public:
+  Judge(const CalibrationInput& input, const CalibrationState& state, const QuantityCovariance& covariance,
+        const OptimisationOptions& options)
+      : input_(input), state_(state), covariance_(covariance), options_(options) {}
+
+  Observability judge() const;
+
+ private:
+  struct Part {
+    std::size_t quantity;
+    Eigen::Index at, size;  // rows among those needed
+    Need need;
+  };
+  std::string sensorName(const Quantity& quantity) const {
+    return isCamera(quantity.kind) ? input_.cameras[quantity.sensor].name : input_.imus[quantity.sensor].name;
+  }
+  // A direction in the reference IMU's frame, said in the sensor's own: its axis, or the components.
+  std::string axisWords(const Quantity& quantity, const Eigen::Vector3d& in_reference) const;
+  std::string partWords(const Quantity& quantity, Need need, const Eigen::VectorXd& direction) const;
+  std::string weakestWords(const std::vector<Part>& parts, const Eigen::VectorXd& direction) const;
+  std::string unmetNeed(const Part& part) const;
+
+  const CalibrationInput& input_;
+  const CalibrationState& state_;
+  const QuantityCovariance& covariance_;
+  const OptimisationOptions& options_;
+};
+
+std::string Judge::axisWords(const Quantity& quantity, const Eigen::Vector3d& in_reference) const {
+  const bool camera = isCamera(quantity.kind);
+  const Eigen::Quaterniond& reference_from_sensor =
+      camera ? state_.cameras[quantity.sensor].imu_from_camera.rotation
+             : state_.imus[quantity.sensor].reference_from_imu.rotation;
+  Eigen::Vector3d direction = (reference_from_sensor.conjugate() * in_reference).normalized();
+  Eigen::Index axis = 0;
+  const double share = direction.cwiseAbs().maxCoeff(&axis);
+  if (direction[axis] < 0.0) direction = -direction;
+  const std::string owner = camera && input_.cameras.size() == 1 ? "the camera" : sensorName(quantity);
+  constexpr double kAlmostAlong = 0.9;
+  if (share > kAlmostAlong) return fmt::format("{}'s {} axis", owner, "xyz"[axis]);
+  return fmt::format("({:.2f}, {:.2f}, {:.2f}) in {}'s frame", direction.x(), direction.y(), direction.z(),
+                     owner);
+}
+
+std::string Judge::partWords(const Quantity& quantity, Need need, const Eigen::VectorXd& direction) const {
+  switch (need) {
+    case Need::Rotation:
+      return "rotation about " + axisWords(quantity, direction);
+    case Need::Translation:
+      return "translation along " + axisWords(quantity, direction);
+    default:
+      return "time offset of " + sensorName(quantity);
+  }
+}
+
+std::string Judge::weakestWords(const std::vector<Part>& parts, const Eigen::VectorXd& direction) const {
+  std::vector<std::pair<double, std::string>> words;
+  for (const Part& part : parts) {
+    const Eigen::VectorXd own = direction.segment(part.at, part.size);
+    words.emplace_back(own.norm(), partWords(covariance_.quantities[part.quantity], part.need, own));
+  }
+  std::sort(words.begin(), words.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  constexpr double kWorthNaming = 0.5;  // a quarter of the direction's square
+  std::string text = words.front().second;
+  if (words.size() > 1 && words[1].first > kWorthNaming) text += " together with " + words[1].second;
+  return text;
+}
+
+// Empty if the part is certain enough in every direction.
+std::string Judge::unmetNeed(const Part& part) const {
+  const Quantity& quantity = covariance_.quantities[part.quantity];
+  const Eigen::Index first = covariance_.first_column[part.quantity];
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
+      covariance_.covariance.block(first, first, part.size, part.size));
+  const double sigma = std::sqrt(std::max(0.0, solver.eigenvalues()[part.size - 1]));
+  if (!(sigma > needed(part.need, options_))) return {};
+  const std::string words = partWords(quantity, part.need, solver.eigenvectors().col(part.size - 1));
+  constexpr double kHopeless = 100.0;
+  if (sigma > kHopeless * needed(part.need, options_)) return words + " is not observable in this recording";
+  switch (part.need) {
+    case Need::Rotation:
+      return fmt::format("{} has a sigma of {:.2g} deg (needed: {:.2g})", words, sigma * 180.0 / kPi,
+                         options_.needed_rotation_deg);
+    case Need::Translation:
+      return fmt::format("{} has a sigma of {:.2g} mm (needed: {:.2g})", words, sigma * 1e3,
+                         options_.needed_translation_mm);
+    default:
+      return fmt::format("{} has a sigma of {:.2g} ms (needed: {:.2g})", words, sigma * 1e3,
+                         options_.needed_time_offset_ms);
+  }
+}
+
+Observability Judge::judge() const {
+  std::vector<Part> parts;
+  std::vector<Eigen::Index> columns;
+  std::vector<double> units;
+  for (std::size_t i = 0; i < covariance_.quantities.size(); ++i) {
+    const Need need = needOf(covariance_.quantities[i].kind);
+    if (need == Need::None) continue;
+    const Eigen::Index first = covariance_.first_column[i], size = covariance_.first_column[i + 1] - first;
+    parts.push_back({i, static_cast<Eigen::Index>(columns.size()), size, need});
+    for (Eigen::Index k = 0; k < size; ++k) {
+      columns.push_back(first + k);
+      units.push_back(needed(need, options_));
+    }
+  }
+  const auto count = static_cast<Eigen::Index>(columns.size());
+  Eigen::MatrixXd in_needs(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+      in_needs(i, j) = covariance_.covariance(columns[a], columns[b]) / (units[a] * units[b]);
+    }
+  }
+  Observability result;
+  if (count == 0) return result;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(in_needs);
+  for (Eigen::Index i = count - 1; i >= 0; --i) {
+    result.eigenvalues.push_back(1.0 / std::max(solver.eigenvalues()[i], 1e-12));
+  }
+  result.weakest = weakestWords(parts, solver.eigenvectors().col(count - 1));
+  for (const Part& part : parts) {
+    const std::string unmet = unmetNeed(part);
+    if (unmet.empty()) continue;
+    result.status = CalibrationStatus::Doubtful;
+    result.reason += (result.reason.empty() ? "" : "; ") + unmet;
+  }
+  if (result.status == CalibrationStatus::Doubtful) {
+    result.reason +=
+        ". Record again, turning about all three axes and moving along all three, faster or for longer";
+  }
+  return result;
+}
+
+}  // namespace
+
+Observability judgeObservability(const CalibrationInput& input, const CalibrationState& state,
+                                 const QuantityCovariance& covariance, const OptimisationOptions& options) {
+  return Judge(input, state, covariance, options).judge();
+}
+
+}  // namespace evical

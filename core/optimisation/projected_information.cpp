@@ -1,0 +1,274 @@
+#include "core/optimisation/projected_information.h"
+
+#include "core/optimisation/band_cholesky.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <unordered_map>
+
+namespace evical {
+namespace {
+
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// Where a block's tangent columns go.
+struct Columns {
+  bool spline = false;
+  Eigen::Index first = 0;
+  int size = 0;
+};
+
+// The dense Jacobian of one residual block, in tangent columns: those of splines first.
+struct BlockJacobian {
+  Eigen::VectorXd residuals;
+  RowMajorMatrix jacobian;
+  std::vector<Eigen::Index> spline_columns, quantity_columns;
+
+  auto bySpline() const { return jacobian.leftCols(static_cast<Eigen::Index>(spline_columns.size())); }
+  auto byQuantities() const { return jacobian.rightCols(static_cast<Eigen::Index>(quantity_columns.size())); }
+};
+
+class Layout {
+ public:
+  explicit Layout(CalibrationProblem& problem) : problem_(problem) {
+    for (double* block : problem.splineBlocks()) {
+      columns_[block] = {true, spline_size_, problem.problem().ParameterBlockTangentSize(block)};
+      spline_size_ += problem.problem().ParameterBlockTangentSize(block);
+    }
+    for (const Quantity& quantity : problem.quantities()) {
+      first_column_.push_back(quantity_size_);
+      columns_[quantity.block] = {false, quantity_size_,
+                                  problem.problem().ParameterBlockTangentSize(quantity.block)};
+      quantity_size_ += problem.problem().ParameterBlockTangentSize(quantity.block);
+    }
+    first_column_.push_back(quantity_size_);
+  }
+
+  Eigen::Index splineSize() const { return spline_size_; }
+  Eigen::Index quantitySize() const { return quantity_size_; }
+  const std::vector<Eigen::Index>& firstColumn() const { return first_column_; }
+
+  Eigen::Index halfBandwidth() const {
+    Eigen::Index widest = 0;
+    for (const BlockInfo& info : problem_.blocks()) {
+      Eigen::Index low = std::numeric_limits<Eigen::Index>::max(), high = 0;
+      for (double* block : blocksOf(info)) {
+        const auto found = columns_.find(block);
+        if (found == columns_.end() || !found->second.spline) continue;
+        low = std::min(low, found->second.first);
+        high = std::max(high, found->second.first + found->second.size - 1);
+      }
+      if (low <= high) widest = std::max(widest, high - low);
+    }
+    return widest;
+  }
+
+  void evaluate(const BlockInfo& info, BlockJacobian& out) const;
+
+ private:
+  std::vector<double*> blocksOf(const BlockInfo& info) const {
+    std::vector<double*> blocks;
+    problem_.problem().GetParameterBlocksForResidualBlock(info.id, &blocks);
+    return blocks;
+  }
+
+  CalibrationProblem& problem_;
+  std::unordered_map<double*, Columns> columns_;
+  std::vector<Eigen::Index> first_column_;
+  Eigen::Index spline_size_ = 0, quantity_size_ = 0;
+};
+
+void Layout::evaluate(const BlockInfo& info, BlockJacobian& out) const {
+  const ceres::CostFunction& cost = *problem_.problem().GetCostFunctionForResidualBlock(info.id);
+  const std::vector<double*> blocks = blocksOf(info);
+  std::vector<RowMajorMatrix> ambient(blocks.size());
+  std::vector<double*> jacobians(blocks.size(), nullptr);
+  out.spline_columns.clear();
+  out.quantity_columns.clear();
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const auto found = columns_.find(blocks[i]);
+    if (found == columns_.end()) continue;  // held constant
+    ambient[i].resize(cost.num_residuals(), cost.parameter_block_sizes()[i]);
+    jacobians[i] = ambient[i].data();
+    auto& list = found->second.spline ? out.spline_columns : out.quantity_columns;
+    for (int k = 0; k < found->second.size; ++k) list.push_back(found->second.first + k);
+  }
+  out.residuals.resize(cost.num_residuals());
+  cost.Evaluate(blocks.data(), out.residuals.data(), jacobians.data());
+  out.jacobian.resize(cost.num_residuals(),
+                      static_cast<Eigen::Index>(out.spline_columns.size() + out.quantity_columns.size()));
+  Eigen::Index spline_at = 0, quantity_at = static_cast<Eigen::Index>(out.spline_columns.size());
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (!jacobians[i]) continue;
+    const Columns& columns = columns_.at(blocks[i]);
+    Eigen::Index& at = columns.spline ? spline_at : quantity_at;
+    const ceres::Manifold* manifold = problem_.problem().GetManifold(blocks[i]);
+    auto target = out.jacobian.middleCols(at, columns.size);
+    if (manifold) {
+      RowMajorMatrix plus(manifold->AmbientSize(), manifold->TangentSize());
+      manifold->PlusJacobian(blocks[i], plus.data());
+      target.noalias() = ambient[i] * plus;
+    } else {
+      target = ambient[i];
+    }
+    at += columns.size;
+  }
+}
+
+// Sums of the normal equations, splines eliminated.
+class Elimination {
+ public:
+  Elimination(const CalibrationProblem& problem, const Layout& layout)
+      : problem_(problem),
+        layout_(layout),
+        splines_(layout.splineSize(), layout.halfBandwidth()),
+        eliminated_(Eigen::MatrixXd::Zero(layout.splineSize(), layout.quantitySize())) {}
+
+  void eliminate() {
+    BlockJacobian block;
+    for (const BlockInfo& info : problem_.blocks()) {
+      layout_.evaluate(info, block);
+      const Eigen::MatrixXd splines = block.bySpline().transpose() * block.bySpline();
+      const Eigen::MatrixXd mixed = block.bySpline().transpose() * block.byQuantities();
+      for (std::size_t a = 0; a < block.spline_columns.size(); ++a) {
+        const Eigen::Index row = block.spline_columns[a];
+        for (std::size_t b = 0; b < block.spline_columns.size(); ++b) {
+          if (block.spline_columns[b] > row) continue;
+          splines_.add(row, block.spline_columns[b],
+                       splines(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)));
+        }
+        for (std::size_t q = 0; q < block.quantity_columns.size(); ++q) {
+          eliminated_(row, block.quantity_columns[q]) +=
+              mixed(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(q));
+        }
+      }
+    }
+    splines_.factorise();
+    splines_.solveInPlace(eliminated_);
+  }
+
+  // P of one block, all quantities.
+  Eigen::MatrixXd project(const BlockJacobian& block) const {
+    Eigen::MatrixXd projected = Eigen::MatrixXd::Zero(block.residuals.size(), layout_.quantitySize());
+    for (std::size_t q = 0; q < block.quantity_columns.size(); ++q) {
+      projected.col(block.quantity_columns[q]) = block.byQuantities().col(static_cast<Eigen::Index>(q));
+    }
+    Eigen::MatrixXd rows(static_cast<Eigen::Index>(block.spline_columns.size()), layout_.quantitySize());
+    for (std::size_t a = 0; a < block.spline_columns.size(); ++a) {
+      rows.row(static_cast<Eigen::Index>(a)) = eliminated_.row(block.spline_columns[a]);
+    }
+    projected.noalias() -= block.bySpline() * rows;
+    return projected;
+  }
+
+  const BandCholesky& splines() const { return splines_; }
+
+ private:
+  const CalibrationProblem& problem_;
+  const Layout& layout_;
+  BandCholesky splines_;
+  Eigen::MatrixXd eliminated_;  // (J_x^T J_x)^-1 J_x^T J_q
+};
+
+std::size_t groupOf(std::vector<MeasurementGroup>& groups, const BlockInfo& info, Eigen::Index size) {
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (groups[i].kind == info.kind && groups[i].sensor == info.sensor) return i;
+  }
+  MeasurementGroup group;
+  group.kind = info.kind;
+  group.sensor = info.sensor;
+  group.information = Eigen::MatrixXd::Zero(size, size);
+  groups.push_back(std::move(group));
+  return groups.size() - 1;
+}
+
+// How many residuals of each group the splines absorb: trace of J_x (J_x^T J_x)^-1 J_x^T over the group's
+// rows, by random signs (Hutchinson 1990). The few quantities themselves don't matter.
+void countAbsorbed(const CalibrationProblem& problem, const Layout& layout, const Elimination& elimination,
+                   std::vector<MeasurementGroup>& groups) {
+  constexpr std::uint64_t kSeed = 20260101;  // any: the count is good to a fraction of a percent
+  std::mt19937_64 random(kSeed);
+  const auto group_count = static_cast<Eigen::Index>(groups.size());
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(layout.splineSize(), group_count);
+  BlockJacobian block;
+  for (const BlockInfo& info : problem.blocks()) {
+    layout.evaluate(info, block);
+    const auto group = static_cast<Eigen::Index>(groupOf(groups, info, layout.quantitySize()));
+    Eigen::VectorXd signs(block.residuals.size());
+    for (Eigen::Index i = 0; i < signs.size(); ++i) signs[i] = (random() & 1U) ? 1.0 : -1.0;
+    const Eigen::VectorXd sum = block.bySpline().transpose() * signs;
+    for (std::size_t a = 0; a < block.spline_columns.size(); ++a) {
+      sums(block.spline_columns[a], group) += sum[static_cast<Eigen::Index>(a)];
+    }
+  }
+  Eigen::MatrixXd solved = sums;
+  elimination.splines().solveInPlace(solved);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const auto col = static_cast<Eigen::Index>(g);
+    groups[g].absorbed = sums.col(col).dot(solved.col(col));
+  }
+}
+
+}  // namespace
+
+double MeasurementGroup::variance() const {
+  constexpr double kLeastFree =
+      0.05;  // a group that the splines follow almost wholly tells nothing of its own noise
+  const double free = residuals - absorbed;
+  return kind != SensorKind::Prior && free > kLeastFree * residuals ? squared_residuals / free : 1.0;
+}
+
+ProjectedInformation projectInformation(CalibrationProblem& problem, double stretch_s) {
+  const Layout layout(problem);
+  Elimination elimination(problem, layout);
+  elimination.eliminate();
+
+  ProjectedInformation result;
+  result.quantities = problem.quantities();
+  result.first_column = layout.firstColumn();
+  const Eigen::Index size = layout.quantitySize();
+  result.total = Eigen::MatrixXd::Zero(size, size);
+
+  struct Score {
+    std::size_t group;
+    std::int64_t stretch;
+    Eigen::VectorXd value;
+  };
+  std::vector<Score> scores;
+  BlockJacobian block;
+  for (const BlockInfo& info : problem.blocks()) {
+    layout.evaluate(info, block);
+    const Eigen::MatrixXd projected = elimination.project(block);
+    const std::size_t g = groupOf(result.groups, info, size);
+    MeasurementGroup& group = result.groups[g];
+    group.information.noalias() += projected.transpose() * projected;
+    group.squared_residuals += block.residuals.squaredNorm();
+    group.residuals += static_cast<double>(block.residuals.size());
+    if (info.kind == SensorKind::Prior) continue;
+    scores.push_back({g, static_cast<std::int64_t>(std::floor(info.time_s / stretch_s)),
+                      projected.transpose() * block.residuals});
+  }
+  for (const MeasurementGroup& group : result.groups) result.total += group.information;
+  countAbsorbed(problem, layout, elimination, result.groups);
+
+  std::int64_t first = std::numeric_limits<std::int64_t>::max(),
+               last = std::numeric_limits<std::int64_t>::min();
+  for (const Score& score : scores) {
+    first = std::min(first, score.stretch);
+    last = std::max(last, score.stretch);
+  }
+  if (scores.empty()) return result;
+  result.scores.assign(static_cast<std::size_t>(last - first + 1), Eigen::VectorXd::Zero(size));
+  for (const Score& score : scores) {
+    const MeasurementGroup& group = result.groups[score.group];
+    const double scale =
+        std::sqrt(std::max(1.0, group.residuals / std::max(1.0, group.residuals - group.absorbed)));
+    result.scores[static_cast<std::size_t>(score.stretch - first)] += scale * score.value;
+  }
+  return result;
+}
+
+}  // namespace evical

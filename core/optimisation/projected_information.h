@@ -1,0 +1,43 @@
+// What the measurements say of the calibrated quantities once the splines have been eliminated.
+//
+// With whitened Jacobians J_x (splines) and J_q (quantities), the projected Jacobian is
+//   P = J_q - J_x (J_x^T J_x)^-1 J_x^T J_q,
+// P^T P is the Schur complement, and an error e of the whitened measurements moves the estimate by (P^T P)^-1
+// P^T e. So P, taken group by group and stretch of time by stretch of time, also tells what errors of another
+// size, or errors that are correlated, do to the estimate.
+#pragma once
+
+#include "core/optimisation/calibration_problem.h"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace evical {
+
+// One kind of measurement of one sensor.
+struct MeasurementGroup {
+  SensorKind kind = SensorKind::Prior;
+  std::size_t sensor = 0;
+  Eigen::MatrixXd information;     // its share of P^T P
+  double squared_residuals = 0.0;  // whitened
+  double residuals = 0.0;          // how many
+  double absorbed = 0.0;  // how many of them the unknowns absorb (trace of the hat matrix, estimated)
+
+  // Variance of whitened residuals, had the unknowns not been fitted to them; 1 if all is as stated.
+  double variance() const;
+};
+
+struct ProjectedInformation {
+  std::vector<Quantity> quantities;
+  std::vector<Eigen::Index> first_column;  // of each quantity; one more for the end
+  Eigen::MatrixXd total;                   // P^T P
+  std::vector<MeasurementGroup> groups;
+  // P^T e of the measurements in each stretch of time, residuals scaled up for what was absorbed.
+  std::vector<Eigen::VectorXd> scores;
+};
+
+// `problem` must be built. Scores are collected over stretches of `stretch_s`.
+ProjectedInformation projectInformation(CalibrationProblem& problem, double stretch_s);
+
+}  // namespace evical
