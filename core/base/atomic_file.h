@@ -1,0 +1,16 @@
+// Files that appear whole or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace evical {
+
+// Writes beside the target, syncs, renames. On failure throws CalibrationError (CalibrationFailed) that names
+// path and reason, leaves nothing behind and an older file as it was. The folder must exist.
+void writeFileWhole(const std::filesystem::path& path, std::string_view content);
+
+// Makes the folder and those above it; throws CalibrationError (BadInput) if it can't be made or written to.
+void makeOutputFolder(const std::filesystem::path& folder);
+
+}  // namespace evical

@@ -1,0 +1,83 @@
+#include "core/base/option_yaml.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace evical::detail {
+namespace {
+
+// All of `text` as a number, or false. from_chars: no locale, no blanks, no hexadecimal.
+template <class Number>
+bool parseWhole(std::string_view text, Number& value) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size() && !text.empty();
+}
+
+std::string withUnit(const std::string& number, const char* unit) {
+  return *unit == '\0' ? number : fmt::format("{} {}", number, unit);
+}
+
+template <class Number>
+void checkRange(const std::string& name, Number value, Number minimum, Number maximum, const char* unit) {
+  if (value >= minimum && value <= maximum) return;
+  const bool below = value < minimum;
+  throw badInput(
+      name,
+      fmt::format("{} is {} the {} of {}", withUnit(numberText(value), unit), below ? "below" : "above",
+                  below ? "least" : "most", withUnit(numberText(below ? minimum : maximum), unit)),
+      fmt::format("Give a value from {} to {}", numberText(minimum), withUnit(numberText(maximum), unit)));
+}
+
+}  // namespace
+
+std::string numberText(double value) {
+  return fmt::format("{}", value);
+}
+std::string numberText(std::int64_t value) {
+  return fmt::format("{}", value);
+}
+
+double parseReal(const std::string& name, std::string_view text, double minimum, double maximum,
+                 const char* unit) {
+  double value = 0.0;
+  if (!parseWhole(text, value) || !std::isfinite(value))
+    throw badInput(name, fmt::format("'{}' is not a number", text),
+                   fmt::format("Give a number from {} to {}", minimum, withUnit(numberText(maximum), unit)));
+  checkRange(name, value, minimum, maximum, unit);
+  return value;
+}
+
+std::int64_t parseInteger(const std::string& name, std::string_view text, std::int64_t minimum,
+                          std::int64_t maximum, const char* unit) {
+  std::int64_t value = 0;
+  if (!parseWhole(text, value))
+    throw badInput(
+        name, fmt::format("'{}' is not a whole number", text),
+        fmt::format("Give a whole number from {} to {}", minimum, withUnit(numberText(maximum), unit)));
+  checkRange(name, value, minimum, maximum, unit);
+  return value;
+}
+
+bool parseSwitch(const std::string& name, std::string_view text) {
+  for (const char* word : {"true", "on", "yes", "1"})
+    if (text == word) return true;
+  for (const char* word : {"false", "off", "no", "0"})
+    if (text == word) return false;
+  throw badInput(name, fmt::format("'{}' is neither true nor false", text), "Give true or false");
+}
+
+std::size_t parseChoice(const std::string& name, std::string_view text,
+                        std::span<const char* const> choices) {
+  for (std::size_t i = 0; i < choices.size(); ++i)
+    if (text == choices[i]) return i;
+  const std::vector<std::string> known(choices.begin(), choices.end());
+  const std::string nearest = nearestName(text, known);
+  throw badInput(name, fmt::format("'{}' is not one of {}", text, joined(known)),
+                 nearest.empty() ? "" : fmt::format("Did you mean '{}'?", nearest));
+}
+
+}  // namespace evical::detail
