@@ -1,0 +1,118 @@
+#include "core/synthetic/board_truth.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace evical {
+namespace {
+
+// Where the camera's stamps of `stamp_s` look in the reference IMU's time.
+double worldTime_s(const SimulatedCamera& camera, double stamp_s) {
+  return stamp_s + camera.time_offset_s - camera.pixel.delay_s();
+}
+
+Eigen::Matrix3d idealFromBoard(const RigidTransform& world_from_camera, const CameraIntrinsics& intrinsics) {
+  const RigidTransform camera_from_world = inverse(world_from_camera);
+  const Eigen::Matrix3d r = camera_from_world.rotation.toRotationMatrix();
+  Eigen::Matrix3d h;
+  h << r.col(0), r.col(1), camera_from_world.translation_m;
+  Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
+  k.diagonal().head<2>() = intrinsics.focal_length_px;
+  k.topRightCorner<2, 1>() = intrinsics.principal_point_px;
+  return k * h;
+}
+
+struct Ellipse {
+  Eigen::Vector2d centre;
+  double largest_radius;
+};
+
+std::optional<Ellipse> imageOfCircle(const Eigen::Matrix3d& h, const CircleBoard& board, int circle) {
+  const Eigen::Vector2d c = board.centre_m(circle);
+  const double r2 = board.radius_m * board.radius_m;
+  if (!((h * Eigen::Vector3d(c.x(), c.y(), 1.0)).z() > board.radius_m)) return std::nullopt;
+  Eigen::Matrix3d dual;
+  dual << c.x() * c.x() - r2, c.x() * c.y(), c.x(), c.x() * c.y(), c.y() * c.y() - r2, c.y(), c.x(), c.y(),
+      1.0;
+  const Eigen::Matrix3d q = h * dual * h.transpose();
+  const Eigen::Vector2d centre = q.topRightCorner<2, 1>() / q(2, 2);
+  const Eigen::Matrix2d axes2 = centre * centre.transpose() - q.topLeftCorner<2, 2>() / q(2, 2);
+  return Ellipse{centre, std::sqrt(std::max(axes2.trace(), 0.0))};
+}
+
+bool insideImage(const Ellipse& ellipse, const CameraIntrinsics& camera) {
+  const Eigen::Vector2d centre = pixelFromIdeal(camera, ellipse.centre);
+  const double scale = std::sqrt(std::abs(idealPixelScale(camera, ellipse.centre).determinant()));
+  const double r = 0.75 * ellipse.largest_radius / std::max(scale, 1e-6);
+  return centre.x() > r && centre.y() > r && centre.x() < camera.resolution_px.width_px - 1 - r &&
+         centre.y() < camera.resolution_px.height_px - 1 - r;
+}
+
+}  // namespace
+
+std::vector<TrueCircle> trueBoardView(const SinusoidMotion& motion, const Scenario& scenario,
+                                      std::size_t index, double stamp_s) {
+  constexpr double kStep_s = 1e-5;  // central difference: exact to 1e-6 px/s for such motions
+  const SimulatedCamera& camera = scenario.cameras[index];
+  const double time_s = worldTime_s(camera, stamp_s);
+  const auto homographyAt = [&](double t) {
+    return idealFromBoard(motion.worldFromCamera(index, t), camera.intrinsics);
+  };
+  const Eigen::Matrix3d now = homographyAt(time_s), before = homographyAt(time_s - kStep_s),
+                        after = homographyAt(time_s + kStep_s);
+  std::vector<TrueCircle> circles;
+  for (int i = 0; i < scenario.board.circleCount(); ++i) {
+    const std::optional<Ellipse> ellipse = imageOfCircle(now, scenario.board, i);
+    const std::optional<Ellipse> earlier = imageOfCircle(before, scenario.board, i);
+    const std::optional<Ellipse> later = imageOfCircle(after, scenario.board, i);
+    if (!ellipse || !earlier || !later) continue;
+    circles.push_back({i, ellipse->centre, (later->centre - earlier->centre) / (2.0 * kStep_s),
+                       insideImage(*ellipse, camera.intrinsics)});
+  }
+  return circles;
+}
+
+BoardObservations simulateObservations(const Scenario& scenario, std::size_t camera, double noise_px,
+                                       double period_s) {
+  const SinusoidMotion motion(scenario);
+  std::mt19937_64 generator(scenario.seed * 15485863 + camera);
+  std::normal_distribution<double> normal;
+  BoardObservations observations;
+  observations.camera = scenario.cameras[camera].name;
+  const double offset_s = scenario.cameras[camera].time_offset_s;
+  for (double time_s = 0.1 - offset_s; time_s < scenario.duration_s - 0.1 - offset_s; time_s += period_s) {
+    BoardView view;
+    view.time_s = time_s;
+    for (const TrueCircle& truth : trueBoardView(motion, scenario, camera, time_s)) {
+      if (!truth.inside) continue;
+      CircleObservation circle;
+      circle.circle = truth.circle;
+      circle.time_s = time_s;
+      const double x = normal(generator), y = normal(generator);
+      circle.centre_px = truth.centre_px + noise_px * Eigen::Vector2d(x, y);
+      circle.covariance_px2 = Eigen::Matrix2d::Identity() * std::max(noise_px * noise_px, 1e-6);
+      circle.velocity_px_s = truth.velocity_px_s;
+      circle.events = 100;
+      circle.residual_rms_px = noise_px;
+      view.circles.push_back(circle);
+    }
+    const auto count = static_cast<int>(view.circles.size());
+    WindowReport report;
+    report.time_s = time_s;
+    report.half_width_s = 0.5 * period_s;
+    report.circles = count;
+    const bool partial = count >= std::max(4, static_cast<int>(0.4 * scenario.board.circleCount()));
+    view.kind = count == scenario.board.circleCount() ? ViewKind::Complete : ViewKind::Partial;
+    report.outcome = !partial                          ? WindowOutcome::TooFewInGrid
+                     : view.kind == ViewKind::Complete ? WindowOutcome::Complete
+                                                       : WindowOutcome::Partial;
+    observations.windows.push_back(report);
+    if (partial) observations.views.push_back(std::move(view));
+  }
+  return observations;
+}
+
+}  // namespace evical

@@ -1,0 +1,29 @@
+// What a perfect front end would see, and noisy observations made from it without events.
+#pragma once
+
+#include "core/data/board_observations.h"
+#include "core/synthetic/sinusoid_motion.h"
+
+#include <optional>
+#include <vector>
+
+namespace evical {
+
+// One circle as it truly is in the image.
+struct TrueCircle {
+  int circle = 0;
+  Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();      // of the ellipse, ideal pixels
+  Eigen::Vector2d velocity_px_s = Eigen::Vector2d::Zero();  // ideal pixels
+  bool inside = false;                                      // the whole circle is in the image
+};
+
+// All circles in front of the camera, at a time that the camera's *stamps* show: the delay of pixels and the
+// clocks' offset are taken out, so detections can be compared directly. Seconds since scenario.start_ns.
+std::vector<TrueCircle> trueBoardView(const SinusoidMotion& motion, const Scenario& scenario,
+                                      std::size_t camera, double stamp_s);
+
+// Truth with Gaussian noise of `noise_px` per axis, every `period_s`, circles wholly in the image only.
+BoardObservations simulateObservations(const Scenario& scenario, std::size_t camera, double noise_px,
+                                       double period_s);
+
+}  // namespace evical

@@ -1,0 +1,43 @@
+#include "core/synthetic/imu_simulator.h"
+
+#include "core/base/time.h"
+#include "core/synthetic/sinusoid_motion.h"
+
+#include <cmath>
+#include <random>
+
+namespace evical {
+
+std::vector<ImuSample> simulateImu(const Scenario& scenario, std::size_t index) {
+  const SimulatedImu& imu = scenario.imus[index];
+  const SinusoidMotion motion(scenario);
+  std::mt19937_64 generator(scenario.seed * 104729 + 31 * index + 5);
+  std::normal_distribution<double> normal;
+  const auto noise = [&] {
+    const double x = normal(generator), y = normal(generator), z = normal(generator);
+    return Eigen::Vector3d(x, y, z);
+  };
+  const double period_s = 1.0 / imu.rate_hz, root_rate = std::sqrt(imu.rate_hz);
+  Eigen::Vector3d gyroscope_bias = imu.gyroscope_bias_rad_s, accelerometer_bias = imu.accelerometer_bias_m_s2;
+  std::vector<ImuSample> samples;
+  const auto count = static_cast<std::size_t>(scenario.duration_s * imu.rate_hz);
+  samples.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double reference_time_s = static_cast<double>(k) * period_s;
+    const MotionState state = motionOfFrame(motion.imuAt(reference_time_s), imu.reference_from_imu);
+    const Eigen::Vector3d force = state.world_from_body.rotation.conjugate() *
+                                  (state.acceleration_in_world_m_s2 - scenario.gravity_in_world_m_s2);
+    ImuSample sample;
+    sample.time_ns = scenario.start_ns + nanosecondsFrom(reference_time_s - imu.time_offset_s);
+    sample.angular_rate_rad_s = imu.gyroscope_mapping * state.angular_velocity_in_body_rad_s +
+                                gyroscope_bias + imu.gyroscope_density * root_rate * noise();
+    sample.specific_force_m_s2 = imu.accelerometer_mapping * force + accelerometer_bias +
+                                 imu.accelerometer_density * root_rate * noise();
+    samples.push_back(sample);
+    if (imu.gyroscope_walk > 0.0) gyroscope_bias += imu.gyroscope_walk / root_rate * noise();
+    if (imu.accelerometer_walk > 0.0) accelerometer_bias += imu.accelerometer_walk / root_rate * noise();
+  }
+  return samples;
+}
+
+}  // namespace evical

@@ -1,0 +1,14 @@
+// What a simulated IMU measures: exact motion, scale and misalignment, biases, noise.
+#pragma once
+
+#include "core/data/imu_sample.h"
+#include "core/synthetic/scenario.h"
+
+#include <vector>
+
+namespace evical {
+
+// Stamps on the IMU's own clock, nanoseconds in the scenario's epoch; SI units.
+std::vector<ImuSample> simulateImu(const Scenario& scenario, std::size_t imu);
+
+}  // namespace evical

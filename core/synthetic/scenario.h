@@ -1,0 +1,99 @@
+// A simulated recording in numbers: board, sensors, motion, noise, seed. Everything that is simulated follows
+// from it.
+#pragma once
+
+#include "core/geometry/camera_model.h"
+#include "core/geometry/circle_board.h"
+#include "core/geometry/rigid_transform.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace evical {
+
+// An event pixel: log intensity, low-pass filtered, compared with the level at its last event.
+struct EventPixelModel {
+  double threshold_on = 0.3, threshold_off = 0.3;  // log intensity
+  double threshold_mismatch = 0.03;                // sigma over pixels, relative
+  double refractory_s = 1e-4;
+  double background_rate_hz = 0.1;  // per pixel, either polarity
+  int hot_pixels = 5;
+  double hot_pixel_rate_hz = 500.0;
+  double blur_px = 0.6;         // sigma of the optics' point spread
+  double latency_s = 2e-4;      // pure delay
+  double low_pass_s = 3e-4;     // time constant of the photoreceptor
+  double stamp_jitter_s = 0.0;  // sigma of the stamps
+
+  // By how much an event's stamp is late for a slow edge: latency and the low-pass filter's group delay.
+  double delay_s() const { return latency_s + low_pass_s; }
+};
+
+struct SimulatedCamera {
+  std::string name = "camera";
+  std::string stream = "/camera/events";
+  CameraIntrinsics intrinsics;
+  RigidTransform imu_from_camera;
+  double time_offset_s = 0.0;  // imu_time = camera_time + offset, of the clocks alone
+  EventPixelModel pixel;
+};
+
+struct SimulatedImu {
+  std::string name = "imu";
+  std::string stream = "/imu";
+  double rate_hz = 1000.0;
+  double gyroscope_density = 1.87e-4;      // rad/s/sqrt(Hz)
+  double accelerometer_density = 1.86e-3;  // m/s^2/sqrt(Hz)
+  double gyroscope_walk = 0.0;             // rad/s^2/sqrt(Hz)
+  double accelerometer_walk = 0.0;         // m/s^3/sqrt(Hz)
+  Eigen::Vector3d gyroscope_bias_rad_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d accelerometer_bias_m_s2 = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d gyroscope_mapping = Eigen::Matrix3d::Identity();  // upper triangular
+  Eigen::Matrix3d accelerometer_mapping = Eigen::Matrix3d::Identity();
+  RigidTransform reference_from_imu;
+  double time_offset_s = 0.0;  // reference_time = imu_time + offset
+};
+
+// The first camera looks at a point that wanders around the board's middle, from a distance and along a
+// direction that wander too. Each of the seven quantities is a sum of sinusoids drawn from the seed.
+struct MotionModel {
+  double distance_m = 0.55;
+  double distance_amplitude_m = 0.08;
+  Eigen::Vector3d angle_amplitude_rad = {0.35, 0.35, 0.3};  // about the camera's x, y, z
+  Eigen::Vector2d target_amplitude_m = {0.04, 0.04};
+  double roll_rad = 0.0;             // of the camera, on average
+  double lowest_frequency_hz = 0.3;  // before scaling to the speed
+  double highest_frequency_hz = 1.2;
+  int sinusoids = 3;
+  double image_speed_px_s =
+      70.0;  // RMS over circles and time: frequencies are scaled to reach it; 0 keeps them
+};
+
+struct SceneModel {
+  double bright_reflectance = 0.85, dark_reflectance = 0.06;
+  double margin_m = 0.06;           // of the board around its outer circles' centres
+  double clutter_contrast = 0.5;    // sigma of the background's log reflectance; 0: bare
+  double clutter_distance_m = 0.3;  // behind the board
+  double clutter_detail_px = 2.0;   // smallest structure, at the mean distance
+};
+
+enum class SimulatedFormat { Bag, Text };
+
+struct Scenario {
+  std::string name = "scenario";
+  std::uint64_t seed = 1;
+  double duration_s = 30.0;
+  std::int64_t start_ns = 1'700'000'000'000'000'000;
+  CircleBoard board;
+  SceneModel scene;
+  MotionModel motion;
+  Eigen::Vector3d gravity_in_world_m_s2 = {0.0, 9.81, 0.0};  // the board hangs upright: y points down
+  std::vector<SimulatedCamera> cameras;
+  std::vector<SimulatedImu> imus;  // the first is the reference
+  SimulatedFormat format = SimulatedFormat::Bag;
+};
+
+}  // namespace evical

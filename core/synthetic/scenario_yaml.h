@@ -1,0 +1,22 @@
+// Scenarios as files, and what a simulated recording is accompanied by: its truth and a session that fits it.
+#pragma once
+
+#include "core/synthetic/scenario.h"
+
+#include <filesystem>
+#include <string>
+
+namespace evical {
+
+// Keys that are absent keep the defaults of scenario.h; `base:` names another scenario that this one changes.
+// Unknown keys and values out of range are badInput naming file and key.
+Scenario readScenario(const std::filesystem::path& path);
+
+// The keys of result.yaml with the true values. time_offset_s is what a perfect estimator reports: the
+// clocks' offset less the pixels' delay; both stand beside it.
+std::string truthYaml(const Scenario& scenario);
+
+// A session for the recording `recording_file` in the same folder.
+std::string sessionYaml(const Scenario& scenario, const std::string& recording_file);
+
+}  // namespace evical

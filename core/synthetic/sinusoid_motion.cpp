@@ -1,0 +1,153 @@
+#include "core/synthetic/sinusoid_motion.h"
+
+#include "core/geometry/so3.h"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace evical {
+namespace {
+
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+
+// Whatever the standard library: the same numbers from the same seed.
+double uniform(std::mt19937_64& generator) {
+  return static_cast<double>(generator() >> 11) * 0x1.0p-53;
+}
+
+Eigen::Vector3d middleOf(const CircleBoard& board) {
+  Eigen::Vector2d low = board.centre_m(0), high = low;
+  for (const Eigen::Vector2d& centre : circleCentres_m(board)) {
+    low = low.cwiseMin(centre);
+    high = high.cwiseMax(centre);
+  }
+  const Eigen::Vector2d middle = 0.5 * (low + high);
+  return {middle.x(), middle.y(), 0.0};
+}
+
+}  // namespace
+
+MotionState motionOfFrame(const MotionState& body, const RigidTransform& body_from_frame) {
+  const Eigen::Vector3d& lever = body_from_frame.translation_m;
+  const Eigen::Vector3d& w = body.angular_velocity_in_body_rad_s;
+  const Eigen::Vector3d& a = body.angular_acceleration_in_body_rad_s2;
+  const Eigen::Quaterniond& r = body.world_from_body.rotation;
+  const Eigen::Quaterniond frame_from_body = body_from_frame.rotation.conjugate();
+  MotionState frame;
+  frame.world_from_body = body.world_from_body * body_from_frame;
+  frame.velocity_in_world_m_s = body.velocity_in_world_m_s + r * w.cross(lever);
+  frame.acceleration_in_world_m_s2 =
+      body.acceleration_in_world_m_s2 + r * (a.cross(lever) + w.cross(w.cross(lever)));
+  frame.angular_velocity_in_body_rad_s = frame_from_body * w;
+  frame.angular_acceleration_in_body_rad_s2 = frame_from_body * a;
+  return frame;
+}
+
+SinusoidMotion::SinusoidMotion(const Scenario& scenario)
+    : scenario_(scenario),
+      board_middle_m_(middleOf(scenario.board)),
+      camera_from_imu_(inverse(scenario.cameras.front().imu_from_camera)) {
+  const MotionModel& m = scenario.motion;
+  std::mt19937_64 generator(scenario.seed * 7919 + 17);
+  const std::array<double, kQuantities> amplitudes = {m.angle_amplitude_rad.x(), m.angle_amplitude_rad.y(),
+                                                      m.angle_amplitude_rad.z(), m.target_amplitude_m.x(),
+                                                      m.target_amplitude_m.y(),  m.distance_amplitude_m};
+  for (std::size_t q = 0; q < kQuantities; ++q) {
+    for (int k = 0; k < m.sinusoids; ++k) {
+      // Frequencies spread evenly in the logarithm, each shifted at random, so that no two axes move
+      // together.
+      const double part = (k + uniform(generator)) / m.sinusoids;
+      const double frequency =
+          m.lowest_frequency_hz * std::pow(m.highest_frequency_hz / m.lowest_frequency_hz, part);
+      const double share = std::sqrt(1.0 / m.sinusoids);
+      sinusoids_[q].push_back({amplitudes[q] * share, kTwoPi * frequency, kTwoPi * uniform(generator)});
+    }
+  }
+  if (m.image_speed_px_s <= 0.0) return;
+  const double speed = imageSpeedRms_px_s();
+  if (speed <= 0.0) return;
+  for (auto& quantity : sinusoids_) {
+    for (Sinusoid& s : quantity) s.angular_frequency *= m.image_speed_px_s / speed;
+  }
+}
+
+SinusoidMotion::Value SinusoidMotion::at(Quantity quantity, double time_s) const {
+  Value sum;
+  for (const Sinusoid& s : sinusoids_[quantity]) {
+    const double phase = s.angular_frequency * time_s + s.phase;
+    const double sine = s.amplitude * std::sin(phase), cosine = s.amplitude * std::cos(phase);
+    sum.value += sine;
+    sum.first += s.angular_frequency * cosine;
+    sum.second -= s.angular_frequency * s.angular_frequency * sine;
+  }
+  return sum;
+}
+
+// Rotation Rz(c) Ry(b) Rx(a) after the mean roll; the camera looks along its z axis at the target.
+MotionState SinusoidMotion::firstCameraAt(double time_s) const {
+  const Value a = at(AngleX, time_s), b = at(AngleY, time_s), c = at(AngleZ, time_s);
+  const Value x = at(TargetX, time_s), y = at(TargetY, time_s), d = at(Distance, time_s);
+  const double sa = std::sin(a.value), ca = std::cos(a.value), sb = std::sin(b.value), cb = std::cos(b.value);
+  MotionState state;
+  const Eigen::Quaterniond rotation =
+      Eigen::AngleAxisd(scenario_.motion.roll_rad + c.value, Eigen::Vector3d::UnitZ()) *
+      Eigen::AngleAxisd(b.value, Eigen::Vector3d::UnitY()) *
+      Eigen::AngleAxisd(a.value, Eigen::Vector3d::UnitX());
+  const Eigen::Vector3d w(a.first - c.first * sb, b.first * ca + c.first * sa * cb,
+                          -b.first * sa + c.first * ca * cb);
+  const Eigen::Vector3d dw(a.second - c.second * sb - c.first * cb * b.first,
+                           b.second * ca - b.first * sa * a.first + c.second * sa * cb +
+                               c.first * (ca * cb * a.first - sa * sb * b.first),
+                           -b.second * sa - b.first * ca * a.first + c.second * ca * cb -
+                               c.first * (sa * cb * a.first + ca * sb * b.first));
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+  const double distance = scenario_.motion.distance_m + d.value;
+  const Eigen::Vector3d turned = w.cross(z), bent = dw.cross(z) + w.cross(w.cross(z));
+  state.world_from_body.rotation = rotation;
+  state.world_from_body.translation_m =
+      board_middle_m_ + Eigen::Vector3d(x.value, y.value, 0.0) - rotation * (distance * z);
+  state.velocity_in_world_m_s =
+      Eigen::Vector3d(x.first, y.first, 0.0) - rotation * (d.first * z + distance * turned);
+  state.acceleration_in_world_m_s2 = Eigen::Vector3d(x.second, y.second, 0.0) -
+                                     rotation * (d.second * z + 2.0 * d.first * turned + distance * bent);
+  state.angular_velocity_in_body_rad_s = w;
+  state.angular_acceleration_in_body_rad_s2 = dw;
+  return state;
+}
+
+MotionState SinusoidMotion::imuAt(double time_s) const {
+  return motionOfFrame(firstCameraAt(time_s), camera_from_imu_);
+}
+
+MotionState SinusoidMotion::cameraAt(std::size_t camera, double time_s) const {
+  return motionOfFrame(imuAt(time_s), scenario_.cameras[camera].imu_from_camera);
+}
+
+RigidTransform SinusoidMotion::worldFromCamera(std::size_t camera, double time_s) const {
+  const RigidTransform world_from_first = firstCameraAt(time_s).world_from_body;
+  if (camera == 0) return world_from_first;
+  return world_from_first * camera_from_imu_ * scenario_.cameras[camera].imu_from_camera;
+}
+
+double SinusoidMotion::imageSpeedRms_px_s() const {
+  constexpr int kInstants = 400;
+  const SimulatedCamera& camera = scenario_.cameras.front();
+  double squares = 0.0;
+  int count = 0;
+  for (int k = 0; k < kInstants; ++k) {
+    const MotionState state = firstCameraAt(scenario_.duration_s * k / kInstants);
+    const RigidTransform camera_from_world = inverse(state.world_from_body);
+    const Eigen::Vector3d velocity = camera_from_world.rotation * state.velocity_in_world_m_s;
+    for (const Eigen::Vector2d& centre : circleCentres_m(scenario_.board)) {
+      const Eigen::Vector3d point = camera_from_world * Eigen::Vector3d(centre.x(), centre.y(), 0.0);
+      Eigen::Matrix<double, 2, 3> jacobian;
+      if (!project(camera.intrinsics, point, &jacobian)) continue;
+      squares += (jacobian * (-velocity - state.angular_velocity_in_body_rad_s.cross(point))).squaredNorm();
+      ++count;
+    }
+  }
+  return count == 0 ? 0.0 : std::sqrt(squares / count);
+}
+
+}  // namespace evical

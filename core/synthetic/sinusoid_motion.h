@@ -1,0 +1,56 @@
+// The simulated motion, analytic to its second derivative; sums of sinusoids, never a spline.
+#pragma once
+
+#include "core/synthetic/scenario.h"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <array>
+#include <vector>
+
+namespace evical {
+
+// Pose, rates and accelerations of a body frame at one instant.
+struct MotionState {
+  RigidTransform world_from_body;
+  Eigen::Vector3d velocity_in_world_m_s;
+  Eigen::Vector3d acceleration_in_world_m_s2;
+  Eigen::Vector3d angular_velocity_in_body_rad_s;
+  Eigen::Vector3d angular_acceleration_in_body_rad_s2;
+};
+
+// The same motion of another frame fixed to the body.
+MotionState motionOfFrame(const MotionState& body, const RigidTransform& body_from_frame);
+
+class SinusoidMotion {
+ public:
+  explicit SinusoidMotion(const Scenario& scenario);
+
+  // Of the reference IMU, at seconds since the scenario's start on its clock.
+  MotionState imuAt(double time_s) const;
+  MotionState cameraAt(std::size_t camera, double time_s) const;
+  RigidTransform worldFromCamera(std::size_t camera, double time_s) const;
+
+  // RMS image speed of the board's circles in the first camera.
+  double imageSpeedRms_px_s() const;
+
+ private:
+  struct Sinusoid {
+    double amplitude, angular_frequency, phase;
+  };
+  struct Value {
+    double value = 0.0, first = 0.0, second = 0.0;
+  };
+  enum Quantity { AngleX, AngleY, AngleZ, TargetX, TargetY, Distance, kQuantities };
+
+  Value at(Quantity quantity, double time_s) const;
+  MotionState firstCameraAt(double time_s) const;
+
+  Scenario scenario_;
+  Eigen::Vector3d board_middle_m_;
+  std::array<std::vector<Sinusoid>, kQuantities> sinusoids_;
+  RigidTransform camera_from_imu_;  // first camera
+};
+
+}  // namespace evical
