@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# Fails, and names the files, where a source is not as .clang-format has it. With --fix it rewrites them.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+problems=$(mktemp)
+trap 'rm -f "$problems"' EXIT
+mapfile -t sources < <(find app core $([ -d ui ] && echo ui) tests -name '*.h' -o -name '*.cpp' 2>/dev/null | sort)
+if [ "${1:-}" = "--fix" ]; then
+  clang-format -i "${sources[@]}"
+  exit 0
+fi
+if ! clang-format --dry-run --Werror "${sources[@]}" 2>"$problems"; then
+  sed -n 's/^\([^ :]*\):[0-9]*:[0-9]*: error.*/\1/p' "$problems" | sort -u
+  echo "These files are not formatted: run packaging/check-format.sh --fix" >&2
+  exit 1
+fi
+echo "Format: ${#sources[@]} files as .clang-format has them."

@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# Installs what building and testing Evical needs, from Debian 12's own packages. Does nothing, and asks for no rights,
+# when all of it is there. With --list it only prints the names.
+set -euo pipefail
+
+packages=(
+  # build
+  build-essential cmake ninja-build ccache git ca-certificates
+  # core
+  libeigen3-dev libceres-dev libsuitesparse-dev libyaml-cpp-dev libfmt-dev libspdlog-dev
+  libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-calib3d-dev
+  # recordings: ROS bags are bz2 or lz4 compressed
+  libbz2-dev liblz4-dev
+  # command line
+  libcli11-dev nlohmann-json3-dev
+  # tests
+  qt6-base-dev clang-format
+)
+
+if [ "${1:-}" = "--list" ]; then
+  printf '%s\n' "${packages[@]}"
+  exit 0
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
+  [ "$status" = installed ] || missing+=("$package")
+done
+if [ "${#missing[@]}" -eq 0 ]; then
+  echo "All packages are there."
+  exit 0
+fi
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  if ! command -v sudo >/dev/null; then
+    echo "These packages are missing: ${missing[*]}. Install them as root: apt-get install ${missing[*]}" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+echo "Installing: ${missing[*]}"
+export DEBIAN_FRONTEND=noninteractive
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
