@@ -25,13 +25,19 @@ constexpr double kLeastScale = 0.05, kLargestScale = 1000.0;
 class IterationReporter final : public ceres::IterationCallback {
  public:
   IterationReporter(const CalibrationProblem& problem, const RunContext& context, int stage, int stage_count,
-                    std::vector<IterationRecord>& records)
-      : problem_(problem), context_(context), stage_(stage), stage_count_(stage_count), records_(records) {}
+                    double& furthest, std::vector<IterationRecord>& records)
+      : problem_(problem),
+        context_(context),
+        stage_(stage),
+        stage_count_(stage_count),
+        furthest_(furthest),
+        records_(records) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     constexpr double kTypicalIterations = 8.0;
     const double share = std::min(1.0, (iterations_++ + 1.0) / kTypicalIterations);
-    context_.progress.stageProgress((stage_ + share) / stage_count_);
+    furthest_ = std::max(furthest_, (stage_ + share) / stage_count_);  // a stage may be solved more than once
+    context_.progress.stageProgress(furthest_);
     records_.push_back({stage_ + 1, static_cast<int>(records_.size()), summary.cost,
                         summary.gradient_max_norm, summary.step_norm, problem_.state().cameras});
     if (context_.stop.stop_requested()) return ceres::SOLVER_ABORT;
@@ -43,6 +49,7 @@ class IterationReporter final : public ceres::IterationCallback {
   const CalibrationProblem& problem_;
   const RunContext& context_;
   int stage_, stage_count_, iterations_ = 0;
+  double& furthest_;  // of the whole batch, 0..1
   std::vector<IterationRecord>& records_;
 };
 
@@ -86,6 +93,7 @@ class Batch {
   const RunContext& context_;
   CalibrationProblem problem_;
   BatchSolution solution_;
+  double progress_ = 0.0;
 };
 
 std::vector<ReleaseStages> Batch::stages() const {
@@ -99,7 +107,7 @@ std::vector<ReleaseStages> Batch::stages() const {
 
 void Batch::solveStage(ReleaseStages stage, int index, double tolerance) {
   const int stage_count = static_cast<int>(stages().size());
-  IterationReporter reporter(problem_, context_, index, stage_count, solution_.iterations);
+  IterationReporter reporter(problem_, context_, index, stage_count, progress_, solution_.iterations);
   ceres::Solver::Options solver = solverOptions(options_, tolerance);
   solver.callbacks.push_back(&reporter);
   solution_.converged = false;
@@ -179,6 +187,7 @@ BatchSolution Batch::run() {
   solution_.used_circles = problem_.used_circles;
   reportFits();
   reportNotes();
+  context_.progress.stageProgress(1.0);
   return std::move(solution_);
 }
 

@@ -227,7 +227,12 @@ void CalibrationProblem::addPriors(ReleaseStages stage) {
   };
   for (CameraState& camera : state_.cameras)
     add(&camera.edge_lead_px, 1, kZero.data(), options_.edge_lead_sigma_px);
+  for (CameraState& camera : state_.cameras) {
+    add(camera.imu_from_camera.translation_m.data(), 3, kZero.data(), options_.translation_sigma_m);
+  }
   for (std::size_t i = 0; i < state_.imus.size(); ++i) {
+    add(state_.imus[i].reference_from_imu.translation_m.data(), 3, kZero.data(),
+        options_.translation_sigma_m);
     add(state_.imus[i].gyroscope_bias_rad_s.data(), 3, kZero.data(), options_.gyroscope_bias_sigma_rad_s);
     add(state_.imus[i].accelerometer_bias_m_s2.data(), 3, kZero.data(),
         options_.accelerometer_bias_sigma_m_s2);

@@ -19,6 +19,7 @@ struct OptimisationOptions {
   double mapping_sigma = 0.05;
   double gyroscope_bias_sigma_rad_s = 1.0;
   double accelerometer_bias_sigma_m_s2 = 1.0;
+  double translation_sigma_m = 0.5;
   double segment_drift = 0.05;
   double function_tolerance = 1e-7;
   double stage_tolerance = 1e-4;
@@ -55,6 +56,8 @@ inline constexpr auto kOptimisationFields = std::tuple{
           "rad/s", "Weak prior on gyroscope biases around 0."},
     Field{"accelerometer_bias_sigma_m_s2", &OptimisationOptions::accelerometer_bias_sigma_m_s2, 1e-6, 100.0,
           "m/s^2", "Weak prior on accelerometer biases around 0."},
+    Field{"translation_sigma_m", &OptimisationOptions::translation_sigma_m, 1e-3, 1e3, "m",
+          "Weak prior on translations between sensors around 0, for motions that don't tell them."},
     Field{"segment_drift", &OptimisationOptions::segment_drift, 0.001, 0.5, "knots",
           "A time offset may move this far before measurements are assigned to spline segments anew."},
     Field{"function_tolerance", &OptimisationOptions::function_tolerance, 1e-14, 1e-2, "",

@@ -1,0 +1,308 @@
+#include "tests/core/optimisation/simulated_rig.h"
+
+#include "core/base/time.h"
+#include "core/geometry/circle_conic.h"
+#include "core/geometry/so3.h"
+#include "core/geometry/trajectory.h"
+#include "core/optimisation/covariance.h"
+
+#include <Eigen/LU>
+
+#include <cmath>
+#include <random>
+
+namespace evical::test {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kMargin_s = 0.15;
+constexpr std::int64_t kStart_ns = 1'700'000'000'123'456'789;
+
+struct Sinusoids {
+  Vector3d amplitude[2], frequency_rad_s[2], phase[2];
+
+  // Derivative of this order with respect to time.
+  Vector3d at(double t, int order) const {
+    Vector3d sum = Vector3d::Zero();
+    for (int i = 0; i < 2; ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const double w = frequency_rad_s[i][axis];
+        sum[axis] +=
+            amplitude[i][axis] * std::pow(w, order) * std::sin(w * t + phase[i][axis] + order * M_PI / 2.0);
+      }
+    }
+    return sum;
+  }
+};
+
+struct TrueMotion {
+  RigidTransform world_from_camera_centre;  // about which the camera moves
+  RigidTransform camera_from_imu;
+  Sinusoids rotation, position;
+
+  RigidTransform worldFromImu(double t) const {
+    return world_from_camera_centre * RigidTransform{quaternionExp(rotation.at(t, 0)), position.at(t, 0)} *
+           camera_from_imu;
+  }
+  Vector3d angularVelocity(double t) const {
+    return camera_from_imu.rotation.conjugate() * (so3RightJacobian(rotation.at(t, 0)) * rotation.at(t, 1));
+  }
+  Vector3d angularAcceleration(double t) const {
+    constexpr double h = 1e-4;
+    return (8.0 * (angularVelocity(t + h) - angularVelocity(t - h)) -
+            (angularVelocity(t + 2 * h) - angularVelocity(t - 2 * h))) /
+           (12.0 * h);
+  }
+  Vector3d acceleration(double t) const {
+    const Matrix3d turn =
+        (world_from_camera_centre.rotation * quaternionExp(rotation.at(t, 0))).toRotationMatrix();
+    const Vector3d lever = camera_from_imu.translation_m;
+    const Vector3d w = so3RightJacobian(rotation.at(t, 0)) * rotation.at(t, 1);
+    const Vector3d a = camera_from_imu.rotation * angularAcceleration(t);
+    return world_from_camera_centre.rotation * position.at(t, 2) +
+           turn * (a.cross(lever) + w.cross(w.cross(lever)));
+  }
+};
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  double normal() { return normal_(engine_); }
+  double uniform(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine_);
+  }
+  Vector3d normal3() { return {normal(), normal(), normal()}; }
+  Vector3d uniform3(double size) {
+    return {uniform(-size, size), uniform(-size, size), uniform(-size, size)};
+  }
+
+ private:
+  std::mt19937_64 engine_;
+  std::normal_distribution<double> normal_;
+};
+
+TrueMotion makeMotion(Motion kind, const CircleBoard& board, const RigidTransform& camera_from_imu,
+                      Random& random) {
+  TrueMotion motion;
+  motion.camera_from_imu = camera_from_imu;
+  const Eigen::Vector2d middle = 0.5 * (board.centre_m(0) + board.centre_m(board.rows - 1, board.cols - 1));
+  motion.world_from_camera_centre = {quaternionExp({0.05, -0.1, 0.1}), {middle.x(), middle.y(), -0.7}};
+  for (int i = 0; i < 2; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      motion.rotation.amplitude[i][axis] = i == 0 ? 0.25 : 0.08;
+      motion.position.amplitude[i][axis] = i == 0 ? 0.12 : 0.04;
+      motion.rotation.frequency_rad_s[i][axis] = 2.0 * M_PI * random.uniform(0.4, 0.8) * (i + 1);
+      motion.position.frequency_rad_s[i][axis] = 2.0 * M_PI * random.uniform(0.4, 0.8) * (i + 1);
+    }
+    motion.rotation.phase[i] = random.uniform3(M_PI);
+    motion.position.phase[i] = random.uniform3(M_PI);
+    switch (kind) {
+      case Motion::Rich:
+        break;
+      case Motion::OneAxisRotation:
+        motion.rotation.amplitude[i].head<2>().setZero();
+        break;
+      case Motion::Planar:
+        motion.rotation.amplitude[i].head<2>().setZero();
+        motion.position.amplitude[i].z() = 0.0;
+        break;
+      case Motion::HardlyMoving:
+        motion.rotation.amplitude[i] *= 0.01;
+        motion.position.amplitude[i] *= 0.01;
+        break;
+    }
+  }
+  return motion;
+}
+
+void fitTruth(const TrueMotion& motion, const RigOptions& options, CalibrationState& truth) {
+  std::vector<double> times_s;
+  std::vector<Eigen::Quaterniond> rotations;
+  std::vector<Vector3d> positions;
+  const double begin_s = -kMargin_s, end_s = options.duration_s + kMargin_s;
+  for (double t = begin_s; t <= end_s; t += options.knot_spacing_s / 4.0) {
+    times_s.push_back(t);
+    rotations.push_back(motion.worldFromImu(t).rotation);
+    positions.push_back(motion.worldFromImu(t).translation_m);
+  }
+  truth.world_from_imu_rotation = fitSo3Spline(times_s, rotations, begin_s, end_s, options.knot_spacing_s);
+  truth.imu_in_world_m = fitVectorSpline(times_s, positions, begin_s, end_s, options.knot_spacing_s);
+}
+
+CameraData observe(const TrueMotion& motion, const CameraState& camera, const CircleBoard& board,
+                   const RigOptions& options, Random& random) {
+  CameraData data;
+  data.name = "left";
+  data.intrinsics =
+      CameraIntrinsics{CameraModel::PinholeRadtan, {346, 260}, {260.0, 260.0}, {173.0, 130.0}, {}};
+  const auto centre = [&](double camera_time_s, int circle) {
+    const RigidTransform world_from_camera =
+        motion.worldFromImu(camera_time_s + camera.time_offset_s) * camera.imu_from_camera;
+    return projectedCircleCentre(*data.intrinsics, inverse(world_from_camera), board.centre_m(circle),
+                                 board.radius_m);
+  };
+  std::vector<Eigen::Vector2d> noise(static_cast<std::size_t>(board.circleCount()), Eigen::Vector2d::Zero());
+  const double keep =
+      options.centre_correlation_s > 0.0 ? std::exp(-options.window_s / options.centre_correlation_s) : 0.0;
+  for (double t = 0.0; t < options.duration_s; t += options.window_s) {
+    BoardView view;
+    view.time_s = t;
+    for (int i = 0; i < board.circleCount(); ++i) {
+      CircleObservation circle;
+      circle.circle = i;
+      circle.time_s = t + random.uniform(-5e-3, 5e-3);
+      const auto now = centre(circle.time_s, i);
+      const auto before = centre(circle.time_s - 1e-4, i), after = centre(circle.time_s + 1e-4, i);
+      auto& n = noise[static_cast<std::size_t>(i)];
+      n = keep * n + std::sqrt(1.0 - keep * keep) * Eigen::Vector2d(random.normal(), random.normal());
+      if (!now || !before || !after || now->minCoeff() < 0.0 || now->x() > 345.0 || now->y() > 259.0)
+        continue;
+      circle.velocity_px_s = (*after - *before) / 2e-4;
+      const double stated_px = options.centre_sigma_px > 0.0 ? options.centre_sigma_px : 0.05;
+      circle.covariance_px2 = stated_px * stated_px * Eigen::Matrix2d::Identity();
+      circle.centre_px =
+          *now + camera.edge_lead_px * circle.velocity_px_s / std::hypot(circle.velocity_px_s.norm(), 5.0) +
+          options.centre_sigma_px * n;
+      if (random.uniform(0.0, 1.0) < options.outlier_share)
+        circle.centre_px += 10.0 * random.normal3().head<2>();
+      view.circles.push_back(circle);
+    }
+    view.kind =
+        static_cast<int>(view.circles.size()) == board.circleCount() ? ViewKind::Complete : ViewKind::Partial;
+    if (view.circles.size() >= 4) data.observations.views.push_back(view);
+  }
+  return data;
+}
+
+ImuData measure(const std::string& name, const TrueMotion& motion, const ImuState& imu,
+                const Vector3d& gravity, const RigOptions& options, Random& random) {
+  ImuData data;
+  data.name = name;
+  const double root_rate = std::sqrt(options.imu_rate_hz);
+  const Matrix3d imu_from_reference = imu.reference_from_imu.rotation.toRotationMatrix().transpose();
+  const Vector3d lever = imu.reference_from_imu.translation_m;
+  for (double t = -kMargin_s; t < options.duration_s + kMargin_s; t += 1.0 / options.imu_rate_hz) {
+    const double reference_s = t + imu.time_offset_s;
+    const Vector3d w = motion.angularVelocity(reference_s), a = motion.angularAcceleration(reference_s);
+    const Vector3d force =
+        motion.worldFromImu(reference_s).rotation.conjugate() * (motion.acceleration(reference_s) - gravity) +
+        a.cross(lever) + w.cross(w.cross(lever));
+    ImuSample sample;
+    sample.time_ns = kStart_ns + nanosecondsFrom(t);
+    sample.angular_rate_rad_s =
+        imu.gyroscope_mapping * (imu_from_reference * w) + imu.gyroscope_bias_rad_s +
+        options.imu_noise * data.noise.gyroscope_density * root_rate * random.normal3();
+    sample.specific_force_m_s2 =
+        imu.accelerometer_mapping * (imu_from_reference * force) + imu.accelerometer_bias_m_s2 +
+        options.imu_noise * data.noise.accelerometer_density * root_rate * random.normal3();
+    data.samples.push_back(sample);
+  }
+  return data;
+}
+
+}  // namespace
+
+SimulatedRig simulateRig(const RigOptions& options) {
+  Random random(options.seed);
+  SimulatedRig rig;
+  rig.input.start_ns = kStart_ns;
+  CameraState camera;
+  camera.imu_from_camera = {quaternionExp(Vector3d(1.2, -1.15, 1.25) + random.uniform3(0.2)),
+                            Vector3d(0.04, -0.03, 0.05) + random.uniform3(0.02)};
+  camera.time_offset_s = random.uniform(-0.01, 0.01);
+  camera.edge_lead_px = random.uniform(-0.3, 0.3);
+  rig.truth.cameras = {camera};
+  rig.truth.gravity_in_world_m_s2 = quaternionExp(random.uniform3(0.15)) * Vector3d(0.0, 9.81, 0.0);
+  const TrueMotion motion =
+      makeMotion(options.motion, rig.input.board, inverse(camera.imu_from_camera), random);
+  for (int i = 0; i < (options.second_imu ? 2 : 1); ++i) {
+    ImuState imu;
+    imu.gyroscope_bias_rad_s = random.uniform3(0.02);
+    imu.accelerometer_bias_m_s2 = random.uniform3(0.1);
+    for (int row = 0; row < 3; ++row) {
+      for (int col = row; col < 3; ++col) {
+        imu.gyroscope_mapping(row, col) += random.uniform(-0.01, 0.01);
+        imu.accelerometer_mapping(row, col) += random.uniform(-0.01, 0.01);
+      }
+    }
+    if (i > 0) {
+      imu.reference_from_imu = {quaternionExp(Vector3d(0.1, 1.4, -0.3)), {0.06, -0.09, 0.05}};
+      imu.time_offset_s = 3.3e-3;
+    }
+    rig.truth.imus.push_back(imu);
+  }
+  rig.input.cameras = {observe(motion, camera, rig.input.board, options, random)};
+  for (const ImuState& imu : rig.truth.imus) {
+    rig.input.imus.push_back(measure(rig.input.imus.empty() ? "imu" : "imu_2", motion, imu,
+                                     rig.truth.gravity_in_world_m_s2, options, random));
+  }
+  fitTruth(motion, options, rig.truth);
+  return rig;
+}
+
+CalibrationState disturbed(const CalibrationState& truth, unsigned seed, double time_offset_error_s) {
+  Random random(seed + 1000);
+  CalibrationState state = truth;
+  const Eigen::Quaterniond turn = quaternionExp(random.uniform3(2e-3));
+  const Vector3d shift = random.uniform3(5e-3);
+  for (auto& point : state.world_from_imu_rotation.control_points) point = point * turn;
+  for (auto& point : state.imu_in_world_m.control_points) point += shift;
+  for (CameraState& camera : state.cameras) {
+    camera.imu_from_camera.rotation = camera.imu_from_camera.rotation * quaternionExp(random.uniform3(0.01));
+    camera.imu_from_camera.translation_m += random.uniform3(0.02);
+    camera.time_offset_s += time_offset_error_s;
+    camera.edge_lead_px = 0.0;
+  }
+  for (std::size_t i = 0; i < state.imus.size(); ++i) {
+    ImuState& imu = state.imus[i];
+    imu.gyroscope_bias_rad_s.setZero();
+    imu.accelerometer_bias_m_s2.setZero();
+    imu.gyroscope_mapping.setIdentity();
+    imu.accelerometer_mapping.setIdentity();
+    if (i == 0) continue;
+    imu.reference_from_imu.rotation = imu.reference_from_imu.rotation * quaternionExp(random.uniform3(0.01));
+    imu.reference_from_imu.translation_m += random.uniform3(0.02);
+    imu.time_offset_s += 1e-3;
+  }
+  state.gravity_in_world_m_s2 = quaternionExp(random.uniform3(0.01)) * state.gravity_in_world_m_s2;
+  return state;
+}
+
+Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const CalibrationState& truth) {
+  std::vector<double> errors;
+  const auto append = [&](const Eigen::VectorXd& values) {
+    errors.insert(errors.end(), values.begin(), values.end());
+  };
+  const auto appendTransform = [&](const RigidTransform& a, const RigidTransform& b) {
+    append(quaternionLog(a.rotation * b.rotation.conjugate()));
+    append(a.translation_m - b.translation_m);
+  };
+  const auto appendUpperTriangle = [&](const Matrix3d& m) {
+    for (int row = 0; row < 3; ++row) {
+      for (int col = row; col < 3; ++col) errors.push_back(m(row, col));
+    }
+  };
+  for (std::size_t i = 0; i < truth.cameras.size(); ++i) {
+    appendTransform(estimate.cameras[i].imu_from_camera, truth.cameras[i].imu_from_camera);
+    errors.push_back(estimate.cameras[i].time_offset_s - truth.cameras[i].time_offset_s);
+    errors.push_back(estimate.cameras[i].edge_lead_px - truth.cameras[i].edge_lead_px);
+  }
+  for (std::size_t i = 0; i < truth.imus.size(); ++i) {
+    const ImuState &a = estimate.imus[i], &b = truth.imus[i];
+    if (i > 0) {
+      appendTransform(a.reference_from_imu, b.reference_from_imu);
+      errors.push_back(a.time_offset_s - b.time_offset_s);
+    }
+    append(a.gyroscope_bias_rad_s - b.gyroscope_bias_rad_s);
+    append(a.accelerometer_bias_m_s2 - b.accelerometer_bias_m_s2);
+    appendUpperTriangle(a.gyroscope_mapping - b.gyroscope_mapping);
+    appendUpperTriangle(a.accelerometer_mapping - b.accelerometer_mapping);
+  }
+  append(gravityTilts(truth.gravity_in_world_m_s2).transpose() *
+         (estimate.gravity_in_world_m_s2.normalized() - truth.gravity_in_world_m_s2.normalized()));
+  return Eigen::Map<const Eigen::VectorXd>(errors.data(), static_cast<Eigen::Index>(errors.size()));
+}
+
+}  // namespace evical::test

@@ -1,0 +1,41 @@
+// Observations of a rig whose truth is known: motion by sinusoids (no spline in it), circles and IMU samples
+// with noise.
+#pragma once
+
+#include "core/data/calibration_setup.h"
+#include "core/data/calibration_state.h"
+
+#include <functional>
+
+namespace evical::test {
+
+enum class Motion { Rich, OneAxisRotation, Planar, HardlyMoving };
+
+struct RigOptions {
+  double duration_s = 5.0;
+  double window_s = 0.02;
+  double imu_rate_hz = 400.0;
+  double knot_spacing_s = 0.02;
+  double centre_sigma_px = 0.05;      // 0: no noise, while the stated covariance stays
+  double centre_correlation_s = 0.0;  // of that noise, per circle
+  double imu_noise = 1.0;             // times the stated densities
+  double outlier_share = 0.0;
+  Motion motion = Motion::Rich;
+  bool second_imu = false;
+  unsigned seed = 1;
+};
+
+struct SimulatedRig {
+  CalibrationInput input;
+  CalibrationState truth;  // splines fitted to the true motion
+};
+SimulatedRig simulateRig(const RigOptions& options);
+
+// The truth, with everything that initialisation estimates off by about what it leaves.
+CalibrationState disturbed(const CalibrationState& truth, unsigned seed, double time_offset_error_s = 0.5e-3);
+
+// Estimate minus truth, in the order and the coordinates of UncertaintyReport::names (all quantities
+// released).
+Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const CalibrationState& truth);
+
+}  // namespace evical::test

@@ -1,0 +1,281 @@
+// Every derivative of the batch's cost functions against numeric differences, and what the residuals say of
+// known motions.
+#include "core/geometry/circle_conic.h"
+#include "core/geometry/so3.h"
+#include "core/geometry/trajectory.h"
+#include "core/optimisation/circle_cost.h"
+#include "core/optimisation/inertial_cost.h"
+#include "core/optimisation/prior_cost.h"
+#include "tests/core/optimisation/cost_check.h"
+
+#include <QtTest>
+
+#include <random>
+
+namespace {
+
+using namespace evical;
+using Eigen::Vector3d;
+
+constexpr double kSpacing_s = 0.02;
+
+class States {
+ public:
+  explicit States(unsigned seed) : random_(seed) {}
+  double uniform(double size) { return std::uniform_real_distribution<double>(-size, size)(random_); }
+  Vector3d vector(double size) { return {uniform(size), uniform(size), uniform(size)}; }
+
+  void appendRotations(double step_rad, test::Blocks& blocks) {
+    Eigen::Quaterniond rotation = quaternionExp(vector(0.4));
+    for (int k = 0; k < 4; ++k) {
+      blocks.push_back(numbers(rotation));
+      rotation = (rotation * quaternionExp(step_rad * vector(1.0).normalized())).normalized();
+    }
+  }
+  void appendPositions(test::Blocks& blocks) {
+    Vector3d position = Vector3d(0.1, 0.2, -0.7) + vector(0.1);
+    for (int k = 0; k < 4; ++k) {
+      blocks.push_back({position.x(), position.y(), position.z()});
+      position += vector(0.02);
+    }
+  }
+  static std::vector<double> numbers(const Eigen::Quaterniond& q) { return {q.x(), q.y(), q.z(), q.w()}; }
+  static std::vector<double> numbers(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+CircleModel circleModel() {
+  CircleModel model;
+  model.camera = {CameraModel::PinholeRadtan, {346, 260}, {260.0, 255.0}, {170.0, 131.0}, {}};
+  model.radius_m = 0.02;
+  model.huber_sigma = 2.5;
+  return model;
+}
+
+SegmentTimes segmentTimes() {
+  SegmentTimes segment;
+  segment.rotation_start_s = 1.0;
+  segment.position_start_s = 0.99;  // splines need not share their knots
+  segment.rotation_spacing_s = kSpacing_s;
+  segment.position_spacing_s = 1.5 * kSpacing_s;
+  return segment;
+}
+
+std::vector<double> mappingNumbers(States& states) {
+  return {1.0 + states.uniform(0.05), states.uniform(0.05), states.uniform(0.05),
+          1.0 + states.uniform(0.05), states.uniform(0.05), 1.0 + states.uniform(0.05)};
+}
+
+test::Blocks circleBlocks(States& states, double step_rad) {
+  test::Blocks blocks;
+  states.appendRotations(step_rad, blocks);
+  states.appendPositions(blocks);
+  blocks.push_back(States::numbers(quaternionExp(states.vector(0.2))));
+  blocks.push_back(States::numbers(states.vector(0.05)));
+  blocks.push_back({states.uniform(0.004)});
+  blocks.push_back({states.uniform(0.3)});
+  return blocks;
+}
+
+// `near_sigma`: about how far the measured centres lie from the predicted ones.
+std::vector<CircleMeasurement> circlesNear(const CircleModel& model, const test::Blocks& blocks,
+                                           double near_sigma, States& states) {
+  std::vector<CircleMeasurement> circles(3);
+  for (std::size_t i = 0; i < circles.size(); ++i) {
+    circles[i].time_s = 1.004 + 0.005 * static_cast<double>(i);
+    circles[i].on_board_m = {0.1 * static_cast<double>(i), 0.05 * static_cast<double>(i)};
+    circles[i].centre_px.setZero();
+    circles[i].whitening_px.setIdentity();
+    circles[i].lead_direction = Eigen::Vector2d(0.6, -0.5);
+  }
+  CircleModel linear = model;
+  linear.huber_sigma = 1e9;
+  const Eigen::VectorXd centres = test::residualsAt(CircleCost(linear, segmentTimes(), circles), blocks);
+  for (std::size_t i = 0; i < circles.size(); ++i) {
+    circles[i].whitening_px << 12.0, 0.0, -3.0, 9.0;
+    circles[i].centre_px = centres.segment<2>(static_cast<Eigen::Index>(2 * i)) +
+                           near_sigma / 10.0 * states.vector(1.0).normalized().head<2>();
+  }
+  return circles;
+}
+
+class TestResiduals : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void manifold_plusAndMinusAreInverse() {
+    States states(1);
+    const auto x = States::numbers(quaternionExp(states.vector(2.0)));
+    const Vector3d delta = states.vector(0.5);
+    double y[4];
+    Vector3d back;
+    So3Manifold().Plus(x.data(), delta.data(), y);
+    So3Manifold().Minus(y, x.data(), back.data());
+    QVERIFY((back - delta).norm() < 1e-12);
+  }
+
+  void circleJacobians_matchNumericDifferences_data() {
+    QTest::addColumn<double>("step_rad");
+    QTest::addColumn<double>("near_sigma");
+    QTest::newRow("still, inliers") << 0.0 << 0.5;
+    QTest::newRow("tiny rotations, inliers") << 1e-7 << 0.5;
+    QTest::newRow("moving, inliers") << 0.05 << 0.5;
+    QTest::newRow("fast, inliers") << 0.5 << 0.5;
+    QTest::newRow("moving, outliers") << 0.05 << 30.0;
+  }
+
+  void circleJacobians_matchNumericDifferences() {
+    QFETCH(double, step_rad);
+    QFETCH(double, near_sigma);
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+      States states(seed);
+      const CircleModel model = circleModel();
+      const test::Blocks blocks = circleBlocks(states, step_rad);
+      const CircleCost cost(model, segmentTimes(), circlesNear(model, blocks, near_sigma, states));
+      const double error = test::worstJacobianError(cost, blocks, 1e-5);
+      QVERIFY2(error < 1e-6, qPrintable(QString::number(error)));
+      QCOMPARE(test::worstErrorWithConstantBlocks(cost, blocks), 0.0);
+    }
+  }
+
+  void circleResidual_isZeroForTheTrueRig() {
+    States states(3);
+    const CircleModel model = circleModel();
+    const test::Blocks blocks = circleBlocks(states, 0.05);
+    So3Spline rotation{1.0, kSpacing_s, {}};
+    VectorSpline position{0.99, 1.5 * kSpacing_s, {}};
+    for (std::size_t k = 0; k < 4; ++k) {
+      rotation.control_points.emplace_back(blocks[k].data());
+      position.control_points.emplace_back(blocks[4 + k].data());
+    }
+    const RigidTransform imu_from_camera = {Eigen::Quaterniond(blocks[8].data()), Vector3d(blocks[9].data())};
+    const RigidTransform camera_from_world =
+        cameraFromWorld(rotation, position, imu_from_camera, blocks[10][0], 1.006);
+    CircleMeasurement circle;
+    circle.time_s = 1.006;
+    circle.on_board_m = {0.1, 0.05};
+    circle.whitening_px.setIdentity();
+    circle.lead_direction = {0.8, 0.6};
+    circle.centre_px =
+        *projectedCircleCentre(model.camera, camera_from_world, circle.on_board_m, model.radius_m) +
+        blocks[11][0] * circle.lead_direction;
+    QVERIFY(test::residualsAt(CircleCost(model, segmentTimes(), {circle}), blocks).norm() < 1e-9);
+  }
+
+  void circle_behindTheCamera_isFiniteAndFarOff() {
+    States states(3);
+    const CircleModel model = circleModel();
+    test::Blocks blocks = circleBlocks(states, 0.0);
+    const CircleCost cost(model, segmentTimes(), circlesNear(model, blocks, 0.5, states));
+    for (std::size_t k = 4; k < 8; ++k) blocks[k][2] = 2.0;
+    QVERIFY(test::residualsAt(cost, blocks).allFinite());
+    QVERIFY(test::residualsAt(cost, blocks).norm() > 100.0);
+    QCOMPARE(test::worstJacobianError(cost, blocks), 0.0);
+  }
+
+  void huber_squareIsTheLoss() {
+    for (const double length : {0.1, 2.4, 2.6, 40.0}) {
+      Eigen::Vector2d residual = length * Eigen::Vector2d(0.6, -0.8);
+      shortenByHuber(2.5, residual);
+      const double loss = length <= 2.5 ? length * length : 2.0 * 2.5 * length - 2.5 * 2.5;
+      QVERIFY(std::abs(residual.squaredNorm() - loss) < 1e-12 * (1.0 + loss));
+    }
+  }
+
+  void gyroscopeJacobians_matchNumericDifferences_data() {
+    QTest::addColumn<bool>("further");
+    QTest::addColumn<double>("step_rad");
+    for (const bool further : {false, true}) {
+      for (const double step : {0.0, 1e-7, 0.05, 1.0}) {
+        QTest::addRow("%s imu, step %g", further ? "further" : "reference", step) << further << step;
+      }
+    }
+  }
+
+  void gyroscopeJacobians_matchNumericDifferences() {
+    QFETCH(bool, further);
+    QFETCH(double, step_rad);
+    States states(5);
+    test::Blocks blocks;
+    states.appendRotations(step_rad, blocks);
+    blocks.push_back(States::numbers(states.vector(0.1)));
+    blocks.push_back(mappingNumbers(states));
+    if (further) {
+      blocks.push_back(States::numbers(quaternionExp(states.vector(1.0))));
+      blocks.push_back({states.uniform(0.002)});
+    }
+    const GyroscopeCost cost(
+        further ? ImuRole::Further : ImuRole::Reference, 0.1, segmentTimes(),
+        {{1.001, states.vector(1.0)}, {1.0, states.vector(1.0)}, {1.0199, states.vector(1.0)}});
+    const double error = test::worstJacobianError(cost, blocks, 1e-3);
+    QVERIFY2(error < 1e-7, qPrintable(QString::number(error)));
+    QCOMPARE(test::worstErrorWithConstantBlocks(cost, blocks), 0.0);
+  }
+
+  void accelerometerJacobians_matchNumericDifferences_data() {
+    gyroscopeJacobians_matchNumericDifferences_data();
+  }
+
+  void accelerometerJacobians_matchNumericDifferences() {
+    QFETCH(bool, further);
+    QFETCH(double, step_rad);
+    States states(6);
+    test::Blocks blocks;
+    states.appendRotations(step_rad, blocks);
+    states.appendPositions(blocks);
+    blocks.push_back({0.3, 9.7, -0.5});
+    blocks.push_back(States::numbers(states.vector(0.1)));
+    blocks.push_back(mappingNumbers(states));
+    if (further) {
+      blocks.push_back(States::numbers(quaternionExp(states.vector(1.0))));
+      blocks.push_back(States::numbers(states.vector(0.1)));
+      blocks.push_back({states.uniform(0.002)});
+    }
+    const AccelerometerCost cost(further ? ImuRole::Further : ImuRole::Reference, 0.5, segmentTimes(),
+                                 {{1.002, states.vector(10.0)}, {1.01, states.vector(10.0)}});
+    const double error = test::worstJacobianError(cost, blocks, 1e-3);
+    QVERIFY2(error < 1e-6, qPrintable(QString::number(error)));
+    QCOMPARE(test::worstErrorWithConstantBlocks(cost, blocks), 0.0);
+  }
+
+  // Turning about a fixed axis at a constant rate, an IMU off the axis feels the centripetal acceleration.
+  void accelerometer_onALeverArm_feelsCentripetalAcceleration() {
+    const double rate_rad_s = 3.0, lever_m = 0.1;
+    test::Blocks blocks;
+    for (int k = 0; k < 4; ++k) {
+      blocks.push_back(States::numbers(quaternionExp(Vector3d(0.0, 0.0, rate_rad_s * kSpacing_s * (k - 1)))));
+    }
+    for (int k = 0; k < 4; ++k) blocks.push_back({0.0, 0.0, 0.0});
+    blocks.push_back({0.0, 0.0, -9.81});
+    blocks.push_back({0.0, 0.0, 0.0});
+    blocks.push_back({1.0, 0.0, 0.0, 1.0, 0.0, 1.0});
+    blocks.push_back({0.0, 0.0, 0.0, 1.0});
+    blocks.push_back({lever_m, 0.0, 0.0});
+    blocks.push_back({0.0});
+    const Vector3d measured(-rate_rad_s * rate_rad_s * lever_m, 0.0, 9.81);
+    const AccelerometerCost cost(ImuRole::Further, 1.0, segmentTimes(), {{1.007, measured}});
+    QVERIFY(test::residualsAt(cost, blocks).norm() < 1e-9);
+  }
+
+  void mapping_roundTrip() {
+    Eigen::Matrix3d mapping;
+    mapping << 1.0, 2.0, 3.0, 0.0, 4.0, 5.0, 0.0, 0.0, 6.0;
+    double numbers[6];
+    parametersFromMapping(mapping, numbers);
+    QVERIFY(mappingFromParameters(numbers) == mapping);
+  }
+
+  void prior_isZeroAtItsMean() {
+    const double mean[3] = {1.0, 2.0, 3.0};
+    const PriorCost cost(mean, 3, 0.5);
+    QCOMPARE(test::residualsAt(cost, {{1.0, 2.0, 3.0}}).norm(), 0.0);
+    QVERIFY(test::worstJacobianError(cost, {{1.5, 2.5, 2.0}}) < 1e-9);
+  }
+};
+
+}  // namespace
+
+QTEST_APPLESS_MAIN(TestResiduals)
+#include "tst_residuals.moc"
