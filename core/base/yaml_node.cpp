@@ -1,0 +1,173 @@
+#include "core/base/yaml_node.h"
+
+#include "core/base/nearest_name.h"
+#include "core/base/option_yaml.h"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+namespace evical {
+
+struct YamlNode::Node {
+  YAML::Node yaml;
+  int line = 0;  // from 1; 0 if unknown
+};
+
+YamlNode::YamlNode(std::shared_ptr<const Node> node, std::string file, std::string key)
+    : node_(std::move(node)), file_(std::move(file)), key_(std::move(key)) {}
+
+YamlNode YamlNode::load(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored))
+    throw badInput(file.string(), "does not exist", "Check the path");
+  if (std::filesystem::is_directory(file, ignored))
+    throw badInput(file.string(), "is a folder, not a YAML file");
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream content;
+  if (!stream || !(content << stream.rdbuf()))
+    throw badInput(file.string(), "cannot be read, or is empty", "Check the file and its permissions");
+  return parse(content.str(), file.string());
+}
+
+YamlNode YamlNode::parse(const std::string& text, const std::string& file) {
+  try {
+    return {std::make_shared<const Node>(Node{YAML::Load(text), 1}), file, ""};
+  } catch (const YAML::Exception& problem) {
+    throw badInput(fmt::format("{} (line {})", file, problem.mark.line + 1),
+                   fmt::format("is no valid YAML: {}", problem.msg),
+                   "Correct the line, or the one before it");
+  }
+}
+
+bool YamlNode::isMap() const {
+  return node_->yaml.IsMap();
+}
+bool YamlNode::isSequence() const {
+  return node_->yaml.IsSequence();
+}
+bool YamlNode::isScalar() const {
+  return node_->yaml.IsScalar();
+}
+bool YamlNode::isNull() const {
+  return node_->yaml.IsNull();
+}
+
+std::string YamlNode::place() const {
+  if (key_.empty()) return file_;
+  return node_->line > 0 ? fmt::format("{}: {} (line {})", file_, key_, node_->line)
+                         : fmt::format("{}: {}", file_, key_);
+}
+
+CalibrationError YamlNode::error(std::string problem, std::string advice) const {
+  return badInput(place(), std::move(problem), std::move(advice));
+}
+
+YamlNode YamlNode::child(const std::string& name, const Node& node) const {
+  const bool index = name.starts_with('[');
+  return {std::make_shared<const Node>(node), file_, key_.empty() || index ? key_ + name : key_ + "." + name};
+}
+
+std::vector<std::string> YamlNode::keys() const {
+  if (!isMap()) throw error("must be a map of keys and values", "Write it as 'key: value' lines");
+  std::vector<std::string> names;
+  for (const auto& entry : node_->yaml) {
+    const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "";
+    if (name.empty()) throw error("has a key that is no plain word");
+    if (std::find(names.begin(), names.end(), name) != names.end())
+      throw child(name, {entry.second, entry.first.Mark().line + 1})
+          .error("is there twice", "Remove one of them");
+    names.push_back(name);
+  }
+  return names;
+}
+
+void YamlNode::allowOnly(std::initializer_list<const char*> known) const {
+  const std::vector<std::string> names(known.begin(), known.end());
+  for (const std::string& name : keys())
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw(*this)[name].error("unknown key", nameAdvice(name, names));
+}
+
+std::optional<YamlNode> YamlNode::find(const std::string& name) const {
+  if (!isMap()) throw error("must be a map of keys and values", "Write it as 'key: value' lines");
+  for (const auto& entry : node_->yaml)
+    if (entry.first.IsScalar() && entry.first.Scalar() == name)
+      return child(name, {entry.second, entry.first.Mark().line + 1});
+  return std::nullopt;
+}
+
+bool YamlNode::has(const std::string& name) const {
+  return find(name).has_value();
+}
+
+YamlNode YamlNode::operator[](const std::string& name) const {
+  if (const auto found = find(name)) return *found;
+  throw child(name, {YAML::Node(), 0}).error("is missing", fmt::format("Add '{}' here", name));
+}
+
+std::vector<YamlNode> YamlNode::items() const {
+  if (!isSequence()) throw error("must be a list", "Write it as [a, b]");
+  std::vector<YamlNode> all;
+  for (const auto& entry : node_->yaml)
+    all.push_back(child(fmt::format("[{}]", all.size()), {entry, entry.Mark().line + 1}));
+  return all;
+}
+
+std::string YamlNode::text() const {
+  if (!isScalar()) throw error(isNull() ? "has no value" : "must be one value, not a list or map");
+  return node_->yaml.Scalar();
+}
+
+double YamlNode::real() const {
+  constexpr double kAny = std::numeric_limits<double>::max();
+  return real(-kAny, kAny, "");
+}
+
+double YamlNode::real(double minimum, double maximum, const char* unit) const {
+  return detail::parseReal(place(), text(), minimum, maximum, unit);
+}
+
+int YamlNode::integer(int minimum, int maximum) const {
+  return static_cast<int>(detail::parseInteger(place(), text(), minimum, maximum, ""));
+}
+
+std::vector<double> YamlNode::reals() const {
+  std::vector<double> values;
+  for (const YamlNode& item : items()) values.push_back(item.real());
+  return values;
+}
+
+std::vector<double> YamlNode::reals(std::size_t count) const {
+  std::vector<double> values = reals();
+  if (values.size() != count) throw error(fmt::format("has {} numbers, {} are needed", values.size(), count));
+  return values;
+}
+
+std::size_t YamlNode::choice(std::initializer_list<const char*> words) const {
+  return detail::parseChoice(place(), text(), std::span<const char* const>(words.begin(), words.size()));
+}
+
+std::string yamlText(std::string_view text) {
+  const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '/' || c == '.'; };
+  const bool word = !text.empty() && std::all_of(text.begin(), text.end(), plain) &&
+                    (std::isalpha(static_cast<unsigned char>(text[0])) || text[0] == '/');
+  if (word && text != "true" && text != "false" && text != "null" && text != "yes" && text != "no")
+    return std::string(text);
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    if (c == '\n')
+      quoted += "\\n";
+    else
+      quoted += c;
+  }
+  return quoted + '"';
+}
+
+}  // namespace evical

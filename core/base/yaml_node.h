@@ -1,0 +1,63 @@
+// YAML as our readers want it: every error says file, key and line; unknown keys are errors that name the
+// nearest known one. yaml-cpp stays behind this.
+#pragma once
+
+#include "core/base/error.h"
+
+#include <filesystem>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace evical {
+
+// A place in a YAML document. Cheap to copy. All methods throw CalibrationError (BadInput).
+class YamlNode {
+ public:
+  static YamlNode load(const std::filesystem::path& file);
+  static YamlNode parse(const std::string& text, const std::string& file);
+
+  bool isMap() const;
+  bool isSequence() const;
+  bool isScalar() const;
+  bool isNull() const;
+
+  // Maps
+  std::vector<std::string> keys() const;  // throws unless a map, or when a key is there twice
+  void allowOnly(std::initializer_list<const char*> known) const;
+  bool has(const std::string& key) const;
+  YamlNode operator[](const std::string& key) const;  // throws when it isn't there
+  std::optional<YamlNode> find(const std::string& key) const;
+
+  // Sequences
+  std::vector<YamlNode> items() const;
+
+  // Values
+  std::string text() const;
+  double real() const;  // finite
+  double real(double minimum, double maximum, const char* unit) const;
+  int integer(int minimum, int maximum) const;
+  std::vector<double> reals() const;
+  std::vector<double> reals(std::size_t count) const;
+  std::size_t choice(std::initializer_list<const char*> words) const;
+
+  const std::string& key() const { return key_; }  // "board.rows"
+  std::string place() const;                       // "session.yaml: board.rows (line 5)"
+  CalibrationError error(std::string problem, std::string advice = {}) const;
+
+ private:
+  struct Node;  // wraps YAML::Node
+  YamlNode(std::shared_ptr<const Node> node, std::string file, std::string key);
+  YamlNode child(const std::string& name, const Node& node) const;
+
+  std::shared_ptr<const Node> node_;
+  std::string file_, key_;
+};
+
+// A string as a YAML scalar, in double quotes where it needs them.
+std::string yamlText(std::string_view text);
+
+}  // namespace evical
