@@ -1,0 +1,47 @@
+# The checker itself: a clean tree passes, and each kind of offence fails with its own words.
+#   cmake -DCHECKER=tests/check_layers.cmake -DSCRATCH=<folder> -P tests/check_layers_test.cmake
+cmake_minimum_required(VERSION 3.25)
+
+# check(NAME expected-text path content [path content ...]); an empty text expects success.
+function(check name expected)
+  set(tree "${SCRATCH}/${name}")
+  file(REMOVE_RECURSE "${tree}")
+  file(WRITE "${tree}/core/base/error.h" "#include <string>\n")
+  while(ARGN)
+    list(POP_FRONT ARGN path content)
+    file(WRITE "${tree}/${path}" "${content}\n")
+  endwhile()
+  execute_process(COMMAND "${CMAKE_COMMAND}" -DROOT=${tree} -P "${CHECKER}" RESULT_VARIABLE code
+                  OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(expected STREQUAL "" AND NOT code EQUAL 0)
+    message(FATAL_ERROR "${name}: a clean tree was refused:\n${output}")
+  elseif(NOT expected STREQUAL "" AND code EQUAL 0)
+    message(FATAL_ERROR "${name}: passed, and should not")
+  elseif(NOT expected STREQUAL "")
+    string(REGEX REPLACE "[ \n]+" " " output "${output}")
+    if(NOT output MATCHES "${expected}")
+      message(FATAL_ERROR "${name}: expected '${expected}', got:\n${output}")
+    endif()
+  endif()
+endfunction()
+
+check(clean "" core/frontend/a.cpp "#include \"core/data/event.h\"" core/data/event.h "#include <Eigen/Core>"
+      core/pipeline/p.cpp "#include \"core/frontend/a.h\"" core/optimisation/solve.cpp "#include <ceres/ceres.h>")
+check(stage_to_stage "core/frontend may not include core/optimisation"
+      core/frontend/a.cpp "#include \"core/optimisation/b.h\"")
+check(against_arrow "core/base may not include core/geometry" core/base/a.h "#include \"core/geometry/b.h\"")
+check(stage_to_pipeline "core/report may not include core/pipeline" core/report/a.h "#include \"core/pipeline/b.h\"")
+check(core_to_app "core knows nothing of app" core/report/a.cpp "#include \"app/b.h\"")
+check(qt_in_core "core has neither Qt nor VTK" core/report/a.cpp "#include <QString>")
+check(qt_module_in_core "core has neither Qt nor VTK" core/report/a.cpp "#  include <QtCore/QString>")
+check(vtk_in_core "core has neither Qt nor VTK" core/geometry/a.cpp "#include <vtkActor.h>")
+check(qt_in_command_line "the command line has neither" app/evical.cpp "#include <QCoreApplication>")
+check(qt_linked "links Qt or VTK" core/report/CMakeLists.txt "target_link_libraries(x Qt6::Core)")
+check(unknown_layer "is no layer" core/helpers/a.cpp "#include <string>")
+check(library_in_header "shows ceres/ceres.h" core/optimisation/a.h "#include <ceres/ceres.h>"
+      core/pipeline/p.cpp "#include \"core/optimisation/a.h\"")
+check(library_by_way_of_header "core/optimisation/b.h: shows fmt/format.h" core/optimisation/a.h
+      "#include \"core/optimisation/b.h\"" core/optimisation/b.h "#include <fmt/format.h>" core/pipeline/p.cpp
+      "#include \"core/optimisation/a.h\"")
+check(library_in_own_header "" core/optimisation/a.h "#include <ceres/ceres.h>" core/optimisation/a.cpp
+      "#include \"core/optimisation/a.h\"")
