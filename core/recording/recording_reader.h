@@ -1,0 +1,44 @@
+// Reads recordings of any supported format as one pass of packets; memory does not grow with a recording's
+// length. Times are ns in the file's own epoch; events have (0, 0) top left; IMU samples are SI in the IMU's
+// own frame.
+#pragma once
+
+#include "core/data/recording.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace evical {
+
+class RecordingReader {
+ public:
+  virtual ~RecordingReader() = default;
+
+  // Everything the file holds, also what cannot be decoded; known as soon as the file is open.
+  virtual const std::vector<StreamInfo>& streams() const = 0;
+
+  // Which streams read() hands out, by index; all of type Events and Imu if never called. Call before the
+  // first read.
+  virtual void select(const std::vector<std::size_t>& streams) = 0;
+
+  // The next packet, never an empty one, its events in order of time; false at the end. Reuses the packet's
+  // storage. Packets come as the file has them: between packets, and between streams, time may run backwards
+  // a little.
+  virtual bool read(Packet& packet) = 0;
+
+  virtual double fractionRead() const = 0;  // of the file's bytes, 0..1
+
+  // What was found damaged or odd so far: complete once read() has returned false.
+  virtual const std::vector<RecordingFault>& faults() const = 0;
+
+  virtual std::string format() const = 0;  // "rosbag", "text"
+};
+
+// Opens a file or folder by its content. Throws CalibrationError (BadInput) if there is nothing readable at
+// `path`.
+std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path);
+
+}  // namespace evical
