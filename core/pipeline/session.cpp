@@ -1,0 +1,136 @@
+#include "core/pipeline/session.h"
+
+#include "core/base/atomic_file.h"
+#include "core/base/nearest_name.h"
+#include "core/data/intrinsics_yaml.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+#include <set>
+
+namespace evical {
+namespace {
+
+constexpr double kStandardGravity_m_s2 = 9.80665;
+constexpr std::array kAccelerationUnits{"m/s^2", "g", "-g"};
+constexpr std::array kAngularRateUnits{"rad/s", "deg/s"};
+
+void checkReference(const Session& session, const std::string& place) {
+  std::vector<std::string> names;
+  for (const SessionImu& imu : session.imus) names.push_back(imu.name);
+  if (names.empty())
+    for (const SessionCamera& camera : session.cameras) names.push_back(camera.name);
+  if (std::find(names.begin(), names.end(), session.reference) != names.end()) return;
+  throw badInput(place + ": reference",
+                 fmt::format("'{}' is not {}", session.reference,
+                             session.imus.empty() ? "one of the cameras" : "one of the IMUs"),
+                 nameAdvice(session.reference, names));
+}
+
+void checkDifferent(const Session& session, const std::string& place) {
+  std::set<std::string> names, streams;
+  const auto check = [&](const std::string& kind, const std::string& name, const std::string& stream) {
+    const std::string key = fmt::format("{}: {}.{}", place, kind, name);
+    if (!names.insert(name).second)
+      throw badInput(key, "this name is taken", "Give every sensor its own name");
+    if (!streams.insert(stream).second)
+      throw badInput(key + ".stream", fmt::format("'{}' is already another sensor's stream", stream),
+                     "Give every sensor its own stream");
+  };
+  for (const SessionCamera& camera : session.cameras) check("cameras", camera.name, camera.stream);
+  for (const SessionImu& imu : session.imus) check("imus", imu.name, imu.stream);
+}
+
+void checkBoard(const Session& session, const std::string& place) {
+  if (session.imus.empty() || !session.board.hasHalfTurnAmbiguity()) return;
+  const bool symmetric = session.board.type == BoardType::SymmetricCircles;
+  throw badInput(
+      place + (symmetric ? ": board.type" : ": board.rows"),
+      fmt::format(
+          "{} looks the same when turned by 180 degrees, so the camera's pose would jump and no IMU can "
+          "be calibrated with it",
+          symmetric ? "a symmetric board" : "an asymmetric board with an even number of rows"),
+      "Use an asymmetric board with an odd number of rows, or leave out the IMUs to calibrate intrinsics");
+}
+
+std::string boardYaml(const CircleBoard& board) {
+  return fmt::format(
+      "board:\n  type: {}\n  rows: {}\n  cols: {}\n  spacing_m: {}\n  radius_m: {}\n  circles: {}\n",
+      board.type == BoardType::AsymmetricCircles ? "asymmetric_circles" : "symmetric_circles", board.rows,
+      board.cols, board.spacing_m, board.radius_m, board.circles == CircleShade::Dark ? "dark" : "bright");
+}
+
+std::string cameraYaml(const SessionCamera& camera) {
+  std::string text = fmt::format("  {}:\n    stream: {}\n", yamlText(camera.name), yamlText(camera.stream));
+  if (camera.resolution_px.known())
+    text += fmt::format("    resolution_px: [{}, {}]\n", camera.resolution_px.width_px,
+                        camera.resolution_px.height_px);
+  if (camera.intrinsics) text += "    intrinsics:\n" + intrinsicsYaml(*camera.intrinsics, 6);
+  return text;
+}
+
+std::string imuYaml(const SessionImu& imu) {
+  return fmt::format(
+      "  {}:\n    stream: {}\n    accelerometer_noise_density: {}\n    gyroscope_noise_density: {}\n"
+      "    acceleration_unit: {}\n    angular_rate_unit: {}\n",
+      yamlText(imu.name), yamlText(imu.stream), imu.noise.accelerometer_density, imu.noise.gyroscope_density,
+      kAccelerationUnits.at(static_cast<std::size_t>(imu.acceleration_unit)),
+      kAngularRateUnits.at(static_cast<std::size_t>(imu.angular_rate_unit)));
+}
+
+std::string recordingText(const Session& session, const std::filesystem::path& folder) {
+  const auto recording = std::filesystem::weakly_canonical(session.recording);
+  const auto relative = recording.lexically_relative(std::filesystem::weakly_canonical(folder));
+  return relative.empty() || *relative.begin() == ".." ? recording.string() : relative.string();
+}
+
+}  // namespace
+
+double metresPerSecond2(AccelerationUnit unit) {
+  if (unit == AccelerationUnit::MetresPerSecond2) return 1.0;
+  return unit == AccelerationUnit::Gravity ? kStandardGravity_m_s2 : -kStandardGravity_m_s2;
+}
+
+double radiansPerSecond(AngularRateUnit unit) {
+  return unit == AngularRateUnit::RadiansPerSecond ? 1.0 : std::numbers::pi / 180.0;
+}
+
+std::size_t Session::referenceImu() const {
+  const auto found =
+      std::find_if(imus.begin(), imus.end(), [&](const SessionImu& i) { return i.name == reference; });
+  return found == imus.end() ? 0 : static_cast<std::size_t>(found - imus.begin());
+}
+
+void validate(const Session& session, const std::string& place) {
+  if (session.cameras.empty())
+    throw badInput(place + ": cameras", "is empty", "Describe at least one camera");
+  checkDifferent(session, place);
+  checkReference(session, place);
+  checkBoard(session, place);
+}
+
+std::string sessionYaml(const Session& session, const std::filesystem::path& folder) {
+  std::string text =
+      fmt::format("evical_session: 1\nrecording: {}\n", yamlText(recordingText(session, folder)));
+  if (session.time_range_s)
+    text += fmt::format("time_range_s: [{}, {}]\n", (*session.time_range_s)[0], (*session.time_range_s)[1]);
+  text += boardYaml(session.board) + "cameras:\n";
+  for (const SessionCamera& camera : session.cameras) text += cameraYaml(camera);
+  if (!session.imus.empty()) text += "imus:\n";
+  for (const SessionImu& imu : session.imus) text += imuYaml(imu);
+  text += fmt::format("reference: {}\nprior:\n  time_offset_search_s: {}\n", yamlText(session.reference),
+                      session.time_offset_search_s);
+  const std::vector<OptionRow> rows = differingOptions(session.options);
+  text += rows.empty() ? "options: {}\n" : "options:\n";
+  for (const OptionRow& row : rows) text += fmt::format("  {}: {}\n", row.name, row.value);
+  return text;
+}
+
+void writeSession(const Session& session, const std::filesystem::path& file) {
+  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  writeFileWhole(file, sessionYaml(session, folder));
+}
+
+}  // namespace evical

@@ -1,0 +1,60 @@
+// A session: which recording, which board, which sensors, and what is known of them. One YAML file.
+#pragma once
+
+#include "core/data/calibration_setup.h"
+#include "core/pipeline/calibration_options.h"
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace evical {
+
+struct SessionCamera {
+  std::string name, stream;
+  Resolution resolution_px;                    // unknown: the recording says it
+  std::optional<CameraIntrinsics> intrinsics;  // absent: calibrated first, from the same events
+};
+
+// What a unit of the recording's numbers is in SI; -g for drivers that report the direction of gravity.
+enum class AccelerationUnit { MetresPerSecond2, Gravity, MinusGravity };
+enum class AngularRateUnit { RadiansPerSecond, DegreesPerSecond };
+double metresPerSecond2(AccelerationUnit unit);
+double radiansPerSecond(AngularRateUnit unit);
+
+struct SessionImu {
+  std::string name, stream;
+  ImuNoise noise;
+  AccelerationUnit acceleration_unit = AccelerationUnit::MetresPerSecond2;
+  AngularRateUnit angular_rate_unit = AngularRateUnit::RadiansPerSecond;
+};
+
+struct Session {
+  std::filesystem::path source;                       // the file it was read from
+  std::filesystem::path recording;                    // absolute, or relative to the working directory
+  std::optional<std::array<double, 2>> time_range_s;  // since the recording's start
+  CircleBoard board;
+  std::vector<SessionCamera> cameras;
+  std::vector<SessionImu> imus;
+  std::string reference;  // an IMU; a camera where there is no IMU
+  double time_offset_search_s = 1.0;
+  CalibrationOptions options;
+
+  std::size_t referenceImu() const;  // index into imus; 0 where there is none
+};
+
+// Throws CalibrationError (BadInput) with the place "file: key (line n)"; unknown keys with the nearest known
+// one.
+Session readSession(const std::filesystem::path& file);
+
+// What a session must fulfil whoever made it (reader, importer, forms); `place` precedes the key in messages.
+void validate(const Session& session, const std::string& place);
+
+// The file's content, paths relative to `folder` where that makes them simpler; and the file itself, whole or
+// not.
+std::string sessionYaml(const Session& session, const std::filesystem::path& folder);
+void writeSession(const Session& session, const std::filesystem::path& file);
+
+}  // namespace evical

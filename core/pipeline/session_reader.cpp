@@ -1,0 +1,161 @@
+#include "core/base/nearest_name.h"
+#include "core/data/intrinsics_yaml.h"
+#include "core/pipeline/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace evical {
+namespace {
+
+std::string name(const YamlNode& node) {
+  std::string text = node.text();
+  if (text.empty()) throw node.error("is empty", "Give a name");
+  return text;
+}
+
+std::filesystem::path besideSession(const YamlNode& node, const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / name(node);
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored))
+    throw node.error(fmt::format("'{}' does not exist", path.string()),
+                     "Paths are relative to the session file");
+  return path;
+}
+
+std::array<double, 2> readTimeRange(const YamlNode& node) {
+  const std::vector<double> range = node.reals(2);
+  if (range[0] < 0.0 || range[1] <= range[0])
+    throw node.error(fmt::format("[{}, {}] is no range", range[0], range[1]),
+                     "Give begin and end in seconds since the recording's start, begin first");
+  return {range[0], range[1]};
+}
+
+CircleBoard readBoard(const YamlNode& map) {
+  map.allowOnly({"type", "rows", "cols", "spacing_m", "radius_m", "circles"});
+  CircleBoard board;
+  board.type = static_cast<BoardType>(map["type"].choice({"asymmetric_circles", "symmetric_circles"}));
+  board.rows = map["rows"].integer(2, 100);
+  board.cols = map["cols"].integer(2, 100);
+  board.spacing_m = map["spacing_m"].real(1e-4, 10.0, "m");
+  board.radius_m = map["radius_m"].real(1e-5, 10.0, "m");
+  if (const auto node = map.find("circles"))
+    board.circles = static_cast<CircleShade>(node->choice({"dark", "bright"}));
+  try {
+    validate(board);
+  } catch (const CalibrationError& problem) {
+    throw map.error(problem.problem(), problem.advice());
+  }
+  return board;
+}
+
+Resolution readResolution(const YamlNode& node) {
+  const std::vector<YamlNode> items = node.items();
+  if (items.size() != 2) throw node.error("must be [width, height]");
+  return {items[0].integer(1, 30000), items[1].integer(1, 30000)};
+}
+
+SessionCamera readCamera(const YamlNode& map, const std::string& camera_name,
+                         const std::filesystem::path& folder) {
+  map.allowOnly({"stream", "resolution_px", "intrinsics"});
+  SessionCamera camera;
+  camera.name = camera_name;
+  camera.stream = name(map["stream"]);
+  if (const auto node = map.find("resolution_px")) camera.resolution_px = readResolution(*node);
+  const auto intrinsics = map.find("intrinsics");
+  if (!intrinsics) return camera;
+  camera.intrinsics = intrinsics->isMap() ? readIntrinsics(*intrinsics)
+                                          : readIntrinsicsFile(besideSession(*intrinsics, folder),
+                                                               camera.name, camera.stream);
+  Resolution& own = camera.intrinsics->resolution_px;
+  if (!own.known()) own = camera.resolution_px;
+  if (!camera.resolution_px.known()) camera.resolution_px = own;
+  if (own != camera.resolution_px)
+    throw intrinsics->error(
+        fmt::format("is for {} x {} px, but resolution_px is {} x {}", own.width_px, own.height_px,
+                    camera.resolution_px.width_px, camera.resolution_px.height_px),
+        "Use intrinsics of this camera at this resolution");
+  return camera;
+}
+
+SessionImu readImu(const YamlNode& map, const std::string& imu_name) {
+  map.allowOnly({"stream", "accelerometer_noise_density", "gyroscope_noise_density", "acceleration_unit",
+                 "angular_rate_unit"});
+  SessionImu imu;
+  imu.name = imu_name;
+  imu.stream = name(map["stream"]);
+  imu.noise.accelerometer_density = map["accelerometer_noise_density"].real(1e-7, 10.0, "m/s^2/sqrt(Hz)");
+  imu.noise.gyroscope_density = map["gyroscope_noise_density"].real(1e-8, 10.0, "rad/s/sqrt(Hz)");
+  if (const auto node = map.find("acceleration_unit"))
+    imu.acceleration_unit = static_cast<AccelerationUnit>(node->choice({"m/s^2", "g", "-g"}));
+  if (const auto node = map.find("angular_rate_unit"))
+    imu.angular_rate_unit = static_cast<AngularRateUnit>(node->choice({"rad/s", "deg/s"}));
+  return imu;
+}
+
+void setFromSession(const YamlNode& node, CalibrationOptions& options, const std::string& option) {
+  try {
+    setOption(options, option, node.text());
+  } catch (const CalibrationError& problem) {
+    throw node.error(problem.problem(), problem.advice());
+  }
+}
+
+// Both `grid: {least_sine: 0.5}` and `grid.least_sine: 0.5`.
+void readOptions(const YamlNode& map, CalibrationOptions& options) {
+  if (map.isNull()) return;
+  for (const std::string& key : map.keys()) {
+    const YamlNode value = map[key];
+    if (!value.isMap()) {
+      setFromSession(value, options, key);
+      continue;
+    }
+    const std::vector<std::string> groups = optionGroups();
+    if (std::find(groups.begin(), groups.end(), key) == groups.end())
+      throw value.error("no such group of options", nameAdvice(key, groups));
+    for (const std::string& option : value.keys()) setFromSession(value[option], options, key + "." + option);
+  }
+}
+
+void readSensors(const YamlNode& root, const std::filesystem::path& folder, Session& session) {
+  const YamlNode cameras = root["cameras"];
+  for (const std::string& key : cameras.keys())
+    session.cameras.push_back(readCamera(cameras[key], key, folder));
+  if (session.cameras.empty()) throw cameras.error("is empty", "Describe at least one camera");
+  if (const auto imus = root.find("imus"); imus && !imus->isNull())
+    for (const std::string& key : imus->keys()) session.imus.push_back(readImu((*imus)[key], key));
+  if (const auto node = root.find("reference"))
+    session.reference = node->text();
+  else
+    session.reference = session.imus.empty() ? session.cameras[0].name : session.imus[0].name;
+}
+
+}  // namespace
+
+Session readSession(const std::filesystem::path& file) {
+  const YamlNode root = YamlNode::load(file);
+  if (!root.isMap() || !root.has("evical_session"))
+    throw root.error("is no session file: the key evical_session is missing",
+                     "Make one with `evical simulate` or `evical import`");
+  root.allowOnly({"evical_session", "recording", "time_range_s", "board", "cameras", "imus", "reference",
+                  "prior", "options"});
+  root["evical_session"].integer(1, 1);
+  const std::filesystem::path folder = file.parent_path();
+  Session session;
+  session.source = file;
+  session.recording = besideSession(root["recording"], folder);
+  if (const auto node = root.find("time_range_s")) session.time_range_s = readTimeRange(*node);
+  session.board = readBoard(root["board"]);
+  readSensors(root, folder, session);
+  if (const auto node = root.find("prior"); node && !node->isNull()) {
+    node->allowOnly({"time_offset_search_s"});
+    if (const auto search = node->find("time_offset_search_s"))
+      session.time_offset_search_s = search->real(0.001, 60.0, "s");
+  }
+  if (const auto node = root.find("options")) readOptions(*node, session.options);
+  validate(session, file.string());
+  return session;
+}
+
+}  // namespace evical
