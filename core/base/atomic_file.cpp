@@ -13,6 +13,8 @@
 #include <cstring>
 #include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 namespace evical {
 namespace {
@@ -41,19 +43,51 @@ void giveUsualPermissions(int file) {
   static_cast<void>(::fchmod(file, 0666 & ~mask));
 }
 
+// Files written beside their targets; those that were not renamed go away again.
+class FilesAside {
+ public:
+  FilesAside() = default;
+  FilesAside(const FilesAside&) = delete;
+  FilesAside& operator=(const FilesAside&) = delete;
+  ~FilesAside() {
+    for (const auto& [aside, path] : names_) ::unlink(aside.c_str());
+  }
+
+  void write(const std::filesystem::path& path, std::string_view content) {
+    std::string aside = path.string() + ".XXXXXX";
+    const int file = ::mkostemp(aside.data(), O_CLOEXEC);
+    if (file < 0) throw writeError(path, errno);
+    names_.emplace_back(aside, path);
+    giveUsualPermissions(file);
+    int error = writeAndSync(file, content);
+    if (::close(file) != 0 && error == 0) error = errno;
+    if (error != 0) throw writeError(path, error);
+  }
+
+  void rename() {
+    while (!names_.empty()) {
+      const auto& [aside, path] = names_.front();
+      if (std::rename(aside.c_str(), path.c_str()) != 0) throw writeError(path, errno);
+      names_.erase(names_.begin());
+    }
+  }
+
+ private:
+  std::vector<std::pair<std::string, std::filesystem::path>> names_;
+};
+
 }  // namespace
 
 void writeFileWhole(const std::filesystem::path& path, std::string_view content) {
-  std::string aside = path.string() + ".XXXXXX";
-  const int file = ::mkostemp(aside.data(), O_CLOEXEC);
-  if (file < 0) throw writeError(path, errno);
-  giveUsualPermissions(file);
-  int error = writeAndSync(file, content);
-  if (::close(file) != 0 && error == 0) error = errno;
-  if (error == 0 && std::rename(aside.c_str(), path.c_str()) != 0) error = errno;
-  if (error == 0) return;
-  ::unlink(aside.c_str());
-  throw writeError(path, error);
+  FilesAside aside;
+  aside.write(path, content);
+  aside.rename();
+}
+
+void writeFilesWhole(std::span<const FileContent> files) {
+  FilesAside aside;
+  for (const FileContent& file : files) aside.write(file.path, file.content);
+  aside.rename();
 }
 
 void makeOutputFolder(const std::filesystem::path& folder) {
