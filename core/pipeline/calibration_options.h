@@ -3,6 +3,7 @@
 
 #include "core/base/option_yaml.h"
 #include "core/frontend/board_search.h"
+#include "core/initialisation/initialisation_options.h"
 #include "core/optimisation/optimisation_options.h"
 
 #include <string>
@@ -13,6 +14,7 @@ namespace evical {
 
 struct CalibrationOptions {
   FrontEndOptions front_end;
+  InitialisationOptions initialisation;
   OptimisationOptions optimisation;
   bool operator==(const CalibrationOptions&) const = default;
 };

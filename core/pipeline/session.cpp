@@ -120,8 +120,7 @@ std::string sessionYaml(const Session& session, const std::filesystem::path& fol
   for (const SessionCamera& camera : session.cameras) text += cameraYaml(camera);
   if (!session.imus.empty()) text += "imus:\n";
   for (const SessionImu& imu : session.imus) text += imuYaml(imu);
-  text += fmt::format("reference: {}\nprior:\n  time_offset_search_s: {}\n", yamlText(session.reference),
-                      session.time_offset_search_s);
+  text += fmt::format("reference: {}\n", yamlText(session.reference));
   const std::vector<OptionRow> rows = differingOptions(session.options);
   text += rows.empty() ? "options: {}\n" : "options:\n";
   for (const OptionRow& row : rows) text += fmt::format("  {}: {}\n", row.name, row.value);

@@ -39,8 +39,8 @@ struct Session {
   std::vector<SessionCamera> cameras;
   std::vector<SessionImu> imus;
   std::string reference;  // an IMU; a camera where there is no IMU
-  double time_offset_search_s = 1.0;
-  CalibrationOptions options;
+  CalibrationOptions
+      options;  // the file's prior.time_offset_search_s is initialisation.time_offset_search_s here
 
   std::size_t referenceImu() const;  // index into imus; 0 where there is none
 };

@@ -151,7 +151,7 @@ Session readSession(const std::filesystem::path& file) {
   if (const auto node = root.find("prior"); node && !node->isNull()) {
     node->allowOnly({"time_offset_search_s"});
     if (const auto search = node->find("time_offset_search_s"))
-      session.time_offset_search_s = search->real(0.001, 60.0, "s");
+      setFromSession(*search, session.options, "initialisation.time_offset_search_s");
   }
   if (const auto node = root.find("options")) readOptions(*node, session.options);
   validate(session, file.string());
