@@ -1,53 +1,70 @@
-// The records of a ROS 1 bag, format 2.0 (wiki.ros.org/Bags/Format/2.0), and the compression of its chunks.
+// The records of a ROS 1 bag, format 2.0 (http://wiki.ros.org/Bags/Format/2.0), shared by reader and writer:
+// u32 header length, header, u32 data length, data. A header is fields of u32 length and "name=value", value binary.
 #pragma once
 
-#include <cstddef>
+#include "core/recording/byte_reader.h"
+
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace evical::rosbag {
+namespace evical {
 
-inline constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
+inline constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";
+inline constexpr std::size_t kBagHeaderRecordSize = 4096;  // with padding, so that it can be rewritten at the end
 
-enum class Op : std::uint8_t {
-  Message = 2,
-  BagHeader = 3,
-  IndexData = 4,
-  Chunk = 5,
-  ChunkInfo = 6,
-  Connection = 7,
+enum class BagOp : std::uint8_t { Message = 2, BagHeader = 3, IndexData = 4, Chunk = 5, ChunkInfo = 6, Connection = 7 };
+
+// Fields of a header, or of a connection's data, which is written the same way.
+class BagFields {
+ public:
+  // Nothing if the bytes aren't such fields to the end.
+  static std::optional<BagFields> parse(Bytes bytes);
+
+  std::optional<Bytes> find(std::string_view name) const;
+  std::string text(std::string_view name) const;  // empty where absent
+  template <class T>
+  std::optional<T> number(std::string_view name) const {
+    const std::optional<Bytes> value = find(name);
+    if (!value || value->size() != sizeof(T)) return std::nullopt;
+    return loadLittleEndian<T>(value->data());
+  }
+  std::optional<BagOp> op() const;
+
+ private:
+  struct Field {
+    std::string_view name;
+    Bytes value;
+  };
+  std::vector<Field> fields_;  // views into what was parsed
 };
 
-// The fields of any record's header; what a record does not have stays 0 or empty. Views point into the given
-// bytes.
-struct RecordHeader {
-  std::uint8_t op = 0;
-  std::uint32_t connection = 0;
-  std::uint32_t size = 0;  // of a chunk, uncompressed
-  std::uint64_t index_position = 0, chunk_position = 0;
-  std::int64_t time_ns = 0;
-  std::string_view compression, topic;
+// u32 seconds, u32 nanoseconds.
+std::int64_t bagTime(const std::uint8_t* bytes);
 
-  bool is(Op other) const { return op == static_cast<std::uint8_t>(other); }
+class BagFieldsWriter {
+ public:
+  BagFieldsWriter& op(BagOp op);
+  BagFieldsWriter& text(std::string_view name, std::string_view value);
+  template <class T>
+  BagFieldsWriter& number(std::string_view name, T value) {
+    std::vector<std::uint8_t> bytes;
+    appendLittleEndian(bytes, value);
+    return text(name, textOf(bytes));
+  }
+  BagFieldsWriter& time(std::string_view name, std::int64_t time_ns);
+  const std::vector<std::uint8_t>& bytes() const { return bytes_; }
+
+ private:
+  std::vector<std::uint8_t> bytes_;
 };
 
-// False if the bytes are not a list of fields with an op among them.
-bool parseRecordHeader(std::string_view bytes, RecordHeader& header);
+// Throws CalibrationError (BadInput) for times that two u32 can't hold.
+void appendBagTime(std::vector<std::uint8_t>& bytes, std::int64_t time_ns);
 
-// What the data of a connection record tells.
-struct ConnectionData {
-  std::string_view topic, type, md5;
-};
-ConnectionData parseConnectionData(std::string_view bytes);
+void appendSized(std::vector<std::uint8_t>& bytes, Bytes content);
+void appendBagRecord(std::vector<std::uint8_t>& bytes, const BagFieldsWriter& header, Bytes data);
 
-// Replaces `output` by the chunk's content; false if the data are damaged or do not give `size` bytes. A size
-// that lies does not make memory grow: it follows what the data really hold.
-bool decompressChunk(std::string_view compression, std::string_view data, std::uint32_t size,
-                     std::string& output);
-
-// Replaces `output` by one LZ4 frame.
-void compressLz4(std::string_view data, std::string& output);
-
-}  // namespace evical::rosbag
+}  // namespace evical
