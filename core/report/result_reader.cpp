@@ -1,0 +1,208 @@
+#include "core/base/yaml_node.h"
+#include "core/data/intrinsics_yaml.h"
+#include "core/report/result_yaml.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace evical {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+// Unlike YamlNode::real this takes what isn't finite: a sigma that couldn't be found is written as .nan.
+double number(const YamlNode& node) {
+  const std::string text = node.text();
+  if (text == ".nan") return std::numeric_limits<double>::quiet_NaN();
+  if (text == ".inf") return std::numeric_limits<double>::infinity();
+  if (text == "-.inf") return -std::numeric_limits<double>::infinity();
+  return node.real();
+}
+
+template <int Size>
+Eigen::Matrix<double, Size, 1> vector(const YamlNode& node) {
+  const std::vector<YamlNode> items = node.items();
+  if (items.size() != Size)
+    throw node.error(fmt::format("has {} numbers, {} are needed", items.size(), Size));
+  Eigen::Matrix<double, Size, 1> values;
+  for (int i = 0; i < Size; ++i) values[i] = number(items[static_cast<std::size_t>(i)]);
+  return values;
+}
+
+void get(const YamlNode& map, const char* key, double& value) {
+  if (const auto node = map.find(key)) value = number(*node);
+}
+void get(const YamlNode& map, const char* key, int& value) {
+  if (const auto node = map.find(key)) value = node->integer(0, std::numeric_limits<int>::max());
+}
+void get(const YamlNode& map, const char* key, std::string& value) {
+  if (const auto node = map.find(key)) value = node->text();
+}
+void get(const YamlNode& map, const char* key, Eigen::Vector3d& value, double factor = 1.0) {
+  if (const auto node = map.find(key)) value = factor * vector<3>(*node);
+}
+void get(const YamlNode& map, const char* key, Eigen::Matrix3d& value) {
+  const auto node = map.find(key);
+  if (!node) return;
+  const std::vector<YamlNode> rows = node->items();
+  if (rows.size() != 3) throw node->error("must be three rows of three numbers");
+  for (int row = 0; row < 3; ++row)
+    value.row(row) = vector<3>(rows[static_cast<std::size_t>(row)]).transpose();
+}
+void get(const YamlNode& map, const char* key, std::vector<std::string>& values) {
+  const auto node = map.find(key);
+  if (!node) return;
+  for (const YamlNode& item : node->items()) values.push_back(item.text());
+}
+
+void readTransform(const YamlNode& map, RigidTransform& pose, Eigen::Vector3d& rotation_std_rad,
+                   Eigen::Vector3d& translation_std_m) {
+  const YamlNode rotation = map["rotation_xyzw"];
+  pose.rotation.coeffs() = vector<4>(rotation);
+  const double norm = pose.rotation.norm();
+  if (!(std::abs(norm - 1.0) < 1e-3))
+    throw rotation.error(fmt::format("is no unit quaternion: its norm is {}", norm));
+  // Dividing only where it matters leaves what we wrote ourselves as it was, to the last bit.
+  if (std::abs(norm - 1.0) > 1e-12) pose.rotation.normalize();
+  pose.translation_m = vector<3>(map["translation_m"]);
+  get(map, "rotation_std_deg", rotation_std_rad, kRadPerDeg);
+  get(map, "translation_std_m", translation_std_m);
+}
+
+void readCamera(const YamlNode& map, NamedResult& named) {
+  CameraState state;
+  CameraUncertainty sigma;
+  CameraFit fit;
+  readTransform(map["reference_from_camera"], state.imu_from_camera, sigma.rotation_std_rad,
+                sigma.translation_std_m);
+  get(map, "time_offset_s", state.time_offset_s);
+  get(map, "time_offset_std_s", sigma.time_offset_std_s);
+  get(map, "edge_lead_px", state.edge_lead_px);
+  get(map, "edge_lead_std_px", sigma.edge_lead_std_px);
+  get(map, "reprojection_rms_px", fit.reprojection_rms_px);
+  get(map, "normalised_rms", fit.normalised_rms);
+  if (const auto windows = map.find("windows")) {
+    get(*windows, "total", fit.windows_total);
+    get(*windows, "complete", fit.windows_complete);
+    get(*windows, "partial", fit.windows_partial);
+    get(*windows, "used", fit.windows_used);
+  }
+  if (const auto circles = map.find("circles")) {
+    get(*circles, "used", fit.circles_used);
+    get(*circles, "rejected", fit.circles_rejected);
+  }
+  const auto intrinsics = map.find("intrinsics");
+  named.names.intrinsics.push_back(intrinsics ? std::optional(readIntrinsics(*intrinsics)) : std::nullopt);
+  named.result.state.cameras.push_back(state);
+  named.result.uncertainty.cameras.push_back(sigma);
+  named.result.cameras.push_back(fit);
+}
+
+void readImu(const YamlNode& map, NamedResult& named) {
+  ImuState state;
+  ImuUncertainty sigma;
+  ImuFit fit;
+  readTransform(map["reference_from_imu"], state.reference_from_imu, sigma.rotation_std_rad,
+                sigma.translation_std_m);
+  get(map, "time_offset_s", state.time_offset_s);
+  get(map, "time_offset_std_s", sigma.time_offset_std_s);
+  if (const auto gyroscope = map.find("gyroscope")) {
+    get(*gyroscope, "bias_rad_s", state.gyroscope_bias_rad_s);
+    get(*gyroscope, "bias_std_rad_s", sigma.gyroscope_bias_std_rad_s);
+    get(*gyroscope, "mapping", state.gyroscope_mapping);
+    get(*gyroscope, "mapping_std", sigma.gyroscope_mapping_std);
+    get(*gyroscope, "residual_rms_rad_s", fit.gyroscope_rms_rad_s);
+  }
+  if (const auto accelerometer = map.find("accelerometer")) {
+    get(*accelerometer, "bias_m_s2", state.accelerometer_bias_m_s2);
+    get(*accelerometer, "bias_std_m_s2", sigma.accelerometer_bias_std_m_s2);
+    get(*accelerometer, "mapping", state.accelerometer_mapping);
+    get(*accelerometer, "mapping_std", sigma.accelerometer_mapping_std);
+    get(*accelerometer, "residual_rms_m_s2", fit.accelerometer_rms_m_s2);
+  }
+  named.result.state.imus.push_back(state);
+  named.result.uncertainty.imus.push_back(sigma);
+  named.result.imus.push_back(fit);
+}
+
+void readUncertainty(const YamlNode& root, UncertaintyReport& uncertainty) {
+  double gravity_std_deg = 0.0;
+  get(root, "gravity_direction_std_deg", gravity_std_deg);
+  uncertainty.gravity_direction_std_rad = kRadPerDeg * gravity_std_deg;
+  if (const auto map = root.find("observability")) {
+    get(*map, "weakest", uncertainty.weakest);
+    if (const auto values = map->find("values"))
+      for (const YamlNode& value : values->items()) uncertainty.observability.push_back(number(value));
+  }
+  const auto map = root.find("uncertainty");
+  if (!map) return;
+  get(*map, "names", uncertainty.names);
+  const auto count = static_cast<Eigen::Index>(uncertainty.names.size());
+  const std::vector<YamlNode> sigmas = (*map)["std"].items(), rows = (*map)["correlation"].items();
+  if (sigmas.size() != uncertainty.names.size() || rows.size() != sigmas.size())
+    throw map->error("names, std and correlation must be of one size");
+  uncertainty.standard_deviations.resize(count);
+  uncertainty.correlation.resize(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const std::vector<YamlNode> row = rows[static_cast<std::size_t>(i)].items();
+    if (row.size() != sigmas.size()) throw map->error("correlation must be square");
+    uncertainty.standard_deviations[i] = number(sigmas[static_cast<std::size_t>(i)]);
+    for (Eigen::Index j = 0; j < count; ++j)
+      uncertainty.correlation(i, j) = number(row[static_cast<std::size_t>(j)]);
+  }
+}
+
+void readRun(const YamlNode& root, NamedResult& named) {
+  get(root, "notes", named.result.notes);
+  get(root, "memory_peak_mb", named.result.memory_peak_mb);
+  if (const auto timing = root.find("timing_s")) {
+    get(*timing, "read", named.result.timing.read_s);
+    get(*timing, "detect", named.result.timing.detect_s);
+    get(*timing, "initialise", named.result.timing.initialise_s);
+    get(*timing, "optimise", named.result.timing.optimise_s);
+    get(*timing, "total", named.result.timing.total_s);
+  }
+  const auto program = root.find("program");
+  if (!program) return;
+  get(*program, "version", named.names.version);
+  if (const auto options = program->find("options"))
+    for (const std::string& key : options->keys()) {
+      OptionRow row;
+      row.name = key;
+      row.value = (*options)[key].text();
+      named.names.options.push_back(row);
+    }
+}
+
+}  // namespace
+
+NamedResult readResultYaml(const std::filesystem::path& file) {
+  const YamlNode root = YamlNode::load(file);
+  if (!root.isMap() || !(root.has("evical_result") || root.has("evical_truth")))
+    throw root.error("is neither a result nor a truth file",
+                     "Give result.yaml of `evical calibrate`, or truth.yaml");
+  NamedResult named;
+  if (const auto status = root.find("status"))
+    named.result.status = static_cast<CalibrationStatus>(status->choice({"ok", "doubtful", "failed"}));
+  get(root, "reason", named.result.reason);
+  get(root, "reference", named.names.reference);
+  if (const auto cameras = root.find("cameras"))
+    for (const std::string& key : cameras->keys()) {
+      named.names.cameras.push_back(key);
+      readCamera((*cameras)[key], named);
+    }
+  if (const auto imus = root.find("imus"))
+    for (const std::string& key : imus->keys()) {
+      named.names.imus.push_back(key);
+      readImu((*imus)[key], named);
+    }
+  get(root, "gravity_m_s2", named.result.state.gravity_in_world_m_s2);
+  readUncertainty(root, named.result.uncertainty);
+  readRun(root, named);
+  return named;
+}
+
+}  // namespace evical
