@@ -75,7 +75,7 @@ BoardMotion predicted(const BoardMotion& motion, std::int64_t time_ns) {
   return next;
 }
 
-std::optional<ProjectedCircle> projectCircle(const Eigen::Matrix3d& h, const CircleBoard& board, int index,
+std::optional<CircleImage> imageOfCircle(const Eigen::Matrix3d& h, const CircleBoard& board, int index,
                                              const std::optional<CameraIntrinsics>& camera) {
   const Eigen::Vector2d c = board.centre_m(index);
   const double r2 = board.radius_m * board.radius_m;
@@ -84,7 +84,7 @@ std::optional<ProjectedCircle> projectCircle(const Eigen::Matrix3d& h, const Cir
       1.0;
   const Eigen::Matrix3d q = h * dual * h.transpose();
   if (!((h * Eigen::Vector3d(c.x(), c.y(), 1.0)).z() > 0.0) || !(q(2, 2) > 0.0)) return std::nullopt;
-  ProjectedCircle out;
+  CircleImage out;
   out.circle = index;
   out.centre_px = q.topRightCorner<2, 1>() / q(2, 2);
   // Dual conic about its own centre: minus the matrix of squared semi-axes.
@@ -105,12 +105,12 @@ std::optional<ProjectedCircle> projectCircle(const Eigen::Matrix3d& h, const Cir
   return out;
 }
 
-std::vector<ProjectedCircle> projectBoard(const Eigen::Matrix3d& ideal_from_board, const CircleBoard& board,
+std::vector<CircleImage> projectBoard(const Eigen::Matrix3d& ideal_from_board, const CircleBoard& board,
                                           const std::optional<CameraIntrinsics>& camera,
                                           Resolution resolution_px) {
-  std::vector<ProjectedCircle> circles;
+  std::vector<CircleImage> circles;
   for (int i = 0; i < board.circleCount(); ++i) {
-    std::optional<ProjectedCircle> circle = projectCircle(ideal_from_board, board, i, camera);
+    std::optional<CircleImage> circle = imageOfCircle(ideal_from_board, board, i, camera);
     if (!circle) continue;
     const double r = circle->sensor_radius_px;
     const Eigen::Vector2d& c = circle->sensor_centre_px;
@@ -121,7 +121,7 @@ std::vector<ProjectedCircle> projectBoard(const Eigen::Matrix3d& ideal_from_boar
   return circles;
 }
 
-bool insideImage(const ProjectedCircle& circle, Resolution resolution_px) {
+bool insideImage(const CircleImage& circle, Resolution resolution_px) {
   const double r = circle.sensor_radius_px;
   const Eigen::Vector2d& c = circle.sensor_centre_px;
   return c.x() >= r && c.y() >= r && c.x() <= resolution_px.width_px - 1 - r &&
@@ -130,10 +130,10 @@ bool insideImage(const ProjectedCircle& circle, Resolution resolution_px) {
 
 double boardSpeed_px_s(const BoardMotion& motion, const CircleBoard& board,
                        const std::optional<CameraIntrinsics>& camera, Resolution resolution_px) {
-  const std::vector<ProjectedCircle> circles =
+  const std::vector<CircleImage> circles =
       projectBoard(motion.ideal_from_board, board, camera, resolution_px);
   double sum = 0.0;
-  for (const ProjectedCircle& circle : circles) {
+  for (const CircleImage& circle : circles) {
     const double sensor_scale = circle.sensor_radius_px / circle.largest_radius_px;
     sum += motion.velocityAt(circle.centre_px).norm() * sensor_scale;
   }
@@ -145,7 +145,7 @@ int expectedCircles(const BoardMotion& motion, const CircleBoard& board,
                     double half_window_s) {
   constexpr double kLeastTravel_px = 1.2;  // an edge that stays within its pixel fires few events or none
   int expected = 0;
-  for (const ProjectedCircle& circle : projectBoard(motion.ideal_from_board, board, camera, resolution_px)) {
+  for (const CircleImage& circle : projectBoard(motion.ideal_from_board, board, camera, resolution_px)) {
     const double sensor_scale = circle.sensor_radius_px / circle.largest_radius_px;
     const double travel_px = motion.velocityAt(circle.centre_px).norm() * sensor_scale * 2.0 * half_window_s;
     expected += insideImage(circle, resolution_px) && travel_px > kLeastTravel_px;

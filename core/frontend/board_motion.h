@@ -63,7 +63,7 @@ Eigen::Matrix3d moved(const Eigen::Matrix3d& ideal_from_board, const ImageFrame&
                       const PlaneFlow& shift_px);
 
 // Image of one circle: {q : (q - centre)^T shape (q - centre) = 1}, in ideal pixels.
-struct ProjectedCircle {
+struct CircleImage {
   int circle = 0;
   Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();
   Eigen::Matrix2d shape = Eigen::Matrix2d::Identity();
@@ -71,24 +71,24 @@ struct ProjectedCircle {
   Eigen::Vector2d sensor_centre_px = Eigen::Vector2d::Zero();  // in the sensor's own pixels
   double sensor_radius_px = 0.0;
 };
-std::optional<ProjectedCircle> projectCircle(const Eigen::Matrix3d& ideal_from_board,
+std::optional<CircleImage> imageOfCircle(const Eigen::Matrix3d& ideal_from_board,
                                              const CircleBoard& board, int circle,
                                              const std::optional<CameraIntrinsics>& camera);
 
 // Circles that touch the image.
-std::vector<ProjectedCircle> projectBoard(const Eigen::Matrix3d& ideal_from_board, const CircleBoard& board,
+std::vector<CircleImage> projectBoard(const Eigen::Matrix3d& ideal_from_board, const CircleBoard& board,
                                           const std::optional<CameraIntrinsics>& camera,
                                           Resolution resolution_px);
 
 // True if the whole circle lies in the image.
-bool insideImage(const ProjectedCircle& circle, Resolution resolution_px);
+bool insideImage(const CircleImage& circle, Resolution resolution_px);
 
 // A burst held against a projected circle.
 struct EdgeDistance {
   double distance_px;      // outwards positive, ideal pixels
   Eigen::Vector2d normal;  // outwards, unit
 };
-inline EdgeDistance distanceToEdge(const ProjectedCircle& circle, const Eigen::Vector2d& ideal_pixel) {
+inline EdgeDistance distanceToEdge(const CircleImage& circle, const Eigen::Vector2d& ideal_pixel) {
   const Eigen::Vector2d from_centre = ideal_pixel - circle.centre_px;
   const Eigen::Vector2d gradient = circle.shape * from_centre;
   const double slope = gradient.norm();

@@ -64,11 +64,11 @@ void addPriors(const NormalVector& sigmas, const NormalVector& from_prior, doubl
 
 // One circle and how it moves: the field to first order around its centre.
 struct CircleMotion {
-  ProjectedCircle circle;
+  CircleImage circle;
   Eigen::Vector2d velocity, acceleration;
   Eigen::Matrix2d velocity_gradient, acceleration_gradient;  // per px
 
-  CircleMotion(const ProjectedCircle& projected, const BoardMotion& motion)
+  CircleMotion(const CircleImage& projected, const BoardMotion& motion)
       : circle(projected),
         velocity(motion.velocityAt(projected.centre_px)),
         acceleration(motion.accelerationAt(projected.centre_px)),
@@ -87,7 +87,7 @@ int sectorOf(const Eigen::Vector2d& n) {
 void gatherPoints(const BurstWindow& window, const CircleMotion& moving, double half_window_s,
                   double slack_px, std::vector<FitPoint>& points) {
   points.clear();
-  const ProjectedCircle& circle = moving.circle;
+  const CircleImage& circle = moving.circle;
   const double speed = moving.velocity.norm() + 0.5 * half_window_s * moving.acceleration.norm();
   const double sensor_scale = circle.sensor_radius_px / circle.largest_radius_px;
   const double reach = circle.sensor_radius_px + slack_px + speed * half_window_s * sensor_scale;
@@ -197,7 +197,7 @@ std::optional<BoardMotion> fitBoardMotion(const BurstWindow& window, const Board
   double gate_px = first_gate_px;
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     NormalEquations equations;
-    for (const ProjectedCircle& circle :
+    for (const CircleImage& circle :
          projectBoard(motion.ideal_from_board, board, camera, window.resolution_px())) {
       const CircleMotion moving(circle, motion);
       std::vector<FitPoint>& near = points[static_cast<std::size_t>(circle.circle)];

@@ -2,6 +2,7 @@
 
 #include "core/base/time.h"
 #include "core/frontend/circle_measurement.h"
+#include "core/frontend/circle_pairs.h"
 #include "core/frontend/ring_vote.h"
 
 #include <Eigen/Geometry>
@@ -21,6 +22,7 @@ constexpr double kSlowest_px_s = 10.0;
 constexpr std::size_t kMostPlacements = 48;
 
 std::vector<CircleCandidate> findCandidates(const BurstWindow& window, const FrontEndOptions& options) {
+  if (options.detection.method == CandidateSource::NormalFlow) return pairArcs(window, options.normal_flow);
   return voteForCircles(window, options.ring_vote);
 }
 

@@ -7,6 +7,7 @@
 #include "core/frontend/board_placement.h"
 #include "core/frontend/circle_candidate.h"
 #include "core/frontend/circle_lattice.h"
+#include "core/frontend/normal_flow_options.h"
 
 #include <optional>
 #include <vector>
@@ -17,6 +18,7 @@ struct FrontEndOptions {
   DetectionOptions detection;
   BurstOptions bursts;
   RingVoteOptions ring_vote;
+  NormalFlowOptions normal_flow;
   MovingCircleOptions moving_circle;
   GridOptions grid;
   TrackingOptions tracking;

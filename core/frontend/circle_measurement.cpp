@@ -21,7 +21,7 @@ struct EdgePoint {
   double time_s, scale, weight;
 };
 
-void gatherEdgePoints(const BurstWindow& window, const ProjectedCircle& circle, const BoardMotion& motion,
+void gatherEdgePoints(const BurstWindow& window, const CircleImage& circle, const BoardMotion& motion,
                       double half_slot_s, const TrackingOptions& options, std::vector<EdgePoint>& points) {
   points.clear();
   const Eigen::Vector2d velocity = motion.velocityAt(circle.centre_px);
@@ -58,7 +58,7 @@ struct CentreFit {
 
 // Residuals are linear in the shift as long as it is small against the radius; a few rounds settle the
 // weights.
-CentreFit fitCentre(ProjectedCircle circle, const BoardMotion& motion, const TrackingOptions& options,
+CentreFit fitCentre(CircleImage circle, const BoardMotion& motion, const TrackingOptions& options,
                     const std::vector<EdgePoint>& points) {
   CentreFit fit;
   const Eigen::Vector2d centre_at_start = circle.centre_px;
@@ -99,7 +99,7 @@ CentreFit fitCentre(ProjectedCircle circle, const BoardMotion& motion, const Tra
   return fit;
 }
 
-CircleObservation observation(const ProjectedCircle& circle, const CentreFit& fit, const BoardMotion& motion,
+CircleObservation observation(const CircleImage& circle, const CentreFit& fit, const BoardMotion& motion,
                               double noise2, std::int64_t start_ns) {
   CircleObservation out;
   out.circle = circle.circle;
@@ -128,7 +128,7 @@ std::vector<CircleObservation> measureCircles(const BurstWindow& window, const B
   // The window's own scatter, not one circle's: a dozen points say little about their noise.
   const double noise2 = std::max(motion.residual_rms_px * motion.residual_rms_px, 1e-3);
   const double largest_variance = options.largest_centre_sigma_px * options.largest_centre_sigma_px;
-  for (const ProjectedCircle& circle :
+  for (const CircleImage& circle :
        projectBoard(motion.ideal_from_board, board, camera, window.resolution_px())) {
     if (!insideImage(circle, window.resolution_px())) continue;
     gatherEdgePoints(window, circle, motion, half_slot_s, options, points);

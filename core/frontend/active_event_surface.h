@@ -1,0 +1,39 @@
+// Surface of active events (method 4.1): per pixel and polarity, when the last edge of a window passed.
+#pragma once
+
+#include "core/frontend/burst_window.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace evical {
+
+struct ActivePixel {
+  std::uint16_t x_px, y_px;
+  bool leading;  // a circle's leading edge passed, by polarity
+};
+
+class ActiveEventSurface {
+ public:
+  static constexpr float kNever_s = -1e9f;
+  static bool active(float time_s) { return time_s > kNever_s; }
+
+  // Neighbours up to border_px away may be read at every pixel of the image.
+  ActiveEventSurface(const BurstWindow& window, int border_px);
+
+  const std::vector<ActivePixel>& pixels() const { return pixels_; }
+  int stride() const { return stride_; }
+
+  // Time since the window's middle, or kNever_s; neighbours follow at dy * stride() + dx.
+  const float* at(bool leading, int x_px, int y_px) const {
+    return times_s_[leading].data() + (y_px + border_px_) * stride_ + x_px + border_px_;
+  }
+
+ private:
+  int border_px_, stride_;
+  std::array<std::vector<float>, 2> times_s_;
+  std::vector<ActivePixel> pixels_;
+};
+
+}  // namespace evical

@@ -1,0 +1,34 @@
+// Circle candidates from pairs of arcs: one that leads and one that follows (method 4.5).
+#pragma once
+
+#include "core/frontend/circle_candidate.h"
+#include "core/frontend/event_clusters.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace evical {
+
+struct ArcPair {
+  std::size_t leading = 0, trailing = 0;  // indices into the clusters
+  CircleCandidate circle;
+};
+
+// What the published chain finds on its way; for drawings.
+struct NormalFlowStages {
+  NormalFlowField flow;
+  std::vector<EventCluster> clusters;
+  std::vector<ArcPair> pairs;
+};
+
+// Pairs arcs that move alike, one behind the other. Nearest first, mutually; arcs of a clear kind before
+// others.
+std::vector<ArcPair> pairClusters(const std::vector<EventCluster>& clusters, const NormalFlowField& field,
+                                  const NormalFlowOptions& options);
+
+NormalFlowStages findArcs(const BurstWindow& window, const NormalFlowOptions& options);
+
+// The circles of all pairs, best first.
+std::vector<CircleCandidate> pairArcs(const BurstWindow& window, const NormalFlowOptions& options);
+
+}  // namespace evical

@@ -1,0 +1,29 @@
+// Hand-eye rotation with a free time offset and gyroscope bias (method 5.4). Rotation vectors of pose pairs:
+//   log(imu rotation over the pair) = R_ic log(camera rotation over the pair) + bias * duration.
+#pragma once
+
+#include "core/initialisation/camera_poses.h"
+
+#include <Eigen/Geometry>
+
+#include <optional>
+#include <vector>
+
+namespace evical {
+
+struct HandEye {
+  Eigen::Quaterniond imu_from_camera = Eigen::Quaterniond::Identity();
+  double time_offset_s = 0.0;
+  Eigen::Vector3d gyroscope_bias_rad_s = Eigen::Vector3d::Zero();
+  double residual_rad = 0.0;  // robust RMS over pairs
+  double axis_ratio = 0.0;    // rotation about the second axis relative to the first: 0 for one axis only
+  int pairs = 0;
+};
+
+// From a start offset that is right to about a tenth of a second. Nothing if fewer than five pairs are
+// covered.
+std::optional<HandEye> estimateCameraImuRotation(const std::vector<CameraPose>& poses,
+                                                 const GyroRotation& gyro, double time_offset_s,
+                                                 double pair_gap_s, double longest_pair_s);
+
+}  // namespace evical

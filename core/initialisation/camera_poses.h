@@ -1,0 +1,32 @@
+// Camera poses from single views of the board (method 5.2).
+#pragma once
+
+#include "core/data/calibration_setup.h"
+#include "core/geometry/rigid_transform.h"
+#include "core/initialisation/gyro_rotation.h"
+
+#include <optional>
+#include <vector>
+
+namespace evical {
+
+struct CameraPose {
+  double time_s = 0.0;  // camera clock
+  RigidTransform world_from_camera;
+  double reprojection_px = 0.0;  // RMS
+  std::size_t view = 0;          // index into the observations' views
+  // The other pose that a plane allows, where it fits hardly worse.
+  std::optional<RigidTransform> other_world_from_camera;
+};
+
+// One pose a view, its circles brought to view.time_s; views that fit worse than `largest_reprojection_px`
+// are left out.
+std::vector<CameraPose> estimateCameraPoses(const CameraData& camera, const CircleBoard& board,
+                                            double largest_reprojection_px);
+
+// Where a view allows two poses, takes the one whose rotation from its neighbours is as large as the
+// gyroscope's. Returns how many were swapped.
+int resolveAmbiguousPoses(std::vector<CameraPose>& poses, const GyroRotation& gyro, double time_offset_s,
+                          double longest_pair_s);
+
+}  // namespace evical

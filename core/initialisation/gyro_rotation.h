@@ -1,0 +1,38 @@
+// Rotation from the gyroscope alone (method 5.1): integrated between samples, up to a first rotation and a
+// bias.
+#pragma once
+
+#include "core/data/imu_sample.h"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace evical {
+
+class GyroRotation {
+ public:
+  // Times become seconds since start_ns. Samples in time order, at least two.
+  GyroRotation(std::span<const ImuSample> samples, std::int64_t start_ns,
+               const Eigen::Vector3d& bias_rad_s = Eigen::Vector3d::Zero());
+
+  double begin_s() const { return times_s_.front(); }
+  double end_s() const { return times_s_.back(); }
+  bool covers(double from_s, double to_s) const { return from_s >= begin_s() && to_s <= end_s(); }
+
+  // first_from_imu: rotation since the first sample; between samples at constant rate.
+  Eigen::Quaterniond at(double time_s) const;
+  // Rotation vector of imu(from)_from_imu(to).
+  Eigen::Vector3d between(double from_s, double to_s) const;
+  double rateRms_rad_s() const { return rate_rms_rad_s_; }
+
+ private:
+  std::vector<double> times_s_;
+  std::vector<Eigen::Quaterniond> rotations_;
+  double rate_rms_rad_s_ = 0.0;
+};
+
+}  // namespace evical

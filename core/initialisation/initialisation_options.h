@@ -1,0 +1,58 @@
+// What initialisation lets people choose.
+#pragma once
+
+#include "core/base/option_field.h"
+
+namespace evical {
+
+struct InitialisationOptions {
+  double knot_spacing_s = 0.02;
+  double time_offset_search_s = 1.0;
+  double largest_reprojection_px = 1.0;
+  double pair_gap_s = 0.1;
+  double longest_pair_s = 0.3;
+  int least_views = 15;
+  double least_overlap_s = 2.0;
+  double least_rotation_rate_rad_s = 0.03;
+  double gravity_m_s2 = 9.81;
+  double margin_s = 0.1;
+  double least_axis_ratio = 0.05;
+  double position_sigma_m = 2e-3;
+  double acceleration_sigma_m_s2 = 0.1;
+  double translation_sigma_m = 0.5;
+  double accelerometer_bias_sigma_m_s2 = 0.5;
+  bool operator==(const InitialisationOptions&) const = default;
+};
+
+inline constexpr auto kInitialisationFields = std::tuple{
+    Field{"knot_spacing_s", &InitialisationOptions::knot_spacing_s, 0.005, 0.1, "s", "Of both splines."},
+    Field{"time_offset_search_s", &InitialisationOptions::time_offset_search_s, 0.0, 60.0, "s",
+          "The camera's time offset is looked for within plus or minus this."},
+    Field{"largest_reprojection_px", &InitialisationOptions::largest_reprojection_px, 0.05, 20.0, "px",
+          "Views whose circles fit a pose worse than this are left out."},
+    Field{"pair_gap_s", &InitialisationOptions::pair_gap_s, 0.01, 2.0, "s",
+          "Views at least this far apart give a relative rotation."},
+    Field{"longest_pair_s", &InitialisationOptions::longest_pair_s, 0.02, 5.0, "s",
+          "But no further than this."},
+    Field{"least_views", &InitialisationOptions::least_views, 4, 100000, "",
+          "Views of the board that are needed."},
+    Field{"least_overlap_s", &InitialisationOptions::least_overlap_s, 0.5, 60.0, "s",
+          "Camera and IMU must both have recorded for this long."},
+    Field{"least_rotation_rate_rad_s", &InitialisationOptions::least_rotation_rate_rad_s, 0.0, 10.0, "rad/s",
+          "RMS rate below which a recording holds no usable rotation."},
+    Field{"gravity_m_s2", &InitialisationOptions::gravity_m_s2, 0.1, 100.0, "m/s^2", "Norm of gravity."},
+    Field{"margin_s", &InitialisationOptions::margin_s, 0.0, 5.0, "s",
+          "The splines reach this far beyond the first and the last view."},
+    Field{"least_axis_ratio", &InitialisationOptions::least_axis_ratio, 0.0, 1.0, "",
+          "Rotation about a second axis, relative to the first, below which a warning is given."},
+    Field{"position_sigma_m", &InitialisationOptions::position_sigma_m, 1e-6, 1.0, "m",
+          "Of camera positions from single views."},
+    Field{"acceleration_sigma_m_s2", &InitialisationOptions::acceleration_sigma_m_s2, 1e-6, 100.0, "m/s^2",
+          "Of accelerations averaged over a quarter of a knot."},
+    Field{"translation_sigma_m", &InitialisationOptions::translation_sigma_m, 1e-3, 100.0, "m",
+          "Weak prior on the camera's place around the IMU."},
+    Field{"accelerometer_bias_sigma_m_s2", &InitialisationOptions::accelerometer_bias_sigma_m_s2, 1e-3, 100.0,
+          "m/s^2", "Weak prior on the accelerometer's bias around 0."}};
+static_assert(fieldCount<InitialisationOptions>() == std::tuple_size_v<decltype(kInitialisationFields)>);
+
+}  // namespace evical

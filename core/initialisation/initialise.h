@@ -1,0 +1,32 @@
+// From board views and IMU samples to a state from which the batch converges (method section 5).
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/data/calibration_setup.h"
+#include "core/data/calibration_state.h"
+#include "core/initialisation/initialisation_options.h"
+
+#include <string>
+#include <vector>
+
+namespace evical {
+
+struct InitialisationStep {
+  std::string name;    // "camera poses", "time offset", ...
+  std::string result;  // its key number, in words
+  double residual = 0.0;
+  double condition = 0.0;  // 0 where it has none
+};
+
+struct Initialisation {
+  CalibrationState state;
+  std::vector<InitialisationStep> steps;
+  std::vector<std::string> warnings;
+};
+
+// One reference IMU and any number of cameras. Throws CalibrationFailed with a reason in plain words: too few
+// views, too short, no overlap in time, no motion.
+Initialisation initialise(const CalibrationInput& input, const InitialisationOptions& options,
+                          const RunContext& context);
+
+}  // namespace evical
