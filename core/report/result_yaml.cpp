@@ -4,8 +4,8 @@
 #include "core/data/intrinsics_yaml.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
+#include <cmath>
 #include <numbers>
 
 namespace evical {
@@ -13,118 +13,142 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
-// Estimates exactly, their uncertainties to six digits: more would be noise.
-constexpr const char* kEstimate = "{}";
-constexpr const char* kSigma = "{:.6g}";
-
-std::string list(const Eigen::Ref<const Eigen::VectorXd>& values, const char* format) {
-  std::string text = "[";
-  for (Eigen::Index i = 0; i < values.size(); ++i)
-    text += (i == 0 ? "" : ", ") + fmt::format(fmt::runtime(format), values[i]);
-  return text + "]";
+// Values are written so that they read back the same; sigmas need no more than a few digits.
+std::string exact(double value) {
+  if (std::isnan(value)) return ".nan";
+  if (std::isinf(value)) return value > 0.0 ? ".inf" : "-.inf";
+  return fmt::format("{}", value);
+}
+std::string rounded(double value) {
+  return std::isfinite(value) ? fmt::format("{:.6g}", value) : exact(value);
 }
 
-std::string rows(const Eigen::Matrix3d& m, const char* format) {
-  return fmt::format("[{}, {}, {}]", list(m.row(0).transpose(), format), list(m.row(1).transpose(), format),
-                     list(m.row(2).transpose(), format));
+template <class Vector, class Format>
+std::string list(const Vector& values, Format&& format) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ", ") + format(value);
+  return "[" + text + "]";
+}
+std::string matrix(const Eigen::MatrixXd& m, std::string (*format)(double)) {
+  std::string text;
+  for (Eigen::Index row = 0; row < m.rows(); ++row)
+    text += (row == 0 ? "" : ", ") + list(Eigen::VectorXd(m.row(row)), format);
+  return "[" + text + "]";
 }
 
-std::string transformYaml(const char* key, const RigidTransform& transform,
+std::string transformYaml(const char* key, const RigidTransform& pose,
                           const Eigen::Vector3d& rotation_std_rad, const Eigen::Vector3d& translation_std_m) {
   return fmt::format(
       "    {}:\n      rotation_xyzw: {}\n      translation_m: {}\n      rotation_std_deg: {}\n"
       "      translation_std_m: {}\n",
-      key, list(transform.rotation.coeffs(), kEstimate), list(transform.translation_m, kEstimate),
-      list(rotation_std_rad * kDegPerRad, kSigma), list(translation_std_m, kSigma));
+      key, list(pose.rotation.coeffs(), exact), list(pose.translation_m, exact),
+      list(Eigen::Vector3d(kDegPerRad * rotation_std_rad), rounded), list(translation_std_m, rounded));
 }
 
-std::string cameraYaml(const DocumentedCamera& camera) {
-  const CameraFit& fit = camera.fit;
-  std::string text = fmt::format("  {}:\n", yamlText(camera.name));
-  text += transformYaml("reference_from_camera", camera.state.imu_from_camera,
-                        camera.uncertainty.rotation_std_rad, camera.uncertainty.translation_std_m);
-  text += fmt::format("    time_offset_s: {}\n    time_offset_std_s: {:.6g}\n", camera.state.time_offset_s,
-                      camera.uncertainty.time_offset_std_s);
-  text += fmt::format("    edge_lead_px: {}\n    edge_lead_std_px: {:.6g}\n", camera.state.edge_lead_px,
-                      camera.uncertainty.edge_lead_std_px);
-  if (camera.intrinsics) text += "    intrinsics:\n" + intrinsicsYaml(*camera.intrinsics, 6);
-  text += fmt::format("    reprojection_rms_px: {:.6g}\n    normalised_rms: {:.6g}\n",
-                      fit.reprojection_rms_px, fit.normalised_rms);
-  text += fmt::format("    windows: {{total: {}, complete: {}, partial: {}, used: {}}}\n", fit.windows_total,
-                      fit.windows_complete, fit.windows_partial, fit.windows_used);
-  text += fmt::format("    circles: {{used: {}, rejected: {}}}\n", fit.circles_used, fit.circles_rejected);
+// The i-th of a list that may be shorter than it should: nothing known.
+template <class T>
+T at(const std::vector<T>& values, std::size_t i) {
+  return i < values.size() ? values[i] : T{};
+}
+
+std::string cameraYaml(const NamedResult& named, std::size_t i) {
+  const CameraState& state = named.result.state.cameras[i];
+  const CameraUncertainty sigma = at(named.result.uncertainty.cameras, i);
+  const CameraFit fit = at(named.result.cameras, i);
+  std::string text = fmt::format("  {}:\n", yamlText(named.names.cameras.at(i)));
+  text += transformYaml("reference_from_camera", state.imu_from_camera, sigma.rotation_std_rad,
+                        sigma.translation_std_m);
+  text += fmt::format(
+      "    time_offset_s: {}\n    time_offset_std_s: {}\n    edge_lead_px: {}\n    edge_lead_std_px: {}\n",
+      exact(state.time_offset_s), rounded(sigma.time_offset_std_s), exact(state.edge_lead_px),
+      rounded(sigma.edge_lead_std_px));
+  if (const auto intrinsics = at(named.names.intrinsics, i))
+    text += "    intrinsics:\n" + intrinsicsYaml(*intrinsics, 6);
+  text += fmt::format("    reprojection_rms_px: {}\n    normalised_rms: {}\n",
+                      rounded(fit.reprojection_rms_px), rounded(fit.normalised_rms));
+  text += fmt::format(
+      "    windows: {{total: {}, complete: {}, partial: {}, used: {}}}\n    circles: {{used: {}, rejected: "
+      "{}}}\n",
+      fit.windows_total, fit.windows_complete, fit.windows_partial, fit.windows_used, fit.circles_used,
+      fit.circles_rejected);
   return text;
 }
 
-std::string imuYaml(const DocumentedImu& imu) {
-  const ImuState& s = imu.state;
-  const ImuUncertainty& u = imu.uncertainty;
-  std::string text = fmt::format("  {}:\n", yamlText(imu.name));
-  text += transformYaml("reference_from_imu", s.reference_from_imu, u.rotation_std_rad, u.translation_std_m);
-  text += fmt::format("    time_offset_s: {}\n    time_offset_std_s: {:.6g}\n", s.time_offset_s,
-                      u.time_offset_std_s);
-  text += fmt::format(
-      "    gyroscope:\n      bias_rad_s: {}\n      bias_std_rad_s: {}\n      mapping: {}\n"
-      "      mapping_std: {}\n      residual_rms_rad_s: {:.6g}\n",
-      list(s.gyroscope_bias_rad_s, kEstimate), list(u.gyroscope_bias_std_rad_s, kSigma),
-      rows(s.gyroscope_mapping, kEstimate), rows(u.gyroscope_mapping_std, kSigma),
-      imu.fit.gyroscope_rms_rad_s);
-  text += fmt::format(
-      "    accelerometer:\n      bias_m_s2: {}\n      bias_std_m_s2: {}\n      mapping: {}\n"
-      "      mapping_std: {}\n      residual_rms_m_s2: {:.6g}\n",
-      list(s.accelerometer_bias_m_s2, kEstimate), list(u.accelerometer_bias_std_m_s2, kSigma),
-      rows(s.accelerometer_mapping, kEstimate), rows(u.accelerometer_mapping_std, kSigma),
-      imu.fit.accelerometer_rms_m_s2);
-  return text;
+std::string inertialYaml(const char* key, const char* unit, const Eigen::Vector3d& bias,
+                         const Eigen::Vector3d& bias_std, const Eigen::Matrix3d& mapping,
+                         const Eigen::Matrix3d& mapping_std, double rms) {
+  return fmt::format(
+      "    {}:\n      bias_{}: {}\n      bias_std_{}: {}\n      mapping: {}\n      mapping_std: {}\n"
+      "      residual_rms_{}: {}\n",
+      key, unit, list(bias, exact), unit, list(bias_std, rounded), matrix(mapping, exact),
+      matrix(mapping_std, rounded), unit, rounded(rms));
 }
 
-std::string uncertaintyYaml(const UncertaintyReport& report) {
-  std::string text = fmt::format("observability:\n  weakest: {}\n  values: [{:.4g}]\n",
-                                 yamlText(report.weakest), fmt::join(report.observability, ", "));
-  text += "uncertainty:\n  names:\n";
-  for (const std::string& name : report.names) text += fmt::format("    - {}\n", yamlText(name));
+std::string imuYaml(const NamedResult& named, std::size_t i) {
+  const ImuState& state = named.result.state.imus[i];
+  const ImuUncertainty sigma = at(named.result.uncertainty.imus, i);
+  const ImuFit fit = at(named.result.imus, i);
+  std::string text = fmt::format("  {}:\n", yamlText(named.names.imus.at(i)));
+  text += transformYaml("reference_from_imu", state.reference_from_imu, sigma.rotation_std_rad,
+                        sigma.translation_std_m);
+  text += fmt::format("    time_offset_s: {}\n    time_offset_std_s: {}\n", exact(state.time_offset_s),
+                      rounded(sigma.time_offset_std_s));
+  text += inertialYaml("gyroscope", "rad_s", state.gyroscope_bias_rad_s, sigma.gyroscope_bias_std_rad_s,
+                       state.gyroscope_mapping, sigma.gyroscope_mapping_std, fit.gyroscope_rms_rad_s);
   text +=
-      fmt::format("  standard_deviations: {}\n  correlation:\n", list(report.standard_deviations, kSigma));
-  for (Eigen::Index i = 0; i < report.correlation.rows(); ++i)
-    text += fmt::format("    - {}\n", list(report.correlation.row(i).transpose(), "{:.4f}"));
+      inertialYaml("accelerometer", "m_s2", state.accelerometer_bias_m_s2, sigma.accelerometer_bias_std_m_s2,
+                   state.accelerometer_mapping, sigma.accelerometer_mapping_std, fit.accelerometer_rms_m_s2);
   return text;
 }
 
-std::string estimatesYaml(const ResultDocument& document) {
-  std::string text = fmt::format("reference: {}\ncameras:\n", yamlText(document.reference));
-  for (const DocumentedCamera& camera : document.cameras) text += cameraYaml(camera);
-  text += "imus:\n";
-  for (const DocumentedImu& imu : document.imus) text += imuYaml(imu);
-  text += fmt::format("gravity_m_s2: {}\ngravity_direction_std_deg: {:.6g}\n",
-                      list(document.gravity_in_world_m_s2, kEstimate),
-                      document.uncertainty.gravity_direction_std_rad * kDegPerRad);
-  if (!document.uncertainty.names.empty()) text += uncertaintyYaml(document.uncertainty);
+std::string uncertaintyYaml(const UncertaintyReport& uncertainty) {
+  std::string text =
+      fmt::format("gravity_direction_std_deg: {}\nobservability:\n  weakest: {}\n  values: {}\n",
+                  rounded(kDegPerRad * uncertainty.gravity_direction_std_rad), yamlText(uncertainty.weakest),
+                  list(uncertainty.observability, rounded));
+  if (uncertainty.names.empty()) return text;
+  text += "uncertainty:\n  names:\n";
+  for (const std::string& name : uncertainty.names) text += fmt::format("    - {}\n", yamlText(name));
+  text += fmt::format("  std: {}\n  correlation:\n", list(uncertainty.standard_deviations, rounded));
+  const auto fourDecimals = [](double value) { return rounded(std::round(value * 1e4) / 1e4); };
+  for (Eigen::Index row = 0; row < uncertainty.correlation.rows(); ++row)
+    text += fmt::format("    - {}\n", list(Eigen::VectorXd(uncertainty.correlation.row(row)), fourDecimals));
   return text;
 }
 
-std::string programYaml(const ProgramInfo& program) {
-  std::string text = fmt::format("program:\n  version: {}\n", yamlText(program.version));
-  if (program.options.empty()) return text + "  options: {}\n";
-  text += "  options:\n";
-  for (const auto& [name, value] : program.options)
-    text += fmt::format("    {}: {}\n", name, yamlText(value));
+std::string runYaml(const NamedResult& named) {
+  const Timing& timing = named.result.timing;
+  std::string text = named.result.notes.empty() ? "notes: []\n" : "notes:\n";
+  for (const std::string& note : named.result.notes) text += fmt::format("  - {}\n", yamlText(note));
+  text += fmt::format(
+      "timing_s: {{read: {:.3f}, detect: {:.3f}, initialise: {:.3f}, optimise: {:.3f}, total: {:.3f}}}\n",
+      timing.read_s, timing.detect_s, timing.initialise_s, timing.optimise_s, timing.total_s);
+  text += fmt::format("memory_peak_mb: {:.0f}\nprogram:\n  version: {}\n", named.result.memory_peak_mb,
+                      yamlText(named.names.version));
+  text += named.names.options.empty() ? "  options: {}\n" : "  options:\n";
+  for (const OptionRow& row : named.names.options) text += fmt::format("    {}: {}\n", row.name, row.value);
   return text;
 }
 
 }  // namespace
 
-std::string resultYaml(const ResultDocument& document) {
-  std::string text = fmt::format("evical_result: 1\nstatus: {}\nreason: {}\n", statusName(document.status),
-                                 yamlText(document.reason));
-  if (!document.cameras.empty()) text += estimatesYaml(document);
-  if (!document.notes.empty()) text += "notes:\n";
-  for (const std::string& note : document.notes) text += fmt::format("  - {}\n", yamlText(note));
-  const Timing& t = document.timing;
-  text += fmt::format(
-      "timing_s: {{read: {:.3f}, detect: {:.3f}, initialise: {:.3f}, optimise: {:.3f}, total: {:.3f}}}\n",
-      t.read_s, t.detect_s, t.initialise_s, t.optimise_s, t.total_s);
-  text += fmt::format("memory_peak_mb: {:.1f}\n", document.memory_peak_mb);
-  return text + programYaml(document.program);
+const char* statusName(CalibrationStatus status) {
+  if (status == CalibrationStatus::Ok) return "ok";
+  return status == CalibrationStatus::Doubtful ? "doubtful" : "failed";
+}
+
+std::string resultYaml(const NamedResult& named) {
+  const CalibrationState& state = named.result.state;
+  std::string text = fmt::format("evical_result: 1\nstatus: {}\nreason: {}\nreference: {}\n",
+                                 statusName(named.result.status), yamlText(named.result.reason),
+                                 yamlText(named.names.reference));
+  text += state.cameras.empty() ? "cameras: {}\n" : "cameras:\n";
+  for (std::size_t i = 0; i < state.cameras.size(); ++i) text += cameraYaml(named, i);
+  text += state.imus.empty() ? "imus: {}\n" : "imus:\n";
+  for (std::size_t i = 0; i < state.imus.size(); ++i) text += imuYaml(named, i);
+  if (!state.imus.empty())
+    text += fmt::format("gravity_m_s2: {}\n", list(state.gravity_in_world_m_s2, exact));
+  return text + uncertaintyYaml(named.result.uncertainty) + runYaml(named);
 }
 
 }  // namespace evical

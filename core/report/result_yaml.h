@@ -1,18 +1,38 @@
-// result.yaml, our result file: written from a document, and read back into one. Truth files of simulations
-// have the same keys and are read by the same function.
+// result.yaml: what a calibration says, as a file that programs and people read. Keys are a contract.
 #pragma once
 
-#include "core/report/result_document.h"
+#include "core/base/option_yaml.h"
+#include "core/data/calibration_result.h"
+#include "core/geometry/camera_model.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace evical {
 
-std::string resultYaml(const ResultDocument& document);
+// What a result needs besides the numbers to be read by itself. Lists run parallel to those of the state.
+struct ResultNames {
+  std::string reference;
+  std::vector<std::string> cameras, imus;
+  std::vector<std::optional<CameraIntrinsics>> intrinsics;  // as used
+  std::string version;
+  std::vector<OptionRow> options;  // that differ from their defaults
+};
 
-// Throws CalibrationError (BadInput) where the file is no result or truth. Unknown keys are left alone: newer
-// versions add some.
-ResultDocument readResult(const std::filesystem::path& file);
+struct NamedResult {
+  ResultNames names;
+  CalibrationResult result;
+};
+
+const char* statusName(CalibrationStatus status);
+
+// A failed run without numbers is written too: status, reason, notes and whatever lists are filled.
+std::string resultYaml(const NamedResult& named);
+
+// All but trajectory, iterations and residuals. Absent numbers stay at their defaults, so that truth.yaml can
+// be read too. Throws CalibrationError (BadInput).
+NamedResult readResultYaml(const std::filesystem::path& file);
 
 }  // namespace evical
