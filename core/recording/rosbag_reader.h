@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/recording/recording_reader.h"
-#include "core/recording/rosbag_format.h"
+#include "core/recording/bag_records.h"
 
 #include <cstdint>
 #include <fstream>

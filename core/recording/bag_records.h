@@ -1,0 +1,53 @@
+// The records of a ROS 1 bag, format 2.0 (wiki.ros.org/Bags/Format/2.0), and the compression of its chunks.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace evical::rosbag {
+
+inline constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
+
+enum class Op : std::uint8_t {
+  Message = 2,
+  BagHeader = 3,
+  IndexData = 4,
+  Chunk = 5,
+  ChunkInfo = 6,
+  Connection = 7,
+};
+
+// The fields of any record's header; what a record does not have stays 0 or empty. Views point into the given
+// bytes.
+struct RecordHeader {
+  std::uint8_t op = 0;
+  std::uint32_t connection = 0;
+  std::uint32_t size = 0;  // of a chunk, uncompressed
+  std::uint64_t index_position = 0, chunk_position = 0;
+  std::int64_t time_ns = 0;
+  std::string_view compression, topic;
+
+  bool is(Op other) const { return op == static_cast<std::uint8_t>(other); }
+};
+
+// False if the bytes are not a list of fields with an op among them.
+bool parseRecordHeader(std::string_view bytes, RecordHeader& header);
+
+// What the data of a connection record tells.
+struct ConnectionData {
+  std::string_view topic, type, md5;
+};
+ConnectionData parseConnectionData(std::string_view bytes);
+
+// Replaces `output` by the chunk's content; false if the data are damaged or do not give `size` bytes. A size
+// that lies does not make memory grow: it follows what the data really hold.
+bool decompressChunk(std::string_view compression, std::string_view data, std::uint32_t size,
+                     std::string& output);
+
+// Replaces `output` by one LZ4 frame.
+void compressLz4(std::string_view data, std::string& output);
+
+}  // namespace evical::rosbag

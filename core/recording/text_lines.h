@@ -1,0 +1,45 @@
+// A text file line by line through a buffer of fixed size, and the numbers in its lines.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+namespace evical {
+
+class TextLines {
+ public:
+  explicit TextLines(const std::filesystem::path& path);
+
+  // The next line without its end, valid until the next call; false at the end of the file. A line beyond the
+  // buffer's size comes in pieces.
+  bool next(std::string_view& line);
+
+  std::uint64_t number() const { return number_; }  // of the line handed out last, from 1
+  std::uint64_t bytesRead() const { return consumed_; }
+  std::uint64_t size() const { return size_; }
+
+ private:
+  bool refill();
+
+  std::ifstream file_;
+  std::string buffer_;
+  std::size_t begin_ = 0, end_ = 0;  // what of the buffer is not handed out
+  std::uint64_t size_ = 0, consumed_ = 0, number_ = 0;
+};
+
+// Takes columns off a line's front; they are separated by blanks, tabs or commas. Empty when there are no
+// more.
+std::string_view takeColumn(std::string_view& line);
+
+// Seconds to ns, exactly for up to 9 decimals, rounded beyond; also with an exponent. False if it is no such
+// number or beyond 2^63 ns.
+bool parseSeconds(std::string_view text, std::int64_t& time_ns);
+
+// A finite number; false otherwise.
+bool parseNumber(std::string_view text, double& value);
+bool parseNumber(std::string_view text, std::uint16_t& value);
+
+}  // namespace evical
