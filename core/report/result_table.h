@@ -1,0 +1,15 @@
+// A result as text for a terminal: every number with its +- (one standard deviation), and the verdict.
+#pragma once
+
+#include "core/report/result_yaml.h"
+
+#include <string>
+
+namespace evical {
+
+std::string resultTable(const NamedResult& named);
+
+// Roll, pitch, yaw in degrees about x, y, z (R = Rz Ry Rx), for people only.
+Eigen::Vector3d rollPitchYaw_deg(const Eigen::Quaterniond& rotation);
+
+}  // namespace evical
