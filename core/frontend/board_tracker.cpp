@@ -24,28 +24,37 @@ BoardTracker::BoardTracker(const CircleBoard& board, Resolution resolution_px,
       start_ns_(start_ns),
       extractor_(resolution_px, options.bursts),
       window_(resolution_px, scene_.ideal, scene_.ideal_scale, board.circles),
+      complete_until_ns_(kLongAgo),
+      last_burst_ns_(kLongAgo),
       last_search_ns_(kLongAgo),
       tracked_until_ns_(kLongAgo) {}
 
 void BoardTracker::add(EventSpan events) {
   if (events.empty()) return;
-  if (!started_) {
-    next_begin_ns_ = events.front().time_ns;
-    started_ = true;
-  }
   new_bursts_.clear();
   extractor_.add(events, new_bursts_);
-  history_.add(new_bursts_);
+  addBursts(new_bursts_, events.front().time_ns, extractor_.completeUntil_ns());
+}
+
+void BoardTracker::addBursts(const std::vector<EdgeBurst>& bursts, std::int64_t first_event_ns,
+                             std::int64_t complete_until_ns) {
+  if (!started_) {
+    next_begin_ns_ = first_event_ns;
+    started_ = true;
+  }
+  history_.add(bursts);
+  for (const EdgeBurst& burst : bursts) last_burst_ns_ = std::max(last_burst_ns_, burst.time_ns);
+  complete_until_ns_ = complete_until_ns;
   processWindows();
 }
 
 BoardObservations BoardTracker::finish() {
   new_bursts_.clear();
   extractor_.finish(new_bursts_);
-  std::int64_t last_ns = next_begin_ns_;
-  for (const EdgeBurst& burst : new_bursts_) last_ns = std::max(last_ns, burst.time_ns);
+  for (const EdgeBurst& burst : new_bursts_) last_burst_ns_ = std::max(last_burst_ns_, burst.time_ns);
   history_.add(new_bursts_);
-  while (started_ && next_begin_ns_ + nanosecondsFrom(options_.detection.shortest_window_s) < last_ns) {
+  while (started_ &&
+         next_begin_ns_ + nanosecondsFrom(options_.detection.shortest_window_s) < last_burst_ns_) {
     const Slot slot{next_begin_ns_, next_begin_ns_ + slotLength_ns(motion_ ? &*motion_ : nullptr)};
     processSlot(slot);
     next_begin_ns_ = slot.end_ns;
@@ -72,7 +81,7 @@ void BoardTracker::processWindows() {
   const std::int64_t margin_ns = nanosecondsFrom(options_.tracking.longest_fit_half_window_s);
   for (;;) {
     const Slot slot{next_begin_ns_, next_begin_ns_ + slotLength_ns(motion_ ? &*motion_ : nullptr)};
-    if (slot.end_ns + margin_ns > extractor_.completeUntil_ns()) return;
+    if (slot.end_ns + margin_ns > complete_until_ns_) return;
     processSlot(slot);
     next_begin_ns_ = slot.end_ns;
     history_.dropBefore(slot.begin_ns - margin_ns - nanosecondsFrom(options_.detection.history_s));

@@ -36,6 +36,10 @@ class BoardTracker {
 
   // Events in time order, inside the resolution.
   void add(EventSpan events);
+  // The same for who extracts bursts elsewhere, e.g. in another thread: bursts as a BurstExtractor hands them
+  // out, and its completeUntil_ns() after them.
+  void addBursts(const std::vector<EdgeBurst>& bursts, std::int64_t first_event_ns,
+                 std::int64_t complete_until_ns);
   BoardObservations finish();
 
   void observeWith(FrontEndObserver* observer) { observer_ = observer; }  // not owned; null: nobody
@@ -68,6 +72,8 @@ class BoardTracker {
   BurstExtractor extractor_;
   BurstHistory history_;
   BurstWindow window_;
+  std::int64_t complete_until_ns_;
+  std::int64_t last_burst_ns_;
   std::vector<EdgeBurst> new_bursts_, window_bursts_;
   std::optional<BoardMotion> motion_;  // last window that held
   std::int64_t next_begin_ns_ = 0;     // of the next slot
