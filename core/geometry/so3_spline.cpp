@@ -111,23 +111,28 @@ void So3Segment::initialise(const std::array<Quaterniond, 4>& rotations, bool wi
 void So3Segment::evaluate(double u, RotationOrder order, RotationSample& sample,
                           RotationJacobians* jacobians) const {
   const CumulativeWeights l = cumulativeWeights(u, knot_spacing_s_);
-  std::array<Matrix3d, 3> steps, by_scaled_step;  // A_j, and their right Jacobians times l_j
+  Factors factors;
   for (std::size_t j = 0; j < 3; ++j) {
     const double weight = l.value[static_cast<Eigen::Index>(j)];
-    expAndRightJacobian(weight * steps_[j], steps[j], by_scaled_step[j]);
-    if (jacobians) by_scaled_step[j] *= weight;
+    expAndRightJacobian(weight * steps_[j], factors.rotations[j], factors.by_step[j]);
+    if (jacobians) factors.by_step[j] *= weight;
   }
-  const Matrix3d tail = steps[1] * steps[2];
-  const Matrix3d all = steps[0] * tail;
+  const std::array<Matrix3d, 3>& a = factors.rotations;
+  const Matrix3d tail = a[1] * a[2];
+  const Matrix3d all = a[0] * tail;
   sample.rotation.noalias() = first_ * all;
   if (jacobians) {
-    const std::array<Matrix3d, 3> by_step = {tail.transpose() * by_scaled_step[0],
-                                             steps[2].transpose() * by_scaled_step[1], by_scaled_step[2]};
+    const std::array<Matrix3d, 3> by_step = {tail.transpose() * factors.by_step[0],
+                                             a[2].transpose() * factors.by_step[1], factors.by_step[2]};
     chainToControlPoints(by_step, inverse_jacobians_, jacobians->rotation);
     jacobians->rotation[0] += all.transpose();
   }
-  if (order == RotationOrder::Rotation) return;
+  if (order != RotationOrder::Rotation) evaluateRates(l, factors, order, sample, jacobians);
+}
 
+// The recursions of method section 2, and their derivatives with respect to d_1 .. d_3 alongside.
+void So3Segment::evaluateRates(const CumulativeWeights& l, const Factors& factors, RotationOrder order,
+                               RotationSample& sample, RotationJacobians* jacobians) const {
   Vector3d velocity = l.first_s[0] * steps_[0];
   Vector3d acceleration = l.second_s2[0] * steps_[0];
   std::array<Matrix3d, 3> velocity_by_step, acceleration_by_step;
@@ -137,21 +142,21 @@ void So3Segment::evaluate(double u, RotationOrder order, RotationSample& sample,
   }
   for (std::size_t j = 1; j < 3; ++j) {
     const auto row = static_cast<Eigen::Index>(j);
-    const Matrix3d back = steps[j].transpose();
+    const Matrix3d back = factors.rotations[j].transpose();
     const Vector3d own_velocity = l.first_s[row] * steps_[j];
     const Vector3d turned_velocity = back * velocity, turned_acceleration = back * acceleration;
     velocity = turned_velocity + own_velocity;
     acceleration = turned_acceleration + l.second_s2[row] * steps_[j] + velocity.cross(own_velocity);
     if (!jacobians) continue;
     for (std::size_t i = 0; i < j; ++i) velocity_by_step[i] = (back * velocity_by_step[i]).eval();
-    velocity_by_step[j] = crossColumns(turned_velocity, by_scaled_step[j]);
+    velocity_by_step[j] = crossColumns(turned_velocity, factors.by_step[j]);
     velocity_by_step[j].diagonal().array() += l.first_s[row];
     if (order != RotationOrder::Acceleration) continue;
     for (std::size_t i = 0; i < j; ++i) {
       acceleration_by_step[i] =
           (back * acceleration_by_step[i]).eval() - crossColumns(own_velocity, velocity_by_step[i]);
     }
-    acceleration_by_step[j] = crossColumns(turned_acceleration, by_scaled_step[j]) +
+    acceleration_by_step[j] = crossColumns(turned_acceleration, factors.by_step[j]) +
                               l.first_s[row] * skew(velocity) -
                               crossColumns(own_velocity, velocity_by_step[j]);
     acceleration_by_step[j].diagonal().array() += l.second_s2[row];

@@ -14,6 +14,8 @@
 
 namespace evical {
 
+struct CumulativeWeights;  // spline_basis.h
+
 struct So3Spline {
   double start_s = 0.0;  // time of the first segment's begin
   double knot_spacing_s = 0.02;
@@ -68,6 +70,12 @@ class So3Segment {
                 RotationJacobians* jacobians = nullptr) const;
 
  private:
+  // A_1 .. A_3, and how they turn with d_1 .. d_3.
+  struct Factors {
+    std::array<Eigen::Matrix3d, 3> rotations, by_step;
+  };
+  void evaluateRates(const CumulativeWeights& weights, const Factors& factors, RotationOrder order,
+                     RotationSample& sample, RotationJacobians* jacobians) const;
   void initialise(const std::array<Eigen::Quaterniond, 4>& rotations, bool with_jacobians);
 
   double knot_spacing_s_;

@@ -44,15 +44,15 @@ CalibrationProblem::CalibrationProblem(const CalibrationInput& input, const Opti
   scales.accelerometers.assign(input.imus.size(), 1.0);
 }
 
-void CalibrationProblem::build(ReleaseStages stage, Circles circles) {
+void CalibrationProblem::build(ReleaseStages stage) {
   blocks_.clear();
   assigned_offsets_s_.clear();
   for (const CameraState& camera : state_.cameras) assigned_offsets_s_.push_back(camera.time_offset_s);
   for (const ImuState& imu : state_.imus) assigned_offsets_s_.push_back(imu.time_offset_s);
   problem_ = std::make_unique<ceres::Problem>(borrowManifolds());
-  for (std::size_t i = 0; i < state_.cameras.size(); ++i) addCircles(i, circles);
+  for (std::size_t i = 0; i < state_.cameras.size(); ++i) addCircles(i);
   for (std::size_t i = 0; i < state_.imus.size(); ++i) {
-    if (isReference(i) || stage != ReleaseStages::Extrinsics) addImu(i, stage);
+    if (isReference(i) || stage != ReleaseStages::Extrinsics) addImu(i);
   }
   addPriors(stage);
   setManifolds(stage);
@@ -120,13 +120,13 @@ CircleMeasurement CalibrationProblem::measurement(std::size_t camera, std::size_
   return m;
 }
 
-void CalibrationProblem::addCircles(std::size_t camera, Circles circles) {
+void CalibrationProblem::addCircles(std::size_t camera) {
   CameraState& state = state_.cameras[camera];
   std::vector<CircleMeasurement> measurements;
   const auto& views = input_.cameras[camera].observations.views;
   for (std::size_t view = 0; view < views.size(); ++view) {
     for (std::size_t i = 0; i < views[view].circles.size(); ++i) {
-      if (circles == Circles::Used && !used_circles[camera][view][i]) continue;
+      if (!used_circles[camera][view][i]) continue;
       const double time_s = views[view].circles[i].time_s + state.time_offset_s;
       if (!state_.world_from_imu_rotation.contains(time_s) || !state_.imu_in_world_m.contains(time_s))
         continue;
@@ -156,66 +156,70 @@ void CalibrationProblem::addCircles(std::size_t camera, Circles circles) {
   }
 }
 
-void CalibrationProblem::addImu(std::size_t imu, ReleaseStages) {
+void CalibrationProblem::addImu(std::size_t imu) {
+  const auto& samples = input_.imus[imu].samples;
+  const auto timeOf = [&](const ImuSample& sample) {
+    return secondsSince(input_.start_ns, sample.time_ns) + state_.imus[imu].time_offset_s;
+  };
+  const auto inRotation = [&](double time_s) { return state_.world_from_imu_rotation.contains(time_s); };
+  const auto inPosition = [&](double time_s) { return state_.imu_in_world_m.contains(time_s); };
+  for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end) {
+    const double begin_s = timeOf(samples[begin]);
+    end = begin + 1;
+    if (!inRotation(begin_s)) continue;
+    const SegmentTimes segment = segmentAt(begin_s);
+    while (end < samples.size() && inRotation(timeOf(samples[end])) &&
+           inPosition(timeOf(samples[end])) == inPosition(begin_s) &&
+           sameSegment(segment, segmentAt(timeOf(samples[end])))) {
+      ++end;
+    }
+    const std::span<const ImuSample> some(samples.data() + begin, end - begin);
+    addGyroscope(imu, segment, begin_s, some);
+    if (inPosition(begin_s)) addAccelerometer(imu, segment, begin_s, some);
+  }
+}
+
+void CalibrationProblem::addGyroscope(std::size_t imu, const SegmentTimes& segment, double time_s,
+                                      std::span<const ImuSample> samples) {
   ImuState& state = state_.imus[imu];
   const ImuData& data = input_.imus[imu];
-  const ImuRole role = isReference(imu) ? ImuRole::Reference : ImuRole::Further;
-  const double root_rate = std::sqrt(data.rate_hz());
-  const double gyroscope_sigma = scales.gyroscopes[imu] * data.noise.gyroscope_density * root_rate;
-  const double accelerometer_sigma =
-      scales.accelerometers[imu] * data.noise.accelerometer_density * root_rate;
-  const auto timeOf = [&](const ImuSample& sample) {
-    return secondsSince(input_.start_ns, sample.time_ns) +
-           (role == ImuRole::Further ? state.time_offset_s : 0.0);
-  };
-  std::size_t begin = 0;
-  const auto& samples = data.samples;
-  while (begin < samples.size()) {
-    const double begin_s = timeOf(samples[begin]);
-    if (!state_.world_from_imu_rotation.contains(begin_s)) {
-      ++begin;
-      continue;
-    }
-    const SegmentTimes segment = segmentAt(begin_s);
-    const bool has_position = state_.imu_in_world_m.contains(begin_s);
-    std::vector<InertialMeasurement> rates, forces;
-    std::size_t end = begin;
-    for (; end < samples.size(); ++end) {
-      const double time_s = timeOf(samples[end]);
-      if (!state_.world_from_imu_rotation.contains(time_s) || !sameSegment(segment, segmentAt(time_s)) ||
-          state_.imu_in_world_m.contains(time_s) != has_position) {
-        break;
-      }
-      const double own_time_s = secondsSince(input_.start_ns, samples[end].time_ns);
-      rates.push_back({own_time_s, samples[end].angular_rate_rad_s});
-      forces.push_back({own_time_s, samples[end].specific_force_m_s2});
-    }
-    std::vector<double*> rate_blocks, force_blocks;
-    appendRotationBlocks(segment, rate_blocks);
-    rate_blocks.insert(rate_blocks.end(),
-                       {state.gyroscope_bias_rad_s.data(), gyroscope_mappings_[imu].data()});
-    appendRotationBlocks(segment, force_blocks);
-    appendPositionBlocks(segment, force_blocks);
-    force_blocks.insert(force_blocks.end(),
-                        {state_.gravity_in_world_m_s2.data(), state.accelerometer_bias_m_s2.data(),
-                         accelerometer_mappings_[imu].data()});
-    if (role == ImuRole::Further) {
-      rate_blocks.insert(rate_blocks.end(),
-                         {state.reference_from_imu.rotation.coeffs().data(), &state.time_offset_s});
-      force_blocks.insert(force_blocks.end(),
-                          {state.reference_from_imu.rotation.coeffs().data(),
-                           state.reference_from_imu.translation_m.data(), &state.time_offset_s});
-    }
-    auto* rate_cost = new GyroscopeCost(role, gyroscope_sigma, segment, std::move(rates));
-    blocks_.push_back(
-        {problem_->AddResidualBlock(rate_cost, nullptr, rate_blocks), SensorKind::Gyroscope, imu, begin_s});
-    if (has_position) {
-      auto* force_cost = new AccelerometerCost(role, accelerometer_sigma, segment, std::move(forces));
-      blocks_.push_back({problem_->AddResidualBlock(force_cost, nullptr, force_blocks),
-                         SensorKind::Accelerometer, imu, begin_s});
-    }
-    begin = end;
+  const double sigma = scales.gyroscopes[imu] * data.noise.gyroscope_density * std::sqrt(data.rate_hz());
+  std::vector<InertialMeasurement> measurements;
+  for (const ImuSample& sample : samples) {
+    measurements.push_back({secondsSince(input_.start_ns, sample.time_ns), sample.angular_rate_rad_s});
   }
+  std::vector<double*> blocks;
+  appendRotationBlocks(segment, blocks);
+  blocks.insert(blocks.end(), {state.gyroscope_bias_rad_s.data(), gyroscope_mappings_[imu].data()});
+  if (!isReference(imu)) {
+    blocks.insert(blocks.end(), {state.reference_from_imu.rotation.coeffs().data(), &state.time_offset_s});
+  }
+  auto* cost = new GyroscopeCost(roleOf(imu), sigma, segment, std::move(measurements));
+  blocks_.push_back({problem_->AddResidualBlock(cost, nullptr, blocks), SensorKind::Gyroscope, imu, time_s});
+}
+
+void CalibrationProblem::addAccelerometer(std::size_t imu, const SegmentTimes& segment, double time_s,
+                                          std::span<const ImuSample> samples) {
+  ImuState& state = state_.imus[imu];
+  const ImuData& data = input_.imus[imu];
+  const double sigma =
+      scales.accelerometers[imu] * data.noise.accelerometer_density * std::sqrt(data.rate_hz());
+  std::vector<InertialMeasurement> measurements;
+  for (const ImuSample& sample : samples) {
+    measurements.push_back({secondsSince(input_.start_ns, sample.time_ns), sample.specific_force_m_s2});
+  }
+  std::vector<double*> blocks;
+  appendRotationBlocks(segment, blocks);
+  appendPositionBlocks(segment, blocks);
+  blocks.insert(blocks.end(), {state_.gravity_in_world_m_s2.data(), state.accelerometer_bias_m_s2.data(),
+                               accelerometer_mappings_[imu].data()});
+  if (!isReference(imu)) {
+    blocks.insert(blocks.end(), {state.reference_from_imu.rotation.coeffs().data(),
+                                 state.reference_from_imu.translation_m.data(), &state.time_offset_s});
+  }
+  auto* cost = new AccelerometerCost(roleOf(imu), sigma, segment, std::move(measurements));
+  blocks_.push_back(
+      {problem_->AddResidualBlock(cost, nullptr, blocks), SensorKind::Accelerometer, imu, time_s});
 }
 
 void CalibrationProblem::addPriors(ReleaseStages stage) {

@@ -14,6 +14,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace evical {
@@ -59,9 +60,8 @@ class CalibrationProblem {
   CalibrationProblem& operator=(const CalibrationProblem&) = delete;
 
   // Assigns every measurement to the spline segment where the time offsets put it now, with the current
-  // selection of circles and noise scales. `with_rejected` adds all circles in range, for reports only.
-  enum class Circles { Used, All };
-  void build(ReleaseStages stage, Circles circles = Circles::Used);
+  // selection of circles and noise scales.
+  void build(ReleaseStages stage);
 
   ceres::Problem& problem() { return *problem_; }
   const std::vector<BlockInfo>& blocks() const { return blocks_; }
@@ -77,11 +77,16 @@ class CalibrationProblem {
   NoiseScales scales;
 
  private:
-  void addCircles(std::size_t camera, Circles circles);
-  void addImu(std::size_t imu, ReleaseStages stage);
+  void addCircles(std::size_t camera);
+  void addImu(std::size_t imu);
+  void addGyroscope(std::size_t imu, const SegmentTimes& segment, double time_s,
+                    std::span<const ImuSample> samples);
+  void addAccelerometer(std::size_t imu, const SegmentTimes& segment, double time_s,
+                        std::span<const ImuSample> samples);
   void addPriors(ReleaseStages stage);
   void setManifolds(ReleaseStages stage);
   bool isReference(std::size_t imu) const { return imu == input_.reference_imu; }
+  ImuRole roleOf(std::size_t imu) const { return isReference(imu) ? ImuRole::Reference : ImuRole::Further; }
   SegmentTimes segmentAt(double time_s) const;
   CircleMeasurement measurement(std::size_t camera, std::size_t view, std::size_t circle) const;
   void appendRotationBlocks(const SegmentTimes& segment, std::vector<double*>& blocks);

@@ -16,6 +16,7 @@
 #pragma once
 
 #include "core/geometry/camera_model.h"
+#include "core/optimisation/spline_segment.h"
 
 #include <ceres/cost_function.h>
 #include <Eigen/Core>
@@ -37,13 +38,6 @@ struct CircleModel {
   CameraIntrinsics camera;
   double radius_m = 0.0;
   double huber_sigma = 0.0;
-};
-
-// The segments of both splines that a cost function's times lie in.
-struct SegmentTimes {
-  int rotation = 0, position = 0;                         // segment indices
-  double rotation_start_s = 0.0, position_start_s = 0.0;  // where the segments begin
-  double rotation_spacing_s = 0.0, position_spacing_s = 0.0;
 };
 
 class CircleCost final : public ceres::CostFunction {

@@ -1,8 +1,7 @@
 #include "core/optimisation/inertial_cost.h"
 
 #include "core/geometry/so3.h"
-#include "core/geometry/so3_spline.h"
-#include "core/geometry/vector_spline.h"
+#include "core/optimisation/jacobian_rows.h"
 
 namespace evical {
 namespace {
@@ -10,21 +9,9 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-template <int Columns>
-auto rowsOf(double** jacobians, int block, Eigen::Index row) {
-  return Eigen::Map<Eigen::Matrix<double, 3, Columns, Columns == 1 ? Eigen::ColMajor : Eigen::RowMajor>>(
-      jacobians[block] + row * Columns);
-}
-
-void writeRotation(double** jacobians, int block, Eigen::Index row, const Matrix3d& by_delta) {
-  auto rows = rowsOf<4>(jacobians, block, row);
-  rows.leftCols<3>() = by_delta;
-  rows.col(3).setZero();
-}
-
 // d(M v)/d(upper triangle), times the weight.
 void writeMapping(double** jacobians, int block, Eigen::Index row, const Vector3d& v, double weight) {
-  auto rows = rowsOf<6>(jacobians, block, row);
+  auto rows = jacobianRows<3, 6>(jacobians, block, row);
   const Vector3d w = weight * v;
   rows << w.x(), w.y(), w.z(), 0.0, 0.0, 0.0,  //
       0.0, 0.0, 0.0, w.y(), w.z(), 0.0,        //
@@ -51,6 +38,98 @@ SpecificForce specificForce(const RotationSample& rotation, const VectorSample& 
   const Vector3d& w = rotation.angular_velocity_rad_s;
   return {from_motion,
           from_motion + rotation.angular_acceleration_rad_s2.cross(lever_arm) + w.cross(w.cross(lever_arm))};
+}
+
+enum AccelerometerBlock {
+  kPosition = 4,
+  kGravity = 8,
+  kForceBias,
+  kForceMapping,
+  kForceRotation,
+  kLeverArm,
+  kForceTimeOffset
+};
+
+// The accelerometer's blocks, ready for use.
+struct Accelerometer {
+  bool further;
+  Vector3d gravity, bias, lever_arm = Vector3d::Zero();
+  Matrix3d mapping, imu_from_reference = Matrix3d::Identity();  // mapping: times the weight
+  double weight, time_offset_s = 0.0;
+
+  Accelerometer(ImuRole role, double sample_weight, double const* const* parameters)
+      : further(role == ImuRole::Further),
+        gravity(parameters[kGravity]),
+        bias(parameters[kForceBias]),
+        mapping(sample_weight * mappingFromParameters(parameters[kForceMapping])),
+        weight(sample_weight) {
+    if (!further) return;
+    imu_from_reference =
+        Eigen::Map<const Eigen::Quaterniond>(parameters[kForceRotation]).toRotationMatrix().transpose();
+    lever_arm = Eigen::Map<const Vector3d>(parameters[kLeverArm]);
+    time_offset_s = *parameters[kForceTimeOffset];
+  }
+  // The rates matter through the lever arm only.
+  RotationOrder order() const { return further ? RotationOrder::Acceleration : RotationOrder::Rotation; }
+};
+
+struct MotionAtSample {
+  RotationSample rotation;
+  RotationJacobians by_control_points;
+  VectorSample position;
+
+  MotionAtSample() {
+    rotation.angular_velocity_rad_s.setZero();
+    rotation.angular_acceleration_rad_s2.setZero();
+  }
+};
+
+// Derivatives of one sample's residual with respect to both splines' control points.
+void writeSplineRows(const Accelerometer& model, const MotionAtSample& motion, const SpecificForce& force,
+                     Eigen::Index row, double** jacobians) {
+  const Matrix3d by_force = model.mapping * model.imu_from_reference;
+  const Matrix3d by_world = by_force * motion.rotation.rotation.transpose();
+  const Matrix3d by_attitude = by_force * skew(force.from_motion);
+  const Vector3d& w = motion.rotation.angular_velocity_rad_s;
+  const Matrix3d arm = skew(model.lever_arm);
+  const Matrix3d by_velocity = -by_force * (skew(w.cross(model.lever_arm)) + skew(w) * arm);
+  const Matrix3d by_acceleration = -by_force * arm;
+  for (int k = 0; k < 4; ++k) {
+    const auto point = static_cast<std::size_t>(k);
+    if (jacobians[k]) {
+      Matrix3d by_point = by_attitude * motion.by_control_points.rotation[point];
+      if (model.further) {
+        by_point += by_velocity * motion.by_control_points.velocity[point] +
+                    by_acceleration * motion.by_control_points.acceleration[point];
+      }
+      writeRotationRows<3>(jacobians, k, row, by_point);
+    }
+    if (jacobians[kPosition + k]) {
+      jacobianRows<3, 3>(jacobians, kPosition + k, row) = motion.position.acceleration_weights[k] * by_world;
+    }
+  }
+}
+
+// And with respect to everything else but the time offset.
+void writeModelRows(const Accelerometer& model, const MotionAtSample& motion, const SpecificForce& force,
+                    Eigen::Index row, double** jacobians) {
+  const Matrix3d by_force = model.mapping * model.imu_from_reference;
+  const Vector3d in_imu = model.imu_from_reference * force.total;
+  if (jacobians[kGravity]) {
+    jacobianRows<3, 3>(jacobians, kGravity, row) = -by_force * motion.rotation.rotation.transpose();
+  }
+  if (jacobians[kForceBias])
+    jacobianRows<3, 3>(jacobians, kForceBias, row) = model.weight * Matrix3d::Identity();
+  if (jacobians[kForceMapping]) writeMapping(jacobians, kForceMapping, row, in_imu, model.weight);
+  if (!model.further) return;
+  if (jacobians[kForceRotation]) {
+    writeRotationRows<3>(jacobians, kForceRotation, row, model.mapping * skew(in_imu));
+  }
+  if (jacobians[kLeverArm]) {
+    const Matrix3d w = skew(motion.rotation.angular_velocity_rad_s);
+    jacobianRows<3, 3>(jacobians, kLeverArm, row) =
+        by_force * (skew(motion.rotation.angular_acceleration_rad_s2) + w * w);
+  }
 }
 
 }  // namespace
@@ -90,14 +169,13 @@ bool GyroscopeCost::Evaluate(double const* const* parameters, double* residuals,
   const double time_offset_s = further ? *parameters[kTimeOffset] : 0.0;
   const bool by_spline = anyOf(jacobians, 0, 4), by_time = further && jacobians && jacobians[kTimeOffset];
   const Matrix3d by_rate = mapping * imu_from_reference;
-  const So3Segment rotation_segment(parameters[0], parameters[1], parameters[2], parameters[3],
-                                    segment_.rotation_spacing_s, by_spline);
+  const So3Segment rotation_segment = rotationSegment(segment_, parameters, by_spline);
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(3 * i);
     const double time_s = samples_[i].time_s + time_offset_s;
     RotationSample rotation;
     RotationJacobians by_control_points;
-    rotation_segment.evaluate((time_s - segment_.rotation_start_s) / segment_.rotation_spacing_s,
+    rotation_segment.evaluate(segment_.rotationPlace(time_s),
                               by_time ? RotationOrder::Acceleration : RotationOrder::Velocity, rotation,
                               by_spline ? &by_control_points : nullptr);
     const Vector3d rate = imu_from_reference * rotation.angular_velocity_rad_s;
@@ -105,12 +183,15 @@ bool GyroscopeCost::Evaluate(double const* const* parameters, double* residuals,
     if (!jacobians) continue;
     for (int k = 0; k < 4; ++k) {
       if (jacobians[k])
-        writeRotation(jacobians, k, row, by_rate * by_control_points.velocity[static_cast<std::size_t>(k)]);
+        writeRotationRows<3>(jacobians, k, row,
+                             by_rate * by_control_points.velocity[static_cast<std::size_t>(k)]);
     }
-    if (jacobians[kBias]) rowsOf<3>(jacobians, kBias, row) = weight_ * Matrix3d::Identity();
+    if (jacobians[kBias]) jacobianRows<3, 3>(jacobians, kBias, row) = weight_ * Matrix3d::Identity();
     if (jacobians[kMapping]) writeMapping(jacobians, kMapping, row, rate, weight_);
-    if (further && jacobians[kRotation]) writeRotation(jacobians, kRotation, row, mapping * skew(rate));
-    if (by_time) rowsOf<1>(jacobians, kTimeOffset, row) = by_rate * rotation.angular_acceleration_rad_s2;
+    if (further && jacobians[kRotation])
+      writeRotationRows<3>(jacobians, kRotation, row, mapping * skew(rate));
+    if (by_time)
+      jacobianRows<3, 1>(jacobians, kTimeOffset, row) = by_rate * rotation.angular_acceleration_rad_s2;
   }
   return true;
 }
@@ -126,91 +207,40 @@ AccelerometerCost::AccelerometerCost(ImuRole role, double sigma_m_s2, const Segm
 
 bool AccelerometerCost::Evaluate(double const* const* parameters, double* residuals,
                                  double** jacobians) const {
-  enum { kPosition = 4, kGravity = 8, kBias, kMapping, kRotation, kLeverArm, kTimeOffset };
-  const bool further = role_ == ImuRole::Further;
-  const double* const* p = parameters + kPosition;
-  const Eigen::Map<const Vector3d> gravity(parameters[kGravity]), bias(parameters[kBias]);
-  const Matrix3d mapping = weight_ * mappingFromParameters(parameters[kMapping]);
-  Matrix3d imu_from_reference = Matrix3d::Identity();
-  Vector3d lever_arm = Vector3d::Zero();
-  if (further) {
-    imu_from_reference =
-        Eigen::Map<const Eigen::Quaterniond>(parameters[kRotation]).toRotationMatrix().transpose();
-    lever_arm = Eigen::Map<const Vector3d>(parameters[kLeverArm]);
-  }
-  const double time_offset_s = further ? *parameters[kTimeOffset] : 0.0;
-  const bool by_spline = anyOf(jacobians, 0, 4);
-  const RotationOrder order = further ? RotationOrder::Acceleration : RotationOrder::Rotation;
-  const Matrix3d by_force = mapping * imu_from_reference;
-  const So3Segment rotation_segment(parameters[0], parameters[1], parameters[2], parameters[3],
-                                    segment_.rotation_spacing_s, by_spline);
-  const auto rotationPlace = [&](double t_s) {
-    return (t_s - segment_.rotation_start_s) / segment_.rotation_spacing_s;
-  };
-  const auto positionAt = [&](double t_s) {
-    return evaluateVectorSegment(p[0], p[1], p[2], p[3],
-                                 (t_s - segment_.position_start_s) / segment_.position_spacing_s,
-                                 segment_.position_spacing_s);
+  const Accelerometer model(role_, weight_, parameters);
+  const bool by_spline = anyOf(jacobians, 0, kGravity);
+  const So3Segment rotation_segment = rotationSegment(segment_, parameters, by_spline);
+  const auto moveTo = [&](double time_s, MotionAtSample& motion, bool with_jacobians) {
+    rotation_segment.evaluate(segment_.rotationPlace(time_s), model.order(), motion.rotation,
+                              with_jacobians ? &motion.by_control_points : nullptr);
+    motion.position = positionAt(segment_, parameters + kPosition, time_s);
   };
   // The angular jerk isn't worth a formula: it acts through the lever arm of further IMUs only.
-  const auto forceRate = [&](double t_s) -> Vector3d {
+  const auto forceRate = [&](double time_s) -> Vector3d {
     const double step_s = 1e-4 * segment_.rotation_spacing_s;
-    RotationSample before, after;
-    rotation_segment.evaluate(rotationPlace(t_s - step_s), order, before);
-    rotation_segment.evaluate(rotationPlace(t_s + step_s), order, after);
-    return (specificForce(after, positionAt(t_s + step_s), gravity, lever_arm).total -
-            specificForce(before, positionAt(t_s - step_s), gravity, lever_arm).total) /
+    MotionAtSample before, after;
+    moveTo(time_s - step_s, before, false);
+    moveTo(time_s + step_s, after, false);
+    return (specificForce(after.rotation, after.position, model.gravity, model.lever_arm).total -
+            specificForce(before.rotation, before.position, model.gravity, model.lever_arm).total) /
            (2.0 * step_s);
   };
+  MotionAtSample motion;
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(3 * i);
-    const double time_s = samples_[i].time_s + time_offset_s;
-    RotationSample rotation;
-    rotation.angular_velocity_rad_s.setZero();
-    rotation.angular_acceleration_rad_s2.setZero();
-    RotationJacobians by_control_points;
-    rotation_segment.evaluate(rotationPlace(time_s), order, rotation,
-                              by_spline ? &by_control_points : nullptr);
-    const VectorSample position = positionAt(time_s);
-    const SpecificForce force = specificForce(rotation, position, gravity, lever_arm);
-    const Vector3d in_imu = imu_from_reference * force.total;
-    Eigen::Map<Vector3d>(residuals + row) = mapping * in_imu + weight_ * (bias - samples_[i].value);
+    const double time_s = samples_[i].time_s + model.time_offset_s;
+    moveTo(time_s, motion, by_spline);
+    const SpecificForce force =
+        specificForce(motion.rotation, motion.position, model.gravity, model.lever_arm);
+    Eigen::Map<Vector3d>(residuals + row) =
+        model.mapping * (model.imu_from_reference * force.total) + weight_ * (model.bias - samples_[i].value);
     if (!jacobians) continue;
-    const Matrix3d by_world = by_force * rotation.rotation.transpose();
-    if (by_spline) {
-      const Matrix3d by_attitude = by_force * skew(force.from_motion);
-      Matrix3d by_velocity, by_acceleration;
-      if (further) {
-        const Vector3d& w = rotation.angular_velocity_rad_s;
-        by_velocity = -by_force * (skew(w.cross(lever_arm)) + skew(w) * skew(lever_arm));
-        by_acceleration = -by_force * skew(lever_arm);
-      }
-      for (int k = 0; k < 4; ++k) {
-        if (!jacobians[k]) continue;
-        const auto c = static_cast<std::size_t>(k);
-        Matrix3d by_point = by_attitude * by_control_points.rotation[c];
-        if (further) {
-          by_point += by_velocity * by_control_points.velocity[c] +
-                      by_acceleration * by_control_points.acceleration[c];
-        }
-        writeRotation(jacobians, k, row, by_point);
-      }
+    if (by_spline) writeSplineRows(model, motion, force, row, jacobians);
+    writeModelRows(model, motion, force, row, jacobians);
+    if (model.further && jacobians[kForceTimeOffset]) {
+      jacobianRows<3, 1>(jacobians, kForceTimeOffset, row) =
+          model.mapping * model.imu_from_reference * forceRate(time_s);
     }
-    for (int k = 0; k < 4; ++k) {
-      if (jacobians[kPosition + k]) {
-        rowsOf<3>(jacobians, kPosition + k, row) = position.acceleration_weights[k] * by_world;
-      }
-    }
-    if (jacobians[kGravity]) rowsOf<3>(jacobians, kGravity, row) = -by_world;
-    if (jacobians[kBias]) rowsOf<3>(jacobians, kBias, row) = weight_ * Matrix3d::Identity();
-    if (jacobians[kMapping]) writeMapping(jacobians, kMapping, row, in_imu, weight_);
-    if (!further) continue;
-    if (jacobians[kRotation]) writeRotation(jacobians, kRotation, row, mapping * skew(in_imu));
-    if (jacobians[kLeverArm]) {
-      const Matrix3d w = skew(rotation.angular_velocity_rad_s);
-      rowsOf<3>(jacobians, kLeverArm, row) = by_force * (skew(rotation.angular_acceleration_rad_s2) + w * w);
-    }
-    if (jacobians[kTimeOffset]) rowsOf<1>(jacobians, kTimeOffset, row) = by_force * forceRate(time_s);
   }
   return true;
 }

@@ -13,7 +13,7 @@
 // so3_manifold.h.
 #pragma once
 
-#include "core/optimisation/circle_cost.h"
+#include "core/optimisation/spline_segment.h"
 
 #include <ceres/cost_function.h>
 #include <Eigen/Core>

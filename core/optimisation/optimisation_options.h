@@ -21,12 +21,12 @@ struct OptimisationOptions {
   double accelerometer_bias_sigma_m_s2 = 1.0;
   double translation_sigma_m = 0.5;
   double segment_drift = 0.05;
-  double function_tolerance = 1e-7;
+  double function_tolerance = 1e-6;
   double stage_tolerance = 1e-4;
   int max_iterations = 50;
   int max_rounds = 8;
   int threads = 2;
-  double correlation_time_s = 0.1;
+  double correlation_time_s = 0.2;
   double needed_rotation_deg = 0.1;
   double needed_translation_mm = 1.0;
   double needed_time_offset_ms = 0.1;

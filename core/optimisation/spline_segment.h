@@ -1,0 +1,29 @@
+// The stretch of both splines that one cost function's measurements fall into, and its evaluation from Ceres'
+// blocks.
+#pragma once
+
+#include "core/geometry/so3_spline.h"
+#include "core/geometry/vector_spline.h"
+
+namespace evical {
+
+struct SegmentTimes {
+  int rotation = 0, position = 0;                         // segment indices
+  double rotation_start_s = 0.0, position_start_s = 0.0;  // where the segments begin
+  double rotation_spacing_s = 0.0, position_spacing_s = 0.0;
+
+  double rotationPlace(double time_s) const { return (time_s - rotation_start_s) / rotation_spacing_s; }
+  double positionPlace(double time_s) const { return (time_s - position_start_s) / position_spacing_s; }
+};
+
+inline So3Segment rotationSegment(const SegmentTimes& times, const double* const* blocks,
+                                  bool with_jacobians) {
+  return So3Segment(blocks[0], blocks[1], blocks[2], blocks[3], times.rotation_spacing_s, with_jacobians);
+}
+
+inline VectorSample positionAt(const SegmentTimes& times, const double* const* blocks, double time_s) {
+  return evaluateVectorSegment(blocks[0], blocks[1], blocks[2], blocks[3], times.positionPlace(time_s),
+                               times.position_spacing_s);
+}
+
+}  // namespace evical
