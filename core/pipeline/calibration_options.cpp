@@ -13,6 +13,7 @@ void forEachGroup(Options& all, Visitor&& visit) {
   visit("detection", "The front end as a whole", all.front_end.detection, kDetectionFields);
   visit("bursts", "Edge timing: events of one edge at one pixel", all.front_end.bursts, kBurstFields);
   visit("ring_vote", "Circle candidates", all.front_end.ring_vote, kRingVoteFields);
+  visit("normal_flow", "Circle candidates the published way", all.front_end.normal_flow, kNormalFlowFields);
   visit("moving_circle", "Moving circles, one by one", all.front_end.moving_circle, kMovingCircleFields);
   visit("grid", "Circles to board", all.front_end.grid, kGridFields);
   visit("tracking", "All circles of a window together, and from window to window", all.front_end.tracking,

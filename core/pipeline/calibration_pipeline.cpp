@@ -1,0 +1,181 @@
+#include "core/pipeline/calibration_pipeline.h"
+
+#include "core/base/error.h"
+#include "core/initialisation/initialise.h"
+#include "core/optimisation/batch_optimiser.h"
+#include "core/optimisation/covariance.h"
+#include "core/recording/inspection.h"
+
+#include <fmt/format.h>
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <utility>
+
+namespace evical {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+// Median of |acceleration| tells the unit; a gyroscope's only when it is absurd.
+void checkUnits(const ImuData& imu) {
+  std::vector<double> norms;
+  double rate2 = 0.0;
+  for (const ImuSample& sample : imu.samples) {
+    norms.push_back(sample.specific_force_m_s2.norm());
+    rate2 += sample.angular_rate_rad_s.squaredNorm();
+  }
+  const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
+  std::nth_element(norms.begin(), middle, norms.end());
+  constexpr std::array<double, 2> kPlausible_m_s2 = {7.0, 13.0}, kLooksLikeG = {0.7, 1.3};
+  constexpr double kAbsurd_rad_s = 25.0;
+  if (*middle < kPlausible_m_s2[0] || *middle > kPlausible_m_s2[1]) {
+    const bool g = *middle > kLooksLikeG[0] && *middle < kLooksLikeG[1];
+    throw badInput(imu.name,
+                   fmt::format("accelerations have a median norm of {:.3g} m/s^2, gravity has 9.81{}", *middle,
+                               g ? ": they look like g" : ""),
+                   g ? "Set acceleration_unit: g for this IMU" : "Check acceleration_unit (m/s^2, g, -g) of this IMU");
+  }
+  const double rms = std::sqrt(rate2 / static_cast<double>(imu.samples.size()));
+  if (rms > kAbsurd_rad_s) {
+    throw badInput(imu.name, fmt::format("angular rates of {:.0f} rad/s RMS look like deg/s", rms),
+                   "Set angular_rate_unit: deg/s for this IMU");
+  }
+}
+
+std::string outcomes(const BoardObservations& observations) {
+  std::array<int, kWindowOutcomeCount> counts = {};
+  for (const WindowReport& window : observations.windows) ++counts[static_cast<std::size_t>(window.outcome)];
+  std::string text;
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    if (counts[k] == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", counts[k], windowOutcomeName(static_cast<WindowOutcome>(k)));
+  }
+  return text.empty() ? "no windows" : text;
+}
+
+void checkBoardSeen(const BoardObservations& observations, const CircleBoard& board) {
+  if (!observations.views.empty()) return;
+  int lattices = 0;
+  for (const WindowReport& window : observations.windows) {
+    lattices += window.outcome == WindowOutcome::TooFewInGrid || window.outcome == WindowOutcome::Ambiguous ||
+                window.outcome == WindowOutcome::RefinementFailed;
+  }
+  const bool other_board = 5 * lattices > static_cast<int>(observations.windows.size());
+  throw calibrationFailed(
+      observations.camera,
+      fmt::format("the board was never found in {} windows ({})", observations.windows.size(), outcomes(observations)),
+      other_board ? fmt::format("Circles in rows are there, but no {} x {} board: check rows, cols and circles (dark or "
+                                "bright) in the session",
+                                board.rows, board.cols)
+                  : "Check that the board is in view, in focus and moving, rows, cols and circles (dark or bright) in the "
+                    "session; 'evical detect --images' draws what is seen");
+}
+
+CalibrationInput inputFrom(const Session& session, const RecordingPass& pass) {
+  CalibrationInput input;
+  input.start_ns = pass.start_ns;
+  input.board = session.board;
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
+    input.cameras.push_back({session.cameras[k].name, session.cameras[k].intrinsics, pass.cameras[k]});
+  }
+  input.imus = pass.imus;
+  input.reference_imu = session.referenceImu();
+  return input;
+}
+
+void checkSession(const Session& session) {
+  for (const SessionCamera& camera : session.cameras) {
+    if (camera.intrinsics) continue;
+    throw badInput(fmt::format("{}: cameras.{}.intrinsics", session.source.string(), camera.name),
+                   "intrinsics are missing, and calibrating them from events is not there yet",
+                   "Give the map, or a path to one, to a Kalibr camchain or to a ROS camera_info file");
+  }
+  if (session.imus.empty()) {
+    throw badInput(session.source.string() + ": imus", "there is no IMU, and calibrating cameras alone is not there yet",
+                   "Add the IMU's stream");
+  }
+}
+
+void logDetections(const RecordingPass& pass, const RunContext& context) {
+  for (const BoardObservations& camera : pass.cameras) {
+    context.progress.log(LogLevel::Info, fmt::format("{}: {} events, board in {} of {} windows ({})", camera.camera,
+                                                     camera.events, camera.views.size(), camera.windows.size(),
+                                                     outcomes(camera)));
+  }
+}
+
+}  // namespace
+
+double peakMemory_mb() {
+  rusage usage{};
+  if (getrusage(RUSAGE_SELF, &usage) != 0) return 0.0;
+  constexpr double kBytesPerUnit = 1024.0, kBytesPerMb = 1e6;  // Linux counts in KiB
+  return static_cast<double>(usage.ru_maxrss) * kBytesPerUnit / kBytesPerMb;
+}
+
+CalibrationRun calibrate(const Session& session, const RunContext& context, const ObserverFactory& observers) {
+  checkSession(session);
+  context.progress.stageStarted("detect");
+  return calibrate(session, readAndDetect(session, context, observers), context);
+}
+
+CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context) {
+  CalibrationRun run;
+  run.pass = std::move(pass);
+  for (const ImuData& imu : run.pass.imus) {
+    checkUnits(imu);
+    const std::vector<RecordingFault> faults = checkImu(imu.name, imu.samples);
+    run.pass.faults.insert(run.pass.faults.end(), faults.begin(), faults.end());
+  }
+  for (const RecordingFault& fault : run.pass.faults) context.progress.log(LogLevel::Warning, fault.text);
+  logDetections(run.pass, context);
+  for (const BoardObservations& camera : run.pass.cameras) checkBoardSeen(camera, session.board);
+  const CalibrationInput input = inputFrom(session, run.pass);
+
+  context.progress.stageStarted("initialise");
+  Clock::time_point begin = Clock::now();
+  const Initialisation initial = initialise(input, session.options.initialisation, context);
+  for (const InitialisationStep& step : initial.steps) {
+    context.progress.log(LogLevel::Info, fmt::format("{}: {}", step.name, step.result));
+  }
+  for (const std::string& warning : initial.warnings) context.progress.log(LogLevel::Warning, warning);
+  CalibrationResult& result = run.result;
+  result.timing.initialise_s = secondsSince(begin);
+
+  context.progress.stageStarted("optimise");
+  begin = Clock::now();
+  BatchSolution solution = optimiseBatch(input, initial.state, session.options.optimisation, context);
+  UncertaintyEstimate uncertainty = estimateUncertainty(input, solution, session.options.optimisation, context);
+  context.progress.stageProgress(1.0);
+  result.timing.optimise_s = secondsSince(begin);
+
+  result.status = uncertainty.status;
+  result.reason = uncertainty.reason;
+  if (!solution.converged && result.status == CalibrationStatus::Ok) {
+    result.status = CalibrationStatus::Doubtful;
+    result.reason = "the optimisation did not converge: raise optimisation.max_iterations, or look at the residuals";
+  }
+  result.state = std::move(solution.state);
+  result.uncertainty = std::move(uncertainty.report);
+  result.cameras = std::move(solution.cameras);
+  result.imus = std::move(solution.imus);
+  result.iterations = std::move(solution.iterations);
+  result.circle_residuals = std::move(solution.circle_residuals);
+  for (const RecordingFault& fault : run.pass.faults) result.notes.push_back(fault.text);
+  for (const InitialisationStep& step : initial.steps) result.notes.push_back(step.name + ": " + step.result);
+  result.notes.insert(result.notes.end(), initial.warnings.begin(), initial.warnings.end());
+  result.notes.insert(result.notes.end(), solution.notes.begin(), solution.notes.end());
+  result.timing.read_s = run.pass.read_s;
+  result.timing.detect_s = run.pass.detect_s;
+  result.timing.total_s = std::max(run.pass.read_s, run.pass.detect_s) + result.timing.initialise_s + result.timing.optimise_s;
+  result.memory_peak_mb = peakMemory_mb();
+  return run;
+}
+
+}  // namespace evical

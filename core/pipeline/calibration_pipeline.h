@@ -1,0 +1,28 @@
+// From a session to a result: read and detect, initialise, optimise, judge. The only place that knows the stages' order.
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/data/calibration_result.h"
+#include "core/pipeline/recording_pass.h"
+#include "core/pipeline/session.h"
+
+#include <vector>
+
+namespace evical {
+
+struct CalibrationRun {
+  CalibrationResult result;
+  RecordingPass pass;
+};
+
+// Progress goes by the stages "detect", "initialise", "optimise". Throws CalibrationError, and Cancelled when asked to
+// stop.
+CalibrationRun calibrate(const Session& session, const RunContext& context, const ObserverFactory& observers = {});
+
+// The same from what the front end and the IMUs gave: `pass` as readAndDetect or a simulation makes it.
+CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context);
+
+// How much of the process's memory was in use at most, in MB (10^6 bytes); 0 where the system does not say.
+double peakMemory_mb();
+
+}  // namespace evical

@@ -1,0 +1,368 @@
+#include "core/pipeline/recording_pass.h"
+
+#include "core/base/error.h"
+#include "core/base/time.h"
+#include "core/pipeline/bounded_queue.h"
+#include "core/recording/recording_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <utility>
+
+namespace evical {
+namespace {
+
+constexpr std::size_t kQueuedBatches = 16;
+constexpr std::size_t kBatchEvents = 50'000;
+
+using Clock = std::chrono::steady_clock;
+
+double secondsOf(Clock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+// What the reading thread hands to the window thread: bursts of one camera.
+struct BurstBatch {
+  std::size_t camera = 0;
+  std::vector<EdgeBurst> bursts;
+  std::int64_t first_event_ns = 0, complete_until_ns = 0;
+  std::uint64_t events = 0;
+  std::optional<Resolution> opened_px;  // with the first batch
+  std::int64_t start_ns = 0;
+};
+
+// One camera's events on their way: checked, sorted, turned into bursts.
+class CameraIntake {
+ public:
+  CameraIntake(std::size_t camera, const SessionCamera& session, const StreamInfo& info,
+               const BurstOptions& bursts)
+      : camera_(camera), session_(session), burst_options_(bursts) {
+    resolution_px_ = session.resolution_px.known() ? session.resolution_px : info.resolution_px;
+    if (!resolution_px_.known() && session.intrinsics) resolution_px_ = session.intrinsics->resolution_px;
+    if (!resolution_px_.known()) {
+      throw badInput(session.name, "the recording does not say the sensor's resolution",
+                     "Give resolution_px: [width, height] for this camera in the session");
+    }
+  }
+
+  std::optional<BurstBatch> take(std::vector<Event>& events) {
+    putInOrder(events);
+    if (events.empty()) return std::nullopt;
+    BurstBatch batch;
+    if (!extractor_) {
+      extractor_.emplace(resolution_px_, burst_options_);
+      batch.opened_px = resolution_px_;
+    }
+    batch.camera = camera_;
+    batch.first_event_ns = events.front().time_ns;
+    extractor_->add(events, batch.bursts);
+    batch.complete_until_ns = extractor_->completeUntil_ns();
+    batch.events = events.size();
+    last_ns_ = events.back().time_ns;
+    return batch;
+  }
+
+  std::optional<BurstBatch> finish() {
+    if (!extractor_) return std::nullopt;
+    BurstBatch batch;
+    batch.camera = camera_;
+    extractor_->finish(batch.bursts);
+    batch.first_event_ns = batch.complete_until_ns = last_ns_;
+    return batch;
+  }
+
+  std::uint64_t eventCount() const { return extractor_ ? extractor_->eventCount() : 0; }
+  Resolution resolution_px() const { return resolution_px_; }
+
+  void report(std::vector<RecordingFault>& faults) const {
+    if (unsorted_ > 0) {
+      faults.push_back({session_.stream, "backward_time", 0.0,
+                        fmt::format("{}: {} events out of order, sorted", session_.stream, unsorted_)});
+    }
+    if (late_ > 0) {
+      faults.push_back({session_.stream, "backward_time", 0.0,
+                        fmt::format("{}: time runs backwards: {} events left out", session_.stream, late_)});
+    }
+    if (outside_ > 0) {
+      faults.push_back({session_.stream, "outside_resolution", 0.0,
+                        fmt::format("{}: {} events outside {} x {} px left out", session_.stream, outside_,
+                                    resolution_px_.width_px, resolution_px_.height_px)});
+    }
+  }
+
+ private:
+  void putInOrder(std::vector<Event>& events) {
+    const auto earlier = [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; };
+    if (!std::is_sorted(events.begin(), events.end(), earlier)) {
+      for (std::size_t k = 1; k < events.size(); ++k) unsorted_ += events[k].time_ns < events[k - 1].time_ns;
+      std::stable_sort(events.begin(), events.end(), earlier);
+    }
+    seen_ += events.size();
+    outside_ += std::erase_if(events, [&](const Event& event) {
+      return event.x_px >= resolution_px_.width_px || event.y_px >= resolution_px_.height_px;
+    });
+    late_ += std::erase_if(events, [&](const Event& event) { return event.time_ns < last_ns_; });
+    // A few stray coordinates are a broken packet; many are a wrong resolution.
+    constexpr std::uint64_t kEnough = 1000;
+    if (seen_ >= kEnough && 20 * outside_ > seen_) {
+      throw badInput(session_.name,
+                     fmt::format("resolution_px {} x {} is too small: {} of {} events lie outside",
+                                 resolution_px_.width_px, resolution_px_.height_px, outside_, seen_),
+                     "Give the sensor's own resolution, and intrinsics that belong to it");
+    }
+  }
+
+  std::size_t camera_;
+  const SessionCamera& session_;
+  BurstOptions burst_options_;
+  Resolution resolution_px_;
+  std::optional<BurstExtractor> extractor_;
+  std::int64_t last_ns_ = std::numeric_limits<std::int64_t>::min();
+  std::uint64_t seen_ = 0, outside_ = 0, unsorted_ = 0, late_ = 0;
+};
+
+// The window thread: one tracker a camera.
+class WindowWorker {
+ public:
+  WindowWorker(const Session& session, const RunContext& context, const ObserverFactory& observers)
+      : session_(session), context_(context), observers_(observers), trackers_(session.cameras.size()) {}
+
+  void run(BoundedQueue<BurstBatch>& queue) {
+    try {
+      while (std::optional<BurstBatch> batch = queue.pop()) {
+        if (context_.stop.stop_requested()) break;
+        const Clock::time_point before = Clock::now();
+        handle(*batch);
+        busy_s_ += secondsOf(Clock::now() - before);
+      }
+    } catch (...) {
+      failure_ = std::current_exception();
+    }
+    queue.close();
+  }
+
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+  double busy_s() const { return busy_s_; }
+
+  std::vector<BoardObservations> finish() {
+    std::vector<BoardObservations> observations(trackers_.size());
+    const Clock::time_point before = Clock::now();
+    for (std::size_t k = 0; k < trackers_.size(); ++k) {
+      if (trackers_[k]) observations[k] = trackers_[k]->finish();
+      observations[k].camera = session_.cameras[k].name;
+    }
+    busy_s_ += secondsOf(Clock::now() - before);
+    return observations;
+  }
+
+ private:
+  void handle(const BurstBatch& batch) {
+    std::unique_ptr<BoardTracker>& tracker = trackers_[batch.camera];
+    if (batch.opened_px) {
+      tracker = std::make_unique<BoardTracker>(session_.board, *batch.opened_px,
+                                               session_.cameras[batch.camera].intrinsics,
+                                               session_.options.front_end, batch.start_ns);
+      if (observers_) tracker->observeWith(observers_(batch.camera, tracker->scene()));
+    }
+    tracker->addBursts(batch.bursts, batch.first_event_ns, batch.complete_until_ns);
+  }
+
+  const Session& session_;
+  const RunContext& context_;
+  const ObserverFactory& observers_;
+  std::vector<std::unique_ptr<BoardTracker>> trackers_;
+  std::exception_ptr failure_;
+  double busy_s_ = 0.0;
+};
+
+// Which stream goes where.
+struct Routing {
+  std::vector<std::size_t> selected;
+  std::vector<std::optional<std::size_t>> camera_of, imu_of;  // by stream
+};
+
+Routing route(const Session& session, const RecordingReader& reader) {
+  Routing routing;
+  routing.camera_of.resize(reader.streams().size());
+  routing.imu_of.resize(reader.streams().size());
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
+    const std::size_t stream = findStream(reader, session.cameras[k].stream, StreamType::Events);
+    routing.camera_of[stream] = k;
+    routing.selected.push_back(stream);
+  }
+  for (std::size_t k = 0; k < session.imus.size(); ++k) {
+    const std::size_t stream = findStream(reader, session.imus[k].stream, StreamType::Imu);
+    routing.imu_of[stream] = k;
+    routing.selected.push_back(stream);
+  }
+  return routing;
+}
+
+void toSi(const SessionImu& session, std::vector<ImuSample>& samples) {
+  const double force = metresPerSecond2(session.acceleration_unit),
+               rate = radiansPerSecond(session.angular_rate_unit);
+  for (ImuSample& sample : samples) {
+    sample.specific_force_m_s2 *= force;
+    sample.angular_rate_rad_s *= rate;
+  }
+}
+
+// Reading: packets to intakes and IMUs, within the session's time range.
+class ReadingPass {
+ public:
+  ReadingPass(const Session& session, RecordingReader& reader, RecordingPass& result)
+      : session_(session), reader_(reader), routing_(route(session, reader)), result_(result) {
+    reader.select(routing_.selected);
+    result.imus.resize(session.imus.size());
+    for (std::size_t stream = 0; stream < routing_.camera_of.size(); ++stream) {
+      if (!routing_.camera_of[stream]) continue;
+      intakes_.resize(session.cameras.size());
+      const std::size_t camera = *routing_.camera_of[stream];
+      intakes_[camera] = std::make_unique<CameraIntake>(
+          camera, session.cameras[camera], reader.streams()[stream], session.options.front_end.bursts);
+    }
+  }
+
+  void run(BoundedQueue<BurstBatch>& queue, const RunContext& context) {
+    Packet packet;
+    while (reader_.read(packet)) {
+      context.throwIfStopped();
+      context.progress.stageProgress(reader_.fractionRead());
+      if (packet.events.empty() && packet.imu_samples.empty()) continue;
+      begin(packet);
+      if (routing_.imu_of[packet.stream]) addSamples(packet);
+      if (routing_.camera_of[packet.stream] && !addEvents(packet, queue)) return;
+    }
+    for (std::size_t camera = 0; camera < intakes_.size(); ++camera) {
+      flush(camera, queue);
+      if (std::optional<BurstBatch> batch = intakes_[camera]->finish()) queue.push(std::move(*batch));
+    }
+  }
+
+  void finish() {
+    for (std::size_t k = 0; k < session_.imus.size(); ++k) finishImu(session_.imus[k], result_.imus[k]);
+    for (const auto& intake : intakes_) {
+      intake->report(result_.faults);
+      result_.resolutions_px.push_back(intake->resolution_px());
+    }
+  }
+
+  std::uint64_t eventCount(std::size_t camera) const { return intakes_[camera]->eventCount(); }
+
+ private:
+  void begin(const Packet& packet) {
+    if (begun_) return;
+    begun_ = true;
+    result_.start_ns =
+        packet.events.empty() ? packet.imu_samples.front().time_ns : packet.events.front().time_ns;
+  }
+
+  bool wanted(std::int64_t time_ns) const {
+    if (!session_.time_range_s) return true;
+    const double time_s = secondsSince(result_.start_ns, time_ns);
+    return time_s >= (*session_.time_range_s)[0] && time_s <= (*session_.time_range_s)[1];
+  }
+
+  void addSamples(const Packet& packet) {
+    std::vector<ImuSample>& samples = result_.imus[*routing_.imu_of[packet.stream]].samples;
+    for (const ImuSample& sample : packet.imu_samples) {
+      if (wanted(sample.time_ns)) samples.push_back(sample);
+    }
+  }
+
+  bool addEvents(Packet& packet, BoundedQueue<BurstBatch>& queue) {
+    if (session_.time_range_s)
+      std::erase_if(packet.events, [&](const Event& e) { return !wanted(e.time_ns); });
+    std::vector<Event>& pending = pending_[*routing_.camera_of[packet.stream]];
+    pending.insert(pending.end(), packet.events.begin(), packet.events.end());
+    if (pending.size() < kBatchEvents) return true;
+    return flush(*routing_.camera_of[packet.stream], queue);
+  }
+
+  bool flush(std::size_t camera, BoundedQueue<BurstBatch>& queue) {
+    std::optional<BurstBatch> batch = intakes_[camera]->take(pending_[camera]);
+    pending_[camera].clear();
+    if (!batch) return true;
+    batch->start_ns = result_.start_ns;
+    return queue.push(std::move(*batch));
+  }
+
+  void finishImu(const SessionImu& session, ImuData& imu) {
+    imu.name = session.name;
+    imu.noise = session.noise;
+    const auto earlier = [](const ImuSample& a, const ImuSample& b) { return a.time_ns < b.time_ns; };
+    if (!std::is_sorted(imu.samples.begin(), imu.samples.end(), earlier)) {
+      result_.faults.push_back(
+          {session.stream, "backward_time", 0.0, session.stream + ": samples out of order, sorted"});
+      std::stable_sort(imu.samples.begin(), imu.samples.end(), earlier);
+    }
+    const auto same = [](const ImuSample& a, const ImuSample& b) { return a.time_ns == b.time_ns; };
+    imu.samples.erase(std::unique(imu.samples.begin(), imu.samples.end(), same), imu.samples.end());
+    toSi(session, imu.samples);
+  }
+
+  const Session& session_;
+  RecordingReader& reader_;
+  Routing routing_;
+  RecordingPass& result_;
+  std::vector<std::unique_ptr<CameraIntake>> intakes_;
+  std::map<std::size_t, std::vector<Event>> pending_;
+  bool begun_ = false;
+};
+
+}  // namespace
+
+RecordingPass readAndDetect(const Session& session, const RunContext& context,
+                            const ObserverFactory& observers) {
+  RecordingPass result;
+  const std::unique_ptr<RecordingReader> reader = openRecording(session.recording);
+  const Clock::time_point begin = Clock::now();
+  ReadingPass reading(session, *reader, result);
+  WindowWorker worker(session, context, observers);
+  BoundedQueue<BurstBatch> queue(kQueuedBatches);
+  {
+    std::jthread windows([&] { worker.run(queue); });
+    try {
+      reading.run(queue, context);
+    } catch (...) {
+      queue.close();
+      throw;
+    }
+    result.read_s = secondsOf(Clock::now() - begin);
+    queue.close();
+  }
+  worker.rethrow();
+  context.throwIfStopped();
+  result.cameras = worker.finish();
+  result.detect_s = worker.busy_s();
+  reading.finish();
+  result.faults.insert(result.faults.end(), reader->faults().begin(), reader->faults().end());
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
+    result.cameras[k].events = reading.eventCount(k);
+    if (result.cameras[k].events > 0) continue;
+    throw badInput(session.recording.string(),
+                   fmt::format("stream {} holds no events{}", session.cameras[k].stream,
+                               session.time_range_s ? " in time_range_s" : ""),
+                   "Check the recording with 'evical inspect'");
+  }
+  for (const ImuData& imu : result.imus) {
+    if (!imu.samples.empty()) continue;
+    throw badInput(
+        session.recording.string(),
+        fmt::format("IMU {} has no samples{}", imu.name, session.time_range_s ? " in time_range_s" : ""),
+        "Check the recording with 'evical inspect'");
+  }
+  return result;
+}
+
+}  // namespace evical

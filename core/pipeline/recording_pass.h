@@ -1,0 +1,32 @@
+// One pass over a recording: every camera's events through the front end, every IMU's samples into memory.
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/data/calibration_setup.h"
+#include "core/data/recording.h"
+#include "core/frontend/board_tracker.h"
+#include "core/pipeline/session.h"
+
+#include <functional>
+#include <vector>
+
+namespace evical {
+
+struct RecordingPass {
+  std::int64_t start_ns = 0;  // first event or sample of the session's streams
+  std::vector<BoardObservations> cameras;
+  std::vector<ImuData> imus;  // SI units, in time order
+  std::vector<Resolution> resolutions_px;
+  std::vector<RecordingFault> faults;
+  double read_s = 0.0, detect_s = 0.0;  // the threads' own times, which overlap
+};
+
+// Called for each camera before its first window; what it returns sees the camera's windows. Null: nobody.
+using ObserverFactory = std::function<FrontEndObserver*(std::size_t camera, const BoardScene& scene)>;
+
+// Reads and finds bursts in one thread, searches windows in another; memory does not grow with the number of
+// events. Throws BadInput for streams that are missing, empty, or do not fit the session.
+RecordingPass readAndDetect(const Session& session, const RunContext& context,
+                            const ObserverFactory& observers = {});
+
+}  // namespace evical

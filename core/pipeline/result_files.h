@@ -1,0 +1,25 @@
+// What a run leaves in its folder. All files appear together, or none of them.
+#pragma once
+
+#include "core/pipeline/calibration_pipeline.h"
+#include "core/report/result_yaml.h"
+
+#include <filesystem>
+#include <string>
+
+namespace evical {
+
+NamedResult namedResult(const Session& session, const CalibrationResult& result, const std::string& version);
+
+// result.yaml, trajectory.csv, detections.csv, windows.csv, log.txt
+void writeResultFiles(const std::filesystem::path& folder, const Session& session, const CalibrationRun& run,
+                      const std::string& version, const std::string& log);
+
+// detections.csv, windows.csv, log.txt
+void writeDetectionFiles(const std::filesystem::path& folder, const RecordingPass& pass, const std::string& log);
+
+// result.yaml with status failed and the reason, and log.txt; only where the folder is there already.
+void writeFailure(const std::filesystem::path& folder, const Session& session, const std::string& reason,
+                  const std::string& version, const std::string& log);
+
+}  // namespace evical

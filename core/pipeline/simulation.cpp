@@ -1,0 +1,95 @@
+#include "core/pipeline/simulation.h"
+
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/recording/recording_writer.h"
+#include "core/synthetic/event_simulator.h"
+#include "core/synthetic/imu_simulator.h"
+#include "core/synthetic/scenario_yaml.h"
+
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace evical {
+namespace {
+
+std::vector<StreamInfo> streamsOf(const Scenario& scenario) {
+  std::vector<StreamInfo> streams;
+  for (const SimulatedCamera& camera : scenario.cameras) {
+    StreamInfo info;
+    info.name = camera.stream;
+    info.type = StreamType::Events;
+    info.resolution_px = camera.intrinsics.resolution_px;
+    streams.push_back(info);
+  }
+  for (const SimulatedImu& imu : scenario.imus) {
+    StreamInfo info;
+    info.name = imu.stream;
+    info.type = StreamType::Imu;
+    streams.push_back(info);
+  }
+  return streams;
+}
+
+// IMU samples go out alongside the events, as a recorder would write them.
+class ImuFeed {
+ public:
+  ImuFeed(std::size_t stream, std::vector<ImuSample> samples) : stream_(stream), samples_(std::move(samples)) {}
+
+  void writeUntil(std::int64_t time_ns, RecordingWriter& writer) {
+    const std::size_t begin = next_;
+    while (next_ < samples_.size() && samples_[next_].time_ns <= time_ns) ++next_;
+    if (next_ > begin) writer.write(stream_, std::span<const ImuSample>(samples_).subspan(begin, next_ - begin));
+  }
+  void writeRest(RecordingWriter& writer) {
+    if (next_ < samples_.size()) writer.write(stream_, std::span<const ImuSample>(samples_).subspan(next_));
+    next_ = samples_.size();
+  }
+  std::size_t size() const { return samples_.size(); }
+
+ private:
+  std::size_t stream_;
+  std::vector<ImuSample> samples_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace
+
+SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path& folder, const RunContext& context) {
+  if (scenario.cameras.size() != 1) {
+    throw badInput(scenario.name, "recordings of several cameras cannot be simulated yet", "Give one camera");
+  }
+  makeOutputFolder(folder);
+  const bool text = scenario.format == SimulatedFormat::Text;
+  SimulationSummary summary;
+  summary.recording = text ? folder : folder / "recording.bag";
+  summary.session = folder / "session.yaml";
+  summary.truth = folder / "truth.yaml";
+  context.progress.stageStarted("simulate");
+  const std::unique_ptr<RecordingWriter> writer =
+      text ? createText(folder, streamsOf(scenario)) : createBag(summary.recording, streamsOf(scenario), false);
+  std::vector<ImuFeed> feeds;
+  for (std::size_t k = 0; k < scenario.imus.size(); ++k) {
+    feeds.emplace_back(scenario.cameras.size() + k, simulateImu(scenario, k));
+    summary.imu_samples += feeds.back().size();
+  }
+  simulateEvents(
+      scenario, 0,
+      [&](EventSpan events) {
+        if (events.empty()) return;
+        for (ImuFeed& feed : feeds) feed.writeUntil(events.back().time_ns, *writer);
+        writer->write(0, events);
+        summary.events += events.size();
+      },
+      context);
+  for (ImuFeed& feed : feeds) feed.writeRest(*writer);
+  writer->finish();
+  const std::vector<FileContent> files = {{summary.session, sessionYaml(scenario, text ? "." : "recording.bag")},
+                                          {summary.truth, truthYaml(scenario)}};
+  writeFilesWhole(files);
+  return summary;
+}
+
+}  // namespace evical
