@@ -41,4 +41,9 @@ class RecordingReader {
 // `path`.
 std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path);
 
+// Index of the stream of this name and type; throws CalibrationError (BadInput) that lists those there are.
+std::size_t findStream(const RecordingReader& reader, const std::string& name, StreamType type);
+
+const char* streamTypeName(StreamType type);  // "events", "imu", "frames", "triggers" or "other"
+
 }  // namespace evical

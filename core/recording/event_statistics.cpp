@@ -1,0 +1,132 @@
+#include "core/recording/event_statistics.h"
+
+#include "core/base/nearest_name.h"
+#include "core/base/time.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace evical {
+namespace {
+
+constexpr Resolution kLargest_px = {2048, 2048};  // where the file does not tell; no event sensor has more
+constexpr std::ptrdiff_t kMostAlikeFaults = 10;
+constexpr std::size_t kMostNamedPixels = 8;
+constexpr std::int64_t kClockReset_ns = 1'000'000'000;
+
+}  // namespace
+
+EventStatistics::EventStatistics(const StreamInfo& info, const InspectionOptions& options)
+    : options_(options) {
+  numbers_.info = info;
+  counted_px_ = info.resolution_px.known() ? info.resolution_px : kLargest_px;
+  counted_px_.width_px = std::min(counted_px_.width_px, 2 * kLargest_px.width_px);
+  counted_px_.height_px = std::min(counted_px_.height_px, 2 * kLargest_px.height_px);
+  pixel_counts_.resize(static_cast<std::size_t>(counted_px_.pixelCount()));
+}
+
+void EventStatistics::add(EventSpan events) {
+  if (events.empty()) return;
+  if (numbers_.count == 0) numbers_.first_ns = numbers_.last_ns = events.front().time_ns;
+  const auto width = static_cast<unsigned>(counted_px_.width_px),
+             height = static_cast<unsigned>(counted_px_.height_px);
+  const auto gap_ns = nanosecondsFrom(options_.event_gap_s);
+  std::int64_t previous_ns = numbers_.last_ns;
+  unsigned largest_x = 0, largest_y = 0;
+  for (const Event& event : events) {
+    const std::int64_t interval_ns = event.time_ns - previous_ns;
+    if (interval_ns < 0 || interval_ns > gap_ns) checkInterval(previous_ns, event.time_ns);
+    numbers_.largest_gap_ns = std::max(numbers_.largest_gap_ns, interval_ns);
+    previous_ns = event.time_ns;
+    numbers_.on += event.brighter ? 1 : 0;
+    numbers_.sum_x += event.x_px;
+    numbers_.sum_y += event.y_px;
+    numbers_.sum_t_ns += static_cast<std::uint64_t>(event.time_ns);
+    largest_x = std::max<unsigned>(largest_x, event.x_px);
+    largest_y = std::max<unsigned>(largest_y, event.y_px);
+    if (event.x_px < width && event.y_px < height) {
+      ++pixel_counts_[static_cast<std::size_t>(event.y_px) * width + event.x_px];
+    } else {
+      ++outside_;
+    }
+  }
+  numbers_.last_ns = previous_ns;
+  numbers_.count += events.size();
+  numbers_.seen_px.width_px = std::max(numbers_.seen_px.width_px, static_cast<int>(largest_x) + 1);
+  numbers_.seen_px.height_px = std::max(numbers_.seen_px.height_px, static_cast<int>(largest_y) + 1);
+}
+
+void EventStatistics::checkInterval(std::int64_t previous_ns, std::int64_t time_ns) {
+  const double step_ms = 1e-6 * static_cast<double>(time_ns - previous_ns);
+  if (time_ns >= previous_ns) {
+    addFault("gap", previous_ns, fmt::format("No events for {:.3f} ms.", step_ms));
+    return;
+  }
+  ++numbers_.backward_steps;
+  const char* reset = previous_ns - time_ns > kClockReset_ns ? "; the clock was reset" : "";
+  addFault("backward_time", previous_ns, fmt::format("Time runs backwards by {:.3f} ms{}.", -step_ms, reset));
+}
+
+void EventStatistics::addFault(const char* kind, std::int64_t at_ns, std::string text) {
+  const auto alike = [kind](const RecordingFault& fault) { return fault.kind == kind; };
+  if (std::count_if(faults_.begin(), faults_.end(), alike) >= kMostAlikeFaults) return;
+  faults_.push_back({numbers_.info.name, kind, secondsSince(numbers_.first_ns, at_ns), std::move(text)});
+}
+
+void EventStatistics::finish(StreamSummary& summary, std::vector<RecordingFault>& faults) {
+  numbers_.off = numbers_.count - numbers_.on;
+  const double duration_s = secondsSince(numbers_.first_ns, numbers_.last_ns);
+  if (duration_s > 0.0) numbers_.rate_hz = static_cast<double>(numbers_.count) / duration_s;
+  numbers_.info = summary.info;
+  summary = numbers_;
+  faults.insert(faults.end(), faults_.begin(), faults_.end());
+  const std::string& name = summary.info.name;
+  if (summary.count == 0) faults.push_back({name, "empty", 0.0, "The stream has no events."});
+  if (outside_ > 0 && summary.info.resolution_px.known()) {
+    faults.push_back(
+        {name, "outside", 0.0,
+         fmt::format("{} events lie outside of {} x {} pixels.", outside_,
+                     summary.info.resolution_px.width_px, summary.info.resolution_px.height_px)});
+  }
+  if (duration_s > 0.0) findHotPixels(duration_s, faults);
+}
+
+std::uint32_t EventStatistics::neighbourMedian(int x_px, int y_px) const {
+  std::array<std::uint32_t, 8> counts{};
+  std::size_t found = 0;
+  for (int y = std::max(0, y_px - 1); y <= std::min(counted_px_.height_px - 1, y_px + 1); ++y) {
+    for (int x = std::max(0, x_px - 1); x <= std::min(counted_px_.width_px - 1, x_px + 1); ++x) {
+      if (x != x_px || y != y_px)
+        counts[found++] = pixel_counts_[static_cast<std::size_t>(y * counted_px_.width_px + x)];
+    }
+  }
+  if (found == 0) return 0;
+  const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(found / 2);
+  std::nth_element(counts.begin(), middle, counts.begin() + static_cast<std::ptrdiff_t>(found));
+  return *middle;
+}
+
+void EventStatistics::findHotPixels(double duration_s, std::vector<RecordingFault>& faults) const {
+  const double mean = static_cast<double>(numbers_.count) / numbers_.seen_px.pixelCount();
+  const double least = std::max(options_.hot_pixel_hz * duration_s, options_.hot_pixel_factor * mean);
+  std::vector<std::string> hot;
+  double share = 0.0;
+  for (int y = 0; y < counted_px_.height_px; ++y) {
+    for (int x = 0; x < counted_px_.width_px; ++x) {
+      const double count = pixel_counts_[static_cast<std::size_t>(y * counted_px_.width_px + x)];
+      if (count < least || count < options_.hot_pixel_factor * neighbourMedian(x, y)) continue;
+      hot.push_back(fmt::format("({}, {})", x, y));
+      share += count / static_cast<double>(numbers_.count);
+    }
+  }
+  if (hot.empty()) return;
+  const std::size_t total = hot.size();
+  hot.resize(std::min(total, kMostNamedPixels));
+  faults.push_back({numbers_.info.name, "hot_pixels", 0.0,
+                    fmt::format("{} hot pixels give {:.1f} % of the events: {}{}.", total, 100.0 * share,
+                                joined(hot), total > hot.size() ? ", ..." : "")});
+}
+
+}  // namespace evical

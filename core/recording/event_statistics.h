@@ -1,0 +1,34 @@
+// What inspection gathers about one event stream as its packets go by.
+#pragma once
+
+#include "core/recording/inspection.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace evical {
+
+class EventStatistics {
+ public:
+  EventStatistics(const StreamInfo& info, const InspectionOptions& options);
+
+  void add(EventSpan events);
+
+  // Completes the summary's numbers and appends what is wrong.
+  void finish(StreamSummary& summary, std::vector<RecordingFault>& faults);
+
+ private:
+  void checkInterval(std::int64_t previous_ns, std::int64_t time_ns);
+  void findHotPixels(double duration_s, std::vector<RecordingFault>& faults) const;
+  std::uint32_t neighbourMedian(int x_px, int y_px) const;
+  void addFault(const char* kind, std::int64_t at_ns, std::string text);
+
+  InspectionOptions options_;
+  StreamSummary numbers_;
+  std::vector<RecordingFault> faults_;
+  std::vector<std::uint32_t> pixel_counts_;  // row by row
+  Resolution counted_px_;                    // of pixel_counts_
+  std::uint64_t outside_ = 0;
+};
+
+}  // namespace evical

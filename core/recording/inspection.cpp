@@ -1,0 +1,75 @@
+#include "core/recording/inspection.h"
+
+#include "core/recording/event_statistics.h"
+#include "core/recording/imu_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace evical {
+namespace {
+
+constexpr double kGravity_m_s2 = 9.80665;
+
+void summarise(const std::vector<ImuSample>& samples, const InspectionOptions& options,
+               StreamSummary& summary) {
+  summary.count = samples.size();
+  if (samples.empty()) return;
+  summary.first_ns = samples.front().time_ns;
+  summary.last_ns = samples.back().time_ns;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    summary.mean_acceleration += samples[i].specific_force_m_s2 / static_cast<double>(samples.size());
+    summary.mean_angular_rate += samples[i].angular_rate_rad_s / static_cast<double>(samples.size());
+    if (i == 0) continue;
+    const std::int64_t interval_ns = samples[i].time_ns - samples[i - 1].time_ns;
+    summary.backward_steps += interval_ns < 0 ? 1 : 0;
+    summary.largest_gap_ns = std::max(summary.largest_gap_ns, interval_ns);
+  }
+  const double period_s = medianInterval_s(samples);
+  if (period_s > 0.0) summary.rate_hz = 1.0 / period_s;
+  summary.median_acceleration = medianForceNorm(samples);
+  const auto isGravityIn = [&](double unit_m_s2) {
+    return std::abs(summary.median_acceleration * unit_m_s2 - kGravity_m_s2) <=
+           options.gravity_tolerance_m_s2;
+  };
+  summary.acceleration_unit = isGravityIn(1.0) ? "m/s^2" : isGravityIn(kGravity_m_s2) ? "g" : "unknown";
+  summary.angular_rate_unit = largestRate(samples) <= options.largest_rate_rad_s ? "rad/s" : "unknown";
+}
+
+}  // namespace
+
+Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& options,
+                            const RunContext& context) {
+  Inspection inspection;
+  inspection.format = reader.format();
+  std::map<std::size_t, EventStatistics> events;
+  std::map<std::size_t, std::vector<ImuSample>> imu_samples;
+  for (std::size_t i = 0; i < reader.streams().size(); ++i) {
+    const StreamInfo& info = reader.streams()[i];
+    if (info.type == StreamType::Events) events.try_emplace(i, info, options);
+    if (info.type == StreamType::Imu) imu_samples[i];
+  }
+  Packet packet;
+  while (reader.read(packet)) {
+    context.throwIfStopped();
+    context.progress.stageProgress(reader.fractionRead());
+    if (!packet.events.empty()) events.at(packet.stream).add(packet.events);
+    std::vector<ImuSample>& samples = imu_samples[packet.stream];
+    samples.insert(samples.end(), packet.imu_samples.begin(), packet.imu_samples.end());
+  }
+  inspection.faults = reader.faults();
+  for (std::size_t i = 0; i < reader.streams().size(); ++i) {
+    StreamSummary& summary = inspection.streams.emplace_back();
+    summary.info = reader.streams()[i];
+    summary.count = summary.info.messages;
+    if (summary.info.type == StreamType::Events) events.at(i).finish(summary, inspection.faults);
+    if (summary.info.type != StreamType::Imu) continue;
+    summarise(imu_samples[i], options, summary);
+    const std::vector<RecordingFault> found = checkImu(summary.info.name, imu_samples[i], options);
+    inspection.faults.insert(inspection.faults.end(), found.begin(), found.end());
+  }
+  return inspection;
+}
+
+}  // namespace evical

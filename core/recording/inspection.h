@@ -1,0 +1,52 @@
+// One pass over a recording: what it holds, and what is wrong with it.
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/data/recording.h"
+#include "core/recording/inspection_options.h"
+#include "core/recording/recording_reader.h"
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace evical {
+
+struct StreamSummary {
+  StreamInfo info;
+  std::uint64_t count = 0;  // events, IMU samples; messages of other streams
+  std::int64_t first_ns = 0, last_ns = 0;
+  std::uint64_t backward_steps = 0;
+  std::int64_t largest_gap_ns = 0;
+  double rate_hz = 0.0;  // events: mean; IMU: of the median interval
+
+  // Events.
+  std::uint64_t on = 0, off = 0;
+  std::uint64_t sum_x = 0, sum_y = 0, sum_t_ns = 0;  // modulo 2^64
+  Resolution seen_px;                                // largest coordinates + 1
+
+  // IMU, as the file has them.
+  std::string acceleration_unit,
+      angular_rate_unit;  // a guess from the numbers; "unknown" where they allow none
+  Eigen::Vector3d mean_acceleration = Eigen::Vector3d::Zero();
+  Eigen::Vector3d mean_angular_rate = Eigen::Vector3d::Zero();
+  double median_acceleration = 0.0;  // of the norm
+};
+
+struct Inspection {
+  std::string format;
+  std::vector<StreamSummary> streams;  // as RecordingReader::streams()
+  std::vector<RecordingFault> faults;
+};
+
+// Reads to the end; call on a fresh reader. Event memory is a count a pixel; IMU samples are held.
+Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& options = {},
+                            const RunContext& context = {});
+
+// Gaps, time running backwards, jitter, stuck or saturated axes, units, numbers that are none. SI expected.
+std::vector<RecordingFault> checkImu(const std::string& name, const std::vector<ImuSample>& samples,
+                                     const InspectionOptions& options = {});
+
+}  // namespace evical

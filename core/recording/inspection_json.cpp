@@ -1,0 +1,61 @@
+#include "core/recording/inspection_json.h"
+
+#include <nlohmann/json.hpp>
+
+namespace evical {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json numbers(const Eigen::Vector3d& vector) {
+  return {vector.x(), vector.y(), vector.z()};
+}
+
+Json streamJson(const StreamSummary& stream, bool with_checksums) {
+  const StreamInfo& info = stream.info;
+  Json json = {{"name", info.name},
+               {"type", streamTypeName(info.type)},
+               {"message", info.message},
+               {"count", stream.count}};
+  if (info.type != StreamType::Events && info.type != StreamType::Imu) return json;
+  if (info.type == StreamType::Events) json.update({{"on", stream.on}, {"off", stream.off}});
+  json.update({{"first_ns", stream.first_ns},
+               {"last_ns", stream.last_ns},
+               {"rate_hz", stream.rate_hz},
+               {"backward_steps", stream.backward_steps},
+               {"largest_gap_ns", stream.largest_gap_ns}});
+  if (info.type == StreamType::Imu) {
+    json.update({{"acceleration_unit", stream.acceleration_unit},
+                 {"angular_rate_unit", stream.angular_rate_unit},
+                 {"median_acceleration", stream.median_acceleration},
+                 {"mean_acceleration", numbers(stream.mean_acceleration)},
+                 {"mean_angular_rate", numbers(stream.mean_angular_rate)}});
+    return json;
+  }
+  json["resolution_px"] =
+      info.resolution_px.known() ? Json{info.resolution_px.width_px, info.resolution_px.height_px} : Json();
+  json["seen_px"] = {stream.seen_px.width_px, stream.seen_px.height_px};
+  if (with_checksums) {
+    json.update({{"sum_x", stream.sum_x}, {"sum_y", stream.sum_y}, {"sum_t_ns_mod_2_64", stream.sum_t_ns}});
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string inspectionJson(const Inspection& inspection, bool with_checksums) {
+  Json json = {{"evical_inspect", 1},
+               {"format", inspection.format},
+               {"faults", Json::array()},
+               {"streams", Json::array()}};
+  for (const RecordingFault& fault : inspection.faults) {
+    json["faults"].push_back(
+        {{"stream", fault.stream}, {"kind", fault.kind}, {"at_s", fault.at_s}, {"text", fault.text}});
+  }
+  for (const StreamSummary& stream : inspection.streams)
+    json["streams"].push_back(streamJson(stream, with_checksums));
+  // Names come from the file and may hold any bytes.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace evical

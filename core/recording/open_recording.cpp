@@ -1,0 +1,112 @@
+#include "core/base/error.h"
+#include "core/base/nearest_name.h"
+#include "core/recording/bag_reader.h"
+#include "core/recording/recording_reader.h"
+#include "core/recording/text_table_reader.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <system_error>
+
+namespace evical {
+namespace {
+
+using namespace std::string_view_literals;
+
+constexpr const char* kReadable =
+    "Readable are ROS 1 bags (format 2.0) and text: a folder with events.txt and imu.txt, or one such file.";
+
+// What people may well hand us, by its first bytes.
+struct OtherFormat {
+  std::string_view magic;
+  const char *problem, *advice;
+};
+constexpr OtherFormat kOtherFormats[] = {
+    {"version https://git-lfs"sv, "this is a pointer of Git LFS, not the recording",
+     "Fetch it with `git lfs pull`."},
+    {"PK\3\4"sv, "this is a ZIP archive", "Unpack it first."},
+    {"7z\xBC\xAF"sv, "this is a 7z archive", "Unpack it first."},
+    {"\x1F\x8B"sv, "this is packed with gzip", "Unpack it first."},
+    {"\x28\xB5\x2F\xFD"sv, "this is packed with zstd", "Unpack it first."},
+    {"#ROSBAG"sv, "this is a bag of an old format", "Convert it with `rosbag fix`."},
+    {"SQLite format 3\0"sv, "this is a ROS 2 bag, which cannot be read yet", kReadable},
+    {"\x89MCAP"sv, "this is an MCAP file, which cannot be read yet", kReadable},
+    {"#!AER-DAT"sv, "this is an AEDAT file, which cannot be read yet", kReadable},
+    {"% "sv, "this is a Prophesee RAW or DAT file, which cannot be read yet", kReadable},
+    {"\x89HDF\r\n\x1A\n"sv, "this is an HDF5 file, which cannot be read yet", kReadable},
+    {"Event Stream"sv, "this is an Event Stream file, which cannot be read yet", kReadable},
+};
+
+std::string firstBytes(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw badInput(path.string(), "the file cannot be opened", "Check its permissions.");
+  std::string bytes(1024, '\0');
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  return bytes;
+}
+
+std::unique_ptr<RecordingReader> openFolder(const std::filesystem::path& path) {
+  if (std::filesystem::exists(path / "events.txt") || std::filesystem::exists(path / "imu.txt")) {
+    return std::make_unique<TextTableReader>(path);
+  }
+  if (std::filesystem::exists(path / "metadata.yaml")) {
+    throw badInput(path.string(), "this is a ROS 2 bag, which cannot be read yet", kReadable);
+  }
+  throw badInput(path.string(), "the folder has no events.txt or imu.txt", kReadable);
+}
+
+}  // namespace
+
+std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) {
+    throw badInput(path.string(), "there is no such file or folder", "Check the path.");
+  }
+  if (std::filesystem::is_directory(status)) return openFolder(path);
+  if (!std::filesystem::is_regular_file(status)) {
+    throw badInput(path.string(), "this is no file that can be read twice", "Give a file or a folder.");
+  }
+  const std::string start = firstBytes(path);
+  if (start.empty()) throw badInput(path.string(), "the file is empty", "Record again, or copy it again.");
+  if (start.starts_with(rosbag::kMagic)) return std::make_unique<BagReader>(path);
+  for (const OtherFormat& format : kOtherFormats) {
+    if (start.starts_with(format.magic)) throw badInput(path.string(), format.problem, format.advice);
+  }
+  if (textTableType(start) != StreamType::Other) return std::make_unique<TextTableReader>(path);
+  throw badInput(path.string(), "the format is not known", kReadable);
+}
+
+std::size_t findStream(const RecordingReader& reader, const std::string& name, StreamType type) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < reader.streams().size(); ++i) {
+    const StreamInfo& stream = reader.streams()[i];
+    if (stream.type != type) continue;
+    if (stream.name == name) return i;
+    names.push_back(stream.name);
+  }
+  const std::string kind = streamTypeName(type);
+  throw badInput(name, fmt::format("the recording has no stream of type {} with this name", kind),
+                 names.empty() ? fmt::format("It has no stream of type {} at all.", kind)
+                               : fmt::format("Its streams of this type: {}.", joined(names)));
+}
+
+const char* streamTypeName(StreamType type) {
+  switch (type) {
+    case StreamType::Events:
+      return "events";
+    case StreamType::Imu:
+      return "imu";
+    case StreamType::Frames:
+      return "frames";
+    case StreamType::Triggers:
+      return "triggers";
+    case StreamType::Other:
+      break;
+  }
+  return "other";
+}
+
+}  // namespace evical
