@@ -1,5 +1,5 @@
-// Where things are in a ROS 1 bag: its connections and chunks, from the index at the end, or, where that is missing
-// or damaged, from one pass over the records.
+// Where things are in a ROS 1 bag: its connections and chunks, from the index at the end, or, where that is
+// missing or damaged, from one pass over the records.
 #pragma once
 
 #include "core/recording/chunk_compression.h"
@@ -23,7 +23,8 @@ struct BagChunk {
   struct Count {
     std::uint32_t connection = 0, messages = 0;
   };
-  // Messages by connection. `counted` false: not known (the recorder died before it wrote them), so look inside.
+  // Messages by connection. `counted` false: not known (the recorder died before it wrote them), so look
+  // inside.
   std::vector<Count> counts;
   bool counted = false;
 };
@@ -33,7 +34,8 @@ struct BagLayout {
   std::vector<BagChunk> chunks;  // in the file's order
 };
 
-// Faults ("truncated", "corrupt") name the byte. Throws CalibrationError (BadInput) where there is nothing to read.
+// Faults ("truncated", "corrupt") name the byte. Throws CalibrationError (BadInput) where there is nothing to
+// read.
 BagLayout readBagLayout(const InputFile& file, FaultLog& faults);
 
 // A chunk's own header and the place of its data.
@@ -43,7 +45,8 @@ struct ChunkHeader {
   std::uint32_t packed_size = 0, size = 0;  // as the file claims
 };
 
-// Nothing where there is no chunk at `position`. Throws CalibrationError (BadInput) on an unknown compression.
+// Nothing where there is no chunk at `position`. Throws CalibrationError (BadInput) on an unknown
+// compression.
 std::optional<ChunkHeader> readChunkHeader(const InputFile& file, std::uint64_t position);
 
 // Records inside a chunk, or any bytes that hold whole records.

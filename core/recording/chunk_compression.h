@@ -22,9 +22,10 @@ enum class Unpacked {
   Corrupt,  // they contradict themselves: nothing that came out can be trusted
 };
 
-// Appends to nothing: `unpacked` is replaced, its storage reused. It grows only as bytes really come out, and never
-// beyond `limit`, since the size that a file claims is not to be believed.
-Unpacked unpack(Compression compression, Bytes packed, std::size_t limit, std::vector<std::uint8_t>& unpacked);
+// Appends to nothing: `unpacked` is replaced, its storage reused. It grows only as bytes really come out, and
+// never beyond `limit`, since the size that a file claims is not to be believed.
+Unpacked unpack(Compression compression, Bytes packed, std::size_t limit,
+                std::vector<std::uint8_t>& unpacked);
 
 // Fast settings. Bz2 isn't written: it costs much time for events, and every reader knows lz4.
 void packLz4(Bytes plain, std::vector<std::uint8_t>& packed);

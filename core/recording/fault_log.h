@@ -1,4 +1,5 @@
-// Collects what is wrong with a recording without drowning in it: a million bad lines are a few entries and a count.
+// Collects what is wrong with a recording without drowning in it: a million bad lines are a few entries and a
+// count.
 #pragma once
 
 #include "core/data/recording.h"

@@ -1,5 +1,5 @@
-// A file opened for reading at any place, without mapping: a file that shrinks while it is read gives short reads,
-// not a crash, and its pages do not count as our memory.
+// A file opened for reading at any place, without mapping: a file that shrinks while it is read gives short
+// reads, not a crash, and its pages do not count as our memory.
 #pragma once
 
 #include "core/recording/byte_reader.h"
@@ -21,8 +21,8 @@ class InputFile {
   const std::filesystem::path& path() const { return path_; }
   std::uint64_t size() const { return size_; }
 
-  // Fills `buffer` with up to `count` bytes from `offset`: fewer at the file's end or where the disk fails. Never
-  // allocates more than the file holds from there.
+  // Fills `buffer` with up to `count` bytes from `offset`: fewer at the file's end or where the disk fails.
+  // Never allocates more than the file holds from there.
   void readAt(std::uint64_t offset, std::uint64_t count, std::vector<std::uint8_t>& buffer) const;
 
  private:

@@ -15,7 +15,8 @@ struct Header {
 bool readHeader(ByteReader& reader, Header& header) {
   std::uint32_t sequence = 0, seconds = 0, nanoseconds = 0;
   Bytes frame;
-  if (!reader.read(sequence) || !reader.read(seconds) || !reader.read(nanoseconds) || !reader.takeSized(frame))
+  if (!reader.read(sequence) || !reader.read(seconds) || !reader.read(nanoseconds) ||
+      !reader.takeSized(frame))
     return false;
   header.stamp_ns = std::int64_t{seconds} * kSecond_ns + nanoseconds;
   return nanoseconds < kSecond_ns;
@@ -25,8 +26,7 @@ bool readHeader(ByteReader& reader, Header& header) {
 bool readResolution(ByteReader& reader, Resolution& resolution) {
   std::uint32_t height = 0, width = 0;
   if (!reader.read(height) || !reader.read(width)) return false;
-  if (height <= 65536 && width <= 65536)
-    resolution = {static_cast<int>(width), static_cast<int>(height)};
+  if (height <= 65536 && width <= 65536) resolution = {static_cast<int>(width), static_cast<int>(height)};
   return true;
 }
 
@@ -60,7 +60,8 @@ std::optional<EventArrayView> parseEventArray(Bytes message) {
   std::uint32_t count = 0;
   if (!readHeader(reader, header) || !readResolution(reader, view.resolution_px) || !reader.read(count))
     return std::nullopt;
-  if (reader.remaining() != std::size_t{count} * kRosEventSize || !reader.take(reader.remaining(), view.events))
+  if (reader.remaining() != std::size_t{count} * kRosEventSize ||
+      !reader.take(reader.remaining(), view.events))
     return std::nullopt;
   view.stamp_ns = header.stamp_ns;
   return view;
@@ -83,7 +84,8 @@ std::optional<ImuSample> parseImu(Bytes message) {
   Header header;
   Bytes skipped;
   ImuSample sample;
-  const bool whole = readHeader(reader, header) && reader.take(4 * sizeof(double) + kCovarianceSize, skipped) &&
+  const bool whole = readHeader(reader, header) &&
+                     reader.take(4 * sizeof(double) + kCovarianceSize, skipped) &&
                      readVector(reader, sample.angular_rate_rad_s) && reader.take(kCovarianceSize, skipped) &&
                      readVector(reader, sample.specific_force_m_s2) && reader.take(kCovarianceSize, skipped);
   if (!whole || reader.remaining() != 0) return std::nullopt;
@@ -116,7 +118,8 @@ void appendEventArray(std::vector<std::uint8_t>& bytes, std::uint32_t sequence, 
 void appendImu(std::vector<std::uint8_t>& bytes, std::uint32_t sequence, std::string_view frame,
                const ImuSample& sample) {
   appendHeader(bytes, sequence, sample.time_ns, frame);
-  for (const double value : {0.0, 0.0, 0.0, 1.0}) appendLittleEndian(bytes, value);  // orientation, not measured
+  for (const double value : {0.0, 0.0, 0.0, 1.0})
+    appendLittleEndian(bytes, value);  // orientation, not measured
   appendCovariance(bytes, -1.0);
   appendVector(bytes, sample.angular_rate_rad_s);
   appendCovariance(bytes, 0.0);

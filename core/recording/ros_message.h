@@ -1,5 +1,5 @@
-// ROS 1 messages that carry events and IMU samples: which type is which, and their bytes. All messages here begin with
-// std_msgs/Header: u32 seq, time stamp, string frame_id.
+// ROS 1 messages that carry events and IMU samples: which type is which, and their bytes. All messages here
+// begin with std_msgs/Header: u32 seq, time stamp, string frame_id.
 #pragma once
 
 #include "core/data/event.h"
@@ -23,12 +23,12 @@ enum class RosMessage {
   Other,
 };
 
-// By md5; else by the last part of the type's name, as far as the definition does not contradict; else by a definition
-// with the same fields in the same order. Packages get renamed and copied, layouts stay.
+// By md5; else by the last part of the type's name, as far as the definition does not contradict; else by a
+// definition with the same fields in the same order. Packages get renamed and copied, layouts stay.
 RosMessage identifyMessage(std::string_view type, std::string_view md5, std::string_view definition);
 
-// What a definition serialises to, with nested types expanded and their names gone: "u32 height,u32 width,...".
-// Nothing if it names a type that it does not define.
+// What a definition serialises to, with nested types expanded and their names gone: "u32 height,u32
+// width,...". Nothing if it names a type that it does not define.
 std::optional<std::string> messageLayout(std::string_view definition);
 
 // type, md5 and definition for a bag's connection record.

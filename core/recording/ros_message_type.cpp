@@ -58,7 +58,9 @@ float64 z
 constexpr int kDeepestNesting = 8;            // of types; a definition that names itself stops here
 constexpr std::size_t kLongestLayout = 8192;  // characters; a definition may nest so as to explode
 
-std::string_view lastPart(std::string_view type) { return type.substr(type.rfind('/') + 1); }
+std::string_view lastPart(std::string_view type) {
+  return type.substr(type.rfind('/') + 1);
+}
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(" \t\r");
@@ -106,8 +108,8 @@ TypeTable parseDefinition(std::string_view definition) {
 
 std::string_view primitive(std::string_view type) {
   if (type == "bool" || type == "byte" || type == "char") return "uint8";  // one byte, all of them
-  constexpr std::array known = {"uint8",  "int8",    "uint16",  "int16",  "uint32", "int32",   "uint64",
-                                "int64",  "float32", "float64", "string", "time",   "duration"};
+  constexpr std::array known = {"uint8", "int8",    "uint16",  "int16",  "uint32", "int32",   "uint64",
+                                "int64", "float32", "float64", "string", "time",   "duration"};
   for (const std::string_view name : known)
     if (type == name) return name;
   return {};
@@ -173,6 +175,8 @@ RosMessageType eventArrayType() {
   return {"dvs_msgs/EventArray", kEventArrayMd5.data(), kEventArrayDefinition};
 }
 
-RosMessageType imuType() { return {"sensor_msgs/Imu", kImuMd5.data(), kImuDefinition}; }
+RosMessageType imuType() {
+  return {"sensor_msgs/Imu", kImuMd5.data(), kImuDefinition};
+}
 
 }  // namespace evical

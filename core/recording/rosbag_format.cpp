@@ -21,15 +21,15 @@ std::optional<BagFields> BagFields::parse(Bytes bytes) {
     if (!reader.takeSized(field)) return std::nullopt;
     const std::string_view text = textOf(field);
     const std::size_t equals = text.find('=');
-    if (equals == std::string_view::npos) return std::nullopt;
-    result.fields_.push_back({text.substr(0, equals), field.subspan(equals + 1)});
+    if (equals == std::string_view::npos || result.count_ == result.fields_.size()) return std::nullopt;
+    result.fields_[result.count_++] = {text.substr(0, equals), field.subspan(equals + 1)};
   }
   return result;
 }
 
 std::optional<Bytes> BagFields::find(std::string_view name) const {
-  for (const Field& field : fields_)
-    if (field.name == name) return field.value;
+  for (std::size_t i = 0; i < count_; ++i)
+    if (fields_[i].name == name) return fields_[i].value;
   return std::nullopt;
 }
 
@@ -48,7 +48,9 @@ std::int64_t bagTime(const std::uint8_t* bytes) {
   return loadLittleEndian<std::uint32_t>(bytes) * kSecond_ns + loadLittleEndian<std::uint32_t>(bytes + 4);
 }
 
-BagFieldsWriter& BagFieldsWriter::op(BagOp op) { return number("op", static_cast<std::uint8_t>(op)); }
+BagFieldsWriter& BagFieldsWriter::op(BagOp op) {
+  return number("op", static_cast<std::uint8_t>(op));
+}
 
 BagFieldsWriter& BagFieldsWriter::text(std::string_view name, std::string_view value) {
   appendLittleEndian(bytes_, static_cast<std::uint32_t>(name.size() + 1 + value.size()));

@@ -1,9 +1,11 @@
 // The records of a ROS 1 bag, format 2.0 (http://wiki.ros.org/Bags/Format/2.0), shared by reader and writer:
-// u32 header length, header, u32 data length, data. A header is fields of u32 length and "name=value", value binary.
+// u32 header length, header, u32 data length, data. A header is fields of u32 length and "name=value", value
+// binary.
 #pragma once
 
 #include "core/recording/byte_reader.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -13,14 +15,22 @@
 namespace evical {
 
 inline constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";
-inline constexpr std::size_t kBagHeaderRecordSize = 4096;  // with padding, so that it can be rewritten at the end
+inline constexpr std::size_t kBagHeaderRecordSize =
+    4096;  // with padding, so that it can be rewritten at the end
 
-enum class BagOp : std::uint8_t { Message = 2, BagHeader = 3, IndexData = 4, Chunk = 5, ChunkInfo = 6, Connection = 7 };
+enum class BagOp : std::uint8_t {
+  Message = 2,
+  BagHeader = 3,
+  IndexData = 4,
+  Chunk = 5,
+  ChunkInfo = 6,
+  Connection = 7
+};
 
 // Fields of a header, or of a connection's data, which is written the same way.
 class BagFields {
  public:
-  // Nothing if the bytes aren't such fields to the end.
+  // Nothing if the bytes aren't such fields to the end, or more of them than any bag has.
   static std::optional<BagFields> parse(Bytes bytes);
 
   std::optional<Bytes> find(std::string_view name) const;
@@ -38,7 +48,9 @@ class BagFields {
     std::string_view name;
     Bytes value;
   };
-  std::vector<Field> fields_;  // views into what was parsed
+  std::array<Field, 16> fields_ =
+      {};  // views into what was parsed; no allocation, since every message has such
+  std::size_t count_ = 0;
 };
 
 // u32 seconds, u32 nanoseconds.

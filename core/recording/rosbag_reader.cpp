@@ -1,302 +1,275 @@
 #include "core/recording/rosbag_reader.h"
 
 #include "core/base/error.h"
-#include "core/recording/byte_cursor.h"
-#include "core/recording/ros_messages.h"
+#include "core/base/time.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace evical {
 namespace {
 
-constexpr std::uint32_t kLargestHeader_bytes = 1 << 20;  // real ones have below 100 bytes
-constexpr int kMostAlikeFaults = 10;  // of one kind and stream; a broken file has thousands
+constexpr std::size_t kPacketEvents = 1U << 16;  // 1 MB: stays in the cache, however long a message is
+constexpr int kMessagesToLookAt = 3;             // one zero stamp may be meant, three are no stamps
+constexpr std::size_t kChunksToLookAt = 64;  // streams that begin later show their resolution when they come
 
-struct ChunkRecord {
-  rosbag::RecordHeader header;
-  std::string_view data;
-};
+StreamType typeOf(RosMessage message) {
+  switch (message) {
+    case RosMessage::EventArray:
+      return StreamType::Events;
+    case RosMessage::Imu:
+      return StreamType::Imu;
+    case RosMessage::Image:
+      return StreamType::Frames;
+    case RosMessage::EventPacket:
+    case RosMessage::Other:
+      return StreamType::Other;
+  }
+  return StreamType::Other;
+}
 
-// Takes the record at `offset` and moves on; false if it is damaged.
-bool takeRecord(const std::string& chunk, std::size_t& offset, ChunkRecord& record) {
-  ByteCursor cursor(std::string_view(chunk).substr(offset));
-  const std::string_view header = cursor.sized();
-  record.data = cursor.sized();
-  if (!cursor.ok() || !rosbag::parseRecordHeader(header, record.header)) return false;
-  offset += cursor.position();
+std::int64_t recordTime(const BagRecord& record) {
+  const std::optional<Bytes> time = record.fields.find("time");
+  return time && time->size() == 8 ? bagTime(time->data()) : 0;
+}
+
+bool allStampsZero(const EventArrayView& view) {
+  if (view.stamp_ns != 0) return false;
+  for (std::size_t i = 0; i < view.events.size(); i += kRosEventSize)
+    if (bagTime(view.events.data() + i + 4) != 0) return false;
   return true;
 }
 
 }  // namespace
 
-RosbagReader::RosbagReader(const std::filesystem::path& path)
-    : path_(path.string()), file_(path, std::ios::binary | std::ios::ate) {
-  if (!file_) throw badInput(path_, "the file cannot be opened", "Check its permissions.");
-  file_size_ = static_cast<std::uint64_t>(file_.tellg());
-  position_ = rosbag::kMagic.size();
-  FileRecord record;
-  const bool has_header =
-      readRecord(position_, record) == RecordState::Whole && record.header.is(rosbag::Op::BagHeader);
-  if (has_header) listFromIndex(record.header.index_position);
-  if (connections_.empty()) {
-    listByScan();
-    if (!connections_.empty()) {
-      addFault("", "no_index",
-               "The bag has no usable index: its recorder did not close it. It is read from the start.");
+RosbagReader::RosbagReader(const std::filesystem::path& path) : file_(path) {
+  layout_ = readBagLayout(file_, faults_);
+  makeStreams();
+  lookAhead();
+}
+
+// Several connections may carry one topic; messages of another type under the same topic are another stream.
+void RosbagReader::makeStreams() {
+  for (const BagConnection& connection : layout_.connections) {
+    const RosMessage message = identifyMessage(connection.type, connection.md5, connection.definition);
+    std::size_t stream = 0;
+    while (stream < streams_.size() &&
+           (streams_[stream].name != connection.topic || states_[stream].message != message))
+      ++stream;
+    if (stream == streams_.size()) {
+      streams_.push_back({connection.topic, typeOf(message), connection.type, {}, 0});
+      states_.push_back({message});
+      if (message == RosMessage::EventPacket)
+        faults_.add(connection.topic, "unsupported", 0.0,
+                    fmt::format("{} cannot be read yet; record dvs_msgs/EventArray", connection.type));
     }
+    stream_of_connection_.emplace(connection.id, stream);
   }
-  findResolutions();
-  selected_.resize(streams_.size());
-  for (std::size_t i = 0; i < streams_.size(); ++i) {
-    selected_[i] = streams_[i].type == StreamType::Events || streams_[i].type == StreamType::Imu;
+  for (const BagChunk& chunk : layout_.chunks)
+    for (const BagChunk::Count& count : chunk.counts)
+      if (const auto found = stream_of_connection_.find(count.connection);
+          found != stream_of_connection_.end())
+        streams_[found->second].messages += count.messages;
+}
+
+template <class Predicate>
+bool RosbagReader::chunkHas(const BagChunk& chunk, Predicate wanted) const {
+  if (!chunk.counted) return true;
+  return std::any_of(chunk.counts.begin(), chunk.counts.end(), [&](const BagChunk::Count& count) {
+    const auto found = stream_of_connection_.find(count.connection);
+    return found != stream_of_connection_.end() && count.messages > 0 && wanted(found->second);
+  });
+}
+
+bool RosbagReader::lookAheadDone(std::size_t stream) const {
+  const StreamState& state = states_[stream];
+  switch (typeOf(state.message)) {
+    case StreamType::Events:
+    case StreamType::Imu:
+      return state.messages_seen >= kMessagesToLookAt || !state.only_zero_stamps;
+    case StreamType::Frames:
+      return state.messages_seen > 0;
+    default:
+      return true;
   }
+}
+
+// Resolutions, and whether stamps are stamps, are in the messages.
+void RosbagReader::lookAhead() {
+  std::size_t loaded = 0;
+  for (const BagChunk& chunk : layout_.chunks) {
+    if (loaded == kChunksToLookAt) break;
+    if (!chunkHas(chunk, [&](std::size_t stream) { return !lookAheadDone(stream); })) continue;
+    chunk_.load(file_, chunk.position);
+    ++loaded;
+    BagRecord record;
+    while (chunk_.next(record))
+      if (record.fields.op() == BagOp::Message) lookAhead(record);
+  }
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    StreamState& state = states_[i];
+    const bool stamped = streams_[i].type == StreamType::Events || streams_[i].type == StreamType::Imu;
+    state.uses_record_time = stamped && state.only_zero_stamps && state.messages_seen >= kMessagesToLookAt;
+    if (state.uses_record_time)
+      faults_.add(streams_[i].name, "no_stamps", 0.0,
+                  "all stamps are zero; the times of recording are used, which jitter by milliseconds");
+  }
+}
+
+void RosbagReader::lookAhead(const BagRecord& record) {
+  const auto connection = record.fields.number<std::uint32_t>("conn");
+  const auto found = connection ? stream_of_connection_.find(*connection) : stream_of_connection_.end();
+  if (found == stream_of_connection_.end() || lookAheadDone(found->second)) return;
+  StreamState& state = states_[found->second];
+  Resolution& resolution = streams_[found->second].resolution_px;
+  if (state.message == RosMessage::EventArray) {
+    const std::optional<EventArrayView> view = parseEventArray(record.data);
+    if (!view) return;
+    resolution = view->resolution_px;
+    state.only_zero_stamps = state.only_zero_stamps && allStampsZero(*view);
+  } else if (state.message == RosMessage::Imu) {
+    const std::optional<ImuSample> sample = parseImu(record.data);
+    if (!sample) return;
+    state.only_zero_stamps = state.only_zero_stamps && sample->time_ns == 0;
+  } else {
+    resolution = parseResolution(record.data).value_or(Resolution());
+  }
+  state.messages_seen += 1;
 }
 
 void RosbagReader::select(const std::vector<std::size_t>& streams) {
-  selected_.assign(streams_.size(), false);
-  for (const std::size_t stream : streams) selected_.at(stream) = true;
-}
-
-bool RosbagReader::readBytes(std::uint64_t position, std::uint64_t count, std::string& bytes) {
-  if (position > file_size_ || count > file_size_ - position) return false;
-  bytes.resize(static_cast<std::size_t>(count));
-  file_.clear();
-  file_.seekg(static_cast<std::streamoff>(position));
-  file_.read(bytes.data(), static_cast<std::streamsize>(count));
-  return static_cast<std::uint64_t>(file_.gcount()) == count;
-}
-
-RosbagReader::RecordState RosbagReader::readRecord(std::uint64_t position, FileRecord& record) {
-  if (position >= file_size_) return RecordState::End;
-  if (!readBytes(position, 4, header_bytes_)) return RecordState::Damaged;
-  const auto header_size = ByteCursor(header_bytes_).number<std::uint32_t>();
-  if (header_size > kLargestHeader_bytes) return RecordState::Damaged;
-  if (!readBytes(position + 4, std::uint64_t{header_size} + 4, header_bytes_)) return RecordState::Damaged;
-  ByteCursor cursor(header_bytes_);
-  if (!rosbag::parseRecordHeader(cursor.take(header_size), record.header)) return RecordState::Damaged;
-  record.data_size = cursor.number<std::uint32_t>();
-  record.data_position = position + 8 + header_size;
-  return record.data_size <= file_size_ - record.data_position ? RecordState::Whole : RecordState::Damaged;
-}
-
-bool RosbagReader::loadChunk(const FileRecord& record) {
-  chunk_offset_ = 0;
-  if (readBytes(record.data_position, record.data_size, file_bytes_) &&
-      rosbag::decompressChunk(record.header.compression, file_bytes_, record.header.size, chunk_)) {
-    return true;
-  }
-  chunk_.clear();
-  return false;
-}
-
-void RosbagReader::listFromIndex(std::uint64_t index_position) {
-  if (index_position < position_) return;
-  FileRecord record;
-  RecordState state = RecordState::Whole;
-  for (std::uint64_t at = index_position; (state = readRecord(at, record)) == RecordState::Whole;
-       at = record.end()) {
-    if (record.header.is(rosbag::Op::Connection)) {
-      if (!readBytes(record.data_position, record.data_size, file_bytes_)) break;
-      addConnection(record.header.connection, rosbag::parseConnectionData(file_bytes_));
-    } else if (record.header.is(rosbag::Op::ChunkInfo)) {
-      addChunkInfo(record);
-    } else {
-      break;
-    }
-  }
-  if (state == RecordState::End) return;
-  connections_.clear();  // an index that is not whole is none
-  chunk_connections_.clear();
-  streams_.clear();
-}
-
-// Only chunks with connections not met before need to be unpacked: the index data behind a chunk tell.
-void RosbagReader::listByScan() {
-  FileRecord record;
-  std::uint64_t chunk = 0;
-  bool has_index_data = false, is_new = false;
-  const auto finishChunk = [&] {
-    if (chunk != 0 && (is_new || !has_index_data)) lookIntoChunk(chunk);
-    chunk = 0;
-    has_index_data = is_new = false;
-  };
-  for (std::uint64_t at = position_; readRecord(at, record) == RecordState::Whole;) {
-    const std::uint64_t next = record.end();
-    if (record.header.is(rosbag::Op::IndexData)) {
-      has_index_data = true;
-      is_new = is_new || !connections_.contains(record.header.connection);
-    } else {
-      const bool is_chunk = record.header.is(rosbag::Op::Chunk);
-      finishChunk();
-      if (is_chunk) chunk = at;
-    }
-    at = next;
-  }
-  finishChunk();
-}
-
-void RosbagReader::addConnection(std::uint32_t id, const rosbag::ConnectionData& data) {
-  if (connections_.contains(id)) return;
-  const auto same = [&](const StreamInfo& stream) {
-    return stream.name == data.topic && stream.message == data.type;
-  };
-  const auto found = std::find_if(streams_.begin(), streams_.end(), same);
-  connections_[id].stream = static_cast<std::size_t>(found - streams_.begin());
-  if (found != streams_.end()) return;
-  StreamInfo stream;
-  stream.name = data.topic;
-  stream.message = data.type;
-  stream.type = ros::streamTypeOf(data.type, data.md5);
-  streams_.push_back(stream);
-}
-
-void RosbagReader::addChunkInfo(const FileRecord& record) {
-  const std::uint64_t chunk = record.header.chunk_position;
-  if (!readBytes(record.data_position, record.data_size, file_bytes_)) return;
-  ByteCursor cursor(file_bytes_);
-  while (!cursor.atEnd()) {
-    const auto id = cursor.number<std::uint32_t>(), count = cursor.number<std::uint32_t>();
-    if (!cursor.ok()) return;
-    chunk_connections_[chunk].push_back(id);
-    const auto found = connections_.find(id);
-    if (found == connections_.end()) continue;
-    Connection& connection = found->second;
-    streams_[connection.stream].messages += count;
-    if (connection.first_chunk == 0 || chunk < connection.first_chunk) connection.first_chunk = chunk;
-  }
-}
-
-void RosbagReader::lookIntoChunk(std::uint64_t position) {
-  FileRecord record;
-  if (readRecord(position, record) != RecordState::Whole || !record.header.is(rosbag::Op::Chunk)) return;
-  loadChunk(record);
-  std::vector<Event> events;
-  ChunkRecord part;
-  while (chunk_offset_ < chunk_.size() && takeRecord(chunk_, chunk_offset_, part)) {
-    if (part.header.is(rosbag::Op::Connection)) {
-      addConnection(part.header.connection, rosbag::parseConnectionData(part.data));
-    }
-    const auto found = connections_.find(part.header.connection);
-    if (!part.header.is(rosbag::Op::Message) || found == connections_.end()) continue;
-    StreamInfo& stream = streams_[found->second.stream];
-    if (stream.type != StreamType::Events || stream.resolution_px.known()) continue;
-    bool stampless = false;
-    ros::decodeEventArray(part.data, 0, events, stream.resolution_px, &stampless);
-  }
-  chunk_.clear();
-  chunk_offset_ = 0;
-}
-
-void RosbagReader::findResolutions() {
-  for (const auto& [id, connection] : connections_) {
-    const StreamInfo& stream = streams_[connection.stream];
-    const bool missing = stream.type == StreamType::Events && !stream.resolution_px.known();
-    if (missing && connection.first_chunk != 0) lookIntoChunk(connection.first_chunk);
-  }
-}
-
-bool RosbagReader::wanted(std::uint32_t connection) const {
-  const auto found = connections_.find(connection);
-  return found != connections_.end() && selected_[found->second.stream];
-}
-
-bool RosbagReader::chunkIsWanted(std::uint64_t position) const {
-  const auto found = chunk_connections_.find(position);
-  if (found == chunk_connections_.end()) return true;
-  return std::any_of(found->second.begin(), found->second.end(),
-                     [this](std::uint32_t id) { return wanted(id); });
-}
-
-bool RosbagReader::nextChunk() {
-  FileRecord record;
-  RecordState state = RecordState::Whole;
-  while ((state = readRecord(position_, record)) == RecordState::Whole) {
-    chunk_position_ = position_;
-    position_ = record.end();
-    if (!record.header.is(rosbag::Op::Chunk) || !chunkIsWanted(chunk_position_)) continue;
-    if (loadChunk(record)) return true;
-    addFault("", "corrupt",
-             fmt::format("The chunk at byte {} cannot be unpacked; it is left out.", chunk_position_));
-  }
-  if (state == RecordState::Damaged) {
-    addFault("", "truncated",
-             fmt::format("The record at byte {} of {} is cut off or damaged; nothing behind it is read.",
-                         position_, file_size_));
-    position_ = file_size_;
-  }
-  return false;
-}
-
-bool RosbagReader::nextMessage(Packet& packet) {
-  ChunkRecord record;
-  while (chunk_offset_ < chunk_.size()) {
-    const std::size_t offset = chunk_offset_;
-    if (!takeRecord(chunk_, chunk_offset_, record)) {
-      addFault("", "corrupt",
-               fmt::format("The chunk at byte {} is damaged from its byte {} on; the rest is left out.",
-                           chunk_position_, offset));
-      chunk_.clear();
-      return false;
-    }
-    if (!record.header.is(rosbag::Op::Message) || !wanted(record.header.connection)) continue;
-    const std::size_t stream = connections_.at(record.header.connection).stream;
-    if (decode(record.header, record.data, stream, packet)) return true;
-  }
-  return false;
-}
-
-bool RosbagReader::decode(const rosbag::RecordHeader& header, std::string_view message, std::size_t stream,
-                          Packet& packet) {
-  StreamInfo& info = streams_[stream];
-  packet.stream = stream;
-  bool stampless = false, whole = true, ordered = true;
-  if (info.type == StreamType::Events) {
-    packet.imu_samples.clear();
-    whole = ros::decodeEventArray(message, header.time_ns, packet.events, info.resolution_px, &stampless);
-    const auto earlier = [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; };
-    ordered = std::is_sorted(packet.events.begin(), packet.events.end(), earlier);
-    if (!ordered) std::stable_sort(packet.events.begin(), packet.events.end(), earlier);
-  } else if (info.type == StreamType::Imu) {
-    packet.events.clear();
-    whole = ros::decodeImu(message, header.time_ns, packet.imu_samples, &stampless);
-  } else {
-    return false;
-  }
-  if (!whole) {
-    addFault(info.name, "corrupt",
-             fmt::format("A message in the chunk at byte {} is shorter than it says; it is left out.",
-                         chunk_position_));
-  }
-  if (!ordered)
-    addFault(info.name, "unsorted", "Events within a message are out of order; they were sorted.");
-  if (stampless)
-    addFault(info.name, "no_stamps", "Stamps are 0; the times of recording are used, which jitter by ms.");
-  return !packet.events.empty() || !packet.imu_samples.empty();
-}
-
-bool RosbagReader::read(Packet& packet) {
-  do {
-    if (nextMessage(packet)) return true;
-  } while (nextChunk());
-  packet.events.clear();
-  packet.imu_samples.clear();
-  return false;
+  for (std::size_t i = 0; i < states_.size(); ++i)
+    states_[i].selected = std::find(streams.begin(), streams.end(), i) != streams.end();
 }
 
 double RosbagReader::fractionRead() const {
-  return std::min(
-      1.0, static_cast<double>(position_) / static_cast<double>(std::max<std::uint64_t>(1, file_size_)));
+  if (next_chunk_ == 0 || layout_.chunks.empty()) return layout_.chunks.empty() ? 1.0 : 0.0;
+  const auto begin_of = [&](std::size_t chunk) {
+    return static_cast<double>(chunk < layout_.chunks.size() ? layout_.chunks[chunk].position : file_.size());
+  };
+  const double begin = begin_of(next_chunk_ - 1);
+  const double within = chunk_loaded_ ? chunk_.fractionRead() : 1.0;
+  return (begin + within * (begin_of(next_chunk_) - begin)) / static_cast<double>(file_.size());
 }
 
-void RosbagReader::addFault(const std::string& stream, const std::string& kind, const std::string& text) {
-  const int limit = kind == "corrupt" ? kMostAlikeFaults : 1;
-  const auto alike = [&](const RecordingFault& fault) {
-    return fault.stream == stream && fault.kind == kind;
-  };
-  if (std::count_if(faults_.begin(), faults_.end(), alike) < limit)
-    faults_.push_back({stream, kind, 0.0, text});
+bool RosbagReader::loadNextChunk() {
+  chunk_loaded_ = false;
+  while (next_chunk_ < layout_.chunks.size()) {
+    const BagChunk& chunk = layout_.chunks[next_chunk_++];
+    if (!chunkHas(chunk, [&](std::size_t stream) {
+          return states_[stream].selected &&
+                 (streams_[stream].type == StreamType::Events || streams_[stream].type == StreamType::Imu);
+        }))
+      continue;
+    chunk_.load(file_, chunk.position);
+    messages_in_chunk_ = 0;
+    chunk_loaded_ = true;
+    return true;
+  }
+  return false;
+}
+
+void RosbagReader::reportChunk() {
+  if (chunk_.faultKind().empty()) return;
+  const BagChunk& chunk = layout_.chunks[next_chunk_ - 1];
+  std::string text = chunk_.faultText();
+  if (chunk.counted) {
+    const auto add = [](std::uint64_t sum, const BagChunk::Count& count) { return sum + count.messages; };
+    const std::uint64_t expected =
+        std::accumulate(chunk.counts.begin(), chunk.counts.end(), std::uint64_t{0}, add);
+    text += fmt::format("; {} of its {} messages are lost", expected - std::min(expected, messages_in_chunk_),
+                        expected);
+  }
+  faults_.add("", chunk_.faultKind(), 0.0, text);
+}
+
+bool RosbagReader::read(Packet& packet) {
+  for (;;) {
+    if (!pending_.bytes.empty() && readPendingEvents(packet)) return true;
+    BagRecord record;
+    if (chunk_loaded_ && chunk_.next(record)) {
+      if (record.fields.op() == BagOp::Message && readMessage(record, packet)) return true;
+      continue;
+    }
+    if (chunk_loaded_) reportChunk();
+    if (!loadNextChunk()) return false;
+  }
+}
+
+bool RosbagReader::readMessage(const BagRecord& record, Packet& packet) {
+  messages_in_chunk_ += 1;
+  const auto connection = record.fields.number<std::uint32_t>("conn");
+  const auto found = connection ? stream_of_connection_.find(*connection) : stream_of_connection_.end();
+  if (found == stream_of_connection_.end() || !states_[found->second].selected) return false;
+  const std::size_t stream = found->second;
+  switch (states_[stream].message) {
+    case RosMessage::EventArray:
+      return readEvents(stream, record.data, recordTime(record), packet);
+    case RosMessage::Imu:
+      return readImu(stream, record.data, recordTime(record), packet);
+    default:
+      return false;
+  }
+}
+
+bool RosbagReader::readImu(std::size_t stream, Bytes message, std::int64_t record_time_ns, Packet& packet) {
+  std::optional<ImuSample> sample = parseImu(message);
+  if (!sample) {
+    reportMessage(stream, record_time_ns);
+    return false;
+  }
+  StreamState& state = states_[stream];
+  if (state.uses_record_time) sample->time_ns = record_time_ns;
+  if (state.first_ns < 0) state.first_ns = sample->time_ns;
+  packet.stream = stream;
+  packet.events.clear();
+  packet.imu_samples.assign(1, *sample);
+  return true;
+}
+
+bool RosbagReader::readEvents(std::size_t stream, Bytes message, std::int64_t record_time_ns,
+                              Packet& packet) {
+  const std::optional<EventArrayView> view = parseEventArray(message);
+  if (!view) {
+    reportMessage(stream, record_time_ns);
+    return false;
+  }
+  if (view->resolution_px.known() && !streams_[stream].resolution_px.known())
+    streams_[stream].resolution_px = view->resolution_px;
+  pending_ = {stream, view->events, record_time_ns};
+  return !view->events.empty() && readPendingEvents(packet);
+}
+
+bool RosbagReader::readPendingEvents(Packet& packet) {
+  const std::size_t count = std::min(kPacketEvents, pending_.bytes.size() / kRosEventSize);
+  packet.stream = pending_.stream;
+  packet.imu_samples.clear();
+  packet.events.resize(count);
+  const bool valid = decodeEvents(pending_.bytes.data(), count, packet.events.data());
+  pending_.bytes = pending_.bytes.subspan(count * kRosEventSize);
+  StreamState& state = states_[pending_.stream];
+  if (state.uses_record_time)
+    for (Event& event : packet.events) event.time_ns = pending_.record_time_ns;
+  if (state.first_ns < 0) state.first_ns = packet.events.front().time_ns;
+  if (valid) return true;
+  reportMessage(pending_.stream, pending_.record_time_ns);
+  packet.events.clear();
+  pending_.bytes = {};
+  return false;
+}
+
+void RosbagReader::reportMessage(std::size_t stream, std::int64_t record_time_ns) {
+  faults_.add(streams_[stream].name, "corrupt", sinceFirst(stream, record_time_ns),
+              fmt::format("a message in the chunk at byte {} is damaged and left out",
+                          layout_.chunks[next_chunk_ - 1].position));
+}
+
+// Record times serve where a message is unreadable: near enough to find the place.
+double RosbagReader::sinceFirst(std::size_t stream, std::int64_t time_ns) const {
+  const std::int64_t first_ns = states_[stream].first_ns;
+  return first_ns < 0 ? 0.0 : std::max(0.0, secondsSince(first_ns, time_ns));
 }
 
 }  // namespace evical

@@ -1,14 +1,19 @@
-// ROS 1 bags, format 2.0, chunk by chunk: memory is that of the largest chunk. A damaged bag is read as far
-// as it is whole, and what is missing is among the faults.
+// ROS 1 bags, format 2.0, chunks plain, lz4 or bz2, without ROS: events from dvs_msgs/EventArray and its
+// copies, IMU samples from sensor_msgs/Imu. Damaged bags give what is whole.
 #pragma once
 
+#include "core/recording/bag_chunk.h"
+#include "core/recording/bag_layout.h"
+#include "core/recording/fault_log.h"
+#include "core/recording/input_file.h"
 #include "core/recording/recording_reader.h"
-#include "core/recording/bag_records.h"
+#include "core/recording/ros_message.h"
 
 #include <cstdint>
-#include <fstream>
+#include <filesystem>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 namespace evical {
 
@@ -16,60 +21,58 @@ class RosbagReader : public RecordingReader {
  public:
   explicit RosbagReader(const std::filesystem::path& path);
 
+  std::string format() const override { return "rosbag"; }
   const std::vector<StreamInfo>& streams() const override { return streams_; }
   void select(const std::vector<std::size_t>& streams) override;
   bool read(Packet& packet) override;
   double fractionRead() const override;
-  const std::vector<RecordingFault>& faults() const override { return faults_; }
-  std::string format() const override { return "rosbag"; }
+  const std::vector<RecordingFault>& faults() const override { return faults_.list(); }
 
  private:
-  enum class RecordState { Whole, End, Damaged };
-
-  // A record of the file: its header, and where its data lie.
-  struct FileRecord {
-    rosbag::RecordHeader header;  // views into header_bytes_
-    std::uint64_t data_position = 0;
-    std::uint32_t data_size = 0;
-    std::uint64_t end() const { return data_position + data_size; }
+  // What reading needs to know of a stream.
+  struct StreamState {
+    RosMessage message = RosMessage::Other;
+    bool selected = true;
+    bool uses_record_time = false;  // all its own stamps are zero
+    std::int64_t first_ns = -1;
+    // From looking ahead, at opening:
+    int messages_seen = 0;
+    bool only_zero_stamps = true;
   };
-  // A connection id, and the chunk in which its first message lies.
-  struct Connection {
+  // A long message is handed out in pieces.
+  struct PendingEvents {
     std::size_t stream = 0;
-    std::uint64_t first_chunk = 0;
+    Bytes bytes;
+    std::int64_t record_time_ns = 0;
   };
 
-  bool readBytes(std::uint64_t position, std::uint64_t count, std::string& bytes);
-  RecordState readRecord(std::uint64_t position, FileRecord& record);
-  bool loadChunk(const FileRecord& record);
+  void makeStreams();
+  void lookAhead();
+  void lookAhead(const BagRecord& record);
+  bool lookAheadDone(std::size_t stream) const;
 
-  void listFromIndex(std::uint64_t index_position);
-  void listByScan();
-  void addConnection(std::uint32_t id, const rosbag::ConnectionData& data);
-  void addChunkInfo(const FileRecord& record);
-  void lookIntoChunk(std::uint64_t position);
-  void findResolutions();
+  template <class Predicate>
+  bool chunkHas(const BagChunk& chunk, Predicate wanted) const;
+  bool loadNextChunk();
+  void reportChunk();
+  bool readMessage(const BagRecord& record, Packet& packet);
+  bool readImu(std::size_t stream, Bytes message, std::int64_t record_time_ns, Packet& packet);
+  bool readEvents(std::size_t stream, Bytes message, std::int64_t record_time_ns, Packet& packet);
+  bool readPendingEvents(Packet& packet);
+  void reportMessage(std::size_t stream, std::int64_t record_time_ns);
+  double sinceFirst(std::size_t stream, std::int64_t time_ns) const;
 
-  bool wanted(std::uint32_t connection) const;
-  bool chunkIsWanted(std::uint64_t position) const;
-  bool nextChunk();
-  bool nextMessage(Packet& packet);
-  bool decode(const rosbag::RecordHeader& header, std::string_view message, std::size_t stream,
-              Packet& packet);
-  void addFault(const std::string& stream, const std::string& kind, const std::string& text);
-
-  std::string path_;
-  std::ifstream file_;
-  std::uint64_t file_size_ = 0;
-  std::uint64_t position_ = 0;  // of the next record to read
+  InputFile file_;
+  FaultLog faults_;
+  BagLayout layout_;
   std::vector<StreamInfo> streams_;
-  std::vector<bool> selected_;
-  std::vector<RecordingFault> faults_;
-  std::unordered_map<std::uint32_t, Connection> connections_;
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> chunk_connections_;  // from the chunk infos
-  std::string header_bytes_, file_bytes_, chunk_;
-  std::uint64_t chunk_position_ = 0;  // in the file
-  std::size_t chunk_offset_ = 0;      // of the next record in the chunk
+  std::vector<StreamState> states_;
+  std::unordered_map<std::uint32_t, std::size_t> stream_of_connection_;
+  BagChunkReader chunk_;
+  std::size_t next_chunk_ = 0;  // index into layout_.chunks; the one before is in chunk_
+  bool chunk_loaded_ = false;
+  std::uint64_t messages_in_chunk_ = 0;
+  PendingEvents pending_;
 };
 
 }  // namespace evical

@@ -1,244 +1,273 @@
 #include "core/recording/text_reader.h"
 
 #include "core/base/error.h"
+#include "core/base/nearest_name.h"
+#include "core/base/time.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace evical {
 namespace {
 
-constexpr std::size_t kPacketEvents = 10'000;
-constexpr std::int64_t kPacketSpan_ns = 10'000'000;
-constexpr std::size_t kPacketSamples = 10;
-constexpr int kMostBadLines = 10;  // reported one by one
+constexpr const char* kEventsFile = "events.txt";
+constexpr const char* kImuFile = "imu.txt";
+constexpr std::size_t kPacketEvents = 1U << 14;
+constexpr std::size_t kPacketSamples = 64;
+constexpr std::int64_t kPacketSpan_ns = 10'000'000;  // so that streams alternate finely enough
+constexpr int kLinesToTry = 1000;                    // without a single line of numbers: no table
+constexpr std::size_t kMostColumns = 16;
 
-bool parsePixel(std::string_view text, std::uint16_t& value) {
-  if (parseNumber(text, value)) return true;
-  double number = 0.0;  // as numpy.savetxt writes it
-  if (!parseNumber(text, number) || number < 0.0 || number > 65535.0) return false;
-  value = static_cast<std::uint16_t>(number);
-  return static_cast<double>(value) == number;
-}
-
-bool parsePolarity(std::string_view text, bool& brighter) {
-  double number = 0.0;
-  brighter = text == "1" || text == "true" || text == "True";
-  if (brighter || text == "0" || text == "false" || text == "False") return true;
-  if (!parseNumber(text, number)) return false;
-  brighter = number == 1.0;
-  return number == 1.0 || number == 0.0 || number == -1.0;
-}
-
-bool parseEvent(std::string_view line, Event& event) {
-  return parseSeconds(takeColumn(line), event.time_ns) && parsePixel(takeColumn(line), event.x_px) &&
-         parsePixel(takeColumn(line), event.y_px) && parsePolarity(takeColumn(line), event.brighter);
-}
+// Where the columns of an IMU table are; the data set's order unless a header says otherwise.
+struct ImuColumns {
+  std::size_t time = 0, count = 7;
+  std::array<std::size_t, 3> acceleration = {1, 2, 3}, angular_rate = {4, 5, 6};
+};
 
 bool isComment(std::string_view line) {
-  const std::string_view column = takeColumn(line);
-  return column.empty() || column.front() == '#' || column.front() == '%';
+  const std::size_t first = line.find_first_not_of(" \t\r");
+  return first == std::string_view::npos || line[first] == '#' || line[first] == '%';
 }
 
-// Where a header's names put time, acceleration and angular rate; false if it does not name all three.
-bool columnsFromHeader(std::string_view line, std::size_t& time, std::size_t& acceleration,
-                       std::size_t& rate) {
-  bool has_time = false, has_acceleration = false, has_rate = false;
-  for (std::size_t i = 0;; ++i) {
-    std::string name(takeColumn(line));
-    if (name.empty()) return has_time && has_acceleration && has_rate;
-    if (name == "#") {
-      --i;  // a comment's sign is no column
-      continue;
+// Lower-case words of a header or comment line.
+std::vector<std::string> headerWords(std::string_view line) {
+  std::string text(line);
+  for (char& character : text)
+    character = character == '#' || character == '%'
+                    ? ' '
+                    : static_cast<char>(std::tolower(static_cast<unsigned char>(character)));
+  std::vector<std::string> words;
+  ColumnParser parser(text);
+  while (!parser.atEnd()) words.emplace_back(parser.word());
+  return words;
+}
+
+bool contains(const std::string& word, std::string_view part) {
+  return word.find(part) != std::string::npos;
+}
+
+// "id timestamp ang_vel_x .. lin_acc_z" (UZH-FPV) and the like; nothing if these aren't names of all seven
+// columns.
+std::optional<ImuColumns> imuColumns(const std::vector<std::string>& words) {
+  ImuColumns columns;
+  columns.count = words.size();
+  std::size_t times = 0, accelerations = 0, rates = 0;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == "t" || words[i].starts_with("time")) {
+      columns.time = i;
+      ++times;
+    } else if (contains(words[i], "acc") || (words[i].size() == 2 && words[i][0] == 'a')) {
+      if (accelerations < 3) columns.acceleration[accelerations] = i;
+      ++accelerations;
+    } else if (contains(words[i], "ang") || contains(words[i], "gyr") || contains(words[i], "omega") ||
+               (words[i].size() == 2 && (words[i][0] == 'g' || words[i][0] == 'w'))) {
+      if (rates < 3) columns.angular_rate[rates] = i;
+      ++rates;
     }
-    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
-    name.erase(0, name.find_first_not_of('#'));
-    const auto first = [&](bool& has, std::size_t& column, std::initializer_list<const char*> starts) {
-      const bool match =
-          std::any_of(starts.begin(), starts.end(), [&](const char* s) { return name.starts_with(s); });
-      if (match && !has) column = i;
-      has = has || match;
-      return match;
-    };
-    if (first(has_rate, rate, {"ang", "gyr", "w_", "wx", "gx"})) continue;
-    if (first(has_acceleration, acceleration, {"acc", "lin", "a_", "ax"})) continue;
-    first(has_time, time, {"time", "t"});
   }
+  if (times != 1 || accelerations != 3 || rates != 3 || words.size() > kMostColumns) return std::nullopt;
+  return columns;
 }
 
-std::size_t countColumns(std::string_view line) {
+// Numbers in the line; 0 if there is anything else in it.
+std::size_t countNumbers(std::string_view line) {
+  ColumnParser parser(line);
+  double value = 0.0;
   std::size_t count = 0;
-  while (!takeColumn(line).empty()) ++count;
+  while (!parser.atEnd()) {
+    if (!parser.real(value)) return 0;
+    ++count;
+  }
   return count;
 }
 
-StreamType typeOfLine(std::string_view line) {
-  Event event{};
-  if (countColumns(line) == 4 && parseEvent(line, event)) return StreamType::Events;
-  if (countColumns(line) != 7) return StreamType::Other;
-  double number = 0.0;
-  for (int i = 0; i < 7; ++i) {
-    if (!parseNumber(takeColumn(line), number)) return StreamType::Other;
+bool parseEvent(std::string_view line, Event& event) {
+  ColumnParser parser(line);
+  std::int64_t x = 0, y = 0, polarity = 0;
+  if (!parser.decimal(9, event.time_ns) || !parser.decimal(0, x) || !parser.decimal(0, y) ||
+      !parser.decimal(0, polarity) || !parser.atEnd())
+    return false;
+  constexpr std::int64_t kLargest = std::numeric_limits<std::uint16_t>::max();
+  if (x < 0 || y < 0 || x > kLargest || y > kLargest || polarity < -1 || polarity > 1) return false;
+  event.x_px = static_cast<std::uint16_t>(x);
+  event.y_px = static_cast<std::uint16_t>(y);
+  event.brighter = polarity > 0;
+  return true;
+}
+
+bool parseSample(std::string_view line, const ImuColumns& columns, ImuSample& sample) {
+  ColumnParser parser(line);
+  std::array<double, kMostColumns> values = {};
+  for (std::size_t i = 0; i < columns.count; ++i)
+    if (i == columns.time ? !parser.decimal(9, sample.time_ns) : !parser.real(values[i])) return false;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    sample.specific_force_m_s2[axis] = values[columns.acceleration[static_cast<std::size_t>(axis)]];
+    sample.angular_rate_rad_s[axis] = values[columns.angular_rate[static_cast<std::size_t>(axis)]];
   }
-  return StreamType::Imu;
+  return parser.atEnd();
 }
 
 }  // namespace
 
-StreamType textTableType(std::string_view first_bytes) {
-  while (!first_bytes.empty()) {
-    const std::size_t end = std::min(first_bytes.find('\n'), first_bytes.size());
-    const std::string_view line = first_bytes.substr(0, end);
-    first_bytes.remove_prefix(std::min(end + 1, first_bytes.size()));
-    std::size_t time = 0, acceleration = 0, rate = 0;
-    if (columnsFromHeader(line, time, acceleration, rate)) return StreamType::Imu;
-    if (isComment(line)) continue;
-    const StreamType type = typeOfLine(line);
-    if (type != StreamType::Other || std::isalpha(static_cast<unsigned char>(line[0])) == 0) return type;
+struct TextReader::Source {
+  explicit Source(const std::filesystem::path& path) : lines(path) {}
+
+  LineReader lines;
+  std::string stream;
+  std::optional<ImuColumns> imu_columns;  // none: events
+  std::uint64_t first_data_line = 0;
+  bool selected = true, exhausted = false;
+  Packet pending;
+  std::optional<std::int64_t> first_ns;
+
+  bool empty() const { return pending.events.empty() && pending.imu_samples.empty(); }
+  std::int64_t nextTime() const {
+    return pending.events.empty() ? pending.imu_samples.front().time_ns : pending.events.front().time_ns;
   }
-  return StreamType::Other;
+  // False where the line is no event or sample.
+  bool parse(std::string_view line);
+  bool packetFull() const;
+};
+
+bool TextReader::Source::parse(std::string_view line) {
+  if (imu_columns) {
+    ImuSample sample;
+    if (!parseSample(line, *imu_columns, sample)) return false;
+    pending.imu_samples.push_back(sample);
+  } else {
+    Event event;
+    if (!parseEvent(line, event)) return false;
+    pending.events.push_back(event);
+  }
+  return true;
+}
+
+bool TextReader::Source::packetFull() const {
+  if (imu_columns)
+    return pending.imu_samples.size() >= kPacketSamples ||
+           pending.imu_samples.back().time_ns - pending.imu_samples.front().time_ns >= kPacketSpan_ns;
+  return pending.events.size() >= kPacketEvents ||
+         pending.events.back().time_ns - pending.events.front().time_ns >= kPacketSpan_ns;
+}
+
+bool TextReader::directoryHolds(const std::filesystem::path& directory) {
+  return std::filesystem::exists(directory / kEventsFile) || std::filesystem::exists(directory / kImuFile);
 }
 
 TextReader::TextReader(const std::filesystem::path& path) {
   if (!std::filesystem::is_directory(path)) {
-    std::string bytes(1024, '\0');
-    std::ifstream file(path, std::ios::binary);
-    file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    bytes.resize(static_cast<std::size_t>(file.gcount()));
-    addSource(path, textTableType(bytes));
+    addFile(path);
     return;
   }
-  if (std::filesystem::exists(path / "events.txt")) addSource(path / "events.txt", StreamType::Events);
-  if (std::filesystem::exists(path / "imu.txt")) addSource(path / "imu.txt", StreamType::Imu);
+  for (const char* name : {kEventsFile, kImuFile})
+    if (std::filesystem::exists(path / name)) addFile(path / name);
 }
 
-void TextReader::addSource(const std::filesystem::path& path, StreamType type) {
-  if (type != StreamType::Events && type != StreamType::Imu) {
-    throw badInput(path.string(), "the lines are neither \"t x y p\" nor \"t ax ay az gx gy gz\"");
+TextReader::~TextReader() = default;
+
+// Looks at the first lines to learn which table this is.
+void TextReader::addFile(const std::filesystem::path& path) {
+  LineReader lines(path);
+  if (lines.file().size() == 0)
+    throw badInput(path.string(), "is empty", "Record again, or give another file");
+  auto source = std::make_unique<Source>(path);
+  StreamInfo info;
+  std::vector<std::string> names;
+  std::string_view line;
+  std::size_t columns = 0;
+  for (int i = 0; i < kLinesToTry && columns == 0 && lines.next(line); ++i) {
+    columns = isComment(line) ? 0 : countNumbers(line);
+    if (columns == 2) {  // "width height" before the first event
+      ColumnParser parser(line);
+      std::int64_t width = 0, height = 0;
+      if (parser.decimal(0, width) && parser.decimal(0, height) && width > 0 && height > 0 && width < 65536 &&
+          height < 65536)
+        info.resolution_px = {static_cast<int>(width), static_cast<int>(height)};
+    }
+    if (columns == 0 && names.empty()) names = headerWords(line);
+    if (columns != 4 && columns < 7) columns = 0;
   }
-  sources_.push_back({TextLines(path), type, true, false, std::numeric_limits<std::int64_t>::min()});
-  StreamInfo stream;
-  stream.name = path.filename().string();
-  stream.type = type;
-  stream.message = type == StreamType::Events ? "t x y p" : "t ax ay az gx gy gz";
-  streams_.push_back(stream);
+  const std::optional<ImuColumns> named = imuColumns(names);
+  if (columns == 4) {
+    if (names.size() == 4 && (names[0].starts_with("x") || names[3].starts_with("t")))
+      throw badInput(path.string(), fmt::format("has the columns {}", joined(names)),
+                     "Reorder them to t x y p, t in seconds");
+    info.type = StreamType::Events;
+    info.name = "events";
+    info.message = "t x y p";
+  } else if (columns == 7 || (named && named->count == columns)) {
+    info.type = StreamType::Imu;
+    info.name = "imu";
+    info.message = "t ax ay az gx gy gz";
+    source->imu_columns = named && named->count == columns ? *named : ImuColumns();
+  } else {
+    throw badInput(path.string(), "has no lines of events (t x y p) or IMU samples (t ax ay az gx gy gz)",
+                   "Times are in seconds, columns are separated by blanks or commas");
+  }
+  source->stream = info.name;
+  source->first_data_line = lines.lineNumber();
+  streams_.push_back(info);
+  sources_.push_back(std::move(source));
 }
 
 void TextReader::select(const std::vector<std::size_t>& streams) {
-  for (Source& source : sources_) source.wanted = false;
-  for (const std::size_t stream : streams) sources_.at(stream).wanted = true;
+  for (std::size_t i = 0; i < sources_.size(); ++i)
+    sources_[i]->selected = std::find(streams.begin(), streams.end(), i) != streams.end();
 }
 
-// The stream that is behind goes first, so that files are read side by side.
+void TextReader::fill(Source& source) {
+  std::string_view line;
+  while (source.lines.next(line)) {
+    if (source.lines.lineNumber() < source.first_data_line) continue;
+    if (!source.parse(line)) {
+      if (isComment(line)) continue;
+      const double at_s =
+          source.first_ns && !source.empty() ? secondsSince(*source.first_ns, source.nextTime()) : 0.0;
+      const bool last = source.lines.fractionRead() >= 1.0;
+      faults_.add(source.stream, last ? "truncated" : "malformed", at_s,
+                  fmt::format("line {} of {} is {}: '{}'", source.lines.lineNumber(),
+                              source.lines.file().path().filename().string(), last ? "cut off" : "malformed",
+                              line.substr(0, 60)));
+      continue;
+    }
+    if (!source.first_ns) source.first_ns = source.nextTime();
+    if (source.packetFull()) return;
+  }
+  source.exhausted = true;
+}
+
 bool TextReader::read(Packet& packet) {
+  Source* earliest = nullptr;
+  for (const std::unique_ptr<Source>& source : sources_) {
+    if (!source->selected) continue;
+    if (source->empty() && !source->exhausted) fill(*source);
+    if (!source->empty() && (earliest == nullptr || source->nextTime() < earliest->nextTime()))
+      earliest = source.get();
+  }
+  if (earliest == nullptr) return false;
   packet.events.clear();
   packet.imu_samples.clear();
-  while (packet.events.empty() && packet.imu_samples.empty()) {
-    Source* behind = nullptr;
-    for (Source& source : sources_) {
-      const bool runs = source.wanted && !source.finished;
-      if (runs && (!behind || source.last_ns < behind->last_ns)) behind = &source;
-    }
-    if (!behind) return false;
-    packet.stream = static_cast<std::size_t>(behind - sources_.data());
-    if (behind->type == StreamType::Events) {
-      fillEvents(*behind, packet.stream, packet.events);
-    } else {
-      fillImu(*behind, packet.stream, packet.imu_samples);
-    }
-  }
+  std::swap(packet.events, earliest->pending.events);
+  std::swap(packet.imu_samples, earliest->pending.imu_samples);
+  packet.stream = 0;
+  while (sources_[packet.stream].get() != earliest) ++packet.stream;
   return true;
-}
-
-// A packet ends where time steps back: within a packet events are in order, and nothing is rearranged.
-void TextReader::fillEvents(Source& source, std::size_t stream, std::vector<Event>& events) {
-  if (source.has_next_event) events.push_back(source.next_event);
-  source.has_next_event = false;
-  std::string_view line;
-  Event event{};
-  while (source.lines.next(line)) {
-    if (!parseEvent(line, event)) {
-      if (!isComment(line)) addBadLine(source, stream);
-      continue;
-    }
-    if (!events.empty() && (event.time_ns < events.back().time_ns || events.size() >= kPacketEvents ||
-                            event.time_ns - events.front().time_ns >= kPacketSpan_ns)) {
-      source.next_event = event;
-      source.has_next_event = true;
-      source.last_ns = event.time_ns;
-      return;
-    }
-    events.push_back(event);
-  }
-  source.finished = true;
-}
-
-void TextReader::fillImu(Source& source, std::size_t stream, std::vector<ImuSample>& samples) {
-  std::string_view line;
-  ImuSample sample;
-  while (samples.size() < kPacketSamples) {
-    if (!source.lines.next(line)) {
-      source.finished = true;
-      return;
-    }
-    if (!source.columns_known) {
-      // Names stand in the first line, if anywhere, perhaps as a comment.
-      source.columns_known = true;
-      if (columnsFromHeader(line, source.time_column, source.acceleration_column, source.rate_column))
-        continue;
-    }
-    if (parseImu(source, line, sample)) {
-      samples.push_back(sample);
-      source.last_ns = sample.time_ns;
-    } else if (!isComment(line)) {
-      addBadLine(source, stream);
-    }
-  }
-}
-
-bool TextReader::parseImu(Source& source, std::string_view line, ImuSample& sample) {
-  std::size_t values = 0;
-  for (std::size_t i = 0; values < 7; ++i) {
-    const std::string_view column = takeColumn(line);
-    if (column.empty()) return false;
-    const std::size_t in_acceleration = i - source.acceleration_column, in_rate = i - source.rate_column;
-    bool good = true;
-    if (i == source.time_column) {
-      good = parseSeconds(column, sample.time_ns);
-    } else if (in_acceleration < 3) {
-      good = parseNumber(column, sample.specific_force_m_s2[static_cast<Eigen::Index>(in_acceleration)]);
-    } else if (in_rate < 3) {
-      good = parseNumber(column, sample.angular_rate_rad_s[static_cast<Eigen::Index>(in_rate)]);
-    } else {
-      continue;
-    }
-    if (!good) return false;
-    ++values;
-  }
-  return true;
-}
-
-void TextReader::addBadLine(const Source& source, std::size_t stream) {
-  const std::string& name = streams_[stream].name;
-  const auto alike = [&](const RecordingFault& fault) { return fault.stream == name; };
-  if (std::count_if(faults_.begin(), faults_.end(), alike) >= kMostBadLines) return;
-  const bool last = source.lines.bytesRead() == source.lines.size();
-  faults_.push_back({name, last ? "truncated" : "corrupt", 0.0,
-                     fmt::format("Line {} is not \"{}\"; it is left out.", source.lines.number(),
-                                 streams_[stream].message)});
 }
 
 double TextReader::fractionRead() const {
-  double read = 0.0, size = 1.0;
-  for (const Source& source : sources_) {
-    if (!source.wanted) continue;
-    read += static_cast<double>(source.lines.bytesRead());
-    size += static_cast<double>(source.lines.size());
+  double read = 0.0, total = 0.0;
+  for (const std::unique_ptr<Source>& source : sources_) {
+    if (!source->selected) continue;
+    const auto size = static_cast<double>(source->lines.file().size());
+    read += size * source->lines.fractionRead();
+    total += size;
   }
-  return read / std::max(1.0, size - 1.0);
+  return total > 0.0 ? read / total : 1.0;
 }
 
 }  // namespace evical

@@ -1,55 +1,45 @@
-// Text as in the RPG event camera data set: "events.txt" with lines "t x y p", "imu.txt" with "t ax ay az gx
-// gy gz"; t in s, read exactly to the ns, m/s^2, rad/s. Also one such file alone. Lines starting with '#' are
-// comments; a header line that names the columns of an IMU file decides their order.
+// Plain text as in the RPG event camera data set (Mueggler et al., IJRR 2017): events.txt "t x y p", imu.txt
+// "t ax ay az gx gy gz", t in seconds. One of them alone, or a directory with one or both, merged by time.
 #pragma once
 
+#include "core/recording/fault_log.h"
 #include "core/recording/recording_reader.h"
-#include "core/recording/text_lines.h"
+#include "core/recording/text_table.h"
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace evical {
 
 class TextReader : public RecordingReader {
  public:
-  // A folder or a file; see isTextRecording.
+  // A file, or a directory that holds events.txt or imu.txt.
   explicit TextReader(const std::filesystem::path& path);
+  ~TextReader() override;
 
+  std::string format() const override { return "text"; }
   const std::vector<StreamInfo>& streams() const override { return streams_; }
   void select(const std::vector<std::size_t>& streams) override;
   bool read(Packet& packet) override;
   double fractionRead() const override;
-  const std::vector<RecordingFault>& faults() const override { return faults_; }
-  std::string format() const override { return "text"; }
+  const std::vector<RecordingFault>& faults() const override { return faults_.list(); }
+
+  static bool directoryHolds(const std::filesystem::path& directory);
 
  private:
-  struct Source {
-    TextLines lines;
-    StreamType type;
-    bool wanted = true;
-    bool finished = false;
-    std::int64_t last_ns;
-    std::size_t time_column = 0, acceleration_column = 1, rate_column = 4;
-    bool columns_known = false;
-    Event next_event{};  // read, but it belongs to the next packet
-    bool has_next_event = false;
-  };
+  struct Source;  // one file
 
-  void addSource(const std::filesystem::path& path, StreamType type);
-  void fillEvents(Source& source, std::size_t stream, std::vector<Event>& events);
-  void fillImu(Source& source, std::size_t stream, std::vector<ImuSample>& samples);
-  bool parseImu(Source& source, std::string_view line, ImuSample& sample);
-  void addBadLine(const Source& source, std::size_t stream);
+  void addFile(const std::filesystem::path& path);
+  void fill(Source& source);
 
-  std::vector<Source> sources_;  // one a stream
+  FaultLog faults_;
   std::vector<StreamInfo> streams_;
-  std::vector<RecordingFault> faults_;
+  std::vector<std::unique_ptr<Source>> sources_;  // one a stream, in the same order
 };
-
-// Whether a text file's first bytes look like a table of events or IMU samples; Other if not.
-StreamType textTableType(std::string_view first_bytes);
 
 }  // namespace evical
