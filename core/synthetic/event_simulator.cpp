@@ -1,12 +1,16 @@
 #include "core/synthetic/event_simulator.h"
 
 #include "core/base/time.h"
-#include "core/synthetic/scene_renderer.h"
+#include "core/synthetic/pixel_array.h"
+#include "core/synthetic/random.h"
 #include "core/synthetic/sinusoid_motion.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <random>
+#include <exception>
+#include <functional>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -14,200 +18,101 @@ namespace evical {
 namespace {
 
 constexpr double kPacket_s = 0.01;
-constexpr double kStepTravel_px = 0.25;  // the image moves no further in one step
-constexpr double kLongestStep_s = 0.005;
 
-double uniform(std::mt19937_64& generator) {
-  return static_cast<double>(generator() >> 11) * 0x1.0p-53;
+bool earlier(const Event& a, const Event& b) {
+  if (a.time_ns != b.time_ns) return a.time_ns < b.time_ns;
+  if (a.y_px != b.y_px) return a.y_px < b.y_px;
+  return a.x_px != b.x_px ? a.x_px < b.x_px : a.brighter < b.brighter;
 }
 
-struct PixelState {
-  float level = 0.0f;      // low-passed log intensity
-  float input = 0.0f;      // log intensity at the end of the last step
-  float reference = 0.0f;  // level at the last event
-  float threshold_on = 0.0f, threshold_off = 0.0f;
-  double last_event_s = -1.0;
-};
+// Runs work(worker, item) for every item, in any order.
+void forEachItem(int items, int threads, const std::function<void(int, int)>& work) {
+  std::atomic<int> next = 0;
+  std::exception_ptr failure;
+  std::mutex mutex;
+  const auto run = [&](int worker) {
+    try {
+      for (int item = next++; item < items; item = next++) work(worker, item);
+    } catch (...) {
+      const std::scoped_lock lock(mutex);
+      failure = std::current_exception();
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    for (int worker = 1; worker < threads; ++worker) others.emplace_back(run, worker);
+    run(0);
+  }
+  if (failure) std::rethrow_exception(failure);
+}
 
-// One instant of a step: time on the reference's clock and what the renderer needs.
-struct Step {
-  double begin_s, end_s;
-  SceneRenderer::Instant at_end;
-};
+// Background activity and hot pixels: events without light.
+void addNoise(const Scenario& scenario, std::size_t index, std::uint64_t packet, double begin_s, double end_s,
+              std::vector<Event>& events) {
+  constexpr std::uint64_t kNoiseStream = 0xa0u, kHotStream = 0xb0u;
+  const SimulatedCamera& camera = scenario.cameras[index];
+  const Resolution& size = camera.intrinsics.resolution_px;
+  Random random(scenario.seed, kNoiseStream + index, packet);
+  const auto train = [&](double rate_hz, const std::function<std::pair<int, int>()>& place) {
+    if (rate_hz <= 0.0) return;
+    for (double t = begin_s + random.exponential(1.0 / rate_hz); t < end_s;
+         t += random.exponential(1.0 / rate_hz)) {
+      const auto [x, y] = place();
+      events.push_back({pixelStamp_ns(scenario, index, t), static_cast<std::uint16_t>(x),
+                        static_cast<std::uint16_t>(y), random.uniform() < 0.5});
+    }
+  };
+  train(camera.pixel.background_rate_hz * size.pixelCount(), [&] {
+    const int x = static_cast<int>(random.uniform() * size.width_px);
+    return std::pair{x, static_cast<int>(random.uniform() * size.height_px)};
+  });
+  Random places(scenario.seed, kHotStream + index);
+  for (int k = 0; k < camera.pixel.hot_pixels; ++k) {
+    const int x = static_cast<int>(places.uniform() * size.width_px);
+    const int y = static_cast<int>(places.uniform() * size.height_px);
+    train(camera.pixel.hot_pixel_rate_hz, [&] { return std::pair{x, y}; });
+  }
+}
 
-class PixelArray {
+// Brings the workers' events into one order; what jitter has moved beyond the packet's end waits for the next
+// one.
+class PacketSorter {
  public:
-  PixelArray(const Scenario& scenario, std::size_t camera)
-      : scenario_(scenario),
-        camera_(scenario.cameras[camera]),
-        renderer_(scenario, camera),
-        width_px_(camera_.intrinsics.resolution_px.width_px),
-        height_px_(camera_.intrinsics.resolution_px.height_px),
-        pixels_(static_cast<std::size_t>(width_px_ * height_px_)) {
-    std::mt19937_64 generator(scenario.seed * 2654435761u + camera);
-    std::normal_distribution<double> normal;
-    constexpr double kLeastFactor = 0.3;
-    for (PixelState& pixel : pixels_) {
-      const double on = std::max(1.0 + camera_.pixel.threshold_mismatch * normal(generator), kLeastFactor);
-      const double off = std::max(1.0 + camera_.pixel.threshold_mismatch * normal(generator), kLeastFactor);
-      pixel.threshold_on = static_cast<float>(camera_.pixel.threshold_on * on);
-      pixel.threshold_off = static_cast<float>(camera_.pixel.threshold_off * off);
-    }
-    for (int y = 0; y < height_px_; ++y)
-      row_noise_.emplace_back(scenario.seed * 1099511628211ull + 7u * y + camera);
-    for (int k = 0; k < camera_.pixel.hot_pixels; ++k) {
-      const auto x = static_cast<int>(uniform(generator) * width_px_);
-      const auto y = static_cast<int>(uniform(generator) * height_px_);
-      hot_pixels_.push_back({x, y});
-    }
-  }
+  explicit PacketSorter(const Scenario& scenario, std::size_t camera)
+      : scenario_(scenario), camera_(camera) {}
 
-  const SceneRenderer& renderer() const { return renderer_; }
-  int rows() const { return height_px_; }
-
-  void reset(const SceneRenderer::Instant& instant, int row_begin, int row_end) {
-    for (int y = row_begin; y < row_end; ++y) {
-      for (int x = 0; x < width_px_; ++x) {
-        PixelState& pixel = at(x, y);
-        pixel.level = pixel.input = renderer_.logIntensity(instant, x, y);
-        // Pixels have been running before: their references lie anywhere within the thresholds.
-        const double part = uniform(row_noise_[static_cast<std::size_t>(y)]);
-        pixel.reference = pixel.level +
-                          static_cast<float>(part * (pixel.threshold_on + pixel.threshold_off)) -
-                          pixel.threshold_on;
-      }
-    }
+  // All events of the packet; those returned are earlier than all that are still to come.
+  EventSpan sorted(const std::vector<std::vector<Event>>& found, std::uint64_t packet, double end_s) {
+    events_.swap(waiting_);
+    const std::size_t old = events_.size();
+    for (const std::vector<Event>& part : found) events_.insert(events_.end(), part.begin(), part.end());
+    std::sort(events_.begin() + static_cast<std::ptrdiff_t>(old), events_.end(), earlier);
+    jitter(old, packet);
+    if (scenario_.cameras[camera_].pixel.stamp_jitter_s > 0.0)
+      std::sort(events_.begin(), events_.end(), earlier);
+    const std::int64_t end_ns = pixelStamp_ns(scenario_, camera_, end_s);
+    const auto rest = std::lower_bound(events_.begin(), events_.end(), end_ns,
+                                       [](const Event& event, std::int64_t t) { return event.time_ns < t; });
+    waiting_.assign(rest, events_.end());
+    return {events_.begin(), rest};
   }
-
-  void run(const std::vector<Step>& steps, int row_begin, int row_end, std::vector<Event>& events) {
-    for (const Step& step : steps) {
-      for (int y = row_begin; y < row_end; ++y) {
-        for (int x = 0; x < width_px_; ++x) advance(step, x, y, events);
-      }
-    }
-    for (int y = row_begin; y < row_end; ++y) addNoise(steps.front().begin_s, steps.back().end_s, y, events);
-  }
+  EventSpan rest() const { return waiting_; }
 
  private:
-  PixelState& at(int x, int y) { return pixels_[static_cast<std::size_t>(y * width_px_ + x)]; }
-
-  // The low-pass filter's exact answer to an input that changes linearly over the step; crossings are
-  // interpolated.
-  void advance(const Step& step, int x, int y, std::vector<Event>& events) {
-    PixelState& pixel = at(x, y);
-    const float input = renderer_.logIntensity(step.at_end, x, y);
-    const double dt = step.end_s - step.begin_s;
-    const double before = pixel.level;
-    double after = input;
-    if (camera_.pixel.low_pass_s > 0.0) {
-      const double lag = (input - pixel.input) / dt * camera_.pixel.low_pass_s;
-      after = input - lag + (before - pixel.input + lag) * std::exp(-dt / camera_.pixel.low_pass_s);
-    }
-    pixel.input = input;
-    pixel.level = static_cast<float>(after);
-    const double slope = (after - before) / dt;
-    double level = before, time_s = step.begin_s;
-    for (;;) {
-      const bool on = after > pixel.reference;
-      const double crossing =
-          on ? pixel.reference + pixel.threshold_on : pixel.reference - pixel.threshold_off;
-      if (on ? after < crossing : after > crossing) return;
-      double crossing_s = on == (level >= crossing) ? time_s : step.begin_s + (crossing - before) / slope;
-      crossing_s = std::clamp(crossing_s, time_s, step.end_s);
-      if (crossing_s < pixel.last_event_s + camera_.pixel.refractory_s) {
-        // Held in reset until the refractory period ends: the level then is the new reference.
-        const double free_s = pixel.last_event_s + camera_.pixel.refractory_s;
-        if (free_s > step.end_s) {
-          pixel.reference = static_cast<float>(after);
-          return;
-        }
-        level = before + slope * (free_s - step.begin_s);
-        pixel.reference = static_cast<float>(level);
-        pixel.last_event_s = -1.0;
-        time_s = free_s;
-        continue;
-      }
-      pixel.reference = static_cast<float>(crossing);
-      pixel.last_event_s = crossing_s;
-      level = crossing;
-      time_s = crossing_s;
-      push(crossing_s, x, y, on, events);
-    }
-  }
-
-  void addNoise(double begin_s, double end_s, int y, std::vector<Event>& events) {
-    std::mt19937_64& generator = row_noise_[static_cast<std::size_t>(y)];
-    std::poisson_distribution<int> count(
-        std::max(camera_.pixel.background_rate_hz * width_px_ * (end_s - begin_s), 1e-12));
-    for (int k = count(generator); k > 0; --k) {
-      const double time_s = begin_s + uniform(generator) * (end_s - begin_s);
-      const auto x = static_cast<int>(uniform(generator) * width_px_);
-      push(time_s, x, y, uniform(generator) < 0.5, events);
-    }
-    for (const auto& [hot_x, hot_y] : hot_pixels_) {
-      if (hot_y != y) continue;
-      std::poisson_distribution<int> hot(
-          std::max(camera_.pixel.hot_pixel_rate_hz * (end_s - begin_s), 1e-12));
-      for (int k = hot(generator); k > 0; --k) {
-        push(begin_s + uniform(generator) * (end_s - begin_s), hot_x, y, uniform(generator) < 0.5, events);
-      }
-    }
-  }
-
-  // The stamp: latency, jitter, the camera's clock, whole microseconds.
-  void push(double time_s, int x, int y, bool on, std::vector<Event>& events) {
-    double stamp_s = time_s + camera_.pixel.latency_s - camera_.time_offset_s;
-    if (camera_.pixel.stamp_jitter_s > 0.0) {
-      std::normal_distribution<double> normal(0.0, camera_.pixel.stamp_jitter_s);
-      stamp_s += std::abs(normal(row_noise_[static_cast<std::size_t>(y)]));
-    }
-    const auto stamp_us = static_cast<std::int64_t>(std::llround(stamp_s * 1e6));
-    events.push_back({scenario_.start_ns + 1000 * stamp_us, static_cast<std::uint16_t>(x),
-                      static_cast<std::uint16_t>(y), on});
+  // Late by the absolute value of a normal variable.
+  void jitter(std::size_t first, std::uint64_t packet) {
+    constexpr std::uint64_t kJitterStream = 0xd0u;
+    const double sigma_s = scenario_.cameras[camera_].pixel.stamp_jitter_s;
+    if (sigma_s <= 0.0) return;
+    Random random(scenario_.seed, kJitterStream + camera_, packet);
+    for (std::size_t i = first; i < events_.size(); ++i)
+      events_[i].time_ns += 1000 * std::llround(std::abs(random.normal()) * sigma_s * 1e6);
   }
 
   const Scenario& scenario_;
-  const SimulatedCamera& camera_;
-  SceneRenderer renderer_;
-  int width_px_, height_px_;
-  std::vector<PixelState> pixels_;
-  std::vector<std::mt19937_64> row_noise_;
-  std::vector<std::pair<int, int>> hot_pixels_;
+  std::size_t camera_;
+  std::vector<Event> events_, waiting_;
 };
-
-// Fastest image motion of the board's corners.
-double fastestMotion_px_s(const SinusoidMotion& motion, const Scenario& scenario, std::size_t camera,
-                          double time_s) {
-  const MotionState state = motion.cameraAt(camera, time_s);
-  const RigidTransform camera_from_world = inverse(state.world_from_body);
-  const Eigen::Vector3d velocity = camera_from_world.rotation * state.velocity_in_world_m_s;
-  double fastest = 1.0;
-  const CircleBoard& board = scenario.board;
-  for (const int corner : {0, board.cols - 1, board.index(board.rows - 1, 0), board.circleCount() - 1}) {
-    const Eigen::Vector2d centre = board.centre_m(corner);
-    const Eigen::Vector3d point = camera_from_world * Eigen::Vector3d(centre.x(), centre.y(), 0.0);
-    Eigen::Matrix<double, 2, 3> jacobian;
-    if (!project(scenario.cameras[camera].intrinsics, point, &jacobian)) continue;
-    const Eigen::Vector2d v = jacobian * (-velocity - state.angular_velocity_in_body_rad_s.cross(point));
-    fastest = std::max(fastest, v.norm());
-  }
-  return fastest;
-}
-
-std::vector<Step> stepsOf(double begin_s, double end_s, const SinusoidMotion& motion,
-                          const Scenario& scenario, std::size_t camera, const SceneRenderer& renderer) {
-  const double speed = std::max(fastestMotion_px_s(motion, scenario, camera, begin_s),
-                                fastestMotion_px_s(motion, scenario, camera, end_s));
-  const double step_s = std::min(kStepTravel_px / (1.2 * speed), kLongestStep_s);
-  const int count = std::max(1, static_cast<int>(std::ceil((end_s - begin_s) / step_s)));
-  std::vector<Step> steps;
-  for (int k = 0; k < count; ++k) {
-    const double from_s = begin_s + (end_s - begin_s) * k / count,
-                 to_s = begin_s + (end_s - begin_s) * (k + 1) / count;
-    steps.push_back({from_s, to_s, renderer.at(motion.worldFromCamera(camera, to_s))});
-  }
-  return steps;
-}
 
 }  // namespace
 
@@ -215,37 +120,28 @@ void simulateEvents(const Scenario& scenario, std::size_t camera, const EventSin
                     const RunContext& context, int threads) {
   const SinusoidMotion motion(scenario);
   PixelArray pixels(scenario, camera);
-  const int blocks = std::max(threads, 1);
-  std::vector<std::vector<Event>> found(static_cast<std::size_t>(blocks));
-  const auto inBlocks = [&](const auto& work) {
-    std::vector<std::jthread> workers;
-    for (int block = 0; block < blocks; ++block) {
-      workers.emplace_back(
-          [&, block] { work(block, pixels.rows() * block / blocks, pixels.rows() * (block + 1) / blocks); });
-    }
-  };
-  const SceneRenderer::Instant first = pixels.renderer().at(motion.worldFromCamera(camera, 0.0));
-  inBlocks([&](int, int begin, int end) { pixels.reset(first, begin, end); });
-  std::vector<Event> packet;
-  const int packets = static_cast<int>(std::ceil(scenario.duration_s / kPacket_s));
+  const auto poseAt = [&](double t) { return motion.worldFromCamera(camera, t); };
+  const int workers = std::max(threads, 1);
+  pixels.reset(poseAt(0.0));
+  PacketSorter sorter(scenario, camera);
+  std::vector<std::vector<Event>> found(static_cast<std::size_t>(workers));
+  std::vector<PixelArray::Scratch> scratch(static_cast<std::size_t>(workers));
+  const int packets = std::max(1, static_cast<int>(std::ceil(scenario.duration_s / kPacket_s - 1e-9)));
   for (int k = 0; k < packets; ++k) {
     context.throwIfStopped();
     const double begin_s = k * kPacket_s, end_s = std::min((k + 1) * kPacket_s, scenario.duration_s);
-    const std::vector<Step> steps = stepsOf(begin_s, end_s, motion, scenario, camera, pixels.renderer());
-    inBlocks([&](int block, int row_begin, int row_end) {
-      found[static_cast<std::size_t>(block)].clear();
-      pixels.run(steps, row_begin, row_end, found[static_cast<std::size_t>(block)]);
+    const auto packet = static_cast<std::uint64_t>(k);
+    for (std::vector<Event>& events : found) events.clear();
+    pixels.begin(begin_s, end_s, poseAt);
+    forEachItem(pixels.tileRows(), workers, [&](int worker, int row) {
+      const auto w = static_cast<std::size_t>(worker);
+      pixels.runTileRow(row, scratch[w], found[w]);
     });
-    packet.clear();
-    for (const std::vector<Event>& events : found) packet.insert(packet.end(), events.begin(), events.end());
-    std::sort(packet.begin(), packet.end(), [](const Event& a, const Event& b) {
-      if (a.time_ns != b.time_ns) return a.time_ns < b.time_ns;
-      return a.y_px != b.y_px ? a.y_px < b.y_px
-                              : (a.x_px != b.x_px ? a.x_px < b.x_px : a.brighter < b.brighter);
-    });
-    sink(packet);
+    addNoise(scenario, camera, packet, begin_s, end_s, found.front());
+    if (const EventSpan events = sorter.sorted(found, packet, end_s); !events.empty()) sink(events);
     context.progress.stageProgress(static_cast<double>(k + 1) / packets);
   }
+  if (!sorter.rest().empty()) sink(sorter.rest());
 }
 
 }  // namespace evical

@@ -118,6 +118,7 @@ void readScene(MapReader map, SceneModel& scene) {
   map.get("margin_m", scene.margin_m, 0.0, 10.0);
   map.get("clutter_contrast", scene.clutter_contrast, 0.0, 3.0);
   map.get("clutter_distance_m", scene.clutter_distance_m, 0.0, 100.0);
+  map.get("clutter_object_share", scene.clutter_object_share, 0.0, 1.0);
   map.get("clutter_detail_px", scene.clutter_detail_px, 0.5, 100.0);
   map.finish();
 }

@@ -4,71 +4,69 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
+#include <limits>
 
 namespace evical {
 namespace {
 
-constexpr int kTexture = 1024;      // texels a side, a power of two
 constexpr float kEdgeReach = 4.0f;  // in sigmas of the blur
-constexpr int kEdgeSteps = 512;     // of the tabulated error function, a sigma's eighth of a percent
-constexpr float kMeanLogReflectance = -1.2f;
+constexpr int kEdgeSteps = 512;     // of the tabulated error function
 
-// Smooth periodic noise of unit variance: white noise, box-filtered until only structure of a few texels is
-// left.
-std::vector<float> makeTexture(std::uint64_t seed) {
-  std::mt19937_64 generator(seed * 6364136223846793005ull + 99);
-  std::normal_distribution<float> normal;
-  const auto n = static_cast<std::size_t>(kTexture);
-  std::vector<float> texture(n * n, 0.0f), octave(n * n), filtered(n * n);
-  for (const int radius : {1, 3, 8}) {
-    for (float& v : octave) v = normal(generator);
-    for (int pass = 0; pass < 3; ++pass) {
-      for (const bool along_x : {true, false}) {
-        for (std::size_t y = 0; y < n; ++y) {
-          for (std::size_t x = 0; x < n; ++x) {
-            float sum = 0.0f;
-            for (int d = -radius; d <= radius; ++d) {
-              const std::size_t shifted = (along_x ? x : y) + n + static_cast<std::size_t>(d + kTexture);
-              sum += along_x ? octave[y * n + shifted % n] : octave[(shifted % n) * n + x];
-            }
-            filtered[y * n + x] = sum;
-          }
-        }
-        octave.swap(filtered);
-      }
-    }
-    double squares = 0.0;
-    for (const float v : octave) squares += static_cast<double>(v) * v;
-    const auto scale =
-        static_cast<float>(1.0 / std::sqrt(squares / static_cast<double>(octave.size()) * 3.0));
-    for (std::size_t i = 0; i < texture.size(); ++i) texture[i] += scale * octave[i];
-  }
-  return texture;
+// Texels of the clutter a pixel, at the motion's mean distance.
+double texelsPerPixel(const Scenario& scenario) {
+  constexpr double kTexelsOfDetail = 2.0;
+  return kTexelsOfDetail / scenario.scene.clutter_detail_px;
+}
+
+ClutterTextureOptions textureOptions(const Scenario& scenario, std::size_t camera) {
+  return {scenario.seed, scenario.scene.clutter_contrast, scenario.scene.clutter_object_share,
+          scenario.cameras[camera].pixel.blur_px * texelsPerPixel(scenario)};
+}
+
+// d(board)/d(ray) at a ray that meets the plane at `point`, `depth` being the homography's third coordinate.
+Eigen::Matrix2f derivative(const Eigen::Matrix3f& plane_from_ray, const Eigen::Vector2f& point, float depth) {
+  return (plane_from_ray.topLeftCorner<2, 2>() - point * plane_from_ray.block<1, 2>(2, 0)) / depth;
+}
+
+// The matrix's largest singular value.
+float largestStretch(const Eigen::Matrix2f& matrix) {
+  const float half_trace = 0.5f * matrix.squaredNorm(), determinant = matrix.determinant();
+  return std::sqrt(half_trace +
+                   std::sqrt(std::max(half_trace * half_trace - determinant * determinant, 0.0f)));
 }
 
 }  // namespace
 
 SceneRenderer::SceneRenderer(const Scenario& scenario, std::size_t index)
-    : scenario_(scenario),
+    : board_(scenario.board),
+      scene_(scenario.scene),
       width_px_(scenario.cameras[index].intrinsics.resolution_px.width_px),
+      height_px_(scenario.cameras[index].intrinsics.resolution_px.height_px),
       blur_px_(static_cast<float>(std::max(scenario.cameras[index].pixel.blur_px, 0.05))),
-      log_bright_(static_cast<float>(std::log(scenario.scene.bright_reflectance))),
-      texture_(makeTexture(scenario.seed)) {
+      texture_(textureOptions(scenario, index)) {
   const CameraIntrinsics& camera = scenario.cameras[index].intrinsics;
+  const bool dark = board_.circles == CircleShade::Dark;
+  paper_ = static_cast<float>(dark ? scene_.bright_reflectance : scene_.dark_reflectance);
+  ink_ = static_cast<float>(dark ? scene_.dark_reflectance : scene_.bright_reflectance);
+  log_paper_ = std::log(paper_);
+  log_ink_ = std::log(ink_);
+  const bool asymmetric = board_.type == BoardType::AsymmetricCircles;
+  const Eigen::Vector2d last(board_.spacing_m * (asymmetric ? 2 * board_.cols - 1 : board_.cols - 1),
+                             board_.spacing_m * (board_.rows - 1));
+  board_low_m_ = Eigen::Vector2d::Constant(-scene_.margin_m).cast<float>();
+  board_high_m_ = (last.array() + scene_.margin_m).matrix().cast<float>();
   const UndistortionTable ideal(camera);
   const Eigen::Vector2d& f = camera.focal_length_px;
-  for (int y = 0; y < camera.resolution_px.height_px; ++y) {
+  for (int y = 0; y < height_px_; ++y) {
     for (int x = 0; x < width_px_; ++x) {
       const Eigen::Vector2d pixel = ideal(x, y).cast<double>();
-      const Eigen::Vector2d ray = (pixel - camera.principal_point_px).cwiseQuotient(f);
-      rays_.push_back(ray.cast<float>());
+      rays_.push_back((pixel - camera.principal_point_px).cwiseQuotient(f).cast<float>());
       const Eigen::Matrix2d per_px = f.cwiseInverse().asDiagonal() * idealPixelScale(camera, pixel);
       ray_per_px_.push_back(per_px.cast<float>());
     }
   }
-  const double px_per_m = f.x() / (scenario.motion.distance_m + scenario.scene.clutter_distance_m);
-  texels_per_m_ = static_cast<float>(2.0 * px_per_m / scenario.scene.clutter_detail_px);
+  const double px_per_m = f.x() / (scenario.motion.distance_m + scene_.clutter_distance_m);
+  texels_per_m_ = static_cast<float>(texelsPerPixel(scenario) * px_per_m);
   for (int i = 0; i <= kEdgeSteps; ++i) {
     const double sigmas = (2.0 * i / kEdgeSteps - 1.0) * kEdgeReach;
     edge_table_.push_back(static_cast<float>(0.5 * std::erfc(-sigmas / std::sqrt(2.0))));
@@ -83,8 +81,89 @@ SceneRenderer::Instant SceneRenderer::at(const RigidTransform& world_from_camera
     h << r.col(0), r.col(1), camera_from_world.translation_m + depth_m * r.col(2);
     return Eigen::Matrix3f(h.inverse().cast<float>());
   };
-  return {planeFromRay(0.0), planeFromRay(scenario_.scene.clutter_distance_m),
-          world_from_camera.translation_m.cast<float>()};
+  return {planeFromRay(0.0), planeFromRay(scene_.clutter_distance_m)};
+}
+
+SceneRenderer::Tile SceneRenderer::tile(int column, int row) const {
+  const int x = column * kTile_px, y = row * kTile_px;
+  return {x, y, std::min(kTile_px, width_px_ - x), std::min(kTile_px, height_px_ - y)};
+}
+
+// How far what a pixel shows moves away from it, on the board and on the background.
+float SceneRenderer::travel(std::size_t pixel, const Instants& instants) const {
+  const Eigen::Vector3f ray = rays_[pixel].homogeneous();
+  float farthest = 0.0f;
+  for (const auto plane : {&Instant::board_from_ray, &Instant::background_from_ray}) {
+    float path = 0.0f;
+    for (int half = 0; half < 2; ++half) {
+      const Eigen::Matrix3f& before = instants[static_cast<std::size_t>(half)]->*plane;
+      const Eigen::Matrix3f& after = instants[static_cast<std::size_t>(half) + 1]->*plane;
+      const Eigen::Vector3f from = before * ray, to = after * ray;
+      if (!(from.z() > 0.0f) || !(to.z() > 0.0f)) continue;
+      const Eigen::Vector2f shift_m = to.hnormalized() - from.hnormalized();
+      const Eigen::Matrix2f per_px = derivative(before, from.hnormalized(), from.z()) * ray_per_px_[pixel];
+      const float length = (per_px.inverse() * shift_m).norm();
+      if (std::isfinite(length)) path += length;
+    }
+    farthest = std::max(farthest, path);
+  }
+  return farthest;
+}
+
+void SceneRenderer::findCircles(const Eigen::Vector2f& low_m, const Eigen::Vector2f& high_m,
+                                TileView& view) const {
+  const auto spacing = static_cast<float>(board_.spacing_m), radius = static_cast<float>(board_.radius_m);
+  const int first = std::max(0, static_cast<int>(std::ceil((low_m.y() - radius) / spacing)));
+  const int last = std::min(board_.rows - 1, static_cast<int>(std::floor((high_m.y() + radius) / spacing)));
+  for (int row = first; row <= last; ++row) {
+    for (int col = 0; col < board_.cols; ++col) {
+      const Eigen::Vector2f centre = board_.centre_m(row, col).cast<float>();
+      const Eigen::Vector2f nearest = centre.cwiseMax(low_m).cwiseMin(high_m);
+      if ((nearest - centre).norm() < radius) view.circles_m.push_back(centre);
+    }
+  }
+}
+
+void SceneRenderer::look(const Tile& tile, const Instants& instants, TileView& view) const {
+  view.content = Content::Mixed;
+  view.constant = false;
+  view.travel_px = 0.0f;
+  view.circles_m.clear();
+  Eigen::Vector2f low = Eigen::Vector2f::Constant(std::numeric_limits<float>::max()), high = -low;
+  float metres_per_px = 0.0f;
+  bool visible = true;
+  for (const int y : {tile.y_px, tile.y_px + tile.height_px - 1}) {
+    for (const int x : {tile.x_px, tile.x_px + tile.width_px - 1}) {
+      const auto pixel = static_cast<std::size_t>(y * width_px_ + x);
+      view.travel_px = std::max(view.travel_px, travel(pixel, instants));
+      for (const Instant* instant : instants) {
+        const Eigen::Vector3f b = instant->board_from_ray * rays_[pixel].homogeneous();
+        visible = visible && b.z() > 0.0f;
+        if (!visible) continue;
+        const Eigen::Vector2f point = b.hnormalized();
+        low = low.cwiseMin(point);
+        high = high.cwiseMax(point);
+        metres_per_px =
+            std::max(metres_per_px,
+                     largestStretch(derivative(instant->board_from_ray, point, b.z()) * ray_per_px_[pixel]));
+      }
+    }
+  }
+  constexpr float kSlack = 1.1f;  // pixels within a tile differ a little in size
+  // Corners stand for their tile up to a pixel, and three instants for all between them up to half the way.
+  const float reach = (kEdgeReach * blur_px_ + 1.0f + 0.5f * view.travel_px) * metres_per_px;
+  view.reach_m = visible ? kSlack * kEdgeReach * blur_px_ * metres_per_px : std::numeric_limits<float>::max();
+  if (!visible) low = board_low_m_, high = board_high_m_;
+  const Eigen::Array2f low_reach = low.array() - reach, high_reach = high.array() + reach;
+  findCircles(low_reach.matrix(), high_reach.matrix(), view);
+  if (!visible) return;
+  if ((high_reach < board_low_m_.array()).any() || (low_reach > board_high_m_.array()).any()) {
+    view.content = Content::Clutter;
+    view.constant = scene_.clutter_contrast <= 0.0;
+  } else if ((low_reach > board_low_m_.array()).all() && (high_reach < board_high_m_.array()).all()) {
+    view.constant = view.circles_m.empty();
+    view.content = view.constant ? Content::Paper : Content::Circles;
+  }
 }
 
 float SceneRenderer::edge(float distance_px) const {
@@ -97,73 +176,88 @@ float SceneRenderer::edge(float distance_px) const {
          edge_table_[static_cast<std::size_t>(i) + 1] * part;
 }
 
-float SceneRenderer::background(float x_m, float y_m) const {
-  const float contrast = static_cast<float>(scenario_.scene.clutter_contrast);
-  if (contrast <= 0.0f) return kMeanLogReflectance;
-  const float u = x_m * texels_per_m_ + 65536.0f, v = y_m * texels_per_m_ + 65536.0f;
-  const int iu = static_cast<int>(u), iv = static_cast<int>(v);
-  const float fu = u - static_cast<float>(iu), fv = v - static_cast<float>(iv);
-  const auto texel = [&](int a, int b) {
-    return texture_[static_cast<std::size_t>((b & (kTexture - 1)) * kTexture + (a & (kTexture - 1)))];
-  };
-  const float value = (1.0f - fv) * ((1.0f - fu) * texel(iu, iv) + fu * texel(iu + 1, iv)) +
-                      fv * ((1.0f - fu) * texel(iu, iv + 1) + fu * texel(iu + 1, iv + 1));
-  return kMeanLogReflectance + contrast * value;
+float SceneRenderer::clutter(const Instant& instant, const Eigen::Vector2f& ray) const {
+  const Eigen::Matrix3f& h = instant.background_from_ray;
+  const float depth = h(2, 0) * ray.x() + h(2, 1) * ray.y() + h(2, 2);
+  const float scale = depth > 0.0f ? texels_per_m_ / depth : 0.0f;
+  return texture_((h(0, 0) * ray.x() + h(0, 1) * ray.y() + h(0, 2)) * scale,
+                  (h(1, 0) * ray.x() + h(1, 1) * ray.y() + h(1, 2)) * scale);
 }
 
-float SceneRenderer::logIntensity(const Instant& instant, int x_px, int y_px) const {
-  const auto pixel = static_cast<std::size_t>(y_px * width_px_ + x_px);
+// How much of a pixel lies on the sheet.
+float SceneRenderer::sheet(const Eigen::Vector2f& point_m, const Eigen::Matrix2f& board_per_px) const {
+  const Eigen::Vector2f inside_m = (point_m - board_low_m_).cwiseMin(board_high_m_ - point_m);
+  const float inside_px =
+      std::min(inside_m.x() / board_per_px.row(0).norm(), inside_m.y() / board_per_px.row(1).norm());
+  return std::isfinite(inside_px) ? edge(inside_px) : 0.0f;
+}
+
+// How much of a pixel is ink of the circle whose centre it lies `away` from. A disk blurred by sigma looks
+// smaller than it is by sigma^2 / (2 radius): the second order of the Gaussian's convolution with a curved
+// edge.
+float SceneRenderer::disk(const Eigen::Vector2f& away_m, const Eigen::Matrix2f& board_per_px) const {
+  const auto radius = static_cast<float>(board_.radius_m);
+  const float distance = away_m.norm();
+  const Eigen::Vector2f outwards =
+      distance > 1e-7f ? Eigen::Vector2f(away_m / distance) : Eigen::Vector2f::UnitX();
+  const float metres_per_px = (board_per_px.transpose() * outwards).norm();
+  const float shrunk_px = 0.5f * blur_px_ * blur_px_ * metres_per_px / radius;
+  return edge((radius - distance) / metres_per_px - shrunk_px);
+}
+
+// The board's part of a pixel and, where the sheet ends, the clutter's.
+float SceneRenderer::onBoard(const Instant& instant, std::size_t pixel, const TileView& view) const {
   const Eigen::Vector2f& ray = rays_[pixel];
-  const Eigen::Vector3f b = instant.board_from_ray * ray.homogeneous();
-  const auto clutter = [&] {
-    const Eigen::Vector3f back = instant.background_from_ray * ray.homogeneous();
-    return background(back.x() / back.z(), back.y() / back.z());
+  const Eigen::Matrix3f& h = instant.board_from_ray;
+  const float depth = h(2, 0) * ray.x() + h(2, 1) * ray.y() + h(2, 2);
+  if (!(depth > 0.0f)) return clutter(instant, ray);
+  const float inverse_depth = 1.0f / depth;
+  const Eigen::Vector2f point((h(0, 0) * ray.x() + h(0, 1) * ray.y() + h(0, 2)) * inverse_depth,
+                              (h(1, 0) * ray.x() + h(1, 1) * ray.y() + h(1, 2)) * inverse_depth);
+  const auto boardPerPixel = [&] {
+    return Eigen::Matrix2f(derivative(h, point, depth) * ray_per_px_[pixel]);
   };
-  if (!(b.z() > 0.0f)) return clutter();
-  const float x = b.x() / b.z(), y = b.y() / b.z();
-  const CircleBoard& board = scenario_.board;
-  const auto spacing = static_cast<float>(board.spacing_m), radius = static_cast<float>(board.radius_m);
-  const auto margin = static_cast<float>(scenario_.scene.margin_m);
-  const bool asymmetric = board.type == BoardType::AsymmetricCircles;
-  const float last_x = spacing * static_cast<float>(asymmetric ? 2 * board.cols - 1 : board.cols - 1);
-  const float last_y = spacing * static_cast<float>(board.rows - 1);
-  // How many metres on the board a pixel is wide, along a direction on the board.
-  const Eigen::Matrix2f board_per_ray = (instant.board_from_ray.topLeftCorner<2, 2>() -
-                                         Eigen::Vector2f(x, y) * instant.board_from_ray.block<1, 2>(2, 0)) /
-                                        b.z();
-  const Eigen::Matrix2f board_per_px = board_per_ray * ray_per_px_[pixel];
-  const auto metresPerPixel = [&](const Eigen::Vector2f& direction) {
-    return (board_per_px.transpose() * direction).norm();
-  };
-  const float per_px_x = metresPerPixel(Eigen::Vector2f::UnitX()),
-              per_px_y = metresPerPixel(Eigen::Vector2f::UnitY());
-  const float inside_px = std::min(std::min(x + margin, last_x + margin - x) / per_px_x,
-                                   std::min(y + margin, last_y + margin - y) / per_px_y);
-  const float on_board = edge(inside_px);
-  if (on_board <= 0.0f) return clutter();
-  // The nearest circle.
-  const int row = std::clamp(static_cast<int>(std::lround(y / spacing)), 0, board.rows - 1);
-  float circle_coverage = 0.0f;
-  for (int r = std::max(row - 1, 0); r <= std::min(row + 1, board.rows - 1); ++r) {
-    const float shift = asymmetric ? static_cast<float>(r % 2) : 0.0f;
-    const float column_spacing = asymmetric ? 2.0f : 1.0f;
-    const int col =
-        std::clamp(static_cast<int>(std::lround((x / spacing - shift) / column_spacing)), 0, board.cols - 1);
-    const Eigen::Vector2f away(x - (column_spacing * static_cast<float>(col) + shift) * spacing,
-                               y - static_cast<float>(r) * spacing);
-    const float distance = away.norm();
-    if (distance > 2.0f * radius) continue;
-    const float per_px = distance > 1e-7f ? metresPerPixel(away / distance) : per_px_x;
-    circle_coverage = std::max(circle_coverage, edge((radius - distance) / per_px));
+  float on_board = 1.0f;
+  if (view.content == Content::Mixed) {
+    const float inside_m = (point - board_low_m_).cwiseMin(board_high_m_ - point).minCoeff();
+    if (inside_m < -view.reach_m) return clutter(instant, ray);
+    if (inside_m < view.reach_m) on_board = sheet(point, boardPerPixel());
+    if (on_board <= 0.0f) return clutter(instant, ray);
   }
-  const bool dark = board.circles == CircleShade::Dark;
-  const auto bright = static_cast<float>(scenario_.scene.bright_reflectance);
-  const auto black = static_cast<float>(scenario_.scene.dark_reflectance);
-  if (on_board >= 1.0f && circle_coverage <= 0.0f && dark) return log_bright_;
-  const float paper = dark ? bright : black, ink = dark ? black : bright;
-  const float reflectance = paper + (ink - paper) * circle_coverage;
+  const auto radius = static_cast<float>(board_.radius_m);
+  const float outer = radius + view.reach_m, inner = std::max(radius - view.reach_m, 0.0f);
+  float ink = 0.0f;
+  for (const Eigen::Vector2f& centre : view.circles_m) {
+    const Eigen::Vector2f away = point - centre;
+    const float square = away.squaredNorm();
+    if (square >= outer * outer) continue;
+    ink = square < inner * inner ? 1.0f : std::max(ink, disk(away, boardPerPixel()));
+  }
+  if (on_board >= 1.0f && (ink <= 0.0f || ink >= 1.0f)) return ink <= 0.0f ? log_paper_ : log_ink_;
+  const float reflectance = paper_ + (ink_ - paper_) * ink;
   if (on_board >= 1.0f) return std::log(reflectance);
-  return std::log(on_board * reflectance + (1.0f - on_board) * std::exp(clutter()));
+  return std::log(on_board * reflectance + (1.0f - on_board) * std::exp(clutter(instant, ray)));
+}
+
+void SceneRenderer::render(const Instant& instant, const Tile& tile, const TileView& view,
+                           float* log_intensity) const {
+  for (int y = tile.y_px; y < tile.y_px + tile.height_px; ++y) {
+    auto pixel = static_cast<std::size_t>(y * width_px_ + tile.x_px);
+    for (int x = 0; x < tile.width_px; ++x, ++pixel, ++log_intensity) {
+      switch (view.content) {
+        case Content::Paper:
+          *log_intensity = log_paper_;
+          break;
+        case Content::Clutter:
+          *log_intensity = clutter(instant, rays_[pixel]);
+          break;
+        case Content::Circles:
+        case Content::Mixed:
+          *log_intensity = onBoard(instant, pixel, view);
+          break;
+      }
+    }
+  }
 }
 
 }  // namespace evical

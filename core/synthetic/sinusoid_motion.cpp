@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <random>
 
 namespace evical {
@@ -24,6 +25,11 @@ Eigen::Vector3d middleOf(const CircleBoard& board) {
   }
   const Eigen::Vector2d middle = 0.5 * (low + high);
   return {middle.x(), middle.y(), 0.0};
+}
+
+bool isInside(const Resolution& resolution, const Eigen::Vector2d& pixel) {
+  return pixel.x() >= 0.0 && pixel.y() >= 0.0 && pixel.x() <= resolution.width_px - 1 &&
+         pixel.y() <= resolution.height_px - 1;
 }
 
 }  // namespace
@@ -142,7 +148,9 @@ double SinusoidMotion::imageSpeedRms_px_s() const {
     for (const Eigen::Vector2d& centre : circleCentres_m(scenario_.board)) {
       const Eigen::Vector3d point = camera_from_world * Eigen::Vector3d(centre.x(), centre.y(), 0.0);
       Eigen::Matrix<double, 2, 3> jacobian;
-      if (!project(camera.intrinsics, point, &jacobian)) continue;
+      const std::optional<Eigen::Vector2d> pixel = project(camera.intrinsics, point, &jacobian);
+      // Far outside the image the distortion's polynomial means nothing, nor do speeds there.
+      if (!pixel || !isInside(camera.intrinsics.resolution_px, *pixel)) continue;
       squares += (jacobian * (-velocity - state.angular_velocity_in_body_rad_s.cross(point))).squaredNorm();
       ++count;
     }

@@ -32,7 +32,7 @@ class SinusoidMotion {
   MotionState cameraAt(std::size_t camera, double time_s) const;
   RigidTransform worldFromCamera(std::size_t camera, double time_s) const;
 
-  // RMS image speed of the board's circles in the first camera.
+  // RMS image speed of those of the board's circles that are in the first camera's image.
   double imageSpeedRms_px_s() const;
 
  private:

@@ -1,0 +1,178 @@
+#include "core/synthetic/pixel_array.h"
+
+#include "core/base/time.h"
+#include "core/synthetic/random.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace evical {
+namespace {
+
+constexpr int kMostSteps = 256;  // in one stretch
+constexpr char kMoving = -1;
+
+}  // namespace
+
+std::int64_t pixelStamp_ns(const Scenario& scenario, std::size_t camera, double time_s) {
+  const SimulatedCamera& c = scenario.cameras[camera];
+  return scenario.start_ns + 1000 * std::llround((time_s + c.pixel.latency_s - c.time_offset_s) * 1e6);
+}
+
+PixelArray::PixelArray(const Scenario& scenario, std::size_t camera)
+    : scenario_(scenario),
+      camera_(camera),
+      model_(scenario.cameras[camera].pixel),
+      renderer_(scenario, camera),
+      width_px_(scenario.cameras[camera].intrinsics.resolution_px.width_px),
+      pixels_(static_cast<std::size_t>(scenario.cameras[camera].intrinsics.resolution_px.pixelCount())),
+      settled_(static_cast<std::size_t>(renderer_.tileColumns() * renderer_.tileRows()), kMoving) {
+  // Log intensity is taken as linear within a step, which must be short against the blur.
+  constexpr float kLongest_px = 0.3f, kShareOfBlur = 0.5f;
+  step_travel_px_ = std::min(kLongest_px, kShareOfBlur * static_cast<float>(model_.blur_px));
+  constexpr std::uint64_t kThresholdStream = 0xe0u;
+  constexpr double kLeastFactor = 0.3;
+  Random random(scenario.seed, kThresholdStream + camera);
+  const auto factor = [&] {
+    return std::max(1.0 + model_.threshold_mismatch * random.normal(), kLeastFactor);
+  };
+  for (Pixel& pixel : pixels_) {
+    pixel.threshold_on = static_cast<float>(model_.threshold_on * factor());
+    pixel.threshold_off = static_cast<float>(model_.threshold_off * factor());
+  }
+}
+
+void PixelArray::reset(const RigidTransform& world_from_camera) {
+  constexpr std::uint64_t kReferenceStream = 0xf0u;
+  Random random(scenario_.seed, kReferenceStream + camera_);
+  const SceneRenderer::Instant instant = renderer_.at(world_from_camera);
+  Scratch scratch;
+  for (int row = 0; row < renderer_.tileRows(); ++row) {
+    for (int column = 0; column < renderer_.tileColumns(); ++column) {
+      const SceneRenderer::Tile tile = renderer_.tile(column, row);
+      scratch.input.resize(static_cast<std::size_t>(tile.pixelCount()));
+      renderer_.look(tile, {&instant, &instant, &instant}, scratch.view);
+      renderer_.render(instant, tile, scratch.view, scratch.input.data());
+      for (int k = 0; k < tile.pixelCount(); ++k) {
+        Pixel& pixel = at(tile.x_px + k % tile.width_px, tile.y_px + k / tile.width_px);
+        pixel.level = pixel.input = scratch.input[static_cast<std::size_t>(k)];
+        const auto part = static_cast<float>(random.uniform());
+        pixel.reference =
+            pixel.level + part * (pixel.threshold_on + pixel.threshold_off) - pixel.threshold_on;
+      }
+    }
+  }
+  std::fill(settled_.begin(), settled_.end(), kMoving);
+}
+
+PixelArray::Step PixelArray::stepBetween(double begin_s, double end_s) const {
+  const double dt = end_s - begin_s, tau = model_.low_pass_s;
+  if (tau <= 0.0) return {begin_s, end_s, 0.0f, 0.0f};
+  return {begin_s, end_s, static_cast<float>(std::exp(-dt / tau)), static_cast<float>(tau / dt)};
+}
+
+void PixelArray::begin(double begin_s, double end_s,
+                       const std::function<RigidTransform(double)>& world_from_camera_at) {
+  begin_s_ = begin_s;
+  end_s_ = end_s;
+  const SceneRenderer::Instant first = renderer_.at(world_from_camera_at(begin_s)),
+                               middle = renderer_.at(world_from_camera_at(0.5 * (begin_s + end_s))),
+                               last = renderer_.at(world_from_camera_at(end_s));
+  constexpr int kSamples = 8;  // a side: the fastest place is near one of them
+  float travel_px = 0.0f;
+  SceneRenderer::TileView view;
+  for (int i = 0; i <= kSamples; ++i) {
+    for (int j = 0; j <= kSamples; ++j) {
+      const int column = (renderer_.tileColumns() - 1) * i / kSamples, row = (tileRows() - 1) * j / kSamples;
+      renderer_.look(renderer_.tile(column, row), {&first, &middle, &last}, view);
+      travel_px = std::max(travel_px, view.travel_px);
+    }
+  }
+  int steps = 2;
+  while (steps < kMostSteps && static_cast<float>(steps) * step_travel_px_ < travel_px) steps *= 2;
+  instants_.clear();
+  for (int k = 0; k <= steps; ++k)
+    instants_.push_back(renderer_.at(world_from_camera_at(begin_s + (end_s - begin_s) * k / steps)));
+}
+
+void PixelArray::runTileRow(int tile_row, Scratch& scratch, std::vector<Event>& events) {
+  const int all = static_cast<int>(instants_.size()) - 1;
+  const SceneRenderer::Instants ends = {&instants_.front(), &instants_[instants_.size() / 2],
+                                        &instants_.back()};
+  for (int column = 0; column < renderer_.tileColumns(); ++column) {
+    const SceneRenderer::Tile tile = renderer_.tile(column, tile_row);
+    char& settled = settled_[static_cast<std::size_t>(tile_row * renderer_.tileColumns() + column)];
+    renderer_.look(tile, ends, scratch.view);
+    const bool constant = scratch.view.constant;
+    if (constant && settled == static_cast<char>(scratch.view.content)) continue;
+    int steps = 2;
+    while (steps < all && static_cast<float>(steps) * step_travel_px_ < scratch.view.travel_px) steps *= 2;
+    if (constant) steps = 1;
+    scratch.input.resize(static_cast<std::size_t>(tile.pixelCount()));
+    for (int k = 1; k <= steps; ++k) {
+      const double length_s = end_s_ - begin_s_;
+      const Step step = stepBetween(begin_s_ + length_s * (k - 1) / steps, begin_s_ + length_s * k / steps);
+      renderer_.render(instants_[static_cast<std::size_t>(k * (all / steps))], tile, scratch.view,
+                       scratch.input.data());
+      const float* input = scratch.input.data();
+      for (int y = tile.y_px; y < tile.y_px + tile.height_px; ++y) {
+        Pixel* pixel = &at(tile.x_px, y);
+        for (int x = tile.x_px; x < tile.x_px + tile.width_px; ++x)
+          advance(step, *input++, x, y, *pixel++, events);
+      }
+    }
+    constexpr float kSettled = 1e-4f;
+    settled = constant ? static_cast<char>(scratch.view.content) : kMoving;
+    for (int k = 0; settled != kMoving && k < tile.pixelCount(); ++k) {
+      const Pixel& pixel = at(tile.x_px + k % tile.width_px, tile.y_px + k / tile.width_px);
+      if (std::abs(pixel.level - pixel.input) > kSettled) settled = kMoving;
+    }
+  }
+}
+
+// The low-pass filter's exact answer to an input that changes linearly over the step; crossings are
+// interpolated.
+void PixelArray::advance(const Step& step, float input, int x, int y, Pixel& pixel,
+                         std::vector<Event>& events) const {
+  const float behind = (input - pixel.input) * step.lag;
+  const float before = pixel.level;
+  const float after = input - behind + (before - pixel.input + behind) * step.decay;
+  pixel.input = input;
+  pixel.level = after;
+  if (after < pixel.reference + pixel.threshold_on && after > pixel.reference - pixel.threshold_off) return;
+  emitCrossings(step, before, after, x, y, pixel, events);
+}
+
+void PixelArray::emitCrossings(const Step& step, double before, double after, int x, int y, Pixel& pixel,
+                               std::vector<Event>& events) const {
+  const double slope = (after - before) / (step.end_s - step.begin_s);
+  double level = before, time_s = step.begin_s;
+  for (;;) {
+    const bool on = after > pixel.reference;
+    const double crossing = on ? pixel.reference + pixel.threshold_on : pixel.reference - pixel.threshold_off;
+    if (on ? after < crossing : after > crossing) return;
+    double crossing_s = on == (level >= crossing) ? time_s : step.begin_s + (crossing - before) / slope;
+    crossing_s = std::clamp(crossing_s, time_s, step.end_s);
+    const double free_s = pixel.last_event_s + model_.refractory_s;
+    if (crossing_s < free_s) {
+      // Held in reset until the refractory period ends: the level then is the new reference.
+      if (free_s > step.end_s) {
+        pixel.reference = static_cast<float>(after);
+        return;
+      }
+      level = before + slope * (free_s - step.begin_s);
+      pixel.reference = static_cast<float>(level);
+      pixel.last_event_s = -1.0;
+      time_s = free_s;
+      continue;
+    }
+    pixel.reference = static_cast<float>(crossing);
+    pixel.last_event_s = crossing_s;
+    level = crossing;
+    time_s = crossing_s;
+    events.push_back({pixelStamp_ns(scenario_, camera_, crossing_s), static_cast<std::uint16_t>(x),
+                      static_cast<std::uint16_t>(y), on});
+  }
+}
+
+}  // namespace evical

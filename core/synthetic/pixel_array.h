@@ -1,0 +1,68 @@
+// The pixels of an event camera: thresholds, photoreceptor and refractory time, driven by the rendered scene.
+#pragma once
+
+#include "core/data/event.h"
+#include "core/synthetic/scene_renderer.h"
+
+#include <functional>
+#include <vector>
+
+namespace evical {
+
+// The stamp of something that a pixel's comparator sees at `time_s` on the reference's clock: late by the
+// latency, on the camera's clock, a whole microsecond. Jitter comes on top.
+std::int64_t pixelStamp_ns(const Scenario& scenario, std::size_t camera, double time_s);
+
+class PixelArray {
+ public:
+  PixelArray(const Scenario& scenario, std::size_t camera);
+
+  int tileRows() const { return renderer_.tileRows(); }
+
+  // Settles all pixels on what they see; their references lie anywhere within the thresholds, as if they had
+  // been running before.
+  void reset(const RigidTransform& world_from_camera);
+
+  // A stretch of a few milliseconds, then each of its rows of tiles once, in any order and from several
+  // threads.
+  void begin(double begin_s, double end_s, const std::function<RigidTransform(double)>& world_from_camera_at);
+
+  struct Scratch {
+    SceneRenderer::TileView view;
+    std::vector<float> input;
+  };
+  void runTileRow(int tile_row, Scratch& scratch, std::vector<Event>& events);
+
+ private:
+  struct Pixel {
+    float level = 0.0f;      // low-passed log intensity
+    float input = 0.0f;      // log intensity at the end of the last step
+    float reference = 0.0f;  // level at the last event
+    float threshold_on = 0.0f, threshold_off = 0.0f;
+    double last_event_s = -1.0;
+  };
+  struct Step {
+    double begin_s, end_s;
+    float decay, lag;  // exp(-dt / tau), tau / dt
+  };
+
+  void advance(const Step& step, float input, int x, int y, Pixel& pixel, std::vector<Event>& events) const;
+  void emitCrossings(const Step& step, double before, double after, int x, int y, Pixel& pixel,
+                     std::vector<Event>& events) const;
+  Step stepBetween(double begin_s, double end_s) const;
+  Pixel& at(int x, int y) { return pixels_[static_cast<std::size_t>(y * width_px_ + x)]; }
+
+  const Scenario& scenario_;
+  std::size_t camera_;
+  const EventPixelModel& model_;
+  SceneRenderer renderer_;
+  int width_px_;
+  float step_travel_px_;
+  std::vector<Pixel> pixels_;
+  std::vector<char> settled_;  // per tile: the content that all pixels have come to rest on
+
+  double begin_s_ = 0.0, end_s_ = 0.0;
+  std::vector<SceneRenderer::Instant> instants_;  // a power of two and one, evenly spaced from begin to end
+};
+
+}  // namespace evical

@@ -1,0 +1,35 @@
+// A small generator that gives the same numbers on every machine and can be started anywhere from a few
+// integers, so that what is drawn does not depend on threads or order. S. Vigna, "splitmix64" (public domain
+// algorithm).
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace evical {
+
+class Random {
+ public:
+  // Different for any difference in the integers.
+  explicit Random(std::uint64_t seed, std::uint64_t stream = 0, std::uint64_t index = 0)
+      : state_(mix(mix(mix(seed) ^ stream) ^ index)) {}
+
+  std::uint64_t bits() { return mix(state_ += 0x9e3779b97f4a7c15ull); }
+  double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }  // [0, 1)
+  double normal() {
+    return std::sqrt(-2.0 * std::log(1.0 - uniform())) * std::cos(2.0 * std::numbers::pi * uniform());
+  }
+  double exponential(double mean) { return -mean * std::log(1.0 - uniform()); }
+
+ private:
+  static std::uint64_t mix(std::uint64_t v) {
+    v = (v ^ (v >> 30)) * 0xbf58476d1ce4e5b9ull;
+    v = (v ^ (v >> 27)) * 0x94d049bb133111ebull;
+    return (v ^ (v >> 31)) + 0x9e3779b97f4a7c15ull;
+  }
+
+  std::uint64_t state_;
+};
+
+}  // namespace evical
