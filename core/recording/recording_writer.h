@@ -1,39 +1,36 @@
-// Writes recordings that other programs read too: for the simulator, and to convert between formats.
+// Writes recordings that we and others can read. A file appears under its name only once it is whole: until
+// finish() it is "<name>.part", and it is removed when something fails or finish() is never called.
 #pragma once
 
-#include "core/data/event.h"
-#include "core/data/imu_sample.h"
-#include "core/geometry/camera_model.h"
+#include "core/data/recording.h"
 
 #include <cstddef>
 #include <filesystem>
 #include <memory>
-#include <string>
+#include <span>
+#include <vector>
 
 namespace evical {
 
-// Add all streams first; then write each stream in time order (streams may alternate in any order, but those
-// that write in time order across streams make recordings that read better); then finish. Without finish()
-// nothing remains. All throw CalibrationError: BadInput for what a format can't hold, CalibrationFailed where
-// the disk fails.
 class RecordingWriter {
  public:
   virtual ~RecordingWriter() = default;
-  virtual std::size_t addEventStream(const std::string& name, Resolution resolution_px) = 0;
-  virtual std::size_t addImuStream(const std::string& name) = 0;
+
+  // `stream` is an index into the streams given at creation; times should not decrease within a stream, and
+  // streams should be written alternately, some 10 ms each. All throw CalibrationError (CalibrationFailed),
+  // e.g. on a full disk.
   virtual void write(std::size_t stream, EventSpan events) = 0;
-  virtual void write(std::size_t stream, const ImuSample& sample) = 0;
+  virtual void write(std::size_t stream, std::span<const ImuSample> samples) = 0;
   virtual void finish() = 0;
 };
 
-enum class BagCompression { None, Lz4 };
+// A ROS 1 bag with dvs_msgs/EventArray and sensor_msgs/Imu; a stream's name is its topic, an event stream
+// needs its resolution. Times must be within [0, 2^32) s.
+std::unique_ptr<RecordingWriter> createBag(const std::filesystem::path& path,
+                                           const std::vector<StreamInfo>& streams, bool lz4);
 
-// A ROS 1 bag; any number of cameras and IMUs, streams are topics.
-std::unique_ptr<RecordingWriter> createRosbag(const std::filesystem::path& path,
-                                              BagCompression compression = BagCompression::None);
-
-// A directory, made if need be, with events.txt and imu.txt: one camera, one IMU at most, their names are
-// lost.
-std::unique_ptr<RecordingWriter> createTextRecording(const std::filesystem::path& directory);
+// "events.txt" and "imu.txt" in an existing folder; at most one stream of each type.
+std::unique_ptr<RecordingWriter> createText(const std::filesystem::path& folder,
+                                            const std::vector<StreamInfo>& streams);
 
 }  // namespace evical

@@ -1,90 +1,78 @@
-#include "core/recording/text_writer.h"
-
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/recording/part_file.h"
+#include "core/recording/recording_writer.h"
 
 #include <fmt/format.h>
 
-#include <array>
-#include <charconv>
 #include <iterator>
 
 namespace evical {
 namespace {
 
-void appendInteger(std::string& text, std::int64_t value) {
-  std::array<char, 24> digits;
-  text.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+void appendSeconds(fmt::memory_buffer& text, std::int64_t time_ns) {
+  const char* sign = time_ns < 0 ? "-" : "";
+  const std::int64_t size_ns = time_ns < 0 ? -time_ns : time_ns;
+  fmt::format_to(std::back_inserter(text), "{}{}.{:09}", sign, size_ns / kSecond_ns, size_ns % kSecond_ns);
 }
 
-// Seconds with nine digits, exact.
-void appendSeconds(std::string& text, std::int64_t time_ns) {
-  constexpr std::uint64_t kSecond_ns = 1'000'000'000;
-  if (time_ns < 0) text += '-';
-  const std::uint64_t magnitude =
-      time_ns < 0 ? -static_cast<std::uint64_t>(time_ns) : static_cast<std::uint64_t>(time_ns);
-  appendInteger(text, static_cast<std::int64_t>(magnitude / kSecond_ns));
-  text += '.';
-  std::array<char, 9> digits;
-  std::uint64_t rest = magnitude % kSecond_ns;
-  for (auto digit = digits.rbegin(); digit != digits.rend(); ++digit, rest /= 10)
-    *digit = static_cast<char>('0' + rest % 10);
-  text.append(digits.data(), digits.size());
-}
+class TextWriter : public RecordingWriter {
+ public:
+  TextWriter(const std::filesystem::path& folder, const std::vector<StreamInfo>& streams) {
+    for (const StreamInfo& stream : streams) {
+      const bool events = stream.type == StreamType::Events;
+      if (!events && stream.type != StreamType::Imu) {
+        throw badInput(folder.string(),
+                       fmt::format("stream {} holds neither events nor IMU samples", stream.name));
+      }
+      for (const auto& [type, file] : files_) {
+        if (type == stream.type)
+          throw badInput(folder.string(), "text holds one stream of each type only", "Write a bag.");
+      }
+      files_.emplace_back(stream.type,
+                          std::make_unique<PartFile>(folder / (events ? "events.txt" : "imu.txt")));
+    }
+  }
 
-CalibrationError onlyOne(const std::filesystem::path& directory, const char* what) {
-  return badInput(directory.string(), fmt::format("a text recording holds one {} at most", what),
-                  "Write a ROS bag");
-}
+  void write(std::size_t stream, EventSpan events) override {
+    text_.clear();
+    for (const Event& event : events) {
+      appendSeconds(text_, event.time_ns);
+      fmt::format_to(std::back_inserter(text_), " {} {} {}\n", event.x_px, event.y_px,
+                     event.brighter ? 1 : 0);
+    }
+    files_.at(stream).second->append({text_.data(), text_.size()});
+  }
+
+  void write(std::size_t stream, std::span<const ImuSample> samples) override {
+    text_.clear();
+    for (const ImuSample& sample : samples) {
+      appendSeconds(text_, sample.time_ns);
+      // {} writes as many digits as bring the same number back.
+      for (const double value : sample.specific_force_m_s2)
+        fmt::format_to(std::back_inserter(text_), " {}", value);
+      for (const double value : sample.angular_rate_rad_s)
+        fmt::format_to(std::back_inserter(text_), " {}", value);
+      text_.push_back('\n');
+    }
+    files_.at(stream).second->append({text_.data(), text_.size()});
+  }
+
+  void finish() override {
+    for (auto& [type, file] : files_) file->finish();
+  }
+
+ private:
+  std::vector<std::pair<StreamType, std::unique_ptr<PartFile>>> files_;
+  fmt::memory_buffer text_;
+};
 
 }  // namespace
 
-TextWriter::TextWriter(const std::filesystem::path& directory) : directory_(directory) {
-  makeOutputFolder(directory);
-}
-
-std::size_t TextWriter::addEventStream(const std::string&, Resolution) {
-  if (events_) throw onlyOne(directory_, "camera");
-  events_ = std::make_unique<OutputFile>(directory_ / "events.txt");
-  return streams_++;
-}
-
-std::size_t TextWriter::addImuStream(const std::string&) {
-  if (imu_) throw onlyOne(directory_, "IMU");
-  imu_ = std::make_unique<OutputFile>(directory_ / "imu.txt");
-  return streams_++;
-}
-
-void TextWriter::write(std::size_t, EventSpan events) {
-  text_.clear();
-  for (const Event& event : events) {
-    appendSeconds(text_, event.time_ns);
-    text_ += ' ';
-    appendInteger(text_, event.x_px);
-    text_ += ' ';
-    appendInteger(text_, event.y_px);
-    text_ += event.brighter ? " 1\n" : " 0\n";
-  }
-  events_->append(text_);
-}
-
-void TextWriter::write(std::size_t, const ImuSample& sample) {
-  text_.clear();
-  appendSeconds(text_, sample.time_ns);
-  const Eigen::Vector3d &a = sample.specific_force_m_s2, &w = sample.angular_rate_rad_s;
-  fmt::format_to(std::back_inserter(text_), " {} {} {} {} {} {}\n", a.x(), a.y(), a.z(), w.x(), w.y(), w.z());
-  imu_->append(text_);
-}
-
-void TextWriter::finish() {
-  for (OutputFile* file : {events_.get(), imu_.get()})
-    if (file != nullptr) file->close();
-  for (OutputFile* file : {events_.get(), imu_.get()})
-    if (file != nullptr) file->rename();
-}
-
-std::unique_ptr<RecordingWriter> createTextRecording(const std::filesystem::path& directory) {
-  return std::make_unique<TextWriter>(directory);
+std::unique_ptr<RecordingWriter> createText(const std::filesystem::path& folder,
+                                            const std::vector<StreamInfo>& streams) {
+  return std::make_unique<TextWriter>(folder, streams);
 }
 
 }  // namespace evical

@@ -1,0 +1,13 @@
+// `evical inspect RECORDING [--json] [--checksum]`: what a recording holds, and what is wrong with it.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace evical {
+
+// As the functions of commands.h: throws what main() turns into an exit code, else sets `exit_code` to 0.
+void addInspectCommand(CLI::App& app, int& exit_code);
+
+}  // namespace evical
