@@ -52,7 +52,9 @@ void alignVectors(const std::vector<RotationPair>& pairs, const std::vector<Eige
     Eigen::Matrix3d mirror = Eigen::Matrix3d::Identity();
     mirror(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
     rotation = svd.matrixU() * mirror * svd.matrixV().transpose();
-    result.axis_ratio = svd.singularValues()(1) / std::max(svd.singularValues()(0), 1e-12);
+    // Singular values are mean squares of rotation about each axis.
+    result.axis_ratio = std::sqrt(svd.singularValues()(1) / std::max(svd.singularValues()(0), 1e-12));
+    result.main_axis_in_imu = svd.matrixU().col(0);
   }
   result.imu_from_camera = Eigen::Quaterniond(rotation);
 }
@@ -76,7 +78,7 @@ double step(const std::vector<RotationPair>& pairs, const GyroRotation& gyro, do
   const Eigen::Matrix3d rotation = result.imu_from_camera.toRotationMatrix();
   Matrix7 matrix = Matrix7::Zero();
   Vector7 vector = Vector7::Zero();
-  double squares = 0.0, weights = 0.0;
+  double squares = 0.0, weights = 0.0, cost = 0.0;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const double duration_s = pairs[k].to_s - pairs[k].from_s;
     const Eigen::Vector3d turned = rotation * pairs[k].seen_rad;
@@ -90,6 +92,7 @@ double step(const std::vector<RotationPair>& pairs, const GyroRotation& gyro, do
     vector -= weight * jacobian.transpose() * error;
     squares += weight * error.squaredNorm();
     weights += weight;
+    cost -= std::log(weight);
   }
   // Unseen directions stay where they are: 1 rad, 10 ms, 0.1 rad/s at the noise's scale.
   const double noise2 = scale_rad * scale_rad;
@@ -99,6 +102,7 @@ double step(const std::vector<RotationPair>& pairs, const GyroRotation& gyro, do
   constexpr double kLongestStep_s = 0.03;
   result.time_offset_s += std::clamp(delta(3), -kLongestStep_s, kLongestStep_s);
   result.gyroscope_bias_rad_s += delta.tail<3>();
+  result.cost = cost / static_cast<double>(pairs.size());
   return std::sqrt(squares / std::max(weights, 1e-12));
 }
 
@@ -122,6 +126,8 @@ std::optional<HandEye> estimateCameraImuRotation(const std::vector<CameraPose>& 
   double scale_rad = kFirstScale_rad;
   for (int k = 0; k < kSteps; ++k) {
     result.residual_rad = step(pairs, gyro, scale_rad, result);
+    result.time_offset_s =
+        std::clamp(result.time_offset_s, time_offset_s - kReach_s, time_offset_s + kReach_s);
     scale_rad = std::max(0.7 * scale_rad, kLastScale_rad);
   }
   return result;

@@ -16,7 +16,9 @@ struct HandEye {
   double time_offset_s = 0.0;
   Eigen::Vector3d gyroscope_bias_rad_s = Eigen::Vector3d::Zero();
   double residual_rad = 0.0;  // robust RMS over pairs
+  double cost = 0.0;          // mean of log(1 + (error / scale)^2): compares offsets
   double axis_ratio = 0.0;    // rotation about the second axis relative to the first: 0 for one axis only
+  Eigen::Vector3d main_axis_in_imu = Eigen::Vector3d::UnitX();
   int pairs = 0;
 };
 

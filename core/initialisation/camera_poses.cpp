@@ -14,7 +14,9 @@
 namespace evical {
 namespace {
 
-constexpr double kAmbiguousRatio = 2.0;  // of the two poses' errors
+constexpr double kAmbiguousRatio = 2.0, kAmbiguousExtra_px = 0.02;  // of the two poses' errors
+constexpr std::size_t kLeastCircles = 4;
+constexpr double kNoFit_px = 1e9;
 
 using Points = std::vector<std::pair<int, Eigen::Vector2d>>;  // board circle, ideal pixel
 
@@ -30,8 +32,9 @@ Points atOneTime(const BoardView& view) {
 // Gauss-Newton on the ellipses' centres; returns the RMS error in pixels, per circle.
 double refine(const Points& points, const CameraIntrinsics& camera, const CircleBoard& board,
               RigidTransform& camera_from_board) {
-  constexpr int kIterations = 6;
-  double rms = 1e9;
+  constexpr int kIterations = 8;
+  constexpr double kConverged = 1e-5;  // rad, m: a hundredth of what noise does
+  double rms = kNoFit_px;
   for (int iteration = 0; iteration <= kIterations; ++iteration) {
     Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
     Eigen::Matrix<double, 6, 1> vector = Eigen::Matrix<double, 6, 1>::Zero();
@@ -40,7 +43,7 @@ double refine(const Points& points, const CameraIntrinsics& camera, const Circle
       Eigen::Matrix<double, 2, 6> jacobian;
       const auto centre =
           projectedCircleCentre(camera, camera_from_board, board.centre_m(circle), board.radius_m, &jacobian);
-      if (!centre) return 1e9;
+      if (!centre) return kNoFit_px;
       const Eigen::Vector2d error = *centre - pixel;
       matrix += jacobian.transpose() * jacobian;
       vector -= jacobian.transpose() * error;
@@ -49,9 +52,10 @@ double refine(const Points& points, const CameraIntrinsics& camera, const Circle
     rms = std::sqrt(squares / static_cast<double>(points.size()));
     if (iteration == kIterations) break;
     const Eigen::Matrix<double, 6, 1> step = matrix.ldlt().solve(vector);
-    if (!step.allFinite()) return 1e9;
+    if (!step.allFinite()) return kNoFit_px;
     camera_from_board.rotation = (camera_from_board.rotation * quaternionExp(step.head<3>())).normalized();
     camera_from_board.translation_m += step.tail<3>();
+    if (step.lpNorm<Eigen::Infinity>() < kConverged) break;
   }
   return rms;
 }
@@ -96,26 +100,36 @@ double disagreement(const RigidTransform& pose, double time_s, const CameraPose&
 
 }  // namespace
 
-std::vector<CameraPose> estimateCameraPoses(const CameraData& camera, const CircleBoard& board,
-                                            double largest_reprojection_px) {
-  std::vector<CameraPose> poses;
+CameraPoses estimateCameraPoses(const CameraData& camera, const CircleBoard& board,
+                                double largest_reprojection_px) {
+  CameraPoses result;
+  std::vector<double> errors_px;
   for (std::size_t v = 0; v < camera.observations.views.size(); ++v) {
     const BoardView& view = camera.observations.views[v];
-    if (view.circles.size() < 4) continue;
+    if (view.circles.size() < kLeastCircles) continue;
     const auto found = planarPoses(atOneTime(view), *camera.intrinsics, board);
-    if (found.empty() || !(found.front().first <= largest_reprojection_px)) continue;
+    if (!found.empty()) errors_px.push_back(found.front().first);
+    if (found.empty() || !(found.front().first <= largest_reprojection_px)) {
+      ++result.rejected;
+      continue;
+    }
     CameraPose pose;
     pose.time_s = view.time_s;
     pose.world_from_camera = inverse(found.front().second);
     pose.reprojection_px = found.front().first;
     pose.view = v;
-    if (found.size() > 1 && found[1].first < kAmbiguousRatio * found[0].first + 0.02 &&
+    if (found.size() > 1 && found[1].first < kAmbiguousRatio * found[0].first + kAmbiguousExtra_px &&
         rotationAngleBetween_rad(found[0].second.rotation, found[1].second.rotation) > 1e-3) {
       pose.other_world_from_camera = inverse(found[1].second);
     }
-    poses.push_back(pose);
+    result.poses.push_back(pose);
   }
-  return poses;
+  if (!errors_px.empty()) {
+    const auto middle = errors_px.begin() + static_cast<std::ptrdiff_t>(errors_px.size() / 2);
+    std::nth_element(errors_px.begin(), middle, errors_px.end());
+    result.median_reprojection_px = *middle;
+  }
+  return result;
 }
 
 int resolveAmbiguousPoses(std::vector<CameraPose>& poses, const GyroRotation& gyro, double time_offset_s,

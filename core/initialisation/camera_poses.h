@@ -19,10 +19,15 @@ struct CameraPose {
   std::optional<RigidTransform> other_world_from_camera;
 };
 
-// One pose a view, its circles brought to view.time_s; views that fit worse than `largest_reprojection_px`
-// are left out.
-std::vector<CameraPose> estimateCameraPoses(const CameraData& camera, const CircleBoard& board,
-                                            double largest_reprojection_px);
+struct CameraPoses {
+  std::vector<CameraPose> poses;
+  int rejected = 0;                     // views that fit worse than `largest_reprojection_px`, or not at all
+  double median_reprojection_px = 0.0;  // of all views, those too
+};
+
+// One pose a view, its circles brought to view.time_s.
+CameraPoses estimateCameraPoses(const CameraData& camera, const CircleBoard& board,
+                                double largest_reprojection_px);
 
 // Where a view allows two poses, takes the one whose rotation from its neighbours is as large as the
 // gyroscope's. Returns how many were swapped.

@@ -1,37 +1,27 @@
 #include "core/initialisation/gravity_alignment.h"
 
 #include "core/base/time.h"
+#include "core/geometry/so3.h"
+#include "core/initialisation/banded_system.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 namespace evical {
 namespace {
 
-constexpr int kExtras = 9;  // lever, gravity, bias
-using ExtrasMatrix = Eigen::Matrix<double, kExtras, kExtras>;
-using ExtrasVector = Eigen::Matrix<double, kExtras, 1>;
-using ExtrasJacobian = Eigen::Matrix<double, 3, kExtras>;
-
-// sum_j weights[j] P[segment + j] + extras * x = target, three rows with one sigma.
-struct LinearRow {
-  int segment;
-  Eigen::Vector4d weights;
-  ExtrasJacobian extras;
-  Eigen::Vector3d target;
-  double inverse_variance;
-  bool position;
-};
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
 
 struct AveragedForce {
   double time_s;
-  Eigen::Vector3d force_m_s2;
+  Vector3d force_m_s2;
 };
 
 // Quarter knots: short against the splines' own resolution, long against 1 kHz.
@@ -40,7 +30,7 @@ std::vector<AveragedForce> averageForces(std::span<const ImuSample> samples, std
   std::vector<AveragedForce> averages;
   const double bin_s = 0.25 * rotation.knot_spacing_s;
   double sum_time = 0.0, bin_end_s = rotation.start_s + bin_s;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Vector3d sum = Vector3d::Zero();
   int count = 0;
   const auto flush = [&] {
     if (count > 0) averages.push_back({sum_time / count, sum / count});
@@ -63,166 +53,286 @@ std::vector<AveragedForce> averageForces(std::span<const ImuSample> samples, std
   return averages;
 }
 
-std::vector<LinearRow> makeRows(const std::vector<CameraPose>& poses, double time_offset_s,
-                                const std::vector<AveragedForce>& forces, const So3Spline& rotation,
-                                const VectorSpline& spline, const InitialisationOptions& options) {
-  std::vector<LinearRow> rows;
-  for (const CameraPose& pose : poses) {
-    const double time_s = pose.time_s + time_offset_s;
-    if (!rotation.contains(time_s)) continue;
-    const VectorSample sample = evaluate(spline, time_s);
-    LinearRow row{sample.segment,
-                  sample.value_weights,
-                  ExtrasJacobian::Zero(),
-                  pose.world_from_camera.translation_m,
-                  1.0 / (options.position_sigma_m * options.position_sigma_m),
-                  true};
-    row.extras.leftCols<3>() = evaluate(rotation, time_s, RotationOrder::Rotation).rotation;
-    rows.push_back(row);
-  }
-  const double sigma = options.acceleration_sigma_m_s2;
-  for (const AveragedForce& force : forces) {
-    const VectorSample sample = evaluate(spline, force.time_s);
-    const Eigen::Matrix3d r = evaluate(rotation, force.time_s, RotationOrder::Rotation).rotation;
-    LinearRow row{sample.segment,       sample.acceleration_weights, ExtrasJacobian::Zero(),
-                  r * force.force_m_s2, 1.0 / (sigma * sigma),       false};
-    row.extras.middleCols<3>(3) = -Eigen::Matrix3d::Identity();
-    row.extras.rightCols<3>() = r;
-    rows.push_back(row);
-  }
-  return rows;
-}
+// Three equations of one kind: P(weights) + R lever = measured (a view's position), or
+// P(weights) + R bias - gravity = R measured (an acceleration).
+struct Row {
+  bool position;
+  std::size_t camera;
+  int segment;
+  Eigen::Vector4d weights;
+  Matrix3d world_from_imu;
+  Vector3d measured;
+  double weight = 1.0;  // robust
+};
+
+// The unknowns other than control points: levers, gravity, bias.
+struct Layout {
+  explicit Layout(std::size_t cameras) : gravity(static_cast<Eigen::Index>(3 * cameras)) {}
+  Eigen::Index gravity;
+  Eigen::Index lever(std::size_t camera) const { return static_cast<Eigen::Index>(3 * camera); }
+  Eigen::Index bias() const { return gravity + 3; }
+  Eigen::Index size() const { return gravity + 6; }
+};
 
 struct Solution {
   Eigen::MatrixX3d points;
-  ExtrasVector extras;
-  ExtrasMatrix covariance;
+  Eigen::VectorXd shared;
+  Eigen::MatrixXd covariance;
 };
 
-// Control points couple along time only (one banded matrix for all three axes); the nine extras come by Schur
-// complement.
-Solution solve(const std::vector<LinearRow>& rows, int point_count, const ExtrasMatrix& prior,
-               const ExtrasVector& prior_vector) {
-  std::vector<Eigen::Triplet<double>> triplets;
+struct Sigmas {
+  double position_m, acceleration_m_s2;
+};
+
+class Alignment {
+ public:
+  Alignment(std::span<const CameraTrack> cameras, std::span<const ImuSample> samples, std::int64_t start_ns,
+            const So3Spline& rotation, const InitialisationOptions& options)
+      : options_(options),
+        layout_(cameras.size()),
+        point_count_(static_cast<Eigen::Index>(rotation.control_points.size())),
+        sigmas_{options.position_sigma_m, options.acceleration_sigma_m_s2} {
+    VectorSpline knots{rotation.start_s, rotation.knot_spacing_s,
+                       std::vector<Vector3d>(rotation.control_points.size(), Vector3d::Zero())};
+    const auto add = [&](bool position, std::size_t camera, double time_s, const Vector3d& measured) {
+      const VectorSample sample = evaluate(knots, time_s);
+      rows_.push_back({position, camera, sample.segment,
+                       position ? sample.value_weights : sample.acceleration_weights,
+                       evaluate(rotation, time_s, RotationOrder::Rotation).rotation, measured});
+    };
+    for (std::size_t c = 0; c < cameras.size(); ++c) {
+      for (const CameraPose& pose : cameras[c].poses) {
+        const double time_s = pose.time_s + cameras[c].time_offset_s;
+        if (rotation.contains(time_s)) add(true, c, time_s, pose.world_from_camera.translation_m);
+      }
+    }
+    for (const AveragedForce& force : averageForces(samples, start_ns, rotation))
+      add(false, 0, force.time_s, force.force_m_s2);
+  }
+
+  void turn(const Matrix3d& rotation) {
+    for (Row& row : rows_) row.world_from_imu *= rotation;
+  }
+  // Forgets what earlier rounds made of the weights.
+  void restart() {
+    for (Row& row : rows_) row.weight = 1.0;
+    sigmas_ = {options_.position_sigma_m, options_.acceleration_sigma_m_s2};
+  }
+
+  Solution solve(int rounds) {
+    Solution solution;
+    for (int round = 0; round < rounds; ++round) {
+      solution = solveOnce(round > 0 ? &solution.shared : nullptr);
+      reweigh(solution);
+    }
+    return solution;
+  }
+  double cost() const { return cost_; }
+  const Layout& layout() const { return layout_; }
+  void summarise(GravityAlignment& result) const {
+    result.position_rms_m = sigmas_.position_m;
+    result.acceleration_rms_m_s2 = sigmas_.acceleration_m_s2;
+    for (const Row& row : rows_) {
+      if (!row.position) continue;
+      ++result.views;
+      result.outlying_views += row.weight < kOutlyingWeight ? 1 : 0;
+    }
+  }
+
+ private:
+  static constexpr double kOutlyingWeight = 0.1;
+
+  Solution solveOnce(const Eigen::VectorXd* before) const;
+  void addPriors(const Eigen::VectorXd* before, Eigen::MatrixXd& matrix, Eigen::VectorXd& vector) const;
+  void accumulate(const Row& row, BandedMatrix& band, std::array<Eigen::MatrixXd, 3>& coupling,
+                  Eigen::MatrixXd& matrix, Eigen::VectorXd& vector) const;
+  double rowWeight(const Row& row) const {
+    const double sigma = row.position ? sigmas_.position_m : sigmas_.acceleration_m_s2;
+    return row.weight / (sigma * sigma);
+  }
+  Vector3d errorOf(const Row& row, const Solution& solution) const;
+  void reweigh(const Solution& solution);
+
+  InitialisationOptions options_;
+  Layout layout_;
+  Eigen::Index point_count_;
+  Sigmas sigmas_;
+  std::vector<Row> rows_;
+  double cost_ = 0.0;
+};
+
+void Alignment::addPriors(const Eigen::VectorXd* before, Eigen::MatrixXd& matrix,
+                          Eigen::VectorXd& vector) const {
+  const auto inverseSquare = [](double sigma) { return 1.0 / (sigma * sigma); };
+  matrix.diagonal().head(layout_.gravity).setConstant(inverseSquare(options_.translation_sigma_m));
+  matrix.diagonal().tail<3>().setConstant(inverseSquare(options_.accelerometer_bias_sigma_m_s2));
+  if (!before) return;
+  // |g| is known: a tight observation along the direction found so far.
+  constexpr double kNormSigma_m_s2 = 1e-4;
+  const Vector3d down = before->segment<3>(layout_.gravity).normalized();
+  matrix.block<3, 3>(layout_.gravity, layout_.gravity) +=
+      inverseSquare(kNormSigma_m_s2) * down * down.transpose();
+  vector.segment<3>(layout_.gravity) += inverseSquare(kNormSigma_m_s2) * options_.gravity_m_s2 * down;
+}
+
+// `coupling` by axis: control points x (shared unknowns, right hand side).
+void Alignment::accumulate(const Row& row, BandedMatrix& band, std::array<Eigen::MatrixXd, 3>& coupling,
+                           Eigen::MatrixXd& matrix, Eigen::VectorXd& vector) const {
+  const double w = rowWeight(row);
+  const Matrix3d& r = row.world_from_imu;
+  const Eigen::Index turned = row.position ? layout_.lever(row.camera) : layout_.bias();
+  const Vector3d target = row.position ? row.measured : Vector3d(r * row.measured);
+  band.addOuter(row.segment, row.weights, w);
+  for (int axis = 0; axis < 3; ++axis) {
+    auto& c = coupling[static_cast<std::size_t>(axis)];
+    for (int i = 0; i < 4; ++i) {
+      const double scaled = w * row.weights(i);
+      const Eigen::Index point = row.segment + i;
+      for (int k = 0; k < 3; ++k) c(point, turned + k) += scaled * r(axis, k);
+      if (!row.position) c(point, layout_.gravity + axis) -= scaled;
+      c(point, layout_.size()) += scaled * target(axis);
+    }
+  }
+  matrix.block<3, 3>(turned, turned).diagonal().array() += w;  // R^T R
+  vector.segment<3>(turned) += w * r.transpose() * target;
+  if (row.position) return;
+  matrix.block<3, 3>(layout_.gravity, layout_.gravity).diagonal().array() += w;
+  matrix.block<3, 3>(layout_.gravity, turned) -= w * r;
+  matrix.block<3, 3>(turned, layout_.gravity) -= w * r.transpose();
+  vector.segment<3>(layout_.gravity) -= w * target;
+}
+
+// One banded matrix serves all three axes; the shared unknowns come by Schur complement.
+Solution Alignment::solveOnce(const Eigen::VectorXd* before) const {
+  const Eigen::Index n = layout_.size();
+  BandedMatrix band(point_count_);
   std::array<Eigen::MatrixXd, 3> coupling;
-  coupling.fill(Eigen::MatrixXd::Zero(point_count, kExtras + 1));  // last column: right hand side
-  ExtrasMatrix matrix = prior;
-  ExtrasVector vector = prior_vector;
-  for (const LinearRow& row : rows) {
-    for (int i = 0; i < 4; ++i) {
-      for (int j = 0; j < 4; ++j) {
-        triplets.emplace_back(row.segment + i, row.segment + j,
-                              row.inverse_variance * row.weights(i) * row.weights(j));
-      }
-      for (int axis = 0; axis < 3; ++axis) {
-        auto target = coupling[static_cast<std::size_t>(axis)].row(row.segment + i);
-        target.head<kExtras>() += row.inverse_variance * row.weights(i) * row.extras.row(axis);
-        target(kExtras) += row.inverse_variance * row.weights(i) * row.target(axis);
-      }
-    }
-    matrix += row.inverse_variance * row.extras.transpose() * row.extras;
-    vector += row.inverse_variance * row.extras.transpose() * row.target;
-  }
-  Eigen::SparseMatrix<double> band(point_count, point_count);
-  band.setFromTriplets(triplets.begin(), triplets.end());
+  coupling.fill(Eigen::MatrixXd::Zero(point_count_, n + 1));
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd vector = Eigen::VectorXd::Zero(n);
+  addPriors(before, matrix, vector);
+  for (const Row& row : rows_) accumulate(row, band, coupling, matrix, vector);
   // Ends and gaps: a control point that nothing sees follows its neighbours.
-  std::vector<Eigen::Triplet<double>> smooth;
-  constexpr double kSmoothness = 1e-2;
-  constexpr std::array<double, 4> kThirdDifference = {-1.0, 3.0, -3.0, 1.0};
-  for (int k = 0; k + 3 < point_count; ++k) {
-    for (int i = 0; i < 4; ++i) {
-      for (int j = 0; j < 4; ++j) {
-        smooth.emplace_back(k + i, k + j,
-                            kSmoothness * kThirdDifference[static_cast<std::size_t>(i)] *
-                                kThirdDifference[static_cast<std::size_t>(j)]);
-      }
-    }
-  }
-  Eigen::SparseMatrix<double> smoothing(point_count, point_count);
-  smoothing.setFromTriplets(smooth.begin(), smooth.end());
-  band += smoothing;
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>> factor(
-      band);
-  std::array<Eigen::MatrixXd, 3> solved;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    solved[axis] = factor.solve(coupling[axis]);
-    matrix -= coupling[axis].leftCols<kExtras>().transpose() * solved[axis].leftCols<kExtras>();
-    vector -= coupling[axis].leftCols<kExtras>().transpose() * solved[axis].col(kExtras);
+  constexpr double kSmoothness = 1e-2, kTie = 1e-9;
+  for (Eigen::Index k = 0; k + 3 < point_count_; ++k) {
+    band.addOuter(k, {-1.0, 3.0, -3.0, 1.0}, kSmoothness);
+    band.addOuter(k, {1.0, 1.0, 1.0, 1.0}, kTie);
   }
   Solution solution;
-  solution.extras = matrix.ldlt().solve(vector);
+  solution.points = Eigen::MatrixX3d::Zero(point_count_, 3);
+  solution.shared = Eigen::VectorXd::Zero(n);
+  solution.covariance = Eigen::MatrixXd::Zero(n, n);
+  if (!band.factorise()) return solution;
+  std::array<Eigen::MatrixXd, 3> solved = coupling;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    band.solveInPlace(solved[axis]);
+    matrix.noalias() -= coupling[axis].leftCols(n).transpose() * solved[axis].leftCols(n);
+    vector.noalias() -= coupling[axis].leftCols(n).transpose() * solved[axis].col(n);
+  }
+  solution.shared = matrix.ldlt().solve(vector);
   solution.covariance = matrix.inverse();
-  solution.points.resize(point_count, 3);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     solution.points.col(static_cast<Eigen::Index>(axis)) =
-        solved[axis].col(kExtras) - solved[axis].leftCols<kExtras>() * solution.extras;
+        solved[axis].col(n) - solved[axis].leftCols(n) * solution.shared;
   }
   return solution;
 }
 
-// Weights for the next round: views that lie far from the spline count less.
-void reweigh(std::vector<LinearRow>& rows, const Solution& solution, const InitialisationOptions& options,
-             GravityAlignment& result) {
-  double position2 = 0.0, acceleration2 = 0.0;
-  int positions = 0, accelerations = 0;
-  for (LinearRow& row : rows) {
-    const Eigen::Vector3d error = solution.points.middleRows<4>(row.segment).transpose() * row.weights +
-                                  row.extras * solution.extras - row.target;
-    if (row.position) {
-      const double scale_m = 5.0 * options.position_sigma_m;
-      const double weight = 1.0 / (1.0 + error.squaredNorm() / (scale_m * scale_m));
-      row.inverse_variance = weight / (options.position_sigma_m * options.position_sigma_m);
-      position2 += weight * error.squaredNorm();
-      ++positions;
-    } else {
-      acceleration2 += error.squaredNorm();
-      ++accelerations;
-    }
+Vector3d Alignment::errorOf(const Row& row, const Solution& solution) const {
+  const Vector3d spline = solution.points.middleRows<4>(row.segment).transpose() * row.weights;
+  if (row.position) {
+    return spline + row.world_from_imu * solution.shared.segment<3>(layout_.lever(row.camera)) - row.measured;
   }
-  result.position_rms_m = std::sqrt(position2 / std::max(positions, 1));
-  result.acceleration_rms_m_s2 = std::sqrt(acceleration2 / std::max(accelerations, 1));
+  return spline + row.world_from_imu * (solution.shared.tail<3>() - row.measured) -
+         solution.shared.segment<3>(layout_.gravity);
+}
+
+double median(std::vector<double>& values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// The next round's weights: what lies far off counts less, and both kinds count by how well they fit.
+void Alignment::reweigh(const Solution& solution) {
+  std::vector<double> positions, accelerations;
+  for (Row& row : rows_) {
+    row.weight = errorOf(row, solution).norm();  // for now
+    (row.position ? positions : accelerations).push_back(row.weight);
+  }
+  // The norm of three equal normal errors has its median at 1.54 sigma. Half and twice what the options say
+  // bounds how far one kind can drown the other.
+  constexpr double kMedianNorm = 1.54, kLeast = 0.2, kMost = 10.0;
+  const auto within = [&](double sigma, double option) {
+    return std::clamp(sigma / kMedianNorm, kLeast * option, kMost * option);
+  };
+  sigmas_ = {within(median(positions), options_.position_sigma_m),
+             within(median(accelerations), options_.acceleration_sigma_m_s2)};
+  cost_ = 0.0;
+  constexpr double kScale = 5.0;  // sigmas; Cauchy's weights
+  for (Row& row : rows_) {
+    const double sigma = row.position ? options_.position_sigma_m : options_.acceleration_sigma_m_s2;
+    cost_ += std::log1p(row.weight * row.weight / (kScale * kScale * sigma * sigma));
+    const double error =
+        row.weight / (kScale * (row.position ? sigmas_.position_m : sigmas_.acceleration_m_s2));
+    row.weight = 1.0 / (1.0 + error * error);
+  }
 }
 
 }  // namespace
 
-GravityAlignment alignGravity(const std::vector<CameraPose>& poses, double time_offset_s,
-                              std::span<const ImuSample> samples, std::int64_t start_ns,
-                              const So3Spline& rotation, const InitialisationOptions& options) {
-  constexpr int kRounds = 5;
+GravityAlignment alignGravity(std::span<const CameraTrack> cameras, std::span<const ImuSample> samples,
+                              std::int64_t start_ns, const So3Spline& rotation,
+                              const InitialisationOptions& options) {
+  constexpr int kRounds = 6;
+  Alignment alignment(cameras, samples, start_ns, rotation, options);
+  const Solution solution = alignment.solve(kRounds);
   GravityAlignment result;
-  result.imu_in_world_m.start_s = rotation.start_s;
-  result.imu_in_world_m.knot_spacing_s = rotation.knot_spacing_s;
-  result.imu_in_world_m.control_points.assign(rotation.control_points.size(), Eigen::Vector3d::Zero());
-  const auto point_count = static_cast<int>(rotation.control_points.size());
-  std::vector<LinearRow> rows = makeRows(poses, time_offset_s, averageForces(samples, start_ns, rotation),
-                                         rotation, result.imu_in_world_m, options);
-  Solution solution;
-  for (int round = 0; round < kRounds; ++round) {
-    ExtrasMatrix prior = ExtrasMatrix::Zero();
-    ExtrasVector prior_vector = ExtrasVector::Zero();
-    prior.diagonal().head<3>().setConstant(1.0 / (options.translation_sigma_m * options.translation_sigma_m));
-    prior.diagonal().tail<3>().setConstant(
-        1.0 / (options.accelerometer_bias_sigma_m_s2 * options.accelerometer_bias_sigma_m_s2));
-    if (round > 0) {
-      // |g| is known: a tight observation along the direction found so far.
-      constexpr double kNormSigma_m_s2 = 1e-4;
-      const Eigen::Vector3d down = solution.extras.segment<3>(3).normalized();
-      const double weight = 1.0 / (kNormSigma_m_s2 * kNormSigma_m_s2);
-      prior.block<3, 3>(3, 3) += weight * down * down.transpose();
-      prior_vector.segment<3>(3) = weight * options.gravity_m_s2 * down;
-    }
-    solution = solve(rows, point_count, prior, prior_vector);
-    reweigh(rows, solution, options, result);
-  }
-  for (int k = 0; k < point_count; ++k) {
-    result.imu_in_world_m.control_points[static_cast<std::size_t>(k)] = solution.points.row(k).transpose();
-  }
-  // p_wc = p_wb + R_wb t: rows say P + R t = p_wc.
-  result.camera_in_imu_m = solution.extras.head<3>();
-  result.gravity_in_world_m_s2 = solution.extras.segment<3>(3).normalized() * options.gravity_m_s2;
-  result.accelerometer_bias_m_s2 = solution.extras.tail<3>();
-  result.camera_in_imu_std_m = std::sqrt(solution.covariance.diagonal().head<3>().maxCoeff());
+  result.imu_in_world_m = {rotation.start_s, rotation.knot_spacing_s, {}};
+  for (Eigen::Index k = 0; k < solution.points.rows(); ++k)
+    result.imu_in_world_m.control_points.push_back(solution.points.row(k).transpose());
+  const Layout& layout = alignment.layout();
+  for (std::size_t c = 0; c < cameras.size(); ++c)
+    result.cameras_in_imu_m.push_back(solution.shared.segment<3>(layout.lever(c)));
+  result.gravity_in_world_m_s2 =
+      solution.shared.segment<3>(layout.gravity).normalized() * options.gravity_m_s2;
+  result.accelerometer_bias_m_s2 = solution.shared.tail<3>();
+  result.lever_std_m = std::sqrt(solution.covariance.diagonal().head(layout.gravity).maxCoeff());
+  alignment.summarise(result);
   return result;
+}
+
+double findTurnAboutAxis(const Vector3d& axis_in_imu, std::span<const CameraTrack> cameras,
+                         std::span<const ImuSample> samples, std::int64_t start_ns, const So3Spline& rotation,
+                         const InitialisationOptions& options) {
+  constexpr int kDirections = 24, kRounds = 3, kHalvings = 7;
+  Alignment alignment(cameras, samples, start_ns, rotation, options);
+  double turned_rad = 0.0;
+  const auto costAt = [&](double angle_rad) {
+    alignment.turn(so3Exp(axis_in_imu * (angle_rad - turned_rad)));
+    turned_rad = angle_rad;
+    alignment.restart();
+    alignment.solve(kRounds);
+    return alignment.cost();
+  };
+  double step_rad = 2.0 * std::numbers::pi / kDirections;
+  double best_rad = 0.0, least = costAt(0.0);
+  const auto consider = [&](double angle_rad) {
+    const double cost = costAt(angle_rad);
+    if (cost < least) {
+      least = cost;
+      best_rad = angle_rad;
+    }
+  };
+  for (int k = 1; k < kDirections; ++k) consider(k * step_rad);
+  for (int k = 0; k < kHalvings; ++k) {
+    step_rad *= 0.5;
+    const double middle_rad = best_rad;
+    consider(middle_rad - step_rad);
+    consider(middle_rad + step_rad);
+  }
+  return best_rad;
 }
 
 }  // namespace evical

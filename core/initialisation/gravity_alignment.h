@@ -1,7 +1,7 @@
-// Translation, gravity, accelerometer bias and the position spline, all linear once the rotation is known
-// (method 5.5 and 5.6 in one): with control points P, lever t = imu_from_camera.translation, gravity g and
-// bias b,
-//   p(t_k) = p_wc(t_k) - R_wb(t_k) t          at every view,
+// Translations, gravity, accelerometer bias and the position spline, all linear once the rotation is known
+// (method 5.5 and 5.6 in one): with control points P, lever t_c = imu_from_camera.translation of camera c,
+// gravity g and bias b,
+//   p(t_k) = p_wc(t_k) - R_wb(t_k) t_c        at every view,
 //   p''(t) = R_wb(t) (f - b) + g              at every (averaged) accelerometer sample.
 #pragma once
 
@@ -19,19 +19,32 @@
 
 namespace evical {
 
-struct GravityAlignment {
-  VectorSpline imu_in_world_m;
-  Eigen::Vector3d camera_in_imu_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d gravity_in_world_m_s2 = Eigen::Vector3d::Zero();
-  Eigen::Vector3d accelerometer_bias_m_s2 = Eigen::Vector3d::Zero();
-  double position_rms_m = 0.0, acceleration_rms_m_s2 = 0.0;
-  double camera_in_imu_std_m = 0.0;  // largest, at the sigmas of the options
+// Poses at camera time; imu time = that + offset.
+struct CameraTrack {
+  std::vector<CameraPose> poses;
+  double time_offset_s = 0.0;
 };
 
-// `rotation` (world_from_imu, IMU clock) gives range and knots. Poses are at camera time; imu time = that +
-// offset.
-GravityAlignment alignGravity(const std::vector<CameraPose>& poses, double time_offset_s,
-                              std::span<const ImuSample> samples, std::int64_t start_ns,
-                              const So3Spline& rotation, const InitialisationOptions& options);
+struct GravityAlignment {
+  VectorSpline imu_in_world_m;
+  std::vector<Eigen::Vector3d> cameras_in_imu_m;
+  Eigen::Vector3d gravity_in_world_m_s2 = Eigen::Vector3d::Zero();
+  Eigen::Vector3d accelerometer_bias_m_s2 = Eigen::Vector3d::Zero();
+  double position_rms_m = 0.0, acceleration_rms_m_s2 = 0.0;  // robust
+  double lever_std_m = 0.0;                                  // of the worst direction of any camera
+  int views = 0, outlying_views = 0;                         // far from where the others put the camera
+};
+
+// `rotation` (world_from_imu, IMU clock) gives range and knots.
+GravityAlignment alignGravity(std::span<const CameraTrack> cameras, std::span<const ImuSample> samples,
+                              std::int64_t start_ns, const So3Spline& rotation,
+                              const InitialisationOptions& options);
+
+// When all rotation is about one axis of the IMU, rotation alone leaves the angle of the camera about it
+// open; accelerations don't. The angle by which world_from_imu must be turned, R_wb Exp(axis * angle), so
+// that both agree best.
+double findTurnAboutAxis(const Eigen::Vector3d& axis_in_imu, std::span<const CameraTrack> cameras,
+                         std::span<const ImuSample> samples, std::int64_t start_ns, const So3Spline& rotation,
+                         const InitialisationOptions& options);
 
 }  // namespace evical

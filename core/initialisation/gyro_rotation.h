@@ -27,12 +27,15 @@ class GyroRotation {
   Eigen::Quaterniond at(double time_s) const;
   // Rotation vector of imu(from)_from_imu(to).
   Eigen::Vector3d between(double from_s, double to_s) const;
-  double rateRms_rad_s() const { return rate_rms_rad_s_; }
+
+  // About its mean, which a bias may be, and without what is faster than 20 Hz, which noise may be.
+  double rateRms_rad_s() const;
+  // Longest time between two samples, and where it begins.
+  double longestGap_s(double* begin_s = nullptr) const;
 
  private:
   std::vector<double> times_s_;
   std::vector<Eigen::Quaterniond> rotations_;
-  double rate_rms_rad_s_ = 0.0;
 };
 
 }  // namespace evical

@@ -8,14 +8,18 @@ namespace evical {
 struct InitialisationOptions {
   double knot_spacing_s = 0.02;
   double time_offset_search_s = 1.0;
-  double largest_reprojection_px = 1.0;
+  double largest_reprojection_px = 2.0;
+  double largest_rotation_disagreement_rad = 0.06;
+  double clear_peak_correlation = 0.7;
+  double clear_peak_lead = 0.02;
   double pair_gap_s = 0.1;
   double longest_pair_s = 0.3;
   int least_views = 15;
-  double least_overlap_s = 2.0;
-  double least_rotation_rate_rad_s = 0.03;
+  double least_overlap_s = 3.0;
+  double least_rotation_rate_rad_s = 0.01;
   double gravity_m_s2 = 9.81;
-  double margin_s = 0.1;
+  double margin_s = 0.15;
+  double longest_imu_gap_s = 0.05;
   double least_axis_ratio = 0.05;
   double position_sigma_m = 2e-3;
   double acceleration_sigma_m_s2 = 0.1;
@@ -30,6 +34,12 @@ inline constexpr auto kInitialisationFields = std::tuple{
           "The camera's time offset is looked for within plus or minus this."},
     Field{"largest_reprojection_px", &InitialisationOptions::largest_reprojection_px, 0.05, 20.0, "px",
           "Views whose circles fit a pose worse than this are left out."},
+    Field{"largest_rotation_disagreement_rad", &InitialisationOptions::largest_rotation_disagreement_rad,
+          1e-3, 1.0, "rad", "Views whose rotation the gyroscope contradicts by more are left out."},
+    Field{"clear_peak_correlation", &InitialisationOptions::clear_peak_correlation, 0.0, 1.0, "",
+          "Correlation of rotation rates below which the time offset gets a warning."},
+    Field{"clear_peak_lead", &InitialisationOptions::clear_peak_lead, 0.0, 1.0, "",
+          "Lead in correlation over the next best time offset below which a warning says so."},
     Field{"pair_gap_s", &InitialisationOptions::pair_gap_s, 0.01, 2.0, "s",
           "Views at least this far apart give a relative rotation."},
     Field{"longest_pair_s", &InitialisationOptions::longest_pair_s, 0.02, 5.0, "s",
@@ -39,10 +49,12 @@ inline constexpr auto kInitialisationFields = std::tuple{
     Field{"least_overlap_s", &InitialisationOptions::least_overlap_s, 0.5, 60.0, "s",
           "Camera and IMU must both have recorded for this long."},
     Field{"least_rotation_rate_rad_s", &InitialisationOptions::least_rotation_rate_rad_s, 0.0, 10.0, "rad/s",
-          "RMS rate below which a recording holds no usable rotation."},
+          "RMS rate about its mean below which a recording holds no usable rotation."},
     Field{"gravity_m_s2", &InitialisationOptions::gravity_m_s2, 0.1, 100.0, "m/s^2", "Norm of gravity."},
     Field{"margin_s", &InitialisationOptions::margin_s, 0.0, 5.0, "s",
           "The splines reach this far beyond the first and the last view."},
+    Field{"longest_imu_gap_s", &InitialisationOptions::longest_imu_gap_s, 1e-3, 10.0, "s",
+          "Longer gaps between IMU samples get a warning."},
     Field{"least_axis_ratio", &InitialisationOptions::least_axis_ratio, 0.0, 1.0, "",
           "Rotation about a second axis, relative to the first, below which a warning is given."},
     Field{"position_sigma_m", &InitialisationOptions::position_sigma_m, 1e-6, 1.0, "m",

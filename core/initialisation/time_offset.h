@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/initialisation/camera_poses.h"
+#include "core/initialisation/initialisation_options.h"
 
 #include <vector>
 
@@ -10,13 +11,15 @@ namespace evical {
 
 struct TimeOffsetPeak {
   double time_offset_s = 0.0;
-  double correlation = 0.0;  // of rotation rates, -1..1
+  double correlation = 0.0;   // of rotation rates, -1..1
+  double significance = 0.0;  // of that over this overlap: short ones agree by chance more easily
+  double width_s = 0.0;       // from the peak to where the correlation's parabola is lower by 0.1
 };
 
-// Local maxima of the correlation within plus or minus `search_s`, best first; empty if there is too little
-// overlap.
+// Local maxima of the correlation within plus or minus options.time_offset_search_s, the most significant
+// first; empty if camera and gyroscope overlap for less than options.least_overlap_s at every offset.
 std::vector<TimeOffsetPeak> correlateTimeOffset(const std::vector<CameraPose>& poses,
-                                                const GyroRotation& gyro, double search_s,
-                                                double longest_pair_s);
+                                                const GyroRotation& gyro,
+                                                const InitialisationOptions& options);
 
 }  // namespace evical

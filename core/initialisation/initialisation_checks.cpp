@@ -1,0 +1,102 @@
+#include "core/initialisation/initialisation_checks.h"
+
+#include "core/base/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace evical {
+
+void checkInput(const CalibrationInput& input) {
+  if (input.board.hasHalfTurnAmbiguity()) {
+    throw badInput("board", "looks the same when turned by half a turn, so its pose is ambiguous",
+                   "Use an asymmetric board with an odd number of rows; this one serves for intrinsics only");
+  }
+  if (input.cameras.empty())
+    throw calibrationFailed("session", "there is no camera", "Add one under cameras:");
+  for (const CameraData& camera : input.cameras) {
+    if (!camera.intrinsics)
+      throw calibrationFailed(camera.name, "has no intrinsics", "Give them in the session");
+  }
+  if (input.imus.empty()) {
+    throw calibrationFailed("session", "there is no IMU",
+                            "Add one under imus:, or calibrate the camera alone");
+  }
+  if (input.imus.size() > 1)
+    throw calibrationFailed("session", "more than one IMU cannot be calibrated yet", "Name one IMU only");
+  const ImuData& imu = input.imus.front();
+  constexpr std::size_t kLeastSamples = 50;
+  if (imu.samples.size() < kLeastSamples) {
+    throw calibrationFailed(imu.name, fmt::format("has {} samples only", imu.samples.size()),
+                            "Check the IMU's stream, and record for 30 s");
+  }
+}
+
+void checkGyroscope(const ImuData& imu, const GyroRotation& gyro, const InitialisationOptions& options,
+                    std::vector<std::string>& warnings) {
+  const double rate_rad_s = gyro.rateRms_rad_s();
+  if (rate_rad_s < options.least_rotation_rate_rad_s) {
+    throw calibrationFailed(
+        imu.name,
+        fmt::format("the recording hardly moves: the gyroscope turns at {:.4f} rad/s RMS", rate_rad_s),
+        "Rotate the rig about all three axes while the board is in view");
+  }
+  double gap_begin_s = 0.0;
+  const double gap_s = gyro.longestGap_s(&gap_begin_s);
+  if (gap_s > options.longest_imu_gap_s) {
+    warnings.push_back(
+        fmt::format("{}: no samples for {:.3f} s from {:.3f} s on; the motion there is a guess", imu.name,
+                    gap_s, gap_begin_s));
+  }
+}
+
+void checkPoses(const CameraData& camera, const CameraPoses& found, const GyroRotation& gyro,
+                const InitialisationOptions& options) {
+  const std::size_t views = camera.observations.views.size();
+  if (static_cast<int>(views) < options.least_views) {
+    throw calibrationFailed(
+        camera.name,
+        fmt::format("the board was seen in {} of {} windows only; {} are needed", views,
+                    camera.observations.windows.size(), options.least_views),
+        "Look at the detections (evical detect --images), check rows and cols, and keep the board in view");
+  }
+  if (static_cast<int>(found.poses.size()) < options.least_views) {
+    throw calibrationFailed(
+        camera.name,
+        fmt::format("the circles fit the board in {} of {} views only; {} are needed, and the usual error is "
+                    "{:.2f} px (at most {:.2f} px is allowed)",
+                    found.poses.size(), views, options.least_views, found.median_reprojection_px,
+                    options.largest_reprojection_px),
+        "Check the intrinsics, and the board's rows, cols, spacing_m and radius_m");
+  }
+  const double first_s = found.poses.front().time_s, last_s = found.poses.back().time_s;
+  const double overlap_s = std::min(last_s, gyro.end_s() + options.time_offset_search_s) -
+                           std::max(first_s, gyro.begin_s() - options.time_offset_search_s);
+  if (overlap_s < options.least_overlap_s) {
+    const bool apart = overlap_s <= 0.0;
+    throw calibrationFailed(
+        camera.name,
+        fmt::format("camera and IMU {}: the board is seen from {:.3f} s to {:.3f} s, the IMU recorded from "
+                    "{:.3f} s to {:.3f} s",
+                    apart ? "do not overlap in time"
+                          : fmt::format("overlap for less than {:.1f} s", options.least_overlap_s),
+                    first_s, last_s, gyro.begin_s(), gyro.end_s()),
+        apart ? "Check the clocks, or widen initialisation.time_offset_search_s" : "Record for 30 s");
+  }
+}
+
+void checkOverlap(const ImuData& imu, double views_begin_s, double views_end_s, double begin_s, double end_s,
+                  const InitialisationOptions& options) {
+  const double overlap_s = std::min(views_end_s, end_s) - std::max(views_begin_s, begin_s);
+  if (overlap_s >= options.least_overlap_s) return;
+  throw calibrationFailed(
+      imu.name,
+      fmt::format(
+          "views and IMU samples overlap for {:.2f} s only: the board is seen from {:.3f} s to {:.3f} s "
+          "of the IMU's clock, and the IMU recorded from {:.3f} s to {:.3f} s",
+          std::max(overlap_s, 0.0), views_begin_s, views_end_s, begin_s, end_s),
+      "Record for 30 s with the board in view");
+}
+
+}  // namespace evical

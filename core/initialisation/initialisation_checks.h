@@ -1,0 +1,27 @@
+// What must hold before and between the steps of initialisation; each throws CalibrationError with what,
+// where and what to do.
+#pragma once
+
+#include "core/data/calibration_setup.h"
+#include "core/initialisation/camera_poses.h"
+#include "core/initialisation/gyro_rotation.h"
+#include "core/initialisation/initialisation_options.h"
+
+#include <string>
+#include <vector>
+
+namespace evical {
+
+// Board, cameras with intrinsics, one IMU with samples.
+void checkInput(const CalibrationInput& input);
+// Warns of gaps.
+void checkGyroscope(const ImuData& imu, const GyroRotation& gyro, const InitialisationOptions& options,
+                    std::vector<std::string>& warnings);
+// Enough poses, and some offset within the search range at which they and the IMU overlap.
+void checkPoses(const CameraData& camera, const CameraPoses& found, const GyroRotation& gyro,
+                const InitialisationOptions& options);
+// Once the offset is known.
+void checkOverlap(const ImuData& imu, double views_begin_s, double views_end_s, double begin_s, double end_s,
+                  const InitialisationOptions& options);
+
+}  // namespace evical

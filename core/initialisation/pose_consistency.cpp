@@ -1,0 +1,98 @@
+#include "core/initialisation/pose_consistency.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace evical {
+namespace {
+
+constexpr double kNeighbourhood_s = 3.0;     // drift within it stays below the tolerance
+constexpr std::size_t kMostNeighbours = 60;  // on either side: enough for a vote
+constexpr double kLeastShare = 0.3;          // of the neighbours that must agree
+
+// world_from_first by either pose of one view.
+struct Carried {
+  Eigen::Quaterniond first, second;
+  bool has_second = false;
+};
+
+double angle(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
+  return 2.0 * std::acos(std::min(1.0, std::abs(a.dot(b))));
+}
+
+struct Vote {
+  int neighbours = 0, for_first = 0, for_second = 0;
+};
+
+Vote voteOn(const std::vector<Carried>& carried, const std::vector<CameraPose>& poses, std::size_t k,
+            double least_cosine) {
+  const auto agree = [&](const Eigen::Quaterniond& a, const Carried& other) {
+    return std::abs(a.dot(other.first)) > least_cosine ||
+           (other.has_second && std::abs(a.dot(other.second)) > least_cosine);
+  };
+  Vote vote;
+  const std::size_t begin = k > kMostNeighbours ? k - kMostNeighbours : 0;
+  const std::size_t end = std::min(poses.size(), k + kMostNeighbours + 1);
+  for (std::size_t n = begin; n < end; ++n) {
+    if (n == k || std::abs(poses[n].time_s - poses[k].time_s) > kNeighbourhood_s) continue;
+    ++vote.neighbours;
+    vote.for_first += agree(carried[k].first, carried[n]) ? 1 : 0;
+    vote.for_second += carried[k].has_second && agree(carried[k].second, carried[n]) ? 1 : 0;
+  }
+  return vote;
+}
+
+double medianStep(const std::vector<CameraPose>& poses, const GyroRotation& gyro, const HandEye& hand_eye) {
+  std::vector<double> steps;
+  std::optional<Eigen::Quaterniond> before;
+  for (const CameraPose& pose : poses) {
+    const Eigen::Quaterniond here = pose.world_from_camera.rotation * hand_eye.imu_from_camera.conjugate() *
+                                    gyro.at(pose.time_s + hand_eye.time_offset_s).conjugate();
+    if (before) steps.push_back(angle(*before, here));
+    before = here;
+  }
+  if (steps.empty()) return 0.0;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+}  // namespace
+
+PoseConsistency keepConsistentPoses(std::vector<CameraPose>& poses, const GyroRotation& gyro,
+                                    const HandEye& hand_eye, double tolerance_rad) {
+  const double least_cosine = std::cos(0.5 * tolerance_rad);
+  std::vector<Carried> carried;
+  for (const CameraPose& pose : poses) {
+    const Eigen::Quaterniond back =
+        hand_eye.imu_from_camera.conjugate() * gyro.at(pose.time_s + hand_eye.time_offset_s).conjugate();
+    Carried c{pose.world_from_camera.rotation * back, Eigen::Quaterniond::Identity()};
+    c.has_second = pose.other_world_from_camera.has_value();
+    if (c.has_second) c.second = pose.other_world_from_camera->rotation * back;
+    carried.push_back(c);
+  }
+  PoseConsistency result;
+  std::vector<CameraPose> kept;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const double time_s = poses[k].time_s + hand_eye.time_offset_s;
+    const Vote vote = voteOn(carried, poses, k, least_cosine);
+    // Beyond the gyroscope, or all alone, nobody can tell.
+    const bool judged = gyro.covers(time_s, time_s) && vote.neighbours > 0;
+    if (judged && std::max(vote.for_first, vote.for_second) < kLeastShare * vote.neighbours) {
+      ++result.dropped;
+      continue;
+    }
+    kept.push_back(poses[k]);
+    if (judged && vote.for_second > vote.for_first) {
+      std::swap(kept.back().world_from_camera, *kept.back().other_world_from_camera);
+      ++result.swapped;
+    }
+  }
+  poses = std::move(kept);
+  result.usual_rad = medianStep(poses, gyro, hand_eye);
+  return result;
+}
+
+}  // namespace evical
