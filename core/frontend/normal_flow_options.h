@@ -10,7 +10,7 @@ namespace evical {
 struct NormalFlowOptions {
   int plane_radius_px = 1;
   double largest_plane_error_px = 0.6;
-  double least_plane_inliers = 0.6;
+  double least_plane_inliers = 0.5;
   double fastest_px_s = 4000.0;
   int dilation_px = 1;
   int least_cluster_px = 10;

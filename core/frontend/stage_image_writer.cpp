@@ -1,0 +1,66 @@
+#include "core/frontend/stage_image_writer.h"
+
+#include "core/base/error.h"
+#include "core/base/time.h"
+#include "core/frontend/ring_vote.h"
+#include "core/frontend/stage_drawing.h"
+
+#include <cstdio>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace evical {
+namespace {
+
+std::filesystem::path numbered(const std::filesystem::path& directory, const char* name, int number) {
+  char file[32];
+  std::snprintf(file, sizeof file, "%s_%04d.png", name, number);
+  return directory / file;
+}
+
+}  // namespace
+
+StageImageWriter::StageImageWriter(std::filesystem::path directory, int every_nth, const BoardScene& scene,
+                                   const BurstHistory* history, const FrontEndOptions& options)
+    : directory_(std::move(directory)),
+      every_nth_(every_nth > 0 ? every_nth : 1),
+      scene_(&scene),
+      history_(history),
+      options_(options) {
+  std::error_code error;
+  std::filesystem::create_directories(directory_, error);
+  if (error)
+    throw badInput(directory_.string(), "the directory for images cannot be made: " + error.message(),
+                   "Choose another directory.");
+}
+
+void StageImageWriter::windowTracked(const BurstWindow& window, const TrackedWindow& tracked) {
+  const int number = windows_++;
+  if (number % every_nth_ != 0) return;
+  writePng(numbered(directory_, "window", number), drawTrackedWindow(window, tracked, *scene_));
+  ++images_;
+}
+
+void StageImageWriter::windowSearched(const BoardSearch& search, std::int64_t middle_ns) {
+  const int number = searches_++;
+  if (number % every_nth_ != 0) return;
+  BurstWindow window(scene_->resolution_px, scene_->ideal, scene_->ideal_scale, scene_->board.circles);
+  std::vector<EdgeBurst> bursts;
+  if (history_) {
+    const std::int64_t half_ns = nanosecondsFrom(search.half_window_s);
+    history_->gather(middle_ns - half_ns, middle_ns + half_ns, bursts);
+    keepSupported(scene_->resolution_px, options_.ring_vote.least_support, bursts);
+  }
+  window.assign(bursts, middle_ns);
+  const std::filesystem::path path = numbered(directory_, "search", number);
+  if (options_.detection.method == CandidateSource::NormalFlow) {
+    const NormalFlowStages arcs = findArcs(window, options_.normal_flow);
+    writePng(path, drawSearch(window, search, *scene_, &arcs));
+  } else {
+    writePng(path, drawSearch(window, search, *scene_));
+  }
+  ++images_;
+}
+
+}  // namespace evical

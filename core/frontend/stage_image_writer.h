@@ -1,0 +1,33 @@
+// Writes a picture of every n-th window that the front end looks at.
+#pragma once
+
+#include "core/frontend/board_tracker.h"
+
+#include <filesystem>
+
+namespace evical {
+
+// search_0000.png, search_0001.png, ... and window_0000.png, ...: numbered by the searches and windows
+// themselves, so that the numbers of two runs agree whatever every_nth is.
+class StageImageWriter : public FrontEndObserver {
+ public:
+  // Makes the directory. `scene` and `history` are the tracker's and outlive the writer; without a history
+  // searches are drawn without bursts.
+  StageImageWriter(std::filesystem::path directory, int every_nth, const BoardScene& scene,
+                   const BurstHistory* history = nullptr, const FrontEndOptions& options = {});
+
+  void windowTracked(const BurstWindow& window, const TrackedWindow& tracked) override;
+  void windowSearched(const BoardSearch& search, std::int64_t middle_ns) override;
+
+  int imagesWritten() const { return images_; }
+
+ private:
+  std::filesystem::path directory_;
+  int every_nth_;
+  const BoardScene* scene_;
+  const BurstHistory* history_;
+  FrontEndOptions options_;
+  int windows_ = 0, searches_ = 0, images_ = 0;
+};
+
+}  // namespace evical
