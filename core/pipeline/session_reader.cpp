@@ -45,7 +45,8 @@ CircleBoard readBoard(const YamlNode& map) {
   try {
     validate(board);
   } catch (const CalibrationError& problem) {
-    throw map.error(problem.problem(), problem.advice());
+    const std::string key = problem.place().substr(problem.place().find('.') + 1);  // "board.radius_m"
+    throw map.find(key).value_or(map).error(problem.problem(), problem.advice());
   }
   return board;
 }

@@ -1,0 +1,216 @@
+#include "core/pipeline/session.h"
+
+#include <QTemporaryDir>
+#include <QtTest>
+
+#include <fstream>
+
+using namespace evical;
+
+namespace {
+
+const char* const kGood = R"(evical_session: 1
+recording: recording.bag
+time_range_s: [1, 30]
+board:
+  type: asymmetric_circles
+  rows: 11
+  cols: 4
+  spacing_m: 0.05
+  radius_m: 0.02
+  circles: bright
+cameras:
+  left:
+    stream: /left/events
+    resolution_px: [346, 260]
+    intrinsics:
+      model: pinhole_radtan
+      focal_length_px: [260.5, 255]
+      principal_point_px: [170, 131]
+      distortion: [-0.3, 0.1, 0.001, 0.002]
+imus:
+  left_imu:
+    stream: /left/imu
+    accelerometer_noise_density: 1.86e-3
+    gyroscope_noise_density: 1.87e-4
+    acceleration_unit: -g
+    angular_rate_unit: deg/s
+reference: left_imu
+prior:
+  time_offset_search_s: 0.5
+options:
+  grid: {least_circles: 7}
+  bursts.least_events: 3
+)";
+
+const char* const kCamchain = R"(cam0:
+  camera_model: pinhole
+  intrinsics: [300, 301, 170, 131]
+  distortion_model: radtan
+  distortion_coeffs: [0.1, 0, 0, 0]
+  resolution: [640, 480]
+  rostopic: /right/events
+cam1:
+  T_cn_cnm1: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+  camera_model: pinhole
+  intrinsics: [260, 261, 171, 132]
+  distortion_model: equidistant
+  distortion_coeffs: [0.1, 0.01, 0, 0]
+  resolution: [346, 260]
+  rostopic: /left/events
+)";
+
+const char* const kCameraInfo = R"(image_width: 346
+image_height: 260
+camera_name: left
+camera_matrix: {rows: 3, cols: 3, data: [260, 0, 171, 0, 261, 132, 0, 0, 1]}
+distortion_model: plumb_bob
+distortion_coefficients: {rows: 1, cols: 5, data: [-0.3, 0.1, 0, 0, 0.01]}
+)";
+
+const QString kInlineIntrinsics =
+    "intrinsics:\n      model: pinhole_radtan\n      focal_length_px: [260.5, 255]\n      "
+    "principal_point_px: [170, 131]\n      distortion: [-0.3, 0.1, 0.001, 0.002]\n";
+
+}  // namespace
+
+class TestSession : public QObject {
+  Q_OBJECT
+
+  QTemporaryDir scratch_;
+  std::filesystem::path folder() const { return scratch_.path().toStdString(); }
+
+  std::filesystem::path write(const char* name, const std::string& text) const {
+    std::ofstream(folder() / name) << text;
+    return folder() / name;
+  }
+  Session sessionWith(const QString& from, const QString& to) const {
+    QString text = kGood;
+    if (!from.isEmpty() && !text.contains(from)) qFatal("the good session lacks %s", qPrintable(from));
+    if (!from.isEmpty()) text.replace(from, to);
+    return readSession(write("session.yaml", text.toStdString()));
+  }
+  Session sessionWithIntrinsicsFile(const char* content) const {
+    write("left.yaml", content);
+    return sessionWith(kInlineIntrinsics, "intrinsics: left.yaml\n");
+  }
+
+ private slots:
+  void initTestCase() { write("recording.bag", "x"); }
+
+  void session_isReadWhole() {
+    const Session session = sessionWith("", "");
+    QVERIFY(std::filesystem::equivalent(session.recording, folder() / "recording.bag"));
+    QCOMPARE((*session.time_range_s)[1], 30.0);
+    QCOMPARE(session.board.rows, 11);
+    QVERIFY(session.board.circles == CircleShade::Bright);
+    QCOMPARE(session.cameras.at(0).name, std::string("left"));
+    QCOMPARE(session.cameras[0].stream, std::string("/left/events"));
+    QCOMPARE(session.cameras[0].intrinsics->focal_length_px.x(), 260.5);
+    QVERIFY((session.cameras[0].intrinsics->resolution_px == Resolution{346, 260}));
+    QCOMPARE(session.imus.at(0).noise.gyroscope_density, 1.87e-4);
+    QVERIFY(std::abs(metresPerSecond2(session.imus[0].acceleration_unit) + 9.80665) < 1e-12);
+    QVERIFY(std::abs(180.0 * radiansPerSecond(session.imus[0].angular_rate_unit) - 3.14159265358979) < 1e-12);
+    QCOMPARE(session.options.initialisation.time_offset_search_s, 0.5);
+    QCOMPARE(session.options.front_end.grid.least_circles, 7);
+    QCOMPARE(session.options.front_end.bursts.least_events, 3);
+  }
+
+  void session_writtenAndRead_isTheSame() {
+    const Session session = sessionWith("", "");
+    writeSession(session, folder() / "again.yaml");
+    const Session again = readSession(folder() / "again.yaml");
+    QVERIFY(std::filesystem::equivalent(again.recording, session.recording));
+    QVERIFY(again.time_range_s == session.time_range_s);
+    QVERIFY(again.board == session.board);
+    QVERIFY(again.cameras[0].intrinsics == session.cameras[0].intrinsics);
+    QVERIFY(again.imus[0].acceleration_unit == session.imus[0].acceleration_unit);
+    QVERIFY(again.options == session.options);
+    QCOMPARE(sessionYaml(again, folder()), sessionYaml(session, folder()));
+  }
+
+  void intrinsics_ofKalibr_areThoseOfTheStream() {
+    const CameraIntrinsics camera = *sessionWithIntrinsicsFile(kCamchain).cameras[0].intrinsics;
+    QVERIFY(camera.model == CameraModel::PinholeEquidistant);
+    QCOMPARE(camera.focal_length_px.y(), 261.0);
+  }
+  void intrinsics_ofRos_areRead() {
+    const CameraIntrinsics camera = *sessionWithIntrinsicsFile(kCameraInfo).cameras[0].intrinsics;
+    QVERIFY(camera.model == CameraModel::PinholeRadtan);
+    QCOMPARE(camera.principal_point_px.y(), 132.0);
+    QCOMPARE(camera.distortion[4], 0.01);
+  }
+
+  void session_withoutImu_mayHaveAnyBoard() {
+    const QString text = QString(kGood).section("imus:", 0, 0).replace("rows: 11", "rows: 10");
+    const Session session = readSession(write("session.yaml", text.toStdString()));
+    QCOMPARE(session.reference, std::string("left"));
+  }
+
+  void mistake_isRefusedWithItsPlace_data() {
+    QTest::addColumn<QString>("from");
+    QTest::addColumn<QString>("to");
+    QTest::addColumn<QStringList>("said");
+    const auto row = [](const char* name, const char* from, const char* to, const QStringList& said) {
+      QTest::newRow(name) << QString(from) << QString(to) << said;
+    };
+    row("no session", "evical_session: 1", "nothing: 1", {"evical_session"});
+    row("newer session", "evical_session: 1", "evical_session: 2", {"evical_session (line 1)", "above"});
+    row("unknown key", "time_range_s:", "time_rang_s:", {"time_rang_s (line 3)", "'time_range_s'"});
+    row("unknown board key", "radius_m:", "radius:", {"board.radius (line 9)", "'radius_m'"});
+    row("key twice", "cols: 4", "rows: 4", {"board.rows (line 7)", "twice"});
+    row("missing key", "  rows: 11\n", "", {"board.rows", "missing"});
+    row("missing recording", "recording.bag", "other.bag",
+        {"recording (line 2)", "other.bag", "does not exist"});
+    row("backward range", "[1, 30]", "[30, 1]", {"time_range_s (line 3)", "no range"});
+    row("text for a number", "0.05", "5cm", {"board.spacing_m (line 8)", "'5cm'"});
+    row("number out of range", "0.05", "50", {"board.spacing_m (line 8)", "50 m", "10 m"});
+    row("circles that touch", "0.02", "0.2", {"board", "radius_m"});
+    row("board type", "asymmetric_circles", "asymetric_circles", {"board.type (line 5)", "Did you mean"});
+    row("even rows", "rows: 11", "rows: 10", {"board.rows", "180 degrees"});
+    row("symmetric board", "asymmetric_circles", "symmetric_circles", {"board.type", "180 degrees"});
+    row("camera without stream", "    stream: /left/events\n", "", {"cameras.left.stream", "missing"});
+    row("same stream", "/left/imu", "/left/events", {"imus.left_imu.stream", "/left/events"});
+    row("resolution", "[346, 260]", "[346]", {"cameras.left.resolution_px (line 14)", "width, height"});
+    row("negative focal length", "260.5", "-260.5", {"cameras.left.intrinsics", "focal_length_px"});
+    row("distortion", "0.1, 0.001, 0.002", "0.1", {"intrinsics.distortion (line 19)", "k1, k2, p1, p2"});
+    row("camera model", "pinhole_radtan", "pinhole", {"intrinsics.model (line 16)", "'pinhole'"});
+    row("noise", "1.86e-3", "0", {"imus.left_imu.accelerometer_noise_density (line 23)", "below"});
+    row("unit", "-g", "G", {"acceleration_unit (line 25)", "m/s^2, g, -g"});
+    row("reference", "reference: left_imu", "reference: left",
+        {"reference", "not one of the IMUs", "left_imu"});
+    row("option", "least_circles: 7", "least_circle: 7",
+        {"options.grid.least_circle (line 31)", "least_circles"});
+    row("option's value", "least_circles: 7", "least_circles: 1",
+        {"options.grid.least_circles", "least of 4"});
+    row("option's group", "grid:", "gird:", {"options.gird (line 31)", "'grid'"});
+    row("prior", "time_offset_search_s: 0.5", "time_offset_search_s: 90",
+        {"prior.time_offset_search_s", "60 s"});
+    row("no YAML", "[346, 260]", "[346, 260", {"session.yaml (line", "no valid YAML"});
+  }
+  void mistake_isRefusedWithItsPlace() {
+    QFETCH(QString, from);
+    QFETCH(QString, to);
+    QFETCH(QStringList, said);
+    try {
+      sessionWith(from, to);
+      QFAIL("must throw");
+    } catch (const CalibrationError& error) {
+      QVERIFY(error.kind() == ErrorKind::BadInput);
+      QVERIFY2(QString(error.what()).contains("session.yaml"), error.what());
+      for (const QString& part : said) QVERIFY2(QString(error.what()).contains(part), error.what());
+    }
+  }
+
+  void missingFile_isNamed() {
+    try {
+      readSession(folder() / "none.yaml");
+      QFAIL("must throw");
+    } catch (const CalibrationError& error) {
+      QVERIFY2(error.place().find("none.yaml") != std::string::npos, error.what());
+    }
+  }
+};
+
+QTEST_APPLESS_MAIN(TestSession)
+#include "tst_session.moc"
