@@ -40,13 +40,15 @@ std::optional<Ellipse> imageOfCircle(const Eigen::Matrix3d& h, const CircleBoard
   const Eigen::Matrix3d q = h * dual * h.transpose();
   const Eigen::Vector2d centre = q.topRightCorner<2, 1>() / q(2, 2);
   const Eigen::Matrix2d axes2 = centre * centre.transpose() - q.topLeftCorner<2, 2>() / q(2, 2);
-  return Ellipse{centre, std::sqrt(std::max(axes2.trace(), 0.0))};
+  const double half_trace = 0.5 * axes2.trace();
+  const double spread = std::sqrt(std::max(half_trace * half_trace - axes2.determinant(), 0.0));
+  return Ellipse{centre, std::sqrt(std::max(half_trace + spread, 0.0))};
 }
 
 bool insideImage(const Ellipse& ellipse, const CameraIntrinsics& camera) {
   const Eigen::Vector2d centre = pixelFromIdeal(camera, ellipse.centre);
   const double scale = std::sqrt(std::abs(idealPixelScale(camera, ellipse.centre).determinant()));
-  const double r = 0.75 * ellipse.largest_radius / std::max(scale, 1e-6);
+  const double r = ellipse.largest_radius / std::max(scale, 1e-6);
   return centre.x() > r && centre.y() > r && centre.x() < camera.resolution_px.width_px - 1 - r &&
          centre.y() < camera.resolution_px.height_px - 1 - r;
 }
@@ -73,6 +75,18 @@ std::vector<TrueCircle> trueBoardView(const SinusoidMotion& motion, const Scenar
                        insideImage(*ellipse, camera.intrinsics)});
   }
   return circles;
+}
+
+int circlesInView(const SinusoidMotion& motion, const Scenario& scenario, std::size_t camera,
+                  double stamp_s) {
+  int count = 0;
+  for (const TrueCircle& circle : trueBoardView(motion, scenario, camera, stamp_s)) count += circle.inside;
+  return count;
+}
+
+bool boardInView(const SinusoidMotion& motion, const Scenario& scenario, std::size_t camera, double stamp_s) {
+  const int least = std::max(4, static_cast<int>(std::ceil(0.4 * scenario.board.circleCount())));
+  return circlesInView(motion, scenario, camera, stamp_s) >= least;
 }
 
 BoardObservations simulateObservations(const Scenario& scenario, std::size_t camera, double noise_px,

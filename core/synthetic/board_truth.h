@@ -22,6 +22,11 @@ struct TrueCircle {
 std::vector<TrueCircle> trueBoardView(const SinusoidMotion& motion, const Scenario& scenario,
                                       std::size_t camera, double stamp_s);
 
+// Circles that are wholly in the image; and whether they suffice for a partial grid (method 4.7: at least 4
+// and 40 %).
+int circlesInView(const SinusoidMotion& motion, const Scenario& scenario, std::size_t camera, double stamp_s);
+bool boardInView(const SinusoidMotion& motion, const Scenario& scenario, std::size_t camera, double stamp_s);
+
 // Truth with Gaussian noise of `noise_px` per axis, every `period_s`, circles wholly in the image only.
 BoardObservations simulateObservations(const Scenario& scenario, std::size_t camera, double noise_px,
                                        double period_s);

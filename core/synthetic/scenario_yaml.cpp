@@ -1,12 +1,11 @@
 #include "core/synthetic/scenario_yaml.h"
 
-#include "core/base/error.h"
+#include "core/base/yaml_node.h"
 
 #include <fmt/format.h>
-#include <yaml-cpp/yaml.h>
 
-#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 #include <vector>
@@ -15,330 +14,252 @@ namespace evical {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+constexpr double kAny = std::numeric_limits<double>::max();
 
-// A map of the file: every key that is read is known; finish() refuses the others.
-class MapReader {
- public:
-  MapReader(const YAML::Node& node, std::string place) : node_(node), place_(std::move(place)) {
-    if (node_ && !node_.IsMap()) throw badInput(place_, "must be a map of keys and values");
+// All of these leave the value alone where the key is absent: that is how a scenario changes its base.
+void get(const YamlNode& map, const char* key, double& value, double minimum, double maximum,
+         const char* unit) {
+  if (const auto node = map.find(key)) value = node->real(minimum, maximum, unit);
+}
+void get(const YamlNode& map, const char* key, int& value, int minimum, int maximum) {
+  if (const auto node = map.find(key)) value = node->integer(minimum, maximum);
+}
+void get(const YamlNode& map, const char* key, std::string& value) {
+  const auto node = map.find(key);
+  if (!node) return;
+  value = node->text();
+  if (value.empty()) throw node->error("must not be empty");
+}
+template <class Enum>
+void get(const YamlNode& map, const char* key, Enum& value, std::initializer_list<const char*> words) {
+  if (const auto node = map.find(key)) value = static_cast<Enum>(node->choice(words));
+}
+template <int Size>
+void get(const YamlNode& map, const char* key, Eigen::Matrix<double, Size, 1>& value, double minimum = -kAny,
+         double maximum = kAny, double unit = 1.0) {
+  const auto node = map.find(key);
+  if (!node) return;
+  const std::vector<double> numbers = node->reals(Size);
+  for (int i = 0; i < Size; ++i) {
+    const double number = numbers[static_cast<std::size_t>(i)];
+    if (number < minimum || number > maximum)
+      throw node->error(fmt::format("{} is out of range", number),
+                        fmt::format("Give numbers from {} to {}", minimum, maximum));
+    value(i) = unit * number;
   }
-
-  template <class Value>
-  void get(const char* key, Value& value) {
-    known_.insert(key);
-    if (!has(key)) return;
-    try {
-      value = node_[key].as<Value>();
-    } catch (const YAML::Exception&) {
-      throw badInput(placeOf(key), fmt::format("'{}' is not what is expected here", YAML::Dump(node_[key])));
-    }
+}
+// Upper triangular and near the identity, or it is no IMU.
+void getMapping(const YamlNode& map, const char* key, Eigen::Matrix3d& value) {
+  const auto node = map.find(key);
+  if (!node) return;
+  const std::vector<YamlNode> rows = node->items();
+  if (rows.size() != 3) throw node->error("must be three rows of three numbers");
+  for (int r = 0; r < 3; ++r) {
+    const std::vector<double> row = rows[static_cast<std::size_t>(r)].reals(3);
+    for (int c = 0; c < 3; ++c) value(r, c) = row[static_cast<std::size_t>(c)];
   }
-  void get(const char* key, double& value, double minimum, double maximum) {
-    get(key, value);
-    if (!(value >= minimum && value <= maximum)) {
-      throw badInput(placeOf(key), fmt::format("{} is not in {} .. {}", value, minimum, maximum));
-    }
-  }
-  void get(const char* key, int& value, int minimum, int maximum) {
-    get(key, value);
-    if (value < minimum || value > maximum) {
-      throw badInput(placeOf(key), fmt::format("{} is not in {} .. {}", value, minimum, maximum));
-    }
-  }
-  template <int Rows>
-  void get(const char* key, Eigen::Matrix<double, Rows, 1>& value, double factor = 1.0) {
-    std::vector<double> numbers(value.data(), value.data() + Rows);
-    for (double& number : numbers) number /= factor;
-    get(key, numbers);
-    if (numbers.size() != Rows) throw badInput(placeOf(key), fmt::format("must be {} numbers", Rows));
-    for (int i = 0; i < Rows; ++i) value(i) = numbers[static_cast<std::size_t>(i)] * factor;
-  }
-  void get(const char* key, Eigen::Matrix3d& value) {
-    std::vector<std::vector<double>> rows;
-    get(key, rows);
-    if (rows.empty()) return;
-    if (rows.size() != 3 ||
-        std::any_of(rows.begin(), rows.end(), [](const auto& r) { return r.size() != 3; })) {
-      throw badInput(placeOf(key), "must be three rows of three numbers");
-    }
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c)
-        value(r, c) = rows[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
-    }
-  }
-  MapReader map(const char* key) {
-    known_.insert(key);
-    return {has(key) ? node_[key] : YAML::Node(YAML::NodeType::Map), placeOf(key)};
-  }
-  YAML::Node node(const char* key) {
-    known_.insert(key);
-    return has(key) ? node_[key] : YAML::Node();
-  }
-  std::string placeOf(const std::string& key) const { return place_ + ": " + key; }
-  void finish() const {
-    if (!node_) return;
-    for (const auto& entry : node_) {
-      const std::string key = entry.first.as<std::string>();
-      if (known_.contains(key)) continue;
-      throw badInput(placeOf(key), "unknown key",
-                     fmt::format("Known keys are: {}", fmt::join(known_.begin(), known_.end(), ", ")));
-    }
-  }
-
- private:
-  bool has(const char* key) const { return node_ && node_.IsMap() && node_[key] && !node_[key].IsNull(); }
-
-  YAML::Node node_;
-  std::string place_;
-  std::set<std::string> known_;
-};
-
-void readBoard(MapReader map, CircleBoard& board) {
-  std::string type = board.type == BoardType::AsymmetricCircles ? "asymmetric_circles" : "symmetric_circles";
-  std::string shade = board.circles == CircleShade::Dark ? "dark" : "bright";
-  map.get("type", type);
-  map.get("circles", shade);
-  map.get("rows", board.rows, 2, 100);
-  map.get("cols", board.cols, 2, 100);
-  map.get("spacing_m", board.spacing_m, 1e-4, 10.0);
-  map.get("radius_m", board.radius_m, 1e-5, 10.0);
-  map.finish();
-  if (type != "asymmetric_circles" && type != "symmetric_circles") {
-    throw badInput(map.placeOf("type"), "must be asymmetric_circles or symmetric_circles");
-  }
-  if (shade != "dark" && shade != "bright") throw badInput(map.placeOf("circles"), "must be dark or bright");
-  board.type = type == "asymmetric_circles" ? BoardType::AsymmetricCircles : BoardType::SymmetricCircles;
-  board.circles = shade == "dark" ? CircleShade::Dark : CircleShade::Bright;
-  validate(board);
+  if (!value.isUpperTriangular()) throw node->error("must be upper triangular (zeros below the diagonal)");
+  constexpr double kLargest = 0.5;
+  if ((value - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kLargest)
+    throw node->error("is too far from the identity",
+                      fmt::format("No entry may differ by more than {}", kLargest));
 }
 
-void readScene(MapReader map, SceneModel& scene) {
-  map.get("bright_reflectance", scene.bright_reflectance, 1e-3, 1.0);
-  map.get("dark_reflectance", scene.dark_reflectance, 1e-3, 1.0);
-  map.get("margin_m", scene.margin_m, 0.0, 10.0);
-  map.get("clutter_contrast", scene.clutter_contrast, 0.0, 3.0);
-  map.get("clutter_distance_m", scene.clutter_distance_m, 0.0, 100.0);
-  map.get("clutter_object_share", scene.clutter_object_share, 0.0, 1.0);
-  map.get("clutter_detail_px", scene.clutter_detail_px, 0.5, 100.0);
-  map.finish();
+void readBoard(const YamlNode& map, CircleBoard& board) {
+  map.allowOnly({"type", "circles", "rows", "cols", "spacing_m", "radius_m"});
+  get(map, "type", board.type, {"asymmetric_circles", "symmetric_circles"});
+  get(map, "circles", board.circles, {"dark", "bright"});
+  get(map, "rows", board.rows, 2, 100);
+  get(map, "cols", board.cols, 2, 100);
+  get(map, "spacing_m", board.spacing_m, 1e-4, 10.0, "m");
+  get(map, "radius_m", board.radius_m, 1e-5, 10.0, "m");
 }
 
-void readMotion(MapReader map, MotionModel& motion) {
+void readScene(const YamlNode& map, SceneModel& scene) {
+  map.allowOnly({"bright_reflectance", "dark_reflectance", "margin_m", "clutter_contrast",
+                 "clutter_object_share", "clutter_distance_m", "clutter_detail_px"});
+  get(map, "bright_reflectance", scene.bright_reflectance, 1e-3, 1.0, "");
+  get(map, "dark_reflectance", scene.dark_reflectance, 1e-3, 1.0, "");
+  get(map, "margin_m", scene.margin_m, 0.0, 10.0, "m");
+  get(map, "clutter_contrast", scene.clutter_contrast, 0.0, 3.0, "");
+  get(map, "clutter_object_share", scene.clutter_object_share, 0.0, 1.0, "");
+  get(map, "clutter_distance_m", scene.clutter_distance_m, 0.0, 100.0, "m");
+  get(map, "clutter_detail_px", scene.clutter_detail_px, 0.5, 100.0, "px");
+  if (scene.dark_reflectance >= scene.bright_reflectance)
+    throw map.error("dark_reflectance must be less than bright_reflectance");
+}
+
+void readMotion(const YamlNode& map, MotionModel& motion) {
+  map.allowOnly({"distance_m", "distance_amplitude_m", "angle_amplitude_deg", "target_amplitude_m",
+                 "roll_deg", "lowest_frequency_hz", "highest_frequency_hz", "sinusoids", "image_speed_px_s"});
   double roll_deg = motion.roll_rad / kRadPerDeg;
-  map.get("distance_m", motion.distance_m, 0.01, 100.0);
-  map.get("distance_amplitude_m", motion.distance_amplitude_m, 0.0, 100.0);
-  map.get("angle_amplitude_deg", motion.angle_amplitude_rad, kRadPerDeg);
-  map.get("target_amplitude_m", motion.target_amplitude_m);
-  map.get("roll_deg", roll_deg, -360.0, 360.0);
-  map.get("lowest_frequency_hz", motion.lowest_frequency_hz, 1e-3, 50.0);
-  map.get("highest_frequency_hz", motion.highest_frequency_hz, 1e-3, 50.0);
-  map.get("sinusoids", motion.sinusoids, 1, 100);
-  map.get("image_speed_px_s", motion.image_speed_px_s, 0.0, 1e5);
-  map.finish();
+  get(map, "distance_m", motion.distance_m, 0.01, 100.0, "m");
+  get(map, "distance_amplitude_m", motion.distance_amplitude_m, 0.0, 100.0, "m");
+  get(map, "angle_amplitude_deg", motion.angle_amplitude_rad, 0.0, 80.0, kRadPerDeg);
+  get(map, "target_amplitude_m", motion.target_amplitude_m, 0.0, 100.0);
+  get(map, "roll_deg", roll_deg, -360.0, 360.0, "deg");
+  get(map, "lowest_frequency_hz", motion.lowest_frequency_hz, 1e-3, 50.0, "Hz");
+  get(map, "highest_frequency_hz", motion.highest_frequency_hz, 1e-3, 50.0, "Hz");
+  get(map, "sinusoids", motion.sinusoids, 1, 100);
+  get(map, "image_speed_px_s", motion.image_speed_px_s, 0.0, 1e5, "px/s");
   motion.roll_rad = roll_deg * kRadPerDeg;
+  if (motion.highest_frequency_hz < motion.lowest_frequency_hz)
+    throw map.error("highest_frequency_hz must not be less than lowest_frequency_hz");
+  // The sum of n sinusoids of variance a^2 / 2n reaches a sqrt(n).
+  if (motion.distance_amplitude_m * std::sqrt(motion.sinusoids) >= motion.distance_m)
+    throw map.error("the camera would go through the board",
+                    "Make distance_amplitude_m less than distance_m / sqrt(sinusoids)");
 }
 
-void readTransform(MapReader map, RigidTransform& transform) {
+void readTransform(const YamlNode& map, RigidTransform& transform) {
+  map.allowOnly({"rotation_xyzw", "translation_m"});
   Eigen::Vector4d rotation = transform.rotation.coeffs();
-  map.get("rotation_xyzw", rotation);
-  map.get("translation_m", transform.translation_m);
-  map.finish();
-  if (rotation.norm() < 1e-6) throw badInput(map.placeOf("rotation_xyzw"), "must not be zero");
+  get(map, "rotation_xyzw", rotation);
+  get(map, "translation_m", transform.translation_m);
+  if (rotation.norm() < 1e-6) throw map["rotation_xyzw"].error("must not be zero");
   transform.rotation.coeffs() = rotation.normalized();
 }
 
-void readIntrinsics(MapReader map, CameraIntrinsics& camera) {
-  std::string model = camera.model == CameraModel::PinholeRadtan ? "pinhole_radtan" : "pinhole_equidistant";
-  Eigen::Vector2d resolution(camera.resolution_px.width_px, camera.resolution_px.height_px);
-  std::vector<double> distortion(camera.distortion.begin(), camera.distortion.end());
-  map.get("model", model);
-  map.get("resolution_px", resolution);
-  map.get("focal_length_px", camera.focal_length_px);
-  map.get("principal_point_px", camera.principal_point_px);
-  map.get("distortion", distortion);
-  map.finish();
-  if (model != "pinhole_radtan" && model != "pinhole_equidistant") {
-    throw badInput(map.placeOf("model"), "must be pinhole_radtan or pinhole_equidistant");
+void readIntrinsicsOf(const YamlNode& map, CameraIntrinsics& camera) {
+  map.allowOnly({"model", "resolution_px", "focal_length_px", "principal_point_px", "distortion"});
+  get(map, "model", camera.model, {"pinhole_radtan", "pinhole_equidistant"});
+  if (const auto node = map.find("resolution_px")) {
+    const std::vector<YamlNode> sides = node->items();
+    if (sides.size() != 2) throw node->error("must be [width, height]");
+    camera.resolution_px = {sides[0].integer(8, 65535), sides[1].integer(8, 65535)};
   }
-  if (distortion.size() > camera.distortion.size())
-    throw badInput(map.placeOf("distortion"), "has too many numbers");
-  camera.model = model == "pinhole_radtan" ? CameraModel::PinholeRadtan : CameraModel::PinholeEquidistant;
-  camera.resolution_px = {static_cast<int>(resolution.x()), static_cast<int>(resolution.y())};
-  camera.distortion.fill(0.0);
-  std::copy(distortion.begin(), distortion.end(), camera.distortion.begin());
-  validate(camera, map.placeOf("intrinsics"));
+  get(map, "focal_length_px", camera.focal_length_px);
+  get(map, "principal_point_px", camera.principal_point_px);
+  if (const auto node = map.find("distortion")) {
+    const std::vector<double> numbers = node->reals();
+    const std::size_t most = camera.model == CameraModel::PinholeRadtan ? 5 : 4;
+    if (numbers.size() > most) throw node->error(fmt::format("has more than {} numbers", most));
+    camera.distortion.fill(0.0);
+    std::copy(numbers.begin(), numbers.end(), camera.distortion.begin());
+  }
 }
 
-void readPixel(MapReader map, EventPixelModel& pixel) {
-  map.get("threshold_on", pixel.threshold_on, 0.01, 5.0);
-  map.get("threshold_off", pixel.threshold_off, 0.01, 5.0);
-  map.get("threshold_mismatch", pixel.threshold_mismatch, 0.0, 0.5);
-  map.get("refractory_s", pixel.refractory_s, 0.0, 1.0);
-  map.get("background_rate_hz", pixel.background_rate_hz, 0.0, 1e4);
-  map.get("hot_pixels", pixel.hot_pixels, 0, 100000);
-  map.get("hot_pixel_rate_hz", pixel.hot_pixel_rate_hz, 0.0, 1e6);
-  map.get("blur_px", pixel.blur_px, 0.05, 20.0);
-  map.get("latency_s", pixel.latency_s, 0.0, 0.1);
-  map.get("low_pass_s", pixel.low_pass_s, 0.0, 0.1);
-  map.get("stamp_jitter_s", pixel.stamp_jitter_s, 0.0, 0.1);
-  map.finish();
+void readPixel(const YamlNode& map, EventPixelModel& pixel) {
+  map.allowOnly({"threshold_on", "threshold_off", "threshold_mismatch", "refractory_s", "background_rate_hz",
+                 "hot_pixels", "hot_pixel_rate_hz", "blur_px", "latency_s", "low_pass_s", "stamp_jitter_s"});
+  get(map, "threshold_on", pixel.threshold_on, 0.01, 5.0, "");
+  get(map, "threshold_off", pixel.threshold_off, 0.01, 5.0, "");
+  get(map, "threshold_mismatch", pixel.threshold_mismatch, 0.0, 0.5, "");
+  get(map, "refractory_s", pixel.refractory_s, 0.0, 1.0, "s");
+  get(map, "background_rate_hz", pixel.background_rate_hz, 0.0, 1e4, "Hz");
+  get(map, "hot_pixels", pixel.hot_pixels, 0, 100000);
+  get(map, "hot_pixel_rate_hz", pixel.hot_pixel_rate_hz, 0.0, 1e6, "Hz");
+  get(map, "blur_px", pixel.blur_px, 0.05, 20.0, "px");
+  get(map, "latency_s", pixel.latency_s, 0.0, 0.1, "s");
+  get(map, "low_pass_s", pixel.low_pass_s, 0.0, 0.1, "s");
+  get(map, "stamp_jitter_s", pixel.stamp_jitter_s, 0.0, 0.1, "s");
 }
 
-void readCamera(MapReader map, SimulatedCamera& camera) {
-  map.get("name", camera.name);
-  map.get("stream", camera.stream);
-  map.get("time_offset_s", camera.time_offset_s, -60.0, 60.0);
-  readTransform(map.map("imu_from_camera"), camera.imu_from_camera);
-  readIntrinsics(map.map("intrinsics"), camera.intrinsics);
-  readPixel(map.map("pixel"), camera.pixel);
-  map.finish();
+void readCamera(const YamlNode& map, SimulatedCamera& camera) {
+  map.allowOnly({"name", "stream", "time_offset_s", "imu_from_camera", "intrinsics", "pixel"});
+  get(map, "name", camera.name);
+  get(map, "stream", camera.stream);
+  get(map, "time_offset_s", camera.time_offset_s, -60.0, 60.0, "s");
+  if (const auto node = map.find("imu_from_camera")) readTransform(*node, camera.imu_from_camera);
+  if (const auto node = map.find("intrinsics")) readIntrinsicsOf(*node, camera.intrinsics);
+  if (const auto node = map.find("pixel")) readPixel(*node, camera.pixel);
 }
 
-void readImu(MapReader map, SimulatedImu& imu) {
-  map.get("name", imu.name);
-  map.get("stream", imu.stream);
-  map.get("rate_hz", imu.rate_hz, 1.0, 1e5);
-  map.get("gyroscope_noise_density", imu.gyroscope_density, 0.0, 1.0);
-  map.get("accelerometer_noise_density", imu.accelerometer_density, 0.0, 10.0);
-  map.get("gyroscope_walk_density", imu.gyroscope_walk, 0.0, 1.0);
-  map.get("accelerometer_walk_density", imu.accelerometer_walk, 0.0, 10.0);
-  map.get("gyroscope_bias_rad_s", imu.gyroscope_bias_rad_s);
-  map.get("accelerometer_bias_m_s2", imu.accelerometer_bias_m_s2);
-  map.get("gyroscope_mapping", imu.gyroscope_mapping);
-  map.get("accelerometer_mapping", imu.accelerometer_mapping);
-  map.get("time_offset_s", imu.time_offset_s, -60.0, 60.0);
-  readTransform(map.map("reference_from_imu"), imu.reference_from_imu);
-  map.finish();
+void readImu(const YamlNode& map, SimulatedImu& imu) {
+  map.allowOnly({"name", "stream", "rate_hz", "gyroscope_noise_density", "accelerometer_noise_density",
+                 "gyroscope_walk_density", "accelerometer_walk_density", "gyroscope_bias_rad_s",
+                 "accelerometer_bias_m_s2", "gyroscope_mapping", "accelerometer_mapping", "time_offset_s",
+                 "reference_from_imu"});
+  get(map, "name", imu.name);
+  get(map, "stream", imu.stream);
+  get(map, "rate_hz", imu.rate_hz, 1.0, 1e5, "Hz");
+  get(map, "gyroscope_noise_density", imu.gyroscope_density, 0.0, 1.0, "rad/s/sqrt(Hz)");
+  get(map, "accelerometer_noise_density", imu.accelerometer_density, 0.0, 10.0, "m/s^2/sqrt(Hz)");
+  get(map, "gyroscope_walk_density", imu.gyroscope_walk, 0.0, 1.0, "rad/s^2/sqrt(Hz)");
+  get(map, "accelerometer_walk_density", imu.accelerometer_walk, 0.0, 10.0, "m/s^3/sqrt(Hz)");
+  get(map, "gyroscope_bias_rad_s", imu.gyroscope_bias_rad_s, -10.0, 10.0);
+  get(map, "accelerometer_bias_m_s2", imu.accelerometer_bias_m_s2, -50.0, 50.0);
+  getMapping(map, "gyroscope_mapping", imu.gyroscope_mapping);
+  getMapping(map, "accelerometer_mapping", imu.accelerometer_mapping);
+  get(map, "time_offset_s", imu.time_offset_s, -60.0, 60.0, "s");
+  if (const auto node = map.find("reference_from_imu")) readTransform(*node, imu.reference_from_imu);
 }
 
-YAML::Node load(const std::filesystem::path& path) {
-  if (!std::filesystem::exists(path)) throw badInput(path.string(), "there is no such scenario");
+// `one` is a map that changes the first sensor, `all` a list in which each map changes the base's sensor of
+// that place or adds one.
+template <class Sensor, class Read>
+void readSensors(const YamlNode& root, const char* one, const char* all, std::vector<Sensor>& sensors,
+                 Read read) {
+  if (const auto node = root.find(one)) read(*node, sensors.front());
+  if (const auto node = root.find(all)) {
+    const std::vector<YamlNode> items = node->items();
+    if (items.empty()) throw node->error("must not be empty");
+    sensors.resize(items.size());
+    for (std::size_t i = 0; i < items.size(); ++i) read(items[i], sensors[i]);
+  }
+  std::set<std::string> names, streams;
+  for (const Sensor& sensor : sensors) {
+    if (!names.insert(sensor.name).second)
+      throw root.error(fmt::format("two of its {} are called {}", all, sensor.name));
+    if (!streams.insert(sensor.stream).second)
+      throw root.error(fmt::format("two of its {} have the stream {}", all, sensor.stream));
+  }
+}
+
+void readGravity(const YamlNode& root, Eigen::Vector3d& gravity) {
+  double norm = gravity.norm();
+  get(root, "gravity_m_s2", gravity);
+  if (gravity.norm() < 1e-6)
+    throw root["gravity_m_s2"].error("must not be zero", "It points down in the board's frame");
+  if (root.has("gravity_m_s2")) norm = gravity.norm();
+  get(root, "gravity_norm_m_s2", norm, 0.1, 100.0, "m/s^2");
+  gravity *= norm / gravity.norm();
+}
+
+// What can be wrong only once a scenario and its bases are put together.
+void validateWhole(const Scenario& scenario, const std::string& file) {
   try {
-    return YAML::LoadFile(path.string());
-  } catch (const YAML::Exception& error) {
-    throw badInput(path.string(), fmt::format("is not valid YAML: {}", error.what()));
+    validate(scenario.board);
+  } catch (const CalibrationError& error) {
+    throw badInput(file + ": " + error.place(), error.problem(), error.advice());
   }
+  for (const SimulatedCamera& camera : scenario.cameras)
+    validate(camera.intrinsics, fmt::format("{}: intrinsics of {}", file, camera.name));
 }
 
 Scenario readFrom(const std::filesystem::path& path, int depth) {
-  const YAML::Node root = load(path);
-  MapReader map(root, path.string());
+  const YamlNode root = YamlNode::load(path);
+  root.allowOnly({"base", "description", "seed", "duration_s", "format", "gravity_m_s2", "gravity_norm_m_s2",
+                  "board", "scene", "motion", "camera", "cameras", "imu", "imus"});
   Scenario scenario;
   scenario.cameras.resize(1);
   scenario.imus.resize(1);
-  std::string base, format;
-  map.get("base", base);
-  if (!base.empty()) {
+  if (const auto base = root.find("base")) {
     constexpr int kDeepest = 8;
-    if (depth > kDeepest)
-      throw badInput(map.placeOf("base"), "scenarios that are based on each other without an end");
-    scenario = readFrom(path.parent_path() / base, depth + 1);
+    if (depth > kDeepest) throw base->error("scenarios rest on each other without an end");
+    scenario = readFrom(path.parent_path() / base->text(), depth + 1);
   }
-  double gravity_norm = scenario.gravity_in_world_m_s2.norm();
-  int seed = static_cast<int>(scenario.seed);
   scenario.name = path.stem().string();
-  map.get("description", base);
-  map.get("seed", seed, 0, 1 << 30);
+  int seed = static_cast<int>(scenario.seed);
+  get(root, "seed", seed, 0, std::numeric_limits<int>::max());
   scenario.seed = static_cast<std::uint64_t>(seed);
-  map.get("duration_s", scenario.duration_s, 0.1, 3600.0);
-  map.get("format", format);
-  map.get("gravity_m_s2", scenario.gravity_in_world_m_s2);
-  map.get("gravity_norm_m_s2", gravity_norm, 0.1, 100.0);
-  scenario.gravity_in_world_m_s2 *= gravity_norm / scenario.gravity_in_world_m_s2.norm();
-  readBoard(map.map("board"), scenario.board);
-  readScene(map.map("scene"), scenario.scene);
-  readMotion(map.map("motion"), scenario.motion);
-  readCamera(map.map("camera"), scenario.cameras.front());
-  readImu(map.map("imu"), scenario.imus.front());
-  map.finish();
-  if (!format.empty() && format != "bag" && format != "text") {
-    throw badInput(map.placeOf("format"), "must be bag or text");
-  }
-  if (!format.empty()) scenario.format = format == "bag" ? SimulatedFormat::Bag : SimulatedFormat::Text;
+  get(root, "duration_s", scenario.duration_s, 0.1, 3600.0, "s");
+  get(root, "format", scenario.format, {"bag", "text"});
+  readGravity(root, scenario.gravity_in_world_m_s2);
+  if (const auto node = root.find("board")) readBoard(*node, scenario.board);
+  if (const auto node = root.find("scene")) readScene(*node, scenario.scene);
+  if (const auto node = root.find("motion")) readMotion(*node, scenario.motion);
+  readSensors(root, "camera", "cameras", scenario.cameras, readCamera);
+  readSensors(root, "imu", "imus", scenario.imus, readImu);
   return scenario;
-}
-
-std::string list(const auto& numbers) {
-  return fmt::format("[{:.17g}]", fmt::join(numbers, ", "));
-}
-
-std::string vectorText(const Eigen::VectorXd& v) {
-  return list(std::vector<double>(v.data(), v.data() + v.size()));
-}
-
-std::string matrixText(const Eigen::Matrix3d& m) {
-  return fmt::format("[{}, {}, {}]", vectorText(m.row(0).transpose()), vectorText(m.row(1).transpose()),
-                     vectorText(m.row(2).transpose()));
-}
-
-std::string intrinsicsText(const CameraIntrinsics& c, const std::string& indent) {
-  const bool radtan = c.model == CameraModel::PinholeRadtan;
-  std::vector<double> d(c.distortion.begin(),
-                        c.distortion.begin() + (radtan && c.distortion[4] != 0.0 ? 5 : 4));
-  return fmt::format(
-      "{0}model: {1}\n{0}resolution_px: [{2}, {3}]\n{0}focal_length_px: {4}\n{0}principal_point_px: {5}\n"
-      "{0}distortion: {6}\n",
-      indent, radtan ? "pinhole_radtan" : "pinhole_equidistant", c.resolution_px.width_px,
-      c.resolution_px.height_px, vectorText(c.focal_length_px), vectorText(c.principal_point_px), list(d));
 }
 
 }  // namespace
 
 Scenario readScenario(const std::filesystem::path& path) {
-  return readFrom(path, 0);
-}
-
-std::string truthYaml(const Scenario& scenario) {
-  std::string text = fmt::format("evical_truth: 1\nscenario: {}\nseed: {}\nreference: {}\ncameras:\n",
-                                 scenario.name, scenario.seed, scenario.imus.front().name);
-  for (const SimulatedCamera& camera : scenario.cameras) {
-    text += fmt::format(
-        "  {}:\n    reference_from_camera:\n      rotation_xyzw: {}\n      translation_m: {}\n"
-        "    time_offset_s: {:.17g}\n    clock_offset_s: {:.17g}\n    photoreceptor_delay_s: {:.17g}\n    "
-        "intrinsics:\n{}",
-        camera.name, vectorText(camera.imu_from_camera.rotation.coeffs()),
-        vectorText(camera.imu_from_camera.translation_m), camera.time_offset_s - camera.pixel.delay_s(),
-        camera.time_offset_s, camera.pixel.delay_s(), intrinsicsText(camera.intrinsics, "      "));
-  }
-  text += "imus:\n";
-  for (const SimulatedImu& imu : scenario.imus) {
-    text += fmt::format(
-        "  {}:\n    reference_from_imu:\n      rotation_xyzw: {}\n      translation_m: {}\n    "
-        "time_offset_s: {:.17g}\n"
-        "    gyroscope:\n      bias_rad_s: {}\n      mapping: {}\n"
-        "    accelerometer:\n      bias_m_s2: {}\n      mapping: {}\n",
-        imu.name, vectorText(imu.reference_from_imu.rotation.coeffs()),
-        vectorText(imu.reference_from_imu.translation_m), imu.time_offset_s,
-        vectorText(imu.gyroscope_bias_rad_s), matrixText(imu.gyroscope_mapping),
-        vectorText(imu.accelerometer_bias_m_s2), matrixText(imu.accelerometer_mapping));
-  }
-  return text + fmt::format("gravity_m_s2: {}\n", vectorText(scenario.gravity_in_world_m_s2));
-}
-
-std::string sessionYaml(const Scenario& scenario, const std::string& recording_file) {
-  const CircleBoard& board = scenario.board;
-  std::string text = fmt::format(
-      "evical_session: 1\nrecording: {}\nboard:\n  type: {}\n  rows: {}\n  cols: {}\n  spacing_m: {}\n  "
-      "radius_m: {}\n"
-      "  circles: {}\ncameras:\n",
-      recording_file, board.type == BoardType::AsymmetricCircles ? "asymmetric_circles" : "symmetric_circles",
-      board.rows, board.cols, board.spacing_m, board.radius_m,
-      board.circles == CircleShade::Dark ? "dark" : "bright");
-  for (const SimulatedCamera& camera : scenario.cameras) {
-    text +=
-        fmt::format("  {}:\n    stream: {}\n    resolution_px: [{}, {}]\n    intrinsics:\n{}", camera.name,
-                    camera.stream, camera.intrinsics.resolution_px.width_px,
-                    camera.intrinsics.resolution_px.height_px, intrinsicsText(camera.intrinsics, "      "));
-  }
-  text += "imus:\n";
-  for (const SimulatedImu& imu : scenario.imus) {
-    text += fmt::format(
-        "  {}:\n    stream: {}\n    accelerometer_noise_density: {:.6g}\n    gyroscope_noise_density: "
-        "{:.6g}\n"
-        "    acceleration_unit: m/s^2\n    angular_rate_unit: rad/s\n",
-        imu.name, imu.stream, imu.accelerometer_density, imu.gyroscope_density);
-  }
-  return text + fmt::format("reference: {}\n", scenario.imus.front().name);
+  Scenario scenario = readFrom(path, 0);
+  validateWhole(scenario, path.string());
+  return scenario;
 }
 
 }  // namespace evical

@@ -9,7 +9,8 @@
 namespace evical {
 
 // Keys that are absent keep the defaults of scenario.h; `base:` names another scenario that this one changes.
-// Unknown keys and values out of range are badInput naming file and key.
+// `camera` and `imu` are maps for the first of each, `cameras` and `imus` lists for several. Unknown keys and
+// values out of range are badInput naming file, key and line.
 Scenario readScenario(const std::filesystem::path& path);
 
 // The keys of result.yaml with the true values. time_offset_s is what a perfect estimator reports: the

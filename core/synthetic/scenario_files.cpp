@@ -1,0 +1,93 @@
+#include "core/base/yaml_node.h"
+#include "core/data/intrinsics_yaml.h"
+#include "core/synthetic/scenario_yaml.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+namespace evical {
+namespace {
+
+constexpr int kSensorIndent = 6;
+constexpr double kLeastDensity = 1e-7;  // a session wants some noise, even of a noiseless IMU
+
+std::string vectorText(const Eigen::VectorXd& v) {
+  std::string text = "[";
+  for (Eigen::Index i = 0; i < v.size(); ++i) text += fmt::format("{}{}", i == 0 ? "" : ", ", v(i));
+  return text + "]";
+}
+
+std::string matrixText(const Eigen::Matrix3d& m) {
+  return fmt::format("[{}, {}, {}]", vectorText(m.row(0).transpose()), vectorText(m.row(1).transpose()),
+                     vectorText(m.row(2).transpose()));
+}
+
+std::string transformText(const char* key, const RigidTransform& transform) {
+  return fmt::format("    {}:\n      rotation_xyzw: {}\n      translation_m: {}\n", key,
+                     vectorText(transform.rotation.coeffs()), vectorText(transform.translation_m));
+}
+
+std::string cameraTruth(const SimulatedCamera& camera) {
+  return fmt::format("  {}:\n{}", yamlText(camera.name),
+                     transformText("reference_from_camera", camera.imu_from_camera)) +
+         fmt::format("    time_offset_s: {}\n    clock_offset_s: {}\n    photoreceptor_delay_s: {}\n",
+                     camera.time_offset_s - camera.pixel.delay_s(), camera.time_offset_s,
+                     camera.pixel.delay_s()) +
+         "    intrinsics:\n" + intrinsicsYaml(camera.intrinsics, kSensorIndent);
+}
+
+std::string imuTruth(const SimulatedImu& imu) {
+  return fmt::format("  {}:\n{}", yamlText(imu.name),
+                     transformText("reference_from_imu", imu.reference_from_imu)) +
+         fmt::format("    time_offset_s: {}\n    gyroscope:\n      bias_rad_s: {}\n      mapping: {}\n",
+                     imu.time_offset_s, vectorText(imu.gyroscope_bias_rad_s),
+                     matrixText(imu.gyroscope_mapping)) +
+         fmt::format("    accelerometer:\n      bias_m_s2: {}\n      mapping: {}\n",
+                     vectorText(imu.accelerometer_bias_m_s2), matrixText(imu.accelerometer_mapping));
+}
+
+std::string boardSession(const CircleBoard& board) {
+  return fmt::format(
+      "board:\n  type: {}\n  rows: {}\n  cols: {}\n  spacing_m: {}\n  radius_m: {}\n  circles: {}\n",
+      board.type == BoardType::AsymmetricCircles ? "asymmetric_circles" : "symmetric_circles", board.rows,
+      board.cols, board.spacing_m, board.radius_m, board.circles == CircleShade::Dark ? "dark" : "bright");
+}
+
+}  // namespace
+
+std::string truthYaml(const Scenario& scenario) {
+  std::string text =
+      fmt::format("evical_truth: 1\nscenario: {}\nseed: {}\nreference: {}\ncameras:\n",
+                  yamlText(scenario.name), scenario.seed, yamlText(scenario.imus.front().name));
+  for (const SimulatedCamera& camera : scenario.cameras) text += cameraTruth(camera);
+  text += "imus:\n";
+  for (const SimulatedImu& imu : scenario.imus) text += imuTruth(imu);
+  return text + fmt::format("gravity_m_s2: {}\n", vectorText(scenario.gravity_in_world_m_s2));
+}
+
+std::string sessionYaml(const Scenario& scenario, const std::string& recording_file) {
+  // Text knows one stream of each kind, and they are called after their files.
+  const bool plain_text = scenario.format == SimulatedFormat::Text;
+  std::string text = fmt::format("evical_session: 1\nrecording: {}\n{}cameras:\n", yamlText(recording_file),
+                                 boardSession(scenario.board));
+  for (const SimulatedCamera& camera : scenario.cameras) {
+    const Resolution& size = camera.intrinsics.resolution_px;
+    text += fmt::format("  {}:\n    stream: {}\n    resolution_px: [{}, {}]\n    intrinsics:\n{}",
+                        yamlText(camera.name), yamlText(plain_text ? "events.txt" : camera.stream),
+                        size.width_px, size.height_px, intrinsicsYaml(camera.intrinsics, kSensorIndent));
+  }
+  text += "imus:\n";
+  for (const SimulatedImu& imu : scenario.imus) {
+    text += fmt::format(
+        "  {}:\n    stream: {}\n    accelerometer_noise_density: {:.6g}\n    gyroscope_noise_density: "
+        "{:.6g}\n"
+        "    acceleration_unit: m/s^2\n    angular_rate_unit: rad/s\n",
+        yamlText(imu.name), yamlText(plain_text ? "imu.txt" : imu.stream),
+        std::max(imu.accelerometer_density, kLeastDensity), std::max(imu.gyroscope_density, kLeastDensity));
+  }
+  return text + fmt::format("reference: {}\n", yamlText(scenario.imus.front().name));
+}
+
+}  // namespace evical
