@@ -106,7 +106,7 @@ std::vector<ReleaseStages> Batch::stages() const {
 }
 
 void Batch::solveStage(ReleaseStages stage, int index, double tolerance) {
-  const int stage_count = static_cast<int>(stages().size());
+  const int stage_count = static_cast<int>(stages().size()) + 1;  // the last one twice
   IterationReporter reporter(problem_, context_, index, stage_count, progress_, solution_.iterations);
   ceres::Solver::Options solver = solverOptions(options_, tolerance);
   solver.callbacks.push_back(&reporter);
@@ -174,13 +174,13 @@ BatchSolution Batch::run() {
   const std::vector<ReleaseStages> all = stages();
   updateWeights();  // by the initial errors: else most circles would start in the flat part of Huber's loss
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const bool last = i + 1 == all.size();
-    solveStage(all[i], static_cast<int>(i), last ? options_.function_tolerance : options_.stage_tolerance);
-    if (!last) updateWeights();
+    solveStage(all[i], static_cast<int>(i), options_.stage_tolerance);
+    updateWeights();
   }
+  // The last stage to the end, with the weights it found itself; once more where that changes them.
   constexpr int kMostReweightings = 3;
-  for (int i = 0; i < kMostReweightings && updateWeights(); ++i) {
-    solveStage(all.back(), static_cast<int>(all.size()) - 1, options_.function_tolerance);
+  for (int i = 0; i == 0 || (i < kMostReweightings && updateWeights()); ++i) {
+    solveStage(all.back(), static_cast<int>(all.size()), options_.function_tolerance);
   }
   solution_.state = problem_.state();
   solution_.scales = problem_.scales;

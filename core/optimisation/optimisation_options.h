@@ -23,8 +23,8 @@ struct OptimisationOptions {
   double segment_drift = 0.05;
   double function_tolerance = 1e-6;
   double stage_tolerance = 1e-4;
-  int max_iterations = 50;
-  int max_rounds = 8;
+  int max_iterations = 30;
+  int max_rounds = 5;
   int threads = 2;
   double correlation_time_s = 0.2;
   double needed_rotation_deg = 0.1;

@@ -1,7 +1,10 @@
 #include "core/optimisation/covariance.h"
 
+#include "core/geometry/so3.h"
 #include "core/optimisation/band_cholesky.h"
 #include "core/optimisation/projected_information.h"
+#include "core/synthetic/board_truth.h"
+#include "core/synthetic/imu_simulator.h"
 #include "tests/core/optimisation/simulated_rig.h"
 
 #include <ceres/crs_matrix.h>
@@ -48,6 +51,51 @@ Eigen::VectorXd normalisedErrors(test::RigOptions options, unsigned seeds) {
     sum += errors.cwiseAbs2();
   }
   return (sum / seeds).cwiseSqrt();
+}
+
+// The simulator's scenario, without its events: circles as a perfect front end sees them, with noise.
+test::SimulatedRig scenarioRig() {
+  Scenario scenario;
+  scenario.duration_s = 6.0;
+  SimulatedCamera camera;
+  camera.name = "left";
+  camera.intrinsics = {
+      CameraModel::PinholeRadtan, {346, 260}, {260.0, 260.0}, {173.0, 130.0}, {-0.3, 0.1, 0.0, 0.0, 0.0}};
+  camera.imu_from_camera = {quaternionExp({1.2, -1.2, 1.2}), {0.04, -0.03, 0.05}};
+  camera.time_offset_s = 0.005;
+  scenario.cameras = {camera};
+  SimulatedImu imu;
+  imu.rate_hz = 200.0;
+  imu.gyroscope_bias_rad_s = {0.01, -0.02, 0.005};
+  imu.accelerometer_bias_m_s2 = {0.1, 0.05, -0.08};
+  scenario.imus = {imu};
+
+  test::SimulatedRig rig;
+  rig.input.start_ns = scenario.start_ns;
+  rig.input.board = scenario.board;
+  rig.input.cameras = {{"left", camera.intrinsics, simulateObservations(scenario, 0, 0.05, 0.02)}};
+  rig.input.imus = {{"imu", {}, simulateImu(scenario, 0)}};
+  const double begin_s = rig.input.cameras[0].observations.views.front().time_s - 0.02;
+  const double end_s = rig.input.cameras[0].observations.views.back().time_s + 0.03;
+  std::vector<double> times_s;
+  std::vector<Eigen::Quaterniond> rotations;
+  std::vector<Eigen::Vector3d> positions_m;
+  const SinusoidMotion motion(scenario);
+  for (double t = begin_s; t <= end_s; t += 0.005) {
+    const RigidTransform world_from_imu = motion.imuAt(t).world_from_body;
+    times_s.push_back(t);
+    rotations.push_back(world_from_imu.rotation);
+    positions_m.push_back(world_from_imu.translation_m);
+  }
+  rig.truth.world_from_imu_rotation = fitSo3Spline(times_s, rotations, begin_s, end_s, 0.02);
+  rig.truth.imu_in_world_m = fitVectorSpline(times_s, positions_m, begin_s, end_s, 0.02);
+  // Stamps are late by the pixels' delay, and so is the offset that they show.
+  rig.truth.cameras = {{camera.imu_from_camera, camera.time_offset_s - camera.pixel.delay_s(), 0.0}};
+  rig.truth.imus.resize(1);
+  rig.truth.imus[0].gyroscope_bias_rad_s = imu.gyroscope_bias_rad_s;
+  rig.truth.imus[0].accelerometer_bias_m_s2 = imu.accelerometer_bias_m_s2;
+  rig.truth.gravity_in_world_m_s2 = scenario.gravity_in_world_m_s2;
+  return rig;
 }
 
 class TestCovariance : public QObject {
@@ -163,6 +211,18 @@ class TestCovariance : public QObject {
     const Eigen::VectorXd rms = normalisedErrors(options, 10);
     const double extrinsics = std::sqrt(rms.head<7>().squaredNorm() / 7.0);
     QVERIFY2(extrinsics > 0.7 && extrinsics < 1.5, qPrintable(QString::number(extrinsics)));
+  }
+
+  void simulatedScenario_isFoundWithinItsSigmas() {
+    const test::SimulatedRig rig = scenarioRig();
+    const BatchSolution solution = optimiseBatch(rig.input, test::disturbed(rig.truth, 1), {}, RunContext{});
+    const UncertaintyEstimate estimate = estimateUncertainty(rig.input, solution, {}, RunContext{});
+    const Eigen::VectorXd normalised =
+        test::reportedErrors(solution.state, rig.truth).cwiseQuotient(estimate.report.standard_deviations);
+    QVERIFY2(normalised.cwiseAbs().maxCoeff() < 4.0,
+             qPrintable(QString::number(normalised.cwiseAbs().maxCoeff())));
+    QVERIFY(estimate.report.cameras[0].translation_std_m.maxCoeff() < 2e-3);
+    QVERIFY(estimate.report.cameras[0].time_offset_std_s < 1e-4);
   }
 
   void richMotion_isOk() {
