@@ -24,10 +24,7 @@ DrawingCanvas::DrawingCanvas(Resolution resolution_px, int wanted_width_px)
     : factor_(std::max(
           1, static_cast<int>(std::lround(static_cast<double>(wanted_width_px) / resolution_px.width_px)))),
       canvas_(resolution_px.height_px * factor_ + 2 * kBar_px, resolution_px.width_px * factor_, CV_8UC3,
-              scalar(kBackground)) {
-  cv::rectangle(canvas_, {0, 0, canvas_.cols, kBar_px}, scalar(kBar), cv::FILLED);
-  cv::rectangle(canvas_, {0, canvas_.rows - kBar_px, canvas_.cols, kBar_px}, scalar(kBar), cv::FILLED);
-}
+              scalar(kBackground)) {}
 
 cv::Point DrawingCanvas::fixed(const Eigen::Vector2d& pixel) const {
   // Far off the picture OpenCV's integers would overflow.
@@ -97,10 +94,12 @@ void DrawingCanvas::label(const Eigen::Vector2d& beside, const std::string& text
 }
 
 void DrawingCanvas::title(const std::string& text) {
+  cv::rectangle(canvas_, {0, 0, canvas_.cols, kBar_px}, scalar(kBar), cv::FILLED);
   cv::putText(canvas_, text, {10, kBar_px - 10}, kFont, kTextSize, scalar(kText), 1, cv::LINE_AA);
 }
 
 void DrawingCanvas::legend(const std::vector<std::pair<std::string, Colour>>& words) {
+  cv::rectangle(canvas_, {0, canvas_.rows - kBar_px, canvas_.cols, kBar_px}, scalar(kBar), cv::FILLED);
   int x = 10;
   for (const auto& [word, colour] : words) {
     cv::putText(canvas_, word, {x, canvas_.rows - 10}, kFont, kTextSize, scalar(colour), 1, cv::LINE_AA);

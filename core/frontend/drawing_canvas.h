@@ -31,7 +31,7 @@ class DrawingCanvas {
   void cross(const Eigen::Vector2d& centre, Colour colour);
   void label(const Eigen::Vector2d& beside, const std::string& text, Colour colour);
 
-  // One line above the picture, one below: coloured words.
+  // One line above the picture, one below: coloured words. Last of all: they cover what sticks out.
   void title(const std::string& text);
   void legend(const std::vector<std::pair<std::string, Colour>>& words);
 

@@ -62,10 +62,10 @@ std::vector<Eigen::Vector2d> ellipse(const Eigen::Vector2d& centre, const Eigen:
 }
 
 void paintBoard(DrawingCanvas& canvas, const BoardMotion& motion, const BoardScene& scene, Colour colour,
-                const DrawingStyle& style) {
+                int thickness, const DrawingStyle& style) {
   for (const auto& circle :
        projectBoard(motion.ideal_from_board, scene.board, scene.camera, scene.resolution_px)) {
-    canvas.outline(ellipse(circle.centre_px, circle.shape.inverse(), 1.0, scene), colour, 2);
+    canvas.outline(ellipse(circle.centre_px, circle.shape.inverse(), 1.0, scene), colour, thickness);
     const Eigen::Vector2d moved = circle.centre_px + style.arrow_s * motion.velocityAt(circle.centre_px);
     canvas.arrow(toSensor(circle.centre_px, scene), toSensor(moved, scene), kArrow);
   }
@@ -141,7 +141,7 @@ RgbImage drawSearch(const BurstWindow& window, const BoardSearch& search, const 
   paintMoving(canvas, search, style);
   paintLattice(canvas, search);
   if (search.motion) {
-    paintBoard(canvas, *search.motion, scene, kBoard, style);
+    paintBoard(canvas, *search.motion, scene, kBoard, 2, style);
     paintBoardNumbers(canvas, *search.motion, scene);
   }
   canvas.title(print("search: %s   +-%.1f ms, %d bursts, %zu candidates, %zu moving circles, %zu in lattice",
@@ -164,11 +164,11 @@ RgbImage drawTrackedWindow(const BurstWindow& window, const TrackedWindow& track
   DrawingCanvas canvas(window.resolution_px(), style.width_px);
   paintBursts(canvas, window, scene, 0.75);
   const Colour colour = tracked.held ? kMoving : kLost;
-  paintBoard(canvas, tracked.motion, scene, colour, style);
+  paintBoard(canvas, tracked.motion, scene, colour, 1, style);
   for (const CircleObservation& circle : tracked.circles) {
     const Eigen::Vector2d centre = toSensor(circle.centre_px, scene);
-    canvas.outline(ellipse(circle.centre_px, circle.covariance_px2, style.covariance_sigmas, scene), kBoard);
     canvas.cross(centre, kCentre);
+    canvas.outline(ellipse(circle.centre_px, circle.covariance_px2, style.covariance_sigmas, scene), kBoard);
     canvas.label(centre, std::to_string(circle.circle), kCentre);
   }
   canvas.title(

@@ -13,8 +13,8 @@ namespace evical {
 
 struct DrawingStyle {
   int width_px = 1000;            // about; the factor is whole
-  double covariance_sigmas = 10;  // of a measured centre's ellipse: honest ones are too small to see
-  double arrow_s = 0.03;          // velocity arrows are this long
+  double covariance_sigmas = 30;  // of a measured centre's ellipse: honest ones are too small to see
+  double arrow_s = 0.1;           // velocity arrows are this long
 };
 
 // Bursts alone: brighter edges warm, darker edges cool, older ones fainter.
