@@ -85,7 +85,7 @@ std::string Judge::axisWords(const Quantity& quantity, const Eigen::Vector3d& in
   if (direction[axis] < 0.0) direction = -direction;
   const std::string owner = camera && input_.cameras.size() == 1 ? "the camera" : sensorName(quantity);
   constexpr double kAlmostAlong = 0.9;
-  if (share > kAlmostAlong) return fmt::format("{}'s {} axis", owner, "xyz"[axis]);
+  if (share > kAlmostAlong) return fmt::format("{}'s {} axis", owner, std::string(1, "xyz"[axis]));
   return fmt::format("({:.2f}, {:.2f}, {:.2f}) in {}'s frame", direction.x(), direction.y(), direction.z(),
                      owner);
 }

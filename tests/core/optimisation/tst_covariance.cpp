@@ -19,7 +19,7 @@ using namespace evical;
 
 test::RigOptions shortRecording(unsigned seed = 1) {
   test::RigOptions options;
-  options.duration_s = 4.0;
+  options.duration_s = 3.0;
   options.imu_rate_hz = 200.0;
   options.window_s = 0.03;
   options.seed = seed;
