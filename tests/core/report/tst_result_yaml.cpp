@@ -1,0 +1,191 @@
+#include "core/base/error.h"
+#include "core/geometry/so3.h"
+#include "core/report/csv.h"
+#include "core/report/result_table.h"
+#include "core/report/truth_comparison.h"
+
+#include <QTemporaryDir>
+#include <QtTest>
+
+#include <fstream>
+#include <limits>
+
+using namespace evical;
+
+namespace {
+
+NamedResult sample() {
+  NamedResult named;
+  named.names = {"left_imu", {"left", "1 odd: name"}, {"left_imu", "far_imu"}, {}, "0.1.0", {}};
+  CameraIntrinsics intrinsics;
+  intrinsics.resolution_px = {346, 260};
+  intrinsics.focal_length_px = {1.0 / 3.0 + 260.0, 255.0};
+  intrinsics.principal_point_px = {170.25, 131.0};
+  intrinsics.distortion = {-0.3, 0.1, 1e-3, 2e-3, 0.05};
+  named.names.intrinsics = {intrinsics, std::nullopt};
+  named.names.options = {{"grid.least_circles", "6", "7", "4", "1000", "", "", {}}};
+  CalibrationResult& result = named.result;
+  result.status = CalibrationStatus::Doubtful;
+  result.reason = "planar motion: \"z\" is a guess\nand more";
+  result.notes = {"IMU gap of 0.2 s"};
+  result.memory_peak_mb = 310.0;
+  result.timing.total_s = 6.4;
+  for (int i = 0; i < 2; ++i) {
+    CameraState camera;
+    camera.imu_from_camera = {quaternionExp(Eigen::Vector3d(1.1, -0.7, 0.1 * i)), {0.01, -1.0 / 3.0, 1e-9}};
+    camera.time_offset_s = 0.1 / 3.0;
+    camera.edge_lead_px = -0.021;
+    result.state.cameras.push_back(camera);
+    ImuState imu;
+    if (i == 1) imu.reference_from_imu = {quaternionExp(Eigen::Vector3d(0.0, 0.2, 0.0)), {0.1, 0.0, 0.0}};
+    imu.gyroscope_bias_rad_s = {0.01, -0.02, 1.0 / 7.0};
+    imu.gyroscope_mapping(0, 1) = 0.003;
+    imu.accelerometer_mapping(2, 2) = 1.01;
+    result.state.imus.push_back(imu);
+    CameraUncertainty sigma;
+    sigma.rotation_std_rad.setConstant(1e-4);
+    sigma.translation_std_m.setConstant(2e-4);
+    sigma.time_offset_std_s = 1.2e-5;
+    sigma.edge_lead_std_px = std::numeric_limits<double>::quiet_NaN();
+    result.uncertainty.cameras.push_back(sigma);
+    ImuUncertainty imu_sigma;
+    imu_sigma.gyroscope_bias_std_rad_s.setConstant(1e-5);
+    imu_sigma.gyroscope_mapping_std(0, 1) = 1e-4;
+    result.uncertainty.imus.push_back(imu_sigma);
+    CameraFit fit;
+    fit.reprojection_rms_px = 0.12;
+    fit.windows_total = 1500;
+    fit.windows_complete = 1320;
+    fit.circles_rejected = 3;
+    result.cameras.push_back(fit);
+    result.imus.push_back({0.002, 0.05});
+  }
+  result.state.gravity_in_world_m_s2 = {0.1, 9.7, 1.4};
+  result.uncertainty.weakest = "translation along the camera's z axis";
+  result.uncertainty.observability = {0.5, 12.0};
+  result.uncertainty.names = {"left.rotation.x [rad]", "left.rotation.y [rad]"};
+  result.uncertainty.standard_deviations = Eigen::Vector2d(1e-4, 2e-4);
+  result.uncertainty.correlation = (Eigen::Matrix2d() << 1.0, 0.25, 0.25, 1.0).finished();
+  return named;
+}
+
+}  // namespace
+
+class TestResultYaml : public QObject {
+  Q_OBJECT
+
+  QTemporaryDir scratch_;
+
+  NamedResult readBack(const std::string& text) const {
+    const std::filesystem::path path = std::filesystem::path(scratch_.path().toStdString()) / "result.yaml";
+    std::ofstream(path) << text;
+    return readResultYaml(path);
+  }
+
+ private slots:
+  void result_writtenAndRead_isTheSameText() {
+    const std::string text = resultYaml(sample());
+    QCOMPARE(resultYaml(readBack(text)), text);
+  }
+
+  void estimates_readBackToTheLastBit() {
+    const NamedResult written = sample(), read = readBack(resultYaml(written));
+    QCOMPARE(read.names.cameras, written.names.cameras);
+    QCOMPARE(read.names.imus, written.names.imus);
+    QVERIFY(read.names.intrinsics == written.names.intrinsics);
+    QCOMPARE(read.result.reason, written.result.reason);
+    QVERIFY(read.result.status == CalibrationStatus::Doubtful);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const CameraState &a = written.result.state.cameras[i], &b = read.result.state.cameras[i];
+      QVERIFY(a.imu_from_camera.rotation.coeffs() == b.imu_from_camera.rotation.coeffs());
+      QVERIFY(a.imu_from_camera.translation_m == b.imu_from_camera.translation_m);
+      QVERIFY(a.time_offset_s == b.time_offset_s && a.edge_lead_px == b.edge_lead_px);
+      const ImuState &c = written.result.state.imus[i], &d = read.result.state.imus[i];
+      QVERIFY(c.gyroscope_bias_rad_s == d.gyroscope_bias_rad_s && c.gyroscope_mapping == d.gyroscope_mapping);
+      QVERIFY(c.accelerometer_mapping == d.accelerometer_mapping);
+    }
+    QVERIFY(std::isnan(read.result.uncertainty.cameras[0].edge_lead_std_px));
+    QVERIFY(read.result.uncertainty.correlation(0, 1) == 0.25);
+    QCOMPARE(read.result.cameras[0].windows_complete, 1320);
+  }
+
+  void failedRun_isAResultToo() {
+    NamedResult failed;
+    failed.result.status = CalibrationStatus::Failed;
+    failed.result.reason = "the board was never seen";
+    const NamedResult read = readBack(resultYaml(failed));
+    QVERIFY(read.result.status == CalibrationStatus::Failed);
+    QCOMPARE(read.result.reason, failed.result.reason);
+    QVERIFY(read.result.state.cameras.empty());
+  }
+
+  void result_thatIsNone_isRefused_data() {
+    QTest::addColumn<QString>("text");
+    QTest::addColumn<QString>("said");
+    QTest::newRow("session") << "evical_session: 1\n"
+                             << "neither a result nor a truth";
+    QTest::newRow("quaternion")
+        << "evical_result: 1\ncameras: {a: {reference_from_camera: {rotation_xyzw: [0, 0, 0, "
+           "0], translation_m: [0, 0, 0]}}}\n"
+        << "no unit quaternion";
+    QTest::newRow("vector") << "evical_result: 1\ngravity_m_s2: [1, 2]\n"
+                            << "3 are needed";
+  }
+  void result_thatIsNone_isRefused() {
+    QFETCH(QString, text);
+    QFETCH(QString, said);
+    try {
+      readBack(text.toStdString());
+      QFAIL("must throw");
+    } catch (const CalibrationError& error) {
+      QVERIFY2(QString(error.what()).contains(said), error.what());
+    }
+  }
+
+  void table_hasVerdictAndSigmas() {
+    const QString table = QString::fromStdString(resultTable(sample()));
+    for (const char* part :
+         {"Verdict: doubtful - planar motion", "33.333 +- 0.012", "Weakest: translation", "1500"})
+      QVERIFY2(table.contains(part), qPrintable(table));
+  }
+
+  void comparison_withItself_hasNoErrors() {
+    const TruthComparison comparison = compareWithTruth(sample(), sample());
+    for (const QuantityError& q : comparison.quantities) QVERIFY2(std::abs(q.error) < 1e-12, q.name.c_str());
+  }
+
+  void comparison_givesErrorsInReferenceAxesAndSigmas() {
+    const NamedResult truth = sample();
+    NamedResult result = truth;
+    RigidTransform& pose = result.result.state.cameras[0].imu_from_camera;
+    pose.rotation = quaternionExp(Eigen::Vector3d(0.0, 3e-4, 0.0)) * pose.rotation;
+    pose.translation_m.z() -= 4e-4;
+    result.result.state.cameras[0].time_offset_s += 6e-5;
+    const TruthComparison comparison = compareWithTruth(result, truth);
+    const auto normalised = [&](const std::string& name) {
+      for (const QuantityError& q : comparison.quantities)
+        if (q.name == name) return q.normalised();
+      return std::numeric_limits<double>::quiet_NaN();
+    };
+    QVERIFY(std::abs(normalised("left.rotation.y") - 3.0) < 1e-6);
+    QVERIFY(std::abs(normalised("left.rotation.x")) < 1e-6);
+    QVERIFY(std::abs(normalised("left.translation.z") + 2.0) < 1e-6);
+    QVERIFY(std::abs(normalised("left.time_offset") - 5.0) < 1e-6);
+    QVERIFY(std::abs(comparison.cameras[0].translation_mm - 0.4) < 1e-9);
+    QVERIFY(QString::fromStdString(comparisonTable(comparison)).contains("left.rotation.y [deg]"));
+  }
+
+  void trajectory_hasALineEvery5ms() {
+    CalibrationState state;
+    state.world_from_imu_rotation = makeUniformSo3Spline(1.0, 2.0, 0.02);
+    state.imu_in_world_m = makeUniformVectorSpline(1.0, 2.0, 0.02, {1.0, 2.0, 3.0});
+    const QStringList lines = QString::fromStdString(trajectoryCsv(state)).trimmed().split('\n');
+    QCOMPARE(lines.size(), 202);
+    QCOMPARE(
+        lines[2],
+        QString("1.005000,1.0000000,2.0000000,3.0000000,0.000000000,0.000000000,0.000000000,1.000000000"));
+  }
+};
+
+QTEST_APPLESS_MAIN(TestResultYaml)
+#include "tst_result_yaml.moc"
