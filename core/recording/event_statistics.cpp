@@ -110,7 +110,8 @@ std::uint32_t EventStatistics::neighbourMedian(int x_px, int y_px) const {
 
 void EventStatistics::findHotPixels(double duration_s, std::vector<RecordingFault>& faults) const {
   const double mean = static_cast<double>(numbers_.count) / numbers_.seen_px.pixelCount();
-  const double least = std::max(options_.hot_pixel_hz * duration_s, options_.hot_pixel_factor * mean);
+  const double least = std::max({options_.hot_pixel_hz * duration_s, options_.hot_pixel_factor * mean,
+                                 static_cast<double>(options_.hot_pixel_events)});
   std::vector<std::string> hot;
   double share = 0.0;
   for (int y = 0; y < counted_px_.height_px; ++y) {

@@ -19,6 +19,7 @@ struct InspectionOptions {
   double largest_rate_rad_s = 36.0;
   double hot_pixel_factor = 8.0;
   double hot_pixel_hz = 10.0;
+  int hot_pixel_events = 100;
   bool operator==(const InspectionOptions&) const = default;
 };
 inline constexpr auto kInspectionFields = std::tuple{
@@ -41,7 +42,9 @@ inline constexpr auto kInspectionFields = std::tuple{
           "Beyond this (2000 deg/s are 34.9 rad/s) the angular rate cannot be in rad/s."},
     Field{"hot_pixel_factor", &InspectionOptions::hot_pixel_factor, 2.0, 1000.0, "",
           "A hot pixel has so many times the events of its neighbours, and of the mean pixel."},
-    Field{"hot_pixel_hz", &InspectionOptions::hot_pixel_hz, 0.1, 1e5, "Hz", "Lowest rate of a hot pixel."}};
+    Field{"hot_pixel_hz", &InspectionOptions::hot_pixel_hz, 0.1, 1e5, "Hz", "Lowest rate of a hot pixel."},
+    Field{"hot_pixel_events", &InspectionOptions::hot_pixel_events, 1, 1000000, "",
+          "Fewest events that tell a hot pixel from chance."}};
 static_assert(fieldCount<InspectionOptions>() == std::tuple_size_v<decltype(kInspectionFields)>);
 
 }  // namespace evical

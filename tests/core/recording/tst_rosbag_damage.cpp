@@ -1,0 +1,227 @@
+// Bags from crashed recorders, full disks and bad cables: what is whole comes out, what is lost is said, and
+// no bytes whatever crash the reader or make it take much memory.
+#include "core/base/error.h"
+#include "tests/core/recording/bag_builder.h"
+#include "tests/core/recording/recording_contents.h"
+
+#include <QTest>
+
+#include <random>
+
+using namespace evical;
+using namespace evical::test;
+
+namespace {
+
+constexpr Resolution kSize_px = {64, 48};
+constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
+constexpr std::size_t kMessages = 12, kEventsEach = 20;
+
+// 3 chunks of 4 event messages and 4 IMU messages each.
+BagBuilder smallBag(const std::string& compression) {
+  BagBuilder bag(compression);
+  const std::uint32_t events = bag.addEvents("/events"), imu = bag.addImu("/imu");
+  const std::vector<ImuSample> samples = someSamples(kMessages);
+  for (std::size_t i = 0; i < kMessages; ++i) {
+    const std::int64_t time_ns = samples[i].time_ns;
+    bag.message(events, time_ns, eventMessage(time_ns, kSize_px, someEvents(kEventsEach, time_ns)));
+    bag.message(imu, time_ns, imuMessage(samples[i]));
+    if (i % 4 == 3) bag.endChunk();
+  }
+  return bag;
+}
+
+// What came out must be what went in, only less of it.
+bool isTrue(const Contents& contents) {
+  for (const auto& [stream, events] : contents.events) {
+    if (events.size() % kEventsEach != 0) return false;
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      const std::vector<Event> expected = someEvents(kEventsEach, events[i - i % kEventsEach].time_ns);
+      const Event &a = events[i], &b = expected[i % kEventsEach];
+      if (a.time_ns != b.time_ns || a.x_px != b.x_px || a.y_px != b.y_px || a.brighter != b.brighter)
+        return false;
+    }
+  }
+  return true;
+}
+
+// Whatever happens is a result or a CalibrationError.
+void readAnything(const std::filesystem::path& path) {
+  try {
+    readAll(path);
+  } catch (const CalibrationError&) {
+  }
+}
+
+void replaceNumber(std::string& bytes, std::size_t position, std::uint32_t value) {
+  bytes.replace(position, sizeof value, bytesOf(value));
+}
+
+}  // namespace
+
+class TestRosbagDamage : public QObject {
+  Q_OBJECT
+ private slots:
+  void truncation_anywhere_givesWhatIsWhole_data();
+  void truncation_anywhere_givesWhatIsWhole();
+  void truncationWithinAPlainChunk_keepsTheMessagesBefore();
+  void corruption_anywhere_isSurvived_data();
+  void corruption_anywhere_isSurvived();
+  void corruptChunk_losesNoOther_data();
+  void corruptChunk_losesNoOther();
+  void damagedRecordHeader_losesOneChunkWhereThereIsAnIndex();
+  void damagedIndex_doesNotHinder();
+  void messageWithAFalseCount_isLeftOut();
+  void lyingLengths_takeNoMemory_data();
+  void lyingLengths_takeNoMemory();
+  void stampBeyondASecond_isLeftOut();
+
+ private:
+  ScratchFolder folder_;
+};
+
+void TestRosbagDamage::truncation_anywhere_givesWhatIsWhole_data() {
+  QTest::addColumn<QString>("compression");
+  QTest::addColumn<bool>("finished");
+  for (const char* name : {"none", "lz4", "bz2"}) {
+    QTest::addRow("%s", name) << name << true;
+    QTest::addRow("%s without index", name) << name << false;
+  }
+}
+
+void TestRosbagDamage::truncation_anywhere_givesWhatIsWhole() {
+  QFETCH(QString, compression);
+  QFETCH(bool, finished);
+  BagBuilder bag = smallBag(compression.toStdString());
+  const std::string whole = finished ? bag.finished() : bag.unfinished();
+  std::size_t most = 0;
+  for (std::size_t size = 13; size < whole.size(); size += size < 4100 ? 1021 : 3) {
+    const Contents contents = readAll(folder_.write("cut.bag", whole.substr(0, size)));
+    QVERIFY2(isTrue(contents), qPrintable(QString("cut at %1").arg(size)));
+    QVERIFY2(finished ? !contents.faults.empty() : true, qPrintable(QString("cut at %1").arg(size)));
+    QVERIFY2(contents.eventCount() >= most, qPrintable(QString("cut at %1").arg(size)));
+    most = std::max(most, contents.eventCount());
+    std::size_t whole_chunks = 0;  // those that lie completely before the cut
+    while (whole_chunks + 1 < bag.chunkPositions().size() && bag.chunkPositions()[whole_chunks + 1] <= size)
+      ++whole_chunks;
+    QVERIFY2(contents.eventCount() >= whole_chunks * 4 * kEventsEach,
+             qPrintable(QString("cut at %1").arg(size)));
+  }
+  QCOMPARE(most, kMessages * kEventsEach);
+}
+
+void TestRosbagDamage::truncationWithinAPlainChunk_keepsTheMessagesBefore() {
+  BagBuilder bag = smallBag("none");
+  const std::string whole = bag.unfinished();
+  const std::size_t second = bag.chunkPositions()[1], third = bag.chunkPositions()[2];
+  const Contents contents =
+      readAll(folder_.write("cut.bag", whole.substr(0, second + 2 * (third - second) / 3)));
+  QVERIFY(contents.eventCount() > 4 * kEventsEach);
+  QVERIFY(contents.eventCount() < 8 * kEventsEach);
+  QVERIFY(contents.hasFault("truncated"));
+  QVERIFY(isTrue(contents));
+}
+
+void TestRosbagDamage::corruption_anywhere_isSurvived_data() {
+  QTest::addColumn<QString>("compression");
+  for (const char* name : {"none", "lz4", "bz2"}) QTest::newRow(name) << name;
+}
+
+void TestRosbagDamage::corruption_anywhere_isSurvived() {
+  QFETCH(QString, compression);
+  const std::string whole = smallBag(compression.toStdString()).finished();
+  std::mt19937 random(7);
+  std::uniform_int_distribution<std::size_t> places(13, whole.size() - 1);
+  std::uniform_int_distribution<int> values(0, 255);
+  for (int i = 0; i < 600; ++i) {
+    std::string bytes = whole;
+    for (int k = 0; k < 1 + i % 20; ++k) bytes[places(random)] = static_cast<char>(values(random));
+    readAnything(folder_.write("corrupt.bag", bytes));
+  }
+}
+
+void TestRosbagDamage::corruptChunk_losesNoOther_data() {
+  QTest::addColumn<QString>("compression");
+  for (const char* name : {"lz4", "bz2"}) QTest::newRow(name) << name;
+}
+
+void TestRosbagDamage::corruptChunk_losesNoOther() {
+  QFETCH(QString, compression);
+  BagBuilder bag = smallBag(compression.toStdString());
+  std::string bytes = bag.finished();
+  bytes.replace(bag.chunkPositions()[1] + 120, 60, std::string(60, '\xFF'));
+  const Contents contents = readAll(folder_.write("chunk.bag", bytes));
+  QCOMPARE(contents.eventCount(), 8 * kEventsEach);
+  QVERIFY(isTrue(contents));
+  QVERIFY(contents.hasFault("corrupt"));
+}
+
+// The second chunk's header length is nonsense; the index knows where the third begins.
+void TestRosbagDamage::damagedRecordHeader_losesOneChunkWhereThereIsAnIndex() {
+  BagBuilder bag = smallBag("lz4");
+  std::string bytes = bag.finished();
+  replaceNumber(bytes, bag.chunkPositions()[1], 0x7FFFFFFF);
+  const Contents contents = readAll(folder_.write("header.bag", bytes));
+  QCOMPARE(contents.eventCount(), 8 * kEventsEach);
+  QVERIFY(isTrue(contents));
+  QVERIFY(!contents.faults.empty());
+}
+
+void TestRosbagDamage::damagedIndex_doesNotHinder() {
+  std::string bytes = smallBag("lz4").finished();
+  bytes.replace(bytes.size() - 60, 30, std::string(30, '\xFF'));
+  const Contents contents = readAll(folder_.write("index.bag", bytes));
+  QCOMPARE(contents.eventCount(), kMessages * kEventsEach);
+  QVERIFY(isTrue(contents));
+  QVERIFY(!contents.faults.empty());
+}
+
+void TestRosbagDamage::messageWithAFalseCount_isLeftOut() {
+  BagBuilder bag;
+  const std::uint32_t events = bag.addEvents("/events");
+  for (const std::uint32_t count : {20U, 0xFFFFFFFFU, 20U, 21U, 20U}) {
+    std::string message = eventMessage(kStart_ns, kSize_px, someEvents(kEventsEach));
+    replaceNumber(message, message.size() - 13 * kEventsEach - 4, count);
+    bag.message(events, kStart_ns, message);
+  }
+  const Contents contents = readAll(folder_.write("count.bag", bag.finished()));
+  QCOMPARE(contents.eventCount(), 3 * kEventsEach);
+  QVERIFY(contents.hasFault("corrupt"));
+}
+
+void TestRosbagDamage::lyingLengths_takeNoMemory_data() {
+  QTest::addColumn<int>("offset");  // from the second chunk's beginning
+  QTest::newRow("header length") << 0;
+  QTest::newRow("field length") << 4;
+  QTest::newRow("uncompressed size") << 53;
+  QTest::newRow("data length") << 57;
+  QTest::newRow("LZ4 frame") << 61;
+}
+
+void TestRosbagDamage::lyingLengths_takeNoMemory() {
+  QFETCH(int, offset);
+  BagBuilder bag = smallBag("lz4");
+  const std::string whole = bag.finished();
+  for (const std::uint32_t value : {0U, 1U, 0x7FFFFFFFU, 0xFFFFFFFFU}) {
+    std::string bytes = whole;
+    replaceNumber(bytes, bag.chunkPositions()[1] + static_cast<std::size_t>(offset), value);
+    const Contents contents = readAll(folder_.write("lies.bag", bytes));
+    QVERIFY(contents.eventCount() >= 4 * kEventsEach);
+    QVERIFY(isTrue(contents));
+  }
+}
+
+void TestRosbagDamage::stampBeyondASecond_isLeftOut() {
+  BagBuilder bag;
+  const std::uint32_t events = bag.addEvents("/events");
+  std::string message = eventMessage(kStart_ns, kSize_px, someEvents(kEventsEach));
+  bag.message(events, kStart_ns, message);
+  replaceNumber(message, message.size() - 5, 3'000'000'000U);  // nanoseconds of the last event
+  bag.message(events, kStart_ns, message);
+  const Contents contents = readAll(folder_.write("stamp.bag", bag.finished()));
+  QCOMPARE(contents.eventCount(), kEventsEach);
+  QVERIFY(contents.hasFault("corrupt"));
+}
+
+QTEST_GUILESS_MAIN(TestRosbagDamage)
+#include "tst_rosbag_damage.moc"

@@ -1,0 +1,295 @@
+// What a ROS 1 bag holds comes out, whichever way it was packed and named.
+#include "core/base/error.h"
+#include "core/recording/recording_reader.h"
+#include "tests/core/recording/bag_builder.h"
+#include "tests/core/recording/recording_contents.h"
+
+#include <QTest>
+
+using namespace evical;
+using namespace evical::test;
+
+namespace {
+
+const std::filesystem::path kData = std::filesystem::path(EVICAL_TEST_DATA) / "recordings";
+constexpr Resolution kSize_px = {64, 48};
+constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
+
+const char* const kEventDefinition =
+    "# a private copy\nstd_msgs/Header header\nuint32 height\nuint32   width\nour_msgs/Event[] events\n"
+    "=====\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n"
+    "=====\nMSG: our_msgs/Event\nuint16 x # column\nuint16 y\ntime ts\nbool polarity\n";
+
+std::string bagWith(const std::string& type, const std::string& md5, const std::string& definition) {
+  BagBuilder bag;
+  const std::uint32_t connection = bag.addConnection("/events", type, md5, definition);
+  bag.message(connection, kStart_ns, eventMessage(kStart_ns, kSize_px, someEvents(5)));
+  return bag.finished();
+}
+
+}  // namespace
+
+class TestRosbagReader : public QObject {
+  Q_OBJECT
+ private slots:
+  void chunks_ofEachCompression_giveTheSame_data();
+  void chunks_ofEachCompression_giveTheSame();
+  void bagOfPythonRosbag_isReadExactly();
+  void bagWithoutEvents_listsItsTopics();
+  void type_isToldByMd5NameOrDefinition_data();
+  void type_isToldByMd5NameOrDefinition();
+  void select_leavesOutTheOthers();
+  void twoConnectionsOfATopic_areOneStream();
+  void sizeOfZero_isTolerated();
+  void emptyBag_hasNoStreams();
+  void bagWithoutIndex_isReadInSequence();
+  void zeroStamps_areReplacedByRecordTimes();
+  void recordingThatBeginsAtZero_keepsItsTimes();
+  void unorderedEvents_areSortedInThePacket();
+  void longMessage_isReadWhole();
+  void fractionRead_growsToOne();
+  void findStream_ofAWrongTopic_namesThoseThereAre();
+
+ private:
+  ScratchFolder folder_;
+};
+
+void TestRosbagReader::chunks_ofEachCompression_giveTheSame_data() {
+  QTest::addColumn<QString>("compression");
+  for (const char* name : {"none", "lz4", "bz2"}) QTest::newRow(name) << name;
+}
+
+void TestRosbagReader::chunks_ofEachCompression_giveTheSame() {
+  QFETCH(QString, compression);
+  BagBuilder bag(compression.toStdString());
+  const std::uint32_t left = bag.addEvents("/left/events"), imu = bag.addImu("/imu"),
+                      right = bag.addEvents("/right");
+  const std::vector<Event> events = someEvents(3000);
+  const std::vector<ImuSample> samples = someSamples(30);
+  for (std::size_t i = 0; i < 30; ++i) {
+    const auto begin = events.begin() + static_cast<std::ptrdiff_t>(100 * i);
+    const std::vector<Event> part(begin, begin + 100);
+    bag.message(left, part.back().time_ns, eventMessage(part.front().time_ns, kSize_px, part));
+    bag.message(right, part.back().time_ns, eventMessage(part.front().time_ns, {32, 24}, {part[0]}));
+    bag.message(imu, samples[i].time_ns, imuMessage(samples[i]));
+    if (i % 10 == 9) bag.endChunk();
+  }
+  const Contents contents = readAll(folder_.write("a.bag", bag.finished()));
+  QCOMPARE(contents.streams.size(), std::size_t{3});
+  QVERIFY(contents.faults.empty());
+  const std::size_t left_stream =
+      findStream(*openRecording(folder_ / "a.bag"), "/left/events", StreamType::Events);
+  const std::size_t imu_stream = findStream(*openRecording(folder_ / "a.bag"), "/imu", StreamType::Imu);
+  QVERIFY(sameEvents(contents.events.at(left_stream), events));
+  QVERIFY(sameSamples(contents.imu.at(imu_stream), samples));
+  QCOMPARE(contents.streams[left_stream].resolution_px, kSize_px);
+  QCOMPARE(contents.streams[left_stream].messages, std::uint64_t{30});
+  QCOMPARE(contents.eventCount(), std::size_t{3030});
+}
+
+// Numbers from the script that wrote it.
+void TestRosbagReader::bagOfPythonRosbag_isReadExactly() {
+  const Contents contents = readAll(kData / "rosbag_python_bz2.bag");
+  QVERIFY(contents.faults.empty());
+  QCOMPARE(contents.eventCount(), std::size_t{1000});
+  QCOMPARE(contents.sampleCount(), std::size_t{100});
+  std::uint64_t on = 0, sum_x = 0, sum_y = 0, sum_t = 0;
+  for (const auto& [stream, events] : contents.events) {
+    for (const Event& event : events) {
+      on += event.brighter ? 1 : 0;
+      sum_x += event.x_px;
+      sum_y += event.y_px;
+      sum_t += static_cast<std::uint64_t>(event.time_ns);
+    }
+  }
+  QCOMPARE(on, std::uint64_t{333});
+  QCOMPARE(sum_x, std::uint64_t{30600});
+  QCOMPARE(sum_y, std::uint64_t{23464});
+  QCOMPARE(sum_t, std::uint64_t{2899545268671251328U});
+  for (const auto& [stream, samples] : contents.imu) {
+    for (const ImuSample& sample : samples) {
+      QCOMPARE(sample.specific_force_m_s2, Eigen::Vector3d(0.5, -0.25, 9.75));
+      QCOMPARE(sample.angular_rate_rad_s, Eigen::Vector3d(0.1, 0.2, 0.3));
+    }
+  }
+}
+
+void TestRosbagReader::bagWithoutEvents_listsItsTopics() {
+  const Contents contents = readAll(kData / "no_event_topics_lz4.bag");
+  QCOMPARE(contents.streams.size(), std::size_t{9});
+  QVERIFY(contents.faults.empty());
+  QCOMPARE(contents.eventCount() + contents.sampleCount(), std::size_t{0});
+  std::uint64_t messages = 0;
+  for (const StreamInfo& stream : contents.streams) {
+    QCOMPARE(stream.type, StreamType::Other);
+    messages += stream.messages;
+  }
+  QCOMPARE(messages, std::uint64_t{8647});
+}
+
+void TestRosbagReader::type_isToldByMd5NameOrDefinition_data() {
+  QTest::addColumn<QString>("type");
+  QTest::addColumn<QString>("md5");
+  QTest::addColumn<QString>("definition");
+  QTest::addColumn<bool>("are_events");
+  QTest::newRow("dvs_msgs") << "dvs_msgs/EventArray" << kEventArrayMd5 << "" << true;
+  QTest::newRow("prophesee") << "prophesee_event_msgs/EventArray" << kEventArrayMd5 << "" << true;
+  QTest::newRow("renamed, md5 kept") << "our_msgs/Bunch" << kEventArrayMd5 << "" << true;
+  QTest::newRow("private copy, by name") << "our_msgs/EventArray"
+                                         << "*"
+                                         << "" << true;
+  QTest::newRow("same fields") << "our_msgs/Bunch"
+                               << "0123" << kEventDefinition << true;
+  QTest::newRow("old name of packed events") << "event_array_msgs/EventArray"
+                                             << "8a6101b351a64529ac77bd8b71074e52"
+                                             << "" << false;
+  QTest::newRow("packed events") << "event_camera_msgs/EventPacket"
+                                 << "8a6101b351a64529ac77bd8b71074e52"
+                                 << "" << false;
+  QTest::newRow("other fields, same name") << "our_msgs/EventArray"
+                                           << "0123"
+                                           << "uint32 count\nfloat64[] values\n"
+                                           << false;
+  QTest::newRow("something else") << "std_msgs/String"
+                                  << "992ce8a1687cec8c8bd883ec73ca41d1"
+                                  << "string data\n"
+                                  << false;
+}
+
+void TestRosbagReader::type_isToldByMd5NameOrDefinition() {
+  QFETCH(QString, type);
+  QFETCH(QString, md5);
+  QFETCH(QString, definition);
+  QFETCH(bool, are_events);
+  const std::string bytes = bagWith(type.toStdString(), md5.toStdString(), definition.toStdString());
+  const Contents contents = readAll(folder_.write("type.bag", bytes));
+  QCOMPARE(contents.streams.size(), std::size_t{1});
+  QCOMPARE(contents.streams[0].type == StreamType::Events, are_events);
+  QCOMPARE(contents.eventCount(), std::size_t{are_events ? 5U : 0U});
+}
+
+void TestRosbagReader::select_leavesOutTheOthers() {
+  const std::unique_ptr<RecordingReader> reader = openRecording(kData / "rosbag_python_bz2.bag");
+  reader->select({findStream(*reader, "/dvs/imu", StreamType::Imu)});
+  const Contents contents = readAll(*reader);
+  QCOMPARE(contents.eventCount(), std::size_t{0});
+  QCOMPARE(contents.sampleCount(), std::size_t{100});
+}
+
+void TestRosbagReader::twoConnectionsOfATopic_areOneStream() {
+  BagBuilder bag;
+  for (int i = 0; i < 2; ++i)
+    bag.message(bag.addEvents("/events"), kStart_ns, eventMessage(kStart_ns, kSize_px, someEvents(4)));
+  const Contents contents = readAll(folder_.write("two.bag", bag.finished()));
+  QCOMPARE(contents.streams.size(), std::size_t{1});
+  QCOMPARE(contents.eventCount(), std::size_t{8});
+}
+
+void TestRosbagReader::sizeOfZero_isTolerated() {
+  BagBuilder bag;
+  const std::uint32_t events = bag.addEvents("/events");
+  bag.message(events, kStart_ns, eventMessage(kStart_ns, {0, 0}, someEvents(4)));
+  const Contents contents = readAll(folder_.write("size.bag", bag.finished()));
+  QVERIFY(!contents.streams.at(0).resolution_px.known());
+  QCOMPARE(contents.eventCount(), std::size_t{4});
+}
+
+void TestRosbagReader::emptyBag_hasNoStreams() {
+  const Contents contents = readAll(folder_.write("empty.bag", BagBuilder().finished()));
+  QVERIFY(contents.streams.empty());
+  QCOMPARE(contents.eventCount(), std::size_t{0});
+}
+
+void TestRosbagReader::bagWithoutIndex_isReadInSequence() {
+  BagBuilder bag("lz4");
+  const std::uint32_t events = bag.addEvents("/events");
+  bag.message(events, kStart_ns, eventMessage(kStart_ns, kSize_px, someEvents(40)));
+  bag.endChunk();
+  const std::uint32_t imu = bag.addImu("/imu");
+  for (const ImuSample& sample : someSamples(7)) bag.message(imu, sample.time_ns, imuMessage(sample));
+  const Contents contents = readAll(folder_.write("unfinished.bag", bag.unfinished()));
+  QCOMPARE(contents.streams.size(), std::size_t{2});
+  QCOMPARE(contents.eventCount(), std::size_t{40});
+  QCOMPARE(contents.sampleCount(), std::size_t{7});
+  QCOMPARE(contents.faults.size(), std::size_t{1});
+  QCOMPARE(contents.streams[0].resolution_px, kSize_px);
+}
+
+void TestRosbagReader::zeroStamps_areReplacedByRecordTimes() {
+  BagBuilder bag;
+  const std::uint32_t events = bag.addEvents("/events"), imu = bag.addImu("/imu");
+  for (std::int64_t i = 0; i < 5; ++i) {
+    std::vector<Event> stampless = someEvents(3);
+    for (Event& event : stampless) event.time_ns = 0;
+    bag.message(events, kStart_ns + i, eventMessage(0, kSize_px, stampless));
+    bag.message(imu, kStart_ns + i, imuMessage(ImuSample()));
+  }
+  const Contents contents = readAll(folder_.write("stampless.bag", bag.finished()));
+  QVERIFY(contents.hasFault("no_stamps"));
+  QCOMPARE(contents.events.at(0).front().time_ns, kStart_ns);
+  QCOMPARE(contents.events.at(0).back().time_ns, kStart_ns + 4);
+  QCOMPARE(contents.imu.at(1).back().time_ns, kStart_ns + 4);
+}
+
+// A simulator's clock may start at zero; its first stamp is then no missing one.
+void TestRosbagReader::recordingThatBeginsAtZero_keepsItsTimes() {
+  BagBuilder bag;
+  const std::uint32_t events = bag.addEvents("/events"), imu = bag.addImu("/imu");
+  const std::vector<ImuSample> samples = someSamples(5, 0);
+  bag.message(events, kStart_ns, eventMessage(0, kSize_px, someEvents(1, 0)));
+  bag.message(events, kStart_ns, eventMessage(10'000, kSize_px, someEvents(50, 10'000)));
+  for (const ImuSample& sample : samples) bag.message(imu, kStart_ns, imuMessage(sample));
+  const Contents contents = readAll(folder_.write("zero.bag", bag.finished()));
+  QVERIFY(!contents.hasFault("no_stamps"));
+  QVERIFY(sameSamples(contents.imu.at(1), samples));
+  QCOMPARE(contents.events.at(0).front().time_ns, std::int64_t{0});
+}
+
+void TestRosbagReader::unorderedEvents_areSortedInThePacket() {
+  std::vector<Event> events = someEvents(100);
+  const std::vector<Event> ordered = events;
+  std::swap(events[10], events[11]);
+  std::swap(events[50], events[52]);
+  BagBuilder bag;
+  const std::uint32_t connection = bag.addEvents("/events");
+  bag.message(connection, kStart_ns, eventMessage(kStart_ns, kSize_px, events));
+  const Contents contents = readAll(folder_.write("unordered.bag", bag.finished()));
+  QVERIFY(sameEvents(contents.events.at(0), ordered));
+  QVERIFY(!contents.faults.empty());
+}
+
+// 300000 events are a chunk of 4 MB.
+void TestRosbagReader::longMessage_isReadWhole() {
+  const std::vector<Event> events = someEvents(300'000);
+  BagBuilder bag("lz4");
+  const std::uint32_t connection = bag.addEvents("/events");
+  bag.message(connection, kStart_ns, eventMessage(kStart_ns, kSize_px, events));
+  const Contents contents = readAll(folder_.write("long.bag", bag.finished()));
+  QVERIFY(sameEvents(contents.events.at(0), events));
+}
+
+void TestRosbagReader::fractionRead_growsToOne() {
+  const std::unique_ptr<RecordingReader> reader = openRecording(kData / "rosbag_python_bz2.bag");
+  Packet packet;
+  double last = reader->fractionRead();
+  while (reader->read(packet)) {
+    QVERIFY(reader->fractionRead() >= last && reader->fractionRead() <= 1.0);
+    last = reader->fractionRead();
+  }
+  QVERIFY(reader->fractionRead() > 0.99);
+}
+
+void TestRosbagReader::findStream_ofAWrongTopic_namesThoseThereAre() {
+  const std::unique_ptr<RecordingReader> reader = openRecording(kData / "rosbag_python_bz2.bag");
+  try {
+    findStream(*reader, "/davis/events", StreamType::Events);
+    QFAIL("nothing was thrown");
+  } catch (const CalibrationError& error) {
+    QCOMPARE(error.kind(), ErrorKind::BadInput);
+    QVERIFY(std::string(error.what()).find("/dvs/events") != std::string::npos);
+    QVERIFY(std::string(error.what()).find("/dvs/imu") == std::string::npos);
+  }
+}
+
+QTEST_GUILESS_MAIN(TestRosbagReader)
+#include "tst_rosbag_reader.moc"
