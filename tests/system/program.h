@@ -1,0 +1,38 @@
+// The program as people run it, and recordings that were simulated once for all of these tests.
+#pragma once
+
+#include <QByteArray>
+#include <QString>
+#include <QStringList>
+
+#include <functional>
+
+namespace evical::test {
+
+struct Outcome {
+  int exit_code = -1;  // -1: crashed, or did not end in time
+  QString output, errors;
+
+  QString reason() const;  // last line on stderr
+};
+
+Outcome runProgram(const QStringList& arguments, int patience_s = 120);
+
+// The same with the largest file it may write, as `ulimit -f` sets it; for full disks.
+Outcome runProgramWithFileLimit(const QStringList& arguments, int blocks_of_1024);
+
+// Starts it, sends the signal when `ready` says so of what stderr shows (or after `patience_s`), and waits
+// for its end.
+Outcome interruptProgram(const QStringList& arguments, int signal,
+                         const std::function<bool(const QString&)>& ready, int patience_s = 60);
+
+// Folders of the simulated recordings: "short" (text), "short_bag", "still".
+QString simulated(const QString& name);
+
+QByteArray readFile(const QString& path);
+void writeFile(const QString& path, const QByteArray& content);
+
+// The names in a folder, sorted; hidden and half-written ones too.
+QStringList filesIn(const QString& folder);
+
+}  // namespace evical::test

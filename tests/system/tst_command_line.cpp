@@ -1,0 +1,253 @@
+// The program as a whole: what it writes, its exit codes, and what it leaves behind when it is interrupted or
+// the disk is full.
+#include "core/report/truth_comparison.h"
+#include "tests/system/program.h"
+
+#include <QDir>
+#include <QElapsedTimer>
+#include <QRegularExpression>
+#include <QTemporaryDir>
+#include <QtTest>
+
+#include <csignal>
+#include <filesystem>
+
+using namespace evical::test;
+
+namespace {
+
+const QStringList kResultFiles = {"detections.csv", "log.txt", "result.yaml", "trajectory.csv",
+                                  "windows.csv"};
+
+QString session(const QString& recording = "short") {
+  return simulated(recording) + "/session.yaml";
+}
+
+#define VERIFY_EXIT(outcome, code)        \
+  QVERIFY2((outcome).exit_code == (code), \
+           qPrintable(QStringLiteral("exit code %1\n").arg((outcome).exit_code) + (outcome).errors))
+
+}  // namespace
+
+class TestCommandLine : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void help_isThereForEveryCommand();
+  void version_startsFast();
+  void usage_thatIsWrongEndsWith2_data();
+  void usage_thatIsWrongEndsWith2();
+  void options_asMarkdownAreTheManual();
+  void board_isWrittenAsPdfAndSvg();
+  void simulate_isTheSameFromTheSameSeed();
+  void calibrate_writesAResultNearTheTruth_data();
+  void calibrate_writesAResultNearTheTruth();
+  void detect_writesDetectionsOnly();
+  void quiet_saysNothingButTheResult();
+  void interruption_leavesNothingHalfWritten_data();
+  void interruption_leavesNothingHalfWritten();
+  void interruption_ofASimulationLeavesNothing();
+  void folder_thatCannotBeMadeIsRefused();
+  void diskFull_leavesTheOldResult();
+  void failure_isInTheResultOfAFolderThatWasThere();
+};
+
+void TestCommandLine::help_isThereForEveryCommand() {
+  const Outcome all = runProgram({"--help"});
+  VERIFY_EXIT(all, 0);
+  for (const QString command :
+       {"calibrate", "detect", "simulate", "inspect", "options", "board", "compare"}) {
+    QVERIFY2(all.output.contains(command), qPrintable(command));
+    const Outcome outcome = runProgram({command, "--help"});
+    VERIFY_EXIT(outcome, 0);
+    QVERIFY(outcome.output.contains("-h,--help"));
+  }
+}
+
+void TestCommandLine::version_startsFast() {
+  QElapsedTimer timer;
+  timer.start();
+  const Outcome outcome = runProgram({"--version"});
+  VERIFY_EXIT(outcome, 0);
+  QVERIFY(QRegularExpression("^evical \\d+\\.\\d+\\.\\d+\\n$").match(outcome.output).hasMatch());
+  QVERIFY2(timer.elapsed() < 500,
+           qPrintable(QString::number(timer.elapsed())));  // some 10 ms on an idle machine
+}
+
+void TestCommandLine::usage_thatIsWrongEndsWith2_data() {
+  QTest::addColumn<QStringList>("arguments");
+  QTest::newRow("no command") << QStringList{};
+  QTest::newRow("unknown command") << QStringList{"calibrat"};
+  QTest::newRow("no session") << QStringList{"calibrate", "-o", "x"};
+  QTest::newRow("no folder") << QStringList{"calibrate", session()};
+  QTest::newRow("unknown flag") << QStringList{"options", "--pdf"};
+  QTest::newRow("setting without value") << QStringList{"calibrate", session(), "-o", "x", "--set", "grid"};
+  QTest::newRow("board as a picture") << QStringList{"board", "-o", "board.png"};
+}
+
+void TestCommandLine::usage_thatIsWrongEndsWith2() {
+  QFETCH(QStringList, arguments);
+  const Outcome outcome = runProgram(arguments);
+  VERIFY_EXIT(outcome, 2);
+  QVERIFY(!outcome.reason().isEmpty());
+}
+
+void TestCommandLine::options_asMarkdownAreTheManual() {
+  const Outcome outcome = runProgram({"options", "--markdown"});
+  VERIFY_EXIT(outcome, 0);
+  QVERIFY2(outcome.output.toUtf8() == readFile(EVICAL_SOURCE_DIR "/docs/options.md"),
+           "docs/options.md is old: evical options --markdown > docs/options.md");
+}
+
+void TestCommandLine::board_isWrittenAsPdfAndSvg() {
+  QTemporaryDir folder;
+  for (const QString file : {"board.pdf", "board.svg"}) {
+    const Outcome outcome = runProgram({"board", "--rows", "7", "--cols", "3", "--spacing-m", "0.03",
+                                        "--radius-m", "0.01", "-o", folder.filePath(file)});
+    VERIFY_EXIT(outcome, 0);
+    QVERIFY(readFile(folder.filePath(file)).size() > 1000);
+  }
+  QVERIFY(readFile(folder.filePath("board.pdf")).startsWith("%PDF"));
+  QVERIFY(readFile(folder.filePath("board.svg")).contains("<svg"));
+}
+
+void TestCommandLine::simulate_isTheSameFromTheSameSeed() {
+  QTemporaryDir folder;
+  writeFile(folder.filePath("tiny.yaml"),
+            "base: " EVICAL_SOURCE_DIR "/tests/system/short.yaml\nduration_s: 0.2\nseed: 5\n");
+  for (const QString name : {"a", "b"}) {
+    const Outcome outcome =
+        runProgram({"simulate", folder.filePath("tiny.yaml"), "-o", folder.filePath(name)});
+    VERIFY_EXIT(outcome, 0);
+  }
+  for (const QString file : {"events.txt", "imu.txt", "session.yaml", "truth.yaml"})
+    QCOMPARE(readFile(folder.filePath("a/" + file)), readFile(folder.filePath("b/" + file)));
+}
+
+void TestCommandLine::calibrate_writesAResultNearTheTruth_data() {
+  QTest::addColumn<QString>("recording");
+  QTest::newRow("text") << "short";
+  QTest::newRow("bag") << "short_bag";
+}
+
+void TestCommandLine::calibrate_writesAResultNearTheTruth() {
+  QFETCH(QString, recording);
+  QTemporaryDir folder;
+  const QString result = folder.filePath("new/result");
+  const Outcome outcome = runProgram({"calibrate", session(recording), "-o", result});
+  VERIFY_EXIT(outcome, 0);
+  QCOMPARE(filesIn(result), kResultFiles);
+  const QByteArray yaml = readFile(result + "/result.yaml");
+  for (const char* key :
+       {"evical_result: 1", "status: ", "reference: left_imu", "rotation_std_deg:", "time_offset_std_s:",
+        "gravity_m_s2:", "observability:", "timing_s:", "memory_peak_mb:", "program:"})
+    QVERIFY2(yaml.contains(key), key);
+  QVERIFY(readFile(result + "/trajectory.csv").count('\n') > 900);  // 200 Hz over most of 6 s
+
+  // A fifth of the recording that the accuracy table is about.
+  const auto path = [](const QString& file) { return std::filesystem::path(file.toStdString()); };
+  const evical::TruthComparison comparison =
+      evical::compareWithTruth(evical::readResultYaml(path(result + "/result.yaml")),
+                               evical::readResultYaml(path(simulated(recording) + "/truth.yaml")));
+  QVERIFY2(comparison.cameras.at(0).rotation_deg < 0.2, qPrintable(outcome.output));
+  QVERIFY2(comparison.cameras.at(0).translation_mm < 4.0, qPrintable(outcome.output));
+  QVERIFY2(comparison.cameras.at(0).time_offset_ms < 0.4, qPrintable(outcome.output));
+
+  const Outcome table =
+      runProgram({"compare", result + "/result.yaml", simulated(recording) + "/truth.yaml"});
+  VERIFY_EXIT(table, 0);
+  QVERIFY(table.output.contains("left"));
+}
+
+void TestCommandLine::detect_writesDetectionsOnly() {
+  QTemporaryDir folder;
+  const Outcome outcome = runProgram({"detect", session(), "-o", folder.filePath("seen")});
+  VERIFY_EXIT(outcome, 0);
+  const QStringList expected = {"detections.csv", "log.txt", "windows.csv"};
+  QCOMPARE(filesIn(folder.filePath("seen")), expected);
+  QVERIFY(readFile(folder.filePath("seen/detections.csv")).count('\n') > 1000);
+}
+
+void TestCommandLine::quiet_saysNothingButTheResult() {
+  QTemporaryDir folder;
+  const Outcome outcome = runProgram({"calibrate", session(), "-o", folder.filePath("result"), "--quiet"});
+  VERIFY_EXIT(outcome, 0);
+  QCOMPARE(outcome.errors, QString());
+}
+
+void TestCommandLine::interruption_leavesNothingHalfWritten_data() {
+  QTest::addColumn<int>("signal");
+  QTest::addColumn<QString>("stage");
+  QTest::newRow("Ctrl-C while detecting") << SIGINT << "detect";
+  QTest::newRow("Ctrl-C while optimising") << SIGINT << "optimise";
+  QTest::newRow("terminated") << SIGTERM << "detect";
+}
+
+void TestCommandLine::interruption_leavesNothingHalfWritten() {
+  QFETCH(int, signal);
+  QFETCH(QString, stage);
+  QTemporaryDir folder;
+  const QString result = folder.filePath("result");
+  const Outcome outcome = interruptProgram({"calibrate", session("short_bag"), "-o", result}, signal,
+                                           [&](const QString& errors) { return errors.contains(stage); });
+  VERIFY_EXIT(outcome, 1);
+  QCOMPARE(outcome.reason(), QStringLiteral("cancelled"));
+  QVERIFY(!QDir(result).exists());
+}
+
+void TestCommandLine::interruption_ofASimulationLeavesNothing() {
+  QTemporaryDir folder;
+  const Outcome outcome = interruptProgram(
+      {"simulate", EVICAL_SOURCE_DIR "/config/scenarios/davis346.yaml", "-o", folder.filePath("demo")},
+      SIGINT, [](const QString& errors) { return errors.contains("simulate"); });
+  VERIFY_EXIT(outcome, 1);
+  QCOMPARE(outcome.reason(), QStringLiteral("cancelled"));
+  QVERIFY2(filesIn(folder.path()).isEmpty(), qPrintable(filesIn(folder.filePath("demo")).join(' ')));
+}
+
+// Permissions don't hold root back: a folder below a file can't be made by anybody.
+void TestCommandLine::folder_thatCannotBeMadeIsRefused() {
+  QTemporaryDir folder;
+  writeFile(folder.filePath("file"), "not a folder");
+  for (const QStringList& arguments :
+       {QStringList{"calibrate", session()}, QStringList{"detect", session()},
+        QStringList{"simulate", EVICAL_SOURCE_DIR "/tests/system/short.yaml"}}) {
+    const Outcome outcome = runProgram(arguments + QStringList{"-o", folder.filePath("file/result")});
+    VERIFY_EXIT(outcome, 2);
+    QVERIFY2(outcome.reason().contains("file/result"), qPrintable(outcome.errors));
+  }
+}
+
+void TestCommandLine::diskFull_leavesTheOldResult() {
+  QTemporaryDir folder;
+  const QString result = folder.filePath("result");
+  QDir().mkpath(result);
+  writeFile(result + "/result.yaml", "evical_result: 1\nstatus: ok\n");
+  writeFile(result + "/trajectory.csv", "time_s\n");
+  const Outcome outcome = runProgramWithFileLimit({"calibrate", session(), "-o", result}, 16);
+  VERIFY_EXIT(outcome, 1);
+  QVERIFY2(outcome.reason().contains("cannot be written"), qPrintable(outcome.reason()));
+  QCOMPARE(readFile(result + "/result.yaml"), QByteArray("evical_result: 1\nstatus: ok\n"));
+  const QStringList untouched = {"result.yaml", "trajectory.csv"};
+  QCOMPARE(filesIn(result), untouched);
+
+  const Outcome simulation = runProgramWithFileLimit(
+      {"simulate", EVICAL_SOURCE_DIR "/tests/system/short.yaml", "-o", folder.filePath("demo")}, 100);
+  VERIFY_EXIT(simulation, 1);
+  QVERIFY(filesIn(folder.filePath("demo")).isEmpty());
+}
+
+void TestCommandLine::failure_isInTheResultOfAFolderThatWasThere() {
+  QTemporaryDir folder;
+  const QString result = folder.filePath("result");
+  QDir().mkpath(result);
+  const Outcome outcome =
+      runProgram({"calibrate", session(), "-o", result, "--set", "initialisation.least_views=100000"});
+  VERIFY_EXIT(outcome, 1);
+  const QByteArray yaml = readFile(result + "/result.yaml");
+  QVERIFY(yaml.contains("status: failed"));
+  QVERIFY2(yaml.contains("views"), yaml.constData());
+}
+
+QTEST_GUILESS_MAIN(TestCommandLine)
+#include "tst_command_line.moc"
