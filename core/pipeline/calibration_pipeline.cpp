@@ -20,7 +20,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double secondsSince(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+double secondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 // Median of |acceleration| tells the unit; a gyroscope's only when it is absurd.
 void checkUnits(const ImuData& imu) {
@@ -36,10 +38,11 @@ void checkUnits(const ImuData& imu) {
   constexpr double kAbsurd_rad_s = 25.0;
   if (*middle < kPlausible_m_s2[0] || *middle > kPlausible_m_s2[1]) {
     const bool g = *middle > kLooksLikeG[0] && *middle < kLooksLikeG[1];
-    throw badInput(imu.name,
-                   fmt::format("accelerations have a median norm of {:.3g} m/s^2, gravity has 9.81{}", *middle,
-                               g ? ": they look like g" : ""),
-                   g ? "Set acceleration_unit: g for this IMU" : "Check acceleration_unit (m/s^2, g, -g) of this IMU");
+    throw badInput(
+        imu.name,
+        fmt::format("accelerations have a median norm of {:.3g} m/s^2, gravity has 9.81{}", *middle,
+                    g ? ": they look like g" : ""),
+        g ? "Set acceleration_unit: g for this IMU" : "Check acceleration_unit (m/s^2, g, -g) of this IMU");
   }
   const double rms = std::sqrt(rate2 / static_cast<double>(imu.samples.size()));
   if (rms > kAbsurd_rad_s) {
@@ -54,7 +57,8 @@ std::string outcomes(const BoardObservations& observations) {
   std::string text;
   for (std::size_t k = 0; k < counts.size(); ++k) {
     if (counts[k] == 0) continue;
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", counts[k], windowOutcomeName(static_cast<WindowOutcome>(k)));
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", counts[k],
+                        windowOutcomeName(static_cast<WindowOutcome>(k)));
   }
   return text.empty() ? "no windows" : text;
 }
@@ -69,12 +73,16 @@ void checkBoardSeen(const BoardObservations& observations, const CircleBoard& bo
   const bool other_board = 5 * lattices > static_cast<int>(observations.windows.size());
   throw calibrationFailed(
       observations.camera,
-      fmt::format("the board was never found in {} windows ({})", observations.windows.size(), outcomes(observations)),
-      other_board ? fmt::format("Circles in rows are there, but no {} x {} board: check rows, cols and circles (dark or "
-                                "bright) in the session",
-                                board.rows, board.cols)
-                  : "Check that the board is in view, in focus and moving, rows, cols and circles (dark or bright) in the "
-                    "session; 'evical detect --images' draws what is seen");
+      fmt::format("the board was never found in {} windows ({})", observations.windows.size(),
+                  outcomes(observations)),
+      other_board
+          ? fmt::format(
+                "Circles in rows are there, but no {} x {} board: check rows, cols and circles (dark or "
+                "bright) in the session",
+                board.rows, board.cols)
+          : "Check that the board is in view, in focus and moving, rows, cols and circles (dark or bright) "
+            "in the "
+            "session; 'evical detect --images' draws what is seen");
 }
 
 CalibrationInput inputFrom(const Session& session, const RecordingPass& pass) {
@@ -97,16 +105,16 @@ void checkSession(const Session& session) {
                    "Give the map, or a path to one, to a Kalibr camchain or to a ROS camera_info file");
   }
   if (session.imus.empty()) {
-    throw badInput(session.source.string() + ": imus", "there is no IMU, and calibrating cameras alone is not there yet",
-                   "Add the IMU's stream");
+    throw badInput(session.source.string() + ": imus",
+                   "there is no IMU, and calibrating cameras alone is not there yet", "Add the IMU's stream");
   }
 }
 
 void logDetections(const RecordingPass& pass, const RunContext& context) {
   for (const BoardObservations& camera : pass.cameras) {
-    context.progress.log(LogLevel::Info, fmt::format("{}: {} events, board in {} of {} windows ({})", camera.camera,
-                                                     camera.events, camera.views.size(), camera.windows.size(),
-                                                     outcomes(camera)));
+    context.progress.log(LogLevel::Info, fmt::format("{}: {} events, board in {} of {} windows ({})",
+                                                     camera.camera, camera.events, camera.views.size(),
+                                                     camera.windows.size(), outcomes(camera)));
   }
 }
 
@@ -119,7 +127,8 @@ double peakMemory_mb() {
   return static_cast<double>(usage.ru_maxrss) * kBytesPerUnit / kBytesPerMb;
 }
 
-CalibrationRun calibrate(const Session& session, const RunContext& context, const ObserverFactory& observers) {
+CalibrationRun calibrate(const Session& session, const RunContext& context,
+                         const ObserverFactory& observers) {
   checkSession(session);
   context.progress.stageStarted("detect");
   return calibrate(session, readAndDetect(session, context, observers), context);
@@ -151,7 +160,8 @@ CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunCo
   context.progress.stageStarted("optimise");
   begin = Clock::now();
   BatchSolution solution = optimiseBatch(input, initial.state, session.options.optimisation, context);
-  UncertaintyEstimate uncertainty = estimateUncertainty(input, solution, session.options.optimisation, context);
+  UncertaintyEstimate uncertainty =
+      estimateUncertainty(input, solution, session.options.optimisation, context);
   context.progress.stageProgress(1.0);
   result.timing.optimise_s = secondsSince(begin);
 
@@ -159,7 +169,8 @@ CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunCo
   result.reason = uncertainty.reason;
   if (!solution.converged && result.status == CalibrationStatus::Ok) {
     result.status = CalibrationStatus::Doubtful;
-    result.reason = "the optimisation did not converge: raise optimisation.max_iterations, or look at the residuals";
+    result.reason =
+        "the optimisation did not converge: raise optimisation.max_iterations, or look at the residuals";
   }
   result.state = std::move(solution.state);
   result.uncertainty = std::move(uncertainty.report);
@@ -173,7 +184,8 @@ CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunCo
   result.notes.insert(result.notes.end(), solution.notes.begin(), solution.notes.end());
   result.timing.read_s = run.pass.read_s;
   result.timing.detect_s = run.pass.detect_s;
-  result.timing.total_s = std::max(run.pass.read_s, run.pass.detect_s) + result.timing.initialise_s + result.timing.optimise_s;
+  result.timing.total_s =
+      std::max(run.pass.read_s, run.pass.detect_s) + result.timing.initialise_s + result.timing.optimise_s;
   result.memory_peak_mb = peakMemory_mb();
   return run;
 }

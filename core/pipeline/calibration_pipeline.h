@@ -1,4 +1,5 @@
-// From a session to a result: read and detect, initialise, optimise, judge. The only place that knows the stages' order.
+// From a session to a result: read and detect, initialise, optimise, judge. The only place that knows the
+// stages' order.
 #pragma once
 
 #include "core/base/progress.h"
@@ -15,9 +16,10 @@ struct CalibrationRun {
   RecordingPass pass;
 };
 
-// Progress goes by the stages "detect", "initialise", "optimise". Throws CalibrationError, and Cancelled when asked to
-// stop.
-CalibrationRun calibrate(const Session& session, const RunContext& context, const ObserverFactory& observers = {});
+// Progress goes by the stages "detect", "initialise", "optimise". Throws CalibrationError, and Cancelled when
+// asked to stop.
+CalibrationRun calibrate(const Session& session, const RunContext& context,
+                         const ObserverFactory& observers = {});
 
 // The same from what the front end and the IMUs gave: `pass` as readAndDetect or a simulation makes it.
 CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context);

@@ -23,15 +23,17 @@ NamedResult namedResult(const Session& session, const CalibrationResult& result,
 
 void writeResultFiles(const std::filesystem::path& folder, const Session& session, const CalibrationRun& run,
                       const std::string& version, const std::string& log) {
-  const std::vector<FileContent> files = {{folder / "result.yaml", resultYaml(namedResult(session, run.result, version))},
-                                          {folder / "trajectory.csv", trajectoryCsv(run.result.state)},
-                                          {folder / "detections.csv", detectionsCsv(run.pass.cameras)},
-                                          {folder / "windows.csv", windowsCsv(run.pass.cameras)},
-                                          {folder / "log.txt", log}};
+  const std::vector<FileContent> files = {
+      {folder / "result.yaml", resultYaml(namedResult(session, run.result, version))},
+      {folder / "trajectory.csv", trajectoryCsv(run.result.state)},
+      {folder / "detections.csv", detectionsCsv(run.pass.cameras)},
+      {folder / "windows.csv", windowsCsv(run.pass.cameras)},
+      {folder / "log.txt", log}};
   writeFilesWhole(files);
 }
 
-void writeDetectionFiles(const std::filesystem::path& folder, const RecordingPass& pass, const std::string& log) {
+void writeDetectionFiles(const std::filesystem::path& folder, const RecordingPass& pass,
+                         const std::string& log) {
   const std::vector<FileContent> files = {{folder / "detections.csv", detectionsCsv(pass.cameras)},
                                           {folder / "windows.csv", windowsCsv(pass.cameras)},
                                           {folder / "log.txt", log}};
@@ -43,8 +45,8 @@ void writeFailure(const std::filesystem::path& folder, const Session& session, c
   CalibrationResult failed;
   failed.status = CalibrationStatus::Failed;
   failed.reason = reason;
-  const std::vector<FileContent> files = {{folder / "result.yaml", resultYaml(namedResult(session, failed, version))},
-                                          {folder / "log.txt", log}};
+  const std::vector<FileContent> files = {
+      {folder / "result.yaml", resultYaml(namedResult(session, failed, version))}, {folder / "log.txt", log}};
   writeFilesWhole(files);
 }
 

@@ -16,7 +16,8 @@ void writeResultFiles(const std::filesystem::path& folder, const Session& sessio
                       const std::string& version, const std::string& log);
 
 // detections.csv, windows.csv, log.txt
-void writeDetectionFiles(const std::filesystem::path& folder, const RecordingPass& pass, const std::string& log);
+void writeDetectionFiles(const std::filesystem::path& folder, const RecordingPass& pass,
+                         const std::string& log);
 
 // result.yaml with status failed and the reason, and log.txt; only where the folder is there already.
 void writeFailure(const std::filesystem::path& folder, const Session& session, const std::string& reason,

@@ -36,12 +36,14 @@ std::vector<StreamInfo> streamsOf(const Scenario& scenario) {
 // IMU samples go out alongside the events, as a recorder would write them.
 class ImuFeed {
  public:
-  ImuFeed(std::size_t stream, std::vector<ImuSample> samples) : stream_(stream), samples_(std::move(samples)) {}
+  ImuFeed(std::size_t stream, std::vector<ImuSample> samples)
+      : stream_(stream), samples_(std::move(samples)) {}
 
   void writeUntil(std::int64_t time_ns, RecordingWriter& writer) {
     const std::size_t begin = next_;
     while (next_ < samples_.size() && samples_[next_].time_ns <= time_ns) ++next_;
-    if (next_ > begin) writer.write(stream_, std::span<const ImuSample>(samples_).subspan(begin, next_ - begin));
+    if (next_ > begin)
+      writer.write(stream_, std::span<const ImuSample>(samples_).subspan(begin, next_ - begin));
   }
   void writeRest(RecordingWriter& writer) {
     if (next_ < samples_.size()) writer.write(stream_, std::span<const ImuSample>(samples_).subspan(next_));
@@ -57,7 +59,8 @@ class ImuFeed {
 
 }  // namespace
 
-SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path& folder, const RunContext& context) {
+SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path& folder,
+                           const RunContext& context) {
   if (scenario.cameras.size() != 1) {
     throw badInput(scenario.name, "recordings of several cameras cannot be simulated yet", "Give one camera");
   }
@@ -69,7 +72,8 @@ SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path
   summary.truth = folder / "truth.yaml";
   context.progress.stageStarted("simulate");
   const std::unique_ptr<RecordingWriter> writer =
-      text ? createText(folder, streamsOf(scenario)) : createBag(summary.recording, streamsOf(scenario), false);
+      text ? createText(folder, streamsOf(scenario))
+           : createBag(summary.recording, streamsOf(scenario), false);
   std::vector<ImuFeed> feeds;
   for (std::size_t k = 0; k < scenario.imus.size(); ++k) {
     feeds.emplace_back(scenario.cameras.size() + k, simulateImu(scenario, k));
@@ -86,8 +90,9 @@ SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path
       context);
   for (ImuFeed& feed : feeds) feed.writeRest(*writer);
   writer->finish();
-  const std::vector<FileContent> files = {{summary.session, sessionYaml(scenario, text ? "." : "recording.bag")},
-                                          {summary.truth, truthYaml(scenario)}};
+  const std::vector<FileContent> files = {
+      {summary.session, sessionYaml(scenario, text ? "." : "recording.bag")},
+      {summary.truth, truthYaml(scenario)}};
   writeFilesWhole(files);
   return summary;
 }

@@ -1,4 +1,5 @@
-// A scenario becomes a recording in a folder: recording.bag (or events.txt and imu.txt), session.yaml, truth.yaml.
+// A scenario becomes a recording in a folder: recording.bag (or events.txt and imu.txt), session.yaml,
+// truth.yaml.
 #pragma once
 
 #include "core/base/progress.h"
@@ -15,6 +16,7 @@ struct SimulationSummary {
 };
 
 // The folder is made if need be. session.yaml and truth.yaml come last, when the recording is whole.
-SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path& folder, const RunContext& context);
+SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path& folder,
+                           const RunContext& context);
 
 }  // namespace evical

@@ -1,0 +1,70 @@
+#include "app/commands.h"
+#include "app/console.h"
+#include "app/session_arguments.h"
+#include "app/version.h"
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/result_files.h"
+#include "core/report/result_table.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <memory>
+
+namespace evical {
+namespace {
+
+// What was there before is overwritten only by a result, or by the reason why there is none.
+void tellFailure(const SessionArguments& arguments, const Session& session, const std::string& reason,
+                 const Console& console) {
+  if (!std::filesystem::is_directory(arguments.output)) return;
+  // A failed run keeps an earlier result of the same folder: it is still true of its own recording.
+  if (std::filesystem::exists(std::filesystem::path(arguments.output) / "trajectory.csv")) return;
+  writeFailure(arguments.output, session, reason, kVersion, console.logText());
+}
+
+int run(const SessionArguments& arguments) {
+  const Session session = sessionFrom(arguments);
+  Console console(arguments.quiet);
+  const bool folder_was_there = std::filesystem::exists(arguments.output);
+  makeOutputFolder(arguments.output);
+  const RunContext context{console, stopOnSignals()};
+  const auto dropEmptyFolder = [&] {
+    std::error_code ignored;
+    if (!folder_was_there) std::filesystem::remove(arguments.output, ignored);  // only if empty
+  };
+  try {
+    const CalibrationRun result = calibrate(session, context);
+    const NamedResult named = namedResult(session, result.result, kVersion);
+    writeResultFiles(arguments.output, session, result, kVersion, console.logText());
+    console.stageStarted("done");
+    fmt::print("{}", resultTable(named));
+    if (!arguments.quiet) fmt::print("Files are in {}\n", arguments.output);
+    return kDone;
+  } catch (const CalibrationError& error) {
+    if (error.kind() == ErrorKind::CalibrationFailed) {
+      tellFailure(arguments, session, error.what(), console);
+    } else {
+      dropEmptyFolder();
+    }
+    throw;
+  } catch (const Cancelled&) {
+    if (folder_was_there) tellFailure(arguments, session, "cancelled", console);
+    dropEmptyFolder();
+    throw;
+  }
+}
+
+}  // namespace
+
+void addCalibrateCommand(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<SessionArguments>();
+  CLI::App* const command = app.add_subcommand("calibrate", "Calibrate cameras and IMUs of a session");
+  addSessionArguments(*command, *arguments);
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace evical

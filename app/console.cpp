@@ -1,0 +1,106 @@
+#include "app/console.h"
+
+#include <fmt/format.h>
+
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <thread>
+
+namespace evical {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+std::stop_source& stopSource() {
+  static std::stop_source source;
+  return source;
+}
+
+const char* levelName(LogLevel level) {
+  switch (level) {
+    case LogLevel::Debug:
+      return "debug";
+    case LogLevel::Info:
+      return "info";
+    case LogLevel::Warning:
+      return "warning";
+  }
+  return "";
+}
+
+}  // namespace
+
+Console::Console(bool quiet)
+    : quiet_(quiet),
+      on_terminal_(isatty(STDERR_FILENO) != 0),
+      begin_(Clock::now()),
+      stage_begin_(begin_),
+      last_shown_(begin_) {}
+
+Console::~Console() {
+  const std::lock_guard lock(mutex_);
+  clearLine();
+}
+
+void Console::clearLine() {
+  if (line_shown_) std::fputs("\r\033[K", stderr);
+  line_shown_ = false;
+}
+
+void Console::stageStarted(std::string_view stage) {
+  const std::lock_guard lock(mutex_);
+  stage_ = stage;
+  stage_begin_ = Clock::now();
+  log_text_ += fmt::format("{:9.3f} s  stage    {}\n", secondsSince(begin_), stage);
+  if (quiet_) return;
+  clearLine();
+  if (!on_terminal_) fmt::print(stderr, "{} ...\n", stage);
+}
+
+void Console::stageProgress(double fraction) {
+  constexpr double kRefresh_s = 0.1;
+  const std::lock_guard lock(mutex_);
+  if (quiet_ || !on_terminal_ || secondsSince(last_shown_) < kRefresh_s) return;
+  last_shown_ = Clock::now();
+  const double elapsed_s = secondsSince(stage_begin_);
+  std::string left;
+  if (fraction > 0.02) left = fmt::format(", {:.0f} s left", elapsed_s * (1.0 - fraction) / fraction);
+  fmt::print(stderr, "\r\033[K{}: {:3.0f} %{}", stage_, 100.0 * fraction, left);
+  std::fflush(stderr);
+  line_shown_ = true;
+}
+
+void Console::log(LogLevel level, std::string_view text) {
+  const std::lock_guard lock(mutex_);
+  log_text_ += fmt::format("{:9.3f} s  {:<7}  {}\n", secondsSince(begin_), levelName(level), text);
+  if (quiet_ || level == LogLevel::Debug) return;
+  clearLine();
+  fmt::print(stderr, "{}{}\n", level == LogLevel::Warning ? "warning: " : "  ", text);
+}
+
+std::stop_token stopOnSignals() {
+  stopSource();
+  // stop_source::request_stop is not safe in a signal handler: a thread waits for the signal instead.
+  static sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::thread([] {
+    int signal = 0;
+    sigwait(&signals, &signal);
+    stopSource().request_stop();
+    sigwait(&signals, &signal);
+    constexpr int kCancelled = 1;
+    _exit(kCancelled);
+  }).detach();
+  return stopSource().get_token();
+}
+
+}  // namespace evical

@@ -1,0 +1,38 @@
+// The terminal side of a run: progress line, log for log.txt, Ctrl-C.
+#pragma once
+
+#include "core/base/progress.h"
+
+#include <chrono>
+#include <mutex>
+#include <stop_token>
+#include <string>
+
+namespace evical {
+
+// A progress line that is rewritten on a terminal, plain lines otherwise; nothing when quiet. Keeps the log.
+class Console final : public ProgressSink {
+ public:
+  explicit Console(bool quiet);
+  ~Console() override;
+
+  void stageStarted(std::string_view stage) override;
+  void stageProgress(double fraction_of_stage) override;
+  void log(LogLevel level, std::string_view text) override;
+
+  const std::string& logText() const { return log_text_; }
+
+ private:
+  void clearLine();
+
+  std::mutex mutex_;
+  bool quiet_, on_terminal_;
+  bool line_shown_ = false;
+  std::string stage_, log_text_;
+  std::chrono::steady_clock::time_point begin_, stage_begin_, last_shown_;
+};
+
+// SIGINT and SIGTERM ask the returned token to stop; a second one ends the program at once.
+std::stop_token stopOnSignals();
+
+}  // namespace evical

@@ -1,0 +1,51 @@
+#include "app/commands.h"
+#include "app/console.h"
+#include "app/session_arguments.h"
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/pipeline/recording_pass.h"
+#include "core/pipeline/result_files.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+namespace evical {
+namespace {
+
+int run(const SessionArguments& arguments) {
+  const Session session = sessionFrom(arguments);
+  makeOutputFolder(arguments.output);
+  Console console(arguments.quiet);
+  const RunContext context{console, stopOnSignals()};
+  console.stageStarted("detect");
+  const RecordingPass pass = readAndDetect(session, context);
+  for (const RecordingFault& fault : pass.faults) console.log(LogLevel::Warning, fault.text);
+  writeDetectionFiles(arguments.output, pass, console.logText());
+  console.stageStarted("done");
+  for (const BoardObservations& camera : pass.cameras) {
+    fmt::print("{}: {} events, board in {} of {} windows\n", camera.camera, camera.events,
+               camera.views.size(), camera.windows.size());
+    std::vector<int> counts(kWindowOutcomeCount, 0);
+    for (const WindowReport& window : camera.windows) ++counts[static_cast<std::size_t>(window.outcome)];
+    for (std::size_t k = 0; k < counts.size(); ++k) {
+      if (counts[k] > 0)
+        fmt::print("  {:6} {}\n", counts[k], windowOutcomeName(static_cast<WindowOutcome>(k)));
+    }
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void addDetectCommand(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<SessionArguments>();
+  CLI::App* const command = app.add_subcommand("detect", "Find the board only: detections, no estimate");
+  addSessionArguments(*command, *arguments);
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace evical

@@ -1,0 +1,73 @@
+// The command line: parses, runs one command, and says how it went by the exit code.
+#include "app/commands.h"
+#include "app/version.h"
+#include "core/base/error.h"
+#ifdef EVICAL_HAS_INSPECT
+#include "app/inspect_command.h"
+#endif
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <string_view>
+
+namespace evical {
+namespace {
+
+int fail(int exit_code, std::string_view reason) {
+  std::fflush(stdout);
+  fmt::print(stderr, "{}\n", reason);
+  return exit_code;
+}
+
+void addCommands(CLI::App& app, int& exit_code) {
+  addCalibrateCommand(app, exit_code);
+  addDetectCommand(app, exit_code);
+#ifdef EVICAL_HAS_INSPECT
+  addInspectCommand(app, exit_code);
+#endif
+  addSimulateCommand(app, exit_code);
+  addCompareCommand(app, exit_code);
+  addBoardCommand(app, exit_code);
+  addOptionsCommand(app, exit_code);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Calibrates event cameras and IMUs from one recording of a printed circle grid.", "evical");
+  app.set_version_flag("--version", std::string("evical ") + kVersion);
+  app.require_subcommand(1);
+  int exit_code = kDone;
+  addCommands(app, exit_code);
+  try {
+    app.parse(argc, argv);
+    return exit_code;
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    return fail(kBadInput, fmt::format("{}. See `evical --help` and `evical COMMAND --help`", error.what()));
+  }
+}
+
+}  // namespace
+}  // namespace evical
+
+int main(int argc, char** argv) {
+  using namespace evical;
+  // A file size limit is a full disk like any other: let write() say so.
+  std::signal(SIGXFSZ, SIG_IGN);
+  try {
+    return run(argc, argv);
+  } catch (const CalibrationError& error) {
+    return fail(error.kind() == ErrorKind::BadInput ? kBadInput : kFailed, error.what());
+  } catch (const Cancelled&) {
+    return fail(kFailed, "cancelled");
+  } catch (const std::bad_alloc&) {
+    return fail(kFailed, "not enough memory");
+  } catch (const std::exception& error) {
+    return fail(kFailed, fmt::format("internal error: {}", error.what()));
+  }
+}

@@ -1,0 +1,34 @@
+#include "app/session_arguments.h"
+
+#include "core/base/error.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+namespace evical {
+
+void addSessionArguments(CLI::App& command, SessionArguments& arguments) {
+  command.add_option("SESSION", arguments.session, "Session file")->required();
+  command.add_option("-o,--output", arguments.output, "Folder for the results")->required();
+  command.add_option("--set", arguments.settings, "group.option=value; see 'evical options'")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_option("--threads", arguments.threads, "Threads of the optimisation")
+      ->check(CLI::Range(1, 256));
+  command.add_flag("--quiet", arguments.quiet, "Only the result and errors");
+}
+
+Session sessionFrom(const SessionArguments& arguments) {
+  Session session = readSession(arguments.session);
+  for (const std::string& setting : arguments.settings) {
+    const std::size_t equals = setting.find('=');
+    if (equals == std::string::npos) {
+      throw badInput("--set " + setting, "has no '='", "Write --set group.option=value");
+    }
+    setOption(session.options, setting.substr(0, equals), setting.substr(equals + 1));
+  }
+  if (arguments.threads > 0) session.options.optimisation.threads = arguments.threads;
+  return session;
+}
+
+}  // namespace evical

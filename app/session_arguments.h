@@ -1,0 +1,28 @@
+// Arguments that calibrate and detect share: SESSION -o DIR [--set group.option=value ...] [--threads N]
+// [--quiet].
+#pragma once
+
+#include "core/pipeline/session.h"
+
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace evical {
+
+struct SessionArguments {
+  std::string session, output;
+  std::vector<std::string> settings;
+  int threads = 0;  // 0: as the options say
+  bool quiet = false;
+};
+
+void addSessionArguments(CLI::App& command, SessionArguments& arguments);
+
+// The session with the settings applied.
+Session sessionFrom(const SessionArguments& arguments);
+
+}  // namespace evical

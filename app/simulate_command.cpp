@@ -1,0 +1,39 @@
+#include "app/commands.h"
+#include "app/console.h"
+#include "core/pipeline/simulation.h"
+#include "core/synthetic/scenario_yaml.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+namespace evical {
+
+void addSimulateCommand(CLI::App& app, int& exit_code) {
+  struct Arguments {
+    std::filesystem::path scenario, folder;
+    bool quiet = false;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("simulate", "A recording with known truth, and a session file that fits it");
+  command
+      ->add_option("scenario", arguments->scenario, "What to simulate, e.g. config/scenarios/davis346.yaml")
+      ->required();
+  command->add_option("-o,--output", arguments->folder, "Folder to write")->required();
+  command->add_flag("--quiet", arguments->quiet, "No progress");
+  command->callback([arguments, &exit_code] {
+    const Scenario scenario = readScenario(arguments->scenario);
+    Console console(arguments->quiet);
+    const SimulationSummary made = simulate(scenario, arguments->folder, {console, stopOnSignals()});
+    console.stageStarted("done");
+    fmt::print("{} events, {} IMU samples\n{}\n{}\n{}\n", made.events, made.imu_samples,
+               made.recording.string(), made.session.string(), made.truth.string());
+    exit_code = kDone;
+  });
+}
+
+}  // namespace evical
