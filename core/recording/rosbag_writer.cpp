@@ -66,7 +66,9 @@ void RosbagWriter::write(std::size_t stream, EventSpan events) {
   std::vector<Event>& gathered = checkedStream(stream, StreamType::Events).events;
   for (const Event& event : events) {
     requireTime(event.time_ns);
-    const bool full = !gathered.empty() && (event.time_ns - gathered.front().time_ns >= kMessageSpan_ns ||
+    // A step back starts a message too: within one, readers sort.
+    const bool full = !gathered.empty() && (event.time_ns < gathered.back().time_ns ||
+                                            event.time_ns - gathered.front().time_ns >= kMessageSpan_ns ||
                                             gathered.size() >= kMessageEvents);
     if (full) flushEvents(stream);
     gathered.push_back(event);

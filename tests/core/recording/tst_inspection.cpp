@@ -1,0 +1,189 @@
+#include "core/recording/inspection.h"
+#include "core/recording/inspection_json.h"
+#include "tests/core/recording/sample_recording.h"
+
+#include <QJsonArray>
+#include <QJsonDocument>
+#include <QJsonObject>
+#include <QTemporaryDir>
+#include <QtTest>
+
+#include <cmath>
+#include <functional>
+
+using namespace evical;
+using namespace evical::test;
+
+using Samples = std::vector<ImuSample>;
+using Spoil = std::function<void(Samples&)>;
+Q_DECLARE_METATYPE(Spoil)
+
+namespace {
+
+// 1 kHz, moved by hand, noise of a usual sensor.
+Samples handheld() {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 0.01);
+  Samples samples;
+  for (int i = 0; i < 5000; ++i) {
+    const double t = 1e-3 * i;
+    ImuSample sample;
+    sample.time_ns = 1'600'000'000'000'000'000 + 1'000'000LL * i;
+    sample.angular_rate_rad_s = {3.0 * std::sin(5.0 * t) + noise(random), noise(random), noise(random)};
+    sample.specific_force_m_s2 = {std::sin(7.0 * t) + noise(random), noise(random), 9.81 + noise(random)};
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+QStringList kinds(const std::vector<RecordingFault>& faults) {
+  QStringList names;
+  for (const RecordingFault& fault : faults) names << QString::fromStdString(fault.kind);
+  return names;
+}
+
+}  // namespace
+
+class TestInspection : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void imuFaults_areFound_data();
+  void imuFaults_areFound();
+  void manyGaps_areSummedUp();
+  void summary_matchesTheRecording();
+  void eventFaults_areFound();
+  void json_holdsTheContractsKeys();
+
+ private:
+  std::filesystem::path path(const char* name) const { return folder_.filePath(name).toStdString(); }
+  QTemporaryDir folder_;
+};
+
+void TestInspection::imuFaults_areFound_data() {
+  QTest::addColumn<Spoil>("spoil");
+  QTest::addColumn<QStringList>("expected");
+  const auto row = [](const char* name, const Spoil& spoil, const QStringList& expected) {
+    QTest::newRow(name) << spoil << expected;
+  };
+  row("good", [](Samples&) {}, {});
+  row("empty", [](Samples& s) { s.clear(); }, {"empty"});
+  row("gap", [](Samples& s) { s.erase(s.begin() + 100, s.begin() + 120); }, {"gap"});
+  row("one sample lost", [](Samples& s) { s.erase(s.begin() + 100); }, {"gap"});
+  row("backward", [](Samples& s) { std::swap(s[50].time_ns, s[51].time_ns); },
+      {"gap", "gap", "backward_time"});
+  row("jitter",
+      [](Samples& s) {
+        std::mt19937 random(5);
+        for (ImuSample& sample : s) sample.time_ns += random() % 700'000;
+      },
+      {"jitter"});
+  row("stuck",
+      [](Samples& s) {
+        for (std::size_t i = 1000; i < 2500; ++i) s[i].angular_rate_rad_s.y() = 0.02;
+      },
+      {"stuck_axis"});
+  row("saturated",
+      [](Samples& s) {
+        for (ImuSample& sample : s)
+          sample.angular_rate_rad_s.x() = std::clamp(sample.angular_rate_rad_s.x(), -2.18, 2.18);
+      },
+      {"saturated_axis"});
+  row("in g",
+      [](Samples& s) {
+        for (ImuSample& sample : s) sample.specific_force_m_s2 /= 9.80665;
+      },
+      {"unit"});
+  row("gravity removed",
+      [](Samples& s) {
+        for (ImuSample& sample : s) sample.specific_force_m_s2.z() -= 9.81;
+      },
+      {"unit"});
+  row("deg/s",
+      [](Samples& s) {
+        for (ImuSample& sample : s) sample.angular_rate_rad_s *= 57.3;
+      },
+      {"unit"});
+  row("not a number", [](Samples& s) { s[7].specific_force_m_s2.x() = std::nan(""); }, {"not_finite"});
+}
+
+void TestInspection::imuFaults_areFound() {
+  QFETCH(Spoil, spoil);
+  QFETCH(QStringList, expected);
+  Samples samples = handheld();
+  spoil(samples);
+  QCOMPARE(kinds(checkImu("imu", samples)), expected);
+}
+
+void TestInspection::manyGaps_areSummedUp() {
+  Samples samples;
+  for (const ImuSample& sample : handheld()) {
+    if (sample.time_ns / 1'000'000 % 50 != 0) samples.push_back(sample);
+  }
+  const std::vector<RecordingFault> faults = checkImu("imu", samples);
+  QCOMPARE(faults.size(), 11u);
+  QCOMPARE(faults[0].stream, std::string("imu"));
+  QVERIFY(faults.back().text.ends_with("more gaps."));
+}
+
+void TestInspection::summary_matchesTheRecording() {
+  const Recording written = sampleRecording(50'000);
+  writeAll(*createBag(path("sample.bag"), sampleStreams(), true), written);
+  const Inspection inspection = inspectRecording(*openRecording(path("sample.bag")));
+  QCOMPARE(inspection.streams.size(), 2u);
+  const StreamSummary& events = inspection.streams[0];
+  QCOMPARE(events.count, std::uint64_t{50'000});
+  QCOMPARE(events.on + events.off, events.count);
+  QCOMPARE(events.first_ns, written.events.front().time_ns);
+  QCOMPARE(events.last_ns, written.events.back().time_ns);
+  QCOMPARE(events.backward_steps, std::uint64_t{0});
+  QVERIFY(events.largest_gap_ns < 3000);
+  QVERIFY((events.seen_px == Resolution{346, 260}));
+  QCOMPARE(inspection.streams[1].count, std::uint64_t{written.imu_samples.size()});
+}
+
+void TestInspection::eventFaults_areFound() {
+  Recording recording = sampleRecording(200'000);
+  for (std::size_t i = 0; i < recording.events.size(); i += 50) {
+    recording.events[i].x_px = 17;
+    recording.events[i].y_px = 23;
+  }
+  recording.events[3].x_px = 400;
+  for (std::size_t i = 100'000; i < 150'000; ++i) recording.events[i].time_ns += 200'000'000;
+  recording.imu_samples.clear();
+  writeAll(*createBag(path("faulty.bag"), sampleStreams(), true), recording);
+  const Inspection inspection = inspectRecording(*openRecording(path("faulty.bag")));
+  QVERIFY2(inspection.faults.size() == 5, qPrintable(kinds(inspection.faults).join(" ")));
+  QCOMPARE(kinds(inspection.faults), QStringList({"gap", "backward_time", "outside", "hot_pixels", "empty"}));
+  QCOMPARE(inspection.streams[0].backward_steps, std::uint64_t{1});
+  const std::string& text = inspection.faults.at(3).text;
+  QVERIFY2(text.find("1 hot pixels") == 0 && text.find("(17, 23)") != std::string::npos, text.c_str());
+}
+
+void TestInspection::json_holdsTheContractsKeys() {
+  writeAll(*createBag(path("json.bag"), sampleStreams(), false), sampleRecording(10'000));
+  const Inspection inspection = inspectRecording(*openRecording(path("json.bag")));
+  const auto parsed = [&](bool sums) {
+    return QJsonDocument::fromJson(QByteArray::fromStdString(inspectionJson(inspection, sums))).object();
+  };
+  const QJsonObject json = parsed(true);
+  QCOMPARE(json["evical_inspect"].toInt(), 1);
+  QCOMPARE(json["format"].toString(), "rosbag");
+  QVERIFY(json["faults"].isArray());
+  const QJsonObject events = json["streams"][0].toObject(), imu = json["streams"][1].toObject();
+  for (const char* key :
+       {"name", "type", "message", "count", "on", "off", "first_ns", "last_ns", "resolution_px",
+        "backward_steps", "largest_gap_ns", "sum_x", "sum_y", "sum_t_ns_mod_2_64"}) {
+    QVERIFY2(events.contains(key), key);
+  }
+  for (const char* key : {"name", "type", "count", "first_ns", "last_ns", "rate_hz", "acceleration_unit",
+                          "angular_rate_unit", "mean_acceleration", "mean_angular_rate"}) {
+    QVERIFY2(imu.contains(key), key);
+  }
+  QCOMPARE(events["type"].toString(), "events");
+  QCOMPARE(events["resolution_px"].toArray(), QJsonArray({346, 260}));
+  QVERIFY(!parsed(false)["streams"][0].toObject().contains("sum_x"));
+}
+
+QTEST_GUILESS_MAIN(TestInspection)
+#include "tst_inspection.moc"
