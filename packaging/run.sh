@@ -8,7 +8,7 @@ demo=${1:-demo}
 packaging/install-dependencies.sh
 cmake --preset release -DEVICAL_TESTS=OFF
 cmake --build --preset release
-evical=build/release/app/evical
+evical=build/release/evical
 
 if [ ! -f "$demo/session.yaml" ]; then
   "$evical" simulate config/scenarios/davis346.yaml -o "$demo"
