@@ -39,10 +39,10 @@ BagReader::BagReader(const std::filesystem::path& path)
   FileRecord record;
   const bool has_header =
       readRecord(position_, record) == RecordState::Whole && record.header.is(rosbag::Op::BagHeader);
-  if (has_header) listFromIndex(record.header.index_position);
+  const bool has_index = has_header && listFromIndex(record.header.index_position);
   if (connections_.empty()) {
     listByScan();
-    if (!connections_.empty()) {
+    if (!has_index) {
       addFault("", "no_index",
                "The bag has no usable index: its recorder did not close it. It is read from the start.");
     }
@@ -69,6 +69,7 @@ bool BagReader::readBytes(std::uint64_t position, std::uint64_t count, std::stri
 }
 
 BagReader::RecordState BagReader::readRecord(std::uint64_t position, FileRecord& record) {
+  record = {};
   if (position >= file_size_) return RecordState::End;
   if (!readBytes(position, 4, header_bytes_)) return RecordState::Damaged;
   const auto header_size = ByteCursor(header_bytes_).number<std::uint32_t>();
@@ -91,8 +92,8 @@ bool BagReader::loadChunk(const FileRecord& record) {
   return false;
 }
 
-void BagReader::listFromIndex(std::uint64_t index_position) {
-  if (index_position < position_) return;
+bool BagReader::listFromIndex(std::uint64_t index_position) {
+  if (index_position < position_) return false;
   FileRecord record;
   RecordState state = RecordState::Whole;
   for (std::uint64_t at = index_position; (state = readRecord(at, record)) == RecordState::Whole;
@@ -106,10 +107,11 @@ void BagReader::listFromIndex(std::uint64_t index_position) {
       break;
     }
   }
-  if (state == RecordState::End) return;
+  if (state == RecordState::End && index_position < file_size_) return true;
   connections_.clear();  // an index that is not whole is none
   chunk_connections_.clear();
   streams_.clear();
+  return false;
 }
 
 // Only chunks with connections not met before need to be unpacked: the index data behind a chunk tell.
@@ -225,6 +227,11 @@ bool BagReader::nextChunk() {
              fmt::format("The record at byte {} of {} is cut off or damaged; nothing behind it is read.",
                          position_, file_size_));
     position_ = file_size_;
+    // Whole messages may lie before the cut, where the chunk is not packed.
+    if (record.header.is(rosbag::Op::Chunk) && record.header.compression == "none") {
+      chunk_offset_ = 0;
+      return readBytes(record.data_position, file_size_ - record.data_position, chunk_);
+    }
   }
   return false;
 }

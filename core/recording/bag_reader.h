@@ -43,7 +43,7 @@ class BagReader : public RecordingReader {
   RecordState readRecord(std::uint64_t position, FileRecord& record);
   bool loadChunk(const FileRecord& record);
 
-  void listFromIndex(std::uint64_t index_position);
+  bool listFromIndex(std::uint64_t index_position);  // false if there is no whole index
   void listByScan();
   void addConnection(std::uint32_t id, const rosbag::ConnectionData& data);
   void addChunkInfo(const FileRecord& record);
