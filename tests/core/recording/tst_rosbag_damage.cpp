@@ -6,6 +6,7 @@
 
 #include <QTest>
 
+#include <cstring>
 #include <random>
 
 using namespace evical;
@@ -71,6 +72,7 @@ class TestRosbagDamage : public QObject {
   void corruptChunk_losesNoOther();
   void damagedRecordHeader_losesOneChunkWhereThereIsAnIndex();
   void damagedIndex_doesNotHinder();
+  void indexCutBetweenItsRecords_losesNothing();
   void messageWithAFalseCount_isLeftOut();
   void lyingLengths_takeNoMemory_data();
   void lyingLengths_takeNoMemory();
@@ -95,7 +97,7 @@ void TestRosbagDamage::truncation_anywhere_givesWhatIsWhole() {
   BagBuilder bag = smallBag(compression.toStdString());
   const std::string whole = finished ? bag.finished() : bag.unfinished();
   std::size_t most = 0;
-  for (std::size_t size = 13; size < whole.size(); size += size < 4100 ? 1021 : 3) {
+  for (std::size_t size = 13; size < whole.size(); size += size < 4100 ? 1021 : 23) {
     const Contents contents = readAll(folder_.write("cut.bag", whole.substr(0, size)));
     QVERIFY2(isTrue(contents), qPrintable(QString("cut at %1").arg(size)));
     QVERIFY2(finished ? !contents.faults.empty() : true, qPrintable(QString("cut at %1").arg(size)));
@@ -133,7 +135,7 @@ void TestRosbagDamage::corruption_anywhere_isSurvived() {
   std::mt19937 random(7);
   std::uniform_int_distribution<std::size_t> places(13, whole.size() - 1);
   std::uniform_int_distribution<int> values(0, 255);
-  for (int i = 0; i < 600; ++i) {
+  for (int i = 0; i < 300; ++i) {
     std::string bytes = whole;
     for (int k = 0; k < 1 + i % 20; ++k) bytes[places(random)] = static_cast<char>(values(random));
     readAnything(folder_.write("corrupt.bag", bytes));
@@ -174,6 +176,25 @@ void TestRosbagDamage::damagedIndex_doesNotHinder() {
   QCOMPARE(contents.eventCount(), kMessages * kEventsEach);
   QVERIFY(isTrue(contents));
   QVERIFY(!contents.faults.empty());
+}
+
+// What is left of the index looks whole, but misses the last chunk, or two, or a connection.
+void TestRosbagDamage::indexCutBetweenItsRecords_losesNothing() {
+  BagBuilder bag = smallBag("lz4");
+  const std::size_t index = bag.unfinished().size();
+  const std::string whole = bag.finished();
+  std::size_t end = index;
+  while (end < whole.size()) {
+    const Contents contents = readAll(folder_.write("between.bag", whole.substr(0, end)));
+    QCOMPARE(contents.eventCount(), kMessages * kEventsEach);
+    QCOMPARE(contents.sampleCount(), kMessages);
+    QVERIFY(!contents.faults.empty());
+    for (int part = 0; part < 2; ++part) {  // header and data, each with its length before it
+      std::uint32_t length = 0;
+      std::memcpy(&length, whole.data() + end, sizeof length);
+      end += sizeof length + length;
+    }
+  }
 }
 
 void TestRosbagDamage::messageWithAFalseCount_isLeftOut() {
