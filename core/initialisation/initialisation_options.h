@@ -23,7 +23,7 @@ struct InitialisationOptions {
   double least_axis_ratio = 0.05;
   double position_sigma_m = 2e-3;
   double acceleration_sigma_m_s2 = 0.1;
-  double translation_sigma_m = 0.5;
+  double translation_sigma_m = 0.2;
   double accelerometer_bias_sigma_m_s2 = 0.5;
   bool operator==(const InitialisationOptions&) const = default;
 };

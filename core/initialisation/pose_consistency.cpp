@@ -8,9 +8,12 @@
 namespace evical {
 namespace {
 
-constexpr double kNeighbourhood_s = 3.0;     // drift within it stays below the tolerance
-constexpr std::size_t kMostNeighbours = 60;  // on either side: enough for a vote
-constexpr double kLeastShare = 0.3;          // of the neighbours that must agree
+constexpr double kNeighbourhood_s = 3.0;   // either way: drift within it stays below the tolerance
+constexpr double kMostNeighbours = 120.0;  // enough for a vote
+constexpr double kLeastShare = 0.3;        // of the neighbours that must agree
+// Mirrored poses agree with each other for a while, as long as the camera looks the same way; that their
+// circles fit worse makes them second choice, and counts.
+constexpr double kSecondChoice = 0.5;
 
 // world_from_first by either pose of one view.
 struct Carried {
@@ -23,23 +26,30 @@ double angle(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
 }
 
 struct Vote {
-  int neighbours = 0, for_first = 0, for_second = 0;
+  int neighbours = 0;
+  double for_first = 0.0, for_second = 0.0;
 };
 
 Vote voteOn(const std::vector<Carried>& carried, const std::vector<CameraPose>& poses, std::size_t k,
             double least_cosine) {
-  const auto agree = [&](const Eigen::Quaterniond& a, const Carried& other) {
-    return std::abs(a.dot(other.first)) > least_cosine ||
-           (other.has_second && std::abs(a.dot(other.second)) > least_cosine);
+  const auto agreement = [&](const Eigen::Quaterniond& a, const Carried& other) {
+    if (std::abs(a.dot(other.first)) > least_cosine) return 1.0;
+    return other.has_second && std::abs(a.dot(other.second)) > least_cosine ? kSecondChoice : 0.0;
   };
+  const auto earlier = [](const CameraPose& pose, double time_s) { return pose.time_s < time_s; };
+  const auto begin =
+      std::lower_bound(poses.begin(), poses.end(), poses[k].time_s - kNeighbourhood_s, earlier) -
+      poses.begin();
+  const auto end = std::lower_bound(poses.begin(), poses.end(), poses[k].time_s + kNeighbourhood_s, earlier) -
+                   poses.begin();
+  const double stride = std::max(1.0, static_cast<double>(end - begin) / kMostNeighbours);
   Vote vote;
-  const std::size_t begin = k > kMostNeighbours ? k - kMostNeighbours : 0;
-  const std::size_t end = std::min(poses.size(), k + kMostNeighbours + 1);
-  for (std::size_t n = begin; n < end; ++n) {
-    if (n == k || std::abs(poses[n].time_s - poses[k].time_s) > kNeighbourhood_s) continue;
+  for (auto position = static_cast<double>(begin); position < static_cast<double>(end); position += stride) {
+    const auto n = static_cast<std::size_t>(position);
+    if (n == k) continue;
     ++vote.neighbours;
-    vote.for_first += agree(carried[k].first, carried[n]) ? 1 : 0;
-    vote.for_second += carried[k].has_second && agree(carried[k].second, carried[n]) ? 1 : 0;
+    vote.for_first += agreement(carried[k].first, carried[n]);
+    if (carried[k].has_second) vote.for_second += agreement(carried[k].second, carried[n]);
   }
   return vote;
 }
