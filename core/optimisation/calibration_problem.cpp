@@ -1,5 +1,7 @@
 #include "core/optimisation/calibration_problem.h"
 
+#include "core/optimisation/edge_lead.h"
+
 #include "core/base/time.h"
 #include "core/optimisation/prior_cost.h"
 
@@ -113,8 +115,8 @@ CircleMeasurement CalibrationProblem::measurement(std::size_t camera, std::size_
   m.on_board_m = input_.board.centre_m(observed.circle);
   m.centre_px = observed.centre_px;
   m.whitening_px = covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity());
-  m.lead_direction =
-      observed.velocity_px_s / std::hypot(observed.velocity_px_s.norm(), options_.rest_speed_px_s);
+  m.lead_direction = edgeLeadDirection(*input_.cameras[camera].intrinsics, observed.centre_px,
+                                       observed.velocity_px_s, options_.rest_speed_px_s);
   m.view = static_cast<int>(view);
   m.circle = static_cast<int>(circle);
   return m;

@@ -1,5 +1,7 @@
 #include "core/optimisation/circle_errors.h"
 
+#include "core/optimisation/edge_lead.h"
+
 #include "core/geometry/circle_conic.h"
 #include "core/geometry/trajectory.h"
 
@@ -38,8 +40,9 @@ std::vector<CircleError> circleErrors(const CalibrationInput& input, const Calib
                                                   camera_state.time_offset_s, circle.time_s),
                                   input.board.centre_m(circle.circle), input.board.radius_m);
         if (centre_px) {
-          const Eigen::Vector2d lead = camera_state.edge_lead_px * circle.velocity_px_s /
-                                       std::hypot(circle.velocity_px_s.norm(), options.rest_speed_px_s);
+          const Eigen::Vector2d lead =
+              camera_state.edge_lead_px * edgeLeadDirection(*camera.intrinsics, circle.centre_px,
+                                                            circle.velocity_px_s, options.rest_speed_px_s);
           error.error_px = *centre_px + lead - circle.centre_px;
           const Eigen::Matrix2d covariance = circle.covariance_px2 + floor_px2 * Eigen::Matrix2d::Identity();
           error.normalised2 = error.error_px.dot(covariance.inverse() * error.error_px);
