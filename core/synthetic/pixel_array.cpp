@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kMostSteps = 256;  // in one stretch
 constexpr char kMoving = -1;
+constexpr double kSettlingTimes = 3.0;  // time constants after which the low-pass filter follows a ramp
 
 }  // namespace
 
@@ -135,12 +136,25 @@ void PixelArray::runTileRow(int tile_row, Scratch& scratch, std::vector<Event>& 
 void PixelArray::advance(const Step& step, float input, int x, int y, Pixel& pixel,
                          std::vector<Event>& events) const {
   const float behind = (input - pixel.input) * step.lag;
-  const float before = pixel.level;
-  const float after = input - behind + (before - pixel.input + behind) * step.decay;
+  const float before = pixel.level, transient = before - pixel.input + behind, earlier_input = pixel.input;
+  const float after = input - behind + transient * step.decay;
   pixel.input = input;
   pixel.level = after;
   if (after < pixel.reference + pixel.threshold_on && after > pixel.reference - pixel.threshold_off) return;
-  emitCrossings(step, before, after, x, y, pixel, events);
+  // Steps are long against the filter: its answer bends within one, and a straight line would stamp events
+  // too late where slopes grow and too early where they fall.
+  const double bend_s = kSettlingTimes * model_.low_pass_s, length_s = step.end_s - step.begin_s;
+  if (bend_s <= 0.0 || 2.0 * bend_s > length_s) {
+    emitCrossings(step, before, after, x, y, pixel, events);
+    return;
+  }
+  const double part = bend_s / length_s;
+  const double middle =
+      earlier_input + part * (input - earlier_input) - behind + transient * std::exp(-kSettlingTimes);
+  const Step first{step.begin_s, step.begin_s + bend_s, 0.0f, 0.0f},
+      second{step.begin_s + bend_s, step.end_s, 0.0f, 0.0f};
+  emitCrossings(first, before, middle, x, y, pixel, events);
+  emitCrossings(second, middle, after, x, y, pixel, events);
 }
 
 void PixelArray::emitCrossings(const Step& step, double before, double after, int x, int y, Pixel& pixel,
