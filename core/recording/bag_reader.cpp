@@ -39,7 +39,9 @@ BagReader::BagReader(const std::filesystem::path& path)
   FileRecord record;
   const bool has_header =
       readRecord(position_, record) == RecordState::Whole && record.header.is(rosbag::Op::BagHeader);
-  const bool has_index = has_header && listFromIndex(record.header.index_position);
+  const std::uint32_t chunks = record.header.chunk_count;
+  const bool has_index =
+      has_header && listFromIndex(record.header.index_position) && chunk_connections_.size() >= chunks;
   if (connections_.empty()) {
     listByScan();
     if (!has_index) {
@@ -273,8 +275,7 @@ bool BagReader::decode(const rosbag::RecordHeader& header, std::string_view mess
   }
   if (!whole) {
     addFault(info.name, "corrupt",
-             fmt::format("A message in the chunk at byte {} is shorter than it says; it is left out.",
-                         chunk_position_));
+             fmt::format("A message in the chunk at byte {} is damaged; it is left out.", chunk_position_));
   }
   if (!ordered)
     addFault(info.name, "unsorted", "Events within a message are out of order; they were sorted.");

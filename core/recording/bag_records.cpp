@@ -91,6 +91,7 @@ bool parseRecordHeader(std::string_view bytes, RecordHeader& header) {
     if (name == "op") header.op = numberIn<std::uint8_t>(value);
     if (name == "conn") header.connection = numberIn<std::uint32_t>(value);
     if (name == "time") header.time_ns = timeIn(value);
+    if (name == "chunk_count") header.chunk_count = numberIn<std::uint32_t>(value);
     if (name == "size") header.size = numberIn<std::uint32_t>(value);
     if (name == "index_pos") header.index_position = numberIn<std::uint64_t>(value);
     if (name == "chunk_pos") header.chunk_position = numberIn<std::uint64_t>(value);

@@ -25,7 +25,8 @@ enum class Op : std::uint8_t {
 struct RecordHeader {
   std::uint8_t op = 0;
   std::uint32_t connection = 0;
-  std::uint32_t size = 0;  // of a chunk, uncompressed
+  std::uint32_t chunk_count = 0;  // of the bag
+  std::uint32_t size = 0;         // of a chunk, uncompressed
   std::uint64_t index_position = 0, chunk_position = 0;
   std::int64_t time_ns = 0;
   std::string_view compression, topic;
