@@ -66,10 +66,12 @@ void normalise(Image& image) {
 
 // As much variance in every octave, like pictures of natural scenes.
 Image clouds(int size, Random& random) {
-  Image sum(size);
+  Image sum(size), white(size);
+  for (float& v : white.values) v = static_cast<float>(random.normal());
   for (const int radius : {4, 8, 16, 32, 64}) {
-    Image octave(size);
-    for (float& v : octave.values) v = static_cast<float>(random.normal());
+    Image octave(size);  // of the same noise, shifted
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x) octave.at(x, y) = white.at(x + 97 * radius, y + 61 * radius);
     for (int pass = 0; pass < 6; ++pass) boxRows(octave, radius);
     normalise(octave);
     for (std::size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += octave.values[i];
@@ -118,6 +120,10 @@ void blur(Image& image, double sigma_texels) {
 }  // namespace
 
 ClutterTexture::ClutterTexture(const ClutterTextureOptions& options) {
+  if (options.contrast <= 0.0) {
+    texels_.assign(static_cast<std::size_t>(kSize) * kStride, static_cast<float>(kMeanLogReflectance));
+    return;
+  }
   constexpr std::uint64_t kStream = 0xc1u;
   Random random(options.seed, kStream);
   Image cloudy = clouds(kSize, random);

@@ -23,7 +23,7 @@ struct EventPixelModel {
   double background_rate_hz = 0.1;  // per pixel, either polarity
   int hot_pixels = 5;
   double hot_pixel_rate_hz = 500.0;
-  double blur_px = 0.6;         // sigma of the optics' point spread
+  double blur_px = 0.6;         // sigma of the optics' point spread; the pixel's area comes on top
   double latency_s = 2e-4;      // pure delay
   double low_pass_s = 3e-4;     // time constant of the photoreceptor
   double stamp_jitter_s = 0.0;  // sigma of the stamps

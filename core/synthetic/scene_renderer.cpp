@@ -12,6 +12,11 @@ namespace {
 constexpr float kEdgeReach = 4.0f;  // in sigmas of the blur
 constexpr int kEdgeSteps = 512;     // of the tabulated error function
 
+// The optics' point spread, and the pixel's own area: a square of side 1 has the variance 1/12.
+double effectiveBlur_px(const EventPixelModel& pixel) {
+  return std::sqrt(pixel.blur_px * pixel.blur_px + 1.0 / 12.0);
+}
+
 // Texels of the clutter a pixel, at the motion's mean distance.
 double texelsPerPixel(const Scenario& scenario) {
   constexpr double kTexelsOfDetail = 2.0;
@@ -20,7 +25,7 @@ double texelsPerPixel(const Scenario& scenario) {
 
 ClutterTextureOptions textureOptions(const Scenario& scenario, std::size_t camera) {
   return {scenario.seed, scenario.scene.clutter_contrast, scenario.scene.clutter_object_share,
-          scenario.cameras[camera].pixel.blur_px * texelsPerPixel(scenario)};
+          effectiveBlur_px(scenario.cameras[camera].pixel) * texelsPerPixel(scenario)};
 }
 
 // d(board)/d(ray) at a ray that meets the plane at `point`, `depth` being the homography's third coordinate.
@@ -42,7 +47,7 @@ SceneRenderer::SceneRenderer(const Scenario& scenario, std::size_t index)
       scene_(scenario.scene),
       width_px_(scenario.cameras[index].intrinsics.resolution_px.width_px),
       height_px_(scenario.cameras[index].intrinsics.resolution_px.height_px),
-      blur_px_(static_cast<float>(std::max(scenario.cameras[index].pixel.blur_px, 0.05))),
+      blur_px_(static_cast<float>(effectiveBlur_px(scenario.cameras[index].pixel))),
       texture_(textureOptions(scenario, index)) {
   const CameraIntrinsics& camera = scenario.cameras[index].intrinsics;
   const bool dark = board_.circles == CircleShade::Dark;

@@ -1,0 +1,224 @@
+#include "core/base/error.h"
+#include "core/synthetic/board_truth.h"
+#include "core/synthetic/event_simulator.h"
+#include "tests/core/synthetic/scenarios.h"
+
+#include <QtTest>
+
+#include <map>
+#include <numbers>
+
+using namespace evical;
+
+namespace {
+
+std::vector<Event> eventsOf(const Scenario& scenario, int threads = 2) {
+  std::vector<Event> events;
+  simulateEvents(
+      scenario, 0, [&](EventSpan span) { events.insert(events.end(), span.begin(), span.end()); }, {},
+      threads);
+  return events;
+}
+
+bool same(const std::vector<Event>& a, const std::vector<Event>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Event& x, const Event& y) {
+    return x.time_ns == y.time_ns && x.x_px == y.x_px && x.y_px == y.y_px && x.brighter == y.brighter;
+  });
+}
+
+// The board slides sideways: one slow sinusoid, about 100 px/s in the middle of its swing.
+Scenario slidingScenario(double blur_px, double threshold) {
+  Scenario scenario = test::stillScenario();
+  scenario.motion.target_amplitude_m = {0.1, 0.0};
+  scenario.motion.sinusoids = 1;
+  scenario.motion.lowest_frequency_hz = scenario.motion.highest_frequency_hz = 0.4;
+  scenario.duration_s = 1.25;
+  EventPixelModel& pixel = scenario.cameras[0].pixel;
+  pixel.blur_px = blur_px;
+  pixel.threshold_on = pixel.threshold_off = threshold;
+  return scenario;
+}
+
+// Mean lead of the bursts over the true edge, in px along the motion, as in method 4.1; and events a burst.
+struct Leads {
+  double first = 0.0, mean = 0.0, last = 0.0, count = 0.0, speed_px_s = 0.0;
+  int bursts = 0;
+};
+
+// Bursts of pixels that the edge of a circle crosses head on, leading and trailing edges alike.
+Leads leadsOf(const Scenario& scenario) {
+  const SinusoidMotion motion(scenario);
+  std::map<std::pair<int, bool>, std::vector<double>> trains;  // by pixel and polarity
+  const int width = scenario.cameras[0].intrinsics.resolution_px.width_px;
+  for (const Event& event : eventsOf(scenario))
+    trains[{event.y_px * width + event.x_px, event.brighter}].push_back(
+        static_cast<double>(event.time_ns - scenario.start_ns) * 1e-9);
+  const double radius_px = 200.0 * scenario.board.radius_m / scenario.motion.distance_m;
+  Leads sums[2];
+  for (const auto& [key, times] : trains) {
+    const Eigen::Vector2d pixel(key.first % width, key.first / width);
+    for (std::size_t begin = 0, end; begin < times.size(); begin = end) {
+      for (end = begin + 1; end < times.size() && times[end] - times[end - 1] < 0.03;) ++end;
+      const double middle = 0.5 * (times[begin] + times[end - 1]);
+      for (const TrueCircle& circle : trueBoardView(motion, scenario, 0, middle)) {
+        const double speed = circle.velocity_px_s.x();
+        const Eigen::Vector2d away = pixel - circle.centre_px;
+        if (std::abs(speed) < 60.0 || std::abs(away.y()) > 1.5 || std::abs(away.norm() - radius_px) > 3.0)
+          continue;
+        const bool leading = away.x() * speed > 0.0;
+        if (leading == key.second) continue;  // a dark circle: OFF leads
+        // The edge reaches the pixel when this becomes zero.
+        const double edge_x =
+            std::sqrt(radius_px * radius_px - away.y() * away.y()) * (away.x() > 0.0 ? 1.0 : -1.0);
+        const double lag_s = (away.x() - edge_x) / speed;
+        Leads& sum = sums[leading ? 1 : 0];
+        double mean = 0.0;
+        for (std::size_t i = begin; i < end; ++i) mean += times[i] / static_cast<double>(end - begin);
+        const auto lead = [&](double t) { return (middle + lag_s - t) * std::abs(speed); };
+        sum.first += lead(times[begin]);
+        sum.mean += lead(mean);
+        sum.last += lead(times[end - 1]);
+        sum.count += static_cast<double>(end - begin);
+        ++sum.bursts;
+      }
+    }
+  }
+  Leads result;
+  for (const Leads& s : sums) {
+    if (s.bursts < 20) return {};
+    result.first += 0.5 * s.first / s.bursts;
+    result.mean += 0.5 * s.mean / s.bursts;
+    result.last += 0.5 * s.last / s.bursts;
+    result.count += 0.5 * s.count / s.bursts;
+    result.bursts += s.bursts;
+  }
+  return result;
+}
+
+}  // namespace
+
+class TestEventSimulator : public QObject {
+  Q_OBJECT
+ private slots:
+  void edges_leadAsComputed_data() {
+    QTest::addColumn<double>("blur_px");
+    QTest::addColumn<double>("threshold");
+    QTest::addColumn<double>("first");
+    QTest::addColumn<double>("mean");
+    QTest::addColumn<double>("last");
+    // Method 4.1, computed for a straight edge.
+    QTest::newRow("0.4, 0.3") << 0.4 << 0.3 << 0.61 << -0.05 << -0.76;
+    QTest::newRow("0.6, 0.15") << 0.6 << 0.15 << 1.08 << -0.08 << -1.58;
+    QTest::newRow("0.6, 0.3") << 0.6 << 0.3 << 0.83 << -0.06 << -1.03;
+    QTest::newRow("0.6, 0.5") << 0.6 << 0.5 << 0.60 << -0.23 << -1.29;
+    QTest::newRow("1.0, 0.3") << 1.0 << 0.3 << 1.29 << -0.10 << -1.60;
+  }
+  void edges_leadAsComputed() {
+    QFETCH(double, blur_px);
+    QFETCH(double, threshold);
+    QFETCH(double, first);
+    QFETCH(double, mean);
+    QFETCH(double, last);
+    const Leads leads = leadsOf(slidingScenario(blur_px, threshold));
+    const QString said = QString("first %1 mean %2 last %3, %4 events, %5 bursts")
+                             .arg(leads.first)
+                             .arg(leads.mean)
+                             .arg(leads.last)
+                             .arg(leads.count)
+                             .arg(leads.bursts);
+    qInfo("%s", qPrintable(said));
+    QVERIFY2(leads.bursts > 100, qPrintable(said));
+    // The table is for pixels whose reference is the bright level itself. Here the edge before has left it up
+    // to a threshold away, so that first events come later, and fewer.
+    QVERIFY2(std::abs(leads.first - first) < 0.2, qPrintable(said));
+    QVERIFY2(std::abs(leads.mean - mean) < 0.13, qPrintable(said));
+    QVERIFY2(std::abs(leads.last - last) < 0.32, qPrintable(said));
+    const double contrast = std::log(scenarioContrast());
+    QVERIFY2(std::abs(leads.count - (contrast / threshold - 0.5)) < 0.1 * contrast / threshold + 0.3,
+             qPrintable(said));
+  }
+  void edges_areLateByTheStatedDelay() {
+    Scenario scenario = slidingScenario(0.6, 0.3);
+    EventPixelModel& pixel = scenario.cameras[0].pixel;
+    pixel.latency_s = pixel.low_pass_s = 0.0;
+    const Leads prompt = leadsOf(scenario);
+    pixel.latency_s = 1e-3;
+    pixel.low_pass_s = 2e-3;
+    const Leads slow = leadsOf(scenario);  // against a truth that has the 3 ms in it
+    QVERIFY2(std::abs(slow.mean - prompt.mean) < 0.03, qPrintable(QString::number(slow.mean - prompt.mean)));
+  }
+  void seed_decidesEverything() {
+    Scenario scenario = test::wavedScenario();
+    scenario.duration_s = 0.2;
+    scenario.cameras[0].pixel.background_rate_hz = 5.0;
+    scenario.cameras[0].pixel.hot_pixels = 3;
+    scenario.cameras[0].pixel.threshold_mismatch = 0.05;
+    const std::vector<Event> events = eventsOf(scenario);
+    QVERIFY(events.size() > 1000);
+    QVERIFY(same(events, eventsOf(scenario)));
+    scenario.seed += 1;
+    QVERIFY(!same(events, eventsOf(scenario)));
+  }
+  void threads_changeNothing() {
+    Scenario scenario = test::wavedScenario();
+    scenario.duration_s = 0.2;
+    scenario.cameras[0].pixel.background_rate_hz = 5.0;
+    scenario.cameras[0].pixel.stamp_jitter_s = 1e-3;
+    const std::vector<Event> one = eventsOf(scenario, 1);
+    QVERIFY(same(one, eventsOf(scenario, 2)));
+    QVERIFY(same(one, eventsOf(scenario, 3)));
+  }
+  void stamps_areOrderedMicrosecondsOnTheCamerasClock() {
+    Scenario scenario = test::wavedScenario();
+    scenario.duration_s = 0.3;
+    scenario.cameras[0].time_offset_s = 0.4;
+    scenario.cameras[0].pixel.stamp_jitter_s = 1e-3;  // moves events across packets
+    const std::vector<Event> events = eventsOf(scenario);
+    QVERIFY(std::is_sorted(events.begin(), events.end(),
+                           [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; }));
+    QVERIFY(events.front().time_ns >= scenario.start_ns - 400'000'000);
+    QVERIFY(events.back().time_ns < scenario.start_ns - 90'000'000);
+    QVERIFY(std::all_of(events.begin(), events.end(), [](const Event& e) { return e.time_ns % 1000 == 0; }));
+  }
+  void stillScene_firesOnlyNoise() {
+    Scenario scenario = test::stillScenario();
+    QVERIFY(eventsOf(scenario).empty());
+    scenario.cameras[0].pixel.background_rate_hz = 2.0;
+    const double expected = 2.0 * 128 * 96;
+    const auto count = static_cast<double>(eventsOf(scenario).size());
+    QVERIFY(std::abs(count - expected) < 5.0 * std::sqrt(expected));
+    scenario.cameras[0].pixel.background_rate_hz = 0.0;
+    scenario.cameras[0].pixel.hot_pixels = 2;
+    scenario.cameras[0].pixel.hot_pixel_rate_hz = 1000.0;
+    const std::vector<Event> hot = eventsOf(scenario);
+    QVERIFY(std::abs(static_cast<double>(hot.size()) - 2000.0) < 250.0);
+  }
+  void brightCircles_swapPolarities() {
+    Scenario scenario = slidingScenario(0.6, 0.3);
+    scenario.board.circles = CircleShade::Bright;
+    const Leads leads = leadsOf(scenario);  // looks for OFF ahead
+    QVERIFY(leads.bursts == 0);
+  }
+  void stop_cancels() {
+    std::stop_source stop;
+    int packets = 0;
+    const Scenario scenario = test::wavedScenario();
+    const auto count = [&](EventSpan) {
+      if (++packets == 3) stop.request_stop();
+    };
+    bool cancelled = false;
+    try {
+      simulateEvents(scenario, 0, count, {silentProgress(), stop.get_token()});
+    } catch (const Cancelled&) {
+      cancelled = true;
+    }
+    QVERIFY(cancelled);
+    QCOMPARE(packets, 3);
+  }
+
+ private:
+  static double scenarioContrast() { return SceneModel{}.bright_reflectance / SceneModel{}.dark_reflectance; }
+};
+
+QTEST_APPLESS_MAIN(TestEventSimulator)
+#include "tst_event_simulator.moc"

@@ -1,0 +1,94 @@
+#include "core/base/time.h"
+#include "core/synthetic/imu_simulator.h"
+#include "core/synthetic/sinusoid_motion.h"
+#include "tests/core/synthetic/scenarios.h"
+
+#include <QtTest>
+
+using namespace evical;
+
+class TestImuSimulator : public QObject {
+  Q_OBJECT
+ private slots:
+  void atRest_measuresGravityUpwards() {
+    Scenario scenario = test::stillScenario();
+    const std::vector<ImuSample> samples = simulateImu(scenario, 0);
+    QCOMPARE(samples.size(), std::size_t{1000});
+    const Eigen::Quaterniond world_from_imu = SinusoidMotion(scenario).imuAt(0.3).world_from_body.rotation;
+    for (const ImuSample& sample : samples) {
+      QVERIFY(sample.angular_rate_rad_s.norm() < 1e-12);
+      QVERIFY((world_from_imu * sample.specific_force_m_s2 + scenario.gravity_in_world_m_s2).norm() < 1e-9);
+    }
+  }
+  void biasAndMapping_comeAfterTheMotion() {
+    Scenario scenario = test::wavedScenario();
+    const std::vector<ImuSample> ideal = simulateImu(scenario, 0);
+    SimulatedImu& imu = scenario.imus.front();
+    imu.gyroscope_bias_rad_s = {0.1, -0.2, 0.3};
+    imu.accelerometer_bias_m_s2 = {-0.4, 0.5, 0.6};
+    imu.gyroscope_mapping << 1.02, 0.01, -0.02, 0.0, 0.97, 0.03, 0.0, 0.0, 1.01;
+    imu.accelerometer_mapping << 0.99, -0.01, 0.02, 0.0, 1.03, -0.03, 0.0, 0.0, 0.98;
+    const std::vector<ImuSample> real = simulateImu(scenario, 0);
+    for (std::size_t k = 0; k < real.size(); k += 50) {
+      QVERIFY((real[k].angular_rate_rad_s -
+               (imu.gyroscope_mapping * ideal[k].angular_rate_rad_s + imu.gyroscope_bias_rad_s))
+                  .norm() < 1e-12);
+      QVERIFY((real[k].specific_force_m_s2 -
+               (imu.accelerometer_mapping * ideal[k].specific_force_m_s2 + imu.accelerometer_bias_m_s2))
+                  .norm() < 1e-12);
+    }
+  }
+  void noise_hasTheStatedDensity() {
+    Scenario scenario = test::stillScenario();
+    scenario.duration_s = 10.0;
+    SimulatedImu& imu = scenario.imus.front();
+    imu.rate_hz = 400.0;
+    imu.gyroscope_density = 2e-3;
+    double squares = 0.0;
+    const std::vector<ImuSample> samples = simulateImu(scenario, 0);
+    for (const ImuSample& sample : samples) squares += sample.angular_rate_rad_s.squaredNorm();
+    const double sigma = std::sqrt(squares / (3.0 * static_cast<double>(samples.size())));
+    QVERIFY(std::abs(sigma / (2e-3 * 20.0) - 1.0) < 0.03);  // 12000 numbers: 0.65 % is one sigma
+  }
+  void randomWalk_growsWithTheRootOfTime() {
+    Scenario scenario = test::stillScenario();
+    scenario.duration_s = 4.0;
+    scenario.imus.front().gyroscope_walk = 1e-2;
+    double squares = 0.0;
+    constexpr int kSeeds = 100;
+    for (int seed = 0; seed < kSeeds; ++seed) {
+      scenario.seed = static_cast<std::uint64_t>(seed);
+      squares += simulateImu(scenario, 0).back().angular_rate_rad_s.squaredNorm();
+    }
+    const double sigma = std::sqrt(squares / (3.0 * kSeeds));
+    QVERIFY(std::abs(sigma / (1e-2 * 2.0) - 1.0) < 0.2);
+  }
+  void clock_isTheImusOwn() {
+    Scenario scenario = test::wavedScenario();
+    scenario.imus.resize(2);
+    scenario.imus[1].gyroscope_density = scenario.imus[1].accelerometer_density = 0.0;
+    scenario.imus[1].time_offset_s = 0.25;
+    const ImuSample sample = simulateImu(scenario, 1)[100];
+    QCOMPARE(sample.time_ns, scenario.start_ns + 100'000'000 - 250'000'000);
+    QCOMPARE(sample.angular_rate_rad_s, simulateImu(scenario, 0)[100].angular_rate_rad_s);
+  }
+  void leverArm_addsTheRotationsAcceleration() {
+    Scenario scenario = test::wavedScenario();
+    scenario.imus.resize(2);
+    scenario.imus[1].gyroscope_density = scenario.imus[1].accelerometer_density = 0.0;
+    scenario.imus[1].reference_from_imu.rotation = Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5);
+    scenario.imus[1].reference_from_imu.translation_m = {0.1, -0.2, 0.3};
+    const RigidTransform& mount = scenario.imus[1].reference_from_imu;
+    const SinusoidMotion motion(scenario);
+    const auto place = [&](double t) { return motion.imuAt(t).world_from_body * mount.translation_m; };
+    const double t = 0.4, h = 1e-4;
+    const Eigen::Vector3d acceleration = (place(t + h) - 2.0 * place(t) + place(t - h)) / (h * h);
+    const Eigen::Quaterniond world_from_imu = motion.imuAt(t).world_from_body.rotation * mount.rotation;
+    const Eigen::Vector3d expected =
+        world_from_imu.conjugate() * (acceleration - scenario.gravity_in_world_m_s2);
+    QVERIFY((simulateImu(scenario, 1)[400].specific_force_m_s2 - expected).norm() < 1e-5);
+  }
+};
+
+QTEST_APPLESS_MAIN(TestImuSimulator)
+#include "tst_imu_simulator.moc"
