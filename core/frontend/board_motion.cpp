@@ -76,7 +76,7 @@ BoardMotion predicted(const BoardMotion& motion, std::int64_t time_ns) {
 }
 
 std::optional<CircleImage> imageOfCircle(const Eigen::Matrix3d& h, const CircleBoard& board, int index,
-                                             const std::optional<CameraIntrinsics>& camera) {
+                                         const std::optional<CameraIntrinsics>& camera) {
   const Eigen::Vector2d c = board.centre_m(index);
   const double r2 = board.radius_m * board.radius_m;
   Eigen::Matrix3d dual;
@@ -106,8 +106,8 @@ std::optional<CircleImage> imageOfCircle(const Eigen::Matrix3d& h, const CircleB
 }
 
 std::vector<CircleImage> projectBoard(const Eigen::Matrix3d& ideal_from_board, const CircleBoard& board,
-                                          const std::optional<CameraIntrinsics>& camera,
-                                          Resolution resolution_px) {
+                                      const std::optional<CameraIntrinsics>& camera,
+                                      Resolution resolution_px) {
   std::vector<CircleImage> circles;
   for (int i = 0; i < board.circleCount(); ++i) {
     std::optional<CircleImage> circle = imageOfCircle(ideal_from_board, board, i, camera);

@@ -71,14 +71,13 @@ struct CircleImage {
   Eigen::Vector2d sensor_centre_px = Eigen::Vector2d::Zero();  // in the sensor's own pixels
   double sensor_radius_px = 0.0;
 };
-std::optional<CircleImage> imageOfCircle(const Eigen::Matrix3d& ideal_from_board,
-                                             const CircleBoard& board, int circle,
-                                             const std::optional<CameraIntrinsics>& camera);
+std::optional<CircleImage> imageOfCircle(const Eigen::Matrix3d& ideal_from_board, const CircleBoard& board,
+                                         int circle, const std::optional<CameraIntrinsics>& camera);
 
 // Circles that touch the image.
 std::vector<CircleImage> projectBoard(const Eigen::Matrix3d& ideal_from_board, const CircleBoard& board,
-                                          const std::optional<CameraIntrinsics>& camera,
-                                          Resolution resolution_px);
+                                      const std::optional<CameraIntrinsics>& camera,
+                                      Resolution resolution_px);
 
 // True if the whole circle lies in the image.
 bool insideImage(const CircleImage& circle, Resolution resolution_px);
