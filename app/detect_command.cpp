@@ -3,6 +3,7 @@
 #include "app/session_arguments.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/frontend/stage_image_writer.h"
 #include "core/pipeline/recording_pass.h"
 #include "core/pipeline/result_files.h"
 
@@ -16,13 +17,27 @@
 namespace evical {
 namespace {
 
-int run(const SessionArguments& arguments) {
+struct DetectArguments : SessionArguments {
+  bool images = false;
+  int every_nth = 10;
+};
+
+int run(const DetectArguments& arguments) {
   const Session session = sessionFrom(arguments);
   makeOutputFolder(arguments.output);
   Console console(arguments.quiet);
   const RunContext context{console, stopOnSignals()};
   console.stageStarted("detect");
-  const RecordingPass pass = readAndDetect(session, context);
+  std::vector<std::unique_ptr<StageImageWriter>> writers;
+  const ObserverFactory observers = [&](std::size_t camera, const BoardScene& scene) -> FrontEndObserver* {
+    const std::filesystem::path folder =
+        std::filesystem::path(arguments.output) / "images" / session.cameras[camera].name;
+    makeOutputFolder(folder);
+    writers.push_back(std::make_unique<StageImageWriter>(folder, arguments.every_nth, scene));
+    return writers.back().get();
+  };
+  const RecordingPass pass =
+      readAndDetect(session, context, arguments.images ? observers : ObserverFactory{});
   for (const RecordingFault& fault : pass.faults) console.log(LogLevel::Warning, fault.text);
   writeDetectionFiles(arguments.output, pass, console.logText());
   console.stageStarted("done");
@@ -42,9 +57,12 @@ int run(const SessionArguments& arguments) {
 }  // namespace
 
 void addDetectCommand(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<SessionArguments>();
+  auto arguments = std::make_shared<DetectArguments>();
   CLI::App* const command = app.add_subcommand("detect", "Find the board only: detections, no estimate");
   addSessionArguments(*command, *arguments);
+  command->add_flag("--images", arguments->images, "Draw the stages of windows as PNG");
+  command->add_option("--every", arguments->every_nth, "Draw every N-th window")
+      ->check(CLI::Range(1, 1000000));
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

@@ -1,13 +1,10 @@
 // The command line: parses, runs one command, and says how it went by the exit code.
-#include "app/commands.h"
-#include "app/version.h"
-#include "core/base/error.h"
-#ifdef EVICAL_HAS_INSPECT
-#include "app/inspect_command.h"
-#endif
-
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
+#include "app/commands.h"
+#include "app/inspect_command.h"
+#include "app/version.h"
+#include "core/base/error.h"
 
 #include <csignal>
 #include <cstdio>
