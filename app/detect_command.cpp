@@ -29,11 +29,13 @@ int run(const DetectArguments& arguments) {
   const RunContext context{console, stopOnSignals()};
   console.stageStarted("detect");
   std::vector<std::unique_ptr<StageImageWriter>> writers;
-  const ObserverFactory observers = [&](std::size_t camera, const BoardScene& scene) -> FrontEndObserver* {
+  const ObserverFactory observers = [&](std::size_t camera,
+                                        const BoardTracker& tracker) -> FrontEndObserver* {
     const std::filesystem::path folder =
         std::filesystem::path(arguments.output) / "images" / session.cameras[camera].name;
     makeOutputFolder(folder);
-    writers.push_back(std::make_unique<StageImageWriter>(folder, arguments.every_nth, scene));
+    writers.push_back(std::make_unique<StageImageWriter>(folder, arguments.every_nth, tracker.scene(),
+                                                         &tracker.history(), session.options.front_end));
     return writers.back().get();
   };
   const RecordingPass pass =

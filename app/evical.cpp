@@ -25,9 +25,7 @@ int fail(int exit_code, std::string_view reason) {
 void addCommands(CLI::App& app, int& exit_code) {
   addCalibrateCommand(app, exit_code);
   addDetectCommand(app, exit_code);
-#ifdef EVICAL_HAS_INSPECT
   addInspectCommand(app, exit_code);
-#endif
   addSimulateCommand(app, exit_code);
   addCompareCommand(app, exit_code);
   addBoardCommand(app, exit_code);

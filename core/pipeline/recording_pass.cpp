@@ -172,7 +172,7 @@ class WindowWorker {
       tracker = std::make_unique<BoardTracker>(session_.board, *batch.opened_px,
                                                session_.cameras[batch.camera].intrinsics,
                                                session_.options.front_end, batch.start_ns);
-      if (observers_) tracker->observeWith(observers_(batch.camera, tracker->scene()));
+      if (observers_) tracker->observeWith(observers_(batch.camera, *tracker));
     }
     tracker->addBursts(batch.bursts, batch.first_event_ns, batch.complete_until_ns);
   }
@@ -195,13 +195,23 @@ Routing route(const Session& session, const RecordingReader& reader) {
   Routing routing;
   routing.camera_of.resize(reader.streams().size());
   routing.imu_of.resize(reader.streams().size());
+  const auto find = [&](const std::string& name, StreamType type) {
+    try {
+      return findStream(reader, name, type);
+    } catch (const CalibrationError& error) {
+      std::string lost;  // perhaps the stream was in what is lost
+      for (const RecordingFault& fault : reader.faults()) lost += ". " + fault.text;
+      throw badInput(fmt::format("{}: {}", session.recording.string(), error.place()), error.problem() + lost,
+                     error.advice());
+    }
+  };
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
-    const std::size_t stream = findStream(reader, session.cameras[k].stream, StreamType::Events);
+    const std::size_t stream = find(session.cameras[k].stream, StreamType::Events);
     routing.camera_of[stream] = k;
     routing.selected.push_back(stream);
   }
   for (std::size_t k = 0; k < session.imus.size(); ++k) {
-    const std::size_t stream = findStream(reader, session.imus[k].stream, StreamType::Imu);
+    const std::size_t stream = find(session.imus[k].stream, StreamType::Imu);
     routing.imu_of[stream] = k;
     routing.selected.push_back(stream);
   }

@@ -22,7 +22,7 @@ struct RecordingPass {
 };
 
 // Called for each camera before its first window; what it returns sees the camera's windows. Null: nobody.
-using ObserverFactory = std::function<FrontEndObserver*(std::size_t camera, const BoardScene& scene)>;
+using ObserverFactory = std::function<FrontEndObserver*(std::size_t camera, const BoardTracker& tracker)>;
 
 // Reads and finds bursts in one thread, searches windows in another; memory does not grow with the number of
 // events. Throws BadInput for streams that are missing, empty, or do not fit the session.
