@@ -1,0 +1,137 @@
+#include "core/frontend/board_tracker.h"
+
+#include "core/synthetic/board_truth.h"
+#include "core/synthetic/event_simulator.h"
+
+#include <QtTest>
+
+#include <cmath>
+
+namespace {
+
+using namespace evical;
+
+// A DAVIS346 that looks at the usual board, with clutter behind it.
+Scenario davis346() {
+  Scenario scenario;
+  scenario.seed = 11;
+  scenario.duration_s = 2.0;
+  scenario.board = {BoardType::AsymmetricCircles, 11, 4, 0.03, 0.012, CircleShade::Dark};
+  SimulatedCamera camera;
+  camera.intrinsics.resolution_px = {346, 260};
+  camera.intrinsics.focal_length_px = {260.0, 260.0};
+  camera.intrinsics.principal_point_px = {172.5, 129.5};
+  camera.intrinsics.distortion = {-0.3, 0.08, 0.0, 0.0, 0.0};
+  scenario.cameras.push_back(camera);
+  scenario.imus.emplace_back();
+  return scenario;
+}
+
+struct Detected {
+  Scenario scenario = davis346();
+  BoardObservations observations;
+};
+
+// Simulated once for all tests.
+const std::vector<Event>& events() {
+  static const std::vector<Event> all = [] {
+    std::vector<Event> collected;
+    simulateEvents(davis346(), 0,
+                   [&](EventSpan span) { collected.insert(collected.end(), span.begin(), span.end()); });
+    return collected;
+  }();
+  return all;
+}
+
+Detected detect(CandidateSource method, std::size_t packet = 20000) {
+  Detected detected;
+  FrontEndOptions options;
+  options.detection.method = method;
+  BoardTracker tracker(detected.scenario.board, {346, 260}, detected.scenario.cameras[0].intrinsics, options,
+                       detected.scenario.start_ns);
+  for (std::size_t i = 0; i < events().size(); i += packet)
+    tracker.add(EventSpan(events().data() + i, std::min(packet, events().size() - i)));
+  detected.observations = tracker.finish();
+  return detected;
+}
+
+class TestBoardTracker : public QObject {
+  Q_OBJECT
+ private slots:
+  void simulatedRecording_isSolved_data();
+  void simulatedRecording_isSolved();
+  void views_areInTimeOrder();
+  void packets_doNotMatter();
+  void noEvents_giveNothing();
+};
+
+void TestBoardTracker::simulatedRecording_isSolved_data() {
+  QTest::addColumn<int>("method");
+  QTest::newRow("ring vote") << static_cast<int>(CandidateSource::RingVote);
+  QTest::newRow("normal flow") << static_cast<int>(CandidateSource::NormalFlow);
+}
+
+void TestBoardTracker::simulatedRecording_isSolved() {
+  QFETCH(int, method);
+  const Detected detected = detect(static_cast<CandidateSource>(method));
+  const SinusoidMotion motion(detected.scenario);
+  const BoardObservations& observations = detected.observations;
+  const auto solved =
+      std::count_if(observations.windows.begin(), observations.windows.end(), [](const auto& w) {
+        return w.outcome == WindowOutcome::Complete || w.outcome == WindowOutcome::Partial;
+      });
+  QVERIFY(observations.windows.size() > 30);
+  QVERIFY2(static_cast<double>(solved) >= 0.95 * static_cast<double>(observations.windows.size()),
+           qPrintable(QString("%1 of %2").arg(solved).arg(observations.windows.size())));
+  double squares = 0.0;
+  int count = 0;
+  for (const BoardView& view : observations.views) {
+    for (const CircleObservation& circle : view.circles) {
+      for (const TrueCircle& truth : trueBoardView(motion, detected.scenario, 0, circle.time_s)) {
+        if (truth.circle != circle.circle) continue;
+        squares += (truth.centre_px - circle.centre_px).squaredNorm();
+        ++count;
+      }
+    }
+  }
+  QVERIFY(count > 1000);
+  const double rms_px = std::sqrt(squares / count);
+  QVERIFY2(rms_px < 0.3, qPrintable(QString::number(rms_px)));
+}
+
+void TestBoardTracker::views_areInTimeOrder() {
+  const Detected detected = detect(CandidateSource::NormalFlow);
+  const auto earlier = [](const auto& a, const auto& b) { return a.time_s < b.time_s; };
+  const BoardObservations& observations = detected.observations;
+  QVERIFY(std::is_sorted(observations.views.begin(), observations.views.end(), earlier));
+  QVERIFY(std::is_sorted(observations.windows.begin(), observations.windows.end(), earlier));
+  QCOMPARE(observations.events, static_cast<std::uint64_t>(events().size()));
+  for (const BoardView& view : observations.views) {
+    QVERIFY(std::is_sorted(view.circles.begin(), view.circles.end(),
+                           [](const auto& a, const auto& b) { return a.circle < b.circle; }));
+    for (const CircleObservation& circle : view.circles) QVERIFY(std::abs(circle.time_s - view.time_s) < 0.1);
+  }
+}
+
+void TestBoardTracker::packets_doNotMatter() {
+  const BoardObservations large = detect(CandidateSource::NormalFlow, 100000).observations;
+  const BoardObservations small = detect(CandidateSource::NormalFlow, 1000).observations;
+  QCOMPARE(small.windows.size(), large.windows.size());
+  QCOMPARE(small.views.size(), large.views.size());
+  for (std::size_t k = 0; k < small.views.size(); ++k) {
+    QCOMPARE(small.views[k].circles.size(), large.views[k].circles.size());
+    QVERIFY((small.views[k].circles[0].centre_px - large.views[k].circles[0].centre_px).norm() < 1e-6);
+  }
+}
+
+void TestBoardTracker::noEvents_giveNothing() {
+  BoardTracker tracker(davis346().board, {346, 260}, std::nullopt, FrontEndOptions{}, 0);
+  tracker.add({});
+  const BoardObservations observations = tracker.finish();
+  QVERIFY(observations.views.empty() && observations.windows.empty());
+}
+
+}  // namespace
+
+QTEST_GUILESS_MAIN(TestBoardTracker)
+#include "tst_board_tracker.moc"
