@@ -1,6 +1,7 @@
 #include "core/pipeline/calibration_pipeline.h"
 
 #include "core/base/error.h"
+#include "core/base/time.h"
 #include "core/initialisation/initialise.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/covariance.h"
@@ -85,6 +86,39 @@ void checkBoardSeen(const BoardObservations& observations, const CircleBoard& bo
             "session; 'evical detect --images' draws what is seen");
 }
 
+void checkDuration(const Session& session, const RecordingPass& pass) {
+  const double least_s = session.options.initialisation.least_overlap_s;
+  const auto check = [&](const std::string& sensor, double duration_s) {
+    if (duration_s >= least_s) return;
+    throw calibrationFailed(
+        sensor,
+        fmt::format("the recording is too short: {:.2f} s, at least {:.2f} s are needed{}", duration_s,
+                    least_s, session.time_range_s ? " in time_range_s" : ""),
+        "Record 20 s or more of varied motion");
+  };
+  for (const BoardObservations& camera : pass.cameras)
+    check(camera.camera,
+          camera.windows.empty() ? 0.0 : camera.windows.back().time_s - camera.windows.front().time_s);
+  for (const ImuData& imu : pass.imus)
+    check(imu.name, evical::secondsSince(imu.samples.front().time_ns, imu.samples.back().time_ns));
+}
+
+// A board that is given too large is found all the same, and calibrates well: but people should know.
+void checkBoardSize(const BoardObservations& observations, const CircleBoard& board,
+                    std::vector<RecordingFault>& faults) {
+  constexpr std::size_t kEnoughViews = 30;
+  if (observations.views.size() < kEnoughViews) return;
+  std::vector<bool> seen(static_cast<std::size_t>(board.circleCount()), false);
+  for (const BoardView& view : observations.views)
+    for (const CircleObservation& circle : view.circles) seen[static_cast<std::size_t>(circle.circle)] = true;
+  const auto never = std::count(seen.begin(), seen.end(), false);
+  if (never == 0) return;
+  faults.push_back({observations.camera, "board_size", 0.0,
+                    fmt::format("{}: {} of the board's {} circles were seen in none of {} views: check rows "
+                                "and cols in the session",
+                                observations.camera, never, board.circleCount(), observations.views.size())});
+}
+
 CalibrationInput inputFrom(const Session& session, const RecordingPass& pass) {
   CalibrationInput input;
   input.start_ns = pass.start_ns;
@@ -142,8 +176,11 @@ CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunCo
     const std::vector<RecordingFault> faults = checkImu(imu.name, imu.samples);
     run.pass.faults.insert(run.pass.faults.end(), faults.begin(), faults.end());
   }
+  for (const BoardObservations& camera : run.pass.cameras)
+    checkBoardSize(camera, session.board, run.pass.faults);
   for (const RecordingFault& fault : run.pass.faults) context.progress.log(LogLevel::Warning, fault.text);
   logDetections(run.pass, context);
+  checkDuration(session, run.pass);
   for (const BoardObservations& camera : run.pass.cameras) checkBoardSeen(camera, session.board);
   const CalibrationInput input = inputFrom(session, run.pass);
 
