@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <memory>
 #include <span>
+#include <system_error>
 #include <vector>
 
 namespace evical {
@@ -57,6 +58,36 @@ class ImuFeed {
   std::size_t next_ = 0;
 };
 
+// Takes the folder away again if it wasn't there before and nothing came of it.
+class NewFolder {
+ public:
+  explicit NewFolder(const std::filesystem::path& folder)
+      : folder_(folder), was_there_(std::filesystem::exists(folder)) {
+    makeOutputFolder(folder);
+  }
+  ~NewFolder() {
+    std::error_code ignored;
+    if (!was_there_) std::filesystem::remove(folder_, ignored);  // only if empty
+  }
+  NewFolder(const NewFolder&) = delete;
+  NewFolder& operator=(const NewFolder&) = delete;
+
+ private:
+  std::filesystem::path folder_;
+  bool was_there_;
+};
+
+// A recording without its session and truth is of no use.
+void writeTexts(const std::vector<FileContent>& texts, const std::vector<std::filesystem::path>& recordings) {
+  try {
+    writeFilesWhole(texts);
+  } catch (...) {
+    std::error_code ignored;
+    for (const std::filesystem::path& recording : recordings) std::filesystem::remove(recording, ignored);
+    throw;
+  }
+}
+
 }  // namespace
 
 SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path& folder,
@@ -64,7 +95,7 @@ SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path
   if (scenario.cameras.size() != 1) {
     throw badInput(scenario.name, "recordings of several cameras cannot be simulated yet", "Give one camera");
   }
-  makeOutputFolder(folder);
+  const NewFolder new_folder(folder);
   const bool text = scenario.format == SimulatedFormat::Text;
   SimulationSummary summary;
   summary.recording = text ? folder : folder / "recording.bag";
@@ -90,10 +121,9 @@ SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path
       context);
   for (ImuFeed& feed : feeds) feed.writeRest(*writer);
   writer->finish();
-  const std::vector<FileContent> files = {
-      {summary.session, sessionYaml(scenario, text ? "." : "recording.bag")},
-      {summary.truth, truthYaml(scenario)}};
-  writeFilesWhole(files);
+  writeTexts({{summary.session, sessionYaml(scenario, text ? "." : "recording.bag")},
+              {summary.truth, truthYaml(scenario)}},
+             text ? std::vector{folder / "events.txt", folder / "imu.txt"} : std::vector{summary.recording});
   return summary;
 }
 
