@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# Prints the accuracy table of the README: every scenario that a calibration must master, then the seeds.
+set -uo pipefail
+cd "$(dirname "$0")/.."
+
+packaging/install-dependencies.sh
+cmake --preset release
+cmake --build --preset release --target evical_accuracy
+accuracy=build/release/tests/benchmarks/evical_accuracy
+scenarios=config/scenarios
+
+"$accuracy" "$scenarios"/{davis346,board_9x4,board_7x3,bare_7x3_fast,vga,hd,fisheye,noisy,fast,slow,large_offset}.yaml \
+            "$scenarios"/{imu_200hz,badly_scaled_imu,partial_views,near,far,bright_circles,low_contrast}.yaml \
+            "$scenarios"/{blur_0.4px,blur_1px,threshold_0.15,threshold_0.5}.yaml \
+            "$scenarios"/{planar_motion,one_axis_rotation,hardly_moving}.yaml
+"$accuracy" --seeds 20 "$scenarios/davis346_10s.yaml"

@@ -1,0 +1,239 @@
+// Accuracy against the truth of simulated recordings, as a table: `evical_accuracy [--seeds N] [--duration S]
+// SCENARIO...`. Recordings are simulated in memory and go through the same front end, initialisation and
+// batch as `evical calibrate`.
+#include "core/base/error.h"
+#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/result_files.h"
+#include "core/report/truth_comparison.h"
+#include "core/synthetic/board_truth.h"
+#include "core/synthetic/event_simulator.h"
+#include "core/synthetic/imu_simulator.h"
+#include "core/synthetic/scenario_yaml.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace evical {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kEnoughOfBoard = 0.4;  // of the circles in view make a window that counts
+
+double secondsOf(Clock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+struct Targets {
+  double windows = 0.85, rotation_deg = 0.1, translation_mm = 2.0, time_offset_ms = 0.2;
+};
+
+Targets targetsOf(const std::string& scenario) {
+  if (scenario == "davis346") return {0.95, 0.03, 0.7, 0.1};
+  return {};
+}
+
+Session sessionFor(const Scenario& scenario) {
+  Session session;
+  session.source = scenario.name;
+  session.board = scenario.board;
+  for (const SimulatedCamera& camera : scenario.cameras) {
+    session.cameras.push_back(
+        {camera.name, camera.stream, camera.intrinsics.resolution_px, camera.intrinsics});
+  }
+  for (const SimulatedImu& imu : scenario.imus) {
+    SessionImu out;
+    out.name = imu.name;
+    out.stream = imu.stream;
+    out.noise = {imu.gyroscope_density, imu.accelerometer_density};
+    session.imus.push_back(out);
+  }
+  session.reference = scenario.imus.front().name;
+  return session;
+}
+
+struct Outcome {
+  std::string verdict;
+  double windows_found = 0.0;  // of those with enough of the board in view
+  double events_per_s = 0.0;
+  double detect_s = 0.0, solve_s = 0.0;
+  std::optional<TruthComparison> comparison;
+  std::optional<CameraUncertainty> uncertainty;
+};
+
+// Front end over the events as they are simulated; its own time is measured apart.
+RecordingPass detect(const Scenario& scenario, const Session& session, Outcome& outcome) {
+  RecordingPass pass;
+  pass.start_ns = scenario.start_ns;
+  const CameraIntrinsics& camera = scenario.cameras.front().intrinsics;
+  BoardTracker tracker(scenario.board, camera.resolution_px, camera, session.options.front_end,
+                       scenario.start_ns);
+  Clock::duration busy{};
+  simulateEvents(scenario, 0, [&](EventSpan events) {
+    const Clock::time_point before = Clock::now();
+    tracker.add(events);
+    busy += Clock::now() - before;
+  });
+  const Clock::time_point before = Clock::now();
+  pass.cameras.push_back(tracker.finish());
+  busy += Clock::now() - before;
+  pass.cameras.front().camera = scenario.cameras.front().name;
+  for (std::size_t k = 0; k < scenario.imus.size(); ++k) {
+    const SimulatedImu& imu = scenario.imus[k];
+    pass.imus.push_back(
+        {imu.name, {imu.gyroscope_density, imu.accelerometer_density}, simulateImu(scenario, k)});
+  }
+  pass.detect_s = outcome.detect_s = secondsOf(busy);
+  outcome.events_per_s = static_cast<double>(pass.cameras.front().events) / scenario.duration_s;
+  return pass;
+}
+
+double windowsFound(const Scenario& scenario, const BoardObservations& observations) {
+  const SinusoidMotion motion(scenario);
+  const double enough = kEnoughOfBoard * scenario.board.circleCount();
+  int seen = 0, found = 0;
+  for (const WindowReport& window : observations.windows) {
+    int inside = 0;
+    for (const TrueCircle& circle : trueBoardView(motion, scenario, 0, window.time_s))
+      inside += circle.inside;
+    if (inside < enough) continue;
+    ++seen;
+    found += window.outcome == WindowOutcome::Complete || window.outcome == WindowOutcome::Partial;
+  }
+  return seen == 0 ? 0.0 : static_cast<double>(found) / seen;
+}
+
+NamedResult truthOf(const Scenario& scenario) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() /
+                                     fmt::format("evical_truth_{}_{}.yaml", scenario.name, scenario.seed);
+  std::ofstream(file) << truthYaml(scenario);
+  NamedResult truth = readResultYaml(file);
+  std::filesystem::remove(file);
+  return truth;
+}
+
+Outcome run(const Scenario& scenario) {
+  Outcome outcome;
+  const Session session = sessionFor(scenario);
+  RecordingPass pass = detect(scenario, session, outcome);
+  outcome.windows_found = windowsFound(scenario, pass.cameras.front());
+  const Clock::time_point before = Clock::now();
+  try {
+    const CalibrationRun run = calibrate(session, std::move(pass), RunContext{});
+    outcome.verdict = statusName(run.result.status);
+    outcome.comparison = compareWithTruth(namedResult(session, run.result, "benchmark"), truthOf(scenario));
+    outcome.uncertainty = run.result.uncertainty.cameras.front();
+  } catch (const CalibrationError& error) {
+    outcome.verdict = std::string("failed: ") + error.what();
+  }
+  outcome.solve_s = secondsOf(Clock::now() - before);
+  return outcome;
+}
+
+void printHeader() {
+  fmt::print(
+      "| scenario | seed | Mev/s | windows found | rotation, deg (sigma) | translation, mm (sigma) | time "
+      "offset, ms (sigma) | "
+      "detect, s | solve, s | verdict | targets |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+}
+
+bool printRow(const Scenario& scenario, const Outcome& o) {
+  constexpr double kDegPerRad = 57.29577951308232;
+  if (!o.comparison) {
+    fmt::print("| {} | {} | {:.1f} | {:.1f} % | | | | {:.1f} | {:.1f} | {} | |\n", scenario.name,
+               scenario.seed, o.events_per_s * 1e-6, 100.0 * o.windows_found, o.detect_s, o.solve_s,
+               o.verdict);
+    return false;
+  }
+  const CameraError& error = o.comparison->cameras.front();
+  const Targets t = targetsOf(scenario.name);
+  const bool met = o.windows_found >= t.windows && error.rotation_deg <= t.rotation_deg &&
+                   error.translation_mm <= t.translation_mm &&
+                   std::abs(error.time_offset_ms) <= t.time_offset_ms;
+  fmt::print(
+      "| {} | {} | {:.1f} | {:.1f} % | {:.4f} ({:.4f}) | {:.3f} ({:.3f}) | {:.4f} ({:.4f}) | {:.1f} | {:.1f} "
+      "| {} | {} |\n",
+      scenario.name, scenario.seed, o.events_per_s * 1e-6, 100.0 * o.windows_found, error.rotation_deg,
+      kDegPerRad * o.uncertainty->rotation_std_rad.norm(), error.translation_mm,
+      1e3 * o.uncertainty->translation_std_m.norm(), error.time_offset_ms,
+      1e3 * o.uncertainty->time_offset_std_s, o.detect_s, o.solve_s, o.verdict, met ? "met" : "MISSED");
+  std::fflush(stdout);
+  return met;
+}
+
+// Honest sigmas: errors over sigmas have RMS 1, whatever the seed.
+void printNormalised(const std::vector<Outcome>& outcomes) {
+  double rotation2 = 0.0, translation2 = 0.0, offset2 = 0.0, all2 = 0.0;
+  int rotations = 0, translations = 0, offsets = 0, all = 0;
+  for (const Outcome& outcome : outcomes) {
+    if (!outcome.comparison) continue;
+    for (const QuantityError& quantity : outcome.comparison->quantities) {
+      if (quantity.sigma <= 0.0) continue;
+      const double squared = quantity.normalised() * quantity.normalised();
+      all2 += squared;
+      ++all;
+      const auto add = [&](const char* part, double& sum, int& count) {
+        if (quantity.name.find(part) == std::string::npos) return;
+        sum += squared;
+        ++count;
+      };
+      add(".rotation.", rotation2, rotations);
+      add(".translation.", translation2, translations);
+      add(".time_offset", offset2, offsets);
+    }
+  }
+  const auto rms = [](double sum, int count) { return count == 0 ? 0.0 : std::sqrt(sum / count); };
+  fmt::print(
+      "\nnormalised errors over {} recordings, RMS: rotation {:.2f}, translation {:.2f}, time offset {:.2f}, "
+      "all quantities {:.2f} "
+      "(target 0.7-1.4)\n",
+      outcomes.size(), rms(rotation2, rotations), rms(translation2, translations), rms(offset2, offsets),
+      rms(all2, all));
+}
+
+int main(int argc, char** argv) {
+  CLI::App app("Accuracy on simulated recordings against their truth");
+  std::vector<std::string> files;
+  int seeds = 1;
+  std::optional<double> duration_s;
+  app.add_option("SCENARIO", files, "Scenario files")->required();
+  app.add_option("--seeds", seeds, "Each scenario with this many seeds")->check(CLI::Range(1, 1000));
+  app.add_option("--duration", duration_s, "Seconds, instead of the scenario's")
+      ->check(CLI::Range(2.0, 3600.0));
+  CLI11_PARSE(app, argc, argv);
+  printHeader();
+  bool all_met = true;
+  for (const std::string& file : files) {
+    std::vector<Outcome> outcomes;
+    for (int k = 0; k < seeds; ++k) {
+      Scenario scenario = readScenario(file);
+      if (duration_s) scenario.duration_s = *duration_s;
+      scenario.seed += static_cast<std::uint64_t>(k);
+      outcomes.push_back(run(scenario));
+      all_met = printRow(scenario, outcomes.back()) && all_met;
+    }
+    if (seeds > 1) printNormalised(outcomes);
+  }
+  return all_met ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace evical
+
+int main(int argc, char** argv) {
+  try {
+    return evical::main(argc, argv);
+  } catch (const evical::CalibrationError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 2;
+  }
+}
