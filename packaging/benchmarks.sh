@@ -4,7 +4,7 @@ set -uo pipefail
 cd "$(dirname "$0")/.."
 
 packaging/install-dependencies.sh
-cmake --preset release
+cmake --preset release -DEVICAL_TESTS=ON
 cmake --build --preset release --target evical_accuracy
 accuracy=build/release/tests/benchmarks/evical_accuracy
 scenarios=config/scenarios
