@@ -7,12 +7,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 namespace evical {
 namespace {
 
 constexpr std::uint32_t kLargestHeader_bytes = 1 << 20;  // real ones have below 100 bytes
 constexpr int kMostAlikeFaults = 10;  // of one kind and stream; a broken file has thousands
+constexpr std::uint64_t kEnoughStamps = 1000;
+constexpr std::int64_t kLargestSorted_ns = 10'000'000;
 
 struct ChunkRecord {
   rosbag::RecordHeader header;
@@ -36,29 +40,42 @@ BagReader::BagReader(const std::filesystem::path& path)
   if (!file_) throw badInput(path_, "the file cannot be opened", "Check its permissions.");
   file_size_ = static_cast<std::uint64_t>(file_.tellg());
   position_ = rosbag::kMagic.size();
-  FileRecord record;
-  const bool has_header =
-      readRecord(position_, record) == RecordState::Whole && record.header.is(rosbag::Op::BagHeader);
-  const std::uint32_t chunks = record.header.chunk_count;
-  const bool has_index =
-      has_header && listFromIndex(record.header.index_position) && chunk_connections_.size() >= chunks;
-  if (connections_.empty()) {
-    listByScan();
-    if (!has_index) {
-      addFault("", "no_index",
-               "The bag has no usable index: its recorder did not close it. It is read from the start.");
-    }
-  }
-  findResolutions();
-  selected_.resize(streams_.size());
+  listStreams();
+  lookIntoFirstMessages();
   for (std::size_t i = 0; i < streams_.size(); ++i) {
-    selected_[i] = streams_[i].type == StreamType::Events || streams_[i].type == StreamType::Imu;
+    states_[i].selected = streams_[i].type == StreamType::Events || streams_[i].type == StreamType::Imu;
+    if (states_[i].stampless()) {
+      addFault(streams_[i].name, "no_stamps",
+               "Stamps are 0; the times of recording are used, which jitter by ms.");
+    }
   }
 }
 
+void BagReader::listStreams() {
+  FileRecord record;
+  const bool has_header =
+      readRecord(position_, record) == RecordState::Whole && record.header.is(rosbag::Op::BagHeader);
+  const rosbag::RecordHeader header = record.header;
+  const bool is_empty =
+      has_header && header.index_position == record.end() && header.index_position == file_size_;
+  if (is_empty) return;
+  if (has_header && listFromIndex(header.index_position, header.connection_count, header.chunk_count)) return;
+  connections_.clear();  // an index that is not whole is none
+  chunk_connections_.clear();
+  streams_.clear();
+  states_.clear();
+  listByScan();
+  const bool never_closed = has_header && header.index_position == 0;
+  addFault("", "no_index",
+           never_closed
+               ? "The bag has no index: its recorder did not close it. It is read from the start."
+               : fmt::format("The bag's index is damaged, or cut off at byte {}. It is read from the start.",
+                             file_size_));
+}
+
 void BagReader::select(const std::vector<std::size_t>& streams) {
-  selected_.assign(streams_.size(), false);
-  for (const std::size_t stream : streams) selected_.at(stream) = true;
+  for (StreamState& state : states_) state.selected = false;
+  for (const std::size_t stream : streams) states_.at(stream).selected = true;
 }
 
 bool BagReader::readBytes(std::uint64_t position, std::uint64_t count, std::string& bytes) {
@@ -81,39 +98,51 @@ BagReader::RecordState BagReader::readRecord(std::uint64_t position, FileRecord&
   if (!rosbag::parseRecordHeader(cursor.take(header_size), record.header)) return RecordState::Damaged;
   record.data_size = cursor.number<std::uint32_t>();
   record.data_position = position + 8 + header_size;
-  return record.data_size <= file_size_ - record.data_position ? RecordState::Whole : RecordState::Damaged;
+  return record.end() <= file_size_ ? RecordState::Whole : RecordState::Cut;
 }
 
-bool BagReader::loadChunk(const FileRecord& record) {
+// What can be unpacked of it: a cut chunk is read up to the cut, and one whose length lies as far as its
+// packed data go, which are hardly ever longer than the plain ones.
+void BagReader::loadChunk(std::uint64_t position, const FileRecord& record) {
+  chunk_position_ = position;
   chunk_offset_ = 0;
-  if (readBytes(record.data_position, record.data_size, file_bytes_) &&
-      rosbag::decompressChunk(record.header.compression, file_bytes_, record.header.size, chunk_)) {
-    return true;
-  }
   chunk_.clear();
-  return false;
+  const std::uint64_t largest = std::uint64_t{record.header.size} + record.header.size / 64 + 4096;
+  const std::uint64_t available = record.data_position < file_size_ ? file_size_ - record.data_position : 0;
+  const std::uint64_t size = std::min({std::uint64_t{record.data_size}, largest, available});
+  const bool read = readBytes(record.data_position, size, file_bytes_);
+  const rosbag::Unpacked result =
+      read ? rosbag::decompressChunk(record.header.compression, file_bytes_, record.header.size, chunk_)
+           : rosbag::Unpacked::Damaged;
+  if (result == rosbag::Unpacked::Damaged) {
+    addFault("", "corrupt",
+             fmt::format("The chunk at byte {} cannot be unpacked; it is left out.", position));
+  } else if (result == rosbag::Unpacked::Cut) {
+    addFault("", "truncated",
+             fmt::format("The chunk at byte {} holds {} of {} bytes; these are read.", position,
+                         chunk_.size(), record.header.size));
+  }
 }
 
-bool BagReader::listFromIndex(std::uint64_t index_position) {
-  if (index_position < position_) return false;
+// False unless the index is there and complete.
+bool BagReader::listFromIndex(std::uint64_t index_position, std::uint32_t connections, std::uint32_t chunks) {
+  if (index_position < position_ || index_position >= file_size_) return false;
   FileRecord record;
   RecordState state = RecordState::Whole;
+  std::uint32_t found_chunks = 0;
   for (std::uint64_t at = index_position; (state = readRecord(at, record)) == RecordState::Whole;
        at = record.end()) {
     if (record.header.is(rosbag::Op::Connection)) {
-      if (!readBytes(record.data_position, record.data_size, file_bytes_)) break;
+      if (!readBytes(record.data_position, record.data_size, file_bytes_)) return false;
       addConnection(record.header.connection, rosbag::parseConnectionData(file_bytes_));
     } else if (record.header.is(rosbag::Op::ChunkInfo)) {
       addChunkInfo(record);
+      ++found_chunks;
     } else {
-      break;
+      return false;
     }
   }
-  if (state == RecordState::End && index_position < file_size_) return true;
-  connections_.clear();  // an index that is not whole is none
-  chunk_connections_.clear();
-  streams_.clear();
-  return false;
+  return state == RecordState::End && connections_.size() == connections && found_chunks == chunks;
 }
 
 // Only chunks with connections not met before need to be unpacked: the index data behind a chunk tell.
@@ -126,17 +155,21 @@ void BagReader::listByScan() {
     chunk = 0;
     has_index_data = is_new = false;
   };
-  for (std::uint64_t at = position_; readRecord(at, record) == RecordState::Whole;) {
-    const std::uint64_t next = record.end();
-    if (record.header.is(rosbag::Op::IndexData)) {
-      has_index_data = true;
+  RecordState state = RecordState::Whole;
+  for (std::uint64_t at = position_; state == RecordState::Whole; at = record.end()) {
+    state = readRecord(at, record);
+    if (state == RecordState::Damaged || state == RecordState::Cut)
+      has_index_data = false;  // some may be lost
+    const bool has_header = state == RecordState::Whole || state == RecordState::Cut;
+    if (has_header && record.header.is(rosbag::Op::IndexData)) {
+      has_index_data = state == RecordState::Whole;
       is_new = is_new || !connections_.contains(record.header.connection);
-    } else {
-      const bool is_chunk = record.header.is(rosbag::Op::Chunk);
-      finishChunk();
-      if (is_chunk) chunk = at;
+      continue;
     }
-    at = next;
+    const FileRecord next = record;  // looking into a chunk reads others
+    finishChunk();
+    if (has_header && next.header.is(rosbag::Op::Chunk)) chunk = at;
+    record = next;
   }
   finishChunk();
 }
@@ -152,8 +185,9 @@ void BagReader::addConnection(std::uint32_t id, const rosbag::ConnectionData& da
   StreamInfo stream;
   stream.name = data.topic;
   stream.message = data.type;
-  stream.type = ros::streamTypeOf(data.type, data.md5);
+  stream.type = ros::streamTypeOf(data.type, data.md5, data.definition);
   streams_.push_back(stream);
+  states_.emplace_back();
 }
 
 void BagReader::addChunkInfo(const FileRecord& record) {
@@ -174,36 +208,60 @@ void BagReader::addChunkInfo(const FileRecord& record) {
 
 void BagReader::lookIntoChunk(std::uint64_t position) {
   FileRecord record;
-  if (readRecord(position, record) != RecordState::Whole || !record.header.is(rosbag::Op::Chunk)) return;
-  loadChunk(record);
+  const RecordState state = readRecord(position, record);
+  const bool usable = state == RecordState::Whole || state == RecordState::Cut;
+  if (!usable || !record.header.is(rosbag::Op::Chunk)) return;
+  const std::size_t faults = faults_.size();
+  loadChunk(position, record);
+  faults_.resize(faults);  // reading will find them again
   std::vector<Event> events;
+  std::vector<ImuSample> samples;
   ChunkRecord part;
   while (chunk_offset_ < chunk_.size() && takeRecord(chunk_, chunk_offset_, part)) {
-    if (part.header.is(rosbag::Op::Connection)) {
+    if (part.header.is(rosbag::Op::Connection))
       addConnection(part.header.connection, rosbag::parseConnectionData(part.data));
-    }
     const auto found = connections_.find(part.header.connection);
     if (!part.header.is(rosbag::Op::Message) || found == connections_.end()) continue;
-    StreamInfo& stream = streams_[found->second.stream];
-    if (stream.type != StreamType::Events || stream.resolution_px.known()) continue;
-    bool stampless = false;
-    ros::decodeEventArray(part.data, 0, events, stream.resolution_px, &stampless);
+    Connection& connection = found->second;
+    if (connection.first_chunk == 0) connection.first_chunk = position;
+    if (connection.first_chunk == position) lookIntoMessage(part.data, connection.stream, events, samples);
   }
   chunk_.clear();
   chunk_offset_ = 0;
 }
 
-void BagReader::findResolutions() {
-  for (const auto& [id, connection] : connections_) {
-    const StreamInfo& stream = streams_[connection.stream];
-    const bool missing = stream.type == StreamType::Events && !stream.resolution_px.known();
-    if (missing && connection.first_chunk != 0) lookIntoChunk(connection.first_chunk);
+// Resolution, and whether stamps are stamps.
+void BagReader::lookIntoMessage(std::string_view message, std::size_t stream, std::vector<Event>& events,
+                                std::vector<ImuSample>& samples) {
+  StreamState& state = states_[stream];
+  const auto count = [&state](std::int64_t time_ns) {
+    (time_ns == 0 ? state.zero_stamps : state.other_stamps) += 1;
+  };
+  if (state.other_stamps > 0 &&
+      (streams_[stream].resolution_px.known() || state.other_stamps > kEnoughStamps))
+    return;
+  if (streams_[stream].type == StreamType::Events) {
+    ros::decodeEventArray(message, events, streams_[stream].resolution_px);
+    for (const Event& event : events) count(event.time_ns);
+  } else if (streams_[stream].type == StreamType::Imu) {
+    ros::decodeImu(message, samples);
+    for (const ImuSample& sample : samples) count(sample.time_ns);
   }
+}
+
+void BagReader::lookIntoFirstMessages() {
+  std::set<std::uint64_t> chunks;
+  for (const auto& [id, connection] : connections_) {
+    const StreamState& state = states_[connection.stream];
+    if (connection.first_chunk != 0 && state.zero_stamps + state.other_stamps == 0)
+      chunks.insert(connection.first_chunk);
+  }
+  for (const std::uint64_t chunk : chunks) lookIntoChunk(chunk);
 }
 
 bool BagReader::wanted(std::uint32_t connection) const {
   const auto found = connections_.find(connection);
-  return found != connections_.end() && selected_[found->second.stream];
+  return found != connections_.end() && states_[found->second.stream].selected;
 }
 
 bool BagReader::chunkIsWanted(std::uint64_t position) const {
@@ -213,29 +271,33 @@ bool BagReader::chunkIsWanted(std::uint64_t position) const {
                      [this](std::uint32_t id) { return wanted(id); });
 }
 
+// 0 where the index knows none.
+std::uint64_t BagReader::indexedChunkAfter(std::uint64_t position) const {
+  const auto found = chunk_connections_.upper_bound(position);
+  return found == chunk_connections_.end() ? 0 : found->first;
+}
+
+// Where a record is damaged, or longer than it can be, the index tells where to go on.
 bool BagReader::nextChunk() {
   FileRecord record;
-  RecordState state = RecordState::Whole;
-  while ((state = readRecord(position_, record)) == RecordState::Whole) {
-    chunk_position_ = position_;
-    position_ = record.end();
-    if (!record.header.is(rosbag::Op::Chunk) || !chunkIsWanted(chunk_position_)) continue;
-    if (loadChunk(record)) return true;
-    addFault("", "corrupt",
-             fmt::format("The chunk at byte {} cannot be unpacked; it is left out.", chunk_position_));
-  }
-  if (state == RecordState::Damaged) {
-    addFault("", "truncated",
-             fmt::format("The record at byte {} of {} is cut off or damaged; nothing behind it is read.",
-                         position_, file_size_));
-    position_ = file_size_;
-    // Whole messages may lie before the cut, where the chunk is not packed.
-    if (record.header.is(rosbag::Op::Chunk) && record.header.compression == "none") {
-      chunk_offset_ = 0;
-      return readBytes(record.data_position, file_size_ - record.data_position, chunk_);
+  for (;;) {
+    const std::uint64_t at = position_;
+    const RecordState state = readRecord(at, record);
+    if (state == RecordState::End) return false;
+    const std::uint64_t indexed = indexedChunkAfter(at);
+    const bool good = state == RecordState::Whole && (indexed == 0 || record.end() <= indexed);
+    position_ = good ? record.end() : indexed != 0 ? indexed : file_size_;
+    if (!good) {
+      addFault("", state == RecordState::Cut && indexed == 0 ? "truncated" : "corrupt",
+               fmt::format("The record at byte {} of {} is cut off or damaged; {}.", at, file_size_,
+                           indexed != 0 ? fmt::format("reading goes on at byte {}", indexed)
+                                        : "nothing behind it is read"));
     }
+    const bool is_chunk = state != RecordState::Damaged && record.header.is(rosbag::Op::Chunk);
+    if (!is_chunk || !chunkIsWanted(at)) continue;
+    loadChunk(at, record);
+    if (!chunk_.empty()) return true;
   }
-  return false;
 }
 
 bool BagReader::nextMessage(Packet& packet) {
@@ -260,16 +322,18 @@ bool BagReader::decode(const rosbag::RecordHeader& header, std::string_view mess
                        Packet& packet) {
   StreamInfo& info = streams_[stream];
   packet.stream = stream;
-  bool stampless = false, whole = true, ordered = true;
+  bool whole = true;
   if (info.type == StreamType::Events) {
     packet.imu_samples.clear();
-    whole = ros::decodeEventArray(message, header.time_ns, packet.events, info.resolution_px, &stampless);
-    const auto earlier = [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; };
-    ordered = std::is_sorted(packet.events.begin(), packet.events.end(), earlier);
-    if (!ordered) std::stable_sort(packet.events.begin(), packet.events.end(), earlier);
+    whole = ros::decodeEventArray(message, packet.events, info.resolution_px);
+    if (states_[stream].stampless())
+      for (Event& event : packet.events) event.time_ns = header.time_ns;
+    putInOrder(stream, packet.events);
   } else if (info.type == StreamType::Imu) {
     packet.events.clear();
-    whole = ros::decodeImu(message, header.time_ns, packet.imu_samples, &stampless);
+    whole = ros::decodeImu(message, packet.imu_samples);
+    if (states_[stream].stampless())
+      for (ImuSample& sample : packet.imu_samples) sample.time_ns = header.time_ns;
   } else {
     return false;
   }
@@ -277,14 +341,50 @@ bool BagReader::decode(const rosbag::RecordHeader& header, std::string_view mess
     addFault(info.name, "corrupt",
              fmt::format("A message in the chunk at byte {} is damaged; it is left out.", chunk_position_));
   }
-  if (!ordered)
-    addFault(info.name, "unsorted", "Events within a message are out of order; they were sorted.");
-  if (stampless)
-    addFault(info.name, "no_stamps", "Stamps are 0; the times of recording are used, which jitter by ms.");
   return !packet.events.empty() || !packet.imu_samples.empty();
 }
 
+// Small steps back are sorted; before a large one the packet ends, since sorting would only hide it.
+void BagReader::putInOrder(std::size_t stream, std::vector<Event>& events) {
+  StreamState& state = states_[stream];
+  const std::uint64_t before = state.disordered;
+  for (std::size_t i = 1; i < events.size(); ++i) {
+    const std::int64_t back_ns = events[i - 1].time_ns - events[i].time_ns;
+    if (back_ns <= 0) continue;
+    if (back_ns > kLargestSorted_ns) {
+      const auto step = events.begin() + static_cast<std::ptrdiff_t>(i);
+      rest_.assign(step, events.end());
+      rest_stream_ = stream;
+      events.erase(step, events.end());
+      break;
+    }
+    state.disordered += 1;
+    state.largest_disorder_ns = std::max(state.largest_disorder_ns, back_ns);
+  }
+  if (state.disordered == before) return;
+  std::stable_sort(events.begin(), events.end(),
+                   [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; });
+  const std::string& name = streams_[stream].name;
+  addFault(name, "unsorted", "");
+  for (RecordingFault& fault : faults_) {
+    if (fault.stream != name || fault.kind != "unsorted") continue;
+    fault.text = fmt::format("Time runs backwards {} times within messages, by {:.3f} ms at most; sorted.",
+                             state.disordered, 1e-6 * static_cast<double>(state.largest_disorder_ns));
+  }
+}
+
+bool BagReader::handOutRest(Packet& packet) {
+  if (rest_.empty()) return false;
+  packet.stream = rest_stream_;
+  packet.imu_samples.clear();
+  packet.events.clear();
+  std::swap(packet.events, rest_);
+  putInOrder(packet.stream, packet.events);
+  return true;
+}
+
 bool BagReader::read(Packet& packet) {
+  if (handOutRest(packet)) return true;
   do {
     if (nextMessage(packet)) return true;
   } while (nextChunk());

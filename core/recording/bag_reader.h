@@ -7,8 +7,10 @@
 
 #include <cstdint>
 #include <fstream>
+#include <map>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 namespace evical {
 
@@ -24,7 +26,12 @@ class BagReader : public RecordingReader {
   std::string format() const override { return "rosbag"; }
 
  private:
-  enum class RecordState { Whole, End, Damaged };
+  enum class RecordState {
+    Whole,
+    End,
+    Cut,      // its header is whole, its data go beyond the file's end
+    Damaged,  // not even that
+  };
 
   // A record of the file: its header, and where its data lie.
   struct FileRecord {
@@ -38,24 +45,40 @@ class BagReader : public RecordingReader {
     std::size_t stream = 0;
     std::uint64_t first_chunk = 0;
   };
+  struct StreamState {
+    bool selected = false;
+    // Stamps in the stream's first chunk. Some zeros and nothing else are no stamps; a single zero may be
+    // meant.
+    std::uint64_t zero_stamps = 0, other_stamps = 0;
+    bool stampless() const { return zero_stamps > 1 && other_stamps == 0; }
+    // Steps back within messages, put in order.
+    std::uint64_t disordered = 0;
+    std::int64_t largest_disorder_ns = 0;
+  };
 
   bool readBytes(std::uint64_t position, std::uint64_t count, std::string& bytes);
   RecordState readRecord(std::uint64_t position, FileRecord& record);
-  bool loadChunk(const FileRecord& record);
+  void loadChunk(std::uint64_t position, const FileRecord& record);
 
-  bool listFromIndex(std::uint64_t index_position);  // false if there is no whole index
+  void listStreams();
+  bool listFromIndex(std::uint64_t index_position, std::uint32_t connections, std::uint32_t chunks);
   void listByScan();
   void addConnection(std::uint32_t id, const rosbag::ConnectionData& data);
   void addChunkInfo(const FileRecord& record);
   void lookIntoChunk(std::uint64_t position);
-  void findResolutions();
+  void lookIntoFirstMessages();
+  void lookIntoMessage(std::string_view message, std::size_t stream, std::vector<Event>& events,
+                       std::vector<ImuSample>& samples);
 
   bool wanted(std::uint32_t connection) const;
   bool chunkIsWanted(std::uint64_t position) const;
+  std::uint64_t indexedChunkAfter(std::uint64_t position) const;
   bool nextChunk();
   bool nextMessage(Packet& packet);
   bool decode(const rosbag::RecordHeader& header, std::string_view message, std::size_t stream,
               Packet& packet);
+  void putInOrder(std::size_t stream, std::vector<Event>& events);
+  bool handOutRest(Packet& packet);
   void addFault(const std::string& stream, const std::string& kind, const std::string& text);
 
   std::string path_;
@@ -63,13 +86,15 @@ class BagReader : public RecordingReader {
   std::uint64_t file_size_ = 0;
   std::uint64_t position_ = 0;  // of the next record to read
   std::vector<StreamInfo> streams_;
-  std::vector<bool> selected_;
+  std::vector<StreamState> states_;  // of streams_
   std::vector<RecordingFault> faults_;
   std::unordered_map<std::uint32_t, Connection> connections_;
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> chunk_connections_;  // from the chunk infos
+  std::map<std::uint64_t, std::vector<std::uint32_t>> chunk_connections_;  // from the chunk infos
   std::string header_bytes_, file_bytes_, chunk_;
   std::uint64_t chunk_position_ = 0;  // in the file
   std::size_t chunk_offset_ = 0;      // of the next record in the chunk
+  std::vector<Event> rest_;           // of a message in which time ran far back
+  std::size_t rest_stream_ = 0;
 };
 
 }  // namespace evical

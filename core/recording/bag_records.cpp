@@ -43,7 +43,7 @@ void growTowards(std::string& output, std::size_t used, std::uint32_t size) {
   output.resize(std::min<std::size_t>(size, std::max(kFirstBytes, 2 * used)));
 }
 
-bool decompressLz4(std::string_view data, std::uint32_t size, std::string& output) {
+Unpacked decompressLz4(std::string_view data, std::uint32_t size, std::string& output) {
   LZ4F_dctx* raw = nullptr;
   if (LZ4F_isError(LZ4F_createDecompressionContext(&raw, LZ4F_VERSION))) throw std::bad_alloc();
   const std::unique_ptr<LZ4F_dctx, decltype(&LZ4F_freeDecompressionContext)> context(
@@ -54,15 +54,18 @@ bool decompressLz4(std::string_view data, std::uint32_t size, std::string& outpu
     if (used == output.size()) growTowards(output, used, size);
     std::size_t room = output.size() - used, given = data.size() - consumed;
     hint = LZ4F_decompress(raw, output.data() + used, &room, data.data() + consumed, &given, nullptr);
-    if (LZ4F_isError(hint)) return false;
+    if (LZ4F_isError(hint)) return Unpacked::Damaged;
     used += room;
     consumed += given;
-    if (room == 0 && given == 0 && hint != 0) return false;  // data end too early, or hold more than declared
+    const bool stalled = room == 0 && given == 0 && hint != 0;
+    if (stalled && consumed < data.size()) return Unpacked::Damaged;  // they hold more than declared
+    if (stalled) break;
   }
-  return used == size;
+  output.resize(used);
+  return used == size ? Unpacked::Whole : Unpacked::Cut;
 }
 
-bool decompressBz2(std::string_view data, std::uint32_t size, std::string& output) {
+Unpacked decompressBz2(std::string_view data, std::uint32_t size, std::string& output) {
   bz_stream stream{};
   if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) throw std::bad_alloc();
   const std::unique_ptr<bz_stream, decltype(&BZ2_bzDecompressEnd)> guard(&stream, &BZ2_bzDecompressEnd);
@@ -78,9 +81,13 @@ bool decompressBz2(std::string_view data, std::uint32_t size, std::string& outpu
     const unsigned in_before = stream.avail_in, out_before = stream.avail_out;
     state = BZ2_bzDecompress(&stream);
     used += out_before - stream.avail_out;
-    if (state == BZ_OK && in_before == stream.avail_in && out_before == stream.avail_out) return false;
+    const bool stalled = in_before == stream.avail_in && out_before == stream.avail_out;
+    if (state == BZ_OK && stalled && stream.avail_in > 0) return Unpacked::Damaged;  // more than declared
+    if (state == BZ_OK && stalled) break;
   }
-  return state == BZ_STREAM_END && used == size;
+  if (state != BZ_OK && state != BZ_STREAM_END) return Unpacked::Damaged;
+  output.resize(used);
+  return used == size ? Unpacked::Whole : Unpacked::Cut;
 }
 
 }  // namespace
@@ -91,8 +98,9 @@ bool parseRecordHeader(std::string_view bytes, RecordHeader& header) {
     if (name == "op") header.op = numberIn<std::uint8_t>(value);
     if (name == "conn") header.connection = numberIn<std::uint32_t>(value);
     if (name == "time") header.time_ns = timeIn(value);
-    if (name == "chunk_count") header.chunk_count = numberIn<std::uint32_t>(value);
     if (name == "size") header.size = numberIn<std::uint32_t>(value);
+    if (name == "conn_count") header.connection_count = numberIn<std::uint32_t>(value);
+    if (name == "chunk_count") header.chunk_count = numberIn<std::uint32_t>(value);
     if (name == "index_pos") header.index_position = numberIn<std::uint64_t>(value);
     if (name == "chunk_pos") header.chunk_position = numberIn<std::uint64_t>(value);
     if (name == "compression") header.compression = value;
@@ -107,17 +115,22 @@ ConnectionData parseConnectionData(std::string_view bytes) {
     if (name == "topic") connection.topic = value;
     if (name == "type") connection.type = value;
     if (name == "md5sum") connection.md5 = value;
+    if (name == "message_definition") connection.definition = value;
   });
   return connection;
 }
 
-bool decompressChunk(std::string_view compression, std::string_view data, std::uint32_t size,
-                     std::string& output) {
-  if (compression == "lz4") return decompressLz4(data, size, output);
-  if (compression == "bz2") return decompressBz2(data, size, output);
-  if (compression != "none" || data.size() != size) return false;
-  output.assign(data);
-  return true;
+Unpacked decompressChunk(std::string_view compression, std::string_view data, std::uint32_t size,
+                         std::string& output) {
+  Unpacked result = Unpacked::Damaged;
+  if (compression == "lz4") result = decompressLz4(data, size, output);
+  if (compression == "bz2") result = decompressBz2(data, size, output);
+  if (compression == "none") {
+    output.assign(data.substr(0, size));
+    result = output.size() == size ? Unpacked::Whole : Unpacked::Cut;
+  }
+  if (result == Unpacked::Damaged) output.clear();
+  return result;
 }
 
 void compressLz4(std::string_view data, std::string& output) {

@@ -25,8 +25,8 @@ enum class Op : std::uint8_t {
 struct RecordHeader {
   std::uint8_t op = 0;
   std::uint32_t connection = 0;
-  std::uint32_t chunk_count = 0;  // of the bag
-  std::uint32_t size = 0;         // of a chunk, uncompressed
+  std::uint32_t size = 0;                               // of a chunk, uncompressed
+  std::uint32_t connection_count = 0, chunk_count = 0;  // of the bag
   std::uint64_t index_position = 0, chunk_position = 0;
   std::int64_t time_ns = 0;
   std::string_view compression, topic;
@@ -39,14 +39,20 @@ bool parseRecordHeader(std::string_view bytes, RecordHeader& header);
 
 // What the data of a connection record tells.
 struct ConnectionData {
-  std::string_view topic, type, md5;
+  std::string_view topic, type, md5, definition;
 };
 ConnectionData parseConnectionData(std::string_view bytes);
 
-// Replaces `output` by the chunk's content; false if the data are damaged or do not give `size` bytes. A size
-// that lies does not make memory grow: it follows what the data really hold.
-bool decompressChunk(std::string_view compression, std::string_view data, std::uint32_t size,
-                     std::string& output);
+enum class Unpacked {
+  Whole,
+  Cut,      // the data ended early; what came out before is good
+  Damaged,  // the data contradict themselves; nothing came out
+};
+
+// Replaces `output` by the chunk's content, `size` bytes. A size that lies does not make memory grow: it
+// follows what the data really hold.
+Unpacked decompressChunk(std::string_view compression, std::string_view data, std::uint32_t size,
+                         std::string& output);
 
 // Replaces `output` by one LZ4 frame.
 void compressLz4(std::string_view data, std::string& output);

@@ -1,10 +1,11 @@
 #include "core/recording/ros_messages.h"
 
 #include "core/recording/byte_cursor.h"
+#include "core/recording/message_layout.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
+#include <optional>
 
 namespace evical::ros {
 namespace {
@@ -45,13 +46,15 @@ std::int64_t takeHeader(ByteCursor& cursor) {
   return stamp_ns;
 }
 
-Event eventAt(const char* bytes) {
+// Also keeps the largest nanoseconds of a stamp: beyond a second, it is none.
+Event eventAt(const char* bytes, std::uint32_t& largest_ns) {
   std::uint16_t x = 0, y = 0;
   std::uint32_t seconds = 0, nanoseconds = 0;
   std::memcpy(&x, bytes, 2);
   std::memcpy(&y, bytes + 2, 2);
   std::memcpy(&seconds, bytes + 4, 4);
   std::memcpy(&nanoseconds, bytes + 8, 4);
+  largest_ns = std::max(largest_ns, nanoseconds);
   return {std::int64_t{seconds} * kSecond_ns + nanoseconds, x, y, bytes[12] != 0};
 }
 
@@ -84,10 +87,15 @@ const MessageType& imuType() {
   return kImu;
 }
 
-StreamType streamTypeOf(std::string_view type, std::string_view md5) {
+StreamType streamTypeOf(std::string_view type, std::string_view md5, std::string_view definition) {
   if (md5 == kEventArray.md5) return StreamType::Events;
   if (md5 == kImu.md5) return StreamType::Imu;
   if (type == "sensor_msgs/Image" || type == "sensor_msgs/CompressedImage") return StreamType::Frames;
+  const std::optional<std::string> layout = messageLayout(definition);
+  for (const MessageType* known : {&kEventArray, &kImu})
+    if (layout && layout == messageLayout(known->definition)) return known->stream;
+  // A definition that is there and has other fields overrules the name.
+  if (layout && !layout->empty()) return StreamType::Other;
   // event_array_msgs/EventArray has this name too, but packed bytes inside.
   const bool packed = type.starts_with("event_array_msgs/") || type.starts_with("event_camera_msgs/");
   if (lastPart(type) == "EventArray" && !packed) return StreamType::Events;
@@ -95,43 +103,30 @@ StreamType streamTypeOf(std::string_view type, std::string_view md5) {
   return StreamType::Other;
 }
 
-bool decodeEventArray(std::string_view message, std::int64_t record_time_ns, std::vector<Event>& events,
-                      Resolution& resolution_px, bool* stampless) {
-  events.clear();
+bool decodeEventArray(std::string_view message, std::vector<Event>& events, Resolution& resolution_px) {
   ByteCursor cursor(message);
   takeHeader(cursor);
   const auto height = cursor.number<std::uint32_t>(), width = cursor.number<std::uint32_t>();
   const std::uint64_t count = cursor.number<std::uint32_t>();
   const std::string_view bytes = cursor.take(count * kEventBytes);
-  if (!cursor.ok()) return false;
+  events.resize(cursor.ok() && cursor.atEnd() ? static_cast<std::size_t>(count) : 0);
+  if (!cursor.ok() || !cursor.atEnd()) return false;
   constexpr std::uint32_t kLargest_px = 65536;  // coordinates have 16 bits
-  if (width <= kLargest_px && height <= kLargest_px) {
+  if (width > 0 && height > 0 && width <= kLargest_px && height <= kLargest_px) {
     resolution_px = {static_cast<int>(width), static_cast<int>(height)};
   }
-  events.resize(static_cast<std::size_t>(count));
   const char* source = bytes.data();
-  std::uint32_t largest_ns = 0;  // of the fractions of a second: beyond a second they are damage
+  std::uint32_t largest_ns = 0;
   for (Event& event : events) {
-    event = eventAt(source);
-    std::uint32_t fraction_ns = 0;
-    std::memcpy(&fraction_ns, source + 8, sizeof fraction_ns);
-    largest_ns = std::max(largest_ns, fraction_ns);
+    event = eventAt(source, largest_ns);
     source += kEventBytes;
   }
-  if (largest_ns >= kSecond_ns) {
-    events.clear();
-    return false;
-  }
-  *stampless = !events.empty() && record_time_ns > kSecond_ns && events.front().time_ns == 0 &&
-               events.back().time_ns == 0;
-  if (*stampless) {
-    for (Event& event : events) event.time_ns = record_time_ns;
-  }
-  return true;
+  if (largest_ns < kSecond_ns) return true;
+  events.clear();
+  return false;
 }
 
-bool decodeImu(std::string_view message, std::int64_t record_time_ns, std::vector<ImuSample>& samples,
-               bool* stampless) {
+bool decodeImu(std::string_view message, std::vector<ImuSample>& samples) {
   samples.clear();
   ByteCursor cursor(message);
   ImuSample sample;
@@ -144,9 +139,7 @@ bool decodeImu(std::string_view message, std::int64_t record_time_ns, std::vecto
   cursor.take(9 * sizeof(double));
   takeVector(sample.specific_force_m_s2);
   cursor.take(9 * sizeof(double));
-  if (!cursor.ok()) return false;
-  *stampless = sample.time_ns == 0 && record_time_ns > kSecond_ns;
-  if (*stampless) sample.time_ns = record_time_ns;
+  if (!cursor.ok() || !cursor.atEnd()) return false;
   samples.push_back(sample);
   return true;
 }

@@ -20,16 +20,14 @@ struct MessageType {
 const MessageType& eventArrayType();
 const MessageType& imuType();
 
-// By md5 first, then by the last part of the name: packages get renamed and copied.
-StreamType streamTypeOf(std::string_view type, std::string_view md5);
+// By md5 first, then by the fields of the definition, and where there is none by the last part of the name:
+// packages get renamed and copied.
+StreamType streamTypeOf(std::string_view type, std::string_view md5, std::string_view definition);
 
-// Both replace the samples in the packet; false (and an empty packet) if the bytes are too short for what
-// they claim. Where all stamps of a message are 0, the time at which it was recorded is used and *stampless
-// is set.
-bool decodeEventArray(std::string_view message, std::int64_t record_time_ns, std::vector<Event>& events,
-                      Resolution& resolution_px, bool* stampless);
-bool decodeImu(std::string_view message, std::int64_t record_time_ns, std::vector<ImuSample>& samples,
-               bool* stampless);
+// Both replace the samples; false, and none, if the bytes do not fit what they claim or a stamp is none. The
+// resolution changes only where the message states one.
+bool decodeEventArray(std::string_view message, std::vector<Event>& events, Resolution& resolution_px);
+bool decodeImu(std::string_view message, std::vector<ImuSample>& samples);
 
 // Both append to `message`. Times must be within [0, 2^32) s, what a ROS time can hold.
 void encodeEventArray(EventSpan events, std::uint32_t sequence, Resolution resolution_px,

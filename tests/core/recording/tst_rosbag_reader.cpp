@@ -46,6 +46,7 @@ class TestRosbagReader : public QObject {
   void zeroStamps_areReplacedByRecordTimes();
   void recordingThatBeginsAtZero_keepsItsTimes();
   void unorderedEvents_areSortedInThePacket();
+  void clockResetWithinAMessage_isNotSortedAway();
   void longMessage_isReadWhole();
   void fractionRead_growsToOne();
   void findStream_ofAWrongTopic_namesThoseThereAre();
@@ -255,7 +256,25 @@ void TestRosbagReader::unorderedEvents_areSortedInThePacket() {
   bag.message(connection, kStart_ns, eventMessage(kStart_ns, kSize_px, events));
   const Contents contents = readAll(folder_.write("unordered.bag", bag.finished()));
   QVERIFY(sameEvents(contents.events.at(0), ordered));
-  QVERIFY(!contents.faults.empty());
+  QCOMPARE(contents.faults.size(), std::size_t{1});
+  QCOMPARE(contents.faults[0].kind, std::string("unsorted"));
+  QVERIFY(contents.faults[0].text.find(" 3 times") != std::string::npos);
+}
+
+void TestRosbagReader::clockResetWithinAMessage_isNotSortedAway() {
+  std::vector<Event> events = someEvents(60);
+  for (std::size_t i = 30; i < events.size(); ++i) events[i].time_ns -= 5'000'000'000;
+  BagBuilder bag;
+  const std::uint32_t connection = bag.addEvents("/events");
+  bag.message(connection, kStart_ns, eventMessage(kStart_ns, kSize_px, events));
+  const std::unique_ptr<RecordingReader> reader = openRecording(folder_.write("reset.bag", bag.finished()));
+  Packet packet;
+  for (const std::size_t first : {0, 30}) {
+    QVERIFY(reader->read(packet));
+    QCOMPARE(packet.events.size(), std::size_t{30});
+    QCOMPARE(packet.events.front().time_ns, events[first].time_ns);
+  }
+  QVERIFY(!reader->read(packet));
 }
 
 // 300000 events are a chunk of 4 MB.
