@@ -95,4 +95,18 @@ std::string optionMarkdown() {
   return text;
 }
 
+std::string optionYaml() {
+  std::string text =
+      "# Every option with its default: the output of `evical options --yaml`. A session file needs only "
+      "those "
+      "that\n# differ, under `options`, in this form or as `group.option: value`.\noptions:\n";
+  const CalibrationOptions defaults;
+  forEachGroup(defaults, [&](const char* group, const char* help, const auto& options, const auto& fields) {
+    text += fmt::format("  {}:  # {}\n", group, help);
+    for (const OptionRow& row : optionRows(options, fields, ""))
+      text += fmt::format("    {}: {}  # {}; {}\n", row.name, row.value, rangeText(row), row.help);
+  });
+  return text;
+}
+
 }  // namespace evical

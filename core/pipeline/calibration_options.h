@@ -29,8 +29,10 @@ void setOption(CalibrationOptions& options, std::string_view full_name, std::str
 std::vector<OptionRow> optionRows(const CalibrationOptions& options = {});
 std::vector<OptionRow> differingOptions(const CalibrationOptions& options);
 
-// Terminal text and docs/options.md.
+// Terminal text, docs/options.md, and config/default.yaml: the part `options` of a session with every
+// default.
 std::string optionText(const CalibrationOptions& options = {});
 std::string optionMarkdown();
+std::string optionYaml();
 
 }  // namespace evical

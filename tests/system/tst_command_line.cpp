@@ -38,6 +38,7 @@ class TestCommandLine : public QObject {
   void usage_thatIsWrongEndsWith2_data();
   void usage_thatIsWrongEndsWith2();
   void options_asMarkdownAreTheManual();
+  void options_asYamlAreTheDefaultFile();
   void board_isWrittenAsPdfAndSvg();
   void simulate_isTheSameFromTheSameSeed();
   void calibrate_writesAResultNearTheTruth_data();
@@ -97,6 +98,13 @@ void TestCommandLine::options_asMarkdownAreTheManual() {
   VERIFY_EXIT(outcome, 0);
   QVERIFY2(outcome.output.toUtf8() == readFile(EVICAL_SOURCE_DIR "/docs/options.md"),
            "docs/options.md is old: evical options --markdown > docs/options.md");
+}
+
+void TestCommandLine::options_asYamlAreTheDefaultFile() {
+  const Outcome outcome = runProgram({"options", "--yaml"});
+  VERIFY_EXIT(outcome, 0);
+  QVERIFY2(outcome.output.toUtf8() == readFile(EVICAL_SOURCE_DIR "/config/default.yaml"),
+           "config/default.yaml is old: evical options --yaml > config/default.yaml");
 }
 
 void TestCommandLine::board_isWrittenAsPdfAndSvg() {
