@@ -17,11 +17,12 @@ namespace {
 using LatticePlace = std::pair<int, int>;
 using LatticeMap = std::array<int, 4>;  // row by row
 
+constexpr std::array<LatticeMap, 4> kTurns = {{{1, 0, 0, 1}, {0, -1, 1, 0}, {-1, 0, 0, -1}, {0, 1, -1, 0}}};
+
 // Turns of the lattice, each also sheared: a tilted board's shortest steps may not be its square's sides.
 std::vector<LatticeMap> latticeMaps() {
   constexpr std::array<LatticeMap, 5> kShears = {
       {{1, 0, 0, 1}, {1, 1, 0, 1}, {1, -1, 0, 1}, {1, 0, 1, 1}, {1, 0, -1, 1}}};
-  constexpr std::array<LatticeMap, 4> kTurns = {{{1, 0, 0, 1}, {0, -1, 1, 0}, {-1, 0, 0, -1}, {0, 1, -1, 0}}};
   std::vector<LatticeMap> maps;
   for (const LatticeMap& s : kShears) {
     for (const LatticeMap& t : kTurns) {
@@ -153,6 +154,32 @@ std::optional<Eigen::Matrix3d> fitAgreeing(std::vector<std::pair<int, std::size_
 }
 
 }  // namespace
+
+std::vector<Eigen::Matrix3d> latticeShifts(const CircleBoard& board, double least_overlap) {
+  const std::map<LatticePlace, int> lattice = boardLattice(board);
+  Eigen::Matrix2d metres_per_step = board.spacing_m * Eigen::Matrix2d::Identity();
+  if (board.type == BoardType::AsymmetricCircles)
+    metres_per_step << board.spacing_m, board.spacing_m, -board.spacing_m, board.spacing_m;
+  std::vector<Eigen::Matrix3d> shifts = {Eigen::Matrix3d::Identity()};
+  for (const LatticeMap& turn : kTurns) {
+    std::map<LatticePlace, int> counts;
+    for (const auto& [from, circle] : lattice) {
+      const LatticePlace at = apply(turn, {from.first, from.second, 0});
+      for (const auto& [to, other] : lattice) ++counts[{to.first - at.first, to.second - at.second}];
+    }
+    for (const auto& [shift, count] : counts) {
+      if (count < least_overlap * board.circleCount()) continue;
+      if (turn == kTurns.front() && shift == LatticePlace{0, 0}) continue;
+      Eigen::Matrix2d turned;
+      turned << turn[0], turn[1], turn[2], turn[3];
+      Eigen::Matrix3d motion = Eigen::Matrix3d::Identity();
+      motion.topLeftCorner<2, 2>() = metres_per_step * turned * metres_per_step.inverse();
+      motion.topRightCorner<2, 1>() = metres_per_step * Eigen::Vector2d(shift.first, shift.second);
+      shifts.push_back(motion);
+    }
+  }
+  return shifts;
+}
 
 std::optional<Eigen::Matrix3d> fitHomography(const std::vector<Eigen::Vector2d>& from,
                                              const std::vector<Eigen::Vector2d>& to) {

@@ -22,6 +22,11 @@ std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
                                          const std::optional<CameraIntrinsics>& camera, std::int64_t time_ns,
                                          const GridOptions& options);
 
+// Motions of the board plane that lay the board's lattice onto itself, shifted or turned, so that at least
+// `least_overlap` of its circles meet circles: what a placement may be confused with. The identity is the
+// first.
+std::vector<Eigen::Matrix3d> latticeShifts(const CircleBoard& board, double least_overlap);
+
 // Homography from points to points (normalised direct linear transform); nothing if degenerate.
 std::optional<Eigen::Matrix3d> fitHomography(const std::vector<Eigen::Vector2d>& from,
                                              const std::vector<Eigen::Vector2d>& to);

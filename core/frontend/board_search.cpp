@@ -21,8 +21,9 @@ constexpr double kSpeedWindow_s = 0.04;  // half window in which the typical spe
 constexpr double kSlowest_px_s = 10.0;
 constexpr std::size_t kMostPlacements = 48;
 
-std::vector<CircleCandidate> findCandidates(const BurstWindow& window, const FrontEndOptions& options) {
-  if (options.detection.method == CandidateSource::NormalFlow) return pairArcs(window, options.normal_flow);
+std::vector<CircleCandidate> findCandidates(const BurstWindow& window, CandidateSource source,
+                                            const FrontEndOptions& options) {
+  if (source == CandidateSource::NormalFlow) return pairArcs(window, options.normal_flow);
   return voteForCircles(window, options.ring_vote);
 }
 
@@ -31,6 +32,15 @@ struct Judged {
   BoardMotion motion;
   int measured = 0, missing = 0;
 };
+
+Judged countCircles(const BoardMotion& motion, const BurstWindow& window, const BoardScene& scene,
+                    double half_window_s, const FrontEndOptions& options) {
+  const auto circles =
+      measureCircles(window, motion, scene.board, scene.camera, half_window_s, 0, options.tracking);
+  const int expected = expectedCircles(motion, scene.board, scene.camera, scene.resolution_px, half_window_s);
+  const auto measured = static_cast<int>(circles.size());
+  return {motion, measured, std::max(expected - measured, 0)};
+}
 
 std::optional<Judged> judge(const BoardPlacement& placement, const BurstWindow& window,
                             const BoardScene& scene, double half_window_s, const FrontEndOptions& options) {
@@ -41,55 +51,58 @@ std::optional<Judged> judge(const BoardPlacement& placement, const BurstWindow& 
   const std::optional<BoardMotion> motion = fitBoardMotion(window, *rough, scene.board, scene.camera,
                                                            options.tracking.first_gate_px, options.tracking);
   if (!motion) return std::nullopt;
-  const std::vector<CircleObservation> circles =
-      measureCircles(window, *motion, scene.board, scene.camera, half_window_s, 0, options.tracking);
-  Judged judged{*motion, static_cast<int>(circles.size()), 0};
-  judged.missing =
-      std::max(expectedCircles(*motion, scene.board, scene.camera, scene.resolution_px, half_window_s) -
-                   judged.measured,
-               0);
-  return judged;
+  return countCircles(*motion, window, scene, half_window_s, options);
+}
+
+int value(const Judged& judged) {
+  return judged.measured - judged.missing;
+}
+
+// The fitted board again, and every other way to lay it on the same lattice: best first.
+std::vector<Judged> rivalsOf(const Judged& fitted, const BurstWindow& window, const BoardScene& scene,
+                             double half_window_s, const FrontEndOptions& options) {
+  std::vector<Judged> rivals;
+  for (const Eigen::Matrix3d& shift : latticeShifts(scene.board, options.grid.least_rival_overlap)) {
+    BoardMotion motion = fitted.motion;
+    motion.ideal_from_board = fitted.motion.ideal_from_board * shift;
+    motion.ideal_from_board /= motion.ideal_from_board(2, 2);
+    rivals.push_back(countCircles(motion, window, scene, half_window_s, options));
+  }
+  std::stable_sort(rivals.begin(), rivals.end(),
+                   [](const Judged& a, const Judged& b) { return value(a) > value(b); });
+  return rivals;
 }
 
 WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& scene,
                               const FrontEndOptions& options, BoardSearch& search) {
-  std::vector<Judged> judged;
+  std::optional<Judged> best;
   for (std::size_t k = 0; k < std::min(search.placements.size(), kMostPlacements); ++k) {
-    if (std::optional<Judged> j = judge(search.placements[k], window, scene, search.half_window_s, options)) {
-      judged.push_back(std::move(*j));
+    const std::optional<Judged> judged =
+        judge(search.placements[k], window, scene, search.half_window_s, options);
+    if (judged && (!best || value(*judged) > value(*best))) best = judged;
+    if (best && best->measured == scene.board.circleCount()) break;
+  }
+  if (!best) return WindowOutcome::RefinementFailed;
+  const int count = scene.board.circleCount();
+  if (best->measured < count) {
+    const std::vector<Judged> rivals = rivalsOf(*best, window, scene, search.half_window_s, options);
+    best = rivals.front();
+    if (best->measured < count && rivals.size() > 1 &&
+        value(rivals[1]) > value(*best) - options.grid.ambiguity_margin) {
+      return WindowOutcome::Ambiguous;
     }
   }
-  if (judged.empty()) return WindowOutcome::RefinementFailed;
-  const auto value = [](const Judged& j) { return j.measured - j.missing; };
-  std::sort(judged.begin(), judged.end(),
-            [&](const Judged& a, const Judged& b) { return value(a) > value(b); });
-  const Judged& best = judged.front();
-  const int count = scene.board.circleCount();
-  if (best.measured < std::max<double>(options.grid.least_circles, options.grid.least_partial * count) ||
-      best.missing > options.grid.most_missing * best.measured) {
+  if (best->measured < std::max<double>(options.grid.least_circles, options.grid.least_partial * count) ||
+      best->missing > options.grid.most_missing * best->measured) {
     return WindowOutcome::TooFewInGrid;
   }
-  if (best.measured < count) {
-    for (std::size_t k = 1; k < judged.size(); ++k) {
-      // Two starts that end in the same place are no rivals.
-      const Eigen::Vector2d middle = 0.5 * (scene.board.centre_m(0) + scene.board.centre_m(count - 1));
-      const Eigen::Vector2d here = (best.motion.ideal_from_board * middle.homogeneous()).hnormalized();
-      const Eigen::Vector2d there = (judged[k].motion.ideal_from_board * middle.homogeneous()).hnormalized();
-      const Eigen::Vector2d first_here =
-          (best.motion.ideal_from_board * Eigen::Vector3d::UnitZ()).hnormalized();
-      const Eigen::Vector2d first_there =
-          (judged[k].motion.ideal_from_board * Eigen::Vector3d::UnitZ()).hnormalized();
-      if ((here - there).norm() < 3.0 && (first_here - first_there).norm() < 3.0) continue;
-      if (value(judged[k]) > value(best) - options.grid.ambiguity_margin) return WindowOutcome::Ambiguous;
-    }
-  }
-  search.motion = best.motion;
-  return best.measured == count ? WindowOutcome::Complete : WindowOutcome::Partial;
+  search.motion = best->motion;
+  return best->measured == count ? WindowOutcome::Complete : WindowOutcome::Partial;
 }
 
 void searchWindow(BurstWindow& window, std::vector<EdgeBurst>& bursts, std::int64_t middle_ns,
-                  double speed_px_s, const BoardScene& scene, const FrontEndOptions& options,
-                  BoardSearch& search) {
+                  double speed_px_s, CandidateSource source, const BoardScene& scene,
+                  const FrontEndOptions& options, BoardSearch& search) {
   keepSupported(scene.resolution_px, options.ring_vote.least_support, bursts);
   window.assign(bursts, middle_ns);
   search.bursts = static_cast<int>(bursts.size());
@@ -97,7 +110,7 @@ void searchWindow(BurstWindow& window, std::vector<EdgeBurst>& bursts, std::int6
     search.outcome = WindowOutcome::TooFewEvents;
     return;
   }
-  search.candidates = findCandidates(window, options);
+  search.candidates = findCandidates(window, source, options);
   search.circles = fitMovingCircles(window, search.candidates, speed_px_s, options.moving_circle);
   if (static_cast<int>(search.circles.size()) < options.grid.least_circles) {
     search.outcome = WindowOutcome::TooFewCircles;
@@ -142,6 +155,7 @@ BoardScene::BoardScene(const CircleBoard& the_board, Resolution resolution,
 BoardSearch searchBoard(const BurstHistory& history, std::int64_t middle_ns, const BoardScene& scene,
                         const FrontEndOptions& options) {
   constexpr std::array kWindowFactors = {1.0, 2.0, 0.5};
+  constexpr double kLongestHalf_s = 0.08;
   BurstWindow window(scene.resolution_px, scene.ideal, scene.ideal_scale, scene.board.circles);
   std::vector<EdgeBurst> bursts;
   const auto gather = [&](double half_window_s) {
@@ -152,16 +166,24 @@ BoardSearch searchBoard(const BurstHistory& history, std::int64_t middle_ns, con
   gather(kSpeedWindow_s);
   window.assign(bursts, middle_ns);
   const double speed_px_s = std::max(typicalEdgeSpeed_px_s(window), kSlowest_px_s);
+  const CandidateSource first = options.detection.method;
+  const CandidateSource second =
+      first == CandidateSource::RingVote ? CandidateSource::NormalFlow : CandidateSource::RingVote;
   BoardSearch search;
-  for (const double factor : kWindowFactors) {
-    const double half_s = std::clamp(factor * options.ring_vote.window_travel_px / (2.0 * speed_px_s),
-                                     0.5 * options.detection.shortest_window_s, 0.08);
-    if (factor > 1.0 && half_s == search.half_window_s) continue;
-    search = BoardSearch{};
-    search.half_window_s = half_s;
-    gather(half_s);
-    searchWindow(window, bursts, middle_ns, speed_px_s, scene, options, search);
-    if (search.motion) break;
+  for (const CandidateSource source : {first, second}) {
+    if (source == second && !options.detection.try_both) break;
+    const double travel_px = source == CandidateSource::RingVote ? options.ring_vote.window_travel_px
+                                                                 : options.normal_flow.window_travel_px;
+    for (const double factor : kWindowFactors) {
+      const double half_s = std::clamp(factor * travel_px / (2.0 * speed_px_s),
+                                       0.5 * options.detection.shortest_window_s, kLongestHalf_s);
+      if (factor > 1.0 && half_s == search.half_window_s) continue;
+      search = BoardSearch{};
+      search.half_window_s = half_s;
+      gather(half_s);
+      searchWindow(window, bursts, middle_ns, speed_px_s, source, scene, options, search);
+      if (search.motion) return search;
+    }
   }
   return search;
 }

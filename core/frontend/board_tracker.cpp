@@ -27,6 +27,7 @@ BoardTracker::BoardTracker(const CircleBoard& board, Resolution resolution_px,
       complete_until_ns_(kLongAgo),
       last_burst_ns_(kLongAgo),
       last_search_ns_(kLongAgo),
+      search_interval_s_(options.detection.search_interval_s),
       tracked_until_ns_(kLongAgo) {}
 
 void BoardTracker::add(EventSpan events) {
@@ -104,7 +105,7 @@ void BoardTracker::processSlot(const Slot& slot) {
     if (static_cast<double>(middle_ns - motion_->time_ns) * 1e-9 > options_.tracking.longest_gap_s)
       motion_.reset();
   }
-  if (middle_ns - last_search_ns_ < nanosecondsFrom(options_.detection.search_interval_s)) {
+  if (middle_ns - last_search_ns_ < nanosecondsFrom(search_interval_s_)) {
     miss(slot, nullptr);
     return;
   }
@@ -112,8 +113,11 @@ void BoardTracker::processSlot(const Slot& slot) {
   const BoardSearch search = searchBoard(history_, middle_ns, scene_, options_);
   if (observer_) observer_->windowSearched(search, middle_ns);
   if (search.motion) {
+    search_interval_s_ = options_.detection.search_interval_s;
     acquire(slot, *search.motion);
   } else {
+    constexpr double kGrowth = 1.2;
+    search_interval_s_ = std::min(kGrowth * search_interval_s_, options_.detection.longest_search_interval_s);
     miss(slot, &search);
   }
 }

@@ -78,6 +78,7 @@ class BoardTracker {
   std::optional<BoardMotion> motion_;  // last window that held
   std::int64_t next_begin_ns_ = 0;     // of the next slot
   std::int64_t last_search_ns_;
+  double search_interval_s_;       // grows while searches fail
   std::int64_t tracked_until_ns_;  // end of the last slot that held
   FrontEndObserver* observer_ = nullptr;
   bool started_ = false;

@@ -34,11 +34,13 @@ enum class CandidateSource { RingVote, NormalFlow };
 
 // The front end as a whole: where candidates come from, how windows are laid.
 struct DetectionOptions {
-  CandidateSource method = CandidateSource::RingVote;
+  CandidateSource method = CandidateSource::NormalFlow;
+  bool try_both = true;
   double window_travel_px = 2.5;
   double shortest_window_s = 0.005;
   double longest_window_s = 0.05;
   double search_interval_s = 0.05;
+  double longest_search_interval_s = 0.5;
   double history_s = 2.0;
   int least_window_bursts = 60;
   bool operator==(const DetectionOptions&) const = default;
@@ -46,12 +48,17 @@ struct DetectionOptions {
 inline constexpr auto kDetectionFields = std::tuple{
     Choice{"method", &DetectionOptions::method, std::array{"ring_vote", "normal_flow"},
            "Where circle candidates come from when nothing is tracked."},
+    Switch{"try_both", &DetectionOptions::try_both,
+           "Where that source does not show the board, try the other."},
     Field{"window_travel_px", &DetectionOptions::window_travel_px, 0.5, 20.0, "px",
           "Windows are laid so that the board's edges travel about this far in one."},
     Field{"shortest_window_s", &DetectionOptions::shortest_window_s, 1e-3, 0.1, "s", "No window is shorter."},
     Field{"longest_window_s", &DetectionOptions::longest_window_s, 5e-3, 0.2, "s", "No window is longer."},
     Field{"search_interval_s", &DetectionOptions::search_interval_s, 0.0, 2.0, "s",
           "While the board is lost, search the whole image this often."},
+    Field{"longest_search_interval_s", &DetectionOptions::longest_search_interval_s, 0.0, 10.0, "s",
+          "Searches that find nothing become rarer, up to this interval; history_s brings back what they "
+          "miss."},
     Field{"history_s", &DetectionOptions::history_s, 0.0, 30.0, "s",
           "How far back a found board is tracked backwards in time."},
     Field{"least_window_bursts", &DetectionOptions::least_window_bursts, 1, 100000, "",
@@ -66,7 +73,7 @@ struct RingVoteOptions {
   double ring_half_width_px = 0.75;
   double least_score = 0.18;
   int least_support = 3;
-  int most_candidates = 400;
+  int most_candidates = 1500;
   double window_travel_px = 2.5;
   bool operator==(const RingVoteOptions&) const = default;
 };
@@ -127,6 +134,7 @@ struct GridOptions {
   int least_circles = 6;
   int ambiguity_margin = 2;
   double most_missing = 0.2;
+  double least_rival_overlap = 0.5;
   bool operator==(const GridOptions&) const = default;
 };
 inline constexpr auto kGridFields = std::tuple{
@@ -144,6 +152,8 @@ inline constexpr auto kGridFields = std::tuple{
     Field{"least_circles", &GridOptions::least_circles, 4, 1000, "", "A grid with fewer circles is none."},
     Field{"ambiguity_margin", &GridOptions::ambiguity_margin, 0, 100, "",
           "An incomplete grid needs this many circles more than its runner-up placement."},
+    Field{"least_rival_overlap", &GridOptions::least_rival_overlap, 0.1, 1.0, "",
+          "Other placements that share this part of the circles are held against the one that was found."},
     Field{"most_missing", &GridOptions::most_missing, 0.0, 1.0, "",
           "Circles that should be seen and are not, as part of those that are, for a board to be believed."}};
 static_assert(fieldCount<GridOptions>() == std::tuple_size_v<decltype(kGridFields)>);

@@ -17,6 +17,7 @@ struct NormalFlowOptions {
   double largest_pair_angle_deg = 30.0;
   double smallest_radius_px = 2.5;
   double largest_radius_px = 80.0;
+  double window_travel_px = 3.5;
   bool operator==(const NormalFlowOptions&) const = default;
 };
 inline constexpr auto kNormalFlowFields = std::tuple{
@@ -36,7 +37,9 @@ inline constexpr auto kNormalFlowFields = std::tuple{
     Field{"smallest_radius_px", &NormalFlowOptions::smallest_radius_px, 1.0, 100.0, "px",
           "Smallest circle looked for."},
     Field{"largest_radius_px", &NormalFlowOptions::largest_radius_px, 3.0, 500.0, "px",
-          "Largest circle looked for."}};
+          "Largest circle looked for."},
+    Field{"window_travel_px", &NormalFlowOptions::window_travel_px, 0.5, 20.0, "px",
+          "Edges should travel about this far in a searched window."}};
 static_assert(fieldCount<NormalFlowOptions>() == std::tuple_size_v<decltype(kNormalFlowFields)>);
 
 }  // namespace evical
