@@ -8,7 +8,7 @@ packages=(
   build-essential cmake ninja-build ccache git ca-certificates
   # core
   libeigen3-dev libceres-dev libsuitesparse-dev libyaml-cpp-dev libfmt-dev libspdlog-dev
-  libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-calib3d-dev
+  libopencv-dev libpng-dev
   # recordings: ROS bags are bz2 or lz4 compressed
   libbz2-dev liblz4-dev
   # command line
