@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Prints the accuracy table of the README: every scenario that a calibration must master, then the seeds.
+# Prints the accuracy table of the README: every scenario that a calibration must master, then the seeds, then the costs of
+# the hot paths. Takes half an hour on two cores.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 
 packaging/install-dependencies.sh
 cmake --preset release -DEVICAL_TESTS=ON
-cmake --build --preset release --target evical_accuracy
+cmake --build --preset release --target evical_accuracy evical_speed
 accuracy=build/release/tests/benchmarks/evical_accuracy
 scenarios=config/scenarios
 
@@ -14,3 +15,7 @@ scenarios=config/scenarios
             "$scenarios"/{blur_0.4px,blur_1px,threshold_0.15,threshold_0.5}.yaml \
             "$scenarios"/{planar_motion,one_axis_rotation,hardly_moving}.yaml
 "$accuracy" --seeds 20 "$scenarios/davis346_10s.yaml"
+
+speed=build/release/tests/benchmarks/evical_speed
+"$speed" "$scenarios/davis346.yaml"
+"$speed" --duration 3 "$scenarios/hd.yaml"
