@@ -29,7 +29,8 @@ class CalibrationError : public std::runtime_error {
 CalibrationError badInput(std::string place, std::string problem, std::string advice = {});
 CalibrationError calibrationFailed(std::string place, std::string problem, std::string advice = {});
 
-// Thrown by RunContext::throwIfStopped. Not an error: whoever started the run turns it into the outcome "cancelled".
+// Thrown by RunContext::throwIfStopped. Not an error: whoever started the run turns it into the outcome
+// "cancelled".
 struct Cancelled {};
 
 }  // namespace evical

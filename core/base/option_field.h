@@ -1,4 +1,5 @@
-// One row per option: the struct holds the default, the row holds name, member, range, unit and help. Session files,
+// One row per option: the struct holds the default, the row holds name, member, range, unit and help. Session
+// files,
 // --set, validation, `evical options` and the forms all walk these rows.
 //
 //   struct NormalFlowOptions {
@@ -6,7 +7,8 @@
 //     bool operator==(const NormalFlowOptions&) const = default;
 //   };
 //   inline constexpr auto kNormalFlowFields = std::tuple{
-//       Field{"plane_radius_px", &NormalFlowOptions::plane_radius_px, 1, 5, "px", "Half width of the plane-fit window."}};
+//       Field{"plane_radius_px", &NormalFlowOptions::plane_radius_px, 1, 5, "px", "Half width of the
+//       plane-fit window."}};
 //   static_assert(fieldCount<NormalFlowOptions>() == std::tuple_size_v<decltype(kNormalFlowFields)>);
 #pragma once
 
@@ -52,7 +54,8 @@ struct Choice {
   const char* help;
 };
 template <class Options, class Enum, std::size_t Count>
-Choice(const char*, Enum Options::*, std::array<const char*, Count>, const char*) -> Choice<Options, Enum, Count>;
+Choice(const char*, Enum Options::*, std::array<const char*, Count>, const char*)
+    -> Choice<Options, Enum, Count>;
 
 namespace detail {
 
@@ -63,7 +66,9 @@ struct AnyValue {
 
 template <class Options, std::size_t... I>
 constexpr bool bracesTake(std::index_sequence<I...>) {
-  return requires { Options{(static_cast<void>(I), AnyValue{})...}; };
+  return requires {
+    Options{(static_cast<void>(I), AnyValue{})...};
+  };
 }
 
 template <class Options, std::size_t Count>

@@ -9,7 +9,8 @@ namespace evical {
 
 enum class LogLevel { Debug, Info, Warning };
 
-// Called from worker threads; implementations lock where they must. All fractions are real: work done / work to do.
+// Called from worker threads; implementations lock where they must. All fractions are real: work done / work
+// to do.
 class ProgressSink {
  public:
   virtual ~ProgressSink() = default;

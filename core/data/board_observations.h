@@ -12,11 +12,12 @@
 
 namespace evical {
 
-// One circle in one window. All pixel quantities are *ideal* pixels (camera_model.h) where the camera's intrinsics are
-// known, and the sensor's own otherwise.
+// One circle in one window. All pixel quantities are *ideal* pixels (camera_model.h) where the camera's
+// intrinsics are known, and the sensor's own otherwise.
 struct CircleObservation {
-  int circle = 0;      // index on the board, CircleBoard::index
-  double time_s = 0.0;  // camera clock, since the recording's start: where centre and velocity are uncorrelated
+  int circle = 0;  // index on the board, CircleBoard::index
+  double time_s =
+      0.0;  // camera clock, since the recording's start: where centre and velocity are uncorrelated
   Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();  // of the ellipse
   Eigen::Matrix2d covariance_px2 = Eigen::Matrix2d::Identity();
   Eigen::Vector2d velocity_px_s = Eigen::Vector2d::Zero();
@@ -53,9 +54,9 @@ struct WindowReport {
   double time_s = 0.0;  // middle
   double half_width_s = 0.0;
   WindowOutcome outcome = WindowOutcome::TooFewEvents;
-  int events = 0;      // bursts in it
-  int candidates = 0;  // circles proposed
-  int circles = 0;     // in the final grid
+  int events = 0;        // bursts in it
+  int candidates = 0;    // circles proposed
+  int circles = 0;       // in the final grid
   bool tracked = false;  // found from its neighbour in time instead of from nothing
 };
 

@@ -42,8 +42,8 @@ struct UncertaintyReport {
   std::vector<ImuUncertainty> imus;
   double gravity_direction_std_rad = 0.0;
 
-  // Eigenvalues of the information matrix in units of what a user needs (0.1 deg, 1 mm, 0.1 ms): below 1, the need is
-  // not met in that direction. Ascending.
+  // Eigenvalues of the information matrix in units of what a user needs (0.1 deg, 1 mm, 0.1 ms): below 1, the
+  // need is not met in that direction. Ascending.
   std::vector<double> observability;
   std::string weakest;  // in plain words: "translation along the camera's z axis"
 };

@@ -22,7 +22,8 @@ struct ImuState {
   double time_offset_s = 0.0;         // reference_time = imu_time + time_offset_s
   Eigen::Vector3d gyroscope_bias_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d accelerometer_bias_m_s2 = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d gyroscope_mapping = Eigen::Matrix3d::Identity();      // upper triangular: measured = M true + bias
+  Eigen::Matrix3d gyroscope_mapping =
+      Eigen::Matrix3d::Identity();  // upper triangular: measured = M true + bias
   Eigen::Matrix3d accelerometer_mapping = Eigen::Matrix3d::Identity();  // the same
 };
 

@@ -15,10 +15,10 @@ namespace evical {
 enum class StreamType { Events, Imu, Frames, Triggers, Other };
 
 struct StreamInfo {
-  std::string name;     // topic, or the stream's name in the file
+  std::string name;  // topic, or the stream's name in the file
   StreamType type = StreamType::Other;
-  std::string message;  // what the file calls its content, e.g. dvs_msgs/EventArray
-  Resolution resolution_px;  // of events and frames, where the file says it
+  std::string message;         // what the file calls its content, e.g. dvs_msgs/EventArray
+  Resolution resolution_px;    // of events and frames, where the file says it
   std::uint64_t messages = 0;  // 0 if unknown
 };
 
@@ -32,7 +32,8 @@ struct Packet {
 // What goes wrong in recordings and is reported but not repaired.
 struct RecordingFault {
   std::string stream;  // empty: the file as a whole
-  std::string kind;    // gap, backward_time, jitter, truncated, corrupt, stuck_axis, saturated_axis, unit, hot_pixels, ...
+  std::string kind;    // gap, backward_time, jitter, truncated, corrupt, stuck_axis, saturated_axis, unit,
+                       // hot_pixels, ...
   double at_s = 0.0;   // since the stream's first time; 0 where it has no place
   std::string text;    // one sentence for people
 };

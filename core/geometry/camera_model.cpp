@@ -15,8 +15,8 @@ using DistortionJacobian = Eigen::Matrix<double, 2, 5>;
 constexpr double kLargestAngle_rad = 85.0 * 3.14159265358979323846 / 180.0;
 constexpr double kSmallRadius = 1e-8;
 
-Eigen::Vector2d distortRadtan(const std::array<double, 5>& d, const Eigen::Vector2d& n, Eigen::Matrix2d* jacobian,
-                              DistortionJacobian* jacobian_distortion) {
+Eigen::Vector2d distortRadtan(const std::array<double, 5>& d, const Eigen::Vector2d& n,
+                              Eigen::Matrix2d* jacobian, DistortionJacobian* jacobian_distortion) {
   const double x = n.x(), y = n.y();
   const double r2 = x * x + y * y, r4 = r2 * r2, r6 = r4 * r2;
   const double radial = 1.0 + d[0] * r2 + d[1] * r4 + d[4] * r6;
@@ -48,7 +48,8 @@ Eigen::Vector2d distortEquidistant(const std::array<double, 5>& d, const Eigen::
   const double a_d = a * (1.0 + d[0] * a2 + d[1] * a4 + d[2] * a6 + d[3] * a8);
   const Eigen::Vector2d unit = n / r;
   if (jacobian) {
-    const double slope = (1.0 + 3.0 * d[0] * a2 + 5.0 * d[1] * a4 + 7.0 * d[2] * a6 + 9.0 * d[3] * a8) / (1.0 + r * r);
+    const double slope =
+        (1.0 + 3.0 * d[0] * a2 + 5.0 * d[1] * a4 + 7.0 * d[2] * a6 + 9.0 * d[3] * a8) / (1.0 + r * r);
     const Eigen::Matrix2d along = unit * unit.transpose();
     *jacobian = slope * along + a_d / r * (Eigen::Matrix2d::Identity() - along);
   }
@@ -62,8 +63,8 @@ Eigen::Vector2d distortEquidistant(const std::array<double, 5>& d, const Eigen::
   return a_d * unit;
 }
 
-Eigen::Vector2d distortWith(const CameraIntrinsics& camera, const Eigen::Vector2d& n, Eigen::Matrix2d* jacobian,
-                            DistortionJacobian* jacobian_distortion) {
+Eigen::Vector2d distortWith(const CameraIntrinsics& camera, const Eigen::Vector2d& n,
+                            Eigen::Matrix2d* jacobian, DistortionJacobian* jacobian_distortion) {
   return camera.model == CameraModel::PinholeRadtan
              ? distortRadtan(camera.distortion, n, jacobian, jacobian_distortion)
              : distortEquidistant(camera.distortion, n, jacobian, jacobian_distortion);
@@ -71,7 +72,8 @@ Eigen::Vector2d distortWith(const CameraIntrinsics& camera, const Eigen::Vector2
 
 }  // namespace
 
-Eigen::Vector2d distort(const CameraIntrinsics& camera, const Eigen::Vector2d& normalised, Eigen::Matrix2d* jacobian) {
+Eigen::Vector2d distort(const CameraIntrinsics& camera, const Eigen::Vector2d& normalised,
+                        Eigen::Matrix2d* jacobian) {
   return distortWith(camera, normalised, jacobian, nullptr);
 }
 
@@ -147,13 +149,15 @@ Eigen::Matrix2d idealPixelScale(const CameraIntrinsics& camera, const Eigen::Vec
   return pixel_from_ideal.inverse();
 }
 
-UndistortionTable::UndistortionTable(const CameraIntrinsics& camera) : width_px_(camera.resolution_px.width_px) {
+UndistortionTable::UndistortionTable(const CameraIntrinsics& camera)
+    : width_px_(camera.resolution_px.width_px) {
   constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
   ideal_px_.reserve(static_cast<std::size_t>(camera.resolution_px.pixelCount()));
   for (int y = 0; y < camera.resolution_px.height_px; ++y) {
     for (int x = 0; x < camera.resolution_px.width_px; ++x) {
       const std::optional<Eigen::Vector2d> ideal = idealPixel(camera, Eigen::Vector2d(x, y));
-      ideal_px_.push_back(ideal ? Eigen::Vector2f(ideal->cast<float>()) : Eigen::Vector2f(kNowhere, kNowhere));
+      ideal_px_.push_back(ideal ? Eigen::Vector2f(ideal->cast<float>())
+                                : Eigen::Vector2f(kNowhere, kNowhere));
     }
   }
 }

@@ -53,7 +53,9 @@ Eigen::Vector3d quaternionLog(const Eigen::Quaterniond& rotation) {
   return 2.0 * std::atan2(n, w) / n * v;
 }
 
-Eigen::Vector3d so3Log(const Eigen::Matrix3d& rotation) { return quaternionLog(Eigen::Quaterniond(rotation)); }
+Eigen::Vector3d so3Log(const Eigen::Matrix3d& rotation) {
+  return quaternionLog(Eigen::Quaterniond(rotation));
+}
 
 Eigen::Matrix3d so3RightJacobian(const Eigen::Vector3d& rotation_vector_rad) {
   const double angle2 = rotation_vector_rad.squaredNorm();
