@@ -153,6 +153,33 @@ std::optional<Eigen::Matrix3d> fitAgreeing(std::vector<std::pair<int, std::size_
   }
 }
 
+// Circles that the lattice missed or had given to an outlier: whatever lies where the homography puts them.
+void fillGaps(const Eigen::Matrix3d& ideal_from_board, const std::vector<IdealCircle>& ideal,
+              const CircleBoard& board, const GridOptions& options,
+              std::vector<std::pair<int, std::size_t>>& placed) {
+  std::vector<bool> found(static_cast<std::size_t>(board.circleCount()), false), used(ideal.size(), false);
+  for (const auto& [circle, index] : placed) found[static_cast<std::size_t>(circle)] = used[index] = true;
+  const auto imageOf = [&](const Eigen::Vector2d& on_board) {
+    return Eigen::Vector2d((ideal_from_board * on_board.homogeneous()).hnormalized());
+  };
+  for (int circle = 0; circle < board.circleCount(); ++circle) {
+    if (found[static_cast<std::size_t>(circle)]) continue;
+    const Eigen::Vector2d centre = board.centre_m(circle), predicted_px = imageOf(centre);
+    const double step_px = (imageOf(centre + Eigen::Vector2d(board.spacing_m, 0.0)) - predicted_px).norm();
+    std::size_t nearest = ideal.size();
+    double nearest_px = 0.5 * options.step_tolerance * step_px;
+    for (std::size_t k = 0; k < ideal.size(); ++k) {
+      const double distance_px = (ideal[k].centre_px - predicted_px).norm();
+      if (used[k] || !(distance_px < nearest_px)) continue;
+      nearest = k;
+      nearest_px = distance_px;
+    }
+    if (nearest == ideal.size()) continue;
+    used[nearest] = true;
+    placed.emplace_back(circle, nearest);
+  }
+}
+
 }  // namespace
 
 std::vector<Eigen::Matrix3d> latticeShifts(const CircleBoard& board, double least_overlap) {
@@ -230,7 +257,11 @@ std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
       if (found == board_lattice.end() || !ideal[node.circle].centre_px.allFinite()) continue;
       placement.circles.emplace_back(found->second, node.circle);
     }
-    const std::optional<Eigen::Matrix3d> h = fitAgreeing(placement.circles, ideal, board, options);
+    std::optional<Eigen::Matrix3d> h = fitAgreeing(placement.circles, ideal, board, options);
+    if (h) {
+      fillGaps(*h, ideal, board, options, placement.circles);
+      h = fitAgreeing(placement.circles, ideal, board, options);
+    }
     if (!h || (camera && !looksSquare(*h, *camera))) continue;
     std::vector<IdealCircle> placed;
     Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
