@@ -25,7 +25,8 @@ double secondsSince(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-// Median of |acceleration| tells the unit; a gyroscope's only when it is absurd.
+// Median of |acceleration| tells the unit, wide enough for hands that shake at several g; a gyroscope's only
+// when it is absurd.
 void checkUnits(const ImuData& imu) {
   std::vector<double> norms;
   double rate2 = 0.0;
@@ -35,7 +36,7 @@ void checkUnits(const ImuData& imu) {
   }
   const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
   std::nth_element(norms.begin(), middle, norms.end());
-  constexpr std::array<double, 2> kPlausible_m_s2 = {7.0, 13.0}, kLooksLikeG = {0.7, 1.3};
+  constexpr std::array<double, 2> kPlausible_m_s2 = {4.0, 40.0}, kLooksLikeG = {0.7, 1.3};
   constexpr double kAbsurd_rad_s = 25.0;
   if (*middle < kPlausible_m_s2[0] || *middle > kPlausible_m_s2[1]) {
     const bool g = *middle > kLooksLikeG[0] && *middle < kLooksLikeG[1];
