@@ -22,7 +22,6 @@ BoardTracker::BoardTracker(const CircleBoard& board, Resolution resolution_px,
     : scene_(board, resolution_px, std::move(camera)),
       options_(options),
       start_ns_(start_ns),
-      extractor_(resolution_px, options.bursts),
       window_(resolution_px, scene_.ideal, scene_.ideal_scale, board.circles),
       complete_until_ns_(kLongAgo),
       last_burst_ns_(kLongAgo),
@@ -32,9 +31,10 @@ BoardTracker::BoardTracker(const CircleBoard& board, Resolution resolution_px,
 
 void BoardTracker::add(EventSpan events) {
   if (events.empty()) return;
+  if (!extractor_) extractor_.emplace(scene_.resolution_px, options_.bursts);
   new_bursts_.clear();
-  extractor_.add(events, new_bursts_);
-  addBursts(new_bursts_, events.front().time_ns, extractor_.completeUntil_ns());
+  extractor_->add(events, new_bursts_);
+  addBursts(new_bursts_, events.front().time_ns, extractor_->completeUntil_ns());
 }
 
 void BoardTracker::addBursts(const std::vector<EdgeBurst>& bursts, std::int64_t first_event_ns,
@@ -51,7 +51,7 @@ void BoardTracker::addBursts(const std::vector<EdgeBurst>& bursts, std::int64_t 
 
 BoardObservations BoardTracker::finish() {
   new_bursts_.clear();
-  extractor_.finish(new_bursts_);
+  if (extractor_) extractor_->finish(new_bursts_);
   for (const EdgeBurst& burst : new_bursts_) last_burst_ns_ = std::max(last_burst_ns_, burst.time_ns);
   history_.add(new_bursts_);
   while (started_ &&
@@ -60,7 +60,7 @@ BoardObservations BoardTracker::finish() {
     processSlot(slot);
     next_begin_ns_ = slot.end_ns;
   }
-  observations_.events = extractor_.eventCount();
+  if (extractor_) observations_.events = extractor_->eventCount();
   const auto earlier = [](const auto& a, const auto& b) { return a.time_s < b.time_s; };
   std::sort(observations_.views.begin(), observations_.views.end(), earlier);
   std::sort(observations_.windows.begin(), observations_.windows.end(), earlier);
@@ -184,7 +184,7 @@ TrackedWindow BoardTracker::track(const Slot& slot, const BoardMotion& predictio
   return tracked;
 }
 
-bool BoardTracker::keep(TrackedWindow& tracked) {
+void BoardTracker::keep(TrackedWindow& tracked) {
   const int found = static_cast<int>(tracked.circles.size());
   const int count = scene_.board.circleCount();
   const bool enough = found >= std::max(4.0, options_.grid.least_partial * count);
@@ -192,11 +192,10 @@ bool BoardTracker::keep(TrackedWindow& tracked) {
                            : found == count ? WindowOutcome::Complete
                                             : WindowOutcome::Partial;
   observations_.windows.push_back(tracked.report);
-  if (!enough) return false;
+  if (!enough) return;
   observations_.views.push_back({tracked.report.time_s,
                                  found == count ? ViewKind::Complete : ViewKind::Partial,
                                  std::move(tracked.circles)});
-  return true;
 }
 
 void BoardTracker::miss(const Slot& slot, const BoardSearch* search) {

@@ -61,7 +61,7 @@ class BoardTracker {
   void acquire(const Slot& slot, const BoardMotion& motion);
   void trackBackwards(const Slot& from, BoardMotion motion);
   TrackedWindow track(const Slot& slot, const BoardMotion& prediction, double first_gate_px);
-  bool keep(TrackedWindow& tracked);
+  void keep(TrackedWindow& tracked);
   void miss(const Slot& slot, const BoardSearch* search);
   double speed_px_s(const BoardMotion& motion) const;
   std::int64_t slotLength_ns(const BoardMotion* motion) const;
@@ -69,7 +69,7 @@ class BoardTracker {
   BoardScene scene_;
   FrontEndOptions options_;
   std::int64_t start_ns_;
-  BurstExtractor extractor_;
+  std::optional<BurstExtractor> extractor_;  // only where events come in, not bursts
   BurstHistory history_;
   BurstWindow window_;
   std::int64_t complete_until_ns_;
