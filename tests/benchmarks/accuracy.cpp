@@ -27,8 +27,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kEnoughOfBoard = 0.4;  // of the circles in view make a window that counts
-
 double secondsOf(Clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
 }
@@ -99,13 +97,9 @@ RecordingPass detect(const Scenario& scenario, const Session& session, Outcome& 
 
 double windowsFound(const Scenario& scenario, const BoardObservations& observations) {
   const SinusoidMotion motion(scenario);
-  const double enough = kEnoughOfBoard * scenario.board.circleCount();
   int seen = 0, found = 0;
   for (const WindowReport& window : observations.windows) {
-    int inside = 0;
-    for (const TrueCircle& circle : trueBoardView(motion, scenario, 0, window.time_s))
-      inside += circle.inside;
-    if (inside < enough) continue;
+    if (!boardInView(motion, scenario, 0, window.time_s)) continue;
     ++seen;
     found += window.outcome == WindowOutcome::Complete || window.outcome == WindowOutcome::Partial;
   }
