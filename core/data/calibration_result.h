@@ -21,6 +21,7 @@ struct CameraUncertainty {
   Eigen::Vector3d translation_std_m = Eigen::Vector3d::Zero();  // in the reference
   double time_offset_std_s = 0.0;
   double edge_lead_std_px = 0.0;
+  double edge_lead_growth_std_px = 0.0;
 };
 
 struct ImuUncertainty {

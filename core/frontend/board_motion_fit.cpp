@@ -99,9 +99,10 @@ void gatherPoints(const BurstWindow& window, const CircleMotion& moving, double 
         if (std::abs(t) > half_window_s) return;
         const Eigen::Vector2d pixel(burst.ideal_x_px, burst.ideal_y_px);
         const Eigen::Vector2d at_middle = pixel - t * (moving.velocity + 0.5 * t * moving.acceleration);
-        const double distance = distanceToEdge(circle, at_middle).distance_px;
-        if (!(std::abs(distance) < slack_px * burst.scale)) return;
-        points.push_back({pixel.x(), pixel.y(), t, 1.0 / burst.scale, burst.events, burst.lead});
+        const EdgeDistance edge = distanceToEdge(circle, at_middle);
+        const double scale = burst.stretch.across(edge.normal);
+        if (!(std::abs(edge.distance_px) < slack_px * scale)) return;
+        points.push_back({pixel.x(), pixel.y(), t, 1.0 / scale, burst.events, burst.lead});
       });
 }
 

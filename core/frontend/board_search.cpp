@@ -141,13 +141,14 @@ BoardScene::BoardScene(const CircleBoard& the_board, Resolution resolution,
     : board(the_board), resolution_px(resolution), camera(std::move(intrinsics)) {
   if (!camera) return;
   ideal = UndistortionTable(*camera);
-  ideal_scale.reserve(static_cast<std::size_t>(resolution.pixelCount()));
+  stretch.reserve(static_cast<std::size_t>(resolution.pixelCount()));
   for (int y = 0; y < resolution.height_px; ++y) {
     for (int x = 0; x < resolution.width_px; ++x) {
       const Eigen::Vector2d pixel = ideal(x, y).cast<double>();
-      ideal_scale.push_back(pixel.allFinite() ? static_cast<float>(std::sqrt(
-                                                    std::abs(idealPixelScale(*camera, pixel).determinant())))
-                                              : std::numeric_limits<float>::quiet_NaN());
+      Eigen::Matrix2f j = Eigen::Matrix2f::Constant(std::numeric_limits<float>::quiet_NaN());
+      if (pixel.allFinite()) j = idealPixelScale(*camera, pixel).cast<float>();
+      const Eigen::Matrix2f jj = j * j.transpose();
+      stretch.push_back({jj(0, 0), jj(0, 1), jj(1, 1)});
     }
   }
 }
@@ -156,7 +157,7 @@ BoardSearch searchBoard(const BurstHistory& history, std::int64_t middle_ns, con
                         const FrontEndOptions& options) {
   constexpr std::array kWindowFactors = {1.0, 2.0, 0.5};
   constexpr double kLongestHalf_s = 0.08;
-  BurstWindow window(scene.resolution_px, scene.ideal, scene.ideal_scale, scene.board.circles);
+  BurstWindow window(scene.resolution_px, scene.ideal, scene.stretch, scene.board.circles);
   std::vector<EdgeBurst> bursts;
   const auto gather = [&](double half_window_s) {
     const std::int64_t half_ns = nanosecondsFrom(half_window_s);

@@ -31,7 +31,7 @@ struct BoardScene {
   Resolution resolution_px;
   std::optional<CameraIntrinsics> camera;
   UndistortionTable ideal;
-  std::vector<float> ideal_scale;  // ideal pixels per pixel, per pixel
+  std::vector<PixelStretch> stretch;  // per pixel
 
   BoardScene(const CircleBoard& board, Resolution resolution_px, std::optional<CameraIntrinsics> camera);
 };

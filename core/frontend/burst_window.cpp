@@ -59,10 +59,10 @@ std::size_t BurstHistory::count(std::int64_t begin_ns, std::int64_t end_ns) cons
 }
 
 BurstWindow::BurstWindow(Resolution resolution_px, const UndistortionTable& ideal,
-                         const std::vector<float>& scale, CircleShade circles)
+                         const std::vector<PixelStretch>& stretch, CircleShade circles)
     : resolution_px_(resolution_px),
       ideal_(&ideal),
-      scale_(&scale),
+      stretch_(&stretch),
       dark_circles_(circles == CircleShade::Dark),
       columns_((resolution_px.width_px >> kCellShift) + 1),
       rows_((resolution_px.height_px >> kCellShift) + 1) {}
@@ -82,12 +82,12 @@ void BurstWindow::assign(const std::vector<EdgeBurst>& bursts, std::int64_t midd
     out.y_px = burst.y_px;
     out.ideal_x_px = out.x_px;
     out.ideal_y_px = out.y_px;
-    out.scale = 1.0f;
+    out.stretch = {};
     if (!ideal_->empty()) {
       const Eigen::Vector2f& ideal = (*ideal_)(burst.x_px, burst.y_px);
       out.ideal_x_px = ideal.x();
       out.ideal_y_px = ideal.y();
-      out.scale = (*scale_)[static_cast<std::size_t>(burst.y_px * resolution_px_.width_px + burst.x_px)];
+      out.stretch = (*stretch_)[static_cast<std::size_t>(burst.y_px * resolution_px_.width_px + burst.x_px)];
     }
     out.time_s = static_cast<float>(static_cast<double>(burst.time_ns - middle_ns) * 1e-9);
     out.events = burst.events;

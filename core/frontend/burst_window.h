@@ -4,7 +4,10 @@
 #include "core/frontend/edge_bursts.h"
 #include "core/geometry/circle_board.h"
 
+#include <Eigen/Core>
+
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <utility>
@@ -30,12 +33,23 @@ class BurstHistory {
   std::deque<std::vector<EdgeBurst>> slices_;
 };
 
+// How lens distortion stretches a pixel: J J^T of J = d(ideal pixel) / d(pixel).
+struct PixelStretch {
+  float xx = 1.0f, xy = 0.0f, yy = 1.0f;
+
+  // Ideal pixels per pixel for an edge with this normal (unit, in ideal pixels): |J^T n|.
+  double across(const Eigen::Vector2d& normal) const {
+    const double x = normal.x(), y = normal.y();
+    return std::sqrt(x * x * xx + 2.0 * x * y * xy + y * y * yy);
+  }
+};
+
 // A burst in a window. Pixels are the sensor's; ideal pixels as in camera_model.h (the same where nothing is
 // known).
 struct WindowBurst {
   float x_px, y_px;
   float ideal_x_px, ideal_y_px;
-  float scale;   // ideal pixels per pixel
+  PixelStretch stretch;
   float time_s;  // since the window's middle
   float events;  // that the edge fired here
   float lead;    // +1 if a circle's leading edge fires so, -1 if its trailing edge does
@@ -47,8 +61,8 @@ class BurstWindow {
   static constexpr int kCellShift = 3;
 
   // `ideal` may be empty: ideal pixels then are pixels.
-  BurstWindow(Resolution resolution_px, const UndistortionTable& ideal, const std::vector<float>& scale,
-              CircleShade circles);
+  BurstWindow(Resolution resolution_px, const UndistortionTable& ideal,
+              const std::vector<PixelStretch>& stretch, CircleShade circles);
 
   void assign(const std::vector<EdgeBurst>& bursts, std::int64_t middle_ns);
 
@@ -66,7 +80,7 @@ class BurstWindow {
 
   Resolution resolution_px_;
   const UndistortionTable* ideal_;
-  const std::vector<float>* scale_;
+  const std::vector<PixelStretch>* stretch_;
   bool dark_circles_;
   int columns_, rows_;
   std::int64_t middle_ns_ = 0;

@@ -19,6 +19,7 @@ constexpr int kMeasureIterations = 4;
 struct EdgePoint {
   Eigen::Vector2d at_middle;  // ideal pixels, moved to the window's middle
   double time_s, scale, weight;
+  double leads;  // +1 at leading edges, -1 at trailing ones
 };
 
 void gatherEdgePoints(const BurstWindow& window, const CircleImage& circle, const BoardMotion& motion,
@@ -39,17 +40,19 @@ void gatherEdgePoints(const BurstWindow& window, const CircleImage& circle, cons
     const Eigen::Vector2d pixel(burst.ideal_x_px, burst.ideal_y_px);
     const Eigen::Vector2d at_middle = pixel - motion.travel(pixel, time_s);
     const EdgeDistance edge = distanceToEdge(circle, at_middle);
-    if (!(std::abs(edge.distance_px / burst.scale - motion.radius_offset_px) < gate_px)) return;
+    const double scale = burst.stretch.across(edge.normal);
+    if (!(std::abs(edge.distance_px / scale - motion.radius_offset_px) < gate_px)) return;
     const Eigen::Vector2d velocity_then = velocity + time_s * acceleration;
     const double leads = burst.lead * edge.normal.dot(velocity_then) / (velocity_then.norm() + 1e-9);
     const double weight = crossingWeight(leads, burst.events, motion.typical_events, options);
-    if (weight > 0.0) points.push_back({at_middle, time_s, burst.scale, weight});
+    if (weight > 0.0) points.push_back({at_middle, time_s, scale, weight, burst.lead});
   };
   window.visitBox(middle.x() - reach, middle.x() + reach, middle.y() - reach, middle.y() + reach, visit);
 }
 
 struct CentreFit {
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  // centre x, y in ideal pixels; radius offset in pixels
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();    // centre x, y in ideal pixels; radius offset in pixels
+  Eigen::Vector3d by_lead = Eigen::Vector3d::Zero();  // of the shift, by an edge lead in pixels
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   double weight = 0.0, squares = 0.0, time_s = 0.0;
   int points = 0, inliers = 0;
@@ -69,7 +72,7 @@ CentreFit fitCentre(CircleImage circle, const BoardMotion& motion, const Trackin
     circle.centre_px = centre_at_start + fit.shift.head<2>();
     const double offset_px = motion.radius_offset_px + fit.shift.z();
     Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d vector = Eigen::Vector3d::Zero();
+    Eigen::Vector3d vector = Eigen::Vector3d::Zero(), by_lead = Eigen::Vector3d::Zero();
     matrix(2, 2) = prior * noise2;
     vector(2) = -prior * noise2 * fit.shift.z();
     fit.weight = fit.squares = fit.time_s = 0.0;
@@ -83,6 +86,7 @@ CentreFit fitCentre(CircleImage circle, const BoardMotion& motion, const Trackin
       const Eigen::Vector3d row(-edge.normal.x() / point.scale, -edge.normal.y() / point.scale, -1.0);
       matrix += w * row * row.transpose();
       vector -= w * r * row;
+      by_lead -= w * point.leads * row;
       fit.weight += w;
       fit.squares += w * r * r;
       fit.time_s += w * point.time_s;
@@ -92,7 +96,9 @@ CentreFit fitCentre(CircleImage circle, const BoardMotion& motion, const Trackin
       fit.sectors |= 1u << (static_cast<int>((angle / (2.0 * M_PI) + 1.0) * kSectors) % kSectors);
     }
     if (fit.points < options.least_circle_bursts) return fit;
-    fit.shift += matrix.ldlt().solve(vector);
+    const Eigen::LDLT<Eigen::Matrix3d> solver(matrix);
+    fit.shift += solver.solve(vector);
+    fit.by_lead = solver.solve(by_lead);
     fit.information = matrix;
   }
   fit.time_s /= fit.weight;
@@ -107,6 +113,7 @@ CircleObservation observation(const CircleImage& circle, const CentreFit& fit, c
   out.velocity_px_s = motion.velocityAt(centre) + fit.time_s * motion.accelerationAt(centre);
   out.time_s = secondsSince(start_ns, motion.time_ns) + fit.time_s;
   out.centre_px = centre + motion.travel(centre, fit.time_s);
+  out.edge_lead_effect = fit.by_lead.head<2>();
   out.covariance_px2 = noise2 * fit.information.inverse().topLeftCorner<2, 2>();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(circle.shape);
   out.semi_axes_px = eigen.eigenvalues().cwiseSqrt().cwiseInverse();  // ascending shape: major axis first

@@ -115,8 +115,7 @@ CircleMeasurement CalibrationProblem::measurement(std::size_t camera, std::size_
   m.on_board_m = input_.board.centre_m(observed.circle);
   m.centre_px = observed.centre_px;
   m.whitening_px = covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity());
-  m.lead_direction = edgeLeadDirection(*input_.cameras[camera].intrinsics, observed.centre_px,
-                                       observed.velocity_px_s, options_.rest_speed_px_s);
+  m.lead = edgeLeadEffect(*input_.cameras[camera].intrinsics, observed, options_.rest_speed_px_s);
   m.view = static_cast<int>(view);
   m.circle = static_cast<int>(circle);
   return m;
@@ -152,7 +151,7 @@ void CalibrationProblem::addCircles(std::size_t camera) {
     appendPositionBlocks(segment, blocks);
     blocks.insert(blocks.end(),
                   {state.imu_from_camera.rotation.coeffs().data(), state.imu_from_camera.translation_m.data(),
-                   &state.time_offset_s, &state.edge_lead_px});
+                   &state.time_offset_s, &state.edge_lead_px, &state.edge_lead_growth_px});
     blocks_.push_back({problem_->AddResidualBlock(cost, nullptr, blocks), SensorKind::Circles, camera,
                        measurements[begin].time_s + state.time_offset_s, cost});
   }
@@ -231,8 +230,10 @@ void CalibrationProblem::addPriors(ReleaseStages stage) {
     if (!problem_->HasParameterBlock(block)) return;
     blocks_.push_back({problem_->AddResidualBlock(new PriorCost(mean, size, sigma), nullptr, block)});
   };
-  for (CameraState& camera : state_.cameras)
+  for (CameraState& camera : state_.cameras) {
     add(&camera.edge_lead_px, 1, kZero.data(), options_.edge_lead_sigma_px);
+    add(&camera.edge_lead_growth_px, 1, kZero.data(), options_.edge_lead_growth_sigma_px);
+  }
   for (CameraState& camera : state_.cameras) {
     add(camera.imu_from_camera.translation_m.data(), 3, kZero.data(), options_.translation_sigma_m);
   }
@@ -272,6 +273,7 @@ std::vector<Quantity> CalibrationProblem::quantities() {
     all.push_back({QuantityKind::CameraTranslation, i, camera.imu_from_camera.translation_m.data()});
     all.push_back({QuantityKind::CameraTimeOffset, i, &camera.time_offset_s});
     all.push_back({QuantityKind::EdgeLead, i, &camera.edge_lead_px});
+    all.push_back({QuantityKind::EdgeLeadGrowth, i, &camera.edge_lead_growth_px});
   }
   for (std::size_t i = 0; i < state_.imus.size(); ++i) {
     ImuState& imu = state_.imus[i];

@@ -36,6 +36,7 @@ enum class QuantityKind {
   CameraTranslation,
   CameraTimeOffset,
   EdgeLead,
+  EdgeLeadGrowth,
   ImuRotation,
   ImuTranslation,
   ImuTimeOffset,

@@ -1,6 +1,6 @@
 // Zero when the measured ellipse centres are those of the projected circles, leading by the edge lead along
 // their image motion (method section 6):
-//   r = L^-1 [ centre(camera_from_world(t), circle) + edge_lead * v / sqrt(|v|^2 + v_rest^2) - measured ],
+//   r = L^-1 [ centre(camera_from_world(t), circle) + lead (edge_lead.h) - measured ],
 //   t = t_measured + time_offset,  camera_from_world(t) = (world_from_imu(t) imu_from_camera)^-1,
 // L the Cholesky factor of the centre's covariance, ideal pixels; each circle's residual is shortened so that
 // its square is Huber's loss. One cost function holds all circles of one camera whose times fall into one
@@ -8,14 +8,15 @@
 // only.
 //
 // Blocks: 4 rotation control points (x y z w), 4 position control points [m], imu_from_camera rotation (x y z
-// w) and translation [m], time offset [s], edge lead [px]. Without unit. Quaternion blocks as in
-// so3_manifold.h.
+// w) and translation [m], time offset [s], edge lead [px] and its growth [px]. Without unit. Quaternion
+// blocks as in so3_manifold.h.
 //
 // v is the measured image velocity: of the right direction to a percent or so where it matters, and it keeps
 // the lead linear.
 #pragma once
 
 #include "core/geometry/camera_model.h"
+#include "core/optimisation/edge_lead.h"
 #include "core/optimisation/spline_segment.h"
 
 #include <ceres/cost_function.h>
@@ -28,9 +29,9 @@ namespace evical {
 struct CircleMeasurement {
   double time_s = 0.0;  // camera clock
   Eigen::Vector2d on_board_m, centre_px;
-  Eigen::Matrix2d whitening_px;    // L^-1
-  Eigen::Vector2d lead_direction;  // v / sqrt(|v|^2 + v_rest^2)
-  int view = 0, circle = 0;        // circle: position in the view's list
+  Eigen::Matrix2d whitening_px;  // L^-1
+  EdgeLeadEffect lead;
+  int view = 0, circle = 0;  // circle: position in the view's list
 };
 
 // What circles of one camera share.

@@ -25,6 +25,8 @@ double unitOf(QuantityKind kind) {
       return 1e-4;
     case QuantityKind::EdgeLead:
       return 0.1;
+    case QuantityKind::EdgeLeadGrowth:
+      return 1e-2;
     case QuantityKind::AccelerometerBias:
       return 1e-2;
     default:
@@ -139,6 +141,8 @@ Naming namingOf(QuantityKind kind) {
       return {"time_offset", "s"};
     case QuantityKind::EdgeLead:
       return {"edge_lead", "px"};
+    case QuantityKind::EdgeLeadGrowth:
+      return {"edge_lead_growth", "px"};
     case QuantityKind::GyroscopeBias:
       return {"gyroscope_bias", "rad/s"};
     case QuantityKind::AccelerometerBias:
@@ -155,7 +159,8 @@ Naming namingOf(QuantityKind kind) {
 
 bool isCameraQuantity(QuantityKind kind) {
   return kind == QuantityKind::CameraRotation || kind == QuantityKind::CameraTranslation ||
-         kind == QuantityKind::CameraTimeOffset || kind == QuantityKind::EdgeLead;
+         kind == QuantityKind::CameraTimeOffset || kind == QuantityKind::EdgeLead ||
+         kind == QuantityKind::EdgeLeadGrowth;
 }
 
 void appendNames(const Quantity& quantity, Eigen::Index size, const CalibrationInput& input,
@@ -196,6 +201,9 @@ void storeStandardDeviations(const Quantity& quantity, const Eigen::VectorXd& si
       break;
     case QuantityKind::EdgeLead:
       report.cameras[quantity.sensor].edge_lead_std_px = sigma[0];
+      break;
+    case QuantityKind::EdgeLeadGrowth:
+      report.cameras[quantity.sensor].edge_lead_growth_std_px = sigma[0];
       break;
     case QuantityKind::ImuRotation:
       report.imus[quantity.sensor].rotation_std_rad = sigma;

@@ -1,9 +1,11 @@
-// Along which way a measured ellipse centre is shifted, in ideal pixels, per pixel of edge lead. The lead is
-// a property of the sensor: it has one length in the sensor's pixels, not in ideal ones, which lens
-// distortion stretches.
-//   J v_s / sqrt(|v_s|^2 + v_rest^2),  v_s = J^-1 v,  J = d(ideal pixel)/d(pixel)
+// What an edge lead does to a measured ellipse centre. Which way and how far the centre moves for each pixel
+// of lead, the measurement itself says: that depends on the ellipse's shape, on which of its arcs fired, and
+// on the lens. The lead of real pixels is not quite the same at every speed: it may grow with the logarithm
+// of the speed, around 100 px/s on the sensor, and fades out near standstill, where edges turn back within a
+// burst.
 #pragma once
 
+#include "core/data/board_observations.h"
 #include "core/geometry/camera_model.h"
 
 #include <Eigen/LU>
@@ -12,11 +14,18 @@
 
 namespace evical {
 
-inline Eigen::Vector2d edgeLeadDirection(const CameraIntrinsics& camera, const Eigen::Vector2d& ideal_pixel,
-                                         const Eigen::Vector2d& ideal_velocity_px_s, double rest_speed_px_s) {
-  const Eigen::Matrix2d scale = idealPixelScale(camera, ideal_pixel);
-  const Eigen::Vector2d sensor_velocity = scale.inverse() * ideal_velocity_px_s;
-  return ideal_velocity_px_s / std::hypot(sensor_velocity.norm(), rest_speed_px_s);
+struct EdgeLeadEffect {
+  Eigen::Vector2d of_lead, of_growth;  // px per px
+};
+
+inline EdgeLeadEffect edgeLeadEffect(const CameraIntrinsics& camera, const CircleObservation& circle,
+                                     double rest_speed_px_s) {
+  constexpr double kReferenceSpeed_px_s = 100.0;
+  const Eigen::Matrix2d stretch = idealPixelScale(camera, circle.centre_px);
+  const double speed_px_s = (stretch.inverse() * circle.velocity_px_s).norm();
+  const double with_rest_px_s = std::hypot(speed_px_s, rest_speed_px_s);
+  const Eigen::Vector2d effect = speed_px_s / with_rest_px_s * circle.edge_lead_effect;
+  return {effect, std::log(with_rest_px_s / kReferenceSpeed_px_s) * effect};
 }
 
 }  // namespace evical

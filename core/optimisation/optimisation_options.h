@@ -14,6 +14,7 @@ struct OptimisationOptions {
   double outlier_sigma = 6.0;
   double outlier_window_fraction = 0.5;
   double edge_lead_sigma_px = 0.5;
+  double edge_lead_growth_sigma_px = 0.01;
   double rest_speed_px_s = 5.0;
   double least_centre_sigma_px = 0.01;
   double mapping_sigma = 0.05;
@@ -46,6 +47,8 @@ inline constexpr auto kOptimisationFields = std::tuple{
           "A window loses all its circles if more than this share of them is dropped."},
     Field{"edge_lead_sigma_px", &OptimisationOptions::edge_lead_sigma_px, 1e-6, 10.0, "px",
           "Prior on the lead of measured centres along their image motion, around 0."},
+    Field{"edge_lead_growth_sigma_px", &OptimisationOptions::edge_lead_growth_sigma_px, 1e-6, 10.0, "px",
+          "Prior on how much that lead grows with each factor e of image speed, around 0."},
     Field{"rest_speed_px_s", &OptimisationOptions::rest_speed_px_s, 0.1, 1000.0, "px/s",
           "Below this image speed the edge lead fades to 0."},
     Field{"least_centre_sigma_px", &OptimisationOptions::least_centre_sigma_px, 0.0, 10.0, "px",

@@ -82,6 +82,8 @@ void readCamera(const YamlNode& map, NamedResult& named) {
   get(map, "time_offset_std_s", sigma.time_offset_std_s);
   get(map, "edge_lead_px", state.edge_lead_px);
   get(map, "edge_lead_std_px", sigma.edge_lead_std_px);
+  get(map, "edge_lead_growth_px", state.edge_lead_growth_px);
+  get(map, "edge_lead_growth_std_px", sigma.edge_lead_growth_std_px);
   get(map, "reprojection_rms_px", fit.reprojection_rms_px);
   get(map, "normalised_rms", fit.normalised_rms);
   if (const auto windows = map.find("windows")) {

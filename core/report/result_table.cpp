@@ -59,7 +59,9 @@ std::string cameraTable(const NamedResult& named, std::size_t i) {
   text += poseRows(state.imu_from_camera, sigma.rotation_std_rad, sigma.translation_std_m);
   text += row("time offset", 1e3 * state.time_offset_s, 1e3 * sigma.time_offset_std_s,
               "ms  (t_reference = t_camera + it)");
-  text += row("edge lead", state.edge_lead_px, sigma.edge_lead_std_px, "px", 4);
+  text += row("edge lead", state.edge_lead_px, sigma.edge_lead_std_px, "px at 100 px/s", 4);
+  text += row("edge lead growth", state.edge_lead_growth_px, sigma.edge_lead_growth_std_px,
+              "px for each factor e of speed", 4);
   if (i >= named.result.cameras.size()) return text;
   const CameraFit& fit = named.result.cameras[i];
   text += fmt::format("    {:<26}{:>12.4f} px RMS, {:.2f} of what its sigmas say\n", "reprojection",

@@ -59,9 +59,11 @@ std::string cameraYaml(const NamedResult& named, std::size_t i) {
   text += transformYaml("reference_from_camera", state.imu_from_camera, sigma.rotation_std_rad,
                         sigma.translation_std_m);
   text += fmt::format(
-      "    time_offset_s: {}\n    time_offset_std_s: {}\n    edge_lead_px: {}\n    edge_lead_std_px: {}\n",
+      "    time_offset_s: {}\n    time_offset_std_s: {}\n    edge_lead_px: {}\n    edge_lead_std_px: {}\n"
+      "    edge_lead_growth_px: {}\n    edge_lead_growth_std_px: {}\n",
       exact(state.time_offset_s), rounded(sigma.time_offset_std_s), exact(state.edge_lead_px),
-      rounded(sigma.edge_lead_std_px));
+      rounded(sigma.edge_lead_std_px), exact(state.edge_lead_growth_px),
+      rounded(sigma.edge_lead_growth_std_px));
   if (const auto intrinsics = at(named.names.intrinsics, i))
     text += "    intrinsics:\n" + intrinsicsYaml(*intrinsics, 6);
   text += fmt::format("    reprojection_rms_px: {}\n    normalised_rms: {}\n",

@@ -75,11 +75,11 @@ inline void addRandomBursts(int count, double half_window_s, std::mt19937& rando
 // A window over the DAVIS346's pixels whose middle is time 0.
 struct SyntheticWindow {
   UndistortionTable no_table;
-  std::vector<float> no_scale;
+  std::vector<PixelStretch> no_stretch;
   BurstWindow window;
 
   explicit SyntheticWindow(const std::vector<EdgeBurst>& bursts, CircleShade shade = CircleShade::Dark)
-      : window(kDavis_px, no_table, no_scale, shade) {
+      : window(kDavis_px, no_table, no_stretch, shade) {
     window.assign(bursts, 0);
   }
   SyntheticWindow(const SyntheticWindow&) = delete;

@@ -70,13 +70,15 @@ void TestBurstWindow::idealPixels_comeFromTable() {
   camera.principal_point_px = {172.5, 129.5};
   camera.distortion = {-0.3, 0.08, 0.0, 0.0, 0.0};
   const UndistortionTable table(camera);
-  const std::vector<float> scale(static_cast<std::size_t>(kDavis_px.pixelCount()), 1.25f);
-  BurstWindow window(kDavis_px, table, scale, CircleShade::Dark);
+  const std::vector<PixelStretch> stretch(static_cast<std::size_t>(kDavis_px.pixelCount()),
+                                          {4.0f, 0.0f, 1.0f});
+  BurstWindow window(kDavis_px, table, stretch, CircleShade::Dark);
   window.assign({burstAt(20, 30, 0.0, true)}, 0);
   const Eigen::Vector2d expected = *idealPixel(camera, {20.0, 30.0});
   QVERIFY(std::abs(window.bursts()[0].ideal_x_px - expected.x()) < 1e-3);
   QVERIFY(std::abs(window.bursts()[0].ideal_y_px - expected.y()) < 1e-3);
-  QCOMPARE(window.bursts()[0].scale, 1.25f);
+  QCOMPARE(window.bursts()[0].stretch.across(Eigen::Vector2d::UnitX()), 2.0);
+  QCOMPARE(window.bursts()[0].stretch.across(Eigen::Vector2d::UnitY()), 1.0);
 }
 
 void TestBurstWindow::history_gathersWhatLiesInTime() {

@@ -162,6 +162,7 @@ CameraData observe(const TrueMotion& motion, const CameraState& camera, const Ci
       circle.velocity_px_s = (*after - *before) / 2e-4;
       const double stated_px = options.centre_sigma_px > 0.0 ? options.centre_sigma_px : 0.05;
       circle.covariance_px2 = stated_px * stated_px * Eigen::Matrix2d::Identity();
+      circle.edge_lead_effect = circle.velocity_px_s.normalized();
       circle.centre_px =
           *now + camera.edge_lead_px * circle.velocity_px_s / std::hypot(circle.velocity_px_s.norm(), 5.0) +
           options.centre_sigma_px * n;
@@ -288,6 +289,7 @@ Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const Calibrati
     appendTransform(estimate.cameras[i].imu_from_camera, truth.cameras[i].imu_from_camera);
     errors.push_back(estimate.cameras[i].time_offset_s - truth.cameras[i].time_offset_s);
     errors.push_back(estimate.cameras[i].edge_lead_px - truth.cameras[i].edge_lead_px);
+    errors.push_back(estimate.cameras[i].edge_lead_growth_px - truth.cameras[i].edge_lead_growth_px);
   }
   for (std::size_t i = 0; i < truth.imus.size(); ++i) {
     const ImuState &a = estimate.imus[i], &b = truth.imus[i];

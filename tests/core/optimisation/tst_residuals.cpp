@@ -76,6 +76,7 @@ test::Blocks circleBlocks(States& states, double step_rad) {
   blocks.push_back(States::numbers(states.vector(0.05)));
   blocks.push_back({states.uniform(0.004)});
   blocks.push_back({states.uniform(0.3)});
+  blocks.push_back({states.uniform(0.3)});
   return blocks;
 }
 
@@ -88,7 +89,7 @@ std::vector<CircleMeasurement> circlesNear(const CircleModel& model, const test:
     circles[i].on_board_m = {0.1 * static_cast<double>(i), 0.05 * static_cast<double>(i)};
     circles[i].centre_px.setZero();
     circles[i].whitening_px.setIdentity();
-    circles[i].lead_direction = Eigen::Vector2d(0.6, -0.5);
+    circles[i].lead = {{0.6, -0.5}, {-0.3, 0.25}};
   }
   CircleModel linear = model;
   linear.huber_sigma = 1e9;
@@ -157,10 +158,10 @@ class TestResiduals : public QObject {
     circle.time_s = 1.006;
     circle.on_board_m = {0.1, 0.05};
     circle.whitening_px.setIdentity();
-    circle.lead_direction = {0.8, 0.6};
+    circle.lead = {{0.8, 0.6}, {0.4, 0.3}};
     circle.centre_px =
         *projectedCircleCentre(model.camera, camera_from_world, circle.on_board_m, model.radius_m) +
-        blocks[11][0] * circle.lead_direction;
+        blocks[11][0] * circle.lead.of_lead + blocks[12][0] * circle.lead.of_growth;
     QVERIFY(test::residualsAt(CircleCost(model, segmentTimes(), {circle}), blocks).norm() < 1e-9);
   }
 

@@ -35,6 +35,7 @@ NamedResult sample() {
     camera.imu_from_camera = {quaternionExp(Eigen::Vector3d(1.1, -0.7, 0.1 * i)), {0.01, -1.0 / 3.0, 1e-9}};
     camera.time_offset_s = 0.1 / 3.0;
     camera.edge_lead_px = -0.021;
+    camera.edge_lead_growth_px = 0.003;
     result.state.cameras.push_back(camera);
     ImuState imu;
     if (i == 1) imu.reference_from_imu = {quaternionExp(Eigen::Vector3d(0.0, 0.2, 0.0)), {0.1, 0.0, 0.0}};
@@ -99,7 +100,8 @@ class TestResultYaml : public QObject {
       const CameraState &a = written.result.state.cameras[i], &b = read.result.state.cameras[i];
       QVERIFY(a.imu_from_camera.rotation.coeffs() == b.imu_from_camera.rotation.coeffs());
       QVERIFY(a.imu_from_camera.translation_m == b.imu_from_camera.translation_m);
-      QVERIFY(a.time_offset_s == b.time_offset_s && a.edge_lead_px == b.edge_lead_px);
+      QVERIFY(a.time_offset_s == b.time_offset_s && a.edge_lead_px == b.edge_lead_px &&
+              a.edge_lead_growth_px == b.edge_lead_growth_px);
       const ImuState &c = written.result.state.imus[i], &d = read.result.state.imus[i];
       QVERIFY(c.gyroscope_bias_rad_s == d.gyroscope_bias_rad_s && c.gyroscope_mapping == d.gyroscope_mapping);
       QVERIFY(c.accelerometer_mapping == d.accelerometer_mapping);
