@@ -11,10 +11,10 @@ namespace evical {
 // method 4.1: edge timing
 struct BurstOptions {
   int least_events = 2;
-  double longest_gap_s = 0.04;
+  double longest_gap_s = 0.15;
   double shortest_gap_s = 0.004;
   double gap_to_pace = 6.0;
-  double longest_burst_s = 0.2;
+  double longest_burst_s = 1.0;
   bool operator==(const BurstOptions&) const = default;
 };
 inline constexpr auto kBurstFields =
@@ -169,8 +169,8 @@ struct TrackingOptions {
   int iterations = 8;
   double least_polarity_cosine = 0.35;
   double full_polarity_cosine = 0.7;
-  double least_event_part = 0.5;
-  double full_event_part = 0.8;
+  double least_event_part = 0.8;
+  double full_event_part = 1.0;
   double least_arc = 0.25;
   int least_circle_bursts = 8;
   double least_inliers = 0.6;

@@ -43,10 +43,23 @@ void BurstExtractor::extend(Pixel& pixel, const Event& event) {
   pixel.times_ns[pixel.kept++] = static_cast<std::int32_t>(event.time_ns - pixel.first_ns);
 }
 
+// A burst's first events may be noise from long before it: what pausedAt asks of the next event, asked
+// backwards.
+int BurstExtractor::ownBegin(const Pixel& pixel) const {
+  int begin = 0;
+  for (const int last = pixel.kept - 1; begin + 3 <= last; ++begin) {
+    const double gap_ns = pixel.times_ns[begin + 1] - pixel.times_ns[begin];
+    const double pace_ns =
+        static_cast<double>(pixel.times_ns[last] - pixel.times_ns[begin + 1]) / (last - begin - 1);
+    if (gap_ns <= static_cast<double>(shortest_gap_ns_) || gap_ns <= gap_to_pace_ * pace_ns) break;
+  }
+  return begin;
+}
+
 void BurstExtractor::end(Pixel& pixel, std::uint32_t index, std::vector<EdgeBurst>& bursts) const {
   if (pixel.events < least_events_) return;
-  const int n = pixel.kept;
-  const std::int32_t twice_median = pixel.times_ns[(n - 1) / 2] + pixel.times_ns[n / 2];
+  const int first = ownBegin(pixel), n = pixel.kept - first;
+  const std::int32_t twice_median = pixel.times_ns[first + (n - 1) / 2] + pixel.times_ns[first + n / 2];
   const auto width = static_cast<std::uint32_t>(resolution_px_.width_px);
   bursts.push_back({pixel.first_ns + twice_median / 2,
                     static_cast<std::int32_t>(pixel.last_ns - pixel.first_ns),

@@ -54,6 +54,7 @@ class BurstExtractor {
   void start(Pixel& pixel, std::uint32_t index, const Event& event);
   void extend(Pixel& pixel, const Event& event);
   void end(Pixel& pixel, std::uint32_t index, std::vector<EdgeBurst>& bursts) const;
+  int ownBegin(const Pixel& pixel) const;
   bool pausedAt(const Pixel& pixel, std::int64_t time_ns) const;
   void endPaused(std::int64_t now_ns, std::vector<EdgeBurst>& bursts);
 

@@ -73,7 +73,7 @@ void TestEdgeBursts::pause_endsBurst_data() {
   const BurstOptions options;
   const double longest_ms = 1e3 * options.longest_gap_s, shortest_ms = 1e3 * options.shortest_gap_s;
   QTest::newRow("longer than any") << 15.0 << 1.1 * longest_ms << 2;
-  QTest::newRow("slow edge, ordinary pause") << 8.0 << 0.9 * longest_ms << 1;
+  QTest::newRow("slow edge, ordinary pause") << 30.0 << 0.9 * longest_ms << 1;
   QTest::newRow("fast edge, long for its pace") << 1.0 << 1.5 * options.gap_to_pace << 2;
   QTest::newRow("fast edge, not long for its pace") << 1.0 << 0.8 * options.gap_to_pace << 1;
   QTest::newRow("shorter than any that ends") << 0.1 << 0.9 * shortest_ms << 1;
