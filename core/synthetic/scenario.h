@@ -26,10 +26,14 @@ struct EventPixelModel {
   double blur_px = 0.6;         // sigma of the optics' point spread; the pixel's area comes on top
   double latency_s = 2e-4;      // pure delay
   double low_pass_s = 3e-4;     // time constant of the photoreceptor
-  double stamp_jitter_s = 0.0;  // sigma of the stamps
+  double stamp_jitter_s = 0.0;  // stamps are late by the absolute value of a normal variable with this sigma
 
-  // By how much an event's stamp is late for a slow edge: latency and the low-pass filter's group delay.
-  double delay_s() const { return latency_s + low_pass_s; }
+  // By how much an event's stamp is late for a slow edge: latency, the low-pass filter's group delay, and the
+  // jitter's mean.
+  double delay_s() const {
+    constexpr double kMeanOfHalfNormal = 0.7978845608028654;  // sqrt(2 / pi)
+    return latency_s + low_pass_s + kMeanOfHalfNormal * stamp_jitter_s;
+  }
 };
 
 struct SimulatedCamera {
