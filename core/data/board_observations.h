@@ -62,11 +62,23 @@ struct WindowReport {
   bool tracked = false;  // found from its neighbour in time instead of from nothing
 };
 
+// Whether the lattice of circles ends where the board does, along its rows or along its columns. Views are
+// counted in which the image shows a place that decides it: the lines of circles one step beyond the board,
+// and the board's own outermost lines.
+struct LatticeEnds {
+  int beyond_in_view = 0, beyond_seen = 0;  // circles where the board has none: it is larger
+  int edge_in_view = 0, edge_missing = 0;   // no circles where the board has some: it is smaller
+};
+struct BoardExtent {
+  LatticeEnds rows, cols;
+};
+
 struct BoardObservations {
   std::string camera;
   std::vector<BoardView> views;       // in time order
   std::vector<WindowReport> windows;  // all of them, in time order
-  std::uint64_t events = 0;           // read
+  BoardExtent extent;
+  std::uint64_t events = 0;  // read
 };
 
 }  // namespace evical

@@ -22,6 +22,7 @@ struct FrontEndOptions {
   MovingCircleOptions moving_circle;
   GridOptions grid;
   TrackingOptions tracking;
+  ExtentOptions extent;
   bool operator==(const FrontEndOptions&) const = default;
 };
 

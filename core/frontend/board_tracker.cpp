@@ -1,6 +1,7 @@
 #include "core/frontend/board_tracker.h"
 
 #include "core/base/time.h"
+#include "core/frontend/board_extent.h"
 #include "core/frontend/circle_measurement.h"
 
 #include <algorithm>
@@ -180,6 +181,9 @@ TrackedWindow BoardTracker::track(const Slot& slot, const BoardMotion& predictio
       expectedCircles(*motion, scene_.board, scene_.camera, scene_.resolution_px, slot.half_s());
   const int found = static_cast<int>(tracked.circles.size());
   tracked.held = found >= options_.grid.least_circles && 2 * found >= expected;
+  if (tracked.held && held_windows_++ % options_.extent.every_windows == 0) {
+    judgeExtent(window_, *motion, tracked.circles, scene_, slot.half_s(), options_, observations_.extent);
+  }
   if (observer_) observer_->windowTracked(window_, tracked);
   return tracked;
 }

@@ -82,6 +82,7 @@ class BoardTracker {
   std::int64_t tracked_until_ns_;  // end of the last slot that held
   FrontEndObserver* observer_ = nullptr;
   bool started_ = false;
+  int held_windows_ = 0;
   BoardObservations observations_;
 };
 

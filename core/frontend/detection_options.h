@@ -228,4 +228,24 @@ inline constexpr auto kTrackingFields = std::tuple{
           "A lost board is predicted for this long before it is searched anew."}};
 static_assert(fieldCount<TrackingOptions>() == std::tuple_size_v<decltype(kTrackingFields)>);
 
+// Does the board have the rows and columns that the session says?
+struct ExtentOptions {
+  int every_windows = 10;
+  double least_line = 0.6;
+  int least_views = 15;
+  double largest_share = 0.25;
+  bool operator==(const ExtentOptions&) const = default;
+};
+inline constexpr auto kExtentFields = std::tuple{
+    Field{"every_windows", &ExtentOptions::every_windows, 1, 1000, "",
+          "One in so many tracked windows is looked at."},
+    Field{"least_line", &ExtentOptions::least_line, 0.3, 1.0, "",
+          "Part of a row or column that must lie in the image to be judged, and of that part that must be "
+          "seen to be there."},
+    Field{"least_views", &ExtentOptions::least_views, 1, 100000, "",
+          "Views looked at without which nothing is said."},
+    Field{"largest_share", &ExtentOptions::largest_share, 0.0, 1.0, "",
+          "Part of the views that may contradict the session's rows or columns."}};
+static_assert(fieldCount<ExtentOptions>() == std::tuple_size_v<decltype(kExtentFields)>);
+
 }  // namespace evical

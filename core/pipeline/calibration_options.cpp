@@ -18,6 +18,8 @@ void forEachGroup(Options& all, Visitor&& visit) {
   visit("grid", "Circles to board", all.front_end.grid, kGridFields);
   visit("tracking", "All circles of a window together, and from window to window", all.front_end.tracking,
         kTrackingFields);
+  visit("extent", "Does the board have the rows and columns that the session says?", all.front_end.extent,
+        kExtentFields);
   visit("initialisation", "From single views to a first trajectory", all.initialisation,
         kInitialisationFields);
   visit("optimisation", "Batch optimisation and uncertainty", all.optimisation, kOptimisationFields);

@@ -1,0 +1,122 @@
+#include "core/frontend/board_extent.h"
+
+#include "core/frontend/circle_measurement.h"
+
+#include <algorithm>
+#include <array>
+
+namespace evical {
+namespace {
+
+// A row or a column of circles, on the board or beyond it: a board of its own.
+struct Line {
+  CircleBoard board;
+  Eigen::Vector2d origin_m;
+};
+
+Line rowOf(const CircleBoard& board, int row) {
+  Line line{board, {0.0, row * board.spacing_m}};
+  line.board.rows = 1;
+  if (board.type == BoardType::AsymmetricCircles && row % 2 != 0) line.origin_m.x() = board.spacing_m;
+  return line;
+}
+
+Line columnOf(const CircleBoard& board, int col) {
+  Line line{board, {board.centre_m(0, 1).x() * col, 0.0}};
+  line.board.cols = 1;
+  return line;
+}
+
+enum class LineState { OutOfView, Absent, Unclear, Present };
+
+class ExtentJudge {
+ public:
+  ExtentJudge(const BurstWindow& window, const BoardMotion& motion,
+              const std::vector<CircleObservation>& circles, const BoardScene& scene, double half_slot_s,
+              const FrontEndOptions& options)
+      : window_(window),
+        motion_(motion),
+        circles_(circles),
+        scene_(scene),
+        half_slot_s_(half_slot_s),
+        options_(options) {}
+
+  void judgeRows(LatticeEnds& ends) const {
+    const int rows = scene_.board.rows;
+    count({beyond(rowOf(scene_.board, -1)), beyond(rowOf(scene_.board, rows))},
+          {firstInView(0, 1, rows, true), firstInView(rows - 1, -1, rows, true)}, ends);
+  }
+  void judgeColumns(LatticeEnds& ends) const {
+    const int cols = scene_.board.cols;
+    count({beyond(columnOf(scene_.board, -1)), beyond(columnOf(scene_.board, cols))},
+          {firstInView(0, 1, cols, false), firstInView(cols - 1, -1, cols, false)}, ends);
+  }
+
+ private:
+  BoardMotion motionOf(const Line& line) const {
+    BoardMotion motion = motion_;
+    Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
+    shift.topRightCorner<2, 1>() = line.origin_m;
+    motion.ideal_from_board = motion_.ideal_from_board * shift;
+    return motion;
+  }
+
+  LineState stateOf(const Line& line, int seen) const {
+    const int expected =
+        expectedCircles(motionOf(line), line.board, scene_.camera, scene_.resolution_px, half_slot_s_);
+    const double least = options_.extent.least_line;
+    if (expected < std::max(2.0, least * line.board.circleCount())) return LineState::OutOfView;
+    if (seen >= std::max(2.0, least * expected)) return LineState::Present;
+    return seen <= (1.0 - least) * 0.5 * expected ? LineState::Absent : LineState::Unclear;
+  }
+
+  LineState beyond(const Line& line) const {
+    const auto seen = measureCircles(window_, motionOf(line), line.board, scene_.camera, half_slot_s_, 0,
+                                     options_.tracking);
+    return stateOf(line, static_cast<int>(seen.size()));
+  }
+
+  // From an edge inwards, the first line of the board that the image shows.
+  LineState firstInView(int from, int step, int lines, bool rows) const {
+    for (int k = from; k >= 0 && k < lines; k += step) {
+      const auto seen = std::count_if(circles_.begin(), circles_.end(), [&](const CircleObservation& circle) {
+        return (rows ? circle.circle / scene_.board.cols : circle.circle % scene_.board.cols) == k;
+      });
+      const Line line = rows ? rowOf(scene_.board, k) : columnOf(scene_.board, k);
+      const LineState state = stateOf(line, static_cast<int>(seen));
+      if (state != LineState::OutOfView) return state;
+    }
+    return LineState::OutOfView;
+  }
+
+  static void count(std::array<LineState, 2> beyond, std::array<LineState, 2> edges, LatticeEnds& ends) {
+    const auto any = [](const std::array<LineState, 2>& lines, LineState state) {
+      return lines[0] == state || lines[1] == state;
+    };
+    const bool larger = any(beyond, LineState::Present), smaller = any(edges, LineState::Absent);
+    if (larger && smaller) return;
+    ends.beyond_in_view += larger || any(beyond, LineState::Absent) || any(beyond, LineState::Unclear);
+    ends.beyond_seen += larger;
+    ends.edge_in_view += smaller || any(edges, LineState::Present) || any(edges, LineState::Unclear);
+    ends.edge_missing += smaller;
+  }
+
+  const BurstWindow& window_;
+  const BoardMotion& motion_;
+  const std::vector<CircleObservation>& circles_;
+  const BoardScene& scene_;
+  double half_slot_s_;
+  const FrontEndOptions& options_;
+};
+
+}  // namespace
+
+void judgeExtent(const BurstWindow& window, const BoardMotion& motion,
+                 const std::vector<CircleObservation>& circles, const BoardScene& scene, double half_slot_s,
+                 const FrontEndOptions& options, BoardExtent& extent) {
+  const ExtentJudge judge(window, motion, circles, scene, half_slot_s, options);
+  judge.judgeRows(extent.rows);
+  judge.judgeColumns(extent.cols);
+}
+
+}  // namespace evical

@@ -1,0 +1,128 @@
+#include "core/frontend/board_extent.h"
+
+#include "core/frontend/circle_measurement.h"
+#include "tests/core/frontend/synthetic_bursts.h"
+
+#include <QtTest>
+
+namespace {
+
+using namespace evical;
+using namespace evical::test;
+
+constexpr double kHalfWindow_s = 0.02;
+
+// What a session claims of the board that is there: as many rows and columns, from this row and column on.
+struct Claim {
+  int rows, cols, first_row = 0, first_col = 0;
+};
+
+BoardExtent judge(const MovingBoard& moving, const Claim& claim, int random_bursts = 0) {
+  std::mt19937 random(7);
+  std::vector<EdgeBurst> bursts = burstsOf(moving, kHalfWindow_s, 0.1, random);
+  addRandomBursts(random_bursts, kHalfWindow_s, random, bursts);
+  const SyntheticWindow synthetic(bursts, moving.board.circles);
+  CircleBoard claimed = moving.board;
+  claimed.rows = claim.rows;
+  claimed.cols = claim.cols;
+  Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
+  shift.topRightCorner<2, 1>() = moving.board.centre_m(claim.first_row, claim.first_col);
+  BoardMotion motion = moving.motionAt(0.0);
+  motion.ideal_from_board = motion.ideal_from_board * shift;
+  motion.ideal_from_board /= motion.ideal_from_board(2, 2);
+  motion.residual_rms_px = 0.1;
+  const FrontEndOptions options;
+  const BoardScene scene(claimed, kDavis_px, std::nullopt);
+  const std::vector<CircleObservation> circles =
+      measureCircles(synthetic.window, motion, claimed, std::nullopt, kHalfWindow_s, 0, options.tracking);
+  BoardExtent extent;
+  judgeExtent(synthetic.window, motion, circles, scene, kHalfWindow_s, options, extent);
+  return extent;
+}
+
+QString describe(const LatticeEnds& ends) {
+  return QString("beyond %1 of %2, missing %3 of %4")
+      .arg(ends.beyond_seen)
+      .arg(ends.beyond_in_view)
+      .arg(ends.edge_missing)
+      .arg(ends.edge_in_view);
+}
+
+class TestBoardExtent : public QObject {
+  Q_OBJECT
+ private slots:
+  void lattice_isHeldAgainstTheClaim_data();
+  void lattice_isHeldAgainstTheClaim();
+  void symmetricBoard_isJudgedAlike();
+  void clutter_isNoLine();
+  void boardOneStepOff_saysNothing();
+  void boardCutByTheImage_isNotSmaller();
+};
+
+void TestBoardExtent::lattice_isHeldAgainstTheClaim_data() {
+  QTest::addColumn<int>("rows");
+  QTest::addColumn<int>("cols");
+  QTest::addColumn<int>("first_row");
+  QTest::addColumn<int>("first_col");
+  QTest::addColumn<QString>("rows_are");
+  QTest::addColumn<QString>("cols_are");
+  const char* const right = "beyond 0 of 1, missing 0 of 1";
+  const char* const larger = "beyond 1 of 1, missing 0 of 1";
+  const char* const smaller = "beyond 0 of 1, missing 1 of 1";
+  QTest::newRow("11 x 4") << 11 << 4 << 0 << 0 << right << right;
+  QTest::newRow("first rows of 11") << 9 << 4 << 0 << 0 << larger << right;
+  QTest::newRow("last rows of 11") << 9 << 4 << 2 << 0 << larger << right;
+  QTest::newRow("first columns of 4") << 11 << 3 << 0 << 0 << right << larger;
+  QTest::newRow("last columns of 4") << 11 << 3 << 0 << 1 << right << larger;
+  QTest::newRow("rows and columns in the middle") << 7 << 2 << 2 << 1 << larger << larger;
+  QTest::newRow("two rows more") << 13 << 4 << 0 << 0 << smaller << right;
+  QTest::newRow("one column more") << 11 << 5 << 0 << 0 << right << smaller;
+  QTest::newRow("a row more, a column less") << 12 << 3 << 0 << 0 << smaller << larger;
+}
+
+void TestBoardExtent::lattice_isHeldAgainstTheClaim() {
+  QFETCH(int, rows);
+  QFETCH(int, cols);
+  QFETCH(int, first_row);
+  QFETCH(int, first_col);
+  for (const CircleShade shade : {CircleShade::Dark, CircleShade::Bright}) {
+    MovingBoard moving;
+    moving.board.circles = shade;
+    const BoardExtent extent = judge(moving, {rows, cols, first_row, first_col});
+    QTEST(describe(extent.rows), "rows_are");
+    QTEST(describe(extent.cols), "cols_are");
+  }
+}
+
+void TestBoardExtent::symmetricBoard_isJudgedAlike() {
+  MovingBoard moving;
+  moving.board = {BoardType::SymmetricCircles, 6, 7, 0.03, 0.01, CircleShade::Dark};
+  QCOMPARE(describe(judge(moving, {6, 7}).rows), "beyond 0 of 1, missing 0 of 1");
+  QCOMPARE(describe(judge(moving, {5, 7}).rows), "beyond 1 of 1, missing 0 of 1");
+  QCOMPARE(describe(judge(moving, {6, 6, 0, 1}).cols), "beyond 1 of 1, missing 0 of 1");
+  QCOMPARE(describe(judge(moving, {6, 8}).cols), "beyond 0 of 1, missing 1 of 1");
+}
+
+void TestBoardExtent::clutter_isNoLine() {
+  const BoardExtent extent = judge(MovingBoard{}, {11, 4}, 8000);
+  QCOMPARE(extent.rows.beyond_seen, 0);
+  QCOMPARE(extent.cols.beyond_seen, 0);
+}
+
+void TestBoardExtent::boardOneStepOff_saysNothing() {
+  const BoardExtent extent = judge(MovingBoard{}, {11, 4, 2, 0});
+  QCOMPARE(describe(extent.rows), "beyond 0 of 0, missing 0 of 0");
+}
+
+void TestBoardExtent::boardCutByTheImage_isNotSmaller() {
+  MovingBoard moving;
+  moving.middle_m = {0.1, 0.15, 0.5};
+  const BoardExtent extent = judge(moving, {11, 4});
+  QCOMPARE(describe(extent.rows), "beyond 0 of 1, missing 0 of 1");
+  QCOMPARE(describe(extent.cols), "beyond 0 of 1, missing 0 of 1");
+}
+
+}  // namespace
+
+QTEST_GUILESS_MAIN(TestBoardExtent)
+#include "tst_board_extent.moc"
