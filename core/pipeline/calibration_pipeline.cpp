@@ -5,6 +5,7 @@
 #include "core/initialisation/initialise.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/covariance.h"
+#include "core/pipeline/board_size_check.h"
 #include "core/recording/inspection.h"
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <optional>
 #include <utility>
 
 namespace evical {
@@ -104,22 +106,6 @@ void checkDuration(const Session& session, const RecordingPass& pass) {
     check(imu.name, evical::secondsSince(imu.samples.front().time_ns, imu.samples.back().time_ns));
 }
 
-// A board that is given too large is found all the same, and calibrates well: but people should know.
-void checkBoardSize(const BoardObservations& observations, const CircleBoard& board,
-                    std::vector<RecordingFault>& faults) {
-  constexpr std::size_t kEnoughViews = 30;
-  if (observations.views.size() < kEnoughViews) return;
-  std::vector<bool> seen(static_cast<std::size_t>(board.circleCount()), false);
-  for (const BoardView& view : observations.views)
-    for (const CircleObservation& circle : view.circles) seen[static_cast<std::size_t>(circle.circle)] = true;
-  const auto never = std::count(seen.begin(), seen.end(), false);
-  if (never == 0) return;
-  faults.push_back({observations.camera, "board_size", 0.0,
-                    fmt::format("{}: {} of the board's {} circles were seen in none of {} views: check rows "
-                                "and cols in the session",
-                                observations.camera, never, board.circleCount(), observations.views.size())});
-}
-
 CalibrationInput inputFrom(const Session& session, const RecordingPass& pass) {
   CalibrationInput input;
   input.start_ns = pass.start_ns;
@@ -177,12 +163,17 @@ CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunCo
     const std::vector<RecordingFault> faults = checkImu(imu.name, imu.samples);
     run.pass.faults.insert(run.pass.faults.end(), faults.begin(), faults.end());
   }
-  for (const BoardObservations& camera : run.pass.cameras)
-    checkBoardSize(camera, session.board, run.pass.faults);
+  for (const BoardObservations& camera : run.pass.cameras) {
+    const std::optional<RecordingFault> unseen = unseenCircles(camera, session.board);
+    if (unseen) run.pass.faults.push_back(*unseen);
+  }
   for (const RecordingFault& fault : run.pass.faults) context.progress.log(LogLevel::Warning, fault.text);
   logDetections(run.pass, context);
   checkDuration(session, run.pass);
-  for (const BoardObservations& camera : run.pass.cameras) checkBoardSeen(camera, session.board);
+  for (const BoardObservations& camera : run.pass.cameras) {
+    checkBoardSeen(camera, session.board);
+    checkBoardSize(camera, session.board, session.options.front_end.extent);
+  }
   const CalibrationInput input = inputFrom(session, run.pass);
 
   context.progress.stageStarted("initialise");

@@ -114,7 +114,8 @@ class TestBadInput : public QObject {
   void accelerations_inG_areRecognised();
   void angularRates_inDegrees_areRecognised();
   void board_thatIsNeverSeen_saysWhereWindowsWereLost();
-  void board_givenTooLarge_isWarnedOf();
+  void board_ofAnotherSize_isNamed_data();
+  void board_ofAnotherSize_isNamed();
   void recording_tooShort_fails();
   void recording_withoutMotion_fails();
 };
@@ -334,16 +335,29 @@ void TestBadInput::board_thatIsNeverSeen_saysWhereWindowsWereLost() {
   VERIFY_FAILED(test, outcome, "never (found|seen).*\\d+ windows.*\\(.*(bright|circles)");
 }
 
-// The circles that are there calibrate well all the same.
-void TestBadInput::board_givenTooLarge_isWarnedOf() {
+void TestBadInput::board_ofAnotherSize_isNamed_data() {
+  QTest::addColumn<int>("rows");
+  QTest::addColumn<int>("cols");
+  QTest::addColumn<QString>("says");
+  QTest::newRow("fewer rows") << 9 << 4
+                              << "left: .*larger than 9 x 4: .*beyond its first or last row in \\d+ % of";
+  QTest::newRow("fewer columns") << 11 << 3 << "larger than 11 x 3: .*beyond its first or last column";
+  QTest::newRow("fewer of both") << 7 << 3 << "larger than 7 x 3: .*first or last row.*first or last column";
+  QTest::newRow("more rows") << 13 << 4 << "smaller than 13 x 4: .*rows? w.* never seen in \\d+ views";
+  QTest::newRow("more columns") << 11 << 5 << "smaller than 11 x 5: .*column";
+  QTest::newRow("more of both") << 13 << 7 << "smaller than 13 x 7: .*columns? w.* never seen in \\d+ views";
+}
+
+void TestBadInput::board_ofAnotherSize_isNamed() {
+  QFETCH(int, rows);
+  QFETCH(int, cols);
+  QFETCH(QString, says);
   Case test;
-  test.change("rows: 11", "rows: 13");
-  test.change("cols: 4", "cols: 7");
+  test.change("rows: 11", QString("rows: %1").arg(rows));
+  test.change("cols: 4", QString("cols: %1").arg(cols));
   const Outcome outcome = test.calibrate();
-  VERIFY_OUTCOME(outcome, 0);
-  QVERIFY2(outcome.errors.contains(QRegularExpression("warning: .*of the board's 91 circles.*rows and cols")),
-           qPrintable(outcome.errors));
-  QVERIFY(readFile(test.result() + "/result.yaml").contains("rows and cols"));
+  VERIFY_FAILED(test, outcome, says);
+  VERIFY_SAYS(outcome, "[Cc]heck rows and cols in the session");
 }
 
 void TestBadInput::recording_tooShort_fails() {

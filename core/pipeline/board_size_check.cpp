@@ -1,0 +1,98 @@
+#include "core/pipeline/board_size_check.h"
+
+#include "core/base/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace evical {
+namespace {
+
+struct AxisCheck {
+  const char* line;  // "row" or "column"
+  const LatticeEnds& ends;
+  std::vector<bool> seen;  // by line, in any view
+};
+
+std::vector<bool> circlesSeen(const BoardObservations& observations, const CircleBoard& board) {
+  std::vector<bool> seen(static_cast<std::size_t>(board.circleCount()), false);
+  for (const BoardView& view : observations.views)
+    for (const CircleObservation& circle : view.circles) seen[static_cast<std::size_t>(circle.circle)] = true;
+  return seen;
+}
+
+bool contradicted(int against, int looked_at, const ExtentOptions& options) {
+  return looked_at >= options.least_views && against > options.largest_share * looked_at;
+}
+
+std::string beyondText(const AxisCheck& axis) {
+  return fmt::format(
+      "circles of the same lattice are seen beyond its first or last {} in {:.0f} % of {} views", axis.line,
+      100.0 * axis.ends.beyond_seen / axis.ends.beyond_in_view, axis.ends.beyond_in_view);
+}
+
+std::string missingText(const AxisCheck& axis, std::size_t views) {
+  const auto count = static_cast<std::ptrdiff_t>(axis.seen.size());
+  const auto first = std::find(axis.seen.begin(), axis.seen.end(), true) - axis.seen.begin();
+  const auto last = std::find(axis.seen.rbegin(), axis.seen.rend(), true) - axis.seen.rbegin();
+  const std::ptrdiff_t never = std::max(first, last);
+  if (never == 0 || never == count) {
+    return fmt::format("its first or last {} is missing in {:.0f} % of the {} views that show its place",
+                       axis.line, 100.0 * axis.ends.edge_missing / axis.ends.edge_in_view,
+                       axis.ends.edge_in_view);
+  }
+  return fmt::format("the {} {} of {} {}s {} never seen in {} views", first > last ? "first" : "last", never,
+                     count, axis.line, never == 1 ? "was" : "were", views);
+}
+
+}  // namespace
+
+void checkBoardSize(const BoardObservations& observations, const CircleBoard& board,
+                    const ExtentOptions& options) {
+  const std::vector<bool> seen = circlesSeen(observations, board);
+  AxisCheck rows{"row", observations.extent.rows, std::vector<bool>(static_cast<std::size_t>(board.rows))};
+  AxisCheck cols{"column", observations.extent.cols, std::vector<bool>(static_cast<std::size_t>(board.cols))};
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    if (!seen[k]) continue;
+    rows.seen[k / cols.seen.size()] = cols.seen[k % cols.seen.size()] = true;
+  }
+  bool larger = false, smaller = false;
+  std::string text;
+  const auto say = [&](const std::string& more) { text += (text.empty() ? "" : ", and ") + more; };
+  for (const AxisCheck* axis : {&rows, &cols}) {
+    if (contradicted(axis->ends.beyond_seen, axis->ends.beyond_in_view, options)) {
+      larger = true;
+      say(beyondText(*axis));
+    }
+    if (contradicted(axis->ends.edge_missing, axis->ends.edge_in_view, options)) {
+      smaller = true;
+      say(missingText(*axis, observations.views.size()));
+    }
+  }
+  if (text.empty()) return;
+  throw calibrationFailed(observations.camera,
+                          fmt::format("the board in view seems {} {} x {}: {}",
+                                      larger && smaller ? "other than"
+                                      : larger          ? "larger than"
+                                                        : "smaller than",
+                                      board.rows, board.cols, text),
+                          "Check rows and cols in the session");
+}
+
+std::optional<RecordingFault> unseenCircles(const BoardObservations& observations, const CircleBoard& board) {
+  constexpr std::size_t kEnoughViews = 30;
+  if (observations.views.size() < kEnoughViews) return std::nullopt;
+  const std::vector<bool> seen = circlesSeen(observations, board);
+  const auto never = std::count(seen.begin(), seen.end(), false);
+  if (never == 0) return std::nullopt;
+  return RecordingFault{
+      observations.camera, "board_size", 0.0,
+      fmt::format("{}: {} of the board's {} circles were seen in none of {} views: check "
+                  "rows and cols in the session",
+                  observations.camera, never, board.circleCount(), observations.views.size())};
+}
+
+}  // namespace evical

@@ -1,0 +1,21 @@
+// Is the board in view the one of the session? A wrong number of rows or columns is found all the same, and
+// may calibrate to something wrong.
+#pragma once
+
+#include "core/data/board_observations.h"
+#include "core/data/recording.h"
+#include "core/frontend/detection_options.h"
+#include "core/geometry/circle_board.h"
+
+#include <optional>
+
+namespace evical {
+
+// Throws CalibrationFailed where the views contradict the number of rows or columns.
+void checkBoardSize(const BoardObservations& observations, const CircleBoard& board,
+                    const ExtentOptions& options);
+
+// Circles that were never seen, though many views were: worth a warning.
+std::optional<RecordingFault> unseenCircles(const BoardObservations& observations, const CircleBoard& board);
+
+}  // namespace evical

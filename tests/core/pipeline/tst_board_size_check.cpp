@@ -1,0 +1,100 @@
+#include "core/pipeline/board_size_check.h"
+
+#include "core/base/error.h"
+
+#include <QtTest>
+
+namespace {
+
+using namespace evical;
+
+// Views of a board of which only the first rows and columns are ever seen.
+BoardObservations observe(const CircleBoard& board, int rows_seen, int cols_seen, const BoardExtent& extent) {
+  BoardObservations observations;
+  observations.camera = "left";
+  observations.extent = extent;
+  BoardView view;
+  for (int row = 0; row < rows_seen; ++row) {
+    for (int col = 0; col < cols_seen; ++col) {
+      view.circles.emplace_back();
+      view.circles.back().circle = board.index(row, col);
+    }
+  }
+  observations.views.assign(800, view);
+  return observations;
+}
+
+std::string failureOf(const CircleBoard& board, int rows_seen, int cols_seen, const BoardExtent& extent) {
+  try {
+    checkBoardSize(observe(board, rows_seen, cols_seen, extent), board, ExtentOptions{});
+  } catch (const CalibrationError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+#define VERIFY_SAYS(text, part) \
+  QVERIFY2(QString::fromStdString(text).contains(QRegularExpression(part)), (text).c_str())
+
+class TestBoardSizeCheck : public QObject {
+  Q_OBJECT
+ private slots:
+  void rightBoard_passes();
+  void fewViews_sayNothing();
+  void largerBoard_isNamedWithItsSide();
+  void smallerBoard_isNamedWithWhatWasNeverSeen();
+  void smallerBoard_seenAtEitherEnd_isNamed();
+  void otherBoard_isBoth();
+  void circlesNeverSeen_areWorthAWarning();
+};
+
+void TestBoardSizeCheck::rightBoard_passes() {
+  const BoardExtent extent{{3, 0, 80, 0}, {80, 5, 80, 4}};
+  QCOMPARE(failureOf({}, 11, 4, extent), std::string());
+}
+
+void TestBoardSizeCheck::fewViews_sayNothing() {
+  const BoardExtent extent{{14, 14, 14, 14}, {0, 0, 0, 0}};
+  QCOMPARE(failureOf({}, 11, 4, extent), std::string());
+}
+
+void TestBoardSizeCheck::largerBoard_isNamedWithItsSide() {
+  CircleBoard board;
+  board.rows = 9;
+  const std::string rows = failureOf(board, 9, 4, {{80, 76, 80, 0}, {80, 0, 80, 0}});
+  VERIFY_SAYS(rows, "left: .*seems larger than 9 x 4: .*beyond its first or last row in 95 % of 80 views");
+  VERIFY_SAYS(rows, "Check rows and cols in the session");
+  VERIFY_SAYS(failureOf(board, 9, 4, {{80, 0, 80, 0}, {80, 80, 80, 0}}), "beyond its first or last column");
+}
+
+void TestBoardSizeCheck::smallerBoard_isNamedWithWhatWasNeverSeen() {
+  CircleBoard board;
+  board.rows = 13;
+  VERIFY_SAYS(failureOf(board, 11, 4, {{80, 0, 80, 75}, {80, 0, 80, 0}}),
+              "seems smaller than 13 x 4: the last 2 of 13 rows were never seen in 800 views");
+  VERIFY_SAYS(failureOf(board, 13, 3, {{80, 0, 80, 0}, {80, 0, 80, 75}}),
+              "the last 1 of 4 columns was never seen in 800 views");
+}
+
+void TestBoardSizeCheck::smallerBoard_seenAtEitherEnd_isNamed() {
+  VERIFY_SAYS(failureOf({}, 11, 4, {{80, 0, 80, 72}, {80, 0, 80, 0}}),
+              "smaller than 11 x 4: its first or last row is missing in 90 % of the 80 views");
+}
+
+void TestBoardSizeCheck::otherBoard_isBoth() {
+  VERIFY_SAYS(failureOf({}, 11, 4, {{80, 0, 80, 72}, {80, 79, 80, 0}}),
+              "seems other than 11 x 4: .*missing in 90 %.*, and circles.*beyond its first or last column");
+}
+
+void TestBoardSizeCheck::circlesNeverSeen_areWorthAWarning() {
+  const CircleBoard board;
+  QVERIFY(!unseenCircles(observe(board, 11, 4, {}), board));
+  const auto fault = unseenCircles(observe(board, 10, 4, {}), board);
+  QVERIFY(fault);
+  VERIFY_SAYS(fault->text, "4 of the board's 44 circles.*none of 800 views");
+}
+
+}  // namespace
+
+QTEST_APPLESS_MAIN(TestBoardSizeCheck)
+#include "tst_board_size_check.moc"
