@@ -53,8 +53,8 @@ std::vector<AveragedForce> averageForces(std::span<const ImuSample> samples, std
   return averages;
 }
 
-// Three equations of one kind: P(weights) + R lever = measured (a view's position), or
-// P(weights) + R bias - gravity = R measured (an acceleration).
+// Three equations of one kind: P(weights) + R lever - excess measured = measured (a view's position), or
+// P(weights) + R (bias - skew measured) - gravity = R measured (an acceleration).
 struct Row {
   bool position;
   std::size_t camera;
@@ -65,19 +65,26 @@ struct Row {
   double weight = 1.0;  // robust
 };
 
-// The unknowns other than control points: levers, gravity, bias.
+// The unknowns other than control points: levers, gravity, bias; and where the board's scale is asked for, by
+// how much it exceeds 1, and the upper triangle that corrects the accelerometer's scales and axes, row by
+// row: without it, they would pass for the board's scale.
 struct Layout {
   explicit Layout(std::size_t cameras) : gravity(static_cast<Eigen::Index>(3 * cameras)) {}
   Eigen::Index gravity;
+  bool with_scale = false;
   Eigen::Index lever(std::size_t camera) const { return static_cast<Eigen::Index>(3 * camera); }
   Eigen::Index bias() const { return gravity + 3; }
-  Eigen::Index size() const { return gravity + 6; }
+  Eigen::Index excess() const { return gravity + 6; }
+  Eigen::Index skew() const { return gravity + 7; }
+  Eigen::Index size() const { return gravity + (with_scale ? 13 : 6); }
 };
 
 struct Solution {
   Eigen::MatrixX3d points;
   Eigen::VectorXd shared;
-  Eigen::MatrixXd covariance;
+  Eigen::MatrixXd covariance;  // of the shared unknowns
+  Eigen::MatrixX3d
+      points_by_excess;  // covariances of control points with the board's excess, if it is asked for
 };
 
 struct Sigmas {
@@ -91,6 +98,7 @@ class Alignment {
       : options_(options),
         layout_(cameras.size()),
         point_count_(static_cast<Eigen::Index>(rotation.control_points.size())),
+        knot_spacing_s_(rotation.knot_spacing_s),
         sigmas_{options.position_sigma_m, options.acceleration_sigma_m_s2} {
     VectorSpline knots{rotation.start_s, rotation.knot_spacing_s,
                        std::vector<Vector3d>(rotation.control_points.size(), Vector3d::Zero())};
@@ -113,6 +121,7 @@ class Alignment {
   void turn(const Matrix3d& rotation) {
     for (Row& row : rows_) row.world_from_imu *= rotation;
   }
+  void releaseScale() { layout_.with_scale = true; }
   // Forgets what earlier rounds made of the weights.
   void restart() {
     for (Row& row : rows_) row.weight = 1.0;
@@ -127,6 +136,7 @@ class Alignment {
     }
     return solution;
   }
+  double excessSigma(const Solution& solution) const;
   double cost() const { return cost_; }
   const Layout& layout() const { return layout_; }
   void summarise(GravityAlignment& result) const {
@@ -146,6 +156,10 @@ class Alignment {
   void addPriors(const Eigen::VectorXd* before, Eigen::MatrixXd& matrix, Eigen::VectorXd& vector) const;
   void accumulate(const Row& row, BandedMatrix& band, std::array<Eigen::MatrixXd, 3>& coupling,
                   Eigen::MatrixXd& matrix, Eigen::VectorXd& vector) const;
+  Eigen::Matrix3Xd sharedCoefficients(const Row& row) const;
+  Vector3d target(const Row& row) const {
+    return row.position ? row.measured : Vector3d(row.world_from_imu * row.measured);
+  }
   double rowWeight(const Row& row) const {
     const double sigma = row.position ? sigmas_.position_m : sigmas_.acceleration_m_s2;
     return row.weight / (sigma * sigma);
@@ -156,6 +170,7 @@ class Alignment {
   InitialisationOptions options_;
   Layout layout_;
   Eigen::Index point_count_;
+  double knot_spacing_s_;
   Sigmas sigmas_;
   std::vector<Row> rows_;
   double cost_ = 0.0;
@@ -165,7 +180,14 @@ void Alignment::addPriors(const Eigen::VectorXd* before, Eigen::MatrixXd& matrix
                           Eigen::VectorXd& vector) const {
   const auto inverseSquare = [](double sigma) { return 1.0 / (sigma * sigma); };
   matrix.diagonal().head(layout_.gravity).setConstant(inverseSquare(options_.translation_sigma_m));
-  matrix.diagonal().tail<3>().setConstant(inverseSquare(options_.accelerometer_bias_sigma_m_s2));
+  matrix.diagonal()
+      .segment<3>(layout_.bias())
+      .setConstant(inverseSquare(options_.accelerometer_bias_sigma_m_s2));
+  if (layout_.with_scale) {
+    constexpr double kAnyScale = 1.0;
+    matrix(layout_.excess(), layout_.excess()) = inverseSquare(kAnyScale);
+    matrix.diagonal().tail<6>().setConstant(inverseSquare(options_.accelerometer_mapping_sigma));
+  }
   if (!before) return;
   // |g| is known: a tight observation along the direction found so far.
   constexpr double kNormSigma_m_s2 = 1e-4;
@@ -175,31 +197,36 @@ void Alignment::addPriors(const Eigen::VectorXd* before, Eigen::MatrixXd& matrix
   vector.segment<3>(layout_.gravity) += inverseSquare(kNormSigma_m_s2) * options_.gravity_m_s2 * down;
 }
 
+Eigen::Matrix3Xd Alignment::sharedCoefficients(const Row& row) const {
+  const Matrix3d& r = row.world_from_imu;
+  Eigen::Matrix3Xd c = Eigen::Matrix3Xd::Zero(3, layout_.size());
+  c.middleCols<3>(row.position ? layout_.lever(row.camera) : layout_.bias()) = r;
+  if (!row.position) c.middleCols<3>(layout_.gravity) = -Matrix3d::Identity();
+  if (!layout_.with_scale) return c;
+  if (row.position) {
+    c.col(layout_.excess()) = -row.measured;
+    return c;
+  }
+  Eigen::Index column = layout_.skew();
+  for (Eigen::Index i = 0; i < 3; ++i)
+    for (Eigen::Index j = i; j < 3; ++j) c.col(column++) = -r.col(i) * row.measured(j);
+  return c;
+}
+
 // `coupling` by axis: control points x (shared unknowns, right hand side).
 void Alignment::accumulate(const Row& row, BandedMatrix& band, std::array<Eigen::MatrixXd, 3>& coupling,
                            Eigen::MatrixXd& matrix, Eigen::VectorXd& vector) const {
   const double w = rowWeight(row);
-  const Matrix3d& r = row.world_from_imu;
-  const Eigen::Index turned = row.position ? layout_.lever(row.camera) : layout_.bias();
-  const Vector3d target = row.position ? row.measured : Vector3d(r * row.measured);
+  const Eigen::Matrix3Xd shared = sharedCoefficients(row);
+  const Vector3d right = target(row);
   band.addOuter(row.segment, row.weights, w);
   for (int axis = 0; axis < 3; ++axis) {
-    auto& c = coupling[static_cast<std::size_t>(axis)];
-    for (int i = 0; i < 4; ++i) {
-      const double scaled = w * row.weights(i);
-      const Eigen::Index point = row.segment + i;
-      for (int k = 0; k < 3; ++k) c(point, turned + k) += scaled * r(axis, k);
-      if (!row.position) c(point, layout_.gravity + axis) -= scaled;
-      c(point, layout_.size()) += scaled * target(axis);
-    }
+    auto block = coupling[static_cast<std::size_t>(axis)].middleRows<4>(row.segment);
+    block.leftCols(layout_.size()) += w * row.weights * shared.row(axis);
+    block.col(layout_.size()) += w * right(axis) * row.weights;
   }
-  matrix.block<3, 3>(turned, turned).diagonal().array() += w;  // R^T R
-  vector.segment<3>(turned) += w * r.transpose() * target;
-  if (row.position) return;
-  matrix.block<3, 3>(layout_.gravity, layout_.gravity).diagonal().array() += w;
-  matrix.block<3, 3>(layout_.gravity, turned) -= w * r;
-  matrix.block<3, 3>(turned, layout_.gravity) -= w * r.transpose();
-  vector.segment<3>(layout_.gravity) -= w * target;
+  matrix.noalias() += w * shared.transpose() * shared;
+  vector.noalias() += w * shared.transpose() * right;
 }
 
 // One banded matrix serves all three axes; the shared unknowns come by Schur complement.
@@ -235,16 +262,37 @@ Solution Alignment::solveOnce(const Eigen::VectorXd* before) const {
     solution.points.col(static_cast<Eigen::Index>(axis)) =
         solved[axis].col(n) - solved[axis].leftCols(n) * solution.shared;
   }
+  if (!layout_.with_scale) return solution;
+  solution.points_by_excess.resize(point_count_, 3);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    solution.points_by_excess.col(static_cast<Eigen::Index>(axis)) =
+        -solved[axis].leftCols(n) * solution.covariance.col(layout_.excess());
+  }
   return solution;
 }
 
 Vector3d Alignment::errorOf(const Row& row, const Solution& solution) const {
   const Vector3d spline = solution.points.middleRows<4>(row.segment).transpose() * row.weights;
-  if (row.position) {
-    return spline + row.world_from_imu * solution.shared.segment<3>(layout_.lever(row.camera)) - row.measured;
+  return spline + sharedCoefficients(row) * solution.shared - target(row);
+}
+
+// Errors within a second may have one cause, such as a rotation that is a little off and turns gravity: the
+// larger of the sigma that takes all errors as independent, and of what the seconds' pulls scatter.
+double Alignment::excessSigma(const Solution& solution) const {
+  const double independent = std::sqrt(solution.covariance(layout_.excess(), layout_.excess()));
+  const double segments_per_second = 1.0 / knot_spacing_s_;
+  std::vector<double> pulls;
+  for (const Row& row : rows_) {
+    const Vector3d sensitivity =
+        solution.points_by_excess.middleRows<4>(row.segment).transpose() * row.weights +
+        sharedCoefficients(row) * solution.covariance.col(layout_.excess());
+    const auto second = static_cast<std::size_t>(row.segment / segments_per_second);
+    if (second >= pulls.size()) pulls.resize(second + 1, 0.0);
+    pulls[second] += rowWeight(row) * sensitivity.dot(errorOf(row, solution));
   }
-  return spline + row.world_from_imu * (solution.shared.tail<3>() - row.measured) -
-         solution.shared.segment<3>(layout_.gravity);
+  double squares = 0.0;
+  for (const double pull : pulls) squares += pull * pull;
+  return std::max(independent, std::sqrt(squares));
 }
 
 double median(std::vector<double>& values) {
@@ -297,9 +345,14 @@ GravityAlignment alignGravity(std::span<const CameraTrack> cameras, std::span<co
     result.cameras_in_imu_m.push_back(solution.shared.segment<3>(layout.lever(c)));
   result.gravity_in_world_m_s2 =
       solution.shared.segment<3>(layout.gravity).normalized() * options.gravity_m_s2;
-  result.accelerometer_bias_m_s2 = solution.shared.tail<3>();
+  result.accelerometer_bias_m_s2 = solution.shared.segment<3>(layout.bias());
   result.lever_std_m = std::sqrt(solution.covariance.diagonal().head(layout.gravity).maxCoeff());
   alignment.summarise(result);
+  alignment.releaseScale();
+  alignment.restart();
+  const Solution scaled = alignment.solve(kRounds);
+  result.board_scale = 1.0 + scaled.shared(layout.excess());
+  result.board_scale_std = alignment.excessSigma(scaled);
   return result;
 }
 

@@ -25,6 +25,9 @@ struct InitialisationOptions {
   double acceleration_sigma_m_s2 = 0.1;
   double translation_sigma_m = 0.2;
   double accelerometer_bias_sigma_m_s2 = 0.5;
+  double accelerometer_mapping_sigma = 0.05;
+  double largest_scale_error = 0.03;
+  double scale_error_sigmas = 5.0;
   bool operator==(const InitialisationOptions&) const = default;
 };
 
@@ -64,7 +67,14 @@ inline constexpr auto kInitialisationFields = std::tuple{
     Field{"translation_sigma_m", &InitialisationOptions::translation_sigma_m, 1e-3, 100.0, "m",
           "Weak prior on the camera's place around the IMU."},
     Field{"accelerometer_bias_sigma_m_s2", &InitialisationOptions::accelerometer_bias_sigma_m_s2, 1e-3, 100.0,
-          "m/s^2", "Weak prior on the accelerometer's bias around 0."}};
+          "m/s^2", "Weak prior on the accelerometer's bias around 0."},
+    Field{"accelerometer_mapping_sigma", &InitialisationOptions::accelerometer_mapping_sigma, 1e-6, 1.0, "",
+          "Weak prior on the accelerometer's scales and axes where the board's scale is checked."},
+    Field{"largest_scale_error", &InitialisationOptions::largest_scale_error, 0.0, 10.0, "",
+          "A board that accelerations say is larger or smaller than spacing_m by more makes the result "
+          "doubtful."},
+    Field{"scale_error_sigmas", &InitialisationOptions::scale_error_sigmas, 1.0, 100.0, "sigma",
+          "But only if it is as certain as that."}};
 static_assert(fieldCount<InitialisationOptions>() == std::tuple_size_v<decltype(kInitialisationFields)>);
 
 }  // namespace evical

@@ -191,6 +191,20 @@ void turnAboutAxis(const CalibrationInput& input, const InitialisationOptions& o
   }
 }
 
+void checkBoardScale(const GravityAlignment& gravity, const CircleBoard& board,
+                     const InitialisationOptions& options, Initialisation& result) {
+  const double excess = gravity.board_scale - 1.0, sigma = gravity.board_scale_std;
+  result.steps.push_back({"board scale",
+                          fmt::format("accelerations make the board {:.3f} +- {:.3f} times as large as given",
+                                      gravity.board_scale, sigma),
+                          std::abs(excess), sigma});
+  if (std::abs(excess) < options.largest_scale_error || std::abs(excess) < options.scale_error_sigmas * sigma)
+    return;
+  result.doubt = fmt::format("the board seems {:.0f} % {} than spacing_m says ({:.4g} m): measure it",
+                             100.0 * std::abs(excess), excess > 0.0 ? "larger" : "smaller", board.spacing_m);
+  result.warnings.push_back(result.doubt);
+}
+
 void alignTranslations(const CalibrationInput& input, const InitialisationOptions& options,
                        const std::vector<AlignedCamera>& cameras, Initialisation& result) {
   CalibrationState& state = result.state;
@@ -208,6 +222,7 @@ void alignTranslations(const CalibrationInput& input, const InitialisationOption
                     "probably misread",
                     gravity.outlying_views, gravity.views));
   }
+  checkBoardScale(gravity, input.board, options, result);
   state.imu_in_world_m = gravity.imu_in_world_m;
   state.gravity_in_world_m_s2 = gravity.gravity_in_world_m_s2;
   state.imus.resize(1);

@@ -22,6 +22,7 @@ struct Initialisation {
   CalibrationState state;
   std::vector<InitialisationStep> steps;
   std::vector<std::string> warnings;
+  std::string doubt;  // what makes any result doubtful; empty if nothing does
 };
 
 // One reference IMU and any number of cameras. Throws CalibrationFailed with a reason in plain words: too few

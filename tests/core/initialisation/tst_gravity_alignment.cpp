@@ -104,6 +104,36 @@ class TestGravityAlignment : public QObject {
     QVERIFY((found.cameras_in_imu_m[0] - lever).norm() < 5e-3);
   }
 
+  // A board that is given 10 % too small makes all distances 10 % too short. Scales and axes of the
+  // accelerometer that are off by percents must not pass for that.
+  void align_tellsTheBoardsScale_data() {
+    QTest::addColumn<double>("scale");
+    QTest::addColumn<bool>("skewed");
+    QTest::newRow("right") << 1.0 << false;
+    QTest::newRow("given too small") << 1.1 << false;
+    QTest::newRow("given too large") << 0.9 << false;
+    QTest::newRow("right, accelerometer off") << 1.0 << true;
+    QTest::newRow("given too small, accelerometer off") << 1.1 << true;
+  }
+  void align_tellsTheBoardsScale() {
+    QFETCH(double, scale);
+    QFETCH(bool, skewed);
+    SimulationOptions simulation;
+    simulation.duration_s = 10.0;
+    Truth truth = makeTruth(simulation);
+    for (CameraPose& pose : truth.track.poses) pose.world_from_camera.translation_m /= scale;
+    if (skewed) {
+      Eigen::Matrix3d mapping;
+      mapping << 0.97, -0.02, 0.015, 0.0, 1.035, 0.02, 0.0, 0.0, 0.96;
+      for (ImuSample& sample : truth.simulated.input.imus[0].samples)
+        sample.specific_force_m_s2 = mapping * sample.specific_force_m_s2;
+    }
+    const GravityAlignment found = align(truth);
+    const QString text = QString("%1 +- %2").arg(found.board_scale).arg(found.board_scale_std);
+    QVERIFY2(std::abs(found.board_scale - scale) < 0.015, qPrintable(text));
+    QVERIFY2(found.board_scale_std > 1e-4 && found.board_scale_std < 0.01, qPrintable(text));
+  }
+
   // Hardly any motion: the lever is unknown and must stay small.
   void align_onWeakMotion_doesNotExplode() {
     SimulationOptions simulation;
@@ -112,6 +142,7 @@ class TestGravityAlignment : public QObject {
     const GravityAlignment found = align(makeTruth(simulation));
     QVERIFY(found.cameras_in_imu_m[0].norm() < 0.5);
     QVERIFY(found.accelerometer_bias_m_s2.norm() < 1.0);
+    QVERIFY(found.board_scale_std > 0.02);
   }
 
   // Rotation about one axis says nothing about the camera's angle about it; accelerations do.

@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "tests/core/initialisation/simulated_input.h"
 
+#include <QRegularExpression>
 #include <QtTest>
 
 #include <algorithm>
@@ -121,6 +122,27 @@ class TestInitialise : public QObject {
       QVERIFY2(errors.rotation_deg < 0.5 && errors.translation_m < 0.02 && errors.time_offset_s < 2e-3,
                qPrintable(describe(errors)));
     }
+  }
+
+  void initialise_withWrongSpacing_saysSo_data() {
+    QTest::addColumn<double>("given");
+    QTest::addColumn<QString>("says");
+    QTest::newRow("right") << 1.0 << QString();
+    QTest::newRow("10 % too small") << 1.0 / 1.1
+                                    << "seems (9|10|11) % larger than spacing_m says \\(0.04545 m\\)";
+    QTest::newRow("10 % too large") << 1.0 / 0.9 << "seems (9|10|11) % smaller than spacing_m says";
+  }
+  void initialise_withWrongSpacing_saysSo() {
+    QFETCH(double, given);
+    QFETCH(QString, says);
+    SimulatedInput simulated = simulateInput(shortRecording());
+    simulated.input.board.spacing_m *= given;
+    simulated.input.board.radius_m *= given;
+    const Initialisation found = initialise(simulated.input, {}, RunContext{});
+    const QString doubt = QString::fromStdString(found.doubt);
+    QCOMPARE(doubt.isEmpty(), says.isEmpty());
+    QVERIFY2(doubt.contains(QRegularExpression(says)), qPrintable(doubt));
+    QCOMPARE(mentions(found.warnings, "measure it"), !says.isEmpty());
   }
 
   void initialise_onOneAxis_warnsAndFindsRotation_data() {
