@@ -1,6 +1,6 @@
 // Accuracy against the truth of simulated recordings, as a table: `evical_accuracy [--seeds N] [--duration S]
-// SCENARIO...`. Recordings are simulated in memory and go through the same front end, initialisation and
-// batch as `evical calibrate`.
+// [--quantities] SCENARIO...`. Recordings are simulated in memory and go through the same front end,
+// initialisation and batch as `evical calibrate`.
 #include "core/base/error.h"
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/result_files.h"
@@ -60,7 +60,7 @@ Session sessionFor(const Scenario& scenario) {
 }
 
 struct Outcome {
-  std::string verdict;
+  std::string verdict, weakest, reason;
   double windows_found = 0.0;  // of those with enough of the board in view
   double events_per_s = 0.0;
   double detect_s = 0.0, solve_s = 0.0;
@@ -124,6 +124,8 @@ Outcome run(const Scenario& scenario) {
   try {
     const CalibrationRun run = calibrate(session, std::move(pass), RunContext{});
     outcome.verdict = statusName(run.result.status);
+    outcome.weakest = run.result.uncertainty.weakest;
+    outcome.reason = run.result.reason;
     outcome.comparison = compareWithTruth(namedResult(session, run.result, "benchmark"), truthOf(scenario));
     outcome.uncertainty = run.result.uncertainty.cameras.front();
   } catch (const CalibrationError& error) {
@@ -164,6 +166,12 @@ bool printRow(const Scenario& scenario, const Outcome& o) {
   return met;
 }
 
+void printQuantities(const Outcome& outcome) {
+  if (!outcome.comparison) return;
+  fmt::print("{}weakest: {}\nreason: {}\n", comparisonTable(*outcome.comparison), outcome.weakest,
+             outcome.reason);
+}
+
 // Honest sigmas: errors over sigmas have RMS 1, whatever the seed.
 void printNormalised(const std::vector<Outcome>& outcomes) {
   double rotation2 = 0.0, translation2 = 0.0, offset2 = 0.0, all2 = 0.0;
@@ -199,10 +207,13 @@ int main(int argc, char** argv) {
   std::vector<std::string> files;
   int seeds = 1;
   std::optional<double> duration_s;
+  bool all_quantities = false;
   app.add_option("SCENARIO", files, "Scenario files")->required();
   app.add_option("--seeds", seeds, "Each scenario with this many seeds")->check(CLI::Range(1, 1000));
   app.add_option("--duration", duration_s, "Seconds, instead of the scenario's")
       ->check(CLI::Range(2.0, 3600.0));
+  app.add_flag("--quantities", all_quantities,
+               "Also every quantity's error and sigma, and the weakest direction");
   CLI11_PARSE(app, argc, argv);
   printHeader();
   bool all_met = true;
@@ -214,6 +225,7 @@ int main(int argc, char** argv) {
       scenario.seed += static_cast<std::uint64_t>(k);
       outcomes.push_back(run(scenario));
       all_met = printRow(scenario, outcomes.back()) && all_met;
+      if (all_quantities) printQuantities(outcomes.back());
     }
     if (seeds > 1) printNormalised(outcomes);
   }
