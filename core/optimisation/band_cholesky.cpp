@@ -43,11 +43,19 @@ void BandCholesky::solveInPlace(Eigen::MatrixXd& right) const {
         sum -= at(row, k) * x[k];
       x[row] = sum / at(row, row);
     }
-    for (Eigen::Index row = size_ - 1; row >= 0; --row) {
-      x[row] /= at(row, row);
-      for (Eigen::Index k = std::max<Eigen::Index>(0, row - half_bandwidth_); k < row; ++k)
-        x[k] -= at(row, k) * x[row];
-    }
+    solveTransposed(x);
+  }
+}
+
+void BandCholesky::correlateInPlace(Eigen::VectorXd& white) const {
+  solveTransposed(white.data());
+}
+
+void BandCholesky::solveTransposed(double* x) const {
+  for (Eigen::Index row = size_ - 1; row >= 0; --row) {
+    x[row] /= at(row, row);
+    for (Eigen::Index k = std::max<Eigen::Index>(0, row - half_bandwidth_); k < row; ++k)
+      x[k] -= at(row, k) * x[row];
   }
 }
 

@@ -20,7 +20,11 @@ class BandCholesky {
   void factorise();
   void solveInPlace(Eigen::MatrixXd& right) const;
 
+  // L^-T times `white`: with independent unit variances in, values with the inverse's covariance.
+  void correlateInPlace(Eigen::VectorXd& white) const;
+
  private:
+  void solveTransposed(double* x) const;
   double& at(Eigen::Index row, Eigen::Index col) { return band_[index(row, col)]; }
   double at(Eigen::Index row, Eigen::Index col) const { return band_[index(row, col)]; }
   std::size_t index(Eigen::Index row, Eigen::Index col) const {

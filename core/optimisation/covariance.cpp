@@ -1,5 +1,6 @@
 #include "core/optimisation/covariance.h"
 
+#include "core/optimisation/credible_information.h"
 #include "core/optimisation/observability.h"
 #include "core/optimisation/projected_information.h"
 
@@ -267,7 +268,8 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   problem.used_circles = solution.used_circles;
   problem.scales = solution.scales;
   problem.build(options.last_stage);
-  const ProjectedInformation information = projectInformation(problem, options.correlation_time_s);
+  const ProjectedInformation information =
+      withoutNoise(projectInformation(problem, options.correlation_time_s));
   context.throwIfStopped();
   const QuantityCovariance covariance = quantityCovariance(information, solution.state, problem.problem());
   UncertaintyEstimate estimate;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <random>
 #include <unordered_map>
@@ -212,6 +213,79 @@ void countAbsorbed(const CalibrationProblem& problem, const Layout& layout, cons
   }
 }
 
+Eigen::MatrixXd totalInformation(const CalibrationProblem& problem, const Layout& layout) {
+  Elimination elimination(problem, layout);
+  elimination.eliminate();
+  Eigen::MatrixXd total = Eigen::MatrixXd::Zero(layout.quantitySize(), layout.quantitySize());
+  BlockJacobian block;
+  for (const BlockInfo& info : problem.blocks()) {
+    layout.evaluate(info, block);
+    const Eigen::MatrixXd projected = elimination.project(block);
+    total.noalias() += projected.transpose() * projected;
+  }
+  return total;
+}
+
+// The splines of a problem, for a while elsewhere.
+class SplineShift {
+ public:
+  explicit SplineShift(CalibrationProblem& problem) : problem_(problem) {
+    for (double* block : problem.splineBlocks()) {
+      blocks_.push_back(block);
+      values_.insert(values_.end(), block, block + problem.problem().ParameterBlockSize(block));
+    }
+  }
+  SplineShift(const SplineShift&) = delete;
+  SplineShift& operator=(const SplineShift&) = delete;
+  ~SplineShift() {
+    const double* value = values_.data();
+    for (double* block : blocks_) {
+      std::copy_n(value, sizeOf(block), block);
+      value += sizeOf(block);
+    }
+  }
+
+  // From where they were, in tangent columns.
+  void moveBy(const Eigen::VectorXd& shift) {
+    const double *value = values_.data(), *step = shift.data();
+    for (double* block : blocks_) {
+      const ceres::Manifold* manifold = problem_.problem().GetManifold(block);
+      if (manifold) {
+        manifold->Plus(value, step, block);
+      } else {
+        std::transform(value, value + sizeOf(block), step, block, std::plus<>());
+      }
+      value += sizeOf(block);
+      step += problem_.problem().ParameterBlockTangentSize(block);
+    }
+  }
+
+ private:
+  int sizeOf(const double* block) const { return problem_.problem().ParameterBlockSize(block); }
+
+  CalibrationProblem& problem_;
+  std::vector<double*> blocks_;
+  std::vector<double> values_;
+};
+
+// Simulation and extrapolation (J. Cook, L. Stefanski, JASA 1994): errors once more of the size that the
+// splines already have add once more what these have added. Either way, so that what is linear in them
+// cancels.
+Eigen::MatrixXd informationFromNoise(CalibrationProblem& problem, const Layout& layout,
+                                     const BandCholesky& splines, const Eigen::MatrixXd& total) {
+  constexpr std::uint64_t kSeed = 20260102;  // any
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd shift(layout.splineSize());
+  for (double& each : shift) each = normal(random);
+  splines.correlateInPlace(shift);
+  SplineShift moved(problem);
+  moved.moveBy(shift);
+  const Eigen::MatrixXd ahead = totalInformation(problem, layout);
+  moved.moveBy(-shift);
+  return 0.5 * (ahead + totalInformation(problem, layout)) - total;
+}
+
 }  // namespace
 
 double MeasurementGroup::variance() const {
@@ -253,6 +327,7 @@ ProjectedInformation projectInformation(CalibrationProblem& problem, double stre
   }
   for (const MeasurementGroup& group : result.groups) result.total += group.information;
   countAbsorbed(problem, layout, elimination, result.groups);
+  result.from_noise = informationFromNoise(problem, layout, elimination.splines(), result.total);
 
   std::int64_t first = std::numeric_limits<std::int64_t>::max(),
                last = std::numeric_limits<std::int64_t>::min();

@@ -35,6 +35,9 @@ struct ProjectedInformation {
   std::vector<MeasurementGroup> groups;
   // P^T e of the measurements in each stretch of time, residuals scaled up for what was absorbed.
   std::vector<Eigen::VectorXd> scores;
+  // What the splines' own errors add to P^T P on average. Where nothing moves the derivatives still hold
+  // noise, and noise squared looks like information.
+  Eigen::MatrixXd from_noise;
 };
 
 // `problem` must be built. Scores are collected over stretches of `stretch_s`.
