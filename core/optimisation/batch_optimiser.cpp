@@ -83,6 +83,7 @@ class Batch {
  private:
   std::vector<ReleaseStages> stages() const;
   void solveStage(ReleaseStages stage, int index, double tolerance);
+  void holdStillAxes();
   bool updateWeights();
   void reportFits();
   void reportNotes();
@@ -130,6 +131,21 @@ void Batch::solveStage(ReleaseStages stage, int index, double tolerance) {
   }
 }
 
+void Batch::holdStillAxes() {
+  for (std::size_t i = 0; i < input_.imus.size(); ++i) {
+    StillAxes& held = problem_.held_axes[i];
+    held = stillAxes(input_, problem_.state(), problem_.scales, i);
+    const auto say = [&](const char* sensor, const char* motion, std::size_t axes) {
+      if (axes == 0) return;
+      solution_.notes.push_back(
+          fmt::format("{}: {} along {} of 3 axes, so the {}'s scale stays as given there",
+                      input_.imus[i].name, motion, axes, sensor));
+    };
+    say("gyroscope", "no rotation to speak of", held.gyroscope.size());
+    say("accelerometer", "no changing acceleration to speak of", held.accelerometer.size());
+  }
+}
+
 // Noise scales and outliers, both from all circles and samples; true if anything changed enough to solve
 // again.
 bool Batch::updateWeights() {
@@ -174,6 +190,7 @@ BatchSolution Batch::run() {
   const std::vector<ReleaseStages> all = stages();
   updateWeights();  // by the initial errors: else most circles would start in the flat part of Huber's loss
   for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i] == ReleaseStages::Mappings) holdStillAxes();
     solveStage(all[i], static_cast<int>(i), options_.stage_tolerance);
     updateWeights();
   }

@@ -41,6 +41,7 @@ CalibrationProblem::CalibrationProblem(const CalibrationInput& input, const Opti
     for (const BoardView& view : camera.observations.views)
       used.emplace_back(view.circles.size(), std::uint8_t{1});
   }
+  held_axes.resize(input.imus.size());
   scales.circles.assign(input.cameras.size(), 1.0);
   scales.gyroscopes.assign(input.imus.size(), 1.0);
   scales.accelerometers.assign(input.imus.size(), 1.0);
@@ -246,6 +247,16 @@ void CalibrationProblem::addPriors(ReleaseStages stage) {
     if (stage != ReleaseStages::Mappings) continue;
     add(gyroscope_mappings_[i].data(), 6, kIdentity.data(), options_.mapping_sigma);
     add(accelerometer_mappings_[i].data(), 6, kIdentity.data(), options_.mapping_sigma);
+    holdAxes(gyroscope_mappings_[i].data(), held_axes[i].gyroscope);
+    holdAxes(accelerometer_mappings_[i].data(), held_axes[i].accelerometer);
+  }
+}
+
+void CalibrationProblem::holdAxes(double* mapping, const std::vector<Eigen::Vector3d>& axes) {
+  constexpr double kSigma = 1e-5;  // far below what could be measured
+  if (!problem_->HasParameterBlock(mapping)) return;
+  for (const Eigen::Vector3d& axis : axes) {
+    blocks_.push_back({problem_->AddResidualBlock(new HeldAxisCost(axis, kSigma), nullptr, mapping)});
   }
 }
 

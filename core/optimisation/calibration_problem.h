@@ -8,6 +8,7 @@
 #include "core/optimisation/inertial_cost.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/optimisation/so3_manifold.h"
+#include "core/optimisation/still_axes.h"
 
 #include <ceres/problem.h>
 #include <ceres/sphere_manifold.h>
@@ -76,6 +77,8 @@ class CalibrationProblem {
 
   std::vector<std::vector<std::vector<std::uint8_t>>> used_circles;
   NoiseScales scales;
+  // By IMU: along these a mapping stays as it is.
+  std::vector<StillAxes> held_axes;
 
  private:
   void addCircles(std::size_t camera);
@@ -85,6 +88,7 @@ class CalibrationProblem {
   void addAccelerometer(std::size_t imu, const SegmentTimes& segment, double time_s,
                         std::span<const ImuSample> samples);
   void addPriors(ReleaseStages stage);
+  void holdAxes(double* mapping, const std::vector<Eigen::Vector3d>& axes);
   void setManifolds(ReleaseStages stage);
   bool isReference(std::size_t imu) const { return imu == input_.reference_imu; }
   ImuRole roleOf(std::size_t imu) const { return isReference(imu) ? ImuRole::Reference : ImuRole::Further; }

@@ -9,13 +9,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// d(M v)/d(upper triangle), times the weight.
 void writeMapping(double** jacobians, int block, Eigen::Index row, const Vector3d& v, double weight) {
-  auto rows = jacobianRows<3, 6>(jacobians, block, row);
-  const Vector3d w = weight * v;
-  rows << w.x(), w.y(), w.z(), 0.0, 0.0, 0.0,  //
-      0.0, 0.0, 0.0, w.y(), w.z(), 0.0,        //
-      0.0, 0.0, 0.0, 0.0, 0.0, w.z();
+  jacobianRows<3, 6>(jacobians, block, row) = derivativeByMapping(weight * v);
 }
 
 bool anyOf(double** jacobians, int first, int count) {
@@ -143,6 +138,14 @@ Matrix3d mappingFromParameters(const double* m) {
 void parametersFromMapping(const Matrix3d& mapping, double* m) {
   m[0] = mapping(0, 0), m[1] = mapping(0, 1), m[2] = mapping(0, 2);
   m[3] = mapping(1, 1), m[4] = mapping(1, 2), m[5] = mapping(2, 2);
+}
+
+Eigen::Matrix<double, 3, 6> derivativeByMapping(const Vector3d& v) {
+  Eigen::Matrix<double, 3, 6> derivative;
+  derivative << v.x(), v.y(), v.z(), 0.0, 0.0, 0.0,  //
+      0.0, 0.0, 0.0, v.y(), v.z(), 0.0,              //
+      0.0, 0.0, 0.0, 0.0, 0.0, v.z();
+  return derivative;
 }
 
 GyroscopeCost::GyroscopeCost(ImuRole role, double sigma_rad_s, const SegmentTimes& segment,

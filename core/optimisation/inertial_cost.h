@@ -58,5 +58,6 @@ class AccelerometerCost final : public ceres::CostFunction {
 // Upper triangle, row by row.
 Eigen::Matrix3d mappingFromParameters(const double* parameters);
 void parametersFromMapping(const Eigen::Matrix3d& mapping, double* parameters);
+Eigen::Matrix<double, 3, 6> derivativeByMapping(const Eigen::Vector3d& v);  // of M v
 
 }  // namespace evical

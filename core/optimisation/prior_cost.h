@@ -1,12 +1,16 @@
-// Zero when a block has its prior's mean: r = (block - mean) / sigma, without unit. Block: up to six numbers.
+// Costs of what is known beforehand.
 #pragma once
 
-#include <ceres/cost_function.h>
+#include "core/optimisation/inertial_cost.h"
+
+#include <ceres/sized_cost_function.h>
+#include <Eigen/Core>
 
 #include <array>
 
 namespace evical {
 
+// Zero when a block has its prior's mean: r = (block - mean) / sigma, without unit. Block: up to six numbers.
 class PriorCost final : public ceres::CostFunction {
  public:
   PriorCost(const double* mean, int size, double sigma) : weight_(1.0 / sigma), size_(size) {
@@ -28,6 +32,27 @@ class PriorCost final : public ceres::CostFunction {
   double weight_;
   int size_;
   std::array<double, 6> mean_ = {};
+};
+
+// Zero when an IMU's mapping leaves an axis as it is: r = (M axis - axis) / sigma, without unit. Block:
+// mapping.
+class HeldAxisCost final : public ceres::SizedCostFunction<3, 6> {
+ public:
+  HeldAxisCost(const Eigen::Vector3d& axis, double sigma) : axis_(axis), weight_(1.0 / sigma) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    Eigen::Map<Eigen::Vector3d> error(residuals);
+    error = weight_ * (mappingFromParameters(parameters[0]) * axis_ - axis_);
+    if (jacobians && jacobians[0]) {
+      Eigen::Map<Eigen::Matrix<double, 3, 6, Eigen::RowMajor>> by_mapping(jacobians[0]);
+      by_mapping = weight_ * derivativeByMapping(axis_);
+    }
+    return true;
+  }
+
+ private:
+  Eigen::Vector3d axis_;
+  double weight_;
 };
 
 }  // namespace evical

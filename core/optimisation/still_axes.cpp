@@ -1,0 +1,55 @@
+#include "core/optimisation/still_axes.h"
+
+#include "core/base/time.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+
+namespace evical {
+namespace {
+
+constexpr double kLeastMotion_sigma = 3.0;  // RMS about the mean, in sigmas of one sample
+
+class Spread {
+ public:
+  void add(const Eigen::Vector3d& value) {
+    const Eigen::Vector3d step = value - mean_;
+    mean_ += step / ++count_;
+    sum_ += step * (value - mean_).transpose();
+  }
+  std::vector<Eigen::Vector3d> axesWithout(double noise_sigma) const {
+    const Eigen::Matrix3d covariance = sum_ / count_;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (covariance + covariance.transpose()));
+    const double least = (1.0 + kLeastMotion_sigma * kLeastMotion_sigma) * noise_sigma * noise_sigma;
+    std::vector<Eigen::Vector3d> axes;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      if (solver.eigenvalues()[i] < least) axes.emplace_back(solver.eigenvectors().col(i));
+    }
+    return axes;
+  }
+
+ private:
+  double count_ = 0.0;
+  Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d sum_ = Eigen::Matrix3d::Zero();
+};
+
+}  // namespace
+
+StillAxes stillAxes(const CalibrationInput& input, const CalibrationState& state, const NoiseScales& scales,
+                    std::size_t imu) {
+  const ImuData& data = input.imus[imu];
+  Spread rates, forces;
+  for (const ImuSample& sample : data.samples) {
+    const double time_s = secondsSince(input.start_ns, sample.time_ns) + state.imus[imu].time_offset_s;
+    if (!state.world_from_imu_rotation.contains(time_s)) continue;
+    rates.add(sample.angular_rate_rad_s);
+    forces.add(sample.specific_force_m_s2);
+  }
+  const double root_rate = std::sqrt(data.rate_hz());
+  return {rates.axesWithout(scales.gyroscopes[imu] * data.noise.gyroscope_density * root_rate),
+          forces.axesWithout(scales.accelerometers[imu] * data.noise.accelerometer_density * root_rate)};
+}
+
+}  // namespace evical

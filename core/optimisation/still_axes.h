@@ -1,0 +1,24 @@
+// Axes of an IMU along which a recording holds no more than noise: nothing there tells scale or misalignment,
+// and an estimate that is free to choose takes the scale that hides other errors, down to 0.
+#pragma once
+
+#include "core/data/calibration_setup.h"
+#include "core/data/calibration_state.h"
+#include "core/optimisation/batch_optimiser.h"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace evical {
+
+// Unit vectors in the IMU's own frame, perpendicular to each other.
+struct StillAxes {
+  std::vector<Eigen::Vector3d> gyroscope, accelerometer;
+};
+
+// Samples in the splines' range, against their noise as `scales` has it.
+StillAxes stillAxes(const CalibrationInput& input, const CalibrationState& state, const NoiseScales& scales,
+                    std::size_t imu);
+
+}  // namespace evical
