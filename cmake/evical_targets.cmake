@@ -42,3 +42,17 @@ function(evical_add_test name source)
   target_link_libraries(${name} PRIVATE evical_warnings Qt6::Test ${ARGN})
   add_test(NAME ${name} COMMAND ${name})
 endfunction()
+
+# evical_add_ui_layer(NAME SOURCES... [PUBLIC libs...] [PRIVATE libs...]): one library a folder of ui, with Qt's moc.
+function(evical_add_ui_layer name)
+  evical_add_layer(ui_${name} ${ARGN})
+  set_target_properties(evical_ui_${name} PROPERTIES AUTOMOC ON AUTORCC ON)
+  target_link_libraries(evical_ui_${name} PUBLIC Qt6::Widgets)
+endfunction()
+
+# evical_add_ui_test(NAME SOURCE libs...): a Qt Test executable with a GUI, run by ctest without a display.
+function(evical_add_ui_test name source)
+  evical_add_test(${name} ${source} Qt6::Widgets ${ARGN})
+  target_compile_definitions(${name} PRIVATE EVICAL_SCREENSHOTS="${CMAKE_BINARY_DIR}/screenshots")
+  set_tests_properties(${name} PROPERTIES ENVIRONMENT "QT_QPA_PLATFORM=offscreen")
+endfunction()

@@ -13,8 +13,10 @@ packages=(
   libbz2-dev liblz4-dev
   # command line
   libcli11-dev nlohmann-json3-dev
+  # desktop program
+  qt6-base-dev qt6-svg-dev libvtk9-dev libegl-dev libgl1-mesa-dri libglew-dev libqcustomplot-dev fonts-inter
   # tests
-  qt6-base-dev clang-format
+  clang-format xvfb xauth xdotool imagemagick
 )
 
 if [ "${1:-}" = "--list" ]; then

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/theme/theme.h"
+
+#include <QApplication>
+#include <QPalette>
+
+namespace evical::ui {
+namespace {
+
+Theme makeTheme(bool dark) {
+  Theme t;
+  t.dark = dark;
+  t.window = dark ? QColor(0x1f, 0x22, 0x27) : QColor(0xf5, 0xf6, 0xf8);
+  t.panel = dark ? QColor(0x17, 0x19, 0x1d) : QColor(0xff, 0xff, 0xff);
+  t.text = dark ? QColor(0xe6, 0xe8, 0xeb) : QColor(0x1d, 0x21, 0x27);
+  t.faint_text = dark ? QColor(0x9a, 0xa1, 0xab) : QColor(0x63, 0x6b, 0x76);
+  t.grid_line = dark ? QColor(0x33, 0x38, 0x40) : QColor(0xdf, 0xe2, 0xe6);
+  t.accent = dark ? QColor(0x5a, 0xa9, 0xf5) : QColor(0x1f, 0x6f, 0xc4);
+  t.good = dark ? QColor(0x5c, 0xc0, 0x7b) : QColor(0x2a, 0x8f, 0x4f);
+  t.warning = dark ? QColor(0xe6, 0xb4, 0x50) : QColor(0xb5, 0x7b, 0x0c);
+  t.bad = dark ? QColor(0xec, 0x6a, 0x6a) : QColor(0xc0, 0x39, 0x39);
+  t.brighter = dark ? QColor(0xff, 0xa6, 0x4d) : QColor(0xd9, 0x5f, 0x0e);
+  t.darker = dark ? QColor(0x5c, 0xb8, 0xff) : QColor(0x1c, 0x6d, 0xc9);
+  t.axes = dark ? std::array{QColor(0xf0, 0x6a, 0x6a), QColor(0x6c, 0xc9, 0x7e), QColor(0x6a, 0xa6, 0xf5)}
+                : std::array{QColor(0xc9, 0x3a, 0x3a), QColor(0x2f, 0x96, 0x47), QColor(0x2b, 0x67, 0xc6)};
+  t.series = {t.accent, t.warning, t.good, t.bad, t.axes[2].lighter(130), t.brighter, t.darker, t.faint_text};
+  return t;
+}
+
+}  // namespace
+
+const Theme& theme() {
+  static const Theme light = makeTheme(false), dark = makeTheme(true);
+  return QApplication::palette().color(QPalette::Window).lightness() < 128 ? dark : light;
+}
+
+void applyTheme(QApplication& application, Appearance appearance) {
+  static_cast<void>(application);
+  static_cast<void>(appearance);
+}
+
+QIcon icon(const QString& name) {
+  return QIcon(":/icons/" + name + ".svg");
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Colours of everything that is drawn by hand: plots, event view, timeline, 3D scene. Widgets follow QPalette.
+#pragma once
+
+#include <QColor>
+#include <QIcon>
+#include <QString>
+
+#include <array>
+
+class QApplication;
+
+namespace evical::ui {
+
+enum class Appearance { System, Light, Dark };
+
+struct Theme {
+  bool dark = false;
+  QColor window, panel, text, faint_text, grid_line, accent;
+  QColor good, warning, bad;         // complete / partial / missed; ok / doubtful / failed
+  QColor brighter, darker;           // polarity of events
+  std::array<QColor, 3> axes;        // x, y, z
+  std::array<QColor, 8> series;      // curves, in order
+};
+
+const Theme& theme();  // of the palette that is set; GUI thread only
+
+// Fusion style, palette, style sheet and font. May be called again to switch.
+void applyTheme(QApplication& application, Appearance appearance);
+
+// One of the icons in resources/icons (SVG, by file name without ending), tinted with the palette's text colour.
+QIcon icon(const QString& name);
+
+}  // namespace evical::ui
