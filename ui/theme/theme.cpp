@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/theme/theme.h"
 
+#include "ui/theme/style_sheet.h"
+#include "ui/theme/system_appearance.h"
+
 #include <QApplication>
+#include <QFontDatabase>
 #include <QPalette>
+#include <QStyleFactory>
 
 namespace evical::ui {
 namespace {
@@ -27,20 +32,63 @@ Theme makeTheme(bool dark) {
   return t;
 }
 
+const Theme& themeOf(bool dark) {
+  static const Theme light_theme = makeTheme(false), dark_theme = makeTheme(true);
+  return dark ? dark_theme : light_theme;
+}
+
+// From two colours, so that Light, Mid and Dark fit too: Fusion draws its bevels with them.
+QPalette paletteOf(const Theme& t) {
+  QPalette palette(t.dark ? QColor(0x2b, 0x2f, 0x36) : QColor(0xf0, 0xf1, 0xf4), t.window);
+  palette.setColor(QPalette::Base, t.panel);
+  palette.setColor(QPalette::AlternateBase, t.dark ? QColor(0x1c, 0x1f, 0x24) : QColor(0xf7, 0xf8, 0xfa));
+  palette.setColor(QPalette::Highlight, t.accent);
+  palette.setColor(QPalette::HighlightedText, t.dark ? QColor(0x10, 0x13, 0x17) : QColor(Qt::white));
+  palette.setColor(QPalette::Link, t.accent);
+  palette.setColor(QPalette::LinkVisited, t.accent);
+  palette.setColor(QPalette::ToolTipBase, t.panel);
+  palette.setColor(QPalette::ToolTipText, t.text);
+  for (const QPalette::ColorRole role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText}) {
+    palette.setColor(role, t.text);
+    QColor disabled = t.faint_text;
+    disabled.setAlphaF(0.55F);
+    palette.setColor(QPalette::Disabled, role, disabled);
+  }
+  palette.setColor(QPalette::PlaceholderText, t.faint_text);
+  palette.setColor(QPalette::Disabled, QPalette::Highlight, t.grid_line);
+  return palette;
+}
+
+QFont applicationFont() {
+  constexpr int kPointSize = 10;
+  QFont font = QFontDatabase::systemFont(QFontDatabase::GeneralFont);
+  if (QFontDatabase::families().contains("Inter")) font.setFamily("Inter");
+  font.setPointSize(kPointSize);
+  return font;
+}
+
+void setColours(QApplication& application, bool dark) {
+  application.setPalette(paletteOf(themeOf(dark)));
+  application.setStyleSheet(styleSheetOf(themeOf(dark)));
+}
+
 }  // namespace
 
 const Theme& theme() {
-  static const Theme light = makeTheme(false), dark = makeTheme(true);
-  return QApplication::palette().color(QPalette::Window).lightness() < 128 ? dark : light;
+  constexpr int kHalfLight = 128;
+  return themeOf(QApplication::palette().color(QPalette::Window).lightness() < kHalfLight);
 }
 
 void applyTheme(QApplication& application, Appearance appearance) {
-  static_cast<void>(application);
-  static_cast<void>(appearance);
-}
-
-QIcon icon(const QString& name) {
-  return QIcon(":/icons/" + name + ".svg");
+  SystemAppearance& system = SystemAppearance::instance();
+  application.setStyle(QStyleFactory::create("Fusion"));
+  application.setFont(applicationFont());
+  QObject::disconnect(&system, nullptr, &application, nullptr);
+  if (appearance == Appearance::System) {
+    QObject::connect(&system, &SystemAppearance::changed, &application,
+                     [&application](bool dark) { setColours(application, dark); });
+  }
+  setColours(application, appearance == Appearance::System ? system.dark() : appearance == Appearance::Dark);
 }
 
 }  // namespace evical::ui

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/theme/theme.h"
+
+#include <QDirIterator>
+#include <QPushButton>
+#include <QtTest>
+
+#include <cmath>
+
+using namespace evical::ui;
+
+namespace {
+
+// Contrast of WCAG 2: text should have 4.5 and more.
+double luminance(const QColor& colour) {
+  const auto linear = [](double c) { return c <= 0.03928 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); };
+  return 0.2126 * linear(colour.redF()) + 0.7152 * linear(colour.greenF()) + 0.0722 * linear(colour.blueF());
+}
+
+double contrast(const QColor& a, const QColor& b) {
+  const double brighter = std::max(luminance(a), luminance(b)), darker = std::min(luminance(a), luminance(b));
+  return (brighter + 0.05) / (darker + 0.05);
+}
+
+// Mean colour of the pixels that are drawn, and how much of the picture they are.
+struct Ink {
+  QColor colour;
+  double share = 0.0;
+};
+
+Ink inkOf(const QPixmap& pixmap) {
+  const QImage image = pixmap.toImage().convertToFormat(QImage::Format_ARGB32);
+  double red = 0, green = 0, blue = 0, weight = 0;
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) {
+      const QColor pixel = image.pixelColor(x, y);
+      weight += pixel.alphaF();
+      red += pixel.alphaF() * pixel.redF();
+      green += pixel.alphaF() * pixel.greenF();
+      blue += pixel.alphaF() * pixel.blueF();
+    }
+  }
+  if (weight == 0) return {};
+  return {QColor::fromRgbF(static_cast<float>(red / weight), static_cast<float>(green / weight),
+                           static_cast<float>(blue / weight)),
+          weight / (image.width() * image.height())};
+}
+
+}  // namespace
+
+class TestTheme : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void appearance_setsPaletteAndColours() {
+    applyTheme(*qApp, Appearance::Dark);
+    QVERIFY(theme().dark);
+    QCOMPARE(QApplication::palette().color(QPalette::Window), theme().window);
+    applyTheme(*qApp, Appearance::Light);
+    QVERIFY(!theme().dark);
+    QCOMPARE(QApplication::palette().color(QPalette::Base), theme().panel);
+  }
+
+  void text_isReadable_data() {
+    QTest::addColumn<bool>("dark");
+    QTest::newRow("light") << false;
+    QTest::newRow("dark") << true;
+  }
+  void text_isReadable() {
+    QFETCH(bool, dark);
+    applyTheme(*qApp, dark ? Appearance::Dark : Appearance::Light);
+    const Theme& t = theme();
+    const QPalette palette = QApplication::palette();
+    for (const QColor& ground : {t.window, t.panel}) {
+      QVERIFY(contrast(t.text, ground) > 7.0);
+      QVERIFY(contrast(t.faint_text, ground) > 4.5);
+      QVERIFY(contrast(t.bad, ground) > 4.5);
+    }
+    QVERIFY(contrast(palette.color(QPalette::HighlightedText), palette.color(QPalette::Highlight)) > 4.5);
+  }
+
+  void everyIcon_drawsSomethingInTheTextColour() {
+    applyTheme(*qApp, Appearance::Dark);
+    QVERIFY(!icon("open").isNull());
+    int count = 0;
+    for (QDirIterator files(":/icons"); files.hasNext(); ++count) {
+      const QString name = QFileInfo(files.next()).baseName();
+      const Ink ink = inkOf(icon(name).pixmap(48, 48));
+      QVERIFY2(ink.share > 0.01 && ink.share < 0.6, qPrintable(name));
+      QVERIFY2(contrast(ink.colour, theme().text) < 1.05, qPrintable(name));
+    }
+    QVERIFY(count > 40);
+  }
+
+  void icon_thatDoesNotExist_isNull() { QVERIFY(icon("no such icon").isNull()); }
+
+  void icon_followsTheTheme() {
+    applyTheme(*qApp, Appearance::Light);
+    const QIcon open = icon("open");
+    const QColor light = inkOf(open.pixmap(24, 24)).colour;
+    applyTheme(*qApp, Appearance::Dark);
+    const QColor dark = inkOf(open.pixmap(24, 24)).colour;
+    QVERIFY(light.lightness() < 80);
+    QVERIFY(dark.lightness() > 170);
+  }
+
+  void icon_inItsOwnColour_fadesWhenDisabled() {
+    const QIcon done = icon("done", QColor(0, 200, 0));
+    QVERIFY(inkOf(done.pixmap(48, 48)).colour.green() > 190);
+    QVERIFY(inkOf(done.pixmap(48, 48, QIcon::Disabled)).share < 0.7 * inkOf(done.pixmap(48, 48)).share);
+  }
+
+  void widgets_areToldOfAChange() {
+    applyTheme(*qApp, Appearance::Light);
+    QPushButton button("Calibrate");
+    button.show();
+    const QColor light = button.grab().toImage().pixelColor(button.width() / 2, 3);
+    applyTheme(*qApp, Appearance::Dark);
+    const QColor dark = button.grab().toImage().pixelColor(button.width() / 2, 3);
+    QVERIFY(light.lightness() > 200);
+    QVERIFY(dark.lightness() < 80);
+  }
+};
+
+QTEST_MAIN(TestTheme)
+#include "tst_theme.moc"

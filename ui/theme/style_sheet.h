@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The few rules that make Fusion look of today. Everything else follows the palette.
+#pragma once
+
+#include "ui/theme/theme.h"
+
+#include <QString>
+
+namespace evical::ui {
+
+// Frames with the property `card` are panels, labels with the property `role` are titles, hints or problems.
+QString styleSheetOf(const Theme& theme);
+
+}  // namespace evical::ui
