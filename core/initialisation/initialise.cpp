@@ -236,11 +236,19 @@ void alignTranslations(const CalibrationInput& input, const InitialisationOption
   }
 }
 
+// Tells the observer of the steps that it has not heard of.
+void tellSteps(const std::vector<InitialisationStep>& steps, CalibrationObserver* observer,
+               std::size_t& told) {
+  for (; observer != nullptr && told < steps.size(); ++told)
+    observer->initialisationStepDone(steps[told].name, steps[told].result);
+}
+
 }  // namespace
 
 Initialisation initialise(const CalibrationInput& input, const InitialisationOptions& options,
-                          const RunContext& context) {
+                          const RunContext& context, CalibrationObserver* observer) {
   Initialisation result;
+  std::size_t told = 0;
   checkInput(input);
   const ImuData& imu = input.imus.front();
   const GyroRotation gyro(imu.samples, input.start_ns);
@@ -249,6 +257,7 @@ Initialisation initialise(const CalibrationInput& input, const InitialisationOpt
   for (const CameraData& camera : input.cameras) {
     context.throwIfStopped();
     cameras.push_back(alignCamera(camera, input, gyro, options, result));
+    tellSteps(result.steps, observer, told);
     constexpr double kShare = 0.7;
     context.progress.stageProgress(kShare * static_cast<double>(cameras.size()) /
                                    static_cast<double>(input.cameras.size()));
@@ -265,6 +274,7 @@ Initialisation initialise(const CalibrationInput& input, const InitialisationOpt
                        options.knot_spacing_s);
   context.throwIfStopped();
   alignTranslations(input, options, cameras, result);
+  tellSteps(result.steps, observer, told);
   context.progress.stageProgress(1.0);
   return result;
 }

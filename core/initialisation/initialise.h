@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/progress.h"
+#include "core/data/calibration_observer.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/calibration_state.h"
 #include "core/initialisation/initialisation_options.h"
@@ -28,6 +29,6 @@ struct Initialisation {
 // One reference IMU and any number of cameras. Throws CalibrationFailed with a reason in plain words: too few
 // views, too short, no overlap in time, no motion.
 Initialisation initialise(const CalibrationInput& input, const InitialisationOptions& options,
-                          const RunContext& context);
+                          const RunContext& context, CalibrationObserver* observer = nullptr);
 
 }  // namespace evical

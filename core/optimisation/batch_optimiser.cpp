@@ -24,10 +24,12 @@ constexpr double kLeastScale = 0.05, kLargestScale = 1000.0;
 
 class IterationReporter final : public ceres::IterationCallback {
  public:
-  IterationReporter(const CalibrationProblem& problem, const RunContext& context, int stage, int stage_count,
-                    double& furthest, std::vector<IterationRecord>& records)
+  IterationReporter(const CalibrationProblem& problem, const RunContext& context,
+                    CalibrationObserver* observer, int stage, int stage_count, double& furthest,
+                    std::vector<IterationRecord>& records)
       : problem_(problem),
         context_(context),
+        observer_(observer),
         stage_(stage),
         stage_count_(stage_count),
         furthest_(furthest),
@@ -40,6 +42,7 @@ class IterationReporter final : public ceres::IterationCallback {
     context_.progress.stageProgress(furthest_);
     records_.push_back({stage_ + 1, static_cast<int>(records_.size()), summary.cost,
                         summary.gradient_max_norm, summary.step_norm, problem_.state().cameras});
+    if (observer_ != nullptr) observer_->iterationDone(records_.back(), problem_.state());
     if (context_.stop.stop_requested()) return ceres::SOLVER_ABORT;
     return problem_.segmentDrift_knots() > kFurthestDrift_knots ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
                                                                 : ceres::SOLVER_CONTINUE;
@@ -48,6 +51,7 @@ class IterationReporter final : public ceres::IterationCallback {
  private:
   const CalibrationProblem& problem_;
   const RunContext& context_;
+  CalibrationObserver* observer_;
   int stage_, stage_count_, iterations_ = 0;
   double& furthest_;  // of the whole batch, 0..1
   std::vector<IterationRecord>& records_;
@@ -75,8 +79,12 @@ ceres::Solver::Options solverOptions(const OptimisationOptions& options, double 
 class Batch {
  public:
   Batch(const CalibrationInput& input, const CalibrationState& initial, const OptimisationOptions& options,
-        const RunContext& context)
-      : input_(input), options_(options), context_(context), problem_(input, options, initial) {}
+        const RunContext& context, CalibrationObserver* observer)
+      : input_(input),
+        options_(options),
+        context_(context),
+        observer_(observer),
+        problem_(input, options, initial) {}
 
   BatchSolution run();
 
@@ -92,6 +100,7 @@ class Batch {
   const CalibrationInput& input_;
   const OptimisationOptions& options_;
   const RunContext& context_;
+  CalibrationObserver* observer_;
   CalibrationProblem problem_;
   BatchSolution solution_;
   double progress_ = 0.0;
@@ -108,7 +117,8 @@ std::vector<ReleaseStages> Batch::stages() const {
 
 void Batch::solveStage(ReleaseStages stage, int index, double tolerance) {
   const int stage_count = static_cast<int>(stages().size()) + 1;  // the last one twice
-  IterationReporter reporter(problem_, context_, index, stage_count, progress_, solution_.iterations);
+  IterationReporter reporter(problem_, context_, observer_, index, stage_count, progress_,
+                             solution_.iterations);
   ceres::Solver::Options solver = solverOptions(options_, tolerance);
   solver.callbacks.push_back(&reporter);
   solution_.converged = false;
@@ -288,13 +298,14 @@ void checkInput(const CalibrationInput& input, const CalibrationState& initial) 
 }  // namespace
 
 BatchSolution optimiseBatch(const CalibrationInput& input, const CalibrationState& initial,
-                            const OptimisationOptions& options, const RunContext& context) {
+                            const OptimisationOptions& options, const RunContext& context,
+                            CalibrationObserver* observer) {
   checkInput(input, initial);
   if (circleErrors(input, initial, options).empty()) {
     throw calibrationFailed("optimisation", "no view of the board lies in the trajectory's time range",
                             "Check that camera and IMU recorded at the same time");
   }
-  return Batch(input, initial, options, context).run();
+  return Batch(input, initial, options, context, observer).run();
 }
 
 }  // namespace evical

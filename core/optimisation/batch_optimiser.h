@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/base/progress.h"
+#include "core/data/calibration_observer.h"
 #include "core/data/calibration_result.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/calibration_state.h"
@@ -38,6 +39,7 @@ struct BatchSolution {
 // `initial` gives the splines' range and knots: both cover the views with a margin for the time offset to
 // move. Throws CalibrationError when nothing can be solved, and Cancelled when asked to stop.
 BatchSolution optimiseBatch(const CalibrationInput& input, const CalibrationState& initial,
-                            const OptimisationOptions& options, const RunContext& context);
+                            const OptimisationOptions& options, const RunContext& context,
+                            CalibrationObserver* observer = nullptr);
 
 }  // namespace evical

@@ -148,14 +148,15 @@ double peakMemory_mb() {
   return static_cast<double>(usage.ru_maxrss) * kBytesPerUnit / kBytesPerMb;
 }
 
-CalibrationRun calibrate(const Session& session, const RunContext& context,
-                         const ObserverFactory& observers) {
+CalibrationRun calibrate(const Session& session, const RunContext& context, const ObserverFactory& observers,
+                         CalibrationObserver* observer) {
   checkSession(session);
   context.progress.stageStarted("detect");
-  return calibrate(session, readAndDetect(session, context, observers), context);
+  return calibrate(session, readAndDetect(session, context, observers, observer), context, observer);
 }
 
-CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context) {
+CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context,
+                         CalibrationObserver* observer) {
   CalibrationRun run;
   run.pass = std::move(pass);
   for (const ImuData& imu : run.pass.imus) {
@@ -175,10 +176,11 @@ CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunCo
     checkBoardSize(camera, session.board, session.options.front_end.extent);
   }
   const CalibrationInput input = inputFrom(session, run.pass);
+  if (observer != nullptr) observer->detectionDone(input);
 
   context.progress.stageStarted("initialise");
   Clock::time_point begin = Clock::now();
-  const Initialisation initial = initialise(input, session.options.initialisation, context);
+  const Initialisation initial = initialise(input, session.options.initialisation, context, observer);
   for (const InitialisationStep& step : initial.steps) {
     context.progress.log(LogLevel::Info, fmt::format("{}: {}", step.name, step.result));
   }
@@ -188,7 +190,8 @@ CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunCo
 
   context.progress.stageStarted("optimise");
   begin = Clock::now();
-  BatchSolution solution = optimiseBatch(input, initial.state, session.options.optimisation, context);
+  BatchSolution solution =
+      optimiseBatch(input, initial.state, session.options.optimisation, context, observer);
   UncertaintyEstimate uncertainty =
       estimateUncertainty(input, solution, session.options.optimisation, context);
   context.progress.stageProgress(1.0);

@@ -19,10 +19,11 @@ struct CalibrationRun {
 // Progress goes by the stages "detect", "initialise", "optimise". Throws CalibrationError, and Cancelled when
 // asked to stop.
 CalibrationRun calibrate(const Session& session, const RunContext& context,
-                         const ObserverFactory& observers = {});
+                         const ObserverFactory& observers = {}, CalibrationObserver* observer = nullptr);
 
 // The same from what the front end and the IMUs gave: `pass` as readAndDetect or a simulation makes it.
-CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context);
+CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context,
+                         CalibrationObserver* observer = nullptr);
 
 // How much of the process's memory was in use at most, in MB (10^6 bytes); 0 where the system does not say.
 double peakMemory_mb();

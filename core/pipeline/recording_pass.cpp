@@ -132,8 +132,13 @@ class CameraIntake {
 // The window thread: one tracker a camera.
 class WindowWorker {
  public:
-  WindowWorker(const Session& session, const RunContext& context, const ObserverFactory& observers)
-      : session_(session), context_(context), observers_(observers), trackers_(session.cameras.size()) {}
+  WindowWorker(const Session& session, const RunContext& context, const ObserverFactory& observers,
+               CalibrationObserver* observer)
+      : session_(session),
+        context_(context),
+        observers_(observers),
+        observer_(observer),
+        trackers_(session.cameras.size()) {}
 
   void run(BoundedQueue<BurstBatch>& queue) {
     try {
@@ -174,12 +179,16 @@ class WindowWorker {
                                                session_.options.front_end, batch.start_ns);
       if (observers_) tracker->observeWith(observers_(batch.camera, *tracker));
     }
+    const std::size_t before = tracker->observations().windows.size();
     tracker->addBursts(batch.bursts, batch.first_event_ns, batch.complete_until_ns);
+    if (observer_ != nullptr && tracker->observations().windows.size() > before)
+      observer_->windowsDetected(batch.camera, tracker->observations());
   }
 
   const Session& session_;
   const RunContext& context_;
   const ObserverFactory& observers_;
+  CalibrationObserver* observer_;
   std::vector<std::unique_ptr<BoardTracker>> trackers_;
   std::exception_ptr failure_;
   double busy_s_ = 0.0;
@@ -333,12 +342,12 @@ class ReadingPass {
 }  // namespace
 
 RecordingPass readAndDetect(const Session& session, const RunContext& context,
-                            const ObserverFactory& observers) {
+                            const ObserverFactory& observers, CalibrationObserver* observer) {
   RecordingPass result;
   const std::unique_ptr<RecordingReader> reader = openRecording(session.recording);
   const Clock::time_point begin = Clock::now();
   ReadingPass reading(session, *reader, result);
-  WindowWorker worker(session, context, observers);
+  WindowWorker worker(session, context, observers, observer);
   BoundedQueue<BurstBatch> queue(kQueuedBatches);
   {
     std::jthread windows([&] { worker.run(queue); });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/progress.h"
+#include "core/data/calibration_observer.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/recording.h"
 #include "core/frontend/board_tracker.h"
@@ -27,6 +28,6 @@ using ObserverFactory = std::function<FrontEndObserver*(std::size_t camera, cons
 // Reads and finds bursts in one thread, searches windows in another; memory does not grow with the number of
 // events. Throws BadInput for streams that are missing, empty, or do not fit the session.
 RecordingPass readAndDetect(const Session& session, const RunContext& context,
-                            const ObserverFactory& observers = {});
+                            const ObserverFactory& observers = {}, CalibrationObserver* observer = nullptr);
 
 }  // namespace evical

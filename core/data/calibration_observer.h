@@ -1,0 +1,27 @@
+// Who watches a calibration while it runs, for live views. Called from worker threads, one call at a time;
+// what is handed over lives as long as the call: copy what is to be kept, and be quick.
+#pragma once
+
+#include "core/data/calibration_result.h"
+#include "core/data/calibration_setup.h"
+
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+namespace evical {
+
+class CalibrationObserver {
+ public:
+  virtual ~CalibrationObserver() = default;
+
+  // New windows at the end of `so_far.windows`; earlier ones may change when the board is tracked backwards.
+  virtual void windowsDetected(std::size_t /*camera*/, const BoardObservations& /*so_far*/) {}
+  // The whole recording has been read.
+  virtual void detectionDone(const CalibrationInput& /*input*/) {}
+  // "time offset", and its key number in words.
+  virtual void initialisationStepDone(std::string_view /*step*/, std::string_view /*result*/) {}
+  virtual void iterationDone(const IterationRecord& /*iteration*/, const CalibrationState& /*state*/) {}
+};
+
+}  // namespace evical

@@ -1,0 +1,73 @@
+#include "core/data/calibration_observer.h"
+
+#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/simulation.h"
+#include "core/synthetic/scenario_yaml.h"
+
+#include <QTemporaryDir>
+#include <QtTest>
+
+using namespace evical;
+
+namespace {
+
+class Notebook final : public CalibrationObserver {
+ public:
+  void windowsDetected(std::size_t camera, const BoardObservations& so_far) override {
+    QCOMPARE(camera, std::size_t{0});
+    QVERIFY(so_far.windows.size() > windows);
+    windows = so_far.windows.size();
+    ++window_calls;
+  }
+  void detectionDone(const CalibrationInput& given) override {
+    QVERIFY(steps.isEmpty() && iterations.empty());
+    input = given;
+  }
+  void initialisationStepDone(std::string_view step, std::string_view result) override {
+    QVERIFY(iterations.empty());
+    QVERIFY(!result.empty());
+    steps << QString::fromUtf8(step.data(), static_cast<qsizetype>(step.size()));
+  }
+  void iterationDone(const IterationRecord& iteration, const CalibrationState& now) override {
+    iterations.push_back(iteration);
+    state = now;
+  }
+
+  std::size_t windows = 0;
+  int window_calls = 0;
+  CalibrationInput input;
+  QStringList steps;
+  std::vector<IterationRecord> iterations;
+  CalibrationState state;
+};
+
+}  // namespace
+
+class TestCalibrationObserver : public QObject {
+  Q_OBJECT
+
+  QTemporaryDir scratch_;
+
+ private slots:
+  void observer_hearsOfEveryStageInOrder() {
+    Scenario scenario = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/davis346.yaml");
+    scenario.duration_s = 4.0;
+    const SimulationSummary simulated =
+        simulate(scenario, scratch_.filePath("short").toStdString(), RunContext{});
+    Notebook notebook;
+    const CalibrationRun run = calibrate(readSession(simulated.session), RunContext{}, {}, &notebook);
+
+    QVERIFY(notebook.window_calls > 5);
+    QVERIFY(notebook.windows + 3 >= run.pass.cameras[0].windows.size());  // the last ones come with the end
+    QCOMPARE(notebook.input.imus.at(0).samples.size(), run.pass.imus.at(0).samples.size());
+    QCOMPARE(notebook.steps, (QStringList{"camera poses", "planar poses", "time offset",
+                                          "camera-IMU rotation", "gravity and translation"}));
+    QCOMPARE(notebook.iterations.size(), run.result.iterations.size());
+    QCOMPARE(notebook.iterations.back().cost, run.result.iterations.back().cost);
+    QCOMPARE(notebook.state.cameras.at(0).time_offset_s, run.result.state.cameras.at(0).time_offset_s);
+    QCOMPARE(notebook.state.imu_in_world_m.segmentCount(), run.result.state.imu_in_world_m.segmentCount());
+  }
+};
+
+QTEST_GUILESS_MAIN(TestCalibrationObserver)
+#include "tst_calibration_observer.moc"
