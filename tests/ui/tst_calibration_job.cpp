@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/jobs/calibration_job.h"
+
+#include "tests/ui/simulated_session.h"
+
+#include <QSignalSpy>
+#include <QtTest>
+
+using namespace evical;
+using namespace evical::ui;
+
+namespace {
+
+constexpr int kPatience_ms = 120'000;
+
+struct Watched {
+  JobRunner runner;
+  CalibrationJob job{runner};
+  QSignalSpy finished{&runner, &JobRunner::finished};
+  QSignalSpy failed{&runner, &JobRunner::failed};
+  std::shared_ptr<const CalibrationRun> run;
+  std::vector<std::shared_ptr<const LiveDetections>> detections;
+  std::shared_ptr<const LiveIterations> iterations;
+  QStringList notes;
+  std::size_t inputs = 0;
+
+  Watched() {
+    QObject::connect(&job, &CalibrationJob::calibrated, &job,
+                     [this](std::shared_ptr<const CalibrationRun> made) { run = std::move(made); });
+    QObject::connect(&job, &CalibrationJob::detectionsChanged, &job,
+                     [this](auto snapshot) { detections.push_back(std::move(snapshot)); });
+    QObject::connect(&job, &CalibrationJob::iterationsChanged, &job,
+                     [this](auto snapshot) { iterations = std::move(snapshot); });
+    QObject::connect(&job, &CalibrationJob::initialisationStepDone, &job,
+                     [this](const InitialisationNote& note) { notes << note.step; });
+    QObject::connect(&job, &CalibrationJob::detectionDone, &job, [this] { ++inputs; });
+  }
+  JobOutcome outcome() {
+    if (finished.isEmpty()) finished.wait(kPatience_ms);
+    return finished.isEmpty() ? JobOutcome::Failed : finished.last().at(0).value<JobOutcome>();
+  }
+};
+
+}  // namespace
+
+class TestCalibrationJob : public QObject {
+  Q_OBJECT
+
+  Session session_;
+
+ private slots:
+  void initTestCase() { session_ = readSession(test::simulatedSession().toStdString()); }
+
+  void job_showsItsWorkAndDeliversTheRun() {
+    Watched test;
+    QVERIFY(test.job.start(session_));
+    QVERIFY(test.job.running());
+    QCOMPARE(test.outcome(), JobOutcome::Done);
+    QVERIFY(test.run);
+    QVERIFY(!test.job.running());
+    QCOMPARE(test.inputs, std::size_t{1});
+    QCOMPARE(test.notes.size(), 5);
+    QVERIFY(!test.detections.empty());
+    for (std::size_t i = 1; i < test.detections.size(); ++i) {
+      QVERIFY(test.detections[i]->at(0).windows.size() > test.detections[i - 1]->at(0).windows.size());
+    }
+    QCOMPARE(test.iterations->records.size(), test.run->result.iterations.size());
+  }
+
+  void cancel_isAnsweredWithinHalfASecond_data() {
+    QTest::addColumn<QString>("stage");
+    QTest::newRow("while detecting") << "detect";
+    QTest::newRow("while optimising") << "optimise";
+  }
+  void cancel_isAnsweredWithinHalfASecond() {
+    QFETCH(QString, stage);
+    Watched test;
+    QElapsedTimer clock;
+    connect(&test.runner, &JobRunner::stageStarted, &test.runner, [&](const QString& started) {
+      if (started != stage) return;
+      clock.start();
+      test.runner.cancel();
+    });
+    test.job.start(session_);
+    QCOMPARE(test.outcome(), JobOutcome::Cancelled);
+    QVERIFY2(clock.isValid() && clock.elapsed() < 500, qPrintable(QString::number(clock.elapsed())));
+    QVERIFY(!test.run);
+    QVERIFY(test.failed.isEmpty());
+  }
+
+  void job_canRunAgainAfterCancelling() {
+    Watched test;
+    test.job.start(session_);
+    test.runner.cancel();
+    QCOMPARE(test.outcome(), JobOutcome::Cancelled);
+    test.finished.clear();
+    QVERIFY(test.job.start(session_));
+    QCOMPARE(test.outcome(), JobOutcome::Done);
+    QVERIFY(test.run);
+  }
+
+  void recordingThatIsGone_isAnErrorWithAdvice() {
+    Session gone = session_;
+    gone.recording = "/nowhere/recording.bag";
+    Watched test;
+    test.job.start(gone);
+    QCOMPARE(test.outcome(), JobOutcome::Failed);
+    const auto error = test.failed.at(0).at(0).value<JobError>();
+    QVERIFY(error.bad_input);
+    QVERIFY(error.text().contains("/nowhere/recording.bag"));
+  }
+
+  void anotherJob_isNotTakenForACalibration() {
+    Watched test;
+    QSignalSpy calibrated(&test.job, &CalibrationJob::calibrated);
+    test.runner.start("Other", {}, [](const RunContext&) {});
+    QVERIFY(!test.job.start(session_));
+    QCOMPARE(test.outcome(), JobOutcome::Done);
+    QVERIFY(calibrated.isEmpty());
+  }
+};
+
+QTEST_GUILESS_MAIN(TestCalibrationJob)
+#include "tst_calibration_job.moc"

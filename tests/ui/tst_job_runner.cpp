@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/jobs/job_runner.h"
+
+#include "core/base/error.h"
+
+#include <QSignalSpy>
+#include <QtTest>
+
+#include <atomic>
+#include <stdexcept>
+
+using namespace evical;
+using namespace evical::ui;
+
+namespace {
+
+constexpr int kPatience_ms = 5000;
+
+// Works until it is asked to stop.
+void workUntilStopped(const RunContext& context) {
+  while (true) {
+    context.throwIfStopped();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
+struct Watched {
+  JobRunner runner;
+  QSignalSpy finished{&runner, &JobRunner::finished};
+  QSignalSpy failed{&runner, &JobRunner::failed};
+  QSignalSpy progressed{&runner, &JobRunner::progressed};
+
+  JobOutcome outcome() {
+    if (finished.isEmpty()) finished.wait(kPatience_ms);
+    return finished.isEmpty() ? JobOutcome::Failed : finished.last().at(0).value<JobOutcome>();
+  }
+  JobError error() const { return failed.isEmpty() ? JobError{} : failed.last().at(0).value<JobError>(); }
+};
+
+}  // namespace
+
+class TestJobRunner : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void work_runsInAnotherThread() {
+    Watched test;
+    std::thread::id worker;
+    QVERIFY(test.runner.start("Job", {}, [&](const RunContext&) { worker = std::this_thread::get_id(); }));
+    QVERIFY(test.runner.running());
+    QCOMPARE(test.outcome(), JobOutcome::Done);
+    QVERIFY(!test.runner.running());
+    QVERIFY(worker != std::this_thread::get_id());
+  }
+
+  void secondJob_isRefusedWhileOneRuns() {
+    Watched test;
+    QVERIFY(test.runner.start("First", {}, workUntilStopped));
+    QVERIFY(!test.runner.start("Second", {}, [](const RunContext&) {}));
+    QCOMPARE(test.runner.title(), QString("First"));
+    test.runner.cancel();
+    QCOMPARE(test.outcome(), JobOutcome::Cancelled);
+    QVERIFY(test.runner.start("Second", {}, [](const RunContext&) {}));
+    test.finished.clear();
+    QCOMPARE(test.outcome(), JobOutcome::Done);
+  }
+
+  void progress_countsStagesByTheirShares() {
+    Watched test;
+    test.runner.start("Job", {{"a", 1.0}, {"b", 3.0}}, [](const RunContext& context) {
+      context.progress.stageStarted("a");
+      context.progress.stageProgress(1.0);
+      context.progress.stageStarted("b");
+      context.progress.stageProgress(0.5);
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    });
+    QCOMPARE(test.outcome(), JobOutcome::Done);
+    const auto last = test.progressed.last().at(0).value<JobProgress>();
+    QCOMPARE(last.stage, QString("b"));
+    QCOMPARE(last.stage_fraction, 0.5);
+    QCOMPARE(last.fraction, 0.625);
+    QVERIFY(last.remaining_s > 0.0);
+    QVERIFY(qAbs(last.remaining_s - last.elapsed_s * 0.6) < 0.05);
+  }
+
+  void progress_neverFalls() {
+    Watched test;
+    test.runner.start("Job", {{"a", 1.0}}, [](const RunContext& context) {
+      context.progress.stageStarted("a");
+      for (const double fraction : {0.5, 0.2, 0.7, 2.0, -1.0}) {
+        context.progress.stageProgress(fraction);
+        std::this_thread::sleep_for(std::chrono::milliseconds(60));
+      }
+    });
+    QCOMPARE(test.outcome(), JobOutcome::Done);
+    double before = 0.0;
+    for (const QList<QVariant>& arguments : test.progressed) {
+      const double fraction = arguments.at(0).value<JobProgress>().fraction;
+      QVERIFY(fraction >= before && fraction <= 1.0);
+      before = fraction;
+    }
+    QCOMPARE(before, 1.0);
+  }
+
+  void manyReports_becomeFewSignals() {
+    Watched test;
+    QSignalSpy lines(&test.runner, &JobRunner::logged);
+    test.runner.start("Job", {{"a", 1.0}}, [](const RunContext& context) {
+      context.progress.stageStarted("a");
+      for (int i = 0; i < 200'000; ++i) context.progress.stageProgress(i / 200'000.0);
+      for (int i = 0; i < 10; ++i) context.progress.log(LogLevel::Info, std::to_string(i));
+    });
+    QCOMPARE(test.outcome(), JobOutcome::Done);
+    QVERIFY(test.progressed.count() < 100);
+    QCOMPARE(lines.count(), 10);
+    QCOMPARE(lines.last().at(0).value<LogLine>().text, QString("9"));
+    QVERIFY(test.runner.logText().contains("stage    a\n"));
+    QVERIFY(test.runner.logText().endsWith("info     9\n"));
+  }
+
+  void cancel_isAnsweredWithinHalfASecond() {
+    Watched test;
+    test.runner.start("Job", {}, workUntilStopped);
+    QTest::qWait(50);
+    QElapsedTimer clock;
+    clock.start();
+    test.runner.cancel();
+    QVERIFY(test.runner.cancelling());
+    QCOMPARE(test.outcome(), JobOutcome::Cancelled);
+    QVERIFY(clock.elapsed() < 500);
+    QVERIFY(test.failed.isEmpty());
+  }
+
+  void exception_becomesAnError_data() {
+    QTest::addColumn<int>("kind");
+    QTest::addColumn<QString>("place");
+    QTest::addColumn<bool>("bad_input");
+    QTest::newRow("bad input") << 0 << "a.bag" << true;
+    QTest::newRow("calibration failed") << 1 << "left" << false;
+    QTest::newRow("memory") << 2 << "memory" << false;
+    QTest::newRow("bug") << 3 << "internal error" << false;
+    QTest::newRow("unknown") << 4 << "internal error" << false;
+  }
+  void exception_becomesAnError() {
+    QFETCH(int, kind);
+    Watched test;
+    test.runner.start("Job", {}, [kind](const RunContext&) {
+      if (kind == 0) throw badInput("a.bag", "is no recording", "Give a bag");
+      if (kind == 1) throw calibrationFailed("left", "no board", "Show it");
+      if (kind == 2) throw std::bad_alloc();
+      if (kind == 3) throw std::logic_error("that cannot be");
+      throw 42;  // NOLINT: also this must not be lost
+    });
+    QCOMPARE(test.outcome(), JobOutcome::Failed);
+    QTEST(test.error().place, "place");
+    QTEST(test.error().bad_input, "bad_input");
+    QVERIFY(!test.error().problem.isEmpty());
+    QVERIFY(!test.error().advice.isEmpty());
+    QVERIFY(!test.runner.running());
+  }
+
+  void error_readsAsASentence() {
+    const JobError error{true, "a.bag", "is no recording", "Give a bag"};
+    QCOMPARE(error.text(), QString("a.bag: is no recording. Give a bag"));
+  }
+
+  void deletion_whileRunning_stopsAndWaits() {
+    std::atomic<bool> ended = false;
+    {
+      JobRunner runner;
+      runner.start("Job", {}, [&](const RunContext& context) {
+        try {
+          workUntilStopped(context);
+        } catch (...) {
+          ended = true;
+          throw;
+        }
+      });
+      QTest::qWait(30);
+    }
+    QVERIFY(ended);
+    QCoreApplication::processEvents();  // nothing that the job posted may come now
+  }
+
+  void inputsOfTheWork_areGoneWhenItHasFinished() {
+    Watched test;
+    auto input = std::make_shared<int>(1);
+    test.runner.start("Job", {}, [copy = input](const RunContext&) {});
+    QCOMPARE(test.outcome(), JobOutcome::Done);
+    QCOMPARE(input.use_count(), 1L);
+  }
+};
+
+QTEST_GUILESS_MAIN(TestJobRunner)
+#include "tst_job_runner.moc"

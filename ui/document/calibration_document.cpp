@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/document/calibration_document.h"
+
+#include "core/base/error.h"
+
+#include <QFileInfo>
+#include <QUndoCommand>
+
+#include <utility>
+
+namespace evical::ui {
+namespace {
+
+std::filesystem::path pathOf(const QString& file) {
+  return std::filesystem::path(file.toStdString());
+}
+
+}  // namespace
+
+class CalibrationDocument::EditCommand final : public QUndoCommand {
+ public:
+  EditCommand(CalibrationDocument& document, Session after, const QString& what, QString merge_key)
+      : QUndoCommand(what),
+        document_(document),
+        before_(document.session_),
+        after_(std::move(after)),
+        merge_key_(std::move(merge_key)) {}
+
+  void undo() override { document_.set(before_); }
+  void redo() override { document_.set(after_); }
+  int id() const override { return merge_key_.isEmpty() ? -1 : 1; }
+  bool mergeWith(const QUndoCommand* other) override {
+    const auto* const next = dynamic_cast<const EditCommand*>(other);
+    if (next == nullptr || next->merge_key_ != merge_key_) return false;
+    after_ = next->after_;
+    return true;
+  }
+
+ private:
+  CalibrationDocument& document_;
+  Session before_, after_;
+  QString merge_key_;
+};
+
+CalibrationDocument::CalibrationDocument(QObject* parent) : QObject(parent) {
+  connect(&undo_stack_, &QUndoStack::cleanChanged, this, &CalibrationDocument::fileChanged);
+}
+
+QString CalibrationDocument::title() const {
+  if (!file_.isEmpty()) return QFileInfo(file_).fileName();
+  if (!hasSession()) return {};
+  return QString::fromStdString(session_.recording.filename().string());
+}
+
+void CalibrationDocument::open(const QString& session_file) {
+  replace(readSession(pathOf(session_file)), session_file, false);
+}
+
+void CalibrationDocument::startSession(const Session& session) {
+  replace(session, {}, true);
+}
+
+void CalibrationDocument::replace(Session session, const QString& session_file, bool unsaved) {
+  session_ = std::move(session);
+  file_ = session_file;
+  has_unsaved_recording_ = unsaved;
+  undo_stack_.clear();
+  last_ = previous_ = {};
+  reference_.reset();
+  emit sessionReplaced();
+  emit sessionChanged();
+  emit fileChanged();
+  emit runsChanged();
+  emit referenceChanged();
+}
+
+void CalibrationDocument::save(const QString& session_file) {
+  Session to_write = session_;
+  to_write.recording = std::filesystem::absolute(session_.recording);
+  writeSession(to_write, pathOf(session_file));
+  file_ = session_file;
+  session_.source = pathOf(session_file);
+  has_unsaved_recording_ = false;
+  undo_stack_.setClean();
+  emit fileChanged();
+}
+
+void CalibrationDocument::loadReference(const QString& result_or_truth_file) {
+  reference_ = ReferenceResult{readResultYaml(pathOf(result_or_truth_file)), result_or_truth_file};
+  emit referenceChanged();
+}
+
+void CalibrationDocument::forgetReference() {
+  if (!reference_) return;
+  reference_.reset();
+  emit referenceChanged();
+}
+
+void CalibrationDocument::edit(const Session& session, const QString& what, const QString& merge_key) {
+  undo_stack_.push(new EditCommand(*this, session, what, merge_key));
+}
+
+void CalibrationDocument::setOption(const QString& name, const QString& value) {
+  Session changed = session_;
+  evical::setOption(changed.options, name.toStdString(), value.toStdString());
+  if (changed.options == session_.options) return;
+  edit(changed, tr("Set %1").arg(name), name);
+}
+
+void CalibrationDocument::resetOptions() {
+  if (session_.options == CalibrationOptions{}) return;
+  Session changed = session_;
+  changed.options = {};
+  edit(changed, tr("Reset all parameters"));
+}
+
+void CalibrationDocument::set(const Session& session) {
+  session_ = session;
+  session_.source = pathOf(file_);
+  emit sessionChanged();
+}
+
+void CalibrationDocument::addRun(RunRecord record) {
+  previous_ = std::exchange(last_, std::move(record));
+  emit runsChanged();
+}
+
+bool CalibrationDocument::runIsOutdated() const {
+  if (!last_.run) return false;
+  const std::filesystem::path folder = "/";
+  return sessionYaml(last_.session, folder) != sessionYaml(session_, folder);
+}
+
+std::vector<SessionProblem> sessionProblems(const Session& session) {
+  std::vector<SessionProblem> problems;
+  if (session.recording.empty()) return {{"recording", QObject::tr("Open a recording first")}};
+  std::error_code ignored;
+  if (!std::filesystem::exists(session.recording, ignored)) {
+    problems.push_back(
+        {"recording",
+         QObject::tr("%1 is not there any more").arg(QString::fromStdString(session.recording.string()))});
+  }
+  if (session.cameras.empty())
+    problems.push_back({"cameras", QObject::tr("Choose at least one event stream as camera")});
+  if (session.imus.empty()) problems.push_back({"imus", QObject::tr("Choose one stream as IMU")});
+  for (const SessionCamera& camera : session.cameras) {
+    if (camera.intrinsics) continue;
+    problems.push_back({QString::fromStdString("cameras." + camera.name + ".intrinsics"),
+                        QObject::tr("Give the intrinsics of %1: a file, or numbers")
+                            .arg(QString::fromStdString(camera.name))});
+  }
+  const auto check = [&](const QString& field, auto&& checked) {
+    try {
+      checked();
+    } catch (const CalibrationError& error) {
+      problems.push_back({field, QString::fromStdString(error.problem() + ". " + error.advice())});
+    }
+  };
+  check("board", [&] { validate(session.board); });
+  for (const SessionCamera& camera : session.cameras) {
+    if (!camera.intrinsics || !camera.intrinsics->resolution_px.known()) continue;
+    check(QString::fromStdString("cameras." + camera.name + ".intrinsics"),
+          [&] { validate(*camera.intrinsics, camera.name); });
+  }
+  if (problems.empty()) check("session", [&] { validate(session, "session"); });
+  return problems;
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The session that a recording suggests: its event streams as cameras, its IMUs as IMUs.
+#pragma once
+
+#include "core/pipeline/session.h"
+#include "core/recording/inspection.h"
+
+namespace evical::ui {
+
+// Board and noise keep their defaults; intrinsics are missing: no recording has them.
+Session guessedSession(const std::filesystem::path& recording, const Inspection& inspection);
+
+// A sensor as guessed from its stream, with a name that the session has not given yet.
+SessionCamera guessedCamera(const StreamSummary& stream, const Session& session);
+SessionImu guessedImu(const StreamSummary& stream, const Session& session);
+
+}  // namespace evical::ui

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/jobs/calibration_job.h"
+
+#include <chrono>
+#include <mutex>
+#include <utility>
+
+namespace evical::ui {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Copies of all detections so far: often enough to look alive, seldom enough to cost nothing.
+constexpr auto kBetweenDetections = std::chrono::milliseconds(150);
+
+// How the time is spent on an everyday recording.
+const std::vector<JobStage> kStages = {{"detect", 0.55}, {"initialise", 0.05}, {"optimise", 0.40}};
+
+QString textOf(std::string_view text) {
+  return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
+}
+
+}  // namespace
+
+// The mailbox between core's threads and the GUI: holds the newest of everything, and hands it out once.
+class CalibrationJob::LiveView final : public CalibrationObserver {
+ public:
+  struct Contents {
+    std::shared_ptr<const LiveDetections> detections;
+    std::shared_ptr<const CalibrationInput> input;
+    std::vector<InitialisationNote> notes;
+    std::shared_ptr<const LiveIterations> iterations;
+  };
+
+  explicit LiveView(std::size_t cameras) : detections_(cameras) {}
+
+  void windowsDetected(std::size_t camera, const BoardObservations& so_far) override {
+    if (Clock::now() < next_copy_) return;
+    next_copy_ = Clock::now() + kBetweenDetections;
+    detections_.at(camera) = so_far;
+    put([&](Contents& box) { box.detections = std::make_shared<LiveDetections>(detections_); });
+  }
+  void detectionDone(const CalibrationInput& input) override {
+    const auto copy = std::make_shared<CalibrationInput>(input);
+    put([&](Contents& box) { box.input = copy; });
+  }
+  void initialisationStepDone(std::string_view step, std::string_view result) override {
+    put([&](Contents& box) { box.notes.push_back({textOf(step), textOf(result)}); });
+  }
+  void iterationDone(const IterationRecord& iteration, const CalibrationState& state) override {
+    records_.push_back(iteration);
+    const auto copy = std::make_shared<LiveIterations>(LiveIterations{records_, state});
+    put([&](Contents& box) { box.iterations = copy; });
+  }
+
+  Contents take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(contents_, {});
+  }
+
+  std::shared_ptr<const CalibrationRun> run;  // written by the work, read once it has ended
+
+ private:
+  template <class Change>
+  void put(Change&& change) {
+    const std::lock_guard lock(mutex_);
+    change(contents_);
+  }
+
+  LiveDetections detections_;
+  std::vector<IterationRecord> records_;
+  Clock::time_point next_copy_;
+  std::mutex mutex_;
+  Contents contents_;
+};
+
+CalibrationJob::CalibrationJob(JobRunner& runner, QObject* parent) : QObject(parent), runner_(runner) {
+  qRegisterMetaType<InitialisationNote>();
+  connect(&runner_, &JobRunner::ticked, this, &CalibrationJob::deliver);
+  connect(&runner_, &JobRunner::finished, this, &CalibrationJob::finish);
+}
+
+bool CalibrationJob::start(const Session& session) {
+  if (runner_.running()) return false;
+  session_ = session;
+  live_ = std::make_shared<LiveView>(session.cameras.size());
+  return runner_.start(tr("Calibrate"), kStages, [session, live = live_](const RunContext& context) {
+    live->run = std::make_shared<CalibrationRun>(calibrate(session, context, {}, live.get()));
+  });
+}
+
+void CalibrationJob::deliver() {
+  if (!live_) return;
+  const LiveView::Contents fresh = live_->take();
+  if (fresh.detections) emit detectionsChanged(fresh.detections);
+  if (fresh.input) emit detectionDone(fresh.input);
+  for (const InitialisationNote& note : fresh.notes) emit initialisationStepDone(note);
+  if (fresh.iterations) emit iterationsChanged(fresh.iterations);
+}
+
+void CalibrationJob::finish(JobOutcome outcome) {
+  const std::shared_ptr<LiveView> live = std::exchange(live_, nullptr);
+  if (!live || outcome != JobOutcome::Done) return;
+  emit calibrated(live->run, session_, runner_.logText());
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/jobs/job_runner.h"
+
+#include "core/base/error.h"
+
+#include <QMetaObject>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace evical::ui {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kTick_ms = 40;
+
+QString textOf(std::string_view text) {
+  return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
+}
+
+const char* levelName(LogLevel level) {
+  switch (level) {
+    case LogLevel::Debug:
+      return "debug";
+    case LogLevel::Info:
+      return "info";
+    case LogLevel::Warning:
+      return "warning";
+  }
+  return "";
+}
+
+JobError internalError(const QString& what) {
+  return {false, QObject::tr("internal error"), what,
+          QObject::tr("Please report this, with the log and the session file")};
+}
+
+struct Ending {
+  JobOutcome outcome = JobOutcome::Done;
+  std::optional<JobError> error;
+};
+
+Ending runToEnd(const JobRunner::Work& work, const RunContext& context) {
+  try {
+    work(context);
+    return {};
+  } catch (const Cancelled&) {
+    return {JobOutcome::Cancelled, {}};
+  } catch (const CalibrationError& error) {
+    return {JobOutcome::Failed, JobError{error.kind() == ErrorKind::BadInput, textOf(error.place()),
+                                         textOf(error.problem()), textOf(error.advice())}};
+  } catch (const std::bad_alloc&) {
+    return {JobOutcome::Failed,
+            JobError{false, QObject::tr("memory"), QObject::tr("there is not enough of it"),
+                     QObject::tr("Close other programs, or calibrate a part: give a time range")}};
+  } catch (const std::exception& error) {
+    return {JobOutcome::Failed, internalError(QString::fromUtf8(error.what()))};
+  } catch (...) {
+    return {JobOutcome::Failed, internalError(QObject::tr("an exception of unknown type"))};
+  }
+}
+
+}  // namespace
+
+QString JobError::text() const {
+  QString text = place.isEmpty() ? problem : place + ": " + problem;
+  if (!advice.isEmpty()) text += (text.endsWith('.') ? " " : ". ") + advice;
+  return text;
+}
+
+// What the worker has said and the GUI thread has not read yet. The worker's side outlives the runner's
+// interest.
+struct JobRunner::Mailbox final : ProgressSink {
+  explicit Mailbox(std::vector<JobStage> given) : stages(std::move(given)) {}
+
+  void stageStarted(std::string_view name) override {
+    const std::lock_guard lock(mutex);
+    stage = textOf(name);
+    new_stages.push_back(stage);
+    setFraction(0.0);
+    log_text += QString::asprintf("%9.3f s  stage    ", elapsed_s()) + stage + "\n";
+  }
+  void stageProgress(double of_stage) override {
+    const std::lock_guard lock(mutex);
+    setFraction(of_stage);
+  }
+  void log(LogLevel level, std::string_view text) override {
+    const std::lock_guard lock(mutex);
+    lines.push_back({level, elapsed_s(), textOf(text)});
+    log_text += QString::asprintf("%9.3f s  %-7s  ", elapsed_s(), levelName(level)) + textOf(text) + "\n";
+  }
+
+  double elapsed_s() const { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+  // Stages that nobody announced count for nothing.
+  void setFraction(double of_stage) {
+    stage_fraction = std::clamp(of_stage, 0.0, 1.0);
+    double before = 0.0, total = 0.0, own = 0.0;
+    bool passed = false;
+    for (const JobStage& candidate : stages) {
+      total += candidate.share;
+      if (candidate.name == stage) {
+        own = candidate.share;
+        passed = true;
+      }
+      if (!passed) before += candidate.share;
+    }
+    if (passed && total > 0.0) fraction = std::max(fraction, (before + own * stage_fraction) / total);
+  }
+
+  // Time goes on at the mean pace so far; too little done says nothing.
+  double remaining_s() const {
+    constexpr double kEnough = 0.03;
+    return fraction < kEnough ? -1.0 : elapsed_s() * (1.0 - fraction) / fraction;
+  }
+
+  std::mutex mutex;
+  const Clock::time_point begin = Clock::now();
+  const std::vector<JobStage> stages;
+  QString stage, log_text;
+  double stage_fraction = 0.0, fraction = 0.0;
+  std::vector<QString> new_stages;
+  std::vector<LogLine> lines;
+  Ending ending;
+};
+
+JobRunner::JobRunner(QObject* parent) : QObject(parent) {
+  qRegisterMetaType<JobError>();
+  qRegisterMetaType<JobOutcome>();
+  qRegisterMetaType<JobProgress>();
+  qRegisterMetaType<LogLine>();
+  timer_.setInterval(kTick_ms);
+  connect(&timer_, &QTimer::timeout, this, &JobRunner::tick);
+}
+
+JobRunner::~JobRunner() {
+  stop_.request_stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+QString JobRunner::logText() const {
+  if (!mailbox_) return {};
+  const std::lock_guard lock(mailbox_->mutex);
+  return mailbox_->log_text;
+}
+
+bool JobRunner::start(const QString& title, std::vector<JobStage> stages, Work work) {
+  if (running_) return false;
+  if (thread_.joinable()) thread_.join();
+  title_ = title;
+  stop_ = std::stop_source();
+  mailbox_ = std::make_shared<Mailbox>(std::move(stages));
+  running_ = true;
+  emit started(title_);
+  timer_.start();
+  thread_ = std::jthread([this, box = mailbox_, stop = stop_.get_token(), job = std::move(work)]() mutable {
+    Ending ending = runToEnd(job, RunContext{*box, stop});
+    job = nullptr;  // what it holds goes before anybody hears of its end
+    {
+      const std::lock_guard lock(box->mutex);
+      box->ending = std::move(ending);
+    }
+    QMetaObject::invokeMethod(this, &JobRunner::finish, Qt::QueuedConnection);
+  });
+  return true;
+}
+
+void JobRunner::cancel() {
+  if (running_) stop_.request_stop();
+}
+
+void JobRunner::tick() {
+  std::vector<QString> stages;
+  std::vector<LogLine> lines;
+  JobProgress progress;
+  {
+    const std::lock_guard lock(mailbox_->mutex);
+    stages.swap(mailbox_->new_stages);
+    lines.swap(mailbox_->lines);
+    progress = {mailbox_->stage, mailbox_->stage_fraction, mailbox_->fraction, mailbox_->elapsed_s(),
+                mailbox_->remaining_s()};
+  }
+  for (const QString& stage : stages) emit stageStarted(stage);
+  for (const LogLine& line : lines) emit logged(line);
+  emit progressed(progress);
+  emit ticked();
+}
+
+void JobRunner::finish() {
+  timer_.stop();
+  thread_.join();
+  tick();
+  running_ = false;
+  const Ending ending = mailbox_->ending;
+  if (ending.error) emit failed(*ending.error);
+  emit finished(ending.outcome);
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs one piece of long work at a time in a thread of its own. The work owns copies of its inputs; what it
+// says of its progress reaches the GUI thread a few times a second, its outcome always, exactly once.
+#pragma once
+
+#include "core/base/progress.h"
+
+#include <QObject>
+#include <QString>
+#include <QTimer>
+
+#include <functional>
+#include <memory>
+#include <stop_token>
+#include <thread>
+#include <vector>
+
+namespace evical::ui {
+
+// What went wrong, where, and what to do.
+struct JobError {
+  bool bad_input = false;  // the person can mend it: session, recording, options
+  QString place, problem, advice;
+
+  QString text() const;
+};
+
+enum class JobOutcome { Done, Cancelled, Failed };
+
+// A stage as the work names it (ProgressSink::stageStarted), and the share of the whole time that it will
+// take.
+struct JobStage {
+  QString name;
+  double share = 1.0;
+};
+
+struct JobProgress {
+  QString stage;
+  double stage_fraction = 0.0, fraction = 0.0;  // 0..1, never falling
+  double elapsed_s = 0.0;
+  double remaining_s = -1.0;  // negative: nobody can tell yet
+};
+
+struct LogLine {
+  LogLevel level = LogLevel::Info;
+  double time_s = 0.0;  // since the job's start
+  QString text;
+};
+
+class JobRunner : public QObject {
+  Q_OBJECT
+
+ public:
+  using Work = std::function<void(const RunContext&)>;
+
+  explicit JobRunner(QObject* parent = nullptr);
+  ~JobRunner() override;  // asks the work to stop and waits for it; nothing is signalled any more
+
+  bool running() const { return running_; }
+  bool cancelling() const { return running_ && stop_.stop_requested(); }
+  QString title() const { return title_; }
+  QString logText() const;  // of the job that runs or ran last, as log.txt has it
+
+  // False, and nothing happens, while another job runs.
+  bool start(const QString& title, std::vector<JobStage> stages, Work work);
+  void cancel();
+
+ signals:
+  void started(const QString& title);
+  void stageStarted(const QString& stage);
+  void progressed(const evical::ui::JobProgress& progress);
+  void logged(const evical::ui::LogLine& line);
+  void ticked();  // while running, and once more before finished: time to look into mailboxes
+  void failed(const evical::ui::JobError& error);
+  void finished(evical::ui::JobOutcome outcome);  // last of all; running() is false
+
+ private:
+  struct Mailbox;
+
+  void tick();
+  void finish();
+
+  std::shared_ptr<Mailbox> mailbox_;
+  QTimer timer_;
+  QString title_;
+  std::stop_source stop_;
+  std::jthread thread_;
+  bool running_ = false;
+};
+
+}  // namespace evical::ui
+
+Q_DECLARE_METATYPE(evical::ui::JobError)
+Q_DECLARE_METATYPE(evical::ui::JobOutcome)
+Q_DECLARE_METATYPE(evical::ui::JobProgress)
+Q_DECLARE_METATYPE(evical::ui::LogLine)
