@@ -19,17 +19,23 @@ static void initResources() {
 namespace evical::ui {
 namespace {
 
-QColor tintOf(QIcon::Mode mode) {
-  const QPalette palette = QApplication::palette();
-  if (mode == QIcon::Disabled) return palette.color(QPalette::Disabled, QPalette::ButtonText);
-  return palette.color(QPalette::ButtonText);
-}
+// A colour of its own, or a role of the palette of the moment.
+struct Tint {
+  QColor colour;
+  QPalette::ColorRole role = QPalette::ButtonText;
+
+  QColor now(QIcon::Mode mode) const {
+    const QPalette palette = QApplication::palette();
+    if (mode == QIcon::Disabled) return palette.color(QPalette::Disabled, QPalette::ButtonText);
+    return colour.isValid() ? colour : palette.color(role);
+  }
+};
 
 // Draws the SVG's shape in the palette's colour of the moment, so that icons follow the theme by themselves.
 class TintedIconEngine final : public QIconEngine {
  public:
-  explicit TintedIconEngine(const QByteArray& svg, const QColor& colour = {})
-      : svg_(svg), colour_(colour), renderer_(std::make_unique<QSvgRenderer>(svg)) {}
+  TintedIconEngine(const QByteArray& svg, const Tint& tint)
+      : svg_(svg), tint_(tint), renderer_(std::make_unique<QSvgRenderer>(svg)) {}
 
   void paint(QPainter* painter, const QRect& rect, QIcon::Mode mode, QIcon::State state) override {
     const double ratio = painter->device()->devicePixelRatioF();
@@ -46,22 +52,22 @@ class TintedIconEngine final : public QIconEngine {
     renderer_->setAspectRatioMode(Qt::KeepAspectRatio);
     renderer_->render(&painter, QRectF(QPointF(), QSizeF(size)));
     painter.setCompositionMode(QPainter::CompositionMode_SourceIn);
-    painter.fillRect(pixmap.rect(), colour_.isValid() && mode != QIcon::Disabled ? colour_ : tintOf(mode));
+    painter.fillRect(pixmap.rect(), tint_.now(mode));
     return pixmap;
   }
-  QIconEngine* clone() const override { return new TintedIconEngine(svg_, colour_); }
+  QIconEngine* clone() const override { return new TintedIconEngine(svg_, tint_); }
 
  private:
   QByteArray svg_;
-  QColor colour_;
+  Tint tint_;
   std::unique_ptr<QSvgRenderer> renderer_;
 };
 
-QIcon loaded(const QString& name, const QColor& colour) {
+QIcon loaded(const QString& name, const Tint& tint) {
   initResources();
   QFile file(":/icons/" + name + ".svg");
   if (!file.open(QIODevice::ReadOnly)) return {};
-  return QIcon(new TintedIconEngine(file.readAll(), colour));
+  return QIcon(new TintedIconEngine(file.readAll(), tint));
 }
 
 }  // namespace
@@ -71,7 +77,11 @@ QIcon icon(const QString& name) {
 }
 
 QIcon icon(const QString& name, const QColor& colour) {
-  return loaded(name, colour);
+  return loaded(name, {colour, QPalette::ButtonText});
+}
+
+QIcon icon(const QString& name, QPalette::ColorRole role) {
+  return loaded(name, {{}, role});
 }
 
 }  // namespace evical::ui

@@ -12,6 +12,10 @@ QToolBar::separator { background: @line; width: 1px; margin: 5px 6px; }
 QToolButton { border: 1px solid transparent; border-radius: 6px; padding: 5px 8px; }
 QToolButton:hover { background: @hover; }
 QToolButton:pressed, QToolButton:checked { background: @selected; }
+QToolButton[primary="true"] { background: @accent; color: @on_accent; padding: 6px 14px; font-weight: 600; }
+QToolButton[primary="true"]:hover { background: @accent_hover; }
+QToolButton[primary="true"]:disabled { background: @line; color: @faint; }
+QWidget#sidebar { border-right: 1px solid @line; }
 QPushButton { border: 1px solid @border; border-radius: 6px; padding: 6px 14px; background: @panel; }
 QPushButton:hover { border-color: @accent; }
 QPushButton:pressed, QPushButton:checked { background: @selected; }
@@ -27,7 +31,7 @@ QLabel[role="problem"] { color: @bad; }
 QListView, QTreeView, QTableView, QPlainTextEdit, QTextBrowser { border: 1px solid @line; border-radius: 6px; }
 QListView::item, QTreeView::item { padding: 3px; }
 QHeaderView::section { background: @window; border: none; border-bottom: 1px solid @line; padding: 5px 6px; }
-QListView#navigation { border: none; border-right: 1px solid @line; border-radius: 0; background: @window; padding: 6px; }
+QListView#navigation { border: none; border-radius: 0; background: @window; padding: 6px; }
 QListView#navigation::item { border-radius: 6px; padding: 8px 6px; margin: 1px 0; }
 QListView#navigation::item:hover { background: @hover; }
 QListView#navigation::item:selected { background: @selected; color: @text; }
@@ -66,6 +70,7 @@ QString styleSheetOf(const Theme& t) {
   rules.replace("@window", t.window.name());
   rules.replace("@line", t.grid_line.name());
   rules.replace("@on_accent", t.dark ? "#101317" : "#ffffff");
+  rules.replace("@accent_hover", mixed(t.accent, t.text, kHover));
   rules.replace("@accent", t.accent.name());
   rules.replace("@bad", t.bad.name());
   rules.replace("@hover", mixed(t.window, t.text, kHover));

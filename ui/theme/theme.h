@@ -5,6 +5,7 @@
 
 #include <QColor>
 #include <QIcon>
+#include <QPalette>
 #include <QString>
 
 #include <array>
@@ -34,5 +35,6 @@ void applyTheme(QApplication& application, Appearance appearance);
 QIcon icon(const QString& name);
 // The same in a colour of its own, for states: good, warning, bad.
 QIcon icon(const QString& name, const QColor& colour);
+QIcon icon(const QString& name, QPalette::ColorRole role);
 
 }  // namespace evical::ui

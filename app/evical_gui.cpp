@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The desktop program: builds the window, opens what it was given, runs.
+#include "app/version.h"
+#include "ui/theme/theme.h"
+#include "ui/window/main_window.h"
+#include "ui/window/session_files.h"
+
+#include <QApplication>
+#include <QCommandLineParser>
+#include <QSettings>
+#include <QTextStream>
+#include <QTimer>
+
+namespace {
+
+using namespace evical::ui;
+
+constexpr int kDone = 0, kFailed = 1, kBadUse = 2;
+
+int complain(const QString& text) {
+  QTextStream(stderr) << text << '\n';
+  return kBadUse;
+}
+
+// Calibrates the session, lets the screen draw what it got, and saves its picture.
+class Photographer : public QObject {
+ public:
+  Photographer(MainWindow& window, QString screen, QString file)
+      : window_(window), screen_(std::move(screen)), file_(std::move(file)) {
+    connect(&window.files(), &SessionFiles::opened, this, [this] { window_.calibrate(); });
+    connect(&window.files(), &SessionFiles::failed, this,
+            [](const QString& what, const JobError& error) { giveUp(what, error); });
+    connect(&window.workbench().runner, &JobRunner::failed, this,
+            [](const JobError& error) { giveUp("calibrate", error); });
+    connect(&window.workbench().runner, &JobRunner::finished, this, [this](JobOutcome outcome) {
+      if (outcome == JobOutcome::Done) waitAndSave();
+    });
+  }
+
+ private:
+  static void giveUp(const QString& what, const JobError& error) {
+    complain(what + ": " + error.text());
+    QCoreApplication::exit(kFailed);
+  }
+  // Screens prepare what they show in threads of their own.
+  void waitAndSave() {
+    constexpr int kSettle_ms = 2500;
+    window_.showScreen(screen_);
+    QTimer::singleShot(kSettle_ms, this, [this] {
+      const bool saved = window_.grab().save(file_);
+      if (!saved) complain(file_ + ": cannot be written");
+      QCoreApplication::exit(saved ? kDone : kFailed);
+    });
+  }
+
+  MainWindow& window_;
+  QString screen_, file_;
+};
+
+struct Arguments {
+  QString path, screen, picture;
+  QSize size;
+  Appearance appearance = Appearance::System;
+};
+
+// Exits by itself on --help, --version and unknown options.
+Arguments parse(const QApplication& application) {
+  QCommandLineParser parser;
+  parser.setApplicationDescription("Calibrates event cameras with IMUs from one recording of a circle grid.");
+  parser.addHelpOption();
+  parser.addVersionOption();
+  parser.addPositionalArgument("file", "A session file or a recording to open", "[SESSION|RECORDING]");
+  const QCommandLineOption screen("screenshot", "Calibrate SESSION, save a picture of this screen, and leave",
+                                  "SCREEN");
+  const QCommandLineOption output("o", "The picture's file", "x.png");
+  const QCommandLineOption size("size", "The window's size, for pictures", "WIDTHxHEIGHT", "1280x800");
+  const QCommandLineOption appearance("appearance", "system, light or dark", "WORD");
+  parser.addOptions({screen, output, size, appearance});
+  parser.process(application);
+  Arguments arguments;
+  arguments.path = parser.positionalArguments().value(0);
+  arguments.screen = parser.value(screen);
+  arguments.picture = parser.value(output);
+  const QStringList numbers = parser.value(size).split('x');
+  arguments.size = QSize(numbers.value(0).toInt(), numbers.value(1).toInt());
+  const int saved = QSettings().value("appearance", static_cast<int>(Appearance::System)).toInt();
+  arguments.appearance = static_cast<Appearance>(saved);
+  if (parser.value(appearance) == "light") arguments.appearance = Appearance::Light;
+  if (parser.value(appearance) == "dark") arguments.appearance = Appearance::Dark;
+  return arguments;
+}
+
+int takePicture(const Arguments& arguments, MainWindow& window) {
+  if (!window.screenNames().contains(arguments.screen))
+    return complain("There is no screen " + arguments.screen + ". Give one of " +
+                    window.screenNames().join(", "));
+  if (arguments.path.isEmpty() || arguments.picture.isEmpty() || !arguments.size.isValid())
+    return complain("Give a session, and the picture's file: --screenshot SCREEN -o x.png SESSION");
+  const Photographer photographer(window, arguments.screen, arguments.picture);
+  window.resize(arguments.size);
+  window.show();
+  window.files().open(arguments.path);
+  return QApplication::exec();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  QApplication application(argc, argv);
+  QApplication::setApplicationName("evical");
+  QApplication::setOrganizationName("evical");
+  QApplication::setApplicationVersion(evical::kVersion);
+  QApplication::setDesktopFileName("evical");
+  const Arguments arguments = parse(application);
+  applyTheme(application, arguments.appearance);
+  QApplication::setWindowIcon(icon("calibrate", theme().accent));
+  MainWindow window(evical::kVersion);
+  if (!arguments.screen.isEmpty()) return takePicture(arguments, window);
+  window.show();
+  if (!arguments.path.isEmpty()) window.files().open(arguments.path);
+  return QApplication::exec();
+}

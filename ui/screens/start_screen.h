@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where everybody begins: open something, go on with something, or try the demo.
+#pragma once
+
+#include <QStringList>
+#include <QWidget>
+
+class QLabel;
+class QListWidget;
+class QProgressBar;
+class QPushButton;
+
+namespace evical::ui {
+
+class StartScreen : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit StartScreen(QWidget* parent = nullptr);
+
+  void setRecentFiles(const QStringList& files);  // newest first
+  void setDemoProgress(double fraction);          // while it is simulated
+  void setDemoRunning(bool running);
+
+ signals:
+  void openRecordingRequested();
+  void openSessionRequested();
+  void demoRequested();
+  void fileChosen(const QString& file);  // one of the recent
+
+ private:
+  QWidget* makeChoices();
+  QWidget* makeRecent();
+
+  QListWidget* recent_;
+  QLabel* no_recent_;
+  QPushButton* demo_;
+  QProgressBar* demo_progress_;
+};
+
+}  // namespace evical::ui

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What went wrong, where, and what to do: above the screens, never in front of them.
+#pragma once
+
+#include "ui/jobs/job_runner.h"
+
+#include <QFrame>
+
+class QLabel;
+
+namespace evical::ui {
+
+class ErrorPanel : public QFrame {
+  Q_OBJECT
+
+ public:
+  explicit ErrorPanel(QWidget* parent = nullptr);
+
+  void showError(const QString& what_was_tried, const JobError& error);
+  void dismiss();
+  QString text() const;
+
+ protected:
+  void changeEvent(QEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
+
+ private:
+  void showIcon();
+
+  QLabel* icon_;
+  QLabel* title_;
+  QLabel* problem_;
+  QLabel* advice_;
+};
+
+}  // namespace evical::ui

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The status bar's view of the job that runs: what, how far, how long still.
+#pragma once
+
+#include "ui/jobs/job_runner.h"
+
+#include <QWidget>
+
+class QLabel;
+class QProgressBar;
+
+namespace evical::ui {
+
+class JobStatus : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit JobStatus(const JobRunner& runner, QWidget* parent = nullptr);
+
+  QString text() const;
+
+ private:
+  void begin(const QString& title);
+  void setProgress(const JobProgress& progress);
+  void end(JobOutcome outcome);
+
+  const JobRunner& runner_;
+  QLabel* what_;
+  QProgressBar* bar_;
+  QLabel* time_left_;
+  double elapsed_s_ = 0.0;
+};
+
+// "25 s", "3 min 20 s"
+QString durationText(double duration_s);
+
+}  // namespace evical::ui

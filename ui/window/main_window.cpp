@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/window/main_window.h"
+
+#include "ui/theme/theme.h"
+#include "ui/window/error_panel.h"
+#include "ui/window/job_status.h"
+#include "ui/window/log_panel.h"
+#include "ui/window/session_files.h"
+#include "ui/window/steps_panel.h"
+
+#include <QAction>
+#include <QCloseEvent>
+#include <QDockWidget>
+#include <QDropEvent>
+#include <QListWidget>
+#include <QMimeData>
+#include <QSettings>
+#include <QSplitter>
+#include <QStackedWidget>
+#include <QStatusBar>
+#include <QUrl>
+#include <QVBoxLayout>
+
+namespace evical::ui {
+namespace {
+
+constexpr int kSideBar_px = 212;
+// Bumped when docks or tool bars change, so that an older layout isn't forced on them.
+constexpr int kLayoutVersion = 1;
+
+}  // namespace
+
+MainWindow::MainWindow(const QString& version)
+    : workbench_(version), files_(new SessionFiles(workbench_, this)) {
+  setAcceptDrops(true);
+  makeCentre();
+  makeDocks();
+  makeActions();
+  statusBar()->addWidget(new JobStatus(workbench_.runner, this), 1);
+  wirePages(pages_, workbench_, *files_);
+  wireDocument();
+  wireJobs();
+  wireSteps();
+  restoreLayout();
+  navigation_->setCurrentRow(0);
+  showState();
+}
+
+MainWindow::~MainWindow() = default;
+
+void MainWindow::makeCentre() {
+  stack_ = new QStackedWidget(this);
+  entries_ = buildPages(pages_, stack_);
+  for (const PageEntry& entry : entries_) stack_->addWidget(entry.widget);
+  error_ = new ErrorPanel(this);
+  auto* const pages = new QWidget(this);
+  auto* const column = new QVBoxLayout(pages);
+  column->setContentsMargins(8, 8, 8, 8);
+  column->addWidget(error_);
+  column->addWidget(stack_, 1);
+  auto* const row = new QWidget(this);
+  auto* const layout = new QHBoxLayout(row);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(0);
+  layout->addWidget(makeSideBar());
+  layout->addWidget(pages, 1);
+  setCentralWidget(row);
+}
+
+QWidget* MainWindow::makeSideBar() {
+  constexpr int kIcon_px = 20, kEntry_px = 36;
+  navigation_ = new QListWidget(this);
+  navigation_->setObjectName("navigation");
+  navigation_->setAccessibleName(tr("Screens"));
+  navigation_->setIconSize(QSize(kIcon_px, kIcon_px));
+  navigation_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    auto* const item = new QListWidgetItem(icon(entries_[i].icon_name), entries_[i].title, navigation_);
+    item->setToolTip(tr("%1 (Ctrl+%2)").arg(entries_[i].title).arg(i + 1));
+    item->setSizeHint(QSize(0, kEntry_px));
+  }
+  navigation_->setFixedHeight(static_cast<int>(entries_.size()) * (kEntry_px + 2) + 16);
+  connect(navigation_, &QListWidget::currentRowChanged, stack_, &QStackedWidget::setCurrentIndex);
+  steps_ = new StepsPanel(this);
+  auto* const bar = new QFrame(this);
+  bar->setObjectName("sidebar");
+  bar->setFixedWidth(kSideBar_px);
+  auto* const layout = new QVBoxLayout(bar);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(0);
+  layout->addWidget(navigation_);
+  layout->addWidget(steps_, 1);
+  return bar;
+}
+
+void MainWindow::makeDocks() {
+  setDockOptions(AnimatedDocks | AllowNestedDocks | AllowTabbedDocks);
+  log_ = new LogPanel(this);
+  log_dock_ = addDock("log", tr("Log"), log_, Qt::BottomDockWidgetArea);
+  log_dock_->hide();
+}
+
+QDockWidget* MainWindow::addDock(const QString& name, const QString& title, QWidget* content,
+                                 Qt::DockWidgetArea area) {
+  auto* const dock = new QDockWidget(title, this);
+  dock->setObjectName(name);  // saveState goes by it
+  dock->setWidget(content);
+  addDockWidget(area, dock);
+  return dock;
+}
+
+QStringList MainWindow::screenNames() const {
+  QStringList names;
+  for (const PageEntry& entry : entries_) names << entry.name;
+  return names;
+}
+
+bool MainWindow::showScreen(const QString& name) {
+  const qsizetype index = screenNames().indexOf(name);
+  if (index < 0) return false;
+  navigation_->setCurrentRow(static_cast<int>(index));
+  return true;
+}
+
+void MainWindow::wireDocument() {
+  connect(&workbench_.document, &CalibrationDocument::sessionChanged, this, &MainWindow::showState);
+  connect(&workbench_.document, &CalibrationDocument::fileChanged, this, &MainWindow::showState);
+  connect(&workbench_.document, &CalibrationDocument::runsChanged, this, &MainWindow::showState);
+  connect(&workbench_.document, &CalibrationDocument::sessionReplaced, this, [this] {
+    steps_->reset();
+    error_->dismiss();
+  });
+  connect(files_, &SessionFiles::failed, this, &MainWindow::showProblem);
+  connect(files_, &SessionFiles::opened, this, [this] {
+    error_->dismiss();
+    if (stack_->currentIndex() == 0) showScreen("recording");
+  });
+  connect(files_, &SessionFiles::exported, this, [this](const QString& folder) {
+    log_->add({LogLevel::Info, 0.0, tr("The result was exported to %1").arg(folder)});
+  });
+}
+
+void MainWindow::wireJobs() {
+  JobRunner& runner = workbench_.runner;
+  connect(&runner, &JobRunner::started, this, [this](const QString& title) {
+    error_->dismiss();
+    log_->addHeading(title);
+    showState();
+  });
+  connect(&runner, &JobRunner::logged, log_, &LogPanel::add);
+  connect(&runner, &JobRunner::failed, this, [this](const JobError& error) {
+    showProblem(tr("%1 failed").arg(workbench_.runner.title()), error);
+  });
+  connect(&runner, &JobRunner::finished, this, [this] {
+    showState();
+    if (close_when_idle_) close();
+  });
+  connect(&workbench_.calibration, &CalibrationJob::calibrated, this,
+          [this](std::shared_ptr<const CalibrationRun> run, const Session& session, const QString& log) {
+            workbench_.document.addRun({std::move(run), session, log});
+            if (stack_->currentIndex() <= 1) showScreen("result");
+          });
+}
+
+void MainWindow::wireSteps() {
+  JobRunner& runner = workbench_.runner;
+  CalibrationJob& job = workbench_.calibration;
+  const auto whileCalibrating = [this](auto&& act) {
+    return [this, act](const auto&... given) {
+      if (workbench_.calibration.running()) act(given...);
+    };
+  };
+  connect(&runner, &JobRunner::started, this, whileCalibrating([this](const QString&) { steps_->reset(); }));
+  connect(&runner, &JobRunner::stageStarted, this,
+          whileCalibrating([this](const QString& stage) { steps_->startStage(stage); }));
+  connect(&runner, &JobRunner::progressed, this,
+          whileCalibrating([this](const JobProgress& progress) { steps_->setProgress(progress); }));
+  connect(&job, &CalibrationJob::detectionsChanged, steps_,
+          [this](const std::shared_ptr<const LiveDetections>& live) { steps_->setDetections(*live); });
+  connect(&job, &CalibrationJob::initialisationStepDone, steps_, &StepsPanel::addInitialisationNote);
+  connect(&job, &CalibrationJob::iterationsChanged, steps_,
+          [this](const std::shared_ptr<const LiveIterations>& live) { steps_->setIterations(*live); });
+  connect(&runner, &JobRunner::finished, steps_, &StepsPanel::finish);
+  connect(&job, &CalibrationJob::calibrated, steps_,
+          [this](const std::shared_ptr<const CalibrationRun>& run) { steps_->setRun(*run); });
+}
+
+void MainWindow::calibrate() {
+  const std::vector<SessionProblem> problems = sessionProblems(workbench_.document.session());
+  if (!problems.empty()) {
+    showScreen(workbench_.document.hasSession() ? "recording" : "start");
+    showProblem(tr("This cannot be calibrated yet"), {true, {}, problems.front().text, {}});
+    return;
+  }
+  workbench_.calibration.start(workbench_.document.session());
+}
+
+void MainWindow::cancel() {
+  workbench_.runner.cancel();
+  showState();
+}
+
+void MainWindow::showProblem(const QString& what_was_tried, const JobError& error) {
+  error_->showError(what_was_tried, error);
+  log_->add({LogLevel::Warning, 0.0, what_was_tried + ": " + error.text()});
+}
+
+void MainWindow::showState() {
+  const CalibrationDocument& document = workbench_.document;
+  const bool running = workbench_.runner.running();
+  setWindowTitle(document.hasSession() ? document.title() + "[*] - Evical" : QString("Evical"));
+  setWindowModified(document.modified());
+  actions_.calibrate->setVisible(!running);
+  actions_.calibrate->setEnabled(!running && document.hasSession());
+  actions_.cancel->setVisible(running);
+  actions_.cancel->setEnabled(running && !workbench_.runner.cancelling());
+  for (QAction* const action : {actions_.open_session, actions_.open_recording}) action->setEnabled(!running);
+  actions_.save->setEnabled(document.modified());
+  actions_.save_as->setEnabled(document.hasSession());
+  actions_.export_result->setEnabled(!running && document.last().run != nullptr);
+}
+
+void MainWindow::restoreLayout() {
+  constexpr int kWidth_px = 1280, kHeight_px = 800;
+  const QSettings settings;
+  resize(kWidth_px, kHeight_px);
+  restoreGeometry(settings.value("window/geometry").toByteArray());
+  restoreState(settings.value("window/state").toByteArray(), kLayoutVersion);
+}
+
+void MainWindow::saveLayout() {
+  QSettings settings;
+  settings.setValue("window/geometry", saveGeometry());
+  settings.setValue("window/state", saveState(kLayoutVersion));
+}
+
+void MainWindow::closeEvent(QCloseEvent* event) {
+  if (workbench_.runner.running()) {
+    close_when_idle_ = true;
+    cancel();
+    event->ignore();
+    return;
+  }
+  close_when_idle_ = false;
+  if (!files_->mayDiscard()) {
+    event->ignore();
+    return;
+  }
+  saveLayout();
+  event->accept();
+}
+
+void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
+  const QList<QUrl> urls = event->mimeData()->urls();
+  if (urls.size() == 1 && urls.front().isLocalFile()) event->acceptProposedAction();
+}
+
+void MainWindow::dropEvent(QDropEvent* event) {
+  const QList<QUrl> urls = event->mimeData()->urls();
+  if (urls.size() != 1 || !urls.front().isLocalFile()) return;
+  event->acceptProposedAction();
+  // The drag's source waits until this returns: questions come afterwards.
+  QMetaObject::invokeMethod(
+      this, [this, path = urls.front().toLocalFile()] { files_->open(path); }, Qt::QueuedConnection);
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The window: navigation, screens, steps, docks, menus, status bar. Nothing else.
+#pragma once
+
+#include "ui/window/pages.h"
+#include "ui/window/workbench.h"
+
+#include <QMainWindow>
+#include <QStringList>
+
+class QAction;
+class QDockWidget;
+class QListWidget;
+class QStackedWidget;
+
+namespace evical::ui {
+
+class ErrorPanel;
+class LogPanel;
+class SessionFiles;
+class StepsPanel;
+
+class MainWindow : public QMainWindow {
+  Q_OBJECT
+
+ public:
+  explicit MainWindow(const QString& version);
+  ~MainWindow() override;
+
+  Workbench& workbench() { return workbench_; }
+  SessionFiles& files() { return *files_; }
+  QStringList screenNames() const;
+  bool showScreen(const QString& name);  // false: there is none of this name
+
+ public slots:
+  void calibrate();
+  void cancel();
+
+ protected:
+  void closeEvent(QCloseEvent* event) override;
+  void dragEnterEvent(QDragEnterEvent* event) override;
+  void dropEvent(QDropEvent* event) override;
+
+ private:
+  void makeCentre();
+  QWidget* makeSideBar();
+  void makeDocks();
+  void makeActions();
+  void makeFileMenu();
+  void makeEditMenu();
+  void makeCalibrateMenu();
+  void makeViewMenu();
+  void makeHelpMenu();
+  void makeToolBar();
+  QDockWidget* addDock(const QString& name, const QString& title, QWidget* content, Qt::DockWidgetArea area);
+  void wireDocument();
+  void wireJobs();
+  void wireSteps();
+  void showState();
+  void showProblem(const QString& what_was_tried, const JobError& error);
+  void restoreLayout();
+  void saveLayout();
+
+  Workbench workbench_;
+  SessionFiles* files_;
+  Pages pages_;
+  std::vector<PageEntry> entries_;
+  QListWidget* navigation_ = nullptr;
+  QStackedWidget* stack_ = nullptr;
+  StepsPanel* steps_ = nullptr;
+  ErrorPanel* error_ = nullptr;
+  LogPanel* log_ = nullptr;
+  QDockWidget* log_dock_ = nullptr;
+  struct Actions {
+    QAction *open_session, *open_recording, *save, *save_as, *export_result, *quit;
+    QAction *undo, *redo;
+    QAction *calibrate, *cancel;
+    QAction *guide, *about;
+  } actions_{};
+  bool close_when_idle_ = false;
+};
+
+}  // namespace evical::ui

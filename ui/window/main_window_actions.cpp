@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/theme/theme.h"
+#include "ui/window/main_window.h"
+#include "ui/window/session_files.h"
+#include "ui/window/user_guide.h"
+
+#include <QAction>
+#include <QActionGroup>
+#include <QApplication>
+#include <QDockWidget>
+#include <QMenu>
+#include <QMenuBar>
+#include <QSettings>
+#include <QToolBar>
+#include <QToolButton>
+
+namespace evical::ui {
+namespace {
+
+QAction* makeAction(QMainWindow* window, const QString& icon_name, const QString& text, const QString& tip,
+                    const QKeySequence& keys) {
+  auto* const action = new QAction(icon(icon_name), text, window);
+  action->setShortcut(keys);
+  const QString shown = keys.toString(QKeySequence::NativeText);
+  action->setToolTip(shown.isEmpty() ? tip : QString("%1 (%2)").arg(tip, shown));
+  action->setStatusTip(tip);
+  return action;
+}
+
+}  // namespace
+
+void MainWindow::makeActions() {
+  makeFileMenu();
+  makeEditMenu();
+  makeCalibrateMenu();
+  makeViewMenu();
+  makeHelpMenu();
+  makeToolBar();
+}
+
+void MainWindow::makeFileMenu() {
+  actions_.open_session =
+      makeAction(this, "open", tr("&Open session..."), tr("Open a session file"), QKeySequence::Open);
+  actions_.open_recording = makeAction(this, "recording", tr("Open &recording..."),
+                                       tr("Open a recording and describe it"), QKeySequence("Ctrl+Shift+O"));
+  actions_.save = makeAction(this, "save", tr("&Save"), tr("Save the session"), QKeySequence::Save);
+  actions_.save_as = makeAction(this, "save", tr("Save &as..."), tr("Save the session to another file"),
+                                QKeySequence("Ctrl+Shift+S"));
+  actions_.export_result = makeAction(this, "export", tr("&Export result..."),
+                                      tr("Write the result's files to a folder"), QKeySequence("Ctrl+E"));
+  actions_.quit = makeAction(this, "close", tr("&Quit"), tr("Leave the program"), QKeySequence("Ctrl+Q"));
+  connect(actions_.open_session, &QAction::triggered, files_, &SessionFiles::chooseSession);
+  connect(actions_.open_recording, &QAction::triggered, files_, &SessionFiles::chooseRecording);
+  connect(actions_.save, &QAction::triggered, files_, &SessionFiles::save);
+  connect(actions_.save_as, &QAction::triggered, files_, &SessionFiles::saveAs);
+  connect(actions_.export_result, &QAction::triggered, files_, &SessionFiles::chooseExportFolder);
+  connect(actions_.quit, &QAction::triggered, this, &QWidget::close);
+
+  QMenu* const menu = menuBar()->addMenu(tr("&File"));
+  menu->addActions({actions_.open_session, actions_.open_recording});
+  QMenu* const recent = menu->addMenu(icon("recent"), tr("Open re&cent"));
+  connect(recent, &QMenu::aboutToShow, this, [this, recent] {
+    recent->clear();
+    for (const QString& file : files_->recentFiles())
+      recent->addAction(file, files_, [this, file] { files_->open(file); });
+    recent->setEnabled(!recent->isEmpty());
+  });
+  menu->addSeparator();
+  menu->addActions({actions_.save, actions_.save_as});
+  menu->addSeparator();
+  menu->addAction(actions_.export_result);
+  menu->addSeparator();
+  menu->addAction(actions_.quit);
+}
+
+void MainWindow::makeEditMenu() {
+  QUndoStack& stack = workbench_.document.undoStack();
+  actions_.undo = stack.createUndoAction(this, tr("&Undo"));
+  actions_.undo->setIcon(icon("undo"));
+  actions_.undo->setShortcut(QKeySequence::Undo);
+  actions_.redo = stack.createRedoAction(this, tr("&Redo"));
+  actions_.redo->setIcon(icon("redo"));
+  actions_.redo->setShortcuts({QKeySequence("Ctrl+Shift+Z"), QKeySequence("Ctrl+Y")});
+  menuBar()->addMenu(tr("&Edit"))->addActions({actions_.undo, actions_.redo});
+}
+
+void MainWindow::makeCalibrateMenu() {
+  actions_.calibrate = makeAction(this, "calibrate", tr("&Calibrate"),
+                                  tr("Read, detect, initialise and optimise"), QKeySequence("F5"));
+  actions_.cancel =
+      makeAction(this, "cancel", tr("Ca&ncel"), tr("Stop what is running"), QKeySequence("Shift+F5"));
+  actions_.calibrate->setIcon(icon("calibrate", QPalette::HighlightedText));
+  actions_.calibrate->setIconVisibleInMenu(false);  // it is tinted for the button's ground
+  connect(actions_.calibrate, &QAction::triggered, this, &MainWindow::calibrate);
+  connect(actions_.cancel, &QAction::triggered, this, &MainWindow::cancel);
+  menuBar()->addMenu(tr("&Calibrate"))->addActions({actions_.calibrate, actions_.cancel});
+}
+
+void MainWindow::makeViewMenu() {
+  QMenu* const menu = menuBar()->addMenu(tr("&View"));
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    QAction* const action = menu->addAction(icon(entries_[i].icon_name), entries_[i].title);
+    action->setShortcut(QKeySequence(QString("Ctrl+%1").arg(i + 1)));
+    connect(action, &QAction::triggered, this, [this, name = entries_[i].name] { showScreen(name); });
+  }
+  menu->addSeparator();
+  QAction* const log = log_dock_->toggleViewAction();
+  log->setIcon(icon("log"));
+  log->setShortcut(QKeySequence("Ctrl+L"));
+  menu->addAction(log);
+  menu->addSeparator();
+  QMenu* const appearance = menu->addMenu(icon("theme"), tr("&Appearance"));
+  auto* const group = new QActionGroup(this);
+  const int now = QSettings().value("appearance", static_cast<int>(Appearance::System)).toInt();
+  const std::pair<Appearance, QString> choices[] = {{Appearance::System, tr("As the &system")},
+                                                    {Appearance::Light, tr("&Light")},
+                                                    {Appearance::Dark, tr("&Dark")}};
+  for (const auto& [choice, text] : choices) {
+    QAction* const action = group->addAction(appearance->addAction(text));
+    action->setCheckable(true);
+    action->setChecked(now == static_cast<int>(choice));
+    connect(action, &QAction::triggered, this, [chosen = choice] {
+      QSettings().setValue("appearance", static_cast<int>(chosen));
+      applyTheme(*qApp, chosen);
+    });
+  }
+}
+
+void MainWindow::makeHelpMenu() {
+  actions_.guide = makeAction(this, "book", tr("&User guide"), tr("User guide"), QKeySequence::HelpContents);
+  actions_.about = makeAction(this, "info", tr("&About Evical"), tr("About Evical"), {});
+  connect(actions_.guide, &QAction::triggered, this, [this] { showUserGuide(this); });
+  connect(actions_.about, &QAction::triggered, this, [this] { showAbout(this, workbench_.version); });
+  menuBar()->addMenu(tr("&Help"))->addActions({actions_.guide, actions_.about});
+}
+
+void MainWindow::makeToolBar() {
+  constexpr int kIcon_px = 20;
+  QToolBar* const bar = addToolBar(tr("Main"));
+  bar->setObjectName("main");
+  bar->setMovable(false);
+  bar->setIconSize(QSize(kIcon_px, kIcon_px));
+  bar->addActions({actions_.open_session, actions_.save});
+  bar->addSeparator();
+  bar->addActions({actions_.undo, actions_.redo});
+  bar->addSeparator();
+  bar->addActions({actions_.calibrate, actions_.cancel});
+  for (QAction* const action : {actions_.calibrate, actions_.cancel}) {
+    auto* const button = qobject_cast<QToolButton*>(bar->widgetForAction(action));
+    button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+    button->setProperty("primary", action == actions_.calibrate);
+    button->setObjectName(action == actions_.calibrate ? "calibrate" : "cancel");
+  }
+  bar->addAction(actions_.export_result);
+  auto* const space = new QWidget(bar);
+  space->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
+  bar->addWidget(space);
+  bar->addAction(log_dock_->toggleViewAction());
+  bar->addAction(actions_.guide);
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The screens, in the order of the navigation: buildPages makes them, wirePages connects them with the
+// workbench and with each other. Screens themselves know neither.
+#pragma once
+
+#include <QString>
+#include <QWidget>
+
+#include <vector>
+
+namespace evical::ui {
+
+struct Workbench;
+class SessionFiles;
+class StartScreen;
+
+struct Pages {
+  StartScreen* start = nullptr;
+};
+
+// A page as the navigation lists it.
+struct PageEntry {
+  QString name;  // for --screenshot
+  QString title, icon_name;
+  QWidget* widget = nullptr;
+};
+
+std::vector<PageEntry> buildPages(Pages& pages, QWidget* parent);
+
+void wirePages(const Pages& pages, Workbench& workbench, SessionFiles& files);
+
+}  // namespace evical::ui

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/window/session_files.h"
+
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/pipeline/result_files.h"
+#include "core/pipeline/simulation.h"
+#include "core/synthetic/scenario_yaml.h"
+#include "ui/document/session_guess.h"
+
+#include <QDir>
+#include <QFile>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QMessageBox>
+#include <QSettings>
+#include <QStandardPaths>
+#include <QTemporaryDir>
+
+namespace evical::ui {
+namespace {
+
+constexpr int kMostRecent = 10;
+const char* const kRecentKey = "recent_files";
+const char* const kFolderKey = "last_folder";
+
+JobError errorOf(const CalibrationError& error) {
+  return {error.kind() == ErrorKind::BadInput, QString::fromStdString(error.place()),
+          QString::fromStdString(error.problem()), QString::fromStdString(error.advice())};
+}
+
+bool isSessionFile(const QString& path) {
+  const QString suffix = QFileInfo(path).suffix().toLower();
+  return suffix == "yaml" || suffix == "yml";
+}
+
+// Scenarios name each other by file, so those that are embedded become files for a moment.
+Scenario demoScenario() {
+  const QTemporaryDir folder;
+  for (const char* const name : {"davis346.yaml", "davis346_10s.yaml"})
+    QFile::copy(QString(":/demo/") + name, folder.filePath(name));
+  return readScenario(folder.filePath("davis346_10s.yaml").toStdString());
+}
+
+}  // namespace
+
+SessionFiles::SessionFiles(Workbench& workbench, QWidget* window)
+    : QObject(window), workbench_(workbench), window_(window) {
+  connect(&workbench_.inspection, &InspectionJob::inspected, this,
+          [this](const QString& recording, const std::shared_ptr<const Inspection>& inspection) {
+            recordingInspected(recording, *inspection);
+          });
+  connect(&workbench_.inspection, &InspectionJob::failed, this,
+          [this](const QString& recording, const JobError& error) {
+            if (recording != awaited_recording_) return;
+            awaited_recording_.clear();
+            emit failed(tr("%1 cannot be opened").arg(QFileInfo(recording).fileName()), error);
+          });
+}
+
+void SessionFiles::open(const QString& path) {
+  if (workbench_.runner.running()) {
+    emit failed(tr("%1 cannot be opened now").arg(QFileInfo(path).fileName()),
+                {true, workbench_.runner.title(), tr("is still running"), tr("Cancel it, or wait")});
+    return;
+  }
+  const QString session_inside = QDir(path).filePath("session.yaml");
+  if (QFileInfo(path).isDir() && QFile::exists(session_inside)) return openSession(session_inside);
+  isSessionFile(path) ? openSession(path) : openRecording(path);
+}
+
+void SessionFiles::openSession(const QString& file) {
+  if (!mayDiscard()) return;
+  try {
+    workbench_.document.open(QFileInfo(file).absoluteFilePath());
+  } catch (const CalibrationError& error) {
+    emit failed(tr("%1 cannot be opened").arg(QFileInfo(file).fileName()), errorOf(error));
+    return;
+  }
+  awaited_recording_.clear();
+  remember(workbench_.document.file());
+  workbench_.inspection.start(QString::fromStdString(workbench_.document.session().recording.string()));
+  const QString truth = QFileInfo(file).dir().filePath("truth.yaml");
+  try {
+    if (QFile::exists(truth)) workbench_.document.loadReference(truth);
+  } catch (const CalibrationError& error) {
+    emit failed(tr("The truth beside the session cannot be read"), errorOf(error));
+  }
+  emit opened();
+}
+
+void SessionFiles::openRecording(const QString& path) {
+  if (!mayDiscard()) return;
+  awaited_recording_ = QFileInfo(path).absoluteFilePath();
+  workbench_.inspection.start(awaited_recording_);
+}
+
+void SessionFiles::recordingInspected(const QString& recording, const Inspection& inspection) {
+  if (recording != awaited_recording_) return;
+  awaited_recording_.clear();
+  workbench_.document.startSession(guessedSession(recording.toStdString(), inspection));
+  remember(recording);
+  emit opened();
+}
+
+void SessionFiles::chooseSession() {
+  const QString file = QFileDialog::getOpenFileName(window_, tr("Open a session"), lastFolder(),
+                                                    tr("Sessions (*.yaml *.yml);;All files (*)"));
+  if (!file.isEmpty()) open(file);
+}
+
+void SessionFiles::chooseRecording() {
+  const QString file = QFileDialog::getOpenFileName(window_, tr("Open a recording"), lastFolder(),
+                                                    tr("Recordings (*.bag *.txt *.csv);;All files (*)"));
+  if (!file.isEmpty()) open(file);
+}
+
+bool SessionFiles::save() {
+  return workbench_.document.file().isEmpty() ? saveAs() : saveTo(workbench_.document.file());
+}
+
+bool SessionFiles::saveAs() {
+  const QString recording = QString::fromStdString(workbench_.document.session().recording.string());
+  const QString proposal = workbench_.document.file().isEmpty()
+                               ? QFileInfo(recording).dir().filePath("session.yaml")
+                               : workbench_.document.file();
+  const QString file =
+      QFileDialog::getSaveFileName(window_, tr("Save the session"), proposal, tr("Sessions (*.yaml)"));
+  return !file.isEmpty() && saveTo(file);
+}
+
+bool SessionFiles::saveTo(const QString& file) {
+  try {
+    workbench_.document.save(file);
+    remember(file);
+    return true;
+  } catch (const CalibrationError& error) {
+    emit failed(tr("The session was not saved"), errorOf(error));
+    return false;
+  }
+}
+
+bool SessionFiles::mayDiscard() {
+  if (!workbench_.document.modified()) return true;
+  QMessageBox question(QMessageBox::Question, tr("Unsaved changes"),
+                       tr("Save the changes to %1?").arg(workbench_.document.title()),
+                       QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, window_);
+  question.setInformativeText(tr("Board, sensors and parameters are kept in the session file."));
+  question.setDefaultButton(QMessageBox::Save);
+  const int answer = question.exec();
+  if (answer == QMessageBox::Save) return save();
+  return answer == QMessageBox::Discard;
+}
+
+void SessionFiles::openDemo() {
+  const QString folder =
+      QStandardPaths::writableLocation(QStandardPaths::AppDataLocation) + "/demo_" + workbench_.version;
+  const QString session = folder + "/session.yaml";
+  if (QFile::exists(session)) return open(session);  // it comes last: the recording is whole
+  if (!mayDiscard()) return;
+  QDir().mkpath(QFileInfo(folder).path());
+  const bool begun = workbench_.runner.start(
+      tr("Simulate the demo"), {{"simulate", 1.0}},
+      [folder](const RunContext& context) { simulate(demoScenario(), folder.toStdString(), context); });
+  if (!begun) return;
+  emit demoRunning(true);
+  connect(
+      &workbench_.runner, &JobRunner::finished, this,
+      [this, session](JobOutcome outcome) {
+        emit demoRunning(false);
+        if (outcome == JobOutcome::Done) open(session);
+      },
+      Qt::SingleShotConnection);
+}
+
+void SessionFiles::chooseReference() {
+  const QString file = QFileDialog::getOpenFileName(window_, tr("Compare with a result or a truth"),
+                                                    lastFolder(), tr("Results (*.yaml);;All files (*)"));
+  if (file.isEmpty()) return;
+  try {
+    workbench_.document.loadReference(file);
+  } catch (const CalibrationError& error) {
+    emit failed(tr("%1 cannot be compared with").arg(QFileInfo(file).fileName()), errorOf(error));
+  }
+}
+
+void SessionFiles::chooseExportFolder() {
+  if (!workbench_.document.last().run) return;
+  const QString folder =
+      QFileDialog::getExistingDirectory(window_, tr("Export the result to a folder"), lastFolder());
+  if (!folder.isEmpty()) exportTo(folder);
+}
+
+void SessionFiles::exportTo(const QString& folder) {
+  const RunRecord record = workbench_.document.last();
+  if (!record.run) return;
+  const bool begun = workbench_.runner.start(
+      tr("Export"), {}, [record, folder, version = workbench_.version](const RunContext&) {
+        makeOutputFolder(folder.toStdString());
+        writeResultFiles(folder.toStdString(), record.session, *record.run, version.toStdString(),
+                         record.log.toStdString());
+      });
+  if (!begun) {
+    emit failed(tr("Nothing was exported"),
+                {true, workbench_.runner.title(), tr("is still running"), tr("Cancel it, or wait")});
+    return;
+  }
+  QSettings().setValue(kFolderKey, folder);
+  connect(
+      &workbench_.runner, &JobRunner::finished, this,
+      [this, folder](JobOutcome outcome) {
+        if (outcome == JobOutcome::Done) emit exported(folder);
+      },
+      Qt::SingleShotConnection);
+}
+
+QString SessionFiles::lastFolder() const {
+  return QSettings().value(kFolderKey, QDir::homePath()).toString();
+}
+
+QStringList SessionFiles::recentFiles() const {
+  QStringList files = QSettings().value(kRecentKey).toStringList();
+  files.removeIf([](const QString& file) { return !QFile::exists(file); });
+  return files;
+}
+
+void SessionFiles::remember(const QString& file) {
+  QSettings settings;
+  QStringList files = recentFiles();
+  files.removeAll(file);
+  files.prepend(file);
+  settings.setValue(kRecentKey, files.mid(0, kMostRecent));
+  settings.setValue(kFolderKey, QFileInfo(file).path());
+  emit recentFilesChanged(recentFiles());
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Files in and out: sessions, recordings, the demo, results; asks about unsaved changes, remembers recent
+// files.
+#pragma once
+
+#include "ui/window/workbench.h"
+
+#include <QObject>
+#include <QStringList>
+
+class QWidget;
+
+namespace evical::ui {
+
+class SessionFiles : public QObject {
+  Q_OBJECT
+
+ public:
+  SessionFiles(Workbench& workbench, QWidget* window);
+
+  void open(const QString& path);  // a session file, a recording, or a folder with either
+  void chooseSession();
+  void chooseRecording();
+  bool save();
+  bool saveAs();
+  void openDemo();  // simulates it the first time
+  void chooseReference();
+  void chooseExportFolder();
+  void exportTo(const QString& folder);
+
+  // False if the person would rather keep what is not saved.
+  bool mayDiscard();
+  QStringList recentFiles() const;
+
+ signals:
+  void opened();
+  void recentFilesChanged(const QStringList& files);
+  void demoRunning(bool running);
+  void exported(const QString& folder);
+  void failed(const QString& what_was_tried, const evical::ui::JobError& error);
+
+ private:
+  void openSession(const QString& file);
+  void openRecording(const QString& path);
+  bool saveTo(const QString& file);
+  void remember(const QString& file);
+  void recordingInspected(const QString& recording, const Inspection& inspection);
+  QString lastFolder() const;
+
+  Workbench& workbench_;
+  QWidget* window_;
+  QString awaited_recording_;  // opened as soon as it has been looked through
+};
+
+}  // namespace evical::ui

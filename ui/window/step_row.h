@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One line of the steps panel.
+#pragma once
+
+#include <QWidget>
+
+class QLabel;
+class QProgressBar;
+
+namespace evical::ui {
+
+enum class StepState { Pending, Running, Done, Failed, Cancelled };
+
+class StepRow : public QWidget {
+  Q_OBJECT
+
+ public:
+  StepRow(const QString& title, bool sub_step, QWidget* parent);
+
+  StepState state() const { return state_; }
+  void setState(StepState state);
+  void setFraction(double fraction);
+  void setTime(double time_s);
+  void setKeyNumber(const QString& text, const QString& in_full = {});
+  QString text() const;
+
+ protected:
+  void changeEvent(QEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
+
+ private:
+  void showState();
+  void elideKeyNumber();
+
+  StepState state_ = StepState::Pending;
+  bool sub_step_;
+  QLabel* icon_;
+  QLabel* title_;
+  QLabel* time_;
+  QLabel* key_;
+  QProgressBar* bar_;
+  QString key_text_, key_in_full_;
+};
+
+}  // namespace evical::ui

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The steps of a calibration in their order, each with its state, progress, time taken and key number.
+#pragma once
+
+#include "ui/jobs/calibration_job.h"
+#include "ui/jobs/job_runner.h"
+
+#include <QWidget>
+
+#include <map>
+
+class QVBoxLayout;
+
+namespace evical::ui {
+
+class StepRow;
+
+class StepsPanel : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit StepsPanel(QWidget* parent = nullptr);
+
+  void reset();
+  void startStage(const QString& stage);  // "detect", "initialise", "optimise"
+  void setProgress(const JobProgress& progress);
+  void setDetections(const LiveDetections& detections);
+  void addInitialisationNote(const InitialisationNote& note);
+  void setIterations(const LiveIterations& iterations);
+  void finish(JobOutcome outcome);
+  void setRun(const CalibrationRun& run);  // the final numbers
+
+  // For tests and screen readers: "Optimise: done, ...".
+  QString textOf(const QString& step) const;
+
+ private:
+  StepRow* addRow(const QString& key, const QString& title, bool sub_step);
+  StepRow* row(const QString& key);
+
+  QVBoxLayout* layout_;
+  std::map<QString, StepRow*> rows_;
+  QString stage_;
+  double stage_begin_s_ = 0.0, elapsed_s_ = 0.0;
+};
+
+}  // namespace evical::ui

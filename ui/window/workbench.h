@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// All of the program that is no widget: one document, and the jobs that work for it.
+#pragma once
+
+#include "ui/document/calibration_document.h"
+#include "ui/jobs/calibration_job.h"
+#include "ui/jobs/inspection_job.h"
+#include "ui/jobs/job_runner.h"
+
+#include <QString>
+
+namespace evical::ui {
+
+struct Workbench {
+  explicit Workbench(QString program_version) : version(std::move(program_version)) {}
+
+  QString version;
+  CalibrationDocument document;
+  JobRunner runner;
+  CalibrationJob calibration{runner};
+  InspectionJob inspection;  // has a runner of its own: it may go on beside a calibration
+};
+
+}  // namespace evical::ui
