@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/main_window.h"
 
+#include "core/base/error.h"
+#include "ui/forms/option_form.h"
 #include "ui/theme/theme.h"
 #include "ui/window/error_panel.h"
 #include "ui/window/job_status.h"
@@ -39,6 +41,7 @@ MainWindow::MainWindow(const QString& version)
   statusBar()->addWidget(new JobStatus(workbench_.runner, this), 1);
   wirePages(pages_, workbench_, *files_);
   wireDocument();
+  wireParameters();
   wireJobs();
   wireSteps();
   restoreLayout();
@@ -98,6 +101,9 @@ void MainWindow::makeDocks() {
   log_ = new LogPanel(this);
   log_dock_ = addDock("log", tr("Log"), log_, Qt::BottomDockWidgetArea);
   log_dock_->hide();
+  parameters_ = new OptionForm(this);
+  parameters_dock_ = addDock("parameters", tr("Parameters"), parameters_, Qt::RightDockWidgetArea);
+  parameters_dock_->hide();
 }
 
 QDockWidget* MainWindow::addDock(const QString& name, const QString& title, QWidget* content,
@@ -138,6 +144,21 @@ void MainWindow::wireDocument() {
   connect(files_, &SessionFiles::exported, this, [this](const QString& folder) {
     log_->add({LogLevel::Info, 0.0, tr("The result was exported to %1").arg(folder)});
   });
+}
+
+void MainWindow::wireParameters() {
+  CalibrationDocument& document = workbench_.document;
+  const auto show = [this] { parameters_->setRows(optionRows(workbench_.document.session().options)); };
+  connect(&document, &CalibrationDocument::sessionChanged, parameters_, show);
+  connect(parameters_, &OptionForm::resetAllRequested, &document, &CalibrationDocument::resetOptions);
+  connect(parameters_, &OptionForm::edited, this, [this](const QString& name, const QString& value) {
+    try {
+      workbench_.document.setOption(name, value);
+    } catch (const CalibrationError& error) {
+      parameters_->showProblem(name, QString::fromStdString(error.problem()));
+    }
+  });
+  show();
 }
 
 void MainWindow::wireJobs() {

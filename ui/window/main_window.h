@@ -17,6 +17,7 @@ namespace evical::ui {
 
 class ErrorPanel;
 class LogPanel;
+class OptionForm;
 class SessionFiles;
 class StepsPanel;
 
@@ -54,6 +55,7 @@ class MainWindow : public QMainWindow {
   void makeToolBar();
   QDockWidget* addDock(const QString& name, const QString& title, QWidget* content, Qt::DockWidgetArea area);
   void wireDocument();
+  void wireParameters();
   void wireJobs();
   void wireSteps();
   void showState();
@@ -70,7 +72,8 @@ class MainWindow : public QMainWindow {
   StepsPanel* steps_ = nullptr;
   ErrorPanel* error_ = nullptr;
   LogPanel* log_ = nullptr;
-  QDockWidget* log_dock_ = nullptr;
+  OptionForm* parameters_ = nullptr;
+  QDockWidget *log_dock_ = nullptr, *parameters_dock_ = nullptr;
   struct Actions {
     QAction *open_session, *open_recording, *save, *save_as, *export_result, *quit;
     QAction *undo, *redo;

@@ -104,6 +104,10 @@ void MainWindow::makeViewMenu() {
     connect(action, &QAction::triggered, this, [this, name = entries_[i].name] { showScreen(name); });
   }
   menu->addSeparator();
+  QAction* const parameters = parameters_dock_->toggleViewAction();
+  parameters->setIcon(icon("parameters"));
+  parameters->setShortcut(QKeySequence("Ctrl+P"));
+  menu->addAction(parameters);
   QAction* const log = log_dock_->toggleViewAction();
   log->setIcon(icon("log"));
   log->setShortcut(QKeySequence("Ctrl+L"));
@@ -155,6 +159,7 @@ void MainWindow::makeToolBar() {
   auto* const space = new QWidget(bar);
   space->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
   bar->addWidget(space);
+  bar->addAction(parameters_dock_->toggleViewAction());
   bar->addAction(log_dock_->toggleViewAction());
   bar->addAction(actions_.guide);
 }

@@ -38,7 +38,7 @@ QString withoutSensor(const QString& text) {
 }
 
 QString costText(double cost, int iterations) {
-  return QObject::tr("cost %1 after %2").arg(cost, 0, 'g', 5).arg(iterations);
+  return QObject::tr("cost %1, %2 steps").arg(cost, 0, 'g', 5).arg(iterations);
 }
 
 }  // namespace

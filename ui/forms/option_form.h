@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// All options as a form, made from the option tables: groups, search, help, reset, and a badge on what
+// differs. It holds no values: it shows rows, and says what the person wants.
+#pragma once
+
+#include "core/base/option_yaml.h"
+
+#include <QStringList>
+#include <QWidget>
+
+#include <map>
+#include <vector>
+
+class QLabel;
+class QLineEdit;
+class QToolButton;
+class QVBoxLayout;
+
+namespace evical::ui {
+
+class OptionEditor;
+class OptionGroup;
+
+class OptionForm : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit OptionForm(QWidget* parent = nullptr);
+
+  void setRows(const std::vector<OptionRow>& rows);
+  // Next to the field: why a value was refused.
+  void showProblem(const QString& name, const QString& text);
+
+  OptionEditor* editor(const QString& name) const;  // null: no such option
+  QStringList shownOptions() const;                 // that the search leaves
+
+ signals:
+  void edited(const QString& name, const QString& value);
+  void resetAllRequested();
+
+ private:
+  void build(const std::vector<OptionRow>& rows);
+  void filter();
+
+  QLineEdit* search_;
+  QToolButton* only_changed_;
+  QToolButton* reset_all_;
+  QLabel* nothing_;
+  QVBoxLayout* groups_layout_;
+  std::vector<OptionGroup*> groups_;
+  std::map<QString, OptionEditor*> editors_;
+};
+
+}  // namespace evical::ui
