@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/detection/event_view.h"
+
+#include "ui/theme/theme.h"
+
+#include <QKeyEvent>
+#include <QMouseEvent>
+#include <QPainter>
+#include <QWheelEvent>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace evical::ui {
+namespace {
+
+constexpr double kLargestScale = 64.0;
+constexpr double kZoomStep = 1.25;
+constexpr double kGridScale = 14.0;  // from here on single pixels are outlined
+constexpr int kMargin_px = 6;
+
+}  // namespace
+
+EventView::EventView(QWidget* parent) : QWidget(parent) {
+  setMouseTracking(true);
+  setFocusPolicy(Qt::StrongFocus);
+  setCursor(Qt::CrossCursor);
+  setAccessibleName(tr("Events"));
+}
+
+void EventView::setFrame(std::shared_ptr<const SurfaceFrame> frame) {
+  const bool other_sensor = frame && (!frame_ || frame_->resolution_px() != frame->resolution_px());
+  frame_ = std::move(frame);
+  if (other_sensor) fit();
+  update();
+}
+
+void EventView::setOverlay(Overlay overlay) {
+  overlay_ = std::move(overlay);
+  update();
+}
+
+void EventView::setCaption(const QString& caption) {
+  if (caption == caption_) return;
+  caption_ = caption;
+  update();
+}
+
+void EventView::setMessage(const QString& message) {
+  if (message == message_) return;
+  message_ = message;
+  update();
+}
+
+double EventView::fitScale() const {
+  const Resolution size_px = frame_->resolution_px();
+  return std::max(1e-3, std::min((width() - 2.0 * kMargin_px) / size_px.width_px,
+                                 (height() - 2.0 * kMargin_px) / size_px.height_px));
+}
+
+void EventView::fit() {
+  fitted_ = true;
+  if (!frame_) return;
+  const Resolution size_px = frame_->resolution_px();
+  scale_ = fitScale();
+  origin_ = {0.5 * (width() - scale_ * size_px.width_px), 0.5 * (height() - scale_ * size_px.height_px)};
+  update();
+}
+
+void EventView::zoomBy(double factor, const QPointF& about) {
+  if (!frame_) return;
+  const double wanted = std::clamp(scale_ * factor, fitScale(), std::max(kLargestScale, fitScale()));
+  if (wanted <= fitScale()) {
+    fit();
+    return;
+  }
+  origin_ = about - (about - origin_) * (wanted / scale_);
+  scale_ = wanted;
+  fitted_ = false;
+  keepInSight();
+  update();
+}
+
+// The picture may be moved about, but its part in the widget never gets smaller than it must be.
+void EventView::keepInSight() {
+  const Resolution size_px = frame_->resolution_px();
+  const auto kept = [](double origin, double picture, double widget) {
+    if (picture <= widget) return 0.5 * (widget - picture);
+    return std::clamp(origin, widget - picture - kMargin_px, static_cast<double>(kMargin_px));
+  };
+  origin_ = {kept(origin_.x(), scale_ * size_px.width_px, width()),
+             kept(origin_.y(), scale_ * size_px.height_px, height())};
+}
+
+QPointF EventView::sensorFromWidget(const QPointF& point) const {
+  return (point - origin_) / scale_ - QPointF(0.5, 0.5);
+}
+
+QPointF EventView::widgetFromSensor(const QPointF& pixel) const {
+  return origin_ + scale_ * (pixel + QPointF(0.5, 0.5));
+}
+
+QString EventView::readout() const {
+  if (!frame_ || !mouse_) return {};
+  const QPointF pixel = sensorFromWidget(*mouse_);
+  const int x = static_cast<int>(std::lround(pixel.x())), y = static_cast<int>(std::lround(pixel.y()));
+  const Resolution size_px = frame_->resolution_px();
+  if (x < 0 || y < 0 || x >= size_px.width_px || y >= size_px.height_px) return {};
+  const QString place = QStringLiteral("x %1  y %2").arg(x).arg(y);
+  const auto hit = frame_->newestAt(x, y);
+  if (!hit) return place + tr("    no event");
+  return place +
+         QStringLiteral("    %1 s  (%2 ms)    ")
+             .arg(frame_->time_s + hit->time_s, 0, 'f', 6)
+             .arg(1e3 * hit->time_s, 0, 'f', 2) +
+         (hit->brighter ? tr("brighter") : tr("darker"));
+}
+
+void EventView::paintPicture(QPainter& painter) {
+  const QRectF visible(sensorFromWidget({0.0, 0.0}), sensorFromWidget(QPointF(width(), height())));
+  const Resolution size_px = frame_->resolution_px();
+  const QRect source = visible.adjusted(-1, -1, 2, 2)
+                           .toAlignedRect()
+                           .intersected(QRect(0, 0, size_px.width_px, size_px.height_px));
+  const QRectF target(origin_ + scale_ * QPointF(source.topLeft()), scale_ * QSizeF(source.size()));
+  painter.setRenderHint(QPainter::SmoothPixmapTransform, scale_ < 1.0);
+  painter.drawImage(target, frame_->image, source);
+  if (scale_ >= kGridScale) {
+    painter.setPen(QPen(theme().grid_line, 0));
+    for (int x = source.left(); x <= source.right() + 1; ++x) {
+      const double at = origin_.x() + scale_ * x;
+      painter.drawLine(QPointF(at, target.top()), QPointF(at, target.bottom()));
+    }
+    for (int y = source.top(); y <= source.bottom() + 1; ++y) {
+      const double at = origin_.y() + scale_ * y;
+      painter.drawLine(QPointF(target.left(), at), QPointF(target.right(), at));
+    }
+  }
+  painter.setPen(QPen(theme().grid_line, 1));
+  painter.setBrush(Qt::NoBrush);
+  painter.drawRect(QRectF(origin_, scale_ * QSizeF(size_px.width_px, size_px.height_px)));
+}
+
+void EventView::paintNote(QPainter& painter, const QString& text, bool below) const {
+  if (text.isEmpty()) return;
+  const QSize size = painter.fontMetrics().size(Qt::TextSingleLine, text) + QSize(16, 8);
+  const QRect box(QPoint(kMargin_px + 6, below ? height() - size.height() - kMargin_px - 6 : kMargin_px + 6),
+                  size);
+  QColor ground = theme().window;
+  ground.setAlphaF(0.85f);
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.setPen(Qt::NoPen);
+  painter.setBrush(ground);
+  painter.drawRoundedRect(box, 4, 4);
+  painter.setPen(theme().text);
+  painter.drawText(box, Qt::AlignCenter, text);
+}
+
+void EventView::paintEvent(QPaintEvent*) {
+  QPainter painter(this);
+  painter.fillRect(rect(), theme().window);
+  if (!frame_) {
+    painter.setPen(theme().faint_text);
+    painter.drawText(rect().adjusted(24, 24, -24, -24), Qt::AlignCenter | Qt::TextWordWrap, message_);
+    return;
+  }
+  paintPicture(painter);
+  if (overlay_) {
+    painter.save();
+    painter.setRenderHint(QPainter::Antialiasing);
+    painter.translate(origin_);
+    painter.scale(scale_, scale_);
+    painter.translate(0.5, 0.5);
+    overlay_(painter, scale_);
+    painter.restore();
+  }
+  paintNote(painter, caption_, false);
+  paintNote(painter, readout(), true);
+}
+
+void EventView::resizeEvent(QResizeEvent*) {
+  if (!frame_) return;
+  if (fitted_) {
+    fit();
+  } else {
+    keepInSight();
+  }
+}
+
+void EventView::wheelEvent(QWheelEvent* event) {
+  if (event->angleDelta().y() == 0) return;
+  zoomBy(std::pow(kZoomStep, event->angleDelta().y() / 120.0), event->position());
+  event->accept();
+}
+
+void EventView::mousePressEvent(QMouseEvent* event) {
+  if (event->button() == Qt::LeftButton || event->button() == Qt::MiddleButton)
+    drag_from_ = event->position();
+}
+
+void EventView::mouseMoveEvent(QMouseEvent* event) {
+  mouse_ = event->position();
+  if (drag_from_ && frame_ && !fitted_) {
+    setCursor(Qt::ClosedHandCursor);
+    origin_ += event->position() - *drag_from_;
+    drag_from_ = event->position();
+    keepInSight();
+  }
+  update();
+}
+
+void EventView::mouseReleaseEvent(QMouseEvent*) {
+  drag_from_.reset();
+  setCursor(Qt::CrossCursor);
+}
+
+void EventView::mouseDoubleClickEvent(QMouseEvent* event) {
+  if (fitted_) {
+    zoomBy(4.0, event->position());
+  } else {
+    fit();
+  }
+}
+
+void EventView::keyPressEvent(QKeyEvent* event) {
+  const QPointF middle = mouse_.value_or(QPointF(0.5 * width(), 0.5 * height()));
+  switch (event->key()) {
+    case Qt::Key_F:
+      fit();
+      return;
+    case Qt::Key_Plus:
+    case Qt::Key_Equal:
+      zoomBy(kZoomStep, middle);
+      return;
+    case Qt::Key_Minus:
+      zoomBy(1.0 / kZoomStep, middle);
+      return;
+    default:
+      QWidget::keyPressEvent(event);
+  }
+}
+
+void EventView::leaveEvent(QEvent*) {
+  mouse_.reset();
+  update();
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Events as a picture with one point a sensor pixel, and what hovering over it tells. Pure functions of their
+// inputs, for worker threads: colours come with the style, since theme() belongs to the GUI thread.
+#pragma once
+
+#include "core/data/event.h"
+#include "core/frontend/normal_flow.h"
+#include "core/geometry/camera_model.h"
+
+#include <QImage>
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace evical::ui {
+
+enum class SurfaceMode {
+  Decayed,      // newest event of each pixel, fading with its age
+  Accumulated,  // all events of the window, by number
+  NormalFlow,   // edges of the window, coloured by the direction they move in
+};
+
+struct SurfaceStyle {
+  SurfaceMode mode = SurfaceMode::Decayed;
+  double decay_s = 0.015;  // an event has faded to 1/e
+  QRgb background = 0xff000000, brighter = 0xffffffff, darker = 0xff8080ff;
+  bool operator==(const SurfaceStyle&) const = default;
+};
+// Events older than this have faded.
+inline double fadedAfter_s(const SurfaceStyle& style) {
+  return 5.0 * style.decay_s;
+}
+
+struct SurfaceFrame {
+  static constexpr std::int32_t kNoEvent = std::numeric_limits<std::int32_t>::min();
+
+  double time_s = 0.0;  // of the cursor, since the recording's start
+  QImage image;         // RGB32
+  std::vector<std::int32_t>
+      newest;  // by pixel: 2 * microseconds since the cursor, + 1 if brighter; or kNoEvent
+  std::size_t events = 0;
+
+  Resolution resolution_px() const { return {image.width(), image.height()}; }
+
+  struct Hit {
+    double time_s;  // since the cursor
+    bool brighter;
+  };
+  std::optional<Hit> newestAt(int x_px, int y_px) const;  // nothing outside, too
+};
+
+// Events in any order, inside the resolution. time_ns is the cursor's.
+SurfaceFrame renderEvents(EventSpan events, std::int64_t time_ns, Resolution resolution_px,
+                          const SurfaceStyle& style);
+
+// The same events faintly, and over them the flow: hue by direction, red to the right, turning as on a clock.
+SurfaceFrame renderFlow(EventSpan events, const NormalFlowField& flow, std::int64_t time_ns,
+                        Resolution resolution_px, const SurfaceStyle& style);
+
+QRgb flowColour(double x, double y);  // of a direction
+
+}  // namespace evical::ui
