@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The whole recording on one line: what became of each window, how many events there were and how fast the
+// camera turned. Click or drag to a time; wheel to zoom, shift+wheel or the middle button to move; left and
+// right for windows, Home and End, double click for all of it.
+#pragma once
+
+#include "core/data/board_observations.h"
+#include "ui/detection/rate_curve.h"
+
+#include <QColor>
+#include <QRectF>
+#include <QWidget>
+
+#include <array>
+#include <optional>
+#include <vector>
+
+class QPainter;
+
+namespace evical::ui {
+
+enum class WindowClass { Complete, Partial, Missed };
+WindowClass windowClass(WindowOutcome outcome);
+QColor windowColour(WindowClass window_class);  // of the theme
+double endOfWindow(const WindowReport& window);
+
+class Timeline : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit Timeline(QWidget* parent = nullptr);
+
+  void setRange(double begin_s, double end_s);  // of the whole recording
+  void setWindows(std::vector<WindowReport> windows);
+  void appendWindow(const WindowReport& window);  // in any order
+  void setEventRate(RateCurve events_s);
+  void setRotationRate(RateCurve rad_s);
+
+  double begin_s() const { return begin_s_; }
+  double end_s() const { return end_s_; }
+  double time_s() const { return time_s_; }
+  const std::vector<WindowReport>& windows() const { return windows_; }
+  // The window that holds a time.
+  std::optional<WindowReport> windowAt(double time_s) const;
+  // Middle of the next window (+1) or the one before (-1); where none are known, 10 ms on.
+  double stepFrom(double time_s, int direction) const;
+
+  void showAll();
+  void zoomBy(double factor, double about_s);
+  double visibleBegin_s() const { return visible_begin_s_; }
+  double visibleEnd_s() const { return visible_end_s_; }
+  double xOf(double time_s) const;
+  double timeOf(double x) const;
+
+  QSize sizeHint() const override { return {700, 132}; }
+  QSize minimumSizeHint() const override { return {300, 100}; }
+
+ public slots:
+  void setTime(double time_s);  // moves the cursor, says nothing
+
+ signals:
+  void timeSelected(double time_s);  // by the user
+
+ protected:
+  void paintEvent(QPaintEvent*) override;
+  bool event(QEvent*) override;
+  void wheelEvent(QWheelEvent*) override;
+  void mousePressEvent(QMouseEvent*) override;
+  void mouseMoveEvent(QMouseEvent*) override;
+  void mouseReleaseEvent(QMouseEvent*) override;
+  void mouseDoubleClickEvent(QMouseEvent*) override;
+  void keyPressEvent(QKeyEvent*) override;
+
+ private:
+  using ColumnCounts = std::array<int, 3>;  // by WindowClass
+
+  void select(double time_s);
+  void scrollBy(double shift_s);
+  std::vector<WindowReport>::const_iterator firstEndingAfter(double time_s) const;
+  QRectF curveArea() const;
+  QRectF tickArea() const;
+  std::vector<ColumnCounts> countColumns() const;
+  void paintHeader(QPainter& painter) const;
+  void paintAxis(QPainter& painter) const;
+  void paintCurve(QPainter& painter, const RateCurve& curve, double top, const QColor& colour,
+                  bool filled) const;
+  void paintTicks(QPainter& painter) const;
+  void paintCursor(QPainter& painter) const;
+
+  double begin_s_ = 0.0, end_s_ = 0.0;
+  double visible_begin_s_ = 0.0, visible_end_s_ = 0.0;
+  double time_s_ = 0.0;
+  std::vector<WindowReport> windows_;  // by time
+  RateCurve event_rate_, rotation_rate_;
+  double event_top_ = 1.0, rotation_top_ = 1.0;  // of the curves' axes
+  std::optional<double> pan_from_x_;
+  bool scrubbing_ = false;
+};
+
+}  // namespace evical::ui

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/detection/timeline.h"
+#include "ui/theme/theme.h"
+
+#include <QPainter>
+#include <QPainterPath>
+
+#include <algorithm>
+#include <cmath>
+
+namespace evical::ui {
+namespace {
+
+constexpr double kHeader_px = 22.0, kFooter_px = 18.0, kTicks_px = 14.0, kSide_px = 62.0;
+
+QString rateText(double events_s) {
+  if (events_s >= 1e6) return QStringLiteral("%1 Mev/s").arg(1e-6 * events_s, 0, 'g', 3);
+  return QStringLiteral("%1 kev/s").arg(1e-3 * events_s, 0, 'g', 3);
+}
+
+QString turnText(double deg_s) {
+  return QStringLiteral("%1 °/s").arg(deg_s, 0, 'f', deg_s < 10.0 ? 1 : 0);
+}
+
+// Distance of time labels: 1, 2 or 5 times a power of ten, about 90 px apart.
+double labelStep_s(double visible_s, double width_px) {
+  const double wanted_s = std::max(1e-6, 90.0 * visible_s / std::max(width_px, 1.0));
+  const double power = std::pow(10.0, std::floor(std::log10(wanted_s)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= wanted_s) return factor * power;
+  }
+  return 10.0 * power;
+}
+
+QColor faded(QColor colour, float alpha) {
+  colour.setAlphaF(alpha);
+  return colour;
+}
+
+QColor eventColour() {
+  return theme().faint_text;
+}
+QColor rotationColour() {
+  return theme().accent;
+}
+
+}  // namespace
+
+QColor windowColour(WindowClass window_class) {
+  switch (window_class) {
+    case WindowClass::Complete:
+      return theme().good;
+    case WindowClass::Partial:
+      return theme().warning;
+    case WindowClass::Missed:
+      break;
+  }
+  return theme().bad;
+}
+
+QRectF Timeline::curveArea() const {
+  return {kSide_px, kHeader_px, std::max(1.0, width() - 2.0 * kSide_px),
+          std::max(1.0, height() - kHeader_px - kFooter_px - kTicks_px - 3.0)};
+}
+
+QRectF Timeline::tickArea() const {
+  const QRectF curves = curveArea();
+  return {curves.left(), curves.bottom() + 3.0, curves.width(), kTicks_px};
+}
+
+void Timeline::paintEvent(QPaintEvent*) {
+  QPainter painter(this);
+  painter.fillRect(rect(), theme().window);
+  painter.fillRect(curveArea(), theme().panel);
+  painter.fillRect(tickArea(), theme().panel);
+  if (!(end_s_ > begin_s_)) {
+    painter.setPen(theme().faint_text);
+    painter.drawText(curveArea(), Qt::AlignCenter, tr("No recording"));
+    return;
+  }
+  paintAxis(painter);
+  painter.save();
+  painter.setClipRect(QRectF(curveArea().topLeft(), tickArea().bottomRight()));
+  paintCurve(painter, event_rate_, event_top_, eventColour(), true);
+  paintCurve(painter, rotation_rate_, rotation_top_, rotationColour(), false);
+  paintTicks(painter);
+  painter.restore();
+  paintHeader(painter);
+  paintCursor(painter);
+  if (hasFocus()) {
+    painter.setPen(QPen(faded(theme().accent, 0.6f), 1));
+    painter.setBrush(Qt::NoBrush);
+    painter.drawRect(QRectF(curveArea().topLeft(), tickArea().bottomRight()).adjusted(-1, -1, 0, 0));
+  }
+}
+
+// Left: the curves' values at the cursor. Right: how many windows of each kind.
+void Timeline::paintHeader(QPainter& painter) const {
+  const QFontMetrics metrics = painter.fontMetrics();
+  double x = curveArea().left();
+  const auto word = [&](const QColor& colour, const QString& text) {
+    painter.fillRect(QRectF(x, 8.0, 10.0, 8.0), colour);
+    painter.setPen(theme().text);
+    painter.drawText(QPointF(x + 15.0, kHeader_px - 6.0), text);
+    x += 15.0 + metrics.horizontalAdvance(text) + 18.0;
+  };
+  const auto valueAt = [&](const RateCurve& curve) {
+    const std::size_t bin = curve.binAt(time_s_);
+    return bin < curve.values.size() ? static_cast<double>(curve.values[bin]) : NAN;
+  };
+  const double events_s = valueAt(event_rate_), deg_s = valueAt(rotation_rate_);
+  if (!event_rate_.values.empty())
+    word(eventColour(), std::isfinite(events_s) ? tr("events %1").arg(rateText(events_s)) : tr("events"));
+  if (!rotation_rate_.values.empty())
+    word(rotationColour(), std::isfinite(deg_s) ? tr("rotation %1").arg(turnText(deg_s)) : tr("rotation"));
+  if (windows_.empty()) return;
+  ColumnCounts counts{};
+  for (const WindowReport& window : windows_) ++counts[static_cast<std::size_t>(windowClass(window.outcome))];
+  const std::array<QString, 3> words = {tr("complete %1").arg(counts[0]), tr("partial %1").arg(counts[1]),
+                                        tr("missed %1").arg(counts[2])};
+  double needed = -18.0;
+  for (const QString& text : words) needed += 33.0 + metrics.horizontalAdvance(text);
+  x = std::max(x, curveArea().right() - needed);
+  for (std::size_t k = 0; k < words.size(); ++k) word(windowColour(static_cast<WindowClass>(k)), words[k]);
+}
+
+void Timeline::paintAxis(QPainter& painter) const {
+  const QRectF curves = curveArea(), ticks = tickArea();
+  const double step_s = labelStep_s(visible_end_s_ - visible_begin_s_, curves.width());
+  const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(step_s) - 1e-9)));
+  for (double at_s = std::ceil(visible_begin_s_ / step_s) * step_s; at_s <= visible_end_s_ + 1e-9;
+       at_s += step_s) {
+    const double x = xOf(at_s);
+    painter.setPen(theme().grid_line);
+    painter.drawLine(QPointF(x, curves.top()), QPointF(x, ticks.bottom()));
+    painter.setPen(theme().faint_text);
+    painter.drawText(QRectF(x - 40.0, ticks.bottom(), 80.0, kFooter_px), Qt::AlignCenter,
+                     tr("%1 s").arg(at_s, 0, 'f', decimals));
+  }
+  painter.setPen(eventColour());
+  if (!event_rate_.values.empty())
+    painter.drawText(QRectF(0.0, curves.top() - 2.0, kSide_px - 5.0, 16.0), Qt::AlignRight | Qt::AlignVCenter,
+                     rateText(event_top_));
+  painter.setPen(rotationColour());
+  if (!rotation_rate_.values.empty())
+    painter.drawText(QRectF(curves.right() + 5.0, curves.top() - 2.0, kSide_px - 5.0, 16.0),
+                     Qt::AlignLeft | Qt::AlignVCenter, turnText(rotation_top_));
+  painter.setPen(theme().faint_text);
+  painter.drawText(QRectF(0.0, ticks.top(), kSide_px - 5.0, ticks.height()),
+                   Qt::AlignRight | Qt::AlignVCenter, tr("windows"));
+}
+
+// Of the bins that fall into one pixel column, the largest: peaks stay however far one looks from.
+void Timeline::paintCurve(QPainter& painter, const RateCurve& curve, double top, const QColor& colour,
+                          bool filled) const {
+  const QRectF area = curveArea();
+  QPolygonF line;
+  const auto heightOf = [&](float value) {
+    return area.bottom() - 1.0 -
+           (area.height() - 3.0) * std::clamp(static_cast<double>(value) / top, 0.0, 1.0);
+  };
+  const auto last = static_cast<double>(curve.values.size());
+  const auto binOf = [&](double time_s) {
+    return std::clamp(std::floor((time_s - curve.begin_s) / curve.step_s), 0.0, last);
+  };
+  std::size_t done = static_cast<std::size_t>(binOf(visible_begin_s_));
+  const double first_x = std::max(area.left(), xOf(curve.begin_s));
+  for (double x = first_x; x <= std::min(area.right(), xOf(curve.end_s())); x += 1.0) {
+    const auto end = std::min(curve.values.size(), static_cast<std::size_t>(binOf(timeOf(x + 1.0))) + 1);
+    float most = NAN;
+    for (std::size_t bin = std::min(done, end - (end > 0)); bin < end; ++bin) {
+      const float value = curve.values[bin];
+      if (std::isfinite(value) && !(most >= value)) most = value;
+    }
+    done = end > 0 ? end - 1 : 0;
+    if (std::isfinite(most)) line << QPointF(x, heightOf(most));
+  }
+  if (line.size() < 2) return;
+  painter.setRenderHint(QPainter::Antialiasing);
+  if (filled) {
+    QPolygonF shape = line;
+    shape << QPointF(line.last().x(), area.bottom()) << QPointF(line.first().x(), area.bottom());
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(faded(colour, 0.25f));
+    painter.drawPolygon(shape);
+  }
+  painter.setPen(QPen(colour, 1.2));
+  painter.drawPolyline(line);
+  painter.setRenderHint(QPainter::Antialiasing, false);
+}
+
+std::vector<Timeline::ColumnCounts> Timeline::countColumns() const {
+  const QRectF area = tickArea();
+  std::vector<ColumnCounts> columns(static_cast<std::size_t>(area.width()) + 1, ColumnCounts{});
+  for (auto window = firstEndingAfter(visible_begin_s_); window != windows_.end(); ++window) {
+    if (window->time_s - window->half_width_s > visible_end_s_) break;
+    const double from = xOf(window->time_s - window->half_width_s) - area.left();
+    const double to = xOf(endOfWindow(*window)) - area.left();
+    // Wide windows are set apart by a pixel.
+    const double gap = to - from > 4.0 ? 1.0 : 0.0;
+    const auto begin = static_cast<std::size_t>(std::max(0.0, std::round(from)));
+    const auto end =
+        static_cast<std::size_t>(std::max(std::round(to) - gap, std::round(std::max(0.0, from)) + 1.0));
+    for (std::size_t column = begin; column < std::min(end, columns.size()); ++column)
+      ++columns[column][static_cast<std::size_t>(windowClass(window->outcome))];
+  }
+  return columns;
+}
+
+// A column that several windows share is divided among them, missed ones on top.
+void Timeline::paintTicks(QPainter& painter) const {
+  const QRectF area = tickArea();
+  const std::vector<ColumnCounts> columns = countColumns();
+  for (std::size_t column = 0; column < columns.size(); ++column) {
+    const int sum = columns[column][0] + columns[column][1] + columns[column][2];
+    if (sum == 0) continue;
+    double bottom = area.bottom();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double height = area.height() * columns[column][k] / sum;
+      painter.fillRect(QRectF(area.left() + static_cast<double>(column), bottom - height, 1.0, height),
+                       windowColour(static_cast<WindowClass>(k)));
+      bottom -= height;
+    }
+  }
+}
+
+void Timeline::paintCursor(QPainter& painter) const {
+  const double x = xOf(time_s_);
+  if (x < curveArea().left() - 1.0 || x > curveArea().right() + 1.0) return;
+  if (const auto window = windowAt(time_s_)) {
+    const double from = xOf(window->time_s - window->half_width_s);
+    painter.fillRect(QRectF(from, curveArea().top(), xOf(endOfWindow(*window)) - from, curveArea().height()),
+                     faded(theme().accent, 0.18f));
+  }
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.setPen(QPen(theme().text, 1.5));
+  painter.drawLine(QPointF(x, curveArea().top() - 2.0), QPointF(x, tickArea().bottom()));
+  QPainterPath handle;
+  handle.addPolygon(
+      QPolygonF({QPointF(x - 5.0, curveArea().top() - 6.0), QPointF(x + 5.0, curveArea().top() - 6.0),
+                 QPointF(x, curveArea().top() + 1.0)}));
+  painter.fillPath(handle, theme().text);
+}
+
+}  // namespace evical::ui
