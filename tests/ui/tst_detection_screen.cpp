@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/base/time.h"
+#include "core/pipeline/recording_pass.h"
+#include "core/pipeline/simulation.h"
+#include "core/synthetic/scenario_yaml.h"
+#include "ui/detection/burst_band.h"
+#include "ui/detection/event_window_reader.h"
+#include "ui/detection/newest_request_worker.h"
+#include "ui/detection/window_analysis.h"
+
+#include <QTemporaryDir>
+#include <QTest>
+
+#include <atomic>
+#include <ctime>
+
+using namespace evical;
+using namespace evical::ui;
+
+namespace {
+
+// Two seconds of the everyday recording, and what the front end says about them.
+struct Recorded {
+  QTemporaryDir folder;
+  Session session;
+  RecordingPass pass;
+
+  Recorded() {
+    Scenario scenario = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/davis346.yaml");
+    scenario.duration_s = 2.0;
+    const SimulationSummary files = simulate(scenario, folder.path().toStdString(), {});
+    session = readSession(files.session);
+    pass = readAndDetect(session, {});
+  }
+  std::shared_ptr<const BoardObservations> observations() const {
+    return std::make_shared<BoardObservations>(pass.cameras.front());
+  }
+};
+
+// A burst band over the whole recording, and questions to ask of it.
+struct Asked {
+  const Recorded& recorded;
+  EventWindowReader reader;
+  std::unique_ptr<BurstBand> band;
+  WindowQuestion question;
+
+  explicit Asked(const Recorded& from)
+      : recorded(from), reader(from.session, 0, from.folder.path().toStdString(), [] {}) {
+    for (int k = 0; k < 2000 && !reader.overview().finished; ++k) QTest::qWait(5);
+    const RecordingOverview overview = reader.overview();
+    band = std::make_unique<BurstBand>(reader.cache(), overview.resolution_px, BurstOptions{});
+    question.start_ns = overview.start_ns;
+    question.scene = std::make_shared<BoardScene>(from.session.board, overview.resolution_px,
+                                                  from.session.cameras.front().intrinsics);
+  }
+  WindowAnalysis at(const WindowReport& window) {
+    question.time_s = window.time_s;
+    question.half_width_s = window.half_width_s;
+    return again();
+  }
+  WindowAnalysis again() {
+    const auto at_ns = [&](double time_s) { return question.start_ns + nanosecondsFrom(time_s); };
+    const TimeSpan needed = neededBursts_s(question);
+    if (!band->cover(at_ns(needed.begin_s), at_ns(needed.end_s))) qFatal("not read that far");
+    WindowAnalysis analysis = trackWindow(band->history(), question);
+    searchWindow(band->history(), question, analysis);
+    return analysis;
+  }
+};
+
+}  // namespace
+
+class TestDetectionScreen : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void initTestCase() { recorded_ = std::make_unique<Recorded>(); }
+
+  void reader_findsWhatThePassRead() {
+    Asked asked(*recorded_);
+    const RecordingOverview overview = asked.reader.overview();
+    QVERIFY(overview.finished);
+    QVERIFY2(overview.error.empty(), overview.error.c_str());
+    QCOMPARE(overview.start_ns, recorded_->pass.start_ns);
+    QCOMPARE(asked.reader.cache()->eventCount(), recorded_->pass.cameras.front().events);
+    QVERIFY(std::abs(overview.read_until_s - 2.0) < 0.01);
+    std::vector<Event> since_start;
+    asked.reader.cache()->gather(overview.start_ns, std::numeric_limits<std::int64_t>::max(), since_start);
+    double events = 0.0;
+    for (const float rate : overview.event_rate.values) events += static_cast<double>(0.01f * rate);
+    QVERIFY(std::abs(events - static_cast<double>(since_start.size())) < 10.0);
+    QVERIFY(std::abs(static_cast<double>(overview.rotation_rate.values.size()) - 200.0) <= 1.0);
+  }
+
+  void cache_givesWhatLiesBetweenTwoTimes() {
+    Asked asked(*recorded_);
+    const auto cache = asked.reader.cache();
+    std::vector<Event> all, part;
+    cache->gather(std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max(), all);
+    QCOMPARE(all.size(), static_cast<std::size_t>(cache->eventCount()));
+    const std::int64_t begin_ns = asked.question.start_ns + 700'000'000, end_ns = begin_ns + 50'000'000;
+    cache->gather(begin_ns, end_ns, part);
+    std::erase_if(all, [&](const Event& e) { return e.time_ns < begin_ns || e.time_ns >= end_ns; });
+    QVERIFY(!part.empty());
+    QCOMPARE(part.size(), all.size());
+    const auto same = [](const Event& a, const Event& b) {
+      return a.time_ns == b.time_ns && a.x_px == b.x_px && a.y_px == b.y_px && a.brighter == b.brighter;
+    };
+    QVERIFY(std::equal(part.begin(), part.end(), all.begin(), same));
+  }
+
+  void reader_saysWhatIsWrong() {
+    Session session = recorded_->session;
+    session.recording = "/nowhere/recording.bag";
+    std::atomic<int> told = 0;
+    EventWindowReader reader(session, 0, recorded_->folder.path().toStdString(), [&] { ++told; });
+    QTRY_VERIFY(told > 0);
+    QVERIFY2(reader.overview().error.find("/nowhere/recording.bag") != std::string::npos,
+             reader.overview().error.c_str());
+  }
+
+  void worker_doesTheNewestRequestOnly() {
+    std::atomic<int> done = 0, last = 0;
+    std::mutex gate;
+    gate.lock();
+    NewestRequestWorker<int> worker([&](const int& request) {
+      const std::lock_guard wait(gate);
+      last = request;
+      ++done;
+    });
+    for (int k = 1; k <= 50; ++k) worker.post(k);
+    gate.unlock();
+    QTRY_COMPARE(last.load(), 50);
+    QVERIFY(done <= 2);
+  }
+
+  // The window's own options and the same bursts: the same circles, far within their sigma.
+  void analysis_tracksAsThePassDid() {
+    Asked asked(*recorded_);
+    asked.question.observations = recorded_->observations();
+    int compared = 0;
+    double worst = 0.0;
+    for (const BoardView& view : asked.question.observations->views) {
+      const auto& windows = asked.question.observations->windows;
+      const auto window = std::find_if(windows.begin(), windows.end(),
+                                       [&](const WindowReport& w) { return w.time_s == view.time_s; });
+      if (view.time_s < 0.2 || view.time_s > 1.7 || window == windows.end() || ++compared % 10 != 0) continue;
+      const WindowAnalysis analysis = asked.at(*window);
+      QVERIFY2(analysis.tracked, qPrintable(QString::number(view.time_s)));
+      QCOMPARE(analysis.circles.size(), view.circles.size());
+      for (std::size_t k = 0; k < view.circles.size(); ++k) {
+        const double sigma = std::sqrt(0.5 * view.circles[k].covariance_px2.trace());
+        worst = std::max(worst, (analysis.circles[k].centre_px - view.circles[k].centre_px).norm() / sigma);
+      }
+    }
+    QVERIFY(compared > 30);
+    qInfo("worst difference %.3f sigma in %d windows", worst, compared / 10);
+    QVERIFY(worst < 0.5);
+  }
+
+  void analysis_findsTheBoardFromNothingAndFast() {
+    Asked asked(*recorded_);
+    int found = 0, asked_for = 0;
+    double slowest_s = 0.0;
+    const auto& windows = recorded_->pass.cameras.front().windows;
+    for (std::size_t k = 10; k + 10 < windows.size(); k += 8, ++asked_for) {
+      const std::clock_t begin = std::clock();
+      const WindowAnalysis analysis = asked.at(windows[k]);
+      slowest_s = std::max(slowest_s, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+      found += analysis.outcome == WindowOutcome::Complete || analysis.outcome == WindowOutcome::Partial;
+      QVERIFY(!analysis.tracked);
+      QVERIFY(!analysis.stages.empty());
+    }
+    qInfo("board in %d of %d, slowest %.0f ms", found, asked_for, 1e3 * slowest_s);
+    QVERIFY(found > asked_for / 2);
+  }
+
+  void analysis_saysWhereItWasLost() {
+    Asked asked(*recorded_);
+    asked.question.options.detection.try_both = false;
+    asked.question.options.normal_flow.least_cluster_px = 10000;
+    const WindowAnalysis analysis = asked.at(recorded_->pass.cameras.front().windows[40]);
+    QCOMPARE(analysis.outcome, WindowOutcome::TooFewCircles);
+    std::string failed;
+    for (const StageReport& stage : analysis.stages) {
+      if (stage.verdict == StageVerdict::Failed) failed += stage.stage;
+    }
+    QCOMPARE(failed, std::string("moving circles"));
+  }
+
+ private:
+  std::unique_ptr<Recorded> recorded_;
+};
+
+QTEST_MAIN(TestDetectionScreen)
+#include "tst_detection_screen.moc"

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/detection/event_cache.h"
+
+#include "core/base/error.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <system_error>
+
+namespace evical::ui {
+namespace {
+
+constexpr std::size_t kBlockEvents = 8192;
+constexpr std::int64_t kLongestBlock_ns = std::numeric_limits<std::uint32_t>::max();
+
+}  // namespace
+
+EventCache::EventCache(const std::filesystem::path& folder)
+    : folder_(folder),
+      complete_until_ns_(std::numeric_limits<std::int64_t>::min()),
+      last_written_ns_(complete_until_ns_) {
+  std::error_code ignored;
+  std::filesystem::create_directories(folder, ignored);
+  std::string path = (folder / "evical_events_XXXXXX").string();
+  file_ = mkostemp(path.data(), O_CLOEXEC);
+  if (file_ < 0) {
+    throw badInput(folder.string(), std::string("no temporary file can be made: ") + std::strerror(errno),
+                   "Make the folder writable");
+  }
+  unlink(path.c_str());  // the file itself lives until it is closed
+  open_.reserve(kBlockEvents);
+}
+
+EventCache::~EventCache() {
+  close(file_);
+}
+
+void EventCache::append(EventSpan events) {
+  for (const Event& event : events) {
+    if (open_.size() == kBlockEvents || (!open_.empty() && event.time_ns - open_first_ns_ > kLongestBlock_ns))
+      writeBlock();
+    if (open_.empty()) open_first_ns_ = event.time_ns;
+    last_ns_ = event.time_ns;
+    open_.push_back({static_cast<std::uint32_t>(event.time_ns - open_first_ns_), event.x_px,
+                     static_cast<std::uint16_t>(2 * event.y_px + event.brighter)});
+  }
+}
+
+void EventCache::finish() {
+  if (!open_.empty()) writeBlock();
+  const std::lock_guard lock(mutex_);
+  complete_until_ns_ = std::numeric_limits<std::int64_t>::max();
+}
+
+void EventCache::writeBlock() {
+  const auto* bytes = reinterpret_cast<const char*>(open_.data());
+  std::size_t left = open_.size() * sizeof(Stored);
+  auto position = static_cast<off_t>(written_ * sizeof(Stored));
+  while (left > 0) {
+    const ssize_t done = pwrite(file_, bytes, left, position);
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) {
+      throw calibrationFailed(folder_.string(),
+                              std::string("events cannot be cached: ") + std::strerror(errno),
+                              "Make room there: 8 bytes an event are needed");
+    }
+    bytes += done;
+    position += done;
+    left -= static_cast<std::size_t>(done);
+  }
+  const std::lock_guard lock(mutex_);
+  blocks_.push_back({open_first_ns_, written_, open_.size()});
+  written_ += open_.size();
+  complete_until_ns_ = last_written_ns_ = last_ns_;
+  open_.clear();
+}
+
+std::int64_t EventCache::completeUntil_ns() const {
+  const std::lock_guard lock(mutex_);
+  return complete_until_ns_;
+}
+
+std::int64_t EventCache::lastEvent_ns() const {
+  const std::lock_guard lock(mutex_);
+  return last_written_ns_;
+}
+
+std::uint64_t EventCache::eventCount() const {
+  const std::lock_guard lock(mutex_);
+  return written_;
+}
+
+void EventCache::readBlock(const Block& block, std::vector<Stored>& stored) const {
+  stored.resize(block.count);
+  auto* bytes = reinterpret_cast<char*>(stored.data());
+  std::size_t left = stored.size() * sizeof(Stored);
+  auto position = static_cast<off_t>(block.offset * sizeof(Stored));
+  while (left > 0) {
+    const ssize_t done = pread(file_, bytes, left, position);
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0)
+      throw calibrationFailed(folder_.string(), "cached events cannot be read", "Open the session again");
+    bytes += done;
+    position += done;
+    left -= static_cast<std::size_t>(done);
+  }
+}
+
+void EventCache::gather(std::int64_t begin_ns, std::int64_t end_ns, std::vector<Event>& events) const {
+  std::vector<Block> needed;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto later = [](std::int64_t time_ns, const Block& block) { return time_ns <= block.first_ns; };
+    auto block = std::upper_bound(blocks_.begin(), blocks_.end(), begin_ns, later);
+    if (block != blocks_.begin()) --block;
+    for (; block != blocks_.end() && block->first_ns < end_ns; ++block) needed.push_back(*block);
+  }
+  std::vector<Stored> stored;
+  for (const Block& block : needed) {
+    readBlock(block, stored);
+    for (const Stored& event : stored) {
+      const std::int64_t time_ns = block.first_ns + event.after_ns;
+      if (time_ns < begin_ns || time_ns >= end_ns) continue;
+      events.push_back({time_ns, event.x_px, static_cast<std::uint16_t>(event.y_px_and_brighter >> 1),
+                        (event.y_px_and_brighter & 1) != 0});
+    }
+  }
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/detection/event_window_reader.h"
+
+#include "core/base/error.h"
+#include "core/base/time.h"
+#include "core/recording/recording_reader.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <utility>
+
+namespace evical::ui {
+namespace {
+
+constexpr double kBin_s = 0.01;
+constexpr std::size_t kMostBins = 10'000'000;  // a day; a clock that jumps further has no curve there
+constexpr std::size_t kBatchEvents = 50'000;   // put in order together, as the calibration does
+constexpr auto kTellEvery = std::chrono::milliseconds(100);
+
+// Sums and counts by bin of time.
+class Bins {
+ public:
+  void add(double time_s, double value) {
+    const double bin = std::floor(time_s / kBin_s);
+    if (!(bin >= 0.0) || bin >= static_cast<double>(kMostBins)) return;
+    const auto k = static_cast<std::size_t>(bin);
+    if (k >= counts_.size()) {
+      counts_.resize(k + 1, 0);
+      sums_.resize(k + 1, 0.0f);
+    }
+    ++counts_[k];
+    sums_[k] += static_cast<float>(value);
+  }
+  RateCurve perSecond() const {
+    RateCurve curve{0.0, kBin_s, {}};
+    for (const std::uint32_t count : counts_) curve.values.push_back(static_cast<float>(count / kBin_s));
+    return curve;
+  }
+  RateCurve means() const {
+    RateCurve curve{0.0, kBin_s, {}};
+    for (std::size_t k = 0; k < counts_.size(); ++k)
+      curve.values.push_back(counts_[k] > 0 ? sums_[k] / static_cast<float>(counts_[k])
+                                            : std::numeric_limits<float>::quiet_NaN());
+    return curve;
+  }
+
+ private:
+  std::vector<std::uint32_t> counts_;
+  std::vector<float> sums_;
+};
+
+std::string wordsOf(const CalibrationError& error) {
+  return error.place() + ": " + error.problem() + (error.advice().empty() ? "" : ". " + error.advice());
+}
+
+}  // namespace
+
+// The reading thread's own state.
+class EventWindowReader::Pass {
+ public:
+  Pass(const Session& session, std::size_t camera, EventCache& cache)
+      : session_(session), cache_(cache), reader_(openRecording(session.recording)) {
+    std::vector<std::size_t> selected;
+    for (const SessionCamera& other : session.cameras)
+      selected.push_back(findStream(*reader_, other.stream, StreamType::Events));
+    events_stream_ = selected[camera];
+    for (const SessionImu& imu : session.imus)
+      selected.push_back(findStream(*reader_, imu.stream, StreamType::Imu));
+    if (!session.imus.empty()) {
+      imu_stream_ = selected[session.cameras.size() + session.referenceImu()];
+      to_rad_s_ = radiansPerSecond(session.imus[session.referenceImu()].angular_rate_unit);
+    }
+    reader_->select(selected);
+    const SessionCamera& own = session.cameras[camera];
+    resolution_px_ =
+        own.resolution_px.known() ? own.resolution_px : reader_->streams()[events_stream_].resolution_px;
+    if (!resolution_px_.known() && own.intrinsics) resolution_px_ = own.intrinsics->resolution_px;
+    if (!resolution_px_.known())
+      throw badInput(own.name, "the recording does not say the sensor's resolution",
+                     "Give it in the session");
+  }
+
+  bool step() {
+    if (!reader_->read(packet_)) {
+      flush();
+      cache_.finish();
+      return false;
+    }
+    if (!start_ns_ && !packet_.events.empty()) start_ns_ = packet_.events.front().time_ns;
+    if (!start_ns_ && !packet_.imu_samples.empty()) start_ns_ = packet_.imu_samples.front().time_ns;
+    if (packet_.stream == events_stream_) {
+      pending_.insert(pending_.end(), packet_.events.begin(), packet_.events.end());
+      if (pending_.size() >= kBatchEvents) flush();
+    }
+    if (imu_stream_ && packet_.stream == *imu_stream_) {
+      for (const ImuSample& sample : packet_.imu_samples)
+        rotation_.add(secondsSince(*start_ns_, sample.time_ns), to_rad_s_ * sample.angular_rate_rad_s.norm());
+    }
+    return true;
+  }
+
+  void describe(RecordingOverview& overview) const {
+    overview.started = start_ns_.has_value();
+    overview.start_ns = start_ns_.value_or(0);
+    overview.resolution_px = resolution_px_;
+    overview.read_until_s = start_ns_ && last_ns_ >= *start_ns_ ? secondsSince(*start_ns_, last_ns_) : 0.0;
+    overview.event_rate = events_.perSecond();
+    overview.rotation_rate = rotation_.means();
+  }
+  double fractionRead() const { return reader_->fractionRead(); }
+
+ private:
+  // The calibration's rules: sorted within a batch; late events and those outside are left out.
+  void flush() {
+    const auto earlier = [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; };
+    if (!std::is_sorted(pending_.begin(), pending_.end(), earlier))
+      std::stable_sort(pending_.begin(), pending_.end(), earlier);
+    std::erase_if(pending_, [&](const Event& event) {
+      return event.x_px >= resolution_px_.width_px || event.y_px >= resolution_px_.height_px ||
+             event.time_ns < last_ns_;
+    });
+    if (pending_.empty()) return;
+    cache_.append(pending_);
+    last_ns_ = pending_.back().time_ns;
+    for (const Event& event : pending_) events_.add(secondsSince(*start_ns_, event.time_ns), 0.0);
+    pending_.clear();
+  }
+
+  const Session& session_;
+  EventCache& cache_;
+  std::unique_ptr<RecordingReader> reader_;
+  std::size_t events_stream_ = 0;
+  std::optional<std::size_t> imu_stream_;
+  double to_rad_s_ = 1.0;
+  Resolution resolution_px_;
+  Packet packet_;
+  std::vector<Event> pending_;
+  std::optional<std::int64_t> start_ns_;
+  std::int64_t last_ns_ = std::numeric_limits<std::int64_t>::min();
+  Bins events_, rotation_;
+};
+
+EventWindowReader::EventWindowReader(const Session& session, std::size_t camera,
+                                     const std::filesystem::path& folder, std::function<void()> changed)
+    : session_(session),
+      camera_(camera),
+      folder_(folder),
+      changed_(std::move(changed)),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+RecordingOverview EventWindowReader::overview() const {
+  const std::lock_guard lock(mutex_);
+  return overview_;
+}
+
+std::shared_ptr<const EventCache> EventWindowReader::cache() const {
+  const std::lock_guard lock(mutex_);
+  return overview_.started ? cache_ : nullptr;
+}
+
+void EventWindowReader::publish(const Pass& pass, double fraction, bool finished) {
+  RecordingOverview overview;
+  pass.describe(overview);
+  overview.fraction_read = fraction;
+  overview.finished = finished;
+  {
+    const std::lock_guard lock(mutex_);
+    overview_ = std::move(overview);
+  }
+  changed_();
+}
+
+void EventWindowReader::run(const std::stop_token& stop) {
+  std::string error;
+  try {
+    auto cache = std::make_shared<EventCache>(folder_);
+    {
+      const std::lock_guard lock(mutex_);
+      cache_ = cache;
+    }
+    Pass pass(session_, camera_, *cache);
+    auto told = std::chrono::steady_clock::now();
+    while (pass.step()) {
+      if (stop.stop_requested()) return;
+      if (std::chrono::steady_clock::now() - told < kTellEvery) continue;
+      publish(pass, pass.fractionRead(), false);
+      told = std::chrono::steady_clock::now();
+    }
+    publish(pass, 1.0, true);
+    return;
+  } catch (const CalibrationError& problem) {
+    error = wordsOf(problem);
+  } catch (const std::exception& problem) {
+    error = problem.what();
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    overview_.error = error;
+  }
+  changed_();
+}
+
+}  // namespace evical::ui
