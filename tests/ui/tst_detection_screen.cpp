@@ -4,15 +4,23 @@
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "ui/detection/burst_band.h"
+#include "ui/detection/detection_screen.h"
+#include "ui/detection/event_view.h"
 #include "ui/detection/event_window_reader.h"
 #include "ui/detection/newest_request_worker.h"
+#include "ui/detection/timeline.h"
 #include "ui/detection/window_analysis.h"
+#include "ui/detection/window_panel.h"
+#include "ui/theme/theme.h"
 
+#include <QDir>
+#include <QSignalSpy>
 #include <QTemporaryDir>
 #include <QTest>
 
 #include <atomic>
 #include <ctime>
+#include <thread>
 
 using namespace evical;
 using namespace evical::ui;
@@ -31,6 +39,13 @@ struct Recorded {
     const SimulationSummary files = simulate(scenario, folder.path().toStdString(), {});
     session = readSession(files.session);
     pass = readAndDetect(session, {});
+  }
+  // A window in the middle, with all of its circles.
+  WindowReport goodWindow() const {
+    for (const WindowReport& window : pass.cameras.front().windows) {
+      if (window.time_s > 0.8 && window.outcome == WindowOutcome::Complete) return window;
+    }
+    return pass.cameras.front().windows.at(pass.cameras.front().windows.size() / 2);
   }
   std::shared_ptr<const BoardObservations> observations() const {
     return std::make_shared<BoardObservations>(pass.cameras.front());
@@ -67,6 +82,24 @@ struct Asked {
     return analysis;
   }
 };
+
+// The screen as it is once the recording has been read and the window at the cursor analysed.
+void settle(DetectionScreen& screen) {
+  QTRY_VERIFY_WITH_TIMEOUT(screen.timeline().end_s() > 1.9, 20000);
+  QTRY_VERIFY_WITH_TIMEOUT(screen.analysis() && !screen.analysis()->searches.empty() &&
+                               std::abs(screen.analysis()->time_s - screen.time_s()) < 1e-9 &&
+                               screen.view().frame() &&
+                               std::abs(screen.view().frame()->time_s - screen.time_s()) < 1e-9,
+                           20000);
+}
+
+int pixelsOf(const QImage& image, const QColor& colour) {
+  int count = 0;
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) count += image.pixelColor(x, y) == colour;
+  }
+  return count;
+}
 
 }  // namespace
 
@@ -186,6 +219,157 @@ class TestDetectionScreen : public QObject {
       if (stage.verdict == StageVerdict::Failed) failed += stage.stage;
     }
     QCOMPARE(failed, std::string("moving circles"));
+  }
+
+  void screen_withoutRecordingSaysSo() {
+    DetectionScreen screen;
+    screen.resize(1000, 650);
+    screen.show();
+    QVERIFY(!screen.view().frame());
+    QTest::keyClick(&screen, Qt::Key_Space);
+    QVERIFY(!screen.isPlaying());
+  }
+
+  void screen_showsTheWindowAtTheCursor() {
+    DetectionScreen screen;
+    screen.resize(1000, 650);
+    screen.show();
+    screen.setSession(recorded_->session);
+    screen.setObservations(recorded_->pass.cameras.front());
+    const WindowReport window = recorded_->goodWindow();
+    screen.setTime(window.time_s);
+    settle(screen);
+    QVERIFY(screen.view().frame()->events > 1000);
+    QVERIFY(screen.analysis()->tracked);
+    QVERIFY2(screen.panel().text().contains("In the last run: complete"), qPrintable(screen.panel().text()));
+    const int with = pixelsOf(screen.view().grab().toImage(), theme().good);
+    screen.setLayerVisible(Layer::Ellipses, false);
+    QVERIFY(with > 100 + pixelsOf(screen.view().grab().toImage(), theme().good));
+  }
+
+  void screen_optionChangesTheWindowInView() {
+    DetectionScreen screen;
+    screen.resize(1000, 650);
+    screen.show();
+    screen.setSession(recorded_->session);
+    screen.setTime(recorded_->goodWindow().time_s);
+    settle(screen);
+    QCOMPARE(screen.analysis()->outcome, WindowOutcome::Complete);
+    FrontEndOptions options = recorded_->session.options.front_end;
+    options.grid.least_circles = 500;
+    screen.setOptions(options);
+    QTRY_COMPARE(screen.analysis()->outcome, WindowOutcome::TooFewCircles);
+    QVERIFY2(screen.panel().text().contains("at least 500 needed"), qPrintable(screen.panel().text()));
+    screen.setOptions(recorded_->session.options.front_end);
+    QTRY_COMPARE(screen.analysis()->outcome, WindowOutcome::Complete);
+  }
+
+  void screen_stepsScrubsAndPlays() {
+    DetectionScreen screen;
+    screen.resize(1000, 650);
+    screen.show();
+    screen.setSession(recorded_->session);
+    screen.setObservations(recorded_->pass.cameras.front());
+    const WindowReport window = recorded_->goodWindow();
+    screen.setTime(window.time_s);
+    settle(screen);
+    QSignalSpy selected(&screen, &DetectionScreen::timeSelected);
+    QTest::keyClick(&screen.view(), Qt::Key_Right);
+    QVERIFY(screen.time_s() > window.time_s);
+    QTest::keyClick(&screen.view(), Qt::Key_Left);
+    QVERIFY(std::abs(screen.time_s() - window.time_s) < 1e-9);
+    QTest::mouseClick(&screen.timeline(), Qt::LeftButton, {},
+                      {static_cast<int>(screen.timeline().xOf(0.5)), 40});
+    QVERIFY(std::abs(screen.time_s() - 0.5) < 0.01);
+    QCOMPARE(selected.size(), 3);
+    QTest::keyClick(&screen.view(), Qt::Key_Space);
+    QVERIFY(screen.isPlaying());
+    QTRY_VERIFY(screen.time_s() > 0.53);
+    QTest::keyClick(&screen.view(), Qt::Key_Space);
+    QVERIFY(!screen.isPlaying());
+    settle(screen);
+  }
+
+  void screen_saysWhyARecordingCannotBeRead() {
+    DetectionScreen screen;
+    screen.resize(1000, 650);
+    screen.show();
+    Session session = recorded_->session;
+    session.recording = "/nowhere/recording.bag";
+    screen.setSession(session);
+    QTest::qWait(100);
+    QVERIFY(!screen.view().frame());
+    QVERIFY(screen.view().grab().toImage() != DetectionScreen().view().grab().toImage());
+  }
+
+  void live_windowsAreShownAsTheyAreFound() {
+    DetectionScreen screen;
+    screen.resize(1000, 650);
+    screen.show();
+    screen.setSession(recorded_->session);
+    screen.setLive(true);
+    std::jthread job([session = recorded_->session, observers = screen.liveObservers()] {
+      readAndDetect(session, {}, observers);
+    });
+    QTRY_VERIFY_WITH_TIMEOUT(screen.analysis() && screen.analysis()->tracked, 20000);
+    QTRY_VERIFY_WITH_TIMEOUT(!screen.timeline().windows().empty() && screen.view().frame(), 20000);
+    QVERIFY(!screen.analysis()->circles.empty());
+    job.join();
+    screen.setLive(false);
+    screen.setObservations(recorded_->pass.cameras.front());
+    settle(screen);
+  }
+
+  void live_mayOutliveTheScreen() {
+    auto screen = std::make_unique<DetectionScreen>();
+    screen->setSession(recorded_->session);
+    screen->setLive(true);
+    std::jthread job([session = recorded_->session, observers = screen->liveObservers()] {
+      readAndDetect(session, {}, observers);
+    });
+    QTest::qWait(50);
+    screen.reset();
+  }
+
+  void screenshots_data() {
+    QTest::addColumn<QSize>("size");
+    QTest::addColumn<bool>("dark");
+    QTest::newRow("1000x650_light") << QSize(1000, 650) << false;
+    QTest::newRow("1000x650_dark") << QSize(1000, 650) << true;
+    QTest::newRow("1640x930_light") << QSize(1640, 930) << false;
+    QTest::newRow("1640x930_dark") << QSize(1640, 930) << true;
+  }
+  void screenshots() {
+    QFETCH(QSize, size);
+    QFETCH(bool, dark);
+    applyTheme(*qApp, dark ? Appearance::Dark : Appearance::Light);
+    QDir().mkpath(EVICAL_SCREENSHOTS);
+    DetectionScreen screen;
+    screen.resize(size);
+    screen.show();
+    const auto save = [&](const QString& name) {
+      return screen.grab().save(QString(EVICAL_SCREENSHOTS "/%1_%2.png").arg(name, QTest::currentDataTag()));
+    };
+    QVERIFY(save("detection_empty"));
+    screen.setSession(recorded_->session);
+    screen.setObservations(recorded_->pass.cameras.front());
+    screen.setTime(recorded_->goodWindow().time_s);
+    settle(screen);
+    QVERIFY(save("detection_surface"));
+    screen.setMode(SurfaceMode::NormalFlow);
+    screen.setLayerVisible(Layer::Grid, false);
+    screen.setLayerVisible(Layer::Pairs, true);
+    settle(screen);
+    QVERIFY(save("detection_flow"));
+    screen.setMode(SurfaceMode::Accumulated);
+    for (std::size_t k = 0; k < kLayerCount; ++k) screen.setLayerVisible(static_cast<Layer>(k), true);
+    FrontEndOptions options = recorded_->session.options.front_end;
+    options.grid.ambiguity_margin = 100;
+    options.tracking.least_inliers = 0.97;
+    screen.setOptions(options);
+    QTest::qWait(500);
+    QVERIFY(save("detection_all_layers"));
+    applyTheme(*qApp, Appearance::Light);
   }
 
  private:

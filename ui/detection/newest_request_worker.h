@@ -28,6 +28,12 @@ class NewestRequestWorker {
     changed_.notify_one();
   }
 
+  // For `handle`: is there something better to do?
+  bool hasNewer() {
+    const std::lock_guard lock(mutex_);
+    return next_.has_value();
+  }
+
  private:
   void run(const std::stop_token& stop) {
     for (;;) {

@@ -99,6 +99,10 @@ void addSearch(const SourceSearch& source, const WindowAnalysis& analysis, const
 }
 
 void addTracking(const WindowAnalysis& analysis, std::vector<StageReport>& stages) {
+  if (!analysis.prediction && analysis.tracked) {
+    stages.push_back({"prediction", StageVerdict::Passed, "from the window before: holds"});
+    return;
+  }
   if (!analysis.prediction) {
     stages.push_back({"prediction", StageVerdict::Note, "none: no view of the board shortly before"});
     return;

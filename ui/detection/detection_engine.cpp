@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/detection/detection_engine.h"
+
+#include "core/base/error.h"
+#include "core/base/time.h"
+#include "ui/detection/burst_band.h"
+
+#include <QStandardPaths>
+
+#include <exception>
+#include <utility>
+
+namespace evical::ui {
+namespace {
+
+std::filesystem::path cacheFolder() {
+  const QString folder = QStandardPaths::writableLocation(QStandardPaths::CacheLocation);
+  return (folder.isEmpty() ? QStandardPaths::writableLocation(QStandardPaths::TempLocation) : folder)
+      .toStdString();
+}
+
+void gather(const EventCache& cache, std::int64_t start_ns, double begin_s, double end_s,
+            std::vector<Event>& events) {
+  cache.gather(start_ns + nanosecondsFrom(begin_s), start_ns + nanosecondsFrom(end_s), events);
+}
+
+}  // namespace
+
+// State of the analysing thread.
+class DetectionEngine::Analyst {
+ public:
+  explicit Analyst(DetectionEngine& engine) : engine_(engine) {}
+
+  void handle(const AnalysisTask& task) {
+    prepare(task);
+    WindowQuestion question;
+    question.start_ns = task.source.start_ns;
+    question.time_s = task.wish.time_s;
+    question.half_width_s = task.wish.half_width_s;
+    question.flow = task.wish.flow || task.wish.style.mode == SurfaceMode::NormalFlow;
+    question.scene = scene_;
+    question.options = task.options;
+    question.observations = task.observations;
+    const TimeSpan needed = neededBursts_s(question);
+    const auto at_ns = [&](double time_s) { return question.start_ns + nanosecondsFrom(time_s); };
+    band_->cover(at_ns(needed.begin_s), at_ns(needed.end_s));
+    WindowAnalysis analysis = trackWindow(band_->history(), question);
+    if (task.wish.style.mode == SurfaceMode::NormalFlow) renderArcs(task, analysis);
+    engine_.put(analysis, task.source.opening);
+    if (!task.wish.search || engine_.analysis_worker_->hasNewer()) return;
+    searchWindow(band_->history(), question, analysis);
+    if (task.wish.style.mode == SurfaceMode::NormalFlow) renderArcs(task, analysis);
+    engine_.put(analysis, task.source.opening);
+  }
+
+ private:
+  void prepare(const AnalysisTask& task) {
+    const Source& source = task.source;
+    if (source.session != session_ || source.camera != camera_ || !scene_) {
+      session_ = source.session;
+      camera_ = source.camera;
+      scene_ = std::make_shared<BoardScene>(session_->board, source.resolution_px,
+                                            session_->cameras[camera_].intrinsics);
+      band_.reset();
+    }
+    if (band_ && task.options.bursts == bursts_ && source.cache == cache_) return;
+    bursts_ = task.options.bursts;
+    cache_ = source.cache;
+    band_.emplace(cache_, source.resolution_px, bursts_);
+  }
+
+  void renderArcs(const AnalysisTask& task, const WindowAnalysis& analysis) {
+    std::vector<Event> events;
+    gather(*task.source.cache, task.source.start_ns, analysis.time_s - analysis.arcs_half_width_s,
+           analysis.time_s + analysis.arcs_half_width_s, events);
+    SurfaceFrame frame =
+        renderFlow(events, analysis.arcs.flow, task.source.start_ns + nanosecondsFrom(analysis.time_s),
+                   task.source.resolution_px, task.wish.style);
+    frame.time_s = analysis.time_s;
+    engine_.put(std::move(frame), task.source.opening);
+  }
+
+  DetectionEngine& engine_;
+  std::shared_ptr<const Session> session_;
+  std::size_t camera_ = 0;
+  std::shared_ptr<const BoardScene> scene_;
+  BurstOptions bursts_;
+  std::shared_ptr<const EventCache> cache_;
+  std::optional<BurstBand> band_;
+};
+
+DetectionEngine::DetectionEngine(QObject* parent)
+    : QObject(parent), analyst_(std::make_unique<Analyst>(*this)) {
+  renderer_ =
+      std::make_unique<NewestRequestWorker<RenderTask>>([this](const RenderTask& task) { render(task); });
+  analysis_worker_ = std::make_unique<NewestRequestWorker<AnalysisTask>>([this](const AnalysisTask& task) {
+    try {
+      analyst_->handle(task);
+    } catch (const CalibrationError&) {
+      // The cache cannot be read; the renderer's picture stays empty, and the reader has said why.
+    }
+  });
+}
+
+DetectionEngine::~DetectionEngine() = default;
+
+void DetectionEngine::open(const Session& session, std::size_t camera) {
+  session_ = std::make_shared<Session>(session);
+  camera_ = camera;
+  observations_.reset();
+  ++opening_;
+  frames_.put(nullptr);
+  frames_.take();
+  analyses_.put(nullptr);
+  analyses_.take();
+  reader_.reset();
+  reader_ = std::make_unique<EventWindowReader>(session, camera, cacheFolder(), [this] {
+    QMetaObject::invokeMethod(this, &DetectionEngine::overviewChanged, Qt::QueuedConnection);
+  });
+}
+
+void DetectionEngine::setObservations(std::shared_ptr<const BoardObservations> observations) {
+  observations_ = std::move(observations);
+}
+
+RecordingOverview DetectionEngine::overview() const {
+  return reader_ ? reader_->overview() : RecordingOverview{};
+}
+
+void DetectionEngine::show(const DetectionWish& wish) {
+  if (!reader_) return;
+  const RecordingOverview overview = reader_->overview();
+  const Source source{reader_->cache(), overview.start_ns, overview.resolution_px,
+                      session_,         camera_,           opening_};
+  if (!source.cache) return;
+  if (wish.style.mode != SurfaceMode::NormalFlow) renderer_->post({source, wish, nullptr});
+  analysis_worker_->post({source, wish, options_, observations_});
+}
+
+void DetectionEngine::showLive(std::shared_ptr<const LiveWindow> window, const SurfaceStyle& style) {
+  RenderTask task;
+  task.source.opening = opening_;
+  task.source.resolution_px = window->analysis->scene->resolution_px;
+  task.wish.style = style;
+  task.live = std::move(window);
+  renderer_->post(std::move(task));
+}
+
+void DetectionEngine::render(const RenderTask& task) {
+  SurfaceStyle style = task.wish.style;
+  if (task.live) {
+    style.mode = SurfaceMode::Accumulated;
+    SurfaceFrame frame =
+        renderEvents(task.live->bursts, task.live->middle_ns, task.source.resolution_px, style);
+    frame.time_s = task.live->time_s.value_or(0.0);
+    put(std::move(frame), task.source.opening);
+    return;
+  }
+  const DetectionWish& wish = task.wish;
+  std::vector<Event> events;
+  try {
+    if (style.mode == SurfaceMode::Decayed) {
+      gather(*task.source.cache, task.source.start_ns, wish.time_s - fadedAfter_s(style), wish.time_s,
+             events);
+    } else {
+      gather(*task.source.cache, task.source.start_ns, wish.time_s - wish.half_width_s,
+             wish.time_s + wish.half_width_s, events);
+    }
+  } catch (const CalibrationError&) {
+    events.clear();  // the file is gone; what the reader says tells more than an old picture
+  }
+  SurfaceFrame frame = renderEvents(events, task.source.start_ns + nanosecondsFrom(wish.time_s),
+                                    task.source.resolution_px, style);
+  frame.time_s = wish.time_s;
+  put(std::move(frame), task.source.opening);
+}
+
+void DetectionEngine::put(SurfaceFrame frame, int opening) {
+  if (opening != opening_) return;
+  if (frames_.put(std::make_shared<SurfaceFrame>(std::move(frame))))
+    QMetaObject::invokeMethod(this, &DetectionEngine::frameReady, Qt::QueuedConnection);
+}
+
+void DetectionEngine::put(const WindowAnalysis& analysis, int opening) {
+  if (opening != opening_) return;
+  if (analyses_.put(std::make_shared<WindowAnalysis>(analysis)))
+    QMetaObject::invokeMethod(this, &DetectionEngine::analysisReady, Qt::QueuedConnection);
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The work behind the detection screen, in three threads: one reads the recording, one draws the surface at
+// the cursor, one runs the front end on the window there. Only the newest wish of each kind is fulfilled.
+#pragma once
+
+#include "core/pipeline/session.h"
+#include "ui/detection/event_window_reader.h"
+#include "ui/detection/frame_mailbox.h"
+#include "ui/detection/live_detection.h"
+#include "ui/detection/newest_request_worker.h"
+#include "ui/detection/surface_frame.h"
+#include "ui/detection/window_analysis.h"
+
+#include <QObject>
+
+#include <atomic>
+#include <memory>
+
+namespace evical::ui {
+
+struct DetectionWish {
+  double time_s = 0.0, half_width_s = 0.01;
+  SurfaceStyle style;
+  bool search = true;  // from nothing, too
+  bool flow = true;    // normal flow, too
+};
+
+class DetectionEngine : public QObject {
+  Q_OBJECT
+
+ public:
+  explicit DetectionEngine(QObject* parent = nullptr);
+  ~DetectionEngine() override;
+
+  void open(const Session& session, std::size_t camera);
+  void setOptions(const FrontEndOptions& options) { options_ = options; }
+  void setObservations(std::shared_ptr<const BoardObservations> observations);
+  void show(const DetectionWish& wish);  // nothing before the recording is open
+  void showLive(std::shared_ptr<const LiveWindow> window, const SurfaceStyle& style);
+
+  bool isOpen() const { return reader_ != nullptr; }
+  RecordingOverview overview() const;
+  std::shared_ptr<const SurfaceFrame> takeFrame() { return frames_.take(); }
+  std::shared_ptr<const WindowAnalysis> takeAnalysis() { return analyses_.take(); }
+
+ signals:
+  void overviewChanged();
+  void frameReady();
+  void analysisReady();
+
+ private:
+  // What a session's windows share; made once, by the thread that first needs it.
+  struct Source {
+    std::shared_ptr<const EventCache> cache;
+    std::int64_t start_ns = 0;
+    Resolution resolution_px;
+    std::shared_ptr<const Session> session;
+    std::size_t camera = 0;
+    int opening = 0;
+  };
+  struct RenderTask {
+    Source source;
+    DetectionWish wish;
+    std::shared_ptr<const LiveWindow> live;  // in place of the cache
+  };
+  struct AnalysisTask {
+    Source source;
+    DetectionWish wish;
+    FrontEndOptions options;
+    std::shared_ptr<const BoardObservations> observations;
+  };
+  class Analyst;
+
+  void render(const RenderTask& task);
+  void put(SurfaceFrame frame, int opening);
+  void put(const WindowAnalysis& analysis, int opening);
+
+  std::shared_ptr<const Session> session_;
+  std::size_t camera_ = 0;
+  FrontEndOptions options_;
+  std::shared_ptr<const BoardObservations> observations_;
+  std::atomic<int> opening_ = 0;  // what was asked for before the last one is of no use
+  FrameMailbox frames_;
+  Mailbox<WindowAnalysis> analyses_;
+  std::unique_ptr<EventWindowReader> reader_;
+  std::unique_ptr<Analyst> analyst_;
+  // Last: their threads use the rest.
+  std::unique_ptr<NewestRequestWorker<RenderTask>> renderer_;
+  std::unique_ptr<NewestRequestWorker<AnalysisTask>> analysis_worker_;
+};
+
+}  // namespace evical::ui

@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/detection/detection_screen.h"
+
+#include "ui/detection/detection_engine.h"
+#include "ui/detection/event_view.h"
+#include "ui/detection/timeline.h"
+#include "ui/detection/window_panel.h"
+#include "ui/theme/theme.h"
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QKeyEvent>
+#include <QLabel>
+#include <QPainter>
+#include <QSignalBlocker>
+#include <QToolButton>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace evical::ui {
+namespace {
+
+constexpr int kFrame_ms = 33;
+
+// What decides about events and windows but the options.
+bool sameRecording(const Session& a, const Session& b) {
+  const auto same_camera = [](const SessionCamera& x, const SessionCamera& y) {
+    return x.stream == y.stream && x.resolution_px == y.resolution_px && x.intrinsics == y.intrinsics;
+  };
+  const auto same_imu = [](const SessionImu& x, const SessionImu& y) {
+    return x.stream == y.stream && x.angular_rate_unit == y.angular_rate_unit;
+  };
+  return a.recording == b.recording && a.board == b.board && a.reference == b.reference &&
+         std::equal(a.cameras.begin(), a.cameras.end(), b.cameras.begin(), b.cameras.end(), same_camera) &&
+         std::equal(a.imus.begin(), a.imus.end(), b.imus.begin(), b.imus.end(), same_imu);
+}
+
+}  // namespace
+
+DetectionScreen::~DetectionScreen() = default;
+
+void DetectionScreen::connectEngine() {
+  engine_ = std::make_unique<DetectionEngine>();
+  live_detection_ = new LiveDetection(this);
+  connect(engine_.get(), &DetectionEngine::overviewChanged, this, &DetectionScreen::takeOverview);
+  connect(engine_.get(), &DetectionEngine::frameReady, this, &DetectionScreen::takeFrame);
+  connect(engine_.get(), &DetectionEngine::analysisReady, this, &DetectionScreen::takeAnalysis);
+  connect(live_detection_, &LiveDetection::windowReady, this,
+          [this] { showLiveFrame(live_detection_->take()); });
+  connect(timeline_, &Timeline::timeSelected, this, [this](double time_s) {
+    following_ = false;
+    follow_button_->setChecked(false);
+    select(time_s);
+  });
+  connect(&timer_, &QTimer::timeout, this, &DetectionScreen::advance);
+  timer_.setTimerType(Qt::PreciseTimer);
+}
+
+void DetectionScreen::setSession(const Session& session) {
+  const bool same = session_ && sameRecording(*session_, session);
+  session_ = session;
+  options_ = session.options.front_end;
+  engine_->setOptions(options_);
+  if (same) {
+    request();
+    return;
+  }
+  observations_.clear();
+  run_.reset();
+  const QSignalBlocker quiet(camera_box_);
+  camera_box_->clear();
+  for (const SessionCamera& camera : session.cameras)
+    camera_box_->addItem(QString::fromStdString(camera.name));
+  camera_box_->setVisible(session.cameras.size() > 1);
+  time_s_ = 0.1;
+  chooseCamera(0);
+}
+
+void DetectionScreen::chooseCamera(std::size_t camera) {
+  camera_ = camera;
+  analysis_.reset();
+  view_->setFrame(nullptr);
+  timeline_->setRange(0.0, 0.0);
+  timeline_->setEventRate({});
+  timeline_->setRotationRate({});
+  const auto observations = camera < observations_.size() ? observations_[camera] : nullptr;
+  timeline_->setWindows(observations ? observations->windows : std::vector<WindowReport>{});
+  if (session_ && camera < session_->cameras.size()) engine_->open(*session_, camera);
+  engine_->setObservations(observations);
+  view_->setMessage(session_ ? tr("Opening the recording ...")
+                             : tr("No recording: open one to see its events"));
+  refresh();
+}
+
+void DetectionScreen::setOptions(const FrontEndOptions& options) {
+  if (options == options_) return;
+  options_ = options;
+  engine_->setOptions(options);
+  request();
+}
+
+void DetectionScreen::setObservations(std::vector<std::shared_ptr<const BoardObservations>> observations) {
+  observations_ = std::move(observations);
+  const auto own = camera_ < observations_.size() ? observations_[camera_] : nullptr;
+  timeline_->setWindows(own ? own->windows : std::vector<WindowReport>{});
+  engine_->setObservations(own);
+  request();
+}
+
+void DetectionScreen::setObservations(const BoardObservations& observations) {
+  setObservations(std::vector{std::make_shared<const BoardObservations>(observations)});
+}
+
+void DetectionScreen::appendWindow(const WindowReport& window) {
+  timeline_->appendWindow(window);
+}
+
+void DetectionScreen::setResult(std::shared_ptr<const CalibrationRun> run) {
+  run_ = std::move(run);
+  layer_boxes_[static_cast<std::size_t>(Layer::Reprojection)]->setEnabled(run_ != nullptr);
+  std::vector<std::shared_ptr<const BoardObservations>> observations;
+  if (run_) {
+    for (const BoardObservations& camera : run_->pass.cameras)
+      observations.emplace_back(run_, &camera);  // shares the run
+  }
+  setObservations(std::move(observations));
+}
+
+ObserverFactory DetectionScreen::liveObservers() {
+  return live_detection_->observers(options_);
+}
+
+void DetectionScreen::setLive(bool live) {
+  if (live == live_) return;
+  live_ = following_ = live;
+  setPlaying(false);
+  follow_button_->setVisible(live);
+  follow_button_->setChecked(live);
+  if (live) {
+    timeline_->setWindows({});
+  } else {
+    request();
+  }
+  refresh();
+}
+
+void DetectionScreen::showLiveFrame(std::shared_ptr<const LiveWindow> window) {
+  if (!live_ || !window || window->camera != camera_) return;
+  if (window->windows) timeline_->setWindows(*window->windows);
+  if (!following_) return;
+  analysis_ = window->analysis;
+  if (window->time_s) {
+    time_s_ = *window->time_s;
+    timeline_->setTime(time_s_);
+  }
+  engine_->showLive(std::move(window), style());
+  refresh();
+}
+
+void DetectionScreen::setTime(double time_s) {
+  if (live_ && following_) return;
+  if (time_s == time_s_) return;
+  time_s_ = time_s;
+  timeline_->setTime(time_s);
+  request();
+  refresh();
+}
+
+void DetectionScreen::select(double time_s) {
+  setTime(time_s);
+  emit timeSelected(time_s_);
+}
+
+void DetectionScreen::setMode(SurfaceMode mode) {
+  mode_box_->setCurrentIndex(static_cast<int>(mode));
+}
+
+void DetectionScreen::setLayerVisible(Layer layer, bool visible) {
+  layer_boxes_[static_cast<std::size_t>(layer)]->setChecked(visible);
+}
+
+void DetectionScreen::setPlaying(bool playing) {
+  if (playing == timer_.isActive()) return;
+  if (playing && (!engine_->isOpen() || (live_ && following_))) return;
+  if (playing) {
+    if (time_s_ >= endOfPlay_s() - 1e-3) setTime(timeline_->begin_s());
+    since_frame_.start();
+    timer_.start(kFrame_ms);
+  } else {
+    timer_.stop();
+    request();
+  }
+  play_button_->setIcon(icon(playing ? "pause" : "play"));
+  play_button_->setToolTip(playing ? tr("Pause (Space)") : tr("Play (Space)"));
+}
+
+double DetectionScreen::endOfPlay_s() const {
+  return timeline_->end_s();
+}
+
+void DetectionScreen::advance() {
+  const double step_s =
+      1e-9 * static_cast<double>(since_frame_.nsecsElapsed()) * speed_box_->currentData().toDouble();
+  since_frame_.restart();
+  select(std::min(time_s_ + step_s, endOfPlay_s()));
+  if (time_s_ >= endOfPlay_s()) setPlaying(false);
+}
+
+void DetectionScreen::step(int direction) {
+  setPlaying(false);
+  following_ = false;
+  follow_button_->setChecked(false);
+  select(timeline_->stepFrom(time_s_, direction));
+}
+
+void DetectionScreen::request() {
+  if (live_ && following_) return;
+  const bool playing = timer_.isActive();
+  const DetectionOptions& detection = options_.detection;
+  const auto window = timeline_->windowAt(time_s_);
+  DetectionWish wish;
+  wish.time_s = time_s_;
+  wish.half_width_s =
+      window ? window->half_width_s : 0.25 * (detection.shortest_window_s + detection.longest_window_s);
+  wish.style = style();
+  wish.search = !playing || shown(Layer::Circles);
+  wish.flow = !playing || shown(Layer::Flow) || shown(Layer::Clusters) || shown(Layer::Pairs);
+  engine_->show(wish);
+}
+
+void DetectionScreen::takeOverview() {
+  const RecordingOverview overview = engine_->overview();
+  if (!overview.error.empty()) {
+    view_->setMessage(tr("The recording cannot be read.\n%1").arg(QString::fromStdString(overview.error)));
+    status_->setText(tr("not readable to its end"));
+    status_->setToolTip(QString::fromStdString(overview.error));
+    if (!overview.started) return;
+  } else {
+    status_->setText(overview.finished ? QString()
+                                       : tr("reading %1 %").arg(100.0 * overview.fraction_read, 0, 'f', 0));
+    status_->setToolTip(tr("Recordings are read once, so that any instant can be shown at once"));
+  }
+  if (!overview.started) return;
+  timeline_->setRange(0.0, std::max(overview.read_until_s, timeline_->end_s()));
+  timeline_->setEventRate(overview.event_rate);
+  timeline_->setRotationRate(overview.rotation_rate);
+  timeline_->setTime(time_s_);
+  request();
+}
+
+void DetectionScreen::takeFrame() {
+  view_->setFrame(engine_->takeFrame());
+  refresh();
+}
+
+void DetectionScreen::takeAnalysis() {
+  const auto analysis = engine_->takeAnalysis();
+  if (live_ && following_) return;
+  analysis_ = analysis;
+  refresh();
+}
+
+SurfaceStyle DetectionScreen::style() const {
+  const Theme& colours = theme();
+  return {static_cast<SurfaceMode>(mode_box_->currentIndex()), 1e-3 * fade_box_->value(), colours.panel.rgb(),
+          colours.brighter.rgb(), colours.darker.rgb()};
+}
+
+void DetectionScreen::refresh() {
+  const auto& frame = view_->frame();
+  const bool here =
+      analysis_ && frame && std::abs(analysis_->time_s - frame->time_s) <= analysis_->half_width_s;
+  const bool searching = here && analysis_->searches.empty() && !timer_.isActive() && !(live_ && following_);
+  panel_->show(here ? analysis_.get() : nullptr, timeline_->windowAt(time_s_), searching);
+  if (frame) {
+    view_->setCaption(tr("%1%2 s    %L3 events")
+                          .arg(live_ && following_ ? tr("live  ") : QString())
+                          .arg(frame->time_s, 0, 'f', 4)
+                          .arg(static_cast<qulonglong>(frame->events)));
+  }
+  {
+    const QSignalBlocker quiet(time_box_);
+    time_box_->setMaximum(std::max(timeline_->end_s(), time_s_));
+    time_box_->setValue(time_s_);
+  }
+  std::vector<QPolygonF> reprojection;
+  if (run_ && frame && session_ && shown(Layer::Reprojection) && session_->cameras[camera_].intrinsics) {
+    reprojection = reprojectBoard(run_->result.state, camera_, *session_->cameras[camera_].intrinsics,
+                                  session_->board, frame->time_s);
+  }
+  view_->setOverlay([analysis = here ? analysis_ : nullptr, layers = layers_,
+                     reprojection = std::move(reprojection)](QPainter& painter, double scale) {
+    paintLayers(painter, scale, layers, analysis.get(), reprojection);
+  });
+}
+
+void DetectionScreen::keyPressEvent(QKeyEvent* event) {
+  switch (event->key()) {
+    case Qt::Key_Space:
+      setPlaying(!isPlaying());
+      return;
+    case Qt::Key_Left:
+      step(-1);
+      return;
+    case Qt::Key_Right:
+      step(+1);
+      return;
+    case Qt::Key_Home:
+      select(timeline_->begin_s());
+      return;
+    case Qt::Key_End:
+      select(timeline_->end_s());
+      return;
+    default:
+      QWidget::keyPressEvent(event);
+  }
+}
+
+void DetectionScreen::changeEvent(QEvent* event) {
+  if (event->type() == QEvent::PaletteChange) applyColours();
+  QWidget::changeEvent(event);
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the camera saw and what the front end makes of it: the events at the cursor with a layer for each
+// stage, a timeline of the whole recording, and why a window came out as it did.
+#pragma once
+
+#include "core/pipeline/calibration_pipeline.h"
+#include "ui/detection/layers.h"
+#include "ui/detection/live_detection.h"
+#include "ui/detection/surface_frame.h"
+
+#include <QElapsedTimer>
+#include <QTimer>
+#include <QWidget>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+class QCheckBox;
+class QComboBox;
+class QDoubleSpinBox;
+class QHBoxLayout;
+class QLabel;
+class QToolButton;
+
+namespace evical::ui {
+
+class DetectionEngine;
+class EventView;
+class Timeline;
+class WindowPanel;
+
+class DetectionScreen : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit DetectionScreen(QWidget* parent = nullptr);
+  ~DetectionScreen() override;
+
+  // Reads the recording anew if it, its streams or its board changed; the options come along.
+  void setSession(const Session& session);
+  // The window in view is looked at again, at once.
+  void setOptions(const FrontEndOptions& options);
+  // One for each camera of the session, in its order; empty forgets.
+  void setObservations(std::vector<std::shared_ptr<const BoardObservations>> observations);
+  void setObservations(const BoardObservations& observations);  // of the only camera
+  void appendWindow(const WindowReport& window);                // of the camera in view
+  // Observations, windows and the trajectory for reprojections; null forgets.
+  void setResult(std::shared_ptr<const CalibrationRun> run);
+
+  // While a job runs: give these to it, and the screen shows the windows as they are found.
+  ObserverFactory liveObservers();
+  void setLive(bool live);
+  bool isLive() const { return live_; }
+  void showLiveFrame(std::shared_ptr<const LiveWindow> window);
+
+  double time_s() const { return time_s_; }
+  bool isPlaying() const { return timer_.isActive(); }
+  EventView& view() { return *view_; }
+  Timeline& timeline() { return *timeline_; }
+  WindowPanel& panel() { return *panel_; }
+  const std::shared_ptr<const WindowAnalysis>& analysis() const { return analysis_; }
+
+ public slots:
+  void setTime(double time_s);
+  void setMode(evical::ui::SurfaceMode mode);
+  void setLayerVisible(evical::ui::Layer layer, bool visible);
+  void setPlaying(bool playing);
+  void step(int direction);  // to the next window (+1) or the one before (-1)
+
+ signals:
+  void timeSelected(double time_s);  // by the user, or by playing
+
+ protected:
+  void keyPressEvent(QKeyEvent*) override;
+  void changeEvent(QEvent*) override;
+
+ private:
+  QWidget* makeToolBar();
+  QWidget* makeSidePanel();
+  QWidget* makeTransport();
+  QToolButton* addButton(QHBoxLayout* row, const QString& icon_name, const QString& help);
+  void applyColours();
+  void connectEngine();
+
+  void chooseCamera(std::size_t camera);
+  void select(double time_s);
+  void advance();
+  void request();  // of the engine: what the cursor, the mode and the layers ask for
+  void takeOverview();
+  void takeFrame();
+  void takeAnalysis();
+  void refresh();  // caption, panel, overlay
+  double endOfPlay_s() const;
+  SurfaceStyle style() const;
+  bool shown(Layer layer) const { return layers_.test(static_cast<std::size_t>(layer)); }
+
+  std::optional<Session> session_;
+  std::size_t camera_ = 0;
+  FrontEndOptions options_;
+  std::vector<std::shared_ptr<const BoardObservations>> observations_;
+  std::shared_ptr<const CalibrationRun> run_;
+  std::shared_ptr<const WindowAnalysis> analysis_;
+  LayerSet layers_ = defaultLayers();
+  double time_s_ = 0.1;
+  bool live_ = false, following_ = false;
+
+  QTimer timer_;
+  QElapsedTimer since_frame_;
+  EventView* view_ = nullptr;
+  Timeline* timeline_ = nullptr;
+  WindowPanel* panel_ = nullptr;
+  QComboBox *mode_box_ = nullptr, *speed_box_ = nullptr, *camera_box_ = nullptr;
+  QDoubleSpinBox *fade_box_ = nullptr, *time_box_ = nullptr;
+  QToolButton *play_button_ = nullptr, *follow_button_ = nullptr;
+  QLabel* status_ = nullptr;
+  std::vector<QCheckBox*> layer_boxes_;
+  std::vector<std::pair<QToolButton*, QString>> icons_;
+  LiveDetection* live_detection_ = nullptr;
+  std::unique_ptr<DetectionEngine> engine_;
+};
+
+}  // namespace evical::ui

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/detection/detection_engine.h"
+#include "ui/detection/detection_screen.h"
+#include "ui/detection/event_view.h"
+#include "ui/detection/timeline.h"
+#include "ui/detection/window_panel.h"
+#include "ui/theme/theme.h"
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QPainter>
+#include <QPixmap>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+#include <array>
+
+namespace evical::ui {
+namespace {
+
+constexpr int kSideWidth_px = 272;
+
+QIcon swatch(const QColor& colour, double pixel_ratio) {
+  constexpr int kSize_px = 12;
+  QPixmap pixmap(static_cast<int>(kSize_px * pixel_ratio), static_cast<int>(kSize_px * pixel_ratio));
+  pixmap.setDevicePixelRatio(pixel_ratio);
+  pixmap.fill(Qt::transparent);
+  QPainter painter(&pixmap);
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.setPen(Qt::NoPen);
+  painter.setBrush(colour);
+  painter.drawRoundedRect(QRectF(0.5, 0.5, kSize_px - 1.0, kSize_px - 1.0), 3.0, 3.0);
+  return pixmap;
+}
+
+QLabel* sectionTitle(const QString& text) {
+  auto* label = new QLabel(text);
+  QFont font = label->font();
+  font.setBold(true);
+  label->setFont(font);
+  return label;
+}
+
+}  // namespace
+
+DetectionScreen::DetectionScreen(QWidget* parent) : QWidget(parent) {
+  view_ = new EventView;
+  timeline_ = new Timeline;
+  auto* middle = new QHBoxLayout;
+  middle->setSpacing(8);
+  middle->addWidget(view_, 1);
+  middle->addWidget(makeSidePanel());
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(8, 6, 8, 4);
+  layout->setSpacing(4);
+  layout->addWidget(makeToolBar());
+  layout->addLayout(middle, 1);
+  layout->addWidget(makeTransport());
+  layout->addWidget(timeline_);
+  connectEngine();
+  applyColours();
+  chooseCamera(0);
+  setFocusProxy(view_);
+}
+
+QToolButton* DetectionScreen::addButton(QHBoxLayout* row, const QString& icon_name, const QString& help) {
+  auto* button = new QToolButton;
+  button->setAutoRaise(true);
+  button->setToolTip(help);
+  button->setAccessibleName(help);
+  row->addWidget(button);
+  icons_.emplace_back(button, icon_name);
+  return button;
+}
+
+QWidget* DetectionScreen::makeToolBar() {
+  auto* bar = new QWidget;
+  auto* row = new QHBoxLayout(bar);
+  row->setContentsMargins(0, 0, 0, 0);
+  mode_box_ = new QComboBox;
+  mode_box_->addItems({tr("Time surface"), tr("Accumulated events"), tr("Normal flow")});
+  mode_box_->setToolTip(
+      tr("Time surface: each pixel's newest event, fading with age.\nAccumulated events: all of "
+         "the window.\nNormal flow: edges, coloured by the direction they move in"));
+  fade_box_ = new QDoubleSpinBox;
+  fade_box_->setRange(1.0, 200.0);
+  fade_box_->setDecimals(0);
+  fade_box_->setValue(15.0);
+  fade_box_->setSuffix(tr(" ms"));
+  fade_box_->setToolTip(tr("An event has faded to a third after this time"));
+  camera_box_ = new QComboBox;
+  camera_box_->setToolTip(tr("Camera"));
+  camera_box_->hide();
+  row->addWidget(camera_box_);
+  row->addWidget(mode_box_);
+  auto* fade_label = new QLabel(tr("fading"));
+  row->addWidget(fade_label);
+  row->addWidget(fade_box_);
+  row->addStretch(1);
+  status_ = new QLabel;
+  row->addWidget(status_);
+  connect(addButton(row, "zoom-out", tr("Zoom out (-)")), &QToolButton::clicked, this,
+          [this] { view_->zoomBy(0.5, QRectF(view_->rect()).center()); });
+  connect(addButton(row, "zoom-in", tr("Zoom in (+), or turn the wheel over the picture")),
+          &QToolButton::clicked, this, [this] { view_->zoomBy(2.0, QRectF(view_->rect()).center()); });
+  connect(addButton(row, "zoom-fit", tr("Whole sensor (F)")), &QToolButton::clicked, view_, &EventView::fit);
+  connect(mode_box_, &QComboBox::currentIndexChanged, this, [this, fade_label](int mode) {
+    const bool fades = static_cast<SurfaceMode>(mode) == SurfaceMode::Decayed;
+    fade_box_->setEnabled(fades);
+    fade_label->setEnabled(fades);
+    request();
+  });
+  connect(fade_box_, &QDoubleSpinBox::valueChanged, this, [this] { request(); });
+  connect(camera_box_, &QComboBox::currentIndexChanged, this,
+          [this](int camera) { chooseCamera(static_cast<std::size_t>(std::max(0, camera))); });
+  return bar;
+}
+
+QWidget* DetectionScreen::makeSidePanel() {
+  auto* side = new QWidget;
+  side->setFixedWidth(kSideWidth_px);
+  auto* column = new QVBoxLayout(side);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(2);
+  column->addWidget(sectionTitle(tr("Layers")));
+  for (std::size_t k = 0; k < kLayerCount; ++k) {
+    const LayerWords words = layerWords(static_cast<Layer>(k));
+    auto* box = new QCheckBox(words.name);
+    box->setToolTip(words.help);
+    box->setChecked(layers_.test(k));
+    connect(box, &QCheckBox::toggled, this, [this, k](bool on) {
+      layers_.set(k, on);
+      request();
+      refresh();
+    });
+    column->addWidget(box);
+    layer_boxes_.push_back(box);
+  }
+  layer_boxes_[static_cast<std::size_t>(Layer::Reprojection)]->setEnabled(false);
+  column->addSpacing(6);
+  column->addWidget(sectionTitle(tr("This window: why")));
+  panel_ = new WindowPanel;
+  column->addWidget(panel_, 1);
+  return side;
+}
+
+QWidget* DetectionScreen::makeTransport() {
+  auto* bar = new QWidget;
+  auto* row = new QHBoxLayout(bar);
+  row->setContentsMargins(0, 0, 0, 0);
+  row->setSpacing(4);
+  connect(addButton(row, "to-start", tr("To the start (Home)")), &QToolButton::clicked, this,
+          [this] { select(timeline_->begin_s()); });
+  connect(addButton(row, "step-back", tr("Window before (Left)")), &QToolButton::clicked, this,
+          [this] { step(-1); });
+  play_button_ = addButton(row, "play", tr("Play (Space)"));
+  connect(play_button_, &QToolButton::clicked, this, [this] { setPlaying(!isPlaying()); });
+  connect(addButton(row, "step-forward", tr("Next window (Right)")), &QToolButton::clicked, this,
+          [this] { step(+1); });
+  connect(addButton(row, "to-end", tr("To the end (End)")), &QToolButton::clicked, this,
+          [this] { select(timeline_->end_s()); });
+  speed_box_ = new QComboBox;
+  constexpr std::array kSpeeds = {0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0};
+  for (const double speed : kSpeeds)
+    speed_box_->addItem(
+        speed < 1.0 ? tr("1/%1 speed").arg(1.0 / speed, 0, 'f', 0) : tr("%1 x speed").arg(speed), speed);
+  speed_box_->setCurrentIndex(3);
+  speed_box_->setToolTip(tr("Speed of playing, against the recording's own"));
+  row->addWidget(speed_box_);
+  time_box_ = new QDoubleSpinBox;
+  time_box_->setDecimals(4);
+  time_box_->setRange(0.0, 0.0);
+  time_box_->setSingleStep(0.001);
+  time_box_->setSuffix(tr(" s"));
+  time_box_->setKeyboardTracking(false);
+  time_box_->setToolTip(tr("Cursor, since the recording's start"));
+  connect(time_box_, &QDoubleSpinBox::valueChanged, this, [this](double time_s) { select(time_s); });
+  row->addWidget(time_box_);
+  row->addStretch(1);
+  follow_button_ = addButton(row, "follow", tr("Show the windows as they are found"));
+  follow_button_->setText(tr("Follow the run"));
+  follow_button_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  follow_button_->setCheckable(true);
+  follow_button_->hide();
+  connect(follow_button_, &QToolButton::clicked, this, [this](bool on) {
+    following_ = on;
+    request();
+  });
+  return bar;
+}
+
+void DetectionScreen::applyColours() {
+  if (!engine_) return;
+  for (const auto& [button, name] : icons_) button->setIcon(icon(name));
+  if (isPlaying()) play_button_->setIcon(icon("pause"));
+  for (std::size_t k = 0; k < layer_boxes_.size(); ++k)
+    layer_boxes_[k]->setIcon(swatch(layerColour(static_cast<Layer>(k)), devicePixelRatioF()));
+  request();
+  refresh();
+}
+
+}  // namespace evical::ui

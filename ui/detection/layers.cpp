@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/detection/layers.h"
+
+#include "core/geometry/trajectory.h"
+#include "ui/theme/theme.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <QCoreApplication>
+#include <QPainter>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace evical::ui {
+namespace {
+
+constexpr int kOutlinePoints = 40;
+
+QString tr(const char* text) {
+  return QCoreApplication::translate("Layers", text);
+}
+
+QPointF toPoint(const Eigen::Vector2d& pixel) {
+  return {pixel.x(), pixel.y()};
+}
+
+QPointF toSensor(const Eigen::Vector2d& ideal_pixel, const BoardScene& scene) {
+  return toPoint(scene.camera ? pixelFromIdeal(*scene.camera, ideal_pixel) : ideal_pixel);
+}
+
+QPen pen(const QColor& colour, double width = 1.5, Qt::PenStyle style = Qt::SolidLine) {
+  QPen made(colour, width, style);
+  made.setCosmetic(true);
+  return made;
+}
+
+Eigen::Vector2d onCircle(int k) {
+  const double angle = 2.0 * std::numbers::pi * k / kOutlinePoints;
+  return {std::cos(angle), std::sin(angle)};
+}
+
+// {q : (q - c)^T covariance^-1 (q - c) = sigmas^2}
+QPolygonF ellipse(const Eigen::Vector2d& centre, const Eigen::Matrix2d& covariance, double sigmas,
+                  const BoardScene& scene) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance);
+  const Eigen::Matrix2d axes =
+      sigmas * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  QPolygonF outline;
+  for (int k = 0; k < kOutlinePoints; ++k) outline << toSensor(centre + axes * onCircle(k), scene);
+  return outline;
+}
+
+void paintBoard(QPainter& painter, const BoardMotion& motion, const BoardScene& scene) {
+  for (const CircleImage& circle :
+       projectBoard(motion.ideal_from_board, scene.board, scene.camera, scene.resolution_px))
+    painter.drawPolygon(ellipse(circle.centre_px, circle.shape.inverse(), 1.0, scene));
+}
+
+// As far as the edge moves in the window.
+QLineF flowLine(const NormalFlow& flow, double half_width_s) {
+  const QPointF from(flow.x_px, flow.y_px);
+  const Eigen::Vector2d step = half_width_s * flow.velocity_px_s.cast<double>();
+  return {from, from + toPoint(step)};
+}
+
+void paintFlow(QPainter& painter, const WindowAnalysis& analysis) {
+  QVector<QLineF> lines;
+  for (const NormalFlow& flow : analysis.arcs.flow) lines << flowLine(flow, analysis.arcs_half_width_s);
+  painter.setPen(pen(layerColour(Layer::Flow), 1.0));
+  painter.drawLines(lines);
+}
+
+void paintClusters(QPainter& painter, const WindowAnalysis& analysis) {
+  const std::array<QColor, 3> colours = {theme().good, theme().warning, theme().faint_text};
+  for (const EventCluster& cluster : analysis.arcs.clusters) {
+    painter.setPen(Qt::NoPen);
+    QColor colour = colours[static_cast<std::size_t>(cluster.kind)];
+    colour.setAlphaF(0.75f);
+    painter.setBrush(colour);
+    for (const std::uint32_t i : cluster.flows) {
+      const NormalFlow& flow = analysis.arcs.flow[i];
+      painter.drawRect(QRectF(flow.x_px - 0.5, flow.y_px - 0.5, 1.0, 1.0));
+    }
+  }
+}
+
+void paintPairs(QPainter& painter, const NormalFlowStages& arcs) {
+  painter.setPen(pen(layerColour(Layer::Pairs)));
+  painter.setBrush(Qt::NoBrush);
+  for (const ArcPair& pair : arcs.pairs) {
+    painter.drawLine(toPoint(arcs.clusters[pair.trailing].centroid_px),
+                     toPoint(arcs.clusters[pair.leading].centroid_px));
+    painter.drawEllipse(toPoint(pair.circle.centre_px), pair.circle.radius_px, pair.circle.radius_px);
+  }
+}
+
+void paintSearch(QPainter& painter, const BoardSearch& search) {
+  painter.setBrush(Qt::NoBrush);
+  painter.setPen(pen(theme().faint_text, 1.0, Qt::DotLine));
+  for (const CircleCandidate& candidate : search.candidates)
+    painter.drawEllipse(toPoint(candidate.centre_px), candidate.radius_px, candidate.radius_px);
+  painter.setPen(pen(layerColour(Layer::Circles)));
+  for (const MovingCircle& circle : search.circles)
+    painter.drawEllipse(toPoint(circle.centre_px), circle.radius_px, circle.radius_px);
+  for (const LatticeNode& a : search.lattice) {
+    for (const LatticeNode& b : search.lattice) {
+      const bool next = (b.i == a.i + 1 && b.j == a.j) || (b.i == a.i && b.j == a.j + 1);
+      if (next)
+        painter.drawLine(toPoint(search.circles[a.circle].centre_px),
+                         toPoint(search.circles[b.circle].centre_px));
+    }
+  }
+}
+
+void paintEllipses(QPainter& painter, const WindowAnalysis& analysis) {
+  QColor colour = layerColour(Layer::Ellipses);
+  painter.setPen(pen(colour, 2.0));
+  painter.setBrush(Qt::NoBrush);
+  paintBoard(painter, *analysis.motion, *analysis.scene);
+  colour.setAlphaF(0.55f);
+  painter.setPen(Qt::NoPen);
+  painter.setBrush(colour);
+  for (const EdgeInlier& inlier : analysis.inliers) {
+    const QPointF at(static_cast<double>(inlier.pixel.x()), static_cast<double>(inlier.pixel.y()));
+    painter.drawRect(QRectF(at - QPointF(0.25, 0.25), QSizeF(0.5, 0.5)));
+  }
+}
+
+void paintCentres(QPainter& painter, double scale, const WindowAnalysis& analysis) {
+  const double arm = 4.0 / scale;
+  painter.setPen(pen(layerColour(Layer::Centres)));
+  painter.setBrush(Qt::NoBrush);
+  for (const CircleObservation& circle : analysis.circles) {
+    const QPointF at = toSensor(circle.centre_px, *analysis.scene);
+    painter.drawLine(at - QPointF(arm, 0.0), at + QPointF(arm, 0.0));
+    painter.drawLine(at - QPointF(0.0, arm), at + QPointF(0.0, arm));
+    painter.drawPolygon(ellipse(circle.centre_px, circle.covariance_px2, kShownSigmas, *analysis.scene));
+  }
+}
+
+// Along the rows from the first circle to the last, as calibrators are used to, and each one's number.
+void paintGrid(QPainter& painter, double scale, const WindowAnalysis& analysis) {
+  const CircleBoard& board = analysis.scene->board;
+  QColor colour = layerColour(Layer::Grid);
+  QPolygonF chain;
+  for (const CircleObservation& circle : analysis.circles) {
+    const bool follows = !chain.isEmpty();
+    const QPointF at = toSensor(circle.centre_px, *analysis.scene);
+    colour.setHsvF(static_cast<float>(0.85 * circle.circle / std::max(1, board.circleCount() - 1)), 0.55f,
+                   theme().dark ? 0.95f : 0.7f);
+    painter.setPen(pen(colour, 1.2));
+    if (follows) painter.drawLine(chain.last(), at);
+    chain << at;
+  }
+  painter.save();
+  const QTransform to_widget = painter.transform();
+  painter.resetTransform();
+  QFont font = painter.font();
+  font.setPixelSize(std::clamp(static_cast<int>(4.5 * scale), 10, 14));
+  font.setBold(true);
+  painter.setFont(font);
+  for (qsizetype k = 0; k < chain.size(); ++k) {
+    const QPointF at = to_widget.map(chain[k]) + QPointF(5.0, -4.0);
+    const QString number = QString::number(analysis.circles[static_cast<std::size_t>(k)].circle);
+    painter.setPen(theme().panel);
+    for (const QPointF& beside : {QPointF(1, 1), QPointF(-1, 1), QPointF(1, -1), QPointF(-1, -1)})
+      painter.drawText(at + beside, number);
+    painter.setPen(layerColour(Layer::Grid));
+    painter.drawText(at, number);
+  }
+  painter.restore();
+}
+
+// Image of a circle's outline through the camera, distortion and all; nothing if part of it is not seen.
+std::optional<QPolygonF> imageOf(int circle, const RigidTransform& camera_from_world,
+                                 const CameraIntrinsics& intrinsics, const CircleBoard& board) {
+  QPolygonF outline;
+  for (int k = 0; k < kOutlinePoints; ++k) {
+    const Eigen::Vector2d on_board = board.centre_m(circle) + board.radius_m * onCircle(k);
+    const auto pixel =
+        project(intrinsics, camera_from_world * Eigen::Vector3d(on_board.x(), on_board.y(), 0.0));
+    if (!pixel) return std::nullopt;
+    outline << toPoint(*pixel);
+  }
+  return outline;
+}
+
+}  // namespace
+
+LayerWords layerWords(Layer layer) {
+  switch (layer) {
+    case Layer::Flow:
+      return {tr("Flow vectors"), tr("Normal flow of edges, as far as they move in the window")};
+    case Layer::Clusters:
+      return {tr("Clusters"),
+              tr("Connected flow: arcs that lead (green), follow (yellow), and others (grey)")};
+    case Layer::Pairs:
+      return {tr("Pairs"), tr("A leading and a following arc that make a circle")};
+    case Layer::Circles:
+      return {tr("Search: circles, lattice"),
+              tr("Candidates (dotted), circles that move, and the lattice found among them")};
+    case Layer::Ellipses:
+      return {tr("Ellipses, inlier events"), tr("The board's fit, and the edge bursts that lie on it")};
+    case Layer::Centres:
+      return {tr("Centres, covariance"), tr("Measured centres with ellipses of %1 sigma").arg(kShownSigmas)};
+    case Layer::Grid:
+      return {tr("Grid with indices"), tr("Measured circles in the board's order")};
+    case Layer::Prediction:
+      return {tr("Prediction"), tr("Where the tracker expects the board, from the view before")};
+    case Layer::Reprojection:
+      break;
+  }
+  return {tr("Reprojection"), tr("Where the calibration's trajectory puts the board")};
+}
+
+QColor layerColour(Layer layer) {
+  const Theme& colours = theme();
+  switch (layer) {
+    case Layer::Flow:
+      return colours.faint_text;
+    case Layer::Clusters:
+      return colours.good;
+    case Layer::Pairs:
+      return colours.text;
+    case Layer::Circles:
+      return colours.axes[2];
+    case Layer::Ellipses:
+      return colours.good;
+    case Layer::Centres:
+      return colours.bad;
+    case Layer::Grid:
+      return colours.text;
+    case Layer::Prediction:
+      return colours.warning;
+    case Layer::Reprojection:
+      break;
+  }
+  return colours.accent;
+}
+
+LayerSet defaultLayers() {
+  LayerSet layers;
+  for (const Layer layer : {Layer::Ellipses, Layer::Centres, Layer::Grid})
+    layers.set(static_cast<std::size_t>(layer));
+  return layers;
+}
+
+std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera,
+                                      const CameraIntrinsics& intrinsics, const CircleBoard& board,
+                                      double time_s) {
+  std::vector<QPolygonF> outlines;
+  if (camera >= state.cameras.size()) return outlines;
+  const CameraState& own = state.cameras[camera];
+  const double imu_time_s = time_s + own.time_offset_s;
+  if (state.world_from_imu_rotation.segmentCount() < 1 || !state.world_from_imu_rotation.contains(imu_time_s))
+    return outlines;
+  const RigidTransform camera_from_world = cameraFromWorld(
+      state.world_from_imu_rotation, state.imu_in_world_m, own.imu_from_camera, own.time_offset_s, time_s);
+  for (int circle = 0; circle < board.circleCount(); ++circle) {
+    if (const auto outline = imageOf(circle, camera_from_world, intrinsics, board))
+      outlines.push_back(*outline);
+  }
+  return outlines;
+}
+
+void paintLayers(QPainter& painter, double scale, const LayerSet& visible, const WindowAnalysis* analysis,
+                 const std::vector<QPolygonF>& reprojection) {
+  const auto shown = [&](Layer layer) { return visible.test(static_cast<std::size_t>(layer)); };
+  if (analysis) {
+    if (shown(Layer::Flow)) paintFlow(painter, *analysis);
+    if (shown(Layer::Clusters)) paintClusters(painter, *analysis);
+    if (shown(Layer::Pairs)) paintPairs(painter, analysis->arcs);
+    if (shown(Layer::Circles) && analysis->bestSearch()) paintSearch(painter, analysis->bestSearch()->search);
+    if (shown(Layer::Prediction) && analysis->prediction) {
+      painter.setPen(pen(layerColour(Layer::Prediction), 1.5, Qt::DashLine));
+      painter.setBrush(Qt::NoBrush);
+      paintBoard(painter, *analysis->prediction, *analysis->scene);
+    }
+    if (shown(Layer::Ellipses) && analysis->motion) paintEllipses(painter, *analysis);
+  }
+  if (shown(Layer::Reprojection)) {
+    painter.setPen(pen(layerColour(Layer::Reprojection), 1.5));
+    painter.setBrush(Qt::NoBrush);
+    for (const QPolygonF& outline : reprojection) painter.drawPolygon(outline);
+  }
+  if (!analysis) return;
+  if (shown(Layer::Centres)) paintCentres(painter, scale, *analysis);
+  if (shown(Layer::Grid)) paintGrid(painter, scale, *analysis);
+}
+
+}  // namespace evical::ui

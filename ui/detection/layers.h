@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What can be drawn over the events: one layer a stage, in the sensor's pixels.
+#pragma once
+
+#include "core/data/calibration_state.h"
+#include "ui/detection/window_analysis.h"
+
+#include <QColor>
+#include <QPolygonF>
+#include <QString>
+
+#include <bitset>
+#include <vector>
+
+class QPainter;
+
+namespace evical::ui {
+
+enum class Layer { Flow, Clusters, Pairs, Circles, Ellipses, Centres, Grid, Prediction, Reprojection };
+inline constexpr std::size_t kLayerCount = 9;
+using LayerSet = std::bitset<kLayerCount>;
+
+inline constexpr double kShownSigmas = 30.0;  // of centres: honest ellipses are too small to see
+
+struct LayerWords {
+  QString name, help;
+};
+LayerWords layerWords(Layer layer);
+QColor layerColour(Layer layer);  // of the theme
+LayerSet defaultLayers();
+
+// Outlines of the board's circles where a calibration's trajectory puts them; empty outside the trajectory.
+std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera,
+                                      const CameraIntrinsics& intrinsics, const CircleBoard& board,
+                                      double time_s);
+
+// `scale` is widget pixels per sensor pixel. The analysis may be null.
+void paintLayers(QPainter& painter, double scale, const LayerSet& visible, const WindowAnalysis* analysis,
+                 const std::vector<QPolygonF>& reprojection);
+
+}  // namespace evical::ui

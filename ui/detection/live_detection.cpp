@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/detection/live_detection.h"
+
+#include "core/base/time.h"
+#include "ui/detection/frame_mailbox.h"
+
+#include <QMetaObject>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <list>
+#include <mutex>
+#include <utility>
+
+namespace evical::ui {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr auto kLeastInterval = std::chrono::milliseconds(33);
+constexpr auto kReportInterval = std::chrono::milliseconds(200);
+
+}  // namespace
+
+// What observers in other threads may touch.
+struct LiveDetection::Link {
+  Mailbox<LiveWindow> box;
+  std::mutex mutex;
+  LiveDetection* owner = nullptr;  // null once it is gone
+
+  void put(std::shared_ptr<const LiveWindow> window) {
+    if (!box.put(std::move(window))) return;
+    const std::lock_guard lock(mutex);
+    if (owner) QMetaObject::invokeMethod(owner, &LiveDetection::windowReady, Qt::QueuedConnection);
+  }
+};
+
+class LiveDetection::Observer : public FrontEndObserver {
+ public:
+  Observer(std::shared_ptr<Link> link, std::size_t camera, const BoardTracker& tracker,
+           const FrontEndOptions& options)
+      : link_(std::move(link)),
+        camera_(camera),
+        tracker_(tracker),
+        scene_(std::make_shared<BoardScene>(tracker.scene())),
+        options_(options) {}
+
+  void windowTracked(const BurstWindow& window, const TrackedWindow& tracked) override {
+    start_ns_ = window.middle_ns() - nanosecondsFrom(tracked.report.time_s);
+    if (!due()) return;
+    auto live = begin(window.middle_ns());
+    const bool dark = scene_->board.circles == CircleShade::Dark;
+    for (const WindowBurst& burst : window.bursts()) {
+      if (std::abs(static_cast<double>(burst.time_s)) > tracked.report.half_width_s) continue;
+      live->bursts.push_back({window.middle_ns() + nanosecondsFrom(static_cast<double>(burst.time_s)),
+                              static_cast<std::uint16_t>(burst.x_px), static_cast<std::uint16_t>(burst.y_px),
+                              (burst.lead < 0.0f) == dark});
+    }
+    auto analysis = std::make_shared<WindowAnalysis>();
+    analysis->half_width_s = tracked.report.half_width_s;
+    analysis->motion = tracked.motion;
+    analysis->circles = tracked.circles;
+    analysis->tracked = tracked.held;
+    analysis->outcome = outcomeOf(tracked);
+    send(std::move(live), std::move(analysis));
+  }
+
+  void windowSearched(const BoardSearch& search, std::int64_t middle_ns) override {
+    if (search.motion || !due()) return;  // a found board is tracked next
+    auto live = begin(middle_ns);
+    const std::int64_t half_ns = nanosecondsFrom(search.half_window_s);
+    std::vector<EdgeBurst> bursts;
+    tracker_.history().gather(middle_ns - half_ns, middle_ns + half_ns, bursts);
+    for (const EdgeBurst& burst : bursts)
+      live->bursts.push_back({burst.time_ns, burst.x_px, burst.y_px, burst.brighter});
+    auto analysis = std::make_shared<WindowAnalysis>();
+    analysis->half_width_s = search.half_window_s;
+    analysis->outcome = search.outcome;
+    // Only flow gives candidates a speed.
+    const bool by_flow = !search.candidates.empty() && search.candidates.front().speed_px_s > 0.0;
+    analysis->searches = {{by_flow ? CandidateSource::NormalFlow : CandidateSource::RingVote, search}};
+    send(std::move(live), std::move(analysis));
+  }
+
+ private:
+  bool due() {
+    const Clock::time_point now = Clock::now();
+    if (now - sent_ < kLeastInterval) return false;
+    sent_ = now;
+    return true;
+  }
+
+  WindowOutcome outcomeOf(const TrackedWindow& tracked) const {
+    if (!tracked.held) return WindowOutcome::RefinementFailed;
+    const int found = static_cast<int>(tracked.circles.size()), count = scene_->board.circleCount();
+    if (found < std::max(4.0, options_.grid.least_partial * count)) return WindowOutcome::TooFewInGrid;
+    return found == count ? WindowOutcome::Complete : WindowOutcome::Partial;
+  }
+
+  std::shared_ptr<LiveWindow> begin(std::int64_t middle_ns) {
+    auto live = std::make_shared<LiveWindow>();
+    live->camera = camera_;
+    live->middle_ns = middle_ns;
+    if (start_ns_) live->time_s = secondsSince(*start_ns_, middle_ns);
+    return live;
+  }
+
+  void send(std::shared_ptr<LiveWindow> live, std::shared_ptr<WindowAnalysis> analysis) {
+    analysis->scene = scene_;
+    analysis->time_s = live->time_s.value_or(0.0);
+    analysis->stages = describeStages(*analysis, options_);
+    live->analysis = std::move(analysis);
+    if (sent_ - reported_ >= kReportInterval) {
+      reported_ = sent_;
+      reports_ = std::make_shared<std::vector<WindowReport>>(tracker_.observations().windows);
+    }
+    live->windows = reports_;
+    link_->put(std::move(live));
+  }
+
+  std::shared_ptr<Link> link_;
+  std::size_t camera_;
+  const BoardTracker& tracker_;
+  std::shared_ptr<const BoardScene> scene_;
+  FrontEndOptions options_;
+  std::optional<std::int64_t> start_ns_;
+  Clock::time_point sent_{}, reported_{};
+  std::shared_ptr<const std::vector<WindowReport>> reports_;
+};
+
+LiveDetection::LiveDetection(QObject* parent) : QObject(parent), link_(std::make_shared<Link>()) {
+  link_->owner = this;
+}
+
+LiveDetection::~LiveDetection() {
+  const std::lock_guard lock(link_->mutex);
+  link_->owner = nullptr;
+}
+
+ObserverFactory LiveDetection::observers(const FrontEndOptions& options) {
+  // The factory's copies share the observers, which live as long as the run that holds it.
+  auto made = std::make_shared<std::list<Observer>>();
+  return [link = link_, made, options](std::size_t camera, const BoardTracker& tracker) -> FrontEndObserver* {
+    return &made->emplace_back(link, camera, tracker, options);
+  };
+}
+
+std::shared_ptr<const LiveWindow> LiveDetection::take() {
+  return link_->box.take();
+}
+
+}  // namespace evical::ui

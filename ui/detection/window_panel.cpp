@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/detection/window_panel.h"
+
+#include "ui/detection/timeline.h"
+#include "ui/theme/theme.h"
+
+#include <QLabel>
+#include <QTextDocument>
+
+namespace evical::ui {
+namespace {
+
+QString coloured(const QColor& colour, const QString& text) {
+  return QStringLiteral("<span style='color:%1'>%2</span>").arg(colour.name(), text);
+}
+
+QColor colourOf(StageVerdict verdict) {
+  switch (verdict) {
+    case StageVerdict::Passed:
+      return theme().good;
+    case StageVerdict::Failed:
+      return theme().bad;
+    case StageVerdict::NotReached:
+    case StageVerdict::Note:
+      break;
+  }
+  return theme().faint_text;
+}
+
+QString capital(const char* text) {
+  QString word = QString::fromUtf8(text);
+  if (!word.isEmpty()) word[0] = word[0].toUpper();
+  return word;
+}
+
+QString headline(const WindowAnalysis& analysis, bool searching) {
+  const QString words = searching && !analysis.tracked ? WindowPanel::tr("Searching ...")
+                                                       : capital(windowOutcomeName(analysis.outcome));
+  const QColor colour =
+      searching && !analysis.tracked ? theme().faint_text : windowColour(windowClass(analysis.outcome));
+  return QStringLiteral("<p style='margin:0; font-size:large'><b>%1</b></p><p style='margin:0'>%2</p>")
+      .arg(coloured(colour, words),
+           coloured(theme().faint_text, WindowPanel::tr("%1 s ± %2 ms")
+                                            .arg(analysis.time_s, 0, 'f', 4)
+                                            .arg(1e3 * analysis.half_width_s, 0, 'f', 1)));
+}
+
+QString stageRow(const StageReport& stage) {
+  const bool faint = stage.verdict == StageVerdict::NotReached || stage.verdict == StageVerdict::Note;
+  const QString text = QString::fromStdString(stage.text).toHtmlEscaped();
+  return QStringLiteral(
+             "<tr><td style='padding-right:6px'>%1</td><td "
+             "style='padding-bottom:5px'><b>%2</b><br>%3</td></tr>")
+      .arg(coloured(colourOf(stage.verdict), QStringLiteral("●")),
+           capital(stage.stage.c_str()).toHtmlEscaped(), faint ? coloured(theme().faint_text, text) : text);
+}
+
+QString passLine(const WindowReport& report) {
+  const QString how = report.circles > 0 ? WindowPanel::tr(", %1 circles%2")
+                                               .arg(report.circles)
+                                               .arg(report.tracked ? WindowPanel::tr(", tracked") : QString())
+                                         : QString();
+  return WindowPanel::tr("In the last run: %1%2").arg(windowOutcomeName(report.outcome), how);
+}
+
+}  // namespace
+
+WindowPanel::WindowPanel(QWidget* parent) : QScrollArea(parent), label_(new QLabel) {
+  label_->setWordWrap(true);
+  label_->setTextFormat(Qt::RichText);
+  label_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
+  label_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  label_->setMargin(8);
+  setWidget(label_);
+  setWidgetResizable(true);
+  setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  setAccessibleName(tr("This window: why"));
+}
+
+void WindowPanel::show(const WindowAnalysis* analysis, const std::optional<WindowReport>& report,
+                       bool searching) {
+  QString html;
+  if (analysis) {
+    html = headline(*analysis, searching);
+    if (report)
+      html +=
+          QStringLiteral("<p style='margin:0'>%1</p>").arg(coloured(theme().faint_text, passLine(*report)));
+    html += QStringLiteral("<table style='margin-top:8px'>");
+    for (const StageReport& stage : analysis->stages) html += stageRow(stage);
+    html += QStringLiteral("</table>");
+    if (analysis->took_s > 0.0)
+      html += coloured(theme().faint_text, tr("Computed in %1 ms").arg(1e3 * analysis->took_s, 0, 'f', 0));
+  } else {
+    html = coloured(theme().faint_text,
+                    tr("What the front end makes of the window at the cursor is told here."));
+  }
+  if (html != label_->text()) label_->setText(html);
+}
+
+QString WindowPanel::text() const {
+  QTextDocument document;
+  document.setHtml(label_->text());
+  return document.toPlainText();
+}
+
+}  // namespace evical::ui
