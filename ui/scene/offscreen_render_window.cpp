@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <GL/glew.h>  // before any other header that brings OpenGL
+
+#include "ui/scene/offscreen_render_window.h"
+
+#include <vtkObjectFactory.h>
+#include <vtkRect.h>
+
+#include <array>
+
+namespace evical::ui {
+
+vtkStandardNewMacro(OffscreenRenderWindow);
+
+OffscreenRenderWindow::OffscreenRenderWindow() {
+  FrameBlitMode = NoBlit;
+  OwnContext = 1;
+  MultiSamples = 0;  // in software it costs several times the whole frame
+}
+
+// Here and not in the base class, which no longer reaches our MakeCurrent().
+OffscreenRenderWindow::~OffscreenRenderWindow() {
+  if (!context_) return;
+  const EglContext::Scope scope(*context_);
+  Finalize();
+}
+
+void OffscreenRenderWindow::MakeCurrent() {
+  if (context_) context_->makeCurrent();
+}
+
+bool OffscreenRenderWindow::IsCurrent() {
+  return context_ && context_->isCurrent();
+}
+
+void OffscreenRenderWindow::OpenGLInit() {
+  OpenGLInitContext();
+  if (Initialized) OpenGLInitState();
+}
+
+// The base class asks OpenGL for its version before its functions are loaded, and takes GLEW at its word when
+// that, built for GLX, misses a GLX display: by then all functions are there.
+void OffscreenRenderWindow::OpenGLInitContext() {
+  if (Initialized) return;
+  ContextCreationTime.Modified();
+  const GLenum loaded = glewInit();
+  GlewInitValid = (loaded == GLEW_OK || loaded == GLEW_ERROR_NO_GLX_DISPLAY) && GLEW_VERSION_3_2;
+  Initialized = GlewInitValid;
+  if (!Initialized) return;
+  std::array<GLfloat, 2> widths = {1.0F, 1.0F};
+  glGetFloatv(GL_ALIASED_LINE_WIDTH_RANGE, widths.data());
+  MaximumHardwareLineWidth = widths[1];
+}
+
+QImage OffscreenRenderWindow::drawImage(const QSize& size_px) {
+  if (!context_) return {};
+  const EglContext::Scope scope(*context_);
+  if (!scope.current()) return {};
+  if (GetSize()[0] != size_px.width() || GetSize()[1] != size_px.height()) {
+    SetSize(size_px.width(), size_px.height());
+  }
+  Render();
+  QImage image(size_px, QImage::Format_RGB32);
+  ReadPixels(vtkRecti(0, 0, size_px.width(), size_px.height()), 1, GL_BGRA, GL_UNSIGNED_BYTE, image.bits(),
+             0);
+  return image.mirrored();
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/scene/view3d.h"
+
+#include "ui/scene/offscreen_render_window.h"
+#include "ui/theme/theme.h"
+
+#include <QApplication>
+#include <QMouseEvent>
+#include <QPainter>
+
+#include <vtkCamera.h>
+#include <vtkNew.h>
+#include <vtkRenderer.h>
+
+#include <cmath>
+
+namespace evical::ui {
+namespace {
+
+constexpr double kOrbit_rad_per_px = 0.008;
+constexpr double kKeyOrbit_rad = 0.1, kKeyPan = 0.05, kKeyZoom = 1.15;
+constexpr double kWheelZoom = 1.15;  // a notch
+constexpr double kNotch = 120.0;     // in Qt's units
+
+}  // namespace
+
+struct View3D::Private {
+  vtkNew<vtkRenderer> renderer;
+  vtkNew<OffscreenRenderWindow> window;
+  bool started = false, dirty = true;
+  std::string problem;
+  QImage frame;
+  double pixel_ratio = 0.0;
+
+  TurntableCamera turntable;
+  std::optional<ViewPose> fixed_pose;
+  Eigen::Vector3d world_centre_m = Eigen::Vector3d::Zero();
+  double world_radius_m = 1.0;
+  bool fitted = false;
+
+  std::function<void(QPainter&)> overlay;
+  QPointF pressed_at, last_at;
+  bool dragging = false;
+
+  // Not before the first painting: the driver takes a fifth of a second to load.
+  void start() {
+    started = true;
+    if (const auto context = EglContext::create(problem)) {
+      window->setContext(context);
+      window->AddRenderer(renderer);
+    }
+  }
+};
+
+View3D::View3D(QWidget* parent) : QWidget(parent), d_(std::make_unique<Private>()) {
+  setFocusPolicy(Qt::StrongFocus);
+  setMouseTracking(true);
+  setMinimumSize(160, 120);
+  setAttribute(Qt::WA_OpaquePaintEvent);
+  setBackground(theme().panel);
+}
+
+View3D::~View3D() = default;
+
+vtkRenderer* View3D::renderer() const {
+  return d_->renderer;
+}
+
+void View3D::redraw() {
+  d_->dirty = true;
+  update();
+}
+
+void View3D::setBackground(const QColor& colour) {
+  d_->renderer->SetBackground(colour.redF(), colour.greenF(), colour.blueF());
+  redraw();
+}
+
+void View3D::setOverlay(std::function<void(QPainter&)> paint) {
+  d_->overlay = std::move(paint);
+  update();
+}
+
+void View3D::setWorld(const Eigen::Vector3d& up, const Eigen::Vector3d& front,
+                      const Eigen::Vector3d& centre_m, double radius_m) {
+  d_->turntable.setAxes(up, front);
+  d_->world_centre_m = centre_m;
+  d_->world_radius_m = radius_m;
+  look(StandardView::Home);
+}
+
+void View3D::setFocus(const Eigen::Vector3d& focus_m) {
+  d_->turntable.setFocus(focus_m);
+  redraw();
+}
+
+void View3D::lookThrough(const std::optional<ViewPose>& pose) {
+  d_->fixed_pose = pose;
+  redraw();
+}
+
+ViewPose View3D::viewPose() const {
+  return d_->fixed_pose ? *d_->fixed_pose : d_->turntable.pose();
+}
+
+std::optional<QPointF> View3D::project(const Eigen::Vector3d& point_m) const {
+  return viewPose().project(point_m, size());
+}
+
+QString View3D::problem() const {
+  return QString::fromStdString(d_->problem);
+}
+
+void View3D::look(StandardView view) {
+  d_->fixed_pose.reset();
+  d_->turntable.look(view);
+  d_->fitted = false;
+  redraw();
+}
+
+// Put off to the first frame, when the widget has its size.
+void View3D::fitWorld() {
+  if (d_->fitted) return;
+  d_->turntable.fit(d_->world_centre_m, d_->world_radius_m, static_cast<double>(width()) / height());
+  d_->fitted = true;
+}
+
+void View3D::drawFrame() {
+  const double ratio = devicePixelRatioF();
+  const QSize size_px = (QSizeF(size()) * ratio).toSize();
+  if (!d_->dirty && d_->frame.size() == size_px) return;
+  if (ratio != d_->pixel_ratio) {
+    d_->pixel_ratio = ratio;
+    emit pixelRatioChanged(ratio);
+  }
+  fitWorld();
+  const ViewPose pose = viewPose();
+  vtkCamera* const camera = d_->renderer->GetActiveCamera();
+  camera->SetPosition(pose.eye_m.data());
+  camera->SetFocalPoint(pose.focus_m.data());
+  camera->SetViewUp(pose.up.data());
+  camera->SetViewAngle(pose.vertical_view_rad * 180.0 / M_PI);
+  d_->renderer->ResetCameraClippingRange();
+  d_->frame = d_->window->drawImage(size_px);
+  d_->frame.setDevicePixelRatio(ratio);
+  d_->dirty = false;
+  if (d_->frame.isNull()) d_->problem = "the graphics driver gave up its OpenGL context";
+}
+
+void View3D::drawProblem(QPainter& painter) const {
+  painter.fillRect(rect(), theme().panel);
+  painter.setPen(theme().faint_text);
+  painter.drawText(rect().adjusted(24, 24, -24, -24), Qt::AlignCenter | Qt::TextWordWrap,
+                   tr("The 3D view needs OpenGL 3.2, but %1.\nEverything else works without it.\n"
+                      "Installing Mesa's EGL driver brings a software renderer.")
+                       .arg(problem()));
+}
+
+void View3D::paintEvent(QPaintEvent*) {
+  if (!d_->started) d_->start();
+  if (d_->problem.empty()) drawFrame();
+  QPainter painter(this);
+  if (!d_->problem.empty()) {
+    drawProblem(painter);
+    return;
+  }
+  painter.drawImage(QPointF(0.0, 0.0), d_->frame);
+  painter.setRenderHint(QPainter::Antialiasing);
+  if (d_->overlay) d_->overlay(painter);
+}
+
+void View3D::mousePressEvent(QMouseEvent* event) {
+  d_->pressed_at = d_->last_at = event->position();
+  d_->dragging = false;
+}
+
+void View3D::mouseMoveEvent(QMouseEvent* event) {
+  if (event->buttons() == Qt::NoButton) {
+    emit hovered(event->position());
+    return;
+  }
+  const QPointF from_press = event->position() - d_->pressed_at;
+  d_->dragging = d_->dragging || from_press.manhattanLength() >= QApplication::startDragDistance();
+  if (!d_->dragging) return;
+  const QPointF step = event->position() - d_->last_at;
+  d_->last_at = event->position();
+  const bool orbits = event->buttons().testFlag(Qt::LeftButton) && event->modifiers() == Qt::NoModifier;
+  if (orbits) {
+    d_->turntable.orbit(kOrbit_rad_per_px * step.x(), kOrbit_rad_per_px * step.y());
+  } else {
+    d_->turntable.pan(-step.x() / height(), step.y() / height());
+  }
+  userTurned();
+}
+
+void View3D::mouseReleaseEvent(QMouseEvent* event) {
+  if (event->button() == Qt::LeftButton && !d_->dragging) emit clicked(event->position());
+  d_->dragging = false;
+}
+
+void View3D::wheelEvent(QWheelEvent* event) {
+  d_->turntable.zoom(std::pow(kWheelZoom, event->angleDelta().y() / kNotch));
+  userTurned();
+  event->accept();
+}
+
+void View3D::keyPressEvent(QKeyEvent* event) {
+  if (!turnByKey(event->key(), event->modifiers())) QWidget::keyPressEvent(event);
+}
+
+bool View3D::turnByKey(int key, Qt::KeyboardModifiers modifiers) {
+  switch (key) {
+    case Qt::Key_1:
+      look(StandardView::Front);
+      break;
+    case Qt::Key_2:
+      look(StandardView::Side);
+      break;
+    case Qt::Key_3:
+      look(StandardView::Top);
+      break;
+    case Qt::Key_Home:
+      look(StandardView::Home);
+      break;
+    case Qt::Key_Plus:
+    case Qt::Key_Equal:
+      d_->turntable.zoom(kKeyZoom);
+      break;
+    case Qt::Key_Minus:
+      d_->turntable.zoom(1.0 / kKeyZoom);
+      break;
+    case Qt::Key_Left:
+    case Qt::Key_Right:
+    case Qt::Key_Up:
+    case Qt::Key_Down: {
+      const double right = key == Qt::Key_Right ? 1.0 : key == Qt::Key_Left ? -1.0 : 0.0;
+      const double up = key == Qt::Key_Up ? 1.0 : key == Qt::Key_Down ? -1.0 : 0.0;
+      if (modifiers.testFlag(Qt::ShiftModifier)) {
+        d_->turntable.pan(kKeyPan * right, kKeyPan * up);
+      } else {
+        d_->turntable.orbit(-kKeyOrbit_rad * right, kKeyOrbit_rad * up);
+      }
+      break;
+    }
+    default:
+      return false;
+  }
+  userTurned();
+  return true;
+}
+
+void View3D::userTurned() {
+  d_->fixed_pose.reset();
+  redraw();
+  emit turned();
+}
+
+}  // namespace evical::ui

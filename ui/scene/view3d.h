@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A widget that shows a VTK scene, with our own mouse and keyboard. Works without a display; where there is
+// no OpenGL at all it says so in place of the picture.
+//
+// Mouse: left orbits, right or middle (or shift and left) pans, the wheel zooms. Keys: arrows orbit, with
+// shift they pan, + and - zoom, 1 front, 2 side, 3 top, Home everything.
+#pragma once
+
+#include "ui/scene/turntable_camera.h"
+
+#include <QColor>
+#include <QWidget>
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+class vtkRenderer;
+
+namespace evical::ui {
+
+class View3D : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit View3D(QWidget* parent = nullptr);
+  ~View3D() override;
+
+  // For scenes to put their actors into; an actor belongs to one view only. It lives as long as the view.
+  vtkRenderer* renderer() const;
+  // To be called when the scene has changed: many changes make one frame.
+  void redraw();
+
+  void setBackground(const QColor& colour);
+  // Painted over the picture, in widget coordinates.
+  void setOverlay(std::function<void(QPainter&)> paint);
+
+  // What the standard views show: directions for the turntable, and a sphere around all that matters.
+  void setWorld(const Eigen::Vector3d& up, const Eigen::Vector3d& front, const Eigen::Vector3d& centre_m,
+                double radius_m);
+  void setFocus(const Eigen::Vector3d& focus_m);
+  // Overrides the turntable until the user turns it.
+  void lookThrough(const std::optional<ViewPose>& pose);
+
+  ViewPose viewPose() const;
+  std::optional<QPointF> project(const Eigen::Vector3d& point_m) const;
+
+  // Why there is no picture; empty where there is one. Known after the first painting.
+  QString problem() const;
+
+  QSize sizeHint() const override { return {900, 600}; }
+
+ public slots:
+  void look(evical::ui::StandardView view);
+
+ signals:
+  void clicked(const QPointF& position);
+  void hovered(const QPointF& position);  // no button pressed
+  void turned();                          // by the user, with mouse or keyboard
+  void pixelRatioChanged(double ratio);   // before the frame that needs it
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+  void mousePressEvent(QMouseEvent* event) override;
+  void mouseMoveEvent(QMouseEvent* event) override;
+  void mouseReleaseEvent(QMouseEvent* event) override;
+  void wheelEvent(QWheelEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
+
+ private:
+  void drawFrame();
+  void drawProblem(QPainter& painter) const;
+  bool turnByKey(int key, Qt::KeyboardModifiers modifiers);
+  void fitWorld();
+  void userTurned();
+
+  struct Private;
+  std::unique_ptr<Private> d_;
+};
+
+}  // namespace evical::ui
