@@ -86,7 +86,6 @@ void View3D::setWorld(const Eigen::Vector3d& up, const Eigen::Vector3d& front,
   d_->turntable.setAxes(up, front);
   d_->world_centre_m = centre_m;
   d_->world_radius_m = radius_m;
-  look(StandardView::Home);
 }
 
 void View3D::setFocus(const Eigen::Vector3d& focus_m) {

@@ -35,7 +35,8 @@ class View3D : public QWidget {
   // Painted over the picture, in widget coordinates.
   void setOverlay(std::function<void(QPainter&)> paint);
 
-  // What the standard views show: directions for the turntable, and a sphere around all that matters.
+  // What the standard views show: directions for the turntable, and a sphere around all that matters. Takes
+  // effect with the next look().
   void setWorld(const Eigen::Vector3d& up, const Eigen::Vector3d& front, const Eigen::Vector3d& centre_m,
                 double radius_m);
   void setFocus(const Eigen::Vector3d& focus_m);

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/scene/scene_shapes.h"
+
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <vector>
+
+namespace evical::ui {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr int kCircleCorners = 40;
+constexpr int kConeCorners = 16;
+
+Vector3d onBoard(double x_m, double y_m, double z_m = 0.0) {
+  return {x_m, y_m, z_m};
+}
+
+std::array<Vector3d, 4> paperAt(const CircleBoard& board, double z_m, double wider_m = 0.0) {
+  auto [first, last] = paperCorners_m(board);
+  first.array() -= wider_m;
+  last.array() += wider_m;
+  return {onBoard(first.x(), first.y(), z_m), onBoard(last.x(), first.y(), z_m),
+          onBoard(last.x(), last.y(), z_m), onBoard(first.x(), last.y(), z_m)};
+}
+
+}  // namespace
+
+ShapeBuilder::ShapeBuilder() {
+  colours_->SetNumberOfComponents(3);
+  colours_->SetName("colours");
+}
+
+vtkIdType ShapeBuilder::add(const Vector3d& at) {
+  const auto channel = [](int value) { return static_cast<unsigned char>(value); };
+  const std::array<unsigned char, 3> rgb = {channel(colour_.red()), channel(colour_.green()),
+                                            channel(colour_.blue())};
+  colours_->InsertNextTypedTuple(rgb.data());
+  return points_->InsertNextPoint(at.data());
+}
+
+void ShapeBuilder::point(const Vector3d& at) {
+  const vtkIdType id = add(at);
+  vertices_->InsertNextCell(1, &id);
+}
+
+void ShapeBuilder::line(const Vector3d& from, const Vector3d& to) {
+  const std::array<vtkIdType, 2> ids = {add(from), add(to)};
+  lines_->InsertNextCell(2, ids.data());
+}
+
+void ShapeBuilder::polyline(std::span<const Vector3d> points, std::span<const QColor> colours) {
+  lines_->InsertNextCell(static_cast<int>(points.size()));
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    setColour(colours[k]);
+    lines_->InsertCellPoint(add(points[k]));
+  }
+}
+
+void ShapeBuilder::polygon(std::span<const Vector3d> corners) {
+  polygons_->InsertNextCell(static_cast<int>(corners.size()));
+  for (const Vector3d& corner : corners) polygons_->InsertCellPoint(add(corner));
+}
+
+void ShapeBuilder::writeTo(vtkPolyData* data) const {
+  data->Initialize();
+  data->SetPoints(points_);
+  data->SetVerts(vertices_);
+  data->SetLines(lines_);
+  data->SetPolys(polygons_);
+  data->GetPointData()->SetScalars(colours_);
+}
+
+std::array<Vector2d, 2> paperCorners_m(const CircleBoard& board) {
+  Vector2d least = board.centre_m(0), most = least;
+  for (const Vector2d& centre : circleCentres_m(board)) {
+    least = least.cwiseMin(centre);
+    most = most.cwiseMax(centre);
+  }
+  const Vector2d margin = Vector2d::Constant(board.radius_m + 0.5 * board.spacing_m);
+  return {least - margin, most + margin};
+}
+
+void addBoard(ShapeBuilder& shapes, const CircleBoard& board, const BoardColours& colours) {
+  const bool dark_circles = board.circles == CircleShade::Dark;
+  const double lift_m = 0.05 * board.radius_m;  // so that circles, paper and back are told apart in depth
+  shapes.setColour(dark_circles ? colours.paper : colours.ink);
+  shapes.polygon(paperAt(board, 0.0));
+  shapes.setColour(colours.back);
+  shapes.polygon(paperAt(board, lift_m));
+  shapes.setColour(dark_circles ? colours.ink : colours.paper);
+  std::vector<Vector3d> rim(kCircleCorners);
+  for (const Vector2d& centre : circleCentres_m(board)) {
+    for (int k = 0; k < kCircleCorners; ++k) {
+      const double angle = 2.0 * M_PI * k / kCircleCorners;
+      rim[static_cast<std::size_t>(k)] = onBoard(centre.x() + board.radius_m * std::cos(angle),
+                                                 centre.y() + board.radius_m * std::sin(angle), -lift_m);
+    }
+    shapes.polygon(rim);
+  }
+}
+
+void addBoardEdge(ShapeBuilder& shapes, const CircleBoard& board) {
+  const auto corners = paperAt(board, 0.0, 0.1 * board.radius_m);  // apart from the paper's own edge
+  for (std::size_t k = 0; k < 4; ++k) shapes.line(corners[k], corners[(k + 1) % 4]);
+}
+
+void addFrustum(ShapeBuilder& shapes, const CameraShape& camera, const RigidTransform& world_from_camera,
+                double depth_m) {
+  std::array<Vector3d, 4> corners;
+  for (std::size_t k = 0; k < 4; ++k) corners[k] = world_from_camera * (depth_m * camera.corners[k]);
+  for (std::size_t k = 0; k < 4; ++k) {
+    shapes.line(world_from_camera.translation_m, corners[k]);
+    shapes.line(corners[k], corners[(k + 1) % 4]);
+  }
+}
+
+void addImagePlane(ShapeBuilder& shapes, const CameraShape& camera, const RigidTransform& world_from_camera,
+                   double depth_m) {
+  std::array<Vector3d, 4> corners;
+  for (std::size_t k = 0; k < 4; ++k) corners[k] = world_from_camera * (depth_m * camera.corners[k]);
+  shapes.polygon(corners);
+}
+
+void addAxes(ShapeBuilder& shapes, const RigidTransform& world_from_axes, double length_m,
+             const std::array<QColor, 3>& colours) {
+  for (int axis = 0; axis < 3; ++axis) {
+    shapes.setColour(colours[static_cast<std::size_t>(axis)]);
+    shapes.line(world_from_axes.translation_m, world_from_axes * (length_m * Vector3d::Unit(axis)));
+  }
+}
+
+void addArrow(ShapeBuilder& shapes, const Vector3d& from, const Vector3d& to) {
+  const Vector3d along = to - from, across = 0.07 * along.norm() * along.unitOrthogonal();
+  const Vector3d neck = to - 0.25 * along, other = along.normalized().cross(across);
+  shapes.line(from, neck);
+  for (int k = 0; k < kConeCorners; ++k) {
+    const auto rim = [&](int corner) -> Vector3d {
+      const double angle = 2.0 * M_PI * corner / kConeCorners;
+      return neck + std::cos(angle) * across + std::sin(angle) * other;
+    };
+    shapes.polygon(std::array<Vector3d, 3>{to, rim(k), rim(k + 1)});
+  }
+}
+
+void addGrid(ShapeBuilder& shapes, const Vector3d& centre_m, const Vector3d& up, const Vector3d& along,
+             double spacing_m, int half_count) {
+  const Vector3d first = (along - along.dot(up) * up).normalized(), second = up.cross(first);
+  const double half_m = spacing_m * half_count;
+  for (int k = -half_count; k <= half_count; ++k) {
+    const Vector3d on_first = centre_m + k * spacing_m * first, on_second = centre_m + k * spacing_m * second;
+    shapes.line(on_first - half_m * second, on_first + half_m * second);
+    shapes.line(on_second - half_m * first, on_second + half_m * first);
+  }
+}
+
+}  // namespace evical::ui

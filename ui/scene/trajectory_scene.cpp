@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/scene/trajectory_scene.h"
+
+#include "ui/scene/camera_shape.h"
+#include "ui/scene/scene_shapes.h"
+#include "ui/theme/theme.h"
+
+#include <vtkActor.h>
+#include <vtkNew.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkRenderer.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace evical::ui {
+namespace {
+
+using Eigen::Vector3d;
+
+// In parts of the board's diagonal.
+constexpr double kStationDepth = 0.07, kCurrentDepth = 0.13, kImuAxes = 0.16, kWorldAxes = 0.2, kArrow = 0.28;
+constexpr double kImagePlaneOpacity = 0.25;
+constexpr double kGridCells = 14.0;
+
+class Part {
+ public:
+  Part(vtkRenderer* renderer, double width_px) : width_px_(width_px) {
+    mapper_->SetInputData(data_);
+    actor_->SetMapper(mapper_);
+    actor_->GetProperty()->LightingOff();
+    actor_->PickableOff();
+    renderer->AddActor(actor_);
+    setPixelRatio(1.0);
+  }
+  void show(const ShapeBuilder& shapes) { shapes.writeTo(data_); }
+  void setVisible(bool visible) { actor_->SetVisibility(visible); }
+  // Drawn like an opaque part, on what was drawn before: VTK's own pass for translucent parts costs more than
+  // the rest of the frame.
+  void setOpacity(double opacity) {
+    actor_->GetProperty()->SetOpacity(opacity);
+    actor_->ForceOpaqueOn();
+  }
+  void setPixelRatio(double ratio) {
+    actor_->GetProperty()->SetLineWidth(static_cast<float>(ratio * width_px_));
+    actor_->GetProperty()->SetPointSize(static_cast<float>(ratio * 2.0 * width_px_));
+  }
+
+ private:
+  double width_px_;
+  vtkNew<vtkPolyData> data_;
+  vtkNew<vtkPolyDataMapper> mapper_;
+  vtkNew<vtkActor> actor_;
+};
+
+BoardColours boardColours() {
+  if (theme().dark) return {QColor(0xd8, 0xdb, 0xe0), QColor(0x2a, 0x2d, 0x33), QColor(0x6b, 0x72, 0x7d), {}};
+  return {QColor(0xff, 0xff, 0xff), QColor(0x2a, 0x2d, 0x33), QColor(0xc3, 0xc8, 0xd0), {}};
+}
+
+// One that the trajectory's colours do not hold.
+QColor rawPoseColour() {
+  return theme().dark ? theme().bad : theme().good;
+}
+
+class Box {
+ public:
+  void add(const Vector3d& point) {
+    least_ = empty_ ? point : least_.cwiseMin(point).eval();
+    most_ = empty_ ? point : most_.cwiseMax(point).eval();
+    empty_ = false;
+  }
+  Vector3d centre() const { return empty_ ? Vector3d::Zero().eval() : (0.5 * (least_ + most_)).eval(); }
+  double radius() const { return empty_ ? 0.5 : 0.5 * (most_ - least_).norm(); }
+
+ private:
+  bool empty_ = true;
+  Vector3d least_ = Vector3d::Zero(), most_ = Vector3d::Zero();
+};
+
+}  // namespace
+
+struct TrajectoryScene::Private {
+  explicit Private(vtkRenderer* r)
+      : ground(r, 1.0),
+        board(r, 1.0),
+        board_edge(r, 1.2),
+        track(r, 2.5),
+        stations(r, 1.0),
+        current(r, 2.0),
+        imu_axes(r, 3.0),
+        raw_poses(r, 1.3),
+        gravity(r, 3.0),
+        axes(r, 3.0),
+        image_plane(r, 1.0) {
+    image_plane.setOpacity(kImagePlaneOpacity);
+    visible.fill(true);
+  }
+
+  std::optional<CircleBoard> board_data;
+  std::vector<CameraShape> cameras;
+  std::shared_ptr<const TrajectoryTrack> track_data = std::make_shared<TrajectoryTrack>();
+  std::optional<Vector3d> gravity_m_s2;
+  std::vector<RigidTransform> raw, current_cameras, current_imus;
+  TrajectoryColour colour = TrajectoryColour::Speed;
+  std::array<bool, kSceneLayerCount> visible;
+
+  // Drawn in this order.
+  Part ground, board, board_edge, track, stations, current, imu_axes, raw_poses, gravity, axes, image_plane;
+
+  std::array<Part*, 11> parts() {
+    return {&ground,      &board,    &board_edge, &track,   &stations, &current,
+            &image_plane, &imu_axes, &raw_poses,  &gravity, &axes};
+  }
+  std::vector<Part*> partsOf(SceneLayer layer) {
+    switch (layer) {
+      case SceneLayer::Board:
+        return {&board, &board_edge};
+      case SceneLayer::Trajectory:
+        return {&track};
+      case SceneLayer::Cameras:
+        return {&stations};
+      case SceneLayer::CurrentCamera:
+        return {&current, &image_plane};
+      case SceneLayer::ImuAxes:
+        return {&imu_axes};
+      case SceneLayer::RawPoses:
+        return {&raw_poses};
+      case SceneLayer::Gravity:
+        return {&gravity};
+      case SceneLayer::Ground:
+        return {&ground};
+      case SceneLayer::Axes:
+        return {&axes};
+    }
+    return {};
+  }
+
+  const CameraShape& camera(std::size_t index) {
+    while (cameras.size() <= index) cameras.push_back(cameraShape(std::nullopt));
+    return cameras[index];
+  }
+  double unit_m() const {
+    if (!board_data) return 0.6;
+    const auto [first, last] = paperCorners_m(*board_data);
+    return (last - first).norm();
+  }
+  const std::vector<double>& colouredValues() const {
+    return colour == TrajectoryColour::Speed ? track_data->speeds_m_s : track_data->residuals_px;
+  }
+  std::vector<Vector3d> allPoints() const {
+    std::vector<Vector3d> points = track_data->positions_m;
+    if (board_data) {
+      for (const Eigen::Vector2d& c : paperCorners_m(*board_data)) points.emplace_back(c.x(), c.y(), 0.0);
+    }
+    for (const RigidTransform& pose : raw) points.push_back(pose.translation_m);
+    return points;
+  }
+  Box box() const {
+    Box box;
+    for (const Vector3d& point : allPoints()) box.add(point);
+    return box;
+  }
+  Vector3d up() const { return -gravity_m_s2.value_or(Vector3d::UnitY()).normalized(); }
+
+  Vector3d arrowStart() const {
+    if (!board_data) return {-0.3 * unit_m(), 0.0, 0.0};
+    const auto [first, last] = paperCorners_m(*board_data);
+    return {first.x() - 0.25 * unit_m(), 0.5 * (first.y() + last.y()), 0.0};
+  }
+  Vector3d arrowEnd() const { return arrowStart() - kArrow * unit_m() * up(); }
+};
+
+TrajectoryScene::TrajectoryScene(vtkRenderer* renderer) : d_(std::make_unique<Private>(renderer)) {
+  buildSurroundings();
+}
+
+TrajectoryScene::~TrajectoryScene() = default;
+
+void TrajectoryScene::setBoard(const std::optional<CircleBoard>& board) {
+  d_->board_data = board;
+  applyTheme();
+}
+
+void TrajectoryScene::setIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& cameras) {
+  d_->cameras.clear();
+  for (const auto& intrinsics : cameras) d_->cameras.push_back(cameraShape(intrinsics));
+  buildStations();
+  buildInstant();
+}
+
+void TrajectoryScene::setTrack(std::shared_ptr<const TrajectoryTrack> track) {
+  d_->track_data = track ? std::move(track) : std::make_shared<TrajectoryTrack>();
+  buildTrack();
+  buildStations();
+  buildSurroundings();
+}
+
+void TrajectoryScene::setGravity(const std::optional<Vector3d>& gravity_in_world_m_s2) {
+  d_->gravity_m_s2 = gravity_in_world_m_s2;
+  buildSurroundings();
+}
+
+void TrajectoryScene::setRawPoses(const std::vector<RigidTransform>& world_from_bodies) {
+  d_->raw = world_from_bodies;
+  buildRawPoses();
+  buildSurroundings();
+}
+
+void TrajectoryScene::setInstant(const std::vector<RigidTransform>& world_from_cameras,
+                                 const std::vector<RigidTransform>& world_from_imus) {
+  d_->current_cameras = world_from_cameras;
+  d_->current_imus = world_from_imus;
+  buildInstant();
+}
+
+void TrajectoryScene::setTrajectoryColour(TrajectoryColour colour) {
+  d_->colour = colour;
+  buildTrack();
+}
+
+void TrajectoryScene::setVisible(SceneLayer layer, bool visible) {
+  d_->visible[static_cast<std::size_t>(layer)] = visible;
+  for (Part* part : d_->partsOf(layer)) part->setVisible(visible);
+}
+
+bool TrajectoryScene::isVisible(SceneLayer layer) const {
+  return d_->visible[static_cast<std::size_t>(layer)];
+}
+
+void TrajectoryScene::setPixelRatio(double ratio) {
+  for (Part* part : d_->parts()) part->setPixelRatio(ratio);
+}
+
+void TrajectoryScene::applyTheme() {
+  buildBoard();
+  buildTrack();
+  buildStations();
+  buildRawPoses();
+  buildInstant();
+  buildSurroundings();
+}
+
+std::optional<ColourScale> TrajectoryScene::colourScale() const {
+  if (d_->track_data->empty()) return std::nullopt;
+  const bool speed = d_->colour == TrajectoryColour::Speed;
+  return ColourScale{speed ? QStringLiteral("speed [m/s]") : QStringLiteral("residual [px]"),
+                     scaleEnd(d_->colouredValues()), theme().dark};
+}
+
+std::vector<SceneLabel> TrajectoryScene::labels() const {
+  std::vector<SceneLabel> labels;
+  if (empty()) return labels;
+  const double reach_m = 1.15 * kWorldAxes * d_->unit_m();
+  const std::array<const char*, 3> names = {"x", "y", "z"};
+  if (isVisible(SceneLayer::Axes)) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto k = static_cast<std::size_t>(axis);
+      labels.push_back({reach_m * Vector3d::Unit(axis), names[k], theme().axes[k]});
+    }
+  }
+  if (isVisible(SceneLayer::ImuAxes) && !d_->current_imus.empty()) {
+    const RigidTransform& imu = d_->current_imus.front();
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto k = static_cast<std::size_t>(axis);
+      const Vector3d tip = imu * (1.15 * kImuAxes * d_->unit_m() * Vector3d::Unit(axis));
+      labels.push_back({tip, names[k], theme().axes[k]});
+    }
+  }
+  if (isVisible(SceneLayer::Gravity) && d_->gravity_m_s2) {
+    const Vector3d below = d_->arrowEnd() - 0.03 * d_->unit_m() * d_->up();
+    labels.push_back({below, QStringLiteral("gravity"), theme().warning});
+  }
+  return labels;
+}
+
+bool TrajectoryScene::empty() const {
+  return !d_->board_data && d_->track_data->empty() && d_->raw.empty();
+}
+
+SceneExtent TrajectoryScene::extent() const {
+  const Box box = d_->box();
+  return {d_->up(), Vector3d::UnitZ(), box.centre(), box.radius()};
+}
+
+double TrajectoryScene::gridSpacing_m() const {
+  return roundedUp(2.0 * d_->box().radius() / kGridCells);
+}
+
+void TrajectoryScene::buildBoard() {
+  ShapeBuilder sheet, edge;
+  if (d_->board_data) {
+    addBoard(sheet, *d_->board_data, boardColours());
+    edge.setColour(theme().faint_text);
+    addBoardEdge(edge, *d_->board_data);
+  }
+  d_->board.show(sheet);
+  d_->board_edge.show(edge);
+}
+
+void TrajectoryScene::buildTrack() {
+  ShapeBuilder shapes;
+  if (const auto scale = colourScale()) {
+    std::vector<QColor> colours;
+    for (const double value : d_->colouredValues()) colours.push_back(scale->colourOf(value));
+    shapes.polyline(d_->track_data->positions_m, colours);
+  }
+  d_->track.show(shapes);
+}
+
+void TrajectoryScene::buildStations() {
+  ShapeBuilder shapes;
+  shapes.setColour(theme().faint_text);
+  for (const CameraStation& station : d_->track_data->stations) {
+    for (std::size_t k = 0; k < station.world_from_cameras.size(); ++k) {
+      addFrustum(shapes, d_->camera(k), station.world_from_cameras[k], kStationDepth * d_->unit_m());
+    }
+  }
+  d_->stations.show(shapes);
+}
+
+void TrajectoryScene::buildRawPoses() {
+  ShapeBuilder shapes;
+  shapes.setColour(rawPoseColour());
+  for (const RigidTransform& pose : d_->raw) shapes.point(pose.translation_m);
+  d_->raw_poses.show(shapes);
+}
+
+void TrajectoryScene::buildInstant() {
+  ShapeBuilder frusta, planes, axes;
+  frusta.setColour(theme().accent);
+  planes.setColour(theme().accent);
+  const double depth_m = kCurrentDepth * d_->unit_m();
+  for (std::size_t k = 0; k < d_->current_cameras.size(); ++k) {
+    addFrustum(frusta, d_->camera(k), d_->current_cameras[k], depth_m);
+    addImagePlane(planes, d_->camera(k), d_->current_cameras[k], depth_m);
+  }
+  for (const RigidTransform& imu : d_->current_imus) {
+    addAxes(axes, imu, kImuAxes * d_->unit_m(), theme().axes);
+  }
+  d_->current.show(frusta);
+  d_->image_plane.show(planes);
+  d_->imu_axes.show(axes);
+}
+
+void TrajectoryScene::buildSurroundings() {
+  ShapeBuilder ground, gravity, axes;
+  if (empty()) {
+    for (Part* part : {&d_->ground, &d_->gravity, &d_->axes}) part->show(ground);
+    return;
+  }
+  const Box box = d_->box();
+  const Vector3d up = d_->up();
+  double lowest_m = 0.0;
+  for (const Vector3d& point : d_->allPoints()) lowest_m = std::min(lowest_m, up.dot(point));
+  const Vector3d centre = box.centre() + (lowest_m - 0.02 * d_->unit_m() - up.dot(box.centre())) * up;
+  ground.setColour(theme().grid_line);
+  addGrid(ground, centre, up, Vector3d::UnitX(), gridSpacing_m(),
+          static_cast<int>(std::ceil(box.radius() / gridSpacing_m())));
+  if (d_->gravity_m_s2) {
+    gravity.setColour(theme().warning);
+    addArrow(gravity, d_->arrowStart(), d_->arrowEnd());
+  }
+  const Vector3d in_front(0.0, 0.0, -0.005 * d_->unit_m());  // of the board's circles
+  addAxes(axes, {Eigen::Quaterniond::Identity(), in_front}, kWorldAxes * d_->unit_m(), theme().axes);
+  d_->ground.show(ground);
+  d_->gravity.show(gravity);
+  d_->axes.show(axes);
+}
+
+}  // namespace evical::ui

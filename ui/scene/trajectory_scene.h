@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Board, trajectory, cameras, IMU, gravity and ground in a VTK renderer. GUI thread only; one scene a view.
+#pragma once
+
+#include "core/geometry/camera_model.h"
+#include "core/geometry/circle_board.h"
+#include "ui/scene/colour_scale.h"
+#include "ui/scene/trajectory_track.h"
+
+#include <QColor>
+#include <QString>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+class vtkRenderer;
+
+namespace evical::ui {
+
+enum class SceneLayer { Board, Trajectory, Cameras, CurrentCamera, ImuAxes, RawPoses, Gravity, Ground, Axes };
+inline constexpr int kSceneLayerCount = 9;
+
+enum class TrajectoryColour { Speed, Residual };
+
+struct SceneLabel {
+  Eigen::Vector3d at_m;
+  QString text;
+  QColor colour;
+};
+
+struct SceneExtent {
+  Eigen::Vector3d up, front, centre_m;
+  double radius_m = 0.0;
+};
+
+class TrajectoryScene {
+ public:
+  explicit TrajectoryScene(vtkRenderer* renderer);
+  ~TrajectoryScene();
+
+  void setBoard(const std::optional<CircleBoard>& board);
+  void setIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& cameras);
+  void setTrack(std::shared_ptr<const TrajectoryTrack> track);
+  void setGravity(const std::optional<Eigen::Vector3d>& gravity_in_world_m_s2);
+  // Poses from single views, of cameras or already of the IMU.
+  void setRawPoses(const std::vector<RigidTransform>& world_from_bodies);
+  void setInstant(const std::vector<RigidTransform>& world_from_cameras,
+                  const std::vector<RigidTransform>& world_from_imus);
+
+  void setTrajectoryColour(TrajectoryColour colour);
+  void setVisible(SceneLayer layer, bool visible);
+  bool isVisible(SceneLayer layer) const;
+  void setPixelRatio(double ratio);
+  void applyTheme();  // the one that is set now
+
+  // What the trajectory is coloured by; nothing without one.
+  std::optional<ColourScale> colourScale() const;
+  std::vector<SceneLabel> labels() const;
+  bool empty() const;  // neither board nor poses
+  SceneExtent extent() const;
+  double gridSpacing_m() const;
+
+ private:
+  void buildBoard();
+  void buildTrack();
+  void buildStations();
+  void buildRawPoses();
+  void buildInstant();
+  void buildSurroundings();  // all that depends on how large the rest is
+
+  struct Private;
+  std::unique_ptr<Private> d_;
+};
+
+}  // namespace evical::ui

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/scene/view_poses.h"
+
+#include "core/initialisation/initialisation_options.h"
+
+#include <algorithm>
+
+namespace evical::ui {
+namespace {
+
+constexpr std::size_t kViewsAtOnce = 32;  // some 20 ms, so that stopping is prompt
+
+bool continues(const ViewPoseInput& input, const ViewPoses& before) {
+  if (!before.of.observations || before.views_done == 0) return false;
+  if (before.of.intrinsics != input.intrinsics || before.of.board != input.board) return false;
+  const std::vector<BoardView>& old = before.of.observations->views;
+  const std::vector<BoardView>& now = input.observations->views;
+  const std::size_t last = before.views_done - 1;
+  return now.size() > last && now.front().time_s == old.front().time_s &&
+         now[last].time_s == old[last].time_s;
+}
+
+}  // namespace
+
+ViewPoses estimateViewPoses(const ViewPoseInput& input, const ViewPoses& before, std::stop_token stop) {
+  ViewPoses result;
+  if (continues(input, before)) result = before;
+  result.of = input;
+  const std::vector<BoardView>& views = input.observations->views;
+  CameraData some{input.observations->camera, input.intrinsics, {}};
+  while (result.views_done < views.size() && !stop.stop_requested()) {
+    const std::size_t end = std::min(result.views_done + kViewsAtOnce, views.size());
+    some.observations.views.assign(views.begin() + static_cast<std::ptrdiff_t>(result.views_done),
+                                   views.begin() + static_cast<std::ptrdiff_t>(end));
+    const CameraPoses found =
+        estimateCameraPoses(some, input.board, InitialisationOptions{}.largest_reprojection_px);
+    for (CameraPose pose : found.poses) {
+      pose.view += result.views_done;
+      result.poses.push_back(pose);
+    }
+    result.views_done = end;
+  }
+  return result;
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Camera poses from single board views, computed once each while detection goes on. No VTK, no widgets; for
+// worker threads.
+#pragma once
+
+#include "core/initialisation/camera_poses.h"
+
+#include <memory>
+#include <stop_token>
+#include <vector>
+
+namespace evical::ui {
+
+struct ViewPoseInput {
+  std::shared_ptr<const BoardObservations> observations;
+  CameraIntrinsics intrinsics;
+  CircleBoard board;
+};
+
+struct ViewPoses {
+  std::vector<CameraPose> poses;
+  ViewPoseInput of;
+  std::size_t views_done = 0;
+};
+
+// Goes on from `before` where its views are the first of these; else from the start.
+ViewPoses estimateViewPoses(const ViewPoseInput& input, const ViewPoses& before, std::stop_token stop);
+
+}  // namespace evical::ui
