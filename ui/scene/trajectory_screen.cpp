@@ -1,0 +1,410 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/scene/trajectory_screen.h"
+
+#include "ui/scene/camera_shape.h"
+#include "ui/scene/latest_job.h"
+#include "ui/scene/pose_readout.h"
+#include "ui/scene/trajectory_overlay.h"
+#include "ui/scene/trajectory_tools.h"
+#include "ui/scene/view3d.h"
+#include "ui/scene/view_poses.h"
+#include "ui/theme/theme.h"
+
+#include <QEvent>
+#include <QVBoxLayout>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace evical::ui {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kPick_px = 12.0;
+constexpr double kSameDistance_px = 2.0;  // then the nearer to the eye is meant
+constexpr double kNearestRawPose_s = 0.1;
+constexpr double kCameraViewMargin = 1.2;  // of its image, so that the frustum frames it
+
+struct Track {
+  std::shared_ptr<const CalibrationState> state;
+  std::shared_ptr<const TrajectoryTrack> samples;
+};
+
+struct TimedPoint {
+  double time_s;
+  Vector3d at_m;
+};
+
+// The point under the mouse; several pass there more often than not.
+std::optional<double> timeUnder(const QPointF& position, const std::vector<TimedPoint>& points,
+                                const ViewPose& pose, const QSizeF& screen) {
+  std::vector<double> distances_px;
+  for (const TimedPoint& point : points) {
+    const auto at = pose.project(point.at_m, screen);
+    distances_px.push_back(at ? std::hypot(at->x() - position.x(), at->y() - position.y())
+                              : std::numeric_limits<double>::infinity());
+  }
+  const auto nearest = std::min_element(distances_px.begin(), distances_px.end());
+  if (nearest == distances_px.end() || *nearest > kPick_px) return std::nullopt;
+  std::optional<double> time_s;
+  double least_depth_m = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const double depth_m = pose.depth_m(points[k].at_m);
+    if (distances_px[k] > *nearest + kSameDistance_px || depth_m >= least_depth_m) continue;
+    least_depth_m = depth_m;
+    time_s = points[k].time_s;
+  }
+  return time_s;
+}
+
+ViewPose throughCamera(const RigidTransform& world_from_camera, const CameraShape& shape) {
+  const double half_view = std::atan(kCameraViewMargin * std::tan(0.5 * shape.vertical_view_rad));
+  return {world_from_camera.translation_m, world_from_camera * Vector3d::UnitZ(),
+          world_from_camera.rotation * -Vector3d::UnitY(), 2.0 * half_view};
+}
+
+}  // namespace
+
+struct TrajectoryScreen::Private {
+  Private(TrajectoryScreen* screen, View3D* view_3d)
+      : q(screen),
+        view(view_3d),
+        tools(new TrajectoryTools(screen)),
+        readout(new PoseReadout(screen)),
+        scene(view_3d->renderer()),
+        track_job([this](Track sampled) { showTrack(std::move(sampled)); }),
+        poses_job([this](std::vector<ViewPoses> poses) { showViewPoses(std::move(poses)); }) {}
+
+  TrajectoryScreen* q;
+  View3D* view;
+  TrajectoryTools* tools;
+  PoseReadout* readout;
+  TrajectoryScene scene;
+
+  std::optional<CircleBoard> board;
+  std::vector<CameraShape> cameras;
+  std::shared_ptr<const CalibrationState> state;  // that is drawn
+  std::shared_ptr<const TrajectoryTrack> track = std::make_shared<TrajectoryTrack>();
+  std::vector<ViewPoseInput> pose_inputs;  // by camera
+  std::vector<ViewPoses> view_poses;
+  std::optional<RigInstant> instant;
+  std::vector<RigidTransform> current_cameras;
+  double time_s = 0.0;
+  bool placed = false;  // the view looks at what there is
+
+  LatestJob<Track> track_job;
+  LatestJob<std::vector<ViewPoses>> poses_job;
+
+  void buildLayout();
+  void connectTools();
+  void setBoard(const CircleBoard& new_board);
+  void sample(std::shared_ptr<const CalibrationState> new_state, std::shared_ptr<const CalibrationRun> run);
+  void estimatePoses();
+  void showTrack(Track new_track);
+  void showViewPoses(std::vector<ViewPoses> poses);
+  void showRawPoses();
+  void showInstant();
+  void showNumbers();
+  void moveView();
+  void placeWorld();
+  std::vector<RigidTransform> rawCamerasNow() const;
+  std::vector<TimedPoint> pickable() const;
+  std::optional<double> timeUnderMouse(const QPointF& position) const;
+  void paint(QPainter& painter) const;
+  QString message() const;
+};
+
+TrajectoryScreen::TrajectoryScreen(QWidget* parent)
+    : QWidget(parent), d_(std::make_unique<Private>(this, new View3D(this))) {
+  d_->buildLayout();
+  d_->connectTools();
+}
+
+TrajectoryScreen::~TrajectoryScreen() {
+  d_->view->setOverlay({});
+}
+
+void TrajectoryScreen::Private::buildLayout() {
+  auto* const column = new QVBoxLayout(q);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(0);
+  column->addWidget(tools);
+  column->addWidget(view, 1);
+  column->addWidget(readout);
+  q->setFocusProxy(view);
+  view->setOverlay([this](QPainter& painter) { paint(painter); });
+}
+
+void TrajectoryScreen::Private::connectTools() {
+  connect(tools, &TrajectoryTools::colourChosen, q, &TrajectoryScreen::setTrajectoryColour);
+  connect(tools, &TrajectoryTools::layerToggled, q, &TrajectoryScreen::setLayerVisible);
+  connect(tools, &TrajectoryTools::viewChosen, view, &View3D::look);
+  connect(tools, &TrajectoryTools::followingChanged, q, [this] {
+    if (!tools->throughCamera()) view->lookThrough(std::nullopt);
+    moveView();
+  });
+  connect(view, &View3D::turned, q, [this] { tools->leaveCamera(); });
+  connect(view, &View3D::pixelRatioChanged, q, [this](double ratio) { scene.setPixelRatio(ratio); });
+  connect(view, &View3D::hovered, q, [this](const QPointF& position) {
+    view->setCursor(timeUnderMouse(position) ? Qt::PointingHandCursor : Qt::ArrowCursor);
+  });
+  connect(view, &View3D::clicked, q, [this](const QPointF& position) {
+    const auto picked_s = timeUnderMouse(position);
+    if (!picked_s) return;
+    q->setTime(*picked_s);
+    emit q->timeSelected(*picked_s);
+  });
+}
+
+void TrajectoryScreen::clear() {
+  d_->track_job.discard();
+  d_->poses_job.discard();
+  d_->board.reset();
+  d_->scene.setBoard(std::nullopt);
+  setIntrinsics({});
+  d_->pose_inputs.clear();
+  d_->placed = false;
+  d_->showTrack({nullptr, std::make_shared<TrajectoryTrack>()});
+  d_->showViewPoses({});
+}
+
+void TrajectoryScreen::setBoard(const CircleBoard& board) {
+  d_->setBoard(board);
+}
+
+void TrajectoryScreen::Private::setBoard(const CircleBoard& new_board) {
+  if (board == new_board) return;
+  board = new_board;
+  placed = false;
+  scene.setBoard(new_board);
+  placeWorld();
+}
+
+void TrajectoryScreen::setIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& cameras) {
+  d_->cameras.clear();
+  for (const auto& intrinsics : cameras) d_->cameras.push_back(cameraShape(intrinsics));
+  d_->scene.setIntrinsics(cameras);
+  d_->view->redraw();
+}
+
+void TrajectoryScreen::setRun(std::shared_ptr<const CalibrationRun> run, const Session& session) {
+  if (!run) {
+    clear();
+    setBoard(session.board);
+    return;
+  }
+  d_->setBoard(session.board);
+  std::vector<std::optional<CameraIntrinsics>> intrinsics;
+  for (const SessionCamera& camera : session.cameras) intrinsics.push_back(camera.intrinsics);
+  setIntrinsics(intrinsics);
+  d_->placed = false;
+  d_->pose_inputs.clear();
+  d_->sample(std::shared_ptr<const CalibrationState>(run, &run->result.state), run);
+  for (std::size_t k = 0; k < std::min(intrinsics.size(), run->pass.cameras.size()); ++k) {
+    if (!intrinsics[k]) continue;
+    setDetections(std::shared_ptr<const BoardObservations>(run, &run->pass.cameras[k]), *intrinsics[k], k);
+  }
+}
+
+void TrajectoryScreen::setState(std::shared_ptr<const CalibrationState> state, const CircleBoard& board) {
+  d_->setBoard(board);
+  d_->sample(std::move(state), nullptr);
+}
+
+void TrajectoryScreen::Private::sample(std::shared_ptr<const CalibrationState> new_state,
+                                       std::shared_ptr<const CalibrationRun> run) {
+  if (!new_state) return;
+  track_job.start([new_state, run](std::stop_token) -> Track {
+    const std::vector<CircleResidual> none;
+    const auto& residuals = run ? run->result.circle_residuals : none;
+    return {new_state, std::make_shared<TrajectoryTrack>(sampleTrajectory(*new_state, residuals))};
+  });
+}
+
+void TrajectoryScreen::setDetections(std::shared_ptr<const BoardObservations> observations,
+                                     const CameraIntrinsics& intrinsics, std::size_t camera) {
+  if (!observations || !d_->board) return;
+  if (d_->pose_inputs.size() <= camera) d_->pose_inputs.resize(camera + 1);
+  d_->pose_inputs[camera] = {std::move(observations), intrinsics, *d_->board};
+  d_->estimatePoses();
+}
+
+void TrajectoryScreen::Private::estimatePoses() {
+  poses_job.start([inputs = pose_inputs, before = view_poses](std::stop_token stop) {
+    std::vector<ViewPoses> poses(inputs.size());
+    for (std::size_t k = 0; k < inputs.size(); ++k) {
+      if (!inputs[k].observations) continue;
+      poses[k] = estimateViewPoses(inputs[k], k < before.size() ? before[k] : ViewPoses{}, stop);
+    }
+    return poses;
+  });
+}
+
+void TrajectoryScreen::Private::showTrack(Track new_track) {
+  state = std::move(new_track.state);
+  track = std::move(new_track.samples);
+  const bool known = state && hasTrajectory(*state);
+  scene.setGravity(known ? std::optional(state->gravity_in_world_m_s2) : std::nullopt);
+  scene.setTrack(track);
+  tools->offerResiduals(track->hasResiduals());
+  if (!track->hasResiduals()) q->setTrajectoryColour(TrajectoryColour::Speed);
+  showRawPoses();
+  showInstant();
+  placeWorld();
+}
+
+void TrajectoryScreen::Private::showViewPoses(std::vector<ViewPoses> poses) {
+  view_poses = std::move(poses);
+  showRawPoses();
+  showInstant();
+  placeWorld();
+}
+
+// Those of the IMU, so that they ought to lie on the trajectory; of the cameras until their place is known.
+void TrajectoryScreen::Private::showRawPoses() {
+  std::vector<RigidTransform> bodies;
+  for (std::size_t k = 0; k < view_poses.size(); ++k) {
+    const bool known = state && hasTrajectory(*state) && k < state->cameras.size();
+    const RigidTransform camera_from_body =
+        known ? inverse(state->cameras[k].imu_from_camera) : RigidTransform{};
+    for (const CameraPose& pose : view_poses[k].poses) {
+      bodies.push_back(pose.world_from_camera * camera_from_body);
+    }
+  }
+  scene.setRawPoses(bodies);
+}
+
+std::vector<RigidTransform> TrajectoryScreen::Private::rawCamerasNow() const {
+  std::vector<RigidTransform> cameras_now;
+  for (const ViewPoses& of_camera : view_poses) {
+    const auto nearest = std::min_element(of_camera.poses.begin(), of_camera.poses.end(),
+                                          [this](const CameraPose& a, const CameraPose& b) {
+                                            return std::abs(a.time_s - time_s) < std::abs(b.time_s - time_s);
+                                          });
+    if (nearest != of_camera.poses.end() && std::abs(nearest->time_s - time_s) < kNearestRawPose_s) {
+      cameras_now.push_back(nearest->world_from_camera);
+    }
+  }
+  return cameras_now;
+}
+
+void TrajectoryScreen::Private::showInstant() {
+  instant = state ? rigAt(*state, time_s) : std::nullopt;
+  current_cameras = instant ? instant->world_from_cameras : rawCamerasNow();
+  scene.setInstant(current_cameras, instant ? instant->world_from_imus : std::vector<RigidTransform>{});
+  showNumbers();
+  moveView();
+}
+
+void TrajectoryScreen::Private::showNumbers() {
+  PoseNumbers numbers;
+  numbers.time_s = time_s;
+  if (instant) {
+    numbers.position_m = instant->imu.world_from_imu.translation_m;
+    numbers.speed_m_s = instant->imu.velocity_m_s.norm();
+    numbers.rotation_rate_rad_s = instant->imu.angular_velocity_rad_s.norm();
+    if (!track->empty()) numbers.residual_px = track->residuals_px[track->nearest(time_s)];
+  } else if (!current_cameras.empty()) {
+    numbers.of_camera = true;
+    numbers.position_m = current_cameras.front().translation_m;
+  }
+  readout->setNumbers(numbers);
+}
+
+void TrajectoryScreen::Private::moveView() {
+  if (!current_cameras.empty()) {
+    const CameraShape shape = cameras.empty() ? cameraShape(std::nullopt) : cameras.front();
+    if (tools->throughCamera()) view->lookThrough(throughCamera(current_cameras.front(), shape));
+    if (tools->following()) view->setFocus(current_cameras.front().translation_m);
+  }
+  view->redraw();
+}
+
+// The view goes to what there is once; afterwards it is the user's.
+void TrajectoryScreen::Private::placeWorld() {
+  const SceneExtent extent = scene.extent();
+  view->setWorld(extent.up, extent.front, extent.centre_m, extent.radius_m);
+  if (!placed && !scene.empty()) view->look(StandardView::Home);
+  placed = placed || !track->empty();
+}
+
+std::vector<TimedPoint> TrajectoryScreen::Private::pickable() const {
+  std::vector<TimedPoint> points;
+  for (std::size_t k = 0; k < track->times_s.size(); ++k) {
+    points.push_back({track->times_s[k], track->positions_m[k]});
+  }
+  if (!points.empty() || view_poses.empty()) return points;
+  for (const CameraPose& pose : view_poses.front().poses) {
+    points.push_back({pose.time_s, pose.world_from_camera.translation_m});
+  }
+  return points;
+}
+
+std::optional<double> TrajectoryScreen::Private::timeUnderMouse(const QPointF& position) const {
+  return timeUnder(position, pickable(), view->viewPose(), view->size());
+}
+
+QString TrajectoryScreen::Private::message() const {
+  if (!track->empty()) return {};
+  if (!view_poses.empty()) return tr("Poses of single views. The trajectory comes with the calibration.");
+  return tr("No calibration yet: press Calibrate");
+}
+
+void TrajectoryScreen::Private::paint(QPainter& painter) const {
+  TrajectoryOverlay overlay;
+  overlay.pose = view->viewPose();
+  overlay.screen = view->size();
+  overlay.labels = scene.labels();
+  if (instant) overlay.cursor_m = instant->imu.world_from_imu.translation_m;
+  if (scene.isVisible(SceneLayer::Trajectory)) overlay.scale = scene.colourScale();
+  overlay.message = message();
+  overlay.in_middle = scene.empty();
+  if (!scene.empty()) {
+    overlay.hint =
+        tr("Grid %1 m. Drag: orbit, right drag: pan, wheel: zoom, click the trajectory: go to that time")
+            .arg(scene.gridSpacing_m());
+  }
+  paintOverlay(painter, overlay);
+}
+
+double TrajectoryScreen::time_s() const {
+  return d_->time_s;
+}
+
+bool TrajectoryScreen::busy() const {
+  return d_->track_job.busy() || d_->poses_job.busy();
+}
+
+View3D* TrajectoryScreen::view() const {
+  return d_->view;
+}
+
+void TrajectoryScreen::setTrajectoryColour(TrajectoryColour colour) {
+  d_->scene.setTrajectoryColour(colour);
+  d_->tools->showColour(colour);
+  d_->view->redraw();
+}
+
+void TrajectoryScreen::setLayerVisible(SceneLayer layer, bool visible) {
+  d_->scene.setVisible(layer, visible);
+  d_->tools->showLayer(layer, visible);
+  d_->view->redraw();
+}
+
+void TrajectoryScreen::setTime(double time_s) {
+  if (time_s == d_->time_s) return;
+  d_->time_s = time_s;
+  d_->showInstant();
+}
+
+void TrajectoryScreen::changeEvent(QEvent* event) {
+  if (event->type() == QEvent::PaletteChange) {
+    d_->scene.applyTheme();
+    d_->view->setBackground(theme().panel);
+  }
+  QWidget::changeEvent(event);
+}
+
+}  // namespace evical::ui

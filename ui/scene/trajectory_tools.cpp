@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/scene/trajectory_tools.h"
+
+#include "ui/theme/theme.h"
+
+#include <QAction>
+#include <QComboBox>
+#include <QLabel>
+#include <QMenu>
+#include <QStandardItemModel>
+#include <QToolButton>
+
+namespace evical::ui {
+
+TrajectoryTools::TrajectoryTools(QWidget* parent) : QToolBar(parent) {
+  setMovable(false);
+  setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  addColours();
+  addSeparator();
+  addLayers();
+  addSeparator();
+  addViews();
+  addSeparator();
+  addFollowing();
+}
+
+void TrajectoryTools::addColours() {
+  addWidget(new QLabel(" " + tr("Colour by") + " ", this));
+  colours_ = new QComboBox(this);
+  colours_->addItems({tr("Speed"), tr("Residual")});
+  colours_->setToolTip(
+      tr("What the trajectory's colour says: the IMU's speed, or how far the board's circles lie from\n"
+         "where the calibration expects them (of the nearest view; known after a calibration)"));
+  connect(colours_, &QComboBox::activated, this,
+          [this](int index) { emit colourChosen(static_cast<TrajectoryColour>(index)); });
+  addWidget(colours_);
+  offerResiduals(false);
+}
+
+void TrajectoryTools::addLayers() {
+  const std::array<std::pair<QString, QString>, kSceneLayerCount> texts = {{
+      {tr("Board"), tr("The board with its circles")},
+      {tr("Trajectory"), tr("The IMU's way through the world, from the spline")},
+      {tr("Cameras"), tr("The cameras at regular intervals")},
+      {tr("Camera now"), tr("The cameras at the cursor's time")},
+      {tr("IMU axes"), tr("The IMUs' axes at the cursor's time")},
+      {tr("Poses of single views"),
+       tr("Computed from each board view by itself: they scatter about a trajectory that is right")},
+      {tr("Gravity"), tr("Its direction as estimated")},
+      {tr("Ground"), tr("A level grid below everything")},
+      {tr("Board axes"), tr("x, y and z of the board's frame, which is the world")},
+  }};
+  auto* const button = new QToolButton(this);
+  button->setText(tr("Layers"));
+  button->setIcon(icon("layers"));
+  button->setToolButtonStyle(toolButtonStyle());
+  button->setPopupMode(QToolButton::InstantPopup);
+  auto* const menu = new QMenu(button);
+  menu->setToolTipsVisible(true);
+  for (std::size_t k = 0; k < texts.size(); ++k) {
+    layers_[k] = menu->addAction(texts[k].first);
+    layers_[k]->setToolTip(texts[k].second);
+    layers_[k]->setCheckable(true);
+    layers_[k]->setChecked(true);
+    connect(layers_[k], &QAction::triggered, this,
+            [this, k](bool checked) { emit layerToggled(static_cast<SceneLayer>(k), checked); });
+  }
+  button->setMenu(menu);
+  button->setToolTip(tr("What is drawn"));
+  addWidget(button);
+}
+
+void TrajectoryTools::addViews() {
+  const std::array<std::pair<QString, QString>, 4> texts = {
+      {{tr("Home"), tr("Everything, from the side above (Home)")},
+       {tr("Front"), tr("Facing the board (1)")},
+       {tr("Side"), tr("From the board's side (2)")},
+       {tr("Top"), tr("From above (3)")}}};
+  for (std::size_t k = 0; k < texts.size(); ++k) {
+    QAction* const action = addAction(texts[k].first);
+    action->setToolTip(texts[k].second);
+    connect(action, &QAction::triggered, this, [this, k] {
+      leaveCamera();
+      emit viewChosen(static_cast<StandardView>(k));
+    });
+  }
+  actions().at(actions().size() - 4)->setIcon(icon("home"));
+}
+
+void TrajectoryTools::addFollowing() {
+  follow_ = addAction(icon("follow"), tr("Follow camera"));
+  follow_->setObjectName("follow");
+  follow_->setToolTip(tr("Keep the camera in the middle as time goes on"));
+  through_ = addAction(icon("camera"), tr("Through camera"));
+  through_->setObjectName("through_camera");
+  through_->setToolTip(tr("See the board as the camera does; drag to leave"));
+  for (QAction* action : {follow_, through_}) {
+    action->setCheckable(true);
+    connect(action, &QAction::triggered, this, [this, action](bool checked) {
+      if (checked) (action == follow_ ? through_ : follow_)->setChecked(false);
+      emit followingChanged();
+    });
+  }
+}
+
+bool TrajectoryTools::following() const {
+  return follow_->isChecked();
+}
+
+bool TrajectoryTools::throughCamera() const {
+  return through_->isChecked();
+}
+
+void TrajectoryTools::leaveCamera() {
+  through_->setChecked(false);
+}
+
+void TrajectoryTools::showColour(TrajectoryColour colour) {
+  colours_->setCurrentIndex(static_cast<int>(colour));
+}
+
+void TrajectoryTools::showLayer(SceneLayer layer, bool visible) {
+  layers_[static_cast<std::size_t>(layer)]->setChecked(visible);
+}
+
+void TrajectoryTools::offerResiduals(bool available) {
+  auto* const model = qobject_cast<QStandardItemModel*>(colours_->model());
+  model->item(static_cast<int>(TrajectoryColour::Residual))->setEnabled(available);
+}
+
+}  // namespace evical::ui
