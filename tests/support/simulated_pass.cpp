@@ -1,0 +1,62 @@
+#include "tests/support/simulated_pass.h"
+
+#include "core/synthetic/board_truth.h"
+#include "core/synthetic/imu_simulator.h"
+#include "core/synthetic/scenario_yaml.h"
+
+namespace evical::test {
+namespace {
+
+constexpr double kNoise_px = 0.05, kWindow_s = 0.02;
+
+Session sessionOf(const Scenario& scenario) {
+  Session session;
+  session.source = "session.yaml";
+  session.board = scenario.board;
+  for (const SimulatedCamera& camera : scenario.cameras) {
+    session.cameras.push_back(
+        {camera.name, camera.stream, camera.intrinsics.resolution_px, camera.intrinsics});
+  }
+  for (const SimulatedImu& imu : scenario.imus) {
+    SessionImu& known = session.imus.emplace_back();
+    known.name = imu.name;
+    known.stream = imu.stream;
+    known.noise = {imu.gyroscope_density, imu.accelerometer_density};
+  }
+  session.reference = scenario.imus.front().name;
+  return session;
+}
+
+BoardObservations observationsOf(const Scenario& scenario, std::size_t camera) {
+  BoardObservations observations = simulateObservations(scenario, camera, kNoise_px, kWindow_s);
+  observations.camera = scenario.cameras[camera].name;
+  for (const BoardView& view : observations.views) {
+    WindowReport& window = observations.windows.emplace_back();
+    window.time_s = view.time_s;
+    window.half_width_s = 0.5 * kWindow_s;
+    window.outcome = view.kind == ViewKind::Complete ? WindowOutcome::Complete : WindowOutcome::Partial;
+    window.circles = static_cast<int>(view.circles.size());
+  }
+  return observations;
+}
+
+}  // namespace
+
+SimulatedPass simulatePass(double duration_s) {
+  SimulatedPass simulated;
+  simulated.truth = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/davis346.yaml");
+  simulated.truth.duration_s = duration_s;
+  simulated.session = sessionOf(simulated.truth);
+  simulated.pass.start_ns = simulated.truth.start_ns;
+  for (std::size_t k = 0; k < simulated.truth.cameras.size(); ++k) {
+    simulated.pass.cameras.push_back(observationsOf(simulated.truth, k));
+    simulated.pass.resolutions_px.push_back(simulated.truth.cameras[k].intrinsics.resolution_px);
+  }
+  for (std::size_t k = 0; k < simulated.truth.imus.size(); ++k) {
+    const SessionImu& imu = simulated.session.imus[k];
+    simulated.pass.imus.push_back({imu.name, imu.noise, simulateImu(simulated.truth, k)});
+  }
+  return simulated;
+}
+
+}  // namespace evical::test
