@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/plots/plot_panel.h"
+
+#include "ui/plots/plot_chart.h"
+#include "ui/theme/theme.h"
+
+#include <QContextMenuEvent>
+#include <QFileDialog>
+#include <QKeyEvent>
+#include <QMenu>
+#include <QMessageBox>
+#include <QPainter>
+#include <QSaveFile>
+#include <QVBoxLayout>
+
+namespace evical::ui {
+namespace {
+
+constexpr double kPan = 0.15, kZoom = 0.8;  // of the range, by one key press
+constexpr double kPictureScale = 2.0;       // pixels of a saved picture to those of the screen
+
+QVector<double> toQVector(const std::vector<double>& values) {
+  return QVector<double>(values.begin(), values.end());
+}
+
+}  // namespace
+
+PlotPanel::PlotPanel(const PlotAxes& axes, QWidget* parent)
+    : QWidget(parent), chart_(new PlotChart(axes, this)) {
+  auto* const layout = new QVBoxLayout(this);
+  layout->setContentsMargins(5, 5, 5, 5);
+  layout->addWidget(chart_);
+  setFocusPolicy(Qt::StrongFocus);
+  setMinimumSize(180, 110);
+  setToolTip(
+      tr("Wheel: zoom (Ctrl: y only). Drag: pan. Shift and drag: zoom into a box. Double click or F: fit.\n"
+         "Click on the legend: show or hide. Right button: save picture or points."));
+  connect(chart_, &PlotChart::clicked, this, &PlotPanel::clicked);
+  connect(chart_, &PlotChart::thresholdDragged, this, &PlotPanel::thresholdDragged);
+  chart_->restyle(font());
+}
+
+PlotPanel::Series PlotPanel::addSeries(SeriesKind kind, const SeriesStyle& style) {
+  const Series series = chart_->addSeries(kind, style);
+  chart_->restyle(font());
+  return series;
+}
+
+void PlotPanel::setData(Series series, const std::vector<double>& x, const std::vector<double>& y) {
+  const PlotChart::SeriesItems& items = chart_->series[series];
+  switch (items.kind) {
+    case SeriesKind::Line:
+      static_cast<QCPGraph*>(items.plottable)->setData(toQVector(x), toQVector(y), true);
+      break;
+    case SeriesKind::Points:
+      static_cast<QCPGraph*>(items.plottable)->setData(toQVector(x), toQVector(y), false);
+      break;
+    case SeriesKind::Bars:
+      static_cast<QCPBars*>(items.plottable)->setData(toQVector(x), toQVector(y), true);
+      break;
+    case SeriesKind::Outline: {
+      QVector<double> order(static_cast<int>(x.size()));
+      std::iota(order.begin(), order.end(), 0.0);
+      static_cast<QCPCurve*>(items.plottable)->setData(order, toQVector(x), toQVector(y), true);
+      break;
+    }
+    case SeriesKind::Band:
+      Q_ASSERT_X(false, "PlotPanel::setData", "bands are set by setBand");
+      break;
+  }
+  chart_->replot(QCustomPlot::rpQueuedReplot);
+}
+
+void PlotPanel::setBand(Series series, const std::vector<double>& x, const std::vector<double>& low,
+                        const std::vector<double>& high) {
+  const PlotChart::SeriesItems& items = chart_->series[series];
+  items.low->setData(toQVector(x), toQVector(low), true);
+  static_cast<QCPGraph*>(items.plottable)->setData(toQVector(x), toQVector(high), true);
+  chart_->replot(QCustomPlot::rpQueuedReplot);
+}
+
+void PlotPanel::setBarWidth(Series series, double width) {
+  static_cast<QCPBars*>(chart_->series[series].plottable)->setWidth(width);
+}
+
+void PlotPanel::setCells(const PlotCells& cells, PlotColour colour) {
+  QCPColorMapData* const map = chart_->cells()->data();
+  const double half_x = 0.5 * cells.extent.width() / cells.columns,
+               half_y = 0.5 * cells.extent.height() / cells.rows;
+  map->setSize(cells.columns, cells.rows);  // its range is that of the cells' middles
+  map->setRange({cells.extent.left() + half_x, cells.extent.right() - half_x},
+                {cells.extent.top() + half_y, cells.extent.bottom() - half_y});
+  for (int row = 0; row < cells.rows; ++row) {
+    for (int column = 0; column < cells.columns; ++column)
+      map->setCell(column, row, cells.values[static_cast<std::size_t>(row * cells.columns + column)]);
+  }
+  chart_->cells()->rescaleDataRange(true);
+  chart_->cells()->setVisible(true);
+  chart_->cell_colour = colour;
+  chart_->restyle(font());
+}
+
+void PlotPanel::setArrows(std::span<const PlotArrow> arrows, PlotColour colour) {
+  for (QCPItemLine* old : chart_->arrows()) chart_->removeItem(old);
+  chart_->arrows().clear();
+  for (const PlotArrow& arrow : arrows) {
+    auto* const line = new QCPItemLine(chart_);
+    line->start->setCoords(arrow.from);
+    line->end->setCoords(arrow.to);
+    line->setSelectable(false);
+    chart_->arrows().push_back(line);
+  }
+  chart_->arrow_colour = colour;
+  chart_->restyle(font());
+}
+
+void PlotPanel::setMarks(std::span<const PlotMark> marks) {
+  chart_->setMarks(marks);
+  chart_->replot(QCustomPlot::rpQueuedReplot);
+}
+
+void PlotPanel::clear() {
+  for (Series k = 0; k < chart_->series.size(); ++k) {
+    if (chart_->series[k].kind == SeriesKind::Band)
+      setBand(k, {}, {}, {});
+    else
+      setData(k, {}, {});
+  }
+  chart_->cells()->setVisible(false);
+  setArrows({}, chart_->arrow_colour);
+  setMarks({});
+  setNote({});
+}
+
+void PlotPanel::setTitle(const QString& title) {
+  chart_->title()->setText(title);
+  chart_->replot(QCustomPlot::rpQueuedReplot);
+}
+
+void PlotPanel::setYLabel(const QString& label) {
+  chart_->yAxis->setLabel(label);
+  chart_->replot(QCustomPlot::rpQueuedReplot);
+}
+
+void PlotPanel::setNote(const QString& note) {
+  chart_->note()->setText(note);
+  chart_->replot(QCustomPlot::rpQueuedReplot);
+}
+
+void PlotPanel::fit() {
+  chart_->fit();
+}
+
+void PlotPanel::setXRange(double low, double high) {
+  chart_->xAxis->setRange(low, high);
+  chart_->replot(QCustomPlot::rpQueuedReplot);
+}
+
+void PlotPanel::setYRange(double low, double high) {
+  chart_->yAxis->setRange(low, high);
+  chart_->replot(QCustomPlot::rpQueuedReplot);
+}
+
+std::pair<double, double> PlotPanel::xRange() const {
+  return {chart_->xAxis->range().lower, chart_->xAxis->range().upper};
+}
+
+std::pair<double, double> PlotPanel::yRange() const {
+  return {chart_->yAxis->range().lower, chart_->yAxis->range().upper};
+}
+
+void PlotPanel::linkX(const std::vector<PlotPanel*>& panels) {
+  for (PlotPanel* from : panels) {
+    for (PlotPanel* to : panels) {
+      if (from == to) continue;
+      connect(from->chart_->xAxis, qOverload<const QCPRange&>(&QCPAxis::rangeChanged), to,
+              [to](const QCPRange& range) {
+                if (to->chart_->xAxis->range() != range) to->setXRange(range.lower, range.upper);
+              });
+    }
+  }
+}
+
+void PlotPanel::setCursorLine(std::optional<double> x) {
+  chart_->setCursorLine(x);
+}
+
+void PlotPanel::setThreshold(std::optional<double> y) {
+  chart_->setThreshold(y);
+}
+
+std::optional<double> PlotPanel::threshold() const {
+  return chart_->threshold();
+}
+
+QPointF PlotPanel::pixelAt(double x, double y) const {
+  return chart_->mapToParent(
+      QPointF(chart_->xAxis->coordToPixel(x), chart_->yAxis->coordToPixel(y)).toPoint());
+}
+
+void PlotPanel::redraw() {
+  chart_->replot(QCustomPlot::rpImmediateRefresh);
+}
+
+QString PlotPanel::csv() const {
+  QString text = QStringLiteral("series,%1,%2\n").arg(chart_->xAxis->label(), chart_->yAxis->label());
+  const auto quoted = [](const QString& name) {
+    return name.contains(',') || name.contains('"') ? '"' + QString(name).replace('"', "\"\"") + '"' : name;
+  };
+  const auto append = [&](const QString& name, QCPAbstractPlottable* plottable) {
+    const QCPPlottableInterface1D* points = plottable->interface1D();
+    for (int k = 0; k < points->dataCount(); ++k) {
+      text += quoted(name) + ',' + QString::number(points->dataMainKey(k), 'g', 12) + ',' +
+              QString::number(points->dataMainValue(k), 'g', 9) + '\n';
+    }
+  };
+  for (const PlotChart::SeriesItems& items : chart_->series) {
+    if (items.style.name.isEmpty()) continue;
+    if (items.low) append(items.style.name + " (low)", items.low);
+    append(items.low ? items.style.name + " (high)" : items.style.name, items.plottable);
+  }
+  return text;
+}
+
+bool PlotPanel::savePicture(const QString& path) {
+  if (path.endsWith(".pdf", Qt::CaseInsensitive))
+    return chart_->savePdf(path, chart_->width(), chart_->height());
+  return chart_->toPixmap(chart_->width(), chart_->height(), kPictureScale).save(path);
+}
+
+bool PlotPanel::saveCsv(const QString& path) const {
+  QSaveFile file(path);
+  return file.open(QIODevice::WriteOnly) && file.write(csv().toUtf8()) >= 0 && file.commit();
+}
+
+void PlotPanel::askAndSave(SavedAs saved_as) {
+  const bool picture = saved_as == SavedAs::Picture;
+  QString path =
+      QFileDialog::getSaveFileName(this, picture ? tr("Save picture") : tr("Save data"), {},
+                                   picture ? tr("Picture (*.png);;Document (*.pdf)") : tr("Table (*.csv)"));
+  if (path.isEmpty()) return;
+  if (QFileInfo(path).suffix().isEmpty()) path += picture ? ".png" : ".csv";
+  if (picture ? savePicture(path) : saveCsv(path)) return;
+  auto* const message =
+      new QMessageBox(QMessageBox::Warning, tr("Not saved"),
+                      tr("%1 could not be written. Check that the folder exists, that you may "
+                         "write there and that the disk is not full.")
+                          .arg(path),
+                      QMessageBox::Ok, this);
+  message->setAttribute(Qt::WA_DeleteOnClose);
+  message->open();
+}
+
+void PlotPanel::contextMenuEvent(QContextMenuEvent* event) {
+  auto* const menu = new QMenu(this);
+  menu->setAttribute(Qt::WA_DeleteOnClose);
+  menu->addAction(tr("&Fit to data"), this, &PlotPanel::fit);
+  menu->addSeparator();
+  menu->addAction(tr("Save &picture..."), this, [this] { askAndSave(SavedAs::Picture); });
+  menu->addAction(tr("Save &data (CSV)..."), this, [this] { askAndSave(SavedAs::Table); });
+  menu->popup(event->globalPos());
+}
+
+void PlotPanel::keyPressEvent(QKeyEvent* event) {
+  switch (event->key()) {
+    case Qt::Key_Left:
+      return chart_->panX(-kPan);
+    case Qt::Key_Right:
+      return chart_->panX(kPan);
+    case Qt::Key_Plus:
+    case Qt::Key_Equal:
+      return chart_->zoomX(kZoom);
+    case Qt::Key_Minus:
+      return chart_->zoomX(1.0 / kZoom);
+    case Qt::Key_F:
+    case Qt::Key_Home:
+      return fit();
+    default:
+      QWidget::keyPressEvent(event);
+  }
+}
+
+void PlotPanel::changeEvent(QEvent* event) {
+  QWidget::changeEvent(event);
+  if (event->type() == QEvent::PaletteChange || event->type() == QEvent::FontChange ||
+      event->type() == QEvent::ApplicationFontChange)
+    chart_->restyle(font());
+}
+
+void PlotPanel::paintEvent(QPaintEvent*) {
+  QPainter painter(this);
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.setBrush(theme().panel);
+  painter.setPen(hasFocus() ? theme().accent : theme().grid_line);
+  painter.drawRoundedRect(QRectF(rect()).adjusted(0.5, 0.5, -0.5, -0.5), 6, 6);
+}
+
+}  // namespace evical::ui

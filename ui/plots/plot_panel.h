@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One chart in the program's colours and font: lines, points, bars, bands, cells and arrows, with a title and
+// a legend above. Wheel zooms (Ctrl: y only; time charts: x only), drag pans, Shift and drag zooms into a
+// box, double click or F fits, arrow keys pan, + and - zoom, a click on the legend hides a series, the
+// context menu saves. Long lines cost what their pixels cost: first, lowest, highest and last sample of each
+// pixel column are drawn.
+#pragma once
+
+#include <QPointF>
+#include <QRectF>
+#include <QString>
+#include <QWidget>
+
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace evical::ui {
+
+enum class PlotColour { X, Y, Z, Accent, Good, Warning, Bad, Text, Faint };
+
+struct SeriesStyle {
+  QString name = {};  // in legend, readout and CSV; without: only drawn
+  PlotColour colour = PlotColour::Accent;
+  double width_px = 1.0;  // of lines; of points their diameter
+  double opacity = 1.0;
+  bool dashed = false;
+};
+
+struct PlotAxes {
+  QString title = {}, x_label = {}, y_label = {};
+  bool time = false;  // x is time: the wheel leaves y alone
+  bool logarithmic_y = false;
+  bool downward_y = false;   // as in images
+  bool equal_scale = false;  // a unit of x is as long as one of y
+  bool whole_x = false;      // x counts something: no ticks between
+};
+
+struct PlotMark {
+  double x = 0.0;
+  QString label;
+};
+
+struct PlotArrow {
+  QPointF from, to;
+};
+
+// Values row by row, the first row at the least y; NaN is left open.
+struct PlotCells {
+  QRectF extent;
+  int columns = 0, rows = 0;
+  std::vector<double> values;
+};
+
+class PlotChart;
+
+class PlotPanel : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit PlotPanel(const PlotAxes& axes, QWidget* parent = nullptr);
+
+  enum class SeriesKind { Line, Points, Bars, Band, Outline };
+  using Series = std::size_t;
+  Series addSeries(SeriesKind kind, const SeriesStyle& style);
+  // x ascending, but for outlines, which may turn back, and points. NaN breaks lines.
+  void setData(Series series, const std::vector<double>& x, const std::vector<double>& y);
+  void setBand(Series series, const std::vector<double>& x, const std::vector<double>& low,
+               const std::vector<double>& high);
+  void setBarWidth(Series series, double width);
+  void setCells(const PlotCells& cells, PlotColour colour);
+  void setArrows(std::span<const PlotArrow> arrows, PlotColour colour);
+  void setMarks(std::span<const PlotMark> marks);  // vertical lines with a label
+  void clear();                                    // data, cells, arrows and marks; series stay
+  void setTitle(const QString& title);
+  void setYLabel(const QString& label);
+  void setNote(const QString& note);  // beside the title, faint; for numbers that sum the chart up
+
+  void fit();
+  void setXRange(double low, double high);
+  std::pair<double, double> xRange() const;
+  std::pair<double, double> yRange() const;
+  void setYRange(double low, double high);
+  static void linkX(const std::vector<PlotPanel*>& panels);
+
+  void setCursorLine(std::optional<double> x);
+  void setThreshold(std::optional<double> y);  // a horizontal line that can be dragged
+  std::optional<double> threshold() const;
+
+  QPointF pixelAt(double x, double y) const;  // in this widget
+  QString csv() const;                        // series, x, y: one line a point
+  bool savePicture(const QString& path);      // .png, or .pdf
+  bool saveCsv(const QString& path) const;
+  void redraw();  // at once; changes are drawn by themselves soon
+
+ signals:
+  void clicked(double x, double y);  // not after a drag
+  void thresholdDragged(double y);
+
+ protected:
+  void changeEvent(QEvent* event) override;
+  void paintEvent(QPaintEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
+  void contextMenuEvent(QContextMenuEvent* event) override;
+
+ private:
+  enum class SavedAs { Picture, Table };
+  void askAndSave(SavedAs saved_as);
+
+  PlotChart* chart_;
+};
+
+}  // namespace evical::ui
