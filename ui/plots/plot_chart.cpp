@@ -25,16 +25,20 @@ QColor faded(QColor colour, double opacity) {
   return colour;
 }
 
-QCPRange withMargin(const QCPRange& range, bool logarithmic) {
-  constexpr double kMargin = 0.06;
+constexpr double kMargin = 0.06, kLabelMargin = 0.14;  // of what is shown; above, where marks have labels
+
+QCPRange withMargin(const QCPRange& range, bool logarithmic, double above = kMargin) {
   if (logarithmic) {
-    const double factor = std::pow(range.upper / range.lower, kMargin);
-    return factor > 1.0 ? QCPRange(range.lower / factor, range.upper * factor)
-                        : QCPRange(range.lower / 2.0, range.upper * 2.0);
+    const double ratio = range.upper / range.lower;
+    return ratio > 1.0
+               ? QCPRange(range.lower / std::pow(ratio, kMargin), range.upper * std::pow(ratio, above))
+               : QCPRange(range.lower / 2.0, range.upper * 2.0);
   }
-  const double margin =
-      range.size() > 0.0 ? kMargin * range.size() : std::max(1e-6, 0.1 * std::abs(range.upper));
-  return {range.lower - margin, range.upper + margin};
+  if (range.size() <= 0.0) {
+    const double margin = std::max(1e-6, 0.1 * std::abs(range.upper));
+    return {range.lower - margin, range.upper + margin};
+  }
+  return {range.lower - kMargin * range.size(), range.upper + above * range.size()};
 }
 
 }  // namespace
@@ -71,8 +75,12 @@ PlotChart::PlotChart(const PlotAxes& axes, QWidget* parent) : QCustomPlot(parent
   if (axes.logarithmic_y) {
     yAxis->setScaleType(QCPAxis::stLogarithmic);
     yAxis->setTicker(QSharedPointer<QCPAxisTickerLog>(new QCPAxisTickerLog));
-    yAxis->setNumberFormat("eb");
-    yAxis->setNumberPrecision(0);
+    connect(yAxis, qOverload<const QCPRange&>(&QCPAxis::rangeChanged), this, [this](const QCPRange& range) {
+      constexpr double kSeveralDecades = 20.0;  // below, the ticks are no powers of ten
+      const bool powers = range.upper > kSeveralDecades * range.lower;
+      yAxis->setNumberFormat(powers ? "eb" : "gb");
+      yAxis->setNumberPrecision(powers ? 0 : 4);
+    });
   }
   if (axes.whole_x) {
     const QSharedPointer<QCPAxisTickerFixed> ticker(new QCPAxisTickerFixed);
@@ -110,8 +118,9 @@ void PlotChart::addHeading() {
   legend->setVisible(true);
   legend->setBorderPen(Qt::NoPen);
   legend->setBrush(Qt::NoBrush);
-  legend->setIconSize(14, 10);
-  legend->setColumnSpacing(10);
+  legend->setIconSize(10, 10);
+  legend->setIconTextPadding(4);
+  legend->setColumnSpacing(8);
   legend->setMargins({0, 4, 4, 0});
   title_->setMargins({6, 2, 0, 0});
   note_->setMargins({4, 2, 0, 0});
@@ -171,7 +180,7 @@ std::size_t PlotChart::addSeries(PlotPanel::SeriesKind kind, const SeriesStyle& 
       break;
   }
   items.plottable->setName(style.name);
-  if (!style.name.isEmpty()) items.plottable->addToLegend();
+  if (style.in_legend && !style.name.isEmpty()) items.plottable->addToLegend();
   styleSeries(items);
   series.push_back(items);
   return series.size() - 1;
@@ -221,7 +230,8 @@ std::optional<double> PlotChart::threshold() const {
   return threshold_->visible() ? std::optional(threshold_->point1->coords().y()) : std::nullopt;
 }
 
-void PlotChart::fit() {
+void PlotChart::fit(const QCPRange& x_within) {
+  const bool all = x_within.size() <= 0.0;
   bool found = false;
   const QCP::SignDomain positive = axes_.logarithmic_y ? QCP::sdPositive : QCP::sdBoth;
   QCPRange x, y;
@@ -229,7 +239,7 @@ void PlotChart::fit() {
     if (!plottable(k)->visible()) continue;
     bool found_x = false, found_y = false;
     const QCPRange this_x = plottable(k)->getKeyRange(found_x),
-                   this_y = plottable(k)->getValueRange(found_y, positive);
+                   this_y = plottable(k)->getValueRange(found_y, positive, x_within);
     if (!found_x || !found_y) continue;
     x = found ? x.expanded(this_x) : this_x;
     y = found ? y.expanded(this_y) : this_y;
@@ -238,8 +248,10 @@ void PlotChart::fit() {
   if (threshold_->visible() && found) y.expand(threshold_->point1->coords().y());
   if (!found) return;
   const bool edges = axes_.equal_scale && cells_->visible();
-  xAxis->setRange(axes_.time || edges ? x : withMargin(x, false));
-  yAxis->setRange(edges ? y : withMargin(y, axes_.logarithmic_y));
+  const bool exact = axes_.time || edges || !all;
+  if (!all) x = x_within;
+  xAxis->setRange(exact ? x : withMargin(x, false));
+  yAxis->setRange(edges ? y : withMargin(y, axes_.logarithmic_y, marks_.empty() ? kMargin : kLabelMargin));
   keepScale();
   replot(rpQueuedReplot);
 }
@@ -316,9 +328,8 @@ void PlotChart::styleSeries(const SeriesItems& items) {
       pen.setCapStyle(Qt::RoundCap);
       graph->setPen(pen);
       graph->setAntialiasedScatters(!small);
-      graph->setScatterStyle(
-          small ? QCPScatterStyle(QCPScatterStyle::ssDot)
-                : QCPScatterStyle(QCPScatterStyle::ssDisc, Qt::NoPen, colour, style.width_px));
+      graph->setScatterStyle(small ? QCPScatterStyle(QCPScatterStyle::ssDot)
+                                   : QCPScatterStyle(QCPScatterStyle::ssDisc, colour, style.width_px));
       break;
     }
     case PlotPanel::SeriesKind::Bars:

@@ -40,8 +40,8 @@ class PlotChart : public QCustomPlot {
   void setThreshold(std::optional<double> y);
   std::optional<double> threshold() const;
   void restyle(const QFont& font);
-  void fit();
-  void keepScale();  // makes a unit of x as long as one of y, if so asked
+  void fit(const QCPRange& x_within = QCPRange());  // empty: all data
+  void keepScale();                                 // makes a unit of x as long as one of y, if so asked
   void zoomX(double factor);
   void panX(double share);
 

@@ -137,6 +137,11 @@ void PlotPanel::setTitle(const QString& title) {
   chart_->replot(QCustomPlot::rpQueuedReplot);
 }
 
+void PlotPanel::setLegendText(Series series, const QString& text) {
+  chart_->series[series].plottable->setName(text);
+  chart_->replot(QCustomPlot::rpQueuedReplot);
+}
+
 void PlotPanel::setYLabel(const QString& label) {
   chart_->yAxis->setLabel(label);
   chart_->replot(QCustomPlot::rpQueuedReplot);
@@ -149,6 +154,10 @@ void PlotPanel::setNote(const QString& note) {
 
 void PlotPanel::fit() {
   chart_->fit();
+}
+
+void PlotPanel::fitWithin(double x_low, double x_high) {
+  chart_->fit(QCPRange(x_low, x_high));
 }
 
 void PlotPanel::setXRange(double low, double high) {

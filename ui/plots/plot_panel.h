@@ -26,6 +26,7 @@ struct SeriesStyle {
   double width_px = 1.0;  // of lines; of points their diameter
   double opacity = 1.0;
   bool dashed = false;
+  bool in_legend = true;
 };
 
 struct PlotAxes {
@@ -74,10 +75,12 @@ class PlotPanel : public QWidget {
   void setMarks(std::span<const PlotMark> marks);  // vertical lines with a label
   void clear();                                    // data, cells, arrows and marks; series stay
   void setTitle(const QString& title);
+  void setLegendText(Series series, const QString& text);  // the name stays what it is elsewhere
   void setYLabel(const QString& label);
   void setNote(const QString& note);  // beside the title, faint; for numbers that sum the chart up
 
   void fit();
+  void fitWithin(double x_low, double x_high);  // y from what lies between
   void setXRange(double low, double high);
   std::pair<double, double> xRange() const;
   std::pair<double, double> yRange() const;

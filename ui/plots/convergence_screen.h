@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How the optimiser came to its result: cost, gradient, step and each camera's parameters against the
+// iteration, with the stages' boundaries and, when the run is done, the band of plus and minus one sigma.
+#pragma once
+
+#include "core/pipeline/calibration_pipeline.h"
+
+#include <QWidget>
+
+#include <memory>
+#include <vector>
+
+class QComboBox;
+class QLabel;
+class QStackedLayout;
+class QTimer;
+
+namespace evical::ui {
+
+class PlotPanel;
+
+class ConvergenceScreen : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit ConvergenceScreen(QWidget* parent = nullptr);
+
+  void setRun(std::shared_ptr<const CalibrationRun> run);  // null: as clear()
+  void appendIteration(const IterationRecord& record);     // of a run that goes on; drawn soon
+  void clear();
+
+ private:
+  enum class Relative { ToFinal, ToFirst };
+  enum class Shown { All, LastStage };
+  enum Panel { Cost, Gradient, Step, Rotation, Translation, TimeOffset, kPanels };
+  struct ParameterPanel {
+    std::vector<std::size_t> lines, points, bands;
+  };
+
+  QWidget* makeBar();
+  QWidget* makeContent();
+  void addParameterSeries(Panel panel, const QStringList& names);
+  void listCameras();
+  void drawSoon();
+  void draw();
+  void drawProgress();
+  void drawParameters();
+  void drawBands(std::size_t camera);
+  void fitAll();
+  std::vector<double> differences(Panel panel, int axis, std::size_t camera) const;
+  double sigma(Panel panel, int axis, std::size_t camera) const;
+
+  std::shared_ptr<const CalibrationRun> run_;
+  std::vector<IterationRecord> iterations_;
+  std::vector<PlotPanel*> panels_;
+  ParameterPanel series_[kPanels];
+  QStackedLayout* stack_ = nullptr;
+  QComboBox *camera_ = nullptr, *relative_ = nullptr, *shown_ = nullptr;
+  QLabel *camera_label_ = nullptr, *summary_ = nullptr;
+  QTimer* redraw_ = nullptr;
+};
+
+}  // namespace evical::ui
