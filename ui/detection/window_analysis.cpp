@@ -91,7 +91,7 @@ void predict(const BurstHistory& history, const WindowQuestion& question, Window
   std::optional<BoardMotion> motion = motionOf(*view, question);
   if (!motion) return;
   const BoardScene& scene = *question.scene;
-  BurstWindow window(scene.resolution_px, scene.ideal, scene.ideal_scale, scene.board.circles);
+  BurstWindow window(scene.resolution_px, scene.ideal, scene.stretch, scene.board.circles);
   window.assign(gather(history, motion->time_ns, fitHalfWidth_s(*motion, question)), motion->time_ns);
   if (const auto refitted =
           fitBoardMotion(window, *motion, scene.board, scene.camera, question.options.tracking.first_gate_px,
@@ -119,7 +119,7 @@ void findInliers(const BurstWindow& window, const WindowQuestion& question, Wind
           const Eigen::Vector2d pixel = Eigen::Vector2f(burst.ideal_x_px, burst.ideal_y_px).cast<double>();
           const EdgeDistance edge = distanceToEdge(circle, pixel - analysis.motion->travel(pixel, time_s));
           const double off_px =
-              edge.distance_px / static_cast<double>(burst.scale) - analysis.motion->radius_offset_px;
+              edge.distance_px / burst.stretch.across(edge.normal) - analysis.motion->radius_offset_px;
           if (!(std::abs(off_px) < options.last_gate_px)) return;
           if (static_cast<double>(burst.lead) * edge.normal.dot(velocity) < 0.0) return;
           analysis.inliers.push_back({{burst.x_px, burst.y_px}, burst.lead > 0.0f});
@@ -133,7 +133,7 @@ bool measure(const BurstHistory& history, const WindowQuestion& question, const 
              WindowAnalysis& analysis) {
   const BoardScene& scene = *question.scene;
   const TrackingOptions& options = question.options.tracking;
-  BurstWindow window(scene.resolution_px, scene.ideal, scene.ideal_scale, scene.board.circles);
+  BurstWindow window(scene.resolution_px, scene.ideal, scene.stretch, scene.board.circles);
   window.assign(
       gather(history, middleOf(question), std::max(fitHalfWidth_s(start, question), question.half_width_s)),
       middleOf(question));
@@ -178,7 +178,7 @@ double flowHalfWidth_s(const BurstHistory& history, const WindowQuestion& questi
   }
   constexpr double kSpeedWindow_s = 0.04;
   const BoardScene& scene = *question.scene;
-  BurstWindow window(scene.resolution_px, scene.ideal, scene.ideal_scale, scene.board.circles);
+  BurstWindow window(scene.resolution_px, scene.ideal, scene.stretch, scene.board.circles);
   window.assign(gather(history, middleOf(question), kSpeedWindow_s), middleOf(question));
   const double speed_px_s = std::max(typicalEdgeSpeed_px_s(window), kSlowest_px_s);
   return std::clamp(question.options.normal_flow.window_travel_px / (2.0 * speed_px_s),
@@ -190,7 +190,7 @@ void findFlow(const BurstHistory& history, const WindowQuestion& question, Windo
   if (half_width_s == analysis.arcs_half_width_s) return;
   analysis.arcs_half_width_s = half_width_s;
   const BoardScene& scene = *question.scene;
-  BurstWindow window(scene.resolution_px, scene.ideal, scene.ideal_scale, scene.board.circles);
+  BurstWindow window(scene.resolution_px, scene.ideal, scene.stretch, scene.board.circles);
   std::vector<EdgeBurst> bursts = gather(history, middleOf(question), half_width_s);
   keepSupported(scene.resolution_px, question.options.ring_vote.least_support, bursts);
   window.assign(bursts, middleOf(question));

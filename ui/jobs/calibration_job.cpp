@@ -15,6 +15,7 @@ constexpr auto kBetweenDetections = std::chrono::milliseconds(150);
 
 // How the time is spent on an everyday recording.
 const std::vector<JobStage> kStages = {{"detect", 0.55}, {"initialise", 0.05}, {"optimise", 0.40}};
+const std::vector<JobStage> kStagesAgain = {{"initialise", 0.1}, {"optimise", 0.9}};
 
 QString textOf(std::string_view text) {
   return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
@@ -81,12 +82,32 @@ CalibrationJob::CalibrationJob(JobRunner& runner, QObject* parent) : QObject(par
 }
 
 bool CalibrationJob::start(const Session& session) {
+  const ObserverFactory observers = observers_ && !runner_.running() ? observers_() : ObserverFactory{};
+  const bool begun =
+      run(session, kStages, [session, observers](const RunContext& context, CalibrationObserver* observer) {
+        return calibrate(session, context, observers, observer);
+      });
+  if (begun) emit detecting();
+  return begun;
+}
+
+bool CalibrationJob::startAgain(const Session& session, RecordingPass pass) {
+  const auto shared = std::make_shared<RecordingPass>(std::move(pass));
+  return run(session, kStagesAgain, [session, shared](const RunContext& context, CalibrationObserver* observer) {
+    return calibrate(session, std::move(*shared), context, observer);
+  });
+}
+
+bool CalibrationJob::run(const Session& session, const std::vector<JobStage>& stages, Work work) {
   if (runner_.running()) return false;
   session_ = session;
   live_ = std::make_shared<LiveView>(session.cameras.size());
-  return runner_.start(tr("Calibrate"), kStages, [session, live = live_](const RunContext& context) {
-    live->run = std::make_shared<CalibrationRun>(calibrate(session, context, {}, live.get()));
-  });
+  const auto job = [work = std::move(work), live = live_](const RunContext& context) {
+    live->run = std::make_shared<CalibrationRun>(work(context, live.get()));
+  };
+  if (!runner_.start(tr("Calibrate"), stages, job)) return false;
+  emit started();
+  return true;
 }
 
 void CalibrationJob::deliver() {
@@ -100,6 +121,7 @@ void CalibrationJob::deliver() {
 
 void CalibrationJob::finish(JobOutcome outcome) {
   const std::shared_ptr<LiveView> live = std::exchange(live_, nullptr);
+  if (live) emit ended();
   if (!live || outcome != JobOutcome::Done) return;
   emit calibrated(live->run, session_, runner_.logText());
 }

@@ -5,6 +5,7 @@
 #include "core/pipeline/calibration_pipeline.h"
 #include "ui/jobs/job_runner.h"
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -28,11 +29,19 @@ class CalibrationJob : public QObject {
  public:
   explicit CalibrationJob(JobRunner& runner, QObject* parent = nullptr);
 
+  // Asked at each start for somebody who sees the front end's windows (recording_pass.h); may be empty.
+  void observeWith(std::function<ObserverFactory()> observers) { observers_ = std::move(observers); }
+
   // Works on a copy. False while the runner is busy.
   bool start(const Session& session);
+  // From detections that are there already.
+  bool startAgain(const Session& session, RecordingPass pass);
   bool running() const { return live_ != nullptr; }
 
  signals:
+  void started();
+  void detecting();  // started, from the recording
+  void ended();      // in whatever way
   // While it runs; only the newest of each kind is handed out, a few times a second.
   void detectionsChanged(std::shared_ptr<const evical::ui::LiveDetections> detections);
   void detectionDone(std::shared_ptr<const evical::CalibrationInput> input);
@@ -45,10 +54,13 @@ class CalibrationJob : public QObject {
  private:
   class LiveView;
 
+  using Work = std::function<CalibrationRun(const RunContext& context, CalibrationObserver* observer)>;
+  bool run(const Session& session, const std::vector<JobStage>& stages, Work work);
   void deliver();
   void finish(JobOutcome outcome);
 
   JobRunner& runner_;
+  std::function<ObserverFactory()> observers_;
   std::shared_ptr<LiveView> live_;
   Session session_;
 };

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/window/linked_pages.h"
+
+#include "core/pipeline/view_rejection.h"
+#include "ui/detection/detection_screen.h"
+#include "ui/plots/convergence_screen.h"
+#include "ui/plots/residuals_screen.h"
+#include "ui/plots/signals_screen.h"
+#include "ui/scene/trajectory_screen.h"
+#include "ui/window/pages.h"
+#include "ui/window/workbench.h"
+
+namespace evical::ui {
+namespace {
+
+void wireDetection(DetectionScreen& screen, Workbench& workbench) {
+  CalibrationDocument& document = workbench.document;
+  CalibrationJob& job = workbench.calibration;
+  QObject::connect(&document, &CalibrationDocument::sessionChanged, &screen, [&screen, &document] {
+    if (document.hasSession()) screen.setSession(document.session());
+  });
+  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen,
+                   [&screen, &document] { screen.setResult(document.last().run); });
+  job.observeWith([&screen] { return screen.liveObservers(); });
+  QObject::connect(&job, &CalibrationJob::detecting, &screen, [&screen] { screen.setLive(true); });
+  QObject::connect(&job, &CalibrationJob::detectionDone, &screen, [&screen] { screen.setLive(false); });
+  QObject::connect(&job, &CalibrationJob::ended, &screen, [&screen] { screen.setLive(false); });
+}
+
+std::vector<std::optional<CameraIntrinsics>> intrinsicsOf(const Session& session) {
+  std::vector<std::optional<CameraIntrinsics>> all;
+  for (const SessionCamera& camera : session.cameras) all.push_back(camera.intrinsics);
+  return all;
+}
+
+void wireTrajectory(TrajectoryScreen& screen, Workbench& workbench) {
+  const CalibrationDocument& document = workbench.document;
+  const CalibrationJob& job = workbench.calibration;
+  const auto show_session = [&screen, &document] {
+    screen.setBoard(document.session().board);
+    screen.setIntrinsics(intrinsicsOf(document.session()));
+  };
+  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen, [&screen, &document, show_session] {
+    if (document.last().run) return screen.setRun(document.last().run, document.last().session);
+    screen.clear();
+    show_session();
+  });
+  QObject::connect(&document, &CalibrationDocument::sessionReplaced, &screen, show_session);
+  QObject::connect(&job, &CalibrationJob::detecting, &screen, [&screen, show_session] {
+    screen.clear();
+    show_session();
+  });
+  QObject::connect(&job, &CalibrationJob::detectionsChanged, &screen,
+                   [&screen, &document](const std::shared_ptr<const LiveDetections>& cameras) {
+                     const Session& session = document.session();
+                     for (std::size_t k = 0; k < std::min(cameras->size(), session.cameras.size()); ++k) {
+                       if (!session.cameras[k].intrinsics) continue;
+                       screen.setDetections({cameras, &(*cameras)[k]}, *session.cameras[k].intrinsics, k);
+                     }
+                   });
+  QObject::connect(&job, &CalibrationJob::iterationsChanged, &screen,
+                   [&screen, &document](const std::shared_ptr<const LiveIterations>& iterations) {
+                     screen.setState({iterations, &iterations->state}, document.session().board);
+                   });
+}
+
+void wireConvergence(ConvergenceScreen& screen, Workbench& workbench) {
+  const CalibrationDocument& document = workbench.document;
+  const CalibrationJob& job = workbench.calibration;
+  const auto shown = std::make_shared<std::size_t>(0);
+  const auto start_anew = [&screen, shown] {
+    *shown = 0;
+    screen.clear();
+  };
+  QObject::connect(&job, &CalibrationJob::started, &screen, start_anew);
+  QObject::connect(&job, &CalibrationJob::iterationsChanged, &screen,
+                   [&screen, shown](const std::shared_ptr<const LiveIterations>& iterations) {
+                     for (; *shown < iterations->records.size(); ++*shown)
+                       screen.appendIteration(iterations->records[*shown]);
+                   });
+  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen,
+                   [&screen, &document] { screen.setRun(document.last().run); });
+}
+
+void wireResiduals(ResidualsScreen& screen, Workbench& workbench) {
+  QObject::connect(&screen, &ResidualsScreen::recalibrateWithout, &screen,
+                   [&screen, &workbench](const std::vector<int>& views) {
+                     const RunRecord& last = workbench.document.last();
+                     if (!last.run) return;
+                     const auto camera = static_cast<std::size_t>(screen.camera());
+                     workbench.calibration.startAgain(last.session,
+                                                      withoutViews(last.run->pass, camera, views));
+                   });
+}
+
+template <class Screen>
+void showRuns(Screen& screen, const CalibrationDocument& document) {
+  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen, [&screen, &document] {
+    screen.setRun(document.last().run, document.last().session);
+  });
+}
+
+// One cursor: a time that is chosen on one screen is shown on the others.
+template <class From, class... To>
+void linkTime(From* from, To*... to) {
+  (QObject::connect(from, &From::timeSelected, to, &To::setTime), ...);
+}
+
+}  // namespace
+
+void wireLinkedPages(const Pages& pages, Workbench& workbench) {
+  wireDetection(*pages.detection, workbench);
+  wireTrajectory(*pages.trajectory, workbench);
+  wireConvergence(*pages.convergence, workbench);
+  wireResiduals(*pages.residuals, workbench);
+  showRuns(*pages.signal_curves, workbench.document);
+  showRuns(*pages.residuals, workbench.document);
+  linkTime(pages.detection, pages.trajectory, pages.signal_curves, pages.residuals);
+  linkTime(pages.trajectory, pages.detection, pages.signal_curves, pages.residuals);
+  linkTime(pages.signal_curves, pages.detection, pages.trajectory, pages.residuals);
+  linkTime(pages.residuals, pages.detection, pages.trajectory, pages.signal_curves);
+}
+
+}  // namespace evical::ui
