@@ -9,6 +9,7 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDoubleSpinBox>
+#include <QGridLayout>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPainter>
@@ -126,6 +127,8 @@ QWidget* DetectionScreen::makeSidePanel() {
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(2);
   column->addWidget(sectionTitle(tr("Layers")));
+  auto* grid = new QGridLayout;
+  grid->setVerticalSpacing(2);
   for (std::size_t k = 0; k < kLayerCount; ++k) {
     const LayerWords words = layerWords(static_cast<Layer>(k));
     auto* box = new QCheckBox(words.name);
@@ -136,9 +139,11 @@ QWidget* DetectionScreen::makeSidePanel() {
       request();
       refresh();
     });
-    column->addWidget(box);
+    const auto rows = static_cast<int>(kLayerCount + 1) / 2;
+    grid->addWidget(box, static_cast<int>(k) % rows, static_cast<int>(k) / rows);
     layer_boxes_.push_back(box);
   }
+  column->addLayout(grid);
   layer_boxes_[static_cast<std::size_t>(Layer::Reprojection)]->setEnabled(false);
   column->addSpacing(6);
   column->addWidget(sectionTitle(tr("This window: why")));

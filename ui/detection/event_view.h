@@ -31,6 +31,7 @@ class EventView : public QWidget {
   const std::shared_ptr<const SurfaceFrame>& frame() const { return frame_; }
   void setOverlay(Overlay overlay);
   void setCaption(const QString& caption);  // top left, over the picture
+  const QString& message() const { return message_; }
   void setMessage(const QString& message);  // in the middle, where there is no picture
 
   void fit();

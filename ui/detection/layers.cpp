@@ -201,14 +201,14 @@ LayerWords layerWords(Layer layer) {
     case Layer::Pairs:
       return {tr("Pairs"), tr("A leading and a following arc that make a circle")};
     case Layer::Circles:
-      return {tr("Search: circles, lattice"),
-              tr("Candidates (dotted), circles that move, and the lattice found among them")};
+      return {tr("Search"), tr("Candidates (dotted), circles that move, and the lattice found among them")};
     case Layer::Ellipses:
-      return {tr("Ellipses, inlier events"), tr("The board's fit, and the edge bursts that lie on it")};
+      return {tr("Ellipses"), tr("The board's fit, and the edge bursts that lie on it")};
     case Layer::Centres:
-      return {tr("Centres, covariance"), tr("Measured centres with ellipses of %1 sigma").arg(kShownSigmas)};
+      return {tr("Centres"),
+              tr("Measured centres, and their covariance as ellipses of %1 sigma").arg(kShownSigmas)};
     case Layer::Grid:
-      return {tr("Grid with indices"), tr("Measured circles in the board's order")};
+      return {tr("Grid"), tr("Measured circles in the board's order, with their numbers")};
     case Layer::Prediction:
       return {tr("Prediction"), tr("Where the tracker expects the board, from the view before")};
     case Layer::Reprojection:

@@ -118,6 +118,22 @@ void addTracking(const WindowAnalysis& analysis, std::vector<StageReport>& stage
   }
 }
 
+// The numbers of circles without a centre, as long as they are few.
+std::string missingText(const WindowAnalysis& analysis) {
+  const int count = analysis.scene->board.circleCount();
+  constexpr int kMostNamed = 10;
+  const int missing = count - static_cast<int>(analysis.circles.size());
+  if (missing < 1 || missing > kMostNamed) return {};
+  std::vector<bool> found(static_cast<std::size_t>(count), false);
+  for (const CircleObservation& circle : analysis.circles)
+    found[static_cast<std::size_t>(circle.circle)] = true;
+  std::string text = ", without";
+  for (int circle = 0; circle < count; ++circle) {
+    if (!found[static_cast<std::size_t>(circle)]) text += print(" %d", circle);
+  }
+  return text;
+}
+
 void addCentres(const WindowAnalysis& analysis, std::vector<StageReport>& stages) {
   const int count = analysis.scene->board.circleCount();
   if (!analysis.motion) {
@@ -133,6 +149,7 @@ void addCentres(const WindowAnalysis& analysis, std::vector<StageReport>& stages
                      sigmas.end());
     text += print(", sigma %.3f px", sigmas[sigmas.size() / 2]);
   }
+  text += missingText(analysis);
   const bool good = analysis.outcome == WindowOutcome::Complete || analysis.outcome == WindowOutcome::Partial;
   stages.push_back({"centres", good ? StageVerdict::Passed : StageVerdict::Failed, text});
 }

@@ -18,11 +18,11 @@ constexpr double kZoomStep = 1.3;
 constexpr double kShortestVisible_s = 0.05;
 constexpr double kBlindStep_s = 0.01;
 
-// 1, 2 or 5 times a power of ten, not below.
+// A round number, not below.
 double niceAbove(double value) {
   if (!(value > 0.0)) return 1.0;
   const double power = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
+  for (const double factor : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0}) {
     if (factor * power >= value) return factor * power;
   }
   return 10.0 * power;

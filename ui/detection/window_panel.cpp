@@ -7,6 +7,8 @@
 #include <QLabel>
 #include <QTextDocument>
 
+#include <algorithm>
+
 namespace evical::ui {
 namespace {
 
@@ -43,6 +45,19 @@ QString headline(const WindowAnalysis& analysis, bool searching) {
            coloured(theme().faint_text, WindowPanel::tr("%1 s ± %2 ms")
                                             .arg(analysis.time_s, 0, 'f', 4)
                                             .arg(1e3 * analysis.half_width_s, 0, 'f', 1)));
+}
+
+// The last stage that failed, up where it is seen at once.
+QString lostLine(const WindowAnalysis& analysis) {
+  if (windowClass(analysis.outcome) != WindowClass::Missed) return {};
+  const auto lost =
+      std::find_if(analysis.stages.rbegin(), analysis.stages.rend(),
+                   [](const StageReport& stage) { return stage.verdict == StageVerdict::Failed; });
+  if (lost == analysis.stages.rend()) return {};
+  return QStringLiteral("<p style='margin:4px 0 0 0'>%1</p>")
+      .arg(WindowPanel::tr("Lost at %1: %2")
+               .arg(QStringLiteral("<b>%1</b>").arg(QString::fromStdString(lost->stage)),
+                    QString::fromStdString(lost->text).toHtmlEscaped()));
 }
 
 QString stageRow(const StageReport& stage) {
@@ -85,6 +100,7 @@ void WindowPanel::show(const WindowAnalysis* analysis, const std::optional<Windo
     if (report)
       html +=
           QStringLiteral("<p style='margin:0'>%1</p>").arg(coloured(theme().faint_text, passLine(*report)));
+    if (!searching) html += lostLine(*analysis);
     html += QStringLiteral("<table style='margin-top:8px'>");
     for (const StageReport& stage : analysis->stages) html += stageRow(stage);
     html += QStringLiteral("</table>");
