@@ -20,6 +20,10 @@ QStackedLayout* stackWithNote(QWidget& screen, QWidget* content, const QString& 
   return stack;
 }
 
+void setNote(QStackedLayout& stack, const QString& note) {
+  qobject_cast<QLabel*>(stack.widget(static_cast<int>(StackPage::Note)))->setText(note);
+}
+
 void showPage(QStackedLayout& stack, StackPage page) {
   stack.setCurrentIndex(static_cast<int>(page));
 }

@@ -12,6 +12,7 @@ namespace evical::ui {
 // Stacks the note (index 0) and the content (index 1) in `screen`; the note is in front.
 enum class StackPage { Note = 0, Content = 1 };
 QStackedLayout* stackWithNote(QWidget& screen, QWidget* content, const QString& note);
+void setNote(QStackedLayout& stack, const QString& note);
 void showPage(QStackedLayout& stack, StackPage page);
 
 }  // namespace evical::ui

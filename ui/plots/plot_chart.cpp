@@ -89,6 +89,8 @@ PlotChart::PlotChart(const PlotAxes& axes, QWidget* parent) : QCustomPlot(parent
   }
   setInteractions(QCP::iRangeDrag | QCP::iRangeZoom);
   axisRect()->setRangeDrag(Qt::Horizontal | Qt::Vertical);
+  constexpr int kLeftMargin_px = 62;  // so that charts of time below each other are in line
+  if (axes.time) axisRect()->setMinimumMargins({kLeftMargin_px, 0, 0, 0});
   setNoAntialiasingOnDrag(true);
   setMouseTracking(true);
   setAutoAddPlottableToLegend(false);

@@ -13,6 +13,10 @@ namespace evical::ui {
 
 QColor colourOf(PlotColour colour);
 
+struct PlotLineData {
+  QSharedPointer<QCPGraphDataContainer> points;
+};
+
 class PlotChart : public QCustomPlot {
   Q_OBJECT
 

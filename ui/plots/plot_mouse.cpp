@@ -90,7 +90,12 @@ void PlotChart::toggle(QCPAbstractLegendItem* item) {
   auto* const entry = qobject_cast<QCPPlottableLegendItem*>(item);
   if (!entry) return;
   const bool visible = !entry->plottable()->visible();
-  entry->plottable()->setVisible(visible);
+  const auto owner = std::find_if(series.begin(), series.end(), [&](const SeriesItems& items) {
+    return items.plottable == entry->plottable();
+  });
+  for (SeriesItems& items : series) {  // what has its colour belongs to it
+    if (items.style.colour == owner->style.colour) items.plottable->setVisible(visible);
+  }
   QFont font = entry->font();
   font.setStrikeOut(!visible);
   entry->setFont(font);

@@ -25,6 +25,16 @@ QVector<double> toQVector(const std::vector<double>& values) {
 
 }  // namespace
 
+std::shared_ptr<PlotLineData> makePlotLine(const std::vector<double>& x, const std::vector<double>& y) {
+  QVector<QCPGraphData> points;
+  points.reserve(static_cast<qsizetype>(x.size()));
+  for (std::size_t k = 0; k < x.size(); ++k) points.append({x[k], y[k]});
+  auto line = std::make_shared<PlotLineData>();
+  line->points.reset(new QCPGraphDataContainer);
+  line->points->set(points, true);
+  return line;
+}
+
 PlotPanel::PlotPanel(const PlotAxes& axes, QWidget* parent)
     : QWidget(parent), chart_(new PlotChart(axes, this)) {
   auto* const layout = new QVBoxLayout(this);
@@ -68,6 +78,11 @@ void PlotPanel::setData(Series series, const std::vector<double>& x, const std::
       Q_ASSERT_X(false, "PlotPanel::setData", "bands are set by setBand");
       break;
   }
+  chart_->replot(QCustomPlot::rpQueuedReplot);
+}
+
+void PlotPanel::setLine(Series series, const std::shared_ptr<PlotLineData>& line) {
+  static_cast<QCPGraph*>(chart_->series[series].plottable)->setData(line->points);
   chart_->replot(QCustomPlot::rpQueuedReplot);
 }
 

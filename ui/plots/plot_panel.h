@@ -11,6 +11,7 @@
 #include <QString>
 #include <QWidget>
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -54,6 +55,10 @@ struct PlotCells {
   std::vector<double> values;
 };
 
+// A long line's points, made ready in any thread.
+struct PlotLineData;
+std::shared_ptr<PlotLineData> makePlotLine(const std::vector<double>& x, const std::vector<double>& y);
+
 class PlotChart;
 
 class PlotPanel : public QWidget {
@@ -67,6 +72,7 @@ class PlotPanel : public QWidget {
   Series addSeries(SeriesKind kind, const SeriesStyle& style);
   // x ascending, but for outlines, which may turn back, and points. NaN breaks lines.
   void setData(Series series, const std::vector<double>& x, const std::vector<double>& y);
+  void setLine(Series series, const std::shared_ptr<PlotLineData>& line);  // costs nothing
   void setBand(Series series, const std::vector<double>& x, const std::vector<double>& low,
                const std::vector<double>& high);
   void setBarWidth(Series series, double width);

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/support/simulated_pass.h"
+#include "tests/ui/plot_pictures.h"
+#include "ui/plots/latest_job.h"
+#include "ui/plots/plot_panel.h"
+#include "ui/plots/rotation_rates.h"
+#include "ui/plots/signals_screen.h"
+
+#include <QTabWidget>
+#include <QtTest>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+using namespace evical;
+using namespace evical::ui;
+
+class TestSignalsScreen : public QObject {
+  Q_OBJECT
+
+  test::SimulatedPass simulated_;
+  std::shared_ptr<const CalibrationRun> run_;
+
+  void fill(SignalsScreen& screen) {
+    QSignalSpy ready(&screen, &SignalsScreen::ready);
+    screen.setRun(run_, simulated_.session);
+    QVERIFY(ready.wait(30'000));
+  }
+  static void settle() {
+    for (int k = 0; k < 3; ++k) QCoreApplication::processEvents();
+  }
+
+ private slots:
+  void initTestCase() {
+    test::setPalette(false);
+    simulated_ = test::simulatePass(6.0);
+    run_ = std::make_shared<CalibrationRun>(calibrate(simulated_.session, simulated_.pass, {}));
+  }
+
+  void rotationRates_agreeOnlyWithTheTimeOffset() {
+    // The simulated clocks differ by 7.3 ms: with the true offset what is left is the noise of single views.
+    const CameraState camera{{}, simulated_.truth.cameras[0].time_offset_s, 0.0};
+    ImuState imu;
+    imu.gyroscope_bias_rad_s = simulated_.truth.imus[0].gyroscope_bias_rad_s;
+    imu.gyroscope_mapping = simulated_.truth.imus[0].gyroscope_mapping;
+    const SessionCamera& known = simulated_.session.cameras[0];
+    const auto ratesWith = [&](const CameraState& state) {
+      return rotationRates({known.name, known.intrinsics, simulated_.pass.cameras[0]},
+                           simulated_.session.board, state, simulated_.pass.imus[0], imu,
+                           simulated_.pass.start_ns, {}, {});
+    };
+    const RotationRates rates = ratesWith(camera);
+    QVERIFY(rates.time_s.size() > 200);
+    QVERIFY(rates.rmsDifferenceAfter_rad_s() < 0.7 * rates.rmsDifferenceBefore_rad_s());
+    CameraState off = camera;
+    off.time_offset_s += 0.02;
+    QVERIFY(ratesWith(off).rmsDifferenceAfter_rad_s() > 2.0 * rates.rmsDifferenceAfter_rad_s());
+    CameraState none = camera;
+    none.time_offset_s = 0.0;
+    const RotationRates unshifted = ratesWith(none);
+    QCOMPARE(unshifted.rmsDifferenceAfter_rad_s(), unshifted.rmsDifferenceBefore_rad_s());
+  }
+
+  void latestJob_dropsWhatIsOutdated() {
+    LatestJob job;
+    std::atomic<int> begun = 0;
+    int done = 0;
+    for (int k = 1; k <= 3; ++k) {
+      job.start([&begun, &done, k](const std::stop_token& stop) {
+        ++begun;
+        while (k < 3 && !stop.stop_requested()) std::this_thread::yield();
+        return [&done, k] { done += k; };
+      });
+    }
+    QTRY_COMPARE(done, 3);
+    QCOMPARE(begun.load(), 2);  // the second never ran
+  }
+
+  void latestJob_saysWhatWentWrong() {
+    LatestJob job;
+    QSignalSpy failed(&job, &LatestJob::failed);
+    job.start(
+        [](const std::stop_token&) -> std::function<void()> { throw std::runtime_error("no such thing"); });
+    QVERIFY(failed.wait());
+    QCOMPARE(failed[0][0].toString(), QString("no such thing"));
+  }
+
+  void withoutARun_itSaysWhatToDo() {
+    SignalsScreen screen;
+    screen.show();
+    QVERIFY(!screen.findChild<QTabWidget*>()->isVisible());
+    fill(screen);
+    QVERIFY(screen.findChild<QTabWidget*>()->isVisible());
+    screen.setRun(nullptr, {});
+    QVERIFY(!screen.findChild<QTabWidget*>()->isVisible());
+  }
+
+  void setRun_doesNotHoldUpTheWindow() {
+    SignalsScreen screen;
+    QSignalSpy ready(&screen, &SignalsScreen::ready);
+    QElapsedTimer timer;
+    timer.start();
+    screen.setRun(run_, simulated_.session);
+    QVERIFY2(timer.elapsed() < 50, "it copies the session and starts a thread");
+    QCOMPARE(ready.count(), 0);
+    QVERIFY(ready.wait(30'000));
+  }
+
+  void setRun_twiceShowsTheLatter() {
+    SignalsScreen screen;
+    auto shorter = std::make_shared<CalibrationRun>(*run_);
+    shorter->pass.imus[0].samples.resize(2000);
+    QSignalSpy ready(&screen, &SignalsScreen::ready);
+    screen.setRun(run_, simulated_.session);
+    screen.setRun(shorter, simulated_.session);
+    QVERIFY(ready.wait(30'000));
+    QVERIFY(screen.findChild<PlotPanel*>("gyroscope")->xRange().second < 2.1);
+    QTest::qWait(50);
+    QCOMPARE(ready.count(), 1);
+  }
+
+  void signals_areOnTheCamerasClock() {
+    SignalsScreen screen;
+    fill(screen);
+    const QStringList first =
+        screen.findChild<PlotPanel*>("gyroscope")->csv().split('\n')[1].split(',');  // x measured
+    const double offset_s = run_->result.state.cameras[0].time_offset_s;
+    QVERIFY(std::abs(offset_s) > 5e-3);
+    const double camera_s = first[1].toDouble();
+    const auto& samples = run_->pass.imus[0].samples;
+    const auto sample = std::find_if(samples.begin(), samples.end(), [&](const ImuSample& s) {
+      return std::abs(static_cast<double>(s.time_ns - run_->pass.start_ns) * 1e-9 - offset_s - camera_s) <
+             1e-6;
+    });
+    QVERIFY(sample != samples.end());
+    QVERIFY(std::abs(sample->angular_rate_rad_s.x() - first[2].toDouble()) < 1e-6);
+  }
+
+  void click_selectsTheTimeForAll() {
+    SignalsScreen screen;
+    screen.resize(1000, 650);
+    screen.show();
+    fill(screen);
+    settle();
+    QSignalSpy selected(&screen, &SignalsScreen::timeSelected);
+    PlotPanel& signal = *screen.findChild<PlotPanel*>("gyroscope");
+    QWidget* const chart = signal.findChild<QWidget*>();
+    QTest::mouseClick(chart, Qt::LeftButton, Qt::NoModifier,
+                      chart->mapFromParent(signal.pixelAt(2.5, 0.0).toPoint()));
+    QCOMPARE(selected.count(), 1);
+    QVERIFY(std::abs(selected[0][0].toDouble() - 2.5) < 0.02);
+  }
+
+  void setTime_bringsTheTimeIntoView() {
+    SignalsScreen screen;
+    fill(screen);
+    PlotPanel& signal = *screen.findChild<PlotPanel*>("gyroscope");
+    signal.setXRange(1.0, 2.0);
+    screen.setTime(1.5);
+    QCOMPARE(signal.xRange(), std::pair(1.0, 2.0));
+    screen.setTime(4.0);
+    QCOMPARE(signal.xRange(), std::pair(3.5, 4.5));
+  }
+
+  void pictures() {
+    SignalsScreen screen;
+    screen.show();
+    fill(screen);
+    screen.setTime(2.0);
+    auto* const tabs = screen.findChild<QTabWidget*>();
+    const char* const names[] = {"signals_gyroscope", "signals_accelerometer", "signals_rates"};
+    for (int tab = 0; tab < 3; ++tab) {
+      tabs->setCurrentIndex(tab);
+      test::takePictures(screen, names[tab], settle);
+    }
+  }
+};
+
+QTEST_MAIN(TestSignalsScreen)
+#include "tst_signals_screen.moc"

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/plots/rotation_rates.h"
+
+#include "core/initialisation/camera_poses.h"
+#include "core/initialisation/gyro_rotation.h"
+
+#include <Eigen/LU>
+
+#include <cmath>
+
+namespace evical::ui {
+namespace {
+
+double rmsDifference(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
+  return a.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+// Without scale, misalignment and bias.
+std::vector<ImuSample> trueSamples(const ImuData& imu, const ImuState& state) {
+  const Eigen::Matrix3d true_from_measured = state.gyroscope_mapping.inverse();
+  std::vector<ImuSample> samples = imu.samples;
+  for (ImuSample& sample : samples)
+    sample.angular_rate_rad_s = true_from_measured * (sample.angular_rate_rad_s - state.gyroscope_bias_rad_s);
+  return samples;
+}
+
+}  // namespace
+
+double RotationRates::rmsDifferenceBefore_rad_s() const {
+  return rmsDifference(camera_rad_s, imu_before_rad_s);
+}
+
+double RotationRates::rmsDifferenceAfter_rad_s() const {
+  return rmsDifference(camera_rad_s, imu_after_rad_s);
+}
+
+RotationRates rotationRates(const CameraData& camera, const CircleBoard& board,
+                            const CameraState& camera_state, const ImuData& imu, const ImuState& imu_state,
+                            std::int64_t start_ns, const InitialisationOptions& options,
+                            const RunContext& context) {
+  RotationRates rates;
+  if (imu.samples.size() < 2) return rates;
+  const double offset_s =
+      camera_state.time_offset_s - imu_state.time_offset_s;  // imu_time = camera_time + offset
+  const GyroRotation gyro(trueSamples(imu, imu_state), start_ns);
+  context.throwIfStopped();
+  std::vector<CameraPose> poses = estimateCameraPoses(camera, board, options.largest_reprojection_px).poses;
+  context.throwIfStopped();
+  resolveAmbiguousPoses(poses, gyro, offset_s, options.longest_pair_s);
+  for (std::size_t k = 0, l = 0; k < poses.size(); ++k) {
+    const double begin_s = poses[k].time_s;
+    while (l < poses.size() && poses[l].time_s - begin_s < options.pair_gap_s - 1e-6) ++l;
+    if (l == poses.size()) break;
+    const double end_s = poses[l].time_s, duration_s = end_s - begin_s;
+    if (duration_s > options.longest_pair_s) continue;
+    if (!gyro.covers(begin_s, end_s) || !gyro.covers(begin_s + offset_s, end_s + offset_s)) continue;
+    rates.time_s.push_back(0.5 * (begin_s + end_s));
+    rates.camera_rad_s.push_back(
+        rotationAngleBetween_rad(poses[k].world_from_camera.rotation, poses[l].world_from_camera.rotation) /
+        duration_s);
+    rates.imu_before_rad_s.push_back(gyro.between(begin_s, end_s).norm() / duration_s);
+    rates.imu_after_rad_s.push_back(gyro.between(begin_s + offset_s, end_s + offset_s).norm() / duration_s);
+  }
+  return rates;
+}
+
+}  // namespace evical::ui

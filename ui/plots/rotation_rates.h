@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How fast the camera turned, seen by its views of the board alone, and how fast the gyroscope says it did.
+// Sizes of rotation do not depend on how the camera is mounted, so only the time offset can bring the two
+// together. No Qt.
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/data/calibration_setup.h"
+#include "core/data/calibration_state.h"
+#include "core/initialisation/initialisation_options.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace evical::ui {
+
+// One entry a pair of views, each averaged over the time between the two.
+struct RotationRates {
+  std::vector<double> time_s;  // camera clock, the pair's middle
+  std::vector<double> camera_rad_s;
+  std::vector<double> imu_before_rad_s;  // clocks taken to be the same
+  std::vector<double> imu_after_rad_s;   // with the calibrated offset between camera and IMU
+
+  double rmsDifferenceBefore_rad_s() const;
+  double rmsDifferenceAfter_rad_s() const;
+};
+
+// Pairs outside the IMU's samples are left out. Throws Cancelled when asked to stop.
+RotationRates rotationRates(const CameraData& camera, const CircleBoard& board,
+                            const CameraState& camera_state, const ImuData& imu, const ImuState& imu_state,
+                            std::int64_t start_ns, const InitialisationOptions& options,
+                            const RunContext& context);
+
+}  // namespace evical::ui

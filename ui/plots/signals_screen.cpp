@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/plots/signals_screen.h"
+
+#include "core/report/signal_prediction.h"
+#include "ui/plots/empty_note.h"
+#include "ui/plots/latest_job.h"
+#include "ui/plots/plot_panel.h"
+#include "ui/plots/rotation_rates.h"
+
+#include <QComboBox>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QStackedLayout>
+#include <QTabWidget>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace evical::ui {
+namespace {
+
+using Kind = PlotPanel::SeriesKind;
+using Line = std::shared_ptr<PlotLineData>;
+
+constexpr PlotColour kAxisColours[] = {PlotColour::X, PlotColour::Y, PlotColour::Z};
+const QString kAxisNames[] = {"x", "y", "z"};
+
+struct SignalLines {
+  std::array<Line, 3> measured, predicted, residual;
+  double rms = 0.0, noise = 0.0;  // noise: sigma of a sample as given
+};
+
+double component(const Eigen::Vector3d& v, std::size_t axis) {
+  return v[static_cast<Eigen::Index>(axis)];
+}
+
+SignalLines makeLines(const std::vector<double>& time_s, const std::vector<Eigen::Vector3d>& measured,
+                      const std::vector<Eigen::Vector3d>& predicted, double noise) {
+  SignalLines lines;
+  lines.noise = noise;
+  std::vector<double> a(time_s.size()), b(time_s.size()), difference(time_s.size());
+  double sum = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t k = 0; k < time_s.size(); ++k) {
+      a[k] = component(measured[k], axis);
+      b[k] = component(predicted[k], axis);
+      difference[k] = a[k] - b[k];
+      sum += difference[k] * difference[k];
+    }
+    lines.measured[axis] = makePlotLine(time_s, a);
+    lines.predicted[axis] = makePlotLine(time_s, b);
+    lines.residual[axis] = makePlotLine(time_s, difference);
+  }
+  if (!time_s.empty()) lines.rms = std::sqrt(sum / (3.0 * static_cast<double>(time_s.size())));
+  return lines;
+}
+
+QComboBox* addBox(QHBoxLayout& layout, QLabel*& label, const QString& name, const QString& tip) {
+  auto* const box = new QComboBox;
+  box->setToolTip(tip);
+  label = new QLabel(name);
+  label->setBuddy(box);
+  layout.addWidget(label);
+  layout.addWidget(box);
+  return box;
+}
+
+}  // namespace
+
+struct SignalsScreen::Drawing {
+  SignalLines gyroscope, accelerometer;
+  RotationRates rates;
+  double begin_s = 0.0, end_s = 0.0;
+};
+
+SignalsScreen::SignalsScreen(QWidget* parent) : QWidget(parent), job_(new LatestJob(this)) {
+  auto* const content = new QWidget;
+  auto* const layout = new QVBoxLayout(content);
+  layout->setContentsMargins(8, 8, 8, 8);
+  tabs_ = new QTabWidget;
+  tabs_->setDocumentMode(true);
+  tabs_->addTab(makeSignalTab(gyroscope_, tr("Angular rate"), "rad/s"), tr("&Gyroscope"));
+  tabs_->addTab(makeSignalTab(accelerometer_, tr("Specific force"), "m/s\u00b2"), tr("&Accelerometer"));
+  tabs_->addTab(makeRatesTab(), tr("&Camera against IMU"));
+  tabs_->setCornerWidget(makeBar());
+  layout->addWidget(tabs_);
+  PlotPanel::linkX(panels_);
+  gyroscope_.signal->setObjectName("gyroscope");
+  accelerometer_.signal->setObjectName("accelerometer");
+  stack_ = stackWithNote(*this, content, tr("No calibration yet: press Calibrate."));
+  connect(job_, &LatestJob::failed, this, [this](const QString& reason) {
+    setNote(*stack_, tr("The signals cannot be shown: %1").arg(reason));
+    showPage(*stack_, StackPage::Note);
+  });
+}
+
+PlotPanel* SignalsScreen::addPanel(const QString& title, const QString& unit) {
+  auto* const panel =
+      new PlotPanel({.title = title, .x_label = tr("time (s)"), .y_label = unit, .time = true});
+  connect(panel, &PlotPanel::clicked, this, [this](double time_s) {
+    setTime(time_s);
+    emit timeSelected(time_s);
+  });
+  panels_.push_back(panel);
+  return panel;
+}
+
+QWidget* SignalsScreen::makeSignalTab(SignalTab& tab, const QString& name, const QString& unit) {
+  tab.signal = addPanel(name, unit);
+  tab.residual = addPanel(tr("Measured - predicted"), unit);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    tab.measured.push_back(tab.signal->addSeries(Kind::Line, {.name = kAxisNames[axis] + tr(" measured"),
+                                                              .colour = kAxisColours[axis],
+                                                              .opacity = 0.4,
+                                                              .in_legend = false}));
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    tab.predicted.push_back(tab.signal->addSeries(
+        Kind::Line, {.name = kAxisNames[axis] + tr(" predicted"), .colour = kAxisColours[axis]}));
+    tab.signal->setLegendText(tab.predicted.back(), kAxisNames[axis]);
+    tab.residuals.push_back(tab.residual->addSeries(
+        Kind::Line, {.name = kAxisNames[axis], .colour = kAxisColours[axis], .opacity = 0.75}));
+  }
+  for (std::size_t& edge : tab.noise)
+    edge = tab.residual->addSeries(Kind::Line, {.colour = PlotColour::Text, .width_px = 1.4, .dashed = true});
+  auto* const page = new QWidget;
+  auto* const layout = new QVBoxLayout(page);
+  layout->setContentsMargins(0, 8, 0, 0);
+  layout->addWidget(tab.signal, 3);
+  layout->addWidget(tab.residual, 2);
+  return page;
+}
+
+QWidget* SignalsScreen::makeRatesTab() {
+  before_ = addPanel(tr("Rotation rate before the time offset"), "rad/s");
+  after_ = addPanel(tr("Rotation rate after the time offset"), "rad/s");
+  difference_ = addPanel(tr("Camera - IMU"), "rad/s");
+  for (PlotPanel* panel : {before_, after_}) {
+    panel->addSeries(Kind::Line, {.name = tr("camera"), .colour = PlotColour::Accent});
+    panel->addSeries(Kind::Line, {.name = tr("IMU"), .colour = PlotColour::Warning});
+  }
+  difference_->addSeries(Kind::Line, {.name = tr("before"), .colour = PlotColour::Bad, .opacity = 0.7});
+  difference_->addSeries(Kind::Line, {.name = tr("after"), .colour = PlotColour::Good});
+  auto* const page = new QWidget;
+  auto* const layout = new QVBoxLayout(page);
+  layout->setContentsMargins(0, 8, 0, 0);
+  for (PlotPanel* panel : {before_, after_, difference_}) layout->addWidget(panel, 1);
+  return page;
+}
+
+QWidget* SignalsScreen::makeBar() {
+  auto* const bar = new QWidget;
+  auto* const layout = new QHBoxLayout(bar);
+  layout->setContentsMargins(0, 0, 0, 2);
+  camera_ =
+      addBox(*layout, camera_label_, tr("Ca&mera"), tr("Whose clock is shown, and whose rotation rate"));
+  imu_ = addBox(*layout, imu_label_, tr("&IMU"), tr("Whose signals are shown"));
+  for (QComboBox* box : {camera_, imu_}) connect(box, &QComboBox::activated, this, [this] { compute(); });
+  return bar;
+}
+
+void SignalsScreen::setRun(std::shared_ptr<const CalibrationRun> run, const Session& session) {
+  run_ = std::move(run);
+  session_ = session;
+  camera_->clear();
+  imu_->clear();
+  if (run_) {
+    for (const BoardObservations& camera : run_->pass.cameras)
+      camera_->addItem(QString::fromStdString(camera.camera));
+    for (const ImuData& imu : run_->pass.imus) imu_->addItem(QString::fromStdString(imu.name));
+    imu_->setCurrentIndex(static_cast<int>(session_.referenceImu()));
+  }
+  for (const auto& [box, label] : {std::pair{camera_, camera_label_}, std::pair{imu_, imu_label_}}) {
+    box->setVisible(box->count() > 1);
+    label->setVisible(box->count() > 1);
+  }
+  setNote(*stack_, run_ ? tr("Computing the signals ...") : tr("No calibration yet: press Calibrate."));
+  showPage(*stack_, StackPage::Note);
+  compute();
+}
+
+void SignalsScreen::compute() {
+  if (!run_ || camera_->count() == 0 || imu_->count() == 0) return job_->cancel();
+  const auto camera = static_cast<std::size_t>(camera_->currentIndex());
+  const auto imu = static_cast<std::size_t>(imu_->currentIndex());
+  job_->start([this, run = run_, session = session_, camera, imu](const std::stop_token& stop) {
+    const RunContext context{silentProgress(), stop};
+    const CalibrationState& state = run->result.state;
+    const ImuData& samples = run->pass.imus[imu];
+    SignalPrediction prediction = predictSignals(samples, run->pass.start_ns, state, imu, context);
+    for (double& time_s : prediction.time_s)
+      time_s += state.imus[imu].time_offset_s - state.cameras[camera].time_offset_s;
+    const double root_rate = std::sqrt(samples.rate_hz());
+    const auto drawing = std::make_shared<Drawing>();
+    drawing->gyroscope =
+        makeLines(prediction.time_s, prediction.measured_rate_rad_s, prediction.predicted_rate_rad_s,
+                  samples.noise.gyroscope_density * root_rate);
+    drawing->accelerometer =
+        makeLines(prediction.time_s, prediction.measured_force_m_s2, prediction.predicted_force_m_s2,
+                  samples.noise.accelerometer_density * root_rate);
+    if (!prediction.time_s.empty()) {
+      drawing->begin_s = prediction.time_s.front();
+      drawing->end_s = prediction.time_s.back();
+    }
+    const SessionCamera& known = session.cameras[camera];
+    if (known.intrinsics) {
+      drawing->rates = rotationRates({known.name, known.intrinsics, run->pass.cameras[camera]}, session.board,
+                                     state.cameras[camera], samples, state.imus[imu], run->pass.start_ns,
+                                     session.options.initialisation, context);
+    }
+    return [this, drawing] { draw(*drawing); };
+  });
+}
+
+void SignalsScreen::draw(const Drawing& drawing) {
+  const auto drawSignal = [&](const SignalTab& tab, const SignalLines& lines, const QString& unit) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      tab.signal->setLine(tab.measured[axis], lines.measured[axis]);
+      tab.signal->setLine(tab.predicted[axis], lines.predicted[axis]);
+      tab.residual->setLine(tab.residuals[axis], lines.residual[axis]);
+    }
+    const std::vector<double> span_s = {drawing.begin_s, drawing.end_s};
+    tab.residual->setData(tab.noise[0], span_s, {-lines.noise, -lines.noise});
+    tab.residual->setData(tab.noise[1], span_s, {lines.noise, lines.noise});
+    tab.signal->setNote(tr("pale: measured, full: predicted by the trajectory"));
+    tab.residual->setNote(tr("RMS %1 %3, noise as given %2 %3 (dashed)")
+                              .arg(lines.rms, 0, 'g', 3)
+                              .arg(lines.noise, 0, 'g', 3)
+                              .arg(unit));
+  };
+  drawSignal(gyroscope_, drawing.gyroscope, "rad/s");
+  drawSignal(accelerometer_, drawing.accelerometer, "m/s\u00b2");
+
+  const RotationRates& rates = drawing.rates;
+  const auto camera_line = makePlotLine(rates.time_s, rates.camera_rad_s);
+  before_->setLine(0, camera_line);
+  before_->setLine(1, makePlotLine(rates.time_s, rates.imu_before_rad_s));
+  after_->setLine(0, camera_line);
+  after_->setLine(1, makePlotLine(rates.time_s, rates.imu_after_rad_s));
+  std::vector<double> before, after;
+  for (std::size_t k = 0; k < rates.time_s.size(); ++k) {
+    before.push_back(rates.camera_rad_s[k] - rates.imu_before_rad_s[k]);
+    after.push_back(rates.camera_rad_s[k] - rates.imu_after_rad_s[k]);
+  }
+  difference_->setData(0, rates.time_s, before);
+  difference_->setData(1, rates.time_s, after);
+  difference_->setNote(tr("RMS %1 rad/s before, %2 rad/s after")
+                           .arg(rates.rmsDifferenceBefore_rad_s(), 0, 'g', 3)
+                           .arg(rates.rmsDifferenceAfter_rad_s(), 0, 'g', 3));
+  showPage(*stack_, StackPage::Content);
+  for (PlotPanel* panel : panels_) panel->fitWithin(drawing.begin_s, drawing.end_s);
+  emit ready();
+}
+
+void SignalsScreen::setTime(double time_s) {
+  for (PlotPanel* panel : panels_) panel->setCursorLine(time_s);
+  const auto [low, high] = panels_.front()->xRange();
+  if (time_s >= low && time_s <= high) return;
+  const double half = 0.5 * (high - low);
+  panels_.front()->setXRange(time_s - half, time_s + half);
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the IMU measured against what the calibrated trajectory says it should have, with the residuals below;
+// and the camera's rotation rate against the IMU's, before and after the time offset. All on the camera's
+// clock.
+#pragma once
+
+#include "core/pipeline/calibration_pipeline.h"
+
+#include <QWidget>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+class QComboBox;
+class QLabel;
+class QStackedLayout;
+class QTabWidget;
+
+namespace evical::ui {
+
+class LatestJob;
+class PlotPanel;
+
+class SignalsScreen : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit SignalsScreen(QWidget* parent = nullptr);
+
+  // Null: empty again. What is drawn is computed in a thread and appears when it is ready.
+  void setRun(std::shared_ptr<const CalibrationRun> run, const Session& session);
+
+ public slots:
+  void setTime(double time_s);  // seconds since the recording's start, camera clock
+
+ signals:
+  void timeSelected(double time_s);
+  void ready();  // all charts show the run that was set last
+
+ private:
+  struct Drawing;
+  // A sensor's signal and residual: measured and predicted by axis.
+  struct SignalTab {
+    PlotPanel *signal = nullptr, *residual = nullptr;
+    std::vector<std::size_t> measured, predicted, residuals;
+    std::array<std::size_t, 2> noise = {};  // lines at minus and plus one sigma
+  };
+  QWidget* makeSignalTab(SignalTab& tab, const QString& name, const QString& unit);
+  QWidget* makeRatesTab();
+  QWidget* makeBar();
+  PlotPanel* addPanel(const QString& title, const QString& unit);
+  void compute();
+  void draw(const Drawing& drawing);
+
+  std::shared_ptr<const CalibrationRun> run_;
+  Session session_;
+  LatestJob* job_;
+  std::vector<PlotPanel*> panels_;
+  SignalTab gyroscope_, accelerometer_;
+  PlotPanel *before_ = nullptr, *after_ = nullptr, *difference_ = nullptr;
+  QStackedLayout* stack_ = nullptr;
+  QTabWidget* tabs_ = nullptr;
+  QComboBox *camera_ = nullptr, *imu_ = nullptr;
+  QLabel *camera_label_ = nullptr, *imu_label_ = nullptr;
+};
+
+}  // namespace evical::ui
