@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reprojection residuals: scatter with sigma ellipses, histogram against the normal distribution, RMS of each
+// window with a threshold that marks windows for rejection, and where on the sensor circles were seen and
+// residuals point.
+#pragma once
+
+#include "core/pipeline/calibration_pipeline.h"
+
+#include <QWidget>
+
+#include <memory>
+#include <vector>
+
+class QComboBox;
+class QDoubleSpinBox;
+class QHBoxLayout;
+class QLabel;
+class QPushButton;
+class QStackedLayout;
+class QTimer;
+
+namespace evical::ui {
+
+class LatestJob;
+class PlotPanel;
+struct ResidualStatistics;
+
+class ResidualsScreen : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit ResidualsScreen(QWidget* parent = nullptr);
+  ~ResidualsScreen() override;
+
+  // Null: empty again. What is drawn is computed in a thread and appears when it is ready.
+  void setRun(std::shared_ptr<const CalibrationRun> run, const Session& session);
+
+  int camera() const;                        // whose residuals are shown
+  std::vector<int> rejectedWindows() const;  // views of that camera above the threshold, ascending
+  double threshold_px() const;
+  void setThreshold(double rms_px);
+
+ public slots:
+  void setTime(double time_s);  // seconds since the recording's start, camera clock
+
+ signals:
+  void timeSelected(double time_s);
+  void thresholdChanged(double rms_px);
+  void recalibrateWithout(const std::vector<int>& views);  // of camera(); see core/pipeline/view_rejection.h
+  void ready();                                            // all charts show the run that was set last
+
+ private:
+  QWidget* makeContent();
+  QWidget* makeBar();
+  void makeScatter();
+  void makeWindows();
+  void compute();
+  void draw();
+  void drawScatter();
+  void drawHistogram();
+  void drawWindows();
+  void drawImagePlane();
+  void markRejected();
+  void markTime();
+  void selectNearest(double x_px, double y_px);
+
+  std::shared_ptr<const CalibrationRun> run_;
+  Session session_;
+  std::shared_ptr<const ResidualStatistics> statistics_;
+  LatestJob* job_;
+  QTimer* mark_soon_;
+  double time_s_ = -1.0;
+  PlotPanel *scatter_ = nullptr, *histogram_ = nullptr, *windows_ = nullptr, *image_ = nullptr;
+  struct ScatterSeries {
+    std::size_t used, dropped, rejected, now, ellipses[3];
+  } scatter_series_ = {};
+  struct WindowSeries {
+    std::size_t kept, rejected;
+  } window_series_ = {};
+  QStackedLayout* stack_ = nullptr;
+  QComboBox* camera_ = nullptr;
+  QDoubleSpinBox* threshold_ = nullptr;
+  QLabel *camera_label_ = nullptr, *count_ = nullptr;
+  QPushButton* recalibrate_ = nullptr;
+};
+
+}  // namespace evical::ui
