@@ -230,7 +230,7 @@ static_assert(fieldCount<TrackingOptions>() == std::tuple_size_v<decltype(kTrack
 
 // Does the board have the rows and columns that the session says?
 struct ExtentOptions {
-  int every_windows = 10;
+  int every_windows = 5;
   double least_line = 0.6;
   int least_views = 15;
   double largest_share = 0.25;

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 namespace evical {
@@ -53,8 +54,10 @@ std::vector<AveragedForce> averageForces(std::span<const ImuSample> samples, std
   return averages;
 }
 
-// Three equations of one kind: P(weights) + R lever - excess measured = measured (a view's position), or
-// P(weights) + R (bias - skew measured) - gravity = R measured (an acceleration).
+// Three equations of one kind: P(weights) + R lever = measured (a view's position), or
+// P(weights) + R bias - gravity = R measured (an acceleration). Where the board's scale is unknown, the
+// latter is scale P(weights) + R (bias + skew f) - gravity = R measured, with the products linearised:
+// measurements never multiply an unknown, since their noise would then shrink it.
 struct Row {
   bool position;
   std::size_t camera;
@@ -65,26 +68,25 @@ struct Row {
   double weight = 1.0;  // robust
 };
 
-// The unknowns other than control points: levers, gravity, bias; and where the board's scale is asked for, by
-// how much it exceeds 1, and the upper triangle that corrects the accelerometer's scales and axes, row by
-// row: without it, they would pass for the board's scale.
+// The unknowns other than control points: levers, gravity, bias; and where the board's scale is asked for,
+// the scale, and the matrix by which the accelerometer's scales and axes are off, and the rotation with them,
+// row by row: without it, they would pass for the board's.
 struct Layout {
   explicit Layout(std::size_t cameras) : gravity(static_cast<Eigen::Index>(3 * cameras)) {}
   Eigen::Index gravity;
   bool with_scale = false;
   Eigen::Index lever(std::size_t camera) const { return static_cast<Eigen::Index>(3 * camera); }
   Eigen::Index bias() const { return gravity + 3; }
-  Eigen::Index excess() const { return gravity + 6; }
+  Eigen::Index scale() const { return gravity + 6; }
   Eigen::Index skew() const { return gravity + 7; }
-  Eigen::Index size() const { return gravity + (with_scale ? 13 : 6); }
+  Eigen::Index size() const { return gravity + (with_scale ? 16 : 6); }
 };
 
 struct Solution {
   Eigen::MatrixX3d points;
   Eigen::VectorXd shared;
-  Eigen::MatrixXd covariance;  // of the shared unknowns
-  Eigen::MatrixX3d
-      points_by_excess;  // covariances of control points with the board's excess, if it is asked for
+  Eigen::MatrixXd covariance;        // of the shared unknowns
+  Eigen::MatrixX3d points_by_scale;  // their covariances with the board's scale, where it is asked for
 };
 
 struct Sigmas {
@@ -126,17 +128,21 @@ class Alignment {
   void restart() {
     for (Row& row : rows_) row.weight = 1.0;
     sigmas_ = {options_.position_sigma_m, options_.acceleration_sigma_m_s2};
+    gravity_m_s2_.reset();
   }
 
   Solution solve(int rounds) {
     Solution solution;
     for (int round = 0; round < rounds; ++round) {
-      solution = solveOnce(round > 0 ? &solution.shared : nullptr);
+      solution = solveOnce();
+      points_ = solution.points;
+      gravity_m_s2_ = solution.shared.segment<3>(layout_.gravity);
+      if (layout_.with_scale) scale_ = solution.shared(layout_.scale());
       reweigh(solution);
     }
     return solution;
   }
-  double excessSigma(const Solution& solution) const;
+  double scaleSigma(const Solution& solution) const;
   double cost() const { return cost_; }
   const Layout& layout() const { return layout_; }
   void summarise(GravityAlignment& result) const {
@@ -152,14 +158,18 @@ class Alignment {
  private:
   static constexpr double kOutlyingWeight = 0.1;
 
-  Solution solveOnce(const Eigen::VectorXd* before) const;
-  void addPriors(const Eigen::VectorXd* before, Eigen::MatrixXd& matrix, Eigen::VectorXd& vector) const;
+  Solution solveOnce() const;
+  void addPriors(Eigen::MatrixXd& matrix, Eigen::VectorXd& vector) const;
   void accumulate(const Row& row, BandedMatrix& band, std::array<Eigen::MatrixXd, 3>& coupling,
                   Eigen::MatrixXd& matrix, Eigen::VectorXd& vector) const;
   Eigen::Matrix3Xd sharedCoefficients(const Row& row) const;
-  Vector3d target(const Row& row) const {
-    return row.position ? row.measured : Vector3d(row.world_from_imu * row.measured);
+  Eigen::Vector4d pointWeights(const Row& row) const {
+    return row.position ? row.weights : Eigen::Vector4d(scale_ * row.weights);
   }
+  Vector3d accelerationBefore(const Row& row) const {
+    return points_.middleRows<4>(row.segment).transpose() * row.weights;
+  }
+  Vector3d target(const Row& row) const;
   double rowWeight(const Row& row) const {
     const double sigma = row.position ? sigmas_.position_m : sigmas_.acceleration_m_s2;
     return row.weight / (sigma * sigma);
@@ -173,11 +183,14 @@ class Alignment {
   double knot_spacing_s_;
   Sigmas sigmas_;
   std::vector<Row> rows_;
+  // The last solution: where products of unknowns are linearised.
+  double scale_ = 1.0;
+  Eigen::MatrixX3d points_;
+  std::optional<Vector3d> gravity_m_s2_;
   double cost_ = 0.0;
 };
 
-void Alignment::addPriors(const Eigen::VectorXd* before, Eigen::MatrixXd& matrix,
-                          Eigen::VectorXd& vector) const {
+void Alignment::addPriors(Eigen::MatrixXd& matrix, Eigen::VectorXd& vector) const {
   const auto inverseSquare = [](double sigma) { return 1.0 / (sigma * sigma); };
   matrix.diagonal().head(layout_.gravity).setConstant(inverseSquare(options_.translation_sigma_m));
   matrix.diagonal()
@@ -185,13 +198,13 @@ void Alignment::addPriors(const Eigen::VectorXd* before, Eigen::MatrixXd& matrix
       .setConstant(inverseSquare(options_.accelerometer_bias_sigma_m_s2));
   if (layout_.with_scale) {
     constexpr double kAnyScale = 1.0;
-    matrix(layout_.excess(), layout_.excess()) = inverseSquare(kAnyScale);
-    matrix.diagonal().tail<6>().setConstant(inverseSquare(options_.accelerometer_mapping_sigma));
+    matrix(layout_.scale(), layout_.scale()) = vector(layout_.scale()) = inverseSquare(kAnyScale);
+    matrix.diagonal().tail<9>().setConstant(inverseSquare(options_.accelerometer_mapping_sigma));
   }
-  if (!before) return;
+  if (!gravity_m_s2_) return;
   // |g| is known: a tight observation along the direction found so far.
   constexpr double kNormSigma_m_s2 = 1e-4;
-  const Vector3d down = before->segment<3>(layout_.gravity).normalized();
+  const Vector3d down = gravity_m_s2_->normalized();
   matrix.block<3, 3>(layout_.gravity, layout_.gravity) +=
       inverseSquare(kNormSigma_m_s2) * down * down.transpose();
   vector.segment<3>(layout_.gravity) += inverseSquare(kNormSigma_m_s2) * options_.gravity_m_s2 * down;
@@ -202,15 +215,19 @@ Eigen::Matrix3Xd Alignment::sharedCoefficients(const Row& row) const {
   Eigen::Matrix3Xd c = Eigen::Matrix3Xd::Zero(3, layout_.size());
   c.middleCols<3>(row.position ? layout_.lever(row.camera) : layout_.bias()) = r;
   if (!row.position) c.middleCols<3>(layout_.gravity) = -Matrix3d::Identity();
-  if (!layout_.with_scale) return c;
-  if (row.position) {
-    c.col(layout_.excess()) = -row.measured;
-    return c;
-  }
+  if (!layout_.with_scale || row.position) return c;
+  c.col(layout_.scale()) = accelerationBefore(row);
+  const Vector3d force = r.transpose() * (scale_ * accelerationBefore(row) - *gravity_m_s2_);
   Eigen::Index column = layout_.skew();
   for (Eigen::Index i = 0; i < 3; ++i)
-    for (Eigen::Index j = i; j < 3; ++j) c.col(column++) = -r.col(i) * row.measured(j);
+    for (Eigen::Index j = 0; j < 3; ++j) c.col(column++) = r.col(i) * force(j);
   return c;
+}
+
+Vector3d Alignment::target(const Row& row) const {
+  if (row.position) return row.measured;
+  const Vector3d force = row.world_from_imu * row.measured;
+  return layout_.with_scale ? Vector3d(force + scale_ * accelerationBefore(row)) : force;
 }
 
 // `coupling` by axis: control points x (shared unknowns, right hand side).
@@ -219,25 +236,26 @@ void Alignment::accumulate(const Row& row, BandedMatrix& band, std::array<Eigen:
   const double w = rowWeight(row);
   const Eigen::Matrix3Xd shared = sharedCoefficients(row);
   const Vector3d right = target(row);
-  band.addOuter(row.segment, row.weights, w);
+  const Eigen::Vector4d points = pointWeights(row);
+  band.addOuter(row.segment, points, w);
   for (int axis = 0; axis < 3; ++axis) {
     auto block = coupling[static_cast<std::size_t>(axis)].middleRows<4>(row.segment);
-    block.leftCols(layout_.size()) += w * row.weights * shared.row(axis);
-    block.col(layout_.size()) += w * right(axis) * row.weights;
+    block.leftCols(layout_.size()) += w * points * shared.row(axis);
+    block.col(layout_.size()) += w * right(axis) * points;
   }
   matrix.noalias() += w * shared.transpose() * shared;
   vector.noalias() += w * shared.transpose() * right;
 }
 
 // One banded matrix serves all three axes; the shared unknowns come by Schur complement.
-Solution Alignment::solveOnce(const Eigen::VectorXd* before) const {
+Solution Alignment::solveOnce() const {
   const Eigen::Index n = layout_.size();
   BandedMatrix band(point_count_);
   std::array<Eigen::MatrixXd, 3> coupling;
   coupling.fill(Eigen::MatrixXd::Zero(point_count_, n + 1));
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd vector = Eigen::VectorXd::Zero(n);
-  addPriors(before, matrix, vector);
+  addPriors(matrix, vector);
   for (const Row& row : rows_) accumulate(row, band, coupling, matrix, vector);
   // Ends and gaps: a control point that nothing sees follows its neighbours.
   constexpr double kSmoothness = 1e-2, kTie = 1e-9;
@@ -263,29 +281,29 @@ Solution Alignment::solveOnce(const Eigen::VectorXd* before) const {
         solved[axis].col(n) - solved[axis].leftCols(n) * solution.shared;
   }
   if (!layout_.with_scale) return solution;
-  solution.points_by_excess.resize(point_count_, 3);
+  solution.points_by_scale.resize(point_count_, 3);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    solution.points_by_excess.col(static_cast<Eigen::Index>(axis)) =
-        -solved[axis].leftCols(n) * solution.covariance.col(layout_.excess());
+    solution.points_by_scale.col(static_cast<Eigen::Index>(axis)) =
+        -solved[axis].leftCols(n) * solution.covariance.col(layout_.scale());
   }
   return solution;
 }
 
 Vector3d Alignment::errorOf(const Row& row, const Solution& solution) const {
-  const Vector3d spline = solution.points.middleRows<4>(row.segment).transpose() * row.weights;
+  const Vector3d spline = solution.points.middleRows<4>(row.segment).transpose() * pointWeights(row);
   return spline + sharedCoefficients(row) * solution.shared - target(row);
 }
 
 // Errors within a second may have one cause, such as a rotation that is a little off and turns gravity: the
 // larger of the sigma that takes all errors as independent, and of what the seconds' pulls scatter.
-double Alignment::excessSigma(const Solution& solution) const {
-  const double independent = std::sqrt(solution.covariance(layout_.excess(), layout_.excess()));
+double Alignment::scaleSigma(const Solution& solution) const {
+  const double independent = std::sqrt(solution.covariance(layout_.scale(), layout_.scale()));
   const double segments_per_second = 1.0 / knot_spacing_s_;
   std::vector<double> pulls;
   for (const Row& row : rows_) {
     const Vector3d sensitivity =
-        solution.points_by_excess.middleRows<4>(row.segment).transpose() * row.weights +
-        sharedCoefficients(row) * solution.covariance.col(layout_.excess());
+        solution.points_by_scale.middleRows<4>(row.segment).transpose() * pointWeights(row) +
+        sharedCoefficients(row) * solution.covariance.col(layout_.scale());
     const auto second = static_cast<std::size_t>(row.segment / segments_per_second);
     if (second >= pulls.size()) pulls.resize(second + 1, 0.0);
     pulls[second] += rowWeight(row) * sensitivity.dot(errorOf(row, solution));
@@ -349,10 +367,9 @@ GravityAlignment alignGravity(std::span<const CameraTrack> cameras, std::span<co
   result.lever_std_m = std::sqrt(solution.covariance.diagonal().head(layout.gravity).maxCoeff());
   alignment.summarise(result);
   alignment.releaseScale();
-  alignment.restart();
   const Solution scaled = alignment.solve(kRounds);
-  result.board_scale = 1.0 + scaled.shared(layout.excess());
-  result.board_scale_std = alignment.excessSigma(scaled);
+  result.board_scale = scaled.shared(layout.scale());
+  result.board_scale_std = alignment.scaleSigma(scaled);
   return result;
 }
 

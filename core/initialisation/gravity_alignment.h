@@ -3,7 +3,8 @@
 // gravity g and bias b,
 //   p(t_k) = p_wc(t_k) - R_wb(t_k) t_c        at every view,
 //   p''(t) = R_wb(t) (f - b) + g              at every (averaged) accelerometer sample.
-// Then once more with the board's scale free, p_wc times it, since accelerations tell metres.
+// Then once more with scale p''(t), since accelerations tell metres: the board's true size over the given
+// one.
 #pragma once
 
 #include "core/data/imu_sample.h"
@@ -34,7 +35,7 @@ struct GravityAlignment {
   double position_rms_m = 0.0, acceleration_rms_m_s2 = 0.0;  // robust
   double lever_std_m = 0.0;                                  // of the worst direction of any camera
   int views = 0, outlying_views = 0;                         // far from where the others put the camera
-  double board_scale = 1.0, board_scale_std = 0.0;           // the board's true size over the given one
+  double board_scale = 1.0, board_scale_std = 0.0;
 };
 
 // `rotation` (world_from_imu, IMU clock) gives range and knots.

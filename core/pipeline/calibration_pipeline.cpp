@@ -131,6 +131,13 @@ void checkSession(const Session& session) {
   }
 }
 
+// First of the reasons: it is the one that people can mend.
+void addDoubt(const std::string& doubt, CalibrationResult& result) {
+  if (doubt.empty()) return;
+  result.status = CalibrationStatus::Doubtful;
+  result.reason = result.reason.empty() ? doubt : doubt + "; " + result.reason;
+}
+
 void logDetections(const RecordingPass& pass, const RunContext& context) {
   for (const BoardObservations& camera : pass.cameras) {
     context.progress.log(LogLevel::Info, fmt::format("{}: {} events, board in {} of {} windows ({})",
@@ -204,6 +211,7 @@ CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunCo
     result.reason =
         "the optimisation did not converge: raise optimisation.max_iterations, or look at the residuals";
   }
+  addDoubt(initial.doubt, result);
   result.state = std::move(solution.state);
   result.uncertainty = std::move(uncertainty.report);
   result.cameras = std::move(solution.cameras);

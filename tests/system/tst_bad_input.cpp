@@ -116,6 +116,8 @@ class TestBadInput : public QObject {
   void board_thatIsNeverSeen_saysWhereWindowsWereLost();
   void board_ofAnotherSize_isNamed_data();
   void board_ofAnotherSize_isNamed();
+  void boardSpacing_tenPercentOff_isDoubtful_data();
+  void boardSpacing_tenPercentOff_isDoubtful();
   void recording_tooShort_fails();
   void recording_withoutMotion_fails();
 };
@@ -358,6 +360,32 @@ void TestBadInput::board_ofAnotherSize_isNamed() {
   const Outcome outcome = test.calibrate();
   VERIFY_FAILED(test, outcome, says);
   VERIFY_SAYS(outcome, "[Cc]heck rows and cols in the session");
+}
+
+void TestBadInput::boardSpacing_tenPercentOff_isDoubtful_data() {
+  QTest::addColumn<QString>("spacing_m");
+  QTest::addColumn<QString>("says");
+  QTest::newRow("right") << "0.05" << QString();
+  QTest::newRow("too small") << "0.0455"
+                             << "(9|10|11) % larger than spacing_m says";
+  QTest::newRow("too large") << "0.0556"
+                             << "(9|10|11) % smaller than spacing_m says";
+}
+
+void TestBadInput::boardSpacing_tenPercentOff_isDoubtful() {
+  QFETCH(QString, spacing_m);
+  QFETCH(QString, says);
+  Case test;
+  test.change("spacing_m: 0.05", "spacing_m: " + spacing_m);
+  test.change("radius_m: 0.02", QString("radius_m: %1").arg(0.4 * spacing_m.toDouble()));
+  const Outcome outcome = test.calibrate();
+  VERIFY_OUTCOME(outcome, 0);
+  const QString result = QString::fromUtf8(readFile(test.result() + "/result.yaml"));
+  const bool warned = outcome.errors.contains(QRegularExpression("warning: .*spacing_m says.*measure it"));
+  QVERIFY2(warned == !says.isEmpty(), qPrintable(outcome.errors));
+  if (says.isEmpty()) return;
+  QVERIFY2(result.contains("status: doubtful"), qPrintable(result.left(400)));
+  QVERIFY2(result.contains(QRegularExpression("reason: .*" + says)), qPrintable(result.left(400)));
 }
 
 void TestBadInput::recording_tooShort_fails() {
