@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 
+#include <QRegularExpression>
 #include <QtTest>
 
 namespace {
