@@ -430,6 +430,7 @@ void TestTrajectoryScreen::screenshots() {
   QDir().mkpath(EVICAL_SCREENSHOTS);
   for (const bool dark : {false, true}) {
     setPalette(dark);
+    applyTheme(*qApp, dark ? Appearance::Dark : Appearance::Light);
     for (const QSize size : {QSize(1000, 650), QSize(1640, 930)}) {
       const auto screen = makeScreen(size);
       QVERIFY(screen);

@@ -110,7 +110,7 @@ class LiveDetection::Observer : public FrontEndObserver {
     analysis->time_s = live->time_s.value_or(0.0);
     analysis->stages = describeStages(*analysis, options_);
     live->analysis = std::move(analysis);
-    if (sent_ - reported_ >= kReportInterval) {
+    if (!reports_ || reports_->empty() || sent_ - reported_ >= kReportInterval) {
       reported_ = sent_;
       reports_ = std::make_shared<std::vector<WindowReport>>(tracker_.observations().windows);
     }

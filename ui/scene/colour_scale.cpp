@@ -20,7 +20,7 @@ constexpr std::array<std::array<double, 3>, 5> kOnLight = {
     {{0.98, 0.66, 0.18}, {0.93, 0.40, 0.29}, {0.78, 0.18, 0.46}, {0.47, 0.08, 0.60}, {0.13, 0.06, 0.45}}};
 
 constexpr double kOutliers = 0.02;
-constexpr int kTicks = 5;
+constexpr double kMostTicks = 6.0;
 
 }  // namespace
 
@@ -41,7 +41,8 @@ double scaleEnd(std::vector<double> values) {
   if (values.empty()) return 1.0;
   const auto index = static_cast<std::ptrdiff_t>((1.0 - kOutliers) * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + index, values.end());
-  return roundedUp(values[static_cast<std::size_t>(index)]);
+  const double value = values[static_cast<std::size_t>(index)], step = roundedUp(value / kMostTicks);
+  return step * std::max(1.0, std::ceil(value / step - 1e-9));
 }
 
 void paintColourBar(QPainter& painter, const QRectF& area, const ColourScale& scale) {
@@ -61,12 +62,13 @@ void paintColourBar(QPainter& painter, const QRectF& area, const ColourScale& sc
   painter.setBrush(gradient);
   painter.drawRoundedRect(bar, 3.0, 3.0);
   painter.setPen(theme().faint_text);
-  for (int k = 0; k <= kTicks; ++k) {
-    const double share = static_cast<double>(k) / kTicks;
+  const double step = roundedUp(scale.high / kMostTicks);
+  for (int k = 0; k * step <= scale.high * (1.0 + 1e-9); ++k) {
+    const double share = k * step / scale.high;
     const QPointF at(bar.right(), bar.bottom() - share * bar.height());
     painter.drawLine(at, at + QPointF(4.0, 0.0));
     painter.drawText(QRectF(at.x() + 8.0, at.y() - 0.5 * line, area.width() - 20.0, line),
-                     Qt::AlignLeft | Qt::AlignVCenter, QString::number(share * scale.high, 'g', 3));
+                     Qt::AlignLeft | Qt::AlignVCenter, QString::number(k * step, 'g', 3));
   }
 }
 

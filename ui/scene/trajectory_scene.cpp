@@ -26,6 +26,7 @@ using Eigen::Vector3d;
 // In parts of the board's diagonal.
 constexpr double kStationDepth = 0.07, kCurrentDepth = 0.13, kImuAxes = 0.16, kWorldAxes = 0.2, kArrow = 0.28;
 constexpr double kImagePlaneOpacity = 0.25;
+constexpr double kSnug = 0.85;  // a trajectory leaves much of the sphere around it empty
 constexpr double kGridCells = 14.0;
 
 class Part {
@@ -285,7 +286,8 @@ bool TrajectoryScene::empty() const {
 
 SceneExtent TrajectoryScene::extent() const {
   const Box box = d_->box();
-  return {d_->up(), Vector3d::UnitZ(), box.centre(), box.radius()};
+  return {d_->up(), Vector3d::UnitZ(), box.centre(),
+          d_->track_data->empty() ? box.radius() : kSnug * box.radius()};
 }
 
 double TrajectoryScene::gridSpacing_m() const {
