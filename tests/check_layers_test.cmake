@@ -45,3 +45,8 @@ check(library_by_way_of_header "core/optimisation/b.h: shows fmt/format.h" core/
       "#include \"core/optimisation/a.h\"")
 check(library_in_own_header "" core/optimisation/a.h "#include <ceres/ceres.h>" core/optimisation/a.cpp
       "#include \"core/optimisation/a.h\"")
+check(ui_screen_to_screen "ui/plots may not include ui/scene" ui/plots/a.cpp "#include \"ui/scene/b.h\"")
+check(ui_screen_to_document "ui/detection may not include ui/document" ui/detection/a.cpp
+      "#include \"ui/document/b.h\"")
+check(ui_unknown_folder "is no folder" ui/helpers/a.cpp "#include \"ui/theme/theme.h\"")
+check(ui_clean "" ui/window/a.cpp "#include \"ui/plots/b.h\"" ui/plots/b.h "#include <QWidget>")
