@@ -90,7 +90,7 @@ PlotChart::PlotChart(const PlotAxes& axes, QWidget* parent) : QCustomPlot(parent
   setInteractions(QCP::iRangeDrag | QCP::iRangeZoom);
   axisRect()->setRangeDrag(Qt::Horizontal | Qt::Vertical);
   constexpr int kLeftMargin_px = 62;  // so that charts of time below each other are in line
-  if (axes.time) axisRect()->setMinimumMargins({kLeftMargin_px, 0, 0, 0});
+  if (axes.time) axisRect()->setMinimumMargins({kLeftMargin_px, 15, 15, 15});
   setNoAntialiasingOnDrag(true);
   setMouseTracking(true);
   setAutoAddPlottableToLegend(false);
@@ -240,9 +240,13 @@ void PlotChart::fit(const QCPRange& x_within) {
   for (int k = 0; k < plottableCount(); ++k) {
     if (!plottable(k)->visible()) continue;
     bool found_x = false, found_y = false;
-    const QCPRange this_x = plottable(k)->getKeyRange(found_x),
-                   this_y = plottable(k)->getValueRange(found_y, positive, x_within);
+    QCPRange this_x = plottable(k)->getKeyRange(found_x),
+             this_y = plottable(k)->getValueRange(found_y, positive, x_within);
     if (!found_x || !found_y) continue;
+    if (plottable(k) == cells_) {
+      this_x = {cells_extent.left(), cells_extent.right()};
+      this_y = {cells_extent.top(), cells_extent.bottom()};
+    }
     x = found ? x.expanded(this_x) : this_x;
     y = found ? y.expanded(this_y) : this_y;
     found = true;
@@ -326,12 +330,12 @@ void PlotChart::styleSeries(const SeriesItems& items) {
     case PlotPanel::SeriesKind::Points: {
       auto* const graph = static_cast<QCPGraph*>(items.plottable);
       graph->setLineStyle(QCPGraph::lsNone);
-      const bool small = style.width_px <= 2.5;  // a dot of the pen's width is far cheaper than a disc
-      pen.setCapStyle(Qt::RoundCap);
+      const bool small = style.width_px <= 2.5;  // a plain square is far cheaper than a disc
       graph->setPen(pen);
       graph->setAntialiasedScatters(!small);
-      graph->setScatterStyle(small ? QCPScatterStyle(QCPScatterStyle::ssDot)
-                                   : QCPScatterStyle(QCPScatterStyle::ssDisc, colour, style.width_px));
+      graph->setScatterStyle(
+          small ? QCPScatterStyle(QCPScatterStyle::ssSquare, QPen(Qt::NoPen), QBrush(colour), style.width_px)
+                : QCPScatterStyle(QCPScatterStyle::ssDisc, colour, style.width_px));
       break;
     }
     case PlotPanel::SeriesKind::Bars:
@@ -362,8 +366,8 @@ void PlotChart::styleOverlay(const QFont& font) {
     mark.label->setColor(t.faint_text);
   }
   for (QCPItemLine* arrow : arrows_) {
-    arrow->setPen(QPen(colourOf(arrow_colour), 1.4));
-    arrow->setHead(QCPLineEnding(QCPLineEnding::esSpikeArrow, 6, 7));
+    arrow->setPen(QPen(colourOf(arrow_colour), 1.2));
+    arrow->setHead(QCPLineEnding(QCPLineEnding::esSpikeArrow, 4, 5));
   }
 }
 

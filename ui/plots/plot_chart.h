@@ -30,6 +30,7 @@ class PlotChart : public QCustomPlot {
     QCPGraph* low;  // a band's lower edge
   };
   std::vector<SeriesItems> series;
+  QRectF cells_extent;  // QCustomPlot only knows that of the cells' middles
   PlotColour cell_colour = PlotColour::Accent, arrow_colour = PlotColour::Text;
 
   const PlotAxes& axes() const { return axes_; }

@@ -109,8 +109,13 @@ void PlotPanel::setCells(const PlotCells& cells, PlotColour colour) {
     for (int column = 0; column < cells.columns; ++column)
       map->setCell(column, row, cells.values[static_cast<std::size_t>(row * cells.columns + column)]);
   }
-  chart_->cells()->rescaleDataRange(true);
+  double largest = 0.0;  // not by QCustomPlot's own search, which NaN spoils
+  for (const double value : cells.values) {
+    if (value > largest) largest = value;
+  }
+  chart_->cells()->setDataRange({0.0, largest});
   chart_->cells()->setVisible(true);
+  chart_->cells_extent = cells.extent;
   chart_->cell_colour = colour;
   chart_->restyle(font());
 }

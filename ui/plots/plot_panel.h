@@ -48,7 +48,7 @@ struct PlotArrow {
   QPointF from, to;
 };
 
-// Values row by row, the first row at the least y; NaN is left open.
+// Values from 0 up, row by row, the first row at the least y; NaN is left open.
 struct PlotCells {
   QRectF extent;
   int columns = 0, rows = 0;

@@ -28,6 +28,7 @@ constexpr double kScatterReach = 4.5;          // sigmas that the scatter shows 
 constexpr double kAboveAll = 1.1;              // first threshold against the largest RMS: nothing is rejected
 constexpr double kShareOfWindowSpacing = 0.8;  // a bar's width
 constexpr int kLeastForArrow = 10;             // circles in a cell, for their mean to mean something
+constexpr std::size_t kMostPoints = 15'000;    // more would only cost time; those marked are all drawn
 constexpr int kFrame_ms = 30;
 
 template <class Wanted>
@@ -146,7 +147,7 @@ void ResidualsScreen::makeScatter() {
   scatter_series_.rejected =
       scatter_->addSeries(Kind::Points, {.name = tr("marked"), .colour = PlotColour::Bad, .width_px = 2.0});
   scatter_series_.now = scatter_->addSeries(
-      Kind::Points, {.name = tr("at the cursor"), .colour = PlotColour::Warning, .width_px = 6.0});
+      Kind::Points, {.name = tr("at cursor"), .colour = PlotColour::Warning, .width_px = 6.0});
   for (int k = 0; k < 3; ++k) {
     scatter_series_.ellipses[k] = scatter_->addSeries(
         Kind::Outline,
@@ -222,7 +223,10 @@ void ResidualsScreen::draw() {
 
 void ResidualsScreen::drawScatter() {
   const auto all = [](const CircleResidual&) { return true; };
-  scatter_->setLine(scatter_series_.used, points(statistics_->used, all));
+  const std::size_t every = statistics_->used.size() / kMostPoints + 1;
+  std::size_t next = 0;
+  scatter_->setLine(scatter_series_.used,
+                    points(statistics_->used, [&](const CircleResidual&) { return next++ % every == 0; }));
   scatter_->setLine(scatter_series_.dropped, points(statistics_->dropped, all));
   for (int k = 0; k < 3; ++k) {
     std::vector<double> x, y;
@@ -234,7 +238,8 @@ void ResidualsScreen::drawScatter() {
     scatter_->setData(scatter_series_.ellipses[k], x, y);
   }
   const Eigen::Vector2d sigma = statistics_->covariance_px2.diagonal().cwiseSqrt();
-  scatter_->setNote(tr("sigma %1, %2 px").arg(sigma.x(), 0, 'g', 3).arg(sigma.y(), 0, 'g', 3));
+  const QString thinned = every > 1 ? tr(", 1 of %1 drawn").arg(every) : QString();
+  scatter_->setNote(tr("\u03c3 %1, %2 px").arg(sigma.x(), 0, 'g', 3).arg(sigma.y(), 0, 'g', 3) + thinned);
   const double reach = kScatterReach * std::max(sigma.maxCoeff(), 1e-6);
   scatter_->setXRange(-reach, reach);
   scatter_->setYRange(-reach, reach);
@@ -254,9 +259,8 @@ void ResidualsScreen::drawHistogram() {
   }
   histogram_->setData(1, x, stated);
   histogram_->setData(2, x, fitted);
-  histogram_->setNote(tr("spread %1 sigma, mean %2 sigma")
-                          .arg(s.normalised_std, 0, 'f', 2)
-                          .arg(s.normalised_mean, 0, 'f', 2));
+  const double mean = std::abs(s.normalised_mean) < 0.005 ? 0.0 : s.normalised_mean;  // no "-0.00"
+  histogram_->setNote(tr("spread %1, mean %2").arg(s.normalised_std, 0, 'f', 2).arg(mean, 0, 'f', 2));
   histogram_->fit();
 }
 
