@@ -93,9 +93,10 @@ bool CalibrationJob::start(const Session& session) {
 
 bool CalibrationJob::startAgain(const Session& session, RecordingPass pass) {
   const auto shared = std::make_shared<RecordingPass>(std::move(pass));
-  return run(session, kStagesAgain, [session, shared](const RunContext& context, CalibrationObserver* observer) {
-    return calibrate(session, std::move(*shared), context, observer);
-  });
+  return run(session, kStagesAgain,
+             [session, shared](const RunContext& context, CalibrationObserver* observer) {
+               return calibrate(session, std::move(*shared), context, observer);
+             });
 }
 
 bool CalibrationJob::run(const Session& session, const std::vector<JobStage>& stages, Work work) {

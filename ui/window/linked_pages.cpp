@@ -95,9 +95,8 @@ void wireResiduals(ResidualsScreen& screen, Workbench& workbench) {
 
 template <class Screen>
 void showRuns(Screen& screen, const CalibrationDocument& document) {
-  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen, [&screen, &document] {
-    screen.setRun(document.last().run, document.last().session);
-  });
+  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen,
+                   [&screen, &document] { screen.setRun(document.last().run, document.last().session); });
 }
 
 // One cursor: a time that is chosen on one screen is shown on the others.

@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "ui/forms/option_form.h"
+#include "ui/screens/result_screen.h"
 #include "ui/theme/theme.h"
 #include "ui/window/error_panel.h"
 #include "ui/window/job_status.h"
@@ -136,6 +137,7 @@ void MainWindow::wireDocument() {
     steps_->reset();
     error_->dismiss();
   });
+  connect(pages_.result, &ResultScreen::calibrateRequested, this, &MainWindow::calibrate);
   connect(files_, &SessionFiles::failed, this, &MainWindow::showProblem);
   connect(files_, &SessionFiles::opened, this, [this] {
     error_->dismiss();

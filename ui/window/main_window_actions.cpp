@@ -23,7 +23,6 @@ QAction* makeAction(QMainWindow* window, const QString& icon_name, const QString
   action->setShortcut(keys);
   const QString shown = keys.toString(QKeySequence::NativeText);
   action->setToolTip(shown.isEmpty() ? tip : QString("%1 (%2)").arg(tip, shown));
-  action->setStatusTip(tip);
   return action;
 }
 

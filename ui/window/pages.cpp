@@ -1,9 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/pages.h"
 
+#include "core/pipeline/result_files.h"
+#include "ui/detection/detection_screen.h"
+#include "ui/plots/convergence_screen.h"
+#include "ui/plots/residuals_screen.h"
+#include "ui/plots/signals_screen.h"
+#include "ui/scene/trajectory_screen.h"
+#include "ui/screens/recording_screen.h"
+#include "ui/screens/result_screen.h"
 #include "ui/screens/start_screen.h"
+#include "ui/window/linked_pages.h"
 #include "ui/window/session_files.h"
 #include "ui/window/workbench.h"
+
+#include <QFileInfo>
 
 namespace evical::ui {
 namespace {
@@ -20,15 +31,76 @@ void wireStart(StartScreen& start, Workbench& workbench, SessionFiles& files) {
                    [&start](const JobProgress& progress) { start.setDemoProgress(progress.fraction); });
 }
 
+void wireRecording(RecordingScreen& screen, Workbench& workbench, SessionFiles& files) {
+  CalibrationDocument& document = workbench.document;
+  QObject::connect(&screen, &RecordingScreen::openRecordingRequested, &files, &SessionFiles::chooseRecording);
+  QObject::connect(&screen, &RecordingScreen::sessionEdited, &document, &CalibrationDocument::edit);
+  QObject::connect(&document, &CalibrationDocument::sessionChanged, &screen, [&screen, &document] {
+    screen.setSession(document.session());
+    std::vector<std::pair<QString, QString>> problems;
+    for (const SessionProblem& problem : sessionProblems(document.session()))
+      problems.emplace_back(problem.field, problem.text);
+    screen.setProblems(problems);
+  });
+  const InspectionJob& inspection = workbench.inspection;
+  QObject::connect(&inspection, &InspectionJob::started, &screen, &RecordingScreen::setInspecting);
+  QObject::connect(&inspection, &InspectionJob::progressed, &screen, &RecordingScreen::setInspectionProgress);
+  QObject::connect(
+      &inspection, &InspectionJob::inspected, &screen,
+      [&screen](const QString&, std::shared_ptr<const Inspection> found) { screen.setInspection(found); });
+  QObject::connect(
+      &inspection, &InspectionJob::failed, &screen,
+      [&screen](const QString&, const JobError& error) { screen.setInspectionFailed(error.text()); });
+}
+
+std::optional<NamedResult> namedRun(const RunRecord& record, const QString& version) {
+  if (!record.run) return std::nullopt;
+  return namedResult(record.session, record.run->result, version.toStdString());
+}
+
+void wireResult(ResultScreen& screen, Workbench& workbench, SessionFiles& files) {
+  CalibrationDocument& document = workbench.document;
+  QObject::connect(&screen, &ResultScreen::exportRequested, &files, &SessionFiles::chooseExportFolder);
+  QObject::connect(&screen, &ResultScreen::referenceRequested, &files, &SessionFiles::chooseReference);
+  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen, [&screen, &workbench] {
+    screen.setPrevious(namedRun(workbench.document.previous(), workbench.version));
+    screen.setResult(namedRun(workbench.document.last(), workbench.version));
+    screen.setOutdated(workbench.document.runIsOutdated());
+  });
+  QObject::connect(&document, &CalibrationDocument::sessionChanged, &screen,
+                   [&screen, &document] { screen.setOutdated(document.runIsOutdated()); });
+  QObject::connect(&document, &CalibrationDocument::referenceChanged, &screen, [&screen, &document] {
+    if (!document.reference()) return screen.setReference(std::nullopt, {});
+    screen.setReference(document.reference()->named, QFileInfo(document.reference()->file).fileName());
+  });
+}
+
 }  // namespace
 
 std::vector<PageEntry> buildPages(Pages& pages, QWidget* parent) {
   pages.start = new StartScreen(parent);
-  return {{"start", QObject::tr("Start"), "home", pages.start}};
+  pages.recording = new RecordingScreen(parent);
+  pages.detection = new DetectionScreen(parent);
+  pages.trajectory = new TrajectoryScreen(parent);
+  pages.convergence = new ConvergenceScreen(parent);
+  pages.signal_curves = new SignalsScreen(parent);
+  pages.residuals = new ResidualsScreen(parent);
+  pages.result = new ResultScreen(parent);
+  return {{"start", QObject::tr("Start"), "home", pages.start},
+          {"recording", QObject::tr("Recording"), "recording", pages.recording},
+          {"detection", QObject::tr("Detection"), "detection", pages.detection},
+          {"trajectory", QObject::tr("Trajectory"), "trajectory", pages.trajectory},
+          {"convergence", QObject::tr("Convergence"), "convergence", pages.convergence},
+          {"signals", QObject::tr("Signals"), "signals", pages.signal_curves},
+          {"residuals", QObject::tr("Residuals"), "residuals", pages.residuals},
+          {"result", QObject::tr("Result"), "result", pages.result}};
 }
 
 void wirePages(const Pages& pages, Workbench& workbench, SessionFiles& files) {
   wireStart(*pages.start, workbench, files);
+  wireRecording(*pages.recording, workbench, files);
+  wireResult(*pages.result, workbench, files);
+  wireLinkedPages(pages, workbench);
 }
 
 }  // namespace evical::ui

@@ -11,11 +11,25 @@
 namespace evical::ui {
 
 struct Workbench;
+class ConvergenceScreen;
+class DetectionScreen;
+class RecordingScreen;
+class ResidualsScreen;
+class ResultScreen;
 class SessionFiles;
+class SignalsScreen;
 class StartScreen;
+class TrajectoryScreen;
 
 struct Pages {
   StartScreen* start = nullptr;
+  RecordingScreen* recording = nullptr;
+  DetectionScreen* detection = nullptr;
+  TrajectoryScreen* trajectory = nullptr;
+  ConvergenceScreen* convergence = nullptr;
+  SignalsScreen* signal_curves = nullptr;
+  ResidualsScreen* residuals = nullptr;
+  ResultScreen* result = nullptr;
 };
 
 // A page as the navigation lists it.

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/recording_screen.h"
+
+#include "core/data/intrinsics_yaml.h"
+#include "tests/ui/simulated_session.h"
+#include "ui/document/session_guess.h"
+#include "ui/forms/number_field.h"
+#include "ui/screens/board_form.h"
+#include "ui/screens/camera_form.h"
+#include "ui/screens/imu_form.h"
+#include "ui/screens/stream_table.h"
+#include "ui/theme/theme.h"
+
+#include <QComboBox>
+#include <QLabel>
+#include <QSignalSpy>
+#include <QSpinBox>
+#include <QTemporaryDir>
+#include <QtTest>
+
+using namespace evical;
+using namespace evical::ui;
+
+namespace {
+
+// The screen over a session, as the window wires it.
+struct Fixture {
+  Session session;
+  std::shared_ptr<const Inspection> inspection;
+  RecordingScreen screen;
+  QStringList edits;
+
+  Fixture() {
+    session = readSession(test::simulatedSession().toStdString());
+    const auto reader = openRecording(session.recording);
+    inspection = std::make_shared<Inspection>(inspectRecording(*reader));
+    QObject::connect(&screen, &RecordingScreen::sessionEdited, &screen,
+                     [this](const Session& changed, const QString& what) {
+                       edits << what;
+                       session = changed;
+                       screen.setSession(session);
+                     });
+    screen.setSession(session);
+    screen.setInspection(inspection);
+    screen.resize(1040, 680);
+    screen.show();
+  }
+  StreamTable* streams() { return screen.findChild<StreamTable*>(); }
+  void choose(int row, StreamRole role) {
+    auto* const box = qobject_cast<QComboBox*>(streams()->cellWidget(row, 0));
+    box->setCurrentIndex(box->findData(static_cast<int>(role)));
+    emit box->activated(box->currentIndex());
+  }
+  static void type(QLineEdit* field, const QString& text) {
+    field->selectAll();
+    QTest::keyClicks(field, text);
+    QTest::keyClick(field, Qt::Key_Return);
+  }
+  QString problems() {
+    QStringList shown;
+    for (const QLabel* const label : screen.findChildren<QLabel*>()) {
+      if (label->property("role") == "problem" && !label->isHidden()) shown << label->text();
+    }
+    return shown.join('\n');
+  }
+};
+
+}  // namespace
+
+class TestRecordingScreen : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void initTestCase() { applyTheme(*qApp, Appearance::Light); }
+
+  void streams_areListedWithRatesAndRoles() {
+    Fixture test;
+    QCOMPARE(test.streams()->rowCount(), 2);
+    QStringList all;
+    for (int row = 0; row < 2; ++row)
+      for (int column = 1; column < test.streams()->columnCount(); ++column)
+        all << test.streams()->item(row, column)->text();
+    QVERIFY(all.contains("/davis_left/events"));
+    QVERIFY(all.contains("events, 346 x 260 px"));
+    QVERIFY(all.contains("1000.0 Hz"));
+    QCOMPARE(test.streams()->role(all.indexOf("/davis_left/events") == 0 ? 0 : 1), StreamRole::Camera);
+  }
+
+  void role_ignored_takesTheSensorOut_andBack() {
+    Fixture test;
+    const int imu_row = test.streams()->role(0) == StreamRole::Imu ? 0 : 1;
+    test.choose(imu_row, StreamRole::Ignore);
+    QVERIFY(test.session.imus.empty());
+    test.choose(imu_row, StreamRole::Imu);
+    QCOMPARE(test.session.imus.size(), std::size_t{1});
+    QCOMPARE(test.session.reference, test.session.imus[0].name);
+    QCOMPARE(test.edits.size(), 2);
+  }
+
+  void board_isEdited() {
+    Fixture test;
+    auto* const form = test.screen.findChild<BoardForm*>();
+    form->findChildren<QSpinBox*>().at(0)->setValue(9);
+    QCOMPARE(test.session.board.rows, 9);
+    Fixture::type(form->findChildren<NumberField*>().at(0), "35.5");
+    QCOMPARE(test.session.board.spacing_m, 0.0355);
+    QCOMPARE(test.edits.size(), 2);
+  }
+
+  void noisePreset_setsBothDensities() {
+    Fixture test;
+    auto* const presets = test.screen.findChild<ImuForm*>()->findChildren<QComboBox*>().at(0);
+    presets->setCurrentText("Bosch BMI160");
+    emit presets->activated(presets->currentIndex());
+    QVERIFY(qAbs(test.session.imus[0].noise.gyroscope_density - 1.2217e-4) < 1e-8);
+    QVERIFY(qAbs(test.session.imus[0].noise.accelerometer_density - 1.7652e-3) < 1e-7);
+  }
+
+  void numberThatIsNone_isMarked_andChangesNothing() {
+    Fixture test;
+    auto* const density = test.screen.findChild<ImuForm*>()->findChildren<NumberField*>().at(0);
+    Fixture::type(density, "much");
+    QVERIFY(density->isWrong());
+    QVERIFY(test.edits.isEmpty());
+    Fixture::type(density, "2e-4");
+    QVERIFY(!density->isWrong());
+    QCOMPARE(test.session.imus[0].noise.gyroscope_density, 2e-4);
+  }
+
+  void intrinsics_areReadFromAFile() {
+    Fixture test;
+    QTemporaryDir folder;
+    QFile file(folder.filePath("camera.yaml"));
+    QVERIFY(file.open(QIODevice::WriteOnly));
+    CameraIntrinsics other = *test.session.cameras[0].intrinsics;
+    other.focal_length_px = {300.0, 301.0};
+    file.write(intrinsicsYaml(other, 0).c_str());
+    file.close();
+    auto* const form = test.screen.findChild<CameraForm*>();
+    form->loadIntrinsics(file.fileName());
+    QCOMPARE(test.session.cameras[0].intrinsics->focal_length_px.x(), 300.0);
+    form->loadIntrinsics(test::simulatedSession());
+    QVERIFY(!test.problems().isEmpty());
+    QCOMPARE(test.session.cameras[0].intrinsics->focal_length_px.x(), 300.0);
+  }
+
+  void rename_keepsTheReference() {
+    Fixture test;
+    auto* const name = test.screen.findChild<ImuForm*>()->findChildren<QLineEdit*>().at(0);
+    Fixture::type(name, "handheld");
+    QCOMPARE(test.session.imus[0].name, std::string("handheld"));
+    QCOMPARE(test.session.reference, std::string("handheld"));
+  }
+
+  void problems_areSaidAtTheirFields() {
+    Fixture test;
+    test.screen.setProblems({{"cameras.left.intrinsics", "no intrinsics"}, {"board", "circles touch"}});
+    const auto ofBoard = test.screen.findChild<BoardForm*>()->findChildren<QLabel*>();
+    QVERIFY(std::any_of(ofBoard.begin(), ofBoard.end(),
+                        [](const QLabel* label) { return label->text() == "circles touch"; }));
+    QVERIFY(test.problems().contains("no intrinsics"));
+    test.screen.setProblems({});
+    QVERIFY(test.problems().trimmed().isEmpty());
+  }
+
+  void guessedSession_takesTheStreamsAsTheyAre() {
+    Fixture test;
+    const Session guessed = guessedSession("some.bag", *test.inspection);
+    QCOMPARE(guessed.cameras.at(0).stream, std::string("/davis_left/events"));
+    QCOMPARE(guessed.cameras.at(0).name, std::string("davis_left"));
+    QCOMPARE(guessed.cameras.at(0).resolution_px, (Resolution{346, 260}));
+    QCOMPARE(guessed.imus.at(0).name, std::string("davis_left_imu"));
+    QCOMPARE(guessed.reference, std::string("davis_left_imu"));
+    QVERIFY(!guessed.cameras.at(0).intrinsics);
+  }
+};
+
+QTEST_MAIN(TestRecordingScreen)
+#include "tst_recording_screen.moc"

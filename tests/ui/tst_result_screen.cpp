@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/result_screen.h"
+
+#include "core/base/error.h"
+#include "core/pipeline/result_files.h"
+#include "tests/ui/simulated_session.h"
+#include "ui/screens/correlation_view.h"
+#include "ui/screens/observability_view.h"
+#include "ui/screens/result_parameters.h"
+#include "ui/theme/theme.h"
+
+#include <QComboBox>
+#include <QLabel>
+#include <QTreeWidget>
+#include <QtTest>
+
+using namespace evical;
+using namespace evical::ui;
+
+namespace {
+
+const ParameterRow* find(const std::vector<ParameterGroup>& groups, const QString& key) {
+  for (const ParameterGroup& group : groups)
+    for (const ParameterRow& row : group.rows)
+      if (row.key == key) return &row;
+  return nullptr;
+}
+
+QString allText(const QWidget& widget) {
+  QString all;
+  for (const QLabel* const label : widget.findChildren<QLabel*>())
+    if (!label->isHidden()) all += label->text() + "\n";
+  return all;
+}
+
+}  // namespace
+
+class TestResultScreen : public QObject {
+  Q_OBJECT
+
+  NamedResult result_, truth_;
+
+ private slots:
+  void initTestCase() {
+    applyTheme(*qApp, Appearance::Light);
+    const Session session = readSession(test::simulatedSession().toStdString());
+    result_ = namedResult(session, calibrate(session, RunContext{}).result, "test");
+    truth_ = readResultYaml(session.source.parent_path() / "truth.yaml");
+  }
+
+  void parameters_haveUnitsThatPeopleUse() {
+    const std::vector<ParameterGroup> groups = parameterGroups(result_);
+    QCOMPARE(groups.size(), std::size_t{3});
+    const ParameterRow* const offset = find(groups, "left.time_offset");
+    QVERIFY(offset);
+    QCOMPARE(offset->unit, QString("ms"));
+    QCOMPARE(offset->value, 1e3 * result_.result.state.cameras[0].time_offset_s);
+    QCOMPARE(find(groups, "left.translation.x")->value,
+             1e3 * result_.result.state.cameras[0].imu_from_camera.translation_m.x());
+    QVERIFY(!find(groups, "left.translation.x")->difference);
+  }
+
+  void texts_haveTwoDigitsOfTheSigma() {
+    ParameterRow row{"a", "A", "mm", 12.34567, 0.0234, {}};
+    QCOMPARE(row.valueText(), QString("12.346"));
+    QCOMPARE(row.sigmaText(), QString("0.023"));
+    QVERIFY(row.differenceText().isEmpty());
+    row.difference = 0.0702;
+    QCOMPARE(row.differenceText(), QString("+0.070"));
+    QCOMPARE(row.sigmasText(), QString("3.0"));
+  }
+
+  void comparisonWithTheTruth_isSmall() {
+    std::vector<ParameterGroup> groups = parameterGroups(result_);
+    compare(groups, result_, truth_);
+    for (const char* const key : {"left.rotation.x", "left.rotation.y", "left.rotation.z"})
+      QVERIFY(std::abs(find(groups, key)->difference.value()) < 0.3);  // deg, from 4 s
+    QVERIFY(std::abs(find(groups, "left.time_offset")->difference.value()) < 0.5);
+    QVERIFY(find(groups, "gravity")->difference.has_value());
+  }
+
+  void comparisonWithItself_isZero_andWithOtherSensorsRefused() {
+    std::vector<ParameterGroup> groups = parameterGroups(result_);
+    compare(groups, result_, result_);
+    QVERIFY(std::abs(find(groups, "left.rotation.x")->difference.value()) < 1e-9);
+    NamedResult other = result_;
+    other.names.cameras = {"right"};
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, compare(groups, result_, other));
+  }
+
+  void screen_isEmptyFirst_thenShowsTheVerdict() {
+    ResultScreen screen;
+    screen.resize(1040, 660);
+    screen.show();
+    QVERIFY(allText(screen).contains("No calibration yet"));
+    screen.setResult(result_);
+    QVERIFY(allText(screen).contains("Calibrated"));
+    QVERIFY(allText(screen).contains("px RMS"));
+    screen.setOutdated(true);
+    QVERIFY(allText(screen).contains("has changed"));
+  }
+
+  void reference_addsItsColumns_andOtherSensorsAreExplained() {
+    ResultScreen screen;
+    screen.setResult(result_);
+    auto* const table = screen.findChild<QTreeWidget*>();
+    QVERIFY(table->isColumnHidden(4));
+    screen.setReference(truth_, "truth.yaml");
+    QCOMPARE(screen.findChild<QComboBox*>()->currentText(), QString("truth.yaml"));
+    QVERIFY(!table->isColumnHidden(4));
+    NamedResult other = truth_;
+    other.names.cameras = {"right"};
+    screen.setReference(other, "other.yaml");
+    QVERIFY(table->isColumnHidden(4));
+    QVERIFY(allText(screen).contains("cannot be compared"));
+  }
+
+  void correlation_namesItsStrongestPair() {
+    CorrelationView view;
+    view.resize(500, 500);
+    Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(3, 3);
+    correlation(0, 2) = correlation(2, 0) = -0.9;
+    correlation(0, 1) = correlation(1, 0) = 0.2;
+    view.setCorrelation({"a [m]", "b [m]", "c [m]"}, correlation);
+    QCOMPARE(view.strongestPairs(1), QStringList{"a and c: -0.90"});
+    const QImage picture = view.grab().toImage();
+    // Bottom left cell: a with c, blue; the diagonal red.
+    const QPoint blue(220, 270), red(220, 60);
+    QVERIFY(picture.pixelColor(blue).blue() > picture.pixelColor(blue).red() + 60);
+    QVERIFY(picture.pixelColor(red).red() > picture.pixelColor(red).blue() + 60);
+    QCOMPARE(view.textAt(blue), QString("c and a: -0.900"));
+    QVERIFY(view.textAt(QPoint(2, 2)).isEmpty());
+  }
+
+  void observability_isSaidInWords() {
+    ObservabilityView view;
+    QVERIFY(view.text().contains("No calibration"));
+    view.setObservability({0.25, 4.0, 100.0}, "translation along the camera's z axis");
+    QVERIFY(view.text().contains("camera's z axis"));
+    QVERIFY(view.text().contains("0.5 times"));
+    QVERIFY(view.text().contains("1 of 3"));
+    view.setObservability({4.0}, "rotation");
+    QVERIFY(view.text().contains("well enough"));
+  }
+};
+
+QTEST_MAIN(TestResultScreen)
+#include "tst_result_screen.moc"

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The board as it is described, to scale, with its measures: what is typed can be held against the print.
+#pragma once
+
+#include "core/geometry/circle_board.h"
+
+#include <QWidget>
+
+namespace evical::ui {
+
+class BoardDrawing : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit BoardDrawing(QWidget* parent = nullptr);
+
+  void setBoard(const CircleBoard& board);
+  QSize minimumSizeHint() const override { return {180, 160}; }
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  void paintCircles(QPainter& painter, double px_per_m, QPointF origin) const;
+  void paintMeasures(QPainter& painter, double px_per_m, QPointF origin) const;
+
+  CircleBoard board_;
+};
+
+}  // namespace evical::ui

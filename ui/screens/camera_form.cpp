@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/camera_form.h"
+
+#include "core/base/error.h"
+#include "core/data/intrinsics_yaml.h"
+#include "ui/forms/number_field.h"
+#include "ui/theme/theme.h"
+
+#include <QComboBox>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QFormLayout>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QLineEdit>
+#include <QPushButton>
+
+namespace evical::ui {
+namespace {
+
+constexpr double kMostPixels = 30'000.0, kMostDistortion = 100.0;
+
+QLabel* problemLabel(QWidget* parent) {
+  auto* const label = new QLabel(parent);
+  label->setProperty("role", "problem");
+  label->setWordWrap(true);
+  label->hide();
+  return label;
+}
+
+void showText(QLabel* label, const QString& text) {
+  label->setText(text);
+  label->setVisible(!text.isEmpty());
+}
+
+}  // namespace
+
+CameraForm::CameraForm(QWidget* parent)
+    : QWidget(parent),
+      name_(new QLineEdit(this)),
+      width_px_(new NumberField(0.0, kMostPixels, this)),
+      height_px_(new NumberField(0.0, kMostPixels, this)),
+      model_(new QComboBox(this)),
+      focal_x_px_(new NumberField(0.0, 10 * kMostPixels, this)),
+      focal_y_px_(new NumberField(0.0, 10 * kMostPixels, this)),
+      centre_x_px_(new NumberField(-kMostPixels, kMostPixels, this)),
+      centre_y_px_(new NumberField(-kMostPixels, kMostPixels, this)),
+      file_problem_(problemLabel(this)),
+      problem_(problemLabel(this)) {
+  model_->addItems({tr("Pinhole, radial-tangential"), tr("Pinhole, equidistant")});
+  auto* const file = new QPushButton(icon("open"), tr("Intrinsics from a file..."), this);
+  file->setToolTip(tr("Evical's own map or result, a Kalibr camchain, or a ROS camera_info"));
+  connect(file, &QPushButton::clicked, this, &CameraForm::chooseFile);
+  auto* const coefficients = new QWidget(this);
+  auto* const row = new QHBoxLayout(coefficients);
+  row->setContentsMargins(0, 0, 0, 0);
+  row->setSpacing(4);
+  for (NumberField*& field : distortion_) {
+    field = new NumberField(-kMostDistortion, kMostDistortion, this);
+    field->setMinimumWidth(44);
+    row->addWidget(field);
+  }
+  auto* const form = new QFormLayout(this);
+  form->setContentsMargins(8, 8, 8, 8);
+  form->addRow(tr("Name"), name_);
+  form->addRow(tr("Resolution [px]"), pairOf(width_px_, height_px_));
+  form->addRow(file);
+  form->addRow(file_problem_);
+  form->addRow(problem_);
+  form->addRow(tr("Model"), model_);
+  form->addRow(tr("Focal length [px]"), pairOf(focal_x_px_, focal_y_px_));
+  form->addRow(tr("Principal point [px]"), pairOf(centre_x_px_, centre_y_px_));
+  form->addRow(tr("Distortion"), coefficients);
+
+  connect(name_, &QLineEdit::editingFinished, this, [this] { say("name"); });
+  connect(model_, &QComboBox::activated, this, [this] { say("intrinsics"); });
+  for (NumberField* const field : {width_px_, height_px_})
+    connect(field, &NumberField::valueEdited, this, [this] { say("resolution_px"); });
+  for (NumberField* const field : findChildren<NumberField*>()) {
+    if (field == width_px_ || field == height_px_) continue;
+    connect(field, &NumberField::valueEdited, this, [this] { say("intrinsics"); });
+  }
+}
+
+QWidget* CameraForm::pairOf(NumberField* first, NumberField* second) {
+  auto* const pair = new QWidget(this);
+  auto* const layout = new QHBoxLayout(pair);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(6);
+  layout->addWidget(first);
+  layout->addWidget(second);
+  return pair;
+}
+
+void CameraForm::setCamera(const SessionCamera& camera) {
+  camera_ = camera;
+  name_->setText(QString::fromStdString(camera.name));
+  width_px_->setValue(camera.resolution_px.width_px);
+  height_px_->setValue(camera.resolution_px.height_px);
+  const CameraIntrinsics shown = camera.intrinsics.value_or(CameraIntrinsics{});
+  model_->setCurrentIndex(static_cast<int>(shown.model));
+  focal_x_px_->setValue(shown.focal_length_px.x());
+  focal_y_px_->setValue(shown.focal_length_px.y());
+  centre_x_px_->setValue(shown.principal_point_px.x());
+  centre_y_px_->setValue(shown.principal_point_px.y());
+  const bool equidistant = shown.model == CameraModel::PinholeEquidistant;
+  const char* const radtan_names[] = {"k1", "k2", "p1", "p2", "k3"};
+  const char* const equidistant_names[] = {"k1", "k2", "k3", "k4", ""};
+  for (std::size_t i = 0; i < distortion_.size(); ++i) {
+    distortion_[i]->setValue(shown.distortion[i]);
+    distortion_[i]->setToolTip(equidistant ? equidistant_names[i] : radtan_names[i]);
+  }
+  distortion_.back()->setVisible(!equidistant);
+}
+
+CameraIntrinsics CameraForm::typedIntrinsics() const {
+  CameraIntrinsics typed;
+  typed.model = static_cast<CameraModel>(model_->currentIndex());
+  typed.resolution_px = camera_.resolution_px;
+  typed.focal_length_px = {focal_x_px_->value(), focal_y_px_->value()};
+  typed.principal_point_px = {centre_x_px_->value(), centre_y_px_->value()};
+  for (std::size_t i = 0; i < distortion_.size(); ++i) typed.distortion[i] = distortion_[i]->value();
+  if (typed.model == CameraModel::PinholeEquidistant) typed.distortion.back() = 0.0;
+  return typed;
+}
+
+void CameraForm::say(const QString& field) {
+  SessionCamera changed = camera_;
+  changed.name = name_->text().trimmed().toStdString();
+  changed.resolution_px = {static_cast<int>(width_px_->value()), static_cast<int>(height_px_->value())};
+  if (field == "resolution_px" && changed.intrinsics)
+    changed.intrinsics->resolution_px = changed.resolution_px;
+  if (field == "intrinsics") changed.intrinsics = typedIntrinsics();
+  const bool same = changed.name == camera_.name && changed.resolution_px == camera_.resolution_px &&
+                    changed.intrinsics == camera_.intrinsics;
+  if (same || changed.name.empty()) return setCamera(camera_);
+  emit edited(changed, field);
+}
+
+void CameraForm::chooseFile() {
+  const QString file = QFileDialog::getOpenFileName(this, tr("Intrinsics of %1").arg(name_->text()), {},
+                                                    tr("YAML (*.yaml *.yml);;All files (*)"));
+  if (!file.isEmpty()) loadIntrinsics(file);
+}
+
+void CameraForm::loadIntrinsics(const QString& file) {
+  SessionCamera changed = camera_;
+  try {
+    changed.intrinsics = readIntrinsicsFile(file.toStdString(), camera_.name, camera_.stream);
+  } catch (const CalibrationError& error) {
+    showText(file_problem_, QFileInfo(file).fileName() + ": " + QString::fromStdString(error.problem()) +
+                                ". " + QString::fromStdString(error.advice()));
+    return;
+  }
+  Resolution& own = changed.intrinsics->resolution_px;
+  if (!own.known()) own = changed.resolution_px;
+  if (changed.resolution_px.known() && own != changed.resolution_px) {
+    showText(file_problem_, tr("%1 is for %2 x %3 px, the camera has %4 x %5")
+                                .arg(QFileInfo(file).fileName())
+                                .arg(own.width_px)
+                                .arg(own.height_px)
+                                .arg(changed.resolution_px.width_px)
+                                .arg(changed.resolution_px.height_px));
+    return;
+  }
+  changed.resolution_px = own;
+  showText(file_problem_, {});
+  emit edited(changed, "intrinsics_file");
+}
+
+void CameraForm::setProblem(const QString& text) {
+  showText(problem_, text);
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One camera of the session: name, resolution, intrinsics from a file or as numbers.
+#pragma once
+
+#include "core/pipeline/session.h"
+
+#include <QWidget>
+
+#include <array>
+
+class QComboBox;
+class QLabel;
+class QLineEdit;
+
+namespace evical::ui {
+
+class NumberField;
+
+class CameraForm : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit CameraForm(QWidget* parent = nullptr);
+
+  void setCamera(const SessionCamera& camera);
+  void setProblem(const QString& text);
+  // Shows what is wrong with the file next to the button, and leaves the camera as it is.
+  void loadIntrinsics(const QString& file);
+
+ signals:
+  void edited(const evical::SessionCamera& camera, const QString& field);
+
+ private:
+  void chooseFile();
+  void say(const QString& field);
+  CameraIntrinsics typedIntrinsics() const;
+  QWidget* pairOf(NumberField* first, NumberField* second);
+
+  SessionCamera camera_;
+  QLineEdit* name_;
+  NumberField *width_px_, *height_px_;
+  QComboBox* model_;
+  NumberField *focal_x_px_, *focal_y_px_, *centre_x_px_, *centre_y_px_;
+  std::array<NumberField*, 5> distortion_;
+  QLabel *file_problem_, *problem_;
+};
+
+}  // namespace evical::ui

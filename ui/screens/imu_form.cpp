@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/imu_form.h"
+
+#include "ui/forms/number_field.h"
+
+#include <QComboBox>
+#include <QFormLayout>
+#include <QLabel>
+#include <QLineEdit>
+
+#include <numbers>
+
+namespace evical::ui {
+namespace {
+
+struct NoisePreset {
+  const char* name;
+  ImuNoise noise;
+};
+
+constexpr double perDeg(double deg_s) {
+  return deg_s * std::numbers::pi / 180.0;
+}
+constexpr double microG(double micro_g) {
+  return micro_g * 1e-6 * 9.80665;
+}
+
+// Data sheets' typical densities at rest.
+const NoisePreset kPresets[] = {
+    {"DAVIS346 (default)", ImuNoise{}},
+    {"Bosch BMI088", {perDeg(0.014), microG(175)}},
+    {"Bosch BMI160", {perDeg(0.007), microG(180)}},
+    {"InvenSense MPU-6500", {perDeg(0.010), microG(300)}},
+    {"TDK ICM-20948", {perDeg(0.015), microG(230)}},
+};
+
+QLabel* explanation(QWidget* parent) {
+  auto* const label = new QLabel(
+      QObject::tr(
+          "How noisy the IMU is: a sample's standard deviation is the density times the square root of "
+          "the rate. Data sheets give it at rest, vibration adds to it. The calibration finds out how "
+          "large the residuals really are, weighs by that, and notes it when they are off."),
+      parent);
+  label->setProperty("role", "hint");
+  label->setWordWrap(true);
+  return label;
+}
+
+}  // namespace
+
+ImuForm::ImuForm(QWidget* parent)
+    : QWidget(parent),
+      name_(new QLineEdit(this)),
+      preset_(new QComboBox(this)),
+      gyroscope_(new NumberField(1e-8, 10.0, this)),
+      accelerometer_(new NumberField(1e-7, 10.0, this)),
+      angular_rate_unit_(new QComboBox(this)),
+      acceleration_unit_(new QComboBox(this)) {
+  for (const NoisePreset& preset : kPresets) preset_->addItem(preset.name);
+  preset_->addItem(tr("Own numbers"));
+  angular_rate_unit_->addItems({"rad/s", "deg/s"});
+  acceleration_unit_->addItems({QString("m/s") + QChar(0xb2), "g", "-g"});
+  acceleration_unit_->setToolTip(
+      tr("What the recording's numbers are in; -g for drivers that report gravity"));
+  auto* const form = new QFormLayout(this);
+  form->setContentsMargins(8, 8, 8, 8);
+  form->addRow(tr("Name"), name_);
+  form->addRow(tr("Noise preset"), preset_);
+  form->addRow(QString("Gyroscope [rad/s/%1Hz]").arg(QChar(0x221a)), gyroscope_);
+  form->addRow(QString("Accelerometer [m/s%1/%2Hz]").arg(QChar(0xb2)).arg(QChar(0x221a)), accelerometer_);
+  form->addRow(explanation(this));
+  form->addRow(tr("Angular rates in"), angular_rate_unit_);
+  form->addRow(tr("Accelerations in"), acceleration_unit_);
+
+  connect(name_, &QLineEdit::editingFinished, this, [this] { say("name"); });
+  connect(preset_, &QComboBox::activated, this, &ImuForm::usePreset);
+  connect(gyroscope_, &NumberField::valueEdited, this, [this] { say("gyroscope_noise_density"); });
+  connect(accelerometer_, &NumberField::valueEdited, this, [this] { say("accelerometer_noise_density"); });
+  connect(angular_rate_unit_, &QComboBox::activated, this, [this] { say("angular_rate_unit"); });
+  connect(acceleration_unit_, &QComboBox::activated, this, [this] { say("acceleration_unit"); });
+}
+
+void ImuForm::setImu(const SessionImu& imu) {
+  imu_ = imu;
+  name_->setText(QString::fromStdString(imu.name));
+  gyroscope_->setValue(imu.noise.gyroscope_density);
+  accelerometer_->setValue(imu.noise.accelerometer_density);
+  angular_rate_unit_->setCurrentIndex(static_cast<int>(imu.angular_rate_unit));
+  acceleration_unit_->setCurrentIndex(static_cast<int>(imu.acceleration_unit));
+  int match = static_cast<int>(std::size(kPresets));  // own numbers
+  for (std::size_t i = 0; i < std::size(kPresets); ++i) {
+    if (kPresets[i].noise.gyroscope_density == imu.noise.gyroscope_density &&
+        kPresets[i].noise.accelerometer_density == imu.noise.accelerometer_density)
+      match = static_cast<int>(i);
+  }
+  preset_->setCurrentIndex(match);
+}
+
+void ImuForm::usePreset(int index) {
+  if (index >= static_cast<int>(std::size(kPresets))) return;
+  SessionImu changed = imu_;
+  changed.noise = kPresets[index].noise;
+  emit edited(changed, "noise");
+}
+
+void ImuForm::say(const QString& field) {
+  SessionImu changed = imu_;
+  changed.name = name_->text().trimmed().toStdString();
+  changed.noise = {gyroscope_->value(), accelerometer_->value()};
+  changed.angular_rate_unit = static_cast<AngularRateUnit>(angular_rate_unit_->currentIndex());
+  changed.acceleration_unit = static_cast<AccelerationUnit>(acceleration_unit_->currentIndex());
+  const bool same = changed.name == imu_.name &&
+                    changed.noise.gyroscope_density == imu_.noise.gyroscope_density &&
+                    changed.noise.accelerometer_density == imu_.noise.accelerometer_density &&
+                    changed.angular_rate_unit == imu_.angular_rate_unit &&
+                    changed.acceleration_unit == imu_.acceleration_unit;
+  if (same || changed.name.empty()) return setImu(imu_);
+  emit edited(changed, field);
+}
+
+}  // namespace evical::ui

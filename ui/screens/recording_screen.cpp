@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/recording_screen.h"
+
+#include "ui/document/session_guess.h"
+#include "ui/screens/board_form.h"
+#include "ui/screens/camera_form.h"
+#include "ui/screens/imu_form.h"
+#include "ui/screens/stream_table.h"
+#include "ui/theme/theme.h"
+
+#include <QComboBox>
+#include <QFormLayout>
+#include <QFrame>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QStackedWidget>
+#include <QTabWidget>
+#include <QVBoxLayout>
+
+#include <algorithm>
+
+namespace evical::ui {
+namespace {
+
+QLabel* label(const QString& text, const char* role, QWidget* parent) {
+  auto* const made = new QLabel(text, parent);
+  made->setProperty("role", role);
+  made->setWordWrap(true);
+  return made;
+}
+
+QFrame* card(const QString& heading, QWidget* content, QWidget* parent) {
+  auto* const frame = new QFrame(parent);
+  frame->setProperty("card", "true");
+  auto* const layout = new QVBoxLayout(frame);
+  layout->setContentsMargins(14, 10, 14, 12);
+  layout->addWidget(label(heading, "heading", frame));
+  layout->addWidget(content, 1);
+  return frame;
+}
+
+QScrollArea* scrolling(QWidget* content) {
+  auto* const area = new QScrollArea;
+  area->setWidget(content);
+  area->setWidgetResizable(true);
+  area->setFrameShape(QFrame::NoFrame);
+  area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  area->viewport()->setAutoFillBackground(false);
+  content->setAutoFillBackground(false);
+  return area;
+}
+
+void showText(QLabel* shown, const QString& text) {
+  shown->setText(text);
+  shown->setVisible(!text.isEmpty());
+}
+
+}  // namespace
+
+RecordingScreen::RecordingScreen(QWidget* parent)
+    : QWidget(parent),
+      stack_(new QStackedWidget(this)),
+      title_(label({}, "title", this)),
+      path_(label({}, "hint", this)),
+      verdict_(label({}, "heading", this)),
+      looking_text_(label({}, "hint", this)),
+      stream_problem_(label({}, "problem", this)),
+      file_faults_(label({}, "problem", this)),
+      looking_(new QProgressBar(this)),
+      streams_(new StreamTable(this)),
+      board_(new BoardForm(this)),
+      sensors_(new QTabWidget(this)),
+      reference_(new QComboBox(this)) {
+  stack_->addWidget(makeEmpty());
+  stack_->addWidget(makeContent());
+  auto* const layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(stack_);
+  connect(board_, &BoardForm::edited, this, [this](const CircleBoard& board, const QString& field) {
+    Session changed = session_;
+    changed.board = board;
+    emit sessionEdited(changed, tr("Change the board"), field);
+  });
+  connect(streams_, &StreamTable::roleChosen, this,
+          [this](int stream, StreamRole role) { chooseRole(stream, static_cast<int>(role)); });
+  connect(reference_, &QComboBox::textActivated, this, [this](const QString& name) {
+    Session changed = session_;
+    changed.reference = name.toStdString();
+    emit sessionEdited(changed, tr("Change the reference"), {});
+  });
+}
+
+QWidget* RecordingScreen::makeEmpty() {
+  auto* const empty = new QWidget(this);
+  auto* const layout = new QVBoxLayout(empty);
+  auto* const text = label(tr("No recording yet."), "heading", empty);
+  text->setAlignment(Qt::AlignCenter);
+  auto* const open = new QPushButton(icon("recording"), tr("Open a recording..."), empty);
+  connect(open, &QPushButton::clicked, this, &RecordingScreen::openRecordingRequested);
+  layout->addStretch();
+  layout->addWidget(text);
+  layout->addWidget(open, 0, Qt::AlignHCenter);
+  layout->addStretch();
+  return empty;
+}
+
+QWidget* RecordingScreen::makeHeader() {
+  auto* const header = new QWidget(this);
+  auto* const layout = new QVBoxLayout(header);
+  layout->setContentsMargins(4, 0, 4, 0);
+  layout->setSpacing(2);
+  auto* const line = new QHBoxLayout;
+  line->addWidget(title_, 1);
+  verdict_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
+  line->addWidget(verdict_, 1);
+  layout->addLayout(line);
+  layout->addWidget(path_);
+  return header;
+}
+
+QWidget* RecordingScreen::makeContent() {
+  auto* const content = new QWidget(this);
+  auto* const streams = new QWidget(content);
+  auto* const column = new QVBoxLayout(streams);
+  column->setContentsMargins(0, 0, 0, 0);
+  looking_->setRange(0, 1000);
+  looking_->setTextVisible(false);
+  for (QWidget* const widget :
+       std::initializer_list<QWidget*>{looking_text_, looking_, streams_, file_faults_, stream_problem_})
+    column->addWidget(widget);
+  auto* const layout = new QVBoxLayout(content);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(10);
+  layout->addWidget(makeHeader());
+  layout->addWidget(card(tr("Streams"), streams, content));
+  layout->addWidget(makeForms(), 1);
+  for (QLabel* const hidden : {file_faults_, stream_problem_, looking_text_}) hidden->hide();
+  looking_->hide();
+  return content;
+}
+
+QWidget* RecordingScreen::makeForms() {
+  auto* const forms = new QWidget(this);
+  auto* const sensors = new QWidget(forms);
+  auto* const column = new QVBoxLayout(sensors);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->addWidget(sensors_, 1);
+  auto* const form = new QFormLayout;
+  reference_->setToolTip(tr("The IMU in whose frame, and on whose clock, everything is expressed"));
+  form->addRow(tr("Reference"), reference_);
+  column->addLayout(form);
+  auto* const row = new QHBoxLayout(forms);
+  row->setContentsMargins(0, 0, 0, 0);
+  row->setSpacing(10);
+  row->addWidget(card(tr("Board"), board_, forms), 1);
+  row->addWidget(card(tr("Sensors"), sensors, forms), 1);
+  return forms;
+}
+
+void RecordingScreen::setSession(const Session& session) {
+  session_ = session;
+  stack_->setCurrentIndex(session.recording.empty() ? 0 : 1);
+  title_->setText(QString::fromStdString(session.recording.filename().string()));
+  path_->setText(QString::fromStdString(session.recording.parent_path().string()));
+  board_->setBoard(session.board);
+  streams_->setSession(session);
+  showSensors();
+}
+
+// Forms stay while the number of sensors does: an edit must not take the focus away.
+void RecordingScreen::showSensors() {
+  if (cameras_.size() != session_.cameras.size() || imus_.size() != session_.imus.size()) {
+    while (sensors_->count() > 0) delete sensors_->widget(0);
+    cameras_.clear();
+    imus_.clear();
+    for (std::size_t i = 0; i < session_.cameras.size(); ++i) {
+      cameras_.push_back(new CameraForm);
+      sensors_->addTab(scrolling(cameras_.back()), icon("camera"), {});
+      connect(cameras_.back(), &CameraForm::edited, this,
+              [this, i](const SessionCamera& camera, const QString& field) { editCamera(i, camera, field); });
+    }
+    for (std::size_t i = 0; i < session_.imus.size(); ++i) {
+      imus_.push_back(new ImuForm);
+      sensors_->addTab(scrolling(imus_.back()), icon("imu"), {});
+      connect(imus_.back(), &ImuForm::edited, this,
+              [this, i](const SessionImu& imu, const QString& field) { editImu(i, imu, field); });
+    }
+  }
+  int tab = 0;
+  for (std::size_t i = 0; i < cameras_.size(); ++i, ++tab) {
+    cameras_[i]->setCamera(session_.cameras[i]);
+    sensors_->setTabText(tab, QString::fromStdString(session_.cameras[i].name));
+  }
+  reference_->clear();
+  for (std::size_t i = 0; i < imus_.size(); ++i, ++tab) {
+    imus_[i]->setImu(session_.imus[i]);
+    sensors_->setTabText(tab, QString::fromStdString(session_.imus[i].name));
+    reference_->addItem(sensors_->tabText(tab));
+  }
+  reference_->setCurrentText(QString::fromStdString(session_.reference));
+}
+
+void RecordingScreen::setProblems(const std::vector<std::pair<QString, QString>>& field_and_text) {
+  QStringList at_streams;
+  QString at_board;
+  std::vector<QString> at_cameras(cameras_.size());
+  for (const auto& [field, text] : field_and_text) {
+    bool placed = false;
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+      if (!field.startsWith(QString::fromStdString("cameras." + session_.cameras[i].name + "."))) continue;
+      at_cameras[i] = text;
+      placed = true;
+    }
+    if (field == "board") at_board = text;
+    if (!placed && field != "board") at_streams << text;
+  }
+  for (std::size_t i = 0; i < cameras_.size(); ++i) cameras_[i]->setProblem(at_cameras[i]);
+  board_->setProblem(at_board);
+  showText(stream_problem_, at_streams.join('\n'));
+  verdict_->setText(field_and_text.empty()       ? tr("Ready to calibrate")
+                    : field_and_text.size() == 1 ? tr("One thing is missing")
+                                                 : tr("%1 things are missing").arg(field_and_text.size()));
+  verdict_->setStyleSheet(
+      QString("color: %1").arg((field_and_text.empty() ? theme().good : theme().bad).name()));
+}
+
+void RecordingScreen::setInspecting(const QString& recording) {
+  inspection_.reset();
+  streams_->setRowCount(0);
+  showText(file_faults_, {});
+  showText(looking_text_, tr("Looking through %1...").arg(recording));
+  looking_->setValue(0);
+  looking_->show();
+}
+
+void RecordingScreen::setInspectionProgress(double fraction) {
+  looking_->setValue(static_cast<int>(1000.0 * fraction));
+}
+
+void RecordingScreen::setInspection(std::shared_ptr<const Inspection> inspection) {
+  inspection_ = std::move(inspection);
+  looking_text_->hide();
+  looking_->hide();
+  streams_->setInspection(*inspection_);
+  streams_->setSession(session_);
+  showFileFaults();
+}
+
+// Faults that belong to no stream: truncated or corrupt files.
+void RecordingScreen::showFileFaults() {
+  QStringList faults;
+  for (const RecordingFault& fault : inspection_->faults)
+    if (fault.stream.empty()) faults << QString::fromStdString(fault.text);
+  showText(file_faults_, faults.join('\n'));
+}
+
+void RecordingScreen::setInspectionFailed(const QString& why) {
+  looking_->hide();
+  looking_text_->hide();
+  showText(file_faults_, why);
+}
+
+void RecordingScreen::chooseRole(int stream, int role) {
+  if (!inspection_ || stream >= static_cast<int>(inspection_->streams.size())) return;
+  const StreamSummary& summary = inspection_->streams[static_cast<std::size_t>(stream)];
+  Session changed = session_;
+  const auto isThis = [&](const auto& sensor) { return sensor.stream == summary.info.name; };
+  std::erase_if(changed.cameras, isThis);
+  std::erase_if(changed.imus, isThis);
+  if (static_cast<StreamRole>(role) == StreamRole::Camera)
+    changed.cameras.push_back(guessedCamera(summary, changed));
+  if (static_cast<StreamRole>(role) == StreamRole::Imu) changed.imus.push_back(guessedImu(summary, changed));
+  const bool reference_is_there =
+      std::any_of(changed.imus.begin(), changed.imus.end(),
+                  [&](const SessionImu& imu) { return imu.name == changed.reference; });
+  if (!reference_is_there && !changed.imus.empty()) changed.reference = changed.imus.front().name;
+  emit sessionEdited(changed, tr("Change the role of %1").arg(QString::fromStdString(summary.info.name)), {});
+}
+
+void RecordingScreen::renameReference(const std::string& from, const std::string& to,
+                                      Session& session) const {
+  if (session.reference == from) session.reference = to;
+}
+
+void RecordingScreen::editCamera(std::size_t index, const SessionCamera& camera, const QString& field) {
+  Session changed = session_;
+  renameReference(changed.cameras.at(index).name, camera.name, changed);
+  changed.cameras.at(index) = camera;
+  const QString name = QString::fromStdString(camera.name);
+  emit sessionEdited(changed, tr("Change %1").arg(name), "cameras." + name + "." + field);
+}
+
+void RecordingScreen::editImu(std::size_t index, const SessionImu& imu, const QString& field) {
+  Session changed = session_;
+  renameReference(changed.imus.at(index).name, imu.name, changed);
+  changed.imus.at(index) = imu;
+  const QString name = QString::fromStdString(imu.name);
+  emit sessionEdited(changed, tr("Change %1").arg(name), "imus." + name + "." + field);
+}
+
+}  // namespace evical::ui

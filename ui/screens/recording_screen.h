@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is in the recording, and what must be known of it: streams and their roles, the board, the sensors.
+#pragma once
+
+#include "core/pipeline/session.h"
+#include "core/recording/inspection.h"
+
+#include <QWidget>
+
+#include <memory>
+#include <vector>
+
+class QComboBox;
+class QLabel;
+class QProgressBar;
+class QStackedWidget;
+class QTabWidget;
+
+namespace evical::ui {
+
+class BoardForm;
+class CameraForm;
+class ImuForm;
+class StreamTable;
+
+class RecordingScreen : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit RecordingScreen(QWidget* parent = nullptr);
+
+  void setSession(const Session& session);
+  // By field: "cameras.left.intrinsics", "board", ...; each is said next to its field.
+  void setProblems(const std::vector<std::pair<QString, QString>>& field_and_text);
+
+  void setInspecting(const QString& recording);
+  void setInspectionProgress(double fraction);
+  void setInspection(std::shared_ptr<const Inspection> inspection);
+  void setInspectionFailed(const QString& why);
+
+ signals:
+  // `merge_key`: edits in a row with the same one are one step of undo.
+  void sessionEdited(const evical::Session& session, const QString& what, const QString& merge_key);
+  void openRecordingRequested();
+
+ private:
+  QWidget* makeHeader();
+  QWidget* makeForms();
+  QWidget* makeEmpty();
+  QWidget* makeContent();
+  void showSensors();
+  void chooseRole(int stream, int role);
+  void renameReference(const std::string& from, const std::string& to, Session& session) const;
+  void editCamera(std::size_t index, const SessionCamera& camera, const QString& field);
+  void editImu(std::size_t index, const SessionImu& imu, const QString& field);
+  void showFileFaults();
+
+  Session session_;
+  std::shared_ptr<const Inspection> inspection_;
+  QStackedWidget* stack_;
+  QLabel *title_, *path_, *verdict_, *looking_text_, *stream_problem_, *file_faults_;
+  QProgressBar* looking_;
+  StreamTable* streams_;
+  BoardForm* board_;
+  QTabWidget* sensors_;
+  QComboBox* reference_;
+  std::vector<CameraForm*> cameras_;
+  std::vector<ImuForm*> imus_;
+};
+
+}  // namespace evical::ui

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/result_screen.h"
+
+#include "core/base/error.h"
+#include "ui/screens/correlation_view.h"
+#include "ui/screens/observability_view.h"
+#include "ui/screens/result_parameters.h"
+#include "ui/theme/theme.h"
+
+#include <QComboBox>
+#include <QEvent>
+#include <QHBoxLayout>
+#include <QHeaderView>
+#include <QLabel>
+#include <QListWidget>
+#include <QPushButton>
+#include <QSplitter>
+#include <QStackedWidget>
+#include <QTabWidget>
+#include <QTreeWidget>
+#include <QVBoxLayout>
+
+namespace evical::ui {
+namespace {
+
+enum Column { kQuantity, kValue, kSigma, kUnit, kDifference, kSigmas, kColumns };
+
+QLabel* label(const char* role, QWidget* parent) {
+  auto* const made = new QLabel(parent);
+  made->setProperty("role", role);
+  made->setWordWrap(true);
+  made->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  return made;
+}
+
+QString verdictWords(CalibrationStatus status) {
+  switch (status) {
+    case CalibrationStatus::Ok:
+      return QObject::tr("Calibrated");
+    case CalibrationStatus::Doubtful:
+      return QObject::tr("Calibrated, but doubtful");
+    case CalibrationStatus::Failed:
+      return QObject::tr("Failed");
+  }
+  return {};
+}
+
+QString sentence(QString text) {
+  if (!text.isEmpty()) text[0] = text[0].toUpper();
+  return text.isEmpty() || text.endsWith('.') ? text : text + '.';
+}
+
+QString fitText(const NamedResult& named) {
+  QStringList parts;
+  for (std::size_t i = 0; i < named.result.cameras.size(); ++i) {
+    const CameraFit& fit = named.result.cameras[i];
+    parts << QObject::tr("%1: circles fit to %2 px RMS, board used in %3 of %4 windows")
+                 .arg(QString::fromStdString(named.names.cameras.at(i)))
+                 .arg(fit.reprojection_rms_px, 0, 'g', 3)
+                 .arg(fit.windows_used)
+                 .arg(fit.windows_total);
+  }
+  parts << QObject::tr("took %1 s").arg(named.result.timing.total_s, 0, 'f', 1);
+  return parts.join("; ") + ".";
+}
+
+// A tab's content: text above, a picture below.
+QWidget* explained(QLabel* text, QWidget* picture, QWidget* parent) {
+  auto* const page = new QWidget(parent);
+  auto* const layout = new QVBoxLayout(page);
+  layout->addWidget(text);
+  layout->addWidget(picture, 1);
+  return page;
+}
+
+}  // namespace
+
+ResultScreen::ResultScreen(QWidget* parent)
+    : QWidget(parent),
+      stack_(new QStackedWidget(this)),
+      icon_(new QLabel(this)),
+      verdict_(label("title", this)),
+      reason_(label("", this)),
+      fit_(label("hint", this)),
+      outdated_(label("problem", this)),
+      comparison_(label("hint", this)),
+      observed_(label("", this)),
+      pairs_(label("hint", this)),
+      against_(new QComboBox(this)),
+      parameters_(new QTreeWidget(this)),
+      observability_(new ObservabilityView(this)),
+      correlation_(new CorrelationView(this)),
+      notes_(new QListWidget(this)) {
+  stack_->addWidget(makeEmpty());
+  stack_->addWidget(makeContent());
+  auto* const layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(stack_);
+  connect(against_, &QComboBox::activated, this, &ResultScreen::showParameters);
+}
+
+QWidget* ResultScreen::makeEmpty() {
+  auto* const empty = new QWidget(this);
+  auto* const layout = new QVBoxLayout(empty);
+  auto* const text = label("heading", empty);
+  text->setText(tr("No calibration yet: press Calibrate."));
+  text->setAlignment(Qt::AlignCenter);
+  auto* const start = new QPushButton(icon("calibrate"), tr("Calibrate"), empty);
+  connect(start, &QPushButton::clicked, this, &ResultScreen::calibrateRequested);
+  layout->addStretch();
+  layout->addWidget(text);
+  layout->addWidget(start, 0, Qt::AlignHCenter);
+  layout->addStretch();
+  return empty;
+}
+
+QWidget* ResultScreen::makeHeader() {
+  auto* const header = new QWidget(this);
+  auto* const words = new QVBoxLayout;
+  words->setSpacing(2);
+  for (QLabel* const line : {verdict_, reason_, fit_, outdated_}) words->addWidget(line);
+  outdated_->setText(tr("The session has changed since: calibrate again to see what comes of it."));
+  auto* const save = new QPushButton(icon("export"), tr("Export..."), header);
+  save->setObjectName("export");
+  save->setToolTip(tr("Write result.yaml, trajectory, detections, windows and log to a folder (Ctrl+E)"));
+  connect(save, &QPushButton::clicked, this, &ResultScreen::exportRequested);
+  auto* const layout = new QHBoxLayout(header);
+  layout->setContentsMargins(4, 0, 4, 0);
+  layout->setSpacing(12);
+  layout->addWidget(icon_, 0, Qt::AlignTop);
+  layout->addLayout(words, 1);
+  layout->addWidget(save, 0, Qt::AlignTop);
+  return header;
+}
+
+QWidget* ResultScreen::makeSides() {
+  auto* const sides = new QTabWidget(this);
+  sides->setDocumentMode(true);
+  sides->tabBar()->setDrawBase(false);
+  sides->addTab(explained(observed_, observability_, sides), tr("Observability"));
+  sides->addTab(explained(pairs_, correlation_, sides), tr("Correlation"));
+  sides->addTab(notes_, tr("Notes"));
+  notes_->setWordWrap(true);
+  notes_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  return sides;
+}
+
+QWidget* ResultScreen::makeContent() {
+  auto* const content = new QWidget(this);
+  auto* const left = new QWidget(content);
+  auto* const bar = new QHBoxLayout;
+  auto* const load = new QPushButton(icon("open"), tr("Load..."), left);
+  load->setToolTip(tr("Compare with a result.yaml or truth.yaml"));
+  connect(load, &QPushButton::clicked, this, &ResultScreen::referenceRequested);
+  bar->addWidget(new QLabel(tr("Compare with"), left));
+  bar->addWidget(against_, 1);
+  bar->addWidget(load);
+  parameters_->setColumnCount(kColumns);
+  parameters_->setHeaderLabels({tr("Quantity"), tr("Value"), QString(QChar(0xb1)), tr("Unit"),
+                                tr("Difference"), tr("in %1").arg(QChar(0x3c3))});
+  parameters_->setSelectionMode(QAbstractItemView::ExtendedSelection);
+  parameters_->setUniformRowHeights(true);
+  parameters_->setIndentation(12);
+  parameters_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
+  parameters_->header()->setStretchLastSection(false);
+  parameters_->setAccessibleName(tr("Calibrated quantities"));
+  auto* const column = new QVBoxLayout(left);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->addLayout(bar);
+  column->addWidget(comparison_);
+  column->addWidget(parameters_, 1);
+  auto* const split = new QSplitter(Qt::Horizontal, content);
+  split->addWidget(left);
+  split->addWidget(makeSides());
+  split->setSizes({600, 420});
+  auto* const layout = new QVBoxLayout(content);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(makeHeader());
+  layout->addWidget(split, 1);
+  return content;
+}
+
+void ResultScreen::setResult(std::optional<NamedResult> result) {
+  result_ = std::move(result);
+  stack_->setCurrentIndex(result_ ? 1 : 0);
+  offerComparisons();
+  if (!result_) return;
+  showVerdict();
+  showParameters();
+  showDetails();
+}
+
+void ResultScreen::setPrevious(std::optional<NamedResult> previous) {
+  previous_ = std::move(previous);
+  offerComparisons();
+  showParameters();
+}
+
+void ResultScreen::setReference(std::optional<NamedResult> reference, const QString& title) {
+  const bool is_new = reference && (!reference_ || title != reference_title_);
+  reference_ = std::move(reference);
+  reference_title_ = title;
+  offerComparisons();
+  if (is_new) against_->setCurrentIndex(against_->findData(static_cast<int>(Against::Reference)));
+  showParameters();
+}
+
+void ResultScreen::setOutdated(bool outdated) {
+  outdated_->setVisible(outdated);
+}
+
+void ResultScreen::offerComparisons() {
+  const QVariant chosen = against_->currentData();
+  against_->clear();
+  against_->addItem(tr("nothing"), static_cast<int>(Against::Nothing));
+  if (previous_) against_->addItem(tr("the previous run"), static_cast<int>(Against::Previous));
+  if (reference_) against_->addItem(reference_title_, static_cast<int>(Against::Reference));
+  against_->setCurrentIndex(std::max(0, against_->findData(chosen)));
+}
+
+const NamedResult* ResultScreen::compared() const {
+  switch (static_cast<Against>(against_->currentData().toInt())) {
+    case Against::Previous:
+      return previous_ ? &*previous_ : nullptr;
+    case Against::Reference:
+      return reference_ ? &*reference_ : nullptr;
+    default:
+      return nullptr;
+  }
+}
+
+void ResultScreen::showVerdict() {
+  const CalibrationResult& result = result_->result;
+  const bool ok = result.status == CalibrationStatus::Ok;
+  const Theme& t = theme();
+  const QColor colour = ok ? t.good : result.status == CalibrationStatus::Doubtful ? t.warning : t.bad;
+  const QString name = ok ? "done" : result.status == CalibrationStatus::Doubtful ? "warning" : "error";
+  icon_->setPixmap(icon(name, colour).pixmap(QSize(34, 34), devicePixelRatioF()));
+  verdict_->setText(verdictWords(result.status));
+  reason_->setText(ok ? tr("The recording determines every quantity as well as needed.")
+                      : sentence(QString::fromStdString(result.reason)));
+  fit_->setText(fitText(*result_));
+}
+
+void ResultScreen::showParameters() {
+  if (!result_) return;
+  std::vector<ParameterGroup> groups = parameterGroups(*result_);
+  const NamedResult* const other = compared();
+  QString remark;
+  if (other != nullptr) {
+    try {
+      compare(groups, *result_, *other);
+    } catch (const CalibrationError& error) {
+      remark = tr("These cannot be compared. %1").arg(sentence(QString::fromStdString(error.what())));
+    }
+  }
+  comparison_->setText(remark);
+  comparison_->setVisible(!remark.isEmpty());
+  parameters_->setColumnHidden(kDifference, other == nullptr || !remark.isEmpty());
+  parameters_->setColumnHidden(kSigmas, other == nullptr || !remark.isEmpty());
+  parameters_->clear();
+  for (const ParameterGroup& group : groups) {
+    auto* const heading = new QTreeWidgetItem(parameters_, {group.title});
+    heading->setFirstColumnSpanned(true);
+    QFont bold = heading->font(0);
+    bold.setWeight(QFont::DemiBold);
+    heading->setFont(0, bold);
+    heading->setExpanded(true);
+    for (const ParameterRow& row : group.rows) {
+      auto* const item = new QTreeWidgetItem(heading, {row.name, row.valueText(), row.sigmaText(), row.unit,
+                                                       row.differenceText(), row.sigmasText()});
+      for (const int column : {kValue, kSigma, kDifference, kSigmas})
+        item->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
+      constexpr double kFar = 3.0;
+      if (row.difference && row.sigma > 0.0 && std::abs(*row.difference) > kFar * row.sigma)
+        item->setForeground(kSigmas, theme().warning);
+    }
+  }
+}
+
+void ResultScreen::showDetails() {
+  constexpr int kPairs = 3;
+  const UncertaintyReport& report = result_->result.uncertainty;
+  observability_->setObservability(report.observability, QString::fromStdString(report.weakest));
+  observed_->setText(observability_->text());
+  QStringList names;
+  for (const std::string& name : report.names) names << QString::fromStdString(name);
+  correlation_->setCorrelation(names, report.correlation);
+  pairs_->setText(tr("Hardest to tell apart: %1.").arg(correlation_->strongestPairs(kPairs).join("; ")));
+  notes_->clear();
+  for (const std::string& note : result_->result.notes)
+    notes_->addItem(sentence(QString::fromStdString(note)));
+}
+
+void ResultScreen::changeEvent(QEvent* event) {
+  if (event->type() == QEvent::PaletteChange && result_) {
+    showVerdict();
+    showParameters();
+  }
+  QWidget::changeEvent(event);
+}
+
+}  // namespace evical::ui

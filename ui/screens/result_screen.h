@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The numbers, how sure they are, and why they can be trusted; beside those of another run or the truth.
+#pragma once
+
+#include "core/report/result_yaml.h"
+
+#include <QWidget>
+
+#include <optional>
+
+class QComboBox;
+
+class QLabel;
+class QListWidget;
+
+class QStackedWidget;
+class QTreeWidget;
+
+namespace evical::ui {
+
+class CorrelationView;
+class ObservabilityView;
+
+class ResultScreen : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit ResultScreen(QWidget* parent = nullptr);
+
+  void setResult(std::optional<NamedResult> result);
+  void setPrevious(std::optional<NamedResult> previous);
+  void setReference(std::optional<NamedResult> reference, const QString& title);
+  void setOutdated(bool outdated);  // the session is not as it was for this result
+
+ signals:
+  void exportRequested();
+  void referenceRequested();
+  void calibrateRequested();
+
+ protected:
+  void changeEvent(QEvent* event) override;
+
+ private:
+  enum class Against { Nothing, Previous, Reference };
+
+  QWidget* makeEmpty();
+  QWidget* makeContent();
+  QWidget* makeHeader();
+  QWidget* makeSides();
+  void showVerdict();
+  void showParameters();
+  void showDetails();
+  void offerComparisons();
+  const NamedResult* compared() const;
+
+  std::optional<NamedResult> result_, previous_, reference_;
+  QString reference_title_;
+  QStackedWidget* stack_;
+  QLabel *icon_, *verdict_, *reason_, *fit_, *outdated_, *comparison_, *observed_, *pairs_;
+  QComboBox* against_;
+  QTreeWidget* parameters_;
+  ObservabilityView* observability_;
+  CorrelationView* correlation_;
+  QListWidget* notes_;
+};
+
+}  // namespace evical::ui

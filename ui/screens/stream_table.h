@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The streams of a recording, what is in them, and which part each plays.
+#pragma once
+
+#include "core/pipeline/session.h"
+#include "core/recording/inspection.h"
+
+#include <QTableWidget>
+
+namespace evical::ui {
+
+enum class StreamRole { Ignore, Camera, Imu };
+
+class StreamTable : public QTableWidget {
+  Q_OBJECT
+
+ public:
+  explicit StreamTable(QWidget* parent = nullptr);
+
+  void setInspection(const Inspection& inspection);
+  void setSession(const Session& session);  // the roles
+  StreamRole role(int row) const;
+
+ signals:
+  void roleChosen(int stream, evical::ui::StreamRole role);
+
+ protected:
+  void changeEvent(QEvent* event) override;
+
+ private:
+  void addStream(const StreamSummary& stream, const std::vector<RecordingFault>& faults);
+  void showIcons();
+};
+
+}  // namespace evical::ui
