@@ -54,6 +54,7 @@ MainWindow::~MainWindow() = default;
 
 void MainWindow::makeCentre() {
   stack_ = new QStackedWidget(this);
+  stack_->setMinimumSize(700, 420);  // the largest screen would ask for more than small displays have
   entries_ = buildPages(pages_, stack_);
   for (const PageEntry& entry : entries_) stack_->addWidget(entry.widget);
   error_ = new ErrorPanel(this);
