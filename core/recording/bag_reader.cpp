@@ -18,6 +18,11 @@ constexpr int kMostAlikeFaults = 10;  // of one kind and stream; a broken file h
 constexpr std::uint64_t kEnoughStamps = 1000;
 constexpr std::int64_t kLargestSorted_ns = 10'000'000;
 
+// Packed data are hardly ever longer than the plain ones.
+std::uint64_t largestPacked(std::uint32_t plain_bytes) {
+  return std::uint64_t{plain_bytes} + plain_bytes / 64 + 4096;
+}
+
 struct ChunkRecord {
   rosbag::RecordHeader header;
   std::string_view data;
@@ -101,13 +106,47 @@ BagReader::RecordState BagReader::readRecord(std::uint64_t position, FileRecord&
   return record.end() <= file_size_ ? RecordState::Whole : RecordState::Cut;
 }
 
+// A chunk's header somewhere from here on, also within data: packed data don't look like one by chance, and
+// chunks hold none. The file's size where there is none.
+std::uint64_t BagReader::scanForChunk(std::uint64_t from) {
+  static constexpr std::string_view kOp("op=\x05", 4);
+  constexpr std::uint64_t kBlock_bytes = 1 << 20;
+  constexpr std::uint64_t kFurthestOp_bytes = 128;  // from the record's beginning; real headers have about 60
+  std::string block;
+  FileRecord record;
+  for (std::uint64_t begin = from; begin < file_size_; begin += kBlock_bytes) {
+    const std::uint64_t length = std::min(kBlock_bytes + kFurthestOp_bytes, file_size_ - begin);
+    if (!readBytes(begin, length, block)) break;
+    for (std::size_t hit = block.find(kOp); hit != std::string::npos; hit = block.find(kOp, hit + 1)) {
+      const std::uint64_t op = begin + hit;
+      for (std::uint64_t at = std::max(from, op - std::min(op, kFurthestOp_bytes)); at < op; ++at) {
+        const RecordState state = readRecord(at, record);
+        const bool has_header = state == RecordState::Whole || state == RecordState::Cut;
+        if (has_header && record.header.is(rosbag::Op::Chunk) && record.data_position > op) return at;
+      }
+    }
+  }
+  return file_size_;
+}
+
+// Where the file goes on behind a record, whatever its length says. `chunk_data` is where those of the last
+// chunk begin: a chunk with a false length may hide the next one.
+std::uint64_t BagReader::recordAfter(std::uint64_t position, RecordState state, const FileRecord& record,
+                                     std::uint64_t& chunk_data) {
+  const bool is_chunk = state != RecordState::Damaged && record.header.is(rosbag::Op::Chunk);
+  if (is_chunk) chunk_data = record.data_position;
+  const bool plausible = !is_chunk || record.data_size <= largestPacked(record.header.size);
+  if (state == RecordState::Whole && plausible) return record.end();
+  return scanForChunk(chunk_data != 0 ? chunk_data : position + 1);
+}
+
 // What can be unpacked of it: a cut chunk is read up to the cut, and one whose length lies as far as its
-// packed data go, which are hardly ever longer than the plain ones.
+// packed data can go.
 void BagReader::loadChunk(std::uint64_t position, const FileRecord& record) {
   chunk_position_ = position;
   chunk_offset_ = 0;
   chunk_.clear();
-  const std::uint64_t largest = std::uint64_t{record.header.size} + record.header.size / 64 + 4096;
+  const std::uint64_t largest = largestPacked(record.header.size);
   const std::uint64_t available = record.data_position < file_size_ ? file_size_ - record.data_position : 0;
   const std::uint64_t size = std::min({std::uint64_t{record.data_size}, largest, available});
   const bool read = readBytes(record.data_position, size, file_bytes_);
@@ -148,28 +187,29 @@ bool BagReader::listFromIndex(std::uint64_t index_position, std::uint32_t connec
 // Only chunks with connections not met before need to be unpacked: the index data behind a chunk tell.
 void BagReader::listByScan() {
   FileRecord record;
-  std::uint64_t chunk = 0;
+  std::uint64_t chunk = 0, chunk_data = 0;
   bool has_index_data = false, is_new = false;
   const auto finishChunk = [&] {
     if (chunk != 0 && (is_new || !has_index_data)) lookIntoChunk(chunk);
     chunk = 0;
     has_index_data = is_new = false;
   };
-  RecordState state = RecordState::Whole;
-  for (std::uint64_t at = position_; state == RecordState::Whole; at = record.end()) {
+  RecordState state = RecordState::End;
+  for (std::uint64_t at = position_, next = 0;; at = next) {
     state = readRecord(at, record);
+    if (state == RecordState::End) break;
+    const FileRecord found = record;  // looking on, and into a chunk, reads others
+    next = recordAfter(at, state, found, chunk_data);
     if (state == RecordState::Damaged || state == RecordState::Cut)
       has_index_data = false;  // some may be lost
     const bool has_header = state == RecordState::Whole || state == RecordState::Cut;
-    if (has_header && record.header.is(rosbag::Op::IndexData)) {
+    if (has_header && found.header.is(rosbag::Op::IndexData)) {
       has_index_data = state == RecordState::Whole;
-      is_new = is_new || !connections_.contains(record.header.connection);
+      is_new = is_new || !connections_.contains(found.header.connection);
       continue;
     }
-    const FileRecord next = record;  // looking into a chunk reads others
     finishChunk();
-    if (has_header && next.header.is(rosbag::Op::Chunk)) chunk = at;
-    record = next;
+    if (has_header && found.header.is(rosbag::Op::Chunk)) chunk = at;
   }
   finishChunk();
 }
@@ -277,27 +317,36 @@ std::uint64_t BagReader::indexedChunkAfter(std::uint64_t position) const {
   return found == chunk_connections_.end() ? 0 : found->first;
 }
 
-// Where a record is damaged, or longer than it can be, the index tells where to go on.
+// Where a record is damaged, or longer than it can be, the index tells where to go on, or a search.
 bool BagReader::nextChunk() {
   FileRecord record;
   for (;;) {
     const std::uint64_t at = position_;
     const RecordState state = readRecord(at, record);
     if (state == RecordState::End) return false;
-    const std::uint64_t indexed = indexedChunkAfter(at);
-    const bool good = state == RecordState::Whole && (indexed == 0 || record.end() <= indexed);
-    position_ = good ? record.end() : indexed != 0 ? indexed : file_size_;
-    if (!good) {
-      addFault("", state == RecordState::Cut && indexed == 0 ? "truncated" : "corrupt",
-               fmt::format("The record at byte {} of {} is cut off or damaged; {}.", at, file_size_,
-                           indexed != 0 ? fmt::format("reading goes on at byte {}", indexed)
-                                        : "nothing behind it is read"));
+    const std::uint64_t indexed = indexedChunkAfter(at), end = record.end();
+    const bool fits = state == RecordState::Whole && end <= indexed;
+    position_ = indexed == 0 ? recordAfter(at, state, record, chunk_data_) : fits ? end : indexed;
+    if (state != RecordState::Whole || position_ != end) {
+      reportDamage(at, state);
+      readRecord(at, record);  // the search has read others
     }
     const bool is_chunk = state != RecordState::Damaged && record.header.is(rosbag::Op::Chunk);
     if (!is_chunk || !chunkIsWanted(at)) continue;
     loadChunk(at, record);
     if (!chunk_.empty()) return true;
   }
+}
+
+void BagReader::reportDamage(std::uint64_t position, RecordState state) {
+  const bool last = position_ == file_size_;
+  const std::uint64_t lost = std::max(position, position_) - position;
+  addFault("", state == RecordState::Cut && last ? "truncated" : "corrupt",
+           fmt::format("The record at byte {} of {} {}; {}.", position, file_size_,
+                       state == RecordState::Damaged ? fmt::format("is damaged, {} bytes are lost", lost)
+                                                     : "is cut off or has a false length",
+                       last ? "nothing behind it is read"
+                            : fmt::format("reading goes on with the chunk at byte {}", position_)));
 }
 
 bool BagReader::nextMessage(Packet& packet) {

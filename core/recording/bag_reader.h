@@ -59,6 +59,9 @@ class BagReader : public RecordingReader {
   bool readBytes(std::uint64_t position, std::uint64_t count, std::string& bytes);
   RecordState readRecord(std::uint64_t position, FileRecord& record);
   void loadChunk(std::uint64_t position, const FileRecord& record);
+  std::uint64_t scanForChunk(std::uint64_t from);
+  std::uint64_t recordAfter(std::uint64_t position, RecordState state, const FileRecord& record,
+                            std::uint64_t& chunk_data);
 
   void listStreams();
   bool listFromIndex(std::uint64_t index_position, std::uint32_t connections, std::uint32_t chunks);
@@ -74,6 +77,7 @@ class BagReader : public RecordingReader {
   bool chunkIsWanted(std::uint64_t position) const;
   std::uint64_t indexedChunkAfter(std::uint64_t position) const;
   bool nextChunk();
+  void reportDamage(std::uint64_t position, RecordState state);
   bool nextMessage(Packet& packet);
   bool decode(const rosbag::RecordHeader& header, std::string_view message, std::size_t stream,
               Packet& packet);
@@ -84,7 +88,8 @@ class BagReader : public RecordingReader {
   std::string path_;
   std::ifstream file_;
   std::uint64_t file_size_ = 0;
-  std::uint64_t position_ = 0;  // of the next record to read
+  std::uint64_t position_ = 0;    // of the next record to read
+  std::uint64_t chunk_data_ = 0;  // where those of the last chunk begin
   std::vector<StreamInfo> streams_;
   std::vector<StreamState> states_;  // of streams_
   std::vector<RecordingFault> faults_;

@@ -71,6 +71,10 @@ class TestRosbagDamage : public QObject {
   void corruptChunk_losesNoOther_data();
   void corruptChunk_losesNoOther();
   void damagedRecordHeader_losesOneChunkWhereThereIsAnIndex();
+  void chunkOfZeros_losesNoOther_data();
+  void chunkOfZeros_losesNoOther();
+  void falseChunkLength_losesNoOther_data();
+  void falseChunkLength_losesNoOther();
   void damagedIndex_doesNotHinder();
   void indexCutBetweenItsRecords_losesNothing();
   void messageWithAFalseCount_isLeftOut();
@@ -165,6 +169,66 @@ void TestRosbagDamage::damagedRecordHeader_losesOneChunkWhereThereIsAnIndex() {
   replaceNumber(bytes, bag.chunkPositions()[1], 0x7FFFFFFF);
   const Contents contents = readAll(folder_.write("header.bag", bytes));
   QCOMPARE(contents.eventCount(), 8 * kEventsEach);
+  QVERIFY(isTrue(contents));
+  QVERIFY(!contents.faults.empty());
+}
+
+void TestRosbagDamage::chunkOfZeros_losesNoOther_data() {
+  QTest::addColumn<QString>("compression");
+  QTest::addColumn<bool>("finished");
+  QTest::addColumn<int>("chunk");
+  for (const char* name : {"none", "lz4", "bz2"}) {
+    for (int chunk = 0; chunk < 3; ++chunk) {
+      QTest::addRow("%s %d", name, chunk) << name << true << chunk;
+      QTest::addRow("%s %d without index", name, chunk) << name << false << chunk;
+    }
+  }
+}
+
+// Whatever a disk lost: records before and behind it are read, without an index too.
+void TestRosbagDamage::chunkOfZeros_losesNoOther() {
+  QFETCH(QString, compression);
+  QFETCH(bool, finished);
+  QFETCH(int, chunk);
+  BagBuilder bag = smallBag(compression.toStdString());
+  const std::size_t end_of_chunks = bag.unfinished().size();
+  std::string bytes = finished ? bag.finished() : bag.unfinished();
+  std::vector<std::size_t> bounds = bag.chunkPositions();
+  bounds.push_back(end_of_chunks);
+  const auto k = static_cast<std::size_t>(chunk);
+  bytes.replace(bounds[k], bounds[k + 1] - bounds[k], std::string(bounds[k + 1] - bounds[k], '\0'));
+  const Contents contents = readAll(folder_.write("zeros.bag", bytes));
+  // Connections are in the first chunk and in the index.
+  QCOMPARE(contents.eventCount(), chunk == 0 && !finished ? 0 : 8 * kEventsEach);
+  QVERIFY(isTrue(contents));
+  QVERIFY(contents.hasFault(finished || chunk > 0 ? "corrupt" : "no_index"));
+}
+
+void TestRosbagDamage::falseChunkLength_losesNoOther_data() {
+  QTest::addColumn<QString>("compression");
+  QTest::addColumn<bool>("finished");
+  QTest::addColumn<int>("error");
+  for (const char* name : {"none", "lz4", "bz2"}) {
+    for (const int error : {-500, -1, 1, 300, 2000, 100'000, 1'000'000'000}) {
+      QTest::addRow("%s %d", name, error) << name << true << error;
+      QTest::addRow("%s %d without index", name, error) << name << false << error;
+    }
+  }
+}
+
+void TestRosbagDamage::falseChunkLength_losesNoOther() {
+  QFETCH(QString, compression);
+  QFETCH(bool, finished);
+  QFETCH(int, error);
+  BagBuilder bag = smallBag(compression.toStdString());
+  bag.endChunk();
+  std::string bytes = finished ? bag.finished() : bag.unfinished();
+  const std::size_t length = bag.chunkPositions()[1] + 54 + compression.size();
+  std::uint32_t value = 0;
+  std::memcpy(&value, bytes.data() + length, sizeof value);
+  replaceNumber(bytes, length, value + static_cast<std::uint32_t>(error));
+  const Contents contents = readAll(folder_.write("length.bag", bytes));
+  QVERIFY2(contents.eventCount() >= 8 * kEventsEach, qPrintable(QString::number(contents.eventCount())));
   QVERIFY(isTrue(contents));
   QVERIFY(!contents.faults.empty());
 }
