@@ -137,6 +137,11 @@ int YamlNode::integer(int minimum, int maximum) const {
   return static_cast<int>(detail::parseInteger(place(), text(), minimum, maximum, ""));
 }
 
+std::int64_t YamlNode::nanoseconds() const {
+  using Limits = std::numeric_limits<std::int64_t>;
+  return detail::parseInteger(place(), text(), Limits::min(), Limits::max(), "ns");
+}
+
 std::vector<double> YamlNode::reals() const {
   std::vector<double> values;
   for (const YamlNode& item : items()) values.push_back(item.real());

@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <initializer_list>
 #include <memory>
@@ -40,6 +41,7 @@ class YamlNode {
   double real() const;  // finite
   double real(double minimum, double maximum, const char* unit) const;
   int integer(int minimum, int maximum) const;
+  std::int64_t nanoseconds() const;  // any whole number
   std::vector<double> reals() const;
   std::vector<double> reals(std::size_t count) const;
   std::size_t choice(std::initializer_list<const char*> words) const;

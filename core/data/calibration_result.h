@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -78,7 +80,8 @@ struct CircleResidual {
 
 struct CalibrationResult {
   CalibrationStatus status = CalibrationStatus::Ok;
-  std::string reason;  // why not ok, in plain words
+  std::string reason;                    // why not ok, in plain words
+  std::optional<std::int64_t> start_ns;  // of the recording: where times in seconds begin
   CalibrationState state;
   UncertaintyReport uncertainty;
   std::vector<CameraFit> cameras;

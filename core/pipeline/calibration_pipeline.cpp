@@ -193,6 +193,7 @@ CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunCo
   }
   for (const std::string& warning : initial.warnings) context.progress.log(LogLevel::Warning, warning);
   CalibrationResult& result = run.result;
+  result.start_ns = run.pass.start_ns;
   result.timing.initialise_s = secondsSince(begin);
 
   context.progress.stageStarted("optimise");

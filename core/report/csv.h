@@ -9,8 +9,8 @@
 
 namespace evical {
 
-// time_s (reference IMU's clock, since the recording's start), position and quaternion of world_from_imu at
-// 200 Hz.
+// time_s (reference IMU's clock, since the recording's start, which is recording.start_ns of result.yaml),
+// position and quaternion of world_from_imu at 200 Hz.
 std::string trajectoryCsv(const CalibrationState& state);
 
 // One line a circle: where it was, how sure, how fast.

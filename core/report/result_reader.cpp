@@ -191,6 +191,8 @@ NamedResult readResultYaml(const std::filesystem::path& file) {
     named.result.status = static_cast<CalibrationStatus>(status->choice({"ok", "doubtful", "failed"}));
   get(root, "reason", named.result.reason);
   get(root, "reference", named.names.reference);
+  if (const auto recording = root.find("recording"))
+    named.result.start_ns = (*recording)["start_ns"].nanoseconds();
   if (const auto cameras = root.find("cameras"))
     for (const std::string& key : cameras->keys()) {
       named.names.cameras.push_back(key);

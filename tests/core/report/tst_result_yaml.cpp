@@ -27,6 +27,7 @@ NamedResult sample() {
   CalibrationResult& result = named.result;
   result.status = CalibrationStatus::Doubtful;
   result.reason = "planar motion: \"z\" is a guess\nand more";
+  result.start_ns = 1'700'000'000'123'456'789;
   result.notes = {"IMU gap of 0.2 s"};
   result.memory_peak_mb = 310.0;
   result.timing.total_s = 6.4;
@@ -96,6 +97,7 @@ class TestResultYaml : public QObject {
     QVERIFY(read.names.intrinsics == written.names.intrinsics);
     QCOMPARE(read.result.reason, written.result.reason);
     QVERIFY(read.result.status == CalibrationStatus::Doubtful);
+    QVERIFY(read.result.start_ns == 1'700'000'000'123'456'789);
     for (std::size_t i = 0; i < 2; ++i) {
       const CameraState &a = written.result.state.cameras[i], &b = read.result.state.cameras[i];
       QVERIFY(a.imu_from_camera.rotation.coeffs() == b.imu_from_camera.rotation.coeffs());
@@ -119,6 +121,7 @@ class TestResultYaml : public QObject {
     QVERIFY(read.result.status == CalibrationStatus::Failed);
     QCOMPARE(read.result.reason, failed.result.reason);
     QVERIFY(read.result.state.cameras.empty());
+    QVERIFY(!read.result.start_ns);
   }
 
   void result_thatIsNone_isRefused_data() {
@@ -130,6 +133,8 @@ class TestResultYaml : public QObject {
         << "evical_result: 1\ncameras: {a: {reference_from_camera: {rotation_xyzw: [0, 0, 0, "
            "0], translation_m: [0, 0, 0]}}}\n"
         << "no unit quaternion";
+    QTest::newRow("start") << "evical_result: 1\nrecording: {start_ns: 1.7e18}\n"
+                           << "whole number";
     QTest::newRow("vector") << "evical_result: 1\ngravity_m_s2: [1, 2]\n"
                             << "3 are needed";
   }
