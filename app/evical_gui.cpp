@@ -27,7 +27,11 @@ class Photographer : public QObject {
  public:
   Photographer(MainWindow& window, QString screen, QString file)
       : window_(window), screen_(std::move(screen)), file_(std::move(file)) {
-    connect(&window.files(), &SessionFiles::opened, this, [this] { window_.calibrate(); });
+    connect(&window.files(), &SessionFiles::opened, this, [this] {
+      window_.calibrate();
+      if (!window_.workbench().runner.running())
+        giveUp("calibrate", {true, {}, "the session is incomplete", {}});
+    });
     connect(&window.files(), &SessionFiles::failed, this,
             [](const QString& what, const JobError& error) { giveUp(what, error); });
     connect(&window.workbench().runner, &JobRunner::failed, this,
@@ -40,7 +44,7 @@ class Photographer : public QObject {
  private:
   static void giveUp(const QString& what, const JobError& error) {
     complain(what + ": " + error.text());
-    QCoreApplication::exit(kFailed);
+    QTimer::singleShot(0, qApp, [] { QCoreApplication::exit(kFailed); });  // exec() may not have begun
   }
   // Screens prepare what they show in threads of their own.
   void waitAndSave() {

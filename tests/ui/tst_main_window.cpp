@@ -6,6 +6,7 @@
 #include "ui/forms/option_editor.h"
 #include "ui/forms/option_form.h"
 #include "ui/screens/result_screen.h"
+#include "ui/screens/start_screen.h"
 #include "ui/screens/stream_table.h"
 #include "ui/theme/theme.h"
 #include "ui/window/error_panel.h"
@@ -23,6 +24,7 @@
 #include <QSignalSpy>
 #include <QStackedWidget>
 #include <QTemporaryDir>
+#include <QTextBrowser>
 #include <QToolButton>
 #include <QTreeWidget>
 #include <QtTest>
@@ -125,6 +127,8 @@ class TestMainWindow : public QObject {
  private slots:
   void initTestCase() {
     QCoreApplication::setOrganizationName("evical_test");
+    QStandardPaths::setTestModeEnabled(true);
+    QDir(QStandardPaths::writableLocation(QStandardPaths::AppDataLocation)).removeRecursively();
     QSettings::setDefaultFormat(QSettings::IniFormat);
     QSettings::setPath(QSettings::IniFormat, QSettings::UserScope, scratch_.filePath("settings"));
     QCoreApplication::setAttribute(Qt::AA_DontUseNativeDialogs);
@@ -174,6 +178,21 @@ class TestMainWindow : public QObject {
     QCOMPARE(test.document().session().options.front_end.grid.least_circles, 9);
     QVERIFY(!test.document().last().run);
     QVERIFY(test.window.close());
+  }
+
+  void demo_isSimulatedOnTheSpot_andCanBeCancelled() {
+    Fixture test;
+    double fraction = 0.0;
+    connect(&test.runner(), &JobRunner::progressed, &test.window,
+            [&](const JobProgress& progress) { fraction = progress.fraction; });
+    for (QPushButton* const button : test.child<StartScreen>()->findChildren<QPushButton*>())
+      if (button->text().contains("demo")) QTest::mouseClick(button, Qt::LeftButton);
+    QVERIFY(test.runner().running());
+    QTRY_VERIFY_WITH_TIMEOUT(fraction > 0.0, kPatience_ms);
+    test.click("cancel");
+    QCOMPARE(test.waitForJob(), JobOutcome::Cancelled);
+    QVERIFY(!test.document().hasSession());
+    QVERIFY(!test.child<ErrorPanel>()->isVisible());
   }
 
   void problemOfTheRecording_isShownInThePanel() {
@@ -284,7 +303,11 @@ class TestMainWindow : public QObject {
       QCOMPARE(test.screen(), names[i]);
     }
     test.press(Qt::Key_F1);
-    QVERIFY(test.window.findChild<QDialog*>("user_guide")->isVisible());
+    auto* const guide = test.window.findChild<QDialog*>("user_guide");
+    QVERIFY(guide->isVisible());
+    QDir().mkpath(EVICAL_SCREENSHOTS);
+    QVERIFY(guide->grab().save(EVICAL_SCREENSHOTS "/user_guide.png"));
+    QVERIFY(guide->findChild<QTextBrowser*>()->toPlainText().contains("noise densities"));
   }
 
   void calibrating_neverStallsTheWindow() {

@@ -22,8 +22,8 @@ QPushButton:pressed, QPushButton:checked { background: @selected; }
 QPushButton:disabled { border-color: @line; background: transparent; }
 QPushButton[primary="true"] { background: @accent; border-color: @accent; color: @on_accent; }
 QPushButton[primary="true"]:disabled { background: @line; border-color: @line; color: @faint; }
-QFrame[card="true"] { background: @panel; border: 1px solid @line; border-radius: 8px; }
-QFrame[card="bad"] { background: @panel; border: 1px solid @bad; border-radius: 8px; }
+QFrame[card="true"] { background: @card; border: 1px solid @line; border-radius: 8px; }
+QFrame[card="bad"] { background: @card; border: 1px solid @bad; border-radius: 8px; }
 QLabel[role="title"] { font-size: 17pt; font-weight: 600; }
 QLabel[role="heading"] { font-size: 11pt; font-weight: 600; }
 QLabel[role="hint"] { color: @faint; }
@@ -62,10 +62,12 @@ QString mixed(const QColor& a, const QColor& b, double share_of_b) {
 }  // namespace
 
 QString styleSheetOf(const Theme& t) {
-  constexpr double kHover = 0.08, kSelected = 0.2, kBorder = 0.35;
+  constexpr double kHover = 0.08, kSelected = 0.2, kBorder = 0.35, kRaised = 0.03;
   QString rules = kRules;
   rules.replace("@text", t.text.name());
   rules.replace("@faint", t.faint_text.name());
+  // In the dark, Fusion's fields have no visible outline: they are wells in a lighter ground.
+  rules.replace("@card", t.dark ? mixed(t.window, t.text, kRaised) : t.panel.name());
   rules.replace("@panel", t.panel.name());
   rules.replace("@window", t.window.name());
   rules.replace("@line", t.grid_line.name());
