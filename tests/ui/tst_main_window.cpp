@@ -180,6 +180,20 @@ class TestMainWindow : public QObject {
     QVERIFY(test.window.close());
   }
 
+  void everyResult_isExportedWhereAskedTo() {
+    const QString folder = scratch_.filePath("every");
+    QVERIFY(QDir().mkpath(folder));
+    Fixture test;
+    test.window.files().open(test::copyOfSimulatedSession(scratch_.path()));
+    answerFileDialog(folder);
+    test.window.files().exportEveryResult(true);
+    QSignalSpy exported(&test.window.files(), &SessionFiles::exported);
+    test.window.calibrate();
+    QTRY_COMPARE_WITH_TIMEOUT(exported.size(), 1, kPatience_ms);
+    QVERIFY(QFileInfo(QDir(folder).filePath("result.yaml")).size() > 0);
+    QVERIFY(test.window.close());
+  }
+
   void demo_isSimulatedOnTheSpot_andCanBeCancelled() {
     Fixture test;
     double fraction = 0.0;

@@ -47,12 +47,18 @@ void MainWindow::makeFileMenu() {
                                 QKeySequence("Ctrl+Shift+S"));
   actions_.export_result = makeAction(this, "export", tr("&Export result..."),
                                       tr("Write the result's files to a folder"), QKeySequence("Ctrl+E"));
+  actions_.export_every =
+      makeAction(this, "export", tr("Export e&very result..."),
+                 tr("Write each result to a folder as soon as it is there"), QKeySequence());
+  actions_.export_every->setCheckable(true);
   actions_.quit = makeAction(this, "close", tr("&Quit"), tr("Leave the program"), QKeySequence("Ctrl+Q"));
   connect(actions_.open_session, &QAction::triggered, files_, &SessionFiles::chooseSession);
   connect(actions_.open_recording, &QAction::triggered, files_, &SessionFiles::chooseRecording);
   connect(actions_.save, &QAction::triggered, files_, &SessionFiles::save);
   connect(actions_.save_as, &QAction::triggered, files_, &SessionFiles::saveAs);
   connect(actions_.export_result, &QAction::triggered, files_, &SessionFiles::chooseExportFolder);
+  connect(actions_.export_every, &QAction::triggered, files_, &SessionFiles::exportEveryResult);
+  connect(files_, &SessionFiles::exportsEveryResult, actions_.export_every, &QAction::setChecked);
   connect(actions_.quit, &QAction::triggered, this, &QWidget::close);
 
   QMenu* const menu = menuBar()->addMenu(tr("&File"));
@@ -67,7 +73,7 @@ void MainWindow::makeFileMenu() {
   menu->addSeparator();
   menu->addActions({actions_.save, actions_.save_as});
   menu->addSeparator();
-  menu->addAction(actions_.export_result);
+  menu->addActions({actions_.export_result, actions_.export_every});
   menu->addSeparator();
   menu->addAction(actions_.quit);
 }

@@ -16,6 +16,7 @@
 #include <QSettings>
 #include <QStandardPaths>
 #include <QTemporaryDir>
+#include <QTimer>
 
 namespace evical::ui {
 namespace {
@@ -56,6 +57,13 @@ SessionFiles::SessionFiles(Workbench& workbench, QWidget* window)
             awaited_recording_.clear();
             emit failed(tr("%1 cannot be opened").arg(QFileInfo(recording).fileName()), error);
           });
+  connect(&workbench_.document, &CalibrationDocument::sessionReplaced, this,
+          [this] { exportEveryResult(false); });
+  connect(&workbench_.calibration, &CalibrationJob::calibrated, this, [this] {
+    if (every_result_folder_.isEmpty()) return;
+    // Once everybody has heard of the run: an export is a job of its own.
+    QTimer::singleShot(0, this, [this] { exportTo(every_result_folder_); });
+  });
 }
 
 void SessionFiles::open(const QString& path) {
@@ -212,6 +220,13 @@ void SessionFiles::exportTo(const QString& folder) {
         if (outcome == JobOutcome::Done) emit exported(folder);
       },
       Qt::SingleShotConnection);
+}
+
+void SessionFiles::exportEveryResult(bool wanted) {
+  every_result_folder_ =
+      wanted ? QFileDialog::getExistingDirectory(window_, tr("Export every result to a folder"), lastFolder())
+             : QString();
+  emit exportsEveryResult(!every_result_folder_.isEmpty());
 }
 
 QString SessionFiles::lastFolder() const {

@@ -27,6 +27,8 @@ class SessionFiles : public QObject {
   void chooseReference();
   void chooseExportFolder();
   void exportTo(const QString& folder);
+  // Every result goes to a folder that is asked for now, as soon as it is there; until another session comes.
+  void exportEveryResult(bool wanted);
 
   // False if the person would rather keep what is not saved.
   bool mayDiscard();
@@ -37,6 +39,7 @@ class SessionFiles : public QObject {
   void recentFilesChanged(const QStringList& files);
   void demoRunning(bool running);
   void exported(const QString& folder);
+  void exportsEveryResult(bool does);
   void failed(const QString& what_was_tried, const evical::ui::JobError& error);
 
  private:
@@ -49,7 +52,8 @@ class SessionFiles : public QObject {
 
   Workbench& workbench_;
   QWidget* window_;
-  QString awaited_recording_;  // opened as soon as it has been looked through
+  QString every_result_folder_;  // empty: results are not exported by themselves
+  QString awaited_recording_;    // opened as soon as it has been looked through
 };
 
 }  // namespace evical::ui
