@@ -11,7 +11,6 @@
 #include "core/synthetic/scenario_yaml.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -208,7 +207,7 @@ void printNormalised(const std::vector<Outcome>& outcomes) {
 // Speed, blur and thresholds change when events come, and must not change the time offset that is found.
 struct OffsetSpread {
   double smallest_ms = 0.0, largest_ms = 0.0;
-  std::vector<std::string> scenarios;
+  std::string scenarios;
 
   void add(const Scenario& scenario, const Outcome& outcome) {
     constexpr std::array kVaried = {"slow",     "fast",           "blur_0.4px",
@@ -220,11 +219,11 @@ struct OffsetSpread {
       smallest_ms = scenarios.empty() ? quantity.error : std::min(smallest_ms, quantity.error);
       largest_ms = scenarios.empty() ? quantity.error : std::max(largest_ms, quantity.error);
     }
-    scenarios.push_back(scenario.name);
+    scenarios += (scenarios.empty() ? "" : ", ") + scenario.name;
   }
   void print() const {
-    if (scenarios.size() < 2) return;
-    fmt::print("\ntime offsets of {} differ by {:.3f} ms (target 0.15)\n", fmt::join(scenarios, ", "),
+    if (scenarios.find(',') == std::string::npos) return;
+    fmt::print("\ntime offsets of {} differ by {:.3f} ms (target 0.15)\n", scenarios,
                largest_ms - smallest_ms);
   }
 };
