@@ -347,7 +347,8 @@ void TestBadInput::board_ofAnotherSize_isNamed_data() {
   QTest::newRow("fewer of both") << 7 << 3 << "larger than 7 x 3: .*first or last row.*first or last column";
   QTest::newRow("more rows") << 13 << 4 << "smaller than 13 x 4: .*rows? w.* never seen in \\d+ views";
   QTest::newRow("more columns") << 11 << 5 << "smaller than 11 x 5: .*column";
-  QTest::newRow("more of both") << 13 << 7 << "smaller than 13 x 7: .*columns? w.* never seen in \\d+ views";
+  QTest::newRow("more of both")
+      << 13 << 7 << "smaller than 13 x 7: .*columns? w.* never seen in \\d+ views|no 13 x 7 board";
 }
 
 void TestBadInput::board_ofAnotherSize_isNamed() {
@@ -359,7 +360,7 @@ void TestBadInput::board_ofAnotherSize_isNamed() {
   test.change("cols: 4", QString("cols: %1").arg(cols));
   const Outcome outcome = test.calibrate();
   VERIFY_FAILED(test, outcome, says);
-  VERIFY_SAYS(outcome, "[Cc]heck rows and cols in the session");
+  VERIFY_SAYS(outcome, "[Cc]heck rows(,| and) cols .*in the session");
 }
 
 void TestBadInput::boardSpacing_tenPercentOff_isDoubtful_data() {

@@ -61,7 +61,7 @@ class TestCalibrationObserver : public QObject {
     QVERIFY(notebook.windows + 3 >= run.pass.cameras[0].windows.size());  // the last ones come with the end
     QCOMPARE(notebook.input.imus.at(0).samples.size(), run.pass.imus.at(0).samples.size());
     QCOMPARE(notebook.steps, (QStringList{"camera poses", "planar poses", "time offset",
-                                          "camera-IMU rotation", "gravity and translation"}));
+                                          "camera-IMU rotation", "gravity and translation", "board scale"}));
     QCOMPARE(notebook.iterations.size(), run.result.iterations.size());
     QCOMPARE(notebook.iterations.back().cost, run.result.iterations.back().cost);
     QCOMPARE(notebook.state.cameras.at(0).time_offset_s, run.result.state.cameras.at(0).time_offset_s);
