@@ -34,8 +34,8 @@ void printEvents(const StreamSummary& stream, bool checksum) {
                stream.seen_px.height_px);
   }
   if (!checksum) return;
-  fmt::print("    {:<22} x {}, y {}, t {} ns (mod 2^64)\n", "sums", stream.sum_x, stream.sum_y,
-             stream.sum_t_ns);
+  fmt::print("    {:<22} x {}, y {}, t {} {} (mod 2^64)\n", "sums", stream.sum_x, stream.sum_y, stream.sum_t,
+             stream.info.time_unit_ns == 1000 ? "us" : "ns");
 }
 
 void printImu(const StreamSummary& stream) {

@@ -3,6 +3,7 @@
 
 #include "core/data/event.h"
 #include "core/data/imu_sample.h"
+#include "core/data/imu_units.h"
 #include "core/geometry/camera_model.h"
 
 #include <cstddef>
@@ -17,12 +18,17 @@ enum class StreamType { Events, Imu, Frames, Triggers, Other };
 struct StreamInfo {
   std::string name;  // topic, or the stream's name in the file
   StreamType type = StreamType::Other;
-  std::string message;         // what the file calls its content, e.g. dvs_msgs/EventArray
-  Resolution resolution_px;    // of events and frames, where the file says it
-  std::uint64_t messages = 0;  // 0 if unknown
+  std::string message;            // what the file calls its content, e.g. dvs_msgs/EventArray
+  Resolution resolution_px;       // of events and frames, where the file says it
+  std::uint64_t messages = 0;     // 0 if unknown
+  std::int64_t time_unit_ns = 1;  // the file's own
+  // What the format says the numbers of IMU samples are in.
+  AccelerationUnit acceleration_unit = AccelerationUnit::MetresPerSecond2;
+  AngularRateUnit angular_rate_unit = AngularRateUnit::RadiansPerSecond;
 };
 
-// What one call of RecordingReader::read hands out: some events or some samples of one stream.
+// What one call of RecordingReader::read hands out: some events or some samples of one stream, the samples'
+// numbers in the stream's units.
 struct Packet {
   std::size_t stream = 0;  // index into RecordingReader::streams()
   std::vector<Event> events;

@@ -227,15 +227,6 @@ Routing route(const Session& session, const RecordingReader& reader) {
   return routing;
 }
 
-void toSi(const SessionImu& session, std::vector<ImuSample>& samples) {
-  const double force = metresPerSecond2(session.acceleration_unit),
-               rate = radiansPerSecond(session.angular_rate_unit);
-  for (ImuSample& sample : samples) {
-    sample.specific_force_m_s2 *= force;
-    sample.angular_rate_rad_s *= rate;
-  }
-}
-
 // Reading: packets to intakes and IMUs, within the session's time range.
 class ReadingPass {
  public:
@@ -269,7 +260,7 @@ class ReadingPass {
   }
 
   void finish() {
-    for (std::size_t k = 0; k < session_.imus.size(); ++k) finishImu(session_.imus[k], result_.imus[k]);
+    for (std::size_t k = 0; k < session_.imus.size(); ++k) finishImu(k, session_.imus[k], result_.imus[k]);
     for (const auto& intake : intakes_) {
       intake->report(result_.faults);
       result_.resolutions_px.push_back(intake->resolution_px());
@@ -316,7 +307,8 @@ class ReadingPass {
     return queue.push(std::move(*batch));
   }
 
-  void finishImu(const SessionImu& session, ImuData& imu) {
+  void finishImu(std::size_t k, const SessionImu& session, ImuData& imu) {
+    const StreamInfo& info = reader_.streams()[routing_.selected[session_.cameras.size() + k]];
     imu.name = session.name;
     imu.noise = session.noise;
     const auto earlier = [](const ImuSample& a, const ImuSample& b) { return a.time_ns < b.time_ns; };
@@ -327,7 +319,8 @@ class ReadingPass {
     }
     const auto same = [](const ImuSample& a, const ImuSample& b) { return a.time_ns == b.time_ns; };
     imu.samples.erase(std::unique(imu.samples.begin(), imu.samples.end(), same), imu.samples.end());
-    toSi(session, imu.samples);
+    toSi(session.acceleration_unit.value_or(info.acceleration_unit),
+         session.angular_rate_unit.value_or(info.angular_rate_unit), imu.samples);
   }
 
   const Session& session_;

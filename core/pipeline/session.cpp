@@ -13,10 +13,6 @@
 namespace evical {
 namespace {
 
-constexpr double kStandardGravity_m_s2 = 9.80665;
-constexpr std::array kAccelerationUnits{"m/s^2", "g", "-g"};
-constexpr std::array kAngularRateUnits{"rad/s", "deg/s"};
-
 void checkReference(const Session& session, const std::string& place) {
   std::vector<std::string> names;
   for (const SessionImu& imu : session.imus) names.push_back(imu.name);
@@ -72,12 +68,18 @@ std::string cameraYaml(const SessionCamera& camera) {
 }
 
 std::string imuYaml(const SessionImu& imu) {
-  return fmt::format(
-      "  {}:\n    stream: {}\n    accelerometer_noise_density: {}\n    gyroscope_noise_density: {}\n"
-      "    acceleration_unit: {}\n    angular_rate_unit: {}\n",
-      yamlText(imu.name), yamlText(imu.stream), imu.noise.accelerometer_density, imu.noise.gyroscope_density,
-      kAccelerationUnits.at(static_cast<std::size_t>(imu.acceleration_unit)),
-      kAngularRateUnits.at(static_cast<std::size_t>(imu.angular_rate_unit)));
+  std::string text = fmt::format(
+      "  {}:\n    stream: {}\n    accelerometer_noise_density: {}\n    gyroscope_noise_density: {}\n",
+      yamlText(imu.name), yamlText(imu.stream), imu.noise.accelerometer_density, imu.noise.gyroscope_density);
+  if (imu.acceleration_unit) {
+    text += fmt::format("    acceleration_unit: {}\n",
+                        kAccelerationUnits.at(static_cast<std::size_t>(*imu.acceleration_unit)));
+  }
+  if (imu.angular_rate_unit) {
+    text += fmt::format("    angular_rate_unit: {}\n",
+                        kAngularRateUnits.at(static_cast<std::size_t>(*imu.angular_rate_unit)));
+  }
+  return text;
 }
 
 std::string recordingText(const Session& session, const std::filesystem::path& folder) {
@@ -87,15 +89,6 @@ std::string recordingText(const Session& session, const std::filesystem::path& f
 }
 
 }  // namespace
-
-double metresPerSecond2(AccelerationUnit unit) {
-  if (unit == AccelerationUnit::MetresPerSecond2) return 1.0;
-  return unit == AccelerationUnit::Gravity ? kStandardGravity_m_s2 : -kStandardGravity_m_s2;
-}
-
-double radiansPerSecond(AngularRateUnit unit) {
-  return unit == AngularRateUnit::RadiansPerSecond ? 1.0 : std::numbers::pi / 180.0;
-}
 
 std::size_t Session::referenceImu() const {
   const auto found =

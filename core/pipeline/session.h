@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/data/calibration_setup.h"
+#include "core/data/imu_units.h"
 #include "core/pipeline/calibration_options.h"
 
 #include <array>
@@ -18,17 +19,11 @@ struct SessionCamera {
   std::optional<CameraIntrinsics> intrinsics;  // absent: calibrated first, from the same events
 };
 
-// What a unit of the recording's numbers is in SI; -g for drivers that report the direction of gravity.
-enum class AccelerationUnit { MetresPerSecond2, Gravity, MinusGravity };
-enum class AngularRateUnit { RadiansPerSecond, DegreesPerSecond };
-double metresPerSecond2(AccelerationUnit unit);
-double radiansPerSecond(AngularRateUnit unit);
-
 struct SessionImu {
   std::string name, stream;
   ImuNoise noise;
-  AccelerationUnit acceleration_unit = AccelerationUnit::MetresPerSecond2;
-  AngularRateUnit angular_rate_unit = AngularRateUnit::RadiansPerSecond;
+  std::optional<AccelerationUnit> acceleration_unit;  // absent: as the recording's format says
+  std::optional<AngularRateUnit> angular_rate_unit;
 };
 
 struct Session {

@@ -33,6 +33,7 @@ void EventStatistics::add(EventSpan events) {
   const auto width = static_cast<unsigned>(counted_px_.width_px),
              height = static_cast<unsigned>(counted_px_.height_px);
   const auto gap_ns = nanosecondsFrom(options_.event_gap_s);
+  const std::int64_t time_unit_ns = numbers_.info.time_unit_ns;
   std::int64_t previous_ns = numbers_.last_ns;
   unsigned largest_x = 0, largest_y = 0;
   for (const Event& event : events) {
@@ -43,7 +44,7 @@ void EventStatistics::add(EventSpan events) {
     numbers_.on += event.brighter ? 1 : 0;
     numbers_.sum_x += event.x_px;
     numbers_.sum_y += event.y_px;
-    numbers_.sum_t_ns += static_cast<std::uint64_t>(event.time_ns);
+    numbers_.sum_t += static_cast<std::uint64_t>(event.time_ns / time_unit_ns);
     largest_x = std::max<unsigned>(largest_x, event.x_px);
     largest_y = std::max<unsigned>(largest_y, event.y_px);
     if (event.x_px < width && event.y_px < height) {

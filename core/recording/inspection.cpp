@@ -33,8 +33,17 @@ void summarise(const std::vector<ImuSample>& samples, const InspectionOptions& o
     return std::abs(summary.median_acceleration * unit_m_s2 - kGravity_m_s2) <=
            options.gravity_tolerance_m_s2;
   };
-  summary.acceleration_unit = isGravityIn(1.0) ? "m/s^2" : isGravityIn(kGravity_m_s2) ? "g" : "unknown";
-  summary.angular_rate_unit = largestRate(samples) <= options.largest_rate_rad_s ? "rad/s" : "unknown";
+  const StreamInfo& info = summary.info;
+  if (info.acceleration_unit != AccelerationUnit::MetresPerSecond2) {
+    summary.acceleration_unit = kAccelerationUnits.at(static_cast<std::size_t>(info.acceleration_unit));
+  } else {
+    summary.acceleration_unit = isGravityIn(1.0) ? "m/s^2" : isGravityIn(kGravity_m_s2) ? "g" : "unknown";
+  }
+  if (info.angular_rate_unit != AngularRateUnit::RadiansPerSecond) {
+    summary.angular_rate_unit = kAngularRateUnits.at(static_cast<std::size_t>(info.angular_rate_unit));
+  } else {
+    summary.angular_rate_unit = largestRate(samples) <= options.largest_rate_rad_s ? "rad/s" : "unknown";
+  }
 }
 
 }  // namespace
@@ -66,6 +75,7 @@ Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& op
     if (summary.info.type == StreamType::Events) events.at(i).finish(summary, inspection.faults);
     if (summary.info.type != StreamType::Imu) continue;
     summarise(imu_samples[i], options, summary);
+    toSi(summary.info.acceleration_unit, summary.info.angular_rate_unit, imu_samples[i]);
     const std::vector<RecordingFault> found = checkImu(summary.info.name, imu_samples[i], options);
     inspection.faults.insert(inspection.faults.end(), found.begin(), found.end());
   }

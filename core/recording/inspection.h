@@ -24,12 +24,13 @@ struct StreamSummary {
 
   // Events.
   std::uint64_t on = 0, off = 0;
-  std::uint64_t sum_x = 0, sum_y = 0, sum_t_ns = 0;  // modulo 2^64
-  Resolution seen_px;                                // largest coordinates + 1
+  std::uint64_t sum_x = 0, sum_y = 0, sum_t = 0;  // modulo 2^64; times in the file's own unit
+  Resolution seen_px;                             // largest coordinates + 1
 
   // IMU, as the file has them.
-  std::string acceleration_unit,
-      angular_rate_unit;  // a guess from the numbers; "unknown" where they allow none
+  // Of the numbers below: what the format states or, where that is SI, a guess from the numbers; "unknown"
+  // where they allow none.
+  std::string acceleration_unit, angular_rate_unit;
   Eigen::Vector3d mean_acceleration = Eigen::Vector3d::Zero();
   Eigen::Vector3d mean_angular_rate = Eigen::Vector3d::Zero();
   double median_acceleration = 0.0;  // of the norm

@@ -36,7 +36,11 @@ Json streamJson(const StreamSummary& stream, bool with_checksums) {
       info.resolution_px.known() ? Json{info.resolution_px.width_px, info.resolution_px.height_px} : Json();
   json["seen_px"] = {stream.seen_px.width_px, stream.seen_px.height_px};
   if (with_checksums) {
-    json.update({{"sum_x", stream.sum_x}, {"sum_y", stream.sum_y}, {"sum_t_ns_mod_2_64", stream.sum_t_ns}});
+    // In the file's own unit of time.
+    const bool in_us = info.time_unit_ns == 1000;
+    json.update({{"sum_x", stream.sum_x},
+                 {"sum_y", stream.sum_y},
+                 {in_us ? "sum_t_us_mod_2_64" : "sum_t_ns_mod_2_64", stream.sum_t}});
   }
   return json;
 }

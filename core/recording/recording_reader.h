@@ -1,6 +1,6 @@
 // Reads recordings of any supported format as one pass of packets; memory does not grow with a recording's
-// length. Times are ns in the file's own epoch; events have (0, 0) top left; IMU samples are SI in the IMU's
-// own frame.
+// length. Times are ns in the file's own epoch; events have (0, 0) top left; IMU samples are in the
+// IMU's own frame, in the units that their StreamInfo states.
 #pragma once
 
 #include "core/data/recording.h"

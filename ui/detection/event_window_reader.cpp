@@ -71,7 +71,8 @@ class EventWindowReader::Pass {
       selected.push_back(findStream(*reader_, imu.stream, StreamType::Imu));
     if (!session.imus.empty()) {
       imu_stream_ = selected[session.cameras.size() + session.referenceImu()];
-      to_rad_s_ = radiansPerSecond(session.imus[session.referenceImu()].angular_rate_unit);
+      to_rad_s_ = radiansPerSecond(session.imus[session.referenceImu()].angular_rate_unit.value_or(
+          reader_->streams()[*imu_stream_].angular_rate_unit));
     }
     reader_->select(selected);
     const SessionCamera& own = session.cameras[camera];

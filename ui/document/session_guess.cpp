@@ -44,7 +44,8 @@ SessionImu guessedImu(const StreamSummary& stream, const Session& session) {
   SessionImu imu;
   imu.name = freeName(stream.info.name, "imu", session);
   imu.stream = stream.info.name;
-  if (stream.acceleration_unit == "g") imu.acceleration_unit = AccelerationUnit::Gravity;
+  if (stream.acceleration_unit == "g" && stream.info.acceleration_unit != AccelerationUnit::Gravity)
+    imu.acceleration_unit = AccelerationUnit::Gravity;
   return imu;
 }
 

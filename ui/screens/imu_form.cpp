@@ -9,6 +9,7 @@
 #include <QLineEdit>
 
 #include <numbers>
+#include <optional>
 
 namespace evical::ui {
 namespace {
@@ -34,6 +35,17 @@ const NoisePreset kPresets[] = {
     {"TDK ICM-20948", {perDeg(0.015), microG(230)}},
 };
 
+// Units in their boxes: the first entry stands for "not given".
+template <class Unit>
+int indexOf(const std::optional<Unit>& unit) {
+  return unit ? static_cast<int>(*unit) + 1 : 0;
+}
+
+template <class Unit>
+std::optional<Unit> unitAt(int index) {
+  return index > 0 ? std::optional(static_cast<Unit>(index - 1)) : std::nullopt;
+}
+
 QLabel* explanation(QWidget* parent) {
   auto* const label = new QLabel(
       QObject::tr(
@@ -58,8 +70,9 @@ ImuForm::ImuForm(QWidget* parent)
       acceleration_unit_(new QComboBox(this)) {
   for (const NoisePreset& preset : kPresets) preset_->addItem(preset.name);
   preset_->addItem(tr("Own numbers"));
-  angular_rate_unit_->addItems({"rad/s", "deg/s"});
-  acceleration_unit_->addItems({QString("m/s") + QChar(0xb2), "g", "-g"});
+  const QString unstated = tr("the format's unit");
+  angular_rate_unit_->addItems({unstated, "rad/s", "deg/s"});
+  acceleration_unit_->addItems({unstated, QString("m/s") + QChar(0xb2), "g", "-g"});
   acceleration_unit_->setToolTip(
       tr("What the recording's numbers are in; -g for drivers that report gravity"));
   auto* const form = new QFormLayout(this);
@@ -85,8 +98,8 @@ void ImuForm::setImu(const SessionImu& imu) {
   name_->setText(QString::fromStdString(imu.name));
   gyroscope_->setValue(imu.noise.gyroscope_density);
   accelerometer_->setValue(imu.noise.accelerometer_density);
-  angular_rate_unit_->setCurrentIndex(static_cast<int>(imu.angular_rate_unit));
-  acceleration_unit_->setCurrentIndex(static_cast<int>(imu.acceleration_unit));
+  angular_rate_unit_->setCurrentIndex(indexOf(imu.angular_rate_unit));
+  acceleration_unit_->setCurrentIndex(indexOf(imu.acceleration_unit));
   int match = static_cast<int>(std::size(kPresets));  // own numbers
   for (std::size_t i = 0; i < std::size(kPresets); ++i) {
     if (kPresets[i].noise.gyroscope_density == imu.noise.gyroscope_density &&
@@ -107,8 +120,8 @@ void ImuForm::say(const QString& field) {
   SessionImu changed = imu_;
   changed.name = name_->text().trimmed().toStdString();
   changed.noise = {gyroscope_->value(), accelerometer_->value()};
-  changed.angular_rate_unit = static_cast<AngularRateUnit>(angular_rate_unit_->currentIndex());
-  changed.acceleration_unit = static_cast<AccelerationUnit>(acceleration_unit_->currentIndex());
+  changed.angular_rate_unit = unitAt<AngularRateUnit>(angular_rate_unit_->currentIndex());
+  changed.acceleration_unit = unitAt<AccelerationUnit>(acceleration_unit_->currentIndex());
   const bool same = changed.name == imu_.name &&
                     changed.noise.gyroscope_density == imu_.noise.gyroscope_density &&
                     changed.noise.accelerometer_density == imu_.noise.accelerometer_density &&

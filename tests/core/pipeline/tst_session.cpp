@@ -109,8 +109,9 @@ class TestSession : public QObject {
     QCOMPARE(session.cameras[0].intrinsics->focal_length_px.x(), 260.5);
     QVERIFY((session.cameras[0].intrinsics->resolution_px == Resolution{346, 260}));
     QCOMPARE(session.imus.at(0).noise.gyroscope_density, 1.87e-4);
-    QVERIFY(std::abs(metresPerSecond2(session.imus[0].acceleration_unit) + 9.80665) < 1e-12);
-    QVERIFY(std::abs(180.0 * radiansPerSecond(session.imus[0].angular_rate_unit) - 3.14159265358979) < 1e-12);
+    QVERIFY(std::abs(metresPerSecond2(session.imus[0].acceleration_unit.value()) + 9.80665) < 1e-12);
+    QVERIFY(std::abs(180.0 * radiansPerSecond(session.imus[0].angular_rate_unit.value()) - 3.14159265358979) <
+            1e-12);
     QCOMPARE(session.options.initialisation.time_offset_search_s, 0.5);
     QCOMPARE(session.options.front_end.grid.least_circles, 7);
     QCOMPARE(session.options.front_end.bursts.least_events, 3);
