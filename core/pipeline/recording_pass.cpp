@@ -3,7 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/time.h"
 #include "core/pipeline/bounded_queue.h"
-#include "core/recording/recording_reader.h"
+#include "core/pipeline/session_recording.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,6 @@
 #include <chrono>
 #include <exception>
 #include <limits>
-#include <map>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -42,16 +41,9 @@ struct BurstBatch {
 // One camera's events on their way: checked, sorted, turned into bursts.
 class CameraIntake {
  public:
-  CameraIntake(std::size_t camera, const SessionCamera& session, const StreamInfo& info,
+  CameraIntake(std::size_t camera, const SessionCamera& session, Resolution resolution_px,
                const BurstOptions& bursts)
-      : camera_(camera), session_(session), burst_options_(bursts) {
-    resolution_px_ = session.resolution_px.known() ? session.resolution_px : info.resolution_px;
-    if (!resolution_px_.known() && session.intrinsics) resolution_px_ = session.intrinsics->resolution_px;
-    if (!resolution_px_.known()) {
-      throw badInput(session.name, "the recording does not say the sensor's resolution",
-                     "Give resolution_px: [width, height] for this camera in the session");
-    }
-  }
+      : camera_(camera), session_(session), burst_options_(bursts), resolution_px_(resolution_px) {}
 
   std::optional<BurstBatch> take(std::vector<Event>& events) {
     putInOrder(events);
@@ -194,64 +186,28 @@ class WindowWorker {
   double busy_s_ = 0.0;
 };
 
-// Which stream goes where.
-struct Routing {
-  std::vector<std::size_t> selected;
-  std::vector<std::optional<std::size_t>> camera_of, imu_of;  // by stream
-};
-
-Routing route(const Session& session, const RecordingReader& reader) {
-  Routing routing;
-  routing.camera_of.resize(reader.streams().size());
-  routing.imu_of.resize(reader.streams().size());
-  const auto find = [&](const std::string& name, StreamType type) {
-    try {
-      return findStream(reader, name, type);
-    } catch (const CalibrationError& error) {
-      std::string lost;  // perhaps the stream was in what is lost
-      for (const RecordingFault& fault : reader.faults()) lost += ". " + fault.text;
-      throw badInput(fmt::format("{}: {}", session.recording.string(), error.place()), error.problem() + lost,
-                     error.advice());
-    }
-  };
-  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
-    const std::size_t stream = find(session.cameras[k].stream, StreamType::Events);
-    routing.camera_of[stream] = k;
-    routing.selected.push_back(stream);
-  }
-  for (std::size_t k = 0; k < session.imus.size(); ++k) {
-    const std::size_t stream = find(session.imus[k].stream, StreamType::Imu);
-    routing.imu_of[stream] = k;
-    routing.selected.push_back(stream);
-  }
-  return routing;
-}
-
 // Reading: packets to intakes and IMUs, within the session's time range.
 class ReadingPass {
  public:
-  ReadingPass(const Session& session, RecordingReader& reader, RecordingPass& result)
-      : session_(session), reader_(reader), routing_(route(session, reader)), result_(result) {
-    reader.select(routing_.selected);
+  ReadingPass(const Session& session, RecordingPass& result)
+      : session_(session), recording_(session), result_(result), pending_(session.cameras.size()) {
     result.imus.resize(session.imus.size());
-    for (std::size_t stream = 0; stream < routing_.camera_of.size(); ++stream) {
-      if (!routing_.camera_of[stream]) continue;
-      intakes_.resize(session.cameras.size());
-      const std::size_t camera = *routing_.camera_of[stream];
-      intakes_[camera] = std::make_unique<CameraIntake>(
-          camera, session.cameras[camera], reader.streams()[stream], session.options.front_end.bursts);
+    result.start_ns = recording_.start_ns();
+    for (std::size_t camera = 0; camera < session.cameras.size(); ++camera) {
+      intakes_.push_back(std::make_unique<CameraIntake>(camera, session.cameras[camera],
+                                                        recording_.resolution_px(camera),
+                                                        session.options.front_end.bursts));
     }
   }
 
   void run(BoundedQueue<BurstBatch>& queue, const RunContext& context) {
     Packet packet;
-    while (reader_.read(packet)) {
+    while (recording_.read(packet)) {
       context.throwIfStopped();
-      context.progress.stageProgress(reader_.fractionRead());
-      if (packet.events.empty() && packet.imu_samples.empty()) continue;
-      begin(packet);
-      if (routing_.imu_of[packet.stream]) addSamples(packet);
-      if (routing_.camera_of[packet.stream] && !addEvents(packet, queue)) return;
+      context.progress.stageProgress(recording_.fractionRead());
+      const bool is_camera = packet.stream < intakes_.size();
+      if (!is_camera) addSamples(packet);
+      if (is_camera && !addEvents(packet, queue)) return;
     }
     for (std::size_t camera = 0; camera < intakes_.size(); ++camera) {
       flush(camera, queue);
@@ -260,23 +216,18 @@ class ReadingPass {
   }
 
   void finish() {
-    for (std::size_t k = 0; k < session_.imus.size(); ++k) finishImu(k, session_.imus[k], result_.imus[k]);
+    for (std::size_t k = 0; k < session_.imus.size(); ++k) finishImu(session_.imus[k], result_.imus[k]);
     for (const auto& intake : intakes_) {
       intake->report(result_.faults);
       result_.resolutions_px.push_back(intake->resolution_px());
     }
+    const std::vector<RecordingFault> faults = recording_.faults();
+    result_.faults.insert(result_.faults.end(), faults.begin(), faults.end());
   }
 
   std::uint64_t eventCount(std::size_t camera) const { return intakes_[camera]->eventCount(); }
 
  private:
-  void begin(const Packet& packet) {
-    if (begun_) return;
-    begun_ = true;
-    result_.start_ns =
-        packet.events.empty() ? packet.imu_samples.front().time_ns : packet.events.front().time_ns;
-  }
-
   bool wanted(std::int64_t time_ns) const {
     if (!session_.time_range_s) return true;
     const double time_s = secondsSince(result_.start_ns, time_ns);
@@ -284,7 +235,7 @@ class ReadingPass {
   }
 
   void addSamples(const Packet& packet) {
-    std::vector<ImuSample>& samples = result_.imus[*routing_.imu_of[packet.stream]].samples;
+    std::vector<ImuSample>& samples = result_.imus[packet.stream - intakes_.size()].samples;
     for (const ImuSample& sample : packet.imu_samples) {
       if (wanted(sample.time_ns)) samples.push_back(sample);
     }
@@ -293,10 +244,10 @@ class ReadingPass {
   bool addEvents(Packet& packet, BoundedQueue<BurstBatch>& queue) {
     if (session_.time_range_s)
       std::erase_if(packet.events, [&](const Event& e) { return !wanted(e.time_ns); });
-    std::vector<Event>& pending = pending_[*routing_.camera_of[packet.stream]];
+    std::vector<Event>& pending = pending_[packet.stream];
     pending.insert(pending.end(), packet.events.begin(), packet.events.end());
     if (pending.size() < kBatchEvents) return true;
-    return flush(*routing_.camera_of[packet.stream], queue);
+    return flush(packet.stream, queue);
   }
 
   bool flush(std::size_t camera, BoundedQueue<BurstBatch>& queue) {
@@ -307,8 +258,7 @@ class ReadingPass {
     return queue.push(std::move(*batch));
   }
 
-  void finishImu(std::size_t k, const SessionImu& session, ImuData& imu) {
-    const StreamInfo& info = reader_.streams()[routing_.selected[session_.cameras.size() + k]];
+  void finishImu(const SessionImu& session, ImuData& imu) {
     imu.name = session.name;
     imu.noise = session.noise;
     const auto earlier = [](const ImuSample& a, const ImuSample& b) { return a.time_ns < b.time_ns; };
@@ -319,17 +269,13 @@ class ReadingPass {
     }
     const auto same = [](const ImuSample& a, const ImuSample& b) { return a.time_ns == b.time_ns; };
     imu.samples.erase(std::unique(imu.samples.begin(), imu.samples.end(), same), imu.samples.end());
-    toSi(session.acceleration_unit.value_or(info.acceleration_unit),
-         session.angular_rate_unit.value_or(info.angular_rate_unit), imu.samples);
   }
 
   const Session& session_;
-  RecordingReader& reader_;
-  Routing routing_;
+  SessionRecording recording_;
   RecordingPass& result_;
   std::vector<std::unique_ptr<CameraIntake>> intakes_;
-  std::map<std::size_t, std::vector<Event>> pending_;
-  bool begun_ = false;
+  std::vector<std::vector<Event>> pending_;  // by camera
 };
 
 }  // namespace
@@ -337,9 +283,8 @@ class ReadingPass {
 RecordingPass readAndDetect(const Session& session, const RunContext& context,
                             const ObserverFactory& observers, CalibrationObserver* observer) {
   RecordingPass result;
-  const std::unique_ptr<RecordingReader> reader = openRecording(session.recording);
   const Clock::time_point begin = Clock::now();
-  ReadingPass reading(session, *reader, result);
+  ReadingPass reading(session, result);
   WindowWorker worker(session, context, observers, observer);
   BoundedQueue<BurstBatch> queue(kQueuedBatches);
   {
@@ -358,7 +303,6 @@ RecordingPass readAndDetect(const Session& session, const RunContext& context,
   result.cameras = worker.finish();
   result.detect_s = worker.busy_s();
   reading.finish();
-  result.faults.insert(result.faults.end(), reader->faults().begin(), reader->faults().end());
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
     result.cameras[k].events = reading.eventCount(k);
     if (result.cameras[k].events > 0) continue;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <numbers>
 #include <set>
+#include <utility>
 
 namespace evical {
 namespace {
@@ -26,17 +27,18 @@ void checkReference(const Session& session, const std::string& place) {
 }
 
 void checkDifferent(const Session& session, const std::string& place) {
-  std::set<std::string> names, streams;
-  const auto check = [&](const std::string& kind, const std::string& name, const std::string& stream) {
-    const std::string key = fmt::format("{}: {}.{}", place, kind, name);
-    if (!names.insert(name).second)
+  std::set<std::string> names;
+  std::set<std::pair<std::filesystem::path, std::string>> streams;
+  const auto check = [&](const std::string& kind, const auto& sensor) {
+    const std::string key = fmt::format("{}: {}.{}", place, kind, sensor.name);
+    if (!names.insert(sensor.name).second)
       throw badInput(key, "this name is taken", "Give every sensor its own name");
-    if (!streams.insert(stream).second)
-      throw badInput(key + ".stream", fmt::format("'{}' is already another sensor's stream", stream),
+    if (!streams.insert({sensor.recording, sensor.stream}).second)
+      throw badInput(key + ".stream", fmt::format("'{}' is already another sensor's stream", sensor.stream),
                      "Give every sensor its own stream");
   };
-  for (const SessionCamera& camera : session.cameras) check("cameras", camera.name, camera.stream);
-  for (const SessionImu& imu : session.imus) check("imus", imu.name, imu.stream);
+  for (const SessionCamera& camera : session.cameras) check("cameras", camera);
+  for (const SessionImu& imu : session.imus) check("imus", imu);
 }
 
 void checkBoard(const Session& session, const std::string& place) {
@@ -58,8 +60,25 @@ std::string boardYaml(const CircleBoard& board) {
       board.cols, board.spacing_m, board.radius_m, board.circles == CircleShade::Dark ? "dark" : "bright");
 }
 
-std::string cameraYaml(const SessionCamera& camera) {
-  std::string text = fmt::format("  {}:\n    stream: {}\n", yamlText(camera.name), yamlText(camera.stream));
+std::string recordingText(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  const auto recording = std::filesystem::weakly_canonical(file);
+  const auto relative = recording.lexically_relative(std::filesystem::weakly_canonical(folder));
+  return relative.empty() || *relative.begin() == ".." ? recording.string() : relative.string();
+}
+
+// Which stream of which file, in which clock.
+template <class Sensor>
+std::string sourceYaml(const Sensor& sensor, const std::filesystem::path& folder) {
+  std::string text = fmt::format("  {}:\n", yamlText(sensor.name));
+  if (!sensor.recording.empty())
+    text += fmt::format("    recording: {}\n", yamlText(recordingText(sensor.recording, folder)));
+  text += fmt::format("    stream: {}\n", yamlText(sensor.stream));
+  if (sensor.clock_offset_s != 0.0) text += fmt::format("    clock_offset_s: {}\n", sensor.clock_offset_s);
+  return text;
+}
+
+std::string cameraYaml(const SessionCamera& camera, const std::filesystem::path& folder) {
+  std::string text = sourceYaml(camera, folder);
   if (camera.resolution_px.known())
     text += fmt::format("    resolution_px: [{}, {}]\n", camera.resolution_px.width_px,
                         camera.resolution_px.height_px);
@@ -67,10 +86,10 @@ std::string cameraYaml(const SessionCamera& camera) {
   return text;
 }
 
-std::string imuYaml(const SessionImu& imu) {
-  std::string text = fmt::format(
-      "  {}:\n    stream: {}\n    accelerometer_noise_density: {}\n    gyroscope_noise_density: {}\n",
-      yamlText(imu.name), yamlText(imu.stream), imu.noise.accelerometer_density, imu.noise.gyroscope_density);
+std::string imuYaml(const SessionImu& imu, const std::filesystem::path& folder) {
+  std::string text = sourceYaml(imu, folder);
+  text += fmt::format("    accelerometer_noise_density: {}\n    gyroscope_noise_density: {}\n",
+                      imu.noise.accelerometer_density, imu.noise.gyroscope_density);
   if (imu.acceleration_unit) {
     text += fmt::format("    acceleration_unit: {}\n",
                         kAccelerationUnits.at(static_cast<std::size_t>(*imu.acceleration_unit)));
@@ -80,12 +99,6 @@ std::string imuYaml(const SessionImu& imu) {
                         kAngularRateUnits.at(static_cast<std::size_t>(*imu.angular_rate_unit)));
   }
   return text;
-}
-
-std::string recordingText(const Session& session, const std::filesystem::path& folder) {
-  const auto recording = std::filesystem::weakly_canonical(session.recording);
-  const auto relative = recording.lexically_relative(std::filesystem::weakly_canonical(folder));
-  return relative.empty() || *relative.begin() == ".." ? recording.string() : relative.string();
 }
 
 }  // namespace
@@ -106,13 +119,13 @@ void validate(const Session& session, const std::string& place) {
 
 std::string sessionYaml(const Session& session, const std::filesystem::path& folder) {
   std::string text =
-      fmt::format("evical_session: 1\nrecording: {}\n", yamlText(recordingText(session, folder)));
+      fmt::format("evical_session: 1\nrecording: {}\n", yamlText(recordingText(session.recording, folder)));
   if (session.time_range_s)
     text += fmt::format("time_range_s: [{}, {}]\n", (*session.time_range_s)[0], (*session.time_range_s)[1]);
   text += boardYaml(session.board) + "cameras:\n";
-  for (const SessionCamera& camera : session.cameras) text += cameraYaml(camera);
+  for (const SessionCamera& camera : session.cameras) text += cameraYaml(camera, folder);
   if (!session.imus.empty()) text += "imus:\n";
-  for (const SessionImu& imu : session.imus) text += imuYaml(imu);
+  for (const SessionImu& imu : session.imus) text += imuYaml(imu, folder);
   text += fmt::format("reference: {}\n", yamlText(session.reference));
   const std::vector<OptionRow> rows = differingOptions(session.options);
   text += rows.empty() ? "options: {}\n" : "options:\n";

@@ -17,6 +17,8 @@ struct SessionCamera {
   std::string name, stream;
   Resolution resolution_px;                    // unknown: the recording says it
   std::optional<CameraIntrinsics> intrinsics;  // absent: calibrated first, from the same events
+  std::filesystem::path recording = {};        // its own; empty: the session's
+  double clock_offset_s = 0.0;                 // known: to be added to the stream's times
 };
 
 struct SessionImu {
@@ -24,6 +26,8 @@ struct SessionImu {
   ImuNoise noise;
   std::optional<AccelerationUnit> acceleration_unit;  // absent: as the recording's format says
   std::optional<AngularRateUnit> angular_rate_unit;
+  std::filesystem::path recording;  // its own; empty: the session's
+  double clock_offset_s = 0.0;      // known: to be added to the stream's times
 };
 
 struct Session {

@@ -57,12 +57,24 @@ Resolution readResolution(const YamlNode& node) {
   return {items[0].integer(1, 30000), items[1].integer(1, 30000)};
 }
 
+constexpr double kLargestOffset_s = 1e10;
+
+// Which stream of which file, in which clock.
+template <class Sensor>
+Sensor readSource(const YamlNode& map, const std::string& sensor_name, const std::filesystem::path& folder) {
+  Sensor sensor;
+  sensor.name = sensor_name;
+  sensor.stream = name(map["stream"]);
+  if (const auto node = map.find("recording")) sensor.recording = besideSession(*node, folder);
+  if (const auto node = map.find("clock_offset_s"))
+    sensor.clock_offset_s = node->real(-kLargestOffset_s, kLargestOffset_s, "s");
+  return sensor;
+}
+
 SessionCamera readCamera(const YamlNode& map, const std::string& camera_name,
                          const std::filesystem::path& folder) {
-  map.allowOnly({"stream", "resolution_px", "intrinsics"});
-  SessionCamera camera;
-  camera.name = camera_name;
-  camera.stream = name(map["stream"]);
+  map.allowOnly({"recording", "stream", "clock_offset_s", "resolution_px", "intrinsics"});
+  SessionCamera camera = readSource<SessionCamera>(map, camera_name, folder);
   if (const auto node = map.find("resolution_px")) camera.resolution_px = readResolution(*node);
   const auto intrinsics = map.find("intrinsics");
   if (!intrinsics) return camera;
@@ -80,12 +92,10 @@ SessionCamera readCamera(const YamlNode& map, const std::string& camera_name,
   return camera;
 }
 
-SessionImu readImu(const YamlNode& map, const std::string& imu_name) {
-  map.allowOnly({"stream", "accelerometer_noise_density", "gyroscope_noise_density", "acceleration_unit",
-                 "angular_rate_unit"});
-  SessionImu imu;
-  imu.name = imu_name;
-  imu.stream = name(map["stream"]);
+SessionImu readImu(const YamlNode& map, const std::string& imu_name, const std::filesystem::path& folder) {
+  map.allowOnly({"recording", "stream", "clock_offset_s", "accelerometer_noise_density",
+                 "gyroscope_noise_density", "acceleration_unit", "angular_rate_unit"});
+  SessionImu imu = readSource<SessionImu>(map, imu_name, folder);
   imu.noise.accelerometer_density = map["accelerometer_noise_density"].real(1e-7, 10.0, "m/s^2/sqrt(Hz)");
   imu.noise.gyroscope_density = map["gyroscope_noise_density"].real(1e-8, 10.0, "rad/s/sqrt(Hz)");
   if (const auto node = map.find("acceleration_unit"))
@@ -125,7 +135,7 @@ void readSensors(const YamlNode& root, const std::filesystem::path& folder, Sess
     session.cameras.push_back(readCamera(cameras[key], key, folder));
   if (session.cameras.empty()) throw cameras.error("is empty", "Describe at least one camera");
   if (const auto imus = root.find("imus"); imus && !imus->isNull())
-    for (const std::string& key : imus->keys()) session.imus.push_back(readImu((*imus)[key], key));
+    for (const std::string& key : imus->keys()) session.imus.push_back(readImu((*imus)[key], key, folder));
   if (const auto node = root.find("reference"))
     session.reference = node->text();
   else

@@ -27,11 +27,14 @@ constexpr int kFrame_ms = 33;
 
 // What decides about events and windows but the options.
 bool sameRecording(const Session& a, const Session& b) {
-  const auto same_camera = [](const SessionCamera& x, const SessionCamera& y) {
-    return x.stream == y.stream && x.resolution_px == y.resolution_px && x.intrinsics == y.intrinsics;
+  const auto same_source = [](const auto& x, const auto& y) {
+    return x.stream == y.stream && x.recording == y.recording && x.clock_offset_s == y.clock_offset_s;
   };
-  const auto same_imu = [](const SessionImu& x, const SessionImu& y) {
-    return x.stream == y.stream && x.angular_rate_unit == y.angular_rate_unit;
+  const auto same_camera = [&](const SessionCamera& x, const SessionCamera& y) {
+    return same_source(x, y) && x.resolution_px == y.resolution_px && x.intrinsics == y.intrinsics;
+  };
+  const auto same_imu = [&](const SessionImu& x, const SessionImu& y) {
+    return same_source(x, y) && x.angular_rate_unit == y.angular_rate_unit;
   };
   return a.recording == b.recording && a.board == b.board && a.reference == b.reference &&
          std::equal(a.cameras.begin(), a.cameras.end(), b.cameras.begin(), b.cameras.end(), same_camera) &&

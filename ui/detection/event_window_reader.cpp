@@ -3,7 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/base/time.h"
-#include "core/recording/recording_reader.h"
+#include "core/pipeline/session_recording.h"
 
 #include <algorithm>
 #include <chrono>
@@ -62,56 +62,41 @@ std::string wordsOf(const CalibrationError& error) {
 class EventWindowReader::Pass {
  public:
   Pass(const Session& session, std::size_t camera, EventCache& cache)
-      : session_(session), cache_(cache), reader_(openRecording(session.recording)) {
-    std::vector<std::size_t> selected;
-    for (const SessionCamera& other : session.cameras)
-      selected.push_back(findStream(*reader_, other.stream, StreamType::Events));
-    events_stream_ = selected[camera];
-    for (const SessionImu& imu : session.imus)
-      selected.push_back(findStream(*reader_, imu.stream, StreamType::Imu));
-    if (!session.imus.empty()) {
-      imu_stream_ = selected[session.cameras.size() + session.referenceImu()];
-      to_rad_s_ = radiansPerSecond(session.imus[session.referenceImu()].angular_rate_unit.value_or(
-          reader_->streams()[*imu_stream_].angular_rate_unit));
-    }
-    reader_->select(selected);
-    const SessionCamera& own = session.cameras[camera];
-    resolution_px_ =
-        own.resolution_px.known() ? own.resolution_px : reader_->streams()[events_stream_].resolution_px;
-    if (!resolution_px_.known() && own.intrinsics) resolution_px_ = own.intrinsics->resolution_px;
-    if (!resolution_px_.known())
-      throw badInput(own.name, "the recording does not say the sensor's resolution",
-                     "Give it in the session");
+      : cache_(cache),
+        recording_(session),
+        camera_(camera),
+        resolution_px_(recording_.resolution_px(camera)),
+        start_ns_(recording_.start_ns()) {
+    if (!session.imus.empty()) imu_stream_ = recording_.imuStream(session.referenceImu());
   }
 
   bool step() {
-    if (!reader_->read(packet_)) {
+    if (!recording_.read(packet_)) {
       flush();
       cache_.finish();
       return false;
     }
-    if (!start_ns_ && !packet_.events.empty()) start_ns_ = packet_.events.front().time_ns;
-    if (!start_ns_ && !packet_.imu_samples.empty()) start_ns_ = packet_.imu_samples.front().time_ns;
-    if (packet_.stream == events_stream_) {
+    started_ = true;
+    if (packet_.stream == camera_) {
       pending_.insert(pending_.end(), packet_.events.begin(), packet_.events.end());
       if (pending_.size() >= kBatchEvents) flush();
     }
     if (imu_stream_ && packet_.stream == *imu_stream_) {
       for (const ImuSample& sample : packet_.imu_samples)
-        rotation_.add(secondsSince(*start_ns_, sample.time_ns), to_rad_s_ * sample.angular_rate_rad_s.norm());
+        rotation_.add(secondsSince(start_ns_, sample.time_ns), sample.angular_rate_rad_s.norm());
     }
     return true;
   }
 
   void describe(RecordingOverview& overview) const {
-    overview.started = start_ns_.has_value();
-    overview.start_ns = start_ns_.value_or(0);
+    overview.started = started_;
+    overview.start_ns = start_ns_;
     overview.resolution_px = resolution_px_;
-    overview.read_until_s = start_ns_ && last_ns_ >= *start_ns_ ? secondsSince(*start_ns_, last_ns_) : 0.0;
+    overview.read_until_s = last_ns_ >= start_ns_ ? secondsSince(start_ns_, last_ns_) : 0.0;
     overview.event_rate = events_.perSecond();
     overview.rotation_rate = rotation_.means();
   }
-  double fractionRead() const { return reader_->fractionRead(); }
+  double fractionRead() const { return recording_.fractionRead(); }
 
  private:
   // The calibration's rules: sorted within a batch; late events and those outside are left out.
@@ -126,20 +111,19 @@ class EventWindowReader::Pass {
     if (pending_.empty()) return;
     cache_.append(pending_);
     last_ns_ = pending_.back().time_ns;
-    for (const Event& event : pending_) events_.add(secondsSince(*start_ns_, event.time_ns), 0.0);
+    for (const Event& event : pending_) events_.add(secondsSince(start_ns_, event.time_ns), 0.0);
     pending_.clear();
   }
 
-  const Session& session_;
   EventCache& cache_;
-  std::unique_ptr<RecordingReader> reader_;
-  std::size_t events_stream_ = 0;
+  SessionRecording recording_;
+  std::size_t camera_;
   std::optional<std::size_t> imu_stream_;
-  double to_rad_s_ = 1.0;
   Resolution resolution_px_;
   Packet packet_;
   std::vector<Event> pending_;
-  std::optional<std::int64_t> start_ns_;
+  std::int64_t start_ns_;
+  bool started_ = false;
   std::int64_t last_ns_ = std::numeric_limits<std::int64_t>::min();
   Bins events_, rotation_;
 };

@@ -130,6 +130,20 @@ class TestSession : public QObject {
     QCOMPARE(sessionYaml(again, folder()), sessionYaml(session, folder()));
   }
 
+  void sensors_mayHaveTheirOwnRecordings() {
+    write("imu.csv", "x");
+    const Session session = sessionWith(
+        "    stream: /left/imu\n", "    recording: imu.csv\n    stream: imu\n    clock_offset_s: -1.25\n");
+    QVERIFY(session.cameras[0].recording.empty());
+    QVERIFY(std::filesystem::equivalent(session.imus[0].recording, folder() / "imu.csv"));
+    QCOMPARE(session.imus[0].clock_offset_s, -1.25);
+    writeSession(session, folder() / "again.yaml");
+    const Session again = readSession(folder() / "again.yaml");
+    QVERIFY(std::filesystem::equivalent(again.imus[0].recording, folder() / "imu.csv"));
+    QCOMPARE(again.imus[0].clock_offset_s, -1.25);
+    QCOMPARE(sessionYaml(again, folder()), sessionYaml(session, folder()));
+  }
+
   void intrinsics_ofKalibr_areThoseOfTheStream() {
     const CameraIntrinsics camera = *sessionWithIntrinsicsFile(kCamchain).cameras[0].intrinsics;
     QVERIFY(camera.model == CameraModel::PinholeEquidistant);

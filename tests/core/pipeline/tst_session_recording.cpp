@@ -1,0 +1,166 @@
+#include "core/base/error.h"
+#include "core/pipeline/session_recording.h"
+#include "tests/core/recording/sample_recording.h"
+
+#include <QTemporaryDir>
+#include <QtTest>
+
+using namespace evical;
+using namespace evical::test;
+
+namespace {
+
+constexpr std::size_t kEvents = 40'000;
+
+// Steps back in time between packets, over all streams.
+std::int64_t largestStepBack_ns(SessionRecording& recording) {
+  Packet packet;
+  std::int64_t last_ns = recording.start_ns(), largest_ns = 0;
+  while (recording.read(packet)) {
+    const std::int64_t first_ns =
+        packet.events.empty() ? packet.imu_samples.front().time_ns : packet.events.front().time_ns;
+    largest_ns = std::max(largest_ns, last_ns - first_ns);
+    last_ns = first_ns;
+  }
+  return largest_ns;
+}
+
+}  // namespace
+
+class TestSessionRecording : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void init();
+  void oneFile_isReadAsItIs();
+  void twoFiles_areReadTogether();
+  void clockOffset_isAdded();
+  void units_areThoseOfTheSession();
+  void clocksWithoutRelation_areRefused();
+  void missingStream_namesFileAndStreams();
+
+ private:
+  std::filesystem::path path(const char* name) const { return folder_.filePath(name).toStdString(); }
+  Recording readSession(std::size_t& imu_stream) const {
+    SessionRecording recording(session_);
+    imu_stream = recording.imuStream(0);
+    Recording all;
+    Packet packet;
+    while (recording.read(packet)) {
+      auto& events = all.events;
+      auto& samples = all.imu_samples;
+      if (packet.stream == 0) events.insert(events.end(), packet.events.begin(), packet.events.end());
+      if (packet.stream == 1)
+        samples.insert(samples.end(), packet.imu_samples.begin(), packet.imu_samples.end());
+    }
+    return all;
+  }
+  // Events in one bag, IMU samples in another.
+  void useTwoFiles() {
+    const std::vector<StreamInfo> streams = sampleStreams();
+    Recording events = written_, samples = written_;
+    events.imu_samples.resize(1);
+    samples.events.resize(1);
+    writeAll(*createBag(path("events.bag"), streams, false), events);
+    writeAll(*createBag(path("imu.bag"), streams, false), samples);
+    session_.recording = path("events.bag");
+    session_.imus[0].recording = path("imu.bag");
+  }
+
+  QTemporaryDir folder_;
+  Recording written_ = sampleRecording(kEvents);
+  Session session_;
+};
+
+void TestSessionRecording::init() {
+  session_ = {};
+  SessionCamera camera;
+  camera.name = "camera";
+  camera.stream = "/dvs/events";
+  SessionImu imu;
+  imu.name = "imu";
+  imu.stream = "/dvs/imu";
+  session_.cameras = {camera};
+  session_.imus = {imu};
+  session_.recording = path("whole.bag");
+  writeAll(*createBag(path("whole.bag"), sampleStreams(), false), written_);
+}
+
+void TestSessionRecording::oneFile_isReadAsItIs() {
+  std::size_t imu_stream = 0;
+  const Recording read = readSession(imu_stream);
+  QCOMPARE(imu_stream, std::size_t{1});
+  QVERIFY(same(read.events, written_.events));
+  QVERIFY(same(read.imu_samples, written_.imu_samples));
+  SessionRecording recording(session_);
+  QCOMPARE(qint64(recording.start_ns()), qint64(written_.events.front().time_ns));
+  QVERIFY((recording.resolution_px(0) == Resolution{346, 260}));
+}
+
+void TestSessionRecording::twoFiles_areReadTogether() {
+  useTwoFiles();
+  std::size_t imu_stream = 0;
+  const Recording read = readSession(imu_stream);
+  QVERIFY(same(read.events, written_.events));
+  QVERIFY(same(read.imu_samples, written_.imu_samples));
+  SessionRecording recording(session_);
+  QVERIFY(largestStepBack_ns(recording) < 20'000'000);
+  QCOMPARE(recording.fractionRead(), 1.0);
+}
+
+void TestSessionRecording::clockOffset_isAdded() {
+  useTwoFiles();
+  session_.imus[0].clock_offset_s = -0.25;
+  session_.cameras[0].clock_offset_s = 1e-6;
+  std::size_t imu_stream = 0;
+  const Recording read = readSession(imu_stream);
+  QCOMPARE(qint64(read.imu_samples[7].time_ns), qint64(written_.imu_samples[7].time_ns - 250'000'000));
+  QCOMPARE(qint64(read.events[7].time_ns), qint64(written_.events[7].time_ns + 1000));
+  QCOMPARE(qint64(SessionRecording(session_).start_ns()), qint64(read.imu_samples.front().time_ns));
+}
+
+void TestSessionRecording::units_areThoseOfTheSession() {
+  session_.imus[0].acceleration_unit = AccelerationUnit::MinusGravity;
+  session_.imus[0].angular_rate_unit = AngularRateUnit::DegreesPerSecond;
+  std::size_t imu_stream = 0;
+  const ImuSample read = readSession(imu_stream).imu_samples.at(3), &written = written_.imu_samples.at(3);
+  QVERIFY((read.specific_force_m_s2 + 9.80665 * written.specific_force_m_s2).norm() < 1e-12);
+  QVERIFY((180.0 / M_PI * read.angular_rate_rad_s - written.angular_rate_rad_s).norm() < 1e-12);
+}
+
+void TestSessionRecording::clocksWithoutRelation_areRefused() {
+  useTwoFiles();
+  Recording samples = written_;
+  samples.events.resize(1);
+  const std::int64_t start_ns = written_.events.front().time_ns;
+  for (ImuSample& sample : samples.imu_samples) sample.time_ns -= start_ns;
+  samples.events[0].time_ns = 0;
+  writeAll(*createBag(path("imu.bag"), sampleStreams(), false), samples);
+  try {
+    SessionRecording recording(session_);
+    QFAIL("accepted");
+  } catch (const CalibrationError& error) {
+    QVERIFY(QString(error.what()).contains("imu.bag"));
+    QVERIFY2(QString(error.what()).contains("1600000000.12"), error.what());
+  }
+  session_.imus[0].clock_offset_s = 1e-9 * static_cast<double>(start_ns);  // what it advised
+  std::size_t imu_stream = 0;
+  const Recording read = readSession(imu_stream);
+  QVERIFY(std::abs(read.imu_samples.front().time_ns - written_.imu_samples.front().time_ns) < 1000);
+}
+
+void TestSessionRecording::missingStream_namesFileAndStreams() {
+  useTwoFiles();
+  session_.imus[0].stream = "/dvs/imo";
+  try {
+    SessionRecording recording(session_);
+    QFAIL("accepted");
+  } catch (const CalibrationError& error) {
+    QVERIFY(error.kind() == ErrorKind::BadInput);
+    QVERIFY(QString(error.what()).contains("imu.bag"));
+    QVERIFY(QString(error.what()).contains("/dvs/imu"));
+  }
+}
+
+QTEST_APPLESS_MAIN(TestSessionRecording)
+#include "tst_session_recording.moc"
