@@ -110,13 +110,14 @@ double step(const std::vector<RotationPair>& pairs, const GyroRotation& gyro, do
 
 std::optional<HandEye> estimateCameraImuRotation(const std::vector<CameraPose>& poses,
                                                  const GyroRotation& gyro, double time_offset_s,
-                                                 double pair_gap_s, double longest_pair_s) {
+                                                 const InitialisationOptions& options) {
   constexpr double kFirstScale_rad = 0.05, kLastScale_rad = 0.005;
   constexpr int kSteps = 15;
-  constexpr double kReach_s = 0.1;
-  std::vector<RotationPair> pairs = rotationPairs(poses, pair_gap_s, longest_pair_s);
+  std::vector<RotationPair> pairs = rotationPairs(poses, options.pair_gap_s, options.longest_pair_s);
+  const double lowest_s = time_offset_s - options.time_offset_reach_s,
+               highest_s = time_offset_s + options.time_offset_reach_s;
   std::erase_if(pairs, [&](const RotationPair& pair) {
-    return !gyro.covers(pair.from_s + time_offset_s - kReach_s, pair.to_s + time_offset_s + kReach_s);
+    return !gyro.covers(pair.from_s + lowest_s, pair.to_s + highest_s);
   });
   if (pairs.size() < 5) return std::nullopt;
   HandEye result;
@@ -126,8 +127,7 @@ std::optional<HandEye> estimateCameraImuRotation(const std::vector<CameraPose>& 
   double scale_rad = kFirstScale_rad;
   for (int k = 0; k < kSteps; ++k) {
     result.residual_rad = step(pairs, gyro, scale_rad, result);
-    result.time_offset_s =
-        std::clamp(result.time_offset_s, time_offset_s - kReach_s, time_offset_s + kReach_s);
+    result.time_offset_s = std::clamp(result.time_offset_s, lowest_s, highest_s);
     scale_rad = std::max(0.7 * scale_rad, kLastScale_rad);
   }
   return result;

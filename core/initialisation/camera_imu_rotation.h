@@ -22,10 +22,10 @@ struct HandEye {
   int pairs = 0;
 };
 
-// From a start offset that is right to about a tenth of a second. Nothing if fewer than five pairs are
+// From a start offset that is right to `time_offset_reach_s`. Nothing if fewer than five pairs are
 // covered.
 std::optional<HandEye> estimateCameraImuRotation(const std::vector<CameraPose>& poses,
                                                  const GyroRotation& gyro, double time_offset_s,
-                                                 double pair_gap_s, double longest_pair_s);
+                                                 const InitialisationOptions& options);
 
 }  // namespace evical

@@ -14,7 +14,6 @@
 namespace evical {
 namespace {
 
-constexpr double kAmbiguousRatio = 2.0, kAmbiguousExtra_px = 0.02;  // of the two poses' errors
 constexpr std::size_t kLeastCircles = 4;
 constexpr double kNoFit_px = 1e9;
 
@@ -101,15 +100,16 @@ double disagreement(const RigidTransform& pose, double time_s, const CameraPose&
 }  // namespace
 
 CameraPoses estimateCameraPoses(const CameraData& camera, const CircleBoard& board,
-                                double largest_reprojection_px) {
+                                const InitialisationOptions& options, const RunContext& context) {
   CameraPoses result;
   std::vector<double> errors_px;
   for (std::size_t v = 0; v < camera.observations.views.size(); ++v) {
+    context.throwIfStopped();
     const BoardView& view = camera.observations.views[v];
     if (view.circles.size() < kLeastCircles) continue;
     const auto found = planarPoses(atOneTime(view), *camera.intrinsics, board);
     if (!found.empty()) errors_px.push_back(found.front().first);
-    if (found.empty() || !(found.front().first <= largest_reprojection_px)) {
+    if (found.empty() || !(found.front().first <= options.largest_reprojection_px)) {
       ++result.rejected;
       continue;
     }
@@ -118,7 +118,8 @@ CameraPoses estimateCameraPoses(const CameraData& camera, const CircleBoard& boa
     pose.world_from_camera = inverse(found.front().second);
     pose.reprojection_px = found.front().first;
     pose.view = v;
-    if (found.size() > 1 && found[1].first < kAmbiguousRatio * found[0].first + kAmbiguousExtra_px &&
+    if (found.size() > 1 &&
+        found[1].first < options.ambiguous_pose_ratio * found[0].first + options.ambiguous_pose_px &&
         rotationAngleBetween_rad(found[0].second.rotation, found[1].second.rotation) > 1e-3) {
       pose.other_world_from_camera = inverse(found[1].second);
     }

@@ -1,9 +1,11 @@
 // Camera poses from single views of the board (method 5.2).
 #pragma once
 
+#include "core/base/progress.h"
 #include "core/data/calibration_setup.h"
 #include "core/geometry/rigid_transform.h"
 #include "core/initialisation/gyro_rotation.h"
+#include "core/initialisation/initialisation_options.h"
 
 #include <optional>
 #include <vector>
@@ -21,13 +23,13 @@ struct CameraPose {
 
 struct CameraPoses {
   std::vector<CameraPose> poses;
-  int rejected = 0;                     // views that fit worse than `largest_reprojection_px`, or not at all
+  int rejected = 0;                     // views that fit worse than the option allows, or not at all
   double median_reprojection_px = 0.0;  // of all views, those too
 };
 
 // One pose a view, its circles brought to view.time_s.
 CameraPoses estimateCameraPoses(const CameraData& camera, const CircleBoard& board,
-                                double largest_reprojection_px);
+                                const InitialisationOptions& options, const RunContext& context = {});
 
 // Where a view allows two poses, takes the one whose rotation from its neighbours is as large as the
 // gyroscope's. Returns how many were swapped.

@@ -96,8 +96,9 @@ struct Sigmas {
 class Alignment {
  public:
   Alignment(std::span<const CameraTrack> cameras, std::span<const ImuSample> samples, std::int64_t start_ns,
-            const So3Spline& rotation, const InitialisationOptions& options)
+            const So3Spline& rotation, const InitialisationOptions& options, const RunContext& context)
       : options_(options),
+        context_(context),
         layout_(cameras.size()),
         point_count_(static_cast<Eigen::Index>(rotation.control_points.size())),
         knot_spacing_s_(rotation.knot_spacing_s),
@@ -134,6 +135,7 @@ class Alignment {
   Solution solve(int rounds) {
     Solution solution;
     for (int round = 0; round < rounds; ++round) {
+      context_.throwIfStopped();
       solution = solveOnce();
       points_ = solution.points;
       gravity_m_s2_ = solution.shared.segment<3>(layout_.gravity);
@@ -178,6 +180,7 @@ class Alignment {
   void reweigh(const Solution& solution);
 
   InitialisationOptions options_;
+  const RunContext& context_;
   Layout layout_;
   Eigen::Index point_count_;
   double knot_spacing_s_;
@@ -336,12 +339,12 @@ void Alignment::reweigh(const Solution& solution) {
   sigmas_ = {within(median(positions), options_.position_sigma_m),
              within(median(accelerations), options_.acceleration_sigma_m_s2)};
   cost_ = 0.0;
-  constexpr double kScale = 5.0;  // sigmas; Cauchy's weights
+  const double scale = options_.outlier_sigma;  // Cauchy's weights
   for (Row& row : rows_) {
     const double sigma = row.position ? options_.position_sigma_m : options_.acceleration_sigma_m_s2;
-    cost_ += std::log1p(row.weight * row.weight / (kScale * kScale * sigma * sigma));
+    cost_ += std::log1p(row.weight * row.weight / (scale * scale * sigma * sigma));
     const double error =
-        row.weight / (kScale * (row.position ? sigmas_.position_m : sigmas_.acceleration_m_s2));
+        row.weight / (scale * (row.position ? sigmas_.position_m : sigmas_.acceleration_m_s2));
     row.weight = 1.0 / (1.0 + error * error);
   }
 }
@@ -350,9 +353,9 @@ void Alignment::reweigh(const Solution& solution) {
 
 GravityAlignment alignGravity(std::span<const CameraTrack> cameras, std::span<const ImuSample> samples,
                               std::int64_t start_ns, const So3Spline& rotation,
-                              const InitialisationOptions& options) {
+                              const InitialisationOptions& options, const RunContext& context) {
   constexpr int kRounds = 6;
-  Alignment alignment(cameras, samples, start_ns, rotation, options);
+  Alignment alignment(cameras, samples, start_ns, rotation, options, context);
   const Solution solution = alignment.solve(kRounds);
   GravityAlignment result;
   result.imu_in_world_m = {rotation.start_s, rotation.knot_spacing_s, {}};
@@ -375,9 +378,9 @@ GravityAlignment alignGravity(std::span<const CameraTrack> cameras, std::span<co
 
 double findTurnAboutAxis(const Vector3d& axis_in_imu, std::span<const CameraTrack> cameras,
                          std::span<const ImuSample> samples, std::int64_t start_ns, const So3Spline& rotation,
-                         const InitialisationOptions& options) {
+                         const InitialisationOptions& options, const RunContext& context) {
   constexpr int kDirections = 24, kRounds = 3, kHalvings = 7;
-  Alignment alignment(cameras, samples, start_ns, rotation, options);
+  Alignment alignment(cameras, samples, start_ns, rotation, options, context);
   double turned_rad = 0.0;
   const auto costAt = [&](double angle_rad) {
     alignment.turn(so3Exp(axis_in_imu * (angle_rad - turned_rad)));

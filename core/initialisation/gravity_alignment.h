@@ -7,6 +7,7 @@
 // one.
 #pragma once
 
+#include "core/base/progress.h"
 #include "core/data/imu_sample.h"
 #include "core/geometry/so3_spline.h"
 #include "core/geometry/vector_spline.h"
@@ -41,13 +42,13 @@ struct GravityAlignment {
 // `rotation` (world_from_imu, IMU clock) gives range and knots.
 GravityAlignment alignGravity(std::span<const CameraTrack> cameras, std::span<const ImuSample> samples,
                               std::int64_t start_ns, const So3Spline& rotation,
-                              const InitialisationOptions& options);
+                              const InitialisationOptions& options, const RunContext& context = {});
 
 // When all rotation is about one axis of the IMU, rotation alone leaves the angle of the camera about it
 // open; accelerations don't. The angle by which world_from_imu must be turned, R_wb Exp(axis * angle), so
 // that both agree best.
 double findTurnAboutAxis(const Eigen::Vector3d& axis_in_imu, std::span<const CameraTrack> cameras,
                          std::span<const ImuSample> samples, std::int64_t start_ns, const So3Spline& rotation,
-                         const InitialisationOptions& options);
+                         const InitialisationOptions& options, const RunContext& context = {});
 
 }  // namespace evical

@@ -8,7 +8,7 @@
 
 namespace evical {
 
-void checkInput(const CalibrationInput& input) {
+void checkInput(const CalibrationInput& input, const InitialisationOptions& options) {
   if (input.board.hasHalfTurnAmbiguity()) {
     throw badInput("board", "looks the same when turned by half a turn, so its pose is ambiguous",
                    "Use an asymmetric board with an odd number of rows; this one serves for intrinsics only");
@@ -26,8 +26,7 @@ void checkInput(const CalibrationInput& input) {
   if (input.imus.size() > 1)
     throw calibrationFailed("session", "more than one IMU cannot be calibrated yet", "Name one IMU only");
   const ImuData& imu = input.imus.front();
-  constexpr std::size_t kLeastSamples = 50;
-  if (imu.samples.size() < kLeastSamples) {
+  if (static_cast<int>(imu.samples.size()) < options.least_imu_samples) {
     throw calibrationFailed(imu.name, fmt::format("has {} samples only", imu.samples.size()),
                             "Check the IMU's stream, and record for 30 s");
   }

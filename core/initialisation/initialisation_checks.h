@@ -13,7 +13,7 @@
 namespace evical {
 
 // Board, cameras with intrinsics, one IMU with samples.
-void checkInput(const CalibrationInput& input);
+void checkInput(const CalibrationInput& input, const InitialisationOptions& options);
 // Warns of gaps.
 void checkGyroscope(const ImuData& imu, const GyroRotation& gyro, const InitialisationOptions& options,
                     std::vector<std::string>& warnings);

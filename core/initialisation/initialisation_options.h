@@ -28,6 +28,19 @@ struct InitialisationOptions {
   double accelerometer_mapping_sigma = 0.05;
   double largest_scale_error = 0.03;
   double scale_error_sigmas = 5.0;
+  int least_imu_samples = 50;
+  double least_acceleration_m_s2 = 4.0;
+  double largest_acceleration_m_s2 = 40.0;
+  double largest_rotation_rate_rad_s = 25.0;
+  double ambiguous_pose_ratio = 2.0;
+  double ambiguous_pose_px = 0.02;
+  double fastest_view_ratio = 1.3;
+  int most_time_offsets = 6;
+  double time_offset_reach_s = 0.1;
+  double better_alignment = 0.8;
+  double agreement_window_s = 3.0;
+  double least_agreement = 0.3;
+  double outlier_sigma = 5.0;
   bool operator==(const InitialisationOptions&) const = default;
 };
 
@@ -74,7 +87,33 @@ inline constexpr auto kInitialisationFields = std::tuple{
           "A board that accelerations say is larger or smaller than spacing_m by more makes the result "
           "doubtful."},
     Field{"scale_error_sigmas", &InitialisationOptions::scale_error_sigmas, 1.0, 100.0, "sigma",
-          "But only if it is as certain as that."}};
+          "But only if it is as certain as that."},
+    Field{"least_imu_samples", &InitialisationOptions::least_imu_samples, 10, 1000000, "",
+          "Samples that an IMU must have."},
+    Field{"least_acceleration_m_s2", &InitialisationOptions::least_acceleration_m_s2, 0.0, 1000.0, "m/s^2",
+          "A median acceleration below this is taken for a wrong unit."},
+    Field{"largest_acceleration_m_s2", &InitialisationOptions::largest_acceleration_m_s2, 0.0, 10000.0,
+          "m/s^2", "The same above this."},
+    Field{"largest_rotation_rate_rad_s", &InitialisationOptions::largest_rotation_rate_rad_s, 0.1, 1000.0,
+          "rad/s", "RMS rates above this are taken for deg/s."},
+    Field{"ambiguous_pose_ratio", &InitialisationOptions::ambiguous_pose_ratio, 1.0, 100.0, "",
+          "A plane's other pose stays possible while its error is at most this many times the better one's."},
+    Field{"ambiguous_pose_px", &InitialisationOptions::ambiguous_pose_px, 0.0, 10.0, "px",
+          "Added to that bound."},
+    Field{"fastest_view_ratio", &InitialisationOptions::fastest_view_ratio, 1.0, 100.0, "",
+          "Views that turn this many times faster than the gyroscope ever does don't tell the time offset."},
+    Field{"most_time_offsets", &InitialisationOptions::most_time_offsets, 1, 100, "",
+          "Peaks of the correlation that are tried."},
+    Field{"time_offset_reach_s", &InitialisationOptions::time_offset_reach_s, 0.001, 10.0, "s",
+          "How far from such a peak the time offset may be."},
+    Field{"better_alignment", &InitialisationOptions::better_alignment, 0.01, 1.0, "",
+          "A less significant peak is taken where its misfit is below this share of the best one's."},
+    Field{"agreement_window_s", &InitialisationOptions::agreement_window_s, 0.1, 60.0, "s",
+          "Views within this of each other, either way, vote on their rotations."},
+    Field{"least_agreement", &InitialisationOptions::least_agreement, 0.0, 1.0, "",
+          "Share of these with which a view must agree to be kept."},
+    Field{"outlier_sigma", &InitialisationOptions::outlier_sigma, 0.5, 1000.0, "sigma",
+          "Positions and accelerations this far off count half."}};
 static_assert(fieldCount<InitialisationOptions>() == std::tuple_size_v<decltype(kInitialisationFields)>);
 
 }  // namespace evical

@@ -31,8 +31,8 @@ struct AlignedCamera {
 
 std::vector<CameraPose> cameraPoses(const CameraData& camera, const CircleBoard& board,
                                     const GyroRotation& gyro, const InitialisationOptions& options,
-                                    Initialisation& result) {
-  CameraPoses found = estimateCameraPoses(camera, board, options.largest_reprojection_px);
+                                    const RunContext& context, Initialisation& result) {
+  CameraPoses found = estimateCameraPoses(camera, board, options, context);
   checkPoses(camera, found, gyro, options);
   result.steps.push_back(
       {"camera poses",
@@ -52,8 +52,7 @@ std::vector<CameraPose> cameraPoses(const CameraData& camera, const CircleBoard&
 std::optional<AlignedCamera> align(std::vector<CameraPose> poses, const GyroRotation& gyro,
                                    double time_offset_s, const InitialisationOptions& options) {
   resolveAmbiguousPoses(poses, gyro, time_offset_s, options.longest_pair_s);
-  const std::optional<HandEye> found =
-      estimateCameraImuRotation(poses, gyro, time_offset_s, options.pair_gap_s, options.longest_pair_s);
+  const std::optional<HandEye> found = estimateCameraImuRotation(poses, gyro, time_offset_s, options);
   if (!found) return std::nullopt;
   return AlignedCamera{std::move(poses), *found};
 }
@@ -77,13 +76,14 @@ void warnOfPeaks(const CameraData& camera, const std::vector<TimeOffsetPeak>& pe
 
 AlignedCamera bestAlignment(const CameraData& camera, const std::vector<CameraPose>& poses,
                             const std::vector<TimeOffsetPeak>& peaks, const GyroRotation& gyro,
-                            const InitialisationOptions& options) {
+                            const InitialisationOptions& options, const RunContext& context) {
   std::optional<AlignedCamera> best;
   for (const TimeOffsetPeak& peak : peaks) {
+    context.throwIfStopped();
     std::optional<AlignedCamera> found = align(poses, gyro, peak.time_offset_s, options);
     // The more significant one stays unless the other is better by more than chance.
-    constexpr double kBetter = 0.8;
-    if (found && (!best || found->hand_eye.cost < kBetter * best->hand_eye.cost)) best = std::move(found);
+    if (found && (!best || found->hand_eye.cost < options.better_alignment * best->hand_eye.cost))
+      best = std::move(found);
   }
   if (!best) {
     throw calibrationFailed(camera.name, "too few pairs of views to find the camera's rotation",
@@ -101,10 +101,8 @@ void settlePoses(const CameraData& camera, const ImuData& imu, std::int64_t star
   for (int round = 0; round < kRounds; ++round) {
     const GyroRotation unbiased(imu.samples, start_ns, aligned.hand_eye.gyroscope_bias_rad_s);
     AlignedCamera next = aligned;
-    const PoseConsistency consistency =
-        keepConsistentPoses(next.poses, unbiased, next.hand_eye, options.largest_rotation_disagreement_rad);
-    const auto again = estimateCameraImuRotation(next.poses, gyro, next.hand_eye.time_offset_s,
-                                                 options.pair_gap_s, options.longest_pair_s);
+    const PoseConsistency consistency = keepConsistentPoses(next.poses, unbiased, next.hand_eye, options);
+    const auto again = estimateCameraImuRotation(next.poses, gyro, next.hand_eye.time_offset_s, options);
     if (!again || static_cast<int>(next.poses.size()) < options.least_views) {
       result.warnings.push_back(camera.name +
                                 ": rotations of camera and gyroscope contradict each other in most views");
@@ -125,16 +123,19 @@ void settlePoses(const CameraData& camera, const ImuData& imu, std::int64_t star
 }
 
 AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& input, const GyroRotation& gyro,
-                          const InitialisationOptions& options, Initialisation& result) {
+                          const InitialisationOptions& options, const RunContext& context,
+                          Initialisation& result) {
   const ImuData& imu = input.imus.front();
-  const std::vector<CameraPose> poses = cameraPoses(camera, input.board, gyro, options, result);
+  const std::vector<CameraPose> poses = cameraPoses(camera, input.board, gyro, options, context, result);
+  context.throwIfStopped();
   const std::vector<TimeOffsetPeak> peaks = correlateTimeOffset(poses, gyro, options);
   if (peaks.empty()) {
     throw calibrationFailed(camera.name,
                             "too few pairs of views overlap with the gyroscope to find the time offset",
                             "Record longer, with the board in view");
   }
-  AlignedCamera aligned = bestAlignment(camera, poses, peaks, gyro, options);
+  AlignedCamera aligned = bestAlignment(camera, poses, peaks, gyro, options, context);
+  context.throwIfStopped();
   settlePoses(camera, imu, input.start_ns, gyro, options, aligned, result);
   const HandEye& hand_eye = aligned.hand_eye;
   warnOfPeaks(camera, peaks, hand_eye.time_offset_s, options, result);
@@ -173,7 +174,8 @@ std::vector<CameraTrack> tracksOf(const std::vector<AlignedCamera>& cameras) {
 
 // With rotation about one axis only, accelerations say how the camera is turned about it.
 void turnAboutAxis(const CalibrationInput& input, const InitialisationOptions& options, TimeRange range,
-                   const GyroRotation& gyro, std::vector<AlignedCamera>& cameras, Initialisation& result) {
+                   const GyroRotation& gyro, const RunContext& context, std::vector<AlignedCamera>& cameras,
+                   Initialisation& result) {
   HandEye& first = cameras.front().hand_eye;
   if (first.axis_ratio >= options.least_axis_ratio) return;
   result.warnings.push_back(input.cameras.front().name +
@@ -183,8 +185,9 @@ void turnAboutAxis(const CalibrationInput& input, const InitialisationOptions& o
   const double knot_s = std::max(options.knot_spacing_s, kLeastKnot_s);
   const So3Spline rotation =
       fitWorldRotation(cameras.front().poses, first, gyro, range.begin_s, range.end_s, knot_s);
-  const double turn_rad = findTurnAboutAxis(first.main_axis_in_imu, tracksOf(cameras),
-                                            input.imus.front().samples, input.start_ns, rotation, options);
+  const double turn_rad =
+      findTurnAboutAxis(first.main_axis_in_imu, tracksOf(cameras), input.imus.front().samples, input.start_ns,
+                        rotation, options, context);
   for (AlignedCamera& camera : cameras) {
     camera.hand_eye.imu_from_camera =
         quaternionExp(-turn_rad * first.main_axis_in_imu) * camera.hand_eye.imu_from_camera;
@@ -206,10 +209,11 @@ void checkBoardScale(const GravityAlignment& gravity, const CircleBoard& board,
 }
 
 void alignTranslations(const CalibrationInput& input, const InitialisationOptions& options,
-                       const std::vector<AlignedCamera>& cameras, Initialisation& result) {
+                       const std::vector<AlignedCamera>& cameras, const RunContext& context,
+                       Initialisation& result) {
   CalibrationState& state = result.state;
   const GravityAlignment gravity = alignGravity(tracksOf(cameras), input.imus.front().samples, input.start_ns,
-                                                state.world_from_imu_rotation, options);
+                                                state.world_from_imu_rotation, options, context);
   result.steps.push_back(
       {"gravity and translation",
        fmt::format("positions agree to {:.2f} mm in {} of {} views, accelerations to {:.3f} m/s^2",
@@ -249,14 +253,14 @@ Initialisation initialise(const CalibrationInput& input, const InitialisationOpt
                           const RunContext& context, CalibrationObserver* observer) {
   Initialisation result;
   std::size_t told = 0;
-  checkInput(input);
+  checkInput(input, options);
   const ImuData& imu = input.imus.front();
   const GyroRotation gyro(imu.samples, input.start_ns);
   checkGyroscope(imu, gyro, options, result.warnings);
   std::vector<AlignedCamera> cameras;
   for (const CameraData& camera : input.cameras) {
     context.throwIfStopped();
-    cameras.push_back(alignCamera(camera, input, gyro, options, result));
+    cameras.push_back(alignCamera(camera, input, gyro, options, context, result));
     tellSteps(result.steps, observer, told);
     constexpr double kShare = 0.7;
     context.progress.stageProgress(kShare * static_cast<double>(cameras.size()) /
@@ -267,13 +271,13 @@ Initialisation initialise(const CalibrationInput& input, const InitialisationOpt
   const TimeRange range{std::max(views.begin_s - options.margin_s, gyro.begin_s()),
                         std::min(views.end_s + options.margin_s, gyro.end_s())};
   const GyroRotation unbiased(imu.samples, input.start_ns, cameras.front().hand_eye.gyroscope_bias_rad_s);
-  turnAboutAxis(input, options, range, unbiased, cameras, result);
+  turnAboutAxis(input, options, range, unbiased, context, cameras, result);
   context.throwIfStopped();
   result.state.world_from_imu_rotation =
       fitWorldRotation(cameras.front().poses, cameras.front().hand_eye, unbiased, range.begin_s, range.end_s,
                        options.knot_spacing_s);
   context.throwIfStopped();
-  alignTranslations(input, options, cameras, result);
+  alignTranslations(input, options, cameras, context, result);
   tellSteps(result.steps, observer, told);
   context.progress.stageProgress(1.0);
   return result;

@@ -8,9 +8,7 @@
 namespace evical {
 namespace {
 
-constexpr double kNeighbourhood_s = 3.0;   // either way: drift within it stays below the tolerance
 constexpr double kMostNeighbours = 120.0;  // enough for a vote
-constexpr double kLeastShare = 0.3;        // of the neighbours that must agree
 // Mirrored poses agree with each other for a while, as long as the camera looks the same way; that their
 // circles fit worse makes them second choice, and counts.
 constexpr double kSecondChoice = 0.5;
@@ -31,17 +29,16 @@ struct Vote {
 };
 
 Vote voteOn(const std::vector<Carried>& carried, const std::vector<CameraPose>& poses, std::size_t k,
-            double least_cosine) {
+            double least_cosine, double window_s) {
   const auto agreement = [&](const Eigen::Quaterniond& a, const Carried& other) {
     if (std::abs(a.dot(other.first)) > least_cosine) return 1.0;
     return other.has_second && std::abs(a.dot(other.second)) > least_cosine ? kSecondChoice : 0.0;
   };
   const auto earlier = [](const CameraPose& pose, double time_s) { return pose.time_s < time_s; };
   const auto begin =
-      std::lower_bound(poses.begin(), poses.end(), poses[k].time_s - kNeighbourhood_s, earlier) -
-      poses.begin();
-  const auto end = std::lower_bound(poses.begin(), poses.end(), poses[k].time_s + kNeighbourhood_s, earlier) -
-                   poses.begin();
+      std::lower_bound(poses.begin(), poses.end(), poses[k].time_s - window_s, earlier) - poses.begin();
+  const auto end =
+      std::lower_bound(poses.begin(), poses.end(), poses[k].time_s + window_s, earlier) - poses.begin();
   const double stride = std::max(1.0, static_cast<double>(end - begin) / kMostNeighbours);
   Vote vote;
   for (auto position = static_cast<double>(begin); position < static_cast<double>(end); position += stride) {
@@ -72,8 +69,8 @@ double medianStep(const std::vector<CameraPose>& poses, const GyroRotation& gyro
 }  // namespace
 
 PoseConsistency keepConsistentPoses(std::vector<CameraPose>& poses, const GyroRotation& gyro,
-                                    const HandEye& hand_eye, double tolerance_rad) {
-  const double least_cosine = std::cos(0.5 * tolerance_rad);
+                                    const HandEye& hand_eye, const InitialisationOptions& options) {
+  const double least_cosine = std::cos(0.5 * options.largest_rotation_disagreement_rad);
   std::vector<Carried> carried;
   for (const CameraPose& pose : poses) {
     const Eigen::Quaterniond back =
@@ -87,10 +84,10 @@ PoseConsistency keepConsistentPoses(std::vector<CameraPose>& poses, const GyroRo
   std::vector<CameraPose> kept;
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const double time_s = poses[k].time_s + hand_eye.time_offset_s;
-    const Vote vote = voteOn(carried, poses, k, least_cosine);
+    const Vote vote = voteOn(carried, poses, k, least_cosine, options.agreement_window_s);
     // Beyond the gyroscope, or all alone, nobody can tell.
     const bool judged = gyro.covers(time_s, time_s) && vote.neighbours > 0;
-    if (judged && std::max(vote.for_first, vote.for_second) < kLeastShare * vote.neighbours) {
+    if (judged && std::max(vote.for_first, vote.for_second) < options.least_agreement * vote.neighbours) {
       ++result.dropped;
       continue;
     }

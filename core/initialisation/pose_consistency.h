@@ -18,8 +18,8 @@ struct PoseConsistency {
 };
 
 // `gyro` with its bias taken out. Keeps poses that agree with most of their neighbours within
-// `tolerance_rad`.
+// `largest_rotation_disagreement_rad`.
 PoseConsistency keepConsistentPoses(std::vector<CameraPose>& poses, const GyroRotation& gyro,
-                                    const HandEye& hand_eye, double tolerance_rad);
+                                    const HandEye& hand_eye, const InitialisationOptions& options);
 
 }  // namespace evical

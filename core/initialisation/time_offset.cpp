@@ -7,10 +7,8 @@
 namespace evical {
 namespace {
 
-constexpr double kGrid_s = 0.005;        // of the gyroscope's rates; a fraction of what a hand can shake
-constexpr double kLongestRatio = 1.5;    // of a pair's duration to the usual one
-constexpr double kFasterThanGyro = 1.3;  // a view this much faster than the gyroscope ever was is wrong
-constexpr std::size_t kMostPeaks = 6;
+constexpr double kGrid_s = 0.005;      // of the gyroscope's rates; a fraction of what a hand can shake
+constexpr double kLongestRatio = 1.5;  // of a pair's duration to the usual one
 
 struct RatePair {
   double middle_s, rate_rad_s, duration_s;
@@ -116,7 +114,7 @@ std::vector<TimeOffsetPeak> correlateTimeOffset(const std::vector<CameraPose>& p
   duration_s /= static_cast<double>(pairs.size());
   const RateGrid grid(gyro, duration_s);
   std::erase_if(pairs, [&](const RatePair& pair) {
-    return pair.rate_rad_s > kFasterThanGyro * grid.highest_rad_s + 0.1;
+    return pair.rate_rad_s > options.fastest_view_ratio * grid.highest_rad_s + 0.1;
   });
   if (pairs.size() < 5) return {};
   // Gaps count as overlap, or a board seen in every tenth window would need ten times the recording.
@@ -137,7 +135,8 @@ std::vector<TimeOffsetPeak> correlateTimeOffset(const std::vector<CameraPose>& p
   }
   std::sort(peaks.begin(), peaks.end(),
             [](const auto& a, const auto& b) { return a.significance > b.significance; });
-  if (peaks.size() > kMostPeaks) peaks.resize(kMostPeaks);
+  const auto most = static_cast<std::size_t>(options.most_time_offsets);
+  if (peaks.size() > most) peaks.resize(most);
   return peaks;
 }
 

@@ -29,7 +29,7 @@ double secondsSince(Clock::time_point begin) {
 
 // Median of |acceleration| tells the unit, wide enough for hands that shake at several g; a gyroscope's only
 // when it is absurd.
-void checkUnits(const ImuData& imu) {
+void checkUnits(const ImuData& imu, const InitialisationOptions& options) {
   std::vector<double> norms;
   double rate2 = 0.0;
   for (const ImuSample& sample : imu.samples) {
@@ -38,9 +38,8 @@ void checkUnits(const ImuData& imu) {
   }
   const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
   std::nth_element(norms.begin(), middle, norms.end());
-  constexpr std::array<double, 2> kPlausible_m_s2 = {4.0, 40.0}, kLooksLikeG = {0.7, 1.3};
-  constexpr double kAbsurd_rad_s = 25.0;
-  if (*middle < kPlausible_m_s2[0] || *middle > kPlausible_m_s2[1]) {
+  constexpr std::array<double, 2> kLooksLikeG = {0.7, 1.3};
+  if (*middle < options.least_acceleration_m_s2 || *middle > options.largest_acceleration_m_s2) {
     const bool g = *middle > kLooksLikeG[0] && *middle < kLooksLikeG[1];
     throw badInput(
         imu.name,
@@ -49,7 +48,7 @@ void checkUnits(const ImuData& imu) {
         g ? "Set acceleration_unit: g for this IMU" : "Check acceleration_unit (m/s^2, g, -g) of this IMU");
   }
   const double rms = std::sqrt(rate2 / static_cast<double>(imu.samples.size()));
-  if (rms > kAbsurd_rad_s) {
+  if (rms > options.largest_rotation_rate_rad_s) {
     throw badInput(imu.name, fmt::format("angular rates of {:.0f} rad/s RMS look like deg/s", rms),
                    "Set angular_rate_unit: deg/s for this IMU");
   }
@@ -167,7 +166,7 @@ CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunCo
   CalibrationRun run;
   run.pass = std::move(pass);
   for (const ImuData& imu : run.pass.imus) {
-    checkUnits(imu);
+    checkUnits(imu, session.options.initialisation);
     const std::vector<RecordingFault> faults = checkImu(imu.name, imu.samples);
     run.pass.faults.insert(run.pass.faults.end(), faults.begin(), faults.end());
   }

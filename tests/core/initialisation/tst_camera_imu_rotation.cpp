@@ -12,11 +12,10 @@ using namespace evical::test;
 namespace {
 
 std::optional<HandEye> handEyeOf(const SimulatedInput& simulated, double start_offset_s) {
-  const auto found = estimateCameraPoses(simulated.input.cameras[0], simulated.input.board, 2.0);
-  const InitialisationOptions options;
+  const auto found = estimateCameraPoses(simulated.input.cameras[0], simulated.input.board, {});
   return estimateCameraImuRotation(found.poses,
                                    GyroRotation(simulated.input.imus[0].samples, simulated.input.start_ns),
-                                   start_offset_s, options.pair_gap_s, options.longest_pair_s);
+                                   start_offset_s, {});
 }
 
 }  // namespace

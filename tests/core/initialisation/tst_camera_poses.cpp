@@ -41,7 +41,7 @@ class TestCameraPoses : public QObject {
     options.duration_s = 4.0;
     options.centre_sigma_px = 0.0;
     const SimulatedInput simulated = simulateInput(options);
-    const CameraPoses found = estimateCameraPoses(simulated.input.cameras[0], simulated.input.board, 2.0);
+    const CameraPoses found = estimateCameraPoses(simulated.input.cameras[0], simulated.input.board, {});
     QCOMPARE(found.poses.size(), simulated.input.cameras[0].observations.views.size());
     QCOMPARE(found.rejected, 0);
     QVERIFY(found.median_reprojection_px < 1e-3);
@@ -54,7 +54,7 @@ class TestCameraPoses : public QObject {
     SimulationOptions options;
     options.duration_s = 6.0;
     const SimulatedInput simulated = simulateInput(options);
-    const CameraPoses found = estimateCameraPoses(simulated.input.cameras[0], simulated.input.board, 2.0);
+    const CameraPoses found = estimateCameraPoses(simulated.input.cameras[0], simulated.input.board, {});
     const PoseErrors errors = errorsOf(found.poses, simulated);
     QVERIFY(errors.rotation_rad < 0.006);  // 0.15 px over an image of 150 px, tilt three times worse
     QVERIFY(errors.translation_m < 0.004);
@@ -66,7 +66,7 @@ class TestCameraPoses : public QObject {
     SimulatedInput simulated = simulateInput(options);
     auto& views = simulated.input.cameras[0].observations.views;
     for (std::size_t k = 0; k < views.size(); k += 4) views[k].circles[10].centre_px.x() += 40.0;
-    const CameraPoses found = estimateCameraPoses(simulated.input.cameras[0], simulated.input.board, 2.0);
+    const CameraPoses found = estimateCameraPoses(simulated.input.cameras[0], simulated.input.board, {});
     QCOMPARE(found.rejected, static_cast<int>((views.size() + 3) / 4));
     for (const CameraPose& pose : found.poses) QVERIFY(pose.view % 4 != 0);
   }
@@ -76,7 +76,7 @@ class TestCameraPoses : public QObject {
     options.duration_s = 1.0;
     SimulatedInput simulated = simulateInput(options);
     for (BoardView& view : simulated.input.cameras[0].observations.views) view.circles.resize(3);
-    QVERIFY(estimateCameraPoses(simulated.input.cameras[0], simulated.input.board, 2.0).poses.empty());
+    QVERIFY(estimateCameraPoses(simulated.input.cameras[0], simulated.input.board, {}).poses.empty());
   }
 };
 

@@ -38,7 +38,7 @@ Prepared prepare() {
   options.duration_s = 8.0;
   options.time_offset_s = 0.3;
   p.simulated = simulateInput(options);
-  p.poses = estimateCameraPoses(p.simulated.input.cameras[0], p.simulated.input.board, 2.0).poses;
+  p.poses = estimateCameraPoses(p.simulated.input.cameras[0], p.simulated.input.board, {}).poses;
   // A degree off, as a first hand-eye may be.
   p.hand_eye.imu_from_camera =
       p.simulated.truth.cameras[0].imu_from_camera.rotation * quaternionExp({0.01, -0.012, 0.008});
@@ -72,7 +72,7 @@ class TestPoseConsistency : public QObject {
   void keep_leavesGoodPosesAlone() {
     Prepared p = prepare();
     const std::size_t before = p.poses.size();
-    const PoseConsistency result = keepConsistentPoses(p.poses, gyroOf(p.simulated), p.hand_eye, 0.06);
+    const PoseConsistency result = keepConsistentPoses(p.poses, gyroOf(p.simulated), p.hand_eye, {});
     QCOMPARE(result.swapped, 0);
     QCOMPARE(result.dropped, 0);
     QCOMPARE(p.poses.size(), before);
@@ -94,7 +94,7 @@ class TestPoseConsistency : public QObject {
     }
     QVERIFY(wrong > 50);
     QVERIFY(worstError_rad(p.poses, p.simulated) > 0.15);
-    const PoseConsistency result = keepConsistentPoses(p.poses, gyroOf(p.simulated), p.hand_eye, 0.06);
+    const PoseConsistency result = keepConsistentPoses(p.poses, gyroOf(p.simulated), p.hand_eye, {});
     const double worst_rad = worstError_rad(p.poses, p.simulated);
     QVERIFY2(worst_rad < 0.1, qPrintable(QString("%1 swapped of %2, %3 dropped, worst %4 rad")
                                              .arg(result.swapped)
@@ -111,7 +111,7 @@ class TestPoseConsistency : public QObject {
           quaternionExp({0.0, 0.0, M_PI}) * p.poses[k].world_from_camera.rotation;
     }
     const std::size_t before = p.poses.size();
-    const PoseConsistency result = keepConsistentPoses(p.poses, gyroOf(p.simulated), p.hand_eye, 0.06);
+    const PoseConsistency result = keepConsistentPoses(p.poses, gyroOf(p.simulated), p.hand_eye, {});
     QCOMPARE(result.dropped, wrong);
     QCOMPARE(p.poses.size(), before - static_cast<std::size_t>(wrong));
     QVERIFY(worstError_rad(p.poses, p.simulated) < 0.1);

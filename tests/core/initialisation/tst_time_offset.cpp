@@ -14,7 +14,7 @@ namespace {
 std::vector<TimeOffsetPeak> peaksOf(const SimulationOptions& simulation,
                                     const InitialisationOptions& options) {
   const SimulatedInput simulated = simulateInput(simulation);
-  const auto found = estimateCameraPoses(simulated.input.cameras[0], simulated.input.board, 2.0);
+  const auto found = estimateCameraPoses(simulated.input.cameras[0], simulated.input.board, {});
   return correlateTimeOffset(
       found.poses, GyroRotation(simulated.input.imus[0].samples, simulated.input.start_ns), options);
 }
