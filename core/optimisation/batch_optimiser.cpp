@@ -91,7 +91,6 @@ class Batch {
  private:
   std::vector<ReleaseStages> stages() const;
   void solveStage(ReleaseStages stage, int index, double tolerance);
-  void holdStillAxes();
   bool updateWeights();
   void reportFits();
   void reportNotes();
@@ -141,21 +140,6 @@ void Batch::solveStage(ReleaseStages stage, int index, double tolerance) {
   }
 }
 
-void Batch::holdStillAxes() {
-  for (std::size_t i = 0; i < input_.imus.size(); ++i) {
-    StillAxes& held = problem_.held_axes[i];
-    held = stillAxes(input_, problem_.state(), problem_.scales, i);
-    const auto say = [&](const char* sensor, const char* motion, std::size_t axes) {
-      if (axes == 0) return;
-      solution_.notes.push_back(
-          fmt::format("{}: {} along {} of 3 axes, so the {}'s scale stays as given there",
-                      input_.imus[i].name, motion, axes, sensor));
-    };
-    say("gyroscope", "no rotation to speak of", held.gyroscope.size());
-    say("accelerometer", "no changing acceleration to speak of", held.accelerometer.size());
-  }
-}
-
 // Noise scales and outliers, both from all circles and samples; true if anything changed enough to solve
 // again.
 bool Batch::updateWeights() {
@@ -200,9 +184,11 @@ BatchSolution Batch::run() {
   const std::vector<ReleaseStages> all = stages();
   updateWeights();  // by the initial errors: else most circles would start in the flat part of Huber's loss
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i] == ReleaseStages::Mappings) holdStillAxes();
     solveStage(all[i], static_cast<int>(i), options_.stage_tolerance);
     updateWeights();
+    // With noise scales that are those of a first solution.
+    for (std::size_t imu = 0; imu < input_.imus.size(); ++imu)
+      problem_.held_axes[imu] = stillAxes(input_, problem_.state(), problem_.scales, imu);
   }
   // The last stage to the end, with the weights it found itself; once more where that changes them.
   constexpr int kMostReweightings = 3;
@@ -262,6 +248,11 @@ void Batch::reportNotes() {
         fmt::format("{}: {} is {:.2g} times what was given for it; the weights follow what was found", sensor,
                     what, scale));
   };
+  const auto sayHeld = [&](const std::string& imu, const char* motion, std::size_t axes, const char* what) {
+    if (axes == 0) return;
+    solution_.notes.push_back(
+        fmt::format("{}: no {} to speak of along {} of 3 axes, {} there", imu, motion, axes, what));
+  };
   for (std::size_t i = 0; i < input_.cameras.size(); ++i) {
     say(input_.cameras[i].name, "the spread of circle centres", solution_.scales.circles[i]);
     const CameraFit& fit = solution_.cameras[i];
@@ -274,7 +265,13 @@ void Batch::reportNotes() {
   for (std::size_t i = 0; i < input_.imus.size(); ++i) {
     say(input_.imus[i].name, "the gyroscope's residual", solution_.scales.gyroscopes[i]);
     say(input_.imus[i].name, "the accelerometer's residual", solution_.scales.accelerometers[i]);
+    const StillAxes& held = problem_.held_axes[i];
+    sayHeld(input_.imus[i].name, "rotation", held.gyroscope.size(), "the gyroscope's scale stays as it is");
+    sayHeld(input_.imus[i].name, "changing acceleration", held.accelerometer.size(),
+            "the accelerometer's scale stays as it is");
   }
+  sayHeld(input_.imus[input_.reference_imu].name, "lever of rotation",
+          problem_.held_axes[input_.reference_imu].leverless().size(), "translations stay at 0");
   if (!solution_.converged) {
     solution_.notes.push_back("the optimiser stopped at its iteration limit before it converged");
   }

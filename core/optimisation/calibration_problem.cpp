@@ -237,22 +237,33 @@ void CalibrationProblem::addPriors(ReleaseStages stage) {
   }
   for (CameraState& camera : state_.cameras) {
     add(camera.imu_from_camera.translation_m.data(), 3, kZero.data(), options_.translation_sigma_m);
+    holdTranslation(camera.imu_from_camera.translation_m.data());
   }
   for (std::size_t i = 0; i < state_.imus.size(); ++i) {
     add(state_.imus[i].reference_from_imu.translation_m.data(), 3, kZero.data(),
         options_.translation_sigma_m);
+    holdTranslation(state_.imus[i].reference_from_imu.translation_m.data());
     add(state_.imus[i].gyroscope_bias_rad_s.data(), 3, kZero.data(), options_.gyroscope_bias_sigma_rad_s);
     add(state_.imus[i].accelerometer_bias_m_s2.data(), 3, kZero.data(),
         options_.accelerometer_bias_sigma_m_s2);
     if (stage != ReleaseStages::Mappings) continue;
     add(gyroscope_mappings_[i].data(), 6, kIdentity.data(), options_.mapping_sigma);
     add(accelerometer_mappings_[i].data(), 6, kIdentity.data(), options_.mapping_sigma);
-    holdAxes(gyroscope_mappings_[i].data(), held_axes[i].gyroscope);
-    holdAxes(accelerometer_mappings_[i].data(), held_axes[i].accelerometer);
+    holdMapping(gyroscope_mappings_[i].data(), held_axes[i].gyroscope);
+    holdMapping(accelerometer_mappings_[i].data(), held_axes[i].accelerometer);
   }
 }
 
-void CalibrationProblem::holdAxes(double* mapping, const std::vector<Eigen::Vector3d>& axes) {
+void CalibrationProblem::holdTranslation(double* translation_m) {
+  constexpr double kSigma_m = 1e-4;
+  if (!problem_->HasParameterBlock(translation_m)) return;
+  for (const Eigen::Vector3d& axis : held_axes[input_.reference_imu].leverless()) {
+    auto* cost = new HeldTranslationCost(axis, kSigma_m);
+    blocks_.push_back({problem_->AddResidualBlock(cost, nullptr, translation_m)});
+  }
+}
+
+void CalibrationProblem::holdMapping(double* mapping, const std::vector<Eigen::Vector3d>& axes) {
   constexpr double kSigma = 1e-5;  // far below what could be measured
   if (!problem_->HasParameterBlock(mapping)) return;
   for (const Eigen::Vector3d& axis : axes) {

@@ -77,7 +77,7 @@ class CalibrationProblem {
 
   std::vector<std::vector<std::vector<std::uint8_t>>> used_circles;
   NoiseScales scales;
-  // By IMU: along these a mapping stays as it is.
+  // By IMU: along these a mapping stays as it is, and translations stay at 0.
   std::vector<StillAxes> held_axes;
 
  private:
@@ -88,7 +88,8 @@ class CalibrationProblem {
   void addAccelerometer(std::size_t imu, const SegmentTimes& segment, double time_s,
                         std::span<const ImuSample> samples);
   void addPriors(ReleaseStages stage);
-  void holdAxes(double* mapping, const std::vector<Eigen::Vector3d>& axes);
+  void holdMapping(double* mapping, const std::vector<Eigen::Vector3d>& axes);
+  void holdTranslation(double* translation_m);
   void setManifolds(ReleaseStages stage);
   bool isReference(std::size_t imu) const { return imu == input_.reference_imu; }
   ImuRole roleOf(std::size_t imu) const { return isReference(imu) ? ImuRole::Reference : ImuRole::Further; }

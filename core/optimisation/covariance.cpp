@@ -269,7 +269,7 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   problem.scales = solution.scales;
   problem.build(options.last_stage);
   const ProjectedInformation information =
-      withoutNoise(projectInformation(problem, options.correlation_time_s));
+      withoutNoise(projectInformation(problem, options.correlation_time_s, context));
   context.throwIfStopped();
   const QuantityCovariance covariance = quantityCovariance(information, solution.state, problem.problem());
   UncertaintyEstimate estimate;

@@ -55,4 +55,20 @@ class HeldAxisCost final : public ceres::SizedCostFunction<3, 6> {
   double weight_;
 };
 
+// Zero when a translation has nothing along an axis: r = axis . translation / sigma, without unit. Block:
+// translation [m].
+class HeldTranslationCost final : public ceres::SizedCostFunction<1, 3> {
+ public:
+  HeldTranslationCost(const Eigen::Vector3d& axis, double sigma_m) : weighted_axis_(axis / sigma_m) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    residuals[0] = weighted_axis_.dot(Eigen::Map<const Eigen::Vector3d>(parameters[0]));
+    if (jacobians && jacobians[0]) Eigen::Map<Eigen::Vector3d>{jacobians[0]} = weighted_axis_;
+    return true;
+  }
+
+ private:
+  Eigen::Vector3d weighted_axis_;
+};
+
 }  // namespace evical

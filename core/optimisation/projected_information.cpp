@@ -34,7 +34,7 @@ struct BlockJacobian {
 
 class Layout {
  public:
-  explicit Layout(CalibrationProblem& problem) : problem_(problem) {
+  Layout(CalibrationProblem& problem, const RunContext& context) : problem_(problem), context_(context) {
     for (double* block : problem.splineBlocks()) {
       columns_[block] = {true, spline_size_, problem.problem().ParameterBlockTangentSize(block)};
       spline_size_ += problem.problem().ParameterBlockTangentSize(block);
@@ -77,12 +77,14 @@ class Layout {
   }
 
   CalibrationProblem& problem_;
+  const RunContext& context_;
   std::unordered_map<double*, Columns> columns_;
   std::vector<Eigen::Index> first_column_;
   Eigen::Index spline_size_ = 0, quantity_size_ = 0;
 };
 
 void Layout::evaluate(const BlockInfo& info, BlockJacobian& out) const {
+  context_.throwIfStopped();
   const ceres::CostFunction& cost = *problem_.problem().GetCostFunctionForResidualBlock(info.id);
   const std::vector<double*> blocks = blocksOf(info);
   std::vector<RowMajorMatrix> ambient(blocks.size());
@@ -295,8 +297,9 @@ double MeasurementGroup::variance() const {
   return kind != SensorKind::Prior && free > kLeastFree * residuals ? squared_residuals / free : 1.0;
 }
 
-ProjectedInformation projectInformation(CalibrationProblem& problem, double stretch_s) {
-  const Layout layout(problem);
+ProjectedInformation projectInformation(CalibrationProblem& problem, double stretch_s,
+                                        const RunContext& context) {
+  const Layout layout(problem, context);
   Elimination elimination(problem, layout);
   elimination.eliminate();
 

@@ -40,7 +40,9 @@ struct ProjectedInformation {
   Eigen::MatrixXd from_noise;
 };
 
-// `problem` must be built. Scores are collected over stretches of `stretch_s`.
-ProjectedInformation projectInformation(CalibrationProblem& problem, double stretch_s);
+// `problem` must be built. Scores are collected over stretches of `stretch_s`. Throws Cancelled when asked to
+// stop.
+ProjectedInformation projectInformation(CalibrationProblem& problem, double stretch_s,
+                                        const RunContext& context = {});
 
 }  // namespace evical

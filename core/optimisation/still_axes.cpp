@@ -3,6 +3,7 @@
 #include "core/base/time.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 
 #include <cmath>
 
@@ -36,6 +37,11 @@ class Spread {
 };
 
 }  // namespace
+
+std::vector<Eigen::Vector3d> StillAxes::leverless() const {
+  if (gyroscope.size() == 2) return {gyroscope[0].cross(gyroscope[1])};
+  return gyroscope.size() == 3 ? gyroscope : std::vector<Eigen::Vector3d>{};
+}
 
 StillAxes stillAxes(const CalibrationInput& input, const CalibrationState& state, const NoiseScales& scales,
                     std::size_t imu) {

@@ -15,6 +15,10 @@ namespace evical {
 // Unit vectors in the IMU's own frame, perpendicular to each other.
 struct StillAxes {
   std::vector<Eigen::Vector3d> gyroscope, accelerometer;
+
+  // Where what is mounted there moves the same wherever along them it is: the axis of a rotation that has
+  // only one, and all without rotation.
+  std::vector<Eigen::Vector3d> leverless() const;
 };
 
 // Samples in the splines' range, against their noise as `scales` has it.
