@@ -9,6 +9,7 @@
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "tests/support/simulated_session.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -18,8 +19,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,25 +39,6 @@ struct Targets {
 Targets targetsOf(const std::string& scenario) {
   if (scenario == "davis346") return {0.95, 0.03, 0.7, 0.1};
   return {};
-}
-
-Session sessionFor(const Scenario& scenario) {
-  Session session;
-  session.source = scenario.name;
-  session.board = scenario.board;
-  for (const SimulatedCamera& camera : scenario.cameras) {
-    session.cameras.push_back(
-        {camera.name, camera.stream, camera.intrinsics.resolution_px, camera.intrinsics});
-  }
-  for (const SimulatedImu& imu : scenario.imus) {
-    SessionImu out;
-    out.name = imu.name;
-    out.stream = imu.stream;
-    out.noise = {imu.gyroscope_density, imu.accelerometer_density};
-    session.imus.push_back(out);
-  }
-  session.reference = scenario.imus.front().name;
-  return session;
 }
 
 struct Outcome {
@@ -108,18 +88,9 @@ double windowsFound(const Scenario& scenario, const BoardObservations& observati
   return seen == 0 ? 0.0 : static_cast<double>(found) / seen;
 }
 
-NamedResult truthOf(const Scenario& scenario) {
-  const std::filesystem::path file = std::filesystem::temp_directory_path() /
-                                     fmt::format("evical_truth_{}_{}.yaml", scenario.name, scenario.seed);
-  std::ofstream(file) << truthYaml(scenario);
-  NamedResult truth = readResultYaml(file);
-  std::filesystem::remove(file);
-  return truth;
-}
-
 Outcome run(const Scenario& scenario) {
   Outcome outcome;
-  const Session session = sessionFor(scenario);
+  const Session session = test::sessionFor(scenario);
   RecordingPass pass = detect(scenario, session, outcome);
   outcome.windows_found = windowsFound(scenario, pass.cameras.front());
   const Clock::time_point before = Clock::now();
@@ -128,7 +99,8 @@ Outcome run(const Scenario& scenario) {
     outcome.verdict = statusName(run.result.status);
     outcome.weakest = run.result.uncertainty.weakest;
     outcome.reason = run.result.reason;
-    outcome.comparison = compareWithTruth(namedResult(session, run.result, "benchmark"), truthOf(scenario));
+    outcome.comparison =
+        compareWithTruth(namedResult(session, run.result, "benchmark"), test::truthOf(scenario));
     outcome.uncertainty = run.result.uncertainty.cameras.front();
   } catch (const CalibrationError& error) {
     outcome.verdict = std::string("failed: ") + error.what();

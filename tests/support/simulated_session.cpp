@@ -1,0 +1,72 @@
+#include "tests/support/simulated_session.h"
+
+#include "core/frontend/board_tracker.h"
+#include "core/synthetic/board_truth.h"
+#include "core/synthetic/event_simulator.h"
+#include "core/synthetic/imu_simulator.h"
+#include "core/synthetic/scenario_yaml.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace evical::test {
+namespace {
+
+RecordingPass passWith(const Scenario& scenario, BoardObservations observations) {
+  RecordingPass pass;
+  pass.start_ns = scenario.start_ns;
+  observations.camera = scenario.cameras.front().name;
+  pass.cameras.push_back(std::move(observations));
+  for (std::size_t k = 0; k < scenario.imus.size(); ++k) {
+    const SimulatedImu& imu = scenario.imus[k];
+    pass.imus.push_back(
+        {imu.name, {imu.gyroscope_density, imu.accelerometer_density}, simulateImu(scenario, k)});
+  }
+  return pass;
+}
+
+}  // namespace
+
+Session sessionFor(const Scenario& scenario) {
+  Session session;
+  session.source = scenario.name;
+  session.board = scenario.board;
+  for (const SimulatedCamera& camera : scenario.cameras) {
+    session.cameras.push_back(
+        {camera.name, camera.stream, camera.intrinsics.resolution_px, camera.intrinsics});
+  }
+  for (const SimulatedImu& imu : scenario.imus) {
+    SessionImu out;
+    out.name = imu.name;
+    out.stream = imu.stream;
+    out.noise = {imu.gyroscope_density, imu.accelerometer_density};
+    session.imus.push_back(out);
+  }
+  session.reference = scenario.imus.front().name;
+  return session;
+}
+
+RecordingPass detectedPass(const Scenario& scenario, const Session& session) {
+  const CameraIntrinsics& camera = scenario.cameras.front().intrinsics;
+  BoardTracker tracker(scenario.board, camera.resolution_px, camera, session.options.front_end,
+                       scenario.start_ns);
+  simulateEvents(scenario, 0, [&](EventSpan events) { tracker.add(events); });
+  return passWith(scenario, tracker.finish());
+}
+
+RecordingPass perfectPass(const Scenario& scenario, double centre_sigma_px, double window_s) {
+  return passWith(scenario, simulateObservations(scenario, 0, centre_sigma_px, window_s));
+}
+
+NamedResult truthOf(const Scenario& scenario) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() /
+                                     fmt::format("evical_truth_{}_{}.yaml", scenario.name, scenario.seed);
+  std::ofstream(file) << truthYaml(scenario);
+  NamedResult truth = readResultYaml(file);
+  std::filesystem::remove(file);
+  return truth;
+}
+
+}  // namespace evical::test

@@ -1,0 +1,20 @@
+// Sessions and recordings in memory for scenarios, so that tests and benchmarks need no files.
+#pragma once
+
+#include "core/pipeline/recording_pass.h"
+#include "core/pipeline/session.h"
+#include "core/report/result_yaml.h"
+#include "core/synthetic/scenario.h"
+
+namespace evical::test {
+
+Session sessionFor(const Scenario& scenario);
+
+// The IMUs' samples, and the first camera's circles as the front end finds them in the simulated events.
+RecordingPass detectedPass(const Scenario& scenario, const Session& session);
+// The same with circles as a perfect front end sees them, with noise: without events, and quickly.
+RecordingPass perfectPass(const Scenario& scenario, double centre_sigma_px, double window_s);
+
+NamedResult truthOf(const Scenario& scenario);
+
+}  // namespace evical::test
