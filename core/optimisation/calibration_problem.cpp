@@ -37,6 +37,7 @@ CalibrationProblem::CalibrationProblem(const CalibrationInput& input, const Opti
   for (const CameraData& camera : input.cameras) {
     circle_models_.push_back(std::make_unique<CircleModel>(
         CircleModel{*camera.intrinsics, input.board.radius_m, options.huber_sigma}));
+    pixel_errors_.emplace_back(camera, input.board, options);
     auto& used = used_circles.emplace_back();
     for (const BoardView& view : camera.observations.views)
       used.emplace_back(view.circles.size(), std::uint8_t{1});
@@ -117,6 +118,7 @@ CircleMeasurement CalibrationProblem::measurement(std::size_t camera, std::size_
   m.centre_px = observed.centre_px;
   m.whitening_px = covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity());
   m.lead = edgeLeadEffect(*input_.cameras[camera].intrinsics, observed, options_.rest_speed_px_s);
+  m.pixel_error_px = pixel_errors_[camera].at(observed);
   m.view = static_cast<int>(view);
   m.circle = static_cast<int>(circle);
   return m;

@@ -7,6 +7,7 @@
 #include "core/optimisation/circle_cost.h"
 #include "core/optimisation/inertial_cost.h"
 #include "core/optimisation/optimisation_options.h"
+#include "core/optimisation/pixel_errors.h"
 #include "core/optimisation/so3_manifold.h"
 #include "core/optimisation/still_axes.h"
 
@@ -107,6 +108,7 @@ class CalibrationProblem {
   So3Manifold so3_;
   ceres::SphereManifold<3> sphere_;
   std::vector<std::unique_ptr<CircleModel>> circle_models_;
+  std::vector<PixelErrors> pixel_errors_;  // by camera
   std::vector<BlockInfo> blocks_;
   std::unique_ptr<ceres::Problem> problem_;  // after what it points to
 };

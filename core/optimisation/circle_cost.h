@@ -31,7 +31,8 @@ struct CircleMeasurement {
   Eigen::Vector2d on_board_m, centre_px;
   Eigen::Matrix2d whitening_px;  // L^-1
   EdgeLeadEffect lead;
-  int view = 0, circle = 0;  // circle: position in the view's list
+  Eigen::Vector2d pixel_error_px = Eigen::Vector2d::Zero();  // PixelErrors::at
+  int view = 0, circle = 0;                                  // circle: position in the view's list
 };
 
 // What circles of one camera share.

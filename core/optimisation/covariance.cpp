@@ -104,11 +104,12 @@ QuantityCovariance quantityCovariance(const ProjectedInformation& information, c
         reportFromTangent(quantity, count, state, problem);
   }
   const SafeInverse safe = safeInverse(information.total, units);
-  // What the data doesn't say of its own: priors, and the floor under open directions.
+  // What the data doesn't say of its own: priors, the floor under open directions, errors that repeat.
   Eigen::MatrixXd given = safe.open, measured = Eigen::MatrixXd::Zero(size, size);
   for (const MeasurementGroup& group : information.groups) {
     (group.kind == SensorKind::Prior ? given : measured) += group.variance() * group.information;
   }
+  for (const Eigen::VectorXd& effect : information.pixel_errors) given += effect * effect.transpose();
   const Eigen::MatrixXd inverse = report_from_tangent * safe.inverse;
   Eigen::MatrixXd covariance = inverse * (measured + given) * inverse.transpose();
   const Eigen::MatrixXd correlated =

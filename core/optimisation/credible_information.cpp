@@ -44,6 +44,7 @@ ProjectedInformation withoutNoise(ProjectedInformation information) {
     information.total += group.information;
   }
   for (Eigen::VectorXd& score : information.scores) score = (keep * score).eval();
+  for (Eigen::VectorXd& effect : information.pixel_errors) effect = (keep * effect).eval();
   return information;
 }
 

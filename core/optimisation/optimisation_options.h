@@ -28,6 +28,7 @@ struct OptimisationOptions {
   int max_rounds = 5;
   int threads = 2;
   double correlation_time_s = 0.2;
+  double pixel_error_px = 0.1;
   double needed_rotation_deg = 0.1;
   double needed_translation_mm = 1.0;
   double needed_time_offset_ms = 0.1;
@@ -73,6 +74,9 @@ inline constexpr auto kOptimisationFields = std::tuple{
     Field{"threads", &OptimisationOptions::threads, 1, 256, "", "Threads that evaluate residuals."},
     Field{"correlation_time_s", &OptimisationOptions::correlation_time_s, 0.001, 10.0, "s",
           "Residuals nearer in time than this may be correlated; the reported sigmas allow for it."},
+    Field{"pixel_error_px", &OptimisationOptions::pixel_error_px, 0.0, 10.0, "px",
+          "Error of edges that repeats at the same pixel, so that motion over few pixels shows a wrong "
+          "amplitude: part of the sigmas."},
     Field{"needed_rotation_deg", &OptimisationOptions::needed_rotation_deg, 1e-4, 90.0, "deg",
           "Rotations less certain than this make the result doubtful."},
     Field{"needed_translation_mm", &OptimisationOptions::needed_translation_mm, 1e-3, 1e4, "mm",

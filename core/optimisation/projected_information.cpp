@@ -228,6 +228,18 @@ Eigen::MatrixXd totalInformation(const CalibrationProblem& problem, const Layout
   return total;
 }
 
+void addPixelErrors(const BlockInfo& info, const Eigen::MatrixXd& projected,
+                    std::vector<Eigen::VectorXd>& effects) {
+  Eigen::VectorXd change(info.circles->num_residuals());
+  Eigen::Index row = 0;
+  for (const CircleMeasurement& circle : info.circles->circles()) {
+    change.segment<2>(row) = circle.whitening_px * circle.pixel_error_px;
+    row += 2;
+  }
+  if (effects.size() <= info.sensor) effects.resize(info.sensor + 1, Eigen::VectorXd::Zero(projected.cols()));
+  effects[info.sensor] += projected.transpose() * change;
+}
+
 // The splines of a problem, for a while elsewhere.
 class SplineShift {
  public:
@@ -325,6 +337,7 @@ ProjectedInformation projectInformation(CalibrationProblem& problem, double stre
     group.squared_residuals += block.residuals.squaredNorm();
     group.residuals += static_cast<double>(block.residuals.size());
     if (info.kind == SensorKind::Prior) continue;
+    if (info.circles) addPixelErrors(info, projected, result.pixel_errors);
     scores.push_back({g, static_cast<std::int64_t>(std::floor(info.time_s / stretch_s)),
                       projected.transpose() * block.residuals});
   }

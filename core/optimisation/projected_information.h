@@ -38,6 +38,8 @@ struct ProjectedInformation {
   // What the splines' own errors add to P^T P on average. Where nothing moves the derivatives still hold
   // noise, and noise squared looks like information.
   Eigen::MatrixXd from_noise;
+  // By camera: P^T d, d what one sigma of the pixels' repeated errors changes in the residuals.
+  std::vector<Eigen::VectorXd> pixel_errors;
 };
 
 // `problem` must be built. Scores are collected over stretches of `stretch_s`. Throws Cancelled when asked to

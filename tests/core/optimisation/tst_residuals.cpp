@@ -274,6 +274,22 @@ class TestResiduals : public QObject {
     QCOMPARE(test::residualsAt(cost, {{1.0, 2.0, 3.0}}).norm(), 0.0);
     QVERIFY(test::worstJacobianError(cost, {{1.5, 2.5, 2.0}}) < 1e-9);
   }
+
+  void heldMapping_isZeroWhereItsAxisStays() {
+    const Vector3d axis(0.0, 0.6, 0.8);
+    const HeldAxisCost cost(axis, 0.1);
+    QCOMPARE(test::residualsAt(cost, {{1.0, 0.0, 0.0, 1.0, 0.0, 1.0}}).norm(), 0.0);
+    QVERIFY(test::residualsAt(cost, {{2.0, 0.8, -0.6, 1.0, 0.0, 1.0}}).norm() < 1e-12);
+    QVERIFY(std::abs(test::residualsAt(cost, {{1.0, 0.0, 0.0, 1.0, 0.0, 1.1}}).norm() - 0.8) < 1e-12);
+    QVERIFY(test::worstJacobianError(cost, {{1.1, 0.2, -0.1, 0.9, 0.05, 1.2}}) < 1e-9);
+  }
+
+  void heldTranslation_isZeroAcrossItsAxis() {
+    const HeldTranslationCost cost(Vector3d(0.0, 0.6, 0.8), 0.01);
+    QVERIFY(test::residualsAt(cost, {{0.3, 0.8, -0.6}}).norm() < 1e-12);
+    QVERIFY(std::abs(test::residualsAt(cost, {{0.3, 0.006, 0.008}})[0] - 1.0) < 1e-12);
+    QVERIFY(test::worstJacobianError(cost, {{0.3, 0.1, 0.2}}) < 1e-9);
+  }
 };
 
 }  // namespace
