@@ -2,8 +2,8 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/pipeline/simulated_cameras.h"
 #include "core/recording/recording_writer.h"
-#include "core/synthetic/event_simulator.h"
 #include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
 
@@ -92,9 +92,6 @@ void writeTexts(const std::vector<FileContent>& texts, const std::vector<std::fi
 
 SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path& folder,
                            const RunContext& context) {
-  if (scenario.cameras.size() != 1) {
-    throw badInput(scenario.name, "recordings of several cameras cannot be simulated yet", "Give one camera");
-  }
   const NewFolder new_folder(folder);
   const bool text = scenario.format == SimulatedFormat::Text;
   SimulationSummary summary;
@@ -110,12 +107,11 @@ SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path
     feeds.emplace_back(scenario.cameras.size() + k, simulateImu(scenario, k));
     summary.imu_samples += feeds.back().size();
   }
-  simulateEvents(
-      scenario, 0,
-      [&](EventSpan events) {
-        if (events.empty()) return;
+  simulateCameras(
+      scenario,
+      [&](std::size_t camera, EventSpan events) {
         for (ImuFeed& feed : feeds) feed.writeUntil(events.back().time_ns, *writer);
-        writer->write(0, events);
+        writer->write(camera, events);
         summary.events += events.size();
       },
       context);

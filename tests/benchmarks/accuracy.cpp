@@ -54,26 +54,30 @@ struct Outcome {
 RecordingPass detect(const Scenario& scenario, const Session& session, Outcome& outcome) {
   RecordingPass pass;
   pass.start_ns = scenario.start_ns;
-  const CameraIntrinsics& camera = scenario.cameras.front().intrinsics;
-  BoardTracker tracker(scenario.board, camera.resolution_px, camera, session.options.front_end,
-                       scenario.start_ns);
   Clock::duration busy{};
-  simulateEvents(scenario, 0, [&](EventSpan events) {
+  std::uint64_t events_read = 0;
+  for (std::size_t k = 0; k < scenario.cameras.size(); ++k) {
+    const CameraIntrinsics& camera = scenario.cameras[k].intrinsics;
+    BoardTracker tracker(scenario.board, camera.resolution_px, camera, session.options.front_end,
+                         scenario.start_ns);
+    simulateEvents(scenario, k, [&](EventSpan events) {
+      const Clock::time_point before = Clock::now();
+      tracker.add(events);
+      busy += Clock::now() - before;
+    });
     const Clock::time_point before = Clock::now();
-    tracker.add(events);
+    pass.cameras.push_back(tracker.finish());
     busy += Clock::now() - before;
-  });
-  const Clock::time_point before = Clock::now();
-  pass.cameras.push_back(tracker.finish());
-  busy += Clock::now() - before;
-  pass.cameras.front().camera = scenario.cameras.front().name;
+    pass.cameras.back().camera = scenario.cameras[k].name;
+    events_read += pass.cameras.back().events;
+  }
   for (std::size_t k = 0; k < scenario.imus.size(); ++k) {
     const SimulatedImu& imu = scenario.imus[k];
     pass.imus.push_back(
         {imu.name, {imu.gyroscope_density, imu.accelerometer_density}, simulateImu(scenario, k)});
   }
   pass.detect_s = outcome.detect_s = secondsOf(busy);
-  outcome.events_per_s = static_cast<double>(pass.cameras.front().events) / scenario.duration_s;
+  outcome.events_per_s = static_cast<double>(events_read) / scenario.duration_s;
   return pass;
 }
 
