@@ -23,10 +23,8 @@ void checkInput(const CalibrationInput& input, const InitialisationOptions& opti
     throw calibrationFailed("session", "there is no IMU",
                             "Add one under imus:, or calibrate the camera alone");
   }
-  if (input.imus.size() > 1)
-    throw calibrationFailed("session", "more than one IMU cannot be calibrated yet", "Name one IMU only");
-  const ImuData& imu = input.imus.front();
-  if (static_cast<int>(imu.samples.size()) < options.least_imu_samples) {
+  for (const ImuData& imu : input.imus) {
+    if (static_cast<int>(imu.samples.size()) >= options.least_imu_samples) continue;
     throw calibrationFailed(imu.name, fmt::format("has {} samples only", imu.samples.size()),
                             "Check the IMU's stream, and record for 30 s");
   }

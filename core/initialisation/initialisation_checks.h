@@ -12,7 +12,7 @@
 
 namespace evical {
 
-// Board, cameras with intrinsics, one IMU with samples.
+// Board, cameras with intrinsics, IMUs with samples.
 void checkInput(const CalibrationInput& input, const InitialisationOptions& options);
 // Warns of gaps.
 void checkGyroscope(const ImuData& imu, const GyroRotation& gyro, const InitialisationOptions& options,

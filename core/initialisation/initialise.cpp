@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/initialisation/camera_imu_rotation.h"
+#include "core/initialisation/further_imus.h"
 #include "core/initialisation/gravity_alignment.h"
 #include "core/initialisation/initialisation_checks.h"
 #include "core/initialisation/pose_consistency.h"
@@ -24,10 +25,9 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
-struct AlignedCamera {
-  std::vector<CameraPose> poses;
-  HandEye hand_eye;
-};
+const ImuData& referenceImu(const CalibrationInput& input) {
+  return input.imus[input.reference_imu];
+}
 
 std::vector<CameraPose> cameraPoses(const CameraData& camera, const CircleBoard& board,
                                     const GyroRotation& gyro, const InitialisationOptions& options,
@@ -125,7 +125,7 @@ void settlePoses(const CameraData& camera, const ImuData& imu, std::int64_t star
 AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& input, const GyroRotation& gyro,
                           const InitialisationOptions& options, const RunContext& context,
                           Initialisation& result) {
-  const ImuData& imu = input.imus.front();
+  const ImuData& imu = referenceImu(input);
   const std::vector<CameraPose> poses = cameraPoses(camera, input.board, gyro, options, context, result);
   context.throwIfStopped();
   const std::vector<TimeOffsetPeak> peaks = correlateTimeOffset(poses, gyro, options);
@@ -183,11 +183,10 @@ void turnAboutAxis(const CalibrationInput& input, const InitialisationOptions& o
   // The angle needs no fine knots.
   constexpr double kLeastKnot_s = 0.05;
   const double knot_s = std::max(options.knot_spacing_s, kLeastKnot_s);
-  const So3Spline rotation =
-      fitWorldRotation(cameras.front().poses, first, gyro, range.begin_s, range.end_s, knot_s);
+  const So3Spline rotation = fitWorldRotation({cameras.data(), 1}, gyro, range.begin_s, range.end_s, knot_s);
   const double turn_rad =
-      findTurnAboutAxis(first.main_axis_in_imu, tracksOf(cameras), input.imus.front().samples, input.start_ns,
-                        rotation, options, context);
+      findTurnAboutAxis(first.main_axis_in_imu, tracksOf(cameras), referenceImu(input).samples,
+                        input.start_ns, rotation, options, context);
   for (AlignedCamera& camera : cameras) {
     camera.hand_eye.imu_from_camera =
         quaternionExp(-turn_rad * first.main_axis_in_imu) * camera.hand_eye.imu_from_camera;
@@ -212,8 +211,9 @@ void alignTranslations(const CalibrationInput& input, const InitialisationOption
                        const std::vector<AlignedCamera>& cameras, const RunContext& context,
                        Initialisation& result) {
   CalibrationState& state = result.state;
-  const GravityAlignment gravity = alignGravity(tracksOf(cameras), input.imus.front().samples, input.start_ns,
-                                                state.world_from_imu_rotation, options, context);
+  const GravityAlignment gravity =
+      alignGravity(tracksOf(cameras), referenceImu(input).samples, input.start_ns,
+                   state.world_from_imu_rotation, options, context);
   result.steps.push_back(
       {"gravity and translation",
        fmt::format("positions agree to {:.2f} mm in {} of {} views, accelerations to {:.3f} m/s^2",
@@ -229,15 +229,38 @@ void alignTranslations(const CalibrationInput& input, const InitialisationOption
   checkBoardScale(gravity, input.board, options, result);
   state.imu_in_world_m = gravity.imu_in_world_m;
   state.gravity_in_world_m_s2 = gravity.gravity_in_world_m_s2;
-  state.imus.resize(1);
-  state.imus.front().gyroscope_bias_rad_s = cameras.front().hand_eye.gyroscope_bias_rad_s;
-  state.imus.front().accelerometer_bias_m_s2 = gravity.accelerometer_bias_m_s2;
+  state.imus.resize(input.imus.size());
+  ImuState& reference = state.imus[input.reference_imu];
+  reference.gyroscope_bias_rad_s = cameras.front().hand_eye.gyroscope_bias_rad_s;
+  reference.accelerometer_bias_m_s2 = gravity.accelerometer_bias_m_s2;
   for (std::size_t k = 0; k < cameras.size(); ++k) {
     CameraState camera;
     camera.imu_from_camera = {cameras[k].hand_eye.imu_from_camera, gravity.cameras_in_imu_m[k]};
     camera.time_offset_s = cameras[k].hand_eye.time_offset_s;
     state.cameras.push_back(camera);
   }
+}
+
+void alignFurtherImu(const CalibrationInput& input, std::size_t k, const GyroRotation& reference,
+                     const InitialisationOptions& options, const RunContext& context,
+                     Initialisation& result) {
+  const ImuData& imu = input.imus[k];
+  const ImuRotation rotation = alignFurtherGyroscope(imu, input.start_ns, reference, options, context);
+  const LeverArm lever = solveLeverArm(imu, input.start_ns, rotation, result.state, options);
+  const HandEye& hand_eye = rotation.hand_eye;
+  ImuState& state = result.state.imus[k];
+  state.reference_from_imu = {hand_eye.imu_from_camera, lever.imu_in_reference_m};
+  state.time_offset_s = hand_eye.time_offset_s;
+  state.gyroscope_bias_rad_s = hand_eye.gyroscope_bias_rad_s;
+  state.accelerometer_bias_m_s2 = lever.accelerometer_bias_m_s2;
+  result.steps.push_back(
+      {"IMU to IMU",
+       fmt::format(
+           "{}: time offset {:.4f} s (correlation {:.3f}), rotations agree to {:.3f} deg, accelerations to "
+           "{:.3f} m/s^2",
+           imu.name, hand_eye.time_offset_s, rotation.correlation, hand_eye.residual_rad * kDegPerRad,
+           lever.force_rms_m_s2),
+       hand_eye.residual_rad, lever.std_m});
 }
 
 // Tells the observer of the steps that it has not heard of.
@@ -254,7 +277,7 @@ Initialisation initialise(const CalibrationInput& input, const InitialisationOpt
   Initialisation result;
   std::size_t told = 0;
   checkInput(input, options);
-  const ImuData& imu = input.imus.front();
+  const ImuData& imu = referenceImu(input);
   const GyroRotation gyro(imu.samples, input.start_ns);
   checkGyroscope(imu, gyro, options, result.warnings);
   std::vector<AlignedCamera> cameras;
@@ -274,10 +297,12 @@ Initialisation initialise(const CalibrationInput& input, const InitialisationOpt
   turnAboutAxis(input, options, range, unbiased, context, cameras, result);
   context.throwIfStopped();
   result.state.world_from_imu_rotation =
-      fitWorldRotation(cameras.front().poses, cameras.front().hand_eye, unbiased, range.begin_s, range.end_s,
-                       options.knot_spacing_s);
+      fitWorldRotation(cameras, unbiased, range.begin_s, range.end_s, options.knot_spacing_s);
   context.throwIfStopped();
   alignTranslations(input, options, cameras, context, result);
+  for (std::size_t k = 0; k < input.imus.size(); ++k) {
+    if (k != input.reference_imu) alignFurtherImu(input, k, unbiased, options, context, result);
+  }
   tellSteps(result.steps, observer, told);
   context.progress.stageProgress(1.0);
   return result;

@@ -8,16 +8,19 @@ constexpr int kSamplesPerKnot = 4;
 
 }  // namespace
 
-So3Spline fitWorldRotation(const std::vector<CameraPose>& poses, const HandEye& hand_eye,
-                           const GyroRotation& gyro, double begin_s, double end_s, double knot_spacing_s) {
+So3Spline fitWorldRotation(std::span<const AlignedCamera> cameras, const GyroRotation& gyro, double begin_s,
+                           double end_s, double knot_spacing_s) {
   std::vector<double> times_s;
   std::vector<Eigen::Quaterniond> world_from_first;
-  for (const CameraPose& pose : poses) {
-    const double time_s = pose.time_s + hand_eye.time_offset_s;
-    if (time_s < begin_s || time_s > end_s) continue;
-    times_s.push_back(time_s);
-    world_from_first.push_back(pose.world_from_camera.rotation * hand_eye.imu_from_camera.conjugate() *
-                               gyro.at(time_s).conjugate());
+  for (const AlignedCamera& camera : cameras) {
+    const Eigen::Quaterniond camera_from_imu = camera.hand_eye.imu_from_camera.conjugate();
+    for (const CameraPose& pose : camera.poses) {
+      const double time_s = pose.time_s + camera.hand_eye.time_offset_s;
+      if (time_s < begin_s || time_s > end_s) continue;
+      times_s.push_back(time_s);
+      world_from_first.push_back(pose.world_from_camera.rotation * camera_from_imu *
+                                 gyro.at(time_s).conjugate());
+    }
   }
   const So3Spline drift = fitSo3Spline(times_s, world_from_first, begin_s, end_s, kDriftKnot_s);
   std::vector<double> sample_times_s;

@@ -1,16 +1,22 @@
-// The rotation spline in the world: the gyroscope's rotation, held to the camera's (end of method 5.4).
+// The rotation spline in the world: the gyroscope's rotation, held to the cameras' (end of method 5.4).
 #pragma once
 
 #include "core/geometry/so3_spline.h"
 #include "core/initialisation/camera_imu_rotation.h"
 #include "core/initialisation/camera_poses.h"
 
+#include <span>
 #include <vector>
 
 namespace evical {
 
+struct AlignedCamera {
+  std::vector<CameraPose> poses;
+  HandEye hand_eye;
+};
+
 // world_from_imu on the IMU's clock over [begin_s, end_s]; `gyro` with its bias taken out.
-So3Spline fitWorldRotation(const std::vector<CameraPose>& poses, const HandEye& hand_eye,
-                           const GyroRotation& gyro, double begin_s, double end_s, double knot_spacing_s);
+So3Spline fitWorldRotation(std::span<const AlignedCamera> cameras, const GyroRotation& gyro, double begin_s,
+                           double end_s, double knot_spacing_s);
 
 }  // namespace evical

@@ -88,6 +88,14 @@ Scenario makeScenario(const SimulationOptions& options) {
   imu.gyroscope_mapping << 1.004, 0.002, -0.001, 0.0, 0.997, 0.0015, 0.0, 0.0, 1.002;
   imu.accelerometer_mapping << 0.998, -0.001, 0.002, 0.0, 1.003, 0.001, 0.0, 0.0, 1.001;
   scenario.imus = {imu};
+  if (!options.second_imu) return scenario;
+  SimulatedImu second = imu;
+  second.name = "second";
+  second.gyroscope_bias_rad_s = {-0.02, 0.01, 0.015};
+  second.accelerometer_bias_m_s2 = {-0.1, 0.2, 0.05};
+  second.reference_from_imu = {quaternionExp({0.3, -2.0, 1.0}), {0.12, -0.05, 0.08}};
+  second.time_offset_s = options.second_imu_offset_s;
+  scenario.imus.push_back(second);
   return scenario;
 }
 
@@ -179,14 +187,16 @@ SimulatedInput simulateInput(const SimulationOptions& options) {
     }
     input.cameras.push_back(std::move(camera));
   }
-  ImuData imu;
-  imu.name = "imu";
-  imu.samples = simulateImu(result.truth, 0);
-  std::erase_if(imu.samples, [&](const ImuSample& sample) {
-    const double time_s = secondsSince(input.start_ns, sample.time_ns);
-    return time_s < options.imu_begin_s || (options.imu_end_s >= 0.0 && time_s > options.imu_end_s);
-  });
-  input.imus.push_back(std::move(imu));
+  for (std::size_t k = 0; k < result.truth.imus.size(); ++k) {
+    ImuData imu;
+    imu.name = result.truth.imus[k].name;
+    imu.samples = simulateImu(result.truth, k);
+    std::erase_if(imu.samples, [&](const ImuSample& sample) {
+      const double time_s = secondsSince(input.start_ns, sample.time_ns);
+      return time_s < options.imu_begin_s || (options.imu_end_s >= 0.0 && time_s > options.imu_end_s);
+    });
+    input.imus.push_back(std::move(imu));
+  }
   return result;
 }
 

@@ -20,6 +20,8 @@ struct SimulationOptions {
   Motion motion = Motion::Everyday;
   double distance_m = 0.68;
   int cameras = 1;
+  bool second_imu = false;
+  double second_imu_offset_s = 0.03;  // reference_time = its time + offset
   // Views are made for camera times from 0 to the duration, those of the IMU from 0 to its own.
   double imu_begin_s = 0.0, imu_end_s = -1.0;  // cut, on the IMU's clock; -1: whole
   std::uint64_t seed = 1;

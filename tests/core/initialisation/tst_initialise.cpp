@@ -202,7 +202,13 @@ class TestInitialise : public QObject {
     row(
         "no IMU", [](auto& input) { input.imus.clear(); }, "there is no IMU");
     row(
-        "two IMUs", [](auto& input) { input.imus.push_back(input.imus[0]); }, "more than one IMU");
+        "another recording's IMU",
+        [](auto& input) {
+          SimulationOptions other = shortRecording();
+          other.seed = 5;
+          input.imus.push_back(simulateInput(other).input.imus[0]);
+        },
+        "rotation rates do not agree");
     row(
         "no samples", [](auto& input) { input.imus[0].samples.clear(); }, "has 0 samples only");
     row(

@@ -1,0 +1,39 @@
+// Where further IMUs sit on the rig. Rotation and time offset as for a camera (method 5.1, 5.4): a gyroscope,
+// too, sees how far it has turned between two moments. Then lever arm l and accelerometer bias b, linear once
+// the reference's motion is known (method 5.5):
+//   R f - R_wb^T (p'' - g) = ([a]x + [w]x [w]x) l + R b        with R = reference_from_imu.rotation.
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/data/calibration_setup.h"
+#include "core/data/calibration_state.h"
+#include "core/initialisation/camera_imu_rotation.h"
+#include "core/initialisation/gyro_rotation.h"
+#include "core/initialisation/initialisation_options.h"
+
+#include <cstdint>
+
+namespace evical {
+
+struct ImuRotation {
+  HandEye
+      hand_eye;  // the IMU in the camera's place; the bias is that of the further gyroscope, in its own frame
+  double correlation = 0.0;  // of the two gyroscopes' rates
+};
+
+// `reference` with its bias taken out. Throws CalibrationFailed where they do not overlap or do not agree.
+ImuRotation alignFurtherGyroscope(const ImuData& imu, std::int64_t start_ns, const GyroRotation& reference,
+                                  const InitialisationOptions& options, const RunContext& context);
+
+struct LeverArm {
+  Eigen::Vector3d imu_in_reference_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d accelerometer_bias_m_s2 = Eigen::Vector3d::Zero();
+  double force_rms_m_s2 = 0.0;
+  double std_m = 0.0;  // of the worst direction
+};
+
+// `state` with trajectory and gravity.
+LeverArm solveLeverArm(const ImuData& imu, std::int64_t start_ns, const ImuRotation& rotation,
+                       const CalibrationState& state, const InitialisationOptions& options);
+
+}  // namespace evical
