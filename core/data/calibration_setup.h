@@ -44,7 +44,8 @@ struct CalibrationInput {
   CircleBoard board;
   std::vector<CameraData> cameras;
   std::vector<ImuData> imus;
-  std::size_t reference_imu = 0;  // index into imus
+  std::size_t reference_imu = 0;     // index into imus
+  std::size_t reference_camera = 0;  // index into cameras: the reference where there is no IMU
 };
 
 }  // namespace evical

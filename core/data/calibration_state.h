@@ -1,4 +1,5 @@
-// All that the estimator estimates, initial or final. Frames: world = board; body = the reference IMU.
+// All that the estimator estimates, initial or final. Frames: world = board; body = the reference IMU, or the
+// reference camera where there is no IMU.
 #pragma once
 
 #include "core/geometry/rigid_transform.h"

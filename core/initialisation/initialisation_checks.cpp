@@ -19,9 +19,9 @@ void checkInput(const CalibrationInput& input, const InitialisationOptions& opti
     if (!camera.intrinsics)
       throw calibrationFailed(camera.name, "has no intrinsics", "Give them in the session");
   }
-  if (input.imus.empty()) {
-    throw calibrationFailed("session", "there is no IMU",
-                            "Add one under imus:, or calibrate the camera alone");
+  if (input.imus.empty() && input.cameras.size() == 1) {
+    throw calibrationFailed("session", "there is neither an IMU nor a second camera",
+                            "Add one: a camera alone has nothing to be calibrated against");
   }
   for (const ImuData& imu : input.imus) {
     if (static_cast<int>(imu.samples.size()) >= options.least_imu_samples) continue;
@@ -48,8 +48,7 @@ void checkGyroscope(const ImuData& imu, const GyroRotation& gyro, const Initiali
   }
 }
 
-void checkPoses(const CameraData& camera, const CameraPoses& found, const GyroRotation& gyro,
-                const InitialisationOptions& options) {
+void checkViews(const CameraData& camera, const CameraPoses& found, const InitialisationOptions& options) {
   const std::size_t views = camera.observations.views.size();
   if (static_cast<int>(views) < options.least_views) {
     throw calibrationFailed(
@@ -67,6 +66,11 @@ void checkPoses(const CameraData& camera, const CameraPoses& found, const GyroRo
                     options.largest_reprojection_px),
         "Check the intrinsics, and the board's rows, cols, spacing_m and radius_m");
   }
+}
+
+void checkPoses(const CameraData& camera, const CameraPoses& found, const GyroRotation& gyro,
+                const InitialisationOptions& options) {
+  checkViews(camera, found, options);
   const double first_s = found.poses.front().time_s, last_s = found.poses.back().time_s;
   const double overlap_s = std::min(last_s, gyro.end_s() + options.time_offset_search_s) -
                            std::max(first_s, gyro.begin_s() - options.time_offset_search_s);

@@ -12,12 +12,14 @@
 
 namespace evical {
 
-// Board, cameras with intrinsics, IMUs with samples.
+// Board, cameras with intrinsics, IMUs with samples, or a second camera.
 void checkInput(const CalibrationInput& input, const InitialisationOptions& options);
 // Warns of gaps.
 void checkGyroscope(const ImuData& imu, const GyroRotation& gyro, const InitialisationOptions& options,
                     std::vector<std::string>& warnings);
-// Enough poses, and some offset within the search range at which they and the IMU overlap.
+// Enough poses.
+void checkViews(const CameraData& camera, const CameraPoses& found, const InitialisationOptions& options);
+// That, and some offset within the search range at which they and the IMU overlap.
 void checkPoses(const CameraData& camera, const CameraPoses& found, const GyroRotation& gyro,
                 const InitialisationOptions& options);
 // Once the offset is known.

@@ -28,6 +28,8 @@ struct InitialisationOptions {
   double accelerometer_mapping_sigma = 0.05;
   double largest_scale_error = 0.03;
   double scale_error_sigmas = 5.0;
+  double camera_knot_spacing_s = 0.03;
+  double longest_shared_gap_s = 0.1;
   int least_imu_samples = 50;
   double least_acceleration_m_s2 = 4.0;
   double largest_acceleration_m_s2 = 40.0;
@@ -88,6 +90,11 @@ inline constexpr auto kInitialisationFields = std::tuple{
           "doubtful."},
     Field{"scale_error_sigmas", &InitialisationOptions::scale_error_sigmas, 1.0, 100.0, "sigma",
           "But only if it is as certain as that."},
+    Field{"camera_knot_spacing_s", &InitialisationOptions::camera_knot_spacing_s, 0.005, 0.1, "s",
+          "Without an IMU: knot spacing of the reference camera's trajectory."},
+    Field{"longest_shared_gap_s", &InitialisationOptions::longest_shared_gap_s, 0.005, 2.0, "s",
+          "Without an IMU: views of the reference camera that are further apart say nothing of the time "
+          "between."},
     Field{"least_imu_samples", &InitialisationOptions::least_imu_samples, 10, 1000000, "",
           "Samples that an IMU must have."},
     Field{"least_acceleration_m_s2", &InitialisationOptions::least_acceleration_m_s2, 0.0, 1000.0, "m/s^2",

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/initialisation/camera_imu_rotation.h"
+#include "core/initialisation/camera_trajectory.h"
 #include "core/initialisation/further_imus.h"
 #include "core/initialisation/gravity_alignment.h"
 #include "core/initialisation/initialisation_checks.h"
@@ -270,6 +271,84 @@ void tellSteps(const std::vector<InitialisationStep>& steps, CalibrationObserver
     observer->initialisationStepDone(steps[told].name, steps[told].result);
 }
 
+// Cameras alone: the trajectory is the reference camera's, and a gyroscope on it would feel its rotation.
+class CamerasAlone {
+ public:
+  CamerasAlone(const CalibrationInput& input, const InitialisationOptions& options, const RunContext& context,
+               Initialisation& result)
+      : input_(input), options_(options), context_(context), result_(result) {}
+
+  void run() {
+    followReference();
+    CalibrationInput felt = input_;
+    ImuData& gyroscope = felt.imus.emplace_back();
+    gyroscope.name = reference().name;
+    gyroscope.samples = angularRatesOf(trajectory_, input_.start_ns);
+    felt.reference_imu = 0;
+    const GyroRotation gyro(gyroscope.samples, input_.start_ns);
+    checkGyroscope(gyroscope, gyro, options_, result_.warnings);
+    result_.state.cameras.resize(input_.cameras.size());
+    for (std::size_t k = 0; k < input_.cameras.size(); ++k) {
+      context_.throwIfStopped();
+      if (k != input_.reference_camera)
+        place(k, alignCamera(input_.cameras[k], felt, gyro, options_, context_, result_));
+    }
+    result_.state.world_from_imu_rotation = std::move(trajectory_.world_from_camera_rotation);
+    result_.state.imu_in_world_m = std::move(trajectory_.camera_in_world_m);
+  }
+
+ private:
+  const CameraData& reference() const { return input_.cameras[input_.reference_camera]; }
+
+  void followReference() {
+    CameraPoses found = estimateCameraPoses(reference(), input_.board, options_, context_);
+    checkViews(reference(), found, options_);
+    const int swapped = resolveBySmoothness(found.poses, options_.longest_pair_s);
+    const double begin_s = found.poses.front().time_s - options_.margin_s,
+                 end_s = found.poses.back().time_s + options_.margin_s;
+    trajectory_ = trajectoryThrough(found.poses, begin_s, end_s, options_.camera_knot_spacing_s);
+    result_.steps.push_back(
+        {"trajectory",
+         fmt::format("{}: {} of {} views, circles fit to {:.3f} px (median), {} turned to the "
+                     "plane's other pose",
+                     reference().name, found.poses.size(), reference().observations.views.size(),
+                     found.median_reprojection_px, swapped),
+         found.median_reprojection_px, 0.0});
+  }
+
+  void place(std::size_t k, const AlignedCamera& aligned) {
+    const std::string& name = input_.cameras[k].name;
+    const double time_offset_s = aligned.hand_eye.time_offset_s;
+    const auto pose = relativePose(trajectory_, aligned.poses, time_offset_s, options_.longest_shared_gap_s,
+                                   options_.least_views);
+    if (!pose) {
+      throw calibrationFailed(
+          name,
+          fmt::format("it and {} see the board within {:.2f} s of each other in fewer than {} views",
+                      reference().name, options_.longest_shared_gap_s, options_.least_views),
+          "Let both see the board at the same time, or record with an IMU");
+    }
+    if (pose->agreeing < options_.least_agreement) {
+      throw calibrationFailed(name,
+                              fmt::format("only {:.0f} % of its views agree on how it sits on {}",
+                                          100.0 * pose->agreeing, reference().name),
+                              "Check that both see one board at the same time and are fixed to each other");
+    }
+    result_.state.cameras[k].imu_from_camera = pose->reference_from_camera;
+    result_.state.cameras[k].time_offset_s = time_offset_s;
+    result_.steps.push_back({"camera to camera",
+                             fmt::format("{}: {} views agree to {:.3f} deg and {:.2f} mm", name, pose->views,
+                                         pose->rotation_rms_rad * kDegPerRad, pose->position_rms_m * 1e3),
+                             pose->position_rms_m, 0.0});
+  }
+
+  const CalibrationInput& input_;
+  const InitialisationOptions& options_;
+  const RunContext& context_;
+  Initialisation& result_;
+  CameraTrajectory trajectory_;
+};
+
 }  // namespace
 
 Initialisation initialise(const CalibrationInput& input, const InitialisationOptions& options,
@@ -277,6 +356,12 @@ Initialisation initialise(const CalibrationInput& input, const InitialisationOpt
   Initialisation result;
   std::size_t told = 0;
   checkInput(input, options);
+  if (input.imus.empty()) {
+    CamerasAlone(input, options, context, result).run();
+    tellSteps(result.steps, observer, told);
+    context.progress.stageProgress(1.0);
+    return result;
+  }
   const ImuData& imu = referenceImu(input);
   const GyroRotation gyro(imu.samples, input.start_ns);
   checkGyroscope(imu, gyro, options, result.warnings);

@@ -26,8 +26,8 @@ struct Initialisation {
   std::string doubt;  // what makes any result doubtful; empty if nothing does
 };
 
-// One reference IMU and any number of cameras. Throws CalibrationFailed with a reason in plain words: too few
-// views, too short, no overlap in time, no motion.
+// Any number of cameras and IMUs against the reference: an IMU, or a camera where there is no IMU. Throws
+// CalibrationFailed with a reason in plain words: too few views, too short, no overlap in time, no motion.
 Initialisation initialise(const CalibrationInput& input, const InitialisationOptions& options,
                           const RunContext& context, CalibrationObserver* observer = nullptr);
 

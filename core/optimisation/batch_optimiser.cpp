@@ -110,7 +110,8 @@ std::vector<ReleaseStages> Batch::stages() const {
   if (input_.imus.size() > 1 && options_.last_stage >= ReleaseStages::FurtherImus) {
     all.push_back(ReleaseStages::FurtherImus);
   }
-  if (options_.last_stage >= ReleaseStages::Mappings) all.push_back(ReleaseStages::Mappings);
+  if (!input_.imus.empty() && options_.last_stage >= ReleaseStages::Mappings)
+    all.push_back(ReleaseStages::Mappings);
   return all;
 }
 
@@ -270,16 +271,18 @@ void Batch::reportNotes() {
     sayHeld(input_.imus[i].name, "changing acceleration", held.accelerometer.size(),
             "the accelerometer's scale stays as it is");
   }
-  sayHeld(input_.imus[input_.reference_imu].name, "lever of rotation",
-          problem_.held_axes[input_.reference_imu].leverless().size(), "translations stay at 0");
+  if (!input_.imus.empty()) {
+    sayHeld(input_.imus[input_.reference_imu].name, "lever of rotation",
+            problem_.held_axes[input_.reference_imu].leverless().size(), "translations stay at 0");
+  }
   if (!solution_.converged) {
     solution_.notes.push_back("the optimiser stopped at its iteration limit before it converged");
   }
 }
 
 void checkInput(const CalibrationInput& input, const CalibrationState& initial) {
-  if (input.imus.empty() || input.cameras.empty()) {
-    throw badInput("optimisation", "the batch needs a camera and an IMU");
+  if (input.cameras.empty() || input.cameras.size() + input.imus.size() < 2) {
+    throw badInput("optimisation", "the batch needs a camera and an IMU, or two cameras");
   }
   if (initial.cameras.size() != input.cameras.size() || initial.imus.size() != input.imus.size()) {
     throw badInput("optimisation", "the initial state does not list the input's cameras and IMUs");

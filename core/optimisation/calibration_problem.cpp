@@ -4,6 +4,7 @@
 
 #include "core/base/time.h"
 #include "core/optimisation/prior_cost.h"
+#include "core/optimisation/smoothness_cost.h"
 
 #include <Eigen/Cholesky>
 
@@ -59,7 +60,9 @@ void CalibrationProblem::build(ReleaseStages stage) {
     if (isReference(i) || stage != ReleaseStages::Extrinsics) addImu(i);
   }
   addPriors(stage);
+  if (input_.imus.empty()) addSmoothness();
   setManifolds(stage);
+  if (input_.imus.empty()) holdReferenceCamera();
 }
 
 double CalibrationProblem::segmentDrift_knots() const {
@@ -256,9 +259,34 @@ void CalibrationProblem::addPriors(ReleaseStages stage) {
   }
 }
 
+// No IMU fills the gaps between views.
+void CalibrationProblem::addSmoothness() {
+  So3Spline& r = state_.world_from_imu_rotation;
+  for (std::size_t k = 2; k < r.control_points.size(); ++k) {
+    auto* cost = new SmoothRotationCost(r.knot_spacing_s, options_.smooth_rotation_rad_s2);
+    const auto block = [&](std::size_t i) { return r.control_points[i].coeffs().data(); };
+    blocks_.push_back({problem_->AddResidualBlock(cost, nullptr, block(k - 2), block(k - 1), block(k))});
+  }
+  VectorSpline& p = state_.imu_in_world_m;
+  for (std::size_t k = 2; k < p.control_points.size(); ++k) {
+    auto* cost = new SmoothPositionCost(p.knot_spacing_s, options_.smooth_position_m_s2);
+    const auto block = [&](std::size_t i) { return p.control_points[i].data(); };
+    blocks_.push_back({problem_->AddResidualBlock(cost, nullptr, block(k - 2), block(k - 1), block(k))});
+  }
+}
+
+// The trajectory is the reference camera's own.
+void CalibrationProblem::holdReferenceCamera() {
+  CameraState& reference = state_.cameras[input_.reference_camera];
+  for (double* block : {reference.imu_from_camera.rotation.coeffs().data(),
+                        reference.imu_from_camera.translation_m.data(), &reference.time_offset_s}) {
+    if (problem_->HasParameterBlock(block)) problem_->SetParameterBlockConstant(block);
+  }
+}
+
 void CalibrationProblem::holdTranslation(double* translation_m) {
   constexpr double kSigma_m = 1e-4;
-  if (!problem_->HasParameterBlock(translation_m)) return;
+  if (input_.imus.empty() || !problem_->HasParameterBlock(translation_m)) return;
   for (const Eigen::Vector3d& axis : held_axes[input_.reference_imu].leverless()) {
     auto* cost = new HeldTranslationCost(axis, kSigma_m);
     blocks_.push_back({problem_->AddResidualBlock(cost, nullptr, translation_m)});

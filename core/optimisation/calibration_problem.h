@@ -89,9 +89,11 @@ class CalibrationProblem {
   void addAccelerometer(std::size_t imu, const SegmentTimes& segment, double time_s,
                         std::span<const ImuSample> samples);
   void addPriors(ReleaseStages stage);
+  void addSmoothness();
   void holdMapping(double* mapping, const std::vector<Eigen::Vector3d>& axes);
   void holdTranslation(double* translation_m);
   void setManifolds(ReleaseStages stage);
+  void holdReferenceCamera();
   bool isReference(std::size_t imu) const { return imu == input_.reference_imu; }
   ImuRole roleOf(std::size_t imu) const { return isReference(imu) ? ImuRole::Reference : ImuRole::Further; }
   SegmentTimes segmentAt(double time_s) const;

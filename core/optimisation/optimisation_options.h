@@ -27,6 +27,8 @@ struct OptimisationOptions {
   int max_iterations = 30;
   int max_rounds = 5;
   int threads = 2;
+  double smooth_rotation_rad_s2 = 200.0;
+  double smooth_position_m_s2 = 30.0;
   double correlation_time_s = 0.2;
   double pixel_error_px = 0.1;
   double needed_rotation_deg = 0.1;
@@ -72,6 +74,11 @@ inline constexpr auto kOptimisationFields = std::tuple{
     Field{"max_rounds", &OptimisationOptions::max_rounds, 1, 100, "",
           "Solves of one stage, each with measurements assigned to spline segments anew."},
     Field{"threads", &OptimisationOptions::threads, 1, 256, "", "Threads that evaluate residuals."},
+    Field{"smooth_rotation_rad_s2", &OptimisationOptions::smooth_rotation_rad_s2, 0.1, 1e6, "rad/s^2",
+          "Without an IMU: angular accelerations are 0 +- this at each knot, which bridges gaps between "
+          "views."},
+    Field{"smooth_position_m_s2", &OptimisationOptions::smooth_position_m_s2, 0.01, 1e6, "m/s^2",
+          "The same of accelerations."},
     Field{"correlation_time_s", &OptimisationOptions::correlation_time_s, 0.001, 10.0, "s",
           "Residuals nearer in time than this may be correlated; the reported sigmas allow for it."},
     Field{"pixel_error_px", &OptimisationOptions::pixel_error_px, 0.0, 10.0, "px",

@@ -114,6 +114,7 @@ CalibrationInput inputFrom(const Session& session, const RecordingPass& pass) {
   }
   input.imus = pass.imus;
   input.reference_imu = session.referenceImu();
+  input.reference_camera = session.referenceCamera();
   return input;
 }
 
@@ -124,9 +125,9 @@ void checkSession(const Session& session) {
                    "intrinsics are missing, and calibrating them from events is not there yet",
                    "Give the map, or a path to one, to a Kalibr camchain or to a ROS camera_info file");
   }
-  if (session.imus.empty()) {
-    throw badInput(session.source.string() + ": imus",
-                   "there is no IMU, and calibrating cameras alone is not there yet", "Add the IMU's stream");
+  if (session.imus.empty() && session.cameras.size() == 1) {
+    throw badInput(session.source.string() + ": imus", "there is neither an IMU nor a second camera",
+                   "Add one: a camera alone has nothing to be calibrated against");
   }
 }
 

@@ -109,9 +109,17 @@ std::size_t Session::referenceImu() const {
   return found == imus.end() ? 0 : static_cast<std::size_t>(found - imus.begin());
 }
 
+std::size_t Session::referenceCamera() const {
+  const auto found = std::find_if(cameras.begin(), cameras.end(),
+                                  [&](const SessionCamera& c) { return c.name == reference; });
+  return found == cameras.end() || !imus.empty() ? 0 : static_cast<std::size_t>(found - cameras.begin());
+}
+
 void validate(const Session& session, const std::string& place) {
   if (session.cameras.empty())
-    throw badInput(place + ": cameras", "is empty", "Describe at least one camera");
+    throw badInput(place + ": cameras", "is empty",
+                   session.imus.size() > 1 ? "Describe at least one camera: IMUs alone are not calibrated"
+                                           : "Describe at least one camera");
   checkDifferent(session, place);
   checkReference(session, place);
   checkBoard(session, place);

@@ -41,7 +41,8 @@ struct Session {
   CalibrationOptions
       options;  // the file's prior.time_offset_search_s is initialisation.time_offset_search_s here
 
-  std::size_t referenceImu() const;  // index into imus; 0 where there is none
+  std::size_t referenceImu() const;     // index into imus; 0 where there is none
+  std::size_t referenceCamera() const;  // index into cameras; 0 where the reference is an IMU
 };
 
 // Throws CalibrationError (BadInput) with the place "file: key (line n)"; unknown keys with the nearest known

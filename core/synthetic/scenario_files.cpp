@@ -38,6 +38,14 @@ std::string cameraTruth(const SimulatedCamera& camera) {
          "    intrinsics:\n" + intrinsicsYaml(camera.intrinsics, kSensorIndent);
 }
 
+// Pose, clock and delay against another camera's.
+SimulatedCamera relativeTo(const SimulatedCamera& reference, SimulatedCamera camera) {
+  camera.imu_from_camera = inverse(reference.imu_from_camera) * camera.imu_from_camera;
+  camera.time_offset_s -= reference.time_offset_s;
+  camera.pixel.latency_s -= reference.pixel.delay_s();
+  return camera;
+}
+
 std::string imuTruth(const SimulatedImu& imu) {
   return fmt::format("  {}:\n{}", yamlText(imu.name),
                      transformText("reference_from_imu", imu.reference_from_imu)) +
@@ -58,10 +66,13 @@ std::string boardSession(const CircleBoard& board) {
 }  // namespace
 
 std::string truthYaml(const Scenario& scenario) {
-  std::string text =
-      fmt::format("evical_truth: 1\nscenario: {}\nseed: {}\nreference: {}\ncameras:\n",
-                  yamlText(scenario.name), scenario.seed, yamlText(scenario.imus.front().name));
-  for (const SimulatedCamera& camera : scenario.cameras) text += cameraTruth(camera);
+  const std::string& reference =
+      scenario.imus.empty() ? scenario.cameras.front().name : scenario.imus.front().name;
+  std::string text = fmt::format("evical_truth: 1\nscenario: {}\nseed: {}\nreference: {}\ncameras:\n",
+                                 yamlText(scenario.name), scenario.seed, yamlText(reference));
+  for (const SimulatedCamera& camera : scenario.cameras)
+    text += cameraTruth(scenario.imus.empty() ? relativeTo(scenario.cameras.front(), camera) : camera);
+  if (scenario.imus.empty()) return text;
   text += "imus:\n";
   for (const SimulatedImu& imu : scenario.imus) text += imuTruth(imu);
   return text + fmt::format("gravity_m_s2: {}\n", vectorText(scenario.gravity_in_world_m_s2));
@@ -78,6 +89,8 @@ std::string sessionYaml(const Scenario& scenario, const std::string& recording_f
                         yamlText(camera.name), yamlText(plain_text ? "events.txt" : camera.stream),
                         size.width_px, size.height_px, intrinsicsYaml(camera.intrinsics, kSensorIndent));
   }
+  if (scenario.imus.empty())
+    return text + fmt::format("reference: {}\n", yamlText(scenario.cameras.front().name));
   text += "imus:\n";
   for (const SimulatedImu& imu : scenario.imus) {
     text += fmt::format(

@@ -188,12 +188,15 @@ void readImu(const YamlNode& map, SimulatedImu& imu) {
 // `one` is a map that changes the first sensor, `all` a list in which each map changes the base's sensor of
 // that place or adds one.
 template <class Sensor, class Read>
-void readSensors(const YamlNode& root, const char* one, const char* all, std::vector<Sensor>& sensors,
-                 Read read) {
-  if (const auto node = root.find(one)) read(*node, sensors.front());
+void readSensors(const YamlNode& root, const char* one, const char* all, bool may_be_none,
+                 std::vector<Sensor>& sensors, Read read) {
+  if (const auto node = root.find(one)) {
+    if (sensors.empty()) sensors.resize(1);
+    read(*node, sensors.front());
+  }
   if (const auto node = root.find(all)) {
     const std::vector<YamlNode> items = node->items();
-    if (items.empty()) throw node->error("must not be empty");
+    if (items.empty() && !may_be_none) throw node->error("must not be empty");
     sensors.resize(items.size());
     for (std::size_t i = 0; i < items.size(); ++i) read(items[i], sensors[i]);
   }
@@ -249,8 +252,8 @@ Scenario readFrom(const std::filesystem::path& path, int depth) {
   if (const auto node = root.find("board")) readBoard(*node, scenario.board);
   if (const auto node = root.find("scene")) readScene(*node, scenario.scene);
   if (const auto node = root.find("motion")) readMotion(*node, scenario.motion);
-  readSensors(root, "camera", "cameras", scenario.cameras, readCamera);
-  readSensors(root, "imu", "imus", scenario.imus, readImu);
+  readSensors(root, "camera", "cameras", false, scenario.cameras, readCamera);
+  readSensors(root, "imu", "imus", true, scenario.imus, readImu);
   return scenario;
 }
 

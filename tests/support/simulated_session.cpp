@@ -44,7 +44,7 @@ Session sessionFor(const Scenario& scenario) {
     out.noise = {imu.gyroscope_density, imu.accelerometer_density};
     session.imus.push_back(out);
   }
-  session.reference = scenario.imus.front().name;
+  session.reference = scenario.imus.empty() ? scenario.cameras.front().name : scenario.imus.front().name;
   return session;
 }
 

@@ -200,7 +200,7 @@ class TestInitialise : public QObject {
     row(
         "no intrinsics", [](auto& input) { input.cameras[0].intrinsics.reset(); }, "has no intrinsics");
     row(
-        "no IMU", [](auto& input) { input.imus.clear(); }, "there is no IMU");
+        "no IMU", [](auto& input) { input.imus.clear(); }, "neither an IMU nor a second camera");
     row(
         "another recording's IMU",
         [](auto& input) {

@@ -6,6 +6,7 @@
 #include "core/optimisation/circle_cost.h"
 #include "core/optimisation/inertial_cost.h"
 #include "core/optimisation/prior_cost.h"
+#include "core/optimisation/smoothness_cost.h"
 #include "tests/core/optimisation/cost_check.h"
 
 #include <QtTest>
@@ -289,6 +290,25 @@ class TestResiduals : public QObject {
     QVERIFY(test::residualsAt(cost, {{0.3, 0.8, -0.6}}).norm() < 1e-12);
     QVERIFY(std::abs(test::residualsAt(cost, {{0.3, 0.006, 0.008}})[0] - 1.0) < 1e-12);
     QVERIFY(test::worstJacobianError(cost, {{0.3, 0.1, 0.2}}) < 1e-9);
+  }
+
+  void smoothness_isZeroAtConstantVelocity() {
+    const SmoothPositionCost position(kSpacing_s, 30.0);
+    QVERIFY(test::residualsAt(position, {{1.0, 2.0, 3.0}, {1.1, 2.0, 2.9}, {1.2, 2.0, 2.8}}).norm() < 1e-9);
+    QVERIFY(std::abs(test::residualsAt(position, {{0, 0, 0}, {0, 0, 0}, {0, 0.012, 0}})[1] - 1.0) < 1e-9);
+    QVERIFY(test::worstJacobianError(position, {{1.0, 2.0, 3.0}, {1.3, 2.2, 2.9}, {1.2, 2.1, 2.8}}) < 1e-7);
+    const SmoothRotationCost rotation(kSpacing_s, 200.0);
+    const auto block = [](const Vector3d& angle) {
+      const Eigen::Vector4d xyzw = quaternionExp(angle).coeffs();
+      return std::vector<double>(xyzw.data(), xyzw.data() + 4);
+    };
+    const Vector3d step(0.05, -0.1, 0.2);
+    QVERIFY(test::residualsAt(rotation, {block(step), block(2.0 * step), block(3.0 * step)}).norm() < 1e-9);
+    const Vector3d bent(0.0, 0.0, 0.08);  // 200 rad/s^2
+    QVERIFY(std::abs(test::residualsAt(rotation, {block({0, 0, 0}), block({0, 0, 0}), block(bent)})[2] -
+                     1.0) < 1e-9);
+    QVERIFY(test::worstJacobianError(rotation,
+                                     {block(step), block({0.3, 0.2, 0.1}), block({-0.1, 0.4, 0.3})}) < 1e-6);
   }
 };
 
