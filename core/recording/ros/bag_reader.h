@@ -2,8 +2,8 @@
 // as it is whole, and what is missing is among the faults.
 #pragma once
 
-#include "core/recording/bag_records.h"
 #include "core/recording/recording_reader.h"
+#include "core/recording/ros/bag_records.h"
 
 #include <cstdint>
 #include <fstream>

@@ -1,4 +1,4 @@
-#include "core/recording/bag_records.h"
+#include "core/recording/ros/bag_records.h"
 
 #include "core/recording/byte_cursor.h"
 

@@ -1,4 +1,4 @@
-#include "core/recording/message_layout.h"
+#include "core/recording/ros/message_layout.h"
 
 #include <array>
 #include <map>

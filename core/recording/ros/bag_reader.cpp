@@ -1,8 +1,8 @@
-#include "core/recording/bag_reader.h"
+#include "core/recording/ros/bag_reader.h"
 
 #include "core/base/error.h"
 #include "core/recording/byte_cursor.h"
-#include "core/recording/ros_messages.h"
+#include "core/recording/ros/ros_messages.h"
 
 #include <fmt/format.h>
 

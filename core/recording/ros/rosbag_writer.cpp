@@ -1,8 +1,8 @@
-#include "core/recording/rosbag_writer.h"
+#include "core/recording/ros/rosbag_writer.h"
 
 #include "core/base/error.h"
-#include "core/recording/bag_records.h"
-#include "core/recording/ros_messages.h"
+#include "core/recording/ros/bag_records.h"
+#include "core/recording/ros/ros_messages.h"
 
 #include <fmt/format.h>
 

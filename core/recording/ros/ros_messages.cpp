@@ -1,7 +1,7 @@
-#include "core/recording/ros_messages.h"
+#include "core/recording/ros/ros_messages.h"
 
 #include "core/recording/byte_cursor.h"
-#include "core/recording/message_layout.h"
+#include "core/recording/ros/message_layout.h"
 
 #include <algorithm>
 #include <cstring>
