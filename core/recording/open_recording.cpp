@@ -2,7 +2,7 @@
 #include "core/base/nearest_name.h"
 #include "core/recording/recording_reader.h"
 #include "core/recording/ros/bag_reader.h"
-#include "core/recording/text_table_reader.h"
+#include "core/recording/text/text_table_reader.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 #include "core/base/error.h"
-#include "core/recording/text_lines.h"
+#include "core/recording/text/text_lines.h"
 #include "tests/core/recording/sample_recording.h"
 
 #include <QTemporaryDir>

@@ -1,4 +1,4 @@
-#include "core/recording/text_lines.h"
+#include "core/recording/text/text_lines.h"
 
 #include "core/base/error.h"
 

@@ -1,4 +1,4 @@
-#include "core/recording/text_table_reader.h"
+#include "core/recording/text/text_table_reader.h"
 
 #include "core/base/error.h"
 

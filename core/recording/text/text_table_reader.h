@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/recording/recording_reader.h"
-#include "core/recording/text_lines.h"
+#include "core/recording/text/text_lines.h"
 
 #include <array>
 #include <cstdint>
