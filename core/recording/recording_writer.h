@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace evical {
@@ -17,8 +18,9 @@ class RecordingWriter {
   virtual ~RecordingWriter() = default;
 
   // `stream` is an index into the streams given at creation; times should not decrease within a stream, and
-  // streams should be written alternately, some 10 ms each. All throw CalibrationError (CalibrationFailed),
-  // e.g. on a full disk.
+  // streams should be written alternately, some 10 ms each. IMU samples are given in SI units; a writer
+  // converts them to what its format states. All throw CalibrationError (CalibrationFailed), e.g. on a full
+  // disk.
   virtual void write(std::size_t stream, EventSpan events) = 0;
   virtual void write(std::size_t stream, std::span<const ImuSample> samples) = 0;
   virtual void finish() = 0;
@@ -32,5 +34,31 @@ std::unique_ptr<RecordingWriter> createBag(const std::filesystem::path& path,
 // "events.txt" and "imu.txt" in an existing folder; at most one stream of each type.
 std::unique_ptr<RecordingWriter> createText(const std::filesystem::path& folder,
                                             const std::vector<StreamInfo>& streams);
+
+// "events.csv" with the columns t_ns, x, y, p and "imu.csv" as EuRoC has it, in an existing folder; at most
+// one stream of each type.
+std::unique_ptr<RecordingWriter> createCsv(const std::filesystem::path& folder,
+                                           const std::vector<StreamInfo>& streams);
+
+// One that can be written; the table is in create_recording.cpp.
+struct RecordingFormat {
+  const char* name;         // as people choose it: "bag"
+  const char* extension;    // ".bag"; empty: the recording is a folder
+  const char* description;  // for people
+  std::unique_ptr<RecordingWriter> (*create)(const std::filesystem::path& path,
+                                             const std::vector<StreamInfo>& streams);
+  bool isFolder() const { return *extension == '\0'; }
+};
+std::span<const RecordingFormat> recordingFormats();
+
+// Throws CalibrationError (BadInput) that lists those there are.
+const RecordingFormat& recordingFormat(const std::string& name);
+
+// The format by the path's extension; throws CalibrationError (BadInput) where it is not that of one.
+const RecordingFormat& recordingFormatOf(const std::filesystem::path& path);
+
+// A folder must exist. Throws as the format's own function does.
+std::unique_ptr<RecordingWriter> createRecording(const std::filesystem::path& path, const std::string& format,
+                                                 const std::vector<StreamInfo>& streams);
 
 }  // namespace evical

@@ -1,0 +1,58 @@
+#include "core/base/error.h"
+#include "core/base/nearest_name.h"
+#include "core/recording/recording_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace evical {
+namespace {
+
+std::unique_ptr<RecordingWriter> createPlainBag(const std::filesystem::path& path,
+                                                const std::vector<StreamInfo>& streams) {
+  return createBag(path, streams, false);
+}
+
+// One line a format; everything that writes recordings walks this table.
+constexpr RecordingFormat kFormats[] = {
+    {"bag", ".bag", "ROS 1 bag", createPlainBag},
+    {"text", "", "a folder with events.txt and imu.txt", createText},
+    {"csv", "", "a folder with events.csv and imu.csv", createCsv},
+};
+
+std::string names() {
+  std::vector<std::string> list;
+  for (const RecordingFormat& format : kFormats) list.emplace_back(format.name);
+  return joined(list);
+}
+
+}  // namespace
+
+std::span<const RecordingFormat> recordingFormats() {
+  return kFormats;
+}
+
+const RecordingFormat& recordingFormat(const std::string& name) {
+  const auto found = std::find_if(std::begin(kFormats), std::end(kFormats),
+                                  [&](const RecordingFormat& format) { return name == format.name; });
+  if (found == std::end(kFormats)) {
+    throw badInput(name, "this is no format that can be written", fmt::format("There are: {}.", names()));
+  }
+  return *found;
+}
+
+const RecordingFormat& recordingFormatOf(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  for (const RecordingFormat& format : kFormats)
+    if (!format.isFolder() && extension == format.extension) return format;
+  throw badInput(path.string(), "the name does not tell the format",
+                 fmt::format("Choose one of: {}.", names()));
+}
+
+std::unique_ptr<RecordingWriter> createRecording(const std::filesystem::path& path, const std::string& format,
+                                                 const std::vector<StreamInfo>& streams) {
+  return recordingFormat(format).create(path, streams);
+}
+
+}  // namespace evical
