@@ -1,5 +1,8 @@
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
+#include "core/recording/event_stream/event_stream_reader.h"
+#include "core/recording/prophesee/raw_header.h"
+#include "core/recording/prophesee/raw_reader.h"
 #include "core/recording/recording_reader.h"
 #include "core/recording/ros/bag_reader.h"
 #include "core/recording/text/text_table_reader.h"
@@ -15,7 +18,8 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr const char* kReadable =
-    "Readable are ROS 1 bags (format 2.0) and text: a folder with events.txt and imu.txt, or one such file.";
+    "Readable are ROS 1 bags (format 2.0), Prophesee RAW and DAT, Event Stream, "
+    "and text: a folder with events.txt and imu.txt, or one such file.";
 
 // What people may well hand us, by its first bytes.
 struct OtherFormat {
@@ -33,9 +37,7 @@ constexpr OtherFormat kOtherFormats[] = {
     {"SQLite format 3\0"sv, "this is a ROS 2 bag, which cannot be read yet", kReadable},
     {"\x89MCAP"sv, "this is an MCAP file, which cannot be read yet", kReadable},
     {"#!AER-DAT"sv, "this is an AEDAT file, which cannot be read yet", kReadable},
-    {"% "sv, "this is a Prophesee RAW or DAT file, which cannot be read yet", kReadable},
     {"\x89HDF\r\n\x1A\n"sv, "this is an HDF5 file, which cannot be read yet", kReadable},
-    {"Event Stream"sv, "this is an Event Stream file, which cannot be read yet", kReadable},
 };
 
 std::string firstBytes(const std::filesystem::path& path) {
@@ -72,10 +74,13 @@ std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path
   const std::string start = firstBytes(path);
   if (start.empty()) throw badInput(path.string(), "the file is empty", "Record again, or copy it again.");
   if (start.starts_with(rosbag::kMagic)) return std::make_unique<BagReader>(path);
+  if (start.starts_with("% ")) return openProphesee(path);
+  if (start.starts_with(kEventStreamMagic)) return openEventStream(path);
   for (const OtherFormat& format : kOtherFormats) {
     if (start.starts_with(format.magic)) throw badInput(path.string(), format.problem, format.advice);
   }
   if (textTableType(start) != StreamType::Other) return std::make_unique<TextTableReader>(path);
+  if (prophesee::isBareDat(start)) return openProphesee(path);
   throw badInput(path.string(), "the format is not known", kReadable);
 }
 

@@ -1,0 +1,82 @@
+// What turns the bytes behind a file's header into events, block by block; see block_reader.h.
+#pragma once
+
+#include "core/data/event.h"
+#include "core/geometry/camera_model.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace evical {
+
+// How often something was met, and at which byte of the file first.
+struct Occurrences {
+  std::uint64_t count = 0, first_byte = 0;
+  void add(std::uint64_t byte) {
+    if (count++ == 0) first_byte = byte;
+  }
+};
+
+// What decoders leave out or count; the reader makes faults of it.
+struct BlockFindings {
+  Occurrences outside;   // events beyond the sensor
+  Occurrences untimed;   // events before the first complete time
+  Occurrences unknown;   // records of no known kind
+  Occurrences wraps;     // of the time, which goes on
+  Occurrences imu;       // IMU records without a known scale
+  Occurrences exposure;  // events that measure grey levels
+  std::uint64_t triggers = 0;
+};
+
+class BlockDecoder {
+ public:
+  virtual ~BlockDecoder() = default;
+
+  // Appends the events of all whole records at the front of `bytes`, which stand at `offset` in the file;
+  // returns how many bytes these records have.
+  virtual std::size_t decode(std::string_view bytes, std::uint64_t offset, std::vector<Event>& events) = 0;
+
+  const BlockFindings& findings() const { return findings_; }
+
+ protected:
+  BlockFindings findings_;
+};
+
+// Which coordinates lie on the sensor; all where its size is not known.
+class SensorArea {
+ public:
+  SensorArea() = default;
+  explicit SensorArea(const Resolution& size_px)
+      : width_(size_px.known() ? static_cast<unsigned>(size_px.width_px) : 65536),
+        height_(size_px.known() ? static_cast<unsigned>(size_px.height_px) : 65536) {}
+  bool holds(unsigned x_px, unsigned y_px) const { return x_px < width_ && y_px < height_; }
+
+ private:
+  unsigned width_ = 65536, height_ = 65536;
+};
+
+// Appends to a vector without a check an event: room for `most` is made ahead.
+class EventAppender {
+ public:
+  explicit EventAppender(std::vector<Event>& events) : events_(events), count_(events.size()) {}
+  ~EventAppender() { events_.resize(count_); }
+  EventAppender(const EventAppender&) = delete;
+  EventAppender& operator=(const EventAppender&) = delete;
+
+  void reserve(std::size_t most) {
+    if (events_.size() - count_ < most) events_.resize(count_ + std::max(most, count_));
+  }
+  void add(std::int64_t time_ns, unsigned x_px, unsigned y_px, bool brighter) {
+    events_[count_++] = {time_ns, static_cast<std::uint16_t>(x_px), static_cast<std::uint16_t>(y_px),
+                         brighter};
+  }
+
+ private:
+  std::vector<Event>& events_;
+  std::size_t count_;
+};
+
+}  // namespace evical

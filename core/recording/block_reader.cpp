@@ -1,0 +1,132 @@
+#include "core/recording/block_reader.h"
+
+#include "core/base/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace evical {
+namespace {
+
+constexpr std::size_t kBlock_bytes = std::size_t{1} << 18;
+constexpr std::int64_t kLargestSorted_ns = 10'000'000;
+
+}  // namespace
+
+BlockReader::BlockReader(const std::filesystem::path& path, BlockFormat format,
+                         std::unique_ptr<BlockDecoder> decoder)
+    : format_(std::move(format)),
+      decoder_(std::move(decoder)),
+      file_(path, std::ios::binary | std::ios::ate) {
+  if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions.");
+  file_size_ = static_cast<std::uint64_t>(file_.tellg());
+  position_ = format_.data_offset;
+  file_.seekg(static_cast<std::streamoff>(position_));
+  faults_ = std::move(format_.notes);
+}
+
+void BlockReader::select(const std::vector<std::size_t>& streams) {
+  const auto events = [this](std::size_t stream) {
+    return format_.streams.at(stream).type == StreamType::Events;
+  };
+  selected_ = std::any_of(streams.begin(), streams.end(), events);
+}
+
+bool BlockReader::read(Packet& packet) {
+  packet.stream = 0;
+  packet.events.clear();
+  packet.imu_samples.clear();
+  if (!selected_) return false;
+  while (!handOut(packet)) {
+    if (finished_ || !decodeBlock()) return false;
+  }
+  return true;
+}
+
+// Undecoded bytes of the block before stand at the front of this one.
+bool BlockReader::decodeBlock() {
+  const std::size_t left = bytes_.size();
+  bytes_.resize(left + kBlock_bytes);
+  file_.read(bytes_.data() + left, static_cast<std::streamsize>(kBlock_bytes));
+  const auto got = static_cast<std::size_t>(file_.gcount());
+  bytes_.resize(left + got);
+  position_ += got;
+  if (got == 0) {
+    finish();
+    return false;
+  }
+  decoded_.clear();
+  handed_out_ = 0;
+  const std::size_t used = decoder_->decode(bytes_, position_ - bytes_.size(), decoded_);
+  bytes_.erase(0, used);
+  return true;
+}
+
+// Small steps back are sorted; before a large one the packet ends, since sorting would only hide it.
+bool BlockReader::handOut(Packet& packet) {
+  if (handed_out_ == decoded_.size()) return false;
+  std::size_t end = handed_out_ + 1;
+  bool sorted = true;
+  for (; end < decoded_.size(); ++end) {
+    const std::int64_t back_ns = decoded_[end - 1].time_ns - decoded_[end].time_ns;
+    if (back_ns <= 0) continue;
+    if (back_ns > kLargestSorted_ns) break;
+    sorted = false;
+    ++disordered_;
+    largest_disorder_ns_ = std::max(largest_disorder_ns_, back_ns);
+  }
+  const auto begin = decoded_.begin() + static_cast<std::ptrdiff_t>(handed_out_);
+  const auto behind = decoded_.begin() + static_cast<std::ptrdiff_t>(end);
+  if (!sorted) {
+    std::stable_sort(begin, behind, [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; });
+  }
+  if (handed_out_ == 0 && end == decoded_.size()) {
+    std::swap(packet.events, decoded_);
+    decoded_.clear();
+    handed_out_ = 0;
+    return true;
+  }
+  packet.events.assign(begin, behind);
+  handed_out_ = end;
+  return true;
+}
+
+void BlockReader::finish() {
+  finished_ = true;
+  const BlockFindings& found = decoder_->findings();
+  for (StreamInfo& stream : format_.streams)
+    if (stream.type == StreamType::Triggers) stream.messages = found.triggers;
+  const auto report = [this](const char* kind, const Occurrences& occurrences, const char* what) {
+    if (occurrences.count == 0) return;
+    addFault(kind,
+             fmt::format("{} {}; the first at byte {}.", occurrences.count, what, occurrences.first_byte));
+  };
+  if (!bytes_.empty()) {
+    addFault("truncated", fmt::format("The last record, at byte {} of {}, is not whole; it is left out.",
+                                      position_ - bytes_.size(), position_));
+  }
+  report("outside", found.outside, "events lie outside of the sensor and are left out");
+  report("untimed", found.untimed, "events come before the first time and are left out");
+  report("corrupt", found.unknown, "records are of no known kind and are left out");
+  report("time_wrap", found.wraps, "times the counter of the time began anew; times go on");
+  report("imu_left_out", found.imu, "IMU records have no known scale and are left out");
+  report("exposure_left_out", found.exposure, "events measure grey levels and are left out");
+  if (disordered_ > 0) {
+    addFault("unsorted", fmt::format("Time runs backwards {} times by {:.3f} ms at most; sorted.",
+                                     disordered_, 1e-6 * static_cast<double>(largest_disorder_ns_)));
+  }
+}
+
+void BlockReader::addFault(const char* kind, std::string text) {
+  faults_.push_back(
+      {format_.streams.empty() ? "" : format_.streams.front().name, kind, 0.0, std::move(text)});
+}
+
+double BlockReader::fractionRead() const {
+  if (finished_ || file_size_ == 0) return 1.0;
+  return std::min(1.0, static_cast<double>(position_) / static_cast<double>(file_size_));
+}
+
+}  // namespace evical

@@ -1,0 +1,55 @@
+// Reads files that are a header and then events packed one behind the other, in blocks of a fixed size: one
+// stream of events, and one of triggers where the format has them. What is odd is said in the faults, with
+// the byte at which it began.
+#pragma once
+
+#include "core/recording/block_decoder.h"
+#include "core/recording/recording_reader.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace evical {
+
+struct BlockFormat {
+  std::string name;                   // of the family: "prophesee_raw"
+  std::vector<StreamInfo> streams;    // events first, if any; then triggers
+  std::uint64_t data_offset = 0;      // behind the header
+  std::vector<RecordingFault> notes;  // what reading the header found
+};
+
+class BlockReader : public RecordingReader {
+ public:
+  BlockReader(const std::filesystem::path& path, BlockFormat format, std::unique_ptr<BlockDecoder> decoder);
+
+  const std::vector<StreamInfo>& streams() const override { return format_.streams; }
+  void select(const std::vector<std::size_t>& streams) override;
+  bool read(Packet& packet) override;
+  double fractionRead() const override;
+  const std::vector<RecordingFault>& faults() const override { return faults_; }
+  std::string format() const override { return format_.name; }
+
+ private:
+  bool decodeBlock();
+  bool handOut(Packet& packet);
+  void finish();
+  void addFault(const char* kind, std::string text);
+
+  BlockFormat format_;
+  std::unique_ptr<BlockDecoder> decoder_;
+  std::ifstream file_;
+  std::uint64_t file_size_ = 0, position_ = 0;  // of bytes_'s end in the file
+  std::string bytes_;                           // read, not yet decoded
+  std::vector<Event> decoded_;
+  std::size_t handed_out_ = 0;  // of decoded_
+  std::vector<RecordingFault> faults_;
+  bool selected_ = true, finished_ = false;
+  std::uint64_t disordered_ = 0;
+  std::int64_t largest_disorder_ns_ = 0;
+};
+
+}  // namespace evical

@@ -1,0 +1,94 @@
+#include "core/recording/prophesee/raw_reader.h"
+
+#include "core/base/error.h"
+#include "core/recording/block_reader.h"
+#include "core/recording/prophesee/raw_header.h"
+#include "core/recording/prophesee/word_decoders.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <utility>
+
+namespace evical {
+namespace {
+
+using prophesee::Encoding;
+using prophesee::FileHeader;
+
+constexpr std::int64_t kMicrosecond_ns = 1000;
+
+std::string firstBytes(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes(prophesee::kLargestHeader_bytes, '\0');
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  return bytes;
+}
+
+const char* nameOf(Encoding encoding) {
+  switch (encoding) {
+    case Encoding::Evt2:
+      return "EVT2";
+    case Encoding::Evt21:
+      return "EVT2.1";
+    case Encoding::Evt3:
+      return "EVT3";
+    case Encoding::Dat:
+      break;
+  }
+  return "DAT";
+}
+
+std::unique_ptr<BlockDecoder> decoderFor(const std::filesystem::path& path, const FileHeader& header,
+                                         std::string_view data) {
+  switch (header.encoding) {
+    case Encoding::Evt2:
+      return std::make_unique<prophesee::Evt2Decoder>(header.resolution_px);
+    case Encoding::Evt21: {
+      const bool exchanged = header.half_order == prophesee::HalfOrder::Unknown
+                                 ? prophesee::looksExchanged(data)
+                                 : header.half_order == prophesee::HalfOrder::Exchanged;
+      return std::make_unique<prophesee::Evt21Decoder>(header.resolution_px, exchanged);
+    }
+    case Encoding::Dat:
+      return std::make_unique<prophesee::DatDecoder>(header);
+    case Encoding::Evt3:
+      break;
+  }
+  throw badInput(path.string(), "this is a RAW file in EVT3, which cannot be read yet");
+}
+
+StreamInfo streamOf(StreamType type, const FileHeader& header) {
+  StreamInfo stream;
+  stream.name = type == StreamType::Events ? "events" : "triggers";
+  stream.type = type;
+  stream.message = nameOf(header.encoding);
+  if (type == StreamType::Events) stream.resolution_px = header.resolution_px;
+  stream.time_unit_ns = kMicrosecond_ns;
+  return stream;
+}
+
+}  // namespace
+
+std::unique_ptr<RecordingReader> openProphesee(const std::filesystem::path& path) {
+  const std::string start = firstBytes(path);
+  const FileHeader header = prophesee::parseHeader(path, start);
+  const bool dat = header.encoding == Encoding::Dat;
+  const bool only_triggers = dat && header.event_type == 14;
+  BlockFormat format;
+  format.name = dat ? "prophesee_dat" : "prophesee_raw";
+  format.data_offset = header.data_offset;
+  if (!only_triggers) format.streams.push_back(streamOf(StreamType::Events, header));
+  if (only_triggers || !dat) format.streams.push_back(streamOf(StreamType::Triggers, header));
+  if (!only_triggers && !header.resolution_px.known()) {
+    format.notes.push_back(
+        {"events", "no_resolution", 0.0, "The header does not tell the sensor's size; the session must."});
+  }
+  return std::make_unique<BlockReader>(
+      path, std::move(format),
+      decoderFor(path, header,
+                 std::string_view(start).substr(std::min<std::size_t>(header.data_offset, start.size()))));
+}
+
+}  // namespace evical
