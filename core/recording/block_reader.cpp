@@ -100,15 +100,14 @@ void BlockReader::finish() {
     if (stream.type == StreamType::Triggers) stream.messages = found.triggers;
   const auto report = [this](const char* kind, const Occurrences& occurrences, const char* what) {
     if (occurrences.count == 0) return;
-    addFault(kind,
-             fmt::format("{} {}; the first at byte {}.", occurrences.count, what, occurrences.first_byte));
+    addFault(kind, fmt::format("{} {}; from byte {} on.", occurrences.count, what, occurrences.first_byte));
   };
   if (!bytes_.empty()) {
     addFault("truncated", fmt::format("The last record, at byte {} of {}, is not whole; it is left out.",
                                       position_ - bytes_.size(), position_));
   }
   report("outside", found.outside, "events lie outside of the sensor and are left out");
-  report("untimed", found.untimed, "events come before the first time and are left out");
+  report("untimed", found.untimed, "events have no time or place yet and are left out");
   report("corrupt", found.unknown, "records are of no known kind and are left out");
   report("time_wrap", found.wraps, "times the counter of the time began anew; times go on");
   report("imu_left_out", found.imu, "IMU records have no known scale and are left out");

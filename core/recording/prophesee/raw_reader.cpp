@@ -1,12 +1,10 @@
 #include "core/recording/prophesee/raw_reader.h"
 
-#include "core/base/error.h"
 #include "core/recording/block_reader.h"
 #include "core/recording/prophesee/raw_header.h"
 #include "core/recording/prophesee/word_decoders.h"
 
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <fstream>
 #include <utility>
 
@@ -40,8 +38,7 @@ const char* nameOf(Encoding encoding) {
   return "DAT";
 }
 
-std::unique_ptr<BlockDecoder> decoderFor(const std::filesystem::path& path, const FileHeader& header,
-                                         std::string_view data) {
+std::unique_ptr<BlockDecoder> decoderFor(const FileHeader& header, std::string_view data) {
   switch (header.encoding) {
     case Encoding::Evt2:
       return std::make_unique<prophesee::Evt2Decoder>(header.resolution_px);
@@ -51,12 +48,12 @@ std::unique_ptr<BlockDecoder> decoderFor(const std::filesystem::path& path, cons
                                  : header.half_order == prophesee::HalfOrder::Exchanged;
       return std::make_unique<prophesee::Evt21Decoder>(header.resolution_px, exchanged);
     }
-    case Encoding::Dat:
-      return std::make_unique<prophesee::DatDecoder>(header);
     case Encoding::Evt3:
+      return std::make_unique<prophesee::Evt3BlockDecoder>(header.resolution_px);
+    case Encoding::Dat:
       break;
   }
-  throw badInput(path.string(), "this is a RAW file in EVT3, which cannot be read yet");
+  return std::make_unique<prophesee::DatDecoder>(header);
 }
 
 StreamInfo streamOf(StreamType type, const FileHeader& header) {
@@ -87,7 +84,7 @@ std::unique_ptr<RecordingReader> openProphesee(const std::filesystem::path& path
   }
   return std::make_unique<BlockReader>(
       path, std::move(format),
-      decoderFor(path, header,
+      decoderFor(header,
                  std::string_view(start).substr(std::min<std::size_t>(header.data_offset, start.size()))));
 }
 

@@ -151,6 +151,20 @@ bool looksExchanged(std::string_view data) {
   return exchanged >= plain;
 }
 
+std::size_t Evt3BlockDecoder::decode(std::string_view bytes, std::uint64_t offset,
+                                     std::vector<Event>& events) {
+  decoder_.decode(bytes, events);
+  const Evt3Counts& counts = decoder_.counts();
+  const auto count = [offset](Occurrences& occurrences, std::uint64_t total) {
+    if (occurrences.count == 0 && total > 0) occurrences.first_byte = offset;
+    occurrences.count = total;
+  };
+  count(findings_.outside, counts.outside);
+  count(findings_.untimed, counts.unplaced);
+  findings_.triggers = counts.triggers;
+  return bytes.size() / sizeof(std::uint16_t) * sizeof(std::uint16_t);
+}
+
 std::size_t DatDecoder::decode(std::string_view bytes, std::uint64_t offset, std::vector<Event>& events) {
   const std::size_t records = bytes.size() / sizeof(std::uint64_t);
   if (triggers_) {

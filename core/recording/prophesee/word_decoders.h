@@ -1,8 +1,9 @@
-// Decoders of EVT 2.0, EVT 2.1 and DAT, whose words stand for themselves but for the time's upper part. Times
-// are us in the files, ns here; the counter's wraps are counted on.
+// Decoders of what RAW and DAT files hold, as blocks of a file. Times are us in the files, ns here; the
+// counter's wraps are counted on.
 #pragma once
 
 #include "core/recording/block_decoder.h"
+#include "core/recording/prophesee/evt3_decoder.h"
 #include "core/recording/prophesee/raw_header.h"
 
 #include <cstdint>
@@ -66,6 +67,15 @@ class Evt21Decoder : public BlockDecoder {
 
 // Whether the words at the beginning of the data make more sense with their halves exchanged.
 bool looksExchanged(std::string_view data);
+
+class Evt3BlockDecoder : public BlockDecoder {
+ public:
+  explicit Evt3BlockDecoder(const Resolution& size_px) : decoder_(size_px) {}
+  std::size_t decode(std::string_view bytes, std::uint64_t offset, std::vector<Event>& events) override;
+
+ private:
+  Evt3Decoder decoder_;
+};
 
 class DatDecoder : public BlockDecoder {
  public:
