@@ -239,7 +239,6 @@ void TestRosbag::unreadableFiles_areNamed_data() {
   QTest::newRow("lfs") << QByteArray("version https://git-lfs.github.com/spec/v1\n")
                        << QByteArray("git lfs pull");
   QTest::newRow("unknown") << QByteArray("hello world\n") << QByteArray("Readable are ROS 1 bags");
-  QTest::newRow("raw") << QByteArray("% evt 3.0\n") << QByteArray("Prophesee");
 }
 
 void TestRosbag::unreadableFiles_areNamed() {
