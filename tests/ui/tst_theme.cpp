@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/theme/theme.h"
 
+#include <QCheckBox>
 #include <QDirIterator>
+#include <QLineEdit>
 #include <QPushButton>
+#include <QSpinBox>
 #include <QtTest>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace evical::ui;
@@ -77,6 +81,30 @@ class TestTheme : public QObject {
       QVERIFY(contrast(t.bad, ground) > 4.5);
     }
     QVERIFY(contrast(palette.color(QPalette::HighlightedText), palette.color(QPalette::Highlight)) > 4.5);
+  }
+
+  void fields_haveVisibleOutlines_data() { text_isReadable_data(); }
+  void fields_haveVisibleOutlines() {
+    QFETCH(bool, dark);
+    applyTheme(*qApp, dark ? Appearance::Dark : Appearance::Light);
+    QWidget window;
+    QCheckBox box(&window);
+    QLineEdit line(&window);
+    QSpinBox number(&window);
+    box.setGeometry(10, 10, 40, 30);
+    line.setGeometry(10, 50, 100, 26);
+    number.setGeometry(10, 90, 100, 26);
+    window.resize(120, 130);
+    window.show();
+    const QImage picture = window.grab().toImage();
+    // Somewhere along the left edge there is a line that stands out from the window.
+    for (const QWidget* const field : std::initializer_list<QWidget*>{&box, &line, &number}) {
+      double best = 1.0;
+      for (int x = field->x(); x < field->x() + 8; ++x)
+        best =
+            std::max(best, contrast(picture.pixelColor(x, field->geometry().center().y()), theme().window));
+      QVERIFY2(best > 1.6, qPrintable(QString::number(best)));
+    }
   }
 
   void everyIcon_drawsSomethingInTheTextColour() {

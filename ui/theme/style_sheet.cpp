@@ -15,6 +15,9 @@ QToolButton:pressed, QToolButton:checked { background: @selected; }
 QToolButton[primary="true"] { background: @accent; color: @on_accent; padding: 6px 14px; font-weight: 600; }
 QToolButton[primary="true"]:hover { background: @accent_hover; }
 QToolButton[primary="true"]:disabled { background: @line; color: @faint; }
+QToolButton#cancel { padding: 6px 14px; font-weight: 600; }
+QToolButton[popupMode="2"] { padding-right: 22px; }
+QToolButton::menu-indicator { subcontrol-origin: padding; subcontrol-position: right center; right: 7px; }
 QWidget#sidebar { border-right: 1px solid @line; }
 QPushButton { border: 1px solid @border; border-radius: 6px; padding: 6px 14px; background: @panel; }
 QPushButton:hover { border-color: @accent; }
@@ -30,6 +33,7 @@ QLabel[role="hint"] { color: @faint; }
 QLabel[role="problem"] { color: @bad; }
 QListView, QTreeView, QTableView, QPlainTextEdit, QTextBrowser { border: 1px solid @line; border-radius: 6px; }
 QListView::item, QTreeView::item { padding: 3px; }
+QTableView::item { padding: 0 8px; }
 QHeaderView::section { background: @window; border: none; border-bottom: 1px solid @line; padding: 5px 6px; }
 QListView#navigation { border: none; border-radius: 0; background: @window; padding: 6px; }
 QListView#navigation::item { border-radius: 6px; padding: 8px 6px; margin: 1px 0; }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/theme/theme.h"
 
+#include "ui/theme/outlined_style.h"
 #include "ui/theme/style_sheet.h"
 #include "ui/theme/system_appearance.h"
 
 #include <QApplication>
 #include <QFontDatabase>
 #include <QPalette>
-#include <QStyleFactory>
 
 namespace evical::ui {
 namespace {
@@ -81,7 +81,7 @@ const Theme& theme() {
 
 void applyTheme(QApplication& application, Appearance appearance) {
   SystemAppearance& system = SystemAppearance::instance();
-  application.setStyle(QStyleFactory::create("Fusion"));
+  application.setStyle(new OutlinedStyle);
   application.setFont(applicationFont());
   QObject::disconnect(&system, nullptr, &application, nullptr);
   if (appearance == Appearance::System) {
