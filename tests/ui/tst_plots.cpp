@@ -129,6 +129,7 @@ class TestPlots : public QObject {
   void longLines_areDrawnFluently();
   void colours_followThePalette();
   void equalScale_holdsAtEverySize();
+  void equalScale_comesBackToWhatWasChosen();
   void logarithmicAxis_leavesOutWhatIsNotPositive();
   void points_areDrawnSmallAndLarge_data();
   void points_areDrawnSmallAndLarge();
@@ -336,6 +337,19 @@ void TestPlots::equalScale_holdsAtEverySize() {
     QVERIFY2(std::abs((x.x() - origin.x()) - (origin.y() - y.y())) <= 2.0,
              qPrintable(QString::number(size.width())));
   }
+}
+
+void TestPlots::equalScale_comesBackToWhatWasChosen() {
+  PlotPanel panel({.title = "Scatter", .x_label = "x (px)", .y_label = "y (px)", .equal_scale = true});
+  fillWithLine(panel);
+  panel.redraw();
+  const auto x = panel.xRange(), y = panel.yRange();
+  for (const QSize size : {QSize(900, 250), QSize(250, 900), QSize(60, 60), QSize(600, 400)}) {
+    panel.resize(size);
+    panel.redraw();
+  }
+  QVERIFY(std::abs(panel.xRange().first - x.first) < 0.3 && std::abs(panel.xRange().second - x.second) < 0.3);
+  QVERIFY(std::abs(panel.yRange().first - y.first) < 0.3 && std::abs(panel.yRange().second - y.second) < 0.3);
 }
 
 void TestPlots::logarithmicAxis_leavesOutWhatIsNotPositive() {

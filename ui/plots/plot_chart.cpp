@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 namespace evical::ui {
 namespace {
@@ -265,13 +267,20 @@ void PlotChart::fit(const QCPRange& x_within) {
 void PlotChart::keepScale() {
   const QSize pixels = axisRect()->size();
   if (!axes_.equal_scale || pixels.isEmpty()) return;
+  const bool as_left = xAxis->range() == kept_x_ && yAxis->range() == kept_y_;
+  if (as_left && pixels == kept_pixels_) return;
+  // From what was chosen, not from what the last layout made of it: else each resizing would show more.
+  if (!as_left) std::tie(wanted_x_, wanted_y_) = std::pair{xAxis->range(), yAxis->range()};
+  xAxis->setRange(wanted_x_);
+  yAxis->setRange(wanted_y_);
   const double x_scale = xAxis->range().size() / pixels.width(),
                y_scale = yAxis->range().size() / pixels.height();
-  if (std::abs(x_scale / y_scale - 1.0) < 1e-9) return;
   if (x_scale > y_scale)
     yAxis->setScaleRatio(xAxis, 1.0);
   else
     xAxis->setScaleRatio(yAxis, 1.0);
+  std::tie(kept_x_, kept_y_, kept_pixels_) = std::tuple{xAxis->range(), yAxis->range(), pixels};
+  axisRect()->update(QCPLayoutElement::upPreparation);  // the layout chose its ticks before
 }
 
 void PlotChart::restyle(const QFont& font) {

@@ -89,6 +89,9 @@ class PlotChart : public QCustomPlot {
   QCPItemStraightLine* hover_ = nullptr;
   QCPItemStraightLine* threshold_ = nullptr;
   QCPItemText* readout_ = nullptr;
+  // Of charts in which both axes have one scale: what is to be seen, and what keepScale() made of it.
+  QCPRange wanted_x_, wanted_y_, kept_x_, kept_y_;
+  QSize kept_pixels_;
   QPointF pressed_at_;
   bool dragging_threshold_ = false;
 };
