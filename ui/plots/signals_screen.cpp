@@ -11,6 +11,7 @@
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QStackedLayout>
+#include <QTabBar>
 #include <QTabWidget>
 
 #include <algorithm>
@@ -80,6 +81,7 @@ SignalsScreen::SignalsScreen(QWidget* parent) : QWidget(parent), job_(new Latest
   layout->setContentsMargins(8, 8, 8, 8);
   tabs_ = new QTabWidget;
   tabs_->setDocumentMode(true);
+  tabs_->tabBar()->setDrawBase(false);
   tabs_->addTab(makeSignalTab(gyroscope_, tr("Angular rate"), "rad/s"), tr("&Gyroscope"));
   tabs_->addTab(makeSignalTab(accelerometer_, tr("Specific force"), "m/s\u00b2"), tr("&Accelerometer"));
   tabs_->addTab(makeRatesTab(), tr("&Camera against IMU"));
@@ -137,8 +139,9 @@ QWidget* SignalsScreen::makeRatesTab() {
   after_ = addPanel(tr("Rotation rate after the time offset"), "rad/s");
   difference_ = addPanel(tr("Camera - IMU"), "rad/s");
   for (PlotPanel* panel : {before_, after_}) {
-    panel->addSeries(Kind::Line, {.name = tr("camera"), .colour = PlotColour::Accent});
-    panel->addSeries(Kind::Line, {.name = tr("IMU"), .colour = PlotColour::Warning});
+    panel->addSeries(Kind::Line,
+                     {.name = tr("camera"), .colour = PlotColour::Accent, .width_px = 4.0, .opacity = 0.45});
+    panel->addSeries(Kind::Line, {.name = tr("IMU"), .colour = PlotColour::Warning, .width_px = 1.4});
   }
   difference_->addSeries(Kind::Line, {.name = tr("before"), .colour = PlotColour::Bad, .opacity = 0.7});
   difference_->addSeries(Kind::Line, {.name = tr("after"), .colour = PlotColour::Good});
