@@ -323,6 +323,27 @@ class TestDetectionScreen : public QObject {
     QVERIFY(reprojectBoard(state, 0, *camera.intrinsics, recorded_->session.board, 5.0).empty());
   }
 
+  void reprojection_leadsAsTheMeasuredEdgesDo() {
+    CalibrationState state = restingState();
+    state.cameras[0].edge_lead_px = 0.8;
+    const Session& session = recorded_->session;
+    const CameraIntrinsics& camera = *session.cameras.front().intrinsics;
+    BoardView view;
+    CircleObservation moving;  // the board's first circle, at 100 px/s to the right
+    moving.circle = 0;
+    moving.centre_px = *idealPixel(camera, *project(camera, {-0.05, -0.2, 0.5}));
+    moving.velocity_px_s = {100.0, 0.0};
+    moving.edge_lead_effect = {1.0, 0.0};
+    view.circles = {moving};
+    const auto at_rest = reprojectBoard(state, 0, camera, session.board, 1.0);
+    const auto leading = reprojectBoard(state, 0, camera, session.board, 1.0, view, 0.0);
+    QCOMPARE(leading.size(), at_rest.size());
+    const QPointF shift = leading[0].boundingRect().center() - at_rest[0].boundingRect().center();
+    QVERIFY2(shift.x() > 0.4 && shift.x() < 0.9 && std::abs(shift.y()) < 0.2,
+             qPrintable(QString("%1 %2").arg(shift.x()).arg(shift.y())));
+    QCOMPARE(leading[1], at_rest[1]);  // not measured
+  }
+
   void screen_drawsTheReprojectionOfAResult() {
     DetectionScreen screen;
     screen.resize(1000, 650);

@@ -140,6 +140,22 @@ class TestTimeline : public QObject {
     QCOMPARE(colourAt(9.54), theme().bad);
   }
 
+  void unusedParts_areFaded() {
+    Timeline timeline;
+    fill(timeline);
+    const auto tickAt = [&](double time_s) {
+      const QImage picture = timeline.grab().toImage();
+      return picture.pixelColor(at(timeline, time_s).x(), timeline.height() - 25);
+    };
+    QCOMPARE(tickAt(2.03), windowColour(WindowClass::Complete));
+    timeline.setUsedRange({{3.0, 8.0}});
+    QVERIFY(tickAt(2.03) != windowColour(WindowClass::Complete));
+    QCOMPARE(tickAt(4.03), windowColour(WindowClass::Complete));
+    QVERIFY(tickAt(8.53) != windowColour(WindowClass::Partial));
+    timeline.setUsedRange({});
+    QCOMPARE(tickAt(2.03), windowColour(WindowClass::Complete));
+  }
+
   void appended_windowsArriveInAnyOrderAndWidenTheRange() {
     Timeline timeline;
     timeline.resize(1000, 132);

@@ -41,6 +41,20 @@ bool sameRecording(const Session& a, const Session& b) {
          std::equal(a.imus.begin(), a.imus.end(), b.imus.begin(), b.imus.end(), same_imu);
 }
 
+// The measured view of the window in sight; empty where there is none.
+BoardView viewAt(const std::vector<BoardObservations>& cameras, std::size_t camera, double time_s) {
+  if (camera >= cameras.size()) return {};
+  constexpr double kHalfWindow_s = 0.05;
+  const BoardView* nearest = nullptr;
+  double distance_s = kHalfWindow_s;
+  for (const BoardView& view : cameras[camera].views) {
+    if (std::abs(view.time_s - time_s) > distance_s) continue;
+    distance_s = std::abs(view.time_s - time_s);
+    nearest = &view;
+  }
+  return nearest != nullptr ? *nearest : BoardView{};
+}
+
 }  // namespace
 
 DetectionScreen::~DetectionScreen() = default;
@@ -67,6 +81,7 @@ void DetectionScreen::setSession(const Session& session) {
   session_ = session;
   options_ = session.options.front_end;
   engine_->setOptions(options_);
+  timeline_->setUsedRange(session.time_range_s);
   if (same) {
     request();
     return;
@@ -291,8 +306,9 @@ void DetectionScreen::refresh() {
   }
   std::vector<QPolygonF> reprojection;
   if (run_ && frame && session_ && shown(Layer::Reprojection) && session_->cameras[camera_].intrinsics) {
-    reprojection = reprojectBoard(run_->result.state, camera_, *session_->cameras[camera_].intrinsics,
-                                  session_->board, frame->time_s);
+    reprojection = reprojectBoard(
+        run_->result.state, camera_, *session_->cameras[camera_].intrinsics, session_->board, frame->time_s,
+        viewAt(run_->pass.cameras, camera_, frame->time_s), session_->options.optimisation.rest_speed_px_s);
   }
   view_->setOverlay([analysis = here ? analysis_ : nullptr, layers = layers_,
                      reprojection = std::move(reprojection)](QPainter& painter, double scale) {

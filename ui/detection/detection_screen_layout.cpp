@@ -12,6 +12,7 @@
 #include <QGridLayout>
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QLinearGradient>
 #include <QPainter>
 #include <QPixmap>
 #include <QToolButton>
@@ -24,7 +25,8 @@ namespace {
 
 constexpr int kSideWidth_px = 272;
 
-QIcon swatch(const QColor& colour, double pixel_ratio) {
+// Several colours lie side by side.
+QIcon swatch(const std::vector<QColor>& colours, double pixel_ratio) {
   constexpr int kSize_px = 12;
   QPixmap pixmap(static_cast<int>(kSize_px * pixel_ratio), static_cast<int>(kSize_px * pixel_ratio));
   pixmap.setDevicePixelRatio(pixel_ratio);
@@ -32,7 +34,15 @@ QIcon swatch(const QColor& colour, double pixel_ratio) {
   QPainter painter(&pixmap);
   painter.setRenderHint(QPainter::Antialiasing);
   painter.setPen(Qt::NoPen);
-  painter.setBrush(colour);
+  QLinearGradient stripes(0.0, 0.0, kSize_px, 0.0);
+  const auto count = static_cast<double>(colours.size());
+  constexpr double kSharp = 1e-3;
+  for (std::size_t k = 0; k < colours.size(); ++k) {
+    stripes.setColorAt(static_cast<double>(k) / count, colours[k]);
+    stripes.setColorAt(static_cast<double>(k + 1) / count - kSharp, colours[k]);
+  }
+  stripes.setColorAt(1.0, colours.back());
+  painter.setBrush(stripes);
   painter.drawRoundedRect(QRectF(0.5, 0.5, kSize_px - 1.0, kSize_px - 1.0), 3.0, 3.0);
   return pixmap;
 }
@@ -146,7 +156,7 @@ QWidget* DetectionScreen::makeSidePanel() {
   column->addLayout(grid);
   layer_boxes_[static_cast<std::size_t>(Layer::Reprojection)]->setEnabled(false);
   column->addSpacing(6);
-  column->addWidget(sectionTitle(tr("This window: why")));
+  column->addWidget(sectionTitle(tr("What became of this window")));
   panel_ = new WindowPanel;
   column->addWidget(panel_, 1);
   return side;
@@ -202,7 +212,7 @@ void DetectionScreen::applyColours() {
   for (const auto& [button, name] : icons_) button->setIcon(icon(name));
   if (isPlaying()) play_button_->setIcon(icon("pause"));
   for (std::size_t k = 0; k < layer_boxes_.size(); ++k)
-    layer_boxes_[k]->setIcon(swatch(layerColour(static_cast<Layer>(k)), devicePixelRatioF()));
+    layer_boxes_[k]->setIcon(swatch(layerColours(static_cast<Layer>(k)), devicePixelRatioF()));
   request();
   refresh();
 }

@@ -142,11 +142,21 @@ void EventView::paintPicture(QPainter& painter) {
   painter.drawRect(QRectF(origin_, scale_ * QSizeF(size_px.width_px, size_px.height_px)));
 }
 
+// In the picture's corner, as far as that is in sight.
+QRect EventView::noteBox(const QSize& size, bool below) const {
+  constexpr int kInside_px = 6;
+  const Resolution size_px = frame_->resolution_px();
+  const QRectF picture(origin_, scale_ * QSizeF(size_px.width_px, size_px.height_px));
+  const QRect seen =
+      picture.intersected(rect()).toAlignedRect().adjusted(kInside_px, kInside_px, -kInside_px, -kInside_px);
+  const int left = std::max(0, std::min(seen.left(), width() - size.width() - kInside_px));
+  return {QPoint(left, below ? seen.bottom() - size.height() : seen.top()), size};
+}
+
 void EventView::paintNote(QPainter& painter, const QString& text, bool below) const {
   if (text.isEmpty()) return;
   const QSize size = painter.fontMetrics().size(Qt::TextSingleLine, text) + QSize(16, 8);
-  const QRect box(QPoint(kMargin_px + 6, below ? height() - size.height() - kMargin_px - 6 : kMargin_px + 6),
-                  size);
+  const QRect box = noteBox(size, below);
   QColor ground = theme().window;
   ground.setAlphaF(0.85f);
   painter.setRenderHint(QPainter::Antialiasing);

@@ -6,6 +6,7 @@
 #include "ui/detection/surface_frame.h"
 
 #include <QPointF>
+#include <QRect>
 #include <QString>
 #include <QWidget>
 
@@ -59,6 +60,7 @@ class EventView : public QWidget {
   void keepInSight();
   double fitScale() const;
   void paintPicture(QPainter& painter);
+  QRect noteBox(const QSize& size, bool below) const;
   void paintNote(QPainter& painter, const QString& text, bool below) const;
 
   std::shared_ptr<const SurfaceFrame> frame_;

@@ -2,6 +2,7 @@
 #include "ui/detection/layers.h"
 
 #include "core/geometry/trajectory.h"
+#include "core/optimisation/edge_lead.h"
 #include "ui/theme/theme.h"
 
 #include <Eigen/Eigenvalues>
@@ -11,7 +12,9 @@
 #include <QPainter>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 
@@ -32,10 +35,12 @@ QPointF toSensor(const Eigen::Vector2d& ideal_pixel, const BoardScene& scene) {
   return toPoint(scene.camera ? pixelFromIdeal(*scene.camera, ideal_pixel) : ideal_pixel);
 }
 
-QPen pen(const QColor& colour, double width = 1.5, Qt::PenStyle style = Qt::SolidLine) {
-  QPen made(colour, width, style);
-  made.setCosmetic(true);
-  return made;
+// Of the same width at every zoom, and on displays of every density.
+void usePen(QPainter& painter, const QColor& colour, double width_px = 1.5,
+            Qt::PenStyle style = Qt::SolidLine) {
+  QPen pen(colour, width_px * painter.device()->devicePixelRatioF(), style);
+  pen.setCosmetic(true);  // Qt takes the width for device pixels
+  painter.setPen(pen);
 }
 
 Eigen::Vector2d onCircle(int k) {
@@ -70,12 +75,21 @@ QLineF flowLine(const NormalFlow& flow, double half_width_s) {
 void paintFlow(QPainter& painter, const WindowAnalysis& analysis) {
   QVector<QLineF> lines;
   for (const NormalFlow& flow : analysis.arcs.flow) lines << flowLine(flow, analysis.arcs_half_width_s);
-  painter.setPen(pen(layerColour(Layer::Flow), 1.0));
+  usePen(painter, layerColour(Layer::Flow), 1.0);
   painter.drawLines(lines);
 }
 
+// By kind: leading, following, others.
+std::array<QColor, 3> clusterColours() {
+  return {theme().good, theme().warning, theme().faint_text};
+}
+
+QColor gridColour(double share_of_board) {
+  return QColor::fromHsvF(static_cast<float>(0.85 * share_of_board), 0.55f, theme().dark ? 0.95f : 0.7f);
+}
+
 void paintClusters(QPainter& painter, const WindowAnalysis& analysis) {
-  const std::array<QColor, 3> colours = {theme().good, theme().warning, theme().faint_text};
+  const std::array<QColor, 3> colours = clusterColours();
   for (const EventCluster& cluster : analysis.arcs.clusters) {
     painter.setPen(Qt::NoPen);
     QColor colour = colours[static_cast<std::size_t>(cluster.kind)];
@@ -89,7 +103,7 @@ void paintClusters(QPainter& painter, const WindowAnalysis& analysis) {
 }
 
 void paintPairs(QPainter& painter, const NormalFlowStages& arcs) {
-  painter.setPen(pen(layerColour(Layer::Pairs)));
+  usePen(painter, layerColour(Layer::Pairs));
   painter.setBrush(Qt::NoBrush);
   for (const ArcPair& pair : arcs.pairs) {
     painter.drawLine(toPoint(arcs.clusters[pair.trailing].centroid_px),
@@ -100,10 +114,10 @@ void paintPairs(QPainter& painter, const NormalFlowStages& arcs) {
 
 void paintSearch(QPainter& painter, const BoardSearch& search) {
   painter.setBrush(Qt::NoBrush);
-  painter.setPen(pen(theme().faint_text, 1.0, Qt::DotLine));
+  usePen(painter, theme().faint_text, 1.0, Qt::DotLine);
   for (const CircleCandidate& candidate : search.candidates)
     painter.drawEllipse(toPoint(candidate.centre_px), candidate.radius_px, candidate.radius_px);
-  painter.setPen(pen(layerColour(Layer::Circles)));
+  usePen(painter, layerColour(Layer::Circles));
   for (const MovingCircle& circle : search.circles)
     painter.drawEllipse(toPoint(circle.centre_px), circle.radius_px, circle.radius_px);
   for (const LatticeNode& a : search.lattice) {
@@ -118,7 +132,7 @@ void paintSearch(QPainter& painter, const BoardSearch& search) {
 
 void paintEllipses(QPainter& painter, const WindowAnalysis& analysis) {
   QColor colour = layerColour(Layer::Ellipses);
-  painter.setPen(pen(colour, 2.0));
+  usePen(painter, colour, 2.0);
   painter.setBrush(Qt::NoBrush);
   paintBoard(painter, *analysis.motion, *analysis.scene);
   colour.setAlphaF(0.55f);
@@ -132,7 +146,7 @@ void paintEllipses(QPainter& painter, const WindowAnalysis& analysis) {
 
 void paintCentres(QPainter& painter, double scale, const WindowAnalysis& analysis) {
   const double arm = 4.0 / scale;
-  painter.setPen(pen(layerColour(Layer::Centres)));
+  usePen(painter, layerColour(Layer::Centres));
   painter.setBrush(Qt::NoBrush);
   for (const CircleObservation& circle : analysis.circles) {
     const QPointF at = toSensor(circle.centre_px, *analysis.scene);
@@ -145,14 +159,12 @@ void paintCentres(QPainter& painter, double scale, const WindowAnalysis& analysi
 // Along the rows from the first circle to the last, as calibrators are used to, and each one's number.
 void paintGrid(QPainter& painter, double scale, const WindowAnalysis& analysis) {
   const CircleBoard& board = analysis.scene->board;
-  QColor colour = layerColour(Layer::Grid);
   QPolygonF chain;
   for (const CircleObservation& circle : analysis.circles) {
     const bool follows = !chain.isEmpty();
     const QPointF at = toSensor(circle.centre_px, *analysis.scene);
-    colour.setHsvF(static_cast<float>(0.85 * circle.circle / std::max(1, board.circleCount() - 1)), 0.55f,
-                   theme().dark ? 0.95f : 0.7f);
-    painter.setPen(pen(colour, 1.2));
+    const int last = std::max(1, board.circleCount() - 1);
+    usePen(painter, gridColour(static_cast<double>(circle.circle) / last), 1.2);
     if (follows) painter.drawLine(chain.last(), at);
     chain << at;
   }
@@ -189,6 +201,28 @@ std::optional<QPolygonF> imageOf(int circle, const RigidTransform& camera_from_w
   return outline;
 }
 
+// By circle, in ideal pixels; only of those that were measured.
+std::map<int, Eigen::Vector2d> idealLeads(const CameraState& camera, const CameraIntrinsics& intrinsics,
+                                          const BoardView& view, double rest_speed_px_s) {
+  std::map<int, Eigen::Vector2d> leads;
+  for (const CircleObservation& circle : view.circles) {
+    const EdgeLeadEffect effect = edgeLeadEffect(intrinsics, circle, rest_speed_px_s);
+    leads[circle.circle] =
+        camera.edge_lead_px * effect.of_lead + camera.edge_lead_growth_px * effect.of_growth;
+  }
+  return leads;
+}
+
+QPolygonF moved(const QPolygonF& outline, const Eigen::Vector2d& by_ideal_px,
+                const CameraIntrinsics& intrinsics) {
+  QPolygonF there;
+  for (const QPointF& point : outline) {
+    const auto ideal = idealPixel(intrinsics, {point.x(), point.y()});
+    there << (ideal ? toPoint(pixelFromIdeal(intrinsics, *ideal + by_ideal_px)) : point);
+  }
+  return there;
+}
+
 }  // namespace
 
 LayerWords layerWords(Layer layer) {
@@ -214,7 +248,8 @@ LayerWords layerWords(Layer layer) {
     case Layer::Reprojection:
       break;
   }
-  return {tr("Reprojection"), tr("Where the calibration's trajectory puts the board")};
+  return {tr("Reprojection"),
+          tr("Where the calibration's trajectory puts the board, and its edge lead the edges")};
 }
 
 QColor layerColour(Layer layer) {
@@ -225,7 +260,7 @@ QColor layerColour(Layer layer) {
     case Layer::Clusters:
       return colours.good;
     case Layer::Pairs:
-      return colours.text;
+      return colours.dark ? QColor(0xc7, 0x92, 0xea) : QColor(0x8e, 0x3f, 0xb5);
     case Layer::Circles:
       return colours.axes[2];
     case Layer::Ellipses:
@@ -242,6 +277,16 @@ QColor layerColour(Layer layer) {
   return colours.accent;
 }
 
+std::vector<QColor> layerColours(Layer layer) {
+  const std::array<QColor, 3> kinds = clusterColours();
+  if (layer == Layer::Clusters) return {kinds.begin(), kinds.end()};
+  if (layer != Layer::Grid) return {layerColour(layer)};
+  constexpr int kSteps = 4;
+  std::vector<QColor> along_the_board;
+  for (int k = 0; k <= kSteps; ++k) along_the_board.push_back(gridColour(static_cast<double>(k) / kSteps));
+  return along_the_board;
+}
+
 LayerSet defaultLayers() {
   LayerSet layers;
   for (const Layer layer : {Layer::Ellipses, Layer::Centres, Layer::Grid})
@@ -252,6 +297,12 @@ LayerSet defaultLayers() {
 std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera,
                                       const CameraIntrinsics& intrinsics, const CircleBoard& board,
                                       double time_s) {
+  return reprojectBoard(state, camera, intrinsics, board, time_s, BoardView{}, 0.0);
+}
+
+std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera,
+                                      const CameraIntrinsics& intrinsics, const CircleBoard& board,
+                                      double time_s, const BoardView& view, double rest_speed_px_s) {
   std::vector<QPolygonF> outlines;
   if (camera >= state.cameras.size()) return outlines;
   const CameraState& own = state.cameras[camera];
@@ -260,9 +311,12 @@ std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t
     return outlines;
   const RigidTransform camera_from_world = cameraFromWorld(
       state.world_from_imu_rotation, state.imu_in_world_m, own.imu_from_camera, own.time_offset_s, time_s);
+  const std::map<int, Eigen::Vector2d> leads = idealLeads(own, intrinsics, view, rest_speed_px_s);
   for (int circle = 0; circle < board.circleCount(); ++circle) {
-    if (const auto outline = imageOf(circle, camera_from_world, intrinsics, board))
-      outlines.push_back(*outline);
+    const auto outline = imageOf(circle, camera_from_world, intrinsics, board);
+    const auto lead = leads.find(circle);
+    if (outline)
+      outlines.push_back(lead == leads.end() ? *outline : moved(*outline, lead->second, intrinsics));
   }
   return outlines;
 }
@@ -276,14 +330,14 @@ void paintLayers(QPainter& painter, double scale, const LayerSet& visible, const
     if (shown(Layer::Pairs)) paintPairs(painter, analysis->arcs);
     if (shown(Layer::Circles) && analysis->bestSearch()) paintSearch(painter, analysis->bestSearch()->search);
     if (shown(Layer::Prediction) && analysis->prediction) {
-      painter.setPen(pen(layerColour(Layer::Prediction), 1.5, Qt::DashLine));
+      usePen(painter, layerColour(Layer::Prediction), 1.5, Qt::DashLine);
       painter.setBrush(Qt::NoBrush);
       paintBoard(painter, *analysis->prediction, *analysis->scene);
     }
     if (shown(Layer::Ellipses) && analysis->motion) paintEllipses(painter, *analysis);
   }
   if (shown(Layer::Reprojection)) {
-    painter.setPen(pen(layerColour(Layer::Reprojection), 1.5));
+    usePen(painter, layerColour(Layer::Reprojection), 1.5);
     painter.setBrush(Qt::NoBrush);
     for (const QPolygonF& outline : reprojection) painter.drawPolygon(outline);
   }

@@ -61,6 +61,12 @@ void Timeline::setRange(double begin_s, double end_s) {
   scrollBy(0.0);
 }
 
+void Timeline::setUsedRange(const std::optional<std::array<double, 2>>& range_s) {
+  if (range_s == used_s_) return;
+  used_s_ = range_s;
+  update();
+}
+
 void Timeline::setWindows(std::vector<WindowReport> windows) {
   windows_ = std::move(windows);
   std::sort(windows_.begin(), windows_.end(),

@@ -31,6 +31,8 @@ class Timeline : public QWidget {
   explicit Timeline(QWidget* parent = nullptr);
 
   void setRange(double begin_s, double end_s);  // of the whole recording
+  // What is used of it, where that is not all.
+  void setUsedRange(const std::optional<std::array<double, 2>>& range_s);
   void setWindows(std::vector<WindowReport> windows);
   void appendWindow(const WindowReport& window);  // in any order
   void setEventRate(RateCurve events_s);
@@ -38,6 +40,7 @@ class Timeline : public QWidget {
 
   double begin_s() const { return begin_s_; }
   double end_s() const { return end_s_; }
+  const std::optional<std::array<double, 2>>& usedRange_s() const { return used_s_; }
   double time_s() const { return time_s_; }
   const std::vector<WindowReport>& windows() const { return windows_; }
   // The window that holds a time.
@@ -52,7 +55,7 @@ class Timeline : public QWidget {
   double xOf(double time_s) const;
   double timeOf(double x) const;
 
-  QSize sizeHint() const override { return {700, 132}; }
+  QSize sizeHint() const override { return {700, 135}; }
   QSize minimumSizeHint() const override { return {300, 100}; }
 
  public slots:
@@ -85,11 +88,13 @@ class Timeline : public QWidget {
   void paintCurve(QPainter& painter, const RateCurve& curve, double top, const QColor& colour,
                   bool filled) const;
   void paintTicks(QPainter& painter) const;
+  void paintUnused(QPainter& painter) const;
   void paintCursor(QPainter& painter) const;
 
   double begin_s_ = 0.0, end_s_ = 0.0;
   double visible_begin_s_ = 0.0, visible_end_s_ = 0.0;
   double time_s_ = 0.0;
+  std::optional<std::array<double, 2>> used_s_;
   std::vector<WindowReport> windows_;  // by time
   RateCurve event_rate_, rotation_rate_;
   double event_top_ = 1.0, rotation_top_ = 1.0;  // of the curves' axes

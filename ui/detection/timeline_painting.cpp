@@ -7,11 +7,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace evical::ui {
 namespace {
 
-constexpr double kHeader_px = 22.0, kFooter_px = 18.0, kTicks_px = 14.0, kSide_px = 62.0;
+constexpr double kHeader_px = 25.0, kFooter_px = 18.0, kTicks_px = 14.0, kSide_px = 62.0;
 
 QString rateText(double events_s) {
   if (events_s >= 1e6) return QStringLiteral("%1 Mev/s").arg(1e-6 * events_s, 0, 'g', 3);
@@ -84,6 +85,7 @@ void Timeline::paintEvent(QPaintEvent*) {
   paintCurve(painter, event_rate_, event_top_, eventColour(), true);
   paintCurve(painter, rotation_rate_, rotation_top_, rotationColour(), false);
   paintTicks(painter);
+  paintUnused(painter);
   painter.restore();
   paintHeader(painter);
   paintCursor(painter);
@@ -99,9 +101,9 @@ void Timeline::paintHeader(QPainter& painter) const {
   const QFontMetrics metrics = painter.fontMetrics();
   double x = curveArea().left();
   const auto word = [&](const QColor& colour, const QString& text) {
-    painter.fillRect(QRectF(x, 8.0, 10.0, 8.0), colour);
+    painter.fillRect(QRectF(x, 7.0, 10.0, 8.0), colour);
     painter.setPen(theme().text);
-    painter.drawText(QPointF(x + 15.0, kHeader_px - 6.0), text);
+    painter.drawText(QPointF(x + 15.0, kHeader_px - 10.0), text);
     x += 15.0 + metrics.horizontalAdvance(text) + 18.0;
   };
   const auto valueAt = [&](const RateCurve& curve) {
@@ -221,6 +223,25 @@ void Timeline::paintTicks(QPainter& painter) const {
                        windowColour(static_cast<WindowClass>(k)));
       bottom -= height;
     }
+  }
+}
+
+// What the session's time range leaves out is faded, and the range has brackets.
+void Timeline::paintUnused(QPainter& painter) const {
+  if (!used_s_) return;
+  const QRectF area(curveArea().topLeft(), tickArea().bottomRight());
+  const double from = std::clamp(xOf((*used_s_)[0]), area.left(), area.right());
+  const double to = std::clamp(xOf((*used_s_)[1]), area.left(), area.right());
+  const QColor veil = faded(theme().window, 0.75f);
+  painter.fillRect(QRectF(area.topLeft(), QPointF(from, area.bottom())), veil);
+  painter.fillRect(QRectF(QPointF(to, area.top()), area.bottomRight()), veil);
+  painter.setPen(QPen(theme().accent, 2.0));
+  constexpr double kHook_px = 5.0;
+  for (const auto& [x, inwards] : {std::pair{from, 1.0}, std::pair{to, -1.0}}) {
+    if (x <= area.left() || x >= area.right()) continue;
+    painter.drawLine(QPointF(x, area.top()), QPointF(x, area.bottom()));
+    painter.drawLine(QPointF(x, area.top() + 1.0), QPointF(x + inwards * kHook_px, area.top() + 1.0));
+    painter.drawLine(QPointF(x, area.bottom() - 1.0), QPointF(x + inwards * kHook_px, area.bottom() - 1.0));
   }
 }
 
