@@ -9,6 +9,7 @@
 #include "ui/screens/camera_form.h"
 #include "ui/screens/imu_form.h"
 #include "ui/screens/stream_table.h"
+#include "ui/screens/time_range_form.h"
 #include "ui/theme/theme.h"
 
 #include <QComboBox>
@@ -16,6 +17,7 @@
 #include <QSignalSpy>
 #include <QSpinBox>
 #include <QTemporaryDir>
+#include <QToolButton>
 #include <QtTest>
 
 using namespace evical;
@@ -47,7 +49,7 @@ struct Fixture {
   }
   StreamTable* streams() { return screen.findChild<StreamTable*>(); }
   void choose(int row, StreamRole role) {
-    auto* const box = qobject_cast<QComboBox*>(streams()->cellWidget(row, 0));
+    auto* const box = streams()->cellWidget(row, 0)->findChild<QComboBox*>();
     box->setCurrentIndex(box->findData(static_cast<int>(role)));
     emit box->activated(box->currentIndex());
   }
@@ -97,6 +99,15 @@ class TestRecordingScreen : public QObject {
     QCOMPARE(test.edits.size(), 2);
   }
 
+  void role_isReadInFull() {
+    Fixture test;
+    QApplication::processEvents();
+    for (int row = 0; row < test.streams()->rowCount(); ++row) {
+      const auto* const box = test.streams()->cellWidget(row, 0)->findChild<QComboBox*>();
+      QVERIFY(box->width() >= box->sizeHint().width());
+    }
+  }
+
   void board_isEdited() {
     Fixture test;
     auto* const form = test.screen.findChild<BoardForm*>();
@@ -107,10 +118,86 @@ class TestRecordingScreen : public QObject {
     QCOMPARE(test.edits.size(), 2);
   }
 
+  void timeRange_isEdited_andEmptyMeansAll() {
+    Fixture test;
+    auto* const begin = test.screen.findChild<QLineEdit*>("time_range_begin");
+    auto* const end = test.screen.findChild<QLineEdit*>("time_range_end");
+    auto* const words = test.screen.findChild<QLabel*>("time_range_words");
+    QVERIFY(words->text().contains("All of the recording"));
+    Fixture::type(begin, "0.5");
+    QVERIFY(test.session.time_range_s.has_value());
+    QCOMPARE((*test.session.time_range_s)[0], 0.5);
+    QVERIFY((*test.session.time_range_s)[1] > 3.0);  // the recording's end
+    Fixture::type(end, "2,5");
+    QCOMPARE((*test.session.time_range_s)[1], 2.5);
+    QVERIFY2(words->text().startsWith("2 s"), qPrintable(words->text()));
+    QTest::mouseClick(test.screen.findChild<TimeRangeForm*>()->findChild<QToolButton*>(), Qt::LeftButton);
+    QVERIFY(!test.session.time_range_s);
+    QVERIFY(begin->text().isEmpty() && end->text().isEmpty());
+    QCOMPARE(test.edits, QStringList(3, "Change the time range"));
+  }
+
+  void timeRange_thatIsNone_isExplained_andChangesNothing_data() {
+    QTest::addColumn<QString>("begin");
+    QTest::addColumn<QString>("end");
+    QTest::addColumn<QString>("words");
+    QTest::newRow("no number") << "soon"
+                               << ""
+                               << "Give seconds";
+    QTest::newRow("negative") << "-1"
+                              << ""
+                              << "Give seconds";
+    QTest::newRow("not finite") << "0"
+                                << "inf"
+                                << "Give seconds";
+    QTest::newRow("end first") << "2"
+                               << "1"
+                               << "after the begin";
+    QTest::newRow("beyond the recording") << "99"
+                                          << "100"
+                                          << "ends at";
+  }
+  void timeRange_thatIsNone_isExplained_andChangesNothing() {
+    QFETCH(QString, begin);
+    QFETCH(QString, end);
+    QFETCH(QString, words);
+    Fixture test;
+    test.session.time_range_s = {0.25, 1.75};
+    test.screen.setSession(test.session);
+    test.edits.clear();
+    auto* const begin_field = test.screen.findChild<QLineEdit*>("time_range_begin");
+    auto* const end_field = test.screen.findChild<QLineEdit*>("time_range_end");
+    begin_field->setText(begin);
+    end_field->setText(end);
+    QTest::keyClick(end_field, Qt::Key_Return);
+    auto* const shown = test.screen.findChild<QLabel*>("time_range_words");
+    QVERIFY2(shown->text().contains(words), qPrintable(shown->text()));
+    QCOMPARE(shown->property("role").toString(), QString("problem"));
+    QVERIFY(test.edits.isEmpty());
+    QCOMPARE(begin_field->text(), begin);  // to be mended
+  }
+
+  void units_areTheFormats_untilTheyAreGiven() {
+    Fixture test;
+    test.session.imus[0].angular_rate_unit.reset();
+    test.session.imus[0].acceleration_unit.reset();
+    test.screen.setSession(test.session);
+    const auto boxes = test.screen.findChild<ImuForm*>()->findChildren<QComboBox*>();
+    for (const QComboBox* const units : {boxes.at(1), boxes.at(2)}) {
+      QCOMPARE(units->currentText(), QString("as the format says"));
+      QVERIFY(!units->toolTip().isEmpty());
+    }
+    boxes.at(2)->setCurrentIndex(2);
+    emit boxes.at(2)->activated(2);
+    QCOMPARE(test.session.imus[0].acceleration_unit, std::optional(AccelerationUnit::Gravity));
+    QVERIFY(!test.session.imus[0].angular_rate_unit);
+  }
+
   void noisePreset_setsBothDensities() {
     Fixture test;
     auto* const presets = test.screen.findChild<ImuForm*>()->findChildren<QComboBox*>().at(0);
-    presets->setCurrentText("Bosch BMI160");
+    presets->setCurrentText("Bosch BMI160, typical");
+    QCOMPARE(presets->currentText(), QString("Bosch BMI160, typical"));
     emit presets->activated(presets->currentIndex());
     QVERIFY(qAbs(test.session.imus[0].noise.gyroscope_density - 1.2217e-4) < 1e-8);
     QVERIFY(qAbs(test.session.imus[0].noise.accelerometer_density - 1.7652e-3) < 1e-7);

@@ -41,8 +41,9 @@ void NumberField::take() {
 }
 
 void NumberField::showWrong(const QString& why) {
+  if (!wrong_) help_ = toolTip();
   wrong_ = !why.isEmpty();
-  setToolTip(why);
+  setToolTip(wrong_ ? why : help_);
   QPalette colours;
   if (wrong_) colours.setColor(QPalette::Text, theme().bad);
   setPalette(colours);

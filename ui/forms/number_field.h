@@ -25,6 +25,7 @@ class NumberField : public QLineEdit {
 
   double minimum_, maximum_, value_ = 0.0;
   bool wrong_ = false;
+  QString help_;  // the tip while nothing is wrong
 };
 
 }  // namespace evical::ui

@@ -38,6 +38,12 @@ BoardForm::BoardForm(QWidget* parent)
       drawing_(new BoardDrawing(this)) {
   type_->addItems({tr("Asymmetric (staggered)"), tr("Symmetric")});
   circles_->addItems({tr("Dark on bright"), tr("Bright on dark")});
+  type_->setToolTip(tr("Whether every other line is shifted by half a step"));
+  spacing_mm_->setToolTip(
+      tr("Asymmetric: between two staggered lines, half of what lies between neighbours in a "
+         "line. Symmetric: between neighbours"));
+  radius_mm_->setToolTip(tr("Of a circle, as printed"));
+  circles_->setToolTip(tr("Which way the printed circles differ from their ground"));
   problem_->setProperty("role", "problem");
   problem_->setWordWrap(true);
   auto* const spacing_hint = new QLabel(tr("Between two rows. Measure it on the print."), this);

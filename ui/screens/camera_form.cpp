@@ -48,6 +48,14 @@ CameraForm::CameraForm(QWidget* parent)
       file_problem_(problemLabel(this)),
       problem_(problemLabel(this)) {
   model_->addItems({tr("Pinhole, radial-tangential"), tr("Pinhole, equidistant")});
+  name_->setToolTip(tr("What the camera is called in the session, the result and the exports"));
+  width_px_->setToolTip(tr("Width of the sensor; 0: as the recording says"));
+  height_px_->setToolTip(tr("Height of the sensor; 0: as the recording says"));
+  model_->setToolTip(tr("How the lens bends rays: equidistant for wide angles"));
+  focal_x_px_->setToolTip(tr("fx"));
+  focal_y_px_->setToolTip(tr("fy"));
+  centre_x_px_->setToolTip(tr("cx"));
+  centre_y_px_->setToolTip(tr("cy"));
   auto* const file = new QPushButton(icon("open"), tr("Intrinsics from a file..."), this);
   file->setToolTip(tr("Evical's own map or result, a Kalibr camchain, or a ROS camera_info"));
   connect(file, &QPushButton::clicked, this, &CameraForm::chooseFile);

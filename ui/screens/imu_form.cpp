@@ -26,13 +26,15 @@ constexpr double microG(double micro_g) {
   return micro_g * 1e-6 * 9.80665;
 }
 
-// Data sheets' typical densities at rest.
+// What the data sheets call typical, in their units: deg/s and micro g, each per root hertz.
 const NoisePreset kPresets[] = {
-    {"DAVIS346 (default)", ImuNoise{}},
-    {"Bosch BMI088", {perDeg(0.014), microG(175)}},
-    {"Bosch BMI160", {perDeg(0.007), microG(180)}},
-    {"InvenSense MPU-6500", {perDeg(0.010), microG(300)}},
-    {"TDK ICM-20948", {perDeg(0.015), microG(230)}},
+    {"Evical's default", ImuNoise{}},
+    {"Bosch BMI088, typical", {perDeg(0.014), microG(175)}},
+    {"Bosch BMI160, typical", {perDeg(0.007), microG(180)}},
+    {"Bosch BMI270, typical", {perDeg(0.007), microG(160)}},
+    {"InvenSense MPU-6050, MPU-6150, typical", {perDeg(0.005), microG(400)}},
+    {"InvenSense MPU-6500, typical", {perDeg(0.010), microG(300)}},
+    {"TDK ICM-20948, typical", {perDeg(0.015), microG(230)}},
 };
 
 // Units in their boxes: the first entry stands for "not given".
@@ -70,11 +72,18 @@ ImuForm::ImuForm(QWidget* parent)
       acceleration_unit_(new QComboBox(this)) {
   for (const NoisePreset& preset : kPresets) preset_->addItem(preset.name);
   preset_->addItem(tr("Own numbers"));
-  const QString unstated = tr("the format's unit");
+  const QString unstated = tr("as the format says");
   angular_rate_unit_->addItems({unstated, "rad/s", "deg/s"});
   acceleration_unit_->addItems({unstated, QString("m/s") + QChar(0xb2), "g", "-g"});
+  name_->setToolTip(tr("What the IMU is called in the session, the result and the exports"));
+  preset_->setToolTip(tr("Densities that the data sheet calls typical"));
+  angular_rate_unit_->setToolTip(
+      tr("What the recording's angular rates are in, where the file's format does not say it or says it "
+         "wrongly"));
   acceleration_unit_->setToolTip(
-      tr("What the recording's numbers are in; -g for drivers that report gravity"));
+      tr("What the recording's accelerations are in, where the file's format does not say it or says it "
+         "wrongly; "
+         "-g for drivers that report gravity"));
   auto* const form = new QFormLayout(this);
   form->setContentsMargins(8, 8, 8, 8);
   form->addRow(tr("Name"), name_);

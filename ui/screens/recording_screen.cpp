@@ -6,6 +6,7 @@
 #include "ui/screens/camera_form.h"
 #include "ui/screens/imu_form.h"
 #include "ui/screens/stream_table.h"
+#include "ui/screens/time_range_form.h"
 #include "ui/theme/theme.h"
 
 #include <QComboBox>
@@ -21,6 +22,8 @@
 #include <QVBoxLayout>
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 
 namespace evical::ui {
 namespace {
@@ -53,6 +56,20 @@ QScrollArea* scrolling(QWidget* content) {
   return area;
 }
 
+// From the first event or sample to the last, of whatever stream.
+std::optional<double> duration_s(const Inspection& inspection) {
+  std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
+  std::int64_t last_ns = std::numeric_limits<std::int64_t>::min();
+  for (const StreamSummary& stream : inspection.streams) {
+    const bool is_read = stream.info.type == StreamType::Events || stream.info.type == StreamType::Imu;
+    if (stream.count == 0 || !is_read) continue;
+    first_ns = std::min(first_ns, stream.first_ns);
+    last_ns = std::max(last_ns, stream.last_ns);
+  }
+  if (last_ns <= first_ns) return std::nullopt;
+  return 1e-9 * static_cast<double>(last_ns - first_ns);
+}
+
 void showText(QLabel* shown, const QString& text) {
   shown->setText(text);
   shown->setVisible(!text.isEmpty());
@@ -71,6 +88,7 @@ RecordingScreen::RecordingScreen(QWidget* parent)
       file_faults_(label({}, "problem", this)),
       looking_(new QProgressBar(this)),
       streams_(new StreamTable(this)),
+      time_range_(new TimeRangeForm(this)),
       board_(new BoardForm(this)),
       sensors_(new QTabWidget(this)),
       reference_(new QComboBox(this)) {
@@ -83,6 +101,11 @@ RecordingScreen::RecordingScreen(QWidget* parent)
     Session changed = session_;
     changed.board = board;
     emit sessionEdited(changed, tr("Change the board"), field);
+  });
+  connect(time_range_, &TimeRangeForm::edited, this, [this](const TimeRangeForm::Range& range_s) {
+    Session changed = session_;
+    changed.time_range_s = range_s;
+    emit sessionEdited(changed, tr("Change the time range"), "time_range");
   });
   connect(streams_, &StreamTable::roleChosen, this,
           [this](int stream, StreamRole role) { chooseRole(stream, static_cast<int>(role)); });
@@ -128,8 +151,8 @@ QWidget* RecordingScreen::makeContent() {
   column->setContentsMargins(0, 0, 0, 0);
   looking_->setRange(0, 1000);
   looking_->setTextVisible(false);
-  for (QWidget* const widget :
-       std::initializer_list<QWidget*>{looking_text_, looking_, streams_, file_faults_, stream_problem_})
+  for (QWidget* const widget : std::initializer_list<QWidget*>{looking_text_, looking_, streams_, time_range_,
+                                                               file_faults_, stream_problem_})
     column->addWidget(widget);
   auto* const layout = new QVBoxLayout(content);
   layout->setContentsMargins(0, 0, 0, 0);
@@ -167,6 +190,7 @@ void RecordingScreen::setSession(const Session& session) {
   path_->setText(QString::fromStdString(session.recording.parent_path().string()));
   board_->setBoard(session.board);
   streams_->setSession(session);
+  time_range_->setRange(session.time_range_s);
   showSensors();
 }
 
@@ -229,6 +253,7 @@ void RecordingScreen::setProblems(const std::vector<std::pair<QString, QString>>
 
 void RecordingScreen::setInspecting(const QString& recording) {
   inspection_.reset();
+  time_range_->setDuration({});
   streams_->setRowCount(0);
   showText(file_faults_, {});
   showText(looking_text_, tr("Looking through %1...").arg(recording));
@@ -246,6 +271,7 @@ void RecordingScreen::setInspection(std::shared_ptr<const Inspection> inspection
   looking_->hide();
   streams_->setInspection(*inspection_);
   streams_->setSession(session_);
+  time_range_->setDuration(duration_s(*inspection_));
   showFileFaults();
 }
 

@@ -22,6 +22,7 @@ class BoardForm;
 class CameraForm;
 class ImuForm;
 class StreamTable;
+class TimeRangeForm;
 
 class RecordingScreen : public QWidget {
   Q_OBJECT
@@ -61,6 +62,7 @@ class RecordingScreen : public QWidget {
   QLabel *title_, *path_, *verdict_, *looking_text_, *stream_problem_, *file_faults_;
   QProgressBar* looking_;
   StreamTable* streams_;
+  TimeRangeForm* time_range_;
   BoardForm* board_;
   QTabWidget* sensors_;
   QComboBox* reference_;

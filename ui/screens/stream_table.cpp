@@ -6,6 +6,7 @@
 
 #include <QComboBox>
 #include <QEvent>
+#include <QHBoxLayout>
 #include <QHeaderView>
 #include <QLocale>
 
@@ -32,6 +33,10 @@ QString rateText(const StreamSummary& stream) {
   return QString("%1 %2").arg(stream.rate_hz, 0, 'f', 1).arg(unit);
 }
 
+QString unitText(const std::string& unit) {
+  return text(unit).replace("^2", QChar(0xb2));
+}
+
 QString contentText(const StreamSummary& stream) {
   switch (stream.info.type) {
     case StreamType::Events: {
@@ -39,7 +44,8 @@ QString contentText(const StreamSummary& stream) {
       return QObject::tr("events, %1 x %2 px").arg(size.width_px).arg(size.height_px);
     }
     case StreamType::Imu:
-      return QObject::tr("IMU, %1, %2").arg(text(stream.acceleration_unit), text(stream.angular_rate_unit));
+      return QObject::tr("IMU, %1, %2")
+          .arg(unitText(stream.acceleration_unit), unitText(stream.angular_rate_unit));
     default:
       return text(stream.info.message);
   }
@@ -83,6 +89,7 @@ StreamTable::StreamTable(QWidget* parent) : QTableWidget(0, kColumns, parent) {
   horizontalHeader()->setDefaultAlignment(Qt::AlignLeft | Qt::AlignVCenter);
   horizontalHeader()->setHighlightSections(false);
   horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
+  horizontalHeader()->setSectionResizeMode(kRole, QHeaderView::Fixed);
   horizontalHeader()->setSectionResizeMode(kFaults, QHeaderView::Stretch);
   setAccessibleName(tr("Streams of the recording"));
 }
@@ -101,7 +108,14 @@ void StreamTable::addStream(const StreamSummary& stream, const std::vector<Recor
   insertRow(row);
   QComboBox* const box = roleBox(stream.info.type, this);
   box->setAccessibleName(tr("Role of %1").arg(text(stream.info.name)));
-  setCellWidget(row, kRole, box);
+  // In the row's middle, at its own height.
+  auto* const cell = new QWidget(this);
+  auto* const layout = new QHBoxLayout(cell);
+  layout->setContentsMargins(2, 0, 2, 0);
+  layout->addWidget(box);
+  setCellWidget(row, kRole, cell);
+  constexpr int kPadding_px = 24;
+  setColumnWidth(kRole, std::max(columnWidth(kRole), box->sizeHint().width() + kPadding_px));
   connect(box, &QComboBox::activated, this, [this, row] { emit roleChosen(row, role(row)); });
   setItem(row, kStream, readOnlyItem(text(stream.info.name)));
   setItem(row, kContent, readOnlyItem(contentText(stream)));
@@ -134,13 +148,17 @@ void StreamTable::setSession(const Session& session) {
     StreamRole role = StreamRole::Ignore;
     if (std::any_of(session.cameras.begin(), session.cameras.end(), isThis)) role = StreamRole::Camera;
     if (std::any_of(session.imus.begin(), session.imus.end(), isThis)) role = StreamRole::Imu;
-    auto* const box = qobject_cast<QComboBox*>(cellWidget(row, kRole));
+    QComboBox* const box = roleBoxOf(row);
     box->setCurrentIndex(std::max(0, box->findData(static_cast<int>(role))));
   }
 }
 
+QComboBox* StreamTable::roleBoxOf(int row) const {
+  return cellWidget(row, kRole)->findChild<QComboBox*>();
+}
+
 StreamRole StreamTable::role(int row) const {
-  return static_cast<StreamRole>(qobject_cast<QComboBox*>(cellWidget(row, kRole))->currentData().toInt());
+  return static_cast<StreamRole>(roleBoxOf(row)->currentData().toInt());
 }
 
 void StreamTable::changeEvent(QEvent* event) {

@@ -7,6 +7,8 @@
 
 #include <QTableWidget>
 
+class QComboBox;
+
 namespace evical::ui {
 
 enum class StreamRole { Ignore, Camera, Imu };
@@ -30,6 +32,7 @@ class StreamTable : public QTableWidget {
  private:
   void addStream(const StreamSummary& stream, const std::vector<RecordingFault>& faults);
   void showIcons();
+  QComboBox* roleBoxOf(int row) const;
 };
 
 }  // namespace evical::ui
