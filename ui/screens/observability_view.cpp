@@ -41,7 +41,7 @@ void ObservabilityView::paintEvent(QPaintEvent*) {
     return;
   }
   // Logarithmic: a factor of ten is as wide everywhere.
-  constexpr double kLeast = 0.03, kLabel_px = 58.0, kAxis_px = 22.0, kMostBar_px = 26.0;
+  constexpr double kLeast = 0.03, kLabel_px = 58.0, kAxis_px = 56.0, kMostBar_px = 26.0;
   const double most = std::max(30.0, 2.0 * needed_over_sigma_.back());
   const double room_px = width() - kLabel_px - 12.0;
   const auto place = [&](double ratio) {
@@ -62,8 +62,10 @@ void ObservabilityView::paintEvent(QPaintEvent*) {
   painter.setPen(QPen(theme().text, 1.5, Qt::DashLine));
   painter.drawLine(QPointF(place(1.0), 0.0), QPointF(place(1.0), bottom + 4.0));
   painter.setPen(theme().faint_text);
-  painter.drawText(QRectF(0.0, bottom + 4.0, width(), kAxis_px), Qt::AlignLeft | Qt::AlignTop,
-                   QString(tr("dashed: as well as needed")));
+  painter.drawText(
+      QRectF(0.0, bottom + 6.0, width(), kAxis_px), Qt::AlignLeft | Qt::AlignTop | Qt::TextWordWrap,
+      tr("A bar for each direction, a mixture of rotation, translation and time offset; the weakest "
+         "is the first. Dashed: as well as needed."));
 }
 
 }  // namespace evical::ui

@@ -86,7 +86,9 @@ ParameterGroup cameraGroup(const NamedResult& named, std::size_t i) {
   rows.addPose(state.imu_from_camera, sigma.rotation_std_rad, sigma.translation_std_m);
   rows.add("time_offset", QObject::tr("Time offset"), "ms", kMsPerS * state.time_offset_s,
            kMsPerS * sigma.time_offset_std_s);
-  rows.add({}, QObject::tr("Edge lead"), "px", state.edge_lead_px, sigma.edge_lead_std_px);
+  rows.add({}, QObject::tr("Edge lead at 100 px/s"), "px", state.edge_lead_px, sigma.edge_lead_std_px);
+  rows.add({}, QObject::tr("Edge lead growth"), QObject::tr("px / e-fold"), state.edge_lead_growth_px,
+           sigma.edge_lead_growth_std_px);
   rows.add({}, QObject::tr("Reprojection RMS"), "px", fit.reprojection_rms_px, 0.0);
   return group;
 }

@@ -163,6 +163,11 @@ QWidget* ResultScreen::makeContent() {
   parameters_->setIndentation(12);
   parameters_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
   parameters_->header()->setStretchLastSection(false);
+  parameters_->header()->setSectionResizeMode(kQuantity, QHeaderView::Stretch);
+  for (const int column : {kValue, kSigma, kDifference, kSigmas})
+    parameters_->headerItem()->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
+  parameters_->headerItem()->setToolTip(kSigma, tr("Standard deviation"));
+  parameters_->headerItem()->setToolTip(kSigmas, tr("The difference against the standard deviation"));
   parameters_->setAccessibleName(tr("Calibrated quantities"));
   auto* const column = new QVBoxLayout(left);
   column->setContentsMargins(0, 0, 0, 0);
