@@ -15,7 +15,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr int kColumn_px = 400;
+constexpr int kColumn_px = 400, kHeading_px = 30, kRecent_px = 296;
 
 QLabel* label(const QString& text, const char* role, QWidget* parent) {
   auto* const made = new QLabel(text, parent);
@@ -45,7 +45,7 @@ StartScreen::StartScreen(QWidget* parent)
   columns->setSpacing(48);
   columns->addStretch();
   columns->addWidget(makeChoices());
-  columns->addWidget(makeRecent());
+  columns->addWidget(makeRecent(), 0, Qt::AlignTop);
   columns->addStretch();
   auto* const layout = new QVBoxLayout(this);
   layout->addStretch(1);
@@ -88,9 +88,12 @@ QWidget* StartScreen::makeRecent() {
   auto* const column = new QWidget(this);
   column->setFixedWidth(kColumn_px);
   auto* const layout = new QVBoxLayout(column);
-  layout->addWidget(label(tr("Recent"), "heading", column));
+  auto* const heading = label(tr("Recent"), "heading", column);
+  heading->setMinimumHeight(kHeading_px);
+  layout->addWidget(heading);
   layout->addWidget(no_recent_);
   layout->addWidget(recent_, 1);
+  recent_->setMinimumHeight(kRecent_px);
   recent_->setAccessibleName(tr("Recent files"));
   recent_->setTextElideMode(Qt::ElideMiddle);
   recent_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
