@@ -90,11 +90,15 @@ void TrajectoryTools::addViews() {
 void TrajectoryTools::addFollowing() {
   follow_ = addAction(icon("follow"), tr("Follow camera"));
   follow_->setObjectName("follow");
-  follow_->setToolTip(tr("Keep the camera in the middle as time goes on"));
+  follow_->setToolTip(tr("Keep the camera in the middle as time goes on (F)"));
   through_ = addAction(icon("camera"), tr("Through camera"));
   through_->setObjectName("through_camera");
-  through_->setToolTip(tr("See the board as the camera does; drag to leave"));
+  through_->setToolTip(tr("See the board as the camera does; drag to leave (C)"));
+  follow_->setShortcut(QKeySequence("F"));
+  through_->setShortcut(QKeySequence("C"));
   for (QAction* action : {follow_, through_}) {
+    action->setShortcutContext(Qt::WidgetWithChildrenShortcut);
+    parentWidget()->addAction(action);  // works wherever the focus is on the screen
     action->setCheckable(true);
     connect(action, &QAction::triggered, this, [this, action](bool checked) {
       if (checked) (action == follow_ ? through_ : follow_)->setChecked(false);

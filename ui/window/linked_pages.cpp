@@ -114,6 +114,13 @@ void wireLinkedPages(const Pages& pages, Workbench& workbench) {
   wireResiduals(*pages.residuals, workbench);
   showRuns(*pages.signal_curves, workbench.document);
   showRuns(*pages.residuals, workbench.document);
+  // While it ran, the detection screen may have followed it.
+  QObject::connect(&workbench.calibration, &CalibrationJob::ended, pages.trajectory, [pages] {
+    const double time_s = pages.detection->time_s();
+    pages.trajectory->setTime(time_s);
+    pages.signal_curves->setTime(time_s);
+    pages.residuals->setTime(time_s);
+  });
   linkTime(pages.detection, pages.trajectory, pages.signal_curves, pages.residuals);
   linkTime(pages.trajectory, pages.detection, pages.signal_curves, pages.residuals);
   linkTime(pages.signal_curves, pages.detection, pages.trajectory, pages.residuals);

@@ -27,7 +27,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr int kSideBar_px = 212;
+constexpr int kSideBar_px = 236;
 // Bumped when docks or tool bars change, so that an older layout isn't forced on them.
 constexpr int kLayoutVersion = 1;
 
@@ -248,6 +248,9 @@ void MainWindow::restoreLayout() {
   constexpr int kWidth_px = 1280, kHeight_px = 800;
   const QSettings settings;
   resize(kWidth_px, kHeight_px);
+  constexpr int kLog_px = 190, kParameters_px = 320;
+  resizeDocks({log_dock_}, {kLog_px}, Qt::Vertical);
+  resizeDocks({parameters_dock_}, {kParameters_px}, Qt::Horizontal);
   restoreGeometry(settings.value("window/geometry").toByteArray());
   restoreState(settings.value("window/state").toByteArray(), kLayoutVersion);
 }
