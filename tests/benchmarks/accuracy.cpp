@@ -9,7 +9,7 @@
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
-#include "tests/support/simulated_session.h"
+#include "tests/support/scenario_session.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -4,7 +4,7 @@
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
-#include "tests/support/simulated_session.h"
+#include "tests/support/scenario_session.h"
 
 #include <QTemporaryDir>
 #include <QtTest>

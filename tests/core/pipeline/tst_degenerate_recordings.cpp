@@ -4,7 +4,7 @@
 #include "core/pipeline/result_files.h"
 #include "core/report/truth_comparison.h"
 #include "core/synthetic/scenario_yaml.h"
-#include "tests/support/simulated_session.h"
+#include "tests/support/scenario_session.h"
 
 #include <QtTest>
 

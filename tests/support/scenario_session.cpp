@@ -1,4 +1,4 @@
-#include "tests/support/simulated_session.h"
+#include "tests/support/scenario_session.h"
 
 #include "core/frontend/board_tracker.h"
 #include "core/synthetic/board_truth.h"
