@@ -33,7 +33,7 @@ ViewPoses estimateViewPoses(const ViewPoseInput& input, const ViewPoses& before,
     some.observations.views.assign(views.begin() + static_cast<std::ptrdiff_t>(result.views_done),
                                    views.begin() + static_cast<std::ptrdiff_t>(end));
     const CameraPoses found =
-        estimateCameraPoses(some, input.board, InitialisationOptions{}.largest_reprojection_px);
+        estimateCameraPoses(some, input.board, InitialisationOptions{});
     for (CameraPose pose : found.poses) {
       pose.view += result.views_done;
       result.poses.push_back(pose);
