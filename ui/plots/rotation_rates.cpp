@@ -46,7 +46,7 @@ RotationRates rotationRates(const CameraData& camera, const CircleBoard& board,
       camera_state.time_offset_s - imu_state.time_offset_s;  // imu_time = camera_time + offset
   const GyroRotation gyro(trueSamples(imu, imu_state), start_ns);
   context.throwIfStopped();
-  std::vector<CameraPose> poses = estimateCameraPoses(camera, board, options.largest_reprojection_px).poses;
+  std::vector<CameraPose> poses = estimateCameraPoses(camera, board, options).poses;
   context.throwIfStopped();
   resolveAmbiguousPoses(poses, gyro, offset_s, options.longest_pair_s);
   for (std::size_t k = 0, l = 0; k < poses.size(); ++k) {
