@@ -19,7 +19,7 @@ using namespace std::string_view_literals;
 
 constexpr const char* kReadable =
     "Readable are ROS 1 bags (format 2.0), Prophesee RAW and DAT, Event Stream, "
-    "and text: a folder with events.txt and imu.txt, or one such file.";
+    "and text or CSV: a folder with events.txt and imu.txt (or .csv), or one such file.";
 
 // What people may well hand us, by its first bytes.
 struct OtherFormat {
@@ -50,13 +50,11 @@ std::string firstBytes(const std::filesystem::path& path) {
 }
 
 std::unique_ptr<RecordingReader> openFolder(const std::filesystem::path& path) {
-  if (std::filesystem::exists(path / "events.txt") || std::filesystem::exists(path / "imu.txt")) {
-    return std::make_unique<TextTableReader>(path);
-  }
+  if (isTextFolder(path)) return std::make_unique<TextTableReader>(path);
   if (std::filesystem::exists(path / "metadata.yaml")) {
     throw badInput(path.string(), "this is a ROS 2 bag, which cannot be read yet", kReadable);
   }
-  throw badInput(path.string(), "the folder has no events.txt or imu.txt", kReadable);
+  throw badInput(path.string(), "the folder has no events.txt, imu.txt, events.csv or imu.csv", kReadable);
 }
 
 }  // namespace

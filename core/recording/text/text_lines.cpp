@@ -65,6 +65,10 @@ std::string_view takeColumn(std::string_view& line) {
 }
 
 bool parseSeconds(std::string_view text, std::int64_t& time_ns) {
+  return parseTime(text, 9, time_ns);
+}
+
+bool parseTime(std::string_view text, int digits_of_unit, std::int64_t& time_ns) {
   const bool negative = text.starts_with('-');
   if (negative) text.remove_prefix(1);
   std::array<char, 40> digits{};
@@ -91,6 +95,7 @@ bool parseSeconds(std::string_view text, std::int64_t& time_ns) {
     if (error != std::errc{} || end != text.data() + text.size() || std::abs(exponent) > 60) return false;
     point += exponent;
   }
+  point += digits_of_unit - 9;
   constexpr std::int64_t kLargest = INT64_MAX / 10 - 1;
   const auto digit = [&](long at) {
     return at < 0 || at >= static_cast<long>(count) ? 0 : digits[static_cast<std::size_t>(at)] - '0';

@@ -38,6 +38,9 @@ std::string_view takeColumn(std::string_view& line);
 // number or beyond 2^63 ns.
 bool parseSeconds(std::string_view text, std::int64_t& time_ns);
 
+// The same for times in units of 10^digits ns: 9 for seconds, 3 for us.
+bool parseTime(std::string_view text, int digits, std::int64_t& time_ns);
+
 // A finite number; false otherwise.
 bool parseNumber(std::string_view text, double& value);
 bool parseNumber(std::string_view text, std::uint16_t& value);

@@ -5,7 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
+#include <fstream>
+#include <iterator>
 #include <limits>
 
 namespace evical {
@@ -15,6 +16,8 @@ constexpr std::size_t kPacketEvents = 10'000;
 constexpr std::int64_t kPacketSpan_ns = 10'000'000;
 constexpr std::size_t kPacketSamples = 10;
 constexpr int kMostBadLines = 10;  // reported one by one
+constexpr std::size_t kHead_bytes = std::size_t{1} << 16;
+constexpr const char* kFiles[] = {"events.txt", "imu.txt", "events.csv", "imu.csv"};
 
 bool parsePixel(std::string_view text, std::uint16_t& value) {
   if (parseNumber(text, value)) return true;
@@ -33,98 +36,82 @@ bool parsePolarity(std::string_view text, bool& brighter) {
   return number == 1.0 || number == 0.0 || number == -1.0;
 }
 
-bool parseEvent(std::string_view line, Event& event) {
-  return parseSeconds(takeColumn(line), event.time_ns) && parsePixel(takeColumn(line), event.x_px) &&
-         parsePixel(takeColumn(line), event.y_px) && parsePolarity(takeColumn(line), event.brighter);
-}
-
 bool isComment(std::string_view line) {
   const std::string_view column = takeColumn(line);
   return column.empty() || column.front() == '#' || column.front() == '%';
 }
 
-// Where a header's names put time, acceleration and angular rate; false if it does not name all three.
-bool columnsFromHeader(std::string_view line, std::size_t& time, std::size_t& acceleration,
-                       std::size_t& rate) {
-  bool has_time = false, has_acceleration = false, has_rate = false;
-  for (std::size_t i = 0;; ++i) {
-    std::string name(takeColumn(line));
-    if (name.empty()) return has_time && has_acceleration && has_rate;
-    if (name == "#") {
-      --i;  // a comment's sign is no column
-      continue;
-    }
-    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
-    name.erase(0, name.find_first_not_of('#'));
-    const auto first = [&](bool& has, std::size_t& column, std::initializer_list<const char*> starts) {
-      const bool match =
-          std::any_of(starts.begin(), starts.end(), [&](const char* s) { return name.starts_with(s); });
-      if (match && !has) column = i;
-      has = has || match;
-      return match;
-    };
-    if (first(has_rate, rate, {"ang", "gyr", "w_", "wx", "gx"})) continue;
-    if (first(has_acceleration, acceleration, {"acc", "lin", "a_", "ax"})) continue;
-    first(has_time, time, {"time", "t"});
-  }
+int digitsOf(std::int64_t unit_ns) {
+  int digits = 0;
+  for (; unit_ns >= 10; unit_ns /= 10) ++digits;
+  return digits;
 }
 
-std::size_t countColumns(std::string_view line) {
-  std::size_t count = 0;
-  while (!takeColumn(line).empty()) ++count;
-  return count;
+bool parseVector(const std::vector<std::string_view>& parts, std::size_t first, Eigen::Vector3d& vector) {
+  return parseNumber(parts[first], vector.x()) && parseNumber(parts[first + 1], vector.y()) &&
+         parseNumber(parts[first + 2], vector.z());
 }
 
-StreamType typeOfLine(std::string_view line) {
-  Event event{};
-  if (countColumns(line) == 4 && parseEvent(line, event)) return StreamType::Events;
-  if (countColumns(line) != 7) return StreamType::Other;
-  double number = 0.0;
-  for (int i = 0; i < 7; ++i) {
-    if (!parseNumber(takeColumn(line), number)) return StreamType::Other;
-  }
-  return StreamType::Imu;
+std::string firstBytes(const std::filesystem::path& path) {
+  std::string bytes(kHead_bytes, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  return bytes;
 }
 
 }  // namespace
 
 StreamType textTableType(std::string_view first_bytes) {
-  while (!first_bytes.empty()) {
-    const std::size_t end = std::min(first_bytes.find('\n'), first_bytes.size());
-    const std::string_view line = first_bytes.substr(0, end);
-    first_bytes.remove_prefix(std::min(end + 1, first_bytes.size()));
-    std::size_t time = 0, acceleration = 0, rate = 0;
-    if (columnsFromHeader(line, time, acceleration, rate)) return StreamType::Imu;
-    if (isComment(line)) continue;
-    const StreamType type = typeOfLine(line);
-    if (type != StreamType::Other || std::isalpha(static_cast<unsigned char>(line[0])) == 0) return type;
-  }
-  return StreamType::Other;
+  return findColumns(first_bytes, true).type;
+}
+
+bool isTextFolder(const std::filesystem::path& folder) {
+  return std::any_of(std::begin(kFiles), std::end(kFiles),
+                     [&](const char* name) { return std::filesystem::exists(folder / name); });
 }
 
 TextTableReader::TextTableReader(const std::filesystem::path& path) {
   if (!std::filesystem::is_directory(path)) {
-    std::string bytes(1024, '\0');
-    std::ifstream file(path, std::ios::binary);
-    file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    bytes.resize(static_cast<std::size_t>(file.gcount()));
-    addSource(path, textTableType(bytes));
+    addSource(path);
     return;
   }
-  if (std::filesystem::exists(path / "events.txt")) addSource(path / "events.txt", StreamType::Events);
-  if (std::filesystem::exists(path / "imu.txt")) addSource(path / "imu.txt", StreamType::Imu);
+  for (const char* name : kFiles)
+    if (std::filesystem::exists(path / name)) addSource(path / name);
 }
 
-void TextTableReader::addSource(const std::filesystem::path& path, StreamType type) {
-  if (type != StreamType::Events && type != StreamType::Imu) {
-    throw badInput(path.string(), "the lines are neither \"t x y p\" nor \"t ax ay az gx gy gz\"");
+void TextTableReader::addSource(const std::filesystem::path& path) {
+  const std::string head = firstBytes(path);
+  TextColumns columns = findColumns(head, head.size() == kHead_bytes);
+  const std::string name = path.filename().string();
+  if (name == kFiles[0] && columns.header_line == 0) {
+    const Resolution size_px = columns.resolution_px;
+    columns = {};  // the name says it all, also where the numbers allow a guess
+    columns.type = StreamType::Events;
+    columns.resolution_px = size_px;
+  } else if (name == kFiles[1] && columns.header_line == 0) {
+    columns = {};
+    columns.type = StreamType::Imu;
   }
-  sources_.push_back({TextLines(path), type, true, false, std::numeric_limits<std::int64_t>::min()});
+  if (columns.type == StreamType::Other) {
+    throw badInput(path.string(),
+                   "the lines are neither events nor IMU samples, and no header names the columns",
+                   "Put a line such as \"t_us,x,y,p\" on top.");
+  }
+  if (path.extension() == ".csv") format_ = "csv";
   StreamInfo stream;
-  stream.name = path.filename().string();
-  stream.type = type;
-  stream.message = type == StreamType::Events ? "t x y p" : "t ax ay az gx gy gz";
+  stream.name = name;
+  stream.type = columns.type;
+  stream.message = columns.type == StreamType::Events ? "t x y p" : "t ax ay az gx gy gz";
+  stream.resolution_px = columns.resolution_px;
+  stream.time_unit_ns = columns.time_unit_ns == 1000 ? 1000 : 1;
+  stream.acceleration_unit = columns.acceleration_unit;
+  stream.angular_rate_unit = columns.angular_rate_unit;
   streams_.push_back(stream);
+  if (!columns.guess.empty()) faults_.push_back({name, "guess", 0.0, columns.guess});
+  const int digits = digitsOf(columns.time_unit_ns);
+  sources_.push_back(
+      {TextLines(path), std::move(columns), digits, true, false, std::numeric_limits<std::int64_t>::min()});
 }
 
 void TextTableReader::select(const std::vector<std::size_t>& streams) {
@@ -144,7 +131,7 @@ bool TextTableReader::read(Packet& packet) {
     }
     if (!behind) return false;
     packet.stream = static_cast<std::size_t>(behind - sources_.data());
-    if (behind->type == StreamType::Events) {
+    if (behind->columns.type == StreamType::Events) {
       fillEvents(*behind, packet.stream, packet.events);
     } else {
       fillImu(*behind, packet.stream, packet.imu_samples);
@@ -160,8 +147,9 @@ void TextTableReader::fillEvents(Source& source, std::size_t stream, std::vector
   std::string_view line;
   Event event{};
   while (source.lines.next(line)) {
-    if (!parseEvent(line, event)) {
-      if (!isComment(line)) addBadLine(source, stream);
+    if (!parseEvent(source, line, event)) {
+      if (isNoRow(source, line)) continue;
+      addBadLine(source, stream);
       continue;
     }
     if (!events.empty() && (event.time_ns < events.back().time_ns || events.size() >= kPacketEvents ||
@@ -184,46 +172,42 @@ void TextTableReader::fillImu(Source& source, std::size_t stream, std::vector<Im
       source.finished = true;
       return;
     }
-    if (!source.columns_known) {
-      // Names stand in the first line, if anywhere, perhaps as a comment.
-      source.columns_known = true;
-      if (columnsFromHeader(line, source.time_column, source.acceleration_column, source.rate_column))
-        continue;
-    }
     if (parseImu(source, line, sample)) {
       samples.push_back(sample);
       source.last_ns = sample.time_ns;
-    } else if (!isComment(line)) {
+    } else if (!isNoRow(source, line)) {
       addBadLine(source, stream);
     }
   }
 }
 
-bool TextTableReader::parseImu(Source& source, std::string_view line, ImuSample& sample) {
-  std::size_t values = 0;
-  for (std::size_t i = 0; values < 7; ++i) {
-    const std::string_view column = takeColumn(line);
-    if (column.empty()) return false;
-    const std::size_t in_acceleration = i - source.acceleration_column, in_rate = i - source.rate_column;
-    bool good = true;
-    if (i == source.time_column) {
-      good = parseSeconds(column, sample.time_ns);
-    } else if (in_acceleration < 3) {
-      good = parseNumber(column, sample.specific_force_m_s2[static_cast<Eigen::Index>(in_acceleration)]);
-    } else if (in_rate < 3) {
-      good = parseNumber(column, sample.angular_rate_rad_s[static_cast<Eigen::Index>(in_rate)]);
-    } else {
-      continue;
-    }
-    if (!good) return false;
-    ++values;
-  }
-  return true;
+bool TextTableReader::isNoRow(const Source& source, std::string_view line) {
+  return source.lines.number() == source.columns.header_line || isComment(line);
+}
+
+bool TextTableReader::parseEvent(const Source& source, std::string_view line, Event& event) {
+  const TextColumns& columns = source.columns;
+  splitColumns(line, parts_);
+  return parts_.size() >= columns.count() &&
+         parseTime(parts_[columns.time], source.time_digits, event.time_ns) &&
+         parsePixel(parts_[columns.x], event.x_px) && parsePixel(parts_[columns.y], event.y_px) &&
+         parsePolarity(parts_[columns.polarity], event.brighter);
+}
+
+bool TextTableReader::parseImu(const Source& source, std::string_view line, ImuSample& sample) {
+  const TextColumns& columns = source.columns;
+  splitColumns(line, parts_);
+  return parts_.size() >= columns.count() &&
+         parseTime(parts_[columns.time], source.time_digits, sample.time_ns) &&
+         parseVector(parts_, columns.acceleration, sample.specific_force_m_s2) &&
+         parseVector(parts_, columns.rate, sample.angular_rate_rad_s);
 }
 
 void TextTableReader::addBadLine(const Source& source, std::size_t stream) {
   const std::string& name = streams_[stream].name;
-  const auto alike = [&](const RecordingFault& fault) { return fault.stream == name; };
+  const auto alike = [&](const RecordingFault& fault) {
+    return fault.stream == name && fault.kind != "guess";
+  };
   if (std::count_if(faults_.begin(), faults_.end(), alike) >= kMostBadLines) return;
   const bool last = source.lines.bytesRead() == source.lines.size();
   faults_.push_back({name, last ? "truncated" : "corrupt", 0.0,

@@ -1,15 +1,19 @@
-// Text as in the RPG event camera data set: "events.txt" with lines "t x y p", "imu.txt" with "t ax ay az gx
-// gy gz"; t in s, read exactly to the ns, m/s^2, rad/s. Also one such file alone. Lines starting with '#' are
-// comments; a header line that names the columns of an IMU file decides their order.
+// Text and CSV, a table a file: events or IMU samples, whose columns a header line names, or which are
+// guessed and then said (text_columns.h). A folder with "events.txt" and "imu.txt" as in the RPG event camera
+// data set, or "events.csv" and "imu.csv", or one such file alone. Times are read exactly to the ns. Lines
+// starting with '#' or
+// '%' are comments.
 #pragma once
 
 #include "core/recording/recording_reader.h"
+#include "core/recording/text/text_columns.h"
 #include "core/recording/text/text_lines.h"
 
 #include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace evical {
 
@@ -23,33 +27,39 @@ class TextTableReader : public RecordingReader {
   bool read(Packet& packet) override;
   double fractionRead() const override;
   const std::vector<RecordingFault>& faults() const override { return faults_; }
-  std::string format() const override { return "text"; }
+  std::string format() const override { return format_; }
 
  private:
   struct Source {
     TextLines lines;
-    StreamType type;
+    TextColumns columns;
+    int time_digits;  // of the unit in ns
     bool wanted = true;
     bool finished = false;
     std::int64_t last_ns;
-    std::size_t time_column = 0, acceleration_column = 1, rate_column = 4;
-    bool columns_known = false;
     Event next_event{};  // read, but it belongs to the next packet
     bool has_next_event = false;
   };
 
-  void addSource(const std::filesystem::path& path, StreamType type);
+  void addSource(const std::filesystem::path& path);
   void fillEvents(Source& source, std::size_t stream, std::vector<Event>& events);
   void fillImu(Source& source, std::size_t stream, std::vector<ImuSample>& samples);
-  bool parseImu(Source& source, std::string_view line, ImuSample& sample);
+  bool parseEvent(const Source& source, std::string_view line, Event& event);
+  bool parseImu(const Source& source, std::string_view line, ImuSample& sample);
+  static bool isNoRow(const Source& source, std::string_view line);
   void addBadLine(const Source& source, std::size_t stream);
 
   std::vector<Source> sources_;  // one a stream
   std::vector<StreamInfo> streams_;
   std::vector<RecordingFault> faults_;
+  std::string format_ = "text";
+  std::vector<std::string_view> parts_;  // of a line
 };
 
 // Whether a text file's first bytes look like a table of events or IMU samples; Other if not.
 StreamType textTableType(std::string_view first_bytes);
+
+// Whether a folder has files that this reader knows by name.
+bool isTextFolder(const std::filesystem::path& folder);
 
 }  // namespace evical

@@ -20,6 +20,13 @@ class TestTextRecording : public QObject {
   void badLines_areReportedAndLeftOut();
   void stepBack_endsThePacket();
   void writer_refusesTwoCameras();
+  void csv_roundTripIsExact();
+  void columns_areFound_data();
+  void columns_areFound();
+  void euroc_hasTheRateFirst();
+  void imuUnits_areThoseOfTheHeader();
+  void imuWithoutHeader_isToldByGravity();
+  void columnsThatMakeNoSense_areRefused();
 
  private:
   std::filesystem::path path(const char* name) const { return folder_.filePath(name).toStdString(); }
@@ -131,6 +138,97 @@ void TestTextRecording::writer_refusesTwoCameras() {
   const std::vector<StreamInfo> streams(2, sampleStreams()[0]);
   QVERIFY_EXCEPTION_THROWN(createText(folder.path().toStdString(), streams), CalibrationError);
   QVERIFY(std::filesystem::is_empty(folder.path().toStdString()));
+}
+
+void TestTextRecording::csv_roundTripIsExact() {
+  QTemporaryDir folder;
+  const Recording written = sampleRecording(20'000);
+  writeAll(*createRecording(folder.path().toStdString(), "csv", sampleStreams()), written);
+  const auto reader = openRecording(folder.path().toStdString());
+  QCOMPARE(reader->format(), std::string("csv"));
+  const Recording read = readAll(*reader);
+  QVERIFY(same(read.events, written.events));
+  QVERIFY(same(read.imu_samples, written.imu_samples));
+  QVERIFY(reader->faults().empty());
+}
+
+void TestTextRecording::columns_areFound_data() {
+  QTest::addColumn<QByteArray>("text");
+  QTest::addColumn<qlonglong>("first_ns");
+  QTest::addColumn<bool>("guessed");
+  const auto row = [](const char* name, const char* text, qlonglong first_ns, bool guessed) {
+    QTest::newRow(name) << QByteArray(text) << first_ns << guessed;
+  };
+  // The same two events each: (300, 200, on), then (301, 7, off).
+  row("named, us", "t_us,x,y,p\n5000000,300,200,1\n5000001,301,7,0\n", 5'000'000'000, false);
+  row("named, ns, other order", "polarity,y,x,timestamp [ns]\n1,200,300,50\n0,7,301,60\n", 50, false);
+  row("named, s", "# x y p t\n300 200 1 0.5\n301 7 0 0.6\n", 500'000'000, false);
+  row("named, no unit", "t,x,y,p\n5000000,300,200,1\n5000001,301,7,0\n", 5'000'000'000, true);
+  row("named, words", "time(ms);x;y;pol\n12;300;200;True\n13;301;7;False\n", 12'000'000, false);
+  row("Metavision with geometry", "%geometry:640,480\n300,200,1,9\n301,7,0,10\n", 9'000, false);
+  row("Metavision without", "300,200,1,5000000\n301,7,0,5000009\n", 5'000'000'000, true);
+  row("headerless, ns since 1970", "1600000000123456789,300,200,1\n1600000000123456790,301,7,0\n",
+      1'600'000'000'123'456'789, true);
+  row("headerless, s", "0.25 300 200 1\n0.26 301 7 0\n", 250'000'000, false);
+}
+
+void TestTextRecording::columns_areFound() {
+  QFETCH(QByteArray, text);
+  QFETCH(qlonglong, first_ns);
+  QFETCH(bool, guessed);
+  writeFile(path("table.csv"), text.toStdString());
+  const auto reader = openRecording(path("table.csv"));
+  const Recording read = readAll(*reader);
+  QCOMPARE(read.events.size(), 2u);
+  QCOMPARE(qlonglong(read.events[0].time_ns), first_ns);
+  QCOMPARE(int(read.events[0].x_px), 300);
+  QCOMPARE(int(read.events[0].y_px), 200);
+  QCOMPARE(int(read.events[1].x_px), 301);
+  QCOMPARE(int(read.events[1].y_px), 7);
+  QVERIFY(read.events[0].brighter && !read.events[1].brighter);
+  QCOMPARE(reader->faults().size(), guessed ? 1u : 0u);
+  if (guessed) QCOMPARE(reader->faults()[0].kind, std::string("guess"));
+  const bool has_geometry = text.startsWith('%');
+  QCOMPARE(reader->streams()[0].resolution_px.width_px, has_geometry ? 640 : 0);
+}
+
+void TestTextRecording::euroc_hasTheRateFirst() {
+  writeFile(path("data.csv"),
+            "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],a_RS_S_x [m s^-2],"
+            "a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\r\n1403636579758555392,-0.1,0.15,0.03,8.2,-0.4,-3.5\r\n");
+  const auto reader = openRecording(path("data.csv"));
+  const Recording read = readAll(*reader);
+  QCOMPARE(read.imu_samples.size(), 1u);
+  QCOMPARE(read.imu_samples[0].time_ns, std::int64_t{1403636579758555392});
+  QVERIFY((read.imu_samples[0].angular_rate_rad_s == Eigen::Vector3d(-0.1, 0.15, 0.03)));
+  QVERIFY((read.imu_samples[0].specific_force_m_s2 == Eigen::Vector3d(8.2, -0.4, -3.5)));
+  QVERIFY(reader->faults().empty());
+}
+
+void TestTextRecording::imuUnits_areThoseOfTheHeader() {
+  writeFile(
+      path("units.csv"),
+      "time_us,acc_x [g],acc_y [g],acc_z [g],gyro_x [deg/s],gyro_y [deg/s],gyro_z [deg/s]\n7,0,0,1,1,2,3\n");
+  const auto reader = openRecording(path("units.csv"));
+  QVERIFY(reader->streams()[0].acceleration_unit == AccelerationUnit::Gravity);
+  QVERIFY(reader->streams()[0].angular_rate_unit == AngularRateUnit::DegreesPerSecond);
+  QCOMPARE(reader->streams()[0].time_unit_ns, std::int64_t{1000});
+  QCOMPARE(readAll(*reader).imu_samples.at(0).time_ns, std::int64_t{7000});
+}
+
+void TestTextRecording::imuWithoutHeader_isToldByGravity() {
+  writeFile(path("imu7.csv"), "0.001,1,2,3,0.1,9.8,0.2\n0.002,1,2,3,0.1,9.8,0.2\n");
+  const auto reader = openRecording(path("imu7.csv"));
+  const Recording read = readAll(*reader);
+  QVERIFY((read.imu_samples.at(1).angular_rate_rad_s == Eigen::Vector3d(1, 2, 3)));
+  QCOMPARE(reader->faults().at(0).kind, std::string("guess"));
+}
+
+void TestTextRecording::columnsThatMakeNoSense_areRefused() {
+  for (const char* text : {"1,2,3\n4,5,6\n", "9,5,7,8\n3,9,2,1\n", ",,,\n", "\n\n", "a,b,c,d\n9,5,7,8\n"}) {
+    writeFile(path("odd.csv"), text);
+    QVERIFY_EXCEPTION_THROWN(openRecording(path("odd.csv")), CalibrationError);
+  }
 }
 
 QTEST_GUILESS_MAIN(TestTextRecording)

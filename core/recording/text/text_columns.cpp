@@ -1,0 +1,334 @@
+#include "core/recording/text/text_columns.h"
+
+#include "core/recording/text/text_lines.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <optional>
+
+namespace evical {
+namespace {
+
+constexpr std::size_t kMostRows = 2000;
+constexpr double kEpoch_ns = 1e17;          // as ns since 1970 it is 1973; as us, the year 5138
+constexpr double kFewestEventsPerS = 50.0;  // of a file that is worth a guess
+constexpr std::size_t kEnoughRows = 100;
+constexpr std::size_t kImuColumns = 7;
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kAround = " \t\r\"'";
+  const std::size_t begin = std::min(text.find_first_not_of(kAround), text.size());
+  const std::size_t end = text.find_last_not_of(kAround);
+  return end == std::string_view::npos ? std::string_view{} : text.substr(begin, end + 1 - begin);
+}
+
+// One column in the first rows.
+struct ColumnNumbers {
+  double first = 0.0, last = 0.0, largest = std::numeric_limits<double>::lowest();
+  bool whole = true, decreases = false, polarity = true;
+  int pixels = 0, others = 0;  // whether the numbers can be coordinates
+
+  void add(double number, bool first_row) {
+    if (first_row) first = number;
+    decreases = decreases || (!first_row && number < last);
+    last = number;
+    largest = std::max(largest, number);
+    const bool is_whole = number == std::floor(number);
+    whole = whole && is_whole;
+    (is_whole && number >= 0.0 && number <= 65535.0 ? pixels : others) += 1;
+    polarity = polarity && (number == 0.0 || number == 1.0 || number == -1.0);
+  }
+  bool isPixel() const { return pixels > others; }  // a line may be bad
+};
+
+struct Rows {
+  std::vector<ColumnNumbers> columns;
+  std::vector<double> first_norms, second_norms;  // of columns 1-3 and 4-6, where there are as many
+  std::size_t count = 0;
+};
+
+bool columnNumber(std::string_view text, double& number) {
+  if (text == "true" || text == "True") return number = 1.0, true;
+  if (text == "false" || text == "False") return number = 0.0, true;
+  return parseNumber(text, number);
+}
+
+// False if the line is no row like those before.
+bool addRow(const std::vector<std::string_view>& line, Rows& rows) {
+  if (line.empty()) return false;
+  std::vector<double> numbers(line.size());
+  for (std::size_t i = 0; i < line.size(); ++i)
+    if (!columnNumber(line[i], numbers[i])) return false;
+  if (rows.count == 0) rows.columns.resize(line.size());
+  if (line.size() != rows.columns.size()) return false;
+  for (std::size_t i = 0; i < numbers.size(); ++i) rows.columns[i].add(numbers[i], rows.count == 0);
+  if (numbers.size() >= kImuColumns) {
+    rows.first_norms.push_back(std::hypot(numbers[1], numbers[2], numbers[3]));
+    rows.second_norms.push_back(std::hypot(numbers[4], numbers[5], numbers[6]));
+  }
+  ++rows.count;
+  return true;
+}
+
+double medianOf(std::vector<double> numbers) {
+  if (numbers.empty()) return 0.0;
+  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
+  std::nth_element(numbers.begin(), middle, numbers.end());
+  return *middle;
+}
+
+bool isGravity(double norm) {
+  return std::abs(norm - kStandardGravity_m_s2) < 0.8 || std::abs(norm - 1.0) < 0.08;
+}
+
+const char* unitName(std::int64_t unit_ns) {
+  return unit_ns == 1 ? "ns" : unit_ns == 1000 ? "us" : unit_ns == 1'000'000 ? "ms" : "s";
+}
+
+std::optional<std::int64_t> unitNamed(std::string_view text) {
+  for (const std::string_view name : {"ns", "nsec", "nanoseconds"})
+    if (text == name) return 1;
+  for (const std::string_view name : {"us", "usec", "microseconds"})
+    if (text == name) return 1000;
+  for (const std::string_view name : {"ms", "msec", "milliseconds"})
+    if (text == name) return 1'000'000;
+  for (const std::string_view name : {"s", "sec", "secs", "seconds"})
+    if (text == name) return 1'000'000'000;
+  return std::nullopt;
+}
+
+// The unit at the end of "timestamp [ns]", "t_us", "time(s)".
+std::optional<std::int64_t> unitOf(std::string_view name) {
+  while (!name.empty() && (name.back() == ']' || name.back() == ')' || name.back() == ' '))
+    name.remove_suffix(1);
+  const std::size_t before = name.find_last_of("[(_ ");
+  return before == std::string_view::npos ? std::nullopt : unitNamed(trimmed(name.substr(before + 1)));
+}
+
+std::int64_t unitFromNumbers(const ColumnNumbers& time, std::size_t rows) {
+  if (!time.whole) return 1'000'000'000;
+  if (time.largest >= kEpoch_ns) return 1;
+  const double span_s = 1e-6 * (time.last - time.first);
+  const bool too_slow = rows >= kEnoughRows && static_cast<double>(rows) < kFewestEventsPerS * span_s;
+  return too_slow ? 1 : 1000;
+}
+
+bool startsWithOne(std::string_view name, std::initializer_list<std::string_view> starts) {
+  return std::any_of(starts.begin(), starts.end(), [&](std::string_view s) { return name.starts_with(s); });
+}
+
+// The letters in front of a unit or an index.
+std::string_view stem(std::string_view name) {
+  return name.substr(0, std::min(name.find_first_of("_[( "), name.size()));
+}
+
+bool isOneOf(std::string_view name, std::initializer_list<std::string_view> names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+struct HeaderColumns {
+  std::optional<std::size_t> time, x, y, polarity, acceleration, rate;
+  std::optional<std::int64_t> unit_ns;
+  AccelerationUnit acceleration_unit = AccelerationUnit::MetresPerSecond2;
+  AngularRateUnit angular_rate_unit = AngularRateUnit::RadiansPerSecond;
+
+  bool nameEvents() const { return time && x && y && polarity; }
+  bool nameImu() const { return time && acceleration && rate; }
+
+  void add(std::string_view name, std::size_t i) {
+    const auto first = [i](std::optional<std::size_t>& column) {
+      if (!column) column = i;
+    };
+    const std::string_view letters = stem(name);
+    if (startsWithOne(name, {"ang", "gyr", "w_", "wx", "gx", "omega"})) {
+      if (name.find("deg") != std::string_view::npos) angular_rate_unit = AngularRateUnit::DegreesPerSecond;
+      first(rate);
+    } else if (startsWithOne(name, {"acc", "lin", "a_", "ax"})) {
+      if (name.ends_with("[g]") || name.ends_with("(g)")) acceleration_unit = AccelerationUnit::Gravity;
+      first(acceleration);
+    } else if (!time && (startsWithOne(name, {"time", "stamp"}) || isOneOf(letters, {"t", "ts", "sec"}))) {
+      time = i;
+      unit_ns = unitOf(name);
+    } else if (letters == "x") {
+      first(x);
+    } else if (letters == "y") {
+      first(y);
+    } else if (isOneOf(letters, {"p", "pol", "polarity", "on"})) {
+      first(polarity);
+    }
+  }
+};
+
+HeaderColumns readHeader(std::string_view line) {
+  std::string lower(line);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::string_view names = trimmed(lower);
+  while (names.starts_with('#') || names.starts_with('%')) names = trimmed(names.substr(1));
+  std::vector<std::string_view> columns;
+  splitColumns(names, columns);
+  HeaderColumns header;
+  for (std::size_t i = 0; i < columns.size(); ++i) header.add(trimmed(columns[i]), i);
+  return header;
+}
+
+bool readGeometry(std::string_view line, Resolution& size_px) {
+  constexpr std::string_view kGeometry = "%geometry:";
+  if (!line.starts_with(kGeometry)) return false;
+  std::vector<std::string_view> sides;
+  splitColumns(line.substr(kGeometry.size()), sides);
+  std::uint16_t width = 0, height = 0;
+  if (sides.size() == 2 && parseNumber(sides[0], width) && parseNumber(sides[1], height))
+    size_px = {width, height};
+  return true;
+}
+
+void applyHeader(const HeaderColumns& header, TextColumns& columns) {
+  columns.type = header.nameEvents() ? StreamType::Events : StreamType::Imu;
+  columns.time = *header.time;
+  columns.x = header.x.value_or(0);
+  columns.y = header.y.value_or(0);
+  columns.polarity = header.polarity.value_or(0);
+  columns.acceleration = header.acceleration.value_or(0);
+  columns.rate = header.rate.value_or(0);
+  columns.acceleration_unit = header.acceleration_unit;
+  columns.angular_rate_unit = header.angular_rate_unit;
+  columns.time_unit_ns = header.unit_ns.value_or(0);
+}
+
+// The column that never decreases and exceeds the others is the time, one of two values the polarity; of the
+// rest the order is x, y.
+bool guessEvents(const Rows& rows, TextColumns& columns) {
+  if (rows.columns.size() != 4) return false;
+  const auto& all = rows.columns;
+  if (!all[0].whole && all[1].isPixel() && all[2].isPixel() && all[3].polarity) {
+    columns.type = StreamType::Events;  // the convention
+    return true;
+  }
+  std::optional<std::size_t> time, polarity;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (all[i].decreases) continue;
+    const bool better = !time || (all[*time].whole && !all[i].whole) ||
+                        (all[*time].whole == all[i].whole && all[i].largest > all[*time].largest);
+    if (better) time = i;
+  }
+  if (!time) return false;
+  for (std::size_t i = 0; i < 4; ++i)
+    if (i != *time && all[i].polarity) polarity = i;
+  if (!polarity) return false;
+  std::vector<std::size_t> rest;
+  for (std::size_t i = 0; i < 4; ++i)
+    if (i != *time && i != *polarity && all[i].isPixel()) rest.push_back(i);
+  if (rest.size() != 2) return false;
+  columns.type = StreamType::Events;
+  columns.time = *time;
+  columns.polarity = *polarity;
+  columns.x = rest[0];
+  columns.y = rest[1];
+  return true;
+}
+
+bool guessImu(const Rows& rows, TextColumns& columns) {
+  if (rows.columns.size() != kImuColumns) return false;
+  columns.type = StreamType::Imu;
+  const bool rate_first = isGravity(medianOf(rows.second_norms)) && !isGravity(medianOf(rows.first_norms));
+  columns.rate = rate_first ? 1 : 4;
+  columns.acceleration = rate_first ? 4 : 1;
+  return true;
+}
+
+void describeGuess(TextColumns& columns, bool has_header) {
+  const char* unit = unitName(columns.time_unit_ns);
+  if (has_header) {
+    columns.guess = fmt::format("The header does not tell the unit of time; {} is assumed.", unit);
+    return;
+  }
+  std::string order;
+  const auto name = [&](std::size_t i) -> const char* {
+    if (i == columns.time) return "t";
+    if (columns.type == StreamType::Events) return i == columns.x ? "x" : i == columns.y ? "y" : "p";
+    constexpr const char *kAcceleration[] = {"ax", "ay", "az"}, *kRate[] = {"gx", "gy", "gz"};
+    return i - columns.acceleration < 3 ? kAcceleration[i - columns.acceleration] : kRate[i - columns.rate];
+  };
+  for (std::size_t i = 0; i < columns.count(); ++i) order += fmt::format("{}{}", i == 0 ? "" : ",", name(i));
+  const bool conventional =
+      (order == "t,x,y,p" || order == "t,ax,ay,az,gx,gy,gz") && columns.time_unit_ns == 1'000'000'000;
+  if (conventional) return;
+  columns.guess = fmt::format(
+      "There is no header; the columns are taken for {}, t in {}. If that is wrong, put a "
+      "line such as \"t_{},x,y,p\" on top.",
+      order, unit, unit);
+}
+
+}  // namespace
+
+std::size_t TextColumns::count() const {
+  if (type == StreamType::Events) return std::max({time, x, y, polarity}) + 1;
+  return std::max({time, acceleration + 2, rate + 2}) + 1;
+}
+
+void splitColumns(std::string_view line, std::vector<std::string_view>& columns) {
+  columns.clear();
+  if (line.find_first_of(",;\t") == std::string_view::npos) {
+    for (std::string_view column = takeColumn(line); !column.empty(); column = takeColumn(line))
+      columns.push_back(column);
+    return;
+  }
+  for (std::size_t end = 0; end != std::string_view::npos;) {
+    end = line.find_first_of(",;\t");
+    columns.push_back(trimmed(line.substr(0, end)));
+    if (end != std::string_view::npos) line.remove_prefix(end + 1);
+  }
+  while (!columns.empty() && columns.back().empty()) columns.pop_back();  // behind a last comma
+}
+
+TextColumns findColumns(std::string_view first_bytes, bool cut) {
+  TextColumns columns;
+  Rows rows;
+  std::vector<std::string_view> parts;
+  bool has_header = false, metavision = false;
+  for (std::uint64_t number = 1; !first_bytes.empty() && rows.count < kMostRows; ++number) {
+    const std::size_t end = first_bytes.find('\n');
+    if (end == std::string_view::npos && cut && number > 1) break;
+    const std::string_view line = trimmed(first_bytes.substr(0, end));
+    first_bytes.remove_prefix(end == std::string_view::npos ? first_bytes.size() : end + 1);
+    if (line.empty()) continue;
+    if (readGeometry(line, columns.resolution_px)) {
+      metavision = true;
+      continue;
+    }
+    splitColumns(line, parts);
+    if (addRow(parts, rows) || rows.count > 0) continue;  // a bad line among rows is the reader's to report
+    const HeaderColumns header = readHeader(line);
+    if (!has_header && (header.nameEvents() || header.nameImu())) {
+      applyHeader(header, columns);
+      columns.header_line = number;
+      has_header = true;
+    } else if (line.front() != '#' && line.front() != '%' &&
+               std::isalpha(static_cast<unsigned char>(line.front())) == 0) {
+      return columns;  // neither a row, nor names, nor a comment
+    }
+  }
+  if (metavision && !has_header && rows.columns.size() == 4) {
+    columns.type = StreamType::Events;
+    columns.x = 0;
+    columns.y = 1;
+    columns.polarity = 2;
+    columns.time = 3;
+    columns.time_unit_ns = 1000;
+    return columns;
+  }
+  if (!has_header && !guessEvents(rows, columns) && !guessImu(rows, columns)) return columns;
+  if (has_header && columns.time_unit_ns != 0) return columns;
+  const bool known = columns.time < rows.columns.size();
+  columns.time_unit_ns = known ? unitFromNumbers(rows.columns[columns.time], rows.count) : 1'000'000'000;
+  const bool obvious = has_header && known && !rows.columns[columns.time].whole;
+  if (!obvious) describeGuess(columns, has_header);
+  return columns;
+}
+
+}  // namespace evical
