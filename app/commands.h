@@ -16,6 +16,7 @@ inline constexpr int kBadInput = 2;  // usage, session or recording; nothing was
 void addBoardCommand(CLI::App& app, int& exit_code);
 void addCalibrateCommand(CLI::App& app, int& exit_code);
 void addCompareCommand(CLI::App& app, int& exit_code);
+void addConvertCommand(CLI::App& app, int& exit_code);
 void addDetectCommand(CLI::App& app, int& exit_code);
 void addOptionsCommand(CLI::App& app, int& exit_code);
 void addSimulateCommand(CLI::App& app, int& exit_code);

@@ -26,6 +26,7 @@ void addCommands(CLI::App& app, int& exit_code) {
   addCalibrateCommand(app, exit_code);
   addDetectCommand(app, exit_code);
   addInspectCommand(app, exit_code);
+  addConvertCommand(app, exit_code);
   addSimulateCommand(app, exit_code);
   addCompareCommand(app, exit_code);
   addBoardCommand(app, exit_code);

@@ -1,6 +1,7 @@
 #include "app/commands.h"
 #include "app/console.h"
 #include "core/pipeline/simulation.h"
+#include "core/recording/recording_writer.h"
 #include "core/synthetic/scenario_yaml.h"
 
 #include <fmt/format.h>
@@ -9,12 +10,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 namespace evical {
 
 void addSimulateCommand(CLI::App& app, int& exit_code) {
   struct Arguments {
     std::filesystem::path scenario, folder;
+    std::string format;
     bool quiet = false;
   };
   const auto arguments = std::make_shared<Arguments>();
@@ -24,11 +27,16 @@ void addSimulateCommand(CLI::App& app, int& exit_code) {
       ->add_option("scenario", arguments->scenario, "What to simulate, e.g. config/scenarios/davis346.yaml")
       ->required();
   command->add_option("-o,--output", arguments->folder, "Folder to write")->required();
+  std::string formats;
+  for (const RecordingFormat& format : recordingFormats())
+    formats += fmt::format("{}{}", formats.empty() ? "" : ", ", format.name);
+  command->add_option("--format", arguments->format, "By default the scenario's; one of " + formats);
   command->add_flag("--quiet", arguments->quiet, "No progress");
   command->callback([arguments, &exit_code] {
     const Scenario scenario = readScenario(arguments->scenario);
     Console console(arguments->quiet);
-    const SimulationSummary made = simulate(scenario, arguments->folder, {console, stopOnSignals()});
+    const SimulationSummary made =
+        simulate(scenario, arguments->folder, {console, stopOnSignals()}, arguments->format);
     console.stageStarted("done");
     fmt::print("{} events, {} IMU samples\n{}\n{}\n{}\n", made.events, made.imu_samples,
                made.recording.string(), made.session.string(), made.truth.string());

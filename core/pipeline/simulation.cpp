@@ -2,7 +2,9 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/new_folder.h"
 #include "core/pipeline/simulated_cameras.h"
+#include "core/recording/recording_reader.h"
 #include "core/recording/recording_writer.h"
 #include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
@@ -10,6 +12,7 @@
 #include <algorithm>
 #include <memory>
 #include <span>
+#include <string>
 #include <system_error>
 #include <vector>
 
@@ -58,24 +61,26 @@ class ImuFeed {
   std::size_t next_ = 0;
 };
 
-// Takes the folder away again if it wasn't there before and nothing came of it.
-class NewFolder {
- public:
-  explicit NewFolder(const std::filesystem::path& folder)
-      : folder_(folder), was_there_(std::filesystem::exists(folder)) {
-    makeOutputFolder(folder);
+// What the sensors' streams are called in the recording: not every format keeps names.
+template <class Sensors>
+void takeNames(const RecordingReader& reader, StreamType type, Sensors& sensors) {
+  std::vector<std::string> names;
+  for (const StreamInfo& stream : reader.streams())
+    if (stream.type == type) names.push_back(stream.name);
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const bool kept = std::find(names.begin(), names.end(), sensors[i].stream) != names.end();
+    if (!kept && i < names.size()) sensors[i].stream = names[i];
   }
-  ~NewFolder() {
-    std::error_code ignored;
-    if (!was_there_) std::filesystem::remove(folder_, ignored);  // only if empty
-  }
-  NewFolder(const NewFolder&) = delete;
-  NewFolder& operator=(const NewFolder&) = delete;
+}
 
- private:
-  std::filesystem::path folder_;
-  bool was_there_;
-};
+// What there is of a recording, should its session not come to be.
+std::vector<std::filesystem::path> filesOf(const std::filesystem::path& recording) {
+  if (!std::filesystem::is_directory(recording)) return {recording};
+  std::vector<std::filesystem::path> files;
+  for (const char* name : {"events.txt", "imu.txt", "events.csv", "imu.csv"})
+    files.push_back(recording / name);
+  return files;
+}
 
 // A recording without its session and truth is of no use.
 void writeTexts(const std::vector<FileContent>& texts, const std::vector<std::filesystem::path>& recordings) {
@@ -88,20 +93,8 @@ void writeTexts(const std::vector<FileContent>& texts, const std::vector<std::fi
   }
 }
 
-}  // namespace
-
-SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path& folder,
-                           const RunContext& context) {
-  const NewFolder new_folder(folder);
-  const bool text = scenario.format == SimulatedFormat::Text;
-  SimulationSummary summary;
-  summary.recording = text ? folder : folder / "recording.bag";
-  summary.session = folder / "session.yaml";
-  summary.truth = folder / "truth.yaml";
-  context.progress.stageStarted("simulate");
-  const std::unique_ptr<RecordingWriter> writer =
-      text ? createText(folder, streamsOf(scenario))
-           : createBag(summary.recording, streamsOf(scenario), false);
+void writeRecording(const Scenario& scenario, RecordingWriter& writer, SimulationSummary& summary,
+                    const RunContext& context) {
   std::vector<ImuFeed> feeds;
   for (std::size_t k = 0; k < scenario.imus.size(); ++k) {
     feeds.emplace_back(scenario.cameras.size() + k, simulateImu(scenario, k));
@@ -110,16 +103,37 @@ SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path
   simulateCameras(
       scenario,
       [&](std::size_t camera, EventSpan events) {
-        for (ImuFeed& feed : feeds) feed.writeUntil(events.back().time_ns, *writer);
-        writer->write(camera, events);
+        for (ImuFeed& feed : feeds) feed.writeUntil(events.back().time_ns, writer);
+        writer.write(camera, events);
         summary.events += events.size();
       },
       context);
-  for (ImuFeed& feed : feeds) feed.writeRest(*writer);
-  writer->finish();
-  writeTexts({{summary.session, sessionYaml(scenario, text ? "." : "recording.bag")},
-              {summary.truth, truthYaml(scenario)}},
-             text ? std::vector{folder / "events.txt", folder / "imu.txt"} : std::vector{summary.recording});
+  for (ImuFeed& feed : feeds) feed.writeRest(writer);
+  writer.finish();
+}
+
+}  // namespace
+
+SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path& folder,
+                           const RunContext& context, const std::string& format_name) {
+  const bool text = scenario.format == SimulatedFormat::Text;
+  const RecordingFormat& format = recordingFormat(!format_name.empty() ? format_name : text ? "text" : "bag");
+  const NewFolder new_folder(folder);
+  SimulationSummary summary;
+  const std::string file = format.isFolder() ? "." : std::string("recording") + format.extension;
+  summary.recording = format.isFolder() ? folder : folder / file;
+  summary.session = folder / "session.yaml";
+  summary.truth = folder / "truth.yaml";
+  context.progress.stageStarted("simulate");
+  const std::unique_ptr<RecordingWriter> writer =
+      createRecording(summary.recording, format.name, streamsOf(scenario));
+  writeRecording(scenario, *writer, summary, context);
+  Scenario named = scenario;
+  const std::unique_ptr<RecordingReader> reader = openRecording(summary.recording);
+  takeNames(*reader, StreamType::Events, named.cameras);
+  takeNames(*reader, StreamType::Imu, named.imus);
+  writeTexts({{summary.session, sessionYaml(named, file)}, {summary.truth, truthYaml(scenario)}},
+             filesOf(summary.recording));
   return summary;
 }
 

@@ -1,4 +1,4 @@
-// A scenario becomes a recording in a folder: recording.bag (or events.txt and imu.txt), session.yaml,
+// A scenario becomes a recording in a folder: recording.bag (or one of another format), session.yaml,
 // truth.yaml.
 #pragma once
 
@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 namespace evical {
 
@@ -15,8 +16,9 @@ struct SimulationSummary {
   std::filesystem::path recording, session, truth;
 };
 
-// The folder is made if need be. session.yaml and truth.yaml come last, when the recording is whole.
+// The folder is made if need be. session.yaml and truth.yaml come last, when the recording is whole. The
+// format is one of recordingFormats(); empty: the scenario's.
 SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path& folder,
-                           const RunContext& context);
+                           const RunContext& context, const std::string& format_name = {});
 
 }  // namespace evical

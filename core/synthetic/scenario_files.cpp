@@ -79,15 +79,13 @@ std::string truthYaml(const Scenario& scenario) {
 }
 
 std::string sessionYaml(const Scenario& scenario, const std::string& recording_file) {
-  // Text knows one stream of each kind, and they are called after their files.
-  const bool plain_text = scenario.format == SimulatedFormat::Text;
   std::string text = fmt::format("evical_session: 1\nrecording: {}\n{}cameras:\n", yamlText(recording_file),
                                  boardSession(scenario.board));
   for (const SimulatedCamera& camera : scenario.cameras) {
     const Resolution& size = camera.intrinsics.resolution_px;
     text += fmt::format("  {}:\n    stream: {}\n    resolution_px: [{}, {}]\n    intrinsics:\n{}",
-                        yamlText(camera.name), yamlText(plain_text ? "events.txt" : camera.stream),
-                        size.width_px, size.height_px, intrinsicsYaml(camera.intrinsics, kSensorIndent));
+                        yamlText(camera.name), yamlText(camera.stream), size.width_px, size.height_px,
+                        intrinsicsYaml(camera.intrinsics, kSensorIndent));
   }
   if (scenario.imus.empty())
     return text + fmt::format("reference: {}\n", yamlText(scenario.cameras.front().name));
@@ -97,8 +95,8 @@ std::string sessionYaml(const Scenario& scenario, const std::string& recording_f
         "  {}:\n    stream: {}\n    accelerometer_noise_density: {:.6g}\n    gyroscope_noise_density: "
         "{:.6g}\n"
         "    acceleration_unit: m/s^2\n    angular_rate_unit: rad/s\n",
-        yamlText(imu.name), yamlText(plain_text ? "imu.txt" : imu.stream),
-        std::max(imu.accelerometer_density, kLeastDensity), std::max(imu.gyroscope_density, kLeastDensity));
+        yamlText(imu.name), yamlText(imu.stream), std::max(imu.accelerometer_density, kLeastDensity),
+        std::max(imu.gyroscope_density, kLeastDensity));
   }
   return text + fmt::format("reference: {}\n", yamlText(scenario.imus.front().name));
 }

@@ -57,7 +57,7 @@ void TestCommandLine::help_isThereForEveryCommand() {
   const Outcome all = runProgram({"--help"});
   VERIFY_EXIT(all, 0);
   for (const QString command :
-       {"calibrate", "detect", "simulate", "inspect", "options", "board", "compare"}) {
+       {"calibrate", "detect", "simulate", "inspect", "convert", "options", "board", "compare"}) {
     QVERIFY2(all.output.contains(command), qPrintable(command));
     const Outcome outcome = runProgram({command, "--help"});
     VERIFY_EXIT(outcome, 0);

@@ -1,0 +1,71 @@
+#include "app/commands.h"
+#include "app/console.h"
+#include "core/base/error.h"
+#include "core/recording/conversion.h"
+#include "core/recording/recording_writer.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <charconv>
+#include <memory>
+#include <string>
+
+namespace evical {
+namespace {
+
+Resolution resolutionIn(const std::string& text) {
+  Resolution size_px;
+  const std::size_t cross = text.find('x');
+  const auto isSide = [](std::string_view side, int& length_px) {
+    const auto [end, error] = std::from_chars(side.data(), side.data() + side.size(), length_px);
+    return error == std::errc{} && end == side.data() + side.size() && length_px > 0 && length_px <= 65536;
+  };
+  const bool good = cross != std::string::npos &&
+                    isSide(std::string_view(text).substr(0, cross), size_px.width_px) &&
+                    isSide(std::string_view(text).substr(cross + 1), size_px.height_px);
+  if (!good) throw badInput(text, "this is no resolution", "Give it as 346x260.");
+  return size_px;
+}
+
+void printSummary(const ConversionRequest& request, const ConversionSummary& made) {
+  fmt::print("{} events, {} IMU samples in {} ({})\n", made.events, made.imu_samples, request.output.string(),
+             made.format);
+  for (const RecordingFault& fault : made.faults)
+    fmt::print("  {}: {}{}{}\n", fault.kind, fault.stream, fault.stream.empty() ? "" : ": ", fault.text);
+}
+
+}  // namespace
+
+void addConvertCommand(CLI::App& app, int& exit_code) {
+  struct Arguments {
+    ConversionRequest request;
+    std::string resolution;
+    bool quiet = false;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  ConversionRequest& request = arguments->request;
+  CLI::App* command = app.add_subcommand("convert", "A recording in another format");
+  command->add_option("recording", request.input, "Any that `evical inspect` can read")->required();
+  command->add_option("-o,--output", request.output, "File or folder to write")->required();
+  std::string formats;
+  for (const RecordingFormat& format : recordingFormats())
+    formats += fmt::format("{}{} ({})", formats.empty() ? "" : ", ", format.name, format.description);
+  command->add_option("--to", request.format, "By default what the output's extension says: " + formats);
+  command->add_option("--stream", request.streams,
+                      "Name of a stream to write, of several each; by default all");
+  command->add_option("--resolution", arguments->resolution,
+                      "Sensor's size, e.g. 346x260, where the recording does not tell it");
+  command->add_flag("--quiet", arguments->quiet, "No progress");
+  command->callback([arguments, &exit_code] {
+    if (!arguments->resolution.empty())
+      arguments->request.resolution_px = resolutionIn(arguments->resolution);
+    Console console(arguments->quiet);
+    const ConversionSummary made = convertRecording(arguments->request, {console, stopOnSignals()});
+    console.stageStarted("done");
+    printSummary(arguments->request, made);
+    exit_code = kDone;
+  });
+}
+
+}  // namespace evical

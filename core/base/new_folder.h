@@ -1,0 +1,30 @@
+// A folder that is made for results, and goes away again when nothing came of them.
+#pragma once
+
+#include "core/base/atomic_file.h"
+
+#include <filesystem>
+#include <system_error>
+
+namespace evical {
+
+class NewFolder {
+ public:
+  // Throws CalibrationError (BadInput) if it can't be made or written to.
+  explicit NewFolder(const std::filesystem::path& folder)
+      : folder_(folder), was_there_(std::filesystem::exists(folder)) {
+    makeOutputFolder(folder);
+  }
+  ~NewFolder() {
+    std::error_code ignored;
+    if (!was_there_) std::filesystem::remove(folder_, ignored);  // only if empty
+  }
+  NewFolder(const NewFolder&) = delete;
+  NewFolder& operator=(const NewFolder&) = delete;
+
+ private:
+  std::filesystem::path folder_;
+  bool was_there_;
+};
+
+}  // namespace evical

@@ -1,0 +1,136 @@
+#include "core/recording/conversion.h"
+
+#include "core/base/error.h"
+#include "core/base/new_folder.h"
+#include "core/recording/recording_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <span>
+#include <system_error>
+
+namespace evical {
+namespace {
+
+constexpr std::size_t kNotWritten = static_cast<std::size_t>(-1);
+
+bool isWritable(const StreamInfo& stream) {
+  return stream.type == StreamType::Events || stream.type == StreamType::Imu;
+}
+
+std::vector<std::size_t> chosenStreams(const RecordingReader& reader, const ConversionRequest& request) {
+  std::vector<std::size_t> chosen;
+  std::vector<std::string> missing = request.streams;
+  for (std::size_t i = 0; i < reader.streams().size(); ++i) {
+    const StreamInfo& stream = reader.streams()[i];
+    if (!isWritable(stream)) continue;
+    const bool named =
+        std::find(request.streams.begin(), request.streams.end(), stream.name) != request.streams.end();
+    if (named || request.streams.empty()) chosen.push_back(i);
+    std::erase(missing, stream.name);
+  }
+  if (!missing.empty()) {
+    std::string names;
+    for (const StreamInfo& stream : reader.streams())
+      if (isWritable(stream)) names += (names.empty() ? "" : ", ") + stream.name;
+    throw badInput(missing.front(), "the recording has no stream of events or IMU samples with this name",
+                   fmt::format("It has: {}.", names.empty() ? "none" : names));
+  }
+  if (chosen.empty())
+    throw badInput(request.input.string(), "the recording has neither events nor IMU samples");
+  return chosen;
+}
+
+void checkPaths(const ConversionRequest& request) {
+  std::error_code ignored;
+  if (std::filesystem::equivalent(request.input, request.output, ignored))
+    throw badInput(request.output.string(), "input and output are the same", "Choose another output.");
+}
+
+// What the events reach, where the file does not tell.
+void findSizes(const ConversionRequest& request, std::vector<StreamInfo>& streams,
+               const std::vector<std::size_t>& chosen, const RunContext& context) {
+  std::vector<std::size_t> unknown;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    StreamInfo& stream = streams[i];
+    if (stream.type != StreamType::Events || stream.resolution_px.known()) continue;
+    stream.resolution_px = request.resolution_px;
+    if (!stream.resolution_px.known()) unknown.push_back(chosen[i]);
+  }
+  if (unknown.empty()) return;
+  context.progress.stageStarted("find the sensor's size");
+  const std::unique_ptr<RecordingReader> reader = openRecording(request.input);
+  reader->select(unknown);
+  Packet packet;
+  while (reader->read(packet)) {
+    context.throwIfStopped();
+    context.progress.stageProgress(reader->fractionRead());
+    const auto place = std::find(chosen.begin(), chosen.end(), packet.stream) - chosen.begin();
+    Resolution& size_px = streams[static_cast<std::size_t>(place)].resolution_px;
+    for (const Event& event : packet.events) {
+      size_px.width_px = std::max<int>(size_px.width_px, event.x_px + 1);
+      size_px.height_px = std::max<int>(size_px.height_px, event.y_px + 1);
+    }
+  }
+  for (const StreamInfo& stream : streams) {
+    if (stream.type != StreamType::Events) continue;
+    context.progress.log(
+        LogLevel::Warning,
+        fmt::format("The size of the sensor of {} is not in the file; its events reach {} x {}, "
+                    "which is written.",
+                    stream.name, stream.resolution_px.width_px, stream.resolution_px.height_px));
+  }
+}
+
+void copyPackets(RecordingReader& reader, RecordingWriter& writer, const std::vector<std::size_t>& targets,
+                 ConversionSummary& summary, const RunContext& context) {
+  Packet packet;
+  while (reader.read(packet)) {
+    context.throwIfStopped();
+    context.progress.stageProgress(reader.fractionRead());
+    const std::size_t target = targets.at(packet.stream);
+    if (target == kNotWritten) continue;
+    const StreamInfo& info = reader.streams()[packet.stream];
+    toSi(info.acceleration_unit, info.angular_rate_unit, packet.imu_samples);
+    if (!packet.events.empty()) writer.write(target, EventSpan(packet.events));
+    if (!packet.imu_samples.empty()) writer.write(target, std::span<const ImuSample>(packet.imu_samples));
+    summary.events += packet.events.size();
+    summary.imu_samples += packet.imu_samples.size();
+  }
+  summary.faults = reader.faults();
+}
+
+}  // namespace
+
+ConversionSummary convertRecording(const ConversionRequest& request, const RunContext& context) {
+  const RecordingFormat& format =
+      request.format.empty() ? recordingFormatOf(request.output) : recordingFormat(request.format);
+  const std::unique_ptr<RecordingReader> reader = openRecording(request.input);
+  checkPaths(request);
+  const std::vector<std::size_t> chosen = chosenStreams(*reader, request);
+  ConversionSummary summary;
+  summary.format = format.name;
+  std::vector<std::size_t> targets(reader->streams().size(), kNotWritten);
+  for (const std::size_t stream : chosen) {
+    targets[stream] = summary.streams.size();
+    StreamInfo info = reader->streams()[stream];
+    info.acceleration_unit = AccelerationUnit::MetresPerSecond2;
+    info.angular_rate_unit = AngularRateUnit::RadiansPerSecond;
+    summary.streams.push_back(info);
+  }
+  findSizes(request, summary.streams, chosen, context);
+  context.progress.stageStarted("convert");
+  reader->select(chosen);
+  std::optional<NewFolder> folder;
+  if (format.isFolder()) folder.emplace(request.output);
+  const std::unique_ptr<RecordingWriter> writer =
+      createRecording(request.output, format.name, summary.streams);
+  copyPackets(*reader, *writer, targets, summary, context);
+  writer->finish();
+  return summary;
+}
+
+}  // namespace evical

@@ -1,0 +1,33 @@
+// Copies a recording's events and IMU samples into another format.
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/recording/recording_reader.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace evical {
+
+struct ConversionRequest {
+  std::filesystem::path input, output;
+  std::string format;                // of recordingFormats(); empty: by the output's extension
+  std::vector<std::string> streams;  // names; all of events and IMU samples if empty
+  Resolution resolution_px;          // of event streams whose file does not tell theirs
+};
+
+struct ConversionSummary {
+  std::string format;
+  std::vector<StreamInfo> streams;  // written; in SI units
+  std::uint64_t events = 0, imu_samples = 0;
+  std::vector<RecordingFault> faults;  // of the input
+};
+
+// The output appears when it is whole; a folder is made if need be. IMU samples become what the target
+// states. Where neither the file nor the request tells a sensor's size, the events are read once more to find
+// it. Throws CalibrationError, and Cancelled.
+ConversionSummary convertRecording(const ConversionRequest& request, const RunContext& context);
+
+}  // namespace evical
