@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -15,7 +16,8 @@ namespace evical {
 enum class CalibrationStatus { Ok, Doubtful, Failed };
 
 struct Timing {
-  double read_s = 0.0, detect_s = 0.0, initialise_s = 0.0, optimise_s = 0.0, total_s = 0.0;
+  double read_s = 0.0, detect_s = 0.0, initialise_s = 0.0, optimise_s = 0.0, cross_validate_s = 0.0,
+         total_s = 0.0;
 };
 
 struct CameraUncertainty {
@@ -78,6 +80,24 @@ struct CircleResidual {
   bool used = true;
 };
 
+// One quantity as one half of the recording has it, less what the other half says.
+struct HalvesDifference {
+  std::string name, unit;                // "left.rotation.x", "deg"
+  double difference = 0.0, sigma = 0.0;  // sigma of the difference
+
+  double normalised() const { return sigma > 0.0 ? difference / sigma : 0.0; }
+};
+
+// The estimate once more from every other block of the recording, and from the blocks between: where the
+// sigmas are honest the two differ by about one sigma.
+struct CrossValidation {
+  double block_s = 0.0;
+  std::array<int, 2> windows = {0, 0};  // with the board, in either half
+  std::vector<HalvesDifference> quantities;
+  double rms_sigmas = 0.0;  // over the quantities that have a sigma
+  std::string failure;      // why a half could not be estimated; empty if both were
+};
+
 struct CalibrationResult {
   CalibrationStatus status = CalibrationStatus::Ok;
   std::string reason;                    // why not ok, in plain words
@@ -88,7 +108,8 @@ struct CalibrationResult {
   std::vector<ImuFit> imus;
   std::vector<IterationRecord> iterations;
   std::vector<CircleResidual> circle_residuals;
-  std::vector<std::string> notes;  // what initialisation and data checks had to say
+  std::optional<CrossValidation> cross_validation;  // absent where it was not asked for
+  std::vector<std::string> notes;                   // what initialisation and data checks had to say
   Timing timing;
   double memory_peak_mb = 0.0;
 };

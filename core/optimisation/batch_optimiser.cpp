@@ -87,11 +87,15 @@ class Batch {
         problem_(input, options, initial) {}
 
   BatchSolution run();
+  BatchSolution refine();
 
  private:
   std::vector<ReleaseStages> stages() const;
   void solveStage(ReleaseStages stage, int index, double tolerance);
+  void solveLastStage();
+  void holdStillAxes();
   bool updateWeights();
+  BatchSolution finish();
   void reportFits();
   void reportNotes();
   std::vector<ImuFit> imuFits(NoiseScales& scales) const;
@@ -187,15 +191,34 @@ BatchSolution Batch::run() {
   for (std::size_t i = 0; i < all.size(); ++i) {
     solveStage(all[i], static_cast<int>(i), options_.stage_tolerance);
     updateWeights();
-    // With noise scales that are those of a first solution.
-    for (std::size_t imu = 0; imu < input_.imus.size(); ++imu)
-      problem_.held_axes[imu] = stillAxes(input_, problem_.state(), problem_.scales, imu);
+    holdStillAxes();  // with noise scales that are those of a first solution
   }
-  // The last stage to the end, with the weights it found itself; once more where that changes them.
+  solveLastStage();
+  return finish();
+}
+
+void Batch::holdStillAxes() {
+  for (std::size_t imu = 0; imu < input_.imus.size(); ++imu)
+    problem_.held_axes[imu] = stillAxes(input_, problem_.state(), problem_.scales, imu);
+}
+
+// To the end, with the weights it found itself; once more where that changes them.
+void Batch::solveLastStage() {
+  const std::vector<ReleaseStages> all = stages();
   constexpr int kMostReweightings = 3;
   for (int i = 0; i == 0 || (i < kMostReweightings && updateWeights()); ++i) {
     solveStage(all.back(), static_cast<int>(all.size()), options_.function_tolerance);
   }
+}
+
+BatchSolution Batch::refine() {
+  updateWeights();
+  holdStillAxes();
+  solveLastStage();
+  return finish();
+}
+
+BatchSolution Batch::finish() {
   solution_.state = problem_.state();
   solution_.scales = problem_.scales;
   solution_.used_circles = problem_.used_circles;
@@ -306,6 +329,12 @@ BatchSolution optimiseBatch(const CalibrationInput& input, const CalibrationStat
                             "Check that camera and IMU recorded at the same time");
   }
   return Batch(input, initial, options, context, observer).run();
+}
+
+BatchSolution refineBatch(const CalibrationInput& input, const CalibrationState& solved,
+                          const OptimisationOptions& options, const RunContext& context) {
+  checkInput(input, solved);
+  return Batch(input, solved, options, context, nullptr).refine();
 }
 
 }  // namespace evical

@@ -42,4 +42,8 @@ BatchSolution optimiseBatch(const CalibrationInput& input, const CalibrationStat
                             const OptimisationOptions& options, const RunContext& context,
                             CalibrationObserver* observer = nullptr);
 
+// From a state that is a solution already, of these or of similar data: the last stage only.
+BatchSolution refineBatch(const CalibrationInput& input, const CalibrationState& solved,
+                          const OptimisationOptions& options, const RunContext& context);
+
 }  // namespace evical

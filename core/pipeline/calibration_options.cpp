@@ -23,6 +23,7 @@ void forEachGroup(Options& all, Visitor&& visit) {
   visit("initialisation", "From single views to a first trajectory", all.initialisation,
         kInitialisationFields);
   visit("optimisation", "Batch optimisation and uncertainty", all.optimisation, kOptimisationFields);
+  visit("report", "What is worked out for the report only", all.report, kReportFields);
 }
 
 std::vector<std::string> fullNames() {

@@ -5,6 +5,7 @@
 #include "core/frontend/board_search.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/optimisation/optimisation_options.h"
+#include "core/report/report_options.h"
 
 #include <string>
 #include <string_view>
@@ -16,6 +17,7 @@ struct CalibrationOptions {
   FrontEndOptions front_end;
   InitialisationOptions initialisation;
   OptimisationOptions optimisation;
+  ReportOptions report;
   bool operator==(const CalibrationOptions&) const = default;
 };
 

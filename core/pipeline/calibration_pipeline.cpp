@@ -6,6 +6,7 @@
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/covariance.h"
 #include "core/pipeline/board_size_check.h"
+#include "core/pipeline/cross_validation.h"
 #include "core/recording/inspection.h"
 
 #include <fmt/format.h>
@@ -146,6 +147,24 @@ void logDetections(const RecordingPass& pass, const RunContext& context) {
   }
 }
 
+// A verdict of its own it is not: halves know less than the whole, and their sigmas less well.
+void validateByHalves(const Session& session, const CalibrationInput& input, const RunContext& context,
+                      CalibrationResult& result) {
+  if (!session.options.report.cross_validation) return;
+  context.progress.stageStarted("cross_validate");
+  const Clock::time_point begin = Clock::now();
+  result.cross_validation = crossValidate(input, result.state, session.options.optimisation,
+                                          session.options.report.cross_validation_block_s, context);
+  context.progress.stageProgress(1.0);
+  result.timing.cross_validate_s = secondsSince(begin);
+  const CrossValidation& validation = *result.cross_validation;
+  context.progress.log(
+      LogLevel::Info,
+      validation.failure.empty()
+          ? fmt::format("halves of the recording differ by {:.2f} sigmas (RMS)", validation.rms_sigmas)
+          : "halves of the recording: " + validation.failure);
+}
+
 }  // namespace
 
 double peakMemory_mb() {
@@ -155,17 +174,11 @@ double peakMemory_mb() {
   return static_cast<double>(usage.ru_maxrss) * kBytesPerUnit / kBytesPerMb;
 }
 
-CalibrationRun calibrate(const Session& session, const RunContext& context, const ObserverFactory& observers,
-                         CalibrationObserver* observer) {
-  checkSession(session);
-  context.progress.stageStarted("detect");
-  return calibrate(session, readAndDetect(session, context, observers, observer), context, observer);
-}
+namespace {
 
-CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context,
-                         CalibrationObserver* observer) {
-  CalibrationRun run;
-  run.pass = std::move(pass);
+// From what is in the pass to the result.
+void estimate(const Session& session, const RunContext& context, CalibrationObserver* observer,
+              CalibrationRun& run) {
   for (const ImuData& imu : run.pass.imus) {
     checkUnits(imu, session.options.initialisation);
     const std::vector<RecordingFault> faults = checkImu(imu.name, imu.samples);
@@ -219,15 +232,40 @@ CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunCo
   result.imus = std::move(solution.imus);
   result.iterations = std::move(solution.iterations);
   result.circle_residuals = std::move(solution.circle_residuals);
+  validateByHalves(session, input, context, result);
   for (const RecordingFault& fault : run.pass.faults) result.notes.push_back(fault.text);
   for (const InitialisationStep& step : initial.steps) result.notes.push_back(step.name + ": " + step.result);
   result.notes.insert(result.notes.end(), initial.warnings.begin(), initial.warnings.end());
   result.notes.insert(result.notes.end(), solution.notes.begin(), solution.notes.end());
   result.timing.read_s = run.pass.read_s;
   result.timing.detect_s = run.pass.detect_s;
-  result.timing.total_s =
-      std::max(run.pass.read_s, run.pass.detect_s) + result.timing.initialise_s + result.timing.optimise_s;
+  result.timing.total_s = std::max(run.pass.read_s, run.pass.detect_s) + result.timing.initialise_s +
+                          result.timing.optimise_s + result.timing.cross_validate_s;
   result.memory_peak_mb = peakMemory_mb();
+}
+
+}  // namespace
+
+void calibrateInto(CalibrationRun& run, const Session& session, const RunContext& context,
+                   const ObserverFactory& observers, CalibrationObserver* observer) {
+  checkSession(session);
+  context.progress.stageStarted("detect");
+  run.pass = readAndDetect(session, context, observers, observer);
+  estimate(session, context, observer, run);
+}
+
+CalibrationRun calibrate(const Session& session, const RunContext& context, const ObserverFactory& observers,
+                         CalibrationObserver* observer) {
+  CalibrationRun run;
+  calibrateInto(run, session, context, observers, observer);
+  return run;
+}
+
+CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context,
+                         CalibrationObserver* observer) {
+  CalibrationRun run;
+  run.pass = std::move(pass);
+  estimate(session, context, observer, run);
   return run;
 }
 

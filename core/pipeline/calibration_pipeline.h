@@ -16,10 +16,14 @@ struct CalibrationRun {
   RecordingPass pass;
 };
 
-// Progress goes by the stages "detect", "initialise", "optimise". Throws CalibrationError, and Cancelled when
-// asked to stop.
+// Progress goes by the stages "detect", "initialise", "optimise", "cross_validate". Throws CalibrationError,
+// and Cancelled when asked to stop.
 CalibrationRun calibrate(const Session& session, const RunContext& context,
                          const ObserverFactory& observers = {}, CalibrationObserver* observer = nullptr);
+
+// The same into `run`, as far as it gets: where it throws, what was read and detected is there already.
+void calibrateInto(CalibrationRun& run, const Session& session, const RunContext& context,
+                   const ObserverFactory& observers = {}, CalibrationObserver* observer = nullptr);
 
 // The same from what the front end and the IMUs gave: `pass` as readAndDetect or a simulation makes it.
 CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context,

@@ -157,6 +157,27 @@ void readUncertainty(const YamlNode& root, UncertaintyReport& uncertainty) {
   }
 }
 
+void readCrossValidation(const YamlNode& map, CrossValidation& validation) {
+  get(map, "block_s", validation.block_s);
+  get(map, "failure", validation.failure);
+  get(map, "rms_sigmas", validation.rms_sigmas);
+  if (const auto windows = map.find("windows")) {
+    const std::vector<YamlNode> halves = windows->items();
+    if (halves.size() != 2) throw windows->error("must be two numbers");
+    for (std::size_t i = 0; i < 2; ++i)
+      validation.windows[i] = halves[i].integer(0, std::numeric_limits<int>::max());
+  }
+  const auto differences = map.find("differences");
+  if (!differences) return;
+  for (const YamlNode& item : differences->items()) {
+    HalvesDifference& each = validation.quantities.emplace_back();
+    each.name = item["name"].text();
+    get(item, "unit", each.unit);
+    get(item, "difference", each.difference);
+    get(item, "std", each.sigma);
+  }
+}
+
 void readRun(const YamlNode& root, NamedResult& named) {
   get(root, "notes", named.result.notes);
   get(root, "memory_peak_mb", named.result.memory_peak_mb);
@@ -165,6 +186,7 @@ void readRun(const YamlNode& root, NamedResult& named) {
     get(*timing, "detect", named.result.timing.detect_s);
     get(*timing, "initialise", named.result.timing.initialise_s);
     get(*timing, "optimise", named.result.timing.optimise_s);
+    get(*timing, "cross_validate", named.result.timing.cross_validate_s);
     get(*timing, "total", named.result.timing.total_s);
   }
   const auto program = root.find("program");
@@ -205,6 +227,8 @@ NamedResult readResultYaml(const std::filesystem::path& file) {
     }
   get(root, "gravity_m_s2", named.result.state.gravity_in_world_m_s2);
   readUncertainty(root, named.result.uncertainty);
+  if (const auto validation = root.find("cross_validation"))
+    readCrossValidation(*validation, named.result.cross_validation.emplace());
   readRun(root, named);
   return named;
 }

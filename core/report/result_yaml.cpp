@@ -118,13 +118,27 @@ std::string uncertaintyYaml(const UncertaintyReport& uncertainty) {
   return text;
 }
 
+std::string crossValidationYaml(const CrossValidation& validation) {
+  std::string text = fmt::format("cross_validation:\n  block_s: {}\n  windows: [{}, {}]\n",
+                                 rounded(validation.block_s), validation.windows[0], validation.windows[1]);
+  if (!validation.failure.empty()) return text + fmt::format("  failure: {}\n", yamlText(validation.failure));
+  text += fmt::format("  rms_sigmas: {}\n  differences:\n", rounded(validation.rms_sigmas));
+  for (const HalvesDifference& each : validation.quantities)
+    text += fmt::format("    - {{name: {}, unit: {}, difference: {}, std: {}}}\n", yamlText(each.name),
+                        yamlText(each.unit), rounded(each.difference), rounded(each.sigma));
+  return text;
+}
+
 std::string runYaml(const NamedResult& named) {
   const Timing& timing = named.result.timing;
   std::string text = named.result.notes.empty() ? "notes: []\n" : "notes:\n";
   for (const std::string& note : named.result.notes) text += fmt::format("  - {}\n", yamlText(note));
   text += fmt::format(
-      "timing_s: {{read: {:.3f}, detect: {:.3f}, initialise: {:.3f}, optimise: {:.3f}, total: {:.3f}}}\n",
-      timing.read_s, timing.detect_s, timing.initialise_s, timing.optimise_s, timing.total_s);
+      "timing_s: {{read: {:.3f}, detect: {:.3f}, initialise: {:.3f}, optimise: {:.3f}, cross_validate: "
+      "{:.3f}, "
+      "total: {:.3f}}}\n",
+      timing.read_s, timing.detect_s, timing.initialise_s, timing.optimise_s, timing.cross_validate_s,
+      timing.total_s);
   text += fmt::format("memory_peak_mb: {:.0f}\nprogram:\n  version: {}\n", named.result.memory_peak_mb,
                       yamlText(named.names.version));
   text += named.names.options.empty() ? "  options: {}\n" : "  options:\n";
@@ -151,7 +165,9 @@ std::string resultYaml(const NamedResult& named) {
   for (std::size_t i = 0; i < state.imus.size(); ++i) text += imuYaml(named, i);
   if (!state.imus.empty())
     text += fmt::format("gravity_m_s2: {}\n", list(state.gravity_in_world_m_s2, exact));
-  return text + uncertaintyYaml(named.result.uncertainty) + runYaml(named);
+  text += uncertaintyYaml(named.result.uncertainty);
+  if (named.result.cross_validation) text += crossValidationYaml(*named.result.cross_validation);
+  return text + runYaml(named);
 }
 
 }  // namespace evical

@@ -67,6 +67,13 @@ NamedResult sample() {
   result.uncertainty.observability = {0.5, 12.0};
   result.uncertainty.names = {"left.rotation.x [rad]", "left.rotation.y [rad]"};
   result.uncertainty.standard_deviations = Eigen::Vector2d(1e-4, 2e-4);
+  CrossValidation validation;
+  validation.block_s = 2.5;
+  validation.windows = {12, 13};
+  validation.rms_sigmas = 1.25;
+  validation.quantities = {{"left.rotation.x", "deg", -0.01, 0.02},
+                           {"1 odd: name.time_offset", "", 3.0, 0.0}};
+  result.cross_validation = validation;
   result.uncertainty.correlation = (Eigen::Matrix2d() << 1.0, 0.25, 0.25, 1.0).finished();
   return named;
 }
@@ -111,6 +118,11 @@ class TestResultYaml : public QObject {
     QVERIFY(std::isnan(read.result.uncertainty.cameras[0].edge_lead_std_px));
     QVERIFY(read.result.uncertainty.correlation(0, 1) == 0.25);
     QCOMPARE(read.result.cameras[0].windows_complete, 1320);
+    QVERIFY(read.result.cross_validation.has_value());
+    QCOMPARE(read.result.cross_validation->windows[1], 13);
+    QCOMPARE(read.result.cross_validation->quantities.size(), std::size_t{2});
+    QCOMPARE(read.result.cross_validation->quantities[0].normalised(), -0.5);
+    QCOMPARE(read.result.cross_validation->quantities[1].name, std::string("1 odd: name.time_offset"));
   }
 
   void failedRun_isAResultToo() {

@@ -1,0 +1,196 @@
+#include "core/pipeline/cross_validation.h"
+
+#include "core/base/error.h"
+#include "core/base/time.h"
+#include "core/optimisation/batch_optimiser.h"
+#include "core/optimisation/covariance.h"
+#include "core/report/truth_comparison.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace evical {
+namespace {
+
+constexpr double kDegPerRad = 57.29577951308232;
+
+class Blocks {
+ public:
+  Blocks(const CalibrationState& state, double block_s)
+      : start_s_(state.world_from_imu_rotation.start_s),
+        knot_s_(state.world_from_imu_rotation.knot_spacing_s) {
+    const double duration_s = state.world_from_imu_rotation.endTime_s() - start_s_;
+    const int pairs = std::max(2, static_cast<int>(std::lround(0.5 * duration_s / block_s)));
+    length_s_ = knot_s_ * std::ceil(state.world_from_imu_rotation.segmentCount() / (2.0 * pairs));
+  }
+
+  double length_s() const { return length_s_; }
+
+  // -1: too close to a border for either.
+  int halfAt(double time_s, double margin_knots) const {
+    const double place = (time_s - start_s_) / length_s_;
+    const double block = std::floor(place);
+    const double margin = margin_knots * knot_s_ / length_s_;
+    if (place - block < margin || block + 1.0 - place < margin) return -1;
+    return static_cast<int>(std::abs(static_cast<long>(block)) % 2);
+  }
+
+ private:
+  double start_s_, knot_s_, length_s_ = 0.0;
+};
+
+constexpr double kMargin_knots = 0.5;  // for what moves with a time offset
+
+void splitViews(const BoardObservations& all, double time_offset_s, const Blocks& blocks,
+                std::array<BoardObservations*, 2> halves) {
+  for (const BoardView& view : all.views) {
+    for (std::size_t half = 0; half < 2; ++half) {
+      BoardView part = view;
+      std::erase_if(part.circles, [&](const CircleObservation& circle) {
+        return blocks.halfAt(circle.time_s + time_offset_s, kMargin_knots) != static_cast<int>(half);
+      });
+      if (!part.circles.empty()) halves[half]->views.push_back(std::move(part));
+    }
+  }
+}
+
+struct Half {
+  BatchSolution solution;
+  UncertaintyReport uncertainty;
+};
+
+Half estimateHalf(const CalibrationInput& input, const CalibrationState& solved,
+                  const OptimisationOptions& options, const RunContext& context) {
+  Half half;
+  half.solution = refineBatch(input, solved, options, context);
+  half.uncertainty = estimateUncertainty(input, half.solution, options, context).report;
+  return half;
+}
+
+template <class Matrix>
+Matrix together(const Matrix& a, const Matrix& b) {
+  return (a.array().square() + b.array().square()).sqrt().matrix();
+}
+
+UncertaintyReport ofDifference(const UncertaintyReport& a, const UncertaintyReport& b) {
+  UncertaintyReport sum = a;
+  for (std::size_t i = 0; i < a.cameras.size(); ++i) {
+    CameraUncertainty& camera = sum.cameras[i];
+    camera.rotation_std_rad = together(a.cameras[i].rotation_std_rad, b.cameras[i].rotation_std_rad);
+    camera.translation_std_m = together(a.cameras[i].translation_std_m, b.cameras[i].translation_std_m);
+    camera.time_offset_std_s = std::hypot(a.cameras[i].time_offset_std_s, b.cameras[i].time_offset_std_s);
+  }
+  for (std::size_t i = 0; i < a.imus.size(); ++i) {
+    ImuUncertainty& imu = sum.imus[i];
+    const ImuUncertainty &first = a.imus[i], &second = b.imus[i];
+    imu.rotation_std_rad = together(first.rotation_std_rad, second.rotation_std_rad);
+    imu.translation_std_m = together(first.translation_std_m, second.translation_std_m);
+    imu.time_offset_std_s = std::hypot(first.time_offset_std_s, second.time_offset_std_s);
+    imu.gyroscope_bias_std_rad_s = together(first.gyroscope_bias_std_rad_s, second.gyroscope_bias_std_rad_s);
+    imu.accelerometer_bias_std_m_s2 =
+        together(first.accelerometer_bias_std_m_s2, second.accelerometer_bias_std_m_s2);
+    imu.gyroscope_mapping_std = together(first.gyroscope_mapping_std, second.gyroscope_mapping_std);
+    imu.accelerometer_mapping_std =
+        together(first.accelerometer_mapping_std, second.accelerometer_mapping_std);
+  }
+  return sum;
+}
+
+NamedResult named(const CalibrationInput& input, const CalibrationState& state) {
+  NamedResult result;
+  for (const CameraData& camera : input.cameras) result.names.cameras.push_back(camera.name);
+  for (const ImuData& imu : input.imus) result.names.imus.push_back(imu.name);
+  result.names.reference = input.imus[input.reference_imu].name;
+  result.result.state = state;
+  return result;
+}
+
+std::vector<HalvesDifference> differences(const CalibrationInput& input, const std::array<Half, 2>& halves) {
+  NamedResult even = named(input, halves[0].solution.state);
+  even.result.uncertainty = ofDifference(halves[0].uncertainty, halves[1].uncertainty);
+  const TruthComparison comparison = compareWithTruth(even, named(input, halves[1].solution.state));
+  std::vector<HalvesDifference> all;
+  for (const QuantityError& each : comparison.quantities)
+    all.push_back({each.name, each.unit, each.error, each.sigma});
+  // Of two tilts, each with this sigma, the length.
+  const double tilt_rad = std::hypot(halves[0].uncertainty.gravity_direction_std_rad,
+                                     halves[1].uncertainty.gravity_direction_std_rad);
+  all.push_back(
+      {"gravity.direction", "deg", comparison.gravity_direction_deg, kDegPerRad * std::sqrt(2.0) * tilt_rad});
+  return all;
+}
+
+double rmsSigmas(const std::vector<HalvesDifference>& quantities) {
+  double sum = 0.0;
+  int count = 0;
+  for (const HalvesDifference& each : quantities) {
+    if (!(each.sigma > 0.0)) continue;
+    sum += each.normalised() * each.normalised();
+    ++count;
+  }
+  return count == 0 ? 0.0 : std::sqrt(sum / count);
+}
+
+}  // namespace
+
+std::array<CalibrationInput, 2> splitIntoHalves(const CalibrationInput& input, const CalibrationState& state,
+                                                double block_s) {
+  const Blocks blocks(state, block_s);
+  std::array<CalibrationInput, 2> halves;
+  for (CalibrationInput& half : halves) {
+    half.start_ns = input.start_ns;
+    half.board = input.board;
+    half.reference_imu = input.reference_imu;
+  }
+  for (std::size_t i = 0; i < input.cameras.size(); ++i) {
+    const CameraData& camera = input.cameras[i];
+    for (CalibrationInput& half : halves) {
+      half.cameras.push_back({camera.name, camera.intrinsics, {}});
+      half.cameras.back().observations.camera = camera.name;
+    }
+    splitViews(camera.observations, state.cameras[i].time_offset_s, blocks,
+               {&halves[0].cameras[i].observations, &halves[1].cameras[i].observations});
+  }
+  for (std::size_t i = 0; i < input.imus.size(); ++i) {
+    const ImuData& imu = input.imus[i];
+    for (CalibrationInput& half : halves) half.imus.push_back({imu.name, imu.noise, {}});
+    const double margin_knots = i == input.reference_imu ? 0.0 : kMargin_knots;
+    for (const ImuSample& sample : imu.samples) {
+      const double time_s = secondsSince(input.start_ns, sample.time_ns) + state.imus[i].time_offset_s;
+      const int half = blocks.halfAt(time_s, margin_knots);
+      if (half >= 0) halves[static_cast<std::size_t>(half)].imus[i].samples.push_back(sample);
+    }
+  }
+  return halves;
+}
+
+CrossValidation crossValidate(const CalibrationInput& input, const CalibrationState& solved,
+                              const OptimisationOptions& options, double block_s, const RunContext& context) {
+  CrossValidation validation;
+  validation.block_s = Blocks(solved, block_s).length_s();
+  const std::array<CalibrationInput, 2> inputs = splitIntoHalves(input, solved, block_s);
+  for (std::size_t half = 0; half < 2; ++half)
+    for (const CameraData& camera : inputs[half].cameras)
+      validation.windows[half] += static_cast<int>(camera.observations.views.size());
+  const RunContext quiet{silentProgress(), context.stop};
+  std::array<Half, 2> halves;
+  try {
+    for (std::size_t half = 0; half < 2; ++half) {
+      for (const CameraData& camera : inputs[half].cameras)
+        if (camera.observations.views.empty())
+          throw calibrationFailed(camera.name, "one half of the recording does not show the board");
+      halves[half] = estimateHalf(inputs[half], solved, options, quiet);
+      context.progress.stageProgress(0.5 * (static_cast<double>(half) + 1.0));
+    }
+  } catch (const CalibrationError& error) {
+    validation.failure = error.what();
+    return validation;
+  }
+  validation.quantities = differences(input, halves);
+  validation.rms_sigmas = rmsSigmas(validation.quantities);
+  return validation;
+}
+
+}  // namespace evical

@@ -1,0 +1,24 @@
+// Do two halves of a recording say the same? The trajectory is cut into blocks; circles and IMU samples of
+// every other block make one half, the rest the other. Each is estimated by itself, starting from the result.
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/data/calibration_result.h"
+#include "core/data/calibration_setup.h"
+#include "core/optimisation/optimisation_options.h"
+
+#include <array>
+
+namespace evical {
+
+// The parts of `input` in even blocks, and in odd ones. Borders lie on knots of the trajectory, and circles
+// close to one belong to neither half, so that no control point hangs on a few of them.
+std::array<CalibrationInput, 2> splitIntoHalves(const CalibrationInput& input, const CalibrationState& state,
+                                                double block_s);
+
+// `solved` is the estimate from the whole. Never throws for a half that can't be estimated: the result says
+// so. Throws Cancelled when asked to stop.
+CrossValidation crossValidate(const CalibrationInput& input, const CalibrationState& solved,
+                              const OptimisationOptions& options, double block_s, const RunContext& context);
+
+}  // namespace evical
