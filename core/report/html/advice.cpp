@@ -1,0 +1,253 @@
+#include "core/report/html/advice.h"
+
+#include "core/report/html/html_text.h"
+#include "core/report/html/report_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace evical::html {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+
+std::string percent(double share) {
+  return number(100.0 * share, 0) + " %";
+}
+
+// What mends windows of this outcome.
+const char* remedy(WindowOutcome outcome) {
+  switch (outcome) {
+    case WindowOutcome::TooFewEvents:
+      return "Keep moving: a camera at rest sees nothing. If it did move, lower the camera's contrast "
+             "thresholds.";
+    case WindowOutcome::TooFewCircles:
+      return "Keep the board in view, in focus and evenly lit; go closer if the circles are small.";
+    case WindowOutcome::NoLattice:
+    case WindowOutcome::TooFewInGrid:
+      return "Keep more of the board in the image, and clutter that moves out of it.";
+    case WindowOutcome::Ambiguous:
+      return "Show the whole board more often: parts without an edge of it cannot be placed.";
+    case WindowOutcome::RefinementFailed:
+      return "Move more evenly, or more slowly: circles are blurred or overlaid by other edges.";
+    default:
+      return "";
+  }
+}
+
+void adviseDetection(const std::string& name, const CameraMeasures& camera, std::vector<Advice>& all) {
+  constexpr double kGoodRate = 0.9, kManyPartial = 0.7, kWorthNaming = 0.05;
+  if (camera.windows == 0) return;
+  if (camera.detectionRate() < kGoodRate) {
+    std::size_t worst = static_cast<std::size_t>(WindowOutcome::TooFewEvents);
+    for (std::size_t k = worst; k < kWindowOutcomeCount; ++k)
+      if (camera.outcomes[k] > camera.outcomes[worst]) worst = k;
+    const auto outcome = static_cast<WindowOutcome>(worst);
+    if (camera.outcomes[worst] > kWorthNaming * camera.windows)
+      all.push_back(
+          {remedy(outcome),
+           fmt::format("{}: the board was found in {} of the windows; most others: {} ({}).", name,
+                       percent(camera.detectionRate()), windowOutcomeName(outcome), camera.outcomes[worst])});
+  }
+  if (camera.views > 0 && camera.partial > kManyPartial * camera.views)
+    all.push_back(
+        {"Let the whole board be in the image more of the time: step back a little, or use a smaller board.",
+         fmt::format("{}: {} of the views show only a part of it.", name,
+                     percent(static_cast<double>(camera.partial) / camera.views))});
+}
+
+// Thirds of the image without a circle, in words.
+std::string emptyRegions(const CameraMeasures& camera) {
+  static constexpr std::array<const char*, 3> kRows = {"top", "middle", "bottom"},
+                                              kCols = {"left", "centre", "right"};
+  std::array<std::array<std::array<int, 2>, 3>, 3> cells = {};  // seen, all
+  for (std::size_t i = 0; i < camera.cells.size(); ++i) {
+    const std::size_t row = i / CameraMeasures::kCols, col = i % CameraMeasures::kCols;
+    auto& region = cells[row * 3 / CameraMeasures::kRows][col * 3 / CameraMeasures::kCols];
+    region[0] += camera.cells[i].circles > 0 ? 1 : 0;
+    ++region[1];
+  }
+  std::string text;
+  for (std::size_t row = 0; row < 3; ++row)
+    for (std::size_t col = 0; col < 3; ++col)
+      if (2 * cells[row][col][0] < cells[row][col][1])
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", kRows[row], kCols[col]);
+  return text;
+}
+
+void adviseCoverage(const std::string& name, const CameraMeasures& camera, std::vector<Advice>& all) {
+  constexpr double kCovered = 0.75, kTilted_deg = 20.0;
+  if (camera.views == 0) return;
+  if (!camera.cells.empty() && camera.coveredShare() < kCovered) {
+    const std::string empty = emptyRegions(camera);
+    all.push_back({empty.empty()
+                       ? "Move the board through all of the image, to its corners."
+                       : "Move the board through all of the image; it was hardly ever at: " + empty + ".",
+                   fmt::format("{}: circles in {} of the image.", name, percent(camera.coveredShare()))});
+  }
+  if (camera.poses.empty()) return;
+  const auto spread = [&](double BoardPose::*angle) {
+    const auto [low, high] =
+        std::minmax_element(camera.poses.begin(), camera.poses.end(),
+                            [&](const BoardPose& a, const BoardPose& b) { return a.*angle < b.*angle; });
+    return (*high).*angle - (*low).*angle;
+  };
+  const double x_deg = spread(&BoardPose::tilt_x_deg), y_deg = spread(&BoardPose::tilt_y_deg);
+  if (std::min(x_deg, y_deg) < kTilted_deg)
+    all.push_back({fmt::format("Tilt the camera against the board more, about its {} axis: 30 degrees to "
+                               "either side do no harm.",
+                               x_deg < y_deg ? "x" : "y"),
+                   fmt::format("{}: tilts spread over {} deg about x, {} deg about y.", name,
+                               number(x_deg, 0), number(y_deg, 0))});
+}
+
+void adviseLens(const std::string& name, const CameraMeasures& camera, const CameraFit& fit,
+                std::vector<Advice>& all) {
+  constexpr int kLeast = 50;
+  double largest_px = 0.0;
+  for (const ImageCell& cell : camera.cells)
+    if (cell.residuals >= kLeast) largest_px = std::max(largest_px, cell.mean_residual_px.norm());
+  constexpr double kBias_px = 0.1;
+  if (largest_px > std::max(kBias_px, 0.7 * fit.reprojection_rms_px))
+    all.push_back({"Calibrate the intrinsics anew: the lens model does not fit everywhere.",
+                   fmt::format("{}: parts of the image are off by up to {} px in the mean.", name,
+                               significant(largest_px, 2))});
+}
+
+// The axis that moved least, where it moved far less than is good.
+void adviseAxis(const std::string& name, const Eigen::Vector3d& motion, double enough, const char* verb,
+                const char* unit, std::vector<Advice>& all) {
+  Eigen::Index axis = 0;
+  const double least = motion.minCoeff(&axis);
+  if (least >= enough) return;
+  all.push_back(
+      {fmt::format("{} the {} axis of {} more.", verb, kAxes.at(static_cast<std::size_t>(axis)), name),
+       fmt::format("RMS {}, {}, {} {} on x, y, z; {} and more are good.", significant(motion.x(), 2),
+                   significant(motion.y(), 2), significant(motion.z(), 2), unit, significant(enough, 2))});
+}
+
+void adviseNoise(const std::string& name, const char* sensor, double found, double given, double density,
+                 const char* unit, std::vector<Advice>& all) {
+  constexpr double kFactor = 2.0;
+  if (!(found > 0.0) || !(given > 0.0)) return;
+  const double ratio = found / given;
+  if (ratio < kFactor && ratio > 1.0 / kFactor) return;
+  all.push_back(
+      {fmt::format("Check the {}'s noise density: these residuals are those of {} {}.", sensor,
+                   significant(ratio * density, 2), unit),
+       fmt::format("{}: residuals are {} times what {} {} gives{}.", name, significant(ratio, 2),
+                   significant(density, 2), unit, ratio > 1.0 ? "; vibration and shocks do that too" : "")});
+}
+
+void adviseImu(const std::string& name, const ImuData& given, const ImuMeasures& imu,
+               std::vector<Advice>& all) {
+  constexpr double kEnoughRate_rad_s = 0.4, kEnoughForce_m_s2 = 0.5;
+  if (imu.rate_hz == 0.0) return;
+  adviseAxis(name, imu.rate_rad_s.deviation, kEnoughRate_rad_s, "Turn about", "rad/s", all);
+  adviseAxis(name, imu.force_m_s2.deviation, kEnoughForce_m_s2, "Accelerate along", "m/s\u00b2", all);
+  const auto rms = [](const AxisMoments& m) { return std::sqrt(m.deviation.squaredNorm() / 3.0); };
+  adviseNoise(name, "gyroscope", rms(imu.rate_residual), imu.rate_sigma_rad_s, given.noise.gyroscope_density,
+              "rad/s/\u221aHz", all);
+  adviseNoise(name, "accelerometer", rms(imu.force_residual), imu.force_sigma_m_s2,
+              given.noise.accelerometer_density, "m/s\u00b2/\u221aHz", all);
+}
+
+// Sigmas fall with the square root of the time that is recorded.
+void adviseDuration(const ReportData& data, const Measures& measures, std::vector<Advice>& all) {
+  constexpr double kShort_s = 15.0, kReasonable_s = 180.0;
+  double worst = 0.0;
+  for (const CameraUncertainty& sigma : data.named.result.uncertainty.cameras)
+    worst = std::max({worst, kDegPerRad * sigma.rotation_std_rad.maxCoeff() / data.needs.rotation_deg,
+                      1e3 * sigma.translation_std_m.maxCoeff() / data.needs.translation_mm,
+                      1e3 * sigma.time_offset_std_s / data.needs.time_offset_ms});
+  const double asked_s = worst * worst * measures.duration_s;
+  if (worst > 1.0 && measures.duration_s > 0.0) {
+    all.push_back({asked_s < kReasonable_s
+                       ? fmt::format("Record longer: about {} s of the same motion would meet the needs.",
+                                     number(std::ceil(asked_s / 5.0) * 5.0, 0))
+                       : "Move faster and in more directions: recording longer alone would not do.",
+                   fmt::format("The largest sigma is {} times what is needed, after {} s.",
+                               significant(worst, 2), number(measures.duration_s, 1))});
+  } else if (measures.duration_s > 0.0 && measures.duration_s < kShort_s) {
+    all.push_back({"Record 20 s or more: sigmas shrink with the square root of the time.",
+                   fmt::format("This recording has {} s.", number(measures.duration_s, 1))});
+  }
+}
+
+void adviseFaults(const ReportData& data, std::vector<Advice>& all) {
+  struct Remedy {
+    const char *kind, *what;
+  };
+  static constexpr std::array<Remedy, 8> kRemedies = {{
+      {"gap",
+       "Record without losses: a faster disk, a local disk, or fewer events (bias settings, event rate "
+       "control)."},
+      {"backward_time", "Find out why times run backwards: a restarted driver, or two sources on one topic."},
+      {"jitter", "Let the sensor stamp its own samples: stamps made on arrival jitter."},
+      {"truncated", "Stop the recorder before you cut its power or copy the file."},
+      {"corrupt", "Check the disk or the transfer: the file has damaged parts."},
+      {"saturated_axis", "Move less violently, or set a larger range of the IMU."},
+      {"stuck_axis", "Check the IMU: an axis that never changes is broken or misread."},
+      {"hot_pixels", "Mask hot pixels in the camera's driver."},
+  }};
+  for (const Remedy& remedy : kRemedies) {
+    const auto found = std::find_if(data.faults.begin(), data.faults.end(),
+                                    [&](const auto& f) { return f.kind == remedy.kind; });
+    if (found != data.faults.end()) all.push_back({remedy.what, found->text});
+  }
+}
+
+void adviseHalves(const ReportData& data, std::vector<Advice>& all) {
+  constexpr double kFar = 2.0, kVeryFar = 4.0;
+  const auto& validation = data.named.result.cross_validation;
+  if (!validation || !validation->failure.empty()) return;
+  const HalvesDifference* worst = nullptr;
+  for (const HalvesDifference& each : validation->quantities)
+    if (worst == nullptr || std::abs(each.normalised()) > std::abs(worst->normalised())) worst = &each;
+  if (worst == nullptr || (validation->rms_sigmas < kFar && std::abs(worst->normalised()) < kVeryFar)) return;
+  all.push_back(
+      {"Make sure that nothing gives way between camera and IMU, and take the sigmas for too small here.",
+       fmt::format("Two halves of the recording differ by {} sigmas (RMS); the most, {} sigmas, in {}.",
+                   number(validation->rms_sigmas, 1), number(std::abs(worst->normalised()), 1),
+                   worst->name)});
+}
+
+}  // namespace
+
+std::vector<Advice> adviceFor(const ReportData& data, const Measures& measures) {
+  std::vector<Advice> all;
+  adviseFaults(data, all);
+  for (std::size_t i = 0; i < measures.cameras.size(); ++i) {
+    const std::string name = cameraName(data, i);
+    adviseDetection(name, measures.cameras[i], all);
+    adviseCoverage(name, measures.cameras[i], all);
+    if (i < data.named.result.cameras.size())
+      adviseLens(name, measures.cameras[i], data.named.result.cameras[i], all);
+  }
+  for (std::size_t i = 0; i < measures.imus.size(); ++i)
+    adviseImu(imuName(data, i), data.imus[i], measures.imus[i], all);
+  adviseDuration(data, measures, all);
+  adviseHalves(data, all);
+  return all;
+}
+
+void writeAdvice(const ReportData& data, const Measures& measures, ReportPage& page) {
+  const std::vector<Advice> all = adviceFor(data, measures);
+  const bool failed = data.named.result.status == CalibrationStatus::Failed;
+  if (failed && all.empty()) return;
+  page.beginSection("advice", "What to do better next time");
+  if (failed) page.text(paragraph("", "First see to the reason above. Beyond that, the data say:"));
+  if (all.empty()) page.text(paragraph("", "Nothing stands out: a recording like this one will do again."));
+  std::string items;
+  for (const Advice& each : all)
+    items += element("li", "", escaped(each.what) + " <small>" + escaped(each.evidence) + "</small>");
+  if (!items.empty()) page.text(element("ol", "", items));
+  page.endSection();
+}
+
+}  // namespace evical::html

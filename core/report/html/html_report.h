@@ -1,0 +1,40 @@
+// report.html: one self-contained page that says how good a calibration is, why, and what to do better; and
+// the numbers behind its plots as CSV. Also of a failed calibration: the reason, and what there is.
+#pragma once
+
+#include "core/data/calibration_setup.h"
+#include "core/data/recording.h"
+#include "core/report/result_yaml.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace evical {
+
+struct ReportNeeds {
+  double rotation_deg = 0.1, translation_mm = 1.0, time_offset_ms = 0.1;
+};
+
+// Lists may be empty or shorter than those of the result where a calibration failed early.
+struct ReportData {
+  const NamedResult& named;
+  std::string recording;  // as people know it: the file's name
+  CircleBoard board = {};
+  std::int64_t start_ns = 0;
+  std::span<const BoardObservations> cameras = {};
+  std::span<const ImuData> imus = {};
+  std::span<const Resolution> resolutions_px = {};
+  std::span<const RecordingFault> faults = {};
+  ReportNeeds needs = {};
+};
+
+struct ReportFile {
+  std::string name;  // "report.html", "plots/imu1_gyroscope.csv"
+  std::string content;
+};
+
+std::vector<ReportFile> reportFiles(const ReportData& data);
+
+}  // namespace evical

@@ -1,0 +1,31 @@
+// Text and numbers as they may stand in HTML, SVG and CSV: escaped, and never "nan" or "inf".
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace evical::html {
+
+// For text and for attributes in double quotes; control characters that XML does not know become '?'.
+std::string escaped(std::string_view text);
+
+// Fixed decimals; a dash where there is no number.
+std::string number(double value, int decimals);
+// About `digits` significant digits, without an exponent where that stays short.
+std::string significant(double value, int digits = 3);
+// The shortest that says a given number: "0.1", "20".
+std::string plain(double value);
+// "12.345 ± 0.012": as many decimals as the sigma's second digit; sigma 0 or unknown: the value alone.
+std::string withSigma(double value, double sigma, int most_decimals = 6);
+
+std::string element(std::string_view tag, std::string_view css_class, std::string_view content);
+std::string paragraph(std::string_view css_class, std::string_view escaped_text);
+
+// What stands above a plot.
+std::string plotTitle(std::string_view title);
+
+// A table with a header line; cells are HTML already.
+std::string table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
+
+}  // namespace evical::html

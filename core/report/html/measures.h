@@ -1,0 +1,64 @@
+// What a report says of the recording, as numbers: where the board was seen, how it was moved, what the
+// residuals look like. Plots and advice both rest on these.
+#pragma once
+
+#include "core/report/html/html_report.h"
+#include "core/report/signal_prediction.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <vector>
+
+namespace evical::html {
+
+// One cell of the image plane: how many circles were measured in it, and the mean of their residuals.
+struct ImageCell {
+  Eigen::Vector2d low_px = Eigen::Vector2d::Zero(), high_px = Eigen::Vector2d::Zero();  // on the sensor
+  int circles = 0, residuals = 0;
+  Eigen::Vector2d mean_residual_px = Eigen::Vector2d::Zero();  // predicted - measured
+};
+
+// How the board stood in one view, by the trajectory.
+struct BoardPose {
+  double time_s = 0.0, distance_m = 0.0;
+  double tilt_x_deg = 0.0, tilt_y_deg = 0.0;  // of its normal, about the camera's x and y axes
+  double turn_deg = 0.0;                      // about the optical axis
+};
+
+struct CameraMeasures {
+  static constexpr int kCols = 8, kRows = 6;  // of the image cells
+  Resolution resolution_px;
+  std::array<int, kWindowOutcomeCount> outcomes = {};
+  int windows = 0, views = 0, partial = 0;
+  double duration_s = 0.0;
+  std::vector<Eigen::Vector2d> centres_px;  // on the sensor
+  std::vector<ImageCell> cells;             // row by row; empty where the resolution is unknown
+  std::vector<BoardPose> poses;             // empty without a trajectory
+
+  double detectionRate() const { return windows > 0 ? static_cast<double>(views) / windows : 0.0; }
+  double coveredShare() const;  // of the cells: those with at least one circle
+};
+
+struct AxisMoments {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero(), deviation = Eigen::Vector3d::Zero(),
+                  largest = Eigen::Vector3d::Zero();  // |value - mean|
+};
+
+struct ImuMeasures {
+  double rate_hz = 0.0, duration_s = 0.0;
+  AxisMoments rate_rad_s, force_m_s2;                     // as measured
+  SignalPrediction signals;                               // empty without a trajectory
+  AxisMoments rate_residual, force_residual;              // measured - predicted
+  double rate_sigma_rad_s = 0.0, force_sigma_m_s2 = 0.0;  // of a sample, by the noise densities given
+};
+
+struct Measures {
+  std::vector<CameraMeasures> cameras;
+  std::vector<ImuMeasures> imus;
+  double duration_s = 0.0;
+};
+
+Measures measure(const ReportData& data);
+
+}  // namespace evical::html

@@ -1,0 +1,244 @@
+// Verdict, results with their sigmas, how the sensors sit.
+#include "core/geometry/so3.h"
+#include "core/report/html/html_text.h"
+#include "core/report/html/report_page.h"
+#include "core/report/html/svg_plot.h"
+#include "core/report/result_table.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace evical::html {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+
+template <class T>
+T at(const std::vector<T>& values, std::size_t i) {
+  return i < values.size() ? values[i] : T{};
+}
+
+std::string tile(const std::string& label, const std::string& value, const std::string& detail) {
+  return fmt::format("<div class=\"tile\"><span>{}</span><b>{}</b><small>{}</small></div>\n", label, value,
+                     detail);
+}
+
+using Rows = std::vector<std::vector<std::string>>;
+
+void addVector(Rows& rows, const std::string& name, const Eigen::Vector3d& value,
+               const Eigen::Vector3d& sigma, double factor, const char* unit) {
+  std::vector<std::string> row = {name};
+  for (int k = 0; k < 3; ++k) row.push_back(withSigma(factor * value[k], factor * sigma[k]));
+  row.emplace_back(unit);
+  rows.push_back(row);
+}
+
+void addPose(Rows& rows, const RigidTransform& pose, const Eigen::Vector3d& rotation_std_rad,
+             const Eigen::Vector3d& translation_std_m) {
+  addVector(rows, "rotation vector", quaternionLog(pose.rotation), rotation_std_rad, kDegPerRad, "deg");
+  const Eigen::Vector3d angles = rollPitchYaw_deg(pose.rotation);
+  rows.push_back(
+      {"roll, pitch, yaw", number(angles.x(), 3), number(angles.y(), 3), number(angles.z(), 3), "deg"});
+  addVector(rows, "translation", pose.translation_m, translation_std_m, 1e3, "mm");
+}
+
+std::string cameraTiles(const ReportData& data, const Measures& measures, std::size_t i) {
+  const CameraUncertainty sigma = at(data.named.result.uncertainty.cameras, i);
+  const CameraState& state = data.named.result.state.cameras[i];
+  const std::string name = escaped(cameraName(data, i));
+  std::string text;
+  text += tile(name + ": rotation",
+               "\u00b1 " + significant(kDegPerRad * sigma.rotation_std_rad.maxCoeff(), 2) + " deg",
+               fmt::format("largest sigma; needed {}", plain(data.needs.rotation_deg)));
+  text += tile(name + ": translation",
+               "\u00b1 " + significant(1e3 * sigma.translation_std_m.maxCoeff(), 2) + " mm",
+               fmt::format("largest sigma; needed {}", plain(data.needs.translation_mm)));
+  text += tile(name + ": time offset",
+               withSigma(1e3 * state.time_offset_s, 1e3 * sigma.time_offset_std_s) + " ms",
+               fmt::format("sigma needed {}", plain(data.needs.time_offset_ms)));
+  const CameraFit fit = at(data.named.result.cameras, i);
+  text += tile(name + ": reprojection", significant(fit.reprojection_rms_px) + " px",
+               fmt::format("RMS of {} circles", fit.circles_used));
+  if (i < measures.cameras.size())
+    text += tile(name + ": board found", number(100.0 * measures.cameras[i].detectionRate(), 0) + " %",
+                 fmt::format("of {} windows", measures.cameras[i].windows));
+  return text;
+}
+
+void writeCameraNumbers(const ReportData& data, std::size_t i, ReportPage& page) {
+  const CameraState& state = data.named.result.state.cameras[i];
+  const CameraUncertainty sigma = at(data.named.result.uncertainty.cameras, i);
+  page.heading("Camera " + cameraName(data, i));
+  page.text(paragraph(
+      "", fmt::format("<code>p_reference = reference_from_camera \u00b7 p_camera</code>, reference: "
+                      "{}; <code>t_reference = t_camera + time_offset</code>. \u00b1 is one "
+                      "standard deviation.",
+                      escaped(data.named.names.reference))));
+  Rows rows;
+  addPose(rows, state.imu_from_camera, sigma.rotation_std_rad, sigma.translation_std_m);
+  page.text(table({"", "x", "y", "z", "unit"}, rows));
+  page.text(table({"", "value", "unit"},
+                  {{"time offset", withSigma(1e3 * state.time_offset_s, 1e3 * sigma.time_offset_std_s), "ms"},
+                   {"edge lead", withSigma(state.edge_lead_px, sigma.edge_lead_std_px), "px at 100 px/s"},
+                   {"edge lead growth", withSigma(state.edge_lead_growth_px, sigma.edge_lead_growth_std_px),
+                    "px for each factor e of speed"}}));
+  const auto intrinsics = at(data.named.names.intrinsics, i);
+  if (!intrinsics) return;
+  std::string distortion;
+  for (const double d : intrinsics->distortion)
+    distortion += (distortion.empty() ? "" : ", ") + significant(d, 4);
+  page.text(paragraph(
+      "small",
+      fmt::format("Intrinsics as given: {}, {} x {} px, focal length {}, {} px, principal point {}, {} px, "
+                  "distortion {}.",
+                  intrinsics->model == CameraModel::PinholeRadtan ? "pinhole, radial-tangential"
+                                                                  : "pinhole, equidistant",
+                  intrinsics->resolution_px.width_px, intrinsics->resolution_px.height_px,
+                  number(intrinsics->focal_length_px.x(), 3), number(intrinsics->focal_length_px.y(), 3),
+                  number(intrinsics->principal_point_px.x(), 3),
+                  number(intrinsics->principal_point_px.y(), 3), distortion)));
+}
+
+void writeImuNumbers(const ReportData& data, std::size_t i, ReportPage& page) {
+  const ImuState& state = data.named.result.state.imus[i];
+  const ImuUncertainty sigma = at(data.named.result.uncertainty.imus, i);
+  const bool reference = imuName(data, i) == data.named.names.reference;
+  page.heading("IMU " + imuName(data, i) + (reference ? " (reference)" : ""));
+  Rows rows;
+  if (!reference) {
+    addPose(rows, state.reference_from_imu, sigma.rotation_std_rad, sigma.translation_std_m);
+    rows.push_back(
+        {"time offset", withSigma(1e3 * state.time_offset_s, 1e3 * sigma.time_offset_std_s), "", "", "ms"});
+  }
+  addVector(rows, "gyroscope bias", state.gyroscope_bias_rad_s, sigma.gyroscope_bias_std_rad_s, 1.0, "rad/s");
+  addVector(rows, "accelerometer bias", state.accelerometer_bias_m_s2, sigma.accelerometer_bias_std_m_s2, 1.0,
+            "m/s\u00b2");
+  const auto off = [](const Eigen::Matrix3d& m) {
+    return std::array<Eigen::Vector3d, 2>{m.diagonal(), Eigen::Vector3d(m(0, 1), m(0, 2), m(1, 2))};
+  };
+  const auto add = [&](const std::string& sensor, const Eigen::Matrix3d& mapping,
+                       const Eigen::Matrix3d& std) {
+    addVector(rows, sensor + " scale", off(mapping)[0], off(std)[0], 1.0, "");
+    addVector(rows, sensor + " misalignment xy, xz, yz", off(mapping)[1], off(std)[1], 1.0, "rad");
+  };
+  add("gyroscope", state.gyroscope_mapping, sigma.gyroscope_mapping_std);
+  add("accelerometer", state.accelerometer_mapping, sigma.accelerometer_mapping_std);
+  page.text(table({"", "x", "y", "z", "unit"}, rows));
+}
+
+struct PlacedSensor {
+  std::string name;
+  RigidTransform reference_from_sensor;
+  bool camera = false;
+};
+
+// Seen along the third of the reference's axes; `across` and `up` are the two that span the picture.
+std::string sensorView(const std::vector<PlacedSensor>& sensors, int across, int up, double extent_mm) {
+  PlotFrame frame;
+  frame.title = fmt::format("sensors in the plane of {} and {}", kAxes.at(static_cast<std::size_t>(across)),
+                            kAxes.at(static_cast<std::size_t>(up)));
+  frame.x_label = fmt::format("{} of the reference [mm]", kAxes.at(static_cast<std::size_t>(across)));
+  frame.y_label = fmt::format("{} [mm]", kAxes.at(static_cast<std::size_t>(up)));
+  frame.width = 300.0;
+  frame.height = 280.0;
+  frame.equal_scale = true;
+  Eigen::Vector2d low = Eigen::Vector2d::Zero(), high = Eigen::Vector2d::Zero();
+  for (const PlacedSensor& sensor : sensors) {
+    const Eigen::Vector3d t_mm = 1e3 * sensor.reference_from_sensor.translation_m;
+    low = low.cwiseMin(Eigen::Vector2d(t_mm[across], t_mm[up]));
+    high = high.cwiseMax(Eigen::Vector2d(t_mm[across], t_mm[up]));
+  }
+  constexpr double kEndOn = 0.3;  // an axis that looks shorter than this points at the reader, or away
+  const double arm_mm = 0.45 * extent_mm, margin_mm = 1.25 * arm_mm;
+  frame.x = {low.x() - margin_mm, high.x() + margin_mm};
+  frame.y = {low.y() - margin_mm, high.y() + margin_mm};
+  SvgPlot plot(frame);
+  plot.legend({{"c0", "x"}, {"c1", "y"}, {"c2", "z axis"}});
+  for (const PlacedSensor& sensor : sensors) {
+    const Eigen::Vector3d t_mm = 1e3 * sensor.reference_from_sensor.translation_m;
+    if (t_mm.norm() > 0.0) plot.segment(0.0, 0.0, t_mm[across], t_mm[up], "dashed");
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3d tip_mm =
+          t_mm + arm_mm * (sensor.reference_from_sensor.rotation * Eigen::Vector3d::Unit(axis));
+      plot.arrow(t_mm[across], t_mm[up], tip_mm[across], tip_mm[up], fmt::format("c{} thick", axis));
+      const double seen_mm = std::hypot(tip_mm[across] - t_mm[across], tip_mm[up] - t_mm[up]);
+      if (seen_mm < kEndOn * arm_mm)
+        plot.circle(t_mm[across], t_mm[up], 0.14 * arm_mm, fmt::format("c{} thick", axis));
+    }
+    const std::vector<double> x = {t_mm[across]}, y = {t_mm[up]};
+    plot.points(x, y, sensor.camera ? "ink" : "muted", 9.0);
+    plot.text(t_mm[across], t_mm[up], sensor.name, "middle", sensor.camera ? -16.0 : 22.0);
+  }
+  return plot.svg();
+}
+
+}  // namespace
+
+void writeVerdict(const ReportData& data, const Measures& measures, ReportPage& page) {
+  const CalibrationResult& result = data.named.result;
+  const char* const status = statusName(result.status);
+  const char* const meaning = result.status == CalibrationStatus::Ok
+                                  ? "The calibration meets the needs stated for it."
+                              : result.status == CalibrationStatus::Doubtful
+                                  ? "There are numbers, but do not rely on them before you have read why."
+                                  : "There is no calibration.";
+  page.text(fmt::format("<div class=\"verdict {0}\"><b>{0}</b><div><p>{1}</p>{2}</div></div>\n", status,
+                        meaning, result.reason.empty() ? "" : paragraph("reason", escaped(result.reason))));
+  std::string tiles;
+  for (std::size_t i = 0; i < result.state.cameras.size(); ++i) tiles += cameraTiles(data, measures, i);
+  if (result.state.cameras.empty())
+    for (std::size_t i = 0; i < measures.cameras.size(); ++i)
+      tiles += tile(escaped(cameraName(data, i)) + ": board found",
+                    number(100.0 * measures.cameras[i].detectionRate(), 0) + " %",
+                    fmt::format("of {} windows", measures.cameras[i].windows));
+  if (measures.duration_s > 0.0)
+    tiles += tile("recording", number(measures.duration_s, 1) + " s", escaped(data.recording));
+  if (!tiles.empty()) page.text("<div class=\"tiles\">\n" + tiles + "</div>\n");
+}
+
+void writeNumbers(const ReportData& data, ReportPage& page) {
+  const CalibrationResult& result = data.named.result;
+  if (result.state.cameras.empty() && result.state.imus.empty()) return;
+  page.beginSection("results", "Results");
+  for (std::size_t i = 0; i < result.state.cameras.size(); ++i) writeCameraNumbers(data, i, page);
+  for (std::size_t i = 0; i < result.state.imus.size(); ++i) writeImuNumbers(data, i, page);
+  const Eigen::Vector3d& g = result.state.gravity_in_world_m_s2;
+  page.text(paragraph(
+      "", fmt::format("Gravity in the board's frame: {}, {}, {} m/s\u00b2 (direction \u00b1 {} deg).",
+                      number(g.x(), 4), number(g.y(), 4), number(g.z(), 4),
+                      significant(kDegPerRad * result.uncertainty.gravity_direction_std_rad, 2))));
+  page.endSection();
+}
+
+void writeSensors(const ReportData& data, ReportPage& page) {
+  const CalibrationState& state = data.named.result.state;
+  std::vector<PlacedSensor> sensors;
+  double extent_mm = 0.0;
+  for (std::size_t i = 0; i < state.imus.size(); ++i)
+    sensors.push_back({imuName(data, i), state.imus[i].reference_from_imu, false});
+  for (std::size_t i = 0; i < state.cameras.size(); ++i)
+    sensors.push_back({cameraName(data, i), state.cameras[i].imu_from_camera, true});
+  for (const PlacedSensor& sensor : sensors)
+    extent_mm = std::max(extent_mm, 1e3 * sensor.reference_from_sensor.translation_m.norm());
+  if (state.cameras.empty()) return;
+  extent_mm = std::max(extent_mm, 5.0);
+  page.beginSection("sensors", "How the sensors sit");
+  page.beginRow();
+  page.figure(sensorView(sensors, 0, 1, extent_mm), "Seen along the reference's z axis.");
+  page.figure(sensorView(sensors, 0, 2, extent_mm), "Seen along its y axis.");
+  page.figure(sensorView(sensors, 1, 2, extent_mm), "Seen along its x axis.");
+  page.endRow();
+  page.text(paragraph(
+      "note",
+      "Each sensor with its axes (a ring: the axis points at you or away); cameras look along their z axis "
+      "(x right, y down in the image). "
+      "Compare with the device: a camera that looks the wrong way means swapped axes or streams, and "
+      "a dashed arm much longer than the device means a board of another size."));
+  page.endSection();
+}
+
+}  // namespace evical::html

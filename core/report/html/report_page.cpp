@@ -1,0 +1,35 @@
+#include "core/report/html/report_page.h"
+
+#include "core/report/html/html_text.h"
+
+#include <fmt/format.h>
+
+namespace evical::html {
+
+void ReportPage::beginSection(std::string_view id, std::string_view title) {
+  body_ += fmt::format("<section id=\"{0}\">\n<h2>{1}</h2>\n", id, escaped(title));
+  contents_ += fmt::format("<a href=\"#{}\">{}</a>\n", id, escaped(title));
+}
+
+void ReportPage::heading(std::string_view text) {
+  body_ += element("h3", "", escaped(text));
+}
+
+void ReportPage::figure(const std::string& svg, std::string_view caption, const PlotTable* table) {
+  std::string source;
+  if (table != nullptr) source = fmt::format(" <a class=\"csv\" href=\"{0}\">{0}</a>", escaped(table->file));
+  body_ += fmt::format("<figure>\n<div class=\"wide\">{}</div>\n<figcaption>{}{}</figcaption>\n</figure>\n",
+                       svg, caption, source);
+}
+
+std::string cameraName(const ReportData& data, std::size_t index) {
+  if (index < data.named.names.cameras.size()) return data.named.names.cameras[index];
+  return index < data.cameras.size() ? data.cameras[index].camera : fmt::format("camera {}", index + 1);
+}
+
+std::string imuName(const ReportData& data, std::size_t index) {
+  if (index < data.named.names.imus.size()) return data.named.names.imus[index];
+  return index < data.imus.size() ? data.imus[index].name : fmt::format("IMU {}", index + 1);
+}
+
+}  // namespace evical::html

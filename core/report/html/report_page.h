@@ -1,0 +1,55 @@
+// The page while it is being written: its sections, and the tables behind the plots.
+#pragma once
+
+#include "core/report/html/html_report.h"
+#include "core/report/html/measures.h"
+#include "core/report/html/plot_table.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace evical::html {
+
+class ReportPage {
+ public:
+  // `id` is the section's anchor.
+  void beginSection(std::string_view id, std::string_view title);
+  void endSection() { body_ += "</section>\n"; }
+
+  void heading(std::string_view text);                 // a sensor's name: escaped here
+  void text(std::string_view html) { body_ += html; }  // HTML already
+  // What to look for is the caption's business; names the CSV file when there is a table.
+  void figure(const std::string& svg, std::string_view caption, const PlotTable* table = nullptr);
+  void beginRow() { body_ += "<div class=\"row\">\n"; }  // figures side by side where there is room
+  void endRow() { body_ += "</div>\n"; }
+  void keep(PlotTable table) { tables_.push_back(std::move(table)); }
+
+  const std::string& body() const { return body_; }
+  const std::string& contents() const { return contents_; }  // links to the sections
+  const std::vector<PlotTable>& tables() const { return tables_; }
+
+ private:
+  std::string body_, contents_;
+  std::vector<PlotTable> tables_;
+};
+
+std::string cameraName(const ReportData& data, std::size_t index);
+std::string imuName(const ReportData& data, std::size_t index);
+
+// The sections, in the page's order. Each leaves itself out where there is nothing to show.
+void writeVerdict(const ReportData& data, const Measures& measures, ReportPage& page);
+void writeAdvice(const ReportData& data, const Measures& measures, ReportPage& page);
+void writeNumbers(const ReportData& data, ReportPage& page);
+void writeSensors(const ReportData& data, ReportPage& page);
+void writeDetections(const ReportData& data, const Measures& measures, ReportPage& page);
+void writeCoverage(const ReportData& data, const Measures& measures, ReportPage& page);
+void writeExcitation(const ReportData& data, const Measures& measures, ReportPage& page);
+void writeReprojection(const ReportData& data, const Measures& measures, ReportPage& page);
+void writeInertial(const ReportData& data, const Measures& measures, ReportPage& page);
+void writeConvergence(const ReportData& data, ReportPage& page);
+void writeUncertainty(const ReportData& data, ReportPage& page);
+void writeCrossValidation(const ReportData& data, ReportPage& page);
+void writeRun(const ReportData& data, ReportPage& page);
+
+}  // namespace evical::html
