@@ -19,11 +19,11 @@ namespace {
 
 // What was there before is overwritten only by a result, or by the reason why there is none.
 void tellFailure(const SessionArguments& arguments, const Session& session, const std::string& reason,
-                 const Console& console) {
+                 const Console& console, const RecordingPass& pass) {
   if (!std::filesystem::is_directory(arguments.output)) return;
   // A failed run keeps an earlier result of the same folder: it is still true of its own recording.
   if (std::filesystem::exists(std::filesystem::path(arguments.output) / "trajectory.csv")) return;
-  writeFailure(arguments.output, session, reason, kVersion, console.logText());
+  writeFailure(arguments.output, session, reason, kVersion, console.logText(), pass);
 }
 
 int run(const SessionArguments& arguments) {
@@ -36,8 +36,9 @@ int run(const SessionArguments& arguments) {
     std::error_code ignored;
     if (!folder_was_there) std::filesystem::remove(arguments.output, ignored);  // only if empty
   };
+  CalibrationRun result;
   try {
-    const CalibrationRun result = calibrate(session, context);
+    calibrateInto(result, session, context);
     const NamedResult named = namedResult(session, result.result, kVersion);
     writeResultFiles(arguments.output, session, result, kVersion, console.logText());
     console.stageStarted("done");
@@ -46,13 +47,13 @@ int run(const SessionArguments& arguments) {
     return kDone;
   } catch (const CalibrationError& error) {
     if (error.kind() == ErrorKind::CalibrationFailed) {
-      tellFailure(arguments, session, error.what(), console);
+      tellFailure(arguments, session, error.what(), console, result.pass);
     } else {
       dropEmptyFolder();
     }
     throw;
   } catch (const Cancelled&) {
-    if (folder_was_there) tellFailure(arguments, session, "cancelled", console);
+    if (folder_was_there) tellFailure(arguments, session, "cancelled", console, result.pass);
     dropEmptyFolder();
     throw;
   }

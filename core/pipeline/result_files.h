@@ -11,7 +11,7 @@ namespace evical {
 
 NamedResult namedResult(const Session& session, const CalibrationResult& result, const std::string& version);
 
-// result.yaml, trajectory.csv, detections.csv, windows.csv, log.txt
+// report.html with its plots/*.csv, result.yaml, trajectory.csv, detections.csv, windows.csv, log.txt
 void writeResultFiles(const std::filesystem::path& folder, const Session& session, const CalibrationRun& run,
                       const std::string& version, const std::string& log);
 
@@ -19,8 +19,9 @@ void writeResultFiles(const std::filesystem::path& folder, const Session& sessio
 void writeDetectionFiles(const std::filesystem::path& folder, const RecordingPass& pass,
                          const std::string& log);
 
-// result.yaml with status failed and the reason, and log.txt; only where the folder is there already.
+// result.yaml with status failed and the reason, a report of what there is in `pass`, and log.txt; only where
+// the folder is there already.
 void writeFailure(const std::filesystem::path& folder, const Session& session, const std::string& reason,
-                  const std::string& version, const std::string& log);
+                  const std::string& version, const std::string& log, const RecordingPass& pass = {});
 
 }  // namespace evical

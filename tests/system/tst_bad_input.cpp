@@ -86,7 +86,7 @@ class Case {
   QVERIFY(!QDir((test).result()).exists() ||                                      \
           readFile((test).result() + "/result.yaml").contains("status: failed")); \
   for (const QString& file : filesIn((test).result()))                            \
-  QVERIFY2(file == "result.yaml" || file == "log.txt", qPrintable(file))
+  QVERIFY2((QStringList{"result.yaml", "log.txt", "report.html", "plots"}).contains(file), qPrintable(file))
 
 }  // namespace
 

@@ -16,8 +16,8 @@ using namespace evical::test;
 
 namespace {
 
-const QStringList kResultFiles = {"detections.csv", "log.txt", "result.yaml", "trajectory.csv",
-                                  "windows.csv"};
+const QStringList kResultFiles = {"detections.csv", "log.txt",        "plots",      "report.html",
+                                  "result.yaml",    "trajectory.csv", "windows.csv"};
 
 QString session(const QString& recording = "short") {
   return simulated(recording) + "/session.yaml";

@@ -1,0 +1,217 @@
+#include "core/base/error.h"
+#include "core/pipeline/result_files.h"
+#include "tests/support/simulated_pass.h"
+
+#include <QDir>
+#include <QRegularExpression>
+#include <QTemporaryDir>
+#include <QXmlStreamReader>
+#include <QtTest>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace evical;
+using namespace evical::test;
+
+namespace {
+
+const char* const kHostile = "<script>alert(\"1\")</script>&'x";
+
+QString readFile(const QString& path) {
+  QFile file(path);
+  return file.open(QIODevice::ReadOnly) ? QString::fromUtf8(file.readAll()) : QString();
+}
+
+// Well formed, and without words that are no numbers; returns the text between the tags.
+QString checkedText(const QString& page) {
+  QXmlStreamReader reader(page);
+  QString text;
+  int scripts = 0;
+  while (!reader.atEnd()) {
+    reader.readNext();
+    if (reader.isCharacters()) text += reader.text().toString() + " ";
+    if (reader.isStartElement() && reader.name() == QLatin1String("script")) ++scripts;
+  }
+  if (reader.hasError())
+    return QString("not well formed: %1, line %2").arg(reader.errorString()).arg(reader.lineNumber());
+  if (scripts > 0) return "has a script";
+  const QRegularExpression no_number("(?<![A-Za-z])[-+]?(nan|inf)(?![A-Za-z])",
+                                     QRegularExpression::CaseInsensitiveOption);
+  const QRegularExpressionMatch match = no_number.match(page);
+  return match.hasMatch() ? "has " + match.captured() + " near " + page.mid(match.capturedStart() - 80, 160)
+                          : text;
+}
+
+}  // namespace
+
+class TestResultFiles : public QObject {
+  Q_OBJECT
+
+  SimulatedPass simulated_;
+  CalibrationRun run_;
+  QTemporaryDir folder_;
+  QString page_, text_;
+
+  QString path(const char* name) const { return folder_.filePath(name); }
+
+ private slots:
+  void initTestCase() {
+    simulated_ = simulatePass(6.0);
+    run_ = calibrate(simulated_.session, simulated_.pass, {});
+    writeResultFiles(folder_.path().toStdString(), simulated_.session, run_, "test", "log");
+    page_ = readFile(path("report.html"));
+    text_ = checkedText(page_);
+  }
+
+  void report_isWellFormedAndSelfContained() {
+    QVERIFY2(text_.startsWith(" ") || text_.contains("Calibration of"), qPrintable(text_.left(300)));
+    QVERIFY(!page_.contains("src="));
+    QVERIFY(!page_.contains("@import") && !page_.contains("url("));
+    QVERIFY2(page_.size() < 3'000'000, qPrintable(QString::number(page_.size())));
+  }
+
+  void sections_areAllThere() {
+    for (const char* id :
+         {"advice", "results", "sensors", "detections", "coverage", "excitation", "reprojection", "inertial",
+          "convergence", "uncertainty", "cross-validation", "run"}) {
+      const QString anchor = QString("<section id=\"%1\">").arg(id);
+      QVERIFY2(page_.contains(anchor), id);
+      QVERIFY2(page_.contains(QString("href=\"#%1\"").arg(id)), id);
+    }
+    QVERIFY(page_.count("<svg") >= 18);
+  }
+
+  void numbers_areThoseOfTheResult() {
+    const NamedResult read = readResultYaml(path("result.yaml").toStdString());
+    const CameraState& camera = read.result.state.cameras[0];
+    const CameraUncertainty& sigma = read.result.uncertainty.cameras[0];
+    const auto shown = [&](double value, double std) {
+      const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(std))), 0, 6);
+      return QString::number(value, 'f', decimals).replace('-', QChar(0x2212));
+    };
+    for (int k = 0; k < 3; ++k) {
+      const QString mm =
+          shown(1e3 * camera.imu_from_camera.translation_m[k], 1e3 * sigma.translation_std_m[k]);
+      QVERIFY2(text_.contains(mm), qPrintable(mm));
+    }
+    const QString ms = shown(1e3 * camera.time_offset_s, 1e3 * sigma.time_offset_std_s);
+    QVERIFY2(text_.contains(ms), qPrintable(ms));
+    QVERIFY(text_.contains(QString("of %1 windows").arg(read.result.cameras[0].windows_total)));
+    QVERIFY(read.result.cross_validation.has_value());
+    QVERIFY2(text_.contains(QString::number(read.result.cross_validation->rms_sigmas, 'f', 2)),
+             "rms of the halves");
+  }
+
+  void csvFiles_areLinkedAndWhole() {
+    const QRegularExpression link("href=\"(plots/[^\"]+)\"");
+    QSet<QString> linked;
+    for (auto it = link.globalMatch(page_); it.hasNext();) linked.insert(it.next().captured(1));
+    QVERIFY(linked.size() >= 15);
+    for (const QString& name : linked) {
+      const QStringList lines = readFile(folder_.filePath(name)).trimmed().split('\n');
+      QVERIFY2(lines.size() > 1, qPrintable(name));
+      const auto commas = lines[0].count(',');
+      for (const QString& line : lines)
+        if (!line.contains('"')) QCOMPARE(line.count(','), commas);
+    }
+    const QStringList there = QDir(folder_.filePath("plots")).entryList(QDir::Files);
+    for (const QString& name : there)
+      QVERIFY2(linked.contains("plots/" + name) || name.endsWith("_windows.csv"), qPrintable(name));
+  }
+
+  void csvFiles_areWhatIsPlotted() {
+    // As many dots as lines, and the first dot where the first line puts it.
+    const QStringList lines = readFile(folder_.filePath("plots/camera1_centres.csv")).trimmed().split('\n');
+    const auto begin = page_.indexOf("aria-label=\"circle centres over the image\"");
+    QVERIFY(begin > 0);
+    const QString svg = page_.mid(begin, page_.indexOf("</svg>", begin) - begin);
+    const QString dots = svg.mid(svg.indexOf("class=\"dots"));
+    const Resolution size = run_.pass.resolutions_px[0];
+    int inside = 0;
+    for (qsizetype i = 1; i < lines.size(); ++i) {
+      const double x = lines[i].section(',', 0, 0).toDouble(), y = lines[i].section(',', 1, 1).toDouble();
+      inside += x >= 0.0 && x <= size.width_px && y >= 0.0 && y <= size.height_px;
+    }
+    QCOMPARE(dots.count("h0"), inside);
+  }
+
+  void names_fromOutsideAreEscaped() {
+    Session session = simulated_.session;
+    session.recording = std::string("rec") + "<b>&\"'.bag";
+    CalibrationRun run = run_;
+    session.cameras[0].name = run.pass.cameras[0].camera = kHostile;
+    session.imus[0].name = run.pass.imus[0].name = session.reference = "\"><img src=x onerror=1>";
+    run.result.reason = "</style></p><script>1</script>";
+    run.result.notes.emplace_back("a\x01note ]]> <i>");
+    run.pass.faults.push_back({"<s>", "gap", 0.0, "<u>gap</u>"});
+    QTemporaryDir folder;
+    writeResultFiles(folder.path().toStdString(), session, run, "1<2", "log");
+    const QString page = readFile(folder.filePath("report.html"));
+    const QString text = checkedText(page);
+    QVERIFY2(text.contains(kHostile), qPrintable(text.left(300)));
+    QVERIFY(!page.contains("<script") && !page.contains("<img") && !page.contains("<u>gap"));
+    for (const QString& name : QDir(folder.filePath("plots")).entryList(QDir::Files))
+      QVERIFY2(QRegularExpression("^[a-z0-9_]+\\.csv$").match(name).hasMatch(), qPrintable(name));
+  }
+
+  void numbersThatAreNone_areNotShown() {
+    CalibrationRun run = run_;
+    const double nan = std::numeric_limits<double>::quiet_NaN(),
+                 inf = std::numeric_limits<double>::infinity();
+    run.result.uncertainty.cameras[0].translation_std_m.setConstant(nan);
+    run.result.uncertainty.cameras[0].time_offset_std_s = inf;
+    run.result.uncertainty.correlation(0, 1) = nan;
+    run.result.uncertainty.observability[0] = 0.0;
+    run.result.circle_residuals[0].residual_px.setConstant(nan);
+    run.result.iterations[0].cost = nan;
+    run.result.cameras[0].normalised_rms = inf;
+    run.result.cross_validation->quantities[0].difference = nan;
+    QTemporaryDir folder;
+    writeResultFiles(folder.path().toStdString(), simulated_.session, run, "test", "log");
+    const QString text = checkedText(readFile(folder.filePath("report.html")));
+    QVERIFY2(text.contains("Calibration of"), qPrintable(text.left(400)));
+  }
+
+  void failedCalibration_hasItsReasonAndItsDetections() {
+    QTemporaryDir folder;
+    RecordingPass pass = simulated_.pass;
+    pass.cameras[0].views.clear();
+    for (WindowReport& window : pass.cameras[0].windows) window.outcome = WindowOutcome::NoLattice;
+    writeFailure(folder.path().toStdString(), simulated_.session, "the board was <never> found", "test",
+                 "log", pass);
+    const QString page = readFile(folder.filePath("report.html"));
+    const QString text = checkedText(page);
+    QVERIFY2(text.contains("the board was <never> found") && text.contains("failed"),
+             qPrintable(text.left(300)));
+    QVERIFY(page.contains("<section id=\"detections\">") && page.contains("<section id=\"excitation\">"));
+    QVERIFY(!page.contains("<section id=\"results\">") && !page.contains("<section id=\"reprojection\">"));
+    QVERIFY(text.contains("Keep more of the board in the image"));
+  }
+
+  void failureBeforeAnythingWasRead_isAReportToo() {
+    QTemporaryDir folder;
+    writeFailure(folder.path().toStdString(), simulated_.session, "nothing there", "test", "log");
+    const QString text = checkedText(readFile(folder.filePath("report.html")));
+    QVERIFY2(text.contains("nothing there"), qPrintable(text.left(300)));
+    QVERIFY(QFile::exists(folder.filePath("result.yaml")) && QFile::exists(folder.filePath("log.txt")));
+  }
+
+  void advice_isGivenOnlyWhereTheDataSaySo() {
+    QVERIFY(!text_.contains("without losses"));
+    CalibrationRun run = run_;
+    run.pass.faults.push_back({"imu", "gap", 1.0, "gap of 0.3 s at 1.0 s"});
+    for (ImuSample& sample : run.pass.imus[0].samples) sample.angular_rate_rad_s.z() *= 0.01;
+    for (BoardView& view : run.pass.cameras[0].views)
+      std::erase_if(view.circles, [](const CircleObservation& c) { return c.centre_px.x() > 120.0; });
+    QTemporaryDir folder;
+    writeResultFiles(folder.path().toStdString(), simulated_.session, run, "test", "log");
+    const QString text = checkedText(readFile(folder.filePath("report.html")));
+    for (const char* said : {"gap of 0.3 s", "without losses", "Turn about the z axis", "top right"})
+      QVERIFY2(text.contains(said), said);
+  }
+};
+
+QTEST_GUILESS_MAIN(TestResultFiles)
+#include "tst_result_files.moc"
