@@ -32,8 +32,7 @@ ViewPoses estimateViewPoses(const ViewPoseInput& input, const ViewPoses& before,
     const std::size_t end = std::min(result.views_done + kViewsAtOnce, views.size());
     some.observations.views.assign(views.begin() + static_cast<std::ptrdiff_t>(result.views_done),
                                    views.begin() + static_cast<std::ptrdiff_t>(end));
-    const CameraPoses found =
-        estimateCameraPoses(some, input.board, InitialisationOptions{});
+    const CameraPoses found = estimateCameraPoses(some, input.board, InitialisationOptions{});
     for (CameraPose pose : found.poses) {
       pose.view += result.views_done;
       result.poses.push_back(pose);
