@@ -9,8 +9,8 @@ packages=(
   # core
   libeigen3-dev libceres-dev libsuitesparse-dev libyaml-cpp-dev libfmt-dev libspdlog-dev
   libopencv-dev libpng-dev
-  # recordings: ROS bags are bz2 or lz4 compressed
-  libbz2-dev liblz4-dev
+  # recordings: ROS bags are bz2 or lz4 compressed, AEDAT4 is lz4 or zstd
+  libbz2-dev liblz4-dev libzstd-dev
   # command line
   libcli11-dev nlohmann-json3-dev
   # desktop program

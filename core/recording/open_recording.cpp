@@ -1,5 +1,6 @@
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
+#include "core/recording/aedat/aedat4_reader.h"
 #include "core/recording/event_stream/event_stream_reader.h"
 #include "core/recording/prophesee/raw_header.h"
 #include "core/recording/prophesee/raw_reader.h"
@@ -18,7 +19,7 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr const char* kReadable =
-    "Readable are ROS 1 bags (format 2.0), Prophesee RAW and DAT, Event Stream, "
+    "Readable are ROS 1 bags (format 2.0), AEDAT4, Prophesee RAW and DAT, Event Stream, "
     "and text or CSV: a folder with events.txt and imu.txt (or .csv), or one such file.";
 
 // What people may well hand us, by its first bytes.
@@ -36,7 +37,8 @@ constexpr OtherFormat kOtherFormats[] = {
     {"#ROSBAG"sv, "this is a bag of an old format", "Convert it with `rosbag fix`."},
     {"SQLite format 3\0"sv, "this is a ROS 2 bag, which cannot be read yet", kReadable},
     {"\x89MCAP"sv, "this is an MCAP file, which cannot be read yet", kReadable},
-    {"#!AER-DAT"sv, "this is an AEDAT file, which cannot be read yet", kReadable},
+    {"#!AER-DAT"sv, "this is an AEDAT file of an old version",
+     "Convert it to AEDAT4 with iniVation's DV or dv-processing."},
     {"\x89HDF\r\n\x1A\n"sv, "this is an HDF5 file, which cannot be read yet", kReadable},
 };
 
@@ -74,6 +76,7 @@ std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path
   if (start.starts_with(rosbag::kMagic)) return std::make_unique<BagReader>(path);
   if (start.starts_with("% ")) return openProphesee(path);
   if (start.starts_with(kEventStreamMagic)) return openEventStream(path);
+  if (start.starts_with(aedat::kMagic)) return std::make_unique<Aedat4Reader>(path);
   for (const OtherFormat& format : kOtherFormats) {
     if (start.starts_with(format.magic)) throw badInput(path.string(), format.problem, format.advice);
   }

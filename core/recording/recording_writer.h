@@ -31,6 +31,11 @@ class RecordingWriter {
 std::unique_ptr<RecordingWriter> createBag(const std::filesystem::path& path,
                                            const std::vector<StreamInfo>& streams, bool lz4);
 
+// AEDAT4 with lz4 or zstd, as DV plays it; times are rounded to the us, IMU samples become 32 bit numbers.
+// Event streams need their resolution. Streams are numbered in the order given and keep their names.
+std::unique_ptr<RecordingWriter> createAedat4(const std::filesystem::path& path,
+                                              const std::vector<StreamInfo>& streams, bool zstd);
+
 // "events.txt" and "imu.txt" in an existing folder; at most one stream of each type.
 std::unique_ptr<RecordingWriter> createText(const std::filesystem::path& folder,
                                             const std::vector<StreamInfo>& streams);

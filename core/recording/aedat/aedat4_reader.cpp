@@ -1,0 +1,372 @@
+#include "core/recording/aedat/aedat4_reader.h"
+
+#include "core/base/error.h"
+#include "core/recording/byte_cursor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace evical {
+namespace {
+
+constexpr std::uint64_t kLargestHeader_bytes = std::uint64_t{1} << 26;
+constexpr std::uint64_t kLargestTable_bytes = std::uint64_t{1} << 28;
+constexpr std::int32_t kLargestId = 9999;
+constexpr std::ptrdiff_t kMostAlikeFaults = 10;
+
+struct PacketType {
+  std::string_view id;
+  const char* name;  // where the file names none
+  StreamType type;
+};
+constexpr PacketType kPacketTypes[] = {{"EVTS", "events", StreamType::Events},
+                                       {"IMUS", "imu", StreamType::Imu},
+                                       {"FRME", "frames", StreamType::Frames},
+                                       {"TRIG", "triggers", StreamType::Triggers}};
+
+const PacketType* findType(std::string_view id) {
+  for (const PacketType& type : kPacketTypes)
+    if (type.id == id) return &type;
+  return nullptr;
+}
+
+}  // namespace
+
+Aedat4Reader::Aedat4Reader(const std::filesystem::path& path)
+    : path_(path.string()), file_(path, std::ios::binary | std::ios::ate) {
+  if (!file_) throw badInput(path_, "the file cannot be opened", "Check its permissions.");
+  file_size_ = static_cast<std::uint64_t>(file_.tellg());
+  const aedat::FileHeader header = readFileHeader();
+  position_ = data_position_;
+  compression_ = static_cast<aedat::Compression>(header.compression);
+  unpacker_ = std::make_unique<aedat::Unpacker>(compression_);
+  std::map<std::int32_t, Listed> listed = listFromTable(header.table_position);
+  if (table_position_ == 0) listed = listByScan();
+  addStreams(aedat::parseDescriptions(header.description), listed);
+}
+
+aedat::FileHeader Aedat4Reader::readFileHeader() {
+  const std::uint64_t at = aedat::kMagic.size();
+  const char* advice = "Copy the file again; if this is how it was recorded, it cannot be read.";
+  std::string bytes;
+  const bool has_size = readBytes(at, 4, bytes);
+  const std::uint64_t size = has_size ? std::uint64_t{ByteCursor(bytes).number<std::uint32_t>()} + 4 : 4;
+  if (!has_size || size > kLargestHeader_bytes || !readBytes(at, size, bytes)) {
+    throw badInput(path_, fmt::format("the header at byte {} is cut off or damaged", at), advice);
+  }
+  const std::optional<aedat::FileHeader> header = aedat::decodeHeader(bytes);
+  if (!header) throw badInput(path_, fmt::format("the header at byte {} is damaged", at), advice);
+  if (header->compression < 0 || header->compression >= aedat::kCompressions) {
+    throw badInput(path_, fmt::format("the header at byte {} names the unknown compression {}", at,
+                                      header->compression));
+  }
+  data_position_ = at + size;
+  return *header;
+}
+
+// Sets table_position_ if the table is there and whole.
+std::map<std::int32_t, Aedat4Reader::Listed> Aedat4Reader::listFromTable(std::int64_t position) {
+  std::map<std::int32_t, Listed> listed;
+  const auto at = static_cast<std::uint64_t>(position);
+  if (position < 0 || at < data_position_ || at >= file_size_) {
+    if (position > 0) {
+      addFault("", "truncated",
+               fmt::format("The table of packets should be at byte {} of {}; the file is cut off or was not "
+                           "finished.",
+                           position, file_size_));
+    }
+    return listed;
+  }
+  std::string_view content;
+  std::size_t used = 0;
+  const bool whole = file_size_ - at <= kLargestTable_bytes && readBytes(at, file_size_ - at, packed_) &&
+                     unpacker_->unpack(packed_, content, used);
+  const auto entries = whole ? aedat::decodeTable(content) : std::nullopt;
+  if (!entries) {
+    addFault("", "corrupt",
+             fmt::format("The table of packets at byte {} is damaged; packets are read without it.", at));
+    return listed;
+  }
+  for (const aedat::TableEntry& entry : *entries) {
+    Listed& stream = listed[entry.stream];
+    if (stream.packets++ == 0) stream.first_position = static_cast<std::uint64_t>(entry.position);
+    stream.elements += static_cast<std::uint64_t>(std::max<std::int64_t>(entry.count, 0));
+  }
+  table_position_ = at;
+  return listed;
+}
+
+std::map<std::int32_t, Aedat4Reader::Listed> Aedat4Reader::listByScan() {
+  std::map<std::int32_t, Listed> listed;
+  PacketHeader header;
+  for (std::uint64_t at = data_position_; at < file_size_;) {
+    if (readHeader(at, header) != HeaderState::Good) {
+      at = scanForPacket(at + 1);
+      continue;
+    }
+    Listed& stream = listed[header.stream];
+    if (stream.packets++ == 0) stream.first_position = at;
+    at = header.end();
+  }
+  return listed;
+}
+
+void Aedat4Reader::addStreams(std::vector<aedat::StreamDescription> described,
+                              const std::map<std::int32_t, Listed>& listed) {
+  for (const auto& [id, stream] : listed) {
+    const auto same = [id = id](const aedat::StreamDescription& known) { return known.id == id; };
+    if (id < 0 || id > kLargestId || std::any_of(described.begin(), described.end(), same)) continue;
+    described.emplace_back().id = id;
+  }
+  const auto before = [](const auto& a, const auto& b) { return a.id < b.id; };
+  std::sort(described.begin(), described.end(), before);
+  for (aedat::StreamDescription& stream : described) {
+    const auto found = listed.find(stream.id);
+    if (stream.type.empty() && found != listed.end())
+      stream.type = typeOfPacket(found->second.first_position);
+    const PacketType* type = findType(stream.type);
+    if (stream.name.empty() && type) stream.name = type->name;
+  }
+  const std::vector<std::string> names = aedat::uniqueNames(described);
+  for (std::size_t i = 0; i < described.size(); ++i) {
+    const PacketType* type = findType(described[i].type);
+    const auto found = listed.find(described[i].id);
+    StreamInfo info;
+    info.name = names[i];
+    info.message = described[i].type;
+    info.type = type ? type->type : StreamType::Other;
+    info.resolution_px = described[i].size_px;
+    if (found != listed.end()) {
+      info.messages = std::max(found->second.packets, found->second.elements);
+    }
+    info.time_unit_ns = aedat::kMicrosecond_ns;
+    info.acceleration_unit = AccelerationUnit::Gravity;
+    info.angular_rate_unit = AngularRateUnit::DegreesPerSecond;
+    stream_of_id_[described[i].id] = i;
+    streams_.push_back(info);
+    states_.emplace_back();
+  }
+}
+
+std::string Aedat4Reader::typeOfPacket(std::uint64_t position) {
+  PacketHeader header;
+  std::string_view content;
+  std::size_t used = 0;
+  const bool good = readHeader(position, header) == HeaderState::Good &&
+                    readBytes(header.dataPosition(), static_cast<std::uint64_t>(header.size), packed_) &&
+                    unpacker_->unpack(packed_, content, used);
+  return good ? std::string(aedat::packetType(content)) : std::string();
+}
+
+void Aedat4Reader::select(const std::vector<std::size_t>& streams) {
+  for (StreamState& state : states_) state.selected = false;
+  for (const std::size_t stream : streams) states_.at(stream).selected = true;
+}
+
+bool Aedat4Reader::readBytes(std::uint64_t position, std::uint64_t count, std::string& bytes) {
+  if (position > file_size_ || count > file_size_ - position) return false;
+  bytes.resize(static_cast<std::size_t>(count));
+  file_.clear();
+  file_.seekg(static_cast<std::streamoff>(position));
+  file_.read(bytes.data(), static_cast<std::streamsize>(count));
+  return static_cast<std::uint64_t>(file_.gcount()) == count;
+}
+
+Aedat4Reader::HeaderState Aedat4Reader::readHeader(std::uint64_t position, PacketHeader& header) {
+  header = {};
+  header.position = position;
+  if (position >= file_size_) return HeaderState::End;
+  if (!readBytes(position, aedat::kPacketHeader_bytes, header_bytes_)) return HeaderState::Cut;
+  ByteCursor cursor(header_bytes_);
+  header.stream = cursor.number<std::int32_t>();
+  header.size = cursor.number<std::int32_t>();
+  const bool possible = header.stream >= 0 && header.stream <= kLargestId && header.size > 0;
+  if (!possible || !looksLikeData(header.dataPosition(), header.size)) return HeaderState::Damaged;
+  return header.end() <= file_size_ ? HeaderState::Good : HeaderState::Cut;
+}
+
+// Packed data begin with the frame's magic number, others with their size.
+bool Aedat4Reader::looksLikeData(std::uint64_t position, std::int32_t size) {
+  if (!readBytes(position, 4, header_bytes_)) return position + 4 > file_size_;
+  if (compression_ != aedat::Compression::None) return header_bytes_ == aedat::frameMagic(compression_);
+  return std::uint64_t{ByteCursor(header_bytes_).number<std::uint32_t>()} + 4 ==
+         static_cast<std::uint64_t>(size);
+}
+
+// The file's size where there is none.
+std::uint64_t Aedat4Reader::scanForPacket(std::uint64_t from) {
+  constexpr std::uint64_t kBlock_bytes = 1 << 20;
+  constexpr std::uint64_t kOverlap_bytes = 20;
+  const bool packed = compression_ != aedat::Compression::None;
+  // Before the magic number stands the packet's header; before a type also its size and root offset.
+  const std::size_t lead = aedat::kPacketHeader_bytes + (packed ? 0 : 8);
+  std::vector<std::string_view> marks{aedat::frameMagic(compression_)};
+  if (!packed) marks = {"EVTS", "IMUS", "FRME", "TRIG"};
+  std::string block;
+  PacketHeader header;
+  for (std::uint64_t begin = from; begin < file_size_; begin += kBlock_bytes) {
+    if (!readBytes(begin, std::min(kBlock_bytes + kOverlap_bytes, file_size_ - begin), block)) break;
+    std::uint64_t nearest = file_size_;
+    for (const std::string_view mark : marks) {
+      for (std::size_t hit = block.find(mark, lead); hit != std::string::npos;
+           hit = block.find(mark, hit + 1)) {
+        const std::uint64_t at = begin + hit - lead;
+        if (at >= nearest) break;
+        if (readHeader(at, header) == HeaderState::Good) nearest = at;
+      }
+    }
+    if (nearest != file_size_) return nearest;
+  }
+  return file_size_;
+}
+
+bool Aedat4Reader::nextPacket(PacketHeader& header) {
+  for (;;) {
+    if (position_ == table_position_) return false;
+    const HeaderState state = readHeader(position_, header);
+    if (state == HeaderState::End) return false;
+    if (state == HeaderState::Good) {
+      position_ = header.end();
+      return true;
+    }
+    if (!skipDamage(header, state)) return false;
+  }
+}
+
+void Aedat4Reader::resumeBehind(std::uint64_t position) {
+  position_ = scanForPacket(position + 1);
+  if (table_position_ != 0) position_ = std::min(position_, table_position_);
+}
+
+// A size that goes past the end may be a lie, or the recording was cut off here.
+bool Aedat4Reader::skipDamage(const PacketHeader& header, HeaderState state) {
+  const std::uint64_t at = header.position;
+  resumeBehind(at);
+  const bool last = position_ == file_size_ || position_ == table_position_;
+  if (last && state == HeaderState::Cut) {
+    addFault("", "truncated",
+             fmt::format("The last packet, at byte {} of {}, is not whole; it is left out.", at, file_size_));
+  } else {
+    addFault("", "corrupt",
+             fmt::format("The packet at byte {} of {} is damaged; {}.", at, file_size_,
+                         last ? "nothing behind it can be read"
+                              : fmt::format("reading goes on at byte {}", position_)));
+  }
+  return !last;
+}
+
+// A frame that ends early was given a false size: what follows it is read then.
+bool Aedat4Reader::unpack(const PacketHeader& header, std::string_view& content) {
+  std::size_t used = 0;
+  const auto size = static_cast<std::uint64_t>(header.size);
+  const bool read = readBytes(header.dataPosition(), size, packed_);
+  if (read && unpacker_->unpack(packed_, content, used)) {
+    if (used == size) return true;
+    position_ = header.dataPosition() + used;
+    addFault("", "corrupt",
+             fmt::format("The packet at byte {} states {} bytes and has {}.", header.position, size, used));
+    return true;
+  }
+  resumeBehind(header.position);
+  addFault("", "corrupt",
+           fmt::format("The packet at byte {} cannot be unpacked; it is left out.", header.position));
+  return false;
+}
+
+bool Aedat4Reader::decode(std::size_t stream, std::string_view content, Packet& packet) {
+  packet.stream = stream;
+  packet.events.clear();
+  packet.imu_samples.clear();
+  const bool events = streams_[stream].type == StreamType::Events;
+  const bool whole =
+      events ? aedat::decodeEvents(content, packet.events) : aedat::decodeImu(content, packet.imu_samples);
+  if (!whole) return false;
+  if (events) finishEvents(stream, packet);
+  return true;
+}
+
+void Aedat4Reader::finishEvents(std::size_t stream, Packet& packet) {
+  EventOrder& order = states_[stream].order;
+  const std::size_t count = order.arrange(packet.events);
+  const auto step = packet.events.begin() + static_cast<std::ptrdiff_t>(count);
+  rest_.assign(step, packet.events.end());
+  rest_stream_ = stream;
+  packet.events.erase(step, packet.events.end());
+  if (!order.changedAnything()) return;
+  const std::string& name = streams_[stream].name;
+  const auto known = std::find_if(faults_.begin(), faults_.end(), [&](const RecordingFault& fault) {
+    return fault.stream == name && fault.kind == "unsorted";
+  });
+  if (known == faults_.end()) {
+    faults_.push_back({name, "unsorted", 0.0, order.text()});
+  } else {
+    known->text = order.text();
+  }
+}
+
+bool Aedat4Reader::handOutRest(Packet& packet) {
+  if (rest_.empty()) return false;
+  packet.stream = rest_stream_;
+  packet.imu_samples.clear();
+  packet.events.clear();
+  std::swap(packet.events, rest_);
+  finishEvents(packet.stream, packet);
+  return true;
+}
+
+// The file may not say how many there are.
+void Aedat4Reader::countListed(std::size_t stream, std::string_view content) {
+  StreamState& state = states_[stream];
+  state.elements += aedat::countTriggers(content).value_or(0);
+  streams_[stream].messages = state.elements;
+}
+
+bool Aedat4Reader::read(Packet& packet) {
+  if (handOutRest(packet)) return true;
+  PacketHeader header;
+  std::string_view content;
+  while (nextPacket(header)) {
+    const auto found = stream_of_id_.find(header.stream);
+    if (found == stream_of_id_.end()) {
+      addFault(
+          "", "corrupt",
+          fmt::format("The packet at byte {} is of stream {}, which the file does not list; it is left out.",
+                      header.position, header.stream));
+      continue;
+    }
+    const std::size_t stream = found->second;
+    const StreamType type = streams_[stream].type;
+    const bool triggers = type == StreamType::Triggers;
+    const bool wanted = states_[stream].selected && (type == StreamType::Events || type == StreamType::Imu);
+    if (!(wanted || triggers) || !unpack(header, content)) continue;
+    if (triggers) {
+      countListed(stream, content);
+    } else if (!decode(stream, content, packet)) {
+      addFault(
+          streams_[stream].name, "corrupt",
+          fmt::format("The content of the packet at byte {} is damaged; it is left out.", header.position));
+    } else if (!packet.events.empty() || !packet.imu_samples.empty()) {
+      return true;
+    }
+  }
+  packet.events.clear();
+  packet.imu_samples.clear();
+  return false;
+}
+
+double Aedat4Reader::fractionRead() const {
+  const std::uint64_t end = table_position_ != 0 ? table_position_ : file_size_;
+  return std::min(1.0, static_cast<double>(position_) / static_cast<double>(std::max<std::uint64_t>(1, end)));
+}
+
+void Aedat4Reader::addFault(const std::string& stream, const std::string& kind, const std::string& text) {
+  const auto alike = [&](const RecordingFault& fault) {
+    return fault.stream == stream && fault.kind == kind;
+  };
+  if (std::count_if(faults_.begin(), faults_.end(), alike) < kMostAlikeFaults)
+    faults_.push_back({stream, kind, 0.0, text});
+}
+
+}  // namespace evical

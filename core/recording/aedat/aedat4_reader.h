@@ -1,0 +1,84 @@
+// AEDAT4, as iniVation's DV records it: events, IMU samples (in g and deg/s), frames and triggers of one or
+// several cameras; the latter two are listed only. The table at the end is used where it is there and whole,
+// and not needed.
+#pragma once
+
+#include "core/recording/aedat/packet_compression.h"
+#include "core/recording/aedat/packets.h"
+#include "core/recording/aedat/stream_description.h"
+#include "core/recording/event_order.h"
+#include "core/recording/recording_reader.h"
+
+#include <cstdint>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace evical {
+
+class Aedat4Reader : public RecordingReader {
+ public:
+  explicit Aedat4Reader(const std::filesystem::path& path);
+
+  const std::vector<StreamInfo>& streams() const override { return streams_; }
+  void select(const std::vector<std::size_t>& streams) override;
+  bool read(Packet& packet) override;
+  double fractionRead() const override;
+  const std::vector<RecordingFault>& faults() const override { return faults_; }
+  std::string format() const override { return "aedat4"; }
+
+ private:
+  struct PacketHeader {
+    std::int32_t stream = 0;
+    std::int32_t size = 0;
+    std::uint64_t position = 0;
+    std::uint64_t dataPosition() const { return position + aedat::kPacketHeader_bytes; }
+    std::uint64_t end() const { return dataPosition() + static_cast<std::uint64_t>(size); }
+  };
+  enum class HeaderState { Good, Cut, Damaged, End };
+  struct StreamState {
+    bool selected = true;
+    std::uint64_t packets = 0, elements = 0;  // of frames and triggers, gone by
+    EventOrder order;
+  };
+  struct Listed {
+    std::uint64_t packets = 0, elements = 0, first_position = 0;
+  };
+
+  bool readBytes(std::uint64_t position, std::uint64_t count, std::string& bytes);
+  aedat::FileHeader readFileHeader();
+  std::map<std::int32_t, Listed> listFromTable(std::int64_t position);
+  std::map<std::int32_t, Listed> listByScan();
+  void addStreams(std::vector<aedat::StreamDescription> described,
+                  const std::map<std::int32_t, Listed>& listed);
+  std::string typeOfPacket(std::uint64_t position);
+  HeaderState readHeader(std::uint64_t position, PacketHeader& header);
+  bool looksLikeData(std::uint64_t position, std::int32_t size);
+  std::uint64_t scanForPacket(std::uint64_t from);
+  void resumeBehind(std::uint64_t position);
+  bool nextPacket(PacketHeader& header);
+  bool skipDamage(const PacketHeader& header, HeaderState state);
+  bool unpack(const PacketHeader& header, std::string_view& content);
+  bool decode(std::size_t stream, std::string_view content, Packet& packet);
+  void finishEvents(std::size_t stream, Packet& packet);
+  void countListed(std::size_t stream, std::string_view content);
+  bool handOutRest(Packet& packet);
+  void addFault(const std::string& stream, const std::string& kind, const std::string& text);
+
+  std::string path_;
+  std::ifstream file_;
+  std::uint64_t file_size_ = 0, data_position_ = 0, position_ = 0;
+  std::uint64_t table_position_ = 0;  // 0: none, or damaged
+  aedat::Compression compression_ = aedat::Compression::None;
+  std::unique_ptr<aedat::Unpacker> unpacker_;
+  std::vector<StreamInfo> streams_;
+  std::vector<StreamState> states_;
+  std::map<std::int32_t, std::size_t> stream_of_id_;
+  std::string header_bytes_, packed_;
+  std::vector<Event> rest_;  // behind a large step back in time
+  std::size_t rest_stream_ = 0;
+  std::vector<RecordingFault> faults_;
+};
+
+}  // namespace evical

@@ -1,0 +1,30 @@
+// What the XML in the header of an AEDAT4 file says about its streams.
+#pragma once
+
+#include "core/geometry/camera_model.h"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace evical::aedat {
+
+struct StreamDescription {
+  std::int32_t id = 0;
+  std::string name;    // originalOutputName
+  std::string type;    // typeIdentifier: "EVTS", "IMUS", ...
+  std::string source;  // model and serial number: "DAVIS346_00000002"
+  Resolution size_px;
+};
+
+// By id; empty where the text is none of DV's. Tolerant: what it does not understand it skips.
+std::vector<StreamDescription> parseDescriptions(std::string_view xml);
+
+// The text that DV and we read back.
+std::string descriptionsXml(const std::vector<StreamDescription>& streams, std::string_view compression);
+
+// The streams' names as people see them in DV, made unique by the source, then by the id.
+std::vector<std::string> uniqueNames(const std::vector<StreamDescription>& streams);
+
+}  // namespace evical::aedat

@@ -1,0 +1,36 @@
+#include "core/recording/event_order.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace evical {
+namespace {
+
+constexpr std::int64_t kLargestSorted_ns = 10'000'000;
+
+}  // namespace
+
+std::size_t EventOrder::arrange(std::span<Event> events) {
+  const std::uint64_t before = disordered_;
+  std::size_t end = events.empty() ? 0 : 1;
+  for (; end < events.size(); ++end) {
+    const std::int64_t back_ns = events[end - 1].time_ns - events[end].time_ns;
+    if (back_ns <= 0) continue;
+    if (back_ns > kLargestSorted_ns) break;
+    ++disordered_;
+    largest_ns_ = std::max(largest_ns_, back_ns);
+  }
+  if (disordered_ != before) {
+    std::stable_sort(events.begin(), events.begin() + static_cast<std::ptrdiff_t>(end),
+                     [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; });
+  }
+  return end;
+}
+
+std::string EventOrder::text() const {
+  return fmt::format("Time runs backwards {} times within packets, by {:.3f} ms at most; sorted.",
+                     disordered_, 1e-6 * static_cast<double>(largest_ns_));
+}
+
+}  // namespace evical
