@@ -2,6 +2,7 @@
 #include "core/base/nearest_name.h"
 #include "core/recording/aedat/aedat4_reader.h"
 #include "core/recording/event_stream/event_stream_reader.h"
+#include "core/recording/hdf5/hdf5_reader.h"
 #include "core/recording/prophesee/raw_header.h"
 #include "core/recording/prophesee/raw_reader.h"
 #include "core/recording/recording_reader.h"
@@ -19,8 +20,9 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr const char* kReadable =
-    "Readable are ROS 1 bags (format 2.0), AEDAT4, Prophesee RAW and DAT, Event Stream, "
-    "and text or CSV: a folder with events.txt and imu.txt (or .csv), or one such file.";
+    "Readable are ROS 1 bags (format 2.0), AEDAT4, Prophesee RAW and DAT, HDF5 (DSEC, TUM-VIE, M3ED, MVSEC, "
+    "Metavision), "
+    "Event Stream, and text or CSV: a folder with events.txt and imu.txt (or .csv), or one such file.";
 
 // What people may well hand us, by its first bytes.
 struct OtherFormat {
@@ -39,7 +41,6 @@ constexpr OtherFormat kOtherFormats[] = {
     {"\x89MCAP"sv, "this is an MCAP file, which cannot be read yet", kReadable},
     {"#!AER-DAT"sv, "this is an AEDAT file of an old version",
      "Convert it to AEDAT4 with iniVation's DV or dv-processing."},
-    {"\x89HDF\r\n\x1A\n"sv, "this is an HDF5 file, which cannot be read yet", kReadable},
 };
 
 std::string firstBytes(const std::filesystem::path& path) {
@@ -53,6 +54,10 @@ std::string firstBytes(const std::filesystem::path& path) {
 
 std::unique_ptr<RecordingReader> openFolder(const std::filesystem::path& path) {
   if (isTextFolder(path)) return std::make_unique<TextTableReader>(path);
+  if (std::filesystem::exists(path / "events.txt") || std::filesystem::exists(path / "imu.txt")) {
+    return std::make_unique<TextTableReader>(path);
+  }
+  if (isTumVieFolder(path)) return std::make_unique<Hdf5Reader>(path);
   if (std::filesystem::exists(path / "metadata.yaml")) {
     throw badInput(path.string(), "this is a ROS 2 bag, which cannot be read yet", kReadable);
   }
@@ -76,6 +81,7 @@ std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path
   if (start.starts_with(rosbag::kMagic)) return std::make_unique<BagReader>(path);
   if (start.starts_with("% ")) return openProphesee(path);
   if (start.starts_with(kEventStreamMagic)) return openEventStream(path);
+  if (start.starts_with("\x89HDF\r\n\x1A\n"sv)) return std::make_unique<Hdf5Reader>(path);
   if (start.starts_with(aedat::kMagic)) return std::make_unique<Aedat4Reader>(path);
   for (const OtherFormat& format : kOtherFormats) {
     if (start.starts_with(format.magic)) throw badInput(path.string(), format.problem, format.advice);

@@ -36,6 +36,11 @@ std::unique_ptr<RecordingWriter> createBag(const std::filesystem::path& path,
 std::unique_ptr<RecordingWriter> createAedat4(const std::filesystem::path& path,
                                               const std::vector<StreamInfo>& streams, bool zstd);
 
+// HDF5 in DSEC's layout: one camera and, in a group "imu" that DSEC itself does not have, one IMU in SI
+// units. Times are rounded to the us and at most 71 minutes behind the first event; none is before it.
+std::unique_ptr<RecordingWriter> createDsec(const std::filesystem::path& path,
+                                            const std::vector<StreamInfo>& streams);
+
 // "events.txt" and "imu.txt" in an existing folder; at most one stream of each type.
 std::unique_ptr<RecordingWriter> createText(const std::filesystem::path& folder,
                                             const std::vector<StreamInfo>& streams);

@@ -1,0 +1,162 @@
+#include "core/recording/hdf5/hdf5_dataset.h"
+
+#include "core/base/error.h"
+#include "core/recording/hdf5/hdf5_filters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace evical::hdf5 {
+namespace {
+
+constexpr std::size_t kMostDatasets = 10'000;
+constexpr std::uint64_t kLeastBlock_rows = 65'536, kLargestBlock_rows = 1 << 20;
+constexpr std::size_t kLeastCache_bytes = std::size_t{1} << 20, kLargestCache_bytes = std::size_t{1} << 28;
+constexpr std::size_t kLargestChunk_bytes = std::size_t{1} << 30;
+
+struct Walk {
+  hid_t file;
+  std::vector<DatasetInfo> datasets;
+};
+
+bool describe(hid_t file, const char* path, DatasetInfo& info) {
+  const Handle dataset(H5Dopen2(file, path, H5P_DEFAULT), H5Dclose);
+  if (!dataset.valid()) return false;
+  const Handle space(H5Dget_space(dataset), H5Sclose), type(H5Dget_type(dataset), H5Tclose);
+  const int rank = space.valid() ? H5Sget_simple_extent_ndims(space) : -1;
+  if (rank < 0 || !type.valid()) return false;
+  info.path = path;
+  info.type_class = H5Tget_class(type);
+  std::vector<hsize_t> extent(static_cast<std::size_t>(rank));
+  H5Sget_simple_extent_dims(space, extent.data(), nullptr);
+  info.extent.assign(extent.begin(), extent.end());
+  const int members = info.type_class == H5T_COMPOUND ? H5Tget_nmembers(type) : 0;
+  for (int i = 0; i < members; ++i) {
+    char* name = H5Tget_member_name(type, static_cast<unsigned>(i));
+    if (name) info.members.emplace_back(name);
+    H5free_memory(name);
+  }
+  return true;
+}
+
+herr_t visit(hid_t, const char* path, const H5O_info_t* object, void* data) {
+  Walk& walk = *static_cast<Walk*>(data);
+  if (object->type != H5O_TYPE_DATASET) return 0;
+  if (walk.datasets.size() >= kMostDatasets) return 1;
+  DatasetInfo info;
+  if (describe(walk.file, path, info)) walk.datasets.push_back(std::move(info));
+  return 0;
+}
+
+// Throws if a filter is not there.
+void requireFilters(hid_t creation, const std::string& place, const std::string& path) {
+  const int count = H5Pget_nfilters(creation);
+  for (int i = 0; i < count; ++i) {
+    unsigned flags = 0;
+    std::size_t parameters = 0;
+    const H5Z_filter_t filter =
+        H5Pget_filter2(creation, static_cast<unsigned>(i), &flags, &parameters, nullptr, 0, nullptr, nullptr);
+    if (filter >= 0 && H5Zfilter_avail(filter) > 0) continue;
+    throw badInput(place,
+                   fmt::format("the dataset {} is packed with the HDF5 filter {}, which is not there", path,
+                               filterName(filter)),
+                   "Install HDF5's plugin for it, or pack the file anew with gzip (h5repack -f GZIP=1).");
+  }
+}
+
+}  // namespace
+
+std::vector<DatasetInfo> listDatasets(hid_t file, const std::string& place) {
+  Walk walk{file, {}};
+  if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, visit, &walk, H5O_INFO_BASIC) < 0) {
+    throw badInput(place, fmt::format("the HDF5 file's tree is damaged: {}", lastProblem()));
+  }
+  return std::move(walk.datasets);
+}
+
+DatasetRows::DatasetRows(hid_t file, const DatasetInfo& info, hid_t memory_type, const std::string& place)
+    : path_(info.path), is_table_(info.extent.size() == 2) {
+  if (info.extent.empty() || info.extent.size() > 2)
+    throw badInput(place, path_ + " is neither list nor table");
+  rows_ = info.extent[0];
+  if (is_table_) columns_ = info.extent[1];
+  memory_type_ = Handle(H5Tcopy(memory_type), H5Tclose);
+  row_bytes_ = H5Tget_size(memory_type_) * columns_;
+  dataset_ = Handle(H5Dopen2(file, path_.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!dataset_.valid()) throw badInput(place, fmt::format("{} cannot be opened: {}", path_, lastProblem()));
+  readChunkLayout(place);
+  const Handle type(H5Dget_type(dataset_), H5Tclose);
+  H5T_cdata_t* conversion = nullptr;
+  if (!H5Tfind(type, memory_type_, &conversion)) {
+    throw badInput(place, fmt::format("{} does not hold numbers", path_));
+  }
+  if (rows_ > 0 && H5Dget_storage_size(dataset_) == 0) {
+    throw badInput(place, fmt::format("{} states {} rows and stores none", path_, rows_),
+                   "The recording was not finished; nothing of it can be read.");
+  }
+  // Opened anew with room for at least one unpacked chunk, so that none is unpacked twice.
+  const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
+  H5Pset_chunk_cache(access, 521, std::clamp(2 * chunk_bytes_, kLeastCache_bytes, kLargestCache_bytes), 1.0);
+  dataset_ = Handle(H5Dopen2(file, path_.c_str(), access), H5Dclose);
+}
+
+void DatasetRows::readChunkLayout(const std::string& place) {
+  const Handle creation(H5Dget_create_plist(dataset_), H5Pclose);
+  const Handle type(H5Dget_type(dataset_), H5Tclose);
+  requireFilters(creation, place, path_);
+  block_rows_ = kLeastBlock_rows;
+  if (H5Pget_layout(creation) != H5D_CHUNKED) return;
+  std::array<hsize_t, 2> chunk{1, 1};
+  const int rank = H5Pget_chunk(creation, 2, chunk.data());
+  chunk_bytes_ = H5Tget_size(type) * chunk[0] * (rank == 2 ? chunk[1] : 1);
+  if (chunk[0] == 0 || chunk_bytes_ > kLargestChunk_bytes) {
+    throw badInput(place, fmt::format("the chunks of {} are too large: {} bytes", path_, chunk_bytes_));
+  }
+  const std::uint64_t chunks = (kLeastBlock_rows + chunk[0] - 1) / chunk[0];
+  block_rows_ = std::min<std::uint64_t>(kLargestBlock_rows, chunks * chunk[0]);
+}
+
+std::uint64_t DatasetRows::blockEnd(std::uint64_t row) const {
+  return std::min(rows_, (row / block_rows_ + 1) * block_rows_);
+}
+
+std::span<const std::byte> DatasetRows::from(std::uint64_t row) {
+  const std::uint64_t begin = row / block_rows_ * block_rows_;
+  if (row >= rows_) return {};
+  if (!is_loaded_ || begin != block_begin_) load(begin);
+  if (!is_loaded_) return {};
+  return std::span(block_).subspan(static_cast<std::size_t>(row - begin) * row_bytes_);
+}
+
+void DatasetRows::load(std::uint64_t row) {
+  const std::uint64_t count = blockEnd(row) - row;
+  const std::array<hsize_t, 2> start{row, 0}, extent{count, columns_};
+  const int rank = is_table_ ? 2 : 1;
+  const Handle file_space(H5Dget_space(dataset_), H5Sclose);
+  const Handle memory_space(H5Screate_simple(rank, extent.data(), nullptr), H5Sclose);
+  block_begin_ = row;
+  block_.resize(static_cast<std::size_t>(count) * row_bytes_);
+  const ExpectedChunk expected(chunk_bytes_);
+  is_loaded_ =
+      H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr) >= 0 &&
+      H5Dread(dataset_, memory_type_, memory_space, file_space, H5P_DEFAULT, block_.data()) >= 0;
+  if (is_loaded_) return;
+  problem_ = placeAndReason(row);
+}
+
+std::string DatasetRows::placeAndReason(std::uint64_t row) const {
+  const std::string reason = lastProblem();  // asking for the place forgets it
+  const std::array<hsize_t, 2> start{row, 0};
+  unsigned mask = 0;
+  haddr_t address = HADDR_UNDEF;
+  hsize_t bytes = 0;
+  const bool known = chunk_bytes_ > 0 &&
+                     H5Dget_chunk_info_by_coord(dataset_, start.data(), &mask, &address, &bytes) >= 0 &&
+                     address != HADDR_UNDEF;
+  return known ? fmt::format("{} at byte {} ({})", path_, address, reason)
+               : fmt::format("{} ({})", path_, reason);
+}
+
+}  // namespace evical::hdf5

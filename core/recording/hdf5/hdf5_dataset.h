@@ -1,0 +1,72 @@
+// One dataset of a file, read in blocks along its chunks.
+#pragma once
+
+#include "core/recording/hdf5/hdf5_library.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace evical::hdf5 {
+
+// What is known without reading any data.
+struct DatasetInfo {
+  std::string path;  // in the file, without the leading '/'
+  std::vector<std::uint64_t> extent;
+  H5T_class_t type_class = H5T_NO_CLASS;
+  std::vector<std::string> members;  // of a compound type
+  std::string name() const { return path.substr(path.rfind('/') + 1); }
+  std::string folder() const { return path.substr(0, path.size() - name().size()); }  // "" or "a/b/"
+  bool isReal() const { return type_class == H5T_FLOAT; }
+};
+
+// All datasets; throws CalibrationError (BadInput) where the file's tree cannot be walked.
+std::vector<DatasetInfo> listDatasets(hid_t file, const std::string& place);
+
+// Rows of one column (a list) or several (a table of rank 2), converted by HDF5 to `memory_type`.
+class DatasetRows {
+ public:
+  // Throws CalibrationError (BadInput) if there is no way to read it, e.g. an unknown filter.
+  DatasetRows(hid_t file, const DatasetInfo& info, hid_t memory_type, const std::string& place);
+
+  std::uint64_t rows() const { return rows_; }
+
+  // Bytes of the rows from `row` to the end of its block; none if the block cannot be read: then problem()
+  // says why.
+  std::span<const std::byte> from(std::uint64_t row);
+  std::uint64_t blockEnd(std::uint64_t row) const;
+  std::size_t rowBytes() const { return row_bytes_; }
+  const std::string& problem() const { return problem_; }
+
+ private:
+  void readChunkLayout(const std::string& place);
+  void load(std::uint64_t row);
+  std::string placeAndReason(std::uint64_t row) const;
+
+  std::string path_;
+  Handle dataset_, memory_type_;
+  std::uint64_t rows_ = 0, columns_ = 1;
+  bool is_table_ = false;
+  std::size_t row_bytes_ = 0;
+  std::uint64_t block_rows_ = 0;
+  std::size_t chunk_bytes_ = 0;  // 0: in one piece
+  std::vector<std::byte> block_;
+  std::uint64_t block_begin_ = 0;
+  bool is_loaded_ = false;
+  std::string problem_;
+};
+
+// The same with the numbers' type.
+template <class Number>
+class Rows : public DatasetRows {
+ public:
+  using DatasetRows::DatasetRows;
+  std::span<const Number> numbersFrom(std::uint64_t row) {
+    const std::span<const std::byte> bytes = from(row);
+    return {reinterpret_cast<const Number*>(bytes.data()), bytes.size() / sizeof(Number)};
+  }
+};
+
+}  // namespace evical::hdf5

@@ -1,0 +1,223 @@
+#include "core/recording/hdf5/ecf_decoder.h"
+#include "core/recording/hdf5/hdf5_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace evical::hdf5 {
+namespace {
+
+constexpr std::uint64_t kPacketRows = 32'768;
+constexpr std::int64_t kNanoseconds = 100'000'000'000'000'000;  // us would be 3000 years
+constexpr double kSecondsSpan_s = 1e6;                          // no recording is 12 days long
+constexpr std::uint16_t kOutside_px = 65'535;
+constexpr double kLargestTime_ns = 9.2e18;
+
+std::uint16_t pixel(std::int32_t value) {
+  return value >= 0 && value < kOutside_px ? static_cast<std::uint16_t>(value) : kOutside_px;
+}
+
+std::uint16_t pixel(double value) {
+  return value >= 0.0 && value < kOutside_px ? static_cast<std::uint16_t>(value) : kOutside_px;
+}
+
+// `last` may be unreadable: then as the format has it.
+void chooseUnit(double first, double last, TimeScale& time) {
+  if (time.is_real) {
+    if (std::abs(last - first) > kSecondsSpan_s) time.factor_ns = 1000.0;
+    time.unit_ns = 1;
+  } else if (std::abs(first) > static_cast<double>(kNanoseconds)) {
+    time.unit_ns = 1;
+  }
+}
+
+class Columns : public EventTable {
+ public:
+  Columns(hid_t file, const std::array<DatasetInfo, 4>& columns, std::int64_t offset_us,
+          const std::string& place)
+      : x_(file, columns[0], H5T_NATIVE_INT32, place),
+        y_(file, columns[1], H5T_NATIVE_INT32, place),
+        p_(file, columns[3], H5T_NATIVE_INT8, place) {
+    time_.is_real = columns[2].isReal();
+    if (time_.is_real) {
+      real_t_.emplace(file, columns[2], H5T_NATIVE_DOUBLE, place);
+      rows_ = real_t_->rows();
+    } else {
+      whole_t_.emplace(file, columns[2], H5T_NATIVE_INT64, place);
+      rows_ = whole_t_->rows();
+    }
+    const std::array<std::uint64_t, 4> lengths{x_.rows(), y_.rows(), rows_, p_.rows()};
+    rows_ = *std::min_element(lengths.begin(), lengths.end());
+    if (*std::max_element(lengths.begin(), lengths.end()) != rows_) {
+      problem_ = fmt::format("x, y, t, p have {}, {}, {}, {} rows; the first {} are read", lengths[0],
+                             lengths[1], lengths[2], lengths[3], rows_);
+    }
+    if (rows_ == 0) return;
+    const double first = timeOf(0), last = time_.is_real ? timeOf(rows_ - 1) : first;
+    chooseUnit(first, last, time_);
+    time_.offset_ns = offset_us * 1000;
+  }
+
+  std::uint64_t rows() const override { return rows_; }
+
+  std::uint64_t load(std::uint64_t row, std::vector<Event>& events) override {
+    return time_.is_real ? loadWith(*real_t_, row, events) : loadWith(*whole_t_, row, events);
+  }
+
+ private:
+  double timeOf(std::uint64_t row) {
+    if (time_.is_real) {
+      const auto values = real_t_->numbersFrom(row);
+      return values.empty() ? 0.0 : values[0];
+    }
+    const auto values = whole_t_->numbersFrom(row);
+    return values.empty() ? 0.0 : static_cast<double>(values[0]);
+  }
+
+  template <class Time>
+  std::uint64_t loadWith(Rows<Time>& t, std::uint64_t row, std::vector<Event>& events) {
+    for (DatasetRows* column : {static_cast<DatasetRows*>(&x_), static_cast<DatasetRows*>(&y_),
+                                static_cast<DatasetRows*>(&t), static_cast<DatasetRows*>(&p_)}) {
+      if (!column->from(row).empty()) continue;
+      problem_ = column->problem();
+      return std::min(rows_, column->blockEnd(row));
+    }
+    const auto xs = x_.numbersFrom(row), ys = y_.numbersFrom(row);
+    const auto ts = t.numbersFrom(row);
+    const auto ps = p_.numbersFrom(row);
+    const auto count = static_cast<std::size_t>(
+        std::min<std::uint64_t>({xs.size(), ys.size(), ts.size(), ps.size(), kPacketRows, rows_ - row}));
+    const std::size_t begin = events.size();
+    events.resize(begin + count);
+    std::size_t used = begin, bad = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      Event& event = events[used];
+      if (!time_.convert(ts[i], event.time_ns)) {
+        ++bad;
+        continue;
+      }
+      event.x_px = pixel(xs[i]);
+      event.y_px = pixel(ys[i]);
+      event.brighter = ps[i] > 0;
+      ++used;
+    }
+    events.resize(used);
+    if (bad > 0) problem_ = fmt::format("{} rows from {} on have no time", bad, row);
+    return row + count;
+  }
+
+  Rows<std::int32_t> x_, y_;
+  Rows<std::int8_t> p_;
+  std::optional<Rows<std::int64_t>> whole_t_;
+  std::optional<Rows<double>> real_t_;
+  std::uint64_t rows_ = 0;
+};
+
+class EventRows : public EventTable {
+ public:
+  EventRows(hid_t file, const DatasetInfo& table, const std::string& place)
+      : values_(file, table, H5T_NATIVE_DOUBLE, place) {
+    time_.is_real = true;
+    const auto first = values_.numbersFrom(0);
+    const double first_time = first.empty() ? 0.0 : first[2];
+    const auto last = rows() == 0 ? first : values_.numbersFrom(rows() - 1);
+    if (!last.empty()) chooseUnit(first_time, last[2], time_);
+  }
+
+  std::uint64_t rows() const override { return values_.rows(); }
+
+  std::uint64_t load(std::uint64_t row, std::vector<Event>& events) override {
+    const auto values = values_.numbersFrom(row);
+    if (values.empty()) {
+      problem_ = values_.problem();
+      return values_.blockEnd(row);
+    }
+    const std::size_t count = std::min<std::size_t>(values.size() / 4, kPacketRows);
+    for (std::size_t i = 0; i < count; ++i) {
+      Event event{};
+      if (!time_.convert(values[4 * i + 2], event.time_ns)) {
+        problem_ = fmt::format("row {} has no time", row + i);
+        continue;
+      }
+      event.x_px = pixel(values[4 * i]);
+      event.y_px = pixel(values[4 * i + 1]);
+      event.brighter = values[4 * i + 3] > 0.0;
+      events.push_back(event);
+    }
+    return row + count;
+  }
+
+ private:
+  Rows<double> values_;
+};
+
+Handle compoundType() {
+  Handle type(H5Tcreate(H5T_COMPOUND, sizeof(EcfEvent)), H5Tclose);
+  H5Tinsert(type, "x", offsetof(EcfEvent, x), H5T_NATIVE_UINT16);
+  H5Tinsert(type, "y", offsetof(EcfEvent, y), H5T_NATIVE_UINT16);
+  H5Tinsert(type, "p", offsetof(EcfEvent, p), H5T_NATIVE_INT16);
+  H5Tinsert(type, "t", offsetof(EcfEvent, t), H5T_NATIVE_INT64);
+  return type;
+}
+
+class Compound : public EventTable {
+ public:
+  Compound(hid_t file, const DatasetInfo& list, const std::string& place)
+      : values_(file, list, compoundType(), place) {}
+
+  std::uint64_t rows() const override { return values_.rows(); }
+
+  std::uint64_t load(std::uint64_t row, std::vector<Event>& events) override {
+    const auto values = values_.numbersFrom(row);
+    if (values.empty()) {
+      problem_ = values_.problem();
+      return values_.blockEnd(row);
+    }
+    const std::size_t count = std::min<std::size_t>(values.size(), kPacketRows);
+    for (std::size_t i = 0; i < count; ++i) {
+      Event event{0, values[i].x, values[i].y, values[i].p > 0};
+      if (time_.convert(values[i].t, event.time_ns)) {
+        events.push_back(event);
+      } else {
+        problem_ = fmt::format("row {} has no time: its chunk holds fewer events than it should", row + i);
+      }
+    }
+    return row + count;
+  }
+
+ private:
+  Rows<EcfEvent> values_;
+};
+
+}  // namespace
+
+bool TimeScale::convert(std::int64_t time, std::int64_t& time_ns) const {
+  std::int64_t scaled_ns = 0;
+  return !__builtin_mul_overflow(time, unit_ns, &scaled_ns) &&
+         !__builtin_add_overflow(scaled_ns, offset_ns, &time_ns);
+}
+
+bool TimeScale::convert(double time, std::int64_t& time_ns) const {
+  const double scaled_ns = time * factor_ns;
+  if (!(std::abs(scaled_ns) < kLargestTime_ns)) return false;
+  return !__builtin_add_overflow(std::llround(scaled_ns), offset_ns, &time_ns);
+}
+
+std::unique_ptr<EventTable> openColumns(hid_t file, const std::array<DatasetInfo, 4>& columns,
+                                        std::int64_t offset_us, const std::string& place) {
+  return std::make_unique<Columns>(file, columns, offset_us, place);
+}
+
+std::unique_ptr<EventTable> openEventRows(hid_t file, const DatasetInfo& table, const std::string& place) {
+  return std::make_unique<EventRows>(file, table, place);
+}
+
+std::unique_ptr<EventTable> openCompound(hid_t file, const DatasetInfo& list, const std::string& place) {
+  return std::make_unique<Compound>(file, list, place);
+}
+
+}  // namespace evical::hdf5

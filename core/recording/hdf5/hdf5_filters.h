@@ -1,0 +1,32 @@
+// The compressions of HDF5 files that libhdf5 does not bring: Blosc, LZF and Metavision's ECF (reading only).
+#pragma once
+
+#include "core/recording/hdf5/hdf5_library.h"
+
+#include <cstddef>
+#include <string>
+
+namespace evical::hdf5 {
+
+inline constexpr H5Z_filter_t kLzf = 32000, kBlosc = 32001, kEcf = 0x8ECF;
+
+// In this process; more than once does no harm.
+void registerFilters();
+
+// How large a chunk must be unpacked, for what this thread reads meanwhile: libhdf5 copies as much out of
+// what a filter returns, without looking how much it is.
+class ExpectedChunk {
+ public:
+  explicit ExpectedChunk(std::size_t bytes);
+  ~ExpectedChunk();
+  ExpectedChunk(const ExpectedChunk&) = delete;
+  ExpectedChunk& operator=(const ExpectedChunk&) = delete;
+};
+
+// Chunks of `rows` elements of `element_bytes`, by Blosc with zstd and byte shuffle.
+void setBlosc(hid_t creation, std::size_t element_bytes, std::size_t chunk_bytes);
+
+// What people know a filter by: "32015 (Zstandard)".
+std::string filterName(H5Z_filter_t filter);
+
+}  // namespace evical::hdf5

@@ -1,0 +1,180 @@
+#include "core/base/error.h"
+#include "core/recording/hdf5/hdf5_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+namespace evical::hdf5 {
+namespace {
+
+constexpr std::size_t kPacketSamples = 10;
+constexpr std::int64_t kNanoseconds = 100'000'000'000'000'000;
+constexpr double kGravity_m_s2 = 9.80665;
+constexpr std::size_t kSamplesForGravity = 1000;
+
+// Times of either kind.
+class Times {
+ public:
+  Times(hid_t file, const DatasetInfo& info, TimeScale& time, const std::string& place) {
+    time.is_real = info.isReal();
+    if (time.is_real) {
+      real_.emplace(file, info, H5T_NATIVE_DOUBLE, place);
+      time.unit_ns = 1;
+      return;
+    }
+    whole_.emplace(file, info, H5T_NATIVE_INT64, place);
+    const auto first = whole_->numbersFrom(0);
+    if (!first.empty() && (first[0] > kNanoseconds || first[0] < -kNanoseconds)) time.unit_ns = 1;
+  }
+
+  DatasetRows& rows() { return real_ ? static_cast<DatasetRows&>(*real_) : *whole_; }
+
+  bool convert(std::uint64_t row, const TimeScale& time, std::int64_t& time_ns) {
+    return real_ ? time.convert(real_->numbersFrom(row)[0], time_ns)
+                 : time.convert(whole_->numbersFrom(row)[0], time_ns);
+  }
+
+ private:
+  std::optional<Rows<std::int64_t>> whole_;
+  std::optional<Rows<double>> real_;
+};
+
+// Rate and acceleration each begin at a column of a table; both tables may be the same.
+class ImuDatasets : public ImuTable {
+ public:
+  ImuDatasets(hid_t file, const DatasetInfo& times, const DatasetInfo& rates,
+              const DatasetInfo* accelerations, const std::string& place)
+      : times_(file, times, time_, place), first_(file, rates, H5T_NATIVE_DOUBLE, place) {
+    if (accelerations) second_.emplace(file, *accelerations, H5T_NATIVE_DOUBLE, place);
+    const std::array<std::uint64_t, 3> lengths{times_.rows().rows(), first_.rows(),
+                                               second_ ? second_->rows() : first_.rows()};
+    rows_ = *std::min_element(lengths.begin(), lengths.end());
+    if (*std::max_element(lengths.begin(), lengths.end()) != rows_) {
+      problem_ = fmt::format("times and values differ in length; the first {} rows are read", rows_);
+    }
+    if (!second_) findGravity();
+  }
+
+  void load(std::vector<ImuSample>& samples) override {
+    while (row_ < rows_ && samples.size() < kPacketSamples) {
+      if (skipDamage()) continue;
+      const auto first = first_.numbersFrom(row_);
+      const double* rate = first.data() + rate_column_;
+      const double* acceleration =
+          second_ ? second_->numbersFrom(row_).data() : first.data() + 3 - rate_column_;
+      ImuSample sample;
+      sample.angular_rate_rad_s = Eigen::Vector3d(rate[0], rate[1], rate[2]);
+      sample.specific_force_m_s2 = Eigen::Vector3d(acceleration[0], acceleration[1], acceleration[2]);
+      const bool good = times_.convert(row_, time_, sample.time_ns) &&
+                        sample.angular_rate_rad_s.allFinite() && sample.specific_force_m_s2.allFinite();
+      if (good) samples.push_back(sample);
+      if (!good) problem_ = fmt::format("row {} of the IMU holds no numbers", row_);
+      ++row_;
+    }
+  }
+
+ private:
+  bool skipDamage() {
+    for (DatasetRows* rows : {&times_.rows(), static_cast<DatasetRows*>(&first_),
+                              static_cast<DatasetRows*>(second_ ? &*second_ : &first_)}) {
+      if (!rows->from(row_).empty()) continue;
+      problem_ = rows->problem();
+      row_ = rows->blockEnd(row_);
+      return true;
+    }
+    return false;
+  }
+
+  // The three columns whose norm is nearer to gravity's are the acceleration.
+  void findGravity() {
+    const auto values = first_.numbersFrom(0);
+    double error_first = 0.0, error_second = 0.0;
+    for (std::size_t i = 0; i < std::min(values.size() / 6, kSamplesForGravity); ++i) {
+      const double* row = values.data() + 6 * i;
+      error_first += std::abs(std::hypot(row[0], row[1], row[2]) - kGravity_m_s2);
+      error_second += std::abs(std::hypot(row[3], row[4], row[5]) - kGravity_m_s2);
+    }
+    rate_column_ = error_first <= error_second ? 3 : 0;
+  }
+
+  Times times_;
+  Rows<double> first_;
+  std::optional<Rows<double>> second_;
+  std::uint64_t rows_ = 0, row_ = 0;
+  std::size_t rate_column_ = 0;
+};
+
+class ImuText : public ImuTable {
+ public:
+  explicit ImuText(const std::filesystem::path& path) : file_(path) {
+    if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions.");
+  }
+
+  void load(std::vector<ImuSample>& samples) override {
+    while (samples.size() < kPacketSamples) {
+      file_.getline(line_.data(), static_cast<std::streamsize>(line_.size()));
+      const bool too_long = file_.fail() && !file_.eof() && file_.gcount() > 0;
+      if (file_.fail() && !too_long) return;
+      ++number_;
+      ImuSample sample;
+      if (too_long) skipLine();
+      if (!too_long && parse(sample)) {
+        samples.push_back(sample);
+      } else if (line_[0] != '#' && line_[0] != '\0' && number_ > 1) {
+        problem_ = fmt::format("line {} of the IMU's text is not \"t gyro acc temperature\"", number_);
+      }
+    }
+  }
+
+ private:
+  void skipLine() {
+    while (file_.fail() && !file_.eof() && !file_.bad()) {
+      file_.clear();
+      file_.getline(line_.data(), static_cast<std::streamsize>(line_.size()));
+    }
+  }
+
+  // Numbers apart by blanks or commas.
+  bool parse(ImuSample& sample) const {
+    std::array<double, 7> values{};
+    const char* at = line_.data();
+    const char* end = at + std::char_traits<char>::length(at);
+    for (double& value : values) {
+      while (at != end && (*at == ' ' || *at == '\t' || *at == ',')) ++at;
+      const auto [next, error] = std::from_chars(at, end, value);
+      if (error != std::errc() || !std::isfinite(value)) return false;
+      at = next;
+    }
+    TimeScale us;
+    us.factor_ns = 1000.0;
+    sample.angular_rate_rad_s = Eigen::Vector3d(values[1], values[2], values[3]);
+    sample.specific_force_m_s2 = Eigen::Vector3d(values[4], values[5], values[6]);
+    return us.convert(values[0], sample.time_ns);
+  }
+
+  std::ifstream file_;
+  std::array<char, 1024> line_{};
+  std::uint64_t number_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<ImuTable> openImuColumns(hid_t file, const DatasetInfo& times, const DatasetInfo& rates,
+                                         const DatasetInfo& accelerations, const std::string& place) {
+  return std::make_unique<ImuDatasets>(file, times, rates, &accelerations, place);
+}
+
+std::unique_ptr<ImuTable> openImuRows(hid_t file, const DatasetInfo& times, const DatasetInfo& rows,
+                                      const std::string& place) {
+  return std::make_unique<ImuDatasets>(file, times, rows, nullptr, place);
+}
+
+std::unique_ptr<ImuTable> openImuText(const std::filesystem::path& path) {
+  return std::make_unique<ImuText>(path);
+}
+
+}  // namespace evical::hdf5

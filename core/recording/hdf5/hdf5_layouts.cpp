@@ -1,0 +1,227 @@
+#include "core/recording/hdf5/hdf5_layouts.h"
+
+#include "core/base/error.h"
+#include "core/base/nearest_name.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <initializer_list>
+#include <optional>
+
+namespace evical::hdf5 {
+namespace {
+
+constexpr int kLargestSide_px = 65536;
+constexpr std::size_t kMostNamed = 12;
+
+std::string withoutSlash(std::string folder) {
+  if (!folder.empty()) folder.pop_back();
+  return folder;
+}
+
+// A scalar, or the first few numbers of a list; empty if there is no such dataset.
+std::vector<std::int64_t> readNumbers(hid_t file, const std::string& path, std::size_t most) {
+  const Handle dataset(H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!dataset.valid()) return {};
+  const Handle space(H5Dget_space(dataset), H5Sclose);
+  const hssize_t count = H5Sget_simple_extent_npoints(space);
+  if (count < 1 || static_cast<std::size_t>(count) > most) return {};
+  std::vector<std::int64_t> numbers(static_cast<std::size_t>(count));
+  if (H5Dread(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()) < 0) return {};
+  return numbers;
+}
+
+int readSide(hid_t object, const char* name) {
+  if (H5Aexists(object, name) <= 0) return 0;
+  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  const Handle space(H5Aget_space(attribute), H5Sclose);
+  std::int64_t side = 0;
+  if (H5Sget_simple_extent_npoints(space) != 1) return 0;
+  if (H5Aread(attribute, H5T_NATIVE_INT64, &side) < 0 || side < 1 || side > kLargestSide_px) return 0;
+  return static_cast<int>(side);
+}
+
+// An attribute of text, of fixed or variable length.
+std::string readText(hid_t object, const char* name) {
+  if (H5Aexists(object, name) <= 0) return {};
+  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  const Handle type(H5Aget_type(attribute), H5Tclose), space(H5Aget_space(attribute), H5Sclose);
+  if (H5Tget_class(type) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1) return {};
+  if (H5Tis_variable_str(type) > 0) {
+    char* text = nullptr;
+    if (H5Aread(attribute, type, static_cast<void*>(&text)) < 0 || !text) return {};
+    std::string copy(text);
+    H5free_memory(text);
+    return copy;
+  }
+  constexpr std::size_t kLongest = 1 << 16;
+  std::string text(H5Tget_size(type), '\0');
+  if (text.size() > kLongest || H5Aread(attribute, type, text.data()) < 0) return {};
+  return text.substr(0, text.find('\0'));
+}
+
+// "640x480"
+Resolution parseGeometry(const std::string& text) {
+  Resolution size_px;
+  const char* end = text.data() + text.size();
+  const auto [middle, error] = std::from_chars(text.data(), end, size_px.width_px);
+  if (error != std::errc() || middle == end || *middle != 'x') return {};
+  const auto last = std::from_chars(middle + 1, end, size_px.height_px);
+  const bool good = last.ec == std::errc() && size_px.width_px > 0 && size_px.height_px > 0 &&
+                    size_px.width_px <= kLargestSide_px && size_px.height_px <= kLargestSide_px;
+  return good ? size_px : Resolution{};
+}
+
+class LayoutFinder {
+ public:
+  LayoutFinder(hid_t file, const std::string& place)
+      : file_(file), place_(place), datasets_(listDatasets(file, place)) {}
+
+  std::vector<FoundStream> run() {
+    for (const DatasetInfo& dataset : datasets_) {
+      const std::size_t rank = dataset.extent.size();
+      if (dataset.type_class == H5T_COMPOUND) addCompound(dataset);
+      if (rank == 1) addColumns(dataset);
+      if (rank == 2) addTable(dataset);
+      if (rank >= 3) addListed(dataset, StreamType::Frames);
+    }
+    const auto isReadable = [](const FoundStream& stream) { return stream.events || stream.imu; };
+    if (std::none_of(found_.begin(), found_.end(), isReadable)) failWithNames();
+    return std::move(found_);
+  }
+
+ private:
+  const DatasetInfo* find(const std::string& folder, std::initializer_list<const char*> names) const {
+    for (const char* name : names) {
+      for (const DatasetInfo& dataset : datasets_)
+        if (dataset.path == folder + name) return &dataset;
+    }
+    return nullptr;
+  }
+
+  const DatasetInfo* findList(const std::string& folder, std::initializer_list<const char*> names) const {
+    const DatasetInfo* dataset = find(folder, names);
+    return dataset && dataset->extent.size() == 1 ? dataset : nullptr;
+  }
+
+  FoundStream& add(std::string name, StreamType type, std::string message) {
+    StreamInfo info;
+    info.name = name.empty() ? streamTypeName(type) : std::move(name);
+    info.type = type;
+    info.message = std::move(message);
+    found_.push_back({info, nullptr, nullptr});
+    return found_.back();
+  }
+
+  // `dataset` may be the x of a camera's x, y, t, p, or the times of an IMU.
+  void addColumns(const DatasetInfo& dataset) {
+    const std::string folder = dataset.folder();
+    if (dataset.name() == "ts") addImuColumns(dataset);
+    if (dataset.name() != "x" && dataset.name() != "xs") return;
+    const DatasetInfo* y = findList(folder, {"y", "ys"});
+    const DatasetInfo* t = findList(folder, {"t", "ts"});
+    const DatasetInfo* p = findList(folder, {"p", "ps"});
+    if (!y || !t || !p) return;
+    // DSEC's offset is that of its only camera.
+    const bool is_dsec = folder == "events/";
+    const std::vector<std::int64_t> offset_us =
+        is_dsec ? readNumbers(file_, "t_offset", 1) : std::vector<std::int64_t>{};
+    FoundStream& stream = add(withoutSlash(folder), StreamType::Events, "x, y, t, p");
+    stream.events = openColumns(file_, {dataset, *y, *t, *p}, offset_us.empty() ? 0 : offset_us[0], place_);
+    finishEvents(folder, stream);
+  }
+
+  void finishEvents(const std::string& folder, FoundStream& stream) {
+    stream.info.messages = stream.events->rows();
+    stream.info.time_unit_ns = stream.events->timeScale().unit_ns;
+    Resolution& size_px = stream.info.resolution_px;
+    const std::vector<std::int64_t> sides = readNumbers(file_, folder + "calib/resolution", 2);
+    const auto isSide = [](std::int64_t side) { return side >= 1 && side <= kLargestSide_px; };
+    if (sides.size() == 2 && isSide(sides[0]) && isSide(sides[1])) {
+      size_px = {static_cast<int>(sides[0]), static_cast<int>(sides[1])};
+    }
+    const std::string group_path = folder.empty() ? "/" : folder;
+    const Handle group(H5Gopen2(file_, group_path.c_str(), H5P_DEFAULT), H5Gclose);
+    if (!size_px.known() && group.valid()) size_px = {readSide(group, "width"), readSide(group, "height")};
+    if (!size_px.known()) size_px = parseGeometry(readText(file_, "geometry"));
+  }
+
+  void addImuColumns(const DatasetInfo& times) {
+    const std::string folder = times.folder();
+    const DatasetInfo* rates = find(folder, {"omega"});
+    const DatasetInfo* accelerations = find(folder, {"accel"});
+    const auto isTriple = [](const DatasetInfo* dataset) {
+      return dataset && dataset->extent.size() == 2 && dataset->extent[1] == 3;
+    };
+    if (!isTriple(rates) || !isTriple(accelerations)) return;
+    FoundStream& stream = add(withoutSlash(folder), StreamType::Imu, "ts, omega, accel");
+    stream.imu = openImuColumns(file_, times, *rates, *accelerations, place_);
+    finishImu(times, stream);
+  }
+
+  static void finishImu(const DatasetInfo& times, FoundStream& stream) {
+    stream.info.messages = times.extent[0];
+    stream.info.time_unit_ns = stream.imu->timeScale().unit_ns;
+  }
+
+  void addTable(const DatasetInfo& dataset) {
+    if (dataset.name() == "events" && dataset.extent[1] == 4 && dataset.type_class != H5T_COMPOUND) {
+      FoundStream& stream = add(dataset.path, StreamType::Events, "rows of x, y, t, p");
+      stream.events = openEventRows(file_, dataset, place_);
+      finishEvents(dataset.folder(), stream);
+    }
+    const DatasetInfo* times = findList(dataset.folder(), {"imu_ts"});
+    if (dataset.name() == "imu" && dataset.extent[1] == 6 && times) {
+      FoundStream& stream = add(dataset.path, StreamType::Imu, "imu, imu_ts");
+      stream.imu = openImuRows(file_, *times, dataset, place_);
+      finishImu(*times, stream);
+    }
+  }
+
+  void addCompound(const DatasetInfo& dataset) {
+    if (dataset.name() != "events" || dataset.extent.size() != 1) return;
+    const auto has = [&](const char* member) {
+      return std::find(dataset.members.begin(), dataset.members.end(), member) != dataset.members.end();
+    };
+    if (!has("p") || !has("t")) return;
+    if (has("x") && has("y")) {
+      FoundStream& stream = add(dataset.path, StreamType::Events, "compound of x, y, p, t");
+      stream.events = openCompound(file_, dataset, place_);
+      finishEvents(dataset.folder(), stream);
+    } else if (has("id")) {
+      addListed(dataset, StreamType::Triggers);
+    }
+  }
+
+  void addListed(const DatasetInfo& dataset, StreamType type) {
+    const bool bytes = dataset.type_class == H5T_INTEGER || type == StreamType::Triggers;
+    if (bytes) add(dataset.path, type, "").info.messages = dataset.extent[0];
+  }
+
+  [[noreturn]] void failWithNames() const {
+    std::vector<std::string> names;
+    for (const DatasetInfo& dataset : datasets_)
+      if (names.size() < kMostNamed) names.push_back(dataset.path);
+    throw badInput(place_,
+                   names.empty() ? "the HDF5 file has no datasets; was the recording finished?"
+                                 : fmt::format("the HDF5 file has no events and no IMU in a layout that is "
+                                               "known; its datasets: {}{}",
+                                               joined(names), datasets_.size() > kMostNamed ? ", ..." : ""),
+                   "Known are DSEC, VECtor, TUM-VIE, e2calib, M3ED, MVSEC, evlib and Metavision.");
+  }
+
+  hid_t file_;
+  std::string place_;
+  std::vector<DatasetInfo> datasets_;
+  std::vector<FoundStream> found_;
+};
+
+}  // namespace
+
+std::vector<FoundStream> findStreams(hid_t file, const std::string& place) {
+  return LayoutFinder(file, place).run();
+}
+
+}  // namespace evical::hdf5

@@ -1,0 +1,43 @@
+#include "core/recording/hdf5/hdf5_library.h"
+
+#include "core/base/error.h"
+#include "core/recording/hdf5/hdf5_filters.h"
+
+#include <fmt/format.h>
+
+namespace evical::hdf5 {
+namespace {
+
+herr_t keepInnermost(unsigned depth, const H5E_error2_t* error, void* text) {
+  if (depth == 0 && error->desc) *static_cast<std::string*>(text) = error->desc;
+  return 0;
+}
+
+}  // namespace
+
+Quiet::Quiet() {
+  H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+Quiet::~Quiet() {
+  H5Eset_auto2(H5E_DEFAULT, function_, data_);
+}
+
+std::string lastProblem() {
+  std::string text;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keepInnermost, &text);
+  return text.empty() ? "HDF5 gives no reason" : text;
+}
+
+Handle openFile(const std::filesystem::path& path) {
+  registerFilters();
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_file_locking(access, false, true);  // folders that cannot be written to need none
+  Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
+  if (file.valid()) return file;
+  throw badInput(path.string(), fmt::format("the HDF5 file cannot be opened: {}", lastProblem()),
+                 "It may have been cut off, or is still being written: copy it again, or finish recording.");
+}
+
+}  // namespace evical::hdf5

@@ -1,0 +1,174 @@
+#include "core/recording/hdf5/hdf5_reader.h"
+
+#include "core/recording/hdf5/hdf5_layouts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <system_error>
+#include <utility>
+
+namespace evical {
+namespace {
+
+constexpr std::ptrdiff_t kMostAlikeFaults = 10;
+constexpr const char* kImuText = "imu_data.txt";
+
+// "events_left" of "mocap-desk-events_left.h5"; empty for other files.
+std::string cameraOf(const std::filesystem::path& path) {
+  const std::string stem = path.stem().string();
+  if (path.extension() != ".h5") return {};
+  for (const char* camera : {"events_left", "events_right"})
+    if (stem.ends_with(camera)) return camera;
+  return {};
+}
+
+std::vector<std::filesystem::path> cameraFiles(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (!cameraOf(entry.path()).empty()) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+struct Hdf5Reader::Source {
+  std::unique_ptr<hdf5::EventTable> events;
+  std::unique_ptr<hdf5::ImuTable> imu;
+  std::size_t stream = 0;
+  bool wanted = true, finished = false;
+  std::uint64_t row = 0;
+  std::int64_t last_ns = std::numeric_limits<std::int64_t>::min();
+  std::vector<Event> rest;  // behind a large step back in time
+  EventOrder order;
+};
+
+bool isTumVieFolder(const std::filesystem::path& folder) {
+  return !cameraFiles(folder).empty();
+}
+
+Hdf5Reader::Hdf5Reader(const std::filesystem::path& path) {
+  const hdf5::Quiet quiet;
+  if (!std::filesystem::is_directory(path)) {
+    addFile(path, "");
+    return;
+  }
+  for (const std::filesystem::path& file : cameraFiles(path)) addFile(file, cameraOf(file));
+  if (std::filesystem::exists(path / kImuText)) addImuText(path / kImuText);
+}
+
+Hdf5Reader::~Hdf5Reader() = default;
+
+void Hdf5Reader::addFile(const std::filesystem::path& path, const std::string& camera) {
+  const hdf5::Handle file = hdf5::openFile(path);
+  for (hdf5::FoundStream& found : hdf5::findStreams(file, path.string())) {
+    auto source = std::make_unique<Source>();
+    source->events = std::move(found.events);
+    source->imu = std::move(found.imu);
+    source->stream = streams_.size();
+    if (!camera.empty() && found.info.type == StreamType::Events) found.info.name = camera;
+    streams_.push_back(found.info);
+    const std::string problem = source->events ? source->events->takeProblem()
+                                : source->imu  ? source->imu->takeProblem()
+                                               : std::string();
+    noteProblem(*source, problem);
+    sources_.push_back(std::move(source));
+  }
+}
+
+void Hdf5Reader::addImuText(const std::filesystem::path& path) {
+  auto source = std::make_unique<Source>();
+  source->imu = hdf5::openImuText(path);
+  source->stream = streams_.size();
+  StreamInfo info;
+  info.name = "imu";
+  info.type = StreamType::Imu;
+  info.message = "t, gyro, acc, temperature";
+  info.time_unit_ns = 1000;
+  streams_.push_back(info);
+  sources_.push_back(std::move(source));
+}
+
+void Hdf5Reader::select(const std::vector<std::size_t>& streams) {
+  for (const auto& source : sources_) source->wanted = false;
+  for (const std::size_t stream : streams) sources_.at(stream)->wanted = true;
+}
+
+// The stream that is behind goes first, so that they are read side by side.
+bool Hdf5Reader::read(Packet& packet) {
+  const hdf5::Quiet quiet;
+  for (;;) {
+    Source* behind = nullptr;
+    for (const auto& source : sources_) {
+      const bool runs = source->wanted && !source->finished && (source->events || source->imu);
+      if (runs && (!behind || source->last_ns < behind->last_ns)) behind = source.get();
+    }
+    packet.events.clear();
+    packet.imu_samples.clear();
+    if (!behind) return false;
+    if (fill(*behind, packet)) return true;
+  }
+}
+
+bool Hdf5Reader::fill(Source& source, Packet& packet) {
+  packet.stream = source.stream;
+  if (source.events) return fillEvents(source, packet.events);
+  source.imu->load(packet.imu_samples);
+  noteProblem(source, source.imu->takeProblem());
+  source.finished = packet.imu_samples.empty();
+  if (!source.finished) source.last_ns = packet.imu_samples.back().time_ns;
+  return !source.finished;
+}
+
+bool Hdf5Reader::fillEvents(Source& source, std::vector<Event>& events) {
+  if (!source.rest.empty()) {
+    std::swap(events, source.rest);
+    source.rest.clear();
+  } else if (source.row < source.events->rows()) {
+    source.row = source.events->load(source.row, events);
+    noteProblem(source, source.events->takeProblem());
+  } else {
+    source.finished = true;
+    noteOrder(source);
+  }
+  if (events.empty()) return false;
+  const std::size_t count = source.order.arrange(events);
+  const auto step = events.begin() + static_cast<std::ptrdiff_t>(count);
+  source.rest.assign(step, events.end());
+  events.erase(step, events.end());
+  source.last_ns = events.back().time_ns;
+  return true;
+}
+
+void Hdf5Reader::noteProblem(const Source& source, const std::string& problem) {
+  if (problem.empty()) return;
+  addFault(streams_[source.stream].name, "corrupt", fmt::format("Some rows are left out: {}.", problem));
+}
+
+void Hdf5Reader::noteOrder(const Source& source) {
+  if (source.order.changedAnything()) addFault(streams_[source.stream].name, "unsorted", source.order.text());
+}
+
+// By rows; that of the IMU's text is not known and short.
+double Hdf5Reader::fractionRead() const {
+  double read = 0.0, rows = 0.0;
+  for (const auto& source : sources_) {
+    if (!source->wanted || !source->events) continue;
+    read += static_cast<double>(source->row);
+    rows += static_cast<double>(source->events->rows());
+  }
+  return rows == 0.0 ? 1.0 : read / rows;
+}
+
+void Hdf5Reader::addFault(const std::string& stream, const char* kind, std::string text) {
+  const auto alike = [&](const RecordingFault& fault) {
+    return fault.stream == stream && fault.kind == kind;
+  };
+  if (std::count_if(faults_.begin(), faults_.end(), alike) < kMostAlikeFaults)
+    faults_.push_back({stream, kind, 0.0, std::move(text)});
+}
+
+}  // namespace evical

@@ -1,0 +1,77 @@
+// Events and IMU samples out of the datasets that hold them, in whichever of the known arrangements.
+#pragma once
+
+#include "core/data/event.h"
+#include "core/data/imu_sample.h"
+#include "core/recording/hdf5/hdf5_dataset.h"
+
+#include <array>
+#include <cstdint>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace evical::hdf5 {
+
+// From the numbers in a file to ns: whole numbers are us (ns if they are too large for that), others seconds
+// (us if that would be days).
+struct TimeScale {
+  double factor_ns = 1e9;       // of real numbers
+  std::int64_t unit_ns = 1000;  // of whole ones
+  std::int64_t offset_ns = 0;
+  bool is_real = false;
+  bool convert(std::int64_t time, std::int64_t& time_ns) const;  // false if it is no time
+  bool convert(double time, std::int64_t& time_ns) const;
+};
+
+class EventTable {
+ public:
+  virtual ~EventTable() = default;
+  virtual std::uint64_t rows() const = 0;
+
+  // Appends the events from `row` on, some 10k of them, and returns the row to go on with; what cannot be
+  // read is left out, and then problem() says why.
+  virtual std::uint64_t load(std::uint64_t row, std::vector<Event>& events) = 0;
+
+  const TimeScale& timeScale() const { return time_; }
+  std::string takeProblem() { return std::exchange(problem_, {}); }
+
+ protected:
+  TimeScale time_;
+  std::string problem_;
+};
+
+class ImuTable {
+ public:
+  virtual ~ImuTable() = default;
+
+  // The next few samples; none at the end.
+  virtual void load(std::vector<ImuSample>& samples) = 0;
+
+  const TimeScale& timeScale() const { return time_; }
+  std::string takeProblem() { return std::exchange(problem_, {}); }
+
+ protected:
+  TimeScale time_;
+  std::string problem_;
+};
+
+// Lists x, y, t, p of equal length (the shortest counts), in this order.
+std::unique_ptr<EventTable> openColumns(hid_t file, const std::array<DatasetInfo, 4>& columns,
+                                        std::int64_t offset_us, const std::string& place);
+// Rows x, y, t, p.
+std::unique_ptr<EventTable> openEventRows(hid_t file, const DatasetInfo& table, const std::string& place);
+// Metavision's: a compound of x, y, p, t.
+std::unique_ptr<EventTable> openCompound(hid_t file, const DatasetInfo& list, const std::string& place);
+
+// t; angular rate (rad/s) and acceleration (m/s^2) as rows of three.
+std::unique_ptr<ImuTable> openImuColumns(hid_t file, const DatasetInfo& times, const DatasetInfo& rates,
+                                         const DatasetInfo& accelerations, const std::string& place);
+// t; rows of six. Which three are the acceleration is decided by gravity.
+std::unique_ptr<ImuTable> openImuRows(hid_t file, const DatasetInfo& times, const DatasetInfo& rows,
+                                      const std::string& place);
+// TUM-VIE's imu_data.txt: t in us, angular rate, acceleration, temperature.
+std::unique_ptr<ImuTable> openImuText(const std::filesystem::path& path);
+
+}  // namespace evical::hdf5
