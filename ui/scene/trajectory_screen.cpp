@@ -4,6 +4,7 @@
 #include "ui/scene/camera_shape.h"
 #include "ui/scene/latest_job.h"
 #include "ui/scene/pose_readout.h"
+#include "ui/scene/sample_scene.h"
 #include "ui/scene/trajectory_overlay.h"
 #include "ui/scene/trajectory_tools.h"
 #include "ui/scene/view3d.h"
@@ -156,6 +157,10 @@ void TrajectoryScreen::Private::connectTools() {
     q->setTime(*picked_s);
     emit q->timeSelected(*picked_s);
   });
+}
+
+void TrajectoryScreen::startInBackground() {
+  d_->view->startInBackground(addSampleScene);
 }
 
 void TrajectoryScreen::clear() {

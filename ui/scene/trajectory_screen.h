@@ -24,6 +24,9 @@ class TrajectoryScreen : public QWidget {
   explicit TrajectoryScreen(QWidget* parent = nullptr);
   ~TrajectoryScreen() override;
 
+  // Loads the graphics driver now and elsewhere, so that showing the screen for the first time stalls nobody.
+  void startInBackground();
+
   // Forgets all that was set.
   void clear();
   void setBoard(const CircleBoard& board);

@@ -11,8 +11,10 @@
 #include <vtkCamera.h>
 #include <vtkNew.h>
 #include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
 
 #include <cmath>
+#include <future>
 
 namespace evical::ui {
 namespace {
@@ -21,6 +23,7 @@ constexpr double kOrbit_rad_per_px = 0.008;
 constexpr double kKeyOrbit_rad = 0.1, kKeyPan = 0.05, kKeyZoom = 1.15;
 constexpr double kWheelZoom = 1.15;  // a notch
 constexpr double kNotch = 120.0;     // in Qt's units
+constexpr int kSample_px = 64;
 
 }  // namespace
 
@@ -42,6 +45,8 @@ struct View3D::Private {
   QPointF pressed_at, last_at;
   bool dragging = false;
 
+  std::future<std::string> starting;  // its problem; last: its thread uses the window
+
   // Not before the first painting: the driver takes a fifth of a second to load.
   void start() {
     started = true;
@@ -61,6 +66,38 @@ View3D::View3D(QWidget* parent) : QWidget(parent), d_(std::make_unique<Private>(
 }
 
 View3D::~View3D() = default;
+
+void View3D::startInBackground(const std::function<void(vtkRenderer*)>& fill) {
+  if (d_->started) return;
+  d_->started = true;
+  const vtkNew<vtkRenderer> sample;
+  fill(sample);
+  sample->ResetCamera();
+  // Nobody else touches the window until the thread has ended.
+  const auto load = [this, window = d_->window.Get(), sample = vtkSmartPointer<vtkRenderer>(sample)] {
+    std::string problem;
+    if (const auto context = EglContext::create(problem)) {
+      const EglContext::Scope scope(*context);
+      window->setContext(context);
+      window->AddRenderer(sample);
+      window->drawImage(QSize(kSample_px, kSample_px));
+      window->RemoveRenderer(sample);
+    }
+    QMetaObject::invokeMethod(this, &View3D::finishStart, Qt::QueuedConnection);
+    return problem;
+  };
+  d_->starting = std::async(std::launch::async, load);
+}
+
+bool View3D::starting() const {
+  return d_->starting.valid();
+}
+
+void View3D::finishStart() {
+  d_->problem = d_->starting.get();
+  if (d_->problem.empty()) d_->window->AddRenderer(d_->renderer);
+  redraw();
+}
 
 vtkRenderer* View3D::renderer() const {
   return d_->renderer;
@@ -146,21 +183,26 @@ void View3D::drawFrame() {
   if (d_->frame.isNull()) d_->problem = "the graphics driver gave up its OpenGL context";
 }
 
-void View3D::drawProblem(QPainter& painter) const {
+void View3D::drawText(QPainter& painter, const QString& text) const {
   painter.fillRect(rect(), theme().panel);
   painter.setPen(theme().faint_text);
-  painter.drawText(rect().adjusted(24, 24, -24, -24), Qt::AlignCenter | Qt::TextWordWrap,
-                   tr("The 3D view needs OpenGL 3.2, but %1.\nEverything else works without it.\n"
-                      "Installing Mesa's EGL driver brings a software renderer.")
-                       .arg(problem()));
+  painter.drawText(rect().adjusted(24, 24, -24, -24), Qt::AlignCenter | Qt::TextWordWrap, text);
 }
 
 void View3D::paintEvent(QPaintEvent*) {
   if (!d_->started) d_->start();
+  QPainter painter;
+  if (starting()) {
+    painter.begin(this);
+    drawText(painter, tr("The 3D view starts ..."));
+    return;
+  }
   if (d_->problem.empty()) drawFrame();
-  QPainter painter(this);
+  painter.begin(this);
   if (!d_->problem.empty()) {
-    drawProblem(painter);
+    drawText(painter, tr("The 3D view needs OpenGL 3.2, but %1.\nEverything else works without it.\n"
+                         "Installing Mesa's EGL driver brings a software renderer.")
+                          .arg(problem()));
     return;
   }
   painter.drawImage(QPointF(0.0, 0.0), d_->frame);

@@ -26,6 +26,13 @@ class View3D : public QWidget {
   explicit View3D(QWidget* parent = nullptr);
   ~View3D() override;
 
+  // Loads the graphics driver, which takes a fifth of a second and more, in a thread of its own, and draws
+  // there what `fill` puts into a renderer, so that the first frame of the like finds its shaders compiled.
+  // The view says so in place of the picture until then. To be called before the first painting, at most
+  // once; without it the first painting does all that.
+  void startInBackground(const std::function<void(vtkRenderer* renderer)>& fill);
+  bool starting() const;
+
   // For scenes to put their actors into; an actor belongs to one view only. It lives as long as the view.
   vtkRenderer* renderer() const;
   // To be called when the scene has changed: many changes make one frame.
@@ -70,7 +77,8 @@ class View3D : public QWidget {
 
  private:
   void drawFrame();
-  void drawProblem(QPainter& painter) const;
+  void drawText(QPainter& painter, const QString& text) const;
+  void finishStart();
   bool turnByKey(int key, Qt::KeyboardModifiers modifiers);
   void fitWorld();
   void userTurned();

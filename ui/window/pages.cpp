@@ -82,6 +82,7 @@ std::vector<PageEntry> buildPages(Pages& pages, QWidget* parent) {
   pages.recording = new RecordingScreen(parent);
   pages.detection = new DetectionScreen(parent);
   pages.trajectory = new TrajectoryScreen(parent);
+  pages.trajectory->startInBackground();
   pages.convergence = new ConvergenceScreen(parent);
   pages.signal_curves = new SignalsScreen(parent);
   pages.residuals = new ResidualsScreen(parent);
