@@ -113,10 +113,18 @@ void DetectionEngine::open(const Session& session, std::size_t camera) {
   frames_.take();
   analyses_.put(nullptr);
   analyses_.take();
-  reader_.reset();
+  if (reader_) {
+    reader_->stop();
+    retired_.push_back(std::move(reader_));
+  }
   reader_ = std::make_unique<EventWindowReader>(session, camera, cacheFolder(), [this] {
-    QMetaObject::invokeMethod(this, &DetectionEngine::overviewChanged, Qt::QueuedConnection);
+    QMetaObject::invokeMethod(this, &DetectionEngine::hearFromReader, Qt::QueuedConnection);
   });
+}
+
+void DetectionEngine::hearFromReader() {
+  std::erase_if(retired_, [](const auto& reader) { return reader->ended(); });
+  emit overviewChanged();
 }
 
 void DetectionEngine::setObservations(std::shared_ptr<const BoardObservations> observations) {

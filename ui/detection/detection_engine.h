@@ -15,6 +15,7 @@
 
 #include <atomic>
 #include <memory>
+#include <vector>
 
 namespace evical::ui {
 
@@ -71,6 +72,7 @@ class DetectionEngine : public QObject {
   };
   class Analyst;
 
+  void hearFromReader();
   void render(const RenderTask& task);
   void put(SurfaceFrame frame, int opening);
   void put(const WindowAnalysis& analysis, int opening);
@@ -83,6 +85,7 @@ class DetectionEngine : public QObject {
   FrameMailbox frames_;
   Mailbox<WindowAnalysis> analyses_;
   std::unique_ptr<EventWindowReader> reader_;
+  std::vector<std::unique_ptr<EventWindowReader>> retired_;  // told to stop; nobody waits for them
   std::unique_ptr<Analyst> analyst_;
   // Last: their threads use the rest.
   std::unique_ptr<NewestRequestWorker<RenderTask>> renderer_;

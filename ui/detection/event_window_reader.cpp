@@ -158,33 +158,37 @@ void EventWindowReader::publish(const Pass& pass, double fraction, bool finished
   changed_();
 }
 
+void EventWindowReader::readAll(const std::stop_token& stop) {
+  auto cache = std::make_shared<EventCache>(folder_);
+  {
+    const std::lock_guard lock(mutex_);
+    cache_ = cache;
+  }
+  Pass pass(session_, camera_, *cache);
+  auto told = std::chrono::steady_clock::now();
+  while (pass.step()) {
+    if (stop.stop_requested()) return;
+    if (std::chrono::steady_clock::now() - told < kTellEvery) continue;
+    publish(pass, pass.fractionRead(), false);
+    told = std::chrono::steady_clock::now();
+  }
+  publish(pass, 1.0, true);
+}
+
 void EventWindowReader::run(const std::stop_token& stop) {
   std::string error;
   try {
-    auto cache = std::make_shared<EventCache>(folder_);
-    {
-      const std::lock_guard lock(mutex_);
-      cache_ = cache;
-    }
-    Pass pass(session_, camera_, *cache);
-    auto told = std::chrono::steady_clock::now();
-    while (pass.step()) {
-      if (stop.stop_requested()) return;
-      if (std::chrono::steady_clock::now() - told < kTellEvery) continue;
-      publish(pass, pass.fractionRead(), false);
-      told = std::chrono::steady_clock::now();
-    }
-    publish(pass, 1.0, true);
-    return;
+    readAll(stop);
   } catch (const CalibrationError& problem) {
     error = wordsOf(problem);
   } catch (const std::exception& problem) {
     error = problem.what();
   }
-  {
+  if (!error.empty()) {
     const std::lock_guard lock(mutex_);
     overview_.error = error;
   }
+  ended_ = true;
   changed_();
 }
 

@@ -7,6 +7,7 @@
 #include "ui/detection/event_cache.h"
 #include "ui/detection/rate_curve.h"
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -36,6 +37,10 @@ class EventWindowReader {
   EventWindowReader(const Session& session, std::size_t camera, const std::filesystem::path& folder,
                     std::function<void()> changed);
 
+  // Ends soon after this, but waits for nobody; the destructor does.
+  void stop() { thread_.request_stop(); }
+  bool ended() const { return ended_; }
+
   RecordingOverview overview() const;
   // Null before started.
   std::shared_ptr<const EventCache> cache() const;
@@ -43,12 +48,14 @@ class EventWindowReader {
  private:
   class Pass;
   void run(const std::stop_token& stop);
+  void readAll(const std::stop_token& stop);
   void publish(const Pass& pass, double fraction, bool finished);
 
   Session session_;
   std::size_t camera_;
   std::filesystem::path folder_;
   std::function<void()> changed_;
+  std::atomic<bool> ended_ = false;
   mutable std::mutex mutex_;
   RecordingOverview overview_;
   std::shared_ptr<EventCache> cache_;
