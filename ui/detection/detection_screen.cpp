@@ -23,7 +23,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr int kFrame_ms = 33;
+constexpr int kFrame_ms = 25;  // some are dropped where there is other work
 
 // What decides about events and windows but the options.
 bool sameRecording(const Session& a, const Session& b) {

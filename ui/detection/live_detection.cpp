@@ -17,7 +17,7 @@ namespace evical::ui {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr auto kLeastInterval = std::chrono::milliseconds(33);
+constexpr auto kLeastInterval = std::chrono::milliseconds(25);
 constexpr auto kReportInterval = std::chrono::milliseconds(200);
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shows the front end at work: turns the windows it looks at into pictures' material, thirty times a second
+// Shows the front end at work: turns the windows it looks at into pictures' material, forty times a second
 // at most, from whatever thread it runs in.
 #pragma once
 
