@@ -4,7 +4,7 @@
 #include "ui/detection/timeline.h"
 #include "ui/theme/theme.h"
 
-#include <QLabel>
+#include <QScrollBar>
 #include <QTextDocument>
 
 #include <algorithm>
@@ -80,14 +80,13 @@ QString passLine(const WindowReport& report) {
 
 }  // namespace
 
-WindowPanel::WindowPanel(QWidget* parent) : QScrollArea(parent), label_(new QLabel) {
-  label_->setWordWrap(true);
-  label_->setTextFormat(Qt::RichText);
-  label_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
-  label_->setTextInteractionFlags(Qt::TextSelectableByMouse);
-  label_->setMargin(8);
-  setWidget(label_);
-  setWidgetResizable(true);
+// One layout of the text a window: labels of rich text in a scroll area make four.
+WindowPanel::WindowPanel(QWidget* parent) : QTextBrowser(parent) {
+  constexpr double kMargin_px = 8.0;
+  document()->setDocumentMargin(kMargin_px);
+  viewport()->setAutoFillBackground(false);
+  setUndoRedoEnabled(false);
+  setOpenLinks(false);
   setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   setAccessibleName(tr("This window: why"));
 }
@@ -110,13 +109,15 @@ void WindowPanel::show(const WindowAnalysis* analysis, const std::optional<Windo
     html = coloured(theme().faint_text,
                     tr("What the front end makes of the window at the cursor is told here."));
   }
-  if (html != label_->text()) label_->setText(html);
+  if (html == html_) return;
+  html_ = html;
+  const int scrolled = verticalScrollBar()->value();
+  setHtml(html);
+  verticalScrollBar()->setValue(scrolled);
 }
 
 QString WindowPanel::text() const {
-  QTextDocument document;
-  document.setHtml(label_->text());
-  return document.toPlainText();
+  return toPlainText();
 }
 
 }  // namespace evical::ui

@@ -5,15 +5,13 @@
 #include "core/data/board_observations.h"
 #include "ui/detection/window_analysis.h"
 
-#include <QScrollArea>
+#include <QTextBrowser>
 
 #include <optional>
 
-class QLabel;
-
 namespace evical::ui {
 
-class WindowPanel : public QScrollArea {
+class WindowPanel : public QTextBrowser {
   Q_OBJECT
 
  public:
@@ -25,7 +23,7 @@ class WindowPanel : public QScrollArea {
   QString text() const;  // as it is read, without markup
 
  private:
-  QLabel* label_;
+  QString html_;
 };
 
 }  // namespace evical::ui
