@@ -18,6 +18,9 @@
 #include <QTemporaryDir>
 #include <QTimer>
 
+#include <algorithm>
+#include <optional>
+
 namespace evical::ui {
 namespace {
 
@@ -28,6 +31,19 @@ const char* const kFolderKey = "last_folder";
 JobError errorOf(const CalibrationError& error) {
   return {error.kind() == ErrorKind::BadInput, QString::fromStdString(error.place()),
           QString::fromStdString(error.problem()), QString::fromStdString(error.advice())};
+}
+
+// Why nothing can be calibrated from it, whatever is filled in.
+std::optional<JobError> whyUseless(const QString& recording, const Inspection& inspection) {
+  const auto useful = [](const StreamSummary& stream) {
+    return stream.info.type == StreamType::Events || stream.info.type == StreamType::Imu;
+  };
+  if (std::any_of(inspection.streams.begin(), inspection.streams.end(), useful)) return std::nullopt;
+  QString problem = QObject::tr("it holds neither events nor IMU samples");
+  for (const RecordingFault& fault : inspection.faults) problem += ". " + QString::fromStdString(fault.text);
+  return JobError{
+      true, recording, problem,
+      QObject::tr("Check that the whole file was copied and that the camera's driver was recorded")};
 }
 
 bool isSessionFile(const QString& path) {
@@ -106,6 +122,10 @@ void SessionFiles::openRecording(const QString& path) {
 void SessionFiles::recordingInspected(const QString& recording, const Inspection& inspection) {
   if (recording != awaited_recording_) return;
   awaited_recording_.clear();
+  if (const auto error = whyUseless(recording, inspection)) {
+    emit failed(tr("%1 cannot be used").arg(QFileInfo(recording).fileName()), *error);
+    return;
+  }
   workbench_.document.startSession(guessedSession(recording.toStdString(), inspection));
   remember(recording);
   emit opened();
