@@ -19,8 +19,9 @@ class CalibrationObserver {
   virtual void windowsDetected(std::size_t /*camera*/, const BoardObservations& /*so_far*/) {}
   // The whole recording has been read.
   virtual void detectionDone(const CalibrationInput& /*input*/) {}
-  // "time offset", and its key number in words.
-  virtual void initialisationStepDone(std::string_view /*step*/, std::string_view /*result*/) {}
+  // "time offset", its key number in words, and how long it took.
+  virtual void initialisationStepDone(std::string_view /*step*/, std::string_view /*result*/,
+                                      double /*duration_s*/) {}
   virtual void iterationDone(const IterationRecord& /*iteration*/, const CalibrationState& /*state*/) {}
 };
 

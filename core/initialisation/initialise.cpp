@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -25,6 +26,21 @@ namespace evical {
 namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+// Time since it was made or last asked.
+class Lap {
+ public:
+  double next_s() {
+    const auto now = Clock::now();
+    const double since_s = std::chrono::duration<double>(now - begin_).count();
+    begin_ = now;
+    return since_s;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point begin_ = Clock::now();
+};
 
 const ImuData& referenceImu(const CalibrationInput& input) {
   return input.imus[input.reference_imu];
@@ -127,7 +143,9 @@ AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& inpu
                           const InitialisationOptions& options, const RunContext& context,
                           Initialisation& result) {
   const ImuData& imu = referenceImu(input);
+  Lap lap;
   const std::vector<CameraPose> poses = cameraPoses(camera, input.board, gyro, options, context, result);
+  result.steps.back().duration_s = lap.next_s();
   context.throwIfStopped();
   const std::vector<TimeOffsetPeak> peaks = correlateTimeOffset(poses, gyro, options);
   if (peaks.empty()) {
@@ -135,9 +153,12 @@ AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& inpu
                             "too few pairs of views overlap with the gyroscope to find the time offset",
                             "Record longer, with the board in view");
   }
+  const double offset_s = lap.next_s();
   AlignedCamera aligned = bestAlignment(camera, poses, peaks, gyro, options, context);
   context.throwIfStopped();
+  const double rotation_s = lap.next_s();
   settlePoses(camera, imu, input.start_ns, gyro, options, aligned, result);
+  if (result.steps.back().name == "planar poses") result.steps.back().duration_s = lap.next_s();
   const HandEye& hand_eye = aligned.hand_eye;
   warnOfPeaks(camera, peaks, hand_eye.time_offset_s, options, result);
   const double next = peaks.size() > 1 ? peaks[1].correlation : 0.0;
@@ -145,12 +166,12 @@ AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& inpu
       {"time offset",
        fmt::format("{}: {:.4f} s, correlation {:.3f}, peak {:.0f} ms wide, next best {:.3f}", camera.name,
                    hand_eye.time_offset_s, peaks.front().correlation, peaks.front().width_s * 1e3, next),
-       1.0 - peaks.front().correlation, peaks.front().correlation - next});
+       1.0 - peaks.front().correlation, peaks.front().correlation - next, offset_s});
   result.steps.push_back(
       {"camera-IMU rotation",
        fmt::format("{}: {} pairs agree to {:.3f} deg, second axis {:.2f} of the first", camera.name,
                    hand_eye.pairs, hand_eye.residual_rad * kDegPerRad, hand_eye.axis_ratio),
-       hand_eye.residual_rad, hand_eye.axis_ratio});
+       hand_eye.residual_rad, hand_eye.axis_ratio, rotation_s});
   return aligned;
 }
 
@@ -212,6 +233,7 @@ void alignTranslations(const CalibrationInput& input, const InitialisationOption
                        const std::vector<AlignedCamera>& cameras, const RunContext& context,
                        Initialisation& result) {
   CalibrationState& state = result.state;
+  Lap lap;
   const GravityAlignment gravity =
       alignGravity(tracksOf(cameras), referenceImu(input).samples, input.start_ns,
                    state.world_from_imu_rotation, options, context);
@@ -220,7 +242,7 @@ void alignTranslations(const CalibrationInput& input, const InitialisationOption
        fmt::format("positions agree to {:.2f} mm in {} of {} views, accelerations to {:.3f} m/s^2",
                    gravity.position_rms_m * 1e3, gravity.views - gravity.outlying_views, gravity.views,
                    gravity.acceleration_rms_m_s2),
-       gravity.position_rms_m, gravity.lever_std_m});
+       gravity.position_rms_m, gravity.lever_std_m, lap.next_s()});
   if (gravity.outlying_views > 0) {
     result.warnings.push_back(
         fmt::format("{} of {} views put the camera where its neighbours and the IMU don't: the board was "
@@ -246,6 +268,7 @@ void alignFurtherImu(const CalibrationInput& input, std::size_t k, const GyroRot
                      const InitialisationOptions& options, const RunContext& context,
                      Initialisation& result) {
   const ImuData& imu = input.imus[k];
+  Lap lap;
   const ImuRotation rotation = alignFurtherGyroscope(imu, input.start_ns, reference, options, context);
   const LeverArm lever = solveLeverArm(imu, input.start_ns, rotation, result.state, options);
   const HandEye& hand_eye = rotation.hand_eye;
@@ -261,14 +284,14 @@ void alignFurtherImu(const CalibrationInput& input, std::size_t k, const GyroRot
            "{:.3f} m/s^2",
            imu.name, hand_eye.time_offset_s, rotation.correlation, hand_eye.residual_rad * kDegPerRad,
            lever.force_rms_m_s2),
-       hand_eye.residual_rad, lever.std_m});
+       hand_eye.residual_rad, lever.std_m, lap.next_s()});
 }
 
 // Tells the observer of the steps that it has not heard of.
 void tellSteps(const std::vector<InitialisationStep>& steps, CalibrationObserver* observer,
                std::size_t& told) {
   for (; observer != nullptr && told < steps.size(); ++told)
-    observer->initialisationStepDone(steps[told].name, steps[told].result);
+    observer->initialisationStepDone(steps[told].name, steps[told].result, steps[told].duration_s);
 }
 
 // Cameras alone: the trajectory is the reference camera's, and a gyroscope on it would feel its rotation.
@@ -301,6 +324,7 @@ class CamerasAlone {
   const CameraData& reference() const { return input_.cameras[input_.reference_camera]; }
 
   void followReference() {
+    Lap lap;
     CameraPoses found = estimateCameraPoses(reference(), input_.board, options_, context_);
     checkViews(reference(), found, options_);
     const int swapped = resolveBySmoothness(found.poses, options_.longest_pair_s);
@@ -313,7 +337,7 @@ class CamerasAlone {
                      "plane's other pose",
                      reference().name, found.poses.size(), reference().observations.views.size(),
                      found.median_reprojection_px, swapped),
-         found.median_reprojection_px, 0.0});
+         found.median_reprojection_px, 0.0, lap.next_s()});
   }
 
   void place(std::size_t k, const AlignedCamera& aligned) {

@@ -16,7 +16,8 @@ struct InitialisationStep {
   std::string name;    // "camera poses", "time offset", ...
   std::string result;  // its key number, in words
   double residual = 0.0;
-  double condition = 0.0;  // 0 where it has none
+  double condition = 0.0;   // 0 where it has none
+  double duration_s = 0.0;  // of the work
 };
 
 struct Initialisation {

@@ -14,8 +14,9 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kBetweenDetections = std::chrono::milliseconds(150);
 
 // How the time is spent on an everyday recording.
-const std::vector<JobStage> kStages = {{"detect", 0.55}, {"initialise", 0.05}, {"optimise", 0.40}};
-const std::vector<JobStage> kStagesAgain = {{"initialise", 0.1}, {"optimise", 0.9}};
+const std::vector<JobStage> kStages = {
+    {"detect", 0.5}, {"initialise", 0.05}, {"optimise", 0.35}, {"cross_validate", 0.1}};
+const std::vector<JobStage> kStagesAgain = {{"initialise", 0.1}, {"optimise", 0.7}, {"cross_validate", 0.2}};
 
 QString textOf(std::string_view text) {
   return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
@@ -45,8 +46,8 @@ class CalibrationJob::LiveView final : public CalibrationObserver {
     const auto copy = std::make_shared<CalibrationInput>(input);
     put([&](Contents& box) { box.input = copy; });
   }
-  void initialisationStepDone(std::string_view step, std::string_view result) override {
-    put([&](Contents& box) { box.notes.push_back({textOf(step), textOf(result)}); });
+  void initialisationStepDone(std::string_view step, std::string_view result, double duration_s) override {
+    put([&](Contents& box) { box.notes.push_back({textOf(step), textOf(result), duration_s}); });
   }
   void iterationDone(const IterationRecord& iteration, const CalibrationState& state) override {
     records_.push_back(iteration);

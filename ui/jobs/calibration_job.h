@@ -21,6 +21,7 @@ struct LiveIterations {
 
 struct InitialisationNote {
   QString step, result;
+  double duration_s = 0.0;
 };
 
 class CalibrationJob : public QObject {

@@ -15,7 +15,7 @@ namespace {
 // As core names them (CalibrationObserver); others are added when they come.
 const QStringList kInitialisationSteps = {"camera poses", "planar poses", "time offset",
                                           "camera-IMU rotation", "gravity and translation"};
-const char* const kStages[] = {"detect", "initialise", "optimise"};
+const char* const kStages[] = {"detect", "initialise", "optimise", "cross_validate"};
 
 QString capitalised(QString text) {
   if (!text.isEmpty()) text[0] = text[0].toUpper();
@@ -72,14 +72,15 @@ void StepsPanel::reset() {
   addRow("initialise", tr("Initialise"), false);
   for (const QString& step : kInitialisationSteps) addRow(step, capitalised(step), true);
   addRow("optimise", tr("Optimise"), false);
+  addRow("cross_validate", tr("Compare halves"), false);
 }
 
 StepRow* StepsPanel::addRow(const QString& key, const QString& title, bool sub_step) {
   auto* const added = new StepRow(title, sub_step, this);
   int place = layout_->count() - 1;  // before the stretch
-  // A step of the initialisation that nobody announced comes before the optimisation.
-  const bool late = sub_step && !key.startsWith("stage ") && rows_.count("optimise") > 0;
-  if (late) place = layout_->indexOf(rows_.at("optimise"));
+  // Steps that nobody announced come at the end of their stage.
+  const QString next = key.startsWith("stage ") ? "cross_validate" : "optimise";
+  if (sub_step && rows_.count(next) > 0) place = layout_->indexOf(rows_.at(next));
   layout_->insertWidget(place, added);
   rows_[key] = added;
   return added;
@@ -122,6 +123,7 @@ void StepsPanel::addInitialisationNote(const InitialisationNote& note) {
   if (step == nullptr) step = addRow(note.step, capitalised(note.step), true);
   step->setState(StepState::Done);
   step->setKeyNumber(withoutSensor(note.result), note.result);
+  step->setTime(note.duration_s);
 }
 
 void StepsPanel::setIterations(const LiveIterations& iterations) {
@@ -159,6 +161,15 @@ void StepsPanel::setRun(const CalibrationRun& run) {
   for (const CameraFit& camera : result.cameras)
     reprojections << tr("%1 px").arg(camera.reprojection_rms_px, 0, 'g', 3);
   row("optimise")->setKeyNumber(tr("reprojection %1").arg(reprojections.join(", ")));
+  row("cross_validate")->setTime(result.timing.cross_validate_s);
+  if (!result.cross_validation) {
+    row("cross_validate")->setKeyNumber(tr("not asked for"));
+  } else if (result.cross_validation->failure.empty()) {
+    row("cross_validate")
+        ->setKeyNumber(tr("they differ by %1 sigmas").arg(result.cross_validation->rms_sigmas, 0, 'f', 2));
+  } else {
+    row("cross_validate")->setKeyNumber(QString::fromStdString(result.cross_validation->failure));
+  }
 }
 
 QString StepsPanel::textOf(const QString& step) const {

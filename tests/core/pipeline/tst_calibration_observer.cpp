@@ -23,9 +23,11 @@ class Notebook final : public CalibrationObserver {
     QVERIFY(steps.isEmpty() && iterations.empty());
     input = given;
   }
-  void initialisationStepDone(std::string_view step, std::string_view result) override {
+  void initialisationStepDone(std::string_view step, std::string_view result, double duration_s) override {
     QVERIFY(iterations.empty());
     QVERIFY(!result.empty());
+    QVERIFY(duration_s >= 0.0 && duration_s < 60.0);
+    duration_of_steps_s += duration_s;
     steps << QString::fromUtf8(step.data(), static_cast<qsizetype>(step.size()));
   }
   void iterationDone(const IterationRecord& iteration, const CalibrationState& now) override {
@@ -37,6 +39,7 @@ class Notebook final : public CalibrationObserver {
   int window_calls = 0;
   CalibrationInput input;
   QStringList steps;
+  double duration_of_steps_s = 0.0;
   std::vector<IterationRecord> iterations;
   CalibrationState state;
 };
@@ -60,6 +63,8 @@ class TestCalibrationObserver : public QObject {
     QVERIFY(notebook.window_calls > 5);
     QVERIFY(notebook.windows + 3 >= run.pass.cameras[0].windows.size());  // the last ones come with the end
     QCOMPARE(notebook.input.imus.at(0).samples.size(), run.pass.imus.at(0).samples.size());
+    QVERIFY(notebook.duration_of_steps_s > 0.0);
+    QVERIFY(notebook.duration_of_steps_s < 1.05 * run.result.timing.initialise_s + 0.01);
     QCOMPARE(notebook.steps, (QStringList{"camera poses", "planar poses", "time offset",
                                           "camera-IMU rotation", "gravity and translation", "board scale"}));
     QCOMPARE(notebook.iterations.size(), run.result.iterations.size());

@@ -61,7 +61,7 @@ class Mailbox final : public ProgressSink, public CalibrationObserver {
     const auto copy = std::make_shared<const CalibrationInput>(input);
     put([&](Contents& box) { box.input = copy; });
   }
-  void initialisationStepDone(std::string_view step, std::string_view) override {
+  void initialisationStepDone(std::string_view step, std::string_view, double) override {
     put([&](Contents& box) { box.steps.emplace_back(step); });
   }
   void iterationDone(const IterationRecord&, const CalibrationState& state) override {
