@@ -12,6 +12,8 @@ packages=(
   # recordings: ROS bags are bz2 or lz4 compressed, AEDAT4 is lz4 or zstd; HDF5 has its
   # own library and filters
   libbz2-dev liblz4-dev libzstd-dev libhdf5-dev libblosc-dev liblzf-dev
+  # recordings: ROS bags are bz2 or lz4 compressed
+  libbz2-dev liblz4-dev libzstd-dev
   # command line
   libcli11-dev nlohmann-json3-dev
   # desktop program
@@ -19,6 +21,7 @@ packages=(
   # tests
   python3-h5py
   clang-format xvfb xauth xdotool imagemagick
+  python3-rosbag clang-format xvfb xauth xdotool imagemagick
 )
 
 if [ "${1:-}" = "--list" ]; then

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ struct StreamInfo {
   // What the format says the numbers of IMU samples are in.
   AccelerationUnit acceleration_unit = AccelerationUnit::MetresPerSecond2;
   AngularRateUnit angular_rate_unit = AngularRateUnit::RadiansPerSecond;
+  // Where times are the sensor's own and the file also tells when the host received them: what to add to get
+  // the host's, as IMU samples from elsewhere have them. Better once all has been read.
+  std::optional<double> host_clock_offset_s = std::nullopt;
 };
 
 // What one call of RecordingReader::read hands out: some events or some samples of one stream, the samples'

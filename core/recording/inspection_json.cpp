@@ -34,6 +34,7 @@ Json streamJson(const StreamSummary& stream, bool with_checksums) {
   }
   json["resolution_px"] =
       info.resolution_px.known() ? Json{info.resolution_px.width_px, info.resolution_px.height_px} : Json();
+  if (info.host_clock_offset_s) json["host_clock_offset_s"] = *info.host_clock_offset_s;
   json["seen_px"] = {stream.seen_px.width_px, stream.seen_px.height_px};
   if (with_checksums) {
     // In the file's own unit of time.

@@ -2,7 +2,6 @@
 
 #include "core/base/error.h"
 #include "core/recording/byte_cursor.h"
-#include "core/recording/ros/ros_messages.h"
 
 #include <fmt/format.h>
 
@@ -14,9 +13,6 @@ namespace evical {
 namespace {
 
 constexpr std::uint32_t kLargestHeader_bytes = 1 << 20;  // real ones have below 100 bytes
-constexpr int kMostAlikeFaults = 10;  // of one kind and stream; a broken file has thousands
-constexpr std::uint64_t kEnoughStamps = 1000;
-constexpr std::int64_t kLargestSorted_ns = 10'000'000;
 
 // Packed data are hardly ever longer than the plain ones.
 std::uint64_t largestPacked(std::uint32_t plain_bytes) {
@@ -47,13 +43,7 @@ BagReader::BagReader(const std::filesystem::path& path)
   position_ = rosbag::kMagic.size();
   listStreams();
   lookIntoFirstMessages();
-  for (std::size_t i = 0; i < streams_.size(); ++i) {
-    states_[i].selected = streams_[i].type == StreamType::Events || streams_[i].type == StreamType::Imu;
-    if (states_[i].stampless()) {
-      addFault(streams_[i].name, "no_stamps",
-               "Stamps are 0; the times of recording are used, which jitter by ms.");
-    }
-  }
+  topics_.finishLooking();
 }
 
 void BagReader::listStreams() {
@@ -67,20 +57,14 @@ void BagReader::listStreams() {
   if (has_header && listFromIndex(header.index_position, header.connection_count, header.chunk_count)) return;
   connections_.clear();  // an index that is not whole is none
   chunk_connections_.clear();
-  streams_.clear();
-  states_.clear();
+  topics_.clear();
   listByScan();
   const bool never_closed = has_header && header.index_position == 0;
-  addFault("", "no_index",
+  addFault("no_index",
            never_closed
                ? "The bag has no index: its recorder did not close it. It is read from the start."
                : fmt::format("The bag's index is damaged, or cut off at byte {}. It is read from the start.",
                              file_size_));
-}
-
-void BagReader::select(const std::vector<std::size_t>& streams) {
-  for (StreamState& state : states_) state.selected = false;
-  for (const std::size_t stream : streams) states_.at(stream).selected = true;
 }
 
 bool BagReader::readBytes(std::uint64_t position, std::uint64_t count, std::string& bytes) {
@@ -150,16 +134,14 @@ void BagReader::loadChunk(std::uint64_t position, const FileRecord& record) {
   const std::uint64_t available = record.data_position < file_size_ ? file_size_ - record.data_position : 0;
   const std::uint64_t size = std::min({std::uint64_t{record.data_size}, largest, available});
   const bool read = readBytes(record.data_position, size, file_bytes_);
-  const rosbag::Unpacked result =
+  const ros::Unpacked result =
       read ? rosbag::decompressChunk(record.header.compression, file_bytes_, record.header.size, chunk_)
-           : rosbag::Unpacked::Damaged;
-  if (result == rosbag::Unpacked::Damaged) {
-    addFault("", "corrupt",
-             fmt::format("The chunk at byte {} cannot be unpacked; it is left out.", position));
-  } else if (result == rosbag::Unpacked::Cut) {
-    addFault("", "truncated",
-             fmt::format("The chunk at byte {} holds {} of {} bytes; these are read.", position,
-                         chunk_.size(), record.header.size));
+           : ros::Unpacked::Damaged;
+  if (result == ros::Unpacked::Damaged) {
+    addFault("corrupt", fmt::format("The chunk at byte {} cannot be unpacked; it is left out.", position));
+  } else if (result == ros::Unpacked::Cut) {
+    addFault("truncated", fmt::format("The chunk at byte {} holds {} of {} bytes; these are read.", position,
+                                      chunk_.size(), record.header.size));
   }
 }
 
@@ -216,18 +198,9 @@ void BagReader::listByScan() {
 
 void BagReader::addConnection(std::uint32_t id, const rosbag::ConnectionData& data) {
   if (connections_.contains(id)) return;
-  const auto same = [&](const StreamInfo& stream) {
-    return stream.name == data.topic && stream.message == data.type;
-  };
-  const auto found = std::find_if(streams_.begin(), streams_.end(), same);
-  connections_[id].stream = static_cast<std::size_t>(found - streams_.begin());
-  if (found != streams_.end()) return;
-  StreamInfo stream;
-  stream.name = data.topic;
-  stream.message = data.type;
-  stream.type = ros::streamTypeOf(data.type, data.md5, data.definition);
-  streams_.push_back(stream);
-  states_.emplace_back();
+  connections_[id].stream =
+      topics_.add({std::string(data.topic), std::string(data.type), std::string(data.md5),
+                   std::string(data.definition), ros::Serialization::Ros1});
 }
 
 void BagReader::addChunkInfo(const FileRecord& record) {
@@ -241,7 +214,7 @@ void BagReader::addChunkInfo(const FileRecord& record) {
     const auto found = connections_.find(id);
     if (found == connections_.end()) continue;
     Connection& connection = found->second;
-    streams_[connection.stream].messages += count;
+    topics_.countMessages(connection.stream, count);
     if (connection.first_chunk == 0 || chunk < connection.first_chunk) connection.first_chunk = chunk;
   }
 }
@@ -251,11 +224,9 @@ void BagReader::lookIntoChunk(std::uint64_t position) {
   const RecordState state = readRecord(position, record);
   const bool usable = state == RecordState::Whole || state == RecordState::Cut;
   if (!usable || !record.header.is(rosbag::Op::Chunk)) return;
-  const std::size_t faults = faults_.size();
+  const std::size_t faults = topics_.faults().size();
   loadChunk(position, record);
-  faults_.resize(faults);  // reading will find them again
-  std::vector<Event> events;
-  std::vector<ImuSample> samples;
+  topics_.dropFaultsFrom(faults);  // reading will find them again
   ChunkRecord part;
   while (chunk_offset_ < chunk_.size() && takeRecord(chunk_, chunk_offset_, part)) {
     if (part.header.is(rosbag::Op::Connection))
@@ -264,36 +235,17 @@ void BagReader::lookIntoChunk(std::uint64_t position) {
     if (!part.header.is(rosbag::Op::Message) || found == connections_.end()) continue;
     Connection& connection = found->second;
     if (connection.first_chunk == 0) connection.first_chunk = position;
-    if (connection.first_chunk == position) lookIntoMessage(part.data, connection.stream, events, samples);
+    if (connection.first_chunk == position) topics_.lookInto(connection.stream, part.data);
   }
   chunk_.clear();
   chunk_offset_ = 0;
 }
 
-// Resolution, and whether stamps are stamps.
-void BagReader::lookIntoMessage(std::string_view message, std::size_t stream, std::vector<Event>& events,
-                                std::vector<ImuSample>& samples) {
-  StreamState& state = states_[stream];
-  const auto count = [&state](std::int64_t time_ns) {
-    (time_ns == 0 ? state.zero_stamps : state.other_stamps) += 1;
-  };
-  if (state.other_stamps > 0 &&
-      (streams_[stream].resolution_px.known() || state.other_stamps > kEnoughStamps))
-    return;
-  if (streams_[stream].type == StreamType::Events) {
-    ros::decodeEventArray(message, events, streams_[stream].resolution_px);
-    for (const Event& event : events) count(event.time_ns);
-  } else if (streams_[stream].type == StreamType::Imu) {
-    ros::decodeImu(message, samples);
-    for (const ImuSample& sample : samples) count(sample.time_ns);
-  }
-}
-
 void BagReader::lookIntoFirstMessages() {
   std::set<std::uint64_t> chunks;
   for (const auto& [id, connection] : connections_) {
-    const StreamState& state = states_[connection.stream];
-    if (connection.first_chunk != 0 && state.zero_stamps + state.other_stamps == 0)
+    if (connection.first_chunk != 0 && !topics_.hasBeenLookedInto(connection.stream) &&
+        !topics_.knows(connection.stream))
       chunks.insert(connection.first_chunk);
   }
   for (const std::uint64_t chunk : chunks) lookIntoChunk(chunk);
@@ -301,7 +253,7 @@ void BagReader::lookIntoFirstMessages() {
 
 bool BagReader::wanted(std::uint32_t connection) const {
   const auto found = connections_.find(connection);
-  return found != connections_.end() && states_[found->second.stream].selected;
+  return found != connections_.end() && topics_.selected(found->second.stream);
 }
 
 bool BagReader::chunkIsWanted(std::uint64_t position) const {
@@ -341,7 +293,7 @@ bool BagReader::nextChunk() {
 void BagReader::reportDamage(std::uint64_t position, RecordState state) {
   const bool last = position_ == file_size_;
   const std::uint64_t lost = std::max(position, position_) - position;
-  addFault("", state == RecordState::Cut && last ? "truncated" : "corrupt",
+  addFault(state == RecordState::Cut && last ? "truncated" : "corrupt",
            fmt::format("The record at byte {} of {} {}; {}.", position, file_size_,
                        state == RecordState::Damaged ? fmt::format("is damaged, {} bytes are lost", lost)
                                                      : "is cut off or has a false length",
@@ -354,7 +306,7 @@ bool BagReader::nextMessage(Packet& packet) {
   while (chunk_offset_ < chunk_.size()) {
     const std::size_t offset = chunk_offset_;
     if (!takeRecord(chunk_, chunk_offset_, record)) {
-      addFault("", "corrupt",
+      addFault("corrupt",
                fmt::format("The chunk at byte {} is damaged from its byte {} on; the rest is left out.",
                            chunk_position_, offset));
       chunk_.clear();
@@ -362,81 +314,18 @@ bool BagReader::nextMessage(Packet& packet) {
     }
     if (!record.header.is(rosbag::Op::Message) || !wanted(record.header.connection)) continue;
     const std::size_t stream = connections_.at(record.header.connection).stream;
-    if (decode(record.header, record.data, stream, packet)) return true;
+    const std::string place = fmt::format("in the chunk at byte {}", chunk_position_);
+    if (topics_.decode(stream, record.data, record.header.time_ns, place, packet)) return true;
   }
   return false;
 }
 
-bool BagReader::decode(const rosbag::RecordHeader& header, std::string_view message, std::size_t stream,
-                       Packet& packet) {
-  StreamInfo& info = streams_[stream];
-  packet.stream = stream;
-  bool whole = true;
-  if (info.type == StreamType::Events) {
-    packet.imu_samples.clear();
-    whole = ros::decodeEventArray(message, packet.events, info.resolution_px);
-    if (states_[stream].stampless())
-      for (Event& event : packet.events) event.time_ns = header.time_ns;
-    putInOrder(stream, packet.events);
-  } else if (info.type == StreamType::Imu) {
-    packet.events.clear();
-    whole = ros::decodeImu(message, packet.imu_samples);
-    if (states_[stream].stampless())
-      for (ImuSample& sample : packet.imu_samples) sample.time_ns = header.time_ns;
-  } else {
-    return false;
-  }
-  if (!whole) {
-    addFault(info.name, "corrupt",
-             fmt::format("A message in the chunk at byte {} is damaged; it is left out.", chunk_position_));
-  }
-  return !packet.events.empty() || !packet.imu_samples.empty();
-}
-
-// Small steps back are sorted; before a large one the packet ends, since sorting would only hide it.
-void BagReader::putInOrder(std::size_t stream, std::vector<Event>& events) {
-  StreamState& state = states_[stream];
-  const std::uint64_t before = state.disordered;
-  for (std::size_t i = 1; i < events.size(); ++i) {
-    const std::int64_t back_ns = events[i - 1].time_ns - events[i].time_ns;
-    if (back_ns <= 0) continue;
-    if (back_ns > kLargestSorted_ns) {
-      const auto step = events.begin() + static_cast<std::ptrdiff_t>(i);
-      rest_.assign(step, events.end());
-      rest_stream_ = stream;
-      events.erase(step, events.end());
-      break;
-    }
-    state.disordered += 1;
-    state.largest_disorder_ns = std::max(state.largest_disorder_ns, back_ns);
-  }
-  if (state.disordered == before) return;
-  std::stable_sort(events.begin(), events.end(),
-                   [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; });
-  const std::string& name = streams_[stream].name;
-  addFault(name, "unsorted", "");
-  for (RecordingFault& fault : faults_) {
-    if (fault.stream != name || fault.kind != "unsorted") continue;
-    fault.text = fmt::format("Time runs backwards {} times within messages, by {:.3f} ms at most; sorted.",
-                             state.disordered, 1e-6 * static_cast<double>(state.largest_disorder_ns));
-  }
-}
-
-bool BagReader::handOutRest(Packet& packet) {
-  if (rest_.empty()) return false;
-  packet.stream = rest_stream_;
-  packet.imu_samples.clear();
-  packet.events.clear();
-  std::swap(packet.events, rest_);
-  putInOrder(packet.stream, packet.events);
-  return true;
-}
-
 bool BagReader::read(Packet& packet) {
-  if (handOutRest(packet)) return true;
+  if (topics_.handOutRest(packet)) return true;
   do {
     if (nextMessage(packet)) return true;
   } while (nextChunk());
+  topics_.finishReading();
   packet.events.clear();
   packet.imu_samples.clear();
   return false;
@@ -445,15 +334,6 @@ bool BagReader::read(Packet& packet) {
 double BagReader::fractionRead() const {
   return std::min(
       1.0, static_cast<double>(position_) / static_cast<double>(std::max<std::uint64_t>(1, file_size_)));
-}
-
-void BagReader::addFault(const std::string& stream, const std::string& kind, const std::string& text) {
-  const int limit = kind == "corrupt" ? kMostAlikeFaults : 1;
-  const auto alike = [&](const RecordingFault& fault) {
-    return fault.stream == stream && fault.kind == kind;
-  };
-  if (std::count_if(faults_.begin(), faults_.end(), alike) < limit)
-    faults_.push_back({stream, kind, 0.0, text});
 }
 
 }  // namespace evical

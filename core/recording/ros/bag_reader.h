@@ -4,6 +4,7 @@
 
 #include "core/recording/recording_reader.h"
 #include "core/recording/ros/bag_records.h"
+#include "core/recording/ros/topic_streams.h"
 
 #include <cstdint>
 #include <fstream>
@@ -18,11 +19,11 @@ class BagReader : public RecordingReader {
  public:
   explicit BagReader(const std::filesystem::path& path);
 
-  const std::vector<StreamInfo>& streams() const override { return streams_; }
-  void select(const std::vector<std::size_t>& streams) override;
+  const std::vector<StreamInfo>& streams() const override { return topics_.streams(); }
+  void select(const std::vector<std::size_t>& streams) override { topics_.select(path_, streams); }
   bool read(Packet& packet) override;
   double fractionRead() const override;
-  const std::vector<RecordingFault>& faults() const override { return faults_; }
+  const std::vector<RecordingFault>& faults() const override { return topics_.faults(); }
   std::string format() const override { return "rosbag"; }
 
  private:
@@ -45,16 +46,6 @@ class BagReader : public RecordingReader {
     std::size_t stream = 0;
     std::uint64_t first_chunk = 0;
   };
-  struct StreamState {
-    bool selected = false;
-    // Stamps in the stream's first chunk. Some zeros and nothing else are no stamps; a single zero may be
-    // meant.
-    std::uint64_t zero_stamps = 0, other_stamps = 0;
-    bool stampless() const { return zero_stamps > 1 && other_stamps == 0; }
-    // Steps back within messages, put in order.
-    std::uint64_t disordered = 0;
-    std::int64_t largest_disorder_ns = 0;
-  };
 
   bool readBytes(std::uint64_t position, std::uint64_t count, std::string& bytes);
   RecordState readRecord(std::uint64_t position, FileRecord& record);
@@ -70,8 +61,6 @@ class BagReader : public RecordingReader {
   void addChunkInfo(const FileRecord& record);
   void lookIntoChunk(std::uint64_t position);
   void lookIntoFirstMessages();
-  void lookIntoMessage(std::string_view message, std::size_t stream, std::vector<Event>& events,
-                       std::vector<ImuSample>& samples);
 
   bool wanted(std::uint32_t connection) const;
   bool chunkIsWanted(std::uint64_t position) const;
@@ -79,27 +68,19 @@ class BagReader : public RecordingReader {
   bool nextChunk();
   void reportDamage(std::uint64_t position, RecordState state);
   bool nextMessage(Packet& packet);
-  bool decode(const rosbag::RecordHeader& header, std::string_view message, std::size_t stream,
-              Packet& packet);
-  void putInOrder(std::size_t stream, std::vector<Event>& events);
-  bool handOutRest(Packet& packet);
-  void addFault(const std::string& stream, const std::string& kind, const std::string& text);
+  void addFault(const std::string& kind, const std::string& text) { topics_.addFault("", kind, text); }
 
   std::string path_;
   std::ifstream file_;
   std::uint64_t file_size_ = 0;
   std::uint64_t position_ = 0;    // of the next record to read
   std::uint64_t chunk_data_ = 0;  // where those of the last chunk begin
-  std::vector<StreamInfo> streams_;
-  std::vector<StreamState> states_;  // of streams_
-  std::vector<RecordingFault> faults_;
+  ros::TopicStreams topics_;
   std::unordered_map<std::uint32_t, Connection> connections_;
   std::map<std::uint64_t, std::vector<std::uint32_t>> chunk_connections_;  // from the chunk infos
   std::string header_bytes_, file_bytes_, chunk_;
   std::uint64_t chunk_position_ = 0;  // in the file
   std::size_t chunk_offset_ = 0;      // of the next record in the chunk
-  std::vector<Event> rest_;           // of a message in which time ran far back
-  std::size_t rest_stream_ = 0;
 };
 
 }  // namespace evical

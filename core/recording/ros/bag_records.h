@@ -1,6 +1,8 @@
 // The records of a ROS 1 bag, format 2.0 (wiki.ros.org/Bags/Format/2.0), and the compression of its chunks.
 #pragma once
 
+#include "core/recording/ros/compression.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -43,18 +45,8 @@ struct ConnectionData {
 };
 ConnectionData parseConnectionData(std::string_view bytes);
 
-enum class Unpacked {
-  Whole,
-  Cut,      // the data ended early; what came out before is good
-  Damaged,  // the data contradict themselves; nothing came out
-};
-
-// Replaces `output` by the chunk's content, `size` bytes. A size that lies does not make memory grow: it
-// follows what the data really hold.
-Unpacked decompressChunk(std::string_view compression, std::string_view data, std::uint32_t size,
-                         std::string& output);
-
-// Replaces `output` by one LZ4 frame.
-void compressLz4(std::string_view data, std::string& output);
+// Replaces `output` by the chunk's content, `size` bytes.
+ros::Unpacked decompressChunk(std::string_view compression, std::string_view data, std::uint32_t size,
+                              std::string& output);
 
 }  // namespace evical::rosbag

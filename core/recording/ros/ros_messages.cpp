@@ -1,165 +1,203 @@
 #include "core/recording/ros/ros_messages.h"
 
-#include "core/recording/byte_cursor.h"
-#include "core/recording/ros/message_layout.h"
-
 #include <algorithm>
+#include <array>
 #include <cstring>
-#include <optional>
 
 namespace evical::ros {
 namespace {
 
 constexpr std::size_t kEventBytes = 13;  // u16 x, u16 y, u32 s, u32 ns, u8 polarity
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-
-constexpr MessageType kEventArray = {
-    StreamType::Events, "dvs_msgs/EventArray", "5e8beee5a6c107e504c2e78903c224b8",
-    "Header header\nuint32 height\nuint32 width\nEvent[] events\n"
-    "================================================================================\n"
-    "MSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n"
-    "================================================================================\n"
-    "MSG: dvs_msgs/Event\nuint16 x\nuint16 y\ntime ts\nbool polarity\n"};
-
-constexpr MessageType kImu = {
-    StreamType::Imu, "sensor_msgs/Imu", "6a62c6daae103f4ff57a132d6f95cec2",
-    "Header header\ngeometry_msgs/Quaternion orientation\n"
-    "float64[9] orientation_covariance\ngeometry_msgs/Vector3 angular_velocity\n"
-    "float64[9] angular_velocity_covariance\ngeometry_msgs/Vector3 linear_acceleration\n"
-    "float64[9] linear_acceleration_covariance\n"
-    "================================================================================\n"
-    "MSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n"
-    "================================================================================\n"
-    "MSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"
-    "================================================================================\n"
-    "MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n"};
-
-std::int64_t takeTime(ByteCursor& cursor) {
-  const std::int64_t seconds = cursor.number<std::uint32_t>();
-  return seconds * kSecond_ns + cursor.number<std::uint32_t>();
-}
-
-std::int64_t takeHeader(ByteCursor& cursor) {
-  cursor.number<std::uint32_t>();
-  const std::int64_t stamp_ns = takeTime(cursor);
-  cursor.sized();
-  return stamp_ns;
-}
-
-// Also keeps the largest nanoseconds of a stamp: beyond a second, it is none.
-Event eventAt(const char* bytes, std::uint32_t& largest_ns) {
-  std::uint16_t x = 0, y = 0;
-  std::uint32_t seconds = 0, nanoseconds = 0;
-  std::memcpy(&x, bytes, 2);
-  std::memcpy(&y, bytes + 2, 2);
-  std::memcpy(&seconds, bytes + 4, 4);
-  std::memcpy(&nanoseconds, bytes + 8, 4);
-  largest_ns = std::max(largest_ns, nanoseconds);
-  return {std::int64_t{seconds} * kSecond_ns + nanoseconds, x, y, bytes[12] != 0};
-}
+constexpr std::uint32_t kLargest_px = 65536;  // coordinates have 16 bits
 
 template <class Number>
-void append(std::string& message, Number value) {
-  message.append(reinterpret_cast<const char*>(&value), sizeof value);
+Number numberAt(const char* bytes) {
+  Number number{};
+  std::memcpy(&number, bytes, sizeof number);
+  return number;
 }
 
-void appendTime(std::string& message, std::int64_t time_ns) {
-  append(message, static_cast<std::uint32_t>(time_ns / kSecond_ns));
-  append(message, static_cast<std::uint32_t>(time_ns % kSecond_ns));
+void takeResolution(MessageCursor& cursor, Resolution& resolution_px) {
+  const auto height = cursor.number<std::uint32_t>(), width = cursor.number<std::uint32_t>();
+  if (width > 0 && height > 0 && width <= kLargest_px && height <= kLargest_px)
+    resolution_px = {static_cast<int>(width), static_cast<int>(height)};
 }
 
-void appendHeader(std::string& message, std::uint32_t sequence, std::int64_t time_ns) {
-  append(message, sequence);
-  appendTime(message, time_ns);
-  append(message, std::uint32_t{0});  // no frame_id
+// The three below hand out the largest nanoseconds of the stamps: beyond a second, one is none.
+std::uint32_t eventsOfRos1(std::string_view bytes, std::vector<Event>& events) {
+  const char* at = bytes.data();
+  std::uint32_t largest_ns = 0;
+  for (Event& event : events) {
+    const auto nanoseconds = numberAt<std::uint32_t>(at + 8);
+    largest_ns = std::max(largest_ns, nanoseconds);
+    event = {std::int64_t{numberAt<std::uint32_t>(at + 4)} * kSecond_ns + nanoseconds,
+             numberAt<std::uint16_t>(at), numberAt<std::uint16_t>(at + 2), at[12] != 0};
+    at += kEventBytes;
+  }
+  return largest_ns;
 }
 
-std::string_view lastPart(std::string_view type) {
-  return type.substr(type.rfind('/') + 1);
+// The first event stands at a multiple of 4.
+std::uint32_t eventsOfCdr(std::string_view bytes, std::vector<Event>& events) {
+  const char* const begin = bytes.data();
+  std::size_t position = 0;
+  std::uint32_t largest_ns = 0;
+  for (Event& event : events) {
+    const std::size_t x = position + position % 2, time = (x + 4 + 3) / 4 * 4;
+    const auto nanoseconds = numberAt<std::uint32_t>(begin + time + 4);
+    largest_ns = std::max(largest_ns, nanoseconds);
+    event = {std::int64_t{numberAt<std::int32_t>(begin + time)} * kSecond_ns + nanoseconds,
+             numberAt<std::uint16_t>(begin + x), numberAt<std::uint16_t>(begin + x + 2),
+             begin[time + 8] != 0};
+    position = time + 9;
+  }
+  return largest_ns;
 }
+
+std::uint32_t eventsOfBigEndianCdr(MessageCursor& cursor, std::vector<Event>& events) {
+  std::uint32_t largest_ns = 0;
+  for (Event& event : events) {
+    event.x_px = cursor.number<std::uint16_t>();
+    event.y_px = cursor.number<std::uint16_t>();
+    const std::int64_t seconds = cursor.number<std::int32_t>();
+    const auto nanoseconds = cursor.number<std::uint32_t>();
+    largest_ns = std::max(largest_ns, nanoseconds);
+    event.time_ns = seconds * kSecond_ns + nanoseconds;
+    event.brighter = cursor.number<std::uint8_t>() != 0;
+  }
+  return largest_ns;
+}
+
+// The bytes of `count` events. In CDR all but the first take 16 with their padding.
+std::uint64_t sizeOfEvents(std::uint64_t count, Serialization serialization) {
+  if (serialization == Serialization::Ros1) return count * kEventBytes;
+  return count == 0 ? 0 : 16 * count - 3;
+}
+
+class MessageBytes {
+ public:
+  MessageBytes(std::string& bytes, Serialization serialization)
+      : bytes_(bytes), cdr_(serialization == Serialization::Cdr), begin_(bytes.size()) {
+    if (cdr_) bytes_.append("\0\1\0\0", 4);
+    if (cdr_) begin_ += 4;
+  }
+
+  template <class Number>
+  void append(Number value) {
+    if (cdr_) bytes_.append((sizeof value - (bytes_.size() - begin_) % sizeof value) % sizeof value, '\0');
+    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+
+  void appendTime(std::int64_t time_ns) {
+    append(static_cast<std::uint32_t>(time_ns / kSecond_ns));
+    append(static_cast<std::uint32_t>(time_ns % kSecond_ns));
+  }
+
+  // Without frame_id.
+  void appendHeader(std::uint32_t sequence, std::int64_t stamp_ns) {
+    if (!cdr_) append(sequence);
+    appendTime(stamp_ns);
+    append(std::uint32_t{cdr_ ? 1U : 0U});
+    if (cdr_) bytes_.push_back('\0');
+  }
+
+ private:
+  std::string& bytes_;
+  bool cdr_;
+  std::size_t begin_;  // what alignment counts from
+};
 
 }  // namespace
 
-const MessageType& eventArrayType() {
-  return kEventArray;
-}
-const MessageType& imuType() {
-  return kImu;
-}
-
-StreamType streamTypeOf(std::string_view type, std::string_view md5, std::string_view definition) {
-  if (md5 == kEventArray.md5) return StreamType::Events;
-  if (md5 == kImu.md5) return StreamType::Imu;
-  if (type == "sensor_msgs/Image" || type == "sensor_msgs/CompressedImage") return StreamType::Frames;
-  const std::optional<std::string> layout = messageLayout(definition);
-  for (const MessageType* known : {&kEventArray, &kImu})
-    if (layout && layout == messageLayout(known->definition)) return known->stream;
-  // A definition that is there and has other fields overrules the name.
-  if (layout && !layout->empty()) return StreamType::Other;
-  // event_array_msgs/EventArray has this name too, but packed bytes inside.
-  const bool packed = type.starts_with("event_array_msgs/") || type.starts_with("event_camera_msgs/");
-  if (lastPart(type) == "EventArray" && !packed) return StreamType::Events;
-  if (lastPart(type) == "Imu") return StreamType::Imu;
-  return StreamType::Other;
-}
-
-bool decodeEventArray(std::string_view message, std::vector<Event>& events, Resolution& resolution_px) {
-  ByteCursor cursor(message);
-  takeHeader(cursor);
-  const auto height = cursor.number<std::uint32_t>(), width = cursor.number<std::uint32_t>();
+bool decodeEventArray(std::string_view message, Serialization serialization, std::vector<Event>& events,
+                      Resolution& resolution_px) {
+  events.clear();
+  MessageCursor cursor(message, serialization);
+  cursor.header();
+  takeResolution(cursor, resolution_px);
   const std::uint64_t count = cursor.number<std::uint32_t>();
-  const std::string_view bytes = cursor.take(count * kEventBytes);
-  events.resize(cursor.ok() && cursor.atEnd() ? static_cast<std::size_t>(count) : 0);
-  if (!cursor.ok() || !cursor.atEnd()) return false;
-  constexpr std::uint32_t kLargest_px = 65536;  // coordinates have 16 bits
-  if (width > 0 && height > 0 && width <= kLargest_px && height <= kLargest_px) {
-    resolution_px = {static_cast<int>(width), static_cast<int>(height)};
-  }
-  const char* source = bytes.data();
+  const std::uint64_t size = sizeOfEvents(count, serialization);
+  if (!cursor.ok() || size > cursor.remaining()) return false;
+  events.resize(static_cast<std::size_t>(count));
   std::uint32_t largest_ns = 0;
-  for (Event& event : events) {
-    event = eventAt(source, largest_ns);
-    source += kEventBytes;
+  if (cursor.bigEndian()) {
+    largest_ns = eventsOfBigEndianCdr(cursor, events);
+  } else if (const std::string_view bytes = cursor.take(size); cursor.isRos1()) {
+    largest_ns = eventsOfRos1(bytes, events);
+  } else {
+    largest_ns = eventsOfCdr(bytes, events);
   }
-  if (largest_ns < kSecond_ns) return true;
+  if (cursor.wellEnded() && largest_ns < kSecond_ns) return true;
   events.clear();
   return false;
 }
 
-bool decodeImu(std::string_view message, std::vector<ImuSample>& samples) {
+bool decodeImu(std::string_view message, Serialization serialization, std::vector<ImuSample>& samples) {
   samples.clear();
-  ByteCursor cursor(message);
+  MessageCursor cursor(message, serialization);
   ImuSample sample;
-  sample.time_ns = takeHeader(cursor);
+  sample.time_ns = cursor.header();
+  const auto skip = [&cursor](int numbers) {
+    for (int i = 0; i < numbers; ++i) cursor.number<double>();
+  };
   const auto takeVector = [&cursor](Eigen::Vector3d& vector) {
     for (int i = 0; i < 3; ++i) vector[i] = cursor.number<double>();
   };
-  cursor.take((4 + 9) * sizeof(double));  // orientation and its covariance
+  skip(4 + 9);  // orientation and its covariance
   takeVector(sample.angular_rate_rad_s);
-  cursor.take(9 * sizeof(double));
+  skip(9);
   takeVector(sample.specific_force_m_s2);
-  cursor.take(9 * sizeof(double));
-  if (!cursor.ok() || !cursor.atEnd()) return false;
+  skip(9);
+  if (!cursor.wellEnded()) return false;
   samples.push_back(sample);
   return true;
 }
 
+bool decodeImageSize(std::string_view message, Serialization serialization, Resolution& resolution_px) {
+  MessageCursor cursor(message, serialization);
+  cursor.header();
+  Resolution stated_px;
+  takeResolution(cursor, stated_px);
+  if (!cursor.ok() || !stated_px.known()) return false;
+  resolution_px = stated_px;
+  return true;
+}
+
+bool parseEventPacket(std::string_view message, Serialization serialization, EventPacket& packet) {
+  packet = {};
+  MessageCursor cursor(message, serialization);
+  packet.stamp_ns = cursor.header();
+  takeResolution(cursor, packet.resolution_px);
+  packet.sequence = cursor.number<std::uint64_t>();
+  packet.time_base_ns = static_cast<std::int64_t>(cursor.number<std::uint64_t>());
+  packet.encoding = cursor.text();
+  packet.big_endian = cursor.number<std::uint8_t>() != 0;
+  packet.events = cursor.sequence();
+  constexpr std::int64_t kLatest_ns = std::int64_t{1} << 61;  // far beyond what ROS times hold
+  return cursor.wellEnded() && packet.time_base_ns >= 0 && packet.time_base_ns <= kLatest_ns;
+}
+
 void encodeEventArray(EventSpan events, std::uint32_t sequence, Resolution resolution_px,
-                      std::string& message) {
-  appendHeader(message, sequence, events.empty() ? 0 : events.front().time_ns);
-  append(message, static_cast<std::uint32_t>(resolution_px.height_px));
-  append(message, static_cast<std::uint32_t>(resolution_px.width_px));
-  append(message, static_cast<std::uint32_t>(events.size()));
+                      Serialization serialization, std::string& message) {
+  message.reserve(message.size() + 64 + 16 * events.size());
+  MessageBytes bytes(message, serialization);
+  bytes.appendHeader(sequence, events.empty() ? 0 : events.front().time_ns);
+  bytes.append(static_cast<std::uint32_t>(resolution_px.height_px));
+  bytes.append(static_cast<std::uint32_t>(resolution_px.width_px));
+  bytes.append(static_cast<std::uint32_t>(events.size()));
   for (const Event& event : events) {
-    append(message, event.x_px);
-    append(message, event.y_px);
-    appendTime(message, event.time_ns);
-    message.push_back(event.brighter ? 1 : 0);
+    bytes.append(event.x_px);
+    bytes.append(event.y_px);
+    bytes.appendTime(event.time_ns);
+    bytes.append(static_cast<std::uint8_t>(event.brighter ? 1 : 0));
   }
 }
 
-void encodeImu(const ImuSample& sample, std::uint32_t sequence, std::string& message) {
-  appendHeader(message, sequence, sample.time_ns);
+void encodeImu(const ImuSample& sample, std::uint32_t sequence, Serialization serialization,
+               std::string& message) {
+  MessageBytes bytes(message, serialization);
+  bytes.appendHeader(sequence, sample.time_ns);
   std::array<double, 4 + 9 + 3 + 9 + 3 + 9> numbers{};
   numbers[3] = 1.0;   // no rotation, and
   numbers[4] = -1.0;  // by the convention of sensor_msgs: there is no estimate of the orientation
@@ -167,7 +205,7 @@ void encodeImu(const ImuSample& sample, std::uint32_t sequence, std::string& mes
     numbers[static_cast<std::size_t>(13 + i)] = sample.angular_rate_rad_s[i];
     numbers[static_cast<std::size_t>(25 + i)] = sample.specific_force_m_s2[i];
   }
-  message.append(reinterpret_cast<const char*>(numbers.data()), sizeof numbers);
+  for (const double number : numbers) bytes.append(number);
 }
 
 }  // namespace evical::ros

@@ -1,7 +1,8 @@
-// The messages of ROS 1 that carry events and IMU samples, as the bytes of a bag (no padding, little endian).
+// The messages of ROS that carry events and IMU samples, as the bytes of a recording.
 #pragma once
 
 #include "core/data/recording.h"
+#include "core/recording/ros/message_cursor.h"
 
 #include <cstdint>
 #include <span>
@@ -11,27 +12,30 @@
 
 namespace evical::ros {
 
-struct MessageType {
-  StreamType stream;
-  const char* name;        // the name we write
-  const char* md5;         // of the definition: equal md5, equal layout
-  const char* definition;  // so that other programs can read our bags
+// All replace what they hand out; false, and nothing, if the bytes do not fit what they claim or a stamp is
+// none. The resolution changes only where the message states one.
+bool decodeEventArray(std::string_view message, Serialization serialization, std::vector<Event>& events,
+                      Resolution& resolution_px);
+bool decodeImu(std::string_view message, Serialization serialization, std::vector<ImuSample>& samples);
+bool decodeImageSize(std::string_view message, Serialization serialization, Resolution& resolution_px);
+
+// event_camera_msgs/EventPacket: events in an encoding of the sensor.
+struct EventPacket {
+  std::int64_t stamp_ns = 0;  // of the host
+  Resolution resolution_px;   // unknown where the message states none
+  std::uint64_t sequence = 0;
+  std::int64_t time_base_ns = 0;
+  std::string_view encoding;
+  bool big_endian = false;
+  std::string_view events;  // both views point into the message
 };
-const MessageType& eventArrayType();
-const MessageType& imuType();
+bool parseEventPacket(std::string_view message, Serialization serialization, EventPacket& packet);
 
-// By md5 first, then by the fields of the definition, and where there is none by the last part of the name:
-// packages get renamed and copied.
-StreamType streamTypeOf(std::string_view type, std::string_view md5, std::string_view definition);
-
-// Both replace the samples; false, and none, if the bytes do not fit what they claim or a stamp is none. The
-// resolution changes only where the message states one.
-bool decodeEventArray(std::string_view message, std::vector<Event>& events, Resolution& resolution_px);
-bool decodeImu(std::string_view message, std::vector<ImuSample>& samples);
-
-// Both append to `message`. Times must be within [0, 2^32) s, what a ROS time can hold.
+// Both append to `message`, which is empty or without padding of its own. Times must be what a ROS time can
+// hold: within [0, 2^32) s for ROS 1, 2^31 for CDR. ROS 2 has no sequence number.
 void encodeEventArray(EventSpan events, std::uint32_t sequence, Resolution resolution_px,
-                      std::string& message);
-void encodeImu(const ImuSample& sample, std::uint32_t sequence, std::string& message);
+                      Serialization serialization, std::string& message);
+void encodeImu(const ImuSample& sample, std::uint32_t sequence, Serialization serialization,
+               std::string& message);
 
 }  // namespace evical::ros

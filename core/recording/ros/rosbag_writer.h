@@ -2,19 +2,17 @@
 #pragma once
 
 #include "core/recording/part_file.h"
-#include "core/recording/recording_writer.h"
+#include "core/recording/ros/ros_writer.h"
 
 #include <cstdint>
 #include <string>
 
 namespace evical {
 
-class RosbagWriter : public RecordingWriter {
+class RosbagWriter : public ros::RosWriter {
  public:
   RosbagWriter(const std::filesystem::path& path, const std::vector<StreamInfo>& streams, bool lz4);
 
-  void write(std::size_t stream, EventSpan events) override;
-  void write(std::size_t stream, std::span<const ImuSample> samples) override;
   void finish() override;
 
  private:
@@ -22,12 +20,9 @@ class RosbagWriter : public RecordingWriter {
     std::int64_t time_ns;
     std::uint32_t offset;  // of the message record in the chunk
   };
-  // A stream is a connection of the same number.
-  struct Stream {
-    StreamInfo info;
-    std::uint32_t sequence = 0;
+  // Of the stream of the same number.
+  struct Connection {
     bool announced = false;         // its connection record is in a chunk
-    std::vector<Event> events;      // of the message being gathered
     std::vector<IndexEntry> index;  // of the chunk being gathered
   };
   struct ChunkInfo {
@@ -37,21 +32,18 @@ class RosbagWriter : public RecordingWriter {
     std::uint32_t connections;
   };
 
-  void flushEvents(std::size_t stream);
-  void appendMessage(std::size_t stream, std::int64_t time_ns);  // message_
+  void appendMessage(std::size_t stream, std::uint32_t sequence, std::int64_t time_ns,
+                     std::string_view message) override;
   void flushChunk();
   void appendIndex(ChunkInfo& chunk);
   std::string bagHeader(std::uint64_t index_position) const;
   std::string connectionRecord(std::size_t stream) const;
-  void requireTime(std::int64_t time_ns) const;
-  Stream& checkedStream(std::size_t stream, StreamType type);
 
-  std::string path_;
   PartFile file_;
   bool lz4_;
-  std::vector<Stream> streams_;
+  std::vector<Connection> connections_;
   std::vector<ChunkInfo> chunks_;
-  std::string message_, chunk_, compressed_;
+  std::string chunk_, compressed_;
 };
 
 }  // namespace evical

@@ -45,7 +45,7 @@ class TestRosbag : public QObject {
     QProcess process;
     process.setProcessChannelMode(QProcess::ForwardedErrorChannel);
     process.start("/usr/bin/python3", arguments);
-    process.waitForFinished();
+    process.waitForFinished(300'000);
     return process.readAllStandardOutput().trimmed();
   }
 

@@ -141,12 +141,6 @@ void TestRosbagReader::type_isToldByMd5NameOrDefinition_data() {
                                          << "" << true;
   QTest::newRow("same fields") << "our_msgs/Bunch"
                                << "0123" << kEventDefinition << true;
-  QTest::newRow("old name of packed events") << "event_array_msgs/EventArray"
-                                             << "8a6101b351a64529ac77bd8b71074e52"
-                                             << "" << false;
-  QTest::newRow("packed events") << "event_camera_msgs/EventPacket"
-                                 << "8a6101b351a64529ac77bd8b71074e52"
-                                 << "" << false;
   QTest::newRow("other fields, same name") << "our_msgs/EventArray"
                                            << "0123"
                                            << "uint32 count\nfloat64[] values\n"

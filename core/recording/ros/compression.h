@@ -1,0 +1,31 @@
+// Unpacks the chunks and messages of ROS recordings. A size that lies does not make memory grow: it follows
+// what the data really hold.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace evical::ros {
+
+enum class Unpacked {
+  Whole,
+  Cut,      // the data ended early; what came out before is good
+  Damaged,  // the data contradict themselves; nothing came out
+};
+
+// All replace `output` by the content, which has `size_bytes`.
+Unpacked unpackLz4(std::string_view data, std::uint64_t size_bytes, std::string& output);  // LZ4 frames
+Unpacked unpackBz2(std::string_view data, std::uint64_t size_bytes, std::string& output);
+Unpacked unpackZstd(std::string_view data, std::uint64_t size_bytes, std::string& output);
+Unpacked copyPlain(std::string_view data, std::uint64_t size_bytes, std::string& output);
+
+// Of one zstd frame of any size, but not beyond 1 GiB.
+Unpacked unpackZstdFrame(std::string_view data, std::string& output);
+inline constexpr std::string_view kZstdMagic = "\x28\xB5\x2F\xFD";
+
+// Replace `output` by one frame.
+void packLz4(std::string_view data, std::string& output);
+void packZstd(std::string_view data, std::string& output);
+
+}  // namespace evical::ros

@@ -1,0 +1,135 @@
+#include "core/recording/ros/event_packet_decoder.h"
+
+#include <cstring>
+
+namespace evical::ros {
+namespace {
+
+template <class Word>
+Word wordAt(std::string_view bytes, std::size_t position) {
+  Word word{};
+  std::memcpy(&word, bytes.data() + position, sizeof word);
+  return word;
+}
+
+// u64: bits 0-31 ns since the time base, 32-47 x, 48-62 y, 63 polarity.
+void decodeMono(const EventPacket& packet, std::vector<Event>& events) {
+  for (std::size_t i = 0; i + 8 <= packet.events.size(); i += 8) {
+    const auto word = wordAt<std::uint64_t>(packet.events, i);
+    events.push_back({packet.time_base_ns + static_cast<std::int64_t>(word & 0xFFFFFFFFU),
+                      static_cast<std::uint16_t>(word >> 32),
+                      static_cast<std::uint16_t>(word >> 48 & 0x7FFFU), word >> 63 != 0});
+  }
+}
+
+// u32: bit 0 valid, 1 polarity, 2-16 y, 17-31 x; then i32 us since the time base.
+void decodeLibcaer(const EventPacket& packet, std::vector<Event>& events) {
+  constexpr std::int64_t kWrap_us = std::int64_t{1} << 31;
+  std::int64_t wraps_us = 0, last_us = 0;
+  for (std::size_t i = 0; i + 8 <= packet.events.size(); i += 8) {
+    const auto word = wordAt<std::uint32_t>(packet.events, i);
+    if ((word & 1U) == 0) continue;
+    const std::int64_t stamp_us = wordAt<std::int32_t>(packet.events, i + 4);
+    if (stamp_us < last_us - kWrap_us / 2) wraps_us += kWrap_us;
+    last_us = stamp_us;
+    events.push_back({packet.time_base_ns + 1000 * (wraps_us + stamp_us),
+                      static_cast<std::uint16_t>(word >> 17), static_cast<std::uint16_t>(word >> 2 & 0x7FFFU),
+                      (word & 2U) != 0});
+  }
+}
+
+// u16 words, code in bits 12-15; each message starts anew.
+void decodeLibcaerCmp(const EventPacket& packet, std::vector<Event>& events) {
+  std::int64_t high_us = 0, low_us = 0;
+  std::uint32_t x_px = 0, y_px = 0;
+  bool brighter = false;
+  const auto add = [&](std::uint32_t x, std::uint32_t y) {
+    events.push_back({packet.time_base_ns + 1000 * (high_us | low_us), static_cast<std::uint16_t>(x),
+                      static_cast<std::uint16_t>(y), brighter});
+  };
+  for (std::size_t i = 0; i + 2 <= packet.events.size(); i += 2) {
+    const auto word = wordAt<std::uint16_t>(packet.events, i);
+    switch (word >> 12) {
+      case 0:
+        high_us = (word & 0xFFF) << 12;
+        break;
+      case 1:
+        low_us = word & 0xFFF;
+        break;
+      case 2:
+        x_px = word & 0x7FFU;
+        break;
+      case 3:
+        brighter = (word & 0x800) != 0;
+        add(x_px, word & 0x7FFU);
+        break;
+      case 4:
+        y_px = word & 0x7FFU;
+        brighter = (word & 0x800) != 0;
+        break;
+      case 5:
+        for (std::uint32_t bit = 0; bit < 8; ++bit)
+          if ((word >> bit & 1) != 0) add(x_px, y_px + bit);
+        y_px += 8;
+        break;
+      default:
+        break;
+    }
+  }
+}
+
+}  // namespace
+
+Encoding encodingOf(std::string_view name) {
+  if (name == "evt3") return Encoding::Evt3;
+  if (name == "mono") return Encoding::Mono;
+  if (name == "trigger") return Encoding::Trigger;
+  if (name == "libcaer") return Encoding::Libcaer;
+  return name == "libcaer_cmp" ? Encoding::LibcaerCmp : Encoding::Unknown;
+}
+
+bool EventPacketDecoder::decode(const EventPacket& packet, std::vector<Event>& events) {
+  followSequence(packet.sequence);
+  if (packet.big_endian) return false;
+  const std::size_t size = packet.events.size();
+  switch (encodingOf(packet.encoding)) {
+    case Encoding::Evt3:
+      decodeEvt3(packet, events);
+      return size % 2 == 0;
+    case Encoding::Mono:
+      decodeMono(packet, events);
+      return size % 8 == 0;
+    case Encoding::Trigger:
+      triggers_ += size / 8;
+      return size % 8 == 0;
+    case Encoding::Libcaer:
+      decodeLibcaer(packet, events);
+      return size % 8 == 0;
+    case Encoding::LibcaerCmp:
+      decodeLibcaerCmp(packet, events);
+      return size % 2 == 0;
+    case Encoding::Unknown:
+      break;
+  }
+  return false;
+}
+
+void EventPacketDecoder::followSequence(std::uint64_t sequence) {
+  const std::uint64_t expected = last_sequence_ + 1;
+  if (has_sequence_ && sequence != expected) {
+    lost_messages_ += sequence > expected ? sequence - expected : 0;
+    evt3_.forgetPosition();
+  }
+  has_sequence_ = true;
+  last_sequence_ = sequence;
+}
+
+void EventPacketDecoder::decodeEvt3(const EventPacket& packet, std::vector<Event>& events) {
+  evt3_.setResolution(packet.resolution_px);
+  const std::size_t before = events.size();
+  evt3_.decode(packet.events, events);
+  if (events.size() > before && packet.stamp_ns != 0)
+    host_clock_.add(events[before].time_ns, packet.stamp_ns);
+}
+
+}  // namespace evical::ros

@@ -1,0 +1,31 @@
+// How a sensor's own clock lies to that of the host that received its data, from stamps at the arrival of
+// packets: each is late by a delay of its own, so the earliest ones tell.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+
+namespace evical::ros {
+
+// host_time = sensor_time + offset, at the middle of the recording; drift_ppm is its change.
+struct HostClockOffset {
+  double offset_s = 0.0;
+  std::optional<double> drift_ppm;  // nothing from short recordings
+};
+
+class HostClock {
+ public:
+  void add(std::int64_t sensor_ns, std::int64_t host_ns);
+
+  // Nothing before the first packet.
+  std::optional<HostClockOffset> offset() const;
+
+ private:
+  struct Earliest {
+    std::int64_t sensor_ns = 0, offset_ns = 0;
+  };
+  std::map<std::int64_t, Earliest> earliest_;  // of some seconds each
+};
+
+}  // namespace evical::ros

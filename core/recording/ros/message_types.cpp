@@ -1,0 +1,142 @@
+#include "core/recording/ros/message_types.h"
+
+#include "core/recording/ros/message_layout.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+
+namespace evical::ros {
+namespace {
+
+constexpr MessageType kEventArray1 = {
+    Content::EventArray, "dvs_msgs/EventArray", "5e8beee5a6c107e504c2e78903c224b8",
+    "Header header\nuint32 height\nuint32 width\nEvent[] events\n"
+    "================================================================================\n"
+    "MSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n"
+    "================================================================================\n"
+    "MSG: dvs_msgs/Event\nuint16 x\nuint16 y\ntime ts\nbool polarity\n"};
+
+constexpr MessageType kEventArray2 = {
+    Content::EventArray, "dvs_msgs/msg/EventArray", "",
+    "std_msgs/Header header\nuint32 height\nuint32 width\ndvs_msgs/Event[] events\n"
+    "================================================================================\n"
+    "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n"
+    "================================================================================\n"
+    "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n"
+    "================================================================================\n"
+    "MSG: dvs_msgs/Event\nuint16 x\nuint16 y\nbuiltin_interfaces/Time ts\nbool polarity\n"};
+
+constexpr MessageType kEventPacket1 = {
+    Content::EventPacket, "event_camera_msgs/EventPacket", "8a6101b351a64529ac77bd8b71074e52",
+    "std_msgs/Header header\nuint32 height\nuint32 width\nuint64 seq\nuint64 time_base\nstring encoding\n"
+    "bool is_bigendian\nuint8[] events\n"
+    "================================================================================\n"
+    "MSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n"};
+
+constexpr MessageType kEventPacket2 = {
+    Content::EventPacket, "event_camera_msgs/msg/EventPacket", "",
+    "std_msgs/Header header\nuint32 height\nuint32 width\nuint64 seq\nuint64 time_base\nstring encoding\n"
+    "bool is_bigendian\nuint8[] events\n"
+    "================================================================================\n"
+    "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n"
+    "================================================================================\n"
+    "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n"};
+
+constexpr MessageType kImu1 = {
+    Content::Imu, "sensor_msgs/Imu", "6a62c6daae103f4ff57a132d6f95cec2",
+    "Header header\ngeometry_msgs/Quaternion orientation\n"
+    "float64[9] orientation_covariance\ngeometry_msgs/Vector3 angular_velocity\n"
+    "float64[9] angular_velocity_covariance\ngeometry_msgs/Vector3 linear_acceleration\n"
+    "float64[9] linear_acceleration_covariance\n"
+    "================================================================================\n"
+    "MSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n"
+    "================================================================================\n"
+    "MSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"
+    "================================================================================\n"
+    "MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n"};
+
+constexpr MessageType kImu2 = {
+    Content::Imu, "sensor_msgs/msg/Imu", "",
+    "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\n"
+    "float64[9] orientation_covariance\ngeometry_msgs/Vector3 angular_velocity\n"
+    "float64[9] angular_velocity_covariance\ngeometry_msgs/Vector3 linear_acceleration\n"
+    "float64[9] linear_acceleration_covariance\n"
+    "================================================================================\n"
+    "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n"
+    "================================================================================\n"
+    "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n"
+    "================================================================================\n"
+    "MSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"
+    "================================================================================\n"
+    "MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n"};
+
+constexpr std::array kTypes = {&kEventArray1, &kEventArray2, &kEventPacket1, &kEventPacket2, &kImu1, &kImu2};
+
+struct KnownName {
+  std::string_view type;  // as ROS 1 writes it
+  Content content;
+};
+constexpr std::array kKnownNames = {
+    KnownName{"dvs_msgs/EventArray", Content::EventArray},
+    KnownName{"prophesee_event_msgs/EventArray", Content::EventArray},
+    KnownName{"event_camera_msgs/EventPacket", Content::EventPacket},
+    KnownName{"event_array_msgs/EventArray", Content::EventPacket},  // its old name
+    KnownName{"sensor_msgs/Imu", Content::Imu},
+    KnownName{"sensor_msgs/Image", Content::Image},
+    KnownName{"sensor_msgs/CompressedImage", Content::PackedImage}};
+
+std::string_view lastPart(std::string_view type) {
+  return type.substr(type.rfind('/') + 1);
+}
+
+Content contentByLastPart(std::string_view type) {
+  const std::string_view last = lastPart(type);
+  if (last == "EventArray") return Content::EventArray;
+  if (last == "EventPacket") return Content::EventPacket;
+  return last == "Imu" ? Content::Imu : Content::Other;
+}
+
+}  // namespace
+
+StreamType streamTypeOf(Content content) {
+  switch (content) {
+    case Content::EventArray:
+    case Content::EventPacket:
+      return StreamType::Events;
+    case Content::Imu:
+      return StreamType::Imu;
+    case Content::Image:
+    case Content::PackedImage:
+      return StreamType::Frames;
+    case Content::Other:
+      break;
+  }
+  return StreamType::Other;
+}
+
+const MessageType& eventArrayType(Serialization serialization) {
+  return serialization == Serialization::Cdr ? kEventArray2 : kEventArray1;
+}
+const MessageType& imuType(Serialization serialization) {
+  return serialization == Serialization::Cdr ? kImu2 : kImu1;
+}
+
+Content contentOf(std::string_view type, std::string_view md5, std::string_view definition) {
+  for (const MessageType* known : kTypes)
+    if (!md5.empty() && md5 == known->md5) return known->content;
+  std::string plain_type(type);
+  if (const std::size_t infix = plain_type.find("/msg/"); infix != std::string::npos)
+    plain_type.erase(infix, 4);
+  for (const KnownName& known : kKnownNames)
+    if (plain_type == known.type) return known.content;
+  const std::optional<std::string> layout = messageLayout(definition);
+  for (const MessageType* known : kTypes)
+    if (layout && layout == messageLayout(known->definition)) return known->content;
+  // A definition that is there and has other fields overrules the name.
+  if (layout && !layout->empty()) return Content::Other;
+  return contentByLastPart(type);
+}
+
+}  // namespace evical::ros

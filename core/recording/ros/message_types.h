@@ -1,0 +1,28 @@
+// Which ROS messages carry what we read, and how they are told apart.
+#pragma once
+
+#include "core/data/recording.h"
+#include "core/recording/ros/message_cursor.h"
+
+#include <string_view>
+
+namespace evical::ros {
+
+enum class Content { Other, EventArray, EventPacket, Imu, Image, PackedImage };
+
+StreamType streamTypeOf(Content content);
+
+struct MessageType {
+  Content content;
+  const char* name;        // the name we write
+  const char* md5;         // of the definition: equal md5, equal layout; empty for ROS 2
+  const char* definition;  // so that other programs can read what we write
+};
+const MessageType& eventArrayType(Serialization serialization);
+const MessageType& imuType(Serialization serialization);
+
+// By md5 first, then by the names of packages that are known, then by the fields of the definition, and where
+// there is none by the last part of the name: packages get renamed and copied.
+Content contentOf(std::string_view type, std::string_view md5, std::string_view definition);
+
+}  // namespace evical::ros

@@ -1,0 +1,86 @@
+#include "core/recording/ros/ros_writer.h"
+
+#include "core/base/error.h"
+#include "core/recording/ros/ros_messages.h"
+
+#include <fmt/format.h>
+
+namespace evical::ros {
+namespace {
+
+constexpr std::int64_t kMessageSpan_ns = 10'000'000;
+constexpr std::size_t kMessageEvents = 200'000;
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+}  // namespace
+
+RosWriter::RosWriter(const std::filesystem::path& path, const std::vector<StreamInfo>& streams,
+                     Serialization serialization, std::int64_t seconds_end)
+    : path_(path.string()), serialization_(serialization), seconds_end_(seconds_end) {
+  for (const StreamInfo& stream : streams) {
+    const bool events = stream.type == StreamType::Events;
+    if (!events && stream.type != StreamType::Imu) {
+      throw badInput(path_, fmt::format("stream {} holds neither events nor IMU samples", stream.name));
+    }
+    if (events && !stream.resolution_px.known()) {
+      throw badInput(path_, fmt::format("the resolution of stream {} is missing", stream.name));
+    }
+    streams_.push_back({stream, 0, {}});
+  }
+}
+
+const MessageType& RosWriter::messageType(std::size_t stream) const {
+  const bool events = streams_[stream].info.type == StreamType::Events;
+  return events ? eventArrayType(serialization_) : imuType(serialization_);
+}
+
+void RosWriter::write(std::size_t stream, EventSpan events) {
+  std::vector<Event>& gathered = checkedStream(stream, StreamType::Events).events;
+  for (const Event& event : events) {
+    requireTime(event.time_ns);
+    // A step back starts a message too: within one, readers sort.
+    const bool full = !gathered.empty() && (event.time_ns < gathered.back().time_ns ||
+                                            event.time_ns - gathered.front().time_ns >= kMessageSpan_ns ||
+                                            gathered.size() >= kMessageEvents);
+    if (full) flushEvents(stream);
+    gathered.push_back(event);
+  }
+}
+
+void RosWriter::write(std::size_t stream, std::span<const ImuSample> samples) {
+  Stream& target = checkedStream(stream, StreamType::Imu);
+  for (const ImuSample& sample : samples) {
+    requireTime(sample.time_ns);
+    message_.clear();
+    encodeImu(sample, target.sequence, serialization_, message_);
+    appendMessage(stream, target.sequence++, sample.time_ns, message_);
+  }
+}
+
+void RosWriter::flushEvents() {
+  for (std::size_t i = 0; i < streams_.size(); ++i) flushEvents(i);
+}
+
+void RosWriter::flushEvents(std::size_t stream) {
+  Stream& source = streams_[stream];
+  if (source.events.empty()) return;
+  message_.clear();
+  encodeEventArray(source.events, source.sequence, source.info.resolution_px, serialization_, message_);
+  appendMessage(stream, source.sequence++, source.events.back().time_ns, message_);
+  source.events.clear();
+}
+
+void RosWriter::requireTime(std::int64_t time_ns) const {
+  if (time_ns >= 0 && time_ns / kSecond_ns < seconds_end_) return;
+  throw calibrationFailed(path_, fmt::format("a ROS recording cannot hold the time {} ns", time_ns),
+                          fmt::format("It holds times from 0 to {} s.", seconds_end_));
+}
+
+RosWriter::Stream& RosWriter::checkedStream(std::size_t stream, StreamType type) {
+  Stream& checked = streams_.at(stream);
+  if (checked.info.type == type) return checked;
+  throw calibrationFailed(path_,
+                          fmt::format("stream {} was given samples of another type", checked.info.name));
+}
+
+}  // namespace evical::ros

@@ -1,0 +1,304 @@
+#include "core/recording/ros/topic_streams.h"
+
+#include "core/base/error.h"
+#include "core/recording/ros/ros_messages.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace evical::ros {
+namespace {
+
+constexpr int kMostAlikeFaults = 10;  // of one kind and stream; a broken file has thousands
+constexpr int kEnoughMessages = 50;
+constexpr std::uint64_t kEnoughStamps = 1000;
+constexpr std::int64_t kLargestSorted_ns = 10'000'000;
+
+}  // namespace
+
+bool TopicStreams::State::refused() const {
+  return content == Content::EventPacket && !encoding.empty() && encodingOf(encoding) == Encoding::Unknown;
+}
+
+std::size_t TopicStreams::add(const Topic& topic) {
+  const auto same = [&](const StreamInfo& stream) {
+    return stream.name == topic.name && stream.message == topic.type;
+  };
+  const auto found = std::find_if(streams_.begin(), streams_.end(), same);
+  const auto index = static_cast<std::size_t>(found - streams_.begin());
+  if (found != streams_.end()) return index;
+  if (listed_) return kNone;
+  State state;
+  state.content = contentOf(topic.type, topic.md5, topic.definition);
+  state.serialization = topic.serialization;
+  StreamInfo stream;
+  stream.name = topic.name;
+  stream.message = topic.type;
+  stream.type = streamTypeOf(state.content);
+  streams_.push_back(std::move(stream));
+  states_.push_back(std::move(state));
+  return index;
+}
+
+void TopicStreams::clear() {
+  streams_.clear();
+  states_.clear();
+}
+
+void TopicStreams::lookInto(std::size_t stream, std::string_view message) {
+  if (knows(stream)) return;
+  State& state = states_[stream];
+  StreamInfo& info = streams_[stream];
+  ++state.looked;
+  const auto count = [&state](std::int64_t time_ns) {
+    (time_ns == 0 ? state.zero_stamps : state.other_stamps) += 1;
+  };
+  if (state.content == Content::EventArray) {
+    std::vector<Event> events;
+    decodeEventArray(message, state.serialization, events, info.resolution_px);
+    for (const Event& event : events) count(event.time_ns);
+  } else if (state.content == Content::Imu) {
+    std::vector<ImuSample> samples;
+    decodeImu(message, state.serialization, samples);
+    for (const ImuSample& sample : samples) count(sample.time_ns);
+  } else if (state.content == Content::Image) {
+    decodeImageSize(message, state.serialization, info.resolution_px);
+  } else if (state.content == Content::EventPacket) {
+    lookIntoPacket(stream, message);
+  }
+}
+
+void TopicStreams::lookIntoPacket(std::size_t stream, std::string_view message) {
+  State& state = states_[stream];
+  EventPacket packet;
+  if (!parseEventPacket(message, state.serialization, packet)) return;
+  if (packet.resolution_px.known()) streams_[stream].resolution_px = packet.resolution_px;
+  if (state.encoding.empty()) state.encoding = packet.encoding;
+  std::vector<Event> events;
+  EventPacketDecoder decoder;
+  decoder.decode(packet, events);
+  state.has_triggers = state.has_triggers || decoder.triggers() > 0;
+  if (const auto offset = decoder.hostClock().offset(); offset && !streams_[stream].host_clock_offset_s)
+    streams_[stream].host_clock_offset_s = offset->offset_s;
+}
+
+bool TopicStreams::knows(std::size_t stream) const {
+  const State& state = states_[stream];
+  const bool sized = streams_[stream].resolution_px.known();
+  if (state.looked >= kEnoughMessages) return true;
+  switch (state.content) {
+    case Content::Other:
+    case Content::PackedImage:
+      return true;
+    case Content::EventArray:
+      return state.other_stamps > 0 && (sized || state.other_stamps > kEnoughStamps);
+    case Content::Imu:
+      return state.other_stamps > 0;
+    case Content::Image:
+      return sized;
+    case Content::EventPacket:
+      break;
+  }
+  return state.refused() || (sized && state.looked >= 3);
+}
+
+bool TopicStreams::hasBeenLookedInto(std::size_t stream) const {
+  return states_[stream].looked > 0;
+}
+
+void TopicStreams::finishLooking() {
+  for (std::size_t i = 0; i < streams_.size(); ++i) {
+    State& state = states_[i];
+    StreamInfo& info = streams_[i];
+    const Encoding encoding = encodingOf(state.encoding);
+    if (encoding == Encoding::Trigger) info.type = StreamType::Triggers;
+    state.selected = (info.type == StreamType::Events || info.type == StreamType::Imu) && !state.refused();
+    if (state.stampless())
+      addFault(info.name, "no_stamps", "Stamps are 0; the times of recording are used, which jitter by ms.");
+    if (state.refused()) {
+      addFault(info.name, "encoding",
+               fmt::format("The encoding \"{}\" cannot be read; readable are {}.", state.encoding,
+                           kReadableEncodings));
+    }
+    if (encoding == Encoding::LibcaerCmp) {
+      addFault(
+          info.name, "encoding",
+          "The encoding libcaer_cmp is lossy: drivers write some rows up to 7 px off, and times that wrap "
+          "at 65.5 ms in long messages. Record with the encoding libcaer.");
+    }
+  }
+  listTriggers();
+  listed_ = true;
+}
+
+// Streams of their own, behind all topics.
+void TopicStreams::listTriggers() {
+  for (std::size_t i = 0, topics = streams_.size(); i < topics; ++i) {
+    if (!states_[i].has_triggers || streams_[i].type != StreamType::Events) continue;
+    StreamInfo triggers;
+    triggers.name = streams_[i].name + "/triggers";
+    triggers.type = StreamType::Triggers;
+    triggers.message = streams_[i].message;
+    states_[i].trigger_stream = streams_.size();
+    streams_.push_back(std::move(triggers));
+    states_.emplace_back();
+  }
+}
+
+void TopicStreams::select(const std::string& path, const std::vector<std::size_t>& streams) {
+  for (State& state : states_) state.selected = false;
+  for (const std::size_t stream : streams) {
+    State& state = states_.at(stream);
+    if (state.refused()) {
+      throw badInput(
+          path, fmt::format("the events of {} are encoded as \"{}\"", streams_[stream].name, state.encoding),
+          fmt::format("Readable are {}.", kReadableEncodings));
+    }
+    state.selected = true;
+  }
+}
+
+bool TopicStreams::decode(std::size_t stream, std::string_view message, std::int64_t record_time_ns,
+                          const std::string& place, Packet& packet) {
+  packet.stream = stream;
+  packet.events.clear();
+  packet.imu_samples.clear();
+  bool whole = true;
+  switch (streams_[stream].type) {
+    case StreamType::Events:
+      whole = decodeEvents(stream, message, record_time_ns, packet.events);
+      break;
+    case StreamType::Imu:
+      whole = decodeSamples(stream, message, record_time_ns, packet.imu_samples);
+      break;
+    case StreamType::Frames:
+    case StreamType::Triggers:
+    case StreamType::Other:
+      return false;
+  }
+  if (!whole) {
+    addFault(streams_[stream].name, "corrupt",
+             fmt::format("A message {} is damaged; {}.", place,
+                         packet.events.empty() ? "it is left out" : "its end is left out"));
+  }
+  return !packet.events.empty() || !packet.imu_samples.empty();
+}
+
+bool TopicStreams::decodeEvents(std::size_t stream, std::string_view message, std::int64_t record_time_ns,
+                                std::vector<Event>& events) {
+  const State& state = states_[stream];
+  const bool whole =
+      state.content == Content::EventPacket
+          ? decodePacket(stream, message, events)
+          : decodeEventArray(message, state.serialization, events, streams_[stream].resolution_px);
+  if (state.stampless())
+    for (Event& event : events) event.time_ns = record_time_ns;
+  putInOrder(stream, events);
+  return whole;
+}
+
+bool TopicStreams::decodePacket(std::size_t stream, std::string_view message, std::vector<Event>& events) {
+  State& state = states_[stream];
+  EventPacket packet;
+  if (!parseEventPacket(message, state.serialization, packet)) return false;
+  if (packet.resolution_px.known()) streams_[stream].resolution_px = packet.resolution_px;
+  if (encodingOf(packet.encoding) == Encoding::Unknown) {
+    addFault(
+        streams_[stream].name, "encoding",
+        fmt::format("There are messages with the encoding \"{}\", which cannot be read.", packet.encoding));
+    return true;
+  }
+  const bool whole = state.decoder.decode(packet, events);
+  if (state.trigger_stream) streams_[*state.trigger_stream].messages = state.decoder.triggers();
+  return whole;
+}
+
+bool TopicStreams::decodeSamples(std::size_t stream, std::string_view message, std::int64_t record_time_ns,
+                                 std::vector<ImuSample>& samples) {
+  const bool whole = decodeImu(message, states_[stream].serialization, samples);
+  if (states_[stream].stampless())
+    for (ImuSample& sample : samples) sample.time_ns = record_time_ns;
+  return whole;
+}
+
+// Small steps back are sorted; before a large one the packet ends, since sorting would only hide it.
+void TopicStreams::putInOrder(std::size_t stream, std::vector<Event>& events) {
+  State& state = states_[stream];
+  const std::uint64_t before = state.disordered;
+  for (std::size_t i = 1; i < events.size(); ++i) {
+    const std::int64_t back_ns = events[i - 1].time_ns - events[i].time_ns;
+    if (back_ns <= 0) continue;
+    if (back_ns > kLargestSorted_ns) {
+      const auto step = events.begin() + static_cast<std::ptrdiff_t>(i);
+      rest_.assign(step, events.end());
+      rest_stream_ = stream;
+      events.erase(step, events.end());
+      break;
+    }
+    state.disordered += 1;
+    state.largest_disorder_ns = std::max(state.largest_disorder_ns, back_ns);
+  }
+  if (state.disordered == before) return;
+  std::stable_sort(events.begin(), events.end(),
+                   [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; });
+  const std::string& name = streams_[stream].name;
+  addFault(name, "unsorted", "");
+  for (RecordingFault& fault : faults_) {
+    if (fault.stream != name || fault.kind != "unsorted") continue;
+    fault.text = fmt::format("Time runs backwards {} times within messages, by {:.3f} ms at most; sorted.",
+                             state.disordered, 1e-6 * static_cast<double>(state.largest_disorder_ns));
+  }
+}
+
+bool TopicStreams::handOutRest(Packet& packet) {
+  if (rest_.empty()) return false;
+  packet.stream = rest_stream_;
+  packet.imu_samples.clear();
+  packet.events.clear();
+  std::swap(packet.events, rest_);
+  putInOrder(packet.stream, packet.events);
+  return true;
+}
+
+void TopicStreams::finishReading() {
+  for (std::size_t i = 0; i < streams_.size(); ++i)
+    if (states_[i].selected && states_[i].content == Content::EventPacket) finishEventPackets(i);
+}
+
+void TopicStreams::finishEventPackets(std::size_t stream) {
+  const State& state = states_[stream];
+  StreamInfo& info = streams_[stream];
+  if (state.decoder.lostMessages() > 0) {
+    addFault(info.name, "lost_messages",
+             fmt::format("{} messages are missing between those recorded.", state.decoder.lostMessages()));
+  }
+  const Evt3Counts& counts = state.decoder.evt3Counts();
+  if (counts.outside > 0) {
+    addFault(info.name, "outside",
+             fmt::format("{} events outside of the sensor are left out.", counts.outside));
+  }
+  if (state.decoder.triggers() > 0 && !state.trigger_stream)
+    addFault(info.name, "triggers", fmt::format("There are {} external triggers.", state.decoder.triggers()));
+  const std::optional<HostClockOffset> offset = state.decoder.hostClock().offset();
+  if (!offset) return;
+  info.host_clock_offset_s = offset->offset_s;
+  const std::string drift =
+      offset->drift_ppm ? fmt::format(", drifting by {:.1f} ppm", *offset->drift_ppm) : "";
+  addFault(info.name, "host_clock",
+           fmt::format("Times are the sensor's own; the host's are later by {:.6f} s{}. For an IMU on the "
+                       "host's clock give the camera clock_offset_s: {:.6f}.",
+                       offset->offset_s, drift, offset->offset_s));
+}
+
+void TopicStreams::addFault(const std::string& stream, const std::string& kind, const std::string& text) {
+  const int limit = kind == "corrupt" || kind == "unreadable" ? kMostAlikeFaults : 1;
+  const auto alike = [&](const RecordingFault& fault) {
+    return fault.stream == stream && fault.kind == kind;
+  };
+  if (std::count_if(faults_.begin(), faults_.end(), alike) < limit)
+    faults_.push_back({stream, kind, 0.0, text});
+}
+
+}  // namespace evical::ros
