@@ -9,19 +9,15 @@ packages=(
   # core
   libeigen3-dev libceres-dev libsuitesparse-dev libyaml-cpp-dev libfmt-dev libspdlog-dev
   libopencv-dev libpng-dev
-  # recordings: ROS bags are bz2 or lz4 compressed, AEDAT4 is lz4 or zstd; HDF5 has its
+  # recordings: ROS 1 bags are bz2 or lz4 compressed, ROS 2 bags are SQLite or MCAP, AEDAT4 is lz4 or zstd; HDF5 has its
   # own library and filters
-  libbz2-dev liblz4-dev libzstd-dev libhdf5-dev libblosc-dev liblzf-dev
-  # recordings: ROS bags are bz2 or lz4 compressed
-  libbz2-dev liblz4-dev libzstd-dev
+  libbz2-dev liblz4-dev libzstd-dev zlib1g-dev libsqlite3-dev libhdf5-dev libblosc-dev liblzf-dev
   # command line
   libcli11-dev nlohmann-json3-dev
   # desktop program
   qt6-base-dev qt6-svg-dev libvtk9-dev libegl-dev libgl1-mesa-dri libglew-dev libqcustomplot-dev fonts-inter
   # tests
-  python3-h5py
-  clang-format xvfb xauth xdotool imagemagick
-  python3-rosbag clang-format xvfb xauth xdotool imagemagick
+  clang-format xvfb xauth xdotool imagemagick python3-h5py python3-rosbag
 )
 
 if [ "${1:-}" = "--list" ]; then

@@ -14,6 +14,11 @@ std::unique_ptr<RecordingWriter> createPlainBag(const std::filesystem::path& pat
   return createBag(path, streams, false);
 }
 
+std::unique_ptr<RecordingWriter> createPackedMcap(const std::filesystem::path& path,
+                                                  const std::vector<StreamInfo>& streams) {
+  return createMcap(path, streams, McapCompression::Zstd);
+}
+
 std::unique_ptr<RecordingWriter> createLz4Aedat4(const std::filesystem::path& path,
                                                  const std::vector<StreamInfo>& streams) {
   return createAedat4(path, streams, false);
@@ -22,6 +27,7 @@ std::unique_ptr<RecordingWriter> createLz4Aedat4(const std::filesystem::path& pa
 // One line a format; everything that writes recordings walks this table.
 constexpr RecordingFormat kFormats[] = {
     {"bag", ".bag", "ROS 1 bag", createPlainBag},
+    {"mcap", ".mcap", "ROS 2 recording in MCAP, zstd", createPackedMcap},
     {"aedat4", ".aedat4", "iniVation AEDAT4", createLz4Aedat4},
     {"dsec", ".h5", "HDF5 in DSEC's layout, IMU samples in /imu", createDsec},
     {"text", "", "a folder with events.txt and imu.txt", createText},

@@ -7,6 +7,9 @@
 #include "core/recording/prophesee/raw_reader.h"
 #include "core/recording/recording_reader.h"
 #include "core/recording/ros/bag_reader.h"
+#include "core/recording/ros/compression.h"
+#include "core/recording/ros/ros2_files.h"
+#include "core/recording/ros/ros2_reader.h"
 #include "core/recording/text/text_table_reader.h"
 
 #include <fmt/format.h>
@@ -20,7 +23,8 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr const char* kReadable =
-    "Readable are ROS 1 bags (format 2.0), AEDAT4, Prophesee RAW and DAT, HDF5 (DSEC, TUM-VIE, M3ED, MVSEC, "
+    "Readable are ROS 1 bags (format 2.0), ROS 2 bags (MCAP, sqlite3), AEDAT4, Prophesee RAW and DAT, HDF5 "
+    "(DSEC, TUM-VIE, M3ED, MVSEC, "
     "Metavision), "
     "Event Stream, and text or CSV: a folder with events.txt and imu.txt (or .csv), or one such file.";
 
@@ -37,8 +41,6 @@ constexpr OtherFormat kOtherFormats[] = {
     {"\x1F\x8B"sv, "this is packed with gzip", "Unpack it first."},
     {"\x28\xB5\x2F\xFD"sv, "this is packed with zstd", "Unpack it first."},
     {"#ROSBAG"sv, "this is a bag of an old format", "Convert it with `rosbag fix`."},
-    {"SQLite format 3\0"sv, "this is a ROS 2 bag, which cannot be read yet", kReadable},
-    {"\x89MCAP"sv, "this is an MCAP file, which cannot be read yet", kReadable},
     {"#!AER-DAT"sv, "this is an AEDAT file of an old version",
      "Convert it to AEDAT4 with iniVation's DV or dv-processing."},
 };
@@ -52,15 +54,21 @@ std::string firstBytes(const std::filesystem::path& path) {
   return bytes;
 }
 
+// Only its name tells what a packed file is.
+bool isRos2File(const std::filesystem::path& path, std::string_view start) {
+  const std::string name = path.filename().string();
+  const bool packed_bag = name.ends_with(".db3.zstd") || name.ends_with(".mcap.zstd");
+  return start.starts_with("\x89MCAP"sv) || start.starts_with("SQLite format 3\0"sv) ||
+         (start.starts_with(ros::kZstdMagic) && packed_bag);
+}
+
 std::unique_ptr<RecordingReader> openFolder(const std::filesystem::path& path) {
   if (isTextFolder(path)) return std::make_unique<TextTableReader>(path);
   if (std::filesystem::exists(path / "events.txt") || std::filesystem::exists(path / "imu.txt")) {
     return std::make_unique<TextTableReader>(path);
   }
   if (isTumVieFolder(path)) return std::make_unique<Hdf5Reader>(path);
-  if (std::filesystem::exists(path / "metadata.yaml")) {
-    throw badInput(path.string(), "this is a ROS 2 bag, which cannot be read yet", kReadable);
-  }
+  if (ros::isRos2Folder(path)) return std::make_unique<Ros2Reader>(path);
   throw badInput(path.string(), "the folder has no events.txt, imu.txt, events.csv or imu.csv", kReadable);
 }
 
@@ -83,6 +91,7 @@ std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path
   if (start.starts_with(kEventStreamMagic)) return openEventStream(path);
   if (start.starts_with("\x89HDF\r\n\x1A\n"sv)) return std::make_unique<Hdf5Reader>(path);
   if (start.starts_with(aedat::kMagic)) return std::make_unique<Aedat4Reader>(path);
+  if (isRos2File(path, start)) return std::make_unique<Ros2Reader>(path);
   for (const OtherFormat& format : kOtherFormats) {
     if (start.starts_with(format.magic)) throw badInput(path.string(), format.problem, format.advice);
   }

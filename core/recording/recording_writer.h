@@ -41,6 +41,13 @@ std::unique_ptr<RecordingWriter> createAedat4(const std::filesystem::path& path,
 std::unique_ptr<RecordingWriter> createDsec(const std::filesystem::path& path,
                                             const std::vector<StreamInfo>& streams);
 
+// An MCAP file as ROS 2 records it, of the same messages in CDR, with ros2msg schemas and a summary. Times
+// must be within [0, 2^31) s.
+enum class McapCompression { None, Lz4, Zstd };
+std::unique_ptr<RecordingWriter> createMcap(const std::filesystem::path& path,
+                                            const std::vector<StreamInfo>& streams,
+                                            McapCompression compression);
+
 // "events.txt" and "imu.txt" in an existing folder; at most one stream of each type.
 std::unique_ptr<RecordingWriter> createText(const std::filesystem::path& folder,
                                             const std::vector<StreamInfo>& streams);

@@ -1,0 +1,29 @@
+// A file's bytes anywhere in it, read in large blocks.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+namespace evical::ros {
+
+class FileBlocks {
+ public:
+  // Throws CalibrationError (BadInput) if the file cannot be opened.
+  explicit FileBlocks(const std::filesystem::path& path);
+
+  std::uint64_t size() const { return size_; }  // when it was opened
+
+  // The bytes until the next call; false unless all of them are there.
+  bool read(std::uint64_t position, std::uint64_t count, std::string_view& bytes);
+
+ private:
+  std::ifstream file_;
+  std::uint64_t size_ = 0;
+  std::string block_;
+  std::uint64_t block_position_ = 0;
+};
+
+}  // namespace evical::ros

@@ -1,0 +1,83 @@
+// MCAP files, chunk by chunk: memory is that of the largest chunk. A file that was cut off or has no summary
+// is read in sequence as far as it is whole.
+#pragma once
+
+#include "core/recording/ros/file_blocks.h"
+#include "core/recording/ros/mcap_records.h"
+#include "core/recording/ros/message_source.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace evical::ros {
+
+class McapSource : public MessageSource {
+ public:
+  McapSource(const std::filesystem::path& path, FaultSink sink);
+
+  const std::vector<SourceTopic>& topics() const override { return topics_; }
+  void want(std::vector<bool> topics) override { wanted_ = std::move(topics); }
+  bool next(SourceMessage& message) override;
+  void rewind() override;
+  std::string place() const override;
+  double fractionRead() const override;
+
+ private:
+  struct SchemaText {
+    std::string name, definition;
+  };
+  struct Record {
+    std::uint8_t op = 0;
+    std::uint64_t position = 0, content = 0,
+                  size = 0;  // where it and its content begin, the content's length
+    bool is(mcap::Op other) const { return op == static_cast<std::uint8_t>(other); }
+    std::uint64_t end() const { return content + size; }
+  };
+  // A chunk whose channels the indexes behind it may tell.
+  struct PendingChunk {
+    std::uint64_t position = 0;
+    std::map<std::uint16_t, std::uint64_t> messages;
+  };
+
+  bool readHead(std::uint64_t position, Record& record);
+  bool readContent(const Record& record, std::string_view& content);
+  bool listFromSummary();
+  bool takeSummaryRecord(const Record& record, mcap::Statistics& statistics);
+  void listByScan();
+  void countPending(PendingChunk& chunk);
+  void addSchema(std::string_view content);
+  void addChannel(std::string_view content);
+  void countMessage(std::string_view content);
+
+  bool nextRecord(SourceMessage& message);
+  bool nextOfChunk(SourceMessage& message);
+  bool handOut(std::string_view content, SourceMessage& message);
+  bool wanted(std::size_t topic) const { return topic >= wanted_.size() || wanted_[topic]; }
+  bool chunkIsWanted(std::uint64_t position) const;
+  bool loadChunk(const Record& record);
+  void reportChunk(Unpacked result, const Record& record, std::uint64_t expected_bytes);
+  void checkSum(const mcap::ChunkHead& head, const Record& record);
+  std::uint64_t chunkAfter(std::uint64_t position);
+  std::uint64_t scanForChunk(std::uint64_t from);
+  void skipDamage(const Record& record);
+
+  FaultSink sink_;
+  FileBlocks file_;
+  std::vector<SourceTopic> topics_;
+  std::vector<bool> wanted_;
+  std::unordered_map<std::uint16_t, SchemaText> schemas_;
+  std::unordered_map<std::uint16_t, std::size_t> topic_of_channel_;
+  std::map<std::uint64_t, std::vector<std::uint16_t>> chunk_channels_;  // from the chunk indexes
+  std::uint64_t position_ = 0;                                          // of the next record
+  std::uint64_t record_position_ = 0;                                   // of the last one read
+  std::string unpacked_;
+  std::string_view chunk_;      // the rest of the records in the chunk being read
+  std::size_t chunk_size_ = 0;  // of all of them
+  bool ended_ = false;
+};
+
+}  // namespace evical::ros

@@ -1,0 +1,191 @@
+#include "core/recording/ros/mcap_writer.h"
+
+#include "core/recording/ros/compression.h"
+#include "core/recording/ros/mcap_records.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace evical {
+namespace {
+
+constexpr std::size_t kChunk_bytes = 1 << 20;
+constexpr std::int64_t kSecondsEnd = std::int64_t{1} << 31;  // int32 sec
+
+template <class Number>
+std::string bytesOf(Number value) {
+  return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+std::string sized(std::string_view bytes) {
+  return bytesOf(static_cast<std::uint32_t>(bytes.size())).append(bytes);
+}
+
+std::string record(mcap::Op op, std::string_view content) {
+  std::string bytes = bytesOf(op) + bytesOf(std::uint64_t{content.size()});
+  return bytes.append(content);
+}
+
+std::uint32_t crcOf(std::uint32_t crc, std::string_view bytes) {
+  return static_cast<std::uint32_t>(crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
+std::uint16_t idOf(std::size_t stream) {
+  return static_cast<std::uint16_t>(stream + 1);  // schema 0 would be none
+}
+
+}  // namespace
+
+McapWriter::McapWriter(const std::filesystem::path& path, const std::vector<StreamInfo>& streams,
+                       McapCompression compression)
+    : RosWriter(path, streams, ros::Serialization::Cdr, kSecondsEnd),
+      file_(path),
+      compression_(compression),
+      channels_(streams.size()) {
+  file_.append(mcap::kMagic);
+  file_.append(record(mcap::Op::Header, sized("ros2") + sized("evical")));
+}
+
+void McapWriter::finish() {
+  flushEvents();
+  flushChunk();
+  file_.append(record(mcap::Op::DataEnd, bytesOf(std::uint32_t{0})));  // no checksum
+  appendSummary();
+  file_.append(mcap::kMagic);
+  file_.finish();
+}
+
+void McapWriter::appendMessage(std::size_t stream, std::uint32_t sequence, std::int64_t time_ns,
+                               std::string_view message) {
+  Channel& channel = channels_[stream];
+  if (!channel.announced) chunk_ += schemaRecord(stream) + channelRecord(stream);
+  channel.announced = true;
+  ++channel.messages;
+  const auto time = static_cast<std::uint64_t>(time_ns);
+  channel.index.emplace_back(time, chunk_.size());
+  constexpr std::uint64_t kHead_bytes = 2 + 4 + 8 + 8;
+  chunk_ += bytesOf(mcap::Op::Message) + bytesOf(kHead_bytes + message.size()) + bytesOf(idOf(stream)) +
+            bytesOf(sequence) + bytesOf(time) + bytesOf(time);
+  chunk_ += message;
+  if (chunk_.size() >= kChunk_bytes) flushChunk();
+}
+
+void McapWriter::flushChunk() {
+  if (chunk_.empty()) return;
+  ChunkInfo info;
+  info.position = file_.size();
+  info.first_ns = std::numeric_limits<std::uint64_t>::max();
+  for (const Channel& channel : channels_) {
+    for (const auto& [time, offset] : channel.index) {
+      info.first_ns = std::min(info.first_ns, time);
+      info.last_ns = std::max(info.last_ns, time);
+    }
+  }
+  if (compression_ == McapCompression::Lz4) ros::packLz4(chunk_, packed_);
+  if (compression_ == McapCompression::Zstd) ros::packZstd(chunk_, packed_);
+  const std::string& data = compression_ == McapCompression::None ? chunk_ : packed_;
+  info.plain_bytes = chunk_.size();
+  info.packed_bytes = data.size();
+  const std::string head = bytesOf(info.first_ns) + bytesOf(info.last_ns) + bytesOf(info.plain_bytes) +
+                           bytesOf(crcOf(0, chunk_)) + sized(compressionName()) + bytesOf(info.packed_bytes);
+  file_.append(bytesOf(mcap::Op::Chunk) + bytesOf(std::uint64_t{head.size() + data.size()}) + head);
+  file_.append(data);
+  info.size = file_.size() - info.position;
+  appendIndexes(info);
+  chunks_.push_back(std::move(info));
+  chunk_.clear();
+}
+
+void McapWriter::appendIndexes(ChunkInfo& chunk) {
+  const std::uint64_t begin = file_.size();
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    auto& index = channels_[i].index;
+    if (index.empty()) continue;
+    std::sort(index.begin(), index.end());
+    std::string entries;
+    for (const auto& [time, offset] : index) entries += bytesOf(time) + bytesOf(offset);
+    chunk.index_offsets += bytesOf(idOf(i)) + bytesOf(file_.size());
+    file_.append(record(mcap::Op::MessageIndex, bytesOf(idOf(i)) + sized(entries)));
+    index.clear();
+  }
+  chunk.index_bytes = file_.size() - begin;
+}
+
+// Groups of records of one kind, where each group is, and the footer, whose checksum covers all of them.
+void McapWriter::appendSummary() {
+  const std::uint64_t start = file_.size();
+  std::string summary, offsets;
+  const auto group = [&](mcap::Op op, const std::string& records) {
+    if (records.empty()) return;
+    offsets += record(mcap::Op::SummaryOffset,
+                      bytesOf(op) + bytesOf(start + summary.size()) + bytesOf(std::uint64_t{records.size()}));
+    summary += records;
+  };
+  std::string schemas, channels, indexes;
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    schemas += schemaRecord(i);
+    channels += channelRecord(i);
+  }
+  for (const ChunkInfo& chunk : chunks_) indexes += chunkIndexRecord(chunk);
+  group(mcap::Op::Schema, schemas);
+  group(mcap::Op::Channel, channels);
+  group(mcap::Op::Statistics, statisticsRecord());
+  group(mcap::Op::ChunkIndex, indexes);
+  std::string footer = bytesOf(mcap::Op::Footer) + bytesOf(std::uint64_t{20}) + bytesOf(start) +
+                       bytesOf(start + summary.size());
+  summary += offsets;
+  footer += bytesOf(crcOf(crcOf(0, summary), footer));
+  file_.append(summary);
+  file_.append(footer);
+}
+
+const char* McapWriter::compressionName() const {
+  if (compression_ == McapCompression::Lz4) return "lz4";
+  return compression_ == McapCompression::Zstd ? "zstd" : "";
+}
+
+std::string McapWriter::schemaRecord(std::size_t stream) const {
+  const ros::MessageType& type = messageType(stream);
+  return record(mcap::Op::Schema,
+                bytesOf(idOf(stream)) + sized(type.name) + sized("ros2msg") + sized(type.definition));
+}
+
+std::string McapWriter::channelRecord(std::size_t stream) const {
+  return record(mcap::Op::Channel, bytesOf(idOf(stream)) + bytesOf(idOf(stream)) + sized(info(stream).name) +
+                                       sized("cdr") + sized(""));
+}
+
+std::string McapWriter::chunkIndexRecord(const ChunkInfo& chunk) const {
+  return record(mcap::Op::ChunkIndex,
+                bytesOf(chunk.first_ns) + bytesOf(chunk.last_ns) + bytesOf(chunk.position) +
+                    bytesOf(chunk.size) + sized(chunk.index_offsets) + bytesOf(chunk.index_bytes) +
+                    sized(compressionName()) + bytesOf(chunk.packed_bytes) + bytesOf(chunk.plain_bytes));
+}
+
+std::string McapWriter::statisticsRecord() const {
+  std::uint64_t messages = 0, first_ns = 0, last_ns = 0;
+  std::string counts;
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    messages += channels_[i].messages;
+    counts += bytesOf(idOf(i)) + bytesOf(channels_[i].messages);
+  }
+  for (const ChunkInfo& chunk : chunks_) {
+    first_ns = first_ns == 0 ? chunk.first_ns : std::min(first_ns, chunk.first_ns);
+    last_ns = std::max(last_ns, chunk.last_ns);
+  }
+  const auto count = [](std::size_t number) { return bytesOf(static_cast<std::uint32_t>(number)); };
+  return record(mcap::Op::Statistics,
+                bytesOf(messages) + bytesOf(static_cast<std::uint16_t>(channels_.size())) +
+                    count(channels_.size()) + count(0) + count(0) + count(chunks_.size()) +
+                    bytesOf(first_ns) + bytesOf(last_ns) + sized(counts));
+}
+
+std::unique_ptr<RecordingWriter> createMcap(const std::filesystem::path& path,
+                                            const std::vector<StreamInfo>& streams,
+                                            McapCompression compression) {
+  return std::make_unique<McapWriter>(path, streams, compression);
+}
+
+}  // namespace evical

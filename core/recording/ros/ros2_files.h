@@ -1,0 +1,23 @@
+// Which files a ROS 2 recording consists of, and opening them whatever they are packed in.
+#pragma once
+
+#include "core/recording/ros/message_source.h"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace evical::ros {
+
+// A file, or a folder's files in the order of its metadata.yaml; where there is none, or it is damaged, in
+// the order of their numbers. Throws CalibrationError (BadInput) if there are none.
+std::vector<std::filesystem::path> ros2Files(const std::filesystem::path& path, const FaultSink& sink);
+
+// Whether a folder looks like a ROS 2 recording.
+bool isRos2Folder(const std::filesystem::path& folder);
+
+// By content; files packed with zstd (compression_mode FILE) are unpacked to a temporary file.
+std::unique_ptr<MessageSource> openRos2File(const std::filesystem::path& path, const FaultSink& sink);
+
+}  // namespace evical::ros

@@ -1,0 +1,129 @@
+#include "core/recording/ros/ros2_reader.h"
+
+#include "core/base/error.h"
+#include "core/recording/ros/ros2_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace evical {
+namespace {
+
+// How far streams are looked for that have not been met.
+constexpr std::uint64_t kMostLooked_bytes = 64 << 20;
+constexpr int kMostLooked = 20'000;  // messages
+
+}  // namespace
+
+Ros2Reader::Ros2Reader(const std::filesystem::path& path) : path_(path.string()) {
+  files_ = ros::ros2Files(path, sink(path));
+  const std::string name = files_.front().filename().string();
+  format_ = name.find(".mcap") != std::string::npos ? "mcap" : "rosbag2";
+  std::size_t readable = 0;
+  for (std::size_t i = 0; i < files_.size(); ++i) {
+    if (!openFile(i)) continue;
+    ++readable;
+    for (std::size_t topic = 0; topic < streams_of_topics_.size(); ++topic)
+      topics_.countMessages(streams_of_topics_[topic], source_->topics()[topic].messages);
+    lookIntoFile();
+  }
+  if (readable == 0) throw badInput(path_, "none of its files can be read", topics_.faults().back().text);
+  topics_.finishLooking();
+  if (files_.size() > 1) source_.reset();
+}
+
+// A single file must be readable, one of many need not.
+bool Ros2Reader::openFile(std::size_t index) {
+  file_ = index;
+  source_.reset();
+  streams_of_topics_.clear();
+  try {
+    source_ = ros::openRos2File(files_[index], sink(files_[index]));
+  } catch (const CalibrationError& error) {
+    if (files_.size() == 1 || error.kind() != ErrorKind::BadInput) throw;
+    sink(files_[index])("unreadable", error.what());
+    return false;
+  }
+  matchTopics();
+  return true;
+}
+
+void Ros2Reader::matchTopics() {
+  while (streams_of_topics_.size() < source_->topics().size())
+    streams_of_topics_.push_back(topics_.add(source_->topics()[streams_of_topics_.size()].topic));
+}
+
+// Until all streams are known, but not through the whole file.
+void Ros2Reader::lookIntoFile() {
+  const std::size_t faults = topics_.faults().size();
+  const std::vector<ros::SourceTopic>& topics = source_->topics();
+  const bool counted =
+      std::any_of(topics.begin(), topics.end(), [](const ros::SourceTopic& t) { return t.messages > 0; });
+  std::vector<bool> unknown(topics.size());
+  for (std::size_t i = 0; i < topics.size(); ++i)
+    unknown[i] = !topics_.knows(streams_of_topics_[i]) && (topics[i].messages > 0 || !counted);
+  const auto anyUnknown = [&] { return std::find(unknown.begin(), unknown.end(), true) != unknown.end(); };
+  std::uint64_t looked_bytes = 0;
+  ros::SourceMessage message;
+  source_->want(unknown);
+  for (int i = 0; anyUnknown() && i < kMostLooked && looked_bytes < kMostLooked_bytes; ++i) {
+    if (!source_->next(message)) break;
+    if (message.topic >= unknown.size()) continue;
+    topics_.lookInto(streams_of_topics_[message.topic], message.bytes);
+    looked_bytes += message.bytes.size();
+    if (topics_.knows(streams_of_topics_[message.topic])) unknown[message.topic] = false;
+  }
+  topics_.dropFaultsFrom(faults);  // reading will find them again
+  source_->rewind();
+}
+
+bool Ros2Reader::nextFile() {
+  std::size_t index = started_ ? file_ + 1 : 0;
+  const bool is_open = !started_ && source_ != nullptr;
+  started_ = true;
+  if (!is_open) {
+    const std::size_t faults = topics_.faults().size();  // the look at the files has found them
+    while (index < files_.size() && !openFile(index)) ++index;
+    topics_.dropFaultsFrom(faults);
+    if (index >= files_.size()) return false;
+  }
+  std::vector<bool> wanted(streams_of_topics_.size());
+  for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i] = topics_.selected(streams_of_topics_[i]);
+  source_->want(std::move(wanted));
+  return true;
+}
+
+bool Ros2Reader::read(Packet& packet) {
+  if (topics_.handOutRest(packet)) return true;
+  if (!started_) nextFile();
+  ros::SourceMessage message;
+  while (source_) {
+    while (source_->next(message)) {
+      const bool listed = message.topic < streams_of_topics_.size();
+      const std::size_t stream = listed ? streams_of_topics_[message.topic] : ros::TopicStreams::kNone;
+      if (!topics_.selected(stream)) continue;
+      if (topics_.decode(stream, message.bytes, message.record_time_ns, source_->place(), packet))
+        return true;
+    }
+    if (!nextFile()) source_.reset();
+  }
+  topics_.finishReading();
+  packet.events.clear();
+  packet.imu_samples.clear();
+  return false;
+}
+
+double Ros2Reader::fractionRead() const {
+  const double here = source_ ? source_->fractionRead() : started_ ? 1.0 : 0.0;
+  return std::min(1.0, (static_cast<double>(file_) + here) / static_cast<double>(files_.size()));
+}
+
+ros::FaultSink Ros2Reader::sink(const std::filesystem::path& file) {
+  return [this, name = file.filename().string()](const std::string& kind, const std::string& text) {
+    topics_.addFault("", kind, files_.size() > 1 ? name + ": " + text : text);
+  };
+}
+
+}  // namespace evical

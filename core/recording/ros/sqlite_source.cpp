@@ -1,0 +1,277 @@
+#include "core/recording/ros/sqlite_source.h"
+
+#include "core/base/error.h"
+#include "core/recording/ros/compression.h"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+namespace evical::ros {
+namespace {
+
+// A path in a URI: what would end it is escaped.
+std::string uriOf(const std::filesystem::path& path, bool immutable) {
+  std::string uri = "file:";
+  for (const char character : std::filesystem::absolute(path).string()) {
+    if (character == '%' || character == '?' || character == '#') {
+      uri += fmt::format("%{:02X}", static_cast<unsigned char>(character));
+    } else {
+      uri += character;
+    }
+  }
+  return uri + (immutable ? "?mode=ro&immutable=1" : "?mode=ro");
+}
+
+// A recorder still writes, or died: the newest messages are not yet in the file itself.
+bool hasWriteAheadLog(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path.string() + "-wal", error);
+  return !error && size > 0;
+}
+
+// What the file's header says it has; 0 if it says nothing.
+std::uint64_t statedBytes(const std::filesystem::path& path) {
+  std::array<unsigned char, 32> header{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(reinterpret_cast<char*>(header.data()), header.size());
+  if (file.gcount() != static_cast<std::streamsize>(header.size())) return 0;
+  const std::uint64_t page = header[16] * 256U + header[17];
+  const std::uint64_t pages =
+      (std::uint64_t{header[28]} << 24) + header[29] * 65536U + header[30] * 256U + header[31];
+  return (page == 1 ? 65536 : page) * pages;
+}
+
+}  // namespace
+
+class SqliteSource::Database {
+ public:
+  Database(const std::filesystem::path& path, bool immutable, bool cut) {
+    const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX;
+    status_ = sqlite3_open_v2(uriOf(path, immutable).c_str(), &handle_, flags, nullptr);
+    if (!ok()) return;
+    // A file of unknown origin shall not run code of its own.
+    sqlite3_db_config(handle_, SQLITE_DBCONFIG_DEFENSIVE, cut ? 0 : 1, nullptr);
+    // Files that are shorter than they say are refused but in this mode.
+    sqlite3_db_config(handle_, SQLITE_DBCONFIG_WRITABLE_SCHEMA, cut ? 1 : 0, nullptr);
+    sqlite3_db_config(handle_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+    sqlite3_db_config(handle_, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
+    sqlite3_db_config(handle_, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
+    status_ = sqlite3_exec(handle_, "PRAGMA cell_size_check=ON; SELECT 1 FROM sqlite_master", nullptr,
+                           nullptr, nullptr);
+  }
+  ~Database() { sqlite3_close(handle_); }
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+
+  bool ok() const { return status_ == SQLITE_OK; }
+  sqlite3* handle() const { return handle_; }
+  std::string problem() const { return handle_ != nullptr ? sqlite3_errmsg(handle_) : "out of memory"; }
+
+ private:
+  sqlite3* handle_ = nullptr;
+  int status_ = SQLITE_OK;
+};
+
+class SqliteSource::Statement {
+ public:
+  Statement(const Database& database, const std::string& sql) {
+    status_ =
+        sqlite3_prepare_v2(database.handle(), sql.c_str(), static_cast<int>(sql.size()), &handle_, nullptr);
+  }
+  ~Statement() { sqlite3_finalize(handle_); }
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
+
+  // True on a row; then ok() stays, at the end too.
+  bool step() {
+    if (handle_ == nullptr) return false;
+    status_ = sqlite3_step(handle_);
+    return status_ == SQLITE_ROW;
+  }
+  bool ok() const { return status_ == SQLITE_OK || status_ == SQLITE_ROW || status_ == SQLITE_DONE; }
+  std::int64_t integer(int column) const { return sqlite3_column_int64(handle_, column); }
+  std::string_view bytes(int column) const {
+    const void* data = sqlite3_column_blob(handle_, column);
+    const auto size = static_cast<std::size_t>(sqlite3_column_bytes(handle_, column));
+    return data != nullptr ? std::string_view(static_cast<const char*>(data), size) : std::string_view();
+  }
+  std::string text(int column) const { return std::string(bytes(column)); }
+
+ private:
+  sqlite3_stmt* handle_ = nullptr;
+  int status_ = SQLITE_OK;
+};
+
+SqliteSource::SqliteSource(const std::filesystem::path& path, FaultSink sink)
+    : path_(path), sink_(std::move(sink)) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  const std::uint64_t stated = statedBytes(path);
+  cut_ = !error && size < stated;
+  if (cut_) sink_("truncated", fmt::format("The file ends at byte {} of {}.", size, stated));
+  open();
+  listTopics();
+  countMessages();
+}
+
+SqliteSource::~SqliteSource() = default;
+
+void SqliteSource::open() {
+  const bool has_log = hasWriteAheadLog(path_);
+  if (has_log) database_ = std::make_unique<Database>(path_, false, cut_);
+  if (has_log && !database_->ok()) {
+    sink_("truncated",
+          "The newest messages are in the file's write-ahead log, which cannot be read here; they are left "
+          "out.");
+  }
+  if (!has_log || !database_->ok()) database_ = std::make_unique<Database>(path_, true, cut_);
+  if (database_->ok() && hasTable("topics") && hasTable("messages")) return;
+  if (!database_->ok()) {
+    throw badInput(path_.string(),
+                   fmt::format("the SQLite file of {} bytes cannot be read: {}",
+                               std::filesystem::file_size(path_), database_->problem()),
+                   "Copy it again; try `sqlite3 FILE .recover`.");
+  }
+  throw badInput(path_.string(), "this SQLite file is no ROS 2 bag: it has no tables topics and messages");
+}
+
+bool SqliteSource::hasTable(const char* name) {
+  Statement statement(*database_,
+                      fmt::format("SELECT 1 FROM sqlite_master WHERE type='table' AND name='{}'", name));
+  return statement.step();
+}
+
+bool SqliteSource::hasTimeIndex() {
+  Statement statement(*database_,
+                      "SELECT 1 FROM sqlite_master WHERE type='index' AND tbl_name='messages' AND sql LIKE "
+                      "'%(timestamp%'");
+  return statement.step();
+}
+
+void SqliteSource::listTopics() {
+  const std::map<std::string, std::string> known = definitions();
+  Statement statement(*database_, "SELECT id, name, type, serialization_format FROM topics ORDER BY id");
+  while (statement.step()) {
+    SourceTopic entry;
+    entry.topic = {statement.text(1), statement.text(2), "", "", Serialization::Cdr};
+    if (const auto found = known.find(entry.topic.type); found != known.end())
+      entry.topic.definition = found->second;
+    if (const std::string format = statement.text(3); format != "cdr") {
+      entry.topic.type += fmt::format(" ({})", format);  // known to nobody
+      entry.topic.definition.clear();
+    }
+    topic_of_id_[statement.integer(0)] = topics_.size();
+    topics_.push_back(std::move(entry));
+  }
+  if (statement.ok()) return;
+  throw badInput(path_.string(), fmt::format("the table of topics cannot be read: {}", database_->problem()));
+}
+
+// Only newer bags have them.
+std::map<std::string, std::string> SqliteSource::definitions() {
+  std::map<std::string, std::string> found;
+  if (!hasTable("message_definitions")) return found;
+  Statement statement(*database_,
+                      "SELECT topic_type, encoded_message_definition FROM message_definitions "
+                      "WHERE encoding='ros2msg'");
+  while (statement.step()) found[statement.text(0)] = statement.text(1);
+  return found;
+}
+
+void SqliteSource::countMessages() {
+  Statement statement(*database_, "SELECT topic_id, COUNT(*), MAX(id) FROM messages GROUP BY topic_id");
+  while (statement.step()) {
+    const auto found = topic_of_id_.find(statement.integer(0));
+    largest_id_ = std::max(largest_id_, statement.integer(2));
+    if (found == topic_of_id_.end()) continue;
+    topics_[found->second].messages = static_cast<std::uint64_t>(statement.integer(1));
+    count_ += topics_[found->second].messages;
+  }
+  if (statement.ok()) return;
+  for (SourceTopic& topic : topics_) topic.messages = 0;
+  count_ = 0;
+  Statement last(*database_, "SELECT MAX(id) FROM messages");
+  largest_id_ = last.step() ? last.integer(0) : 0;
+}
+
+void SqliteSource::rewind() {
+  messages_.reset();
+  last_id_ = from_id_ = 0;
+  read_ = 0;
+  by_time_ = true;
+}
+
+std::string SqliteSource::place() const {
+  return fmt::format("with id {}", last_id_);
+}
+
+double SqliteSource::fractionRead() const {
+  return count_ == 0 ? 0.0 : std::min(1.0, static_cast<double>(read_) / static_cast<double>(count_));
+}
+
+void SqliteSource::query() {
+  std::string ids;
+  for (const auto& [id, topic] : topic_of_id_) {
+    if (topic < wanted_.size() && !wanted_[topic]) continue;
+    if (!ids.empty()) ids += ',';
+    ids += std::to_string(id);
+  }
+  messages_ = std::make_unique<Statement>(
+      *database_, fmt::format("SELECT id, topic_id, timestamp, data FROM messages WHERE topic_id IN ({}) AND "
+                              "id > {} ORDER BY {}",
+                              ids, from_id_, by_time_ ? "timestamp" : "id"));
+}
+
+bool SqliteSource::next(SourceMessage& message) {
+  if (!messages_) {
+    by_time_ = by_time_ && hasTimeIndex();
+    query();
+  }
+  while (step())
+    if (handOut(message)) return true;
+  return false;
+}
+
+bool SqliteSource::step() {
+  if (messages_->step()) return true;
+  return !messages_->ok() && readOnBehindDamage(database_->problem());
+}
+
+// In order of storage from the last message on, over what cannot be read.
+bool SqliteSource::readOnBehindDamage(const std::string& reason) {
+  sink_("corrupt", fmt::format("The file is damaged behind message {} ({}); what can be read behind it is.",
+                               last_id_, reason));
+  by_time_ = false;
+  from_id_ = last_id_;
+  for (std::int64_t skipped = 1; from_id_ <= largest_id_; skipped *= 2) {
+    query();
+    if (messages_->step()) return true;
+    if (messages_->ok()) return false;
+    from_id_ += skipped;
+  }
+  return false;
+}
+
+bool SqliteSource::handOut(SourceMessage& message) {
+  ++read_;
+  last_id_ = std::max(last_id_, messages_->integer(0));
+  std::string_view bytes = messages_->bytes(3);
+  if (bytes.starts_with(kZstdMagic)) {
+    const Unpacked result = unpackZstdFrame(bytes, unpacked_);
+    if (result != Unpacked::Whole) {
+      sink_("corrupt", fmt::format("The message {} cannot be unpacked; it is left out.", place()));
+      return false;
+    }
+    bytes = unpacked_;
+  }
+  message = {topic_of_id_.at(messages_->integer(1)), messages_->integer(2), bytes};
+  return true;
+}
+
+}  // namespace evical::ros

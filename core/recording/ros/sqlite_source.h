@@ -1,0 +1,61 @@
+// The sqlite3 files of ROS 2 bags (.db3): read-only and never changed, message by message.
+#pragma once
+
+#include "core/recording/ros/message_source.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace evical::ros {
+
+inline constexpr std::string_view kSqliteMagic("SQLite format 3\0", 16);
+
+class SqliteSource : public MessageSource {
+ public:
+  SqliteSource(const std::filesystem::path& path, FaultSink sink);
+  ~SqliteSource() override;
+
+  const std::vector<SourceTopic>& topics() const override { return topics_; }
+  void want(std::vector<bool> topics) override { wanted_ = std::move(topics); }
+  bool next(SourceMessage& message) override;
+  void rewind() override;
+  std::string place() const override;
+  double fractionRead() const override;
+
+ private:
+  class Database;  // sqlite3 stays behind these
+  class Statement;
+
+  void open();
+  void listTopics();
+  std::map<std::string, std::string> definitions();
+  void countMessages();
+  bool hasTable(const char* name);
+  bool hasTimeIndex();
+  void query();
+  bool step();
+  bool readOnBehindDamage(const std::string& reason);
+  bool handOut(SourceMessage& message);
+
+  std::filesystem::path path_;
+  FaultSink sink_;
+  std::unique_ptr<Database> database_;
+  std::unique_ptr<Statement> messages_;
+  std::vector<SourceTopic> topics_;
+  std::vector<bool> wanted_;
+  std::map<std::int64_t, std::size_t> topic_of_id_;
+  bool cut_ = false;             // shorter than its header says
+  bool by_time_ = true;          // else in the order in which messages were stored
+  std::int64_t last_id_ = 0;     // of the messages read, the largest
+  std::int64_t from_id_ = 0;     // where the query began
+  std::int64_t largest_id_ = 0;  // of all
+  std::uint64_t count_ = 0, read_ = 0;
+  std::string unpacked_;
+};
+
+}  // namespace evical::ros

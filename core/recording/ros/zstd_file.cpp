@@ -1,0 +1,87 @@
+#include "core/recording/ros/zstd_file.h"
+
+#include "core/base/error.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+#include <zstd.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+#include <new>
+#include <string>
+#include <system_error>
+#include <vector>
+
+namespace evical::ros {
+namespace {
+
+using File = std::unique_ptr<std::FILE, decltype(&std::fclose)>;
+
+File temporaryFile(std::filesystem::path& path) {
+  std::string name = (std::filesystem::temp_directory_path() / "evical_XXXXXX").string() + kUnpackedEnding;
+  const int descriptor = mkstemps(name.data(), static_cast<int>(std::string_view(kUnpackedEnding).size()));
+  path = name;
+  return File(descriptor >= 0 ? fdopen(descriptor, "wb") : nullptr, &std::fclose);
+}
+
+[[noreturn]] void failWriting(const std::filesystem::path& path) {
+  throw calibrationFailed(path.string(), "the recording cannot be unpacked here",
+                          "Check the space on the disk, or set TMPDIR to a folder with more.");
+}
+
+// Hands out how many bytes of the input were good.
+std::uint64_t unpack(std::istream& input, const File& output, const std::filesystem::path& target,
+                     bool& whole) {
+  const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), &ZSTD_freeDCtx);
+  if (!context) throw std::bad_alloc();
+  std::vector<char> packed(ZSTD_DStreamInSize()), plain(ZSTD_DStreamOutSize());
+  std::uint64_t good = 0;
+  whole = true;
+  for (;;) {
+    input.read(packed.data(), static_cast<std::streamsize>(packed.size()));
+    ZSTD_inBuffer in{packed.data(), static_cast<std::size_t>(input.gcount()), 0};
+    if (in.size == 0) return good;
+    for (bool full = false; in.pos < in.size || full;) {
+      ZSTD_outBuffer out{plain.data(), plain.size(), 0};
+      const std::size_t hint = ZSTD_decompressStream(context.get(), &out, &in);
+      whole = hint == 0;
+      if (ZSTD_isError(hint) != 0U) return good + in.pos;
+      if (std::fwrite(plain.data(), 1, out.pos, output.get()) != out.pos) failWriting(target);
+      full = out.pos == out.size && !whole;
+    }
+    good += in.size;
+  }
+}
+
+}  // namespace
+
+UnpackedZstdFile::UnpackedZstdFile(const std::filesystem::path& path, const FaultSink& sink) {
+  std::ifstream input(path, std::ios::binary);
+  if (!input) throw badInput(path.string(), "the file cannot be opened", "Check its permissions.");
+  const File output = temporaryFile(path_);
+  if (!output) failWriting(path_);
+  try {
+    bool whole = false;
+    const std::uint64_t good = unpack(input, output, path_, whole);
+    if (!whole) {
+      sink("truncated",
+           fmt::format("The packed file {} is cut off or damaged at byte {}; what is before is read.",
+                       path.filename().string(), good));
+    }
+    if (std::fflush(output.get()) != 0) failWriting(path_);
+  } catch (...) {
+    std::remove(path_.c_str());
+    throw;
+  }
+}
+
+UnpackedZstdFile::~UnpackedZstdFile() {
+  std::error_code error;
+  std::filesystem::remove(path_, error);
+}
+
+}  // namespace evical::ros

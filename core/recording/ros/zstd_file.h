@@ -1,0 +1,27 @@
+// A file packed with zstd, unpacked beside the system's other temporary files.
+#pragma once
+
+#include "core/recording/ros/message_source.h"
+
+#include <filesystem>
+
+namespace evical::ros {
+
+inline constexpr const char* kUnpackedEnding = ".unpacked";
+
+// Removes its file when it goes. A file that is cut off is unpacked as far as it goes.
+class UnpackedZstdFile {
+ public:
+  // Throws CalibrationError: BadInput if nothing can be unpacked, CalibrationFailed if there is no space.
+  UnpackedZstdFile(const std::filesystem::path& path, const FaultSink& sink);
+  ~UnpackedZstdFile();
+  UnpackedZstdFile(const UnpackedZstdFile&) = delete;
+  UnpackedZstdFile& operator=(const UnpackedZstdFile&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace evical::ros

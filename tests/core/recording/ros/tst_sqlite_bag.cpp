@@ -1,0 +1,213 @@
+// sqlite3 files and folders of ROS 2: several files are one recording, packed ones are unpacked, damaged ones
+// are read as far as they go.
+#include "core/base/error.h"
+#include "core/recording/ros/compression.h"
+#include "tests/core/recording/recording_contents.h"
+#include "tests/core/recording/ros/ros2_builder.h"
+
+#include <QTest>
+
+#include <random>
+
+using namespace evical;
+using namespace evical::test;
+
+namespace {
+
+constexpr Resolution kSize_px = {64, 48};
+
+const std::vector<RosTopic> kTopics = {{"/events", "dvs_msgs/msg/EventArray"},
+                                       {"/imu", "sensor_msgs/msg/Imu"},
+                                       {"/text", "std_msgs/msg/String"}};
+
+// Messages `first` to `first + count` of a recording with one event message and one sample each ms.
+std::vector<RosMessage> messagesFrom(std::size_t first, std::size_t count) {
+  std::vector<RosMessage> messages;
+  const std::vector<ImuSample> samples = someSamples(first + count);
+  for (std::size_t i = first; i < first + count; ++i) {
+    const std::int64_t time_ns = samples[i].time_ns;
+    messages.push_back({0, time_ns, cdrEvents(kSize_px, someEvents(100, time_ns))});
+    messages.push_back({1, time_ns, cdrImu(samples[i])});
+  }
+  return messages;
+}
+
+// What messages of 100 events each ms hold.
+std::vector<Event> eventsOfMessages(std::size_t count) {
+  std::vector<Event> events;
+  for (const ImuSample& sample : someSamples(count)) {
+    const std::vector<Event> part = someEvents(100, sample.time_ns);
+    events.insert(events.end(), part.begin(), part.end());
+  }
+  return events;
+}
+
+std::string metadata(const std::string& files, const std::string& mode = "") {
+  return "rosbag2_bagfile_information:\n  version: 5\n  storage_identifier: sqlite3\n  "
+         "relative_file_paths:\n" +
+         files + "  compression_format: \"" + (mode.empty() ? "" : "zstd") + "\"\n  compression_mode: \"" +
+         mode + "\"\n";
+}
+
+}  // namespace
+
+class TestSqliteBag : public QObject {
+  Q_OBJECT
+ private slots:
+  void file_isReadInOrderOfTime_data();
+  void file_isReadInOrderOfTime();
+  void folder_isOneRecording_data();
+  void folder_isOneRecording();
+  void filePackedWithZstd_isRead();
+  void messagesPackedWithZstd_areRead();
+  void missingFile_isSaid();
+  void otherDatabase_isRefused();
+  void truncation_isSurvived();
+  void corruption_isSurvived();
+  void pathWithOddCharacters_isOpened();
+
+ private:
+  std::filesystem::path fill(const std::filesystem::path& name, std::size_t first, std::size_t count) const {
+    writeSqliteBag(folder_.path() / name, kTopics, messagesFrom(first, count));
+    return folder_.path() / name;
+  }
+  std::filesystem::path makeFolder(const char* name) const {
+    std::filesystem::create_directories(folder_.path() / name);
+    return folder_.path() / name;
+  }
+  ScratchFolder folder_;
+};
+
+void TestSqliteBag::file_isReadInOrderOfTime_data() {
+  QTest::addColumn<bool>("with_index");
+  QTest::newRow("with index") << true;
+  QTest::newRow("without index") << false;
+}
+
+void TestSqliteBag::file_isReadInOrderOfTime() {
+  QFETCH(bool, with_index);
+  std::vector<RosMessage> messages = messagesFrom(0, 50);
+  if (with_index) std::swap(messages[10], messages[40]);  // stored later than it was received
+  writeSqliteBag(folder_ / "a.db3", kTopics, messages, with_index);
+  const Contents contents = readAll(folder_ / "a.db3");
+  QVERIFY(contents.faults.empty());
+  QCOMPARE(contents.streams.size(), std::size_t{3});
+  QCOMPARE(contents.streams[0].messages, std::uint64_t{50});
+  QCOMPARE(contents.streams[2].type, StreamType::Other);
+  QVERIFY(sameEvents(contents.events.at(0), eventsOfMessages(50)));
+  QVERIFY(sameSamples(contents.imu.at(1), someSamples(50)));
+}
+
+void TestSqliteBag::folder_isOneRecording_data() {
+  QTest::addColumn<QString>("yaml");
+  QTest::newRow("as metadata.yaml says")
+      << QString::fromStdString(metadata("    - second.db3\n    - a_10.db3\n    - a_9.db3\n"));
+  QTest::newRow("without metadata.yaml") << "";
+  QTest::newRow("with a broken one") << "rosbag2_bagfile_information: [";
+}
+
+void TestSqliteBag::folder_isOneRecording() {
+  QFETCH(QString, yaml);
+  const bool listed = yaml.contains("second");
+  const std::filesystem::path folder = makeFolder(QTest::currentDataTag());
+  const auto messages = [](std::size_t first) { return messagesFrom(first, 20); };
+  writeSqliteBag(folder / (listed ? "second.db3" : "a_2.db3"), kTopics, messages(0));
+  writeSqliteBag(folder / (listed ? "a_10.db3" : "a_9.db3"), kTopics, messages(20));
+  writeSqliteBag(folder / (listed ? "a_9.db3" : "a_10.db3"), kTopics, messages(40));
+  if (!yaml.isEmpty()) std::ofstream(folder / "metadata.yaml") << yaml.toStdString();
+  const Contents contents = readAll(folder);
+  QVERIFY(sameEvents(contents.events.at(0), eventsOfMessages(60)));
+  QVERIFY(sameSamples(contents.imu.at(1), someSamples(60)));
+  QCOMPARE(contents.streams.at(0).messages, std::uint64_t{60});
+  QCOMPARE(contents.hasFault("metadata"), yaml.contains("["));
+}
+
+void TestSqliteBag::filePackedWithZstd_isRead() {
+  const std::filesystem::path folder = makeFolder("packed");
+  std::string packed;
+  for (const char* name : {"p_0.db3", "p_1.db3"}) {
+    const std::string plain = fileContent(fill(name, name[2] == '0' ? 0 : 30, 30));
+    ros::packZstd(plain, packed);
+    std::ofstream(folder / (std::string(name) + ".zstd"), std::ios::binary) << packed;
+  }
+  std::ofstream(folder / "metadata.yaml") << metadata("    - p_0.db3.zstd\n    - p_1.db3.zstd\n", "FILE");
+  const Contents contents = readAll(folder);
+  QVERIFY(contents.faults.empty());
+  QVERIFY(sameEvents(contents.events.at(0), eventsOfMessages(60)));
+  std::ofstream(folder / "p_1.db3.zstd", std::ios::binary) << packed.substr(0, packed.size() * 2 / 3);
+  const Contents cut = readAll(folder);
+  QVERIFY(cut.hasFault("truncated"));
+  QVERIFY(cut.eventCount() >= 3000);
+}
+
+void TestSqliteBag::messagesPackedWithZstd_areRead() {
+  std::vector<RosMessage> messages = messagesFrom(0, 20);
+  for (RosMessage& message : messages) {
+    const std::string plain = message.bytes;
+    ros::packZstd(plain, message.bytes);
+  }
+  messages[6].bytes.resize(messages[6].bytes.size() / 2);
+  writeSqliteBag(folder_ / "m.db3", kTopics, messages);
+  const Contents contents = readAll(folder_ / "m.db3");
+  QCOMPARE(contents.eventCount(), std::size_t{1900});
+  QCOMPARE(contents.sampleCount(), std::size_t{20});
+  QVERIFY(contents.hasFault("corrupt"));
+}
+
+void TestSqliteBag::missingFile_isSaid() {
+  const std::filesystem::path folder = makeFolder("missing");
+  writeSqliteBag(folder / "b_0.db3", kTopics, messagesFrom(0, 5));
+  std::ofstream(folder / "b_2.db3") << "no database";
+  std::ofstream(folder / "metadata.yaml") << metadata("    - b_0.db3\n    - b_1.db3\n    - b_2.db3\n");
+  const Contents contents = readAll(folder);
+  QCOMPARE(contents.eventCount(), std::size_t{500});
+  QVERIFY(contents.hasFault("truncated"));
+  QVERIFY(contents.hasFault("unreadable"));
+}
+
+void TestSqliteBag::otherDatabase_isRefused() {
+  writeSqliteBag(folder_ / "other.db3", {}, {});
+  std::string bytes = fileContent(folder_ / "other.db3");
+  for (std::size_t at = bytes.find("messages"); at != std::string::npos; at = bytes.find("messages"))
+    bytes.replace(at, 8, "passages");
+  QVERIFY_EXCEPTION_THROWN(openRecording(folder_.write("other.db3", bytes)), CalibrationError);
+}
+
+void TestSqliteBag::truncation_isSurvived() {
+  const std::string whole = fileContent(fill("whole.db3", 0, 300));
+  std::size_t most = 0;
+  for (std::size_t part = 1; part < 20; ++part) {
+    const std::filesystem::path path =
+        folder_.write("cut.db3", whole.substr(0, whole.size() * part / 20 + part));
+    try {
+      const Contents contents = readAll(path);
+      QVERIFY(contents.hasFault("truncated"));
+      most = std::max(most, contents.eventCount());
+    } catch (const CalibrationError&) {
+    }
+  }
+  QVERIFY(most > 0);
+}
+
+void TestSqliteBag::corruption_isSurvived() {
+  const std::string whole = fileContent(fill("whole.db3", 0, 100));
+  std::mt19937 random(7);
+  std::size_t read = 0;
+  for (int i = 0; i < 60; ++i) {
+    std::string damaged = whole;
+    for (int k = 0; k < 40; ++k) damaged[random() % whole.size()] = static_cast<char>(random());
+    try {
+      read += readAll(folder_.write("damaged.db3", damaged)).eventCount();
+    } catch (const CalibrationError&) {
+    }
+  }
+  QVERIFY(read > 0);
+}
+
+void TestSqliteBag::pathWithOddCharacters_isOpened() {
+  const Contents contents = readAll(fill("50% of it? #1.db3", 0, 3));
+  QCOMPARE(contents.eventCount(), std::size_t{300});
+}
+
+QTEST_GUILESS_MAIN(TestSqliteBag)
+#include "tst_sqlite_bag.moc"
