@@ -73,6 +73,34 @@ QWidget* explained(QLabel* text, QWidget* picture, QWidget* parent) {
   return page;
 }
 
+QTreeWidgetItem* treeItem(const ParameterRow& row) {
+  auto* const item = new QTreeWidgetItem(
+      {row.name, row.valueText(), row.sigmaText(), row.unit, row.differenceText(), row.sigmasText()});
+  for (const int column : {kValue, kSigma, kDifference, kSigmas})
+    item->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
+  constexpr double kFar = 3.0;
+  if (row.difference && row.sigma > 0.0 && std::abs(*row.difference) > kFar * row.sigma)
+    item->setForeground(kSigmas, theme().warning);
+  return item;
+}
+
+// All at once: a tree that grows item by item measures its columns each time.
+void fillTree(QTreeWidget& tree, const std::vector<ParameterGroup>& groups) {
+  QList<QTreeWidgetItem*> headings;
+  for (const ParameterGroup& group : groups) {
+    auto* const heading = new QTreeWidgetItem({group.title});
+    QFont bold = tree.font();
+    bold.setWeight(QFont::DemiBold);
+    heading->setFont(0, bold);
+    for (const ParameterRow& row : group.rows) heading->addChild(treeItem(row));
+    headings << heading;
+  }
+  tree.clear();
+  tree.addTopLevelItems(headings);
+  for (QTreeWidgetItem* const heading : headings) heading->setFirstColumnSpanned(true);
+  tree.expandAll();
+}
+
 }  // namespace
 
 ResultScreen::ResultScreen(QWidget* parent)
@@ -201,6 +229,11 @@ void ResultScreen::setPrevious(std::optional<NamedResult> previous) {
   showParameters();
 }
 
+void ResultScreen::setRuns(std::optional<NamedResult> previous, std::optional<NamedResult> result) {
+  previous_ = std::move(previous);
+  setResult(std::move(result));
+}
+
 void ResultScreen::setReference(std::optional<NamedResult> reference, const QString& title) {
   const bool is_new = reference && (!reference_ || title != reference_title_);
   reference_ = std::move(reference);
@@ -263,24 +296,7 @@ void ResultScreen::showParameters() {
   comparison_->setVisible(!remark.isEmpty());
   parameters_->setColumnHidden(kDifference, other == nullptr || !remark.isEmpty());
   parameters_->setColumnHidden(kSigmas, other == nullptr || !remark.isEmpty());
-  parameters_->clear();
-  for (const ParameterGroup& group : groups) {
-    auto* const heading = new QTreeWidgetItem(parameters_, {group.title});
-    heading->setFirstColumnSpanned(true);
-    QFont bold = heading->font(0);
-    bold.setWeight(QFont::DemiBold);
-    heading->setFont(0, bold);
-    heading->setExpanded(true);
-    for (const ParameterRow& row : group.rows) {
-      auto* const item = new QTreeWidgetItem(heading, {row.name, row.valueText(), row.sigmaText(), row.unit,
-                                                       row.differenceText(), row.sigmasText()});
-      for (const int column : {kValue, kSigma, kDifference, kSigmas})
-        item->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
-      constexpr double kFar = 3.0;
-      if (row.difference && row.sigma > 0.0 && std::abs(*row.difference) > kFar * row.sigma)
-        item->setForeground(kSigmas, theme().warning);
-    }
-  }
+  fillTree(*parameters_, groups);
 }
 
 void ResultScreen::showDetails() {

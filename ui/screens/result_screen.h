@@ -28,6 +28,8 @@ class ResultScreen : public QWidget {
   explicit ResultScreen(QWidget* parent = nullptr);
 
   void setResult(std::optional<NamedResult> result);
+  // Both, after a run.
+  void setRuns(std::optional<NamedResult> previous, std::optional<NamedResult> result);
   void setPrevious(std::optional<NamedResult> previous);
   void setReference(std::optional<NamedResult> reference, const QString& title);
   void setOutdated(bool outdated);  // the session is not as it was for this result

@@ -63,8 +63,8 @@ void wireResult(ResultScreen& screen, Workbench& workbench, SessionFiles& files)
   QObject::connect(&screen, &ResultScreen::exportRequested, &files, &SessionFiles::chooseExportFolder);
   QObject::connect(&screen, &ResultScreen::referenceRequested, &files, &SessionFiles::chooseReference);
   QObject::connect(&document, &CalibrationDocument::runsChanged, &screen, [&screen, &workbench] {
-    screen.setPrevious(namedRun(workbench.document.previous(), workbench.version));
-    screen.setResult(namedRun(workbench.document.last(), workbench.version));
+    screen.setRuns(namedRun(workbench.document.previous(), workbench.version),
+                   namedRun(workbench.document.last(), workbench.version));
     screen.setOutdated(workbench.document.runIsOutdated());
   });
   QObject::connect(&document, &CalibrationDocument::sessionChanged, &screen,
