@@ -2,6 +2,7 @@
 #include "ui/jobs/job_runner.h"
 
 #include "core/base/error.h"
+#include "core/base/modest_thread.h"
 
 #include <QMetaObject>
 
@@ -161,6 +162,7 @@ bool JobRunner::start(const QString& title, std::vector<JobStage> stages, Work w
   emit started(title_);
   timer_.start();
   thread_ = std::jthread([this, box = mailbox_, stop = stop_.get_token(), job = std::move(work)]() mutable {
+    makeThreadModest();
     Ending ending = runToEnd(job, RunContext{*box, stop});
     job = nullptr;  // what it holds goes before anybody hears of its end
     {
