@@ -2,6 +2,7 @@
 #include "ui/detection/detection_engine.h"
 
 #include "core/base/error.h"
+#include "core/base/modest_thread.h"
 #include "core/base/time.h"
 #include "ui/detection/burst_band.h"
 
@@ -31,7 +32,10 @@ class DetectionEngine::Analyst {
  public:
   explicit Analyst(DetectionEngine& engine) : engine_(engine) {}
 
+  // The picture goes first: pictures are looked at, one after the other; an analysis may come later.
   void handle(const AnalysisTask& task) {
+    if (!modest_) makeThreadModest();
+    modest_ = true;
     prepare(task);
     WindowQuestion question;
     question.start_ns = task.source.start_ns;
@@ -81,6 +85,7 @@ class DetectionEngine::Analyst {
   }
 
   DetectionEngine& engine_;
+  bool modest_ = false;
   std::shared_ptr<const Session> session_;
   std::size_t camera_ = 0;
   std::shared_ptr<const BoardScene> scene_;
@@ -165,20 +170,21 @@ void DetectionEngine::render(const RenderTask& task) {
     return;
   }
   const DetectionWish& wish = task.wish;
-  std::vector<Event> events;
+  const std::int64_t time_ns = task.source.start_ns + nanosecondsFrom(wish.time_s);
+  SurfaceFrame frame;
   try {
     if (style.mode == SurfaceMode::Decayed) {
-      gather(*task.source.cache, task.source.start_ns, wish.time_s - fadedAfter_s(style), wish.time_s,
-             events);
+      frame = surface_.render(task.source.cache, time_ns, task.source.resolution_px, style);
     } else {
+      std::vector<Event> events;
       gather(*task.source.cache, task.source.start_ns, wish.time_s - wish.half_width_s,
              wish.time_s + wish.half_width_s, events);
+      frame = renderEvents(events, time_ns, task.source.resolution_px, style);
     }
-  } catch (const CalibrationError&) {
-    events.clear();  // the file is gone; what the reader says tells more than an old picture
+  } catch (
+      const CalibrationError&) {  // the file is gone; what the reader says tells more than an old picture
+    frame = renderEvents({}, time_ns, task.source.resolution_px, style);
   }
-  SurfaceFrame frame = renderEvents(events, task.source.start_ns + nanosecondsFrom(wish.time_s),
-                                    task.source.resolution_px, style);
   frame.time_s = wish.time_s;
   put(std::move(frame), task.source.opening);
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/pipeline/session.h"
+#include "ui/detection/decaying_surface.h"
 #include "ui/detection/event_window_reader.h"
 #include "ui/detection/frame_mailbox.h"
 #include "ui/detection/live_detection.h"
@@ -87,6 +88,7 @@ class DetectionEngine : public QObject {
   std::unique_ptr<EventWindowReader> reader_;
   std::vector<std::unique_ptr<EventWindowReader>> retired_;  // told to stop; nobody waits for them
   std::unique_ptr<Analyst> analyst_;
+  DecayingSurface surface_;  // the renderer's
   // Last: their threads use the rest.
   std::unique_ptr<NewestRequestWorker<RenderTask>> renderer_;
   std::unique_ptr<NewestRequestWorker<AnalysisTask>> analysis_worker_;

@@ -113,25 +113,49 @@ void EventCache::readBlock(const Block& block, std::vector<Stored>& stored) cons
   }
 }
 
+std::vector<EventCache::Block> EventCache::blocksWithin(std::int64_t begin_ns, std::int64_t end_ns) const {
+  const std::lock_guard lock(mutex_);
+  const auto later = [](std::int64_t time_ns, const Block& block) { return time_ns <= block.first_ns; };
+  auto first = std::upper_bound(blocks_.begin(), blocks_.end(), begin_ns, later);
+  if (first != blocks_.begin()) --first;
+  const auto last =
+      std::find_if(first, blocks_.end(), [=](const Block& block) { return block.first_ns >= end_ns; });
+  return {first, last};
+}
+
+std::span<const EventCache::Stored> EventCache::readWithin(const Block& block, std::int64_t begin_ns,
+                                                           std::int64_t end_ns,
+                                                           std::vector<Stored>& stored) const {
+  readBlock(block, stored);
+  const auto earlier = [&](const Stored& event, std::int64_t time_ns) {
+    return block.first_ns + event.after_ns < time_ns;
+  };
+  const auto first = std::lower_bound(stored.begin(), stored.end(), begin_ns, earlier);
+  return {first, std::lower_bound(first, stored.end(), end_ns, earlier)};
+}
+
 void EventCache::gather(std::int64_t begin_ns, std::int64_t end_ns, std::vector<Event>& events) const {
-  std::vector<Block> needed;
-  {
-    const std::lock_guard lock(mutex_);
-    const auto later = [](std::int64_t time_ns, const Block& block) { return time_ns <= block.first_ns; };
-    auto block = std::upper_bound(blocks_.begin(), blocks_.end(), begin_ns, later);
-    if (block != blocks_.begin()) --block;
-    for (; block != blocks_.end() && block->first_ns < end_ns; ++block) needed.push_back(*block);
-  }
+  if (begin_ns >= end_ns) return;
   std::vector<Stored> stored;
-  for (const Block& block : needed) {
-    readBlock(block, stored);
-    for (const Stored& event : stored) {
-      const std::int64_t time_ns = block.first_ns + event.after_ns;
-      if (time_ns < begin_ns || time_ns >= end_ns) continue;
-      events.push_back({time_ns, event.x_px, static_cast<std::uint16_t>(event.y_px_and_brighter >> 1),
+  for (const Block& block : blocksWithin(begin_ns, end_ns)) {
+    for (const Stored& event : readWithin(block, begin_ns, end_ns, stored)) {
+      events.push_back({block.first_ns + event.after_ns, event.x_px,
+                        static_cast<std::uint16_t>(event.y_px_and_brighter >> 1),
                         (event.y_px_and_brighter & 1) != 0});
     }
   }
+}
+
+std::size_t EventCache::count(std::int64_t begin_ns, std::int64_t end_ns) const {
+  if (begin_ns >= end_ns) return 0;
+  const std::vector<Block> blocks = blocksWithin(begin_ns, end_ns);
+  std::vector<Stored> stored;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const bool whole = blocks[k].first_ns >= begin_ns && k + 1 < blocks.size();
+    count += whole ? blocks[k].count : readWithin(blocks[k], begin_ns, end_ns, stored).size();
+  }
+  return count;
 }
 
 }  // namespace evical::ui

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
+#include <span>
 #include <vector>
 
 namespace evical::ui {
@@ -33,6 +34,7 @@ class EventCache {
   std::uint64_t eventCount() const;
   // Appends the events with begin_ns <= time < end_ns in order of time, as far as they are stored.
   void gather(std::int64_t begin_ns, std::int64_t end_ns, std::vector<Event>& events) const;
+  std::size_t count(std::int64_t begin_ns, std::int64_t end_ns) const;  // of what gather() would append
 
  private:
   struct Stored {
@@ -49,6 +51,9 @@ class EventCache {
 
   void writeBlock();
   void readBlock(const Block& block, std::vector<Stored>& stored) const;
+  std::vector<Block> blocksWithin(std::int64_t begin_ns, std::int64_t end_ns) const;
+  std::span<const Stored> readWithin(const Block& block, std::int64_t begin_ns, std::int64_t end_ns,
+                                     std::vector<Stored>& stored) const;
 
   std::filesystem::path folder_;
   int file_ = -1;

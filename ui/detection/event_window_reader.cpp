@@ -2,6 +2,7 @@
 #include "ui/detection/event_window_reader.h"
 
 #include "core/base/error.h"
+#include "core/base/modest_thread.h"
 #include "core/base/time.h"
 #include "core/pipeline/session_recording.h"
 
@@ -176,6 +177,7 @@ void EventWindowReader::readAll(const std::stop_token& stop) {
 }
 
 void EventWindowReader::run(const std::stop_token& stop) {
+  makeThreadModest();
   std::string error;
   try {
     readAll(stop);

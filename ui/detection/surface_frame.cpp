@@ -19,10 +19,15 @@ QRgb mix(QRgb from, QRgb to, double part) {
               channel(qBlue(from), qBlue(to)));
 }
 
-SurfaceFrame emptyFrame(Resolution resolution_px, QRgb background) {
+QImage backgroundOf(Resolution resolution_px, const SurfaceStyle& style) {
+  QImage image(resolution_px.width_px, resolution_px.height_px, QImage::Format_RGB32);
+  image.fill(style.background);
+  return image;
+}
+
+SurfaceFrame emptyFrame(Resolution resolution_px, const SurfaceStyle& style) {
   SurfaceFrame frame;
-  frame.image = QImage(resolution_px.width_px, resolution_px.height_px, QImage::Format_RGB32);
-  frame.image.fill(background);
+  frame.image = backgroundOf(resolution_px, style);
   frame.newest.assign(static_cast<std::size_t>(resolution_px.pixelCount()), SurfaceFrame::kNoEvent);
   return frame;
 }
@@ -37,27 +42,6 @@ void noteNewest(EventSpan events, std::int64_t time_ns, SurfaceFrame& frame) {
     newest = std::max(newest, packed);
   }
   frame.events = events.size();
-}
-
-void paintDecayed(const SurfaceStyle& style, SurfaceFrame& frame) {
-  constexpr int kSteps = 512;
-  std::array<std::array<QRgb, kSteps>, 2> colours;
-  for (int k = 0; k < kSteps; ++k) {
-    const double part = std::exp(-k * fadedAfter_s(style) / (kSteps * style.decay_s));
-    colours[0][static_cast<std::size_t>(k)] = mix(style.background, style.darker, part);
-    colours[1][static_cast<std::size_t>(k)] = mix(style.background, style.brighter, part);
-  }
-  const float steps_per_half_us = static_cast<float>(kSteps / (2e6 * fadedAfter_s(style)));
-  const std::int32_t* newest = frame.newest.data();
-  for (int y = 0; y < frame.image.height(); ++y) {
-    auto* row = reinterpret_cast<QRgb*>(frame.image.scanLine(y));
-    for (int x = 0; x < frame.image.width(); ++x, ++newest) {
-      if (*newest == SurfaceFrame::kNoEvent) continue;
-      const float step = steps_per_half_us * static_cast<float>(-(*newest & ~1));
-      if (step >= kSteps) continue;
-      row[x] = colours[static_cast<std::size_t>(*newest & 1)][static_cast<std::size_t>(std::max(step, 0.0f))];
-    }
-  }
 }
 
 // A pixel's colour says which polarity it fired, and its strength how often, against what is usual here.
@@ -88,6 +72,28 @@ void paintAccumulated(EventSpan events, const SurfaceStyle& style, double streng
 
 }  // namespace
 
+void paintDecayed(Resolution resolution_px, const SurfaceStyle& style, SurfaceFrame& frame) {
+  frame.image = backgroundOf(resolution_px, style);
+  constexpr int kSteps = 512;
+  std::array<std::array<QRgb, kSteps>, 2> colours;
+  for (int k = 0; k < kSteps; ++k) {
+    const double part = std::exp(-k * fadedAfter_s(style) / (kSteps * style.decay_s));
+    colours[0][static_cast<std::size_t>(k)] = mix(style.background, style.darker, part);
+    colours[1][static_cast<std::size_t>(k)] = mix(style.background, style.brighter, part);
+  }
+  const float steps_per_half_us = static_cast<float>(kSteps / (2e6 * fadedAfter_s(style)));
+  const std::int32_t* newest = frame.newest.data();
+  for (int y = 0; y < frame.image.height(); ++y) {
+    auto* row = reinterpret_cast<QRgb*>(frame.image.scanLine(y));
+    for (int x = 0; x < frame.image.width(); ++x, ++newest) {
+      if (*newest == SurfaceFrame::kNoEvent) continue;
+      const float step = steps_per_half_us * static_cast<float>(-(*newest & ~1));
+      if (step >= kSteps) continue;
+      row[x] = colours[static_cast<std::size_t>(*newest & 1)][static_cast<std::size_t>(std::max(step, 0.0f))];
+    }
+  }
+}
+
 std::optional<SurfaceFrame::Hit> SurfaceFrame::newestAt(int x_px, int y_px) const {
   if (x_px < 0 || y_px < 0 || x_px >= image.width() || y_px >= image.height()) return std::nullopt;
   const std::int32_t packed =
@@ -99,10 +105,10 @@ std::optional<SurfaceFrame::Hit> SurfaceFrame::newestAt(int x_px, int y_px) cons
 
 SurfaceFrame renderEvents(EventSpan events, std::int64_t time_ns, Resolution resolution_px,
                           const SurfaceStyle& style) {
-  SurfaceFrame frame = emptyFrame(resolution_px, style.background);
+  SurfaceFrame frame = emptyFrame(resolution_px, style);
   noteNewest(events, time_ns, frame);
   if (style.mode == SurfaceMode::Decayed) {
-    paintDecayed(style, frame);
+    paintDecayed(resolution_px, style, frame);
   } else {
     paintAccumulated(events, style, 1.0, frame);
   }
@@ -112,7 +118,7 @@ SurfaceFrame renderEvents(EventSpan events, std::int64_t time_ns, Resolution res
 SurfaceFrame renderFlow(EventSpan events, const NormalFlowField& flow, std::int64_t time_ns,
                         Resolution resolution_px, const SurfaceStyle& style) {
   constexpr double kFaint = 0.3;
-  SurfaceFrame frame = emptyFrame(resolution_px, style.background);
+  SurfaceFrame frame = emptyFrame(resolution_px, style);
   noteNewest(events, time_ns, frame);
   paintAccumulated(events, style, kFaint, frame);
   for (const NormalFlow& edge : flow) {
