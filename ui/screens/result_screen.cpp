@@ -20,6 +20,8 @@
 #include <QTreeWidget>
 #include <QVBoxLayout>
 
+#include <array>
+
 namespace evical::ui {
 namespace {
 
@@ -82,6 +84,30 @@ QTreeWidgetItem* treeItem(const ParameterRow& row) {
   if (row.difference && row.sigma > 0.0 && std::abs(*row.difference) > kFar * row.sigma)
     item->setForeground(kSigmas, theme().warning);
   return item;
+}
+
+// By the texts: a header that resizes to contents asks the style for each item's size, at every layout.
+void fitColumns(QTreeWidget& tree, const std::vector<ParameterGroup>& groups) {
+  const QFontMetrics metrics(tree.font());
+  const int margin_px = 2 * metrics.horizontalAdvance('0');
+  std::array<int, kColumns> widths_px{};
+  const auto widen = [&](int column, const QString& text) {
+    int& width_px = widths_px[static_cast<std::size_t>(column)];
+    width_px = std::max(width_px, metrics.horizontalAdvance(text) + margin_px);
+  };
+  for (const ParameterGroup& group : groups) {
+    for (const ParameterRow& row : group.rows) {
+      widen(kValue, row.valueText());
+      widen(kSigma, row.sigmaText());
+      widen(kUnit, row.unit);
+      widen(kDifference, row.differenceText());
+      widen(kSigmas, row.sigmasText());
+    }
+  }
+  for (int column = kValue; column < kColumns; ++column) {
+    widen(column, tree.headerItem()->text(column));
+    tree.setColumnWidth(column, widths_px[static_cast<std::size_t>(column)]);
+  }
 }
 
 // All at once: a tree that grows item by item measures its columns each time.
@@ -189,7 +215,7 @@ QWidget* ResultScreen::makeContent() {
   parameters_->setSelectionMode(QAbstractItemView::ExtendedSelection);
   parameters_->setUniformRowHeights(true);
   parameters_->setIndentation(12);
-  parameters_->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
+  parameters_->header()->setSectionResizeMode(QHeaderView::Interactive);
   parameters_->header()->setStretchLastSection(false);
   parameters_->header()->setSectionResizeMode(kQuantity, QHeaderView::Stretch);
   for (const int column : {kValue, kSigma, kDifference, kSigmas})
@@ -297,6 +323,7 @@ void ResultScreen::showParameters() {
   parameters_->setColumnHidden(kDifference, other == nullptr || !remark.isEmpty());
   parameters_->setColumnHidden(kSigmas, other == nullptr || !remark.isEmpty());
   fillTree(*parameters_, groups);
+  fitColumns(*parameters_, groups);
 }
 
 void ResultScreen::showDetails() {

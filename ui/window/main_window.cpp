@@ -21,6 +21,7 @@
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QStatusBar>
+#include <QTimer>
 #include <QUrl>
 #include <QVBoxLayout>
 
@@ -182,7 +183,10 @@ void MainWindow::wireJobs() {
   connect(&workbench_.calibration, &CalibrationJob::calibrated, this,
           [this](std::shared_ptr<const CalibrationRun> run, const Session& session, const QString& log) {
             workbench_.document.addRun({std::move(run), session, log});
-            if (stack_->currentIndex() <= 1) showScreen("result");
+            // In a turn of its own: filling the screens and laying one out together is long for an event.
+            QTimer::singleShot(1, this, [this] {
+              if (stack_->currentIndex() <= 1) showScreen("result");
+            });
           });
 }
 
