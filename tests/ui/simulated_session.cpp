@@ -1,34 +1,126 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/ui/simulated_session.h"
 
+#include "core/base/atomic_file.h"
 #include "core/pipeline/session.h"
 #include "core/pipeline/simulation.h"
+#include "core/recording/recording_writer.h"
+#include "core/synthetic/event_simulator.h"
+#include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
 
 #include <QDir>
 #include <QFile>
 #include <QLockFile>
 
-namespace evical::ui::test {
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
 
-QString simulatedSession() {
-  const QString folder = EVICAL_SIMULATED_FOLDER;
-  QDir().mkpath(folder);
+namespace evical::ui::test {
+namespace {
+
+// `make` writes session.yaml last.
+QString simulateOnce(const QString& name, const std::function<void(const std::string& folder)>& make) {
+  const QString folder = QString(EVICAL_SIMULATED_FOLDER) + '/' + name;
+  QDir().mkpath(folder + "/recording");
   QLockFile lock(folder + "/lock");
   lock.setStaleLockTime(0);
   lock.lock();
   const QString session = folder + "/recording/session.yaml";
-  if (!QFile::exists(session)) {
-    Scenario scenario = readScenario(EVICAL_SCENARIO);
-    scenario.duration_s = 4.0;
-    simulate(scenario, (folder + "/recording").toStdString(), RunContext{});
-  }
+  if (!QFile::exists(session)) make((folder + "/recording").toStdString());
   return session;
+}
+
+Scenario scenario(const char* name, double duration_s) {
+  Scenario read = readScenario(std::string(EVICAL_SCENARIOS) + '/' + name + ".yaml");
+  read.duration_s = duration_s;
+  return read;
+}
+
+Scenario twoCameras() {
+  Scenario rig = scenario("davis346", 4.0);
+  SimulatedCamera right = rig.cameras.front();
+  right.name = "right";
+  right.stream = "/davis_right/events";
+  right.imu_from_camera =
+      right.imu_from_camera * RigidTransform{Eigen::Quaterniond::Identity(), {0.1, 0.0, 0.0}};
+  right.time_offset_s -= 0.003;
+  rig.cameras.push_back(right);
+  return rig;
+}
+
+StreamInfo streamInfo(const std::string& name, StreamType type, Resolution resolution_px = {}) {
+  StreamInfo info;
+  info.name = name;
+  info.type = type;
+  info.resolution_px = resolution_px;
+  return info;
+}
+
+// The IMU beside the first camera.
+void writeBag(const Scenario& rig, std::size_t camera, const std::string& file) {
+  const SimulatedCamera& own = rig.cameras[camera];
+  std::vector<StreamInfo> streams = {
+      streamInfo(own.stream, StreamType::Events, own.intrinsics.resolution_px)};
+  std::vector<ImuSample> samples;
+  if (camera == 0) {
+    streams.push_back(streamInfo(rig.imus.front().stream, StreamType::Imu));
+    samples = simulateImu(rig, 0);
+  }
+  const auto writer = createBag(file, streams, false);
+  std::span<const ImuSample> left(samples);
+  simulateEvents(rig, camera, [&](EventSpan events) {
+    if (events.empty()) return;
+    std::size_t due = 0;
+    while (due < left.size() && left[due].time_ns <= events.back().time_ns) ++due;
+    if (due > 0) writer->write(1, left.first(due));
+    left = left.subspan(due);
+    writer->write(0, events);
+  });
+  writer->finish();
+}
+
+void simulateTwoCameras(const std::string& folder) {
+  const Scenario rig = twoCameras();
+  for (std::size_t k = 0; k < rig.cameras.size(); ++k)
+    writeBag(rig, k, folder + '/' + rig.cameras[k].name + ".bag");
+  const std::string of_one_bag = folder + "/of_one_bag.yaml";
+  writeFileWhole(of_one_bag, sessionYaml(rig, "left.bag"));
+  Session session = readSession(of_one_bag);
+  session.cameras[1].recording = folder + "/right.bag";
+  writeSession(session, folder + "/session.yaml");
+}
+
+}  // namespace
+
+QString simulatedSession() {
+  return simulateOnce("everyday",
+                      [](const std::string& folder) { simulate(scenario("davis346", 4.0), folder, {}); });
+}
+
+QString simulatedHdSession() {
+  return simulateOnce("hd", [](const std::string& folder) { simulate(scenario("hd", 3.5), folder, {}); });
+}
+
+QString simulatedTwoCameraSession() {
+  return simulateOnce("two_cameras", simulateTwoCameras);
 }
 
 QString copyOfSimulatedSession(const QString& folder) {
   const QString copy = folder + "/session.yaml";
   writeSession(readSession(simulatedSession().toStdString()), copy.toStdString());
+  return copy;
+}
+
+QString copyWithRecording(const QString& folder) {
+  Session session = readSession(simulatedSession().toStdString());
+  const QString recording = folder + "/recording.bag";
+  QFile::copy(QString::fromStdString(session.recording.string()), recording);
+  session.recording = recording.toStdString();
+  const QString copy = folder + "/session.yaml";
+  writeSession(session, copy.toStdString());
   return copy;
 }
 

@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A short recording that is simulated once and shared by all tests of a build.
+// Short recordings that are simulated once and shared by all tests of a build. session.yaml is returned;
+// recording.bag and truth.yaml are beside it. Do not write there.
 #pragma once
 
 #include <QString>
 
 namespace evical::ui::test {
 
-// session.yaml of 4 s of the everyday scenario; recording.bag and truth.yaml are beside it. Do not write
-// there.
-QString simulatedSession();
+QString simulatedSession();           // 4 s of the everyday scenario
+QString simulatedHdSession();         // 3.5 s at 1280x720
+QString simulatedTwoCameraSession();  // 4 s of two cameras, "left" and "right", 0.1 m apart, an IMU, each
+                                      // camera in a bag of its own
 
-// A copy of the session file in `folder`, naming the shared recording.
+// A copy of the first one's session file in `folder`, naming the shared recording.
 QString copyOfSimulatedSession(const QString& folder);
+// The same with a copy of the recording, for tests that spoil it.
+QString copyWithRecording(const QString& folder);
 
 }  // namespace evical::ui::test

@@ -2,122 +2,34 @@
 // The whole story, by mouse and keyboard: open, calibrate, cancel, calibrate again, change, export, reopen.
 #include "ui/window/main_window.h"
 
+#include "tests/ui/other_load.h"
 #include "tests/ui/simulated_session.h"
+#include "tests/ui/stall_meter.h"
+#include "tests/ui/window_fixture.h"
 #include "ui/forms/option_editor.h"
 #include "ui/forms/option_form.h"
 #include "ui/screens/result_screen.h"
 #include "ui/screens/start_screen.h"
 #include "ui/screens/stream_table.h"
-#include "ui/theme/theme.h"
 #include "ui/window/error_panel.h"
 #include "ui/window/log_panel.h"
 #include "ui/window/session_files.h"
 #include "ui/window/steps_panel.h"
 
-#include <QAbstractEventDispatcher>
-#include <QFileDialog>
 #include <QLineEdit>
-#include <QMessageBox>
 #include <QMimeData>
 #include <QPushButton>
 #include <QSettings>
 #include <QSignalSpy>
-#include <QStackedWidget>
 #include <QTemporaryDir>
 #include <QTextBrowser>
 #include <QToolButton>
 #include <QTreeWidget>
 #include <QtTest>
 
-#include <ctime>
-
 using namespace evical;
 using namespace evical::ui;
-
-namespace {
-
-constexpr int kPatience_ms = 120'000;
-
-// Answers the next modal dialog: types a path into a file dialog, presses a button of a question.
-void answerFileDialog(const QString& path) {
-  QTimer::singleShot(200, qApp, [path] {
-    auto* const dialog = qobject_cast<QFileDialog*>(QApplication::activeModalWidget());
-    if (dialog == nullptr) return answerFileDialog(path);
-    auto* const edit = dialog->findChild<QLineEdit*>("fileNameEdit");
-    edit->setText(path);
-    QTest::keyClick(edit, Qt::Key_Return);
-    if (dialog->isVisible())
-      QMetaObject::invokeMethod(dialog, "accept");  // a completer may have taken the key
-  });
-}
-
-void answerQuestion(QMessageBox::StandardButton button) {
-  QTimer::singleShot(200, qApp, [button] {
-    auto* const box = qobject_cast<QMessageBox*>(QApplication::activeModalWidget());
-    if (box == nullptr) return answerQuestion(button);
-    QTest::mouseClick(box->button(button), Qt::LeftButton);
-  });
-}
-
-struct Fixture {
-  MainWindow window{"0.0.0"};
-  QSignalSpy finished{&window.workbench().runner, &JobRunner::finished};
-
-  Fixture() {
-    window.show();
-    QVERIFY(QTest::qWaitForWindowExposed(&window));
-    window.activateWindow();
-    QVERIFY(QTest::qWaitForWindowActive(&window));
-  }
-  template <class Widget>
-  Widget* child(const QString& name = {}) {
-    return window.findChild<Widget*>(name);
-  }
-  CalibrationDocument& document() { return window.workbench().document; }
-  JobRunner& runner() { return window.workbench().runner; }
-  QString screen() {
-    const auto* const stack = window.centralWidget()->findChild<QStackedWidget*>();
-    return window.screenNames().value(stack->currentIndex());
-  }
-  void click(const QString& tool_button) {
-    auto* const button = child<QToolButton>(tool_button);
-    QVERIFY2(button && button->isVisible() && button->isEnabled(), qPrintable(tool_button));
-    QTest::mouseClick(button, Qt::LeftButton);
-  }
-  void press(Qt::Key key, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
-    window.activateWindow();  // no window manager does it after a dialog
-    QVERIFY(QTest::qWaitForWindowActive(&window));
-    QTest::keyClick(&window, key, modifiers);
-  }
-  JobOutcome waitForJob() {
-    if (finished.isEmpty()) finished.wait(kPatience_ms);
-    return finished.isEmpty() ? JobOutcome::Failed : finished.takeLast().at(0).value<JobOutcome>();
-  }
-};
-
-double threadTime_ms() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
-
-// The longest that the GUI thread has worked without going back to its event loop; other load does not count.
-class StallMeter : public QObject {
- public:
-  StallMeter() {
-    auto* const loop = QAbstractEventDispatcher::instance();
-    connect(loop, &QAbstractEventDispatcher::awake, this, [this] { begin_ms_ = threadTime_ms(); });
-    connect(loop, &QAbstractEventDispatcher::aboutToBlock, this, [this] {
-      if (begin_ms_ > 0.0) longest_ms = std::max(longest_ms, threadTime_ms() - begin_ms_);
-    });
-  }
-  double longest_ms = 0.0;
-
- private:
-  double begin_ms_ = 0.0;
-};
-
-}  // namespace
+using namespace evical::ui::test;
 
 class TestMainWindow : public QObject {
   Q_OBJECT
@@ -126,20 +38,14 @@ class TestMainWindow : public QObject {
 
  private slots:
   void initTestCase() {
-    QCoreApplication::setOrganizationName("evical_test");
-    QStandardPaths::setTestModeEnabled(true);
-    QDir(QStandardPaths::writableLocation(QStandardPaths::AppDataLocation)).removeRecursively();
-    QSettings::setDefaultFormat(QSettings::IniFormat);
-    QSettings::setPath(QSettings::IniFormat, QSettings::UserScope, scratch_.filePath("settings"));
-    QCoreApplication::setAttribute(Qt::AA_DontUseNativeDialogs);
-    applyTheme(*qApp, Appearance::Light);
-    test::simulatedSession();
+    usePrivateFolders(scratch_);
+    simulatedSession();
   }
   void init() { QSettings().clear(); }
 
   void story() {
-    const QString session = test::copyOfSimulatedSession(scratch_.path());
-    Fixture test;
+    const QString session = copyOfSimulatedSession(scratch_.path());
+    WindowFixture test;
     QCOMPARE(test.screen(), QString("start"));
     QVERIFY(!test.child<QToolButton>("calibrate")->isEnabled());
 
@@ -165,7 +71,7 @@ class TestMainWindow : public QObject {
     QVERIFY2(test.runner().running(), qPrintable(test.child<ErrorPanel>()->text()));
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
     QVERIFY(test.document().last().run);
-    QCOMPARE(test.screen(), QString("result"));
+    QTRY_COMPARE(test.screen(), QString("result"));
     QVERIFY(test.child<StepsPanel>()->textOf("optimise").contains("done"));
     QVERIFY(test.child<StepsPanel>()->textOf("time offset").contains("correlation"));
     QVERIFY(test.child<LogPanel>()->shownText().contains("board in"));
@@ -183,8 +89,8 @@ class TestMainWindow : public QObject {
   void everyResult_isExportedWhereAskedTo() {
     const QString folder = scratch_.filePath("every");
     QVERIFY(QDir().mkpath(folder));
-    Fixture test;
-    test.window.files().open(test::copyOfSimulatedSession(scratch_.path()));
+    WindowFixture test;
+    test.window.files().open(copyOfSimulatedSession(scratch_.path()));
     answerFileDialog(folder);
     test.window.files().exportEveryResult(true);
     QSignalSpy exported(&test.window.files(), &SessionFiles::exported);
@@ -195,7 +101,7 @@ class TestMainWindow : public QObject {
   }
 
   void demo_isSimulatedOnTheSpot_andCanBeCancelled() {
-    Fixture test;
+    WindowFixture test;
     double fraction = 0.0;
     connect(&test.runner(), &JobRunner::progressed, &test.window,
             [&](const JobProgress& progress) { fraction = progress.fraction; });
@@ -215,7 +121,7 @@ class TestMainWindow : public QObject {
     QVERIFY(file.open(QIODevice::WriteOnly));
     file.write("this is no recording at all\n");
     file.close();
-    Fixture test;
+    WindowFixture test;
     test.window.files().open(fake);
     auto* const panel = test.child<ErrorPanel>();
     QTRY_VERIFY(panel->isVisible());
@@ -228,8 +134,8 @@ class TestMainWindow : public QObject {
   }
 
   void incompleteSession_isNotStarted_andTheFieldIsNamed() {
-    Fixture test;
-    Session session = readSession(test::simulatedSession().toStdString());
+    WindowFixture test;
+    Session session = readSession(simulatedSession().toStdString());
     session.cameras[0].intrinsics.reset();
     test.document().startSession(session);
     test.press(Qt::Key_F5);
@@ -241,8 +147,8 @@ class TestMainWindow : public QObject {
   }
 
   void failedCalibration_saysWhatToDo_andCanBeRepeated() {
-    Fixture test;
-    test.window.files().open(test::simulatedSession());
+    WindowFixture test;
+    test.window.files().open(simulatedSession());
     Session other = test.document().session();
     other.time_range_s = {{0.0, 1.0}};
     test.document().edit(other, "Shorten");
@@ -255,8 +161,8 @@ class TestMainWindow : public QObject {
   }
 
   void unsavedChanges_areAskedAbout() {
-    Fixture test;
-    test.window.files().open(test::simulatedSession());
+    WindowFixture test;
+    test.window.files().open(simulatedSession());
     test.document().setOption("grid.least_circles", "9");
     QVERIFY(test.window.isWindowModified());
     answerQuestion(QMessageBox::Cancel);
@@ -267,8 +173,8 @@ class TestMainWindow : public QObject {
   }
 
   void closeWhileRunning_cancelsAndThenCloses() {
-    Fixture test;
-    test.window.files().open(test::simulatedSession());
+    WindowFixture test;
+    test.window.files().open(simulatedSession());
     test.press(Qt::Key_F5);
     QVERIFY(test.runner().running());
     QVERIFY(!test.window.close());
@@ -277,8 +183,8 @@ class TestMainWindow : public QObject {
   }
 
   void deletionWhileRunning_isClean() {
-    auto test = std::make_unique<Fixture>();
-    test->window.files().open(test::simulatedSession());
+    auto test = std::make_unique<WindowFixture>();
+    test->window.files().open(simulatedSession());
     test->press(Qt::Key_F5);
     QTest::qWait(100);
     test.reset();
@@ -286,9 +192,9 @@ class TestMainWindow : public QObject {
   }
 
   void droppedFile_isOpened() {
-    Fixture test;
+    WindowFixture test;
     QMimeData data;
-    data.setUrls({QUrl::fromLocalFile(test::simulatedSession())});
+    data.setUrls({QUrl::fromLocalFile(simulatedSession())});
     QDragEnterEvent enter(QPoint(200, 200), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
     QCoreApplication::sendEvent(&test.window, &enter);
     QVERIFY(enter.isAccepted());
@@ -300,17 +206,17 @@ class TestMainWindow : public QObject {
 
   void layout_isRemembered() {
     {
-      Fixture test;
+      WindowFixture test;
       test.press(Qt::Key_L, Qt::ControlModifier);
       QVERIFY(test.window.findChild<QWidget*>("log")->isVisible());
       QVERIFY(test.window.close());
     }
-    Fixture again;
+    WindowFixture again;
     QVERIFY(again.window.findChild<QWidget*>("log")->isVisible());
   }
 
   void screens_areReachedByKeys() {
-    Fixture test;
+    WindowFixture test;
     const QStringList names = test.window.screenNames();
     for (qsizetype i = 0; i < names.size(); ++i) {
       test.press(static_cast<Qt::Key>(Qt::Key_1 + i), Qt::ControlModifier);
@@ -325,22 +231,25 @@ class TestMainWindow : public QObject {
   }
 
   void calibrating_neverStallsTheWindow() {
-    Fixture test;
-    test.window.files().open(test::simulatedSession());
+    WindowFixture test;
+    test.window.files().open(simulatedSession());
     StallMeter meter;
+    const OtherLoad others;
     test.press(Qt::Key_F5);
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
     QTest::qWait(200);
-    QVERIFY2(meter.longest_ms < 50.0, qPrintable(QString::number(meter.longest_ms)));
-    QVERIFY(meter.longest_ms > 0.0);
+    const double longest_ms = others.quiet() ? meter.longest_ms() : meter.longestWork_ms();
+    qInfo("%.1f ms, others keep %.1f processors busy", longest_ms, others.processors());
+    QVERIFY(longest_ms < 50.0);
+    QVERIFY(meter.beats() > 10);
   }
 
   void everyScreen_hasAPicture() {
     QDir().mkpath(EVICAL_SCREENSHOTS);
     for (const bool dark : {false, true}) {
       applyTheme(*qApp, dark ? Appearance::Dark : Appearance::Light);
-      Fixture test;
-      test.window.files().open(test::simulatedSession());
+      WindowFixture test;
+      test.window.files().open(simulatedSession());
       test.press(Qt::Key_F5);
       QCOMPARE(test.waitForJob(), JobOutcome::Done);
       for (const QSize& size : {QSize(1280, 800), QSize(1920, 1080)}) {
@@ -361,7 +270,7 @@ class TestMainWindow : public QObject {
   }
 
  private:
-  void changeAnOptionAndSave(Fixture& test, const QString& session) {
+  void changeAnOptionAndSave(WindowFixture& test, const QString& session) {
     test.press(Qt::Key_P, Qt::ControlModifier);
     auto* const form = test.child<OptionForm>();
     QVERIFY(form->isVisible());
@@ -384,7 +293,7 @@ class TestMainWindow : public QObject {
     QCOMPARE(readSession(session.toStdString()).options.front_end.grid.least_circles, 9);
   }
 
-  void exportTheResult(Fixture& test) {
+  void exportTheResult(WindowFixture& test) {
     const QString folder = scratch_.filePath("exported");
     QVERIFY(QDir().mkpath(folder));
     answerFileDialog(folder);

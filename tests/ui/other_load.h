@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <QElapsedTimer>
+#include <QFile>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <ctime>
+#include <vector>
+
+namespace evical::ui::test {
+
+// How much longer than on the machine that the limits are meant for (two cores of 2020's servers) plain
+// computing takes here and now; never less than 1.
+inline double slowness() {
+  constexpr double kUsual_ms = 18.0;
+  std::vector<std::uint32_t> numbers(300'000);
+  timespec begin{}, end{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &begin);
+  std::uint32_t state = 1;
+  for (std::uint32_t& number : numbers) number = state = state * 1664525u + 1013904223u;
+  std::sort(numbers.begin(), numbers.end());
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &end);
+  const double took_ms = 1e3 * static_cast<double>(end.tv_sec - begin.tv_sec) +
+                         1e-6 * static_cast<double>(end.tv_nsec - begin.tv_nsec);
+  return std::max(1.0, took_ms / kUsual_ms);
+}
+
+// How many processors others kept busy since it was made: with them about, rates by the clock mean little,
+// and drawing in software waits for threads of its own that do not get to run.
+class OtherLoad {
+ public:
+  OtherLoad() : begin_(now()) { wall_.start(); }
+  bool quiet() const { return processors() < 0.3; }
+  double processors() const {
+    const Seconds end = now();
+    return ((end.everybody - begin_.everybody) - (end.own - begin_.own)) /
+           (1e-3 * static_cast<double>(wall_.elapsed()));
+  }
+
+ private:
+  struct Seconds {
+    double everybody = 0.0, own = 0.0;
+  };
+  static Seconds now() {
+    Seconds seconds;
+    QFile file("/proc/stat");
+    if (file.open(QIODevice::ReadOnly)) {
+      const QByteArrayList fields =
+          file.readLine().simplified().split(' ');  // cpu user nice system idle iowait ...
+      const double per_second = static_cast<double>(sysconf(_SC_CLK_TCK));
+      for (const int busy : {1, 2, 3, 6, 7, 8})
+        seconds.everybody += fields.value(busy).toDouble() / per_second;
+    }
+    rusage own{};
+    getrusage(RUSAGE_SELF, &own);
+    const auto inSeconds = [](const timeval& time) {
+      return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    };
+    seconds.own = inSeconds(own.ru_utime) + inSeconds(own.ru_stime);
+    return seconds;
+  }
+  Seconds begin_;
+  QElapsedTimer wall_;
+};
+
+}  // namespace evical::ui::test

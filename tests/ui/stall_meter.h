@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How long the event loop is kept from going round: the gap between two beats of a fast timer in the GUI
+// thread. Time in which the thread was ready to run but other programs had the processor is not counted,
+// waiting for locks and files is.
+#pragma once
+
+#include <QElapsedTimer>
+#include <QFile>
+#include <QObject>
+#include <QTimer>
+
+#include <algorithm>
+#include <ctime>
+
+namespace evical::ui::test {
+
+class StallMeter : public QObject {
+ public:
+  StallMeter() {
+    timer_.setTimerType(Qt::PreciseTimer);
+    connect(&timer_, &QTimer::timeout, this, &StallMeter::beat);
+    wall_.start();
+    last_ = now();
+    timer_.start(1);
+  }
+
+  double longest_ms() const { return longest_ms_; }
+  double longestWork_ms() const {
+    return longest_work_ms_;
+  }  // of it, or of another gap: computed by the thread
+  int beats() const { return beats_; }
+
+  // Forgets what was; returns it.
+  double restart_ms() {
+    beat();
+    const double longest_ms = longest_ms_;
+    longest_ms_ = longest_work_ms_ = 0.0;
+    beats_ = 0;
+    return longest_ms;
+  }
+
+ private:
+  struct Clocks {
+    double wall_ms = 0.0, work_ms = 0.0, queued_ms = 0.0;
+  };
+
+  Clocks now() const {
+    timespec work{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &work);
+    Clocks clocks;
+    clocks.wall_ms = 1e-6 * static_cast<double>(wall_.nsecsElapsed());
+    clocks.work_ms = 1e3 * static_cast<double>(work.tv_sec) + 1e-6 * static_cast<double>(work.tv_nsec);
+    QFile file("/proc/thread-self/schedstat");  // ns on a processor, ns ready for one, times
+    if (file.open(QIODevice::ReadOnly))
+      clocks.queued_ms = 1e-6 * file.readAll().split(' ').value(1).toDouble();
+    return clocks;
+  }
+
+  void beat() {
+    const Clocks clocks = now();
+    const double gap_ms = (clocks.wall_ms - last_.wall_ms) - (clocks.queued_ms - last_.queued_ms);
+    longest_ms_ = std::max(longest_ms_, gap_ms);
+    longest_work_ms_ = std::max(longest_work_ms_, clocks.work_ms - last_.work_ms);
+    last_ = clocks;
+    ++beats_;
+  }
+
+  QTimer timer_;
+  QElapsedTimer wall_;
+  Clocks last_;
+  double longest_ms_ = 0.0, longest_work_ms_ = 0.0;
+  int beats_ = 0;
+};
+
+}  // namespace evical::ui::test

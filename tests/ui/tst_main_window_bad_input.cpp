@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What goes wrong around the program: disks that are full, recordings that vanish or are cut off while they
+// are used, files that are something else, a computer without OpenGL. The window lives on and says what to
+// do.
+#include "ui/window/main_window.h"
+
+#include "tests/ui/full_disk.h"
+#include "tests/ui/simulated_session.h"
+#include "tests/ui/window_fixture.h"
+#include "ui/detection/detection_screen.h"
+#include "ui/detection/event_view.h"
+#include "ui/detection/timeline.h"
+#include "ui/scene/trajectory_screen.h"
+#include "ui/scene/view3d.h"
+#include "ui/window/error_panel.h"
+#include "ui/window/session_files.h"
+#include "ui/window/steps_panel.h"
+
+#include <QFile>
+#include <QProcess>
+#include <QTemporaryDir>
+#include <QtTest>
+
+using namespace evical;
+using namespace evical::ui;
+using namespace evical::ui::test;
+
+namespace {
+
+constexpr int kSoon_ms = 20'000;  // of what takes next to nothing
+constexpr const char* kVendors = "__EGL_VENDOR_LIBRARY_FILENAMES";
+constexpr const char* kNoVendor = "/nonexistent";
+
+void writeFile(const QString& path, const QByteArray& content) {
+  QFile file(path);
+  QVERIFY(file.open(QIODevice::WriteOnly));
+  file.write(content);
+}
+
+QByteArray contentOf(const QString& path) {
+  QFile file(path);
+  return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
+}
+
+}  // namespace
+
+class TestMainWindowBadInput : public QObject {
+  Q_OBJECT
+
+  QTemporaryDir scratch_;
+
+ private slots:
+  void initTestCase() {
+    usePrivateFolders(scratch_);
+    simulatedSession();
+  }
+  void init() { QSettings().clear(); }
+
+  void fullDisk_exportFailsWhole_andCanBeRepeatedElsewhere() {
+    WindowFixture test;
+    test.window.files().open(simulatedSession());
+    test.press(Qt::Key_F5);
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    {
+      const FullDisk disk;
+      answerFileDialog(disk.path());
+      test.press(Qt::Key_E, Qt::ControlModifier);
+      QCOMPARE(test.waitForJob(), JobOutcome::Failed);
+      auto* const panel = test.child<ErrorPanel>();
+      QVERIFY(panel->isVisible());
+      QVERIFY2(panel->text().contains("cannot be written"), qPrintable(panel->text()));
+      QVERIFY2(panel->text().contains("What to do"), qPrintable(panel->text()));
+      QVERIFY2(disk.files().isEmpty(), qPrintable(disk.files().join(' ')));
+    }
+    QVERIFY(test.document().last().run);
+    const QString folder = scratch_.filePath("elsewhere");
+    QVERIFY(QDir().mkpath(folder));
+    answerFileDialog(folder);
+    test.press(Qt::Key_E, Qt::ControlModifier);
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    QVERIFY(QFile::exists(folder + "/result.yaml"));
+    QVERIFY(!test.child<ErrorPanel>()->isVisible());
+  }
+
+  void fullDisk_sessionStaysUnsaved() {
+    WindowFixture test;
+    const FullDisk disk;
+    Session session = readSession(simulatedSession().toStdString());
+    session.cameras.front().name = std::string(20'000, 'n');
+    test.document().startSession(session);
+    answerFileDialog(disk.path() + "/session.yaml");
+    QVERIFY(!test.window.files().saveAs());
+    QVERIFY2(test.child<ErrorPanel>()->text().contains("not saved"),
+             qPrintable(test.child<ErrorPanel>()->text()));
+    QVERIFY(test.window.isWindowModified());
+    QVERIFY2(disk.files().isEmpty(), qPrintable(disk.files().join(' ')));
+    answerQuestion(QMessageBox::Discard);
+    QVERIFY(test.window.close());
+  }
+
+  // Its events are in a cache of the program's own; calibrating it again cannot work, and says which file is
+  // gone.
+  void recordingRemoved_whilePlaying() {
+    const QTemporaryDir folder;
+    WindowFixture test;
+    test.window.files().open(copyWithRecording(folder.path()));
+    test.window.showScreen("detection");
+    auto* const screen = test.child<DetectionScreen>();
+    QTRY_VERIFY_WITH_TIMEOUT(screen->view().frame() != nullptr, kPatience_ms);
+    screen->setPlaying(true);
+    QVERIFY(QFile::remove(folder.filePath("recording.bag")));
+    QTRY_VERIFY_WITH_TIMEOUT(screen->timeline().end_s() > 3.5, kPatience_ms);
+    screen->setTime(3.0);
+    QTRY_VERIFY_WITH_TIMEOUT(screen->view().frame() && screen->view().frame()->time_s >= 3.0, kPatience_ms);
+    QVERIFY(screen->view().frame()->events > 0);
+    screen->setPlaying(false);
+    test.press(Qt::Key_F5);
+    QCOMPARE(test.waitForJob(), JobOutcome::Failed);
+    QVERIFY2(test.child<ErrorPanel>()->text().contains("recording.bag"),
+             qPrintable(test.child<ErrorPanel>()->text()));
+    QVERIFY(test.window.close());
+  }
+
+  void recordingRemoved_whileCalibrating() {
+    const QTemporaryDir folder;
+    WindowFixture test;
+    test.window.files().open(copyWithRecording(folder.path()));
+    calibrateUntilDetecting(test);
+    QVERIFY(QFile::remove(folder.filePath("recording.bag")));
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);  // an open file lives on
+    QVERIFY(test.document().last().run);
+  }
+
+  // What was there can still be used; or nothing can, and the reason is said. Never more than that.
+  void recordingCutOff_whileCalibrating() {
+    const QTemporaryDir folder;
+    WindowFixture test;
+    const QString session = copyWithRecording(folder.path());
+    const QString recording = folder.filePath("recording.bag");
+    test.window.files().open(session);
+    calibrateUntilDetecting(test);
+    QVERIFY(QFile::resize(recording, QFileInfo(recording).size() / 2));
+    const JobOutcome outcome = test.waitForJob();
+    const QString log = test.runner().logText(), problem = test.child<ErrorPanel>()->text();
+    qInfo("%s%s", outcome == JobOutcome::Done ? "done: " : "failed: ", qPrintable(problem));
+    QVERIFY(outcome == JobOutcome::Done || outcome == JobOutcome::Failed);
+    QVERIFY2(log.contains("  warning  "), qPrintable(log));
+    QVERIFY2(outcome == JobOutcome::Done || problem.contains("What to do"), qPrintable(problem));
+    test.window.showScreen("detection");
+    spin(200);
+    QVERIFY(test.window.close());
+  }
+
+  void recordingCutOff_whileItIsRead() {
+    const QTemporaryDir folder;
+    WindowFixture test;
+    const QString session = copyWithRecording(folder.path());
+    const QString recording = folder.filePath("recording.bag");
+    test.window.showScreen("detection");
+    test.window.files().open(session);
+    QVERIFY(QFile::resize(recording, QFileInfo(recording).size() / 3));
+    auto* const screen = test.child<DetectionScreen>();
+    QTRY_VERIFY_WITH_TIMEOUT(screen->view().frame() != nullptr || !screen->view().message().isEmpty(),
+                             kPatience_ms);
+    screen->setPlaying(true);
+    spin(300);
+    screen->setPlaying(false);
+    QVERIFY(test.window.close());
+  }
+
+  void sessionWithUnknownKey_namesItAndTheOneThatIsMeant() {
+    WindowFixture test;
+    test.window.files().open(simulatedSession());
+    const QString good = test.document().file();
+    const QString bad = scratch_.filePath("unknown.yaml");
+    writeFile(bad, contentOf(simulatedSession()) + "\nrecordings: a.bag\n");
+    test.window.files().open(bad);
+    auto* const panel = test.child<ErrorPanel>();
+    QVERIFY(panel->isVisible());
+    QVERIFY2(panel->text().contains("unknown.yaml"), qPrintable(panel->text()));
+    QVERIFY2(panel->text().contains("recordings"), qPrintable(panel->text()));
+    QVERIFY2(panel->text().contains("What to do"), qPrintable(panel->text()));
+    QCOMPARE(test.document().file(), good);
+    QVERIFY(!test.window.isWindowModified());
+  }
+
+  void sessionsThatAreNone_data() {
+    QTest::addColumn<QByteArray>("content");
+    QTest::newRow("empty") << QByteArray();
+    QTest::newRow("a list") << QByteArray("- 1\n- 2\n");
+    QTest::newRow("no YAML") << QByteArray("board: [1, 2\ncameras: {");
+    QTest::newRow("wrong type") << QByteArray("recording: [a, b]\n");
+    QTest::newRow("bytes") << QByteArray("\x00\xff\xfe\x01\x80 :", 7);
+  }
+  void sessionsThatAreNone() {
+    QFETCH(QByteArray, content);
+    const QString bad = scratch_.filePath("none.yaml");
+    writeFile(bad, content);
+    WindowFixture test;
+    test.window.files().open(bad);
+    QVERIFY(test.child<ErrorPanel>()->isVisible());
+    QVERIFY(!test.document().hasSession());
+    QVERIFY(test.window.files().recentFiles().isEmpty());
+  }
+
+  void filesThatAreNoRecording_data() {
+    QTest::addColumn<QString>("name");
+    QTest::addColumn<QByteArray>("content");
+    QTest::newRow("empty") << "empty.bag" << QByteArray();
+    QTest::newRow("a picture") << "picture.png" << QByteArray("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16);
+    QTest::newRow("a bag's first line only") << "short.bag" << QByteArray("#ROSBAG V2.0\n");
+    QTest::newRow("a bag that lies") << "lie.bag"
+                                     << QByteArray("#ROSBAG V2.0\n\xff\xff\xff\x7f\xff\xff\xff\x7f", 21);
+    QTest::newRow("words") << "words.txt" << QByteArray("to be or not to be\nthat is the question\n");
+    QTest::newRow("a folder of nothing") << "." << QByteArray();
+    QTest::newRow("nothing at all") << "/nonexistent/recording.bag" << QByteArray();
+  }
+  void filesThatAreNoRecording() {
+    QFETCH(QString, name);
+    QFETCH(QByteArray, content);
+    const QTemporaryDir folder;
+    const bool inside = name != "." && !name.startsWith('/');
+    const QString path = name == "." ? folder.path() : name.startsWith('/') ? name : folder.filePath(name);
+    if (inside) writeFile(path, content);
+    WindowFixture test;
+    test.window.files().open(path);
+    auto* const panel = test.child<ErrorPanel>();
+    QTRY_VERIFY_WITH_TIMEOUT(panel->isVisible(), kSoon_ms);
+    QVERIFY2(panel->text().contains(QFileInfo(path).fileName()), qPrintable(panel->text()));
+    QVERIFY2(panel->text().contains("What to do"), qPrintable(panel->text()));
+    QVERIFY(!test.document().hasSession());
+    QVERIFY(test.window.files().recentFiles().isEmpty());
+  }
+
+  // The front end succeeds; then the IMU's samples turn out to be of another time.
+  void calibrationFailingHalfWay_keepsWhatWasThereBefore() {
+    WindowFixture test;
+    test.window.files().open(simulatedSession());
+    test.press(Qt::Key_F5);
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    const auto before = test.document().last().run;
+    Session other = test.document().session();
+    other.imus.front().clock_offset_s = 1000.0;
+    test.document().edit(other, "Change the clock");
+    test.press(Qt::Key_F5);
+    QCOMPARE(test.waitForJob(), JobOutcome::Failed);
+    auto* const panel = test.child<ErrorPanel>();
+    QVERIFY2(panel->isVisible() && panel->text().contains("What to do"), qPrintable(panel->text()));
+    auto* const steps = test.child<StepsPanel>();
+    QVERIFY2(steps->textOf("detect").contains("done"), qPrintable(steps->textOf("detect")));
+    QVERIFY2(steps->textOf("initialise").contains("failed"), qPrintable(steps->textOf("initialise")));
+    QCOMPARE(test.document().last().run, before);
+    QVERIFY(!test.child<DetectionScreen>()->isLive());
+    test.document().undoStack().undo();
+    test.press(Qt::Key_F5);
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    QVERIFY(!panel->isVisible());
+    QVERIFY(test.window.close());
+  }
+
+  // In a process of its own: the drivers are looked for once.
+  void withoutOpenGl_everythingElseWorks() {
+    if (qEnvironmentVariable(kVendors) != kNoVendor) {
+      QProcess process;
+      QProcessEnvironment environment = QProcessEnvironment::systemEnvironment();
+      environment.insert(kVendors, kNoVendor);
+      process.setProcessEnvironment(environment);
+      process.start(QCoreApplication::applicationFilePath(), {"withoutOpenGl_everythingElseWorks"});
+      QVERIFY(process.waitForFinished(kPatience_ms));
+      QVERIFY2(process.exitStatus() == QProcess::NormalExit && process.exitCode() == 0,
+               process.readAll().constData());
+      return;
+    }
+    WindowFixture test;
+    test.window.files().open(simulatedSession());
+    test.window.showScreen("trajectory");
+    test.press(Qt::Key_F5);
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    spin(300);
+    const View3D* const view = test.child<TrajectoryScreen>()->view();
+    QVERIFY(!view->problem().isEmpty());
+    QCOMPARE(test.screen(), QString("trajectory"));
+    const QImage picture = test.window.grab().toImage();
+    QCOMPARE(picture.size(), test.window.size());
+    QVERIFY(test.document().last().run);
+    QVERIFY(test.window.close());
+  }
+
+ private:
+  static void calibrateUntilDetecting(WindowFixture& test) {
+    double fraction = 0.0;
+    const auto watch = QObject::connect(&test.runner(), &JobRunner::progressed, &test.window,
+                                        [&](const JobProgress& progress) { fraction = progress.fraction; });
+    test.press(Qt::Key_F5);
+    QTRY_VERIFY_WITH_TIMEOUT(fraction > 0.0, kPatience_ms);
+    QObject::disconnect(watch);
+    QVERIFY(test.runner().running());
+  }
+};
+
+QTEST_MAIN(TestMainWindowBadInput)
+#include "tst_main_window_bad_input.moc"

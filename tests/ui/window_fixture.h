@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The real main window for tests, with a person's hands: clicks, keys, answers to dialogs.
+#pragma once
+
+#include "ui/theme/theme.h"
+#include "ui/window/main_window.h"
+
+#include <QApplication>
+#include <QDir>
+#include <QEventLoop>
+#include <QFileDialog>
+#include <QLineEdit>
+#include <QMessageBox>
+#include <QSettings>
+#include <QSignalSpy>
+#include <QStackedWidget>
+#include <QStandardPaths>
+#include <QTemporaryDir>
+#include <QTimer>
+#include <QToolButton>
+#include <QtTest>
+
+namespace evical::ui::test {
+
+inline constexpr int kPatience_ms = 120'000;
+
+// Settings, recent files and the demo's place in folders of the tests' own.
+inline void usePrivateFolders(const QTemporaryDir& scratch) {
+  QCoreApplication::setOrganizationName("evical_test");
+  QStandardPaths::setTestModeEnabled(true);
+  QDir(QStandardPaths::writableLocation(QStandardPaths::AppDataLocation)).removeRecursively();
+  QSettings::setDefaultFormat(QSettings::IniFormat);
+  QSettings::setPath(QSettings::IniFormat, QSettings::UserScope, scratch.filePath("settings"));
+  QCoreApplication::setAttribute(Qt::AA_DontUseNativeDialogs);
+  applyTheme(*qApp, Appearance::Light);
+}
+
+// Lets the event loop go round as it does in the program.
+inline void spin(int duration_ms) {
+  QEventLoop loop;
+  QTimer::singleShot(duration_ms, &loop, &QEventLoop::quit);
+  loop.exec();
+}
+
+// Answers the next modal dialog: types a path into a file dialog, presses a button of a question.
+inline void answerFileDialog(const QString& path) {
+  QTimer::singleShot(200, qApp, [path] {
+    auto* const dialog = qobject_cast<QFileDialog*>(QApplication::activeModalWidget());
+    if (dialog == nullptr) return answerFileDialog(path);
+    auto* const edit = dialog->findChild<QLineEdit*>("fileNameEdit");
+    edit->setText(path);
+    QTest::keyClick(edit, Qt::Key_Return);
+    if (dialog->isVisible())
+      QMetaObject::invokeMethod(dialog, "accept");  // a completer may have taken the key
+  });
+}
+
+inline void answerQuestion(QMessageBox::StandardButton button) {
+  QTimer::singleShot(200, qApp, [button] {
+    auto* const box = qobject_cast<QMessageBox*>(QApplication::activeModalWidget());
+    if (box == nullptr) return answerQuestion(button);
+    QTest::mouseClick(box->button(button), Qt::LeftButton);
+  });
+}
+
+struct WindowFixture {
+  MainWindow window{"0.0.0"};
+  QSignalSpy finished{&window.workbench().runner, &JobRunner::finished};
+
+  WindowFixture() {
+    window.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&window));
+    window.activateWindow();
+    QVERIFY(QTest::qWaitForWindowActive(&window));
+  }
+  template <class Widget>
+  Widget* child(const QString& name = {}) {
+    return window.findChild<Widget*>(name);
+  }
+  CalibrationDocument& document() { return window.workbench().document; }
+  JobRunner& runner() { return window.workbench().runner; }
+  QString screen() {
+    const auto* const stack = window.centralWidget()->findChild<QStackedWidget*>();
+    return window.screenNames().value(stack->currentIndex());
+  }
+  void click(const QString& tool_button) {
+    auto* const button = child<QToolButton>(tool_button);
+    QVERIFY2(button && button->isVisible() && button->isEnabled(), qPrintable(tool_button));
+    QTest::mouseClick(button, Qt::LeftButton);
+  }
+  void press(Qt::Key key, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
+    window.activateWindow();  // no window manager does it after a dialog
+    QVERIFY(QTest::qWaitForWindowActive(&window));
+    QTest::keyClick(&window, key, modifiers);
+  }
+  // The outcome of the job that runs or ended last.
+  JobOutcome waitForJob() {
+    if (finished.isEmpty()) finished.wait(kPatience_ms);
+    return finished.isEmpty() ? JobOutcome::Failed : finished.takeLast().at(0).value<JobOutcome>();
+  }
+};
+
+}  // namespace evical::ui::test
