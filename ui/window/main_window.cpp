@@ -183,11 +183,17 @@ void MainWindow::wireJobs() {
   connect(&workbench_.calibration, &CalibrationJob::calibrated, this,
           [this](std::shared_ptr<const CalibrationRun> run, const Session& session, const QString& log) {
             workbench_.document.addRun({std::move(run), session, log});
-            // In a turn of its own: filling the screens and laying one out together is long for an event.
-            QTimer::singleShot(1, this, [this] {
-              if (stack_->currentIndex() <= 1) showScreen("result");
-            });
+            QTimer::singleShot(1, this, &MainWindow::bringUpResult);
           });
+}
+
+// Filling the screens, laying this one out and painting it are turns of their own of the event loop: all in
+// one would be long.
+void MainWindow::bringUpResult() {
+  if (stack_->currentIndex() > 1) return;
+  setUpdatesEnabled(false);
+  showScreen("result");
+  QTimer::singleShot(1, this, [this] { setUpdatesEnabled(true); });
 }
 
 void MainWindow::wireSteps() {

@@ -57,6 +57,7 @@ class MainWindow : public QMainWindow {
   void wireDocument();
   void wireParameters();
   void wireJobs();
+  void bringUpResult();
   void wireSteps();
   void showState();
   void showProblem(const QString& what_was_tried, const JobError& error);
