@@ -142,7 +142,8 @@ std::vector<SessionProblem> sessionProblems(const Session& session) {
   }
   if (session.cameras.empty())
     problems.push_back({"cameras", QObject::tr("Choose at least one event stream as camera")});
-  if (session.imus.empty()) problems.push_back({"imus", QObject::tr("Choose one stream as IMU")});
+  if (session.imus.empty() && session.cameras.size() < 2)
+    problems.push_back({"imus", QObject::tr("Choose one stream as IMU, or a second one as camera")});
   for (const SessionCamera& camera : session.cameras) {
     if (camera.intrinsics) continue;
     problems.push_back({QString::fromStdString("cameras." + camera.name + ".intrinsics"),

@@ -362,7 +362,7 @@ void PlotChart::styleSeries(const SeriesItems& items) {
     case PlotPanel::SeriesKind::Points: {
       auto* const graph = static_cast<QCPGraph*>(items.plottable);
       graph->setLineStyle(QCPGraph::lsNone);
-      const bool small = style.width_px <= 2.5;  // a plain square is far cheaper than a disc
+      const bool small = style.width_px <= 3.5;  // a plain square is far cheaper than a disc
       graph->setPen(pen);
       graph->setAntialiasedScatters(!small);
       graph->setScatterStyle(

@@ -141,11 +141,11 @@ void ResidualsScreen::makeScatter() {
                             .downward_y = true,
                             .equal_scale = true});
   scatter_series_.dropped = scatter_->addSeries(
-      Kind::Points, {.name = tr("dropped"), .colour = PlotColour::Faint, .width_px = 2.0});
+      Kind::Points, {.name = tr("dropped"), .colour = PlotColour::Faint, .width_px = 3.0});
   scatter_series_.used = scatter_->addSeries(
-      Kind::Points, {.name = tr("used"), .colour = PlotColour::Accent, .width_px = 2.0, .opacity = 0.6});
+      Kind::Points, {.name = tr("used"), .colour = PlotColour::Accent, .width_px = 3.0, .opacity = 0.6});
   scatter_series_.rejected =
-      scatter_->addSeries(Kind::Points, {.name = tr("marked"), .colour = PlotColour::Bad, .width_px = 2.0});
+      scatter_->addSeries(Kind::Points, {.name = tr("marked"), .colour = PlotColour::Bad, .width_px = 3.0});
   scatter_series_.now = scatter_->addSeries(
       Kind::Points, {.name = tr("at cursor"), .colour = PlotColour::Warning, .width_px = 6.0});
   for (int k = 0; k < 3; ++k) {

@@ -41,7 +41,7 @@ void ObservabilityView::paintEvent(QPaintEvent*) {
     return;
   }
   // Logarithmic: a factor of ten is as wide everywhere.
-  constexpr double kLeast = 0.03, kLabel_px = 58.0, kAxis_px = 56.0, kMostBar_px = 26.0;
+  constexpr double kLeast = 0.03, kLabel_px = 58.0, kGap_px = 6.0, kAxis_px = 56.0, kMostBar_px = 26.0;
   const double most = std::max(30.0, 2.0 * needed_over_sigma_.back());
   const double room_px = width() - kLabel_px - 12.0;
   const auto place = [&](double ratio) {
@@ -55,8 +55,12 @@ void ObservabilityView::paintEvent(QPaintEvent*) {
     const QRectF bar(0.0, top + 2.0, place(ratio), bar_px - 4.0);
     painter.fillRect(bar, ratio < 1.0 ? theme().bad : theme().good);
     painter.setPen(theme().text);
-    painter.drawText(QRectF(bar.right() + 6.0, top, kLabel_px, bar_px), Qt::AlignVCenter | Qt::TextDontClip,
-                     tr("%1 x").arg(ratio, 0, 'g', 3));
+    const QString label = tr("%1 x").arg(ratio, 0, 'g', 3);
+    double left = bar.right() + kGap_px;
+    const double line = place(1.0);  // no label under it
+    if (left < line + kGap_px && left + painter.fontMetrics().horizontalAdvance(label) > line - kGap_px)
+      left = line + kGap_px;
+    painter.drawText(QRectF(left, top, kLabel_px, bar_px), Qt::AlignVCenter | Qt::TextDontClip, label);
   }
   const double bottom = bar_px * static_cast<double>(needed_over_sigma_.size());
   painter.setPen(QPen(theme().text, 1.5, Qt::DashLine));

@@ -172,7 +172,9 @@ QWidget* RecordingScreen::makeForms() {
   column->setContentsMargins(0, 0, 0, 0);
   column->addWidget(sensors_, 1);
   auto* const form = new QFormLayout;
-  reference_->setToolTip(tr("The IMU in whose frame, and on whose clock, everything is expressed"));
+  reference_->setToolTip(
+      tr("The IMU in whose frame, and on whose clock, everything is expressed; a camera "
+         "where there is no IMU"));
   form->addRow(tr("Reference"), reference_);
   column->addLayout(form);
   auto* const row = new QHBoxLayout(forms);
@@ -214,11 +216,12 @@ void RecordingScreen::showSensors() {
     }
   }
   int tab = 0;
+  reference_->clear();
   for (std::size_t i = 0; i < cameras_.size(); ++i, ++tab) {
     cameras_[i]->setCamera(session_.cameras[i]);
     sensors_->setTabText(tab, QString::fromStdString(session_.cameras[i].name));
+    if (imus_.empty()) reference_->addItem(sensors_->tabText(tab));
   }
-  reference_->clear();
   for (std::size_t i = 0; i < imus_.size(); ++i, ++tab) {
     imus_[i]->setImu(session_.imus[i]);
     sensors_->setTabText(tab, QString::fromStdString(session_.imus[i].name));
@@ -289,6 +292,18 @@ void RecordingScreen::setInspectionFailed(const QString& why) {
   showText(file_faults_, why);
 }
 
+// Where the reference is no longer there, the first that could be it.
+void RecordingScreen::keepReference(Session& session) {
+  const auto choose = [&](const auto& sensors) {
+    const auto is_reference = [&](const auto& sensor) { return sensor.name == session.reference; };
+    if (std::none_of(sensors.begin(), sensors.end(), is_reference)) session.reference = sensors.front().name;
+  };
+  if (!session.imus.empty())
+    choose(session.imus);
+  else if (!session.cameras.empty())
+    choose(session.cameras);
+}
+
 void RecordingScreen::chooseRole(int stream, int role) {
   if (!inspection_ || stream >= static_cast<int>(inspection_->streams.size())) return;
   const StreamSummary& summary = inspection_->streams[static_cast<std::size_t>(stream)];
@@ -299,10 +314,7 @@ void RecordingScreen::chooseRole(int stream, int role) {
   if (static_cast<StreamRole>(role) == StreamRole::Camera)
     changed.cameras.push_back(guessedCamera(summary, changed));
   if (static_cast<StreamRole>(role) == StreamRole::Imu) changed.imus.push_back(guessedImu(summary, changed));
-  const bool reference_is_there =
-      std::any_of(changed.imus.begin(), changed.imus.end(),
-                  [&](const SessionImu& imu) { return imu.name == changed.reference; });
-  if (!reference_is_there && !changed.imus.empty()) changed.reference = changed.imus.front().name;
+  keepReference(changed);
   emit sessionEdited(changed, tr("Change the role of %1").arg(QString::fromStdString(summary.info.name)), {});
 }
 

@@ -51,6 +51,7 @@ class RecordingScreen : public QWidget {
   QWidget* makeContent();
   void showSensors();
   void chooseRole(int stream, int role);
+  static void keepReference(Session& session);
   void renameReference(const std::string& from, const std::string& to, Session& session) const;
   void editCamera(std::size_t index, const SessionCamera& camera, const QString& field);
   void editImu(std::size_t index, const SessionImu& imu, const QString& field);
