@@ -102,7 +102,8 @@ NamedResult named(const CalibrationInput& input, const CalibrationState& state) 
   NamedResult result;
   for (const CameraData& camera : input.cameras) result.names.cameras.push_back(camera.name);
   for (const ImuData& imu : input.imus) result.names.imus.push_back(imu.name);
-  result.names.reference = input.imus[input.reference_imu].name;
+  result.names.reference =
+      input.imus.empty() ? input.cameras[input.reference_camera].name : input.imus[input.reference_imu].name;
   result.result.state = state;
   return result;
 }
@@ -114,6 +115,7 @@ std::vector<HalvesDifference> differences(const CalibrationInput& input, const s
   std::vector<HalvesDifference> all;
   for (const QuantityError& each : comparison.quantities)
     all.push_back({each.name, each.unit, each.error, each.sigma});
+  if (input.imus.empty()) return all;
   // Of two tilts, each with this sigma, the length.
   const double tilt_rad = std::hypot(halves[0].uncertainty.gravity_direction_std_rad,
                                      halves[1].uncertainty.gravity_direction_std_rad);
@@ -143,6 +145,7 @@ std::array<CalibrationInput, 2> splitIntoHalves(const CalibrationInput& input, c
     half.start_ns = input.start_ns;
     half.board = input.board;
     half.reference_imu = input.reference_imu;
+    half.reference_camera = input.reference_camera;
   }
   for (std::size_t i = 0; i < input.cameras.size(); ++i) {
     const CameraData& camera = input.cameras[i];

@@ -23,7 +23,7 @@ Session sessionOf(const Scenario& scenario) {
     known.stream = imu.stream;
     known.noise = {imu.gyroscope_density, imu.accelerometer_density};
   }
-  session.reference = scenario.imus.front().name;
+  session.reference = scenario.imus.empty() ? scenario.cameras.front().name : scenario.imus.front().name;
   return session;
 }
 
@@ -42,9 +42,9 @@ BoardObservations observationsOf(const Scenario& scenario, std::size_t camera) {
 
 }  // namespace
 
-SimulatedPass simulatePass(double duration_s) {
+SimulatedPass simulatePass(double duration_s, const std::string& scenario) {
   SimulatedPass simulated;
-  simulated.truth = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/davis346.yaml");
+  simulated.truth = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/" + scenario + ".yaml");
   simulated.truth.duration_s = duration_s;
   simulated.session = sessionOf(simulated.truth);
   simulated.pass.start_ns = simulated.truth.start_ns;

@@ -6,6 +6,8 @@
 #include "core/pipeline/session.h"
 #include "core/synthetic/scenario.h"
 
+#include <string>
+
 namespace evical::test {
 
 struct SimulatedPass {
@@ -14,7 +16,7 @@ struct SimulatedPass {
   RecordingPass pass;
 };
 
-// The everyday scenario (config/scenarios/davis346.yaml), shortened; circle centres with a noise of 0.05 px.
-SimulatedPass simulatePass(double duration_s);
+// A scenario of config/scenarios, shortened; circle centres with a noise of 0.05 px.
+SimulatedPass simulatePass(double duration_s, const std::string& scenario = "davis346");
 
 }  // namespace evical::test

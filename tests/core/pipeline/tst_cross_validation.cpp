@@ -86,6 +86,23 @@ class TestCrossValidation : public QObject {
              qPrintable(QString::number(validation.rms_sigmas)));
   }
 
+  void camerasAlone_areComparedWithoutGravity() {
+    const SimulatedPass stereo = simulatePass(8.0, "stereo");
+    const CalibrationRun run = calibrate(stereo.session, stereo.pass, {});
+    QVERIFY(run.result.cross_validation.has_value());
+    const CrossValidation& validation = *run.result.cross_validation;
+    QVERIFY2(validation.failure.empty(), validation.failure.c_str());
+    QVERIFY(validation.windows[0] > 20 && validation.windows[1] > 20);
+    int of_the_other_camera = 0;
+    for (const HalvesDifference& each : validation.quantities) {
+      QVERIFY2(each.name.find("gravity") == std::string::npos, each.name.c_str());
+      of_the_other_camera += each.sigma > 0.0 ? 1 : 0;
+    }
+    QVERIFY(of_the_other_camera >= 7);
+    QVERIFY2(validation.rms_sigmas > 0.02 && validation.rms_sigmas < 2.0,
+             qPrintable(QString::number(validation.rms_sigmas)));
+  }
+
   void cameraThatSlipped_isSeen() {
     // From the third block on, every other block, the camera sees the board 1 px aside: no single pose fits
     // both.
