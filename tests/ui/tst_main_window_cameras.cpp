@@ -15,8 +15,11 @@
 #include "ui/screens/result_screen.h"
 #include "ui/screens/stream_table.h"
 #include "ui/window/session_files.h"
+#include "ui/window/step_row.h"
+#include "ui/window/steps_panel.h"
 
 #include <QComboBox>
+#include <QLabel>
 #include <QTabWidget>
 #include <QTemporaryDir>
 #include <QTreeWidget>
@@ -157,16 +160,48 @@ class TestMainWindowCameras : public QObject {
     QTRY_COMPARE_WITH_TIMEOUT(charts(screen), left, kPatience_ms);
   }
 
-  void result_listsBoth() {
-    QStringList groups;
-    for (QTreeWidget* const tree : test_->child<ResultScreen>()->findChildren<QTreeWidget*>()) {
-      for (int k = 0; k < tree->topLevelItemCount(); ++k) groups << tree->topLevelItem(k)->text(0);
+  void withoutImu_everyScreenSaysWhatThereIs() {
+    Session session = test_->document().session();
+    session.imus.clear();
+    session.reference = "left";
+    test_->document().edit(session, "Leave the IMU out");
+    test_->press(Qt::Key_F5);
+    QCOMPARE(test_->waitForJob(), JobOutcome::Done);
+    const CalibrationRun& run = *test_->document().last().run;
+    QVERIFY(run.result.state.imus.empty());
+    QVERIFY(std::abs(run.result.state.cameras[1].imu_from_camera.translation_m.norm() - 0.1) < 0.02);
+    QVERIFY(!test_->child<StepsPanel>()->findChildren<StepRow*>().isEmpty());
+    QVERIFY(test_->child<StepsPanel>()->textOf("gravity and translation").isEmpty());
+    QStringList seen;
+    for (const QString& name : test_->window.screenNames()) {
+      test_->window.showScreen(name);
+      spin(200);
+      for (const QLabel* const label : test_->window.findChildren<QLabel*>())
+        if (label->isVisible()) seen << label->text();
     }
-    const QString all = groups.join('|');
+    const QString all = seen.join('|');
+    QVERIFY2(all.contains("There is no IMU"), qPrintable(all));
+    QVERIFY2(all.contains("Camera position"), qPrintable(all));
+    QVERIFY2(!all.contains("IMU position"), qPrintable(all));
+    QVERIFY(topLevelTexts().contains("left (reference)"));
+    QVERIFY(!topLevelTexts().contains("Gravity"));
+    test_->document().undoStack().undo();
+  }
+
+  void result_listsBoth() {
+    const QString all = topLevelTexts();
     QVERIFY2(all.contains("left") && all.contains("right"), qPrintable(all));
   }
 
  private:
+  QString topLevelTexts() const {
+    QStringList groups;
+    for (QTreeWidget* const tree : test_->child<ResultScreen>()->findChildren<QTreeWidget*>()) {
+      for (int k = 0; k < tree->topLevelItemCount(); ++k) groups << tree->topLevelItem(k)->text(0);
+    }
+    return groups.join('|');
+  }
+
   static QStringList charts(QWidget* screen) {
     QStringList all;
     for (const PlotPanel* const panel : screen->findChildren<PlotPanel*>()) all << panel->csv();

@@ -178,7 +178,9 @@ void SignalsScreen::setRun(std::shared_ptr<const CalibrationRun> run, const Sess
     box->setVisible(box->count() > 1);
     label->setVisible(box->count() > 1);
   }
-  setNote(*stack_, run_ ? tr("Computing the signals ...") : tr("No calibration yet: press Calibrate."));
+  setNote(*stack_, !run_                ? tr("No calibration yet: press Calibrate.")
+                   : imu_->count() == 0 ? tr("There is no IMU whose signals could be compared.")
+                                        : tr("Computing the signals ..."));
   showPage(*stack_, StackPage::Note);
   compute();
 }

@@ -250,7 +250,7 @@ void TrajectoryScreen::Private::estimatePoses() {
 void TrajectoryScreen::Private::showTrack(Track new_track) {
   state = std::move(new_track.state);
   track = std::move(new_track.samples);
-  const bool known = state && hasTrajectory(*state);
+  const bool known = state && hasTrajectory(*state) && !state->imus.empty();  // cameras cannot tell
   scene.setGravity(known ? std::optional(state->gravity_in_world_m_s2) : std::nullopt);
   scene.setTrack(track);
   tools->offerResiduals(track->hasResiduals());
@@ -307,6 +307,7 @@ void TrajectoryScreen::Private::showNumbers() {
   PoseNumbers numbers;
   numbers.time_s = time_s;
   if (instant) {
+    numbers.of_camera = state->imus.empty();  // the body is the reference camera then
     numbers.position_m = instant->imu.world_from_imu.translation_m;
     numbers.speed_m_s = instant->imu.velocity_m_s.norm();
     numbers.rotation_rate_rad_s = instant->imu.angular_velocity_rad_s.norm();

@@ -83,9 +83,13 @@ ParameterGroup cameraGroup(const NamedResult& named, std::size_t i) {
                            .arg(QString::fromStdString(name), QString::fromStdString(named.names.reference)),
                        {}};
   Rows rows(name, group);
-  rows.addPose(state.imu_from_camera, sigma.rotation_std_rad, sigma.translation_std_m);
-  rows.add("time_offset", QObject::tr("Time offset"), "ms", kMsPerS * state.time_offset_s,
-           kMsPerS * sigma.time_offset_std_s);
+  if (name == named.names.reference) {
+    group.title = QObject::tr("Camera %1 (reference)").arg(QString::fromStdString(name));
+  } else {
+    rows.addPose(state.imu_from_camera, sigma.rotation_std_rad, sigma.translation_std_m);
+    rows.add("time_offset", QObject::tr("Time offset"), "ms", kMsPerS * state.time_offset_s,
+             kMsPerS * sigma.time_offset_std_s);
+  }
   rows.add({}, QObject::tr("Edge lead at 100 px/s"), "px", state.edge_lead_px, sigma.edge_lead_std_px);
   rows.add({}, QObject::tr("Edge lead growth"), QObject::tr("px / e-fold"), state.edge_lead_growth_px,
            sigma.edge_lead_growth_std_px);

@@ -127,6 +127,7 @@ QStringList MainWindow::screenNames() const {
 bool MainWindow::showScreen(const QString& name) {
   const qsizetype index = screenNames().indexOf(name);
   if (index < 0) return false;
+  result_is_due_ = false;
   navigation_->setCurrentRow(static_cast<int>(index));
   return true;
 }
@@ -183,6 +184,7 @@ void MainWindow::wireJobs() {
   connect(&workbench_.calibration, &CalibrationJob::calibrated, this,
           [this](std::shared_ptr<const CalibrationRun> run, const Session& session, const QString& log) {
             workbench_.document.addRun({std::move(run), session, log});
+            result_is_due_ = stack_->currentIndex() <= 1;
             QTimer::singleShot(1, this, &MainWindow::bringUpResult);
           });
 }
@@ -190,7 +192,7 @@ void MainWindow::wireJobs() {
 // Filling the screens, laying this one out and painting it are turns of their own of the event loop: all in
 // one would be long.
 void MainWindow::bringUpResult() {
-  if (stack_->currentIndex() > 1) return;
+  if (!result_is_due_) return;
   setUpdatesEnabled(false);
   showScreen("result");
   QTimer::singleShot(1, this, [this] { setUpdatesEnabled(true); });

@@ -82,6 +82,7 @@ class MainWindow : public QMainWindow {
     QAction *guide, *about;
   } actions_{};
   bool close_when_idle_ = false;
+  bool result_is_due_ = false;  // unless another screen is chosen
 };
 
 }  // namespace evical::ui

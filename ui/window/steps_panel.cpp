@@ -151,7 +151,18 @@ void StepsPanel::finish(JobOutcome outcome) {
   }
 }
 
+// Those that this kind of rig does not need.
+void StepsPanel::dropUnusedSteps() {
+  for (const QString& step : kInitialisationSteps) {
+    const auto found = rows_.find(step);
+    if (found == rows_.end() || found->second->state() != StepState::Pending) continue;
+    delete found->second;
+    rows_.erase(found);
+  }
+}
+
 void StepsPanel::setRun(const CalibrationRun& run) {
+  dropUnusedSteps();
   const CalibrationResult& result = run.result;
   row("detect")->setKeyNumber(windowCounts(run.pass.cameras));
   row("detect")->setTime(std::max(result.timing.read_s, result.timing.detect_s));

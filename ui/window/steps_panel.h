@@ -34,6 +34,7 @@ class StepsPanel : public QWidget {
   QString textOf(const QString& step) const;
 
  private:
+  void dropUnusedSteps();
   StepRow* addRow(const QString& key, const QString& title, bool sub_step);
   StepRow* row(const QString& key);
 
