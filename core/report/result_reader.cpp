@@ -72,6 +72,12 @@ void readTransform(const YamlNode& map, RigidTransform& pose, Eigen::Vector3d& r
   get(map, "translation_std_m", translation_std_m);
 }
 
+std::string streamOf(const YamlNode& map) {
+  std::string stream;
+  get(map, "stream", stream);
+  return stream;
+}
+
 void readCamera(const YamlNode& map, NamedResult& named) {
   CameraState state;
   CameraUncertainty sigma;
@@ -96,11 +102,23 @@ void readCamera(const YamlNode& map, NamedResult& named) {
     get(*circles, "used", fit.circles_used);
     get(*circles, "rejected", fit.circles_rejected);
   }
+  named.names.camera_streams.push_back(streamOf(map));
   const auto intrinsics = map.find("intrinsics");
   named.names.intrinsics.push_back(intrinsics ? std::optional(readIntrinsics(*intrinsics)) : std::nullopt);
   named.result.state.cameras.push_back(state);
   named.result.uncertainty.cameras.push_back(sigma);
   named.result.cameras.push_back(fit);
+}
+
+KnownOfImu readKnown(const YamlNode& map) {
+  KnownOfImu known;
+  known.stream = streamOf(map);
+  if (map.has("accelerometer_noise_density") && map.has("gyroscope_noise_density"))
+    known.noise = ImuNoise{map["gyroscope_noise_density"].real(), map["accelerometer_noise_density"].real()};
+  get(map, "accelerometer_random_walk", known.accelerometer_random_walk);
+  get(map, "gyroscope_random_walk", known.gyroscope_random_walk);
+  get(map, "rate_hz", known.rate_hz);
+  return known;
 }
 
 void readImu(const YamlNode& map, NamedResult& named) {
@@ -125,6 +143,7 @@ void readImu(const YamlNode& map, NamedResult& named) {
     get(*accelerometer, "mapping_std", sigma.accelerometer_mapping_std);
     get(*accelerometer, "residual_rms_m_s2", fit.accelerometer_rms_m_s2);
   }
+  named.names.known_of_imus.push_back(readKnown(map));
   named.result.state.imus.push_back(state);
   named.result.uncertainty.imus.push_back(sigma);
   named.result.imus.push_back(fit);

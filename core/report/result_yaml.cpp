@@ -51,11 +51,16 @@ T at(const std::vector<T>& values, std::size_t i) {
   return i < values.size() ? values[i] : T{};
 }
 
+std::string streamYaml(const std::string& stream) {
+  return stream.empty() ? "" : fmt::format("    stream: {}\n", yamlText(stream));
+}
+
 std::string cameraYaml(const NamedResult& named, std::size_t i) {
   const CameraState& state = named.result.state.cameras[i];
   const CameraUncertainty sigma = at(named.result.uncertainty.cameras, i);
   const CameraFit fit = at(named.result.cameras, i);
   std::string text = fmt::format("  {}:\n", yamlText(named.names.cameras.at(i)));
+  text += streamYaml(at(named.names.camera_streams, i));
   text += transformYaml("reference_from_camera", state.imu_from_camera, sigma.rotation_std_rad,
                         sigma.translation_std_m);
   text += fmt::format(
@@ -86,11 +91,27 @@ std::string inertialYaml(const char* key, const char* unit, const Eigen::Vector3
       matrix(mapping_std, rounded), unit, rounded(rms));
 }
 
+std::string knownYaml(const KnownOfImu& known) {
+  std::string text = streamYaml(known.stream);
+  const auto add = [&](const char* key, double value) {
+    if (value > 0.0) text += fmt::format("    {}: {}\n", key, exact(value));
+  };
+  if (known.noise) {
+    add("accelerometer_noise_density", known.noise->accelerometer_density);
+    add("gyroscope_noise_density", known.noise->gyroscope_density);
+  }
+  add("accelerometer_random_walk", known.accelerometer_random_walk);
+  add("gyroscope_random_walk", known.gyroscope_random_walk);
+  add("rate_hz", known.rate_hz);
+  return text;
+}
+
 std::string imuYaml(const NamedResult& named, std::size_t i) {
   const ImuState& state = named.result.state.imus[i];
   const ImuUncertainty sigma = at(named.result.uncertainty.imus, i);
   const ImuFit fit = at(named.result.imus, i);
   std::string text = fmt::format("  {}:\n", yamlText(named.names.imus.at(i)));
+  text += knownYaml(at(named.names.known_of_imus, i));
   text += transformYaml("reference_from_imu", state.reference_from_imu, sigma.rotation_std_rad,
                         sigma.translation_std_m);
   text += fmt::format("    time_offset_s: {}\n    time_offset_std_s: {}\n", exact(state.time_offset_s),

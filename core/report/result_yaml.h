@@ -3,6 +3,7 @@
 
 #include "core/base/option_yaml.h"
 #include "core/data/calibration_result.h"
+#include "core/data/calibration_setup.h"
 #include "core/geometry/camera_model.h"
 
 #include <filesystem>
@@ -12,13 +13,24 @@
 
 namespace evical {
 
+// What a session and its recording say of an IMU, handed on to other programs. Empty, 0: not known.
+struct KnownOfImu {
+  std::string stream;
+  std::optional<ImuNoise> noise;
+  double gyroscope_random_walk = 0.0;      // rad/s^2/sqrt(Hz)
+  double accelerometer_random_walk = 0.0;  // m/s^3/sqrt(Hz)
+  double rate_hz = 0.0;
+};
+
 // What a result needs besides the numbers to be read by itself. Lists run parallel to those of the state.
 struct ResultNames {
   std::string reference;
   std::vector<std::string> cameras, imus;
   std::vector<std::optional<CameraIntrinsics>> intrinsics;  // as used
   std::string version;
-  std::vector<OptionRow> options;  // that differ from their defaults
+  std::vector<OptionRow> options;           // that differ from their defaults
+  std::vector<std::string> camera_streams;  // empty: not known
+  std::vector<KnownOfImu> known_of_imus;
 };
 
 struct NamedResult {

@@ -16,7 +16,7 @@ namespace {
 
 NamedResult sample() {
   NamedResult named;
-  named.names = {"left_imu", {"left", "1 odd: name"}, {"left_imu", "far_imu"}, {}, "0.1.0", {}};
+  named.names = {"left_imu", {"left", "1 odd: name"}, {"left_imu", "far_imu"}, {}, "0.1.0", {}, {}, {}};
   CameraIntrinsics intrinsics;
   intrinsics.resolution_px = {346, 260};
   intrinsics.focal_length_px = {1.0 / 3.0 + 260.0, 255.0};
@@ -24,6 +24,9 @@ NamedResult sample() {
   intrinsics.distortion = {-0.3, 0.1, 1e-3, 2e-3, 0.05};
   named.names.intrinsics = {intrinsics, std::nullopt};
   named.names.options = {{"grid.least_circles", "6", "7", "4", "1000", "", "", {}}};
+  named.names.camera_streams = {"/left/events", ""};
+  named.names.known_of_imus = {{"/left/imu", ImuNoise{1.0 / 3000.0, 2e-3}, 1e-5, 1e-4, 997.25},
+                               {"/far imu: odd", std::nullopt, 0.0, 0.0, 0.0}};
   CalibrationResult& result = named.result;
   result.status = CalibrationStatus::Doubtful;
   result.reason = "planar motion: \"z\" is a guess\nand more";
@@ -102,7 +105,11 @@ class TestResultYaml : public QObject {
     QCOMPARE(read.names.cameras, written.names.cameras);
     QCOMPARE(read.names.imus, written.names.imus);
     QVERIFY(read.names.intrinsics == written.names.intrinsics);
-    QCOMPARE(read.result.reason, written.result.reason);
+    QVERIFY(read.names.camera_streams == written.names.camera_streams);
+    const std::vector<KnownOfImu>& known = read.names.known_of_imus;
+    QVERIFY(known[0].stream == "/left/imu" && known[1].stream == "/far imu: odd");
+    QVERIFY(known[0].noise->gyroscope_density == 1.0 / 3000.0 && !known[1].noise);
+    QVERIFY(known[0].accelerometer_random_walk == 1e-4 && known[0].rate_hz == 997.25);
     QVERIFY(read.result.status == CalibrationStatus::Doubtful);
     QVERIFY(read.result.start_ns == 1'700'000'000'123'456'789);
     for (std::size_t i = 0; i < 2; ++i) {

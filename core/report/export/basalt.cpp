@@ -1,0 +1,106 @@
+#include "core/report/export/distortion_fit.h"
+#include "core/report/export/export_text.h"
+#include "core/report/export/exporters.h"
+#include "core/report/export/imu_frames.h"
+
+#include <fmt/format.h>
+#include <Eigen/LU>
+
+#include <cmath>
+
+namespace evical {
+namespace {
+
+constexpr const char* kProgram = "Basalt";
+constexpr KnownModels kModels{kProgram, false, false, true};
+
+std::string poseText(const RigidTransform& pose) {
+  const Eigen::Vector3d& p = pose.translation_m;
+  const Eigen::Quaterniond& q = pose.rotation;
+  return fmt::format(R"({{"px": {}, "py": {}, "pz": {}, "qx": {}, "qy": {}, "qz": {}, "qw": {}}})",
+                     real(p.x()), real(p.y()), real(p.z()), real(q.x()), real(q.y()), real(q.z()),
+                     real(q.w()));
+}
+
+std::string cameraText(const Rig& rig, const RigCamera& camera) {
+  const CameraIntrinsics own = cameraFor(rig, camera, kModels);
+  const auto& d = own.distortion;
+  return fmt::format(
+      R"({{"camera_type": "kb4", "intrinsics": {{"fx": {}, "fy": {}, "cx": {}, "cy": {}, "k1": {}, "k2": {}, )"
+      R"("k3": {}, "k4": {}}}}})",
+      real(own.focal_length_px.x()), real(own.focal_length_px.y()), real(own.principal_point_px.x()),
+      real(own.principal_point_px.y()), real(d[0]), real(d[1]), real(d[2]), real(d[3]));
+}
+
+template <class Text>
+std::string perCamera(const Rig& rig, Text&& text_of) {
+  std::string text;
+  for (const RigCamera& camera : rig.cameras)
+    text += fmt::format("{}      {}", text.empty() ? "\n" : ",\n", text_of(camera));
+  return fmt::format("[{}\n    ]", text);
+}
+
+// Basalt corrects raw samples, a = (I + S) a_raw - b, where we describe measuring: I + S = M^-1, b = M^-1
+// bias.
+std::string correctionText(const RigImu& imu, const LowerTriangularImu& lower) {
+  const Eigen::Matrix3d accelerometer = lower.accelerometer.inverse();
+  const Eigen::Matrix3d gyroscope = (lower.gyroscope * lower.gyroscope_rotation).inverse();
+  const Eigen::Vector3d accelerometer_bias = accelerometer * imu.state.accelerometer_bias_m_s2;
+  const Eigen::Vector3d gyroscope_bias = gyroscope * imu.state.gyroscope_bias_rad_s;
+  const Eigen::Matrix3d a = accelerometer - Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d g = gyroscope - Eigen::Matrix3d::Identity();
+  return fmt::format("    \"calib_accel_bias\": [{}, {}],\n    \"calib_gyro_bias\": [{}, {}],\n",
+                     realList(accelerometer_bias),
+                     realList(std::vector<double>{a(0, 0), a(1, 0), a(2, 0), a(1, 1), a(2, 1), a(2, 2)}),
+                     realList(gyroscope_bias), rowMajor(g.transpose()));
+}
+
+std::string noiseText(const Rig& rig, const RigImu& imu) {
+  const StatedNoise noise = statedNoise(rig, imu);
+  const auto line = [](const char* key, double value) {
+    return fmt::format("    \"{}\": [{}],\n", key, realList(std::vector<double>(3, value)));
+  };
+  return fmt::format("    \"imu_update_rate\": {},\n", real(statedRate_hz(rig, imu))) +
+         line("accel_noise_std", noise.accelerometer_density) +
+         line("gyro_noise_std", noise.gyroscope_density) +
+         line("accel_bias_std", noise.accelerometer_random_walk) +
+         line("gyro_bias_std", noise.gyroscope_random_walk);
+}
+
+}  // namespace
+
+ExportedFiles exportBasalt(const NamedResult& result) {
+  ExportedFiles exported;
+  const Rig rig = rigOf(result, exported.notes);
+  const RigImu& imu = neededImu(rig, kProgram);
+  noteLostImus(rig, kProgram);
+  noteLostOffsets(rig, kProgram);
+  const LowerTriangularImu lower = lowerTriangular(imu.state);
+  std::string text = "{\n  \"value0\": {\n    \"T_imu_cam\": ";
+  text += perCamera(rig, [&](const RigCamera& camera) {
+    return poseText(turnOf(lower.other_from_imu) * camera.imu_from_camera);
+  });
+  text += ",\n    \"intrinsics\": " +
+          perCamera(rig, [&](const RigCamera& camera) { return cameraText(rig, camera); });
+  text += ",\n    \"resolution\": " + perCamera(rig, [](const RigCamera& camera) {
+            return fmt::format("[{}, {}]", camera.intrinsics.resolution_px.width_px,
+                               camera.intrinsics.resolution_px.height_px);
+          });
+  text += ",\n" + correctionText(imu, lower) + noiseText(rig, imu);
+  text += fmt::format("    \"cam_time_offset_ns\": {},\n    \"vignette\": []\n  }}\n}}\n",
+                      std::llround(1e9 * rig.cameras[0].time_offset_s));
+  exported.files.push_back({"calibration.json", text});
+  std::vector<std::string> lines{
+      "T_imu_cam takes points of the camera to the IMU; t_imu = t_cam + cam_time_offset_ns.",
+      "corrected force = (I + S) raw - b, with S and b of calib_accel_bias; the same for calib_gyro_bias."};
+  if (hasMapping(imu.state))
+    lines.emplace_back(
+        "The IMU's frame is Basalt's, in which S of the accelerometer is lower triangular: it is turned "
+        "against "
+        "Evical's.");
+  lines.insert(lines.end(), exported.notes.begin(), exported.notes.end());
+  exported.files.push_back({"README.txt", readMe(rig, lines)});
+  return exported;
+}
+
+}  // namespace evical

@@ -1,0 +1,90 @@
+#include "core/report/export/export_target.h"
+
+#include "core/base/error.h"
+#include "core/base/nearest_name.h"
+#include "core/report/export/exporters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <system_error>
+
+namespace evical {
+namespace {
+
+constexpr std::array kTargets{
+    ExportTarget{"kalibr", "Kalibr: camchain-imucam.yaml, camchain.yaml, imu.yaml", exportKalibr},
+    ExportTarget{"openvins", "OpenVINS: kalibr_imucam_chain.yaml, kalibr_imu_chain.yaml", exportOpenVins},
+    ExportTarget{"vins-fusion", "VINS-Fusion, ESVIO: vins.yaml and a camera file each", exportVinsFusion},
+    ExportTarget{"orb-slam3", "ORB-SLAM3: the calibration part of a settings file", exportOrbSlam3},
+    ExportTarget{"basalt", "Basalt: calibration.json", exportBasalt},
+    ExportTarget{"ros", "ROS: camera_info, static transforms (tf2), URDF joints", exportRos},
+    ExportTarget{"svo", "SVO, EVO: camera rig and IMU files", exportSvo},
+    ExportTarget{"ultimate-slam", "Ultimate SLAM: camera rig, imu.yaml, time shift flag", exportUltimateSlam},
+    ExportTarget{"esvo", "ESVO: left.yaml, right.yaml", exportEsvo},
+    ExportTarget{"esvo2", "ESVO2: left.yaml, right.yaml with T_b_c", exportEsvo2},
+    ExportTarget{"dv-processing", "DV, dv-processing: calibration.json", exportDvProcessing},
+    ExportTarget{"metavision", "Metavision up to SDK 4: intrinsics.json", exportMetavision},
+    ExportTarget{"ekalibr", "eKalibr: parameters and camera intrinsics", exportEkalibr},
+};
+
+void checkResult(const NamedResult& result) {
+  if (result.result.status == CalibrationStatus::Failed)
+    throw badInput("result", fmt::format("is of a failed calibration: {}", result.result.reason),
+                   "Calibrate again; there is nothing to export");
+  if (result.names.cameras.empty()) throw badInput("result", "has no camera", "There is nothing to export");
+}
+
+}  // namespace
+
+std::span<const ExportTarget> exportTargets() {
+  return kTargets;
+}
+
+const ExportTarget& exportTarget(std::string_view name, const std::string& place) {
+  for (const ExportTarget& target : kTargets)
+    if (name == target.name) return target;
+  std::vector<std::string> names;
+  for (const ExportTarget& target : kTargets) names.emplace_back(target.name);
+  throw badInput(place, fmt::format("nothing can be exported to '{}'", name), nameAdvice(name, names));
+}
+
+ExportedFiles exportResult(const NamedResult& result, std::span<const std::string> targets) {
+  checkResult(result);
+  ExportedFiles all;
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    if (std::find(targets.begin(), targets.begin() + static_cast<std::ptrdiff_t>(i), targets[i]) !=
+        targets.begin() + static_cast<std::ptrdiff_t>(i))
+      continue;
+    const ExportTarget& target = exportTarget(targets[i], "--to");
+    ExportedFiles one = target.write(result);
+    for (FileContent& file : one.files)
+      all.files.push_back({std::filesystem::path(target.name) / file.path, std::move(file.content)});
+    for (const std::string& note : one.notes) all.notes.push_back(fmt::format("{}: {}", target.name, note));
+  }
+  return all;
+}
+
+void writeExportedFiles(const std::filesystem::path& folder, std::span<const FileContent> files) {
+  std::vector<FileContent> placed;
+  std::vector<std::filesystem::path> made;
+  for (const FileContent& file : files) placed.push_back({folder / file.path, file.content});
+  try {
+    for (const FileContent& file : placed) {
+      const std::filesystem::path parent = file.path.parent_path();
+      for (auto missing = parent; !missing.empty() && !std::filesystem::exists(missing);
+           missing = missing.parent_path())
+        made.push_back(missing);
+      makeOutputFolder(parent);
+    }
+    writeFilesWhole(placed);
+  } catch (const CalibrationError&) {
+    std::error_code ignored;
+    std::sort(made.begin(), made.end());
+    for (auto path = made.rbegin(); path != made.rend(); ++path) std::filesystem::remove(*path, ignored);
+    throw;
+  }
+}
+
+}  // namespace evical

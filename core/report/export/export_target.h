@@ -1,0 +1,41 @@
+// A result in other programs' formats, by name of the program. Each exporter writes a folder of its own and
+// says in its files which transform and which sign of the time offset they hold; what a format has no place
+// for is refitted with a stated error, named in a note, or refused, never dropped. Directions and keys are
+// those of the programs' own sources.
+#pragma once
+
+#include "core/base/atomic_file.h"
+#include "core/report/result_yaml.h"
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace evical {
+
+struct ExportedFiles {
+  std::vector<FileContent> files;  // paths relative to the output folder: "kalibr/imu.yaml"
+  std::vector<std::string> notes;  // what to know before using them
+};
+
+struct ExportTarget {
+  const char* name;
+  const char* description;
+  ExportedFiles (*write)(const NamedResult& result);  // paths relative to the target's folder
+};
+
+std::span<const ExportTarget> exportTargets();
+
+// Throws CalibrationError (BadInput) for a name that nobody knows, with the nearest one; `place` precedes it.
+const ExportTarget& exportTarget(std::string_view name, const std::string& place);
+
+// Files of several targets, each below its name. Throws CalibrationError (BadInput) for the result of a
+// failed calibration and for one that a target cannot hold.
+ExportedFiles exportResult(const NamedResult& result, std::span<const std::string> targets);
+
+// Writes all or none, and the folders that they need.
+void writeExportedFiles(const std::filesystem::path& folder, std::span<const FileContent> files);
+
+}  // namespace evical

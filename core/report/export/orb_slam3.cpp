@@ -1,0 +1,103 @@
+#include "core/base/error.h"
+#include "core/report/export/distortion_fit.h"
+#include "core/report/export/export_text.h"
+#include "core/report/export/exporters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace evical {
+namespace {
+
+constexpr const char* kProgram = "ORB-SLAM3";
+constexpr std::size_t kMostCameras = 2;
+
+std::string cameraText(const CameraIntrinsics& camera, std::size_t number, bool stereo) {
+  const std::string prefix = fmt::format("Camera{}.", number);
+  const auto line = [&](const char* key, double value) {
+    return fmt::format("{}{}: {}\n", prefix, key, real(value));
+  };
+  const auto& d = camera.distortion;
+  std::string text = line("fx", camera.focal_length_px.x()) + line("fy", camera.focal_length_px.y()) +
+                     line("cx", camera.principal_point_px.x()) + line("cy", camera.principal_point_px.y());
+  if (camera.model == CameraModel::PinholeRadtan) {
+    text += line("k1", d[0]) + line("k2", d[1]) + line("p1", d[2]) + line("p2", d[3]);
+    return d[4] == 0.0 ? text : text + line("k3", d[4]);
+  }
+  text += line("k1", d[0]) + line("k2", d[1]) + line("k3", d[2]) + line("k4", d[3]);
+  if (stereo)
+    text += fmt::format("{0}overlappingBegin: 0\n{0}overlappingEnd: {1}\n", prefix,
+                        camera.resolution_px.width_px - 1);
+  return text;
+}
+
+// Both cameras of one kind: the settings have one Camera.type.
+std::vector<CameraIntrinsics> camerasOf(const Rig& rig) {
+  std::vector<CameraIntrinsics> cameras;
+  for (std::size_t i = 0; i < std::min(rig.cameras.size(), kMostCameras); ++i) {
+    const bool radtan = rig.cameras[0].intrinsics.model == CameraModel::PinholeRadtan;
+    cameras.push_back(cameraFor(rig, rig.cameras[i], {kProgram, radtan, true, !radtan}));
+    if (cameras[i].resolution_px != cameras[0].resolution_px)
+      throw badInput(fmt::format("result: cameras.{}", rig.cameras[i].name),
+                     "has another resolution than the first camera, and ORB-SLAM3 takes one for both",
+                     "Leave out orb-slam3");
+  }
+  return cameras;
+}
+
+std::string imuText(const Rig& rig, const RigImu& imu) {
+  const StatedNoise noise = statedNoise(rig, imu);
+  return opencvMatrix("IMU.T_b_c1", matrixOf(rig.cameras[0].imu_from_camera), 'f') +
+         fmt::format(
+             "IMU.InsertKFsWhenLost: 0\nIMU.NoiseGyro: {}\nIMU.NoiseAcc: {}\nIMU.GyroWalk: {}\nIMU.AccWalk: "
+             "{}\n"
+             "IMU.Frequency: {}\n",
+             real(noise.gyroscope_density), real(noise.accelerometer_density),
+             real(noise.gyroscope_random_walk), real(noise.accelerometer_random_walk),
+             real(statedRate_hz(rig, imu)));
+}
+
+std::string offsetLine(const Rig& rig) {
+  std::string text = "No time offset has a place here: add to the stamps of the images";
+  for (const RigCamera& camera : rig.cameras)
+    text += fmt::format(" {} s ({})", real(camera.time_offset_s), camera.file_name);
+  return text + " so that t_imu = t_cam + that.";
+}
+
+}  // namespace
+
+ExportedFiles exportOrbSlam3(const NamedResult& result) {
+  ExportedFiles exported;
+  const Rig rig = rigOf(result, exported.notes);
+  noteLostCameras(rig, kMostCameras, kProgram);
+  const std::vector<CameraIntrinsics> cameras = camerasOf(rig);
+  const bool stereo = cameras.size() > 1;
+  std::string text =
+      "%YAML:1.0\n---\n" +
+      headerComment(rig, {"The calibration's part of ORB-SLAM3 settings (ORBextractor, Viewer and "
+                          "Camera.fps are yours).",
+                          "IMU.T_b_c1 takes points of camera 1 to the IMU, Stereo.T_c1_c2 points of "
+                          "camera 2 to camera 1.",
+                          offsetLine(rig)}) +
+      fmt::format("File.version: \"1.0\"\nCamera.type: \"{}\"\n",
+                  cameras[0].model == CameraModel::PinholeRadtan ? "PinHole" : "KannalaBrandt8");
+  for (std::size_t i = 0; i < cameras.size(); ++i) text += cameraText(cameras[i], i + 1, stereo);
+  text += fmt::format("Camera.width: {}\nCamera.height: {}\n", cameras[0].resolution_px.width_px,
+                      cameras[0].resolution_px.height_px);
+  if (stereo)
+    text +=
+        "Stereo.ThDepth: 40.0\n" +
+        opencvMatrix("Stereo.T_c1_c2",
+                     matrixOf(inverse(rig.cameras[0].imu_from_camera) * rig.cameras[1].imu_from_camera), 'f');
+  if (!rig.imus.empty()) {
+    noteLostImus(rig, kProgram);
+    noteLostMapping(rig, rig.imus[0], kProgram);
+    exported.notes.push_back(offsetLine(rig));
+    text += imuText(rig, rig.imus[0]);
+  }
+  exported.files.push_back({"settings.yaml", text});
+  return exported;
+}
+
+}  // namespace evical

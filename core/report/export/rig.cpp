@@ -1,0 +1,170 @@
+#include "core/report/export/rig.h"
+
+#include "core/base/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace evical {
+namespace {
+
+template <class T>
+T at(const std::vector<T>& values, std::size_t i) {
+  return i < values.size() ? values[i] : T{};
+}
+
+// Two names may become one ("a b", "a/b"): then the later one gets a number.
+std::string fileName(const std::string& name, std::set<std::string>& taken) {
+  std::string text;
+  for (const char letter : name) {
+    const bool plain = (letter >= '0' && letter <= '9') || (letter >= 'a' && letter <= 'z') ||
+                       (letter >= 'A' && letter <= 'Z') || letter == '_' || letter == '-' || letter == '.';
+    text += plain ? letter : '_';
+  }
+  if (text.empty() || text.front() == '.') text.insert(0, "sensor");
+  std::string unique = text;
+  for (int number = 2; !taken.insert(unique).second; ++number) unique = fmt::format("{}_{}", text, number);
+  return unique;
+}
+
+RigCamera cameraOf(const NamedResult& result, std::size_t i, std::set<std::string>& taken) {
+  const std::string& name = result.names.cameras[i];
+  const auto intrinsics = at(result.names.intrinsics, i);
+  if (!intrinsics || !intrinsics->resolution_px.known())
+    throw badInput(fmt::format("result: cameras.{}", name),
+                   intrinsics ? "has no resolution_px" : "has no intrinsics",
+                   "Export the result.yaml of `evical calibrate`");
+  const CameraState& state = result.result.state.cameras.at(i);
+  return {name,
+          fileName(name, taken),
+          at(result.names.camera_streams, i),
+          *intrinsics,
+          state.imu_from_camera,
+          state.time_offset_s,
+          at(result.result.cameras, i)};
+}
+
+RigImu imuOf(const NamedResult& result, std::size_t i, std::set<std::string>& taken) {
+  const std::string& name = result.names.imus[i];
+  const KnownOfImu known = at(result.names.known_of_imus, i);
+  return {name, fileName(name, taken), known.stream, known, result.result.state.imus.at(i)};
+}
+
+}  // namespace
+
+Rig rigOf(const NamedResult& result, std::vector<std::string>& notes) {
+  Rig rig;
+  rig.notes = &notes;
+  rig.program = result.names.version.empty() ? "Evical" : "Evical " + result.names.version;
+  rig.status = statusName(result.result.status);
+  if (!result.result.reason.empty()) rig.status += ": " + result.result.reason;
+  rig.gravity_m_s2 = result.result.state.gravity_in_world_m_s2;
+  std::set<std::string> taken;
+  for (std::size_t i = 0; i < result.names.cameras.size(); ++i)
+    rig.cameras.push_back(cameraOf(result, i, taken));
+  for (std::size_t i = 0; i < result.names.imus.size(); ++i) rig.imus.push_back(imuOf(result, i, taken));
+  std::stable_partition(rig.imus.begin(), rig.imus.end(),
+                        [&](const RigImu& imu) { return imu.name == result.names.reference; });
+  return rig;
+}
+
+const RigImu& neededImu(const Rig& rig, const char* program) {
+  if (!rig.imus.empty()) return rig.imus.front();
+  throw badInput("result", fmt::format("has no IMU, and {} asks for one", program),
+                 "Calibrate with an IMU, or export to ros, metavision or kalibr");
+}
+
+Eigen::Matrix4d matrixOf(const RigidTransform& pose) {
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  matrix.topLeftCorner<3, 3>() = pose.rotation.toRotationMatrix();
+  matrix.topRightCorner<3, 1>() = pose.translation_m;
+  return matrix;
+}
+
+StatedNoise statedNoise(const Rig& rig, const RigImu& imu) {
+  if (!imu.known.noise)
+    rig.notes->push_back(fmt::format(
+        "{}: the result does not say the noise densities; Evical's defaults are written, put your own",
+        imu.name));
+  const ImuNoise noise = imu.known.noise.value_or(ImuNoise{});
+  StatedNoise stated{noise.gyroscope_density, noise.accelerometer_density, imu.known.gyroscope_random_walk,
+                     imu.known.accelerometer_random_walk};
+  if (stated.gyroscope_random_walk > 0.0 && stated.accelerometer_random_walk > 0.0) return stated;
+  // Programs refuse 0.
+  rig.notes->push_back(fmt::format(
+      "{}: random walks are not measured: a tenth of the noise densities is written, put your own",
+      imu.name));
+  if (stated.gyroscope_random_walk <= 0.0) stated.gyroscope_random_walk = noise.gyroscope_density / 10.0;
+  if (stated.accelerometer_random_walk <= 0.0)
+    stated.accelerometer_random_walk = noise.accelerometer_density / 10.0;
+  return stated;
+}
+
+double statedRate_hz(const Rig& rig, const RigImu& imu) {
+  if (imu.known.rate_hz > 0.0) return imu.known.rate_hz;
+  constexpr double kUsualRate_hz = 200.0;
+  rig.notes->push_back(fmt::format("{}: the result does not say the rate; {} Hz is written, put your own",
+                                   imu.name, kUsualRate_hz));
+  return kUsualRate_hz;
+}
+
+void noteLostMapping(const Rig& rig, const RigImu& imu, const char* program) {
+  const auto off = [](const Eigen::Matrix3d& m) {
+    return (m - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  };
+  const double largest = std::max(off(imu.state.gyroscope_mapping), off(imu.state.accelerometer_mapping));
+  if (largest == 0.0) return;
+  rig.notes->push_back(
+      fmt::format("{}: {} has no place for scales and misalignment, which are up to {:.2g} % here; correct "
+                  "the samples before "
+                  "({}'s mapping in result.yaml)",
+                  imu.name, program, 100.0 * largest, imu.name));
+}
+
+void noteLostImus(const Rig& rig, const char* program) {
+  if (rig.imus.size() > 1)
+    rig.notes->push_back(fmt::format("{} takes one IMU: only {} is written", program, rig.imus[0].name));
+}
+
+void noteLostOffsets(const Rig& rig, const char* program) {
+  double largest_s = 0.0;
+  for (const RigCamera& camera : rig.cameras)
+    largest_s = std::max(largest_s, std::abs(camera.time_offset_s - rig.cameras[0].time_offset_s));
+  if (largest_s == 0.0) return;
+  rig.notes->push_back(
+      fmt::format("{} takes one time offset for all cameras: that of {} is written, others differ by up to "
+                  "{:.4g} ms; shift "
+                  "their stamps before",
+                  program, rig.cameras[0].name, 1e3 * largest_s));
+}
+
+void noteLostCameras(const Rig& rig, std::size_t most, const char* program) {
+  if (rig.cameras.size() <= most) return;
+  std::string left_out;
+  for (std::size_t i = most; i < rig.cameras.size(); ++i)
+    left_out += (left_out.empty() ? "" : ", ") + rig.cameras[i].name;
+  rig.notes->push_back(fmt::format("{} takes {} cameras: {} is left out", program, most, left_out));
+}
+
+std::string headerComment(const Rig& rig, const std::vector<std::string>& lines) {
+  std::string text;
+  std::string line = "# ";
+  for (const char letter : readMe(rig, lines)) {
+    text += line.empty() ? "" : line;
+    line = letter == '\n' ? "# " : "";
+    text += letter;
+  }
+  return text;
+}
+
+std::string readMe(const Rig& rig, const std::vector<std::string>& lines) {
+  std::string text = fmt::format("Written by {}. Calibration: {}\n", rig.program, rig.status);
+  std::replace(text.begin(), text.end() - 1, '\n', ' ');
+  for (const std::string& line : lines) text += line + "\n";
+  return text;
+}
+
+}  // namespace evical

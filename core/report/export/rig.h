@@ -1,0 +1,67 @@
+// A result as exporters want it: every sensor with all that is known of it, the reference IMU first.
+#pragma once
+
+#include "core/geometry/camera_model.h"
+#include "core/geometry/rigid_transform.h"
+#include "core/report/result_yaml.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace evical {
+
+struct RigCamera {
+  std::string name, file_name;  // file_name: the name with nothing but letters, digits and -_.
+  std::string stream;
+  CameraIntrinsics intrinsics;
+  RigidTransform imu_from_camera;
+  double time_offset_s = 0.0;  // imu_time = camera_time + time_offset_s
+  CameraFit fit;
+};
+
+struct RigImu {
+  std::string name, file_name, stream;
+  KnownOfImu known;
+  ImuState state;
+};
+
+// Numbers that programs ask for whether or not somebody has given them.
+struct StatedNoise {
+  double gyroscope_density, accelerometer_density, gyroscope_random_walk, accelerometer_random_walk;
+};
+
+struct Rig {
+  std::string program;              // "Evical 0.1.0"
+  std::string status;               // "ok", or "doubtful: why"
+  std::vector<RigCamera> cameras;   // at least one
+  std::vector<RigImu> imus;         // the reference first; none in a calibration of cameras only
+  Eigen::Vector3d gravity_m_s2;     // in the board's frame
+  std::vector<std::string>* notes;  // where what a target cannot hold is said
+};
+
+// Throws CalibrationError (BadInput) where a camera has no intrinsics or resolution.
+Rig rigOf(const NamedResult& result, std::vector<std::string>& notes);
+
+// The reference IMU; throws CalibrationError (BadInput) where there is none.
+const RigImu& neededImu(const Rig& rig, const char* program);
+
+Eigen::Matrix4d matrixOf(const RigidTransform& pose);
+
+// What the noise model of the reference IMU is, with a note for each number that nobody has given.
+StatedNoise statedNoise(const Rig& rig, const RigImu& imu);
+double statedRate_hz(const Rig& rig, const RigImu& imu);
+
+// Notes on what a program has no place for: an IMU's scales and misalignment, further IMUs, time offsets that
+// differ from camera to camera, cameras beyond the first few.
+void noteLostMapping(const Rig& rig, const RigImu& imu, const char* program);
+void noteLostImus(const Rig& rig, const char* program);
+void noteLostOffsets(const Rig& rig, const char* program);
+void noteLostCameras(const Rig& rig, std::size_t most, const char* program);
+
+// As YAML comments: who wrote this, how sure it is, and the lines given.
+std::string headerComment(const Rig& rig, const std::vector<std::string>& lines);
+// The same as text of a file beside a format without comments.
+std::string readMe(const Rig& rig, const std::vector<std::string>& lines);
+
+}  // namespace evical

@@ -1,0 +1,144 @@
+#include "core/base/yaml_node.h"
+#include "core/report/export/distortion_fit.h"
+#include "core/report/export/export_text.h"
+#include "core/report/export/exporters.h"
+#include "core/report/export/ros_camera.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace evical {
+
+std::string cameraInfoBody(const std::string& name, const CameraIntrinsics& camera, int radtan_coefficients) {
+  const bool radtan = camera.model == CameraModel::PinholeRadtan;
+  return fmt::format(
+      "image_width: {}\nimage_height: {}\ncamera_name: {}\ncamera_matrix:\n{}distortion_model: {}\n"
+      "distortion_coefficients:\n  rows: 1\n  cols: {}\n  data: [{}]\n",
+      camera.resolution_px.width_px, camera.resolution_px.height_px, yamlText(name),
+      dataMatrix(cameraMatrix(camera), 2), radtan ? "plumb_bob" : "equidistant",
+      radtan ? radtan_coefficients : 4, realList(distortionOf(camera, radtan ? radtan_coefficients : 4)));
+}
+
+Eigen::Matrix3d cameraMatrix(const CameraIntrinsics& camera) {
+  Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
+  k.diagonal().head<2>() = camera.focal_length_px;
+  k.topRightCorner<2, 1>() = camera.principal_point_px;
+  return k;
+}
+
+namespace {
+
+// A placed sensor: `child` in the frame `parent`.
+struct Joint {
+  std::string parent, child;
+  RigidTransform parent_from_child;
+};
+
+std::vector<Joint> jointsOf(const Rig& rig) {
+  const auto optical = [](const RigCamera& camera) { return camera.file_name + "_optical_frame"; };
+  const bool inertial = !rig.imus.empty();
+  const std::string base = inertial ? rig.imus[0].file_name : optical(rig.cameras[0]);
+  std::vector<Joint> joints;
+  for (const RigCamera& camera : rig.cameras)
+    if (optical(camera) != base) {
+      const RigidTransform base_from_camera =
+          inertial ? camera.imu_from_camera
+                   : inverse(rig.cameras[0].imu_from_camera) * camera.imu_from_camera;
+      joints.push_back({base, optical(camera), base_from_camera});
+    }
+  for (std::size_t i = 1; i < rig.imus.size(); ++i)
+    joints.push_back({base, rig.imus[i].file_name, rig.imus[i].state.reference_from_imu});
+  return joints;
+}
+
+// R = Rz(yaw) Ry(pitch) Rx(roll), URDF's fixed axes. Upright (pitch +-90 degrees) roll and yaw turn the same
+// axis: roll is 0 then.
+Eigen::Vector3d rollPitchYaw(const Eigen::Matrix3d& r) {
+  const double cosine = std::hypot(r(0, 0), r(1, 0));
+  const double pitch = std::atan2(-r(2, 0), cosine);
+  if (cosine < 1e-12) return {0.0, pitch, std::atan2(-r(0, 1), r(1, 1))};
+  return {std::atan2(r(2, 1), r(2, 2)), pitch, std::atan2(r(1, 0), r(0, 0))};
+}
+
+std::string offsetsComment(const Rig& rig) {
+  std::string text = "Time offsets have no place in ROS messages; t_reference = t_sensor + offset:";
+  for (const RigCamera& camera : rig.cameras)
+    text += fmt::format(" {} {} s", camera.file_name, real(camera.time_offset_s));
+  for (std::size_t i = 1; i < rig.imus.size(); ++i)
+    text += fmt::format(" {} {} s", rig.imus[i].file_name, real(rig.imus[i].state.time_offset_s));
+  return text;
+}
+
+std::string tf2Script(const Rig& rig, const std::vector<Joint>& joints) {
+  std::string text =
+      "#!/bin/sh\n" + headerComment(rig, {"The pose of the child in the frame: takes points of the "
+                                          "child to the frame. z of optical frames is forward.",
+                                          offsetsComment(rig)});
+  for (const Joint& joint : joints) {
+    const Eigen::Vector3d& p = joint.parent_from_child.translation_m;
+    const Eigen::Quaterniond& q = joint.parent_from_child.rotation;
+    text += fmt::format(
+        "ros2 run tf2_ros static_transform_publisher --x {} --y {} --z {} --qx {} --qy {} --qz {} --qw {} "
+        "--frame-id {} --child-frame-id {} &\n",
+        real(p.x()), real(p.y()), real(p.z()), real(q.x()), real(q.y()), real(q.z()), real(q.w()),
+        joint.parent, joint.child);
+  }
+  return text + "wait\n";
+}
+
+// Comments of XML may not hold two hyphens.
+std::string xmlComment(const std::string& text) {
+  std::string comment = "<!-- ";
+  for (const char letter : text) {
+    if (letter == '-' && comment.back() == '-') comment += ' ';
+    comment += letter;
+  }
+  return comment.append("-->\n");
+}
+
+std::string urdf(const Rig& rig, const std::vector<Joint>& joints) {
+  std::string text = xmlComment(readMe(
+      rig,
+      {"The origin of a joint takes points of the child to the parent. Paste into a robot's description.",
+       offsetsComment(rig)}));
+  for (const Joint& joint : joints) {
+    const Eigen::Vector3d rpy = rollPitchYaw(joint.parent_from_child.rotation.toRotationMatrix());
+    const Eigen::Vector3d& p = joint.parent_from_child.translation_m;
+    text += fmt::format(
+        "<link name=\"{0}\"/>\n<joint name=\"{1}_to_{0}\" type=\"fixed\">\n  <parent link=\"{1}\"/>\n  "
+        "<child "
+        "link=\"{0}\"/>\n  <origin xyz=\"{2} {3} {4}\" rpy=\"{5} {6} {7}\"/>\n</joint>\n",
+        joint.child, joint.parent, real(p.x()), real(p.y()), real(p.z()), real(rpy.x()), real(rpy.y()),
+        real(rpy.z()));
+  }
+  return text;
+}
+
+std::string cameraInfo(const Rig& rig, const RigCamera& camera) {
+  Eigen::Matrix<double, 3, 4> projection = Eigen::Matrix<double, 3, 4>::Zero();
+  projection.leftCols<3>() = cameraMatrix(camera.intrinsics);
+  return headerComment(rig, {"ROS camera_info of one camera. Where it sits and its time offset: see "
+                             "static_transforms.sh."}) +
+         cameraInfoBody(camera.file_name, camera.intrinsics, 5) + "rectification_matrix:\n" +
+         dataMatrix(Eigen::Matrix3d::Identity(), 2) + "projection_matrix:\n" + dataMatrix(projection, 2);
+}
+
+}  // namespace
+
+ExportedFiles exportRos(const NamedResult& result) {
+  ExportedFiles exported;
+  const Rig rig = rigOf(result, exported.notes);
+  for (const RigCamera& camera : rig.cameras)
+    exported.files.push_back({camera.file_name + ".yaml", cameraInfo(rig, camera)});
+  const std::vector<Joint> joints = jointsOf(rig);
+  if (joints.empty()) return exported;
+  exported.files.push_back({"static_transforms.sh", tf2Script(rig, joints)});
+  exported.files.push_back({"rig.urdf", urdf(rig, joints)});
+  for (const RigImu& imu : rig.imus) noteLostMapping(rig, imu, "ROS");
+  exported.notes.push_back(offsetsComment(rig));
+  return exported;
+}
+
+}  // namespace evical

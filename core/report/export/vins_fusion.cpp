@@ -1,0 +1,82 @@
+#include "core/base/yaml_node.h"
+#include "core/report/export/distortion_fit.h"
+#include "core/report/export/export_text.h"
+#include "core/report/export/exporters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace evical {
+namespace {
+
+constexpr const char* kProgram = "VINS-Fusion";
+constexpr KnownModels kModels{kProgram, true, false, true};
+constexpr std::size_t kMostCameras = 2;
+
+// camodocal's camera file. Its Kannala-Brandt k2..k5 are k1..k4 elsewhere.
+std::string cameraFile(const Rig& rig, const RigCamera& camera) {
+  const CameraIntrinsics own = cameraFor(rig, camera, kModels);
+  const bool radtan = own.model == CameraModel::PinholeRadtan;
+  const std::vector<double> d = distortionOf(own, 4);
+  const std::string f[] = {real(own.focal_length_px.x()), real(own.focal_length_px.y()),
+                           real(own.principal_point_px.x()), real(own.principal_point_px.y())};
+  std::string text = "%YAML:1.0\n---\n" + headerComment(rig, {"Camera of VINS-Fusion (camodocal)."}) +
+                     fmt::format("model_type: {}\ncamera_name: {}\nimage_width: {}\nimage_height: {}\n",
+                                 radtan ? "PINHOLE" : "KANNALA_BRANDT", camera.file_name,
+                                 own.resolution_px.width_px, own.resolution_px.height_px);
+  if (!radtan)
+    return text + fmt::format(
+                      "projection_parameters:\n   k2: {}\n   k3: {}\n   k4: {}\n   k5: {}\n   mu: {}\n   mv: "
+                      "{}\n   u0: {}\n   v0: {}\n",
+                      real(d[0]), real(d[1]), real(d[2]), real(d[3]), f[0], f[1], f[2], f[3]);
+  return text + fmt::format(
+                    "distortion_parameters:\n   k1: {}\n   k2: {}\n   p1: {}\n   p2: {}\n"
+                    "projection_parameters:\n   fx: {}\n   fy: {}\n   cx: {}\n   cy: {}\n",
+                    real(d[0]), real(d[1]), real(d[2]), real(d[3]), f[0], f[1], f[2], f[3]);
+}
+
+std::string configuration(const Rig& rig, const RigImu& imu) {
+  const std::size_t count = std::min(rig.cameras.size(), kMostCameras);
+  const StatedNoise noise = statedNoise(rig, imu);
+  std::string text =
+      "%YAML:1.0\n---\n" +
+      headerComment(rig,
+                    {"The calibration's part of a VINS-Fusion configuration. body_T_camN takes points of the "
+                     "camera to the IMU; t_imu = t_cam + td.",
+                     "Noise is continuous (Kalibr's units); many set it ten times larger."}) +
+      fmt::format("imu: 1\nnum_of_cam: {}\nimu_topic: {}\n", count, yamlText(imu.stream));
+  for (std::size_t i = 0; i < count; ++i)
+    text += fmt::format("image{}_topic: {}\n", i, yamlText(rig.cameras[i].stream));
+  for (std::size_t i = 0; i < count; ++i)
+    text += fmt::format("cam{}_calib: \"{}.yaml\"\n", i, rig.cameras[i].file_name);
+  const Resolution& size = rig.cameras[0].intrinsics.resolution_px;
+  text += fmt::format("image_width: {}\nimage_height: {}\nestimate_extrinsic: 0\n", size.width_px,
+                      size.height_px);
+  for (std::size_t i = 0; i < count; ++i)
+    text +=
+        opencvMatrix(fmt::format("body_T_cam{}", i).c_str(), matrixOf(rig.cameras[i].imu_from_camera), 'd');
+  return text +
+         fmt::format("acc_n: {}\ngyr_n: {}\nacc_w: {}\ngyr_w: {}\ng_norm: {}\nestimate_td: 0\ntd: {}\n",
+                     real(noise.accelerometer_density), real(noise.gyroscope_density),
+                     real(noise.accelerometer_random_walk), real(noise.gyroscope_random_walk),
+                     real(rig.gravity_m_s2.norm()), real(rig.cameras[0].time_offset_s));
+}
+
+}  // namespace
+
+ExportedFiles exportVinsFusion(const NamedResult& result) {
+  ExportedFiles exported;
+  const Rig rig = rigOf(result, exported.notes);
+  const RigImu& imu = neededImu(rig, kProgram);
+  noteLostImus(rig, kProgram);
+  noteLostCameras(rig, kMostCameras, kProgram);
+  noteLostOffsets(rig, kProgram);
+  noteLostMapping(rig, imu, kProgram);
+  exported.files.push_back({"vins.yaml", configuration(rig, imu)});
+  for (std::size_t i = 0; i < std::min(rig.cameras.size(), kMostCameras); ++i)
+    exported.files.push_back({rig.cameras[i].file_name + ".yaml", cameraFile(rig, rig.cameras[i])});
+  return exported;
+}
+
+}  // namespace evical

@@ -1,0 +1,316 @@
+// Files for programs about cameras and frames, read back in each program's own convention.
+#include "core/base/error.h"
+#include "core/report/export/distortion_fit.h"
+#include "tests/core/report/exported_rig.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <QRegularExpression>
+#include <QTemporaryDir>
+#include <QtTest>
+#include <opencv2/core.hpp>
+
+#include <filesystem>
+
+using namespace evical;
+using namespace evical::test;
+
+namespace {
+
+constexpr double kSame_px = 1e-9;
+
+ExportedFiles exportTo(const NamedResult& result, const std::string& target) {
+  return exportResult(result, std::vector<std::string>{target});
+}
+
+std::vector<double> fromMatrix(const std::vector<double>& k) {
+  return {k[0], k[4], k[2], k[5]};
+}
+
+Lens rosLens(const YAML::Node& camera) {
+  const auto k = fromMatrix(numbers(camera["camera_matrix"]["data"]));
+  const auto distortion = numbers(camera["distortion_coefficients"]["data"]);
+  return camera["distortion_model"].as<std::string>() == "plumb_bob" ? radtanLens(k, distortion)
+                                                                     : fisheyeLens(k, distortion);
+}
+
+Eigen::Matrix4d poseOf(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation) {
+  Eigen::Isometry3d full = Eigen::Isometry3d::Identity();
+  full.linear() = rotation.toRotationMatrix();
+  full.translation() = translation;
+  return full.matrix();
+}
+
+}  // namespace
+
+class TestExportCameras : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void ros_reprojects_data() {
+    QTest::addColumn<bool>("fisheye");
+    QTest::newRow("plumb_bob") << false;
+    QTest::newRow("equidistant") << true;
+  }
+  void ros_reprojects() {
+    QFETCH(bool, fisheye);
+    RigKind kind;
+    kind.fisheye = fisheye;
+    kind.third_radial = !fisheye;
+    const NamedResult result = rig(kind);
+    const ExportedFiles exported = exportTo(result, "ros");
+    const Lens lens = rosLens(yamlOf(exported, "ros/left.yaml"));
+    const double offset_s = result.result.state.cameras[0].time_offset_s;  // said in a comment
+    const QString script = QString::fromStdString(contentOf(exported, "ros/static_transforms.sh"));
+    QVERIFY(script.contains("left 0.007301 s"));
+    const auto tf = QRegularExpression(
+                        "--x (\\S+) --y (\\S+) --z (\\S+) --qx (\\S+) --qy (\\S+) --qz (\\S+) --qw (\\S+) "
+                        "--frame-id left_imu --child-frame-id left_optical_frame")
+                        .match(script);
+    QVERIFY(tf.hasMatch());
+    const auto number = [](const QRegularExpressionMatch& match, int i) {
+      return match.captured(i).toDouble();
+    };
+    const Eigen::Matrix4d by_tf = poseOf({number(tf, 7), number(tf, 4), number(tf, 5), number(tf, 6)},
+                                         {number(tf, 1), number(tf, 2), number(tf, 3)});
+    QVERIFY(worstDifference_px(result, 0, {by_tf.inverse(), offset_s, lens}) < kSame_px);
+    const auto joint =
+        QRegularExpression(
+            "left_optical_frame\"/>\\s*<origin xyz=\"(\\S+) (\\S+) (\\S+)\" rpy=\"(\\S+) (\\S+) (\\S+)\"")
+            .match(QString::fromStdString(contentOf(exported, "ros/rig.urdf")));
+    QVERIFY(joint.hasMatch());
+    using Axis = Eigen::AngleAxisd;
+    const Eigen::Quaterniond rotation = Axis(number(joint, 6), Eigen::Vector3d::UnitZ()) *
+                                        Axis(number(joint, 5), Eigen::Vector3d::UnitY()) *
+                                        Axis(number(joint, 4), Eigen::Vector3d::UnitX());
+    const Eigen::Matrix4d by_urdf = poseOf(rotation, {number(joint, 1), number(joint, 2), number(joint, 3)});
+    QVERIFY(worstDifference_px(result, 0, {by_urdf.inverse(), offset_s, lens}) < kSame_px);
+    QVERIFY(script.contains("--child-frame-id far_imu"));
+    QVERIFY(contentOf(exported, "ros/rig.urdf").find("right -0.0021 s") != std::string::npos);
+  }
+
+  // Roll and yaw are one rotation there.
+  void urdf_ofAnUprightCamera_isRightToo() {
+    NamedResult result = rig({});
+    const Eigen::Quaterniond upright =
+        Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) *
+        Eigen::AngleAxisd(0.5 * 3.14159265358979323846, Eigen::Vector3d::UnitY());
+    result.result.state.cameras[0].imu_from_camera.rotation = upright;
+    const auto joint =
+        QRegularExpression(
+            "left_optical_frame\"/>\\s*<origin xyz=\"\\S+ \\S+ \\S+\" rpy=\"(\\S+) (\\S+) (\\S+)\"")
+            .match(QString::fromStdString(contentOf(exportTo(result, "ros"), "ros/rig.urdf")));
+    const Eigen::Quaterniond read =
+        Eigen::AngleAxisd(joint.captured(3).toDouble(), Eigen::Vector3d::UnitZ()) *
+        Eigen::AngleAxisd(joint.captured(2).toDouble(), Eigen::Vector3d::UnitY()) *
+        Eigen::AngleAxisd(joint.captured(1).toDouble(), Eigen::Vector3d::UnitX());
+    QVERIFY(read.angularDistance(upright) < 1e-9);
+  }
+
+  void esvo_reprojects_data() { ros_reprojects_data(); }
+  void esvo_reprojects() {
+    QFETCH(bool, fisheye);
+    RigKind kind;
+    kind.fisheye = fisheye;
+    const NamedResult result = rig(kind);
+    const ExportedFiles exported = exportTo(result, "esvo2");
+    const YAML::Node left = yamlOf(exported, "esvo2/left.yaml"), right = yamlOf(exported, "esvo2/right.yaml");
+    const Eigen::Matrix4d imu_from_left = pose(dataMatrix(left["T_b_c"]));
+    const Eigen::Matrix4d right_from_left = pose(dataMatrix(right["T_right_left"]));
+    const auto& cameras = result.result.state.cameras;
+    QVERIFY(worstDifference_px(
+                result, 0, {imu_from_left.inverse(), cameras[0].time_offset_s, rosLens(left)}) < kSame_px);
+    QVERIFY(worstDifference_px(result, 1,
+                               {right_from_left * imu_from_left.inverse(), cameras[1].time_offset_s,
+                                rosLens(right)}) < kSame_px);
+    // A point's rectified pixels lie in one row, and their distance in x is f B / z.
+    const Eigen::Vector3d in_left(0.2, -0.3, 1.5),
+        in_right = (right_from_left * in_left.homogeneous()).head<3>();
+    const Eigen::Vector3d level_left = dataMatrix(left["rectification_matrix"]) * in_left;
+    const Eigen::Vector3d level_right = dataMatrix(right["rectification_matrix"]) * in_right;
+    const Eigen::Vector2d a =
+        (dataMatrix(left["projection_matrix"]) * level_left.homogeneous()).hnormalized();
+    const Eigen::Vector2d b =
+        (dataMatrix(right["projection_matrix"]) * level_left.homogeneous()).hnormalized();
+    const Eigen::Matrix<double, 3, 4> p = dataMatrix(right["projection_matrix"]);
+    const Eigen::Vector2d direct = (p.leftCols<3>() * level_right).hnormalized();
+    QVERIFY((b - direct).norm() < kSame_px);
+    QVERIFY(std::abs(a.y() - b.y()) < kSame_px);
+    QVERIFY(a.x() - b.x() > 5.0);
+    QVERIFY(!yamlOf(exportTo(result, "esvo"), "esvo/left.yaml")["T_b_c"]);
+  }
+
+  void esvo_findsTheLeftCamera() {
+    const NamedResult result = rig({});
+    NamedResult swapped = result;
+    std::swap(swapped.names.cameras[0], swapped.names.cameras[1]);
+    std::swap(swapped.names.intrinsics[0], swapped.names.intrinsics[1]);
+    std::swap(swapped.result.state.cameras[0], swapped.result.state.cameras[1]);
+    QVERIFY(contentOf(exportTo(result, "esvo"), "esvo/left.yaml") ==
+            contentOf(exportTo(swapped, "esvo"), "esvo/left.yaml"));
+    RigKind one;
+    one.cameras = 1;
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, exportTo(rig(one), "esvo"));
+  }
+
+  void dvProcessing_reprojects() {
+    RigKind kind;
+    kind.third_radial = true;
+    const NamedResult result = rig(kind);
+    const ExportedFiles exported = exportTo(result, "dv-processing");
+    const std::string text = contentOf(exported, "dv-processing/calibration.json");
+    const YAML::Node root = YAML::Load(text), imu = root["imus"]["S0"];
+    // Scalars are strings, as boost::property_tree writes them.
+    QVERIFY(text.find("\"timeOffsetMicros\": \"7301\"") != std::string::npos);
+    const Eigen::Matrix4d first_from_imu = matrix(numbers(imu["transformationToC0"]), 4, 4);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const YAML::Node camera = root["cameras"][numbered("C", static_cast<Eigen::Index>(i))];
+      const auto f = numbers(camera["focalLength"]), c = numbers(camera["principalPoint"]);
+      const Eigen::Matrix4d this_from_first = matrix(numbers(camera["transformationToC0"]), 4, 4);
+      const double offset_s = i == 0 ? 1e-6 * imu["timeOffsetMicros"].as<double>() : -0.0021;  // one for all
+      QVERIFY(worstDifference_px(result, i,
+                                 {this_from_first * first_from_imu, offset_s,
+                                  radtanLens({f[0], f[1], c[0], c[1]},
+                                             numbers(camera["distortionCoefficients"]))}) < kSame_px);
+    }
+    QCOMPARE(numbers(imu["omegaOffsetAvg"])[1], -0.02);
+    const Eigen::Matrix3d fundamental = matrix(numbers(root["stereo"]["C0_C1"]["fundamentalMatrix"]), 3, 3);
+    const Eigen::Vector3d in_first(0.1, 0.2, 1.2);
+    const Eigen::Matrix4d second_from_first =
+        matrix(numbers(root["cameras"]["C1"]["transformationToC0"]), 4, 4);
+    const auto undistorted = [&](std::size_t i, const Eigen::Vector3d& p) {
+      const CameraIntrinsics& own = *result.names.intrinsics[i];
+      return Eigen::Vector3d((own.focal_length_px.array() * p.hnormalized().array()).matrix().homogeneous() +
+                             Eigen::Vector3d(own.principal_point_px.x(), own.principal_point_px.y(), 0.0));
+    };
+    const Eigen::Vector3d in_second = (second_from_first * in_first.homogeneous()).head<3>();
+    QVERIFY(std::abs(undistorted(1, in_second).dot(fundamental * undistorted(0, in_first))) < 1e-12);
+  }
+
+  void metavision_hasTheIntrinsics() {
+    RigKind kind;
+    kind.third_radial = true;
+    kind.cameras = 1;
+    const NamedResult result = rig(kind);
+    const ExportedFiles exported = exportTo(result, "metavision");
+    const cv::FileStorage file(
+        contentOf(exported, "metavision/intrinsics.json"),
+        cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_JSON);
+    cv::Mat k, distortion;
+    file["camera_matrix"] >> k;
+    file["distortion_coefficients"] >> distortion;
+    const Lens lens =
+        radtanLens({k.at<double>(0, 0), k.at<double>(1, 1), k.at<double>(0, 2), k.at<double>(1, 2)},
+                   std::vector<double>(distortion.begin<double>(), distortion.end<double>()));
+    const CameraState& camera = result.result.state.cameras[0];
+    const Eigen::Matrix4d imu_from_camera =
+        poseOf(camera.imu_from_camera.rotation, camera.imu_from_camera.translation_m);
+    QVERIFY(worstDifference_px(result, 0, {imu_from_camera.inverse(), camera.time_offset_s, lens}) <
+            kSame_px);
+    QCOMPARE(static_cast<int>(file["image_size"][0]), 346);
+    QCOMPARE(static_cast<double>(file["overall_rms_reprojection_error"]), 0.125);
+  }
+
+  // A lens that none of the coefficients comes near is refused, not bent.
+  void metavision_ofAStrongFisheye_isRefused() {
+    RigKind kind;
+    kind.fisheye = true;
+    NamedResult result = rig(kind);
+    result.names.intrinsics[0]->focal_length_px = {110.0, 110.0};
+    try {
+      exportTo(result, "metavision");
+      QFAIL("taken");
+    } catch (const CalibrationError& error) {
+      QVERIFY2(error.problem().find("equidistant distortion") != std::string::npos, error.what());
+    }
+  }
+
+  void ekalibr_reprojects_data() { ros_reprojects_data(); }
+  void ekalibr_reprojects() {
+    QFETCH(bool, fisheye);
+    RigKind kind;
+    kind.fisheye = fisheye;
+    kind.third_radial = !fisheye;
+    const NamedResult result = rig(kind);
+    const ExportedFiles exported = exportTo(result, "ekalibr");
+    const YAML::Node root = yamlOf(exported, "ekalibr/ekalibr_param.yaml")["CalibParam"];
+    const auto rotation = [](const YAML::Node& q) {
+      return Eigen::Quaterniond(q["qw"].as<double>(), q["qx"].as<double>(), q["qy"].as<double>(),
+                                q["qz"].as<double>());
+    };
+    const auto vector = [](const YAML::Node& map) {
+      Eigen::VectorXd values(static_cast<Eigen::Index>(map.size()));
+      for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = map[numbered("r", i, "c0")].as<double>();
+      return values;
+    };
+    for (std::size_t i = 0; i < 2; ++i) {
+      const YAML::Node place = root["EXTRI"]["SO3_CjToBr"][i];
+      QCOMPARE(place["key"].as<std::string>(), result.names.camera_streams[i]);
+      const YAML::Node camera = root["INTRI"]["Camera"][i]["value"], data = camera["ptr_wrapper"]["data"];
+      const auto f = numbers(data["focal_length"]), c = numbers(data["principal_point"]),
+                 d = numbers(data["disto_param"]);
+      const std::vector<double> k{f[0], f[1], c[0], c[1]};
+      const Lens lens = fisheye ? fisheyeLens(k, d) : radtanLens(k, {d[0], d[1], d[3], d[4], d[2]});
+      const Eigen::Matrix4d imu_from_camera =
+          poseOf(rotation(place["value"]), vector(root["EXTRI"]["POS_CjInBr"][i]["value"]));
+      QVERIFY(worstDifference_px(result, i,
+                                 {imu_from_camera.inverse(),
+                                  root["TEMPORAL"]["TO_CjToBr"][i]["value"].as<double>(), lens}) < kSame_px);
+    }
+    // A type's name stands at its first appearance only, and pointers count on.
+    const YAML::Node cameras = root["INTRI"]["Camera"];
+    QCOMPARE(cameras[0]["value"]["polymorphic_id"].as<unsigned>(), 2147483649U);
+    QCOMPARE(cameras[0]["value"]["polymorphic_name"].as<std::string>(),
+             std::string(fisheye ? "pinhole_fisheye" : "pinhole_brown_t2"));
+    QCOMPARE(cameras[1]["value"]["polymorphic_id"].as<unsigned>(), 1U);
+    QCOMPARE(cameras[1]["value"]["ptr_wrapper"]["id"].as<unsigned>(), 2147483652U);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const ImuState& state = result.result.state.imus[i];
+      const YAML::Node data = root["INTRI"]["IMU"][i]["value"]["ptr_wrapper"]["data"];
+      const auto mapping = [&](const char* sensor) {
+        const Eigen::VectorXd m = vector(data[sensor]["MAP_COEFF"]);
+        return (Eigen::Matrix3d() << m[0], m[3], m[4], 0.0, m[1], m[5], 0.0, 0.0, m[2]).finished();
+      };
+      QVERIFY((mapping("ACCE") - state.accelerometer_mapping).norm() < 1e-15);
+      QVERIFY(
+          (mapping("GYRO") * rotation(data["SO3_AtoG"]).toRotationMatrix() - state.gyroscope_mapping).norm() <
+          1e-12);
+      QVERIFY((vector(data["GYRO"]["BIAS"]) - state.gyroscope_bias_rad_s).norm() < 1e-15);
+      const Eigen::Vector3d position = vector(root["EXTRI"]["POS_BiInBr"][i]["value"]);
+      QVERIFY((position - state.reference_from_imu.translation_m).norm() < 1e-15);
+      QCOMPARE(root["TEMPORAL"]["TO_BiToBr"][i]["value"].as<double>(), state.time_offset_s);
+    }
+    QVERIFY(yamlOf(exported, "ekalibr/intrinsics-left.yaml")["Intrinsics"]["ptr_wrapper"]["data"]["img_width"]
+                .as<int>() == 346);
+  }
+
+  // Every target writes what its sources' comments promise, for every kind of rig that it takes.
+  void everyTarget_statesWhoWroteIt() {
+    const NamedResult result = rig({});
+    for (const ExportTarget& target : exportTargets()) {
+      const ExportedFiles exported = exportTo(result, target.name);
+      QVERIFY(!exported.files.empty());
+      bool said = false;
+      for (const FileContent& file : exported.files) {
+        QVERIFY2(*file.path.begin() == target.name, target.name);
+        said = said || file.content.find("Written by Evical 0.1.0. Calibration: ok") != std::string::npos;
+      }
+      QVERIFY2(said, target.name);
+    }
+  }
+
+  void files_areWrittenAllOrNone() {
+    QTemporaryDir scratch;
+    const std::filesystem::path folder = scratch.path().toStdString();
+    writeExportedFiles(folder / "new", exportTo(rig({}), "kalibr").files);
+    QVERIFY(std::filesystem::exists(folder / "new/kalibr/camchain-imucam.yaml"));
+    // A folder that cannot be made: a file is in its place.
+    const std::vector<FileContent> files{{"a/one.txt", "1"}, {"two.txt/b", "2"}};
+    writeFileWhole(folder / "two.txt", "in the way");
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, writeExportedFiles(folder, files));
+    QVERIFY(!std::filesystem::exists(folder / "a"));
+  }
+};
+
+QTEST_GUILESS_MAIN(TestExportCameras)
+#include "tst_export_cameras.moc"

@@ -1,0 +1,399 @@
+// Files for visual-inertial programs, read back in each program's own convention: a world point must land on
+// the same pixel, and the IMU must measure the same.
+#include "core/base/error.h"
+#include "core/report/export/distortion_fit.h"
+#include "tests/core/report/exported_rig.h"
+
+#include <Eigen/LU>
+#include <QtTest>
+#include <opencv2/core.hpp>
+
+using namespace evical;
+using namespace evical::test;
+
+namespace {
+
+constexpr double kSame_px = 1e-9;
+constexpr double kSame = 1e-12;  // of measured rad/s and m/s^2
+
+ExportedFiles exportTo(const NamedResult& result, const std::string& target) {
+  return exportResult(result, std::vector<std::string>{target});
+}
+
+Lens kalibrLens(const YAML::Node& camera) {
+  const auto intrinsics = numbers(camera["intrinsics"]), distortion = numbers(camera["distortion_coeffs"]);
+  return camera["distortion_model"].as<std::string>() == "radtan" ? radtanLens(intrinsics, distortion)
+                                                                  : fisheyeLens(intrinsics, distortion);
+}
+
+// What our IMU measures for a force and a rate in our IMU's frame.
+struct Measured {
+  Eigen::Vector3d force, rate;
+};
+Measured ours(const ImuState& imu, const Eigen::Vector3d& force, const Eigen::Vector3d& rate) {
+  return {imu.accelerometer_mapping * force + imu.accelerometer_bias_m_s2,
+          imu.gyroscope_mapping * rate + imu.gyroscope_bias_rad_s};
+}
+
+// The largest difference on random inputs.
+double worstMeasured(const ImuState& imu,
+                     const std::function<Measured(const Eigen::Vector3d&, const Eigen::Vector3d&)>& theirs) {
+  std::srand(7);
+  double worst = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d force = 10.0 * Eigen::Vector3d::Random(), rate = 5.0 * Eigen::Vector3d::Random();
+    const Measured a = ours(imu, force, rate), b = theirs(force, rate);
+    worst = std::max({worst, (a.force - b.force).norm(), (a.rate - b.rate).norm()});
+  }
+  return worst;
+}
+
+bool isRotation(const Eigen::Matrix3d& r) {
+  return (r * r.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-12 && r.determinant() > 0.0;
+}
+
+}  // namespace
+
+class TestExportInertial : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void kalibr_reprojects_data() {
+    QTest::addColumn<bool>("fisheye");
+    QTest::addColumn<bool>("mapped");
+    QTest::newRow("radtan") << false << false;
+    QTest::newRow("radtan, scales") << false << true;
+    QTest::newRow("equidistant, scales") << true << true;
+  }
+  void kalibr_reprojects() {
+    QFETCH(bool, fisheye);
+    QFETCH(bool, mapped);
+    RigKind kind;
+    kind.fisheye = fisheye;
+    kind.mapped = mapped;
+    const NamedResult result = rig(kind);
+    const ExportedFiles exported = exportTo(result, "kalibr");
+    const YAML::Node chain = yamlOf(exported, "kalibr/camchain-imucam.yaml"),
+                     imus = yamlOf(exported, "kalibr/imu.yaml");
+    std::vector<Eigen::Matrix3d> turns;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const YAML::Node imu = imus[numbered("imu", static_cast<Eigen::Index>(i))];
+      QCOMPARE(imu["model"].as<std::string>(), std::string(mapped ? "scale-misalignment" : "calibrated"));
+      const ImuState& state = result.result.state.imus[i];
+      turns.emplace_back(Eigen::Matrix3d::Identity());
+      if (!mapped) continue;
+      const Eigen::Matrix3d lower = rowsMatrix(imu["accelerometers"]["M"]),
+                            gyro = rowsMatrix(imu["gyroscopes"]["M"]),
+                            gyro_from_imu = rowsMatrix(imu["gyroscopes"]["C_gyro_i"]);
+      QVERIFY(Eigen::Matrix3d(lower.triangularView<Eigen::StrictlyUpper>()).norm() < 1e-15);
+      QVERIFY(Eigen::Matrix3d(gyro.triangularView<Eigen::StrictlyUpper>()).norm() < 1e-15);
+      turns[i] = lower.inverse() * state.accelerometer_mapping;  // Kalibr's IMU frame from ours
+      QVERIFY(isRotation(turns[i]) && isRotation(gyro_from_imu));
+      QVERIFY(worstMeasured(state, [&](const Eigen::Vector3d& force, const Eigen::Vector3d& rate) {
+                return Measured{lower * (turns[i] * force) + state.accelerometer_bias_m_s2,
+                                gyro * gyro_from_imu * (turns[i] * rate) + state.gyroscope_bias_rad_s};
+              }) < kSame);
+    }
+    for (std::size_t i = 0; i < 2; ++i) {
+      const YAML::Node camera = chain[numbered("cam", static_cast<Eigen::Index>(i))];
+      const ReadCamera read{rowsMatrix(camera["T_cam_imu"]), camera["timeshift_cam_imu"].as<double>(),
+                            kalibrLens(camera), turns[0]};
+      QVERIFY(worstDifference_px(result, i, read) < kSame_px);
+    }
+    const Eigen::Matrix4d step = rowsMatrix(chain["cam1"]["T_cn_cnm1"]);
+    const Eigen::Matrix4d direct = rowsMatrix(chain["cam1"]["T_cam_imu"]) *
+                                   Eigen::Matrix4d(rowsMatrix(chain["cam0"]["T_cam_imu"])).inverse();
+    QVERIFY((step - direct).norm() < 1e-12);
+    QVERIFY((step - rowsMatrix(yamlOf(exported, "kalibr/camchain.yaml")["cam1"]["T_cn_cnm1"])).norm() <
+            1e-15);
+    // T_i_b takes points of the reference (in Kalibr's frames) to this IMU.
+    const ImuState& far = result.result.state.imus[1];
+    const Eigen::Vector3d in_far(0.3, -0.2, 0.5), in_reference = far.reference_from_imu * in_far;
+    const Eigen::Vector4d read = Eigen::Matrix4d(rowsMatrix(imus["imu1"]["T_i_b"])) *
+                                 Eigen::Vector3d(turns[0] * in_reference).homogeneous();
+    QVERIFY((read.head<3>() - turns[1] * in_far).norm() < 1e-12);
+    QCOMPARE(imus["imu1"]["time_offset"].as<double>(), far.time_offset_s);
+    QCOMPARE(imus["imu0"]["update_rate"].as<double>(), 997.5);
+    QCOMPARE(imus["imu0"]["accelerometer_random_walk"].as<double>(), 3e-4);
+    QCOMPARE(imus["imu0"]["gyroscope_noise_density"].as<double>(), 1.5e-4);
+    QVERIFY(exported.notes.empty());
+  }
+
+  // PyYAML takes 1e-05 for a string, OpenCV and ORB-SLAM3 take 0 for an integer.
+  void numbers_haveDecimalPoints() {
+    NamedResult result = rig({});
+    result.result.state.cameras[0].time_offset_s = 1e-5;
+    const ExportedFiles exported = exportTo(result, "kalibr");
+    QVERIFY(contentOf(exported, "kalibr/camchain-imucam.yaml").find("timeshift_cam_imu: 1.0e-05\n") !=
+            std::string::npos);
+  }
+
+  void kalibr_thirdRadialCoefficient_isRefittedAndSaid() {
+    RigKind kind;
+    kind.third_radial = true;
+    const NamedResult result = rig(kind);
+    const ExportedFiles exported = exportTo(result, "kalibr");
+    const FittedCamera fitted = fitDistortion(*result.names.intrinsics[0], CameraModel::PinholeRadtan, 4);
+    QVERIFY(fitted.worst_px > 1e-6 && fitted.worst_px < 2.0);
+    const YAML::Node imu = yamlOf(exported, "kalibr/imu.yaml")["imu0"],
+                     camera = yamlOf(exported, "kalibr/camchain-imucam.yaml")["cam0"];
+    QCOMPARE(camera["distortion_coeffs"].size(), 4U);
+    const Eigen::Matrix3d turn =
+        rowsMatrix(imu["accelerometers"]["M"]).inverse() * result.result.state.imus[0].accelerometer_mapping;
+    const double worst_px =
+        worstDifference_px(result, 0,
+                           {rowsMatrix(camera["T_cam_imu"]), camera["timeshift_cam_imu"].as<double>(),
+                            kalibrLens(camera), turn});
+    QVERIFY(worst_px <= fitted.worst_px + kSame_px);
+    QCOMPARE(exported.notes.size(), 2U);  // one a camera
+    QVERIFY(QString::fromStdString(exported.notes[0])
+                .contains("left: Kalibr has no place for radial-tangential distortion with k3"));
+  }
+
+  void openVins_reprojects() {
+    const NamedResult result = rig({});
+    const ExportedFiles exported = exportTo(result, "openvins");
+    const std::string chain_text = contentOf(exported, "openvins/kalibr_imucam_chain.yaml");
+    QVERIFY(cv::FileStorage(chain_text, cv::FileStorage::READ | cv::FileStorage::MEMORY).isOpened());
+    const YAML::Node chain = yamlOf(exported, "openvins/kalibr_imucam_chain.yaml"),
+                     imu = yamlOf(exported, "openvins/kalibr_imu_chain.yaml")["imu0"];
+    for (std::size_t i = 0; i < 2; ++i) {
+      const YAML::Node camera = chain[numbered("cam", static_cast<Eigen::Index>(i))];
+      QVERIFY(worstDifference_px(result, i,
+                                 {rowsMatrix(camera["T_cam_imu"]), camera["timeshift_cam_imu"].as<double>(),
+                                  kalibrLens(camera)}) < kSame_px);
+    }
+    QCOMPARE(imu["model"].as<std::string>(), std::string("rpng"));
+    const ImuState& state = result.result.state.imus[0];
+    const Eigen::Matrix3d tw = rowsMatrix(imu["Tw"]), ta = rowsMatrix(imu["Ta"]),
+                          to_gyro = rowsMatrix(imu["R_IMUtoGYRO"]), to_acc = rowsMatrix(imu["R_IMUtoACC"]);
+    // rpng uses the upper triangles of the inverses only.
+    const Eigen::Matrix3d dw = Eigen::Matrix3d(tw.inverse()).triangularView<Eigen::Upper>(),
+                          da = Eigen::Matrix3d(ta.inverse()).triangularView<Eigen::Upper>();
+    QVERIFY(worstMeasured(state, [&](const Eigen::Vector3d& force, const Eigen::Vector3d& rate) {
+              return Measured{da.inverse() * to_acc * force + state.accelerometer_bias_m_s2,
+                              dw.inverse() * to_gyro * rate + state.gyroscope_bias_rad_s};
+            }) < kSame);
+    const QString notes = QString::fromStdString(exported.notes[0] + exported.notes[1]);
+    QVERIFY(notes.contains("only left imu is written") && notes.contains("differ by up to 9.401 ms"));
+  }
+
+  void vinsFusion_reprojects_data() {
+    QTest::addColumn<bool>("fisheye");
+    QTest::newRow("PINHOLE") << false;
+    QTest::newRow("KANNALA_BRANDT") << true;
+  }
+  void vinsFusion_reprojects() {
+    QFETCH(bool, fisheye);
+    RigKind kind;
+    kind.fisheye = fisheye;
+    const NamedResult result = rig(kind);
+    const ExportedFiles exported = exportTo(result, "vins-fusion");
+    const cv::FileStorage vins(contentOf(exported, "vins-fusion/vins.yaml"),
+                               cv::FileStorage::READ | cv::FileStorage::MEMORY);
+    cv::Mat body_from_camera;
+    vins["body_T_cam0"] >> body_from_camera;
+    Eigen::Matrix4d imu_from_camera;
+    for (int row = 0; row < 4; ++row)
+      for (int col = 0; col < 4; ++col) imu_from_camera(row, col) = body_from_camera.at<double>(row, col);
+    const cv::FileStorage camera(contentOf(exported, "vins-fusion/left.yaml"),
+                                 cv::FileStorage::READ | cv::FileStorage::MEMORY);
+    const auto read = [](const cv::FileNode& node, const std::vector<const char*>& keys) {
+      std::vector<double> values;
+      for (const char* key : keys) values.push_back(static_cast<double>(node[key]));
+      return values;
+    };
+    const cv::FileNode k = camera["projection_parameters"];
+    const Lens lens = fisheye
+                          ? fisheyeLens(read(k, {"mu", "mv", "u0", "v0"}), read(k, {"k2", "k3", "k4", "k5"}))
+                          : radtanLens(read(k, {"fx", "fy", "cx", "cy"}),
+                                       read(camera["distortion_parameters"], {"k1", "k2", "p1", "p2"}));
+    QCOMPARE(static_cast<std::string>(camera["model_type"]),
+             std::string(fisheye ? "KANNALA_BRANDT" : "PINHOLE"));
+    QVERIFY(worstDifference_px(
+                result, 0, {imu_from_camera.inverse(), static_cast<double>(vins["td"]), lens}) < kSame_px);
+    QCOMPARE(static_cast<double>(vins["acc_n"]), 1.75e-3);
+    QVERIFY(QString::fromStdString(exported.notes.back())
+                .contains("no place for scales and misalignment, which are up to 1.1 %"));
+  }
+
+  void orbSlam3_reprojects_data() { vinsFusion_reprojects_data(); }
+  void orbSlam3_reprojects() {
+    QFETCH(bool, fisheye);
+    RigKind kind;
+    kind.fisheye = fisheye;
+    kind.third_radial = !fisheye;  // it has a place for k3
+    const NamedResult result = rig(kind);
+    const ExportedFiles exported = exportTo(result, "orb-slam3");
+    // ORB-SLAM3 itself rounds the matrices to float (dt: f): the text has more digits.
+    const YAML::Node settings = yamlOf(exported, "orb-slam3/settings.yaml");
+    const auto camera = [&](int number, const std::vector<const char*>& keys) {
+      std::vector<double> values;
+      for (const char* key : keys)
+        values.push_back(settings[numbered("Camera", number, ".").append(key)].as<double>());
+      return values;
+    };
+    const auto lens = [&](int number) {
+      const auto k = camera(number, {"fx", "fy", "cx", "cy"});
+      return fisheye ? fisheyeLens(k, camera(number, {"k1", "k2", "k3", "k4"}))
+                     : radtanLens(k, camera(number, {"k1", "k2", "p1", "p2", "k3"}));
+    };
+    const Eigen::Matrix4d imu_from_first = dataMatrix(settings["IMU.T_b_c1"]);
+    const Eigen::Matrix4d first_from_second = dataMatrix(settings["Stereo.T_c1_c2"]);
+    const auto& cameras = result.result.state.cameras;
+    // The stamps are to be shifted by what the comment and the note say.
+    QVERIFY(QString::fromStdString(exported.notes.back()).contains("0.007301 s (left) -0.0021 s (right)"));
+    QVERIFY(worstDifference_px(result, 0, {imu_from_first.inverse(), cameras[0].time_offset_s, lens(1)}) <
+            kSame_px);
+    QVERIFY(worstDifference_px(result, 1,
+                               {(imu_from_first * first_from_second).inverse(), cameras[1].time_offset_s,
+                                lens(2)}) < kSame_px);
+    QCOMPARE(settings["IMU.Frequency"].as<double>(), 997.5);
+    cv::FileStorage opened(contentOf(exported, "orb-slam3/settings.yaml"),
+                           cv::FileStorage::READ | cv::FileStorage::MEMORY);
+    QVERIFY(opened["Camera1.fx"].isReal() && opened["IMU.GyroWalk"].isReal());
+  }
+
+  void basalt_reprojects() {
+    RigKind kind;
+    kind.fisheye = true;
+    const NamedResult result = rig(kind);
+    const ExportedFiles exported = exportTo(result, "basalt");
+    const YAML::Node value = yamlOf(exported, "basalt/calibration.json")["value0"];
+    const auto accelerometer = numbers(value["calib_accel_bias"]),
+               gyroscope = numbers(value["calib_gyro_bias"]);
+    QCOMPARE(accelerometer.size(), 9U);
+    QCOMPARE(gyroscope.size(), 12U);
+    Eigen::Matrix3d a = Eigen::Matrix3d::Identity(), g = Eigen::Matrix3d::Identity();
+    a.col(0) += Eigen::Vector3d(accelerometer[3], accelerometer[4], accelerometer[5]);
+    a(1, 1) += accelerometer[6];
+    a(2, 1) += accelerometer[7];
+    a(2, 2) += accelerometer[8];
+    for (int i = 0; i < 9; ++i) g(i % 3, i / 3) += gyroscope[static_cast<std::size_t>(3 + i)];
+    const Eigen::Vector3d a_bias(accelerometer.data()), g_bias(gyroscope.data());
+    const ImuState& state = result.result.state.imus[0];
+    const Eigen::Matrix3d turn = a * state.accelerometer_mapping;  // Basalt's IMU frame from ours
+    QVERIFY(isRotation(turn));
+    QVERIFY(worstMeasured(state, [&](const Eigen::Vector3d& force, const Eigen::Vector3d& rate) {
+              return Measured{a.inverse() * (turn * force + a_bias), g.inverse() * (turn * rate + g_bias)};
+            }) < kSame);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const YAML::Node p = value["T_imu_cam"][i], lens = value["intrinsics"][i]["intrinsics"];
+      QCOMPARE(value["intrinsics"][i]["camera_type"].as<std::string>(), std::string("kb4"));
+      const auto number = [](const YAML::Node& node, const char* key) { return node[key].as<double>(); };
+      Eigen::Isometry3d imu_from_camera = Eigen::Isometry3d::Identity();
+      imu_from_camera.linear() =
+          Eigen::Quaterniond(number(p, "qw"), number(p, "qx"), number(p, "qy"), number(p, "qz"))
+              .toRotationMatrix();
+      imu_from_camera.translation() << number(p, "px"), number(p, "py"), number(p, "pz");
+      const double offset_s =
+          i == 0 ? 1e-9 * value["cam_time_offset_ns"].as<double>() : -0.0021;  // one for all
+      QVERIFY(
+          worstDifference_px(
+              result, i,
+              {imu_from_camera.inverse().matrix(), offset_s,
+               fisheyeLens({number(lens, "fx"), number(lens, "fy"), number(lens, "cx"), number(lens, "cy")},
+                           {number(lens, "k1"), number(lens, "k2"), number(lens, "k3"), number(lens, "k4")}),
+               turn}) < kSame_px);
+    }
+  }
+
+  // kb4 is no radtan: refitted to within what is stated.
+  void basalt_ofRadtan_isRefitted() {
+    RigKind kind;
+    kind.mapped = false;
+    const NamedResult result = rig(kind);
+    const FittedCamera fitted =
+        fitDistortion(*result.names.intrinsics[0], CameraModel::PinholeEquidistant, 4);
+    const ExportedFiles exported = exportTo(result, "basalt");
+    const YAML::Node lens =
+        yamlOf(exported, "basalt/calibration.json")["value0"]["intrinsics"][0]["intrinsics"];
+    const auto number = [&](const char* key) { return lens[key].as<double>(); };
+    const CameraState& camera = result.result.state.cameras[0];
+    Eigen::Isometry3d imu_from_camera = Eigen::Isometry3d::Identity();
+    imu_from_camera.linear() = camera.imu_from_camera.rotation.toRotationMatrix();
+    imu_from_camera.translation() = camera.imu_from_camera.translation_m;
+    const double worst_px =
+        worstDifference_px(result, 0,
+                           {imu_from_camera.inverse().matrix(), camera.time_offset_s,
+                            fisheyeLens({number("fx"), number("fy"), number("cx"), number("cy")},
+                                        {number("k1"), number("k2"), number("k3"), number("k4")})});
+    QVERIFY(fitted.worst_px < 2.0);
+    QVERIFY(worst_px <= fitted.worst_px + kSame_px);
+    const QString readme = QString::fromStdString(contentOf(exported, "basalt/README.txt"));
+    QVERIFY(readme.contains("left: Basalt has no place for radial-tangential distortion: refitted"));
+  }
+
+  void svoAndUltimateSlam_reproject() {
+    const NamedResult result = rig({});
+    for (const std::string target : {"svo", "ultimate-slam"}) {
+      const ExportedFiles exported = exportTo(result, target);
+      const YAML::Node calib = yamlOf(exported, target + "/calib.yaml");
+      double offset_s = 0.0;
+      if (target == "svo") {
+        offset_s = -yamlOf(exported, "svo/imu.yaml")["imu_params"]["delay_imu_cam"].as<double>();
+      } else {
+        const std::string flags = contentOf(exported, "ultimate-slam/timeshift.flags"),
+                          flag = "--timeshift_cam_imu=";
+        offset_s = std::stod(flags.substr(flags.rfind(flag) + flag.size()));
+        QCOMPARE(yamlOf(exported, "ultimate-slam/imu.yaml")["update_rate"].as<double>(), 997.5);
+      }
+      const YAML::Node entry = calib["cameras"][0], camera = entry["camera"];
+      QCOMPARE(camera["distortion"]["type"].as<std::string>(), std::string("radial-tangential"));
+      const Eigen::Matrix4d imu_from_camera = dataMatrix(entry["T_B_C"]);
+      QVERIFY(worstDifference_px(result, 0,
+                                 {imu_from_camera.inverse(), offset_s,
+                                  radtanLens(numbers(camera["intrinsics"]["data"]),
+                                             numbers(camera["distortion"]["parameters"]["data"]))}) <
+              kSame_px);
+    }
+  }
+
+  void withoutNoise_notesSaySo() {
+    NamedResult result = rig({});
+    result.names.known_of_imus.clear();
+    const QString notes = QString::fromStdString(exportTo(result, "ultimate-slam").notes.back());
+    QVERIFY(notes.contains("rate"));
+  }
+
+  void camerasOnly_isRefusedWhereAnImuIsNeeded_data() {
+    QTest::addColumn<QString>("target");
+    for (const char* target : {"openvins", "vins-fusion", "basalt", "svo", "ultimate-slam", "esvo2"})
+      QTest::newRow(target) << target;
+  }
+  void camerasOnly_isRefusedWhereAnImuIsNeeded() {
+    QFETCH(QString, target);
+    RigKind kind;
+    kind.inertial = false;
+    try {
+      exportTo(rig(kind), target.toStdString());
+      QFAIL("taken");
+    } catch (const CalibrationError& error) {
+      QVERIFY(error.kind() == ErrorKind::BadInput);
+      QVERIFY2(error.problem().find("has no IMU") != std::string::npos, error.what());
+    }
+    QCOMPARE(exportTo(rig(kind), "kalibr").files.size(), 1U);  // camchain.yaml
+  }
+
+  void badRequests_areRefused() {
+    NamedResult failed = rig({});
+    failed.result.status = CalibrationStatus::Failed;
+    failed.result.reason = "the board was never seen";
+    const auto reason = [](const NamedResult& result, const std::string& target) {
+      try {
+        exportTo(result, target);
+        return std::string("taken");
+      } catch (const CalibrationError& error) {
+        return std::string(error.what());
+      }
+    };
+    QVERIFY(reason(failed, "kalibr").find("the board was never seen") != std::string::npos);
+    QVERIFY(reason(rig({}), "opnvins").find("Did you mean 'openvins'?") != std::string::npos);
+    NamedResult bare = rig({});
+    bare.names.intrinsics[1].reset();
+    QVERIFY(reason(bare, "ros").find("cameras.right") != std::string::npos);
+  }
+};
+
+QTEST_GUILESS_MAIN(TestExportInertial)
+#include "tst_export_inertial.moc"
