@@ -49,11 +49,12 @@ CameraIntrinsics readOwn(const YamlNode& map) {
 CameraIntrinsics readKalibr(const YamlNode& map) {
   map["camera_model"].choice({"pinhole"});
   CameraIntrinsics camera;
-  camera.model = static_cast<CameraModel>(map["distortion_model"].choice({"radtan", "equidistant"}));
+  const std::size_t distortion = map["distortion_model"].choice({"radtan", "equidistant", "none"});
+  camera.model = distortion == 1 ? CameraModel::PinholeEquidistant : CameraModel::PinholeRadtan;
   const std::vector<double> values = map["intrinsics"].reals(4);
   camera.focal_length_px = {values[0], values[1]};
   camera.principal_point_px = {values[2], values[3]};
-  setDistortion(map["distortion_coeffs"], camera);
+  if (distortion != 2) setDistortion(map["distortion_coeffs"], camera);
   if (const auto node = map.find("resolution")) camera.resolution_px = resolution(*node);
   return camera;
 }
@@ -73,6 +74,25 @@ CameraIntrinsics readCameraInfo(const YamlNode& map) {
   const char* prefix = parsers ? "image_" : "";
   camera.resolution_px = {map[fmt::format("{}width", prefix)].integer(1, kMostPixels),
                           map[fmt::format("{}height", prefix)].integer(1, kMostPixels)};
+  return camera;
+}
+
+// eKalibr's: k1 k2 k3 t1 t2, where we and OpenCV have k3 last.
+CameraIntrinsics readEkalibr(const YamlNode& map) {
+  CameraIntrinsics camera;
+  camera.model =
+      static_cast<CameraModel>(map["polymorphic_name"].choice({"pinhole_brown_t2", "pinhole_fisheye"}));
+  const YamlNode data = map["ptr_wrapper"]["data"];
+  camera.resolution_px = {data["img_width"].integer(1, kMostPixels),
+                          data["img_height"].integer(1, kMostPixels)};
+  camera.focal_length_px = pair(data["focal_length"]);
+  camera.principal_point_px = pair(data["principal_point"]);
+  if (camera.model == CameraModel::PinholeEquidistant) {
+    setDistortion(data["disto_param"], camera);
+  } else {
+    const std::vector<double> d = data["disto_param"].reals(5);
+    camera.distortion = {d[0], d[1], d[3], d[4], d[2]};
+  }
   return camera;
 }
 
@@ -106,7 +126,8 @@ const char* cameraModelName(CameraModel model) {
 
 CameraIntrinsics readIntrinsics(const YamlNode& map) {
   if (!map.isMap()) throw map.error("must be a map of intrinsics", "Give model, focal_length_px, ...");
-  const CameraIntrinsics camera = map.has("camera_model")                    ? readKalibr(map)
+  const CameraIntrinsics camera = map.has("polymorphic_name")                ? readEkalibr(map)
+                                  : map.has("camera_model")                  ? readKalibr(map)
                                   : map.has("camera_matrix") || map.has("K") ? readCameraInfo(map)
                                                                              : readOwn(map);
   if (camera.resolution_px.known()) {
@@ -127,6 +148,7 @@ CameraIntrinsics readIntrinsicsFile(const std::filesystem::path& file, const std
   if (root.has("evical_result"))
     return readIntrinsics(pickCamera(root["cameras"], camera_name, stream)["intrinsics"]);
   if (isCamchain(root)) return readIntrinsics(pickCamera(root, camera_name, stream));
+  if (root.has("Intrinsics")) return readIntrinsics(root["Intrinsics"]);
   if (root.has("intrinsics") && root["intrinsics"].isMap()) return readIntrinsics(root["intrinsics"]);
   return readIntrinsics(root);
 }

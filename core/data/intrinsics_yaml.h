@@ -1,4 +1,4 @@
-// Camera intrinsics in YAML: our own map, and what Kalibr and ROS write.
+// Camera intrinsics in YAML: our own map, and what Kalibr, ROS and eKalibr write.
 #pragma once
 
 #include "core/base/yaml_node.h"
