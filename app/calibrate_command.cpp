@@ -13,6 +13,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace evical {
 namespace {
@@ -40,9 +42,12 @@ int run(const SessionArguments& arguments) {
   try {
     calibrateInto(result, session, context);
     const NamedResult named = namedResult(session, result.result, kVersion);
-    writeResultFiles(arguments.output, session, result, kVersion, console.logText());
+    const std::vector<std::string> notes =
+        writeResultFiles(arguments.output, session, result, kVersion, console.logText());
     console.stageStarted("done");
     fmt::print("{}", resultTable(named));
+    if (!arguments.quiet)
+      for (const std::string& note : notes) fmt::print("{}\n", note);
     if (!arguments.quiet) fmt::print("Files are in {}\n", arguments.output);
     return kDone;
   } catch (const CalibrationError& error) {

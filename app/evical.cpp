@@ -30,6 +30,8 @@ void addCommands(CLI::App& app, int& exit_code) {
   addSimulateCommand(app, exit_code);
   addCompareCommand(app, exit_code);
   addBoardCommand(app, exit_code);
+  addExportCommand(app, exit_code);
+  addImportCommand(app, exit_code);
   addOptionsCommand(app, exit_code);
 }
 

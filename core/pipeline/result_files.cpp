@@ -3,16 +3,22 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/report/csv.h"
+#include "core/report/export/export_target.h"
 #include "core/report/html/html_report.h"
 
-#include <system_error>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+#include <span>
 #include <vector>
 
 namespace evical {
 namespace {
 
-void addReport(const std::filesystem::path& folder, const Session& session, const NamedResult& named,
-               const RecordingPass& pass, std::vector<FileContent>& files) {
+void addReport(const Session& session, const NamedResult& named, const RecordingPass& pass,
+               std::vector<FileContent>& files) {
   const OptimisationOptions& options = session.options.optimisation;
   const ReportData data{
       named,
@@ -24,19 +30,24 @@ void addReport(const std::filesystem::path& folder, const Session& session, cons
       pass.resolutions_px,
       pass.faults,
       {options.needed_rotation_deg, options.needed_translation_mm, options.needed_time_offset_ms}};
-  for (ReportFile& file : reportFiles(data)) files.push_back({folder / file.name, std::move(file.content)});
+  for (ReportFile& file : reportFiles(data)) files.push_back({file.name, std::move(file.content)});
 }
 
-// The report's plots have a folder of their own, which goes again if nothing could be written.
-void writeWithPlots(const std::filesystem::path& folder, const std::vector<FileContent>& files) {
-  makeOutputFolder(folder / "plots");
-  try {
-    writeFilesWhole(files);
-  } catch (const CalibrationError&) {
-    std::error_code ignored;
-    std::filesystem::remove(folder / "plots", ignored);  // only if empty
-    throw;
+// What cannot be exported is said, and costs nobody the result.
+ExportedFiles exportsOf(const NamedResult& named, const Session& session) {
+  std::set<std::string> targets(session.exports.begin(), session.exports.end());
+  targets.insert("kalibr");
+  ExportedFiles all;
+  for (const std::string& target : targets) {
+    try {
+      ExportedFiles one = exportResult(named, std::span(&target, 1));
+      std::move(one.files.begin(), one.files.end(), std::back_inserter(all.files));
+      std::move(one.notes.begin(), one.notes.end(), std::back_inserter(all.notes));
+    } catch (const CalibrationError& refusal) {
+      all.notes.push_back(fmt::format("{}: not exported: {}", target, refusal.what()));
+    }
   }
+  return all;
 }
 
 }  // namespace
@@ -48,23 +59,36 @@ NamedResult namedResult(const Session& session, const CalibrationResult& result,
   for (const SessionCamera& camera : session.cameras) {
     named.names.cameras.push_back(camera.name);
     named.names.intrinsics.push_back(camera.intrinsics);
+    named.names.camera_streams.push_back(camera.stream);
   }
-  for (const SessionImu& imu : session.imus) named.names.imus.push_back(imu.name);
+  for (const SessionImu& imu : session.imus) {
+    named.names.imus.push_back(imu.name);
+    named.names.known_of_imus.push_back(
+        {imu.stream, imu.noise, imu.gyroscope_random_walk, imu.accelerometer_random_walk, 0.0});
+  }
   named.names.version = version;
   named.names.options = differingOptions(session.options);
   return named;
 }
 
-void writeResultFiles(const std::filesystem::path& folder, const Session& session, const CalibrationRun& run,
-                      const std::string& version, const std::string& log) {
-  const NamedResult named = namedResult(session, run.result, version);
-  std::vector<FileContent> files = {{folder / "result.yaml", resultYaml(named)},
-                                    {folder / "trajectory.csv", trajectoryCsv(run.result.state)},
-                                    {folder / "detections.csv", detectionsCsv(run.pass.cameras)},
-                                    {folder / "windows.csv", windowsCsv(run.pass.cameras)},
-                                    {folder / "log.txt", log}};
-  addReport(folder, session, named, run.pass, files);
-  writeWithPlots(folder, files);
+std::vector<std::string> writeResultFiles(const std::filesystem::path& folder, const Session& session,
+                                          const CalibrationRun& run, const std::string& version,
+                                          const std::string& log) {
+  NamedResult named = namedResult(session, run.result, version);
+  for (std::size_t i = 0; i < named.names.known_of_imus.size() && i < run.pass.imus.size(); ++i)
+    named.names.known_of_imus[i].rate_hz = run.pass.imus[i].rate_hz();
+  const ExportedFiles exported = exportsOf(named, session);
+  std::string notes;
+  for (const std::string& note : exported.notes) notes += note + "\n";
+  std::vector<FileContent> files = {{"result.yaml", resultYaml(named)},
+                                    {"trajectory.csv", trajectoryCsv(run.result.state)},
+                                    {"detections.csv", detectionsCsv(run.pass.cameras)},
+                                    {"windows.csv", windowsCsv(run.pass.cameras)},
+                                    {"log.txt", log + notes}};
+  addReport(session, named, run.pass, files);
+  files.insert(files.end(), exported.files.begin(), exported.files.end());
+  writeExportedFiles(folder, files);
+  return exported.notes;
 }
 
 void writeDetectionFiles(const std::filesystem::path& folder, const RecordingPass& pass,
@@ -84,9 +108,9 @@ void writeFailure(const std::filesystem::path& folder, const Session& session, c
   failed.timing.read_s = pass.read_s;
   failed.timing.detect_s = pass.detect_s;
   const NamedResult named = namedResult(session, failed, version);
-  std::vector<FileContent> files = {{folder / "result.yaml", resultYaml(named)}, {folder / "log.txt", log}};
-  addReport(folder, session, named, pass, files);
-  writeWithPlots(folder, files);
+  std::vector<FileContent> files = {{"result.yaml", resultYaml(named)}, {"log.txt", log}};
+  addReport(session, named, pass, files);
+  writeExportedFiles(folder, files);
 }
 
 }  // namespace evical

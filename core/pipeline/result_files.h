@@ -6,14 +6,18 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace evical {
 
 NamedResult namedResult(const Session& session, const CalibrationResult& result, const std::string& version);
 
-// report.html with its plots/*.csv, result.yaml, trajectory.csv, detections.csv, windows.csv, log.txt
-void writeResultFiles(const std::filesystem::path& folder, const Session& session, const CalibrationRun& run,
-                      const std::string& version, const std::string& log);
+// report.html with its plots/*.csv, result.yaml, trajectory.csv, detections.csv, windows.csv, log.txt, and a
+// folder a target: kalibr and what the session asks for. Returns what to know of the exported files; it is in
+// log.txt too.
+std::vector<std::string> writeResultFiles(const std::filesystem::path& folder, const Session& session,
+                                          const CalibrationRun& run, const std::string& version,
+                                          const std::string& log);
 
 // detections.csv, windows.csv, log.txt
 void writeDetectionFiles(const std::filesystem::path& folder, const RecordingPass& pass,

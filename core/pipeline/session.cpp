@@ -90,6 +90,10 @@ std::string imuYaml(const SessionImu& imu, const std::filesystem::path& folder) 
   std::string text = sourceYaml(imu, folder);
   text += fmt::format("    accelerometer_noise_density: {}\n    gyroscope_noise_density: {}\n",
                       imu.noise.accelerometer_density, imu.noise.gyroscope_density);
+  if (imu.accelerometer_random_walk > 0.0)
+    text += fmt::format("    accelerometer_random_walk: {}\n", imu.accelerometer_random_walk);
+  if (imu.gyroscope_random_walk > 0.0)
+    text += fmt::format("    gyroscope_random_walk: {}\n", imu.gyroscope_random_walk);
   if (imu.acceleration_unit) {
     text += fmt::format("    acceleration_unit: {}\n",
                         kAccelerationUnits.at(static_cast<std::size_t>(*imu.acceleration_unit)));
@@ -135,6 +139,7 @@ std::string sessionYaml(const Session& session, const std::filesystem::path& fol
   if (!session.imus.empty()) text += "imus:\n";
   for (const SessionImu& imu : session.imus) text += imuYaml(imu, folder);
   text += fmt::format("reference: {}\n", yamlText(session.reference));
+  if (!session.exports.empty()) text += fmt::format("export: [{}]\n", joined(session.exports));
   const std::vector<OptionRow> rows = differingOptions(session.options);
   text += rows.empty() ? "options: {}\n" : "options:\n";
   for (const OptionRow& row : rows) text += fmt::format("  {}: {}\n", row.name, row.value);

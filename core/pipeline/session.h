@@ -28,6 +28,9 @@ struct SessionImu {
   std::optional<AngularRateUnit> angular_rate_unit;
   std::filesystem::path recording;  // its own; empty: the session's
   double clock_offset_s = 0.0;      // known: to be added to the stream's times
+  // Handed on to other programs; 0: not known.
+  double gyroscope_random_walk = 0.0;      // rad/s^2/sqrt(Hz)
+  double accelerometer_random_walk = 0.0;  // m/s^3/sqrt(Hz)
 };
 
 struct Session {
@@ -40,6 +43,7 @@ struct Session {
   std::string reference;  // an IMU; a camera where there is no IMU
   CalibrationOptions
       options;  // the file's prior.time_offset_search_s is initialisation.time_offset_search_s here
+  std::vector<std::string> exports;  // targets besides kalibr, as `evical export --to` names them
 
   std::size_t referenceImu() const;     // index into imus; 0 where there is none
   std::size_t referenceCamera() const;  // index into cameras; 0 where the reference is an IMU

@@ -1,6 +1,7 @@
 #include "core/base/nearest_name.h"
 #include "core/data/intrinsics_yaml.h"
 #include "core/pipeline/session.h"
+#include "core/report/export/export_target.h"
 
 #include <fmt/format.h>
 
@@ -94,10 +95,15 @@ SessionCamera readCamera(const YamlNode& map, const std::string& camera_name,
 
 SessionImu readImu(const YamlNode& map, const std::string& imu_name, const std::filesystem::path& folder) {
   map.allowOnly({"recording", "stream", "clock_offset_s", "accelerometer_noise_density",
-                 "gyroscope_noise_density", "acceleration_unit", "angular_rate_unit"});
+                 "gyroscope_noise_density", "accelerometer_random_walk", "gyroscope_random_walk",
+                 "acceleration_unit", "angular_rate_unit"});
   SessionImu imu = readSource<SessionImu>(map, imu_name, folder);
   imu.noise.accelerometer_density = map["accelerometer_noise_density"].real(1e-7, 10.0, "m/s^2/sqrt(Hz)");
   imu.noise.gyroscope_density = map["gyroscope_noise_density"].real(1e-8, 10.0, "rad/s/sqrt(Hz)");
+  if (const auto node = map.find("accelerometer_random_walk"))
+    imu.accelerometer_random_walk = node->real(0.0, 10.0, "m/s^3/sqrt(Hz)");
+  if (const auto node = map.find("gyroscope_random_walk"))
+    imu.gyroscope_random_walk = node->real(0.0, 10.0, "rad/s^2/sqrt(Hz)");
   if (const auto node = map.find("acceleration_unit"))
     imu.acceleration_unit = static_cast<AccelerationUnit>(node->choice({"m/s^2", "g", "-g"}));
   if (const auto node = map.find("angular_rate_unit"))
@@ -150,7 +156,7 @@ Session readSession(const std::filesystem::path& file) {
     throw root.error("is no session file: the key evical_session is missing",
                      "Make one with `evical simulate` or `evical import`");
   root.allowOnly({"evical_session", "recording", "time_range_s", "board", "cameras", "imus", "reference",
-                  "prior", "options"});
+                  "prior", "options", "export"});
   root["evical_session"].integer(1, 1);
   const std::filesystem::path folder = file.parent_path();
   Session session;
@@ -165,6 +171,9 @@ Session readSession(const std::filesystem::path& file) {
       setFromSession(*search, session.options, "initialisation.time_offset_search_s");
   }
   if (const auto node = root.find("options")) readOptions(*node, session.options);
+  if (const auto node = root.find("export"); node && !node->isNull())
+    for (const YamlNode& item : node->items())
+      session.exports.emplace_back(exportTarget(item.text(), item.place()).name);
   validate(session, file.string());
   return session;
 }

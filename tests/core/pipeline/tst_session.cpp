@@ -130,6 +130,21 @@ class TestSession : public QObject {
     QCOMPARE(sessionYaml(again, folder()), sessionYaml(session, folder()));
   }
 
+  void exportsAndRandomWalks_areKept() {
+    const Session session =
+        sessionWith("reference: left_imu\n", "reference: left_imu\nexport: [openvins, ros]\n");
+    QVERIFY((session.exports == std::vector<std::string>{"openvins", "ros"}));
+    writeSession(session, folder() / "again.yaml");
+    QVERIFY(readSession(folder() / "again.yaml").exports == session.exports);
+    const Session walks = sessionWith("    acceleration_unit: -g\n",
+                                      "    acceleration_unit: -g\n    gyroscope_random_walk: 2e-5\n"
+                                      "    accelerometer_random_walk: 3e-4\n");
+    writeSession(walks, folder() / "again.yaml");
+    const SessionImu again = readSession(folder() / "again.yaml").imus.at(0);
+    QCOMPARE(again.gyroscope_random_walk, 2e-5);
+    QCOMPARE(again.accelerometer_random_walk, 3e-4);
+  }
+
   void sensors_mayHaveTheirOwnRecordings() {
     write("imu.csv", "x");
     const Session session = sessionWith(
@@ -172,6 +187,8 @@ class TestSession : public QObject {
     row("no session", "evical_session: 1", "nothing: 1", {"evical_session"});
     row("newer session", "evical_session: 1", "evical_session: 2", {"evical_session (line 1)", "above"});
     row("unknown key", "time_range_s:", "time_rang_s:", {"time_rang_s (line 3)", "'time_range_s'"});
+    row("unknown export", "reference: left_imu", "reference: left_imu\nexport: [opnvins]",
+        {"export", "'opnvins'", "Did you mean 'openvins'?"});
     row("unknown board key", "radius_m:", "radius:", {"board.radius (line 9)", "'radius_m'"});
     row("key twice", "cols: 4", "rows: 4", {"board.rows (line 7)", "twice"});
     row("missing key", "  rows: 11\n", "", {"board.rows", "missing"});

@@ -1,0 +1,49 @@
+#include "app/commands.h"
+#include "core/base/atomic_file.h"
+#include "core/pipeline/import_session.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace evical {
+namespace {
+
+struct Arguments {
+  ImportRequest request;
+  std::filesystem::path output;
+};
+
+int run(const Arguments& arguments) {
+  const ImportedFiles imported = importFiles(arguments.request, arguments.output);
+  writeFilesWhole(imported.files);
+  for (const FileContent& written : imported.files) fmt::print("{}\n", written.path.string());
+  for (const std::string& note : imported.notes) fmt::print("{}\n", note);
+  return kDone;
+}
+
+}  // namespace
+
+void addImportCommand(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* const command = app.add_subcommand("import", "A session from eKalibr's or Kalibr's files");
+  command
+      ->add_option(
+          "FILES", arguments->request.files,
+          "An eKalibr configuration; or Kalibr's target, imu and camchain files in any order; or files with "
+          "camera intrinsics alone, which become Evical's")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "The session, or the intrinsics")->required();
+  command->add_option("--from", arguments->request.from,
+                      "Take the files for this program's: kalibr, ekalibr, ros");
+  command->add_option("--recording", arguments->request.recording,
+                      "The recording, where the files do not name it");
+  command->add_option("--radius-m", arguments->request.radius_m,
+                      "Of the board's circles, where the files do not say it");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace evical

@@ -1,0 +1,101 @@
+#include "core/data/intrinsics_yaml.h"
+#include "core/pipeline/import_sources.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace evical {
+namespace {
+
+// eKalibr's own boards have it, and it is what prints well.
+constexpr double kUsualRadiusRate = 2.5;  // spacing by radius
+
+void readTarget(const YamlNode& root, const ImportRequest& request, ImportedSession& imported) {
+  const std::string type = root["target_type"].text();
+  if (type != "circlegrid")
+    throw root["target_type"].error(fmt::format("is '{}', and Evical sees circles only", type),
+                                    "Use a circle grid: `evical board` prints one");
+  CircleBoard& board = imported.session.board;
+  const bool asymmetric =
+      root["asymmetricGrid"].choice({"false", "true", "False", "True", "0", "1"}) % 2 == 1;
+  board.type = asymmetric ? BoardType::AsymmetricCircles : BoardType::SymmetricCircles;
+  board.rows = root["targetRows"].integer(2, 100);
+  board.cols = root["targetCols"].integer(2, 100);
+  board.spacing_m = root["spacingMeters"].real(1e-4, 10.0, "m");
+  board.radius_m = request.radius_m.value_or(board.spacing_m / kUsualRadiusRate);
+  if (!request.radius_m)
+    imported.notes.push_back(
+        fmt::format("board: Kalibr's target does not say how large the circles are: {:.4g} mm of radius are "
+                    "assumed; measure, and "
+                    "give --radius-m",
+                    1e3 * board.radius_m));
+}
+
+void readImu(const YamlNode& map, const std::string& key, ImportedSession& imported) {
+  SessionImu imu;
+  imu.stream = map["rostopic"].text();
+  imu.name = key.empty() ? sensorName(imu.stream, true, imported.session) : key;
+  imu.noise.accelerometer_density = map["accelerometer_noise_density"].real(1e-7, 10.0, "m/s^2/sqrt(Hz)");
+  imu.noise.gyroscope_density = map["gyroscope_noise_density"].real(1e-8, 10.0, "rad/s/sqrt(Hz)");
+  if (const auto walk = map.find("accelerometer_random_walk"))
+    imu.accelerometer_random_walk = walk->real(0.0, 10.0, "m/s^3/sqrt(Hz)");
+  if (const auto walk = map.find("gyroscope_random_walk"))
+    imu.gyroscope_random_walk = walk->real(0.0, 10.0, "rad/s^2/sqrt(Hz)");
+  const auto model = map.find("model");
+  if (model && model->text() != "calibrated")
+    imported.notes.push_back(fmt::format(
+        "{}: its model {} is left out: scales and misalignment are estimated anew", imu.name, model->text()));
+  imported.session.imus.push_back(std::move(imu));
+}
+
+void readImus(const YamlNode& root, ImportedSession& imported) {
+  if (!root.has("imu0")) return readImu(root, "", imported);
+  for (const std::string& key : root.keys()) readImu(root[key], key, imported);
+}
+
+void readCameras(const YamlNode& root, ImportedSession& imported) {
+  for (const std::string& key : root.keys()) {
+    const YamlNode map = root[key];
+    SessionCamera camera;
+    camera.name = key;
+    camera.stream = map["rostopic"].text();
+    camera.intrinsics = readIntrinsics(map);
+    camera.resolution_px = camera.intrinsics->resolution_px;
+    if (camera.stream.find("image") != std::string::npos)
+      imported.notes.push_back(fmt::format(
+          "{}: {} looks like images: put the topic of the events in the session", key, camera.stream));
+    imported.session.cameras.push_back(std::move(camera));
+  }
+}
+
+const char* nameOf(ImportKind kind) {
+  if (kind == ImportKind::KalibrTarget) return "target";
+  return kind == ImportKind::KalibrImu ? "imu" : "camchain";
+}
+
+}  // namespace
+
+void importKalibr(const std::vector<ImportSource>& sources, const ImportRequest& request,
+                  ImportedSession& imported) {
+  std::array<bool, 5> seen{};
+  for (const ImportSource& source : sources) {
+    bool& before = seen.at(static_cast<std::size_t>(source.kind));
+    if (before && source.kind != ImportKind::KalibrImu)
+      throw badInput(source.path.string(), fmt::format("is the second {} file", nameOf(source.kind)),
+                     "Give one of each kind");
+    before = true;
+    if (source.kind == ImportKind::KalibrTarget) readTarget(source.root, request, imported);
+    if (source.kind == ImportKind::KalibrImu) readImus(source.root, imported);
+    if (source.kind == ImportKind::KalibrCamchain) readCameras(source.root, imported);
+    if (source.kind == ImportKind::Intrinsics)
+      throw badInput(source.path.string(), "holds intrinsics alone, without the name of a stream",
+                     "Give Kalibr's camchain, or import this file by itself");
+  }
+  if (!seen[static_cast<std::size_t>(ImportKind::KalibrTarget)])
+    throw badInput("board", "none of the files describes it", "Give Kalibr's target file too");
+  if (!seen[static_cast<std::size_t>(ImportKind::KalibrCamchain)])
+    throw badInput("cameras", "none of the files describes one", "Give Kalibr's camchain file too");
+}
+
+}  // namespace evical

@@ -1,0 +1,149 @@
+#include "core/pipeline/import_session.h"
+
+#include "core/base/nearest_name.h"
+#include "core/data/intrinsics_yaml.h"
+#include "core/pipeline/import_sources.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <system_error>
+
+namespace evical {
+namespace {
+
+const char* programOf(ImportKind kind) {
+  if (kind == ImportKind::EkalibrConfiguration) return "ekalibr";
+  return kind == ImportKind::Intrinsics ? "ros" : "kalibr";
+}
+
+void checkFrom(const ImportRequest& request, const std::vector<ImportSource>& sources) {
+  if (request.from.empty()) return;
+  const std::array<std::string, 3> known{"kalibr", "ekalibr", "ros"};
+  if (std::find(known.begin(), known.end(), request.from) == known.end())
+    throw badInput("--from", fmt::format("'{}' is no program whose files can be imported", request.from),
+                   nameAdvice(request.from, known));
+  for (const ImportSource& source : sources) {
+    const bool lens = source.kind == ImportKind::Intrinsics;  // eKalibr's, ROS's or Evical's own
+    if (request.from != programOf(source.kind) && !(lens && request.from == "ekalibr"))
+      throw badInput(source.path.string(), fmt::format("is no file of {}", request.from), "Leave out --from");
+  }
+}
+
+std::vector<ImportSource> readSources(const ImportRequest& request) {
+  std::vector<ImportSource> sources;
+  for (const std::filesystem::path& file : request.files) sources.push_back(recogniseSource(file));
+  checkFrom(request, sources);
+  return sources;
+}
+
+void setRecording(const ImportRequest& request, ImportedSession& imported) {
+  Session& session = imported.session;
+  if (!request.recording.empty()) session.recording = request.recording;
+  if (session.recording.empty())
+    throw badInput("recording", "none of the files names one", "Give it with --recording FILE");
+  std::error_code ignored;
+  if (std::filesystem::exists(session.recording, ignored)) return;
+  if (!request.recording.empty())
+    throw badInput(session.recording.string(), "does not exist", "Check the path after --recording");
+  imported.notes.push_back(
+      fmt::format("recording {} does not exist here: give another one with --recording FILE",
+                  session.recording.string()));
+}
+
+bool intrinsicsAlone(const std::vector<ImportSource>& sources) {
+  return std::all_of(sources.begin(), sources.end(), [](const ImportSource& source) {
+    return source.kind == ImportKind::Intrinsics || source.kind == ImportKind::KalibrCamchain;
+  });
+}
+
+struct NamedIntrinsics {
+  std::string name;
+  CameraIntrinsics intrinsics;
+};
+
+std::vector<NamedIntrinsics> intrinsicsOf(const std::vector<ImportSource>& sources) {
+  std::vector<NamedIntrinsics> cameras;
+  for (const ImportSource& source : sources) {
+    if (source.kind == ImportKind::Intrinsics) {
+      const std::string name = source.path.stem().string();
+      cameras.push_back({name, readIntrinsicsFile(source.path, name, "")});
+    } else {
+      for (const std::string& key : source.root.keys())
+        cameras.push_back({key, readIntrinsics(source.root[key])});
+    }
+  }
+  return cameras;
+}
+
+// What a camchain knows beyond the lens is no prior of a session yet.
+void notePriors(const std::vector<ImportSource>& sources, std::vector<std::string>& notes) {
+  for (const ImportSource& source : sources)
+    if (source.kind == ImportKind::KalibrCamchain)
+      for (const std::string& key : source.root.keys())
+        if (source.root[key].has("T_cam_imu") || source.root[key].has("T_cn_cnm1"))
+          notes.push_back(
+              fmt::format("{}: its pose and time offset are left out: sessions take no priors of them, they "
+                          "are estimated anew",
+                          key));
+}
+
+ImportedFiles importIntrinsics(const std::vector<ImportSource>& sources,
+                               const std::filesystem::path& output) {
+  const std::vector<NamedIntrinsics> cameras = intrinsicsOf(sources);
+  ImportedFiles imported;
+  for (const NamedIntrinsics& camera : cameras) {
+    std::filesystem::path path = output;
+    if (cameras.size() > 1)
+      path.replace_filename(
+          fmt::format("{}-{}{}", output.stem().string(), camera.name, output.extension().string()));
+    for (const FileContent& other : imported.files)
+      if (other.path == path)
+        throw badInput(camera.name, "is the name of two cameras", "Import the files one by one");
+    imported.files.push_back({path, intrinsicsYaml(camera.intrinsics, 0)});
+  }
+  notePriors(sources, imported.notes);
+  return imported;
+}
+
+ImportedSession sessionOf(const std::vector<ImportSource>& sources, const ImportRequest& request) {
+  ImportedSession imported;
+  const auto configuration = std::find_if(sources.begin(), sources.end(), [](const ImportSource& source) {
+    return source.kind == ImportKind::EkalibrConfiguration;
+  });
+  if (configuration != sources.end()) {
+    if (sources.size() > 1)
+      throw badInput(configuration->path.string(),
+                     "is a whole configuration of eKalibr, yet further files are given",
+                     "Import it alone; it names its files of intrinsics itself");
+    importEkalibr(*configuration, request, imported);
+  } else {
+    importKalibr(sources, request, imported);
+    notePriors(sources, imported.notes);
+  }
+  setRecording(request, imported);
+  Session& session = imported.session;
+  if (request.radius_m) session.board.radius_m = *request.radius_m;
+  validate(session.board);
+  if (session.reference.empty())
+    session.reference = session.imus.empty() ? session.cameras.at(0).name : session.imus[0].name;
+  validate(session, "import");
+  return imported;
+}
+
+}  // namespace
+
+ImportedSession importSession(const ImportRequest& request) {
+  return sessionOf(readSources(request), request);
+}
+
+ImportedFiles importFiles(const ImportRequest& request, const std::filesystem::path& output) {
+  const std::vector<ImportSource> sources = readSources(request);
+  if (intrinsicsAlone(sources)) return importIntrinsics(sources, output);
+  const ImportedSession imported = sessionOf(sources, request);
+  const auto folder = output.has_parent_path() ? output.parent_path() : std::filesystem::path(".");
+  return {{{output, sessionYaml(imported.session, folder)}}, imported.notes};
+}
+
+}  // namespace evical

@@ -1,0 +1,242 @@
+#include "core/base/error.h"
+#include "core/data/intrinsics_yaml.h"
+#include "core/pipeline/import_session.h"
+
+#include <QTemporaryDir>
+#include <QtTest>
+
+#include <algorithm>
+#include <fstream>
+
+using namespace evical;
+
+namespace {
+
+const char* const kEkalibr = R"(Configor:
+  DataStream:
+    EventTopics:
+      - key: /davis_left/events
+        value: {Type: DVS_EVENT, Width: 346, Height: 260, Intrinsics: left.yaml}
+      - key: /davis_right/events
+        value: {Type: DVS_EVENT, Width: 346, Height: 260, Intrinsics: ''}
+    IMUTopics:
+      - key: /davis_left/imu
+        value: {Type: SENSOR_IMU_DEG_G_NEG, AcceWhiteNoise: 0.00186, GyroWhiteNoise: 0.000187}
+      - key: /davis_right/imu
+        value: {Type: SENSOR_IMU, AcceWhiteNoise: 0.002, GyroWhiteNoise: 0.0002}
+    RefIMUTopic: /davis_right/imu
+    BagPath: recording.bag
+    BeginTime: 2
+    Duration: 10
+  Prior:
+    CirclePattern: {Type: ASYMMETRIC_GRID, Cols: 4, Rows: 11, SpacingMeters: 0.05, RadiusRate: 2.5}
+    GravityNorm: 9.79
+    TimeOffsetPadding: 0.1
+    SpatTempPrioriPath: ''
+)";
+
+const char* const kEkalibrLens = R"(Intrinsics:
+  polymorphic_id: 2147483649
+  polymorphic_name: pinhole_brown_t2
+  ptr_wrapper:
+    id: 2147483649
+    data:
+      img_width: 346
+      img_height: 260
+      focal_length: [260.5, 261]
+      principal_point: [171, 132]
+      disto_param: [-0.3, 0.1, 0.01, 0.001, 0.002]
+)";
+
+const char* const kTarget =
+    "target_type: circlegrid\ntargetCols: 4\ntargetRows: 11\nspacingMeters: 0.05\n"
+    "asymmetricGrid: True\n";
+const char* const kImu =
+    "rostopic: /davis/imu\nupdate_rate: 1000.0\naccelerometer_noise_density: 0.002\n"
+    "accelerometer_random_walk: 0.0004\ngyroscope_noise_density: 0.0003\n"
+    "gyroscope_random_walk: 2.0e-05\n";
+const char* const kCamchain = R"(cam0:
+  T_cam_imu: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+  camera_model: pinhole
+  intrinsics: [260, 261, 171, 132]
+  distortion_model: equidistant
+  distortion_coeffs: [0.1, 0.01, 0, 0]
+  resolution: [346, 260]
+  rostopic: /davis/image_raw
+  timeshift_cam_imu: 0.002
+)";
+
+bool has(const std::vector<std::string>& notes, const char* text) {
+  return std::any_of(notes.begin(), notes.end(),
+                     [&](const std::string& note) { return note.find(text) != std::string::npos; });
+}
+
+}  // namespace
+
+class TestImportSession : public QObject {
+  Q_OBJECT
+
+  QTemporaryDir scratch_;
+
+  std::filesystem::path write(const char* name, const std::string& text) const {
+    const std::filesystem::path path = std::filesystem::path(scratch_.path().toStdString()) / name;
+    std::ofstream(path) << text;
+    return path;
+  }
+  // The session as `evical import` writes it and `evical calibrate` reads it.
+  Session written(const ImportRequest& request, std::vector<std::string>& notes) const {
+    const std::filesystem::path output =
+        std::filesystem::path(scratch_.path().toStdString()) / "session.yaml";
+    const ImportedFiles imported = importFiles(request, output);
+    notes = imported.notes;
+    if (imported.files.size() != 1 || imported.files[0].path != output)
+      throw std::runtime_error("no session");
+    writeFilesWhole(imported.files);
+    return readSession(output);
+  }
+  ImportRequest kalibr() const {
+    return {{write("imu.yaml", kImu), write("camchain.yaml", kCamchain), write("target.yaml", kTarget)},
+            "",
+            write("recording.bag", "bag"),
+            std::nullopt};
+  }
+
+ private slots:
+  void ekalibr_becomesASession() {
+    write("recording.bag", "bag");
+    write("left.yaml", kEkalibrLens);
+    std::vector<std::string> notes;
+    const Session session = written({{write("config.yaml", kEkalibr)}, "", {}, std::nullopt}, notes);
+    QVERIFY(session.board.rows == 11 && session.board.cols == 4 &&
+            session.board.type == BoardType::AsymmetricCircles);
+    QCOMPARE(session.board.radius_m, 0.02);
+    QCOMPARE(session.cameras.size(), 2U);
+    QCOMPARE(session.cameras[0].name, std::string("davis_left"));
+    QCOMPARE(session.cameras[0].stream, std::string("/davis_left/events"));
+    // k1 k2 k3 t1 t2 there, k1 k2 p1 p2 k3 here.
+    const std::array<double, 5> distortion{-0.3, 0.1, 0.001, 0.002, 0.01};
+    QVERIFY(session.cameras[0].intrinsics->distortion == distortion);
+    QVERIFY(!session.cameras[1].intrinsics && session.cameras[1].resolution_px == (Resolution{346, 260}));
+    QVERIFY(session.imus[0].acceleration_unit == AccelerationUnit::MinusGravity);
+    QVERIFY(session.imus[0].angular_rate_unit == AngularRateUnit::DegreesPerSecond);
+    QVERIFY(session.imus[1].acceleration_unit == AccelerationUnit::MetresPerSecond2);
+    QCOMPARE(session.imus[1].noise.accelerometer_density, 0.002);
+    QCOMPARE(session.reference, std::string("davis_right_imu"));
+    QVERIFY((*session.time_range_s == std::array<double, 2>{2.0, 12.0}));
+    QCOMPARE(session.options.initialisation.time_offset_search_s, 0.1);
+    QCOMPARE(session.options.initialisation.gravity_m_s2, 9.79);
+  }
+
+  void ekalibr_recordingThatIsElsewhere_isSaid() {
+    const ImportedSession imported = importSession(
+        {{write("config.yaml", QString(kEkalibr).replace("recording.bag", "/else/where.bag").toStdString())},
+         "ekalibr",
+         {},
+         std::nullopt});
+    QVERIFY(has(imported.notes, "/else/where.bag does not exist here"));
+  }
+
+  void kalibr_inAnyOrder_becomesASession() {
+    ImportRequest request = kalibr();
+    std::vector<std::string> texts;
+    std::sort(request.files.begin(), request.files.end());
+    do {
+      std::vector<std::string> notes;
+      const Session session = written(request, notes);
+      QCOMPARE(session.cameras[0].name, std::string("cam0"));
+      QVERIFY(session.cameras[0].intrinsics->model == CameraModel::PinholeEquidistant);
+      QCOMPARE(session.imus[0].stream, std::string("/davis/imu"));
+      QCOMPARE(session.imus[0].gyroscope_random_walk, 2e-5);
+      QCOMPARE(session.board.radius_m, 0.02);
+      QVERIFY(has(notes, "--radius-m") && has(notes, "looks like images") && has(notes, "no priors"));
+      texts.push_back(sessionYaml(session, scratch_.path().toStdString()));
+      QCOMPARE(texts.back(), texts.front());
+    } while (std::next_permutation(request.files.begin(), request.files.end()));
+    QCOMPARE(texts.size(), 6U);
+    request.radius_m = 0.015;
+    QCOMPARE(importSession(request).session.board.radius_m, 0.015);
+  }
+
+  void camchain_alone_becomesIntrinsics() {
+    const std::string two = std::string(kCamchain) + QString(kCamchain).replace("cam0", "cam1").toStdString();
+    const ImportedFiles imported =
+        importFiles({{write("camchain.yaml", two)}, "kalibr", {}, std::nullopt}, "lens.yaml");
+    QCOMPARE(imported.files.size(), 2U);
+    QCOMPARE(imported.files[1].path.string(), std::string("lens-cam1.yaml"));
+    const CameraIntrinsics read = readIntrinsics(YamlNode::parse(imported.files[0].content, "lens"));
+    QCOMPARE(read.focal_length_px.y(), 261.0);
+    QVERIFY(has(imported.notes, "cam0: its pose and time offset are left out"));
+  }
+
+  void badInput_isNamed_data() {
+    QTest::addColumn<QString>("file");  // replaces the one of its name
+    QTest::addColumn<QString>("from");
+    QTest::addColumn<QString>("to");
+    QTest::addColumn<QString>("said");
+    QTest::newRow("model") << "camchain.yaml"
+                           << "camera_model: pinhole"
+                           << "camera_model: omni"
+                           << "omni";
+    QTest::newRow("distortion") << "camchain.yaml"
+                                << "equidistant"
+                                << "fov"
+                                << "fov";
+    QTest::newRow("aprilgrid") << "target.yaml"
+                               << "circlegrid"
+                               << "aprilgrid"
+                               << "aprilgrid";
+    QTest::newRow("symmetric with IMU") << "target.yaml"
+                                        << "True"
+                                        << "False"
+                                        << "turned by 180 degrees";
+    QTest::newRow("noise") << "imu.yaml"
+                           << "gyroscope_noise_density: 0.0003"
+                           << "gyroscope_noise_density: -1"
+                           << "gyroscope_noise_density";
+    QTest::newRow("no target") << "target.yaml" << kTarget << kImu << "Give Kalibr's target file too";
+    QTest::newRow("two camchains") << "target.yaml" << kTarget << kCamchain << "is the second camchain file";
+    QTest::newRow("something else") << "target.yaml" << kTarget << "a: b\n"
+                                    << "no file that can be imported";
+  }
+  void badInput_isNamed() {
+    QFETCH(QString, file);
+    QFETCH(QString, from);
+    QFETCH(QString, to);
+    QFETCH(QString, said);
+    const ImportRequest request = kalibr();
+    const QString before = file == "imu.yaml" ? kImu : (file == "target.yaml" ? kTarget : kCamchain);
+    QVERIFY(before.contains(from));
+    write(file.toUtf8().constData(), QString(before).replace(from, to).toStdString());
+    try {
+      importFiles(request, "session.yaml");
+      QFAIL("taken");
+    } catch (const CalibrationError& error) {
+      QVERIFY(error.kind() == ErrorKind::BadInput);
+      QVERIFY2(QString(error.what()).contains(said), error.what());
+    }
+  }
+
+  void recording_thatNobodyNames_isAskedFor() {
+    ImportRequest request = kalibr();
+    request.recording.clear();
+    try {
+      importFiles(request, "session.yaml");
+      QFAIL("taken");
+    } catch (const CalibrationError& error) {
+      QVERIFY2(QString(error.what()).contains("--recording FILE"), error.what());
+    }
+  }
+
+  void imuType_thatIsUnknown_isNamed() {
+    const std::string text = QString(kEkalibr).replace("SENSOR_IMU_DEG_G_NEG", "SBG_IMU").toStdString();
+    try {
+      importSession({{write("config.yaml", text)}, "", {}, std::nullopt});
+      QFAIL("taken");
+    } catch (const CalibrationError& error) {
+      QVERIFY2(QString(error.what()).contains("SBG_IMU"), error.what());
+    }
+  }
+};
+
+QTEST_GUILESS_MAIN(TestImportSession)
+#include "tst_import_session.moc"
