@@ -227,6 +227,7 @@ NamedResult readResultYaml(const std::filesystem::path& file) {
   if (!root.isMap() || !(root.has("evical_result") || root.has("evical_truth")))
     throw root.error("is neither a result nor a truth file",
                      "Give result.yaml of `evical calibrate`, or truth.yaml");
+  root[root.has("evical_result") ? "evical_result" : "evical_truth"].integer(1, 1);  // the format's version
   NamedResult named;
   if (const auto status = root.find("status"))
     named.result.status = static_cast<CalibrationStatus>(status->choice({"ok", "doubtful", "failed"}));

@@ -105,6 +105,7 @@ ExportedFiles exportDvProcessing(const NamedResult& result) {
     noteLostMapping(rig, rig.imus[0], kProgram);
     text += ",\n  \"imus\": {\n" + imuText(rig, rig.imus[0]) + "\n  }";
   }
+  if (rig.imus.empty()) noteNoOffsets(rig, kProgram);
   if (rig.cameras.size() > 1) text += ",\n  \"stereo\": {\n" + stereoText(rig) + "\n  }";
   exported.files.push_back({"calibration.json", text + "\n}\n"});
   exported.notes.emplace_back(

@@ -124,7 +124,10 @@ ExportedFiles exportKalibr(const NamedResult& result) {
   ExportedFiles exported;
   Rig rig = rigOf(result, exported.notes);
   exported.files.push_back({"camchain.yaml", camchain(rig)});
-  if (rig.imus.empty()) return exported;
+  if (rig.imus.empty()) {
+    noteNoOffsets(rig, "Kalibr's camchain.yaml");
+    return exported;
+  }
   std::vector<std::string> same_notes;  // of the cameras, once more
   Rig quiet = rig;
   quiet.notes = &same_notes;

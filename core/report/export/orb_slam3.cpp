@@ -93,9 +93,9 @@ ExportedFiles exportOrbSlam3(const NamedResult& result) {
   if (!rig.imus.empty()) {
     noteLostImus(rig, kProgram);
     noteLostMapping(rig, rig.imus[0], kProgram);
-    exported.notes.push_back(offsetLine(rig));
     text += imuText(rig, rig.imus[0]);
   }
+  if (!rig.imus.empty() || stereo) exported.notes.push_back(offsetLine(rig));
   exported.files.push_back({"settings.yaml", text});
   return exported;
 }

@@ -30,6 +30,14 @@ std::string fileName(const std::string& name, std::set<std::string>& taken) {
   return unique;
 }
 
+void checkNumbers(const std::string& place, const RigidTransform& pose, double time_offset_s,
+                  const Eigen::VectorXd& others) {
+  if (pose.rotation.coeffs().allFinite() && pose.translation_m.allFinite() && std::isfinite(time_offset_s) &&
+      others.allFinite())
+    return;
+  throw badInput(place, "has numbers that are none (nan, inf)", "Calibrate again");
+}
+
 RigCamera cameraOf(const NamedResult& result, std::size_t i, std::set<std::string>& taken) {
   const std::string& name = result.names.cameras[i];
   const auto intrinsics = at(result.names.intrinsics, i);
@@ -38,6 +46,7 @@ RigCamera cameraOf(const NamedResult& result, std::size_t i, std::set<std::strin
                    intrinsics ? "has no resolution_px" : "has no intrinsics",
                    "Export the result.yaml of `evical calibrate`");
   const CameraState& state = result.result.state.cameras.at(i);
+  checkNumbers(fmt::format("result: cameras.{}", name), state.imu_from_camera, state.time_offset_s, {});
   return {name,
           fileName(name, taken),
           at(result.names.camera_streams, i),
@@ -50,7 +59,20 @@ RigCamera cameraOf(const NamedResult& result, std::size_t i, std::set<std::strin
 RigImu imuOf(const NamedResult& result, std::size_t i, std::set<std::string>& taken) {
   const std::string& name = result.names.imus[i];
   const KnownOfImu known = at(result.names.known_of_imus, i);
-  return {name, fileName(name, taken), known.stream, known, result.result.state.imus.at(i)};
+  const ImuState& state = result.result.state.imus.at(i);
+  Eigen::Matrix<double, 24, 1> others;
+  others << state.gyroscope_bias_rad_s, state.accelerometer_bias_m_s2, state.gyroscope_mapping.reshaped(),
+      state.accelerometer_mapping.reshaped();
+  checkNumbers(fmt::format("result: imus.{}", name), state.reference_from_imu, state.time_offset_s, others);
+  return {name, fileName(name, taken), known.stream, known, state};
+}
+
+// Between the first camera and the others.
+double largestOffset_s(const Rig& rig) {
+  double largest_s = 0.0;
+  for (const RigCamera& camera : rig.cameras)
+    largest_s = std::max(largest_s, std::abs(camera.time_offset_s - rig.cameras[0].time_offset_s));
+  return largest_s;
 }
 
 }  // namespace
@@ -62,6 +84,7 @@ Rig rigOf(const NamedResult& result, std::vector<std::string>& notes) {
   rig.status = statusName(result.result.status);
   if (!result.result.reason.empty()) rig.status += ": " + result.result.reason;
   rig.gravity_m_s2 = result.result.state.gravity_in_world_m_s2;
+  checkNumbers("result: gravity_m_s2", {}, 0.0, rig.gravity_m_s2);
   std::set<std::string> taken;
   for (std::size_t i = 0; i < result.names.cameras.size(); ++i)
     rig.cameras.push_back(cameraOf(result, i, taken));
@@ -130,15 +153,23 @@ void noteLostImus(const Rig& rig, const char* program) {
 }
 
 void noteLostOffsets(const Rig& rig, const char* program) {
-  double largest_s = 0.0;
-  for (const RigCamera& camera : rig.cameras)
-    largest_s = std::max(largest_s, std::abs(camera.time_offset_s - rig.cameras[0].time_offset_s));
+  const double largest_s = largestOffset_s(rig);
   if (largest_s == 0.0) return;
   rig.notes->push_back(
       fmt::format("{} takes one time offset for all cameras: that of {} is written, others differ by up to "
                   "{:.4g} ms; shift "
                   "their stamps before",
                   program, rig.cameras[0].name, 1e3 * largest_s));
+}
+
+void noteNoOffsets(const Rig& rig, const char* program) {
+  if (largestOffset_s(rig) == 0.0) return;
+  std::string text =
+      fmt::format("{} has no place for the cameras' time offsets: add to the stamps of", program);
+  for (const RigCamera& camera : rig.cameras)
+    text += fmt::format("{} {} {} s", &camera == &rig.cameras.front() ? "" : ",", camera.name,
+                        camera.time_offset_s);
+  rig.notes->push_back(std::move(text));
 }
 
 void noteLostCameras(const Rig& rig, std::size_t most, const char* program) {

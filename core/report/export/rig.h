@@ -40,7 +40,7 @@ struct Rig {
   std::vector<std::string>* notes;  // where what a target cannot hold is said
 };
 
-// Throws CalibrationError (BadInput) where a camera has no intrinsics or resolution.
+// Throws CalibrationError (BadInput) where a camera has no intrinsics or resolution, or a number is none.
 Rig rigOf(const NamedResult& result, std::vector<std::string>& notes);
 
 // The reference IMU; throws CalibrationError (BadInput) where there is none.
@@ -57,6 +57,7 @@ double statedRate_hz(const Rig& rig, const RigImu& imu);
 void noteLostMapping(const Rig& rig, const RigImu& imu, const char* program);
 void noteLostImus(const Rig& rig, const char* program);
 void noteLostOffsets(const Rig& rig, const char* program);
+void noteNoOffsets(const Rig& rig, const char* program);  // of cameras among each other
 void noteLostCameras(const Rig& rig, std::size_t most, const char* program);
 
 // As YAML comments: who wrote this, how sure it is, and the lines given.

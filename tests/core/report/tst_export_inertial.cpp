@@ -6,6 +6,8 @@
 
 #include <Eigen/LU>
 #include <QtTest>
+
+#include <limits>
 #include <opencv2/core.hpp>
 
 using namespace evical;
@@ -372,7 +374,10 @@ class TestExportInertial : public QObject {
       QVERIFY(error.kind() == ErrorKind::BadInput);
       QVERIFY2(error.problem().find("has no IMU") != std::string::npos, error.what());
     }
-    QCOMPARE(exportTo(rig(kind), "kalibr").files.size(), 1U);  // camchain.yaml
+    const ExportedFiles chain = exportTo(rig(kind), "kalibr");
+    QCOMPARE(chain.files.size(), 1U);  // camchain.yaml
+    QVERIFY(QString::fromStdString(chain.notes.back())
+                .contains("add to the stamps of left 0.007301 s, right -0.0021 s"));
   }
 
   void badRequests_areRefused() {
@@ -389,6 +394,12 @@ class TestExportInertial : public QObject {
     };
     QVERIFY(reason(failed, "kalibr").find("the board was never seen") != std::string::npos);
     QVERIFY(reason(rig({}), "opnvins").find("Did you mean 'openvins'?") != std::string::npos);
+    NamedResult unset = rig({});
+    unset.result.state.cameras[1].time_offset_s = std::numeric_limits<double>::quiet_NaN();
+    QVERIFY(reason(unset, "kalibr").find("cameras.right: has numbers that are none") != std::string::npos);
+    unset = rig({});
+    unset.result.state.imus[1].accelerometer_mapping(0, 2) = std::numeric_limits<double>::infinity();
+    QVERIFY(reason(unset, "ros").find("imus.") != std::string::npos);
     NamedResult bare = rig({});
     bare.names.intrinsics[1].reset();
     QVERIFY(reason(bare, "ros").find("cameras.right") != std::string::npos);
