@@ -42,12 +42,13 @@ int run(const SessionArguments& arguments) {
   try {
     calibrateInto(result, session, context);
     const NamedResult named = namedResult(session, result.result, kVersion);
-    const std::vector<std::string> notes =
+    const ExportRemarks remarks =
         writeResultFiles(arguments.output, session, result, kVersion, console.logText());
     console.stageStarted("done");
     fmt::print("{}", resultTable(named));
     if (!arguments.quiet)
-      for (const std::string& note : notes) fmt::print("{}\n", note);
+      for (const std::string& note : remarks.notes) fmt::print("{}\n", note);
+    for (const std::string& refusal : remarks.refused) fmt::print(stderr, "{}\n", refusal);
     if (!arguments.quiet) fmt::print("Files are in {}\n", arguments.output);
     return kDone;
   } catch (const CalibrationError& error) {

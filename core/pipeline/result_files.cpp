@@ -34,20 +34,20 @@ void addReport(const Session& session, const NamedResult& named, const Recording
 }
 
 // What cannot be exported is said, and costs nobody the result.
-ExportedFiles exportsOf(const NamedResult& named, const Session& session) {
+ExportRemarks addExports(const NamedResult& named, const Session& session, std::vector<FileContent>& files) {
   std::set<std::string> targets(session.exports.begin(), session.exports.end());
   targets.insert("kalibr");
-  ExportedFiles all;
+  ExportRemarks remarks;
   for (const std::string& target : targets) {
     try {
       ExportedFiles one = exportResult(named, std::span(&target, 1));
-      std::move(one.files.begin(), one.files.end(), std::back_inserter(all.files));
-      std::move(one.notes.begin(), one.notes.end(), std::back_inserter(all.notes));
+      std::move(one.files.begin(), one.files.end(), std::back_inserter(files));
+      std::move(one.notes.begin(), one.notes.end(), std::back_inserter(remarks.notes));
     } catch (const CalibrationError& refusal) {
-      all.notes.push_back(fmt::format("{}: not exported: {}", target, refusal.what()));
+      remarks.refused.push_back(fmt::format("{}: not exported: {}", target, refusal.what()));
     }
   }
-  return all;
+  return remarks;
 }
 
 }  // namespace
@@ -71,24 +71,24 @@ NamedResult namedResult(const Session& session, const CalibrationResult& result,
   return named;
 }
 
-std::vector<std::string> writeResultFiles(const std::filesystem::path& folder, const Session& session,
-                                          const CalibrationRun& run, const std::string& version,
-                                          const std::string& log) {
+ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Session& session,
+                               const CalibrationRun& run, const std::string& version,
+                               const std::string& log) {
   NamedResult named = namedResult(session, run.result, version);
   for (std::size_t i = 0; i < named.names.known_of_imus.size() && i < run.pass.imus.size(); ++i)
     named.names.known_of_imus[i].rate_hz = run.pass.imus[i].rate_hz();
-  const ExportedFiles exported = exportsOf(named, session);
-  std::string notes;
-  for (const std::string& note : exported.notes) notes += note + "\n";
   std::vector<FileContent> files = {{"result.yaml", resultYaml(named)},
                                     {"trajectory.csv", trajectoryCsv(run.result.state)},
                                     {"detections.csv", detectionsCsv(run.pass.cameras)},
-                                    {"windows.csv", windowsCsv(run.pass.cameras)},
-                                    {"log.txt", log + notes}};
+                                    {"windows.csv", windowsCsv(run.pass.cameras)}};
   addReport(session, named, run.pass, files);
-  files.insert(files.end(), exported.files.begin(), exported.files.end());
+  ExportRemarks remarks = addExports(named, session, files);
+  std::string full_log = log;
+  for (const auto& texts : {remarks.notes, remarks.refused})
+    for (const std::string& text : texts) full_log += text + "\n";
+  files.push_back({"log.txt", full_log});
   writeExportedFiles(folder, files);
-  return exported.notes;
+  return remarks;
 }
 
 void writeDetectionFiles(const std::filesystem::path& folder, const RecordingPass& pass,

@@ -12,12 +12,15 @@ namespace evical {
 
 NamedResult namedResult(const Session& session, const CalibrationResult& result, const std::string& version);
 
+// What to know of files for other programs, and the targets that got none, each with the reason.
+struct ExportRemarks {
+  std::vector<std::string> notes, refused;
+};
+
 // report.html with its plots/*.csv, result.yaml, trajectory.csv, detections.csv, windows.csv, log.txt, and a
-// folder a target: kalibr and what the session asks for. Returns what to know of the exported files; it is in
-// log.txt too.
-std::vector<std::string> writeResultFiles(const std::filesystem::path& folder, const Session& session,
-                                          const CalibrationRun& run, const std::string& version,
-                                          const std::string& log);
+// folder a target: kalibr and what the session asks for. The remarks are in log.txt too.
+ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Session& session,
+                               const CalibrationRun& run, const std::string& version, const std::string& log);
 
 // detections.csv, windows.csv, log.txt
 void writeDetectionFiles(const std::filesystem::path& folder, const RecordingPass& pass,

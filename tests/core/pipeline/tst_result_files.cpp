@@ -156,6 +156,22 @@ class TestResultFiles : public QObject {
       QVERIFY2(QRegularExpression("^[a-z0-9_]+\\.csv$").match(name).hasMatch(), qPrintable(name));
   }
 
+  void exports_thatARigCannotHave_costNobodyTheRest() {
+    Session session = simulated_.session;
+    session.exports = {"openvins", "esvo", "kalibr"};
+    QTemporaryDir folder;
+    const ExportRemarks remarks =
+        writeResultFiles(folder.path().toStdString(), session, run_, "test", "the log\n");
+    QCOMPARE(remarks.refused.size(), std::size_t{1});
+    QVERIFY(QString::fromStdString(remarks.refused[0]).startsWith("esvo: not exported"));
+    for (const char* const file : {"kalibr/imu.yaml", "openvins/kalibr_imu_chain.yaml", "result.yaml"})
+      QVERIFY2(QFile::exists(folder.filePath(file)), file);
+    QVERIFY(!QFile::exists(folder.filePath("esvo")));
+    const QString log = readFile(folder.filePath("log.txt"));
+    QVERIFY(log.startsWith("the log\n") && log.contains("esvo: not exported"));
+    QVERIFY(log.contains("random walks are not measured"));
+  }
+
   void numbersThatAreNone_areNotShown() {
     CalibrationRun run = run_;
     const double nan = std::numeric_limits<double>::quiet_NaN(),
