@@ -16,8 +16,9 @@ using namespace evical::test;
 
 namespace {
 
-const QStringList kResultFiles = {"detections.csv", "log.txt",        "plots",      "report.html",
-                                  "result.yaml",    "trajectory.csv", "windows.csv"};
+const QStringList kResultFiles = {"detections.csv", "kalibr",      "log.txt",        "plots",
+                                  "report.html",    "result.yaml", "trajectory.csv", "windows.csv"};
+const QStringList kKalibrFiles = {"camchain-imucam.yaml", "camchain.yaml", "imu.yaml"};
 
 QString session(const QString& recording = "short") {
   return simulated(recording) + "/session.yaml";
@@ -43,6 +44,10 @@ class TestCommandLine : public QObject {
   void simulate_isTheSameFromTheSameSeed();
   void calibrate_writesAResultNearTheTruth_data();
   void calibrate_writesAResultNearTheTruth();
+  void export_writesTheFoldersOfTargets();
+  void export_ofBadInputWritesNothing_data();
+  void export_ofBadInputWritesNothing();
+  void import_writesASession();
   void detect_writesDetectionsOnly();
   void quiet_saysNothingButTheResult();
   void interruption_leavesNothingHalfWritten_data();
@@ -56,8 +61,8 @@ class TestCommandLine : public QObject {
 void TestCommandLine::help_isThereForEveryCommand() {
   const Outcome all = runProgram({"--help"});
   VERIFY_EXIT(all, 0);
-  for (const QString command :
-       {"calibrate", "detect", "simulate", "inspect", "convert", "options", "board", "compare"}) {
+  for (const QString command : {"calibrate", "detect", "simulate", "inspect", "convert", "options", "board",
+                                "compare", "export", "import"}) {
     QVERIFY2(all.output.contains(command), qPrintable(command));
     const Outcome outcome = runProgram({command, "--help"});
     VERIFY_EXIT(outcome, 0);
@@ -145,6 +150,7 @@ void TestCommandLine::calibrate_writesAResultNearTheTruth() {
   const Outcome outcome = runProgram({"calibrate", session(recording), "-o", result});
   VERIFY_EXIT(outcome, 0);
   QCOMPARE(filesIn(result), kResultFiles);
+  QCOMPARE(filesIn(result + "/kalibr"), kKalibrFiles);
   const QByteArray yaml = readFile(result + "/result.yaml");
   for (const char* key :
        {"evical_result: 1", "status: ", "reference: left_imu", "rotation_std_deg:", "time_offset_std_s:",
@@ -165,6 +171,86 @@ void TestCommandLine::calibrate_writesAResultNearTheTruth() {
       runProgram({"compare", result + "/result.yaml", simulated(recording) + "/truth.yaml"});
   VERIFY_EXIT(table, 0);
   QVERIFY(table.output.contains("left"));
+}
+
+namespace {
+
+const QByteArray kSmallResult =
+    "evical_result: 1\nstatus: ok\nreference: imu\ncameras:\n  left:\n    reference_from_camera: "
+    "{rotation_xyzw: [0, 0, 0, 1], "
+    "translation_m: [0.1, 0, 0]}\n    intrinsics: {model: pinhole_radtan, resolution_px: [346, 260], "
+    "focal_length_px: "
+    "[260, 260], principal_point_px: [170, 130], distortion: [0, 0, 0, 0]}\nimus:\n  imu:\n    "
+    "reference_from_imu: "
+    "{rotation_xyzw: [0, 0, 0, 1], translation_m: [0, 0, 0]}\n";
+
+}  // namespace
+
+void TestCommandLine::export_writesTheFoldersOfTargets() {
+  QTemporaryDir folder;
+  writeFile(folder.filePath("result.yaml"), kSmallResult);
+  for (const QString& result : {folder.path(), folder.filePath("result.yaml")}) {
+    const QString output = folder.filePath("new/" + QFileInfo(result).fileName());
+    const Outcome outcome =
+        runProgram({"export", result, "--to", "kalibr,openvins", "--to", "ros", "-o", output});
+    VERIFY_EXIT(outcome, 0);
+    QCOMPARE(filesIn(output), (QStringList{"kalibr", "openvins", "ros"}));
+    QCOMPARE(filesIn(output + "/kalibr"), kKalibrFiles);
+    QVERIFY(outcome.output.contains("random walks are not measured"));
+  }
+}
+
+void TestCommandLine::export_ofBadInputWritesNothing_data() {
+  QTest::addColumn<QByteArray>("result");  // empty: none
+  QTest::addColumn<QString>("target");
+  QTest::addColumn<QString>("said");
+  QTest::newRow("no result") << QByteArray() << "kalibr"
+                             << "does not exist";
+  QTest::newRow("no YAML") << QByteArray("[1, 2") << "kalibr"
+                           << "result.yaml";
+  QTest::newRow("later version") << QByteArray(kSmallResult).replace("evical_result: 1", "evical_result: 7")
+                                 << "kalibr"
+                                 << "evical_result";
+  QTest::newRow("failed")
+      << QByteArray(kSmallResult).replace("status: ok", "status: failed\nreason: no board") << "kalibr"
+      << "no board";
+  QTest::newRow("unknown target") << kSmallResult << "kalibre"
+                                  << "Did you mean 'kalibr'?";
+  QTest::newRow("one camera as a pair") << kSmallResult << "kalibr,esvo"
+                                        << "has one camera";
+}
+
+void TestCommandLine::export_ofBadInputWritesNothing() {
+  QFETCH(QByteArray, result);
+  QFETCH(QString, target);
+  QFETCH(QString, said);
+  QTemporaryDir folder;
+  if (!result.isEmpty()) writeFile(folder.filePath("result.yaml"), result);
+  const Outcome outcome =
+      runProgram({"export", folder.filePath("result.yaml"), "--to", target, "-o", folder.filePath("out")});
+  VERIFY_EXIT(outcome, 2);
+  QVERIFY2(outcome.reason().contains(said), qPrintable(outcome.errors));
+  QVERIFY(!QFileInfo::exists(folder.filePath("out")));
+}
+
+void TestCommandLine::import_writesASession() {
+  QTemporaryDir folder;
+  writeFile(folder.filePath("result.yaml"), kSmallResult);
+  VERIFY_EXIT(runProgram({"export", folder.path(), "--to", "kalibr", "-o", folder.path()}), 0);
+  writeFile(
+      folder.filePath("target.yaml"),
+      "target_type: circlegrid\ntargetCols: 4\ntargetRows: 11\nspacingMeters: 0.05\nasymmetricGrid: true\n");
+  writeFile(folder.filePath("recording.bag"), "x");
+  const QStringList files{folder.filePath("kalibr/imu.yaml"), folder.filePath("target.yaml"),
+                          folder.filePath("kalibr/camchain-imucam.yaml")};
+  const QStringList command =
+      QStringList{"import"} + files + QStringList{"-o", folder.filePath("session.yaml")};
+  const Outcome without = runProgram(command);
+  VERIFY_EXIT(without, 2);
+  QVERIFY2(without.reason().contains("--recording"), qPrintable(without.errors));
+  QVERIFY(!QFileInfo::exists(folder.filePath("session.yaml")));
+  VERIFY_EXIT(runProgram(command + QStringList{"--recording", folder.filePath("recording.bag")}), 0);
+  QVERIFY(readFile(folder.filePath("session.yaml")).contains("recording: recording.bag"));
 }
 
 void TestCommandLine::detect_writesDetectionsOnly() {
