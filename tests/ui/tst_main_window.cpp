@@ -12,13 +12,17 @@
 #include "ui/screens/start_screen.h"
 #include "ui/screens/stream_table.h"
 #include "ui/window/error_panel.h"
+#include "ui/window/export_dialog.h"
 #include "ui/window/log_panel.h"
 #include "ui/window/session_files.h"
 #include "ui/window/steps_panel.h"
 
+#include <QDesktopServices>
 #include <QLineEdit>
+#include <QListWidget>
 #include <QMimeData>
 #include <QPushButton>
+#include <QScopeGuard>
 #include <QSettings>
 #include <QSignalSpy>
 #include <QTemporaryDir>
@@ -30,6 +34,39 @@
 using namespace evical;
 using namespace evical::ui;
 using namespace evical::ui::test;
+
+namespace {
+
+// Checks more targets and goes on to the folder.
+void answerExportDialog(const QStringList& targets) {
+  QTimer::singleShot(200, qApp, [targets] {
+    auto* const dialog = qobject_cast<ExportDialog*>(QApplication::activeModalWidget());
+    if (dialog == nullptr) return answerExportDialog(targets);
+    auto* const list = dialog->findChild<QListWidget*>("targets");
+    for (int row = 0; row < list->count(); ++row)
+      if (targets.contains(list->item(row)->data(Qt::UserRole).toString()))
+        list->item(row)->setCheckState(Qt::Checked);
+    dialog->accept();
+  });
+}
+
+QAction* actionOf(const MainWindow& window, const QString& text) {
+  for (QAction* const action : window.findChildren<QAction*>())
+    if (action->text() == text) return action;
+  return nullptr;
+}
+
+class ReportReader : public QObject {
+  Q_OBJECT
+
+ public:
+  QString file;
+
+ public slots:
+  void open(const QUrl& url) { file = url.toLocalFile(); }
+};
+
+}  // namespace
 
 class TestMainWindow : public QObject {
   Q_OBJECT
@@ -48,6 +85,8 @@ class TestMainWindow : public QObject {
     WindowFixture test;
     QCOMPARE(test.screen(), QString("start"));
     QVERIFY(!test.child<QToolButton>("calibrate")->isEnabled());
+    const QAction* const report = actionOf(test.window, "Open re&port");
+    QVERIFY(!report->isEnabled() && report->toolTip().contains("no result yet"));
 
     answerFileDialog(session);
     test.press(Qt::Key_O, Qt::ControlModifier);
@@ -79,6 +118,7 @@ class TestMainWindow : public QObject {
 
     changeAnOptionAndSave(test, session);
     exportTheResult(test);
+    openTheReport(test);
 
     test.window.files().open(session);
     QCOMPARE(test.document().session().options.front_end.grid.least_circles, 9);
@@ -296,16 +336,35 @@ class TestMainWindow : public QObject {
   void exportTheResult(WindowFixture& test) {
     const QString folder = scratch_.filePath("exported");
     QVERIFY(QDir().mkpath(folder));
+    answerExportDialog({"openvins", "esvo"});
     answerFileDialog(folder);
     QTest::mouseClick(test.child<QPushButton>("export"), Qt::LeftButton);
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
     for (const char* const file :
-         {"result.yaml", "trajectory.csv", "detections.csv", "windows.csv", "log.txt"}) {
+         {"result.yaml", "trajectory.csv", "detections.csv", "windows.csv", "log.txt",
+          "kalibr/camchain-imucam.yaml", "openvins/kalibr_imu_chain.yaml"}) {
       QVERIFY2(QFileInfo(QDir(folder).filePath(file)).size() > 0, file);
     }
     const NamedResult read = readResultYaml(QDir(folder).filePath("result.yaml").toStdString());
     QCOMPARE(read.result.state.cameras.at(0).time_offset_s,
              test.document().last().run->result.state.cameras.at(0).time_offset_s);
+    QVERIFY(test.child<LogPanel>()->shownText().contains("random walks are not measured"));
+    QVERIFY(test.child<ErrorPanel>()->text().contains("not exported: result: has one camera"));
+  }
+
+  // The browser's part is ours for a moment.
+  void openTheReport(WindowFixture& test) {
+    ReportReader reader;
+    QDesktopServices::setUrlHandler("file", &reader, "open");
+    const auto restored = qScopeGuard([] { QDesktopServices::unsetUrlHandler("file"); });
+    QTest::mouseClick(test.child<QPushButton>("report"), Qt::LeftButton);
+    QCOMPARE(reader.file, QFileInfo(scratch_.filePath("exported/report.html")).absoluteFilePath());
+    QVERIFY(QFile::remove(reader.file));
+    reader.file.clear();
+    test.finished.clear();
+    test.press(Qt::Key_R, Qt::ControlModifier);
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    QVERIFY2(QFileInfo(reader.file).size() > 10000, qPrintable(reader.file));
   }
 };
 

@@ -176,13 +176,19 @@ QWidget* ResultScreen::makeHeader() {
   outdated_->setText(tr("The session has changed since: calibrate again to see what comes of it."));
   auto* const save = new QPushButton(icon("export"), tr("Export..."), header);
   save->setObjectName("export");
-  save->setToolTip(tr("Write result.yaml, trajectory, detections, windows and log to a folder (Ctrl+E)"));
+  save->setToolTip(
+      tr("Write result.yaml, the report, tables, and files for other programs to a folder (Ctrl+E)"));
   connect(save, &QPushButton::clicked, this, &ResultScreen::exportRequested);
+  auto* const report = new QPushButton(icon("report"), tr("Open report"), header);
+  report->setObjectName("report");
+  report->setToolTip(tr("One page with plots and advice, in the browser (Ctrl+R)"));
+  connect(report, &QPushButton::clicked, this, &ResultScreen::reportRequested);
   auto* const layout = new QHBoxLayout(header);
   layout->setContentsMargins(4, 0, 4, 0);
   layout->setSpacing(12);
   layout->addWidget(icon_, 0, Qt::AlignTop);
   layout->addLayout(words, 1);
+  layout->addWidget(report, 0, Qt::AlignTop);
   layout->addWidget(save, 0, Qt::AlignTop);
   return header;
 }

@@ -36,6 +36,7 @@ class ResultScreen : public QWidget {
 
  signals:
   void exportRequested();
+  void reportRequested();
   void referenceRequested();
   void calibrateRequested();
 

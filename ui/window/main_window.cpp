@@ -253,7 +253,11 @@ void MainWindow::showState() {
   for (QAction* const action : {actions_.open_session, actions_.open_recording}) action->setEnabled(!running);
   actions_.save->setEnabled(document.modified());
   actions_.save_as->setEnabled(document.hasSession());
-  actions_.export_result->setEnabled(!running && document.last().run != nullptr);
+  const bool has_result = document.last().run != nullptr;
+  actions_.export_result->setEnabled(!running && has_result);
+  actions_.report->setEnabled(!running && has_result);
+  actions_.report->setToolTip(has_result ? tr("Open the result's report in the browser (Ctrl+R)")
+                                         : tr("There is no result yet, so no report: press Calibrate"));
 }
 
 void MainWindow::restoreLayout() {

@@ -76,7 +76,7 @@ class MainWindow : public QMainWindow {
   OptionForm* parameters_ = nullptr;
   QDockWidget *log_dock_ = nullptr, *parameters_dock_ = nullptr;
   struct Actions {
-    QAction *open_session, *open_recording, *save, *save_as, *export_result, *export_every, *quit;
+    QAction *open_session, *open_recording, *save, *save_as, *export_result, *export_every, *report, *quit;
     QAction *undo, *redo;
     QAction *calibrate, *cancel;
     QAction *guide, *about;

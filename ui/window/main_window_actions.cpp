@@ -51,6 +51,7 @@ void MainWindow::makeFileMenu() {
       makeAction(this, "export", tr("Export e&very result..."),
                  tr("Write each result to a folder as soon as it is there"), QKeySequence());
   actions_.export_every->setCheckable(true);
+  actions_.report = makeAction(this, "report", tr("Open re&port"), {}, QKeySequence("Ctrl+R"));
   actions_.quit = makeAction(this, "close", tr("&Quit"), tr("Leave the program"), QKeySequence("Ctrl+Q"));
   connect(actions_.open_session, &QAction::triggered, files_, &SessionFiles::chooseSession);
   connect(actions_.open_recording, &QAction::triggered, files_, &SessionFiles::chooseRecording);
@@ -58,6 +59,7 @@ void MainWindow::makeFileMenu() {
   connect(actions_.save_as, &QAction::triggered, files_, &SessionFiles::saveAs);
   connect(actions_.export_result, &QAction::triggered, files_, &SessionFiles::chooseExportFolder);
   connect(actions_.export_every, &QAction::triggered, files_, &SessionFiles::exportEveryResult);
+  connect(actions_.report, &QAction::triggered, files_, &SessionFiles::openReport);
   connect(files_, &SessionFiles::exportsEveryResult, actions_.export_every, &QAction::setChecked);
   connect(actions_.quit, &QAction::triggered, this, &QWidget::close);
 
@@ -73,7 +75,7 @@ void MainWindow::makeFileMenu() {
   menu->addSeparator();
   menu->addActions({actions_.save, actions_.save_as});
   menu->addSeparator();
-  menu->addActions({actions_.export_result, actions_.export_every});
+  menu->addActions({actions_.export_result, actions_.export_every, actions_.report});
   menu->addSeparator();
   menu->addAction(actions_.quit);
 }
@@ -160,7 +162,7 @@ void MainWindow::makeToolBar() {
     button->setProperty("primary", action == actions_.calibrate);
     button->setObjectName(action == actions_.calibrate ? "calibrate" : "cancel");
   }
-  bar->addAction(actions_.export_result);
+  bar->addActions({actions_.report, actions_.export_result});
   auto* const space = new QWidget(bar);
   space->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
   bar->addWidget(space);

@@ -61,6 +61,7 @@ std::optional<NamedResult> namedRun(const RunRecord& record, const QString& vers
 void wireResult(ResultScreen& screen, Workbench& workbench, SessionFiles& files) {
   CalibrationDocument& document = workbench.document;
   QObject::connect(&screen, &ResultScreen::exportRequested, &files, &SessionFiles::chooseExportFolder);
+  QObject::connect(&screen, &ResultScreen::reportRequested, &files, &SessionFiles::openReport);
   QObject::connect(&screen, &ResultScreen::referenceRequested, &files, &SessionFiles::chooseReference);
   QObject::connect(&document, &CalibrationDocument::runsChanged, &screen, [&screen, &workbench] {
     screen.setRuns(namedRun(workbench.document.previous(), workbench.version),

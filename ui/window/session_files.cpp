@@ -7,7 +7,9 @@
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "ui/document/session_guess.h"
+#include "ui/window/export_dialog.h"
 
+#include <QDesktopServices>
 #include <QDir>
 #include <QFile>
 #include <QFileDialog>
@@ -17,6 +19,7 @@
 #include <QStandardPaths>
 #include <QTemporaryDir>
 #include <QTimer>
+#include <QUrl>
 
 #include <algorithm>
 #include <optional>
@@ -27,6 +30,7 @@ namespace {
 constexpr int kMostRecent = 10;
 const char* const kRecentKey = "recent_files";
 const char* const kFolderKey = "last_folder";
+const char* const kReport = "report.html";
 
 JobError errorOf(const CalibrationError& error) {
   return {error.kind() == ErrorKind::BadInput, QString::fromStdString(error.place()),
@@ -73,8 +77,10 @@ SessionFiles::SessionFiles(Workbench& workbench, QWidget* window)
             awaited_recording_.clear();
             emit failed(tr("%1 cannot be opened").arg(QFileInfo(recording).fileName()), error);
           });
-  connect(&workbench_.document, &CalibrationDocument::sessionReplaced, this,
-          [this] { exportEveryResult(false); });
+  connect(&workbench_.document, &CalibrationDocument::sessionReplaced, this, [this] {
+    exportEveryResult(false);
+    export_targets_.reset();
+  });
   connect(&workbench_.calibration, &CalibrationJob::calibrated, this, [this] {
     if (every_result_folder_.isEmpty()) return;
     // Once everybody has heard of the run: an export is a job of its own.
@@ -214,32 +220,71 @@ void SessionFiles::chooseReference() {
 
 void SessionFiles::chooseExportFolder() {
   if (!workbench_.document.last().run) return;
+  ExportDialog dialog(export_targets_.value_or(workbench_.document.last().session.exports), window_);
+  if (dialog.exec() != QDialog::Accepted) return;
+  export_targets_ = dialog.chosen();
   const QString folder =
       QFileDialog::getExistingDirectory(window_, tr("Export the result to a folder"), lastFolder());
   if (!folder.isEmpty()) exportTo(folder);
 }
 
 void SessionFiles::exportTo(const QString& folder) {
-  const RunRecord record = workbench_.document.last();
+  writeResult(tr("Export"), folder, export_targets_.value_or(workbench_.document.last().session.exports),
+              [this, folder](const ExportRemarks& remarks) {
+                QSettings().setValue(kFolderKey, folder);
+                emit exported(folder);
+                QStringList refused;
+                for (const std::string& text : remarks.refused) refused << QString::fromStdString(text);
+                if (!refused.isEmpty())
+                  emit failed(
+                      tr("Not everything was exported"),
+                      {true, folder, refused.join('\n'), tr("Leave these out next time; all else is there")});
+              });
+}
+
+void SessionFiles::writeResult(const QString& title, const QString& folder, std::vector<std::string> targets,
+                               const std::function<void(const ExportRemarks&)>& written) {
+  RunRecord record = workbench_.document.last();
   if (!record.run) return;
+  record.session.exports = std::move(targets);
+  const auto remarks = std::make_shared<ExportRemarks>();  // read here once the job has ended
   const bool begun = workbench_.runner.start(
-      tr("Export"), {}, [record, folder, version = workbench_.version](const RunContext&) {
+      title, {}, [record, folder, remarks, version = workbench_.version](const RunContext& context) {
         makeOutputFolder(folder.toStdString());
-        writeResultFiles(folder.toStdString(), record.session, *record.run, version.toStdString(),
-                         record.log.toStdString());
+        *remarks = writeResultFiles(folder.toStdString(), record.session, *record.run, version.toStdString(),
+                                    record.log.toStdString());
+        for (const std::string& note : remarks->notes) context.progress.log(LogLevel::Info, note);
+        for (const std::string& text : remarks->refused) context.progress.log(LogLevel::Warning, text);
       });
   if (!begun) {
-    emit failed(tr("Nothing was exported"),
+    emit failed(tr("Nothing was written"),
                 {true, workbench_.runner.title(), tr("is still running"), tr("Cancel it, or wait")});
     return;
   }
-  QSettings().setValue(kFolderKey, folder);
   connect(
       &workbench_.runner, &JobRunner::finished, this,
-      [this, folder](JobOutcome outcome) {
-        if (outcome == JobOutcome::Done) emit exported(folder);
+      [this, run = record.run, folder, remarks, written](JobOutcome outcome) {
+        if (outcome != JobOutcome::Done) return;
+        reported_run_ = run;
+        report_folder_ = folder;
+        written(*remarks);
       },
       Qt::SingleShotConnection);
+}
+
+void SessionFiles::openReport() {
+  const RunRecord& record = workbench_.document.last();
+  if (!record.run) return;
+  if (reported_run_ == record.run && QFile::exists(QDir(report_folder_).filePath(kReport)))
+    return showReport();
+  writeResult(tr("Report"), momentary_.path(), {}, [this](const ExportRemarks&) { showReport(); });
+}
+
+void SessionFiles::showReport() {
+  const QString file = QDir(report_folder_).filePath(kReport);
+  if (QDesktopServices::openUrl(QUrl::fromLocalFile(file))) return;
+  emit failed(tr("The report cannot be shown"),
+              {true, file, tr("no program of this desktop opens it"), tr("Open it with a browser")});
 }
 
 void SessionFiles::exportEveryResult(bool wanted) {

@@ -7,8 +7,19 @@
 
 #include <QObject>
 #include <QStringList>
+#include <QTemporaryDir>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 class QWidget;
+
+namespace evical {
+struct ExportRemarks;
+}
 
 namespace evical::ui {
 
@@ -29,6 +40,8 @@ class SessionFiles : public QObject {
   void exportTo(const QString& folder);
   // Every result goes to a folder that is asked for now, as soon as it is there; until another session comes.
   void exportEveryResult(bool wanted);
+  // report.html of the last result, in the browser; written to a folder for the moment if no export has it.
+  void openReport();
 
   // False if the person would rather keep what is not saved.
   bool mayDiscard();
@@ -49,11 +62,18 @@ class SessionFiles : public QObject {
   void remember(const QString& file);
   void recordingInspected(const QString& recording, const Inspection& inspection);
   QString lastFolder() const;
+  void writeResult(const QString& title, const QString& folder, std::vector<std::string> targets,
+                   const std::function<void(const ExportRemarks&)>& written);
+  void showReport();
 
   Workbench& workbench_;
   QWidget* window_;
-  QString every_result_folder_;  // empty: results are not exported by themselves
-  QString awaited_recording_;    // opened as soon as it has been looked through
+  QString every_result_folder_;                             // empty: results are not exported by themselves
+  QString awaited_recording_;                               // opened as soon as it has been looked through
+  std::optional<std::vector<std::string>> export_targets_;  // chosen by hand; else as the session says
+  std::shared_ptr<const CalibrationRun> reported_run_;      // the run that report_folder_ is of
+  QString report_folder_;
+  QTemporaryDir momentary_;
 };
 
 }  // namespace evical::ui
