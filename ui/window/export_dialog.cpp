@@ -19,14 +19,18 @@ ExportDialog::ExportDialog(const std::vector<std::string>& chosen, QWidget* pare
   list_->setObjectName("targets");
   for (const ExportTarget& target : exportTargets()) {
     const std::string name = target.name;
-    auto* const item = new QListWidgetItem(QString::fromUtf8(target.description), list_);
-    item->setData(Qt::UserRole, QString::fromStdString(name));
     const bool always = name == "kalibr";
+    const QString text = QString::fromUtf8(target.description);
+    auto* const item = new QListWidgetItem(always ? tr("%1 (always)").arg(text) : text, list_);
+    item->setData(Qt::UserRole, QString::fromStdString(name));
     const bool checked = always || std::find(chosen.begin(), chosen.end(), name) != chosen.end();
     item->setFlags(always ? Qt::ItemIsUserCheckable : Qt::ItemIsEnabled | Qt::ItemIsUserCheckable);
     item->setCheckState(checked ? Qt::Checked : Qt::Unchecked);
   }
-  list_->setMinimumWidth(list_->sizeHintForColumn(0) + 40);
+  const int frame_px = 2 * list_->frameWidth();
+  constexpr int kMargins_px = 24;  // the style sheet's, which no hint counts
+  list_->setMinimumSize(list_->sizeHintForColumn(0) + frame_px + kMargins_px,
+                        list_->count() * list_->sizeHintForRow(0) + frame_px + kMargins_px);
   auto* const buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel, this);
   buttons->button(QDialogButtonBox::Ok)->setText(tr("&Choose a folder..."));
   connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);

@@ -238,7 +238,7 @@ void SessionFiles::exportTo(const QString& folder) {
                 if (!refused.isEmpty())
                   emit failed(
                       tr("Not everything was exported"),
-                      {true, folder, refused.join('\n'), tr("Leave these out next time; all else is there")});
+                      {true, {}, refused.join('\n'), tr("Leave these out next time; all else is there")});
               });
 }
 
