@@ -1,0 +1,41 @@
+// How differently two cameras project, over the image; to first order, and as a difference. A turn of one
+// camera against the other is taken out: the pose takes it up wherever intrinsics are used, and a principal
+// point would seem much less sure than projections are.
+#pragma once
+
+#include "core/geometry/camera_model.h"
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <vector>
+
+namespace evical {
+
+// Pixels at the middles of columns x rows cells, row by row, and how those of their rays move with the
+// intrinsics.
+class ProjectionChange {
+ public:
+  struct Place {
+    Eigen::Vector2d pixel;
+    std::optional<IntrinsicsJacobian> by_intrinsics;  // nothing where there is no ray
+  };
+
+  ProjectionChange(const CameraIntrinsics& camera, int columns, int rows);
+  const std::vector<Place>& places() const { return places_; }
+
+ private:
+  std::vector<Place> places_;
+};
+
+struct ProjectionDifference {
+  double rms_px = 0.0, max_px = 0.0;
+  int places = 0;  // compared
+};
+
+// Of `other` against `camera`, over the part of the image (which both must have the size of) that lies within
+// `radius_share` of the way from the principal point to the furthest corner.
+ProjectionDifference projectionDifference(const CameraIntrinsics& camera, const CameraIntrinsics& other,
+                                          double radius_share = 1.0);
+
+}  // namespace evical
