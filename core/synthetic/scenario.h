@@ -99,6 +99,7 @@ struct Scenario {
   std::vector<SimulatedCamera> cameras;
   std::vector<SimulatedImu> imus;  // the first is the reference
   SimulatedFormat format = SimulatedFormat::Bag;
+  bool intrinsics_in_session = true;
 };
 
 }  // namespace evical

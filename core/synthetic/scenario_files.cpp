@@ -83,9 +83,10 @@ std::string sessionYaml(const Scenario& scenario, const std::string& recording_f
                                  boardSession(scenario.board));
   for (const SimulatedCamera& camera : scenario.cameras) {
     const Resolution& size = camera.intrinsics.resolution_px;
-    text += fmt::format("  {}:\n    stream: {}\n    resolution_px: [{}, {}]\n    intrinsics:\n{}",
-                        yamlText(camera.name), yamlText(camera.stream), size.width_px, size.height_px,
-                        intrinsicsYaml(camera.intrinsics, kSensorIndent));
+    text += fmt::format("  {}:\n    stream: {}\n    resolution_px: [{}, {}]\n", yamlText(camera.name),
+                        yamlText(camera.stream), size.width_px, size.height_px);
+    if (scenario.intrinsics_in_session)
+      text += "    intrinsics:\n" + intrinsicsYaml(camera.intrinsics, kSensorIndent);
   }
   if (scenario.imus.empty())
     return text + fmt::format("reference: {}\n", yamlText(scenario.cameras.front().name));

@@ -219,6 +219,13 @@ void readGravity(const YamlNode& root, Eigen::Vector3d& gravity) {
   gravity *= norm / gravity.norm();
 }
 
+// What the recording's session knows.
+void readSession(const YamlNode& map, Scenario& scenario) {
+  map.allowOnly({"intrinsics"});
+  if (const auto node = map.find("intrinsics"))
+    scenario.intrinsics_in_session = node->choice({"false", "true"}) == 1;
+}
+
 // What can be wrong only once a scenario and its bases are put together.
 void validateWhole(const Scenario& scenario, const std::string& file) {
   try {
@@ -233,7 +240,7 @@ void validateWhole(const Scenario& scenario, const std::string& file) {
 Scenario readFrom(const std::filesystem::path& path, int depth) {
   const YamlNode root = YamlNode::load(path);
   root.allowOnly({"base", "description", "seed", "duration_s", "format", "gravity_m_s2", "gravity_norm_m_s2",
-                  "board", "scene", "motion", "camera", "cameras", "imu", "imus"});
+                  "board", "scene", "motion", "camera", "cameras", "imu", "imus", "session"});
   Scenario scenario;
   scenario.cameras.resize(1);
   scenario.imus.resize(1);
@@ -248,6 +255,7 @@ Scenario readFrom(const std::filesystem::path& path, int depth) {
   scenario.seed = static_cast<std::uint64_t>(seed);
   get(root, "duration_s", scenario.duration_s, 0.1, 3600.0, "s");
   get(root, "format", scenario.format, {"bag", "text"});
+  if (const auto node = root.find("session")) readSession(*node, scenario);
   readGravity(root, scenario.gravity_in_world_m_s2);
   if (const auto node = root.find("board")) readBoard(*node, scenario.board);
   if (const auto node = root.find("scene")) readScene(*node, scenario.scene);

@@ -25,7 +25,8 @@ class TestScenarioYaml : public QObject {
     for (const auto& entry : std::filesystem::directory_iterator(kScenarios)) {
       const Scenario scenario = readScenario(entry.path());
       QVERIFY(scenario.cameras.front().intrinsics.resolution_px.known());
-      QCOMPARE(scenario.board.hasHalfTurnAmbiguity(), scenario.name == "symmetric_board");
+      const bool refused = scenario.name == "symmetric_board";
+      QCOMPARE(scenario.board.hasHalfTurnAmbiguity() && !scenario.imus.empty(), refused);
       ++count;
     }
     QVERIFY(count >= 25);
@@ -132,12 +133,17 @@ class TestScenarioYaml : public QObject {
     QCOMPARE(truth["reference"].text(), std::string("left_imu"));
   }
   void session_fitsTheRecording() {
-    const Scenario scenario = readScenario(kScenarios / "davis346.yaml");
+    Scenario scenario = readScenario(kScenarios / "davis346.yaml");
     const YamlNode bag = YamlNode::parse(sessionYaml(scenario, "recording.bag"), "session.yaml");
     QCOMPARE(bag["recording"].text(), std::string("recording.bag"));
     QCOMPARE(bag["cameras"]["left"]["stream"].text(), std::string("/davis_left/events"));
     QCOMPARE(bag["board"]["rows"].integer(1, 100), 11);
     QCOMPARE(bag["imus"]["left_imu"]["gyroscope_noise_density"].real(), 1.87e-4);
+    scenario.intrinsics_in_session = false;
+    scenario.imus.clear();
+    const YamlNode less = YamlNode::parse(sessionYaml(scenario, "recording.bag"), "session.yaml");
+    QVERIFY(!less["cameras"]["left"].has("intrinsics") && !less.has("imus"));
+    QCOMPARE(less["reference"].text(), std::string("left"));
   }
 
  private:
