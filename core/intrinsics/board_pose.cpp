@@ -1,0 +1,90 @@
+#include "core/intrinsics/board_pose.h"
+
+#include "core/geometry/circle_conic.h"
+#include "core/geometry/so3.h"
+
+#include <Eigen/Cholesky>
+
+#include <opencv2/calib3d.hpp>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace evical {
+namespace {
+
+struct Ray {
+  Eigen::Vector2d on_board_m, normalised;
+};
+
+const CameraIntrinsics& normalisedCamera() {
+  static const CameraIntrinsics camera{
+      CameraModel::PinholeRadtan, {1, 1}, Eigen::Vector2d::Ones(), Eigen::Vector2d::Zero(), {}};
+  return camera;
+}
+
+// Gauss-Newton on the ellipses' centres; returns the sum of squares, infinite where it leads nowhere.
+double refine(const std::vector<Ray>& rays, double radius_m, RigidTransform& pose) {
+  constexpr int kIterations = 6;
+  double squares = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration <= kIterations; ++iteration) {
+    Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
+    Eigen::Matrix<double, 6, 1> vector = Eigen::Matrix<double, 6, 1>::Zero();
+    squares = 0.0;
+    for (const Ray& ray : rays) {
+      Eigen::Matrix<double, 2, 6> jacobian;
+      const auto centre =
+          projectedCircleCentre(normalisedCamera(), pose, ray.on_board_m, radius_m, &jacobian);
+      if (!centre) return std::numeric_limits<double>::infinity();
+      const Eigen::Vector2d error = *centre - ray.normalised;
+      matrix += jacobian.transpose() * jacobian;
+      vector -= jacobian.transpose() * error;
+      squares += error.squaredNorm();
+    }
+    if (iteration == kIterations) break;
+    const Eigen::Matrix<double, 6, 1> step = matrix.ldlt().solve(vector);
+    if (!step.allFinite()) return std::numeric_limits<double>::infinity();
+    pose.rotation = (pose.rotation * quaternionExp(step.head<3>())).normalized();
+    pose.translation_m += step.tail<3>();
+  }
+  return squares;
+}
+
+}  // namespace
+
+std::optional<RigidTransform> boardPose(const SensorView& view, const CircleBoard& board,
+                                        const CameraIntrinsics& camera) {
+  std::vector<Ray> rays;
+  std::vector<cv::Point3d> on_board;
+  std::vector<cv::Point2d> normalised;
+  for (const SensorCircle& circle : view.circles) {
+    const auto ray = unproject(camera, circle.centre_px);
+    if (!circle.used || !ray) continue;
+    rays.push_back({circle.on_board_m, *ray});
+    on_board.emplace_back(circle.on_board_m.x(), circle.on_board_m.y(), 0.0);
+    normalised.emplace_back(ray->x(), ray->y());
+  }
+  if (rays.size() < 4) return std::nullopt;
+  std::vector<cv::Mat> rotations, translations;
+  try {
+    cv::solvePnPGeneric(on_board, normalised, cv::Mat::eye(3, 3, CV_64F), cv::noArray(), rotations,
+                        translations, false, cv::SOLVEPNP_IPPE);
+  } catch (const cv::Exception&) {
+    return std::nullopt;  // degenerate points
+  }
+  std::optional<RigidTransform> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < rotations.size(); ++k) {
+    const double* const r = rotations[k].ptr<double>();
+    const double* const t = translations[k].ptr<double>();
+    RigidTransform pose{quaternionExp({r[0], r[1], r[2]}), {t[0], t[1], t[2]}};
+    const double squares = refine(rays, board.radius_m, pose);
+    if (!(squares < least)) continue;
+    least = squares;
+    best = pose;
+  }
+  return best;
+}
+
+}  // namespace evical

@@ -1,0 +1,52 @@
+// Zero when a measured circle is where camera and pose put it, on the sensor (method section 8):
+//   r = L^-1 [ distorted(centre of the projected circle's conic) + lead * effect - measured ],
+// L the Cholesky factor of the centre's covariance. Without unit.
+//
+// Blocks: intrinsics (fx fy cx cy d0..d4), edge lead [px], camera_from_board (x y z w, then metres). The
+// pose's Jacobian is with respect to its manifold's step: three columns for the rotation, one of zeros, three
+// for the translation.
+#pragma once
+
+#include "core/geometry/camera_model.h"
+#include "core/geometry/rigid_transform.h"
+#include "core/intrinsics/sensor_views.h"
+
+#include <ceres/manifold.h>
+#include <ceres/sized_cost_function.h>
+#include <Eigen/Core>
+
+namespace evical {
+
+inline constexpr int kPoseBlock = 7;
+
+class CircleCentreCost final : public ceres::SizedCostFunction<2, 9, 1, kPoseBlock> {
+ public:
+  // `scale`: of all covariances, as the residuals show it.
+  CircleCentreCost(CameraModel model, const SensorCircle& circle, double radius_m, double scale);
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  CameraModel model_;
+  Eigen::Vector2d on_board_m_, centre_px_, lead_effect_;
+  Eigen::Matrix2d whitening_px_;
+  double radius_m_;
+};
+
+// Perturbed as rotation * Exp(delta) and translation + delta.
+class PoseManifold final : public ceres::Manifold {
+ public:
+  int AmbientSize() const override { return kPoseBlock; }
+  int TangentSize() const override { return 6; }
+  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override;
+  bool PlusJacobian(const double* x, double* jacobian) const override;
+  bool Minus(const double* y, const double* x, double* y_minus_x) const override;
+  bool MinusJacobian(const double* x, double* jacobian) const override;
+};
+
+CameraIntrinsics intrinsicsFrom(const double* parameters, CameraModel model, Resolution resolution_px);
+void writeIntrinsics(const CameraIntrinsics& camera, double* parameters);
+RigidTransform poseFrom(const double* parameters);
+void writePose(const RigidTransform& pose, double* parameters);
+
+}  // namespace evical

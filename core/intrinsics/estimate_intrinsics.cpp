@@ -1,0 +1,118 @@
+#include "core/intrinsics/estimate_intrinsics.h"
+
+#include "core/base/error.h"
+#include "core/intrinsics/bundle.h"
+#include "core/intrinsics/intrinsics_checks.h"
+#include "core/intrinsics/intrinsics_start.h"
+#include "core/intrinsics/intrinsics_uncertainty.h"
+#include "core/intrinsics/view_selection.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <vector>
+
+namespace evical {
+namespace {
+
+void checkCount(std::size_t views, const char* what, const IntrinsicsInput& input,
+                const IntrinsicsOptions& options) {
+  if (static_cast<int>(views) >= options.least_views) return;
+  throw calibrationFailed(
+      input.observations.camera,
+      fmt::format("only {} {} show at least {:.0f} % of the board, {} are needed for intrinsics", views, what,
+                  100.0 * options.least_circles, options.least_views),
+      "Move the board through the whole image, all of it in view most of the time, for 20 s or more");
+}
+
+Bundle bestOf(const std::vector<CameraIntrinsics>& starts, const std::vector<SensorView>& views,
+              const IntrinsicsInput& input, const IntrinsicsOptions& options, const RunContext& context) {
+  std::optional<Bundle> best;
+  for (const CameraIntrinsics& start : starts) {
+    context.throwIfStopped();
+    Bundle bundle = solveBundle(start, views, input.board, options, context);
+    if (!best || bundle.scale < best->scale) best = std::move(bundle);
+  }
+  return *best;
+}
+
+// Equidistant only where radial-tangential does not do.
+Bundle solve(const std::vector<SensorView>& views, const IntrinsicsInput& input,
+             const IntrinsicsOptions& options, const RunContext& context) {
+  if (input.start) return bestOf({*input.start}, views, input, options, context);
+  const auto with = [&](CameraModel model) {
+    return bestOf(intrinsicsStarts(views, model, input.resolution_px, input.seen_with), views, input, options,
+                  context);
+  };
+  if (options.model == IntrinsicsModel::PinholeEquidistant) return with(CameraModel::PinholeEquidistant);
+  Bundle radtan = with(CameraModel::PinholeRadtan);
+  if (options.model == IntrinsicsModel::PinholeRadtan) return radtan;
+  constexpr double kClearlyBetter = 0.85;
+  Bundle equidistant = with(CameraModel::PinholeEquidistant);
+  return equidistant.scale < kClearlyBetter * radtan.scale ? equidistant : radtan;
+}
+
+void addFit(const Bundle& bundle, IntrinsicsResult& result) {
+  int all = 0;
+  double squares = 0.0;
+  for (std::size_t v = 0; v < bundle.views.size(); ++v) {
+    for (const SensorCircle& circle : bundle.views[v].circles) {
+      ++all;
+      if (!circle.used) continue;
+      squares += bundle.error_px(v, circle).squaredNorm();
+    }
+  }
+  result.circles_used = bundle.circlesUsed();
+  result.circles_rejected = all - result.circles_used;
+  result.views_used = bundle.viewsUsed();
+  result.reprojection_rms_px = std::sqrt(squares / std::max(1, result.circles_used));
+}
+
+}  // namespace
+
+IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const IntrinsicsOptions& options,
+                                    const RunContext& context) {
+  const std::vector<SensorView> all = sensorViews(input.observations, input.board, input.seen_with, options);
+  checkCount(all.size(), "views", input, options);
+  const CameraIntrinsics rough =
+      input.start
+          ? *input.start
+          : intrinsicsStarts(all, CameraModel::PinholeRadtan, input.resolution_px, input.seen_with).back();
+  const std::vector<SensorView> views = selectViews(all, input.board, rough, options);
+  checkCount(views.size(), "views, far enough from each other in time,", input, options);
+  const Bundle bundle = solve(views, input, options, context);
+
+  IntrinsicsResult result;
+  result.intrinsics = bundle.intrinsics;
+  result.edge_lead_px = bundle.edge_lead_px;
+  result.views_found = static_cast<int>(input.observations.views.size());
+  addFit(bundle, result);
+  checkCount(static_cast<std::size_t>(result.views_used), "views that fit each other", input, options);
+  const BundleUncertainty uncertainty = bundleUncertainty(bundle, input.board, options);
+  result.covariance = uncertainty.covariance;
+  result.edge_lead_std_px = uncertainty.edge_lead_std_px;
+  result.normalised_rms = uncertainty.normalised_rms;
+  result.largest_tilt_deg = largestTilt_deg(bundle);
+  const IntrinsicsVector sigmas = result.standardDeviations();
+  checkTilts(bundle, (sigmas.head<2>().cwiseQuotient(result.intrinsics.focal_length_px)).maxCoeff(), options);
+  result.image = imageMap(bundle, result.covariance);
+  result.advice = coverageAdvice(bundle, result.image);
+  judge(bundle, options, result);
+  return result;
+}
+
+std::optional<CameraIntrinsics> roughIntrinsics(const IntrinsicsInput& input,
+                                                const IntrinsicsOptions& options, const RunContext& context) {
+  constexpr std::size_t kLeastViews = 4;
+  constexpr double kMostFocalLength = 20.0;  // image widths: views that all look alike lead anywhere
+  const std::vector<SensorView> views =
+      sensorViews(input.observations, input.board, input.seen_with, options);
+  if (views.size() < kLeastViews) return std::nullopt;
+  const CameraIntrinsics camera = solve(views, input, options, context).intrinsics;
+  const bool sane = camera.focal_length_px.allFinite() && camera.focal_length_px.minCoeff() > 1.0 &&
+                    camera.focal_length_px.maxCoeff() < kMostFocalLength * input.resolution_px.width_px &&
+                    unproject(camera, camera.principal_point_px);
+  return sane ? std::optional(camera) : std::nullopt;
+}
+
+}  // namespace evical

@@ -1,0 +1,37 @@
+// Camera intrinsics from board views (method section 8): views are chosen, a start is found, intrinsics and
+// poses are adjusted together, and the result is judged.
+//
+// The centres of ellipses were fitted in the ideal pixels of `seen_with`. Where that is far from the camera
+// as found, they are not quite the centres of true ellipses: let the front end see the events again with the
+// result, and estimate once more.
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/data/board_observations.h"
+#include "core/data/intrinsics_result.h"
+#include "core/geometry/circle_board.h"
+#include "core/intrinsics/intrinsics_options.h"
+
+#include <optional>
+
+namespace evical {
+
+struct IntrinsicsInput {
+  const CircleBoard& board;
+  Resolution resolution_px;
+  const BoardObservations& observations;
+  std::optional<CameraIntrinsics> seen_with;  // none: the observations are in the sensor's own pixels
+  std::optional<CameraIntrinsics> start;      // of an estimate before; none: a start is found
+};
+
+// The order of board.index is that of the views; of boards that look the same upside down either will do.
+// Throws CalibrationFailed, with what to do, where the views make no camera.
+IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const IntrinsicsOptions& options,
+                                    const RunContext& context);
+
+// The same without checks and uncertainty, from a handful of views: good enough to see the board with.
+// Nothing where even that fails.
+std::optional<CameraIntrinsics> roughIntrinsics(const IntrinsicsInput& input,
+                                                const IntrinsicsOptions& options, const RunContext& context);
+
+}  // namespace evical

@@ -1,0 +1,129 @@
+#include "core/intrinsics/intrinsics_checks.h"
+
+#include "core/base/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace evical {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+// The board's normals, into the board, in the camera; of the views used.
+std::vector<Eigen::Vector3d> normals(const Bundle& bundle) {
+  std::vector<Eigen::Vector3d> all;
+  for (std::size_t v = 0; v < bundle.views.size(); ++v) {
+    const auto& circles = bundle.views[v].circles;
+    if (std::any_of(circles.begin(), circles.end(), [](const SensorCircle& c) { return c.used; }))
+      all.push_back(bundle.poses[v].rotation * Eigen::Vector3d::UnitZ());
+  }
+  return all;
+}
+
+std::string joinedInWords(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
+  return text;
+}
+
+struct Region {
+  const char* name;
+  int cells = 0, seen = 0;
+};
+
+std::array<Region, 9> regionsOf(const ImageMap& image) {
+  std::array<Region, 9> regions = {{{"the upper left corner"},
+                                    {"the upper edge"},
+                                    {"the upper right corner"},
+                                    {"the left edge"},
+                                    {"the middle"},
+                                    {"the right edge"},
+                                    {"the lower left corner"},
+                                    {"the lower edge"},
+                                    {"the lower right corner"}}};
+  for (int row = 0; row < image.rows; ++row) {
+    for (int column = 0; column < image.columns; ++column) {
+      // Corners and edges are a quarter of the image's width and height.
+      const auto third = [](int i, int count) { return 4 * i < count ? 0 : 4 * i >= 3 * count ? 2 : 1; };
+      Region& region =
+          regions[static_cast<std::size_t>(3 * third(row, image.rows) + third(column, image.columns))];
+      ++region.cells;
+      region.seen += image.cells[static_cast<std::size_t>(row * image.columns + column)].circles > 0;
+    }
+  }
+  return regions;
+}
+
+}  // namespace
+
+double largestTilt_deg(const Bundle& bundle) {
+  std::vector<double> tilts_deg;
+  for (const Eigen::Vector3d& normal : normals(bundle))
+    tilts_deg.push_back(kDegPerRad * std::acos(std::clamp(normal.z(), -1.0, 1.0)));
+  if (tilts_deg.empty()) return 0.0;
+  std::sort(tilts_deg.begin(), tilts_deg.end());
+  return tilts_deg[(tilts_deg.size() - 1) * 19 / 20];
+}
+
+void checkTilts(const Bundle& bundle, double focal_length_relative_std, const IntrinsicsOptions& options) {
+  constexpr double kUseless = 0.05;
+  const double tilt_deg = largestTilt_deg(bundle);
+  if (tilt_deg >= options.least_tilt_deg && focal_length_relative_std < kUseless) return;
+  throw calibrationFailed(
+      "intrinsics",
+      fmt::format("the focal length is not observable: it is known to {:.1f} % only, and the board is "
+                  "tilted by at most {:.0f} deg against the image",
+                  100.0 * focal_length_relative_std, tilt_deg),
+      "Tilt the board by 20 to 40 deg to all four sides");
+}
+
+std::vector<std::string> coverageAdvice(const Bundle& bundle, const ImageMap& image) {
+  std::vector<std::string> none, few, advice;
+  for (const Region& region : regionsOf(image)) {
+    if (region.seen == 0) none.push_back(region.name);
+    if (region.seen > 0 && 3 * region.seen < region.cells) few.push_back(region.name);
+  }
+  if (!none.empty())
+    advice.push_back(fmt::format("No views in {}: move the board there", joinedInWords(none)));
+  if (!few.empty())
+    advice.push_back(fmt::format("Hardly any views in {}: move the board further there", joinedInWords(few)));
+  constexpr double kTilted = 0.17;  // sine of 10 deg
+  std::vector<std::string> sides;
+  const std::vector<Eigen::Vector3d> all = normals(bundle);
+  const auto never = [&](int axis, double sign) {
+    return std::none_of(all.begin(), all.end(), [&](const auto& n) { return sign * n[axis] > kTilted; });
+  };
+  if (never(0, 1.0)) sides.emplace_back("right");
+  if (never(0, -1.0)) sides.emplace_back("left");
+  if (never(1, 1.0)) sides.emplace_back("lower");
+  if (never(1, -1.0)) sides.emplace_back("upper");
+  if (!sides.empty())
+    advice.push_back(
+        fmt::format("The board's {} side was never tilted towards the camera: do so", joinedInWords(sides)));
+  return advice;
+}
+
+void judge(const Bundle& bundle, const IntrinsicsOptions& options, IntrinsicsResult& result) {
+  const IntrinsicsVector sigmas = result.standardDeviations();
+  const double focal = (sigmas.head<2>().cwiseQuotient(result.intrinsics.focal_length_px)).maxCoeff();
+  std::vector<std::string> reasons;
+  if (!bundle.converged) reasons.emplace_back("the bundle adjustment did not converge");
+  if (!(focal <= options.needed_focal_length))
+    reasons.push_back(fmt::format("the focal length is known to {:.2f} % only", 100.0 * focal));
+  if (!(result.image.rms_px <= options.needed_projection_px))
+    reasons.push_back(fmt::format("pixels of rays are known to {:.2f} px RMS only", result.image.rms_px));
+  if (result.circles_rejected > result.circles_used)
+    reasons.emplace_back("most circles do not fit: check the board's type, spacing and radius");
+  if (reasons.empty()) return;
+  result.status = CalibrationStatus::Doubtful;
+  result.reason = joinedInWords(reasons);
+}
+
+}  // namespace evical

@@ -1,0 +1,21 @@
+// What the views leave open, in words for whoever moves the board.
+#pragma once
+
+#include "core/data/intrinsics_result.h"
+#include "core/intrinsics/bundle.h"
+
+namespace evical {
+
+// Throws CalibrationFailed where hardly any view is tilted: the focal length is not observable then.
+void checkTilts(const Bundle& bundle, double focal_length_relative_std, const IntrinsicsOptions& options);
+
+// Largest angle between board and image; of the views used, the most tilted twentieth left out.
+double largestTilt_deg(const Bundle& bundle);
+
+// Where in the image views are missing, and which way the board was never tilted.
+std::vector<std::string> coverageAdvice(const Bundle& bundle, const ImageMap& image);
+
+// Status and reason, from what else is filled in.
+void judge(const Bundle& bundle, const IntrinsicsOptions& options, IntrinsicsResult& result);
+
+}  // namespace evical

@@ -1,0 +1,22 @@
+// Where the bundle adjustment starts.
+#pragma once
+
+#include "core/geometry/circle_board.h"
+#include "core/intrinsics/sensor_views.h"
+
+#include <optional>
+#include <vector>
+
+namespace evical {
+
+// The camera of this model that sees nearly what `camera` sees: both project rays through the image nearly to
+// the same pixels.
+CameraIntrinsics sameLens(const CameraIntrinsics& camera, CameraModel model);
+
+// At least one: OpenCV's calibration on the centres as if they were points, and the lens that the front end
+// saw with.
+std::vector<CameraIntrinsics> intrinsicsStarts(const std::vector<SensorView>& views, CameraModel model,
+                                               Resolution resolution_px,
+                                               const std::optional<CameraIntrinsics>& seen_with);
+
+}  // namespace evical

@@ -1,0 +1,175 @@
+#include "core/intrinsics/intrinsics_uncertainty.h"
+
+#include "core/geometry/projection_difference.h"
+#include "core/intrinsics/circle_centre_cost.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace evical {
+namespace {
+
+constexpr int kShared = kIntrinsicsCount + 1;  // and the edge lead
+using SharedMatrix = Eigen::Matrix<double, kShared, kShared>;
+using SharedVector = Eigen::Matrix<double, kShared, 1>;
+using PoseMatrix = Eigen::Matrix<double, 6, 6>;
+
+// What one view says once its pose is eliminated.
+struct ViewInformation {
+  double time_s = 0.0;
+  SharedMatrix information = SharedMatrix::Zero();
+  SharedVector score = SharedVector::Zero();
+  double squares = 0.0;
+  int residuals = 0;
+};
+
+ViewInformation viewInformation(const SensorView& view, const RigidTransform& pose, const Bundle& bundle,
+                                const CircleBoard& board, const IntrinsicsOptions& options) {
+  Eigen::Matrix<double, kIntrinsicsCount, 1> intrinsics;
+  writeIntrinsics(bundle.intrinsics, intrinsics.data());
+  Eigen::Matrix<double, kPoseBlock, 1> pose_block;
+  writePose(pose, pose_block.data());
+  const std::array<const double*, 3> blocks = {intrinsics.data(), &bundle.edge_lead_px, pose_block.data()};
+  PoseMatrix a = PoseMatrix::Zero();
+  Eigen::Matrix<double, kShared, 6> b = Eigen::Matrix<double, kShared, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> pose_score = Eigen::Matrix<double, 6, 1>::Zero();
+  ViewInformation out;
+  out.time_s = view.time_s;
+  for (const SensorCircle& circle : view.circles) {
+    if (!circle.used) continue;
+    Eigen::Vector2d residual, by_lead;
+    Eigen::Matrix<double, 2, kIntrinsicsCount, Eigen::RowMajor> by_intrinsics;
+    Eigen::Matrix<double, 2, kPoseBlock, Eigen::RowMajor> by_block;
+    std::array<double*, 3> jacobians = {by_intrinsics.data(), by_lead.data(), by_block.data()};
+    CircleCentreCost(bundle.intrinsics.model, circle, board.radius_m, bundle.scale)
+        .Evaluate(blocks.data(), residual.data(), jacobians.data());
+    Eigen::Matrix<double, 2, kShared> by_shared;
+    by_shared << by_intrinsics, by_lead;
+    Eigen::Matrix<double, 2, 6> by_pose;
+    by_pose << by_block.leftCols<3>(), by_block.rightCols<3>();
+    const double weight = std::min(1.0, options.huber_sigma / std::max(residual.norm(), 1e-12));
+    a += weight * by_pose.transpose() * by_pose;
+    b += weight * by_shared.transpose() * by_pose;
+    out.information += weight * by_shared.transpose() * by_shared;
+    out.score += weight * by_shared.transpose() * residual;
+    pose_score += weight * by_pose.transpose() * residual;
+    out.squares += weight * residual.squaredNorm();
+    out.residuals += 2;
+  }
+  if (out.residuals == 0) return out;
+  const Eigen::LDLT<PoseMatrix> solver(a);
+  out.information -= b * solver.solve(b.transpose());
+  out.score -= b * solver.solve(pose_score);
+  return out;
+}
+
+// Newey and West: the scores' covariance, neighbours in time included.
+SharedMatrix scoreCovariance(const std::vector<ViewInformation>& views, double correlation_time_s) {
+  SharedMatrix sum = SharedMatrix::Zero();
+  for (const ViewInformation& one : views) {
+    for (const ViewInformation& other : views) {
+      const double apart_s = std::abs(one.time_s - other.time_s);
+      if (apart_s > correlation_time_s) continue;
+      const double weight = correlation_time_s > 0.0 ? 1.0 - apart_s / correlation_time_s : 1.0;
+      sum += weight * one.score * other.score.transpose();
+    }
+  }
+  return sum;
+}
+
+// Inverse over the free parameters only.
+SharedMatrix inverseOf(const SharedMatrix& information, const std::vector<int>& free) {
+  const auto size = static_cast<Eigen::Index>(free.size());
+  const Eigen::MatrixXd part = information(free, free);
+  const Eigen::VectorXd scale = part.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * part * scale.asDiagonal();
+  constexpr double kFloor = 1e-14;  // directions that nothing says get a sigma beyond any need
+  const Eigen::MatrixXd inverse = (scaled + kFloor * Eigen::MatrixXd::Identity(size, size))
+                                      .ldlt()
+                                      .solve(Eigen::MatrixXd::Identity(size, size));
+  SharedMatrix whole = SharedMatrix::Zero();
+  whole(free, free) = scale.asDiagonal() * inverse * scale.asDiagonal();
+  return whole;
+}
+
+}  // namespace
+
+BundleUncertainty bundleUncertainty(const Bundle& bundle, const CircleBoard& board,
+                                    const IntrinsicsOptions& options) {
+  std::vector<int> free;
+  const FreeIntrinsics is_free = freeIntrinsics(bundle.intrinsics.model, options);
+  for (int i = 0; i < kIntrinsicsCount; ++i)
+    if (is_free[static_cast<std::size_t>(i)]) free.push_back(i);
+  free.push_back(kIntrinsicsCount);
+  SharedMatrix information = SharedMatrix::Zero();
+  double squares = 0.0;
+  int residuals = 0, unknowns = static_cast<int>(free.size());
+  std::vector<ViewInformation> views;
+  for (std::size_t v = 0; v < bundle.views.size(); ++v) {
+    ViewInformation view = viewInformation(bundle.views[v], bundle.poses[v], bundle, board, options);
+    if (view.residuals == 0) continue;
+    information += view.information;
+    squares += view.squares;
+    residuals += view.residuals;
+    unknowns += 6;
+    views.push_back(view);
+  }
+  BundleUncertainty out;
+  if (residuals <= unknowns) return out;
+  const double variance = squares / (residuals - unknowns);
+  information(kIntrinsicsCount, kIntrinsicsCount) += std::pow(options.edge_lead_sigma_px, -2);
+  const SharedMatrix inverse = inverseOf(information, free);
+  SharedMatrix covariance = variance * inverse;
+  // Few views take part of their own common errors along.
+  const auto count = static_cast<double>(views.size()), shared = static_cast<double>(free.size());
+  const double few = count > 2.0 * shared ? count / (count - shared) : 2.0;
+  const SharedMatrix correlated =
+      few * inverse * scoreCovariance(views, options.correlation_time_s) * inverse.transpose();
+  const SharedVector growth =
+      (correlated.diagonal().array() / covariance.diagonal().array().max(1e-300)).max(1.0).sqrt().matrix();
+  covariance = (growth.asDiagonal() * covariance * growth.asDiagonal()).eval();
+  out.covariance = covariance.topLeftCorner<kIntrinsicsCount, kIntrinsicsCount>();
+  out.edge_lead_std_px = std::sqrt(covariance(kIntrinsicsCount, kIntrinsicsCount));
+  out.normalised_rms = bundle.scale * std::sqrt(variance);
+  return out;
+}
+
+ImageMap imageMap(const Bundle& bundle, const IntrinsicsMatrix& covariance) {
+  ImageMap map;
+  map.columns = 16;
+  map.rows = 12;
+  const Resolution size = bundle.intrinsics.resolution_px;
+  const ProjectionChange change(bundle.intrinsics, map.columns, map.rows);
+  double squares = 0.0;
+  int seen = 0;
+  for (const ProjectionChange::Place& place : change.places()) {
+    ImageCell& cell = map.cells.emplace_back();
+    cell.middle_px = place.pixel;
+    cell.sigma_px = std::numeric_limits<double>::infinity();
+    if (!place.by_intrinsics) continue;
+    const IntrinsicsJacobian& j = *place.by_intrinsics;
+    cell.sigma_px = std::sqrt(std::max(0.0, (j * covariance * j.transpose()).trace()));
+    squares += cell.sigma_px * cell.sigma_px;
+    map.max_px = std::max(map.max_px, cell.sigma_px);
+    ++seen;
+  }
+  map.rms_px = seen == 0 ? std::numeric_limits<double>::infinity() : std::sqrt(squares / seen);
+  for (const SensorView& view : bundle.views) {
+    for (const SensorCircle& circle : view.circles) {
+      if (!circle.used) continue;
+      const int column = static_cast<int>(circle.centre_px.x() * map.columns / size.width_px);
+      const int row = static_cast<int>(circle.centre_px.y() * map.rows / size.height_px);
+      const int index =
+          std::clamp(row, 0, map.rows - 1) * map.columns + std::clamp(column, 0, map.columns - 1);
+      ++map.cells[static_cast<std::size_t>(index)].circles;
+    }
+  }
+  return map;
+}
+
+}  // namespace evical

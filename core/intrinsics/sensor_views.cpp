@@ -1,0 +1,49 @@
+#include "core/intrinsics/sensor_views.h"
+
+#include <Eigen/LU>
+
+#include <cmath>
+
+namespace evical {
+namespace {
+
+SensorCircle sensorCircle(const CircleObservation& circle, double time_s, const CircleBoard& board,
+                          const std::optional<CameraIntrinsics>& seen_with,
+                          const IntrinsicsOptions& options) {
+  const Eigen::Vector2d ideal = circle.centre_px + (time_s - circle.time_s) * circle.velocity_px_s;
+  Eigen::Matrix2d sensor_from_ideal = Eigen::Matrix2d::Identity();
+  SensorCircle out;
+  out.on_board_m = board.centre_m(circle.circle);
+  out.centre_px = ideal;
+  if (seen_with) {
+    out.centre_px = pixelFromIdeal(*seen_with, ideal);
+    sensor_from_ideal = idealPixelScale(*seen_with, ideal).inverse();
+  }
+  const double floor_px2 = options.least_centre_sigma_px * options.least_centre_sigma_px;
+  out.covariance_px2 = sensor_from_ideal * circle.covariance_px2 * sensor_from_ideal.transpose() +
+                       floor_px2 * Eigen::Matrix2d::Identity();
+  const double speed_px_s = (sensor_from_ideal * circle.velocity_px_s).norm();
+  const double moving = speed_px_s / std::hypot(speed_px_s, options.rest_speed_px_s);
+  out.lead_effect = moving * (sensor_from_ideal * circle.edge_lead_effect);
+  return out;
+}
+
+}  // namespace
+
+std::vector<SensorView> sensorViews(const BoardObservations& observations, const CircleBoard& board,
+                                    const std::optional<CameraIntrinsics>& seen_with,
+                                    const IntrinsicsOptions& options) {
+  std::vector<SensorView> views;
+  const double least = std::max(4.0, options.least_circles * board.circleCount());
+  for (const BoardView& view : observations.views) {
+    if (static_cast<double>(view.circles.size()) < least) continue;
+    SensorView& out = views.emplace_back();
+    for (const CircleObservation& circle : view.circles)
+      out.time_s += circle.time_s / static_cast<double>(view.circles.size());
+    for (const CircleObservation& circle : view.circles)
+      out.circles.push_back(sensorCircle(circle, out.time_s, board, seen_with, options));
+  }
+  return views;
+}
+
+}  // namespace evical
