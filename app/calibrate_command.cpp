@@ -41,7 +41,7 @@ int run(const SessionArguments& arguments) {
   CalibrationRun result;
   try {
     calibrateInto(result, session, context);
-    const NamedResult named = namedResult(session, result.result, kVersion);
+    const NamedResult named = namedResult(session, result, kVersion);
     const ExportRemarks remarks =
         writeResultFiles(arguments.output, session, result, kVersion, console.logText());
     console.stageStarted("done");

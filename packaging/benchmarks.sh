@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 
 packaging/install-dependencies.sh
 cmake --preset release -DEVICAL_TESTS=ON
-cmake --build --preset release --target evical_accuracy evical_speed
+cmake --build --preset release --target evical_accuracy evical_intrinsics_accuracy evical_speed
 accuracy=build/release/tests/benchmarks/evical_accuracy
 scenarios=config/scenarios
 
@@ -15,6 +15,10 @@ scenarios=config/scenarios
             "$scenarios"/{blur_0.4px,blur_1px,threshold_0.15,threshold_0.5}.yaml \
             "$scenarios"/{planar_motion,one_axis_rotation,hardly_moving}.yaml
 "$accuracy" --seeds 20 "$scenarios/davis346_10s.yaml"
+
+intrinsics=build/release/tests/benchmarks/evical_intrinsics_accuracy
+"$intrinsics" "$scenarios"/intrinsics_{davis346,fisheye,symmetric}.yaml
+"$intrinsics" --seeds 10 --duration 15 "$scenarios/intrinsics_davis346.yaml"
 
 speed=build/release/tests/benchmarks/evical_speed
 "$speed" "$scenarios/davis346.yaml"

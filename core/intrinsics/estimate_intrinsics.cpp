@@ -25,28 +25,35 @@ void checkCount(std::size_t views, const char* what, const IntrinsicsInput& inpu
       "Move the board through the whole image, all of it in view most of the time, for 20 s or more");
 }
 
+// What a solution starts from.
+struct Ground {
+  const CircleBoard& board;
+  Resolution resolution_px;
+  std::optional<CameraIntrinsics> guess;
+  const IntrinsicsOptions& options;
+  const RunContext& context;
+};
+
 Bundle bestOf(const std::vector<CameraIntrinsics>& starts, const std::vector<SensorView>& views,
-              const IntrinsicsInput& input, const IntrinsicsOptions& options, const RunContext& context) {
+              const Ground& ground) {
   std::optional<Bundle> best;
   for (const CameraIntrinsics& start : starts) {
-    context.throwIfStopped();
-    Bundle bundle = solveBundle(start, views, input.board, options, context);
+    ground.context.throwIfStopped();
+    Bundle bundle = solveBundle(start, views, ground.board, ground.options, ground.context);
     if (!best || bundle.scale < best->scale) best = std::move(bundle);
   }
   return *best;
 }
 
 // Equidistant only where radial-tangential does not do.
-Bundle solve(const std::vector<SensorView>& views, const IntrinsicsInput& input,
-             const IntrinsicsOptions& options, const RunContext& context) {
-  if (input.start) return bestOf({*input.start}, views, input, options, context);
+Bundle solve(const std::vector<SensorView>& views, const Ground& ground) {
   const auto with = [&](CameraModel model) {
-    return bestOf(intrinsicsStarts(views, model, input.resolution_px, input.seen_with), views, input, options,
-                  context);
+    return bestOf(intrinsicsStarts(views, model, ground.resolution_px, ground.guess), views, ground);
   };
-  if (options.model == IntrinsicsModel::PinholeEquidistant) return with(CameraModel::PinholeEquidistant);
+  const IntrinsicsModel wanted = ground.options.model;
+  if (wanted == IntrinsicsModel::PinholeEquidistant) return with(CameraModel::PinholeEquidistant);
   Bundle radtan = with(CameraModel::PinholeRadtan);
-  if (options.model == IntrinsicsModel::PinholeRadtan) return radtan;
+  if (wanted == IntrinsicsModel::PinholeRadtan) return radtan;
   constexpr double kClearlyBetter = 0.85;
   Bundle equidistant = with(CameraModel::PinholeEquidistant);
   return equidistant.scale < kClearlyBetter * radtan.scale ? equidistant : radtan;
@@ -80,7 +87,8 @@ IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const Intrinsi
           : intrinsicsStarts(all, CameraModel::PinholeRadtan, input.resolution_px, input.seen_with).back();
   const std::vector<SensorView> views = selectViews(all, input.board, rough, options);
   checkCount(views.size(), "views, far enough from each other in time,", input, options);
-  const Bundle bundle = solve(views, input, options, context);
+  const Ground ground{input.board, input.resolution_px, input.seen_with, options, context};
+  const Bundle bundle = input.start ? bestOf({*input.start}, views, ground) : solve(views, ground);
 
   IntrinsicsResult result;
   result.intrinsics = bundle.intrinsics;
@@ -101,18 +109,24 @@ IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const Intrinsi
   return result;
 }
 
-std::optional<CameraIntrinsics> roughIntrinsics(const IntrinsicsInput& input,
-                                                const IntrinsicsOptions& options, const RunContext& context) {
-  constexpr std::size_t kLeastViews = 4;
+std::optional<RoughCamera> roughCamera(const std::vector<SensorView>& all, const CircleBoard& board,
+                                       const CameraIntrinsics& guess, const IntrinsicsOptions& options,
+                                       const RunContext& context) {
+  constexpr std::size_t kLeastViews = 4, kMostViews = 40;
   constexpr double kMostFocalLength = 20.0;  // image widths: views that all look alike lead anywhere
-  const std::vector<SensorView> views =
-      sensorViews(input.observations, input.board, input.seen_with, options);
-  if (views.size() < kLeastViews) return std::nullopt;
-  const CameraIntrinsics camera = solve(views, input, options, context).intrinsics;
+  if (all.size() < kLeastViews) return std::nullopt;
+  std::vector<SensorView> views;
+  const std::size_t every = (all.size() + kMostViews - 1) / kMostViews;
+  for (std::size_t k = 0; k < all.size(); k += every) views.push_back(all[k]);
+  const Bundle bundle = solve(views, {board, guess.resolution_px, guess, options, context});
+  const CameraIntrinsics& camera = bundle.intrinsics;
   const bool sane = camera.focal_length_px.allFinite() && camera.focal_length_px.minCoeff() > 1.0 &&
-                    camera.focal_length_px.maxCoeff() < kMostFocalLength * input.resolution_px.width_px &&
+                    camera.focal_length_px.maxCoeff() < kMostFocalLength * guess.resolution_px.width_px &&
                     unproject(camera, camera.principal_point_px);
-  return sane ? std::optional(camera) : std::nullopt;
+  if (!sane || bundle.circlesUsed() == 0) return std::nullopt;
+  const BundleUncertainty uncertainty = bundleUncertainty(bundle, board, options);
+  if (uncertainty.normalised_rms == 0.0) return std::nullopt;  // not more circles than unknowns
+  return RoughCamera{camera, imageMap(bundle, uncertainty.covariance).rms_px};
 }
 
 }  // namespace evical

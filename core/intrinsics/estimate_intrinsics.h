@@ -11,8 +11,10 @@
 #include "core/data/intrinsics_result.h"
 #include "core/geometry/circle_board.h"
 #include "core/intrinsics/intrinsics_options.h"
+#include "core/intrinsics/sensor_views.h"
 
 #include <optional>
+#include <vector>
 
 namespace evical {
 
@@ -29,9 +31,16 @@ struct IntrinsicsInput {
 IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const IntrinsicsOptions& options,
                                     const RunContext& context);
 
-// The same without checks and uncertainty, from a handful of views: good enough to see the board with.
-// Nothing where even that fails.
-std::optional<CameraIntrinsics> roughIntrinsics(const IntrinsicsInput& input,
-                                                const IntrinsicsOptions& options, const RunContext& context);
+// A camera that is good enough to see the board with.
+struct RoughCamera {
+  CameraIntrinsics intrinsics;
+  double sigma_px = 0.0;  // of where rays are projected, RMS over the image
+};
+
+// The same without checks, from a handful of views; `guess` is a lens that shows the board somehow. Nothing
+// where the views make no camera.
+std::optional<RoughCamera> roughCamera(const std::vector<SensorView>& views, const CircleBoard& board,
+                                       const CameraIntrinsics& guess, const IntrinsicsOptions& options,
+                                       const RunContext& context);
 
 }  // namespace evical

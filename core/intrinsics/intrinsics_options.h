@@ -62,7 +62,7 @@ inline constexpr auto kIntrinsicsFields = std::tuple{
     Field{"most_passes", &IntrinsicsOptions::most_passes, 1, 20, "",
           "Circles are refitted in undistorted pixels at most this often."},
     Field{"settled_px", &IntrinsicsOptions::settled_px, 1e-4, 1.0, "px",
-          "Refitting ends when the projection, RMS over the image, moves less."},
+          "Passes end when one more would move the projection, RMS over the image, by less."},
     Field{"needed_focal_length", &IntrinsicsOptions::needed_focal_length, 1e-5, 1.0, "",
           "Relative sigma of the focal length beyond which the result is doubtful."},
     Field{"needed_projection_px", &IntrinsicsOptions::needed_projection_px, 1e-3, 100.0, "px",

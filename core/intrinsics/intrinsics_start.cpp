@@ -105,7 +105,10 @@ std::vector<CameraIntrinsics> intrinsicsStarts(const std::vector<SensorView>& vi
                                                const std::optional<CameraIntrinsics>& seen_with) {
   std::vector<CameraIntrinsics> starts;
   if (seen_with) starts.push_back(sameLens(*seen_with, model));
-  if (const auto camera = byOpenCv(views, resolution_px)) starts.push_back(sameLens(*camera, model));
+  // A plain lens is a guess, which may lead elsewhere.
+  const bool guessed = !seen_with || seen_with->distortion == CameraIntrinsics{}.distortion;
+  const auto camera = guessed ? byOpenCv(views, resolution_px) : std::nullopt;
+  if (camera) starts.push_back(sameLens(*camera, model));
   if (starts.empty()) starts.push_back(plain(model, resolution_px));
   return starts;
 }

@@ -13,8 +13,8 @@ namespace evical {
 // the same pixels.
 CameraIntrinsics sameLens(const CameraIntrinsics& camera, CameraModel model);
 
-// At least one: OpenCV's calibration on the centres as if they were points, and the lens that the front end
-// saw with.
+// At least one: the lens that the front end saw with, and where that was a guess, one without distortion
+// coefficients, also OpenCV's calibration on the centres as if they were points.
 std::vector<CameraIntrinsics> intrinsicsStarts(const std::vector<SensorView>& views, CameraModel model,
                                                Resolution resolution_px,
                                                const std::optional<CameraIntrinsics>& seen_with);

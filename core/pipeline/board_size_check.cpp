@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,40 @@ std::string missingText(const AxisCheck& axis, std::size_t views) {
 }
 
 }  // namespace
+
+std::string outcomes(const BoardObservations& observations) {
+  std::array<int, kWindowOutcomeCount> counts = {};
+  for (const WindowReport& window : observations.windows) ++counts[static_cast<std::size_t>(window.outcome)];
+  std::string text;
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    if (counts[k] == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", counts[k],
+                        windowOutcomeName(static_cast<WindowOutcome>(k)));
+  }
+  return text.empty() ? "no windows" : text;
+}
+
+void checkBoardSeen(const BoardObservations& observations, const CircleBoard& board) {
+  if (!observations.views.empty()) return;
+  int lattices = 0;
+  for (const WindowReport& window : observations.windows) {
+    lattices += window.outcome == WindowOutcome::TooFewInGrid || window.outcome == WindowOutcome::Ambiguous ||
+                window.outcome == WindowOutcome::RefinementFailed;
+  }
+  const bool other_board = 5 * lattices > static_cast<int>(observations.windows.size());
+  throw calibrationFailed(
+      observations.camera,
+      fmt::format("the board was never found in {} windows ({})", observations.windows.size(),
+                  outcomes(observations)),
+      other_board
+          ? fmt::format(
+                "Circles in rows are there, but no {} x {} board: check rows, cols and circles (dark or "
+                "bright) in the session",
+                board.rows, board.cols)
+          : "Check that the board is in view, in focus and moving, rows, cols and circles (dark or bright) "
+            "in the "
+            "session; 'evical detect --images' draws what is seen");
+}
 
 void checkBoardSize(const BoardObservations& observations, const CircleBoard& board,
                     const ExtentOptions& options) {

@@ -1,5 +1,5 @@
-// Is the board in view the one of the session? A wrong number of rows or columns is found all the same, and
-// may calibrate to something wrong.
+// Is there a board, and is it the one of the session? A wrong number of rows or columns is found all the
+// same, and may calibrate to something wrong.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -8,8 +8,15 @@
 #include "core/geometry/circle_board.h"
 
 #include <optional>
+#include <string>
 
 namespace evical {
+
+// How many windows ended how, in words.
+std::string outcomes(const BoardObservations& observations);
+
+// Throws CalibrationFailed where the board was never found.
+void checkBoardSeen(const BoardObservations& observations, const CircleBoard& board);
 
 // Throws CalibrationFailed where the views contradict the number of rows or columns.
 void checkBoardSize(const BoardObservations& observations, const CircleBoard& board,

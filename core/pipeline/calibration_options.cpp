@@ -20,6 +20,7 @@ void forEachGroup(Options& all, Visitor&& visit) {
         kTrackingFields);
   visit("extent", "Does the board have the rows and columns that the session says?", all.front_end.extent,
         kExtentFields);
+  visit("intrinsics", "Camera intrinsics, where the session gives none", all.intrinsics, kIntrinsicsFields);
   visit("initialisation", "From single views to a first trajectory", all.initialisation,
         kInitialisationFields);
   visit("optimisation", "Batch optimisation and uncertainty", all.optimisation, kOptimisationFields);

@@ -4,6 +4,7 @@
 #include "core/base/option_yaml.h"
 #include "core/frontend/board_search.h"
 #include "core/initialisation/initialisation_options.h"
+#include "core/intrinsics/intrinsics_options.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/report/report_options.h"
 
@@ -15,6 +16,7 @@ namespace evical {
 
 struct CalibrationOptions {
   FrontEndOptions front_end;
+  IntrinsicsOptions intrinsics;
   InitialisationOptions initialisation;
   OptimisationOptions optimisation;
   ReportOptions report;

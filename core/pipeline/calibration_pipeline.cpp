@@ -7,6 +7,8 @@
 #include "core/optimisation/covariance.h"
 #include "core/pipeline/board_size_check.h"
 #include "core/pipeline/cross_validation.h"
+#include "core/pipeline/intrinsics_calibration.h"
+#include "core/pipeline/session_recording.h"
 #include "core/recording/inspection.h"
 
 #include <fmt/format.h>
@@ -55,40 +57,6 @@ void checkUnits(const ImuData& imu, const InitialisationOptions& options) {
   }
 }
 
-std::string outcomes(const BoardObservations& observations) {
-  std::array<int, kWindowOutcomeCount> counts = {};
-  for (const WindowReport& window : observations.windows) ++counts[static_cast<std::size_t>(window.outcome)];
-  std::string text;
-  for (std::size_t k = 0; k < counts.size(); ++k) {
-    if (counts[k] == 0) continue;
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", counts[k],
-                        windowOutcomeName(static_cast<WindowOutcome>(k)));
-  }
-  return text.empty() ? "no windows" : text;
-}
-
-void checkBoardSeen(const BoardObservations& observations, const CircleBoard& board) {
-  if (!observations.views.empty()) return;
-  int lattices = 0;
-  for (const WindowReport& window : observations.windows) {
-    lattices += window.outcome == WindowOutcome::TooFewInGrid || window.outcome == WindowOutcome::Ambiguous ||
-                window.outcome == WindowOutcome::RefinementFailed;
-  }
-  const bool other_board = 5 * lattices > static_cast<int>(observations.windows.size());
-  throw calibrationFailed(
-      observations.camera,
-      fmt::format("the board was never found in {} windows ({})", observations.windows.size(),
-                  outcomes(observations)),
-      other_board
-          ? fmt::format(
-                "Circles in rows are there, but no {} x {} board: check rows, cols and circles (dark or "
-                "bright) in the session",
-                board.rows, board.cols)
-          : "Check that the board is in view, in focus and moving, rows, cols and circles (dark or bright) "
-            "in the "
-            "session; 'evical detect --images' draws what is seen");
-}
-
 void checkDuration(const Session& session, const RecordingPass& pass) {
   const double least_s = session.options.initialisation.least_overlap_s;
   const auto check = [&](const std::string& sensor, double duration_s) {
@@ -120,15 +88,18 @@ CalibrationInput inputFrom(const Session& session, const RecordingPass& pass) {
 }
 
 void checkSession(const Session& session) {
-  for (const SessionCamera& camera : session.cameras) {
-    if (camera.intrinsics) continue;
-    throw badInput(fmt::format("{}: cameras.{}.intrinsics", session.source.string(), camera.name),
-                   "intrinsics are missing, and calibrating them from events is not there yet",
-                   "Give the map, or a path to one, to a Kalibr camchain or to a ROS camera_info file");
-  }
   if (session.imus.empty() && session.cameras.size() == 1) {
-    throw badInput(session.source.string() + ": imus", "there is neither an IMU nor a second camera",
-                   "Add one: a camera alone has nothing to be calibrated against");
+    throw badInput(
+        session.source.string() + ": imus", "there is neither an IMU nor a second camera",
+        "Add one: a camera alone has nothing to be calibrated against; for its intrinsics there is "
+        "'evical intrinsics'");
+  }
+  if (session.cameras.size() > 1 && session.board.hasHalfTurnAmbiguity()) {
+    throw badInput(session.source.string() + ": board",
+                   "the board looks the same when turned by 180 degrees, so cameras can not be calibrated "
+                   "against each other",
+                   "Use an asymmetric board with an odd number of rows; for each camera's intrinsics alone "
+                   "there is 'evical intrinsics'");
   }
 }
 
@@ -163,6 +134,36 @@ void validateByHalves(const Session& session, const CalibrationInput& input, con
       validation.failure.empty()
           ? fmt::format("halves of the recording differ by {:.2f} sigmas (RMS)", validation.rms_sigmas)
           : "halves of the recording: " + validation.failure);
+}
+
+// Of the cameras for which the session gives none; `known` is the session with what was found.
+void calibrateMissingIntrinsics(Session& known, const RunContext& context, CalibrationRun& run) {
+  const auto missing = [](const SessionCamera& camera) { return !camera.intrinsics; };
+  if (std::none_of(known.cameras.begin(), known.cameras.end(), missing)) return;
+  SessionRecording{known};  // streams that are missing are missed now, not after minutes
+  run.intrinsics.resize(known.cameras.size());
+  for (std::size_t k = 0; k < known.cameras.size(); ++k) {
+    if (known.cameras[k].intrinsics) continue;
+    run.intrinsics[k] = calibrateIntrinsics(known, k, context).result;
+    known.cameras[k].intrinsics = run.intrinsics[k]->intrinsics;
+  }
+}
+
+void tellIntrinsics(const Session& session, CalibrationRun& run) {
+  std::vector<std::string> notes;
+  std::string doubt;
+  for (std::size_t k = 0; k < run.intrinsics.size(); ++k) {
+    if (!run.intrinsics[k]) continue;
+    const IntrinsicsResult& found = *run.intrinsics[k];
+    const std::string name = "intrinsics of " + session.cameras[k].name;
+    notes.push_back(fmt::format("{}: calibrated from {} views in {:.1f} s, projection known to {:.3f} px",
+                                name, found.views_used, found.elapsed_s, found.image.rms_px));
+    for (const std::string& advice : found.advice) notes.push_back(fmt::format("{}: {}", name, advice));
+    if (found.status != CalibrationStatus::Ok && doubt.empty())
+      doubt = fmt::format("{}: {}", name, found.reason);
+  }
+  run.result.notes.insert(run.result.notes.begin(), notes.begin(), notes.end());
+  addDoubt(doubt, run.result);
 }
 
 }  // namespace
@@ -249,9 +250,15 @@ void estimate(const Session& session, const RunContext& context, CalibrationObse
 void calibrateInto(CalibrationRun& run, const Session& session, const RunContext& context,
                    const ObserverFactory& observers, CalibrationObserver* observer) {
   checkSession(session);
+  const Clock::time_point begin = Clock::now();
+  Session known = session;
+  calibrateMissingIntrinsics(known, context, run);
+  const double intrinsics_s = secondsSince(begin);
   context.progress.stageStarted("detect");
-  run.pass = readAndDetect(session, context, observers, observer);
-  estimate(session, context, observer, run);
+  run.pass = readAndDetect(known, context, observers, observer);
+  estimate(known, context, observer, run);
+  tellIntrinsics(known, run);
+  run.result.timing.total_s += intrinsics_s;
 }
 
 CalibrationRun calibrate(const Session& session, const RunContext& context, const ObserverFactory& observers,

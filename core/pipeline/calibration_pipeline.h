@@ -4,9 +4,11 @@
 
 #include "core/base/progress.h"
 #include "core/data/calibration_result.h"
+#include "core/data/intrinsics_result.h"
 #include "core/pipeline/recording_pass.h"
 #include "core/pipeline/session.h"
 
+#include <optional>
 #include <vector>
 
 namespace evical {
@@ -14,9 +16,13 @@ namespace evical {
 struct CalibrationRun {
   CalibrationResult result;
   RecordingPass pass;
+  // By camera: as calibrated first, where the session gave none. Empty: it gave all.
+  std::vector<std::optional<IntrinsicsResult>> intrinsics;
 };
 
-// Progress goes by the stages "detect", "initialise", "optimise", "cross_validate". Throws CalibrationError,
+// Cameras without intrinsics are calibrated first, from the same events: stages "first look" and "detect" for
+// each of them. Then progress goes by the stages "detect", "initialise", "optimise", "cross_validate". Throws
+// CalibrationError,
 // and Cancelled when asked to stop.
 CalibrationRun calibrate(const Session& session, const RunContext& context,
                          const ObserverFactory& observers = {}, CalibrationObserver* observer = nullptr);

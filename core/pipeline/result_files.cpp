@@ -71,10 +71,22 @@ NamedResult namedResult(const Session& session, const CalibrationResult& result,
   return named;
 }
 
+NamedResult namedResult(const Session& session, const CalibrationRun& run, const std::string& version) {
+  NamedResult named = namedResult(session, run.result, version);
+  named.names.intrinsics_std.resize(session.cameras.size());
+  for (std::size_t k = 0; k < run.intrinsics.size(); ++k) {
+    if (!run.intrinsics[k]) continue;
+    named.names.intrinsics[k] = run.intrinsics[k]->intrinsics;
+    const IntrinsicsVector sigmas = run.intrinsics[k]->standardDeviations();
+    std::copy(sigmas.begin(), sigmas.end(), named.names.intrinsics_std[k].emplace().begin());
+  }
+  return named;
+}
+
 ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Session& session,
                                const CalibrationRun& run, const std::string& version,
                                const std::string& log) {
-  NamedResult named = namedResult(session, run.result, version);
+  NamedResult named = namedResult(session, run, version);
   for (std::size_t i = 0; i < named.names.known_of_imus.size() && i < run.pass.imus.size(); ++i)
     named.names.known_of_imus[i].rate_hz = run.pass.imus[i].rate_hz();
   std::vector<FileContent> files = {{"result.yaml", resultYaml(named)},

@@ -12,6 +12,9 @@ namespace evical {
 
 NamedResult namedResult(const Session& session, const CalibrationResult& result, const std::string& version);
 
+// The same with the intrinsics that the run calibrated.
+NamedResult namedResult(const Session& session, const CalibrationRun& run, const std::string& version);
+
 // What to know of files for other programs, and the targets that got none, each with the reason.
 struct ExportRemarks {
   std::vector<std::string> notes, refused;

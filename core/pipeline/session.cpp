@@ -33,7 +33,9 @@ void checkDifferent(const Session& session, const std::string& place) {
     const std::string key = fmt::format("{}: {}.{}", place, kind, sensor.name);
     if (!names.insert(sensor.name).second)
       throw badInput(key, "this name is taken", "Give every sensor its own name");
-    if (!streams.insert({sensor.recording, sensor.stream}).second)
+    const auto recording =
+        std::filesystem::weakly_canonical(sensor.recording.empty() ? session.recording : sensor.recording);
+    if (!streams.insert({recording, sensor.stream}).second)
       throw badInput(key + ".stream", fmt::format("'{}' is already another sensor's stream", sensor.stream),
                      "Give every sensor its own stream");
   };

@@ -4,9 +4,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <vector>
 
 namespace evical {
 namespace {
@@ -78,6 +82,19 @@ std::string streamOf(const YamlNode& map) {
   return stream;
 }
 
+std::optional<std::array<double, 9>> readIntrinsicsStd(const YamlNode& camera) {
+  const auto map = camera.find("intrinsics_std");
+  if (!map) return std::nullopt;
+  const std::vector<double> focal = (*map)["focal_length_px"].reals(2);
+  const std::vector<double> principal = (*map)["principal_point_px"].reals(2);
+  const YamlNode node = (*map)["distortion"];
+  const std::vector<double> distortion = node.reals();
+  if (distortion.size() > 5) throw node.error("has more than 5 numbers");
+  std::array<double, 9> sigmas = {focal[0], focal[1], principal[0], principal[1]};
+  std::copy(distortion.begin(), distortion.end(), sigmas.begin() + 4);
+  return sigmas;
+}
+
 void readCamera(const YamlNode& map, NamedResult& named) {
   CameraState state;
   CameraUncertainty sigma;
@@ -104,6 +121,7 @@ void readCamera(const YamlNode& map, NamedResult& named) {
   }
   named.names.camera_streams.push_back(streamOf(map));
   const auto intrinsics = map.find("intrinsics");
+  named.names.intrinsics_std.push_back(readIntrinsicsStd(map));
   named.names.intrinsics.push_back(intrinsics ? std::optional(readIntrinsics(*intrinsics)) : std::nullopt);
   named.result.state.cameras.push_back(state);
   named.result.uncertainty.cameras.push_back(sigma);

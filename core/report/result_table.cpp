@@ -1,5 +1,8 @@
 #include "core/report/result_table.h"
 
+#include "core/report/intrinsics_report.h"
+#include "core/report/table_row.h"
+
 #include "core/geometry/so3.h"
 
 #include <fmt/format.h>
@@ -19,25 +22,12 @@ T at(const std::vector<T>& values, std::size_t i) {
   return i < values.size() ? values[i] : T{};
 }
 
-// "  0.0730 +- 0.0001": as many decimals as the sigma's second digit, at most what `most` says.
-std::string withSigma(double value, double sigma, int most) {
-  int decimals = most;
-  if (std::isfinite(sigma) && sigma > 0.0)
-    decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(sigma))), 0, most);
-  if (!(sigma > 0.0)) return fmt::format("{:>12.{}f}              ", value, decimals);
-  return fmt::format("{:>12.{}f} +- {:<10.{}f}", value, decimals, sigma, decimals);
-}
-
-std::string row(const std::string& name, double value, double sigma, const char* unit, int decimals = 5) {
-  return fmt::format("    {:<26}{} {}\n", name, withSigma(value, sigma, decimals), unit);
-}
-
 std::string vectorRows(const std::string& name, const Eigen::Vector3d& value, const Eigen::Vector3d& sigma,
                        const char* unit, double factor, int decimals = 5) {
   std::string text;
   for (int axis = 0; axis < 3; ++axis)
-    text += row(fmt::format("{} {}", name, "xyz"[axis]), factor * value[axis], factor * sigma[axis], unit,
-                decimals);
+    text += tableRow(fmt::format("{} {}", name, "xyz"[axis]), factor * value[axis], factor * sigma[axis],
+                     unit, decimals);
   return text;
 }
 
@@ -57,11 +47,13 @@ std::string cameraTable(const NamedResult& named, std::size_t i) {
   std::string text = fmt::format("Camera {}: p_{} = reference_from_camera * p_camera\n",
                                  named.names.cameras.at(i), named.names.reference);
   text += poseRows(state.imu_from_camera, sigma.rotation_std_rad, sigma.translation_std_m);
-  text += row("time offset", 1e3 * state.time_offset_s, 1e3 * sigma.time_offset_std_s,
-              "ms  (t_reference = t_camera + it)");
-  text += row("edge lead", state.edge_lead_px, sigma.edge_lead_std_px, "px at 100 px/s", 4);
-  text += row("edge lead growth", state.edge_lead_growth_px, sigma.edge_lead_growth_std_px,
-              "px for each factor e of speed", 4);
+  text += tableRow("time offset", 1e3 * state.time_offset_s, 1e3 * sigma.time_offset_std_s,
+                   "ms  (t_reference = t_camera + it)");
+  text += tableRow("edge lead", state.edge_lead_px, sigma.edge_lead_std_px, "px at 100 px/s", 4);
+  text += tableRow("edge lead growth", state.edge_lead_growth_px, sigma.edge_lead_growth_std_px,
+                   "px for each factor e of speed", 4);
+  if (const auto sigmas = at(named.names.intrinsics_std, i))
+    text += intrinsicsRows(at(named.names.intrinsics, i).value_or(CameraIntrinsics{}), *sigmas);
   if (i >= named.result.cameras.size()) return text;
   const CameraFit& fit = named.result.cameras[i];
   text += fmt::format("    {:<26}{:>12.4f} px RMS, {:.2f} of what its sigmas say\n", "reprojection",
@@ -79,18 +71,19 @@ std::string imuTable(const NamedResult& named, std::size_t i) {
   std::string text = fmt::format("IMU {}{}\n", named.names.imus[i], reference ? " (reference)" : "");
   if (!reference) {
     text += poseRows(state.reference_from_imu, sigma.rotation_std_rad, sigma.translation_std_m);
-    text += row("time offset", 1e3 * state.time_offset_s, 1e3 * sigma.time_offset_std_s, "ms");
+    text += tableRow("time offset", 1e3 * state.time_offset_s, 1e3 * sigma.time_offset_std_s, "ms");
   }
   text += vectorRows("gyroscope bias", state.gyroscope_bias_rad_s, sigma.gyroscope_bias_std_rad_s, "rad/s",
                      1.0, 6);
   text += vectorRows("accelerometer bias", state.accelerometer_bias_m_s2, sigma.accelerometer_bias_std_m_s2,
                      "m/s^2", 1.0);
   for (int axis = 0; axis < 3; ++axis)
-    text += row(fmt::format("gyroscope scale {}", "xyz"[axis]), state.gyroscope_mapping(axis, axis),
-                sigma.gyroscope_mapping_std(axis, axis), "", 6);
+    text += tableRow(fmt::format("gyroscope scale {}", "xyz"[axis]), state.gyroscope_mapping(axis, axis),
+                     sigma.gyroscope_mapping_std(axis, axis), "", 6);
   for (int axis = 0; axis < 3; ++axis)
-    text += row(fmt::format("accelerometer scale {}", "xyz"[axis]), state.accelerometer_mapping(axis, axis),
-                sigma.accelerometer_mapping_std(axis, axis), "", 6);
+    text +=
+        tableRow(fmt::format("accelerometer scale {}", "xyz"[axis]), state.accelerometer_mapping(axis, axis),
+                 sigma.accelerometer_mapping_std(axis, axis), "", 6);
   if (i >= named.result.imus.size()) return text;
   const ImuFit& fit = named.result.imus[i];
   return text + fmt::format("    {:<26}{:>12.5f} rad/s and {:.4f} m/s^2 RMS\n", "residuals",

@@ -2,6 +2,7 @@
 
 #include "core/base/yaml_node.h"
 #include "core/data/intrinsics_yaml.h"
+#include "core/report/intrinsics_report.h"
 
 #include <fmt/format.h>
 
@@ -69,8 +70,11 @@ std::string cameraYaml(const NamedResult& named, std::size_t i) {
       exact(state.time_offset_s), rounded(sigma.time_offset_std_s), exact(state.edge_lead_px),
       rounded(sigma.edge_lead_std_px), exact(state.edge_lead_growth_px),
       rounded(sigma.edge_lead_growth_std_px));
-  if (const auto intrinsics = at(named.names.intrinsics, i))
+  if (const auto intrinsics = at(named.names.intrinsics, i)) {
     text += "    intrinsics:\n" + intrinsicsYaml(*intrinsics, 6);
+    if (const auto sigmas = at(named.names.intrinsics_std, i))
+      text += "    intrinsics_std:\n" + intrinsicsStdYaml(*intrinsics, *sigmas, 6);
+  }
   text += fmt::format("    reprojection_rms_px: {}\n    normalised_rms: {}\n",
                       rounded(fit.reprojection_rms_px), rounded(fit.normalised_rms));
   text += fmt::format(

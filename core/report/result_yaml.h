@@ -6,6 +6,7 @@
 #include "core/data/calibration_setup.h"
 #include "core/geometry/camera_model.h"
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -31,6 +32,8 @@ struct ResultNames {
   std::vector<OptionRow> options;           // that differ from their defaults
   std::vector<std::string> camera_streams;  // empty: not known
   std::vector<KnownOfImu> known_of_imus;
+  // Where intrinsics were calibrated: sigmas of fx fy cx cy and distortion, as in intrinsics_result.h.
+  std::vector<std::optional<std::array<double, 9>>> intrinsics_std = {};
 };
 
 struct NamedResult {

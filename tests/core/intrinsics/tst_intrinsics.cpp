@@ -250,6 +250,15 @@ class TestIntrinsics : public QObject {
     const IntrinsicsResult result = estimate(truth, right);
     QVERIFY(!result.advice.empty());
     QVERIFY2(result.advice[0].find("the lower left corner") != std::string::npos, result.advice[0].c_str());
+    // Where nothing was seen, less is known than with views there.
+    const IntrinsicsResult whole = estimate(truth, sensorObservations(truth));
+    QVERIFY(whole.advice.empty());
+    const auto left = static_cast<std::size_t>(whole.image.columns * (whole.image.rows / 2));
+    QCOMPARE(result.image.cells[left].circles, 0);
+    QVERIFY2(result.image.cells[left].sigma_px > 1.5 * whole.image.cells[left].sigma_px,
+             qPrintable(QString("%1 and %2")
+                            .arg(result.image.cells[left].sigma_px)
+                            .arg(whole.image.cells[left].sigma_px)));
   }
 
   void sameLens_seesTheSame() {

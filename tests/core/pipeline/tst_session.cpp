@@ -203,6 +203,9 @@ class TestSession : public QObject {
     row("symmetric board", "asymmetric_circles", "symmetric_circles", {"board.type", "180 degrees"});
     row("camera without stream", "    stream: /left/events\n", "", {"cameras.left.stream", "missing"});
     row("same stream", "/left/imu", "/left/events", {"imus.left_imu.stream", "/left/events"});
+    row("same stream by its file", "stream: /left/imu",
+        "recording: ./recording.bag\n    stream: /left/events",
+        {"imus.left_imu.stream", "already another sensor's"});
     row("resolution", "[346, 260]", "[346]", {"cameras.left.resolution_px (line 14)", "width, height"});
     row("negative focal length", "260.5", "-260.5", {"cameras.left.intrinsics", "focal_length_px"});
     row("distortion", "0.1, 0.001, 0.002", "0.1", {"intrinsics.distortion (line 19)", "k1, k2, p1, p2"});

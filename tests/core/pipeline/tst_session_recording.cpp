@@ -38,6 +38,7 @@ class TestSessionRecording : public QObject {
   void units_areThoseOfTheSession();
   void clocksWithoutRelation_areRefused();
   void missingStream_namesFileAndStreams();
+  void intrinsicsOfAnotherResolution_areRefused();
 
  private:
   std::filesystem::path path(const char* name) const { return folder_.filePath(name).toStdString(); }
@@ -159,6 +160,22 @@ void TestSessionRecording::missingStream_namesFileAndStreams() {
     QVERIFY(error.kind() == ErrorKind::BadInput);
     QVERIFY(QString(error.what()).contains("imu.bag"));
     QVERIFY(QString(error.what()).contains("/dvs/imu"));
+  }
+}
+
+void TestSessionRecording::intrinsicsOfAnotherResolution_areRefused() {
+  CameraIntrinsics intrinsics;
+  intrinsics.resolution_px = {640, 480};
+  intrinsics.focal_length_px = {500.0, 500.0};
+  intrinsics.principal_point_px = {320.0, 240.0};
+  session_.cameras[0].intrinsics = intrinsics;
+  try {
+    SessionRecording(session_).resolution_px(0);
+    QFAIL("accepted");
+  } catch (const CalibrationError& error) {
+    QVERIFY(error.kind() == ErrorKind::BadInput);
+    QVERIFY2(QString(error.what()).contains("for 640 x 480 px, but the recording is of 346 x 260"),
+             error.what());
   }
 }
 

@@ -23,6 +23,8 @@ NamedResult sample() {
   intrinsics.principal_point_px = {170.25, 131.0};
   intrinsics.distortion = {-0.3, 0.1, 1e-3, 2e-3, 0.05};
   named.names.intrinsics = {intrinsics, std::nullopt};
+  named.names.intrinsics_std = {std::array{0.05, 0.06, 0.1, 0.12, 1e-4, 2e-4, 3e-5, 4e-5, 5e-3},
+                                std::nullopt};
   named.names.options = {{"grid.least_circles", "6", "7", "4", "1000", "", "", {}}};
   named.names.camera_streams = {"/left/events", ""};
   named.names.known_of_imus = {{"/left/imu", ImuNoise{1.0 / 3000.0, 2e-3}, 1e-5, 1e-4, 997.25},
@@ -105,6 +107,7 @@ class TestResultYaml : public QObject {
     QCOMPARE(read.names.cameras, written.names.cameras);
     QCOMPARE(read.names.imus, written.names.imus);
     QVERIFY(read.names.intrinsics == written.names.intrinsics);
+    QVERIFY(read.names.intrinsics_std == written.names.intrinsics_std);
     QVERIFY(read.names.camera_streams == written.names.camera_streams);
     const std::vector<KnownOfImu>& known = read.names.known_of_imus;
     QVERIFY(known[0].stream == "/left/imu" && known[1].stream == "/far imu: odd");

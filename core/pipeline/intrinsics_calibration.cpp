@@ -1,0 +1,65 @@
+#include "core/pipeline/intrinsics_calibration.h"
+
+#include "core/geometry/projection_difference.h"
+#include "core/intrinsics/estimate_intrinsics.h"
+#include "core/pipeline/board_size_check.h"
+#include "core/pipeline/lens_pilot.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <utility>
+
+namespace evical {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// A refit moves centres by less than this part of what the lens changed by. A change c that grows with the
+// third power of the distance from the image's middle, up to L, bends a circle of radius r so that its
+// ellipse's centre moves by about c (r / L)^2; circles are a seventh of L at most.
+constexpr double kRefitShare = 0.02;
+
+Session cameraAlone(const Session& session, std::size_t camera) {
+  Session alone = session;
+  alone.cameras = {session.cameras[camera]};
+  alone.cameras.front().intrinsics.reset();
+  alone.imus.clear();
+  alone.reference = alone.cameras.front().name;
+  return alone;
+}
+
+}  // namespace
+
+IntrinsicsRun calibrateIntrinsics(const Session& session, std::size_t camera, const RunContext& context) {
+  const Clock::time_point begin = Clock::now();
+  Session alone = cameraAlone(session, camera);
+  SessionCamera& seen = alone.cameras.front();
+  context.progress.stageStarted("first look");
+  seen.intrinsics = lookThroughPlainLenses(alone, context);
+  IntrinsicsRun run;
+  std::optional<CameraIntrinsics> start;
+  for (int pass = 1; pass <= alone.options.intrinsics.most_passes; ++pass) {
+    context.progress.stageStarted("detect");
+    run.pass = readAndDetect(alone, context);
+    checkBoardSeen(run.pass.cameras.front(), alone.board);
+    run.result = estimateIntrinsics(
+        {alone.board, run.pass.resolutions_px.front(), run.pass.cameras.front(), seen.intrinsics, start},
+        alone.options.intrinsics, context);
+    run.result.passes = pass;
+    const CameraIntrinsics found = run.result.intrinsics;
+    const auto moved =
+        seen.intrinsics ? std::optional(projectionDifference(found, *seen.intrinsics)) : std::nullopt;
+    seen.intrinsics = start = found;
+    if (!moved) continue;
+    run.result.moved_px = moved->rms_px;
+    context.progress.log(LogLevel::Debug, fmt::format("pass {}: {} views, moved by {:.4f} px", pass,
+                                                      run.result.views_found, moved->rms_px));
+    if (kRefitShare * moved->rms_px < alone.options.intrinsics.settled_px) break;
+  }
+  checkBoardSize(run.pass.cameras.front(), alone.board, alone.options.front_end.extent);
+  run.result.elapsed_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  return run;
+}
+
+}  // namespace evical

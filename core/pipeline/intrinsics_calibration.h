@@ -1,0 +1,23 @@
+// A camera's intrinsics from the events of a session: a first look, then the front end and the bundle
+// adjustment in turns, until circles refitted in undistorted pixels change nothing more (method section 8).
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/data/intrinsics_result.h"
+#include "core/pipeline/recording_pass.h"
+#include "core/pipeline/session.h"
+
+#include <cstddef>
+
+namespace evical {
+
+struct IntrinsicsRun {
+  IntrinsicsResult result;
+  RecordingPass pass;  // the last one, of this camera alone
+};
+
+// What the session says of the camera's intrinsics, and its IMUs, are left aside. Progress goes by the stages
+// "first look" and "detect". Throws CalibrationError, and Cancelled when asked to stop.
+IntrinsicsRun calibrateIntrinsics(const Session& session, std::size_t camera, const RunContext& context);
+
+}  // namespace evical

@@ -1,0 +1,176 @@
+#include "core/pipeline/lens_pilot.h"
+
+#include "core/base/time.h"
+#include "core/frontend/board_tracker.h"
+#include "core/intrinsics/estimate_intrinsics.h"
+#include "core/pipeline/session_recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <future>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace evical {
+namespace {
+
+constexpr double kPeriod_s = 1.2, kLength_s = 0.2;  // of the slices
+constexpr double kSearched_s = 0.08;                // after a slice's begin, with bursts on both sides
+constexpr int kMostSlices = 20;                     // in which the board was seen
+constexpr int kSolveEvery = 3;                      // slices, once there is a camera
+constexpr double kGoodEnough_px = 0.2;              // sigma of the projection, RMS over the image
+constexpr std::size_t kMostEvents = 8'000'000;      // in a slice
+
+// Equidistant lenses of one parameter stand for all: none, wide, fisheye.
+std::vector<CameraIntrinsics> plainLenses(Resolution resolution_px) {
+  const double width_px = std::max(resolution_px.width_px, resolution_px.height_px);
+  CameraIntrinsics lens;
+  lens.resolution_px = resolution_px;
+  lens.focal_length_px.setConstant(width_px);
+  lens.principal_point_px = 0.5 * Eigen::Vector2d(resolution_px.width_px - 1, resolution_px.height_px - 1);
+  std::vector<CameraIntrinsics> lenses = {lens};
+  lens.model = CameraModel::PinholeEquidistant;
+  for (const double focal_length_widths : {0.75, 0.45}) {
+    lens.focal_length_px.setConstant(focal_length_widths * width_px);
+    lenses.push_back(lens);
+  }
+  return lenses;
+}
+
+std::size_t circlesIn(const std::vector<SensorView>& views) {
+  std::size_t count = 0;
+  for (const SensorView& view : views) count += view.circles.size();
+  return count;
+}
+
+class Pilot {
+ public:
+  Pilot(const Session& session, const RunContext& context)
+      : session_(session),
+        context_(context),
+        recording_(session),
+        resolution_px_(recording_.resolution_px(0)),
+        lenses_(plainLenses(resolution_px_)),
+        guess_(lenses_.front()) {
+    const double begin_s = session.time_range_s ? session.time_range_s->front() : 0.0;
+    slice_begin_ns_ = recording_.start_ns() + nanosecondsFrom(begin_s);
+    if (session.time_range_s) end_ns_ = recording_.start_ns() + nanosecondsFrom(session.time_range_s->back());
+  }
+
+  std::optional<CameraIntrinsics> run() {
+    Packet packet;
+    while (!enough() && recording_.read(packet)) {
+      context_.throwIfStopped();
+      context_.progress.stageProgress(std::max(recording_.fractionRead(), slices_ / double{kMostSlices}));
+      for (const Event& event : packet.events) {
+        if (event.time_ns > end_ns_) break;
+        take(event);
+      }
+    }
+    lookAtSlice();
+    solve();
+    return result();
+  }
+
+ private:
+  bool enough() const { return slices_ >= kMostSlices || (rough_ && rough_->sigma_px < kGoodEnough_px); }
+
+  void take(const Event& event) {
+    const std::int64_t end_ns = slice_begin_ns_ + nanosecondsFrom(kLength_s);
+    if (event.time_ns >= end_ns) {
+      lookAtSlice();
+      while (slice_begin_ns_ + nanosecondsFrom(kLength_s) <= event.time_ns)
+        slice_begin_ns_ += nanosecondsFrom(kPeriod_s);
+    }
+    const bool outside = event.x_px >= resolution_px_.width_px || event.y_px >= resolution_px_.height_px;
+    const bool late = !slice_.empty() && event.time_ns < slice_.back().time_ns;
+    if (event.time_ns < slice_begin_ns_ || outside || late || slice_.size() >= kMostEvents) return;
+    slice_.push_back(event);
+  }
+
+  void lookAtSlice() {
+    if (slice_.empty() || enough()) return;
+    std::vector<EdgeBurst> bursts;
+    BurstExtractor extractor(resolution_px_, session_.options.front_end.bursts);
+    extractor.add(slice_, bursts);
+    extractor.finish(bursts);
+    slice_.clear();
+    std::vector<SensorView> views;
+    if (rough_) views = through(rough_->intrinsics, bursts);
+    if (views.empty()) {
+      views = throughPlainLenses(bursts);
+      if (views.empty()) return;
+      rough_.reset();  // it misses what they show
+    }
+    ++slices_;
+    views_.insert(views_.end(), views.begin(), views.end());
+    if (!rough_ || slices_ % kSolveEvery == 0) solve();
+  }
+
+  std::vector<SensorView> throughPlainLenses(const std::vector<EdgeBurst>& bursts) {
+    std::vector<std::future<std::vector<SensorView>>> looks;
+    for (std::size_t k = 0; k < lenses_.size(); ++k)
+      looks.push_back(std::async(std::launch::async, [&, k] { return through(lenses_[k], bursts); }));
+    std::vector<SensorView> best;
+    for (std::size_t k = 0; k < looks.size(); ++k) {
+      std::vector<SensorView> views = looks[k].get();
+      if (circlesIn(views) <= circlesIn(best)) continue;
+      best = std::move(views);
+      guess_ = lenses_[k];
+    }
+    return best;
+  }
+
+  std::vector<SensorView> through(const CameraIntrinsics& lens, const std::vector<EdgeBurst>& bursts) const {
+    context_.throwIfStopped();
+    const bool plain = lens == lenses_.front();
+    const auto camera = plain ? std::nullopt : std::optional(lens);
+    BoardTracker tracker(session_.board, resolution_px_, camera, session_.options.front_end,
+                         recording_.start_ns());
+    tracker.addBursts(bursts, slice_begin_ns_ + nanosecondsFrom(kSearched_s),
+                      slice_begin_ns_ + nanosecondsFrom(kLength_s));
+    return sensorViews(tracker.finish(), session_.board, camera, session_.options.intrinsics);
+  }
+
+  void solve() {
+    constexpr int kLeastSlices = 3;  // views of one slice are all alike
+    if (slices_ < kLeastSlices || solved_views_ == views_.size()) return;
+    solved_views_ = views_.size();
+    auto rough = roughCamera(views_, session_.board, rough_ ? rough_->intrinsics : guess_,
+                             session_.options.intrinsics, context_);
+    if (rough) rough_ = std::move(rough);
+  }
+
+  // A lens that shows the board, if only in parts; none where none did.
+  std::optional<CameraIntrinsics> result() const {
+    context_.progress.log(
+        LogLevel::Debug, fmt::format("first look: {} slices, {} views{}", slices_, views_.size(),
+                                     rough_ ? fmt::format(", projection known to {:.2f} px", rough_->sigma_px)
+                                            : std::string(", which make no camera")));
+    if (rough_) return rough_->intrinsics;
+    return guess_ == lenses_.front() ? std::nullopt : std::optional(guess_);
+  }
+
+  const Session& session_;
+  const RunContext& context_;
+  SessionRecording recording_;
+  Resolution resolution_px_;
+  std::vector<CameraIntrinsics> lenses_;
+  CameraIntrinsics guess_;  // the plain lens that showed most in the last slice they were tried on
+  std::optional<RoughCamera> rough_;
+  std::vector<SensorView> views_;
+  std::size_t solved_views_ = 0;
+  std::vector<Event> slice_;
+  std::int64_t slice_begin_ns_ = 0, end_ns_ = std::numeric_limits<std::int64_t>::max();
+  int slices_ = 0;  // with the board in view
+};
+
+}  // namespace
+
+std::optional<CameraIntrinsics> lookThroughPlainLenses(const Session& session, const RunContext& context) {
+  return Pilot(session, context).run();
+}
+
+}  // namespace evical

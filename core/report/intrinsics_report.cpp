@@ -1,0 +1,186 @@
+#include "core/report/intrinsics_report.h"
+
+#include "core/base/yaml_node.h"
+#include "core/data/intrinsics_yaml.h"
+#include "core/report/result_yaml.h"
+#include "core/report/table_row.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace evical {
+namespace {
+
+std::array<double, 9> sigmasOf(const IntrinsicsResult& result) {
+  std::array<double, 9> sigmas{};
+  const IntrinsicsVector values = result.standardDeviations();
+  std::copy(values.begin(), values.end(), sigmas.begin());
+  return sigmas;
+}
+
+std::string list(const double* values, std::size_t count) {
+  std::string text;
+  for (std::size_t k = 0; k < count; ++k) text += fmt::format("{}{:.6g}", k == 0 ? "" : ", ", values[k]);
+  return "[" + text + "]";
+}
+
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.6g}", value) : ".inf";
+}
+
+std::string coefficients(const CameraIntrinsics& camera, std::size_t count) {
+  std::string text;
+  for (std::size_t k = 0; k < count; ++k)
+    text += fmt::format("{}{}", k == 0 ? "" : ", ", camera.distortion[k]);
+  return "[" + text + "]";
+}
+
+}  // namespace
+
+std::string intrinsicsStdYaml(const CameraIntrinsics& camera, const std::array<double, 9>& sigmas,
+                              int indent) {
+  const std::string blanks(static_cast<std::size_t>(indent), ' ');
+  const auto count = static_cast<std::size_t>(distortionCount(camera));
+  return fmt::format("{0}focal_length_px: {1}\n{0}principal_point_px: {2}\n{0}distortion: {3}\n", blanks,
+                     list(sigmas.data(), 2), list(sigmas.data() + 2, 2), list(sigmas.data() + 4, count));
+}
+
+std::string intrinsicsRows(const CameraIntrinsics& camera, const std::array<double, 9>& sigmas) {
+  const bool radtan = camera.model == CameraModel::PinholeRadtan;
+  const std::array<const char*, 5> names =
+      radtan ? std::array{"k1", "k2", "p1", "p2", "k3"} : std::array{"k1", "k2", "k3", "k4", ""};
+  std::string text = tableRow("focal length x", camera.focal_length_px.x(), sigmas[0], "px", 4) +
+                     tableRow("focal length y", camera.focal_length_px.y(), sigmas[1], "px", 4) +
+                     tableRow("principal point x", camera.principal_point_px.x(), sigmas[2], "px", 4) +
+                     tableRow("principal point y", camera.principal_point_px.y(), sigmas[3], "px", 4);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(distortionCount(camera)); ++k)
+    text += tableRow(names[k], camera.distortion[k], sigmas[4 + k], "", 6);
+  return text;
+}
+
+namespace {
+
+// Fixed parameters correlate with nothing.
+std::string correlationYaml(const IntrinsicsResult& result) {
+  const IntrinsicsVector sigmas = result.standardDeviations();
+  std::string text = "correlation:  # fx, fy, cx, cy, distortion\n";
+  const int count = 4 + distortionCount(result.intrinsics);
+  for (int row = 0; row < count; ++row) {
+    text += "  - [";
+    for (int column = 0; column < count; ++column) {
+      const double both = sigmas[row] * sigmas[column];
+      const double correlation = both > 0.0      ? result.covariance(row, column) / both
+                                 : row == column ? 1.0
+                                                 : 0.0;
+      text += fmt::format("{}{:.4f}", column == 0 ? "" : ", ", correlation);
+    }
+    text += "]\n";
+  }
+  return text;
+}
+
+// A character a cell: how many circles were seen there.
+std::string coveragePicture(const ImageMap& image) {
+  constexpr std::array kShades = {'.', '-', '+', '#'};  // none, up to 5, up to 20, more
+  std::string text;
+  for (int row = 0; row < image.rows; ++row) {
+    text += "    ";
+    for (int column = 0; column < image.columns; ++column) {
+      const int circles = image.cells[static_cast<std::size_t>(row * image.columns + column)].circles;
+      text += kShades.at(circles == 0 ? 0 : circles <= 5 ? 1 : circles <= 20 ? 2 : 3);
+      text += ' ';
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string intrinsicsResultYaml(const NamedIntrinsics& named) {
+  const IntrinsicsResult& r = named.result;
+  std::string text = fmt::format("evical_intrinsics: 1\nstatus: {}\nreason: {}\ncamera: {}\nintrinsics:\n",
+                                 statusName(r.status), yamlText(r.reason), yamlText(named.camera));
+  text +=
+      intrinsicsYaml(r.intrinsics, 2) + "intrinsics_std:\n" + intrinsicsStdYaml(r.intrinsics, sigmasOf(r), 2);
+  text += correlationYaml(r);
+  text += fmt::format("projection_std_px: {{rms: {}, max: {}}}\n", number(r.image.rms_px),
+                      number(r.image.max_px));
+  text += fmt::format("edge_lead_px: {:.6g}\nedge_lead_std_px: {:.6g}\n", r.edge_lead_px, r.edge_lead_std_px);
+  text += fmt::format("reprojection_rms_px: {:.6g}\nnormalised_rms: {:.6g}\n", r.reprojection_rms_px,
+                      r.normalised_rms);
+  text += fmt::format(
+      "views: {{found: {}, used: {}}}\ncircles: {{used: {}, rejected: {}}}\nlargest_tilt_deg: {:.1f}\n",
+      r.views_found, r.views_used, r.circles_used, r.circles_rejected, r.largest_tilt_deg);
+  text += fmt::format("passes: {}\nmoved_px: {:.6g}\n", r.passes, r.moved_px);
+  text += r.advice.empty() ? "advice: []\n" : "advice:\n";
+  for (const std::string& advice : r.advice) text += fmt::format("  - {}\n", yamlText(advice));
+  return text + fmt::format("timing_s: {{total: {:.3f}}}\nprogram: {{version: {}}}\n", r.elapsed_s,
+                            yamlText(named.version));
+}
+
+std::string cameraInfoYaml(const std::string& camera, const CameraIntrinsics& c) {
+  const bool radtan = c.model == CameraModel::PinholeRadtan;
+  const std::size_t count = radtan ? 5 : 4;
+  const double fx = c.focal_length_px.x(), fy = c.focal_length_px.y();
+  const double cx = c.principal_point_px.x(), cy = c.principal_point_px.y();
+  return fmt::format(
+      "image_width: {}\nimage_height: {}\ncamera_name: {}\n"
+      "camera_matrix:\n  rows: 3\n  cols: 3\n  data: [{}, 0, {}, 0, {}, {}, 0, 0, 1]\n"
+      "distortion_model: {}\ndistortion_coefficients:\n  rows: 1\n  cols: {}\n  data: {}\n"
+      "rectification_matrix:\n  rows: 3\n  cols: 3\n  data: [1, 0, 0, 0, 1, 0, 0, 0, 1]\n"
+      "projection_matrix:\n  rows: 3\n  cols: 4\n  data: [{}, 0, {}, 0, 0, {}, {}, 0, 0, 0, 1, 0]\n",
+      c.resolution_px.width_px, c.resolution_px.height_px, yamlText(camera), fx, cx, fy, cy,
+      radtan ? "plumb_bob" : "equidistant", count, coefficients(c, count), fx, cx, fy, cy);
+}
+
+std::string camchainYaml(const std::string& stream, const CameraIntrinsics& c) {
+  const bool radtan = c.model == CameraModel::PinholeRadtan;
+  std::string text;
+  // Kalibr's radtan has no k3.
+  if (distortionCount(c) == 5)
+    text += fmt::format("# k3 = {} is left out: Kalibr's radtan has no such coefficient\n", c.distortion[4]);
+  return text + fmt::format(
+                    "cam0:\n  camera_model: pinhole\n  intrinsics: [{}, {}, {}, {}]\n"
+                    "  distortion_model: {}\n  distortion_coeffs: {}\n  resolution: [{}, {}]\n"
+                    "  rostopic: {}\n  cam_overlaps: []\n",
+                    c.focal_length_px.x(), c.focal_length_px.y(), c.principal_point_px.x(),
+                    c.principal_point_px.y(), radtan ? "radtan" : "equidistant", coefficients(c, 4),
+                    c.resolution_px.width_px, c.resolution_px.height_px, yamlText(stream));
+}
+
+std::string intrinsicsTable(const NamedIntrinsics& named) {
+  const IntrinsicsResult& r = named.result;
+  std::string text =
+      fmt::format("Camera {}: {}, {} x {} px\n", named.camera, cameraModelName(r.intrinsics.model),
+                  r.intrinsics.resolution_px.width_px, r.intrinsics.resolution_px.height_px);
+  text += intrinsicsRows(r.intrinsics, sigmasOf(r));
+  text += fmt::format("    {:<26}{:>12.4f} px RMS over the image, at most {:.4f}\n", "projection, +-",
+                      r.image.rms_px, r.image.max_px);
+  text += fmt::format("    {:<26}{:>12.4f} px RMS, {:.2f} of what its sigmas say\n", "reprojection",
+                      r.reprojection_rms_px, r.normalised_rms);
+  text += fmt::format("    {:<26}{:>12.4f} +- {:.4f} px\n", "edge lead", r.edge_lead_px, r.edge_lead_std_px);
+  text += fmt::format("    {:<26}{:>12} of {}, {} circles, {} dropped; tilted by up to {:.0f} deg\n", "views",
+                      r.views_used, r.views_found, r.circles_used, r.circles_rejected, r.largest_tilt_deg);
+  text += "Where circles were seen (. none, - few, + some, # many):\n" + coveragePicture(r.image);
+  for (const std::string& advice : r.advice) text += fmt::format("Advice: {}\n", advice);
+  text +=
+      fmt::format("Time: {:.1f} s in {} passes\nVerdict: {}", r.elapsed_s, r.passes, statusName(r.status));
+  return text + (r.reason.empty() ? "\n" : fmt::format(" - {}\n", r.reason));
+}
+
+std::string imageMapCsv(const ImageMap& map) {
+  std::string text = "column,row,x_px,y_px,circles,sigma_px\n";
+  for (std::size_t k = 0; k < map.cells.size(); ++k) {
+    const ImageCell& cell = map.cells[k];
+    const auto columns = static_cast<std::size_t>(map.columns);
+    text += fmt::format("{},{},{:.1f},{:.1f},{},{:.5f}\n", k % columns, k / columns, cell.middle_px.x(),
+                        cell.middle_px.y(), cell.circles, cell.sigma_px);
+  }
+  return text;
+}
+
+}  // namespace evical

@@ -1,0 +1,33 @@
+// Calibrated intrinsics as files and as text: our map with sigmas, ROS camera_info, Kalibr camchain, a table.
+#pragma once
+
+#include "core/data/intrinsics_result.h"
+
+#include <array>
+#include <string>
+
+namespace evical {
+
+struct NamedIntrinsics {
+  std::string camera, stream;
+  std::string version;
+  IntrinsicsResult result;
+};
+
+// Reads back as intrinsics of a session (core/data/intrinsics_yaml.h).
+std::string intrinsicsResultYaml(const NamedIntrinsics& named);
+std::string cameraInfoYaml(const std::string& camera, const CameraIntrinsics& intrinsics);
+std::string camchainYaml(const std::string& stream, const CameraIntrinsics& intrinsics);
+
+// Sigmas fx fy cx cy d0..d4 by the keys of intrinsicsYaml; and intrinsics with them as rows of a table.
+std::string intrinsicsStdYaml(const CameraIntrinsics& camera, const std::array<double, 9>& sigmas,
+                              int indent);
+std::string intrinsicsRows(const CameraIntrinsics& camera, const std::array<double, 9>& sigmas);
+
+// Every number with its +-, coverage of the image, advice, and the verdict.
+std::string intrinsicsTable(const NamedIntrinsics& named);
+
+// column,row,x_px,y_px,circles,sigma_px of every cell of the image.
+std::string imageMapCsv(const ImageMap& map);
+
+}  // namespace evical

@@ -1,0 +1,130 @@
+// Intrinsics against the truth of simulated recordings, as a table: `evical_intrinsics_accuracy [--seeds N]
+// [--duration S] [--folder DIR] SCENARIO...`. Each recording is simulated into a file and goes through
+// everything that `evical intrinsics` does.
+#include "core/base/error.h"
+#include "core/geometry/projection_difference.h"
+#include "core/pipeline/intrinsics_calibration.h"
+#include "core/pipeline/simulation.h"
+#include "core/synthetic/scenario_yaml.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace evical {
+namespace {
+
+struct Targets {
+  double focal_percent = 0.05, principal_px = 0.2, projection_px = 0.1, radius_share = 1.0;
+};
+
+Targets targetsOf(const CameraIntrinsics& camera) {
+  if (camera.model == CameraModel::PinholeEquidistant) return {0.05, 0.2, 0.2, 0.95};
+  return {};
+}
+
+IntrinsicsVector parametersOf(const CameraIntrinsics& camera) {
+  IntrinsicsVector p;
+  p << camera.focal_length_px, camera.principal_point_px,
+      Eigen::Map<const Eigen::Matrix<double, 5, 1>>(camera.distortion.data());
+  return p;
+}
+
+struct Outcome {
+  bool met = false;
+  double normalised2 = 0.0;  // sum over parameters
+  int parameters = 0;
+};
+
+Outcome compare(const Scenario& scenario, const IntrinsicsResult& result) {
+  const CameraIntrinsics& truth = scenario.cameras.front().intrinsics;
+  const Targets targets = targetsOf(truth);
+  const IntrinsicsVector error = parametersOf(result.intrinsics) - parametersOf(truth);
+  const IntrinsicsVector sigmas = result.standardDeviations();
+  Outcome outcome;
+  for (int i = 0; i < kIntrinsicsCount; ++i) {
+    if (sigmas[i] <= 0.0) continue;
+    outcome.normalised2 += std::pow(error[i] / sigmas[i], 2);
+    ++outcome.parameters;
+  }
+  const double focal_percent =
+      100.0 * error.head<2>().cwiseQuotient(truth.focal_length_px).cwiseAbs().maxCoeff();
+  const double principal_px = error.segment<2>(2).norm();
+  const ProjectionDifference projection =
+      projectionDifference(truth, result.intrinsics, targets.radius_share);
+  outcome.met = result.intrinsics.model == truth.model && focal_percent <= targets.focal_percent &&
+                principal_px <= targets.principal_px && projection.rms_px <= targets.projection_px;
+  const double focal_sigma = 100.0 * sigmas.head<2>().cwiseQuotient(truth.focal_length_px).maxCoeff();
+  fmt::print(
+      "| {} | {} | {:.4f} ({:.4f}) | {:.3f} ({:.3f}) | {:.3f} ({:.3f}) | {:.3f} | {:.2f} | {} of {} | "
+      "{} | {:.1f} | {} |\n",
+      scenario.name, scenario.seed, focal_percent, focal_sigma, principal_px, sigmas.segment<2>(2).norm(),
+      projection.rms_px, result.image.rms_px, projection.max_px,
+      std::sqrt(outcome.normalised2 / outcome.parameters), result.views_used, result.views_found,
+      result.passes, result.elapsed_s, outcome.met ? "met" : "MISSED");
+  std::fflush(stdout);
+  return outcome;
+}
+
+int main(int argc, char** argv) {
+  CLI::App app("Intrinsics of simulated recordings against their truth");
+  std::vector<std::string> files;
+  int seeds = 1;
+  std::optional<double> duration_s;
+  std::filesystem::path folder = std::filesystem::temp_directory_path() / "evical_intrinsics_accuracy";
+  app.add_option("SCENARIO", files, "Scenario files")->required();
+  app.add_option("--seeds", seeds, "Each scenario with this many seeds")->check(CLI::Range(1, 1000));
+  app.add_option("--duration", duration_s, "Seconds, instead of the scenario's")
+      ->check(CLI::Range(2.0, 3600.0));
+  app.add_option("--folder", folder, "For the recordings, which are removed again");
+  CLI11_PARSE(app, argc, argv);
+  fmt::print(
+      "| scenario | seed | focal length, % (sigma) | principal point, px (sigma) | projection RMS, px "
+      "(sigma) | max, px | normalised error | views | passes | s | targets |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|\n");
+  bool all_met = true;
+  for (const std::string& file : files) {
+    double normalised2 = 0.0;
+    int parameters = 0;
+    for (int k = 0; k < seeds; ++k) {
+      Scenario scenario = readScenario(file);
+      if (duration_s) scenario.duration_s = *duration_s;
+      scenario.seed += static_cast<std::uint64_t>(k);
+      const SimulationSummary made = simulate(scenario, folder, {});
+      try {
+        const Outcome outcome =
+            compare(scenario, calibrateIntrinsics(readSession(made.session), 0, {}).result);
+        all_met = all_met && outcome.met;
+        normalised2 += outcome.normalised2;
+        parameters += outcome.parameters;
+      } catch (const CalibrationError& error) {
+        fmt::print("| {} | {} | failed: {} |\n", scenario.name, scenario.seed, error.what());
+        all_met = false;
+      }
+      std::filesystem::remove_all(folder);
+    }
+    if (seeds > 1 && parameters > 0)
+      fmt::print("\nnormalised errors of {}, RMS over {} seeds: {:.2f} (target 0.7-1.4)\n\n", file, seeds,
+                 std::sqrt(normalised2 / parameters));
+  }
+  return all_met ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace evical
+
+int main(int argc, char** argv) {
+  try {
+    return evical::main(argc, argv);
+  } catch (const evical::CalibrationError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 2;
+  }
+}
