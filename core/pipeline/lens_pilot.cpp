@@ -23,27 +23,34 @@ constexpr int kSolveEvery = 3;                      // slices, once there is a c
 constexpr double kGoodEnough_px = 0.2;              // sigma of the projection, RMS over the image
 constexpr std::size_t kMostEvents = 8'000'000;      // in a slice
 
-// Equidistant lenses of one parameter stand for all: none, wide, fisheye.
+// Equidistant lenses of one parameter stand for all: wide, which shows most boards well enough; none;
+// fisheye.
 std::vector<CameraIntrinsics> plainLenses(Resolution resolution_px) {
   const double width_px = std::max(resolution_px.width_px, resolution_px.height_px);
   CameraIntrinsics lens;
   lens.resolution_px = resolution_px;
-  lens.focal_length_px.setConstant(width_px);
   lens.principal_point_px = 0.5 * Eigen::Vector2d(resolution_px.width_px - 1, resolution_px.height_px - 1);
-  std::vector<CameraIntrinsics> lenses = {lens};
-  lens.model = CameraModel::PinholeEquidistant;
-  for (const double focal_length_widths : {0.75, 0.45}) {
-    lens.focal_length_px.setConstant(focal_length_widths * width_px);
-    lenses.push_back(lens);
-  }
+  std::vector<CameraIntrinsics> lenses(3, lens);
+  lenses[0].focal_length_px.setConstant(0.75 * width_px);
+  lenses[1].focal_length_px.setConstant(width_px);
+  lenses[2].focal_length_px.setConstant(0.45 * width_px);
+  lenses[0].model = lenses[2].model = CameraModel::PinholeEquidistant;
   return lenses;
 }
 
-std::size_t circlesIn(const std::vector<SensorView>& views) {
-  std::size_t count = 0;
-  for (const SensorView& view : views) count += view.circles.size();
-  return count;
+bool isPlane(const CameraIntrinsics& lens) {
+  return lens.model == CameraModel::PinholeRadtan && lens.distortion == CameraIntrinsics{}.distortion;
 }
+
+// What a lens showed of a slice.
+struct Look {
+  std::vector<SensorView> views;
+  std::size_t circles() const {
+    std::size_t count = 0;
+    for (const SensorView& view : views) count += view.circles.size();
+    return count;
+  }
+};
 
 class Pilot {
  public:
@@ -97,41 +104,46 @@ class Pilot {
     extractor.add(slice_, bursts);
     extractor.finish(bursts);
     slice_.clear();
-    std::vector<SensorView> views;
-    if (rough_) views = through(rough_->intrinsics, bursts);
-    if (views.empty()) {
-      views = throughPlainLenses(bursts);
-      if (views.empty()) return;
+    Look look;
+    if (rough_) look = through(rough_->intrinsics, bursts);
+    if (look.views.empty()) {
+      look = throughPlainLenses(bursts);
+      if (look.views.empty()) return;
       rough_.reset();  // it misses what they show
     }
     ++slices_;
-    views_.insert(views_.end(), views.begin(), views.end());
+    views_.insert(views_.end(), look.views.begin(), look.views.end());
     if (!rough_ || slices_ % kSolveEvery == 0) solve();
   }
 
-  std::vector<SensorView> throughPlainLenses(const std::vector<EdgeBurst>& bursts) {
-    std::vector<std::future<std::vector<SensorView>>> looks;
-    for (std::size_t k = 0; k < lenses_.size(); ++k)
+  // The first lens alone if it shows nearly all of the board: looks that fail take longest.
+  Look throughPlainLenses(const std::vector<EdgeBurst>& bursts) {
+    constexpr double kNearlyAll = 0.75;
+    Look best = through(lenses_.front(), bursts);
+    guess_ = lenses_.front();
+    const double mean = static_cast<double>(best.circles()) /
+                        static_cast<double>(std::max<std::size_t>(1, best.views.size()));
+    if (mean >= kNearlyAll * session_.board.circleCount()) return best;
+    std::vector<std::future<Look>> looks;
+    for (std::size_t k = 1; k < lenses_.size(); ++k)
       looks.push_back(std::async(std::launch::async, [&, k] { return through(lenses_[k], bursts); }));
-    std::vector<SensorView> best;
     for (std::size_t k = 0; k < looks.size(); ++k) {
-      std::vector<SensorView> views = looks[k].get();
-      if (circlesIn(views) <= circlesIn(best)) continue;
-      best = std::move(views);
-      guess_ = lenses_[k];
+      Look look = looks[k].get();
+      if (look.circles() <= best.circles()) continue;
+      best = std::move(look);
+      guess_ = lenses_[k + 1];
     }
     return best;
   }
 
-  std::vector<SensorView> through(const CameraIntrinsics& lens, const std::vector<EdgeBurst>& bursts) const {
+  Look through(const CameraIntrinsics& lens, const std::vector<EdgeBurst>& bursts) const {
     context_.throwIfStopped();
-    const bool plain = lens == lenses_.front();
-    const auto camera = plain ? std::nullopt : std::optional(lens);
+    const auto camera = isPlane(lens) ? std::nullopt : std::optional(lens);
     BoardTracker tracker(session_.board, resolution_px_, camera, session_.options.front_end,
                          recording_.start_ns());
     tracker.addBursts(bursts, slice_begin_ns_ + nanosecondsFrom(kSearched_s),
                       slice_begin_ns_ + nanosecondsFrom(kLength_s));
-    return sensorViews(tracker.finish(), session_.board, camera, session_.options.intrinsics);
+    return {sensorViews(tracker.finish(), session_.board, camera, session_.options.intrinsics)};
   }
 
   void solve() {
@@ -150,7 +162,7 @@ class Pilot {
                                      rough_ ? fmt::format(", projection known to {:.2f} px", rough_->sigma_px)
                                             : std::string(", which make no camera")));
     if (rough_) return rough_->intrinsics;
-    return guess_ == lenses_.front() ? std::nullopt : std::optional(guess_);
+    return isPlane(guess_) ? std::nullopt : std::optional(guess_);
   }
 
   const Session& session_;
