@@ -15,13 +15,15 @@
 namespace evical {
 namespace {
 
-void checkCount(std::size_t views, const char* what, const IntrinsicsInput& input,
-                const IntrinsicsOptions& options) {
-  if (static_cast<int>(views) >= options.least_views) return;
+void checkCount(const std::vector<SensorView>& views, std::size_t count, const char* what,
+                const IntrinsicsInput& input, const IntrinsicsOptions& options) {
+  if (static_cast<int>(count) >= options.least_views) return;
+  const std::string missing = missingPlaces(views, input.resolution_px);
   throw calibrationFailed(
       input.observations.camera,
-      fmt::format("only {} {} show at least {:.0f} % of the board, {} are needed for intrinsics", views, what,
-                  100.0 * options.least_circles, options.least_views),
+      fmt::format("only {} {} show at least {:.0f} % of the board, {} are needed for intrinsics{}", count,
+                  what, 100.0 * options.least_circles, options.least_views,
+                  missing.empty() ? "" : "; none reaches " + missing),
       "Move the board through the whole image, all of it in view most of the time, for 20 s or more");
 }
 
@@ -80,13 +82,13 @@ void addFit(const Bundle& bundle, IntrinsicsResult& result) {
 IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const IntrinsicsOptions& options,
                                     const RunContext& context) {
   const std::vector<SensorView> all = sensorViews(input.observations, input.board, input.seen_with, options);
-  checkCount(all.size(), "views", input, options);
+  checkCount(all, all.size(), "views", input, options);
   const CameraIntrinsics rough =
       input.start
           ? *input.start
           : intrinsicsStarts(all, CameraModel::PinholeRadtan, input.resolution_px, input.seen_with).back();
   const std::vector<SensorView> views = selectViews(all, input.board, rough, options);
-  checkCount(views.size(), "views, far enough from each other in time,", input, options);
+  checkCount(views, views.size(), "views, far enough from each other in time,", input, options);
   const Ground ground{input.board, input.resolution_px, input.seen_with, options, context};
   const Bundle bundle = input.start ? bestOf({*input.start}, views, ground) : solve(views, ground);
 
@@ -95,7 +97,7 @@ IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const Intrinsi
   result.edge_lead_px = bundle.edge_lead_px;
   result.views_found = static_cast<int>(input.observations.views.size());
   addFit(bundle, result);
-  checkCount(static_cast<std::size_t>(result.views_used), "views that fit each other", input, options);
+  checkCount(views, static_cast<std::size_t>(result.views_used), "views that fit each other", input, options);
   const BundleUncertainty uncertainty = bundleUncertainty(bundle, input.board, options);
   result.covariance = uncertainty.covariance;
   result.edge_lead_std_px = uncertainty.edge_lead_std_px;

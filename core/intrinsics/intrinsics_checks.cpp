@@ -38,22 +38,29 @@ struct Region {
   int cells = 0, seen = 0;
 };
 
+std::array<Region, 9> imageRegions() {
+  return {{{"the upper left corner"},
+           {"the upper edge"},
+           {"the upper right corner"},
+           {"the left edge"},
+           {"the middle"},
+           {"the right edge"},
+           {"the lower left corner"},
+           {"the lower edge"},
+           {"the lower right corner"}}};
+}
+
+// Corners and edges are a quarter of the image's width and height.
+std::size_t regionAt(double x, double y) {
+  const auto third = [](double part) { return part < 0.25 ? 0 : part >= 0.75 ? 2 : 1; };
+  return static_cast<std::size_t>(3 * third(y) + third(x));
+}
+
 std::array<Region, 9> regionsOf(const ImageMap& image) {
-  std::array<Region, 9> regions = {{{"the upper left corner"},
-                                    {"the upper edge"},
-                                    {"the upper right corner"},
-                                    {"the left edge"},
-                                    {"the middle"},
-                                    {"the right edge"},
-                                    {"the lower left corner"},
-                                    {"the lower edge"},
-                                    {"the lower right corner"}}};
+  std::array<Region, 9> regions = imageRegions();
   for (int row = 0; row < image.rows; ++row) {
     for (int column = 0; column < image.columns; ++column) {
-      // Corners and edges are a quarter of the image's width and height.
-      const auto third = [](int i, int count) { return 4 * i < count ? 0 : 4 * i >= 3 * count ? 2 : 1; };
-      Region& region =
-          regions[static_cast<std::size_t>(3 * third(row, image.rows) + third(column, image.columns))];
+      Region& region = regions[regionAt((column + 0.5) / image.columns, (row + 0.5) / image.rows)];
       ++region.cells;
       region.seen += image.cells[static_cast<std::size_t>(row * image.columns + column)].circles > 0;
     }
@@ -61,7 +68,35 @@ std::array<Region, 9> regionsOf(const ImageMap& image) {
   return regions;
 }
 
+// Sides of the image, corners included, without a single circle.
+std::vector<std::string> unseenSides(const ImageMap& image) {
+  const std::array<Region, 9> regions = regionsOf(image);
+  std::vector<std::string> sides;
+  const auto add = [&](const char* side, std::array<std::size_t, 3> parts) {
+    if (std::all_of(parts.begin(), parts.end(), [&](std::size_t k) { return regions[k].seen == 0; }))
+      sides.emplace_back(side);
+  };
+  add("left", {0, 3, 6});
+  add("right", {2, 5, 8});
+  add("upper", {0, 1, 2});
+  add("lower", {6, 7, 8});
+  return sides;
+}
+
 }  // namespace
+
+std::string missingPlaces(const std::vector<SensorView>& views, Resolution resolution_px) {
+  std::array<Region, 9> regions = imageRegions();
+  for (const SensorView& view : views)
+    for (const SensorCircle& circle : view.circles)
+      ++regions[regionAt(circle.centre_px.x() / resolution_px.width_px,
+                         circle.centre_px.y() / resolution_px.height_px)]
+            .seen;
+  std::vector<std::string> none;
+  for (const Region& region : regions)
+    if (region.seen == 0) none.emplace_back(region.name);
+  return none.empty() || none.size() == regions.size() ? std::string() : joinedInWords(none);
+}
 
 double largestTilt_deg(const Bundle& bundle) {
   std::vector<double> tilts_deg;
@@ -119,6 +154,10 @@ void judge(const Bundle& bundle, const IntrinsicsOptions& options, IntrinsicsRes
     reasons.push_back(fmt::format("the focal length is known to {:.2f} % only", 100.0 * focal));
   if (!(result.image.rms_px <= options.needed_projection_px))
     reasons.push_back(fmt::format("pixels of rays are known to {:.2f} px RMS only", result.image.rms_px));
+  // Sigmas trust the model there, real lenses need not.
+  if (const std::vector<std::string> sides = unseenSides(result.image); !sides.empty())
+    reasons.push_back(fmt::format("no views reach the {} {} of the image", joinedInWords(sides),
+                                  sides.size() == 1 ? "side" : "sides"));
   if (result.circles_rejected > result.circles_used)
     reasons.emplace_back("most circles do not fit: check the board's type, spacing and radius");
   if (reasons.empty()) return;

@@ -15,6 +15,9 @@ double largestTilt_deg(const Bundle& bundle);
 // Where in the image views are missing, and which way the board was never tilted.
 std::vector<std::string> coverageAdvice(const Bundle& bundle, const ImageMap& image);
 
+// Parts of the image without a single circle, in words; nothing if that is none or all of them.
+std::string missingPlaces(const std::vector<SensorView>& views, Resolution resolution_px);
+
 // Status and reason, from what else is filled in.
 void judge(const Bundle& bundle, const IntrinsicsOptions& options, IntrinsicsResult& result);
 

@@ -1,5 +1,6 @@
 #include "core/pipeline/intrinsics_calibration.h"
 
+#include "core/base/error.h"
 #include "core/geometry/projection_difference.h"
 #include "core/intrinsics/estimate_intrinsics.h"
 #include "core/pipeline/board_size_check.h"
@@ -29,6 +30,20 @@ Session cameraAlone(const Session& session, std::size_t camera) {
   return alone;
 }
 
+// A board of another size than the session says may fail in any way: that is told first.
+IntrinsicsResult estimate(const Session& alone, const RecordingPass& pass,
+                          const std::optional<CameraIntrinsics>& start, const RunContext& context) {
+  const BoardObservations& observations = pass.cameras.front();
+  try {
+    return estimateIntrinsics(
+        {alone.board, pass.resolutions_px.front(), observations, alone.cameras.front().intrinsics, start},
+        alone.options.intrinsics, context);
+  } catch (const CalibrationError&) {
+    checkBoardSize(observations, alone.board, alone.options.front_end.extent);
+    throw;
+  }
+}
+
 }  // namespace
 
 IntrinsicsRun calibrateIntrinsics(const Session& session, std::size_t camera, const RunContext& context) {
@@ -43,9 +58,7 @@ IntrinsicsRun calibrateIntrinsics(const Session& session, std::size_t camera, co
     context.progress.stageStarted("detect");
     run.pass = readAndDetect(alone, context);
     checkBoardSeen(run.pass.cameras.front(), alone.board);
-    run.result = estimateIntrinsics(
-        {alone.board, run.pass.resolutions_px.front(), run.pass.cameras.front(), seen.intrinsics, start},
-        alone.options.intrinsics, context);
+    run.result = estimate(alone, run.pass, start, context);
     run.result.passes = pass;
     const CameraIntrinsics found = run.result.intrinsics;
     const auto moved =

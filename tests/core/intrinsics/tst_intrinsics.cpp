@@ -239,6 +239,7 @@ class TestIntrinsics : public QObject {
         onlyViews(sensorObservations(truth), [](const BoardView& view) { return view.time_s < 0.6; });
     const std::string reason = failure([&] { estimate(truth, few); });
     QVERIFY2(reason.find("views show at least 50 % of the board") != std::string::npos, reason.c_str());
+    QVERIFY2(reason.find("none reaches the ") != std::string::npos, reason.c_str());
   }
 
   void missingCorner_isNamed() {
@@ -250,6 +251,9 @@ class TestIntrinsics : public QObject {
     const IntrinsicsResult result = estimate(truth, right);
     QVERIFY(!result.advice.empty());
     QVERIFY2(result.advice[0].find("the lower left corner") != std::string::npos, result.advice[0].c_str());
+    QVERIFY(result.status == CalibrationStatus::Doubtful);
+    QVERIFY2(result.reason.find("no views reach the left side of the image") != std::string::npos,
+             result.reason.c_str());
     // Where nothing was seen, less is known than with views there.
     const IntrinsicsResult whole = estimate(truth, sensorObservations(truth));
     QVERIFY(whole.advice.empty());
