@@ -59,8 +59,7 @@ class Pilot {
         context_(context),
         recording_(session),
         resolution_px_(recording_.resolution_px(0)),
-        lenses_(plainLenses(resolution_px_)),
-        guess_(lenses_.front()) {
+        lenses_(plainLenses(resolution_px_)) {
     const double begin_s = session.time_range_s ? session.time_range_s->front() : 0.0;
     slice_begin_ns_ = recording_.start_ns() + nanosecondsFrom(begin_s);
     if (session.time_range_s) end_ns_ = recording_.start_ns() + nanosecondsFrom(session.time_range_s->back());
@@ -116,31 +115,33 @@ class Pilot {
     if (!rough_ || slices_ % kSolveEvery == 0) solve();
   }
 
-  // The first lens alone if it shows nearly all of the board: looks that fail take longest.
+  // The lens that showed most the last time alone, if it shows nearly all of the board: looks that fail take
+  // longest.
   Look throughPlainLenses(const std::vector<EdgeBurst>& bursts) {
     constexpr double kNearlyAll = 0.75;
     Look best = through(lenses_.front(), bursts);
-    guess_ = lenses_.front();
-    const double mean = static_cast<double>(best.circles()) /
-                        static_cast<double>(std::max<std::size_t>(1, best.views.size()));
-    if (mean >= kNearlyAll * session_.board.circleCount()) return best;
+    const double all = static_cast<double>(best.views.size()) * session_.board.circleCount();
+    if (!best.views.empty() && static_cast<double>(best.circles()) >= kNearlyAll * all) return best;
     std::vector<std::future<Look>> looks;
     for (std::size_t k = 1; k < lenses_.size(); ++k)
       looks.push_back(std::async(std::launch::async, [&, k] { return through(lenses_[k], bursts); }));
-    for (std::size_t k = 0; k < looks.size(); ++k) {
-      Look look = looks[k].get();
+    std::size_t of_best = 0;
+    for (std::size_t k = 1; k < lenses_.size(); ++k) {
+      Look look = looks[k - 1].get();
       if (look.circles() <= best.circles()) continue;
       best = std::move(look);
-      guess_ = lenses_[k + 1];
+      of_best = k;
     }
+    std::swap(lenses_.front(), lenses_[of_best]);
     return best;
   }
 
   Look through(const CameraIntrinsics& lens, const std::vector<EdgeBurst>& bursts) const {
     context_.throwIfStopped();
     const auto camera = isPlane(lens) ? std::nullopt : std::optional(lens);
-    BoardTracker tracker(session_.board, resolution_px_, camera, session_.options.front_end,
-                         recording_.start_ns());
+    FrontEndOptions options = session_.options.front_end;
+    options.detection.search_interval_s = kLength_s;  // once
+    BoardTracker tracker(session_.board, resolution_px_, camera, options, recording_.start_ns());
     tracker.addBursts(bursts, slice_begin_ns_ + nanosecondsFrom(kSearched_s),
                       slice_begin_ns_ + nanosecondsFrom(kLength_s));
     return {sensorViews(tracker.finish(), session_.board, camera, session_.options.intrinsics)};
@@ -150,7 +151,7 @@ class Pilot {
     constexpr int kLeastSlices = 3;  // views of one slice are all alike
     if (slices_ < kLeastSlices || solved_views_ == views_.size()) return;
     solved_views_ = views_.size();
-    auto rough = roughCamera(views_, session_.board, rough_ ? rough_->intrinsics : guess_,
+    auto rough = roughCamera(views_, session_.board, rough_ ? rough_->intrinsics : lenses_.front(),
                              session_.options.intrinsics, context_);
     if (rough) rough_ = std::move(rough);
   }
@@ -162,15 +163,14 @@ class Pilot {
                                      rough_ ? fmt::format(", projection known to {:.2f} px", rough_->sigma_px)
                                             : std::string(", which make no camera")));
     if (rough_) return rough_->intrinsics;
-    return isPlane(guess_) ? std::nullopt : std::optional(guess_);
+    return isPlane(lenses_.front()) ? std::nullopt : std::optional(lenses_.front());
   }
 
   const Session& session_;
   const RunContext& context_;
   SessionRecording recording_;
   Resolution resolution_px_;
-  std::vector<CameraIntrinsics> lenses_;
-  CameraIntrinsics guess_;  // the plain lens that showed most in the last slice they were tried on
+  std::vector<CameraIntrinsics> lenses_;  // plain ones, first that which showed most the last time
   std::optional<RoughCamera> rough_;
   std::vector<SensorView> views_;
   std::size_t solved_views_ = 0;
