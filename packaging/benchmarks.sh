@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Prints the accuracy table of the README: every scenario that a calibration must master, then the seeds, then the costs of
-# the hot paths. Takes half an hour on two cores.
+# the hot paths and of reading files. Takes half an hour on two cores.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 
 packaging/install-dependencies.sh
 cmake --preset release -DEVICAL_TESTS=ON
-cmake --build --preset release --target evical_accuracy evical_intrinsics_accuracy evical_speed
+cmake --build --preset release --target evical_accuracy evical_intrinsics_accuracy evical_formats evical_speed
 accuracy=build/release/tests/benchmarks/evical_accuracy
 scenarios=config/scenarios
 
@@ -23,3 +23,6 @@ intrinsics=build/release/tests/benchmarks/evical_intrinsics_accuracy
 speed=build/release/tests/benchmarks/evical_speed
 "$speed" "$scenarios/davis346.yaml"
 "$speed" --duration 3 "$scenarios/hd.yaml"
+
+# How fast files are decoded, per format; fails where a packed one is below 20 million events/s.
+build/release/tests/benchmarks/evical_formats "$scenarios/davis346.yaml"
