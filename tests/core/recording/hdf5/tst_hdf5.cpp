@@ -90,6 +90,7 @@ class TestHdf5 : public QObject {
   void damagedChunk_losesItsRowsOnly_data();
   void damagedChunk_losesItsRowsOnly();
   void damageAnywhere_neverCrashes();
+  void programsEnd_isQuietAfterDamage();
 
  private:
   std::filesystem::path writeSample(std::size_t events) const;
@@ -357,6 +358,15 @@ void TestHdf5::damageAnywhere_neverCrashes() {
       QVERIFY(error.kind() == ErrorKind::BadInput);
     }
   }
+}
+
+// The library looked for what it had lost, and said so, when the program ended.
+void TestHdf5::programsEnd_isQuietAfterDamage() {
+  QProcess program;
+  program.start(QCoreApplication::applicationFilePath(), {"damageAnywhere_neverCrashes"});
+  QVERIFY(program.waitForFinished(120'000));
+  QCOMPARE(program.exitCode(), 0);
+  QCOMPARE(program.readAllStandardError(), QByteArray());
 }
 
 QTEST_GUILESS_MAIN(TestHdf5)
