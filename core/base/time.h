@@ -9,6 +9,13 @@ namespace evical {
 
 inline constexpr double kNanosecondsPerSecond = 1e9;
 
+// Times of recordings lie within 146 years of their epoch's zero; others are damage, and readers hand none
+// out. So differences of two never overflow.
+inline constexpr std::int64_t kLatestTime_ns = (std::int64_t{1} << 62) - 1;
+inline bool isTime(std::int64_t time_ns) {
+  return time_ns >= -kLatestTime_ns && time_ns <= kLatestTime_ns;
+}
+
 inline double secondsSince(std::int64_t start_ns, std::int64_t time_ns) {
   return static_cast<double>(time_ns - start_ns) / kNanosecondsPerSecond;
 }

@@ -23,15 +23,25 @@ EventStatistics::EventStatistics(const StreamInfo& info, const InspectionOptions
   numbers_.info = info;
   counted_px_ = info.resolution_px.known() ? info.resolution_px : kLargest_px;
   counted_px_.width_px = std::min(counted_px_.width_px, 2 * kLargest_px.width_px);
-  counted_px_.height_px = std::min(counted_px_.height_px, 2 * kLargest_px.height_px);
-  pixel_counts_.resize(static_cast<std::size_t>(counted_px_.pixelCount()));
+  most_rows_ = std::min(counted_px_.height_px, 2 * kLargest_px.height_px);
+  counted_px_.height_px = 0;
+}
+
+// How many rows are counted, with this one if the sensor may have it: memory grows with what events reach,
+// not with what a file claims.
+unsigned EventStatistics::rowsWith(unsigned y_px) {
+  if (y_px < static_cast<unsigned>(most_rows_)) {
+    counted_px_.height_px = std::max(counted_px_.height_px, static_cast<int>(y_px) + 1);
+    pixel_counts_.resize(static_cast<std::size_t>(counted_px_.pixelCount()));
+  }
+  return static_cast<unsigned>(counted_px_.height_px);
 }
 
 void EventStatistics::add(EventSpan events) {
   if (events.empty()) return;
   if (numbers_.count == 0) numbers_.first_ns = numbers_.last_ns = events.front().time_ns;
-  const auto width = static_cast<unsigned>(counted_px_.width_px),
-             height = static_cast<unsigned>(counted_px_.height_px);
+  const auto width = static_cast<unsigned>(counted_px_.width_px);
+  auto height = static_cast<unsigned>(counted_px_.height_px);
   const auto gap_ns = nanosecondsFrom(options_.event_gap_s);
   const std::int64_t time_unit_ns = numbers_.info.time_unit_ns;
   std::int64_t previous_ns = numbers_.last_ns;
@@ -47,6 +57,7 @@ void EventStatistics::add(EventSpan events) {
     numbers_.sum_t += static_cast<std::uint64_t>(event.time_ns / time_unit_ns);
     largest_x = std::max<unsigned>(largest_x, event.x_px);
     largest_y = std::max<unsigned>(largest_y, event.y_px);
+    if (event.y_px >= height) height = rowsWith(event.y_px);
     if (event.x_px < width && event.y_px < height) {
       ++pixel_counts_[static_cast<std::size_t>(event.y_px) * width + event.x_px];
     } else {
@@ -97,10 +108,11 @@ void EventStatistics::finish(StreamSummary& summary, std::vector<RecordingFault>
 std::uint32_t EventStatistics::neighbourMedian(int x_px, int y_px) const {
   std::array<std::uint32_t, 8> counts{};
   std::size_t found = 0;
-  for (int y = std::max(0, y_px - 1); y <= std::min(counted_px_.height_px - 1, y_px + 1); ++y) {
+  for (int y = std::max(0, y_px - 1); y <= std::min(most_rows_ - 1, y_px + 1); ++y) {
     for (int x = std::max(0, x_px - 1); x <= std::min(counted_px_.width_px - 1, x_px + 1); ++x) {
-      if (x != x_px || y != y_px)
-        counts[found++] = pixel_counts_[static_cast<std::size_t>(y * counted_px_.width_px + x)];
+      if (x == x_px && y == y_px) continue;
+      const bool counted = y < counted_px_.height_px;
+      counts[found++] = counted ? pixel_counts_[static_cast<std::size_t>(y * counted_px_.width_px + x)] : 0;
     }
   }
   if (found == 0) return 0;
@@ -110,13 +122,15 @@ std::uint32_t EventStatistics::neighbourMedian(int x_px, int y_px) const {
 }
 
 void EventStatistics::findHotPixels(double duration_s, std::vector<RecordingFault>& faults) const {
-  const double mean = static_cast<double>(numbers_.count) / numbers_.seen_px.pixelCount();
+  const double mean =
+      static_cast<double>(numbers_.count) / numbers_.seen_px.width_px / numbers_.seen_px.height_px;
   const double least = std::max({options_.hot_pixel_hz * duration_s, options_.hot_pixel_factor * mean,
                                  static_cast<double>(options_.hot_pixel_events)});
   std::vector<std::string> hot;
   double share = 0.0;
+  const int columns = std::min(counted_px_.width_px, numbers_.seen_px.width_px);
   for (int y = 0; y < counted_px_.height_px; ++y) {
-    for (int x = 0; x < counted_px_.width_px; ++x) {
+    for (int x = 0; x < columns; ++x) {
       const double count = pixel_counts_[static_cast<std::size_t>(y * counted_px_.width_px + x)];
       if (count < least || count < options_.hot_pixel_factor * neighbourMedian(x, y)) continue;
       hot.push_back(fmt::format("({}, {})", x, y));

@@ -18,6 +18,7 @@ class EventStatistics {
   void finish(StreamSummary& summary, std::vector<RecordingFault>& faults);
 
  private:
+  unsigned rowsWith(unsigned y_px);
   void checkInterval(std::int64_t previous_ns, std::int64_t time_ns);
   void findHotPixels(double duration_s, std::vector<RecordingFault>& faults) const;
   std::uint32_t neighbourMedian(int x_px, int y_px) const;
@@ -27,7 +28,8 @@ class EventStatistics {
   StreamSummary numbers_;
   std::vector<RecordingFault> faults_;
   std::vector<std::uint32_t> pixel_counts_;  // row by row
-  Resolution counted_px_;                    // of pixel_counts_
+  Resolution counted_px_;                    // of pixel_counts_: as many rows as events reached
+  int most_rows_ = 0;
   std::uint64_t outside_ = 0;
 };
 

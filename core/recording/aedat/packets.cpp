@@ -1,5 +1,6 @@
 #include "core/recording/aedat/packets.h"
 
+#include "core/base/time.h"
 #include "core/recording/aedat/flat_buffer.h"
 
 #include <algorithm>
@@ -10,9 +11,9 @@ namespace evical::aedat {
 namespace {
 
 constexpr std::size_t kEvent_bytes = 16;  // i64 t, i16 x, i16 y, u8 on, 3 bytes of padding
-constexpr std::int64_t kLatest_us = std::numeric_limits<std::int64_t>::max() / kMicrosecond_ns;
+constexpr std::int64_t kLatest_us = kLatestTime_ns / kMicrosecond_ns;
 
-bool isTime(std::int64_t time_us) {
+bool isMicrosecond(std::int64_t time_us) {
   return time_us >= -kLatest_us && time_us <= kLatest_us;
 }
 
@@ -80,7 +81,7 @@ bool decodeEvents(std::string_view bytes, std::vector<Event>& events) {
     std::memcpy(&event.x_px, from + 8, 2);
     std::memcpy(&event.y_px, from + 10, 2);
     event.brighter = from[12] != 0;
-    times_good = times_good && isTime(time_us);
+    times_good = times_good && isMicrosecond(time_us);
     event.time_ns = times_good ? time_us * kMicrosecond_ns : 0;
     from += kEvent_bytes;
   }
@@ -96,7 +97,7 @@ bool decodeImu(std::string_view bytes, std::vector<ImuSample>& samples) {
   for (std::size_t i = 0; i < list.count && buffer.ok(); ++i) {
     const FlatTable table = buffer.tableAt(list.position + 4 * i);
     const auto time_us = buffer.number<std::int64_t>(table, 0);
-    if (!isTime(time_us)) return false;
+    if (!isMicrosecond(time_us)) return false;
     ImuSample sample;
     sample.time_ns = time_us * kMicrosecond_ns;
     for (std::size_t axis = 0; axis < 3; ++axis) {

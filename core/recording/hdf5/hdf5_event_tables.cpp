@@ -1,3 +1,4 @@
+#include "core/base/time.h"
 #include "core/recording/hdf5/ecf_decoder.h"
 #include "core/recording/hdf5/hdf5_tables.h"
 
@@ -15,7 +16,6 @@ constexpr std::uint64_t kPacketRows = 32'768;
 constexpr std::int64_t kNanoseconds = 100'000'000'000'000'000;  // us would be 3000 years
 constexpr double kSecondsSpan_s = 1e6;                          // no recording is 12 days long
 constexpr std::uint16_t kOutside_px = 65'535;
-constexpr double kLargestTime_ns = 9.2e18;
 
 std::uint16_t pixel(std::int32_t value) {
   return value >= 0 && value < kOutside_px ? static_cast<std::uint16_t>(value) : kOutside_px;
@@ -198,13 +198,13 @@ class Compound : public EventTable {
 bool TimeScale::convert(std::int64_t time, std::int64_t& time_ns) const {
   std::int64_t scaled_ns = 0;
   return !__builtin_mul_overflow(time, unit_ns, &scaled_ns) &&
-         !__builtin_add_overflow(scaled_ns, offset_ns, &time_ns);
+         !__builtin_add_overflow(scaled_ns, offset_ns, &time_ns) && isTime(time_ns);
 }
 
 bool TimeScale::convert(double time, std::int64_t& time_ns) const {
   const double scaled_ns = time * factor_ns;
-  if (!(std::abs(scaled_ns) < kLargestTime_ns)) return false;
-  return !__builtin_add_overflow(std::llround(scaled_ns), offset_ns, &time_ns);
+  if (!(std::abs(scaled_ns) <= static_cast<double>(kLatestTime_ns))) return false;
+  return !__builtin_add_overflow(std::llround(scaled_ns), offset_ns, &time_ns) && isTime(time_ns);
 }
 
 std::unique_ptr<EventTable> openColumns(hid_t file, const std::array<DatasetInfo, 4>& columns,

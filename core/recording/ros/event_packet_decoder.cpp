@@ -1,9 +1,14 @@
 #include "core/recording/ros/event_packet_decoder.h"
 
+#include "core/base/time.h"
+
 #include <cstring>
 
 namespace evical::ros {
 namespace {
+
+constexpr std::int64_t kLongest_us = std::int64_t{1} << 41;  // of a message; what goes beyond is damage
+constexpr std::int64_t kLatestBase_ns = kLatestTime_ns - 1000 * 2 * kLongest_us;
 
 template <class Word>
 Word wordAt(std::string_view bytes, std::size_t position) {
@@ -23,7 +28,7 @@ void decodeMono(const EventPacket& packet, std::vector<Event>& events) {
 }
 
 // u32: bit 0 valid, 1 polarity, 2-16 y, 17-31 x; then i32 us since the time base.
-void decodeLibcaer(const EventPacket& packet, std::vector<Event>& events) {
+bool decodeLibcaer(const EventPacket& packet, std::vector<Event>& events) {
   constexpr std::int64_t kWrap_us = std::int64_t{1} << 31;
   std::int64_t wraps_us = 0, last_us = 0;
   for (std::size_t i = 0; i + 8 <= packet.events.size(); i += 8) {
@@ -31,11 +36,13 @@ void decodeLibcaer(const EventPacket& packet, std::vector<Event>& events) {
     if ((word & 1U) == 0) continue;
     const std::int64_t stamp_us = wordAt<std::int32_t>(packet.events, i + 4);
     if (stamp_us < last_us - kWrap_us / 2) wraps_us += kWrap_us;
+    if (wraps_us > kLongest_us) return false;
     last_us = stamp_us;
     events.push_back({packet.time_base_ns + 1000 * (wraps_us + stamp_us),
                       static_cast<std::uint16_t>(word >> 17), static_cast<std::uint16_t>(word >> 2 & 0x7FFFU),
                       (word & 2U) != 0});
   }
+  return true;
 }
 
 // u16 words, code in bits 12-15; each message starts anew.
@@ -92,7 +99,10 @@ bool EventPacketDecoder::decode(const EventPacket& packet, std::vector<Event>& e
   followSequence(packet.sequence);
   if (packet.big_endian) return false;
   const std::size_t size = packet.events.size();
-  switch (encodingOf(packet.encoding)) {
+  const Encoding encoding = encodingOf(packet.encoding);
+  const bool has_base = encoding != Encoding::Evt3 && encoding != Encoding::Trigger;
+  if (has_base && (packet.time_base_ns < 0 || packet.time_base_ns > kLatestBase_ns)) return false;
+  switch (encoding) {
     case Encoding::Evt3:
       decodeEvt3(packet, events);
       return size % 2 == 0;
@@ -103,8 +113,7 @@ bool EventPacketDecoder::decode(const EventPacket& packet, std::vector<Event>& e
       triggers_ += size / 8;
       return size % 8 == 0;
     case Encoding::Libcaer:
-      decodeLibcaer(packet, events);
-      return size % 8 == 0;
+      return decodeLibcaer(packet, events) && size % 8 == 0;
     case Encoding::LibcaerCmp:
       decodeLibcaerCmp(packet, events);
       return size % 2 == 0;

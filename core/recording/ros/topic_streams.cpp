@@ -1,6 +1,7 @@
 #include "core/recording/ros/topic_streams.h"
 
 #include "core/base/error.h"
+#include "core/base/time.h"
 #include "core/recording/ros/ros_messages.h"
 
 #include <fmt/format.h>
@@ -193,10 +194,12 @@ bool TopicStreams::decodeEvents(std::size_t stream, std::string_view message, st
       state.content == Content::EventPacket
           ? decodePacket(stream, message, events)
           : decodeEventArray(message, state.serialization, events, streams_[stream].resolution_px);
-  if (state.stampless())
+  if (state.stampless()) {
+    if (!isTime(record_time_ns)) events.clear();
     for (Event& event : events) event.time_ns = record_time_ns;
+  }
   putInOrder(stream, events);
-  return whole;
+  return whole && (!state.stampless() || isTime(record_time_ns));
 }
 
 bool TopicStreams::decodePacket(std::size_t stream, std::string_view message, std::vector<Event>& events) {
@@ -218,9 +221,10 @@ bool TopicStreams::decodePacket(std::size_t stream, std::string_view message, st
 bool TopicStreams::decodeSamples(std::size_t stream, std::string_view message, std::int64_t record_time_ns,
                                  std::vector<ImuSample>& samples) {
   const bool whole = decodeImu(message, states_[stream].serialization, samples);
-  if (states_[stream].stampless())
-    for (ImuSample& sample : samples) sample.time_ns = record_time_ns;
-  return whole;
+  if (!states_[stream].stampless()) return whole;
+  if (!isTime(record_time_ns)) samples.clear();
+  for (ImuSample& sample : samples) sample.time_ns = record_time_ns;
+  return whole && isTime(record_time_ns);
 }
 
 // Small steps back are sorted; before a large one the packet ends, since sorting would only hide it.

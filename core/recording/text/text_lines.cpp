@@ -1,6 +1,7 @@
 #include "core/recording/text/text_lines.h"
 
 #include "core/base/error.h"
+#include "core/base/time.h"
 
 #include <algorithm>
 #include <array>
@@ -92,7 +93,8 @@ bool parseTime(std::string_view text, int digits_of_unit, std::int64_t& time_ns)
     text.remove_prefix(text.size() > 1 && text[1] == '+' ? 2 : 1);
     int exponent = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), exponent);
-    if (error != std::errc{} || end != text.data() + text.size() || std::abs(exponent) > 60) return false;
+    if (error != std::errc{} || end != text.data() + text.size() || exponent < -60 || exponent > 60)
+      return false;
     point += exponent;
   }
   point += digits_of_unit - 9;
@@ -107,7 +109,7 @@ bool parseTime(std::string_view text, int digits_of_unit, std::int64_t& time_ns)
   }
   if (digit(point + 9) >= 5) ++value;
   time_ns = negative ? -value : value;
-  return true;
+  return isTime(time_ns);
 }
 
 bool parseNumber(std::string_view text, double& value) {

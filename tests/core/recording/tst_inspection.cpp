@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 
 using namespace evical;
 using namespace evical::test;
@@ -54,6 +55,8 @@ class TestInspection : public QObject {
   void summary_matchesTheRecording();
   void eventFaults_areFound();
   void json_holdsTheContractsKeys();
+  void hostileSamples_areSurvived();
+  void hostileEvents_areSurvived();
 
  private:
   std::filesystem::path path(const char* name) const { return folder_.filePath(name).toStdString(); }
@@ -183,6 +186,35 @@ void TestInspection::json_holdsTheContractsKeys() {
   QCOMPARE(events["type"].toString(), "events");
   QCOMPARE(events["resolution_px"].toArray(), QJsonArray({346, 260}));
   QVERIFY(!parsed(false)["streams"][0].toObject().contains("sum_x"));
+}
+
+void TestInspection::hostileSamples_areSurvived() {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Recording recording = sampleRecording(50'000);
+  const std::vector<double> values = {std::nan(""), kInfinity, -kInfinity, 1e308, -1e-308};
+  for (std::size_t i = 0; i < recording.imu_samples.size(); ++i) {
+    ImuSample& sample = recording.imu_samples[i];
+    sample.specific_force_m_s2[static_cast<Eigen::Index>(i % 3)] = values[i % values.size()];
+    sample.angular_rate_rad_s[static_cast<Eigen::Index>(i % 3)] = values[i / 3 % values.size()];
+  }
+  recording.imu_samples[10].time_ns = 0;
+  recording.imu_samples[11].time_ns = 4'294'967'295'000'000'000;
+  writeAll(*createBag(path("samples.bag"), sampleStreams(), false), recording);
+  const Inspection inspection = inspectRecording(*openRecording(path("samples.bag")));
+  QVERIFY(kinds(inspection.faults).contains("not_finite"));
+  QVERIFY(kinds(inspection.faults).contains("backward_time"));
+  const QByteArray json = QByteArray::fromStdString(inspectionJson(inspection, true));
+  QVERIFY(QJsonDocument::fromJson(json).isObject());
+}
+
+void TestInspection::hostileEvents_areSurvived() {
+  std::ofstream(path("events.csv")) << "t_s,x,y,p\n4.6e9,65535,65535,1\n-4.6e9,0,0,0\n1,65535,0,1\n"
+                                       "4.7e9,1,1,1\n9.3e9,1,1,1\n2,0,65535,1\n";
+  const Inspection inspection = inspectRecording(*openRecording(path("events.csv")));
+  QCOMPARE(inspection.streams.at(0).count, std::uint64_t{4});
+  QCOMPARE(inspection.streams[0].largest_gap_ns, std::int64_t{4'600'000'001'000'000'000});
+  QCOMPARE(inspection.streams[0].backward_steps, std::uint64_t{1});
+  QVERIFY((inspection.streams[0].seen_px == Resolution{65536, 65536}));
 }
 
 QTEST_GUILESS_MAIN(TestInspection)

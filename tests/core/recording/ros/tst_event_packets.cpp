@@ -76,6 +76,7 @@ class TestEventPackets : public QObject {
   void triggerTopic_holdsNoEvents();
   void unknownEncoding_isNamed();
   void bigEndian_isRefused();
+  void baseThatIsNoTime_isRefused();
   void oddLength_losesOnlyTheRest();
 
  private:
@@ -218,6 +219,17 @@ void TestEventPackets::bigEndian_isRefused() {
       contentsOf(bagOf({{"mono", words<std::uint64_t>({7}), kStart_ns, 0, kStart_ns, true}}));
   QCOMPARE(contents.eventCount(), std::size_t{0});
   QVERIFY(faultOf(contents, "corrupt") != nullptr);
+}
+
+void TestEventPackets::baseThatIsNoTime_isRefused() {
+  for (const char* encoding : {"mono", "libcaer", "libcaer_cmp"}) {
+    for (const std::uint64_t base_ns : {std::uint64_t{1} << 62, ~std::uint64_t{0}}) {
+      const Contents contents = contentsOf(
+          bagOf({{encoding, words<std::uint64_t>({7, ~std::uint64_t{0}}), kStart_ns, 0, base_ns}}));
+      QCOMPARE(contents.eventCount(), std::size_t{0});
+      QVERIFY(faultOf(contents, "corrupt") != nullptr);
+    }
+  }
 }
 
 void TestEventPackets::oddLength_losesOnlyTheRest() {

@@ -55,6 +55,9 @@ void TestTextRecording::seconds_areExact_data() {
   row("1.2.3", false, 0);
   row("nan", false, 0);
   row("1e", false, 0);
+  row("4.7e9", false, 0);  // differences of such times would overflow
+  row("-4.7e9", false, 0);
+  row("1e-2147483648", false, 0);
 }
 
 void TestTextRecording::seconds_areExact() {
