@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what building and testing Evical needs, from Debian 12's own packages. Does nothing, and asks for no rights,
-# when all of it is there. With --list it only prints the names.
+# when all of it is there. With --list it only prints the names; --fuzz in front adds what packaging/fuzz.sh needs.
 set -euo pipefail
 
 packages=(
@@ -19,6 +19,11 @@ packages=(
   # tests
   clang-format xvfb xauth xdotool imagemagick python3-h5py python3-rosbag
 )
+
+if [ "${1:-}" = "--fuzz" ]; then
+  packages+=(clang libclang-rt-14-dev)
+  shift
+fi
 
 if [ "${1:-}" = "--list" ]; then
   printf '%s\n' "${packages[@]}"

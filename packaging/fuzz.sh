@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# Fuzzes every parser for so many seconds each (60 by default), with AddressSanitizer and UndefinedBehaviorSanitizer:
+# packaging/fuzz.sh [SECONDS [TARGET...]]. Begins with small files of our own and with those of tests/data; what was
+# learnt stays in build/fuzz/corpus. Findings stay in build/fuzz/findings and fail the script;
+# build/fuzz/tests/fuzz/evical_fuzz_TARGET FILE repeats one.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+seconds=${1:-60}
+targets=("${@:2}")
+[ "${#targets[@]}" -gt 0 ] || targets=(bag mcap db3 packed aedat4 hdf5 raw es text payload yaml)
+
+packaging/install-dependencies.sh --fuzz
+build=build/fuzz
+cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ \
+      -DEVICAL_FUZZ=ON -DEVICAL_GUI=OFF >/dev/null
+nice -n 10 ninja -C "$build" -j2 evical_fuzz
+
+seeds=$build/seeds
+rm -rf "$seeds"
+ASAN_OPTIONS=detect_leaks=0 "$build/tests/fuzz/evical_fuzz_seeds" "$seeds"
+/usr/bin/python3 tests/fuzz/hdf5_seeds.py "$seeds/hdf5"
+mkdir -p "$seeds/yaml"
+cp tests/fuzz/seeds/yaml/*.yaml config/*.yaml config/scenarios/*.yaml "$seeds/yaml"
+while IFS= read -r -d '' file; do
+  case "$(head -c 8 "$file" | tr -d '\0')" in
+    '#ROSBAG'*) target=bag ;;
+    'SQLite'*) target=db3 ;;
+    *MCAP*) target=mcap ;;
+    *HDF*) target=hdf5 ;;
+    [0-9]*) target=text ;;
+    *) continue ;;
+  esac
+  cp "$file" "$seeds/$target/$(basename "$file")"
+done < <(find tests/data -type f -size -64k -print0)
+
+mkdir -p "$build/findings"
+failed=0
+for target in "${targets[@]}"; do
+  corpus=$build/corpus/$target
+  mkdir -p "$corpus"
+  # libhdf5 loses memory on damaged files; what it keeps is not ours to free.
+  leaks=1
+  [ "$target" != hdf5 ] || leaks=0
+  if LSAN_OPTIONS=suppressions=tests/fuzz/leaks.supp:print_suppressions=0 \
+     UBSAN_OPTIONS=print_stacktrace=1 nice -n 10 "$build/tests/fuzz/evical_fuzz_$target" "$corpus" "$seeds/$target" \
+       -max_total_time="$seconds" -max_len=65536 -timeout=20 -rss_limit_mb=2048 -malloc_limit_mb=1024 \
+       -detect_leaks="$leaks" -print_final_stats=1 -artifact_prefix="$build/findings/$target-" \
+       >"$build/$target.log" 2>&1; then
+    echo "$target: $(sed -n 's/^stat::number_of_executed_units: *//p' "$build/$target.log") inputs, nothing found"
+  else
+    failed=1
+    echo "$target: failed, see $build/$target.log"
+  fi
+done
+exit "$failed"

@@ -1,0 +1,53 @@
+// The readers of recordings, a program a family (EVICAL_FUZZ_FAMILY): the bytes become a file, which is
+// opened by its content and read to its end, as `evical inspect` does it. Bytes that begin as no file of the
+// family are passed over.
+#include "core/base/error.h"
+#include "core/recording/inspection.h"
+#include "core/recording/inspection_json.h"
+#include "core/recording/recording_reader.h"
+#include "tests/fuzz/input_file.h"
+
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+
+namespace {
+
+using namespace std::string_view_literals;
+
+struct Family {
+  std::string_view name;
+  std::string_view begin;  // of its files; empty for those that may begin with anything
+  const char* file;        // some are told by their names
+};
+constexpr Family kFamilies[] = {
+    {"bag", "#ROSBAG V2.0\n"sv, "input.bag"},
+    {"mcap", "\x89MCAP0\r\n"sv, "input.mcap"},
+    {"db3", "SQLite format 3\0"sv, "input.db3"},
+    {"packed", "\x28\xB5\x2F\xFD"sv, "input.mcap.zstd"},
+    {"aedat4", "#!AER-DAT4.0\r\n"sv, "input.aedat4"},
+    {"hdf5", "\x89HDF\r\n\x1A\n"sv, "input.h5"},
+    {"raw", "% "sv, "input.raw"},
+    {"es", "Event Stream"sv, "input.es"},
+    {"text", ""sv, "input.csv"},
+};
+
+const Family& family() {
+  static const Family& chosen = *std::find_if(std::begin(kFamilies), std::end(kFamilies),
+                                              [](const Family& f) { return f.name == EVICAL_FUZZ_FAMILY; });
+  return chosen;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const evical::fuzz::InputFile input(family().file);
+  if (!std::string_view(reinterpret_cast<const char*>(data), size).starts_with(family().begin)) return -1;
+  try {
+    const auto reader = evical::openRecording(input.write(data, size));
+    evical::inspectionJson(evical::inspectRecording(*reader), true);
+  } catch (const evical::CalibrationError&) {
+    // what bad files are answered with
+  }
+  return 0;
+}

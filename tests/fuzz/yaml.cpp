@@ -1,0 +1,38 @@
+// The readers of YAML files, all with the same bytes: sessions, intrinsics, results, scenarios with their
+// boards.
+#include "core/base/error.h"
+#include "core/data/intrinsics_yaml.h"
+#include "core/pipeline/session.h"
+#include "core/report/result_yaml.h"
+#include "core/synthetic/scenario_yaml.h"
+#include "tests/fuzz/input_file.h"
+
+namespace {
+
+// Bad files are answered with a CalibrationError and nothing else.
+template <class Read>
+void mayFail(Read read) {
+  try {
+    read();
+  } catch (const evical::CalibrationError&) {
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const evical::fuzz::InputFile input("input.yaml");
+  const std::filesystem::path& path = input.write(data, size);
+  mayFail([&] {
+    const evical::Session session = evical::readSession(path);
+    evical::sessionYaml(session, path.parent_path());
+  });
+  mayFail([&] { evical::readIntrinsicsFile(path, "left", "events"); });
+  mayFail([&] { evical::readResultYaml(path); });
+  mayFail([&] {
+    const evical::Scenario scenario = evical::readScenario(path);
+    evical::truthYaml(scenario);
+    evical::sessionYaml(scenario, "recording.bag");
+  });
+  return 0;
+}
