@@ -1,12 +1,16 @@
 #include "core/recording/ros/bag_reader.h"
 
 #include "core/base/error.h"
+#include "core/base/nearest_name.h"
 #include "core/recording/byte_cursor.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <regex>
 #include <set>
+#include <system_error>
 #include <utility>
 
 namespace evical {
@@ -34,6 +38,33 @@ bool takeRecord(const std::string& chunk, std::size_t& offset, ChunkRecord& reco
   return true;
 }
 
+// Those that `rosbag record --split` made before and behind this one: "a_3.bag" for "a_2.bag". Their names
+// may also hold the time at which they were begun, which differs: "a_2024-05-06-07-08-09_2.bag". They count
+// from 0: without that one these are recordings that somebody numbered.
+std::vector<std::string> otherParts(const std::filesystem::path& path) {
+  constexpr const char* kNumbered = R"((.*?)(_\d{4}(?:-\d{2}){5})?_(\d{1,6})\.bag)";
+  const std::regex numbered(kNumbered);
+  std::smatch own, other;
+  const std::string name = path.filename().string();
+  std::vector<std::string> parts;
+  if (!std::regex_match(name, own, numbered)) return parts;
+  const int number = std::stoi(own[3]);
+  bool has_first = number == 0;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(path.parent_path() / ".", error)) {
+    const std::string candidate = entry.path().filename().string();
+    if (!std::regex_match(candidate, other, numbered)) continue;
+    const bool same = own[1] == other[1] && own[2].matched == other[2].matched;
+    if (!same) continue;
+    const int its_number = std::stoi(other[3]);
+    has_first = has_first || its_number == 0;
+    if (std::abs(its_number - number) == 1) parts.push_back(candidate);
+  }
+  if (!has_first) return {};
+  std::sort(parts.begin(), parts.end());
+  return parts;
+}
+
 }  // namespace
 
 BagReader::BagReader(const std::filesystem::path& path)
@@ -44,6 +75,12 @@ BagReader::BagReader(const std::filesystem::path& path)
   listStreams();
   lookIntoFirstMessages();
   topics_.finishLooking();
+  const std::vector<std::string> parts = otherParts(path);
+  if (parts.empty()) return;
+  addFault("part",
+           fmt::format("The name is that of a part of a recording that was split: {} {} beside it. Only "
+                       "this part is read.",
+                       joined(parts), parts.size() == 1 ? "lies" : "lie"));
 }
 
 void BagReader::listStreams() {

@@ -47,6 +47,8 @@ class TestRosbagReader : public QObject {
   void recordingThatBeginsAtZero_keepsItsTimes();
   void unorderedEvents_areSortedInThePacket();
   void clockResetWithinAMessage_isNotSortedAway();
+  void partOfASplitBag_saysSo_data();
+  void partOfASplitBag_saysSo();
   void longMessage_isReadWhole();
   void fractionRead_growsToOne();
   void findStream_ofAWrongTopic_namesThoseThereAre();
@@ -272,6 +274,31 @@ void TestRosbagReader::clockResetWithinAMessage_isNotSortedAway() {
 }
 
 // 300000 events are a chunk of 4 MB.
+void TestRosbagReader::partOfASplitBag_saysSo_data() {
+  QTest::addColumn<QStringList>("files");  // the first is read
+  QTest::addColumn<bool>("expected");
+  QTest::newRow("first") << QStringList{"a_0.bag", "a_1.bag"} << true;
+  QTest::newRow("last") << QStringList{"a_2.bag", "a_0.bag", "a_1.bag"} << true;
+  QTest::newRow("with time") << QStringList{"a_2024-05-06-07-08-09_0.bag", "a_2024-05-06-07-09-09_1.bag"}
+                             << true;
+  QTest::newRow("alone") << QStringList{"a_0.bag", "b_1.bag"} << false;
+  QTest::newRow("numbered by people") << QStringList{"a_1.bag", "a_2.bag"} << false;
+  QTest::newRow("of another") << QStringList{"a_1.bag", "b_0.bag", "b_2.bag"} << false;
+}
+
+void TestRosbagReader::partOfASplitBag_saysSo() {
+  QFETCH(QStringList, files);
+  QFETCH(bool, expected);
+  const std::filesystem::path folder = folder_ / QTest::currentDataTag();
+  std::filesystem::create_directory(folder);
+  const std::string bag = bagWith("dvs_msgs/EventArray", kEventArrayMd5, "");
+  for (const QString& file : files) std::ofstream(folder / file.toStdString(), std::ios::binary) << bag;
+  const Contents contents = readAll(folder / files[0].toStdString());
+  QCOMPARE(contents.eventCount(), 5u);
+  QCOMPARE(contents.hasFault("part"), expected);
+  if (expected) QVERIFY(contents.faults[0].text.find("a_") != std::string::npos);
+}
+
 void TestRosbagReader::longMessage_isReadWhole() {
   const std::vector<Event> events = someEvents(300'000);
   BagBuilder bag("lz4");
