@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <set>
 #include <span>
 #include <vector>
@@ -18,7 +19,8 @@ namespace evical {
 namespace {
 
 void addReport(const Session& session, const NamedResult& named, const RecordingPass& pass,
-               std::vector<FileContent>& files) {
+               std::vector<FileContent>& files,
+               std::span<const std::optional<IntrinsicsResult>> intrinsics = {}) {
   const OptimisationOptions& options = session.options.optimisation;
   const ReportData data{
       named,
@@ -29,7 +31,8 @@ void addReport(const Session& session, const NamedResult& named, const Recording
       pass.imus,
       pass.resolutions_px,
       pass.faults,
-      {options.needed_rotation_deg, options.needed_translation_mm, options.needed_time_offset_ms}};
+      {options.needed_rotation_deg, options.needed_translation_mm, options.needed_time_offset_ms},
+      intrinsics};
   for (ReportFile& file : reportFiles(data)) files.push_back({file.name, std::move(file.content)});
 }
 
@@ -93,7 +96,7 @@ ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Sessio
                                     {"trajectory.csv", trajectoryCsv(run.result.state)},
                                     {"detections.csv", detectionsCsv(run.pass.cameras)},
                                     {"windows.csv", windowsCsv(run.pass.cameras)}};
-  addReport(session, named, run.pass, files);
+  addReport(session, named, run.pass, files, run.intrinsics);
   ExportRemarks remarks = addExports(named, session, files);
   std::string full_log = log;
   for (const auto& texts : {remarks.notes, remarks.refused})

@@ -99,31 +99,20 @@ PlotTable cellTable(const CameraMeasures& camera, std::size_t index) {
   return cells;
 }
 
-PlotFrame imageFrame(const Resolution& size, const std::string& title) {
-  PlotFrame frame;
-  frame.title = title;
-  frame.x_label = "x [px]";
-  frame.y_label = "y [px]";
-  frame.x = {0.0, static_cast<double>(size.width_px)};
-  frame.y = {0.0, static_cast<double>(size.height_px)};
-  frame.y_down = true;
-  frame.width = 420.0;
-  frame.height = std::clamp(68.0 + 346.0 * size.height_px / std::max(1, size.width_px), 160.0, 420.0);
-  return frame;
-}
-
 void writeImageCoverage(const CameraMeasures& camera, std::size_t index, ReportPage& page) {
   constexpr std::size_t kMost = 4000;
   if (!camera.resolution_px.known()) return;
   PlotTable centres(fmt::format("plots/camera{}_centres.csv", index + 1), {"x_px", "y_px"});
   for (std::size_t i = 0; i < camera.centres_px.size(); i += strideFor(camera.centres_px.size(), kMost))
     centres.add({camera.centres_px[i].x(), camera.centres_px[i].y()});
-  SvgPlot scatter(imageFrame(camera.resolution_px, "circle centres over the image"));
+  SvgPlot scatter(imageFrame(camera.resolution_px.width_px, camera.resolution_px.height_px,
+                             "circle centres over the image"));
   scatter.points(centres.values[0], centres.values[1], "c2 faint", 2.4);
   const PlotTable cells = cellTable(camera, index);
   double most = 1.0;
   for (const double count : cells.values[4]) most = std::max(most, count);
-  SvgPlot map(imageFrame(camera.resolution_px, "circles in each part of the image"));
+  SvgPlot map(imageFrame(camera.resolution_px.width_px, camera.resolution_px.height_px,
+                         "circles in each part of the image"));
   for (std::size_t i = 0; i < cells.rows(); ++i) {
     const auto& v = cells.values;
     if (v[4][i] > 0.0) map.bar(v[0][i], v[1][i], v[2][i], v[3][i], "c2", 0.12 + 0.7 * v[4][i] / most);

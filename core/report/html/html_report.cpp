@@ -42,6 +42,7 @@ std::vector<ReportFile> reportFiles(const ReportData& data) {
   html::writeAdvice(data, measures, page);
   html::writeNumbers(data, page);
   html::writeSensors(data, page);
+  html::writeIntrinsicsSection(data, page);
   html::writeDetections(data, measures, page);
   html::writeCoverage(data, measures, page);
   html::writeExcitation(data, measures, page);

@@ -3,10 +3,12 @@
 #pragma once
 
 #include "core/data/calibration_setup.h"
+#include "core/data/intrinsics_result.h"
 #include "core/data/recording.h"
 #include "core/report/result_yaml.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,6 +30,8 @@ struct ReportData {
   std::span<const Resolution> resolutions_px = {};
   std::span<const RecordingFault> faults = {};
   ReportNeeds needs = {};
+  // By camera: as calibrated first; empty where all were given.
+  std::span<const std::optional<IntrinsicsResult>> intrinsics = {};
 };
 
 struct ReportFile {

@@ -93,8 +93,9 @@ void writeCameraNumbers(const ReportData& data, std::size_t i, ReportPage& page)
     distortion += (distortion.empty() ? "" : ", ") + significant(d, 4);
   page.text(paragraph(
       "small",
-      fmt::format("Intrinsics as given: {}, {} x {} px, focal length {}, {} px, principal point {}, {} px, "
+      fmt::format("Intrinsics {}: {}, {} x {} px, focal length {}, {} px, principal point {}, {} px, "
                   "distortion {}.",
+                  at(data.named.names.intrinsics_std, i) ? "as calibrated first" : "as given",
                   intrinsics->model == CameraModel::PinholeRadtan ? "pinhole, radial-tangential"
                                                                   : "pinhole, equidistant",
                   intrinsics->resolution_px.width_px, intrinsics->resolution_px.height_px,

@@ -42,6 +42,7 @@ void writeVerdict(const ReportData& data, const Measures& measures, ReportPage& 
 void writeAdvice(const ReportData& data, const Measures& measures, ReportPage& page);
 void writeNumbers(const ReportData& data, ReportPage& page);
 void writeSensors(const ReportData& data, ReportPage& page);
+void writeIntrinsicsSection(const ReportData& data, ReportPage& page);
 void writeDetections(const ReportData& data, const Measures& measures, ReportPage& page);
 void writeCoverage(const ReportData& data, const Measures& measures, ReportPage& page);
 void writeExcitation(const ReportData& data, const Measures& measures, ReportPage& page);

@@ -50,6 +50,19 @@ AxisRange joined(const AxisRange& a, const AxisRange& b) {
   return {std::min(a.low, b.low), std::max(a.high, b.high)};
 }
 
+PlotFrame imageFrame(int width_px, int height_px, const std::string& title) {
+  PlotFrame frame;
+  frame.title = title;
+  frame.x_label = "x [px]";
+  frame.y_label = "y [px]";
+  frame.x = {0.0, static_cast<double>(width_px)};
+  frame.y = {0.0, static_cast<double>(height_px)};
+  frame.y_down = true;
+  frame.width = 420.0;
+  frame.height = std::clamp(68.0 + 346.0 * height_px / std::max(1, width_px), 160.0, 420.0);
+  return frame;
+}
+
 SvgPlot::SvgPlot(PlotFrame frame) : frame_(std::move(frame)) {
   if (!(frame_.x.high > frame_.x.low)) frame_.x = {frame_.x.low - 0.5, frame_.x.low + 0.5};
   if (!(frame_.y.high > frame_.y.low)) frame_.y = {frame_.y.low - 0.5, frame_.y.low + 0.5};

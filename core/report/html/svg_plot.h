@@ -28,6 +28,9 @@ struct PlotFrame {
   bool equal_scale = false;               // one unit is as long along x as along y
 };
 
+// Pixels of an image.
+PlotFrame imageFrame(int width_px, int height_px, const std::string& title);
+
 struct LegendEntry {
   std::string css_class, label;
 };

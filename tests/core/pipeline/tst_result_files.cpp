@@ -190,6 +190,32 @@ class TestResultFiles : public QObject {
     QVERIFY2(text.contains("Calibration of"), qPrintable(text.left(400)));
   }
 
+  void calibratedIntrinsics_haveTheirSection() {
+    QVERIFY(!page_.contains("<section id=\"intrinsics\">") && text_.contains("Intrinsics as given"));
+    CalibrationRun run = run_;
+    IntrinsicsResult& found = run.intrinsics.emplace_back().emplace();
+    found.intrinsics = *simulated_.session.cameras[0].intrinsics;
+    found.covariance.diagonal().head<8>().setConstant(0.0025);
+    found.status = CalibrationStatus::Doubtful;
+    found.reason = "no views reach the <left> side";
+    found.advice = {"No views in the left edge: move the board there"};
+    found.image.columns = 2;
+    found.image.rows = 1;
+    found.image.cells = {{{86.5, 129.5}, 0, std::numeric_limits<double>::infinity()},
+                         {{259.5, 129.5}, 1234, 0.021}};
+    QTemporaryDir folder;
+    writeResultFiles(folder.path().toStdString(), simulated_.session, run, "test", "log");
+    const QString page = readFile(folder.filePath("report.html")), text = checkedText(page);
+    QVERIFY2(page.contains("<section id=\"intrinsics\">"), qPrintable(text.left(400)));
+    for (const char* said : {"Intrinsics as calibrated first", "no views reach the <left> side",
+                             "No views in the left edge", "1234"})
+      QVERIFY2(text.contains(said), said);
+    QVERIFY(page.contains("correlation of the intrinsics"));
+    const QString cells = readFile(folder.filePath("plots/camera1_intrinsics.csv"));
+    QCOMPARE(cells.count('\n'), 3);
+    QVERIFY(readFile(folder.filePath("result.yaml")).contains("intrinsics_std:"));
+  }
+
   void failedCalibration_hasItsReasonAndItsDetections() {
     QTemporaryDir folder;
     RecordingPass pass = simulated_.pass;
