@@ -1,10 +1,12 @@
 #include "core/pipeline/intrinsics_calibration.h"
 
 #include "core/base/error.h"
+#include "core/base/time.h"
 #include "core/geometry/projection_difference.h"
 #include "core/intrinsics/estimate_intrinsics.h"
 #include "core/pipeline/board_size_check.h"
 #include "core/pipeline/lens_pilot.h"
+#include "core/pipeline/session_recording.h"
 
 #include <fmt/format.h>
 
@@ -27,6 +29,11 @@ Session cameraAlone(const Session& session, std::size_t camera) {
   alone.cameras.front().intrinsics.reset();
   alone.imus.clear();
   alone.reference = alone.cameras.front().name;
+  if (!alone.time_range_s) return alone;
+  // It counts from the first event or sample of all sensors.
+  const double later_s =
+      secondsSince(SessionRecording(session).start_ns(), SessionRecording(alone).start_ns());
+  for (double& time_s : *alone.time_range_s) time_s -= later_s;
   return alone;
 }
 

@@ -69,6 +69,7 @@ class Pilot {
     Packet packet;
     while (!enough() && recording_.read(packet)) {
       context_.throwIfStopped();
+      if (packet.events.front().time_ns > end_ns_) break;
       context_.progress.stageProgress(std::max(recording_.fractionRead(), slices_ / double{kMostSlices}));
       for (const Event& event : packet.events) {
         if (event.time_ns > end_ns_) break;
