@@ -182,12 +182,32 @@ void fillGaps(const Eigen::Matrix3d& ideal_from_board, const std::vector<IdealCi
 
 }  // namespace
 
+namespace {
+
+// Of motions that lay the lattice onto the same places, the first: where the board looks the same when
+// turned, a turned placement is no rival.
+std::vector<Eigen::Matrix3d> withoutTwins(const std::vector<Eigen::Matrix3d>& motions,
+                                          const std::vector<Eigen::Matrix3d>& onto_itself) {
+  constexpr double kSame = 1e-9;
+  std::vector<Eigen::Matrix3d> distinct;
+  for (const Eigen::Matrix3d& motion : motions) {
+    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const Eigen::Matrix3d& other) {
+      return std::any_of(onto_itself.begin(), onto_itself.end(),
+                         [&](const Eigen::Matrix3d& turn) { return (motion - other * turn).norm() < kSame; });
+    });
+    if (!known) distinct.push_back(motion);
+  }
+  return distinct;
+}
+
+}  // namespace
+
 std::vector<Eigen::Matrix3d> latticeShifts(const CircleBoard& board, double least_overlap) {
   const std::map<LatticePlace, int> lattice = boardLattice(board);
   Eigen::Matrix2d metres_per_step = board.spacing_m * Eigen::Matrix2d::Identity();
   if (board.type == BoardType::AsymmetricCircles)
     metres_per_step << board.spacing_m, board.spacing_m, -board.spacing_m, board.spacing_m;
-  std::vector<Eigen::Matrix3d> shifts = {Eigen::Matrix3d::Identity()};
+  std::vector<Eigen::Matrix3d> shifts = {Eigen::Matrix3d::Identity()}, onto_itself = shifts;
   for (const LatticeMap& turn : kTurns) {
     std::map<LatticePlace, int> counts;
     for (const auto& [from, circle] : lattice) {
@@ -203,9 +223,10 @@ std::vector<Eigen::Matrix3d> latticeShifts(const CircleBoard& board, double leas
       motion.topLeftCorner<2, 2>() = metres_per_step * turned * metres_per_step.inverse();
       motion.topRightCorner<2, 1>() = metres_per_step * Eigen::Vector2d(shift.first, shift.second);
       shifts.push_back(motion);
+      if (count == board.circleCount()) onto_itself.push_back(motion);
     }
   }
-  return shifts;
+  return withoutTwins(shifts, onto_itself);
 }
 
 std::optional<Eigen::Matrix3d> fitHomography(const std::vector<Eigen::Vector2d>& from,

@@ -119,6 +119,7 @@ class TestBoardPlacement : public QObject {
   void smallPatch_isAmbiguous();
   void camera_rulesOutShearedPlacements();
   void homography_isRecovered();
+  void turnsOntoItself_areNoRivals();
   void velocityField_followsCircles();
 };
 
@@ -270,6 +271,26 @@ void TestBoardPlacement::camera_rulesOutShearedPlacements() {
   QVERIFY(!seen.empty());
   QVERIFY(seen.size() <= all);
   QCOMPARE(wrongIn(seen.front(), image), 0);
+}
+
+void TestBoardPlacement::turnsOntoItself_areNoRivals() {
+  CircleBoard board;
+  board.spacing_m = 0.05;
+  board.radius_m = 0.02;
+  const auto turns = [&](BoardType type, int rows, int cols) {
+    board.type = type;
+    board.rows = rows;
+    board.cols = cols;
+    return latticeShifts(board, 1.0).size();
+  };
+  QCOMPARE(turns(BoardType::SymmetricCircles, 6, 8), std::size_t{1});
+  QCOMPARE(turns(BoardType::SymmetricCircles, 7, 7), std::size_t{1});
+  QCOMPARE(turns(BoardType::AsymmetricCircles, 10, 4), std::size_t{1});
+  // A shift by a row or a column leaves 40 or 42 of 48 circles on circles.
+  board.type = BoardType::SymmetricCircles;
+  board.rows = 6;
+  board.cols = 8;
+  QCOMPARE(latticeShifts(board, 40.0 / 48.0).size(), std::size_t{5});
 }
 
 void TestBoardPlacement::homography_isRecovered() {
