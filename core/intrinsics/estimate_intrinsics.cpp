@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -115,12 +116,15 @@ std::optional<RoughCamera> roughCamera(const std::vector<SensorView>& all, const
                                        const CameraIntrinsics& guess, const IntrinsicsOptions& options,
                                        const RunContext& context) {
   constexpr std::size_t kLeastViews = 4, kMostViews = 40;
+  constexpr int kMostIterations = 15;        // a valley is followed to its end by the whole recording only
   constexpr double kMostFocalLength = 20.0;  // image widths: views that all look alike lead anywhere
   if (all.size() < kLeastViews) return std::nullopt;
   std::vector<SensorView> views;
   const std::size_t every = (all.size() + kMostViews - 1) / kMostViews;
   for (std::size_t k = 0; k < all.size(); k += every) views.push_back(all[k]);
-  const Bundle bundle = solve(views, {board, guess.resolution_px, guess, options, context});
+  IntrinsicsOptions rough = options;
+  rough.max_iterations = std::min(options.max_iterations, kMostIterations);
+  const Bundle bundle = solve(views, {board, guess.resolution_px, guess, rough, context});
   const CameraIntrinsics& camera = bundle.intrinsics;
   const bool sane = camera.focal_length_px.allFinite() && camera.focal_length_px.minCoeff() > 1.0 &&
                     camera.focal_length_px.maxCoeff() < kMostFocalLength * guess.resolution_px.width_px &&
