@@ -20,10 +20,9 @@ struct CalibrationRun {
   std::vector<std::optional<IntrinsicsResult>> intrinsics;
 };
 
-// Cameras without intrinsics are calibrated first, from the same events: stages "first look" and "detect" for
-// each of them. Then progress goes by the stages "detect", "initialise", "optimise", "cross_validate". Throws
-// CalibrationError,
-// and Cancelled when asked to stop.
+// Cameras without intrinsics are calibrated first, from the same events: stages "first look" and "intrinsics"
+// for each of them. Then progress goes by the stages "detect", "initialise", "optimise", "cross_validate".
+// Throws CalibrationError, and Cancelled when asked to stop.
 CalibrationRun calibrate(const Session& session, const RunContext& context,
                          const ObserverFactory& observers = {}, CalibrationObserver* observer = nullptr);
 

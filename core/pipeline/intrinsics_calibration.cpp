@@ -62,7 +62,7 @@ IntrinsicsRun calibrateIntrinsics(const Session& session, std::size_t camera, co
   IntrinsicsRun run;
   std::optional<CameraIntrinsics> start;
   for (int pass = 1; pass <= alone.options.intrinsics.most_passes; ++pass) {
-    context.progress.stageStarted("detect");
+    context.progress.stageStarted("intrinsics");
     run.pass = readAndDetect(alone, context);
     checkBoardSeen(run.pass.cameras.front(), alone.board);
     run.result = estimate(alone, run.pass, start, context);

@@ -17,7 +17,7 @@ struct IntrinsicsRun {
 };
 
 // What the session says of the camera's intrinsics, and its IMUs, are left aside. Progress goes by the stages
-// "first look" and "detect". Throws CalibrationError, and Cancelled when asked to stop.
+// "first look" and "intrinsics". Throws CalibrationError, and Cancelled when asked to stop.
 IntrinsicsRun calibrateIntrinsics(const Session& session, std::size_t camera, const RunContext& context);
 
 }  // namespace evical

@@ -148,6 +148,23 @@ class TestCalibrationDocument : public QObject {
     QVERIFY(!document.reference().has_value());
   }
 
+  void intrinsicsThatTheRunFound_areItsSessions_andNotOutdated() {
+    CalibrationDocument document;
+    Session session = readSession(test::simulatedSession().toStdString());
+    const CameraIntrinsics known = *session.cameras[0].intrinsics;
+    session.cameras[0].intrinsics.reset();
+    document.startSession(session);
+    const auto run = std::make_shared<CalibrationRun>();
+    run->intrinsics.emplace_back(IntrinsicsResult{}).value().intrinsics = known;
+    document.addRun({run, document.session(), {}});
+    QVERIFY(document.last().session.cameras[0].intrinsics == known);
+    QVERIFY(!document.session().cameras[0].intrinsics);
+    QVERIFY(!document.runIsOutdated());
+    session.cameras[0].intrinsics = known;
+    document.edit(session, "Take them over");
+    QVERIFY(document.runIsOutdated());
+  }
+
   void problems_nameTheField_data() {
     QTest::addColumn<int>("fault");
     QTest::addColumn<QString>("field");
@@ -156,7 +173,8 @@ class TestCalibrationDocument : public QObject {
     QTest::newRow("recording gone") << 2 << "recording";
     QTest::newRow("no camera") << 3 << "cameras";
     QTest::newRow("no imu") << 4 << "imus";
-    QTest::newRow("no intrinsics") << 5 << "cameras.left.intrinsics";
+    QTest::newRow("no intrinsics") << 5 << "";  // calibrated first
+    QTest::newRow("no focal length") << 8 << "cameras.left.intrinsics";
     QTest::newRow("circles touch") << 6 << "board";
     QTest::newRow("wrong reference") << 7 << "session";
   }
@@ -169,6 +187,7 @@ class TestCalibrationDocument : public QObject {
     if (fault == 3) session.cameras.clear();
     if (fault == 4) session.imus.clear();
     if (fault == 5) session.cameras[0].intrinsics.reset();
+    if (fault == 8) session.cameras[0].intrinsics->focal_length_px.x() = 0.0;
     if (fault == 6) session.board.radius_m = 1.0;
     if (fault == 7) session.reference = "nobody";
     const std::vector<SessionProblem> problems = sessionProblems(session);

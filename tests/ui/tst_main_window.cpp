@@ -12,14 +12,12 @@
 #include "ui/screens/start_screen.h"
 #include "ui/screens/stream_table.h"
 #include "ui/window/error_panel.h"
-#include "ui/window/export_dialog.h"
 #include "ui/window/log_panel.h"
 #include "ui/window/session_files.h"
 #include "ui/window/steps_panel.h"
 
 #include <QDesktopServices>
 #include <QLineEdit>
-#include <QListWidget>
 #include <QMimeData>
 #include <QPushButton>
 #include <QScopeGuard>
@@ -36,19 +34,6 @@ using namespace evical::ui;
 using namespace evical::ui::test;
 
 namespace {
-
-// Checks more targets and goes on to the folder.
-void answerExportDialog(const QStringList& targets) {
-  QTimer::singleShot(200, qApp, [targets] {
-    auto* const dialog = qobject_cast<ExportDialog*>(QApplication::activeModalWidget());
-    if (dialog == nullptr) return answerExportDialog(targets);
-    auto* const list = dialog->findChild<QListWidget*>("targets");
-    for (int row = 0; row < list->count(); ++row)
-      if (targets.contains(list->item(row)->data(Qt::UserRole).toString()))
-        list->item(row)->setCheckState(Qt::Checked);
-    dialog->accept();
-  });
-}
 
 QAction* actionOf(const MainWindow& window, const QString& text) {
   for (QAction* const action : window.findChildren<QAction*>())
@@ -176,7 +161,7 @@ class TestMainWindow : public QObject {
   void incompleteSession_isNotStarted_andTheFieldIsNamed() {
     WindowFixture test;
     Session session = readSession(simulatedSession().toStdString());
-    session.cameras[0].intrinsics.reset();
+    session.cameras[0].intrinsics->focal_length_px.x() = 0.0;
     test.document().startSession(session);
     test.press(Qt::Key_F5);
     QVERIFY(!test.runner().running());

@@ -63,6 +63,7 @@ class TestMainWindowBadInput : public QObject {
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
     {
       const FullDisk disk;
+      answerExportDialog({});
       answerFileDialog(disk.path());
       test.press(Qt::Key_E, Qt::ControlModifier);
       QCOMPARE(test.waitForJob(), JobOutcome::Failed);
@@ -75,6 +76,7 @@ class TestMainWindowBadInput : public QObject {
     QVERIFY(test.document().last().run);
     const QString folder = scratch_.filePath("elsewhere");
     QVERIFY(QDir().mkpath(folder));
+    answerExportDialog({});
     answerFileDialog(folder);
     test.press(Qt::Key_E, Qt::ControlModifier);
     QCOMPARE(test.waitForJob(), JobOutcome::Done);

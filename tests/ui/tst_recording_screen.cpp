@@ -231,6 +231,22 @@ class TestRecordingScreen : public QObject {
     QCOMPARE(test.session.cameras[0].intrinsics->focal_length_px.x(), 300.0);
   }
 
+  void intrinsics_mayBeLeftToTheRecording() {
+    Fixture test;
+    auto* const form = test.screen.findChild<CameraForm*>();
+    auto* const model = form->findChild<QComboBox*>();
+    const auto choose = [&](int index) {
+      model->setCurrentIndex(index);
+      emit model->activated(index);
+    };
+    choose(2);
+    QVERIFY(!test.session.cameras[0].intrinsics);
+    QCOMPARE(model->currentIndex(), 2);
+    choose(1);
+    QVERIFY(test.session.cameras[0].intrinsics);
+    QVERIFY(test.session.cameras[0].intrinsics->model == CameraModel::PinholeEquidistant);
+  }
+
   void rename_keepsTheReference() {
     Fixture test;
     auto* const name = test.screen.findChild<ImuForm*>()->findChildren<QLineEdit*>().at(0);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "ui/theme/theme.h"
+#include "ui/window/export_dialog.h"
 #include "ui/window/main_window.h"
 
 #include <QApplication>
@@ -10,6 +11,7 @@
 #include <QEventLoop>
 #include <QFileDialog>
 #include <QLineEdit>
+#include <QListWidget>
 #include <QMessageBox>
 #include <QSettings>
 #include <QSignalSpy>
@@ -52,6 +54,19 @@ inline void answerFileDialog(const QString& path) {
     QTest::keyClick(edit, Qt::Key_Return);
     if (dialog->isVisible())
       QMetaObject::invokeMethod(dialog, "accept");  // a completer may have taken the key
+  });
+}
+
+// Checks more targets and goes on to the folder.
+inline void answerExportDialog(const QStringList& targets) {
+  QTimer::singleShot(200, qApp, [targets] {
+    auto* const dialog = qobject_cast<ExportDialog*>(QApplication::activeModalWidget());
+    if (dialog == nullptr) return answerExportDialog(targets);
+    auto* const list = dialog->findChild<QListWidget*>("targets");
+    for (int row = 0; row < list->count(); ++row)
+      if (targets.contains(list->item(row)->data(Qt::UserRole).toString()))
+        list->item(row)->setCheckState(Qt::Checked);
+    dialog->accept();
   });
 }
 

@@ -120,15 +120,23 @@ void CalibrationDocument::set(const Session& session) {
   emit sessionChanged();
 }
 
+// The record's session knows the intrinsics that the run found, so that screens can use them.
 void CalibrationDocument::addRun(RunRecord record) {
+  const auto& found = record.run->intrinsics;
+  for (std::size_t k = 0; k < std::min(found.size(), record.session.cameras.size()); ++k)
+    if (found[k]) record.session.cameras[k].intrinsics = found[k]->intrinsics;
   previous_ = std::exchange(last_, std::move(record));
   emit runsChanged();
 }
 
 bool CalibrationDocument::runIsOutdated() const {
   if (!last_.run) return false;
+  Session before = last_.session;
+  const auto& found = last_.run->intrinsics;
+  for (std::size_t k = 0; k < std::min(found.size(), before.cameras.size()); ++k)
+    if (found[k]) before.cameras[k].intrinsics.reset();
   const std::filesystem::path folder = "/";
-  return sessionYaml(last_.session, folder) != sessionYaml(session_, folder);
+  return sessionYaml(before, folder) != sessionYaml(session_, folder);
 }
 
 std::vector<SessionProblem> sessionProblems(const Session& session) {
@@ -144,12 +152,6 @@ std::vector<SessionProblem> sessionProblems(const Session& session) {
     problems.push_back({"cameras", QObject::tr("Choose at least one event stream as camera")});
   if (session.imus.empty() && session.cameras.size() < 2)
     problems.push_back({"imus", QObject::tr("Choose one stream as IMU, or a second one as camera")});
-  for (const SessionCamera& camera : session.cameras) {
-    if (camera.intrinsics) continue;
-    problems.push_back({QString::fromStdString("cameras." + camera.name + ".intrinsics"),
-                        QObject::tr("Give the intrinsics of %1: a file, or numbers")
-                            .arg(QString::fromStdString(camera.name))});
-  }
   const auto check = [&](const QString& field, auto&& checked) {
     try {
       checked();

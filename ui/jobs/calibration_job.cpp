@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/jobs/calibration_job.h"
 
+#include <algorithm>
 #include <chrono>
 #include <mutex>
 #include <utility>
@@ -16,6 +17,9 @@ constexpr auto kBetweenDetections = std::chrono::milliseconds(150);
 // How the time is spent on an everyday recording.
 const std::vector<JobStage> kStages = {
     {"detect", 0.5}, {"initialise", 0.05}, {"optimise", 0.35}, {"cross_validate", 0.1}};
+const std::vector<JobStage> kStagesWithIntrinsics = {{"first look", 0.05}, {"intrinsics", 0.4},
+                                                     {"detect", 0.25},     {"initialise", 0.03},
+                                                     {"optimise", 0.2},    {"cross_validate", 0.07}};
 const std::vector<JobStage> kStagesAgain = {{"initialise", 0.1}, {"optimise", 0.7}, {"cross_validate", 0.2}};
 
 QString textOf(std::string_view text) {
@@ -84,8 +88,11 @@ CalibrationJob::CalibrationJob(JobRunner& runner, QObject* parent) : QObject(par
 
 bool CalibrationJob::start(const Session& session) {
   const ObserverFactory observers = observers_ && !runner_.running() ? observers_() : ObserverFactory{};
+  const bool all_known = std::all_of(session.cameras.begin(), session.cameras.end(),
+                                     [](const SessionCamera& camera) { return camera.intrinsics; });
+  const std::vector<JobStage>& stages = all_known ? kStages : kStagesWithIntrinsics;
   const bool begun =
-      run(session, kStages, [session, observers](const RunContext& context, CalibrationObserver* observer) {
+      run(session, stages, [session, observers](const RunContext& context, CalibrationObserver* observer) {
         return calibrate(session, context, observers, observer);
       });
   if (begun) emit detecting();

@@ -18,6 +18,7 @@
 namespace evical::ui {
 namespace {
 
+constexpr int kNotKnown = 2;  // in the list of models
 constexpr double kMostPixels = 30'000.0, kMostDistortion = 100.0;
 
 QLabel* problemLabel(QWidget* parent) {
@@ -47,11 +48,14 @@ CameraForm::CameraForm(QWidget* parent)
       centre_y_px_(new NumberField(-kMostPixels, kMostPixels, this)),
       file_problem_(problemLabel(this)),
       problem_(problemLabel(this)) {
-  model_->addItems({tr("Pinhole, radial-tangential"), tr("Pinhole, equidistant")});
+  model_->addItems(
+      {tr("Pinhole, radial-tangential"), tr("Pinhole, equidistant"), tr("Not known: from this recording")});
   name_->setToolTip(tr("What the camera is called in the session, the result and the exports"));
   width_px_->setToolTip(tr("Width of the sensor; 0: as the recording says"));
   height_px_->setToolTip(tr("Height of the sensor; 0: as the recording says"));
-  model_->setToolTip(tr("How the lens bends rays: equidistant for wide angles"));
+  model_->setToolTip(
+      tr("How the lens bends rays: equidistant for wide angles. Where it is not known, the "
+         "intrinsics are calibrated first, from the same events."));
   focal_x_px_->setToolTip(tr("fx"));
   focal_y_px_->setToolTip(tr("fy"));
   centre_x_px_->setToolTip(tr("cx"));
@@ -106,7 +110,7 @@ void CameraForm::setCamera(const SessionCamera& camera) {
   width_px_->setValue(camera.resolution_px.width_px);
   height_px_->setValue(camera.resolution_px.height_px);
   const CameraIntrinsics shown = camera.intrinsics.value_or(CameraIntrinsics{});
-  model_->setCurrentIndex(static_cast<int>(shown.model));
+  model_->setCurrentIndex(camera.intrinsics ? static_cast<int>(shown.model) : kNotKnown);
   focal_x_px_->setValue(shown.focal_length_px.x());
   focal_y_px_->setValue(shown.focal_length_px.y());
   centre_x_px_->setValue(shown.principal_point_px.x());
@@ -119,9 +123,12 @@ void CameraForm::setCamera(const SessionCamera& camera) {
     distortion_[i]->setToolTip(equidistant ? equidistant_names[i] : radtan_names[i]);
   }
   distortion_.back()->setVisible(!equidistant);
+  for (NumberField* const field : findChildren<NumberField*>())
+    if (field != width_px_ && field != height_px_) field->setEnabled(camera.intrinsics.has_value());
 }
 
-CameraIntrinsics CameraForm::typedIntrinsics() const {
+std::optional<CameraIntrinsics> CameraForm::typedIntrinsics() const {
+  if (model_->currentIndex() == kNotKnown) return std::nullopt;
   CameraIntrinsics typed;
   typed.model = static_cast<CameraModel>(model_->currentIndex());
   typed.resolution_px = camera_.resolution_px;

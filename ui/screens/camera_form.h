@@ -7,6 +7,7 @@
 #include <QWidget>
 
 #include <array>
+#include <optional>
 
 class QComboBox;
 class QLabel;
@@ -33,7 +34,7 @@ class CameraForm : public QWidget {
  private:
   void chooseFile();
   void say(const QString& field);
-  CameraIntrinsics typedIntrinsics() const;
+  std::optional<CameraIntrinsics> typedIntrinsics() const;  // none: not known
   QWidget* pairOf(NumberField* first, NumberField* second);
 
   SessionCamera camera_;

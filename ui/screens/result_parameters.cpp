@@ -8,6 +8,7 @@
 #include <QObject>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -68,6 +69,19 @@ class Rows {
     addVector("translation", QObject::tr("Translation"), "mm", pose.translation_m, translation_std_m,
               kMmPerM);
   }
+  // fx fy cx cy and distortion, as calibrated first.
+  void addIntrinsics(const CameraIntrinsics& camera, const std::array<double, 9>& sigma) {
+    const bool equidistant = camera.model == CameraModel::PinholeEquidistant;
+    const std::array names =
+        equidistant ? std::array{"k1", "k2", "k3", "k4", ""} : std::array{"k1", "k2", "p1", "p2", "k3"};
+    add({}, QObject::tr("Focal length x"), "px", camera.focal_length_px.x(), sigma[0]);
+    add({}, QObject::tr("Focal length y"), "px", camera.focal_length_px.y(), sigma[1]);
+    add({}, QObject::tr("Principal point x"), "px", camera.principal_point_px.x(), sigma[2]);
+    add({}, QObject::tr("Principal point y"), "px", camera.principal_point_px.y(), sigma[3]);
+    for (std::size_t k = 0; k < names.size(); ++k)
+      if (sigma[4 + k] > 0.0)
+        add({}, QObject::tr("Distortion %1").arg(names[k]), {}, camera.distortion[k], sigma[4 + k]);
+  }
 
  private:
   QString prefix_;
@@ -94,6 +108,9 @@ ParameterGroup cameraGroup(const NamedResult& named, std::size_t i) {
   rows.add({}, QObject::tr("Edge lead growth"), QObject::tr("px / e-fold"), state.edge_lead_growth_px,
            sigma.edge_lead_growth_std_px);
   rows.add({}, QObject::tr("Reprojection RMS"), "px", fit.reprojection_rms_px, 0.0);
+  const auto intrinsics = at(named.names.intrinsics, i);
+  const auto intrinsics_std = at(named.names.intrinsics_std, i);
+  if (intrinsics && intrinsics_std) rows.addIntrinsics(*intrinsics, *intrinsics_std);
   return group;
 }
 

@@ -15,7 +15,10 @@ namespace {
 // As core names them (CalibrationObserver); others are added when they come.
 const QStringList kInitialisationSteps = {"camera poses", "planar poses", "time offset",
                                           "camera-IMU rotation", "gravity and translation"};
-const char* const kStages[] = {"detect", "initialise", "optimise", "cross_validate"};
+// Only where a camera comes without intrinsics.
+const QStringList kIntrinsicsStages = {"first look", "intrinsics"};
+const char* const kStages[] = {"first look", "intrinsics", "detect",
+                               "initialise", "optimise",   "cross_validate"};
 
 QString capitalised(QString text) {
   if (!text.isEmpty()) text[0] = text[0].toUpper();
@@ -81,6 +84,7 @@ StepRow* StepsPanel::addRow(const QString& key, const QString& title, bool sub_s
   // Steps that nobody announced come at the end of their stage.
   const QString next = key.startsWith("stage ") ? "cross_validate" : "optimise";
   if (sub_step && rows_.count(next) > 0) place = layout_->indexOf(rows_.at(next));
+  if (kIntrinsicsStages.contains(key)) place = layout_->indexOf(rows_.at("detect"));
   layout_->insertWidget(place, added);
   rows_[key] = added;
   return added;
@@ -92,6 +96,7 @@ StepRow* StepsPanel::row(const QString& key) {
 }
 
 void StepsPanel::startStage(const QString& stage) {
+  if (kIntrinsicsStages.contains(stage) && row(stage) == nullptr) addRow(stage, capitalised(stage), false);
   for (const char* const known : kStages) {
     if (stage == known) break;
     if (StepRow* const before = row(known); before != nullptr && before->state() == StepState::Running)
