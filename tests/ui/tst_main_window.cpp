@@ -166,7 +166,33 @@ class TestMainWindow : public QObject {
     test.press(Qt::Key_F5);
     QVERIFY(!test.runner().running());
     QCOMPARE(test.screen(), QString("recording"));
-    QVERIFY(test.child<ErrorPanel>()->text().contains("intrinsics"));
+    const QString problem = test.child<ErrorPanel>()->text();
+    QVERIFY2(problem.contains("ocal_length_px"), qPrintable(problem));
+    answerQuestion(QMessageBox::Discard);
+    QVERIFY(test.window.close());
+  }
+
+  void unknownIntrinsics_areCalibratedFirst_andShownWithTheResult() {
+    WindowFixture test;
+    Session session = readSession(simulatedSession().toStdString());
+    const double truth_px = session.cameras[0].intrinsics->focal_length_px.x();
+    session.cameras[0].intrinsics.reset();
+    test.document().startSession(session);
+    test.press(Qt::Key_F5);
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    const StepsPanel* const steps = test.child<StepsPanel>();
+    QVERIFY2(steps->textOf("intrinsics").contains("done"), qPrintable(steps->textOf("intrinsics")));
+    const RunRecord& last = test.document().last();
+    QVERIFY(std::abs(last.session.cameras[0].intrinsics->focal_length_px.x() - truth_px) < 0.005 * truth_px);
+    QVERIFY(!test.document().runIsOutdated());
+    test.window.showScreen("result");
+    QStringList rows;
+    for (const QTreeWidget* const tree : test.child<ResultScreen>()->findChildren<QTreeWidget*>())
+      for (QTreeWidgetItem* const row :
+           tree->findItems("Focal length", Qt::MatchStartsWith | Qt::MatchRecursive))
+        rows << row->text(0) + ' ' + row->text(1) + ' ' + row->text(2);
+    QCOMPARE(rows.size(), 2);
+    QVERIFY2(rows[0].split(' ').last().toDouble() > 0.0, qPrintable(rows.join('\n')));
     answerQuestion(QMessageBox::Discard);
     QVERIFY(test.window.close());
   }

@@ -117,7 +117,7 @@ class TestMainWindowBadInput : public QObject {
     QVERIFY(screen->view().frame()->events > 0);
     screen->setPlaying(false);
     test.press(Qt::Key_F5);
-    QCOMPARE(test.waitForJob(), JobOutcome::Failed);
+    QVERIFY(!test.runner().running());
     QVERIFY2(test.child<ErrorPanel>()->text().contains("recording.bag"),
              qPrintable(test.child<ErrorPanel>()->text()));
     QVERIFY(test.window.close());

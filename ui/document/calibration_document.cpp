@@ -156,7 +156,9 @@ std::vector<SessionProblem> sessionProblems(const Session& session) {
     try {
       checked();
     } catch (const CalibrationError& error) {
-      problems.push_back({field, QString::fromStdString(error.problem() + ". " + error.advice())});
+      problems.push_back(
+          {field, QString::fromStdString(error.advice().empty() ? error.problem()
+                                                                : error.problem() + ". " + error.advice())});
     }
   };
   check("board", [&] { validate(session.board); });
