@@ -193,6 +193,14 @@ class TestMainWindow : public QObject {
         rows << row->text(0) + ' ' + row->text(1) + ' ' + row->text(2);
     QCOMPARE(rows.size(), 2);
     QVERIFY2(rows[0].split(' ').last().toDouble() > 0.0, qPrintable(rows.join('\n')));
+    test.window.showScreen("recording");
+    auto* const take_over = test.child<QPushButton>("take_over");
+    QVERIFY(take_over->isVisible());
+    QTest::mouseClick(take_over, Qt::LeftButton);
+    QVERIFY(test.document().session().cameras[0].intrinsics == last.session.cameras[0].intrinsics);
+    QVERIFY(!take_over->isVisible());
+    test.document().undoStack().undo();
+    QVERIFY(!test.document().session().cameras[0].intrinsics);
     answerQuestion(QMessageBox::Discard);
     QVERIFY(test.window.close());
   }

@@ -46,6 +46,7 @@ CameraForm::CameraForm(QWidget* parent)
       focal_y_px_(new NumberField(0.0, 10 * kMostPixels, this)),
       centre_x_px_(new NumberField(-kMostPixels, kMostPixels, this)),
       centre_y_px_(new NumberField(-kMostPixels, kMostPixels, this)),
+      take_over_(new QPushButton(tr("Take over what the last run found"), this)),
       file_problem_(problemLabel(this)),
       problem_(problemLabel(this)) {
   model_->addItems(
@@ -63,6 +64,10 @@ CameraForm::CameraForm(QWidget* parent)
   auto* const file = new QPushButton(icon("open"), tr("Intrinsics from a file..."), this);
   file->setToolTip(tr("Evical's own map or result, a Kalibr camchain, or a ROS camera_info"));
   connect(file, &QPushButton::clicked, this, &CameraForm::chooseFile);
+  take_over_->setObjectName("take_over");
+  take_over_->setToolTip(tr("So that they are saved with the session and used in the next runs"));
+  take_over_->hide();
+  connect(take_over_, &QPushButton::clicked, this, &CameraForm::takeOver);
   auto* const coefficients = new QWidget(this);
   auto* const row = new QHBoxLayout(coefficients);
   row->setContentsMargins(0, 0, 0, 0);
@@ -83,6 +88,7 @@ CameraForm::CameraForm(QWidget* parent)
   form->addRow(tr("Focal length [px]"), pairOf(focal_x_px_, focal_y_px_));
   form->addRow(tr("Principal point [px]"), pairOf(centre_x_px_, centre_y_px_));
   form->addRow(tr("Distortion"), coefficients);
+  form->addRow(take_over_);
 
   connect(name_, &QLineEdit::editingFinished, this, [this] { say("name"); });
   connect(model_, &QComboBox::activated, this, [this] { say("intrinsics"); });
@@ -123,6 +129,7 @@ void CameraForm::setCamera(const SessionCamera& camera) {
     distortion_[i]->setToolTip(equidistant ? equidistant_names[i] : radtan_names[i]);
   }
   distortion_.back()->setVisible(!equidistant);
+  take_over_->setVisible(found_ && !camera.intrinsics);
   for (NumberField* const field : findChildren<NumberField*>())
     if (field != width_px_ && field != height_px_) field->setEnabled(camera.intrinsics.has_value());
 }
@@ -150,6 +157,19 @@ void CameraForm::say(const QString& field) {
                     changed.intrinsics == camera_.intrinsics;
   if (same || changed.name.empty()) return setCamera(camera_);
   emit edited(changed, field);
+}
+
+void CameraForm::setFound(const std::optional<CameraIntrinsics>& found) {
+  found_ = found;
+  take_over_->setVisible(found_ && !camera_.intrinsics);
+}
+
+void CameraForm::takeOver() {
+  if (!found_) return;
+  SessionCamera changed = camera_;
+  changed.intrinsics = found_;
+  changed.resolution_px = found_->resolution_px;
+  emit edited(changed, "found_intrinsics");
 }
 
 void CameraForm::chooseFile() {

@@ -12,6 +12,7 @@
 class QComboBox;
 class QLabel;
 class QLineEdit;
+class QPushButton;
 
 namespace evical::ui {
 
@@ -25,6 +26,8 @@ class CameraForm : public QWidget {
 
   void setCamera(const SessionCamera& camera);
   void setProblem(const QString& text);
+  // Those that the last run found; offered while the camera has none of its own.
+  void setFound(const std::optional<CameraIntrinsics>& found);
   // Shows what is wrong with the file next to the button, and leaves the camera as it is.
   void loadIntrinsics(const QString& file);
 
@@ -33,6 +36,7 @@ class CameraForm : public QWidget {
 
  private:
   void chooseFile();
+  void takeOver();
   void say(const QString& field);
   std::optional<CameraIntrinsics> typedIntrinsics() const;  // none: not known
   QWidget* pairOf(NumberField* first, NumberField* second);
@@ -43,6 +47,8 @@ class CameraForm : public QWidget {
   QComboBox* model_;
   NumberField *focal_x_px_, *focal_y_px_, *centre_x_px_, *centre_y_px_;
   std::array<NumberField*, 5> distortion_;
+  std::optional<CameraIntrinsics> found_;
+  QPushButton* take_over_;
   QLabel *file_problem_, *problem_;
 };
 

@@ -218,6 +218,7 @@ void RecordingScreen::showSensors() {
   int tab = 0;
   reference_->clear();
   for (std::size_t i = 0; i < cameras_.size(); ++i, ++tab) {
+    cameras_[i]->setFound(i < found_intrinsics_.size() ? found_intrinsics_[i] : std::nullopt);
     cameras_[i]->setCamera(session_.cameras[i]);
     sensors_->setTabText(tab, QString::fromStdString(session_.cameras[i].name));
     if (imus_.empty()) reference_->addItem(sensors_->tabText(tab));
@@ -228,6 +229,12 @@ void RecordingScreen::showSensors() {
     reference_->addItem(sensors_->tabText(tab));
   }
   reference_->setCurrentText(QString::fromStdString(session_.reference));
+}
+
+void RecordingScreen::setFoundIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& found) {
+  found_intrinsics_ = found;
+  for (std::size_t i = 0; i < cameras_.size(); ++i)
+    cameras_[i]->setFound(i < found.size() ? found[i] : std::nullopt);
 }
 
 void RecordingScreen::setProblems(const std::vector<std::pair<QString, QString>>& field_and_text) {

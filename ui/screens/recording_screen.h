@@ -8,6 +8,7 @@
 #include <QWidget>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 class QComboBox;
@@ -32,6 +33,8 @@ class RecordingScreen : public QWidget {
 
   void setSession(const Session& session);
   // By field: "cameras.left.intrinsics", "board", ...; each is said next to its field.
+  // By camera; what the last run found where the session gave none.
+  void setFoundIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& found);
   void setProblems(const std::vector<std::pair<QString, QString>>& field_and_text);
 
   void setInspecting(const QString& recording);
@@ -68,6 +71,7 @@ class RecordingScreen : public QWidget {
   QTabWidget* sensors_;
   QComboBox* reference_;
   std::vector<CameraForm*> cameras_;
+  std::vector<std::optional<CameraIntrinsics>> found_intrinsics_;
   std::vector<ImuForm*> imus_;
 };
 

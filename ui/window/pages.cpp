@@ -42,6 +42,13 @@ void wireRecording(RecordingScreen& screen, Workbench& workbench, SessionFiles& 
       problems.emplace_back(problem.field, problem.text);
     screen.setProblems(problems);
   });
+  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen, [&screen, &document] {
+    std::vector<std::optional<CameraIntrinsics>> found;
+    if (document.last().run)
+      for (const auto& each : document.last().run->intrinsics)
+        found.push_back(each ? std::optional(each->intrinsics) : std::nullopt);
+    screen.setFoundIntrinsics(found);
+  });
   const InspectionJob& inspection = workbench.inspection;
   QObject::connect(&inspection, &InspectionJob::started, &screen, &RecordingScreen::setInspecting);
   QObject::connect(&inspection, &InspectionJob::progressed, &screen, &RecordingScreen::setInspectionProgress);
