@@ -96,10 +96,25 @@ DatasetRows::DatasetRows(hid_t file, const DatasetInfo& info, hid_t memory_type,
     throw badInput(place, fmt::format("{} states {} rows and stores none", path_, rows_),
                    "The recording was not finished; nothing of it can be read.");
   }
+  if (storesTooLittle()) {
+    throw badInput(
+        place,
+        fmt::format("{} states {} rows and stores {} bytes", path_, rows_, H5Dget_storage_size(dataset_)),
+        "The file is damaged.");
+  }
   // Opened anew with room for at least one unpacked chunk, so that none is unpacked twice.
   const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
   H5Pset_chunk_cache(access, 521, std::clamp(2 * chunk_bytes_, kLeastCache_bytes, kLargestCache_bytes), 1.0);
   dataset_ = Handle(H5Dopen2(file, path_.c_str(), access), H5Dclose);
+}
+
+// HDF5's library itself would read beyond its buffers.
+bool DatasetRows::storesTooLittle() const {
+  const Handle creation(H5Dget_create_plist(dataset_), H5Pclose);
+  if (H5Pget_layout(creation) == H5D_CHUNKED) return false;
+  const Handle type(H5Dget_type(dataset_), H5Tclose);
+  const std::uint64_t element_bytes = H5Tget_size(type), stored_bytes = H5Dget_storage_size(dataset_);
+  return element_bytes == 0 || (columns_ > 0 && rows_ > stored_bytes / element_bytes / columns_);
 }
 
 void DatasetRows::readChunkLayout(const std::string& place) {

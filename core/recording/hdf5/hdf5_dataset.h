@@ -41,6 +41,7 @@ class DatasetRows {
   const std::string& problem() const { return problem_; }
 
  private:
+  bool storesTooLittle() const;
   void readChunkLayout(const std::string& place);
   void load(std::uint64_t row);
   std::string placeAndReason(std::uint64_t row) const;

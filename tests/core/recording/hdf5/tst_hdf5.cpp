@@ -90,6 +90,8 @@ class TestHdf5 : public QObject {
   void damagedChunk_losesItsRowsOnly_data();
   void damagedChunk_losesItsRowsOnly();
   void damageAnywhere_neverCrashes();
+  void foundByTheFuzzer_isRefused_data();
+  void foundByTheFuzzer_isRefused();
   void programsEnd_isQuietAfterDamage();
 
  private:
@@ -345,6 +347,27 @@ print(f['events/t'].id.get_chunk_info(1).byte_offset))",
   QCOMPARE(contents.eventCount(), 200'000u - 65'536u);
   QVERIFY(contents.hasFault("corrupt"));
   QVERIFY(contents.faults[0].text.find("at byte " + place.trimmed().toStdString()) != std::string::npos);
+}
+
+void TestHdf5::foundByTheFuzzer_isRefused_data() {
+  QTest::addColumn<QString>("file");
+  QTest::addColumn<QString>("problem");
+  QTest::newRow("a table as large as the address space") << "table_of_all_memory.h5"
+                                                         << "damaged";
+  QTest::newRow("rows that are not there") << "rows_of_nothing.h5"
+                                           << "stores";
+}
+
+void TestHdf5::foundByTheFuzzer_isRefused() {
+  QFETCH(QString, file);
+  QFETCH(QString, problem);
+  try {
+    readAll((EVICAL_SOURCE_DIR "/tests/fuzz/seeds/hdf5/" + file).toStdString());
+    QFAIL("read");
+  } catch (const CalibrationError& error) {
+    QVERIFY(error.kind() == ErrorKind::BadInput);
+    QVERIFY2(QString::fromStdString(error.problem()).contains(problem), error.problem().c_str());
+  }
 }
 
 void TestHdf5::damageAnywhere_neverCrashes() {
