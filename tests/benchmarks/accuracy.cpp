@@ -37,7 +37,8 @@ struct Targets {
 };
 
 Targets targetsOf(const std::string& scenario) {
-  if (scenario == "davis346") return {0.95, 0.03, 0.7, 0.1};
+  if (scenario == "davis346" || scenario == "stereo_two_imus") return {0.95, 0.03, 0.7, 0.1};
+  if (scenario == "stereo") return {0.95, 0.03, 0.5, 0.1};
   return {};
 }
 
