@@ -8,6 +8,7 @@
 #include "tests/ui/window_fixture.h"
 #include "ui/forms/option_editor.h"
 #include "ui/forms/option_form.h"
+#include "ui/plots/residuals_screen.h"
 #include "ui/screens/result_screen.h"
 #include "ui/screens/start_screen.h"
 #include "ui/screens/stream_table.h"
@@ -193,6 +194,9 @@ class TestMainWindow : public QObject {
         rows << row->text(0) + ' ' + row->text(1) + ' ' + row->text(2);
     QCOMPARE(rows.size(), 2);
     QVERIFY2(rows[0].split(' ').last().toDouble() > 0.0, qPrintable(rows.join('\n')));
+    emit test.child<ResidualsScreen>()->recalibrateWithout({0});
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    QVERIFY(!test.document().runIsOutdated());
     test.window.showScreen("recording");
     auto* const take_over = test.child<QPushButton>("take_over");
     QVERIFY(take_over->isVisible());

@@ -99,11 +99,15 @@ bool CalibrationJob::start(const Session& session) {
   return begun;
 }
 
-bool CalibrationJob::startAgain(const Session& session, RecordingPass pass) {
+bool CalibrationJob::startAgain(const Session& session, RecordingPass pass,
+                                std::vector<std::optional<IntrinsicsResult>> intrinsics) {
   const auto shared = std::make_shared<RecordingPass>(std::move(pass));
   return run(session, kStagesAgain,
-             [session, shared](const RunContext& context, CalibrationObserver* observer) {
-               return calibrate(session, std::move(*shared), context, observer);
+             [session, shared, intrinsics = std::move(intrinsics)](const RunContext& context,
+                                                                   CalibrationObserver* observer) {
+               CalibrationRun run = calibrate(session, std::move(*shared), context, observer);
+               run.intrinsics = intrinsics;
+               return run;
              });
 }
 

@@ -36,7 +36,8 @@ class CalibrationJob : public QObject {
   // Works on a copy. False while the runner is busy.
   bool start(const Session& session);
   // From detections that are there already.
-  bool startAgain(const Session& session, RecordingPass pass);
+  bool startAgain(const Session& session, RecordingPass pass,
+                  std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
   bool running() const { return live_ != nullptr; }
 
  signals:

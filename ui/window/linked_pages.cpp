@@ -88,8 +88,8 @@ void wireResiduals(ResidualsScreen& screen, Workbench& workbench) {
                      const RunRecord& last = workbench.document.last();
                      if (!last.run) return;
                      const auto camera = static_cast<std::size_t>(screen.camera());
-                     workbench.calibration.startAgain(last.session,
-                                                      withoutViews(last.run->pass, camera, views));
+                     workbench.calibration.startAgain(
+                         last.session, withoutViews(last.run->pass, camera, views), last.run->intrinsics);
                    });
 }
 
