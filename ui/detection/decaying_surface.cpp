@@ -26,13 +26,14 @@ SurfaceFrame DecayingSurface::render(const std::shared_ptr<const EventCache>& ca
   add(end_ns_, time_ns);
 
   SurfaceFrame frame;
+  frame.image = emptyImage(resolution_px, style);
   frame.events = cache->count(faded_ns, time_ns);
   frame.newest.resize(newest_.size());
   const auto now = static_cast<std::int32_t>(2 * ((time_ns - base_ns_) / 1000));
   const auto faded = static_cast<std::int32_t>(2 * ((faded_ns - base_ns_) / 1000));
   std::transform(newest_.begin(), newest_.end(), frame.newest.begin(),
                  [=](std::int32_t newest) { return newest < faded ? SurfaceFrame::kNoEvent : newest - now; });
-  paintDecayed(resolution_px, style, frame);
+  paintDecayed(style, frame);
   return frame;
 }
 

@@ -32,10 +32,7 @@ class DetectionEngine::Analyst {
  public:
   explicit Analyst(DetectionEngine& engine) : engine_(engine) {}
 
-  // The picture goes first: pictures are looked at, one after the other; an analysis may come later.
   void handle(const AnalysisTask& task) {
-    if (!modest_) makeThreadModest();
-    modest_ = true;
     prepare(task);
     WindowQuestion question;
     question.start_ns = task.source.start_ns;
@@ -85,7 +82,6 @@ class DetectionEngine::Analyst {
   }
 
   DetectionEngine& engine_;
-  bool modest_ = false;
   std::shared_ptr<const Session> session_;
   std::size_t camera_ = 0;
   std::shared_ptr<const BoardScene> scene_;
@@ -98,13 +94,15 @@ DetectionEngine::DetectionEngine(QObject* parent)
     : QObject(parent), analyst_(std::make_unique<Analyst>(*this)) {
   renderer_ =
       std::make_unique<NewestRequestWorker<RenderTask>>([this](const RenderTask& task) { render(task); });
-  analysis_worker_ = std::make_unique<NewestRequestWorker<AnalysisTask>>([this](const AnalysisTask& task) {
+  const auto analyse = [this](const AnalysisTask& task) {
     try {
       analyst_->handle(task);
     } catch (const CalibrationError&) {
       // The cache cannot be read; the renderer's picture stays empty, and the reader has said why.
     }
-  });
+  };
+  // The renderer goes first: pictures are looked at, one after the other; an analysis may come later.
+  analysis_worker_ = std::make_unique<NewestRequestWorker<AnalysisTask>>(analyse, makeThreadModest);
 }
 
 DetectionEngine::~DetectionEngine() = default;
@@ -181,8 +179,8 @@ void DetectionEngine::render(const RenderTask& task) {
              wish.time_s + wish.half_width_s, events);
       frame = renderEvents(events, time_ns, task.source.resolution_px, style);
     }
-  } catch (
-      const CalibrationError&) {  // the file is gone; what the reader says tells more than an old picture
+  } catch (const CalibrationError&) {
+    // The file is gone; what the reader says tells more than an old picture.
     frame = renderEvents({}, time_ns, task.source.resolution_px, style);
   }
   frame.time_s = wish.time_s;

@@ -16,9 +16,13 @@ namespace evical::ui {
 template <class Request>
 class NewestRequestWorker {
  public:
-  // `handle` runs in the thread and does not throw.
-  explicit NewestRequestWorker(std::function<void(const Request&)> handle)
-      : handle_(std::move(handle)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+  // `handle` runs in the thread and does not throw; `begin` does so first.
+  explicit NewestRequestWorker(
+      std::function<void(const Request&)> handle, void (*begin)() = [] {})
+      : handle_(std::move(handle)), thread_([this, begin](const std::stop_token& stop) {
+          begin();
+          run(stop);
+        }) {}
 
   void post(Request request) {
     {

@@ -19,15 +19,9 @@ QRgb mix(QRgb from, QRgb to, double part) {
               channel(qBlue(from), qBlue(to)));
 }
 
-QImage backgroundOf(Resolution resolution_px, const SurfaceStyle& style) {
-  QImage image(resolution_px.width_px, resolution_px.height_px, QImage::Format_RGB32);
-  image.fill(style.background);
-  return image;
-}
-
 SurfaceFrame emptyFrame(Resolution resolution_px, const SurfaceStyle& style) {
   SurfaceFrame frame;
-  frame.image = backgroundOf(resolution_px, style);
+  frame.image = emptyImage(resolution_px, style);
   frame.newest.assign(static_cast<std::size_t>(resolution_px.pixelCount()), SurfaceFrame::kNoEvent);
   return frame;
 }
@@ -72,8 +66,13 @@ void paintAccumulated(EventSpan events, const SurfaceStyle& style, double streng
 
 }  // namespace
 
-void paintDecayed(Resolution resolution_px, const SurfaceStyle& style, SurfaceFrame& frame) {
-  frame.image = backgroundOf(resolution_px, style);
+QImage emptyImage(Resolution resolution_px, const SurfaceStyle& style) {
+  QImage image(resolution_px.width_px, resolution_px.height_px, QImage::Format_RGB32);
+  image.fill(style.background);
+  return image;
+}
+
+void paintDecayed(const SurfaceStyle& style, SurfaceFrame& frame) {
   constexpr int kSteps = 512;
   std::array<std::array<QRgb, kSteps>, 2> colours;
   for (int k = 0; k < kSteps; ++k) {
@@ -108,7 +107,7 @@ SurfaceFrame renderEvents(EventSpan events, std::int64_t time_ns, Resolution res
   SurfaceFrame frame = emptyFrame(resolution_px, style);
   noteNewest(events, time_ns, frame);
   if (style.mode == SurfaceMode::Decayed) {
-    paintDecayed(resolution_px, style, frame);
+    paintDecayed(style, frame);
   } else {
     paintAccumulated(events, style, 1.0, frame);
   }

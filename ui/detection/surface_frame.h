@@ -55,8 +55,10 @@ struct SurfaceFrame {
 SurfaceFrame renderEvents(EventSpan events, std::int64_t time_ns, Resolution resolution_px,
                           const SurfaceStyle& style);
 
-// The picture to frame.newest, which is relative to the cursor.
-void paintDecayed(Resolution resolution_px, const SurfaceStyle& style, SurfaceFrame& frame);
+QImage emptyImage(Resolution resolution_px, const SurfaceStyle& style);
+
+// Paints frame.newest, which is relative to the cursor, into frame.image, which is empty.
+void paintDecayed(const SurfaceStyle& style, SurfaceFrame& frame);
 
 // The same events faintly, and over them the flow: hue by direction, red to the right, turning as on a clock.
 SurfaceFrame renderFlow(EventSpan events, const NormalFlowField& flow, std::int64_t time_ns,

@@ -218,7 +218,7 @@ void RecordingScreen::showSensors() {
   int tab = 0;
   reference_->clear();
   for (std::size_t i = 0; i < cameras_.size(); ++i, ++tab) {
-    cameras_[i]->setFound(i < found_intrinsics_.size() ? found_intrinsics_[i] : std::nullopt);
+    cameras_[i]->setFound(foundIntrinsics(i));
     cameras_[i]->setCamera(session_.cameras[i]);
     sensors_->setTabText(tab, QString::fromStdString(session_.cameras[i].name));
     if (imus_.empty()) reference_->addItem(sensors_->tabText(tab));
@@ -233,8 +233,11 @@ void RecordingScreen::showSensors() {
 
 void RecordingScreen::setFoundIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& found) {
   found_intrinsics_ = found;
-  for (std::size_t i = 0; i < cameras_.size(); ++i)
-    cameras_[i]->setFound(i < found.size() ? found[i] : std::nullopt);
+  for (std::size_t i = 0; i < cameras_.size(); ++i) cameras_[i]->setFound(foundIntrinsics(i));
+}
+
+std::optional<CameraIntrinsics> RecordingScreen::foundIntrinsics(std::size_t camera) const {
+  return camera < found_intrinsics_.size() ? found_intrinsics_[camera] : std::nullopt;
 }
 
 void RecordingScreen::setProblems(const std::vector<std::pair<QString, QString>>& field_and_text) {

@@ -55,6 +55,7 @@ class RecordingScreen : public QWidget {
   void showSensors();
   void chooseRole(int stream, int role);
   static void keepReference(Session& session);
+  std::optional<CameraIntrinsics> foundIntrinsics(std::size_t camera) const;
   void renameReference(const std::string& from, const std::string& to, Session& session) const;
   void editCamera(std::size_t index, const SessionCamera& camera, const QString& field);
   void editImu(std::size_t index, const SessionImu& imu, const QString& field);
