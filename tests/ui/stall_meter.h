@@ -25,9 +25,8 @@ class StallMeter : public QObject {
   }
 
   double longest_ms() const { return longest_ms_; }
-  double longestWork_ms() const {
-    return longest_work_ms_;
-  }  // of it, or of another gap: computed by the thread
+  // Of it, or of another gap: computed by the thread.
+  double longestWork_ms() const { return longest_work_ms_; }
   int beats() const { return beats_; }
 
   // Forgets what was; returns it.

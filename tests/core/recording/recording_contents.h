@@ -98,6 +98,16 @@ inline std::vector<ImuSample> someSamples(std::size_t count,
   return samples;
 }
 
+// What messages of 100 events each ms hold.
+inline std::vector<Event> eventsOfMessages(std::size_t count) {
+  std::vector<Event> events;
+  for (const ImuSample& sample : someSamples(count)) {
+    const std::vector<Event> part = someEvents(100, sample.time_ns);
+    events.insert(events.end(), part.begin(), part.end());
+  }
+  return events;
+}
+
 inline bool sameEvents(const std::vector<Event>& a, const std::vector<Event>& b) {
   const auto same = [](const Event& p, const Event& q) {
     return p.time_ns == q.time_ns && p.x_px == q.x_px && p.y_px == q.y_px && p.brighter == q.brighter;

@@ -30,16 +30,6 @@ std::vector<RosMessage> someMessages() {
   return messages;
 }
 
-// What messages of 100 events each ms hold.
-std::vector<Event> eventsOfMessages(std::size_t count) {
-  std::vector<Event> events;
-  for (const ImuSample& sample : someSamples(count)) {
-    const std::vector<Event> part = someEvents(100, sample.time_ns);
-    events.insert(events.end(), part.begin(), part.end());
-  }
-  return events;
-}
-
 // Those of the one stream that has some: without a summary, streams come in the order of their messages.
 std::vector<Event> eventsOf(const Contents& contents) {
   for (const auto& [stream, events] : contents.events)

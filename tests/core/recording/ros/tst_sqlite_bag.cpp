@@ -32,16 +32,6 @@ std::vector<RosMessage> messagesFrom(std::size_t first, std::size_t count) {
   return messages;
 }
 
-// What messages of 100 events each ms hold.
-std::vector<Event> eventsOfMessages(std::size_t count) {
-  std::vector<Event> events;
-  for (const ImuSample& sample : someSamples(count)) {
-    const std::vector<Event> part = someEvents(100, sample.time_ns);
-    events.insert(events.end(), part.begin(), part.end());
-  }
-  return events;
-}
-
 std::string metadata(const std::string& files, const std::string& mode = "") {
   return "rosbag2_bagfile_information:\n  version: 5\n  storage_identifier: sqlite3\n  "
          "relative_file_paths:\n" +
