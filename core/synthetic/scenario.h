@@ -62,13 +62,18 @@ struct SimulatedImu {
 };
 
 // The first camera looks at a point that wanders around the board's middle, from a distance and along a
-// direction that wander too. Each of the seven quantities is a sum of sinusoids drawn from the seed.
+// direction that wander too. Each of these quantities is a sum of sinusoids drawn from the seed. On top, it
+// may turn to and fro about its own y axis, evenly, where it stands: other cameras of a rig then see the
+// board in its place.
 struct MotionModel {
   double distance_m = 0.55;
   double distance_amplitude_m = 0.08;
   Eigen::Vector3d angle_amplitude_rad = {0.35, 0.35, 0.3};  // about the camera's x, y, z
   Eigen::Vector2d target_amplitude_m = {0.04, 0.04};
-  double roll_rad = 0.0;             // of the camera, on average
+  double roll_rad = 0.0;  // of the camera, on average
+  double turn_rad = 0.0;  // about its y axis, on average
+  double turn_amplitude_rad = 0.0;
+  double turn_period_s = 4.0;
   double lowest_frequency_hz = 0.3;  // before scaling to the speed
   double highest_frequency_hz = 1.2;
   int sinusoids = 3;

@@ -91,8 +91,10 @@ void readScene(const YamlNode& map, SceneModel& scene) {
 
 void readMotion(const YamlNode& map, MotionModel& motion) {
   map.allowOnly({"distance_m", "distance_amplitude_m", "angle_amplitude_deg", "target_amplitude_m",
-                 "roll_deg", "lowest_frequency_hz", "highest_frequency_hz", "sinusoids", "image_speed_px_s"});
-  double roll_deg = motion.roll_rad / kRadPerDeg;
+                 "roll_deg", "lowest_frequency_hz", "highest_frequency_hz", "sinusoids", "image_speed_px_s",
+                 "turn_deg", "turn_amplitude_deg", "turn_period_s"});
+  double roll_deg = motion.roll_rad / kRadPerDeg, turn_deg = motion.turn_rad / kRadPerDeg,
+         turn_amplitude_deg = motion.turn_amplitude_rad / kRadPerDeg;
   get(map, "distance_m", motion.distance_m, 0.01, 100.0, "m");
   get(map, "distance_amplitude_m", motion.distance_amplitude_m, 0.0, 100.0, "m");
   get(map, "angle_amplitude_deg", motion.angle_amplitude_rad, 0.0, 80.0, kRadPerDeg);
@@ -102,7 +104,12 @@ void readMotion(const YamlNode& map, MotionModel& motion) {
   get(map, "highest_frequency_hz", motion.highest_frequency_hz, 1e-3, 50.0, "Hz");
   get(map, "sinusoids", motion.sinusoids, 1, 100);
   get(map, "image_speed_px_s", motion.image_speed_px_s, 0.0, 1e5, "px/s");
+  get(map, "turn_deg", turn_deg, -180.0, 180.0, "deg");
+  get(map, "turn_amplitude_deg", turn_amplitude_deg, 0.0, 180.0, "deg");
+  get(map, "turn_period_s", motion.turn_period_s, 0.01, 1000.0, "s");
   motion.roll_rad = roll_deg * kRadPerDeg;
+  motion.turn_rad = turn_deg * kRadPerDeg;
+  motion.turn_amplitude_rad = turn_amplitude_deg * kRadPerDeg;
   if (motion.highest_frequency_hz < motion.lowest_frequency_hz)
     throw map.error("highest_frequency_hz must not be less than lowest_frequency_hz");
   // The sum of n sinusoids of variance a^2 / 2n reaches a sqrt(n).

@@ -91,7 +91,7 @@ SinusoidMotion::Value SinusoidMotion::at(Quantity quantity, double time_s) const
 }
 
 // Rotation Rz(c) Ry(b) Rx(a) after the mean roll; the camera looks along its z axis at the target.
-MotionState SinusoidMotion::firstCameraAt(double time_s) const {
+MotionState SinusoidMotion::gazeAt(double time_s) const {
   const Value a = at(AngleX, time_s), b = at(AngleY, time_s), c = at(AngleZ, time_s);
   const Value x = at(TargetX, time_s), y = at(TargetY, time_s), d = at(Distance, time_s);
   const double sa = std::sin(a.value), ca = std::cos(a.value), sb = std::sin(b.value), cb = std::cos(b.value);
@@ -119,6 +119,22 @@ MotionState SinusoidMotion::firstCameraAt(double time_s) const {
                                      rotation * (d.second * z + 2.0 * d.first * turned + distance * bent);
   state.angular_velocity_in_body_rad_s = w;
   state.angular_acceleration_in_body_rad_s2 = dw;
+  return state;
+}
+
+MotionState SinusoidMotion::firstCameraAt(double time_s) const {
+  const MotionModel& m = scenario_.motion;
+  const double frequency = kTwoPi / m.turn_period_s, phase = frequency * time_s;
+  const double rate = m.turn_amplitude_rad * frequency * std::cos(phase),
+               acceleration = -m.turn_amplitude_rad * frequency * frequency * std::sin(phase);
+  const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(m.turn_rad + m.turn_amplitude_rad * std::sin(phase), y));
+  MotionState state = gazeAt(time_s);
+  const Eigen::Vector3d w = turn.conjugate() * state.angular_velocity_in_body_rad_s,
+                        dw = turn.conjugate() * state.angular_acceleration_in_body_rad_s2;
+  state.world_from_body.rotation = state.world_from_body.rotation * turn;
+  state.angular_velocity_in_body_rad_s = w + rate * y;
+  state.angular_acceleration_in_body_rad_s2 = dw + w.cross(rate * y) + acceleration * y;
   return state;
 }
 

@@ -45,6 +45,7 @@ class SinusoidMotion {
   enum Quantity { AngleX, AngleY, AngleZ, TargetX, TargetY, Distance, kQuantities };
 
   Value at(Quantity quantity, double time_s) const;
+  MotionState gazeAt(double time_s) const;  // the first camera but for its turns
   MotionState firstCameraAt(double time_s) const;
 
   Scenario scenario_;

@@ -46,6 +46,26 @@ class TestSinusoidMotion : public QObject {
     const SinusoidMotion motion(test::wavedScenario());
     checkDerivatives([&](double t) { return motion.cameraAt(0, t); });
   }
+  void turns_derivativesMatchNumericDifferences() {
+    Scenario scenario = test::wavedScenario();
+    scenario.motion.turn_rad = -0.4;
+    scenario.motion.turn_amplitude_rad = 0.6;
+    const SinusoidMotion motion(scenario);
+    checkDerivatives([&](double t) { return motion.imuAt(t); });
+    checkDerivatives([&](double t) { return motion.cameraAt(0, t); });
+  }
+  void turns_keepTheCameraWhereItIs() {
+    Scenario scenario = test::wavedScenario();
+    scenario.motion.image_speed_px_s = 0.0;
+    const SinusoidMotion plain(scenario);
+    scenario.motion.turn_amplitude_rad = 0.6;
+    const SinusoidMotion turning(scenario);
+    const double time_s = 0.25 * scenario.motion.turn_period_s;
+    const RigidTransform before = plain.worldFromCamera(0, time_s),
+                         after = turning.worldFromCamera(0, time_s);
+    QVERIFY((before.translation_m - after.translation_m).norm() < 1e-12);
+    QVERIFY(std::abs(rotationAngleBetween_rad(before.rotation, after.rotation) - 0.6) < 1e-9);
+  }
   void camera_isTheImuTimesTheExtrinsics() {
     const Scenario scenario = test::wavedScenario();
     const SinusoidMotion motion(scenario);
