@@ -30,6 +30,8 @@ struct InitialisationOptions {
   double scale_error_sigmas = 5.0;
   double camera_knot_spacing_s = 0.03;
   double longest_shared_gap_s = 0.1;
+  double longest_bridge_s = 0.12;
+  int least_bridges = 4;
   int least_imu_samples = 50;
   double least_acceleration_m_s2 = 4.0;
   double largest_acceleration_m_s2 = 40.0;
@@ -95,6 +97,12 @@ inline constexpr auto kInitialisationFields = std::tuple{
     Field{"longest_shared_gap_s", &InitialisationOptions::longest_shared_gap_s, 0.005, 2.0, "s",
           "Without an IMU: views of the reference camera that are further apart say nothing of the time "
           "between."},
+    Field{
+        "longest_bridge_s", &InitialisationOptions::longest_bridge_s, 0.01, 5.0, "s",
+        "Without an IMU, cameras that see the board in turns: from the last view of one to the first of the "
+        "other at most. With longer gaps time offsets go astray."},
+    Field{"least_bridges", &InitialisationOptions::least_bridges, 2, 1000, "",
+          "How often the board must pass from one of them to the other, half of it either way."},
     Field{"least_imu_samples", &InitialisationOptions::least_imu_samples, 10, 1000000, "",
           "Samples that an IMU must have."},
     Field{"least_acceleration_m_s2", &InitialisationOptions::least_acceleration_m_s2, 0.0, 1000.0, "m/s^2",

@@ -1,6 +1,7 @@
 #include "core/initialisation/initialise.h"
 
 #include "core/base/error.h"
+#include "core/initialisation/bridged_cameras.h"
 #include "core/initialisation/camera_imu_rotation.h"
 #include "core/initialisation/camera_trajectory.h"
 #include "core/initialisation/further_imus.h"
@@ -313,9 +314,9 @@ class CamerasAlone {
     result_.state.cameras.resize(input_.cameras.size());
     for (std::size_t k = 0; k < input_.cameras.size(); ++k) {
       context_.throwIfStopped();
-      if (k != input_.reference_camera)
-        place(k, alignCamera(input_.cameras[k], felt, gyro, options_, context_, result_));
+      if (k != input_.reference_camera) findOnReference(k, felt, gyro);
     }
+    followAllInTurns();
     result_.state.world_from_imu_rotation = std::move(trajectory_.world_from_camera_rotation);
     result_.state.imu_in_world_m = std::move(trajectory_.camera_in_world_m);
   }
@@ -328,9 +329,8 @@ class CamerasAlone {
     CameraPoses found = estimateCameraPoses(reference(), input_.board, options_, context_);
     checkViews(reference(), found, options_);
     const int swapped = resolveBySmoothness(found.poses, options_.longest_pair_s);
-    const double begin_s = found.poses.front().time_s - options_.margin_s,
-                 end_s = found.poses.back().time_s + options_.margin_s;
-    trajectory_ = trajectoryThrough(found.poses, begin_s, end_s, options_.camera_knot_spacing_s);
+    poses_ = found.poses;
+    trajectory_ = through(poses_);
     result_.steps.push_back(
         {"trajectory",
          fmt::format("{}: {} of {} views, circles fit to {:.3f} px (median), {} turned to the "
@@ -338,6 +338,63 @@ class CamerasAlone {
                      reference().name, found.poses.size(), reference().observations.views.size(),
                      found.median_reprojection_px, swapped),
          found.median_reprojection_px, 0.0, lap.next_s()});
+  }
+
+  CameraTrajectory through(const std::vector<CameraPose>& poses) const {
+    return trajectoryThrough(poses, poses.front().time_s - options_.margin_s,
+                             poses.back().time_s + options_.margin_s, options_.camera_knot_spacing_s);
+  }
+
+  // By what both see at the same time; else by the moments when the board passes from one to the other.
+  void findOnReference(std::size_t k, const CalibrationInput& felt, const GyroRotation& gyro) {
+    const std::size_t steps = result_.steps.size(), warnings = result_.warnings.size();
+    try {
+      place(k, alignCamera(input_.cameras[k], felt, gyro, options_, context_, result_));
+    } catch (const CalibrationError&) {
+      result_.steps.resize(steps);
+      result_.warnings.resize(warnings);
+      if (!bridge(k)) throw;
+    }
+  }
+
+  bool bridge(std::size_t k) {
+    Lap lap;
+    const CameraData& camera = input_.cameras[k];
+    CameraPoses found = estimateCameraPoses(camera, input_.board, options_, context_);
+    resolveBySmoothness(found.poses, options_.longest_pair_s);
+    const auto bridged = bridgeCameras(poses_, found.poses, options_, context_);
+    if (!bridged) return false;
+    result_.state.cameras[k].imu_from_camera = bridged->reference_from_camera;
+    result_.state.cameras[k].time_offset_s = bridged->time_offset_s;
+    result_.steps.push_back(
+        {"camera to camera",
+         fmt::format("{}: sees the board in turns with {}; {} gaps agree to {:.2f} deg and {:.1f} mm",
+                     camera.name, reference().name, bridged->bridges, bridged->rotation_rms_rad * kDegPerRad,
+                     bridged->position_rms_m * 1e3),
+         bridged->position_rms_m, 0.0, lap.next_s()});
+    result_.warnings.push_back(
+        fmt::format("{}: never sees the board together with {}: what is known of it rests on how evenly the "
+                    "rig moves between; let both see the board at once, or record with an IMU",
+                    camera.name, reference().name));
+    in_turns_.push_back({k, std::move(found.poses)});
+    return true;
+  }
+
+  // The others' views where the reference sees nothing.
+  void followAllInTurns() {
+    if (in_turns_.empty()) return;
+    std::vector<CameraPose> all = poses_;
+    for (auto& [k, poses] : in_turns_) {
+      const CameraState& state = result_.state.cameras[k];
+      for (CameraPose& pose : poses) {
+        pose.time_s += state.time_offset_s;
+        pose.world_from_camera = pose.world_from_camera * inverse(state.imu_from_camera);
+        all.push_back(pose);
+      }
+    }
+    std::stable_sort(all.begin(), all.end(),
+                     [](const CameraPose& a, const CameraPose& b) { return a.time_s < b.time_s; });
+    trajectory_ = through(all);
   }
 
   void place(std::size_t k, const AlignedCamera& aligned) {
@@ -350,7 +407,8 @@ class CamerasAlone {
           name,
           fmt::format("it and {} see the board within {:.2f} s of each other in fewer than {} views",
                       reference().name, options_.longest_shared_gap_s, options_.least_views),
-          "Let both see the board at the same time, or record with an IMU");
+          "Let both see the board at the same time, let it pass from one to the other often and without "
+          "delay, or record with an IMU");
     }
     if (pose->agreeing < options_.least_agreement) {
       throw calibrationFailed(name,
@@ -370,7 +428,9 @@ class CamerasAlone {
   const InitialisationOptions& options_;
   const RunContext& context_;
   Initialisation& result_;
+  std::vector<CameraPose> poses_;  // of the reference
   CameraTrajectory trajectory_;
+  std::vector<std::pair<std::size_t, std::vector<CameraPose>>> in_turns_;
 };
 
 }  // namespace

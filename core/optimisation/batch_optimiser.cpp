@@ -5,6 +5,7 @@
 #include "core/optimisation/calibration_problem.h"
 #include "core/optimisation/circle_errors.h"
 #include "core/optimisation/sample_errors.h"
+#include "core/optimisation/trajectory_smoothness.h"
 
 #include <ceres/iteration_callback.h>
 #include <ceres/solver.h>
@@ -95,6 +96,7 @@ class Batch {
   void solveLastStage();
   void holdStillAxes();
   bool updateWeights();
+  void updateSmoothness();
   BatchSolution finish();
   void reportFits();
   void reportNotes();
@@ -164,10 +166,23 @@ bool Batch::updateWeights() {
   update(problem_.scales.circles, scales.circles);
   update(problem_.scales.gyroscopes, scales.gyroscopes);
   update(problem_.scales.accelerometers, scales.accelerometers);
+  if (input_.imus.empty()) updateSmoothness();
   CircleSelection selection = selectCircles(input_, errors, problem_.scales.circles, options_);
   changed = changed || selection != problem_.used_circles;
   problem_.used_circles = std::move(selection);
   return changed;
+}
+
+// Three times as strong as where views tell it: hands don't move evenly, and accelerations last longer than a
+// knot. Circles change little by it, so that it is no reason to solve again.
+void Batch::updateSmoothness() {
+  constexpr double kUnevenness = 3.0, kLeast = 1e-4;
+  const TrajectorySmoothness found = trajectorySmoothness(input_, problem_.state());
+  const auto scale = [&](double measured, double largest) {
+    return std::clamp(kUnevenness * measured / largest, kLeast, 1.0);
+  };
+  problem_.scales.smooth_rotation = scale(found.rotation_rad_s2, options_.smooth_rotation_rad_s2);
+  problem_.scales.smooth_position = scale(found.position_m_s2, options_.smooth_position_m_s2);
 }
 
 // RMS by IMU in SI units, and the scales that go with it: RMS in units of the given noise.

@@ -21,6 +21,7 @@ namespace evical {
 struct NoiseScales {
   std::vector<double> circles;                     // by camera
   std::vector<double> gyroscopes, accelerometers;  // by IMU
+  double smooth_rotation = 1.0, smooth_position = 1.0;
 };
 
 struct BatchSolution {

@@ -38,7 +38,9 @@ CalibrationProblem::CalibrationProblem(const CalibrationInput& input, const Opti
   for (const CameraData& camera : input.cameras) {
     circle_models_.push_back(std::make_unique<CircleModel>(
         CircleModel{*camera.intrinsics, input.board.radius_m, options.huber_sigma}));
-    pixel_errors_.emplace_back(camera, input.board, options);
+    // Between cameras no wrong amplitude of one counts for much: where the board is, either sees anew.
+    const double pixel_error_px = input.imus.empty() ? 0.0 : options.pixel_error_px;
+    pixel_errors_.emplace_back(camera, input.board, pixel_error_px);
     auto& used = used_circles.emplace_back();
     for (const BoardView& view : camera.observations.views)
       used.emplace_back(view.circles.size(), std::uint8_t{1});
@@ -263,13 +265,15 @@ void CalibrationProblem::addPriors(ReleaseStages stage) {
 void CalibrationProblem::addSmoothness() {
   So3Spline& r = state_.world_from_imu_rotation;
   for (std::size_t k = 2; k < r.control_points.size(); ++k) {
-    auto* cost = new SmoothRotationCost(r.knot_spacing_s, options_.smooth_rotation_rad_s2);
+    auto* cost =
+        new SmoothRotationCost(r.knot_spacing_s, scales.smooth_rotation * options_.smooth_rotation_rad_s2);
     const auto block = [&](std::size_t i) { return r.control_points[i].coeffs().data(); };
     blocks_.push_back({problem_->AddResidualBlock(cost, nullptr, block(k - 2), block(k - 1), block(k))});
   }
   VectorSpline& p = state_.imu_in_world_m;
   for (std::size_t k = 2; k < p.control_points.size(); ++k) {
-    auto* cost = new SmoothPositionCost(p.knot_spacing_s, options_.smooth_position_m_s2);
+    auto* cost =
+        new SmoothPositionCost(p.knot_spacing_s, scales.smooth_position * options_.smooth_position_m_s2);
     const auto block = [&](std::size_t i) { return p.control_points[i].data(); };
     blocks_.push_back({problem_->AddResidualBlock(cost, nullptr, block(k - 2), block(k - 1), block(k))});
   }

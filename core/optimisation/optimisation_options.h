@@ -75,8 +75,8 @@ inline constexpr auto kOptimisationFields = std::tuple{
           "Solves of one stage, each with measurements assigned to spline segments anew."},
     Field{"threads", &OptimisationOptions::threads, 1, 256, "", "Threads that evaluate residuals."},
     Field{"smooth_rotation_rad_s2", &OptimisationOptions::smooth_rotation_rad_s2, 0.1, 1e6, "rad/s^2",
-          "Without an IMU: angular accelerations are 0 +- this at each knot, which bridges gaps between "
-          "views."},
+          "Without an IMU: angular accelerations at each knot are 0 +- what they are where views tell them, "
+          "or this if it is less; bridges gaps between views."},
     Field{"smooth_position_m_s2", &OptimisationOptions::smooth_position_m_s2, 0.01, 1e6, "m/s^2",
           "The same of accelerations."},
     Field{"correlation_time_s", &OptimisationOptions::correlation_time_s, 0.001, 10.0, "s",

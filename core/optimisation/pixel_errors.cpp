@@ -5,8 +5,7 @@
 
 namespace evical {
 
-PixelErrors::PixelErrors(const CameraData& camera, const CircleBoard& board,
-                         const OptimisationOptions& options)
+PixelErrors::PixelErrors(const CameraData& camera, const CircleBoard& board, double pixel_error_px)
     : mean_px_(static_cast<std::size_t>(board.circleCount()), Eigen::Vector2d::Zero()) {
   std::vector<double> counts(mean_px_.size(), 0.0);
   const auto forEach = [&](auto&& visit) {
@@ -24,7 +23,7 @@ PixelErrors::PixelErrors(const CameraData& camera, const CircleBoard& board,
   });
   constexpr double kOnePixel = 1.0;  // fewer are not crossed
   const double amplitude_px = std::max(kOnePixel, std::sqrt(sum_px2 / std::max(1.0, count)));
-  swing_ = options.pixel_error_px / (amplitude_px * std::sqrt(amplitude_px));
+  swing_ = pixel_error_px / (amplitude_px * std::sqrt(amplitude_px));
 }
 
 Eigen::Vector2d PixelErrors::at(const CircleObservation& circle) const {

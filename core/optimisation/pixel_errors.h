@@ -6,7 +6,6 @@
 #pragma once
 
 #include "core/data/calibration_setup.h"
-#include "core/optimisation/optimisation_options.h"
 
 #include <Eigen/Core>
 
@@ -16,7 +15,7 @@ namespace evical {
 
 class PixelErrors {
  public:
-  PixelErrors(const CameraData& camera, const CircleBoard& board, const OptimisationOptions& options);
+  PixelErrors(const CameraData& camera, const CircleBoard& board, double pixel_error_px);
 
   // What one sigma changes in the circle's centre; ideal pixels.
   Eigen::Vector2d at(const CircleObservation& circle) const;

@@ -1,0 +1,158 @@
+#include "core/initialisation/bridged_cameras.h"
+
+#include "core/geometry/so3.h"
+#include "core/initialisation/camera_trajectory.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace evical {
+namespace {
+
+// Wide, so that speeds at a stretch's end are those of several views.
+constexpr double kKnotSpacing_s = 0.08;
+// How far two gaps may differ and still speak for the same: carried on over some tenths of a second, hands
+// are a degree or two off.
+constexpr double kRotation_rad = 0.04, kPosition_m = 0.03;
+constexpr double kLeastAgreeing = 0.8;  // of the gaps: at wrong time offsets some agree by chance
+
+// A view with the motion around it.
+struct MovingPose {
+  double time_s = 0.0;
+  RigidTransform world_from_camera;
+  Eigen::Vector3d angular_velocity_rad_s, velocity_m_s;  // in the camera's frame, in the world's
+
+  RigidTransform after(double duration_s) const {
+    return {(world_from_camera.rotation * quaternionExp(duration_s * angular_velocity_rad_s)).normalized(),
+            world_from_camera.translation_m + duration_s * velocity_m_s};
+  }
+};
+
+std::vector<MovingPose> movingPoses(const std::vector<CameraPose>& poses) {
+  const CameraTrajectory trajectory =
+      trajectoryThrough(poses, poses.front().time_s, poses.back().time_s, kKnotSpacing_s);
+  std::vector<MovingPose> moving;
+  for (const CameraPose& pose : poses) {
+    const RotationSample rotation =
+        evaluate(trajectory.world_from_camera_rotation, pose.time_s, RotationOrder::Velocity);
+    const VectorSample position = evaluate(trajectory.camera_in_world_m, pose.time_s);
+    moving.push_back({pose.time_s,
+                      {Eigen::Quaterniond(rotation.rotation), position.value},
+                      rotation.angular_velocity_rad_s,
+                      position.velocity});
+  }
+  return moving;
+}
+
+struct Bridges {
+  std::vector<RigidTransform> reference_from_camera;  // by each gap
+  int to_camera = 0, to_reference = 0;                // how many: who sees more of the board after the gap
+
+  // One way only, a time offset looks like a turn.
+  bool bothWays(int least) const { return 2 * std::min(to_camera, to_reference) >= least; }
+};
+
+std::ptrdiff_t viewsBetween(const std::vector<MovingPose>& poses, double begin_s, double end_s) {
+  const auto earlier = [](const MovingPose& pose, double time_s) { return pose.time_s < time_s; };
+  return std::lower_bound(poses.begin(), poses.end(), end_s, earlier) -
+         std::lower_bound(poses.begin(), poses.end(), begin_s, earlier);
+}
+
+Bridges bridges(const std::vector<MovingPose>& reference, const std::vector<MovingPose>& camera,
+                double time_offset_s, double longest_s) {
+  constexpr std::size_t kMost = 400;  // of cameras that overlap after all: the first are enough
+  Bridges found;
+  const auto add = [&](const MovingPose& one, const MovingPose& other) {
+    const double half_s = 0.5 * (other.time_s + time_offset_s - one.time_s);
+    if (2.0 * std::abs(half_s) > longest_s || found.reference_from_camera.size() >= kMost) return;
+    found.reference_from_camera.push_back(inverse(one.after(half_s)) * other.after(-half_s));
+    const double middle_s = one.time_s + half_s, theirs_s = middle_s - time_offset_s;
+    const auto before = viewsBetween(reference, middle_s - longest_s, middle_s) -
+                        viewsBetween(camera, theirs_s - longest_s, theirs_s),
+               after = viewsBetween(reference, middle_s, middle_s + longest_s) -
+                       viewsBetween(camera, theirs_s, theirs_s + longest_s);
+    found.to_camera += before > 0 && after < 0;
+    found.to_reference += before < 0 && after > 0;
+  };
+  for (std::size_t i = 0, k = 0; i < reference.size(); ++i) {
+    const std::size_t before = k;
+    while (k < camera.size() && camera[k].time_s + time_offset_s < reference[i].time_s) ++k;
+    if (k == before) continue;
+    if (i > 0) add(reference[i - 1], camera[before]);
+    add(reference[i], camera[k - 1]);
+  }
+  return found;
+}
+
+double strangeness(const RigidTransform& pose, const RigidTransform& mean) {
+  const double angle = rotationAngleBetween_rad(pose.rotation, mean.rotation) / kRotation_rad,
+               way = (pose.translation_m - mean.translation_m).norm() / kPosition_m;
+  return angle * angle + way * way;
+}
+
+// Mean, reweighted; from the gap that most of the others are near to.
+BridgedCamera agreement(const std::vector<RigidTransform>& each, double time_offset_s) {
+  const auto misfit = [&](const RigidTransform& mean) {
+    double sum = 0.0;
+    for (const RigidTransform& pose : each) sum += std::min(1.0, strangeness(pose, mean));
+    return sum;
+  };
+  constexpr int kRounds = 10;
+  BridgedCamera found;
+  found.time_offset_s = time_offset_s;
+  found.bridges = static_cast<int>(each.size());
+  RigidTransform mean = *std::min_element(
+      each.begin(), each.end(),
+      [&](const RigidTransform& a, const RigidTransform& b) { return misfit(a) < misfit(b); });
+  for (int round = 0; round < kRounds; ++round) {
+    Eigen::Vector3d turn = Eigen::Vector3d::Zero(), shift = Eigen::Vector3d::Zero();
+    double weights = 0.0, turns2 = 0.0, shifts2 = 0.0;
+    int near = 0;
+    for (const RigidTransform& pose : each) {
+      const Eigen::Vector3d angle = quaternionLog(mean.rotation.conjugate() * pose.rotation),
+                            way = pose.translation_m - mean.translation_m;
+      const double weight = 1.0 / (1.0 + strangeness(pose, mean));
+      near += weight > 0.5;
+      turn += weight * angle;
+      shift += weight * way;
+      weights += weight;
+      turns2 += weight * angle.squaredNorm();
+      shifts2 += weight * way.squaredNorm();
+    }
+    mean.rotation = (mean.rotation * quaternionExp(turn / weights)).normalized();
+    mean.translation_m += shift / weights;
+    found.agreeing = static_cast<double>(near) / static_cast<double>(each.size());
+    found.rotation_rms_rad = std::sqrt(turns2 / weights);
+    found.position_rms_m = std::sqrt(shifts2 / weights);
+  }
+  found.reference_from_camera = mean;
+  return found;
+}
+
+double misfitOf(const BridgedCamera& found) {
+  const double angle = found.rotation_rms_rad / kRotation_rad, way = found.position_rms_m / kPosition_m;
+  return (angle * angle + way * way) / std::max(found.agreeing, 1e-3);
+}
+
+}  // namespace
+
+std::optional<BridgedCamera> bridgeCameras(const std::vector<CameraPose>& reference,
+                                           const std::vector<CameraPose>& camera,
+                                           const InitialisationOptions& options, const RunContext& context) {
+  constexpr double kStep_s = 0.01;
+  if (reference.size() < 2 || camera.size() < 2) return std::nullopt;
+  const std::vector<MovingPose> one = movingPoses(reference), other = movingPoses(camera);
+  std::optional<BridgedCamera> best;
+  const int steps = static_cast<int>(options.time_offset_search_s / kStep_s);
+  for (int step = -steps; step <= steps; ++step) {
+    context.throwIfStopped();
+    const Bridges each = bridges(one, other, step * kStep_s, options.longest_bridge_s);
+    if (!each.bothWays(options.least_bridges)) continue;
+    const BridgedCamera found = agreement(each.reference_from_camera, step * kStep_s);
+    if (found.agreeing < kLeastAgreeing) continue;
+    if (!best || misfitOf(found) < misfitOf(*best)) best = found;
+  }
+  return best;
+}
+
+}  // namespace evical

@@ -1,0 +1,28 @@
+// How two cameras sit on each other when they see the board in turns, and no IMU measures the motion between:
+// where one loses the board and the other finds it, both are carried on to the middle of the gap at the
+// speed that they have.
+#pragma once
+
+#include "core/initialisation/camera_poses.h"
+#include "core/initialisation/initialisation_options.h"
+
+#include <optional>
+#include <vector>
+
+namespace evical {
+
+struct BridgedCamera {
+  RigidTransform reference_from_camera;
+  double time_offset_s = 0.0;                           // reference_time = camera_time + time_offset_s
+  int bridges = 0;                                      // gaps that tell it
+  double agreeing = 0.0;                                // share of these near the mean
+  double rotation_rms_rad = 0.0, position_rms_m = 0.0;  // robust
+};
+
+// The time offset within options.time_offset_search_s at which the gaps agree best. Nothing where there are
+// too few of at most options.longest_bridge_s, or they don't agree.
+std::optional<BridgedCamera> bridgeCameras(const std::vector<CameraPose>& reference,
+                                           const std::vector<CameraPose>& camera,
+                                           const InitialisationOptions& options, const RunContext& context);
+
+}  // namespace evical

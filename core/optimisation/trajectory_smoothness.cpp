@@ -1,0 +1,67 @@
+#include "core/optimisation/trajectory_smoothness.h"
+
+#include "core/geometry/so3.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace evical {
+namespace {
+
+// Which segments of a spline hold a view.
+std::vector<std::uint8_t> seenSegments(const CalibrationInput& input, const CalibrationState& state,
+                                       double start_s, double spacing_s, int segments) {
+  std::vector<std::uint8_t> seen(static_cast<std::size_t>(std::max(0, segments)));
+  for (std::size_t camera = 0; camera < input.cameras.size(); ++camera) {
+    for (const BoardView& view : input.cameras[camera].observations.views) {
+      const double place = (view.time_s + state.cameras[camera].time_offset_s - start_s) / spacing_s;
+      if (place >= 0.0 && place < static_cast<double>(segments)) seen[static_cast<std::size_t>(place)] = 1;
+    }
+  }
+  return seen;
+}
+
+// acceleration(k, n): from control points k - 2 n, k - n, k, times the square of their distance in time. They
+// count where all segments between hold views. So far apart that noise of single views hardly counts.
+template <class Acceleration>
+double rms(const std::vector<std::uint8_t>& seen, double spacing_s, Acceleration&& acceleration) {
+  constexpr double kApart_s = 0.1;
+  const auto n = static_cast<std::size_t>(std::max(1.0, std::round(kApart_s / spacing_s)));
+  double squares = 0.0;
+  int count = 0;
+  for (std::size_t k = 2 * n + 1; k < seen.size() + 2; ++k) {
+    const auto first = seen.begin() + static_cast<std::ptrdiff_t>(k - 2 * n - 1),
+               last = seen.begin() + static_cast<std::ptrdiff_t>(k - 1);
+    if (std::find(first, last, std::uint8_t{0}) != last) continue;
+    squares += Eigen::Vector3d(acceleration(k, n)).squaredNorm();
+    count += 3;
+  }
+  if (count == 0) return std::numeric_limits<double>::infinity();
+  const double apart_s = static_cast<double>(n) * spacing_s;
+  return std::sqrt(squares / count) / (apart_s * apart_s);
+}
+
+}  // namespace
+
+TrajectorySmoothness trajectorySmoothness(const CalibrationInput& input, const CalibrationState& state) {
+  const So3Spline& r = state.world_from_imu_rotation;
+  const VectorSpline& p = state.imu_in_world_m;
+  TrajectorySmoothness found;
+  found.rotation_rad_s2 =
+      rms(seenSegments(input, state, r.start_s, r.knot_spacing_s, r.segmentCount()), r.knot_spacing_s,
+          [&](std::size_t k, std::size_t n) -> Eigen::Vector3d {
+            return quaternionLog(r.control_points[k - n].conjugate() * r.control_points[k]) -
+                   quaternionLog(r.control_points[k - 2 * n].conjugate() * r.control_points[k - n]);
+          });
+  found.position_m_s2 =
+      rms(seenSegments(input, state, p.start_s, p.knot_spacing_s, p.segmentCount()), p.knot_spacing_s,
+          [&](std::size_t k, std::size_t n) -> Eigen::Vector3d {
+            return p.control_points[k] - 2.0 * p.control_points[k - n] + p.control_points[k - 2 * n];
+          });
+  return found;
+}
+
+}  // namespace evical
