@@ -45,7 +45,9 @@ struct UncertaintyReport {
   Eigen::MatrixXd correlation;
   std::vector<CameraUncertainty> cameras;
   std::vector<ImuUncertainty> imus;
+  std::vector<std::string> given;  // held at known values, not estimated: "left.time_offset"
   double gravity_direction_std_rad = 0.0;
+  double gravity_norm_std_m_s2 = 0.0;  // 0: its norm is held
 
   // Eigenvalues of the information matrix in units of what a user needs (0.1 deg, 1 mm, 0.1 ms): below 1, the
   // need is not met in that direction. Ascending.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/data/board_observations.h"
+#include "core/data/calibration_priors.h"
 #include "core/data/imu_sample.h"
 #include "core/geometry/circle_board.h"
 
@@ -23,6 +24,7 @@ struct ImuData {
   std::string name;
   ImuNoise noise;
   std::vector<ImuSample> samples;  // in time order
+  ImuPrior prior = {};
 
   double rate_hz() const {
     return samples.size() < 2 ? 0.0
@@ -35,6 +37,7 @@ struct CameraData {
   std::string name;
   std::optional<CameraIntrinsics> intrinsics;
   BoardObservations observations;
+  SensorPrior prior = {};
 };
 
 // The estimator's input. Times of observations are seconds since start_ns; IMU samples keep their
@@ -46,6 +49,7 @@ struct CalibrationInput {
   std::vector<ImuData> imus;
   std::size_t reference_imu = 0;     // index into imus
   std::size_t reference_camera = 0;  // index into cameras: the reference where there is no IMU
+  double gravity_norm_m_s2 = 9.81;   // where the batch is to find it: the middle of its prior
 };
 
 }  // namespace evical

@@ -68,9 +68,18 @@ std::vector<Eigen::Vector3d> feltRotations(const std::vector<RotationPair>& pair
   return felt;
 }
 
+// What is given is as good as certain: information beyond that of any recording.
+Vector7 holding(bool rotation, bool offset) {
+  constexpr double kCertain = 1e12;
+  Vector7 information = Vector7::Zero();
+  if (rotation) information.head<3>().setConstant(kCertain);
+  if (offset) information(3) = kCertain;
+  return information;
+}
+
 // One Gauss-Newton step on rotation, offset and bias; returns the robust RMS before it.
 double step(const std::vector<RotationPair>& pairs, const GyroRotation& gyro, double scale_rad,
-            HandEye& result) {
+            const Vector7& held, HandEye& result) {
   constexpr double kDelta_s = 1e-3;
   const auto now = feltRotations(pairs, gyro, result.time_offset_s);
   const auto before = feltRotations(pairs, gyro, result.time_offset_s - kDelta_s);
@@ -97,6 +106,7 @@ double step(const std::vector<RotationPair>& pairs, const GyroRotation& gyro, do
   // Unseen directions stay where they are: 1 rad, 10 ms, 0.1 rad/s at the noise's scale.
   const double noise2 = scale_rad * scale_rad;
   matrix.diagonal() += noise2 * (Vector7() << 1.0, 1.0, 1.0, 1e4, 100.0, 100.0, 100.0).finished();
+  matrix.diagonal() += held;
   const Vector7 delta = matrix.ldlt().solve(vector);
   result.imu_from_camera = (result.imu_from_camera * quaternionExp(delta.head<3>())).normalized();
   constexpr double kLongestStep_s = 0.03;
@@ -110,12 +120,15 @@ double step(const std::vector<RotationPair>& pairs, const GyroRotation& gyro, do
 
 std::optional<HandEye> estimateCameraImuRotation(const std::vector<CameraPose>& poses,
                                                  const GyroRotation& gyro, double time_offset_s,
-                                                 const InitialisationOptions& options) {
+                                                 const InitialisationOptions& options,
+                                                 const SensorPrior& prior) {
   constexpr double kFirstScale_rad = 0.05, kLastScale_rad = 0.005;
   constexpr int kSteps = 15;
   std::vector<RotationPair> pairs = rotationPairs(poses, options.pair_gap_s, options.longest_pair_s);
-  const double lowest_s = time_offset_s - options.time_offset_reach_s,
-               highest_s = time_offset_s + options.time_offset_reach_s;
+  const bool offset_given = prior.time_offset && prior.time_offset->isGiven(),
+             rotation_given = prior.rotation && prior.rotation->isGiven();
+  const double reach_s = offset_given ? 0.0 : options.time_offset_reach_s;
+  const double lowest_s = time_offset_s - reach_s, highest_s = time_offset_s + reach_s;
   std::erase_if(pairs, [&](const RotationPair& pair) {
     return !gyro.covers(pair.from_s + lowest_s, pair.to_s + highest_s);
   });
@@ -124,12 +137,15 @@ std::optional<HandEye> estimateCameraImuRotation(const std::vector<CameraPose>& 
   result.time_offset_s = time_offset_s;
   result.pairs = static_cast<int>(pairs.size());
   alignVectors(pairs, feltRotations(pairs, gyro, time_offset_s), kFirstScale_rad, result);
+  if (rotation_given) result.imu_from_camera = prior.rotation->value;
+  const Vector7 held = holding(rotation_given, offset_given);
   double scale_rad = kFirstScale_rad;
   for (int k = 0; k < kSteps; ++k) {
-    result.residual_rad = step(pairs, gyro, scale_rad, result);
+    result.residual_rad = step(pairs, gyro, scale_rad, held, result);
     result.time_offset_s = std::clamp(result.time_offset_s, lowest_s, highest_s);
     scale_rad = std::max(0.7 * scale_rad, kLastScale_rad);
   }
+  if (rotation_given) result.imu_from_camera = prior.rotation->value;  // to the last digit
   return result;
 }
 

@@ -2,6 +2,7 @@
 //   log(imu rotation over the pair) = R_ic log(camera rotation over the pair) + bias * duration.
 #pragma once
 
+#include "core/data/calibration_priors.h"
 #include "core/initialisation/camera_poses.h"
 
 #include <Eigen/Geometry>
@@ -22,10 +23,11 @@ struct HandEye {
   int pairs = 0;
 };
 
-// From a start offset that is right to `time_offset_reach_s`. Nothing if fewer than five pairs are
-// covered.
+// From a start offset that is right to `time_offset_reach_s`, or exact where the prior gives it; a given
+// rotation is held, too. Nothing if fewer than five pairs are covered.
 std::optional<HandEye> estimateCameraImuRotation(const std::vector<CameraPose>& poses,
                                                  const GyroRotation& gyro, double time_offset_s,
-                                                 const InitialisationOptions& options);
+                                                 const InitialisationOptions& options,
+                                                 const SensorPrior& prior = {});
 
 }  // namespace evical

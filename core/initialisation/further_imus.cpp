@@ -39,30 +39,36 @@ std::vector<CameraPose> turnsOf(const GyroRotation& gyro) {
 ImuRotation alignFurtherGyroscope(const ImuData& imu, std::int64_t start_ns, const GyroRotation& reference,
                                   const InitialisationOptions& options, const RunContext& context) {
   const std::vector<CameraPose> turns = turnsOf(GyroRotation(imu.samples, start_ns));
-  const std::vector<TimeOffsetPeak> peaks = correlateTimeOffset(turns, reference, options);
+  const std::vector<TimeOffsetPeak> peaks = correlateTimeOffset(turns, reference, options, imu.prior);
+  const std::optional<KnownNumber>& known = imu.prior.time_offset;
+  const bool given = known && known->isGiven();
+  const std::string offsets =
+      given   ? fmt::format("the time offset of {:.4f} s that is given", known->value)
+      : known ? fmt::format("any time offset within {:.1f} s of {:.4f} s", options.time_offset_search_s,
+                            known->value)
+              : fmt::format("any time offset up to {:.1f} s", options.time_offset_search_s);
+  const std::string advice =
+      given ? "check the time offset in the session" : "widen initialisation.time_offset_search_s";
   if (peaks.empty()) {
-    throw calibrationFailed(imu.name,
-                            fmt::format("its samples and those of the reference overlap for less than {:.1f} "
-                                        "s at every time offset up to "
-                                        "{:.1f} s",
-                                        options.least_overlap_s, options.time_offset_search_s),
-                            "Check the clocks, or widen initialisation.time_offset_search_s");
+    throw calibrationFailed(
+        imu.name,
+        fmt::format("its samples and those of the reference do not overlap for {:.1f} s at {}",
+                    options.least_overlap_s, offsets),
+        "Check the clocks, or " + advice);
   }
   std::optional<ImuRotation> best;
   for (const TimeOffsetPeak& peak : peaks) {
     context.throwIfStopped();
-    const auto found = estimateCameraImuRotation(turns, reference, peak.time_offset_s, options);
+    const auto found = estimateCameraImuRotation(turns, reference, peak.time_offset_s, options, imu.prior);
     if (found && (!best || found->cost < options.better_alignment * best->hand_eye.cost))
       best = ImuRotation{*found, peak.correlation};
   }
   if (!best || best->correlation < options.clear_peak_correlation) {
     throw calibrationFailed(
         imu.name,
-        fmt::format("its rotation rates do not agree with the reference's at any time offset up to {:.1f} s "
-                    "(correlation {:.2f})",
-                    options.time_offset_search_s, peaks.front().correlation),
-        "Check that both are on one rigid rig and recorded at the same time, or widen "
-        "initialisation.time_offset_search_s");
+        fmt::format("its rotation rates do not agree with the reference's at {} (correlation {:.2f})",
+                    offsets, peaks.front().correlation),
+        "Check that both are on one rigid rig and recorded at the same time, or " + advice);
   }
   // What was estimated is what the reference seems to turn too much: minus the further one's bias.
   HandEye& hand_eye = best->hand_eye;

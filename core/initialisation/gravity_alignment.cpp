@@ -112,6 +112,7 @@ class Alignment {
                        evaluate(rotation, time_s, RotationOrder::Rotation).rotation, measured});
     };
     for (std::size_t c = 0; c < cameras.size(); ++c) {
+      known_levers_.push_back(cameras[c].translation);
       for (const CameraPose& pose : cameras[c].poses) {
         const double time_s = pose.time_s + cameras[c].time_offset_s;
         if (rotation.contains(time_s)) add(true, c, time_s, pose.world_from_camera.translation_m);
@@ -186,6 +187,7 @@ class Alignment {
   double knot_spacing_s_;
   Sigmas sigmas_;
   std::vector<Row> rows_;
+  std::vector<std::optional<KnownVector>> known_levers_;  // by camera
   // The last solution: where products of unknowns are linearised.
   double scale_ = 1.0;
   Eigen::MatrixX3d points_;
@@ -196,6 +198,15 @@ class Alignment {
 void Alignment::addPriors(Eigen::MatrixXd& matrix, Eigen::VectorXd& vector) const {
   const auto inverseSquare = [](double sigma) { return 1.0 / (sigma * sigma); };
   matrix.diagonal().head(layout_.gravity).setConstant(inverseSquare(options_.translation_sigma_m));
+  constexpr double kGiven_m = 1e-4;
+  for (std::size_t c = 0; c < known_levers_.size(); ++c) {
+    if (!known_levers_[c]) continue;
+    const Vector3d sigma_m =
+        known_levers_[c]->sigma.value_or(Vector3d::Constant(kGiven_m)).cwiseMax(kGiven_m);
+    const Vector3d weight = sigma_m.cwiseAbs2().cwiseInverse();
+    matrix.diagonal().segment<3>(layout_.lever(c)) = weight;
+    vector.segment<3>(layout_.lever(c)) = weight.cwiseProduct(known_levers_[c]->value);
+  }
   matrix.diagonal()
       .segment<3>(layout_.bias())
       .setConstant(inverseSquare(options_.accelerometer_bias_sigma_m_s2));

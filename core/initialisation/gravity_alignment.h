@@ -8,6 +8,7 @@
 #pragma once
 
 #include "core/base/progress.h"
+#include "core/data/calibration_priors.h"
 #include "core/data/imu_sample.h"
 #include "core/geometry/so3_spline.h"
 #include "core/geometry/vector_spline.h"
@@ -17,6 +18,7 @@
 #include <Eigen/Core>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,6 +28,7 @@ namespace evical {
 struct CameraTrack {
   std::vector<CameraPose> poses;
   double time_offset_s = 0.0;
+  std::optional<KnownVector> translation = {};  // imu_from_camera
 };
 
 struct GravityAlignment {

@@ -72,8 +72,11 @@ void checkPoses(const CameraData& camera, const CameraPoses& found, const GyroRo
                 const InitialisationOptions& options) {
   checkViews(camera, found, options);
   const double first_s = found.poses.front().time_s, last_s = found.poses.back().time_s;
-  const double overlap_s = std::min(last_s, gyro.end_s() + options.time_offset_search_s) -
-                           std::max(first_s, gyro.begin_s() - options.time_offset_search_s);
+  const std::optional<KnownNumber>& known = camera.prior.time_offset;
+  const double offset_s = known ? known->value : 0.0;
+  const double search_s = known && known->isGiven() ? 0.0 : options.time_offset_search_s;
+  const double overlap_s = std::min(last_s, gyro.end_s() - offset_s + search_s) -
+                           std::max(first_s, gyro.begin_s() - offset_s - search_s);
   if (overlap_s < options.least_overlap_s) {
     const bool apart = overlap_s <= 0.0;
     throw calibrationFailed(
@@ -83,7 +86,9 @@ void checkPoses(const CameraData& camera, const CameraPoses& found, const GyroRo
                     apart ? "do not overlap in time"
                           : fmt::format("overlap for less than {:.1f} s", options.least_overlap_s),
                     first_s, last_s, gyro.begin_s(), gyro.end_s()),
-        apart ? "Check the clocks, or widen initialisation.time_offset_search_s" : "Record for 30 s");
+        !apart            ? "Record for 30 s"
+        : search_s == 0.0 ? "Check the clocks, and the time offset in the session"
+                          : "Check the clocks, or widen initialisation.time_offset_search_s");
   }
 }
 

@@ -68,9 +68,10 @@ std::vector<CameraPose> cameraPoses(const CameraData& camera, const CircleBoard&
 
 // Hand-eye from one candidate offset, then once more with the poses that the gyroscope believes.
 std::optional<AlignedCamera> align(std::vector<CameraPose> poses, const GyroRotation& gyro,
-                                   double time_offset_s, const InitialisationOptions& options) {
+                                   double time_offset_s, const InitialisationOptions& options,
+                                   const SensorPrior& prior) {
   resolveAmbiguousPoses(poses, gyro, time_offset_s, options.longest_pair_s);
-  const std::optional<HandEye> found = estimateCameraImuRotation(poses, gyro, time_offset_s, options);
+  const std::optional<HandEye> found = estimateCameraImuRotation(poses, gyro, time_offset_s, options, prior);
   if (!found) return std::nullopt;
   return AlignedCamera{std::move(poses), *found};
 }
@@ -78,7 +79,14 @@ std::optional<AlignedCamera> align(std::vector<CameraPose> poses, const GyroRota
 void warnOfPeaks(const CameraData& camera, const std::vector<TimeOffsetPeak>& peaks, double chosen_s,
                  const InitialisationOptions& options, Initialisation& result) {
   const TimeOffsetPeak& best = peaks.front();
-  if (best.correlation < options.clear_peak_correlation) {
+  const std::optional<KnownNumber>& known = camera.prior.time_offset;
+  if (known && known->isGiven()) {
+    if (best.correlation < options.clear_peak_correlation)
+      result.warnings.push_back(
+          fmt::format("{}: rotation rates of camera and gyroscope agree weakly (correlation {:.2f}) at the "
+                      "time offset of {:.4f} s that is given; check it",
+                      camera.name, best.correlation, known->value));
+  } else if (best.correlation < options.clear_peak_correlation) {
     result.warnings.push_back(fmt::format(
         "{}: no clear time offset: rotation rates of camera and gyroscope agree weakly (correlation "
         "{:.2f}); rotate more, or give a wider initialisation.time_offset_search_s",
@@ -98,7 +106,7 @@ AlignedCamera bestAlignment(const CameraData& camera, const std::vector<CameraPo
   std::optional<AlignedCamera> best;
   for (const TimeOffsetPeak& peak : peaks) {
     context.throwIfStopped();
-    std::optional<AlignedCamera> found = align(poses, gyro, peak.time_offset_s, options);
+    std::optional<AlignedCamera> found = align(poses, gyro, peak.time_offset_s, options, camera.prior);
     // The more significant one stays unless the other is better by more than chance.
     if (found && (!best || found->hand_eye.cost < options.better_alignment * best->hand_eye.cost))
       best = std::move(found);
@@ -120,7 +128,8 @@ void settlePoses(const CameraData& camera, const ImuData& imu, std::int64_t star
     const GyroRotation unbiased(imu.samples, start_ns, aligned.hand_eye.gyroscope_bias_rad_s);
     AlignedCamera next = aligned;
     const PoseConsistency consistency = keepConsistentPoses(next.poses, unbiased, next.hand_eye, options);
-    const auto again = estimateCameraImuRotation(next.poses, gyro, next.hand_eye.time_offset_s, options);
+    const auto again =
+        estimateCameraImuRotation(next.poses, gyro, next.hand_eye.time_offset_s, options, camera.prior);
     if (!again || static_cast<int>(next.poses.size()) < options.least_views) {
       result.warnings.push_back(camera.name +
                                 ": rotations of camera and gyroscope contradict each other in most views");
@@ -148,7 +157,7 @@ AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& inpu
   const std::vector<CameraPose> poses = cameraPoses(camera, input.board, gyro, options, context, result);
   result.steps.back().duration_s = lap.next_s();
   context.throwIfStopped();
-  const std::vector<TimeOffsetPeak> peaks = correlateTimeOffset(poses, gyro, options);
+  const std::vector<TimeOffsetPeak> peaks = correlateTimeOffset(poses, gyro, options, camera.prior);
   if (peaks.empty()) {
     throw calibrationFailed(camera.name,
                             "too few pairs of views overlap with the gyroscope to find the time offset",
@@ -189,9 +198,11 @@ TimeRange viewRange(const std::vector<AlignedCamera>& cameras) {
   return range;
 }
 
-std::vector<CameraTrack> tracksOf(const std::vector<AlignedCamera>& cameras) {
+std::vector<CameraTrack> tracksOf(const CalibrationInput& input, const std::vector<AlignedCamera>& cameras) {
   std::vector<CameraTrack> tracks;
-  for (const AlignedCamera& camera : cameras) tracks.push_back({camera.poses, camera.hand_eye.time_offset_s});
+  for (std::size_t k = 0; k < cameras.size(); ++k)
+    tracks.push_back(
+        {cameras[k].poses, cameras[k].hand_eye.time_offset_s, input.cameras[k].prior.translation});
   return tracks;
 }
 
@@ -203,12 +214,14 @@ void turnAboutAxis(const CalibrationInput& input, const InitialisationOptions& o
   if (first.axis_ratio >= options.least_axis_ratio) return;
   result.warnings.push_back(input.cameras.front().name +
                             ": the recording rotates about one axis only: rotate about two more");
+  const std::optional<KnownRotation>& known = input.cameras.front().prior.rotation;
+  if (known && known->isGiven()) return;
   // The angle needs no fine knots.
   constexpr double kLeastKnot_s = 0.05;
   const double knot_s = std::max(options.knot_spacing_s, kLeastKnot_s);
   const So3Spline rotation = fitWorldRotation({cameras.data(), 1}, gyro, range.begin_s, range.end_s, knot_s);
   const double turn_rad =
-      findTurnAboutAxis(first.main_axis_in_imu, tracksOf(cameras), referenceImu(input).samples,
+      findTurnAboutAxis(first.main_axis_in_imu, tracksOf(input, cameras), referenceImu(input).samples,
                         input.start_ns, rotation, options, context);
   for (AlignedCamera& camera : cameras) {
     camera.hand_eye.imu_from_camera =
@@ -236,7 +249,7 @@ void alignTranslations(const CalibrationInput& input, const InitialisationOption
   CalibrationState& state = result.state;
   Lap lap;
   const GravityAlignment gravity =
-      alignGravity(tracksOf(cameras), referenceImu(input).samples, input.start_ns,
+      alignGravity(tracksOf(input, cameras), referenceImu(input).samples, input.start_ns,
                    state.world_from_imu_rotation, options, context);
   result.steps.push_back(
       {"gravity and translation",

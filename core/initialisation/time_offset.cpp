@@ -105,7 +105,8 @@ TimeOffsetPeak peakAt(const std::vector<Correlation>& correlations, std::size_t 
 
 std::vector<TimeOffsetPeak> correlateTimeOffset(const std::vector<CameraPose>& poses,
                                                 const GyroRotation& gyro,
-                                                const InitialisationOptions& options) {
+                                                const InitialisationOptions& options,
+                                                const SensorPrior& prior) {
   constexpr double kStep_s = 0.01;
   std::vector<RatePair> pairs = ratePairs(poses, options.pair_gap_s, options.longest_pair_s);
   if (pairs.empty()) return {};
@@ -120,18 +121,21 @@ std::vector<TimeOffsetPeak> correlateTimeOffset(const std::vector<CameraPose>& p
   // Gaps count as overlap, or a board seen in every tenth window would need ten times the recording.
   const double pairs_per_s = static_cast<double>(pairs.size()) /
                              std::max(pairs.back().middle_s - pairs.front().middle_s, duration_s);
-  const int steps = static_cast<int>(std::ceil(options.time_offset_search_s / kStep_s));
+  const bool given = prior.time_offset && prior.time_offset->isGiven();
+  const double centre_s = prior.time_offset ? prior.time_offset->value : 0.0;
+  const int steps = given ? 0 : static_cast<int>(std::ceil(options.time_offset_search_s / kStep_s));
   std::vector<Correlation> correlations;
   correlations.reserve(static_cast<std::size_t>(2 * steps + 1));
   for (int k = -steps; k <= steps; ++k)
-    correlations.push_back(correlationAt(pairs, grid, k * kStep_s, pairs_per_s, options.least_overlap_s));
+    correlations.push_back(
+        correlationAt(pairs, grid, centre_s + k * kStep_s, pairs_per_s, options.least_overlap_s));
   std::vector<TimeOffsetPeak> peaks;
   for (std::size_t i = 0; i < correlations.size(); ++i) {
     const double here = correlations[i].significance;
-    if (here < 0.0) continue;
+    if (here < 0.0 && !(given && correlations[i].value >= -1.0)) continue;
     if (i > 0 && here < correlations[i - 1].significance) continue;
     if (i + 1 < correlations.size() && here <= correlations[i + 1].significance) continue;
-    peaks.push_back(peakAt(correlations, i, (static_cast<double>(i) - steps) * kStep_s, kStep_s));
+    peaks.push_back(peakAt(correlations, i, centre_s + (static_cast<double>(i) - steps) * kStep_s, kStep_s));
   }
   std::sort(peaks.begin(), peaks.end(),
             [](const auto& a, const auto& b) { return a.significance > b.significance; });

@@ -2,6 +2,7 @@
 // views does not depend on how it is mounted, and the gyroscope must have turned as far.
 #pragma once
 
+#include "core/data/calibration_priors.h"
 #include "core/initialisation/camera_poses.h"
 #include "core/initialisation/initialisation_options.h"
 
@@ -16,10 +17,12 @@ struct TimeOffsetPeak {
   double width_s = 0.0;       // from the peak to where the correlation's parabola is lower by 0.1
 };
 
-// Local maxima of the correlation within plus or minus options.time_offset_search_s, the most significant
-// first; empty if camera and gyroscope overlap for less than options.least_overlap_s at every offset.
+// Local maxima of the correlation within plus or minus options.time_offset_search_s of the prior's time
+// offset (of 0 without one), the most significant first; only that offset where it is given. Empty if camera
+// and gyroscope overlap for less than options.least_overlap_s at every offset.
 std::vector<TimeOffsetPeak> correlateTimeOffset(const std::vector<CameraPose>& poses,
                                                 const GyroRotation& gyro,
-                                                const InitialisationOptions& options);
+                                                const InitialisationOptions& options,
+                                                const SensorPrior& prior = {});
 
 }  // namespace evical

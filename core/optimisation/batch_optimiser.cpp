@@ -113,11 +113,8 @@ class Batch {
 
 std::vector<ReleaseStages> Batch::stages() const {
   std::vector<ReleaseStages> all = {ReleaseStages::Extrinsics};
-  if (input_.imus.size() > 1 && options_.last_stage >= ReleaseStages::FurtherImus) {
-    all.push_back(ReleaseStages::FurtherImus);
-  }
-  if (!input_.imus.empty() && options_.last_stage >= ReleaseStages::Mappings)
-    all.push_back(ReleaseStages::Mappings);
+  if (input_.imus.size() > 1) all.push_back(ReleaseStages::FurtherImus);
+  if (!input_.imus.empty() && options_.free_imu_intrinsics) all.push_back(ReleaseStages::Mappings);
   return all;
 }
 

@@ -1,6 +1,7 @@
 #include "core/optimisation/calibration_problem.h"
 
 #include "core/optimisation/edge_lead.h"
+#include "core/optimisation/known_values.h"
 
 #include "core/base/time.h"
 #include "core/optimisation/prior_cost.h"
@@ -29,6 +30,7 @@ bool sameSegment(const SegmentTimes& a, const SegmentTimes& b) {
 CalibrationProblem::CalibrationProblem(const CalibrationInput& input, const OptimisationOptions& options,
                                        const CalibrationState& initial)
     : input_(input), options_(options), state_(initial) {
+  setGivenValues(input, options, state_);
   gyroscope_mappings_.resize(state_.imus.size());
   accelerometer_mappings_.resize(state_.imus.size());
   for (std::size_t i = 0; i < state_.imus.size(); ++i) {
@@ -62,6 +64,7 @@ void CalibrationProblem::build(ReleaseStages stage) {
     if (isReference(i) || stage != ReleaseStages::Extrinsics) addImu(i);
   }
   addPriors(stage);
+  addKnownValues();
   if (input_.imus.empty()) addSmoothness();
   setManifolds(stage);
   if (input_.imus.empty()) holdReferenceCamera();
@@ -242,23 +245,36 @@ void CalibrationProblem::addPriors(ReleaseStages stage) {
     add(&camera.edge_lead_px, 1, kZero.data(), options_.edge_lead_sigma_px);
     add(&camera.edge_lead_growth_px, 1, kZero.data(), options_.edge_lead_growth_sigma_px);
   }
-  for (CameraState& camera : state_.cameras) {
-    add(camera.imu_from_camera.translation_m.data(), 3, kZero.data(), options_.translation_sigma_m);
-    holdTranslation(camera.imu_from_camera.translation_m.data());
+  const auto addUnless = [&](bool known, double* block, int size, const double* mean, double sigma) {
+    if (!known) add(block, size, mean, sigma);
+  };
+  for (std::size_t i = 0; i < state_.cameras.size(); ++i) {
+    const std::optional<KnownVector>& known = input_.cameras[i].prior.translation;
+    double* translation = state_.cameras[i].imu_from_camera.translation_m.data();
+    addUnless(known.has_value(), translation, 3, kZero.data(), options_.translation_sigma_m);
+    holdTranslation(translation, known);
   }
   for (std::size_t i = 0; i < state_.imus.size(); ++i) {
-    add(state_.imus[i].reference_from_imu.translation_m.data(), 3, kZero.data(),
-        options_.translation_sigma_m);
-    holdTranslation(state_.imus[i].reference_from_imu.translation_m.data());
-    add(state_.imus[i].gyroscope_bias_rad_s.data(), 3, kZero.data(), options_.gyroscope_bias_sigma_rad_s);
-    add(state_.imus[i].accelerometer_bias_m_s2.data(), 3, kZero.data(),
-        options_.accelerometer_bias_sigma_m_s2);
+    const ImuPrior& prior = input_.imus[i].prior;
+    double* translation = state_.imus[i].reference_from_imu.translation_m.data();
+    addUnless(prior.translation.has_value(), translation, 3, kZero.data(), options_.translation_sigma_m);
+    holdTranslation(translation, prior.translation);
+    addUnless(prior.gyroscope_bias.has_value(), state_.imus[i].gyroscope_bias_rad_s.data(), 3, kZero.data(),
+              options_.gyroscope_bias_sigma_rad_s);
+    addUnless(prior.accelerometer_bias.has_value(), state_.imus[i].accelerometer_bias_m_s2.data(), 3,
+              kZero.data(), options_.accelerometer_bias_sigma_m_s2);
     if (stage != ReleaseStages::Mappings) continue;
-    add(gyroscope_mappings_[i].data(), 6, kIdentity.data(), options_.mapping_sigma);
-    add(accelerometer_mappings_[i].data(), 6, kIdentity.data(), options_.mapping_sigma);
-    holdMapping(gyroscope_mappings_[i].data(), held_axes[i].gyroscope);
-    holdMapping(accelerometer_mappings_[i].data(), held_axes[i].accelerometer);
+    addUnless(prior.gyroscope_mapping.has_value(), gyroscope_mappings_[i].data(), 6, kIdentity.data(),
+              options_.mapping_sigma);
+    addUnless(prior.accelerometer_mapping.has_value(), accelerometer_mappings_[i].data(), 6, kIdentity.data(),
+              options_.mapping_sigma);
+    holdMapping(gyroscope_mappings_[i].data(), held_axes[i].gyroscope, prior.gyroscope_mapping);
+    holdMapping(accelerometer_mappings_[i].data(), held_axes[i].accelerometer, prior.accelerometer_mapping);
   }
+  double* gravity = state_.gravity_in_world_m_s2.data();
+  if (!options_.free_gravity_norm || !problem_->HasParameterBlock(gravity)) return;
+  auto* cost = new NormCost(input_.gravity_norm_m_s2, options_.gravity_norm_sigma_m_s2);
+  blocks_.push_back({problem_->AddResidualBlock(cost, nullptr, gravity)});
 }
 
 // No IMU fills the gaps between views.
@@ -288,20 +304,23 @@ void CalibrationProblem::holdReferenceCamera() {
   }
 }
 
-void CalibrationProblem::holdTranslation(double* translation_m) {
+void CalibrationProblem::holdTranslation(double* translation_m, const std::optional<KnownVector>& known) {
   constexpr double kSigma_m = 1e-4;
   if (input_.imus.empty() || !problem_->HasParameterBlock(translation_m)) return;
   for (const Eigen::Vector3d& axis : held_axes[input_.reference_imu].leverless()) {
-    auto* cost = new HeldTranslationCost(axis, kSigma_m);
+    auto* cost =
+        new HeldTranslationCost(axis, known ? known->value : Eigen::Vector3d::Zero().eval(), kSigma_m);
     blocks_.push_back({problem_->AddResidualBlock(cost, nullptr, translation_m)});
   }
 }
 
-void CalibrationProblem::holdMapping(double* mapping, const std::vector<Eigen::Vector3d>& axes) {
+void CalibrationProblem::holdMapping(double* mapping, const std::vector<Eigen::Vector3d>& axes,
+                                     const std::optional<KnownMapping>& known) {
   constexpr double kSigma = 1e-5;  // far below what could be measured
   if (!problem_->HasParameterBlock(mapping)) return;
+  const Eigen::Matrix3d prior = known ? known->value : Eigen::Matrix3d::Identity();
   for (const Eigen::Vector3d& axis : axes) {
-    blocks_.push_back({problem_->AddResidualBlock(new HeldAxisCost(axis, kSigma), nullptr, mapping)});
+    blocks_.push_back({problem_->AddResidualBlock(new HeldAxisCost(axis, prior, kSigma), nullptr, mapping)});
   }
 }
 
@@ -312,7 +331,7 @@ void CalibrationProblem::setManifolds(ReleaseStages stage) {
   for (auto& point : state_.world_from_imu_rotation.control_points) set(point.coeffs().data(), &so3_);
   for (CameraState& camera : state_.cameras) set(camera.imu_from_camera.rotation.coeffs().data(), &so3_);
   for (ImuState& imu : state_.imus) set(imu.reference_from_imu.rotation.coeffs().data(), &so3_);
-  set(state_.gravity_in_world_m_s2.data(), &sphere_);
+  if (!options_.free_gravity_norm) set(state_.gravity_in_world_m_s2.data(), &sphere_);
   if (stage == ReleaseStages::Mappings) return;
   for (std::size_t i = 0; i < state_.imus.size(); ++i) {
     for (double* mapping : {gyroscope_mappings_[i].data(), accelerometer_mappings_[i].data()}) {

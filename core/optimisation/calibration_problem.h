@@ -16,6 +16,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -90,8 +91,12 @@ class CalibrationProblem {
                         std::span<const ImuSample> samples);
   void addPriors(ReleaseStages stage);
   void addSmoothness();
-  void holdMapping(double* mapping, const std::vector<Eigen::Vector3d>& axes);
-  void holdTranslation(double* translation_m);
+  void addKnownValues();
+  void addKnownPlace(const SensorPrior& prior, RigidTransform& pose, double& time_offset_s);
+  void addKnown(double* block, ceres::CostFunction* cost);
+  void holdMapping(double* mapping, const std::vector<Eigen::Vector3d>& axes,
+                   const std::optional<KnownMapping>& known);
+  void holdTranslation(double* translation_m, const std::optional<KnownVector>& known);
   void setManifolds(ReleaseStages stage);
   void holdReferenceCamera();
   bool isReference(std::size_t imu) const { return imu == input_.reference_imu; }

@@ -1,6 +1,7 @@
 #include "core/optimisation/covariance.h"
 
 #include "core/optimisation/credible_information.h"
+#include "core/optimisation/known_values.h"
 #include "core/optimisation/observability.h"
 #include "core/optimisation/projected_information.h"
 
@@ -83,10 +84,12 @@ Eigen::MatrixXd reportFromTangent(const Quantity& quantity, Eigen::Index size, c
     return state.imus[quantity.sensor].reference_from_imu.rotation.toRotationMatrix();
   }
   if (quantity.kind == QuantityKind::GravityDirection) {
+    const Eigen::Vector3d& gravity = state.gravity_in_world_m_s2;
+    const Eigen::Matrix<double, 2, 3> tilts = gravityTilts(gravity).transpose() / gravity.norm();
+    if (size == 3) return (Eigen::Matrix3d() << tilts, gravity.normalized().transpose()).finished();
     Eigen::Matrix<double, 3, 2, Eigen::RowMajor> plus;
     problem.GetManifold(quantity.block)->PlusJacobian(quantity.block, plus.data());
-    const Eigen::Vector3d& gravity = state.gravity_in_world_m_s2;
-    return gravityTilts(gravity).transpose() * plus / gravity.norm();
+    return tilts * plus;
   }
   return Eigen::MatrixXd::Identity(size, size);
 }
@@ -173,9 +176,13 @@ void appendNames(const Quantity& quantity, Eigen::Index size, const CalibrationI
                                                                : input.imus[quantity.sensor].name;
   for (Eigen::Index k = 0; k < size; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    const std::string part = size == 1   ? ""
-                             : size == 2 ? fmt::format(".{}", k + 1)
-                             : size == 3 ? fmt::format(".{}", kAxes[i])
+    if (quantity.kind == QuantityKind::GravityDirection && k == 2) {
+      names.emplace_back("gravity.norm [m/s^2]");
+      continue;
+    }
+    const std::string part = size == 1                                         ? ""
+                             : quantity.kind == QuantityKind::GravityDirection ? fmt::format(".{}", k + 1)
+                             : size == 3                                       ? fmt::format(".{}", kAxes[i])
                                          : fmt::format(".{}", kMappingEntries[i]);
     names.push_back(fmt::format("{}.{}{} [{}]", sensor, naming.name, part, naming.unit));
   }
@@ -229,7 +236,8 @@ void storeStandardDeviations(const Quantity& quantity, const Eigen::VectorXd& si
       report.imus[quantity.sensor].accelerometer_mapping_std = upperTriangle(sigma);
       break;
     case QuantityKind::GravityDirection:
-      report.gravity_direction_std_rad = sigma.norm() / std::sqrt(2.0);
+      report.gravity_direction_std_rad = sigma.head<2>().norm() / std::sqrt(2.0);
+      if (sigma.size() == 3) report.gravity_norm_std_m_s2 = sigma[2];
       break;
   }
 }
@@ -268,13 +276,14 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   CalibrationProblem problem(input, options, solution.state);
   problem.used_circles = solution.used_circles;
   problem.scales = solution.scales;
-  problem.build(options.last_stage);
+  problem.build(lastStage(options));
   const ProjectedInformation information =
       withoutNoise(projectInformation(problem, options.correlation_time_s, context));
   context.throwIfStopped();
   const QuantityCovariance covariance = quantityCovariance(information, solution.state, problem.problem());
   UncertaintyEstimate estimate;
   estimate.report = makeReport(input, covariance);
+  estimate.report.given = givenQuantities(input, options);
   const Observability observability = judgeObservability(input, solution.state, covariance, options);
   estimate.report.observability = observability.eigenvalues;
   estimate.report.weakest = observability.weakest;

@@ -5,11 +5,13 @@
 
 namespace evical {
 
-// How far the staged release goes.
+// How far the staged release has gone.
 enum class ReleaseStages { Extrinsics, FurtherImus, Mappings };
 
 struct OptimisationOptions {
-  ReleaseStages last_stage = ReleaseStages::Mappings;
+  bool free_time_offsets = true;
+  bool free_imu_intrinsics = true;
+  bool free_gravity_norm = false;
   double huber_sigma = 2.5;
   double outlier_sigma = 6.0;
   double outlier_window_fraction = 0.5;
@@ -21,6 +23,7 @@ struct OptimisationOptions {
   double gyroscope_bias_sigma_rad_s = 1.0;
   double accelerometer_bias_sigma_m_s2 = 1.0;
   double translation_sigma_m = 0.5;
+  double gravity_norm_sigma_m_s2 = 0.05;
   double segment_drift = 0.05;
   double function_tolerance = 1e-6;
   double stage_tolerance = 1e-4;
@@ -39,9 +42,13 @@ struct OptimisationOptions {
 };
 
 inline constexpr auto kOptimisationFields = std::tuple{
-    Choice{"last_stage", &OptimisationOptions::last_stage,
-           std::array{"extrinsics", "further_imus", "mappings"},
-           "Where the staged release ends: cameras and biases, further IMUs, or scale and misalignment."},
+    Switch{"free_time_offsets", &OptimisationOptions::free_time_offsets,
+           "Estimate time offsets; else each stays at the session's prior value, or 0 without one."},
+    Switch{"free_imu_intrinsics", &OptimisationOptions::free_imu_intrinsics,
+           "Estimate scales and misalignments M_g and M_a; else each stays at the session's prior value, or "
+           "the identity without one. Biases stay free."},
+    Switch{"free_gravity_norm", &OptimisationOptions::free_gravity_norm,
+           "Estimate gravity's norm, too, not its direction only."},
     Field{"huber_sigma", &OptimisationOptions::huber_sigma, 0.5, 100.0, "sigma",
           "Circle residuals beyond this pull with constant force."},
     Field{"outlier_sigma", &OptimisationOptions::outlier_sigma, 2.0, 1000.0, "sigma",
@@ -64,6 +71,8 @@ inline constexpr auto kOptimisationFields = std::tuple{
           "m/s^2", "Weak prior on accelerometer biases around 0."},
     Field{"translation_sigma_m", &OptimisationOptions::translation_sigma_m, 1e-3, 1e3, "m",
           "Weak prior on translations between sensors around 0, for motions that don't tell them."},
+    Field{"gravity_norm_sigma_m_s2", &OptimisationOptions::gravity_norm_sigma_m_s2, 1e-6, 10.0, "m/s^2",
+          "Prior on gravity's norm around initialisation.gravity_m_s2, where it is free."},
     Field{"segment_drift", &OptimisationOptions::segment_drift, 0.001, 0.5, "knots",
           "A time offset may move this far before measurements are assigned to spline segments anew."},
     Field{"function_tolerance", &OptimisationOptions::function_tolerance, 1e-14, 1e-2, "",
@@ -91,5 +100,9 @@ inline constexpr auto kOptimisationFields = std::tuple{
     Field{"needed_time_offset_ms", &OptimisationOptions::needed_time_offset_ms, 1e-4, 1e4, "ms",
           "Time offsets less certain than this make the result doubtful."}};
 static_assert(fieldCount<OptimisationOptions>() == std::tuple_size_v<decltype(kOptimisationFields)>);
+
+inline ReleaseStages lastStage(const OptimisationOptions& options) {
+  return options.free_imu_intrinsics ? ReleaseStages::Mappings : ReleaseStages::FurtherImus;
+}
 
 }  // namespace evical

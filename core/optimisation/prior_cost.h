@@ -1,48 +1,72 @@
 // Costs of what is known beforehand.
 #pragma once
 
+#include "core/geometry/so3.h"
 #include "core/optimisation/inertial_cost.h"
 
 #include <ceres/sized_cost_function.h>
 #include <Eigen/Core>
-
-#include <array>
 
 namespace evical {
 
 // Zero when a block has its prior's mean: r = (block - mean) / sigma, without unit. Block: up to six numbers.
 class PriorCost final : public ceres::CostFunction {
  public:
-  PriorCost(const double* mean, int size, double sigma) : weight_(1.0 / sigma), size_(size) {
-    for (int i = 0; i < size; ++i) mean_[static_cast<std::size_t>(i)] = mean[i];
-    mutable_parameter_block_sizes()->push_back(size);
-    set_num_residuals(size);
+  PriorCost(const Eigen::VectorXd& mean, const Eigen::VectorXd& sigma)
+      : mean_(mean), weight_(sigma.cwiseInverse()) {
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(mean.size()));
+    set_num_residuals(static_cast<int>(mean.size()));
   }
+  PriorCost(const double* mean, int size, double sigma)
+      : PriorCost(Eigen::Map<const Eigen::VectorXd>(mean, size), Eigen::VectorXd::Constant(size, sigma)) {}
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    for (int i = 0; i < size_; ++i) {
-      residuals[i] = weight_ * (parameters[0][i] - mean_[static_cast<std::size_t>(i)]);
-      if (!jacobians || !jacobians[0]) continue;
-      for (int j = 0; j < size_; ++j) jacobians[0][i * size_ + j] = i == j ? weight_ : 0.0;
-    }
+    const Eigen::Index size = mean_.size();
+    const Eigen::Map<const Eigen::VectorXd> block(parameters[0], size);
+    Eigen::Map<Eigen::VectorXd>(residuals, size) = weight_.cwiseProduct(block - mean_);
+    if (jacobians && jacobians[0])
+      Eigen::Map<Eigen::MatrixXd>(jacobians[0], size, size) = weight_.asDiagonal();
     return true;
   }
 
  private:
-  double weight_;
-  int size_;
-  std::array<double, 6> mean_ = {};
+  Eigen::VectorXd mean_, weight_;
 };
 
-// Zero when an IMU's mapping leaves an axis as it is: r = (M axis - axis) / sigma, without unit. Block:
-// mapping.
+// Zero when a rotation is its prior's: r = Log(R R_prior^-1) / sigma, about the axes of the frame into which
+// R turns; without unit. Block: quaternion as in so3_manifold.h.
+class RotationPriorCost final : public ceres::SizedCostFunction<3, 4> {
+ public:
+  RotationPriorCost(const Eigen::Quaterniond& mean, const Eigen::Vector3d& sigma_rad)
+      : mean_(mean), weight_(sigma_rad.cwiseInverse()) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    const Eigen::Map<const Eigen::Quaterniond> rotation(parameters[0]);
+    const Eigen::Vector3d turn = quaternionLog(rotation * mean_.conjugate());
+    Eigen::Map<Eigen::Vector3d>{residuals} = weight_.cwiseProduct(turn);
+    if (!jacobians || !jacobians[0]) return true;
+    Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> by_rotation(jacobians[0]);
+    by_rotation.leftCols<3>() =
+        weight_.asDiagonal() * so3RightJacobianInverse(turn) * mean_.toRotationMatrix();
+    by_rotation.col(3).setZero();
+    return true;
+  }
+
+ private:
+  Eigen::Quaterniond mean_;
+  Eigen::Vector3d weight_;
+};
+
+// Zero when an IMU's mapping does to an axis what its prior M_prior does: r = (M - M_prior) axis / sigma,
+// without unit. Block: mapping.
 class HeldAxisCost final : public ceres::SizedCostFunction<3, 6> {
  public:
-  HeldAxisCost(const Eigen::Vector3d& axis, double sigma) : axis_(axis), weight_(1.0 / sigma) {}
+  HeldAxisCost(const Eigen::Vector3d& axis, const Eigen::Matrix3d& mapping, double sigma)
+      : axis_(axis), mapped_axis_(mapping * axis), weight_(1.0 / sigma) {}
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     Eigen::Map<Eigen::Vector3d> error(residuals);
-    error = weight_ * (mappingFromParameters(parameters[0]) * axis_ - axis_);
+    error = weight_ * (mappingFromParameters(parameters[0]) * axis_ - mapped_axis_);
     if (jacobians && jacobians[0]) {
       Eigen::Map<Eigen::Matrix<double, 3, 6, Eigen::RowMajor>> by_mapping(jacobians[0]);
       by_mapping = weight_ * derivativeByMapping(axis_);
@@ -51,24 +75,42 @@ class HeldAxisCost final : public ceres::SizedCostFunction<3, 6> {
   }
 
  private:
-  Eigen::Vector3d axis_;
+  Eigen::Vector3d axis_, mapped_axis_;
   double weight_;
 };
 
-// Zero when a translation has nothing along an axis: r = axis . translation / sigma, without unit. Block:
-// translation [m].
+// Zero when a translation has along an axis what its prior has: r = axis . (translation - prior) / sigma,
+// without unit. Block: translation [m].
 class HeldTranslationCost final : public ceres::SizedCostFunction<1, 3> {
  public:
-  HeldTranslationCost(const Eigen::Vector3d& axis, double sigma_m) : weighted_axis_(axis / sigma_m) {}
+  HeldTranslationCost(const Eigen::Vector3d& axis, const Eigen::Vector3d& prior_m, double sigma_m)
+      : weighted_axis_(axis / sigma_m), prior_m_(prior_m) {}
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    residuals[0] = weighted_axis_.dot(Eigen::Map<const Eigen::Vector3d>(parameters[0]));
+    residuals[0] = weighted_axis_.dot(Eigen::Map<const Eigen::Vector3d>(parameters[0]) - prior_m_);
     if (jacobians && jacobians[0]) Eigen::Map<Eigen::Vector3d>{jacobians[0]} = weighted_axis_;
     return true;
   }
 
  private:
-  Eigen::Vector3d weighted_axis_;
+  Eigen::Vector3d weighted_axis_, prior_m_;
+};
+
+// Zero when a vector has its prior's norm: r = (|block| - norm) / sigma, without unit. Block: gravity
+// [m/s^2].
+class NormCost final : public ceres::SizedCostFunction<1, 3> {
+ public:
+  NormCost(double norm, double sigma) : norm_(norm), weight_(1.0 / sigma) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    const Eigen::Map<const Eigen::Vector3d> vector(parameters[0]);
+    residuals[0] = weight_ * (vector.norm() - norm_);
+    if (jacobians && jacobians[0]) Eigen::Map<Eigen::Vector3d>{jacobians[0]} = weight_ * vector.normalized();
+    return true;
+  }
+
+ private:
+  double norm_, weight_;
 };
 
 }  // namespace evical

@@ -5,6 +5,7 @@
 #include "core/initialisation/initialise.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/covariance.h"
+#include "core/optimisation/prior_check.h"
 #include "core/pipeline/board_size_check.h"
 #include "core/pipeline/cross_validation.h"
 #include "core/pipeline/intrinsics_calibration.h"
@@ -74,16 +75,29 @@ void checkDuration(const Session& session, const RecordingPass& pass) {
     check(imu.name, evical::secondsSince(imu.samples.front().time_ns, imu.samples.back().time_ns));
 }
 
+// Initialisation, too, must not look for what is not free.
+void holdTimeOffsets(CalibrationInput& input) {
+  for (std::size_t k = 0; k < input.cameras.size(); ++k)
+    if (!input.imus.empty() || k != input.reference_camera)
+      input.cameras[k].prior.time_offset = heldTimeOffset(input.cameras[k].prior);
+  for (std::size_t k = 0; k < input.imus.size(); ++k)
+    if (k != input.reference_imu) input.imus[k].prior.time_offset = heldTimeOffset(input.imus[k].prior);
+}
+
 CalibrationInput inputFrom(const Session& session, const RecordingPass& pass) {
   CalibrationInput input;
   input.start_ns = pass.start_ns;
   input.board = session.board;
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
-    input.cameras.push_back({session.cameras[k].name, session.cameras[k].intrinsics, pass.cameras[k]});
+    const SessionCamera& camera = session.cameras[k];
+    input.cameras.push_back({camera.name, camera.intrinsics, pass.cameras[k], camera.prior});
   }
   input.imus = pass.imus;
+  for (std::size_t k = 0; k < session.imus.size(); ++k) input.imus[k].prior = session.imus[k].prior;
   input.reference_imu = session.referenceImu();
   input.reference_camera = session.referenceCamera();
+  input.gravity_norm_m_s2 = session.options.initialisation.gravity_m_s2;
+  if (!session.options.optimisation.free_time_offsets) holdTimeOffsets(input);
   return input;
 }
 
@@ -216,6 +230,7 @@ void estimate(const Session& session, const RunContext& context, CalibrationObse
       optimiseBatch(input, initial.state, session.options.optimisation, context, observer);
   UncertaintyEstimate uncertainty =
       estimateUncertainty(input, solution, session.options.optimisation, context);
+  const PriorCheck priors = checkPriors(input, solution, session.options.optimisation, context);
   context.progress.stageProgress(1.0);
   result.timing.optimise_s = secondsSince(begin);
 
@@ -226,6 +241,7 @@ void estimate(const Session& session, const RunContext& context, CalibrationObse
     result.reason =
         "the optimisation did not converge: raise optimisation.max_iterations, or look at the residuals";
   }
+  addDoubt(priors.doubt, result);
   addDoubt(initial.doubt, result);
   result.state = std::move(solution.state);
   result.uncertainty = std::move(uncertainty.report);
@@ -238,6 +254,7 @@ void estimate(const Session& session, const RunContext& context, CalibrationObse
   for (const InitialisationStep& step : initial.steps) result.notes.push_back(step.name + ": " + step.result);
   result.notes.insert(result.notes.end(), initial.warnings.begin(), initial.warnings.end());
   result.notes.insert(result.notes.end(), solution.notes.begin(), solution.notes.end());
+  result.notes.insert(result.notes.end(), priors.notes.begin(), priors.notes.end());
   result.timing.read_s = run.pass.read_s;
   result.timing.detect_s = run.pass.detect_s;
   result.timing.total_s = std::max(run.pass.read_s, run.pass.detect_s) + result.timing.initialise_s +

@@ -76,6 +76,7 @@ Matrix together(const Matrix& a, const Matrix& b) {
 
 UncertaintyReport ofDifference(const UncertaintyReport& a, const UncertaintyReport& b) {
   UncertaintyReport sum = a;
+  sum.gravity_norm_std_m_s2 = std::hypot(a.gravity_norm_std_m_s2, b.gravity_norm_std_m_s2);
   for (std::size_t i = 0; i < a.cameras.size(); ++i) {
     CameraUncertainty& camera = sum.cameras[i];
     camera.rotation_std_rad = together(a.cameras[i].rotation_std_rad, b.cameras[i].rotation_std_rad);
@@ -146,11 +147,12 @@ std::array<CalibrationInput, 2> splitIntoHalves(const CalibrationInput& input, c
     half.board = input.board;
     half.reference_imu = input.reference_imu;
     half.reference_camera = input.reference_camera;
+    half.gravity_norm_m_s2 = input.gravity_norm_m_s2;
   }
   for (std::size_t i = 0; i < input.cameras.size(); ++i) {
     const CameraData& camera = input.cameras[i];
     for (CalibrationInput& half : halves) {
-      half.cameras.push_back({camera.name, camera.intrinsics, {}});
+      half.cameras.push_back({camera.name, camera.intrinsics, {}, camera.prior});
       half.cameras.back().observations.camera = camera.name;
     }
     splitViews(camera.observations, state.cameras[i].time_offset_s, blocks,
@@ -158,7 +160,7 @@ std::array<CalibrationInput, 2> splitIntoHalves(const CalibrationInput& input, c
   }
   for (std::size_t i = 0; i < input.imus.size(); ++i) {
     const ImuData& imu = input.imus[i];
-    for (CalibrationInput& half : halves) half.imus.push_back({imu.name, imu.noise, {}});
+    for (CalibrationInput& half : halves) half.imus.push_back({imu.name, imu.noise, {}, imu.prior});
     const double margin_knots = i == input.reference_imu ? 0.0 : kMargin_knots;
     for (const ImuSample& sample : imu.samples) {
       const double time_s = secondsSince(input.start_ns, sample.time_ns) + state.imus[i].time_offset_s;

@@ -97,8 +97,8 @@ void readPriors(const YamlNode& prior, ImportedSession& imported) {
     setOption(options, "initialisation.gravity_m_s2", gravity->text());
   const auto spatial = prior.find("SpatTempPrioriPath");
   if (spatial && !spatial->isNull() && !spatial->text().empty())
-    imported.notes.push_back(fmt::format(
-        "{} is left out: sessions take no priors of poses and time offsets yet", spatial->text()));
+    imported.notes.push_back(
+        fmt::format("{} is left out: poses and time offsets that are known go under prior", spatial->text()));
   imported.notes.emplace_back("eKalibr's settings of its front end are left out: Evical has its own");
 }
 

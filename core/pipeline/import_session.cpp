@@ -77,16 +77,16 @@ std::vector<NamedIntrinsics> intrinsicsOf(const std::vector<ImportSource>& sourc
   return cameras;
 }
 
-// What a camchain knows beyond the lens is no prior of a session yet.
+// What a camchain knows beyond the lens is an estimate, and becomes no prior unasked.
 void notePriors(const std::vector<ImportSource>& sources, std::vector<std::string>& notes) {
   for (const ImportSource& source : sources)
     if (source.kind == ImportKind::KalibrCamchain)
       for (const std::string& key : source.root.keys())
         if (source.root[key].has("T_cam_imu") || source.root[key].has("T_cn_cnm1"))
-          notes.push_back(
-              fmt::format("{}: its pose and time offset are left out: sessions take no priors of them, they "
-                          "are estimated anew",
-                          key));
+          notes.push_back(fmt::format(
+              "{}: its pose and time offset are left out and estimated anew; where they are to be "
+              "held, give them under prior",
+              key));
 }
 
 ImportedFiles importIntrinsics(const std::vector<ImportSource>& sources,

@@ -3,6 +3,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/nearest_name.h"
 #include "core/data/intrinsics_yaml.h"
+#include "core/pipeline/session_priors.h"
 
 #include <fmt/format.h>
 
@@ -53,6 +54,19 @@ void checkBoard(const Session& session, const std::string& place) {
           "be calibrated with it",
           symmetric ? "a symmetric board" : "an asymmetric board with an even number of rows"),
       "Use an asymmetric board with an odd number of rows, or leave out the IMUs to calibrate intrinsics");
+}
+
+// The rest is checked where it is read; but the reference may change later.
+void checkPriors(const Session& session, const std::string& place) {
+  const auto check = [&](const char* kind, const std::string& name, const SensorPrior& prior) {
+    if (name != session.reference || (!prior.rotation && !prior.translation && !prior.time_offset)) return;
+    throw badInput(fmt::format("{}: prior.{}.{}", place, kind, name),
+                   "gives a transform or time offset of the reference itself",
+                   "Remove it, or take another reference: they are relative to it");
+  };
+  for (const SessionImu& imu : session.imus) check("imus", imu.name, imu.prior);
+  if (!session.imus.empty()) return;
+  for (const SessionCamera& camera : session.cameras) check("cameras", camera.name, camera.prior);
 }
 
 std::string boardYaml(const CircleBoard& board) {
@@ -129,6 +143,7 @@ void validate(const Session& session, const std::string& place) {
   checkDifferent(session, place);
   checkReference(session, place);
   checkBoard(session, place);
+  checkPriors(session, place);
 }
 
 std::string sessionYaml(const Session& session, const std::filesystem::path& folder) {
@@ -141,6 +156,7 @@ std::string sessionYaml(const Session& session, const std::filesystem::path& fol
   if (!session.imus.empty()) text += "imus:\n";
   for (const SessionImu& imu : session.imus) text += imuYaml(imu, folder);
   text += fmt::format("reference: {}\n", yamlText(session.reference));
+  if (const std::string priors = sensorPriorsYaml(session); !priors.empty()) text += "prior:\n" + priors;
   if (!session.exports.empty()) text += fmt::format("export: [{}]\n", joined(session.exports));
   const std::vector<OptionRow> rows = differingOptions(session.options);
   text += rows.empty() ? "options: {}\n" : "options:\n";

@@ -1,6 +1,7 @@
 // A session: which recording, which board, which sensors, and what is known of them. One YAML file.
 #pragma once
 
+#include "core/data/calibration_priors.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/imu_units.h"
 #include "core/pipeline/calibration_options.h"
@@ -19,6 +20,7 @@ struct SessionCamera {
   std::optional<CameraIntrinsics> intrinsics;  // absent: calibrated first, from the same events
   std::filesystem::path recording = {};        // its own; empty: the session's
   double clock_offset_s = 0.0;                 // known: to be added to the stream's times
+  SensorPrior prior = {};                      // the file's prior.cameras.<name>
 };
 
 struct SessionImu {
@@ -31,6 +33,7 @@ struct SessionImu {
   // Handed on to other programs; 0: not known.
   double gyroscope_random_walk = 0.0;      // rad/s^2/sqrt(Hz)
   double accelerometer_random_walk = 0.0;  // m/s^3/sqrt(Hz)
+  ImuPrior prior = {};                     // the file's prior.imus.<name>
 };
 
 struct Session {
@@ -41,8 +44,8 @@ struct Session {
   std::vector<SessionCamera> cameras;
   std::vector<SessionImu> imus;
   std::string reference;  // an IMU; a camera where there is no IMU
-  CalibrationOptions
-      options;  // the file's prior.time_offset_search_s is initialisation.time_offset_search_s here
+  // The file's prior.time_offset_search_s, gravity_norm_m_s2 and gravity_norm_std_m_s2 are options here.
+  CalibrationOptions options;
   std::vector<std::string> exports;  // targets besides kalibr, as `evical export --to` names them
 
   std::size_t referenceImu() const;     // index into imus; 0 where there is none

@@ -1,6 +1,7 @@
 #include "core/base/nearest_name.h"
 #include "core/data/intrinsics_yaml.h"
 #include "core/pipeline/session.h"
+#include "core/pipeline/session_priors.h"
 #include "core/report/export/export_target.h"
 
 #include <fmt/format.h>
@@ -148,6 +149,19 @@ void readSensors(const YamlNode& root, const std::filesystem::path& folder, Sess
     session.reference = session.imus.empty() ? session.cameras[0].name : session.imus[0].name;
 }
 
+void readPriors(const YamlNode& map, Session& session) {
+  map.allowOnly({"time_offset_search_s", "gravity_norm_m_s2", "gravity_norm_std_m_s2", "cameras", "imus"});
+  if (const auto node = map.find("time_offset_search_s"))
+    setFromSession(*node, session.options, "initialisation.time_offset_search_s");
+  if (const auto node = map.find("gravity_norm_m_s2"))
+    setFromSession(*node, session.options, "initialisation.gravity_m_s2");
+  if (const auto node = map.find("gravity_norm_std_m_s2")) {
+    setFromSession(*node, session.options, "optimisation.gravity_norm_sigma_m_s2");
+    session.options.optimisation.free_gravity_norm = true;
+  }
+  readSensorPriors(map, session);
+}
+
 }  // namespace
 
 Session readSession(const std::filesystem::path& file) {
@@ -165,11 +179,7 @@ Session readSession(const std::filesystem::path& file) {
   if (const auto node = root.find("time_range_s")) session.time_range_s = readTimeRange(*node);
   session.board = readBoard(root["board"]);
   readSensors(root, folder, session);
-  if (const auto node = root.find("prior"); node && !node->isNull()) {
-    node->allowOnly({"time_offset_search_s"});
-    if (const auto search = node->find("time_offset_search_s"))
-      setFromSession(*search, session.options, "initialisation.time_offset_search_s");
-  }
+  if (const auto node = root.find("prior"); node && !node->isNull()) readPriors(*node, session);
   if (const auto node = root.find("options")) readOptions(*node, session.options);
   if (const auto node = root.find("export"); node && !node->isNull())
     for (const YamlNode& item : node->items())

@@ -171,6 +171,8 @@ void readUncertainty(const YamlNode& root, UncertaintyReport& uncertainty) {
   double gravity_std_deg = 0.0;
   get(root, "gravity_direction_std_deg", gravity_std_deg);
   uncertainty.gravity_direction_std_rad = kRadPerDeg * gravity_std_deg;
+  get(root, "gravity_norm_std_m_s2", uncertainty.gravity_norm_std_m_s2);
+  get(root, "given", uncertainty.given);
   if (const auto map = root.find("observability")) {
     get(*map, "weakest", uncertainty.weakest);
     if (const auto values = map->find("values"))

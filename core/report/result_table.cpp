@@ -41,6 +41,11 @@ std::string poseRows(const RigidTransform& pose, const Eigen::Vector3d& rotation
   return text + vectorRows("translation", pose.translation_m, translation_std_m, "mm", 1e3, 4);
 }
 
+std::string givenRow(const NamedResult& named, const std::string& sensor) {
+  const std::string given = givenOf(named.result.uncertainty, sensor);
+  return given.empty() ? "" : fmt::format("    {:<26}{}\n", "given, not estimated", given);
+}
+
 std::string cameraTable(const NamedResult& named, std::size_t i) {
   const CameraState& state = named.result.state.cameras[i];
   const CameraUncertainty sigma = at(named.result.uncertainty.cameras, i);
@@ -52,6 +57,7 @@ std::string cameraTable(const NamedResult& named, std::size_t i) {
   text += tableRow("edge lead", state.edge_lead_px, sigma.edge_lead_std_px, "px at 100 px/s", 4);
   text += tableRow("edge lead growth", state.edge_lead_growth_px, sigma.edge_lead_growth_std_px,
                    "px for each factor e of speed", 4);
+  text += givenRow(named, named.names.cameras[i]);
   if (const auto sigmas = at(named.names.intrinsics_std, i))
     text += intrinsicsRows(at(named.names.intrinsics, i).value_or(CameraIntrinsics{}), *sigmas);
   if (i >= named.result.cameras.size()) return text;
@@ -84,6 +90,7 @@ std::string imuTable(const NamedResult& named, std::size_t i) {
     text +=
         tableRow(fmt::format("accelerometer scale {}", "xyz"[axis]), state.accelerometer_mapping(axis, axis),
                  sigma.accelerometer_mapping_std(axis, axis), "", 6);
+  text += givenRow(named, named.names.imus[i]);
   if (i >= named.result.imus.size()) return text;
   const ImuFit& fit = named.result.imus[i];
   return text + fmt::format("    {:<26}{:>12.5f} rad/s and {:.4f} m/s^2 RMS\n", "residuals",
@@ -101,6 +108,17 @@ std::string verdict(const CalibrationResult& result) {
 
 }  // namespace
 
+std::string givenOf(const UncertaintyReport& uncertainty, const std::string& sensor) {
+  std::string words;
+  for (const std::string& quantity : uncertainty.given) {
+    if (!quantity.starts_with(sensor + ".")) continue;
+    std::string name = quantity.substr(sensor.size() + 1);
+    std::replace(name.begin(), name.end(), '_', ' ');
+    words += (words.empty() ? "" : ", ") + name;
+  }
+  return words;
+}
+
 Eigen::Vector3d rollPitchYaw_deg(const Eigen::Quaterniond& rotation) {
   const Eigen::Matrix3d r = rotation.toRotationMatrix();
   return kDegPerRad * Eigen::Vector3d(std::atan2(r(2, 1), r(2, 2)),
@@ -117,6 +135,8 @@ std::string resultTable(const NamedResult& named) {
     text +=
         fmt::format("Gravity in the board's frame: {:.4f}, {:.4f}, {:.4f} m/s^2 (direction +- {:.4f} deg)\n",
                     g.x(), g.y(), g.z(), kDegPerRad * named.result.uncertainty.gravity_direction_std_rad);
+    if (const double sigma = named.result.uncertainty.gravity_norm_std_m_s2; sigma > 0.0)
+      text += tableRow("gravity's norm", g.norm(), sigma, "m/s^2");
   }
   const Timing& t = named.result.timing;
   text += fmt::format(

@@ -9,6 +9,9 @@ namespace evical {
 
 std::string resultTable(const NamedResult& named);
 
+// What of a sensor was given and not estimated, in words: "rotation, time offset"; empty if nothing was.
+std::string givenOf(const UncertaintyReport& uncertainty, const std::string& sensor);
+
 // Roll, pitch, yaw in degrees about x, y, z (R = Rz Ry Rx), for people only.
 Eigen::Vector3d rollPitchYaw_deg(const Eigen::Quaterniond& rotation);
 

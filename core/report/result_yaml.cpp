@@ -133,6 +133,12 @@ std::string uncertaintyYaml(const UncertaintyReport& uncertainty) {
       fmt::format("gravity_direction_std_deg: {}\nobservability:\n  weakest: {}\n  values: {}\n",
                   rounded(kDegPerRad * uncertainty.gravity_direction_std_rad), yamlText(uncertainty.weakest),
                   list(uncertainty.observability, rounded));
+  if (uncertainty.gravity_norm_std_m_s2 > 0.0)
+    text += fmt::format("gravity_norm_std_m_s2: {}\n", rounded(uncertainty.gravity_norm_std_m_s2));
+  if (!uncertainty.given.empty()) {
+    text += "given:\n";
+    for (const std::string& quantity : uncertainty.given) text += fmt::format("  - {}\n", yamlText(quantity));
+  }
   if (uncertainty.names.empty()) return text;
   text += "uncertainty:\n  names:\n";
   for (const std::string& name : uncertainty.names) text += fmt::format("    - {}\n", yamlText(name));

@@ -124,6 +124,11 @@ TruthComparison compareWithTruth(const NamedResult& result, const NamedResult& t
     compareImu(name, result.result.state.imus.at(i), truth.result.state.imus.at(j), at(sigma.imus, i),
                name == result.names.reference, errors);
   }
+  if (sigma.gravity_norm_std_m_s2 > 0.0)
+    errors.add(
+        "gravity.norm", "m/s^2",
+        result.result.state.gravity_in_world_m_s2.norm() - truth.result.state.gravity_in_world_m_s2.norm(),
+        sigma.gravity_norm_std_m_s2);
   const Eigen::Vector3d estimate = result.result.state.gravity_in_world_m_s2.normalized();
   const Eigen::Vector3d actual = truth.result.state.gravity_in_world_m_s2.normalized();
   comparison.gravity_direction_deg =

@@ -46,16 +46,25 @@ void addPose(Rows& rows, const RigidTransform& pose, const Eigen::Vector3d& rota
   addVector(rows, "translation", pose.translation_m, translation_std_m, 1e3, "mm");
 }
 
+std::string largestSigma(const Eigen::Vector3d& sigma, const char* unit) {
+  const double largest = sigma.maxCoeff();
+  return largest > 0.0 ? fmt::format("\u00b1 {} {}", significant(largest, 2), unit) : "given";
+}
+
+void addGiven(const UncertaintyReport& uncertainty, const std::string& sensor, ReportPage& page) {
+  const std::string given = givenOf(uncertainty, sensor);
+  if (!given.empty())
+    page.text(paragraph("small", "Given by the session, not estimated: " + escaped(given) + "."));
+}
+
 std::string cameraTiles(const ReportData& data, const Measures& measures, std::size_t i) {
   const CameraUncertainty sigma = at(data.named.result.uncertainty.cameras, i);
   const CameraState& state = data.named.result.state.cameras[i];
   const std::string name = escaped(cameraName(data, i));
   std::string text;
-  text += tile(name + ": rotation",
-               "\u00b1 " + significant(kDegPerRad * sigma.rotation_std_rad.maxCoeff(), 2) + " deg",
+  text += tile(name + ": rotation", largestSigma(kDegPerRad * sigma.rotation_std_rad, "deg"),
                fmt::format("largest sigma; needed {}", plain(data.needs.rotation_deg)));
-  text += tile(name + ": translation",
-               "\u00b1 " + significant(1e3 * sigma.translation_std_m.maxCoeff(), 2) + " mm",
+  text += tile(name + ": translation", largestSigma(1e3 * sigma.translation_std_m, "mm"),
                fmt::format("largest sigma; needed {}", plain(data.needs.translation_mm)));
   text += tile(name + ": time offset",
                withSigma(1e3 * state.time_offset_s, 1e3 * sigma.time_offset_std_s) + " ms",
@@ -86,6 +95,7 @@ void writeCameraNumbers(const ReportData& data, std::size_t i, ReportPage& page)
                    {"edge lead", withSigma(state.edge_lead_px, sigma.edge_lead_std_px), "px at 100 px/s"},
                    {"edge lead growth", withSigma(state.edge_lead_growth_px, sigma.edge_lead_growth_std_px),
                     "px for each factor e of speed"}}));
+  addGiven(data.named.result.uncertainty, cameraName(data, i), page);
   const auto intrinsics = at(data.named.names.intrinsics, i);
   if (!intrinsics) return;
   std::string distortion;
@@ -129,6 +139,7 @@ void writeImuNumbers(const ReportData& data, std::size_t i, ReportPage& page) {
   add("gyroscope", state.gyroscope_mapping, sigma.gyroscope_mapping_std);
   add("accelerometer", state.accelerometer_mapping, sigma.accelerometer_mapping_std);
   page.text(table({"", "x", "y", "z", "unit"}, rows));
+  addGiven(data.named.result.uncertainty, imuName(data, i), page);
 }
 
 struct PlacedSensor {
@@ -208,10 +219,14 @@ void writeNumbers(const ReportData& data, ReportPage& page) {
   for (std::size_t i = 0; i < result.state.cameras.size(); ++i) writeCameraNumbers(data, i, page);
   for (std::size_t i = 0; i < result.state.imus.size(); ++i) writeImuNumbers(data, i, page);
   const Eigen::Vector3d& g = result.state.gravity_in_world_m_s2;
+  const double norm_std_m_s2 = result.uncertainty.gravity_norm_std_m_s2;
   page.text(paragraph(
-      "", fmt::format("Gravity in the board's frame: {}, {}, {} m/s\u00b2 (direction \u00b1 {} deg).",
-                      number(g.x(), 4), number(g.y(), 4), number(g.z(), 4),
-                      significant(kDegPerRad * result.uncertainty.gravity_direction_std_rad, 2))));
+      "",
+      fmt::format("Gravity in the board's frame: {}, {}, {} m/s\u00b2 (direction \u00b1 {} deg{}).",
+                  number(g.x(), 4), number(g.y(), 4), number(g.z(), 4),
+                  significant(kDegPerRad * result.uncertainty.gravity_direction_std_rad, 2),
+                  norm_std_m_s2 > 0.0 ? fmt::format(", norm {} m/s\u00b2", withSigma(g.norm(), norm_std_m_s2))
+                                      : "")));
   page.endSection();
 }
 

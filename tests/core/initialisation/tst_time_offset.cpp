@@ -11,12 +11,12 @@ using namespace evical::test;
 
 namespace {
 
-std::vector<TimeOffsetPeak> peaksOf(const SimulationOptions& simulation,
-                                    const InitialisationOptions& options) {
+std::vector<TimeOffsetPeak> peaksOf(const SimulationOptions& simulation, const InitialisationOptions& options,
+                                    const SensorPrior& prior = {}) {
   const SimulatedInput simulated = simulateInput(simulation);
   const auto found = estimateCameraPoses(simulated.input.cameras[0], simulated.input.board, {});
   return correlateTimeOffset(
-      found.poses, GyroRotation(simulated.input.imus[0].samples, simulated.input.start_ns), options);
+      found.poses, GyroRotation(simulated.input.imus[0].samples, simulated.input.start_ns), options, prior);
 }
 
 }  // namespace
@@ -54,6 +54,32 @@ class TestTimeOffset : public QObject {
              qPrintable(QString::number(peaks[0].time_offset_s)));
     QVERIFY(peaks[0].correlation > 0.95);
     if (peaks.size() > 1) QVERIFY(peaks[1].correlation < peaks[0].correlation - options.clear_peak_lead);
+  }
+
+  void correlate_aroundAPrior_reachesFurther() {
+    SimulationOptions simulation;
+    simulation.duration_s = 15.0;
+    simulation.time_offset_s = 3.0;
+    SensorPrior prior;
+    prior.time_offset = KnownNumber{2.6, 0.2};
+    const auto peaks = peaksOf(simulation, {}, prior);
+    QVERIFY(!peaks.empty());
+    QVERIFY(std::abs(peaks[0].time_offset_s - 3.0) < 0.01);
+    QVERIFY(peaks[0].correlation > 0.95);
+  }
+
+  void correlate_atAGivenOffset_looksNowhereElse() {
+    SimulationOptions simulation;
+    simulation.duration_s = 10.0;
+    simulation.time_offset_s = 0.3;
+    SensorPrior prior;
+    for (const double given_s : {0.3, 0.05}) {
+      prior.time_offset = KnownNumber{given_s};
+      const auto peaks = peaksOf(simulation, {}, prior);
+      QCOMPARE(peaks.size(), std::size_t{1});
+      QCOMPARE(peaks[0].time_offset_s, given_s);
+      QVERIFY(given_s == 0.3 ? peaks[0].correlation > 0.95 : peaks[0].correlation < 0.9);
+    }
   }
 
   void correlate_onPeriodicMotion_showsRival() {

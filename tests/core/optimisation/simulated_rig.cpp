@@ -215,7 +215,8 @@ SimulatedRig simulateRig(const RigOptions& options) {
   camera.time_offset_s = random.uniform(-0.01, 0.01);
   camera.edge_lead_px = random.uniform(-0.3, 0.3);
   rig.truth.cameras = {camera};
-  rig.truth.gravity_in_world_m_s2 = quaternionExp(random.uniform3(0.15)) * Vector3d(0.0, 9.81, 0.0);
+  rig.truth.gravity_in_world_m_s2 =
+      quaternionExp(random.uniform3(0.15)) * Vector3d(0.0, options.gravity_m_s2, 0.0);
   const TrueMotion motion =
       makeMotion(options.motion, rig.input.board, inverse(camera.imu_from_camera), random);
   for (int i = 0; i < (options.second_imu ? 2 : 1); ++i) {

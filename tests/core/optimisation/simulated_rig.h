@@ -22,6 +22,7 @@ struct RigOptions {
   double outlier_share = 0.0;
   Motion motion = Motion::Rich;
   bool second_imu = false;
+  double gravity_m_s2 = 9.81;
   unsigned seed = 1;
 };
 

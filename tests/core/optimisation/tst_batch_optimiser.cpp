@@ -171,10 +171,10 @@ class TestBatchOptimiser : public QObject {
     QVERIFY(translationError_mm(solution.state.cameras[0], rig.truth.cameras[0]) < 2.5);
   }
 
-  void lastStage_holdsMappingsBack() {
+  void imuIntrinsics_heldBack_stayAsTheyAre() {
     const test::SimulatedRig rig = test::simulateRig(noisy());
     OptimisationOptions options;
-    options.last_stage = ReleaseStages::Extrinsics;
+    options.free_imu_intrinsics = false;
     const BatchSolution solution =
         optimiseBatch(rig.input, test::disturbed(rig.truth, 1), options, RunContext{});
     QVERIFY(solution.state.imus[0].gyroscope_mapping == Eigen::Matrix3d::Identity());

@@ -276,9 +276,38 @@ class TestResiduals : public QObject {
     QVERIFY(test::worstJacobianError(cost, {{1.5, 2.5, 2.0}}) < 1e-9);
   }
 
+  void priors_countTheirSigmasAxisByAxis() {
+    const PriorCost cost(Vector3d(1.0, 2.0, 3.0), Vector3d(0.1, 0.2, 0.5));
+    QVERIFY((test::residualsAt(cost, {{1.1, 2.2, 3.5}}) - Vector3d::Ones()).norm() < 1e-12);
+    QVERIFY(test::worstJacobianError(cost, {{1.5, 2.5, 2.0}}) < 1e-9);
+    const NormCost norm(9.79, 0.05);
+    QVERIFY(std::abs(test::residualsAt(norm, {{0.0, 5.904, 7.872}})[0] - 1.0) < 1e-9);
+    QVERIFY(test::worstJacobianError(norm, {{0.3, 5.9, 7.8}}) < 1e-7);
+  }
+
+  // About the axes of the frame into which the rotation turns, as sigmas are reported.
+  void rotationPrior_countsTurnsAboutTheReferencesAxes() {
+    const Eigen::Quaterniond mean = quaternionExp({1.2, -1.1, 0.9});
+    const RotationPriorCost cost(mean, Vector3d(0.01, 0.02, 0.04));
+    QVERIFY(test::residualsAt(cost, {States::numbers(mean)}).norm() < 1e-12);
+    const Eigen::Quaterniond turned = quaternionExp({0.01, 0.02, 0.04}) * mean;
+    QVERIFY((test::residualsAt(cost, {States::numbers(turned)}) - Vector3d::Ones()).norm() < 1e-9);
+    const Eigen::Quaterniond far = quaternionExp({0.4, -0.6, 0.3}) * mean;
+    QVERIFY(test::worstJacobianError(cost, {States::numbers(far)}) < 1e-6);
+  }
+
+  void heldAxes_stayAtTheirPriors() {
+    Eigen::Matrix3d mapping = Eigen::Matrix3d::Identity();
+    mapping(1, 2) = 0.02;
+    const HeldAxisCost held(Vector3d::UnitZ(), mapping, 0.1);
+    QCOMPARE(test::residualsAt(held, {{1.3, 0.2, 0.0, 1.1, 0.02, 1.0}}).norm(), 0.0);
+    const HeldTranslationCost translation(Vector3d::UnitZ(), Vector3d(9.0, 9.0, 0.05), 0.01);
+    QVERIFY(std::abs(test::residualsAt(translation, {{0.3, 0.8, 0.06}})[0] - 1.0) < 1e-12);
+  }
+
   void heldMapping_isZeroWhereItsAxisStays() {
     const Vector3d axis(0.0, 0.6, 0.8);
-    const HeldAxisCost cost(axis, 0.1);
+    const HeldAxisCost cost(axis, Eigen::Matrix3d::Identity(), 0.1);
     QCOMPARE(test::residualsAt(cost, {{1.0, 0.0, 0.0, 1.0, 0.0, 1.0}}).norm(), 0.0);
     QVERIFY(test::residualsAt(cost, {{2.0, 0.8, -0.6, 1.0, 0.0, 1.0}}).norm() < 1e-12);
     QVERIFY(std::abs(test::residualsAt(cost, {{1.0, 0.0, 0.0, 1.0, 0.0, 1.1}}).norm() - 0.8) < 1e-12);
@@ -286,7 +315,7 @@ class TestResiduals : public QObject {
   }
 
   void heldTranslation_isZeroAcrossItsAxis() {
-    const HeldTranslationCost cost(Vector3d(0.0, 0.6, 0.8), 0.01);
+    const HeldTranslationCost cost(Vector3d(0.0, 0.6, 0.8), Vector3d::Zero(), 0.01);
     QVERIFY(test::residualsAt(cost, {{0.3, 0.8, -0.6}}).norm() < 1e-12);
     QVERIFY(std::abs(test::residualsAt(cost, {{0.3, 0.006, 0.008}})[0] - 1.0) < 1e-12);
     QVERIFY(test::worstJacobianError(cost, {{0.3, 0.1, 0.2}}) < 1e-9);

@@ -1,0 +1,55 @@
+// What is known of a rig beforehand, sensor by sensor. A value with standard deviations is weighed against
+// what the recording says; one without them is given: held as it is, and not estimated. In the keys, units
+// and frames of a result: rotations and translations to the reference, sigmas of rotations about its axes.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <optional>
+
+namespace evical {
+
+template <class Value, class Sigma = Value>
+struct KnownValue {
+  Value value;
+  std::optional<Sigma> sigma = {};  // one for each number, all above 0; absent: given
+
+  bool isGiven() const { return !sigma.has_value(); }
+  bool operator==(const KnownValue&) const = default;
+};
+using KnownNumber = KnownValue<double>;
+using KnownVector = KnownValue<Eigen::Vector3d>;
+using KnownMapping = KnownValue<Eigen::Matrix3d>;  // upper triangular
+
+struct KnownRotation {
+  Eigen::Quaterniond value = Eigen::Quaterniond::Identity();
+  std::optional<Eigen::Vector3d> sigma = {};  // rad
+
+  bool isGiven() const { return !sigma.has_value(); }
+  bool operator==(const KnownRotation& other) const {
+    return value.coeffs() == other.value.coeffs() && sigma == other.sigma;
+  }
+};
+
+struct SensorPrior {
+  std::optional<KnownRotation> rotation;   // reference_from_sensor
+  std::optional<KnownVector> translation;  // of that, m
+  std::optional<KnownNumber> time_offset;  // reference_time = sensor_time + it, s
+
+  bool operator==(const SensorPrior&) const = default;
+};
+
+struct ImuPrior : SensorPrior {
+  std::optional<KnownVector> gyroscope_bias, accelerometer_bias;  // rad/s, m/s^2
+  std::optional<KnownMapping> gyroscope_mapping, accelerometer_mapping;
+
+  bool operator==(const ImuPrior&) const = default;
+};
+
+// As SensorPrior::time_offset where time offsets are not estimated: held where they are known to be, or at 0.
+inline KnownNumber heldTimeOffset(const SensorPrior& prior) {
+  return {prior.time_offset ? prior.time_offset->value : 0.0};
+}
+
+}  // namespace evical

@@ -1,0 +1,25 @@
+// Whether the recording agrees with what was said to be known: each given value and each prior is held
+// against what the recording alone says, solved once more from the solution with everything free and without
+// priors.
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/data/calibration_setup.h"
+#include "core/optimisation/batch_optimiser.h"
+#include "core/optimisation/optimisation_options.h"
+
+#include <string>
+#include <vector>
+
+namespace evical {
+
+struct PriorCheck {
+  std::vector<std::string> notes;  // what is given, and each value that the recording contradicts
+  std::string doubt;               // where that matters against the needs; empty if nowhere
+};
+
+// Without priors and with all groups free there is nothing to check, and it costs nothing.
+PriorCheck checkPriors(const CalibrationInput& input, const BatchSolution& solution,
+                       const OptimisationOptions& options, const RunContext& context);
+
+}  // namespace evical
