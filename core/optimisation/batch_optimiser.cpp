@@ -116,6 +116,10 @@ std::vector<ReleaseStages> Batch::stages() const {
   }
   if (!input_.imus.empty() && options_.last_stage >= ReleaseStages::Mappings)
     all.push_back(ReleaseStages::Mappings);
+  const bool free = std::any_of(input_.cameras.begin(), input_.cameras.end(), [&](const CameraData& camera) {
+    return intrinsicsAreFree(camera, options_);
+  });
+  if (free && all.back() != options_.last_stage) all.push_back(options_.last_stage);  // that releases them
   return all;
 }
 

@@ -8,8 +8,15 @@ namespace evical {
 // How far the staged release goes.
 enum class ReleaseStages { Extrinsics, FurtherImus, Mappings };
 
+// Automatic: free where they were found from the same recording first, fixed where the session gives them.
+enum class CameraIntrinsicsChoice { Automatic, Fixed, Free };
+
 struct OptimisationOptions {
   ReleaseStages last_stage = ReleaseStages::Mappings;
+  CameraIntrinsicsChoice camera_intrinsics = CameraIntrinsicsChoice::Automatic;
+  double camera_focal_length_sigma = 0.02;
+  double camera_principal_point_sigma_px = 10.0;
+  double camera_distortion_sigma = 0.5;
   double huber_sigma = 2.5;
   double outlier_sigma = 6.0;
   double outlier_window_fraction = 0.5;
@@ -42,6 +49,16 @@ inline constexpr auto kOptimisationFields = std::tuple{
     Choice{"last_stage", &OptimisationOptions::last_stage,
            std::array{"extrinsics", "further_imus", "mappings"},
            "Where the staged release ends: cameras and biases, further IMUs, or scale and misalignment."},
+    Choice{"camera_intrinsics", &OptimisationOptions::camera_intrinsics,
+           std::array{"automatic", "fixed", "free"},
+           "Whether cameras' intrinsics are solved for with everything else, in the last stage; automatic: "
+           "where they were found from the same recording first."},
+    Field{"camera_focal_length_sigma", &OptimisationOptions::camera_focal_length_sigma, 1e-6, 10.0, "",
+          "Weak prior on free focal lengths around those given or found first, relative."},
+    Field{"camera_principal_point_sigma_px", &OptimisationOptions::camera_principal_point_sigma_px, 1e-4, 1e4,
+          "px", "The same of free principal points."},
+    Field{"camera_distortion_sigma", &OptimisationOptions::camera_distortion_sigma, 1e-6, 100.0, "",
+          "The same of each free distortion coefficient."},
     Field{"huber_sigma", &OptimisationOptions::huber_sigma, 0.5, 100.0, "sigma",
           "Circle residuals beyond this pull with constant force."},
     Field{"outlier_sigma", &OptimisationOptions::outlier_sigma, 2.0, 1000.0, "sigma",

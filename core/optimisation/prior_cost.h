@@ -34,6 +34,27 @@ class PriorCost final : public ceres::CostFunction {
   std::array<double, 6> mean_ = {};
 };
 
+// Zero when a camera's intrinsics have their priors' means: r = (block - mean) / sigma, without unit. Block:
+// fx fy cx cy d0..d4.
+class IntrinsicsPriorCost final : public ceres::SizedCostFunction<9, 9> {
+ public:
+  IntrinsicsPriorCost(const std::array<double, 9>& mean, const std::array<double, 9>& sigma)
+      : mean_(mean.data()), weight_(Vector(sigma.data()).cwiseInverse()) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    Eigen::Map<Vector>{residuals} = weight_.cwiseProduct(Eigen::Map<const Vector>(parameters[0]) - mean_);
+    if (jacobians && jacobians[0]) {
+      Eigen::Map<Eigen::Matrix<double, 9, 9, Eigen::RowMajor>> by_block(jacobians[0]);
+      by_block = weight_.asDiagonal();
+    }
+    return true;
+  }
+
+ private:
+  using Vector = Eigen::Matrix<double, 9, 1>;
+  Vector mean_, weight_;
+};
+
 // Zero when an IMU's mapping leaves an axis as it is: r = (M axis - axis) / sigma, without unit. Block:
 // mapping.
 class HeldAxisCost final : public ceres::SizedCostFunction<3, 6> {
