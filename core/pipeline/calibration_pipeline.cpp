@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/time.h"
+#include "core/geometry/projection_difference.h"
 #include "core/initialisation/initialise.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/covariance.h"
@@ -74,14 +75,16 @@ void checkDuration(const Session& session, const RecordingPass& pass) {
     check(imu.name, evical::secondsSince(imu.samples.front().time_ns, imu.samples.back().time_ns));
 }
 
-CalibrationInput inputFrom(const Session& session, const RecordingPass& pass) {
+CalibrationInput inputFrom(const Session& session, const CalibrationRun& run) {
   CalibrationInput input;
-  input.start_ns = pass.start_ns;
+  input.start_ns = run.pass.start_ns;
   input.board = session.board;
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
-    input.cameras.push_back({session.cameras[k].name, session.cameras[k].intrinsics, pass.cameras[k]});
+    const bool found_first = k < run.intrinsics.size() && run.intrinsics[k].has_value();
+    input.cameras.push_back(
+        {session.cameras[k].name, session.cameras[k].intrinsics, run.pass.cameras[k], found_first});
   }
-  input.imus = pass.imus;
+  input.imus = run.pass.imus;
   input.reference_imu = session.referenceImu();
   input.reference_camera = session.referenceCamera();
   return input;
@@ -152,15 +155,21 @@ void calibrateMissingIntrinsics(Session& known, const RunContext& context, Calib
 void tellIntrinsics(const Session& session, CalibrationRun& run) {
   std::vector<std::string> notes;
   std::string doubt;
-  for (std::size_t k = 0; k < run.intrinsics.size(); ++k) {
-    if (!run.intrinsics[k]) continue;
-    const IntrinsicsResult& found = *run.intrinsics[k];
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
     const std::string name = "intrinsics of " + session.cameras[k].name;
-    notes.push_back(fmt::format("{}: calibrated from {} views in {:.1f} s, projection known to {:.3f} px",
-                                name, found.views_used, found.elapsed_s, found.image.rms_px));
-    for (const std::string& advice : found.advice) notes.push_back(fmt::format("{}: {}", name, advice));
-    if (found.status != CalibrationStatus::Ok && doubt.empty())
-      doubt = fmt::format("{}: {}", name, found.reason);
+    if (k < run.intrinsics.size() && run.intrinsics[k]) {
+      const IntrinsicsResult& found = *run.intrinsics[k];
+      notes.push_back(fmt::format("{}: calibrated from {} views in {:.1f} s, projection known to {:.3f} px",
+                                  name, found.views_used, found.elapsed_s, found.image.rms_px));
+      for (const std::string& advice : found.advice) notes.push_back(fmt::format("{}: {}", name, advice));
+      if (found.status != CalibrationStatus::Ok && doubt.empty())
+        doubt = fmt::format("{}: {}", name, found.reason);
+    }
+    const CameraState& solved = run.result.state.cameras[k];
+    if (!solved.intrinsics) continue;
+    notes.push_back(
+        fmt::format("{}: solved with everything else, which moved the projection by {:.3f} px RMS", name,
+                    projectionDifference(*session.cameras[k].intrinsics, *solved.intrinsics).rms_px));
   }
   run.result.notes.insert(run.result.notes.begin(), notes.begin(), notes.end());
   addDoubt(doubt, run.result);
@@ -196,7 +205,7 @@ void estimate(const Session& session, const RunContext& context, CalibrationObse
     checkBoardSeen(camera, session.board);
     checkBoardSize(camera, session.board, session.options.front_end.extent);
   }
-  const CalibrationInput input = inputFrom(session, run.pass);
+  const CalibrationInput input = inputFrom(session, run);
   if (observer != nullptr) observer->detectionDone(input);
 
   context.progress.stageStarted("initialise");
@@ -269,11 +278,21 @@ CalibrationRun calibrate(const Session& session, const RunContext& context, cons
 }
 
 CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context,
-                         CalibrationObserver* observer) {
+                         CalibrationObserver* observer,
+                         std::vector<std::optional<IntrinsicsResult>> intrinsics) {
   CalibrationRun run;
   run.pass = std::move(pass);
+  run.intrinsics = std::move(intrinsics);
   estimate(session, context, observer, run);
+  tellIntrinsics(session, run);
   return run;
+}
+
+std::optional<CameraIntrinsics> foundIntrinsics(const CalibrationRun& run, std::size_t camera) {
+  if (camera < run.result.state.cameras.size() && run.result.state.cameras[camera].intrinsics)
+    return run.result.state.cameras[camera].intrinsics;
+  if (camera < run.intrinsics.size() && run.intrinsics[camera]) return run.intrinsics[camera]->intrinsics;
+  return std::nullopt;
 }
 
 }  // namespace evical
