@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 
 packaging/install-dependencies.sh
 cmake --preset release -DEVICAL_TESTS=ON
-cmake --build --preset release --target evical_accuracy evical_intrinsics_accuracy evical_formats evical_speed
+cmake --build --preset release --target evical_accuracy evical_intrinsics_accuracy evical_unknown_intrinsics evical_formats evical_speed
 accuracy=build/release/tests/benchmarks/evical_accuracy
 scenarios=config/scenarios
 
@@ -20,6 +20,7 @@ scenarios=config/scenarios
 intrinsics=build/release/tests/benchmarks/evical_intrinsics_accuracy
 "$intrinsics" "$scenarios"/intrinsics_{davis346,fisheye,symmetric}.yaml
 "$intrinsics" --seeds 10 --duration 15 "$scenarios/intrinsics_davis346.yaml"
+build/release/tests/benchmarks/evical_unknown_intrinsics --seeds 6 --duration 10 "$scenarios/intrinsics_davis346.yaml"
 
 speed=build/release/tests/benchmarks/evical_speed
 "$speed" "$scenarios/davis346.yaml"

@@ -36,8 +36,9 @@ struct ImuData {
 struct CameraData {
   std::string name;
   std::optional<CameraIntrinsics> intrinsics;
-  BoardObservations observations;
+  BoardObservations observations;  // in the ideal pixels of these intrinsics
   SensorPrior prior = {};
+  bool intrinsics_found_first = false;  // from the same recording, not given
 };
 
 // The estimator's input. Times of observations are seconds since start_ns; IMU samples keep their

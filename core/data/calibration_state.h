@@ -2,12 +2,14 @@
 // reference camera where there is no IMU.
 #pragma once
 
+#include "core/geometry/camera_model.h"
 #include "core/geometry/rigid_transform.h"
 #include "core/geometry/so3_spline.h"
 #include "core/geometry/vector_spline.h"
 
 #include <Eigen/Core>
 
+#include <optional>
 #include <vector>
 
 namespace evical {
@@ -16,7 +18,8 @@ struct CameraState {
   RigidTransform imu_from_camera;
   double time_offset_s = 0.0;  // imu_time = camera_time + time_offset_s
   double edge_lead_px = 0.0;   // measured centres lie this far ahead along their image motion, at 100 px/s
-  double edge_lead_growth_px = 0.0;  // for each factor e of speed
+  double edge_lead_growth_px = 0.0;                 // for each factor e of speed
+  std::optional<CameraIntrinsics> intrinsics = {};  // where they are solved for; else CameraData's hold
 };
 
 struct ImuState {

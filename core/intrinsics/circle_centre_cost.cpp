@@ -22,16 +22,6 @@ const CameraIntrinsics& normalisedCamera() {
 
 }  // namespace
 
-CameraIntrinsics intrinsicsFrom(const double* p, CameraModel model, Resolution resolution_px) {
-  return {model, resolution_px, {p[0], p[1]}, {p[2], p[3]}, {p[4], p[5], p[6], p[7], p[8]}};
-}
-
-void writeIntrinsics(const CameraIntrinsics& camera, double* p) {
-  std::copy_n(camera.focal_length_px.data(), 2, p);
-  std::copy_n(camera.principal_point_px.data(), 2, p + 2);
-  std::copy(camera.distortion.begin(), camera.distortion.end(), p + 4);
-}
-
 RigidTransform poseFrom(const double* p) {
   return {Eigen::Map<const Eigen::Quaterniond>(p), Eigen::Map<const Eigen::Vector3d>(p + 4)};
 }

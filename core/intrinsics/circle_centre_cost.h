@@ -7,7 +7,7 @@
 // for the translation.
 #pragma once
 
-#include "core/geometry/camera_model.h"
+#include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/rigid_transform.h"
 #include "core/intrinsics/sensor_views.h"
 
@@ -44,8 +44,6 @@ class PoseManifold final : public ceres::Manifold {
   bool MinusJacobian(const double* x, double* jacobian) const override;
 };
 
-CameraIntrinsics intrinsicsFrom(const double* parameters, CameraModel model, Resolution resolution_px);
-void writeIntrinsics(const CameraIntrinsics& camera, double* parameters);
 RigidTransform poseFrom(const double* parameters);
 void writePose(const RigidTransform& pose, double* parameters);
 

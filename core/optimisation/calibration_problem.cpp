@@ -37,9 +37,14 @@ CalibrationProblem::CalibrationProblem(const CalibrationInput& input, const Opti
     parametersFromMapping(state_.imus[i].gyroscope_mapping, gyroscope_mappings_[i].data());
     parametersFromMapping(state_.imus[i].accelerometer_mapping, accelerometer_mappings_[i].data());
   }
-  for (const CameraData& camera : input.cameras) {
+  for (std::size_t i = 0; i < input.cameras.size(); ++i) {
+    const CameraData& camera = input.cameras[i];
+    const bool free = intrinsicsAreFree(camera, options);
+    intrinsics_.push_back(
+        free ? std::make_unique<IntrinsicsBlock>(*camera.intrinsics, state_.cameras[i], options) : nullptr);
+    if (!free) state_.cameras[i].intrinsics.reset();
     circle_models_.push_back(std::make_unique<CircleModel>(
-        CircleModel{*camera.intrinsics, input.board.radius_m, options.huber_sigma}));
+        CircleModel{*camera.intrinsics, input.board.radius_m, options.huber_sigma, free}));
     // Between cameras no wrong amplitude of one counts for much: where the board is, either sees anew.
     const double pixel_error_px = input.imus.empty() ? 0.0 : options.pixel_error_px;
     pixel_errors_.emplace_back(camera, input.board, pixel_error_px);
@@ -88,6 +93,8 @@ const CalibrationState& CalibrationProblem::state() const {
     state_.imus[i].gyroscope_mapping = mappingFromParameters(gyroscope_mappings_[i].data());
     state_.imus[i].accelerometer_mapping = mappingFromParameters(accelerometer_mappings_[i].data());
   }
+  for (std::size_t i = 0; i < state_.cameras.size(); ++i)
+    if (intrinsics_[i]) state_.cameras[i].intrinsics = intrinsics_[i]->intrinsics();
   return state_;
 }
 
@@ -163,6 +170,7 @@ void CalibrationProblem::addCircles(std::size_t camera) {
     blocks.insert(blocks.end(),
                   {state.imu_from_camera.rotation.coeffs().data(), state.imu_from_camera.translation_m.data(),
                    &state.time_offset_s, &state.edge_lead_px, &state.edge_lead_growth_px});
+    if (intrinsics_[camera]) blocks.push_back(intrinsics_[camera]->data());
     blocks_.push_back({problem_->AddResidualBlock(cost, nullptr, blocks), SensorKind::Circles, camera,
                        measurements[begin].time_s + state.time_offset_s, cost});
   }
@@ -245,6 +253,8 @@ void CalibrationProblem::addPriors(ReleaseStages stage) {
     add(&camera.edge_lead_px, 1, kZero.data(), options_.edge_lead_sigma_px);
     add(&camera.edge_lead_growth_px, 1, kZero.data(), options_.edge_lead_growth_sigma_px);
   }
+  for (const auto& block : intrinsics_)
+    if (block && problem_->HasParameterBlock(block->data())) blocks_.push_back({block->addPrior(*problem_)});
   const auto addUnless = [&](bool known, double* block, int size, const double* mean, double sigma) {
     if (!known) add(block, size, mean, sigma);
   };
@@ -332,6 +342,8 @@ void CalibrationProblem::setManifolds(ReleaseStages stage) {
   for (CameraState& camera : state_.cameras) set(camera.imu_from_camera.rotation.coeffs().data(), &so3_);
   for (ImuState& imu : state_.imus) set(imu.reference_from_imu.rotation.coeffs().data(), &so3_);
   if (!options_.free_gravity_norm) set(state_.gravity_in_world_m_s2.data(), &sphere_);
+  for (const auto& block : intrinsics_)
+    if (block) block->hold(*problem_, stage == lastStage(options_));
   if (stage == ReleaseStages::Mappings) return;
   for (std::size_t i = 0; i < state_.imus.size(); ++i) {
     for (double* mapping : {gyroscope_mappings_[i].data(), accelerometer_mappings_[i].data()}) {
@@ -349,6 +361,7 @@ std::vector<Quantity> CalibrationProblem::quantities() {
     all.push_back({QuantityKind::CameraTimeOffset, i, &camera.time_offset_s});
     all.push_back({QuantityKind::EdgeLead, i, &camera.edge_lead_px});
     all.push_back({QuantityKind::EdgeLeadGrowth, i, &camera.edge_lead_growth_px});
+    if (intrinsics_[i]) all.push_back({QuantityKind::CameraIntrinsics, i, intrinsics_[i]->data()});
   }
   for (std::size_t i = 0; i < state_.imus.size(); ++i) {
     ImuState& imu = state_.imus[i];

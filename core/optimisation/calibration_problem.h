@@ -40,6 +40,7 @@ enum class QuantityKind {
   CameraTimeOffset,
   EdgeLead,
   EdgeLeadGrowth,
+  CameraIntrinsics,
   ImuRotation,
   ImuTranslation,
   ImuTimeOffset,
@@ -115,7 +116,8 @@ class CalibrationProblem {
   So3Manifold so3_;
   ceres::SphereManifold<3> sphere_;
   std::vector<std::unique_ptr<CircleModel>> circle_models_;
-  std::vector<PixelErrors> pixel_errors_;  // by camera
+  std::vector<PixelErrors> pixel_errors_;                     // by camera
+  std::vector<std::unique_ptr<IntrinsicsBlock>> intrinsics_;  // by camera; none where they are fixed
   std::vector<BlockInfo> blocks_;
   std::unique_ptr<ceres::Problem> problem_;  // after what it points to
 };

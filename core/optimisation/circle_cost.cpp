@@ -25,12 +25,13 @@ enum Block {
   kTimeOffset,
   kEdgeLead,
   kEdgeLeadGrowth,
+  kIntrinsics,  // where they are free
   kBlocks
 };
-constexpr std::array<int, kBlocks> kBlockSizes = {4, 4, 4, 4, 3, 3, 3, 3, 4, 3, 1, 1, 1};
+constexpr std::array<int, kBlocks> kBlockSizes = {4, 4, 4, 4, 3, 3, 3, 3, 4, 3, 1, 1, 1, 9};
 
-void writeZero(double** jacobians, Eigen::Index row) {
-  for (int block = 0; block < kBlocks; ++block) {
+void writeZero(double** jacobians, int blocks, Eigen::Index row) {
+  for (int block = 0; block < blocks; ++block) {
     const int size = kBlockSizes[static_cast<std::size_t>(block)];
     if (jacobians[block]) std::fill_n(jacobians[block] + row * size, 2 * size, 0.0);
   }
@@ -115,8 +116,12 @@ Eigen::Matrix2d shortenByHuber(double threshold, Vector2d& residual) {
 CircleCost::CircleCost(const CircleModel& model, const SegmentTimes& segment,
                        std::vector<CircleMeasurement> circles)
     : model_(model), segment_(segment), circles_(std::move(circles)) {
-  mutable_parameter_block_sizes()->assign(kBlockSizes.begin(), kBlockSizes.end());
+  mutable_parameter_block_sizes()->assign(
+      kBlockSizes.begin(), kBlockSizes.begin() + (model.free_intrinsics ? kBlocks : kIntrinsics));
   set_num_residuals(2 * static_cast<int>(circles_.size()));
+  if (!model.free_intrinsics) return;
+  for (const CircleMeasurement& circle : circles_)
+    seen_.push_back(seenCentre(model.camera, circle.centre_px));
 }
 
 bool CircleCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
@@ -124,6 +129,11 @@ bool CircleCost::Evaluate(double const* const* parameters, double* residuals, do
   const So3Segment rotation_segment = rotationSegment(segment_, parameters + kRotation, jacobians != nullptr);
   const RotationOrder order =
       jacobians && jacobians[kTimeOffset] ? RotationOrder::Velocity : RotationOrder::Rotation;
+  const CameraIntrinsics camera = model_.free_intrinsics
+                                      ? intrinsicsFrom(parameters[kIntrinsics], model_.camera.model, {})
+                                      : model_.camera;
+  const bool by_camera = model_.free_intrinsics && jacobians && jacobians[kIntrinsics];
+  IntrinsicsJacobian by_intrinsics;
   PlacedCircle placed;
   for (std::size_t i = 0; i < circles_.size(); ++i) {
     const CircleMeasurement& circle = circles_[i];
@@ -135,10 +145,13 @@ bool CircleCost::Evaluate(double const* const* parameters, double* residuals, do
     placed.position = positionAt(segment_, parameters + kPosition, time_s);
     placed.place(mount, circle.on_board_m);
     const auto projected =
-        projectCircle(model_.camera, placed.in_camera, placed.normal_in_camera, model_.radius_m);
+        model_.free_intrinsics
+            ? projectCircleBeside(seen_[i], camera, placed.in_camera, placed.normal_in_camera,
+                                  model_.radius_m, by_camera ? &by_intrinsics : nullptr)
+            : projectCircle(camera, placed.in_camera, placed.normal_in_camera, model_.radius_m);
     if (!projected) {
       residual.setConstant(kBehindCamera_sigma);
-      if (jacobians) writeZero(jacobians, row);
+      if (jacobians) writeZero(jacobians, static_cast<int>(parameter_block_sizes().size()), row);
       continue;
     }
     const Vector2d lead =
@@ -147,7 +160,9 @@ bool CircleCost::Evaluate(double const* const* parameters, double* residuals, do
     const Eigen::Matrix2d by_error = shortenByHuber(model_.huber_sigma, error);
     residual = error;
     if (!jacobians) continue;
-    writeJacobians(mount, placed, *projected, by_error * circle.whitening_px, circle.lead, row, jacobians);
+    const Eigen::Matrix2d by_px = by_error * circle.whitening_px;
+    writeJacobians(mount, placed, *projected, by_px, circle.lead, row, jacobians);
+    if (by_camera) jacobianRows<2, 9>(jacobians, kIntrinsics, row) = by_px * by_intrinsics;
   }
   return true;
 }

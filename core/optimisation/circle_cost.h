@@ -7,16 +7,19 @@
 // spline segment: they share parameter blocks, and a block per circle would leave Ceres with bookkeeping
 // only.
 //
+// Where intrinsics are free, the prediction is that of free_intrinsics.h.
+//
 // Blocks: 4 rotation control points (x y z w), 4 position control points [m], imu_from_camera rotation (x y z
-// w) and translation [m], time offset [s], edge lead [px] and its growth [px]. Without unit. Quaternion
-// blocks as in so3_manifold.h.
+// w) and translation [m], time offset [s], edge lead [px] and its growth [px]; where intrinsics are free also
+// those, fx fy cx cy d0..d4. Without unit. Quaternion blocks as in so3_manifold.h.
 //
 // v is the measured image velocity: of the right direction to a percent or so where it matters, and it keeps
 // the lead linear.
 #pragma once
 
-#include "core/geometry/camera_model.h"
+#include "core/geometry/intrinsics_numbers.h"
 #include "core/optimisation/edge_lead.h"
+#include "core/optimisation/free_intrinsics.h"
 #include "core/optimisation/spline_segment.h"
 
 #include <ceres/cost_function.h>
@@ -37,9 +40,10 @@ struct CircleMeasurement {
 
 // What circles of one camera share.
 struct CircleModel {
-  CameraIntrinsics camera;
+  CameraIntrinsics camera;  // that was seen with
   double radius_m = 0.0;
   double huber_sigma = 0.0;
+  bool free_intrinsics = false;
 };
 
 class CircleCost final : public ceres::CostFunction {
@@ -54,6 +58,7 @@ class CircleCost final : public ceres::CostFunction {
   const CircleModel& model_;
   SegmentTimes segment_;
   std::vector<CircleMeasurement> circles_;
+  std::vector<SeenCentre> seen_;  // of the circles, where intrinsics are free
 };
 
 // Shortens r so that |result|^2 is Huber's loss of |r|^2 (r^2 up to the threshold d, 2 d |r| - d^2 beyond)

@@ -1,6 +1,7 @@
 #include "core/optimisation/circle_errors.h"
 
 #include "core/optimisation/edge_lead.h"
+#include "core/optimisation/free_intrinsics.h"
 
 #include "core/geometry/circle_conic.h"
 #include "core/geometry/trajectory.h"
@@ -10,11 +11,27 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace evical {
 namespace {
 
 constexpr double kMedianOfChi2With2 = 1.3862943611198906;  // 2 ln 2
+
+// In the ideal pixels of the observations.
+std::optional<Eigen::Vector2d> predictedCentre(const CameraData& camera, const CameraState& state,
+                                               const CircleObservation& circle,
+                                               const RigidTransform& camera_from_world,
+                                               const CircleBoard& board) {
+  const Eigen::Vector2d on_board_m = board.centre_m(circle.circle);
+  if (!state.intrinsics)
+    return projectedCircleCentre(*camera.intrinsics, camera_from_world, on_board_m, board.radius_m);
+  const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();
+  const Eigen::Vector3d in_camera_m = rotation.leftCols<2>() * on_board_m + camera_from_world.translation_m;
+  const auto projected = projectCircleBeside(seenCentre(*camera.intrinsics, circle.centre_px),
+                                             *state.intrinsics, in_camera_m, rotation.col(2), board.radius_m);
+  return projected ? std::optional(projected->centre_px) : std::nullopt;
+}
 
 }  // namespace
 
@@ -35,10 +52,10 @@ std::vector<CircleError> circleErrors(const CalibrationInput& input, const Calib
         if (!rotation.contains(time_s) || !position.contains(time_s)) continue;
         CircleError error{c, v, i, Eigen::Vector2d::Zero(), std::numeric_limits<double>::infinity()};
         const auto centre_px =
-            projectedCircleCentre(*camera.intrinsics,
-                                  cameraFromWorld(rotation, position, camera_state.imu_from_camera,
-                                                  camera_state.time_offset_s, circle.time_s),
-                                  input.board.centre_m(circle.circle), input.board.radius_m);
+            predictedCentre(camera, camera_state, circle,
+                            cameraFromWorld(rotation, position, camera_state.imu_from_camera,
+                                            camera_state.time_offset_s, circle.time_s),
+                            input.board);
         if (centre_px) {
           const EdgeLeadEffect lead = edgeLeadEffect(*camera.intrinsics, circle, options.rest_speed_px_s);
           error.error_px = *centre_px + camera_state.edge_lead_px * lead.of_lead +

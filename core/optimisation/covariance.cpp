@@ -1,5 +1,6 @@
 #include "core/optimisation/covariance.h"
 
+#include "core/geometry/intrinsics_numbers.h"
 #include "core/optimisation/credible_information.h"
 #include "core/optimisation/known_values.h"
 #include "core/optimisation/observability.h"
@@ -35,6 +36,8 @@ double unitOf(QuantityKind kind) {
       return 1e-3;
   }
 }
+
+constexpr double kPixelUnit = 0.1;  // of focal lengths and principal point, the first four intrinsics
 
 // Below this information in the units above a direction counts as open, and its sigma is 1e4 units.
 constexpr double kLeastInformation = 1e-8;
@@ -103,6 +106,7 @@ QuantityCovariance quantityCovariance(const ProjectedInformation& information, c
     const Quantity& quantity = information.quantities[i];
     const Eigen::Index first = information.first_column[i], count = information.first_column[i + 1] - first;
     units.segment(first, count).setConstant(unitOf(quantity.kind));
+    if (quantity.kind == QuantityKind::CameraIntrinsics) units.segment<4>(first).setConstant(kPixelUnit);
     report_from_tangent.block(first, first, count, count) =
         reportFromTangent(quantity, count, state, problem);
   }
@@ -127,6 +131,8 @@ QuantityCovariance quantityCovariance(const ProjectedInformation& information, c
 }
 
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+constexpr std::array<const char*, 4> kPixelIntrinsics = {"focal_length.x", "focal_length.y",
+                                                         "principal_point.x", "principal_point.y"};
 constexpr std::array<const char*, 6> kMappingEntries = {"xx", "xy", "xz", "yy", "yz", "zz"};
 
 struct Naming {
@@ -156,6 +162,8 @@ Naming namingOf(QuantityKind kind) {
       return {"gyroscope_mapping", "1"};
     case QuantityKind::AccelerometerMapping:
       return {"accelerometer_mapping", "1"};
+    case QuantityKind::CameraIntrinsics:
+      return {"distortion", "1"};
     case QuantityKind::GravityDirection:
       break;
   }
@@ -165,11 +173,22 @@ Naming namingOf(QuantityKind kind) {
 bool isCameraQuantity(QuantityKind kind) {
   return kind == QuantityKind::CameraRotation || kind == QuantityKind::CameraTranslation ||
          kind == QuantityKind::CameraTimeOffset || kind == QuantityKind::EdgeLead ||
-         kind == QuantityKind::EdgeLeadGrowth;
+         kind == QuantityKind::EdgeLeadGrowth || kind == QuantityKind::CameraIntrinsics;
+}
+
+// Those that are held stand at the end.
+void appendIntrinsicsNames(const CameraData& camera, Eigen::Index size, std::vector<std::string>& names) {
+  for (const char* name : kPixelIntrinsics) names.push_back(fmt::format("{}.{} [px]", camera.name, name));
+  const auto coefficients = distortionNames(camera.intrinsics->model);
+  const Naming naming = namingOf(QuantityKind::CameraIntrinsics);
+  for (std::size_t k = 0; k + kPixelIntrinsics.size() < static_cast<std::size_t>(size); ++k)
+    names.push_back(fmt::format("{}.{}.{} [{}]", camera.name, naming.name, coefficients[k], naming.unit));
 }
 
 void appendNames(const Quantity& quantity, Eigen::Index size, const CalibrationInput& input,
                  std::vector<std::string>& names) {
+  if (quantity.kind == QuantityKind::CameraIntrinsics)
+    return appendIntrinsicsNames(input.cameras[quantity.sensor], size, names);
   const Naming naming = namingOf(quantity.kind);
   const std::string sensor = quantity.kind == QuantityKind::GravityDirection ? "gravity"
                              : isCameraQuantity(quantity.kind) ? input.cameras[quantity.sensor].name
@@ -213,6 +232,9 @@ void storeStandardDeviations(const Quantity& quantity, const Eigen::VectorXd& si
       break;
     case QuantityKind::EdgeLeadGrowth:
       report.cameras[quantity.sensor].edge_lead_growth_std_px = sigma[0];
+      break;
+    case QuantityKind::CameraIntrinsics:
+      std::copy(sigma.begin(), sigma.end(), report.cameras[quantity.sensor].intrinsics_std.emplace().begin());
       break;
     case QuantityKind::ImuRotation:
       report.imus[quantity.sensor].rotation_std_rad = sigma;

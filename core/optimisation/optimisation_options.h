@@ -8,10 +8,17 @@ namespace evical {
 // How far the staged release has gone.
 enum class ReleaseStages { Extrinsics, FurtherImus, Mappings };
 
+// Automatic: free where they were found from the same recording first, fixed where the session gives them.
+enum class CameraIntrinsicsChoice { Automatic, Fixed, Free };
+
 struct OptimisationOptions {
   bool free_time_offsets = true;
   bool free_imu_intrinsics = true;
   bool free_gravity_norm = false;
+  CameraIntrinsicsChoice camera_intrinsics = CameraIntrinsicsChoice::Automatic;
+  double camera_focal_length_sigma = 0.02;
+  double camera_principal_point_sigma_px = 10.0;
+  double camera_distortion_sigma = 0.5;
   double huber_sigma = 2.5;
   double outlier_sigma = 6.0;
   double outlier_window_fraction = 0.5;
@@ -49,6 +56,16 @@ inline constexpr auto kOptimisationFields = std::tuple{
            "the identity without one. Biases stay free."},
     Switch{"free_gravity_norm", &OptimisationOptions::free_gravity_norm,
            "Estimate gravity's norm, too, not its direction only."},
+    Choice{"camera_intrinsics", &OptimisationOptions::camera_intrinsics,
+           std::array{"automatic", "fixed", "free"},
+           "Whether cameras' intrinsics are solved for with everything else, in the last stage; automatic: "
+           "where they were found from the same recording first."},
+    Field{"camera_focal_length_sigma", &OptimisationOptions::camera_focal_length_sigma, 1e-6, 10.0, "",
+          "Weak prior on free focal lengths around those given or found first, relative."},
+    Field{"camera_principal_point_sigma_px", &OptimisationOptions::camera_principal_point_sigma_px, 1e-4, 1e4,
+          "px", "The same of free principal points."},
+    Field{"camera_distortion_sigma", &OptimisationOptions::camera_distortion_sigma, 1e-6, 100.0, "",
+          "The same of each free distortion coefficient."},
     Field{"huber_sigma", &OptimisationOptions::huber_sigma, 0.5, 100.0, "sigma",
           "Circle residuals beyond this pull with constant force."},
     Field{"outlier_sigma", &OptimisationOptions::outlier_sigma, 2.0, 1000.0, "sigma",

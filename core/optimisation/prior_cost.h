@@ -9,7 +9,7 @@
 
 namespace evical {
 
-// Zero when a block has its prior's mean: r = (block - mean) / sigma, without unit. Block: up to six numbers.
+// Zero when a block has its prior's mean: r = (block - mean) / sigma, without unit. Block: numbers.
 class PriorCost final : public ceres::CostFunction {
  public:
   PriorCost(const Eigen::VectorXd& mean, const Eigen::VectorXd& sigma)

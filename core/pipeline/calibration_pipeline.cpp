@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/time.h"
+#include "core/geometry/projection_difference.h"
 #include "core/initialisation/initialise.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/covariance.h"
@@ -84,15 +85,17 @@ void holdTimeOffsets(CalibrationInput& input) {
     if (k != input.reference_imu) input.imus[k].prior.time_offset = heldTimeOffset(input.imus[k].prior);
 }
 
-CalibrationInput inputFrom(const Session& session, const RecordingPass& pass) {
+CalibrationInput inputFrom(const Session& session, const CalibrationRun& run) {
   CalibrationInput input;
-  input.start_ns = pass.start_ns;
+  input.start_ns = run.pass.start_ns;
   input.board = session.board;
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
     const SessionCamera& camera = session.cameras[k];
-    input.cameras.push_back({camera.name, camera.intrinsics, pass.cameras[k], camera.prior});
+    const bool found_first = k < run.intrinsics.size() && run.intrinsics[k].has_value();
+    input.cameras.push_back(
+        {camera.name, camera.intrinsics, run.pass.cameras[k], camera.prior, found_first});
   }
-  input.imus = pass.imus;
+  input.imus = run.pass.imus;
   for (std::size_t k = 0; k < session.imus.size(); ++k) input.imus[k].prior = session.imus[k].prior;
   input.reference_imu = session.referenceImu();
   input.reference_camera = session.referenceCamera();
@@ -166,15 +169,21 @@ void calibrateMissingIntrinsics(Session& known, const RunContext& context, Calib
 void tellIntrinsics(const Session& session, CalibrationRun& run) {
   std::vector<std::string> notes;
   std::string doubt;
-  for (std::size_t k = 0; k < run.intrinsics.size(); ++k) {
-    if (!run.intrinsics[k]) continue;
-    const IntrinsicsResult& found = *run.intrinsics[k];
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
     const std::string name = "intrinsics of " + session.cameras[k].name;
-    notes.push_back(fmt::format("{}: calibrated from {} views in {:.1f} s, projection known to {:.3f} px",
-                                name, found.views_used, found.elapsed_s, found.image.rms_px));
-    for (const std::string& advice : found.advice) notes.push_back(fmt::format("{}: {}", name, advice));
-    if (found.status != CalibrationStatus::Ok && doubt.empty())
-      doubt = fmt::format("{}: {}", name, found.reason);
+    if (k < run.intrinsics.size() && run.intrinsics[k]) {
+      const IntrinsicsResult& found = *run.intrinsics[k];
+      notes.push_back(fmt::format("{}: calibrated from {} views in {:.1f} s, projection known to {:.3f} px",
+                                  name, found.views_used, found.elapsed_s, found.image.rms_px));
+      for (const std::string& advice : found.advice) notes.push_back(fmt::format("{}: {}", name, advice));
+      if (found.status != CalibrationStatus::Ok && doubt.empty())
+        doubt = fmt::format("{}: {}", name, found.reason);
+    }
+    const CameraState& solved = run.result.state.cameras[k];
+    if (!solved.intrinsics) continue;
+    notes.push_back(
+        fmt::format("{}: solved with everything else, which moved the projection by {:.3f} px RMS", name,
+                    projectionDifference(*session.cameras[k].intrinsics, *solved.intrinsics).rms_px));
   }
   run.result.notes.insert(run.result.notes.begin(), notes.begin(), notes.end());
   addDoubt(doubt, run.result);
@@ -210,7 +219,7 @@ void estimate(const Session& session, const RunContext& context, CalibrationObse
     checkBoardSeen(camera, session.board);
     checkBoardSize(camera, session.board, session.options.front_end.extent);
   }
-  const CalibrationInput input = inputFrom(session, run.pass);
+  const CalibrationInput input = inputFrom(session, run);
   if (observer != nullptr) observer->detectionDone(input);
 
   context.progress.stageStarted("initialise");
@@ -286,11 +295,21 @@ CalibrationRun calibrate(const Session& session, const RunContext& context, cons
 }
 
 CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context,
-                         CalibrationObserver* observer) {
+                         CalibrationObserver* observer,
+                         std::vector<std::optional<IntrinsicsResult>> intrinsics) {
   CalibrationRun run;
   run.pass = std::move(pass);
+  run.intrinsics = std::move(intrinsics);
   estimate(session, context, observer, run);
+  tellIntrinsics(session, run);
   return run;
+}
+
+std::optional<CameraIntrinsics> foundIntrinsics(const CalibrationRun& run, std::size_t camera) {
+  if (camera < run.result.state.cameras.size() && run.result.state.cameras[camera].intrinsics)
+    return run.result.state.cameras[camera].intrinsics;
+  if (camera < run.intrinsics.size() && run.intrinsics[camera]) return run.intrinsics[camera]->intrinsics;
+  return std::nullopt;
 }
 
 }  // namespace evical

@@ -16,7 +16,8 @@ namespace evical {
 struct CalibrationRun {
   CalibrationResult result;
   RecordingPass pass;
-  // By camera: as calibrated first, where the session gave none. Empty: it gave all.
+  // By camera: as calibrated first, where the session gave none. Empty: it gave all. What the batch made of
+  // them is in the result's state.
   std::vector<std::optional<IntrinsicsResult>> intrinsics;
 };
 
@@ -30,9 +31,16 @@ CalibrationRun calibrate(const Session& session, const RunContext& context,
 void calibrateInto(CalibrationRun& run, const Session& session, const RunContext& context,
                    const ObserverFactory& observers = {}, CalibrationObserver* observer = nullptr);
 
-// The same from what the front end and the IMUs gave: `pass` as readAndDetect or a simulation makes it.
+// The same from what the front end and the IMUs gave: `pass` as readAndDetect or a simulation makes it,
+// through the session's intrinsics. `intrinsics`: those of them that a run before found, as CalibrationRun
+// has them.
 CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context,
-                         CalibrationObserver* observer = nullptr);
+                         CalibrationObserver* observer = nullptr,
+                         std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
+
+// A camera's intrinsics as the run has them at its end: solved with everything else, or as calibrated first.
+// Nothing where they stayed as the session gives them.
+std::optional<CameraIntrinsics> foundIntrinsics(const CalibrationRun& run, std::size_t camera);
 
 // How much of the process's memory was in use at most, in MB (10^6 bytes); 0 where the system does not say.
 double peakMemory_mb();

@@ -82,6 +82,9 @@ UncertaintyReport ofDifference(const UncertaintyReport& a, const UncertaintyRepo
     camera.rotation_std_rad = together(a.cameras[i].rotation_std_rad, b.cameras[i].rotation_std_rad);
     camera.translation_std_m = together(a.cameras[i].translation_std_m, b.cameras[i].translation_std_m);
     camera.time_offset_std_s = std::hypot(a.cameras[i].time_offset_std_s, b.cameras[i].time_offset_std_s);
+    const auto& other = b.cameras[i].intrinsics_std;
+    for (std::size_t k = 0; camera.intrinsics_std && other && k < other->size(); ++k)
+      (*camera.intrinsics_std)[k] = std::hypot((*camera.intrinsics_std)[k], (*other)[k]);
   }
   for (std::size_t i = 0; i < a.imus.size(); ++i) {
     ImuUncertainty& imu = sum.imus[i];
@@ -106,12 +109,15 @@ NamedResult named(const CalibrationInput& input, const CalibrationState& state) 
   result.names.reference =
       input.imus.empty() ? input.cameras[input.reference_camera].name : input.imus[input.reference_imu].name;
   result.result.state = state;
+  for (const CameraState& camera : state.cameras) result.names.intrinsics.push_back(camera.intrinsics);
   return result;
 }
 
 std::vector<HalvesDifference> differences(const CalibrationInput& input, const std::array<Half, 2>& halves) {
   NamedResult even = named(input, halves[0].solution.state);
   even.result.uncertainty = ofDifference(halves[0].uncertainty, halves[1].uncertainty);
+  for (const CameraUncertainty& camera : even.result.uncertainty.cameras)
+    even.names.intrinsics_std.push_back(camera.intrinsics_std);
   const TruthComparison comparison = compareWithTruth(even, named(input, halves[1].solution.state));
   std::vector<HalvesDifference> all;
   for (const QuantityError& each : comparison.quantities)
@@ -152,7 +158,7 @@ std::array<CalibrationInput, 2> splitIntoHalves(const CalibrationInput& input, c
   for (std::size_t i = 0; i < input.cameras.size(); ++i) {
     const CameraData& camera = input.cameras[i];
     for (CalibrationInput& half : halves) {
-      half.cameras.push_back({camera.name, camera.intrinsics, {}, camera.prior});
+      half.cameras.push_back({camera.name, camera.intrinsics, {}, camera.prior, camera.intrinsics_found_first});
       half.cameras.back().observations.camera = camera.name;
     }
     splitViews(camera.observations, state.cameras[i].time_offset_s, blocks,

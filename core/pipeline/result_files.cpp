@@ -64,6 +64,13 @@ NamedResult namedResult(const Session& session, const CalibrationResult& result,
     named.names.intrinsics.push_back(camera.intrinsics);
     named.names.camera_streams.push_back(camera.stream);
   }
+  named.names.intrinsics_std.resize(session.cameras.size());
+  for (std::size_t k = 0; k < result.state.cameras.size(); ++k) {
+    if (!result.state.cameras[k].intrinsics) continue;
+    named.names.intrinsics[k] = result.state.cameras[k].intrinsics;
+    if (k < result.uncertainty.cameras.size())
+      named.names.intrinsics_std[k] = result.uncertainty.cameras[k].intrinsics_std;
+  }
   for (const SessionImu& imu : session.imus) {
     named.names.imus.push_back(imu.name);
     named.names.known_of_imus.push_back(
@@ -76,9 +83,8 @@ NamedResult namedResult(const Session& session, const CalibrationResult& result,
 
 NamedResult namedResult(const Session& session, const CalibrationRun& run, const std::string& version) {
   NamedResult named = namedResult(session, run.result, version);
-  named.names.intrinsics_std.resize(session.cameras.size());
   for (std::size_t k = 0; k < run.intrinsics.size(); ++k) {
-    if (!run.intrinsics[k]) continue;
+    if (!run.intrinsics[k] || named.names.intrinsics_std[k]) continue;
     named.names.intrinsics[k] = run.intrinsics[k]->intrinsics;
     const IntrinsicsVector sigmas = run.intrinsics[k]->standardDeviations();
     std::copy(sigmas.begin(), sigmas.end(), named.names.intrinsics_std[k].emplace().begin());

@@ -10,9 +10,10 @@
 
 namespace evical {
 
+// With intrinsics as solved, or as the session has them.
 NamedResult namedResult(const Session& session, const CalibrationResult& result, const std::string& version);
 
-// The same with the intrinsics that the run calibrated.
+// The same with the intrinsics that the run calibrated first, where they were not solved for again.
 NamedResult namedResult(const Session& session, const CalibrationRun& run, const std::string& version);
 
 // What to know of files for other programs, and the targets that got none, each with the reason.

@@ -2,6 +2,7 @@
 
 #include "core/base/yaml_node.h"
 #include "core/data/intrinsics_yaml.h"
+#include "core/geometry/intrinsics_numbers.h"
 #include "core/report/result_yaml.h"
 #include "core/report/table_row.h"
 
@@ -49,9 +50,7 @@ std::string intrinsicsStdYaml(const CameraIntrinsics& camera, const std::array<d
 }
 
 std::string intrinsicsRows(const CameraIntrinsics& camera, const std::array<double, 9>& sigmas) {
-  const bool radtan = camera.model == CameraModel::PinholeRadtan;
-  const std::array<const char*, 5> names =
-      radtan ? std::array{"k1", "k2", "p1", "p2", "k3"} : std::array{"k1", "k2", "k3", "k4", ""};
+  const std::array<const char*, 5> names = distortionNames(camera.model);
   std::string text = tableRow("focal length x", camera.focal_length_px.x(), sigmas[0], "px", 4) +
                      tableRow("focal length y", camera.focal_length_px.y(), sigmas[1], "px", 4) +
                      tableRow("principal point x", camera.principal_point_px.x(), sigmas[2], "px", 4) +

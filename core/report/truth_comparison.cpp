@@ -1,6 +1,8 @@
 #include "core/report/truth_comparison.h"
 
 #include "core/base/nearest_name.h"
+#include "core/data/intrinsics_result.h"
+#include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/so3.h"
 
 #include <fmt/format.h>
@@ -66,6 +68,27 @@ CameraError compareCamera(const std::string& name, const CameraState& estimate, 
   return {name, kDegPerRad * rotation_rad.norm(), kMmPerM * translation_m.norm(), kMsPerS * std::abs(time_s)};
 }
 
+// Where they were calibrated; another model's coefficients mean something else.
+void compareIntrinsics(const ResultNames& estimate, std::size_t i, const ResultNames& truth, std::size_t j,
+                       Errors& errors) {
+  const auto found = at(estimate.intrinsics, i), actual = at(truth.intrinsics, j);
+  const auto sigmas = at(estimate.intrinsics_std, i);
+  if (!found || !actual || !sigmas || found->model != actual->model) return;
+  const std::string& name = estimate.cameras[i];
+  for (int axis = 0; axis < 2; ++axis)
+    errors.add(fmt::format("{}.focal_length.{}", name, "xy"[axis]), "px",
+               found->focal_length_px[axis] - actual->focal_length_px[axis],
+               (*sigmas)[static_cast<std::size_t>(axis)]);
+  for (int axis = 0; axis < 2; ++axis)
+    errors.add(fmt::format("{}.principal_point.{}", name, "xy"[axis]), "px",
+               found->principal_point_px[axis] - actual->principal_point_px[axis],
+               (*sigmas)[static_cast<std::size_t>(axis) + 2]);
+  const auto coefficients = distortionNames(found->model);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(distortionCount(*found)); ++k)
+    errors.add(fmt::format("{}.distortion.{}", name, coefficients[k]), "",
+               found->distortion[k] - actual->distortion[k], (*sigmas)[k + 4]);
+}
+
 void compareImu(const std::string& name, const ImuState& estimate, const ImuState& truth,
                 const ImuUncertainty& sigma, bool reference, Errors& errors) {
   if (!reference) {
@@ -117,6 +140,7 @@ TruthComparison compareWithTruth(const NamedResult& result, const NamedResult& t
     comparison.cameras.push_back(compareCamera(name, result.result.state.cameras.at(i),
                                                truth.result.state.cameras.at(j), at(sigma.cameras, i),
                                                errors));
+    compareIntrinsics(result.names, i, truth.names, j, errors);
   }
   for (std::size_t i = 0; i < result.names.imus.size(); ++i) {
     const std::string& name = result.names.imus[i];

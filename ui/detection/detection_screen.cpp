@@ -305,10 +305,13 @@ void DetectionScreen::refresh() {
     time_box_->setValue(time_s_);
   }
   std::vector<QPolygonF> reprojection;
-  if (run_ && frame && session_ && shown(Layer::Reprojection) && session_->cameras[camera_].intrinsics) {
-    reprojection = reprojectBoard(
-        run_->result.state, camera_, *session_->cameras[camera_].intrinsics, session_->board, frame->time_s,
-        viewAt(run_->pass.cameras, camera_, frame->time_s), session_->options.optimisation.rest_speed_px_s);
+  std::optional<CameraIntrinsics> intrinsics;
+  if (run_ && session_) intrinsics = session_->cameras[camera_].intrinsics;
+  if (run_ && !intrinsics) intrinsics = foundIntrinsics(*run_, camera_);
+  if (run_ && frame && session_ && shown(Layer::Reprojection) && intrinsics) {
+    reprojection = reprojectBoard(run_->result.state, camera_, *intrinsics, session_->board, frame->time_s,
+                                  viewAt(run_->pass.cameras, camera_, frame->time_s),
+                                  session_->options.optimisation.rest_speed_px_s);
   }
   view_->setOverlay([analysis = here ? analysis_ : nullptr, layers = layers_,
                      reprojection = std::move(reprojection)](QPainter& painter, double scale) {

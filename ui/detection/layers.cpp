@@ -313,7 +313,7 @@ std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t
       state.world_from_imu_rotation, state.imu_in_world_m, own.imu_from_camera, own.time_offset_s, time_s);
   const std::map<int, Eigen::Vector2d> leads = idealLeads(own, intrinsics, view, rest_speed_px_s);
   for (int circle = 0; circle < board.circleCount(); ++circle) {
-    const auto outline = imageOf(circle, camera_from_world, intrinsics, board);
+    const auto outline = imageOf(circle, camera_from_world, own.intrinsics.value_or(intrinsics), board);
     const auto lead = leads.find(circle);
     if (outline)
       outlines.push_back(lead == leads.end() ? *outline : moved(*outline, lead->second, intrinsics));

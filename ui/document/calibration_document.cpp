@@ -120,7 +120,8 @@ void CalibrationDocument::set(const Session& session) {
   emit sessionChanged();
 }
 
-// The record's session knows the intrinsics that the run found, so that screens can use them.
+// The record's session knows the intrinsics that the run found first, so that screens can use them:
+// detections are in their ideal pixels.
 void CalibrationDocument::addRun(RunRecord record) {
   const auto& found = record.run->intrinsics;
   for (std::size_t k = 0; k < std::min(found.size(), record.session.cameras.size()); ++k)

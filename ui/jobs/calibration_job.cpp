@@ -105,9 +105,7 @@ bool CalibrationJob::startAgain(const Session& session, RecordingPass pass,
   return run(session, kStagesAgain,
              [session, shared, intrinsics = std::move(intrinsics)](const RunContext& context,
                                                                    CalibrationObserver* observer) {
-               CalibrationRun run = calibrate(session, std::move(*shared), context, observer);
-               run.intrinsics = intrinsics;
-               return run;
+               return calibrate(session, std::move(*shared), context, observer, intrinsics);
              });
 }
 

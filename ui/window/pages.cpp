@@ -44,9 +44,8 @@ void wireRecording(RecordingScreen& screen, Workbench& workbench, SessionFiles& 
   });
   QObject::connect(&document, &CalibrationDocument::runsChanged, &screen, [&screen, &document] {
     std::vector<std::optional<CameraIntrinsics>> found;
-    if (document.last().run)
-      for (const auto& each : document.last().run->intrinsics)
-        found.push_back(each ? std::optional(each->intrinsics) : std::nullopt);
+    if (const auto run = document.last().run)
+      for (std::size_t k = 0; k < run->pass.cameras.size(); ++k) found.push_back(foundIntrinsics(*run, k));
     screen.setFoundIntrinsics(found);
   });
   const InspectionJob& inspection = workbench.inspection;

@@ -1,5 +1,6 @@
 // Cameras whose intrinsics were calibrated first: the numbers, how well pixels are known, where views are
 // missing.
+#include "core/geometry/intrinsics_numbers.h"
 #include "core/report/html/heat_map.h"
 #include "core/report/html/html_text.h"
 #include "core/report/html/report_page.h"
@@ -16,25 +17,32 @@ namespace {
 
 std::vector<std::string> parameterNames(const CameraIntrinsics& camera) {
   std::vector<std::string> names = {"fx", "fy", "cx", "cy"};
-  const bool radtan = camera.model == CameraModel::PinholeRadtan;
-  const std::array<const char*, 5> coefficients =
-      radtan ? std::array{"k1", "k2", "p1", "p2", "k3"} : std::array{"k1", "k2", "k3", "k4", ""};
+  const std::array<const char*, 5> coefficients = distortionNames(camera.model);
   names.insert(names.end(), coefficients.begin(), coefficients.begin() + distortionCount(camera));
   return names;
 }
 
-std::string parameterTable(const IntrinsicsResult& found) {
-  const CameraIntrinsics& camera = found.intrinsics;
-  IntrinsicsVector values;
-  values << camera.focal_length_px, camera.principal_point_px,
-      Eigen::Map<const Eigen::Matrix<double, 5, 1>>(camera.distortion.data());
+// With a column of what the batch made of them, where it solved for them.
+std::string parameterTable(const ReportData& data, std::size_t index) {
+  const IntrinsicsResult& found = *data.intrinsics[index];
+  const auto& cameras = data.named.result.state.cameras;
+  const auto& stds = data.named.names.intrinsics_std;
+  const bool solved =
+      index < cameras.size() && cameras[index].intrinsics && index < stds.size() && stds[index];
+  std::array<double, kIntrinsicsCount> values{}, solved_values{};
+  writeIntrinsics(found.intrinsics, values.data());
+  if (solved) writeIntrinsics(*cameras[index].intrinsics, solved_values.data());
   const IntrinsicsVector sigmas = found.standardDeviations();
   std::vector<std::vector<std::string>> rows;
-  for (const std::string& name : parameterNames(camera)) {
-    const auto k = static_cast<Eigen::Index>(rows.size());
-    rows.push_back({name, withSigma(values[k], sigmas[k]), k < 4 ? "px" : ""});
+  for (const std::string& name : parameterNames(found.intrinsics)) {
+    const std::size_t k = rows.size();
+    std::vector<std::string>& row = rows.emplace_back();
+    row = {name, withSigma(values[k], sigmas[static_cast<Eigen::Index>(k)])};
+    if (solved) row.push_back(withSigma(solved_values[k], (*stds[index])[k]));
+    row.emplace_back(k < 4 ? "px" : "");
   }
-  return table({"", "value", "unit"}, rows);
+  return solved ? table({"", "found first", "solved with everything else", "unit"}, rows)
+                : table({"", "value", "unit"}, rows);
 }
 
 Eigen::MatrixXd correlationOf(const IntrinsicsResult& found) {
@@ -110,7 +118,7 @@ void writeCamera(const ReportData& data, std::size_t index, ReportPage& page) {
   if (!found.reason.empty())
     page.text(paragraph("", fmt::format("<b class=\"bad\">Doubtful</b>: {}.", escaped(found.reason))));
   for (const std::string& advice : found.advice) page.text(paragraph("", escaped(advice) + "."));
-  page.text(parameterTable(found));
+  page.text(parameterTable(data, index));
   writeMaps(found, index, page);
   page.figure(
       heatMapSvg("correlation of the intrinsics", parameterNames(found.intrinsics), correlationOf(found)),

@@ -105,7 +105,9 @@ void writeCameraNumbers(const ReportData& data, std::size_t i, ReportPage& page)
       "small",
       fmt::format("Intrinsics {}: {}, {} x {} px, focal length {}, {} px, principal point {}, {} px, "
                   "distortion {}.",
-                  at(data.named.names.intrinsics_std, i) ? "as calibrated first" : "as given",
+                  state.intrinsics                         ? "as solved with everything else"
+                  : at(data.named.names.intrinsics_std, i) ? "as calibrated first"
+                                                           : "as given",
                   intrinsics->model == CameraModel::PinholeRadtan ? "pinhole, radial-tangential"
                                                                   : "pinhole, equidistant",
                   intrinsics->resolution_px.width_px, intrinsics->resolution_px.height_px,

@@ -1,10 +1,12 @@
 #include "tests/core/optimisation/simulated_rig.h"
 
 #include "core/base/time.h"
+#include "core/data/intrinsics_result.h"
 #include "core/geometry/circle_conic.h"
 #include "core/geometry/so3.h"
 #include "core/geometry/trajectory.h"
 #include "core/optimisation/covariance.h"
+#include "tests/support/seen_through.h"
 
 #include <Eigen/LU>
 
@@ -244,6 +246,14 @@ SimulatedRig simulateRig(const RigOptions& options) {
   return rig;
 }
 
+void seeThrough(const CameraIntrinsics& truth, const CameraIntrinsics& lens, SimulatedRig& rig) {
+  CameraData& camera = rig.input.cameras.front();
+  seeThrough(truth, lens, camera.observations);
+  camera.intrinsics = lens;
+  camera.intrinsics_found_first = true;
+  rig.truth.cameras.front().intrinsics = truth;
+}
+
 CalibrationState disturbed(const CalibrationState& truth, unsigned seed, double time_offset_error_s) {
   Random random(seed + 1000);
   CalibrationState state = truth;
@@ -291,6 +301,12 @@ Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const Calibrati
     errors.push_back(estimate.cameras[i].time_offset_s - truth.cameras[i].time_offset_s);
     errors.push_back(estimate.cameras[i].edge_lead_px - truth.cameras[i].edge_lead_px);
     errors.push_back(estimate.cameras[i].edge_lead_growth_px - truth.cameras[i].edge_lead_growth_px);
+    if (!estimate.cameras[i].intrinsics) continue;
+    const CameraIntrinsics &a = *estimate.cameras[i].intrinsics, &b = truth.cameras[i].intrinsics.value();
+    append(a.focal_length_px - b.focal_length_px);
+    append(a.principal_point_px - b.principal_point_px);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(distortionCount(b)); ++k)
+      errors.push_back(a.distortion[k] - b.distortion[k]);
   }
   for (std::size_t i = 0; i < truth.imus.size(); ++i) {
     const ImuState &a = estimate.imus[i], &b = truth.imus[i];

@@ -32,6 +32,10 @@ struct SimulatedRig {
 };
 SimulatedRig simulateRig(const RigOptions& options);
 
+// The rig's camera, which has no distortion, becomes `truth`, of the same focal length and principal point,
+// and is seen through another lens, as found first from the same recording.
+void seeThrough(const CameraIntrinsics& truth, const CameraIntrinsics& lens, SimulatedRig& rig);
+
 // The truth, with everything that initialisation estimates off by about what it leaves.
 CalibrationState disturbed(const CalibrationState& truth, unsigned seed, double time_offset_error_s = 0.5e-3);
 

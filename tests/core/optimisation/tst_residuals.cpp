@@ -103,6 +103,35 @@ std::vector<CircleMeasurement> circlesNear(const CircleModel& model, const test:
   return circles;
 }
 
+// The same circles as seen through a lens that is not quite the one in the block of intrinsics.
+CircleModel freeModel(CameraModel lens) {
+  CircleModel model = circleModel();
+  model.camera.model = lens;
+  model.camera.distortion = lens == CameraModel::PinholeRadtan ? std::array{-0.31, 0.11, 2e-3, -1e-3, 0.02}
+                                                               : std::array{-0.04, 0.02, -0.01, 3e-3, 0.0};
+  model.free_intrinsics = true;
+  return model;
+}
+
+CircleModel heldModel(CircleModel model) {
+  model.free_intrinsics = false;
+  return model;
+}
+
+std::vector<double> intrinsicsNumbers(const CameraIntrinsics& camera) {
+  std::vector<double> numbers(9);
+  writeIntrinsics(camera, numbers.data());
+  return numbers;
+}
+
+CameraIntrinsics otherLens(const CameraIntrinsics& camera, States& states) {
+  CameraIntrinsics other = camera;
+  other.focal_length_px += states.vector(2.0).head<2>();
+  other.principal_point_px += states.vector(2.0).head<2>();
+  for (std::size_t k = 0; k < 4; ++k) other.distortion[k] += states.uniform(2e-3);
+  return other;
+}
+
 class TestResiduals : public QObject {
   Q_OBJECT
 
@@ -139,6 +168,75 @@ class TestResiduals : public QObject {
       const double error = test::worstJacobianError(cost, blocks, 1e-5);
       QVERIFY2(error < 1e-6, qPrintable(QString::number(error)));
       QCOMPARE(test::worstErrorWithConstantBlocks(cost, blocks), 0.0);
+    }
+  }
+
+  void freeIntrinsicsJacobians_matchNumericDifferences_data() {
+    QTest::addColumn<int>("lens");
+    QTest::addColumn<double>("near_sigma");
+    for (const double near_sigma : {0.5, 30.0}) {
+      QTest::addRow("radtan, %g sigma", near_sigma)
+          << static_cast<int>(CameraModel::PinholeRadtan) << near_sigma;
+      QTest::addRow("equidistant, %g sigma", near_sigma)
+          << static_cast<int>(CameraModel::PinholeEquidistant) << near_sigma;
+    }
+  }
+
+  void freeIntrinsicsJacobians_matchNumericDifferences() {
+    QFETCH(int, lens);
+    QFETCH(double, near_sigma);
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+      States states(seed);
+      const CircleModel model = freeModel(static_cast<CameraModel>(lens));
+      test::Blocks blocks = circleBlocks(states, 0.05);
+      const CircleModel held = heldModel(model);
+      const std::vector<CircleMeasurement> circles = circlesNear(held, blocks, near_sigma, states);
+      blocks.push_back(intrinsicsNumbers(otherLens(model.camera, states)));
+      const CircleCost cost(model, segmentTimes(), circles);
+      const double error = test::worstJacobianError(cost, blocks, 1e-5);
+      QVERIFY2(error < 1e-6, qPrintable(QString::number(error)));
+      QCOMPARE(test::worstErrorWithConstantBlocks(cost, blocks), 0.0);
+    }
+  }
+
+  // Where the intrinsics are those seen with, what is free or held must not matter.
+  void freeIntrinsics_ofTheCameraSeenWith_giveTheSameResiduals() {
+    for (const CameraModel lens : {CameraModel::PinholeRadtan, CameraModel::PinholeEquidistant}) {
+      States states(5);
+      const CircleModel model = freeModel(lens), held = heldModel(model);
+      test::Blocks blocks = circleBlocks(states, 0.05);
+      const std::vector<CircleMeasurement> circles = circlesNear(held, blocks, 0.5, states);
+      const Eigen::VectorXd expected = test::residualsAt(CircleCost(held, segmentTimes(), circles), blocks);
+      blocks.push_back(intrinsicsNumbers(model.camera));
+      const Eigen::VectorXd residuals = test::residualsAt(CircleCost(model, segmentTimes(), circles), blocks);
+      QVERIFY(expected.norm() > 0.3);
+      QVERIFY2((residuals - expected).norm() < 5e-3 * expected.norm(),
+               qPrintable(QString::number((residuals - expected).norm())));
+    }
+  }
+
+  // A centre at a pixel of the true lens, in the ideal pixels of another.
+  void freeIntrinsics_ofTheTrueCamera_leaveNoResidual() {
+    for (const CameraModel lens : {CameraModel::PinholeRadtan, CameraModel::PinholeEquidistant}) {
+      States states(6);
+      const CircleModel model = freeModel(lens);
+      const CameraIntrinsics truth = otherLens(model.camera, states);
+      test::Blocks blocks = circleBlocks(states, 0.05);
+      CircleModel linear = heldModel(model);
+      linear.camera = truth;
+      linear.huber_sigma = 1e9;
+      CircleMeasurement circle;
+      circle.time_s = 1.006;
+      circle.on_board_m = {0.1, 0.05};
+      circle.centre_px.setZero();
+      circle.whitening_px.setIdentity();
+      circle.lead = {{0.0, 0.0}, {0.0, 0.0}};
+      const Eigen::Vector2d ideal = test::residualsAt(CircleCost(linear, segmentTimes(), {circle}), blocks);
+      circle.centre_px = *idealPixel(model.camera, pixelFromIdeal(truth, ideal));
+      QVERIFY((circle.centre_px - ideal).norm() > 0.1);
+      blocks.push_back(intrinsicsNumbers(truth));
+      const double residual = test::residualsAt(CircleCost(model, segmentTimes(), {circle}), blocks).norm();
+      QVERIFY2(residual < 1e-8, qPrintable(QString::number(residual)));
     }
   }
 

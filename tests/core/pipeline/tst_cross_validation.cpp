@@ -103,6 +103,44 @@ class TestCrossValidation : public QObject {
              qPrintable(QString::number(validation.rms_sigmas)));
   }
 
+  // Both halves hold what is given; it differs by nothing, and says nothing of the sigmas.
+  void givenValues_areHeldInBothHalves() {
+    Session session = simulated_.session;
+    const CameraState& found = run_.result.state.cameras[0];
+    session.cameras[0].prior.time_offset = KnownNumber{found.time_offset_s};
+    session.cameras[0].prior.translation = KnownVector{found.imu_from_camera.translation_m};
+    session.options.optimisation.free_imu_intrinsics = false;
+    const CalibrationRun run = calibrate(session, simulated_.pass, {});
+    QVERIFY(run.result.state.cameras[0].time_offset_s == found.time_offset_s);
+    QCOMPARE(run.result.uncertainty.given.size(), std::size_t{4});
+    const std::string note = "given, not estimated: left.translation, left.time_offset";
+    QVERIFY(std::any_of(run.result.notes.begin(), run.result.notes.end(),
+                        [&](const std::string& each) { return each.starts_with(note); }));
+    const CrossValidation& validation = *run.result.cross_validation;
+    QVERIFY2(validation.failure.empty(), validation.failure.c_str());
+    int held = 0;
+    for (const HalvesDifference& each : validation.quantities) {
+      QVERIFY(std::isfinite(each.normalised()));
+      if (each.sigma > 0.0) continue;
+      ++held;
+      QVERIFY2(each.difference == 0.0, each.name.c_str());
+    }
+    QVERIFY2(held == 4 + 12, qPrintable(QString::number(held)));
+    QVERIFY2(validation.rms_sigmas > 0.2 && validation.rms_sigmas < 2.5,
+             qPrintable(QString::number(validation.rms_sigmas)));
+  }
+
+  void timeOffsetsThatAreNotFree_areNotLookedFor() {
+    Session session = simulated_.session;
+    session.options.optimisation.free_time_offsets = false;
+    session.options.report.cross_validation = false;
+    const CalibrationRun run = calibrate(session, simulated_.pass, {});
+    QVERIFY(run.result.state.cameras[0].time_offset_s == 0.0);
+    QVERIFY(std::abs(run_.result.state.cameras[0].time_offset_s) > 1e-3);
+    QVERIFY(run.result.status == CalibrationStatus::Doubtful);
+    QVERIFY2(run.result.reason.find("left.time_offset") != std::string::npos, run.result.reason.c_str());
+  }
+
   void cameraThatSlipped_isSeen() {
     // From the third block on, every other block, the camera sees the board 1 px aside: no single pose fits
     // both.

@@ -68,6 +68,8 @@ NamedResult sample() {
     result.imus.push_back({0.002, 0.05});
   }
   result.state.gravity_in_world_m_s2 = {0.1, 9.7, 1.4};
+  result.uncertainty.gravity_norm_std_m_s2 = 0.012;
+  result.uncertainty.given = {"left.time_offset", "1 odd: name.rotation"};
   result.uncertainty.weakest = "translation along the camera's z axis";
   result.uncertainty.observability = {0.5, 12.0};
   result.uncertainty.names = {"left.rotation.x [rad]", "left.rotation.y [rad]"};

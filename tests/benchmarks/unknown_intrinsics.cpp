@@ -1,0 +1,167 @@
+// What it costs not to know a camera's intrinsics, as a table: `evical_unknown_intrinsics [--seeds N]
+// [--duration S] [--folder DIR] SCENARIO...`. Each recording is simulated into a file and calibrated three
+// times, as `evical calibrate` does: with the true intrinsics; with those found first, held; and solved with
+// everything else.
+#include "core/base/error.h"
+#include "core/geometry/projection_difference.h"
+#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/result_files.h"
+#include "core/pipeline/simulation.h"
+#include "core/report/truth_comparison.h"
+#include "core/synthetic/scenario_yaml.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace evical {
+namespace {
+
+enum Way { kTrue, kFound, kJoint, kWays };
+constexpr std::array<const char*, kWays> kWayNames = {"true", "found, held", "found, joint"};
+constexpr double kTarget = 1.5;  // times the errors with true intrinsics
+const std::vector<std::string> kParts = {".rotation.",     ".translation.",     ".time_offset",
+                                         ".focal_length.", ".principal_point.", ".distortion."};
+
+// Sums over seeds, by part of the names above.
+struct Sums {
+  std::map<std::string, double> error2, normalised2;
+  std::map<std::string, int> counts;
+
+  void add(const TruthComparison& comparison) {
+    for (const QuantityError& quantity : comparison.quantities) {
+      for (const std::string& part : kParts) {
+        if (quantity.name.find(part) == std::string::npos || quantity.sigma <= 0.0) continue;
+        error2[part] += quantity.error * quantity.error;
+        normalised2[part] += quantity.normalised() * quantity.normalised();
+        ++counts[part];
+      }
+    }
+  }
+  double errorRms(const std::string& part) const { return rms(error2, part); }
+  double normalisedRms(const std::string& part) const { return rms(normalised2, part); }
+
+ private:
+  double rms(const std::map<std::string, double>& sums, const std::string& part) const {
+    const auto count = counts.find(part);
+    return count == counts.end() ? 0.0 : std::sqrt(sums.at(part) / count->second);
+  }
+};
+
+void printRow(const Scenario& scenario, Way way, const Session& session, const CalibrationRun& run,
+              const TruthComparison& comparison) {
+  const CameraError& error = comparison.cameras.front();
+  const CameraUncertainty& sigma = run.result.uncertainty.cameras.front();
+  constexpr double kDegPerRad = 57.29577951308232;
+  const CameraIntrinsics used = foundIntrinsics(run, 0).value_or(*session.cameras.front().intrinsics);
+  fmt::print(
+      "| {} | {} | {} | {:.4f} ({:.4f}) | {:.3f} ({:.3f}) | {:.4f} ({:.4f}) | {:.4f} | {:.1f} | {} |\n",
+      scenario.name, scenario.seed, kWayNames[way], error.rotation_deg,
+      kDegPerRad * sigma.rotation_std_rad.norm(), error.translation_mm, 1e3 * sigma.translation_std_m.norm(),
+      error.time_offset_ms, 1e3 * sigma.time_offset_std_s,
+      projectionDifference(scenario.cameras.front().intrinsics, used).rms_px, run.result.timing.optimise_s,
+      statusName(run.result.status));
+  std::fflush(stdout);
+}
+
+// The front end's work is the same for both ways without intrinsics, and is done once.
+std::array<CalibrationRun, kWays> calibrateEveryWay(const Session& unknown, const Scenario& scenario) {
+  std::array<CalibrationRun, kWays> runs;
+  Session given = unknown;
+  for (std::size_t k = 0; k < given.cameras.size(); ++k)
+    given.cameras[k].intrinsics = scenario.cameras[k].intrinsics;
+  runs[kTrue] = calibrate(given, RunContext{});
+  runs[kJoint] = calibrate(unknown, RunContext{});
+  Session held = unknown;
+  held.options.optimisation.camera_intrinsics = CameraIntrinsicsChoice::Fixed;
+  for (std::size_t k = 0; k < held.cameras.size(); ++k)
+    held.cameras[k].intrinsics = runs[kJoint].intrinsics[k]->intrinsics;
+  runs[kFound] = calibrate(held, runs[kJoint].pass, RunContext{}, nullptr, runs[kJoint].intrinsics);
+  return runs;
+}
+
+bool printSums(const std::string& file, int seeds, const std::array<Sums, kWays>& sums) {
+  fmt::print("\n{}, RMS over {} recordings: errors, and in brackets errors over sigmas\n\n| intrinsics |",
+             file, seeds);
+  for (const std::string& part : kParts) fmt::print(" {} |", part);
+  fmt::print("\n|---|---|---|---|---|---|---|\n");
+  for (std::size_t way = 0; way < kWays; ++way) {
+    fmt::print("| {} |", kWayNames[way]);
+    for (const std::string& part : kParts)
+      fmt::print(" {:.3g} ({:.2f}) |", sums[way].errorRms(part), sums[way].normalisedRms(part));
+    fmt::print("\n");
+  }
+  bool met = true;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double times = sums[kJoint].errorRms(kParts[k]) / sums[kTrue].errorRms(kParts[k]);
+    met = met && times <= kTarget;
+    fmt::print("{} {}: {:.2f} times the error with true intrinsics", k == 0 ? "\n" : ",", kParts[k], times);
+  }
+  fmt::print(" (target {:.1f}: {})\n\n", kTarget, met ? "met" : "MISSED");
+  return met;
+}
+
+int main(int argc, char** argv) {
+  CLI::App app("Calibrations with and without intrinsics, against the truth of simulated recordings");
+  std::vector<std::string> files;
+  int seeds = 1;
+  std::optional<double> duration_s;
+  std::filesystem::path folder = std::filesystem::temp_directory_path() / "evical_unknown_intrinsics";
+  app.add_option("SCENARIO", files, "Scenario files")->required();
+  app.add_option("--seeds", seeds, "Each scenario with this many seeds")->check(CLI::Range(1, 1000));
+  app.add_option("--duration", duration_s, "Seconds, instead of the scenario's")
+      ->check(CLI::Range(2.0, 3600.0));
+  app.add_option("--folder", folder, "For the recordings, which are removed again");
+  CLI11_PARSE(app, argc, argv);
+  fmt::print(
+      "| scenario | seed | intrinsics | rotation, deg (sigma) | translation, mm (sigma) | time offset, ms "
+      "(sigma) | projection off by, px RMS | optimise, s | verdict "
+      "|\n|---|---|---|---|---|---|---|---|---|\n");
+  bool all_met = true;
+  for (const std::string& file : files) {
+    std::array<Sums, kWays> sums;
+    for (int k = 0; k < seeds; ++k) {
+      Scenario scenario = readScenario(file);
+      if (duration_s) scenario.duration_s = *duration_s;
+      scenario.seed += static_cast<std::uint64_t>(k);
+      scenario.intrinsics_in_session = false;
+      const SimulationSummary made = simulate(scenario, folder, {});
+      Session session = readSession(made.session);
+      session.options.report.cross_validation = false;
+      const NamedResult truth = readResultYaml(made.truth);
+      const std::array<CalibrationRun, kWays> runs = calibrateEveryWay(session, scenario);
+      std::filesystem::remove_all(folder);
+      for (std::size_t way = 0; way < kWays; ++way) {
+        const TruthComparison comparison =
+            compareWithTruth(namedResult(session, runs[way], "benchmark"), truth);
+        sums[way].add(comparison);
+        Session known = session;
+        known.cameras.front().intrinsics = scenario.cameras.front().intrinsics;
+        printRow(scenario, static_cast<Way>(way), known, runs[way], comparison);
+      }
+    }
+    all_met = printSums(file, seeds, sums) && all_met;
+  }
+  return all_met ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace evical
+
+int main(int argc, char** argv) {
+  try {
+    return evical::main(argc, argv);
+  } catch (const evical::CalibrationError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 2;
+  }
+}

@@ -1,0 +1,212 @@
+// Intrinsics as unknowns of the batch, started at a lens that is not quite the true one.
+#include "core/data/intrinsics_result.h"
+#include "core/geometry/projection_difference.h"
+#include "core/optimisation/batch_optimiser.h"
+#include "core/optimisation/covariance.h"
+#include "tests/core/optimisation/simulated_rig.h"
+
+#include <QtTest>
+
+#include <algorithm>
+#include <random>
+
+namespace {
+
+using namespace evical;
+
+CameraIntrinsics trueCamera(CameraModel model) {
+  const bool radtan = model == CameraModel::PinholeRadtan;
+  return {model,
+          {346, 260},
+          {260.0, 260.0},
+          {173.0, 130.0},
+          radtan ? std::array{-0.3, 0.1, 5e-4, -3e-4, 0.0} : std::array{-0.03, 0.01, -5e-3, 2e-3, 0.0}};
+}
+
+CameraIntrinsics roughly(CameraIntrinsics camera, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> off(-1.0, 1.0);
+  for (int axis = 0; axis < 2; ++axis) {
+    camera.focal_length_px[axis] *= 1.0 + 2e-3 * off(random);
+    camera.principal_point_px[axis] += off(random);
+  }
+  camera.distortion[0] += 5e-3 * off(random);
+  camera.distortion[1] += 5e-3 * off(random);
+  return camera;
+}
+
+test::SimulatedRig rigOf(CameraModel model, const test::RigOptions& options) {
+  test::SimulatedRig rig = test::simulateRig(options);
+  test::seeThrough(trueCamera(model), roughly(trueCamera(model), options.seed), rig);
+  return rig;
+}
+
+test::RigOptions shortRecording(unsigned seed = 1) {
+  test::RigOptions options;
+  options.duration_s = 3.0;
+  options.imu_rate_hz = 200.0;
+  options.window_s = 0.03;
+  options.seed = seed;
+  return options;
+}
+
+BatchSolution solve(const test::SimulatedRig& rig, unsigned seed, const OptimisationOptions& options = {}) {
+  CalibrationState start = test::disturbed(rig.truth, seed);
+  start.cameras[0].intrinsics.reset();
+  return optimiseBatch(rig.input, start, options, RunContext{});
+}
+
+QString text(double value) {
+  return QString::number(value);
+}
+
+class TestFreeIntrinsics : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void lens_data() {
+    QTest::addColumn<int>("model");
+    QTest::newRow("radtan") << static_cast<int>(CameraModel::PinholeRadtan);
+    QTest::newRow("equidistant") << static_cast<int>(CameraModel::PinholeEquidistant);
+  }
+
+  void batch_onNoiselessData_findsTheTrueLens_data() { lens_data(); }
+  void batch_onNoiselessData_findsTheTrueLens() {
+    QFETCH(int, model);
+    test::RigOptions options = shortRecording();
+    options.centre_sigma_px = 0.0;
+    options.imu_noise = 0.0;
+    const test::SimulatedRig rig = rigOf(static_cast<CameraModel>(model), options);
+    const CameraIntrinsics& truth = *rig.truth.cameras[0].intrinsics;
+    QVERIFY(projectionDifference(truth, *rig.input.cameras[0].intrinsics).rms_px > 0.1);
+    const BatchSolution solution = solve(rig, 1);
+    QVERIFY(solution.converged);
+    const CameraState &camera = solution.state.cameras[0], &true_camera = rig.truth.cameras[0];
+    const double difference_px = projectionDifference(truth, camera.intrinsics.value()).rms_px;
+    QVERIFY2(difference_px < 2e-3, qPrintable(text(difference_px)));
+    QVERIFY2((camera.intrinsics->focal_length_px - truth.focal_length_px).norm() < 0.02,
+             qPrintable(text((camera.intrinsics->focal_length_px - truth.focal_length_px).norm())));
+    QVERIFY(rotationAngleBetween_rad(camera.imu_from_camera.rotation, true_camera.imu_from_camera.rotation) <
+            5e-5);
+    QVERIFY((camera.imu_from_camera.translation_m - true_camera.imu_from_camera.translation_m).norm() < 3e-4);
+    QVERIFY(std::abs(camera.time_offset_s - true_camera.time_offset_s) < 2e-6);
+    QVERIFY(solution.cameras[0].reprojection_rms_px < 2e-3);
+    QCOMPARE(camera.intrinsics->distortion[4], 0.0);
+  }
+
+  // 36 quantities over 12 seeds: 7 of the extrinsics, 8 of the intrinsics.
+  void sigmas_areHonest_data() { lens_data(); }
+  void sigmas_areHonest() {
+    QFETCH(int, model);
+    constexpr unsigned kSeeds = 12;
+    Eigen::VectorXd sum;
+    for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+      const test::SimulatedRig rig = rigOf(static_cast<CameraModel>(model), shortRecording(seed));
+      const BatchSolution solution = solve(rig, seed);
+      const UncertaintyReport report = estimateUncertainty(rig.input, solution, {}, RunContext{}).report;
+      const Eigen::VectorXd normalised =
+          test::reportedErrors(solution.state, rig.truth).cwiseQuotient(report.standard_deviations);
+      if (seed == 1) sum = Eigen::VectorXd::Zero(normalised.size());
+      sum += normalised.cwiseAbs2();
+    }
+    const Eigen::VectorXd rms = (sum / kSeeds).cwiseSqrt();
+    const auto rmsOf = [&](Eigen::Index first, Eigen::Index count) {
+      return std::sqrt(rms.segment(first, count).squaredNorm() / static_cast<double>(count));
+    };
+    const double extrinsics = rmsOf(0, 7), intrinsics = rmsOf(9, 8), all = rmsOf(0, rms.size());
+    QVERIFY2(extrinsics > 0.7 && extrinsics < 1.4, qPrintable(text(extrinsics)));
+    QVERIFY2(intrinsics > 0.7 && intrinsics < 1.4, qPrintable(text(intrinsics)));
+    QVERIFY2(all > 0.8 && all < 1.25, qPrintable(text(all)));
+  }
+
+  void report_namesThemWithTheirSigmas() {
+    const test::SimulatedRig rig = rigOf(CameraModel::PinholeRadtan, shortRecording());
+    const BatchSolution solution = solve(rig, 1);
+    const UncertaintyEstimate estimate = estimateUncertainty(rig.input, solution, {}, RunContext{});
+    const UncertaintyReport& report = estimate.report;
+    QCOMPARE(QString::fromStdString(report.names[9]), QString("left.focal_length.x [px]"));
+    QCOMPARE(QString::fromStdString(report.names[12]), QString("left.principal_point.y [px]"));
+    QCOMPARE(QString::fromStdString(report.names[15]), QString("left.distortion.p1 [1]"));
+    QCOMPARE(QString::fromStdString(report.names[17]), QString("imu.gyroscope_bias.x [rad/s]"));
+    QCOMPARE(report.names.size(), static_cast<std::size_t>(report.correlation.rows()));
+    const std::array<double, 9>& sigmas = report.cameras[0].intrinsics_std.value();
+    for (std::size_t k = 0; k < 8; ++k)
+      QCOMPARE(sigmas[k], report.standard_deviations[9 + static_cast<Eigen::Index>(k)]);
+    QCOMPARE(sigmas[8], 0.0);
+    QVERIFY2(sigmas[0] > 0.005 && sigmas[0] < 1.0, qPrintable(text(sigmas[0])));
+    QCOMPARE(report.observability.size(), std::size_t{7});  // the extrinsics' alone
+  }
+
+  void extrinsicSigmas_holdThoseOfTheLens() {
+    const CameraIntrinsics truth = trueCamera(CameraModel::PinholeRadtan);
+    test::SimulatedRig rig = test::simulateRig(shortRecording());
+    test::seeThrough(truth, truth, rig);
+    const UncertaintyReport free = estimateUncertainty(rig.input, solve(rig, 1), {}, RunContext{}).report;
+    rig.input.cameras[0].intrinsics_found_first = false;
+    const BatchSolution fixed = solve(rig, 1);
+    QVERIFY(!fixed.state.cameras[0].intrinsics);
+    const UncertaintyReport held = estimateUncertainty(rig.input, fixed, {}, RunContext{}).report;
+    QVERIFY(!held.cameras[0].intrinsics_std);
+    QCOMPARE(held.names.size() + 8, free.names.size());
+    const CameraUncertainty &with = free.cameras[0], &without = held.cameras[0];
+    QVERIFY(with.rotation_std_rad.norm() > without.rotation_std_rad.norm());
+    QVERIFY(with.translation_std_m.norm() > without.translation_std_m.norm());
+  }
+
+  void found_areHeldWhereAsked() {
+    const test::SimulatedRig rig = rigOf(CameraModel::PinholeRadtan, shortRecording());
+    OptimisationOptions options;
+    options.camera_intrinsics = CameraIntrinsicsChoice::Fixed;
+    QVERIFY(!solve(rig, 1, options).state.cameras[0].intrinsics);
+  }
+
+  void givenIntrinsics_areSolvedForWhereAsked_withinTheirPrior() {
+    test::SimulatedRig rig = rigOf(CameraModel::PinholeRadtan, shortRecording());
+    rig.input.cameras[0].intrinsics_found_first = false;
+    OptimisationOptions options;
+    options.camera_intrinsics = CameraIntrinsicsChoice::Free;
+    const CameraIntrinsics &given = *rig.input.cameras[0].intrinsics,
+                           &truth = *rig.truth.cameras[0].intrinsics;
+    const double before_px = projectionDifference(truth, given).rms_px;
+    const double after_px =
+        projectionDifference(truth, solve(rig, 1, options).state.cameras[0].intrinsics.value()).rms_px;
+    QVERIFY2(after_px < 0.2 * before_px, qPrintable(text(after_px / before_px)));
+    options.camera_focal_length_sigma = 1e-6;
+    options.camera_principal_point_sigma_px = 1e-4;
+    options.camera_distortion_sigma = 1e-6;
+    const double held_px =
+        projectionDifference(given, solve(rig, 1, options).state.cameras[0].intrinsics.value()).rms_px;
+    QVERIFY2(held_px < 0.01, qPrintable(text(held_px)));
+  }
+
+  void k3_isSolvedForWhereItIsUsed() {
+    test::SimulatedRig rig = test::simulateRig(shortRecording());
+    CameraIntrinsics truth = trueCamera(CameraModel::PinholeRadtan), seen = roughly(truth, 1);
+    truth.distortion[4] = 0.02;
+    seen.distortion[4] = 0.01;
+    test::seeThrough(truth, seen, rig);
+    const BatchSolution solution = solve(rig, 1);
+    QVERIFY(solution.state.cameras[0].intrinsics->distortion[4] != 0.01);
+    const UncertaintyReport report = estimateUncertainty(rig.input, solution, {}, RunContext{}).report;
+    QCOMPARE(QString::fromStdString(report.names[17]), QString("left.distortion.k3 [1]"));
+    QVERIFY(projectionDifference(truth, *solution.state.cameras[0].intrinsics).rms_px < 0.05);
+  }
+
+  void lastStage_releasesThem_whicheverItIs() {
+    const test::SimulatedRig rig = rigOf(CameraModel::PinholeRadtan, shortRecording());
+    const CameraIntrinsics& seen = *rig.input.cameras[0].intrinsics;
+    OptimisationOptions options;
+    options.free_imu_intrinsics = false;
+    const BatchSolution without = solve(rig, 1, options);
+    QVERIFY(projectionDifference(seen, without.state.cameras[0].intrinsics.value()).rms_px > 0.1);
+    QVERIFY(without.state.imus[0].gyroscope_mapping == Eigen::Matrix3d::Identity());
+    const BatchSolution solution = solve(rig, 1);
+    for (const IterationRecord& iteration : solution.iterations)
+      if (iteration.stage == 1) QVERIFY(*iteration.cameras[0].intrinsics == seen);
+  }
+};
+
+}  // namespace
+
+QTEST_GUILESS_MAIN(TestFreeIntrinsics)
+#include "tst_free_intrinsics.moc"

@@ -1,0 +1,139 @@
+// A camera whose intrinsics were found first, and are solved for with everything else: what results, files
+// and halves make of it.
+#include "core/geometry/projection_difference.h"
+#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/result_files.h"
+#include "core/report/truth_comparison.h"
+#include "tests/support/seen_through.h"
+#include "tests/support/simulated_pass.h"
+
+#include <QFile>
+#include <QTemporaryDir>
+#include <QtTest>
+
+#include <algorithm>
+#include <filesystem>
+
+using namespace evical;
+using namespace evical::test;
+
+class TestJointIntrinsics : public QObject {
+  Q_OBJECT
+
+  SimulatedPass simulated_;
+  CameraIntrinsics truth_, found_;
+  CalibrationRun run_;
+
+  // As a run's first stages leave it.
+  IntrinsicsResult foundFirst() const {
+    IntrinsicsResult first;
+    first.intrinsics = found_;
+    first.covariance.diagonal().head<8>().setConstant(0.0025);
+    return first;
+  }
+  static bool holds(const std::vector<std::string>& texts, const std::string& part) {
+    return std::any_of(texts.begin(), texts.end(),
+                       [&](const std::string& text) { return text.find(part) != std::string::npos; });
+  }
+  static QString readFile(const QString& path) {
+    QFile file(path);
+    return file.open(QIODevice::ReadOnly) ? QString::fromUtf8(file.readAll()) : QString();
+  }
+
+ private slots:
+  void initTestCase() {
+    simulated_ = simulatePass(8.0, "intrinsics_davis346");
+    truth_ = found_ = *simulated_.session.cameras[0].intrinsics;
+    found_.focal_length_px += Eigen::Vector2d(0.4, -0.3);
+    found_.principal_point_px += Eigen::Vector2d(-0.5, 0.6);
+    found_.distortion[0] += 4e-3;
+    seeThrough(truth_, found_, simulated_.pass.cameras[0]);
+    simulated_.session.cameras[0].intrinsics = found_;
+    run_ = calibrate(simulated_.session, simulated_.pass, {}, nullptr, {foundFirst()});
+  }
+
+  void run_solvesForThem_andKeepsWhatWasFoundFirst() {
+    const CameraIntrinsics solved = run_.result.state.cameras[0].intrinsics.value();
+    QVERIFY(run_.intrinsics[0]->intrinsics == found_);
+    QVERIFY(foundIntrinsics(run_, 0) == solved);
+    const double before_px = projectionDifference(truth_, found_).rms_px;
+    const double after_px = projectionDifference(truth_, solved).rms_px;
+    QVERIFY2(after_px < 0.02 && after_px < 0.2 * before_px, qPrintable(QString::number(after_px)));
+    QVERIFY(holds(run_.result.notes, "solved with everything else, which moved the projection by"));
+    QVERIFY(holds(run_.result.uncertainty.names, "left.focal_length.x [px]"));
+  }
+
+  void errors_areThoseThatTheSigmasSay() {
+    NamedResult truth;
+    truth.names.reference = simulated_.session.reference;
+    truth.names.cameras = {"left"};
+    truth.names.imus = {simulated_.session.imus[0].name};
+    truth.names.intrinsics = {truth_};
+    const SimulatedCamera& camera = simulated_.truth.cameras[0];
+    truth.result.state.cameras = {{camera.imu_from_camera, camera.time_offset_s - camera.pixel.delay_s()}};
+    truth.result.state.imus.resize(1);
+    const TruthComparison comparison = compareWithTruth(namedResult(simulated_.session, run_, "test"), truth);
+    int compared = 0;
+    for (const QuantityError& each : comparison.quantities) {
+      if (each.name.rfind("left.", 0) != 0) continue;
+      QVERIFY2(std::abs(each.normalised()) < 4.0,
+               qPrintable(QString("%1: %2").arg(QString::fromStdString(each.name)).arg(each.normalised())));
+      compared += each.sigma > 0.0;
+    }
+    QCOMPARE(compared, 7 + 8);
+  }
+
+  void halves_solveForThemToo() {
+    const CrossValidation& validation = run_.result.cross_validation.value();
+    QVERIFY2(validation.failure.empty(), validation.failure.c_str());
+    const auto difference =
+        std::find_if(validation.quantities.begin(), validation.quantities.end(),
+                     [](const HalvesDifference& each) { return each.name == "left.focal_length.x"; });
+    QVERIFY(difference != validation.quantities.end());
+    QVERIFY(difference->sigma > 0.0 && difference->difference != 0.0);
+  }
+
+  void files_holdThemAsSolved() {
+    const NamedResult named = namedResult(simulated_.session, run_, "test");
+    QVERIFY(named.names.intrinsics[0] == run_.result.state.cameras[0].intrinsics);
+    QVERIFY(named.names.intrinsics_std[0] == run_.result.uncertainty.cameras[0].intrinsics_std);
+    QTemporaryDir folder;
+    writeResultFiles(folder.path().toStdString(), simulated_.session, run_, "test", "log");
+    const NamedResult read = readResultYaml(folder.filePath("result.yaml").toStdString());
+    QVERIFY(read.names.intrinsics[0] == named.names.intrinsics[0]);
+    QVERIFY(read.names.intrinsics_std[0].has_value());
+    const QString page = readFile(folder.filePath("report.html"));
+    QVERIFY(page.contains("Intrinsics as solved with everything else"));
+    QVERIFY(page.contains("found first") && page.contains("left.focal_length.x"));
+    const QString focal = QString::number(named.names.intrinsics[0]->focal_length_px.x(), 'f', 6).left(9);
+    int holding = 0;
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(folder.path().toStdString() + "/kalibr"))
+      holding += readFile(QString::fromStdString(entry.path().string())).contains(focal);
+    QVERIFY2(holding > 0, qPrintable(focal));
+  }
+
+  void fixed_keepsWhatWasFoundFirst() {
+    Session session = simulated_.session;
+    session.options.optimisation.camera_intrinsics = CameraIntrinsicsChoice::Fixed;
+    session.options.report.cross_validation = false;
+    const CalibrationRun run = calibrate(session, simulated_.pass, {}, nullptr, {foundFirst()});
+    QVERIFY(!run.result.state.cameras[0].intrinsics);
+    QVERIFY(foundIntrinsics(run, 0) == found_);
+    const NamedResult named = namedResult(session, run, "test");
+    QVERIFY(named.names.intrinsics[0] == found_);
+    QVERIFY(std::abs((*named.names.intrinsics_std[0])[0] - 0.05) < 1e-12);
+    QVERIFY(!holds(run.result.notes, "solved with everything else"));
+  }
+
+  void givenIntrinsics_stayAsTheyAre() {
+    Session session = simulated_.session;
+    session.options.report.cross_validation = false;
+    const CalibrationRun run = calibrate(session, simulated_.pass, {});
+    QVERIFY(!run.result.state.cameras[0].intrinsics && !foundIntrinsics(run, 0));
+    QVERIFY(!namedResult(session, run, "test").names.intrinsics_std[0]);
+  }
+};
+
+QTEST_GUILESS_MAIN(TestJointIntrinsics)
+#include "tst_joint_intrinsics.moc"
