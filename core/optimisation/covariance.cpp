@@ -1,12 +1,15 @@
 #include "core/optimisation/covariance.h"
 
 #include "core/optimisation/credible_information.h"
+#include "core/optimisation/drift_uncertainty.h"
 #include "core/optimisation/observability.h"
 #include "core/optimisation/projected_information.h"
+#include "core/optimisation/turned_gyroscope.h"
 
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <array>
@@ -91,17 +94,25 @@ Eigen::MatrixXd reportFromTangent(const Quantity& quantity, Eigen::Index size, c
   return Eigen::MatrixXd::Identity(size, size);
 }
 
-QuantityCovariance quantityCovariance(const ProjectedInformation& information, const CalibrationState& state,
-                                      ceres::Problem& problem) {
+Eigen::MatrixXd reportFromTangent(const ProjectedInformation& information, const CalibrationState& state,
+                                  ceres::Problem& problem) {
+  const Eigen::Index size = information.total.rows();
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
+  for (std::size_t i = 0; i < information.quantities.size(); ++i) {
+    const Eigen::Index first = information.first_column[i], count = information.first_column[i + 1] - first;
+    matrix.block(first, first, count, count) =
+        reportFromTangent(information.quantities[i], count, state, problem);
+  }
+  return matrix;
+}
+
+QuantityCovariance quantityCovariance(const ProjectedInformation& information,
+                                      const Eigen::MatrixXd& report_from_tangent) {
   const Eigen::Index size = information.total.rows();
   Eigen::VectorXd units(size);
-  Eigen::MatrixXd report_from_tangent = Eigen::MatrixXd::Zero(size, size);
   for (std::size_t i = 0; i < information.quantities.size(); ++i) {
-    const Quantity& quantity = information.quantities[i];
     const Eigen::Index first = information.first_column[i], count = information.first_column[i + 1] - first;
-    units.segment(first, count).setConstant(unitOf(quantity.kind));
-    report_from_tangent.block(first, first, count, count) =
-        reportFromTangent(quantity, count, state, problem);
+    units.segment(first, count).setConstant(unitOf(information.quantities[i].kind));
   }
   const SafeInverse safe = safeInverse(information.total, units);
   // What the data doesn't say of its own: priors, the floor under open directions, errors that repeat.
@@ -153,6 +164,8 @@ Naming namingOf(QuantityKind kind) {
       return {"gyroscope_mapping", "1"};
     case QuantityKind::AccelerometerMapping:
       return {"accelerometer_mapping", "1"};
+    case QuantityKind::GyroscopeRotation:
+      return {"gyroscope_rotation", "rad"};
     case QuantityKind::GravityDirection:
       break;
   }
@@ -228,6 +241,9 @@ void storeStandardDeviations(const Quantity& quantity, const Eigen::VectorXd& si
     case QuantityKind::AccelerometerMapping:
       report.imus[quantity.sensor].accelerometer_mapping_std = upperTriangle(sigma);
       break;
+    case QuantityKind::GyroscopeRotation:
+      report.imus[quantity.sensor].gyroscope_rotation_std_rad = sigma;
+      break;
     case QuantityKind::GravityDirection:
       report.gravity_direction_std_rad = sigma.norm() / std::sqrt(2.0);
       break;
@@ -265,16 +281,28 @@ Eigen::Matrix<double, 3, 2> gravityTilts(const Eigen::Vector3d& gravity) {
 UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const BatchSolution& solution,
                                         const OptimisationOptions& options, const RunContext& context) {
   context.throwIfStopped();
-  CalibrationProblem problem(input, options, solution.state);
+  // With gyroscopes free to turn, so that one that is turned is noticed where that is not estimated.
+  OptimisationOptions free_to_turn = options;
+  free_to_turn.gyroscope_rotation = true;
+  CalibrationProblem problem(input, free_to_turn, solution.state);
   problem.used_circles = solution.used_circles;
   problem.scales = solution.scales;
   problem.build(options.last_stage);
-  const ProjectedInformation information =
-      withoutNoise(projectInformation(problem, options.correlation_time_s, context));
+  ProjectedInformation information = projectInformation(problem, options.correlation_time_s, context);
   context.throwIfStopped();
-  const QuantityCovariance covariance = quantityCovariance(information, solution.state, problem.problem());
   UncertaintyEstimate estimate;
+  if (!options.gyroscope_rotation) {
+    estimate.notes = turnedGyroscopes(input, information, withoutNoise(information), options);
+    information = withoutGyroscopeRotation(std::move(information));
+  }
+  information = withoutNoise(std::move(information));
+  const Eigen::MatrixXd report_from_tangent =
+      reportFromTangent(information, solution.state, problem.problem());
+  const QuantityCovariance covariance = quantityCovariance(information, report_from_tangent);
   estimate.report = makeReport(input, covariance);
+  const Eigen::MatrixXd tangent_from_report = report_from_tangent.inverse();
+  reportDrift(information, problem.driftBlocks(),
+              tangent_from_report * covariance.covariance * tangent_from_report.transpose(), estimate.report);
   const Observability observability = judgeObservability(input, solution.state, covariance, options);
   estimate.report.observability = observability.eigenvalues;
   estimate.report.weakest = observability.weakest;

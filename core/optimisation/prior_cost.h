@@ -1,7 +1,9 @@
 // Costs of what is known beforehand.
 #pragma once
 
+#include "core/geometry/so3.h"
 #include "core/optimisation/inertial_cost.h"
+#include "core/optimisation/jacobian_rows.h"
 
 #include <ceres/sized_cost_function.h>
 #include <Eigen/Core>
@@ -32,6 +34,27 @@ class PriorCost final : public ceres::CostFunction {
   double weight_;
   int size_;
   std::array<double, 6> mean_ = {};
+};
+
+// Zero when a rotation is none: r = 2 sin(angle / 2) axis / sigma, without unit. Block: rotation (x y z w).
+class RotationPriorCost final : public ceres::SizedCostFunction<3, 4> {
+ public:
+  explicit RotationPriorCost(double sigma_rad) : weight_(2.0 / sigma_rad) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    const Eigen::Map<const Eigen::Quaterniond> rotation(parameters[0]);
+    const double weight = rotation.w() < 0.0 ? -weight_ : weight_;
+    Eigen::Map<Eigen::Vector3d>{residuals} = weight * rotation.vec();
+    if (jacobians && jacobians[0]) {
+      const Eigen::Matrix3d by_half =
+          rotation.w() * Eigen::Matrix3d::Identity() + skew(Eigen::Vector3d(rotation.vec()));
+      writeRotationRows<3>(jacobians, 0, 0, Eigen::Matrix3d(0.5 * weight * by_half));
+    }
+    return true;
+  }
+
+ private:
+  double weight_;
 };
 
 // Zero when an IMU's mapping leaves an axis as it is: r = (M axis - axis) / sigma, without unit. Block:
