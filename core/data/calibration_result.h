@@ -39,6 +39,9 @@ struct ImuUncertainty {
   Eigen::Vector3d accelerometer_bias_std_m_s2 = Eigen::Vector3d::Zero();
   Eigen::Matrix3d gyroscope_mapping_std = Eigen::Matrix3d::Zero();  // upper triangle
   Eigen::Matrix3d accelerometer_mapping_std = Eigen::Matrix3d::Zero();
+  // Of the biases at the knots of their drift.
+  std::vector<Eigen::Vector3d> gyroscope_drift_std_rad_s, accelerometer_drift_std_m_s2;
+  Eigen::Vector3d gyroscope_rotation_std_rad = Eigen::Vector3d::Zero();  // about the accelerometer's axes
 };
 
 // Over all calibrated quantities, in one order that `names` gives ("left.rotation.x [rad]", ...).

@@ -2,12 +2,14 @@
 // reference camera where there is no IMU.
 #pragma once
 
+#include "core/data/bias_drift.h"
 #include "core/geometry/camera_model.h"
 #include "core/geometry/rigid_transform.h"
 #include "core/geometry/so3_spline.h"
 #include "core/geometry/vector_spline.h"
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <optional>
 #include <vector>
@@ -25,11 +27,27 @@ struct CameraState {
 struct ImuState {
   RigidTransform reference_from_imu;  // identity for the reference
   double time_offset_s = 0.0;         // reference_time = imu_time + time_offset_s
-  Eigen::Vector3d gyroscope_bias_rad_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d gyroscope_bias_rad_s = Eigen::Vector3d::Zero();  // where they drift: the means over time
   Eigen::Vector3d accelerometer_bias_m_s2 = Eigen::Vector3d::Zero();
   Eigen::Matrix3d gyroscope_mapping =
       Eigen::Matrix3d::Identity();  // upper triangular: measured = M true + bias
   Eigen::Matrix3d accelerometer_mapping = Eigen::Matrix3d::Identity();  // the same
+  // The IMU's frame is the accelerometer's; the gyroscope may be turned against it.
+  Eigen::Quaterniond gyroscope_from_accelerometer = Eigen::Quaterniond::Identity();
+
+  BiasDrift bias_drift;  // without knots: biases are constant
+
+  // At a time on the IMU's own clock.
+  Eigen::Vector3d gyroscopeBiasAt_rad_s(double time_s) const {
+    return gyroscope_bias_rad_s + bias_drift.of(bias_drift.gyroscope_rad_s, time_s);
+  }
+  Eigen::Vector3d accelerometerBiasAt_m_s2(double time_s) const {
+    return accelerometer_bias_m_s2 + bias_drift.of(bias_drift.accelerometer_m_s2, time_s);
+  }
+  // measured rate = this times the rate in the IMU's frame + bias.
+  Eigen::Matrix3d gyroscopeMatrix() const {
+    return gyroscope_mapping * gyroscope_from_accelerometer.toRotationMatrix();
+  }
 };
 
 // Times of the splines are seconds since the recording's start on the reference IMU's clock.

@@ -306,7 +306,10 @@ void Batch::reportNotes() {
     say(input_.imus[i].name, "the gyroscope's residual", solution_.scales.gyroscopes[i]);
     say(input_.imus[i].name, "the accelerometer's residual", solution_.scales.accelerometers[i]);
     const StillAxes& held = problem_.held_axes[i];
-    sayHeld(input_.imus[i].name, "rotation", held.gyroscope.size(), "the gyroscope's scale stays as it is");
+    sayHeld(input_.imus[i].name, "rotation", held.gyroscope.size(),
+            options_.gyroscope_rotation
+                ? "the gyroscope's scale and its turn against the accelerometer stay as they are"
+                : "the gyroscope's scale stays as it is");
     sayHeld(input_.imus[i].name, "changing acceleration", held.accelerometer.size(),
             "the accelerometer's scale stays as it is");
   }

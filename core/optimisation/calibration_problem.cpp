@@ -11,9 +11,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace evical {
 namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 ceres::Problem::Options borrowManifolds() {
   ceres::Problem::Options options;
@@ -31,6 +34,8 @@ CalibrationProblem::CalibrationProblem(const CalibrationInput& input, const Opti
                                        const CalibrationState& initial)
     : input_(input), options_(options), state_(initial) {
   setGivenValues(input, options, state_);
+  for (std::size_t i = 0; i < state_.imus.size() && i < input.imus.size(); ++i)
+    placeBiasKnots(options, input.imus[i].noise, state_.world_from_imu_rotation, state_.imus[i]);
   gyroscope_mappings_.resize(state_.imus.size());
   accelerometer_mappings_.resize(state_.imus.size());
   for (std::size_t i = 0; i < state_.imus.size(); ++i) {
@@ -190,7 +195,8 @@ void CalibrationProblem::addImu(std::size_t imu) {
     const SegmentTimes segment = segmentAt(begin_s);
     while (end < samples.size() && inRotation(timeOf(samples[end])) &&
            inPosition(timeOf(samples[end])) == inPosition(begin_s) &&
-           sameSegment(segment, segmentAt(timeOf(samples[end])))) {
+           sameSegment(segment, segmentAt(timeOf(samples[end]))) &&
+           sameBiasKnots(state_.imus[imu], begin_s, timeOf(samples[end]))) {
       ++end;
     }
     const std::span<const ImuSample> some(samples.data() + begin, end - begin);
@@ -210,11 +216,14 @@ void CalibrationProblem::addGyroscope(std::size_t imu, const SegmentTimes& segme
   }
   std::vector<double*> blocks;
   appendRotationBlocks(segment, blocks);
-  blocks.insert(blocks.end(), {state.gyroscope_bias_rad_s.data(), gyroscope_mappings_[imu].data()});
+  blocks.insert(blocks.end(), {state.gyroscope_bias_rad_s.data(), gyroscope_mappings_[imu].data(),
+                               state.gyroscope_from_accelerometer.coeffs().data()});
   if (!isReference(imu)) {
     blocks.insert(blocks.end(), {state.reference_from_imu.rotation.coeffs().data(), &state.time_offset_s});
   }
-  auto* cost = new GyroscopeCost(roleOf(imu), sigma, segment, std::move(measurements));
+  const auto drift = appendDriftBlocks(state.bias_drift, state.bias_drift.gyroscope_rad_s,
+                                       measurements.front().time_s, blocks);
+  auto* cost = new GyroscopeCost(roleOf(imu), sigma, segment, std::move(measurements), drift);
   blocks_.push_back({problem_->AddResidualBlock(cost, nullptr, blocks), SensorKind::Gyroscope, imu, time_s});
 }
 
@@ -237,7 +246,9 @@ void CalibrationProblem::addAccelerometer(std::size_t imu, const SegmentTimes& s
     blocks.insert(blocks.end(), {state.reference_from_imu.rotation.coeffs().data(),
                                  state.reference_from_imu.translation_m.data(), &state.time_offset_s});
   }
-  auto* cost = new AccelerometerCost(roleOf(imu), sigma, segment, std::move(measurements));
+  const auto drift = appendDriftBlocks(state.bias_drift, state.bias_drift.accelerometer_m_s2,
+                                       measurements.front().time_s, blocks);
+  auto* cost = new AccelerometerCost(roleOf(imu), sigma, segment, std::move(measurements), drift);
   blocks_.push_back(
       {problem_->AddResidualBlock(cost, nullptr, blocks), SensorKind::Accelerometer, imu, time_s});
 }
@@ -273,6 +284,9 @@ void CalibrationProblem::addPriors(ReleaseStages stage) {
               options_.gyroscope_bias_sigma_rad_s);
     addUnless(prior.accelerometer_bias.has_value(), state_.imus[i].accelerometer_bias_m_s2.data(), 3,
               kZero.data(), options_.accelerometer_bias_sigma_m_s2);
+    for (const ceres::ResidualBlockId id :
+         addDriftPriors(*problem_, options_, input_.imus[i].noise, state_.imus[i]))
+      blocks_.push_back({id});
     if (stage != ReleaseStages::Mappings) continue;
     addUnless(prior.gyroscope_mapping.has_value(), gyroscope_mappings_[i].data(), 6, kIdentity.data(),
               options_.mapping_sigma);
@@ -280,6 +294,12 @@ void CalibrationProblem::addPriors(ReleaseStages stage) {
               options_.mapping_sigma);
     holdMapping(gyroscope_mappings_[i].data(), held_axes[i].gyroscope, prior.gyroscope_mapping);
     holdMapping(accelerometer_mappings_[i].data(), held_axes[i].accelerometer, prior.accelerometer_mapping);
+    if (!turnsGyroscope(i, stage)) continue;
+    double* rotation = state_.imus[i].gyroscope_from_accelerometer.coeffs().data();
+    auto* cost = new RotationPriorCost(
+        Eigen::Quaterniond::Identity(),
+        Eigen::Vector3d::Constant(kRadPerDeg * options_.gyroscope_rotation_sigma_deg));
+    blocks_.push_back({problem_->AddResidualBlock(cost, nullptr, rotation)});
   }
   double* gravity = state_.gravity_in_world_m_s2.data();
   if (!options_.free_gravity_norm || !problem_->HasParameterBlock(gravity)) return;
@@ -334,13 +354,24 @@ void CalibrationProblem::holdMapping(double* mapping, const std::vector<Eigen::V
   }
 }
 
+// Where nothing turns about some axis the gyroscope could take any turn about it.
+bool CalibrationProblem::turnsGyroscope(std::size_t imu, ReleaseStages stage) const {
+  return options_.gyroscope_rotation && stage == ReleaseStages::Mappings && held_axes[imu].gyroscope.empty();
+}
+
 void CalibrationProblem::setManifolds(ReleaseStages stage) {
   const auto set = [&](double* block, ceres::Manifold* manifold) {
     if (problem_->HasParameterBlock(block)) problem_->SetManifold(block, manifold);
   };
   for (auto& point : state_.world_from_imu_rotation.control_points) set(point.coeffs().data(), &so3_);
   for (CameraState& camera : state_.cameras) set(camera.imu_from_camera.rotation.coeffs().data(), &so3_);
-  for (ImuState& imu : state_.imus) set(imu.reference_from_imu.rotation.coeffs().data(), &so3_);
+  for (std::size_t i = 0; i < state_.imus.size(); ++i) {
+    double* gyroscope_rotation = state_.imus[i].gyroscope_from_accelerometer.coeffs().data();
+    set(state_.imus[i].reference_from_imu.rotation.coeffs().data(), &so3_);
+    set(gyroscope_rotation, &so3_);
+    if (problem_->HasParameterBlock(gyroscope_rotation) && !turnsGyroscope(i, stage))
+      problem_->SetParameterBlockConstant(gyroscope_rotation);
+  }
   if (!options_.free_gravity_norm) set(state_.gravity_in_world_m_s2.data(), &sphere_);
   for (const auto& block : intrinsics_)
     if (block) block->hold(*problem_, stage == lastStage(options_));
@@ -372,11 +403,25 @@ std::vector<Quantity> CalibrationProblem::quantities() {
     all.push_back({QuantityKind::AccelerometerBias, i, imu.accelerometer_bias_m_s2.data()});
     all.push_back({QuantityKind::GyroscopeMapping, i, gyroscope_mappings_[i].data()});
     all.push_back({QuantityKind::AccelerometerMapping, i, accelerometer_mappings_[i].data()});
+    all.push_back({QuantityKind::GyroscopeRotation, i, imu.gyroscope_from_accelerometer.coeffs().data()});
   }
   all.push_back({QuantityKind::GravityDirection, 0, state_.gravity_in_world_m_s2.data()});
   std::erase_if(all, [&](const Quantity& q) {
     return !problem_->HasParameterBlock(q.block) || problem_->IsParameterBlockConstant(q.block);
   });
+  return all;
+}
+
+std::vector<Quantity> CalibrationProblem::driftBlocks() {
+  std::vector<Quantity> all;
+  for (std::size_t i = 0; i < state_.imus.size(); ++i) {
+    BiasDrift& drift = state_.imus[i].bias_drift;
+    for (Eigen::Vector3d& knot : drift.gyroscope_rad_s)
+      all.push_back({QuantityKind::GyroscopeBias, i, knot.data()});
+    for (Eigen::Vector3d& knot : drift.accelerometer_m_s2)
+      all.push_back({QuantityKind::AccelerometerBias, i, knot.data()});
+  }
+  std::erase_if(all, [&](const Quantity& q) { return !problem_->HasParameterBlock(q.block); });
   return all;
 }
 

@@ -4,6 +4,7 @@
 #include "core/data/calibration_setup.h"
 #include "core/data/calibration_state.h"
 #include "core/optimisation/batch_optimiser.h"
+#include "core/optimisation/bias_knots.h"
 #include "core/optimisation/circle_cost.h"
 #include "core/optimisation/inertial_cost.h"
 #include "core/optimisation/optimisation_options.h"
@@ -48,6 +49,7 @@ enum class QuantityKind {
   AccelerometerBias,
   GyroscopeMapping,
   AccelerometerMapping,
+  GyroscopeRotation,
   GravityDirection,
 };
 struct Quantity {
@@ -77,6 +79,8 @@ class CalibrationProblem {
   const CalibrationState& state() const;  // as Ceres left it
   std::vector<Quantity> quantities();     // those free in the built problem
   std::vector<double*> splineBlocks();    // those in the built problem, in order of time
+  std::vector<Quantity>
+  driftBlocks();  // of biases at their knots: by IMU, gyroscopes first, in order of time
 
   std::vector<std::vector<std::vector<std::uint8_t>>> used_circles;
   NoiseScales scales;
@@ -99,6 +103,7 @@ class CalibrationProblem {
                    const std::optional<KnownMapping>& known);
   void holdTranslation(double* translation_m, const std::optional<KnownVector>& known);
   void setManifolds(ReleaseStages stage);
+  bool turnsGyroscope(std::size_t imu, ReleaseStages stage) const;
   void holdReferenceCamera();
   bool isReference(std::size_t imu) const { return imu == input_.reference_imu; }
   ImuRole roleOf(std::size_t imu) const { return isReference(imu) ? ImuRole::Reference : ImuRole::Further; }

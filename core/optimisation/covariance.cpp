@@ -3,12 +3,15 @@
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/optimisation/credible_information.h"
 #include "core/optimisation/known_values.h"
+#include "core/optimisation/drift_uncertainty.h"
 #include "core/optimisation/observability.h"
 #include "core/optimisation/projected_information.h"
+#include "core/optimisation/turned_gyroscope.h"
 
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <array>
@@ -97,18 +100,27 @@ Eigen::MatrixXd reportFromTangent(const Quantity& quantity, Eigen::Index size, c
   return Eigen::MatrixXd::Identity(size, size);
 }
 
-QuantityCovariance quantityCovariance(const ProjectedInformation& information, const CalibrationState& state,
-                                      ceres::Problem& problem) {
+Eigen::MatrixXd reportFromTangent(const ProjectedInformation& information, const CalibrationState& state,
+                                  ceres::Problem& problem) {
+  const Eigen::Index size = information.total.rows();
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
+  for (std::size_t i = 0; i < information.quantities.size(); ++i) {
+    const Eigen::Index first = information.first_column[i], count = information.first_column[i + 1] - first;
+    matrix.block(first, first, count, count) =
+        reportFromTangent(information.quantities[i], count, state, problem);
+  }
+  return matrix;
+}
+
+QuantityCovariance quantityCovariance(const ProjectedInformation& information,
+                                      const Eigen::MatrixXd& report_from_tangent) {
   const Eigen::Index size = information.total.rows();
   Eigen::VectorXd units(size);
-  Eigen::MatrixXd report_from_tangent = Eigen::MatrixXd::Zero(size, size);
   for (std::size_t i = 0; i < information.quantities.size(); ++i) {
-    const Quantity& quantity = information.quantities[i];
     const Eigen::Index first = information.first_column[i], count = information.first_column[i + 1] - first;
-    units.segment(first, count).setConstant(unitOf(quantity.kind));
-    if (quantity.kind == QuantityKind::CameraIntrinsics) units.segment<4>(first).setConstant(kPixelUnit);
-    report_from_tangent.block(first, first, count, count) =
-        reportFromTangent(quantity, count, state, problem);
+    units.segment(first, count).setConstant(unitOf(information.quantities[i].kind));
+    if (information.quantities[i].kind == QuantityKind::CameraIntrinsics)
+      units.segment<4>(first).setConstant(kPixelUnit);
   }
   const SafeInverse safe = safeInverse(information.total, units);
   // What the data doesn't say of its own: priors, the floor under open directions, errors that repeat.
@@ -164,6 +176,8 @@ Naming namingOf(QuantityKind kind) {
       return {"accelerometer_mapping", "1"};
     case QuantityKind::CameraIntrinsics:
       return {"distortion", "1"};
+    case QuantityKind::GyroscopeRotation:
+      return {"gyroscope_rotation", "rad"};
     case QuantityKind::GravityDirection:
       break;
   }
@@ -257,6 +271,9 @@ void storeStandardDeviations(const Quantity& quantity, const Eigen::VectorXd& si
     case QuantityKind::AccelerometerMapping:
       report.imus[quantity.sensor].accelerometer_mapping_std = upperTriangle(sigma);
       break;
+    case QuantityKind::GyroscopeRotation:
+      report.imus[quantity.sensor].gyroscope_rotation_std_rad = sigma;
+      break;
     case QuantityKind::GravityDirection:
       report.gravity_direction_std_rad = sigma.head<2>().norm() / std::sqrt(2.0);
       if (sigma.size() == 3) report.gravity_norm_std_m_s2 = sigma[2];
@@ -295,17 +312,29 @@ Eigen::Matrix<double, 3, 2> gravityTilts(const Eigen::Vector3d& gravity) {
 UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const BatchSolution& solution,
                                         const OptimisationOptions& options, const RunContext& context) {
   context.throwIfStopped();
-  CalibrationProblem problem(input, options, solution.state);
+  // With gyroscopes free to turn, so that one that is turned is noticed where that is not estimated.
+  OptimisationOptions free_to_turn = options;
+  free_to_turn.gyroscope_rotation = true;
+  CalibrationProblem problem(input, free_to_turn, solution.state);
   problem.used_circles = solution.used_circles;
   problem.scales = solution.scales;
   problem.build(lastStage(options));
-  const ProjectedInformation information =
-      withoutNoise(projectInformation(problem, options.correlation_time_s, context));
+  ProjectedInformation information = projectInformation(problem, options.correlation_time_s, context);
   context.throwIfStopped();
-  const QuantityCovariance covariance = quantityCovariance(information, solution.state, problem.problem());
   UncertaintyEstimate estimate;
+  if (!options.gyroscope_rotation) {
+    estimate.notes = turnedGyroscopes(input, information, withoutNoise(information), options);
+    information = withoutGyroscopeRotation(std::move(information));
+  }
+  information = withoutNoise(std::move(information));
+  const Eigen::MatrixXd report_from_tangent =
+      reportFromTangent(information, solution.state, problem.problem());
+  const QuantityCovariance covariance = quantityCovariance(information, report_from_tangent);
   estimate.report = makeReport(input, covariance);
   estimate.report.given = givenQuantities(input, options);
+  const Eigen::MatrixXd tangent_from_report = report_from_tangent.inverse();
+  reportDrift(information, problem.driftBlocks(),
+              tangent_from_report * covariance.covariance * tangent_from_report.transpose(), estimate.report);
   const Observability observability = judgeObservability(input, solution.state, covariance, options);
   estimate.report.observability = observability.eigenvalues;
   estimate.report.weakest = observability.weakest;

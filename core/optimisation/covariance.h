@@ -13,6 +13,7 @@
 #include "core/optimisation/optimisation_options.h"
 
 #include <string>
+#include <vector>
 
 namespace evical {
 
@@ -20,6 +21,7 @@ struct UncertaintyEstimate {
   UncertaintyReport report;
   CalibrationStatus status = CalibrationStatus::Ok;
   std::string reason;  // why not Ok, and what to do; empty if it is
+  std::vector<std::string> notes;
 };
 
 // The two directions, in the world, in which the report gives gravity's tilt ("gravity.direction.1", ".2").

@@ -13,6 +13,26 @@ void writeMapping(double** jacobians, int block, Eigen::Index row, const Vector3
   jacobianRows<3, 6>(jacobians, block, row) = derivativeByMapping(weight * v);
 }
 
+// Adds the weighted drift to the samples' residuals; its two blocks are the last, from `first` on.
+void addDrift(const DriftTimes& drift, const std::vector<InertialMeasurement>& samples, double weight,
+              int first, double const* const* parameters, double* residuals, double** jacobians) {
+  const Eigen::Map<const Vector3d> before(parameters[first]), after(parameters[first + 1]);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(3 * i);
+    const double share = drift.shareAt(samples[i].time_s);
+    Eigen::Map<Vector3d>(residuals + row) += weight * ((1.0 - share) * before + share * after);
+    if (!jacobians) continue;
+    if (jacobians[first])
+      jacobianRows<3, 3>(jacobians, first, row) = weight * (1.0 - share) * Matrix3d::Identity();
+    if (jacobians[first + 1])
+      jacobianRows<3, 3>(jacobians, first + 1, row) = weight * share * Matrix3d::Identity();
+  }
+}
+
+void appendDriftBlocks(std::vector<int>& sizes) {
+  sizes.insert(sizes.end(), {3, 3});
+}
+
 bool anyOf(double** jacobians, int first, int count) {
   if (!jacobians) return false;
   for (int i = first; i < first + count; ++i) {
@@ -149,21 +169,28 @@ Eigen::Matrix<double, 3, 6> derivativeByMapping(const Vector3d& v) {
 }
 
 GyroscopeCost::GyroscopeCost(ImuRole role, double sigma_rad_s, const SegmentTimes& segment,
-                             std::vector<InertialMeasurement> samples)
-    : role_(role), weight_(1.0 / sigma_rad_s), segment_(segment), samples_(std::move(samples)) {
-  *mutable_parameter_block_sizes() = {4, 4, 4, 4, 3, 6};
+                             std::vector<InertialMeasurement> samples, std::optional<DriftTimes> drift)
+    : role_(role),
+      weight_(1.0 / sigma_rad_s),
+      segment_(segment),
+      samples_(std::move(samples)),
+      drift_(drift) {
+  *mutable_parameter_block_sizes() = {4, 4, 4, 4, 3, 6, 4};
   if (role == ImuRole::Further) {
     mutable_parameter_block_sizes()->push_back(4);
     mutable_parameter_block_sizes()->push_back(1);
   }
+  if (drift) appendDriftBlocks(*mutable_parameter_block_sizes());
   set_num_residuals(3 * static_cast<int>(samples_.size()));
 }
 
 bool GyroscopeCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
-  enum { kBias = 4, kMapping, kRotation, kTimeOffset };
+  enum { kBias = 4, kMapping, kGyroscopeRotation, kRotation, kTimeOffset };
   const bool further = role_ == ImuRole::Further;
   const Eigen::Map<const Vector3d> bias(parameters[kBias]);
-  const Matrix3d mapping = weight_ * mappingFromParameters(parameters[kMapping]);
+  const Matrix3d gyroscope_from_imu =
+      Eigen::Map<const Eigen::Quaterniond>(parameters[kGyroscopeRotation]).toRotationMatrix();
+  const Matrix3d by_imu_rate = weight_ * mappingFromParameters(parameters[kMapping]) * gyroscope_from_imu;
   Matrix3d imu_from_reference = Matrix3d::Identity();
   if (further) {
     imu_from_reference =
@@ -171,7 +198,7 @@ bool GyroscopeCost::Evaluate(double const* const* parameters, double* residuals,
   }
   const double time_offset_s = further ? *parameters[kTimeOffset] : 0.0;
   const bool by_spline = anyOf(jacobians, 0, 4), by_time = further && jacobians && jacobians[kTimeOffset];
-  const Matrix3d by_rate = mapping * imu_from_reference;
+  const Matrix3d by_rate = by_imu_rate * imu_from_reference;
   const So3Segment rotation_segment = rotationSegment(segment_, parameters, by_spline);
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(3 * i);
@@ -182,7 +209,7 @@ bool GyroscopeCost::Evaluate(double const* const* parameters, double* residuals,
                               by_time ? RotationOrder::Acceleration : RotationOrder::Velocity, rotation,
                               by_spline ? &by_control_points : nullptr);
     const Vector3d rate = imu_from_reference * rotation.angular_velocity_rad_s;
-    Eigen::Map<Vector3d>(residuals + row) = mapping * rate + weight_ * (bias - samples_[i].value);
+    Eigen::Map<Vector3d>(residuals + row) = by_imu_rate * rate + weight_ * (bias - samples_[i].value);
     if (!jacobians) continue;
     for (int k = 0; k < 4; ++k) {
       if (jacobians[k])
@@ -190,21 +217,29 @@ bool GyroscopeCost::Evaluate(double const* const* parameters, double* residuals,
                              by_rate * by_control_points.velocity[static_cast<std::size_t>(k)]);
     }
     if (jacobians[kBias]) jacobianRows<3, 3>(jacobians, kBias, row) = weight_ * Matrix3d::Identity();
-    if (jacobians[kMapping]) writeMapping(jacobians, kMapping, row, rate, weight_);
+    if (jacobians[kMapping]) writeMapping(jacobians, kMapping, row, gyroscope_from_imu * rate, weight_);
+    if (jacobians[kGyroscopeRotation])
+      writeRotationRows<3>(jacobians, kGyroscopeRotation, row, -by_imu_rate * skew(rate));
     if (further && jacobians[kRotation])
-      writeRotationRows<3>(jacobians, kRotation, row, mapping * skew(rate));
+      writeRotationRows<3>(jacobians, kRotation, row, by_imu_rate * skew(rate));
     if (by_time)
       jacobianRows<3, 1>(jacobians, kTimeOffset, row) = by_rate * rotation.angular_acceleration_rad_s2;
+  }
+  if (drift_) {
+    const int first = static_cast<int>(parameter_block_sizes().size()) - 2;
+    addDrift(*drift_, samples_, weight_, first, parameters, residuals, jacobians);
   }
   return true;
 }
 
 AccelerometerCost::AccelerometerCost(ImuRole role, double sigma_m_s2, const SegmentTimes& segment,
-                                     std::vector<InertialMeasurement> samples)
-    : role_(role), weight_(1.0 / sigma_m_s2), segment_(segment), samples_(std::move(samples)) {
+                                     std::vector<InertialMeasurement> samples,
+                                     std::optional<DriftTimes> drift)
+    : role_(role), weight_(1.0 / sigma_m_s2), segment_(segment), samples_(std::move(samples)), drift_(drift) {
   *mutable_parameter_block_sizes() = {4, 4, 4, 4, 3, 3, 3, 3, 3, 3, 6};
   if (role == ImuRole::Further)
     mutable_parameter_block_sizes()->insert(parameter_block_sizes().end(), {4, 3, 1});
+  if (drift) appendDriftBlocks(*mutable_parameter_block_sizes());
   set_num_residuals(3 * static_cast<int>(samples_.size()));
 }
 
@@ -244,6 +279,10 @@ bool AccelerometerCost::Evaluate(double const* const* parameters, double* residu
       jacobianRows<3, 1>(jacobians, kForceTimeOffset, row) =
           model.mapping * model.imu_from_reference * forceRate(time_s);
     }
+  }
+  if (drift_) {
+    const int first = static_cast<int>(parameter_block_sizes().size()) - 2;
+    addDrift(*drift_, samples_, weight_, first, parameters, residuals, jacobians);
   }
   return true;
 }

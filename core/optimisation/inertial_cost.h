@@ -1,14 +1,16 @@
 // Zero when an IMU measures what its sensor model says of the trajectory (method section 3):
-//   gyroscope      r = [ M_g w_j + b_g - measured ] / sigma,   w_j = R^T w(t)
+//   gyroscope      r = [ M_g R_ga w_j + b_g - measured ] / sigma,   w_j = R^T w(t)
 //   accelerometer  r = [ M_a f_j + b_a - measured ] / sigma,
 //                  f_j = R^T [ R_wb(t)^T (p''(t) - g) + (a(t)^ + w(t)^ w(t)^) l ]
 // with R, l = reference_from_imu and t = t_measured + time_offset. For the reference IMU R = 1, l = 0, offset
 // 0, and the last blocks are absent. One cost function holds all samples whose times fall into one spline
 // segment.
 //
-// Blocks of the gyroscope: 4 rotation control points (x y z w), bias [rad/s], mapping; further IMUs: rotation
-// (x y z w), time offset [s]. Blocks of the accelerometer: 4 rotation and 4 position control points [m],
-// gravity in the world [m/s^2], bias [m/s^2], mapping; further IMUs: rotation, lever arm l [m], time offset.
+// Blocks of the gyroscope: 4 rotation control points (x y z w), bias [rad/s], mapping, R_ga (gyroscope from
+// accelerometer, x y z w); further IMUs: rotation (x y z w), time offset [s]. Blocks of the accelerometer: 4
+// rotation and 4 position control points [m], gravity in the world [m/s^2], bias [m/s^2], mapping; further
+// IMUs: rotation, lever arm l [m], time offset. Where biases drift, two blocks more at the end: at the knots
+// before and after the samples, how far the bias is from its mean there; between them it is a straight line.
 // Without unit. Mapping: the upper triangle row by row (m00 m01 m02 m11 m12 m22). Quaternion blocks as in
 // so3_manifold.h.
 #pragma once
@@ -18,6 +20,8 @@
 #include <ceres/cost_function.h>
 #include <Eigen/Core>
 
+#include <algorithm>
+#include <optional>
 #include <vector>
 
 namespace evical {
@@ -29,10 +33,17 @@ struct InertialMeasurement {
 
 enum class ImuRole { Reference, Further };
 
+// The time between two knots of a bias, on the IMU's own clock.
+struct DriftTimes {
+  double start_s = 0.0, length_s = 0.0;
+
+  double shareAt(double time_s) const { return std::clamp((time_s - start_s) / length_s, 0.0, 1.0); }
+};
+
 class GyroscopeCost final : public ceres::CostFunction {
  public:
   GyroscopeCost(ImuRole role, double sigma_rad_s, const SegmentTimes& segment,
-                std::vector<InertialMeasurement> samples);
+                std::vector<InertialMeasurement> samples, std::optional<DriftTimes> drift = std::nullopt);
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
  private:
@@ -40,12 +51,13 @@ class GyroscopeCost final : public ceres::CostFunction {
   double weight_;
   SegmentTimes segment_;
   std::vector<InertialMeasurement> samples_;
+  std::optional<DriftTimes> drift_;
 };
 
 class AccelerometerCost final : public ceres::CostFunction {
  public:
   AccelerometerCost(ImuRole role, double sigma_m_s2, const SegmentTimes& segment,
-                    std::vector<InertialMeasurement> samples);
+                    std::vector<InertialMeasurement> samples, std::optional<DriftTimes> drift = std::nullopt);
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
  private:
@@ -53,6 +65,7 @@ class AccelerometerCost final : public ceres::CostFunction {
   double weight_;
   SegmentTimes segment_;
   std::vector<InertialMeasurement> samples_;
+  std::optional<DriftTimes> drift_;
 };
 
 // Upper triangle, row by row.

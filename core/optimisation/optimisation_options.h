@@ -10,6 +10,7 @@ enum class ReleaseStages { Extrinsics, FurtherImus, Mappings };
 
 // Automatic: free where they were found from the same recording first, fixed where the session gives them.
 enum class CameraIntrinsicsChoice { Automatic, Fixed, Free };
+enum class BiasModel { Constant, Linear };
 
 struct OptimisationOptions {
   bool free_time_offsets = true;
@@ -27,6 +28,12 @@ struct OptimisationOptions {
   double rest_speed_px_s = 5.0;
   double least_centre_sigma_px = 0.01;
   double mapping_sigma = 0.05;
+  bool gyroscope_rotation = false;
+  double gyroscope_rotation_sigma_deg = 5.0;
+  BiasModel bias_model = BiasModel::Constant;
+  double bias_knot_spacing_s = 5.0;
+  double gyroscope_random_walk = 2.66e-5;
+  double accelerometer_random_walk = 4.33e-4;
   double gyroscope_bias_sigma_rad_s = 1.0;
   double accelerometer_bias_sigma_m_s2 = 1.0;
   double translation_sigma_m = 0.5;
@@ -82,6 +89,20 @@ inline constexpr auto kOptimisationFields = std::tuple{
           "Added in squares to the covariance of each measured centre."},
     Field{"mapping_sigma", &OptimisationOptions::mapping_sigma, 1e-6, 10.0, "",
           "Weak prior on each entry of M_g and M_a around the identity."},
+    Switch{"gyroscope_rotation", &OptimisationOptions::gyroscope_rotation,
+           "Estimate how each gyroscope is turned against its accelerometer, whose frame is the IMU's."},
+    Field{"gyroscope_rotation_sigma_deg", &OptimisationOptions::gyroscope_rotation_sigma_deg, 1e-3, 180.0,
+          "deg", "Weak prior on that turn around 0."},
+    Choice{"bias_model", &OptimisationOptions::bias_model, std::array{"constant", "linear"},
+           "Biases over a recording: constant, or straight lines between knots that walk at random."},
+    Field{"bias_knot_spacing_s", &OptimisationOptions::bias_knot_spacing_s, 0.1, 1e4, "s",
+          "Linear biases: knots are at most this far apart, closer where the random walk asks for it, and no "
+          "more than 48."},
+    Field{"gyroscope_random_walk", &OptimisationOptions::gyroscope_random_walk, 1e-9, 1.0, "rad/s^2/sqrt(Hz)",
+          "Linear biases: how fast gyroscope biases drift where the session does not say it. The default is "
+          "Kalibr's example for an ADIS16448, as the noise densities are."},
+    Field{"accelerometer_random_walk", &OptimisationOptions::accelerometer_random_walk, 1e-9, 10.0,
+          "m/s^3/sqrt(Hz)", "The same of accelerometer biases."},
     Field{"gyroscope_bias_sigma_rad_s", &OptimisationOptions::gyroscope_bias_sigma_rad_s, 1e-6, 100.0,
           "rad/s", "Weak prior on gyroscope biases around 0."},
     Field{"accelerometer_bias_sigma_m_s2", &OptimisationOptions::accelerometer_bias_sigma_m_s2, 1e-6, 100.0,

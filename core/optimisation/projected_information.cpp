@@ -2,6 +2,8 @@
 
 #include "core/optimisation/band_cholesky.h"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -46,10 +48,16 @@ class Layout {
       quantity_size_ += problem.problem().ParameterBlockTangentSize(quantity.block);
     }
     first_column_.push_back(quantity_size_);
+    for (const Quantity& knot : problem.driftBlocks()) {
+      const int size = problem.problem().ParameterBlockTangentSize(knot.block);
+      columns_[knot.block] = {false, quantity_size_ + drift_size_, size};
+      drift_size_ += size;
+    }
   }
 
   Eigen::Index splineSize() const { return spline_size_; }
   Eigen::Index quantitySize() const { return quantity_size_; }
+  Eigen::Index driftSize() const { return drift_size_; }  // columns after the quantities'
   const std::vector<Eigen::Index>& firstColumn() const { return first_column_; }
 
   Eigen::Index halfBandwidth() const {
@@ -80,7 +88,7 @@ class Layout {
   const RunContext& context_;
   std::unordered_map<double*, Columns> columns_;
   std::vector<Eigen::Index> first_column_;
-  Eigen::Index spline_size_ = 0, quantity_size_ = 0;
+  Eigen::Index spline_size_ = 0, quantity_size_ = 0, drift_size_ = 0;
 };
 
 void Layout::evaluate(const BlockInfo& info, BlockJacobian& out) const {
@@ -121,14 +129,14 @@ void Layout::evaluate(const BlockInfo& info, BlockJacobian& out) const {
   }
 }
 
-// Sums of the normal equations, splines eliminated.
+// Sums of the normal equations, splines and then the biases' knots eliminated.
 class Elimination {
  public:
   Elimination(const CalibrationProblem& problem, const Layout& layout)
       : problem_(problem),
         layout_(layout),
         splines_(layout.splineSize(), layout.halfBandwidth()),
-        eliminated_(Eigen::MatrixXd::Zero(layout.splineSize(), layout.quantitySize())) {}
+        eliminated_(Eigen::MatrixXd::Zero(layout.splineSize(), layout.quantitySize() + layout.driftSize())) {}
 
   void eliminate() {
     BlockJacobian block;
@@ -151,15 +159,23 @@ class Elimination {
     }
     splines_.factorise();
     splines_.solveInPlace(eliminated_);
+    if (layout_.driftSize() > 0) eliminateDrift();
   }
 
   // P of one block, all quantities.
   Eigen::MatrixXd project(const BlockJacobian& block) const {
-    Eigen::MatrixXd projected = Eigen::MatrixXd::Zero(block.residuals.size(), layout_.quantitySize());
+    const Eigen::Index size = layout_.quantitySize();
+    Eigen::MatrixXd projected = Eigen::MatrixXd::Zero(block.residuals.size(), eliminated_.cols());
     for (std::size_t q = 0; q < block.quantity_columns.size(); ++q) {
-      projected.col(block.quantity_columns[q]) = block.byQuantities().col(static_cast<Eigen::Index>(q));
+      const Eigen::Index column = block.quantity_columns[q];
+      const auto by_column = block.byQuantities().col(static_cast<Eigen::Index>(q));
+      if (column < eliminated_.cols()) {
+        projected.col(column) = by_column;
+      } else {
+        projected.noalias() -= by_column * drift_by_quantities_.row(column - size);
+      }
     }
-    Eigen::MatrixXd rows(static_cast<Eigen::Index>(block.spline_columns.size()), layout_.quantitySize());
+    Eigen::MatrixXd rows(static_cast<Eigen::Index>(block.spline_columns.size()), eliminated_.cols());
     for (std::size_t a = 0; a < block.spline_columns.size(); ++a) {
       rows.row(static_cast<Eigen::Index>(a)) = eliminated_.row(block.spline_columns[a]);
     }
@@ -168,12 +184,39 @@ class Elimination {
   }
 
   const BandCholesky& splines() const { return splines_; }
+  const Eigen::MatrixXd& driftByQuantities() const { return drift_by_quantities_; }
+  const Eigen::MatrixXd& driftCovariance() const { return drift_covariance_; }
 
  private:
+  // From rows of the knots' own Schur complement, since few blocks have knots.
+  void eliminateDrift() {
+    const Eigen::Index size = layout_.quantitySize(), knots = layout_.driftSize();
+    Eigen::MatrixXd schur = Eigen::MatrixXd::Zero(knots, size + knots);
+    BlockJacobian block;
+    for (const BlockInfo& info : problem_.blocks()) {
+      layout_.evaluate(info, block);
+      if (block.quantity_columns.empty() || block.quantity_columns.back() < size) continue;
+      const Eigen::MatrixXd projected = project(block);
+      for (std::size_t q = 0; q < block.quantity_columns.size(); ++q) {
+        const Eigen::Index knot = block.quantity_columns[q] - size;
+        if (knot < 0) continue;
+        schur.row(knot).noalias() +=
+            block.byQuantities().col(static_cast<Eigen::Index>(q)).transpose() * projected;
+      }
+    }
+    const Eigen::LDLT<Eigen::MatrixXd> solver(schur.rightCols(knots));
+    drift_covariance_ = solver.solve(Eigen::MatrixXd::Identity(knots, knots));
+    drift_by_quantities_ = solver.solve(schur.leftCols(size));
+    const Eigen::MatrixXd kept =
+        eliminated_.leftCols(size) - eliminated_.rightCols(knots) * drift_by_quantities_;
+    eliminated_ = kept;
+  }
+
   const CalibrationProblem& problem_;
   const Layout& layout_;
   BandCholesky splines_;
-  Eigen::MatrixXd eliminated_;  // (J_x^T J_x)^-1 J_x^T J_q
+  Eigen::MatrixXd eliminated_;  // (J_x^T J_x)^-1 J_x^T J_q; until they are eliminated, knots' columns follow
+  Eigen::MatrixXd drift_by_quantities_, drift_covariance_;
 };
 
 std::size_t groupOf(std::vector<MeasurementGroup>& groups, const BlockInfo& info, Eigen::Index size) {
@@ -320,6 +363,9 @@ ProjectedInformation projectInformation(CalibrationProblem& problem, double stre
   result.first_column = layout.firstColumn();
   const Eigen::Index size = layout.quantitySize();
   result.total = Eigen::MatrixXd::Zero(size, size);
+  result.gradient = Eigen::VectorXd::Zero(size);
+  result.drift_by_quantities = elimination.driftByQuantities();
+  result.drift_covariance = elimination.driftCovariance();
 
   struct Score {
     std::size_t group;
@@ -336,10 +382,11 @@ ProjectedInformation projectInformation(CalibrationProblem& problem, double stre
     group.information.noalias() += projected.transpose() * projected;
     group.squared_residuals += block.residuals.squaredNorm();
     group.residuals += static_cast<double>(block.residuals.size());
+    const Eigen::VectorXd score = projected.transpose() * block.residuals;
+    result.gradient += score;
     if (info.kind == SensorKind::Prior) continue;
     if (info.circles) addPixelErrors(info, projected, result.pixel_errors);
-    scores.push_back({g, static_cast<std::int64_t>(std::floor(info.time_s / stretch_s)),
-                      projected.transpose() * block.residuals});
+    scores.push_back({g, static_cast<std::int64_t>(std::floor(info.time_s / stretch_s)), score});
   }
   for (const MeasurementGroup& group : result.groups) result.total += group.information;
   countAbsorbed(problem, layout, elimination, result.groups);

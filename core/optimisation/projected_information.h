@@ -1,4 +1,5 @@
-// What the measurements say of the calibrated quantities once the splines have been eliminated.
+// What the measurements say of the calibrated quantities once the splines, and the biases' knots where these
+// drift, have been eliminated.
 //
 // With whitened Jacobians J_x (splines) and J_q (quantities), the projected Jacobian is
 //   P = J_q - J_x (J_x^T J_x)^-1 J_x^T J_q,
@@ -32,12 +33,16 @@ struct ProjectedInformation {
   std::vector<Quantity> quantities;
   std::vector<Eigen::Index> first_column;  // of each quantity; one more for the end
   Eigen::MatrixXd total;                   // P^T P
+  Eigen::VectorXd gradient;                // P^T r, r all residuals: 0 by what is free at the optimum
   std::vector<MeasurementGroup> groups;
   // P^T e of the measurements in each stretch of time, residuals scaled up for what was absorbed.
   std::vector<Eigen::VectorXd> scores;
   // What the splines' own errors add to P^T P on average. Where nothing moves the derivatives still hold
   // noise, and noise squared looks like information.
   Eigen::MatrixXd from_noise;
+  // Of biases that drift, in the order of CalibrationProblem::driftBlocks: by how much the knots fall where
+  // quantities rise, and the knots' covariance where these are known. Empty where biases are constant.
+  Eigen::MatrixXd drift_by_quantities, drift_covariance;
   // By camera: P^T d, d what one sigma of the pixels' repeated errors changes in the residuals.
   std::vector<Eigen::VectorXd> pixel_errors;
 };

@@ -15,12 +15,13 @@ SampleErrors sampleErrors(const CalibrationInput& input, const CalibrationState&
   SampleErrors errors;
   double gyroscope2 = 0.0, accelerometer2 = 0.0;
   for (const ImuSample& sample : input.imus[imu].samples) {
-    const double time_s = secondsSince(input.start_ns, sample.time_ns) + imu_state.time_offset_s;
+    const double imu_time_s = secondsSince(input.start_ns, sample.time_ns);
+    const double time_s = imu_time_s + imu_state.time_offset_s;
     if (!state.world_from_imu_rotation.contains(time_s)) continue;
     const RotationSample rotation = evaluate(state.world_from_imu_rotation, time_s);
     const Eigen::Vector3d& w = rotation.angular_velocity_rad_s;
-    gyroscope2 += (imu_state.gyroscope_mapping * (imu_from_reference * w) + imu_state.gyroscope_bias_rad_s -
-                   sample.angular_rate_rad_s)
+    gyroscope2 += (imu_state.gyroscopeMatrix() * (imu_from_reference * w) +
+                   imu_state.gyroscopeBiasAt_rad_s(imu_time_s) - sample.angular_rate_rad_s)
                       .squaredNorm();
     ++errors.gyroscope_samples;
     if (!state.imu_in_world_m.contains(time_s)) continue;
@@ -29,7 +30,7 @@ SampleErrors sampleErrors(const CalibrationInput& input, const CalibrationState&
         rotation.rotation.transpose() * (acceleration - state.gravity_in_world_m_s2) +
         rotation.angular_acceleration_rad_s2.cross(lever_arm) + w.cross(w.cross(lever_arm));
     accelerometer2 += (imu_state.accelerometer_mapping * (imu_from_reference * force) +
-                       imu_state.accelerometer_bias_m_s2 - sample.specific_force_m_s2)
+                       imu_state.accelerometerBiasAt_m_s2(imu_time_s) - sample.specific_force_m_s2)
                           .squaredNorm();
     ++errors.accelerometer_samples;
   }

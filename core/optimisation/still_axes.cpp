@@ -48,10 +48,11 @@ StillAxes stillAxes(const CalibrationInput& input, const CalibrationState& state
   const ImuData& data = input.imus[imu];
   Spread rates, forces;
   for (const ImuSample& sample : data.samples) {
-    const double time_s = secondsSince(input.start_ns, sample.time_ns) + state.imus[imu].time_offset_s;
+    const double imu_time_s = secondsSince(input.start_ns, sample.time_ns);
+    const double time_s = imu_time_s + state.imus[imu].time_offset_s;
     if (!state.world_from_imu_rotation.contains(time_s)) continue;
-    rates.add(sample.angular_rate_rad_s);
-    forces.add(sample.specific_force_m_s2);
+    rates.add(sample.angular_rate_rad_s - state.imus[imu].gyroscopeBiasAt_rad_s(imu_time_s));
+    forces.add(sample.specific_force_m_s2 - state.imus[imu].accelerometerBiasAt_m_s2(imu_time_s));
   }
   const double root_rate = std::sqrt(data.rate_hz());
   return {rates.axesWithout(scales.gyroscopes[imu] * data.noise.gyroscope_density * root_rate),

@@ -96,6 +96,8 @@ UncertaintyReport ofDifference(const UncertaintyReport& a, const UncertaintyRepo
     imu.accelerometer_bias_std_m_s2 =
         together(first.accelerometer_bias_std_m_s2, second.accelerometer_bias_std_m_s2);
     imu.gyroscope_mapping_std = together(first.gyroscope_mapping_std, second.gyroscope_mapping_std);
+    imu.gyroscope_rotation_std_rad =
+        together(first.gyroscope_rotation_std_rad, second.gyroscope_rotation_std_rad);
     imu.accelerometer_mapping_std =
         together(first.accelerometer_mapping_std, second.accelerometer_mapping_std);
   }

@@ -2,6 +2,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/report/bias_csv.h"
 #include "core/report/csv.h"
 #include "core/report/export/export_target.h"
 #include "core/report/html/html_report.h"
@@ -102,6 +103,8 @@ ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Sessio
                                     {"trajectory.csv", trajectoryCsv(run.result.state)},
                                     {"detections.csv", detectionsCsv(run.pass.cameras)},
                                     {"windows.csv", windowsCsv(run.pass.cameras)}};
+  const std::string biases = biasesCsv(named);
+  if (!biases.empty()) files.push_back({"biases.csv", biases});
   addReport(session, named, run.pass, files, run.intrinsics);
   ExportRemarks remarks = addExports(named, session, files);
   std::string full_log = log;

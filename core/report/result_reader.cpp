@@ -62,15 +62,19 @@ void get(const YamlNode& map, const char* key, std::vector<std::string>& values)
   for (const YamlNode& item : node->items()) values.push_back(item.text());
 }
 
+Eigen::Quaterniond unitQuaternion(const YamlNode& node) {
+  Eigen::Quaterniond rotation(vector<4>(node));
+  const double norm = rotation.norm();
+  if (!(std::abs(norm - 1.0) < 1e-3))
+    throw node.error(fmt::format("is no unit quaternion: its norm is {}", norm));
+  // Dividing only where it matters leaves what we wrote ourselves as it was, to the last bit.
+  if (std::abs(norm - 1.0) > 1e-12) rotation.normalize();
+  return rotation;
+}
+
 void readTransform(const YamlNode& map, RigidTransform& pose, Eigen::Vector3d& rotation_std_rad,
                    Eigen::Vector3d& translation_std_m) {
-  const YamlNode rotation = map["rotation_xyzw"];
-  pose.rotation.coeffs() = vector<4>(rotation);
-  const double norm = pose.rotation.norm();
-  if (!(std::abs(norm - 1.0) < 1e-3))
-    throw rotation.error(fmt::format("is no unit quaternion: its norm is {}", norm));
-  // Dividing only where it matters leaves what we wrote ourselves as it was, to the last bit.
-  if (std::abs(norm - 1.0) > 1e-12) pose.rotation.normalize();
+  pose.rotation = unitQuaternion(map["rotation_xyzw"]);
   pose.translation_m = vector<3>(map["translation_m"]);
   get(map, "rotation_std_deg", rotation_std_rad, kRadPerDeg);
   get(map, "translation_std_m", translation_std_m);
@@ -153,6 +157,9 @@ void readImu(const YamlNode& map, NamedResult& named) {
     get(*gyroscope, "mapping", state.gyroscope_mapping);
     get(*gyroscope, "mapping_std", sigma.gyroscope_mapping_std);
     get(*gyroscope, "residual_rms_rad_s", fit.gyroscope_rms_rad_s);
+    if (const auto turn = gyroscope->find("gyroscope_from_accelerometer_xyzw"))
+      state.gyroscope_from_accelerometer = unitQuaternion(*turn);
+    get(*gyroscope, "rotation_std_deg", sigma.gyroscope_rotation_std_rad, kRadPerDeg);
   }
   if (const auto accelerometer = map.find("accelerometer")) {
     get(*accelerometer, "bias_m_s2", state.accelerometer_bias_m_s2);

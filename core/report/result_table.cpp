@@ -86,6 +86,10 @@ std::string imuTable(const NamedResult& named, std::size_t i) {
   for (int axis = 0; axis < 3; ++axis)
     text += tableRow(fmt::format("gyroscope scale {}", "xyz"[axis]), state.gyroscope_mapping(axis, axis),
                      sigma.gyroscope_mapping_std(axis, axis), "", 6);
+  if (sigma.gyroscope_rotation_std_rad.norm() > 0.0)
+    text +=
+        vectorRows("gyroscope turn", kDegPerRad * quaternionLog(state.gyroscope_from_accelerometer),
+                   kDegPerRad * sigma.gyroscope_rotation_std_rad, "deg  (gyroscope from accelerometer)", 1.0);
   for (int axis = 0; axis < 3; ++axis)
     text +=
         tableRow(fmt::format("accelerometer scale {}", "xyz"[axis]), state.accelerometer_mapping(axis, axis),

@@ -122,6 +122,9 @@ std::string imuYaml(const NamedResult& named, std::size_t i) {
                       rounded(sigma.time_offset_std_s));
   text += inertialYaml("gyroscope", "rad_s", state.gyroscope_bias_rad_s, sigma.gyroscope_bias_std_rad_s,
                        state.gyroscope_mapping, sigma.gyroscope_mapping_std, fit.gyroscope_rms_rad_s);
+  text += fmt::format("      gyroscope_from_accelerometer_xyzw: {}\n      rotation_std_deg: {}\n",
+                      list(state.gyroscope_from_accelerometer.coeffs(), exact),
+                      list(Eigen::Vector3d(kDegPerRad * sigma.gyroscope_rotation_std_rad), rounded));
   text +=
       inertialYaml("accelerometer", "m_s2", state.accelerometer_bias_m_s2, sigma.accelerometer_bias_std_m_s2,
                    state.accelerometer_mapping, sigma.accelerometer_mapping_std, fit.accelerometer_rms_m_s2);

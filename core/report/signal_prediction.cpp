@@ -27,11 +27,11 @@ SignalPrediction predictSignals(const ImuData& data, std::int64_t start_ns, cons
                                   rate.cross(rate.cross(lever_arm));
     prediction.time_s.push_back(imu_time_s);
     prediction.measured_rate_rad_s.push_back(sample.angular_rate_rad_s);
-    prediction.predicted_rate_rad_s.push_back(imu_state.gyroscope_mapping * (imu_from_reference * rate) +
-                                              imu_state.gyroscope_bias_rad_s);
+    prediction.predicted_rate_rad_s.push_back(imu_state.gyroscopeMatrix() * (imu_from_reference * rate) +
+                                              imu_state.gyroscopeBiasAt_rad_s(imu_time_s));
     prediction.measured_force_m_s2.push_back(sample.specific_force_m_s2);
     prediction.predicted_force_m_s2.push_back(imu_state.accelerometer_mapping * (imu_from_reference * force) +
-                                              imu_state.accelerometer_bias_m_s2);
+                                              imu_state.accelerometerBiasAt_m_s2(imu_time_s));
   }
   return prediction;
 }

@@ -89,6 +89,10 @@ void compareIntrinsics(const ResultNames& estimate, std::size_t i, const ResultN
                found->distortion[k] - actual->distortion[k], (*sigmas)[k + 4]);
 }
 
+bool turnsGyroscope(const ImuState& imu) {
+  return imu.gyroscope_from_accelerometer.vec() != Eigen::Vector3d::Zero();
+}
+
 void compareImu(const std::string& name, const ImuState& estimate, const ImuState& truth,
                 const ImuUncertainty& sigma, bool reference, Errors& errors) {
   if (!reference) {
@@ -108,6 +112,11 @@ void compareImu(const std::string& name, const ImuState& estimate, const ImuStat
              sigma.accelerometer_bias_std_m_s2);
   errors.add(name + ".gyroscope_mapping", estimate.gyroscope_mapping - truth.gyroscope_mapping,
              sigma.gyroscope_mapping_std);
+  if (turnsGyroscope(estimate) || turnsGyroscope(truth))
+    errors.add(
+        name + ".gyroscope_rotation", "deg",
+        quaternionLog(truth.gyroscope_from_accelerometer.conjugate() * estimate.gyroscope_from_accelerometer),
+        sigma.gyroscope_rotation_std_rad, kDegPerRad);
   errors.add(name + ".accelerometer_mapping", estimate.accelerometer_mapping - truth.accelerometer_mapping,
              sigma.accelerometer_mapping_std);
 }

@@ -1,6 +1,7 @@
 #include "core/synthetic/imu_simulator.h"
 
 #include "core/base/time.h"
+#include "core/geometry/so3.h"
 #include "core/synthetic/sinusoid_motion.h"
 
 #include <cmath>
@@ -8,7 +9,11 @@
 
 namespace evical {
 
-std::vector<ImuSample> simulateImu(const Scenario& scenario, std::size_t index) {
+namespace {
+
+// Tells `use` of every sample and of the biases in it.
+template <class Use>
+void simulate(const Scenario& scenario, std::size_t index, Use&& use) {
   const SimulatedImu& imu = scenario.imus[index];
   const SinusoidMotion motion(scenario);
   std::mt19937_64 generator(scenario.seed * 104729 + 31 * index + 5);
@@ -18,10 +23,9 @@ std::vector<ImuSample> simulateImu(const Scenario& scenario, std::size_t index) 
     return Eigen::Vector3d(x, y, z);
   };
   const double period_s = 1.0 / imu.rate_hz, root_rate = std::sqrt(imu.rate_hz);
+  const Eigen::Matrix3d by_rate = imu.gyroscope_mapping * so3Exp(imu.gyroscope_from_accelerometer_rad);
   Eigen::Vector3d gyroscope_bias = imu.gyroscope_bias_rad_s, accelerometer_bias = imu.accelerometer_bias_m_s2;
-  std::vector<ImuSample> samples;
   const auto count = static_cast<std::size_t>(scenario.duration_s * imu.rate_hz);
-  samples.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
     const double reference_time_s = static_cast<double>(k) * period_s;
     const MotionState state = motionOfFrame(motion.imuAt(reference_time_s), imu.reference_from_imu);
@@ -29,15 +33,38 @@ std::vector<ImuSample> simulateImu(const Scenario& scenario, std::size_t index) 
                                   (state.acceleration_in_world_m_s2 - scenario.gravity_in_world_m_s2);
     ImuSample sample;
     sample.time_ns = scenario.start_ns + nanosecondsFrom(reference_time_s - imu.time_offset_s);
-    sample.angular_rate_rad_s = imu.gyroscope_mapping * state.angular_velocity_in_body_rad_s +
-                                gyroscope_bias + imu.gyroscope_density * root_rate * noise();
+    sample.angular_rate_rad_s = by_rate * state.angular_velocity_in_body_rad_s + gyroscope_bias +
+                                imu.gyroscope_density * root_rate * noise();
     sample.specific_force_m_s2 = imu.accelerometer_mapping * force + accelerometer_bias +
                                  imu.accelerometer_density * root_rate * noise();
-    samples.push_back(sample);
+    use(sample, SimulatedBiases{gyroscope_bias, accelerometer_bias});
     if (imu.gyroscope_walk > 0.0) gyroscope_bias += imu.gyroscope_walk / root_rate * noise();
     if (imu.accelerometer_walk > 0.0) accelerometer_bias += imu.accelerometer_walk / root_rate * noise();
   }
+}
+
+}  // namespace
+
+std::vector<ImuSample> simulateImu(const Scenario& scenario, std::size_t index) {
+  std::vector<ImuSample> samples;
+  samples.reserve(static_cast<std::size_t>(scenario.duration_s * scenario.imus[index].rate_hz));
+  simulate(scenario, index,
+           [&](const ImuSample& sample, const SimulatedBiases&) { samples.push_back(sample); });
   return samples;
+}
+
+SimulatedBiases meanBiases(const Scenario& scenario, std::size_t index) {
+  const SimulatedImu& imu = scenario.imus[index];
+  SimulatedBiases sum{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  double count = 0.0;
+  if (imu.gyroscope_walk > 0.0 || imu.accelerometer_walk > 0.0)
+    simulate(scenario, index, [&](const ImuSample&, const SimulatedBiases& biases) {
+      sum.gyroscope_rad_s += biases.gyroscope_rad_s;
+      sum.accelerometer_m_s2 += biases.accelerometer_m_s2;
+      count += 1.0;
+    });
+  if (count == 0.0) return {imu.gyroscope_bias_rad_s, imu.accelerometer_bias_m_s2};
+  return {sum.gyroscope_rad_s / count, sum.accelerometer_m_s2 / count};
 }
 
 }  // namespace evical

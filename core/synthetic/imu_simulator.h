@@ -8,7 +8,14 @@
 
 namespace evical {
 
+struct SimulatedBiases {
+  Eigen::Vector3d gyroscope_rad_s, accelerometer_m_s2;
+};
+
 // Stamps on the IMU's own clock, nanoseconds in the scenario's epoch; SI units.
 std::vector<ImuSample> simulateImu(const Scenario& scenario, std::size_t imu);
+
+// Means of the biases over all samples: they walk from where the scenario has them.
+SimulatedBiases meanBiases(const Scenario& scenario, std::size_t imu);
 
 }  // namespace evical

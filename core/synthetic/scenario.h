@@ -57,6 +57,8 @@ struct SimulatedImu {
   Eigen::Vector3d accelerometer_bias_m_s2 = Eigen::Vector3d::Zero();
   Eigen::Matrix3d gyroscope_mapping = Eigen::Matrix3d::Identity();  // upper triangular
   Eigen::Matrix3d accelerometer_mapping = Eigen::Matrix3d::Identity();
+  // As a rotation vector; the IMU's frame is the accelerometer's.
+  Eigen::Vector3d gyroscope_from_accelerometer_rad = Eigen::Vector3d::Zero();
   RigidTransform reference_from_imu;
   double time_offset_s = 0.0;  // reference_time = imu_time + offset
 };

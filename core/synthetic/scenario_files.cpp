@@ -1,5 +1,7 @@
 #include "core/base/yaml_node.h"
 #include "core/data/intrinsics_yaml.h"
+#include "core/geometry/so3.h"
+#include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
 
 #include <fmt/format.h>
@@ -46,14 +48,18 @@ SimulatedCamera relativeTo(const SimulatedCamera& reference, SimulatedCamera cam
   return camera;
 }
 
-std::string imuTruth(const SimulatedImu& imu) {
+std::string imuTruth(const Scenario& scenario, std::size_t index) {
+  const SimulatedImu& imu = scenario.imus[index];
+  const SimulatedBiases biases = meanBiases(scenario, index);
   return fmt::format("  {}:\n{}", yamlText(imu.name),
                      transformText("reference_from_imu", imu.reference_from_imu)) +
          fmt::format("    time_offset_s: {}\n    gyroscope:\n      bias_rad_s: {}\n      mapping: {}\n",
-                     imu.time_offset_s, vectorText(imu.gyroscope_bias_rad_s),
+                     imu.time_offset_s, vectorText(biases.gyroscope_rad_s),
                      matrixText(imu.gyroscope_mapping)) +
+         fmt::format("      gyroscope_from_accelerometer_xyzw: {}\n",
+                     vectorText(quaternionExp(imu.gyroscope_from_accelerometer_rad).coeffs())) +
          fmt::format("    accelerometer:\n      bias_m_s2: {}\n      mapping: {}\n",
-                     vectorText(imu.accelerometer_bias_m_s2), matrixText(imu.accelerometer_mapping));
+                     vectorText(biases.accelerometer_m_s2), matrixText(imu.accelerometer_mapping));
 }
 
 std::string boardSession(const CircleBoard& board) {
@@ -74,7 +80,7 @@ std::string truthYaml(const Scenario& scenario) {
     text += cameraTruth(scenario.imus.empty() ? relativeTo(scenario.cameras.front(), camera) : camera);
   if (scenario.imus.empty()) return text;
   text += "imus:\n";
-  for (const SimulatedImu& imu : scenario.imus) text += imuTruth(imu);
+  for (std::size_t i = 0; i < scenario.imus.size(); ++i) text += imuTruth(scenario, i);
   return text + fmt::format("gravity_m_s2: {}\n", vectorText(scenario.gravity_in_world_m_s2));
 }
 
@@ -98,6 +104,10 @@ std::string sessionYaml(const Scenario& scenario, const std::string& recording_f
         "    acceleration_unit: m/s^2\n    angular_rate_unit: rad/s\n",
         yamlText(imu.name), yamlText(imu.stream), std::max(imu.accelerometer_density, kLeastDensity),
         std::max(imu.gyroscope_density, kLeastDensity));
+    if (imu.accelerometer_walk > 0.0)
+      text += fmt::format("    accelerometer_random_walk: {:.6g}\n", imu.accelerometer_walk);
+    if (imu.gyroscope_walk > 0.0)
+      text += fmt::format("    gyroscope_random_walk: {:.6g}\n", imu.gyroscope_walk);
   }
   return text + fmt::format("reference: {}\n", yamlText(scenario.imus.front().name));
 }

@@ -175,8 +175,8 @@ void readCamera(const YamlNode& map, SimulatedCamera& camera) {
 void readImu(const YamlNode& map, SimulatedImu& imu) {
   map.allowOnly({"name", "stream", "rate_hz", "gyroscope_noise_density", "accelerometer_noise_density",
                  "gyroscope_walk_density", "accelerometer_walk_density", "gyroscope_bias_rad_s",
-                 "accelerometer_bias_m_s2", "gyroscope_mapping", "accelerometer_mapping", "time_offset_s",
-                 "reference_from_imu"});
+                 "accelerometer_bias_m_s2", "gyroscope_mapping", "accelerometer_mapping",
+                 "gyroscope_from_accelerometer_deg", "time_offset_s", "reference_from_imu"});
   get(map, "name", imu.name);
   get(map, "stream", imu.stream);
   get(map, "rate_hz", imu.rate_hz, 1.0, 1e5, "Hz");
@@ -188,6 +188,7 @@ void readImu(const YamlNode& map, SimulatedImu& imu) {
   get(map, "accelerometer_bias_m_s2", imu.accelerometer_bias_m_s2, -50.0, 50.0);
   getMapping(map, "gyroscope_mapping", imu.gyroscope_mapping);
   getMapping(map, "accelerometer_mapping", imu.accelerometer_mapping);
+  get(map, "gyroscope_from_accelerometer_deg", imu.gyroscope_from_accelerometer_rad, -20.0, 20.0, kRadPerDeg);
   get(map, "time_offset_s", imu.time_offset_s, -60.0, 60.0, "s");
   if (const auto node = map.find("reference_from_imu")) readTransform(*node, imu.reference_from_imu);
 }

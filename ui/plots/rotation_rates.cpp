@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/plots/rotation_rates.h"
 
+#include "core/base/time.h"
 #include "core/initialisation/camera_poses.h"
 #include "core/initialisation/gyro_rotation.h"
 
@@ -18,11 +19,13 @@ double rmsDifference(const std::vector<double>& a, const std::vector<double>& b)
 }
 
 // Without scale, misalignment and bias.
-std::vector<ImuSample> trueSamples(const ImuData& imu, const ImuState& state) {
-  const Eigen::Matrix3d true_from_measured = state.gyroscope_mapping.inverse();
+std::vector<ImuSample> trueSamples(const ImuData& imu, const ImuState& state, std::int64_t start_ns) {
+  const Eigen::Matrix3d true_from_measured = state.gyroscopeMatrix().inverse();
   std::vector<ImuSample> samples = imu.samples;
   for (ImuSample& sample : samples)
-    sample.angular_rate_rad_s = true_from_measured * (sample.angular_rate_rad_s - state.gyroscope_bias_rad_s);
+    sample.angular_rate_rad_s =
+        true_from_measured *
+        (sample.angular_rate_rad_s - state.gyroscopeBiasAt_rad_s(secondsSince(start_ns, sample.time_ns)));
   return samples;
 }
 
@@ -44,7 +47,7 @@ RotationRates rotationRates(const CameraData& camera, const CircleBoard& board,
   if (imu.samples.size() < 2) return rates;
   const double offset_s =
       camera_state.time_offset_s - imu_state.time_offset_s;  // imu_time = camera_time + offset
-  const GyroRotation gyro(trueSamples(imu, imu_state), start_ns);
+  const GyroRotation gyro(trueSamples(imu, imu_state, start_ns), start_ns);
   context.throwIfStopped();
   std::vector<CameraPose> poses = estimateCameraPoses(camera, board, options).poses;
   context.throwIfStopped();

@@ -134,6 +134,10 @@ ParameterGroup imuGroup(const NamedResult& named, std::size_t i) {
                  state.accelerometer_bias_m_s2, sigma.accelerometer_bias_std_m_s2);
   rows.addMapping("gyroscope_mapping", QObject::tr("Gyroscope"), state.gyroscope_mapping,
                   sigma.gyroscope_mapping_std);
+  if (sigma.gyroscope_rotation_std_rad.norm() > 0.0)
+    rows.addVector("gyroscope_rotation", QObject::tr("Gyroscope from accelerometer"), "deg",
+                   kDegPerRad * quaternionLog(state.gyroscope_from_accelerometer),
+                   kDegPerRad * sigma.gyroscope_rotation_std_rad);
   rows.addMapping("accelerometer_mapping", QObject::tr("Accelerometer"), state.accelerometer_mapping,
                   sigma.accelerometer_mapping_std);
   return group;

@@ -74,7 +74,7 @@ std::string sensorText(const char* name, const Eigen::Vector3d& bias, const Eige
 
 std::string imuText(const RigImu& imu, unsigned pointer_id) {
   const std::string blanks(14, ' ');
-  const TriangularTimesRotation gyroscope = splitUpper(imu.state.gyroscope_mapping);
+  const TriangularTimesRotation gyroscope = splitUpper(imu.state.gyroscopeMatrix());
   const bool mapped = hasMapping(imu.state);
   return fmt::format(
              "      - key: {}\n        value:\n          ptr_wrapper:\n            id: {}\n            "

@@ -26,14 +26,14 @@ TriangularTimesRotation splitUpper(const Eigen::Matrix3d& matrix) {
 
 bool hasMapping(const ImuState& imu) {
   return imu.accelerometer_mapping != Eigen::Matrix3d::Identity() ||
-         imu.gyroscope_mapping != Eigen::Matrix3d::Identity();
+         imu.gyroscopeMatrix() != Eigen::Matrix3d::Identity();
 }
 
 LowerTriangularImu lowerTriangular(const ImuState& imu) {
   if (!hasMapping(imu)) return {};
   const TriangularTimesRotation accelerometer = splitLower(imu.accelerometer_mapping);
   const TriangularTimesRotation gyroscope =
-      splitLower(imu.gyroscope_mapping * accelerometer.rotation.transpose());
+      splitLower(imu.gyroscopeMatrix() * accelerometer.rotation.transpose());
   return {accelerometer.rotation, accelerometer.triangular, gyroscope.triangular, gyroscope.rotation};
 }
 

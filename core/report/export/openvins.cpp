@@ -10,7 +10,7 @@ namespace {
 
 // `rpng` takes upper triangular matrices, as ours are, so no frame has to turn.
 std::string mappingText(const RigImu& imu) {
-  const TriangularTimesRotation gyroscope = splitUpper(imu.state.gyroscope_mapping);
+  const TriangularTimesRotation gyroscope = splitUpper(imu.state.gyroscopeMatrix());
   const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
   const bool mapped = hasMapping(imu.state);
   return fmt::format("  model: {}\n  Tw:\n{}  R_IMUtoGYRO:\n{}  Ta:\n{}  R_IMUtoACC:\n{}  Tg:\n{}",

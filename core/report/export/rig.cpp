@@ -60,9 +60,9 @@ RigImu imuOf(const NamedResult& result, std::size_t i, std::set<std::string>& ta
   const std::string& name = result.names.imus[i];
   const KnownOfImu known = at(result.names.known_of_imus, i);
   const ImuState& state = result.result.state.imus.at(i);
-  Eigen::Matrix<double, 24, 1> others;
+  Eigen::Matrix<double, 33, 1> others;
   others << state.gyroscope_bias_rad_s, state.accelerometer_bias_m_s2, state.gyroscope_mapping.reshaped(),
-      state.accelerometer_mapping.reshaped();
+      state.accelerometer_mapping.reshaped(), state.gyroscopeMatrix().reshaped();
   checkNumbers(fmt::format("result: imus.{}", name), state.reference_from_imu, state.time_offset_s, others);
   return {name, fileName(name, taken), known.stream, known, state};
 }
@@ -138,7 +138,7 @@ void noteLostMapping(const Rig& rig, const RigImu& imu, const char* program) {
   const auto off = [](const Eigen::Matrix3d& m) {
     return (m - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   };
-  const double largest = std::max(off(imu.state.gyroscope_mapping), off(imu.state.accelerometer_mapping));
+  const double largest = std::max(off(imu.state.gyroscopeMatrix()), off(imu.state.accelerometer_mapping));
   if (largest == 0.0) return;
   rig.notes->push_back(
       fmt::format("{}: {} has no place for scales and misalignment, which are up to {:.2g} % here; correct "

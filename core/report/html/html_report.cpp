@@ -48,6 +48,7 @@ std::vector<ReportFile> reportFiles(const ReportData& data) {
   html::writeExcitation(data, measures, page);
   html::writeReprojection(data, measures, page);
   html::writeInertial(data, measures, page);
+  html::writeBiases(data, page);
   html::writeConvergence(data, page);
   html::writeUncertainty(data, page);
   html::writeCrossValidation(data, page);

@@ -139,6 +139,10 @@ void writeImuNumbers(const ReportData& data, std::size_t i, ReportPage& page) {
     addVector(rows, sensor + " misalignment xy, xz, yz", off(mapping)[1], off(std)[1], 1.0, "rad");
   };
   add("gyroscope", state.gyroscope_mapping, sigma.gyroscope_mapping_std);
+  if (sigma.gyroscope_rotation_std_rad.norm() > 0.0)
+    addVector(rows, "gyroscope from accelerometer, rotation vector",
+              quaternionLog(state.gyroscope_from_accelerometer), sigma.gyroscope_rotation_std_rad, kDegPerRad,
+              "deg");
   add("accelerometer", state.accelerometer_mapping, sigma.accelerometer_mapping_std);
   page.text(table({"", "x", "y", "z", "unit"}, rows));
   addGiven(data.named.result.uncertainty, imuName(data, i), page);

@@ -48,6 +48,7 @@ void writeCoverage(const ReportData& data, const Measures& measures, ReportPage&
 void writeExcitation(const ReportData& data, const Measures& measures, ReportPage& page);
 void writeReprojection(const ReportData& data, const Measures& measures, ReportPage& page);
 void writeInertial(const ReportData& data, const Measures& measures, ReportPage& page);
+void writeBiases(const ReportData& data, ReportPage& page);
 void writeConvergence(const ReportData& data, ReportPage& page);
 void writeUncertainty(const ReportData& data, ReportPage& page);
 void writeCrossValidation(const ReportData& data, ReportPage& page);

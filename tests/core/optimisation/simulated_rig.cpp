@@ -179,13 +179,16 @@ CameraData observe(const TrueMotion& motion, const CameraState& camera, const Ci
   return data;
 }
 
-ImuData measure(const std::string& name, const TrueMotion& motion, const ImuState& imu,
-                const Vector3d& gravity, const RigOptions& options, Random& random) {
+// Biases start at the state's and walk from there; the state's become their means.
+ImuData measure(const std::string& name, const TrueMotion& motion, ImuState& imu, const Vector3d& gravity,
+                const RigOptions& options, Random& random) {
   ImuData data;
   data.name = name;
   const double root_rate = std::sqrt(options.imu_rate_hz);
   const Matrix3d imu_from_reference = imu.reference_from_imu.rotation.toRotationMatrix().transpose();
   const Vector3d lever = imu.reference_from_imu.translation_m;
+  Vector3d gyroscope_bias = imu.gyroscope_bias_rad_s, accelerometer_bias = imu.accelerometer_bias_m_s2;
+  Vector3d gyroscope_sum = Vector3d::Zero(), accelerometer_sum = Vector3d::Zero();
   for (double t = -kMargin_s; t < options.duration_s + kMargin_s; t += 1.0 / options.imu_rate_hz) {
     const double reference_s = t + imu.time_offset_s;
     const Vector3d w = motion.angularVelocity(reference_s), a = motion.angularAcceleration(reference_s);
@@ -195,13 +198,23 @@ ImuData measure(const std::string& name, const TrueMotion& motion, const ImuStat
     ImuSample sample;
     sample.time_ns = kStart_ns + nanosecondsFrom(t);
     sample.angular_rate_rad_s =
-        imu.gyroscope_mapping * (imu_from_reference * w) + imu.gyroscope_bias_rad_s +
+        imu.gyroscopeMatrix() * (imu_from_reference * w) + gyroscope_bias +
         options.imu_noise * data.noise.gyroscope_density * root_rate * random.normal3();
     sample.specific_force_m_s2 =
-        imu.accelerometer_mapping * (imu_from_reference * force) + imu.accelerometer_bias_m_s2 +
+        imu.accelerometer_mapping * (imu_from_reference * force) + accelerometer_bias +
         options.imu_noise * data.noise.accelerometer_density * root_rate * random.normal3();
     data.samples.push_back(sample);
+    gyroscope_sum += gyroscope_bias;
+    accelerometer_sum += accelerometer_bias;
+    if (options.gyroscope_walk > 0.0) gyroscope_bias += options.gyroscope_walk / root_rate * random.normal3();
+    if (options.accelerometer_walk > 0.0)
+      accelerometer_bias += options.accelerometer_walk / root_rate * random.normal3();
   }
+  const auto count = static_cast<double>(data.samples.size());
+  if (options.gyroscope_walk > 0.0) imu.gyroscope_bias_rad_s = gyroscope_sum / count;
+  if (options.accelerometer_walk > 0.0) imu.accelerometer_bias_m_s2 = accelerometer_sum / count;
+  data.noise.gyroscope_random_walk = options.gyroscope_walk;
+  data.noise.accelerometer_random_walk = options.accelerometer_walk;
   return data;
 }
 
@@ -231,6 +244,7 @@ SimulatedRig simulateRig(const RigOptions& options) {
         imu.accelerometer_mapping(row, col) += random.uniform(-0.01, 0.01);
       }
     }
+    imu.gyroscope_from_accelerometer = quaternionExp(options.gyroscope_turn_rad * Vector3d(0.48, -0.6, 0.64));
     if (i > 0) {
       imu.reference_from_imu = {quaternionExp(Vector3d(0.1, 1.4, -0.3)), {0.06, -0.09, 0.05}};
       imu.time_offset_s = 3.3e-3;
@@ -238,7 +252,7 @@ SimulatedRig simulateRig(const RigOptions& options) {
     rig.truth.imus.push_back(imu);
   }
   rig.input.cameras = {observe(motion, camera, rig.input.board, options, random)};
-  for (const ImuState& imu : rig.truth.imus) {
+  for (ImuState& imu : rig.truth.imus) {
     rig.input.imus.push_back(measure(rig.input.imus.empty() ? "imu" : "imu_2", motion, imu,
                                      rig.truth.gravity_in_world_m_s2, options, random));
   }
@@ -273,6 +287,7 @@ CalibrationState disturbed(const CalibrationState& truth, unsigned seed, double 
     imu.accelerometer_bias_m_s2.setZero();
     imu.gyroscope_mapping.setIdentity();
     imu.accelerometer_mapping.setIdentity();
+    imu.gyroscope_from_accelerometer.setIdentity();
     if (i == 0) continue;
     imu.reference_from_imu.rotation = imu.reference_from_imu.rotation * quaternionExp(random.uniform3(0.01));
     imu.reference_from_imu.translation_m += random.uniform3(0.02);
@@ -282,7 +297,8 @@ CalibrationState disturbed(const CalibrationState& truth, unsigned seed, double 
   return state;
 }
 
-Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const CalibrationState& truth) {
+Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const CalibrationState& truth,
+                               const OptimisationOptions& options) {
   std::vector<double> errors;
   const auto append = [&](const Eigen::VectorXd& values) {
     errors.insert(errors.end(), values.begin(), values.end());
@@ -318,6 +334,8 @@ Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const Calibrati
     append(a.accelerometer_bias_m_s2 - b.accelerometer_bias_m_s2);
     appendUpperTriangle(a.gyroscope_mapping - b.gyroscope_mapping);
     appendUpperTriangle(a.accelerometer_mapping - b.accelerometer_mapping);
+    if (options.gyroscope_rotation)
+      append(quaternionLog(b.gyroscope_from_accelerometer.conjugate() * a.gyroscope_from_accelerometer));
   }
   append(gravityTilts(truth.gravity_in_world_m_s2).transpose() *
          (estimate.gravity_in_world_m_s2.normalized() - truth.gravity_in_world_m_s2.normalized()));

@@ -4,6 +4,7 @@
 
 #include "core/data/calibration_setup.h"
 #include "core/data/calibration_state.h"
+#include "core/optimisation/optimisation_options.h"
 
 #include <functional>
 
@@ -23,6 +24,8 @@ struct RigOptions {
   Motion motion = Motion::Rich;
   bool second_imu = false;
   double gravity_m_s2 = 9.81;
+  double gyroscope_walk = 0.0, accelerometer_walk = 0.0;  // of biases, SI, / sqrt(Hz): Wiener processes
+  double gyroscope_turn_rad = 0.0;                        // of every gyroscope against its accelerometer
   unsigned seed = 1;
 };
 
@@ -40,7 +43,8 @@ void seeThrough(const CameraIntrinsics& truth, const CameraIntrinsics& lens, Sim
 CalibrationState disturbed(const CalibrationState& truth, unsigned seed, double time_offset_error_s = 0.5e-3);
 
 // Estimate minus truth, in the order and the coordinates of UncertaintyReport::names (all quantities
-// released).
-Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const CalibrationState& truth);
+// released that the options allow).
+Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const CalibrationState& truth,
+                               const OptimisationOptions& options = {});
 
 }  // namespace evical::test

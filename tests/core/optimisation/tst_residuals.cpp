@@ -3,6 +3,7 @@
 #include "core/geometry/circle_conic.h"
 #include "core/geometry/so3.h"
 #include "core/geometry/trajectory.h"
+#include "core/optimisation/bias_knots.h"
 #include "core/optimisation/circle_cost.h"
 #include "core/optimisation/inertial_cost.h"
 #include "core/optimisation/prior_cost.h"
@@ -302,6 +303,7 @@ class TestResiduals : public QObject {
     states.appendRotations(step_rad, blocks);
     blocks.push_back(States::numbers(states.vector(0.1)));
     blocks.push_back(mappingNumbers(states));
+    blocks.push_back(States::numbers(quaternionExp(states.vector(0.1))));
     if (further) {
       blocks.push_back(States::numbers(quaternionExp(states.vector(1.0))));
       blocks.push_back({states.uniform(0.002)});
@@ -338,6 +340,53 @@ class TestResiduals : public QObject {
     const double error = test::worstJacobianError(cost, blocks, 1e-3);
     QVERIFY2(error < 1e-6, qPrintable(QString::number(error)));
     QCOMPARE(test::worstErrorWithConstantBlocks(cost, blocks), 0.0);
+  }
+
+  void driftJacobians_matchNumericDifferences() {
+    const DriftTimes drift{0.99, 0.1};
+    for (const bool further : {false, true}) {
+      States states(7);
+      test::Blocks blocks;
+      states.appendRotations(0.05, blocks);
+      const test::Blocks rotations = blocks;
+      const ImuRole role = further ? ImuRole::Further : ImuRole::Reference;
+      blocks.insert(blocks.end(), {States::numbers(states.vector(0.1)), mappingNumbers(states),
+                                   States::numbers(quaternionExp(states.vector(0.1)))});
+      if (further) blocks.insert(blocks.end(), {States::numbers(quaternionExp(states.vector(1.0))), {0.001}});
+      blocks.insert(blocks.end(), {States::numbers(states.vector(0.1)), States::numbers(states.vector(0.1))});
+      const GyroscopeCost gyroscope(role, 0.1, segmentTimes(),
+                                    {{1.001, states.vector(1.0)}, {1.0199, states.vector(1.0)}}, drift);
+      QVERIFY(test::worstJacobianError(gyroscope, blocks, 1e-3) < 1e-7);
+      QCOMPARE(test::worstErrorWithConstantBlocks(gyroscope, blocks), 0.0);
+
+      blocks = rotations;
+      states.appendPositions(blocks);
+      blocks.insert(blocks.end(),
+                    {{0.3, 9.7, -0.5}, States::numbers(states.vector(0.1)), mappingNumbers(states)});
+      if (further)
+        blocks.insert(blocks.end(), {States::numbers(quaternionExp(states.vector(1.0))),
+                                     States::numbers(states.vector(0.1)),
+                                     {0.001}});
+      blocks.insert(blocks.end(), {States::numbers(states.vector(0.1)), States::numbers(states.vector(0.1))});
+      const AccelerometerCost accelerometer(
+          role, 0.5, segmentTimes(), {{1.002, states.vector(10.0)}, {1.01, states.vector(10.0)}}, drift);
+      QVERIFY(test::worstJacobianError(accelerometer, blocks, 1e-3) < 1e-6);
+      QCOMPARE(test::worstErrorWithConstantBlocks(accelerometer, blocks), 0.0);
+    }
+  }
+
+  void driftPriors_areZeroWithoutDrift() {
+    BiasDrift drift{0.0, 2.0, std::vector<Vector3d>(4, Vector3d::Zero()), {}};
+    const BiasStepCost step(0.1);
+    QCOMPARE(test::residualsAt(step, {{1.0, 2.0, 3.0}, {1.0, 2.0, 3.0}}).norm(), 0.0);
+    QVERIFY(std::abs(test::residualsAt(step, {{1.0, 2.0, 3.0}, {1.0, 2.2, 3.0}})[1] - 2.0) < 1e-12);
+    QVERIFY(test::worstJacobianError(step, {{1.0, 2.0, 3.0}, {1.1, 2.2, 3.1}}) < 1e-9);
+    // Outer knots stand for half as much time.
+    const BiasMeanCost mean(drift, 0.1);
+    const test::Blocks balanced = {{2.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}, {0.5, 0.0, 0.0}, {-1.0, 0.0, 0.0}};
+    QVERIFY(test::residualsAt(mean, balanced).norm() < 1e-12);
+    QVERIFY(test::residualsAt(mean, {{3.0, 0, 0}, {3.0, 0, 0}, {3.0, 0, 0}, {3.0, 0, 0}}).norm() > 29.0);
+    QVERIFY(test::worstJacobianError(mean, balanced) < 1e-9);
   }
 
   // Turning about a fixed axis at a constant rate, an IMU off the axis feels the centripetal acceleration.
@@ -401,6 +450,18 @@ class TestResiduals : public QObject {
     QCOMPARE(test::residualsAt(held, {{1.3, 0.2, 0.0, 1.1, 0.02, 1.0}}).norm(), 0.0);
     const HeldTranslationCost translation(Vector3d::UnitZ(), Vector3d(9.0, 9.0, 0.05), 0.01);
     QVERIFY(std::abs(test::residualsAt(translation, {{0.3, 0.8, 0.06}})[0] - 1.0) < 1e-12);
+  }
+
+  void rotationPrior_isItsAngleInSigmas() {
+    const RotationPriorCost cost(Eigen::Quaterniond::Identity(), Vector3d::Constant(0.02));
+    const Vector3d turn(0.006, -0.01, 0.004);
+    const test::Blocks blocks = {States::numbers(quaternionExp(turn))};
+    QVERIFY((test::residualsAt(cost, blocks) - turn / 0.02).norm() < 1e-4);
+    QVERIFY(test::worstJacobianError(cost, blocks) < 1e-7);
+    Eigen::Quaterniond same = quaternionExp(turn);
+    same.coeffs() = -same.coeffs();
+    QVERIFY((test::residualsAt(cost, {States::numbers(same)}) - turn / 0.02).norm() < 1e-4);
+    QVERIFY(test::worstJacobianError(cost, {States::numbers(same)}) < 1e-7);
   }
 
   void heldMapping_isZeroWhereItsAxisStays() {

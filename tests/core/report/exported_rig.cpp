@@ -43,6 +43,7 @@ ImuState imu(bool mapped, int number) {
   if (!mapped) return state;
   state.accelerometer_mapping << 1.011, 0.004, -0.003, 0.0, 0.992, 0.005, 0.0, 0.0, 1.003;
   state.gyroscope_mapping << 0.997, -0.002, 0.006, 0.0, 1.004, 0.003, 0.0, 0.0, 0.991;
+  state.gyroscope_from_accelerometer = quaternionExp({0.011, -0.006, 0.009});
   return state;
 }
 

@@ -34,7 +34,7 @@ struct Measured {
 };
 Measured ours(const ImuState& imu, const Eigen::Vector3d& force, const Eigen::Vector3d& rate) {
   return {imu.accelerometer_mapping * force + imu.accelerometer_bias_m_s2,
-          imu.gyroscope_mapping * rate + imu.gyroscope_bias_rad_s};
+          imu.gyroscopeMatrix() * rate + imu.gyroscope_bias_rad_s};
 }
 
 // The largest difference on random inputs.

@@ -1,5 +1,6 @@
 #include "core/base/error.h"
 #include "core/geometry/so3.h"
+#include "core/report/bias_csv.h"
 #include "core/report/csv.h"
 #include "core/report/result_table.h"
 #include "core/report/truth_comparison.h"
@@ -48,6 +49,7 @@ NamedResult sample() {
     imu.gyroscope_bias_rad_s = {0.01, -0.02, 1.0 / 7.0};
     imu.gyroscope_mapping(0, 1) = 0.003;
     imu.accelerometer_mapping(2, 2) = 1.01;
+    imu.gyroscope_from_accelerometer = quaternionExp({0.01, -0.02, 0.005});
     result.state.imus.push_back(imu);
     CameraUncertainty sigma;
     sigma.rotation_std_rad.setConstant(1e-4);
@@ -58,6 +60,7 @@ NamedResult sample() {
     ImuUncertainty imu_sigma;
     imu_sigma.gyroscope_bias_std_rad_s.setConstant(1e-5);
     imu_sigma.gyroscope_mapping_std(0, 1) = 1e-4;
+    imu_sigma.gyroscope_rotation_std_rad = {1e-4, 2e-4, 3e-4};
     result.uncertainty.imus.push_back(imu_sigma);
     CameraFit fit;
     fit.reprojection_rms_px = 0.12;
@@ -126,6 +129,7 @@ class TestResultYaml : public QObject {
       const ImuState &c = written.result.state.imus[i], &d = read.result.state.imus[i];
       QVERIFY(c.gyroscope_bias_rad_s == d.gyroscope_bias_rad_s && c.gyroscope_mapping == d.gyroscope_mapping);
       QVERIFY(c.accelerometer_mapping == d.accelerometer_mapping);
+      QVERIFY(c.gyroscope_from_accelerometer.coeffs() == d.gyroscope_from_accelerometer.coeffs());
     }
     QVERIFY(std::isnan(read.result.uncertainty.cameras[0].edge_lead_std_px));
     QVERIFY(read.result.uncertainty.correlation(0, 1) == 0.25);
@@ -135,6 +139,25 @@ class TestResultYaml : public QObject {
     QCOMPARE(read.result.cross_validation->quantities.size(), std::size_t{2});
     QCOMPARE(read.result.cross_validation->quantities[0].normalised(), -0.5);
     QCOMPARE(read.result.cross_validation->quantities[1].name, std::string("1 odd: name.time_offset"));
+  }
+
+  void biasesCsv_hasALineForEveryKnot() {
+    NamedResult named = sample();
+    QVERIFY(biasesCsv(named).empty());
+    ImuState& imu = named.result.state.imus[1];
+    imu.bias_drift = {1.0, 2.0, {{0.1, 0.0, 0.0}, {-0.1, 0.0, 0.0}}, {{0.0, 0.0, 0.5}, {0.0, 0.0, -0.5}}};
+    ImuUncertainty& sigma = named.result.uncertainty.imus[1];
+    sigma.gyroscope_drift_std_rad_s = {{1e-3, 2e-3, 3e-3}, {4e-3, 5e-3, 6e-3}};
+    sigma.accelerometer_drift_std_m_s2 = sigma.gyroscope_drift_std_rad_s;
+    const QStringList lines = QString::fromStdString(biasesCsv(named)).trimmed().split('\n');
+    QCOMPARE(lines.size(), 3);
+    const QStringList names = lines[0].split(','), numbers = lines[2].split(',');
+    QCOMPARE(numbers.size(), names.size());
+    QCOMPARE(numbers[0], QString("\"far_imu\""));
+    QCOMPARE(numbers[names.indexOf("time_s")].toDouble(), 3.0);
+    QCOMPARE(numbers[names.indexOf("gyroscope_x_rad_s")].toDouble(), 0.01 - 0.1);
+    QCOMPARE(numbers[names.indexOf("gyroscope_std_y_rad_s")].toDouble(), 5e-3);
+    QCOMPARE(numbers[names.indexOf("accelerometer_z_m_s2")].toDouble(), -0.5);
   }
 
   void failedRun_isAResultToo() {

@@ -28,10 +28,13 @@ class TestImuSimulator : public QObject {
     imu.accelerometer_bias_m_s2 = {-0.4, 0.5, 0.6};
     imu.gyroscope_mapping << 1.02, 0.01, -0.02, 0.0, 0.97, 0.03, 0.0, 0.0, 1.01;
     imu.accelerometer_mapping << 0.99, -0.01, 0.02, 0.0, 1.03, -0.03, 0.0, 0.0, 0.98;
+    imu.gyroscope_from_accelerometer_rad = {0.0, 0.0, 0.02};
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitZ()).toRotationMatrix();  // gyroscope from IMU
     const std::vector<ImuSample> real = simulateImu(scenario, 0);
     for (std::size_t k = 0; k < real.size(); k += 50) {
       QVERIFY((real[k].angular_rate_rad_s -
-               (imu.gyroscope_mapping * ideal[k].angular_rate_rad_s + imu.gyroscope_bias_rad_s))
+               (imu.gyroscope_mapping * turn * ideal[k].angular_rate_rad_s + imu.gyroscope_bias_rad_s))
                   .norm() < 1e-12);
       QVERIFY((real[k].specific_force_m_s2 -
                (imu.accelerometer_mapping * ideal[k].specific_force_m_s2 + imu.accelerometer_bias_m_s2))
@@ -62,6 +65,22 @@ class TestImuSimulator : public QObject {
     }
     const double sigma = std::sqrt(squares / (3.0 * kSeeds));
     QVERIFY(std::abs(sigma / (1e-2 * 2.0) - 1.0) < 0.2);
+  }
+  // Still and without noise, what a gyroscope measures is its bias.
+  void meanBiases_areThoseInTheSamples() {
+    Scenario scenario = test::stillScenario();
+    SimulatedImu& imu = scenario.imus.front();
+    imu.gyroscope_bias_rad_s = {0.1, 0.2, 0.3};
+    QVERIFY(meanBiases(scenario, 0).gyroscope_rad_s == imu.gyroscope_bias_rad_s);
+    imu.gyroscope_walk = 1e-2;
+    imu.gyroscope_density = imu.accelerometer_density = 0.0;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    const std::vector<ImuSample> samples = simulateImu(scenario, 0);
+    for (const ImuSample& sample : samples) sum += sample.angular_rate_rad_s;
+    const SimulatedBiases mean = meanBiases(scenario, 0);
+    QVERIFY((mean.gyroscope_rad_s - sum / static_cast<double>(samples.size())).norm() < 1e-12);
+    QVERIFY((mean.gyroscope_rad_s - imu.gyroscope_bias_rad_s).norm() > 1e-4);
+    QVERIFY((mean.accelerometer_m_s2 - imu.accelerometer_bias_m_s2).norm() < 1e-12);
   }
   void clock_isTheImusOwn() {
     Scenario scenario = test::wavedScenario();

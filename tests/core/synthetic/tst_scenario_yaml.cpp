@@ -129,6 +129,12 @@ class TestScenarioYaml : public QObject {
     QCOMPARE(imu["gyroscope"]["bias_rad_s"].reals(3)[0], scenario.imus[0].gyroscope_bias_rad_s.x());
     QCOMPARE(imu["accelerometer"]["mapping"].items()[0].reals(3)[2],
              scenario.imus[0].accelerometer_mapping(0, 2));
+    scenario.imus[0].gyroscope_from_accelerometer_rad = {0.0, 0.02, 0.0};
+    const YamlNode turned = YamlNode::parse(truthYaml(scenario), "truth.yaml");
+    const std::vector<double> turn =
+        turned["imus"]["left_imu"]["gyroscope"]["gyroscope_from_accelerometer_xyzw"].reals(4);
+    QCOMPARE(turn[1], std::sin(0.01));
+    QCOMPARE(turn[3], std::cos(0.01));
     QCOMPARE(truth["gravity_m_s2"].reals(3)[1], scenario.gravity_in_world_m_s2.y());
     QCOMPARE(truth["reference"].text(), std::string("left_imu"));
   }

@@ -1,0 +1,24 @@
+// A gyroscope that is turned against its accelerometer, noticed where that is not estimated: how far the
+// estimate would step if the turn were free (Rao's score test), against that step's sigma.
+#pragma once
+
+#include "core/data/calibration_setup.h"
+#include "core/optimisation/optimisation_options.h"
+#include "core/optimisation/projected_information.h"
+
+#include <string>
+#include <vector>
+
+namespace evical {
+
+// Both with the turns free, at a solution that holds them; `credible` is withoutNoise(information). One note
+// an IMU whose turn is certain and larger than the rotation that is needed.
+std::vector<std::string> turnedGyroscopes(const CalibrationInput& input,
+                                          const ProjectedInformation& information,
+                                          const ProjectedInformation& credible,
+                                          const OptimisationOptions& options);
+
+// As if the turns were known to be what they are.
+ProjectedInformation withoutGyroscopeRotation(ProjectedInformation information);
+
+}  // namespace evical
