@@ -4,19 +4,14 @@
 #include "core/optimisation/known_values.h"
 
 #include "core/base/time.h"
-#include "core/optimisation/prior_cost.h"
-#include "core/optimisation/smoothness_cost.h"
 
 #include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace evical {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 ceres::Problem::Options borrowManifolds() {
   ceres::Problem::Options options;
@@ -251,112 +246,6 @@ void CalibrationProblem::addAccelerometer(std::size_t imu, const SegmentTimes& s
   auto* cost = new AccelerometerCost(roleOf(imu), sigma, segment, std::move(measurements), drift);
   blocks_.push_back(
       {problem_->AddResidualBlock(cost, nullptr, blocks), SensorKind::Accelerometer, imu, time_s});
-}
-
-void CalibrationProblem::addPriors(ReleaseStages stage) {
-  static constexpr std::array<double, 6> kZero = {};
-  static constexpr std::array<double, 6> kIdentity = {1.0, 0.0, 0.0, 1.0, 0.0, 1.0};
-  const auto add = [&](double* block, int size, const double* mean, double sigma) {
-    if (!problem_->HasParameterBlock(block)) return;
-    blocks_.push_back({problem_->AddResidualBlock(new PriorCost(mean, size, sigma), nullptr, block)});
-  };
-  for (CameraState& camera : state_.cameras) {
-    add(&camera.edge_lead_px, 1, kZero.data(), options_.edge_lead_sigma_px);
-    add(&camera.edge_lead_growth_px, 1, kZero.data(), options_.edge_lead_growth_sigma_px);
-  }
-  for (const auto& block : intrinsics_)
-    if (block && problem_->HasParameterBlock(block->data())) blocks_.push_back({block->addPrior(*problem_)});
-  const auto addUnless = [&](bool known, double* block, int size, const double* mean, double sigma) {
-    if (!known) add(block, size, mean, sigma);
-  };
-  for (std::size_t i = 0; i < state_.cameras.size(); ++i) {
-    const std::optional<KnownVector>& known = input_.cameras[i].prior.translation;
-    double* translation = state_.cameras[i].imu_from_camera.translation_m.data();
-    addUnless(known.has_value(), translation, 3, kZero.data(), options_.translation_sigma_m);
-    holdTranslation(translation, known);
-  }
-  for (std::size_t i = 0; i < state_.imus.size(); ++i) {
-    const ImuPrior& prior = input_.imus[i].prior;
-    double* translation = state_.imus[i].reference_from_imu.translation_m.data();
-    addUnless(prior.translation.has_value(), translation, 3, kZero.data(), options_.translation_sigma_m);
-    holdTranslation(translation, prior.translation);
-    addUnless(prior.gyroscope_bias.has_value(), state_.imus[i].gyroscope_bias_rad_s.data(), 3, kZero.data(),
-              options_.gyroscope_bias_sigma_rad_s);
-    addUnless(prior.accelerometer_bias.has_value(), state_.imus[i].accelerometer_bias_m_s2.data(), 3,
-              kZero.data(), options_.accelerometer_bias_sigma_m_s2);
-    for (const ceres::ResidualBlockId id :
-         addDriftPriors(*problem_, options_, input_.imus[i].noise, state_.imus[i]))
-      blocks_.push_back({id});
-    if (stage != ReleaseStages::Mappings) continue;
-    addUnless(prior.gyroscope_mapping.has_value(), gyroscope_mappings_[i].data(), 6, kIdentity.data(),
-              options_.mapping_sigma);
-    addUnless(prior.accelerometer_mapping.has_value(), accelerometer_mappings_[i].data(), 6, kIdentity.data(),
-              options_.mapping_sigma);
-    holdMapping(gyroscope_mappings_[i].data(), held_axes[i].gyroscope, prior.gyroscope_mapping);
-    holdMapping(accelerometer_mappings_[i].data(), held_axes[i].accelerometer, prior.accelerometer_mapping);
-    if (!turnsGyroscope(i, stage)) continue;
-    double* rotation = state_.imus[i].gyroscope_from_accelerometer.coeffs().data();
-    auto* cost = new RotationPriorCost(
-        Eigen::Quaterniond::Identity(),
-        Eigen::Vector3d::Constant(kRadPerDeg * options_.gyroscope_rotation_sigma_deg));
-    blocks_.push_back({problem_->AddResidualBlock(cost, nullptr, rotation)});
-  }
-  double* gravity = state_.gravity_in_world_m_s2.data();
-  if (!options_.free_gravity_norm || !problem_->HasParameterBlock(gravity)) return;
-  auto* cost = new NormCost(input_.gravity_norm_m_s2, options_.gravity_norm_sigma_m_s2);
-  blocks_.push_back({problem_->AddResidualBlock(cost, nullptr, gravity)});
-}
-
-// No IMU fills the gaps between views.
-void CalibrationProblem::addSmoothness() {
-  So3Spline& r = state_.world_from_imu_rotation;
-  for (std::size_t k = 2; k < r.control_points.size(); ++k) {
-    auto* cost =
-        new SmoothRotationCost(r.knot_spacing_s, scales.smooth_rotation * options_.smooth_rotation_rad_s2);
-    const auto block = [&](std::size_t i) { return r.control_points[i].coeffs().data(); };
-    blocks_.push_back({problem_->AddResidualBlock(cost, nullptr, block(k - 2), block(k - 1), block(k))});
-  }
-  VectorSpline& p = state_.imu_in_world_m;
-  for (std::size_t k = 2; k < p.control_points.size(); ++k) {
-    auto* cost =
-        new SmoothPositionCost(p.knot_spacing_s, scales.smooth_position * options_.smooth_position_m_s2);
-    const auto block = [&](std::size_t i) { return p.control_points[i].data(); };
-    blocks_.push_back({problem_->AddResidualBlock(cost, nullptr, block(k - 2), block(k - 1), block(k))});
-  }
-}
-
-// The trajectory is the reference camera's own.
-void CalibrationProblem::holdReferenceCamera() {
-  CameraState& reference = state_.cameras[input_.reference_camera];
-  for (double* block : {reference.imu_from_camera.rotation.coeffs().data(),
-                        reference.imu_from_camera.translation_m.data(), &reference.time_offset_s}) {
-    if (problem_->HasParameterBlock(block)) problem_->SetParameterBlockConstant(block);
-  }
-}
-
-void CalibrationProblem::holdTranslation(double* translation_m, const std::optional<KnownVector>& known) {
-  constexpr double kSigma_m = 1e-4;
-  if (input_.imus.empty() || !problem_->HasParameterBlock(translation_m)) return;
-  for (const Eigen::Vector3d& axis : held_axes[input_.reference_imu].leverless()) {
-    auto* cost =
-        new HeldTranslationCost(axis, known ? known->value : Eigen::Vector3d::Zero().eval(), kSigma_m);
-    blocks_.push_back({problem_->AddResidualBlock(cost, nullptr, translation_m)});
-  }
-}
-
-void CalibrationProblem::holdMapping(double* mapping, const std::vector<Eigen::Vector3d>& axes,
-                                     const std::optional<KnownMapping>& known) {
-  constexpr double kSigma = 1e-5;  // far below what could be measured
-  if (!problem_->HasParameterBlock(mapping)) return;
-  const Eigen::Matrix3d prior = known ? known->value : Eigen::Matrix3d::Identity();
-  for (const Eigen::Vector3d& axis : axes) {
-    blocks_.push_back({problem_->AddResidualBlock(new HeldAxisCost(axis, prior, kSigma), nullptr, mapping)});
-  }
-}
-
-// Where nothing turns about some axis the gyroscope could take any turn about it.
-bool CalibrationProblem::turnsGyroscope(std::size_t imu, ReleaseStages stage) const {
-  return options_.gyroscope_rotation && stage == ReleaseStages::Mappings && held_axes[imu].gyroscope.empty();
 }
 
 void CalibrationProblem::setManifolds(ReleaseStages stage) {

@@ -94,7 +94,10 @@ class CalibrationProblem {
                     std::span<const ImuSample> samples);
   void addAccelerometer(std::size_t imu, const SegmentTimes& segment, double time_s,
                         std::span<const ImuSample> samples);
+  void addPrior(double* block, int size, const double* mean, double sigma);
   void addPriors(ReleaseStages stage);
+  void addImuPriors(std::size_t imu);
+  void addMappingPriors(std::size_t imu, ReleaseStages stage);
   void addSmoothness();
   void addKnownValues();
   void addKnownPlace(const SensorPrior& prior, RigidTransform& pose, double& time_offset_s);

@@ -2,8 +2,8 @@
 
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/optimisation/credible_information.h"
-#include "core/optimisation/known_values.h"
 #include "core/optimisation/drift_uncertainty.h"
+#include "core/optimisation/known_values.h"
 #include "core/optimisation/observability.h"
 #include "core/optimisation/projected_information.h"
 #include "core/optimisation/turned_gyroscope.h"

@@ -92,8 +92,7 @@ CalibrationInput inputFrom(const Session& session, const CalibrationRun& run) {
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
     const SessionCamera& camera = session.cameras[k];
     const bool found_first = k < run.intrinsics.size() && run.intrinsics[k].has_value();
-    input.cameras.push_back(
-        {camera.name, camera.intrinsics, run.pass.cameras[k], camera.prior, found_first});
+    input.cameras.push_back({camera.name, camera.intrinsics, run.pass.cameras[k], camera.prior, found_first});
   }
   input.imus = run.pass.imus;
   for (std::size_t k = 0; k < session.imus.size(); ++k) input.imus[k].prior = session.imus[k].prior;

@@ -180,7 +180,8 @@ void readImuPrior(const YamlNode& map, const std::string& name, Session& session
   readPlace(map, "reference_from_imu", prior);
   if (name == session.reference) dropOwnPlace(map, "reference_from_imu", prior);
   if (const auto gyroscope = map.find("gyroscope")) {
-    gyroscope->allowOnly({"bias_rad_s", "bias_std_rad_s", "mapping", "mapping_std", "residual_rms_rad_s"});
+    gyroscope->allowOnly({"bias_rad_s", "bias_std_rad_s", "mapping", "mapping_std", "residual_rms_rad_s",
+                          "gyroscope_from_accelerometer_xyzw", "rotation_std_deg"});
     prior.gyroscope_bias = readVector(*gyroscope, "bias_rad_s", "bias_std_rad_s", kLargest);
     prior.gyroscope_mapping = readMapping(*gyroscope);
   }

@@ -1,0 +1,161 @@
+#include "core/initialisation/camera_alignment.h"
+
+#include "core/base/error.h"
+#include "core/initialisation/camera_imu_rotation.h"
+#include "core/initialisation/initialisation_checks.h"
+#include "core/initialisation/lap.h"
+#include "core/initialisation/pose_consistency.h"
+#include "core/initialisation/time_offset.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+#include <optional>
+#include <utility>
+
+namespace evical {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+std::vector<CameraPose> cameraPoses(const CameraData& camera, const CircleBoard& board,
+                                    const GyroRotation& gyro, const InitialisationOptions& options,
+                                    const RunContext& context, Initialisation& result) {
+  CameraPoses found = estimateCameraPoses(camera, board, options, context);
+  checkPoses(camera, found, gyro, options);
+  result.steps.push_back(
+      {"camera poses",
+       fmt::format("{}: {} of {} views, circles fit to {:.3f} px (median)", camera.name, found.poses.size(),
+                   camera.observations.views.size(), found.median_reprojection_px),
+       found.median_reprojection_px, 0.0});
+  if (found.rejected > static_cast<int>(found.poses.size())) {
+    result.warnings.push_back(fmt::format(
+        "{}: the circles of most views ({} of {}) fit the board worse than {:.2f} px; check the "
+        "intrinsics and the board",
+        camera.name, found.rejected, camera.observations.views.size(), options.largest_reprojection_px));
+  }
+  return std::move(found.poses);
+}
+
+// Hand-eye from one candidate offset, then once more with the poses that the gyroscope believes.
+std::optional<AlignedCamera> align(std::vector<CameraPose> poses, const GyroRotation& gyro,
+                                   double time_offset_s, const InitialisationOptions& options,
+                                   const SensorPrior& prior) {
+  resolveAmbiguousPoses(poses, gyro, time_offset_s, options.longest_pair_s);
+  const std::optional<HandEye> found = estimateCameraImuRotation(poses, gyro, time_offset_s, options, prior);
+  if (!found) return std::nullopt;
+  return AlignedCamera{std::move(poses), *found};
+}
+
+void warnOfPeaks(const CameraData& camera, const std::vector<TimeOffsetPeak>& peaks, double chosen_s,
+                 const InitialisationOptions& options, Initialisation& result) {
+  const TimeOffsetPeak& best = peaks.front();
+  const std::optional<KnownNumber>& known = camera.prior.time_offset;
+  if (known && known->isGiven()) {
+    if (best.correlation < options.clear_peak_correlation)
+      result.warnings.push_back(
+          fmt::format("{}: rotation rates of camera and gyroscope agree weakly (correlation {:.2f}) at the "
+                      "time offset of {:.4f} s that is given; check it",
+                      camera.name, best.correlation, known->value));
+  } else if (best.correlation < options.clear_peak_correlation) {
+    result.warnings.push_back(fmt::format(
+        "{}: no clear time offset: rotation rates of camera and gyroscope agree weakly (correlation "
+        "{:.2f}); rotate more, or give a wider initialisation.time_offset_search_s",
+        camera.name, best.correlation));
+  } else if (peaks.size() > 1 && best.correlation - peaks[1].correlation < options.clear_peak_lead) {
+    result.warnings.push_back(fmt::format(
+        "{}: the motion nearly repeats itself: time offsets of {:.3f} s and {:.3f} s correlate almost "
+        "equally ({:.3f} and {:.3f}); whole rotations speak for {:.3f} s; move irregularly",
+        camera.name, best.time_offset_s, peaks[1].time_offset_s, best.correlation, peaks[1].correlation,
+        chosen_s));
+  }
+}
+
+AlignedCamera bestAlignment(const CameraData& camera, const std::vector<CameraPose>& poses,
+                            const std::vector<TimeOffsetPeak>& peaks, const GyroRotation& gyro,
+                            const InitialisationOptions& options, const RunContext& context) {
+  std::optional<AlignedCamera> best;
+  for (const TimeOffsetPeak& peak : peaks) {
+    context.throwIfStopped();
+    std::optional<AlignedCamera> found = align(poses, gyro, peak.time_offset_s, options, camera.prior);
+    // The more significant one stays unless the other is better by more than chance.
+    if (found && (!best || found->hand_eye.cost < options.better_alignment * best->hand_eye.cost))
+      best = std::move(found);
+  }
+  if (!best) {
+    throw calibrationFailed(camera.name, "too few pairs of views to find the camera's rotation",
+                            "Record longer, with the board in view");
+  }
+  return std::move(*best);
+}
+
+// Swaps and drops poses that contradict the gyroscope, and repeats the hand-eye without them.
+void settlePoses(const CameraData& camera, const ImuData& imu, std::int64_t start_ns,
+                 const GyroRotation& gyro, const InitialisationOptions& options, AlignedCamera& aligned,
+                 Initialisation& result) {
+  constexpr int kRounds = 2;
+  int swapped = 0, dropped = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    const GyroRotation unbiased(imu.samples, start_ns, aligned.hand_eye.gyroscope_bias_rad_s);
+    AlignedCamera next = aligned;
+    const PoseConsistency consistency = keepConsistentPoses(next.poses, unbiased, next.hand_eye, options);
+    const auto again =
+        estimateCameraImuRotation(next.poses, gyro, next.hand_eye.time_offset_s, options, camera.prior);
+    if (!again || static_cast<int>(next.poses.size()) < options.least_views) {
+      result.warnings.push_back(camera.name +
+                                ": rotations of camera and gyroscope contradict each other in most views");
+      return;
+    }
+    next.hand_eye = *again;
+    aligned = std::move(next);
+    swapped += consistency.swapped;
+    dropped += consistency.dropped;
+    if (consistency.swapped == 0 && consistency.dropped == 0) break;
+  }
+  const auto views = static_cast<int>(aligned.poses.size()) + dropped;
+  result.steps.push_back({"planar poses",
+                          fmt::format("{}: the gyroscope turned {} views to the plane's other pose and "
+                                      "contradicts {} of {}",
+                                      camera.name, swapped, dropped, views),
+                          static_cast<double>(dropped) / views, 0.0});
+}
+
+}  // namespace
+
+AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& input, const GyroRotation& gyro,
+                          const InitialisationOptions& options, const RunContext& context,
+                          Initialisation& result) {
+  const ImuData& imu = input.imus[input.reference_imu];
+  Lap lap;
+  const std::vector<CameraPose> poses = cameraPoses(camera, input.board, gyro, options, context, result);
+  result.steps.back().duration_s = lap.next_s();
+  context.throwIfStopped();
+  const std::vector<TimeOffsetPeak> peaks = correlateTimeOffset(poses, gyro, options, camera.prior);
+  if (peaks.empty()) {
+    throw calibrationFailed(camera.name,
+                            "too few pairs of views overlap with the gyroscope to find the time offset",
+                            "Record longer, with the board in view");
+  }
+  const double offset_s = lap.next_s();
+  AlignedCamera aligned = bestAlignment(camera, poses, peaks, gyro, options, context);
+  context.throwIfStopped();
+  const double rotation_s = lap.next_s();
+  settlePoses(camera, imu, input.start_ns, gyro, options, aligned, result);
+  if (result.steps.back().name == "planar poses") result.steps.back().duration_s = lap.next_s();
+  const HandEye& hand_eye = aligned.hand_eye;
+  warnOfPeaks(camera, peaks, hand_eye.time_offset_s, options, result);
+  const double next = peaks.size() > 1 ? peaks[1].correlation : 0.0;
+  result.steps.push_back(
+      {"time offset",
+       fmt::format("{}: {:.4f} s, correlation {:.3f}, peak {:.0f} ms wide, next best {:.3f}", camera.name,
+                   hand_eye.time_offset_s, peaks.front().correlation, peaks.front().width_s * 1e3, next),
+       1.0 - peaks.front().correlation, peaks.front().correlation - next, offset_s});
+  result.steps.push_back(
+      {"camera-IMU rotation",
+       fmt::format("{}: {} pairs agree to {:.3f} deg, second axis {:.2f} of the first", camera.name,
+                   hand_eye.pairs, hand_eye.residual_rad * kDegPerRad, hand_eye.axis_ratio),
+       hand_eye.residual_rad, hand_eye.axis_ratio, rotation_s});
+  return aligned;
+}
+
+}  // namespace evical
