@@ -148,7 +148,7 @@ class TestImportSession : public QObject {
       QCOMPARE(session.imus[0].stream, std::string("/davis/imu"));
       QCOMPARE(session.imus[0].gyroscope_random_walk, 2e-5);
       QCOMPARE(session.board.radius_m, 0.02);
-      QVERIFY(has(notes, "--radius-m") && has(notes, "looks like images") && has(notes, "no priors"));
+      QVERIFY(has(notes, "--radius-m") && has(notes, "looks like images") && has(notes, "under prior"));
       texts.push_back(sessionYaml(session, scratch_.path().toStdString()));
       QCOMPARE(texts.back(), texts.front());
     } while (std::next_permutation(request.files.begin(), request.files.end()));

@@ -273,7 +273,7 @@ class TestExportCameras : public QObject {
       };
       QVERIFY((mapping("ACCE") - state.accelerometer_mapping).norm() < 1e-15);
       QVERIFY(
-          (mapping("GYRO") * rotation(data["SO3_AtoG"]).toRotationMatrix() - state.gyroscope_mapping).norm() <
+          (mapping("GYRO") * rotation(data["SO3_AtoG"]).toRotationMatrix() - state.gyroscopeMatrix()).norm() <
           1e-12);
       QVERIFY((vector(data["GYRO"]["BIAS"]) - state.gyroscope_bias_rad_s).norm() < 1e-15);
       const Eigen::Vector3d position = vector(root["EXTRI"]["POS_BiInBr"][i]["value"]);
