@@ -14,7 +14,7 @@ scenarios=config/scenarios
             "$scenarios"/{imu_200hz,badly_scaled_imu,partial_views,near,far,bright_circles,low_contrast}.yaml \
             "$scenarios"/{blur_0.4px,blur_1px,threshold_0.15,threshold_0.5}.yaml \
             "$scenarios"/{planar_motion,one_axis_rotation,hardly_moving}.yaml
-"$accuracy" --quantities "$scenarios"/{stereo,stereo_two_imus,three_cameras}.yaml
+"$accuracy" --quantities "$scenarios"/{stereo,stereo_two_imus,three_cameras,disjoint_views}.yaml
 "$accuracy" --seeds 20 "$scenarios/davis346_10s.yaml"
 
 intrinsics=build/release/tests/benchmarks/evical_intrinsics_accuracy
