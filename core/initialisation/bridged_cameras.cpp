@@ -13,8 +13,7 @@ namespace {
 constexpr double kKnotSpacing_s = 0.08;
 // How far two gaps may differ and still speak for the same: carried on over some tenths of a second, hands
 // are a degree or two off.
-constexpr double kRotation_rad = 0.04, kPosition_m = 0.03;
-constexpr double kLeastAgreeing = 0.8;  // of the gaps: at wrong time offsets some agree by chance
+constexpr PoseSpread kSpread{0.04, 0.03};
 
 // A view with the motion around it.
 struct MovingPose {
@@ -84,53 +83,23 @@ Bridges bridges(const std::vector<MovingPose>& reference, const std::vector<Movi
   return found;
 }
 
-double strangeness(const RigidTransform& pose, const RigidTransform& mean) {
-  const double angle = rotationAngleBetween_rad(pose.rotation, mean.rotation) / kRotation_rad,
-               way = (pose.translation_m - mean.translation_m).norm() / kPosition_m;
-  return angle * angle + way * way;
-}
-
-// Mean, reweighted; from the gap that most of the others are near to.
-BridgedCamera agreement(const std::vector<RigidTransform>& each, double time_offset_s) {
+// From the gap that most of the others are near to.
+MeanPose agreement(const std::vector<RigidTransform>& each) {
+  constexpr int kRounds = 10;
   const auto misfit = [&](const RigidTransform& mean) {
     double sum = 0.0;
-    for (const RigidTransform& pose : each) sum += std::min(1.0, strangeness(pose, mean));
+    for (const RigidTransform& pose : each) sum += std::min(1.0, kSpread.between2(pose, mean));
     return sum;
   };
-  constexpr int kRounds = 10;
-  BridgedCamera found;
-  found.time_offset_s = time_offset_s;
-  found.bridges = static_cast<int>(each.size());
-  RigidTransform mean = *std::min_element(
+  const RigidTransform start = *std::min_element(
       each.begin(), each.end(),
       [&](const RigidTransform& a, const RigidTransform& b) { return misfit(a) < misfit(b); });
-  for (int round = 0; round < kRounds; ++round) {
-    Eigen::Vector3d turn = Eigen::Vector3d::Zero(), shift = Eigen::Vector3d::Zero();
-    double weights = 0.0, turns2 = 0.0, shifts2 = 0.0;
-    int near = 0;
-    for (const RigidTransform& pose : each) {
-      const Eigen::Vector3d angle = quaternionLog(mean.rotation.conjugate() * pose.rotation),
-                            way = pose.translation_m - mean.translation_m;
-      const double weight = 1.0 / (1.0 + strangeness(pose, mean));
-      near += weight > 0.5;
-      turn += weight * angle;
-      shift += weight * way;
-      weights += weight;
-      turns2 += weight * angle.squaredNorm();
-      shifts2 += weight * way.squaredNorm();
-    }
-    mean.rotation = (mean.rotation * quaternionExp(turn / weights)).normalized();
-    mean.translation_m += shift / weights;
-    found.agreeing = static_cast<double>(near) / static_cast<double>(each.size());
-    found.rotation_rms_rad = std::sqrt(turns2 / weights);
-    found.position_rms_m = std::sqrt(shifts2 / weights);
-  }
-  found.reference_from_camera = mean;
-  return found;
+  return meanPose(each, start, kSpread, kRounds);
 }
 
-double misfitOf(const BridgedCamera& found) {
-  const double angle = found.rotation_rms_rad / kRotation_rad, way = found.position_rms_m / kPosition_m;
+double misfitOf(const MeanPose& found) {
+  const double angle = found.rotation_rms_rad / kSpread.rotation_rad,
+               way = found.position_rms_m / kSpread.position_m;
   return (angle * angle + way * way) / std::max(found.agreeing, 1e-3);
 }
 
@@ -148,9 +117,10 @@ std::optional<BridgedCamera> bridgeCameras(const std::vector<CameraPose>& refere
     context.throwIfStopped();
     const Bridges each = bridges(one, other, step * kStep_s, options.longest_bridge_s);
     if (!each.bothWays(options.least_bridges)) continue;
-    const BridgedCamera found = agreement(each.reference_from_camera, step * kStep_s);
-    if (found.agreeing < kLeastAgreeing) continue;
-    if (!best || misfitOf(found) < misfitOf(*best)) best = found;
+    const MeanPose found = agreement(each.reference_from_camera);
+    if (found.agreeing < options.least_bridge_agreement) continue;
+    if (!best || misfitOf(found) < misfitOf(best->reference_from_camera))
+      best = {found, step * kStep_s, static_cast<int>(each.reference_from_camera.size())};
   }
   return best;
 }

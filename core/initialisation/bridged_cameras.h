@@ -5,6 +5,7 @@
 
 #include "core/initialisation/camera_poses.h"
 #include "core/initialisation/initialisation_options.h"
+#include "core/initialisation/mean_pose.h"
 
 #include <optional>
 #include <vector>
@@ -12,11 +13,9 @@
 namespace evical {
 
 struct BridgedCamera {
-  RigidTransform reference_from_camera;
-  double time_offset_s = 0.0;                           // reference_time = camera_time + time_offset_s
-  int bridges = 0;                                      // gaps that tell it
-  double agreeing = 0.0;                                // share of these near the mean
-  double rotation_rms_rad = 0.0, position_rms_m = 0.0;  // robust
+  MeanPose reference_from_camera;
+  double time_offset_s = 0.0;  // reference_time = camera_time + time_offset_s
+  int bridges = 0;             // gaps that tell it
 };
 
 // The time offset within options.time_offset_search_s at which the gaps agree best. Nothing where there are

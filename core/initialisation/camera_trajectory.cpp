@@ -81,36 +81,10 @@ std::optional<RelativePose> relativePose(const CameraTrajectory& reference,
     each.push_back(inverse(world_from_reference) * pose.world_from_camera);
   }
   if (static_cast<int>(each.size()) < std::max(1, least_views)) return std::nullopt;
-  RelativePose result;
-  result.views = static_cast<int>(each.size());
-  // Means, reweighted: planar poses that were taken the wrong way round lie far off.
+  // Planar poses that were taken the wrong way round lie far off.
   constexpr int kRounds = 20;
-  constexpr double kRotation_rad = 0.02, kPosition_m = 0.01;
-  RigidTransform mean = each[each.size() / 2];
-  for (int round = 0; round < kRounds; ++round) {
-    Eigen::Vector3d turn = Eigen::Vector3d::Zero(), shift = Eigen::Vector3d::Zero();
-    double weights = 0.0, turns2 = 0.0, shifts2 = 0.0;
-    int near = 0;
-    for (const RigidTransform& pose : each) {
-      const Eigen::Vector3d angle = quaternionLog(mean.rotation.conjugate() * pose.rotation),
-                            way = pose.translation_m - mean.translation_m;
-      const double weight = 1.0 / (1.0 + angle.squaredNorm() / (kRotation_rad * kRotation_rad) +
-                                   way.squaredNorm() / (kPosition_m * kPosition_m));
-      near += weight > 0.5;
-      turn += weight * angle;
-      shift += weight * way;
-      weights += weight;
-      turns2 += weight * angle.squaredNorm();
-      shifts2 += weight * way.squaredNorm();
-    }
-    mean.rotation = (mean.rotation * quaternionExp(turn / weights)).normalized();
-    mean.translation_m += shift / weights;
-    result.agreeing = static_cast<double>(near) / static_cast<double>(each.size());
-    result.rotation_rms_rad = std::sqrt(turns2 / weights);
-    result.position_rms_m = std::sqrt(shifts2 / weights);
-  }
-  result.reference_from_camera = mean;
-  return result;
+  constexpr PoseSpread kSpread{0.02, 0.01};
+  return RelativePose{meanPose(each, each[each.size() / 2], kSpread, kRounds), static_cast<int>(each.size())};
 }
 
 }  // namespace evical

@@ -6,6 +6,7 @@
 #include "core/geometry/so3_spline.h"
 #include "core/geometry/vector_spline.h"
 #include "core/initialisation/camera_poses.h"
+#include "core/initialisation/mean_pose.h"
 
 #include <cstdint>
 #include <optional>
@@ -32,10 +33,8 @@ CameraTrajectory trajectoryThrough(const std::vector<CameraPose>& poses, double 
 std::vector<ImuSample> angularRatesOf(const CameraTrajectory& trajectory, std::int64_t start_ns);
 
 struct RelativePose {
-  RigidTransform reference_from_camera;
-  int views = 0;                                        // that tell it
-  double agreeing = 0.0;                                // share of these near the mean
-  double rotation_rms_rad = 0.0, position_rms_m = 0.0;  // robust
+  MeanPose reference_from_camera;
+  int views = 0;  // that tell it
 };
 // From views at times when the reference's place is known too; nothing if fewer than `least_views`.
 std::optional<RelativePose> relativePose(const CameraTrajectory& reference,

@@ -87,14 +87,15 @@ class CamerasAlone {
     resolveBySmoothness(found.poses, options_.longest_pair_s);
     const auto bridged = bridgeCameras(poses_, found.poses, options_, context_);
     if (!bridged) return false;
-    result_.state.cameras[k].imu_from_camera = bridged->reference_from_camera;
+    const MeanPose& pose = bridged->reference_from_camera;
+    result_.state.cameras[k].imu_from_camera = pose.mean;
     result_.state.cameras[k].time_offset_s = bridged->time_offset_s;
     result_.steps.push_back(
         {"camera to camera",
          fmt::format("{}: sees the board in turns with {}; {} gaps agree to {:.2f} deg and {:.1f} mm",
-                     camera.name, reference().name, bridged->bridges, bridged->rotation_rms_rad * kDegPerRad,
-                     bridged->position_rms_m * 1e3),
-         bridged->position_rms_m, 0.0, lap.next_s()});
+                     camera.name, reference().name, bridged->bridges, pose.rotation_rms_rad * kDegPerRad,
+                     pose.position_rms_m * 1e3),
+         pose.position_rms_m, 0.0, lap.next_s()});
     result_.warnings.push_back(
         fmt::format("{}: never sees the board together with {}: what is known of it rests on how evenly the "
                     "rig moves between; let both see the board at once, or record with an IMU",
@@ -103,7 +104,7 @@ class CamerasAlone {
     return true;
   }
 
-  // The others' views where the reference sees nothing.
+  // The trajectory, with the views of the cameras that see the board when the reference does not.
   void followAllInTurns() {
     if (in_turns_.empty()) return;
     std::vector<CameraPose> all = poses_;
@@ -123,9 +124,9 @@ class CamerasAlone {
   void place(std::size_t k, const AlignedCamera& aligned) {
     const std::string& name = input_.cameras[k].name;
     const double time_offset_s = aligned.hand_eye.time_offset_s;
-    const auto pose = relativePose(trajectory_, aligned.poses, time_offset_s, options_.longest_shared_gap_s,
-                                   options_.least_views);
-    if (!pose) {
+    const auto found = relativePose(trajectory_, aligned.poses, time_offset_s, options_.longest_shared_gap_s,
+                                    options_.least_views);
+    if (!found) {
       throw calibrationFailed(
           name,
           fmt::format("it and {} see the board within {:.2f} s of each other in fewer than {} views",
@@ -133,18 +134,19 @@ class CamerasAlone {
           "Let both see the board at the same time, let it pass from one to the other often and without "
           "delay, or record with an IMU");
     }
-    if (pose->agreeing < options_.least_agreement) {
+    const MeanPose& pose = found->reference_from_camera;
+    if (pose.agreeing < options_.least_agreement) {
       throw calibrationFailed(name,
                               fmt::format("only {:.0f} % of its views agree on how it sits on {}",
-                                          100.0 * pose->agreeing, reference().name),
+                                          100.0 * pose.agreeing, reference().name),
                               "Check that both see one board at the same time and are fixed to each other");
     }
-    result_.state.cameras[k].imu_from_camera = pose->reference_from_camera;
+    result_.state.cameras[k].imu_from_camera = pose.mean;
     result_.state.cameras[k].time_offset_s = time_offset_s;
     result_.steps.push_back({"camera to camera",
-                             fmt::format("{}: {} views agree to {:.3f} deg and {:.2f} mm", name, pose->views,
-                                         pose->rotation_rms_rad * kDegPerRad, pose->position_rms_m * 1e3),
-                             pose->position_rms_m, 0.0});
+                             fmt::format("{}: {} views agree to {:.3f} deg and {:.2f} mm", name, found->views,
+                                         pose.rotation_rms_rad * kDegPerRad, pose.position_rms_m * 1e3),
+                             pose.position_rms_m, 0.0});
   }
 
   const CalibrationInput& input_;

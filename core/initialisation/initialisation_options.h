@@ -32,6 +32,7 @@ struct InitialisationOptions {
   double longest_shared_gap_s = 0.1;
   double longest_bridge_s = 0.12;
   int least_bridges = 4;
+  double least_bridge_agreement = 0.8;
   int least_imu_samples = 50;
   double least_acceleration_m_s2 = 4.0;
   double largest_acceleration_m_s2 = 40.0;
@@ -103,6 +104,8 @@ inline constexpr auto kInitialisationFields = std::tuple{
         "other at most. With longer gaps time offsets go astray."},
     Field{"least_bridges", &InitialisationOptions::least_bridges, 2, 1000, "",
           "How often the board must pass from one of them to the other, half of it either way."},
+    Field{"least_bridge_agreement", &InitialisationOptions::least_bridge_agreement, 0.0, 1.0, "",
+          "Share of these gaps that must agree: at wrong time offsets some do by chance."},
     Field{"least_imu_samples", &InitialisationOptions::least_imu_samples, 10, 1000000, "",
           "Samples that an IMU must have."},
     Field{"least_acceleration_m_s2", &InitialisationOptions::least_acceleration_m_s2, 0.0, 1000.0, "m/s^2",

@@ -1,0 +1,27 @@
+// Several estimates of one pose become one: means, reweighted, so that those which lie far off hardly count.
+#pragma once
+
+#include "core/geometry/rigid_transform.h"
+
+#include <span>
+
+namespace evical {
+
+// At these distances a pose counts half.
+struct PoseSpread {
+  double rotation_rad = 0.0, position_m = 0.0;
+
+  // Squared distance of two poses in these units.
+  double between2(const RigidTransform& a, const RigidTransform& b) const;
+};
+
+struct MeanPose {
+  RigidTransform mean;                                  // target_from_source, as the poses are
+  double agreeing = 0.0;                                // share of them near the mean
+  double rotation_rms_rad = 0.0, position_rms_m = 0.0;  // robust
+};
+// `start`: near most of them.
+MeanPose meanPose(std::span<const RigidTransform> poses, const RigidTransform& start,
+                  const PoseSpread& spread, int rounds);
+
+}  // namespace evical
