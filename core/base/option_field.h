@@ -85,7 +85,7 @@ constexpr std::size_t countFields() {
 // Number of members of a plain option struct, so that a forgotten row is a build error.
 template <class Options>
 constexpr std::size_t fieldCount() {
-  return detail::countFields<Options, 40>();
+  return detail::countFields<Options, 64>();
 }
 
 template <class Fields, class Visitor>

@@ -8,8 +8,6 @@
 namespace evical {
 namespace {
 
-constexpr int kMostKnots = 48;  // uncertainty takes time and memory with them
-
 // What keeps the knots' mean apart from the bias; far below what could be measured.
 constexpr double kGyroscopeMeanSigma_rad_s = 1e-7, kAccelerometerMeanSigma_m_s2 = 1e-6;
 
@@ -73,7 +71,8 @@ void placeBiasKnots(const OptimisationOptions& options, const ImuNoise& noise, c
   const RandomWalks walks = randomWalks(options, noise);
   const double spacing_s = std::min({options.bias_knot_spacing_s, noise.gyroscope_density / walks.gyroscope,
                                      noise.accelerometer_density / walks.accelerometer});
-  const int steps = static_cast<int>(std::clamp(std::round(duration_s / spacing_s), 1.0, kMostKnots - 1.0));
+  const int steps =
+      static_cast<int>(std::clamp(std::round(duration_s / spacing_s), 1.0, options.most_bias_knots - 1.0));
   drift.start_s = trajectory.start_s - imu.time_offset_s;
   drift.knot_spacing_s = duration_s / steps;
   drift.gyroscope_rad_s.assign(static_cast<std::size_t>(steps) + 1, Eigen::Vector3d::Zero());

@@ -32,6 +32,7 @@ struct OptimisationOptions {
   double gyroscope_rotation_sigma_deg = 5.0;
   BiasModel bias_model = BiasModel::Constant;
   double bias_knot_spacing_s = 5.0;
+  int most_bias_knots = 48;
   double gyroscope_random_walk = 2.66e-5;
   double accelerometer_random_walk = 4.33e-4;
   double gyroscope_bias_sigma_rad_s = 1.0;
@@ -46,8 +47,11 @@ struct OptimisationOptions {
   int threads = 2;
   double smooth_rotation_rad_s2 = 200.0;
   double smooth_position_m_s2 = 30.0;
+  double smooth_unevenness = 3.0;
   double correlation_time_s = 0.2;
   double pixel_error_px = 0.1;
+  double contradiction_sigmas = 4.0;
+  double turned_gyroscope_sigmas = 6.0;
   double needed_rotation_deg = 0.1;
   double needed_translation_mm = 1.0;
   double needed_time_offset_ms = 0.1;
@@ -96,8 +100,9 @@ inline constexpr auto kOptimisationFields = std::tuple{
     Choice{"bias_model", &OptimisationOptions::bias_model, std::array{"constant", "linear"},
            "Biases over a recording: constant, or straight lines between knots that walk at random."},
     Field{"bias_knot_spacing_s", &OptimisationOptions::bias_knot_spacing_s, 0.1, 1e4, "s",
-          "Linear biases: knots are at most this far apart, closer where the random walk asks for it, and no "
-          "more than 48."},
+          "Linear biases: knots are at most this far apart, closer where the random walk asks for it."},
+    Field{"most_bias_knots", &OptimisationOptions::most_bias_knots, 2, 1000, "",
+          "Linear biases: no more knots an IMU than this, as uncertainty takes time and memory with them."},
     Field{"gyroscope_random_walk", &OptimisationOptions::gyroscope_random_walk, 1e-9, 1.0, "rad/s^2/sqrt(Hz)",
           "Linear biases: how fast gyroscope biases drift where the session does not say it. The default is "
           "Kalibr's example for an ADIS16448, as the noise densities are."},
@@ -121,16 +126,25 @@ inline constexpr auto kOptimisationFields = std::tuple{
     Field{"max_rounds", &OptimisationOptions::max_rounds, 1, 100, "",
           "Solves of one stage, each with measurements assigned to spline segments anew."},
     Field{"threads", &OptimisationOptions::threads, 1, 256, "", "Threads that evaluate residuals."},
-    Field{"smooth_rotation_rad_s2", &OptimisationOptions::smooth_rotation_rad_s2, 0.1, 1e6, "rad/s^2",
-          "Without an IMU: angular accelerations at each knot are 0 +- what they are where views tell them, "
-          "or this if it is less; bridges gaps between views."},
+    Field{
+        "smooth_rotation_rad_s2", &OptimisationOptions::smooth_rotation_rad_s2, 0.1, 1e6, "rad/s^2",
+        "Without an IMU: angular accelerations at each knot are 0 +- smooth_unevenness times their RMS where "
+        "views tell it, or this if it is less; bridges gaps between views."},
     Field{"smooth_position_m_s2", &OptimisationOptions::smooth_position_m_s2, 0.01, 1e6, "m/s^2",
           "The same of accelerations."},
+    Field{
+        "smooth_unevenness", &OptimisationOptions::smooth_unevenness, 0.1, 1000.0, "",
+        "Hands don't move evenly, and accelerations last longer than a knot: their spread in units of their "
+        "RMS."},
     Field{"correlation_time_s", &OptimisationOptions::correlation_time_s, 0.001, 10.0, "s",
           "Residuals nearer in time than this may be correlated; the reported sigmas allow for it."},
     Field{"pixel_error_px", &OptimisationOptions::pixel_error_px, 0.0, 10.0, "px",
           "Error of edges that repeats at the same pixel, so that motion over few pixels shows a wrong "
           "amplitude: part of the sigmas."},
+    Field{"contradiction_sigmas", &OptimisationOptions::contradiction_sigmas, 1.0, 1000.0, "sigma",
+          "Known values that lie further than this from what the recording alone says are told of."},
+    Field{"turned_gyroscope_sigmas", &OptimisationOptions::turned_gyroscope_sigmas, 1.0, 1000.0, "sigma",
+          "A gyroscope's turn that is not estimated is told of beyond this and needed_rotation_deg."},
     Field{"needed_rotation_deg", &OptimisationOptions::needed_rotation_deg, 1e-4, 90.0, "deg",
           "Rotations less certain than this make the result doubtful."},
     Field{"needed_translation_mm", &OptimisationOptions::needed_translation_mm, 1e-3, 1e4, "mm",

@@ -16,7 +16,6 @@ namespace evical {
 namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-constexpr double kContradiction_sigmas = 4.0;
 constexpr double kNoNeed = std::numeric_limits<double>::infinity();
 
 struct Unit {
@@ -66,13 +65,13 @@ class Comparison {
 
 void Comparison::judge(const std::string& name, const Unit& unit, const std::vector<Compared>& numbers,
                        const std::vector<const char*>& parts) {
-  double worst = kContradiction_sigmas;
+  double worst = options_.contradiction_sigmas;
   bool matters = false;
   std::string text;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const Compared& each = numbers[i];
     const double sigmas = std::abs(each.alone - each.known) / std::hypot(each.known_sigma, each.alone_sigma);
-    if (!(sigmas > kContradiction_sigmas)) continue;
+    if (!(sigmas > options_.contradiction_sigmas)) continue;
     matters = matters || std::abs(each.pull) > unit.need;
     if (sigmas < worst) continue;
     worst = sigmas;
@@ -165,7 +164,7 @@ void Comparison::compareImu(std::size_t imu) {
 
 PriorCheck Comparison::run() {
   for (std::size_t i = 0; i < input_.cameras.size(); ++i) {
-    if (input_.imus.empty() && i == input_.reference_camera) continue;
+    if (input_.isReferenceCamera(i)) continue;
     const CameraData& camera = input_.cameras[i];
     const CameraState &solution = solution_.cameras[i], &alone = alone_.cameras[i];
     comparePlace(camera.name, camera.prior, solution.imu_from_camera, alone.imu_from_camera,

@@ -11,9 +11,6 @@ namespace evical {
 namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-// Of sigmas that take residuals for uncorrelated: under the turn that is looked for they are not, and sigmas
-// that allow for that would hide it.
-constexpr double kCertain_sigma = 6.0;
 
 class ScaledInverse {
  public:
@@ -42,6 +39,8 @@ std::vector<std::string> turnedGyroscopes(const CalibrationInput& input,
   std::vector<std::string> notes;
   if (information.quantities.empty()) return notes;
   const Eigen::VectorXd step = -ScaledInverse(information.total).times(information.gradient);
+  // Sigmas that take residuals for uncorrelated: under the turn that is looked for they are not, and sigmas
+  // that allow for that would hide it.
   const ScaledInverse covariance(credible.total);
   for (std::size_t i = 0; i < information.quantities.size(); ++i) {
     const Quantity& quantity = information.quantities[i];
@@ -51,7 +50,7 @@ std::vector<std::string> turnedGyroscopes(const CalibrationInput& input,
     double certainty = 0.0;
     for (Eigen::Index axis = first; axis < first + 3; ++axis)
       certainty = std::max(certainty, std::abs(step[axis]) / std::max(covariance.sigma(axis), 1e-12));
-    if (turn_deg < options.needed_rotation_deg || certainty < kCertain_sigma) continue;
+    if (turn_deg < options.needed_rotation_deg || certainty < options.turned_gyroscope_sigmas) continue;
     notes.push_back(fmt::format(
         "{}: the gyroscope seems to be turned by about {:.2g} deg against the accelerometer, and other "
         "rotations may be off by as much; calibrate with optimisation.gyroscope_rotation: true",
