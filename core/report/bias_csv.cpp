@@ -1,5 +1,7 @@
 #include "core/report/bias_csv.h"
 
+#include "core/report/csv_text.h"
+
 #include <fmt/format.h>
 
 #include <iterator>
@@ -9,13 +11,6 @@ namespace {
 
 void append(const Eigen::Vector3d& values, std::string& text) {
   for (const double value : values) fmt::format_to(std::back_inserter(text), ",{:.6e}", value);
-}
-
-// Names may hold commas and quotes.
-std::string quoted(const std::string& name) {
-  std::string text = "\"";
-  for (const char letter : name) text += letter == '"' ? std::string("\"\"") : std::string(1, letter);
-  return text + "\"";
 }
 
 Eigen::Vector3d at(const std::vector<Eigen::Vector3d>& sigmas, std::size_t knot) {
@@ -33,7 +28,7 @@ std::string biasesCsv(const NamedResult& named) {
         i < result.uncertainty.imus.size() ? result.uncertainty.imus[i] : ImuUncertainty{};
     for (std::size_t k = 0; k < imu.bias_drift.knots(); ++k) {
       const double time_s = imu.bias_drift.knotTime_s(k);
-      text += fmt::format("{},{:.6f}", quoted(named.names.imus.at(i)), time_s);
+      text += fmt::format("{},{:.6f}", quotedCsv(named.names.imus.at(i)), time_s);
       append(imu.gyroscopeBiasAt_rad_s(time_s), text);
       append(at(sigma.gyroscope_drift_std_rad_s, k), text);
       append(imu.accelerometerBiasAt_m_s2(time_s), text);

@@ -1,5 +1,6 @@
 #include "core/base/yaml_node.h"
 #include "core/data/intrinsics_yaml.h"
+#include "core/data/unit_quaternion.h"
 #include "core/report/result_yaml.h"
 
 #include <fmt/format.h>
@@ -62,19 +63,9 @@ void get(const YamlNode& map, const char* key, std::vector<std::string>& values)
   for (const YamlNode& item : node->items()) values.push_back(item.text());
 }
 
-Eigen::Quaterniond unitQuaternion(const YamlNode& node) {
-  Eigen::Quaterniond rotation(vector<4>(node));
-  const double norm = rotation.norm();
-  if (!(std::abs(norm - 1.0) < 1e-3))
-    throw node.error(fmt::format("is no unit quaternion: its norm is {}", norm));
-  // Dividing only where it matters leaves what we wrote ourselves as it was, to the last bit.
-  if (std::abs(norm - 1.0) > 1e-12) rotation.normalize();
-  return rotation;
-}
-
 void readTransform(const YamlNode& map, RigidTransform& pose, Eigen::Vector3d& rotation_std_rad,
                    Eigen::Vector3d& translation_std_m) {
-  pose.rotation = unitQuaternion(map["rotation_xyzw"]);
+  pose.rotation = unitQuaternion(map["rotation_xyzw"], vector<4>(map["rotation_xyzw"]));
   pose.translation_m = vector<3>(map["translation_m"]);
   get(map, "rotation_std_deg", rotation_std_rad, kRadPerDeg);
   get(map, "translation_std_m", translation_std_m);
@@ -158,7 +149,7 @@ void readImu(const YamlNode& map, NamedResult& named) {
     get(*gyroscope, "mapping_std", sigma.gyroscope_mapping_std);
     get(*gyroscope, "residual_rms_rad_s", fit.gyroscope_rms_rad_s);
     if (const auto turn = gyroscope->find("gyroscope_from_accelerometer_xyzw"))
-      state.gyroscope_from_accelerometer = unitQuaternion(*turn);
+      state.gyroscope_from_accelerometer = unitQuaternion(*turn, vector<4>(*turn));
     get(*gyroscope, "rotation_std_deg", sigma.gyroscope_rotation_std_rad, kRadPerDeg);
   }
   if (const auto accelerometer = map.find("accelerometer")) {

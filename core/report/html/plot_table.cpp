@@ -1,5 +1,7 @@
 #include "core/report/html/plot_table.h"
 
+#include "core/report/csv_text.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,19 +9,6 @@
 #include <iterator>
 
 namespace evical::html {
-namespace {
-
-std::string quoted(const std::string& text) {
-  std::string safe = "\"";
-  for (const char c : text) {
-    if (c == '"') safe += '"';
-    safe += c == '\n' || c == '\r' ? ' ' : c;
-  }
-  return safe + "\"";
-}
-
-}  // namespace
-
 PlotTable::PlotTable(std::string file_name, std::vector<std::string> column_names)
     : file(std::move(file_name)), columns(std::move(column_names)), values(columns.size()) {}
 
@@ -32,7 +21,7 @@ std::string tableCsv(const PlotTable& table) {
   for (const std::string& column : table.columns) text += (text.empty() ? "" : ",") + column;
   text += "\n";
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    if (!table.label_column.empty()) text += quoted(table.labels.at(row)) + ",";
+    if (!table.label_column.empty()) text += quotedCsv(table.labels.at(row)) + ",";
     for (std::size_t col = 0; col < table.values.size(); ++col) {
       if (col > 0) text += ",";
       const double value = table.values[col][row];

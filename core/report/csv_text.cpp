@@ -1,0 +1,14 @@
+#include "core/report/csv_text.h"
+
+namespace evical {
+
+std::string quotedCsv(const std::string& text) {
+  std::string safe = "\"";
+  for (const char c : text) {
+    if (c == '"') safe += '"';
+    safe += c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return safe + "\"";
+}
+
+}  // namespace evical
