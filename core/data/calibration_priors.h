@@ -32,6 +32,11 @@ struct KnownRotation {
   }
 };
 
+template <class Known>
+bool isGiven(const std::optional<Known>& known) {
+  return known && known->isGiven();
+}
+
 struct SensorPrior {
   std::optional<KnownRotation> rotation;   // reference_from_sensor
   std::optional<KnownVector> translation;  // of that, m

@@ -53,6 +53,9 @@ struct CalibrationInput {
   std::size_t reference_imu = 0;     // index into imus
   std::size_t reference_camera = 0;  // index into cameras: the reference where there is no IMU
   double gravity_norm_m_s2 = 9.81;   // where the batch is to find it: the middle of its prior
+
+  // Where all else is relative to this camera.
+  bool isReferenceCamera(std::size_t camera) const { return imus.empty() && camera == reference_camera; }
 };
 
 }  // namespace evical

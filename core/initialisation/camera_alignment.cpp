@@ -51,7 +51,7 @@ void warnOfPeaks(const CameraData& camera, const std::vector<TimeOffsetPeak>& pe
                  const InitialisationOptions& options, Initialisation& result) {
   const TimeOffsetPeak& best = peaks.front();
   const std::optional<KnownNumber>& known = camera.prior.time_offset;
-  if (known && known->isGiven()) {
+  if (isGiven(known)) {
     if (best.correlation < options.clear_peak_correlation)
       result.warnings.push_back(
           fmt::format("{}: rotation rates of camera and gyroscope agree weakly (correlation {:.2f}) at the "

@@ -125,8 +125,7 @@ std::optional<HandEye> estimateCameraImuRotation(const std::vector<CameraPose>& 
   constexpr double kFirstScale_rad = 0.05, kLastScale_rad = 0.005;
   constexpr int kSteps = 15;
   std::vector<RotationPair> pairs = rotationPairs(poses, options.pair_gap_s, options.longest_pair_s);
-  const bool offset_given = prior.time_offset && prior.time_offset->isGiven(),
-             rotation_given = prior.rotation && prior.rotation->isGiven();
+  const bool offset_given = isGiven(prior.time_offset), rotation_given = isGiven(prior.rotation);
   const double reach_s = offset_given ? 0.0 : options.time_offset_reach_s;
   const double lowest_s = time_offset_s - reach_s, highest_s = time_offset_s + reach_s;
   std::erase_if(pairs, [&](const RotationPair& pair) {

@@ -41,7 +41,7 @@ ImuRotation alignFurtherGyroscope(const ImuData& imu, std::int64_t start_ns, con
   const std::vector<CameraPose> turns = turnsOf(GyroRotation(imu.samples, start_ns));
   const std::vector<TimeOffsetPeak> peaks = correlateTimeOffset(turns, reference, options, imu.prior);
   const std::optional<KnownNumber>& known = imu.prior.time_offset;
-  const bool given = known && known->isGiven();
+  const bool given = isGiven(known);
   const std::string offsets =
       given   ? fmt::format("the time offset of {:.4f} s that is given", known->value)
       : known ? fmt::format("any time offset within {:.1f} s of {:.4f} s", options.time_offset_search_s,

@@ -74,7 +74,7 @@ void checkPoses(const CameraData& camera, const CameraPoses& found, const GyroRo
   const double first_s = found.poses.front().time_s, last_s = found.poses.back().time_s;
   const std::optional<KnownNumber>& known = camera.prior.time_offset;
   const double offset_s = known ? known->value : 0.0;
-  const double search_s = known && known->isGiven() ? 0.0 : options.time_offset_search_s;
+  const double search_s = isGiven(known) ? 0.0 : options.time_offset_search_s;
   const double overlap_s = std::min(last_s, gyro.end_s() - offset_s + search_s) -
                            std::max(first_s, gyro.begin_s() - offset_s - search_s);
   if (overlap_s < options.least_overlap_s) {

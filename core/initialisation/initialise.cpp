@@ -58,8 +58,7 @@ void turnAboutAxis(const CalibrationInput& input, const InitialisationOptions& o
   if (first.axis_ratio >= options.least_axis_ratio) return;
   result.warnings.push_back(input.cameras.front().name +
                             ": the recording rotates about one axis only: rotate about two more");
-  const std::optional<KnownRotation>& known = input.cameras.front().prior.rotation;
-  if (known && known->isGiven()) return;
+  if (isGiven(input.cameras.front().prior.rotation)) return;
   // The angle needs no fine knots.
   constexpr double kLeastKnot_s = 0.05;
   const double knot_s = std::max(options.knot_spacing_s, kLeastKnot_s);

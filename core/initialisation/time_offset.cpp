@@ -121,7 +121,7 @@ std::vector<TimeOffsetPeak> correlateTimeOffset(const std::vector<CameraPose>& p
   // Gaps count as overlap, or a board seen in every tenth window would need ten times the recording.
   const double pairs_per_s = static_cast<double>(pairs.size()) /
                              std::max(pairs.back().middle_s - pairs.front().middle_s, duration_s);
-  const bool given = prior.time_offset && prior.time_offset->isGiven();
+  const bool given = isGiven(prior.time_offset);
   const double centre_s = prior.time_offset ? prior.time_offset->value : 0.0;
   const int steps = given ? 0 : static_cast<int>(std::ceil(options.time_offset_search_s / kStep_s));
   std::vector<Correlation> correlations;

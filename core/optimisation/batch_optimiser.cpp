@@ -174,13 +174,12 @@ bool Batch::updateWeights() {
   return changed;
 }
 
-// Three times as strong as where views tell it: hands don't move evenly, and accelerations last longer than a
-// knot. Circles change little by it, so that it is no reason to solve again.
+// Circles change little by it, so that it is no reason to solve again.
 void Batch::updateSmoothness() {
-  constexpr double kUnevenness = 3.0, kLeast = 1e-4;
+  constexpr double kLeast = 1e-4;
   const TrajectorySmoothness found = trajectorySmoothness(input_, problem_.state());
   const auto scale = [&](double measured, double largest) {
-    return std::clamp(kUnevenness * measured / largest, kLeast, 1.0);
+    return std::clamp(options_.smooth_unevenness * measured / largest, kLeast, 1.0);
   };
   problem_.scales.smooth_rotation = scale(found.rotation_rad_s2, options_.smooth_rotation_rad_s2);
   problem_.scales.smooth_position = scale(found.position_m_s2, options_.smooth_position_m_s2);

@@ -19,9 +19,9 @@ namespace evical {
 // How much larger residuals are than the sigmas given for them, per sensor. The batch divides its weights by
 // these, so that wrong noise densities or circle covariances don't decide between camera and IMU.
 struct NoiseScales {
-  std::vector<double> circles;                     // by camera
-  std::vector<double> gyroscopes, accelerometers;  // by IMU
-  double smooth_rotation = 1.0, smooth_position = 1.0;
+  std::vector<double> circles;                          // by camera
+  std::vector<double> gyroscopes, accelerometers;       // by IMU
+  double smooth_rotation = 1.0, smooth_position = 1.0;  // without an IMU: accelerations at the knots
 };
 
 struct BatchSolution {

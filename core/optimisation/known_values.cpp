@@ -8,7 +8,7 @@ namespace {
 
 template <class Known, class Value>
 void setIfGiven(const std::optional<Known>& known, Value& value) {
-  if (known && known->isGiven()) value = known->value;
+  if (isGiven(known)) value = known->value;
 }
 
 void setPlace(const SensorPrior& prior, bool offset_is_free, RigidTransform& pose, double& time_offset_s) {
@@ -19,15 +19,6 @@ void setPlace(const SensorPrior& prior, bool offset_is_free, RigidTransform& pos
 
 Eigen::Matrix3d heldMapping(const std::optional<KnownMapping>& known) {
   return known ? known->value : Eigen::Matrix3d::Identity();
-}
-
-template <class Known>
-bool isGiven(const std::optional<Known>& known) {
-  return known && known->isGiven();
-}
-
-bool isReferenceCamera(const CalibrationInput& input, std::size_t camera) {
-  return input.imus.empty() && camera == input.reference_camera;
 }
 
 Eigen::Matrix<double, 6, 1> upperTriangle(const Eigen::Matrix3d& mapping) {
@@ -48,7 +39,7 @@ void appendPlace(const std::string& sensor, const SensorPrior& prior, bool offse
 void setGivenValues(const CalibrationInput& input, const OptimisationOptions& options,
                     CalibrationState& state) {
   for (std::size_t i = 0; i < state.cameras.size(); ++i) {
-    if (!isReferenceCamera(input, i))
+    if (!input.isReferenceCamera(i))
       setPlace(input.cameras[i].prior, options.free_time_offsets, state.cameras[i].imu_from_camera,
                state.cameras[i].time_offset_s);
   }
@@ -70,7 +61,7 @@ void setGivenValues(const CalibrationInput& input, const OptimisationOptions& op
 std::vector<std::string> givenQuantities(const CalibrationInput& input, const OptimisationOptions& options) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < input.cameras.size(); ++i) {
-    if (!isReferenceCamera(input, i))
+    if (!input.isReferenceCamera(i))
       appendPlace(input.cameras[i].name, input.cameras[i].prior, options.free_time_offsets, names);
   }
   for (std::size_t i = 0; i < input.imus.size(); ++i) {
@@ -120,7 +111,7 @@ void CalibrationProblem::addKnownValues() {
                                 : new PriorCost(upperTriangle(known->value), upperTriangle(*known->sigma)));
   };
   for (std::size_t i = 0; i < state_.cameras.size(); ++i) {
-    if (!isReferenceCamera(input_, i))
+    if (!input_.isReferenceCamera(i))
       addKnownPlace(input_.cameras[i].prior, state_.cameras[i].imu_from_camera,
                     state_.cameras[i].time_offset_s);
   }

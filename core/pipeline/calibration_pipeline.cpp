@@ -79,7 +79,7 @@ void checkDuration(const Session& session, const RecordingPass& pass) {
 // Initialisation, too, must not look for what is not free.
 void holdTimeOffsets(CalibrationInput& input) {
   for (std::size_t k = 0; k < input.cameras.size(); ++k)
-    if (!input.imus.empty() || k != input.reference_camera)
+    if (!input.isReferenceCamera(k))
       input.cameras[k].prior.time_offset = heldTimeOffset(input.cameras[k].prior);
   for (std::size_t k = 0; k < input.imus.size(); ++k)
     if (k != input.reference_imu) input.imus[k].prior.time_offset = heldTimeOffset(input.imus[k].prior);

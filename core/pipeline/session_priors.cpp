@@ -1,6 +1,7 @@
 #include "core/pipeline/session_priors.h"
 
 #include "core/base/nearest_name.h"
+#include "core/data/unit_quaternion.h"
 
 #include <fmt/format.h>
 
@@ -76,14 +77,8 @@ std::optional<KnownRotation> readRotation(const YamlNode& map) {
   const auto sigma = stdNode(map, "rotation_std_deg", "rotation_xyzw"), value = map.find("rotation_xyzw");
   if (!value) return std::nullopt;
   const Numbers numbers = value->reals(4);
-  KnownRotation known;
-  known.value.coeffs() << numbers[0], numbers[1], numbers[2], numbers[3];
-  const double norm = known.value.norm();
-  if (!(std::abs(norm - 1.0) < 1e-3))
-    throw value->error(fmt::format("is no unit quaternion: its norm is {:.6g}", norm),
-                       "Give x, y, z, w of the rotation from the sensor to the reference");
-  // Dividing only where it matters leaves what we wrote ourselves as it was.
-  if (std::abs(norm - 1.0) > 1e-12) known.value.normalize();
+  KnownRotation known{unitQuaternion(*value, {numbers[0], numbers[1], numbers[2], numbers[3]},
+                                     "Give x, y, z, w of the rotation from the sensor to the reference")};
   if (const auto sigmas = sigma ? readStd(*sigma, 3) : std::nullopt)
     known.sigma = vector3(*sigmas) / kDegPerRad;
   return known;
