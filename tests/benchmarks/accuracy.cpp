@@ -1,14 +1,13 @@
 // Accuracy against the truth of simulated recordings, as a table: `evical_accuracy [--seeds N] [--duration S]
 // [--quantities] SCENARIO...`. Recordings are simulated in memory and go through the same front end,
 // initialisation and batch as `evical calibrate`.
-#include "core/base/error.h"
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/result_files.h"
 #include "core/report/truth_comparison.h"
 #include "core/synthetic/board_truth.h"
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/imu_simulator.h"
-#include "core/synthetic/scenario_yaml.h"
+#include "tests/benchmarks/benchmark_program.h"
 #include "tests/support/scenario_session.h"
 
 #include <fmt/format.h>
@@ -220,32 +219,25 @@ struct OffsetSpread {
 
 int main(int argc, char** argv) {
   CLI::App app("Accuracy on simulated recordings against their truth");
-  std::vector<std::string> files;
-  int seeds = 1;
-  std::optional<double> duration_s;
+  ScenarioArguments scenarios;
   bool all_quantities = false;
-  app.add_option("SCENARIO", files, "Scenario files")->required();
-  app.add_option("--seeds", seeds, "Each scenario with this many seeds")->check(CLI::Range(1, 1000));
-  app.add_option("--duration", duration_s, "Seconds, instead of the scenario's")
-      ->check(CLI::Range(2.0, 3600.0));
+  scenarios.addTo(app);
   app.add_flag("--quantities", all_quantities,
                "Also every quantity's error and sigma, and the weakest direction");
   CLI11_PARSE(app, argc, argv);
   printHeader();
   bool all_met = true;
   OffsetSpread spread;
-  for (const std::string& file : files) {
+  for (const std::string& file : scenarios.files) {
     std::vector<Outcome> outcomes;
-    for (int k = 0; k < seeds; ++k) {
-      Scenario scenario = readScenario(file);
-      if (duration_s) scenario.duration_s = *duration_s;
-      scenario.seed += static_cast<std::uint64_t>(k);
+    for (int k = 0; k < scenarios.seeds; ++k) {
+      const Scenario scenario = scenarios.read(file, k);
       outcomes.push_back(run(scenario));
       all_met = printRow(scenario, outcomes.back()) && all_met;
       spread.add(scenario, outcomes.back());
       if (all_quantities) printQuantities(outcomes.back());
     }
-    if (seeds > 1) printNormalised(outcomes);
+    if (scenarios.seeds > 1) printNormalised(outcomes);
   }
   spread.print();
   return all_met ? 0 : 1;
@@ -255,10 +247,5 @@ int main(int argc, char** argv) {
 }  // namespace evical
 
 int main(int argc, char** argv) {
-  try {
-    return evical::main(argc, argv);
-  } catch (const evical::CalibrationError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  }
+  return evical::guarded(evical::main, argc, argv);
 }

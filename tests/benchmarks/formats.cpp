@@ -1,11 +1,10 @@
 // Decoding speed per format on a simulated recording, as a table: `evical_formats [--duration S] [--least M]
 // SCENARIO`. CPU time of the process, files in the page's cache. Fails where a packed format is slower than
 // `--least` million events/s, or where not every event comes back.
-#include "core/base/error.h"
 #include "core/recording/recording_reader.h"
 #include "core/recording/recording_writer.h"
 #include "core/synthetic/event_simulator.h"
-#include "core/synthetic/scenario_yaml.h"
+#include "tests/benchmarks/benchmark_program.h"
 #include "tests/core/recording/ros/ros2_builder.h"
 #include "tests/support/packed_events.h"
 
@@ -189,10 +188,5 @@ int run(int argc, char** argv) {
 }  // namespace evical
 
 int main(int argc, char** argv) {
-  try {
-    return evical::run(argc, argv);
-  } catch (const evical::CalibrationError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
+  return evical::guarded(evical::run, argc, argv, 1);
 }

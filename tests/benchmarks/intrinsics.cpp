@@ -1,11 +1,10 @@
 // Intrinsics against the truth of simulated recordings, as a table: `evical_intrinsics_accuracy [--seeds N]
 // [--duration S] [--folder DIR] SCENARIO...`. Each recording is simulated into a file and goes through
 // everything that `evical intrinsics` does.
-#include "core/base/error.h"
 #include "core/geometry/projection_difference.h"
 #include "core/pipeline/intrinsics_calibration.h"
 #include "core/pipeline/simulation.h"
-#include "core/synthetic/scenario_yaml.h"
+#include "tests/benchmarks/benchmark_program.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -75,14 +74,9 @@ Outcome compare(const Scenario& scenario, const IntrinsicsResult& result) {
 
 int main(int argc, char** argv) {
   CLI::App app("Intrinsics of simulated recordings against their truth");
-  std::vector<std::string> files;
-  int seeds = 1;
-  std::optional<double> duration_s;
+  ScenarioArguments scenarios;
   std::filesystem::path folder = std::filesystem::temp_directory_path() / "evical_intrinsics_accuracy";
-  app.add_option("SCENARIO", files, "Scenario files")->required();
-  app.add_option("--seeds", seeds, "Each scenario with this many seeds")->check(CLI::Range(1, 1000));
-  app.add_option("--duration", duration_s, "Seconds, instead of the scenario's")
-      ->check(CLI::Range(2.0, 3600.0));
+  scenarios.addTo(app);
   app.add_option("--folder", folder, "For the recordings, which are removed again");
   CLI11_PARSE(app, argc, argv);
   fmt::print(
@@ -90,13 +84,11 @@ int main(int argc, char** argv) {
       "(sigma) | max, px | normalised error | views | passes | s | targets |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|\n");
   bool all_met = true;
-  for (const std::string& file : files) {
+  for (const std::string& file : scenarios.files) {
     double normalised2 = 0.0;
     int parameters = 0;
-    for (int k = 0; k < seeds; ++k) {
-      Scenario scenario = readScenario(file);
-      if (duration_s) scenario.duration_s = *duration_s;
-      scenario.seed += static_cast<std::uint64_t>(k);
+    for (int k = 0; k < scenarios.seeds; ++k) {
+      const Scenario scenario = scenarios.read(file, k);
       const SimulationSummary made = simulate(scenario, folder, {});
       try {
         const Outcome outcome =
@@ -110,9 +102,9 @@ int main(int argc, char** argv) {
       }
       std::filesystem::remove_all(folder);
     }
-    if (seeds > 1 && parameters > 0)
-      fmt::print("\nnormalised errors of {}, RMS over {} seeds: {:.2f} (target 0.7-1.4)\n\n", file, seeds,
-                 std::sqrt(normalised2 / parameters));
+    if (scenarios.seeds > 1 && parameters > 0)
+      fmt::print("\nnormalised errors of {}, RMS over {} seeds: {:.2f} (target 0.7-1.4)\n\n", file,
+                 scenarios.seeds, std::sqrt(normalised2 / parameters));
   }
   return all_met ? 0 : 1;
 }
@@ -121,10 +113,5 @@ int main(int argc, char** argv) {
 }  // namespace evical
 
 int main(int argc, char** argv) {
-  try {
-    return evical::main(argc, argv);
-  } catch (const evical::CalibrationError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  }
+  return evical::guarded(evical::main, argc, argv);
 }

@@ -1,13 +1,12 @@
 // Costs of the hot paths on a simulated recording, as a table: `evical_speed [--duration S] SCENARIO`. CPU
 // time of one thread, so that other work on the machine hardly counts; compare ratios between builds, not
 // machines.
-#include "core/base/error.h"
 #include "core/frontend/board_tracker.h"
 #include "core/initialisation/initialise.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/imu_simulator.h"
-#include "core/synthetic/scenario_yaml.h"
+#include "tests/benchmarks/benchmark_program.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -137,10 +136,5 @@ int main(int argc, char** argv) {
 }  // namespace evical
 
 int main(int argc, char** argv) {
-  try {
-    return evical::main(argc, argv);
-  } catch (const evical::CalibrationError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  }
+  return evical::guarded(evical::main, argc, argv);
 }

@@ -2,13 +2,12 @@
 // [--duration S] [--folder DIR] SCENARIO...`. Each recording is simulated into a file and calibrated three
 // times, as `evical calibrate` does: with the true intrinsics; with those found first, held; and solved with
 // everything else.
-#include "core/base/error.h"
 #include "core/geometry/projection_difference.h"
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/result_files.h"
 #include "core/pipeline/simulation.h"
 #include "core/report/truth_comparison.h"
-#include "core/synthetic/scenario_yaml.h"
+#include "tests/benchmarks/benchmark_program.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -112,14 +111,9 @@ bool printSums(const std::string& file, int seeds, const std::array<Sums, kWays>
 
 int main(int argc, char** argv) {
   CLI::App app("Calibrations with and without intrinsics, against the truth of simulated recordings");
-  std::vector<std::string> files;
-  int seeds = 1;
-  std::optional<double> duration_s;
+  ScenarioArguments scenarios;
   std::filesystem::path folder = std::filesystem::temp_directory_path() / "evical_unknown_intrinsics";
-  app.add_option("SCENARIO", files, "Scenario files")->required();
-  app.add_option("--seeds", seeds, "Each scenario with this many seeds")->check(CLI::Range(1, 1000));
-  app.add_option("--duration", duration_s, "Seconds, instead of the scenario's")
-      ->check(CLI::Range(2.0, 3600.0));
+  scenarios.addTo(app);
   app.add_option("--folder", folder, "For the recordings, which are removed again");
   CLI11_PARSE(app, argc, argv);
   fmt::print(
@@ -127,12 +121,10 @@ int main(int argc, char** argv) {
       "(sigma) | projection off by, px RMS | optimise, s | verdict "
       "|\n|---|---|---|---|---|---|---|---|---|\n");
   bool all_met = true;
-  for (const std::string& file : files) {
+  for (const std::string& file : scenarios.files) {
     std::array<Sums, kWays> sums;
-    for (int k = 0; k < seeds; ++k) {
-      Scenario scenario = readScenario(file);
-      if (duration_s) scenario.duration_s = *duration_s;
-      scenario.seed += static_cast<std::uint64_t>(k);
+    for (int k = 0; k < scenarios.seeds; ++k) {
+      Scenario scenario = scenarios.read(file, k);
       scenario.intrinsics_in_session = false;
       const SimulationSummary made = simulate(scenario, folder, {});
       Session session = readSession(made.session);
@@ -149,7 +141,7 @@ int main(int argc, char** argv) {
         printRow(scenario, static_cast<Way>(way), known, runs[way], comparison);
       }
     }
-    all_met = printSums(file, seeds, sums) && all_met;
+    all_met = printSums(file, scenarios.seeds, sums) && all_met;
   }
   return all_met ? 0 : 1;
 }
@@ -158,10 +150,5 @@ int main(int argc, char** argv) {
 }  // namespace evical
 
 int main(int argc, char** argv) {
-  try {
-    return evical::main(argc, argv);
-  } catch (const evical::CalibrationError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  }
+  return evical::guarded(evical::main, argc, argv);
 }
