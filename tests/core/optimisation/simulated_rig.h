@@ -35,6 +35,16 @@ struct SimulatedRig {
 };
 SimulatedRig simulateRig(const RigOptions& options);
 
+// For many seeds: 3 s, few samples and views.
+inline RigOptions shortRecording(unsigned seed = 1) {
+  RigOptions options;
+  options.duration_s = 3.0;
+  options.imu_rate_hz = 200.0;
+  options.window_s = 0.03;
+  options.seed = seed;
+  return options;
+}
+
 // The rig's camera, which has no distortion, becomes `truth`, of the same focal length and principal point,
 // and is seen through another lens, as found first from the same recording.
 void seeThrough(const CameraIntrinsics& truth, const CameraIntrinsics& lens, SimulatedRig& rig);

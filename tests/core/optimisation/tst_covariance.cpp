@@ -17,15 +17,6 @@ namespace {
 
 using namespace evical;
 
-test::RigOptions shortRecording(unsigned seed = 1) {
-  test::RigOptions options;
-  options.duration_s = 3.0;
-  options.imu_rate_hz = 200.0;
-  options.window_s = 0.03;
-  options.seed = seed;
-  return options;
-}
-
 struct Run {
   test::SimulatedRig rig;
   BatchSolution solution;
@@ -135,7 +126,7 @@ class TestCovariance : public QObject {
 
   // P^T P must be the Schur complement of the dense normal equations.
   void projectedInformation_isTheSchurComplement() {
-    test::RigOptions options = shortRecording();
+    test::RigOptions options = test::shortRecording();
     options.duration_s = 0.4;
     const test::SimulatedRig rig = test::simulateRig(options);
     const OptimisationOptions optimisation;
@@ -170,7 +161,7 @@ class TestCovariance : public QObject {
   }
 
   void report_isComplete() {
-    test::RigOptions options = shortRecording();
+    test::RigOptions options = test::shortRecording();
     options.second_imu = true;
     const Run run = calibrate(options);
     const UncertaintyReport& report = run.estimate.report;
@@ -195,7 +186,7 @@ class TestCovariance : public QObject {
   // The claim of method section 7. 28 quantities over 20 seeds: their common RMS is known to about 5 %, each
   // one's to 16 %.
   void sigmas_areHonest() {
-    const Eigen::VectorXd rms = normalisedErrors(shortRecording(), 20);
+    const Eigen::VectorXd rms = normalisedErrors(test::shortRecording(), 20);
     const double common = std::sqrt(rms.squaredNorm() / static_cast<double>(rms.size()));
     QVERIFY2(common > 0.85 && common < 1.18, qPrintable(QString::number(common)));
     const double extrinsics = std::sqrt(rms.head<7>().squaredNorm() / 7.0);
@@ -205,7 +196,7 @@ class TestCovariance : public QObject {
 
   // Centre errors that last for 0.1 s: what they cost must show in the sigmas.
   void sigmas_allowForCorrelatedCentres() {
-    test::RigOptions options = shortRecording();
+    test::RigOptions options = test::shortRecording();
     options.window_s = 0.02;
     options.centre_correlation_s = 0.1;
     const Eigen::VectorXd rms = normalisedErrors(options, 10);
@@ -226,7 +217,7 @@ class TestCovariance : public QObject {
   }
 
   void richMotion_isOk() {
-    test::RigOptions options = shortRecording();
+    test::RigOptions options = test::shortRecording();
     options.duration_s = 8.0;
     const Run run = calibrate(options);
     QCOMPARE(run.estimate.status, CalibrationStatus::Ok);
@@ -246,7 +237,7 @@ class TestCovariance : public QObject {
   void poorMotion_isDoubtfulAndNamesTheDirection() {
     QFETCH(int, motion);
     QFETCH(QString, weakest);
-    test::RigOptions options = shortRecording();
+    test::RigOptions options = test::shortRecording();
     options.motion = static_cast<test::Motion>(motion);
     const Run run = calibrate(options);
     QCOMPARE(run.estimate.status, CalibrationStatus::Doubtful);

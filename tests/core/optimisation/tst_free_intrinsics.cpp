@@ -41,15 +41,6 @@ test::SimulatedRig rigOf(CameraModel model, const test::RigOptions& options) {
   return rig;
 }
 
-test::RigOptions shortRecording(unsigned seed = 1) {
-  test::RigOptions options;
-  options.duration_s = 3.0;
-  options.imu_rate_hz = 200.0;
-  options.window_s = 0.03;
-  options.seed = seed;
-  return options;
-}
-
 BatchSolution solve(const test::SimulatedRig& rig, unsigned seed, const OptimisationOptions& options = {}) {
   CalibrationState start = test::disturbed(rig.truth, seed);
   start.cameras[0].intrinsics.reset();
@@ -73,7 +64,7 @@ class TestFreeIntrinsics : public QObject {
   void batch_onNoiselessData_findsTheTrueLens_data() { lens_data(); }
   void batch_onNoiselessData_findsTheTrueLens() {
     QFETCH(int, model);
-    test::RigOptions options = shortRecording();
+    test::RigOptions options = test::shortRecording();
     options.centre_sigma_px = 0.0;
     options.imu_noise = 0.0;
     const test::SimulatedRig rig = rigOf(static_cast<CameraModel>(model), options);
@@ -101,7 +92,7 @@ class TestFreeIntrinsics : public QObject {
     constexpr unsigned kSeeds = 12;
     Eigen::VectorXd sum;
     for (unsigned seed = 1; seed <= kSeeds; ++seed) {
-      const test::SimulatedRig rig = rigOf(static_cast<CameraModel>(model), shortRecording(seed));
+      const test::SimulatedRig rig = rigOf(static_cast<CameraModel>(model), test::shortRecording(seed));
       const BatchSolution solution = solve(rig, seed);
       const UncertaintyReport report = estimateUncertainty(rig.input, solution, {}, RunContext{}).report;
       const Eigen::VectorXd normalised =
@@ -120,7 +111,7 @@ class TestFreeIntrinsics : public QObject {
   }
 
   void report_namesThemWithTheirSigmas() {
-    const test::SimulatedRig rig = rigOf(CameraModel::PinholeRadtan, shortRecording());
+    const test::SimulatedRig rig = rigOf(CameraModel::PinholeRadtan, test::shortRecording());
     const BatchSolution solution = solve(rig, 1);
     const UncertaintyEstimate estimate = estimateUncertainty(rig.input, solution, {}, RunContext{});
     const UncertaintyReport& report = estimate.report;
@@ -139,7 +130,7 @@ class TestFreeIntrinsics : public QObject {
 
   void extrinsicSigmas_holdThoseOfTheLens() {
     const CameraIntrinsics truth = trueCamera(CameraModel::PinholeRadtan);
-    test::SimulatedRig rig = test::simulateRig(shortRecording());
+    test::SimulatedRig rig = test::simulateRig(test::shortRecording());
     test::seeThrough(truth, truth, rig);
     const UncertaintyReport free = estimateUncertainty(rig.input, solve(rig, 1), {}, RunContext{}).report;
     rig.input.cameras[0].intrinsics_found_first = false;
@@ -154,14 +145,14 @@ class TestFreeIntrinsics : public QObject {
   }
 
   void found_areHeldWhereAsked() {
-    const test::SimulatedRig rig = rigOf(CameraModel::PinholeRadtan, shortRecording());
+    const test::SimulatedRig rig = rigOf(CameraModel::PinholeRadtan, test::shortRecording());
     OptimisationOptions options;
     options.camera_intrinsics = CameraIntrinsicsChoice::Fixed;
     QVERIFY(!solve(rig, 1, options).state.cameras[0].intrinsics);
   }
 
   void givenIntrinsics_areSolvedForWhereAsked_withinTheirPrior() {
-    test::SimulatedRig rig = rigOf(CameraModel::PinholeRadtan, shortRecording());
+    test::SimulatedRig rig = rigOf(CameraModel::PinholeRadtan, test::shortRecording());
     rig.input.cameras[0].intrinsics_found_first = false;
     OptimisationOptions options;
     options.camera_intrinsics = CameraIntrinsicsChoice::Free;
@@ -180,7 +171,7 @@ class TestFreeIntrinsics : public QObject {
   }
 
   void k3_isSolvedForWhereItIsUsed() {
-    test::SimulatedRig rig = test::simulateRig(shortRecording());
+    test::SimulatedRig rig = test::simulateRig(test::shortRecording());
     CameraIntrinsics truth = trueCamera(CameraModel::PinholeRadtan), seen = roughly(truth, 1);
     truth.distortion[4] = 0.02;
     seen.distortion[4] = 0.01;
@@ -193,7 +184,7 @@ class TestFreeIntrinsics : public QObject {
   }
 
   void lastStage_releasesThem_whicheverItIs() {
-    const test::SimulatedRig rig = rigOf(CameraModel::PinholeRadtan, shortRecording());
+    const test::SimulatedRig rig = rigOf(CameraModel::PinholeRadtan, test::shortRecording());
     const CameraIntrinsics& seen = *rig.input.cameras[0].intrinsics;
     OptimisationOptions options;
     options.free_imu_intrinsics = false;
