@@ -1,11 +1,29 @@
 #!/usr/bin/env bash
-# Runs calibrations in the desktop program's pattern of threads, but without Qt, with the thread sanitizer. By hand: it takes
-# a quarter of an hour on two cores.
+# Runs the desktop program's tests with the address and undefined-behaviour sanitizers, and calibrations in the
+# program's pattern of threads, but without Qt, with the thread sanitizer. By hand: it takes an hour and more on two cores.
+# Usage: packaging/sanitizers.sh [asan|tsan]    both without a word
 set -euo pipefail
 cd "$(dirname "$0")/.."
+which=${1:-both}
 
 packaging/install-dependencies.sh
-cmake --preset tsan
-nice -n 5 cmake --build --preset tsan --target tst_job_pattern
-TSAN_OPTIONS=second_deadlock_stack=1:suppressions=$PWD/packaging/sanitizers/races.txt \
-  ctest --preset tsan -R '^tst_job_pattern$' --timeout 3600
+suppressions=$PWD/packaging/sanitizers
+
+if [ "$which" != tsan ]; then
+  cmake --preset asan
+  mapfile -t tests < <(grep -o '^evical_add_ui_test([a-z0-9_]*' tests/ui/CMakeLists.txt | cut -d'(' -f2)
+  tests+=(tst_main_window tst_main_window_hd tst_main_window_bad_input tst_main_window_cameras)
+  nice -n 5 cmake --build --preset asan --target "${tests[@]}"
+  export ASAN_OPTIONS=detect_leaks=1:detect_stack_use_after_return=1:strict_string_checks=1
+  export LSAN_OPTIONS=suppressions=$suppressions/leaks.txt:print_suppressions=0
+  export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+  export QTEST_FUNCTION_TIMEOUT=3600000 # ms
+  ctest --preset asan -R "^($(IFS='|'; echo "${tests[*]}"))$" --timeout 3600
+fi
+
+if [ "$which" != asan ]; then
+  cmake --preset tsan
+  nice -n 5 cmake --build --preset tsan --target tst_job_pattern
+  TSAN_OPTIONS=second_deadlock_stack=1:suppressions=$suppressions/races.txt \
+    ctest --preset tsan -R '^tst_job_pattern$' --timeout 3600
+fi

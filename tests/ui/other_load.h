@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "tests/ui/slowdown.h"
+
 #include <QElapsedTimer>
 #include <QFile>
 
@@ -27,7 +29,7 @@ inline double slowness() {
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &end);
   const double took_ms = 1e3 * static_cast<double>(end.tv_sec - begin.tv_sec) +
                          1e-6 * static_cast<double>(end.tv_nsec - begin.tv_nsec);
-  return std::max(1.0, took_ms / kUsual_ms);
+  return std::max<double>(kSlowdown, took_ms / kUsual_ms);
 }
 
 // How many processors others kept busy since it was made: with them about, rates by the clock mean little,

@@ -2,16 +2,18 @@
 #include "ui/jobs/calibration_job.h"
 
 #include "tests/ui/simulated_session.h"
+#include "tests/ui/slowdown.h"
 
 #include <QSignalSpy>
 #include <QtTest>
 
 using namespace evical;
 using namespace evical::ui;
+using evical::ui::test::kSlowdown;
 
 namespace {
 
-constexpr int kPatience_ms = 120'000;
+constexpr int kPatience_ms = 120'000 * kSlowdown;
 
 struct Watched {
   JobRunner runner;
@@ -83,7 +85,8 @@ class TestCalibrationJob : public QObject {
     });
     test.job.start(session_);
     QCOMPARE(test.outcome(), JobOutcome::Cancelled);
-    QVERIFY2(clock.isValid() && clock.elapsed() < 500, qPrintable(QString::number(clock.elapsed())));
+    QVERIFY2(clock.isValid() && clock.elapsed() < 500 * kSlowdown,
+             qPrintable(QString::number(clock.elapsed())));
     QVERIFY(!test.run);
     QVERIFY(test.failed.isEmpty());
   }

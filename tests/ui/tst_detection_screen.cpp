@@ -3,6 +3,7 @@
 #include "core/pipeline/recording_pass.h"
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "tests/ui/slowdown.h"
 #include "ui/detection/burst_band.h"
 #include "ui/detection/detection_screen.h"
 #include "ui/detection/event_view.h"
@@ -24,6 +25,7 @@
 
 using namespace evical;
 using namespace evical::ui;
+using evical::ui::test::kSlowdown;
 
 namespace {
 
@@ -85,12 +87,12 @@ struct Asked {
 
 // The screen as it is once the recording has been read and the window at the cursor analysed.
 void settle(DetectionScreen& screen) {
-  QTRY_VERIFY_WITH_TIMEOUT(screen.timeline().end_s() > 1.9, 20000);
+  QTRY_VERIFY_WITH_TIMEOUT(screen.timeline().end_s() > 1.9, 20000 * kSlowdown);
   QTRY_VERIFY_WITH_TIMEOUT(screen.analysis() && !screen.analysis()->searches.empty() &&
                                std::abs(screen.analysis()->time_s - screen.time_s()) < 1e-9 &&
                                screen.view().frame() &&
                                std::abs(screen.view().frame()->time_s - screen.time_s()) < 1e-9,
-                           20000);
+                           20000 * kSlowdown);
 }
 
 // A camera that stands half a metre before the board and looks straight at it, for two seconds.
@@ -233,7 +235,7 @@ class TestDetectionScreen : public QObject {
       slowest_s = std::max(slowest_s, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
     }
     qInfo("slowest %.1f ms", 1e3 * slowest_s);
-    QVERIFY(slowest_s < 0.1);
+    QVERIFY(slowest_s < 0.1 * kSlowdown);
   }
 
   void flow_modeShowsFlow() {
@@ -250,7 +252,7 @@ class TestDetectionScreen : public QObject {
              flowColour(static_cast<double>(flow.velocity_px_s.x()),
                         static_cast<double>(flow.velocity_px_s.y()));
     };
-    QTRY_VERIFY_WITH_TIMEOUT(coloured(), 20000);
+    QTRY_VERIFY_WITH_TIMEOUT(coloured(), 20000 * kSlowdown);
   }
 
   void analysis_saysWhereItWasLost() {
@@ -304,11 +306,11 @@ class TestDetectionScreen : public QObject {
     FrontEndOptions options = recorded_->session.options.front_end;
     options.grid.least_circles = 500;
     screen.setOptions(options);
-    QTRY_COMPARE_WITH_TIMEOUT(screen.analysis()->outcome, WindowOutcome::TooFewCircles, 20000);
+    QTRY_COMPARE_WITH_TIMEOUT(screen.analysis()->outcome, WindowOutcome::TooFewCircles, 20000 * kSlowdown);
     QVERIFY2(screen.panel().text().contains("Lost at moving circles"), qPrintable(screen.panel().text()));
     QVERIFY2(screen.panel().text().contains("at least 500 needed"), qPrintable(screen.panel().text()));
     screen.setOptions(recorded_->session.options.front_end);
-    QTRY_COMPARE_WITH_TIMEOUT(screen.analysis()->outcome, WindowOutcome::Complete, 20000);
+    QTRY_COMPARE_WITH_TIMEOUT(screen.analysis()->outcome, WindowOutcome::Complete, 20000 * kSlowdown);
   }
 
   void reprojection_isWhereTheCameraSeesTheBoard() {
@@ -381,7 +383,7 @@ class TestDetectionScreen : public QObject {
     QCOMPARE(selected.size(), 3);
     QTest::keyClick(&screen.view(), Qt::Key_Space);
     QVERIFY(screen.isPlaying());
-    QTRY_VERIFY_WITH_TIMEOUT(screen.time_s() > 0.53, 20000);
+    QTRY_VERIFY_WITH_TIMEOUT(screen.time_s() > 0.53, 20000 * kSlowdown);
     QTest::keyClick(&screen.view(), Qt::Key_Space);
     QVERIFY(!screen.isPlaying());
     settle(screen);
@@ -394,7 +396,7 @@ class TestDetectionScreen : public QObject {
     Session session = recorded_->session;
     session.recording = "/nowhere/recording.bag";
     screen.setSession(session);
-    QTRY_VERIFY_WITH_TIMEOUT(screen.view().message().contains("/nowhere/recording.bag"), 20000);
+    QTRY_VERIFY_WITH_TIMEOUT(screen.view().message().contains("/nowhere/recording.bag"), 20000 * kSlowdown);
     QVERIFY(!screen.view().frame());
   }
 
@@ -407,8 +409,9 @@ class TestDetectionScreen : public QObject {
     std::jthread job([session = recorded_->session, observers = screen.liveObservers()] {
       readAndDetect(session, {}, observers);
     });
-    QTRY_VERIFY_WITH_TIMEOUT(screen.analysis() && screen.analysis()->tracked, 20000);
-    QTRY_VERIFY_WITH_TIMEOUT(!screen.timeline().windows().empty() && screen.view().frame(), 20000);
+    QTRY_VERIFY_WITH_TIMEOUT(screen.analysis() && screen.analysis()->tracked, 20000 * kSlowdown);
+    QTRY_VERIFY_WITH_TIMEOUT(!screen.timeline().windows().empty() && screen.view().frame(),
+                             20000 * kSlowdown);
     QVERIFY(!screen.analysis()->circles.empty());
     job.join();
     screen.setLive(false);

@@ -2,6 +2,7 @@
 #include "ui/jobs/job_runner.h"
 
 #include "core/base/error.h"
+#include "tests/ui/slowdown.h"
 
 #include <QSignalSpy>
 #include <QtTest>
@@ -11,10 +12,11 @@
 
 using namespace evical;
 using namespace evical::ui;
+using evical::ui::test::kSlowdown;
 
 namespace {
 
-constexpr int kPatience_ms = 5000;
+constexpr int kPatience_ms = 5000 * kSlowdown;
 
 // Works until it is asked to stop.
 void workUntilStopped(const RunContext& context) {
@@ -127,7 +129,7 @@ class TestJobRunner : public QObject {
     test.runner.cancel();
     QVERIFY(test.runner.cancelling());
     QCOMPARE(test.outcome(), JobOutcome::Cancelled);
-    QVERIFY(clock.elapsed() < 500);
+    QVERIFY(clock.elapsed() < 500 * kSlowdown);
     QVERIFY(test.failed.isEmpty());
   }
 

@@ -6,6 +6,7 @@
 
 #include "tests/ui/full_disk.h"
 #include "tests/ui/simulated_session.h"
+#include "tests/ui/slowdown.h"
 #include "tests/ui/window_fixture.h"
 #include "ui/detection/detection_screen.h"
 #include "ui/detection/event_view.h"
@@ -27,7 +28,7 @@ using namespace evical::ui::test;
 
 namespace {
 
-constexpr int kSoon_ms = 20'000;  // of what takes next to nothing
+constexpr int kSoon_ms = 20'000 * kSlowdown;  // of what takes next to nothing
 constexpr const char* kVendors = "__EGL_VENDOR_LIBRARY_FILENAMES";
 constexpr const char* kNoVendor = "/nonexistent";
 

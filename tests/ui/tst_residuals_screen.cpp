@@ -2,6 +2,7 @@
 #include "core/pipeline/view_rejection.h"
 #include "tests/support/simulated_pass.h"
 #include "tests/ui/plot_pictures.h"
+#include "tests/ui/slowdown.h"
 #include "ui/plots/plot_panel.h"
 #include "ui/plots/residual_statistics.h"
 #include "ui/plots/residuals_screen.h"
@@ -17,6 +18,7 @@
 
 using namespace evical;
 using namespace evical::ui;
+using evical::ui::test::kSlowdown;
 
 namespace {
 
@@ -54,7 +56,7 @@ class TestResidualsScreen : public QObject {
     screen.show();
     QSignalSpy ready(&screen, &ResidualsScreen::ready);
     screen.setRun(run_, simulated_.session);
-    QVERIFY(ready.wait(30'000));
+    QVERIFY(ready.wait(30'000 * kSlowdown));
     settle();
   }
   static void settle() {

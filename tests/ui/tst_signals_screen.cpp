@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/support/simulated_pass.h"
 #include "tests/ui/plot_pictures.h"
+#include "tests/ui/slowdown.h"
 #include "ui/plots/latest_job.h"
 #include "ui/plots/plot_panel.h"
 #include "ui/plots/rotation_rates.h"
@@ -15,6 +16,7 @@
 
 using namespace evical;
 using namespace evical::ui;
+using evical::ui::test::kSlowdown;
 
 class TestSignalsScreen : public QObject {
   Q_OBJECT
@@ -25,7 +27,7 @@ class TestSignalsScreen : public QObject {
   void fill(SignalsScreen& screen) {
     QSignalSpy ready(&screen, &SignalsScreen::ready);
     screen.setRun(run_, simulated_.session);
-    QVERIFY(ready.wait(30'000));
+    QVERIFY(ready.wait(30'000 * kSlowdown));
   }
   static void settle() {
     for (int k = 0; k < 3; ++k) QCoreApplication::processEvents();
@@ -102,9 +104,9 @@ class TestSignalsScreen : public QObject {
     QElapsedTimer timer;
     timer.start();
     screen.setRun(run_, simulated_.session);
-    QVERIFY2(timer.elapsed() < 50, "it copies the session and starts a thread");
+    QVERIFY2(timer.elapsed() < 50 * kSlowdown, "it copies the session and starts a thread");
     QCOMPARE(ready.count(), 0);
-    QVERIFY(ready.wait(30'000));
+    QVERIFY(ready.wait(30'000 * kSlowdown));
   }
 
   void setRun_twiceShowsTheLatter() {
@@ -114,7 +116,7 @@ class TestSignalsScreen : public QObject {
     QSignalSpy ready(&screen, &SignalsScreen::ready);
     screen.setRun(run_, simulated_.session);
     screen.setRun(shorter, simulated_.session);
-    QVERIFY(ready.wait(30'000));
+    QVERIFY(ready.wait(30'000 * kSlowdown));
     QVERIFY(screen.findChild<PlotPanel*>("gyroscope")->xRange().second < 2.1);
     QTest::qWait(50);
     QCOMPARE(ready.count(), 1);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/pipeline/calibration_pipeline.h"
 #include "tests/core/optimisation/simulated_rig.h"
+#include "tests/ui/slowdown.h"
 #include "ui/scene/trajectory_screen.h"
 #include "ui/scene/view3d.h"
 #include "ui/theme/theme.h"
@@ -19,10 +20,11 @@
 using namespace evical;
 using namespace evical::ui;
 using Eigen::Vector3d;
+using evical::ui::test::kSlowdown;
 
 namespace {
 
-constexpr int kPatience_ms = 20000;
+constexpr int kPatience_ms = 20000 * kSlowdown;
 
 struct Example {
   test::SimulatedRig rig;

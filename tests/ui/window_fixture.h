@@ -2,6 +2,7 @@
 // The real main window for tests, with a person's hands: clicks, keys, answers to dialogs.
 #pragma once
 
+#include "tests/ui/slowdown.h"
 #include "ui/theme/theme.h"
 #include "ui/window/export_dialog.h"
 #include "ui/window/main_window.h"
@@ -24,7 +25,7 @@
 
 namespace evical::ui::test {
 
-inline constexpr int kPatience_ms = 120'000;
+inline constexpr int kPatience_ms = 120'000 * kSlowdown;
 
 // Settings, recent files and the demo's place in folders of the tests' own.
 inline void usePrivateFolders(const QTemporaryDir& scratch) {
