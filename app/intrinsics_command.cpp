@@ -13,6 +13,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace evical {
@@ -43,6 +44,23 @@ std::vector<FileContent> filesOf(const std::filesystem::path& folder, const Name
           {folder / "projection_std.csv", imageMapCsv(named.result.image)}};
 }
 
+struct Found {
+  std::vector<FileContent> files;
+  std::string tables, names;
+};
+
+void addCamera(const IntrinsicsArguments& arguments, const SessionCamera& camera, bool alone,
+               const IntrinsicsRun& run, const RunContext& context, Found& found) {
+  for (const RecordingFault& fault : run.pass.faults) context.progress.log(LogLevel::Warning, fault.text);
+  const NamedIntrinsics named{camera.name, camera.stream, kVersion, run.result};
+  std::filesystem::path folder = arguments.output;
+  if (!alone) makeOutputFolder(folder /= camera.name);
+  for (FileContent& file : filesOf(folder, named)) found.files.push_back(std::move(file));
+  found.files.push_back({folder / "detections.csv", detectionsCsv(run.pass.cameras)});
+  found.tables += intrinsicsTable(named);
+  found.names += (found.names.empty() ? "" : ", ") + camera.name;
+}
+
 int run(const IntrinsicsArguments& arguments) {
   const Session session = sessionFrom(arguments);
   const std::vector<std::size_t> cameras = chosenCameras(session, arguments.camera);
@@ -51,24 +69,25 @@ int run(const IntrinsicsArguments& arguments) {
   makeOutputFolder(arguments.output);
   const RunContext context{console, stopOnSignals()};
   try {
-    std::vector<FileContent> files;
-    std::string tables;
+    Found found;
+    std::optional<CalibrationError> failure;  // of the first camera that could not be calibrated
     for (const std::size_t camera : cameras) {
-      const SessionCamera& own = session.cameras[camera];
-      const IntrinsicsRun found = calibrateIntrinsics(session, camera, context);
-      for (const RecordingFault& fault : found.pass.faults) console.log(LogLevel::Warning, fault.text);
-      const NamedIntrinsics named{own.name, own.stream, kVersion, found.result};
-      std::filesystem::path folder = arguments.output;
-      if (cameras.size() > 1) makeOutputFolder(folder /= own.name);
-      for (FileContent& file : filesOf(folder, named)) files.push_back(std::move(file));
-      files.push_back({folder / "detections.csv", detectionsCsv(found.pass.cameras)});
-      tables += intrinsicsTable(named);
+      try {
+        const IntrinsicsRun one = calibrateIntrinsics(session, camera, context);
+        addCamera(arguments, session.cameras[camera], cameras.size() == 1, one, context, found);
+      } catch (const CalibrationError& error) {
+        if (error.kind() == ErrorKind::BadInput) throw;
+        if (cameras.size() > 1) console.log(LogLevel::Warning, error.what());
+        if (!failure) failure = error;
+      }
     }
-    files.push_back({std::filesystem::path(arguments.output) / "log.txt", console.logText()});
-    writeFilesWhole(files);
+    if (found.names.empty()) throw *failure;
+    found.files.push_back({std::filesystem::path(arguments.output) / "log.txt", console.logText()});
+    writeFilesWhole(found.files);
     console.stageStarted("done");
-    fmt::print("{}", tables);
-    if (!arguments.quiet) fmt::print("Files are in {}\n", arguments.output);
+    fmt::print("{}", found.tables);
+    if (!arguments.quiet) fmt::print("Files of {} are in {}\n", found.names, arguments.output);
+    if (failure) throw *failure;
     return kDone;
   } catch (...) {
     std::error_code ignored;

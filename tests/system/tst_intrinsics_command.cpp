@@ -83,6 +83,27 @@ class TestIntrinsicsCommand : public QObject {
     QVERIFY(!QFile::exists(result()));
   }
 
+  // One that stood still: what was found of the others is written all the same.
+  void cameraThatFails_leavesTheOthersTheirs() {
+    session_.replace(
+        "cameras:\n",
+        QString("cameras:\n  right: {recording: %1, stream: events.txt, resolution_px: [346, 260]}\n")
+            .arg(simulated("still")));
+    const Outcome outcome = run("intrinsics");
+    VERIFY_OUTCOME(outcome, 1);
+    VERIFY_SAYS(outcome, "^right: ");
+    QCOMPARE(filesIn(result()), (QStringList{"left", "log.txt"}));
+    QVERIFY(filesIn(result() + "/left").contains("intrinsics.yaml"));
+    QVERIFY2(outcome.output.contains("Files of left are in "), qPrintable(outcome.output));
+    QVERIFY(readFile(result() + "/log.txt").contains("warning  right: "));
+  }
+
+  void firstLook_isAsLongAsWanted() {
+    const Outcome outcome = run("intrinsics", {"--set", "intrinsics.first_look_slices=4"});
+    VERIFY_OUTCOME(outcome, 0);
+    QVERIFY(readFile(result() + "/log.txt").contains("first look: 4 slices"));
+  }
+
   void boardOfAnotherSize_isNamed() {
     session_.replace("rows: 11", "rows: 9");
     const Outcome outcome = run("intrinsics");
