@@ -57,9 +57,8 @@ Bundle solve(const std::vector<SensorView>& views, const Ground& ground) {
   if (wanted == IntrinsicsModel::PinholeEquidistant) return with(CameraModel::PinholeEquidistant);
   Bundle radtan = with(CameraModel::PinholeRadtan);
   if (wanted == IntrinsicsModel::PinholeRadtan) return radtan;
-  constexpr double kClearlyBetter = 0.85;
   Bundle equidistant = with(CameraModel::PinholeEquidistant);
-  return equidistant.scale < kClearlyBetter * radtan.scale ? equidistant : radtan;
+  return equidistant.scale < ground.options.equidistant_gain * radtan.scale ? equidistant : radtan;
 }
 
 void addFit(const Bundle& bundle, IntrinsicsResult& result) {

@@ -9,7 +9,12 @@ enum class IntrinsicsModel { Automatic, PinholeRadtan, PinholeEquidistant };
 
 struct IntrinsicsOptions {
   IntrinsicsModel model = IntrinsicsModel::Automatic;
+  double equidistant_gain = 0.85;
   int radtan_coefficients = 4;
+  double first_look_period_s = 1.2;
+  double first_look_length_s = 0.2;
+  int first_look_slices = 20;
+  double first_look_projection_px = 0.2;
   int least_views = 10;
   int most_views = 80;
   double least_view_spacing_s = 0.1;
@@ -35,8 +40,18 @@ inline constexpr auto kIntrinsicsFields = std::tuple{
     Choice{"model", &IntrinsicsOptions::model,
            std::array{"automatic", "pinhole_radtan", "pinhole_equidistant"},
            "Distortion model; automatic takes equidistant only where it explains the views clearly better."},
+    Field{"equidistant_gain", &IntrinsicsOptions::equidistant_gain, 0.1, 1.0, "",
+          "Clearly better: residuals smaller than this times those of radial-tangential."},
     Field{"radtan_coefficients", &IntrinsicsOptions::radtan_coefficients, 4, 5, "",
           "4: k1 k2 p1 p2; 5: k3 as well, for strong distortion."},
+    Field{"first_look_period_s", &IntrinsicsOptions::first_look_period_s, 0.1, 60.0, "s",
+          "Slices of the recording are looked at so far apart for a first, rough lens."},
+    Field{"first_look_length_s", &IntrinsicsOptions::first_look_length_s, 0.1, 2.0, "s",
+          "Duration of a slice."},
+    Field{"first_look_slices", &IntrinsicsOptions::first_look_slices, 1, 1000, "",
+          "The first look ends after so many slices with the board in view,"},
+    Field{"first_look_projection_px", &IntrinsicsOptions::first_look_projection_px, 1e-3, 100.0, "px",
+          "or when the projection is known so well, RMS over the image."},
     Field{"least_views", &IntrinsicsOptions::least_views, 3, 1000, "", "With fewer views nothing is said."},
     Field{"most_views", &IntrinsicsOptions::most_views, 3, 1000, "",
           "Views that are taken, spread over image and tilt."},

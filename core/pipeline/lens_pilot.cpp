@@ -16,12 +16,9 @@
 namespace evical {
 namespace {
 
-constexpr double kPeriod_s = 1.2, kLength_s = 0.2;  // of the slices
-constexpr double kSearched_s = 0.08;                // after a slice's begin, with bursts on both sides
-constexpr int kMostSlices = 20;                     // in which the board was seen
-constexpr int kSolveEvery = 3;                      // slices, once there is a camera
-constexpr double kGoodEnough_px = 0.2;              // sigma of the projection, RMS over the image
-constexpr std::size_t kMostEvents = 8'000'000;      // in a slice
+constexpr double kSearched = 0.4;               // of a slice: from there on there are bursts on both sides
+constexpr int kSolveEvery = 3;                  // slices, once there is a camera
+constexpr std::size_t kMostEvents = 8'000'000;  // in a slice
 
 // Equidistant lenses of one parameter stand for all: wide, which shows most boards well enough; none;
 // fisheye.
@@ -57,6 +54,9 @@ class Pilot {
   Pilot(const Session& session, const RunContext& context)
       : session_(session),
         context_(context),
+        options_(session.options.intrinsics),
+        length_ns_(nanosecondsFrom(options_.first_look_length_s)),
+        period_ns_(nanosecondsFrom(std::max(options_.first_look_period_s, options_.first_look_length_s))),
         recording_(session),
         resolution_px_(recording_.resolution_px(0)),
         lenses_(plainLenses(resolution_px_)) {
@@ -70,7 +70,8 @@ class Pilot {
     while (!enough() && recording_.read(packet)) {
       context_.throwIfStopped();
       if (packet.events.front().time_ns > end_ns_) break;
-      context_.progress.stageProgress(std::max(recording_.fractionRead(), slices_ / double{kMostSlices}));
+      context_.progress.stageProgress(
+          std::max(recording_.fractionRead(), slices_ / double(options_.first_look_slices)));
       for (const Event& event : packet.events) {
         if (event.time_ns > end_ns_) break;
         take(event);
@@ -82,14 +83,15 @@ class Pilot {
   }
 
  private:
-  bool enough() const { return slices_ >= kMostSlices || (rough_ && rough_->sigma_px < kGoodEnough_px); }
+  bool enough() const {
+    return slices_ >= options_.first_look_slices ||
+           (rough_ && rough_->sigma_px < options_.first_look_projection_px);
+  }
 
   void take(const Event& event) {
-    const std::int64_t end_ns = slice_begin_ns_ + nanosecondsFrom(kLength_s);
-    if (event.time_ns >= end_ns) {
+    if (event.time_ns >= slice_begin_ns_ + length_ns_) {
       lookAtSlice();
-      while (slice_begin_ns_ + nanosecondsFrom(kLength_s) <= event.time_ns)
-        slice_begin_ns_ += nanosecondsFrom(kPeriod_s);
+      while (slice_begin_ns_ + length_ns_ <= event.time_ns) slice_begin_ns_ += period_ns_;
     }
     const bool outside = event.x_px >= resolution_px_.width_px || event.y_px >= resolution_px_.height_px;
     const bool late = !slice_.empty() && event.time_ns < slice_.back().time_ns;
@@ -141,19 +143,19 @@ class Pilot {
     context_.throwIfStopped();
     const auto camera = isPlane(lens) ? std::nullopt : std::optional(lens);
     FrontEndOptions options = session_.options.front_end;
-    options.detection.search_interval_s = kLength_s;  // once
+    options.detection.search_interval_s = options_.first_look_length_s;  // once
     BoardTracker tracker(session_.board, resolution_px_, camera, options, recording_.start_ns());
-    tracker.addBursts(bursts, slice_begin_ns_ + nanosecondsFrom(kSearched_s),
-                      slice_begin_ns_ + nanosecondsFrom(kLength_s));
-    return {sensorViews(tracker.finish(), session_.board, camera, session_.options.intrinsics)};
+    tracker.addBursts(bursts, slice_begin_ns_ + nanosecondsFrom(kSearched * options_.first_look_length_s),
+                      slice_begin_ns_ + length_ns_);
+    return {sensorViews(tracker.finish(), session_.board, camera, options_)};
   }
 
   void solve() {
     constexpr int kLeastSlices = 3;  // views of one slice are all alike
     if (slices_ < kLeastSlices || solved_views_ == views_.size()) return;
     solved_views_ = views_.size();
-    auto rough = roughCamera(views_, session_.board, rough_ ? rough_->intrinsics : lenses_.front(),
-                             session_.options.intrinsics, context_);
+    auto rough = roughCamera(views_, session_.board, rough_ ? rough_->intrinsics : lenses_.front(), options_,
+                             context_);
     if (rough) rough_ = std::move(rough);
   }
 
@@ -169,6 +171,8 @@ class Pilot {
 
   const Session& session_;
   const RunContext& context_;
+  const IntrinsicsOptions& options_;
+  std::int64_t length_ns_, period_ns_;  // of the slices
   SessionRecording recording_;
   Resolution resolution_px_;
   std::vector<CameraIntrinsics> lenses_;  // plain ones, first that which showed most the last time
