@@ -107,20 +107,23 @@ double misfitOf(const MeanPose& found) {
 
 std::optional<BridgedCamera> bridgeCameras(const std::vector<CameraPose>& reference,
                                            const std::vector<CameraPose>& camera,
+                                           const std::optional<KnownNumber>& time_offset,
                                            const InitialisationOptions& options, const RunContext& context) {
   constexpr double kStep_s = 0.01;
   if (reference.size() < 2 || camera.size() < 2) return std::nullopt;
   const std::vector<MovingPose> one = movingPoses(reference), other = movingPoses(camera);
   std::optional<BridgedCamera> best;
-  const int steps = static_cast<int>(options.time_offset_search_s / kStep_s);
+  const double centre_s = time_offset ? time_offset->value : 0.0;
+  const int steps = isGiven(time_offset) ? 0 : static_cast<int>(options.time_offset_search_s / kStep_s);
   for (int step = -steps; step <= steps; ++step) {
     context.throwIfStopped();
-    const Bridges each = bridges(one, other, step * kStep_s, options.longest_bridge_s);
+    const double offset_s = centre_s + step * kStep_s;
+    const Bridges each = bridges(one, other, offset_s, options.longest_bridge_s);
     if (!each.bothWays(options.least_bridges)) continue;
     const MeanPose found = agreement(each.reference_from_camera);
     if (found.agreeing < options.least_bridge_agreement) continue;
     if (!best || misfitOf(found) < misfitOf(best->reference_from_camera))
-      best = {found, step * kStep_s, static_cast<int>(each.reference_from_camera.size())};
+      best = {found, offset_s, static_cast<int>(each.reference_from_camera.size())};
   }
   return best;
 }

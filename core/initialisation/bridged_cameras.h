@@ -3,6 +3,7 @@
 // speed that they have.
 #pragma once
 
+#include "core/data/calibration_priors.h"
 #include "core/initialisation/camera_poses.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/initialisation/mean_pose.h"
@@ -18,10 +19,11 @@ struct BridgedCamera {
   int bridges = 0;             // gaps that tell it
 };
 
-// The time offset within options.time_offset_search_s at which the gaps agree best. Nothing where there are
-// too few of at most options.longest_bridge_s, or they don't agree.
+// The time offset within options.time_offset_search_s of the prior's at which the gaps agree best, or that
+// which is given. Nothing where there are too few of at most options.longest_bridge_s, or they don't agree.
 std::optional<BridgedCamera> bridgeCameras(const std::vector<CameraPose>& reference,
                                            const std::vector<CameraPose>& camera,
+                                           const std::optional<KnownNumber>& time_offset,
                                            const InitialisationOptions& options, const RunContext& context);
 
 }  // namespace evical

@@ -85,7 +85,7 @@ class CamerasAlone {
     const CameraData& camera = input_.cameras[k];
     CameraPoses found = estimateCameraPoses(camera, input_.board, options_, context_);
     resolveBySmoothness(found.poses, options_.longest_pair_s);
-    const auto bridged = bridgeCameras(poses_, found.poses, options_, context_);
+    const auto bridged = bridgeCameras(poses_, found.poses, camera.prior.time_offset, options_, context_);
     if (!bridged) return false;
     const MeanPose& pose = bridged->reference_from_camera;
     result_.state.cameras[k].imu_from_camera = pose.mean;

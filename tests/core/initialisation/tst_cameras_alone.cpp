@@ -116,6 +116,19 @@ class TestCamerasAlone : public QObject {
     verifyBatch(simulated, found);
   }
 
+  void camerasInTurns_keepATimeOffsetThatIsGiven() {
+    SimulatedInput simulated = camerasInTurns(1.0, 0.02);
+    const double offset_s =
+        simulated.truth.cameras[1].time_offset_s - simulated.truth.cameras[0].time_offset_s;
+    simulated.input.cameras[1].prior.time_offset = KnownNumber{offset_s};
+    const Initialisation found = initialise(simulated.input, {}, RunContext{});
+    QCOMPARE(found.state.cameras[1].time_offset_s, offset_s);
+    const Errors errors = errorsOf(found.state.cameras[1], simulated, 0, 1);
+    qInfo("off by %.3f deg, %.1f mm", errors.rotation_deg, errors.translation_m * 1e3);
+    QVERIFY(errors.rotation_deg < 1.0);
+    QVERIFY(errors.translation_m < 0.02);
+  }
+
   void camerasWithLongGapsBetween_areRefused() {
     const SimulatedInput simulated = camerasInTurns(2.0, 0.8);
     try {
