@@ -62,7 +62,8 @@ std::string offsetLine(const Rig& rig) {
   std::string text = "No time offset has a place here: add to the stamps of the images";
   for (const RigCamera& camera : rig.cameras)
     text += fmt::format(" {} s ({})", real(camera.time_offset_s), camera.file_name);
-  return text + " so that t_imu = t_cam + that.";
+  return text +
+         fmt::format(" so that t_{} = t_cam + that.", rig.imus.empty() ? rig.cameras[0].file_name : "imu");
 }
 
 }  // namespace

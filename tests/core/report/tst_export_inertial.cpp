@@ -256,6 +256,14 @@ class TestExportInertial : public QObject {
     QVERIFY(opened["Camera1.fx"].isReal() && opened["IMU.GyroWalk"].isReal());
   }
 
+  void orbSlam3_withoutImu_countsTimeByTheFirstCamera() {
+    RigKind kind;
+    kind.inertial = false;
+    const std::string settings = contentOf(exportTo(rig(kind), "orb-slam3"), "orb-slam3/settings.yaml");
+    QVERIFY(settings.find("so that t_left = t_cam + that") != std::string::npos);
+    QVERIFY(settings.find("IMU.Frequency") == std::string::npos);
+  }
+
   void basalt_reprojects() {
     RigKind kind;
     kind.fisheye = true;
