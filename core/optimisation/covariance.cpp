@@ -322,8 +322,9 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   ProjectedInformation information = projectInformation(problem, options.correlation_time_s, context);
   context.throwIfStopped();
   UncertaintyEstimate estimate;
+  std::string turned;
   if (!options.gyroscope_rotation) {
-    estimate.notes = turnedGyroscopes(input, information, withoutNoise(information), options);
+    turned = turnedGyroscopes(input, information, withoutNoise(information), options);
     information = withoutGyroscopeRotation(std::move(information));
   }
   information = withoutNoise(std::move(information));
@@ -340,6 +341,10 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   estimate.report.weakest = observability.weakest;
   estimate.status = observability.status;
   estimate.reason = observability.reason;
+  if (!turned.empty()) {
+    estimate.status = CalibrationStatus::Doubtful;
+    estimate.reason = observability.reason.empty() ? turned : turned + "; " + observability.reason;
+  }
   return estimate;
 }
 

@@ -21,7 +21,6 @@ struct UncertaintyEstimate {
   UncertaintyReport report;
   CalibrationStatus status = CalibrationStatus::Ok;
   std::string reason;  // why not Ok, and what to do; empty if it is
-  std::vector<std::string> notes;
 };
 
 // The two directions, in the world, in which the report gives gravity's tilt ("gravity.direction.1", ".2").

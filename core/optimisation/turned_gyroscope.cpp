@@ -32,12 +32,10 @@ class ScaledInverse {
 
 }  // namespace
 
-std::vector<std::string> turnedGyroscopes(const CalibrationInput& input,
-                                          const ProjectedInformation& information,
-                                          const ProjectedInformation& credible,
-                                          const OptimisationOptions& options) {
-  std::vector<std::string> notes;
-  if (information.quantities.empty()) return notes;
+std::string turnedGyroscopes(const CalibrationInput& input, const ProjectedInformation& information,
+                             const ProjectedInformation& credible, const OptimisationOptions& options) {
+  std::string doubts;
+  if (information.quantities.empty()) return doubts;
   const Eigen::VectorXd step = -ScaledInverse(information.total).times(information.gradient);
   // Sigmas that take residuals for uncorrelated: under the turn that is looked for they are not, and sigmas
   // that allow for that would hide it.
@@ -51,12 +49,12 @@ std::vector<std::string> turnedGyroscopes(const CalibrationInput& input,
     for (Eigen::Index axis = first; axis < first + 3; ++axis)
       certainty = std::max(certainty, std::abs(step[axis]) / std::max(covariance.sigma(axis), 1e-12));
     if (turn_deg < options.needed_rotation_deg || certainty < options.turned_gyroscope_sigmas) continue;
-    notes.push_back(fmt::format(
-        "{}: the gyroscope seems to be turned by about {:.2g} deg against the accelerometer, and other "
+    doubts += fmt::format(
+        "{}{}: the gyroscope seems to be turned by about {:.2g} deg against the accelerometer, and other "
         "rotations may be off by as much; calibrate with optimisation.gyroscope_rotation: true",
-        input.imus[quantity.sensor].name, turn_deg));
+        doubts.empty() ? "" : "; ", input.imus[quantity.sensor].name, turn_deg);
   }
-  return notes;
+  return doubts;
 }
 
 ProjectedInformation withoutGyroscopeRotation(ProjectedInformation information) {

@@ -7,16 +7,13 @@
 #include "core/optimisation/projected_information.h"
 
 #include <string>
-#include <vector>
 
 namespace evical {
 
-// Both with the turns free, at a solution that holds them; `credible` is withoutNoise(information). One note
-// an IMU whose turn is certain and larger than the rotation that is needed.
-std::vector<std::string> turnedGyroscopes(const CalibrationInput& input,
-                                          const ProjectedInformation& information,
-                                          const ProjectedInformation& credible,
-                                          const OptimisationOptions& options);
+// Both with the turns free, at a solution that holds them; `credible` is withoutNoise(information). What
+// is doubtful of IMUs whose turn is certain and larger than the rotation that is needed; empty without any.
+std::string turnedGyroscopes(const CalibrationInput& input, const ProjectedInformation& information,
+                             const ProjectedInformation& credible, const OptimisationOptions& options);
 
 // As if the turns were known to be what they are.
 ProjectedInformation withoutGyroscopeRotation(ProjectedInformation information);

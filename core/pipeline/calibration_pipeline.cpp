@@ -263,7 +263,6 @@ void estimate(const Session& session, const RunContext& context, CalibrationObse
   result.notes.insert(result.notes.end(), initial.warnings.begin(), initial.warnings.end());
   result.notes.insert(result.notes.end(), solution.notes.begin(), solution.notes.end());
   result.notes.insert(result.notes.end(), priors.notes.begin(), priors.notes.end());
-  result.notes.insert(result.notes.end(), uncertainty.notes.begin(), uncertainty.notes.end());
   result.timing.read_s = run.pass.read_s;
   result.timing.detect_s = run.pass.detect_s;
   result.timing.total_s = std::max(run.pass.read_s, run.pass.detect_s) + result.timing.initialise_s +

@@ -84,21 +84,22 @@ class TestGyroscopeRotation : public QObject {
     QCOMPARE(estimate.report.standard_deviations.size(),
              test::reportedErrors(solution.state, rig.truth).size());
     // But it does not go unnoticed.
-    QCOMPARE(estimate.notes.size(), std::size_t{1});
-    const QString note = QString::fromStdString(estimate.notes.front());
-    QVERIFY2(note.startsWith("imu: the gyroscope seems to be turned by about "), qPrintable(note));
-    const double turn_deg = note.section("about ", 1, 1).section(' ', 0, 0).toDouble();
-    QVERIFY2(std::abs(turn_deg - 0.8) < 0.1, qPrintable(note));
+    QCOMPARE(estimate.status, CalibrationStatus::Doubtful);
+    const QString reason = QString::fromStdString(estimate.reason);
+    QVERIFY2(reason.startsWith("imu: the gyroscope seems to be turned by about "), qPrintable(reason));
+    const double turn_deg = reason.section("about ", 1, 1).section(' ', 0, 0).toDouble();
+    QVERIFY2(std::abs(turn_deg - 0.8) < 0.1, qPrintable(reason));
   }
 
-  void straightGyroscopes_raiseNoNotes() {
+  void straightGyroscopes_raiseNoDoubt() {
     for (unsigned seed = 1; seed <= 5; ++seed) {
       test::RigOptions options = turnedRig(seed);
       options.gyroscope_turn_rad = 0.0;
       const test::SimulatedRig rig = test::simulateRig(options);
       const BatchSolution solution =
           optimiseBatch(rig.input, test::disturbed(rig.truth, seed), {}, RunContext{});
-      QVERIFY(estimateUncertainty(rig.input, solution, {}, RunContext{}).notes.empty());
+      QCOMPARE(QString::fromStdString(estimateUncertainty(rig.input, solution, {}, RunContext{}).reason),
+               QString());
     }
   }
 
