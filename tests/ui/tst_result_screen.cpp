@@ -79,6 +79,22 @@ class TestResultScreen : public QObject {
     QVERIFY(find(groups, "gravity")->difference.has_value());
   }
 
+  void gravityNorm_hasARowWhereItIsFree() {
+    std::vector<ParameterGroup> groups = parameterGroups(result_);
+    const auto has = [&] {
+      return std::any_of(groups.back().rows.begin(), groups.back().rows.end(),
+                         [](const ParameterRow& row) { return row.key == "gravity.norm"; });
+    };
+    QVERIFY(!has());
+    NamedResult free = result_;
+    free.result.uncertainty.gravity_norm_std_m_s2 = 0.002;
+    free.result.state.gravity_in_world_m_s2 *= 9.83 / free.result.state.gravity_in_world_m_s2.norm();
+    groups = parameterGroups(free);
+    QVERIFY(has());
+    compare(groups, free, truth_);
+    QVERIFY(std::abs(find(groups, "gravity.norm")->difference.value() - 0.02) < 0.01);
+  }
+
   void comparisonWithItself_isZero_andWithOtherSensorsRefused() {
     std::vector<ParameterGroup> groups = parameterGroups(result_);
     compare(groups, result_, result_);
@@ -141,6 +157,8 @@ class TestResultScreen : public QObject {
     QVERIFY(view.text().contains("1 of 3"));
     view.setObservability({4.0}, "rotation");
     QVERIFY(view.text().contains("well enough"));
+    view.setObservability({}, {});
+    QVERIFY(view.text().contains("were all given"));
   }
 };
 

@@ -16,12 +16,15 @@ void ObservabilityView::setObservability(const std::vector<double>& information,
   needed_over_sigma_.clear();
   for (const double value : information) needed_over_sigma_.push_back(std::sqrt(std::max(0.0, value)));
   weakest_ = weakest;
+  calibrated_ = true;
   setAccessibleName(text());
   update();
 }
 
 QString ObservabilityView::text() const {
-  if (needed_over_sigma_.empty()) return tr("No calibration yet.");
+  if (!calibrated_) return tr("No calibration yet.");
+  if (needed_over_sigma_.empty())
+    return tr("Rotations, translations and time offsets were all given: none had to be observed.");
   const double least = needed_over_sigma_.front();
   const auto unmet = std::count_if(needed_over_sigma_.begin(), needed_over_sigma_.end(),
                                    [](double ratio) { return ratio < 1.0; });
@@ -37,7 +40,7 @@ void ObservabilityView::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   if (needed_over_sigma_.empty()) {
     painter.setPen(theme().faint_text);
-    painter.drawText(rect(), Qt::AlignCenter, text());
+    painter.drawText(rect(), Qt::AlignCenter | Qt::TextWordWrap, text());
     return;
   }
   // Logarithmic: a factor of ten is as wide everywhere.

@@ -25,7 +25,8 @@ class ObservabilityView : public QWidget {
   void paintEvent(QPaintEvent* event) override;
 
  private:
-  std::vector<double> needed_over_sigma_;
+  bool calibrated_ = false;
+  std::vector<double> needed_over_sigma_;  // empty: everything was given
   QString weakest_;
 };
 

@@ -155,6 +155,8 @@ ParameterGroup gravityGroup(const NamedResult& named) {
                         0.0,
                         kDegPerRad * named.result.uncertainty.gravity_direction_std_rad,
                         {}});
+  if (const double sigma = named.result.uncertainty.gravity_norm_std_m_s2; sigma > 0.0)
+    group.rows.push_back({"gravity.norm", QObject::tr("Norm"), kAcceleration, gravity.norm(), sigma, {}});
   return group;
 }
 

@@ -340,7 +340,8 @@ void ResultScreen::showDetails() {
   QStringList names;
   for (const std::string& name : report.names) names << QString::fromStdString(name);
   correlation_->setCorrelation(names, report.correlation);
-  pairs_->setText(tr("Hardest to tell apart: %1.").arg(correlation_->strongestPairs(kPairs).join("; ")));
+  const QStringList pairs = correlation_->strongestPairs(kPairs);
+  pairs_->setText(pairs.isEmpty() ? QString() : tr("Hardest to tell apart: %1.").arg(pairs.join("; ")));
   notes_->clear();
   for (const std::string& note : result_->result.notes)
     notes_->addItem(sentence(QString::fromStdString(note)));
