@@ -107,7 +107,7 @@ IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const Intrinsi
   checkTilts(bundle, (sigmas.head<2>().cwiseQuotient(result.intrinsics.focal_length_px)).maxCoeff(), options);
   result.image = imageMap(bundle, result.covariance);
   result.advice = coverageAdvice(bundle, result.image);
-  judge(bundle, options, result);
+  judge(bundle.converged, options, result);
   return result;
 }
 

@@ -145,11 +145,11 @@ std::vector<std::string> coverageAdvice(const Bundle& bundle, const ImageMap& im
   return advice;
 }
 
-void judge(const Bundle& bundle, const IntrinsicsOptions& options, IntrinsicsResult& result) {
+void judge(bool converged, const IntrinsicsOptions& options, IntrinsicsResult& result) {
   const IntrinsicsVector sigmas = result.standardDeviations();
   const double focal = (sigmas.head<2>().cwiseQuotient(result.intrinsics.focal_length_px)).maxCoeff();
   std::vector<std::string> reasons;
-  if (!bundle.converged) reasons.emplace_back("the bundle adjustment did not converge");
+  if (!converged) reasons.emplace_back("the bundle adjustment did not converge");
   if (!(focal <= options.needed_focal_length))
     reasons.push_back(fmt::format("the focal length is known to {:.2f} % only", 100.0 * focal));
   if (!(result.image.rms_px <= options.needed_projection_px))
@@ -160,8 +160,7 @@ void judge(const Bundle& bundle, const IntrinsicsOptions& options, IntrinsicsRes
                                   sides.size() == 1 ? "side" : "sides"));
   if (result.circles_rejected > result.circles_used)
     reasons.emplace_back("most circles do not fit: check the board's type, spacing and radius");
-  if (reasons.empty()) return;
-  result.status = CalibrationStatus::Doubtful;
+  result.status = reasons.empty() ? CalibrationStatus::Ok : CalibrationStatus::Doubtful;
   result.reason = joinedInWords(reasons);
 }
 

@@ -19,6 +19,6 @@ std::vector<std::string> coverageAdvice(const Bundle& bundle, const ImageMap& im
 std::string missingPlaces(const std::vector<SensorView>& views, Resolution resolution_px);
 
 // Status and reason, from what else is filled in.
-void judge(const Bundle& bundle, const IntrinsicsOptions& options, IntrinsicsResult& result);
+void judge(bool converged, const IntrinsicsOptions& options, IntrinsicsResult& result);
 
 }  // namespace evical

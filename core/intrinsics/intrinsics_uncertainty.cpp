@@ -139,26 +139,32 @@ BundleUncertainty bundleUncertainty(const Bundle& bundle, const CircleBoard& boa
   return out;
 }
 
-ImageMap imageMap(const Bundle& bundle, const IntrinsicsMatrix& covariance) {
-  ImageMap map;
-  map.columns = 16;
-  map.rows = 12;
-  const Resolution size = bundle.intrinsics.resolution_px;
-  const ProjectionChange change(bundle.intrinsics, map.columns, map.rows);
+void setSigmas(const CameraIntrinsics& intrinsics, const IntrinsicsMatrix& covariance, ImageMap& map) {
+  const ProjectionChange change(intrinsics, map.columns, map.rows);
   double squares = 0.0;
   int seen = 0;
-  for (const ProjectionChange::Place& place : change.places()) {
-    ImageCell& cell = map.cells.emplace_back();
-    cell.middle_px = place.pixel;
+  map.max_px = 0.0;
+  for (std::size_t k = 0; k < map.cells.size(); ++k) {
+    ImageCell& cell = map.cells[k];
+    cell.middle_px = change.places()[k].pixel;
     cell.sigma_px = std::numeric_limits<double>::infinity();
-    if (!place.by_intrinsics) continue;
-    const IntrinsicsJacobian& j = *place.by_intrinsics;
+    if (!change.places()[k].by_intrinsics) continue;
+    const IntrinsicsJacobian& j = *change.places()[k].by_intrinsics;
     cell.sigma_px = std::sqrt(std::max(0.0, (j * covariance * j.transpose()).trace()));
     squares += cell.sigma_px * cell.sigma_px;
     map.max_px = std::max(map.max_px, cell.sigma_px);
     ++seen;
   }
   map.rms_px = seen == 0 ? std::numeric_limits<double>::infinity() : std::sqrt(squares / seen);
+}
+
+ImageMap imageMap(const Bundle& bundle, const IntrinsicsMatrix& covariance) {
+  ImageMap map;
+  map.columns = 16;
+  map.rows = 12;
+  map.cells.resize(static_cast<std::size_t>(map.columns * map.rows));
+  setSigmas(bundle.intrinsics, covariance, map);
+  const Resolution size = bundle.intrinsics.resolution_px;
   for (const SensorView& view : bundle.views) {
     for (const SensorCircle& circle : view.circles) {
       if (!circle.used) continue;

@@ -21,4 +21,7 @@ BundleUncertainty bundleUncertainty(const Bundle& bundle, const CircleBoard& boa
 // camera is taken out of each parameter's effect: poses take it up, and it does no harm.
 ImageMap imageMap(const Bundle& bundle, const IntrinsicsMatrix& covariance);
 
+// The map's sigmas anew; what it covers stays.
+void setSigmas(const CameraIntrinsics& intrinsics, const IntrinsicsMatrix& covariance, ImageMap& map);
+
 }  // namespace evical

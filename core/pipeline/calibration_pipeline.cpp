@@ -10,6 +10,7 @@
 #include "core/pipeline/board_size_check.h"
 #include "core/pipeline/cross_validation.h"
 #include "core/pipeline/intrinsics_calibration.h"
+#include "core/pipeline/joint_intrinsics.h"
 #include "core/pipeline/session_recording.h"
 #include "core/recording/inspection.h"
 
@@ -170,15 +171,18 @@ void tellIntrinsics(const Session& session, CalibrationRun& run) {
   std::string doubt;
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
     const std::string name = "intrinsics of " + session.cameras[k].name;
+    const CameraState& solved = run.result.state.cameras[k];
     if (k < run.intrinsics.size() && run.intrinsics[k]) {
-      const IntrinsicsResult& found = *run.intrinsics[k];
+      const IntrinsicsResult found =
+          solved.intrinsics ? jointIntrinsics(*run.intrinsics[k], session.cameras[k].name, *solved.intrinsics,
+                                              run.result.uncertainty, session.options.intrinsics)
+                            : *run.intrinsics[k];
       notes.push_back(fmt::format("{}: calibrated from {} views in {:.1f} s, projection known to {:.3f} px",
                                   name, found.views_used, found.elapsed_s, found.image.rms_px));
       for (const std::string& advice : found.advice) notes.push_back(fmt::format("{}: {}", name, advice));
       if (found.status != CalibrationStatus::Ok && doubt.empty())
         doubt = fmt::format("{}: {}", name, found.reason);
     }
-    const CameraState& solved = run.result.state.cameras[k];
     if (!solved.intrinsics) continue;
     notes.push_back(
         fmt::format("{}: solved with everything else, which moved the projection by {:.3f} px RMS", name,

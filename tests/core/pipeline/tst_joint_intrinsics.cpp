@@ -20,6 +20,7 @@ using namespace evical::test;
 class TestJointIntrinsics : public QObject {
   Q_OBJECT
 
+  static constexpr const char* kDoubt = "pixels of rays are known to 3.00 px RMS only";
   SimulatedPass simulated_;
   CameraIntrinsics truth_, found_;
   CalibrationRun run_;
@@ -29,6 +30,14 @@ class TestJointIntrinsics : public QObject {
     IntrinsicsResult first;
     first.intrinsics = found_;
     first.covariance.diagonal().head<8>().setConstant(0.0025);
+    first.image.columns = 16;
+    first.image.rows = 12;
+    first.image.cells.resize(16 * 12);
+    for (ImageCell& cell : first.image.cells) cell.circles = 1;
+    first.image.rms_px = 3.0;
+    first.circles_used = 1000;
+    first.status = CalibrationStatus::Doubtful;
+    first.reason = kDoubt;
     return first;
   }
   static bool holds(const std::vector<std::string>& texts, const std::string& part) {
@@ -55,6 +64,10 @@ class TestJointIntrinsics : public QObject {
   void run_solvesForThem_andKeepsWhatWasFoundFirst() {
     const CameraIntrinsics solved = run_.result.state.cameras[0].intrinsics.value();
     QVERIFY(run_.intrinsics[0]->intrinsics == found_);
+    QCOMPARE(QString::fromStdString(run_.intrinsics[0]->reason), QString(kDoubt));
+    // But what was doubtful then is known well now.
+    QCOMPARE(QString::fromStdString(run_.result.reason), QString());
+    QVERIFY(!holds(run_.result.notes, "projection known to 3.000 px"));
     QVERIFY(foundIntrinsics(run_, 0) == solved);
     const double before_px = projectionDifference(truth_, found_).rms_px;
     const double after_px = projectionDifference(truth_, solved).rms_px;
