@@ -4,6 +4,7 @@
 // do.
 #include "ui/window/main_window.h"
 
+#include "core/recording/conversion.h"
 #include "tests/ui/full_disk.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/slowdown.h"
@@ -13,6 +14,7 @@
 #include "ui/detection/timeline.h"
 #include "ui/scene/trajectory_screen.h"
 #include "ui/scene/view3d.h"
+#include "ui/screens/stream_table.h"
 #include "ui/window/error_panel.h"
 #include "ui/window/session_files.h"
 #include "ui/window/steps_panel.h"
@@ -98,6 +100,56 @@ class TestMainWindowBadInput : public QObject {
     QVERIFY(test.window.isWindowModified());
     QVERIFY2(disk.files().isEmpty(), qPrintable(disk.files().join(' ')));
     answerQuestion(QMessageBox::Discard);
+    QVERIFY(test.window.close());
+  }
+
+  // Events in one file, IMU samples in another: the second brings what the session lacks. One that is none
+  // changes nothing, and the streams stay listed.
+  void recordingInTwoFiles_isPutTogether() {
+    const QTemporaryDir folder;
+    convertRecording({readSession(simulatedSession().toStdString()).recording,
+                      folder.path().toStdString(),
+                      "text",
+                      {},
+                      {}},
+                     RunContext{});
+    WindowFixture test;
+    test.window.files().open(folder.filePath("events.txt"));
+    QTRY_VERIFY_WITH_TIMEOUT(test.document().hasSession(), kPatience_ms);
+    QVERIFY(test.document().session().imus.empty());
+    const auto rows = [&] { return test.child<StreamTable>()->rowCount(); };
+    test.window.files().addRecording(folder.filePath("imu.txt"));
+    QTRY_COMPARE_WITH_TIMEOUT(test.document().session().imus.size(), std::size_t{1}, kPatience_ms);
+    QTRY_COMPARE_WITH_TIMEOUT(rows(), 2, kPatience_ms);
+    const SessionImu& imu = test.document().session().imus[0];
+    QCOMPARE(QString::fromStdString(imu.recording.string()), folder.filePath("imu.txt"));
+    QCOMPARE(test.document().session().reference, imu.name);
+    QVERIFY(test.window.isWindowModified());
+    test.window.files().addRecording(folder.filePath("imu.txt"));
+    QVERIFY2(test.child<ErrorPanel>()->text().contains("listed already"),
+             qPrintable(test.child<ErrorPanel>()->text()));
+    const QString none = folder.filePath("none.bag");
+    writeFile(none, "no recording");
+    test.window.files().addRecording(none);
+    QTRY_VERIFY_WITH_TIMEOUT(test.child<ErrorPanel>()->text().contains("none.bag"), kPatience_ms);
+    QCOMPARE(rows(), 2);
+    answerQuestion(QMessageBox::Discard);
+    QVERIFY(test.window.close());
+  }
+
+  // What was open stays open, with its streams.
+  void recordingThatIsNone_leavesTheOpenOneAlone() {
+    const QTemporaryDir folder;
+    WindowFixture test;
+    test.window.files().open(simulatedSession());
+    const auto rows = [&] { return test.child<StreamTable>()->rowCount(); };
+    QTRY_COMPARE_WITH_TIMEOUT(rows(), 2, kPatience_ms);
+    const QString none = folder.filePath("none.bag");
+    writeFile(none, "no recording");
+    test.window.files().open(none);
+    QTRY_VERIFY_WITH_TIMEOUT(test.child<ErrorPanel>()->isVisible(), kPatience_ms);
+    QTRY_COMPARE_WITH_TIMEOUT(rows(), 2, kPatience_ms);
+    QVERIFY(!test.document().session().cameras.empty());
     QVERIFY(test.window.close());
   }
 

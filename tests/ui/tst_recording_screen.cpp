@@ -43,7 +43,7 @@ struct Fixture {
                        screen.setSession(session);
                      });
     screen.setSession(session);
-    screen.setInspection(inspection);
+    screen.addInspection(QString::fromStdString(session.recording.string()), inspection);
     screen.resize(1040, 680);
     screen.show();
   }
@@ -264,6 +264,43 @@ class TestRecordingScreen : public QObject {
     QVERIFY(test.problems().contains("no intrinsics"));
     test.screen.setProblems({});
     QVERIFY(test.problems().trimmed().isEmpty());
+  }
+
+  void sensorsOfAnotherFile_areListedAndUsed() {
+    Fixture test;
+    const QString other = "/elsewhere/other.bag";
+    auto* const clock_offset = test.screen.findChild<ImuForm*>()->findChildren<NumberField*>().last();
+    QVERIFY(!clock_offset->isVisibleTo(&test.screen));
+    test.screen.addInspection(other, test.inspection);
+    QCOMPARE(test.streams()->rowCount(), 4);
+    const int imu_row = test.streams()->role(0) == StreamRole::Imu ? 0 : 1;
+    QCOMPARE(test.streams()->role(2 + imu_row), StreamRole::Ignore);  // of the same name, but not the same
+    QVERIFY(test.streams()->item(2 + imu_row, 1)->text().startsWith("other.bag: /davis_left/"));
+    test.choose(2 + imu_row, StreamRole::Imu);
+    QCOMPARE(test.session.imus.size(), std::size_t{2});
+    QCOMPARE(test.session.imus[1].recording.string(), other.toStdString());
+    QVERIFY(test.session.imus[0].recording.empty());
+    test.choose(imu_row, StreamRole::Ignore);
+    QCOMPARE(test.session.imus.size(), std::size_t{1});
+    QCOMPARE(test.session.reference, test.session.imus[0].name);
+    QCOMPARE(test.streams()->role(2 + imu_row), StreamRole::Imu);
+    auto* const offset = test.screen.findChild<ImuForm*>()->findChildren<NumberField*>().last();
+    offset->window()->show();
+    QVERIFY(offset->isVisibleTo(offset->parentWidget()));
+    Fixture::type(offset, "-12.5");
+    QCOMPARE(test.session.imus[0].clock_offset_s, -12.5);
+  }
+
+  void missingSensors_areTakenFromAnotherRecording() {
+    Fixture test;
+    Session session = test.session;
+    QCOMPARE(withMissingSensors(session, "other.bag", *test.inspection).imus.size(), std::size_t{1});
+    session.imus.clear();
+    session.reference = "left";
+    session = withMissingSensors(session, "other.bag", *test.inspection);
+    QCOMPARE(session.cameras.size(), std::size_t{1});
+    QCOMPARE(session.imus.at(0).recording.string(), std::string("other.bag"));
+    QCOMPARE(session.reference, session.imus.at(0).name);
   }
 
   void guessedSession_takesTheStreamsAsTheyAre() {

@@ -32,21 +32,40 @@ std::string freeName(const std::string& stream, const std::string& kind, const S
 
 }  // namespace
 
-SessionCamera guessedCamera(const StreamSummary& stream, const Session& session) {
+SessionCamera guessedCamera(const StreamSummary& stream, const Session& session,
+                            const std::filesystem::path& own_recording) {
   SessionCamera camera;
+  camera.recording = own_recording;
   camera.name = freeName(stream.info.name, "camera", session);
   camera.stream = stream.info.name;
   camera.resolution_px = stream.info.resolution_px;
   return camera;
 }
 
-SessionImu guessedImu(const StreamSummary& stream, const Session& session) {
+SessionImu guessedImu(const StreamSummary& stream, const Session& session,
+                      const std::filesystem::path& own_recording) {
   SessionImu imu;
+  imu.recording = own_recording;
   imu.name = freeName(stream.info.name, "imu", session);
   imu.stream = stream.info.name;
   if (stream.acceleration_unit == "g" && stream.info.acceleration_unit != AccelerationUnit::Gravity)
     imu.acceleration_unit = AccelerationUnit::Gravity;
   return imu;
+}
+
+Session withMissingSensors(const Session& session, const std::filesystem::path& recording,
+                           const Inspection& inspection) {
+  Session found = session;
+  for (const StreamSummary& stream : inspection.streams) {
+    if (stream.count == 0) continue;
+    if (stream.info.type == StreamType::Events && session.cameras.empty())
+      found.cameras.push_back(guessedCamera(stream, found, recording));
+    if (stream.info.type == StreamType::Imu && session.imus.empty())
+      found.imus.push_back(guessedImu(stream, found, recording));
+  }
+  if (session.imus.empty() && !found.imus.empty()) found.reference = found.imus.front().name;
+  if (found.reference.empty() && !found.cameras.empty()) found.reference = found.cameras.front().name;
+  return found;
 }
 
 Session guessedSession(const std::filesystem::path& recording, const Inspection& inspection) {

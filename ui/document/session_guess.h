@@ -10,8 +10,16 @@ namespace evical::ui {
 // Board and noise keep their defaults; intrinsics are missing: no recording has them.
 Session guessedSession(const std::filesystem::path& recording, const Inspection& inspection);
 
-// A sensor as guessed from its stream, with a name that the session has not given yet.
-SessionCamera guessedCamera(const StreamSummary& stream, const Session& session);
-SessionImu guessedImu(const StreamSummary& stream, const Session& session);
+// A sensor as guessed from its stream, with a name that the session has not given yet. `own_recording`: its
+// file, where it is not the session's.
+SessionCamera guessedCamera(const StreamSummary& stream, const Session& session,
+                            const std::filesystem::path& own_recording = {});
+SessionImu guessedImu(const StreamSummary& stream, const Session& session,
+                      const std::filesystem::path& own_recording = {});
+
+// With the sensors of a further recording that the session lacks: its IMUs where there is none yet, its
+// cameras where there is none.
+Session withMissingSensors(const Session& session, const std::filesystem::path& recording,
+                           const Inspection& inspection);
 
 }  // namespace evical::ui

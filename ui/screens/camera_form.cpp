@@ -3,7 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/data/intrinsics_yaml.h"
-#include "ui/forms/number_field.h"
+#include "ui/screens/clock_offset_field.h"
 #include "ui/theme/theme.h"
 
 #include <QComboBox>
@@ -38,9 +38,11 @@ void showText(QLabel* label, const QString& text) {
 
 CameraForm::CameraForm(QWidget* parent)
     : QWidget(parent),
+      form_(new QFormLayout(this)),
       name_(new QLineEdit(this)),
       width_px_(new NumberField(0.0, kMostPixels, this)),
       height_px_(new NumberField(0.0, kMostPixels, this)),
+      clock_offset_s_(clockOffsetField(this)),
       model_(new QComboBox(this)),
       focal_x_px_(new NumberField(0.0, 10 * kMostPixels, this)),
       focal_y_px_(new NumberField(0.0, 10 * kMostPixels, this)),
@@ -77,27 +79,32 @@ CameraForm::CameraForm(QWidget* parent)
     field->setMinimumWidth(44);
     row->addWidget(field);
   }
-  auto* const form = new QFormLayout(this);
-  form->setContentsMargins(8, 8, 8, 8);
-  form->addRow(tr("Name"), name_);
-  form->addRow(tr("Resolution [px]"), pairOf(width_px_, height_px_));
-  form->addRow(file);
-  form->addRow(file_problem_);
-  form->addRow(problem_);
-  form->addRow(tr("Model"), model_);
-  form->addRow(tr("Focal length [px]"), pairOf(focal_x_px_, focal_y_px_));
-  form->addRow(tr("Principal point [px]"), pairOf(centre_x_px_, centre_y_px_));
-  form->addRow(tr("Distortion"), coefficients);
-  form->addRow(take_over_);
+  form_->setContentsMargins(8, 8, 8, 8);
+  form_->addRow(tr("Name"), name_);
+  form_->addRow(tr("Resolution [px]"), pairOf(width_px_, height_px_));
+  form_->addRow(file);
+  form_->addRow(file_problem_);
+  form_->addRow(problem_);
+  form_->addRow(tr("Model"), model_);
+  form_->addRow(tr("Focal length [px]"), pairOf(focal_x_px_, focal_y_px_));
+  form_->addRow(tr("Principal point [px]"), pairOf(centre_x_px_, centre_y_px_));
+  form_->addRow(tr("Distortion"), coefficients);
+  form_->addRow(take_over_);
+  form_->addRow(tr("Clock offset [s]"), clock_offset_s_);
 
   connect(name_, &QLineEdit::editingFinished, this, [this] { say("name"); });
   connect(model_, &QComboBox::activated, this, [this] { say("intrinsics"); });
   for (NumberField* const field : {width_px_, height_px_})
     connect(field, &NumberField::valueEdited, this, [this] { say("resolution_px"); });
-  for (NumberField* const field : findChildren<NumberField*>()) {
-    if (field == width_px_ || field == height_px_) continue;
+  connect(clock_offset_s_, &NumberField::valueEdited, this, [this] { say("clock_offset_s"); });
+  for (NumberField* const field : intrinsicsFields())
     connect(field, &NumberField::valueEdited, this, [this] { say("intrinsics"); });
-  }
+}
+
+std::vector<NumberField*> CameraForm::intrinsicsFields() const {
+  std::vector<NumberField*> fields = {focal_x_px_, focal_y_px_, centre_x_px_, centre_y_px_};
+  fields.insert(fields.end(), distortion_.begin(), distortion_.end());
+  return fields;
 }
 
 QWidget* CameraForm::pairOf(NumberField* first, NumberField* second) {
@@ -130,8 +137,9 @@ void CameraForm::setCamera(const SessionCamera& camera) {
   }
   distortion_.back()->setVisible(!equidistant);
   take_over_->setVisible(found_ && !camera.intrinsics);
-  for (NumberField* const field : findChildren<NumberField*>())
-    if (field != width_px_ && field != height_px_) field->setEnabled(camera.intrinsics.has_value());
+  for (NumberField* const field : intrinsicsFields()) field->setEnabled(camera.intrinsics.has_value());
+  clock_offset_s_->setValue(camera.clock_offset_s);
+  form_->setRowVisible(clock_offset_s_, !camera.recording.empty());
 }
 
 std::optional<CameraIntrinsics> CameraForm::typedIntrinsics() const {
@@ -150,11 +158,13 @@ void CameraForm::say(const QString& field) {
   SessionCamera changed = camera_;
   changed.name = name_->text().trimmed().toStdString();
   changed.resolution_px = {static_cast<int>(width_px_->value()), static_cast<int>(height_px_->value())};
+  changed.clock_offset_s = clock_offset_s_->value();
   if (field == "resolution_px" && changed.intrinsics)
     changed.intrinsics->resolution_px = changed.resolution_px;
   if (field == "intrinsics") changed.intrinsics = typedIntrinsics();
   const bool same = changed.name == camera_.name && changed.resolution_px == camera_.resolution_px &&
-                    changed.intrinsics == camera_.intrinsics;
+                    changed.intrinsics == camera_.intrinsics &&
+                    changed.clock_offset_s == camera_.clock_offset_s;
   if (same || changed.name.empty()) return setCamera(camera_);
   emit edited(changed, field);
 }

@@ -8,8 +8,10 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 class QComboBox;
+class QFormLayout;
 class QLabel;
 class QLineEdit;
 class QPushButton;
@@ -40,10 +42,12 @@ class CameraForm : public QWidget {
   void say(const QString& field);
   std::optional<CameraIntrinsics> typedIntrinsics() const;  // none: not known
   QWidget* pairOf(NumberField* first, NumberField* second);
+  std::vector<NumberField*> intrinsicsFields() const;
 
   SessionCamera camera_;
+  QFormLayout* form_;
   QLineEdit* name_;
-  NumberField *width_px_, *height_px_;
+  NumberField *width_px_, *height_px_, *clock_offset_s_;
   QComboBox* model_;
   NumberField *focal_x_px_, *focal_y_px_, *centre_x_px_, *centre_y_px_;
   std::array<NumberField*, 5> distortion_;

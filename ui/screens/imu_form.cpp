@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/imu_form.h"
 
-#include "ui/forms/number_field.h"
+#include "ui/screens/clock_offset_field.h"
 
 #include <QComboBox>
 #include <QFormLayout>
@@ -64,10 +64,12 @@ QLabel* explanation(QWidget* parent) {
 
 ImuForm::ImuForm(QWidget* parent)
     : QWidget(parent),
+      form_(new QFormLayout(this)),
       name_(new QLineEdit(this)),
       preset_(new QComboBox(this)),
       gyroscope_(new NumberField(1e-8, 10.0, this)),
       accelerometer_(new NumberField(1e-7, 10.0, this)),
+      clock_offset_s_(clockOffsetField(this)),
       angular_rate_unit_(new QComboBox(this)),
       acceleration_unit_(new QComboBox(this)) {
   for (const NoisePreset& preset : kPresets) preset_->addItem(preset.name);
@@ -84,20 +86,21 @@ ImuForm::ImuForm(QWidget* parent)
       tr("What the recording's accelerations are in, where the file's format does not say it or says it "
          "wrongly; "
          "-g for drivers that report gravity"));
-  auto* const form = new QFormLayout(this);
-  form->setContentsMargins(8, 8, 8, 8);
-  form->addRow(tr("Name"), name_);
-  form->addRow(tr("Noise preset"), preset_);
-  form->addRow(QString("Gyroscope [rad/s/%1Hz]").arg(QChar(0x221a)), gyroscope_);
-  form->addRow(QString("Accelerometer [m/s%1/%2Hz]").arg(QChar(0xb2)).arg(QChar(0x221a)), accelerometer_);
-  form->addRow(explanation(this));
-  form->addRow(tr("Angular rates in"), angular_rate_unit_);
-  form->addRow(tr("Accelerations in"), acceleration_unit_);
+  form_->setContentsMargins(8, 8, 8, 8);
+  form_->addRow(tr("Name"), name_);
+  form_->addRow(tr("Noise preset"), preset_);
+  form_->addRow(QString("Gyroscope [rad/s/%1Hz]").arg(QChar(0x221a)), gyroscope_);
+  form_->addRow(QString("Accelerometer [m/s%1/%2Hz]").arg(QChar(0xb2)).arg(QChar(0x221a)), accelerometer_);
+  form_->addRow(explanation(this));
+  form_->addRow(tr("Angular rates in"), angular_rate_unit_);
+  form_->addRow(tr("Accelerations in"), acceleration_unit_);
+  form_->addRow(tr("Clock offset [s]"), clock_offset_s_);
 
   connect(name_, &QLineEdit::editingFinished, this, [this] { say("name"); });
   connect(preset_, &QComboBox::activated, this, &ImuForm::usePreset);
   connect(gyroscope_, &NumberField::valueEdited, this, [this] { say("gyroscope_noise_density"); });
   connect(accelerometer_, &NumberField::valueEdited, this, [this] { say("accelerometer_noise_density"); });
+  connect(clock_offset_s_, &NumberField::valueEdited, this, [this] { say("clock_offset_s"); });
   connect(angular_rate_unit_, &QComboBox::activated, this, [this] { say("angular_rate_unit"); });
   connect(acceleration_unit_, &QComboBox::activated, this, [this] { say("acceleration_unit"); });
 }
@@ -107,6 +110,8 @@ void ImuForm::setImu(const SessionImu& imu) {
   name_->setText(QString::fromStdString(imu.name));
   gyroscope_->setValue(imu.noise.gyroscope_density);
   accelerometer_->setValue(imu.noise.accelerometer_density);
+  clock_offset_s_->setValue(imu.clock_offset_s);
+  form_->setRowVisible(clock_offset_s_, !imu.recording.empty());
   angular_rate_unit_->setCurrentIndex(indexOf(imu.angular_rate_unit));
   acceleration_unit_->setCurrentIndex(indexOf(imu.acceleration_unit));
   int match = static_cast<int>(std::size(kPresets));  // own numbers
@@ -129,9 +134,10 @@ void ImuForm::say(const QString& field) {
   SessionImu changed = imu_;
   changed.name = name_->text().trimmed().toStdString();
   changed.noise = {gyroscope_->value(), accelerometer_->value()};
+  changed.clock_offset_s = clock_offset_s_->value();
   changed.angular_rate_unit = unitAt<AngularRateUnit>(angular_rate_unit_->currentIndex());
   changed.acceleration_unit = unitAt<AccelerationUnit>(acceleration_unit_->currentIndex());
-  const bool same = changed.name == imu_.name &&
+  const bool same = changed.name == imu_.name && changed.clock_offset_s == imu_.clock_offset_s &&
                     changed.noise.gyroscope_density == imu_.noise.gyroscope_density &&
                     changed.noise.accelerometer_density == imu_.noise.accelerometer_density &&
                     changed.angular_rate_unit == imu_.angular_rate_unit &&

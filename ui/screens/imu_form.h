@@ -7,6 +7,7 @@
 #include <QWidget>
 
 class QComboBox;
+class QFormLayout;
 class QLineEdit;
 
 namespace evical::ui {
@@ -29,9 +30,10 @@ class ImuForm : public QWidget {
   void usePreset(int index);
 
   SessionImu imu_;
+  QFormLayout* form_;
   QLineEdit* name_;
   QComboBox* preset_;
-  NumberField *gyroscope_, *accelerometer_;
+  NumberField *gyroscope_, *accelerometer_, *clock_offset_s_;
   QComboBox *angular_rate_unit_, *acceleration_unit_;
 };
 

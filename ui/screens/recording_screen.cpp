@@ -108,7 +108,7 @@ RecordingScreen::RecordingScreen(QWidget* parent)
     emit sessionEdited(changed, tr("Change the time range"), "time_range");
   });
   connect(streams_, &StreamTable::roleChosen, this,
-          [this](int stream, StreamRole role) { chooseRole(stream, static_cast<int>(role)); });
+          [this](int row, StreamRole role) { chooseRole(row, static_cast<int>(role)); });
   connect(reference_, &QComboBox::textActivated, this, [this](const QString& name) {
     Session changed = session_;
     changed.reference = name.toStdString();
@@ -151,8 +151,8 @@ QWidget* RecordingScreen::makeContent() {
   column->setContentsMargins(0, 0, 0, 0);
   looking_->setRange(0, 1000);
   looking_->setTextVisible(false);
-  for (QWidget* const widget : std::initializer_list<QWidget*>{looking_text_, looking_, streams_, time_range_,
-                                                               file_faults_, stream_problem_})
+  for (QWidget* const widget : std::initializer_list<QWidget*>{
+           looking_text_, looking_, streams_, makeRangeAndFiles(streams), file_faults_, stream_problem_})
     column->addWidget(widget);
   auto* const layout = new QVBoxLayout(content);
   layout->setContentsMargins(0, 0, 0, 0);
@@ -163,6 +163,21 @@ QWidget* RecordingScreen::makeContent() {
   for (QLabel* const hidden : {file_faults_, stream_problem_, looking_text_}) hidden->hide();
   looking_->hide();
   return content;
+}
+
+QWidget* RecordingScreen::makeRangeAndFiles(QWidget* parent) {
+  auto* const line = new QWidget(parent);
+  auto* const layout = new QHBoxLayout(line);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(time_range_, 1);
+  auto* const add = new QPushButton(icon("open"), tr("Sensors from another file..."), line);
+  add->setObjectName("add_recording");
+  add->setToolTip(tr(
+      "An IMU or a camera that was recorded into a file of its own, by the same clock or one whose offset is "
+      "known"));
+  connect(add, &QPushButton::clicked, this, &RecordingScreen::addRecordingRequested);
+  layout->addWidget(add);
+  return line;
 }
 
 QWidget* RecordingScreen::makeForms() {
@@ -186,12 +201,13 @@ QWidget* RecordingScreen::makeForms() {
 }
 
 void RecordingScreen::setSession(const Session& session) {
+  const bool other_recording = session.recording != session_.recording;
   session_ = session;
   stack_->setCurrentIndex(session.recording.empty() ? 0 : 1);
   title_->setText(QString::fromStdString(session.recording.filename().string()));
   path_->setText(QString::fromStdString(session.recording.parent_path().string()));
   board_->setBoard(session.board);
-  streams_->setSession(session);
+  other_recording ? listStreams() : streams_->setSession(session);
   time_range_->setRange(session.time_range_s);
   showSensors();
 }
@@ -264,11 +280,14 @@ void RecordingScreen::setProblems(const std::vector<std::pair<QString, QString>>
       QString("color: %1").arg((field_and_text.empty() ? theme().good : theme().bad).name()));
 }
 
-void RecordingScreen::setInspecting(const QString& recording) {
-  inspection_.reset();
+void RecordingScreen::clearInspections() {
+  inspected_.clear();
   time_range_->setDuration({});
-  streams_->setRowCount(0);
+  streams_->clearStreams();
   showText(file_faults_, {});
+}
+
+void RecordingScreen::setInspecting(const QString& recording) {
   showText(looking_text_, tr("Looking through %1...").arg(recording));
   looking_->setValue(0);
   looking_->show();
@@ -278,21 +297,33 @@ void RecordingScreen::setInspectionProgress(double fraction) {
   looking_->setValue(static_cast<int>(1000.0 * fraction));
 }
 
-void RecordingScreen::setInspection(std::shared_ptr<const Inspection> inspection) {
-  inspection_ = std::move(inspection);
+void RecordingScreen::addInspection(const QString& recording, std::shared_ptr<const Inspection> inspection) {
+  inspected_.push_back({recording.toStdString(), std::move(inspection)});
   looking_text_->hide();
   looking_->hide();
-  streams_->setInspection(*inspection_);
-  streams_->setSession(session_);
-  time_range_->setDuration(duration_s(*inspection_));
+  listStreams();
   showFileFaults();
+}
+
+std::filesystem::path RecordingScreen::ownRecording(const Inspected& one) const {
+  return one.recording == session_.recording ? std::filesystem::path() : one.recording;
+}
+
+void RecordingScreen::listStreams() {
+  streams_->clearStreams();
+  for (const Inspected& one : inspected_) {
+    streams_->addInspection(*one.inspection, ownRecording(one));
+    if (one.recording == session_.recording) time_range_->setDuration(duration_s(*one.inspection));
+  }
+  streams_->setSession(session_);
 }
 
 // Faults that belong to no stream: truncated or corrupt files.
 void RecordingScreen::showFileFaults() {
   QStringList faults;
-  for (const RecordingFault& fault : inspection_->faults)
-    if (fault.stream.empty()) faults << QString::fromStdString(fault.text);
+  for (const Inspected& one : inspected_)
+    for (const RecordingFault& fault : one.inspection->faults)
+      if (fault.stream.empty()) faults << QString::fromStdString(fault.text);
   showText(file_faults_, faults.join('\n'));
 }
 
@@ -314,16 +345,24 @@ void RecordingScreen::keepReference(Session& session) {
     choose(session.cameras);
 }
 
-void RecordingScreen::chooseRole(int stream, int role) {
-  if (!inspection_ || stream >= static_cast<int>(inspection_->streams.size())) return;
-  const StreamSummary& summary = inspection_->streams[static_cast<std::size_t>(stream)];
+void RecordingScreen::chooseRole(int row, int role) {
+  auto stream = static_cast<std::size_t>(row);
+  auto one = inspected_.begin();
+  for (; one != inspected_.end() && stream >= one->inspection->streams.size(); ++one)
+    stream -= one->inspection->streams.size();
+  if (one == inspected_.end()) return;
+  const StreamSummary& summary = one->inspection->streams[stream];
+  const std::filesystem::path own_recording = ownRecording(*one);
   Session changed = session_;
-  const auto isThis = [&](const auto& sensor) { return sensor.stream == summary.info.name; };
+  const auto isThis = [&](const auto& sensor) {
+    return sensor.stream == summary.info.name && sensor.recording == own_recording;
+  };
   std::erase_if(changed.cameras, isThis);
   std::erase_if(changed.imus, isThis);
   if (static_cast<StreamRole>(role) == StreamRole::Camera)
-    changed.cameras.push_back(guessedCamera(summary, changed));
-  if (static_cast<StreamRole>(role) == StreamRole::Imu) changed.imus.push_back(guessedImu(summary, changed));
+    changed.cameras.push_back(guessedCamera(summary, changed, own_recording));
+  if (static_cast<StreamRole>(role) == StreamRole::Imu)
+    changed.imus.push_back(guessedImu(summary, changed, own_recording));
   keepReference(changed);
   emit sessionEdited(changed, tr("Change the role of %1").arg(QString::fromStdString(summary.info.name)), {});
 }

@@ -37,15 +37,18 @@ class RecordingScreen : public QWidget {
   void setFoundIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& found);
   void setProblems(const std::vector<std::pair<QString, QString>>& field_and_text);
 
+  void clearInspections();
   void setInspecting(const QString& recording);
   void setInspectionProgress(double fraction);
-  void setInspection(std::shared_ptr<const Inspection> inspection);
+  // Of the session's recording, or of another one that has sensors too.
+  void addInspection(const QString& recording, std::shared_ptr<const Inspection> inspection);
   void setInspectionFailed(const QString& why);
 
  signals:
   // `merge_key`: edits in a row with the same one are one step of undo.
   void sessionEdited(const evical::Session& session, const QString& what, const QString& merge_key);
   void openRecordingRequested();
+  void addRecordingRequested();
 
  private:
   QWidget* makeHeader();
@@ -53,16 +56,24 @@ class RecordingScreen : public QWidget {
   QWidget* makeEmpty();
   QWidget* makeContent();
   void showSensors();
-  void chooseRole(int stream, int role);
+  void chooseRole(int row, int role);
+  QWidget* makeRangeAndFiles(QWidget* parent);
   static void keepReference(Session& session);
   std::optional<CameraIntrinsics> foundIntrinsics(std::size_t camera) const;
   void renameReference(const std::string& from, const std::string& to, Session& session) const;
   void editCamera(std::size_t index, const SessionCamera& camera, const QString& field);
   void editImu(std::size_t index, const SessionImu& imu, const QString& field);
+  void listStreams();
+  std::filesystem::path ownRecording(const Inspected& one) const;  // empty: the session's
   void showFileFaults();
 
+  struct Inspected {
+    std::filesystem::path recording;
+    std::shared_ptr<const Inspection> inspection;
+  };
+
   Session session_;
-  std::shared_ptr<const Inspection> inspection_;
+  std::vector<Inspected> inspected_;  // their streams are the table's rows
   QStackedWidget* stack_;
   QLabel *title_, *path_, *verdict_, *looking_text_, *stream_problem_, *file_faults_;
   QProgressBar* looking_;

@@ -16,6 +16,7 @@ namespace evical::ui {
 namespace {
 
 enum Column { kRole, kStream, kContent, kCount, kRate, kRange, kFaults, kColumns };
+constexpr int kNameRole = Qt::UserRole, kRecordingRole = Qt::UserRole + 1;
 
 QString text(const std::string& utf8) {
   return QString::fromStdString(utf8);
@@ -94,16 +95,25 @@ StreamTable::StreamTable(QWidget* parent) : QTableWidget(0, kColumns, parent) {
   setAccessibleName(tr("Streams of the recording"));
 }
 
-void StreamTable::setInspection(const Inspection& inspection) {
+void StreamTable::clearStreams() {
   setRowCount(0);
-  for (const StreamSummary& stream : inspection.streams) addStream(stream, inspection.faults);
+  fitHeight();
+}
+
+void StreamTable::addInspection(const Inspection& inspection, const std::filesystem::path& own_recording) {
+  for (const StreamSummary& stream : inspection.streams) addStream(stream, inspection.faults, own_recording);
   showIcons();
+  fitHeight();
+}
+
+void StreamTable::fitHeight() {
   constexpr int kMostRows = 5;  // further ones are scrolled to: the forms below need the room
   const int rows = std::clamp(rowCount(), 1, kMostRows);
   setFixedHeight(horizontalHeader()->sizeHint().height() + rows * verticalHeader()->defaultSectionSize() + 6);
 }
 
-void StreamTable::addStream(const StreamSummary& stream, const std::vector<RecordingFault>& faults) {
+void StreamTable::addStream(const StreamSummary& stream, const std::vector<RecordingFault>& faults,
+                            const std::filesystem::path& own_recording) {
   const int row = rowCount();
   insertRow(row);
   QComboBox* const box = roleBox(stream.info.type, this);
@@ -117,7 +127,11 @@ void StreamTable::addStream(const StreamSummary& stream, const std::vector<Recor
   constexpr int kPadding_px = 24;
   setColumnWidth(kRole, std::max(columnWidth(kRole), box->sizeHint().width() + kPadding_px));
   connect(box, &QComboBox::activated, this, [this, row] { emit roleChosen(row, role(row)); });
-  setItem(row, kStream, readOnlyItem(text(stream.info.name)));
+  const QString name = text(stream.info.name), file = text(own_recording.filename().string());
+  setItem(row, kStream, readOnlyItem(file.isEmpty() || file == name ? name : file + ": " + name));
+  item(row, kStream)->setData(kNameRole, name);
+  item(row, kStream)->setData(kRecordingRole, text(own_recording.string()));
+  if (!own_recording.empty()) item(row, kStream)->setToolTip(text(own_recording.string()));
   setItem(row, kContent, readOnlyItem(contentText(stream)));
   setItem(row, kCount, readOnlyItem(stream.count == 0 ? QString() : QLocale().toString(stream.count)));
   setItem(row, kRate, readOnlyItem(rateText(stream)));
@@ -143,8 +157,11 @@ void StreamTable::showIcons() {
 
 void StreamTable::setSession(const Session& session) {
   for (int row = 0; row < rowCount(); ++row) {
-    const std::string name = item(row, kStream)->text().toStdString();
-    const auto isThis = [&](const auto& sensor) { return sensor.stream == name; };
+    const std::string name = item(row, kStream)->data(kNameRole).toString().toStdString();
+    const std::string recording = item(row, kStream)->data(kRecordingRole).toString().toStdString();
+    const auto isThis = [&](const auto& sensor) {
+      return sensor.stream == name && sensor.recording.string() == recording;
+    };
     StreamRole role = StreamRole::Ignore;
     if (std::any_of(session.cameras.begin(), session.cameras.end(), isThis)) role = StreamRole::Camera;
     if (std::any_of(session.imus.begin(), session.imus.end(), isThis)) role = StreamRole::Imu;

@@ -7,6 +7,9 @@
 
 #include <QTableWidget>
 
+#include <filesystem>
+#include <vector>
+
 class QComboBox;
 
 namespace evical::ui {
@@ -19,18 +22,22 @@ class StreamTable : public QTableWidget {
  public:
   explicit StreamTable(QWidget* parent = nullptr);
 
-  void setInspection(const Inspection& inspection);
+  void clearStreams();
+  // `own_recording`: the file, where it is not the session's. Its streams follow those that are there.
+  void addInspection(const Inspection& inspection, const std::filesystem::path& own_recording = {});
   void setSession(const Session& session);  // the roles
   StreamRole role(int row) const;
 
  signals:
-  void roleChosen(int stream, evical::ui::StreamRole role);
+  void roleChosen(int row, evical::ui::StreamRole role);
 
  protected:
   void changeEvent(QEvent* event) override;
 
  private:
-  void addStream(const StreamSummary& stream, const std::vector<RecordingFault>& faults);
+  void addStream(const StreamSummary& stream, const std::vector<RecordingFault>& faults,
+                 const std::filesystem::path& own_recording);
+  void fitHeight();
   void showIcons();
   QComboBox* roleBoxOf(int row) const;
 };

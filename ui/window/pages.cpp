@@ -49,11 +49,12 @@ void wireRecording(RecordingScreen& screen, Workbench& workbench, SessionFiles& 
     screen.setFoundIntrinsics(found);
   });
   const InspectionJob& inspection = workbench.inspection;
+  QObject::connect(&screen, &RecordingScreen::addRecordingRequested, &files,
+                   &SessionFiles::chooseFurtherRecording);
+  QObject::connect(&inspection, &InspectionJob::restarted, &screen, &RecordingScreen::clearInspections);
   QObject::connect(&inspection, &InspectionJob::started, &screen, &RecordingScreen::setInspecting);
   QObject::connect(&inspection, &InspectionJob::progressed, &screen, &RecordingScreen::setInspectionProgress);
-  QObject::connect(
-      &inspection, &InspectionJob::inspected, &screen,
-      [&screen](const QString&, std::shared_ptr<const Inspection> found) { screen.setInspection(found); });
+  QObject::connect(&inspection, &InspectionJob::inspected, &screen, &RecordingScreen::addInspection);
   QObject::connect(
       &inspection, &InspectionJob::failed, &screen,
       [&screen](const QString&, const JobError& error) { screen.setInspectionFailed(error.text()); });

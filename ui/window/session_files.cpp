@@ -50,6 +50,18 @@ std::optional<JobError> whyUseless(const QString& recording, const Inspection& i
       QObject::tr("Check that the whole file was copied and that the camera's driver was recorded")};
 }
 
+// The session's own first.
+QStringList recordingsOf(const Session& session) {
+  QStringList recordings = {QString::fromStdString(session.recording.string())};
+  const auto add = [&](const auto& sensor) {
+    const QString own = QString::fromStdString(sensor.recording.string());
+    if (!own.isEmpty() && !recordings.contains(own)) recordings << own;
+  };
+  std::for_each(session.cameras.begin(), session.cameras.end(), add);
+  std::for_each(session.imus.begin(), session.imus.end(), add);
+  return recordings;
+}
+
 bool isSessionFile(const QString& path) {
   const QString suffix = QFileInfo(path).suffix().toLower();
   return suffix == "yaml" || suffix == "yml";
@@ -70,12 +82,14 @@ SessionFiles::SessionFiles(Workbench& workbench, QWidget* window)
   connect(&workbench_.inspection, &InspectionJob::inspected, this,
           [this](const QString& recording, const std::shared_ptr<const Inspection>& inspection) {
             recordingInspected(recording, *inspection);
+            furtherRecordingInspected(recording, *inspection);
           });
   connect(&workbench_.inspection, &InspectionJob::failed, this,
           [this](const QString& recording, const JobError& error) {
-            if (recording != awaited_recording_) return;
-            awaited_recording_.clear();
+            const bool further = further_recordings_.removeAll(recording) > 0;
+            if (recording != awaited_recording_ && !further) return;
             emit failed(tr("%1 cannot be opened").arg(QFileInfo(recording).fileName()), error);
+            if (!further) inspectSession();
           });
   connect(&workbench_.document, &CalibrationDocument::sessionReplaced, this, [this] {
     exportEveryResult(false);
@@ -107,9 +121,8 @@ void SessionFiles::openSession(const QString& file) {
     emit failed(tr("%1 cannot be opened").arg(QFileInfo(file).fileName()), errorOf(error));
     return;
   }
-  awaited_recording_.clear();
   remember(workbench_.document.file());
-  workbench_.inspection.start(QString::fromStdString(workbench_.document.session().recording.string()));
+  inspectSession();
   const QString truth = QFileInfo(file).dir().filePath("truth.yaml");
   try {
     if (QFile::exists(truth)) workbench_.document.loadReference(truth);
@@ -122,7 +135,16 @@ void SessionFiles::openSession(const QString& file) {
 void SessionFiles::openRecording(const QString& path) {
   if (!mayDiscard()) return;
   awaited_recording_ = QFileInfo(path).absoluteFilePath();
-  workbench_.inspection.start(awaited_recording_);
+  further_recordings_.clear();
+  workbench_.inspection.start({awaited_recording_});
+}
+
+// The streams of the session that is open; also after another recording that could not be opened.
+void SessionFiles::inspectSession() {
+  awaited_recording_.clear();
+  further_recordings_.clear();
+  const Session& session = workbench_.document.session();
+  if (!session.recording.empty()) workbench_.inspection.start(recordingsOf(session));
 }
 
 void SessionFiles::recordingInspected(const QString& recording, const Inspection& inspection) {
@@ -130,11 +152,37 @@ void SessionFiles::recordingInspected(const QString& recording, const Inspection
   awaited_recording_.clear();
   if (const auto error = whyUseless(recording, inspection)) {
     emit failed(tr("%1 cannot be used").arg(QFileInfo(recording).fileName()), *error);
-    return;
+    return inspectSession();
   }
   workbench_.document.startSession(guessedSession(recording.toStdString(), inspection));
   remember(recording);
   emit opened();
+}
+
+void SessionFiles::addRecording(const QString& path) {
+  const QString recording = QFileInfo(path).absoluteFilePath();
+  const QStringList listed = recordingsOf(workbench_.document.session()) + further_recordings_;
+  if (std::any_of(listed.begin(), listed.end(),
+                  [&](const QString& other) { return QFileInfo(other) == QFileInfo(recording); })) {
+    emit failed(tr("%1 is not added").arg(QFileInfo(path).fileName()),
+                {true, recording, tr("its streams are listed already"), tr("Choose their roles there")});
+    return;
+  }
+  further_recordings_ << recording;
+  workbench_.inspection.add(recording);
+}
+
+void SessionFiles::furtherRecordingInspected(const QString& recording, const Inspection& inspection) {
+  if (further_recordings_.removeAll(recording) == 0) return;
+  if (const auto error = whyUseless(recording, inspection)) {
+    emit failed(tr("%1 cannot be used").arg(QFileInfo(recording).fileName()), *error);
+    return;
+  }
+  CalibrationDocument& document = workbench_.document;
+  const Session found = withMissingSensors(document.session(), recording.toStdString(), inspection);
+  const bool more = found.cameras.size() + found.imus.size() >
+                    document.session().cameras.size() + document.session().imus.size();
+  if (more) document.edit(found, tr("Add sensors of %1").arg(QFileInfo(recording).fileName()), {});
 }
 
 void SessionFiles::chooseSession() {
@@ -143,10 +191,20 @@ void SessionFiles::chooseSession() {
   if (!file.isEmpty()) open(file);
 }
 
+QString SessionFiles::askForRecording(const QString& title) {
+  return QFileDialog::getOpenFileName(window_, title, lastFolder(),
+                                      tr("Recordings (*.bag *.mcap *.db3 *.zstd *.aedat4 *.raw *.dat *.h5 "
+                                         "*.hdf5 *.es *.txt *.csv);;All files (*)"));
+}
+
 void SessionFiles::chooseRecording() {
-  const QString file = QFileDialog::getOpenFileName(window_, tr("Open a recording"), lastFolder(),
-                                                    tr("Recordings (*.bag *.txt *.csv);;All files (*)"));
+  const QString file = askForRecording(tr("Open a recording"));
   if (!file.isEmpty()) open(file);
+}
+
+void SessionFiles::chooseFurtherRecording() {
+  const QString file = askForRecording(tr("Sensors from another file"));
+  if (!file.isEmpty()) addRecording(file);
 }
 
 bool SessionFiles::save() {

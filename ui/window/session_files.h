@@ -32,6 +32,9 @@ class SessionFiles : public QObject {
   void open(const QString& path);  // a session file, a recording, or a folder with either
   void chooseSession();
   void chooseRecording();
+  // A recording beside the session's, for sensors that it lacks.
+  void chooseFurtherRecording();
+  void addRecording(const QString& path);
   bool save();
   bool saveAs();
   void openDemo();  // simulates it the first time
@@ -61,6 +64,9 @@ class SessionFiles : public QObject {
   bool saveTo(const QString& file);
   void remember(const QString& file);
   void recordingInspected(const QString& recording, const Inspection& inspection);
+  void furtherRecordingInspected(const QString& recording, const Inspection& inspection);
+  QString askForRecording(const QString& title);
+  void inspectSession();
   QString lastFolder() const;
   void writeResult(const QString& title, const QString& folder, std::vector<std::string> targets,
                    const std::function<void(const ExportRemarks&)>& written);
@@ -70,6 +76,7 @@ class SessionFiles : public QObject {
   QWidget* window_;
   QString every_result_folder_;                             // empty: results are not exported by themselves
   QString awaited_recording_;                               // opened as soon as it has been looked through
+  QStringList further_recordings_;                          // added to the session as soon as they have been
   std::optional<std::vector<std::string>> export_targets_;  // chosen by hand; else as the session says
   std::shared_ptr<const CalibrationRun> reported_run_;      // the run that report_folder_ is of
   QString report_folder_;
