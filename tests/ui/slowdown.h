@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-namespace evical::ui::test {
+namespace evical::ui {
 
 // Under sanitizers everything takes longer: times that tests allow, and how long they wait, are multiplied by
 // this.
@@ -11,4 +11,4 @@ inline constexpr int kSlowdown = 20;
 inline constexpr int kSlowdown = 1;
 #endif
 
-}  // namespace evical::ui::test
+}  // namespace evical::ui

@@ -9,7 +9,6 @@
 
 using namespace evical;
 using namespace evical::ui;
-using evical::ui::test::kSlowdown;
 
 namespace {
 

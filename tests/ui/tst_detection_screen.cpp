@@ -25,7 +25,6 @@
 
 using namespace evical;
 using namespace evical::ui;
-using evical::ui::test::kSlowdown;
 
 namespace {
 

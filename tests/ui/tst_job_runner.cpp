@@ -12,7 +12,6 @@
 
 using namespace evical;
 using namespace evical::ui;
-using evical::ui::test::kSlowdown;
 
 namespace {
 

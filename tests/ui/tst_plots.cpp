@@ -13,7 +13,6 @@
 
 using namespace evical;
 using namespace evical::ui;
-using evical::ui::test::kSlowdown;
 using Kind = PlotPanel::SeriesKind;
 
 namespace {

@@ -18,7 +18,6 @@
 
 using namespace evical;
 using namespace evical::ui;
-using evical::ui::test::kSlowdown;
 
 namespace {
 

@@ -16,7 +16,6 @@
 
 using namespace evical;
 using namespace evical::ui;
-using evical::ui::test::kSlowdown;
 
 class TestSignalsScreen : public QObject {
   Q_OBJECT

@@ -20,7 +20,6 @@
 using namespace evical;
 using namespace evical::ui;
 using Eigen::Vector3d;
-using evical::ui::test::kSlowdown;
 
 namespace {
 

@@ -51,6 +51,11 @@ class RecordingScreen : public QWidget {
   void addRecordingRequested();
 
  private:
+  struct Inspected {
+    std::filesystem::path recording;
+    std::shared_ptr<const Inspection> inspection;
+  };
+
   QWidget* makeHeader();
   QWidget* makeForms();
   QWidget* makeEmpty();
@@ -66,11 +71,6 @@ class RecordingScreen : public QWidget {
   void listStreams();
   std::filesystem::path ownRecording(const Inspected& one) const;  // empty: the session's
   void showFileFaults();
-
-  struct Inspected {
-    std::filesystem::path recording;
-    std::shared_ptr<const Inspection> inspection;
-  };
 
   Session session_;
   std::vector<Inspected> inspected_;  // their streams are the table's rows
