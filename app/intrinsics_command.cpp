@@ -5,6 +5,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/pipeline/intrinsics_calibration.h"
+#include "core/pipeline/session_recording.h"
 #include "core/report/csv.h"
 #include "core/report/intrinsics_report.h"
 
@@ -36,6 +37,12 @@ std::vector<std::size_t> chosenCameras(const Session& session, const std::string
   return chosen;
 }
 
+// A stream that is missing is missed now, not after the other cameras' minutes.
+void checkStreams(Session session) {
+  session.imus.clear();
+  SessionRecording{session};
+}
+
 std::vector<FileContent> filesOf(const std::filesystem::path& folder, const NamedIntrinsics& named) {
   const CameraIntrinsics& camera = named.result.intrinsics;
   return {{folder / "intrinsics.yaml", intrinsicsResultYaml(named)},
@@ -64,6 +71,7 @@ void addCamera(const IntrinsicsArguments& arguments, const SessionCamera& camera
 int run(const IntrinsicsArguments& arguments) {
   const Session session = sessionFrom(arguments);
   const std::vector<std::size_t> cameras = chosenCameras(session, arguments.camera);
+  if (cameras.size() > 1) checkStreams(session);
   Console console(arguments.quiet);
   const bool folder_was_there = std::filesystem::exists(arguments.output);
   makeOutputFolder(arguments.output);

@@ -98,6 +98,15 @@ class TestIntrinsicsCommand : public QObject {
     QVERIFY(readFile(result() + "/log.txt").contains("warning  right: "));
   }
 
+  void streamThatIsMissing_isMissedAtOnce() {
+    session_.replace("imus:", "  right: {stream: /nowhere, resolution_px: [346, 260]}\nimus:");
+    const Outcome outcome = run("intrinsics");
+    VERIFY_OUTCOME(outcome, 2);
+    VERIFY_SAYS(outcome, "/nowhere");
+    QVERIFY2(!outcome.errors.contains("first look"), qPrintable(outcome.errors));
+    QVERIFY(!QFile::exists(result()));
+  }
+
   void firstLook_isAsLongAsWanted() {
     const Outcome outcome = run("intrinsics", {"--set", "intrinsics.first_look_slices=5", "--set",
                                                "intrinsics.first_look_projection_px=0.001"});
