@@ -375,9 +375,10 @@ void TestTrajectoryScreen::halfMinute_drawsFast() {
   options.duration_s = 30.0;
   options.imu_rate_hz = 50.0;
   const test::SimulatedRig rig = test::simulateRig(options);
+  std::unique_ptr<View3D> view;  // outlives the screen, which still speaks to it at its end
   TrajectoryScreen screen;
   screen.view()->setParent(nullptr);
-  const std::unique_ptr<View3D> view(screen.view());
+  view.reset(screen.view());
   view->resize(1000, 700);
   screen.setState(truthOf(rig), rig.input.board);
   screen.setDetections(std::make_shared<BoardObservations>(rig.input.cameras.front().observations),
