@@ -53,6 +53,18 @@ class TestCalibrationDocument : public QObject {
     QCOMPARE(again.session().cameras.at(0).intrinsics, document.session().cameras.at(0).intrinsics);
   }
 
+  // The window that listens is half gone by then.
+  void document_saysNothingAtItsEnd() {
+    int said = 0;
+    {
+      CalibrationDocument document;
+      document.open(test::copyOfSimulatedSession(scratch_.path()));
+      document.edit(withRows(document, 9), "Rows");
+      connect(&document, &CalibrationDocument::fileChanged, [&] { ++said; });
+    }
+    QCOMPARE(said, 0);
+  }
+
   void open_ofWhatIsNoSession_changesNothing() {
     CalibrationDocument document;
     document.open(test::simulatedSession());

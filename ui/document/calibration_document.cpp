@@ -46,6 +46,11 @@ CalibrationDocument::CalibrationDocument(QObject* parent) : QObject(parent) {
   connect(&undo_stack_, &QUndoStack::cleanChanged, this, &CalibrationDocument::fileChanged);
 }
 
+// The stack speaks at its end, when those who listen may be gone.
+CalibrationDocument::~CalibrationDocument() {
+  undo_stack_.blockSignals(true);
+}
+
 QString CalibrationDocument::title() const {
   if (!file_.isEmpty()) return QFileInfo(file_).fileName();
   if (!hasSession()) return {};

@@ -34,6 +34,7 @@ class CalibrationDocument : public QObject {
 
  public:
   explicit CalibrationDocument(QObject* parent = nullptr);
+  ~CalibrationDocument() override;
 
   const Session& session() const { return session_; }
   bool hasSession() const { return !session_.recording.empty(); }
