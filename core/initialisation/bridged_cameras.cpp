@@ -98,9 +98,7 @@ MeanPose agreement(const std::vector<RigidTransform>& each) {
 }
 
 double misfitOf(const MeanPose& found) {
-  const double angle = found.rotation_rms_rad / kSpread.rotation_rad,
-               way = found.position_rms_m / kSpread.position_m;
-  return (angle * angle + way * way) / std::max(found.agreeing, 1e-3);
+  return kSpread.squared(found.rotation_rms_rad, found.position_rms_m) / std::max(found.agreeing, 1e-3);
 }
 
 }  // namespace

@@ -7,9 +7,8 @@
 namespace evical {
 
 double PoseSpread::between2(const RigidTransform& a, const RigidTransform& b) const {
-  const double angle = rotationAngleBetween_rad(a.rotation, b.rotation) / rotation_rad,
-               way = (a.translation_m - b.translation_m).norm() / position_m;
-  return angle * angle + way * way;
+  return squared(rotationAngleBetween_rad(a.rotation, b.rotation),
+                 (a.translation_m - b.translation_m).norm());
 }
 
 MeanPose meanPose(std::span<const RigidTransform> poses, const RigidTransform& start,
@@ -24,8 +23,7 @@ MeanPose meanPose(std::span<const RigidTransform> poses, const RigidTransform& s
     for (const RigidTransform& pose : poses) {
       const Eigen::Vector3d angle = quaternionLog(mean.rotation.conjugate() * pose.rotation),
                             way = pose.translation_m - mean.translation_m;
-      const double weight = 1.0 / (1.0 + angle.squaredNorm() / (spread.rotation_rad * spread.rotation_rad) +
-                                   way.squaredNorm() / (spread.position_m * spread.position_m));
+      const double weight = 1.0 / (1.0 + spread.squared(angle.norm(), way.norm()));
       near += weight > 0.5;
       turn += weight * angle;
       shift += weight * way;

@@ -11,7 +11,11 @@ namespace evical {
 struct PoseSpread {
   double rotation_rad = 0.0, position_m = 0.0;
 
-  // Squared distance of two poses in these units.
+  // Squared distance in these units: of an angle with a way, and of two poses.
+  double squared(double angle_rad, double way_m) const {
+    const double angle = angle_rad / rotation_rad, way = way_m / position_m;
+    return angle * angle + way * way;
+  }
   double between2(const RigidTransform& a, const RigidTransform& b) const;
 };
 

@@ -1,5 +1,6 @@
 #include "core/optimisation/covariance.h"
 
+#include "core/data/doubt.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/optimisation/credible_information.h"
 #include "core/optimisation/drift_uncertainty.h"
@@ -341,10 +342,7 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   estimate.report.weakest = observability.weakest;
   estimate.status = observability.status;
   estimate.reason = observability.reason;
-  if (!turned.empty()) {
-    estimate.status = CalibrationStatus::Doubtful;
-    estimate.reason = observability.reason.empty() ? turned : turned + "; " + observability.reason;
-  }
+  addDoubt(turned, estimate);
   return estimate;
 }
 

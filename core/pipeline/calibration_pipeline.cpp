@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/time.h"
+#include "core/data/doubt.h"
 #include "core/geometry/projection_difference.h"
 #include "core/initialisation/initialise.h"
 #include "core/optimisation/batch_optimiser.h"
@@ -118,13 +119,6 @@ void checkSession(const Session& session) {
                    "Use an asymmetric board with an odd number of rows; for each camera's intrinsics alone "
                    "there is 'evical intrinsics'");
   }
-}
-
-// First of the reasons: it is the one that people can mend.
-void addDoubt(const std::string& doubt, CalibrationResult& result) {
-  if (doubt.empty()) return;
-  result.status = CalibrationStatus::Doubtful;
-  result.reason = result.reason.empty() ? doubt : doubt + "; " + result.reason;
 }
 
 void logDetections(const RecordingPass& pass, const RunContext& context) {

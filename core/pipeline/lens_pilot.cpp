@@ -71,7 +71,7 @@ class Pilot {
       context_.throwIfStopped();
       if (packet.events.front().time_ns > end_ns_) break;
       context_.progress.stageProgress(
-          std::max(recording_.fractionRead(), slices_ / double(options_.first_look_slices)));
+          std::max(recording_.fractionRead(), static_cast<double>(slices_) / options_.first_look_slices));
       for (const Event& event : packet.events) {
         if (event.time_ns > end_ns_) break;
         take(event);
