@@ -285,7 +285,6 @@ class TestRecordingScreen : public QObject {
     QCOMPARE(test.session.reference, test.session.imus[0].name);
     QCOMPARE(test.streams()->role(2 + imu_row), StreamRole::Imu);
     auto* const offset = test.screen.findChild<ImuForm*>()->findChildren<NumberField*>().last();
-    offset->window()->show();
     QVERIFY(offset->isVisibleTo(offset->parentWidget()));
     Fixture::type(offset, "-12.5");
     QCOMPARE(test.session.imus[0].clock_offset_s, -12.5);

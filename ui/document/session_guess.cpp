@@ -53,6 +53,17 @@ SessionImu guessedImu(const StreamSummary& stream, const Session& session,
   return imu;
 }
 
+void keepReference(Session& session) {
+  const auto choose = [&](const auto& sensors) {
+    const auto is_reference = [&](const auto& sensor) { return sensor.name == session.reference; };
+    if (std::none_of(sensors.begin(), sensors.end(), is_reference)) session.reference = sensors.front().name;
+  };
+  if (!session.imus.empty())
+    choose(session.imus);
+  else if (!session.cameras.empty())
+    choose(session.cameras);
+}
+
 Session withMissingSensors(const Session& session, const std::filesystem::path& recording,
                            const Inspection& inspection) {
   Session found = session;
@@ -63,25 +74,14 @@ Session withMissingSensors(const Session& session, const std::filesystem::path& 
     if (stream.info.type == StreamType::Imu && session.imus.empty())
       found.imus.push_back(guessedImu(stream, found, recording));
   }
-  if (session.imus.empty() && !found.imus.empty()) found.reference = found.imus.front().name;
-  if (found.reference.empty() && !found.cameras.empty()) found.reference = found.cameras.front().name;
+  keepReference(found);
   return found;
 }
 
 Session guessedSession(const std::filesystem::path& recording, const Inspection& inspection) {
   Session session;
   session.recording = recording;
-  for (const StreamSummary& stream : inspection.streams) {
-    if (stream.count == 0) continue;
-    if (stream.info.type == StreamType::Events) session.cameras.push_back(guessedCamera(stream, session));
-    if (stream.info.type == StreamType::Imu) session.imus.push_back(guessedImu(stream, session));
-  }
-  if (!session.imus.empty()) {
-    session.reference = session.imus.front().name;
-  } else if (!session.cameras.empty()) {
-    session.reference = session.cameras.front().name;
-  }
-  return session;
+  return withMissingSensors(session, {}, inspection);
 }
 
 }  // namespace evical::ui

@@ -17,6 +17,9 @@ SessionCamera guessedCamera(const StreamSummary& stream, const Session& session,
 SessionImu guessedImu(const StreamSummary& stream, const Session& session,
                       const std::filesystem::path& own_recording = {});
 
+// Where the reference is no longer there, the first that could be it.
+void keepReference(Session& session);
+
 // With the sensors of a further recording that the session lacks: its IMUs where there is none yet, its
 // cameras where there is none.
 Session withMissingSensors(const Session& session, const std::filesystem::path& recording,

@@ -11,8 +11,8 @@ inline NumberField* clockOffsetField(QWidget* parent) {
   auto* const field = new NumberField(-kMost_s, kMost_s, parent);
   field->setToolTip(
       QObject::tr("Where this sensor's own file counts time from another zero: the seconds to add to its "
-                  "times so that they "
-                  "are those of the recording, within the searched time offset (initialisation)"));
+                  "times so that they are those of the recording, within the searched time offset "
+                  "(initialisation)"));
   return field;
 }
 

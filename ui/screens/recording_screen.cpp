@@ -172,9 +172,9 @@ QWidget* RecordingScreen::makeRangeAndFiles(QWidget* parent) {
   layout->addWidget(time_range_, 1);
   auto* const add = new QPushButton(icon("open"), tr("Sensors from another file..."), line);
   add->setObjectName("add_recording");
-  add->setToolTip(tr(
-      "An IMU or a camera that was recorded into a file of its own, by the same clock or one whose offset is "
-      "known"));
+  add->setToolTip(
+      tr("An IMU or a camera that was recorded into a file of its own, by the same clock or one whose offset "
+         "is known"));
   connect(add, &QPushButton::clicked, this, &RecordingScreen::addRecordingRequested);
   layout->addWidget(add);
   return line;
@@ -331,18 +331,6 @@ void RecordingScreen::setInspectionFailed(const QString& why) {
   looking_->hide();
   looking_text_->hide();
   showText(file_faults_, why);
-}
-
-// Where the reference is no longer there, the first that could be it.
-void RecordingScreen::keepReference(Session& session) {
-  const auto choose = [&](const auto& sensors) {
-    const auto is_reference = [&](const auto& sensor) { return sensor.name == session.reference; };
-    if (std::none_of(sensors.begin(), sensors.end(), is_reference)) session.reference = sensors.front().name;
-  };
-  if (!session.imus.empty())
-    choose(session.imus);
-  else if (!session.cameras.empty())
-    choose(session.cameras);
 }
 
 void RecordingScreen::chooseRole(int row, int role) {

@@ -63,7 +63,6 @@ class RecordingScreen : public QWidget {
   void showSensors();
   void chooseRole(int row, int role);
   QWidget* makeRangeAndFiles(QWidget* parent);
-  static void keepReference(Session& session);
   std::optional<CameraIntrinsics> foundIntrinsics(std::size_t camera) const;
   void renameReference(const std::string& from, const std::string& to, Session& session) const;
   void editCamera(std::size_t index, const SessionCamera& camera, const QString& field);

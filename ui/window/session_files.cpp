@@ -147,13 +147,16 @@ void SessionFiles::inspectSession() {
   if (!session.recording.empty()) workbench_.inspection.start(recordingsOf(session));
 }
 
+bool SessionFiles::isUseless(const QString& recording, const Inspection& inspection) {
+  const auto error = whyUseless(recording, inspection);
+  if (error) emit failed(tr("%1 cannot be used").arg(QFileInfo(recording).fileName()), *error);
+  return error.has_value();
+}
+
 void SessionFiles::recordingInspected(const QString& recording, const Inspection& inspection) {
   if (recording != awaited_recording_) return;
   awaited_recording_.clear();
-  if (const auto error = whyUseless(recording, inspection)) {
-    emit failed(tr("%1 cannot be used").arg(QFileInfo(recording).fileName()), *error);
-    return inspectSession();
-  }
+  if (isUseless(recording, inspection)) return inspectSession();
   workbench_.document.startSession(guessedSession(recording.toStdString(), inspection));
   remember(recording);
   emit opened();
@@ -173,11 +176,7 @@ void SessionFiles::addRecording(const QString& path) {
 }
 
 void SessionFiles::furtherRecordingInspected(const QString& recording, const Inspection& inspection) {
-  if (further_recordings_.removeAll(recording) == 0) return;
-  if (const auto error = whyUseless(recording, inspection)) {
-    emit failed(tr("%1 cannot be used").arg(QFileInfo(recording).fileName()), *error);
-    return;
-  }
+  if (further_recordings_.removeAll(recording) == 0 || isUseless(recording, inspection)) return;
   CalibrationDocument& document = workbench_.document;
   const Session found = withMissingSensors(document.session(), recording.toStdString(), inspection);
   const bool more = found.cameras.size() + found.imus.size() >
