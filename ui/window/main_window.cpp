@@ -25,6 +25,8 @@
 #include <QUrl>
 #include <QVBoxLayout>
 
+#include <chrono>
+
 namespace evical::ui {
 namespace {
 
@@ -86,7 +88,7 @@ QWidget* MainWindow::makeSideBar() {
     item->setSizeHint(QSize(0, kEntry_px));
   }
   navigation_->setFixedHeight(static_cast<int>(entries_.size()) * (kEntry_px + 2) + 16);
-  connect(navigation_, &QListWidget::currentRowChanged, stack_, &QStackedWidget::setCurrentIndex);
+  connect(navigation_, &QListWidget::currentRowChanged, this, &MainWindow::turnTo);
   steps_ = new StepsPanel(this);
   auto* const bar = new QFrame(this);
   bar->setObjectName("sidebar");
@@ -130,6 +132,21 @@ bool MainWindow::showScreen(const QString& name) {
   result_is_due_ = false;
   navigation_->setCurrentRow(static_cast<int>(index));
   return true;
+}
+
+// Filling pages, laying one out and painting it are turns of their own of the event loop: all in one would
+// be long.
+void MainWindow::paintPagesLater() {
+  constexpr auto kLaidOut = std::chrono::milliseconds(10);
+  stack_->setUpdatesEnabled(false);
+  QTimer::singleShot(1, stack_, [this] {
+    QTimer::singleShot(kLaidOut, stack_, [this] { stack_->setUpdatesEnabled(true); });
+  });
+}
+
+void MainWindow::turnTo(int page) {
+  paintPagesLater();
+  stack_->setCurrentIndex(page);
 }
 
 void MainWindow::wireDocument() {
@@ -183,19 +200,15 @@ void MainWindow::wireJobs() {
   });
   connect(&workbench_.calibration, &CalibrationJob::calibrated, this,
           [this](std::shared_ptr<const CalibrationRun> run, const Session& session, const QString& log) {
+            paintPagesLater();
             workbench_.document.addRun({std::move(run), session, log});
             result_is_due_ = stack_->currentIndex() <= 1;
             QTimer::singleShot(1, this, &MainWindow::bringUpResult);
           });
 }
 
-// Filling the screens, laying this one out and painting it are turns of their own of the event loop: all in
-// one would be long.
 void MainWindow::bringUpResult() {
-  if (!result_is_due_) return;
-  setUpdatesEnabled(false);
-  showScreen("result");
-  QTimer::singleShot(1, this, [this] { setUpdatesEnabled(true); });
+  if (result_is_due_) showScreen("result");
 }
 
 void MainWindow::wireSteps() {

@@ -57,6 +57,8 @@ class MainWindow : public QMainWindow {
   void wireDocument();
   void wireParameters();
   void wireJobs();
+  void paintPagesLater();
+  void turnTo(int page);
   void bringUpResult();
   void wireSteps();
   void showState();
