@@ -11,11 +11,26 @@
 #include <QTextStream>
 #include <QTimer>
 
+#include <algorithm>
+
 namespace {
 
 using namespace evical::ui;
 
 constexpr int kDone = 0, kFailed = 1, kBadUse = 2;
+
+// Pictures, help and the version need no display, but Qt ends a program that finds none.
+bool doWithoutDisplay(int argc, char** argv) {
+  const bool chosen = qEnvironmentVariableIsSet("QT_QPA_PLATFORM") ||
+                      std::any_of(argv, argv + argc, [](const char* argument) {
+                        return QByteArrayView(argument).endsWith("-platform");
+                      });
+  const bool some =
+      !qEnvironmentVariableIsEmpty("DISPLAY") || !qEnvironmentVariableIsEmpty("WAYLAND_DISPLAY");
+  if (chosen || some) return false;
+  qputenv("QT_QPA_PLATFORM", "offscreen");
+  return true;
+}
 
 int complain(const QString& text) {
   QTextStream(stderr) << text << '\n';
@@ -110,12 +125,17 @@ int takePicture(const Arguments& arguments, MainWindow& window) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const bool without_display = doWithoutDisplay(argc, argv);
   QApplication application(argc, argv);
   QApplication::setApplicationName("evical");
   QApplication::setOrganizationName("evical");
   QApplication::setApplicationVersion(evical::kVersion);
   QApplication::setDesktopFileName("evical");
   const Arguments arguments = parse(application);
+  if (without_display && arguments.screen.isEmpty())
+    return complain(
+        "There is no display to show a window on (DISPLAY and WAYLAND_DISPLAY are empty). `evical calibrate "
+        "SESSION` calibrates without one; over ssh, `ssh -X` lends yours.");
   applyTheme(application, arguments.appearance);
   QApplication::setWindowIcon(icon("calibrate", theme().accent));
   MainWindow window(evical::kVersion);

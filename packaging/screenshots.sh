@@ -10,7 +10,7 @@ demo=build/screenshots/demo
 [ -x "$program" ] || { echo "Build it first: packaging/run.sh" >&2; exit 1; }
 [ -f "$demo/truth.yaml" ] || build/release/evical simulate config/scenarios/davis346_10s.yaml -o "$demo" --quiet
 mkdir -p "$pictures"
-export QT_QPA_PLATFORM=offscreen
+export QT_QPA_PLATFORM=offscreen # also where there is a display: the same pictures everywhere
 for screen in recording detection trajectory convergence signals residuals result; do
   for appearance in light dark; do
     "$program" --screenshot "$screen" -o "$pictures/$screen-$appearance.png" --appearance "$appearance" "$demo/session.yaml"
