@@ -188,6 +188,7 @@ class TestMainWindow : public QObject {
     QVERIFY(std::abs(last.session.cameras[0].intrinsics->focal_length_px.x() - truth_px) < 0.005 * truth_px);
     QVERIFY(!test.document().runIsOutdated());
     test.window.showScreen("result");
+    spin(200);  // filled in a turn of its own
     QStringList rows;
     for (const QTreeWidget* const tree : test.child<ResultScreen>()->findChildren<QTreeWidget*>())
       for (QTreeWidgetItem* const row :

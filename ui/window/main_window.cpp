@@ -5,6 +5,7 @@
 #include "ui/forms/option_form.h"
 #include "ui/screens/result_screen.h"
 #include "ui/theme/theme.h"
+#include "ui/window/after_turns.h"
 #include "ui/window/error_panel.h"
 #include "ui/window/job_status.h"
 #include "ui/window/log_panel.h"
@@ -21,11 +22,8 @@
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QStatusBar>
-#include <QTimer>
 #include <QUrl>
 #include <QVBoxLayout>
-
-#include <chrono>
 
 namespace evical::ui {
 namespace {
@@ -134,14 +132,10 @@ bool MainWindow::showScreen(const QString& name) {
   return true;
 }
 
-// Filling pages, laying one out and painting it are turns of their own of the event loop: all in one would
-// be long.
+// When they are filled and laid out, both of which take turns of the event loop already.
 void MainWindow::paintPagesLater() {
-  constexpr auto kLaidOut = std::chrono::milliseconds(10);
   stack_->setUpdatesEnabled(false);
-  QTimer::singleShot(1, stack_, [this] {
-    QTimer::singleShot(kLaidOut, stack_, [this] { stack_->setUpdatesEnabled(true); });
-  });
+  afterTurns(3, stack_, [this] { stack_->setUpdatesEnabled(true); });
 }
 
 void MainWindow::turnTo(int page) {
@@ -203,7 +197,7 @@ void MainWindow::wireJobs() {
             paintPagesLater();
             workbench_.document.addRun({std::move(run), session, log});
             result_is_due_ = stack_->currentIndex() <= 1;
-            QTimer::singleShot(1, this, &MainWindow::bringUpResult);
+            afterTurns(3, this, [this] { bringUpResult(); });
           });
 }
 

@@ -10,6 +10,7 @@
 #include "ui/screens/recording_screen.h"
 #include "ui/screens/result_screen.h"
 #include "ui/screens/start_screen.h"
+#include "ui/window/after_turns.h"
 #include "ui/window/linked_pages.h"
 #include "ui/window/session_files.h"
 #include "ui/window/workbench.h"
@@ -70,11 +71,14 @@ void wireResult(ResultScreen& screen, Workbench& workbench, SessionFiles& files)
   QObject::connect(&screen, &ResultScreen::exportRequested, &files, &SessionFiles::chooseExportFolder);
   QObject::connect(&screen, &ResultScreen::reportRequested, &files, &SessionFiles::openReport);
   QObject::connect(&screen, &ResultScreen::referenceRequested, &files, &SessionFiles::chooseReference);
-  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen, [&screen, &workbench] {
+  const auto fill = [&screen, &workbench] {
     screen.setRuns(namedRun(workbench.document.previous(), workbench.version),
                    namedRun(workbench.document.last(), workbench.version));
     screen.setOutdated(workbench.document.runIsOutdated());
-  });
+  };
+  // It takes as long as everything else that a calibration's end brings.
+  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen,
+                   [&screen, fill] { afterTurns(1, &screen, fill); });
   QObject::connect(&document, &CalibrationDocument::sessionChanged, &screen,
                    [&screen, &document] { screen.setOutdated(document.runIsOutdated()); });
   QObject::connect(&document, &CalibrationDocument::referenceChanged, &screen, [&screen, &document] {
