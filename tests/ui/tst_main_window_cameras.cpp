@@ -195,8 +195,8 @@ class TestMainWindowCameras : public QObject {
   }
 
   void result_listsBoth() {
-    const QString all = topLevelTexts();
-    QVERIFY2(all.contains("left") && all.contains("right"), qPrintable(all));
+    QTRY_VERIFY2(topLevelTexts().contains("left") && topLevelTexts().contains("right"),
+                 qPrintable(topLevelTexts()));
   }
 
  private:
