@@ -39,6 +39,7 @@ QString ObservabilityView::text() const {
 void ObservabilityView::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   if (needed_over_sigma_.empty()) {
+    if (calibrated_) return;  // the words above it say why
     painter.setPen(theme().faint_text);
     painter.drawText(rect(), Qt::AlignCenter | Qt::TextWordWrap, text());
     return;
