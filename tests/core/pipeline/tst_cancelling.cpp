@@ -130,7 +130,7 @@ class TestCancelling : public QObject {
         stopEverywhere([&](const RunContext& context) { calibrate(session, pass, context); });
     QVERIFY(!stages.contains("LATE"));
     QVERIFY(stages.contains("optimise"));
-    QVERIFY(stages.size() >= 6);
+    QVERIFY(stages.size() >= 8);
   }
 
   // Where rotation about one axis makes initialisation search for the turn about it.
