@@ -242,11 +242,9 @@ void estimate(const Session& session, const RunContext& context, CalibrationObse
 
   result.status = uncertainty.status;
   result.reason = uncertainty.reason;
-  if (!solution.converged && result.status == CalibrationStatus::Ok) {
-    result.status = CalibrationStatus::Doubtful;
-    result.reason =
-        "the optimisation did not converge: raise optimisation.max_iterations, or look at the residuals";
-  }
+  if (!solution.converged && result.status == CalibrationStatus::Ok)
+    addDoubt("the optimisation did not converge: raise optimisation.max_iterations, or look at the residuals",
+             result);
   addDoubt(priors.doubt, result);
   addDoubt(initial.doubt, result);
   result.state = std::move(solution.state);
