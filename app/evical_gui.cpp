@@ -21,13 +21,10 @@ constexpr int kDone = 0, kFailed = 1, kBadUse = 2;
 
 // Pictures, help and the version need no display, but Qt ends a program that finds none.
 bool doWithoutDisplay(int argc, char** argv) {
-  const bool chosen = qEnvironmentVariableIsSet("QT_QPA_PLATFORM") ||
-                      std::any_of(argv, argv + argc, [](const char* argument) {
-                        return QByteArrayView(argument).endsWith("-platform");
-                      });
-  const bool some =
-      !qEnvironmentVariableIsEmpty("DISPLAY") || !qEnvironmentVariableIsEmpty("WAYLAND_DISPLAY");
-  if (chosen || some) return false;
+  for (const char* const name : {"QT_QPA_PLATFORM", "DISPLAY", "WAYLAND_DISPLAY"})
+    if (!qEnvironmentVariableIsEmpty(name)) return false;
+  const auto chooses = [](const char* argument) { return QByteArrayView(argument).endsWith("-platform"); };
+  if (std::any_of(argv, argv + argc, chooses)) return false;
   qputenv("QT_QPA_PLATFORM", "offscreen");
   return true;
 }
