@@ -29,6 +29,7 @@ namespace evical::ui {
 namespace {
 
 constexpr int kSideBar_px = 236;
+constexpr int kLaidOut_turns = 3;  // after which pages are filled and laid out
 // Bumped when docks or tool bars change, so that an older layout isn't forced on them.
 constexpr int kLayoutVersion = 1;
 
@@ -132,10 +133,10 @@ bool MainWindow::showScreen(const QString& name) {
   return true;
 }
 
-// When they are filled and laid out, both of which take turns of the event loop already.
+// When they are filled and laid out: all in one turn of the event loop would be long.
 void MainWindow::paintPagesLater() {
   stack_->setUpdatesEnabled(false);
-  afterTurns(3, stack_, [this] { stack_->setUpdatesEnabled(true); });
+  afterTurns(kLaidOut_turns, stack_, [this] { stack_->setUpdatesEnabled(true); });
 }
 
 void MainWindow::turnTo(int page) {
@@ -197,7 +198,7 @@ void MainWindow::wireJobs() {
             paintPagesLater();
             workbench_.document.addRun({std::move(run), session, log});
             result_is_due_ = stack_->currentIndex() <= 1;
-            afterTurns(3, this, [this] { bringUpResult(); });
+            afterTurns(kLaidOut_turns, this, [this] { bringUpResult(); });
           });
 }
 

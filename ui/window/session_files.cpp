@@ -147,7 +147,7 @@ void SessionFiles::inspectSession() {
   if (!session.recording.empty()) workbench_.inspection.start(recordingsOf(session));
 }
 
-bool SessionFiles::isUseless(const QString& recording, const Inspection& inspection) {
+bool SessionFiles::refuseUseless(const QString& recording, const Inspection& inspection) {
   const auto error = whyUseless(recording, inspection);
   if (error) emit failed(tr("%1 cannot be used").arg(QFileInfo(recording).fileName()), *error);
   return error.has_value();
@@ -156,7 +156,7 @@ bool SessionFiles::isUseless(const QString& recording, const Inspection& inspect
 void SessionFiles::recordingInspected(const QString& recording, const Inspection& inspection) {
   if (recording != awaited_recording_) return;
   awaited_recording_.clear();
-  if (isUseless(recording, inspection)) return inspectSession();
+  if (refuseUseless(recording, inspection)) return inspectSession();
   workbench_.document.startSession(guessedSession(recording.toStdString(), inspection));
   remember(recording);
   emit opened();
@@ -176,7 +176,7 @@ void SessionFiles::addRecording(const QString& path) {
 }
 
 void SessionFiles::furtherRecordingInspected(const QString& recording, const Inspection& inspection) {
-  if (further_recordings_.removeAll(recording) == 0 || isUseless(recording, inspection)) return;
+  if (further_recordings_.removeAll(recording) == 0 || refuseUseless(recording, inspection)) return;
   CalibrationDocument& document = workbench_.document;
   const Session found = withMissingSensors(document.session(), recording.toStdString(), inspection);
   const bool more = found.cameras.size() + found.imus.size() >

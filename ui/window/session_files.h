@@ -65,7 +65,7 @@ class SessionFiles : public QObject {
   void remember(const QString& file);
   void recordingInspected(const QString& recording, const Inspection& inspection);
   void furtherRecordingInspected(const QString& recording, const Inspection& inspection);
-  bool isUseless(const QString& recording, const Inspection& inspection);  // and says why
+  bool refuseUseless(const QString& recording, const Inspection& inspection);  // false for what is useful
   QString askForRecording(const QString& title);
   void inspectSession();
   QString lastFolder() const;
