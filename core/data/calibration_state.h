@@ -17,7 +17,7 @@
 namespace evical {
 
 struct CameraState {
-  RigidTransform imu_from_camera;
+  RigidTransform reference_from_camera;
   double time_offset_s = 0.0;  // imu_time = camera_time + time_offset_s
   double edge_lead_px = 0.0;   // measured centres lie this far ahead along their image motion, at 100 px/s
   double edge_lead_growth_px = 0.0;                 // for each factor e of speed

@@ -9,10 +9,10 @@ RigidTransform worldFromImu(const So3Spline& world_from_imu_rotation, const Vect
 }
 
 RigidTransform cameraFromWorld(const So3Spline& world_from_imu_rotation, const VectorSpline& imu_in_world_m,
-                               const RigidTransform& imu_from_camera, double time_offset_s,
+                               const RigidTransform& reference_from_camera, double time_offset_s,
                                double camera_time_s) {
   return inverse(worldFromImu(world_from_imu_rotation, imu_in_world_m, camera_time_s + time_offset_s) *
-                 imu_from_camera);
+                 reference_from_camera);
 }
 
 MotionSample motionAt(const So3Spline& world_from_imu_rotation, const VectorSpline& imu_in_world_m,

@@ -13,7 +13,7 @@ RigidTransform worldFromImu(const So3Spline& world_from_imu_rotation, const Vect
 
 // Pose of a camera at a time of its own clock; imu_time = camera_time + time_offset_s.
 RigidTransform cameraFromWorld(const So3Spline& world_from_imu_rotation, const VectorSpline& imu_in_world_m,
-                               const RigidTransform& imu_from_camera, double time_offset_s,
+                               const RigidTransform& reference_from_camera, double time_offset_s,
                                double camera_time_s);
 
 // Motion state for plots and simulated measurements; angular rates in the body frame, the rest in the world.

@@ -42,7 +42,8 @@ std::optional<AlignedCamera> align(std::vector<CameraPose> poses, const GyroRota
                                    double time_offset_s, const InitialisationOptions& options,
                                    const SensorPrior& prior) {
   resolveAmbiguousPoses(poses, gyro, time_offset_s, options.longest_pair_s);
-  const std::optional<HandEye> found = estimateCameraImuRotation(poses, gyro, time_offset_s, options, prior);
+  const std::optional<RelativeRotation> found =
+      estimateCameraImuRotation(poses, gyro, time_offset_s, options, prior);
   if (!found) return std::nullopt;
   return AlignedCamera{std::move(poses), *found};
 }
@@ -142,7 +143,7 @@ AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& inpu
   const double rotation_s = lap.next_s();
   settlePoses(camera, imu, input.start_ns, gyro, options, aligned, result);
   if (result.steps.back().name == "planar poses") result.steps.back().duration_s = lap.next_s();
-  const HandEye& hand_eye = aligned.hand_eye;
+  const RelativeRotation& hand_eye = aligned.hand_eye;
   warnOfPeaks(camera, peaks, hand_eye.time_offset_s, options, result);
   const double next = peaks.size() > 1 ? peaks[1].correlation : 0.0;
   result.steps.push_back(

@@ -37,8 +37,8 @@ std::vector<RotationPair> rotationPairs(const std::vector<CameraPose>& poses, do
 // Rotation that turns the camera's rotation vectors into the gyroscope's (G. Wahba's problem, by SVD),
 // reweighted.
 void alignVectors(const std::vector<RotationPair>& pairs, const std::vector<Eigen::Vector3d>& felt,
-                  double scale_rad, HandEye& result) {
-  Eigen::Matrix3d rotation = result.imu_from_camera.toRotationMatrix();
+                  double scale_rad, RelativeRotation& result) {
+  Eigen::Matrix3d rotation = result.reference_from_sensor.toRotationMatrix();
   constexpr int kRounds = 10;
   for (int round = 0; round < kRounds; ++round) {
     Eigen::Matrix3d sums = Eigen::Matrix3d::Zero();
@@ -56,7 +56,7 @@ void alignVectors(const std::vector<RotationPair>& pairs, const std::vector<Eige
     result.axis_ratio = std::sqrt(svd.singularValues()(1) / std::max(svd.singularValues()(0), 1e-12));
     result.main_axis_in_imu = svd.matrixU().col(0);
   }
-  result.imu_from_camera = Eigen::Quaterniond(rotation);
+  result.reference_from_sensor = Eigen::Quaterniond(rotation);
 }
 
 std::vector<Eigen::Vector3d> feltRotations(const std::vector<RotationPair>& pairs, const GyroRotation& gyro,
@@ -79,12 +79,12 @@ Vector7 holding(bool rotation, bool offset) {
 
 // One Gauss-Newton step on rotation, offset and bias; returns the robust RMS before it.
 double step(const std::vector<RotationPair>& pairs, const GyroRotation& gyro, double scale_rad,
-            const Vector7& held, HandEye& result) {
+            const Vector7& held, RelativeRotation& result) {
   constexpr double kDelta_s = 1e-3;
   const auto now = feltRotations(pairs, gyro, result.time_offset_s);
   const auto before = feltRotations(pairs, gyro, result.time_offset_s - kDelta_s);
   const auto after = feltRotations(pairs, gyro, result.time_offset_s + kDelta_s);
-  const Eigen::Matrix3d rotation = result.imu_from_camera.toRotationMatrix();
+  const Eigen::Matrix3d rotation = result.reference_from_sensor.toRotationMatrix();
   Matrix7 matrix = Matrix7::Zero();
   Vector7 vector = Vector7::Zero();
   double squares = 0.0, weights = 0.0, cost = 0.0;
@@ -108,7 +108,7 @@ double step(const std::vector<RotationPair>& pairs, const GyroRotation& gyro, do
   matrix.diagonal() += noise2 * (Vector7() << 1.0, 1.0, 1.0, 1e4, 100.0, 100.0, 100.0).finished();
   matrix.diagonal() += held;
   const Vector7 delta = matrix.ldlt().solve(vector);
-  result.imu_from_camera = (result.imu_from_camera * quaternionExp(delta.head<3>())).normalized();
+  result.reference_from_sensor = (result.reference_from_sensor * quaternionExp(delta.head<3>())).normalized();
   constexpr double kLongestStep_s = 0.03;
   result.time_offset_s += std::clamp(delta(3), -kLongestStep_s, kLongestStep_s);
   result.gyroscope_bias_rad_s += delta.tail<3>();
@@ -118,10 +118,10 @@ double step(const std::vector<RotationPair>& pairs, const GyroRotation& gyro, do
 
 }  // namespace
 
-std::optional<HandEye> estimateCameraImuRotation(const std::vector<CameraPose>& poses,
-                                                 const GyroRotation& gyro, double time_offset_s,
-                                                 const InitialisationOptions& options,
-                                                 const SensorPrior& prior) {
+std::optional<RelativeRotation> estimateCameraImuRotation(const std::vector<CameraPose>& poses,
+                                                          const GyroRotation& gyro, double time_offset_s,
+                                                          const InitialisationOptions& options,
+                                                          const SensorPrior& prior) {
   constexpr double kFirstScale_rad = 0.05, kLastScale_rad = 0.005;
   constexpr int kSteps = 15;
   std::vector<RotationPair> pairs = rotationPairs(poses, options.pair_gap_s, options.longest_pair_s);
@@ -132,11 +132,11 @@ std::optional<HandEye> estimateCameraImuRotation(const std::vector<CameraPose>& 
     return !gyro.covers(pair.from_s + lowest_s, pair.to_s + highest_s);
   });
   if (pairs.size() < 5) return std::nullopt;
-  HandEye result;
+  RelativeRotation result;
   result.time_offset_s = time_offset_s;
   result.pairs = static_cast<int>(pairs.size());
   alignVectors(pairs, feltRotations(pairs, gyro, time_offset_s), kFirstScale_rad, result);
-  if (rotation_given) result.imu_from_camera = prior.rotation->value;
+  if (rotation_given) result.reference_from_sensor = prior.rotation->value;
   const Vector7 held = holding(rotation_given, offset_given);
   double scale_rad = kFirstScale_rad;
   for (int k = 0; k < kSteps; ++k) {
@@ -144,7 +144,7 @@ std::optional<HandEye> estimateCameraImuRotation(const std::vector<CameraPose>& 
     result.time_offset_s = std::clamp(result.time_offset_s, lowest_s, highest_s);
     scale_rad = std::max(0.7 * scale_rad, kLastScale_rad);
   }
-  if (rotation_given) result.imu_from_camera = prior.rotation->value;  // to the last digit
+  if (rotation_given) result.reference_from_sensor = prior.rotation->value;  // to the last digit
   return result;
 }
 

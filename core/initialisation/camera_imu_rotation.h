@@ -12,8 +12,9 @@
 
 namespace evical {
 
-struct HandEye {
-  Eigen::Quaterniond imu_from_camera = Eigen::Quaterniond::Identity();
+// How a sensor is turned against the reference, and when: a camera by hand-eye, or a further IMU by its own spline.
+struct RelativeRotation {
+  Eigen::Quaterniond reference_from_sensor = Eigen::Quaterniond::Identity();
   double time_offset_s = 0.0;
   Eigen::Vector3d gyroscope_bias_rad_s = Eigen::Vector3d::Zero();
   double residual_rad = 0.0;  // robust RMS over pairs
@@ -25,9 +26,9 @@ struct HandEye {
 
 // From a start offset that is right to `time_offset_reach_s`, or exact where the prior gives it; a given
 // rotation is held, too. Nothing if fewer than five pairs are covered.
-std::optional<HandEye> estimateCameraImuRotation(const std::vector<CameraPose>& poses,
-                                                 const GyroRotation& gyro, double time_offset_s,
-                                                 const InitialisationOptions& options,
-                                                 const SensorPrior& prior = {});
+std::optional<RelativeRotation> estimateCameraImuRotation(const std::vector<CameraPose>& poses,
+                                                          const GyroRotation& gyro, double time_offset_s,
+                                                          const InitialisationOptions& options,
+                                                          const SensorPrior& prior = {});
 
 }  // namespace evical

@@ -88,7 +88,7 @@ class CamerasAlone {
     const auto bridged = bridgeCameras(poses_, found.poses, camera.prior.time_offset, options_, context_);
     if (!bridged) return false;
     const MeanPose& pose = bridged->reference_from_camera;
-    result_.state.cameras[k].imu_from_camera = pose.mean;
+    result_.state.cameras[k].reference_from_camera = pose.mean;
     result_.state.cameras[k].time_offset_s = bridged->time_offset_s;
     result_.steps.push_back(
         {"camera to camera",
@@ -112,7 +112,7 @@ class CamerasAlone {
       const CameraState& state = result_.state.cameras[k];
       for (CameraPose& pose : poses) {
         pose.time_s += state.time_offset_s;
-        pose.world_from_camera = pose.world_from_camera * inverse(state.imu_from_camera);
+        pose.world_from_camera = pose.world_from_camera * inverse(state.reference_from_camera);
         all.push_back(pose);
       }
     }
@@ -141,7 +141,7 @@ class CamerasAlone {
                                           100.0 * pose.agreeing, reference().name),
                               "Check that both see one board at the same time and are fixed to each other");
     }
-    result_.state.cameras[k].imu_from_camera = pose.mean;
+    result_.state.cameras[k].reference_from_camera = pose.mean;
     result_.state.cameras[k].time_offset_s = time_offset_s;
     result_.steps.push_back({"camera to camera",
                              fmt::format("{}: {} views agree to {:.3f} deg and {:.2f} mm", name, found->views,

@@ -71,14 +71,15 @@ ImuRotation alignFurtherGyroscope(const ImuData& imu, std::int64_t start_ns, con
         "Check that both are on one rigid rig and recorded at the same time, or " + advice);
   }
   // What was estimated is what the reference seems to turn too much: minus the further one's bias.
-  HandEye& hand_eye = best->hand_eye;
-  hand_eye.gyroscope_bias_rad_s = -(hand_eye.imu_from_camera.conjugate() * hand_eye.gyroscope_bias_rad_s);
+  RelativeRotation& hand_eye = best->hand_eye;
+  hand_eye.gyroscope_bias_rad_s =
+      -(hand_eye.reference_from_sensor.conjugate() * hand_eye.gyroscope_bias_rad_s);
   return *best;
 }
 
 LeverArm solveLeverArm(const ImuData& imu, std::int64_t start_ns, const ImuRotation& rotation,
                        const CalibrationState& state, const InitialisationOptions& options) {
-  const Eigen::Matrix3d reference_from_imu = rotation.hand_eye.imu_from_camera.toRotationMatrix();
+  const Eigen::Matrix3d reference_from_imu = rotation.hand_eye.reference_from_sensor.toRotationMatrix();
   Matrix6 matrix = Matrix6::Zero();
   Vector6 vector = Vector6::Zero();
   double squares = 0.0, count = 0.0;

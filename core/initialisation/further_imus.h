@@ -16,7 +16,7 @@
 namespace evical {
 
 struct ImuRotation {
-  HandEye
+  RelativeRotation
       hand_eye;  // the IMU in the camera's place; the bias is that of the further gyroscope, in its own frame
   double correlation = 0.0;  // of the two gyroscopes' rates
 };

@@ -1,6 +1,6 @@
 // Translations, gravity, accelerometer bias and the position spline, all linear once the rotation is known
-// (method 5.5 and 5.6 in one): with control points P, lever t_c = imu_from_camera.translation of camera c,
-// gravity g and bias b,
+// (method 5.5 and 5.6 in one): with control points P, lever t_c = reference_from_camera.translation of camera
+// c, gravity g and bias b,
 //   p(t_k) = p_wc(t_k) - R_wb(t_k) t_c        at every view,
 //   p''(t) = R_wb(t) (f - b) + g              at every (averaged) accelerometer sample.
 // Then once more with scale p''(t), since accelerations tell metres: the board's true size over the given
@@ -28,7 +28,7 @@ namespace evical {
 struct CameraTrack {
   std::vector<CameraPose> poses;
   double time_offset_s = 0.0;
-  std::optional<KnownVector> translation = {};  // imu_from_camera
+  std::optional<KnownVector> translation = {};  // reference_from_camera
 };
 
 struct GravityAlignment {

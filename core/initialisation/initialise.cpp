@@ -54,7 +54,7 @@ std::vector<CameraTrack> tracksOf(const CalibrationInput& input, const std::vect
 void turnAboutAxis(const CalibrationInput& input, const InitialisationOptions& options, TimeRange range,
                    const GyroRotation& gyro, const RunContext& context, std::vector<AlignedCamera>& cameras,
                    Initialisation& result) {
-  HandEye& first = cameras.front().hand_eye;
+  RelativeRotation& first = cameras.front().hand_eye;
   if (first.axis_ratio >= options.least_axis_ratio) return;
   result.warnings.push_back(input.cameras.front().name +
                             ": the recording rotates about one axis only: rotate about two more");
@@ -67,8 +67,8 @@ void turnAboutAxis(const CalibrationInput& input, const InitialisationOptions& o
       findTurnAboutAxis(first.main_axis_in_imu, tracksOf(input, cameras), referenceImu(input).samples,
                         input.start_ns, rotation, options, context);
   for (AlignedCamera& camera : cameras) {
-    camera.hand_eye.imu_from_camera =
-        quaternionExp(-turn_rad * first.main_axis_in_imu) * camera.hand_eye.imu_from_camera;
+    camera.hand_eye.reference_from_sensor =
+        quaternionExp(-turn_rad * first.main_axis_in_imu) * camera.hand_eye.reference_from_sensor;
   }
 }
 
@@ -115,7 +115,7 @@ void alignTranslations(const CalibrationInput& input, const InitialisationOption
   reference.accelerometer_bias_m_s2 = gravity.accelerometer_bias_m_s2;
   for (std::size_t k = 0; k < cameras.size(); ++k) {
     CameraState camera;
-    camera.imu_from_camera = {cameras[k].hand_eye.imu_from_camera, gravity.cameras_in_imu_m[k]};
+    camera.reference_from_camera = {cameras[k].hand_eye.reference_from_sensor, gravity.cameras_in_imu_m[k]};
     camera.time_offset_s = cameras[k].hand_eye.time_offset_s;
     state.cameras.push_back(camera);
   }
@@ -128,9 +128,9 @@ void alignFurtherImu(const CalibrationInput& input, std::size_t k, const GyroRot
   Lap lap;
   const ImuRotation rotation = alignFurtherGyroscope(imu, input.start_ns, reference, options, context);
   const LeverArm lever = solveLeverArm(imu, input.start_ns, rotation, result.state, options);
-  const HandEye& hand_eye = rotation.hand_eye;
+  const RelativeRotation& hand_eye = rotation.hand_eye;
   ImuState& state = result.state.imus[k];
-  state.reference_from_imu = {hand_eye.imu_from_camera, lever.imu_in_reference_m};
+  state.reference_from_imu = {hand_eye.reference_from_sensor, lever.imu_in_reference_m};
   state.time_offset_s = hand_eye.time_offset_s;
   state.gyroscope_bias_rad_s = hand_eye.gyroscope_bias_rad_s;
   state.accelerometer_bias_m_s2 = lever.accelerometer_bias_m_s2;

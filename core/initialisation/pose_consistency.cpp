@@ -51,11 +51,13 @@ Vote voteOn(const std::vector<Carried>& carried, const std::vector<CameraPose>& 
   return vote;
 }
 
-double medianStep(const std::vector<CameraPose>& poses, const GyroRotation& gyro, const HandEye& hand_eye) {
+double medianStep(const std::vector<CameraPose>& poses, const GyroRotation& gyro,
+                  const RelativeRotation& hand_eye) {
   std::vector<double> steps;
   std::optional<Eigen::Quaterniond> before;
   for (const CameraPose& pose : poses) {
-    const Eigen::Quaterniond here = pose.world_from_camera.rotation * hand_eye.imu_from_camera.conjugate() *
+    const Eigen::Quaterniond here = pose.world_from_camera.rotation *
+                                    hand_eye.reference_from_sensor.conjugate() *
                                     gyro.at(pose.time_s + hand_eye.time_offset_s).conjugate();
     if (before) steps.push_back(angle(*before, here));
     before = here;
@@ -69,12 +71,12 @@ double medianStep(const std::vector<CameraPose>& poses, const GyroRotation& gyro
 }  // namespace
 
 PoseConsistency keepConsistentPoses(std::vector<CameraPose>& poses, const GyroRotation& gyro,
-                                    const HandEye& hand_eye, const InitialisationOptions& options) {
+                                    const RelativeRotation& hand_eye, const InitialisationOptions& options) {
   const double least_cosine = std::cos(0.5 * options.largest_rotation_disagreement_rad);
   std::vector<Carried> carried;
   for (const CameraPose& pose : poses) {
-    const Eigen::Quaterniond back =
-        hand_eye.imu_from_camera.conjugate() * gyro.at(pose.time_s + hand_eye.time_offset_s).conjugate();
+    const Eigen::Quaterniond back = hand_eye.reference_from_sensor.conjugate() *
+                                    gyro.at(pose.time_s + hand_eye.time_offset_s).conjugate();
     Carried c{pose.world_from_camera.rotation * back, Eigen::Quaterniond::Identity()};
     c.has_second = pose.other_world_from_camera.has_value();
     if (c.has_second) c.second = pose.other_world_from_camera->rotation * back;

@@ -20,6 +20,6 @@ struct PoseConsistency {
 // `gyro` with its bias taken out. Keeps poses that agree with most of their neighbours within
 // `largest_rotation_disagreement_rad`.
 PoseConsistency keepConsistentPoses(std::vector<CameraPose>& poses, const GyroRotation& gyro,
-                                    const HandEye& hand_eye, const InitialisationOptions& options);
+                                    const RelativeRotation& hand_eye, const InitialisationOptions& options);
 
 }  // namespace evical

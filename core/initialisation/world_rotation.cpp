@@ -13,7 +13,7 @@ So3Spline fitWorldRotation(std::span<const AlignedCamera> cameras, const GyroRot
   std::vector<double> times_s;
   std::vector<Eigen::Quaterniond> world_from_first;
   for (const AlignedCamera& camera : cameras) {
-    const Eigen::Quaterniond camera_from_imu = camera.hand_eye.imu_from_camera.conjugate();
+    const Eigen::Quaterniond camera_from_imu = camera.hand_eye.reference_from_sensor.conjugate();
     for (const CameraPose& pose : camera.poses) {
       const double time_s = pose.time_s + camera.hand_eye.time_offset_s;
       if (time_s < begin_s || time_s > end_s) continue;

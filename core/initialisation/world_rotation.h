@@ -12,7 +12,7 @@ namespace evical {
 
 struct AlignedCamera {
   std::vector<CameraPose> poses;
-  HandEye hand_eye;
+  RelativeRotation hand_eye;
 };
 
 // world_from_imu on the IMU's clock over [begin_s, end_s]; `gyro` with its bias taken out.

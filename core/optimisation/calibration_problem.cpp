@@ -167,9 +167,9 @@ void CalibrationProblem::addCircles(std::size_t camera) {
     std::vector<double*> blocks;
     appendRotationBlocks(segment, blocks);
     appendPositionBlocks(segment, blocks);
-    blocks.insert(blocks.end(),
-                  {state.imu_from_camera.rotation.coeffs().data(), state.imu_from_camera.translation_m.data(),
-                   &state.time_offset_s, &state.edge_lead_px, &state.edge_lead_growth_px});
+    blocks.insert(blocks.end(), {state.reference_from_camera.rotation.coeffs().data(),
+                                 state.reference_from_camera.translation_m.data(), &state.time_offset_s,
+                                 &state.edge_lead_px, &state.edge_lead_growth_px});
     if (intrinsics_[camera]) blocks.push_back(intrinsics_[camera]->data());
     blocks_.push_back({problem_->AddResidualBlock(cost, nullptr, blocks), SensorKind::Circles, camera,
                        measurements[begin].time_s + state.time_offset_s, cost});
@@ -253,7 +253,8 @@ void CalibrationProblem::setManifolds(ReleaseStages stage) {
     if (problem_->HasParameterBlock(block)) problem_->SetManifold(block, manifold);
   };
   for (auto& point : state_.world_from_imu_rotation.control_points) set(point.coeffs().data(), &so3_);
-  for (CameraState& camera : state_.cameras) set(camera.imu_from_camera.rotation.coeffs().data(), &so3_);
+  for (CameraState& camera : state_.cameras)
+    set(camera.reference_from_camera.rotation.coeffs().data(), &so3_);
   for (std::size_t i = 0; i < state_.imus.size(); ++i) {
     double* gyroscope_rotation = state_.imus[i].gyroscope_from_accelerometer.coeffs().data();
     set(state_.imus[i].reference_from_imu.rotation.coeffs().data(), &so3_);
@@ -276,8 +277,8 @@ std::vector<Quantity> CalibrationProblem::quantities() {
   std::vector<Quantity> all;
   for (std::size_t i = 0; i < state_.cameras.size(); ++i) {
     CameraState& camera = state_.cameras[i];
-    all.push_back({QuantityKind::CameraRotation, i, camera.imu_from_camera.rotation.coeffs().data()});
-    all.push_back({QuantityKind::CameraTranslation, i, camera.imu_from_camera.translation_m.data()});
+    all.push_back({QuantityKind::CameraRotation, i, camera.reference_from_camera.rotation.coeffs().data()});
+    all.push_back({QuantityKind::CameraTranslation, i, camera.reference_from_camera.translation_m.data()});
     all.push_back({QuantityKind::CameraTimeOffset, i, &camera.time_offset_s});
     all.push_back({QuantityKind::EdgeLead, i, &camera.edge_lead_px});
     all.push_back({QuantityKind::EdgeLeadGrowth, i, &camera.edge_lead_growth_px});

@@ -30,7 +30,7 @@ void CalibrationProblem::addPriors(ReleaseStages stage) {
     if (block && problem_->HasParameterBlock(block->data())) blocks_.push_back({block->addPrior(*problem_)});
   for (std::size_t i = 0; i < state_.cameras.size(); ++i) {
     const std::optional<KnownVector>& known = input_.cameras[i].prior.translation;
-    double* translation = state_.cameras[i].imu_from_camera.translation_m.data();
+    double* translation = state_.cameras[i].reference_from_camera.translation_m.data();
     if (!known) addPrior(translation, 3, kZero.data(), options_.translation_sigma_m);
     holdTranslation(translation, known);
   }
@@ -94,8 +94,8 @@ void CalibrationProblem::addSmoothness() {
 // The trajectory is the reference camera's own.
 void CalibrationProblem::holdReferenceCamera() {
   CameraState& reference = state_.cameras[input_.reference_camera];
-  for (double* block : {reference.imu_from_camera.rotation.coeffs().data(),
-                        reference.imu_from_camera.translation_m.data(), &reference.time_offset_s}) {
+  for (double* block : {reference.reference_from_camera.rotation.coeffs().data(),
+                        reference.reference_from_camera.translation_m.data(), &reference.time_offset_s}) {
     if (problem_->HasParameterBlock(block)) problem_->SetParameterBlockConstant(block);
   }
 }

@@ -53,7 +53,7 @@ std::vector<CircleError> circleErrors(const CalibrationInput& input, const Calib
         CircleError error{c, v, i, Eigen::Vector2d::Zero(), std::numeric_limits<double>::infinity()};
         const auto centre_px =
             predictedCentre(camera, camera_state, circle,
-                            cameraFromWorld(rotation, position, camera_state.imu_from_camera,
+                            cameraFromWorld(rotation, position, camera_state.reference_from_camera,
                                             camera_state.time_offset_s, circle.time_s),
                             input.board);
         if (centre_px) {

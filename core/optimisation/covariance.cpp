@@ -85,7 +85,7 @@ Eigen::MatrixXd correlatedScores(const std::vector<Eigen::VectorXd>& scores, Eig
 Eigen::MatrixXd reportFromTangent(const Quantity& quantity, Eigen::Index size, const CalibrationState& state,
                                   ceres::Problem& problem) {
   if (quantity.kind == QuantityKind::CameraRotation) {
-    return state.cameras[quantity.sensor].imu_from_camera.rotation.toRotationMatrix();
+    return state.cameras[quantity.sensor].reference_from_camera.rotation.toRotationMatrix();
   }
   if (quantity.kind == QuantityKind::ImuRotation) {
     return state.imus[quantity.sensor].reference_from_imu.rotation.toRotationMatrix();

@@ -40,7 +40,7 @@ void setGivenValues(const CalibrationInput& input, const OptimisationOptions& op
                     CalibrationState& state) {
   for (std::size_t i = 0; i < state.cameras.size(); ++i) {
     if (!input.isReferenceCamera(i))
-      setPlace(input.cameras[i].prior, options.free_time_offsets, state.cameras[i].imu_from_camera,
+      setPlace(input.cameras[i].prior, options.free_time_offsets, state.cameras[i].reference_from_camera,
                state.cameras[i].time_offset_s);
   }
   for (std::size_t i = 0; i < state.imus.size(); ++i) {
@@ -112,7 +112,7 @@ void CalibrationProblem::addKnownValues() {
   };
   for (std::size_t i = 0; i < state_.cameras.size(); ++i) {
     if (!input_.isReferenceCamera(i))
-      addKnownPlace(input_.cameras[i].prior, state_.cameras[i].imu_from_camera,
+      addKnownPlace(input_.cameras[i].prior, state_.cameras[i].reference_from_camera,
                     state_.cameras[i].time_offset_s);
   }
   for (std::size_t i = 0; i < state_.imus.size(); ++i) {

@@ -77,7 +77,7 @@ class Judge {
 std::string Judge::axisWords(const Quantity& quantity, const Eigen::Vector3d& in_reference) const {
   const bool camera = isCamera(quantity.kind);
   const Eigen::Quaterniond& reference_from_sensor =
-      camera ? state_.cameras[quantity.sensor].imu_from_camera.rotation
+      camera ? state_.cameras[quantity.sensor].reference_from_camera.rotation
              : state_.imus[quantity.sensor].reference_from_imu.rotation;
   Eigen::Vector3d direction = (reference_from_sensor.conjugate() * in_reference).normalized();
   Eigen::Index axis = 0;

@@ -167,7 +167,7 @@ PriorCheck Comparison::run() {
     if (input_.isReferenceCamera(i)) continue;
     const CameraData& camera = input_.cameras[i];
     const CameraState &solution = solution_.cameras[i], &alone = alone_.cameras[i];
-    comparePlace(camera.name, camera.prior, solution.imu_from_camera, alone.imu_from_camera,
+    comparePlace(camera.name, camera.prior, solution.reference_from_camera, alone.reference_from_camera,
                  sigmas_.cameras[i]);
     compareOffset(camera.name, camera.prior, solution.time_offset_s, alone.time_offset_s,
                   sigmas_.cameras[i].time_offset_std_s);

@@ -94,7 +94,7 @@ void readCamera(const YamlNode& map, NamedResult& named) {
   CameraState state;
   CameraUncertainty sigma;
   CameraFit fit;
-  readTransform(map["reference_from_camera"], state.imu_from_camera, sigma.rotation_std_rad,
+  readTransform(map["reference_from_camera"], state.reference_from_camera, sigma.rotation_std_rad,
                 sigma.translation_std_m);
   get(map, "time_offset_s", state.time_offset_s);
   get(map, "time_offset_std_s", sigma.time_offset_std_s);

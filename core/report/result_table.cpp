@@ -51,7 +51,7 @@ std::string cameraTable(const NamedResult& named, std::size_t i) {
   const CameraUncertainty sigma = at(named.result.uncertainty.cameras, i);
   std::string text = fmt::format("Camera {}: p_{} = reference_from_camera * p_camera\n",
                                  named.names.cameras.at(i), named.names.reference);
-  text += poseRows(state.imu_from_camera, sigma.rotation_std_rad, sigma.translation_std_m);
+  text += poseRows(state.reference_from_camera, sigma.rotation_std_rad, sigma.translation_std_m);
   text += tableRow("time offset", 1e3 * state.time_offset_s, 1e3 * sigma.time_offset_std_s,
                    "ms  (t_reference = t_camera + it)");
   text += tableRow("edge lead", state.edge_lead_px, sigma.edge_lead_std_px, "px at 100 px/s", 4);

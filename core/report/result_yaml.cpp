@@ -62,7 +62,7 @@ std::string cameraYaml(const NamedResult& named, std::size_t i) {
   const CameraFit fit = at(named.result.cameras, i);
   std::string text = fmt::format("  {}:\n", yamlText(named.names.cameras.at(i)));
   text += streamYaml(at(named.names.camera_streams, i));
-  text += transformYaml("reference_from_camera", state.imu_from_camera, sigma.rotation_std_rad,
+  text += transformYaml("reference_from_camera", state.reference_from_camera, sigma.rotation_std_rad,
                         sigma.translation_std_m);
   text += fmt::format(
       "    time_offset_s: {}\n    time_offset_std_s: {}\n    edge_lead_px: {}\n    edge_lead_std_px: {}\n"

@@ -58,9 +58,10 @@ Eigen::Vector3d rotationError_rad(const RigidTransform& estimate, const RigidTra
 
 CameraError compareCamera(const std::string& name, const CameraState& estimate, const CameraState& truth,
                           const CameraUncertainty& sigma, Errors& errors) {
-  const Eigen::Vector3d rotation_rad = rotationError_rad(estimate.imu_from_camera, truth.imu_from_camera);
+  const Eigen::Vector3d rotation_rad =
+      rotationError_rad(estimate.reference_from_camera, truth.reference_from_camera);
   const Eigen::Vector3d translation_m =
-      estimate.imu_from_camera.translation_m - truth.imu_from_camera.translation_m;
+      estimate.reference_from_camera.translation_m - truth.reference_from_camera.translation_m;
   const double time_s = estimate.time_offset_s - truth.time_offset_s;
   errors.add(name + ".rotation", "deg", rotation_rad, sigma.rotation_std_rad, kDegPerRad);
   errors.add(name + ".translation", "mm", translation_m, sigma.translation_std_m, kMmPerM);

@@ -69,8 +69,8 @@ class TestConvergenceScreen : public QObject {
     const auto rows = rowsOf(panel(screen, kTranslation));
     QCOMPARE(rows.size(), 3 * run_->result.iterations.size());
     const auto& iterations = run_->result.iterations;
-    const double expected_mm = 1e3 * (iterations[2].cameras[0].imu_from_camera.translation_m.x() -
-                                      iterations.back().cameras[0].imu_from_camera.translation_m.x());
+    const double expected_mm = 1e3 * (iterations[2].cameras[0].reference_from_camera.translation_m.x() -
+                                      iterations.back().cameras[0].reference_from_camera.translation_m.x());
     QCOMPARE(rows[2].series, "x");
     QVERIFY(std::abs(rows[2].y - expected_mm) < 1e-6);
     QCOMPARE(rows[iterations.size() - 1].y, 0.0);  // the last, against itself

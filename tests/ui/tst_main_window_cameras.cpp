@@ -91,8 +91,8 @@ class TestMainWindowCameras : public QObject {
     const CalibrationRun& run = *test_->document().last().run;
     QCOMPARE(run.result.state.cameras.size(), std::size_t{2});
     QCOMPARE(run.pass.cameras.size(), std::size_t{2});
-    const RigidTransform right_from_left =
-        inverse(run.result.state.cameras[1].imu_from_camera) * run.result.state.cameras[0].imu_from_camera;
+    const RigidTransform right_from_left = inverse(run.result.state.cameras[1].reference_from_camera) *
+                                           run.result.state.cameras[0].reference_from_camera;
     QVERIFY(std::abs(right_from_left.translation_m.norm() - 0.1) < 0.02);
   }
 
@@ -175,7 +175,7 @@ class TestMainWindowCameras : public QObject {
     QCOMPARE(test_->waitForJob(), JobOutcome::Done);
     const CalibrationRun& run = *test_->document().last().run;
     QVERIFY(run.result.state.imus.empty());
-    QVERIFY(std::abs(run.result.state.cameras[1].imu_from_camera.translation_m.norm() - 0.1) < 0.02);
+    QVERIFY(std::abs(run.result.state.cameras[1].reference_from_camera.translation_m.norm() - 0.1) < 0.02);
     QVERIFY(!test_->child<StepsPanel>()->findChildren<StepRow*>().isEmpty());
     QVERIFY(test_->child<StepsPanel>()->textOf("gravity and translation").isEmpty());
     QStringList seen;

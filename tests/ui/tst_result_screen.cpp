@@ -58,7 +58,7 @@ class TestResultScreen : public QObject {
     QCOMPARE(offset->unit, QString("ms"));
     QCOMPARE(offset->value, 1e3 * result_.result.state.cameras[0].time_offset_s);
     QCOMPARE(find(groups, "left.translation.x")->value,
-             1e3 * result_.result.state.cameras[0].imu_from_camera.translation_m.x());
+             1e3 * result_.result.state.cameras[0].reference_from_camera.translation_m.x());
     QVERIFY(!find(groups, "left.translation.x")->difference);
   }
 

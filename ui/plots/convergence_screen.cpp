@@ -210,11 +210,11 @@ std::vector<double> ConvergenceScreen::differences(Panel panel, int axis, std::s
     const CameraState& state = record.cameras[camera];
     if (panel == Rotation) {
       const Eigen::Quaterniond turn =
-          state.imu_from_camera.rotation * base.imu_from_camera.rotation.conjugate();
+          state.reference_from_camera.rotation * base.reference_from_camera.rotation.conjugate();
       values.push_back(kDegreesPerRadian * quaternionLog(turn)[axis]);
     } else if (panel == Translation) {
-      values.push_back(kMillimetresPerMetre *
-                       (state.imu_from_camera.translation_m - base.imu_from_camera.translation_m)[axis]);
+      values.push_back(kMillimetresPerMetre * (state.reference_from_camera.translation_m -
+                                               base.reference_from_camera.translation_m)[axis]);
     } else {
       values.push_back(kMillisecondsPerSecond * (state.time_offset_s - base.time_offset_s));
     }

@@ -273,7 +273,7 @@ void TrajectoryScreen::Private::showRawPoses() {
   for (std::size_t k = 0; k < view_poses.size(); ++k) {
     const bool known = state && hasTrajectory(*state) && k < state->cameras.size();
     const RigidTransform camera_from_body =
-        known ? inverse(state->cameras[k].imu_from_camera) : RigidTransform{};
+        known ? inverse(state->cameras[k].reference_from_camera) : RigidTransform{};
     for (const CameraPose& pose : view_poses[k].poses) {
       bodies.push_back(pose.world_from_camera * camera_from_body);
     }

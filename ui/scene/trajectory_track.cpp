@@ -91,7 +91,7 @@ std::optional<RigInstant> rigAt(const CalibrationState& state, double camera_tim
   RigInstant rig;
   rig.imu = motionAt(state.world_from_imu_rotation, state.imu_in_world_m, time_s);
   for (const CameraState& camera : state.cameras) {
-    rig.world_from_cameras.push_back(rig.imu.world_from_imu * camera.imu_from_camera);
+    rig.world_from_cameras.push_back(rig.imu.world_from_imu * camera.reference_from_camera);
   }
   for (const ImuState& imu : state.imus) {
     rig.world_from_imus.push_back(rig.imu.world_from_imu * imu.reference_from_imu);

@@ -100,7 +100,7 @@ ParameterGroup cameraGroup(const NamedResult& named, std::size_t i) {
   if (name == named.names.reference) {
     group.title = QObject::tr("Camera %1 (reference)").arg(QString::fromStdString(name));
   } else {
-    rows.addPose(state.imu_from_camera, sigma.rotation_std_rad, sigma.translation_std_m);
+    rows.addPose(state.reference_from_camera, sigma.rotation_std_rad, sigma.translation_std_m);
     rows.add("time_offset", QObject::tr("Time offset"), "ms", kMsPerS * state.time_offset_s,
              kMsPerS * sigma.time_offset_std_s);
   }

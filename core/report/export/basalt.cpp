@@ -78,7 +78,7 @@ ExportedFiles exportBasalt(const NamedResult& result) {
   const LowerTriangularImu lower = lowerTriangular(imu.state);
   std::string text = "{\n  \"value0\": {\n    \"T_imu_cam\": ";
   text += perCamera(rig, [&](const RigCamera& camera) {
-    return poseText(turnOf(lower.other_from_imu) * camera.imu_from_camera);
+    return poseText(turnOf(lower.other_from_imu) * camera.reference_from_camera);
   });
   text += ",\n    \"intrinsics\": " +
           perCamera(rig, [&](const RigCamera& camera) { return cameraText(rig, camera); });

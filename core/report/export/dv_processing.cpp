@@ -42,7 +42,8 @@ std::string cameraText(const Rig& rig, std::size_t i) {
   const CameraIntrinsics own = cameraFor(rig, camera, kModels);
   const bool radtan = own.model == CameraModel::PinholeRadtan;
   const std::vector<double> d = distortionOf(own, radtan && own.distortion[4] != 0.0 ? 5 : 4);
-  const RigidTransform this_from_first = inverse(camera.imu_from_camera) * rig.cameras[0].imu_from_camera;
+  const RigidTransform this_from_first =
+      inverse(camera.reference_from_camera) * rig.cameras[0].reference_from_camera;
   return fmt::format("    \"C{}\": {{\n", i) + field("name", jsonText(camera.file_name), 6) +
          field("position", jsonText(camera.name), 6) + field("master", i == 0 ? "\"true\"" : "\"false\"", 6) +
          field("resolution",
@@ -72,14 +73,14 @@ std::string imuText(const Rig& rig, const RigImu& imu) {
          number("accNoiseRandomWalk", noise.accelerometer_random_walk) +
          field("timeOffsetMicros", fmt::format("\"{}\"", std::llround(1e6 * rig.cameras[0].time_offset_s)),
                6) +
-         field("transformationToC0", quotedList(matrixOf(inverse(rig.cameras[0].imu_from_camera))), 6) +
+         field("transformationToC0", quotedList(matrixOf(inverse(rig.cameras[0].reference_from_camera))), 6) +
          metadata("transformationToC0 takes points of the IMU to camera C0; t_C0 = t_imu - timeOffsetMicros");
 }
 
 // OpenCV's: x_right^T F x_left = 0 in undistorted pixels, E = [t]x R in normalised coordinates.
 std::string stereoText(const Rig& rig) {
   const RigidTransform right_from_left =
-      inverse(rig.cameras[1].imu_from_camera) * rig.cameras[0].imu_from_camera;
+      inverse(rig.cameras[1].reference_from_camera) * rig.cameras[0].reference_from_camera;
   const Eigen::Matrix3d essential =
       skew(right_from_left.translation_m) * right_from_left.rotation.toRotationMatrix();
   const Eigen::Matrix3d fundamental = cameraMatrix(rig.cameras[1].intrinsics).inverse().transpose() *

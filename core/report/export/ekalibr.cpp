@@ -108,8 +108,12 @@ std::string intrinsicsText(const Rig& rig) {
 }
 
 std::string parameterFile(const Rig& rig) {
-  const auto camera_rotation = [](const RigCamera& c) { return rotationText(c.imu_from_camera.rotation); };
-  const auto camera_position = [](const RigCamera& c) { return vectorText(c.imu_from_camera.translation_m); };
+  const auto camera_rotation = [](const RigCamera& c) {
+    return rotationText(c.reference_from_camera.rotation);
+  };
+  const auto camera_position = [](const RigCamera& c) {
+    return vectorText(c.reference_from_camera.translation_m);
+  };
   const auto camera_time = [](const RigCamera& c) { return real(c.time_offset_s); };
   const auto imu_rotation = [](const RigImu& i) { return rotationText(i.state.reference_from_imu.rotation); };
   const auto imu_position = [](const RigImu& i) {

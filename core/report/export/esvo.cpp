@@ -32,7 +32,7 @@ ExportedFiles exportPair(const NamedResult& result, const char* program, bool wi
   if (with_imu) {
     noteLostImus(rig, program);
     noteLostMapping(rig, neededImu(rig, program), program);
-    imu_pose = "T_b_c:\n" + dataMatrix(matrixOf(pair.left.imu_from_camera).topRows<3>(), 2);
+    imu_pose = "T_b_c:\n" + dataMatrix(matrixOf(pair.left.reference_from_camera).topRows<3>(), 2);
   }
   const CameraIntrinsics left = esvoCamera(rig, pair.left, program);
   const CameraIntrinsics right = esvoCamera(rig, pair.right, program);

@@ -32,7 +32,8 @@ std::string cameraText(const Rig& rig, std::size_t i) {
 // Rows are indented further than their key, or OpenCV's parser (OpenVINS) fails.
 // What camera N - 1 sees at p, camera N sees at T_cn_cnm1 p.
 std::string chainText(const Rig& rig, std::size_t i) {
-  const RigidTransform step = inverse(rig.cameras[i].imu_from_camera) * rig.cameras[i - 1].imu_from_camera;
+  const RigidTransform step =
+      inverse(rig.cameras[i].reference_from_camera) * rig.cameras[i - 1].reference_from_camera;
   return "  T_cn_cnm1:\n" + rowsYaml(matrixOf(step), 4);
 }
 
@@ -54,7 +55,7 @@ std::string kalibrChain(const Rig& rig, const Eigen::Matrix3d& other_from_imu,
   std::string text = headerComment(rig, comment);
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     const RigCamera& camera = rig.cameras[i];
-    const RigidTransform camera_from_imu = inverse(turnOf(other_from_imu) * camera.imu_from_camera);
+    const RigidTransform camera_from_imu = inverse(turnOf(other_from_imu) * camera.reference_from_camera);
     text += fmt::format("cam{}:  # {}\n  T_cam_imu:\n{}", i, camera.file_name,
                         rowsYaml(matrixOf(camera_from_imu), 4));
     if (i > 0) text += chainText(rig, i);

@@ -48,7 +48,7 @@ std::vector<CameraIntrinsics> camerasOf(const Rig& rig) {
 
 std::string imuText(const Rig& rig, const RigImu& imu) {
   const StatedNoise noise = statedNoise(rig, imu);
-  return opencvMatrix("IMU.T_b_c1", matrixOf(rig.cameras[0].imu_from_camera), 'f') +
+  return opencvMatrix("IMU.T_b_c1", matrixOf(rig.cameras[0].reference_from_camera), 'f') +
          fmt::format(
              "IMU.InsertKFsWhenLost: 0\nIMU.NoiseGyro: {}\nIMU.NoiseAcc: {}\nIMU.GyroWalk: {}\nIMU.AccWalk: "
              "{}\n"
@@ -87,10 +87,10 @@ ExportedFiles exportOrbSlam3(const NamedResult& result) {
   text += fmt::format("Camera.width: {}\nCamera.height: {}\n", cameras[0].resolution_px.width_px,
                       cameras[0].resolution_px.height_px);
   if (stereo)
-    text +=
-        "Stereo.ThDepth: 40.0\n" +
-        opencvMatrix("Stereo.T_c1_c2",
-                     matrixOf(inverse(rig.cameras[0].imu_from_camera) * rig.cameras[1].imu_from_camera), 'f');
+    text += "Stereo.ThDepth: 40.0\n" + opencvMatrix("Stereo.T_c1_c2",
+                                                    matrixOf(inverse(rig.cameras[0].reference_from_camera) *
+                                                             rig.cameras[1].reference_from_camera),
+                                                    'f');
   if (!rig.imus.empty()) {
     noteLostImus(rig, kProgram);
     noteLostMapping(rig, rig.imus[0], kProgram);

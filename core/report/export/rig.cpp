@@ -46,12 +46,12 @@ RigCamera cameraOf(const NamedResult& result, std::size_t i, std::set<std::strin
                    intrinsics ? "has no resolution_px" : "has no intrinsics",
                    "Export the result.yaml of `evical calibrate`");
   const CameraState& state = result.result.state.cameras.at(i);
-  checkNumbers(fmt::format("result: cameras.{}", name), state.imu_from_camera, state.time_offset_s, {});
+  checkNumbers(fmt::format("result: cameras.{}", name), state.reference_from_camera, state.time_offset_s, {});
   return {name,
           fileName(name, taken),
           at(result.names.camera_streams, i),
           *intrinsics,
-          state.imu_from_camera,
+          state.reference_from_camera,
           state.time_offset_s,
           at(result.result.cameras, i)};
 }

@@ -15,7 +15,7 @@ struct RigCamera {
   std::string name, file_name;  // file_name: the name with nothing but letters, digits and -_.
   std::string stream;
   CameraIntrinsics intrinsics;
-  RigidTransform imu_from_camera;
+  RigidTransform reference_from_camera;
   double time_offset_s = 0.0;  // imu_time = camera_time + time_offset_s
   CameraFit fit;
 };

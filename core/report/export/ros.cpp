@@ -44,8 +44,8 @@ std::vector<Joint> jointsOf(const Rig& rig) {
   for (const RigCamera& camera : rig.cameras)
     if (optical(camera) != base) {
       const RigidTransform base_from_camera =
-          inertial ? camera.imu_from_camera
-                   : inverse(rig.cameras[0].imu_from_camera) * camera.imu_from_camera;
+          inertial ? camera.reference_from_camera
+                   : inverse(rig.cameras[0].reference_from_camera) * camera.reference_from_camera;
       joints.push_back({base, optical(camera), base_from_camera});
     }
   for (std::size_t i = 1; i < rig.imus.size(); ++i)

@@ -32,7 +32,7 @@ StereoPair stereoPair(const Rig& rig, const char* program) {
                    fmt::format("Leave {} out, or calibrate two cameras", program));
   StereoPair pair{rig.cameras[0], rig.cameras[1], {}};
   const RigidTransform second_from_first =
-      inverse(rig.cameras[1].imu_from_camera) * rig.cameras[0].imu_from_camera;
+      inverse(rig.cameras[1].reference_from_camera) * rig.cameras[0].reference_from_camera;
   const Eigen::Matrix3d half = so3Exp(0.5 * so3Log(second_from_first.rotation.toRotationMatrix()));
   const Eigen::Vector3d baseline = half.transpose() * second_from_first.translation_m;
   if (!(std::abs(baseline.x()) > std::max(std::abs(baseline.y()), std::abs(baseline.z()))))
@@ -41,7 +41,7 @@ StereoPair stereoPair(const Rig& rig, const char* program) {
                                pair.right.name, program),
                    fmt::format("Leave {} out", program));
   if (baseline.x() > 0.0) std::swap(pair.left, pair.right);
-  pair.right_from_left = inverse(pair.right.imu_from_camera) * pair.left.imu_from_camera;
+  pair.right_from_left = inverse(pair.right.reference_from_camera) * pair.left.reference_from_camera;
   return pair;
 }
 

@@ -21,7 +21,7 @@ std::string cameraText(const RigCamera& camera, std::size_t number, const Camera
       dataMatrix(intrinsics, 6),
       own.model == CameraModel::PinholeRadtan ? "radial-tangential" : "equidistant",
       dataMatrix(Eigen::Map<const Eigen::VectorXd>(d.data(), 4), 8),
-      dataMatrix(matrixOf(camera.imu_from_camera), 4));
+      dataMatrix(matrixOf(camera.reference_from_camera), 4));
 }
 
 std::string rigFile(const Rig& rig, const char* program, const std::string& time) {

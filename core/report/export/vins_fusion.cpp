@@ -54,8 +54,8 @@ std::string configuration(const Rig& rig, const RigImu& imu) {
   text += fmt::format("image_width: {}\nimage_height: {}\nestimate_extrinsic: 0\n", size.width_px,
                       size.height_px);
   for (std::size_t i = 0; i < count; ++i)
-    text +=
-        opencvMatrix(fmt::format("body_T_cam{}", i).c_str(), matrixOf(rig.cameras[i].imu_from_camera), 'd');
+    text += opencvMatrix(fmt::format("body_T_cam{}", i).c_str(),
+                         matrixOf(rig.cameras[i].reference_from_camera), 'd');
   return text +
          fmt::format("acc_n: {}\ngyr_n: {}\nacc_w: {}\ngyr_w: {}\ng_norm: {}\nestimate_td: 0\ntd: {}\n",
                      real(noise.accelerometer_density), real(noise.gyroscope_density),

@@ -30,8 +30,9 @@ PlotTable distanceTable(const std::vector<IterationRecord>& iterations, std::siz
     const CameraState& now = each.cameras.at(camera);
     table.add(
         {static_cast<double>(each.iteration),
-         1e3 * (now.imu_from_camera.translation_m - last.imu_from_camera.translation_m).norm(),
-         57.29577951308232 * now.imu_from_camera.rotation.angularDistance(last.imu_from_camera.rotation),
+         1e3 * (now.reference_from_camera.translation_m - last.reference_from_camera.translation_m).norm(),
+         57.29577951308232 *
+             now.reference_from_camera.rotation.angularDistance(last.reference_from_camera.rotation),
          1e3 * std::abs(now.time_offset_s - last.time_offset_s)});
   }
   return table;

@@ -88,7 +88,7 @@ void writeCameraNumbers(const ReportData& data, std::size_t i, ReportPage& page)
                       "standard deviation.",
                       escaped(data.named.names.reference))));
   Rows rows;
-  addPose(rows, state.imu_from_camera, sigma.rotation_std_rad, sigma.translation_std_m);
+  addPose(rows, state.reference_from_camera, sigma.rotation_std_rad, sigma.translation_std_m);
   page.text(table({"", "x", "y", "z", "unit"}, rows));
   page.text(table({"", "value", "unit"},
                   {{"time offset", withSigma(1e3 * state.time_offset_s, 1e3 * sigma.time_offset_std_s), "ms"},
@@ -243,7 +243,7 @@ void writeSensors(const ReportData& data, ReportPage& page) {
   for (std::size_t i = 0; i < state.imus.size(); ++i)
     sensors.push_back({imuName(data, i), state.imus[i].reference_from_imu, false});
   for (std::size_t i = 0; i < state.cameras.size(); ++i)
-    sensors.push_back({cameraName(data, i), state.cameras[i].imu_from_camera, true});
+    sensors.push_back({cameraName(data, i), state.cameras[i].reference_from_camera, true});
   for (const PlacedSensor& sensor : sensors)
     extent_mm = std::max(extent_mm, 1e3 * sensor.reference_from_sensor.translation_m.norm());
   if (state.cameras.empty()) return;

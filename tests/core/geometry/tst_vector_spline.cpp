@@ -85,11 +85,12 @@ class TestVectorSpline : public QObject {
       rotation.control_points[k] =
           quaternionExp(0.05 * static_cast<double>(k) * Eigen::Vector3d(0.3, -0.2, 0.5));
     }
-    const RigidTransform imu_from_camera = {quaternionExp({0.1, 0.2, 0.3}), {0.01, 0.02, 0.03}};
-    const RigidTransform camera_from_world = cameraFromWorld(rotation, position, imu_from_camera, 0.1, 0.4);
+    const RigidTransform reference_from_camera = {quaternionExp({0.1, 0.2, 0.3}), {0.01, 0.02, 0.03}};
+    const RigidTransform camera_from_world =
+        cameraFromWorld(rotation, position, reference_from_camera, 0.1, 0.4);
     const MotionSample motion = motionAt(rotation, position, 0.5);
     const Eigen::Vector3d point_in_world =
-        motion.world_from_imu * (imu_from_camera * Eigen::Vector3d(1.0, 2.0, 3.0));
+        motion.world_from_imu * (reference_from_camera * Eigen::Vector3d(1.0, 2.0, 3.0));
     QVERIFY((camera_from_world * point_in_world - Eigen::Vector3d(1.0, 2.0, 3.0)).norm() < 1e-12);
     QVERIFY((motion.velocity_m_s - evaluate(position, 0.5).velocity).norm() < 1e-12);
   }

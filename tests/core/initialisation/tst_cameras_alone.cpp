@@ -47,9 +47,9 @@ struct Errors {
 Errors errorsOf(const CameraState& camera, const SimulatedInput& simulated, std::size_t reference,
                 std::size_t k) {
   const SimulatedCamera &from = simulated.truth.cameras[k], &to = simulated.truth.cameras[reference];
-  const RigidTransform truth = inverse(to.imu_from_camera) * from.imu_from_camera;
-  return {kDegPerRad * rotationAngleBetween_rad(camera.imu_from_camera.rotation, truth.rotation),
-          (camera.imu_from_camera.translation_m - truth.translation_m).norm(),
+  const RigidTransform truth = inverse(to.reference_from_camera) * from.reference_from_camera;
+  return {kDegPerRad * rotationAngleBetween_rad(camera.reference_from_camera.rotation, truth.rotation),
+          (camera.reference_from_camera.translation_m - truth.translation_m).norm(),
           std::abs(camera.time_offset_s - (from.time_offset_s - to.time_offset_s))};
 }
 
@@ -93,7 +93,7 @@ class TestCamerasAlone : public QObject {
     const Initialisation found = initialise(simulated.input, {}, RunContext{});
     QCOMPARE(found.state.cameras.size(), std::size_t{2});
     QCOMPARE(found.state.cameras[0].time_offset_s, 0.0);
-    QCOMPARE(found.state.cameras[0].imu_from_camera.translation_m.norm(), 0.0);
+    QCOMPARE(found.state.cameras[0].reference_from_camera.translation_m.norm(), 0.0);
     verifyRoughly(found, simulated, 0, 1, 1);
   }
 

@@ -57,18 +57,19 @@ class TestInitialise : public QObject {
     SimulatedInput simulated = simulateInput(simulation);
     const Initialisation free = initialise(simulated.input, {}, RunContext{});
     const CameraState& found = free.state.cameras[0];
-    const Eigen::Quaterniond rotation = quaternionExp({1e-3, 0.0, 0.0}) * found.imu_from_camera.rotation;
+    const Eigen::Quaterniond rotation =
+        quaternionExp({1e-3, 0.0, 0.0}) * found.reference_from_camera.rotation;
     simulated.input.cameras[0].prior.rotation = KnownRotation{rotation};
     simulated.input.cameras[0].prior.time_offset = KnownNumber{0.0095};
     simulated.input.cameras[0].prior.translation =
-        KnownVector{found.imu_from_camera.translation_m + Eigen::Vector3d(1e-3, 0.0, 0.0)};
+        KnownVector{found.reference_from_camera.translation_m + Eigen::Vector3d(1e-3, 0.0, 0.0)};
     simulated.input.imus[1].prior.time_offset = KnownNumber{0.0295};
     const Initialisation held = initialise(simulated.input, {}, RunContext{});
     const CameraState& camera = held.state.cameras[0];
-    QVERIFY(camera.imu_from_camera.rotation.coeffs() == rotation.coeffs());
+    QVERIFY(camera.reference_from_camera.rotation.coeffs() == rotation.coeffs());
     QCOMPARE(camera.time_offset_s, 0.0095);
     const Eigen::Vector3d moved_m =
-        camera.imu_from_camera.translation_m - found.imu_from_camera.translation_m;
+        camera.reference_from_camera.translation_m - found.reference_from_camera.translation_m;
     QVERIFY2((moved_m - Eigen::Vector3d(1e-3, 0.0, 0.0)).norm() < 2e-4,
              qPrintable(QString::number(moved_m.x())));
     QCOMPARE(held.state.imus[1].time_offset_s, 0.0295);

@@ -29,7 +29,7 @@ RigidTransform mirrored(const RigidTransform& world_from_camera) {
 struct Prepared {
   SimulatedInput simulated;
   std::vector<CameraPose> poses;
-  HandEye hand_eye;
+  RelativeRotation hand_eye;
 };
 
 Prepared prepare() {
@@ -40,8 +40,8 @@ Prepared prepare() {
   p.simulated = simulateInput(options);
   p.poses = estimateCameraPoses(p.simulated.input.cameras[0], p.simulated.input.board, {}).poses;
   // A degree off, as a first hand-eye may be.
-  p.hand_eye.imu_from_camera =
-      p.simulated.truth.cameras[0].imu_from_camera.rotation * quaternionExp({0.01, -0.012, 0.008});
+  p.hand_eye.reference_from_sensor =
+      p.simulated.truth.cameras[0].reference_from_camera.rotation * quaternionExp({0.01, -0.012, 0.008});
   p.hand_eye.time_offset_s = 0.301;
   return p;
 }

@@ -141,7 +141,7 @@ CameraData observe(const TrueMotion& motion, const CameraState& camera, const Ci
       CameraIntrinsics{CameraModel::PinholeRadtan, {346, 260}, {260.0, 260.0}, {173.0, 130.0}, {}};
   const auto centre = [&](double camera_time_s, int circle) {
     const RigidTransform world_from_camera =
-        motion.worldFromImu(camera_time_s + camera.time_offset_s) * camera.imu_from_camera;
+        motion.worldFromImu(camera_time_s + camera.time_offset_s) * camera.reference_from_camera;
     return projectedCircleCentre(*data.intrinsics, inverse(world_from_camera), board.centre_m(circle),
                                  board.radius_m);
   };
@@ -225,15 +225,15 @@ SimulatedRig simulateRig(const RigOptions& options) {
   SimulatedRig rig;
   rig.input.start_ns = kStart_ns;
   CameraState camera;
-  camera.imu_from_camera = {quaternionExp(Vector3d(1.2, -1.15, 1.25) + random.uniform3(0.2)),
-                            Vector3d(0.04, -0.03, 0.05) + random.uniform3(0.02)};
+  camera.reference_from_camera = {quaternionExp(Vector3d(1.2, -1.15, 1.25) + random.uniform3(0.2)),
+                                  Vector3d(0.04, -0.03, 0.05) + random.uniform3(0.02)};
   camera.time_offset_s = random.uniform(-0.01, 0.01);
   camera.edge_lead_px = random.uniform(-0.3, 0.3);
   rig.truth.cameras = {camera};
   rig.truth.gravity_in_world_m_s2 =
       quaternionExp(random.uniform3(0.15)) * Vector3d(0.0, options.gravity_m_s2, 0.0);
   const TrueMotion motion =
-      makeMotion(options.motion, rig.input.board, inverse(camera.imu_from_camera), random);
+      makeMotion(options.motion, rig.input.board, inverse(camera.reference_from_camera), random);
   for (int i = 0; i < (options.second_imu ? 2 : 1); ++i) {
     ImuState imu;
     imu.gyroscope_bias_rad_s = random.uniform3(0.02);
@@ -276,8 +276,9 @@ CalibrationState disturbed(const CalibrationState& truth, unsigned seed, double 
   for (auto& point : state.world_from_imu_rotation.control_points) point = point * turn;
   for (auto& point : state.imu_in_world_m.control_points) point += shift;
   for (CameraState& camera : state.cameras) {
-    camera.imu_from_camera.rotation = camera.imu_from_camera.rotation * quaternionExp(random.uniform3(0.01));
-    camera.imu_from_camera.translation_m += random.uniform3(0.02);
+    camera.reference_from_camera.rotation =
+        camera.reference_from_camera.rotation * quaternionExp(random.uniform3(0.01));
+    camera.reference_from_camera.translation_m += random.uniform3(0.02);
     camera.time_offset_s += time_offset_error_s;
     camera.edge_lead_px = 0.0;
   }
@@ -313,7 +314,7 @@ Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const Calibrati
     }
   };
   for (std::size_t i = 0; i < truth.cameras.size(); ++i) {
-    appendTransform(estimate.cameras[i].imu_from_camera, truth.cameras[i].imu_from_camera);
+    appendTransform(estimate.cameras[i].reference_from_camera, truth.cameras[i].reference_from_camera);
     errors.push_back(estimate.cameras[i].time_offset_s - truth.cameras[i].time_offset_s);
     errors.push_back(estimate.cameras[i].edge_lead_px - truth.cameras[i].edge_lead_px);
     errors.push_back(estimate.cameras[i].edge_lead_growth_px - truth.cameras[i].edge_lead_growth_px);

@@ -29,10 +29,11 @@ test::RigOptions noisy() {
 }
 
 double rotationError_deg(const CameraState& a, const CameraState& b) {
-  return rotationAngleBetween_rad(a.imu_from_camera.rotation, b.imu_from_camera.rotation) * 180.0 / M_PI;
+  return rotationAngleBetween_rad(a.reference_from_camera.rotation, b.reference_from_camera.rotation) *
+         180.0 / M_PI;
 }
 double translationError_mm(const CameraState& a, const CameraState& b) {
-  return 1e3 * (a.imu_from_camera.translation_m - b.imu_from_camera.translation_m).norm();
+  return 1e3 * (a.reference_from_camera.translation_m - b.reference_from_camera.translation_m).norm();
 }
 double offsetError_ms(const CameraState& a, const CameraState& b) {
   return 1e3 * std::abs(a.time_offset_s - b.time_offset_s);
@@ -218,7 +219,7 @@ class TestBatchOptimiser : public QObject {
     options.motion = static_cast<test::Motion>(motion);
     const test::SimulatedRig rig = test::simulateRig(options);
     const BatchSolution solution = optimiseBatch(rig.input, test::disturbed(rig.truth, 1), {}, RunContext{});
-    QVERIFY(solution.state.cameras[0].imu_from_camera.translation_m.allFinite());
+    QVERIFY(solution.state.cameras[0].reference_from_camera.translation_m.allFinite());
     QVERIFY(solution.cameras[0].reprojection_rms_px < 0.1);
   }
 };

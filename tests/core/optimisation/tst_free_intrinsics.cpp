@@ -77,9 +77,10 @@ class TestFreeIntrinsics : public QObject {
     QVERIFY2(difference_px < 2e-3, qPrintable(text(difference_px)));
     QVERIFY2((camera.intrinsics->focal_length_px - truth.focal_length_px).norm() < 0.02,
              qPrintable(text((camera.intrinsics->focal_length_px - truth.focal_length_px).norm())));
-    QVERIFY(rotationAngleBetween_rad(camera.imu_from_camera.rotation, true_camera.imu_from_camera.rotation) <
-            5e-5);
-    QVERIFY((camera.imu_from_camera.translation_m - true_camera.imu_from_camera.translation_m).norm() < 3e-4);
+    QVERIFY(rotationAngleBetween_rad(camera.reference_from_camera.rotation,
+                                     true_camera.reference_from_camera.rotation) < 5e-5);
+    QVERIFY((camera.reference_from_camera.translation_m - true_camera.reference_from_camera.translation_m)
+                .norm() < 3e-4);
     QVERIFY(std::abs(camera.time_offset_s - true_camera.time_offset_s) < 2e-6);
     QVERIFY(solution.cameras[0].reprojection_rms_px < 2e-3);
     QCOMPARE(camera.intrinsics->distortion[4], 0.0);

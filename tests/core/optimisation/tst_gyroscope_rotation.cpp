@@ -46,8 +46,10 @@ class TestGyroscopeRotation : public QObject {
     for (std::size_t i = 0; i < 2; ++i)
       QVERIFY(turnError_rad(solution.state.imus[i], rig.truth.imus[i]) < 1e-4);
     const CameraState &camera = solution.state.cameras[0], &truth = rig.truth.cameras[0];
-    QVERIFY(camera.imu_from_camera.rotation.angularDistance(truth.imu_from_camera.rotation) < 1e-4);
-    QVERIFY((camera.imu_from_camera.translation_m - truth.imu_from_camera.translation_m).norm() < 2e-4);
+    QVERIFY(camera.reference_from_camera.rotation.angularDistance(truth.reference_from_camera.rotation) <
+            1e-4);
+    QVERIFY((camera.reference_from_camera.translation_m - truth.reference_from_camera.translation_m).norm() <
+            2e-4);
   }
 
   // 32 quantities over 10 seeds: their common RMS is known to some 8 %, that of the turns to 13 %.

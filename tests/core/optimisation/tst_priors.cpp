@@ -50,7 +50,7 @@ double translationSigma_m(const UncertaintyReport& report, const Vector3d& direc
 }
 
 Vector3d lever(const CalibrationState& state) {
-  return state.cameras[0].imu_from_camera.translation_m;
+  return state.cameras[0].reference_from_camera.translation_m;
 }
 
 }  // namespace
@@ -171,7 +171,7 @@ class TestPriors : public QObject {
     test::RigOptions simulation = shortRecording();
     simulation.motion = static_cast<test::Motion>(motion);
     test::SimulatedRig rig = test::simulateRig(simulation);
-    const Vector3d axis = rig.truth.cameras[0].imu_from_camera.rotation * Vector3d::UnitZ();
+    const Vector3d axis = rig.truth.cameras[0].reference_from_camera.rotation * Vector3d::UnitZ();
     constexpr double kSigma_m = 0.5e-3;
     const Vector3d mean_m = lever(rig.truth) + 0.3e-3 * axis;
     rig.input.cameras[0].prior.translation = KnownVector{mean_m, Vector3d::Constant(kSigma_m)};
@@ -191,8 +191,9 @@ class TestPriors : public QObject {
     QVERIFY(lever(run.solution.state) == lever(rig.truth));
     QVERIFY(run.estimate.report.cameras[0].translation_std_m.norm() == 0.0);
     QVERIFY(run.check.doubt.empty());
-    const double turn_rad = rotationAngleBetween_rad(run.solution.state.cameras[0].imu_from_camera.rotation,
-                                                     rig.truth.cameras[0].imu_from_camera.rotation);
+    const double turn_rad =
+        rotationAngleBetween_rad(run.solution.state.cameras[0].reference_from_camera.rotation,
+                                 rig.truth.cameras[0].reference_from_camera.rotation);
     QVERIFY(turn_rad < 4.0 * run.estimate.report.cameras[0].rotation_std_rad.norm());
   }
 
@@ -224,11 +225,11 @@ class TestPriors : public QObject {
     test::SimulatedRig rig = test::simulateRig(shortRecording());
     const Run alone = calibrate(rig);
     const Vector3d sigma_rad = alone.estimate.report.cameras[0].rotation_std_rad;
-    const Eigen::Quaterniond& truth = rig.truth.cameras[0].imu_from_camera.rotation;
+    const Eigen::Quaterniond& truth = rig.truth.cameras[0].reference_from_camera.rotation;
     rig.input.cameras[0].prior.rotation = KnownRotation{quaternionExp(0.5 * sigma_rad) * truth, sigma_rad};
     const Run run = calibrate(rig);
     const Vector3d error_rad =
-        quaternionLog(run.solution.state.cameras[0].imu_from_camera.rotation * truth.conjugate());
+        quaternionLog(run.solution.state.cameras[0].reference_from_camera.rotation * truth.conjugate());
     for (int axis = 0; axis < 3; ++axis) {
       const double sigma = run.estimate.report.cameras[0].rotation_std_rad[axis];
       QVERIFY2(sigma < 0.8 * sigma_rad[axis] && sigma > 0.4 * sigma_rad[axis],
@@ -261,8 +262,8 @@ class TestPriors : public QObject {
   void everythingGiven_leavesNothingToJudge() {
     test::SimulatedRig rig = test::simulateRig(shortRecording());
     const CameraState& truth = rig.truth.cameras[0];
-    rig.input.cameras[0].prior = {KnownRotation{truth.imu_from_camera.rotation},
-                                  KnownVector{truth.imu_from_camera.translation_m},
+    rig.input.cameras[0].prior = {KnownRotation{truth.reference_from_camera.rotation},
+                                  KnownVector{truth.reference_from_camera.translation_m},
                                   KnownNumber{truth.time_offset_s}};
     const Run run = calibrate(rig);
     QVERIFY(run.estimate.report.observability.empty());

@@ -251,9 +251,10 @@ class TestResiduals : public QObject {
       rotation.control_points.emplace_back(blocks[k].data());
       position.control_points.emplace_back(blocks[4 + k].data());
     }
-    const RigidTransform imu_from_camera = {Eigen::Quaterniond(blocks[8].data()), Vector3d(blocks[9].data())};
+    const RigidTransform reference_from_camera = {Eigen::Quaterniond(blocks[8].data()),
+                                                  Vector3d(blocks[9].data())};
     const RigidTransform camera_from_world =
-        cameraFromWorld(rotation, position, imu_from_camera, blocks[10][0], 1.006);
+        cameraFromWorld(rotation, position, reference_from_camera, blocks[10][0], 1.006);
     CircleMeasurement circle;
     circle.time_s = 1.006;
     circle.on_board_m = {0.1, 0.05};

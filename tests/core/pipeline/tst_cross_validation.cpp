@@ -108,7 +108,7 @@ class TestCrossValidation : public QObject {
     Session session = simulated_.session;
     const CameraState& found = run_.result.state.cameras[0];
     session.cameras[0].prior.time_offset = KnownNumber{found.time_offset_s};
-    session.cameras[0].prior.translation = KnownVector{found.imu_from_camera.translation_m};
+    session.cameras[0].prior.translation = KnownVector{found.reference_from_camera.translation_m};
     session.options.optimisation.free_imu_intrinsics = false;
     const CalibrationRun run = calibrate(session, simulated_.pass, {});
     QVERIFY(run.result.state.cameras[0].time_offset_s == found.time_offset_s);
@@ -167,8 +167,8 @@ class TestCrossValidation : public QObject {
     const CalibrationRun without = calibrate(session, simulated_.pass, {});
     QVERIFY(!without.result.cross_validation.has_value());
     QCOMPARE(without.result.timing.cross_validate_s, 0.0);
-    QVERIFY(without.result.state.cameras[0].imu_from_camera.translation_m ==
-            run_.result.state.cameras[0].imu_from_camera.translation_m);
+    QVERIFY(without.result.state.cameras[0].reference_from_camera.translation_m ==
+            run_.result.state.cameras[0].reference_from_camera.translation_m);
   }
 
   void boardInOneHalfOnly_isSaid() {

@@ -93,7 +93,7 @@ class TestResultFiles : public QObject {
     };
     for (int k = 0; k < 3; ++k) {
       const QString mm =
-          shown(1e3 * camera.imu_from_camera.translation_m[k], 1e3 * sigma.translation_std_m[k]);
+          shown(1e3 * camera.reference_from_camera.translation_m[k], 1e3 * sigma.translation_std_m[k]);
       QVERIFY2(text_.contains(mm), qPrintable(mm));
     }
     const QString ms = shown(1e3 * camera.time_offset_s, 1e3 * sigma.time_offset_std_s);

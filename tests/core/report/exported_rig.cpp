@@ -63,9 +63,10 @@ NamedResult rig(const RigKind& kind) {
     named.names.camera_streams.push_back(std::string("/") + names[i] + "/events");
     named.names.intrinsics.emplace_back(intrinsics(kind, i));
     CameraState camera;
-    camera.imu_from_camera = {quaternionExp({1.1 + 0.01 * i, -0.7 + 0.02 * i, 0.6}), {0.03, -0.01, 0.02}};
-    camera.imu_from_camera.translation_m +=
-        camera.imu_from_camera.rotation * Eigen::Vector3d(0.1 * i, 0.002 * i, 0.0);
+    camera.reference_from_camera = {quaternionExp({1.1 + 0.01 * i, -0.7 + 0.02 * i, 0.6}),
+                                    {0.03, -0.01, 0.02}};
+    camera.reference_from_camera.translation_m +=
+        camera.reference_from_camera.rotation * Eigen::Vector3d(0.1 * i, 0.002 * i, 0.0);
     camera.time_offset_s = i == 0 ? 0.007301 : -0.0021;
     named.result.state.cameras.push_back(camera);
     CameraFit fit;
@@ -114,7 +115,7 @@ double worstDifference_px(const NamedResult& result, std::size_t camera, const R
         if (!ray) return std::numeric_limits<double>::infinity();
         const Eigen::Vector3d in_camera = 0.8 * ray->homogeneous();
         const Eigen::Vector3d in_world =
-            worldFromImu(camera_time_s + ours.time_offset_s) * (ours.imu_from_camera * in_camera);
+            worldFromImu(camera_time_s + ours.time_offset_s) * (ours.reference_from_camera * in_camera);
         const Eigen::Vector3d in_imu =
             theirs.their_imu_from_ours *
             (inverse(worldFromImu(camera_time_s + theirs.time_offset_s)) * in_world);

@@ -95,7 +95,7 @@ class TestExportCameras : public QObject {
     const Eigen::Quaterniond upright =
         Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) *
         Eigen::AngleAxisd(0.5 * 3.14159265358979323846, Eigen::Vector3d::UnitY());
-    result.result.state.cameras[0].imu_from_camera.rotation = upright;
+    result.result.state.cameras[0].reference_from_camera.rotation = upright;
     const auto joint =
         QRegularExpression(
             "left_optical_frame\"/>\\s*<origin xyz=\"\\S+ \\S+ \\S+\" rpy=\"(\\S+) (\\S+) (\\S+)\"")
@@ -203,9 +203,9 @@ class TestExportCameras : public QObject {
         radtanLens({k.at<double>(0, 0), k.at<double>(1, 1), k.at<double>(0, 2), k.at<double>(1, 2)},
                    std::vector<double>(distortion.begin<double>(), distortion.end<double>()));
     const CameraState& camera = result.result.state.cameras[0];
-    const Eigen::Matrix4d imu_from_camera =
-        poseOf(camera.imu_from_camera.rotation, camera.imu_from_camera.translation_m);
-    QVERIFY(worstDifference_px(result, 0, {imu_from_camera.inverse(), camera.time_offset_s, lens}) <
+    const Eigen::Matrix4d reference_from_camera =
+        poseOf(camera.reference_from_camera.rotation, camera.reference_from_camera.translation_m);
+    QVERIFY(worstDifference_px(result, 0, {reference_from_camera.inverse(), camera.time_offset_s, lens}) <
             kSame_px);
     QCOMPARE(static_cast<int>(file["image_size"][0]), 346);
     QCOMPARE(static_cast<double>(file["overall_rms_reprojection_error"]), 0.125);
@@ -251,10 +251,10 @@ class TestExportCameras : public QObject {
                  d = numbers(data["disto_param"]);
       const std::vector<double> k{f[0], f[1], c[0], c[1]};
       const Lens lens = fisheye ? fisheyeLens(k, d) : radtanLens(k, {d[0], d[1], d[3], d[4], d[2]});
-      const Eigen::Matrix4d imu_from_camera =
+      const Eigen::Matrix4d reference_from_camera =
           poseOf(rotation(place["value"]), vector(root["EXTRI"]["POS_CjInBr"][i]["value"]));
       QVERIFY(worstDifference_px(result, i,
-                                 {imu_from_camera.inverse(),
+                                 {reference_from_camera.inverse(),
                                   root["TEMPORAL"]["TO_CjToBr"][i]["value"].as<double>(), lens}) < kSame_px);
     }
     // A type's name stands at its first appearance only, and pointers count on.

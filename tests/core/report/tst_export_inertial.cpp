@@ -195,9 +195,10 @@ class TestExportInertial : public QObject {
                                cv::FileStorage::READ | cv::FileStorage::MEMORY);
     cv::Mat body_from_camera;
     vins["body_T_cam0"] >> body_from_camera;
-    Eigen::Matrix4d imu_from_camera;
+    Eigen::Matrix4d reference_from_camera;
     for (int row = 0; row < 4; ++row)
-      for (int col = 0; col < 4; ++col) imu_from_camera(row, col) = body_from_camera.at<double>(row, col);
+      for (int col = 0; col < 4; ++col)
+        reference_from_camera(row, col) = body_from_camera.at<double>(row, col);
     const cv::FileStorage camera(contentOf(exported, "vins-fusion/left.yaml"),
                                  cv::FileStorage::READ | cv::FileStorage::MEMORY);
     const auto read = [](const cv::FileNode& node, const std::vector<const char*>& keys) {
@@ -212,8 +213,9 @@ class TestExportInertial : public QObject {
                                        read(camera["distortion_parameters"], {"k1", "k2", "p1", "p2"}));
     QCOMPARE(static_cast<std::string>(camera["model_type"]),
              std::string(fisheye ? "KANNALA_BRANDT" : "PINHOLE"));
-    QVERIFY(worstDifference_px(
-                result, 0, {imu_from_camera.inverse(), static_cast<double>(vins["td"]), lens}) < kSame_px);
+    QVERIFY(worstDifference_px(result, 0,
+                               {reference_from_camera.inverse(), static_cast<double>(vins["td"]), lens}) <
+            kSame_px);
     QCOMPARE(static_cast<double>(vins["acc_n"]), 1.75e-3);
     QVERIFY(QString::fromStdString(exported.notes.back())
                 .contains("no place for scales and misalignment, which are up to 1.1 %"));
@@ -291,17 +293,17 @@ class TestExportInertial : public QObject {
       const YAML::Node p = value["T_imu_cam"][i], lens = value["intrinsics"][i]["intrinsics"];
       QCOMPARE(value["intrinsics"][i]["camera_type"].as<std::string>(), std::string("kb4"));
       const auto number = [](const YAML::Node& node, const char* key) { return node[key].as<double>(); };
-      Eigen::Isometry3d imu_from_camera = Eigen::Isometry3d::Identity();
-      imu_from_camera.linear() =
+      Eigen::Isometry3d reference_from_camera = Eigen::Isometry3d::Identity();
+      reference_from_camera.linear() =
           Eigen::Quaterniond(number(p, "qw"), number(p, "qx"), number(p, "qy"), number(p, "qz"))
               .toRotationMatrix();
-      imu_from_camera.translation() << number(p, "px"), number(p, "py"), number(p, "pz");
+      reference_from_camera.translation() << number(p, "px"), number(p, "py"), number(p, "pz");
       const double offset_s =
           i == 0 ? 1e-9 * value["cam_time_offset_ns"].as<double>() : -0.0021;  // one for all
       QVERIFY(
           worstDifference_px(
               result, i,
-              {imu_from_camera.inverse().matrix(), offset_s,
+              {reference_from_camera.inverse().matrix(), offset_s,
                fisheyeLens({number(lens, "fx"), number(lens, "fy"), number(lens, "cx"), number(lens, "cy")},
                            {number(lens, "k1"), number(lens, "k2"), number(lens, "k3"), number(lens, "k4")}),
                turn}) < kSame_px);
@@ -320,12 +322,12 @@ class TestExportInertial : public QObject {
         yamlOf(exported, "basalt/calibration.json")["value0"]["intrinsics"][0]["intrinsics"];
     const auto number = [&](const char* key) { return lens[key].as<double>(); };
     const CameraState& camera = result.result.state.cameras[0];
-    Eigen::Isometry3d imu_from_camera = Eigen::Isometry3d::Identity();
-    imu_from_camera.linear() = camera.imu_from_camera.rotation.toRotationMatrix();
-    imu_from_camera.translation() = camera.imu_from_camera.translation_m;
+    Eigen::Isometry3d reference_from_camera = Eigen::Isometry3d::Identity();
+    reference_from_camera.linear() = camera.reference_from_camera.rotation.toRotationMatrix();
+    reference_from_camera.translation() = camera.reference_from_camera.translation_m;
     const double worst_px =
         worstDifference_px(result, 0,
-                           {imu_from_camera.inverse().matrix(), camera.time_offset_s,
+                           {reference_from_camera.inverse().matrix(), camera.time_offset_s,
                             fisheyeLens({number("fx"), number("fy"), number("cx"), number("cy")},
                                         {number("k1"), number("k2"), number("k3"), number("k4")})});
     QVERIFY(fitted.worst_px < 2.0);
@@ -350,9 +352,9 @@ class TestExportInertial : public QObject {
       }
       const YAML::Node entry = calib["cameras"][0], camera = entry["camera"];
       QCOMPARE(camera["distortion"]["type"].as<std::string>(), std::string("radial-tangential"));
-      const Eigen::Matrix4d imu_from_camera = dataMatrix(entry["T_B_C"]);
+      const Eigen::Matrix4d reference_from_camera = dataMatrix(entry["T_B_C"]);
       QVERIFY(worstDifference_px(result, 0,
-                                 {imu_from_camera.inverse(), offset_s,
+                                 {reference_from_camera.inverse(), offset_s,
                                   radtanLens(numbers(camera["intrinsics"]["data"]),
                                              numbers(camera["distortion"]["parameters"]["data"]))}) <
               kSame_px);

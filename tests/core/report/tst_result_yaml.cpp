@@ -39,7 +39,8 @@ NamedResult sample() {
   result.timing.total_s = 6.4;
   for (int i = 0; i < 2; ++i) {
     CameraState camera;
-    camera.imu_from_camera = {quaternionExp(Eigen::Vector3d(1.1, -0.7, 0.1 * i)), {0.01, -1.0 / 3.0, 1e-9}};
+    camera.reference_from_camera = {quaternionExp(Eigen::Vector3d(1.1, -0.7, 0.1 * i)),
+                                    {0.01, -1.0 / 3.0, 1e-9}};
     camera.time_offset_s = 0.1 / 3.0;
     camera.edge_lead_px = -0.021;
     camera.edge_lead_growth_px = 0.003;
@@ -122,8 +123,8 @@ class TestResultYaml : public QObject {
     QVERIFY(read.result.start_ns == 1'700'000'000'123'456'789);
     for (std::size_t i = 0; i < 2; ++i) {
       const CameraState &a = written.result.state.cameras[i], &b = read.result.state.cameras[i];
-      QVERIFY(a.imu_from_camera.rotation.coeffs() == b.imu_from_camera.rotation.coeffs());
-      QVERIFY(a.imu_from_camera.translation_m == b.imu_from_camera.translation_m);
+      QVERIFY(a.reference_from_camera.rotation.coeffs() == b.reference_from_camera.rotation.coeffs());
+      QVERIFY(a.reference_from_camera.translation_m == b.reference_from_camera.translation_m);
       QVERIFY(a.time_offset_s == b.time_offset_s && a.edge_lead_px == b.edge_lead_px &&
               a.edge_lead_growth_px == b.edge_lead_growth_px);
       const ImuState &c = written.result.state.imus[i], &d = read.result.state.imus[i];
@@ -211,7 +212,7 @@ class TestResultYaml : public QObject {
   void comparison_givesErrorsInReferenceAxesAndSigmas() {
     const NamedResult truth = sample();
     NamedResult result = truth;
-    RigidTransform& pose = result.result.state.cameras[0].imu_from_camera;
+    RigidTransform& pose = result.result.state.cameras[0].reference_from_camera;
     pose.rotation = quaternionExp(Eigen::Vector3d(0.0, 3e-4, 0.0)) * pose.rotation;
     pose.translation_m.z() -= 4e-4;
     result.result.state.cameras[0].time_offset_s += 6e-5;
