@@ -1,4 +1,5 @@
-// Surface of active events (method 4.1): per pixel and polarity, when the last edge of a window passed.
+// Surface of active events (docs/maths.md, 5.2): for each pixel and polarity, when the last edge
+// of a window passed.
 #pragma once
 
 #include "core/frontend/burst_window.h"

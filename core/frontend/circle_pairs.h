@@ -1,4 +1,4 @@
-// Circle candidates from pairs of arcs: one that leads and one that follows (method 4.5).
+// Circle candidates from pairs of arcs: one that leads and one that follows (docs/maths.md, 5.2).
 #pragma once
 
 #include "core/frontend/circle_candidate.h"

@@ -1,4 +1,4 @@
-// Every threshold of the front end, one table a stage. Lengths in px are the sensor's own pixels.
+// The front end's options, one table a stage. Lengths in px are the sensor's own pixels.
 #pragma once
 
 #include "core/base/option_field.h"
@@ -8,7 +8,7 @@
 
 namespace evical {
 
-// method 4.1: edge timing
+// Edge timing (docs/maths.md, 4).
 struct BurstOptions {
   int least_events = 2;
   double longest_gap_s = 0.15;
@@ -65,7 +65,7 @@ inline constexpr auto kDetectionFields = std::tuple{
           "A window with fewer edge bursts is not looked at."}};
 static_assert(fieldCount<DetectionOptions>() == std::tuple_size_v<decltype(kDetectionFields)>);
 
-// frontend ring vote
+// Candidates from a ring vote (docs/maths.md, 5.1).
 struct RingVoteOptions {
   double smallest_radius_px = 2.5;
   double largest_radius_px = 80.0;
@@ -95,7 +95,7 @@ inline constexpr auto kRingVoteFields = std::tuple{
           "Edges should travel about this far in a searched window."}};
 static_assert(fieldCount<RingVoteOptions>() == std::tuple_size_v<decltype(kRingVoteFields)>);
 
-// method 4.6: moving circles, one by one
+// Moving circles, one by one (docs/maths.md, 5.3).
 struct MovingCircleOptions {
   double first_gate_px = 2.5;
   double last_gate_px = 1.2;
@@ -123,7 +123,7 @@ inline constexpr auto kMovingCircleFields = std::tuple{
     Field{"iterations", &MovingCircleOptions::iterations, 1, 50, "", "Gauss-Newton steps."}};
 static_assert(fieldCount<MovingCircleOptions>() == std::tuple_size_v<decltype(kMovingCircleFields)>);
 
-// method 4.7: circles to board
+// From circles to the board (docs/maths.md, 5.4).
 struct GridOptions {
   double shortest_step_radii = 2.2;
   double longest_step_radii = 5.0;

@@ -1,5 +1,5 @@
 // An edge that crosses a pixel fires a burst of events of one polarity. The burst's median time says when the
-// edge was in the middle of the pixel, much better than its first event does (docs/maths.md, edge timing).
+// edge was in the middle of the pixel, much better than its first event does (docs/maths.md, 4).
 #pragma once
 
 #include "core/data/event.h"

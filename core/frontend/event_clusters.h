@@ -1,5 +1,5 @@
-// Connected regions of normal flow and what part of a moving circle they look like (method 4.4; S. Chen et
-// al., "eKalibr", 2501.05688).
+// Connected regions of normal flow and what part of a moving circle they look like (docs/maths.md, 5.2; S.
+// Chen et al., "eKalibr", 2501.05688).
 #pragma once
 
 #include "core/frontend/normal_flow.h"

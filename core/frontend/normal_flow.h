@@ -1,5 +1,5 @@
-// Motion of edges along their normals, from planes through the times of neighbouring pixels (method 4.3; R.
-// Benosman et al., "Event-based visual flow", TNNLS 2014).
+// Motion of edges along their normals, from planes through the times of neighbouring pixels
+// (docs/maths.md, 5.2; R. Benosman et al., "Event-based visual flow", TNNLS 2014).
 #pragma once
 
 #include "core/frontend/active_event_surface.h"

@@ -1,4 +1,4 @@
-// Thresholds of the published candidate source (method 4.1-4.5). Lengths are the sensor's own pixels.
+// Thresholds of the published candidate source (docs/maths.md, 5.2). Lengths are the sensor's own pixels.
 #pragma once
 
 #include "core/base/option_field.h"

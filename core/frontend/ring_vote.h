@@ -1,6 +1,6 @@
 // Circle candidates by signed votes: a burst at the leading edge votes along the line from the circle's
 // centre, one at the trailing edge against it. Over a moving circle's ring the votes add up to a vector along
-// the motion; over texture they cancel. Needs no flow and no complete outline (docs/maths.md, ring vote).
+// the motion; over texture they cancel. Needs no flow and no complete outline (docs/maths.md, 5.1).
 #pragma once
 
 #include "core/frontend/burst_window.h"

@@ -130,7 +130,7 @@ void So3Segment::evaluate(double u, RotationOrder order, RotationSample& sample,
   if (order != RotationOrder::Rotation) evaluateRates(l, factors, order, sample, jacobians);
 }
 
-// The recursions of method section 2, and their derivatives with respect to d_1 .. d_3 alongside.
+// The recursions of docs/maths.md, 2, and their derivatives with respect to d_1 .. d_3 alongside.
 void So3Segment::evaluateRates(const CumulativeWeights& l, const Factors& factors, RotationOrder order,
                                RotationSample& sample, RotationJacobians* jacobians) const {
   Vector3d velocity = l.first_s[0] * steps_[0];

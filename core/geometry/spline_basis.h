@@ -1,4 +1,4 @@
-// Weights of the uniform cumulative cubic B-spline (method section 2) at u in a segment, and their time
+// Weights of the uniform cumulative cubic B-spline (docs/maths.md, 2) at u in a segment, and their time
 // derivatives.
 #pragma once
 

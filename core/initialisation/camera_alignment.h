@@ -1,4 +1,5 @@
-// One camera against the reference IMU's gyroscope: its poses, time offset and rotation (method 5.2 to 5.4).
+// One camera against the reference IMU's gyroscope: its poses, time offset and rotation
+// (docs/maths.md, 8.2 to 8.4).
 #pragma once
 
 #include "core/initialisation/gyro_rotation.h"

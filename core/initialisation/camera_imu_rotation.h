@@ -1,4 +1,4 @@
-// Hand-eye rotation with a free time offset and gyroscope bias (method 5.4). Rotation vectors of pose pairs:
+// Hand-eye rotation with a free time offset and gyroscope bias from pairs of poses (docs/maths.md, 8.4):
 //   log(imu rotation over the pair) = R_ic log(camera rotation over the pair) + bias * duration.
 #pragma once
 
@@ -12,7 +12,8 @@
 
 namespace evical {
 
-// How a sensor is turned against the reference, and when: a camera by hand-eye, or a further IMU by its own spline.
+// How a sensor is turned against the reference, and when: a camera by hand-eye, or a further IMU by its
+// own spline.
 struct RelativeRotation {
   Eigen::Quaterniond reference_from_sensor = Eigen::Quaterniond::Identity();
   double time_offset_s = 0.0;

@@ -1,4 +1,4 @@
-// Camera poses from single views of the board (method 5.2).
+// Camera poses from single views of the board (docs/maths.md, 8.2).
 #pragma once
 
 #include "core/base/progress.h"

@@ -1,6 +1,6 @@
-// Where further IMUs sit on the rig. Rotation and time offset as for a camera (method 5.1, 5.4): a gyroscope,
-// too, sees how far it has turned between two moments. Then lever arm l and accelerometer bias b, linear once
-// the reference's motion is known (method 5.5):
+// Where further IMUs sit on the rig. Rotation and time offset as for a camera (docs/maths.md, 8.7): a
+// gyroscope, too, sees how far it has turned between two moments. Then lever arm l and accelerometer bias b,
+// linear once the reference's motion is known:
 //   R f - R_wb^T (p'' - g) = ([a]x + [w]x [w]x) l + R b        with R = reference_from_imu.rotation.
 #pragma once
 

@@ -1,5 +1,5 @@
 // Translations, gravity, accelerometer bias and the position spline, all linear once the rotation is known
-// (method 5.5 and 5.6 in one): with control points P, lever t_c = reference_from_camera.translation of camera
+// (docs/maths.md, 8.5): with control points P, lever t_c = reference_from_camera.translation of camera
 // c, gravity g and bias b,
 //   p(t_k) = p_wc(t_k) - R_wb(t_k) t_c        at every view,
 //   p''(t) = R_wb(t) (f - b) + g              at every (averaged) accelerometer sample.

@@ -1,5 +1,5 @@
-// Rotation from the gyroscope alone (method 5.1): integrated between samples, up to a first rotation and a
-// bias.
+// Rotation from the gyroscope alone (docs/maths.md, 8.1): integrated between samples, up to a first rotation
+// and a bias.
 #pragma once
 
 #include "core/data/imu_sample.h"

@@ -1,4 +1,4 @@
-// From board views and IMU samples to a state from which the batch converges (method section 5).
+// From board views and IMU samples to a state from which the batch converges (docs/maths.md, 8).
 #pragma once
 
 #include "core/base/progress.h"

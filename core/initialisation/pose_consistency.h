@@ -1,5 +1,5 @@
-// Which camera poses the gyroscope believes (method 5.2): with the right mounting, every pose carried back to
-// the first IMU sample gives the same rotation,
+// Which camera poses the gyroscope believes (docs/maths.md, 8.2): with the right mounting, every pose carried
+// back to the first IMU sample gives the same rotation,
 //   world_from_first = world_from_camera * camera_from_imu * first_from_imu(t)^-1,
 // up to slow drift. The mirrored pose of a plane, and a board placed wrongly, give others.
 #pragma once

@@ -1,5 +1,5 @@
-// Coarse time offset from the sizes of rotation (method 5.3): how far the camera turned between neighbouring
-// views does not depend on how it is mounted, and the gyroscope must have turned as far.
+// Coarse time offset from the sizes of rotation (docs/maths.md, 8.3): how far the camera turned between
+// neighbouring views does not depend on how it is mounted, and the gyroscope must have turned as far.
 #pragma once
 
 #include "core/data/calibration_priors.h"

@@ -1,4 +1,4 @@
-// The rotation spline in the world: the gyroscope's rotation, held to the cameras' (end of method 5.4).
+// The rotation spline in the world: the gyroscope's rotation, held to the cameras' (docs/maths.md, 8.4).
 #pragma once
 
 #include "core/geometry/so3_spline.h"

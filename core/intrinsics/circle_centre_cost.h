@@ -1,4 +1,4 @@
-// Zero when a measured circle is where camera and pose put it, on the sensor (method section 8):
+// Zero when a measured circle is where camera and pose put it, on the sensor (docs/maths.md, 7.1):
 //   r = L^-1 [ distorted(centre of the projected circle's conic) + lead * effect - measured ],
 // L the Cholesky factor of the centre's covariance. Without unit.
 //

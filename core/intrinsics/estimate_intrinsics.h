@@ -1,4 +1,4 @@
-// Camera intrinsics from board views (method section 8): views are chosen, a start is found, intrinsics and
+// Camera intrinsics from board views (docs/maths.md, 7): views are chosen, a start is found, intrinsics and
 // poses are adjusted together, and the result is judged.
 //
 // The centres of ellipses were fitted in the ideal pixels of `seen_with`. Where that is far from the camera

@@ -1,4 +1,4 @@
-// Batch optimisation of everything at once (method section 6): splines, cameras, IMUs and gravity against
+// Batch optimisation of everything at once (docs/maths.md, 9): splines, cameras, IMUs and gravity against
 // every circle and every IMU sample. Staged release: (1) splines, gravity, cameras, biases; (2) further IMUs;
 // (3) scale and misalignment. Free camera intrinsics are released in the last of them.
 #pragma once

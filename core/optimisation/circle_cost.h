@@ -1,5 +1,5 @@
 // Zero when the measured ellipse centres are those of the projected circles, leading by the edge lead along
-// their image motion (method section 6):
+// their image motion (docs/maths.md, 9.1):
 //   r = L^-1 [ centre(camera_from_world(t), circle) + lead (edge_lead.h) - measured ],
 //   t = t_measured + time_offset,  camera_from_world(t) = (world_from_imu(t) reference_from_camera)^-1,
 // L the Cholesky factor of the centre's covariance, ideal pixels; each circle's residual is shortened so that

@@ -1,4 +1,4 @@
-// How sure the calibration is (method section 7), and whether the motion supports it.
+// How sure the calibration is (docs/maths.md, 10.1), and whether the motion supports it.
 //
 // Sigmas come from the Schur complement over the splines of the whitened Gauss-Newton information. Two
 // corrections keep them honest: each sensor's measurements count with the variance that their residuals show,

@@ -1,4 +1,4 @@
-// Zero when an IMU measures what its sensor model says of the trajectory (method section 3):
+// Zero when an IMU measures what its sensor model says of the trajectory (docs/maths.md, 3.2):
 //   gyroscope      r = [ M_g R_ga w_j + b_g - measured ] / sigma,   w_j = R^T w(t)
 //   accelerometer  r = [ M_a f_j + b_a - measured ] / sigma,
 //                  f_j = R^T [ R_wb(t)^T (p''(t) - g) + (a(t)^ + w(t)^ w(t)^) l ]

@@ -29,7 +29,7 @@ std::vector<std::string> optionGroups();
 // bound or the nearest known name.
 void setOption(CalibrationOptions& options, std::string_view full_name, std::string_view value);
 
-// With full names, in the order of the groups; `differing` only those that aren't at their default.
+// With full names, in the order of the groups: all options, and those that aren't at their default.
 std::vector<OptionRow> optionRows(const CalibrationOptions& options = {});
 std::vector<OptionRow> differingOptions(const CalibrationOptions& options);
 

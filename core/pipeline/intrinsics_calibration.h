@@ -1,5 +1,5 @@
 // A camera's intrinsics from the events of a session: a first look, then the front end and the bundle
-// adjustment in turns, until circles refitted in undistorted pixels change nothing more (method section 8).
+// adjustment in turns, until circles refitted in undistorted pixels change nothing more (docs/maths.md, 7).
 #pragma once
 
 #include "core/base/progress.h"

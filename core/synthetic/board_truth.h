@@ -22,8 +22,8 @@ struct TrueCircle {
 std::vector<TrueCircle> trueBoardView(const SinusoidMotion& motion, const Scenario& scenario,
                                       std::size_t camera, double stamp_s);
 
-// Circles that are wholly in the image; and whether they suffice for a partial grid (method 4.7: at least 4
-// and 40 %).
+// Circles that are wholly in the image; and whether they suffice for a partial grid (docs/maths.md, 5.4),
+// here at least 4 and 40 %.
 int circlesInView(const SinusoidMotion& motion, const Scenario& scenario, std::size_t camera, double stamp_s);
 bool boardInView(const SinusoidMotion& motion, const Scenario& scenario, std::size_t camera, double stamp_s);
 

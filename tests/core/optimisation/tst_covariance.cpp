@@ -183,8 +183,8 @@ class TestCovariance : public QObject {
     QVERIFY(!report.weakest.empty());
   }
 
-  // The claim of method section 7. 28 quantities over 20 seeds: their common RMS is known to about 5 %, each
-  // one's to 16 %.
+  // The claim of docs/maths.md, 10.1. 28 quantities over 20 seeds: their common RMS is known to about 5 %,
+  // each one's to 16 %.
   void sigmas_areHonest() {
     const Eigen::VectorXd rms = normalisedErrors(test::shortRecording(), 20);
     const double common = std::sqrt(rms.squaredNorm() / static_cast<double>(rms.size()));
