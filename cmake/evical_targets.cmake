@@ -27,9 +27,12 @@ function(evical_add_layer name)
   cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(evical_${name} STATIC ${ARG_SOURCES})
   add_library(evical::${name} ALIAS evical_${name})
-  target_include_directories(evical_${name} PUBLIC "${CMAKE_SOURCE_DIR}")
+  set_target_properties(evical_${name} PROPERTIES EXPORT_NAME ${name})
+  set_property(GLOBAL APPEND PROPERTY EVICAL_LAYERS ${name})  # cmake/evical_install.cmake
+  target_include_directories(evical_${name} PUBLIC "$<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}>"
+                                                   "$<INSTALL_INTERFACE:include/evical>")
   target_link_libraries(evical_${name} PUBLIC Eigen3::Eigen Threads::Threads ${ARG_PUBLIC}
-                                       PRIVATE evical_warnings ${ARG_PRIVATE})
+                                       PRIVATE $<BUILD_INTERFACE:evical_warnings> ${ARG_PRIVATE})
 endfunction()
 
 # evical_add_test(NAME SOURCE libs...): a Qt Test executable without a GUI, run by ctest.
