@@ -10,7 +10,8 @@ set(CMAKE_CXX_FLAGS_RELEASE "-O3 -fno-math-errno -fno-trapping-math")
 
 find_program(EVICAL_CCACHE ccache)
 if(EVICAL_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${EVICAL_CCACHE}")
+  # Precompiled headers: what ccache asks for to take them into account.
+  set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros "${EVICAL_CCACHE}")
 endif()
 
 find_package(Threads REQUIRED)
@@ -22,9 +23,34 @@ if(EVICAL_WARNINGS_AS_ERRORS)
   target_compile_options(evical_warnings INTERFACE -Werror)
 endif()
 
-# evical_add_layer(NAME SOURCES... [PUBLIC libs...] [PRIVATE libs...]): one library a folder of core.
+# evical_precompile(NAME HEADERS... [LIBS...]): headers that many sources of one kind begin with, compiled once. What
+# uses them says so by evical_use_precompiled(TARGET NAME), with the same libraries, whose macros must agree.
+function(evical_precompile name)
+  cmake_parse_arguments(ARG "" "" "HEADERS;LIBS" ${ARGN})
+  file(WRITE "${CMAKE_BINARY_DIR}/precompiled/${name}.cpp" "")
+  add_library(${name} OBJECT "${CMAKE_BINARY_DIR}/precompiled/${name}.cpp")
+  target_link_libraries(${name} PRIVATE Eigen3::Eigen Threads::Threads evical_warnings ${ARG_LIBS})
+  target_precompile_headers(${name} PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory>
+                            <optional> <span> <string> <vector> <Eigen/Core> <Eigen/Geometry> ${ARG_HEADERS})
+endfunction()
+
+function(evical_use_precompiled target name)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_precompile_headers(${target} REUSE_FROM ${name})
+  endif()
+endfunction()
+
+find_package(Ceres 2.1 REQUIRED)
+find_package(fmt 9 REQUIRED)
+evical_precompile(evical_headers)
+evical_precompile(evical_headers_fmt HEADERS <fmt/format.h> LIBS fmt::fmt)
+evical_precompile(evical_headers_ceres HEADERS <fmt/format.h> <Eigen/Cholesky> <Eigen/Eigenvalues> <ceres/manifold.h>
+                  <ceres/problem.h> <ceres/sized_cost_function.h> <ceres/solver.h> <ceres/sphere_manifold.h>
+                  LIBS Ceres::ceres fmt::fmt)
+
+# evical_add_layer(NAME SOURCES... [PUBLIC libs...] [PRIVATE libs...] [HEADERS precompiled]): one library a folder of core.
 function(evical_add_layer name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "HEADERS" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(evical_${name} STATIC ${ARG_SOURCES})
   add_library(evical::${name} ALIAS evical_${name})
   set_target_properties(evical_${name} PROPERTIES EXPORT_NAME ${name})
@@ -33,31 +59,58 @@ function(evical_add_layer name)
                                                    "$<INSTALL_INTERFACE:include/evical>")
   target_link_libraries(evical_${name} PUBLIC Eigen3::Eigen Threads::Threads ${ARG_PUBLIC}
                                        PRIVATE $<BUILD_INTERFACE:evical_warnings> ${ARG_PRIVATE})
-endfunction()
-
-# evical_add_test(NAME SOURCE libs...): a Qt Test executable without a GUI, run by ctest.
-function(evical_add_test name source)
-  add_executable(${name} ${source})
-  set_target_properties(${name} PROPERTIES AUTOMOC ON)
-  target_include_directories(${name} PRIVATE "${CMAKE_SOURCE_DIR}")
-  target_compile_definitions(${name} PRIVATE EVICAL_TEST_DATA="${CMAKE_SOURCE_DIR}/tests/data"
-                                             EVICAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
-  target_link_libraries(${name} PRIVATE evical_warnings Qt6::Test ${ARGN})
-  add_test(NAME ${name} COMMAND ${name})
+  if(NOT ARG_HEADERS AND "Ceres::ceres" IN_LIST ARG_PRIVATE)
+    set(ARG_HEADERS evical_headers_ceres)
+  elseif(NOT ARG_HEADERS AND "fmt::fmt" IN_LIST ARG_PRIVATE)
+    set(ARG_HEADERS evical_headers_fmt)
+  elseif(NOT ARG_HEADERS)
+    set(ARG_HEADERS evical_headers)
+  endif()
+  evical_use_precompiled(evical_${name} ${ARG_HEADERS})
 endfunction()
 
 # evical_add_ui_layer(NAME SOURCES... [PUBLIC libs...] [PRIVATE libs...]): one library a folder of ui, with Qt's moc.
 function(evical_add_ui_layer name)
-  evical_add_layer(ui_${name} ${ARGN})
+  evical_add_layer(ui_${name} ${ARGN} HEADERS evical_headers_ui)
   set_target_properties(evical_ui_${name} PROPERTIES AUTOMOC ON AUTORCC ON)
   target_link_libraries(evical_ui_${name} PUBLIC Qt6::Widgets)
 endfunction()
 
-# evical_add_ui_test(NAME SOURCE libs...): a Qt Test executable with a GUI, run by ctest without a display.
-function(evical_add_ui_test name source)
-  evical_add_test(${name} ${source} Qt6::Widgets ${ARGN})
-  target_compile_definitions(${name} PRIVATE EVICAL_SCREENSHOTS="${CMAKE_BINARY_DIR}/screenshots")
-  set_tests_properties(${name} PROPERTIES ENVIRONMENT "QT_QPA_PLATFORM=offscreen" LABELS ui)
+# evical_add_test_program(NAME HEADERS SOURCES LIBS...): the tests of a folder in one program, and a ctest entry for each
+# source tst_*.cpp among them, which must end in EVICAL_TEST (tests/support/test_program.h).
+function(evical_add_test_program name)
+  cmake_parse_arguments(ARG "WINDOWS" "" "SOURCES;LIBS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES} "${CMAKE_SOURCE_DIR}/tests/support/test_program.cpp")
+  set_target_properties(${name} PROPERTIES AUTOMOC ON)
+  target_include_directories(${name} PRIVATE "${CMAKE_SOURCE_DIR}")
+  target_compile_definitions(${name} PRIVATE EVICAL_TEST_DATA="${CMAKE_SOURCE_DIR}/tests/data"
+                                             EVICAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  target_link_libraries(${name} PRIVATE evical_warnings Qt6::Test ${ARG_LIBS})
+  if(ARG_WINDOWS)
+    evical_use_precompiled(${name} evical_headers_ui)
+  else()
+    evical_use_precompiled(${name} evical_headers_test)
+  endif()
+  foreach(source IN LISTS ARG_SOURCES)
+    cmake_path(GET source STEM test)
+    if(test MATCHES "^tst_")
+      add_test(NAME ${test} COMMAND ${name} ${test})
+    endif()
+  endforeach()
+endfunction()
+
+# evical_add_ui_test_program(NAME SOURCES... LIBS...): the same with widgets, run without a display.
+function(evical_add_ui_test_program name)
+  evical_add_test_program(${name} WINDOWS ${ARGN} LIBS Qt6::Widgets)
+  target_compile_definitions(${name} PRIVATE EVICAL_TEST_WITH_WINDOWS
+                                             EVICAL_SCREENSHOTS="${CMAKE_BINARY_DIR}/screenshots")
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
+  foreach(source IN LISTS ARG_SOURCES)
+    cmake_path(GET source STEM test)
+    if(test MATCHES "^tst_")
+      set_tests_properties(${test} PROPERTIES ENVIRONMENT "QT_QPA_PLATFORM=offscreen" LABELS ui)
+    endif()
+  endforeach()
   if(NOT TARGET ui_tests)
     add_custom_target(ui_tests)
   endif()

@@ -317,7 +317,7 @@ void Batch::reportNotes() {
             problem_.held_axes[input_.reference_imu].leverless().size(), "translations stay at 0");
   }
   if (!solution_.converged) {
-    solution_.notes.push_back("the optimiser stopped at its iteration limit before it converged");
+    solution_.notes.emplace_back("the optimiser stopped at its iteration limit before it converged");
   }
 }
 

@@ -1,11 +1,11 @@
 // Everything that people hand to `evical calibrate` by mistake: the exit code tells whose fault it is, the
 // last line says what, where and what to do, and no half-written result stays behind.
+#include "tests/support/test_program.h"
 #include "tests/system/program.h"
 
 #include <QDir>
 #include <QRegularExpression>
 #include <QTemporaryDir>
-#include <QtTest>
 
 #include <csignal>
 #include <functional>
@@ -402,5 +402,5 @@ void TestBadInput::recording_withoutMotion_fails() {
   VERIFY_FAILED(test, outcome, "mov|motion");
 }
 
-QTEST_GUILESS_MAIN(TestBadInput)
+EVICAL_TEST(TestBadInput)
 #include "tst_bad_input.moc"

@@ -1,13 +1,13 @@
 // The program as a whole: what it writes, its exit codes, and what it leaves behind when it is interrupted or
 // the disk is full.
 #include "core/report/truth_comparison.h"
+#include "tests/support/test_program.h"
 #include "tests/system/program.h"
 
 #include <QDir>
 #include <QElapsedTimer>
 #include <QRegularExpression>
 #include <QTemporaryDir>
-#include <QtTest>
 
 #include <csignal>
 #include <filesystem>
@@ -343,5 +343,5 @@ void TestCommandLine::failure_isInTheResultOfAFolderThatWasThere() {
   QVERIFY2(yaml.contains("views"), yaml.constData());
 }
 
-QTEST_GUILESS_MAIN(TestCommandLine)
+EVICAL_TEST(TestCommandLine)
 #include "tst_command_line.moc"

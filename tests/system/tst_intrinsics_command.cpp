@@ -2,11 +2,11 @@
 #include "core/base/yaml_node.h"
 #include "core/data/intrinsics_yaml.h"
 #include "core/geometry/projection_difference.h"
+#include "tests/support/test_program.h"
 #include "tests/system/program.h"
 
 #include <QRegularExpression>
 #include <QTemporaryDir>
-#include <QtTest>
 
 #include <cmath>
 
@@ -181,5 +181,5 @@ class TestIntrinsicsCommand : public QObject {
   QString session_;
 };
 
-QTEST_GUILESS_MAIN(TestIntrinsicsCommand)
+EVICAL_TEST(TestIntrinsicsCommand)
 #include "tst_intrinsics_command.moc"

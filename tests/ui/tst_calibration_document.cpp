@@ -2,11 +2,11 @@
 #include "ui/document/calibration_document.h"
 
 #include "core/base/error.h"
+#include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 
 #include <QSignalSpy>
 #include <QTemporaryDir>
-#include <QtTest>
 
 using namespace evical;
 using namespace evical::ui;
@@ -213,5 +213,5 @@ class TestCalibrationDocument : public QObject {
   }
 };
 
-QTEST_GUILESS_MAIN(TestCalibrationDocument)
+EVICAL_TEST(TestCalibrationDocument)
 #include "tst_calibration_document.moc"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/jobs/calibration_job.h"
 
+#include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/slowdown.h"
 
 #include <QSignalSpy>
-#include <QtTest>
 
 using namespace evical;
 using namespace evical::ui;
@@ -122,5 +122,5 @@ class TestCalibrationJob : public QObject {
   }
 };
 
-QTEST_GUILESS_MAIN(TestCalibrationJob)
+EVICAL_TEST(TestCalibrationJob)
 #include "tst_calibration_job.moc"

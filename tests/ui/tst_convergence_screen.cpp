@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/support/simulated_pass.h"
+#include "tests/support/test_program.h"
 #include "tests/ui/plot_pictures.h"
 #include "ui/plots/convergence_screen.h"
 #include "ui/plots/plot_panel.h"
 
 #include <QComboBox>
 #include <QLabel>
-#include <QtTest>
 
 #include <cmath>
 
@@ -129,5 +129,5 @@ class TestConvergenceScreen : public QObject {
   }
 };
 
-QTEST_MAIN(TestConvergenceScreen)
+EVICAL_TEST(TestConvergenceScreen)
 #include "tst_convergence_screen.moc"

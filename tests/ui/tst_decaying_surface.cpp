@@ -2,10 +2,10 @@
 #include "ui/detection/decaying_surface.h"
 
 #include "core/base/time.h"
+#include "tests/support/test_program.h"
 #include "ui/detection/event_cache.h"
 
 #include <QTemporaryDir>
-#include <QtTest>
 
 #include <algorithm>
 #include <cstdlib>
@@ -120,5 +120,5 @@ class TestDecayingSurface : public QObject {
   }
 };
 
-QTEST_MAIN(TestDecayingSurface)
+EVICAL_TEST(TestDecayingSurface)
 #include "tst_decaying_surface.moc"

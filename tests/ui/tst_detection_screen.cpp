@@ -3,6 +3,7 @@
 #include "core/pipeline/recording_pass.h"
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "tests/support/test_program.h"
 #include "tests/ui/slowdown.h"
 #include "ui/detection/burst_band.h"
 #include "ui/detection/detection_screen.h"
@@ -483,5 +484,5 @@ class TestDetectionScreen : public QObject {
   std::unique_ptr<Recorded> recorded_;
 };
 
-QTEST_MAIN(TestDetectionScreen)
+EVICAL_TEST(TestDetectionScreen)
 #include "tst_detection_screen.moc"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/support/test_program.h"
 #include "tests/ui/slowdown.h"
 #include "ui/detection/event_view.h"
 #include "ui/detection/frame_mailbox.h"
@@ -173,5 +174,5 @@ class TestEventView : public QObject {
   }
 };
 
-QTEST_MAIN(TestEventView)
+EVICAL_TEST(TestEventView)
 #include "tst_event_view.moc"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // On a display of twice the usual density: everything drawn ourselves is sharp, and the mouse points where it
 // seems to.
+#include "tests/support/test_program.h"
 #include "ui/detection/event_view.h"
 #include "ui/detection/layers.h"
 #include "ui/plots/plot_panel.h"
@@ -12,7 +13,6 @@
 #include <QMouseEvent>
 #include <QPainter>
 #include <QSignalSpy>
-#include <QTest>
 #include <QToolButton>
 
 #include <vtkActor.h>
@@ -33,7 +33,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr int kDensity = 2;
+constexpr int kDensity = 2;  // QT_SCALE_FACTOR, set where ctest is told of this test
 
 // Shares of the picture's 2x2 blocks that are not of one colour: none in a picture that was blown up.
 double fineDetail(const QImage& image) {
@@ -218,11 +218,5 @@ class TestHighDpi : public QObject {
   }
 };
 
-// The density must be known before the application is there.
-int main(int argc, char** argv) {
-  qputenv("QT_SCALE_FACTOR", QByteArray::number(kDensity));
-  const QApplication application(argc, argv);
-  TestHighDpi test;
-  return QTest::qExec(&test, argc, argv);
-}
+EVICAL_TEST(TestHighDpi)
 #include "tst_high_dpi.moc"

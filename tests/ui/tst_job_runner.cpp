@@ -2,10 +2,10 @@
 #include "ui/jobs/job_runner.h"
 
 #include "core/base/error.h"
+#include "tests/support/test_program.h"
 #include "tests/ui/slowdown.h"
 
 #include <QSignalSpy>
-#include <QtTest>
 
 #include <atomic>
 #include <stdexcept>
@@ -192,5 +192,5 @@ class TestJobRunner : public QObject {
   }
 };
 
-QTEST_GUILESS_MAIN(TestJobRunner)
+EVICAL_TEST(TestJobRunner)
 #include "tst_job_runner.moc"

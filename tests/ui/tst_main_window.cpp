@@ -2,6 +2,7 @@
 // The whole story, by mouse and keyboard: open, calibrate, cancel, calibrate again, change, export, reopen.
 #include "ui/window/main_window.h"
 
+#include "tests/support/test_program.h"
 #include "tests/ui/other_load.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/slowdown.h"
@@ -29,7 +30,6 @@
 #include <QTextBrowser>
 #include <QToolButton>
 #include <QTreeWidget>
-#include <QtTest>
 
 using namespace evical;
 using namespace evical::ui;
@@ -396,5 +396,5 @@ class TestMainWindow : public QObject {
   }
 };
 
-QTEST_MAIN(TestMainWindow)
+EVICAL_TEST(TestMainWindow)
 #include "tst_main_window.moc"

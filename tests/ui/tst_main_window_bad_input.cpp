@@ -5,6 +5,7 @@
 #include "ui/window/main_window.h"
 
 #include "core/recording/conversion.h"
+#include "tests/support/test_program.h"
 #include "tests/ui/full_disk.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/slowdown.h"
@@ -22,7 +23,6 @@
 #include <QFile>
 #include <QProcess>
 #include <QTemporaryDir>
-#include <QtTest>
 
 using namespace evical;
 using namespace evical::ui;
@@ -353,5 +353,5 @@ class TestMainWindowBadInput : public QObject {
   }
 };
 
-QTEST_MAIN(TestMainWindowBadInput)
+EVICAL_TEST(TestMainWindowBadInput)
 #include "tst_main_window_bad_input.moc"

@@ -2,6 +2,7 @@
 // A session of two cameras in the real window: whoever lets a camera be chosen shows that camera's things.
 #include "ui/window/main_window.h"
 
+#include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/window_fixture.h"
 #include "ui/detection/detection_screen.h"
@@ -23,7 +24,6 @@
 #include <QTabWidget>
 #include <QTemporaryDir>
 #include <QTreeWidget>
-#include <QtTest>
 
 using namespace evical;
 using namespace evical::ui;
@@ -256,5 +256,5 @@ class TestMainWindowCameras : public QObject {
   }
 };
 
-QTEST_MAIN(TestMainWindowCameras)
+EVICAL_TEST(TestMainWindowCameras)
 #include "tst_main_window_cameras.moc"

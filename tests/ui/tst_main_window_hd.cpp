@@ -3,6 +3,7 @@
 // runs.
 #include "ui/window/main_window.h"
 
+#include "tests/support/test_program.h"
 #include "tests/ui/other_load.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/stall_meter.h"
@@ -16,7 +17,6 @@
 
 #include <QMap>
 #include <QTemporaryDir>
-#include <QtTest>
 
 using namespace evical;
 using namespace evical::ui;
@@ -194,5 +194,5 @@ class TestMainWindowHd : public QObject {
   }
 };
 
-QTEST_MAIN(TestMainWindowHd)
+EVICAL_TEST(TestMainWindowHd)
 #include "tst_main_window_hd.moc"

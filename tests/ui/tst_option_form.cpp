@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/pipeline/calibration_options.h"
+#include "tests/support/test_program.h"
 #include "ui/forms/option_editor.h"
 #include "ui/theme/theme.h"
 
@@ -12,7 +13,6 @@
 #include <QLineEdit>
 #include <QSignalSpy>
 #include <QToolButton>
-#include <QtTest>
 
 using namespace evical;
 using namespace evical::ui;
@@ -158,5 +158,5 @@ class TestOptionForm : public QObject {
   }
 };
 
-QTEST_MAIN(TestOptionForm)
+EVICAL_TEST(TestOptionForm)
 #include "tst_option_form.moc"

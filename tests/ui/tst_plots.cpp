@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/support/test_program.h"
 #include "tests/ui/plot_pictures.h"
 #include "tests/ui/slowdown.h"
 #include "ui/plots/plot_panel.h"
 #include "ui/theme/theme.h"
-
-#include <QtTest>
 
 #include <algorithm>
 #include <cmath>
@@ -484,5 +483,5 @@ void TestPlots::picture_isWorthLookingAt() {
   });
 }
 
-QTEST_MAIN(TestPlots)
+EVICAL_TEST(TestPlots)
 #include "tst_plots.moc"

@@ -2,6 +2,7 @@
 #include "ui/screens/recording_screen.h"
 
 #include "core/data/intrinsics_yaml.h"
+#include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 #include "ui/document/session_guess.h"
 #include "ui/forms/number_field.h"
@@ -18,7 +19,6 @@
 #include <QSpinBox>
 #include <QTemporaryDir>
 #include <QToolButton>
-#include <QtTest>
 
 using namespace evical;
 using namespace evical::ui;
@@ -314,5 +314,5 @@ class TestRecordingScreen : public QObject {
   }
 };
 
-QTEST_MAIN(TestRecordingScreen)
+EVICAL_TEST(TestRecordingScreen)
 #include "tst_recording_screen.moc"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/pipeline/view_rejection.h"
 #include "tests/support/simulated_pass.h"
+#include "tests/support/test_program.h"
 #include "tests/ui/plot_pictures.h"
 #include "tests/ui/slowdown.h"
 #include "ui/plots/plot_panel.h"
@@ -9,7 +10,6 @@
 
 #include <QDoubleSpinBox>
 #include <QPushButton>
-#include <QtTest>
 
 #include <algorithm>
 #include <cmath>
@@ -229,5 +229,5 @@ void TestResidualsScreen::pictures() {
   test::takePictures(screen, "residuals", settle);
 }
 
-QTEST_MAIN(TestResidualsScreen)
+EVICAL_TEST(TestResidualsScreen)
 #include "tst_residuals_screen.moc"

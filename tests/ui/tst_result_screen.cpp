@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/pipeline/result_files.h"
+#include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 #include "ui/screens/correlation_view.h"
 #include "ui/screens/observability_view.h"
@@ -12,7 +13,6 @@
 #include <QComboBox>
 #include <QLabel>
 #include <QTreeWidget>
-#include <QtTest>
 
 #include <algorithm>
 
@@ -164,5 +164,5 @@ class TestResultScreen : public QObject {
   }
 };
 
-QTEST_MAIN(TestResultScreen)
+EVICAL_TEST(TestResultScreen)
 #include "tst_result_screen.moc"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/support/simulated_pass.h"
+#include "tests/support/test_program.h"
 #include "tests/ui/plot_pictures.h"
 #include "tests/ui/slowdown.h"
 #include "ui/plots/latest_job.h"
@@ -8,7 +9,6 @@
 #include "ui/plots/signals_screen.h"
 
 #include <QTabWidget>
-#include <QtTest>
 
 #include <algorithm>
 #include <atomic>
@@ -178,5 +178,5 @@ class TestSignalsScreen : public QObject {
   }
 };
 
-QTEST_MAIN(TestSignalsScreen)
+EVICAL_TEST(TestSignalsScreen)
 #include "tst_signals_screen.moc"

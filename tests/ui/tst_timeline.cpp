@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/support/test_program.h"
 #include "ui/detection/timeline.h"
 #include "ui/theme/theme.h"
 
@@ -191,5 +192,5 @@ class TestTimeline : public QObject {
   }
 };
 
-QTEST_MAIN(TestTimeline)
+EVICAL_TEST(TestTimeline)
 #include "tst_timeline.moc"

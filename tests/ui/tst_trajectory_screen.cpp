@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/pipeline/calibration_pipeline.h"
 #include "tests/core/optimisation/simulated_rig.h"
+#include "tests/support/test_program.h"
 #include "tests/ui/slowdown.h"
 #include "ui/scene/trajectory_screen.h"
 #include "ui/scene/view3d.h"
@@ -452,5 +453,5 @@ void TestTrajectoryScreen::screenshots() {
   }
 }
 
-QTEST_MAIN(TestTrajectoryScreen)
+EVICAL_TEST(TestTrajectoryScreen)
 #include "tst_trajectory_screen.moc"

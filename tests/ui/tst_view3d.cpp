@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/support/test_program.h"
 #include "ui/scene/turntable_camera.h"
 #include "ui/scene/view3d.h"
 
@@ -292,5 +293,5 @@ void TestView3D::withoutOpenGl_saysSo() {
   QVERIFY(!square.image().isNull());
 }
 
-QTEST_MAIN(TestView3D)
+EVICAL_TEST(TestView3D)
 #include "tst_view3d.moc"

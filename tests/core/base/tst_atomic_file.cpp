@@ -1,10 +1,10 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "tests/support/test_program.h"
 
 #include <sys/stat.h>
 
 #include <QTemporaryDir>
-#include <QtTest>
 
 #include <algorithm>
 #include <fstream>
@@ -103,5 +103,5 @@ class TestAtomicFile : public QObject {
   }
 };
 
-QTEST_APPLESS_MAIN(TestAtomicFile)
+EVICAL_TEST(TestAtomicFile)
 #include "tst_atomic_file.moc"

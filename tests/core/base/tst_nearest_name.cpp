@@ -1,6 +1,5 @@
 #include "core/base/nearest_name.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 using namespace evical;
 
@@ -44,5 +43,5 @@ class TestNearestName : public QObject {
   }
 };
 
-QTEST_APPLESS_MAIN(TestNearestName)
+EVICAL_TEST(TestNearestName)
 #include "tst_nearest_name.moc"

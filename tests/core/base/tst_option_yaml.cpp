@@ -1,6 +1,5 @@
 #include "core/base/option_yaml.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 using namespace evical;
 
@@ -82,5 +81,5 @@ class TestOptionYaml : public QObject {
   }
 };
 
-QTEST_APPLESS_MAIN(TestOptionYaml)
+EVICAL_TEST(TestOptionYaml)
 #include "tst_option_yaml.moc"

@@ -2,8 +2,7 @@
 
 #include "core/frontend/circle_measurement.h"
 #include "tests/core/frontend/synthetic_bursts.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 namespace {
 
@@ -124,5 +123,5 @@ void TestBoardExtent::boardCutByTheImage_isNotSmaller() {
 
 }  // namespace
 
-QTEST_GUILESS_MAIN(TestBoardExtent)
+EVICAL_TEST(TestBoardExtent)
 #include "tst_board_extent.moc"

@@ -1,8 +1,7 @@
 #include "core/frontend/board_motion.h"
 
 #include "tests/core/frontend/synthetic_bursts.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 namespace {
 
@@ -235,5 +234,5 @@ void TestBoardMotion::fit_withoutBursts_isNothing() {
 
 }  // namespace
 
-QTEST_GUILESS_MAIN(TestBoardMotion)
+EVICAL_TEST(TestBoardMotion)
 #include "tst_board_motion.moc"

@@ -1,8 +1,8 @@
 #include "core/frontend/board_placement.h"
 
 #include "tests/core/frontend/synthetic_bursts.h"
+#include "tests/support/test_program.h"
 
-#include <QtTest>
 #include <opencv2/calib3d.hpp>
 
 #include <map>
@@ -324,5 +324,5 @@ void TestBoardPlacement::velocityField_followsCircles() {
 
 }  // namespace
 
-QTEST_GUILESS_MAIN(TestBoardPlacement)
+EVICAL_TEST(TestBoardPlacement)
 #include "tst_board_placement.moc"

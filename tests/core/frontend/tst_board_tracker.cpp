@@ -2,8 +2,7 @@
 
 #include "core/synthetic/board_truth.h"
 #include "core/synthetic/event_simulator.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <cmath>
 
@@ -133,5 +132,5 @@ void TestBoardTracker::noEvents_giveNothing() {
 
 }  // namespace
 
-QTEST_GUILESS_MAIN(TestBoardTracker)
+EVICAL_TEST(TestBoardTracker)
 #include "tst_board_tracker.moc"

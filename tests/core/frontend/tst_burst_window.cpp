@@ -1,8 +1,7 @@
 #include "core/frontend/burst_window.h"
 
 #include "tests/core/frontend/synthetic_bursts.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <random>
 
@@ -118,5 +117,5 @@ void TestBurstWindow::history_dropsOld() {
 
 }  // namespace
 
-QTEST_GUILESS_MAIN(TestBurstWindow)
+EVICAL_TEST(TestBurstWindow)
 #include "tst_burst_window.moc"

@@ -1,8 +1,7 @@
 #include "core/frontend/circle_measurement.h"
 
 #include "tests/core/frontend/synthetic_bursts.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <set>
 
@@ -114,5 +113,5 @@ void TestCircleMeasurement::time_isThatOfTheBursts() {
 
 }  // namespace
 
-QTEST_GUILESS_MAIN(TestCircleMeasurement)
+EVICAL_TEST(TestCircleMeasurement)
 #include "tst_circle_measurement.moc"

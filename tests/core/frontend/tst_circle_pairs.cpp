@@ -2,8 +2,7 @@
 
 #include "core/frontend/moving_circle.h"
 #include "tests/core/frontend/synthetic_bursts.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 namespace {
 
@@ -163,5 +162,5 @@ void TestCirclePairs::noise_givesFewCandidates() {
 
 }  // namespace
 
-QTEST_GUILESS_MAIN(TestCirclePairs)
+EVICAL_TEST(TestCirclePairs)
 #include "tst_circle_pairs.moc"

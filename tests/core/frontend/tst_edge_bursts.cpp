@@ -1,6 +1,5 @@
 #include "core/frontend/edge_bursts.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <algorithm>
 #include <random>
@@ -185,5 +184,5 @@ void TestEdgeBursts::packets_doNotMatter() {
 
 }  // namespace
 
-QTEST_GUILESS_MAIN(TestEdgeBursts)
+EVICAL_TEST(TestEdgeBursts)
 #include "tst_edge_bursts.moc"

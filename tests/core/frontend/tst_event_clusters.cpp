@@ -1,8 +1,7 @@
 #include "core/frontend/event_clusters.h"
 
 #include "tests/core/frontend/synthetic_bursts.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 namespace {
 
@@ -126,5 +125,5 @@ void TestEventClusters::border_isNoObstacle() {
 
 }  // namespace
 
-QTEST_GUILESS_MAIN(TestEventClusters)
+EVICAL_TEST(TestEventClusters)
 #include "tst_event_clusters.moc"

@@ -1,8 +1,7 @@
 #include "core/frontend/moving_circle.h"
 
 #include "tests/core/frontend/synthetic_bursts.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 namespace {
 
@@ -139,5 +138,5 @@ void TestMovingCircle::typicalSpeed_isThatOfEdges() {
 
 }  // namespace
 
-QTEST_GUILESS_MAIN(TestMovingCircle)
+EVICAL_TEST(TestMovingCircle)
 #include "tst_moving_circle.moc"

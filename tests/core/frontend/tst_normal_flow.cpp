@@ -1,8 +1,7 @@
 #include "core/frontend/normal_flow.h"
 
 #include "tests/core/frontend/synthetic_bursts.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 namespace {
 
@@ -151,5 +150,5 @@ void TestNormalFlow::polarities_doNotMix() {
 
 }  // namespace
 
-QTEST_GUILESS_MAIN(TestNormalFlow)
+EVICAL_TEST(TestNormalFlow)
 #include "tst_normal_flow.moc"

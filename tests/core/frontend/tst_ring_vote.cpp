@@ -1,8 +1,7 @@
 #include "core/frontend/ring_vote.h"
 
 #include "tests/core/frontend/synthetic_bursts.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 namespace {
 
@@ -83,5 +82,5 @@ void TestRingVote::unsupportedBursts_areDropped() {
 
 }  // namespace
 
-QTEST_GUILESS_MAIN(TestRingVote)
+EVICAL_TEST(TestRingVote)
 #include "tst_ring_vote.moc"

@@ -3,9 +3,9 @@
 #include "core/base/error.h"
 #include "core/frontend/stage_image_writer.h"
 #include "tests/core/frontend/synthetic_bursts.h"
+#include "tests/support/test_program.h"
 
 #include <png.h>
-#include <QtTest>
 
 namespace {
 
@@ -147,5 +147,5 @@ void TestStageDrawing::writer_writesEveryNth() {
 
 }  // namespace
 
-QTEST_GUILESS_MAIN(TestStageDrawing)
+EVICAL_TEST(TestStageDrawing)
 #include "tst_stage_drawing.moc"

@@ -2,9 +2,9 @@
 
 #include "core/geometry/so3.h"
 #include "tests/support/numeric_jacobian.h"
+#include "tests/support/test_program.h"
 
 #include <Eigen/Dense>
-#include <QtTest>
 
 #include <random>
 
@@ -90,5 +90,5 @@ class TestCircleConic : public QObject {
 
 }  // namespace
 
-QTEST_APPLESS_MAIN(TestCircleConic)
+EVICAL_TEST(TestCircleConic)
 #include "tst_circle_conic.moc"

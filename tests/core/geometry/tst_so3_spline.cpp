@@ -2,8 +2,7 @@
 
 #include "core/geometry/so3.h"
 #include "tests/support/numeric_jacobian.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <random>
 
@@ -170,5 +169,5 @@ class TestSo3Spline : public QObject {
 
 }  // namespace
 
-QTEST_APPLESS_MAIN(TestSo3Spline)
+EVICAL_TEST(TestSo3Spline)
 #include "tst_so3_spline.moc"

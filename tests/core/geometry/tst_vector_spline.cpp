@@ -3,8 +3,7 @@
 #include "core/geometry/so3.h"
 #include "core/geometry/trajectory.h"
 #include "tests/support/numeric_jacobian.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 namespace {
 
@@ -98,5 +97,5 @@ class TestVectorSpline : public QObject {
 
 }  // namespace
 
-QTEST_APPLESS_MAIN(TestVectorSpline)
+EVICAL_TEST(TestVectorSpline)
 #include "tst_vector_spline.moc"

@@ -71,12 +71,11 @@ Scenario makeScenario(const SimulationOptions& options) {
     SimulatedCamera camera;
     camera.name = k == 0 ? "left" : "right";
     camera.intrinsics = {CameraModel::PinholeRadtan, {346, 260}, {262.4, 262.9}, {171.8, 131.2}, {}};
-    camera.reference_from_camera = {Eigen::Quaterniond(0.707, 0.012, -0.707, 0.015).normalized(),
-                                    {0.021, -0.034, 0.012}};
+    camera.imu_from_camera = {Eigen::Quaterniond(0.707, 0.012, -0.707, 0.015).normalized(),
+                              {0.021, -0.034, 0.012}};
     if (k > 0) {
-      camera.reference_from_camera.translation_m += Eigen::Vector3d(0.0, 0.01, 0.1);
-      camera.reference_from_camera.rotation =
-          camera.reference_from_camera.rotation * quaternionExp({0.02, 0.05, -0.3});
+      camera.imu_from_camera.translation_m += Eigen::Vector3d(0.0, 0.01, 0.1);
+      camera.imu_from_camera.rotation = camera.imu_from_camera.rotation * quaternionExp({0.02, 0.05, -0.3});
     }
     camera.time_offset_s = options.time_offset_s + 0.07 * k;
     camera.pixel.latency_s = camera.pixel.low_pass_s = 0.0;
@@ -207,9 +206,9 @@ InitialErrors initialErrors(const CalibrationState& state, const SimulatedInput&
   const SimulatedCamera& truth = simulated.truth.cameras[camera];
   const CameraState& found = state.cameras[camera];
   errors.rotation_deg = kDegPerRad * rotationAngleBetween_rad(found.reference_from_camera.rotation,
-                                                              truth.reference_from_camera.rotation);
+                                                              truth.imu_from_camera.rotation);
   errors.translation_m =
-      (found.reference_from_camera.translation_m - truth.reference_from_camera.translation_m).norm();
+      (found.reference_from_camera.translation_m - truth.imu_from_camera.translation_m).norm();
   errors.time_offset_s = std::abs(found.time_offset_s - truth.time_offset_s);
   const Eigen::Vector3d down = simulated.truth.gravity_in_world_m_s2.normalized();
   errors.gravity_deg =

@@ -1,8 +1,7 @@
 #include "core/initialisation/banded_system.h"
+#include "tests/support/test_program.h"
 
 #include <Eigen/LU>
-
-#include <QtTest>
 
 #include <random>
 
@@ -38,5 +37,5 @@ class TestBandedSystem : public QObject {
   }
 };
 
-QTEST_APPLESS_MAIN(TestBandedSystem)
+EVICAL_TEST(TestBandedSystem)
 #include "tst_banded_system.moc"

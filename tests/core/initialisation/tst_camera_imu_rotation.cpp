@@ -1,8 +1,7 @@
 #include "core/initialisation/camera_imu_rotation.h"
 #include "core/initialisation/initialisation_options.h"
 #include "tests/core/initialisation/simulated_input.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <cmath>
 
@@ -43,8 +42,8 @@ class TestCameraImuRotation : public QObject {
     const SimulatedInput simulated = simulateInput(simulation);
     const auto hand_eye = handEyeOf(simulated, simulation.time_offset_s + start_error_s);
     QVERIFY(hand_eye.has_value());
-    const double error_rad = rotationAngleBetween_rad(
-        hand_eye->reference_from_sensor, simulated.truth.cameras[0].reference_from_camera.rotation);
+    const double error_rad = rotationAngleBetween_rad(hand_eye->reference_from_sensor,
+                                                      simulated.truth.cameras[0].imu_from_camera.rotation);
     QVERIFY2(error_rad < 0.3 * M_PI / 180.0, qPrintable(QString::number(error_rad)));
     QVERIFY(std::abs(hand_eye->time_offset_s - simulation.time_offset_s) < 2e-3);
     QVERIFY((hand_eye->gyroscope_bias_rad_s - simulated.truth.imus[0].gyroscope_bias_rad_s).norm() < 3e-3);
@@ -61,9 +60,9 @@ class TestCameraImuRotation : public QObject {
     QVERIFY(hand_eye->axis_ratio < InitialisationOptions().least_axis_ratio);
     // The simulated camera turns about its own y axis.
     const Eigen::Vector3d axis =
-        simulated.truth.cameras[0].reference_from_camera.rotation * Eigen::Vector3d::UnitX();
+        simulated.truth.cameras[0].imu_from_camera.rotation * Eigen::Vector3d::UnitX();
     QVERIFY(std::abs(axis.dot(hand_eye->main_axis_in_imu)) > 0.999 ||
-            std::abs((simulated.truth.cameras[0].reference_from_camera.rotation * Eigen::Vector3d::UnitY())
+            std::abs((simulated.truth.cameras[0].imu_from_camera.rotation * Eigen::Vector3d::UnitY())
                          .dot(hand_eye->main_axis_in_imu)) > 0.999);
   }
 
@@ -74,5 +73,5 @@ class TestCameraImuRotation : public QObject {
   }
 };
 
-QTEST_APPLESS_MAIN(TestCameraImuRotation)
+EVICAL_TEST(TestCameraImuRotation)
 #include "tst_camera_imu_rotation.moc"

@@ -1,8 +1,7 @@
 #include "core/initialisation/camera_poses.h"
 #include "core/synthetic/sinusoid_motion.h"
 #include "tests/core/initialisation/simulated_input.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <cmath>
 
@@ -80,5 +79,5 @@ class TestCameraPoses : public QObject {
   }
 };
 
-QTEST_APPLESS_MAIN(TestCameraPoses)
+EVICAL_TEST(TestCameraPoses)
 #include "tst_camera_poses.moc"

@@ -4,8 +4,7 @@
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/covariance.h"
 #include "tests/core/initialisation/simulated_input.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <cmath>
 #include <utility>
@@ -47,7 +46,7 @@ struct Errors {
 Errors errorsOf(const CameraState& camera, const SimulatedInput& simulated, std::size_t reference,
                 std::size_t k) {
   const SimulatedCamera &from = simulated.truth.cameras[k], &to = simulated.truth.cameras[reference];
-  const RigidTransform truth = inverse(to.reference_from_camera) * from.reference_from_camera;
+  const RigidTransform truth = inverse(to.imu_from_camera) * from.imu_from_camera;
   return {kDegPerRad * rotationAngleBetween_rad(camera.reference_from_camera.rotation, truth.rotation),
           (camera.reference_from_camera.translation_m - truth.translation_m).norm(),
           std::abs(camera.time_offset_s - (from.time_offset_s - to.time_offset_s))};
@@ -160,5 +159,5 @@ class TestCamerasAlone : public QObject {
   }
 };
 
-QTEST_APPLESS_MAIN(TestCamerasAlone)
+EVICAL_TEST(TestCamerasAlone)
 #include "tst_cameras_alone.moc"

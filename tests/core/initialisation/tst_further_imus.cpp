@@ -3,8 +3,7 @@
 #include "core/geometry/so3.h"
 #include "core/initialisation/initialise.h"
 #include "tests/core/initialisation/simulated_input.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <utility>
 
@@ -66,11 +65,11 @@ class TestFurtherImus : public QObject {
     QCOMPARE(initial.state.imus[1].time_offset_s, 0.0);
     const SimulatedCamera& camera = simulated.truth.cameras[0];
     const CameraState& found = initial.state.cameras[0];
-    QVERIFY(rotationAngleBetween_rad(found.reference_from_camera.rotation,
-                                     camera.reference_from_camera.rotation) < 0.01);
+    QVERIFY(rotationAngleBetween_rad(found.reference_from_camera.rotation, camera.imu_from_camera.rotation) <
+            0.01);
     QVERIFY(std::abs(found.time_offset_s - camera.time_offset_s) < 1e-3);
   }
 };
 
-QTEST_APPLESS_MAIN(TestFurtherImus)
+EVICAL_TEST(TestFurtherImus)
 #include "tst_further_imus.moc"

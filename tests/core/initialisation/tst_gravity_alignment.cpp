@@ -3,8 +3,7 @@
 #include "core/geometry/so3.h"
 #include "core/synthetic/sinusoid_motion.h"
 #include "tests/core/initialisation/simulated_input.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <cmath>
 #include <random>
@@ -78,7 +77,7 @@ class TestGravityAlignment : public QObject {
     const Truth truth = makeTruth(simulation);
     const GravityAlignment found = align(truth);
     const SimulatedInput& simulated = truth.simulated;
-    const Vector3d lever = simulated.truth.cameras[0].reference_from_camera.translation_m;
+    const Vector3d lever = simulated.truth.cameras[0].imu_from_camera.translation_m;
     QVERIFY((found.cameras_in_imu_m[0] - lever).norm() < 5e-3);
     QVERIFY(gravityError_rad(found, truth) < 0.3 * M_PI / 180.0);
     QVERIFY(std::abs(found.gravity_in_world_m_s2.norm() - 9.81) < 1e-9);
@@ -100,7 +99,7 @@ class TestGravityAlignment : public QObject {
       truth.track.poses[k].world_from_camera.translation_m += Vector3d(0.05, 0.05, 0.0);
     const GravityAlignment found = align(truth);
     QCOMPARE(found.outlying_views, misread);
-    const Vector3d lever = truth.simulated.truth.cameras[0].reference_from_camera.translation_m;
+    const Vector3d lever = truth.simulated.truth.cameras[0].imu_from_camera.translation_m;
     QVERIFY((found.cameras_in_imu_m[0] - lever).norm() < 5e-3);
   }
 
@@ -168,5 +167,5 @@ class TestGravityAlignment : public QObject {
   }
 };
 
-QTEST_APPLESS_MAIN(TestGravityAlignment)
+EVICAL_TEST(TestGravityAlignment)
 #include "tst_gravity_alignment.moc"

@@ -2,8 +2,7 @@
 
 #include "core/base/time.h"
 #include "core/geometry/so3.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <cmath>
 
@@ -90,5 +89,5 @@ class TestGyroRotation : public QObject {
   }
 };
 
-QTEST_APPLESS_MAIN(TestGyroRotation)
+EVICAL_TEST(TestGyroRotation)
 #include "tst_gyro_rotation.moc"

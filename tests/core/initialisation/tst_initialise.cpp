@@ -3,9 +3,9 @@
 #include "core/base/error.h"
 #include "core/geometry/so3.h"
 #include "tests/core/initialisation/simulated_input.h"
+#include "tests/support/test_program.h"
 
 #include <QRegularExpression>
-#include <QtTest>
 
 #include <algorithm>
 #include <functional>
@@ -288,5 +288,5 @@ class TestInitialise : public QObject {
   }
 };
 
-QTEST_APPLESS_MAIN(TestInitialise)
+EVICAL_TEST(TestInitialise)
 #include "tst_initialise.moc"

@@ -3,8 +3,7 @@
 #include "core/geometry/so3.h"
 #include "core/synthetic/sinusoid_motion.h"
 #include "tests/core/initialisation/simulated_input.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +40,7 @@ Prepared prepare() {
   p.poses = estimateCameraPoses(p.simulated.input.cameras[0], p.simulated.input.board, {}).poses;
   // A degree off, as a first hand-eye may be.
   p.hand_eye.reference_from_sensor =
-      p.simulated.truth.cameras[0].reference_from_camera.rotation * quaternionExp({0.01, -0.012, 0.008});
+      p.simulated.truth.cameras[0].imu_from_camera.rotation * quaternionExp({0.01, -0.012, 0.008});
   p.hand_eye.time_offset_s = 0.301;
   return p;
 }
@@ -118,5 +117,5 @@ class TestPoseConsistency : public QObject {
   }
 };
 
-QTEST_APPLESS_MAIN(TestPoseConsistency)
+EVICAL_TEST(TestPoseConsistency)
 #include "tst_pose_consistency.moc"

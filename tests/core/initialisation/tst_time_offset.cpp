@@ -1,7 +1,6 @@
 #include "core/initialisation/time_offset.h"
 #include "tests/core/initialisation/simulated_input.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <algorithm>
 #include <cmath>
@@ -115,5 +114,5 @@ class TestTimeOffset : public QObject {
   }
 };
 
-QTEST_APPLESS_MAIN(TestTimeOffset)
+EVICAL_TEST(TestTimeOffset)
 #include "tst_time_offset.moc"

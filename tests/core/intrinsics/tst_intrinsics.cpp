@@ -8,8 +8,7 @@
 #include "core/synthetic/board_truth.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/numeric_jacobian.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <algorithm>
 #include <cmath>
@@ -293,5 +292,5 @@ class TestIntrinsics : public QObject {
   }
 };
 
-QTEST_GUILESS_MAIN(TestIntrinsics)
+EVICAL_TEST(TestIntrinsics)
 #include "tst_intrinsics.moc"

@@ -4,9 +4,9 @@
 #include "core/geometry/rigid_transform.h"
 #include "core/optimisation/circle_errors.h"
 #include "tests/core/optimisation/simulated_rig.h"
+#include "tests/support/test_program.h"
 
 #include <QElapsedTimer>
-#include <QtTest>
 
 namespace {
 
@@ -226,5 +226,5 @@ class TestBatchOptimiser : public QObject {
 
 }  // namespace
 
-QTEST_GUILESS_MAIN(TestBatchOptimiser)
+EVICAL_TEST(TestBatchOptimiser)
 #include "tst_batch_optimiser.moc"

@@ -4,10 +4,10 @@
 #include "core/optimisation/projected_information.h"
 #include "core/optimisation/sample_errors.h"
 #include "tests/core/optimisation/simulated_rig.h"
+#include "tests/support/test_program.h"
 
 #include <ceres/crs_matrix.h>
 #include <Eigen/Dense>
-#include <QtTest>
 
 namespace {
 
@@ -195,5 +195,5 @@ class TestBiasDrift : public QObject {
 
 }  // namespace
 
-QTEST_GUILESS_MAIN(TestBiasDrift)
+EVICAL_TEST(TestBiasDrift)
 #include "tst_bias_drift.moc"

@@ -6,10 +6,10 @@
 #include "core/synthetic/board_truth.h"
 #include "core/synthetic/imu_simulator.h"
 #include "tests/core/optimisation/simulated_rig.h"
+#include "tests/support/test_program.h"
 
 #include <ceres/crs_matrix.h>
 #include <Eigen/Dense>
-#include <QtTest>
 
 #include <random>
 
@@ -251,5 +251,5 @@ class TestCovariance : public QObject {
 
 }  // namespace
 
-QTEST_GUILESS_MAIN(TestCovariance)
+EVICAL_TEST(TestCovariance)
 #include "tst_covariance.moc"

@@ -4,8 +4,7 @@
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/covariance.h"
 #include "tests/core/optimisation/simulated_rig.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <algorithm>
 #include <random>
@@ -200,5 +199,5 @@ class TestFreeIntrinsics : public QObject {
 
 }  // namespace
 
-QTEST_GUILESS_MAIN(TestFreeIntrinsics)
+EVICAL_TEST(TestFreeIntrinsics)
 #include "tst_free_intrinsics.moc"

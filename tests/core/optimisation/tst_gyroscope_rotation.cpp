@@ -2,8 +2,7 @@
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/covariance.h"
 #include "tests/core/optimisation/simulated_rig.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 namespace {
 
@@ -122,5 +121,5 @@ class TestGyroscopeRotation : public QObject {
 
 }  // namespace
 
-QTEST_GUILESS_MAIN(TestGyroscopeRotation)
+EVICAL_TEST(TestGyroscopeRotation)
 #include "tst_gyroscope_rotation.moc"

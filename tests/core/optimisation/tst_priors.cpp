@@ -3,8 +3,7 @@
 #include "core/optimisation/covariance.h"
 #include "core/optimisation/prior_check.h"
 #include "tests/core/optimisation/simulated_rig.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <algorithm>
 
@@ -273,5 +272,5 @@ class TestPriors : public QObject {
   }
 };
 
-QTEST_GUILESS_MAIN(TestPriors)
+EVICAL_TEST(TestPriors)
 #include "tst_priors.moc"

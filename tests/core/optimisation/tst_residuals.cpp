@@ -9,8 +9,7 @@
 #include "core/optimisation/prior_cost.h"
 #include "core/optimisation/smoothness_cost.h"
 #include "tests/core/optimisation/cost_check.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <random>
 
@@ -503,5 +502,5 @@ class TestResiduals : public QObject {
 
 }  // namespace
 
-QTEST_APPLESS_MAIN(TestResiduals)
+EVICAL_TEST(TestResiduals)
 #include "tst_residuals.moc"

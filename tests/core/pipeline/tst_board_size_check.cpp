@@ -1,9 +1,9 @@
 #include "core/pipeline/board_size_check.h"
 
 #include "core/base/error.h"
+#include "tests/support/test_program.h"
 
 #include <QRegularExpression>
-#include <QtTest>
 
 namespace {
 
@@ -97,5 +97,5 @@ void TestBoardSizeCheck::circlesNeverSeen_areWorthAWarning() {
 
 }  // namespace
 
-QTEST_APPLESS_MAIN(TestBoardSizeCheck)
+EVICAL_TEST(TestBoardSizeCheck)
 #include "tst_board_size_check.moc"

@@ -3,9 +3,9 @@
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
-#include <QtTest>
 
 using namespace evical;
 
@@ -74,5 +74,5 @@ class TestCalibrationObserver : public QObject {
   }
 };
 
-QTEST_GUILESS_MAIN(TestCalibrationObserver)
+EVICAL_TEST(TestCalibrationObserver)
 #include "tst_calibration_observer.moc"

@@ -1,6 +1,5 @@
 #include "core/pipeline/calibration_options.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <charconv>
 #include <set>
@@ -89,5 +88,5 @@ class TestCalibrationOptions : public QObject {
   }
 };
 
-QTEST_APPLESS_MAIN(TestCalibrationOptions)
+EVICAL_TEST(TestCalibrationOptions)
 #include "tst_calibration_options.moc"

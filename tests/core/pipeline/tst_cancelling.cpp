@@ -5,9 +5,9 @@
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/scenario_session.h"
+#include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
-#include <QtTest>
 
 #include <time.h>
 
@@ -164,5 +164,5 @@ class TestCancelling : public QObject {
 
 }  // namespace
 
-QTEST_GUILESS_MAIN(TestCancelling)
+EVICAL_TEST(TestCancelling)
 #include "tst_cancelling.moc"

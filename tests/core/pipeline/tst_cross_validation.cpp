@@ -2,8 +2,7 @@
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/cross_validation.h"
 #include "tests/support/simulated_pass.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <algorithm>
 #include <cmath>
@@ -184,5 +183,5 @@ class TestCrossValidation : public QObject {
   }
 };
 
-QTEST_GUILESS_MAIN(TestCrossValidation)
+EVICAL_TEST(TestCrossValidation)
 #include "tst_cross_validation.moc"

@@ -5,8 +5,7 @@
 #include "core/report/truth_comparison.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/scenario_session.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <cmath>
 
@@ -60,5 +59,5 @@ class TestDegenerateRecordings : public QObject {
 
 }  // namespace
 
-QTEST_GUILESS_MAIN(TestDegenerateRecordings)
+EVICAL_TEST(TestDegenerateRecordings)
 #include "tst_degenerate_recordings.moc"

@@ -1,9 +1,9 @@
 #include "core/base/error.h"
 #include "core/data/intrinsics_yaml.h"
 #include "core/pipeline/import_session.h"
+#include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
-#include <QtTest>
 
 #include <algorithm>
 #include <fstream>
@@ -238,5 +238,5 @@ class TestImportSession : public QObject {
   }
 };
 
-QTEST_GUILESS_MAIN(TestImportSession)
+EVICAL_TEST(TestImportSession)
 #include "tst_import_session.moc"

@@ -6,10 +6,10 @@
 #include "core/report/truth_comparison.h"
 #include "tests/support/seen_through.h"
 #include "tests/support/simulated_pass.h"
+#include "tests/support/test_program.h"
 
 #include <QFile>
 #include <QTemporaryDir>
-#include <QtTest>
 
 #include <algorithm>
 #include <filesystem>
@@ -149,5 +149,5 @@ class TestJointIntrinsics : public QObject {
   }
 };
 
-QTEST_GUILESS_MAIN(TestJointIntrinsics)
+EVICAL_TEST(TestJointIntrinsics)
 #include "tst_joint_intrinsics.moc"

@@ -1,12 +1,12 @@
 #include "core/base/error.h"
 #include "core/pipeline/result_files.h"
 #include "tests/support/simulated_pass.h"
+#include "tests/support/test_program.h"
 
 #include <QDir>
 #include <QRegularExpression>
 #include <QTemporaryDir>
 #include <QXmlStreamReader>
-#include <QtTest>
 
 #include <algorithm>
 #include <cmath>
@@ -255,5 +255,5 @@ class TestResultFiles : public QObject {
   }
 };
 
-QTEST_GUILESS_MAIN(TestResultFiles)
+EVICAL_TEST(TestResultFiles)
 #include "tst_result_files.moc"

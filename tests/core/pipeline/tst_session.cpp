@@ -1,8 +1,8 @@
 #include "core/pipeline/session.h"
 #include "tests/core/pipeline/refused_session.h"
+#include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
-#include <QtTest>
 
 #include <fstream>
 
@@ -246,5 +246,5 @@ class TestSession : public QObject {
   }
 };
 
-QTEST_APPLESS_MAIN(TestSession)
+EVICAL_TEST(TestSession)
 #include "tst_session.moc"

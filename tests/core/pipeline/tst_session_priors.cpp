@@ -1,8 +1,8 @@
 #include "core/pipeline/session_priors.h"
 #include "tests/core/pipeline/refused_session.h"
+#include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
-#include <QtTest>
 
 #include <cmath>
 #include <fstream>
@@ -199,5 +199,5 @@ class TestSessionPriors : public QObject {
   }
 };
 
-QTEST_APPLESS_MAIN(TestSessionPriors)
+EVICAL_TEST(TestSessionPriors)
 #include "tst_session_priors.moc"

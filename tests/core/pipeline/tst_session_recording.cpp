@@ -1,9 +1,9 @@
 #include "core/base/error.h"
 #include "core/pipeline/session_recording.h"
 #include "tests/core/recording/sample_recording.h"
+#include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
-#include <QtTest>
 
 using namespace evical;
 using namespace evical::test;
@@ -179,5 +179,5 @@ void TestSessionRecording::intrinsicsOfAnotherResolution_areRefused() {
   }
 }
 
-QTEST_APPLESS_MAIN(TestSessionRecording)
+EVICAL_TEST(TestSessionRecording)
 #include "tst_session_recording.moc"

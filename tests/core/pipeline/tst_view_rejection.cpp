@@ -1,8 +1,7 @@
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/view_rejection.h"
 #include "tests/support/simulated_pass.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <cmath>
 #include <vector>
@@ -56,5 +55,5 @@ class TestViewRejection : public QObject {
   }
 };
 
-QTEST_GUILESS_MAIN(TestViewRejection)
+EVICAL_TEST(TestViewRejection)
 #include "tst_view_rejection.moc"

@@ -3,6 +3,7 @@
 
 #include "core/recording/recording_reader.h"
 #include "core/recording/recording_writer.h"
+#include "tests/core/recording/recording_contents.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -60,7 +61,7 @@ inline void writeAll(RecordingWriter& writer, const Recording& recording) {
   writer.finish();
 }
 
-inline Recording readAll(RecordingReader& reader) {
+inline Recording readRecording(RecordingReader& reader) {
   Recording recording;
   Packet packet;
   while (reader.read(packet)) {
@@ -77,11 +78,6 @@ inline bool same(const std::vector<ImuSample>& a, const std::vector<ImuSample>& 
         return left.time_ns == right.time_ns && left.angular_rate_rad_s == right.angular_rate_rad_s &&
                left.specific_force_m_s2 == right.specific_force_m_s2;
       });
-}
-
-inline std::string fileContent(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
 inline void writeFile(const std::filesystem::path& path, const std::string& content) {

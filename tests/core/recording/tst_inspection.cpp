@@ -1,12 +1,12 @@
 #include "core/recording/inspection.h"
 #include "core/recording/inspection_json.h"
 #include "tests/core/recording/sample_recording.h"
+#include "tests/support/test_program.h"
 
 #include <QJsonArray>
 #include <QJsonDocument>
 #include <QJsonObject>
 #include <QTemporaryDir>
-#include <QtTest>
 
 #include <cmath>
 #include <functional>
@@ -217,5 +217,5 @@ void TestInspection::hostileEvents_areSurvived() {
   QVERIFY((inspection.streams[0].seen_px == Resolution{65536, 65536}));
 }
 
-QTEST_GUILESS_MAIN(TestInspection)
+EVICAL_TEST(TestInspection)
 #include "tst_inspection.moc"

@@ -1,9 +1,9 @@
 #include "core/base/error.h"
 #include "tests/core/recording/sample_recording.h"
+#include "tests/support/test_program.h"
 
 #include <QProcess>
 #include <QTemporaryDir>
-#include <QtTest>
 
 using namespace evical;
 using namespace evical::test;
@@ -68,7 +68,7 @@ void TestRosbag::roundTrip_isExact() {
   QCOMPARE(reader->streams()[0].message, "dvs_msgs/EventArray");
   QVERIFY((reader->streams()[0].resolution_px == Resolution{346, 260}));
   QCOMPARE(reader->streams()[1].messages, written.imu_samples.size());
-  const Recording read = readAll(*reader);
+  const Recording read = readRecording(*reader);
   QVERIFY(same(read.events, written.events));
   QVERIFY(same(read.imu_samples, written.imu_samples));
   QVERIFY(reader->faults().empty());
@@ -78,7 +78,7 @@ void TestRosbag::roundTrip_isExact() {
 void TestRosbag::select_handsOutOnlyWhatIsWanted() {
   const auto reader = openRecording(makeBag(true, 20'000));
   reader->select({1});
-  const Recording read = readAll(*reader);
+  const Recording read = readRecording(*reader);
   QVERIFY(read.events.empty());
   QVERIFY(same(read.imu_samples, sampleRecording(20'000).imu_samples));
 }
@@ -148,7 +148,7 @@ void TestRosbag::pythonBags_areRead() {
   python({"-c", script, QString::fromStdString(makeBag(false, 20'000).string()),
           QString::fromStdString(copy.string()), compression});
   const auto reader = openRecording(copy);
-  const Recording read = readAll(*reader), written = sampleRecording(20'000);
+  const Recording read = readRecording(*reader), written = sampleRecording(20'000);
   QVERIFY(same(read.events, written.events));
   QVERIFY(same(read.imu_samples, written.imu_samples));
   QVERIFY(reader->faults().empty());
@@ -163,7 +163,7 @@ void TestRosbag::withoutIndex_everythingIsRead() {
   QCOMPARE(reader->streams().size(), 2u);
   const std::size_t events = findStream(*reader, "/dvs/events", StreamType::Events);
   QVERIFY((reader->streams()[events].resolution_px == Resolution{346, 260}));
-  QVERIFY(same(readAll(*reader).events, sampleRecording(50'000).events));
+  QVERIFY(same(readRecording(*reader).events, sampleRecording(50'000).events));
   QCOMPARE(reader->faults().size(), 1u);
   QCOMPARE(reader->faults()[0].kind, "no_index");
 }
@@ -177,7 +177,7 @@ void TestRosbag::truncation_givesWhatIsWhole() {
   for (std::size_t size = 13; size < bytes.size(); size += 1 + bytes.size() / 80) {
     writeFile(path("cut.bag"), bytes.substr(0, size));
     const auto reader = openRecording(path("cut.bag"));
-    const Recording read = readAll(*reader);
+    const Recording read = readRecording(*reader);
     QVERIFY(read.events.size() <= written.events.size());
     QVERIFY(same(read.events, EventSpan(written.events).first(read.events.size())));
     if (size > 5000 && size < bytes.size() * 9 / 10) QVERIFY(!reader->faults().empty());
@@ -201,7 +201,7 @@ void TestRosbag::corruption_neverCrashes() {
     writeFile(path("broken.bag"), broken);
     try {
       const auto reader = openRecording(path("broken.bag"));
-      QVERIFY(readAll(*reader).events.size() < 100'000);
+      QVERIFY(readRecording(*reader).events.size() < 100'000);
     } catch (const CalibrationError& error) {
       QVERIFY(error.kind() == ErrorKind::BadInput);  // the magic was hit
     }
@@ -227,7 +227,7 @@ void TestRosbag::lyingLengths_areRefused() {
   bytes.replace(before_name ? at - 4 : at, 4, 4, '\xF0');
   writeFile(path("lying.bag"), bytes);
   const auto reader = openRecording(path("lying.bag"));
-  QVERIFY(readAll(*reader).events.size() <= 10'000);
+  QVERIFY(readRecording(*reader).events.size() <= 10'000);
   QVERIFY(!reader->faults().empty());
 }
 
@@ -255,5 +255,5 @@ void TestRosbag::unreadableFiles_areNamed() {
   QVERIFY_EXCEPTION_THROWN(openRecording(path("missing")), CalibrationError);
 }
 
-QTEST_GUILESS_MAIN(TestRosbag)
+EVICAL_TEST(TestRosbag)
 #include "tst_rosbag.moc"

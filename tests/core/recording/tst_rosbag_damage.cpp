@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "tests/core/recording/bag_builder.h"
 #include "tests/core/recording/recording_contents.h"
+#include "tests/support/test_program.h"
 
 #include <QTest>
 
@@ -308,5 +309,5 @@ void TestRosbagDamage::stampBeyondASecond_isLeftOut() {
   QVERIFY(contents.hasFault("corrupt"));
 }
 
-QTEST_GUILESS_MAIN(TestRosbagDamage)
+EVICAL_TEST(TestRosbagDamage)
 #include "tst_rosbag_damage.moc"

@@ -3,6 +3,7 @@
 #include "core/recording/recording_reader.h"
 #include "tests/core/recording/bag_builder.h"
 #include "tests/core/recording/recording_contents.h"
+#include "tests/support/test_program.h"
 
 #include <QTest>
 
@@ -331,5 +332,5 @@ void TestRosbagReader::findStream_ofAWrongTopic_namesThoseThereAre() {
   }
 }
 
-QTEST_GUILESS_MAIN(TestRosbagReader)
+EVICAL_TEST(TestRosbagReader)
 #include "tst_rosbag_reader.moc"

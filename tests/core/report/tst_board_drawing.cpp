@@ -1,7 +1,6 @@
 #include "core/base/error.h"
 #include "core/report/board_drawing.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <cmath>
 #include <cstdio>
@@ -102,5 +101,5 @@ void TestBoardDrawing::drawing_ofATooLargeBoardIsRefused() {
   QVERIFY_EXCEPTION_THROWN(boardSvg(board(), -0.01), CalibrationError);
 }
 
-QTEST_APPLESS_MAIN(TestBoardDrawing)
+EVICAL_TEST(TestBoardDrawing)
 #include "tst_board_drawing.moc"

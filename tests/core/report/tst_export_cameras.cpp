@@ -2,12 +2,12 @@
 #include "core/base/error.h"
 #include "core/report/export/distortion_fit.h"
 #include "tests/core/report/exported_rig.h"
+#include "tests/support/test_program.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <QRegularExpression>
 #include <QTemporaryDir>
-#include <QtTest>
 #include <opencv2/core.hpp>
 
 #include <filesystem>
@@ -312,5 +312,5 @@ class TestExportCameras : public QObject {
   }
 };
 
-QTEST_GUILESS_MAIN(TestExportCameras)
+EVICAL_TEST(TestExportCameras)
 #include "tst_export_cameras.moc"

@@ -3,9 +3,9 @@
 #include "core/base/error.h"
 #include "core/report/export/distortion_fit.h"
 #include "tests/core/report/exported_rig.h"
+#include "tests/support/test_program.h"
 
 #include <Eigen/LU>
-#include <QtTest>
 
 #include <limits>
 #include <opencv2/core.hpp>
@@ -416,5 +416,5 @@ class TestExportInertial : public QObject {
   }
 };
 
-QTEST_GUILESS_MAIN(TestExportInertial)
+EVICAL_TEST(TestExportInertial)
 #include "tst_export_inertial.moc"

@@ -1,8 +1,8 @@
 #include "core/data/intrinsics_yaml.h"
 #include "core/report/intrinsics_report.h"
+#include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
-#include <QtTest>
 
 #include <algorithm>
 #include <filesystem>
@@ -85,5 +85,5 @@ class TestIntrinsicsReport : public QObject {
   }
 };
 
-QTEST_GUILESS_MAIN(TestIntrinsicsReport)
+EVICAL_TEST(TestIntrinsicsReport)
 #include "tst_intrinsics_report.moc"

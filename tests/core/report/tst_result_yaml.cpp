@@ -4,9 +4,9 @@
 #include "core/report/csv.h"
 #include "core/report/result_table.h"
 #include "core/report/truth_comparison.h"
+#include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
-#include <QtTest>
 
 #include <fstream>
 #include <limits>
@@ -242,5 +242,5 @@ class TestResultYaml : public QObject {
   }
 };
 
-QTEST_APPLESS_MAIN(TestResultYaml)
+EVICAL_TEST(TestResultYaml)
 #include "tst_result_yaml.moc"

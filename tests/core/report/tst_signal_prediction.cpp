@@ -2,8 +2,7 @@
 #include "core/optimisation/sample_errors.h"
 #include "core/report/signal_prediction.h"
 #include "tests/core/optimisation/simulated_rig.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <algorithm>
 #include <cmath>
@@ -88,5 +87,5 @@ class TestSignalPrediction : public QObject {
   }
 };
 
-QTEST_GUILESS_MAIN(TestSignalPrediction)
+EVICAL_TEST(TestSignalPrediction)
 #include "tst_signal_prediction.moc"

@@ -1,8 +1,8 @@
 #include "core/synthetic/board_truth.h"
 #include "tests/core/synthetic/scenarios.h"
+#include "tests/support/test_program.h"
 
 #include <Eigen/Dense>
-#include <QtTest>
 
 #include <numbers>
 
@@ -99,5 +99,5 @@ class TestBoardTruth : public QObject {
   }
 };
 
-QTEST_APPLESS_MAIN(TestBoardTruth)
+EVICAL_TEST(TestBoardTruth)
 #include "tst_board_truth.moc"

@@ -2,8 +2,7 @@
 #include "core/synthetic/board_truth.h"
 #include "core/synthetic/event_simulator.h"
 #include "tests/core/synthetic/scenarios.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <map>
 #include <numbers>
@@ -239,5 +238,5 @@ class TestEventSimulator : public QObject {
   static double scenarioContrast() { return SceneModel{}.bright_reflectance / SceneModel{}.dark_reflectance; }
 };
 
-QTEST_APPLESS_MAIN(TestEventSimulator)
+EVICAL_TEST(TestEventSimulator)
 #include "tst_event_simulator.moc"

@@ -2,8 +2,7 @@
 #include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/sinusoid_motion.h"
 #include "tests/core/synthetic/scenarios.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 using namespace evical;
 
@@ -109,5 +108,5 @@ class TestImuSimulator : public QObject {
   }
 };
 
-QTEST_APPLESS_MAIN(TestImuSimulator)
+EVICAL_TEST(TestImuSimulator)
 #include "tst_imu_simulator.moc"

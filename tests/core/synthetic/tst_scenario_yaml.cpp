@@ -2,9 +2,9 @@
 #include "core/base/yaml_node.h"
 #include "core/data/intrinsics_yaml.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
-#include <QtTest>
 
 #include <filesystem>
 #include <fstream>
@@ -163,5 +163,5 @@ class TestScenarioYaml : public QObject {
   }
 };
 
-QTEST_GUILESS_MAIN(TestScenarioYaml)
+EVICAL_TEST(TestScenarioYaml)
 #include "tst_scenario_yaml.moc"

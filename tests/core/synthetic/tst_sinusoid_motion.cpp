@@ -1,8 +1,7 @@
 #include "core/geometry/so3.h"
 #include "core/synthetic/sinusoid_motion.h"
 #include "tests/core/synthetic/scenarios.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 using namespace evical;
 
@@ -103,5 +102,5 @@ class TestSinusoidMotion : public QObject {
   }
 };
 
-QTEST_APPLESS_MAIN(TestSinusoidMotion)
+EVICAL_TEST(TestSinusoidMotion)
 #include "tst_sinusoid_motion.moc"

@@ -4,8 +4,7 @@
 #include "core/recording/aedat/stream_description.h"
 #include "core/recording/recording_writer.h"
 #include "tests/core/recording/recording_contents.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <cmath>
 
@@ -362,5 +361,5 @@ void TestAedat4::writer_needsTheResolution() {
   QVERIFY(!std::filesystem::exists(folder_ / "no.aedat4.part"));
 }
 
-QTEST_GUILESS_MAIN(TestAedat4)
+EVICAL_TEST(TestAedat4)
 #include "tst_aedat4.moc"

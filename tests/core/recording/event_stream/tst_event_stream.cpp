@@ -1,8 +1,7 @@
 #include "core/base/error.h"
 #include "tests/core/recording/recording_contents.h"
 #include "tests/support/packed_events.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <cmath>
 
@@ -101,5 +100,5 @@ void TestEventStream::badHeaders_areRefused() {
   }
 }
 
-QTEST_GUILESS_MAIN(TestEventStream)
+EVICAL_TEST(TestEventStream)
 #include "tst_event_stream.moc"

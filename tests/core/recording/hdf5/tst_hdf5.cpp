@@ -3,9 +3,9 @@
 #include "core/base/error.h"
 #include "core/recording/recording_writer.h"
 #include "tests/core/recording/recording_contents.h"
+#include "tests/support/test_program.h"
 
 #include <QProcess>
-#include <QtTest>
 
 #include <cmath>
 
@@ -392,5 +392,5 @@ void TestHdf5::programsEnd_isQuietAfterDamage() {
   QCOMPARE(program.readAllStandardError(), QByteArray());
 }
 
-QTEST_GUILESS_MAIN(TestHdf5)
+EVICAL_TEST(TestHdf5)
 #include "tst_hdf5.moc"

@@ -1,4 +1,5 @@
 #include "core/recording/prophesee/evt3_decoder.h"
+#include "tests/support/test_program.h"
 
 #include <QTest>
 
@@ -130,5 +131,5 @@ void TestEvt3Decoder::outsideTheSensor_isCountedAndDropped() {
   QCOMPARE(decoder.counts().outside, std::uint64_t{6});
 }
 
-QTEST_GUILESS_MAIN(TestEvt3Decoder)
+EVICAL_TEST(TestEvt3Decoder)
 #include "tst_evt3_decoder.moc"

@@ -1,8 +1,7 @@
 #include "core/base/error.h"
 #include "tests/core/recording/recording_contents.h"
 #include "tests/support/packed_events.h"
-
-#include <QtTest>
+#include "tests/support/test_program.h"
 
 #include <cmath>
 
@@ -247,5 +246,5 @@ void TestPropheseeFiles::unknownSize_isSaid() {
   QCOMPARE(contents.eventCount(), 10u);
 }
 
-QTEST_GUILESS_MAIN(TestPropheseeFiles)
+EVICAL_TEST(TestPropheseeFiles)
 #include "tst_prophesee_files.moc"

@@ -2,6 +2,7 @@
 #include "core/base/error.h"
 #include "tests/core/recording/bag_builder.h"
 #include "tests/core/recording/recording_contents.h"
+#include "tests/support/test_program.h"
 
 #include <QTest>
 
@@ -238,5 +239,5 @@ void TestEventPackets::oddLength_losesOnlyTheRest() {
   QVERIFY(faultOf(contents, "corrupt") != nullptr);
 }
 
-QTEST_GUILESS_MAIN(TestEventPackets)
+EVICAL_TEST(TestEventPackets)
 #include "tst_event_packets.moc"

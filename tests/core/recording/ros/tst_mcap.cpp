@@ -3,6 +3,7 @@
 #include "core/recording/recording_writer.h"
 #include "tests/core/recording/recording_contents.h"
 #include "tests/core/recording/ros/ros2_builder.h"
+#include "tests/support/test_program.h"
 
 #include <QProcess>
 #include <QTest>
@@ -232,5 +233,5 @@ void TestMcap::lyingSizes_takeNoMemory() {
   }
 }
 
-QTEST_GUILESS_MAIN(TestMcap)
+EVICAL_TEST(TestMcap)
 #include "tst_mcap.moc"

@@ -1,5 +1,6 @@
 // Recordings of other people come out as an independent decoder found them.
 #include "core/recording/inspection.h"
+#include "tests/support/test_program.h"
 
 #include <QTest>
 
@@ -91,5 +92,5 @@ void TestRosSamples::mcapWithoutEvents() {
   }
 }
 
-QTEST_GUILESS_MAIN(TestRosSamples)
+EVICAL_TEST(TestRosSamples)
 #include "tst_ros_samples.moc"

@@ -4,6 +4,7 @@
 #include "core/recording/ros/compression.h"
 #include "tests/core/recording/recording_contents.h"
 #include "tests/core/recording/ros/ros2_builder.h"
+#include "tests/support/test_program.h"
 
 #include <QTest>
 
@@ -199,5 +200,5 @@ void TestSqliteBag::pathWithOddCharacters_isOpened() {
   QCOMPARE(contents.eventCount(), std::size_t{300});
 }
 
-QTEST_GUILESS_MAIN(TestSqliteBag)
+EVICAL_TEST(TestSqliteBag)
 #include "tst_sqlite_bag.moc"

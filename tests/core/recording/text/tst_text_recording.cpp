@@ -1,9 +1,9 @@
 #include "core/base/error.h"
 #include "core/recording/text/text_lines.h"
 #include "tests/core/recording/sample_recording.h"
+#include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
-#include <QtTest>
 
 using namespace evical;
 using namespace evical::test;
@@ -76,7 +76,7 @@ void TestTextRecording::roundTrip_isExact() {
   const auto reader = openRecording(folder_.path().toStdString());
   QCOMPARE(reader->format(), std::string("text"));
   QCOMPARE(reader->streams().size(), 2u);
-  const Recording read = readAll(*reader);
+  const Recording read = readRecording(*reader);
   QVERIFY(same(read.events, written.events));
   QVERIFY(same(read.imu_samples, written.imu_samples));
   QVERIFY(reader->faults().empty());
@@ -85,7 +85,7 @@ void TestTextRecording::roundTrip_isExact() {
 
 void TestTextRecording::sampleOfOthers_matchesItsSums() {
   const auto reader = openRecording(EVICAL_TEST_DATA "/recordings/evlib_event.txt");
-  const Recording read = readAll(*reader);
+  const Recording read = readRecording(*reader);
   int sum_x = 0, sum_y = 0;
   std::int64_t sum_t = 0;
   for (const Event& event : read.events) {
@@ -104,7 +104,7 @@ void TestTextRecording::imuHeader_decidesTheColumns() {
   writeFile(
       path("gyro_first.txt"),
       "# id timestamp ang_vel_x ang_vel_y ang_vel_z lin_acc_x lin_acc_y lin_acc_z\n7 1.5 1 2 3 4 5 6\n");
-  const Recording read = readAll(*openRecording(path("gyro_first.txt")));
+  const Recording read = readRecording(*openRecording(path("gyro_first.txt")));
   QCOMPARE(read.imu_samples.size(), 1u);
   QCOMPARE(read.imu_samples[0].time_ns, std::int64_t{1'500'000'000});
   QVERIFY((read.imu_samples[0].angular_rate_rad_s == Eigen::Vector3d(1, 2, 3)));
@@ -115,7 +115,7 @@ void TestTextRecording::badLines_areReportedAndLeftOut() {
   writeFile(path("bad.txt"),
             "0.1 1 2 1\n0.2 1 70000 1\nrubbish\n\n# note\r\n0.3 3 4 -1\r\n0.4 1.0e+01 4 1\n0.5 1");
   const auto reader = openRecording(path("bad.txt"));
-  const Recording read = readAll(*reader);
+  const Recording read = readRecording(*reader);
   QCOMPARE(read.events.size(), 3u);
   QVERIFY(!read.events[1].brighter);
   QCOMPARE(int(read.events[2].x_px), 10);
@@ -149,7 +149,7 @@ void TestTextRecording::csv_roundTripIsExact() {
   writeAll(*createRecording(folder.path().toStdString(), "csv", sampleStreams()), written);
   const auto reader = openRecording(folder.path().toStdString());
   QCOMPARE(reader->format(), std::string("csv"));
-  const Recording read = readAll(*reader);
+  const Recording read = readRecording(*reader);
   QVERIFY(same(read.events, written.events));
   QVERIFY(same(read.imu_samples, written.imu_samples));
   QVERIFY(reader->faults().empty());
@@ -181,7 +181,7 @@ void TestTextRecording::columns_areFound() {
   QFETCH(bool, guessed);
   writeFile(path("table.csv"), text.toStdString());
   const auto reader = openRecording(path("table.csv"));
-  const Recording read = readAll(*reader);
+  const Recording read = readRecording(*reader);
   QCOMPARE(read.events.size(), 2u);
   QCOMPARE(qlonglong(read.events[0].time_ns), first_ns);
   QCOMPARE(int(read.events[0].x_px), 300);
@@ -200,7 +200,7 @@ void TestTextRecording::euroc_hasTheRateFirst() {
             "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],a_RS_S_x [m s^-2],"
             "a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\r\n1403636579758555392,-0.1,0.15,0.03,8.2,-0.4,-3.5\r\n");
   const auto reader = openRecording(path("data.csv"));
-  const Recording read = readAll(*reader);
+  const Recording read = readRecording(*reader);
   QCOMPARE(read.imu_samples.size(), 1u);
   QCOMPARE(read.imu_samples[0].time_ns, std::int64_t{1403636579758555392});
   QVERIFY((read.imu_samples[0].angular_rate_rad_s == Eigen::Vector3d(-0.1, 0.15, 0.03)));
@@ -216,13 +216,13 @@ void TestTextRecording::imuUnits_areThoseOfTheHeader() {
   QVERIFY(reader->streams()[0].acceleration_unit == AccelerationUnit::Gravity);
   QVERIFY(reader->streams()[0].angular_rate_unit == AngularRateUnit::DegreesPerSecond);
   QCOMPARE(reader->streams()[0].time_unit_ns, std::int64_t{1000});
-  QCOMPARE(readAll(*reader).imu_samples.at(0).time_ns, std::int64_t{7000});
+  QCOMPARE(readRecording(*reader).imu_samples.at(0).time_ns, std::int64_t{7000});
 }
 
 void TestTextRecording::imuWithoutHeader_isToldByGravity() {
   writeFile(path("imu7.csv"), "0.001,1,2,3,0.1,9.8,0.2\n0.002,1,2,3,0.1,9.8,0.2\n");
   const auto reader = openRecording(path("imu7.csv"));
-  const Recording read = readAll(*reader);
+  const Recording read = readRecording(*reader);
   QVERIFY((read.imu_samples.at(1).angular_rate_rad_s == Eigen::Vector3d(1, 2, 3)));
   QCOMPARE(reader->faults().at(0).kind, std::string("guess"));
 }
@@ -234,5 +234,5 @@ void TestTextRecording::columnsThatMakeNoSense_areRefused() {
   }
 }
 
-QTEST_GUILESS_MAIN(TestTextRecording)
+EVICAL_TEST(TestTextRecording)
 #include "tst_text_recording.moc"

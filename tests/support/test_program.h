@@ -1,0 +1,23 @@
+// A folder's tests in one program: each source registers its test class, and the program runs the one that is
+// asked for by the source's name, with Qt Test's own arguments behind it: `test_core_geometry tst_so3_spline
+// -v2`.
+#pragma once
+
+#include <QtTest>
+
+namespace evical::test_program {
+
+using TestRunner = int (*)(int argc, char** argv);
+
+// `source`: the test's file, whose name without folder and ending is the test's name.
+struct TestRegistration {
+  TestRegistration(const char* source, TestRunner runner);
+};
+
+}  // namespace evical::test_program
+
+#define EVICAL_TEST(Class)                                                                               \
+  static const evical::test_program::TestRegistration registration(__FILE__, [](int argc, char** argv) { \
+    Class test;                                                                                          \
+    return QTest::qExec(&test, argc, argv);                                                              \
+  });
