@@ -35,7 +35,7 @@ enum class ViewKind { Complete, Partial };
 struct BoardView {
   double time_s = 0.0;  // middle of the window
   ViewKind kind = ViewKind::Complete;
-  std::vector<CircleObservation> circles;  // by circle index, without gaps in neither order nor time
+  std::vector<CircleObservation> circles;  // in order of circle index; some may be missing
 };
 
 // Why a window has no board: the first stage at which it was lost.

@@ -1,4 +1,4 @@
-// One event, as plain as it can be.
+// One event, without padding.
 #pragma once
 
 #include <cstdint>

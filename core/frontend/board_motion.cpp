@@ -52,7 +52,7 @@ Eigen::Matrix2d ImageFrame::gradient(const PlaneFlow& f, const Eigen::Vector2d& 
   return g / scale_px;
 }
 
-Eigen::Matrix3d moved(const Eigen::Matrix3d& ideal_from_board, const ImageFrame& frame, const PlaneFlow& f) {
+Eigen::Matrix3d warped(const Eigen::Matrix3d& ideal_from_board, const ImageFrame& frame, const PlaneFlow& f) {
   const double s = frame.scale_px;
   const Eigen::Matrix3d n = normaliser(frame);
   Eigen::Matrix3d step;
@@ -66,7 +66,7 @@ BoardMotion predicted(const BoardMotion& motion, std::int64_t time_ns) {
   const double dt = static_cast<double>(time_ns - motion.time_ns) * 1e-9;
   next.time_ns = time_ns;
   const PlaneFlow travel_px = dt * (motion.velocity_px_s + 0.5 * dt * motion.acceleration_px_s2);
-  next.ideal_from_board = moved(motion.ideal_from_board, motion.frame, travel_px);
+  next.ideal_from_board = warped(motion.ideal_from_board, motion.frame, travel_px);
   // The frame goes with the board.
   next.frame.centre_px += motion.frame.flow(travel_px, motion.frame.centre_px);
   next.velocity_px_s =

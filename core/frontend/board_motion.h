@@ -58,9 +58,9 @@ struct BoardMotion {
 // The board as it should be at another time, moving on as it does.
 BoardMotion predicted(const BoardMotion& motion, std::int64_t time_ns);
 
-// Homography moved by a small plane flow: H <- (I + E) H.
-Eigen::Matrix3d moved(const Eigen::Matrix3d& ideal_from_board, const ImageFrame& frame,
-                      const PlaneFlow& shift_px);
+// Homography after a small plane flow: H <- (I + E) H.
+Eigen::Matrix3d warped(const Eigen::Matrix3d& ideal_from_board, const ImageFrame& frame,
+                       const PlaneFlow& shift_px);
 
 // Image of one circle: {q : (q - centre)^T shape (q - centre) = 1}, in ideal pixels.
 struct CircleImage {

@@ -174,7 +174,7 @@ double median(std::vector<double>& values) {
 }
 
 void apply(const NormalVector& step, BoardMotion& motion) {
-  motion.ideal_from_board = moved(motion.ideal_from_board, motion.frame, step.head<kFlowTerms>());
+  motion.ideal_from_board = warped(motion.ideal_from_board, motion.frame, step.head<kFlowTerms>());
   motion.velocity_px_s += step.segment<kFlowTerms>(kFlowTerms);
   motion.acceleration_px_s2 += step.segment<kFlowTerms>(2 * kFlowTerms);
   motion.radius_offset_px += step(kUnknowns - 1);

@@ -29,7 +29,7 @@ void checkCount(const std::vector<SensorView>& views, std::size_t count, const c
 }
 
 // What a solution starts from.
-struct Ground {
+struct Estimation {
   const CircleBoard& board;
   Resolution resolution_px;
   std::optional<CameraIntrinsics> guess;
@@ -38,27 +38,27 @@ struct Ground {
 };
 
 Bundle bestOf(const std::vector<CameraIntrinsics>& starts, const std::vector<SensorView>& views,
-              const Ground& ground) {
+              const Estimation& given) {
   std::optional<Bundle> best;
   for (const CameraIntrinsics& start : starts) {
-    ground.context.throwIfStopped();
-    Bundle bundle = solveBundle(start, views, ground.board, ground.options, ground.context);
+    given.context.throwIfStopped();
+    Bundle bundle = solveBundle(start, views, given.board, given.options, given.context);
     if (!best || bundle.scale < best->scale) best = std::move(bundle);
   }
   return *best;
 }
 
 // Equidistant only where radial-tangential does not do.
-Bundle solve(const std::vector<SensorView>& views, const Ground& ground) {
+Bundle solve(const std::vector<SensorView>& views, const Estimation& given) {
   const auto with = [&](CameraModel model) {
-    return bestOf(intrinsicsStarts(views, model, ground.resolution_px, ground.guess), views, ground);
+    return bestOf(intrinsicsStarts(views, model, given.resolution_px, given.guess), views, given);
   };
-  const IntrinsicsModel wanted = ground.options.model;
+  const IntrinsicsModel wanted = given.options.model;
   if (wanted == IntrinsicsModel::PinholeEquidistant) return with(CameraModel::PinholeEquidistant);
   Bundle radtan = with(CameraModel::PinholeRadtan);
   if (wanted == IntrinsicsModel::PinholeRadtan) return radtan;
   Bundle equidistant = with(CameraModel::PinholeEquidistant);
-  return equidistant.scale < ground.options.equidistant_gain * radtan.scale ? equidistant : radtan;
+  return equidistant.scale < given.options.equidistant_gain * radtan.scale ? equidistant : radtan;
 }
 
 void addFit(const Bundle& bundle, IntrinsicsResult& result) {
@@ -89,8 +89,8 @@ IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const Intrinsi
           : intrinsicsStarts(all, CameraModel::PinholeRadtan, input.resolution_px, input.seen_with).back();
   const std::vector<SensorView> views = selectViews(all, input.board, rough, options);
   checkCount(views, views.size(), "views, far enough from each other in time,", input, options);
-  const Ground ground{input.board, input.resolution_px, input.seen_with, options, context};
-  const Bundle bundle = input.start ? bestOf({*input.start}, views, ground) : solve(views, ground);
+  const Estimation given{input.board, input.resolution_px, input.seen_with, options, context};
+  const Bundle bundle = input.start ? bestOf({*input.start}, views, given) : solve(views, given);
 
   IntrinsicsResult result;
   result.intrinsics = bundle.intrinsics;

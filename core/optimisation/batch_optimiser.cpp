@@ -217,7 +217,7 @@ void Batch::holdStillAxes() {
     problem_.held_axes[imu] = stillAxes(input_, problem_.state(), problem_.scales, imu);
 }
 
-// To the end, with the weights it found itself; once more where that changes them.
+// Solves until convergence with weights that follow from the residuals, and again where they change.
 void Batch::solveLastStage() {
   const std::vector<ReleaseStages> all = stages();
   constexpr int kMostReweightings = 3;

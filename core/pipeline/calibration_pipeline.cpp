@@ -78,7 +78,7 @@ void checkDuration(const Session& session, const RecordingPass& pass) {
     check(imu.name, evical::secondsSince(imu.samples.front().time_ns, imu.samples.back().time_ns));
 }
 
-// Initialisation, too, must not look for what is not free.
+// Initialisation must hold what the batch holds.
 void holdTimeOffsets(CalibrationInput& input) {
   for (std::size_t k = 0; k < input.cameras.size(); ++k)
     if (!input.isReferenceCamera(k))

@@ -157,11 +157,11 @@ void EventView::paintNote(QPainter& painter, const QString& text, bool below) co
   if (text.isEmpty()) return;
   const QSize size = painter.fontMetrics().size(Qt::TextSingleLine, text) + QSize(16, 8);
   const QRect box = noteBox(size, below);
-  QColor ground = theme().window;
-  ground.setAlphaF(0.85f);
+  QColor background = theme().window;
+  background.setAlphaF(0.85f);
   painter.setRenderHint(QPainter::Antialiasing);
   painter.setPen(Qt::NoPen);
-  painter.setBrush(ground);
+  painter.setBrush(background);
   painter.drawRoundedRect(box, 4, 4);
   painter.setPen(theme().text);
   painter.drawText(box, Qt::AlignCenter, text);

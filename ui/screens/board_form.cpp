@@ -43,7 +43,7 @@ BoardForm::BoardForm(QWidget* parent)
       tr("Asymmetric: between two staggered lines, half of what lies between neighbours in a "
          "line. Symmetric: between neighbours"));
   radius_mm_->setToolTip(tr("Of a circle, as printed"));
-  circles_->setToolTip(tr("Which way the printed circles differ from their ground"));
+  circles_->setToolTip(tr("Which way the printed circles differ from their background"));
   problem_->setProperty("role", "problem");
   problem_->setWordWrap(true);
   auto* const spacing_hint = new QLabel(tr("Between two rows. Measure it on the print."), this);

@@ -97,7 +97,7 @@ void MainWindow::makeCalibrateMenu() {
   actions_.cancel =
       makeAction(this, "cancel", tr("Ca&ncel"), tr("Stop what is running"), QKeySequence("Shift+F5"));
   actions_.calibrate->setIcon(icon("calibrate", QPalette::HighlightedText));
-  actions_.calibrate->setIconVisibleInMenu(false);  // it is tinted for the button's ground
+  actions_.calibrate->setIconVisibleInMenu(false);  // it is tinted for the button's background
   connect(actions_.calibrate, &QAction::triggered, this, &MainWindow::calibrate);
   connect(actions_.cancel, &QAction::triggered, this, &MainWindow::cancel);
   menuBar()->addMenu(tr("&Calibrate"))->addActions({actions_.calibrate, actions_.cancel});

@@ -95,7 +95,7 @@ void TestBoardMotion::flowBasis_matchesMovedHomography() {
   constexpr double kStep_px = 1e-4;
   for (int term = 0; term < 8; ++term) {
     const PlaneFlow step = kStep_px * PlaneFlow::Unit(term);
-    const Eigen::Matrix3d ahead = moved(h, kFrame, step), behind = moved(h, kFrame, -step);
+    const Eigen::Matrix3d ahead = warped(h, kFrame, step), behind = warped(h, kFrame, -step);
     for (const Eigen::Vector2d& p :
          {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(0.2, 0.1), Eigen::Vector2d(0.05, 0.3)}) {
       const Eigen::Vector2d difference = (apply(ahead, p) - apply(behind, p)) / (2.0 * kStep_px);
@@ -190,8 +190,8 @@ void TestBoardMotion::fit_withoutNoise_recoversMotion() {
   const SyntheticWindow synthetic(burstsOf(moving, std::min(0.02 / speed_factor, 0.05), 0.0, random),
                                   moving.board.circles);
   BoardMotion start = moving.motionAt(0.0);
-  start.ideal_from_board = moved(start.ideal_from_board, start.frame,
-                                 (PlaneFlow() << 1.2, 0.5, -0.4, -0.9, 0.3, 0.5, 0, 0).finished());
+  start.ideal_from_board = warped(start.ideal_from_board, start.frame,
+                                  (PlaneFlow() << 1.2, 0.5, -0.4, -0.9, 0.3, 0.5, 0, 0).finished());
   start.velocity_px_s *= 0.8;
   const TrackingOptions options;
   const auto fit =
