@@ -47,7 +47,7 @@ if(GUI)
 endif()
 
 run(ignored "${CMAKE_COMMAND}" -S "${SOURCE}/examples" -B "${examples}" -G "${GENERATOR}" "-DCMAKE_PREFIX_PATH=${prefix}"
-    "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}" "-DCMAKE_CXX_FLAGS=${FLAGS}")
+    "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_FLAGS=${FLAGS}")
 run(ignored "${CMAKE_COMMAND}" --build "${examples}")
 
 file(GLOB recording "${RECORDING}/recording*")
