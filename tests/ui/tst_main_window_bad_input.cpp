@@ -320,7 +320,8 @@ class TestMainWindowBadInput : public QObject {
       QProcessEnvironment environment = QProcessEnvironment::systemEnvironment();
       environment.insert(kVendors, kNoVendor);
       process.setProcessEnvironment(environment);
-      process.start(QCoreApplication::applicationFilePath(), {"withoutOpenGl_everythingElseWorks"});
+      process.start(QCoreApplication::applicationFilePath(),
+                    {"tst_main_window_bad_input", "withoutOpenGl_everythingElseWorks"});
       QVERIFY(process.waitForFinished(kPatience_ms));
       QVERIFY2(process.exitStatus() == QProcess::NormalExit && process.exitCode() == 0,
                process.readAll().constData());

@@ -275,7 +275,7 @@ void TestView3D::withoutOpenGl_saysSo() {
     QProcessEnvironment environment = QProcessEnvironment::systemEnvironment();
     environment.insert(kVendors, kNoVendor);
     process.setProcessEnvironment(environment);
-    process.start(QCoreApplication::applicationFilePath(), {"withoutOpenGl_saysSo"});
+    process.start(QCoreApplication::applicationFilePath(), {"tst_view3d", "withoutOpenGl_saysSo"});
     QVERIFY(process.waitForFinished());
     QVERIFY2(process.exitStatus() == QProcess::NormalExit && process.exitCode() == 0,
              process.readAll().constData());

@@ -386,7 +386,7 @@ void TestHdf5::damageAnywhere_neverCrashes() {
 // The library looked for what it had lost, and said so, when the program ended.
 void TestHdf5::programsEnd_isQuietAfterDamage() {
   QProcess program;
-  program.start(QCoreApplication::applicationFilePath(), {"damageAnywhere_neverCrashes"});
+  program.start(QCoreApplication::applicationFilePath(), {"tst_hdf5", "damageAnywhere_neverCrashes"});
   QVERIFY(program.waitForFinished(120'000));
   QCOMPARE(program.exitCode(), 0);
   QCOMPARE(program.readAllStandardError(), QByteArray());
