@@ -1,10 +1,29 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds with warnings as errors, runs every test, and checks the sources' format.
+# Installs what is missing, checks the sources' format, builds with warnings as errors, and runs every test. Prints at
+# its end how long each of these took.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-packaging/install-dependencies.sh
-cmake --preset ci
-cmake --build --preset ci
-ctest --preset ci
-packaging/check-format.sh
+times=()
+step() { # NAME COMMAND...
+  local name=$1 begin=$SECONDS code=0
+  shift
+  "$@" || code=$?
+  times+=("$(printf '%-20s %5d s' "$name" $((SECONDS - begin)))")
+  [ "$code" -eq 0 ] || failed+=("$name")
+  return "$code"
+}
+failed=()
+summary() {
+  printf '\n'
+  [ "${#times[@]}" -eq 0 ] || printf '%s\n' "${times[@]}"
+  printf '%-20s %5d s\n' "all of it" "$SECONDS"
+  [ "${#failed[@]}" -eq 0 ] || printf 'Failed: %s\n' "${failed[*]}"
+}
+trap summary EXIT
+
+step install packaging/install-dependencies.sh
+step format packaging/check-format.sh
+step configure cmake --preset ci
+step build cmake --build --preset ci
+step tests ctest --preset ci
