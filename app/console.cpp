@@ -11,12 +11,6 @@
 namespace evical {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
 std::stop_source& stopSource() {
   static std::stop_source source;
   return source;
@@ -36,12 +30,7 @@ const char* levelName(LogLevel level) {
 
 }  // namespace
 
-Console::Console(bool quiet)
-    : quiet_(quiet),
-      on_terminal_(isatty(STDERR_FILENO) != 0),
-      begin_(Clock::now()),
-      stage_begin_(begin_),
-      last_shown_(begin_) {}
+Console::Console(bool quiet) : quiet_(quiet), on_terminal_(isatty(STDERR_FILENO) != 0) {}
 
 Console::~Console() {
   const std::lock_guard lock(mutex_);
@@ -56,8 +45,8 @@ void Console::clearLine() {
 void Console::stageStarted(std::string_view stage) {
   const std::lock_guard lock(mutex_);
   stage_ = stage;
-  stage_begin_ = Clock::now();
-  log_text_ += fmt::format("{:9.3f} s  stage    {}\n", secondsSince(begin_), stage);
+  of_stage_.restart_s();
+  log_text_ += fmt::format("{:9.3f} s  stage    {}\n", of_all_.elapsed_s(), stage);
   if (quiet_) return;
   clearLine();
   if (!on_terminal_) fmt::print(stderr, "{} ...\n", stage);
@@ -66,9 +55,9 @@ void Console::stageStarted(std::string_view stage) {
 void Console::stageProgress(double fraction) {
   constexpr double kRefresh_s = 0.1;
   const std::lock_guard lock(mutex_);
-  if (quiet_ || !on_terminal_ || secondsSince(last_shown_) < kRefresh_s) return;
-  last_shown_ = Clock::now();
-  const double elapsed_s = secondsSince(stage_begin_);
+  if (quiet_ || !on_terminal_ || since_shown_.elapsed_s() < kRefresh_s) return;
+  since_shown_.restart_s();
+  const double elapsed_s = of_stage_.elapsed_s();
   std::string left;
   if (fraction > 0.02) left = fmt::format(", {:.0f} s left", elapsed_s * (1.0 - fraction) / fraction);
   fmt::print(stderr, "\r\033[K{}: {:3.0f} %{}", stage_, 100.0 * fraction, left);
@@ -78,7 +67,7 @@ void Console::stageProgress(double fraction) {
 
 void Console::log(LogLevel level, std::string_view text) {
   const std::lock_guard lock(mutex_);
-  log_text_ += fmt::format("{:9.3f} s  {:<7}  {}\n", secondsSince(begin_), levelName(level), text);
+  log_text_ += fmt::format("{:9.3f} s  {:<7}  {}\n", of_all_.elapsed_s(), levelName(level), text);
   if (quiet_ || level == LogLevel::Debug) return;
   clearLine();
   fmt::print(stderr, "{}{}\n", level == LogLevel::Warning ? "warning: " : "  ", text);

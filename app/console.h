@@ -3,7 +3,8 @@
 
 #include "core/base/progress.h"
 
-#include <chrono>
+#include "core/base/stopwatch.h"
+
 #include <mutex>
 #include <stop_token>
 #include <string>
@@ -29,7 +30,7 @@ class Console final : public ProgressSink {
   bool quiet_, on_terminal_;
   bool line_shown_ = false;
   std::string stage_, log_text_;
-  std::chrono::steady_clock::time_point begin_, stage_begin_, last_shown_;
+  Stopwatch of_all_, of_stage_, since_shown_;
 };
 
 // SIGINT and SIGTERM ask the returned token to stop; a second one ends the program at once.

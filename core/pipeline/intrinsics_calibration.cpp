@@ -1,6 +1,7 @@
 #include "core/pipeline/intrinsics_calibration.h"
 
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 #include "core/base/time.h"
 #include "core/geometry/projection_difference.h"
 #include "core/intrinsics/estimate_intrinsics.h"
@@ -10,13 +11,10 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <utility>
 
 namespace evical {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 // A refit moves centres by less than this part of what the lens changed by. A change c that grows with the
 // third power of the distance from the image's middle, up to L, bends a circle of radius r so that its
@@ -54,7 +52,7 @@ IntrinsicsResult estimate(const Session& alone, const RecordingPass& pass,
 }  // namespace
 
 IntrinsicsRun calibrateIntrinsics(const Session& session, std::size_t camera, const RunContext& context) {
-  const Clock::time_point begin = Clock::now();
+  const Stopwatch stopwatch;
   Session alone = cameraAlone(session, camera);
   SessionCamera& seen = alone.cameras.front();
   context.progress.stageStarted("first look");
@@ -78,7 +76,7 @@ IntrinsicsRun calibrateIntrinsics(const Session& session, std::size_t camera, co
     if (kRefitShare * moved->rms_px < alone.options.intrinsics.settled_px) break;
   }
   checkBoardSize(run.pass.cameras.front(), alone.board, alone.options.front_end.extent);
-  run.result.elapsed_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  run.result.elapsed_s = stopwatch.elapsed_s();
   return run;
 }
 

@@ -1,6 +1,7 @@
 #include "core/pipeline/recording_pass.h"
 
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 #include "core/base/time.h"
 #include "core/pipeline/bounded_queue.h"
 #include "core/pipeline/session_recording.h"
@@ -8,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <exception>
 #include <limits>
 #include <memory>
@@ -21,12 +21,6 @@ namespace {
 
 constexpr std::size_t kQueuedBatches = 16;
 constexpr std::size_t kBatchEvents = 50'000;
-
-using Clock = std::chrono::steady_clock;
-
-double secondsOf(Clock::duration duration) {
-  return std::chrono::duration<double>(duration).count();
-}
 
 // What the reading thread hands to the window thread: bursts of one camera.
 struct BurstBatch {
@@ -136,9 +130,9 @@ class WindowWorker {
     try {
       while (std::optional<BurstBatch> batch = queue.pop()) {
         if (context_.stop.stop_requested()) break;
-        const Clock::time_point before = Clock::now();
+        const Stopwatch stopwatch;
         handle(*batch);
-        busy_s_ += secondsOf(Clock::now() - before);
+        busy_s_ += stopwatch.elapsed_s();
       }
     } catch (...) {
       failure_ = std::current_exception();
@@ -153,12 +147,12 @@ class WindowWorker {
 
   std::vector<BoardObservations> finish() {
     std::vector<BoardObservations> observations(trackers_.size());
-    const Clock::time_point before = Clock::now();
+    const Stopwatch stopwatch;
     for (std::size_t k = 0; k < trackers_.size(); ++k) {
       if (trackers_[k]) observations[k] = trackers_[k]->finish();
       observations[k].camera = session_.cameras[k].name;
     }
-    busy_s_ += secondsOf(Clock::now() - before);
+    busy_s_ += stopwatch.elapsed_s();
     return observations;
   }
 
@@ -285,7 +279,7 @@ class ReadingPass {
 RecordingPass readAndDetect(const Session& session, const RunContext& context,
                             const ObserverFactory& observers, CalibrationObserver* observer) {
   RecordingPass result;
-  const Clock::time_point begin = Clock::now();
+  const Stopwatch stopwatch;
   ReadingPass reading(session, result);
   WindowWorker worker(session, context, observers, observer);
   BoundedQueue<BurstBatch> queue(kQueuedBatches);
@@ -297,7 +291,7 @@ RecordingPass readAndDetect(const Session& session, const RunContext& context,
       queue.close();
       throw;
     }
-    result.read_s = secondsOf(Clock::now() - begin);
+    result.read_s = stopwatch.elapsed_s();
     queue.close();
   }
   worker.rethrow();

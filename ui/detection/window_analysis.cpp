@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/detection/window_analysis.h"
 
+#include "core/base/stopwatch.h"
 #include "core/base/time.h"
 #include "core/frontend/circle_measurement.h"
 #include "core/frontend/ring_vote.h"
@@ -8,7 +9,6 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace evical::ui {
@@ -16,16 +16,6 @@ namespace {
 
 constexpr double kSearchReach_s = 0.08;  // the longest half window of a search
 constexpr double kSlowest_px_s = 10.0;
-
-class Stopwatch {
- public:
-  double elapsed_s() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-};
 
 std::int64_t middleOf(const WindowQuestion& question) {
   return question.start_ns + nanosecondsFrom(question.time_s);

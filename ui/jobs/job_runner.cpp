@@ -3,11 +3,11 @@
 
 #include "core/base/error.h"
 #include "core/base/modest_thread.h"
+#include "core/base/stopwatch.h"
 
 #include <QMetaObject>
 
 #include <algorithm>
-#include <chrono>
 #include <exception>
 #include <mutex>
 #include <new>
@@ -17,8 +17,6 @@
 
 namespace evical::ui {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr int kTick_ms = 40;
 
@@ -86,7 +84,7 @@ struct JobRunner::Mailbox final : ProgressSink {
     stage = textOf(name);
     new_stages.push_back(stage);
     setFraction(0.0);
-    log_text += QString::asprintf("%9.3f s  stage    ", elapsed_s()) + stage + "\n";
+    log_text += QString::asprintf("%9.3f s  stage    ", stopwatch.elapsed_s()) + stage + "\n";
   }
   void stageProgress(double of_stage) override {
     const std::lock_guard lock(mutex);
@@ -94,11 +92,10 @@ struct JobRunner::Mailbox final : ProgressSink {
   }
   void log(LogLevel level, std::string_view text) override {
     const std::lock_guard lock(mutex);
-    lines.push_back({level, elapsed_s(), textOf(text)});
-    log_text += QString::asprintf("%9.3f s  %-7s  ", elapsed_s(), levelName(level)) + textOf(text) + "\n";
+    lines.push_back({level, stopwatch.elapsed_s(), textOf(text)});
+    log_text +=
+        QString::asprintf("%9.3f s  %-7s  ", stopwatch.elapsed_s(), levelName(level)) + textOf(text) + "\n";
   }
-
-  double elapsed_s() const { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
   // Stages that nobody announced count for nothing.
   void setFraction(double of_stage) {
@@ -119,11 +116,11 @@ struct JobRunner::Mailbox final : ProgressSink {
   // Time goes on at the mean pace so far; too little done says nothing.
   double remaining_s() const {
     constexpr double kEnough = 0.03;
-    return fraction < kEnough ? -1.0 : elapsed_s() * (1.0 - fraction) / fraction;
+    return fraction < kEnough ? -1.0 : stopwatch.elapsed_s() * (1.0 - fraction) / fraction;
   }
 
   std::mutex mutex;
-  const Clock::time_point begin = Clock::now();
+  const Stopwatch stopwatch;
   const std::vector<JobStage> stages;
   QString stage, log_text;
   double stage_fraction = 0.0, fraction = 0.0;
@@ -186,8 +183,8 @@ void JobRunner::tick() {
     const std::lock_guard lock(mailbox_->mutex);
     stages.swap(mailbox_->new_stages);
     lines.swap(mailbox_->lines);
-    progress = {mailbox_->stage, mailbox_->stage_fraction, mailbox_->fraction, mailbox_->elapsed_s(),
-                mailbox_->remaining_s()};
+    progress = {mailbox_->stage, mailbox_->stage_fraction, mailbox_->fraction,
+                mailbox_->stopwatch.elapsed_s(), mailbox_->remaining_s()};
   }
   for (const QString& stage : stages) emit stageStarted(stage);
   for (const LogLine& line : lines) emit logged(line);

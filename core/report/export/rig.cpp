@@ -1,5 +1,6 @@
 #include "core/report/export/rig.h"
 
+#include "core/base/element.h"
 #include "core/base/error.h"
 
 #include <fmt/format.h>
@@ -10,11 +11,6 @@
 
 namespace evical {
 namespace {
-
-template <class T>
-T at(const std::vector<T>& values, std::size_t i) {
-  return i < values.size() ? values[i] : T{};
-}
 
 // Two names may become one ("a b", "a/b"): then the later one gets a number.
 std::string fileName(const std::string& name, std::set<std::string>& taken) {
@@ -40,7 +36,7 @@ void checkNumbers(const std::string& place, const RigidTransform& pose, double t
 
 RigCamera cameraOf(const NamedResult& result, std::size_t i, std::set<std::string>& taken) {
   const std::string& name = result.names.cameras[i];
-  const auto intrinsics = at(result.names.intrinsics, i);
+  const auto intrinsics = elementOrNone(result.names.intrinsics, i);
   if (!intrinsics || !intrinsics->resolution_px.known())
     throw badInput(fmt::format("result: cameras.{}", name),
                    intrinsics ? "has no resolution_px" : "has no intrinsics",
@@ -49,16 +45,16 @@ RigCamera cameraOf(const NamedResult& result, std::size_t i, std::set<std::strin
   checkNumbers(fmt::format("result: cameras.{}", name), state.reference_from_camera, state.time_offset_s, {});
   return {name,
           fileName(name, taken),
-          at(result.names.camera_streams, i),
+          elementOrNone(result.names.camera_streams, i),
           *intrinsics,
           state.reference_from_camera,
           state.time_offset_s,
-          at(result.result.cameras, i)};
+          elementOrNone(result.result.cameras, i)};
 }
 
 RigImu imuOf(const NamedResult& result, std::size_t i, std::set<std::string>& taken) {
   const std::string& name = result.names.imus[i];
-  const KnownOfImu known = at(result.names.known_of_imus, i);
+  const KnownOfImu known = elementOrNone(result.names.known_of_imus, i);
   const ImuState& state = result.result.state.imus.at(i);
   Eigen::Matrix<double, 33, 1> others;
   others << state.gyroscope_bias_rad_s, state.accelerometer_bias_m_s2, state.gyroscope_mapping.reshaped(),

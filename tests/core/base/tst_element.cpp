@@ -1,0 +1,18 @@
+#include "core/base/element.h"
+
+using namespace evical;
+
+class TestElement : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void elementOrNone_isTheElement_orEmptyBeyondTheEnd() {
+    const std::vector<int> numbers = {4, 5};
+    QCOMPARE(elementOrNone(numbers, 1), 5);
+    QCOMPARE(elementOrNone(numbers, 2), 0);
+  }
+};
+
+EVICAL_TEST(TestElement)
+#include "tests/support/test_program.h"
+#include "tst_element.moc"
