@@ -5,13 +5,14 @@
 cmake_minimum_required(VERSION 3.25)
 
 set(may_include_base "base")
-set(may_include_geometry "base;geometry")
-set(may_include_data "base;geometry;data")
+set(may_include_numerics "base;numerics")
+set(may_include_geometry "base;numerics;geometry")
+set(may_include_data "base;numerics;geometry;data")
 set(stages recording frontend intrinsics initialisation optimisation report synthetic)
 foreach(stage IN LISTS stages)
-  set(may_include_${stage} "base;geometry;data;${stage}")
+  set(may_include_${stage} "base;numerics;geometry;data;${stage}")
 endforeach()
-set(may_include_pipeline "base;geometry;data;${stages};pipeline")
+set(may_include_pipeline "base;numerics;geometry;data;${stages};pipeline")
 
 set(may_include_ui_theme "theme")
 foreach(part document jobs)

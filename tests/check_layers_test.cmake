@@ -30,6 +30,9 @@ check(clean "" core/frontend/a.cpp "#include \"core/data/event.h\"" core/data/ev
 check(stage_to_stage "core/frontend may not include core/optimisation"
       core/frontend/a.cpp "#include \"core/optimisation/b.h\"")
 check(against_arrow "core/base may not include core/geometry" core/base/a.h "#include \"core/geometry/b.h\"")
+check(numerics_to_geometry "core/numerics may not include core/geometry" core/numerics/a.h "#include \"core/geometry/b.h\"")
+check(numerics_everywhere "" core/geometry/a.cpp "#include \"core/numerics/b.h\"" core/report/a.cpp "#include \"core/numerics/b.h\""
+      core/numerics/b.h "#include <Eigen/Core>")
 check(stage_to_pipeline "core/report may not include core/pipeline" core/report/a.h "#include \"core/pipeline/b.h\"")
 check(core_to_app "core knows nothing of app" core/report/a.cpp "#include \"app/b.h\"")
 check(qt_in_core "core has neither Qt nor VTK" core/report/a.cpp "#include <QString>")

@@ -4,6 +4,8 @@
 // touched by it.
 #include "core/frontend/board_motion.h"
 
+#include "core/numerics/robust.h"
+
 #include <Eigen/Cholesky>
 
 #include <algorithm>
@@ -166,13 +168,6 @@ void addSector(const SectorSums& sums, const ImageFrame& frame, NormalEquations&
   equations.vector(kUnknowns - 1) += sums.wr;
 }
 
-double median(std::vector<double>& values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 void apply(const NormalVector& step, BoardMotion& motion) {
   motion.ideal_from_board = warped(motion.ideal_from_board, motion.frame, step.head<kFlowTerms>());
   motion.velocity_px_s += step.segment<kFlowTerms>(kFlowTerms);
@@ -215,7 +210,7 @@ std::optional<BoardMotion> fitBoardMotion(const BurstWindow& window, const Board
     apply(step, motion);
     motion.residual_rms_px = std::sqrt(equations.weighted_squares / equations.weight);
     motion.bursts = equations.bursts;
-    motion.typical_events = median(equations.square_events);
+    motion.typical_events = medianOf(std::move(equations.square_events));
     const bool at_last_gate = gate_px <= options.last_gate_px;
     if (at_last_gate && step.head<kFlowTerms>().cwiseAbs().maxCoeff() < kSettled_px) break;
     gate_px = std::max(gate_px * options.gate_ratio, options.last_gate_px);

@@ -1,5 +1,7 @@
 #include "core/frontend/board_placement.h"
 
+#include "core/numerics/robust.h"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -114,7 +116,7 @@ PlaneFlow fitFlow(const ImageFrame& frame, const std::vector<IdealCircle>& circl
     for (const IdealCircle& circle : circles) {
       const PlaneFlowBasis basis = frame.basis(circle.centre_px);
       const Eigen::Vector2d error = circle.velocity_px_s - basis * flow;
-      const double w = round == 0 ? 1.0 : 1.0 / (1.0 + error.squaredNorm() / (kScale_px_s * kScale_px_s));
+      const double w = round == 0 ? 1.0 : cauchyWeight(error.squaredNorm() / (kScale_px_s * kScale_px_s));
       matrix += w * basis.transpose() * basis;
       vector += w * basis.transpose() * circle.velocity_px_s;
     }

@@ -1,5 +1,8 @@
 #include "core/frontend/circle_pairs.h"
 
+#include "core/numerics/angles.h"
+#include "core/numerics/robust.h"
+
 #include <Eigen/Cholesky>
 
 #include <algorithm>
@@ -36,9 +39,7 @@ Eigen::Vector2d circleVelocity(const std::vector<const NormalFlow*>& flows,
                                const Eigen::Vector2d& direction) {
   std::vector<double> speeds;
   for (const NormalFlow* flow : flows) speeds.push_back(flow->velocity_px_s.norm());
-  std::nth_element(speeds.begin(), speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2),
-                   speeds.end());
-  const double typical = speeds[speeds.size() / 2];
+  const double typical = medianOf(std::move(speeds));
   Eigen::Vector2d velocity = 1.2 * typical * direction;  // the median of |cos| over an arc is near 0.8
   constexpr int kRounds = 5;
   constexpr double kScale = 0.3;
@@ -50,7 +51,7 @@ Eigen::Vector2d circleVelocity(const std::vector<const NormalFlow*>& flows,
       const double speed = v.norm();
       const Eigen::Vector2d n = v / speed;
       const double error = (speed - n.dot(velocity)) / (kScale * typical);
-      const double w = 1.0 / (1.0 + error * error);
+      const double w = cauchyWeight(error * error);
       matrix += w * n * n.transpose();
       vector += w * speed * n;
     }
@@ -119,7 +120,7 @@ struct Partner {
 };
 
 bool moveAlike(const EventCluster& leading, const EventCluster& trailing, const NormalFlowOptions& options) {
-  const double cosine = std::cos(options.largest_pair_angle_deg * M_PI / 180.0);
+  const double cosine = std::cos(options.largest_pair_angle_deg * kRadPerDeg);
   const Eigen::Vector2d line = leading.centroid_px - trailing.centroid_px;
   const double length = line.norm();
   return length > 0.0 && length <= 2.0 * options.largest_radius_px &&

@@ -1,5 +1,7 @@
 #include "core/frontend/moving_circle.h"
 
+#include "core/numerics/robust.h"
+
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
@@ -47,7 +49,7 @@ CircleSums sumUp(const std::vector<CirclePoint>& points, const MovingCircle& cir
     const double nx = dx / distance, ny = dy / distance;
     const double cosine = point.lead * (nx * circle.velocity_px_s.x() + ny * circle.velocity_px_s.y());
     if (cosine < options.least_polarity_cosine * speed) continue;
-    const double w = 1.0 / (1.0 + r * r * inverse_scale2);
+    const double w = cauchyWeight(r * r * inverse_scale2);
     sums.weight += w;
     sums.squares += w * r * r;
     ++sums.bursts;
@@ -136,9 +138,7 @@ double typicalEdgeSpeed_px_s(const BurstWindow& window) {
   }
   constexpr std::size_t kLeast = 30;
   if (speeds.size() < kLeast) return 0.0;
-  std::nth_element(speeds.begin(), speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2),
-                   speeds.end());
-  return speeds[speeds.size() / 2];
+  return medianOf(std::move(speeds));
 }
 
 std::optional<MovingCircle> fitMovingCircle(const BurstWindow& window, const CircleCandidate& candidate,

@@ -1,6 +1,7 @@
 #include "core/geometry/camera_model.h"
 
 #include "core/base/error.h"
+#include "core/numerics/angles.h"
 
 #include <Eigen/LU>
 
@@ -12,7 +13,7 @@ namespace {
 
 using DistortionJacobian = Eigen::Matrix<double, 2, 5>;
 
-constexpr double kLargestAngle_rad = 85.0 * 3.14159265358979323846 / 180.0;
+constexpr double kLargestAngle_rad = 85.0 * kRadPerDeg;
 constexpr double kSmallRadius = 1e-8;
 
 Eigen::Vector2d distortRadtan(const std::array<double, 5>& d, const Eigen::Vector2d& n,

@@ -1,22 +1,20 @@
 #include "core/initialisation/camera_alignment.h"
 
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 #include "core/initialisation/camera_imu_rotation.h"
 #include "core/initialisation/initialisation_checks.h"
-#include "core/initialisation/lap.h"
 #include "core/initialisation/pose_consistency.h"
 #include "core/initialisation/time_offset.h"
+#include "core/numerics/angles.h"
 
 #include <fmt/format.h>
 
-#include <numbers>
 #include <optional>
 #include <utility>
 
 namespace evical {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 std::vector<CameraPose> cameraPoses(const CameraData& camera, const CircleBoard& board,
                                     const GyroRotation& gyro, const InitialisationOptions& options,
@@ -127,9 +125,9 @@ AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& inpu
                           const InitialisationOptions& options, const RunContext& context,
                           Initialisation& result) {
   const ImuData& imu = input.imus[input.reference_imu];
-  Lap lap;
+  Stopwatch stopwatch;
   const std::vector<CameraPose> poses = cameraPoses(camera, input.board, gyro, options, context, result);
-  result.steps.back().duration_s = lap.next_s();
+  result.steps.back().duration_s = stopwatch.restart_s();
   context.throwIfStopped();
   const std::vector<TimeOffsetPeak> peaks = correlateTimeOffset(poses, gyro, options, camera.prior);
   if (peaks.empty()) {
@@ -137,12 +135,12 @@ AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& inpu
                             "too few pairs of views overlap with the gyroscope to find the time offset",
                             "Record longer, with the board in view");
   }
-  const double offset_s = lap.next_s();
+  const double offset_s = stopwatch.restart_s();
   AlignedCamera aligned = bestAlignment(camera, poses, peaks, gyro, options, context);
   context.throwIfStopped();
-  const double rotation_s = lap.next_s();
+  const double rotation_s = stopwatch.restart_s();
   settlePoses(camera, imu, input.start_ns, gyro, options, aligned, result);
-  if (result.steps.back().name == "planar poses") result.steps.back().duration_s = lap.next_s();
+  if (result.steps.back().name == "planar poses") result.steps.back().duration_s = stopwatch.restart_s();
   const RelativeRotation& hand_eye = aligned.hand_eye;
   warnOfPeaks(camera, peaks, hand_eye.time_offset_s, options, result);
   const double next = peaks.size() > 1 ? peaks[1].correlation : 0.0;

@@ -1,6 +1,7 @@
 #include "core/initialisation/camera_imu_rotation.h"
 
 #include "core/geometry/so3.h"
+#include "core/numerics/robust.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -45,7 +46,7 @@ void alignVectors(const std::vector<RotationPair>& pairs, const std::vector<Eige
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       const double error = (felt[k] - rotation * pairs[k].seen_rad).norm() / scale_rad;
       // The first round knows no rotation yet.
-      const double weight = round == 0 ? 1.0 : 1.0 / (1.0 + error * error);
+      const double weight = round == 0 ? 1.0 : cauchyWeight(error * error);
       sums += weight * felt[k] * pairs[k].seen_rad.transpose();
     }
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sums, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -92,7 +93,7 @@ double step(const std::vector<RotationPair>& pairs, const GyroRotation& gyro, do
     const double duration_s = pairs[k].to_s - pairs[k].from_s;
     const Eigen::Vector3d turned = rotation * pairs[k].seen_rad;
     const Eigen::Vector3d error = now[k] - turned - result.gyroscope_bias_rad_s * duration_s;
-    const double weight = 1.0 / (1.0 + error.squaredNorm() / (scale_rad * scale_rad));
+    const double weight = cauchyWeight(error.squaredNorm() / (scale_rad * scale_rad));
     Eigen::Matrix<double, 3, 7> jacobian;
     jacobian.leftCols<3>() = rotation * skew(pairs[k].seen_rad);
     jacobian.col(3) = (after[k] - before[k]) / (2.0 * kDelta_s);

@@ -2,6 +2,7 @@
 
 #include "core/geometry/circle_conic.h"
 #include "core/geometry/so3.h"
+#include "core/numerics/robust.h"
 
 #include <Eigen/Cholesky>
 
@@ -125,11 +126,7 @@ CameraPoses estimateCameraPoses(const CameraData& camera, const CircleBoard& boa
     }
     result.poses.push_back(pose);
   }
-  if (!errors_px.empty()) {
-    const auto middle = errors_px.begin() + static_cast<std::ptrdiff_t>(errors_px.size() / 2);
-    std::nth_element(errors_px.begin(), middle, errors_px.end());
-    result.median_reprojection_px = *middle;
-  }
+  result.median_reprojection_px = medianOf(std::move(errors_px), result.median_reprojection_px);
   return result;
 }
 

@@ -1,22 +1,20 @@
 #include "core/initialisation/cameras_alone.h"
 
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 #include "core/initialisation/bridged_cameras.h"
 #include "core/initialisation/camera_alignment.h"
 #include "core/initialisation/camera_trajectory.h"
 #include "core/initialisation/initialisation_checks.h"
-#include "core/initialisation/lap.h"
+#include "core/numerics/angles.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 #include <utility>
 
 namespace evical {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 // Cameras alone: the trajectory is the reference camera's, and a gyroscope on it would feel its rotation.
 class CamerasAlone {
@@ -48,7 +46,7 @@ class CamerasAlone {
   const CameraData& reference() const { return input_.cameras[input_.reference_camera]; }
 
   void followReference() {
-    Lap lap;
+    Stopwatch stopwatch;
     CameraPoses found = estimateCameraPoses(reference(), input_.board, options_, context_);
     checkViews(reference(), found, options_);
     const int swapped = resolveBySmoothness(found.poses, options_.longest_pair_s);
@@ -60,7 +58,7 @@ class CamerasAlone {
                      "plane's other pose",
                      reference().name, found.poses.size(), reference().observations.views.size(),
                      found.median_reprojection_px, swapped),
-         found.median_reprojection_px, 0.0, lap.next_s()});
+         found.median_reprojection_px, 0.0, stopwatch.restart_s()});
   }
 
   CameraTrajectory through(const std::vector<CameraPose>& poses) const {
@@ -81,7 +79,7 @@ class CamerasAlone {
   }
 
   bool bridge(std::size_t k) {
-    Lap lap;
+    Stopwatch stopwatch;
     const CameraData& camera = input_.cameras[k];
     CameraPoses found = estimateCameraPoses(camera, input_.board, options_, context_);
     resolveBySmoothness(found.poses, options_.longest_pair_s);
@@ -95,7 +93,7 @@ class CamerasAlone {
          fmt::format("{}: sees the board in turns with {}; {} gaps agree to {:.2f} deg and {:.1f} mm",
                      camera.name, reference().name, bridged->bridges, pose.rotation_rms_rad * kDegPerRad,
                      pose.position_rms_m * 1e3),
-         pose.position_rms_m, 0.0, lap.next_s()});
+         pose.position_rms_m, 0.0, stopwatch.restart_s()});
     result_.warnings.push_back(
         fmt::format("{}: never sees the board together with {}: what is known of it rests on how evenly the "
                     "rig moves between; let both see the board at once, or record with an IMU",

@@ -2,7 +2,8 @@
 
 #include "core/base/time.h"
 #include "core/geometry/so3.h"
-#include "core/initialisation/banded_system.h"
+#include "core/numerics/band_cholesky.h"
+#include "core/numerics/robust.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -163,7 +164,7 @@ class Alignment {
 
   Solution solveOnce() const;
   void addPriors(Eigen::MatrixXd& matrix, Eigen::VectorXd& vector) const;
-  void accumulate(const Row& row, BandedMatrix& band, std::array<Eigen::MatrixXd, 3>& coupling,
+  void accumulate(const Row& row, BandCholesky& band, std::array<Eigen::MatrixXd, 3>& coupling,
                   Eigen::MatrixXd& matrix, Eigen::VectorXd& vector) const;
   Eigen::Matrix3Xd sharedCoefficients(const Row& row) const;
   Eigen::Vector4d pointWeights(const Row& row) const {
@@ -245,7 +246,7 @@ Vector3d Alignment::target(const Row& row) const {
 }
 
 // `coupling` by axis: control points x (shared unknowns, right hand side).
-void Alignment::accumulate(const Row& row, BandedMatrix& band, std::array<Eigen::MatrixXd, 3>& coupling,
+void Alignment::accumulate(const Row& row, BandCholesky& band, std::array<Eigen::MatrixXd, 3>& coupling,
                            Eigen::MatrixXd& matrix, Eigen::VectorXd& vector) const {
   const double w = rowWeight(row);
   const Eigen::Matrix3Xd shared = sharedCoefficients(row);
@@ -264,7 +265,7 @@ void Alignment::accumulate(const Row& row, BandedMatrix& band, std::array<Eigen:
 // One banded matrix serves all three axes; the shared unknowns come by Schur complement.
 Solution Alignment::solveOnce() const {
   const Eigen::Index n = layout_.size();
-  BandedMatrix band(point_count_);
+  BandCholesky band(point_count_, 3);
   std::array<Eigen::MatrixXd, 3> coupling;
   coupling.fill(Eigen::MatrixXd::Zero(point_count_, n + 1));
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
@@ -274,8 +275,8 @@ Solution Alignment::solveOnce() const {
   // Ends and gaps: a control point that nothing sees follows its neighbours.
   constexpr double kSmoothness = 1e-2, kTie = 1e-9;
   for (Eigen::Index k = 0; k + 3 < point_count_; ++k) {
-    band.addOuter(k, {-1.0, 3.0, -3.0, 1.0}, kSmoothness);
-    band.addOuter(k, {1.0, 1.0, 1.0, 1.0}, kTie);
+    band.addOuter(k, Eigen::Vector4d(-1.0, 3.0, -3.0, 1.0), kSmoothness);
+    band.addOuter(k, Eigen::Vector4d(1.0, 1.0, 1.0, 1.0), kTie);
   }
   Solution solution;
   solution.points = Eigen::MatrixX3d::Zero(point_count_, 3);
@@ -327,13 +328,6 @@ double Alignment::scaleSigma(const Solution& solution) const {
   return std::max(independent, std::sqrt(squares));
 }
 
-double median(std::vector<double>& values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // The next round's weights: what lies far off counts less, and both kinds count by how well they fit.
 void Alignment::reweigh(const Solution& solution) {
   std::vector<double> positions, accelerations;
@@ -347,8 +341,8 @@ void Alignment::reweigh(const Solution& solution) {
   const auto within = [&](double sigma, double option) {
     return std::clamp(sigma / kMedianNorm, kLeast * option, kMost * option);
   };
-  sigmas_ = {within(median(positions), options_.position_sigma_m),
-             within(median(accelerations), options_.acceleration_sigma_m_s2)};
+  sigmas_ = {within(medianOf(std::move(positions)), options_.position_sigma_m),
+             within(medianOf(std::move(accelerations)), options_.acceleration_sigma_m_s2)};
   cost_ = 0.0;
   const double scale = options_.outlier_sigma;  // Cauchy's weights
   for (Row& row : rows_) {
@@ -356,7 +350,7 @@ void Alignment::reweigh(const Solution& solution) {
     cost_ += std::log1p(row.weight * row.weight / (scale * scale * sigma * sigma));
     const double error =
         row.weight / (scale * (row.position ? sigmas_.position_m : sigmas_.acceleration_m_s2));
-    row.weight = 1.0 / (1.0 + error * error);
+    row.weight = cauchyWeight(error * error);
   }
 }
 

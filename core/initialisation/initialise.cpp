@@ -1,29 +1,27 @@
 #include "core/initialisation/initialise.h"
 
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 #include "core/initialisation/camera_alignment.h"
 #include "core/initialisation/cameras_alone.h"
 #include "core/initialisation/further_imus.h"
 #include "core/initialisation/gravity_alignment.h"
 #include "core/initialisation/initialisation_checks.h"
-#include "core/initialisation/lap.h"
 #include "core/initialisation/world_rotation.h"
 
 #include "core/geometry/so3.h"
+#include "core/numerics/angles.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <utility>
 
 namespace evical {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 const ImuData& referenceImu(const CalibrationInput& input) {
   return input.imus[input.reference_imu];
@@ -90,7 +88,7 @@ void alignTranslations(const CalibrationInput& input, const InitialisationOption
                        const std::vector<AlignedCamera>& cameras, const RunContext& context,
                        Initialisation& result) {
   CalibrationState& state = result.state;
-  Lap lap;
+  Stopwatch stopwatch;
   const GravityAlignment gravity =
       alignGravity(tracksOf(input, cameras), referenceImu(input).samples, input.start_ns,
                    state.world_from_imu_rotation, options, context);
@@ -99,7 +97,7 @@ void alignTranslations(const CalibrationInput& input, const InitialisationOption
        fmt::format("positions agree to {:.2f} mm in {} of {} views, accelerations to {:.3f} m/s^2",
                    gravity.position_rms_m * 1e3, gravity.views - gravity.outlying_views, gravity.views,
                    gravity.acceleration_rms_m_s2),
-       gravity.position_rms_m, gravity.lever_std_m, lap.next_s()});
+       gravity.position_rms_m, gravity.lever_std_m, stopwatch.restart_s()});
   if (gravity.outlying_views > 0) {
     result.warnings.push_back(
         fmt::format("{} of {} views put the camera where its neighbours and the IMU don't: the board was "
@@ -125,7 +123,7 @@ void alignFurtherImu(const CalibrationInput& input, std::size_t k, const GyroRot
                      const InitialisationOptions& options, const RunContext& context,
                      Initialisation& result) {
   const ImuData& imu = input.imus[k];
-  Lap lap;
+  Stopwatch stopwatch;
   const ImuRotation rotation = alignFurtherGyroscope(imu, input.start_ns, reference, options, context);
   const LeverArm lever = solveLeverArm(imu, input.start_ns, rotation, result.state, options);
   const RelativeRotation& hand_eye = rotation.hand_eye;
@@ -141,7 +139,7 @@ void alignFurtherImu(const CalibrationInput& input, std::size_t k, const GyroRot
            "{:.3f} m/s^2",
            imu.name, hand_eye.time_offset_s, rotation.correlation, hand_eye.residual_rad * kDegPerRad,
            lever.force_rms_m_s2),
-       hand_eye.residual_rad, lever.std_m, lap.next_s()});
+       hand_eye.residual_rad, lever.std_m, stopwatch.restart_s()});
 }
 
 // Tells the observer of the steps that it has not heard of.

@@ -1,6 +1,7 @@
 #include "core/initialisation/mean_pose.h"
 
 #include "core/geometry/so3.h"
+#include "core/numerics/robust.h"
 
 #include <cmath>
 
@@ -23,7 +24,7 @@ MeanPose meanPose(std::span<const RigidTransform> poses, const RigidTransform& s
     for (const RigidTransform& pose : poses) {
       const Eigen::Vector3d angle = quaternionLog(mean.rotation.conjugate() * pose.rotation),
                             way = pose.translation_m - mean.translation_m;
-      const double weight = 1.0 / (1.0 + spread.squared(angle.norm(), way.norm()));
+      const double weight = cauchyWeight(spread.squared(angle.norm(), way.norm()));
       near += weight > 0.5;
       turn += weight * angle;
       shift += weight * way;

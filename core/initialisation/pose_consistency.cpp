@@ -1,5 +1,7 @@
 #include "core/initialisation/pose_consistency.h"
 
+#include "core/numerics/robust.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -62,10 +64,7 @@ double medianStep(const std::vector<CameraPose>& poses, const GyroRotation& gyro
     if (before) steps.push_back(angle(*before, here));
     before = here;
   }
-  if (steps.empty()) return 0.0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return medianOf(std::move(steps));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "core/initialisation/time_offset.h"
 
+#include "core/numerics/robust.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -29,9 +31,7 @@ std::vector<RatePair> ratePairs(const std::vector<CameraPose>& poses, double gap
     durations.push_back(duration_s);
   }
   if (pairs.empty()) return pairs;
-  const auto middle = durations.begin() + static_cast<std::ptrdiff_t>(durations.size() / 2);
-  std::nth_element(durations.begin(), middle, durations.end());
-  const double longest_usual_s = kLongestRatio * *middle;
+  const double longest_usual_s = kLongestRatio * medianOf(std::move(durations));
   std::erase_if(pairs, [&](const RatePair& pair) { return pair.duration_s > longest_usual_s; });
   return pairs;
 }

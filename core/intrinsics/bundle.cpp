@@ -2,6 +2,7 @@
 
 #include "core/intrinsics/board_pose.h"
 #include "core/intrinsics/circle_centre_cost.h"
+#include "core/numerics/robust.h"
 
 #include <ceres/ceres.h>
 
@@ -13,7 +14,6 @@
 namespace evical {
 namespace {
 
-constexpr double kMedianOfChi2With2 = 1.3862943611198906;  // 2 ln 2
 constexpr double kLeastScale = 1e-3;
 
 // Ends a solve when the run is asked to stop.
@@ -119,10 +119,7 @@ class Adjustment {
     std::vector<double> all;
     for (const std::vector<double>& of_view : normalised2)
       all.insert(all.end(), of_view.begin(), of_view.end());
-    if (all.empty()) return 1.0;
-    const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-    std::nth_element(all.begin(), middle, all.end());
-    return std::sqrt(*middle / kMedianOfChi2With2);
+    return scaleOfPoints(std::move(all));
   }
 
   void solve() {

@@ -1,6 +1,7 @@
 #include "core/intrinsics/intrinsics_checks.h"
 
 #include "core/base/error.h"
+#include "core/numerics/angles.h"
 
 #include <fmt/format.h>
 
@@ -8,12 +9,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 
 namespace evical {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 // The board's normals, into the board, in the camera; of the views used.
 std::vector<Eigen::Vector3d> normals(const Bundle& bundle) {

@@ -2,6 +2,7 @@
 
 #include "core/geometry/projection_difference.h"
 #include "core/intrinsics/circle_centre_cost.h"
+#include "core/numerics/newey_west.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -68,18 +69,15 @@ ViewInformation viewInformation(const SensorView& view, const RigidTransform& po
   return out;
 }
 
-// Newey and West: the scores' covariance, neighbours in time included.
+// Views that are near in time err alike.
 SharedMatrix scoreCovariance(const std::vector<ViewInformation>& views, double correlation_time_s) {
-  SharedMatrix sum = SharedMatrix::Zero();
-  for (const ViewInformation& one : views) {
-    for (const ViewInformation& other : views) {
-      const double apart_s = std::abs(one.time_s - other.time_s);
-      if (apart_s > correlation_time_s) continue;
-      const double weight = correlation_time_s > 0.0 ? 1.0 - apart_s / correlation_time_s : 1.0;
-      sum += weight * one.score * other.score.transpose();
-    }
+  std::vector<double> times_s;
+  std::vector<SharedVector> scores;
+  for (const ViewInformation& view : views) {
+    times_s.push_back(view.time_s);
+    scores.push_back(view.score);
   }
-  return sum;
+  return neweyWestByTime(times_s, scores, kShared, correlation_time_s);
 }
 
 // Inverse over the free parameters only.

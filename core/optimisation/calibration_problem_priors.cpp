@@ -1,16 +1,15 @@
 // What weighs on the unknowns besides measurements, and what is held.
+#include "core/numerics/angles.h"
 #include "core/optimisation/calibration_problem.h"
 #include "core/optimisation/free_intrinsics.h"
 #include "core/optimisation/prior_cost.h"
 #include "core/optimisation/smoothness_cost.h"
 
 #include <array>
-#include <numbers>
 
 namespace evical {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr std::array<double, 6> kZero = {};
 constexpr std::array<double, 6> kIdentity = {1.0, 0.0, 0.0, 1.0, 0.0, 1.0};
 

@@ -1,5 +1,6 @@
 #include "core/optimisation/circle_errors.h"
 
+#include "core/numerics/robust.h"
 #include "core/optimisation/edge_lead.h"
 #include "core/optimisation/free_intrinsics.h"
 
@@ -9,14 +10,11 @@
 #include <Eigen/LU>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 
 namespace evical {
 namespace {
-
-constexpr double kMedianOfChi2With2 = 1.3862943611198906;  // 2 ln 2
 
 // In the ideal pixels of the observations.
 std::optional<Eigen::Vector2d> predictedCentre(const CameraData& camera, const CameraState& state,
@@ -75,10 +73,7 @@ double robustScale(const std::vector<CircleError>& errors, std::size_t camera) {
   for (const CircleError& error : errors) {
     if (error.camera == camera) normalised2.push_back(error.normalised2);
   }
-  if (normalised2.empty()) return 1.0;
-  const auto middle = normalised2.begin() + static_cast<std::ptrdiff_t>(normalised2.size() / 2);
-  std::nth_element(normalised2.begin(), middle, normalised2.end());
-  return std::sqrt(*middle / kMedianOfChi2With2);
+  return scaleOfPoints(std::move(normalised2));
 }
 
 CircleSelection selectCircles(const CalibrationInput& input, const std::vector<CircleError>& errors,

@@ -2,6 +2,7 @@
 
 #include "core/data/doubt.h"
 #include "core/geometry/intrinsics_numbers.h"
+#include "core/numerics/newey_west.h"
 #include "core/optimisation/credible_information.h"
 #include "core/optimisation/drift_uncertainty.h"
 #include "core/optimisation/known_values.h"
@@ -41,6 +42,10 @@ double unitOf(QuantityKind kind) {
   }
 }
 
+// Scores come in stretches of the correlation time: weights that fall to zero over the next three see
+// correlation over up to about that time in full.
+constexpr std::size_t kLags = 3;
+
 constexpr double kPixelUnit = 0.1;  // of focal lengths and principal point, the first four intrinsics
 
 // Below this information in the units above a direction counts as open, and its sigma is 1e4 units.
@@ -60,25 +65,6 @@ SafeInverse safeInverse(const Eigen::MatrixXd& information, const Eigen::VectorX
   const Eigen::VectorXd per_unit = units.cwiseInverse();
   return {units.asDiagonal() * (v * known.cwiseInverse().asDiagonal() * v.transpose()) * units.asDiagonal(),
           per_unit.asDiagonal() * (v * missing.asDiagonal() * v.transpose()) * per_unit.asDiagonal()};
-}
-
-// Newey and West's estimate of the scores' covariance; stretches of the correlation time, weights falling to
-// zero over the next three, so that correlation over up to about that time is seen in full.
-Eigen::MatrixXd correlatedScores(const std::vector<Eigen::VectorXd>& scores, Eigen::Index size) {
-  constexpr std::size_t kLags = 3;
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(size, size);
-  for (std::size_t lag = 0; lag <= kLags; ++lag) {
-    const double weight = 1.0 - static_cast<double>(lag) / (kLags + 1.0);
-    for (std::size_t i = 0; i + lag < scores.size(); ++i) {
-      const Eigen::MatrixXd product = scores[i] * scores[i + lag].transpose();
-      if (lag == 0) {
-        sum += product;
-      } else {
-        sum += weight * (product + product.transpose());
-      }
-    }
-  }
-  return sum;
 }
 
 // From tangent space as Ceres has it to the report's coordinates.
@@ -133,7 +119,7 @@ QuantityCovariance quantityCovariance(const ProjectedInformation& information,
   const Eigen::MatrixXd inverse = report_from_tangent * safe.inverse;
   Eigen::MatrixXd covariance = inverse * (measured + given) * inverse.transpose();
   const Eigen::MatrixXd correlated =
-      inverse * (correlatedScores(information.scores, size) + given) * inverse.transpose();
+      inverse * (neweyWestByLag(information.scores, size, kLags) + given) * inverse.transpose();
   Eigen::VectorXd growth(size);
   for (Eigen::Index i = 0; i < size; ++i) {
     const double asked = std::max(covariance(i, i), correlated(i, i));

@@ -1,5 +1,7 @@
 #include "core/optimisation/observability.h"
 
+#include "core/numerics/angles.h"
+
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
 
@@ -8,8 +10,6 @@
 
 namespace evical {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 enum class Need { None, Rotation, Translation, TimeOffset };
 
@@ -32,7 +32,7 @@ Need needOf(QuantityKind kind) {
 double needed(Need need, const OptimisationOptions& options) {
   switch (need) {
     case Need::Rotation:
-      return options.needed_rotation_deg * kPi / 180.0;
+      return kRadPerDeg * options.needed_rotation_deg;
     case Need::Translation:
       return options.needed_translation_mm * 1e-3;
     default:
@@ -127,7 +127,7 @@ std::string Judge::unmetNeed(const Part& part) const {
   if (sigma > kHopeless * needed(part.need, options_)) return words + " is not observable in this recording";
   switch (part.need) {
     case Need::Rotation:
-      return fmt::format("{} has a sigma of {:.2g} deg (needed: {:.2g})", words, sigma * 180.0 / kPi,
+      return fmt::format("{} has a sigma of {:.2g} deg (needed: {:.2g})", words, kDegPerRad * sigma,
                          options_.needed_rotation_deg);
     case Need::Translation:
       return fmt::format("{} has a sigma of {:.2g} mm (needed: {:.2g})", words, sigma * 1e3,

@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
 #include "core/geometry/so3.h"
+#include "core/numerics/angles.h"
 #include "core/optimisation/covariance.h"
 #include "core/optimisation/known_values.h"
 
@@ -10,12 +11,10 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace evical {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kNoNeed = std::numeric_limits<double>::infinity();
 
 struct Unit {

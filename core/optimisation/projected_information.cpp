@@ -1,6 +1,6 @@
 #include "core/optimisation/projected_information.h"
 
-#include "core/optimisation/band_cholesky.h"
+#include "core/numerics/band_cholesky.h"
 
 #include <Eigen/Cholesky>
 

@@ -1,16 +1,15 @@
 #include "core/optimisation/turned_gyroscope.h"
 
+#include "core/numerics/angles.h"
+
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace evical {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 class ScaledInverse {
  public:

@@ -1,10 +1,12 @@
 #include "core/pipeline/calibration_pipeline.h"
 
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 #include "core/base/time.h"
 #include "core/data/doubt.h"
 #include "core/geometry/projection_difference.h"
 #include "core/initialisation/initialise.h"
+#include "core/numerics/robust.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/covariance.h"
 #include "core/optimisation/prior_check.h"
@@ -21,18 +23,11 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <optional>
 #include <utility>
 
 namespace evical {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 // Median of |acceleration| tells the unit, wide enough for hands that shake at several g; a gyroscope's only
 // when it is absurd.
@@ -43,14 +38,13 @@ void checkUnits(const ImuData& imu, const InitialisationOptions& options) {
     norms.push_back(sample.specific_force_m_s2.norm());
     rate2 += sample.angular_rate_rad_s.squaredNorm();
   }
-  const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
-  std::nth_element(norms.begin(), middle, norms.end());
+  const double norm = medianOf(std::move(norms));
   constexpr std::array<double, 2> kLooksLikeG = {0.7, 1.3};
-  if (*middle < options.least_acceleration_m_s2 || *middle > options.largest_acceleration_m_s2) {
-    const bool g = *middle > kLooksLikeG[0] && *middle < kLooksLikeG[1];
+  if (norm < options.least_acceleration_m_s2 || norm > options.largest_acceleration_m_s2) {
+    const bool g = norm > kLooksLikeG[0] && norm < kLooksLikeG[1];
     throw badInput(
         imu.name,
-        fmt::format("accelerations have a median norm of {:.3g} m/s^2, gravity has 9.81{}", *middle,
+        fmt::format("accelerations have a median norm of {:.3g} m/s^2, gravity has 9.81{}", norm,
                     g ? ": they look like g" : ""),
         g ? "Set acceleration_unit: g for this IMU" : "Check acceleration_unit (m/s^2, g, -g) of this IMU");
   }
@@ -75,7 +69,7 @@ void checkDuration(const Session& session, const RecordingPass& pass) {
     check(camera.camera,
           camera.windows.empty() ? 0.0 : camera.windows.back().time_s - camera.windows.front().time_s);
   for (const ImuData& imu : pass.imus)
-    check(imu.name, evical::secondsSince(imu.samples.front().time_ns, imu.samples.back().time_ns));
+    check(imu.name, secondsSince(imu.samples.front().time_ns, imu.samples.back().time_ns));
 }
 
 // Initialisation must hold what the batch holds.
@@ -134,11 +128,11 @@ void validateByHalves(const Session& session, const CalibrationInput& input, con
                       CalibrationResult& result) {
   if (!session.options.report.cross_validation) return;
   context.progress.stageStarted("cross_validate");
-  const Clock::time_point begin = Clock::now();
+  const Stopwatch stopwatch;
   result.cross_validation = crossValidate(input, result.state, session.options.optimisation,
                                           session.options.report.cross_validation_block_s, context);
   context.progress.stageProgress(1.0);
-  result.timing.cross_validate_s = secondsSince(begin);
+  result.timing.cross_validate_s = stopwatch.elapsed_s();
   const CrossValidation& validation = *result.cross_validation;
   context.progress.log(
       LogLevel::Info,
@@ -220,7 +214,7 @@ void estimate(const Session& session, const RunContext& context, CalibrationObse
   if (observer != nullptr) observer->detectionDone(input);
 
   context.progress.stageStarted("initialise");
-  Clock::time_point begin = Clock::now();
+  Stopwatch stopwatch;
   const Initialisation initial = initialise(input, session.options.initialisation, context, observer);
   for (const InitialisationStep& step : initial.steps) {
     context.progress.log(LogLevel::Info, fmt::format("{}: {}", step.name, step.result));
@@ -228,17 +222,17 @@ void estimate(const Session& session, const RunContext& context, CalibrationObse
   for (const std::string& warning : initial.warnings) context.progress.log(LogLevel::Warning, warning);
   CalibrationResult& result = run.result;
   result.start_ns = run.pass.start_ns;
-  result.timing.initialise_s = secondsSince(begin);
+  result.timing.initialise_s = stopwatch.elapsed_s();
 
   context.progress.stageStarted("optimise");
-  begin = Clock::now();
+  stopwatch.restart_s();
   BatchSolution solution =
       optimiseBatch(input, initial.state, session.options.optimisation, context, observer);
   UncertaintyEstimate uncertainty =
       estimateUncertainty(input, solution, session.options.optimisation, context);
   const PriorCheck priors = checkPriors(input, solution, session.options.optimisation, context);
   context.progress.stageProgress(1.0);
-  result.timing.optimise_s = secondsSince(begin);
+  result.timing.optimise_s = stopwatch.elapsed_s();
 
   result.status = uncertainty.status;
   result.reason = uncertainty.reason;
@@ -271,10 +265,10 @@ void estimate(const Session& session, const RunContext& context, CalibrationObse
 void calibrateInto(CalibrationRun& run, const Session& session, const RunContext& context,
                    const ObserverFactory& observers, CalibrationObserver* observer) {
   checkSession(session);
-  const Clock::time_point begin = Clock::now();
+  const Stopwatch stopwatch;
   Session known = session;
   calibrateMissingIntrinsics(known, context, run);
-  const double intrinsics_s = secondsSince(begin);
+  const double intrinsics_s = stopwatch.elapsed_s();
   context.progress.stageStarted("detect");
   run.pass = readAndDetect(known, context, observers, observer);
   estimate(known, context, observer, run);

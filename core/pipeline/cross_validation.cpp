@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/time.h"
+#include "core/numerics/angles.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/covariance.h"
 #include "core/report/truth_comparison.h"
@@ -13,8 +14,6 @@
 
 namespace evical {
 namespace {
-
-constexpr double kDegPerRad = 57.29577951308232;
 
 class Blocks {
  public:

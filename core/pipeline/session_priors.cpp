@@ -2,17 +2,16 @@
 
 #include "core/base/nearest_name.h"
 #include "core/data/unit_quaternion.h"
+#include "core/numerics/angles.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace evical {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kLargest = 1e6;      // of any number here: beyond it is a slip
 constexpr double kLargest_m = 100.0;  // of a rig: millimetres written as metres are beyond it
 

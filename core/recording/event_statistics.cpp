@@ -2,6 +2,7 @@
 
 #include "core/base/nearest_name.h"
 #include "core/base/time.h"
+#include "core/numerics/robust.h"
 
 #include <fmt/format.h>
 
@@ -116,9 +117,7 @@ std::uint32_t EventStatistics::neighbourMedian(int x_px, int y_px) const {
     }
   }
   if (found == 0) return 0;
-  const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(found / 2);
-  std::nth_element(counts.begin(), middle, counts.begin() + static_cast<std::ptrdiff_t>(found));
-  return *middle;
+  return medianOf(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(found));
 }
 
 void EventStatistics::findHotPixels(double duration_s, std::vector<RecordingFault>& faults) const {

@@ -1,28 +1,19 @@
 #include "core/recording/imu_statistics.h"
 
 #include "core/base/time.h"
+#include "core/numerics/robust.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace evical {
-namespace {
-
-double medianOf(std::vector<double>& values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-}  // namespace
 
 double medianInterval_s(const std::vector<ImuSample>& samples) {
   std::vector<double> intervals_s;
   for (std::size_t i = 1; i < samples.size(); ++i) {
     intervals_s.push_back(secondsSince(samples[i - 1].time_ns, samples[i].time_ns));
   }
-  return medianOf(intervals_s);
+  return medianOf(std::move(intervals_s));
 }
 
 double medianForceNorm(const std::vector<ImuSample>& samples) {
@@ -31,7 +22,7 @@ double medianForceNorm(const std::vector<ImuSample>& samples) {
     const double norm = sample.specific_force_m_s2.norm();
     if (std::isfinite(norm)) norms.push_back(norm);
   }
-  return medianOf(norms);
+  return medianOf(std::move(norms));
 }
 
 double largestRate(const std::vector<ImuSample>& samples) {

@@ -1,6 +1,7 @@
 #include "core/base/yaml_node.h"
 #include "core/data/intrinsics_yaml.h"
 #include "core/data/unit_quaternion.h"
+#include "core/numerics/angles.h"
 #include "core/report/result_yaml.h"
 
 #include <fmt/format.h>
@@ -9,14 +10,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <vector>
 
 namespace evical {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 // Unlike YamlNode::real this takes what isn't finite: a sigma that couldn't be found is written as .nan.
 double number(const YamlNode& node) {

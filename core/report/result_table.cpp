@@ -1,5 +1,7 @@
 #include "core/report/result_table.h"
 
+#include "core/base/element.h"
+#include "core/numerics/angles.h"
 #include "core/report/intrinsics_report.h"
 #include "core/report/table_row.h"
 
@@ -9,19 +11,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace evical {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-
 // The i-th of a list that is empty where a run failed: nothing known.
-template <class T>
-T at(const std::vector<T>& values, std::size_t i) {
-  return i < values.size() ? values[i] : T{};
-}
-
 std::string vectorRows(const std::string& name, const Eigen::Vector3d& value, const Eigen::Vector3d& sigma,
                        const char* unit, double factor, int decimals = 5) {
   std::string text;
@@ -48,7 +42,7 @@ std::string givenRow(const NamedResult& named, const std::string& sensor) {
 
 std::string cameraTable(const NamedResult& named, std::size_t i) {
   const CameraState& state = named.result.state.cameras[i];
-  const CameraUncertainty sigma = at(named.result.uncertainty.cameras, i);
+  const CameraUncertainty sigma = elementOrNone(named.result.uncertainty.cameras, i);
   std::string text = fmt::format("Camera {}: p_{} = reference_from_camera * p_camera\n",
                                  named.names.cameras.at(i), named.names.reference);
   text += poseRows(state.reference_from_camera, sigma.rotation_std_rad, sigma.translation_std_m);
@@ -58,8 +52,8 @@ std::string cameraTable(const NamedResult& named, std::size_t i) {
   text += tableRow("edge lead growth", state.edge_lead_growth_px, sigma.edge_lead_growth_std_px,
                    "px for each factor e of speed", 4);
   text += givenRow(named, named.names.cameras[i]);
-  if (const auto sigmas = at(named.names.intrinsics_std, i))
-    text += intrinsicsRows(at(named.names.intrinsics, i).value_or(CameraIntrinsics{}), *sigmas);
+  if (const auto sigmas = elementOrNone(named.names.intrinsics_std, i))
+    text += intrinsicsRows(elementOrNone(named.names.intrinsics, i).value_or(CameraIntrinsics{}), *sigmas);
   if (i >= named.result.cameras.size()) return text;
   const CameraFit& fit = named.result.cameras[i];
   text += fmt::format("    {:<26}{:>12.4f} px RMS, {:.2f} of what its sigmas say\n", "reprojection",
@@ -72,7 +66,7 @@ std::string cameraTable(const NamedResult& named, std::size_t i) {
 
 std::string imuTable(const NamedResult& named, std::size_t i) {
   const ImuState& state = named.result.state.imus[i];
-  const ImuUncertainty sigma = at(named.result.uncertainty.imus, i);
+  const ImuUncertainty sigma = elementOrNone(named.result.uncertainty.imus, i);
   const bool reference = named.names.imus.at(i) == named.names.reference;
   std::string text = fmt::format("IMU {}{}\n", named.names.imus[i], reference ? " (reference)" : "");
   if (!reference) {

@@ -1,18 +1,17 @@
 #include "core/report/result_yaml.h"
 
+#include "core/base/element.h"
 #include "core/base/yaml_node.h"
 #include "core/data/intrinsics_yaml.h"
+#include "core/numerics/angles.h"
 #include "core/report/intrinsics_report.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 namespace evical {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 // Values are written so that they read back the same; sigmas need no more than a few digits.
 std::string exact(double value) {
@@ -47,21 +46,16 @@ std::string transformYaml(const char* key, const RigidTransform& pose,
 }
 
 // The i-th of a list that may be shorter than it should: nothing known.
-template <class T>
-T at(const std::vector<T>& values, std::size_t i) {
-  return i < values.size() ? values[i] : T{};
-}
-
 std::string streamYaml(const std::string& stream) {
   return stream.empty() ? "" : fmt::format("    stream: {}\n", yamlText(stream));
 }
 
 std::string cameraYaml(const NamedResult& named, std::size_t i) {
   const CameraState& state = named.result.state.cameras[i];
-  const CameraUncertainty sigma = at(named.result.uncertainty.cameras, i);
-  const CameraFit fit = at(named.result.cameras, i);
+  const CameraUncertainty sigma = elementOrNone(named.result.uncertainty.cameras, i);
+  const CameraFit fit = elementOrNone(named.result.cameras, i);
   std::string text = fmt::format("  {}:\n", yamlText(named.names.cameras.at(i)));
-  text += streamYaml(at(named.names.camera_streams, i));
+  text += streamYaml(elementOrNone(named.names.camera_streams, i));
   text += transformYaml("reference_from_camera", state.reference_from_camera, sigma.rotation_std_rad,
                         sigma.translation_std_m);
   text += fmt::format(
@@ -70,9 +64,9 @@ std::string cameraYaml(const NamedResult& named, std::size_t i) {
       exact(state.time_offset_s), rounded(sigma.time_offset_std_s), exact(state.edge_lead_px),
       rounded(sigma.edge_lead_std_px), exact(state.edge_lead_growth_px),
       rounded(sigma.edge_lead_growth_std_px));
-  if (const auto intrinsics = at(named.names.intrinsics, i)) {
+  if (const auto intrinsics = elementOrNone(named.names.intrinsics, i)) {
     text += "    intrinsics:\n" + intrinsicsYaml(*intrinsics, 6);
-    if (const auto sigmas = at(named.names.intrinsics_std, i))
+    if (const auto sigmas = elementOrNone(named.names.intrinsics_std, i))
       text += "    intrinsics_std:\n" + intrinsicsStdYaml(*intrinsics, *sigmas, 6);
   }
   text += fmt::format("    reprojection_rms_px: {}\n    normalised_rms: {}\n",
@@ -112,10 +106,10 @@ std::string knownYaml(const KnownOfImu& known) {
 
 std::string imuYaml(const NamedResult& named, std::size_t i) {
   const ImuState& state = named.result.state.imus[i];
-  const ImuUncertainty sigma = at(named.result.uncertainty.imus, i);
-  const ImuFit fit = at(named.result.imus, i);
+  const ImuUncertainty sigma = elementOrNone(named.result.uncertainty.imus, i);
+  const ImuFit fit = elementOrNone(named.result.imus, i);
   std::string text = fmt::format("  {}:\n", yamlText(named.names.imus.at(i)));
-  text += knownYaml(at(named.names.known_of_imus, i));
+  text += knownYaml(elementOrNone(named.names.known_of_imus, i));
   text += transformYaml("reference_from_imu", state.reference_from_imu, sigma.rotation_std_rad,
                         sigma.translation_std_m);
   text += fmt::format("    time_offset_s: {}\n    time_offset_std_s: {}\n", exact(state.time_offset_s),

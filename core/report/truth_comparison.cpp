@@ -1,26 +1,21 @@
 #include "core/report/truth_comparison.h"
 
+#include "core/base/element.h"
 #include "core/base/nearest_name.h"
 #include "core/data/intrinsics_result.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/so3.h"
+#include "core/numerics/angles.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace evical {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kMmPerM = 1e3, kMsPerS = 1e3;
-
-template <class T>
-T at(const std::vector<T>& values, std::size_t i) {
-  return i < values.size() ? values[i] : T{};
-}
 
 std::size_t indexOf(const std::string& name, const std::vector<std::string>& names, const char* key) {
   const auto found = std::find(names.begin(), names.end(), name);
@@ -72,8 +67,8 @@ CameraError compareCamera(const std::string& name, const CameraState& estimate, 
 // Where they were calibrated; another model's coefficients mean something else.
 void compareIntrinsics(const ResultNames& estimate, std::size_t i, const ResultNames& truth, std::size_t j,
                        Errors& errors) {
-  const auto found = at(estimate.intrinsics, i), actual = at(truth.intrinsics, j);
-  const auto sigmas = at(estimate.intrinsics_std, i);
+  const auto found = elementOrNone(estimate.intrinsics, i), actual = elementOrNone(truth.intrinsics, j);
+  const auto sigmas = elementOrNone(estimate.intrinsics_std, i);
   if (!found || !actual || !sigmas || found->model != actual->model) return;
   const std::string& name = estimate.cameras[i];
   for (int axis = 0; axis < 2; ++axis)
@@ -148,15 +143,15 @@ TruthComparison compareWithTruth(const NamedResult& result, const NamedResult& t
     const std::string& name = result.names.cameras[i];
     const std::size_t j = indexOf(name, truth.names.cameras, "cameras");
     comparison.cameras.push_back(compareCamera(name, result.result.state.cameras.at(i),
-                                               truth.result.state.cameras.at(j), at(sigma.cameras, i),
-                                               errors));
+                                               truth.result.state.cameras.at(j),
+                                               elementOrNone(sigma.cameras, i), errors));
     compareIntrinsics(result.names, i, truth.names, j, errors);
   }
   for (std::size_t i = 0; i < result.names.imus.size(); ++i) {
     const std::string& name = result.names.imus[i];
     const std::size_t j = indexOf(name, truth.names.imus, "imus");
-    compareImu(name, result.result.state.imus.at(i), truth.result.state.imus.at(j), at(sigma.imus, i),
-               name == result.names.reference, errors);
+    compareImu(name, result.result.state.imus.at(i), truth.result.state.imus.at(j),
+               elementOrNone(sigma.imus, i), name == result.names.reference, errors);
   }
   if (sigma.gravity_norm_std_m_s2 > 0.0)
     errors.add(

@@ -1,19 +1,18 @@
 #include "core/synthetic/scenario_yaml.h"
 
 #include "core/base/yaml_node.h"
+#include "core/numerics/angles.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
 #include <vector>
 
 namespace evical {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kAny = std::numeric_limits<double>::max();
 
 // All of these leave the value alone where the key is absent: that is how a scenario changes its base.

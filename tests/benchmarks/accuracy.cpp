@@ -1,6 +1,8 @@
 // Accuracy against the truth of simulated recordings, as a table: `evical_accuracy [--seeds N] [--duration S]
 // [--quantities] SCENARIO...`. Recordings are simulated in memory and go through the same front end,
 // initialisation and batch as `evical calibrate`.
+#include "core/base/stopwatch.h"
+#include "core/numerics/angles.h"
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/result_files.h"
 #include "core/report/truth_comparison.h"
@@ -15,7 +17,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -24,12 +25,6 @@
 
 namespace evical {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsOf(Clock::duration duration) {
-  return std::chrono::duration<double>(duration).count();
-}
 
 struct Targets {
   double windows = 0.85, rotation_deg = 0.1, translation_mm = 2.0, time_offset_ms = 0.2;
@@ -54,20 +49,20 @@ struct Outcome {
 RecordingPass detect(const Scenario& scenario, const Session& session, Outcome& outcome) {
   RecordingPass pass;
   pass.start_ns = scenario.start_ns;
-  Clock::duration busy{};
+  double busy_s = 0.0;
   std::uint64_t events_read = 0;
   for (std::size_t k = 0; k < scenario.cameras.size(); ++k) {
     const CameraIntrinsics& camera = scenario.cameras[k].intrinsics;
     BoardTracker tracker(scenario.board, camera.resolution_px, camera, session.options.front_end,
                          scenario.start_ns);
     simulateEvents(scenario, k, [&](EventSpan events) {
-      const Clock::time_point before = Clock::now();
+      const Stopwatch stopwatch;
       tracker.add(events);
-      busy += Clock::now() - before;
+      busy_s += stopwatch.elapsed_s();
     });
-    const Clock::time_point before = Clock::now();
+    const Stopwatch stopwatch;
     pass.cameras.push_back(tracker.finish());
-    busy += Clock::now() - before;
+    busy_s += stopwatch.elapsed_s();
     pass.cameras.back().camera = scenario.cameras[k].name;
     events_read += pass.cameras.back().events;
   }
@@ -76,7 +71,7 @@ RecordingPass detect(const Scenario& scenario, const Session& session, Outcome& 
     pass.imus.push_back(
         {imu.name, {imu.gyroscope_density, imu.accelerometer_density}, simulateImu(scenario, k)});
   }
-  pass.detect_s = outcome.detect_s = secondsOf(busy);
+  pass.detect_s = outcome.detect_s = busy_s;
   outcome.events_per_s = static_cast<double>(events_read) / scenario.duration_s;
   return pass;
 }
@@ -97,7 +92,7 @@ Outcome run(const Scenario& scenario) {
   const Session session = test::sessionFor(scenario);
   RecordingPass pass = detect(scenario, session, outcome);
   outcome.windows_found = windowsFound(scenario, pass.cameras.front());
-  const Clock::time_point before = Clock::now();
+  const Stopwatch stopwatch;
   try {
     const CalibrationRun run = calibrate(session, std::move(pass), RunContext{});
     outcome.verdict = statusName(run.result.status);
@@ -112,7 +107,7 @@ Outcome run(const Scenario& scenario) {
   } catch (const CalibrationError& error) {
     outcome.verdict = std::string("failed: ") + error.what();
   }
-  outcome.solve_s = secondsOf(Clock::now() - before);
+  outcome.solve_s = stopwatch.elapsed_s();
   return outcome;
 }
 
@@ -134,7 +129,6 @@ CameraError worstCamera(const TruthComparison& comparison) {
 }
 
 bool printRow(const Scenario& scenario, const Outcome& o) {
-  constexpr double kDegPerRad = 57.29577951308232;
   if (!o.comparison) {
     fmt::print("| {} | {} | {:.1f} | {:.1f} % | | | | {:.1f} | {:.1f} | {} | |\n", scenario.name,
                scenario.seed, o.events_per_s * 1e-6, 100.0 * o.windows_found, o.detect_s, o.solve_s,

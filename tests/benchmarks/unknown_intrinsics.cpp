@@ -3,6 +3,7 @@
 // times, as `evical calibrate` does: with the true intrinsics; with those found first, held; and solved with
 // everything else.
 #include "core/geometry/projection_difference.h"
+#include "core/numerics/angles.h"
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/result_files.h"
 #include "core/pipeline/simulation.h"
@@ -60,7 +61,6 @@ void printRow(const Scenario& scenario, Way way, const Session& session, const C
               const TruthComparison& comparison) {
   const CameraError& error = comparison.cameras.front();
   const CameraUncertainty& sigma = run.result.uncertainty.cameras.front();
-  constexpr double kDegPerRad = 57.29577951308232;
   const CameraIntrinsics used = foundIntrinsics(run, 0).value_or(*session.cameras.front().intrinsics);
   fmt::print(
       "| {} | {} | {} | {:.4f} ({:.4f}) | {:.3f} ({:.3f}) | {:.4f} ({:.4f}) | {:.4f} | {:.1f} | {} |\n",

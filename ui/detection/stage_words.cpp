@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/detection/window_analysis.h"
 
-#include <algorithm>
+#include "core/numerics/robust.h"
+
 #include <cmath>
 #include <cstdio>
 
@@ -144,11 +145,7 @@ void addCentres(const WindowAnalysis& analysis, std::vector<StageReport>& stages
   for (const CircleObservation& circle : analysis.circles)
     sigmas.push_back(std::sqrt(0.5 * circle.covariance_px2.trace()));
   std::string text = print("%zu of %d circles measured", analysis.circles.size(), count);
-  if (!sigmas.empty()) {
-    std::nth_element(sigmas.begin(), sigmas.begin() + static_cast<std::ptrdiff_t>(sigmas.size() / 2),
-                     sigmas.end());
-    text += print(", sigma %.3f px", sigmas[sigmas.size() / 2]);
-  }
+  if (!sigmas.empty()) text += print(", sigma %.3f px", medianOf(std::move(sigmas)));
   text += missingText(analysis);
   const bool good = analysis.outcome == WindowOutcome::Complete || analysis.outcome == WindowOutcome::Partial;
   stages.push_back({"centres", good ? StageVerdict::Passed : StageVerdict::Failed, text});

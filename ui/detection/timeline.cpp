@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/detection/timeline.h"
 
+#include "core/numerics/angles.h"
+
 #include <QHelpEvent>
 #include <QKeyEvent>
 #include <QMouseEvent>
@@ -89,7 +91,7 @@ void Timeline::setEventRate(RateCurve events_s) {
 
 void Timeline::setRotationRate(RateCurve rad_s) {
   rotation_rate_ = std::move(rad_s);
-  for (float& rate : rotation_rate_.values) rate *= static_cast<float>(180.0 / M_PI);
+  for (float& rate : rotation_rate_.values) rate *= static_cast<float>(kDegPerRad);
   rotation_top_ = topOf(rotation_rate_);
   update();
 }

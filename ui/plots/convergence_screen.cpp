@@ -2,6 +2,7 @@
 #include "ui/plots/convergence_screen.h"
 
 #include "core/geometry/so3.h"
+#include "core/numerics/angles.h"
 #include "ui/plots/empty_note.h"
 #include "ui/plots/plot_panel.h"
 
@@ -12,13 +13,12 @@
 #include <QTimer>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace evical::ui {
 namespace {
 
-constexpr double kDegreesPerRadian = 180.0 / M_PI, kMillimetresPerMetre = 1e3, kMillisecondsPerSecond = 1e3;
+constexpr double kMillimetresPerMetre = 1e3, kMillisecondsPerSecond = 1e3;
 constexpr PlotColour kAxisColours[] = {PlotColour::X, PlotColour::Y, PlotColour::Z};
 const QString kAxisNames[] = {"x", "y", "z"};
 constexpr double kDot_px = 5.0;
@@ -211,7 +211,7 @@ std::vector<double> ConvergenceScreen::differences(Panel panel, int axis, std::s
     if (panel == Rotation) {
       const Eigen::Quaterniond turn =
           state.reference_from_camera.rotation * base.reference_from_camera.rotation.conjugate();
-      values.push_back(kDegreesPerRadian * quaternionLog(turn)[axis]);
+      values.push_back(kDegPerRad * quaternionLog(turn)[axis]);
     } else if (panel == Translation) {
       values.push_back(kMillimetresPerMetre * (state.reference_from_camera.translation_m -
                                                base.reference_from_camera.translation_m)[axis]);
@@ -224,7 +224,7 @@ std::vector<double> ConvergenceScreen::differences(Panel panel, int axis, std::s
 
 double ConvergenceScreen::sigma(Panel panel, int axis, std::size_t camera) const {
   const CameraUncertainty& uncertainty = run_->result.uncertainty.cameras[camera];
-  if (panel == Rotation) return kDegreesPerRadian * uncertainty.rotation_std_rad[axis];
+  if (panel == Rotation) return kDegPerRad * uncertainty.rotation_std_rad[axis];
   if (panel == Translation) return kMillimetresPerMetre * uncertainty.translation_std_m[axis];
   return kMillisecondsPerSecond * uncertainty.time_offset_std_s;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/plots/residuals_screen.h"
 
+#include "core/numerics/robust.h"
+
 #include "ui/plots/empty_note.h"
 #include "ui/plots/latest_job.h"
 #include "ui/plots/plot_panel.h"
@@ -50,9 +52,8 @@ double normalDensity(double x, double mean, double sigma) {
 double windowSpacing(const std::vector<WindowResidual>& windows) {
   std::vector<double> gaps;
   for (std::size_t k = 1; k < windows.size(); ++k) gaps.push_back(windows[k].time_s - windows[k - 1].time_s);
-  if (gaps.empty()) return 0.02;
-  std::nth_element(gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2), gaps.end());
-  return gaps[gaps.size() / 2];
+  constexpr double kUsual_s = 0.02;
+  return medianOf(std::move(gaps), kUsual_s);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/scene/pose_readout.h"
 
+#include "core/numerics/angles.h"
+
 #include <QHBoxLayout>
 #include <QLabel>
 
@@ -49,7 +51,7 @@ PoseReadout::PoseReadout(QWidget* parent) : QWidget(parent) {
 
 void PoseReadout::setNumbers(const PoseNumbers& numbers) {
   const std::optional<double> degrees_s =
-      numbers.rotation_rate_rad_s ? std::optional(*numbers.rotation_rate_rad_s * 180.0 / M_PI) : std::nullopt;
+      numbers.rotation_rate_rad_s ? std::optional(kDegPerRad * *numbers.rotation_rate_rad_s) : std::nullopt;
   captions_[1]->setText(numbers.of_camera ? tr("Camera position") : tr("IMU position"));
   values_[0]->setText(number(numbers.time_s, 3, "s"));
   values_[1]->setText(metres(numbers.position_m));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/scene/view3d.h"
 
+#include "core/numerics/angles.h"
+
 #include "ui/scene/offscreen_render_window.h"
 #include "ui/theme/theme.h"
 
@@ -175,7 +177,7 @@ void View3D::drawFrame() {
   camera->SetPosition(pose.eye_m.data());
   camera->SetFocalPoint(pose.focus_m.data());
   camera->SetViewUp(pose.up.data());
-  camera->SetViewAngle(pose.vertical_view_rad * 180.0 / M_PI);
+  camera->SetViewAngle(kDegPerRad * pose.vertical_view_rad);
   d_->renderer->ResetCameraClippingRange();
   d_->frame = d_->window->drawImage(size_px);
   d_->frame.setDevicePixelRatio(ratio);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/imu_form.h"
 
+#include "core/numerics/angles.h"
+
 #include "ui/screens/clock_offset_field.h"
 
 #include <QComboBox>
@@ -20,7 +22,7 @@ struct NoisePreset {
 };
 
 constexpr double perDeg(double deg_s) {
-  return deg_s * std::numbers::pi / 180.0;
+  return kRadPerDeg * deg_s;
 }
 constexpr double microG(double micro_g) {
   return micro_g * 1e-6 * 9.80665;

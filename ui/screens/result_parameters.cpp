@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/result_parameters.h"
 
+#include "core/base/element.h"
 #include "core/geometry/so3.h"
+#include "core/numerics/angles.h"
 #include "core/report/result_table.h"
 #include "core/report/truth_comparison.h"
 
@@ -11,7 +13,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 namespace evical::ui {
 namespace {
@@ -19,12 +20,7 @@ namespace {
 // A direction has no number of its own, only how far it is from another.
 const char* const kGravityKey = "gravity";
 const QString kAcceleration = QString("m/s") + QChar(0xb2);
-constexpr double kDegPerRad = 180.0 / std::numbers::pi, kMmPerM = 1e3, kMsPerS = 1e3;
-
-template <class T>
-T at(const std::vector<T>& values, std::size_t i) {
-  return i < values.size() ? values[i] : T{};
-}
+constexpr double kMmPerM = 1e3, kMsPerS = 1e3;
 
 int decimalsFor(double sigma) {
   constexpr int kWithout = 4, kMost = 8;
@@ -91,8 +87,8 @@ class Rows {
 ParameterGroup cameraGroup(const NamedResult& named, std::size_t i) {
   const std::string& name = named.names.cameras.at(i);
   const CameraState& state = named.result.state.cameras.at(i);
-  const CameraUncertainty sigma = at(named.result.uncertainty.cameras, i);
-  const CameraFit fit = at(named.result.cameras, i);
+  const CameraUncertainty sigma = elementOrNone(named.result.uncertainty.cameras, i);
+  const CameraFit fit = elementOrNone(named.result.cameras, i);
   ParameterGroup group{QObject::tr("Camera %1 in %2")
                            .arg(QString::fromStdString(name), QString::fromStdString(named.names.reference)),
                        {}};
@@ -108,8 +104,8 @@ ParameterGroup cameraGroup(const NamedResult& named, std::size_t i) {
   rows.add({}, QObject::tr("Edge lead growth"), QObject::tr("px / e-fold"), state.edge_lead_growth_px,
            sigma.edge_lead_growth_std_px);
   rows.add({}, QObject::tr("Reprojection RMS"), "px", fit.reprojection_rms_px, 0.0);
-  const auto intrinsics = at(named.names.intrinsics, i);
-  const auto intrinsics_std = at(named.names.intrinsics_std, i);
+  const auto intrinsics = elementOrNone(named.names.intrinsics, i);
+  const auto intrinsics_std = elementOrNone(named.names.intrinsics_std, i);
   if (intrinsics && intrinsics_std) rows.addIntrinsics(*intrinsics, *intrinsics_std);
   return group;
 }
@@ -117,7 +113,7 @@ ParameterGroup cameraGroup(const NamedResult& named, std::size_t i) {
 ParameterGroup imuGroup(const NamedResult& named, std::size_t i) {
   const std::string& name = named.names.imus.at(i);
   const ImuState& state = named.result.state.imus.at(i);
-  const ImuUncertainty sigma = at(named.result.uncertainty.imus, i);
+  const ImuUncertainty sigma = elementOrNone(named.result.uncertainty.imus, i);
   const bool reference = name == named.names.reference;
   ParameterGroup group{reference ? QObject::tr("IMU %1 (reference)").arg(QString::fromStdString(name))
                                  : QObject::tr("IMU %1").arg(QString::fromStdString(name)),

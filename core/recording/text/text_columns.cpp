@@ -1,5 +1,6 @@
 #include "core/recording/text/text_columns.h"
 
+#include "core/numerics/robust.h"
 #include "core/recording/text/text_lines.h"
 
 #include <fmt/format.h>
@@ -73,13 +74,6 @@ bool addRow(const std::vector<std::string_view>& line, Rows& rows) {
   }
   ++rows.count;
   return true;
-}
-
-double medianOf(std::vector<double> numbers) {
-  if (numbers.empty()) return 0.0;
-  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
-  std::nth_element(numbers.begin(), middle, numbers.end());
-  return *middle;
 }
 
 bool isGravity(double norm) {

@@ -1,5 +1,6 @@
 #include "core/report/html/advice.h"
 
+#include "core/numerics/angles.h"
 #include "core/report/html/html_text.h"
 #include "core/report/html/report_page.h"
 
@@ -8,12 +9,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace evical::html {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 
 std::string percent(double share) {

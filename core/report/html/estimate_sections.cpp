@@ -1,4 +1,5 @@
 // How the estimate was reached, how sure it is, and what the run was.
+#include "core/numerics/angles.h"
 #include "core/report/html/heat_map.h"
 #include "core/report/html/html_text.h"
 #include "core/report/html/report_page.h"
@@ -31,8 +32,7 @@ PlotTable distanceTable(const std::vector<IterationRecord>& iterations, std::siz
     table.add(
         {static_cast<double>(each.iteration),
          1e3 * (now.reference_from_camera.translation_m - last.reference_from_camera.translation_m).norm(),
-         57.29577951308232 *
-             now.reference_from_camera.rotation.angularDistance(last.reference_from_camera.rotation),
+         kDegPerRad * now.reference_from_camera.rotation.angularDistance(last.reference_from_camera.rotation),
          1e3 * std::abs(now.time_offset_s - last.time_offset_s)});
   }
   return table;

@@ -1,15 +1,13 @@
 #include "core/report/html/measures.h"
 
 #include "core/geometry/trajectory.h"
+#include "core/numerics/angles.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace evical::html {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 Eigen::Vector2d onSensor(const std::optional<CameraIntrinsics>& intrinsics, const Eigen::Vector2d& ideal_px) {
   return intrinsics ? pixelFromIdeal(*intrinsics, ideal_px) : ideal_px;

@@ -1,5 +1,7 @@
 // Verdict, results with their sigmas, how the sensors sit.
+#include "core/base/element.h"
 #include "core/geometry/so3.h"
+#include "core/numerics/angles.h"
 #include "core/report/html/html_text.h"
 #include "core/report/html/report_page.h"
 #include "core/report/html/svg_plot.h"
@@ -9,18 +11,11 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace evical::html {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
-
-template <class T>
-T at(const std::vector<T>& values, std::size_t i) {
-  return i < values.size() ? values[i] : T{};
-}
 
 std::string tile(const std::string& label, const std::string& value, const std::string& detail) {
   return fmt::format("<div class=\"tile\"><span>{}</span><b>{}</b><small>{}</small></div>\n", label, value,
@@ -58,7 +53,7 @@ void addGiven(const UncertaintyReport& uncertainty, const std::string& sensor, R
 }
 
 std::string cameraTiles(const ReportData& data, const Measures& measures, std::size_t i) {
-  const CameraUncertainty sigma = at(data.named.result.uncertainty.cameras, i);
+  const CameraUncertainty sigma = elementOrNone(data.named.result.uncertainty.cameras, i);
   const CameraState& state = data.named.result.state.cameras[i];
   const std::string name = escaped(cameraName(data, i));
   std::string text;
@@ -69,7 +64,7 @@ std::string cameraTiles(const ReportData& data, const Measures& measures, std::s
   text += tile(name + ": time offset",
                withSigma(1e3 * state.time_offset_s, 1e3 * sigma.time_offset_std_s) + " ms",
                fmt::format("sigma needed {}", plain(data.needs.time_offset_ms)));
-  const CameraFit fit = at(data.named.result.cameras, i);
+  const CameraFit fit = elementOrNone(data.named.result.cameras, i);
   text += tile(name + ": reprojection", significant(fit.reprojection_rms_px) + " px",
                fmt::format("RMS of {} circles", fit.circles_used));
   if (i < measures.cameras.size())
@@ -80,7 +75,7 @@ std::string cameraTiles(const ReportData& data, const Measures& measures, std::s
 
 void writeCameraNumbers(const ReportData& data, std::size_t i, ReportPage& page) {
   const CameraState& state = data.named.result.state.cameras[i];
-  const CameraUncertainty sigma = at(data.named.result.uncertainty.cameras, i);
+  const CameraUncertainty sigma = elementOrNone(data.named.result.uncertainty.cameras, i);
   page.heading("Camera " + cameraName(data, i));
   page.text(paragraph(
       "", fmt::format("<code>p_reference = reference_from_camera \u00b7 p_camera</code>, reference: "
@@ -96,7 +91,7 @@ void writeCameraNumbers(const ReportData& data, std::size_t i, ReportPage& page)
                    {"edge lead growth", withSigma(state.edge_lead_growth_px, sigma.edge_lead_growth_std_px),
                     "px for each factor e of speed"}}));
   addGiven(data.named.result.uncertainty, cameraName(data, i), page);
-  const auto intrinsics = at(data.named.names.intrinsics, i);
+  const auto intrinsics = elementOrNone(data.named.names.intrinsics, i);
   if (!intrinsics) return;
   std::string distortion;
   for (const double d : intrinsics->distortion)
@@ -105,9 +100,9 @@ void writeCameraNumbers(const ReportData& data, std::size_t i, ReportPage& page)
       "small",
       fmt::format("Intrinsics {}: {}, {} x {} px, focal length {}, {} px, principal point {}, {} px, "
                   "distortion {}.",
-                  state.intrinsics                         ? "as solved with everything else"
-                  : at(data.named.names.intrinsics_std, i) ? "as calibrated first"
-                                                           : "as given",
+                  state.intrinsics                                    ? "as solved with everything else"
+                  : elementOrNone(data.named.names.intrinsics_std, i) ? "as calibrated first"
+                                                                      : "as given",
                   intrinsics->model == CameraModel::PinholeRadtan ? "pinhole, radial-tangential"
                                                                   : "pinhole, equidistant",
                   intrinsics->resolution_px.width_px, intrinsics->resolution_px.height_px,
@@ -118,7 +113,7 @@ void writeCameraNumbers(const ReportData& data, std::size_t i, ReportPage& page)
 
 void writeImuNumbers(const ReportData& data, std::size_t i, ReportPage& page) {
   const ImuState& state = data.named.result.state.imus[i];
-  const ImuUncertainty sigma = at(data.named.result.uncertainty.imus, i);
+  const ImuUncertainty sigma = elementOrNone(data.named.result.uncertainty.imus, i);
   const bool reference = imuName(data, i) == data.named.names.reference;
   page.heading("IMU " + imuName(data, i) + (reference ? " (reference)" : ""));
   Rows rows;

@@ -1,5 +1,7 @@
 #include "core/base/element.h"
 
+#include "tests/support/test_program.h"
+
 using namespace evical;
 
 class TestElement : public QObject {
@@ -14,5 +16,4 @@ class TestElement : public QObject {
 };
 
 EVICAL_TEST(TestElement)
-#include "tests/support/test_program.h"
 #include "tst_element.moc"

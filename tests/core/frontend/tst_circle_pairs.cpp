@@ -1,6 +1,7 @@
 #include "core/frontend/circle_pairs.h"
 
 #include "core/frontend/moving_circle.h"
+#include "core/numerics/angles.h"
 #include "tests/core/frontend/synthetic_bursts.h"
 #include "tests/support/test_program.h"
 
@@ -15,7 +16,7 @@ EventCluster cluster(bool leading, ClusterKind kind, const Eigen::Vector2d& cent
   out.leading = leading;
   out.kind = kind;
   out.centroid_px = centroid_px;
-  const double angle = angle_deg * M_PI / 180.0;
+  const double angle = angle_deg * kRadPerDeg;
   out.direction = {std::cos(angle), std::sin(angle)};
   return out;
 }

@@ -3,6 +3,7 @@
 #include "core/base/time.h"
 #include "core/geometry/so3.h"
 #include "core/geometry/trajectory.h"
+#include "core/numerics/angles.h"
 #include "core/synthetic/board_truth.h"
 #include "core/synthetic/imu_simulator.h"
 
@@ -14,8 +15,6 @@
 
 namespace evical::test {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 MotionModel motionModel(Motion kind, double distance_m) {
   MotionModel m;

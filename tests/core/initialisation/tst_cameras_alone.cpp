@@ -1,6 +1,7 @@
 #include "core/base/error.h"
 #include "core/initialisation/camera_trajectory.h"
 #include "core/initialisation/initialise.h"
+#include "core/numerics/angles.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/covariance.h"
 #include "tests/core/initialisation/simulated_input.h"
@@ -13,8 +14,6 @@ using namespace evical;
 using namespace evical::test;
 
 namespace {
-
-constexpr double kDegPerRad = 57.29577951308232;
 
 SimulatedInput twoCameras() {
   SimulationOptions options;

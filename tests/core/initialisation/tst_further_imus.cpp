@@ -2,6 +2,7 @@
 
 #include "core/geometry/so3.h"
 #include "core/initialisation/initialise.h"
+#include "core/numerics/angles.h"
 #include "tests/core/initialisation/simulated_input.h"
 #include "tests/support/test_program.h"
 
@@ -11,8 +12,6 @@ using namespace evical;
 using namespace evical::test;
 
 namespace {
-
-constexpr double kDegPerRad = 57.29577951308232;
 
 SimulatedInput twoImus(double offset_s) {
   SimulationOptions options;

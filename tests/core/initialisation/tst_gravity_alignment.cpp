@@ -1,6 +1,7 @@
 #include "core/initialisation/gravity_alignment.h"
 
 #include "core/geometry/so3.h"
+#include "core/numerics/angles.h"
 #include "core/synthetic/sinusoid_motion.h"
 #include "tests/core/initialisation/simulated_input.h"
 #include "tests/support/test_program.h"
@@ -79,7 +80,7 @@ class TestGravityAlignment : public QObject {
     const SimulatedInput& simulated = truth.simulated;
     const Vector3d lever = simulated.truth.cameras[0].imu_from_camera.translation_m;
     QVERIFY((found.cameras_in_imu_m[0] - lever).norm() < 5e-3);
-    QVERIFY(gravityError_rad(found, truth) < 0.3 * M_PI / 180.0);
+    QVERIFY(gravityError_rad(found, truth) < 0.3 * kRadPerDeg);
     QVERIFY(std::abs(found.gravity_in_world_m_s2.norm() - 9.81) < 1e-9);
     QVERIFY((found.accelerometer_bias_m_s2 - simulated.truth.imus[0].accelerometer_bias_m_s2).norm() < 0.06);
     QCOMPARE(found.outlying_views, 0);

@@ -1,7 +1,6 @@
 #include "core/optimisation/covariance.h"
 
 #include "core/geometry/so3.h"
-#include "core/optimisation/band_cholesky.h"
 #include "core/optimisation/projected_information.h"
 #include "core/synthetic/board_truth.h"
 #include "core/synthetic/imu_simulator.h"
@@ -93,37 +92,6 @@ class TestCovariance : public QObject {
   Q_OBJECT
 
  private slots:
-  void bandCholesky_solvesLikeADenseOne() {
-    std::mt19937 random(1);
-    std::normal_distribution<double> normal;
-    constexpr Eigen::Index kSize = 40, kBand = 5;
-    Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(kSize, kSize);
-    for (Eigen::Index i = 0; i < kSize; ++i) {
-      for (Eigen::Index j = std::max<Eigen::Index>(0, i - kBand); j <= i; ++j) factor(i, j) = normal(random);
-      factor(i, i) += 4.0;
-    }
-    const Eigen::MatrixXd matrix = factor * factor.transpose();
-    BandCholesky band(kSize, kBand);
-    for (Eigen::Index i = 0; i < kSize; ++i) {
-      for (Eigen::Index j = std::max<Eigen::Index>(0, i - kBand); j <= i; ++j) band.add(i, j, matrix(i, j));
-    }
-    band.factorise();
-    const Eigen::MatrixXd right = Eigen::MatrixXd::Random(kSize, 3);
-    Eigen::MatrixXd solution = right;
-    band.solveInPlace(solution);
-    QVERIFY((matrix * solution - right).norm() < 1e-10);
-  }
-
-  void bandCholesky_onADirectionWithoutInformation_givesZeroThere() {
-    BandCholesky band(3, 1);
-    band.add(0, 0, 2.0);
-    band.add(2, 2, 4.0);
-    band.factorise();
-    Eigen::MatrixXd solution = Eigen::Vector3d(2.0, 0.0, 4.0);
-    band.solveInPlace(solution);
-    QVERIFY((solution - Eigen::Vector3d(1.0, 0.0, 1.0)).norm() < 1e-12);
-  }
-
   // P^T P must be the Schur complement of the dense normal equations.
   void projectedInformation_isTheSchurComplement() {
     test::RigOptions options = test::shortRecording();

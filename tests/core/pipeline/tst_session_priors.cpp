@@ -1,3 +1,4 @@
+#include "core/numerics/angles.h"
 #include "core/pipeline/session_priors.h"
 #include "tests/core/pipeline/refused_session.h"
 #include "tests/support/test_program.h"
@@ -99,7 +100,7 @@ class TestSessionPriors : public QObject {
     QVERIFY(!session.options.optimisation.free_gravity_norm);
     const SensorPrior& left = session.cameras[0].prior;
     QVERIFY(left.rotation->value.isApprox(Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5)));
-    QVERIFY((*left.rotation->sigma * 180.0 / M_PI - Eigen::Vector3d(0.1, 0.2, 0.3)).norm() < 1e-12);
+    QVERIFY((kDegPerRad * *left.rotation->sigma - Eigen::Vector3d(0.1, 0.2, 0.3)).norm() < 1e-12);
     QVERIFY(left.translation->value == Eigen::Vector3d(0.04, -0.03, 0.05));
     QVERIFY(*left.translation->sigma == Eigen::Vector3d::Constant(0.002));
     QCOMPARE(left.time_offset->value, 0.0073);

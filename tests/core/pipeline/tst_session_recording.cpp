@@ -1,4 +1,5 @@
 #include "core/base/error.h"
+#include "core/numerics/angles.h"
 #include "core/pipeline/session_recording.h"
 #include "tests/core/recording/sample_recording.h"
 #include "tests/support/test_program.h"
@@ -126,7 +127,7 @@ void TestSessionRecording::units_areThoseOfTheSession() {
   std::size_t imu_stream = 0;
   const ImuSample read = readSession(imu_stream).imu_samples.at(3), &written = written_.imu_samples.at(3);
   QVERIFY((read.specific_force_m_s2 + 9.80665 * written.specific_force_m_s2).norm() < 1e-12);
-  QVERIFY((180.0 / M_PI * read.angular_rate_rad_s - written.angular_rate_rad_s).norm() < 1e-12);
+  QVERIFY((kDegPerRad * read.angular_rate_rad_s - written.angular_rate_rad_s).norm() < 1e-12);
 }
 
 void TestSessionRecording::clocksWithoutRelation_areRefused() {

@@ -1,5 +1,5 @@
-// Cholesky factor of a symmetric positive definite band matrix: what a spline's information matrix is, with
-// the control points in order of time.
+// Cholesky factor of a symmetric positive definite band matrix, in linear time: what a spline's information
+// matrix is, with the control points in order of time.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,10 +15,14 @@ class BandCholesky {
 
   Eigen::Index size() const { return size_; }
   void add(Eigen::Index row, Eigen::Index col, double value) { at(row, col) += value; }  // col <= row
+  // Adds scale * weights weights^T at (first, first).
+  void addOuter(Eigen::Index first, const Eigen::Ref<const Eigen::VectorXd>& weights, double scale);
 
-  // Directions without information (pivots that cancel to nothing) get a solution of 0 instead of infinity.
-  void factorise();
-  void solveInPlace(Eigen::MatrixXd& right) const;
+  // In place; afterwards nothing may be added. False if directions have no information (pivots that cancel to
+  // nothing): these get a solution of 0 instead of infinity.
+  bool factorise();
+  // Overwrites `right` (size x any) with the solution.
+  void solveInPlace(Eigen::Ref<Eigen::MatrixXd> right) const;
 
   // L^-T times `white`: with independent unit variances in, values with the inverse's covariance.
   void correlateInPlace(Eigen::VectorXd& white) const;

@@ -1,0 +1,55 @@
+// Covariance of a sum of scores that are correlated with their neighbours in time (W. Newey, K. West,
+// Econometrica 1987): products of neighbours count with weights that fall to zero at a bound.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace evical {
+
+template <int kSize>
+using ScoreVector = Eigen::Matrix<double, kSize, 1>;
+template <int kSize>
+using ScoreMatrix = Eigen::Matrix<double, kSize, kSize>;
+
+// Of scores at even steps in time: weights fall to zero at `lags` + 1 steps.
+template <int kSize>
+ScoreMatrix<kSize> neweyWestByLag(const std::vector<ScoreVector<kSize>>& scores, Eigen::Index size,
+                                  std::size_t lags) {
+  ScoreMatrix<kSize> sum = ScoreMatrix<kSize>::Zero(size, size);
+  for (std::size_t lag = 0; lag <= lags; ++lag) {
+    const double weight = 1.0 - static_cast<double>(lag) / (static_cast<double>(lags) + 1.0);
+    for (std::size_t i = 0; i + lag < scores.size(); ++i) {
+      const ScoreMatrix<kSize> product = scores[i] * scores[i + lag].transpose();
+      if (lag == 0) {
+        sum += product;
+      } else {
+        sum += weight * (product + product.transpose());
+      }
+    }
+  }
+  return sum;
+}
+
+// Of scores at any times: weights fall to zero at `bound_s`; a bound of zero leaves those of one time.
+template <int kSize>
+ScoreMatrix<kSize> neweyWestByTime(std::span<const double> times_s,
+                                   const std::vector<ScoreVector<kSize>>& scores, Eigen::Index size,
+                                   double bound_s) {
+  ScoreMatrix<kSize> sum = ScoreMatrix<kSize>::Zero(size, size);
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    for (std::size_t j = 0; j < scores.size(); ++j) {
+      const double apart_s = std::abs(times_s[i] - times_s[j]);
+      if (apart_s > bound_s) continue;
+      const double weight = bound_s > 0.0 ? 1.0 - apart_s / bound_s : 1.0;
+      sum += weight * scores[i] * scores[j].transpose();
+    }
+  }
+  return sum;
+}
+
+}  // namespace evical
