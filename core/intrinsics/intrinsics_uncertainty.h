@@ -1,6 +1,6 @@
 // How sure the intrinsics are (docs/maths.md, 7.4): Schur complement over the views' poses, scaled by the
 // residuals' variance; where errors that the circles of a view, or of neighbouring views, have in common ask
-// for more, they prevail (as in core/optimisation/covariance.h).
+// for more, they prevail (as in core/optimisation/uncertainty/covariance.h).
 #pragma once
 
 #include "core/data/intrinsics_result.h"

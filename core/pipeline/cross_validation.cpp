@@ -4,7 +4,7 @@
 #include "core/base/time.h"
 #include "core/numerics/angles.h"
 #include "core/optimisation/batch_optimiser.h"
-#include "core/optimisation/covariance.h"
+#include "core/optimisation/uncertainty/covariance.h"
 #include "core/report/truth_comparison.h"
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #include "core/initialisation/initialise.h"
 #include "core/numerics/angles.h"
 #include "core/optimisation/batch_optimiser.h"
-#include "core/optimisation/covariance.h"
+#include "core/optimisation/uncertainty/covariance.h"
 #include "tests/core/initialisation/simulated_input.h"
 #include "tests/support/test_program.h"
 

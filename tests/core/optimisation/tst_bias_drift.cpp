@@ -1,8 +1,8 @@
 // Biases that walk while the recording runs.
 #include "core/optimisation/batch_optimiser.h"
-#include "core/optimisation/covariance.h"
-#include "core/optimisation/projected_information.h"
 #include "core/optimisation/sample_errors.h"
+#include "core/optimisation/uncertainty/covariance.h"
+#include "core/optimisation/uncertainty/projected_information.h"
 #include "tests/core/optimisation/simulated_rig.h"
 #include "tests/support/test_program.h"
 

@@ -1,7 +1,7 @@
-#include "core/optimisation/covariance.h"
+#include "core/optimisation/uncertainty/covariance.h"
 
 #include "core/geometry/so3.h"
-#include "core/optimisation/projected_information.h"
+#include "core/optimisation/uncertainty/projected_information.h"
 #include "core/synthetic/board_truth.h"
 #include "core/synthetic/imu_simulator.h"
 #include "tests/core/optimisation/simulated_rig.h"

@@ -2,7 +2,7 @@
 #include "core/data/intrinsics_result.h"
 #include "core/geometry/projection_difference.h"
 #include "core/optimisation/batch_optimiser.h"
-#include "core/optimisation/covariance.h"
+#include "core/optimisation/uncertainty/covariance.h"
 #include "tests/core/optimisation/simulated_rig.h"
 #include "tests/support/test_program.h"
 

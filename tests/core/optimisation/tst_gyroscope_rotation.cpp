@@ -1,6 +1,6 @@
 // A gyroscope that is turned against its accelerometer.
 #include "core/optimisation/batch_optimiser.h"
-#include "core/optimisation/covariance.h"
+#include "core/optimisation/uncertainty/covariance.h"
 #include "tests/core/optimisation/simulated_rig.h"
 #include "tests/support/test_program.h"
 

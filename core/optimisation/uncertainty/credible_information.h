@@ -2,7 +2,7 @@
 // trajectory's rates stands where motion should, and would be taken for a measurement.
 #pragma once
 
-#include "core/optimisation/projected_information.h"
+#include "core/optimisation/uncertainty/projected_information.h"
 
 namespace evical {
 

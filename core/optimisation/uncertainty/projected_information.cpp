@@ -1,4 +1,4 @@
-#include "core/optimisation/projected_information.h"
+#include "core/optimisation/uncertainty/projected_information.h"
 
 #include "core/numerics/band_cholesky.h"
 

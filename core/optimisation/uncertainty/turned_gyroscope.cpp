@@ -1,4 +1,4 @@
-#include "core/optimisation/turned_gyroscope.h"
+#include "core/optimisation/uncertainty/turned_gyroscope.h"
 
 #include "core/numerics/angles.h"
 

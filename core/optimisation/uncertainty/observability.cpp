@@ -1,4 +1,4 @@
-#include "core/optimisation/observability.h"
+#include "core/optimisation/uncertainty/observability.h"
 
 #include "core/numerics/angles.h"
 

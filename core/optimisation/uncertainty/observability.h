@@ -5,7 +5,7 @@
 #include "core/data/calibration_result.h"
 #include "core/data/calibration_setup.h"
 #include "core/optimisation/optimisation_options.h"
-#include "core/optimisation/projected_information.h"
+#include "core/optimisation/uncertainty/projected_information.h"
 
 #include <Eigen/Core>
 

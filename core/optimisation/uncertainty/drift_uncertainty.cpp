@@ -1,4 +1,4 @@
-#include "core/optimisation/drift_uncertainty.h"
+#include "core/optimisation/uncertainty/drift_uncertainty.h"
 
 namespace evical {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/data/calibration_result.h"
-#include "core/optimisation/projected_information.h"
+#include "core/optimisation/uncertainty/projected_information.h"
 
 #include <Eigen/Core>
 

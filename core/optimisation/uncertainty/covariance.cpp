@@ -1,14 +1,14 @@
-#include "core/optimisation/covariance.h"
+#include "core/optimisation/uncertainty/covariance.h"
 
 #include "core/data/doubt.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/numerics/newey_west.h"
-#include "core/optimisation/credible_information.h"
-#include "core/optimisation/drift_uncertainty.h"
 #include "core/optimisation/known_values.h"
-#include "core/optimisation/observability.h"
-#include "core/optimisation/projected_information.h"
-#include "core/optimisation/turned_gyroscope.h"
+#include "core/optimisation/uncertainty/credible_information.h"
+#include "core/optimisation/uncertainty/drift_uncertainty.h"
+#include "core/optimisation/uncertainty/observability.h"
+#include "core/optimisation/uncertainty/projected_information.h"
+#include "core/optimisation/uncertainty/turned_gyroscope.h"
 
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>

@@ -1,11 +1,11 @@
-#include "core/optimisation/prior_check.h"
+#include "core/optimisation/uncertainty/prior_check.h"
 
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
-#include "core/optimisation/covariance.h"
 #include "core/optimisation/known_values.h"
+#include "core/optimisation/uncertainty/covariance.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "core/optimisation/credible_information.h"
+#include "core/optimisation/uncertainty/credible_information.h"
 
 #include <Eigen/Eigenvalues>
 
