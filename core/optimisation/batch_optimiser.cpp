@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace evical {
@@ -41,9 +42,10 @@ class IterationReporter final : public ceres::IterationCallback {
     const double share = std::min(1.0, (iterations_++ + 1.0) / kTypicalIterations);
     furthest_ = std::max(furthest_, (stage_ + share) / stage_count_);  // a stage may be solved more than once
     context_.progress.stageProgress(furthest_);
+    const CalibrationState state = problem_.state();
     records_.push_back({stage_ + 1, static_cast<int>(records_.size()), summary.cost,
-                        summary.gradient_max_norm, summary.step_norm, problem_.state().cameras});
-    if (observer_ != nullptr) observer_->iterationDone(records_.back(), problem_.state());
+                        summary.gradient_max_norm, summary.step_norm, state.cameras});
+    if (observer_ != nullptr) observer_->iterationDone(records_.back(), state);
     if (context_.stop.stop_requested()) return ceres::SOLVER_ABORT;
     return problem_.segmentDrift_knots() > kFurthestDrift_knots ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
                                                                 : ceres::SOLVER_CONTINUE;
@@ -85,7 +87,8 @@ class Batch {
         options_(options),
         context_(context),
         observer_(observer),
-        problem_(input, options, initial) {}
+        problem_(input, options, initial),
+        weights_(givenWeights(input)) {}
 
   BatchSolution run();
   BatchSolution refine();
@@ -100,13 +103,18 @@ class Batch {
   BatchSolution finish();
   void reportFits();
   void reportNotes();
-  std::vector<ImuFit> imuFits(NoiseScales& scales) const;
+  struct ImuFits {
+    std::vector<ImuFit> fits;                        // RMS by IMU, in SI units
+    std::vector<double> gyroscopes, accelerometers;  // the same in units of the given noise
+  };
+  ImuFits imuFits() const;
 
   const CalibrationInput& input_;
   const OptimisationOptions& options_;
   const RunContext& context_;
   CalibrationObserver* observer_;
   CalibrationProblem problem_;
+  Weights weights_;
   BatchSolution solution_;
   double progress_ = 0.0;
 };
@@ -131,7 +139,7 @@ void Batch::solveStage(ReleaseStages stage, int index, double tolerance) {
   solution_.converged = false;
   for (int round = 0; round < options_.max_rounds; ++round) {
     context_.throwIfStopped();
-    problem_.build(stage);
+    problem_.build(stage, weights_);
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem_.problem(), &summary);
     context_.throwIfStopped();
@@ -152,9 +160,9 @@ void Batch::solveStage(ReleaseStages stage, int index, double tolerance) {
 // again.
 bool Batch::updateWeights() {
   const std::vector<CircleError> errors = circleErrors(input_, problem_.state(), options_);
-  NoiseScales scales = problem_.scales;
-  for (std::size_t i = 0; i < scales.circles.size(); ++i) scales.circles[i] = robustScale(errors, i);
-  imuFits(scales);
+  std::vector<double> circles;
+  for (std::size_t i = 0; i < input_.cameras.size(); ++i) circles.push_back(robustScale(errors, i));
+  const ImuFits imus = imuFits();
   bool changed = false;
   const auto update = [&](std::vector<double>& old, const std::vector<double>& fresh) {
     constexpr double kNoticeable = 0.05;
@@ -164,13 +172,13 @@ bool Batch::updateWeights() {
       old[i] = scale;
     }
   };
-  update(problem_.scales.circles, scales.circles);
-  update(problem_.scales.gyroscopes, scales.gyroscopes);
-  update(problem_.scales.accelerometers, scales.accelerometers);
+  update(weights_.scales.circles, circles);
+  update(weights_.scales.gyroscopes, imus.gyroscopes);
+  update(weights_.scales.accelerometers, imus.accelerometers);
   if (input_.imus.empty()) updateSmoothness();
-  CircleSelection selection = selectCircles(input_, errors, problem_.scales.circles, options_);
-  changed = changed || selection != problem_.used_circles;
-  problem_.used_circles = std::move(selection);
+  CircleSelection selection = selectCircles(input_, errors, weights_.scales.circles, options_);
+  changed = changed || selection != weights_.used_circles;
+  weights_.used_circles = std::move(selection);
   return changed;
 }
 
@@ -181,23 +189,23 @@ void Batch::updateSmoothness() {
   const auto scale = [&](double measured, double largest) {
     return std::clamp(options_.smooth_unevenness * measured / largest, kLeast, 1.0);
   };
-  problem_.scales.smooth_rotation = scale(found.rotation_rad_s2, options_.smooth_rotation_rad_s2);
-  problem_.scales.smooth_position = scale(found.position_m_s2, options_.smooth_position_m_s2);
+  weights_.scales.smooth_rotation = scale(found.rotation_rad_s2, options_.smooth_rotation_rad_s2);
+  weights_.scales.smooth_position = scale(found.position_m_s2, options_.smooth_position_m_s2);
 }
 
-// RMS by IMU in SI units, and the scales that go with it: RMS in units of the given noise.
-std::vector<ImuFit> Batch::imuFits(NoiseScales& scales) const {
-  const CalibrationState& state = problem_.state();
-  std::vector<ImuFit> fits(input_.imus.size());
+Batch::ImuFits Batch::imuFits() const {
+  const CalibrationState state = problem_.state();
+  ImuFits all;
   for (std::size_t i = 0; i < input_.imus.size(); ++i) {
     const ImuData& data = input_.imus[i];
     const SampleErrors errors = sampleErrors(input_, state, i);
-    fits[i] = {errors.gyroscope_rms_rad_s, errors.accelerometer_rms_m_s2};
+    all.fits.push_back({errors.gyroscope_rms_rad_s, errors.accelerometer_rms_m_s2});
     const double root_rate = std::sqrt(data.rate_hz());
-    scales.gyroscopes[i] = errors.gyroscope_rms_rad_s / (data.noise.gyroscope_density * root_rate);
-    scales.accelerometers[i] = errors.accelerometer_rms_m_s2 / (data.noise.accelerometer_density * root_rate);
+    all.gyroscopes.push_back(errors.gyroscope_rms_rad_s / (data.noise.gyroscope_density * root_rate));
+    all.accelerometers.push_back(errors.accelerometer_rms_m_s2 /
+                                 (data.noise.accelerometer_density * root_rate));
   }
-  return fits;
+  return all;
 }
 
 BatchSolution Batch::run() {
@@ -213,8 +221,9 @@ BatchSolution Batch::run() {
 }
 
 void Batch::holdStillAxes() {
+  const CalibrationState state = problem_.state();
   for (std::size_t imu = 0; imu < input_.imus.size(); ++imu)
-    problem_.held_axes[imu] = stillAxes(input_, problem_.state(), problem_.scales, imu);
+    weights_.held_axes[imu] = stillAxes(input_, state, weights_.scales, imu);
 }
 
 // Solves until convergence with weights that follow from the residuals, and again where they change.
@@ -235,8 +244,8 @@ BatchSolution Batch::refine() {
 
 BatchSolution Batch::finish() {
   solution_.state = problem_.state();
-  solution_.scales = problem_.scales;
-  solution_.used_circles = problem_.used_circles;
+  solution_.scales = weights_.scales;
+  solution_.used_circles = weights_.used_circles;
   reportFits();
   reportNotes();
   context_.progress.stageProgress(1.0);
@@ -244,8 +253,7 @@ BatchSolution Batch::finish() {
 }
 
 void Batch::reportFits() {
-  NoiseScales scales = solution_.scales;
-  solution_.imus = imuFits(scales);
+  solution_.imus = imuFits().fits;
   for (const CameraData& camera : input_.cameras) {
     CameraFit& fit = solution_.cameras.emplace_back();
     fit.windows_total = static_cast<int>(camera.observations.windows.size());
@@ -304,7 +312,7 @@ void Batch::reportNotes() {
   for (std::size_t i = 0; i < input_.imus.size(); ++i) {
     say(input_.imus[i].name, "the gyroscope's residual", solution_.scales.gyroscopes[i]);
     say(input_.imus[i].name, "the accelerometer's residual", solution_.scales.accelerometers[i]);
-    const StillAxes& held = problem_.held_axes[i];
+    const StillAxes& held = weights_.held_axes[i];
     sayHeld(input_.imus[i].name, "rotation", held.gyroscope.size(),
             options_.gyroscope_rotation
                 ? "the gyroscope's scale and its turn against the accelerometer stay as they are"
@@ -314,26 +322,21 @@ void Batch::reportNotes() {
   }
   if (!input_.imus.empty()) {
     sayHeld(input_.imus[input_.reference_imu].name, "lever of rotation",
-            problem_.held_axes[input_.reference_imu].leverless().size(), "translations stay at 0");
+            weights_.held_axes[input_.reference_imu].leverless().size(), "translations stay at 0");
   }
   if (!solution_.converged) {
     solution_.notes.emplace_back("the optimiser stopped at its iteration limit before it converged");
   }
 }
 
-void checkInput(const CalibrationInput& input, const CalibrationState& initial) {
-  if (input.cameras.empty() || input.cameras.size() + input.imus.size() < 2) {
-    throw badInput("optimisation", "the batch needs a camera and an IMU, or two cameras");
-  }
-  if (initial.cameras.size() != input.cameras.size() || initial.imus.size() != input.imus.size()) {
-    throw badInput("optimisation", "the initial state does not list the input's cameras and IMUs");
-  }
-  if (initial.world_from_imu_rotation.segmentCount() < 1 || initial.imu_in_world_m.segmentCount() < 1) {
-    throw badInput("optimisation", "the initial state has no splines");
-  }
-  for (const CameraData& camera : input.cameras) {
-    if (!camera.intrinsics) throw badInput(camera.name, "the batch needs the camera's intrinsics");
-  }
+// What the pipeline's earlier stages see to.
+void assertComplete([[maybe_unused]] const CalibrationInput& input,
+                    [[maybe_unused]] const CalibrationState& initial) {
+  assert(!input.cameras.empty() && input.cameras.size() + input.imus.size() >= 2);
+  assert(initial.cameras.size() == input.cameras.size() && initial.imus.size() == input.imus.size());
+  assert(initial.world_from_imu_rotation.segmentCount() >= 1 && initial.imu_in_world_m.segmentCount() >= 1);
+  assert(std::all_of(input.cameras.begin(), input.cameras.end(),
+                     [](const CameraData& camera) { return camera.intrinsics.has_value(); }));
 }
 
 }  // namespace
@@ -341,7 +344,7 @@ void checkInput(const CalibrationInput& input, const CalibrationState& initial) 
 BatchSolution optimiseBatch(const CalibrationInput& input, const CalibrationState& initial,
                             const OptimisationOptions& options, const RunContext& context,
                             CalibrationObserver* observer) {
-  checkInput(input, initial);
+  assertComplete(input, initial);
   if (circleErrors(input, initial, options).empty()) {
     throw calibrationFailed("optimisation", "no view of the board lies in the trajectory's time range",
                             "Check that camera and IMU recorded at the same time");
@@ -351,7 +354,7 @@ BatchSolution optimiseBatch(const CalibrationInput& input, const CalibrationStat
 
 BatchSolution refineBatch(const CalibrationInput& input, const CalibrationState& solved,
                           const OptimisationOptions& options, const RunContext& context) {
-  checkInput(input, solved);
+  assertComplete(input, solved);
   return Batch(input, solved, options, context, nullptr).refine();
 }
 

@@ -9,20 +9,12 @@
 #include "core/data/calibration_setup.h"
 #include "core/data/calibration_state.h"
 #include "core/optimisation/optimisation_options.h"
+#include "core/optimisation/weights.h"
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace evical {
-
-// How much larger residuals are than the sigmas given for them, per sensor. The batch divides its weights by
-// these, so that wrong noise densities or circle covariances don't decide between camera and IMU.
-struct NoiseScales {
-  std::vector<double> circles;                          // by camera
-  std::vector<double> gyroscopes, accelerometers;       // by IMU
-  double smooth_rotation = 1.0, smooth_position = 1.0;  // without an IMU: accelerations at the knots
-};
 
 struct BatchSolution {
   CalibrationState state;
@@ -33,12 +25,12 @@ struct BatchSolution {
   std::vector<std::string> notes;
   bool converged = false;
   NoiseScales scales;
-  // used_circles[camera][view][i]: whether circle i of the view's list took part.
-  std::vector<std::vector<std::vector<std::uint8_t>>> used_circles;
+  CircleSelection used_circles;  // that took part
 };
 
-// `initial` gives the splines' range and knots: both cover the views with a margin for the time offset to
-// move. Throws CalibrationError when nothing can be solved, and Cancelled when asked to stop.
+// Input: a camera and an IMU, or two cameras, all with their intrinsics. `initial` lists them all and gives
+// the splines' range and knots: both cover the views with a margin for the time offset to move. Throws
+// CalibrationError when nothing can be solved, and Cancelled when asked to stop.
 BatchSolution optimiseBatch(const CalibrationInput& input, const CalibrationState& initial,
                             const OptimisationOptions& options, const RunContext& context,
                             CalibrationObserver* observer = nullptr);

@@ -78,12 +78,7 @@ double robustScale(const std::vector<CircleError>& errors, std::size_t camera) {
 
 CircleSelection selectCircles(const CalibrationInput& input, const std::vector<CircleError>& errors,
                               const std::vector<double>& scales, const OptimisationOptions& options) {
-  CircleSelection used;
-  for (const CameraData& camera : input.cameras) {
-    auto& views = used.emplace_back();
-    for (const BoardView& view : camera.observations.views)
-      views.emplace_back(view.circles.size(), std::uint8_t{1});
-  }
+  CircleSelection used = allCircles(input);
   for (const CircleError& error : errors) {
     const double bound = options.outlier_sigma * scales[error.camera];
     if (!(error.normalised2 <= bound * bound)) used[error.camera][error.view][error.index] = 0;

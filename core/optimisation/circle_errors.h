@@ -1,18 +1,14 @@
 // How far every measured circle lies from where the state puts it, and which of them to trust.
 #pragma once
 
-#include "core/data/calibration_result.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/calibration_state.h"
 #include "core/optimisation/optimisation_options.h"
+#include "core/optimisation/weights.h"
 
-#include <cstdint>
 #include <vector>
 
 namespace evical {
-
-// used[camera][view][i]: circle i of the view's list takes part.
-using CircleSelection = std::vector<std::vector<std::vector<std::uint8_t>>>;
 
 struct CircleError {
   std::size_t camera = 0, view = 0, index = 0;         // index: position in the view's list

@@ -1,8 +1,5 @@
 #include "core/optimisation/known_values.h"
 
-#include "core/optimisation/calibration_problem.h"
-#include "core/optimisation/prior_cost.h"
-
 namespace evical {
 namespace {
 
@@ -19,12 +16,6 @@ void setPlace(const SensorPrior& prior, bool offset_is_free, RigidTransform& pos
 
 Eigen::Matrix3d heldMapping(const std::optional<KnownMapping>& known) {
   return known ? known->value : Eigen::Matrix3d::Identity();
-}
-
-Eigen::Matrix<double, 6, 1> upperTriangle(const Eigen::Matrix3d& mapping) {
-  Eigen::Matrix<double, 6, 1> entries;
-  parametersFromMapping(mapping, entries.data());
-  return entries;
 }
 
 void appendPlace(const std::string& sensor, const SensorPrior& prior, bool offset_is_free,
@@ -75,56 +66,6 @@ std::vector<std::string> givenQuantities(const CalibrationInput& input, const Op
       names.push_back(imu.name + ".accelerometer_mapping");
   }
   return names;
-}
-
-// Without a cost the value is given.
-void CalibrationProblem::addKnown(double* block, ceres::CostFunction* cost) {
-  if (cost != nullptr)
-    blocks_.push_back({problem_->AddResidualBlock(cost, nullptr, block)});
-  else if (problem_->HasParameterBlock(block))
-    problem_->SetParameterBlockConstant(block);
-}
-
-void CalibrationProblem::addKnownPlace(const SensorPrior& prior, RigidTransform& pose,
-                                       double& time_offset_s) {
-  if (!problem_->HasParameterBlock(pose.rotation.coeffs().data())) return;  // the sensor is not in yet
-  if (const auto& known = prior.rotation)
-    addKnown(pose.rotation.coeffs().data(),
-             known->isGiven() ? nullptr : new RotationPriorCost(known->value, *known->sigma));
-  if (const auto& known = prior.translation)
-    addKnown(pose.translation_m.data(),
-             known->isGiven() ? nullptr : new PriorCost(known->value, *known->sigma));
-  const std::optional<KnownNumber> offset =
-      options_.free_time_offsets ? prior.time_offset : heldTimeOffset(prior);
-  if (offset)
-    addKnown(&time_offset_s, offset->isGiven() ? nullptr : new PriorCost(&offset->value, 1, *offset->sigma));
-}
-
-void CalibrationProblem::addKnownValues() {
-  const auto addBias = [&](const std::optional<KnownVector>& known, Eigen::Vector3d& bias) {
-    if (known) addKnown(bias.data(), known->isGiven() ? nullptr : new PriorCost(known->value, *known->sigma));
-  };
-  const auto addMapping = [&](const std::optional<KnownMapping>& known, std::array<double, 6>& mapping) {
-    if (known)
-      addKnown(mapping.data(),
-               known->isGiven() ? nullptr
-                                : new PriorCost(upperTriangle(known->value), upperTriangle(*known->sigma)));
-  };
-  for (std::size_t i = 0; i < state_.cameras.size(); ++i) {
-    if (!input_.isReferenceCamera(i))
-      addKnownPlace(input_.cameras[i].prior, state_.cameras[i].reference_from_camera,
-                    state_.cameras[i].time_offset_s);
-  }
-  for (std::size_t i = 0; i < state_.imus.size(); ++i) {
-    const ImuPrior& prior = input_.imus[i].prior;
-    ImuState& imu = state_.imus[i];
-    if (!problem_->HasParameterBlock(imu.gyroscope_bias_rad_s.data())) continue;
-    if (!isReference(i)) addKnownPlace(prior, imu.reference_from_imu, imu.time_offset_s);
-    addBias(prior.gyroscope_bias, imu.gyroscope_bias_rad_s);
-    addBias(prior.accelerometer_bias, imu.accelerometer_bias_m_s2);
-    addMapping(prior.gyroscope_mapping, gyroscope_mappings_[i]);
-    addMapping(prior.accelerometer_mapping, accelerometer_mappings_[i]);
-  }
 }
 
 }  // namespace evical

@@ -1,6 +1,9 @@
 #include "core/optimisation/still_axes.h"
 
 #include "core/base/time.h"
+#include "core/data/calibration_setup.h"
+#include "core/data/calibration_state.h"
+#include "core/optimisation/weights.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>

@@ -2,15 +2,15 @@
 // and an estimate that is free to choose takes the scale that hides other errors, down to 0.
 #pragma once
 
-#include "core/data/calibration_setup.h"
-#include "core/data/calibration_state.h"
-#include "core/optimisation/batch_optimiser.h"
-
 #include <Eigen/Core>
 
 #include <vector>
 
 namespace evical {
+
+struct CalibrationInput;
+struct CalibrationState;
+struct NoiseScales;
 
 // Unit vectors in the IMU's own frame, perpendicular to each other.
 struct StillAxes {

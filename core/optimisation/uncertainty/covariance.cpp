@@ -3,6 +3,7 @@
 #include "core/data/doubt.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/numerics/newey_west.h"
+#include "core/optimisation/calibration_problem.h"
 #include "core/optimisation/known_values.h"
 #include "core/optimisation/uncertainty/credible_information.h"
 #include "core/optimisation/uncertainty/drift_uncertainty.h"
@@ -303,9 +304,8 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   OptimisationOptions free_to_turn = options;
   free_to_turn.gyroscope_rotation = true;
   CalibrationProblem problem(input, free_to_turn, solution.state);
-  problem.used_circles = solution.used_circles;
-  problem.scales = solution.scales;
-  problem.build(lastStage(options));
+  problem.build(lastStage(options),
+                {solution.scales, solution.used_circles, std::vector<StillAxes>(input.imus.size())});
   ProjectedInformation information = projectInformation(problem, options.correlation_time_s, context);
   context.throwIfStopped();
   UncertaintyEstimate estimate;

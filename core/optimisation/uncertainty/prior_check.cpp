@@ -2,8 +2,10 @@
 
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
+#include "core/base/progress.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
+#include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/known_values.h"
 #include "core/optimisation/uncertainty/covariance.h"
 

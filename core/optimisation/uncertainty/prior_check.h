@@ -3,15 +3,15 @@
 // priors.
 #pragma once
 
-#include "core/base/progress.h"
-#include "core/data/calibration_setup.h"
-#include "core/optimisation/batch_optimiser.h"
-#include "core/optimisation/optimisation_options.h"
-
 #include <string>
 #include <vector>
 
 namespace evical {
+
+struct BatchSolution;
+struct CalibrationInput;
+struct OptimisationOptions;
+struct RunContext;
 
 struct PriorCheck {
   std::vector<std::string> notes;  // what is given, and each value that the recording contradicts

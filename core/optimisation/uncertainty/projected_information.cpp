@@ -1,6 +1,7 @@
 #include "core/optimisation/uncertainty/projected_information.h"
 
 #include "core/numerics/band_cholesky.h"
+#include "core/optimisation/calibration_problem.h"
 
 #include <Eigen/Cholesky>
 

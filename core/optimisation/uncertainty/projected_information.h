@@ -8,13 +8,17 @@
 // size, or errors that are correlated, do to the estimate.
 #pragma once
 
-#include "core/optimisation/calibration_problem.h"
+#include "core/base/progress.h"
+#include "core/optimisation/parameter_blocks.h"
+#include "core/optimisation/problem_builder.h"
 
 #include <Eigen/Core>
 
 #include <vector>
 
 namespace evical {
+
+class CalibrationProblem;
 
 // One kind of measurement of one sensor.
 struct MeasurementGroup {

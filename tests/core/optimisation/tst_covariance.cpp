@@ -1,6 +1,8 @@
 #include "core/optimisation/uncertainty/covariance.h"
 
 #include "core/geometry/so3.h"
+#include "core/optimisation/batch_optimiser.h"
+#include "core/optimisation/calibration_problem.h"
 #include "core/optimisation/uncertainty/projected_information.h"
 #include "core/synthetic/board_truth.h"
 #include "core/synthetic/imu_simulator.h"
@@ -99,7 +101,7 @@ class TestCovariance : public QObject {
     const test::SimulatedRig rig = test::simulateRig(options);
     const OptimisationOptions optimisation;
     CalibrationProblem problem(rig.input, optimisation, rig.truth);
-    problem.build(ReleaseStages::Mappings);
+    problem.build(ReleaseStages::Mappings, givenWeights(rig.input));
     const ProjectedInformation information = projectInformation(problem, 0.1);
 
     ceres::Problem::EvaluateOptions evaluate;

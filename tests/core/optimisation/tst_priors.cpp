@@ -1,5 +1,6 @@
 // What is given and what is weighed: errors and reported sigmas against the truth.
 #include "core/geometry/so3.h"
+#include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/uncertainty/covariance.h"
 #include "core/optimisation/uncertainty/prior_check.h"
 #include "tests/core/optimisation/simulated_rig.h"

@@ -1,0 +1,179 @@
+#include "core/optimisation/measurement_residuals.h"
+
+#include "core/base/time.h"
+#include "core/optimisation/bias_knots.h"
+#include "core/optimisation/edge_lead.h"
+#include "core/optimisation/inertial_cost.h"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace evical {
+namespace {
+
+bool sameSegment(const SegmentTimes& a, const SegmentTimes& b) {
+  return a.rotation == b.rotation && a.position == b.position;
+}
+
+CircleMeasurement circleOf(const ProblemBuilder& builder, std::size_t camera, std::size_t view,
+                           std::size_t circle, const PixelErrors& pixel_errors) {
+  const CameraData& data = builder.input.cameras[camera];
+  const CircleObservation& observed = data.observations.views[view].circles[circle];
+  const double scale = builder.weights.scales.circles[camera];
+  const double floor_px2 = builder.options.least_centre_sigma_px * builder.options.least_centre_sigma_px;
+  const Eigen::Matrix2d covariance =
+      scale * scale * (observed.covariance_px2 + floor_px2 * Eigen::Matrix2d::Identity());
+  CircleMeasurement m;
+  m.time_s = observed.time_s;
+  m.on_board_m = builder.input.board.centre_m(observed.circle);
+  m.centre_px = observed.centre_px;
+  m.whitening_px = covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity());
+  m.lead = edgeLeadEffect(*data.intrinsics, observed, builder.options.rest_speed_px_s);
+  m.pixel_error_px = pixel_errors.at(observed);
+  m.view = static_cast<int>(view);
+  m.circle = static_cast<int>(circle);
+  return m;
+}
+
+// Those that take part and lie within the splines, in order of time.
+std::vector<CircleMeasurement> circlesOf(const ProblemBuilder& builder, std::size_t camera,
+                                         const PixelErrors& pixel_errors) {
+  const CalibrationState& state = builder.parameters.moved();
+  const auto& views = builder.input.cameras[camera].observations.views;
+  std::vector<CircleMeasurement> measurements;
+  for (std::size_t view = 0; view < views.size(); ++view) {
+    for (std::size_t i = 0; i < views[view].circles.size(); ++i) {
+      if (!builder.weights.used_circles[camera][view][i]) continue;
+      const double time_s = views[view].circles[i].time_s + state.cameras[camera].time_offset_s;
+      if (!state.world_from_imu_rotation.contains(time_s) || !state.imu_in_world_m.contains(time_s)) continue;
+      measurements.push_back(circleOf(builder, camera, view, i, pixel_errors));
+    }
+  }
+  std::stable_sort(
+      measurements.begin(), measurements.end(),
+      [](const CircleMeasurement& a, const CircleMeasurement& b) { return a.time_s < b.time_s; });
+  return measurements;
+}
+
+// Samples of one IMU that share spline segments and the knots of its biases.
+struct SampleRun {
+  std::size_t imu;
+  SegmentTimes segment;
+  double time_s;  // of the first, on the reference's clock
+  std::span<const ImuSample> samples;
+};
+
+std::vector<InertialMeasurement> samplesOf(const ProblemBuilder& builder, const SampleRun& run,
+                                           Eigen::Vector3d ImuSample::*value) {
+  std::vector<InertialMeasurement> measurements;
+  for (const ImuSample& sample : run.samples)
+    measurements.push_back({secondsSince(builder.input.start_ns, sample.time_ns), sample.*value});
+  return measurements;
+}
+
+ImuRole roleOf(const ProblemBuilder& builder, const SampleRun& run) {
+  return builder.isReference(run.imu) ? ImuRole::Reference : ImuRole::Further;
+}
+
+void addGyroscope(ProblemBuilder& builder, const SampleRun& run) {
+  ImuState& state = builder.parameters.moved().imus[run.imu];
+  const ImuData& data = builder.input.imus[run.imu];
+  const double sigma =
+      builder.weights.scales.gyroscopes[run.imu] * data.noise.gyroscope_density * std::sqrt(data.rate_hz());
+  std::vector<InertialMeasurement> measurements = samplesOf(builder, run, &ImuSample::angular_rate_rad_s);
+  std::vector<double*> blocks;
+  builder.parameters.appendRotation(run.segment, blocks);
+  blocks.insert(blocks.end(),
+                {state.gyroscope_bias_rad_s.data(), builder.parameters.gyroscopeMapping(run.imu),
+                 state.gyroscope_from_accelerometer.coeffs().data()});
+  if (!builder.isReference(run.imu))
+    blocks.insert(blocks.end(), {state.reference_from_imu.rotation.coeffs().data(), &state.time_offset_s});
+  const auto drift = appendDriftBlocks(state.bias_drift, state.bias_drift.gyroscope_rad_s,
+                                       measurements.front().time_s, blocks);
+  auto* cost = new GyroscopeCost(roleOf(builder, run), sigma, run.segment, std::move(measurements), drift);
+  builder.residuals.push_back(
+      {builder.problem.AddResidualBlock(cost, nullptr, blocks), SensorKind::Gyroscope, run.imu, run.time_s});
+}
+
+void addAccelerometer(ProblemBuilder& builder, const SampleRun& run) {
+  CalibrationState& all = builder.parameters.moved();
+  ImuState& state = all.imus[run.imu];
+  const ImuData& data = builder.input.imus[run.imu];
+  const double sigma = builder.weights.scales.accelerometers[run.imu] * data.noise.accelerometer_density *
+                       std::sqrt(data.rate_hz());
+  std::vector<InertialMeasurement> measurements = samplesOf(builder, run, &ImuSample::specific_force_m_s2);
+  std::vector<double*> blocks;
+  builder.parameters.appendRotation(run.segment, blocks);
+  builder.parameters.appendPosition(run.segment, blocks);
+  blocks.insert(blocks.end(), {all.gravity_in_world_m_s2.data(), state.accelerometer_bias_m_s2.data(),
+                               builder.parameters.accelerometerMapping(run.imu)});
+  if (!builder.isReference(run.imu)) {
+    blocks.insert(blocks.end(), {state.reference_from_imu.rotation.coeffs().data(),
+                                 state.reference_from_imu.translation_m.data(), &state.time_offset_s});
+  }
+  const auto drift = appendDriftBlocks(state.bias_drift, state.bias_drift.accelerometer_m_s2,
+                                       measurements.front().time_s, blocks);
+  auto* cost =
+      new AccelerometerCost(roleOf(builder, run), sigma, run.segment, std::move(measurements), drift);
+  builder.residuals.push_back({builder.problem.AddResidualBlock(cost, nullptr, blocks),
+                               SensorKind::Accelerometer, run.imu, run.time_s});
+}
+
+}  // namespace
+
+void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& model,
+                const PixelErrors& pixel_errors) {
+  ParameterBlocks& parameters = builder.parameters;
+  CameraState& state = parameters.moved().cameras[camera];
+  const std::vector<CircleMeasurement> measurements = circlesOf(builder, camera, pixel_errors);
+  for (std::size_t begin = 0, end = 0; begin < measurements.size(); begin = end) {
+    const double begin_s = measurements[begin].time_s + state.time_offset_s;
+    const SegmentTimes segment = parameters.segmentAt(begin_s);
+    while (end < measurements.size() &&
+           sameSegment(segment, parameters.segmentAt(measurements[end].time_s + state.time_offset_s))) {
+      ++end;
+    }
+    auto* cost = new CircleCost(model, segment,
+                                {measurements.begin() + static_cast<std::ptrdiff_t>(begin),
+                                 measurements.begin() + static_cast<std::ptrdiff_t>(end)});
+    std::vector<double*> blocks;
+    parameters.appendRotation(segment, blocks);
+    parameters.appendPosition(segment, blocks);
+    blocks.insert(blocks.end(), {state.reference_from_camera.rotation.coeffs().data(),
+                                 state.reference_from_camera.translation_m.data(), &state.time_offset_s,
+                                 &state.edge_lead_px, &state.edge_lead_growth_px});
+    if (IntrinsicsBlock* intrinsics = parameters.intrinsics(camera)) blocks.push_back(intrinsics->data());
+    builder.residuals.push_back({builder.problem.AddResidualBlock(cost, nullptr, blocks), SensorKind::Circles,
+                                 camera, begin_s, cost});
+  }
+}
+
+void addImu(ProblemBuilder& builder, std::size_t imu) {
+  const CalibrationState& state = builder.parameters.moved();
+  const auto& samples = builder.input.imus[imu].samples;
+  const auto timeOf = [&](const ImuSample& sample) {
+    return secondsSince(builder.input.start_ns, sample.time_ns) + state.imus[imu].time_offset_s;
+  };
+  const auto inRotation = [&](double time_s) { return state.world_from_imu_rotation.contains(time_s); };
+  const auto inPosition = [&](double time_s) { return state.imu_in_world_m.contains(time_s); };
+  for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end) {
+    const double begin_s = timeOf(samples[begin]);
+    end = begin + 1;
+    if (!inRotation(begin_s)) continue;
+    const SegmentTimes segment = builder.parameters.segmentAt(begin_s);
+    while (end < samples.size() && inRotation(timeOf(samples[end])) &&
+           inPosition(timeOf(samples[end])) == inPosition(begin_s) &&
+           sameSegment(segment, builder.parameters.segmentAt(timeOf(samples[end]))) &&
+           sameBiasKnots(state.imus[imu], begin_s, timeOf(samples[end]))) {
+      ++end;
+    }
+    const SampleRun run = {imu, segment, begin_s, {samples.data() + begin, end - begin}};
+    addGyroscope(builder, run);
+    if (inPosition(begin_s)) addAccelerometer(builder, run);
+  }
+}
+
+}  // namespace evical

@@ -1,0 +1,125 @@
+#include "core/optimisation/parameter_blocks.h"
+
+#include "core/optimisation/bias_knots.h"
+#include "core/optimisation/inertial_cost.h"
+#include "core/optimisation/known_values.h"
+
+#include <algorithm>
+
+namespace evical {
+
+ParameterBlocks::ParameterBlocks(const CalibrationInput& input, const OptimisationOptions& options,
+                                 const CalibrationState& initial)
+    : moved_(initial) {
+  setGivenValues(input, options, moved_);
+  gyroscope_mappings_.resize(moved_.imus.size());
+  accelerometer_mappings_.resize(moved_.imus.size());
+  for (std::size_t i = 0; i < moved_.imus.size(); ++i) {
+    placeBiasKnots(options, input.imus[i].noise, moved_.world_from_imu_rotation, moved_.imus[i]);
+    parametersFromMapping(moved_.imus[i].gyroscope_mapping, gyroscope_mappings_[i].data());
+    parametersFromMapping(moved_.imus[i].accelerometer_mapping, accelerometer_mappings_[i].data());
+  }
+  for (std::size_t i = 0; i < input.cameras.size(); ++i) {
+    const CameraData& camera = input.cameras[i];
+    const bool free = intrinsicsAreFree(camera, options);
+    intrinsics_.push_back(
+        free ? std::make_unique<IntrinsicsBlock>(*camera.intrinsics, moved_.cameras[i], options) : nullptr);
+    if (!free) moved_.cameras[i].intrinsics.reset();
+  }
+}
+
+CalibrationState ParameterBlocks::state() const {
+  CalibrationState state = moved_;
+  for (std::size_t i = 0; i < state.imus.size(); ++i) {
+    state.imus[i].gyroscope_mapping = mappingFromParameters(gyroscope_mappings_[i].data());
+    state.imus[i].accelerometer_mapping = mappingFromParameters(accelerometer_mappings_[i].data());
+  }
+  for (std::size_t i = 0; i < state.cameras.size(); ++i)
+    if (intrinsics_[i]) state.cameras[i].intrinsics = intrinsics_[i]->intrinsics();
+  return state;
+}
+
+SegmentTimes ParameterBlocks::segmentAt(double time_s) const {
+  const So3Spline& r = moved_.world_from_imu_rotation;
+  const VectorSpline& p = moved_.imu_in_world_m;
+  SegmentTimes segment;
+  segment.rotation = placeInSpline(r, time_s).segment;
+  segment.position = placeInSpline(p.start_s, p.knot_spacing_s, p.segmentCount(), time_s).segment;
+  segment.rotation_start_s = r.start_s + segment.rotation * r.knot_spacing_s;
+  segment.position_start_s = p.start_s + segment.position * p.knot_spacing_s;
+  segment.rotation_spacing_s = r.knot_spacing_s;
+  segment.position_spacing_s = p.knot_spacing_s;
+  return segment;
+}
+
+void ParameterBlocks::appendRotation(const SegmentTimes& segment, std::vector<double*>& blocks) {
+  auto* points = &moved_.world_from_imu_rotation.control_points[static_cast<std::size_t>(segment.rotation)];
+  for (int k = 0; k < 4; ++k) blocks.push_back(points[k].coeffs().data());
+}
+
+void ParameterBlocks::appendPosition(const SegmentTimes& segment, std::vector<double*>& blocks) {
+  auto* points = &moved_.imu_in_world_m.control_points[static_cast<std::size_t>(segment.position)];
+  for (int k = 0; k < 4; ++k) blocks.push_back(points[k].data());
+}
+
+std::vector<Quantity> ParameterBlocks::quantities() {
+  std::vector<Quantity> all;
+  for (std::size_t i = 0; i < moved_.cameras.size(); ++i) {
+    CameraState& camera = moved_.cameras[i];
+    all.push_back({QuantityKind::CameraRotation, i, camera.reference_from_camera.rotation.coeffs().data()});
+    all.push_back({QuantityKind::CameraTranslation, i, camera.reference_from_camera.translation_m.data()});
+    all.push_back({QuantityKind::CameraTimeOffset, i, &camera.time_offset_s});
+    all.push_back({QuantityKind::EdgeLead, i, &camera.edge_lead_px});
+    all.push_back({QuantityKind::EdgeLeadGrowth, i, &camera.edge_lead_growth_px});
+    if (intrinsics_[i]) all.push_back({QuantityKind::CameraIntrinsics, i, intrinsics_[i]->data()});
+  }
+  for (std::size_t i = 0; i < moved_.imus.size(); ++i) {
+    ImuState& imu = moved_.imus[i];
+    all.push_back({QuantityKind::ImuRotation, i, imu.reference_from_imu.rotation.coeffs().data()});
+    all.push_back({QuantityKind::ImuTranslation, i, imu.reference_from_imu.translation_m.data()});
+    all.push_back({QuantityKind::ImuTimeOffset, i, &imu.time_offset_s});
+    all.push_back({QuantityKind::GyroscopeBias, i, imu.gyroscope_bias_rad_s.data()});
+    all.push_back({QuantityKind::AccelerometerBias, i, imu.accelerometer_bias_m_s2.data()});
+    all.push_back({QuantityKind::GyroscopeMapping, i, gyroscopeMapping(i)});
+    all.push_back({QuantityKind::AccelerometerMapping, i, accelerometerMapping(i)});
+    all.push_back({QuantityKind::GyroscopeRotation, i, imu.gyroscope_from_accelerometer.coeffs().data()});
+  }
+  all.push_back({QuantityKind::GravityDirection, 0, moved_.gravity_in_world_m_s2.data()});
+  return all;
+}
+
+std::vector<Quantity> ParameterBlocks::biasKnots() {
+  std::vector<Quantity> all;
+  for (std::size_t i = 0; i < moved_.imus.size(); ++i) {
+    BiasDrift& drift = moved_.imus[i].bias_drift;
+    for (Eigen::Vector3d& knot : drift.gyroscope_rad_s)
+      all.push_back({QuantityKind::GyroscopeBias, i, knot.data()});
+    for (Eigen::Vector3d& knot : drift.accelerometer_m_s2)
+      all.push_back({QuantityKind::AccelerometerBias, i, knot.data()});
+  }
+  return all;
+}
+
+std::vector<double*> ParameterBlocks::controlPoints() {
+  struct Placed {
+    double time_s;
+    double* block;
+  };
+  std::vector<Placed> placed;
+  const auto add = [&](double start_s, double spacing_s, std::size_t k, double* block) {
+    placed.push_back({start_s + static_cast<double>(k) * spacing_s, block});
+  };
+  So3Spline& r = moved_.world_from_imu_rotation;
+  VectorSpline& p = moved_.imu_in_world_m;
+  for (std::size_t k = 0; k < r.control_points.size(); ++k)
+    add(r.start_s, r.knot_spacing_s, k, r.control_points[k].coeffs().data());
+  for (std::size_t k = 0; k < p.control_points.size(); ++k)
+    add(p.start_s, p.knot_spacing_s, k, p.control_points[k].data());
+  std::stable_sort(placed.begin(), placed.end(),
+                   [](const Placed& a, const Placed& b) { return a.time_s < b.time_s; });
+  std::vector<double*> blocks;
+  for (const Placed& each : placed) blocks.push_back(each.block);
+  return blocks;
+}
+
+}  // namespace evical

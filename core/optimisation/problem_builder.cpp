@@ -1,0 +1,18 @@
+#include "core/optimisation/problem_builder.h"
+
+namespace evical {
+
+bool ProblemBuilder::turnsGyroscope(std::size_t imu) const {
+  return options.gyroscope_rotation && stage == ReleaseStages::Mappings &&
+         weights.held_axes[imu].gyroscope.empty();
+}
+
+void ProblemBuilder::addPrior(ceres::CostFunction* cost, const std::vector<double*>& blocks) {
+  residuals.push_back({problem.AddResidualBlock(cost, nullptr, blocks)});
+}
+
+void ProblemBuilder::hold(double* block) {
+  if (has(block)) problem.SetParameterBlockConstant(block);
+}
+
+}  // namespace evical

@@ -1,0 +1,46 @@
+// The batch's problem while it is put together: what measurements, priors and held values are added to.
+#pragma once
+
+#include "core/data/calibration_setup.h"
+#include "core/optimisation/optimisation_options.h"
+#include "core/optimisation/parameter_blocks.h"
+#include "core/optimisation/weights.h"
+
+#include <ceres/problem.h>
+
+#include <vector>
+
+namespace evical {
+
+class CircleCost;
+
+enum class SensorKind { Circles, Gyroscope, Accelerometer, Prior };
+
+// What one residual block of the problem measures, and when.
+struct BlockInfo {
+  ceres::ResidualBlockId id = nullptr;
+  SensorKind kind = SensorKind::Prior;
+  std::size_t sensor = 0;  // index of the camera or IMU
+  double time_s = 0.0;     // of its first measurement, on the reference IMU's clock
+  const CircleCost* circles = nullptr;
+};
+
+struct ProblemBuilder {
+  const CalibrationInput& input;
+  const OptimisationOptions& options;
+  const Weights& weights;
+  ReleaseStages stage;
+  ParameterBlocks& parameters;
+  ceres::Problem& problem;
+  std::vector<BlockInfo>& residuals;
+
+  bool has(const double* block) const { return problem.HasParameterBlock(block); }
+  bool isReference(std::size_t imu) const { return imu == input.reference_imu; }
+  // Where nothing turns about some axis the gyroscope could take any turn about it.
+  bool turnsGyroscope(std::size_t imu) const;
+
+  void addPrior(ceres::CostFunction* cost, const std::vector<double*>& blocks);
+  void hold(double* block);  // if it is in the problem
+};
+
+}  // namespace evical

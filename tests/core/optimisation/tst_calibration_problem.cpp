@@ -1,0 +1,128 @@
+// Blocks and the state that they stand for, and what weights do to the problem that is built of them.
+#include "core/optimisation/calibration_problem.h"
+
+#include "tests/core/optimisation/simulated_rig.h"
+#include "tests/support/test_program.h"
+
+#include <algorithm>
+
+namespace {
+
+using namespace evical;
+
+test::SimulatedRig shortRig() {
+  test::RigOptions options = test::shortRecording();
+  options.duration_s = 0.4;
+  return test::simulateRig(options);
+}
+
+double* blockOf(CalibrationProblem& problem, QuantityKind kind) {
+  for (const Quantity& quantity : problem.quantities())
+    if (quantity.kind == kind) return quantity.block;
+  return nullptr;
+}
+
+std::ptrdiff_t countOf(const CalibrationProblem& problem, SensorKind kind) {
+  return std::count_if(problem.blocks().begin(), problem.blocks().end(),
+                       [&](const BlockInfo& info) { return info.kind == kind; });
+}
+
+// Of all blocks of one kind, half the sum of their squares.
+double costOf(CalibrationProblem& problem, SensorKind kind) {
+  double sum = 0.0;
+  for (const BlockInfo& info : problem.blocks()) {
+    double cost = 0.0;
+    if (info.kind != kind) continue;
+    problem.problem().EvaluateResidualBlock(info.id, false, &cost, nullptr, nullptr);
+    sum += cost;
+  }
+  return sum;
+}
+
+}  // namespace
+
+class TestCalibrationProblem : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void state_isTheInitialOne() {
+    const test::SimulatedRig rig = shortRig();
+    const OptimisationOptions options;
+    const CalibrationProblem problem(rig.input, options, rig.truth);
+    const CalibrationState state = problem.state();
+    QVERIFY(state.imus[0].gyroscope_mapping == rig.truth.imus[0].gyroscope_mapping);
+    QVERIFY(state.imus[0].accelerometer_mapping == rig.truth.imus[0].accelerometer_mapping);
+    QVERIFY(state.cameras[0].reference_from_camera.translation_m ==
+            rig.truth.cameras[0].reference_from_camera.translation_m);
+    QVERIFY(state.gravity_in_world_m_s2 == rig.truth.gravity_in_world_m_s2);
+  }
+
+  void state_followsItsBlocks() {
+    const test::SimulatedRig rig = shortRig();
+    const OptimisationOptions options;
+    CalibrationProblem problem(rig.input, options, rig.truth);
+    problem.build(ReleaseStages::Mappings, givenWeights(rig.input));
+    const CalibrationState before = problem.state();
+    *blockOf(problem, QuantityKind::CameraTimeOffset) = 0.001;
+    blockOf(problem, QuantityKind::GyroscopeMapping)[2] = 0.25;  // m02
+    QCOMPARE(problem.state().cameras[0].time_offset_s, 0.001);
+    QCOMPARE(problem.state().imus[0].gyroscope_mapping(0, 2), 0.25);
+    // A state that was handed out stays as it was.
+    QVERIFY(before.imus[0].gyroscope_mapping(0, 2) != 0.25);
+  }
+
+  void build_leavesOutCirclesThatAreNotUsed() {
+    const test::SimulatedRig rig = shortRig();
+    const OptimisationOptions options;
+    CalibrationProblem problem(rig.input, options, rig.truth);
+    Weights weights = givenWeights(rig.input);
+    problem.build(ReleaseStages::Mappings, weights);
+    QVERIFY(countOf(problem, SensorKind::Circles) > 0);
+    for (auto& circles : weights.used_circles[0]) std::fill(circles.begin(), circles.end(), std::uint8_t{0});
+    problem.build(ReleaseStages::Mappings, weights);
+    QCOMPARE(countOf(problem, SensorKind::Circles), std::ptrdiff_t{0});
+    QVERIFY(countOf(problem, SensorKind::Gyroscope) > 0);
+  }
+
+  void build_dividesResidualsByTheScales() {
+    const test::SimulatedRig rig = shortRig();
+    const OptimisationOptions options;
+    CalibrationProblem problem(rig.input, options, rig.truth);
+    Weights weights = givenWeights(rig.input);
+    problem.build(ReleaseStages::Mappings, weights);
+    const double gyroscopes = costOf(problem, SensorKind::Gyroscope),
+                 accelerometers = costOf(problem, SensorKind::Accelerometer);
+    QVERIFY(gyroscopes > 0.0);
+    weights.scales.gyroscopes[0] = 2.0;
+    problem.build(ReleaseStages::Mappings, weights);
+    QVERIFY(std::abs(4.0 * costOf(problem, SensorKind::Gyroscope) / gyroscopes - 1.0) < 1e-12);
+    QCOMPARE(costOf(problem, SensorKind::Accelerometer), accelerometers);
+  }
+
+  void build_withAHeldAxis_holdsTheGyroscopesTurn() {
+    const test::SimulatedRig rig = shortRig();
+    OptimisationOptions options;
+    options.gyroscope_rotation = true;
+    CalibrationProblem problem(rig.input, options, rig.truth);
+    Weights weights = givenWeights(rig.input);
+    problem.build(ReleaseStages::Mappings, weights);
+    QVERIFY(blockOf(problem, QuantityKind::GyroscopeRotation) != nullptr);
+    const std::ptrdiff_t priors = countOf(problem, SensorKind::Prior);
+    weights.held_axes[0].gyroscope = {Eigen::Vector3d::UnitZ()};
+    problem.build(ReleaseStages::Mappings, weights);
+    QVERIFY(blockOf(problem, QuantityKind::GyroscopeRotation) == nullptr);
+    QCOMPARE(countOf(problem, SensorKind::Prior), priors);  // one for the axis, none for the turn
+  }
+
+  void build_beforeTheLastStage_holdsMappings() {
+    const test::SimulatedRig rig = shortRig();
+    const OptimisationOptions options;
+    CalibrationProblem problem(rig.input, options, rig.truth);
+    problem.build(ReleaseStages::Extrinsics, givenWeights(rig.input));
+    QVERIFY(blockOf(problem, QuantityKind::GyroscopeMapping) == nullptr);
+    QVERIFY(blockOf(problem, QuantityKind::CameraRotation) != nullptr);
+  }
+};
+
+EVICAL_TEST(TestCalibrationProblem)
+#include "tst_calibration_problem.moc"
