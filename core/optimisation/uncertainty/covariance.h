@@ -8,23 +8,21 @@
 #pragma once
 
 #include "core/data/calibration_result.h"
-#include "core/data/calibration_setup.h"
-#include "core/optimisation/batch_optimiser.h"
-#include "core/optimisation/optimisation_options.h"
 
 #include <string>
-#include <vector>
 
 namespace evical {
+
+struct BatchSolution;
+struct CalibrationInput;
+struct OptimisationOptions;
+struct RunContext;
 
 struct UncertaintyEstimate {
   UncertaintyReport report;
   CalibrationStatus status = CalibrationStatus::Ok;
   std::string reason;  // why not Ok, and what to do; empty if it is
 };
-
-// The two directions, in the world, in which the report gives gravity's tilt ("gravity.direction.1", ".2").
-Eigen::Matrix<double, 3, 2> gravityTilts(const Eigen::Vector3d& gravity_in_world);
 
 // Never fails for want of information: directions that the recording leaves open get sigmas far beyond any
 // need.

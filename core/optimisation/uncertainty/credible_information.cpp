@@ -1,6 +1,6 @@
 #include "core/optimisation/uncertainty/credible_information.h"
 
-#include <Eigen/Eigenvalues>
+#include "core/numerics/dense.h"
 
 #include <cmath>
 #include <utility>
@@ -24,23 +24,21 @@ ProjectedInformation withoutNoise(ProjectedInformation information) {
   // Diagonal 1, then the square root: directions in which one unit is one sigma.
   const Eigen::VectorXd scale = measured.diagonal().cwiseMax(1e-300).cwiseSqrt();
   const Eigen::VectorXd inverse_scale = scale.cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> whole(inverse_scale.asDiagonal() * measured *
-                                                             inverse_scale.asDiagonal());
-  const Eigen::VectorXd root =
-      whole.eigenvalues().cwiseMax(kLeastShare * whole.eigenvalues().maxCoeff()).cwiseSqrt();
-  const Eigen::MatrixXd from_sigmas = scale.asDiagonal() * whole.eigenvectors() * root.asDiagonal();
+  const SymmetricEigen whole =
+      symmetricEigen(inverse_scale.asDiagonal() * measured * inverse_scale.asDiagonal());
+  const Eigen::VectorXd root = whole.values.cwiseMax(kLeastShare * whole.values.maxCoeff()).cwiseSqrt();
+  const Eigen::MatrixXd from_sigmas = scale.asDiagonal() * whole.vectors * root.asDiagonal();
   const Eigen::MatrixXd to_sigmas =
-      root.cwiseInverse().asDiagonal() * whole.eigenvectors().transpose() * inverse_scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> noise(to_sigmas * information.from_noise *
-                                                             to_sigmas.transpose());
+      root.cwiseInverse().asDiagonal() * whole.vectors.transpose() * inverse_scale.asDiagonal();
+  const SymmetricEigen noise = symmetricEigen(congruence(to_sigmas, information.from_noise));
   const Eigen::VectorXd kept =
-      (1.0 - kNoiseFactor * noise.eigenvalues().array()).cwiseMax(0.0).cwiseMin(1.0).sqrt().matrix();
-  const Eigen::MatrixXd keep =
-      from_sigmas * noise.eigenvectors() * kept.asDiagonal() * noise.eigenvectors().transpose() * to_sigmas;
+      (1.0 - kNoiseFactor * noise.values.array()).cwiseMax(0.0).cwiseMin(1.0).sqrt().matrix();
+  const Eigen::MatrixXd keep_in_sigmas =
+      productTransposed(product(from_sigmas, noise.vectors) * kept.asDiagonal(), noise.vectors);
+  const Eigen::MatrixXd keep = product(keep_in_sigmas, to_sigmas);
   information.total.setZero();
   for (MeasurementGroup& group : information.groups) {
-    if (group.kind != SensorKind::Prior)
-      group.information = (keep * group.information * keep.transpose()).eval();
+    if (group.kind != SensorKind::Prior) group.information = congruence(keep, group.information);
     information.total += group.information;
   }
   for (Eigen::VectorXd& score : information.scores) score = (keep * score).eval();

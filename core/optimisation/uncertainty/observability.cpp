@@ -1,9 +1,10 @@
 #include "core/optimisation/uncertainty/observability.h"
 
 #include "core/numerics/angles.h"
+#include "core/numerics/dense.h"
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -118,11 +119,11 @@ std::string Judge::weakestWords(const std::vector<Part>& parts, const Eigen::Vec
 std::string Judge::unmetNeed(const Part& part) const {
   const Quantity& quantity = covariance_.quantities[part.quantity];
   const Eigen::Index first = covariance_.first_column[part.quantity];
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
-      covariance_.covariance.block(first, first, part.size, part.size));
-  const double sigma = std::sqrt(std::max(0.0, solver.eigenvalues()[part.size - 1]));
+  const SymmetricEigen eigen =
+      symmetricEigen(covariance_.covariance.block(first, first, part.size, part.size));
+  const double sigma = std::sqrt(std::max(0.0, eigen.values[part.size - 1]));
   if (!(sigma > needed(part.need, options_))) return {};
-  const std::string words = partWords(quantity, part.need, solver.eigenvectors().col(part.size - 1));
+  const std::string words = partWords(quantity, part.need, eigen.vectors.col(part.size - 1));
   constexpr double kHopeless = 100.0;
   if (sigma > kHopeless * needed(part.need, options_)) return words + " is not observable in this recording";
   switch (part.need) {
@@ -162,11 +163,11 @@ Observability Judge::judge() const {
   }
   Observability result;
   if (count == 0) return result;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(in_needs);
+  const SymmetricEigen eigen = symmetricEigen(in_needs);
   for (Eigen::Index i = count - 1; i >= 0; --i) {
-    result.eigenvalues.push_back(1.0 / std::max(solver.eigenvalues()[i], 1e-12));
+    result.eigenvalues.push_back(1.0 / std::max(eigen.values[i], 1e-12));
   }
-  result.weakest = weakestWords(parts, solver.eigenvectors().col(count - 1));
+  result.weakest = weakestWords(parts, eigen.vectors.col(count - 1));
   for (const Part& part : parts) {
     const std::string unmet = unmetNeed(part);
     if (unmet.empty()) continue;

@@ -5,21 +5,12 @@
 #include "core/data/calibration_result.h"
 #include "core/data/calibration_setup.h"
 #include "core/optimisation/optimisation_options.h"
-#include "core/optimisation/uncertainty/projected_information.h"
-
-#include <Eigen/Core>
+#include "core/optimisation/uncertainty/quantity_covariance.h"
 
 #include <string>
 #include <vector>
 
 namespace evical {
-
-// Covariance of all quantities in the report's coordinates: rotations about the reference IMU's axes.
-struct QuantityCovariance {
-  std::vector<Quantity> quantities;
-  std::vector<Eigen::Index> first_column;  // of each quantity; one more for the end
-  Eigen::MatrixXd covariance;
-};
 
 struct Observability {
   std::vector<double> eigenvalues;  // as UncertaintyReport::observability

@@ -5,7 +5,7 @@
 #include "core/geometry/circle_conic.h"
 #include "core/geometry/so3.h"
 #include "core/geometry/trajectory.h"
-#include "core/optimisation/uncertainty/covariance.h"
+#include "core/optimisation/uncertainty/quantity_covariance.h"
 #include "tests/support/seen_through.h"
 
 #include <Eigen/LU>

@@ -1,0 +1,35 @@
+// Covariance of all quantities in the report's coordinates: rotations about the reference IMU's axes, gravity
+// by its two tilts.
+#pragma once
+
+#include "core/optimisation/parameter_blocks.h"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace ceres {
+class Problem;
+}
+
+namespace evical {
+
+struct ProjectedInformation;
+
+struct QuantityCovariance {
+  std::vector<Quantity> quantities;
+  std::vector<Eigen::Index> first_column;  // of each quantity; one more for the end
+  Eigen::MatrixXd covariance;
+};
+
+// The two directions, in the world, in which the report gives gravity's tilt ("gravity.direction.1", ".2").
+Eigen::Matrix<double, 3, 2> gravityTilts(const Eigen::Vector3d& gravity_in_world);
+
+// From tangent space as Ceres has it to the report's coordinates.
+Eigen::MatrixXd reportFromTangent(const ProjectedInformation& information, const CalibrationState& state,
+                                  ceres::Problem& problem);
+
+QuantityCovariance quantityCovariance(const ProjectedInformation& information,
+                                      const Eigen::MatrixXd& report_from_tangent);
+
+}  // namespace evical

@@ -1,0 +1,13 @@
+// A covariance as results have it: names, standard deviations and correlation of every number, and each
+// quantity's own sigmas.
+#pragma once
+
+#include "core/data/calibration_result.h"
+#include "core/data/calibration_setup.h"
+#include "core/optimisation/uncertainty/quantity_covariance.h"
+
+namespace evical {
+
+UncertaintyReport makeReport(const CalibrationInput& input, const QuantityCovariance& quantities);
+
+}  // namespace evical
