@@ -1,0 +1,130 @@
+// Parameter blocks and measurements to try the batch's cost functions at.
+#pragma once
+
+#include "core/geometry/so3.h"
+#include "core/optimisation/circle_cost.h"
+#include "tests/core/optimisation/cost_check.h"
+
+#include <array>
+#include <random>
+#include <vector>
+
+namespace evical::test {
+
+using Eigen::Vector3d;
+
+inline constexpr double kSpacing_s = 0.02;
+
+class States {
+ public:
+  explicit States(unsigned seed) : random_(seed) {}
+  double uniform(double size) { return std::uniform_real_distribution<double>(-size, size)(random_); }
+  Vector3d vector(double size) { return {uniform(size), uniform(size), uniform(size)}; }
+
+  void appendRotations(double step_rad, Blocks& blocks) {
+    Eigen::Quaterniond rotation = quaternionExp(vector(0.4));
+    for (int k = 0; k < 4; ++k) {
+      blocks.push_back(numbers(rotation));
+      rotation = (rotation * quaternionExp(step_rad * vector(1.0).normalized())).normalized();
+    }
+  }
+  void appendPositions(Blocks& blocks) {
+    Vector3d position = Vector3d(0.1, 0.2, -0.7) + vector(0.1);
+    for (int k = 0; k < 4; ++k) {
+      blocks.push_back({position.x(), position.y(), position.z()});
+      position += vector(0.02);
+    }
+  }
+  static std::vector<double> numbers(const Eigen::Quaterniond& q) { return {q.x(), q.y(), q.z(), q.w()}; }
+  static std::vector<double> numbers(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+inline SegmentTimes segmentTimes() {
+  SegmentTimes segment;
+  segment.rotation_start_s = 1.0;
+  segment.position_start_s = 0.99;  // splines need not share their knots
+  segment.rotation_spacing_s = kSpacing_s;
+  segment.position_spacing_s = 1.5 * kSpacing_s;
+  return segment;
+}
+
+inline std::vector<double> mappingNumbers(States& states) {
+  return {1.0 + states.uniform(0.05), states.uniform(0.05), states.uniform(0.05),
+          1.0 + states.uniform(0.05), states.uniform(0.05), 1.0 + states.uniform(0.05)};
+}
+
+inline CircleModel circleModel() {
+  CircleModel model;
+  model.camera = {CameraModel::PinholeRadtan, {346, 260}, {260.0, 255.0}, {170.0, 131.0}, {}};
+  model.radius_m = 0.02;
+  model.huber_sigma = 2.5;
+  return model;
+}
+
+inline Blocks circleBlocks(States& states, double step_rad) {
+  Blocks blocks;
+  states.appendRotations(step_rad, blocks);
+  states.appendPositions(blocks);
+  blocks.push_back(States::numbers(quaternionExp(states.vector(0.2))));
+  blocks.push_back(States::numbers(states.vector(0.05)));
+  blocks.push_back({states.uniform(0.004)});
+  blocks.push_back({states.uniform(0.3)});
+  blocks.push_back({states.uniform(0.3)});
+  return blocks;
+}
+
+// `near_sigma`: about how far the measured centres lie from the predicted ones.
+inline std::vector<CircleMeasurement> circlesNear(const CircleModel& model, const Blocks& blocks,
+                                                  double near_sigma, States& states) {
+  std::vector<CircleMeasurement> circles(3);
+  for (std::size_t i = 0; i < circles.size(); ++i) {
+    circles[i].time_s = 1.004 + 0.005 * static_cast<double>(i);
+    circles[i].on_board_m = {0.1 * static_cast<double>(i), 0.05 * static_cast<double>(i)};
+    circles[i].centre_px.setZero();
+    circles[i].whitening_px.setIdentity();
+    circles[i].lead = {{0.6, -0.5}, {-0.3, 0.25}};
+  }
+  CircleModel linear = model;
+  linear.huber_sigma = 1e9;
+  const Eigen::VectorXd centres = residualsAt(CircleCost(linear, segmentTimes(), circles), blocks);
+  for (std::size_t i = 0; i < circles.size(); ++i) {
+    circles[i].whitening_px << 12.0, 0.0, -3.0, 9.0;
+    circles[i].centre_px = centres.segment<2>(static_cast<Eigen::Index>(2 * i)) +
+                           near_sigma / 10.0 * states.vector(1.0).normalized().head<2>();
+  }
+  return circles;
+}
+
+// The same circles as seen through a lens that is not quite the one in the block of intrinsics.
+inline CircleModel freeModel(CameraModel lens) {
+  CircleModel model = circleModel();
+  model.camera.model = lens;
+  model.camera.distortion = lens == CameraModel::PinholeRadtan ? std::array{-0.31, 0.11, 2e-3, -1e-3, 0.02}
+                                                               : std::array{-0.04, 0.02, -0.01, 3e-3, 0.0};
+  model.free_intrinsics = true;
+  return model;
+}
+
+inline CircleModel heldModel(CircleModel model) {
+  model.free_intrinsics = false;
+  return model;
+}
+
+inline std::vector<double> intrinsicsNumbers(const CameraIntrinsics& camera) {
+  std::vector<double> numbers(9);
+  writeIntrinsics(camera, numbers.data());
+  return numbers;
+}
+
+inline CameraIntrinsics otherLens(const CameraIntrinsics& camera, States& states) {
+  CameraIntrinsics other = camera;
+  other.focal_length_px += states.vector(2.0).head<2>();
+  other.principal_point_px += states.vector(2.0).head<2>();
+  for (std::size_t k = 0; k < 4; ++k) other.distortion[k] += states.uniform(2e-3);
+  return other;
+}
+
+}  // namespace evical::test
