@@ -88,10 +88,11 @@ struct CircleResidual {
   bool used = true;
 };
 
-// One quantity as one half of the recording has it, less what the other half says.
-struct HalvesDifference {
+// One number of a quantity as one estimate has it, less what another says: half of a recording against the
+// other, or a result against the truth.
+struct QuantityDifference {
   std::string name, unit;                // "left.rotation.x", "deg"
-  double difference = 0.0, sigma = 0.0;  // sigma of the difference
+  double difference = 0.0, sigma = 0.0;  // sigma of the difference; 0: not estimated, or unknown
 
   double normalised() const { return sigma > 0.0 ? difference / sigma : 0.0; }
 };
@@ -101,7 +102,7 @@ struct HalvesDifference {
 struct CrossValidation {
   double block_s = 0.0;
   std::array<int, 2> windows = {0, 0};  // with the board, in either half
-  std::vector<HalvesDifference> quantities;
+  std::vector<QuantityDifference> quantities;
   double rms_sigmas = 0.0;  // over the quantities that have a sigma
   std::string failure;      // why a half could not be estimated; empty if both were
 };

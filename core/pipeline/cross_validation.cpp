@@ -2,12 +2,10 @@
 
 #include "core/base/error.h"
 #include "core/base/time.h"
+#include "core/data/quantity_difference.h"
 #include "core/numerics/angles.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/uncertainty/covariance.h"
-#include "core/report/truth_comparison.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -68,79 +66,28 @@ Half estimateHalf(const CalibrationInput& input, const CalibrationState& solved,
   return half;
 }
 
-template <class Matrix>
-Matrix together(const Matrix& a, const Matrix& b) {
-  return (a.array().square() + b.array().square()).sqrt().matrix();
-}
-
-UncertaintyReport ofDifference(const UncertaintyReport& a, const UncertaintyReport& b) {
-  UncertaintyReport sum = a;
-  sum.gravity_norm_std_m_s2 = std::hypot(a.gravity_norm_std_m_s2, b.gravity_norm_std_m_s2);
-  for (std::size_t i = 0; i < a.cameras.size(); ++i) {
-    CameraUncertainty& camera = sum.cameras[i];
-    camera.rotation_std_rad = together(a.cameras[i].rotation_std_rad, b.cameras[i].rotation_std_rad);
-    camera.translation_std_m = together(a.cameras[i].translation_std_m, b.cameras[i].translation_std_m);
-    camera.time_offset_std_s = std::hypot(a.cameras[i].time_offset_std_s, b.cameras[i].time_offset_std_s);
-    const auto& other = b.cameras[i].intrinsics_std;
-    for (std::size_t k = 0; camera.intrinsics_std && other && k < other->size(); ++k)
-      (*camera.intrinsics_std)[k] = std::hypot((*camera.intrinsics_std)[k], (*other)[k]);
-  }
-  for (std::size_t i = 0; i < a.imus.size(); ++i) {
-    ImuUncertainty& imu = sum.imus[i];
-    const ImuUncertainty &first = a.imus[i], &second = b.imus[i];
-    imu.rotation_std_rad = together(first.rotation_std_rad, second.rotation_std_rad);
-    imu.translation_std_m = together(first.translation_std_m, second.translation_std_m);
-    imu.time_offset_std_s = std::hypot(first.time_offset_std_s, second.time_offset_std_s);
-    imu.gyroscope_bias_std_rad_s = together(first.gyroscope_bias_std_rad_s, second.gyroscope_bias_std_rad_s);
-    imu.accelerometer_bias_std_m_s2 =
-        together(first.accelerometer_bias_std_m_s2, second.accelerometer_bias_std_m_s2);
-    imu.gyroscope_mapping_std = together(first.gyroscope_mapping_std, second.gyroscope_mapping_std);
-    imu.gyroscope_rotation_std_rad =
-        together(first.gyroscope_rotation_std_rad, second.gyroscope_rotation_std_rad);
-    imu.accelerometer_mapping_std =
-        together(first.accelerometer_mapping_std, second.accelerometer_mapping_std);
-  }
-  return sum;
-}
-
-NamedResult named(const CalibrationInput& input, const CalibrationState& state) {
-  NamedResult result;
-  for (const CameraData& camera : input.cameras) result.names.cameras.push_back(camera.name);
-  for (const ImuData& imu : input.imus) result.names.imus.push_back(imu.name);
-  result.names.reference =
+Estimate estimateOf(const CalibrationInput& input, const Half& half) {
+  const CalibrationState& state = half.solution.state;
+  Estimate estimate{{}, {}, {}, state.cameras, state.imus, state.gravity_in_world_m_s2, half.uncertainty};
+  for (const CameraData& camera : input.cameras) estimate.camera_names.push_back(camera.name);
+  for (const ImuData& imu : input.imus) estimate.imu_names.push_back(imu.name);
+  estimate.reference =
       input.imus.empty() ? input.cameras[input.reference_camera].name : input.imus[input.reference_imu].name;
-  result.result.state = state;
-  for (const CameraState& camera : state.cameras) result.names.intrinsics.push_back(camera.intrinsics);
-  return result;
+  return estimate;
 }
 
-std::vector<HalvesDifference> differences(const CalibrationInput& input, const std::array<Half, 2>& halves) {
-  NamedResult even = named(input, halves[0].solution.state);
-  even.result.uncertainty = ofDifference(halves[0].uncertainty, halves[1].uncertainty);
-  for (const CameraUncertainty& camera : even.result.uncertainty.cameras)
-    even.names.intrinsics_std.push_back(camera.intrinsics_std);
-  const TruthComparison comparison = compareWithTruth(even, named(input, halves[1].solution.state));
-  std::vector<HalvesDifference> all;
-  for (const QuantityError& each : comparison.quantities)
-    all.push_back({each.name, each.unit, each.error, each.sigma});
+std::vector<QuantityDifference> differences(const CalibrationInput& input,
+                                            const std::array<Half, 2>& halves) {
+  Estimate even = estimateOf(input, halves[0]);
+  const Estimate odd = estimateOf(input, halves[1]);
+  even.uncertainty = differenceUncertainty(even.uncertainty, odd.uncertainty);
+  std::vector<QuantityDifference> all = difference(even, odd);
   if (input.imus.empty()) return all;
   // Of two tilts, each with this sigma, the length.
-  const double tilt_rad = std::hypot(halves[0].uncertainty.gravity_direction_std_rad,
-                                     halves[1].uncertainty.gravity_direction_std_rad);
-  all.push_back(
-      {"gravity.direction", "deg", comparison.gravity_direction_deg, kDegPerRad * std::sqrt(2.0) * tilt_rad});
+  const double sigma_rad = std::sqrt(2.0) * even.uncertainty.gravity_direction_std_rad;
+  all.push_back({"gravity.direction", "deg", kDegPerRad * gravityDirectionDifference_rad(even, odd),
+                 kDegPerRad * sigma_rad});
   return all;
-}
-
-double rmsSigmas(const std::vector<HalvesDifference>& quantities) {
-  double sum = 0.0;
-  int count = 0;
-  for (const HalvesDifference& each : quantities) {
-    if (!(each.sigma > 0.0)) continue;
-    sum += each.normalised() * each.normalised();
-    ++count;
-  }
-  return count == 0 ? 0.0 : std::sqrt(sum / count);
 }
 
 }  // namespace
@@ -202,7 +149,7 @@ CrossValidation crossValidate(const CalibrationInput& input, const CalibrationSt
     return validation;
   }
   validation.quantities = differences(input, halves);
-  validation.rms_sigmas = rmsSigmas(validation.quantities);
+  validation.rms_sigmas = normalisedRms(validation.quantities);
   return validation;
 }
 

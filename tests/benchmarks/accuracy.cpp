@@ -163,7 +163,7 @@ void printNormalised(const std::vector<Outcome>& outcomes) {
   int rotations = 0, translations = 0, offsets = 0, all = 0;
   for (const Outcome& outcome : outcomes) {
     if (!outcome.comparison) continue;
-    for (const QuantityError& quantity : outcome.comparison->quantities) {
+    for (const QuantityDifference& quantity : outcome.comparison->quantities) {
       if (quantity.sigma <= 0.0) continue;
       const double squared = quantity.normalised() * quantity.normalised();
       all2 += squared;
@@ -197,10 +197,10 @@ struct OffsetSpread {
                                     "blur_1px", "threshold_0.15", "threshold_0.5"};
     if (!outcome.comparison || std::find(kVaried.begin(), kVaried.end(), scenario.name) == kVaried.end())
       return;
-    for (const QuantityError& quantity : outcome.comparison->quantities) {
+    for (const QuantityDifference& quantity : outcome.comparison->quantities) {
       if (quantity.name.find(".time_offset") == std::string::npos) continue;
-      smallest_ms = scenarios.empty() ? quantity.error : std::min(smallest_ms, quantity.error);
-      largest_ms = scenarios.empty() ? quantity.error : std::max(largest_ms, quantity.error);
+      smallest_ms = scenarios.empty() ? quantity.difference : std::min(smallest_ms, quantity.difference);
+      largest_ms = scenarios.empty() ? quantity.difference : std::max(largest_ms, quantity.difference);
     }
     scenarios += (scenarios.empty() ? "" : ", ") + scenario.name;
   }

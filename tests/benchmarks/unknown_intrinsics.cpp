@@ -38,10 +38,10 @@ struct Sums {
   std::map<std::string, int> counts;
 
   void add(const TruthComparison& comparison) {
-    for (const QuantityError& quantity : comparison.quantities) {
+    for (const QuantityDifference& quantity : comparison.quantities) {
       for (const std::string& part : kParts) {
         if (quantity.name.find(part) == std::string::npos || quantity.sigma <= 0.0) continue;
-        error2[part] += quantity.error * quantity.error;
+        error2[part] += quantity.difference * quantity.difference;
         normalised2[part] += quantity.normalised() * quantity.normalised();
         ++counts[part];
       }

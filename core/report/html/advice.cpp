@@ -205,8 +205,8 @@ void adviseHalves(const ReportData& data, std::vector<Advice>& all) {
   constexpr double kFar = 2.0, kVeryFar = 4.0;
   const auto& validation = data.named.result.cross_validation;
   if (!validation || !validation->failure.empty()) return;
-  const HalvesDifference* worst = nullptr;
-  for (const HalvesDifference& each : validation->quantities)
+  const QuantityDifference* worst = nullptr;
+  for (const QuantityDifference& each : validation->quantities)
     if (worst == nullptr || std::abs(each.normalised()) > std::abs(worst->normalised())) worst = &each;
   if (worst == nullptr || (validation->rms_sigmas < kFar && std::abs(worst->normalised()) < kVeryFar)) return;
   all.push_back(

@@ -138,7 +138,7 @@ void writeObservability(const ReportData& data, ReportPage& page) {
   page.keep(table);
 }
 
-std::string largestDifference(const std::vector<HalvesDifference>& quantities) {
+std::string largestDifference(const std::vector<QuantityDifference>& quantities) {
   const auto largest = std::max_element(
       quantities.begin(), quantities.end(),
       [](const auto& a, const auto& b) { return std::abs(a.normalised()) < std::abs(b.normalised()); });
@@ -219,7 +219,7 @@ void writeCrossValidation(const ReportData& data, ReportPage& page) {
   frame.x_label = "quantity, as numbered in the table";
   frame.y_label = "difference / sigma";
   std::vector<std::vector<std::string>> rows;
-  for (const HalvesDifference& each : validation->quantities) {
+  for (const QuantityDifference& each : validation->quantities) {
     if (!(each.sigma > 0.0) || !std::isfinite(each.difference)) continue;
     table.labels.push_back(each.unit.empty() ? each.name : each.name + " [" + each.unit + "]");
     table.add({each.difference, each.sigma, each.normalised()});

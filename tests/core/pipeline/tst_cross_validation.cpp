@@ -81,6 +81,11 @@ class TestCrossValidation : public QObject {
     QVERIFY2(validation.failure.empty(), validation.failure.c_str());
     QVERIFY(validation.windows[0] > 20 && validation.windows[1] > 20);
     QVERIFY(validation.quantities.size() > 12);
+    for (const char* name : {"left.edge_lead", "left.edge_lead_growth"})
+      QVERIFY2(
+          std::any_of(validation.quantities.begin(), validation.quantities.end(),
+                      [&](const QuantityDifference& each) { return each.name == name && each.sigma > 0.0; }),
+          name);
     QVERIFY2(validation.rms_sigmas > 0.2 && validation.rms_sigmas < 2.0,
              qPrintable(QString::number(validation.rms_sigmas)));
   }
@@ -93,7 +98,7 @@ class TestCrossValidation : public QObject {
     QVERIFY2(validation.failure.empty(), validation.failure.c_str());
     QVERIFY(validation.windows[0] > 20 && validation.windows[1] > 20);
     int of_the_other_camera = 0;
-    for (const HalvesDifference& each : validation.quantities) {
+    for (const QuantityDifference& each : validation.quantities) {
       QVERIFY2(each.name.find("gravity") == std::string::npos, each.name.c_str());
       of_the_other_camera += each.sigma > 0.0 ? 1 : 0;
     }
@@ -118,7 +123,7 @@ class TestCrossValidation : public QObject {
     const CrossValidation& validation = *run.result.cross_validation;
     QVERIFY2(validation.failure.empty(), validation.failure.c_str());
     int held = 0;
-    for (const HalvesDifference& each : validation.quantities) {
+    for (const QuantityDifference& each : validation.quantities) {
       QVERIFY(std::isfinite(each.normalised()));
       if (each.sigma > 0.0) continue;
       ++held;
@@ -154,7 +159,7 @@ class TestCrossValidation : public QObject {
         crossValidate(slipped, run_.result.state, simulated_.session.options.optimisation, block_s, {});
     QVERIFY2(validation.failure.empty(), validation.failure.c_str());
     double largest = 0.0;
-    for (const HalvesDifference& each : validation.quantities)
+    for (const QuantityDifference& each : validation.quantities)
       if (each.name.find("rotation") != std::string::npos)
         largest = std::max(largest, std::abs(each.normalised()));
     QVERIFY2(largest > 5.0, qPrintable(QString::number(largest)));

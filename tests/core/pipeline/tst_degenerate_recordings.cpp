@@ -47,11 +47,11 @@ class TestDegenerateRecordings : public QObject {
     QVERIFY2(!named.isEmpty() && named.contains(weakest), qPrintable(named));
     const TruthComparison comparison =
         compareWithTruth(namedResult(session, run.result, "test"), test::truthOf(simulated));
-    for (const QuantityError& quantity : comparison.quantities) {
+    for (const QuantityDifference& quantity : comparison.quantities) {
       QVERIFY2(std::abs(quantity.normalised()) <= 4.0,
                qPrintable(QString("%1: error %2, sigma %3")
                               .arg(QString::fromStdString(quantity.name))
-                              .arg(quantity.error)
+                              .arg(quantity.difference)
                               .arg(quantity.sigma)));
     }
   }

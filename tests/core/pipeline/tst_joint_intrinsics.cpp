@@ -87,7 +87,7 @@ class TestJointIntrinsics : public QObject {
     truth.result.state.imus.resize(1);
     const TruthComparison comparison = compareWithTruth(namedResult(simulated_.session, run_, "test"), truth);
     int compared = 0;
-    for (const QuantityError& each : comparison.quantities) {
+    for (const QuantityDifference& each : comparison.quantities) {
       if (each.name.rfind("left.", 0) != 0) continue;
       QVERIFY2(std::abs(each.normalised()) < 4.0,
                qPrintable(QString("%1: %2").arg(QString::fromStdString(each.name)).arg(each.normalised())));
@@ -101,7 +101,7 @@ class TestJointIntrinsics : public QObject {
     QVERIFY2(validation.failure.empty(), validation.failure.c_str());
     const auto difference =
         std::find_if(validation.quantities.begin(), validation.quantities.end(),
-                     [](const HalvesDifference& each) { return each.name == "left.focal_length.x"; });
+                     [](const QuantityDifference& each) { return each.name == "left.focal_length.x"; });
     QVERIFY(difference != validation.quantities.end());
     QVERIFY(difference->sigma > 0.0 && difference->difference != 0.0);
   }

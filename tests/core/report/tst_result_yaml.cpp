@@ -206,7 +206,8 @@ class TestResultYaml : public QObject {
 
   void comparison_withItself_hasNoErrors() {
     const TruthComparison comparison = compareWithTruth(sample(), sample());
-    for (const QuantityError& q : comparison.quantities) QVERIFY2(std::abs(q.error) < 1e-12, q.name.c_str());
+    for (const QuantityDifference& q : comparison.quantities)
+      QVERIFY2(std::abs(q.difference) < 1e-12, q.name.c_str());
   }
 
   void comparison_givesErrorsInReferenceAxesAndSigmas() {
@@ -218,7 +219,7 @@ class TestResultYaml : public QObject {
     result.result.state.cameras[0].time_offset_s += 6e-5;
     const TruthComparison comparison = compareWithTruth(result, truth);
     const auto normalised = [&](const std::string& name) {
-      for (const QuantityError& q : comparison.quantities)
+      for (const QuantityDifference& q : comparison.quantities)
         if (q.name == name) return q.normalised();
       return std::numeric_limits<double>::quiet_NaN();
     };

@@ -1,0 +1,341 @@
+// One row per calibrated quantity, as option_field.h has one per option: the structs hold value, sigma and
+// prior, the row says where, and what is worth knowing of the quantity: its name, shape, units, need, and
+// keys in files. The comparison of results, the halves, result.yaml, priors, tables, the report and the
+// window all walk these rows; a new quantity is a row here, members in the structs, and a parameter block in
+// the batch.
+#pragma once
+
+#include "core/data/calibration_priors.h"
+#include "core/data/calibration_result.h"
+#include "core/data/calibration_state.h"
+
+#include <Eigen/Core>
+
+#include <functional>
+#include <numbers>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+namespace evical {
+
+enum class QuantityOwner { Camera, Imu, Rig };
+
+enum class QuantityShape {
+  Scalar,
+  Vector3,
+  Rotation,       // its differences and sigmas are about the axes of the frame it turns into
+  LocalRotation,  // about those of the frame it turns from
+  UpperTriangle,  // of a 3 x 3 matrix, row by row
+  Intrinsics,     // in the order of intrinsics_numbers.h
+  Gravity,        // two tilts, and the norm where it is free
+};
+
+// What is asked of its sigma (OptimisationOptions::needed_...).
+enum class QuantityNeed { None, Rotation, Translation, TimeOffset };
+
+// When there is something to compare or to show.
+enum class QuantityPresence {
+  Always,
+  WhereNotZero,        // zero is what it is where nobody asks for it
+  WhereEstimated,      // in the first of two
+  WhereBothEstimated,  // only an estimate knows it, the truth of a simulation does not
+};
+
+struct QuantityInfo {
+  const char* name;   // "time_offset"
+  const char* title;  // for people
+  QuantityOwner owner;
+  QuantityShape shape;
+  const char* unit;  // SI
+  const char* shown_unit = "";
+  double shown_factor = 1.0;  // from SI
+  int decimals = 5;           // in shown units
+  const char* remark = "";    // after the unit
+  QuantityNeed need = QuantityNeed::None;
+  // A size in SI units that makes all quantities comparable, so that "no information" means the same for
+  // each.
+  double comparable_unit = 1e-3;
+  QuantityPresence presence = QuantityPresence::Always;
+  bool relative = false;  // to the reference, which has none of its own
+
+  // In result.yaml and in a session's prior; without a section the keys are the sensor's own.
+  const char* section = "";
+  const char* key = "";
+  const char* std_key = "";
+  double largest = 1e6;  // beyond it a prior is a slip
+};
+
+// A member of a member: the rotation of a pose.
+template <class Outer, class Inner, class Value>
+struct MemberOf {
+  Inner Outer::*outer;
+  Value Inner::*inner;
+
+  constexpr Value& operator()(Outer& object) const { return object.*outer.*inner; }
+  constexpr const Value& operator()(const Outer& object) const { return object.*outer.*inner; }
+};
+template <class Outer, class Inner, class Value>
+MemberOf(Inner Outer::*, Value Inner::*) -> MemberOf<Outer, Inner, Value>;
+
+// Where a quantity has no place in a session's prior.
+struct NoPrior {};
+
+template <class ValueAt, class SigmaAt, class PriorAt>
+struct QuantityRow {
+  QuantityInfo info;
+  ValueAt value_at;
+  SigmaAt sigma_at;
+  PriorAt prior_at;
+
+  static constexpr bool kHasPrior = !std::is_same_v<PriorAt, NoPrior>;
+
+  template <class State>
+  constexpr auto& value(State& state) const {
+    return std::invoke(value_at, state);
+  }
+  template <class Uncertainty>
+  constexpr auto& sigma(Uncertainty& uncertainty) const {
+    return std::invoke(sigma_at, uncertainty);
+  }
+  template <class Prior>
+  constexpr auto& prior(Prior& prior) const {
+    return std::invoke(prior_at, prior);
+  }
+};
+template <class ValueAt, class SigmaAt, class PriorAt>
+QuantityRow(QuantityInfo, ValueAt, SigmaAt, PriorAt) -> QuantityRow<ValueAt, SigmaAt, PriorAt>;
+
+namespace detail {
+
+inline constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
+inline constexpr double kLargestPlace_m = 100.0;  // millimetres written as metres are beyond it
+
+constexpr QuantityInfo rotationInfo(QuantityOwner owner, const char* section) {
+  return {.name = "rotation",
+          .title = "rotation vector",
+          .owner = owner,
+          .shape = QuantityShape::Rotation,
+          .unit = "rad",
+          .shown_unit = "deg",
+          .shown_factor = kDegreesPerRad,
+          .need = QuantityNeed::Rotation,
+          .relative = true,
+          .section = section,
+          .key = "rotation_xyzw",
+          .std_key = "rotation_std_deg"};
+}
+
+constexpr QuantityInfo translationInfo(QuantityOwner owner, const char* section) {
+  return {.name = "translation",
+          .title = "translation",
+          .owner = owner,
+          .shape = QuantityShape::Vector3,
+          .unit = "m",
+          .shown_unit = "mm",
+          .shown_factor = 1e3,
+          .decimals = 4,
+          .need = QuantityNeed::Translation,
+          .relative = true,
+          .section = section,
+          .key = "translation_m",
+          .std_key = "translation_std_m",
+          .largest = kLargestPlace_m};
+}
+
+constexpr QuantityInfo timeOffsetInfo(QuantityOwner owner) {
+  return {.name = "time_offset",
+          .title = "time offset",
+          .owner = owner,
+          .shape = QuantityShape::Scalar,
+          .unit = "s",
+          .shown_unit = "ms",
+          .shown_factor = 1e3,
+          .need = QuantityNeed::TimeOffset,
+          .comparable_unit = 1e-4,
+          .relative = true,
+          .key = "time_offset_s",
+          .std_key = "time_offset_std_s"};
+}
+
+constexpr QuantityInfo mappingInfo(const char* name, const char* sensor) {
+  return {.name = name,
+          .title = sensor,
+          .owner = QuantityOwner::Imu,
+          .shape = QuantityShape::UpperTriangle,
+          .unit = "1",
+          .decimals = 6,
+          .section = sensor,
+          .key = "mapping",
+          .std_key = "mapping_std"};
+}
+
+}  // namespace detail
+
+inline constexpr auto kCameraQuantities = std::tuple{
+    QuantityRow{detail::rotationInfo(QuantityOwner::Camera, "reference_from_camera"),
+                MemberOf{&CameraState::reference_from_camera, &RigidTransform::rotation},
+                &CameraUncertainty::rotation_std_rad, &SensorPrior::rotation},
+    QuantityRow{detail::translationInfo(QuantityOwner::Camera, "reference_from_camera"),
+                MemberOf{&CameraState::reference_from_camera, &RigidTransform::translation_m},
+                &CameraUncertainty::translation_std_m, &SensorPrior::translation},
+    QuantityRow{detail::timeOffsetInfo(QuantityOwner::Camera), &CameraState::time_offset_s,
+                &CameraUncertainty::time_offset_std_s, &SensorPrior::time_offset},
+    QuantityRow{QuantityInfo{.name = "edge_lead",
+                             .title = "edge lead",
+                             .owner = QuantityOwner::Camera,
+                             .shape = QuantityShape::Scalar,
+                             .unit = "px",
+                             .shown_unit = "px",
+                             .decimals = 4,
+                             .remark = "at 100 px/s",
+                             .comparable_unit = 0.1,
+                             .presence = QuantityPresence::WhereBothEstimated,
+                             .key = "edge_lead_px",
+                             .std_key = "edge_lead_std_px"},
+                &CameraState::edge_lead_px, &CameraUncertainty::edge_lead_std_px, NoPrior{}},
+    QuantityRow{QuantityInfo{.name = "edge_lead_growth",
+                             .title = "edge lead growth",
+                             .owner = QuantityOwner::Camera,
+                             .shape = QuantityShape::Scalar,
+                             .unit = "px",
+                             .shown_unit = "px",
+                             .decimals = 4,
+                             .remark = "per e-fold of speed",
+                             .comparable_unit = 1e-2,
+                             .presence = QuantityPresence::WhereBothEstimated,
+                             .key = "edge_lead_growth_px",
+                             .std_key = "edge_lead_growth_std_px"},
+                &CameraState::edge_lead_growth_px, &CameraUncertainty::edge_lead_growth_std_px, NoPrior{}},
+    QuantityRow{QuantityInfo{.name = "intrinsics",
+                             .title = "intrinsics",
+                             .owner = QuantityOwner::Camera,
+                             .shape = QuantityShape::Intrinsics,
+                             .unit = "px",
+                             .shown_unit = "px",
+                             .presence = QuantityPresence::WhereEstimated,
+                             .key = "intrinsics",
+                             .std_key = "intrinsics_std"},
+                &CameraState::intrinsics, &CameraUncertainty::intrinsics_std, NoPrior{}}};
+
+inline constexpr auto kImuQuantities = std::tuple{
+    QuantityRow{detail::rotationInfo(QuantityOwner::Imu, "reference_from_imu"),
+                MemberOf{&ImuState::reference_from_imu, &RigidTransform::rotation},
+                &ImuUncertainty::rotation_std_rad, &ImuPrior::rotation},
+    QuantityRow{detail::translationInfo(QuantityOwner::Imu, "reference_from_imu"),
+                MemberOf{&ImuState::reference_from_imu, &RigidTransform::translation_m},
+                &ImuUncertainty::translation_std_m, &ImuPrior::translation},
+    QuantityRow{detail::timeOffsetInfo(QuantityOwner::Imu), &ImuState::time_offset_s,
+                &ImuUncertainty::time_offset_std_s, &ImuPrior::time_offset},
+    QuantityRow{QuantityInfo{.name = "gyroscope_bias",
+                             .title = "gyroscope bias",
+                             .owner = QuantityOwner::Imu,
+                             .shape = QuantityShape::Vector3,
+                             .unit = "rad/s",
+                             .shown_unit = "rad/s",
+                             .decimals = 6,
+                             .section = "gyroscope",
+                             .key = "bias_rad_s",
+                             .std_key = "bias_std_rad_s"},
+                &ImuState::gyroscope_bias_rad_s, &ImuUncertainty::gyroscope_bias_std_rad_s,
+                &ImuPrior::gyroscope_bias},
+    QuantityRow{QuantityInfo{.name = "accelerometer_bias",
+                             .title = "accelerometer bias",
+                             .owner = QuantityOwner::Imu,
+                             .shape = QuantityShape::Vector3,
+                             .unit = "m/s^2",
+                             .shown_unit = "m/s^2",
+                             .comparable_unit = 1e-2,
+                             .section = "accelerometer",
+                             .key = "bias_m_s2",
+                             .std_key = "bias_std_m_s2"},
+                &ImuState::accelerometer_bias_m_s2, &ImuUncertainty::accelerometer_bias_std_m_s2,
+                &ImuPrior::accelerometer_bias},
+    QuantityRow{detail::mappingInfo("gyroscope_mapping", "gyroscope"), &ImuState::gyroscope_mapping,
+                &ImuUncertainty::gyroscope_mapping_std, &ImuPrior::gyroscope_mapping},
+    QuantityRow{detail::mappingInfo("accelerometer_mapping", "accelerometer"),
+                &ImuState::accelerometer_mapping, &ImuUncertainty::accelerometer_mapping_std,
+                &ImuPrior::accelerometer_mapping},
+    QuantityRow{QuantityInfo{.name = "gyroscope_rotation",
+                             .title = "gyroscope rotation",
+                             .owner = QuantityOwner::Imu,
+                             .shape = QuantityShape::LocalRotation,
+                             .unit = "rad",
+                             .shown_unit = "deg",
+                             .shown_factor = detail::kDegreesPerRad,
+                             .remark = "from the accelerometer",
+                             .presence = QuantityPresence::WhereNotZero,
+                             .section = "gyroscope",
+                             .key = "gyroscope_from_accelerometer_xyzw",
+                             .std_key = "rotation_std_deg"},
+                &ImuState::gyroscope_from_accelerometer, &ImuUncertainty::gyroscope_rotation_std_rad,
+                NoPrior{}}};
+
+// The one quantity of the rig as a whole has sigmas of its own kind (UncertaintyReport), so it is no row.
+inline constexpr QuantityInfo kGravityQuantity = {.name = "gravity",
+                                                  .title = "gravity",
+                                                  .owner = QuantityOwner::Rig,
+                                                  .shape = QuantityShape::Gravity,
+                                                  .unit = "m/s^2",
+                                                  .shown_unit = "m/s^2",
+                                                  .key = "gravity_m_s2"};
+
+template <class Rows, class Visitor>
+constexpr void forEachQuantity(const Rows& rows, Visitor&& visit) {
+  std::apply([&](const auto&... row) { (visit(row), ...); }, rows);
+}
+
+// One of a quantity's numbers.
+struct QuantityPart {
+  std::string name;  // "rotation.x", "focal_length.y"; behind the sensor's and a dot it is unique in a rig
+  std::string unit, shown_unit;
+};
+std::vector<QuantityPart> quantityParts(const QuantityInfo& info);  // of all shapes but intrinsics
+// As many as the quantity has, `value` as in a state; of intrinsics as many as these need.
+template <class Value>
+std::vector<QuantityPart> quantityParts(const QuantityInfo& info, const Value&) {
+  return quantityParts(info);
+}
+std::vector<QuantityPart> quantityParts(const QuantityInfo& info,
+                                        const std::optional<CameraIntrinsics>& value);
+
+// Those numbers, in SI units: rotations as vectors, upper triangles row by row; of intrinsics all nine.
+Eigen::VectorXd quantityNumbers(double value);
+Eigen::VectorXd quantityNumbers(const Eigen::Vector3d& value);
+Eigen::VectorXd quantityNumbers(const Eigen::Quaterniond& value);
+Eigen::VectorXd quantityNumbers(const Eigen::Matrix3d& value);
+Eigen::VectorXd quantityNumbers(const std::optional<CameraIntrinsics>& value);
+Eigen::VectorXd quantityNumbers(const std::optional<std::array<double, 9>>& sigmas);
+
+// And back, for sigmas; of intrinsics those that are held stay 0.
+void setQuantityNumbers(const Eigen::VectorXd& numbers, double& value);
+void setQuantityNumbers(const Eigen::VectorXd& numbers, Eigen::Vector3d& value);
+void setQuantityNumbers(const Eigen::VectorXd& numbers, Eigen::Matrix3d& value);
+void setQuantityNumbers(const Eigen::VectorXd& numbers, std::optional<std::array<double, 9>>& sigmas);
+
+// a - b, rotations about the axes that their shape says.
+template <class Value>
+Eigen::VectorXd quantityDifference(const QuantityInfo&, const Value& a, const Value& b) {
+  return quantityNumbers(a) - quantityNumbers(b);
+}
+Eigen::VectorXd quantityDifference(const QuantityInfo& info, const Eigen::Quaterniond& a,
+                                   const Eigen::Quaterniond& b);
+
+// Whether there is something to show.
+template <class Row, class State, class Uncertainty>
+bool isPresent(const Row& row, const State& state, const Uncertainty& uncertainty) {
+  switch (row.info.presence) {
+    case QuantityPresence::Always:
+    case QuantityPresence::WhereBothEstimated:
+      return true;
+    case QuantityPresence::WhereNotZero:
+      if (!quantityNumbers(row.value(state)).isZero(0.0)) return true;
+      [[fallthrough]];
+    case QuantityPresence::WhereEstimated:
+      break;
+  }
+  return !quantityNumbers(row.sigma(uncertainty)).isZero(0.0);
+}
+
+}  // namespace evical

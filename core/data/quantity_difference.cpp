@@ -1,0 +1,156 @@
+#include "core/data/quantity_difference.h"
+
+#include "core/base/error.h"
+#include "core/base/nearest_name.h"
+#include "core/data/quantity.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace evical {
+namespace {
+
+class Differences {
+ public:
+  // Without a sigma where `sigmas` is empty.
+  void add(const std::string& sensor, const QuantityInfo& info, const std::vector<QuantityPart>& parts,
+           const Eigen::VectorXd& differences, const Eigen::VectorXd& sigmas) {
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      all.push_back({sensor + "." + parts[k].name, parts[k].shown_unit, info.shown_factor * differences[i],
+                     info.shown_factor * sigmas[i]});
+    }
+  }
+
+  std::vector<QuantityDifference> all;
+};
+
+// Another model's coefficients mean something else.
+template <class Value>
+bool comparable(const Value&, const Value&) {
+  return true;
+}
+bool comparable(const std::optional<CameraIntrinsics>& a, const std::optional<CameraIntrinsics>& b) {
+  return a && b && a->model == b->model;
+}
+
+bool isEstimated(const Eigen::VectorXd& sigmas) {
+  return !sigmas.isZero(0.0);
+}
+
+// One sensor as one of the two has it.
+template <class State, class Uncertainty>
+struct Side {
+  const State& state;
+  const Uncertainty& uncertainty;
+};
+
+template <class Row, class Sensor>
+bool isCompared(const Row& row, const Sensor& a, const Sensor& b) {
+  if (!comparable(row.value(a.state), row.value(b.state))) return false;
+  const bool in_a = isEstimated(quantityNumbers(row.sigma(a.uncertainty)));
+  switch (row.info.presence) {
+    case QuantityPresence::Always:
+      return true;
+    case QuantityPresence::WhereNotZero:
+      return !quantityNumbers(row.value(a.state)).isZero(0.0) ||
+             !quantityNumbers(row.value(b.state)).isZero(0.0);
+    case QuantityPresence::WhereEstimated:
+      return in_a;
+    case QuantityPresence::WhereBothEstimated:
+      break;
+  }
+  return in_a && isEstimated(quantityNumbers(row.sigma(b.uncertainty)));
+}
+
+template <class Rows, class Sensor>
+void compareSensor(const Rows& rows, const std::string& name, const Sensor& a, const Sensor& b,
+                   bool without_place, Differences& differences) {
+  forEachQuantity(rows, [&](const auto& row) {
+    if ((row.info.relative && without_place) || !isCompared(row, a, b)) return;
+    const auto& value = row.value(a.state);
+    differences.add(name, row.info, quantityParts(row.info, value),
+                    quantityDifference(row.info, value, row.value(b.state)),
+                    quantityNumbers(row.sigma(a.uncertainty)));
+  });
+}
+
+template <class Matrix>
+void addInQuadrature(Matrix& sum, const Matrix& other) {
+  sum = (sum.array().square() + other.array().square()).sqrt().matrix().eval();
+}
+void addInQuadrature(double& sum, const double& other) {
+  sum = std::hypot(sum, other);
+}
+void addInQuadrature(std::optional<std::array<double, 9>>& sum,
+                     const std::optional<std::array<double, 9>>& other) {
+  for (std::size_t k = 0; sum && other && k < other->size(); ++k) addInQuadrature((*sum)[k], (*other)[k]);
+}
+
+template <class Rows, class Uncertainty>
+void addSensors(const Rows& rows, std::vector<Uncertainty>& sums, const std::vector<Uncertainty>& others) {
+  for (std::size_t i = 0; i < sums.size() && i < others.size(); ++i)
+    forEachQuantity(rows,
+                    [&](const auto& row) { addInQuadrature(row.sigma(sums[i]), row.sigma(others[i])); });
+}
+
+}  // namespace
+
+std::size_t sensorIndex(const std::string& name, const std::vector<std::string>& names, const char* key) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end())
+    throw badInput(key, fmt::format("the truth has no '{}'", name), nameAdvice(name, names));
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+std::vector<QuantityDifference> difference(const Estimate& a, const Estimate& b) {
+  if (a.reference != b.reference)
+    throw badInput("reference",
+                   fmt::format("the result's is '{}', the truth's '{}'", a.reference, b.reference),
+                   "Compare a result with the truth of its own recording");
+  Differences differences;
+  for (std::size_t i = 0; i < a.camera_names.size(); ++i) {
+    const std::size_t j = sensorIndex(a.camera_names[i], b.camera_names, "cameras");
+    compareSensor(kCameraQuantities, a.camera_names[i], Side{a.cameras.at(i), a.uncertainty.cameras.at(i)},
+                  Side{b.cameras.at(j), b.uncertainty.cameras.at(j)}, false, differences);
+  }
+  for (std::size_t i = 0; i < a.imu_names.size(); ++i) {
+    const std::size_t j = sensorIndex(a.imu_names[i], b.imu_names, "imus");
+    compareSensor(kImuQuantities, a.imu_names[i], Side{a.imus.at(i), a.uncertainty.imus.at(i)},
+                  Side{b.imus.at(j), b.uncertainty.imus.at(j)}, a.imu_names[i] == a.reference, differences);
+  }
+  if (const double sigma = a.uncertainty.gravity_norm_std_m_s2; sigma > 0.0)
+    differences.all.push_back({"gravity.norm", kGravityQuantity.shown_unit,
+                               a.gravity_in_world_m_s2.norm() - b.gravity_in_world_m_s2.norm(), sigma});
+  return std::move(differences.all);
+}
+
+double gravityDirectionDifference_rad(const Estimate& a, const Estimate& b) {
+  const Eigen::Vector3d first = a.gravity_in_world_m_s2.normalized();
+  const Eigen::Vector3d second = b.gravity_in_world_m_s2.normalized();
+  return std::atan2(first.cross(second).norm(), first.dot(second));
+}
+
+UncertaintyReport differenceUncertainty(const UncertaintyReport& a, const UncertaintyReport& b) {
+  UncertaintyReport sum = a;
+  addSensors(kCameraQuantities, sum.cameras, b.cameras);
+  addSensors(kImuQuantities, sum.imus, b.imus);
+  sum.gravity_norm_std_m_s2 = std::hypot(a.gravity_norm_std_m_s2, b.gravity_norm_std_m_s2);
+  sum.gravity_direction_std_rad = std::hypot(a.gravity_direction_std_rad, b.gravity_direction_std_rad);
+  return sum;
+}
+
+double normalisedRms(const std::vector<QuantityDifference>& quantities) {
+  double sum = 0.0;
+  int count = 0;
+  for (const QuantityDifference& each : quantities) {
+    if (!(each.sigma > 0.0)) continue;
+    sum += each.normalised() * each.normalised();
+    ++count;
+  }
+  return count == 0 ? 0.0 : std::sqrt(sum / count);
+}
+
+}  // namespace evical
