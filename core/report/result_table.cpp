@@ -3,9 +3,8 @@
 #include "core/base/element.h"
 #include "core/numerics/angles.h"
 #include "core/report/intrinsics_report.h"
+#include "core/report/shown_quantity.h"
 #include "core/report/table_row.h"
-
-#include "core/geometry/so3.h"
 
 #include <fmt/format.h>
 
@@ -15,24 +14,38 @@
 namespace evical {
 namespace {
 
-// The i-th of a list that is empty where a run failed: nothing known.
-std::string vectorRows(const std::string& name, const Eigen::Vector3d& value, const Eigen::Vector3d& sigma,
-                       const char* unit, double factor, int decimals = 5) {
+std::string anglesRow(const Eigen::Quaterniond& rotation) {
+  const Eigen::Vector3d angles = rollPitchYaw_deg(rotation);
+  return fmt::format("    {:<26}{:>12.3f}, {:.3f}, {:.3f} deg\n", "(roll, pitch, yaw)", angles.x(),
+                     angles.y(), angles.z());
+}
+
+// Of a matrix the scales: misalignments are in result.yaml.
+std::string quantityRows(const ShownQuantity& quantity) {
   std::string text;
-  for (int axis = 0; axis < 3; ++axis)
-    text += tableRow(fmt::format("{} {}", name, "xyz"[axis]), factor * value[axis], factor * sigma[axis],
-                     unit, decimals);
+  for (const ShownNumber& number : quantity.numbers) {
+    std::string name = quantity.info->title;
+    if (quantity.info->shape == QuantityShape::UpperTriangle) {
+      if (!isScale(number)) continue;
+      name += fmt::format(" scale {}", number.part[0]);
+    } else if (!number.part.empty()) {
+      name += " " + number.part;
+    }
+    text +=
+        tableRow(name, number.value, number.sigma, unitAndRemark(quantity).c_str(), quantity.info->decimals);
+  }
   return text;
 }
 
-std::string poseRows(const RigidTransform& pose, const Eigen::Vector3d& rotation_std_rad,
-                     const Eigen::Vector3d& translation_std_m) {
-  std::string text = vectorRows("rotation vector", kDegPerRad * quaternionLog(pose.rotation),
-                                kDegPerRad * rotation_std_rad, "deg", 1.0);
-  const Eigen::Vector3d angles = rollPitchYaw_deg(pose.rotation);
-  text += fmt::format("    {:<26}{:>12.3f}, {:.3f}, {:.3f} deg\n", "(roll, pitch, yaw)", angles.x(),
-                      angles.y(), angles.z());
-  return text + vectorRows("translation", pose.translation_m, translation_std_m, "mm", 1e3, 4);
+// Angles below the rotation that leads to the reference, in words of their own.
+std::string sensorRows(const std::vector<ShownQuantity>& quantities, const Eigen::Quaterniond& rotation) {
+  std::string text;
+  for (const ShownQuantity& quantity : quantities) {
+    if (quantity.info->shape == QuantityShape::Intrinsics) continue;
+    text += quantityRows(quantity);
+    if (quantity.info->shape == QuantityShape::Rotation) text += anglesRow(rotation);
+  }
+  return text;
 }
 
 std::string givenRow(const NamedResult& named, const std::string& sensor) {
@@ -42,15 +55,10 @@ std::string givenRow(const NamedResult& named, const std::string& sensor) {
 
 std::string cameraTable(const NamedResult& named, std::size_t i) {
   const CameraState& state = named.result.state.cameras[i];
-  const CameraUncertainty sigma = elementOrNone(named.result.uncertainty.cameras, i);
-  std::string text = fmt::format("Camera {}: p_{} = reference_from_camera * p_camera\n",
-                                 named.names.cameras.at(i), named.names.reference);
-  text += poseRows(state.reference_from_camera, sigma.rotation_std_rad, sigma.translation_std_m);
-  text += tableRow("time offset", 1e3 * state.time_offset_s, 1e3 * sigma.time_offset_std_s,
-                   "ms  (t_reference = t_camera + it)");
-  text += tableRow("edge lead", state.edge_lead_px, sigma.edge_lead_std_px, "px at 100 px/s", 4);
-  text += tableRow("edge lead growth", state.edge_lead_growth_px, sigma.edge_lead_growth_std_px,
-                   "px for each factor e of speed", 4);
+  std::string text =
+      fmt::format("Camera {0}: p_{1} = reference_from_camera * p_camera, t_{1} = t_camera + time offset\n",
+                  named.names.cameras.at(i), named.names.reference);
+  text += sensorRows(shownCamera(named, i), state.reference_from_camera.rotation);
   text += givenRow(named, named.names.cameras[i]);
   if (const auto sigmas = elementOrNone(named.names.intrinsics_std, i))
     text += intrinsicsRows(elementOrNone(named.names.intrinsics, i).value_or(CameraIntrinsics{}), *sigmas);
@@ -66,28 +74,9 @@ std::string cameraTable(const NamedResult& named, std::size_t i) {
 
 std::string imuTable(const NamedResult& named, std::size_t i) {
   const ImuState& state = named.result.state.imus[i];
-  const ImuUncertainty sigma = elementOrNone(named.result.uncertainty.imus, i);
   const bool reference = named.names.imus.at(i) == named.names.reference;
   std::string text = fmt::format("IMU {}{}\n", named.names.imus[i], reference ? " (reference)" : "");
-  if (!reference) {
-    text += poseRows(state.reference_from_imu, sigma.rotation_std_rad, sigma.translation_std_m);
-    text += tableRow("time offset", 1e3 * state.time_offset_s, 1e3 * sigma.time_offset_std_s, "ms");
-  }
-  text += vectorRows("gyroscope bias", state.gyroscope_bias_rad_s, sigma.gyroscope_bias_std_rad_s, "rad/s",
-                     1.0, 6);
-  text += vectorRows("accelerometer bias", state.accelerometer_bias_m_s2, sigma.accelerometer_bias_std_m_s2,
-                     "m/s^2", 1.0);
-  for (int axis = 0; axis < 3; ++axis)
-    text += tableRow(fmt::format("gyroscope scale {}", "xyz"[axis]), state.gyroscope_mapping(axis, axis),
-                     sigma.gyroscope_mapping_std(axis, axis), "", 6);
-  if (sigma.gyroscope_rotation_std_rad.norm() > 0.0)
-    text +=
-        vectorRows("gyroscope turn", kDegPerRad * quaternionLog(state.gyroscope_from_accelerometer),
-                   kDegPerRad * sigma.gyroscope_rotation_std_rad, "deg  (gyroscope from accelerometer)", 1.0);
-  for (int axis = 0; axis < 3; ++axis)
-    text +=
-        tableRow(fmt::format("accelerometer scale {}", "xyz"[axis]), state.accelerometer_mapping(axis, axis),
-                 sigma.accelerometer_mapping_std(axis, axis), "", 6);
+  text += sensorRows(shownImu(named, i, !reference), state.reference_from_imu.rotation);
   text += givenRow(named, named.names.imus[i]);
   if (i >= named.result.imus.size()) return text;
   const ImuFit& fit = named.result.imus[i];

@@ -13,7 +13,7 @@
 namespace evical::ui {
 
 struct ParameterRow {
-  QString key;  // as report/truth_comparison.h names it: "left.rotation.x"; empty where nothing is compared
+  QString key;  // as data/quantity_difference.h names it: "left.rotation.x"; empty where nothing is compared
   QString name, unit;
   double value = 0.0;
   double sigma = 0.0;                // 0: not estimated

@@ -1,11 +1,11 @@
 // Verdict, results with their sigmas, how the sensors sit.
 #include "core/base/element.h"
-#include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
 #include "core/report/html/html_text.h"
 #include "core/report/html/report_page.h"
 #include "core/report/html/svg_plot.h"
 #include "core/report/result_table.h"
+#include "core/report/shown_quantity.h"
 
 #include <fmt/format.h>
 
@@ -24,21 +24,45 @@ std::string tile(const std::string& label, const std::string& value, const std::
 
 using Rows = std::vector<std::vector<std::string>>;
 
-void addVector(Rows& rows, const std::string& name, const Eigen::Vector3d& value,
-               const Eigen::Vector3d& sigma, double factor, const char* unit) {
-  std::vector<std::string> row = {name};
-  for (int k = 0; k < 3; ++k) row.push_back(withSigma(factor * value[k], factor * sigma[k]));
-  row.emplace_back(unit);
-  rows.push_back(row);
+std::string htmlUnit(std::string unit) {
+  if (const std::size_t square = unit.find("^2"); square != std::string::npos)
+    unit.replace(square, 2, "\u00b2");
+  return unit;
 }
 
-void addPose(Rows& rows, const RigidTransform& pose, const Eigen::Vector3d& rotation_std_rad,
-             const Eigen::Vector3d& translation_std_m) {
-  addVector(rows, "rotation vector", quaternionLog(pose.rotation), rotation_std_rad, kDegPerRad, "deg");
-  const Eigen::Vector3d angles = rollPitchYaw_deg(pose.rotation);
+// Three numbers of a quantity, from those that `chosen` takes.
+template <class Chosen>
+std::vector<std::string> vectorRow(const std::string& name, const ShownQuantity& quantity,
+                                   const std::string& unit, Chosen&& chosen) {
+  std::vector<std::string> row = {name};
+  for (const ShownNumber& number : quantity.numbers)
+    if (chosen(number)) row.push_back(withSigma(number.value, number.sigma));
+  row.push_back(unit);
+  return row;
+}
+
+void addAngles(Rows& rows, const Eigen::Quaterniond& rotation) {
+  const Eigen::Vector3d angles = rollPitchYaw_deg(rotation);
   rows.push_back(
       {"roll, pitch, yaw", number(angles.x(), 3), number(angles.y(), 3), number(angles.z(), 3), "deg"});
-  addVector(rows, "translation", pose.translation_m, translation_std_m, 1e3, "mm");
+}
+
+// One row of three numbers, two of a matrix, with angles below the rotation that leads to the reference.
+void addVectors(Rows& rows, const ShownQuantity& quantity, const Eigen::Quaterniond& rotation) {
+  const std::string title = quantity.info->title, unit = htmlUnit(unitAndRemark(quantity));
+  if (quantity.info->shape == QuantityShape::UpperTriangle) {
+    rows.push_back(vectorRow(title + " scale", quantity, unit, isScale));
+    rows.push_back(vectorRow(title + " misalignment xy, xz, yz", quantity, "rad",
+                             [](const ShownNumber& each) { return !isScale(each); }));
+    return;
+  }
+  rows.push_back(vectorRow(title, quantity, unit, [](const ShownNumber&) { return true; }));
+  if (quantity.info->shape == QuantityShape::Rotation) addAngles(rows, rotation);
+}
+
+std::vector<std::string> scalarRow(const ShownQuantity& quantity) {
+  return {quantity.info->title, withSigma(quantity.numbers[0].value, quantity.numbers[0].sigma),
+          htmlUnit(unitAndRemark(quantity))};
 }
 
 std::string largestSigma(const Eigen::Vector3d& sigma, const char* unit) {
@@ -75,21 +99,22 @@ std::string cameraTiles(const ReportData& data, const Measures& measures, std::s
 
 void writeCameraNumbers(const ReportData& data, std::size_t i, ReportPage& page) {
   const CameraState& state = data.named.result.state.cameras[i];
-  const CameraUncertainty sigma = elementOrNone(data.named.result.uncertainty.cameras, i);
   page.heading("Camera " + cameraName(data, i));
   page.text(paragraph(
       "", fmt::format("<code>p_reference = reference_from_camera \u00b7 p_camera</code>, reference: "
                       "{}; <code>t_reference = t_camera + time_offset</code>. \u00b1 is one "
                       "standard deviation.",
                       escaped(data.named.names.reference))));
-  Rows rows;
-  addPose(rows, state.reference_from_camera, sigma.rotation_std_rad, sigma.translation_std_m);
-  page.text(table({"", "x", "y", "z", "unit"}, rows));
-  page.text(table({"", "value", "unit"},
-                  {{"time offset", withSigma(1e3 * state.time_offset_s, 1e3 * sigma.time_offset_std_s), "ms"},
-                   {"edge lead", withSigma(state.edge_lead_px, sigma.edge_lead_std_px), "px at 100 px/s"},
-                   {"edge lead growth", withSigma(state.edge_lead_growth_px, sigma.edge_lead_growth_std_px),
-                    "px for each factor e of speed"}}));
+  Rows vectors, scalars;
+  for (const ShownQuantity& quantity : shownCamera(data.named, i)) {
+    if (quantity.info->shape == QuantityShape::Intrinsics) continue;
+    if (quantity.info->shape == QuantityShape::Scalar)
+      scalars.push_back(scalarRow(quantity));
+    else
+      addVectors(vectors, quantity, state.reference_from_camera.rotation);
+  }
+  page.text(table({"", "x", "y", "z", "unit"}, vectors));
+  page.text(table({"", "value", "unit"}, scalars));
   addGiven(data.named.result.uncertainty, cameraName(data, i), page);
   const auto intrinsics = elementOrNone(data.named.names.intrinsics, i);
   if (!intrinsics) return;
@@ -113,32 +138,18 @@ void writeCameraNumbers(const ReportData& data, std::size_t i, ReportPage& page)
 
 void writeImuNumbers(const ReportData& data, std::size_t i, ReportPage& page) {
   const ImuState& state = data.named.result.state.imus[i];
-  const ImuUncertainty sigma = elementOrNone(data.named.result.uncertainty.imus, i);
   const bool reference = imuName(data, i) == data.named.names.reference;
   page.heading("IMU " + imuName(data, i) + (reference ? " (reference)" : ""));
   Rows rows;
-  if (!reference) {
-    addPose(rows, state.reference_from_imu, sigma.rotation_std_rad, sigma.translation_std_m);
-    rows.push_back(
-        {"time offset", withSigma(1e3 * state.time_offset_s, 1e3 * sigma.time_offset_std_s), "", "", "ms"});
+  for (const ShownQuantity& quantity : shownImu(data.named, i, !reference)) {
+    if (quantity.info->shape != QuantityShape::Scalar) {
+      addVectors(rows, quantity, state.reference_from_imu.rotation);
+      continue;
+    }
+    std::vector<std::string> row = scalarRow(quantity);
+    row.insert(row.end() - 1, 2, "");
+    rows.push_back(row);
   }
-  addVector(rows, "gyroscope bias", state.gyroscope_bias_rad_s, sigma.gyroscope_bias_std_rad_s, 1.0, "rad/s");
-  addVector(rows, "accelerometer bias", state.accelerometer_bias_m_s2, sigma.accelerometer_bias_std_m_s2, 1.0,
-            "m/s\u00b2");
-  const auto off = [](const Eigen::Matrix3d& m) {
-    return std::array<Eigen::Vector3d, 2>{m.diagonal(), Eigen::Vector3d(m(0, 1), m(0, 2), m(1, 2))};
-  };
-  const auto add = [&](const std::string& sensor, const Eigen::Matrix3d& mapping,
-                       const Eigen::Matrix3d& std) {
-    addVector(rows, sensor + " scale", off(mapping)[0], off(std)[0], 1.0, "");
-    addVector(rows, sensor + " misalignment xy, xz, yz", off(mapping)[1], off(std)[1], 1.0, "rad");
-  };
-  add("gyroscope", state.gyroscope_mapping, sigma.gyroscope_mapping_std);
-  if (sigma.gyroscope_rotation_std_rad.norm() > 0.0)
-    addVector(rows, "gyroscope from accelerometer, rotation vector",
-              quaternionLog(state.gyroscope_from_accelerometer), sigma.gyroscope_rotation_std_rad, kDegPerRad,
-              "deg");
-  add("accelerometer", state.accelerometer_mapping, sigma.accelerometer_mapping_std);
   page.text(table({"", "x", "y", "z", "unit"}, rows));
   addGiven(data.named.result.uncertainty, imuName(data, i), page);
 }

@@ -1,0 +1,64 @@
+#include "core/report/shown_quantity.h"
+
+#include "core/base/element.h"
+
+#include <algorithm>
+
+namespace evical {
+namespace {
+
+// What follows the quantity's own name: "x" of "rotation.x"; of intrinsics all: "focal length x".
+std::string partOf(const QuantityInfo& info, std::string name) {
+  const std::string own = std::string(info.name) + ".";
+  if (name == info.name) return {};
+  if (name.starts_with(own)) return name.substr(own.size());
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == '_' || c == '.'; }, ' ');
+  return name;
+}
+
+template <class Rows, class State, class Uncertainty>
+std::vector<ShownQuantity> shown(const Rows& rows, const std::string& sensor, const State& state,
+                                 const Uncertainty& uncertainty, bool with_place) {
+  std::vector<ShownQuantity> all;
+  forEachQuantity(rows, [&](const auto& row) {
+    if ((row.info.relative && !with_place) || !isPresent(row, state, uncertainty)) return;
+    const Eigen::VectorXd values = quantityNumbers(row.value(state));
+    const Eigen::VectorXd sigmas = quantityNumbers(row.sigma(uncertainty));
+    ShownQuantity quantity{&row.info, {}};
+    for (const QuantityPart& part : quantityParts(row.info, row.value(state))) {
+      const auto k = static_cast<Eigen::Index>(quantity.numbers.size());
+      const double sigma = k < sigmas.size() ? sigmas[k] : 0.0;
+      quantity.numbers.push_back({sensor + "." + part.name, partOf(row.info, part.name), part.shown_unit,
+                                  row.info.shown_factor * values[k], row.info.shown_factor * sigma});
+    }
+    all.push_back(std::move(quantity));
+  });
+  return all;
+}
+
+}  // namespace
+
+std::vector<ShownQuantity> shownCamera(const NamedResult& named, std::size_t camera, bool with_place) {
+  CameraState state = named.result.state.cameras.at(camera);
+  CameraUncertainty uncertainty = elementOrNone(named.result.uncertainty.cameras, camera);
+  state.intrinsics = elementOrNone(named.names.intrinsics, camera);
+  uncertainty.intrinsics_std = elementOrNone(named.names.intrinsics_std, camera);
+  return shown(kCameraQuantities, named.names.cameras.at(camera), state, uncertainty, with_place);
+}
+
+std::vector<ShownQuantity> shownImu(const NamedResult& named, std::size_t imu, bool with_place) {
+  return shown(kImuQuantities, named.names.imus.at(imu), named.result.state.imus.at(imu),
+               elementOrNone(named.result.uncertainty.imus, imu), with_place);
+}
+
+std::string unitAndRemark(const ShownQuantity& quantity) {
+  const std::string remark = quantity.info->remark;
+  return quantity.info->shown_unit + (remark.empty() ? "" : " " + remark);
+}
+
+bool isScale(const ShownNumber& number) {
+  return number.part.size() == 2 && number.part[0] == number.part[1];
+}
+
+}  // namespace evical

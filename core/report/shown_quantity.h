@@ -1,0 +1,35 @@
+// Calibrated quantities as people read them: in shown units, number by number. Tables, the report and the
+// window are formats of these.
+#pragma once
+
+#include "core/data/quantity.h"
+#include "core/report/result_yaml.h"
+
+#include <string>
+#include <vector>
+
+namespace evical {
+
+struct ShownNumber {
+  std::string key;   // as in a comparison of results (quantity_difference.h): "left.rotation.x"
+  std::string part;  // "x", "yz", "focal length y"; empty of a scalar
+  std::string unit;
+  double value = 0.0, sigma = 0.0;  // sigma 0: not estimated
+};
+
+struct ShownQuantity {
+  const QuantityInfo* info = nullptr;
+  std::vector<ShownNumber> numbers;
+};
+
+// Those there are, in the order of quantity.h; without the place if asked, which a reference does not have.
+std::vector<ShownQuantity> shownCamera(const NamedResult& named, std::size_t camera, bool with_place = true);
+std::vector<ShownQuantity> shownImu(const NamedResult& named, std::size_t imu, bool with_place = true);
+
+// "px at 100 px/s"
+std::string unitAndRemark(const ShownQuantity& quantity);
+
+// Of a 3 x 3 matrix: scales stand on its diagonal, misalignments beside it.
+bool isScale(const ShownNumber& number);
+
+}  // namespace evical
