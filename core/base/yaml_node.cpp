@@ -88,10 +88,13 @@ std::vector<std::string> YamlNode::keys() const {
 }
 
 void YamlNode::allowOnly(std::initializer_list<const char*> known) const {
-  const std::vector<std::string> names(known.begin(), known.end());
+  allowOnly(std::vector<std::string>(known.begin(), known.end()));
+}
+
+void YamlNode::allowOnly(const std::vector<std::string>& known) const {
   for (const std::string& name : keys())
-    if (std::find(names.begin(), names.end(), name) == names.end())
-      throw(*this)[name].error("unknown key", nameAdvice(name, names));
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw(*this)[name].error("unknown key", nameAdvice(name, known));
 }
 
 std::optional<YamlNode> YamlNode::find(const std::string& name) const {

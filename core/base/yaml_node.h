@@ -29,6 +29,7 @@ class YamlNode {
   // Maps
   std::vector<std::string> keys() const;  // throws unless a map, or when a key is there twice
   void allowOnly(std::initializer_list<const char*> known) const;
+  void allowOnly(const std::vector<std::string>& known) const;
   bool has(const std::string& key) const;
   YamlNode operator[](const std::string& key) const;  // throws when it isn't there
   std::optional<YamlNode> find(const std::string& key) const;

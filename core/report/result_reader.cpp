@@ -1,5 +1,6 @@
 #include "core/base/yaml_node.h"
 #include "core/data/intrinsics_yaml.h"
+#include "core/data/quantity_yaml.h"
 #include "core/data/unit_quaternion.h"
 #include "core/numerics/angles.h"
 #include "core/report/result_yaml.h"
@@ -44,8 +45,8 @@ void get(const YamlNode& map, const char* key, int& value) {
 void get(const YamlNode& map, const char* key, std::string& value) {
   if (const auto node = map.find(key)) value = node->text();
 }
-void get(const YamlNode& map, const char* key, Eigen::Vector3d& value, double factor = 1.0) {
-  if (const auto node = map.find(key)) value = factor * vector<3>(*node);
+void get(const YamlNode& map, const char* key, Eigen::Vector3d& value) {
+  if (const auto node = map.find(key)) value = vector<3>(*node);
 }
 void get(const YamlNode& map, const char* key, Eigen::Matrix3d& value) {
   const auto node = map.find(key);
@@ -61,12 +62,32 @@ void get(const YamlNode& map, const char* key, std::vector<std::string>& values)
   for (const YamlNode& item : node->items()) values.push_back(item.text());
 }
 
-void readTransform(const YamlNode& map, RigidTransform& pose, Eigen::Vector3d& rotation_std_rad,
-                   Eigen::Vector3d& translation_std_m) {
-  pose.rotation = unitQuaternion(map["rotation_xyzw"], vector<4>(map["rotation_xyzw"]));
-  pose.translation_m = vector<3>(map["translation_m"]);
-  get(map, "rotation_std_deg", rotation_std_rad, kRadPerDeg);
-  get(map, "translation_std_m", translation_std_m);
+void get(const YamlNode& map, const char* key, Eigen::Quaterniond& value) {
+  if (const auto node = map.find(key)) value = unitQuaternion(*node, vector<4>(*node));
+}
+
+void getSigma(const YamlNode& map, const QuantityInfo& info, double& sigma) {
+  get(map, info.std_key, sigma);
+}
+template <class Sigma>
+void getSigma(const YamlNode& map, const QuantityInfo& info, Sigma& sigma) {
+  get(map, info.std_key, sigma);
+  sigma /= yamlSigmaFactor(info);
+}
+
+// All but intrinsics, which have a map of their own. Without a pose a sensor means nothing.
+template <class Rows, class State, class Uncertainty>
+void readQuantities(const YamlNode& sensor, const Rows& rows, State& state, Uncertainty& uncertainty) {
+  forEachQuantity(rows, [&](const auto& row) {
+    if constexpr (!std::is_same_v<decltype(row.value(state)), std::optional<CameraIntrinsics>&>) {
+      if (row.info.need == QuantityNeed::Rotation || row.info.need == QuantityNeed::Translation)
+        static_cast<void>(sensor[row.info.section][row.info.key]);  // throws where it is missing
+      const auto section = quantitySection(sensor, row.info);
+      if (!section) return;
+      get(*section, row.info.key, row.value(state));
+      getSigma(*section, row.info, row.sigma(uncertainty));
+    }
+  });
 }
 
 std::string streamOf(const YamlNode& map) {
@@ -92,14 +113,7 @@ void readCamera(const YamlNode& map, NamedResult& named) {
   CameraState state;
   CameraUncertainty sigma;
   CameraFit fit;
-  readTransform(map["reference_from_camera"], state.reference_from_camera, sigma.rotation_std_rad,
-                sigma.translation_std_m);
-  get(map, "time_offset_s", state.time_offset_s);
-  get(map, "time_offset_std_s", sigma.time_offset_std_s);
-  get(map, "edge_lead_px", state.edge_lead_px);
-  get(map, "edge_lead_std_px", sigma.edge_lead_std_px);
-  get(map, "edge_lead_growth_px", state.edge_lead_growth_px);
-  get(map, "edge_lead_growth_std_px", sigma.edge_lead_growth_std_px);
+  readQuantities(map, kCameraQuantities, state, sigma);
   get(map, "reprojection_rms_px", fit.reprojection_rms_px);
   get(map, "normalised_rms", fit.normalised_rms);
   if (const auto windows = map.find("windows")) {
@@ -136,27 +150,11 @@ void readImu(const YamlNode& map, NamedResult& named) {
   ImuState state;
   ImuUncertainty sigma;
   ImuFit fit;
-  readTransform(map["reference_from_imu"], state.reference_from_imu, sigma.rotation_std_rad,
-                sigma.translation_std_m);
-  get(map, "time_offset_s", state.time_offset_s);
-  get(map, "time_offset_std_s", sigma.time_offset_std_s);
-  if (const auto gyroscope = map.find("gyroscope")) {
-    get(*gyroscope, "bias_rad_s", state.gyroscope_bias_rad_s);
-    get(*gyroscope, "bias_std_rad_s", sigma.gyroscope_bias_std_rad_s);
-    get(*gyroscope, "mapping", state.gyroscope_mapping);
-    get(*gyroscope, "mapping_std", sigma.gyroscope_mapping_std);
+  readQuantities(map, kImuQuantities, state, sigma);
+  if (const auto gyroscope = map.find("gyroscope"))
     get(*gyroscope, "residual_rms_rad_s", fit.gyroscope_rms_rad_s);
-    if (const auto turn = gyroscope->find("gyroscope_from_accelerometer_xyzw"))
-      state.gyroscope_from_accelerometer = unitQuaternion(*turn, vector<4>(*turn));
-    get(*gyroscope, "rotation_std_deg", sigma.gyroscope_rotation_std_rad, kRadPerDeg);
-  }
-  if (const auto accelerometer = map.find("accelerometer")) {
-    get(*accelerometer, "bias_m_s2", state.accelerometer_bias_m_s2);
-    get(*accelerometer, "bias_std_m_s2", sigma.accelerometer_bias_std_m_s2);
-    get(*accelerometer, "mapping", state.accelerometer_mapping);
-    get(*accelerometer, "mapping_std", sigma.accelerometer_mapping_std);
+  if (const auto accelerometer = map.find("accelerometer"))
     get(*accelerometer, "residual_rms_m_s2", fit.accelerometer_rms_m_s2);
-  }
   named.names.known_of_imus.push_back(readKnown(map));
   named.result.state.imus.push_back(state);
   named.result.uncertainty.imus.push_back(sigma);
@@ -205,7 +203,7 @@ void readCrossValidation(const YamlNode& map, CrossValidation& validation) {
   const auto differences = map.find("differences");
   if (!differences) return;
   for (const YamlNode& item : differences->items()) {
-    HalvesDifference& each = validation.quantities.emplace_back();
+    QuantityDifference& each = validation.quantities.emplace_back();
     each.name = item["name"].text();
     get(item, "unit", each.unit);
     get(item, "difference", each.difference);

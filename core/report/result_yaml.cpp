@@ -3,6 +3,7 @@
 #include "core/base/element.h"
 #include "core/base/yaml_node.h"
 #include "core/data/intrinsics_yaml.h"
+#include "core/data/quantity_yaml.h"
 #include "core/numerics/angles.h"
 #include "core/report/intrinsics_report.h"
 
@@ -13,39 +14,54 @@
 namespace evical {
 namespace {
 
-// Values are written so that they read back the same; sigmas need no more than a few digits.
-std::string exact(double value) {
-  if (std::isnan(value)) return ".nan";
-  if (std::isinf(value)) return value > 0.0 ? ".inf" : "-.inf";
-  return fmt::format("{}", value);
-}
-std::string rounded(double value) {
-  return std::isfinite(value) ? fmt::format("{:.6g}", value) : exact(value);
+constexpr std::size_t kSensorIndent = 4;
+
+template <class Values>
+std::string list(const Values& values, NumberFormat format) {
+  return quantityYaml(Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
+                          values.data(), static_cast<Eigen::Index>(values.size()))),
+                      format);
 }
 
-template <class Vector, class Format>
-std::string list(const Vector& values, Format&& format) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : ", ") + format(value);
-  return "[" + text + "]";
+void addSigma(const QuantityInfo& info, double sigma, YamlSections& sections) {
+  sections.add(info.section, info.std_key, quantityYaml(sigma, roundedYaml));
 }
-std::string matrix(const Eigen::MatrixXd& m, std::string (*format)(double)) {
-  std::string text;
-  for (Eigen::Index row = 0; row < m.rows(); ++row)
-    text += (row == 0 ? "" : ", ") + list(Eigen::VectorXd(m.row(row)), format);
-  return "[" + text + "]";
+template <class Sigma>
+void addSigma(const QuantityInfo& info, const Sigma& sigma, YamlSections& sections) {
+  sections.add(info.section, info.std_key, quantityYaml(Sigma(yamlSigmaFactor(info) * sigma), roundedYaml));
 }
 
-std::string transformYaml(const char* key, const RigidTransform& pose,
-                          const Eigen::Vector3d& rotation_std_rad, const Eigen::Vector3d& translation_std_m) {
-  return fmt::format(
-      "    {}:\n      rotation_xyzw: {}\n      translation_m: {}\n      rotation_std_deg: {}\n"
-      "      translation_std_m: {}\n",
-      key, list(pose.rotation.coeffs(), exact), list(pose.translation_m, exact),
-      list(Eigen::Vector3d(kDegPerRad * rotation_std_rad), rounded), list(translation_std_m, rounded));
+enum class Written { Values, Sigmas, Both };
+
+// The rows that `chosen` takes, but for intrinsics, which have a map of their own.
+template <class Rows, class State, class Uncertainty, class Chosen>
+void addQuantities(const Rows& rows, const State& state, const Uncertainty& uncertainty, Written written,
+                   YamlSections& sections, Chosen&& chosen) {
+  forEachQuantity(rows, [&](const auto& row) {
+    const QuantityInfo& info = row.info;
+    if (!chosen(info)) return;
+    if constexpr (!std::is_same_v<decltype(row.value(state)), const std::optional<CameraIntrinsics>&>) {
+      if (written != Written::Sigmas)
+        sections.add(info.section, info.key, quantityYaml(row.value(state), exactYaml));
+      if (written != Written::Values) addSigma(info, row.sigma(uncertainty), sections);
+    }
+  });
 }
 
-// The i-th of a list that may be shorter than it should: nothing known.
+bool inPose(const QuantityInfo& info) {
+  return info.need == QuantityNeed::Rotation || info.need == QuantityNeed::Translation;
+}
+bool besidesPose(const QuantityInfo& info) {
+  return !inPose(info);
+}
+
+// The pose comes first, its numbers before its sigmas.
+template <class Rows, class State, class Uncertainty>
+void addPlace(const Rows& rows, const State& state, const Uncertainty& uncertainty, YamlSections& sections) {
+  addQuantities(rows, state, uncertainty, Written::Values, sections, inPose);
+  addQuantities(rows, state, uncertainty, Written::Sigmas, sections, inPose);
+}
+
 std::string streamYaml(const std::string& stream) {
   return stream.empty() ? "" : fmt::format("    stream: {}\n", yamlText(stream));
 }
@@ -56,21 +72,17 @@ std::string cameraYaml(const NamedResult& named, std::size_t i) {
   const CameraFit fit = elementOrNone(named.result.cameras, i);
   std::string text = fmt::format("  {}:\n", yamlText(named.names.cameras.at(i)));
   text += streamYaml(elementOrNone(named.names.camera_streams, i));
-  text += transformYaml("reference_from_camera", state.reference_from_camera, sigma.rotation_std_rad,
-                        sigma.translation_std_m);
-  text += fmt::format(
-      "    time_offset_s: {}\n    time_offset_std_s: {}\n    edge_lead_px: {}\n    edge_lead_std_px: {}\n"
-      "    edge_lead_growth_px: {}\n    edge_lead_growth_std_px: {}\n",
-      exact(state.time_offset_s), rounded(sigma.time_offset_std_s), exact(state.edge_lead_px),
-      rounded(sigma.edge_lead_std_px), exact(state.edge_lead_growth_px),
-      rounded(sigma.edge_lead_growth_std_px));
+  YamlSections sections;
+  addPlace(kCameraQuantities, state, sigma, sections);
+  addQuantities(kCameraQuantities, state, sigma, Written::Both, sections, besidesPose);
+  text += sections.text(kSensorIndent);
   if (const auto intrinsics = elementOrNone(named.names.intrinsics, i)) {
     text += "    intrinsics:\n" + intrinsicsYaml(*intrinsics, 6);
     if (const auto sigmas = elementOrNone(named.names.intrinsics_std, i))
       text += "    intrinsics_std:\n" + intrinsicsStdYaml(*intrinsics, *sigmas, 6);
   }
   text += fmt::format("    reprojection_rms_px: {}\n    normalised_rms: {}\n",
-                      rounded(fit.reprojection_rms_px), rounded(fit.normalised_rms));
+                      roundedYaml(fit.reprojection_rms_px), roundedYaml(fit.normalised_rms));
   text += fmt::format(
       "    windows: {{total: {}, complete: {}, partial: {}, used: {}}}\n    circles: {{used: {}, rejected: "
       "{}}}\n",
@@ -79,20 +91,10 @@ std::string cameraYaml(const NamedResult& named, std::size_t i) {
   return text;
 }
 
-std::string inertialYaml(const char* key, const char* unit, const Eigen::Vector3d& bias,
-                         const Eigen::Vector3d& bias_std, const Eigen::Matrix3d& mapping,
-                         const Eigen::Matrix3d& mapping_std, double rms) {
-  return fmt::format(
-      "    {}:\n      bias_{}: {}\n      bias_std_{}: {}\n      mapping: {}\n      mapping_std: {}\n"
-      "      residual_rms_{}: {}\n",
-      key, unit, list(bias, exact), unit, list(bias_std, rounded), matrix(mapping, exact),
-      matrix(mapping_std, rounded), unit, rounded(rms));
-}
-
 std::string knownYaml(const KnownOfImu& known) {
   std::string text = streamYaml(known.stream);
   const auto add = [&](const char* key, double value) {
-    if (value > 0.0) text += fmt::format("    {}: {}\n", key, exact(value));
+    if (value > 0.0) text += fmt::format("    {}: {}\n", key, exactYaml(value));
   };
   if (known.noise) {
     add("accelerometer_noise_density", known.noise->accelerometer_density);
@@ -110,28 +112,26 @@ std::string imuYaml(const NamedResult& named, std::size_t i) {
   const ImuFit fit = elementOrNone(named.result.imus, i);
   std::string text = fmt::format("  {}:\n", yamlText(named.names.imus.at(i)));
   text += knownYaml(elementOrNone(named.names.known_of_imus, i));
-  text += transformYaml("reference_from_imu", state.reference_from_imu, sigma.rotation_std_rad,
-                        sigma.translation_std_m);
-  text += fmt::format("    time_offset_s: {}\n    time_offset_std_s: {}\n", exact(state.time_offset_s),
-                      rounded(sigma.time_offset_std_s));
-  text += inertialYaml("gyroscope", "rad_s", state.gyroscope_bias_rad_s, sigma.gyroscope_bias_std_rad_s,
-                       state.gyroscope_mapping, sigma.gyroscope_mapping_std, fit.gyroscope_rms_rad_s);
-  text += fmt::format("      gyroscope_from_accelerometer_xyzw: {}\n      rotation_std_deg: {}\n",
-                      list(state.gyroscope_from_accelerometer.coeffs(), exact),
-                      list(Eigen::Vector3d(kDegPerRad * sigma.gyroscope_rotation_std_rad), rounded));
-  text +=
-      inertialYaml("accelerometer", "m_s2", state.accelerometer_bias_m_s2, sigma.accelerometer_bias_std_m_s2,
-                   state.accelerometer_mapping, sigma.accelerometer_mapping_std, fit.accelerometer_rms_m_s2);
-  return text;
+  YamlSections sections;
+  addPlace(kImuQuantities, state, sigma, sections);
+  addQuantities(kImuQuantities, state, sigma, Written::Both, sections, [](const QuantityInfo& info) {
+    return besidesPose(info) && info.presence == QuantityPresence::Always;
+  });
+  sections.add("gyroscope", "residual_rms_rad_s", roundedYaml(fit.gyroscope_rms_rad_s));
+  sections.add("accelerometer", "residual_rms_m_s2", roundedYaml(fit.accelerometer_rms_m_s2));
+  addQuantities(kImuQuantities, state, sigma, Written::Both, sections, [](const QuantityInfo& info) {
+    return besidesPose(info) && info.presence != QuantityPresence::Always;
+  });
+  return text + sections.text(kSensorIndent);
 }
 
 std::string uncertaintyYaml(const UncertaintyReport& uncertainty) {
   std::string text =
       fmt::format("gravity_direction_std_deg: {}\nobservability:\n  weakest: {}\n  values: {}\n",
-                  rounded(kDegPerRad * uncertainty.gravity_direction_std_rad), yamlText(uncertainty.weakest),
-                  list(uncertainty.observability, rounded));
+                  roundedYaml(kDegPerRad * uncertainty.gravity_direction_std_rad),
+                  yamlText(uncertainty.weakest), list(uncertainty.observability, roundedYaml));
   if (uncertainty.gravity_norm_std_m_s2 > 0.0)
-    text += fmt::format("gravity_norm_std_m_s2: {}\n", rounded(uncertainty.gravity_norm_std_m_s2));
+    text += fmt::format("gravity_norm_std_m_s2: {}\n", roundedYaml(uncertainty.gravity_norm_std_m_s2));
   if (!uncertainty.given.empty()) {
     text += "given:\n";
     for (const std::string& quantity : uncertainty.given) text += fmt::format("  - {}\n", yamlText(quantity));
@@ -139,21 +139,22 @@ std::string uncertaintyYaml(const UncertaintyReport& uncertainty) {
   if (uncertainty.names.empty()) return text;
   text += "uncertainty:\n  names:\n";
   for (const std::string& name : uncertainty.names) text += fmt::format("    - {}\n", yamlText(name));
-  text += fmt::format("  std: {}\n  correlation:\n", list(uncertainty.standard_deviations, rounded));
-  const auto fourDecimals = [](double value) { return rounded(std::round(value * 1e4) / 1e4); };
+  text += fmt::format("  std: {}\n  correlation:\n", list(uncertainty.standard_deviations, roundedYaml));
+  const NumberFormat fourDecimals = [](double value) { return roundedYaml(std::round(value * 1e4) / 1e4); };
   for (Eigen::Index row = 0; row < uncertainty.correlation.rows(); ++row)
     text += fmt::format("    - {}\n", list(Eigen::VectorXd(uncertainty.correlation.row(row)), fourDecimals));
   return text;
 }
 
 std::string crossValidationYaml(const CrossValidation& validation) {
-  std::string text = fmt::format("cross_validation:\n  block_s: {}\n  windows: [{}, {}]\n",
-                                 rounded(validation.block_s), validation.windows[0], validation.windows[1]);
+  std::string text =
+      fmt::format("cross_validation:\n  block_s: {}\n  windows: [{}, {}]\n", roundedYaml(validation.block_s),
+                  validation.windows[0], validation.windows[1]);
   if (!validation.failure.empty()) return text + fmt::format("  failure: {}\n", yamlText(validation.failure));
-  text += fmt::format("  rms_sigmas: {}\n  differences:\n", rounded(validation.rms_sigmas));
-  for (const HalvesDifference& each : validation.quantities)
+  text += fmt::format("  rms_sigmas: {}\n  differences:\n", roundedYaml(validation.rms_sigmas));
+  for (const QuantityDifference& each : validation.quantities)
     text += fmt::format("    - {{name: {}, unit: {}, difference: {}, std: {}}}\n", yamlText(each.name),
-                        yamlText(each.unit), rounded(each.difference), rounded(each.sigma));
+                        yamlText(each.unit), roundedYaml(each.difference), roundedYaml(each.sigma));
   return text;
 }
 
@@ -192,7 +193,7 @@ std::string resultYaml(const NamedResult& named) {
   text += state.imus.empty() ? "imus: {}\n" : "imus:\n";
   for (std::size_t i = 0; i < state.imus.size(); ++i) text += imuYaml(named, i);
   if (!state.imus.empty())
-    text += fmt::format("gravity_m_s2: {}\n", list(state.gravity_in_world_m_s2, exact));
+    text += fmt::format("gravity_m_s2: {}\n", list(state.gravity_in_world_m_s2, exactYaml));
   text += uncertaintyYaml(named.result.uncertainty);
   if (named.result.cross_validation) text += crossValidationYaml(*named.result.cross_validation);
   return text + runYaml(named);
