@@ -1,7 +1,6 @@
 #include "core/synthetic/imu_simulator.h"
 
 #include "core/base/time.h"
-#include "core/geometry/so3.h"
 #include "core/synthetic/sinusoid_motion.h"
 
 #include <cmath>
@@ -23,7 +22,7 @@ void simulate(const Scenario& scenario, std::size_t index, Use&& use) {
     return Eigen::Vector3d(x, y, z);
   };
   const double period_s = 1.0 / imu.rate_hz, root_rate = std::sqrt(imu.rate_hz);
-  const Eigen::Matrix3d by_rate = imu.gyroscope_mapping * so3Exp(imu.gyroscope_from_accelerometer_rad);
+  const Eigen::Matrix3d by_rate = imu.gyroscopeMatrix();
   Eigen::Vector3d gyroscope_bias = imu.gyroscope_bias_rad_s, accelerometer_bias = imu.accelerometer_bias_m_s2;
   const auto count = static_cast<std::size_t>(scenario.duration_s * imu.rate_hz);
   for (std::size_t k = 0; k < count; ++k) {

@@ -2,6 +2,7 @@
 // from it.
 #pragma once
 
+#include "core/data/calibration_state.h"
 #include "core/geometry/camera_model.h"
 #include "core/geometry/circle_board.h"
 #include "core/geometry/rigid_transform.h"
@@ -45,7 +46,8 @@ struct SimulatedCamera {
   EventPixelModel pixel;
 };
 
-struct SimulatedImu {
+// What is true of an IMU, and how it measures. Biases are those at the start where they walk.
+struct SimulatedImu : ImuState {
   std::string name = "imu";
   std::string stream = "/imu";
   double rate_hz = 1000.0;
@@ -53,14 +55,6 @@ struct SimulatedImu {
   double accelerometer_density = 1.86e-3;  // m/s^2/sqrt(Hz)
   double gyroscope_walk = 0.0;             // rad/s^2/sqrt(Hz)
   double accelerometer_walk = 0.0;         // m/s^3/sqrt(Hz)
-  Eigen::Vector3d gyroscope_bias_rad_s = Eigen::Vector3d::Zero();
-  Eigen::Vector3d accelerometer_bias_m_s2 = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d gyroscope_mapping = Eigen::Matrix3d::Identity();  // upper triangular
-  Eigen::Matrix3d accelerometer_mapping = Eigen::Matrix3d::Identity();
-  // As a rotation vector; the IMU's frame is the accelerometer's.
-  Eigen::Vector3d gyroscope_from_accelerometer_rad = Eigen::Vector3d::Zero();
-  RigidTransform reference_from_imu;
-  double time_offset_s = 0.0;  // reference_time = imu_time + offset
 };
 
 // The first camera looks at a point that wanders around the board's middle, from a distance and along a

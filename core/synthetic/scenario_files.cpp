@@ -1,6 +1,6 @@
 #include "core/base/yaml_node.h"
 #include "core/data/intrinsics_yaml.h"
-#include "core/geometry/so3.h"
+#include "core/data/quantity_yaml.h"
 #include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
 
@@ -19,11 +19,6 @@ std::string vectorText(const Eigen::VectorXd& v) {
   std::string text = "[";
   for (Eigen::Index i = 0; i < v.size(); ++i) text += fmt::format("{}{}", i == 0 ? "" : ", ", v(i));
   return text + "]";
-}
-
-std::string matrixText(const Eigen::Matrix3d& m) {
-  return fmt::format("[{}, {}, {}]", vectorText(m.row(0).transpose()), vectorText(m.row(1).transpose()),
-                     vectorText(m.row(2).transpose()));
 }
 
 std::string transformText(const char* key, const RigidTransform& transform) {
@@ -51,15 +46,14 @@ SimulatedCamera relativeTo(const SimulatedCamera& reference, SimulatedCamera cam
 std::string imuTruth(const Scenario& scenario, std::size_t index) {
   const SimulatedImu& imu = scenario.imus[index];
   const SimulatedBiases biases = meanBiases(scenario, index);
-  return fmt::format("  {}:\n{}", yamlText(imu.name),
-                     transformText("reference_from_imu", imu.reference_from_imu)) +
-         fmt::format("    time_offset_s: {}\n    gyroscope:\n      bias_rad_s: {}\n      mapping: {}\n",
-                     imu.time_offset_s, vectorText(biases.gyroscope_rad_s),
-                     matrixText(imu.gyroscope_mapping)) +
-         fmt::format("      gyroscope_from_accelerometer_xyzw: {}\n",
-                     vectorText(quaternionExp(imu.gyroscope_from_accelerometer_rad).coeffs())) +
-         fmt::format("    accelerometer:\n      bias_m_s2: {}\n      mapping: {}\n",
-                     vectorText(biases.accelerometer_m_s2), matrixText(imu.accelerometer_mapping));
+  ImuState truth = imu;
+  truth.gyroscope_bias_rad_s = biases.gyroscope_rad_s;
+  truth.accelerometer_bias_m_s2 = biases.accelerometer_m_s2;
+  YamlSections sections;
+  forEachQuantity(kImuQuantities, [&](const auto& row) {
+    sections.add(row.info.section, row.info.key, quantityYaml(row.value(truth), exactYaml));
+  });
+  return fmt::format("  {}:\n{}", yamlText(imu.name), sections.text(4));
 }
 
 std::string boardSession(const CircleBoard& board) {

@@ -1,6 +1,7 @@
 #include "core/synthetic/scenario_yaml.h"
 
 #include "core/base/yaml_node.h"
+#include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
 
 #include <fmt/format.h>
@@ -187,7 +188,9 @@ void readImu(const YamlNode& map, SimulatedImu& imu) {
   get(map, "accelerometer_bias_m_s2", imu.accelerometer_bias_m_s2, -50.0, 50.0);
   getMapping(map, "gyroscope_mapping", imu.gyroscope_mapping);
   getMapping(map, "accelerometer_mapping", imu.accelerometer_mapping);
-  get(map, "gyroscope_from_accelerometer_deg", imu.gyroscope_from_accelerometer_rad, -20.0, 20.0, kRadPerDeg);
+  Eigen::Vector3d turn_rad = quaternionLog(imu.gyroscope_from_accelerometer);
+  get(map, "gyroscope_from_accelerometer_deg", turn_rad, -20.0, 20.0, kRadPerDeg);
+  imu.gyroscope_from_accelerometer = quaternionExp(turn_rad);
   get(map, "time_offset_s", imu.time_offset_s, -60.0, 60.0, "s");
   if (const auto node = map.find("reference_from_imu")) readTransform(*node, imu.reference_from_imu);
 }

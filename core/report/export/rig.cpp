@@ -2,6 +2,7 @@
 
 #include "core/base/element.h"
 #include "core/base/error.h"
+#include "core/data/quantity.h"
 
 #include <fmt/format.h>
 
@@ -26,12 +27,15 @@ std::string fileName(const std::string& name, std::set<std::string>& taken) {
   return unique;
 }
 
-void checkNumbers(const std::string& place, const RigidTransform& pose, double time_offset_s,
-                  const Eigen::VectorXd& others) {
-  if (pose.rotation.coeffs().allFinite() && pose.translation_m.allFinite() && std::isfinite(time_offset_s) &&
-      others.allFinite())
-    return;
-  throw badInput(place, "has numbers that are none (nan, inf)", "Calibrate again");
+// Of all that exports may say of a sensor.
+template <class Rows, class State>
+void checkNumbers(const std::string& place, const Rows& rows, const State& state) {
+  bool finite = true;
+  forEachQuantity(rows, [&](const auto& row) {
+    if (row.info.presence != QuantityPresence::WhereBothEstimated)
+      finite = finite && quantityNumbers(row.value(state)).allFinite();
+  });
+  if (!finite) throw badInput(place, "has numbers that are none (nan, inf)", "Calibrate again");
 }
 
 RigCamera cameraOf(const NamedResult& result, std::size_t i, std::set<std::string>& taken) {
@@ -42,7 +46,7 @@ RigCamera cameraOf(const NamedResult& result, std::size_t i, std::set<std::strin
                    intrinsics ? "has no resolution_px" : "has no intrinsics",
                    "Export the result.yaml of `evical calibrate`");
   const CameraState& state = result.result.state.cameras.at(i);
-  checkNumbers(fmt::format("result: cameras.{}", name), state.reference_from_camera, state.time_offset_s, {});
+  checkNumbers(fmt::format("result: cameras.{}", name), kCameraQuantities, state);
   return {name,
           fileName(name, taken),
           elementOrNone(result.names.camera_streams, i),
@@ -56,10 +60,7 @@ RigImu imuOf(const NamedResult& result, std::size_t i, std::set<std::string>& ta
   const std::string& name = result.names.imus[i];
   const KnownOfImu known = elementOrNone(result.names.known_of_imus, i);
   const ImuState& state = result.result.state.imus.at(i);
-  Eigen::Matrix<double, 33, 1> others;
-  others << state.gyroscope_bias_rad_s, state.accelerometer_bias_m_s2, state.gyroscope_mapping.reshaped(),
-      state.accelerometer_mapping.reshaped(), state.gyroscopeMatrix().reshaped();
-  checkNumbers(fmt::format("result: imus.{}", name), state.reference_from_imu, state.time_offset_s, others);
+  checkNumbers(fmt::format("result: imus.{}", name), kImuQuantities, state);
   return {name, fileName(name, taken), known.stream, known, state};
 }
 

@@ -1,4 +1,5 @@
 #include "core/base/time.h"
+#include "core/geometry/so3.h"
 #include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/sinusoid_motion.h"
 #include "tests/core/synthetic/scenarios.h"
@@ -27,7 +28,7 @@ class TestImuSimulator : public QObject {
     imu.accelerometer_bias_m_s2 = {-0.4, 0.5, 0.6};
     imu.gyroscope_mapping << 1.02, 0.01, -0.02, 0.0, 0.97, 0.03, 0.0, 0.0, 1.01;
     imu.accelerometer_mapping << 0.99, -0.01, 0.02, 0.0, 1.03, -0.03, 0.0, 0.0, 0.98;
-    imu.gyroscope_from_accelerometer_rad = {0.0, 0.0, 0.02};
+    imu.gyroscope_from_accelerometer = quaternionExp({0.0, 0.0, 0.02});
     const Eigen::Matrix3d turn =
         Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitZ()).toRotationMatrix();  // gyroscope from IMU
     const std::vector<ImuSample> real = simulateImu(scenario, 0);

@@ -1,6 +1,7 @@
 #include "core/base/error.h"
 #include "core/base/yaml_node.h"
 #include "core/data/intrinsics_yaml.h"
+#include "core/geometry/so3.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/test_program.h"
 
@@ -129,7 +130,7 @@ class TestScenarioYaml : public QObject {
     QCOMPARE(imu["gyroscope"]["bias_rad_s"].reals(3)[0], scenario.imus[0].gyroscope_bias_rad_s.x());
     QCOMPARE(imu["accelerometer"]["mapping"].items()[0].reals(3)[2],
              scenario.imus[0].accelerometer_mapping(0, 2));
-    scenario.imus[0].gyroscope_from_accelerometer_rad = {0.0, 0.02, 0.0};
+    scenario.imus[0].gyroscope_from_accelerometer = quaternionExp({0.0, 0.02, 0.0});
     const YamlNode turned = YamlNode::parse(truthYaml(scenario), "truth.yaml");
     const std::vector<double> turn =
         turned["imus"]["left_imu"]["gyroscope"]["gyroscope_from_accelerometer_xyzw"].reals(4);
