@@ -35,6 +35,9 @@ enum class QuantityShape {
 // What is asked of its sigma (OptimisationOptions::needed_...).
 enum class QuantityNeed { None, Rotation, Translation, TimeOffset };
 
+// Which option lets it be estimated, where not all runs do.
+enum class QuantityRelease { Always, TimeOffsets, ImuIntrinsics, GyroscopeRotation };
+
 // When there is something to compare or to show.
 enum class QuantityPresence {
   Always,
@@ -57,6 +60,7 @@ struct QuantityInfo {
   // A size in SI units that makes all quantities comparable, so that "no information" means the same for
   // each.
   double comparable_unit = 1e-3;
+  QuantityRelease release = QuantityRelease::Always;
   QuantityPresence presence = QuantityPresence::Always;
   bool relative = false;  // to the reference, which has none of its own
 
@@ -154,6 +158,7 @@ constexpr QuantityInfo timeOffsetInfo(QuantityOwner owner) {
           .shown_factor = 1e3,
           .need = QuantityNeed::TimeOffset,
           .comparable_unit = 1e-4,
+          .release = QuantityRelease::TimeOffsets,
           .relative = true,
           .key = "time_offset_s",
           .std_key = "time_offset_std_s"};
@@ -166,6 +171,7 @@ constexpr QuantityInfo mappingInfo(const char* name, const char* sensor) {
           .shape = QuantityShape::UpperTriangle,
           .unit = "1",
           .decimals = 6,
+          .release = QuantityRelease::ImuIntrinsics,
           .section = sensor,
           .key = "mapping",
           .std_key = "mapping_std"};
@@ -265,12 +271,13 @@ inline constexpr auto kImuQuantities = std::tuple{
                              .shown_unit = "deg",
                              .shown_factor = detail::kDegreesPerRad,
                              .remark = "from the accelerometer",
+                             .release = QuantityRelease::GyroscopeRotation,
                              .presence = QuantityPresence::WhereNotZero,
                              .section = "gyroscope",
                              .key = "gyroscope_from_accelerometer_xyzw",
                              .std_key = "rotation_std_deg"},
                 &ImuState::gyroscope_from_accelerometer, &ImuUncertainty::gyroscope_rotation_std_rad,
-                NoPrior{}}};
+                &ImuPrior::gyroscope_rotation}};
 
 // The one quantity of the rig as a whole has sigmas of its own kind (UncertaintyReport), so it is no row.
 inline constexpr QuantityInfo kGravityQuantity = {.name = "gravity",
@@ -284,6 +291,25 @@ inline constexpr QuantityInfo kGravityQuantity = {.name = "gravity",
 template <class Rows, class Visitor>
 constexpr void forEachQuantity(const Rows& rows, Visitor&& visit) {
   std::apply([&](const auto&... row) { (visit(row), ...); }, rows);
+}
+
+// Of the row whose value is this member.
+template <class Rows, class ValueAt>
+const QuantityInfo& quantityInfo(const Rows& rows, ValueAt member) {
+  const QuantityInfo* found = nullptr;
+  forEachQuantity(rows, [&](const auto& row) {
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(row.value_at)>, ValueAt>)
+      if (row.value_at == member) found = &row.info;
+  });
+  return *found;
+}
+
+// Those with a place in a session's prior.
+template <class Rows, class Visitor>
+constexpr void forEachPriorQuantity(const Rows& rows, Visitor&& visit) {
+  forEachQuantity(rows, [&](const auto& row) {
+    if constexpr (std::remove_cvref_t<decltype(row)>::kHasPrior) visit(row);
+  });
 }
 
 // One of a quantity's numbers.

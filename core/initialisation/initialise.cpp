@@ -149,10 +149,18 @@ void tellSteps(const std::vector<InitialisationStep>& steps, CalibrationObserver
     observer->initialisationStepDone(steps[told].name, steps[told].result, steps[told].duration_s);
 }
 
-}  // namespace
+// The gyroscopes' samples about the axes of the IMUs, where their turn is known.
+CalibrationInput withStraightGyroscopes(CalibrationInput input) {
+  for (ImuData& imu : input.imus) {
+    if (!imu.prior.gyroscope_rotation) continue;
+    const Eigen::Quaterniond straight = imu.prior.gyroscope_rotation->value.conjugate();
+    for (ImuSample& sample : imu.samples) sample.angular_rate_rad_s = straight * sample.angular_rate_rad_s;
+  }
+  return input;
+}
 
-Initialisation initialise(const CalibrationInput& input, const InitialisationOptions& options,
-                          const RunContext& context, CalibrationObserver* observer) {
+Initialisation initialiseStraight(const CalibrationInput& input, const InitialisationOptions& options,
+                                  const RunContext& context, CalibrationObserver* observer) {
   Initialisation result;
   std::size_t told = 0;
   checkInput(input, options);
@@ -190,6 +198,25 @@ Initialisation initialise(const CalibrationInput& input, const InitialisationOpt
   }
   tellSteps(result.steps, observer, told);
   context.progress.stageProgress(1.0);
+  return result;
+}
+
+}  // namespace
+
+Initialisation initialise(const CalibrationInput& input, const InitialisationOptions& options,
+                          const RunContext& context, CalibrationObserver* observer) {
+  const bool turned = std::any_of(input.imus.begin(), input.imus.end(), [](const ImuData& imu) {
+    return imu.prior.gyroscope_rotation.has_value();
+  });
+  if (!turned) return initialiseStraight(input, options, context, observer);
+  Initialisation result = initialiseStraight(withStraightGyroscopes(input), options, context, observer);
+  for (std::size_t k = 0; k < input.imus.size(); ++k) {
+    if (!input.imus[k].prior.gyroscope_rotation) continue;
+    const Eigen::Quaterniond& turn = input.imus[k].prior.gyroscope_rotation->value;
+    ImuState& imu = result.state.imus[k];
+    imu.gyroscope_from_accelerometer = turn;
+    imu.gyroscope_bias_rad_s = turn * imu.gyroscope_bias_rad_s;
+  }
   return result;
 }
 

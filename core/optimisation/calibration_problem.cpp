@@ -81,10 +81,8 @@ void CalibrationProblem::setManifolds(ProblemBuilder& builder) {
     if (IntrinsicsBlock* block = parameters_.intrinsics(i))
       block->hold(*problem_, builder.stage == lastStage(options_));
   if (builder.stage == ReleaseStages::Mappings) return;
-  for (std::size_t i = 0; i < state.imus.size(); ++i) {
-    builder.hold(parameters_.gyroscopeMapping(i));
-    builder.hold(parameters_.accelerometerMapping(i));
-  }
+  for (const Quantity& quantity : parameters_.quantities())
+    if (quantity.info->release == QuantityRelease::ImuIntrinsics) builder.hold(quantity.block);
 }
 
 // The trajectory is the reference camera's own.

@@ -41,15 +41,15 @@ void writeZero(double** jacobians, int blocks, Eigen::Index row) {
 struct Mount {
   Matrix3d camera_from_imu;
   Vector3d camera_in_imu;
-  double time_offset_s, edge_lead_px, edge_lead_growth_px;
+  double time_offset_s;
+  EdgeLead lead;
 
   explicit Mount(double const* const* parameters)
       : camera_from_imu(
             Eigen::Map<const Eigen::Quaterniond>(parameters[kCameraRotation]).toRotationMatrix().transpose()),
         camera_in_imu(parameters[kCameraTranslation]),
         time_offset_s(*parameters[kTimeOffset]),
-        edge_lead_px(*parameters[kEdgeLead]),
-        edge_lead_growth_px(*parameters[kEdgeLeadGrowth]) {}
+        lead{*parameters[kEdgeLead], *parameters[kEdgeLeadGrowth]} {}
 };
 
 // One circle at its time, and what moves it.
@@ -71,7 +71,7 @@ struct PlacedCircle {
 
 // `by_px`: derivative of the residual with respect to the predicted centre.
 void writeJacobians(const Mount& mount, const PlacedCircle& placed, const ProjectedCircle& projected,
-                    const Eigen::Matrix2d& by_px, const EdgeLeadEffect& lead, Eigen::Index row,
+                    const Eigen::Matrix2d& by_px, const CircleMeasurement& circle, Eigen::Index row,
                     double** jacobians) {
   const Matrix23d by_centre = by_px * projected.by_centre, by_normal = by_px * projected.by_normal;
   const Matrix23d by_imu_centre = by_centre * mount.camera_from_imu;
@@ -96,9 +96,9 @@ void writeJacobians(const Mount& mount, const PlacedCircle& placed, const Projec
     jacobianRows<2, 1>(jacobians, kTimeOffset, row) =
         by_attitude * placed.rotation.angular_velocity_rad_s + by_position * placed.position.velocity;
   }
-  if (jacobians[kEdgeLead]) jacobianRows<2, 1>(jacobians, kEdgeLead, row) = by_px * lead.of_lead;
+  if (jacobians[kEdgeLead]) jacobianRows<2, 1>(jacobians, kEdgeLead, row) = by_px * circle.lead.of_lead;
   if (jacobians[kEdgeLeadGrowth])
-    jacobianRows<2, 1>(jacobians, kEdgeLeadGrowth, row) = by_px * lead.of_growth;
+    jacobianRows<2, 1>(jacobians, kEdgeLeadGrowth, row) = by_px * circle.lead.of_growth;
 }
 
 }  // namespace
@@ -154,14 +154,13 @@ bool CircleCost::Evaluate(double const* const* parameters, double* residuals, do
       if (jacobians) writeZero(jacobians, static_cast<int>(parameter_block_sizes().size()), row);
       continue;
     }
-    const Vector2d lead =
-        mount.edge_lead_px * circle.lead.of_lead + mount.edge_lead_growth_px * circle.lead.of_growth;
-    Vector2d error = circle.whitening_px * (projected->centre_px + lead - circle.centre_px);
+    const Vector2d lead_px = mount.lead.times(circle.lead);
+    Vector2d error = circle.whitening_px * (projected->centre_px + lead_px - circle.centre_px);
     const Eigen::Matrix2d by_error = shortenByHuber(model_.huber_sigma, error);
     residual = error;
     if (!jacobians) continue;
     const Eigen::Matrix2d by_px = by_error * circle.whitening_px;
-    writeJacobians(mount, placed, *projected, by_px, circle.lead, row, jacobians);
+    writeJacobians(mount, placed, *projected, by_px, circle, row, jacobians);
     if (by_camera) jacobianRows<2, 9>(jacobians, kIntrinsics, row) = by_px * by_intrinsics;
   }
   return true;

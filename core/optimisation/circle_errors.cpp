@@ -56,8 +56,7 @@ std::vector<CircleError> circleErrors(const CalibrationInput& input, const Calib
                             input.board);
         if (centre_px) {
           const EdgeLeadEffect lead = edgeLeadEffect(*camera.intrinsics, circle, options.rest_speed_px_s);
-          error.error_px = *centre_px + camera_state.edge_lead_px * lead.of_lead +
-                           camera_state.edge_lead_growth_px * lead.of_growth - circle.centre_px;
+          error.error_px = *centre_px + edgeLeadOf(camera_state).times(lead) - circle.centre_px;
           const Eigen::Matrix2d covariance = circle.covariance_px2 + floor_px2 * Eigen::Matrix2d::Identity();
           error.normalised2 = error.error_px.dot(covariance.inverse() * error.error_px);
         }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "core/data/board_observations.h"
+#include "core/data/calibration_state.h"
 #include "core/geometry/camera_model.h"
 
 #include <Eigen/LU>
@@ -17,6 +18,18 @@ namespace evical {
 struct EdgeLeadEffect {
   Eigen::Vector2d of_lead, of_growth;  // px per px
 };
+
+// A camera's lead at 100 px/s, and its growth.
+struct EdgeLead {
+  double lead_px, growth_px;
+
+  Eigen::Vector2d times(const EdgeLeadEffect& effect) const {
+    return lead_px * effect.of_lead + growth_px * effect.of_growth;
+  }
+};
+inline EdgeLead edgeLeadOf(const CameraState& camera) {
+  return {camera.edge_lead_px, camera.edge_lead_growth_px};
+}
 
 inline EdgeLeadEffect edgeLeadEffect(const CameraIntrinsics& camera, const CircleObservation& circle,
                                      double rest_speed_px_s) {

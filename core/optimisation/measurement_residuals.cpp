@@ -87,7 +87,7 @@ void addGyroscope(ProblemBuilder& builder, const SampleRun& run) {
   std::vector<double*> blocks;
   builder.parameters.appendRotation(run.segment, blocks);
   blocks.insert(blocks.end(),
-                {state.gyroscope_bias_rad_s.data(), builder.parameters.gyroscopeMapping(run.imu),
+                {state.gyroscope_bias_rad_s.data(), builder.parameters.of(state.gyroscope_mapping),
                  state.gyroscope_from_accelerometer.coeffs().data()});
   if (!builder.isReference(run.imu))
     blocks.insert(blocks.end(), {state.reference_from_imu.rotation.coeffs().data(), &state.time_offset_s});
@@ -109,7 +109,7 @@ void addAccelerometer(ProblemBuilder& builder, const SampleRun& run) {
   builder.parameters.appendRotation(run.segment, blocks);
   builder.parameters.appendPosition(run.segment, blocks);
   blocks.insert(blocks.end(), {all.gravity_in_world_m_s2.data(), state.accelerometer_bias_m_s2.data(),
-                               builder.parameters.accelerometerMapping(run.imu)});
+                               builder.parameters.of(state.accelerometer_mapping)});
   if (!builder.isReference(run.imu)) {
     blocks.insert(blocks.end(), {state.reference_from_imu.rotation.coeffs().data(),
                                  state.reference_from_imu.translation_m.data(), &state.time_offset_s});

@@ -93,8 +93,10 @@ inline constexpr auto kOptimisationFields = std::tuple{
           "Added in squares to the covariance of each measured centre."},
     Field{"mapping_sigma", &OptimisationOptions::mapping_sigma, 1e-6, 10.0, "",
           "Weak prior on each entry of M_g and M_a around the identity."},
-    Switch{"gyroscope_rotation", &OptimisationOptions::gyroscope_rotation,
-           "Estimate how each gyroscope is turned against its accelerometer, whose frame is the IMU's."},
+    Switch{
+        "gyroscope_rotation", &OptimisationOptions::gyroscope_rotation,
+        "Estimate how each gyroscope is turned against its accelerometer, whose frame is the IMU's. With a "
+        "weighed prior it is estimated in any case."},
     Field{"gyroscope_rotation_sigma_deg", &OptimisationOptions::gyroscope_rotation_sigma_deg, 1e-3, 180.0,
           "deg", "Weak prior on that turn around 0."},
     Choice{"bias_model", &OptimisationOptions::bias_model, std::array{"constant", "linear"},

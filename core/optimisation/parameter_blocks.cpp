@@ -5,19 +5,31 @@
 #include "core/optimisation/known_values.h"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace evical {
+namespace {
+
+// visit(matrix of one IMU, the same of another): matrices are blocks of their upper triangles.
+template <class Visitor>
+void forEachMatrix(const ImuState& imu, ImuState& other, Visitor&& visit) {
+  forEachQuantity(kImuQuantities, [&](const auto& row) {
+    if constexpr (std::is_same_v<decltype(row.value(other)), Eigen::Matrix3d&>)
+      visit(row.value(imu), row.value(other));
+  });
+}
+
+}  // namespace
 
 ParameterBlocks::ParameterBlocks(const CalibrationInput& input, const OptimisationOptions& options,
                                  const CalibrationState& initial)
     : moved_(initial) {
   setGivenValues(input, options, moved_);
-  gyroscope_mappings_.resize(moved_.imus.size());
-  accelerometer_mappings_.resize(moved_.imus.size());
   for (std::size_t i = 0; i < moved_.imus.size(); ++i) {
     placeBiasKnots(options, input.imus[i].noise, moved_.world_from_imu_rotation, moved_.imus[i]);
-    parametersFromMapping(moved_.imus[i].gyroscope_mapping, gyroscope_mappings_[i].data());
-    parametersFromMapping(moved_.imus[i].accelerometer_mapping, accelerometer_mappings_[i].data());
+    forEachMatrix(moved_.imus[i], moved_.imus[i], [&](const Eigen::Matrix3d& matrix, Eigen::Matrix3d&) {
+      parametersFromMapping(matrix, triangles_[&matrix].data());
+    });
   }
   for (std::size_t i = 0; i < input.cameras.size(); ++i) {
     const CameraData& camera = input.cameras[i];
@@ -30,10 +42,10 @@ ParameterBlocks::ParameterBlocks(const CalibrationInput& input, const Optimisati
 
 CalibrationState ParameterBlocks::state() const {
   CalibrationState state = moved_;
-  for (std::size_t i = 0; i < state.imus.size(); ++i) {
-    state.imus[i].gyroscope_mapping = mappingFromParameters(gyroscope_mappings_[i].data());
-    state.imus[i].accelerometer_mapping = mappingFromParameters(accelerometer_mappings_[i].data());
-  }
+  for (std::size_t i = 0; i < state.imus.size(); ++i)
+    forEachMatrix(moved_.imus[i], state.imus[i], [&](const Eigen::Matrix3d& matrix, Eigen::Matrix3d& other) {
+      other = mappingFromParameters(triangles_.at(&matrix).data());
+    });
   for (std::size_t i = 0; i < state.cameras.size(); ++i)
     if (intrinsics_[i]) state.cameras[i].intrinsics = intrinsics_[i]->intrinsics();
   return state;
@@ -62,40 +74,35 @@ void ParameterBlocks::appendPosition(const SegmentTimes& segment, std::vector<do
   for (int k = 0; k < 4; ++k) blocks.push_back(points[k].data());
 }
 
+double* ParameterBlocks::of(std::optional<CameraIntrinsics>& value) {
+  for (std::size_t i = 0; i < moved_.cameras.size(); ++i)
+    if (&moved_.cameras[i].intrinsics == &value && intrinsics_[i]) return intrinsics_[i]->data();
+  return nullptr;
+}
+
 std::vector<Quantity> ParameterBlocks::quantities() {
   std::vector<Quantity> all;
-  for (std::size_t i = 0; i < moved_.cameras.size(); ++i) {
-    CameraState& camera = moved_.cameras[i];
-    all.push_back({QuantityKind::CameraRotation, i, camera.reference_from_camera.rotation.coeffs().data()});
-    all.push_back({QuantityKind::CameraTranslation, i, camera.reference_from_camera.translation_m.data()});
-    all.push_back({QuantityKind::CameraTimeOffset, i, &camera.time_offset_s});
-    all.push_back({QuantityKind::EdgeLead, i, &camera.edge_lead_px});
-    all.push_back({QuantityKind::EdgeLeadGrowth, i, &camera.edge_lead_growth_px});
-    if (intrinsics_[i]) all.push_back({QuantityKind::CameraIntrinsics, i, intrinsics_[i]->data()});
-  }
-  for (std::size_t i = 0; i < moved_.imus.size(); ++i) {
-    ImuState& imu = moved_.imus[i];
-    all.push_back({QuantityKind::ImuRotation, i, imu.reference_from_imu.rotation.coeffs().data()});
-    all.push_back({QuantityKind::ImuTranslation, i, imu.reference_from_imu.translation_m.data()});
-    all.push_back({QuantityKind::ImuTimeOffset, i, &imu.time_offset_s});
-    all.push_back({QuantityKind::GyroscopeBias, i, imu.gyroscope_bias_rad_s.data()});
-    all.push_back({QuantityKind::AccelerometerBias, i, imu.accelerometer_bias_m_s2.data()});
-    all.push_back({QuantityKind::GyroscopeMapping, i, gyroscopeMapping(i)});
-    all.push_back({QuantityKind::AccelerometerMapping, i, accelerometerMapping(i)});
-    all.push_back({QuantityKind::GyroscopeRotation, i, imu.gyroscope_from_accelerometer.coeffs().data()});
-  }
-  all.push_back({QuantityKind::GravityDirection, 0, moved_.gravity_in_world_m_s2.data()});
+  const auto add = [&](const QuantityInfo& info, std::size_t sensor, double* block) {
+    if (block != nullptr) all.push_back({&info, sensor, block});
+  };
+  for (std::size_t i = 0; i < moved_.cameras.size(); ++i)
+    forEachQuantity(kCameraQuantities,
+                    [&](const auto& row) { add(row.info, i, of(row.value(moved_.cameras[i]))); });
+  for (std::size_t i = 0; i < moved_.imus.size(); ++i)
+    forEachQuantity(kImuQuantities,
+                    [&](const auto& row) { add(row.info, i, of(row.value(moved_.imus[i]))); });
+  add(kGravityQuantity, 0, moved_.gravity_in_world_m_s2.data());
   return all;
 }
 
 std::vector<Quantity> ParameterBlocks::biasKnots() {
   std::vector<Quantity> all;
+  const QuantityInfo& gyroscope = quantityInfo(kImuQuantities, &ImuState::gyroscope_bias_rad_s);
+  const QuantityInfo& accelerometer = quantityInfo(kImuQuantities, &ImuState::accelerometer_bias_m_s2);
   for (std::size_t i = 0; i < moved_.imus.size(); ++i) {
     BiasDrift& drift = moved_.imus[i].bias_drift;
-    for (Eigen::Vector3d& knot : drift.gyroscope_rad_s)
-      all.push_back({QuantityKind::GyroscopeBias, i, knot.data()});
-    for (Eigen::Vector3d& knot : drift.accelerometer_m_s2)
-      all.push_back({QuantityKind::AccelerometerBias, i, knot.data()});
+    for (Eigen::Vector3d& knot : drift.gyroscope_rad_s) all.push_back({&gyroscope, i, knot.data()});
+    for (Eigen::Vector3d& knot : drift.accelerometer_m_s2) all.push_back({&accelerometer, i, knot.data()});
   }
   return all;
 }

@@ -4,36 +4,22 @@
 
 #include "core/data/calibration_setup.h"
 #include "core/data/calibration_state.h"
+#include "core/data/quantity.h"
 #include "core/optimisation/free_intrinsics.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/optimisation/spline_segment.h"
 
 #include <array>
+#include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace evical {
 
-// One calibrated quantity's parameter block; names without the sensor's name.
-enum class QuantityKind {
-  CameraRotation,
-  CameraTranslation,
-  CameraTimeOffset,
-  EdgeLead,
-  EdgeLeadGrowth,
-  CameraIntrinsics,
-  ImuRotation,
-  ImuTranslation,
-  ImuTimeOffset,
-  GyroscopeBias,
-  AccelerometerBias,
-  GyroscopeMapping,
-  AccelerometerMapping,
-  GyroscopeRotation,
-  GravityDirection,
-};
+// One calibrated quantity's parameter block.
 struct Quantity {
-  QuantityKind kind;
+  const QuantityInfo* info;
   std::size_t sensor;
   double* block;
 };
@@ -53,8 +39,13 @@ class ParameterBlocks {
   // whose blocks follow.
   CalibrationState& moved() { return moved_; }
   const CalibrationState& moved() const { return moved_; }
-  double* gyroscopeMapping(std::size_t imu) { return gyroscope_mappings_[imu].data(); }
-  double* accelerometerMapping(std::size_t imu) { return accelerometer_mappings_[imu].data(); }
+
+  // The block of a part of moved(); null where it is fixed.
+  double* of(double& value) { return &value; }
+  double* of(Eigen::Vector3d& value) { return value.data(); }
+  double* of(Eigen::Quaterniond& value) { return value.coeffs().data(); }
+  double* of(Eigen::Matrix3d& value) { return triangles_.at(&value).data(); }
+  double* of(std::optional<CameraIntrinsics>& value);
   IntrinsicsBlock* intrinsics(std::size_t camera) {
     return intrinsics_[camera].get();
   }  // null if they are fixed
@@ -69,8 +60,8 @@ class ParameterBlocks {
 
  private:
   CalibrationState moved_;
-  std::vector<std::array<double, 6>> gyroscope_mappings_, accelerometer_mappings_;  // by IMU
-  std::vector<std::unique_ptr<IntrinsicsBlock>> intrinsics_;                        // by camera
+  std::map<const Eigen::Matrix3d*, std::array<double, 6>> triangles_;  // of the matrices in moved_
+  std::vector<std::unique_ptr<IntrinsicsBlock>> intrinsics_;           // by camera
 };
 
 }  // namespace evical

@@ -33,21 +33,27 @@ class PriorCost final : public ceres::CostFunction {
   Eigen::VectorXd mean_, weight_;
 };
 
-// Zero when a rotation is its prior's: r = Log(R R_prior^-1) / sigma, about the axes of the frame into which
-// R turns; without unit. Block: quaternion as in so3_manifold.h.
+// The axes about which a rotation's sigmas are: those of the frame into which it turns, or from which.
+enum class PriorAxes { Target, Source };
+
+// Zero when a rotation is its prior's: r = Log(R R_prior^-1) / sigma about the target's axes, Log(R_prior^-1
+// R) / sigma about the source's; without unit. Block: quaternion as in so3_manifold.h.
 class RotationPriorCost final : public ceres::SizedCostFunction<3, 4> {
  public:
-  RotationPriorCost(const Eigen::Quaterniond& mean, const Eigen::Vector3d& sigma_rad)
-      : mean_(mean), weight_(sigma_rad.cwiseInverse()) {}
+  RotationPriorCost(const Eigen::Quaterniond& mean, const Eigen::Vector3d& sigma_rad,
+                    PriorAxes axes = PriorAxes::Target)
+      : mean_(mean), weight_(sigma_rad.cwiseInverse()), axes_(axes) {}
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     const Eigen::Map<const Eigen::Quaterniond> rotation(parameters[0]);
-    const Eigen::Vector3d turn = quaternionLog(rotation * mean_.conjugate());
+    const bool target = axes_ == PriorAxes::Target;
+    const Eigen::Vector3d turn =
+        quaternionLog(target ? rotation * mean_.conjugate() : mean_.conjugate() * rotation);
     Eigen::Map<Eigen::Vector3d>{residuals} = weight_.cwiseProduct(turn);
     if (!jacobians || !jacobians[0]) return true;
     Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> by_rotation(jacobians[0]);
-    by_rotation.leftCols<3>() =
-        weight_.asDiagonal() * so3RightJacobianInverse(turn) * mean_.toRotationMatrix();
+    by_rotation.leftCols<3>() = weight_.asDiagonal() * so3RightJacobianInverse(turn);
+    if (target) by_rotation.leftCols<3>() *= mean_.toRotationMatrix();
     by_rotation.col(3).setZero();
     return true;
   }
@@ -55,6 +61,7 @@ class RotationPriorCost final : public ceres::SizedCostFunction<3, 4> {
  private:
   Eigen::Quaterniond mean_;
   Eigen::Vector3d weight_;
+  PriorAxes axes_;
 };
 
 // Zero when an IMU's mapping does to an axis what its prior M_prior does: r = (M - M_prior) axis / sigma,

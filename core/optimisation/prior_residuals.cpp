@@ -2,6 +2,7 @@
 
 #include "core/numerics/angles.h"
 #include "core/optimisation/bias_knots.h"
+#include "core/optimisation/known_values.h"
 #include "core/optimisation/prior_cost.h"
 #include "core/optimisation/smoothness_cost.h"
 
@@ -78,59 +79,46 @@ void addMappingPriors(ProblemBuilder& builder, std::size_t imu) {
   const ImuPrior& prior = builder.input.imus[imu].prior;
   const StillAxes& held = builder.weights.held_axes[imu];
   const double sigma = builder.options.mapping_sigma;
-  double *gyroscope = builder.parameters.gyroscopeMapping(imu),
-         *accelerometer = builder.parameters.accelerometerMapping(imu);
+  ImuState& state = builder.parameters.moved().imus[imu];
+  double *gyroscope = builder.parameters.of(state.gyroscope_mapping),
+         *accelerometer = builder.parameters.of(state.accelerometer_mapping);
   if (!prior.gyroscope_mapping) addPrior(builder, gyroscope, 6, kIdentity.data(), sigma);
   if (!prior.accelerometer_mapping) addPrior(builder, accelerometer, 6, kIdentity.data(), sigma);
   holdMapping(builder, gyroscope, held.gyroscope, prior.gyroscope_mapping);
   holdMapping(builder, accelerometer, held.accelerometer, prior.accelerometer_mapping);
-  if (!builder.turnsGyroscope(imu)) return;
+  if (!builder.turnsGyroscope(imu) || prior.gyroscope_rotation) return;
   const Eigen::Vector3d sigma_rad =
       Eigen::Vector3d::Constant(kRadPerDeg * builder.options.gyroscope_rotation_sigma_deg);
   builder.addPrior(new RotationPriorCost(Eigen::Quaterniond::Identity(), sigma_rad),
-                   {builder.parameters.moved().imus[imu].gyroscope_from_accelerometer.coeffs().data()});
+                   {builder.parameters.of(state.gyroscope_from_accelerometer)});
 }
 
-Eigen::Matrix<double, 6, 1> upperTriangle(const Eigen::Matrix3d& mapping) {
-  Eigen::Matrix<double, 6, 1> entries;
-  parametersFromMapping(mapping, entries.data());
-  return entries;
+ceres::CostFunction* priorCost(const QuantityInfo&, const KnownNumber& known) {
+  return new PriorCost(&known.value, 1, *known.sigma);
+}
+ceres::CostFunction* priorCost(const QuantityInfo&, const KnownVector& known) {
+  return new PriorCost(known.value, *known.sigma);
+}
+ceres::CostFunction* priorCost(const QuantityInfo&, const KnownMapping& known) {
+  return new PriorCost(quantityNumbers(known.value), quantityNumbers(*known.sigma));
+}
+ceres::CostFunction* priorCost(const QuantityInfo& info, const KnownRotation& known) {
+  const bool local = info.shape == QuantityShape::LocalRotation;
+  return new RotationPriorCost(known.value, *known.sigma, local ? PriorAxes::Source : PriorAxes::Target);
 }
 
-// Without a cost the value is given.
-void addKnown(ProblemBuilder& builder, double* block, ceres::CostFunction* cost) {
-  if (cost != nullptr)
-    builder.addPrior(cost, {block});
-  else
-    builder.hold(block);
-}
-
-void addKnownVector(ProblemBuilder& builder, const std::optional<KnownVector>& known,
-                    Eigen::Vector3d& block) {
-  if (!known) return;
-  addKnown(builder, block.data(), known->isGiven() ? nullptr : new PriorCost(known->value, *known->sigma));
-}
-
-void addKnownMapping(ProblemBuilder& builder, const std::optional<KnownMapping>& known, double* mapping) {
-  if (!known) return;
-  addKnown(
-      builder, mapping,
-      known->isGiven() ? nullptr : new PriorCost(upperTriangle(known->value), upperTriangle(*known->sigma)));
-}
-
-void addKnownPlace(ProblemBuilder& builder, const SensorPrior& prior, RigidTransform& pose,
-                   double& time_offset_s) {
-  double* rotation = pose.rotation.coeffs().data();
-  if (!builder.has(rotation)) return;  // the sensor is not in yet
-  if (const auto& known = prior.rotation)
-    addKnown(builder, rotation,
-             known->isGiven() ? nullptr : new RotationPriorCost(known->value, *known->sigma));
-  addKnownVector(builder, prior.translation, pose.translation_m);
-  const std::optional<KnownNumber> offset =
-      builder.options.free_time_offsets ? prior.time_offset : heldTimeOffset(prior);
-  if (offset)
-    addKnown(builder, &time_offset_s,
-             offset->isGiven() ? nullptr : new PriorCost(&offset->value, 1, *offset->sigma));
+// What the session knows of a sensor, weighed or held.
+template <class Rows, class Prior, class State>
+void addKnownValues(ProblemBuilder& builder, const Rows& rows, const Prior& prior, State& state) {
+  forEachPriorQuantity(rows, [&](const auto& row) {
+    const auto known = effectivePrior(row.info, builder.options, row.prior(prior));
+    double* block = builder.parameters.of(row.value(state));
+    if (!known || !builder.has(block)) return;
+    if (known->isGiven())
+      builder.hold(block);
+    else
+      builder.addPrior(priorCost(row.info, *known), {block});
+  });
 }
 
 }  // namespace
@@ -148,23 +136,14 @@ void addPriors(ProblemBuilder& builder) {
                      {gravity});
 }
 
+// A reference has no blocks of a place of its own, or they are held anyway.
 void addKnownValues(ProblemBuilder& builder) {
   CalibrationState& state = builder.parameters.moved();
-  for (std::size_t i = 0; i < state.cameras.size(); ++i) {
+  for (std::size_t i = 0; i < state.cameras.size(); ++i)
     if (!builder.input.isReferenceCamera(i))
-      addKnownPlace(builder, builder.input.cameras[i].prior, state.cameras[i].reference_from_camera,
-                    state.cameras[i].time_offset_s);
-  }
-  for (std::size_t i = 0; i < state.imus.size(); ++i) {
-    const ImuPrior& prior = builder.input.imus[i].prior;
-    ImuState& imu = state.imus[i];
-    if (!builder.has(imu.gyroscope_bias_rad_s.data())) continue;
-    if (!builder.isReference(i)) addKnownPlace(builder, prior, imu.reference_from_imu, imu.time_offset_s);
-    addKnownVector(builder, prior.gyroscope_bias, imu.gyroscope_bias_rad_s);
-    addKnownVector(builder, prior.accelerometer_bias, imu.accelerometer_bias_m_s2);
-    addKnownMapping(builder, prior.gyroscope_mapping, builder.parameters.gyroscopeMapping(i));
-    addKnownMapping(builder, prior.accelerometer_mapping, builder.parameters.accelerometerMapping(i));
-  }
+      addKnownValues(builder, kCameraQuantities, builder.input.cameras[i].prior, state.cameras[i]);
+  for (std::size_t i = 0; i < state.imus.size(); ++i)
+    addKnownValues(builder, kImuQuantities, builder.input.imus[i].prior, state.imus[i]);
 }
 
 void addSmoothness(ProblemBuilder& builder) {

@@ -3,7 +3,8 @@
 namespace evical {
 
 bool ProblemBuilder::turnsGyroscope(std::size_t imu) const {
-  return options.gyroscope_rotation && stage == ReleaseStages::Mappings &&
+  const std::optional<KnownRotation>& prior = input.imus[imu].prior.gyroscope_rotation;
+  return (options.gyroscope_rotation || prior) && !isGiven(prior) && stage == ReleaseStages::Mappings &&
          weights.held_axes[imu].gyroscope.empty();
 }
 

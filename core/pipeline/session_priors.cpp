@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 namespace evical {
 namespace {
@@ -111,42 +110,32 @@ void readPrior(const YamlNode& sensor, const QuantityInfo& info, std::optional<K
   if (!value) return;
   readValue(*value, info, prior.emplace());
   if (sigma) readSigma(*sigma, info, *prior);
+  // So a result writes what nobody asked for.
+  const bool none = quantityNumbers(prior->value).isZero(0.0);
+  if (info.presence == QuantityPresence::WhereNotZero && none && sigma && !prior->sigma) prior.reset();
 }
 
 // Quantities without a prior, and whatever else a result says, are passed over.
 template <class Rows, class Prior>
 void readPriors(const YamlNode& sensor, const Rows& rows, Prior& prior) {
-  forEachQuantity(rows, [&](const auto& row) {
-    if constexpr (std::remove_cvref_t<decltype(row)>::kHasPrior)
-      readPrior(sensor, row.info, row.prior(prior));
-  });
-}
-
-double distanceFromNone(const KnownRotation& known) {
-  return quantityNumbers(known.value).norm();
-}
-template <class Value>
-double distanceFromNone(const KnownValue<Value>& known) {
-  return quantityNumbers(known.value).norm();
+  forEachPriorQuantity(rows, [&](const auto& row) { readPrior(sensor, row.info, row.prior(prior)); });
 }
 
 // A result says of the reference that it is where it is; anything else is none.
 template <class Rows, class Prior>
 void dropOwnPlace(const YamlNode& sensor, const Rows& rows, Prior& prior) {
   constexpr double kNothing = 1e-9;
-  forEachQuantity(rows, [&](const auto& row) {
-    if constexpr (std::remove_cvref_t<decltype(row)>::kHasPrior) {
-      if (!row.info.relative || !row.prior(prior)) return;
-      if (distanceFromNone(*row.prior(prior)) > kNothing) {
-        const bool clock = row.info.section == std::string();
-        throw sensor[clock ? row.info.key : row.info.section].error(
-            clock ? "is that of the reference itself, whose clock is the one that counts"
-                  : "is that of the reference itself",
-            clock ? "Remove it, or take another reference"
-                  : "Remove it, or take another reference: transforms are relative to it");
-      }
-      row.prior(prior).reset();
+  forEachPriorQuantity(rows, [&](const auto& row) {
+    if (!row.info.relative || !row.prior(prior)) return;
+    if (quantityNumbers(row.prior(prior)->value).norm() > kNothing) {
+      const bool clock = row.info.section == std::string();
+      throw sensor[clock ? row.info.key : row.info.section].error(
+          clock ? "is that of the reference itself, whose clock is the one that counts"
+                : "is that of the reference itself",
+          clock ? "Remove it, or take another reference"
+                : "Remove it, or take another reference: transforms are relative to it");
     }
+    row.prior(prior).reset();
   });
 }
 
@@ -208,13 +197,11 @@ std::string sigmaYaml(const QuantityInfo& info, const Sigma& sigma) {
 template <class Rows, class Prior>
 std::string priorsYaml(const Rows& rows, const Prior& prior) {
   YamlSections sections;
-  forEachQuantity(rows, [&](const auto& row) {
-    if constexpr (std::remove_cvref_t<decltype(row)>::kHasPrior) {
-      const auto& known = row.prior(prior);
-      if (!known) return;
-      sections.add(row.info.section, row.info.key, quantityYaml(known->value, exactYaml));
-      if (known->sigma) sections.add(row.info.section, row.info.std_key, sigmaYaml(row.info, *known->sigma));
-    }
+  forEachPriorQuantity(rows, [&](const auto& row) {
+    const auto& known = row.prior(prior);
+    if (!known) return;
+    sections.add(row.info.section, row.info.key, quantityYaml(known->value, exactYaml));
+    if (known->sigma) sections.add(row.info.section, row.info.std_key, sigmaYaml(row.info, *known->sigma));
   });
   constexpr std::size_t kIndent = 6;
   return sections.text(kIndent);

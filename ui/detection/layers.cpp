@@ -207,8 +207,7 @@ std::map<int, Eigen::Vector2d> idealLeads(const CameraState& camera, const Camer
   std::map<int, Eigen::Vector2d> leads;
   for (const CircleObservation& circle : view.circles) {
     const EdgeLeadEffect effect = edgeLeadEffect(intrinsics, circle, rest_speed_px_s);
-    leads[circle.circle] =
-        camera.edge_lead_px * effect.of_lead + camera.edge_lead_growth_px * effect.of_growth;
+    leads[circle.circle] = edgeLeadOf(camera).times(effect);
   }
   return leads;
 }

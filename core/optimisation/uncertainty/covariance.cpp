@@ -29,7 +29,7 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   std::string turned;
   if (!options.gyroscope_rotation) {
     turned = turnedGyroscopes(input, information, withoutNoise(information), options);
-    information = withoutGyroscopeRotation(std::move(information));
+    information = withoutLookedForRotation(input, std::move(information));
   }
   information = withoutNoise(std::move(information));
   const Eigen::MatrixXd report_from_tangent =

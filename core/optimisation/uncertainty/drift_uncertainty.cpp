@@ -7,7 +7,7 @@ namespace {
 Eigen::Index columnOfMean(const ProjectedInformation& information, const Quantity& knot) {
   for (std::size_t i = 0; i < information.quantities.size(); ++i) {
     const Quantity& quantity = information.quantities[i];
-    if (quantity.kind == knot.kind && quantity.sensor == knot.sensor) return information.first_column[i];
+    if (quantity.info == knot.info && quantity.sensor == knot.sensor) return information.first_column[i];
   }
   return -1;
 }
@@ -26,8 +26,8 @@ void reportDrift(const ProjectedInformation& information, const std::vector<Quan
     const Eigen::Vector3d variance = information.drift_covariance.diagonal().segment<3>(row) +
                                      (by_quantities * covariance * by_quantities.transpose()).diagonal();
     ImuUncertainty& imu = report.imus[knot.sensor];
-    (knot.kind == QuantityKind::GyroscopeBias ? imu.gyroscope_drift_std_rad_s
-                                              : imu.accelerometer_drift_std_m_s2)
+    const bool gyroscope = knot.info == &quantityInfo(kImuQuantities, &ImuState::gyroscope_bias_rad_s);
+    (gyroscope ? imu.gyroscope_drift_std_rad_s : imu.accelerometer_drift_std_m_s2)
         .push_back(variance.cwiseMax(0.0).cwiseSqrt());
   }
 }

@@ -12,38 +12,19 @@
 namespace evical {
 namespace {
 
-enum class Need { None, Rotation, Translation, TimeOffset };
-
-Need needOf(QuantityKind kind) {
-  switch (kind) {
-    case QuantityKind::CameraRotation:
-    case QuantityKind::ImuRotation:
-      return Need::Rotation;
-    case QuantityKind::CameraTranslation:
-    case QuantityKind::ImuTranslation:
-      return Need::Translation;
-    case QuantityKind::CameraTimeOffset:
-    case QuantityKind::ImuTimeOffset:
-      return Need::TimeOffset;
-    default:
-      return Need::None;
-  }
-}
-
-double needed(Need need, const OptimisationOptions& options) {
+double needed(QuantityNeed need, const OptimisationOptions& options) {
   switch (need) {
-    case Need::Rotation:
+    case QuantityNeed::Rotation:
       return kRadPerDeg * options.needed_rotation_deg;
-    case Need::Translation:
+    case QuantityNeed::Translation:
       return options.needed_translation_mm * 1e-3;
     default:
       return options.needed_time_offset_ms * 1e-3;
   }
 }
 
-bool isCamera(QuantityKind kind) {
-  return kind == QuantityKind::CameraRotation || kind == QuantityKind::CameraTranslation ||
-         kind == QuantityKind::CameraTimeOffset;
+bool isCamera(const Quantity& quantity) {
+  return quantity.info->owner == QuantityOwner::Camera;
 }
 
 class Judge {
@@ -58,14 +39,14 @@ class Judge {
   struct Part {
     std::size_t quantity;
     Eigen::Index at, size;  // rows among those needed
-    Need need;
+    QuantityNeed need;
   };
   std::string sensorName(const Quantity& quantity) const {
-    return isCamera(quantity.kind) ? input_.cameras[quantity.sensor].name : input_.imus[quantity.sensor].name;
+    return isCamera(quantity) ? input_.cameras[quantity.sensor].name : input_.imus[quantity.sensor].name;
   }
   // A direction in the reference IMU's frame, said in the sensor's own: its axis, or the components.
   std::string axisWords(const Quantity& quantity, const Eigen::Vector3d& in_reference) const;
-  std::string partWords(const Quantity& quantity, Need need, const Eigen::VectorXd& direction) const;
+  std::string partWords(const Quantity& quantity, QuantityNeed need, const Eigen::VectorXd& direction) const;
   std::string weakestWords(const std::vector<Part>& parts, const Eigen::VectorXd& direction) const;
   std::string unmetNeed(const Part& part) const;
 
@@ -76,7 +57,7 @@ class Judge {
 };
 
 std::string Judge::axisWords(const Quantity& quantity, const Eigen::Vector3d& in_reference) const {
-  const bool camera = isCamera(quantity.kind);
+  const bool camera = isCamera(quantity);
   const Eigen::Quaterniond& reference_from_sensor =
       camera ? state_.cameras[quantity.sensor].reference_from_camera.rotation
              : state_.imus[quantity.sensor].reference_from_imu.rotation;
@@ -91,11 +72,12 @@ std::string Judge::axisWords(const Quantity& quantity, const Eigen::Vector3d& in
                      owner);
 }
 
-std::string Judge::partWords(const Quantity& quantity, Need need, const Eigen::VectorXd& direction) const {
+std::string Judge::partWords(const Quantity& quantity, QuantityNeed need,
+                             const Eigen::VectorXd& direction) const {
   switch (need) {
-    case Need::Rotation:
+    case QuantityNeed::Rotation:
       return "rotation about " + axisWords(quantity, direction);
-    case Need::Translation:
+    case QuantityNeed::Translation:
       return "translation along " + axisWords(quantity, direction);
     default:
       return "time offset of " + sensorName(quantity);
@@ -127,10 +109,10 @@ std::string Judge::unmetNeed(const Part& part) const {
   constexpr double kHopeless = 100.0;
   if (sigma > kHopeless * needed(part.need, options_)) return words + " is not observable in this recording";
   switch (part.need) {
-    case Need::Rotation:
+    case QuantityNeed::Rotation:
       return fmt::format("{} has a sigma of {:.2g} deg (needed: {:.2g})", words, kDegPerRad * sigma,
                          options_.needed_rotation_deg);
-    case Need::Translation:
+    case QuantityNeed::Translation:
       return fmt::format("{} has a sigma of {:.2g} mm (needed: {:.2g})", words, sigma * 1e3,
                          options_.needed_translation_mm);
     default:
@@ -144,8 +126,8 @@ Observability Judge::judge() const {
   std::vector<Eigen::Index> columns;
   std::vector<double> units;
   for (std::size_t i = 0; i < covariance_.quantities.size(); ++i) {
-    const Need need = needOf(covariance_.quantities[i].kind);
-    if (need == Need::None) continue;
+    const QuantityNeed need = covariance_.quantities[i].info->need;
+    if (need == QuantityNeed::None) continue;
     const Eigen::Index first = covariance_.first_column[i], size = covariance_.first_column[i + 1] - first;
     parts.push_back({i, static_cast<Eigen::Index>(columns.size()), size, need});
     for (Eigen::Index k = 0; k < size; ++k) {

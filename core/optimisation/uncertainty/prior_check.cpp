@@ -3,7 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
 #include "core/base/progress.h"
-#include "core/geometry/so3.h"
+#include "core/data/quantity.h"
 #include "core/numerics/angles.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/known_values.h"
@@ -20,7 +20,7 @@ namespace {
 constexpr double kNoNeed = std::numeric_limits<double>::infinity();
 
 struct Unit {
-  const char* name;
+  std::string name;
   double factor;  // from SI
   double need;    // SI
 };
@@ -41,21 +41,15 @@ class Comparison {
   PriorCheck run();
 
  private:
-  template <class Sigmas>
-  void comparePlace(const std::string& sensor, const SensorPrior& prior, const RigidTransform& solution,
-                    const RigidTransform& alone, const Sigmas& sigma);
-  void compareOffset(const std::string& sensor, const SensorPrior& prior, double solution_s, double alone_s,
-                     double sigma_s);
-  void compareVector(const std::string& name, const Unit& unit, const KnownVector& known,
-                     const Eigen::Vector3d& solution, const Eigen::Vector3d& alone,
-                     const Eigen::Vector3d& sigma);
-  void compareMapping(const std::string& name, const std::optional<KnownMapping>& known,
-                      const Eigen::Matrix3d& solution, const Eigen::Matrix3d& alone,
-                      const Eigen::Matrix3d& sigma);
-  void compareImu(std::size_t imu);
+  template <class Row, class State, class Sigma, class Prior>
+  void compareRow(const std::string& sensor, const Row& row, const Prior& prior, const State& solution,
+                  const State& alone, const Sigma& sigma);
+  template <class Rows, class State, class Sigma, class Prior>
+  void compareSensor(const std::string& sensor, const Rows& rows, bool reference, const Prior& prior,
+                     const State& solution, const State& alone, const Sigma& sigma);
   // Of several numbers the one that is furthest off is said.
   void judge(const std::string& name, const Unit& unit, const std::vector<Compared>& numbers,
-             const std::vector<const char*>& parts);
+             const std::vector<std::string>& parts);
 
   const CalibrationInput& input_;
   const OptimisationOptions& options_;
@@ -65,7 +59,7 @@ class Comparison {
 };
 
 void Comparison::judge(const std::string& name, const Unit& unit, const std::vector<Compared>& numbers,
-                       const std::vector<const char*>& parts) {
+                       const std::vector<std::string>& parts) {
   double worst = options_.contradiction_sigmas;
   bool matters = false;
   std::string text;
@@ -89,91 +83,81 @@ void Comparison::judge(const std::string& name, const Unit& unit, const std::vec
   if (matters && check_.doubt.empty()) check_.doubt = text + "; check the session's prior";
 }
 
-void Comparison::compareVector(const std::string& name, const Unit& unit, const KnownVector& known,
-                               const Eigen::Vector3d& solution, const Eigen::Vector3d& alone,
-                               const Eigen::Vector3d& sigma) {
-  const Eigen::Vector3d known_sigma = known.sigma.value_or(Eigen::Vector3d::Zero());
-  std::vector<Compared> numbers;
-  for (int i = 0; i < 3; ++i)
-    numbers.push_back({known.value[i], known_sigma[i], alone[i], sigma[i], alone[i] - solution[i]});
-  judge(name, unit, numbers, {" x", " y", " z"});
-}
-
-void Comparison::compareOffset(const std::string& sensor, const SensorPrior& prior, double solution_s,
-                               double alone_s, double sigma_s) {
-  const bool free = options_.free_time_offsets;
-  if (!prior.time_offset && free) return;
-  const double known_s = prior.time_offset ? prior.time_offset->value : 0.0;
-  const double known_sigma_s = prior.time_offset && free ? prior.time_offset->sigma.value_or(0.0) : 0.0;
-  judge(sensor + ".time_offset", {" ms", 1e3, 1e-3 * options_.needed_time_offset_ms},
-        {{known_s, known_sigma_s, alone_s, sigma_s, alone_s - solution_s}}, {""});
-}
-
-// Rotations as vectors from the known one, which is 0.
-template <class Sigmas>
-void Comparison::comparePlace(const std::string& sensor, const SensorPrior& prior,
-                              const RigidTransform& solution, const RigidTransform& alone,
-                              const Sigmas& sigma) {
-  if (prior.rotation) {
-    const Eigen::Quaterniond to_known = prior.rotation->value.conjugate();
-    compareVector(
-        sensor + ".rotation (from there)", {" deg", kDegPerRad, options_.needed_rotation_deg / kDegPerRad},
-        {Eigen::Vector3d::Zero(), prior.rotation->sigma}, quaternionLog(solution.rotation * to_known),
-        quaternionLog(alone.rotation * to_known), sigma.rotation_std_rad);
+double neededFor(QuantityNeed need, const OptimisationOptions& options) {
+  switch (need) {
+    case QuantityNeed::Rotation:
+      return options.needed_rotation_deg / kDegPerRad;
+    case QuantityNeed::Translation:
+      return 1e-3 * options.needed_translation_mm;
+    case QuantityNeed::TimeOffset:
+      return 1e-3 * options.needed_time_offset_ms;
+    case QuantityNeed::None:
+      break;
   }
-  if (prior.translation)
-    compareVector(sensor + ".translation", {" mm", 1e3, 1e-3 * options_.needed_translation_mm},
-                  *prior.translation, solution.translation_m, alone.translation_m, sigma.translation_std_m);
+  return kNoNeed;
 }
 
-void Comparison::compareMapping(const std::string& name, const std::optional<KnownMapping>& known,
-                                const Eigen::Matrix3d& solution, const Eigen::Matrix3d& alone,
-                                const Eigen::Matrix3d& sigma) {
-  const bool free = options_.free_imu_intrinsics;
-  if (!known && free) return;
-  const Eigen::Matrix3d value = known ? known->value : Eigen::Matrix3d::Identity();
-  const bool weighed = known && known->sigma && free;
-  std::vector<Compared> numbers;
-  for (int row = 0; row < 3; ++row)
-    for (int col = row; col < 3; ++col)
-      numbers.push_back({value(row, col), weighed ? (*known->sigma)(row, col) : 0.0, alone(row, col),
-                         sigma(row, col), alone(row, col) - solution(row, col)});
-  judge(name, {"", 1.0, kNoNeed}, numbers, {" xx", " xy", " xz", " yy", " yz", " zz"});
+// What a value is compared with, and how it is told: rotations as vectors from the known one, which is 0.
+template <class Value>
+Eigen::VectorXd fromKnown(const QuantityInfo&, const Value& value, const Value&) {
+  return quantityNumbers(value);
+}
+Eigen::VectorXd fromKnown(const QuantityInfo& info, const Eigen::Quaterniond& value,
+                          const Eigen::Quaterniond& known) {
+  return quantityDifference(info, value, known);
+}
+bool isRotation(const QuantityInfo& info) {
+  return info.shape == QuantityShape::Rotation || info.shape == QuantityShape::LocalRotation;
 }
 
-void Comparison::compareImu(std::size_t imu) {
-  const ImuState &solution = solution_.imus[imu], &alone = alone_.imus[imu];
-  const ImuUncertainty& sigma = sigmas_.imus[imu];
-  const ImuPrior& prior = input_.imus[imu].prior;
-  const std::string& name = input_.imus[imu].name;
-  if (imu != input_.reference_imu) {
-    comparePlace(name, prior, solution.reference_from_imu, alone.reference_from_imu, sigma);
-    compareOffset(name, prior, solution.time_offset_s, alone.time_offset_s, sigma.time_offset_std_s);
+// " x" of "rotation.x"
+std::vector<std::string> partWords(const QuantityInfo& info) {
+  std::vector<std::string> words;
+  for (const QuantityPart& part : quantityParts(info)) {
+    const std::string own = info.name;
+    words.push_back(part.name == own ? "" : fmt::format(" {}", part.name.substr(own.size() + 1)));
   }
-  if (prior.gyroscope_bias)
-    compareVector(name + ".gyroscope_bias", {" rad/s", 1.0, kNoNeed}, *prior.gyroscope_bias,
-                  solution.gyroscope_bias_rad_s, alone.gyroscope_bias_rad_s, sigma.gyroscope_bias_std_rad_s);
-  if (prior.accelerometer_bias)
-    compareVector(name + ".accelerometer_bias", {" m/s^2", 1.0, kNoNeed}, *prior.accelerometer_bias,
-                  solution.accelerometer_bias_m_s2, alone.accelerometer_bias_m_s2,
-                  sigma.accelerometer_bias_std_m_s2);
-  compareMapping(name + ".gyroscope_mapping", prior.gyroscope_mapping, solution.gyroscope_mapping,
-                 alone.gyroscope_mapping, sigma.gyroscope_mapping_std);
-  compareMapping(name + ".accelerometer_mapping", prior.accelerometer_mapping, solution.accelerometer_mapping,
-                 alone.accelerometer_mapping, sigma.accelerometer_mapping_std);
+  return words;
+}
+
+template <class Row, class State, class Sigma, class Prior>
+void Comparison::compareRow(const std::string& sensor, const Row& row, const Prior& prior,
+                            const State& solution, const State& alone, const Sigma& sigma) {
+  const QuantityInfo& info = row.info;
+  const auto known = effectivePrior(info, options_, row.prior(prior));
+  if (!known) return;
+  const Eigen::VectorXd value = fromKnown(info, known->value, known->value);
+  const Eigen::VectorXd value_sigma =
+      known->sigma ? quantityNumbers(*known->sigma) : Eigen::VectorXd::Zero(value.size());
+  const Eigen::VectorXd found = fromKnown(info, row.value(solution), known->value);
+  const Eigen::VectorXd found_alone = fromKnown(info, row.value(alone), known->value);
+  const Eigen::VectorXd alone_sigma = quantityNumbers(row.sigma(sigma));
+  std::vector<Compared> numbers;
+  for (Eigen::Index i = 0; i < value.size(); ++i)
+    numbers.push_back({value[i], value_sigma[i], found_alone[i], alone_sigma[i], found_alone[i] - found[i]});
+  const std::string shown_unit = info.shown_unit;
+  judge(sensor + "." + info.name + (isRotation(info) ? " (from there)" : ""),
+        {shown_unit.empty() ? "" : fmt::format(" {}", shown_unit), info.shown_factor,
+         neededFor(info.need, options_)},
+        numbers, partWords(info));
+}
+
+template <class Rows, class State, class Sigma, class Prior>
+void Comparison::compareSensor(const std::string& sensor, const Rows& rows, bool reference,
+                               const Prior& prior, const State& solution, const State& alone,
+                               const Sigma& sigma) {
+  forEachPriorQuantity(rows, [&](const auto& row) {
+    if (!(reference && row.info.relative)) compareRow(sensor, row, prior, solution, alone, sigma);
+  });
 }
 
 PriorCheck Comparison::run() {
-  for (std::size_t i = 0; i < input_.cameras.size(); ++i) {
-    if (input_.isReferenceCamera(i)) continue;
-    const CameraData& camera = input_.cameras[i];
-    const CameraState &solution = solution_.cameras[i], &alone = alone_.cameras[i];
-    comparePlace(camera.name, camera.prior, solution.reference_from_camera, alone.reference_from_camera,
-                 sigmas_.cameras[i]);
-    compareOffset(camera.name, camera.prior, solution.time_offset_s, alone.time_offset_s,
-                  sigmas_.cameras[i].time_offset_std_s);
-  }
-  for (std::size_t i = 0; i < input_.imus.size(); ++i) compareImu(i);
+  for (std::size_t i = 0; i < input_.cameras.size(); ++i)
+    compareSensor(input_.cameras[i].name, kCameraQuantities, input_.isReferenceCamera(i),
+                  input_.cameras[i].prior, solution_.cameras[i], alone_.cameras[i], sigmas_.cameras[i]);
+  for (std::size_t i = 0; i < input_.imus.size(); ++i)
+    compareSensor(input_.imus[i].name, kImuQuantities, i == input_.reference_imu, input_.imus[i].prior,
+                  solution_.imus[i], alone_.imus[i], sigmas_.imus[i]);
   return std::move(check_);
 }
 
@@ -200,6 +184,8 @@ PriorCheck checkPriors(const CalibrationInput& input, const BatchSolution& solut
   PriorCheck check;
   OptimisationOptions free = options;
   free.free_time_offsets = free.free_imu_intrinsics = true;
+  for (const ImuData& imu : input.imus)
+    free.gyroscope_rotation = free.gyroscope_rotation || imu.prior.gyroscope_rotation.has_value();
   const RunContext quiet{silentProgress(), context.stop};
   try {
     const CalibrationInput without = withoutPriors(input);

@@ -12,31 +12,12 @@
 namespace evical {
 namespace {
 
-// Sizes that make all quantities comparable, so that "no information" means the same for each.
-double unitOf(QuantityKind kind) {
-  switch (kind) {
-    case QuantityKind::CameraTranslation:
-    case QuantityKind::ImuTranslation:
-      return 1e-3;
-    case QuantityKind::CameraTimeOffset:
-    case QuantityKind::ImuTimeOffset:
-      return 1e-4;
-    case QuantityKind::EdgeLead:
-      return 0.1;
-    case QuantityKind::EdgeLeadGrowth:
-      return 1e-2;
-    case QuantityKind::AccelerometerBias:
-      return 1e-2;
-    default:
-      return 1e-3;
-  }
-}
-
 // Scores come in stretches of the correlation time: weights that fall to zero over the next three see
 // correlation over up to about that time in full.
 constexpr std::size_t kLags = 3;
 
-constexpr double kPixelUnit = 0.1;  // of focal lengths and principal point, the first four intrinsics
+// A comparable size of focal lengths and principal point, the first four intrinsics.
+constexpr double kPixelUnit = 0.1;
 
 // Below this information in the units above a direction counts as open, and its sigma is 1e4 units.
 constexpr double kLeastInformation = 1e-8;
@@ -59,13 +40,9 @@ SafeInverse safeInverse(const Eigen::MatrixXd& information, const Eigen::VectorX
 
 Eigen::MatrixXd reportFromTangent(const Quantity& quantity, Eigen::Index size, const CalibrationState& state,
                                   ceres::Problem& problem) {
-  if (quantity.kind == QuantityKind::CameraRotation) {
-    return state.cameras[quantity.sensor].reference_from_camera.rotation.toRotationMatrix();
-  }
-  if (quantity.kind == QuantityKind::ImuRotation) {
-    return state.imus[quantity.sensor].reference_from_imu.rotation.toRotationMatrix();
-  }
-  if (quantity.kind == QuantityKind::GravityDirection) {
+  if (quantity.info->shape == QuantityShape::Rotation)
+    return Eigen::Map<const Eigen::Quaterniond>(quantity.block).toRotationMatrix();
+  if (quantity.info->shape == QuantityShape::Gravity) {
     const Eigen::Vector3d& gravity = state.gravity_in_world_m_s2;
     const Eigen::Matrix<double, 2, 3> tilts = gravityTilts(gravity).transpose() / gravity.norm();
     if (size == 3) return (Eigen::Matrix3d() << tilts, gravity.normalized().transpose()).finished();
@@ -105,8 +82,8 @@ QuantityCovariance quantityCovariance(const ProjectedInformation& information,
   Eigen::VectorXd units(size);
   for (std::size_t i = 0; i < information.quantities.size(); ++i) {
     const Eigen::Index first = information.first_column[i], count = information.first_column[i + 1] - first;
-    units.segment(first, count).setConstant(unitOf(information.quantities[i].kind));
-    if (information.quantities[i].kind == QuantityKind::CameraIntrinsics)
+    units.segment(first, count).setConstant(information.quantities[i].info->comparable_unit);
+    if (information.quantities[i].info->shape == QuantityShape::Intrinsics)
       units.segment<4>(first).setConstant(kPixelUnit);
   }
   const SafeInverse safe = safeInverse(information.total, units);

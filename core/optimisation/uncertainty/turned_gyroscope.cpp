@@ -11,6 +11,13 @@
 namespace evical {
 namespace {
 
+// Free for the test's sake, not because there is a prior to be weighed.
+bool isLookedFor(const Quantity& quantity, const CalibrationInput& input) {
+  if (quantity.info->release != QuantityRelease::GyroscopeRotation) return false;
+  const auto& prior = input.imus[quantity.sensor].prior.gyroscope_rotation;
+  return !(prior && prior->sigma);
+}
+
 class ScaledInverse {
  public:
   explicit ScaledInverse(const Eigen::MatrixXd& information)
@@ -41,7 +48,7 @@ std::string turnedGyroscopes(const CalibrationInput& input, const ProjectedInfor
   const ScaledInverse covariance(credible.total);
   for (std::size_t i = 0; i < information.quantities.size(); ++i) {
     const Quantity& quantity = information.quantities[i];
-    if (quantity.kind != QuantityKind::GyroscopeRotation) continue;
+    if (!isLookedFor(quantity, input)) continue;
     const Eigen::Index first = information.first_column[i];
     const double turn_deg = kDegPerRad * step.segment<3>(first).norm();
     double certainty = 0.0;
@@ -56,12 +63,13 @@ std::string turnedGyroscopes(const CalibrationInput& input, const ProjectedInfor
   return doubts;
 }
 
-ProjectedInformation withoutGyroscopeRotation(ProjectedInformation information) {
+ProjectedInformation withoutLookedForRotation(const CalibrationInput& input,
+                                              ProjectedInformation information) {
   std::vector<Eigen::Index> kept;
   std::vector<Quantity> quantities;
   std::vector<Eigen::Index> first_column = {0};
   for (std::size_t i = 0; i < information.quantities.size(); ++i) {
-    if (information.quantities[i].kind == QuantityKind::GyroscopeRotation) continue;
+    if (isLookedFor(information.quantities[i], input)) continue;
     quantities.push_back(information.quantities[i]);
     for (Eigen::Index k = information.first_column[i]; k < information.first_column[i + 1]; ++k)
       kept.push_back(k);

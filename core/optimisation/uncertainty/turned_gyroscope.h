@@ -15,7 +15,8 @@ namespace evical {
 std::string turnedGyroscopes(const CalibrationInput& input, const ProjectedInformation& information,
                              const ProjectedInformation& credible, const OptimisationOptions& options);
 
-// As if the turns were known to be what they are.
-ProjectedInformation withoutGyroscopeRotation(ProjectedInformation information);
+// As if the turns that are not estimated were known to be what they are.
+ProjectedInformation withoutLookedForRotation(const CalibrationInput& input,
+                                              ProjectedInformation information);
 
 }  // namespace evical

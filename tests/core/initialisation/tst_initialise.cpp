@@ -51,6 +51,29 @@ class TestInitialise : public QObject {
   Q_OBJECT
 
  private slots:
+  // As if the samples had come from a gyroscope that is not turned.
+  void knownGyroscopeRotation_isTurnedBack() {
+    SimulationOptions simulation = shortRecording();
+    simulation.second_imu = true;
+    SimulatedInput simulated = simulateInput(simulation);
+    const Initialisation straight = initialise(simulated.input, {}, RunContext{});
+    const Eigen::Quaterniond turn = quaternionExp({0.1, -0.14, 0.03});
+    for (ImuData& imu : simulated.input.imus) {
+      for (ImuSample& sample : imu.samples) sample.angular_rate_rad_s = turn * sample.angular_rate_rad_s;
+      imu.prior.gyroscope_rotation = KnownRotation{turn, Eigen::Vector3d::Constant(0.01)};
+    }
+    const Initialisation turned = initialise(simulated.input, {}, RunContext{});
+    const CameraState &a = straight.state.cameras[0], &b = turned.state.cameras[0];
+    QVERIFY(rotationAngleBetween_rad(a.reference_from_camera.rotation, b.reference_from_camera.rotation) <
+            1e-6);
+    QVERIFY(std::abs(a.time_offset_s - b.time_offset_s) < 1e-7);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const ImuState &before = straight.state.imus[k], &after = turned.state.imus[k];
+      QVERIFY(after.gyroscope_from_accelerometer.coeffs() == turn.coeffs());
+      QVERIFY((after.gyroscope_bias_rad_s - turn * before.gyroscope_bias_rad_s).norm() < 1e-6);
+    }
+  }
+
   void givenValues_areTaken() {
     SimulationOptions simulation = shortRecording();
     simulation.second_imu = true;

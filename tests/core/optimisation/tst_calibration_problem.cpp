@@ -16,9 +16,9 @@ test::SimulatedRig shortRig() {
   return test::simulateRig(options);
 }
 
-double* blockOf(CalibrationProblem& problem, QuantityKind kind) {
+double* blockOf(CalibrationProblem& problem, QuantityOwner owner, const std::string& name) {
   for (const Quantity& quantity : problem.quantities())
-    if (quantity.kind == kind) return quantity.block;
+    if (quantity.info->owner == owner && quantity.info->name == name) return quantity.block;
   return nullptr;
 }
 
@@ -63,8 +63,8 @@ class TestCalibrationProblem : public QObject {
     CalibrationProblem problem(rig.input, options, rig.truth);
     problem.build(ReleaseStages::Mappings, givenWeights(rig.input));
     const CalibrationState before = problem.state();
-    *blockOf(problem, QuantityKind::CameraTimeOffset) = 0.001;
-    blockOf(problem, QuantityKind::GyroscopeMapping)[2] = 0.25;  // m02
+    *blockOf(problem, QuantityOwner::Camera, "time_offset") = 0.001;
+    blockOf(problem, QuantityOwner::Imu, "gyroscope_mapping")[2] = 0.25;  // m02
     QCOMPARE(problem.state().cameras[0].time_offset_s, 0.001);
     QCOMPARE(problem.state().imus[0].gyroscope_mapping(0, 2), 0.25);
     // A state that was handed out stays as it was.
@@ -106,11 +106,11 @@ class TestCalibrationProblem : public QObject {
     CalibrationProblem problem(rig.input, options, rig.truth);
     Weights weights = givenWeights(rig.input);
     problem.build(ReleaseStages::Mappings, weights);
-    QVERIFY(blockOf(problem, QuantityKind::GyroscopeRotation) != nullptr);
+    QVERIFY(blockOf(problem, QuantityOwner::Imu, "gyroscope_rotation") != nullptr);
     const std::ptrdiff_t priors = countOf(problem, SensorKind::Prior);
     weights.held_axes[0].gyroscope = {Eigen::Vector3d::UnitZ()};
     problem.build(ReleaseStages::Mappings, weights);
-    QVERIFY(blockOf(problem, QuantityKind::GyroscopeRotation) == nullptr);
+    QVERIFY(blockOf(problem, QuantityOwner::Imu, "gyroscope_rotation") == nullptr);
     QCOMPARE(countOf(problem, SensorKind::Prior), priors);  // one for the axis, none for the turn
   }
 
@@ -119,8 +119,8 @@ class TestCalibrationProblem : public QObject {
     const OptimisationOptions options;
     CalibrationProblem problem(rig.input, options, rig.truth);
     problem.build(ReleaseStages::Extrinsics, givenWeights(rig.input));
-    QVERIFY(blockOf(problem, QuantityKind::GyroscopeMapping) == nullptr);
-    QVERIFY(blockOf(problem, QuantityKind::CameraRotation) != nullptr);
+    QVERIFY(blockOf(problem, QuantityOwner::Imu, "gyroscope_mapping") == nullptr);
+    QVERIFY(blockOf(problem, QuantityOwner::Camera, "rotation") != nullptr);
   }
 };
 

@@ -53,6 +53,10 @@ class TestPriorCost : public QObject {
     QVERIFY((residualsAt(cost, {States::numbers(turned)}) - Vector3d::Ones()).norm() < 1e-9);
     const Eigen::Quaterniond far = quaternionExp({0.4, -0.6, 0.3}) * mean;
     QVERIFY(worstJacobianError(cost, {States::numbers(far)}) < 1e-6);
+    const RotationPriorCost local(mean, Vector3d(0.01, 0.02, 0.04), PriorAxes::Source);
+    const Eigen::Quaterniond turned_before = mean * quaternionExp({0.01, 0.02, 0.04});
+    QVERIFY((residualsAt(local, {States::numbers(turned_before)}) - Vector3d::Ones()).norm() < 1e-9);
+    QVERIFY(worstJacobianError(local, {States::numbers(far)}) < 1e-6);
   }
 
   void heldAxes_stayAtTheirPriors() {

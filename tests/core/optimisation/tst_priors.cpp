@@ -28,7 +28,11 @@ struct Run {
 };
 Run calibrate(const test::SimulatedRig& rig, const OptimisationOptions& options = {}) {
   Run run;
-  run.solution = optimiseBatch(rig.input, test::disturbed(rig.truth, 1), options, RunContext{});
+  CalibrationState start = test::disturbed(rig.truth, 1);
+  for (std::size_t i = 0; i < start.imus.size(); ++i)  // as initialisation does
+    if (const auto& known = rig.input.imus[i].prior.gyroscope_rotation)
+      start.imus[i].gyroscope_from_accelerometer = known->value;
+  run.solution = optimiseBatch(rig.input, start, options, RunContext{});
   run.estimate = estimateUncertainty(rig.input, run.solution, options, RunContext{});
   run.check = checkPriors(rig.input, run.solution, options, RunContext{});
   return run;
@@ -257,6 +261,48 @@ class TestPriors : public QObject {
     const Vector3d error_m = imu.reference_from_imu.translation_m - truth.reference_from_imu.translation_m;
     for (int axis = 0; axis < 3; ++axis)
       QVERIFY(std::abs(error_m[axis]) < 4.0 * run.estimate.report.imus[1].translation_std_m[axis]);
+  }
+
+  // A turn that is known must not be lost: neither where it is given, nor where it is weighed, and whatever
+  // the option for unknown turns says.
+  void knownGyroscopeRotation_isHeldOrWeighed_data() {
+    QTest::addColumn<bool>("option");
+    QTest::newRow("not looked for") << false;
+    QTest::newRow("looked for") << true;
+  }
+  void knownGyroscopeRotation_isHeldOrWeighed() {
+    QFETCH(bool, option);
+    test::RigOptions simulation = shortRecording();
+    simulation.gyroscope_turn_rad = 10.0 * M_PI / 180.0;
+    test::SimulatedRig rig = test::simulateRig(simulation);
+    const Eigen::Quaterniond truth = rig.truth.imus[0].gyroscope_from_accelerometer;
+    OptimisationOptions options;
+    options.gyroscope_rotation = option;
+    std::optional<KnownRotation>& prior = rig.input.imus[0].prior.gyroscope_rotation;
+    const auto error_rad = [&](const Run& run) {
+      return quaternionLog(truth.conjugate() * run.solution.state.imus[0].gyroscope_from_accelerometer);
+    };
+    prior = KnownRotation{truth};
+    const Run given = calibrate(rig, options);
+    QVERIFY(error_rad(given).norm() < 1e-12);
+    QCOMPARE(given.estimate.report.given, std::vector<std::string>{"imu.gyroscope_rotation"});
+    QVERIFY(given.estimate.report.imus[0].gyroscope_rotation_std_rad.norm() == 0.0);
+    QVERIFY2(given.check.doubt.empty() && given.estimate.reason.empty(), given.estimate.reason.c_str());
+    const Vector3d lever_error_m = lever(given.solution.state) - lever(rig.truth);
+    for (int axis = 0; axis < 3; ++axis)
+      QVERIFY(std::abs(lever_error_m[axis]) < 4.0 * given.estimate.report.cameras[0].translation_std_m[axis]);
+
+    constexpr double kSigma_rad = 5e-4;
+    prior =
+        KnownRotation{truth * quaternionExp({kSigma_rad, 0.0, -kSigma_rad}), Vector3d::Constant(kSigma_rad)};
+    const Run weighed = calibrate(rig, options);
+    const Vector3d sigma_rad = weighed.estimate.report.imus[0].gyroscope_rotation_std_rad;
+    for (int axis = 0; axis < 3; ++axis) {
+      QVERIFY2(sigma_rad[axis] > 0.0 && sigma_rad[axis] < 1.05 * kSigma_rad,
+               qPrintable(QString::number(sigma_rad[axis])));
+      QVERIFY(std::abs(error_rad(weighed)[axis]) < 4.0 * kSigma_rad);
+    }
+    QVERIFY(weighed.estimate.report.given.empty() && weighed.check.notes.empty());
   }
 
   void everythingGiven_leavesNothingToJudge() {

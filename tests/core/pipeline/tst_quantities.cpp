@@ -109,13 +109,6 @@ NamedResult filledResult() {
   return named;
 }
 
-template <class Rows, class Visitor>
-void forEachPrior(const Rows& rows, Visitor&& visit) {
-  forEachQuantity(rows, [&](const auto& row) {
-    if constexpr (std::remove_cvref_t<decltype(row)>::kHasPrior) visit(row);
-  });
-}
-
 }  // namespace
 
 class TestQuantities : public QObject {
@@ -161,8 +154,8 @@ class TestQuantities : public QObject {
     const auto fill = [&](auto& prior) {
       return [&](const auto& row) { filler.fill(row.prior(prior).emplace()); };
     };
-    forEachPrior(kCameraQuantities, fill(written.cameras[0].prior));
-    forEachPrior(kImuQuantities, fill(written.imus[1].prior));
+    forEachPriorQuantity(kCameraQuantities, fill(written.cameras[0].prior));
+    forEachPriorQuantity(kImuQuantities, fill(written.imus[1].prior));
     readSensorPriors(YamlNode::parse("prior:\n" + sensorPriorsYaml(written), "session.yaml")["prior"], read);
     const auto verify = [](const auto& a, const auto& b) {
       return [&](const auto& row) {
@@ -173,8 +166,8 @@ class TestQuantities : public QObject {
                  row.info.name);
       };
     };
-    forEachPrior(kCameraQuantities, verify(written.cameras[0].prior, read.cameras[0].prior));
-    forEachPrior(kImuQuantities, verify(written.imus[1].prior, read.imus[1].prior));
+    forEachPriorQuantity(kCameraQuantities, verify(written.cameras[0].prior, read.cameras[0].prior));
+    forEachPriorQuantity(kImuQuantities, verify(written.imus[1].prior, read.imus[1].prior));
   }
 
   void everyRow_isCompared() {

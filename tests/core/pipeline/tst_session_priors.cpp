@@ -145,6 +145,23 @@ class TestSessionPriors : public QObject {
     QVERIFY(session.imus[0].prior.gyroscope_bias->sigma.has_value());
   }
 
+  // What nobody estimated is no prior; a turn that is known is one, with sigmas or without.
+  void gyroscopesRotationOfAResult_isAPrior() {
+    const QString none = QString(kPasted) +
+                         "        gyroscope_from_accelerometer_xyzw: [0, 0, 0, 1]\n"
+                         "        rotation_std_deg: [0, 0, 0]\n";
+    QVERIFY(!read(none).imus[0].prior.gyroscope_rotation);
+    const QString turned =
+        QString(kPasted) + "        gyroscope_from_accelerometer_xyzw: [0, 0.0871557427, 0, 0.9961946981]\n";
+    const auto given = read(turned).imus[0].prior.gyroscope_rotation;
+    QVERIFY(given && given->isGiven());
+    QVERIFY(std::abs(given->value.angularDistance(Eigen::Quaterniond::Identity()) - M_PI / 18.0) < 1e-9);
+    QVERIFY(
+        read(turned + "        rotation_std_deg: [0, 0, 0]\n").imus[0].prior.gyroscope_rotation->isGiven());
+    const auto weighed = read(turned + "        rotation_std_deg: 0.5\n").imus[0].prior.gyroscope_rotation;
+    QVERIFY((*weighed->sigma - Eigen::Vector3d::Constant(M_PI / 360.0)).norm() < 1e-12);
+  }
+
   void anotherReference_isRefused() {
     Session session = read(kPriors);
     session.reference = "right_imu";
