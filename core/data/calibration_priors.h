@@ -38,9 +38,10 @@ bool isGiven(const std::optional<Known>& known) {
 }
 
 struct SensorPrior {
-  std::optional<KnownRotation> rotation;   // reference_from_sensor
-  std::optional<KnownVector> translation;  // of that, m
-  std::optional<KnownNumber> time_offset;  // reference_time = sensor_time + it, s
+  std::optional<KnownRotation> rotation;         // reference_from_sensor
+  std::optional<KnownVector> translation;        // of that, m
+  std::optional<KnownNumber> time_offset;        // reference_time = sensor_time + it, s
+  std::optional<KnownNumber> time_offset_drift;  // by how much that grows, ppm
 
   bool operator==(const SensorPrior&) const = default;
 };

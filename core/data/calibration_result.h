@@ -29,6 +29,7 @@ struct CameraUncertainty {
   // Where intrinsics are solved for, in the order of IntrinsicsJacobian (camera_model.h); 0 where one is
   // held.
   std::optional<std::array<double, 9>> intrinsics_std = {};
+  double time_offset_drift_std_ppm = 0.0;
 };
 
 struct ImuUncertainty {
@@ -42,6 +43,7 @@ struct ImuUncertainty {
   // Of the biases at the knots of their drift.
   std::vector<Eigen::Vector3d> gyroscope_drift_std_rad_s, accelerometer_drift_std_m_s2;
   Eigen::Vector3d gyroscope_rotation_std_rad = Eigen::Vector3d::Zero();  // about the accelerometer's axes
+  double time_offset_drift_std_ppm = 0.0;
 };
 
 // Over all calibrated quantities, in one order that `names` gives ("left.rotation.x [rad]", ...).

@@ -18,15 +18,17 @@ namespace evical {
 
 struct CameraState {
   RigidTransform reference_from_camera;
-  double time_offset_s = 0.0;  // imu_time = camera_time + time_offset_s
+  double time_offset_s = 0.0;  // see referenceTime_s
   double edge_lead_px = 0.0;   // measured centres lie this far ahead along their image motion, at 100 px/s
   double edge_lead_growth_px = 0.0;                 // for each factor e of speed
   std::optional<CameraIntrinsics> intrinsics = {};  // where they are solved for; else CameraData's hold
+  double time_offset_drift_ppm = 0.0;               // where it is solved for
+  double time_offset_at_s = 0.0;                    // the camera's time at which the offset is time_offset_s
 };
 
 struct ImuState {
-  RigidTransform reference_from_imu;  // identity for the reference
-  double time_offset_s = 0.0;         // reference_time = imu_time + time_offset_s
+  RigidTransform reference_from_imu;                               // identity for the reference
+  double time_offset_s = 0.0;                                      // see referenceTime_s
   Eigen::Vector3d gyroscope_bias_rad_s = Eigen::Vector3d::Zero();  // where they drift: the means over time
   Eigen::Vector3d accelerometer_bias_m_s2 = Eigen::Vector3d::Zero();
   Eigen::Matrix3d gyroscope_mapping =
@@ -35,7 +37,8 @@ struct ImuState {
   // The IMU's frame is the accelerometer's; the gyroscope may be turned against it.
   Eigen::Quaterniond gyroscope_from_accelerometer = Eigen::Quaterniond::Identity();
 
-  BiasDrift bias_drift;  // without knots: biases are constant
+  BiasDrift bias_drift;                                        // without knots: biases are constant
+  double time_offset_drift_ppm = 0.0, time_offset_at_s = 0.0;  // as a camera's
 
   // At a time on the IMU's own clock.
   Eigen::Vector3d gyroscopeBiasAt_rad_s(double time_s) const {
@@ -49,6 +52,24 @@ struct ImuState {
     return gyroscope_mapping * gyroscope_from_accelerometer.toRotationMatrix();
   }
 };
+
+// A camera's or an IMU's clock runs evenly, but not quite at the reference's pace:
+//   reference_time = sensor_time + time_offset_s + 1e-6 time_offset_drift_ppm (sensor_time -
+//   time_offset_at_s).
+template <class Sensor>
+double timeOffsetAt_s(const Sensor& sensor, double sensor_time_s) {
+  return sensor.time_offset_s +
+         1e-6 * sensor.time_offset_drift_ppm * (sensor_time_s - sensor.time_offset_at_s);
+}
+template <class Sensor>
+double referenceTime_s(const Sensor& sensor, double sensor_time_s) {
+  return sensor_time_s + timeOffsetAt_s(sensor, sensor_time_s);
+}
+template <class Sensor>
+double sensorTime_s(const Sensor& sensor, double reference_time_s) {
+  const double pace = 1e-6 * sensor.time_offset_drift_ppm;
+  return (reference_time_s - sensor.time_offset_s + pace * sensor.time_offset_at_s) / (1.0 + pace);
+}
 
 // Times of the splines are seconds since the recording's start on the reference IMU's clock.
 struct CalibrationState {

@@ -36,7 +36,7 @@ enum class QuantityShape {
 enum class QuantityNeed { None, Rotation, Translation, TimeOffset };
 
 // Which option lets it be estimated, where not all runs do.
-enum class QuantityRelease { Always, TimeOffsets, ImuIntrinsics, GyroscopeRotation };
+enum class QuantityRelease { Always, TimeOffsets, ImuIntrinsics, GyroscopeRotation, TimeOffsetDrift };
 
 // When there is something to compare or to show.
 enum class QuantityPresence {
@@ -45,6 +45,8 @@ enum class QuantityPresence {
   WhereEstimated,      // in the first of two
   WhereBothEstimated,  // only an estimate knows it, the truth of a simulation does not
 };
+
+enum class QuantityWriting { Always, WherePresent };  // in result.yaml
 
 struct QuantityInfo {
   const char* name;   // "time_offset"
@@ -62,6 +64,7 @@ struct QuantityInfo {
   double comparable_unit = 1e-3;
   QuantityRelease release = QuantityRelease::Always;
   QuantityPresence presence = QuantityPresence::Always;
+  QuantityWriting written = QuantityWriting::Always;
   bool relative = false;  // to the reference, which has none of its own
 
   // In result.yaml and in a session's prior; without a section the keys are the sensor's own.
@@ -164,6 +167,23 @@ constexpr QuantityInfo timeOffsetInfo(QuantityOwner owner) {
           .std_key = "time_offset_std_s"};
 }
 
+constexpr QuantityInfo timeOffsetDriftInfo(QuantityOwner owner) {
+  return {.name = "time_offset_drift",
+          .title = "time offset drift",
+          .owner = owner,
+          .shape = QuantityShape::Scalar,
+          .unit = "ppm",
+          .shown_unit = "ppm",
+          .decimals = 3,
+          .comparable_unit = 1.0,
+          .release = QuantityRelease::TimeOffsetDrift,
+          .presence = QuantityPresence::WhereNotZero,
+          .written = QuantityWriting::WherePresent,
+          .relative = true,
+          .key = "time_offset_drift_ppm",
+          .std_key = "time_offset_drift_std_ppm"};
+}
+
 constexpr QuantityInfo mappingInfo(const char* name, const char* sensor) {
   return {.name = name,
           .title = sensor,
@@ -188,6 +208,8 @@ inline constexpr auto kCameraQuantities = std::tuple{
                 &CameraUncertainty::translation_std_m, &SensorPrior::translation},
     QuantityRow{detail::timeOffsetInfo(QuantityOwner::Camera), &CameraState::time_offset_s,
                 &CameraUncertainty::time_offset_std_s, &SensorPrior::time_offset},
+    QuantityRow{detail::timeOffsetDriftInfo(QuantityOwner::Camera), &CameraState::time_offset_drift_ppm,
+                &CameraUncertainty::time_offset_drift_std_ppm, &SensorPrior::time_offset_drift},
     QuantityRow{QuantityInfo{.name = "edge_lead",
                              .title = "edge lead",
                              .owner = QuantityOwner::Camera,
@@ -234,6 +256,8 @@ inline constexpr auto kImuQuantities = std::tuple{
                 &ImuUncertainty::translation_std_m, &ImuPrior::translation},
     QuantityRow{detail::timeOffsetInfo(QuantityOwner::Imu), &ImuState::time_offset_s,
                 &ImuUncertainty::time_offset_std_s, &ImuPrior::time_offset},
+    QuantityRow{detail::timeOffsetDriftInfo(QuantityOwner::Imu), &ImuState::time_offset_drift_ppm,
+                &ImuUncertainty::time_offset_drift_std_ppm, &ImuPrior::time_offset_drift},
     QuantityRow{QuantityInfo{.name = "gyroscope_bias",
                              .title = "gyroscope bias",
                              .owner = QuantityOwner::Imu,

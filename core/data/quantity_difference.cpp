@@ -65,6 +65,14 @@ bool isCompared(const Row& row, const Sensor& a, const Sensor& b) {
   return in_a && isEstimated(quantityNumbers(row.sigma(b.uncertainty)));
 }
 
+// Clocks that drift are compared at one time.
+template <class Sensor>
+Sensor atTimeOf(const Sensor& other, Sensor sensor) {
+  sensor.time_offset_s = timeOffsetAt_s(sensor, other.time_offset_at_s);
+  sensor.time_offset_at_s = other.time_offset_at_s;
+  return sensor;
+}
+
 template <class Rows, class Sensor>
 void compareSensor(const Rows& rows, const std::string& name, const Sensor& a, const Sensor& b,
                    bool without_place, Differences& differences) {
@@ -113,13 +121,15 @@ std::vector<QuantityDifference> difference(const Estimate& a, const Estimate& b)
   Differences differences;
   for (std::size_t i = 0; i < a.camera_names.size(); ++i) {
     const std::size_t j = sensorIndex(a.camera_names[i], b.camera_names, "cameras");
+    const CameraState other = atTimeOf(a.cameras.at(i), b.cameras.at(j));
     compareSensor(kCameraQuantities, a.camera_names[i], Side{a.cameras.at(i), a.uncertainty.cameras.at(i)},
-                  Side{b.cameras.at(j), b.uncertainty.cameras.at(j)}, false, differences);
+                  Side{other, b.uncertainty.cameras.at(j)}, false, differences);
   }
   for (std::size_t i = 0; i < a.imu_names.size(); ++i) {
     const std::size_t j = sensorIndex(a.imu_names[i], b.imu_names, "imus");
+    const ImuState other = atTimeOf(a.imus.at(i), b.imus.at(j));
     compareSensor(kImuQuantities, a.imu_names[i], Side{a.imus.at(i), a.uncertainty.imus.at(i)},
-                  Side{b.imus.at(j), b.uncertainty.imus.at(j)}, a.imu_names[i] == a.reference, differences);
+                  Side{other, b.uncertainty.imus.at(j)}, a.imu_names[i] == a.reference, differences);
   }
   if (const double sigma = a.uncertainty.gravity_norm_std_m_s2; sigma > 0.0)
     differences.all.push_back({"gravity.norm", kGravityQuantity.shown_unit,

@@ -73,7 +73,7 @@ void placeBiasKnots(const OptimisationOptions& options, const ImuNoise& noise, c
                                      noise.accelerometer_density / walks.accelerometer});
   const int steps =
       static_cast<int>(std::clamp(std::round(duration_s / spacing_s), 1.0, options.most_bias_knots - 1.0));
-  drift.start_s = trajectory.start_s - imu.time_offset_s;
+  drift.start_s = sensorTime_s(imu, trajectory.start_s);
   drift.knot_spacing_s = duration_s / steps;
   drift.gyroscope_rad_s.assign(static_cast<std::size_t>(steps) + 1, Eigen::Vector3d::Zero());
   drift.accelerometer_m_s2 = drift.gyroscope_rad_s;
@@ -81,8 +81,8 @@ void placeBiasKnots(const OptimisationOptions& options, const ImuNoise& noise, c
 
 bool sameBiasKnots(const ImuState& imu, double time_s, double other_s) {
   if (imu.bias_drift.knots() < 2) return true;
-  return imu.bias_drift.segmentAt(time_s - imu.time_offset_s) ==
-         imu.bias_drift.segmentAt(other_s - imu.time_offset_s);
+  return imu.bias_drift.segmentAt(sensorTime_s(imu, time_s)) ==
+         imu.bias_drift.segmentAt(sensorTime_s(imu, other_s));
 }
 
 std::optional<DriftTimes> appendDriftBlocks(const BiasDrift& drift, std::vector<Eigen::Vector3d>& knots,

@@ -15,6 +15,19 @@ ceres::Problem::Options borrowManifolds() {
   return options;
 }
 
+// Of every sensor at the trajectory's begin and at its end.
+std::vector<double> timeOffsets_s(const CalibrationState& state) {
+  const So3Spline& trajectory = state.world_from_imu_rotation;
+  std::vector<double> offsets_s;
+  const auto append = [&](const auto& sensor) {
+    for (const double time_s : {trajectory.start_s, trajectory.endTime_s()})
+      offsets_s.push_back(timeOffsetAt_s(sensor, time_s));
+  };
+  for (const CameraState& camera : state.cameras) append(camera);
+  for (const ImuState& imu : state.imus) append(imu);
+  return offsets_s;
+}
+
 }  // namespace
 
 CalibrationProblem::CalibrationProblem(const CalibrationInput& input, const OptimisationOptions& options,
@@ -32,9 +45,7 @@ CalibrationProblem::CalibrationProblem(const CalibrationInput& input, const Opti
 void CalibrationProblem::build(ReleaseStages stage, const Weights& weights) {
   const CalibrationState& state = parameters_.moved();
   residuals_.clear();
-  assigned_offsets_s_.clear();
-  for (const CameraState& camera : state.cameras) assigned_offsets_s_.push_back(camera.time_offset_s);
-  for (const ImuState& imu : state.imus) assigned_offsets_s_.push_back(imu.time_offset_s);
+  assigned_offsets_s_ = timeOffsets_s(state);
   problem_ = std::make_unique<ceres::Problem>(borrowManifolds());
   ProblemBuilder builder{input_, options_, weights, stage, parameters_, *problem_, residuals_};
   for (std::size_t i = 0; i < state.cameras.size(); ++i)
@@ -51,14 +62,10 @@ void CalibrationProblem::build(ReleaseStages stage, const Weights& weights) {
 
 double CalibrationProblem::segmentDrift_knots() const {
   const CalibrationState& state = parameters_.moved();
+  const std::vector<double> offsets_s = timeOffsets_s(state);
   double largest_s = 0.0;
-  for (std::size_t i = 0; i < state.cameras.size(); ++i) {
-    largest_s = std::max(largest_s, std::abs(state.cameras[i].time_offset_s - assigned_offsets_s_[i]));
-  }
-  for (std::size_t i = 0; i < state.imus.size(); ++i) {
-    const double assigned_s = assigned_offsets_s_[state.cameras.size() + i];
-    largest_s = std::max(largest_s, std::abs(state.imus[i].time_offset_s - assigned_s));
-  }
+  for (std::size_t i = 0; i < offsets_s.size(); ++i)
+    largest_s = std::max(largest_s, std::abs(offsets_s[i] - assigned_offsets_s_[i]));
   return largest_s /
          std::min(state.world_from_imu_rotation.knot_spacing_s, state.imu_in_world_m.knot_spacing_s);
 }
@@ -75,7 +82,10 @@ void CalibrationProblem::setManifolds(ProblemBuilder& builder) {
     set(state.imus[i].reference_from_imu.rotation.coeffs().data(), &so3_);
     set(gyroscope_rotation, &so3_);
     if (!builder.turnsGyroscope(i)) builder.hold(gyroscope_rotation);
+    if (!builder.drifts(input_.imus[i].prior)) builder.hold(&state.imus[i].time_offset_drift_ppm);
   }
+  for (std::size_t i = 0; i < state.cameras.size(); ++i)
+    if (!builder.drifts(input_.cameras[i].prior)) builder.hold(&state.cameras[i].time_offset_drift_ppm);
   if (!options_.free_gravity_norm) set(state.gravity_in_world_m_s2.data(), &sphere_);
   for (std::size_t i = 0; i < state.cameras.size(); ++i)
     if (IntrinsicsBlock* block = parameters_.intrinsics(i))
@@ -91,6 +101,7 @@ void CalibrationProblem::holdReferenceCamera(ProblemBuilder& builder) {
   builder.hold(reference.reference_from_camera.rotation.coeffs().data());
   builder.hold(reference.reference_from_camera.translation_m.data());
   builder.hold(&reference.time_offset_s);
+  builder.hold(&reference.time_offset_drift_ppm);
 }
 
 std::vector<Quantity> CalibrationProblem::quantities() {

@@ -47,7 +47,7 @@ class CalibrationProblem {
   ParameterBlocks parameters_;
   std::vector<CircleModel> circle_models_;  // by camera; cost functions point to them
   std::vector<PixelErrors> pixel_errors_;   // by camera
-  std::vector<double> assigned_offsets_s_;  // cameras, then IMUs
+  std::vector<double> assigned_offsets_s_;  // at both ends, cameras, then IMUs
 
   So3Manifold so3_;
   ceres::SphereManifold<3> sphere_;

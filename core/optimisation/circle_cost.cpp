@@ -23,12 +23,13 @@ enum Block {
   kCameraRotation = 8,
   kCameraTranslation,
   kTimeOffset,
+  kTimeOffsetDrift,
   kEdgeLead,
   kEdgeLeadGrowth,
   kIntrinsics,  // where they are free
   kBlocks
 };
-constexpr std::array<int, kBlocks> kBlockSizes = {4, 4, 4, 4, 3, 3, 3, 3, 4, 3, 1, 1, 1, 9};
+constexpr std::array<int, kBlocks> kBlockSizes = {4, 4, 4, 4, 3, 3, 3, 3, 4, 3, 1, 1, 1, 1, 9};
 
 void writeZero(double** jacobians, int blocks, Eigen::Index row) {
   for (int block = 0; block < blocks; ++block) {
@@ -41,7 +42,7 @@ void writeZero(double** jacobians, int blocks, Eigen::Index row) {
 struct Mount {
   Matrix3d camera_from_imu;
   Vector3d camera_in_imu;
-  double time_offset_s;
+  double time_offset_s, time_offset_drift_ppm;
   EdgeLead lead;
 
   explicit Mount(double const* const* parameters)
@@ -49,6 +50,7 @@ struct Mount {
             Eigen::Map<const Eigen::Quaterniond>(parameters[kCameraRotation]).toRotationMatrix().transpose()),
         camera_in_imu(parameters[kCameraTranslation]),
         time_offset_s(*parameters[kTimeOffset]),
+        time_offset_drift_ppm(*parameters[kTimeOffsetDrift]),
         lead{*parameters[kEdgeLead], *parameters[kEdgeLeadGrowth]} {}
 };
 
@@ -68,6 +70,10 @@ struct PlacedCircle {
     normal_in_camera = mount.camera_from_imu * normal_in_imu;
   }
 };
+
+bool movesInTime(double** jacobians) {
+  return jacobians && (jacobians[kTimeOffset] || jacobians[kTimeOffsetDrift]);
+}
 
 // `by_px`: derivative of the residual with respect to the predicted centre.
 void writeJacobians(const Mount& mount, const PlacedCircle& placed, const ProjectedCircle& projected,
@@ -92,9 +98,12 @@ void writeJacobians(const Mount& mount, const PlacedCircle& placed, const Projec
                          by_centre * skew(placed.in_camera) + by_normal * skew(placed.normal_in_camera));
   }
   if (jacobians[kCameraTranslation]) jacobianRows<2, 3>(jacobians, kCameraTranslation, row) = -by_imu_centre;
-  if (jacobians[kTimeOffset]) {
-    jacobianRows<2, 1>(jacobians, kTimeOffset, row) =
+  if (movesInTime(jacobians)) {
+    const Vector2d by_time =
         by_attitude * placed.rotation.angular_velocity_rad_s + by_position * placed.position.velocity;
+    if (jacobians[kTimeOffset]) jacobianRows<2, 1>(jacobians, kTimeOffset, row) = by_time;
+    if (jacobians[kTimeOffsetDrift])
+      jacobianRows<2, 1>(jacobians, kTimeOffsetDrift, row) = circle.by_drift_s * by_time;
   }
   if (jacobians[kEdgeLead]) jacobianRows<2, 1>(jacobians, kEdgeLead, row) = by_px * circle.lead.of_lead;
   if (jacobians[kEdgeLeadGrowth])
@@ -127,8 +136,7 @@ CircleCost::CircleCost(const CircleModel& model, const SegmentTimes& segment,
 bool CircleCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
   const Mount mount(parameters);
   const So3Segment rotation_segment = rotationSegment(segment_, parameters + kRotation, jacobians != nullptr);
-  const RotationOrder order =
-      jacobians && jacobians[kTimeOffset] ? RotationOrder::Velocity : RotationOrder::Rotation;
+  const RotationOrder order = movesInTime(jacobians) ? RotationOrder::Velocity : RotationOrder::Rotation;
   const CameraIntrinsics camera = model_.free_intrinsics
                                       ? intrinsicsFrom(parameters[kIntrinsics], model_.camera.model, {})
                                       : model_.camera;
@@ -139,7 +147,8 @@ bool CircleCost::Evaluate(double const* const* parameters, double* residuals, do
     const CircleMeasurement& circle = circles_[i];
     const auto row = static_cast<Eigen::Index>(2 * i);
     Eigen::Map<Vector2d> residual(residuals + row);
-    const double time_s = circle.time_s + mount.time_offset_s;
+    const double time_s =
+        circle.time_s + mount.time_offset_s + circle.by_drift_s * mount.time_offset_drift_ppm;
     rotation_segment.evaluate(segment_.rotationPlace(time_s), order, placed.rotation,
                               jacobians ? &placed.by_control_points : nullptr);
     placed.position = positionAt(segment_, parameters + kPosition, time_s);

@@ -1,7 +1,8 @@
 // Zero when the measured ellipse centres are those of the projected circles, leading by the edge lead along
 // their image motion (docs/maths.md, 9.1):
 //   r = L^-1 [ centre(camera_from_world(t), circle) + lead (edge_lead.h) - measured ],
-//   t = t_measured + time_offset,  camera_from_world(t) = (world_from_imu(t) reference_from_camera)^-1,
+//   t = t_measured + time_offset + time_offset_drift (t_measured - t_0),
+//   camera_from_world(t) = (world_from_imu(t) reference_from_camera)^-1,
 // L the Cholesky factor of the centre's covariance, ideal pixels; each circle's residual is shortened so that
 // its square is Huber's loss. One cost function holds all circles of one camera whose times fall into one
 // spline segment: they share parameter blocks, and a block per circle would leave Ceres with bookkeeping
@@ -10,8 +11,9 @@
 // Where intrinsics are free, the prediction is that of free_intrinsics.h.
 //
 // Blocks: 4 rotation control points (x y z w), 4 position control points [m], reference_from_camera rotation
-// (x y z w) and translation [m], time offset [s], edge lead [px] and its growth [px]; where intrinsics are
-// free also those, fx fy cx cy d0..d4. Without unit. Quaternion blocks as in so3_manifold.h.
+// (x y z w) and translation [m], time offset [s] and its drift [ppm], edge lead [px] and its growth [px];
+// where intrinsics are free also those, fx fy cx cy d0..d4. Without unit. Quaternion blocks as in
+// so3_manifold.h.
 //
 // v is the measured image velocity: of the right direction to a percent or so where it matters, and it keeps
 // the lead linear.
@@ -30,7 +32,8 @@
 namespace evical {
 
 struct CircleMeasurement {
-  double time_s = 0.0;  // camera clock
+  double time_s = 0.0;      // camera clock
+  double by_drift_s = 0.0;  // how far each ppm of its drift moves that
   Eigen::Vector2d on_board_m, centre_px;
   Eigen::Matrix2d whitening_px;  // L^-1
   EdgeLeadEffect lead;

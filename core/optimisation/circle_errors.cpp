@@ -46,13 +46,13 @@ std::vector<CircleError> circleErrors(const CalibrationInput& input, const Calib
       const auto& circles = camera.observations.views[v].circles;
       for (std::size_t i = 0; i < circles.size(); ++i) {
         const CircleObservation& circle = circles[i];
-        const double time_s = circle.time_s + camera_state.time_offset_s;
+        const double time_s = referenceTime_s(camera_state, circle.time_s);
         if (!rotation.contains(time_s) || !position.contains(time_s)) continue;
         CircleError error{c, v, i, Eigen::Vector2d::Zero(), std::numeric_limits<double>::infinity()};
         const auto centre_px =
             predictedCentre(camera, camera_state, circle,
                             cameraFromWorld(rotation, position, camera_state.reference_from_camera,
-                                            camera_state.time_offset_s, circle.time_s),
+                                            timeOffsetAt_s(camera_state, circle.time_s), circle.time_s),
                             input.board);
         if (centre_px) {
           const EdgeLeadEffect lead = edgeLeadEffect(*camera.intrinsics, circle, options.rest_speed_px_s);

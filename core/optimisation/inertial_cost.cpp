@@ -13,6 +13,13 @@ void writeMapping(double** jacobians, int block, Eigen::Index row, const Vector3
   jacobianRows<3, 6>(jacobians, block, row) = derivativeByMapping(weight * v);
 }
 
+// With respect to the time offset, whose block is `first`, and its drift, the next.
+void writeTimeRows(double** jacobians, int first, Eigen::Index row, const Vector3d& by_time,
+                   const InertialMeasurement& sample) {
+  if (jacobians[first]) jacobianRows<3, 1>(jacobians, first, row) = by_time;
+  if (jacobians[first + 1]) jacobianRows<3, 1>(jacobians, first + 1, row) = sample.by_drift_s * by_time;
+}
+
 // Adds the weighted drift to the samples' residuals; its two blocks are the last, from `first` on.
 void addDrift(const DriftTimes& drift, const std::vector<InertialMeasurement>& samples, double weight,
               int first, double const* const* parameters, double* residuals, double** jacobians) {
@@ -62,7 +69,8 @@ enum AccelerometerBlock {
   kForceMapping,
   kForceRotation,
   kLeverArm,
-  kForceTimeOffset
+  kForceTimeOffset,
+  kForceTimeOffsetDrift
 };
 
 // The accelerometer's blocks, ready for use.
@@ -70,7 +78,7 @@ struct Accelerometer {
   bool further;
   Vector3d gravity, bias, lever_arm = Vector3d::Zero();
   Matrix3d mapping, imu_from_reference = Matrix3d::Identity();  // mapping: times the weight
-  double weight, time_offset_s = 0.0;
+  double weight, time_offset_s = 0.0, time_offset_drift_ppm = 0.0;
 
   Accelerometer(ImuRole role, double sample_weight, double const* const* parameters)
       : further(role == ImuRole::Further),
@@ -83,6 +91,7 @@ struct Accelerometer {
         Eigen::Map<const Eigen::Quaterniond>(parameters[kForceRotation]).toRotationMatrix().transpose();
     lever_arm = Eigen::Map<const Vector3d>(parameters[kLeverArm]);
     time_offset_s = *parameters[kForceTimeOffset];
+    time_offset_drift_ppm = *parameters[kForceTimeOffsetDrift];
   }
   // The rates matter through the lever arm only.
   RotationOrder order() const { return further ? RotationOrder::Acceleration : RotationOrder::Rotation; }
@@ -177,15 +186,14 @@ GyroscopeCost::GyroscopeCost(ImuRole role, double sigma_rad_s, const SegmentTime
       drift_(drift) {
   *mutable_parameter_block_sizes() = {4, 4, 4, 4, 3, 6, 4};
   if (role == ImuRole::Further) {
-    mutable_parameter_block_sizes()->push_back(4);
-    mutable_parameter_block_sizes()->push_back(1);
+    mutable_parameter_block_sizes()->insert(parameter_block_sizes().end(), {4, 1, 1});
   }
   if (drift) appendDriftBlocks(*mutable_parameter_block_sizes());
   set_num_residuals(3 * static_cast<int>(samples_.size()));
 }
 
 bool GyroscopeCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
-  enum { kBias = 4, kMapping, kGyroscopeRotation, kRotation, kTimeOffset };
+  enum { kBias = 4, kMapping, kGyroscopeRotation, kRotation, kTimeOffset, kTimeOffsetDrift };
   const bool further = role_ == ImuRole::Further;
   const Eigen::Map<const Vector3d> bias(parameters[kBias]);
   const Matrix3d gyroscope_from_imu =
@@ -197,12 +205,13 @@ bool GyroscopeCost::Evaluate(double const* const* parameters, double* residuals,
         Eigen::Map<const Eigen::Quaterniond>(parameters[kRotation]).toRotationMatrix().transpose();
   }
   const double time_offset_s = further ? *parameters[kTimeOffset] : 0.0;
-  const bool by_spline = anyOf(jacobians, 0, 4), by_time = further && jacobians && jacobians[kTimeOffset];
+  const double drift_ppm = further ? *parameters[kTimeOffsetDrift] : 0.0;
+  const bool by_spline = anyOf(jacobians, 0, 4), by_time = further && anyOf(jacobians, kTimeOffset, 2);
   const Matrix3d by_rate = by_imu_rate * imu_from_reference;
   const So3Segment rotation_segment = rotationSegment(segment_, parameters, by_spline);
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(3 * i);
-    const double time_s = samples_[i].time_s + time_offset_s;
+    const double time_s = samples_[i].time_s + time_offset_s + samples_[i].by_drift_s * drift_ppm;
     RotationSample rotation;
     RotationJacobians by_control_points;
     rotation_segment.evaluate(segment_.rotationPlace(time_s),
@@ -223,7 +232,7 @@ bool GyroscopeCost::Evaluate(double const* const* parameters, double* residuals,
     if (further && jacobians[kRotation])
       writeRotationRows<3>(jacobians, kRotation, row, by_imu_rate * skew(rate));
     if (by_time)
-      jacobianRows<3, 1>(jacobians, kTimeOffset, row) = by_rate * rotation.angular_acceleration_rad_s2;
+      writeTimeRows(jacobians, kTimeOffset, row, by_rate * rotation.angular_acceleration_rad_s2, samples_[i]);
   }
   if (drift_) {
     const int first = static_cast<int>(parameter_block_sizes().size()) - 2;
@@ -238,7 +247,7 @@ AccelerometerCost::AccelerometerCost(ImuRole role, double sigma_m_s2, const Segm
     : role_(role), weight_(1.0 / sigma_m_s2), segment_(segment), samples_(std::move(samples)), drift_(drift) {
   *mutable_parameter_block_sizes() = {4, 4, 4, 4, 3, 3, 3, 3, 3, 3, 6};
   if (role == ImuRole::Further)
-    mutable_parameter_block_sizes()->insert(parameter_block_sizes().end(), {4, 3, 1});
+    mutable_parameter_block_sizes()->insert(parameter_block_sizes().end(), {4, 3, 1, 1});
   if (drift) appendDriftBlocks(*mutable_parameter_block_sizes());
   set_num_residuals(3 * static_cast<int>(samples_.size()));
 }
@@ -266,7 +275,8 @@ bool AccelerometerCost::Evaluate(double const* const* parameters, double* residu
   MotionAtSample motion;
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(3 * i);
-    const double time_s = samples_[i].time_s + model.time_offset_s;
+    const double time_s =
+        samples_[i].time_s + model.time_offset_s + samples_[i].by_drift_s * model.time_offset_drift_ppm;
     moveTo(time_s, motion, by_spline);
     const SpecificForce force =
         specificForce(motion.rotation, motion.position, model.gravity, model.lever_arm);
@@ -275,10 +285,9 @@ bool AccelerometerCost::Evaluate(double const* const* parameters, double* residu
     if (!jacobians) continue;
     if (by_spline) writeSplineRows(model, motion, force, row, jacobians);
     writeModelRows(model, motion, force, row, jacobians);
-    if (model.further && jacobians[kForceTimeOffset]) {
-      jacobianRows<3, 1>(jacobians, kForceTimeOffset, row) =
-          model.mapping * model.imu_from_reference * forceRate(time_s);
-    }
+    if (model.further && anyOf(jacobians, kForceTimeOffset, 2))
+      writeTimeRows(jacobians, kForceTimeOffset, row,
+                    model.mapping * model.imu_from_reference * forceRate(time_s), samples_[i]);
   }
   if (drift_) {
     const int first = static_cast<int>(parameter_block_sizes().size()) - 2;

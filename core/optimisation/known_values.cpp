@@ -25,9 +25,11 @@ bool isReleased(const QuantityInfo& info, const OptimisationOptions& options, bo
     case QuantityRelease::ImuIntrinsics:
       return options.free_imu_intrinsics;
     case QuantityRelease::GyroscopeRotation:
+      return options.free_imu_intrinsics && (options.gyroscope_rotation || weighed);
+    case QuantityRelease::TimeOffsetDrift:
       break;
   }
-  return options.free_imu_intrinsics && (options.gyroscope_rotation || weighed);
+  return options.free_time_offsets && (options.time_offset_drift || weighed);
 }
 
 void setGivenValues(const CalibrationInput& input, const OptimisationOptions& options,

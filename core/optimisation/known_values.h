@@ -13,8 +13,8 @@
 
 namespace evical {
 
-// Whether the options let a quantity be estimated. A gyroscope's rotation with a prior that is to be
-// weighed needs no option of its own.
+// Whether the options let a quantity be estimated. A gyroscope's rotation or a drift with a prior that is to
+// be weighed needs no option of its own.
 bool isReleased(const QuantityInfo& info, const OptimisationOptions& options, bool weighed);
 
 // What a quantity is held at that is not released and has no prior; nothing where nobody asks for it.

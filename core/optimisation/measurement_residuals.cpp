@@ -14,6 +14,12 @@
 namespace evical {
 namespace {
 
+// How far each ppm of drift moves a time.
+template <class Sensor>
+double byDrift_s(const Sensor& sensor, double time_s) {
+  return 1e-6 * (time_s - sensor.time_offset_at_s);
+}
+
 bool sameSegment(const SegmentTimes& a, const SegmentTimes& b) {
   return a.rotation == b.rotation && a.position == b.position;
 }
@@ -28,6 +34,7 @@ CircleMeasurement circleOf(const ProblemBuilder& builder, std::size_t camera, st
       scale * scale * (observed.covariance_px2 + floor_px2 * Eigen::Matrix2d::Identity());
   CircleMeasurement m;
   m.time_s = observed.time_s;
+  m.by_drift_s = byDrift_s(builder.parameters.moved().cameras[camera], observed.time_s);
   m.on_board_m = builder.input.board.centre_m(observed.circle);
   m.centre_px = observed.centre_px;
   m.whitening_px = covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity());
@@ -47,7 +54,7 @@ std::vector<CircleMeasurement> circlesOf(const ProblemBuilder& builder, std::siz
   for (std::size_t view = 0; view < views.size(); ++view) {
     for (std::size_t i = 0; i < views[view].circles.size(); ++i) {
       if (!builder.weights.used_circles[camera][view][i]) continue;
-      const double time_s = views[view].circles[i].time_s + state.cameras[camera].time_offset_s;
+      const double time_s = referenceTime_s(state.cameras[camera], views[view].circles[i].time_s);
       if (!state.world_from_imu_rotation.contains(time_s) || !state.imu_in_world_m.contains(time_s)) continue;
       measurements.push_back(circleOf(builder, camera, view, i, pixel_errors));
     }
@@ -69,8 +76,11 @@ struct SampleRun {
 std::vector<InertialMeasurement> samplesOf(const ProblemBuilder& builder, const SampleRun& run,
                                            Eigen::Vector3d ImuSample::*value) {
   std::vector<InertialMeasurement> measurements;
-  for (const ImuSample& sample : run.samples)
-    measurements.push_back({secondsSince(builder.input.start_ns, sample.time_ns), sample.*value});
+  for (const ImuSample& sample : run.samples) {
+    const double time_s = secondsSince(builder.input.start_ns, sample.time_ns);
+    measurements.push_back(
+        {time_s, sample.*value, byDrift_s(builder.parameters.moved().imus[run.imu], time_s)});
+  }
   return measurements;
 }
 
@@ -90,7 +100,8 @@ void addGyroscope(ProblemBuilder& builder, const SampleRun& run) {
                 {state.gyroscope_bias_rad_s.data(), builder.parameters.of(state.gyroscope_mapping),
                  state.gyroscope_from_accelerometer.coeffs().data()});
   if (!builder.isReference(run.imu))
-    blocks.insert(blocks.end(), {state.reference_from_imu.rotation.coeffs().data(), &state.time_offset_s});
+    blocks.insert(blocks.end(), {state.reference_from_imu.rotation.coeffs().data(), &state.time_offset_s,
+                                 &state.time_offset_drift_ppm});
   const auto drift = appendDriftBlocks(state.bias_drift, state.bias_drift.gyroscope_rad_s,
                                        measurements.front().time_s, blocks);
   auto* cost = new GyroscopeCost(roleOf(builder, run), sigma, run.segment, std::move(measurements), drift);
@@ -112,7 +123,8 @@ void addAccelerometer(ProblemBuilder& builder, const SampleRun& run) {
                                builder.parameters.of(state.accelerometer_mapping)});
   if (!builder.isReference(run.imu)) {
     blocks.insert(blocks.end(), {state.reference_from_imu.rotation.coeffs().data(),
-                                 state.reference_from_imu.translation_m.data(), &state.time_offset_s});
+                                 state.reference_from_imu.translation_m.data(), &state.time_offset_s,
+                                 &state.time_offset_drift_ppm});
   }
   const auto drift = appendDriftBlocks(state.bias_drift, state.bias_drift.accelerometer_m_s2,
                                        measurements.front().time_s, blocks);
@@ -130,10 +142,10 @@ void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& 
   CameraState& state = parameters.moved().cameras[camera];
   const std::vector<CircleMeasurement> measurements = circlesOf(builder, camera, pixel_errors);
   for (std::size_t begin = 0, end = 0; begin < measurements.size(); begin = end) {
-    const double begin_s = measurements[begin].time_s + state.time_offset_s;
+    const double begin_s = referenceTime_s(state, measurements[begin].time_s);
     const SegmentTimes segment = parameters.segmentAt(begin_s);
     while (end < measurements.size() &&
-           sameSegment(segment, parameters.segmentAt(measurements[end].time_s + state.time_offset_s))) {
+           sameSegment(segment, parameters.segmentAt(referenceTime_s(state, measurements[end].time_s)))) {
       ++end;
     }
     auto* cost = new CircleCost(model, segment,
@@ -142,9 +154,10 @@ void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& 
     std::vector<double*> blocks;
     parameters.appendRotation(segment, blocks);
     parameters.appendPosition(segment, blocks);
-    blocks.insert(blocks.end(), {state.reference_from_camera.rotation.coeffs().data(),
-                                 state.reference_from_camera.translation_m.data(), &state.time_offset_s,
-                                 &state.edge_lead_px, &state.edge_lead_growth_px});
+    blocks.insert(blocks.end(),
+                  {state.reference_from_camera.rotation.coeffs().data(),
+                   state.reference_from_camera.translation_m.data(), &state.time_offset_s,
+                   &state.time_offset_drift_ppm, &state.edge_lead_px, &state.edge_lead_growth_px});
     if (IntrinsicsBlock* intrinsics = parameters.intrinsics(camera)) blocks.push_back(intrinsics->data());
     builder.residuals.push_back({builder.problem.AddResidualBlock(cost, nullptr, blocks), SensorKind::Circles,
                                  camera, begin_s, cost});
@@ -155,7 +168,7 @@ void addImu(ProblemBuilder& builder, std::size_t imu) {
   const CalibrationState& state = builder.parameters.moved();
   const auto& samples = builder.input.imus[imu].samples;
   const auto timeOf = [&](const ImuSample& sample) {
-    return secondsSince(builder.input.start_ns, sample.time_ns) + state.imus[imu].time_offset_s;
+    return referenceTime_s(state.imus[imu], secondsSince(builder.input.start_ns, sample.time_ns));
   };
   const auto inRotation = [&](double time_s) { return state.world_from_imu_rotation.contains(time_s); };
   const auto inPosition = [&](double time_s) { return state.imu_in_world_m.contains(time_s); };

@@ -14,6 +14,8 @@ enum class BiasModel { Constant, Linear };
 
 struct OptimisationOptions {
   bool free_time_offsets = true;
+  bool time_offset_drift = false;
+  double time_offset_drift_sigma_ppm = 50.0;
   bool free_imu_intrinsics = true;
   bool free_gravity_norm = false;
   CameraIntrinsicsChoice camera_intrinsics = CameraIntrinsicsChoice::Automatic;
@@ -62,6 +64,11 @@ struct OptimisationOptions {
 inline constexpr auto kOptimisationFields = std::tuple{
     Switch{"free_time_offsets", &OptimisationOptions::free_time_offsets,
            "Estimate time offsets; else each stays at the session's prior value, or 0 without one."},
+    Switch{"time_offset_drift", &OptimisationOptions::time_offset_drift,
+           "Estimate how each time offset drifts, as clocks of their own do. With a weighed prior it "
+           "is estimated in any case."},
+    Field{"time_offset_drift_sigma_ppm", &OptimisationOptions::time_offset_drift_sigma_ppm, 1e-4, 1e5, "ppm",
+          "Prior on that drift around 0."},
     Switch{"free_imu_intrinsics", &OptimisationOptions::free_imu_intrinsics,
            "Estimate scales and misalignments M_g and M_a; else each stays at the session's prior value, or "
            "the identity without one. Biases stay free."},

@@ -10,6 +10,13 @@
 namespace evical {
 namespace {
 
+// In the middle of the recording offset and drift hardly correlate. What drifts already keeps its time.
+template <class Sensor>
+void startDrift(const So3Spline& trajectory, Sensor& sensor) {
+  if (sensor.time_offset_drift_ppm == 0.0)
+    sensor.time_offset_at_s = sensorTime_s(sensor, 0.5 * (trajectory.start_s + trajectory.endTime_s()));
+}
+
 // visit(matrix of one IMU, the same of another): matrices are blocks of their upper triangles.
 template <class Visitor>
 void forEachMatrix(const ImuState& imu, ImuState& other, Visitor&& visit) {
@@ -24,6 +31,8 @@ void forEachMatrix(const ImuState& imu, ImuState& other, Visitor&& visit) {
 ParameterBlocks::ParameterBlocks(const CalibrationInput& input, const OptimisationOptions& options,
                                  const CalibrationState& initial)
     : moved_(initial) {
+  for (CameraState& camera : moved_.cameras) startDrift(moved_.world_from_imu_rotation, camera);
+  for (ImuState& imu : moved_.imus) startDrift(moved_.world_from_imu_rotation, imu);
   setGivenValues(input, options, moved_);
   for (std::size_t i = 0; i < moved_.imus.size(); ++i) {
     placeBiasKnots(options, input.imus[i].noise, moved_.world_from_imu_rotation, moved_.imus[i]);

@@ -38,6 +38,11 @@ void holdMapping(ProblemBuilder& builder, double* mapping, const std::vector<Eig
   for (const Eigen::Vector3d& axis : axes) builder.addPrior(new HeldAxisCost(axis, prior, kSigma), {mapping});
 }
 
+void addDriftPrior(ProblemBuilder& builder, const SensorPrior& prior, double& time_offset_drift_ppm) {
+  if (builder.drifts(prior) && !prior.time_offset_drift)
+    addPrior(builder, &time_offset_drift_ppm, 1, kZero.data(), builder.options.time_offset_drift_sigma_ppm);
+}
+
 void addCameraPriors(ProblemBuilder& builder) {
   std::vector<CameraState>& cameras = builder.parameters.moved().cameras;
   for (CameraState& camera : cameras) {
@@ -55,6 +60,7 @@ void addCameraPriors(ProblemBuilder& builder) {
     double* translation = cameras[i].reference_from_camera.translation_m.data();
     if (!known) addPrior(builder, translation, 3, kZero.data(), builder.options.translation_sigma_m);
     holdTranslation(builder, translation, known);
+    addDriftPrior(builder, builder.input.cameras[i].prior, cameras[i].time_offset_drift_ppm);
   }
 }
 
@@ -65,6 +71,7 @@ void addImuPriors(ProblemBuilder& builder, std::size_t imu) {
   double* translation = state.reference_from_imu.translation_m.data();
   if (!prior.translation) addPrior(builder, translation, 3, kZero.data(), options.translation_sigma_m);
   holdTranslation(builder, translation, prior.translation);
+  addDriftPrior(builder, prior, state.time_offset_drift_ppm);
   if (!prior.gyroscope_bias)
     addPrior(builder, state.gyroscope_bias_rad_s.data(), 3, kZero.data(), options.gyroscope_bias_sigma_rad_s);
   if (!prior.accelerometer_bias)

@@ -8,6 +8,11 @@ bool ProblemBuilder::turnsGyroscope(std::size_t imu) const {
          weights.held_axes[imu].gyroscope.empty();
 }
 
+bool ProblemBuilder::drifts(const SensorPrior& prior) const {
+  const std::optional<KnownNumber>& drift = prior.time_offset_drift;
+  return options.free_time_offsets && (options.time_offset_drift || drift) && !isGiven(drift);
+}
+
 void ProblemBuilder::addPrior(ceres::CostFunction* cost, const std::vector<double*>& blocks) {
   residuals.push_back({problem.AddResidualBlock(cost, nullptr, blocks)});
 }

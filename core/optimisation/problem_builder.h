@@ -38,6 +38,7 @@ struct ProblemBuilder {
   bool isReference(std::size_t imu) const { return imu == input.reference_imu; }
   // Where nothing turns about some axis the gyroscope could take any turn about it.
   bool turnsGyroscope(std::size_t imu) const;
+  bool drifts(const SensorPrior& prior) const;  // a clock with this prior
 
   void addPrior(ceres::CostFunction* cost, const std::vector<double*>& blocks);
   void hold(double* block);  // if it is in the problem

@@ -16,7 +16,7 @@ SampleErrors sampleErrors(const CalibrationInput& input, const CalibrationState&
   double gyroscope2 = 0.0, accelerometer2 = 0.0;
   for (const ImuSample& sample : input.imus[imu].samples) {
     const double imu_time_s = secondsSince(input.start_ns, sample.time_ns);
-    const double time_s = imu_time_s + imu_state.time_offset_s;
+    const double time_s = referenceTime_s(imu_state, imu_time_s);
     if (!state.world_from_imu_rotation.contains(time_s)) continue;
     const RotationSample rotation = evaluate(state.world_from_imu_rotation, time_s);
     const Eigen::Vector3d& w = rotation.angular_velocity_rad_s;

@@ -52,7 +52,7 @@ StillAxes stillAxes(const CalibrationInput& input, const CalibrationState& state
   Spread rates, forces;
   for (const ImuSample& sample : data.samples) {
     const double imu_time_s = secondsSince(input.start_ns, sample.time_ns);
-    const double time_s = imu_time_s + state.imus[imu].time_offset_s;
+    const double time_s = referenceTime_s(state.imus[imu], imu_time_s);
     if (!state.world_from_imu_rotation.contains(time_s)) continue;
     rates.add(sample.angular_rate_rad_s - state.imus[imu].gyroscopeBiasAt_rad_s(imu_time_s));
     forces.add(sample.specific_force_m_s2 - state.imus[imu].accelerometerBiasAt_m_s2(imu_time_s));

@@ -17,7 +17,7 @@ std::vector<std::uint8_t> seenSegments(const CalibrationInput& input, const Cali
   std::vector<std::uint8_t> seen(static_cast<std::size_t>(std::max(0, segments)));
   for (std::size_t camera = 0; camera < input.cameras.size(); ++camera) {
     for (const BoardView& view : input.cameras[camera].observations.views) {
-      const double place = (view.time_s + state.cameras[camera].time_offset_s - start_s) / spacing_s;
+      const double place = (referenceTime_s(state.cameras[camera], view.time_s) - start_s) / spacing_s;
       if (place >= 0.0 && place < static_cast<double>(segments)) seen[static_cast<std::size_t>(place)] = 1;
     }
   }

@@ -40,13 +40,13 @@ class Blocks {
 
 constexpr double kMargin_knots = 0.5;  // for what moves with a time offset
 
-void splitViews(const BoardObservations& all, double time_offset_s, const Blocks& blocks,
+void splitViews(const BoardObservations& all, const CameraState& camera, const Blocks& blocks,
                 std::array<BoardObservations*, 2> halves) {
   for (const BoardView& view : all.views) {
     for (std::size_t half = 0; half < 2; ++half) {
       BoardView part = view;
       std::erase_if(part.circles, [&](const CircleObservation& circle) {
-        return blocks.halfAt(circle.time_s + time_offset_s, kMargin_knots) != static_cast<int>(half);
+        return blocks.halfAt(referenceTime_s(camera, circle.time_s), kMargin_knots) != static_cast<int>(half);
       });
       if (!part.circles.empty()) halves[half]->views.push_back(std::move(part));
     }
@@ -110,7 +110,7 @@ std::array<CalibrationInput, 2> splitIntoHalves(const CalibrationInput& input, c
           {camera.name, camera.intrinsics, {}, camera.prior, camera.intrinsics_found_first});
       half.cameras.back().observations.camera = camera.name;
     }
-    splitViews(camera.observations, state.cameras[i].time_offset_s, blocks,
+    splitViews(camera.observations, state.cameras[i], blocks,
                {&halves[0].cameras[i].observations, &halves[1].cameras[i].observations});
   }
   for (std::size_t i = 0; i < input.imus.size(); ++i) {
@@ -118,7 +118,7 @@ std::array<CalibrationInput, 2> splitIntoHalves(const CalibrationInput& input, c
     for (CalibrationInput& half : halves) half.imus.push_back({imu.name, imu.noise, {}, imu.prior});
     const double margin_knots = i == input.reference_imu ? 0.0 : kMargin_knots;
     for (const ImuSample& sample : imu.samples) {
-      const double time_s = secondsSince(input.start_ns, sample.time_ns) + state.imus[i].time_offset_s;
+      const double time_s = referenceTime_s(state.imus[i], secondsSince(input.start_ns, sample.time_ns));
       const int half = blocks.halfAt(time_s, margin_knots);
       if (half >= 0) halves[static_cast<std::size_t>(half)].imus[i].samples.push_back(sample);
     }

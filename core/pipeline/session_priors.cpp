@@ -168,8 +168,9 @@ void allowOnlyKeys(const YamlNode& sensor, const Rows& rows, std::initializer_li
 
 void readCameraPrior(const YamlNode& map, const std::string& name, Session& session) {
   SensorPrior& prior = sensorOf(map, name, session.cameras).prior;
-  allowOnlyKeys(map, kCameraQuantities,
-                {"stream", "reprojection_rms_px", "normalised_rms", "windows", "circles"});
+  allowOnlyKeys(
+      map, kCameraQuantities,
+      {"stream", "time_offset_at_s", "reprojection_rms_px", "normalised_rms", "windows", "circles"});
   readPriors(map, kCameraQuantities, prior);
   if (name == session.reference && session.imus.empty()) dropOwnPlace(map, kCameraQuantities, prior);
 }
@@ -177,7 +178,7 @@ void readCameraPrior(const YamlNode& map, const std::string& name, Session& sess
 void readImuPrior(const YamlNode& map, const std::string& name, Session& session) {
   ImuPrior& prior = sensorOf(map, name, session.imus).prior;
   allowOnlyKeys(map, kImuQuantities,
-                {"stream", "accelerometer_noise_density", "gyroscope_noise_density",
+                {"stream", "time_offset_at_s", "accelerometer_noise_density", "gyroscope_noise_density",
                  "accelerometer_random_walk", "gyroscope_random_walk", "rate_hz"});
   readPriors(map, kImuQuantities, prior);
   if (name == session.reference) dropOwnPlace(map, kImuQuantities, prior);

@@ -114,6 +114,7 @@ void readCamera(const YamlNode& map, NamedResult& named) {
   CameraUncertainty sigma;
   CameraFit fit;
   readQuantities(map, kCameraQuantities, state, sigma);
+  get(map, "time_offset_at_s", state.time_offset_at_s);
   get(map, "reprojection_rms_px", fit.reprojection_rms_px);
   get(map, "normalised_rms", fit.normalised_rms);
   if (const auto windows = map.find("windows")) {
@@ -151,6 +152,7 @@ void readImu(const YamlNode& map, NamedResult& named) {
   ImuUncertainty sigma;
   ImuFit fit;
   readQuantities(map, kImuQuantities, state, sigma);
+  get(map, "time_offset_at_s", state.time_offset_at_s);
   if (const auto gyroscope = map.find("gyroscope"))
     get(*gyroscope, "residual_rms_rad_s", fit.gyroscope_rms_rad_s);
   if (const auto accelerometer = map.find("accelerometer"))

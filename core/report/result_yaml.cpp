@@ -31,6 +31,13 @@ void addSigma(const QuantityInfo& info, const Sigma& sigma, YamlSections& sectio
   sections.add(info.section, info.std_key, quantityYaml(Sigma(yamlSigmaFactor(info) * sigma), roundedYaml));
 }
 
+// Where clocks drift it matters when the time offset is what it is.
+template <class State>
+void addTimeOfOffset(const State& state, YamlSections& sections) {
+  if (state.time_offset_drift_ppm != 0.0)
+    sections.add({}, "time_offset_at_s", quantityYaml(state.time_offset_at_s, exactYaml));
+}
+
 enum class Written { Values, Sigmas, Both };
 
 // The rows that `chosen` takes, but for intrinsics, which have a map of their own.
@@ -40,6 +47,7 @@ void addQuantities(const Rows& rows, const State& state, const Uncertainty& unce
   forEachQuantity(rows, [&](const auto& row) {
     const QuantityInfo& info = row.info;
     if (!chosen(info)) return;
+    if (info.written == QuantityWriting::WherePresent && !isPresent(row, state, uncertainty)) return;
     if constexpr (!std::is_same_v<decltype(row.value(state)), const std::optional<CameraIntrinsics>&>) {
       if (written != Written::Sigmas)
         sections.add(info.section, info.key, quantityYaml(row.value(state), exactYaml));
@@ -75,6 +83,7 @@ std::string cameraYaml(const NamedResult& named, std::size_t i) {
   YamlSections sections;
   addPlace(kCameraQuantities, state, sigma, sections);
   addQuantities(kCameraQuantities, state, sigma, Written::Both, sections, besidesPose);
+  addTimeOfOffset(state, sections);
   text += sections.text(kSensorIndent);
   if (const auto intrinsics = elementOrNone(named.names.intrinsics, i)) {
     text += "    intrinsics:\n" + intrinsicsYaml(*intrinsics, 6);
@@ -122,6 +131,7 @@ std::string imuYaml(const NamedResult& named, std::size_t i) {
   addQuantities(kImuQuantities, state, sigma, Written::Both, sections, [](const QuantityInfo& info) {
     return besidesPose(info) && info.presence != QuantityPresence::Always;
   });
+  addTimeOfOffset(state, sections);
   return text + sections.text(kSensorIndent);
 }
 

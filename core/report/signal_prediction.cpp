@@ -17,7 +17,7 @@ SignalPrediction predictSignals(const ImuData& data, std::int64_t start_ns, cons
     if (k % kSamplesBetweenStops == 0) context.throwIfStopped();
     const ImuSample& sample = data.samples[k];
     const double imu_time_s = secondsSince(start_ns, sample.time_ns);
-    const double time_s = imu_time_s + imu_state.time_offset_s;
+    const double time_s = referenceTime_s(imu_state, imu_time_s);
     if (!state.world_from_imu_rotation.contains(time_s) || !state.imu_in_world_m.contains(time_s)) continue;
     const MotionSample motion = motionAt(state.world_from_imu_rotation, state.imu_in_world_m, time_s);
     const Eigen::Vector3d& rate = motion.angular_velocity_rad_s;

@@ -31,7 +31,7 @@ void simulate(const Scenario& scenario, std::size_t index, Use&& use) {
     const Eigen::Vector3d force = state.world_from_body.rotation.conjugate() *
                                   (state.acceleration_in_world_m_s2 - scenario.gravity_in_world_m_s2);
     ImuSample sample;
-    sample.time_ns = scenario.start_ns + nanosecondsFrom(reference_time_s - imu.time_offset_s);
+    sample.time_ns = scenario.start_ns + nanosecondsFrom(sensorTime_s(imu, reference_time_s));
     sample.angular_rate_rad_s = by_rate * state.angular_velocity_in_body_rad_s + gyroscope_bias +
                                 imu.gyroscope_density * root_rate * noise();
     sample.specific_force_m_s2 = imu.accelerometer_mapping * force + accelerometer_bias +

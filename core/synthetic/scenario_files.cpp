@@ -51,7 +51,8 @@ std::string imuTruth(const Scenario& scenario, std::size_t index) {
   truth.accelerometer_bias_m_s2 = biases.accelerometer_m_s2;
   YamlSections sections;
   forEachQuantity(kImuQuantities, [&](const auto& row) {
-    sections.add(row.info.section, row.info.key, quantityYaml(row.value(truth), exactYaml));
+    if (row.info.written == QuantityWriting::Always)
+      sections.add(row.info.section, row.info.key, quantityYaml(row.value(truth), exactYaml));
   });
   return fmt::format("  {}:\n{}", yamlText(imu.name), sections.text(4));
 }

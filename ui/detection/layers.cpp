@@ -305,12 +305,12 @@ std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t
   std::vector<QPolygonF> outlines;
   if (camera >= state.cameras.size()) return outlines;
   const CameraState& own = state.cameras[camera];
-  const double imu_time_s = time_s + own.time_offset_s;
+  const double imu_time_s = referenceTime_s(own, time_s);
   if (state.world_from_imu_rotation.segmentCount() < 1 || !state.world_from_imu_rotation.contains(imu_time_s))
     return outlines;
   const RigidTransform camera_from_world =
       cameraFromWorld(state.world_from_imu_rotation, state.imu_in_world_m, own.reference_from_camera,
-                      own.time_offset_s, time_s);
+                      timeOffsetAt_s(own, time_s), time_s);
   const std::map<int, Eigen::Vector2d> leads = idealLeads(own, intrinsics, view, rest_speed_px_s);
   for (int circle = 0; circle < board.circleCount(); ++circle) {
     const auto outline = imageOf(circle, camera_from_world, own.intrinsics.value_or(intrinsics), board);

@@ -45,26 +45,28 @@ RotationRates rotationRates(const CameraData& camera, const CircleBoard& board,
                             const RunContext& context) {
   RotationRates rates;
   if (imu.samples.size() < 2) return rates;
-  const double offset_s =
-      camera_state.time_offset_s - imu_state.time_offset_s;  // imu_time = camera_time + offset
+  const auto imuTime_s = [&](double camera_time_s) {
+    return sensorTime_s(imu_state, referenceTime_s(camera_state, camera_time_s));
+  };
   const GyroRotation gyro(trueSamples(imu, imu_state, start_ns), start_ns);
   context.throwIfStopped();
   std::vector<CameraPose> poses = estimateCameraPoses(camera, board, options).poses;
   context.throwIfStopped();
-  resolveAmbiguousPoses(poses, gyro, offset_s, options.longest_pair_s);
+  resolveAmbiguousPoses(poses, gyro, camera_state.time_offset_s - imu_state.time_offset_s,
+                        options.longest_pair_s);
   for (std::size_t k = 0, l = 0; k < poses.size(); ++k) {
     const double begin_s = poses[k].time_s;
     while (l < poses.size() && poses[l].time_s - begin_s < options.pair_gap_s - 1e-6) ++l;
     if (l == poses.size()) break;
     const double end_s = poses[l].time_s, duration_s = end_s - begin_s;
     if (duration_s > options.longest_pair_s) continue;
-    if (!gyro.covers(begin_s, end_s) || !gyro.covers(begin_s + offset_s, end_s + offset_s)) continue;
+    if (!gyro.covers(begin_s, end_s) || !gyro.covers(imuTime_s(begin_s), imuTime_s(end_s))) continue;
     rates.time_s.push_back(0.5 * (begin_s + end_s));
     rates.camera_rad_s.push_back(
         rotationAngleBetween_rad(poses[k].world_from_camera.rotation, poses[l].world_from_camera.rotation) /
         duration_s);
     rates.imu_before_rad_s.push_back(gyro.between(begin_s, end_s).norm() / duration_s);
-    rates.imu_after_rad_s.push_back(gyro.between(begin_s + offset_s, end_s + offset_s).norm() / duration_s);
+    rates.imu_after_rad_s.push_back(gyro.between(imuTime_s(begin_s), imuTime_s(end_s)).norm() / duration_s);
   }
   return rates;
 }

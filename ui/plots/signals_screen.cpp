@@ -195,7 +195,7 @@ void SignalsScreen::compute() {
     const ImuData& samples = run->pass.imus[imu];
     SignalPrediction prediction = predictSignals(samples, run->pass.start_ns, state, imu, context);
     for (double& time_s : prediction.time_s)
-      time_s += state.imus[imu].time_offset_s - state.cameras[camera].time_offset_s;
+      time_s = sensorTime_s(state.cameras[camera], referenceTime_s(state.imus[imu], time_s));
     const double root_rate = std::sqrt(samples.rate_hz());
     const auto drawing = std::make_shared<Drawing>();
     drawing->gyroscope =

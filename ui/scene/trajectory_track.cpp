@@ -81,12 +81,13 @@ bool hasTrajectory(const CalibrationState& state) {
   return state.world_from_imu_rotation.segmentCount() > 0 && state.imu_in_world_m.segmentCount() > 0;
 }
 
-double cameraTimeOffset_s(const CalibrationState& state) {
-  return state.cameras.empty() ? 0.0 : state.cameras.front().time_offset_s;
+double firstCameraTime_s(const CalibrationState& state, double time_s) {
+  return state.cameras.empty() ? time_s : sensorTime_s(state.cameras.front(), time_s);
 }
 
 std::optional<RigInstant> rigAt(const CalibrationState& state, double camera_time_s) {
-  const double time_s = camera_time_s + cameraTimeOffset_s(state);
+  const double time_s =
+      state.cameras.empty() ? camera_time_s : referenceTime_s(state.cameras.front(), camera_time_s);
   if (!hasTrajectory(state) || !state.imu_in_world_m.contains(time_s)) return std::nullopt;
   RigInstant rig;
   rig.imu = motionAt(state.world_from_imu_rotation, state.imu_in_world_m, time_s);
@@ -105,16 +106,15 @@ TrajectoryTrack sampleTrajectory(const CalibrationState& state, std::span<const 
   const VectorSpline& spline = state.imu_in_world_m;
   const double begin_s = spline.start_s, end_s = spline.endTime_s();
   const double step_s = std::max(spline.knot_spacing_s / kSamplesPerKnot, (end_s - begin_s) / kMostSamples);
-  const double offset_s = cameraTimeOffset_s(state);
   const std::vector<ViewError> errors = errorsOfViews(residuals);
   for (double t = begin_s; t <= end_s; t += step_s) {
     const VectorSample sample = evaluate(spline, t);
-    track.times_s.push_back(t - offset_s);
+    track.times_s.push_back(firstCameraTime_s(state, t));
     track.positions_m.push_back(sample.value);
     track.speeds_m_s.push_back(sample.velocity.norm());
-    track.residuals_px.push_back(residualNear(errors, t - offset_s));
+    track.residuals_px.push_back(residualNear(errors, track.times_s.back()));
   }
-  track.stations = placeStations(state, begin_s - offset_s, end_s - offset_s);
+  track.stations = placeStations(state, firstCameraTime_s(state, begin_s), firstCameraTime_s(state, end_s));
   return track;
 }
 

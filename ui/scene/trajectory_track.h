@@ -34,8 +34,8 @@ struct TrajectoryTrack {
 // Nothing in it where the state has no splines yet.
 TrajectoryTrack sampleTrajectory(const CalibrationState& state, std::span<const CircleResidual> residuals);
 
-// The first camera's time of a time of the splines: imu_time = camera_time + this.
-double cameraTimeOffset_s(const CalibrationState& state);
+// The first camera's time of a time of the splines.
+double firstCameraTime_s(const CalibrationState& state, double time_s);
 bool hasTrajectory(const CalibrationState& state);
 
 // The instant at the cursor.

@@ -167,6 +167,11 @@ CalibrationInput withoutPriors(CalibrationInput input) {
   return input;
 }
 
+// What is not estimated otherwise is, where there is a prior to hold against the recording.
+void freeDrift(const SensorPrior& prior, OptimisationOptions& options) {
+  options.time_offset_drift = options.time_offset_drift || prior.time_offset_drift.has_value();
+}
+
 bool hasPrior(const CalibrationInput& input) {
   for (const CameraData& camera : input.cameras)
     if (camera.prior != SensorPrior{}) return true;
@@ -184,8 +189,11 @@ PriorCheck checkPriors(const CalibrationInput& input, const BatchSolution& solut
   PriorCheck check;
   OptimisationOptions free = options;
   free.free_time_offsets = free.free_imu_intrinsics = true;
-  for (const ImuData& imu : input.imus)
+  for (const CameraData& camera : input.cameras) freeDrift(camera.prior, free);
+  for (const ImuData& imu : input.imus) {
+    freeDrift(imu.prior, free);
     free.gyroscope_rotation = free.gyroscope_rotation || imu.prior.gyroscope_rotation.has_value();
+  }
   const RunContext quiet{silentProgress(), context.stop};
   try {
     const CalibrationInput without = withoutPriors(input);

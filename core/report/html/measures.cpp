@@ -62,11 +62,11 @@ void addPoses(const BoardObservations& observations, const CalibrationState& sta
   for (const Eigen::Vector2d& centre_m : circleCentres_m(board)) middle_m += centre_m / board.circleCount();
   const CameraState& mounted = state.cameras[index];
   for (const BoardView& view : observations.views) {
-    const double time_s = view.time_s + mounted.time_offset_s;
+    const double time_s = referenceTime_s(mounted, view.time_s);
     if (!state.world_from_imu_rotation.contains(time_s) || !state.imu_in_world_m.contains(time_s)) continue;
     const RigidTransform pose =
         cameraFromWorld(state.world_from_imu_rotation, state.imu_in_world_m, mounted.reference_from_camera,
-                        mounted.time_offset_s, view.time_s);
+                        timeOffsetAt_s(mounted, view.time_s), view.time_s);
     const Eigen::Vector3d normal = pose.rotation * Eigen::Vector3d::UnitZ();
     const Eigen::Vector3d along = pose.rotation * Eigen::Vector3d::UnitX();
     const Eigen::Vector3d at =

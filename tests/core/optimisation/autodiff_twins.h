@@ -138,12 +138,13 @@ struct GyroscopeTwin {
 
   template <class T>
   bool operator()(T const* const* p, T* residuals) const {
-    const std::size_t last = further ? 9 : 7;
+    const std::size_t last = further ? 10 : 7;
     const Matrix3<T> mapping = mappingAt(p[5]) * matrixOf(turned(base[6], p[6]));
     const Matrix3<T> reference_from_imu =
         further ? matrixOf(turned(base[7], p[7])) : Matrix3<T>(Matrix3<T>::Identity());
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      const T time_s = further ? samples[i].time_s + p[8][0] : T(samples[i].time_s);
+      const T time_s =
+          further ? samples[i].time_s + p[8][0] + samples[i].by_drift_s * p[9][0] : T(samples[i].time_s);
       const T place = (time_s - segment.rotation_start_s) / segment.rotation_spacing_s;
       Vector3<T> rate = mapping * (reference_from_imu.transpose() *
                                    rotationAt(base, p, place, segment.rotation_spacing_s).velocity()) +
@@ -165,9 +166,10 @@ struct AccelerometerTwin {
 
   template <class T>
   bool operator()(T const* const* p, T* residuals) const {
-    const std::size_t last = further ? 14 : 11;
+    const std::size_t last = further ? 15 : 11;
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      const T time_s = further ? samples[i].time_s + p[13][0] : T(samples[i].time_s);
+      const T time_s =
+          further ? samples[i].time_s + p[13][0] + samples[i].by_drift_s * p[14][0] : T(samples[i].time_s);
       const T place = (time_s - segment.rotation_start_s) / segment.rotation_spacing_s;
       const TwinRotation<T> rotation = rotationAt(base, p, place, segment.rotation_spacing_s);
       const T position_place = (time_s - segment.position_start_s) / segment.position_spacing_s;
@@ -213,7 +215,7 @@ struct CircleTwin {
   // (x/z, y/z) of the centre of the ellipse: the last column of H C* H^T, C* = diag(r^2, r^2, -1).
   template <class T>
   Eigen::Matrix<T, 2, 1> normalisedCentre(T const* const* p, const CircleMeasurement& circle) const {
-    const T time_s = circle.time_s + p[10][0];
+    const T time_s = circle.time_s + p[10][0] + circle.by_drift_s * p[11][0];
     const T rotation_place = (time_s - segment.rotation_start_s) / segment.rotation_spacing_s;
     const T position_place = (time_s - segment.position_start_s) / segment.position_spacing_s;
     const Matrix3<T> world_from_imu = rotationAt(base, p, rotation_place, segment.rotation_spacing_s).value;
@@ -238,7 +240,7 @@ struct CircleTwin {
     const Eigen::Matrix2d ideal_from_sensor = idealPixelScale(model.camera, circle.centre_px);
     const Eigen::Vector2d seen = pixelFromIdeal(model.camera, circle.centre_px);
     const Eigen::Matrix<T, 2, 1> off =
-        pixelOf(model.camera.model, p[13], centre[0], centre[1]) - seen.template cast<T>();
+        pixelOf(model.camera.model, p[14], centre[0], centre[1]) - seen.template cast<T>();
     return circle.centre_px.template cast<T>() + ideal_from_sensor.template cast<T>() * off;
   }
 
@@ -246,8 +248,8 @@ struct CircleTwin {
   bool operator()(T const* const* p, T* residuals) const {
     for (std::size_t i = 0; i < circles.size(); ++i) {
       const CircleMeasurement& circle = circles[i];
-      const Eigen::Matrix<T, 2, 1> lead = p[11][0] * circle.lead.of_lead.template cast<T>() +
-                                          p[12][0] * circle.lead.of_growth.template cast<T>();
+      const Eigen::Matrix<T, 2, 1> lead = p[12][0] * circle.lead.of_lead.template cast<T>() +
+                                          p[13][0] * circle.lead.of_growth.template cast<T>();
       Eigen::Matrix<T, 2, 1> error = circle.whitening_px.template cast<T>() *
                                      (idealPixelOf(p, circle) + lead - circle.centre_px.template cast<T>());
       const T length = sqrt(error.squaredNorm());

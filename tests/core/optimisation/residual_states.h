@@ -71,6 +71,7 @@ inline Blocks circleBlocks(States& states, double step_rad) {
   blocks.push_back(States::numbers(quaternionExp(states.vector(0.2))));
   blocks.push_back(States::numbers(states.vector(0.05)));
   blocks.push_back({states.uniform(0.004)});
+  blocks.push_back({states.uniform(0.5)});
   blocks.push_back({states.uniform(0.3)});
   blocks.push_back({states.uniform(0.3)});
   return blocks;
@@ -82,6 +83,7 @@ inline std::vector<CircleMeasurement> circlesNear(const CircleModel& model, cons
   std::vector<CircleMeasurement> circles(3);
   for (std::size_t i = 0; i < circles.size(); ++i) {
     circles[i].time_s = 1.004 + 0.005 * static_cast<double>(i);
+    circles[i].by_drift_s = 0.002 * (static_cast<double>(i) - 1.0);
     circles[i].on_board_m = {0.1 * static_cast<double>(i), 0.05 * static_cast<double>(i)};
     circles[i].centre_px.setZero();
     circles[i].whitening_px.setIdentity();

@@ -141,7 +141,7 @@ CameraData observe(const TrueMotion& motion, const CameraState& camera, const Ci
       CameraIntrinsics{CameraModel::PinholeRadtan, {346, 260}, {260.0, 260.0}, {173.0, 130.0}, {}};
   const auto centre = [&](double camera_time_s, int circle) {
     const RigidTransform world_from_camera =
-        motion.worldFromImu(camera_time_s + camera.time_offset_s) * camera.reference_from_camera;
+        motion.worldFromImu(referenceTime_s(camera, camera_time_s)) * camera.reference_from_camera;
     return projectedCircleCentre(*data.intrinsics, inverse(world_from_camera), board.centre_m(circle),
                                  board.radius_m);
   };
@@ -190,7 +190,7 @@ ImuData measure(const std::string& name, const TrueMotion& motion, ImuState& imu
   Vector3d gyroscope_bias = imu.gyroscope_bias_rad_s, accelerometer_bias = imu.accelerometer_bias_m_s2;
   Vector3d gyroscope_sum = Vector3d::Zero(), accelerometer_sum = Vector3d::Zero();
   for (double t = -kMargin_s; t < options.duration_s + kMargin_s; t += 1.0 / options.imu_rate_hz) {
-    const double reference_s = t + imu.time_offset_s;
+    const double reference_s = referenceTime_s(imu, t);
     const Vector3d w = motion.angularVelocity(reference_s), a = motion.angularAcceleration(reference_s);
     const Vector3d force =
         motion.worldFromImu(reference_s).rotation.conjugate() * (motion.acceleration(reference_s) - gravity) +
@@ -229,6 +229,7 @@ SimulatedRig simulateRig(const RigOptions& options) {
                                   Vector3d(0.04, -0.03, 0.05) + random.uniform3(0.02)};
   camera.time_offset_s = random.uniform(-0.01, 0.01);
   camera.edge_lead_px = random.uniform(-0.3, 0.3);
+  camera.time_offset_drift_ppm = options.time_offset_drift_ppm;
   rig.truth.cameras = {camera};
   rig.truth.gravity_in_world_m_s2 =
       quaternionExp(random.uniform3(0.15)) * Vector3d(0.0, options.gravity_m_s2, 0.0);
@@ -248,6 +249,7 @@ SimulatedRig simulateRig(const RigOptions& options) {
     if (i > 0) {
       imu.reference_from_imu = {quaternionExp(Vector3d(0.1, 1.4, -0.3)), {0.06, -0.09, 0.05}};
       imu.time_offset_s = 3.3e-3;
+      imu.time_offset_drift_ppm = -options.time_offset_drift_ppm;
     }
     rig.truth.imus.push_back(imu);
   }
@@ -281,6 +283,7 @@ CalibrationState disturbed(const CalibrationState& truth, unsigned seed, double 
     camera.reference_from_camera.translation_m += random.uniform3(0.02);
     camera.time_offset_s += time_offset_error_s;
     camera.edge_lead_px = 0.0;
+    camera.time_offset_drift_ppm = 0.0;
   }
   for (std::size_t i = 0; i < state.imus.size(); ++i) {
     ImuState& imu = state.imus[i];
@@ -293,6 +296,7 @@ CalibrationState disturbed(const CalibrationState& truth, unsigned seed, double 
     imu.reference_from_imu.rotation = imu.reference_from_imu.rotation * quaternionExp(random.uniform3(0.01));
     imu.reference_from_imu.translation_m += random.uniform3(0.02);
     imu.time_offset_s += 1e-3;
+    imu.time_offset_drift_ppm = 0.0;
   }
   state.gravity_in_world_m_s2 = quaternionExp(random.uniform3(0.01)) * state.gravity_in_world_m_s2;
   return state;
@@ -308,6 +312,10 @@ Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const Calibrati
     append(quaternionLog(a.rotation * b.rotation.conjugate()));
     append(a.translation_m - b.translation_m);
   };
+  const auto appendClock = [&](const auto& a, const auto& b) {
+    errors.push_back(a.time_offset_s - timeOffsetAt_s(b, a.time_offset_at_s));
+    if (options.time_offset_drift) errors.push_back(a.time_offset_drift_ppm - b.time_offset_drift_ppm);
+  };
   const auto appendUpperTriangle = [&](const Matrix3d& m) {
     for (int row = 0; row < 3; ++row) {
       for (int col = row; col < 3; ++col) errors.push_back(m(row, col));
@@ -315,7 +323,7 @@ Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const Calibrati
   };
   for (std::size_t i = 0; i < truth.cameras.size(); ++i) {
     appendTransform(estimate.cameras[i].reference_from_camera, truth.cameras[i].reference_from_camera);
-    errors.push_back(estimate.cameras[i].time_offset_s - truth.cameras[i].time_offset_s);
+    appendClock(estimate.cameras[i], truth.cameras[i]);
     errors.push_back(estimate.cameras[i].edge_lead_px - truth.cameras[i].edge_lead_px);
     errors.push_back(estimate.cameras[i].edge_lead_growth_px - truth.cameras[i].edge_lead_growth_px);
     if (!estimate.cameras[i].intrinsics) continue;
@@ -329,7 +337,7 @@ Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const Calibrati
     const ImuState &a = estimate.imus[i], &b = truth.imus[i];
     if (i > 0) {
       appendTransform(a.reference_from_imu, b.reference_from_imu);
-      errors.push_back(a.time_offset_s - b.time_offset_s);
+      appendClock(a, b);
     }
     append(a.gyroscope_bias_rad_s - b.gyroscope_bias_rad_s);
     append(a.accelerometer_bias_m_s2 - b.accelerometer_bias_m_s2);

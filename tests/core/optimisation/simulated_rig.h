@@ -26,6 +26,7 @@ struct RigOptions {
   double gravity_m_s2 = 9.81;
   double gyroscope_walk = 0.0, accelerometer_walk = 0.0;  // of biases, SI, / sqrt(Hz): Wiener processes
   double gyroscope_turn_rad = 0.0;                        // of every gyroscope against its accelerometer
+  double time_offset_drift_ppm = 0.0;                     // of all clocks against the reference's
   unsigned seed = 1;
 };
 

@@ -49,7 +49,7 @@ Turns fetchedTurns() {
 std::vector<InertialMeasurement> samplesOf(double size, States& states) {
   std::vector<InertialMeasurement> samples;
   for (const double time_s : {1.0, 1.0 + kSpacing_s, 1.002, 1.0137, 0.99 + 1.5 * kSpacing_s})
-    samples.push_back({time_s, states.vector(size)});
+    samples.push_back({time_s, states.vector(size), 0.3 * (time_s - 1.01)});
   return samples;
 }
 
@@ -89,7 +89,7 @@ class TestAutodiffTwins : public QObject {
       blocks.insert(blocks.end(), {States::numbers(states.vector(0.1)), mappingNumbers(states),
                                    turnOf(turns.sensor_rad, states)});
       // Knots stay where they are: an offset would move samples off them.
-      if (further) blocks.insert(blocks.end(), {turnOf(turns.sensor_rad, states), {0.0}});
+      if (further) blocks.insert(blocks.end(), {turnOf(turns.sensor_rad, states), {0.0}, {0.0}});
       if (drifts) blocks.insert(blocks.end(), {{0.1, -0.2, 0.05}, {-0.1, 0.1, 0.3}});
       const auto drift = drifts ? std::optional(DriftTimes{0.99, 0.1}) : std::nullopt;
       compareInertial<GyroscopeCost>(
@@ -109,7 +109,7 @@ class TestAutodiffTwins : public QObject {
                     {{0.3, 9.7, -0.5}, States::numbers(states.vector(0.1)), mappingNumbers(states)});
       if (further)
         blocks.insert(blocks.end(),
-                      {turnOf(turns.sensor_rad, states), States::numbers(states.vector(0.1)), {0.0}});
+                      {turnOf(turns.sensor_rad, states), States::numbers(states.vector(0.1)), {0.0}, {0.0}});
       if (drifts) blocks.insert(blocks.end(), {{0.1, -0.2, 0.05}, {-0.1, 0.1, 0.3}});
       const auto drift = drifts ? std::optional(DriftTimes{0.99, 0.1}) : std::nullopt;
       compareInertial<AccelerometerCost>(
@@ -125,7 +125,8 @@ class TestAutodiffTwins : public QObject {
                                        mappingNumbers(states),
                                        turnOf(turns.sensor_rad, states),
                                        turnOf(turns.sensor_rad, states),
-                                       {0.0017}});
+                                       {0.0017},
+                                       {0.4}});
     compareInertial<GyroscopeCost>(
         gyroscope, GyroscopeTwin{{}, true, 0.1, segmentTimes(), samplesOf(1.0, states), std::nullopt});
     states.appendPositions(accelerometer);
@@ -134,7 +135,8 @@ class TestAutodiffTwins : public QObject {
                                                mappingNumbers(states),
                                                turnOf(turns.sensor_rad, states),
                                                States::numbers(states.vector(0.1)),
-                                               {0.0017}});
+                                               {0.0017},
+                                               {0.4}});
     compareInertial<AccelerometerCost>(
         accelerometer,
         AccelerometerTwin{{}, true, 0.5, segmentTimes(), samplesOf(10.0, states), std::nullopt});
@@ -159,6 +161,7 @@ class TestAutodiffTwins : public QObject {
       compareCircles(model, blocks, circles);
       // At the knots of the rotation's segment.
       blocks[10] = {0.0};
+      blocks[11] = {0.0};
       circles[0].time_s = 1.0;
       circles[1].time_s = 1.0 + kSpacing_s;
       compareCircles(model, blocks, circles);

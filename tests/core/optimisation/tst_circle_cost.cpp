@@ -118,16 +118,17 @@ class TestCircleCost : public QObject {
     }
     const RigidTransform reference_from_camera = {Eigen::Quaterniond(blocks[8].data()),
                                                   Vector3d(blocks[9].data())};
-    const RigidTransform camera_from_world =
-        cameraFromWorld(rotation, position, reference_from_camera, blocks[10][0], 1.006);
+    const RigidTransform camera_from_world = cameraFromWorld(rotation, position, reference_from_camera,
+                                                             blocks[10][0] + 0.003 * blocks[11][0], 1.006);
     CircleMeasurement circle;
     circle.time_s = 1.006;
     circle.on_board_m = {0.1, 0.05};
     circle.whitening_px.setIdentity();
+    circle.by_drift_s = 0.003;
     circle.lead = {{0.8, 0.6}, {0.4, 0.3}};
     circle.centre_px =
         *projectedCircleCentre(model.camera, camera_from_world, circle.on_board_m, model.radius_m) +
-        blocks[11][0] * circle.lead.of_lead + blocks[12][0] * circle.lead.of_growth;
+        blocks[12][0] * circle.lead.of_lead + blocks[13][0] * circle.lead.of_growth;
     QVERIFY(residualsAt(CircleCost(model, segmentTimes(), {circle}), blocks).norm() < 1e-9);
   }
 

@@ -45,10 +45,12 @@ class TestInertialCost : public QObject {
     if (further) {
       blocks.push_back(States::numbers(quaternionExp(states.vector(1.0))));
       blocks.push_back({states.uniform(0.002)});
+      blocks.push_back({states.uniform(0.5)});
     }
-    const GyroscopeCost cost(
-        further ? ImuRole::Further : ImuRole::Reference, 0.1, segmentTimes(),
-        {{1.001, states.vector(1.0)}, {1.0, states.vector(1.0)}, {1.0199, states.vector(1.0)}});
+    const GyroscopeCost cost(further ? ImuRole::Further : ImuRole::Reference, 0.1, segmentTimes(),
+                             {{1.001, states.vector(1.0), -0.002},
+                              {1.0, states.vector(1.0), 0.001},
+                              {1.0199, states.vector(1.0), 0.002}});
     const double error = worstJacobianError(cost, blocks, 1e-3);
     QVERIFY2(error < 1e-7, qPrintable(QString::number(error)));
     QCOMPARE(worstErrorWithConstantBlocks(cost, blocks), 0.0);
@@ -72,9 +74,10 @@ class TestInertialCost : public QObject {
       blocks.push_back(States::numbers(quaternionExp(states.vector(1.0))));
       blocks.push_back(States::numbers(states.vector(0.1)));
       blocks.push_back({states.uniform(0.002)});
+      blocks.push_back({states.uniform(0.5)});
     }
     const AccelerometerCost cost(further ? ImuRole::Further : ImuRole::Reference, 0.5, segmentTimes(),
-                                 {{1.002, states.vector(10.0)}, {1.01, states.vector(10.0)}});
+                                 {{1.002, states.vector(10.0), -0.002}, {1.01, states.vector(10.0), 0.002}});
     const double error = worstJacobianError(cost, blocks, 1e-3);
     QVERIFY2(error < 1e-6, qPrintable(QString::number(error)));
     QCOMPARE(worstErrorWithConstantBlocks(cost, blocks), 0.0);
@@ -90,7 +93,8 @@ class TestInertialCost : public QObject {
       const ImuRole role = further ? ImuRole::Further : ImuRole::Reference;
       blocks.insert(blocks.end(), {States::numbers(states.vector(0.1)), mappingNumbers(states),
                                    States::numbers(quaternionExp(states.vector(0.1)))});
-      if (further) blocks.insert(blocks.end(), {States::numbers(quaternionExp(states.vector(1.0))), {0.001}});
+      if (further)
+        blocks.insert(blocks.end(), {States::numbers(quaternionExp(states.vector(1.0))), {0.001}, {0.0}});
       blocks.insert(blocks.end(), {States::numbers(states.vector(0.1)), States::numbers(states.vector(0.1))});
       const GyroscopeCost gyroscope(role, 0.1, segmentTimes(),
                                     {{1.001, states.vector(1.0)}, {1.0199, states.vector(1.0)}}, drift);
@@ -104,7 +108,8 @@ class TestInertialCost : public QObject {
       if (further)
         blocks.insert(blocks.end(), {States::numbers(quaternionExp(states.vector(1.0))),
                                      States::numbers(states.vector(0.1)),
-                                     {0.001}});
+                                     {0.001},
+                                     {0.0}});
       blocks.insert(blocks.end(), {States::numbers(states.vector(0.1)), States::numbers(states.vector(0.1))});
       const AccelerometerCost accelerometer(
           role, 0.5, segmentTimes(), {{1.002, states.vector(10.0)}, {1.01, states.vector(10.0)}}, drift);
@@ -126,6 +131,7 @@ class TestInertialCost : public QObject {
     blocks.push_back({1.0, 0.0, 0.0, 1.0, 0.0, 1.0});
     blocks.push_back({0.0, 0.0, 0.0, 1.0});
     blocks.push_back({lever_m, 0.0, 0.0});
+    blocks.push_back({0.0});
     blocks.push_back({0.0});
     const Vector3d measured(-rate_rad_s * rate_rad_s * lever_m, 0.0, 9.81);
     const AccelerometerCost cost(ImuRole::Further, 1.0, segmentTimes(), {{1.007, measured}});

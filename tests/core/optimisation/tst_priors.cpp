@@ -310,7 +310,8 @@ class TestPriors : public QObject {
     const CameraState& truth = rig.truth.cameras[0];
     rig.input.cameras[0].prior = {KnownRotation{truth.reference_from_camera.rotation},
                                   KnownVector{truth.reference_from_camera.translation_m},
-                                  KnownNumber{truth.time_offset_s}};
+                                  KnownNumber{truth.time_offset_s},
+                                  {}};
     const Run run = calibrate(rig);
     QVERIFY(run.estimate.report.observability.empty());
     QCOMPARE(run.estimate.status, CalibrationStatus::Ok);
