@@ -31,6 +31,7 @@ class Filler {
   void fill(Eigen::Vector3d& value) { value = vector(); }
   void fill(Eigen::Quaterniond& value) { value = quaternionExp(vector()).normalized(); }
   void fill(Eigen::Matrix3d& value) {
+    value.setZero();
     for (int row = 0; row < 3; ++row)
       for (int col = row; col < 3; ++col) value(row, col) = (row == col ? 1.0 : 0.0) + next();
   }
