@@ -20,6 +20,7 @@ void addConvertCommand(CLI::App& app, int& exit_code);
 void addDetectCommand(CLI::App& app, int& exit_code);
 void addExportCommand(CLI::App& app, int& exit_code);
 void addImportCommand(CLI::App& app, int& exit_code);
+void addInitCommand(CLI::App& app, int& exit_code);
 void addIntrinsicsCommand(CLI::App& app, int& exit_code);
 void addOptionsCommand(CLI::App& app, int& exit_code);
 void addSimulateCommand(CLI::App& app, int& exit_code);

@@ -121,6 +121,24 @@ std::string imuYaml(const SessionImu& imu, const std::filesystem::path& folder) 
   return text;
 }
 
+std::string commented(const std::string& lines) {
+  std::string text;
+  for (std::size_t begin = 0; begin < lines.size();) {
+    const std::size_t end = lines.find('\n', begin);
+    text += "# " + lines.substr(begin, end - begin) + "\n";
+    begin = end == std::string::npos ? lines.size() : end + 1;
+  }
+  return text;
+}
+
+std::string remarksYaml(const SessionRemarks& remarks, const std::string& sensor) {
+  std::string text;
+  const auto found = remarks.sensors.find(sensor);
+  if (found == remarks.sensors.end()) return text;
+  for (const std::string& remark : found->second) text += fmt::format("    # {}\n", remark);
+  return text;
+}
+
 }  // namespace
 
 std::size_t Session::referenceImu() const {
@@ -146,15 +164,19 @@ void validate(const Session& session, const std::string& place) {
   checkPriors(session, place);
 }
 
-std::string sessionYaml(const Session& session, const std::filesystem::path& folder) {
+std::string sessionYaml(const Session& session, const std::filesystem::path& folder,
+                        const SessionRemarks& remarks) {
   std::string text =
       fmt::format("evical_session: 1\nrecording: {}\n", yamlText(recordingText(session.recording, folder)));
   if (session.time_range_s)
     text += fmt::format("time_range_s: [{}, {}]\n", (*session.time_range_s)[0], (*session.time_range_s)[1]);
-  text += boardYaml(session.board) + "cameras:\n";
-  for (const SessionCamera& camera : session.cameras) text += cameraYaml(camera, folder);
+  const std::string board = boardYaml(session.board);
+  text += remarks.board.empty() ? board : commented(remarks.board) + commented(board);
+  text += "cameras:\n";
+  for (const SessionCamera& camera : session.cameras)
+    text += cameraYaml(camera, folder) + remarksYaml(remarks, camera.name);
   if (!session.imus.empty()) text += "imus:\n";
-  for (const SessionImu& imu : session.imus) text += imuYaml(imu, folder);
+  for (const SessionImu& imu : session.imus) text += imuYaml(imu, folder) + remarksYaml(remarks, imu.name);
   text += fmt::format("reference: {}\n", yamlText(session.reference));
   if (const std::string priors = sensorPriorsYaml(session); !priors.empty()) text += "prior:\n" + priors;
   if (!session.exports.empty()) text += fmt::format("export: [{}]\n", joined(session.exports));

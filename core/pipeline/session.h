@@ -8,6 +8,7 @@
 
 #include <array>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -59,9 +60,16 @@ Session readSession(const std::filesystem::path& file);
 // What a session must fulfil whoever made it (reader, importer, forms); `place` precedes the key in messages.
 void validate(const Session& session, const std::string& place);
 
+// What the file says beside its keys, for who fills it in.
+struct SessionRemarks {
+  std::string board;  // the board's keys become comments below this one; empty: they are keys
+  std::map<std::string, std::vector<std::string>> sensors;  // by name: comments below the sensor's keys
+};
+
 // The file's content, paths relative to `folder` where that makes them simpler; and the file itself, whole or
 // not.
-std::string sessionYaml(const Session& session, const std::filesystem::path& folder);
+std::string sessionYaml(const Session& session, const std::filesystem::path& folder,
+                        const SessionRemarks& remarks = {});
 void writeSession(const Session& session, const std::filesystem::path& file);
 
 }  // namespace evical

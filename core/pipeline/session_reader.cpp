@@ -168,7 +168,7 @@ Session readSession(const std::filesystem::path& file) {
   const YamlNode root = YamlNode::load(file);
   if (!root.isMap() || !root.has("evical_session"))
     throw root.error("is no session file: the key evical_session is missing",
-                     "Make one with `evical simulate` or `evical import`");
+                     "Make one with `evical init RECORDING`, `evical simulate` or `evical import`");
   root.allowOnly({"evical_session", "recording", "time_range_s", "board", "cameras", "imus", "reference",
                   "prior", "options", "export"});
   root["evical_session"].integer(1, 1);

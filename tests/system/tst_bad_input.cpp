@@ -120,7 +120,38 @@ class TestBadInput : public QObject {
   void boardSpacing_tenPercentOff_isDoubtful();
   void recording_tooShort_fails();
   void recording_withoutMotion_fails();
+  void init_ofNoSession_writesNone_data();
+  void init_ofNoSession_writesNone();
 };
+
+void TestBadInput::init_ofNoSession_writesNone_data() {
+  QTest::addColumn<QStringList>("recordings");
+  QTest::addColumn<QString>("says");
+  QTest::newRow("none") << QStringList{} << "RECORDING";
+  QTest::newRow("missing") << QStringList{"gone.bag"} << "gone.bag";
+  QTest::newRow("of no known format") << QStringList{"other.bag"} << "other.bag.*format";
+  QTest::newRow("no events") << QStringList{"imu.txt"} << "imu.txt.*no events";
+  QTest::newRow("useless") << QStringList{"cut.bag"} << "cut.bag";
+  QTest::newRow("a further one that is useless") << QStringList{"events.txt", "cut.bag"} << "cut.bag";
+  QTest::newRow("given twice") << QStringList{"events.txt", "events.txt"} << "already another sensor's";
+}
+
+void TestBadInput::init_ofNoSession_writesNone() {
+  QFETCH(QStringList, recordings);
+  QFETCH(QString, says);
+  QTemporaryDir folder;
+  for (const QString name : {"events.txt", "imu.txt"})
+    QFile::link(simulated("short") + "/" + name, folder.filePath(name));
+  writeFile(folder.filePath("other.bag"), QByteArray(5000, '\x07'));
+  writeFile(folder.filePath("cut.bag"), readFile(simulated("short_bag") + "/recording.bag").left(5000));
+  const QStringList before = filesIn(folder.path());
+  QStringList command = {"init", "-o", folder.filePath("session.yaml")};
+  for (const QString& recording : recordings) command << folder.filePath(recording);
+  const Outcome outcome = runProgram(command);
+  VERIFY_OUTCOME(outcome, 2);
+  VERIFY_SAYS(outcome, says);
+  QCOMPARE(filesIn(folder.path()), before);
+}
 
 void TestBadInput::session_thatIsMissing_isNamed() {
   QTemporaryDir folder;

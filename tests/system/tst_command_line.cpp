@@ -48,6 +48,9 @@ class TestCommandLine : public QObject {
   void export_ofBadInputWritesNothing_data();
   void export_ofBadInputWritesNothing();
   void import_writesASession();
+  void init_writesTheSessionThatTheRecordingSuggests_data();
+  void init_writesTheSessionThatTheRecordingSuggests();
+  void init_takesSensorsOfSeveralRecordings();
   void detect_writesDetectionsOnly();
   void quiet_saysNothingButTheResult();
   void interruption_leavesNothingHalfWritten_data();
@@ -62,7 +65,7 @@ void TestCommandLine::help_isThereForEveryCommand() {
   const Outcome all = runProgram({"--help"});
   VERIFY_EXIT(all, 0);
   for (const QString command : {"calibrate", "detect", "simulate", "inspect", "convert", "options", "board",
-                                "compare", "export", "import"}) {
+                                "compare", "export", "import", "init"}) {
     QVERIFY2(all.output.contains(command), qPrintable(command));
     const Outcome outcome = runProgram({command, "--help"});
     VERIFY_EXIT(outcome, 0);
@@ -251,6 +254,51 @@ void TestCommandLine::import_writesASession() {
   QVERIFY(!QFileInfo::exists(folder.filePath("session.yaml")));
   VERIFY_EXIT(runProgram(command + QStringList{"--recording", folder.filePath("recording.bag")}), 0);
   QVERIFY(readFile(folder.filePath("session.yaml")).contains("recording: recording.bag"));
+}
+
+void TestCommandLine::init_writesTheSessionThatTheRecordingSuggests_data() {
+  QTest::addColumn<QString>("recording");
+  QTest::addColumn<QString>("stream");
+  QTest::newRow("bag") << simulated("short_bag") + "/recording.bag"
+                       << "/davis_left/events";
+  QTest::newRow("folder of text files") << simulated("short") << "events";
+}
+
+void TestCommandLine::init_writesTheSessionThatTheRecordingSuggests() {
+  QFETCH(QString, recording);
+  QFETCH(QString, stream);
+  QTemporaryDir folder;
+  const QString file = folder.filePath("session.yaml");
+  const QStringList command = {"init", recording, "-o", file};
+  const Outcome outcome = runProgram(command);
+  VERIFY_EXIT(outcome, 0);
+  QVERIFY2(outcome.output.startsWith(file + "\nboard: fill it in"), qPrintable(outcome.output));
+  const QString written = QString::fromUtf8(readFile(file));
+  QVERIFY2(written.contains("stream: " + stream) && written.contains("# board:"), qPrintable(written));
+
+  // Not before the board is filled in; and what was filled in is not overwritten.
+  const Outcome unfilled = runProgram({"calibrate", file, "-o", folder.filePath("result")});
+  VERIFY_EXIT(unfilled, 2);
+  QVERIFY2(unfilled.reason().contains("board"), qPrintable(unfilled.errors));
+  const Outcome again = runProgram(command);
+  VERIFY_EXIT(again, 2);
+  QVERIFY2(again.reason().contains("exists already"), qPrintable(again.errors));
+  QCOMPARE(QString::fromUtf8(readFile(file)), written);
+}
+
+void TestCommandLine::init_takesSensorsOfSeveralRecordings() {
+  QTemporaryDir folder;
+  for (const QString name : {"events.txt", "imu.txt"})
+    QFile::link(simulated("short") + "/" + name, folder.filePath(name));
+  const QString file = folder.filePath("session.yaml");
+  const Outcome outcome =
+      runProgram({"init", folder.filePath("events.txt"), folder.filePath("imu.txt"), "-o", file, "--quiet"});
+  VERIFY_EXIT(outcome, 0);
+  QCOMPARE(outcome.output, file + "\n");
+  QCOMPARE(outcome.errors, QString());
+  const QByteArray written = readFile(file);
+  QVERIFY2(written.contains("imus:"), written.constData());
+  QVERIFY2(written.contains("    recording: "), written.constData());
 }
 
 void TestCommandLine::detect_writesDetectionsOnly() {

@@ -2,9 +2,9 @@
 #include "ui/screens/recording_screen.h"
 
 #include "core/data/intrinsics_yaml.h"
+#include "core/pipeline/session_guess.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
-#include "ui/document/session_guess.h"
 #include "ui/forms/number_field.h"
 #include "ui/screens/board_form.h"
 #include "ui/screens/camera_form.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/recording_screen.h"
 
-#include "ui/document/session_guess.h"
+#include "core/pipeline/session_guess.h"
 #include "ui/screens/board_form.h"
 #include "ui/screens/camera_form.h"
 #include "ui/screens/imu_form.h"

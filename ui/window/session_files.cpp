@@ -4,9 +4,9 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/pipeline/result_files.h"
+#include "core/pipeline/session_guess.h"
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
-#include "ui/document/session_guess.h"
 #include "ui/window/export_dialog.h"
 
 #include <QDesktopServices>
@@ -35,19 +35,6 @@ const char* const kReport = "report.html";
 JobError errorOf(const CalibrationError& error) {
   return {error.kind() == ErrorKind::BadInput, QString::fromStdString(error.place()),
           QString::fromStdString(error.problem()), QString::fromStdString(error.advice())};
-}
-
-// Why nothing can be calibrated from it, whatever is filled in.
-std::optional<JobError> whyUseless(const QString& recording, const Inspection& inspection) {
-  const auto useful = [](const StreamSummary& stream) {
-    return stream.info.type == StreamType::Events || stream.info.type == StreamType::Imu;
-  };
-  if (std::any_of(inspection.streams.begin(), inspection.streams.end(), useful)) return std::nullopt;
-  QString problem = QObject::tr("it holds neither events nor IMU samples");
-  for (const RecordingFault& fault : inspection.faults) problem += ". " + QString::fromStdString(fault.text);
-  return JobError{
-      true, recording, problem,
-      QObject::tr("Check that the whole file was copied and that the camera's driver was recorded")};
 }
 
 // The session's own first.
@@ -148,8 +135,8 @@ void SessionFiles::inspectSession() {
 }
 
 bool SessionFiles::refuseUseless(const QString& recording, const Inspection& inspection) {
-  const auto error = whyUseless(recording, inspection);
-  if (error) emit failed(tr("%1 cannot be used").arg(QFileInfo(recording).fileName()), *error);
+  const auto error = whyUseless(recording.toStdString(), inspection);
+  if (error) emit failed(tr("%1 cannot be used").arg(QFileInfo(recording).fileName()), errorOf(*error));
   return error.has_value();
 }
 

@@ -1,0 +1,69 @@
+#include "app/commands.h"
+#include "app/console.h"
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/pipeline/session_guess.h"
+#include "core/recording/recording_reader.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+namespace evical {
+namespace {
+
+struct InitArguments {
+  std::vector<std::filesystem::path> recordings;
+  std::filesystem::path output;
+  bool quiet = false;
+};
+
+std::vector<InspectedRecording> inspectAll(const InitArguments& arguments, const RunContext& context) {
+  std::vector<InspectedRecording> inspected;
+  for (const std::filesystem::path& recording : arguments.recordings) {
+    context.progress.stageStarted("inspect " + recording.filename().string());
+    const std::unique_ptr<RecordingReader> reader = openRecording(recording);
+    inspected.push_back({recording, inspectRecording(*reader, {}, context)});
+    for (const RecordingFault& fault : inspected.back().inspection.faults)
+      context.progress.log(LogLevel::Warning, fault.text);
+  }
+  return inspected;
+}
+
+int run(const InitArguments& arguments) {
+  // What people have filled in is not to be lost.
+  if (std::filesystem::exists(arguments.output))
+    throw badInput(arguments.output.string(), "exists already", "Give another name, or remove it");
+  Console console(arguments.quiet);
+  const std::vector<InspectedRecording> recordings = inspectAll(arguments, {console, stopOnSignals()});
+  const auto folder =
+      arguments.output.has_parent_path() ? arguments.output.parent_path() : std::filesystem::path(".");
+  const SessionDraft draft = draftSession(recordings, folder);
+  writeFileWhole(arguments.output, draft.yaml);
+  console.stageStarted("done");
+  fmt::print("{}\n", arguments.output.string());
+  if (!arguments.quiet)
+    for (const std::string& note : draft.notes) fmt::print("{}\n", note);
+  return kDone;
+}
+
+}  // namespace
+
+void addInitCommand(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<InitArguments>();
+  CLI::App* const command = app.add_subcommand("init", "A session to fill in, from what recordings hold");
+  command
+      ->add_option(
+          "RECORDING", arguments->recordings,
+          "Any that `evical inspect` can read; further ones for sensors that have files of their own")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "The session; never one that is there already")
+      ->required();
+  command->add_flag("--quiet", arguments->quiet, "Only the file's name and errors");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace evical

@@ -1,0 +1,178 @@
+#include "core/pipeline/session_guess.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+namespace evical {
+namespace {
+
+bool isTaken(const std::string& name, const Session& session) {
+  const auto same = [&](const auto& sensor) { return sensor.name == name; };
+  return std::any_of(session.cameras.begin(), session.cameras.end(), same) ||
+         std::any_of(session.imus.begin(), session.imus.end(), same);
+}
+
+// "/davis/left/events" gives "davis_left": all parts but the last, which says the kind.
+std::string nameFromStream(const std::string& stream, const std::string& kind) {
+  const std::size_t end = stream.rfind('/');
+  std::string name = end == std::string::npos ? "" : stream.substr(0, end);
+  std::replace(name.begin(), name.end(), '/', '_');
+  name.erase(0, name.find_first_not_of('_'));
+  if (name.empty()) return kind;
+  return kind == "imu" ? name + "_imu" : name;
+}
+
+std::string freeName(const std::string& stream, const std::string& kind, const Session& session) {
+  const std::string base = nameFromStream(stream, kind);
+  std::string name = base;
+  for (int i = 2; isTaken(name, session); ++i) name = base + "_" + std::to_string(i);
+  return name;
+}
+
+bool isSensor(const StreamSummary& stream, StreamType type) {
+  return stream.info.type == type && stream.count > 0;
+}
+
+void addSensors(const std::filesystem::path& own_recording, const Inspection& inspection, StreamType type,
+                Session& session) {
+  for (const StreamSummary& stream : inspection.streams) {
+    if (!isSensor(stream, type)) continue;
+    if (type == StreamType::Events) session.cameras.push_back(guessedCamera(stream, session, own_recording));
+    if (type == StreamType::Imu) session.imus.push_back(guessedImu(stream, session, own_recording));
+  }
+}
+
+}  // namespace
+
+SessionCamera guessedCamera(const StreamSummary& stream, const Session& session,
+                            const std::filesystem::path& own_recording) {
+  SessionCamera camera;
+  camera.recording = own_recording;
+  camera.name = freeName(stream.info.name, "camera", session);
+  camera.stream = stream.info.name;
+  camera.resolution_px = stream.info.resolution_px;
+  return camera;
+}
+
+SessionImu guessedImu(const StreamSummary& stream, const Session& session,
+                      const std::filesystem::path& own_recording) {
+  SessionImu imu;
+  imu.recording = own_recording;
+  imu.name = freeName(stream.info.name, "imu", session);
+  imu.stream = stream.info.name;
+  if (stream.acceleration_unit == "g" && stream.info.acceleration_unit != AccelerationUnit::Gravity)
+    imu.acceleration_unit = AccelerationUnit::Gravity;
+  return imu;
+}
+
+void keepReference(Session& session) {
+  const auto choose = [&](const auto& sensors) {
+    const auto is_reference = [&](const auto& sensor) { return sensor.name == session.reference; };
+    if (std::none_of(sensors.begin(), sensors.end(), is_reference)) session.reference = sensors.front().name;
+  };
+  if (!session.imus.empty())
+    choose(session.imus);
+  else if (!session.cameras.empty())
+    choose(session.cameras);
+}
+
+Session withMissingSensors(const Session& session, const std::filesystem::path& recording,
+                           const Inspection& inspection) {
+  Session found = session;
+  if (session.cameras.empty()) addSensors(recording, inspection, StreamType::Events, found);
+  if (session.imus.empty()) addSensors(recording, inspection, StreamType::Imu, found);
+  keepReference(found);
+  return found;
+}
+
+Session guessedSession(const std::filesystem::path& recording, const Inspection& inspection) {
+  Session session;
+  session.recording = recording;
+  return withMissingSensors(session, {}, inspection);
+}
+
+std::optional<CalibrationError> whyUseless(const std::filesystem::path& recording,
+                                           const Inspection& inspection) {
+  const auto useful = [](const StreamSummary& stream) {
+    return stream.info.type == StreamType::Events || stream.info.type == StreamType::Imu;
+  };
+  if (std::any_of(inspection.streams.begin(), inspection.streams.end(), useful)) return std::nullopt;
+  std::string problem = "it holds neither events nor IMU samples";
+  for (const RecordingFault& fault : inspection.faults) problem += ". " + fault.text;
+  return badInput(recording.string(), problem,
+                  "Check that the whole file was copied and that the camera's driver was recorded");
+}
+
+namespace {
+
+const StreamSummary* streamOf(const std::string& name, const std::filesystem::path& own_recording,
+                              const std::vector<InspectedRecording>& recordings) {
+  for (const InspectedRecording& recording : recordings) {
+    if (recording.file != (own_recording.empty() ? recordings.front().file : own_recording)) continue;
+    for (const StreamSummary& stream : recording.inspection.streams)
+      if (stream.info.name == name) return &stream;
+  }
+  return nullptr;
+}
+
+SessionRemarks remarksOn(const Session& session, const std::vector<InspectedRecording>& recordings) {
+  SessionRemarks remarks;
+  remarks.board =
+      "The board: give type and measures, and remove the '#'. With an IMU it needs an odd number of rows.";
+  for (const SessionCamera& camera : session.cameras) {
+    std::vector<std::string>& own = remarks.sensors[camera.name];
+    const StreamSummary* const stream = streamOf(camera.stream, camera.recording, recordings);
+    if (!camera.resolution_px.known() && stream != nullptr)
+      own.push_back(
+          fmt::format("resolution_px: [{}, {}]  # not in the recording; this is how far its events reach",
+                      stream->seen_px.width_px, stream->seen_px.height_px));
+    own.push_back("intrinsics: camera.yaml  # not known: calibrated first, from the same events");
+    if (!camera.recording.empty()) own.push_back("clock_offset_s: 0.0  # to be added to this file's times");
+  }
+  for (const SessionImu& imu : session.imus) {
+    std::vector<std::string>& own = remarks.sensors[imu.name];
+    own.push_back("These noise densities are a common IMU's: take yours from its data sheet.");
+    if (!imu.recording.empty()) own.push_back("clock_offset_s: 0.0  # to be added to this file's times");
+  }
+  return remarks;
+}
+
+std::vector<std::string> notesOn(const Session& session) {
+  std::vector<std::string> notes = {"board: fill it in"};
+  for (const SessionCamera& camera : session.cameras)
+    if (!camera.resolution_px.known())
+      notes.push_back(
+          fmt::format("cameras.{}: give resolution_px, which the recording does not say", camera.name));
+  if (session.imus.empty() && session.cameras.size() == 1)
+    notes.push_back("no IMU: name its recording, too; without one there is 'evical intrinsics'");
+  return notes;
+}
+
+}  // namespace
+
+SessionDraft draftSession(const std::vector<InspectedRecording>& recordings,
+                          const std::filesystem::path& folder) {
+  SessionDraft draft;
+  Session& session = draft.session;
+  session.recording = recordings.at(0).file;
+  for (const InspectedRecording& each : recordings) {
+    if (const auto useless = whyUseless(each.file, each.inspection)) throw CalibrationError(*useless);
+    const bool is_own = &each == &recordings.front();
+    const std::filesystem::path own_recording = is_own ? std::filesystem::path() : each.file;
+    addSensors(own_recording, each.inspection, StreamType::Events, session);
+    addSensors(own_recording, each.inspection, StreamType::Imu, session);
+  }
+  if (session.cameras.empty())
+    throw badInput(session.recording.string(), "there are no events to calibrate a camera from",
+                   "Name the camera's recording, too");
+  keepReference(session);
+  validate(session, session.recording.string());
+  draft.yaml = sessionYaml(session, folder, remarksOn(session, recordings));
+  draft.notes = notesOn(session);
+  return draft;
+}
+
+}  // namespace evical
