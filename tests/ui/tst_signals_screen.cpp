@@ -5,7 +5,6 @@
 #include "tests/ui/slowdown.h"
 #include "ui/plots/latest_job.h"
 #include "ui/plots/plot_panel.h"
-#include "ui/plots/rotation_rates.h"
 #include "ui/plots/signals_screen.h"
 
 #include <QTabWidget>
@@ -37,30 +36,6 @@ class TestSignalsScreen : public QObject {
     test::setPalette(false);
     simulated_ = test::simulatePass(6.0);
     run_ = std::make_shared<CalibrationRun>(calibrate(simulated_.session, simulated_.pass, {}));
-  }
-
-  void rotationRates_agreeOnlyWithTheTimeOffset() {
-    // The simulated clocks differ by 7.3 ms: with the true offset what is left is the noise of single views.
-    const CameraState camera{{}, simulated_.truth.cameras[0].time_offset_s, 0.0};
-    ImuState imu;
-    imu.gyroscope_bias_rad_s = simulated_.truth.imus[0].gyroscope_bias_rad_s;
-    imu.gyroscope_mapping = simulated_.truth.imus[0].gyroscope_mapping;
-    const SessionCamera& known = simulated_.session.cameras[0];
-    const auto ratesWith = [&](const CameraState& state) {
-      return rotationRates({known.name, known.intrinsics, simulated_.pass.cameras[0]},
-                           simulated_.session.board, state, simulated_.pass.imus[0], imu,
-                           simulated_.pass.start_ns, {}, {});
-    };
-    const RotationRates rates = ratesWith(camera);
-    QVERIFY(rates.time_s.size() > 200);
-    QVERIFY(rates.rmsDifferenceAfter_rad_s() < 0.7 * rates.rmsDifferenceBefore_rad_s());
-    CameraState off = camera;
-    off.time_offset_s += 0.02;
-    QVERIFY(ratesWith(off).rmsDifferenceAfter_rad_s() > 2.0 * rates.rmsDifferenceAfter_rad_s());
-    CameraState none = camera;
-    none.time_offset_s = 0.0;
-    const RotationRates unshifted = ratesWith(none);
-    QCOMPARE(unshifted.rmsDifferenceAfter_rad_s(), unshifted.rmsDifferenceBefore_rad_s());
   }
 
   void latestJob_dropsWhatIsOutdated() {

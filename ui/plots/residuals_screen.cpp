@@ -2,11 +2,10 @@
 #include "ui/plots/residuals_screen.h"
 
 #include "core/numerics/robust.h"
-
+#include "core/report/residual_statistics.h"
 #include "ui/plots/empty_note.h"
 #include "ui/plots/latest_job.h"
 #include "ui/plots/plot_panel.h"
-#include "ui/plots/residual_statistics.h"
 
 #include <QComboBox>
 #include <QDoubleSpinBox>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/plots/signals_screen.h"
 
+#include "core/initialisation/rotation_rates.h"
 #include "core/report/signal_prediction.h"
 #include "ui/plots/empty_note.h"
 #include "ui/plots/latest_job.h"
 #include "ui/plots/plot_panel.h"
-#include "ui/plots/rotation_rates.h"
 
 #include <QComboBox>
 #include <QHBoxLayout>

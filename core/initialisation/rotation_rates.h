@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
 // How fast the camera turned, seen by its views of the board alone, and how fast the gyroscope says it did.
 // Sizes of rotation do not depend on how the camera is mounted, so only the time offset can bring the two
-// together. No Qt.
+// together.
 #pragma once
 
 #include "core/base/progress.h"
@@ -12,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace evical::ui {
+namespace evical {
 
 // One entry a pair of views, each averaged over the time between the two.
 struct RotationRates {
@@ -31,4 +30,4 @@ RotationRates rotationRates(const CameraData& camera, const CircleBoard& board,
                             std::int64_t start_ns, const InitialisationOptions& options,
                             const RunContext& context);
 
-}  // namespace evical::ui
+}  // namespace evical

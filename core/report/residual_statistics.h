@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-// What the circles' reprojection residuals of one camera say, made ready to be drawn. No Qt.
+// What the circles' reprojection residuals of one camera say, made ready to be drawn.
 #pragma once
 
 #include "core/data/calibration_result.h"
@@ -10,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-namespace evical::ui {
+namespace evical {
 
 struct WindowResidual {
   int view = 0;  // index into the camera's views
@@ -47,4 +46,4 @@ ResidualStatistics residualStatistics(const std::vector<CircleResidual>& residua
 std::vector<Eigen::Vector2d> sigmaEllipse(const Eigen::Vector2d& mean, const Eigen::Matrix2d& covariance,
                                           double sigmas);
 
-}  // namespace evical::ui
+}  // namespace evical

@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "ui/plots/rotation_rates.h"
+#include "core/initialisation/rotation_rates.h"
 
 #include "core/base/time.h"
 #include "core/initialisation/camera_poses.h"
@@ -9,7 +8,7 @@
 
 #include <cmath>
 
-namespace evical::ui {
+namespace evical {
 namespace {
 
 double rmsDifference(const std::vector<double>& a, const std::vector<double>& b) {
@@ -71,4 +70,4 @@ RotationRates rotationRates(const CameraData& camera, const CircleBoard& board,
   return rates;
 }
 
-}  // namespace evical::ui
+}  // namespace evical

@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "ui/plots/residual_statistics.h"
+#include "core/report/residual_statistics.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -8,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-namespace evical::ui {
+namespace evical {
 namespace {
 
 constexpr double kHistogramReach = 5.0;  // sigmas
@@ -127,4 +126,4 @@ std::vector<Eigen::Vector2d> sigmaEllipse(const Eigen::Vector2d& mean, const Eig
   return points;
 }
 
-}  // namespace evical::ui
+}  // namespace evical
