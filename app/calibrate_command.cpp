@@ -2,8 +2,8 @@
 #include "app/console.h"
 #include "app/session_arguments.h"
 #include "app/version.h"
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/new_folder.h"
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/result_files.h"
 #include "core/report/result_table.h"
@@ -28,41 +28,37 @@ void tellFailure(const SessionArguments& arguments, const Session& session, cons
   writeFailure(arguments.output, session, reason, kVersion, console.logText(), pass);
 }
 
+// A run that was cancelled leaves nothing in a folder of its own, one with bad input nowhere.
+void tellEnd(const SessionArguments& arguments, const Session& session, const CalibrationOutcome& outcome,
+             const Console& console, const NewFolder& folder) {
+  if (outcome.error && outcome.error->kind() == ErrorKind::CalibrationFailed)
+    tellFailure(arguments, session, outcome.error->what(), console, outcome.pass);
+  if (outcome.status == RunStatus::Cancelled && folder.wasThere())
+    tellFailure(arguments, session, "cancelled", console, outcome.pass);
+}
+
+void tellResult(const SessionArguments& arguments, const Session& session, const CalibrationRun& run,
+                Console& console) {
+  const NamedResult named = namedResult(session, run, kVersion);
+  const ExportRemarks remarks = writeResultFiles(arguments.output, session, run, kVersion, console.logText());
+  console.stageStarted("done");
+  fmt::print("{}", resultTable(named));
+  if (!arguments.quiet)
+    for (const std::string& note : remarks.notes) fmt::print("{}\n", note);
+  for (const std::string& refusal : remarks.refused) fmt::print(stderr, "{}\n", refusal);
+  if (!arguments.quiet) fmt::print("Files are in {}\n", arguments.output);
+}
+
 int run(const SessionArguments& arguments) {
   const Session session = sessionFrom(arguments);
   Console console(arguments.quiet);
-  const bool folder_was_there = std::filesystem::exists(arguments.output);
-  makeOutputFolder(arguments.output);
+  const NewFolder folder(arguments.output);
   const RunContext context{console, stopOnSignals()};
-  const auto dropEmptyFolder = [&] {
-    std::error_code ignored;
-    if (!folder_was_there) std::filesystem::remove(arguments.output, ignored);  // only if empty
-  };
-  CalibrationRun result;
-  try {
-    calibrateInto(result, session, context);
-    const NamedResult named = namedResult(session, result, kVersion);
-    const ExportRemarks remarks =
-        writeResultFiles(arguments.output, session, result, kVersion, console.logText());
-    console.stageStarted("done");
-    fmt::print("{}", resultTable(named));
-    if (!arguments.quiet)
-      for (const std::string& note : remarks.notes) fmt::print("{}\n", note);
-    for (const std::string& refusal : remarks.refused) fmt::print(stderr, "{}\n", refusal);
-    if (!arguments.quiet) fmt::print("Files are in {}\n", arguments.output);
-    return kDone;
-  } catch (const CalibrationError& error) {
-    if (error.kind() == ErrorKind::CalibrationFailed) {
-      tellFailure(arguments, session, error.what(), console, result.pass);
-    } else {
-      dropEmptyFolder();
-    }
-    throw;
-  } catch (const Cancelled&) {
-    if (folder_was_there) tellFailure(arguments, session, "cancelled", console, result.pass);
-    dropEmptyFolder();
-    throw;
-  }
+  CalibrationOutcome outcome = runCalibration(session, context);
+  if (outcome.status != RunStatus::Done) tellEnd(arguments, session, outcome, console, folder);
+  const CalibrationRun run = std::move(outcome).runOrThrow();
+  tellResult(arguments, session, run, console);
+  return kDone;
 }
 
 }  // namespace

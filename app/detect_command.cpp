@@ -3,6 +3,9 @@
 #include "app/session_arguments.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/data/calibration_observer.h"
+#include "core/data/calibration_stage.h"
+#include "core/frontend/board_tracker.h"
 #include "core/frontend/stage_image_writer.h"
 #include "core/pipeline/recording_pass.h"
 #include "core/pipeline/result_files.h"
@@ -22,24 +25,35 @@ struct DetectArguments : SessionArguments {
   int every_nth = 10;
 };
 
+// Draws windows of every camera, each into a folder of its name.
+class ImageWriters final : public CalibrationObserver {
+ public:
+  ImageWriters(const DetectArguments& arguments, const Session& session)
+      : arguments_(arguments), session_(session) {}
+
+  FrontEndObserver* windowObserver(std::size_t camera, const BoardTracker& tracker) override {
+    const std::filesystem::path folder =
+        std::filesystem::path(arguments_.output) / "images" / session_.cameras[camera].name;
+    makeOutputFolder(folder);
+    writers_.push_back(std::make_unique<StageImageWriter>(folder, arguments_.every_nth, tracker.scene(),
+                                                          &tracker.history(), session_.options.front_end));
+    return writers_.back().get();
+  }
+
+ private:
+  const DetectArguments& arguments_;
+  const Session& session_;
+  std::vector<std::unique_ptr<StageImageWriter>> writers_;
+};
+
 int run(const DetectArguments& arguments) {
   const Session session = sessionFrom(arguments);
   makeOutputFolder(arguments.output);
   Console console(arguments.quiet);
-  const RunContext context{console, stopOnSignals()};
-  console.stageStarted("detect");
-  std::vector<std::unique_ptr<StageImageWriter>> writers;
-  const ObserverFactory observers = [&](std::size_t camera,
-                                        const BoardTracker& tracker) -> FrontEndObserver* {
-    const std::filesystem::path folder =
-        std::filesystem::path(arguments.output) / "images" / session.cameras[camera].name;
-    makeOutputFolder(folder);
-    writers.push_back(std::make_unique<StageImageWriter>(folder, arguments.every_nth, tracker.scene(),
-                                                         &tracker.history(), session.options.front_end));
-    return writers.back().get();
-  };
-  const RecordingPass pass =
-      readAndDetect(session, context, arguments.images ? observers : ObserverFactory{});
+  ImageWriters images(arguments, session);
+  const RunContext context{console, stopOnSignals(), arguments.images ? &images : nullptr};
+  console.stageStarted(nameOf(CalibrationStage::Detect));
+  const RecordingPass pass = readAndDetect(session, context);
   for (const RecordingFault& fault : pass.faults) console.log(LogLevel::Warning, fault.text);
   writeDetectionFiles(arguments.output, pass, console.logText());
   console.stageStarted("done");

@@ -4,6 +4,7 @@
 #include "app/version.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/new_folder.h"
 #include "core/pipeline/intrinsics_calibration.h"
 #include "core/pipeline/session_recording.h"
 #include "core/report/csv.h"
@@ -73,35 +74,28 @@ int run(const IntrinsicsArguments& arguments) {
   const std::vector<std::size_t> cameras = chosenCameras(session, arguments.camera);
   if (cameras.size() > 1) checkStreams(session);
   Console console(arguments.quiet);
-  const bool folder_was_there = std::filesystem::exists(arguments.output);
-  makeOutputFolder(arguments.output);
+  const NewFolder folder(arguments.output);
   const RunContext context{console, stopOnSignals()};
-  try {
-    Found found;
-    std::optional<CalibrationError> failure;  // of the first camera that could not be calibrated
-    for (const std::size_t camera : cameras) {
-      try {
-        const IntrinsicsRun one = calibrateIntrinsics(session, camera, context);
-        addCamera(arguments, session.cameras[camera], cameras.size() == 1, one, context, found);
-      } catch (const CalibrationError& error) {
-        if (error.kind() == ErrorKind::BadInput) throw;
-        if (cameras.size() > 1) console.log(LogLevel::Warning, error.what());
-        if (!failure) failure = error;
-      }
+  Found found;
+  std::optional<CalibrationError> failure;  // of the first camera that could not be calibrated
+  for (const std::size_t camera : cameras) {
+    try {
+      const IntrinsicsRun one = calibrateIntrinsics(session, camera, context);
+      addCamera(arguments, session.cameras[camera], cameras.size() == 1, one, context, found);
+    } catch (const CalibrationError& error) {
+      if (error.kind() == ErrorKind::BadInput) throw;
+      if (cameras.size() > 1) console.log(LogLevel::Warning, error.what());
+      if (!failure) failure = error;
     }
-    if (found.names.empty()) throw *failure;
-    found.files.push_back({std::filesystem::path(arguments.output) / "log.txt", console.logText()});
-    writeFilesWhole(found.files);
-    console.stageStarted("done");
-    fmt::print("{}", found.tables);
-    if (!arguments.quiet) fmt::print("Files of {} are in {}\n", found.names, arguments.output);
-    if (failure) throw *failure;
-    return kDone;
-  } catch (...) {
-    std::error_code ignored;
-    if (!folder_was_there) std::filesystem::remove(arguments.output, ignored);  // only if empty
-    throw;
   }
+  if (found.names.empty()) throw *failure;
+  found.files.push_back({std::filesystem::path(arguments.output) / "log.txt", console.logText()});
+  writeFilesWhole(found.files);
+  console.stageStarted("done");
+  fmt::print("{}", found.tables);
+  if (!arguments.quiet) fmt::print("Files of {} are in {}\n", found.names, arguments.output);
+  if (failure) throw *failure;
+  return kDone;
 }
 
 }  // namespace

@@ -22,6 +22,8 @@ class NewFolder {
   NewFolder(const NewFolder&) = delete;
   NewFolder& operator=(const NewFolder&) = delete;
 
+  bool wasThere() const { return was_there_; }
+
  private:
   std::filesystem::path folder_;
   bool was_there_;

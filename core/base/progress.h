@@ -7,6 +7,8 @@
 
 namespace evical {
 
+class CalibrationObserver;  // core/data/calibration_observer.h; from here it is only handed on
+
 enum class LogLevel { Debug, Info, Warning };
 
 // Called from worker threads; implementations lock where they must. All fractions are real: work done / work
@@ -14,7 +16,7 @@ enum class LogLevel { Debug, Info, Warning };
 class ProgressSink {
  public:
   virtual ~ProgressSink() = default;
-  virtual void stageStarted(std::string_view stage) = 0;     // "detect", "initialise", ...
+  virtual void stageStarted(std::string_view stage) = 0;  // of a calibration: core/data/calibration_stage.h
   virtual void stageProgress(double fraction_of_stage) = 0;  // 0..1
   virtual void log(LogLevel level, std::string_view text) = 0;
 };
@@ -25,8 +27,11 @@ ProgressSink& silentProgress();
 struct RunContext {
   ProgressSink& progress = silentProgress();
   std::stop_token stop = {};
+  CalibrationObserver* observer = nullptr;  // not owned; null: nobody watches
 
   void throwIfStopped() const;  // throws Cancelled
+  // For work on the way whose steps are not those of the run itself.
+  RunContext unobserved() const { return {progress, stop, nullptr}; }
 };
 
 }  // namespace evical

@@ -11,10 +11,18 @@
 
 namespace evical {
 
+// core/frontend/board_tracker.h; from here they are only handed on.
+class BoardTracker;
+class FrontEndObserver;
+
 class CalibrationObserver {
  public:
   virtual ~CalibrationObserver() = default;
 
+  // Asked for each camera before its first window: who is to see its windows stage by stage. Null: nobody.
+  virtual FrontEndObserver* windowObserver(std::size_t /*camera*/, const BoardTracker& /*tracker*/) {
+    return nullptr;
+  }
   // New windows at the end of `so_far.windows`; earlier ones may change when the board is tracked backwards.
   virtual void windowsDetected(std::size_t /*camera*/, const BoardObservations& /*so_far*/) {}
   // The whole recording has been read.

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
+#include "core/data/calibration_observer.h"
 #include "core/initialisation/camera_alignment.h"
 #include "core/initialisation/cameras_alone.h"
 #include "core/initialisation/further_imus.h"
@@ -160,13 +161,13 @@ CalibrationInput withStraightGyroscopes(CalibrationInput input) {
 }
 
 Initialisation initialiseStraight(const CalibrationInput& input, const InitialisationOptions& options,
-                                  const RunContext& context, CalibrationObserver* observer) {
+                                  const RunContext& context) {
   Initialisation result;
   std::size_t told = 0;
   checkInput(input, options);
   if (input.imus.empty()) {
     initialiseCamerasAlone(input, options, context, result);
-    tellSteps(result.steps, observer, told);
+    tellSteps(result.steps, context.observer, told);
     context.progress.stageProgress(1.0);
     return result;
   }
@@ -177,7 +178,7 @@ Initialisation initialiseStraight(const CalibrationInput& input, const Initialis
   for (const CameraData& camera : input.cameras) {
     context.throwIfStopped();
     cameras.push_back(alignCamera(camera, input, gyro, options, context, result));
-    tellSteps(result.steps, observer, told);
+    tellSteps(result.steps, context.observer, told);
     constexpr double kShare = 0.7;
     context.progress.stageProgress(kShare * static_cast<double>(cameras.size()) /
                                    static_cast<double>(input.cameras.size()));
@@ -196,7 +197,7 @@ Initialisation initialiseStraight(const CalibrationInput& input, const Initialis
   for (std::size_t k = 0; k < input.imus.size(); ++k) {
     if (k != input.reference_imu) alignFurtherImu(input, k, unbiased, options, context, result);
   }
-  tellSteps(result.steps, observer, told);
+  tellSteps(result.steps, context.observer, told);
   context.progress.stageProgress(1.0);
   return result;
 }
@@ -204,12 +205,12 @@ Initialisation initialiseStraight(const CalibrationInput& input, const Initialis
 }  // namespace
 
 Initialisation initialise(const CalibrationInput& input, const InitialisationOptions& options,
-                          const RunContext& context, CalibrationObserver* observer) {
+                          const RunContext& context) {
   const bool turned = std::any_of(input.imus.begin(), input.imus.end(), [](const ImuData& imu) {
     return imu.prior.gyroscope_rotation.has_value();
   });
-  if (!turned) return initialiseStraight(input, options, context, observer);
-  Initialisation result = initialiseStraight(withStraightGyroscopes(input), options, context, observer);
+  if (!turned) return initialiseStraight(input, options, context);
+  Initialisation result = initialiseStraight(withStraightGyroscopes(input), options, context);
   for (std::size_t k = 0; k < input.imus.size(); ++k) {
     if (!input.imus[k].prior.gyroscope_rotation) continue;
     const Eigen::Quaterniond& turn = input.imus[k].prior.gyroscope_rotation->value;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "core/base/progress.h"
-#include "core/data/calibration_observer.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/calibration_state.h"
 #include "core/initialisation/initialisation_options.h"
@@ -30,6 +29,6 @@ struct Initialisation {
 // Any number of cameras and IMUs against the reference: an IMU, or a camera where there is no IMU. Throws
 // CalibrationFailed with a reason in plain words: too few views, too short, no overlap in time, no motion.
 Initialisation initialise(const CalibrationInput& input, const InitialisationOptions& options,
-                          const RunContext& context, CalibrationObserver* observer = nullptr);
+                          const RunContext& context);
 
 }  // namespace evical

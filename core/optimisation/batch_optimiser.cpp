@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/time.h"
+#include "core/data/calibration_observer.h"
 #include "core/optimisation/calibration_problem.h"
 #include "core/optimisation/circle_errors.h"
 #include "core/optimisation/sample_errors.h"
@@ -26,12 +27,10 @@ constexpr double kLeastScale = 0.05, kLargestScale = 1000.0;
 
 class IterationReporter final : public ceres::IterationCallback {
  public:
-  IterationReporter(const CalibrationProblem& problem, const RunContext& context,
-                    CalibrationObserver* observer, int stage, int stage_count, double& furthest,
-                    std::vector<IterationRecord>& records)
+  IterationReporter(const CalibrationProblem& problem, const RunContext& context, int stage, int stage_count,
+                    double& furthest, std::vector<IterationRecord>& records)
       : problem_(problem),
         context_(context),
-        observer_(observer),
         stage_(stage),
         stage_count_(stage_count),
         furthest_(furthest),
@@ -45,7 +44,7 @@ class IterationReporter final : public ceres::IterationCallback {
     const CalibrationState state = problem_.state();
     records_.push_back({stage_ + 1, static_cast<int>(records_.size()), summary.cost,
                         summary.gradient_max_norm, summary.step_norm, state.cameras});
-    if (observer_ != nullptr) observer_->iterationDone(records_.back(), state);
+    if (context_.observer != nullptr) context_.observer->iterationDone(records_.back(), state);
     if (context_.stop.stop_requested()) return ceres::SOLVER_ABORT;
     return problem_.segmentDrift_knots() > kFurthestDrift_knots ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
                                                                 : ceres::SOLVER_CONTINUE;
@@ -54,7 +53,6 @@ class IterationReporter final : public ceres::IterationCallback {
  private:
   const CalibrationProblem& problem_;
   const RunContext& context_;
-  CalibrationObserver* observer_;
   int stage_, stage_count_, iterations_ = 0;
   double& furthest_;  // of the whole batch, 0..1
   std::vector<IterationRecord>& records_;
@@ -82,11 +80,10 @@ ceres::Solver::Options solverOptions(const OptimisationOptions& options, double 
 class Batch {
  public:
   Batch(const CalibrationInput& input, const CalibrationState& initial, const OptimisationOptions& options,
-        const RunContext& context, CalibrationObserver* observer)
+        const RunContext& context)
       : input_(input),
         options_(options),
         context_(context),
-        observer_(observer),
         problem_(input, options, initial),
         weights_(givenWeights(input)) {}
 
@@ -112,7 +109,6 @@ class Batch {
   const CalibrationInput& input_;
   const OptimisationOptions& options_;
   const RunContext& context_;
-  CalibrationObserver* observer_;
   CalibrationProblem problem_;
   Weights weights_;
   BatchSolution solution_;
@@ -132,8 +128,7 @@ std::vector<ReleaseStages> Batch::stages() const {
 
 void Batch::solveStage(ReleaseStages stage, int index, double tolerance) {
   const int stage_count = static_cast<int>(stages().size()) + 1;  // the last one twice
-  IterationReporter reporter(problem_, context_, observer_, index, stage_count, progress_,
-                             solution_.iterations);
+  IterationReporter reporter(problem_, context_, index, stage_count, progress_, solution_.iterations);
   ceres::Solver::Options solver = solverOptions(options_, tolerance);
   solver.callbacks.push_back(&reporter);
   solution_.converged = false;
@@ -342,20 +337,20 @@ void assertComplete([[maybe_unused]] const CalibrationInput& input,
 }  // namespace
 
 BatchSolution optimiseBatch(const CalibrationInput& input, const CalibrationState& initial,
-                            const OptimisationOptions& options, const RunContext& context,
-                            CalibrationObserver* observer) {
+                            const OptimisationOptions& options, const RunContext& context) {
   assertComplete(input, initial);
   if (circleErrors(input, initial, options).empty()) {
     throw calibrationFailed("optimisation", "no view of the board lies in the trajectory's time range",
                             "Check that camera and IMU recorded at the same time");
   }
-  return Batch(input, initial, options, context, observer).run();
+  return Batch(input, initial, options, context).run();
 }
 
 BatchSolution refineBatch(const CalibrationInput& input, const CalibrationState& solved,
                           const OptimisationOptions& options, const RunContext& context) {
   assertComplete(input, solved);
-  return Batch(input, solved, options, context, nullptr).refine();
+  const RunContext unobserved = context.unobserved();
+  return Batch(input, solved, options, unobserved).refine();
 }
 
 }  // namespace evical

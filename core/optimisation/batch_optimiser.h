@@ -4,7 +4,6 @@
 #pragma once
 
 #include "core/base/progress.h"
-#include "core/data/calibration_observer.h"
 #include "core/data/calibration_result.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/calibration_state.h"
@@ -32,10 +31,10 @@ struct BatchSolution {
 // the splines' range and knots: both cover the views with a margin for the time offset to move. Throws
 // CalibrationError when nothing can be solved, and Cancelled when asked to stop.
 BatchSolution optimiseBatch(const CalibrationInput& input, const CalibrationState& initial,
-                            const OptimisationOptions& options, const RunContext& context,
-                            CalibrationObserver* observer = nullptr);
+                            const OptimisationOptions& options, const RunContext& context);
 
-// From a state that is a solution already, of these or of similar data: the last stage only.
+// From a state that is a solution already, of these or of similar data: the last stage only, which nobody
+// observes.
 BatchSolution refineBatch(const CalibrationInput& input, const CalibrationState& solved,
                           const OptimisationOptions& options, const RunContext& context);
 

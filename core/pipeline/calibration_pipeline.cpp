@@ -3,6 +3,8 @@
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/base/time.h"
+#include "core/data/calibration_observer.h"
+#include "core/data/calibration_stage.h"
 #include "core/data/doubt.h"
 #include "core/geometry/projection_difference.h"
 #include "core/initialisation/initialise.h"
@@ -126,13 +128,8 @@ void logDetections(const RecordingPass& pass, const RunContext& context) {
 // A verdict of its own it is not: halves know less than the whole, and their sigmas less well.
 void validateByHalves(const Session& session, const CalibrationInput& input, const RunContext& context,
                       CalibrationResult& result) {
-  if (!session.options.report.cross_validation) return;
-  context.progress.stageStarted("cross_validate");
-  const Stopwatch stopwatch;
   result.cross_validation = crossValidate(input, result.state, session.options.optimisation,
                                           session.options.report.cross_validation_block_s, context);
-  context.progress.stageProgress(1.0);
-  result.timing.cross_validate_s = stopwatch.elapsed_s();
   const CrossValidation& validation = *result.cross_validation;
   context.progress.log(
       LogLevel::Info,
@@ -191,107 +188,185 @@ double peakMemory_mb() {
 
 namespace {
 
-// From what is in the pass to the result.
-void estimate(const Session& session, const RunContext& context, CalibrationObserver* observer,
-              CalibrationRun& run) {
-  for (const ImuData& imu : run.pass.imus) {
+// What the recording itself shows to be wrong goes before anything is estimated from it.
+void checkPass(const Session& session, const RunContext& context, RecordingPass& pass) {
+  for (const ImuData& imu : pass.imus) {
     checkUnits(imu, session.options.initialisation);
     const std::vector<RecordingFault> faults = checkImu(imu.name, imu.samples);
-    run.pass.faults.insert(run.pass.faults.end(), faults.begin(), faults.end());
+    pass.faults.insert(pass.faults.end(), faults.begin(), faults.end());
   }
-  for (const BoardObservations& camera : run.pass.cameras) {
+  for (const BoardObservations& camera : pass.cameras) {
     const std::optional<RecordingFault> unseen = unseenCircles(camera, session.board);
-    if (unseen) run.pass.faults.push_back(*unseen);
+    if (unseen) pass.faults.push_back(*unseen);
   }
-  for (const RecordingFault& fault : run.pass.faults) context.progress.log(LogLevel::Warning, fault.text);
-  logDetections(run.pass, context);
-  checkDuration(session, run.pass);
-  for (const BoardObservations& camera : run.pass.cameras) {
+  for (const RecordingFault& fault : pass.faults) context.progress.log(LogLevel::Warning, fault.text);
+  logDetections(pass, context);
+  checkDuration(session, pass);
+  for (const BoardObservations& camera : pass.cameras) {
     checkBoardSeen(camera, session.board);
     checkBoardSize(camera, session.board, session.options.front_end.extent);
   }
-  const CalibrationInput input = inputFrom(session, run);
-  if (observer != nullptr) observer->detectionDone(input);
-
-  context.progress.stageStarted("initialise");
-  Stopwatch stopwatch;
-  const Initialisation initial = initialise(input, session.options.initialisation, context, observer);
-  for (const InitialisationStep& step : initial.steps) {
-    context.progress.log(LogLevel::Info, fmt::format("{}: {}", step.name, step.result));
-  }
-  for (const std::string& warning : initial.warnings) context.progress.log(LogLevel::Warning, warning);
-  CalibrationResult& result = run.result;
-  result.start_ns = run.pass.start_ns;
-  result.timing.initialise_s = stopwatch.elapsed_s();
-
-  context.progress.stageStarted("optimise");
-  stopwatch.restart_s();
-  BatchSolution solution =
-      optimiseBatch(input, initial.state, session.options.optimisation, context, observer);
-  UncertaintyEstimate uncertainty =
-      estimateUncertainty(input, solution, session.options.optimisation, context);
-  const PriorCheck priors = checkPriors(input, solution, session.options.optimisation, context);
-  context.progress.stageProgress(1.0);
-  result.timing.optimise_s = stopwatch.elapsed_s();
-
-  result.status = uncertainty.status;
-  result.reason = uncertainty.reason;
-  if (!solution.converged && result.status == CalibrationStatus::Ok)
-    addDoubt("the optimisation did not converge: raise optimisation.max_iterations, or look at the residuals",
-             result);
-  addDoubt(priors.doubt, result);
-  addDoubt(initial.doubt, result);
-  result.state = std::move(solution.state);
-  result.uncertainty = std::move(uncertainty.report);
-  result.cameras = std::move(solution.cameras);
-  result.imus = std::move(solution.imus);
-  result.iterations = std::move(solution.iterations);
-  result.circle_residuals = std::move(solution.circle_residuals);
-  validateByHalves(session, input, context, result);
-  for (const RecordingFault& fault : run.pass.faults) result.notes.push_back(fault.text);
-  for (const InitialisationStep& step : initial.steps) result.notes.push_back(step.name + ": " + step.result);
-  result.notes.insert(result.notes.end(), initial.warnings.begin(), initial.warnings.end());
-  result.notes.insert(result.notes.end(), solution.notes.begin(), solution.notes.end());
-  result.notes.insert(result.notes.end(), priors.notes.begin(), priors.notes.end());
-  result.timing.read_s = run.pass.read_s;
-  result.timing.detect_s = run.pass.detect_s;
-  result.timing.total_s = std::max(run.pass.read_s, run.pass.detect_s) + result.timing.initialise_s +
-                          result.timing.optimise_s + result.timing.cross_validate_s;
-  result.memory_peak_mb = peakMemory_mb();
 }
+
+// One run: what its stages hand on to each other, and what each of them does.
+class Calibration {
+ public:
+  Calibration(const Session& session, const RunContext& context) : session_(session), context_(context) {}
+
+  CalibrationOutcome fromRecording() {
+    return outcomeOf([this] {
+      checkSession(session_);
+      const Stopwatch stopwatch;
+      calibrateMissingIntrinsics(session_, context_, run_);
+      const double intrinsics_s = stopwatch.elapsed_s();
+      runFrom(CalibrationStage::Detect);
+      run_.result.timing.total_s += intrinsics_s;
+    });
+  }
+
+  CalibrationOutcome fromDetections(RecordingPass pass,
+                                    std::vector<std::optional<IntrinsicsResult>> intrinsics) {
+    run_.pass = std::move(pass);
+    run_.intrinsics = std::move(intrinsics);
+    return outcomeOf([this] {
+      prepareInput();
+      runFrom(CalibrationStage::Initialise);
+    });
+  }
+
+ private:
+  struct StageWork {
+    CalibrationStage stage;
+    void (Calibration::*work)();
+  };
+  static const std::array<StageWork, 4> kWork;  // those of cameras without intrinsics come before
+
+  template <class Work>
+  CalibrationOutcome outcomeOf(const Work& work) {
+    CalibrationOutcome outcome;
+    try {
+      work();
+      outcome.run = std::move(run_);
+      return outcome;
+    } catch (const Cancelled&) {
+      outcome.status = RunStatus::Cancelled;
+    } catch (const CalibrationError& error) {
+      outcome.status = RunStatus::Failed;
+      outcome.error = error;
+    }
+    outcome.pass = std::move(run_.pass);
+    return outcome;
+  }
+
+  void runFrom(CalibrationStage first) {
+    for (const StageWork& each : kWork) {
+      if (each.stage < first) continue;
+      if (each.stage == CalibrationStage::CrossValidate && !session_.options.report.cross_validation)
+        continue;
+      const StageRow& row = rowOf(each.stage);
+      context_.progress.stageStarted(row.name);
+      const Stopwatch stopwatch;
+      (this->*each.work)();
+      context_.progress.stageProgress(1.0);
+      run_.result.timing.*row.duration_s = stopwatch.elapsed_s();
+    }
+    conclude();
+  }
+
+  void detect() {
+    run_.pass = readAndDetect(session_, context_);
+    prepareInput();
+  }
+
+  void prepareInput() {
+    checkPass(session_, context_, run_.pass);
+    input_ = inputFrom(session_, run_);
+    if (context_.observer != nullptr) context_.observer->detectionDone(input_);
+  }
+
+  void initialiseState() {
+    initial_ = initialise(input_, session_.options.initialisation, context_);
+    for (const InitialisationStep& step : initial_.steps)
+      context_.progress.log(LogLevel::Info, fmt::format("{}: {}", step.name, step.result));
+    for (const std::string& warning : initial_.warnings) context_.progress.log(LogLevel::Warning, warning);
+  }
+
+  void optimise() {
+    const OptimisationOptions& options = session_.options.optimisation;
+    CalibrationResult& result = run_.result;
+    BatchSolution solution = optimiseBatch(input_, initial_.state, options, context_);
+    UncertaintyEstimate uncertainty = estimateUncertainty(input_, solution, options, context_);
+    PriorCheck priors = checkPriors(input_, solution, options, context_);
+    result.status = uncertainty.status;
+    result.reason = uncertainty.reason;
+    if (!solution.converged && result.status == CalibrationStatus::Ok)
+      addDoubt(
+          "the optimisation did not converge: raise optimisation.max_iterations, or look at the residuals",
+          result);
+    addDoubt(priors.doubt, result);
+    addDoubt(initial_.doubt, result);
+    result.state = std::move(solution.state);
+    result.uncertainty = std::move(uncertainty.report);
+    result.cameras = std::move(solution.cameras);
+    result.imus = std::move(solution.imus);
+    result.iterations = std::move(solution.iterations);
+    result.circle_residuals = std::move(solution.circle_residuals);
+    notes_ = std::move(solution.notes);
+    notes_.insert(notes_.end(), priors.notes.begin(), priors.notes.end());
+  }
+
+  void compareHalves() { validateByHalves(session_, input_, context_, run_.result); }
+
+  void conclude() {
+    CalibrationResult& result = run_.result;
+    result.start_ns = run_.pass.start_ns;
+    for (const RecordingFault& fault : run_.pass.faults) result.notes.push_back(fault.text);
+    for (const InitialisationStep& step : initial_.steps)
+      result.notes.push_back(step.name + ": " + step.result);
+    result.notes.insert(result.notes.end(), initial_.warnings.begin(), initial_.warnings.end());
+    result.notes.insert(result.notes.end(), notes_.begin(), notes_.end());
+    Timing& timing = result.timing;
+    timing.read_s = run_.pass.read_s;  // of the threads, which overlap; also where the pass came from before
+    timing.detect_s = run_.pass.detect_s;
+    timing.total_s = std::max(timing.read_s, timing.detect_s) + timing.initialise_s + timing.optimise_s +
+                     timing.cross_validate_s;
+    result.memory_peak_mb = peakMemory_mb();
+    tellIntrinsics(session_, run_);
+  }
+
+  Session session_;  // with the intrinsics that were found
+  const RunContext& context_;
+  CalibrationRun run_;
+  CalibrationInput input_;
+  Initialisation initial_;
+  std::vector<std::string> notes_;  // of the batch
+};
+
+const std::array<Calibration::StageWork, 4> Calibration::kWork = {
+    {{CalibrationStage::Detect, &Calibration::detect},
+     {CalibrationStage::Initialise, &Calibration::initialiseState},
+     {CalibrationStage::Optimise, &Calibration::optimise},
+     {CalibrationStage::CrossValidate, &Calibration::compareHalves}}};
 
 }  // namespace
 
-void calibrateInto(CalibrationRun& run, const Session& session, const RunContext& context,
-                   const ObserverFactory& observers, CalibrationObserver* observer) {
-  checkSession(session);
-  const Stopwatch stopwatch;
-  Session known = session;
-  calibrateMissingIntrinsics(known, context, run);
-  const double intrinsics_s = stopwatch.elapsed_s();
-  context.progress.stageStarted("detect");
-  run.pass = readAndDetect(known, context, observers, observer);
-  estimate(known, context, observer, run);
-  tellIntrinsics(known, run);
-  run.result.timing.total_s += intrinsics_s;
+CalibrationRun CalibrationOutcome::runOrThrow() && {
+  if (status == RunStatus::Cancelled) throw Cancelled{};
+  if (error) throw CalibrationError(*error);
+  return std::move(*run);
 }
 
-CalibrationRun calibrate(const Session& session, const RunContext& context, const ObserverFactory& observers,
-                         CalibrationObserver* observer) {
-  CalibrationRun run;
-  calibrateInto(run, session, context, observers, observer);
-  return run;
+CalibrationOutcome runCalibration(const Session& session, const RunContext& context) {
+  return Calibration(session, context).fromRecording();
+}
+
+CalibrationRun calibrate(const Session& session, const RunContext& context) {
+  return runCalibration(session, context).runOrThrow();
 }
 
 CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context,
-                         CalibrationObserver* observer,
                          std::vector<std::optional<IntrinsicsResult>> intrinsics) {
-  CalibrationRun run;
-  run.pass = std::move(pass);
-  run.intrinsics = std::move(intrinsics);
-  estimate(session, context, observer, run);
-  tellIntrinsics(session, run);
-  return run;
+  return Calibration(session, context).fromDetections(std::move(pass), std::move(intrinsics)).runOrThrow();
 }
 
 std::optional<CameraIntrinsics> foundIntrinsics(const CalibrationRun& run, std::size_t camera) {

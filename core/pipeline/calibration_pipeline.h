@@ -2,6 +2,7 @@
 // stages' order.
 #pragma once
 
+#include "core/base/error.h"
 #include "core/base/progress.h"
 #include "core/data/calibration_result.h"
 #include "core/data/intrinsics_result.h"
@@ -21,21 +22,30 @@ struct CalibrationRun {
   std::vector<std::optional<IntrinsicsResult>> intrinsics;
 };
 
-// Cameras without intrinsics are calibrated first, from the same events: stages "first look" and "intrinsics"
-// for each of them. Then progress goes by the stages "detect", "initialise", "optimise", "cross_validate".
-// Throws CalibrationError, and Cancelled when asked to stop.
-CalibrationRun calibrate(const Session& session, const RunContext& context,
-                         const ObserverFactory& observers = {}, CalibrationObserver* observer = nullptr);
+enum class RunStatus { Done, Cancelled, Failed };
 
-// The same into `run`, as far as it gets: where it throws, what was read and detected is there already.
-void calibrateInto(CalibrationRun& run, const Session& session, const RunContext& context,
-                   const ObserverFactory& observers = {}, CalibrationObserver* observer = nullptr);
+// How a run ended, and what there is of it.
+struct CalibrationOutcome {
+  RunStatus status = RunStatus::Done;
+  std::optional<CalibrationError> error;  // why it failed
+  std::optional<CalibrationRun> run;      // exactly where it is done
+  RecordingPass pass;  // where it is not: what was read and detected until then; empty before that
+
+  CalibrationRun runOrThrow() &&;  // the run; else throws the error, or Cancelled
+};
+
+// Cameras without intrinsics are calibrated first, from the same events. Progress goes by the stages of
+// core/data/calibration_stage.h; the observer of `context` sees the cameras' windows once all intrinsics are
+// known.
+CalibrationOutcome runCalibration(const Session& session, const RunContext& context);
+
+// The same for who wants nothing but the result. Throws CalibrationError, and Cancelled when asked to stop.
+CalibrationRun calibrate(const Session& session, const RunContext& context);
 
 // The same from what the front end and the IMUs gave: `pass` as readAndDetect or a simulation makes it,
 // through the session's intrinsics. `intrinsics`: those of them that a run before found, as CalibrationRun
 // has them.
 CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context,
-                         CalibrationObserver* observer = nullptr,
                          std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
 
 // A camera's intrinsics as the run has them at its end: solved with everything else, or as calibrated first.

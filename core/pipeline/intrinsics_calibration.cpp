@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/base/time.h"
+#include "core/data/calibration_stage.h"
 #include "core/geometry/projection_difference.h"
 #include "core/intrinsics/estimate_intrinsics.h"
 #include "core/pipeline/board_size_check.h"
@@ -55,13 +56,13 @@ IntrinsicsRun calibrateIntrinsics(const Session& session, std::size_t camera, co
   const Stopwatch stopwatch;
   Session alone = cameraAlone(session, camera);
   SessionCamera& seen = alone.cameras.front();
-  context.progress.stageStarted("first look");
+  context.progress.stageStarted(nameOf(CalibrationStage::FirstLook));
   seen.intrinsics = lookThroughPlainLenses(alone, context);
   IntrinsicsRun run;
   std::optional<CameraIntrinsics> start;
   for (int pass = 1; pass <= alone.options.intrinsics.most_passes; ++pass) {
-    context.progress.stageStarted("intrinsics");
-    run.pass = readAndDetect(alone, context);
+    context.progress.stageStarted(nameOf(CalibrationStage::Intrinsics));
+    run.pass = readAndDetect(alone, context.unobserved());
     checkBoardSeen(run.pass.cameras.front(), alone.board);
     run.result = estimate(alone, run.pass, start, context);
     run.result.passes = pass;

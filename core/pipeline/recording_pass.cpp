@@ -3,6 +3,8 @@
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/base/time.h"
+#include "core/data/calibration_observer.h"
+#include "core/frontend/board_tracker.h"
 #include "core/pipeline/bounded_queue.h"
 #include "core/pipeline/session_recording.h"
 
@@ -118,13 +120,8 @@ class CameraIntake {
 // The window thread: one tracker a camera.
 class WindowWorker {
  public:
-  WindowWorker(const Session& session, const RunContext& context, const ObserverFactory& observers,
-               CalibrationObserver* observer)
-      : session_(session),
-        context_(context),
-        observers_(observers),
-        observer_(observer),
-        trackers_(session.cameras.size()) {}
+  WindowWorker(const Session& session, const RunContext& context)
+      : session_(session), context_(context), trackers_(session.cameras.size()) {}
 
   void run(BoundedQueue<BurstBatch>& queue) {
     try {
@@ -163,18 +160,17 @@ class WindowWorker {
       tracker = std::make_unique<BoardTracker>(session_.board, *batch.opened_px,
                                                session_.cameras[batch.camera].intrinsics,
                                                session_.options.front_end, batch.start_ns);
-      if (observers_) tracker->observeWith(observers_(batch.camera, *tracker));
+      if (context_.observer != nullptr)
+        tracker->observeWith(context_.observer->windowObserver(batch.camera, *tracker));
     }
     const std::size_t before = tracker->observations().windows.size();
     tracker->addBursts(batch.bursts, batch.first_event_ns, batch.complete_until_ns);
-    if (observer_ != nullptr && tracker->observations().windows.size() > before)
-      observer_->windowsDetected(batch.camera, tracker->observations());
+    if (context_.observer != nullptr && tracker->observations().windows.size() > before)
+      context_.observer->windowsDetected(batch.camera, tracker->observations());
   }
 
   const Session& session_;
   const RunContext& context_;
-  const ObserverFactory& observers_;
-  CalibrationObserver* observer_;
   std::vector<std::unique_ptr<BoardTracker>> trackers_;
   std::exception_ptr failure_;
   double busy_s_ = 0.0;
@@ -276,12 +272,11 @@ class ReadingPass {
 
 }  // namespace
 
-RecordingPass readAndDetect(const Session& session, const RunContext& context,
-                            const ObserverFactory& observers, CalibrationObserver* observer) {
+RecordingPass readAndDetect(const Session& session, const RunContext& context) {
   RecordingPass result;
   const Stopwatch stopwatch;
   ReadingPass reading(session, result);
-  WindowWorker worker(session, context, observers, observer);
+  WindowWorker worker(session, context);
   BoundedQueue<BurstBatch> queue(kQueuedBatches);
   {
     std::jthread windows([&] { worker.run(queue); });

@@ -2,13 +2,11 @@
 #pragma once
 
 #include "core/base/progress.h"
-#include "core/data/calibration_observer.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/recording.h"
-#include "core/frontend/board_tracker.h"
 #include "core/pipeline/session.h"
 
-#include <functional>
+#include <cstdint>
 #include <vector>
 
 namespace evical {
@@ -22,12 +20,8 @@ struct RecordingPass {
   double read_s = 0.0, detect_s = 0.0;  // the threads' own times, which overlap
 };
 
-// Called for each camera before its first window; what it returns sees the camera's windows. Null: nobody.
-using ObserverFactory = std::function<FrontEndObserver*(std::size_t camera, const BoardTracker& tracker)>;
-
 // Reads and finds bursts in one thread, searches windows in another; memory does not grow with the number of
 // events. Throws BadInput for streams that are missing, empty, or do not fit the session.
-RecordingPass readAndDetect(const Session& session, const RunContext& context,
-                            const ObserverFactory& observers = {}, CalibrationObserver* observer = nullptr);
+RecordingPass readAndDetect(const Session& session, const RunContext& context);
 
 }  // namespace evical

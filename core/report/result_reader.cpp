@@ -1,4 +1,5 @@
 #include "core/base/yaml_node.h"
+#include "core/data/calibration_stage.h"
 #include "core/data/intrinsics_yaml.h"
 #include "core/data/quantity_yaml.h"
 #include "core/data/unit_quaternion.h"
@@ -217,12 +218,8 @@ void readRun(const YamlNode& root, NamedResult& named) {
   get(root, "notes", named.result.notes);
   get(root, "memory_peak_mb", named.result.memory_peak_mb);
   if (const auto timing = root.find("timing_s")) {
-    get(*timing, "read", named.result.timing.read_s);
-    get(*timing, "detect", named.result.timing.detect_s);
-    get(*timing, "initialise", named.result.timing.initialise_s);
-    get(*timing, "optimise", named.result.timing.optimise_s);
-    get(*timing, "cross_validate", named.result.timing.cross_validate_s);
-    get(*timing, "total", named.result.timing.total_s);
+    forEachTiming(named.result.timing,
+                  [&](const char* key, double& duration_s) { get(*timing, key, duration_s); });
   }
   const auto program = root.find("program");
   if (!program) return;

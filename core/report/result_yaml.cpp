@@ -2,6 +2,7 @@
 
 #include "core/base/element.h"
 #include "core/base/yaml_node.h"
+#include "core/data/calibration_stage.h"
 #include "core/data/intrinsics_yaml.h"
 #include "core/data/quantity_yaml.h"
 #include "core/numerics/angles.h"
@@ -169,15 +170,13 @@ std::string crossValidationYaml(const CrossValidation& validation) {
 }
 
 std::string runYaml(const NamedResult& named) {
-  const Timing& timing = named.result.timing;
   std::string text = named.result.notes.empty() ? "notes: []\n" : "notes:\n";
   for (const std::string& note : named.result.notes) text += fmt::format("  - {}\n", yamlText(note));
-  text += fmt::format(
-      "timing_s: {{read: {:.3f}, detect: {:.3f}, initialise: {:.3f}, optimise: {:.3f}, cross_validate: "
-      "{:.3f}, "
-      "total: {:.3f}}}\n",
-      timing.read_s, timing.detect_s, timing.initialise_s, timing.optimise_s, timing.cross_validate_s,
-      timing.total_s);
+  std::string timing;
+  forEachTiming(named.result.timing, [&](const char* key, double duration_s) {
+    timing += fmt::format("{}{}: {:.3f}", timing.empty() ? "" : ", ", key, duration_s);
+  });
+  text += fmt::format("timing_s: {{{}}}\n", timing);
   text += fmt::format("memory_peak_mb: {:.0f}\nprogram:\n  version: {}\n", named.result.memory_peak_mb,
                       yamlText(named.names.version));
   text += named.names.options.empty() ? "  options: {}\n" : "  options:\n";

@@ -84,7 +84,7 @@ std::array<CalibrationRun, kWays> calibrateEveryWay(const Session& unknown, cons
   held.options.optimisation.camera_intrinsics = CameraIntrinsicsChoice::Fixed;
   for (std::size_t k = 0; k < held.cameras.size(); ++k)
     held.cameras[k].intrinsics = runs[kJoint].intrinsics[k]->intrinsics;
-  runs[kFound] = calibrate(held, runs[kJoint].pass, RunContext{}, nullptr, runs[kJoint].intrinsics);
+  runs[kFound] = calibrate(held, runs[kJoint].pass, RunContext{}, runs[kJoint].intrinsics);
   return runs;
 }
 

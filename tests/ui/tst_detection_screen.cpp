@@ -406,8 +406,8 @@ class TestDetectionScreen : public QObject {
     screen.show();
     screen.setSession(recorded_->session);
     screen.setLive(true);
-    std::jthread job([session = recorded_->session, observers = screen.liveObservers()] {
-      readAndDetect(session, {}, observers);
+    std::jthread job([session = recorded_->session, observer = screen.liveObserver()] {
+      readAndDetect(session, {silentProgress(), {}, observer.get()});
     });
     QTRY_VERIFY_WITH_TIMEOUT(screen.analysis() && screen.analysis()->tracked, 20000 * kSlowdown);
     QTRY_VERIFY_WITH_TIMEOUT(!screen.timeline().windows().empty() && screen.view().frame(),
@@ -423,8 +423,8 @@ class TestDetectionScreen : public QObject {
     auto screen = std::make_unique<DetectionScreen>();
     screen->setSession(recorded_->session);
     screen->setLive(true);
-    std::jthread job([session = recorded_->session, observers = screen->liveObservers()] {
-      readAndDetect(session, {}, observers);
+    std::jthread job([session = recorded_->session, observer = screen->liveObserver()] {
+      readAndDetect(session, {silentProgress(), {}, observer.get()});
     });
     QTest::qWait(50);
     screen.reset();

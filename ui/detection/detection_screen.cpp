@@ -147,8 +147,8 @@ void DetectionScreen::setResult(std::shared_ptr<const CalibrationRun> run) {
   setObservations(std::move(observations));
 }
 
-ObserverFactory DetectionScreen::liveObservers() {
-  return live_detection_->observers(options_);
+std::shared_ptr<CalibrationObserver> DetectionScreen::liveObserver() {
+  return live_detection_->observer(options_);
 }
 
 void DetectionScreen::setLive(bool live) {

@@ -49,7 +49,7 @@ class DetectionScreen : public QWidget {
   void setResult(std::shared_ptr<const CalibrationRun> run);
 
   // While a job runs: give these to it, and the screen shows the windows as they are found.
-  ObserverFactory liveObservers();
+  std::shared_ptr<CalibrationObserver> liveObserver();
   void setLive(bool live);
   bool isLive() const { return live_; }
   void showLiveFrame(std::shared_ptr<const LiveWindow> window);

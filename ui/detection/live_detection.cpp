@@ -2,6 +2,7 @@
 #include "ui/detection/live_detection.h"
 
 #include "core/base/time.h"
+#include "core/frontend/board_tracker.h"
 #include "ui/detection/frame_mailbox.h"
 
 #include <QMetaObject>
@@ -35,10 +36,10 @@ struct LiveDetection::Link {
   }
 };
 
-class LiveDetection::Observer : public FrontEndObserver {
+class LiveDetection::CameraObserver final : public FrontEndObserver {
  public:
-  Observer(std::shared_ptr<Link> link, std::size_t camera, const BoardTracker& tracker,
-           const FrontEndOptions& options)
+  CameraObserver(std::shared_ptr<Link> link, std::size_t camera, const BoardTracker& tracker,
+                 const FrontEndOptions& options)
       : link_(std::move(link)),
         camera_(camera),
         tracker_(tracker),
@@ -128,6 +129,21 @@ class LiveDetection::Observer : public FrontEndObserver {
   std::shared_ptr<const std::vector<WindowReport>> reports_;
 };
 
+class LiveDetection::RunObserver final : public CalibrationObserver {
+ public:
+  RunObserver(std::shared_ptr<Link> link, const FrontEndOptions& options)
+      : link_(std::move(link)), options_(options) {}
+
+  FrontEndObserver* windowObserver(std::size_t camera, const BoardTracker& tracker) override {
+    return &cameras_.emplace_back(link_, camera, tracker, options_);
+  }
+
+ private:
+  std::shared_ptr<Link> link_;
+  FrontEndOptions options_;
+  std::list<CameraObserver> cameras_;
+};
+
 LiveDetection::LiveDetection(QObject* parent) : QObject(parent), link_(std::make_shared<Link>()) {
   link_->owner = this;
 }
@@ -137,12 +153,8 @@ LiveDetection::~LiveDetection() {
   link_->owner = nullptr;
 }
 
-ObserverFactory LiveDetection::observers(const FrontEndOptions& options) {
-  // The factory's copies share the observers, which live as long as the run that holds it.
-  auto made = std::make_shared<std::list<Observer>>();
-  return [link = link_, made, options](std::size_t camera, const BoardTracker& tracker) -> FrontEndObserver* {
-    return &made->emplace_back(link, camera, tracker, options);
-  };
+std::shared_ptr<CalibrationObserver> LiveDetection::observer(const FrontEndOptions& options) {
+  return std::make_shared<RunObserver>(link_, options);
 }
 
 std::shared_ptr<const LiveWindow> LiveDetection::take() {

@@ -3,7 +3,7 @@
 // at most, from whatever thread it runs in.
 #pragma once
 
-#include "core/pipeline/recording_pass.h"
+#include "core/data/calibration_observer.h"
 #include "ui/detection/window_analysis.h"
 
 #include <QObject>
@@ -31,8 +31,8 @@ class LiveDetection : public QObject {
   explicit LiveDetection(QObject* parent = nullptr);
   ~LiveDetection() override;
 
-  // For readAndDetect or calibrate, once a run; may outlive this object.
-  ObserverFactory observers(const FrontEndOptions& options);
+  // For the context of one run; may outlive this object.
+  std::shared_ptr<CalibrationObserver> observer(const FrontEndOptions& options);
 
   std::shared_ptr<const LiveWindow> take();
 
@@ -41,7 +41,8 @@ class LiveDetection : public QObject {
 
  private:
   struct Link;
-  class Observer;
+  class CameraObserver;
+  class RunObserver;
   std::shared_ptr<Link> link_;
 };
 

@@ -14,13 +14,12 @@ using Clock = std::chrono::steady_clock;
 // Copies of all detections so far: often enough to look alive, seldom enough to cost nothing.
 constexpr auto kBetweenDetections = std::chrono::milliseconds(150);
 
-// How the time is spent on an everyday recording.
-const std::vector<JobStage> kStages = {
-    {"detect", 0.5}, {"initialise", 0.05}, {"optimise", 0.35}, {"cross_validate", 0.1}};
-const std::vector<JobStage> kStagesWithIntrinsics = {{"first look", 0.05}, {"intrinsics", 0.4},
-                                                     {"detect", 0.25},     {"initialise", 0.03},
-                                                     {"optimise", 0.2},    {"cross_validate", 0.07}};
-const std::vector<JobStage> kStagesAgain = {{"initialise", 0.1}, {"optimise", 0.7}, {"cross_validate", 0.2}};
+std::vector<JobStage> jobStages(RunStart start) {
+  std::vector<JobStage> stages;
+  for (const StageRow& row : kCalibrationStages)
+    if (shareOf(row, start) > 0.0) stages.push_back({row.name, shareOf(row, start)});
+  return stages;
+}
 
 QString textOf(std::string_view text) {
   return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
@@ -33,22 +32,25 @@ class CalibrationJob::LiveView final : public CalibrationObserver {
  public:
   struct Contents {
     std::shared_ptr<const LiveDetections> detections;
-    std::shared_ptr<const CalibrationInput> input;
+    bool detection_done = false;
     std::vector<InitialisationNote> notes;
     std::shared_ptr<const LiveIterations> iterations;
   };
 
-  explicit LiveView(std::size_t cameras) : detections_(cameras) {}
+  LiveView(std::size_t cameras, std::shared_ptr<CalibrationObserver> windows)
+      : windows_(std::move(windows)), detections_(cameras) {}
 
+  FrontEndObserver* windowObserver(std::size_t camera, const BoardTracker& tracker) override {
+    return windows_ ? windows_->windowObserver(camera, tracker) : nullptr;
+  }
   void windowsDetected(std::size_t camera, const BoardObservations& so_far) override {
     if (Clock::now() < next_copy_) return;
     next_copy_ = Clock::now() + kBetweenDetections;
     detections_.at(camera) = so_far;
     put([&](Contents& box) { box.detections = std::make_shared<LiveDetections>(detections_); });
   }
-  void detectionDone(const CalibrationInput& input) override {
-    const auto copy = std::make_shared<CalibrationInput>(input);
-    put([&](Contents& box) { box.input = copy; });
+  void detectionDone(const CalibrationInput&) override {
+    put([](Contents& box) { box.detection_done = true; });
   }
   void initialisationStepDone(std::string_view step, std::string_view result, double duration_s) override {
     put([&](Contents& box) { box.notes.push_back({textOf(step), textOf(result), duration_s}); });
@@ -73,6 +75,7 @@ class CalibrationJob::LiveView final : public CalibrationObserver {
     change(contents_);
   }
 
+  std::shared_ptr<CalibrationObserver> windows_;
   LiveDetections detections_;
   std::vector<IterationRecord> records_;
   Clock::time_point next_copy_;
@@ -87,14 +90,12 @@ CalibrationJob::CalibrationJob(JobRunner& runner, QObject* parent) : QObject(par
 }
 
 bool CalibrationJob::start(const Session& session) {
-  const ObserverFactory observers = observers_ && !runner_.running() ? observers_() : ObserverFactory{};
+  const auto windows = make_observer_ && !runner_.running() ? make_observer_() : nullptr;
   const bool all_known = std::all_of(session.cameras.begin(), session.cameras.end(),
                                      [](const SessionCamera& camera) { return camera.intrinsics; });
-  const std::vector<JobStage>& stages = all_known ? kStages : kStagesWithIntrinsics;
-  const bool begun =
-      run(session, stages, [session, observers](const RunContext& context, CalibrationObserver* observer) {
-        return calibrate(session, context, observers, observer);
-      });
+  const RunStart from = all_known ? RunStart::KnownIntrinsics : RunStart::UnknownIntrinsics;
+  const bool begun = run(session, from, windows,
+                         [session](const RunContext& context) { return calibrate(session, context); });
   if (begun) emit detecting();
   return begun;
 }
@@ -102,21 +103,22 @@ bool CalibrationJob::start(const Session& session) {
 bool CalibrationJob::startAgain(const Session& session, RecordingPass pass,
                                 std::vector<std::optional<IntrinsicsResult>> intrinsics) {
   const auto shared = std::make_shared<RecordingPass>(std::move(pass));
-  return run(session, kStagesAgain,
-             [session, shared, intrinsics = std::move(intrinsics)](const RunContext& context,
-                                                                   CalibrationObserver* observer) {
-               return calibrate(session, std::move(*shared), context, observer, intrinsics);
+  return run(session, RunStart::Detections, nullptr,
+             [session, shared, intrinsics = std::move(intrinsics)](const RunContext& context) {
+               return calibrate(session, std::move(*shared), context, intrinsics);
              });
 }
 
-bool CalibrationJob::run(const Session& session, const std::vector<JobStage>& stages, Work work) {
+bool CalibrationJob::run(const Session& session, RunStart start, std::shared_ptr<CalibrationObserver> windows,
+                         Work work) {
   if (runner_.running()) return false;
   session_ = session;
-  live_ = std::make_shared<LiveView>(session.cameras.size());
+  live_ = std::make_shared<LiveView>(session.cameras.size(), std::move(windows));
   const auto job = [work = std::move(work), live = live_](const RunContext& context) {
-    live->run = std::make_shared<CalibrationRun>(work(context, live.get()));
+    live->run =
+        std::make_shared<CalibrationRun>(work(RunContext{context.progress, context.stop, live.get()}));
   };
-  if (!runner_.start(tr("Calibrate"), stages, job)) return false;
+  if (!runner_.start(tr("Calibrate"), jobStages(start), job)) return false;
   emit started();
   return true;
 }
@@ -125,7 +127,7 @@ void CalibrationJob::deliver() {
   if (!live_) return;
   const LiveView::Contents fresh = live_->take();
   if (fresh.detections) emit detectionsChanged(fresh.detections);
-  if (fresh.input) emit detectionDone(fresh.input);
+  if (fresh.detection_done) emit detectionDone();
   for (const InitialisationNote& note : fresh.notes) emit initialisationStepDone(note);
   if (fresh.iterations) emit iterationsChanged(fresh.iterations);
 }

@@ -2,6 +2,8 @@
 // A calibration as a job: what the front end and the optimiser find is shown while they run.
 #pragma once
 
+#include "core/data/calibration_observer.h"
+#include "core/data/calibration_stage.h"
 #include "core/pipeline/calibration_pipeline.h"
 #include "ui/jobs/job_runner.h"
 
@@ -30,8 +32,9 @@ class CalibrationJob : public QObject {
  public:
   explicit CalibrationJob(JobRunner& runner, QObject* parent = nullptr);
 
-  // Asked at each start for somebody who sees the front end's windows (recording_pass.h); may be empty.
-  void observeWith(std::function<ObserverFactory()> observers) { observers_ = std::move(observers); }
+  // Asked at each start from the recording for somebody who sees the front end's windows; may be empty.
+  using ObserverMaker = std::function<std::shared_ptr<CalibrationObserver>()>;
+  void observeWith(ObserverMaker maker) { make_observer_ = std::move(maker); }
 
   // Works on a copy. False while the runner is busy.
   bool start(const Session& session);
@@ -46,7 +49,7 @@ class CalibrationJob : public QObject {
   void ended();      // in whatever way
   // While it runs; only the newest of each kind is handed out, a few times a second.
   void detectionsChanged(std::shared_ptr<const evical::ui::LiveDetections> detections);
-  void detectionDone(std::shared_ptr<const evical::CalibrationInput> input);
+  void detectionDone();
   void initialisationStepDone(const evical::ui::InitialisationNote& note);
   void iterationsChanged(std::shared_ptr<const evical::ui::LiveIterations> iterations);
 
@@ -56,13 +59,13 @@ class CalibrationJob : public QObject {
  private:
   class LiveView;
 
-  using Work = std::function<CalibrationRun(const RunContext& context, CalibrationObserver* observer)>;
-  bool run(const Session& session, const std::vector<JobStage>& stages, Work work);
+  using Work = std::function<CalibrationRun(const RunContext& context)>;
+  bool run(const Session& session, RunStart start, std::shared_ptr<CalibrationObserver> windows, Work work);
   void deliver();
   void finish(JobOutcome outcome);
 
   JobRunner& runner_;
-  std::function<ObserverFactory()> observers_;
+  ObserverMaker make_observer_;
   std::shared_ptr<LiveView> live_;
   Session session_;
 };
@@ -72,5 +75,4 @@ class CalibrationJob : public QObject {
 Q_DECLARE_METATYPE(evical::ui::InitialisationNote)
 Q_DECLARE_METATYPE(std::shared_ptr<const evical::ui::LiveDetections>)
 Q_DECLARE_METATYPE(std::shared_ptr<const evical::ui::LiveIterations>)
-Q_DECLARE_METATYPE(std::shared_ptr<const evical::CalibrationInput>)
 Q_DECLARE_METATYPE(std::shared_ptr<const evical::CalibrationRun>)

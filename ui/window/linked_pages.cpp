@@ -21,7 +21,7 @@ void wireDetection(DetectionScreen& screen, Workbench& workbench) {
   });
   QObject::connect(&document, &CalibrationDocument::runsChanged, &screen,
                    [&screen, &document] { screen.setResult(document.last().run); });
-  job.observeWith([&screen] { return screen.liveObservers(); });
+  job.observeWith([&screen] { return screen.liveObserver(); });
   QObject::connect(&job, &CalibrationJob::detecting, &screen, [&screen] { screen.setLive(true); });
   QObject::connect(&job, &CalibrationJob::detectionDone, &screen, [&screen] { screen.setLive(false); });
   QObject::connect(&job, &CalibrationJob::ended, &screen, [&screen] { screen.setLive(false); });

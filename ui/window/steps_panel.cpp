@@ -15,10 +15,10 @@ namespace {
 // As core names them (CalibrationObserver); others are added when they come.
 const QStringList kInitialisationSteps = {"camera poses", "planar poses", "time offset",
                                           "camera-IMU rotation", "gravity and translation"};
-// Only where a camera comes without intrinsics.
-const QStringList kIntrinsicsStages = {"first look", "intrinsics"};
-const char* const kStages[] = {"first look", "intrinsics", "detect",
-                               "initialise", "optimise",   "cross_validate"};
+// Stages that only some runs have get their row when they start.
+bool isInEveryRun(const StageRow& row) {
+  return shareOf(row, RunStart::KnownIntrinsics) > 0.0;
+}
 
 QString capitalised(QString text) {
   if (!text.isEmpty()) text[0] = text[0].toUpper();
@@ -71,23 +71,37 @@ void StepsPanel::reset() {
   rows_.clear();
   stage_.clear();
   stage_begin_s_ = elapsed_s_ = 0.0;
-  addRow("detect", tr("Read and detect"), false);
-  addRow("initialise", tr("Initialise"), false);
-  for (const QString& step : kInitialisationSteps) addRow(step, capitalised(step), true);
-  addRow("optimise", tr("Optimise"), false);
-  addRow("cross_validate", tr("Compare halves"), false);
+  for (const StageRow& stage : kCalibrationStages) {
+    if (!isInEveryRun(stage)) continue;
+    addRow(stage.name, tr(stage.title), false);
+    if (stage.stage != CalibrationStage::Initialise) continue;
+    for (const QString& step : kInitialisationSteps) addRow(step, capitalised(step), true);
+  }
 }
 
 StepRow* StepsPanel::addRow(const QString& key, const QString& title, bool sub_step) {
   auto* const added = new StepRow(title, sub_step, this);
-  int place = layout_->count() - 1;  // before the stretch
-  // Steps that nobody announced come at the end of their stage.
-  const QString next = key.startsWith("stage ") ? "cross_validate" : "optimise";
-  if (sub_step && rows_.count(next) > 0) place = layout_->indexOf(rows_.at(next));
-  if (kIntrinsicsStages.contains(key)) place = layout_->indexOf(rows_.at("detect"));
-  layout_->insertWidget(place, added);
+  StepRow* const next = rowAfter(key, sub_step);
+  layout_->insertWidget(next ? layout_->indexOf(next) : layout_->count() - 1, added);  // before the stretch
   rows_[key] = added;
   return added;
+}
+
+// Steps that nobody announced come at the end of their stage: those of the batch, "stage 1" and so on, and
+// those of the initialisation.
+StepRow* StepsPanel::rowAfter(const QString& key, bool sub_step) {
+  const CalibrationStage of_step =
+      key.startsWith("stage ") ? CalibrationStage::Optimise : CalibrationStage::Initialise;
+  bool passed = false;
+  for (const StageRow& stage : kCalibrationStages) {
+    if (StepRow* const candidate = passed ? row(stage.name) : nullptr) return candidate;
+    if (sub_step ? stage.stage == of_step : key == stage.name) passed = true;
+  }
+  return nullptr;
+}
+
+StepRow* StepsPanel::row(CalibrationStage stage) {
+  return row(QString(nameOf(stage)));
 }
 
 StepRow* StepsPanel::row(const QString& key) {
@@ -96,10 +110,12 @@ StepRow* StepsPanel::row(const QString& key) {
 }
 
 void StepsPanel::startStage(const QString& stage) {
-  if (kIntrinsicsStages.contains(stage) && row(stage) == nullptr) addRow(stage, capitalised(stage), false);
-  for (const char* const known : kStages) {
-    if (stage == known) break;
-    if (StepRow* const before = row(known); before != nullptr && before->state() == StepState::Running)
+  for (const StageRow& known : kCalibrationStages) {
+    if (stage == known.name) {
+      if (row(stage) == nullptr) addRow(stage, tr(known.title), false);
+      break;
+    }
+    if (StepRow* const before = row(known.name); before != nullptr && before->state() == StepState::Running)
       before->setState(StepState::Done);
   }
   stage_ = stage;
@@ -120,7 +136,7 @@ void StepsPanel::setProgress(const JobProgress& progress) {
 }
 
 void StepsPanel::setDetections(const LiveDetections& detections) {
-  row("detect")->setKeyNumber(windowCounts(detections));
+  row(CalibrationStage::Detect)->setKeyNumber(windowCounts(detections));
 }
 
 void StepsPanel::addInitialisationNote(const InitialisationNote& note) {
@@ -169,22 +185,22 @@ void StepsPanel::dropUnusedSteps() {
 void StepsPanel::setRun(const CalibrationRun& run) {
   dropUnusedSteps();
   const CalibrationResult& result = run.result;
-  row("detect")->setKeyNumber(windowCounts(run.pass.cameras));
-  row("detect")->setTime(std::max(result.timing.read_s, result.timing.detect_s));
-  row("initialise")->setTime(result.timing.initialise_s);
-  row("optimise")->setTime(result.timing.optimise_s);
+  for (const StageRow& stage : kCalibrationStages)
+    if (stage.duration_s != nullptr) row(stage.stage)->setTime(result.timing.*stage.duration_s);
+  StepRow* const detect = row(CalibrationStage::Detect);
+  detect->setKeyNumber(windowCounts(run.pass.cameras));
+  detect->setTime(std::max(result.timing.read_s, result.timing.detect_s));
   QStringList reprojections;
   for (const CameraFit& camera : result.cameras)
     reprojections << tr("%1 px").arg(camera.reprojection_rms_px, 0, 'g', 3);
-  row("optimise")->setKeyNumber(tr("reprojection %1").arg(reprojections.join(", ")));
-  row("cross_validate")->setTime(result.timing.cross_validate_s);
+  row(CalibrationStage::Optimise)->setKeyNumber(tr("reprojection %1").arg(reprojections.join(", ")));
+  StepRow* const halves = row(CalibrationStage::CrossValidate);
   if (!result.cross_validation) {
-    row("cross_validate")->setKeyNumber(tr("not asked for"));
+    halves->setKeyNumber(tr("not asked for"));
   } else if (result.cross_validation->failure.empty()) {
-    row("cross_validate")
-        ->setKeyNumber(tr("they differ by %1 sigmas").arg(result.cross_validation->rms_sigmas, 0, 'f', 2));
+    halves->setKeyNumber(tr("they differ by %1 sigmas").arg(result.cross_validation->rms_sigmas, 0, 'f', 2));
   } else {
-    row("cross_validate")->setKeyNumber(QString::fromStdString(result.cross_validation->failure));
+    halves->setKeyNumber(QString::fromStdString(result.cross_validation->failure));
   }
 }
 

@@ -2,6 +2,7 @@
 // The steps of a calibration in their order, each with its state, progress, time taken and key number.
 #pragma once
 
+#include "core/data/calibration_stage.h"
 #include "ui/jobs/calibration_job.h"
 #include "ui/jobs/job_runner.h"
 
@@ -22,7 +23,7 @@ class StepsPanel : public QWidget {
   explicit StepsPanel(QWidget* parent = nullptr);
 
   void reset();
-  void startStage(const QString& stage);  // "detect", "initialise", "optimise"
+  void startStage(const QString& stage);  // by name (core/data/calibration_stage.h)
   void setProgress(const JobProgress& progress);
   void setDetections(const LiveDetections& detections);
   void addInitialisationNote(const InitialisationNote& note);
@@ -36,7 +37,9 @@ class StepsPanel : public QWidget {
  private:
   void dropUnusedSteps();
   StepRow* addRow(const QString& key, const QString& title, bool sub_step);
+  StepRow* rowAfter(const QString& key, bool sub_step);  // null: none comes after it
   StepRow* row(const QString& key);
+  StepRow* row(CalibrationStage stage);
 
   QVBoxLayout* layout_;
   std::map<QString, StepRow*> rows_;

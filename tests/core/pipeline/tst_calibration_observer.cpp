@@ -58,7 +58,7 @@ class TestCalibrationObserver : public QObject {
     const SimulationSummary simulated =
         simulate(scenario, scratch_.filePath("short").toStdString(), RunContext{});
     Notebook notebook;
-    const CalibrationRun run = calibrate(readSession(simulated.session), RunContext{}, {}, &notebook);
+    const CalibrationRun run = calibrate(readSession(simulated.session), {silentProgress(), {}, &notebook});
 
     QVERIFY(notebook.window_calls > 5);
     QVERIFY(notebook.windows + 3 >= run.pass.cameras[0].windows.size());  // the last ones come with the end

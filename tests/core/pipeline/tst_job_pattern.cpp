@@ -2,6 +2,8 @@
 // stopped by a token - but without Qt, so that the thread sanitizer understands every lock. Ends with 0 if
 // all is well.
 #include "core/base/error.h"
+#include "core/data/calibration_observer.h"
+#include "core/frontend/board_tracker.h"
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
@@ -32,7 +34,7 @@ constexpr auto kTick = std::chrono::milliseconds(5);
 
 // Everything that core says while it works, the newest of each kind; written by its threads, read by the
 // main.
-class Mailbox final : public ProgressSink, public CalibrationObserver {
+class Mailbox : public ProgressSink, public CalibrationObserver {
  public:
   struct Contents {
     std::string stage;
@@ -104,35 +106,36 @@ class Watcher final : public FrontEndObserver {
   std::vector<WindowReport> reports_;
 };
 
-enum class Outcome { Running, Done, Cancelled, Failed };
+// What a run's observer gives to each camera's front end lives as long as the run.
+class WatchedMailbox final : public Mailbox {
+ public:
+  FrontEndObserver* windowObserver(std::size_t, const BoardTracker& tracker) override {
+    return &watchers_.emplace_back(*this, tracker);
+  }
+
+ private:
+  std::list<Watcher> watchers_;
+};
 
 struct Ending {
-  Outcome outcome = Outcome::Running;
-  std::shared_ptr<const CalibrationRun> run;
+  CalibrationOutcome outcome;
   std::string problem;
   double after_stop_s = 0.0;
 };
 
 // Looks into the mailbox until the job has ended; stops it as soon as `enough` of what it saw.
 Ending runJob(const Session& session, const std::function<bool(const Mailbox::Contents&)>& enough,
-              Mailbox& box) {
+              WatchedMailbox& box) {
   Ending ending;
   std::atomic<bool> ended = false;
   std::stop_source stop;
   std::jthread worker([&ending, &ended, &box, session, token = stop.get_token()] {
-    std::list<Watcher> watchers;
-    const ObserverFactory factory = [&](std::size_t, const BoardTracker& tracker) {
-      return &watchers.emplace_back(box, tracker);
-    };
     try {
-      ending.run =
-          std::make_shared<CalibrationRun>(calibrate(session, RunContext{box, token}, factory, &box));
-      ending.outcome = Outcome::Done;
-    } catch (const Cancelled&) {
-      ending.outcome = Outcome::Cancelled;
+      ending.outcome = runCalibration(session, RunContext{box, token, &box});
+      if (ending.outcome.error) ending.problem = ending.outcome.error->what();
     } catch (const std::exception& error) {
-      ending.outcome = Outcome::Failed;
-      ending.problem = error.what();
+      ending.outcome.status = RunStatus::Failed;
+      ending.problem = std::string("not an outcome but thrown: ") + error.what();
     }
     ended = true;
   });
@@ -161,12 +164,12 @@ void check(bool holds, const char* what) {
 }
 
 void runToTheEnd(const Session& session) {
-  Mailbox box;
+  WatchedMailbox box;
   const Ending ending = runJob(
       session, [](const auto&) { return false; }, box);
   const Mailbox::Contents seen = box.look();
-  check(ending.outcome == Outcome::Done && ending.run, "a calibration runs to its end");
-  if (!ending.run) std::printf("      %s\n", ending.problem.c_str());
+  check(ending.outcome.status == RunStatus::Done && ending.outcome.run, "a calibration runs to its end");
+  if (!ending.outcome.run) std::printf("      %s\n", ending.problem.c_str());
   check(seen.stage == "cross_validate" && seen.fraction >= 1.0, "its progress ends with the last stage");
   check(seen.detections && seen.input && seen.state && !seen.steps.empty(), "everything was seen on the way");
   check(seen.tracked > 0, "so were the windows");
@@ -174,18 +177,20 @@ void runToTheEnd(const Session& session) {
 
 void stopAt(const Session& session, const char* stage,
             const std::function<bool(const Mailbox::Contents&)>& reached) {
-  Mailbox box;
+  WatchedMailbox box;
   const Ending ending = runJob(session, reached, box);
-  check(ending.outcome == Outcome::Cancelled && !ending.run, stage);
+  check(ending.outcome.status == RunStatus::Cancelled && !ending.outcome.run, stage);
   std::printf("      stopped after %.3f s\n", ending.after_stop_s);
 }
 
 void fail(Session session) {
   session.imus.front().clock_offset_s = 1000.0;
-  Mailbox box;
+  WatchedMailbox box;
   const Ending ending = runJob(
       session, [](const auto&) { return false; }, box);
-  check(ending.outcome == Outcome::Failed && !ending.problem.empty(), "a failure half-way arrives as one");
+  check(ending.outcome.status == RunStatus::Failed && ending.outcome.error && !ending.outcome.run,
+        "a failure half-way arrives as one");
+  check(!ending.outcome.pass.cameras.at(0).views.empty(), "with what was detected before it");
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ class TestJointIntrinsics : public QObject {
     found_.distortion[0] += 4e-3;
     seeThrough(truth_, found_, simulated_.pass.cameras[0]);
     simulated_.session.cameras[0].intrinsics = found_;
-    run_ = calibrate(simulated_.session, simulated_.pass, {}, nullptr, {foundFirst()});
+    run_ = calibrate(simulated_.session, simulated_.pass, {}, {foundFirst()});
   }
 
   void run_solvesForThem_andKeepsWhatWasFoundFirst() {
@@ -130,7 +130,7 @@ class TestJointIntrinsics : public QObject {
     Session session = simulated_.session;
     session.options.optimisation.camera_intrinsics = CameraIntrinsicsChoice::Fixed;
     session.options.report.cross_validation = false;
-    const CalibrationRun run = calibrate(session, simulated_.pass, {}, nullptr, {foundFirst()});
+    const CalibrationRun run = calibrate(session, simulated_.pass, {}, {foundFirst()});
     QVERIFY(!run.result.state.cameras[0].intrinsics);
     QVERIFY(run.result.reason.find(kDoubt) != std::string::npos);
     QVERIFY(foundIntrinsics(run, 0) == found_);

@@ -1,0 +1,61 @@
+// The stages of a calibration, one row each: what they are called in progress, logs and result.yaml, and how
+// much of a run's time they take. What they do is in core/pipeline/calibration_pipeline.cpp.
+#pragma once
+
+#include "core/data/calibration_result.h"
+
+#include <array>
+#include <cstddef>
+
+namespace evical {
+
+enum class CalibrationStage { FirstLook, Intrinsics, Detect, Initialise, Optimise, CrossValidate };
+
+// What a run starts from decides which stages it has.
+enum class RunStart { KnownIntrinsics, UnknownIntrinsics, Detections };
+
+struct StageRow {
+  CalibrationStage stage;
+  const char* name;   // as ProgressSink::stageStarted has it, and timing_s of result.yaml
+  const char* title;  // for people
+  // By RunStart: of an everyday recording's time; 0 where such a run goes without the stage.
+  std::array<double, 3> shares;
+  double Timing::*duration_s;  // null: it counts in the total only
+};
+
+// In the order in which they run.
+inline constexpr std::array<StageRow, 6> kCalibrationStages = {{
+    {CalibrationStage::FirstLook, "first look", "First look", {0.0, 0.05, 0.0}, nullptr},
+    {CalibrationStage::Intrinsics, "intrinsics", "Intrinsics", {0.0, 0.4, 0.0}, nullptr},
+    {CalibrationStage::Detect, "detect", "Read and detect", {0.5, 0.25, 0.0}, &Timing::detect_s},
+    {CalibrationStage::Initialise, "initialise", "Initialise", {0.05, 0.03, 0.1}, &Timing::initialise_s},
+    {CalibrationStage::Optimise, "optimise", "Optimise", {0.35, 0.2, 0.7}, &Timing::optimise_s},
+    {CalibrationStage::CrossValidate,
+     "cross_validate",
+     "Compare halves",
+     {0.1, 0.07, 0.2},
+     &Timing::cross_validate_s},
+}};
+
+constexpr const StageRow& rowOf(CalibrationStage stage) {
+  return kCalibrationStages[static_cast<std::size_t>(stage)];
+}
+
+constexpr const char* nameOf(CalibrationStage stage) {
+  return rowOf(stage).name;
+}
+
+constexpr double shareOf(const StageRow& row, RunStart start) {
+  return row.shares[static_cast<std::size_t>(start)];
+}
+
+// visit(key, seconds) for each entry of timing_s; T is Timing or const Timing.
+template <class T, class Visit>
+void forEachTiming(T& timing, Visit&& visit) {
+  visit("read", timing.read_s);
+  for (const StageRow& row : kCalibrationStages)
+    if (row.duration_s != nullptr) visit(row.name, timing.*row.duration_s);
+  visit("total", timing.total_s);
+}
+
+}  // namespace evical
