@@ -53,3 +53,5 @@ check(ui_screen_to_document "ui/detection may not include ui/document" ui/detect
       "#include \"ui/document/b.h\"")
 check(ui_unknown_folder "is no folder" ui/helpers/a.cpp "#include \"ui/theme/theme.h\"")
 check(ui_clean "" ui/window/a.cpp "#include \"ui/plots/b.h\"" ui/plots/b.h "#include <QWidget>")
+check(ui_page_to_jobs "" ui/plots/a.cpp "#include \"ui/jobs/latest_job.h\"")
+check(ui_jobs_to_page "ui/jobs may not include ui/plots" ui/jobs/a.cpp "#include \"ui/plots/b.h\"")

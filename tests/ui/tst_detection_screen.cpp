@@ -63,7 +63,7 @@ struct Asked {
 
   explicit Asked(const Recorded& from)
       : recorded(from), reader(from.session, 0, from.folder.path().toStdString(), [] {}) {
-    for (int k = 0; k < 6000 && !reader.overview().finished; ++k) QTest::qWait(5);
+    reader.read({});
     const RecordingOverview overview = reader.overview();
     band = std::make_unique<BurstBand>(reader.cache(), overview.resolution_px, BurstOptions{});
     question.start_ns = overview.start_ns;
@@ -161,24 +161,10 @@ class TestDetectionScreen : public QObject {
     session.recording = "/nowhere/recording.bag";
     std::atomic<int> told = 0;
     EventWindowReader reader(session, 0, recorded_->folder.path().toStdString(), [&] { ++told; });
-    QTRY_VERIFY(told > 0);
+    reader.read({});
+    QVERIFY(told > 0);
     QVERIFY2(reader.overview().error.find("/nowhere/recording.bag") != std::string::npos,
              reader.overview().error.c_str());
-  }
-
-  void worker_doesTheNewestRequestOnly() {
-    std::atomic<int> done = 0, last = 0;
-    std::mutex gate;
-    gate.lock();
-    NewestRequestWorker<int> worker([&](const int& request) {
-      const std::lock_guard wait(gate);
-      last = request;
-      ++done;
-    });
-    for (int k = 1; k <= 50; ++k) worker.post(k);
-    gate.unlock();
-    QTRY_COMPARE(last.load(), 50);
-    QVERIFY(done <= 2);
   }
 
   // The window's own options and the same bursts: the same circles, far within their sigma.

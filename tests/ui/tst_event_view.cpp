@@ -2,7 +2,6 @@
 #include "tests/support/test_program.h"
 #include "tests/ui/slowdown.h"
 #include "ui/detection/event_view.h"
-#include "ui/detection/frame_mailbox.h"
 #include "ui/detection/surface_frame.h"
 
 #include <QPainter>
@@ -88,15 +87,6 @@ class TestEventView : public QObject {
     const SurfaceFrame frame = renderFlow({}, flow, kNow_ns, kSmall_px, style(SurfaceMode::NormalFlow));
     QCOMPARE(QColor(frame.image.pixel(7, 8)).hsvHue(), 0);
     QCOMPARE(QColor(frame.image.pixel(9, 8)).hsvHue(), 180);
-  }
-
-  void mailbox_keepsTheNewestAndTellsOnce() {
-    FrameMailbox box;
-    const auto first = smallFrame(), second = smallFrame();
-    QVERIFY(box.put(first));
-    QVERIFY(!box.put(second));
-    QCOMPARE(box.take(), second);
-    QVERIFY(box.put(first));
   }
 
   void wheel_keepsThePixelUnderTheMouse() {

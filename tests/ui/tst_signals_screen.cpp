@@ -3,14 +3,12 @@
 #include "tests/support/test_program.h"
 #include "tests/ui/plot_pictures.h"
 #include "tests/ui/slowdown.h"
-#include "ui/plots/latest_job.h"
 #include "ui/plots/plot_panel.h"
 #include "ui/plots/signals_screen.h"
 
 #include <QTabWidget>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 using namespace evical;
@@ -36,30 +34,6 @@ class TestSignalsScreen : public QObject {
     test::setPalette(false);
     simulated_ = test::simulatePass(6.0);
     run_ = std::make_shared<CalibrationRun>(calibrate(simulated_.session, simulated_.pass, {}));
-  }
-
-  void latestJob_dropsWhatIsOutdated() {
-    LatestJob job;
-    std::atomic<int> begun = 0;
-    int done = 0;
-    for (int k = 1; k <= 3; ++k) {
-      job.start([&begun, &done, k](const std::stop_token& stop) {
-        ++begun;
-        while (k < 3 && !stop.stop_requested()) std::this_thread::yield();
-        return [&done, k] { done += k; };
-      });
-    }
-    QTRY_COMPARE(done, 3);
-    QCOMPARE(begun.load(), 2);  // the second never ran
-  }
-
-  void latestJob_saysWhatWentWrong() {
-    LatestJob job;
-    QSignalSpy failed(&job, &LatestJob::failed);
-    job.start(
-        [](const std::stop_token&) -> std::function<void()> { throw std::runtime_error("no such thing"); });
-    QVERIFY(failed.wait());
-    QCOMPARE(failed[0][0].toString(), QString("no such thing"));
   }
 
   void withoutARun_itSaysWhatToDo() {

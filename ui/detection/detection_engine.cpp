@@ -48,7 +48,7 @@ class DetectionEngine::Analyst {
     WindowAnalysis analysis = trackWindow(band_->history(), question);
     if (task.wish.style.mode == SurfaceMode::NormalFlow) renderArcs(task, analysis);
     engine_.put(analysis, task.source.opening);
-    if (!task.wish.search || engine_.analysis_worker_->hasNewer()) return;
+    if (!task.wish.search || engine_.analysis_job_.hasNewer()) return;
     searchWindow(band_->history(), question, analysis);
     if (task.wish.style.mode == SurfaceMode::NormalFlow) renderArcs(task, analysis);
     engine_.put(analysis, task.source.opening);
@@ -91,19 +91,12 @@ class DetectionEngine::Analyst {
 };
 
 DetectionEngine::DetectionEngine(QObject* parent)
-    : QObject(parent), analyst_(std::make_unique<Analyst>(*this)) {
-  renderer_ =
-      std::make_unique<NewestRequestWorker<RenderTask>>([this](const RenderTask& task) { render(task); });
-  const auto analyse = [this](const AnalysisTask& task) {
-    try {
-      analyst_->handle(task);
-    } catch (const CalibrationError&) {
-      // The cache cannot be read; the renderer's picture stays empty, and the reader has said why.
-    }
-  };
-  // The renderer goes first: pictures are looked at, one after the other; an analysis may come later.
-  analysis_worker_ = std::make_unique<NewestRequestWorker<AnalysisTask>>(analyse, makeThreadModest);
-}
+    : QObject(parent),
+      frames_(
+          [this] { QMetaObject::invokeMethod(this, &DetectionEngine::frameReady, Qt::QueuedConnection); }),
+      analyses_(
+          [this] { QMetaObject::invokeMethod(this, &DetectionEngine::analysisReady, Qt::QueuedConnection); }),
+      analyst_(std::make_unique<Analyst>(*this)) {}
 
 DetectionEngine::~DetectionEngine() = default;
 
@@ -112,22 +105,16 @@ void DetectionEngine::open(const Session& session, std::size_t camera) {
   camera_ = camera;
   observations_.reset();
   ++opening_;
-  frames_.put(nullptr);
-  frames_.take();
-  analyses_.put(nullptr);
-  analyses_.take();
-  if (reader_) {
-    reader_->stop();
-    retired_.push_back(std::move(reader_));
-  }
-  reader_ = std::make_unique<EventWindowReader>(session, camera, cacheFolder(), [this] {
-    QMetaObject::invokeMethod(this, &DetectionEngine::hearFromReader, Qt::QueuedConnection);
+  frames_.clear();
+  analyses_.clear();
+  reader_ = std::make_shared<EventWindowReader>(session, camera, cacheFolder(), [this] {
+    QMetaObject::invokeMethod(this, &DetectionEngine::overviewChanged, Qt::QueuedConnection);
   });
-}
-
-void DetectionEngine::hearFromReader() {
-  std::erase_if(retired_, [](const auto& reader) { return reader->ended(); });
-  emit overviewChanged();
+  read_job_.start([reader = reader_](const std::stop_token& stop) -> std::function<void()> {
+    makeThreadModest();
+    reader->read(stop);
+    return nullptr;
+  });
 }
 
 void DetectionEngine::setObservations(std::shared_ptr<const BoardObservations> observations) {
@@ -144,8 +131,8 @@ void DetectionEngine::show(const DetectionWish& wish) {
   const Source source{reader_->cache(), overview.start_ns, overview.resolution_px,
                       session_,         camera_,           opening_};
   if (!source.cache) return;
-  if (wish.style.mode != SurfaceMode::NormalFlow) renderer_->post({source, wish, nullptr});
-  analysis_worker_->post({source, wish, options_, observations_});
+  if (wish.style.mode != SurfaceMode::NormalFlow) start(RenderTask{source, wish, nullptr});
+  start(AnalysisTask{source, wish, options_, observations_});
 }
 
 void DetectionEngine::showLive(std::shared_ptr<const LiveWindow> window, const SurfaceStyle& style) {
@@ -154,7 +141,26 @@ void DetectionEngine::showLive(std::shared_ptr<const LiveWindow> window, const S
   task.source.resolution_px = window->analysis->scene->resolution_px;
   task.wish.style = style;
   task.live = std::move(window);
-  renderer_->post(std::move(task));
+  start(std::move(task));
+}
+
+void DetectionEngine::start(RenderTask task) {
+  render_job_.start([this, task = std::move(task)](const std::stop_token&) -> std::function<void()> {
+    render(task);
+    return nullptr;
+  });
+}
+
+void DetectionEngine::start(AnalysisTask task) {
+  analysis_job_.start([this, task = std::move(task)](const std::stop_token&) -> std::function<void()> {
+    makeThreadModest();  // pictures go first, which are looked at one after the other
+    try {
+      analyst_->handle(task);
+    } catch (const CalibrationError&) {
+      // The cache cannot be read; the renderer's picture stays empty, and the reader has said why.
+    }
+    return nullptr;
+  });
 }
 
 void DetectionEngine::render(const RenderTask& task) {
@@ -189,14 +195,12 @@ void DetectionEngine::render(const RenderTask& task) {
 
 void DetectionEngine::put(SurfaceFrame frame, int opening) {
   if (opening != opening_) return;
-  if (frames_.put(std::make_shared<SurfaceFrame>(std::move(frame))))
-    QMetaObject::invokeMethod(this, &DetectionEngine::frameReady, Qt::QueuedConnection);
+  frames_.put(std::make_shared<SurfaceFrame>(std::move(frame)));
 }
 
 void DetectionEngine::put(const WindowAnalysis& analysis, int opening) {
   if (opening != opening_) return;
-  if (analyses_.put(std::make_shared<WindowAnalysis>(analysis)))
-    QMetaObject::invokeMethod(this, &DetectionEngine::analysisReady, Qt::QueuedConnection);
+  analyses_.put(std::make_shared<WindowAnalysis>(analysis));
 }
 
 }  // namespace evical::ui

@@ -6,17 +6,16 @@
 #include "core/pipeline/session.h"
 #include "ui/detection/decaying_surface.h"
 #include "ui/detection/event_window_reader.h"
-#include "ui/detection/frame_mailbox.h"
 #include "ui/detection/live_detection.h"
-#include "ui/detection/newest_request_worker.h"
 #include "ui/detection/surface_frame.h"
 #include "ui/detection/window_analysis.h"
+#include "ui/jobs/latest_job.h"
+#include "ui/jobs/mailbox.h"
 
 #include <QObject>
 
 #include <atomic>
 #include <memory>
-#include <vector>
 
 namespace evical::ui {
 
@@ -73,7 +72,8 @@ class DetectionEngine : public QObject {
   };
   class Analyst;
 
-  void hearFromReader();
+  void start(RenderTask task);
+  void start(AnalysisTask task);
   void render(const RenderTask& task);
   void put(SurfaceFrame frame, int opening);
   void put(const WindowAnalysis& analysis, int opening);
@@ -83,15 +83,15 @@ class DetectionEngine : public QObject {
   FrontEndOptions options_;
   std::shared_ptr<const BoardObservations> observations_;
   std::atomic<int> opening_ = 0;  // what was asked for before the last one is of no use
-  FrameMailbox frames_;
+  Mailbox<SurfaceFrame> frames_;
   Mailbox<WindowAnalysis> analyses_;
-  std::unique_ptr<EventWindowReader> reader_;
-  std::vector<std::unique_ptr<EventWindowReader>> retired_;  // told to stop; nobody waits for them
+  std::shared_ptr<EventWindowReader> reader_;
   std::unique_ptr<Analyst> analyst_;
   DecayingSurface surface_;  // the renderer's
   // Last: their threads use the rest.
-  std::unique_ptr<NewestRequestWorker<RenderTask>> renderer_;
-  std::unique_ptr<NewestRequestWorker<AnalysisTask>> analysis_worker_;
+  LatestJob read_job_{OutdatedWork::Dropped};
+  LatestJob render_job_{OutdatedWork::Delivered};
+  LatestJob analysis_job_{OutdatedWork::Delivered};
 };
 
 }  // namespace evical::ui

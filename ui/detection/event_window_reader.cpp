@@ -2,7 +2,6 @@
 #include "ui/detection/event_window_reader.h"
 
 #include "core/base/error.h"
-#include "core/base/modest_thread.h"
 #include "core/base/time.h"
 #include "core/pipeline/session_recording.h"
 
@@ -96,8 +95,8 @@ class EventWindowReader::Pass {
     overview.read_until_s = last_ns_ >= start_ns_ ? secondsSince(start_ns_, last_ns_) : 0.0;
     overview.event_rate = events_.perSecond();
     overview.rotation_rate = rotation_.means();
+    overview.fraction_read = recording_.fractionRead();
   }
-  double fractionRead() const { return recording_.fractionRead(); }
 
  private:
   // The calibration's rules: sorted within a batch; late events and those outside are left out.
@@ -131,67 +130,49 @@ class EventWindowReader::Pass {
 
 EventWindowReader::EventWindowReader(const Session& session, std::size_t camera,
                                      const std::filesystem::path& folder, std::function<void()> changed)
-    : session_(session),
-      camera_(camera),
-      folder_(folder),
-      changed_(std::move(changed)),
-      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+    : session_(session), camera_(camera), folder_(folder), published_(std::move(changed)) {}
 
 RecordingOverview EventWindowReader::overview() const {
-  const std::lock_guard lock(mutex_);
-  return overview_;
+  const std::shared_ptr<const State> state = published_.take();
+  return state ? state->overview : RecordingOverview{};
 }
 
 std::shared_ptr<const EventCache> EventWindowReader::cache() const {
-  const std::lock_guard lock(mutex_);
-  return overview_.started ? cache_ : nullptr;
+  const std::shared_ptr<const State> state = published_.take();
+  return state && state->overview.started ? state->cache : nullptr;
 }
 
-void EventWindowReader::publish(const Pass& pass, double fraction, bool finished) {
-  RecordingOverview overview;
-  pass.describe(overview);
-  overview.fraction_read = fraction;
-  overview.finished = finished;
-  {
-    const std::lock_guard lock(mutex_);
-    overview_ = std::move(overview);
-  }
-  changed_();
+void EventWindowReader::publish() {
+  published_.put(std::make_shared<State>(state_));
 }
 
 void EventWindowReader::readAll(const std::stop_token& stop) {
-  auto cache = std::make_shared<EventCache>(folder_);
-  {
-    const std::lock_guard lock(mutex_);
-    cache_ = cache;
-  }
-  Pass pass(session_, camera_, *cache);
+  state_.cache = std::make_shared<EventCache>(folder_);
+  Pass pass(session_, camera_, *state_.cache);
   auto told = std::chrono::steady_clock::now();
   while (pass.step()) {
     if (stop.stop_requested()) return;
     if (std::chrono::steady_clock::now() - told < kTellEvery) continue;
-    publish(pass, pass.fractionRead(), false);
+    pass.describe(state_.overview);
+    publish();
     told = std::chrono::steady_clock::now();
   }
-  publish(pass, 1.0, true);
+  pass.describe(state_.overview);
+  state_.overview.fraction_read = 1.0;
+  state_.overview.finished = true;
+  publish();
 }
 
-void EventWindowReader::run(const std::stop_token& stop) {
-  makeThreadModest();
-  std::string error;
+void EventWindowReader::read(const std::stop_token& stop) {
   try {
     readAll(stop);
+    return;
   } catch (const CalibrationError& problem) {
-    error = wordsOf(problem);
+    state_.overview.error = wordsOf(problem);
   } catch (const std::exception& problem) {
-    error = problem.what();
+    state_.overview.error = problem.what();
   }
-  if (!error.empty()) {
-    const std::lock_guard lock(mutex_);
-    overview_.error = error;
-  }
-  ended_ = true;
-  changed_();
+  publish();
 }
 
 }  // namespace evical::ui

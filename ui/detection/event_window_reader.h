@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads a session's recording once, in a thread of its own, into an event cache and two curves. What has been
-// read can be looked at while the rest still comes; the whole takes as long as one pass over the file.
+// Reads a session's recording once into an event cache and two curves. What has been read can be looked at
+// from another thread while the rest still comes; the whole takes as long as one pass over the file.
 #pragma once
 
 #include "core/pipeline/session.h"
 #include "ui/detection/event_cache.h"
 #include "ui/detection/rate_curve.h"
+#include "ui/jobs/mailbox.h"
 
-#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <mutex>
-#include <optional>
 #include <stop_token>
 #include <string>
-#include <thread>
 
 namespace evical::ui {
 
@@ -33,33 +30,33 @@ struct RecordingOverview {
 
 class EventWindowReader {
  public:
-  // `changed` is called from the thread, ten times a second at most. `folder` is for the cache.
+  // `changed` is called from the thread that reads, ten times a second at most, and not again before the
+  // overview was looked at. `folder` is for the cache.
   EventWindowReader(const Session& session, std::size_t camera, const std::filesystem::path& folder,
                     std::function<void()> changed);
 
-  // Ends soon after this, but waits for nobody; the destructor does.
-  void stop() { thread_.request_stop(); }
-  bool ended() const { return ended_; }
+  // Once, to the end or until it is told to stop; what goes wrong is in the overview.
+  void read(const std::stop_token& stop);
 
+  // From another thread, also while it reads.
   RecordingOverview overview() const;
   // Null before started.
   std::shared_ptr<const EventCache> cache() const;
 
  private:
   class Pass;
-  void run(const std::stop_token& stop);
+  struct State {
+    RecordingOverview overview;
+    std::shared_ptr<EventCache> cache;
+  };
   void readAll(const std::stop_token& stop);
-  void publish(const Pass& pass, double fraction, bool finished);
+  void publish();
 
   Session session_;
   std::size_t camera_;
   std::filesystem::path folder_;
-  std::function<void()> changed_;
-  std::atomic<bool> ended_ = false;
-  mutable std::mutex mutex_;
-  RecordingOverview overview_;
-  std::shared_ptr<EventCache> cache_;
-  std::jthread thread_;  // last: it uses all of the above
+  State state_;  // the reading thread's
+  mutable Mailbox<State> published_;
 };
 
 }  // namespace evical::ui

@@ -3,7 +3,6 @@
 
 #include "core/base/time.h"
 #include "core/frontend/board_tracker.h"
-#include "ui/detection/frame_mailbox.h"
 
 #include <QMetaObject>
 
@@ -11,7 +10,6 @@
 #include <chrono>
 #include <cmath>
 #include <list>
-#include <mutex>
 #include <utility>
 
 namespace evical::ui {
@@ -23,24 +21,11 @@ constexpr auto kReportInterval = std::chrono::milliseconds(200);
 
 }  // namespace
 
-// What observers in other threads may touch.
-struct LiveDetection::Link {
-  Mailbox<LiveWindow> box;
-  std::mutex mutex;
-  LiveDetection* owner = nullptr;  // null once it is gone
-
-  void put(std::shared_ptr<const LiveWindow> window) {
-    if (!box.put(std::move(window))) return;
-    const std::lock_guard lock(mutex);
-    if (owner) QMetaObject::invokeMethod(owner, &LiveDetection::windowReady, Qt::QueuedConnection);
-  }
-};
-
 class LiveDetection::CameraObserver final : public FrontEndObserver {
  public:
-  CameraObserver(std::shared_ptr<Link> link, std::size_t camera, const BoardTracker& tracker,
+  CameraObserver(std::shared_ptr<Mailbox<LiveWindow>> box, std::size_t camera, const BoardTracker& tracker,
                  const FrontEndOptions& options)
-      : link_(std::move(link)),
+      : box_(std::move(box)),
         camera_(camera),
         tracker_(tracker),
         scene_(std::make_shared<BoardScene>(tracker.scene())),
@@ -116,10 +101,10 @@ class LiveDetection::CameraObserver final : public FrontEndObserver {
       reports_ = std::make_shared<std::vector<WindowReport>>(tracker_.observations().windows);
     }
     live->windows = reports_;
-    link_->put(std::move(live));
+    box_->put(std::move(live));
   }
 
-  std::shared_ptr<Link> link_;
+  std::shared_ptr<Mailbox<LiveWindow>> box_;
   std::size_t camera_;
   const BoardTracker& tracker_;
   std::shared_ptr<const BoardScene> scene_;
@@ -131,34 +116,34 @@ class LiveDetection::CameraObserver final : public FrontEndObserver {
 
 class LiveDetection::RunObserver final : public CalibrationObserver {
  public:
-  RunObserver(std::shared_ptr<Link> link, const FrontEndOptions& options)
-      : link_(std::move(link)), options_(options) {}
+  RunObserver(std::shared_ptr<Mailbox<LiveWindow>> box, const FrontEndOptions& options)
+      : box_(std::move(box)), options_(options) {}
 
   FrontEndObserver* windowObserver(std::size_t camera, const BoardTracker& tracker) override {
-    return &cameras_.emplace_back(link_, camera, tracker, options_);
+    return &cameras_.emplace_back(box_, camera, tracker, options_);
   }
 
  private:
-  std::shared_ptr<Link> link_;
+  std::shared_ptr<Mailbox<LiveWindow>> box_;
   FrontEndOptions options_;
   std::list<CameraObserver> cameras_;
 };
 
-LiveDetection::LiveDetection(QObject* parent) : QObject(parent), link_(std::make_shared<Link>()) {
-  link_->owner = this;
-}
+LiveDetection::LiveDetection(QObject* parent)
+    : QObject(parent), box_(std::make_shared<Mailbox<LiveWindow>>([this] {
+        QMetaObject::invokeMethod(this, &LiveDetection::windowReady, Qt::QueuedConnection);
+      })) {}
 
 LiveDetection::~LiveDetection() {
-  const std::lock_guard lock(link_->mutex);
-  link_->owner = nullptr;
+  box_->close();
 }
 
 std::shared_ptr<CalibrationObserver> LiveDetection::observer(const FrontEndOptions& options) {
-  return std::make_shared<RunObserver>(link_, options);
+  return std::make_shared<RunObserver>(box_, options);
 }
 
 std::shared_ptr<const LiveWindow> LiveDetection::take() {
-  return link_->box.take();
+  return box_->take();
 }
 
 }  // namespace evical::ui

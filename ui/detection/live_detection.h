@@ -5,6 +5,7 @@
 
 #include "core/data/calibration_observer.h"
 #include "ui/detection/window_analysis.h"
+#include "ui/jobs/mailbox.h"
 
 #include <QObject>
 
@@ -40,10 +41,9 @@ class LiveDetection : public QObject {
   void windowReady();  // in this object's thread: take it
 
  private:
-  struct Link;
   class CameraObserver;
   class RunObserver;
-  std::shared_ptr<Link> link_;
+  std::shared_ptr<Mailbox<LiveWindow>> box_;  // shared with observers in other threads
 };
 
 }  // namespace evical::ui

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/jobs/calibration_job.h"
 
+#include "ui/jobs/mailbox.h"
+
 #include <algorithm>
+#include <atomic>
 #include <chrono>
-#include <mutex>
 #include <utility>
 
 namespace evical::ui {
@@ -27,16 +29,9 @@ QString textOf(std::string_view text) {
 
 }  // namespace
 
-// The mailbox between core's threads and the GUI: holds the newest of everything, and hands it out once.
+// Between core's threads and the GUI.
 class CalibrationJob::LiveView final : public CalibrationObserver {
  public:
-  struct Contents {
-    std::shared_ptr<const LiveDetections> detections;
-    bool detection_done = false;
-    std::vector<InitialisationNote> notes;
-    std::shared_ptr<const LiveIterations> iterations;
-  };
-
   LiveView(std::size_t cameras, std::shared_ptr<CalibrationObserver> windows)
       : windows_(std::move(windows)), detections_(cameras) {}
 
@@ -47,40 +42,36 @@ class CalibrationJob::LiveView final : public CalibrationObserver {
     if (Clock::now() < next_copy_) return;
     next_copy_ = Clock::now() + kBetweenDetections;
     detections_.at(camera) = so_far;
-    put([&](Contents& box) { box.detections = std::make_shared<LiveDetections>(detections_); });
+    detections.put(std::make_shared<LiveDetections>(detections_));
   }
-  void detectionDone(const CalibrationInput&) override {
-    put([](Contents& box) { box.detection_done = true; });
-  }
+  void detectionDone(const CalibrationInput&) override { detection_done = true; }
   void initialisationStepDone(std::string_view step, std::string_view result, double duration_s) override {
-    put([&](Contents& box) { box.notes.push_back({textOf(step), textOf(result), duration_s}); });
+    notes_.push_back({textOf(step), textOf(result), duration_s});
+    notes.put(std::make_shared<Notes>(notes_));
   }
   void iterationDone(const IterationRecord& iteration, const CalibrationState& state) override {
     records_.push_back(iteration);
-    const auto copy = std::make_shared<LiveIterations>(LiveIterations{records_, state});
-    put([&](Contents& box) { box.iterations = copy; });
+    iterations.put(std::make_shared<LiveIterations>(LiveIterations{records_, state}));
   }
 
-  Contents take() {
-    const std::lock_guard lock(mutex_);
-    return std::exchange(contents_, {});
-  }
+  using Notes = std::vector<InitialisationNote>;
+  Mailbox<LiveDetections> detections;
+  std::atomic<bool> detection_done = false;
+  Mailbox<Notes> notes;  // all so far
+  Mailbox<LiveIterations> iterations;
+
+  // The GUI thread's.
+  bool said_done = false;
+  std::size_t said_notes = 0;
 
   std::shared_ptr<const CalibrationRun> run;  // written by the work, read once it has ended
 
  private:
-  template <class Change>
-  void put(Change&& change) {
-    const std::lock_guard lock(mutex_);
-    change(contents_);
-  }
-
   std::shared_ptr<CalibrationObserver> windows_;
   LiveDetections detections_;
+  Notes notes_;
   std::vector<IterationRecord> records_;
   Clock::time_point next_copy_;
-  std::mutex mutex_;
-  Contents contents_;
 };
 
 CalibrationJob::CalibrationJob(JobRunner& runner, QObject* parent) : QObject(parent), runner_(runner) {
@@ -125,11 +116,17 @@ bool CalibrationJob::run(const Session& session, RunStart start, std::shared_ptr
 
 void CalibrationJob::deliver() {
   if (!live_) return;
-  const LiveView::Contents fresh = live_->take();
-  if (fresh.detections) emit detectionsChanged(fresh.detections);
-  if (fresh.detection_done) emit detectionDone();
-  for (const InitialisationNote& note : fresh.notes) emit initialisationStepDone(note);
-  if (fresh.iterations) emit iterationsChanged(fresh.iterations);
+  const std::shared_ptr<LiveView> live = live_;
+  // The last kind first: what came before it is there by then, and is told before it.
+  const auto iterations = live->iterations.takeNew();
+  const auto notes = live->notes.takeNew();
+  const bool done = live->detection_done;
+  const auto detections = live->detections.takeNew();
+  if (detections) emit detectionsChanged(detections);
+  if (done && !std::exchange(live->said_done, true)) emit detectionDone();
+  for (; notes && live->said_notes < notes->size(); ++live->said_notes)
+    emit initialisationStepDone((*notes)[live->said_notes]);
+  if (iterations) emit iterationsChanged(iterations);
 }
 
 void CalibrationJob::finish(JobOutcome outcome) {

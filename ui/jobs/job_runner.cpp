@@ -76,8 +76,8 @@ QString JobError::text() const {
 
 // What the worker has said and the GUI thread has not read yet. The worker's side outlives the runner's
 // interest.
-struct JobRunner::Mailbox final : ProgressSink {
-  explicit Mailbox(std::vector<JobStage> given) : stages(std::move(given)) {}
+struct JobRunner::Reports final : ProgressSink {
+  explicit Reports(std::vector<JobStage> given) : stages(std::move(given)) {}
 
   void stageStarted(std::string_view name) override {
     const std::lock_guard lock(mutex);
@@ -144,9 +144,9 @@ JobRunner::~JobRunner() {
 }
 
 QString JobRunner::logText() const {
-  if (!mailbox_) return {};
-  const std::lock_guard lock(mailbox_->mutex);
-  return mailbox_->log_text;
+  if (!reports_) return {};
+  const std::lock_guard lock(reports_->mutex);
+  return reports_->log_text;
 }
 
 bool JobRunner::start(const QString& title, std::vector<JobStage> stages, Work work) {
@@ -154,20 +154,21 @@ bool JobRunner::start(const QString& title, std::vector<JobStage> stages, Work w
   if (thread_.joinable()) thread_.join();
   title_ = title;
   stop_ = std::stop_source();
-  mailbox_ = std::make_shared<Mailbox>(std::move(stages));
+  reports_ = std::make_shared<Reports>(std::move(stages));
   running_ = true;
   emit started(title_);
   timer_.start();
-  thread_ = std::jthread([this, box = mailbox_, stop = stop_.get_token(), job = std::move(work)]() mutable {
-    makeThreadModest();
-    Ending ending = runToEnd(job, RunContext{*box, stop});
-    job = nullptr;  // what it holds goes before anybody hears of its end
-    {
-      const std::lock_guard lock(box->mutex);
-      box->ending = std::move(ending);
-    }
-    QMetaObject::invokeMethod(this, &JobRunner::finish, Qt::QueuedConnection);
-  });
+  thread_ =
+      std::jthread([this, reports = reports_, stop = stop_.get_token(), job = std::move(work)]() mutable {
+        makeThreadModest();
+        Ending ending = runToEnd(job, RunContext{*reports, stop});
+        job = nullptr;  // what it holds goes before anybody hears of its end
+        {
+          const std::lock_guard lock(reports->mutex);
+          reports->ending = std::move(ending);
+        }
+        QMetaObject::invokeMethod(this, &JobRunner::finish, Qt::QueuedConnection);
+      });
   return true;
 }
 
@@ -180,11 +181,11 @@ void JobRunner::tick() {
   std::vector<LogLine> lines;
   JobProgress progress;
   {
-    const std::lock_guard lock(mailbox_->mutex);
-    stages.swap(mailbox_->new_stages);
-    lines.swap(mailbox_->lines);
-    progress = {mailbox_->stage, mailbox_->stage_fraction, mailbox_->fraction,
-                mailbox_->stopwatch.elapsed_s(), mailbox_->remaining_s()};
+    const std::lock_guard lock(reports_->mutex);
+    stages.swap(reports_->new_stages);
+    lines.swap(reports_->lines);
+    progress = {reports_->stage, reports_->stage_fraction, reports_->fraction, reports_->stopwatch.elapsed_s(),
+                reports_->remaining_s()};
   }
   for (const QString& stage : stages) emit stageStarted(stage);
   for (const LogLine& line : lines) emit logged(line);
@@ -197,7 +198,7 @@ void JobRunner::finish() {
   thread_.join();
   tick();
   running_ = false;
-  const Ending ending = mailbox_->ending;
+  const Ending ending = reports_->ending;
   if (ending.error) emit failed(*ending.error);
   emit finished(ending.outcome);
 }

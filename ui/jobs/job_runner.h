@@ -75,12 +75,12 @@ class JobRunner : public QObject {
   void finished(evical::ui::JobOutcome outcome);  // last of all; running() is false
 
  private:
-  struct Mailbox;
+  struct Reports;
 
   void tick();
   void finish();
 
-  std::shared_ptr<Mailbox> mailbox_;
+  std::shared_ptr<Reports> reports_;
   QTimer timer_;
   QString title_;
   std::stop_source stop_;

@@ -3,8 +3,8 @@
 
 #include "core/numerics/robust.h"
 #include "core/report/residual_statistics.h"
+#include "ui/jobs/latest_job.h"
 #include "ui/plots/empty_note.h"
-#include "ui/plots/latest_job.h"
 #include "ui/plots/plot_panel.h"
 
 #include <QComboBox>
@@ -58,7 +58,7 @@ double windowSpacing(const std::vector<WindowResidual>& windows) {
 }  // namespace
 
 ResidualsScreen::ResidualsScreen(QWidget* parent)
-    : QWidget(parent), job_(new LatestJob(this)), mark_soon_(new QTimer(this)) {
+    : QWidget(parent), job_(new LatestJob(OutdatedWork::Dropped, this)), mark_soon_(new QTimer(this)) {
   mark_soon_->setSingleShot(true);
   mark_soon_->setInterval(kFrame_ms);
   connect(mark_soon_, &QTimer::timeout, this, &ResidualsScreen::markRejected);
@@ -192,7 +192,7 @@ int ResidualsScreen::camera() const {
 }
 
 void ResidualsScreen::compute() {
-  if (!run_ || camera_->count() == 0) return job_->cancel();
+  if (!run_ || camera_->count() == 0) return job_->discard();
   const int wanted = camera();
   const auto intrinsics = session_.cameras[static_cast<std::size_t>(wanted)].intrinsics;
   job_->start([this, run = run_, wanted, intrinsics](const std::stop_token&) {

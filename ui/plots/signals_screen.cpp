@@ -3,8 +3,8 @@
 
 #include "core/initialisation/rotation_rates.h"
 #include "core/report/signal_prediction.h"
+#include "ui/jobs/latest_job.h"
 #include "ui/plots/empty_note.h"
-#include "ui/plots/latest_job.h"
 #include "ui/plots/plot_panel.h"
 
 #include <QComboBox>
@@ -75,7 +75,8 @@ struct SignalsScreen::Drawing {
   double begin_s = 0.0, end_s = 0.0;
 };
 
-SignalsScreen::SignalsScreen(QWidget* parent) : QWidget(parent), job_(new LatestJob(this)) {
+SignalsScreen::SignalsScreen(QWidget* parent)
+    : QWidget(parent), job_(new LatestJob(OutdatedWork::Dropped, this)) {
   auto* const content = new QWidget;
   auto* const layout = new QVBoxLayout(content);
   layout->setContentsMargins(8, 8, 8, 8);
@@ -186,7 +187,7 @@ void SignalsScreen::setRun(std::shared_ptr<const CalibrationRun> run, const Sess
 }
 
 void SignalsScreen::compute() {
-  if (!run_ || camera_->count() == 0 || imu_->count() == 0) return job_->cancel();
+  if (!run_ || camera_->count() == 0 || imu_->count() == 0) return job_->discard();
   const auto camera = static_cast<std::size_t>(camera_->currentIndex());
   const auto imu = static_cast<std::size_t>(imu_->currentIndex());
   job_->start([this, run = run_, session = session_, camera, imu](const std::stop_token& stop) {

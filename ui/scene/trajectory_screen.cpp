@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/scene/trajectory_screen.h"
 
+#include "ui/jobs/latest_job.h"
 #include "ui/scene/camera_shape.h"
-#include "ui/scene/latest_job.h"
 #include "ui/scene/pose_readout.h"
 #include "ui/scene/sample_scene.h"
 #include "ui/scene/trajectory_overlay.h"
@@ -74,9 +74,7 @@ struct TrajectoryScreen::Private {
         view(view_3d),
         tools(new TrajectoryTools(screen)),
         readout(new PoseReadout(screen)),
-        scene(view_3d->renderer()),
-        track_job([this](Track sampled) { showTrack(std::move(sampled)); }),
-        poses_job([this](std::vector<ViewPoses> poses) { showViewPoses(std::move(poses)); }) {}
+        scene(view_3d->renderer()) {}
 
   TrajectoryScreen* q;
   View3D* view;
@@ -95,8 +93,8 @@ struct TrajectoryScreen::Private {
   double time_s = 0.0;
   bool placed = false;  // the view looks at what there is
 
-  LatestJob<Track> track_job;
-  LatestJob<std::vector<ViewPoses>> poses_job;
+  LatestJob track_job{OutdatedWork::Delivered};
+  LatestJob poses_job{OutdatedWork::Delivered};
 
   void buildLayout();
   void connectTools();
@@ -221,10 +219,12 @@ void TrajectoryScreen::setState(std::shared_ptr<const CalibrationState> state, c
 void TrajectoryScreen::Private::sample(std::shared_ptr<const CalibrationState> new_state,
                                        std::shared_ptr<const CalibrationRun> run) {
   if (!new_state) return;
-  track_job.start([new_state, run](std::stop_token) -> Track {
+  track_job.start([this, new_state, run](const std::stop_token&) {
     const std::vector<CircleResidual> none;
     const auto& residuals = run ? run->result.circle_residuals : none;
-    return {new_state, std::make_shared<TrajectoryTrack>(sampleTrajectory(*new_state, residuals))};
+    const Track sampled{new_state,
+                        std::make_shared<TrajectoryTrack>(sampleTrajectory(*new_state, residuals))};
+    return [this, sampled] { showTrack(sampled); };
   });
 }
 
@@ -237,13 +237,13 @@ void TrajectoryScreen::setDetections(std::shared_ptr<const BoardObservations> ob
 }
 
 void TrajectoryScreen::Private::estimatePoses() {
-  poses_job.start([inputs = pose_inputs, before = view_poses](std::stop_token stop) {
+  poses_job.start([this, inputs = pose_inputs, before = view_poses](const std::stop_token& stop) {
     std::vector<ViewPoses> poses(inputs.size());
     for (std::size_t k = 0; k < inputs.size(); ++k) {
       if (!inputs[k].observations) continue;
       poses[k] = estimateViewPoses(inputs[k], k < before.size() ? before[k] : ViewPoses{}, stop);
     }
-    return poses;
+    return [this, poses] { showViewPoses(poses); };
   });
 }
 
