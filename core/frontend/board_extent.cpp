@@ -10,20 +10,21 @@ namespace {
 
 // A row or a column of circles, on the board or beyond it: a board of its own.
 struct Line {
-  CircleBoard board;
+  BoardScene scene;
   Eigen::Vector2d origin_m;
 };
 
-Line rowOf(const CircleBoard& board, int row) {
-  Line line{board, {0.0, row * board.spacing_m}};
-  line.board.rows = 1;
+Line rowOf(const BoardScene& scene, int row) {
+  const CircleBoard& board = scene.board;
+  Line line{scene, {0.0, row * board.spacing_m}};
+  line.scene.board.rows = 1;
   if (board.type == BoardType::AsymmetricCircles && row % 2 != 0) line.origin_m.x() = board.spacing_m;
   return line;
 }
 
-Line columnOf(const CircleBoard& board, int col) {
-  Line line{board, {board.centre_m(0, 1).x() * col, 0.0}};
-  line.board.cols = 1;
+Line columnOf(const BoardScene& scene, int col) {
+  Line line{scene, {scene.board.centre_m(0, 1).x() * col, 0.0}};
+  line.scene.board.cols = 1;
   return line;
 }
 
@@ -43,12 +44,12 @@ class ExtentJudge {
 
   void judgeRows(LatticeEnds& ends) const {
     const int rows = scene_.board.rows;
-    count({beyond(rowOf(scene_.board, -1)), beyond(rowOf(scene_.board, rows))},
+    count({beyond(rowOf(scene_, -1)), beyond(rowOf(scene_, rows))},
           {firstInView(0, 1, rows, true), firstInView(rows - 1, -1, rows, true)}, ends);
   }
   void judgeColumns(LatticeEnds& ends) const {
     const int cols = scene_.board.cols;
-    count({beyond(columnOf(scene_.board, -1)), beyond(columnOf(scene_.board, cols))},
+    count({beyond(columnOf(scene_, -1)), beyond(columnOf(scene_, cols))},
           {firstInView(0, 1, cols, false), firstInView(cols - 1, -1, cols, false)}, ends);
   }
 
@@ -62,17 +63,15 @@ class ExtentJudge {
   }
 
   LineState stateOf(const Line& line, int seen) const {
-    const int expected =
-        expectedCircles(motionOf(line), line.board, scene_.camera, scene_.resolution_px, half_slot_s_);
+    const int expected = expectedCircles(motionOf(line), line.scene, half_slot_s_);
     const double least = options_.extent.least_line;
-    if (expected < std::max(2.0, least * line.board.circleCount())) return LineState::OutOfView;
+    if (expected < std::max(2.0, least * line.scene.board.circleCount())) return LineState::OutOfView;
     if (seen >= std::max(2.0, least * expected)) return LineState::Present;
     return seen <= (1.0 - least) * 0.5 * expected ? LineState::Absent : LineState::Unclear;
   }
 
   LineState beyond(const Line& line) const {
-    const auto seen = measureCircles(window_, motionOf(line), line.board, scene_.camera, half_slot_s_, 0,
-                                     options_.tracking);
+    const auto seen = measureCircles(window_, motionOf(line), line.scene, half_slot_s_, 0, options_.tracking);
     return stateOf(line, static_cast<int>(seen.size()));
   }
 
@@ -82,7 +81,7 @@ class ExtentJudge {
       const auto seen = std::count_if(circles_.begin(), circles_.end(), [&](const CircleObservation& circle) {
         return (rows ? circle.circle / scene_.board.cols : circle.circle % scene_.board.cols) == k;
       });
-      const Line line = rows ? rowOf(scene_.board, k) : columnOf(scene_.board, k);
+      const Line line = rows ? rowOf(scene_, k) : columnOf(scene_, k);
       const LineState state = stateOf(line, static_cast<int>(seen));
       if (state != LineState::OutOfView) return state;
     }

@@ -4,7 +4,7 @@
 
 #include "core/data/board_observations.h"
 #include "core/frontend/board_motion.h"
-#include "core/frontend/board_search.h"
+#include "core/frontend/front_end_options.h"
 
 #include <vector>
 

@@ -75,10 +75,9 @@ BoardMotion predicted(const BoardMotion& motion, std::int64_t time_ns) {
   return next;
 }
 
-std::optional<CircleImage> imageOfCircle(const Eigen::Matrix3d& h, const CircleBoard& board, int index,
-                                         const std::optional<CameraIntrinsics>& camera) {
-  const Eigen::Vector2d c = board.centre_m(index);
-  const double r2 = board.radius_m * board.radius_m;
+std::optional<CircleImage> imageOfCircle(const Eigen::Matrix3d& h, const BoardScene& scene, int index) {
+  const Eigen::Vector2d c = scene.board.centre_m(index);
+  const double r2 = scene.board.radius_m * scene.board.radius_m;
   Eigen::Matrix3d dual;
   dual << c.x() * c.x() - r2, c.x() * c.y(), c.x(), c.x() * c.y(), c.y() * c.y() - r2, c.y(), c.x(), c.y(),
       1.0;
@@ -96,25 +95,24 @@ std::optional<CircleImage> imageOfCircle(const Eigen::Matrix3d& h, const CircleB
   out.largest_radius_px = std::sqrt(half_trace + std::sqrt(std::max(half_trace * half_trace - det, 0.0)));
   out.sensor_centre_px = out.centre_px;
   out.sensor_radius_px = out.largest_radius_px;
-  if (camera) {
-    out.sensor_centre_px = pixelFromIdeal(*camera, out.centre_px);
-    const double scale = std::sqrt(std::abs(idealPixelScale(*camera, out.centre_px).determinant()));
+  if (scene.camera) {
+    out.sensor_centre_px = pixelFromIdeal(*scene.camera, out.centre_px);
+    const double scale = std::sqrt(std::abs(idealPixelScale(*scene.camera, out.centre_px).determinant()));
     if (!(scale > 1e-3)) return std::nullopt;
     out.sensor_radius_px = out.largest_radius_px / scale;
   }
   return out;
 }
 
-std::vector<CircleImage> projectBoard(const Eigen::Matrix3d& ideal_from_board, const CircleBoard& board,
-                                      const std::optional<CameraIntrinsics>& camera,
-                                      Resolution resolution_px) {
+std::vector<CircleImage> projectBoard(const Eigen::Matrix3d& ideal_from_board, const BoardScene& scene) {
   std::vector<CircleImage> circles;
-  for (int i = 0; i < board.circleCount(); ++i) {
-    std::optional<CircleImage> circle = imageOfCircle(ideal_from_board, board, i, camera);
+  for (int i = 0; i < scene.board.circleCount(); ++i) {
+    std::optional<CircleImage> circle = imageOfCircle(ideal_from_board, scene, i);
     if (!circle) continue;
     const double r = circle->sensor_radius_px;
     const Eigen::Vector2d& c = circle->sensor_centre_px;
-    if (c.x() < -r || c.y() < -r || c.x() > resolution_px.width_px + r || c.y() > resolution_px.height_px + r)
+    if (c.x() < -r || c.y() < -r || c.x() > scene.resolution_px.width_px + r ||
+        c.y() > scene.resolution_px.height_px + r)
       continue;
     circles.push_back(*circle);
   }
@@ -128,10 +126,8 @@ bool insideImage(const CircleImage& circle, Resolution resolution_px) {
          c.y() <= resolution_px.height_px - 1 - r;
 }
 
-double boardSpeed_px_s(const BoardMotion& motion, const CircleBoard& board,
-                       const std::optional<CameraIntrinsics>& camera, Resolution resolution_px) {
-  const std::vector<CircleImage> circles =
-      projectBoard(motion.ideal_from_board, board, camera, resolution_px);
+double boardSpeed_px_s(const BoardMotion& motion, const BoardScene& scene) {
+  const std::vector<CircleImage> circles = projectBoard(motion.ideal_from_board, scene);
   double sum = 0.0;
   for (const CircleImage& circle : circles) {
     const double sensor_scale = circle.sensor_radius_px / circle.largest_radius_px;
@@ -140,15 +136,13 @@ double boardSpeed_px_s(const BoardMotion& motion, const CircleBoard& board,
   return circles.empty() ? 0.0 : sum / static_cast<double>(circles.size());
 }
 
-int expectedCircles(const BoardMotion& motion, const CircleBoard& board,
-                    const std::optional<CameraIntrinsics>& camera, Resolution resolution_px,
-                    double half_window_s) {
+int expectedCircles(const BoardMotion& motion, const BoardScene& scene, double half_window_s) {
   constexpr double kLeastTravel_px = 1.2;  // an edge that stays within its pixel fires few events or none
   int expected = 0;
-  for (const CircleImage& circle : projectBoard(motion.ideal_from_board, board, camera, resolution_px)) {
+  for (const CircleImage& circle : projectBoard(motion.ideal_from_board, scene)) {
     const double sensor_scale = circle.sensor_radius_px / circle.largest_radius_px;
     const double travel_px = motion.velocityAt(circle.centre_px).norm() * sensor_scale * 2.0 * half_window_s;
-    expected += insideImage(circle, resolution_px) && travel_px > kLeastTravel_px;
+    expected += insideImage(circle, scene.resolution_px) && travel_px > kLeastTravel_px;
   }
   return expected;
 }

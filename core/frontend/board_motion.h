@@ -2,9 +2,9 @@
 // image, and how far burst medians lie outside or inside the true edges. Fitted to the bursts themselves.
 #pragma once
 
+#include "core/frontend/board_scene.h"
 #include "core/frontend/burst_window.h"
 #include "core/frontend/detection_options.h"
-#include "core/geometry/circle_board.h"
 
 #include <Eigen/Core>
 
@@ -71,13 +71,11 @@ struct CircleImage {
   Eigen::Vector2d sensor_centre_px = Eigen::Vector2d::Zero();  // in the sensor's own pixels
   double sensor_radius_px = 0.0;
 };
-std::optional<CircleImage> imageOfCircle(const Eigen::Matrix3d& ideal_from_board, const CircleBoard& board,
-                                         int circle, const std::optional<CameraIntrinsics>& camera);
+std::optional<CircleImage> imageOfCircle(const Eigen::Matrix3d& ideal_from_board, const BoardScene& scene,
+                                         int circle);
 
 // Circles that touch the image.
-std::vector<CircleImage> projectBoard(const Eigen::Matrix3d& ideal_from_board, const CircleBoard& board,
-                                      const std::optional<CameraIntrinsics>& camera,
-                                      Resolution resolution_px);
+std::vector<CircleImage> projectBoard(const Eigen::Matrix3d& ideal_from_board, const BoardScene& scene);
 
 // True if the whole circle lies in the image.
 bool insideImage(const CircleImage& circle, Resolution resolution_px);
@@ -97,13 +95,10 @@ inline EdgeDistance distanceToEdge(const CircleImage& circle, const Eigen::Vecto
 }
 
 // Mean speed of the board's circles in the image, in the sensor's pixels.
-double boardSpeed_px_s(const BoardMotion& motion, const CircleBoard& board,
-                       const std::optional<CameraIntrinsics>& camera, Resolution resolution_px);
+double boardSpeed_px_s(const BoardMotion& motion, const BoardScene& scene);
 
 // Circles that lie in the image and move far enough in a window of this half width to fire events.
-int expectedCircles(const BoardMotion& motion, const CircleBoard& board,
-                    const std::optional<CameraIntrinsics>& camera, Resolution resolution_px,
-                    double half_window_s);
+int expectedCircles(const BoardMotion& motion, const BoardScene& scene, double half_window_s);
 
 // Bursts no further than this from the window's middle are fitted at that speed.
 double fitHalfWindow_s(double speed_px_s, const TrackingOptions& options);
@@ -124,8 +119,7 @@ inline double crossingWeight(double leads, double events, double typical_events,
 // Fits homography, velocity field and radius offset to the bursts of a window whose middle is start.time_ns.
 // `first_gate_px` as in the options, or wider after a search. Nothing if too few bursts lie near the edges.
 std::optional<BoardMotion> fitBoardMotion(const BurstWindow& window, const BoardMotion& start,
-                                          const CircleBoard& board,
-                                          const std::optional<CameraIntrinsics>& camera, double first_gate_px,
+                                          const BoardScene& scene, double first_gate_px,
                                           const TrackingOptions& options);
 
 }  // namespace evical

@@ -178,8 +178,7 @@ void apply(const NormalVector& step, BoardMotion& motion) {
 }  // namespace
 
 std::optional<BoardMotion> fitBoardMotion(const BurstWindow& window, const BoardMotion& start,
-                                          const CircleBoard& board,
-                                          const std::optional<CameraIntrinsics>& camera, double first_gate_px,
+                                          const BoardScene& scene, double first_gate_px,
                                           const TrackingOptions& options) {
   constexpr double kSettled_px = 0.01;
   BoardMotion motion = start;
@@ -187,14 +186,12 @@ std::optional<BoardMotion> fitBoardMotion(const BurstWindow& window, const Board
   // The prediction is the prior of shift and velocity; acceleration is drawn towards zero.
   NormalVector from_prior = NormalVector::Zero();
   from_prior.segment<kFlowTerms>(2 * kFlowTerms) = motion.acceleration_px_s2;
-  const double half_window_s =
-      fitHalfWindow_s(boardSpeed_px_s(motion, board, camera, window.resolution_px()), options);
-  std::vector<std::vector<FitPoint>> points(static_cast<std::size_t>(board.circleCount()));
+  const double half_window_s = fitHalfWindow_s(boardSpeed_px_s(motion, scene), options);
+  std::vector<std::vector<FitPoint>> points(static_cast<std::size_t>(scene.board.circleCount()));
   double gate_px = first_gate_px;
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     NormalEquations equations;
-    for (const CircleImage& circle :
-         projectBoard(motion.ideal_from_board, board, camera, window.resolution_px())) {
+    for (const CircleImage& circle : projectBoard(motion.ideal_from_board, scene)) {
       const CircleMotion moving(circle, motion);
       std::vector<FitPoint>& near = points[static_cast<std::size_t>(circle.circle)];
       if (iteration == 0) gatherPoints(window, moving, half_window_s, 2.0 * first_gate_px, near);

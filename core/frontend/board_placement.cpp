@@ -264,13 +264,12 @@ std::optional<Eigen::Matrix3d> fitHomography(const std::vector<Eigen::Vector2d>&
 }
 
 std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
-                                         const std::vector<MovingCircle>& circles, const CircleBoard& board,
-                                         const std::optional<CameraIntrinsics>& camera, std::int64_t time_ns,
-                                         const GridOptions& options) {
+                                         const std::vector<MovingCircle>& circles, const BoardScene& scene,
+                                         std::int64_t time_ns, const GridOptions& options) {
   std::vector<BoardPlacement> placements;
-  const std::map<LatticePlace, int> board_lattice = boardLattice(board);
+  const std::map<LatticePlace, int> board_lattice = boardLattice(scene.board);
   std::vector<IdealCircle> ideal;
-  for (const MovingCircle& circle : circles) ideal.push_back(toIdeal(circle, camera));
+  for (const MovingCircle& circle : circles) ideal.push_back(toIdeal(circle, scene.camera));
   for (const Shifted& shifted : bestShifts(lattice, board_lattice)) {
     BoardPlacement placement;
     for (const LatticeNode& node : lattice) {
@@ -280,12 +279,12 @@ std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
       if (found == board_lattice.end() || !ideal[node.circle].centre_px.allFinite()) continue;
       placement.circles.emplace_back(found->second, node.circle);
     }
-    std::optional<Eigen::Matrix3d> h = fitAgreeing(placement.circles, ideal, board, options);
+    std::optional<Eigen::Matrix3d> h = fitAgreeing(placement.circles, ideal, scene.board, options);
     if (h) {
-      fillGaps(*h, ideal, board, options, placement.circles);
-      h = fitAgreeing(placement.circles, ideal, board, options);
+      fillGaps(*h, ideal, scene.board, options, placement.circles);
+      h = fitAgreeing(placement.circles, ideal, scene.board, options);
     }
-    if (!h || (camera && !looksSquare(*h, *camera))) continue;
+    if (!h || (scene.camera && !looksSquare(*h, *scene.camera))) continue;
     std::vector<IdealCircle> placed;
     Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
     for (const auto& [circle, index] : placement.circles) {

@@ -18,9 +18,8 @@ struct BoardPlacement {
 // All placements with nearly the best number of circles on the board, most circles first. Where the camera is
 // known, only those that a camera can see: two equal, perpendicular axes behind the homography.
 std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
-                                         const std::vector<MovingCircle>& circles, const CircleBoard& board,
-                                         const std::optional<CameraIntrinsics>& camera, std::int64_t time_ns,
-                                         const GridOptions& options);
+                                         const std::vector<MovingCircle>& circles, const BoardScene& scene,
+                                         std::int64_t time_ns, const GridOptions& options);
 
 // Motions of the board plane that lay the board's lattice onto itself, shifted or turned, so that at least
 // `least_overlap` of its circles meet circles: what a placement may be confused with. The identity is the

@@ -11,8 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <utility>
 
 namespace evical {
 namespace {
@@ -35,9 +33,8 @@ struct Judged {
 
 Judged countCircles(const BoardMotion& motion, const BurstWindow& window, const BoardScene& scene,
                     double half_window_s, const FrontEndOptions& options) {
-  const auto circles =
-      measureCircles(window, motion, scene.board, scene.camera, half_window_s, 0, options.tracking);
-  const int expected = expectedCircles(motion, scene.board, scene.camera, scene.resolution_px, half_window_s);
+  const auto circles = measureCircles(window, motion, scene, half_window_s, 0, options.tracking);
+  const int expected = expectedCircles(motion, scene, half_window_s);
   const auto measured = static_cast<int>(circles.size());
   return {motion, measured, std::max(expected - measured, 0)};
 }
@@ -45,11 +42,10 @@ Judged countCircles(const BoardMotion& motion, const BurstWindow& window, const 
 std::optional<Judged> judge(const BoardPlacement& placement, const BurstWindow& window,
                             const BoardScene& scene, double half_window_s, const FrontEndOptions& options) {
   const std::optional<BoardMotion> rough =
-      fitBoardMotion(window, placement.motion, scene.board, scene.camera,
-                     1.5 * options.tracking.first_gate_px, options.tracking);
+      fitBoardMotion(window, placement.motion, scene, 1.5 * options.tracking.first_gate_px, options.tracking);
   if (!rough) return std::nullopt;
-  const std::optional<BoardMotion> motion = fitBoardMotion(window, *rough, scene.board, scene.camera,
-                                                           options.tracking.first_gate_px, options.tracking);
+  const std::optional<BoardMotion> motion =
+      fitBoardMotion(window, *rough, scene, options.tracking.first_gate_px, options.tracking);
   if (!motion) return std::nullopt;
   return countCircles(*motion, window, scene, half_window_s, options);
 }
@@ -125,8 +121,7 @@ void searchWindow(BurstWindow& window, std::vector<EdgeBurst>& bursts, std::int6
     search.outcome = WindowOutcome::TooFewInGrid;
     return;
   }
-  search.placements =
-      placeOnBoard(search.lattice, search.circles, scene.board, scene.camera, middle_ns, options.grid);
+  search.placements = placeOnBoard(search.lattice, search.circles, scene, middle_ns, options.grid);
   if (search.placements.empty()) {
     search.outcome = WindowOutcome::NoLattice;
     return;
@@ -136,28 +131,11 @@ void searchWindow(BurstWindow& window, std::vector<EdgeBurst>& bursts, std::int6
 
 }  // namespace
 
-BoardScene::BoardScene(const CircleBoard& the_board, Resolution resolution,
-                       std::optional<CameraIntrinsics> intrinsics)
-    : board(the_board), resolution_px(resolution), camera(std::move(intrinsics)) {
-  if (!camera) return;
-  ideal = UndistortionTable(*camera);
-  stretch.reserve(static_cast<std::size_t>(resolution.pixelCount()));
-  for (int y = 0; y < resolution.height_px; ++y) {
-    for (int x = 0; x < resolution.width_px; ++x) {
-      const Eigen::Vector2d pixel = ideal(x, y).cast<double>();
-      Eigen::Matrix2f j = Eigen::Matrix2f::Constant(std::numeric_limits<float>::quiet_NaN());
-      if (pixel.allFinite()) j = idealPixelScale(*camera, pixel).cast<float>();
-      const Eigen::Matrix2f jj = j * j.transpose();
-      stretch.push_back({jj(0, 0), jj(0, 1), jj(1, 1)});
-    }
-  }
-}
-
 BoardSearch searchBoard(const BurstHistory& history, std::int64_t middle_ns, const BoardScene& scene,
                         const FrontEndOptions& options) {
   constexpr std::array kWindowFactors = {1.0, 2.0, 0.5};
   constexpr double kLongestHalf_s = 0.08;
-  BurstWindow window(scene.resolution_px, scene.ideal, scene.stretch, scene.board.circles);
+  BurstWindow window(scene);
   std::vector<EdgeBurst> bursts;
   const auto gather = [&](double half_window_s) {
     const std::int64_t half_ns = nanosecondsFrom(half_window_s);

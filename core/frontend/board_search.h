@@ -5,37 +5,15 @@
 #include "core/data/board_observations.h"
 #include "core/frontend/board_motion.h"
 #include "core/frontend/board_placement.h"
+#include "core/frontend/board_scene.h"
 #include "core/frontend/circle_candidate.h"
 #include "core/frontend/circle_lattice.h"
-#include "core/frontend/normal_flow_options.h"
+#include "core/frontend/front_end_options.h"
 
 #include <optional>
 #include <vector>
 
 namespace evical {
-
-struct FrontEndOptions {
-  DetectionOptions detection;
-  BurstOptions bursts;
-  RingVoteOptions ring_vote;
-  NormalFlowOptions normal_flow;
-  MovingCircleOptions moving_circle;
-  GridOptions grid;
-  TrackingOptions tracking;
-  ExtentOptions extent;
-  bool operator==(const FrontEndOptions&) const = default;
-};
-
-// What does not change from window to window.
-struct BoardScene {
-  CircleBoard board;
-  Resolution resolution_px;
-  std::optional<CameraIntrinsics> camera;
-  UndistortionTable ideal;
-  std::vector<PixelStretch> stretch;  // per pixel
-
-  BoardScene(const CircleBoard& board, Resolution resolution_px, std::optional<CameraIntrinsics> camera);
-};
 
 // Everything a drawing may want to show; the outcome says how far it came.
 struct BoardSearch {

@@ -2,6 +2,7 @@
 
 #include "core/base/time.h"
 #include "core/frontend/board_extent.h"
+#include "core/frontend/board_search.h"
 #include "core/frontend/circle_measurement.h"
 
 #include <algorithm>
@@ -23,7 +24,7 @@ BoardTracker::BoardTracker(const CircleBoard& board, Resolution resolution_px,
     : scene_(board, resolution_px, std::move(camera)),
       options_(options),
       start_ns_(start_ns),
-      window_(resolution_px, scene_.ideal, scene_.stretch, board.circles),
+      window_(scene_),
       complete_until_ns_(kLongAgo),
       last_burst_ns_(kLongAgo),
       last_search_ns_(kLongAgo),
@@ -76,7 +77,7 @@ std::int64_t BoardTracker::slotLength_ns(const BoardMotion* motion) const {
 }
 
 double BoardTracker::speed_px_s(const BoardMotion& motion) const {
-  return boardSpeed_px_s(motion, scene_.board, scene_.camera, scene_.resolution_px);
+  return boardSpeed_px_s(motion, scene_);
 }
 
 void BoardTracker::processWindows() {
@@ -171,14 +172,12 @@ TrackedWindow BoardTracker::track(const Slot& slot, const BoardMotion& predictio
   tracked.report.events = static_cast<int>(window_bursts_.size());
   tracked.report.tracked = true;
   const std::optional<BoardMotion> motion =
-      fitBoardMotion(window_, prediction, scene_.board, scene_.camera, first_gate_px, options_.tracking);
+      fitBoardMotion(window_, prediction, scene_, first_gate_px, options_.tracking);
   if (!motion) return tracked;
   tracked.motion = *motion;
-  tracked.circles = measureCircles(window_, *motion, scene_.board, scene_.camera, slot.half_s(), start_ns_,
-                                   options_.tracking);
+  tracked.circles = measureCircles(window_, *motion, scene_, slot.half_s(), start_ns_, options_.tracking);
   tracked.report.circles = static_cast<int>(tracked.circles.size());
-  const int expected =
-      expectedCircles(*motion, scene_.board, scene_.camera, scene_.resolution_px, slot.half_s());
+  const int expected = expectedCircles(*motion, scene_, slot.half_s());
   const int found = static_cast<int>(tracked.circles.size());
   tracked.held = found >= options_.grid.least_circles && 2 * found >= expected;
   if (tracked.held && held_windows_++ % options_.extent.every_windows == 0) {

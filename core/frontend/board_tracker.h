@@ -3,8 +3,10 @@
 #pragma once
 
 #include "core/data/board_observations.h"
-#include "core/frontend/board_search.h"
+#include "core/frontend/board_motion.h"
 #include "core/frontend/edge_bursts.h"
+#include "core/frontend/front_end_observer.h"
+#include "core/frontend/front_end_options.h"
 
 #include <cstdint>
 #include <optional>
@@ -18,14 +20,6 @@ struct TrackedWindow {
   std::vector<CircleObservation> circles;
   WindowReport report;
   bool held = false;  // good enough to go on from
-};
-
-// Sees every window as it is looked at: for drawings and live views. Called from the thread that adds events.
-class FrontEndObserver {
- public:
-  virtual ~FrontEndObserver() = default;
-  virtual void windowTracked(const BurstWindow& window, const TrackedWindow& tracked) = 0;
-  virtual void windowSearched(const BoardSearch& search, std::int64_t middle_ns) = 0;
 };
 
 class BoardTracker {

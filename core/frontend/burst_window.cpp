@@ -1,7 +1,6 @@
 #include "core/frontend/burst_window.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace evical {
 namespace {
@@ -58,14 +57,12 @@ std::size_t BurstHistory::count(std::int64_t begin_ns, std::int64_t end_ns) cons
   return sum;
 }
 
-BurstWindow::BurstWindow(Resolution resolution_px, const UndistortionTable& ideal,
-                         const std::vector<PixelStretch>& stretch, CircleShade circles)
-    : resolution_px_(resolution_px),
-      ideal_(&ideal),
-      stretch_(&stretch),
-      dark_circles_(circles == CircleShade::Dark),
-      columns_((resolution_px.width_px >> kCellShift) + 1),
-      rows_((resolution_px.height_px >> kCellShift) + 1) {}
+BurstWindow::BurstWindow(const BoardScene& scene)
+    : resolution_px_(scene.resolution_px),
+      pixels_(scene.pixels),
+      dark_circles_(scene.board.circles == CircleShade::Dark),
+      columns_((scene.resolution_px.width_px >> kCellShift) + 1),
+      rows_((scene.resolution_px.height_px >> kCellShift) + 1) {}
 
 void BurstWindow::assign(const std::vector<EdgeBurst>& bursts, std::int64_t middle_ns) {
   middle_ns_ = middle_ns;
@@ -76,6 +73,7 @@ void BurstWindow::assign(const std::vector<EdgeBurst>& bursts, std::int64_t midd
   for (const EdgeBurst& burst : bursts) ++cell_begin_[cellOf(burst) + 2];
   for (std::size_t i = 2; i < cell_begin_.size(); ++i) cell_begin_[i] += cell_begin_[i - 1];
   bursts_.resize(bursts.size());
+  const IdealPixels* const pixels = pixels_.get();
   for (const EdgeBurst& burst : bursts) {
     WindowBurst& out = bursts_[cell_begin_[cellOf(burst) + 1]++];
     out.x_px = burst.x_px;
@@ -83,11 +81,12 @@ void BurstWindow::assign(const std::vector<EdgeBurst>& bursts, std::int64_t midd
     out.ideal_x_px = out.x_px;
     out.ideal_y_px = out.y_px;
     out.stretch = {};
-    if (!ideal_->empty()) {
-      const Eigen::Vector2f& ideal = (*ideal_)(burst.x_px, burst.y_px);
+    if (pixels) {
+      const Eigen::Vector2f& ideal = pixels->ideal(burst.x_px, burst.y_px);
       out.ideal_x_px = ideal.x();
       out.ideal_y_px = ideal.y();
-      out.stretch = (*stretch_)[static_cast<std::size_t>(burst.y_px * resolution_px_.width_px + burst.x_px)];
+      out.stretch =
+          pixels->stretch[static_cast<std::size_t>(burst.y_px * resolution_px_.width_px + burst.x_px)];
     }
     out.time_s = static_cast<float>(static_cast<double>(burst.time_ns - middle_ns) * 1e-9);
     out.events = burst.events;

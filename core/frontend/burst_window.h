@@ -1,15 +1,13 @@
 // The bursts around one instant, ready to be asked for by place.
 #pragma once
 
+#include "core/frontend/board_scene.h"
 #include "core/frontend/edge_bursts.h"
-#include "core/geometry/circle_board.h"
-
-#include <Eigen/Core>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -33,17 +31,6 @@ class BurstHistory {
   std::deque<std::vector<EdgeBurst>> slices_;
 };
 
-// How lens distortion stretches a pixel: J J^T of J = d(ideal pixel) / d(pixel).
-struct PixelStretch {
-  float xx = 1.0f, xy = 0.0f, yy = 1.0f;
-
-  // Ideal pixels per pixel for an edge with this normal (unit, in ideal pixels): |J^T n|.
-  double across(const Eigen::Vector2d& normal) const {
-    const double x = normal.x(), y = normal.y();
-    return std::sqrt(x * x * xx + 2.0 * x * y * xy + y * y * yy);
-  }
-};
-
 // A burst in a window. Pixels are the sensor's; ideal pixels as in camera_model.h (the same where nothing is
 // known).
 struct WindowBurst {
@@ -60,9 +47,7 @@ class BurstWindow {
  public:
   static constexpr int kCellShift = 3;
 
-  // `ideal` may be empty: ideal pixels then are pixels.
-  BurstWindow(Resolution resolution_px, const UndistortionTable& ideal,
-              const std::vector<PixelStretch>& stretch, CircleShade circles);
+  explicit BurstWindow(const BoardScene& scene);
 
   void assign(const std::vector<EdgeBurst>& bursts, std::int64_t middle_ns);
 
@@ -79,8 +64,7 @@ class BurstWindow {
   int cellRow(double y_px) const;
 
   Resolution resolution_px_;
-  const UndistortionTable* ideal_;
-  const std::vector<PixelStretch>* stretch_;
+  std::shared_ptr<const IdealPixels> pixels_;
   bool dark_circles_;
   int columns_, rows_;
   std::int64_t middle_ns_ = 0;

@@ -126,18 +126,15 @@ CircleObservation observation(const CircleImage& circle, const CentreFit& fit, c
 }  // namespace
 
 std::vector<CircleObservation> measureCircles(const BurstWindow& window, const BoardMotion& motion,
-                                              const CircleBoard& board,
-                                              const std::optional<CameraIntrinsics>& camera,
-                                              double half_slot_s, std::int64_t start_ns,
-                                              const TrackingOptions& options) {
+                                              const BoardScene& scene, double half_slot_s,
+                                              std::int64_t start_ns, const TrackingOptions& options) {
   std::vector<CircleObservation> circles;
   std::vector<EdgePoint> points;
   // The window's own scatter, not one circle's: a dozen points say little about their noise.
   const double noise2 = std::max(motion.residual_rms_px * motion.residual_rms_px, 1e-3);
   const double largest_variance = options.largest_centre_sigma_px * options.largest_centre_sigma_px;
-  for (const CircleImage& circle :
-       projectBoard(motion.ideal_from_board, board, camera, window.resolution_px())) {
-    if (!insideImage(circle, window.resolution_px())) continue;
+  for (const CircleImage& circle : projectBoard(motion.ideal_from_board, scene)) {
+    if (!insideImage(circle, scene.resolution_px)) continue;
     gatherEdgePoints(window, circle, motion, half_slot_s, options, points);
     if (static_cast<int>(points.size()) < options.least_circle_bursts) continue;
     const CentreFit fit = fitCentre(circle, motion, options, points);

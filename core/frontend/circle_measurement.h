@@ -14,9 +14,7 @@ namespace evical {
 // measurements. Velocities come from the board's field. times are seconds since start_ns. Circles that have
 // too few bursts, see too little of their arc, or lie too far from the board's fit are left out.
 std::vector<CircleObservation> measureCircles(const BurstWindow& window, const BoardMotion& motion,
-                                              const CircleBoard& board,
-                                              const std::optional<CameraIntrinsics>& camera,
-                                              double half_slot_s, std::int64_t start_ns,
-                                              const TrackingOptions& options);
+                                              const BoardScene& scene, double half_slot_s,
+                                              std::int64_t start_ns, const TrackingOptions& options);
 
 }  // namespace evical

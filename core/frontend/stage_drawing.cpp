@@ -63,8 +63,7 @@ std::vector<Eigen::Vector2d> ellipse(const Eigen::Vector2d& centre, const Eigen:
 
 void paintBoard(DrawingCanvas& canvas, const BoardMotion& motion, const BoardScene& scene, Colour colour,
                 int thickness, const DrawingStyle& style) {
-  for (const auto& circle :
-       projectBoard(motion.ideal_from_board, scene.board, scene.camera, scene.resolution_px)) {
+  for (const auto& circle : projectBoard(motion.ideal_from_board, scene)) {
     canvas.outline(ellipse(circle.centre_px, circle.shape.inverse(), 1.0, scene), colour, thickness);
     const Eigen::Vector2d moved = circle.centre_px + style.arrow_s * motion.velocityAt(circle.centre_px);
     canvas.arrow(toSensor(circle.centre_px, scene), toSensor(moved, scene), kArrow);
@@ -72,8 +71,7 @@ void paintBoard(DrawingCanvas& canvas, const BoardMotion& motion, const BoardSce
 }
 
 void paintBoardNumbers(DrawingCanvas& canvas, const BoardMotion& motion, const BoardScene& scene) {
-  for (const auto& circle :
-       projectBoard(motion.ideal_from_board, scene.board, scene.camera, scene.resolution_px)) {
+  for (const auto& circle : projectBoard(motion.ideal_from_board, scene)) {
     canvas.label(toSensor(circle.centre_px, scene), std::to_string(circle.circle), kCentre);
   }
 }

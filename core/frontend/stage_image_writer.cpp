@@ -45,7 +45,7 @@ void StageImageWriter::windowTracked(const BurstWindow& window, const TrackedWin
 void StageImageWriter::windowSearched(const BoardSearch& search, std::int64_t middle_ns) {
   const int number = searches_++;
   if (number % every_nth_ != 0) return;
-  BurstWindow window(scene_->resolution_px, scene_->ideal, scene_->stretch, scene_->board.circles);
+  BurstWindow window(*scene_);
   std::vector<EdgeBurst> bursts;
   if (history_) {
     const std::int64_t half_ns = nanosecondsFrom(search.half_window_s);

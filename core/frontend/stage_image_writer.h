@@ -1,11 +1,15 @@
 // Writes a picture of every n-th window that the front end looks at.
 #pragma once
 
-#include "core/frontend/board_tracker.h"
+#include "core/frontend/front_end_observer.h"
+#include "core/frontend/front_end_options.h"
 
 #include <filesystem>
 
 namespace evical {
+
+class BurstHistory;
+struct BoardScene;
 
 // search_0000.png, search_0001.png, ... and window_0000.png, ...: numbered by the searches and windows
 // themselves, so that the numbers of two runs agree whatever every_nth is.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/base/option_yaml.h"
-#include "core/frontend/board_search.h"
+#include "core/frontend/front_end_options.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/intrinsics/intrinsics_options.h"
 #include "core/optimisation/optimisation_options.h"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/progress.h"
+#include "core/data/board_observations.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/recording.h"
 #include "core/pipeline/session.h"
@@ -10,6 +11,9 @@
 #include <vector>
 
 namespace evical {
+
+class BoardTracker;
+class FrontEndObserver;
 
 struct RecordingPass {
   std::int64_t start_ns = 0;  // first event or sample of the session's streams

@@ -2,6 +2,7 @@
 // [--quantities] SCENARIO...`. Recordings are simulated in memory and go through the same front end,
 // initialisation and batch as `evical calibrate`.
 #include "core/base/stopwatch.h"
+#include "core/frontend/board_tracker.h"
 #include "core/numerics/angles.h"
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/result_files.h"

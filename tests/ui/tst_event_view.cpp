@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/frontend/normal_flow.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/slowdown.h"
 #include "ui/detection/event_view.h"

@@ -3,6 +3,7 @@
 
 #include "core/geometry/trajectory.h"
 #include "core/optimisation/edge_lead.h"
+#include "ui/detection/window_analysis.h"
 #include "ui/theme/theme.h"
 
 #include <Eigen/Eigenvalues>
@@ -60,8 +61,7 @@ QPolygonF ellipse(const Eigen::Vector2d& centre, const Eigen::Matrix2d& covarian
 }
 
 void paintBoard(QPainter& painter, const BoardMotion& motion, const BoardScene& scene) {
-  for (const CircleImage& circle :
-       projectBoard(motion.ideal_from_board, scene.board, scene.camera, scene.resolution_px))
+  for (const CircleImage& circle : projectBoard(motion.ideal_from_board, scene))
     painter.drawPolygon(ellipse(circle.centre_px, circle.shape.inverse(), 1.0, scene));
 }
 

@@ -2,8 +2,9 @@
 // What can be drawn over the events: one layer a stage, in the sensor's pixels.
 #pragma once
 
+#include "core/data/board_observations.h"
 #include "core/data/calibration_state.h"
-#include "ui/detection/window_analysis.h"
+#include "core/geometry/circle_board.h"
 
 #include <QColor>
 #include <QPolygonF>
@@ -15,6 +16,8 @@
 class QPainter;
 
 namespace evical::ui {
+
+struct WindowAnalysis;
 
 enum class Layer { Flow, Clusters, Pairs, Circles, Ellipses, Centres, Grid, Prediction, Reprojection };
 inline constexpr std::size_t kLayerCount = 9;

@@ -3,6 +3,7 @@
 
 #include "core/base/time.h"
 #include "core/frontend/board_tracker.h"
+#include "ui/detection/window_analysis.h"
 
 #include <QMetaObject>
 

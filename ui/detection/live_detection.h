@@ -4,7 +4,8 @@
 #pragma once
 
 #include "core/data/calibration_observer.h"
-#include "ui/detection/window_analysis.h"
+#include "core/frontend/front_end_options.h"
+#include "core/pipeline/recording_pass.h"
 #include "ui/jobs/mailbox.h"
 
 #include <QObject>
@@ -14,6 +15,8 @@
 #include <vector>
 
 namespace evical::ui {
+
+struct WindowAnalysis;
 
 // A window as the front end just left it.
 struct LiveWindow {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/detection/surface_frame.h"
 
+#include "core/frontend/normal_flow.h"
+
 #include <QColor>
 
 #include <algorithm>
@@ -114,7 +116,7 @@ SurfaceFrame renderEvents(EventSpan events, std::int64_t time_ns, Resolution res
   return frame;
 }
 
-SurfaceFrame renderFlow(EventSpan events, const NormalFlowField& flow, std::int64_t time_ns,
+SurfaceFrame renderFlow(EventSpan events, const std::vector<NormalFlow>& flow, std::int64_t time_ns,
                         Resolution resolution_px, const SurfaceStyle& style) {
   constexpr double kFaint = 0.3;
   SurfaceFrame frame = emptyFrame(resolution_px, style);

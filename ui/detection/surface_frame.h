@@ -4,7 +4,6 @@
 #pragma once
 
 #include "core/data/event.h"
-#include "core/frontend/normal_flow.h"
 #include "core/geometry/camera_model.h"
 
 #include <QImage>
@@ -13,6 +12,10 @@
 #include <limits>
 #include <optional>
 #include <vector>
+
+namespace evical {
+struct NormalFlow;
+}
 
 namespace evical::ui {
 
@@ -61,7 +64,7 @@ QImage emptyImage(Resolution resolution_px, const SurfaceStyle& style);
 void paintDecayed(const SurfaceStyle& style, SurfaceFrame& frame);
 
 // The same events faintly, and over them the flow: hue by direction, red to the right, turning as on a clock.
-SurfaceFrame renderFlow(EventSpan events, const NormalFlowField& flow, std::int64_t time_ns,
+SurfaceFrame renderFlow(EventSpan events, const std::vector<NormalFlow>& flow, std::int64_t time_ns,
                         Resolution resolution_px, const SurfaceStyle& style);
 
 QRgb flowColour(double x, double y);  // of a direction

@@ -70,7 +70,7 @@ const BoardView* viewBefore(const WindowQuestion& question) {
 double fitHalfWidth_s(const BoardMotion& motion, const WindowQuestion& question) {
   const BoardScene& scene = *question.scene;
   const TrackingOptions& options = question.options.tracking;
-  const double speed_px_s = boardSpeed_px_s(motion, scene.board, scene.camera, scene.resolution_px);
+  const double speed_px_s = boardSpeed_px_s(motion, scene);
   return std::min(1.5 * fitHalfWindow_s(speed_px_s, options), options.longest_fit_half_window_s);
 }
 
@@ -81,11 +81,10 @@ void predict(const BurstHistory& history, const WindowQuestion& question, Window
   std::optional<BoardMotion> motion = motionOf(*view, question);
   if (!motion) return;
   const BoardScene& scene = *question.scene;
-  BurstWindow window(scene.resolution_px, scene.ideal, scene.stretch, scene.board.circles);
+  BurstWindow window(scene);
   window.assign(gather(history, motion->time_ns, fitHalfWidth_s(*motion, question)), motion->time_ns);
-  if (const auto refitted =
-          fitBoardMotion(window, *motion, scene.board, scene.camera, question.options.tracking.first_gate_px,
-                         question.options.tracking))
+  if (const auto refitted = fitBoardMotion(window, *motion, scene, question.options.tracking.first_gate_px,
+                                           question.options.tracking))
     motion = refitted;
   analysis.prediction = predicted(*motion, middleOf(question));
   analysis.predicted_from_s = view->time_s;
@@ -94,8 +93,7 @@ void predict(const BurstHistory& history, const WindowQuestion& question, Window
 void findInliers(const BurstWindow& window, const WindowQuestion& question, WindowAnalysis& analysis) {
   const BoardScene& scene = *question.scene;
   const TrackingOptions& options = question.options.tracking;
-  for (const CircleImage& circle :
-       projectBoard(analysis.motion->ideal_from_board, scene.board, scene.camera, scene.resolution_px)) {
+  for (const CircleImage& circle : projectBoard(analysis.motion->ideal_from_board, scene)) {
     const Eigen::Vector2d velocity = analysis.motion->velocityAt(circle.centre_px);
     const double reach_px =
         circle.sensor_radius_px + options.last_gate_px + 1.5 * velocity.norm() * question.half_width_s;
@@ -123,18 +121,17 @@ bool measure(const BurstHistory& history, const WindowQuestion& question, const 
              WindowAnalysis& analysis) {
   const BoardScene& scene = *question.scene;
   const TrackingOptions& options = question.options.tracking;
-  BurstWindow window(scene.resolution_px, scene.ideal, scene.stretch, scene.board.circles);
+  BurstWindow window(scene);
   window.assign(
       gather(history, middleOf(question), std::max(fitHalfWidth_s(start, question), question.half_width_s)),
       middleOf(question));
-  analysis.motion = fitBoardMotion(window, start, scene.board, scene.camera, options.first_gate_px, options);
+  analysis.motion = fitBoardMotion(window, start, scene, options.first_gate_px, options);
   analysis.circles.clear();
   analysis.inliers.clear();
   if (!analysis.motion) return false;
-  analysis.circles = measureCircles(window, *analysis.motion, scene.board, scene.camera,
-                                    question.half_width_s, question.start_ns, options);
-  const int expected = expectedCircles(*analysis.motion, scene.board, scene.camera, scene.resolution_px,
-                                       question.half_width_s);
+  analysis.circles =
+      measureCircles(window, *analysis.motion, scene, question.half_width_s, question.start_ns, options);
+  const int expected = expectedCircles(*analysis.motion, scene, question.half_width_s);
   const int found = static_cast<int>(analysis.circles.size());
   findInliers(window, question, analysis);
   return found >= question.options.grid.least_circles && 2 * found >= expected;
@@ -168,7 +165,7 @@ double flowHalfWidth_s(const BurstHistory& history, const WindowQuestion& questi
   }
   constexpr double kSpeedWindow_s = 0.04;
   const BoardScene& scene = *question.scene;
-  BurstWindow window(scene.resolution_px, scene.ideal, scene.stretch, scene.board.circles);
+  BurstWindow window(scene);
   window.assign(gather(history, middleOf(question), kSpeedWindow_s), middleOf(question));
   const double speed_px_s = std::max(typicalEdgeSpeed_px_s(window), kSlowest_px_s);
   return std::clamp(question.options.normal_flow.window_travel_px / (2.0 * speed_px_s),
@@ -180,7 +177,7 @@ void findFlow(const BurstHistory& history, const WindowQuestion& question, Windo
   if (half_width_s == analysis.arcs_half_width_s) return;
   analysis.arcs_half_width_s = half_width_s;
   const BoardScene& scene = *question.scene;
-  BurstWindow window(scene.resolution_px, scene.ideal, scene.stretch, scene.board.circles);
+  BurstWindow window(scene);
   std::vector<EdgeBurst> bursts = gather(history, middleOf(question), half_width_s);
   keepSupported(scene.resolution_px, question.options.ring_vote.least_support, bursts);
   window.assign(bursts, middleOf(question));

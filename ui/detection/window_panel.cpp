@@ -2,6 +2,7 @@
 #include "ui/detection/window_panel.h"
 
 #include "ui/detection/timeline.h"
+#include "ui/detection/window_analysis.h"
 #include "ui/theme/theme.h"
 
 #include <QScrollBar>

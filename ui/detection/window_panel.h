@@ -3,13 +3,14 @@
 #pragma once
 
 #include "core/data/board_observations.h"
-#include "ui/detection/window_analysis.h"
 
 #include <QTextBrowser>
 
 #include <optional>
 
 namespace evical::ui {
+
+struct WindowAnalysis;
 
 class WindowPanel : public QTextBrowser {
   Q_OBJECT

@@ -74,12 +74,10 @@ inline void addRandomBursts(int count, double half_window_s, std::mt19937& rando
 
 // A window over the DAVIS346's pixels whose middle is time 0.
 struct SyntheticWindow {
-  UndistortionTable no_table;
-  std::vector<PixelStretch> no_stretch;
   BurstWindow window;
 
   explicit SyntheticWindow(const std::vector<EdgeBurst>& bursts, CircleShade shade = CircleShade::Dark)
-      : window(kDavis_px, no_table, no_stretch, shade) {
+      : window(BoardScene({.circles = shade}, kDavis_px, std::nullopt)) {
     window.assign(bursts, 0);
   }
   SyntheticWindow(const SyntheticWindow&) = delete;
@@ -108,8 +106,10 @@ struct MovingBoard {
     return h / h(2, 2);
   }
 
+  BoardScene scene() const { return {board, kDavis_px, std::nullopt}; }
+
   CircleImage imageAt(int circle, double time_s) const {
-    return *imageOfCircle(homographyAt(time_s), board, circle, std::nullopt);
+    return *imageOfCircle(homographyAt(time_s), scene(), circle);
   }
   Eigen::Vector2d velocityAt(int circle, double time_s) const {
     constexpr double kStep_s = 1e-4;

@@ -33,7 +33,7 @@ BoardExtent judge(const MovingBoard& moving, const Claim& claim, int random_burs
   const FrontEndOptions options;
   const BoardScene scene(claimed, kDavis_px, std::nullopt);
   const std::vector<CircleObservation> circles =
-      measureCircles(synthetic.window, motion, claimed, std::nullopt, kHalfWindow_s, 0, options.tracking);
+      measureCircles(synthetic.window, motion, scene, kHalfWindow_s, 0, options.tracking);
   BoardExtent extent;
   judgeExtent(synthetic.window, motion, circles, scene, kHalfWindow_s, options, extent);
   return extent;

@@ -61,7 +61,7 @@ void TestBoardMotion::imageOfCircle_behindTheCamera_isNothing() {
   moving.middle_m = {0.0, 0.0, -0.5};
   Eigen::Matrix3d h = moving.homographyAt(0.0);
   if (h(2, 2) > 0.0) h = -h;  // third coordinate is the depth
-  QVERIFY(!imageOfCircle(h, moving.board, 0, std::nullopt));
+  QVERIFY(!imageOfCircle(h, moving.scene(), 0));
 }
 
 void TestBoardMotion::sensorPixels_followDistortion() {
@@ -71,7 +71,7 @@ void TestBoardMotion::sensorPixels_followDistortion() {
   camera.focal_length_px = {260.0, 260.0};
   camera.principal_point_px = {172.5, 129.5};
   camera.distortion = {-0.3, 0.08, 0.0, 0.0, 0.0};
-  const auto image = imageOfCircle(moving.homographyAt(0.0), moving.board, 0, camera);
+  const auto image = imageOfCircle(moving.homographyAt(0.0), BoardScene(moving.board, kDavis_px, camera), 0);
   QVERIFY(image.has_value());
   QVERIFY((image->sensor_centre_px - pixelFromIdeal(camera, image->centre_px)).norm() < 1e-9);
   QVERIFY(image->sensor_radius_px < image->largest_radius_px);  // barrel distortion shrinks the border
@@ -194,13 +194,11 @@ void TestBoardMotion::fit_withoutNoise_recoversMotion() {
                                   (PlaneFlow() << 1.2, 0.5, -0.4, -0.9, 0.3, 0.5, 0, 0).finished());
   start.velocity_px_s *= 0.8;
   const TrackingOptions options;
-  const auto fit =
-      fitBoardMotion(synthetic.window, start, moving.board, std::nullopt, options.first_gate_px, options);
+  const auto fit = fitBoardMotion(synthetic.window, start, moving.scene(), options.first_gate_px, options);
   QVERIFY(fit.has_value());
   for (int i = 0; i < moving.board.circleCount(); ++i) {
     const Eigen::Vector2d truth = moving.imageAt(i, 0.0).centre_px;
-    const Eigen::Vector2d found =
-        imageOfCircle(fit->ideal_from_board, moving.board, i, std::nullopt)->centre_px;
+    const Eigen::Vector2d found = imageOfCircle(fit->ideal_from_board, moving.scene(), i)->centre_px;
     QVERIFY2((found - truth).norm() < 0.02, qPrintable(QString::number((found - truth).norm())));
     const double error_px_s = (fit->velocityAt(truth) - moving.velocityAt(i, 0.0)).norm();
     QVERIFY2(error_px_s < 1.0 * std::max(1.0, speed_factor), qPrintable(QString::number(error_px_s)));
@@ -216,8 +214,8 @@ void TestBoardMotion::fit_measuresRadiusOffset() {
   larger.board.radius_m *= 1.05;
   const SyntheticWindow synthetic(burstsOf(larger, 0.02, 0.0, random));
   const TrackingOptions options;
-  const auto fit = fitBoardMotion(synthetic.window, moving.motionAt(0.0), moving.board, std::nullopt,
-                                  options.first_gate_px, options);
+  const auto fit =
+      fitBoardMotion(synthetic.window, moving.motionAt(0.0), moving.scene(), options.first_gate_px, options);
   QVERIFY(fit.has_value());
   const double expected_px = 0.05 * moving.imageAt(21, 0.0).largest_radius_px;
   QVERIFY2(std::abs(fit->radius_offset_px - expected_px) < 0.05,
@@ -228,8 +226,8 @@ void TestBoardMotion::fit_withoutBursts_isNothing() {
   const MovingBoard moving;
   const SyntheticWindow synthetic({});
   const TrackingOptions options;
-  QVERIFY(!fitBoardMotion(synthetic.window, moving.motionAt(0.0), moving.board, std::nullopt,
-                          options.first_gate_px, options));
+  QVERIFY(!fitBoardMotion(synthetic.window, moving.motionAt(0.0), moving.scene(), options.first_gate_px,
+                          options));
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ std::vector<BoardPlacement> place(const BoardImage& image, CircleLattice* lattic
   const CircleLattice found = findCircleLattice(image.circles, options);
   if (lattice) *lattice = found;
   if (static_cast<int>(found.size()) < options.least_circles) return {};
-  return placeOnBoard(found, image.circles, image.board, camera, 0, options);
+  return placeOnBoard(found, image.circles, BoardScene(image.board, kDavis_px, camera), 0, options);
 }
 
 int wrongIn(const BoardPlacement& placement, const BoardImage& image) {

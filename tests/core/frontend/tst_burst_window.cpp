@@ -68,10 +68,11 @@ void TestBurstWindow::idealPixels_comeFromTable() {
   camera.focal_length_px = {260.0, 260.0};
   camera.principal_point_px = {172.5, 129.5};
   camera.distortion = {-0.3, 0.08, 0.0, 0.0, 0.0};
-  const UndistortionTable table(camera);
-  const std::vector<PixelStretch> stretch(static_cast<std::size_t>(kDavis_px.pixelCount()),
-                                          {4.0f, 0.0f, 1.0f});
-  BurstWindow window(kDavis_px, table, stretch, CircleShade::Dark);
+  BoardScene scene(CircleBoard{}, kDavis_px, camera);
+  IdealPixels pixels = *scene.pixels;
+  pixels.stretch.assign(pixels.stretch.size(), {4.0f, 0.0f, 1.0f});
+  scene.pixels = std::make_shared<IdealPixels>(pixels);
+  BurstWindow window(scene);
   window.assign({burstAt(20, 30, 0.0, true)}, 0);
   const Eigen::Vector2d expected = *idealPixel(camera, {20.0, 30.0});
   QVERIFY(std::abs(window.bursts()[0].ideal_x_px - expected.x()) < 1e-3);

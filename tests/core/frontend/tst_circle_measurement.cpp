@@ -16,10 +16,10 @@ std::vector<CircleObservation> measure(const MovingBoard& moving, const std::vec
                                        double half_slot_s) {
   const SyntheticWindow synthetic(bursts);
   const TrackingOptions options;
-  const auto motion = fitBoardMotion(synthetic.window, moving.motionAt(0.0), moving.board, std::nullopt,
-                                     options.first_gate_px, options);
+  const auto motion =
+      fitBoardMotion(synthetic.window, moving.motionAt(0.0), moving.scene(), options.first_gate_px, options);
   if (!motion) return {};
-  return measureCircles(synthetic.window, *motion, moving.board, std::nullopt, half_slot_s, 0, options);
+  return measureCircles(synthetic.window, *motion, moving.scene(), half_slot_s, 0, options);
 }
 
 class TestCircleMeasurement : public QObject {

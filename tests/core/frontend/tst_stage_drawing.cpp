@@ -1,6 +1,7 @@
 #include "core/frontend/stage_drawing.h"
 
 #include "core/base/error.h"
+#include "core/frontend/board_tracker.h"
 #include "core/frontend/stage_image_writer.h"
 #include "tests/core/frontend/synthetic_bursts.h"
 #include "tests/support/test_program.h"
@@ -13,7 +14,7 @@ using namespace evical;
 using namespace evical::test;
 
 BoardScene scene() {
-  return BoardScene(MovingBoard().board, kDavis_px, std::nullopt);
+  return MovingBoard().scene();
 }
 
 struct Rgb {

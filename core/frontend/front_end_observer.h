@@ -1,0 +1,20 @@
+// Who watches the front end at work, for drawings and live views.
+#pragma once
+
+#include <cstdint>
+
+namespace evical {
+
+class BurstWindow;
+struct BoardSearch;
+struct TrackedWindow;
+
+// Sees every window as it is looked at. Called from the thread that adds events.
+class FrontEndObserver {
+ public:
+  virtual ~FrontEndObserver() = default;
+  virtual void windowTracked(const BurstWindow& window, const TrackedWindow& tracked) = 0;
+  virtual void windowSearched(const BoardSearch& search, std::int64_t middle_ns) = 0;
+};
+
+}  // namespace evical
