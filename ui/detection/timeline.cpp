@@ -76,13 +76,6 @@ void Timeline::setWindows(std::vector<WindowReport> windows) {
   update();
 }
 
-void Timeline::appendWindow(const WindowReport& window) {
-  const auto later = [](double time_s, const WindowReport& other) { return time_s < other.time_s; };
-  windows_.insert(std::upper_bound(windows_.begin(), windows_.end(), window.time_s, later), window);
-  if (endOfWindow(window) > end_s_) setRange(begin_s_, endOfWindow(window));
-  update();
-}
-
 void Timeline::setEventRate(RateCurve events_s) {
   event_rate_ = std::move(events_s);
   event_top_ = topOf(event_rate_);

@@ -33,8 +33,7 @@ class Timeline : public QWidget {
   void setRange(double begin_s, double end_s);  // of the whole recording
   // What is used of it, where that is not all.
   void setUsedRange(const std::optional<std::array<double, 2>>& range_s);
-  void setWindows(std::vector<WindowReport> windows);
-  void appendWindow(const WindowReport& window);  // in any order
+  void setWindows(std::vector<WindowReport> windows);  // in any order
   void setEventRate(RateCurve events_s);
   void setRotationRate(RateCurve rad_s);
 
