@@ -32,15 +32,9 @@ enum class LineState { OutOfView, Absent, Unclear, Present };
 
 class ExtentJudge {
  public:
-  ExtentJudge(const BurstWindow& window, const BoardMotion& motion,
-              const std::vector<CircleObservation>& circles, const BoardScene& scene, double half_slot_s,
+  ExtentJudge(const BurstWindow& window, const WindowTrace& trace, const BoardScene& scene,
               const FrontEndOptions& options)
-      : window_(window),
-        motion_(motion),
-        circles_(circles),
-        scene_(scene),
-        half_slot_s_(half_slot_s),
-        options_(options) {}
+      : window_(window), trace_(trace), scene_(scene), options_(options) {}
 
   void judgeRows(LatticeEnds& ends) const {
     const int rows = scene_.board.rows;
@@ -54,16 +48,18 @@ class ExtentJudge {
   }
 
  private:
+  double halfSlot_s() const { return trace_.report.half_width_s; }
+
   BoardMotion motionOf(const Line& line) const {
-    BoardMotion motion = motion_;
+    BoardMotion motion = *trace_.motion;
     Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
     shift.topRightCorner<2, 1>() = line.origin_m;
-    motion.ideal_from_board = motion_.ideal_from_board * shift;
+    motion.ideal_from_board = trace_.motion->ideal_from_board * shift;
     return motion;
   }
 
   LineState stateOf(const Line& line, int seen) const {
-    const int expected = expectedCircles(motionOf(line), line.scene, half_slot_s_);
+    const int expected = expectedCircles(motionOf(line), line.scene, halfSlot_s());
     const double least = options_.extent.least_line;
     if (expected < std::max(2.0, least * line.scene.board.circleCount())) return LineState::OutOfView;
     if (seen >= std::max(2.0, least * expected)) return LineState::Present;
@@ -71,16 +67,17 @@ class ExtentJudge {
   }
 
   LineState beyond(const Line& line) const {
-    const auto seen = measureCircles(window_, motionOf(line), line.scene, half_slot_s_, 0, options_.tracking);
+    const auto seen = measureCircles(window_, motionOf(line), line.scene, {halfSlot_s()}, options_.tracking);
     return stateOf(line, static_cast<int>(seen.size()));
   }
 
   // From an edge inwards, the first line of the board that the image shows.
   LineState firstInView(int from, int step, int lines, bool rows) const {
     for (int k = from; k >= 0 && k < lines; k += step) {
-      const auto seen = std::count_if(circles_.begin(), circles_.end(), [&](const CircleObservation& circle) {
-        return (rows ? circle.circle / scene_.board.cols : circle.circle % scene_.board.cols) == k;
-      });
+      const auto seen =
+          std::count_if(trace_.circles.begin(), trace_.circles.end(), [&](const CircleObservation& circle) {
+            return (rows ? circle.circle / scene_.board.cols : circle.circle % scene_.board.cols) == k;
+          });
       const Line line = rows ? rowOf(scene_, k) : columnOf(scene_, k);
       const LineState state = stateOf(line, static_cast<int>(seen));
       if (state != LineState::OutOfView) return state;
@@ -101,19 +98,16 @@ class ExtentJudge {
   }
 
   const BurstWindow& window_;
-  const BoardMotion& motion_;
-  const std::vector<CircleObservation>& circles_;
+  const WindowTrace& trace_;
   const BoardScene& scene_;
-  double half_slot_s_;
   const FrontEndOptions& options_;
 };
 
 }  // namespace
 
-void judgeExtent(const BurstWindow& window, const BoardMotion& motion,
-                 const std::vector<CircleObservation>& circles, const BoardScene& scene, double half_slot_s,
+void judgeExtent(const BurstWindow& window, const WindowTrace& trace, const BoardScene& scene,
                  const FrontEndOptions& options, BoardExtent& extent) {
-  const ExtentJudge judge(window, motion, circles, scene, half_slot_s, options);
+  const ExtentJudge judge(window, trace, scene, options);
   judge.judgeRows(extent.rows);
   judge.judgeColumns(extent.cols);
 }

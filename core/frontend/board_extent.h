@@ -3,17 +3,13 @@
 #pragma once
 
 #include "core/data/board_observations.h"
-#include "core/frontend/board_motion.h"
-#include "core/frontend/front_end_options.h"
-
-#include <vector>
+#include "core/frontend/window_trace.h"
 
 namespace evical {
 
-// Looks at one window of a tracked board, with the `circles` that were measured in it, and counts it.
+// Looks at one window in which the board was tracked, and counts it.
 // A board that lies one step off has circles beyond one edge and none at the other: that view says nothing.
-void judgeExtent(const BurstWindow& window, const BoardMotion& motion,
-                 const std::vector<CircleObservation>& circles, const BoardScene& scene, double half_slot_s,
+void judgeExtent(const BurstWindow& window, const WindowTrace& trace, const BoardScene& scene,
                  const FrontEndOptions& options, BoardExtent& extent);
 
 }  // namespace evical

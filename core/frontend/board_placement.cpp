@@ -1,8 +1,7 @@
 #include "core/frontend/board_placement.h"
 
-#include "core/numerics/robust.h"
+#include "core/frontend/board_motion_from_points.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -15,6 +14,12 @@
 
 namespace evical {
 namespace {
+
+// Placements with fewer circles than this part of the best one's are not worth a fit.
+constexpr double kNearlyBest = 0.8;
+
+// How far the board's axes may be from equally long (logarithm of the ratio) and perpendicular (cosine).
+constexpr double kAxesTolerance = 0.2;
 
 using LatticePlace = std::pair<int, int>;
 using LatticeMap = std::array<int, 4>;  // row by row
@@ -73,7 +78,6 @@ std::vector<Shifted> bestShifts(const CircleLattice& lattice, const std::map<Lat
       shifts.push_back({map, shift, count});
     }
   }
-  constexpr double kNearlyBest = 0.8;
   std::erase_if(shifts, [&](const Shifted& s) { return s.count < kNearlyBest * best; });
   std::sort(shifts.begin(), shifts.end(),
             [](const Shifted& a, const Shifted& b) { return a.count > b.count; });
@@ -82,52 +86,26 @@ std::vector<Shifted> bestShifts(const CircleLattice& lattice, const std::map<Lat
 
 // The board's two axes as the camera sees them must be about equally long and perpendicular.
 bool looksSquare(const Eigen::Matrix3d& ideal_from_board, const CameraIntrinsics& camera) {
-  constexpr double kTolerance = 0.2;
   Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
   k(0, 0) = camera.focal_length_px.x();
   k(1, 1) = camera.focal_length_px.y();
   k.topRightCorner<2, 1>() = camera.principal_point_px;
   const Eigen::Matrix3d axes = k.inverse() * ideal_from_board;
   const double x = axes.col(0).norm(), y = axes.col(1).norm();
-  return std::abs(std::log(x / y)) < kTolerance &&
-         std::abs(axes.col(0).dot(axes.col(1))) < kTolerance * x * y;
+  return std::abs(std::log(x / y)) < kAxesTolerance &&
+         std::abs(axes.col(0).dot(axes.col(1))) < kAxesTolerance * x * y;
 }
 
-struct IdealCircle {
-  Eigen::Vector2d centre_px, velocity_px_s;
-};
-
-IdealCircle toIdeal(const MovingCircle& circle, const std::optional<CameraIntrinsics>& camera) {
+MovingPoint toIdeal(const MovingCircle& circle, const std::optional<CameraIntrinsics>& camera) {
   if (!camera) return {circle.centre_px, circle.velocity_px_s};
   const std::optional<Eigen::Vector2d> ideal = idealPixel(*camera, circle.centre_px);
   if (!ideal) return {Eigen::Vector2d::Constant(NAN), Eigen::Vector2d::Zero()};
   return {*ideal, idealPixelScale(*camera, *ideal) * circle.velocity_px_s};
 }
 
-PlaneFlow fitFlow(const ImageFrame& frame, const std::vector<IdealCircle>& circles) {
-  Eigen::Matrix<double, 8, 8> matrix = Eigen::Matrix<double, 8, 8>::Zero();
-  PlaneFlow flow = PlaneFlow::Zero();
-  constexpr int kRounds = 5;
-  constexpr double kScale_px_s = 20.0;
-  for (int round = 0; round < kRounds; ++round) {
-    matrix.setZero();
-    PlaneFlow vector = PlaneFlow::Zero();
-    matrix.diagonal() << 1e-3, 0.05, 0.05, 1e-3, 0.05, 0.05, 1.0, 1.0;
-    for (const IdealCircle& circle : circles) {
-      const PlaneFlowBasis basis = frame.basis(circle.centre_px);
-      const Eigen::Vector2d error = circle.velocity_px_s - basis * flow;
-      const double w = round == 0 ? 1.0 : cauchyWeight(error.squaredNorm() / (kScale_px_s * kScale_px_s));
-      matrix += w * basis.transpose() * basis;
-      vector += w * basis.transpose() * circle.velocity_px_s;
-    }
-    flow = matrix.ldlt().solve(vector);
-  }
-  return flow;
-}
-
 // Homography with the circles that agree; drops the others from the placement.
 std::optional<Eigen::Matrix3d> fitAgreeing(std::vector<std::pair<int, std::size_t>>& placed,
-                                           const std::vector<IdealCircle>& ideal, const CircleBoard& board,
+                                           const std::vector<MovingPoint>& ideal, const CircleBoard& board,
                                            const GridOptions& options) {
   for (;;) {
     if (static_cast<int>(placed.size()) < options.least_circles) return std::nullopt;
@@ -156,7 +134,7 @@ std::optional<Eigen::Matrix3d> fitAgreeing(std::vector<std::pair<int, std::size_
 }
 
 // Circles that the lattice missed or had given to an outlier: whatever lies where the homography puts them.
-void fillGaps(const Eigen::Matrix3d& ideal_from_board, const std::vector<IdealCircle>& ideal,
+void fillGaps(const Eigen::Matrix3d& ideal_from_board, const std::vector<MovingPoint>& ideal,
               const CircleBoard& board, const GridOptions& options,
               std::vector<std::pair<int, std::size_t>>& placed) {
   std::vector<bool> found(static_cast<std::size_t>(board.circleCount()), false), used(ideal.size(), false);
@@ -242,7 +220,7 @@ std::optional<Eigen::Matrix3d> fitHomography(const std::vector<Eigen::Vector2d>&
     const double s = std::sqrt(2.0 * static_cast<double>(points.size()) / std::max(spread, 1e-30));
     return (Eigen::Matrix3d() << s, 0, -s * mean.x(), 0, s, -s * mean.y(), 0, 0, 1).finished();
   };
-  if (from.size() < 4) return std::nullopt;
+  if (from.size() < kLeastForHomography) return std::nullopt;
   const Eigen::Matrix3d nf = normaliser(from), nt = normaliser(to);
   Eigen::Matrix<double, 9, 9> sums = Eigen::Matrix<double, 9, 9>::Zero();
   for (std::size_t k = 0; k < from.size(); ++k) {
@@ -268,7 +246,7 @@ std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
                                          std::int64_t time_ns, const GridOptions& options) {
   std::vector<BoardPlacement> placements;
   const std::map<LatticePlace, int> board_lattice = boardLattice(scene.board);
-  std::vector<IdealCircle> ideal;
+  std::vector<MovingPoint> ideal;
   for (const MovingCircle& circle : circles) ideal.push_back(toIdeal(circle, scene.camera));
   for (const Shifted& shifted : bestShifts(lattice, board_lattice)) {
     BoardPlacement placement;
@@ -285,18 +263,9 @@ std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
       h = fitAgreeing(placement.circles, ideal, scene.board, options);
     }
     if (!h || (scene.camera && !looksSquare(*h, *scene.camera))) continue;
-    std::vector<IdealCircle> placed;
-    Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
-    for (const auto& [circle, index] : placement.circles) {
-      placed.push_back(ideal[index]);
-      low = low.cwiseMin(ideal[index].centre_px);
-      high = high.cwiseMax(ideal[index].centre_px);
-    }
-    BoardMotion& motion = placement.motion;
-    motion.time_ns = time_ns;
-    motion.ideal_from_board = *h;
-    motion.frame = {0.5 * (low + high), std::max(0.5 * (high - low).norm(), 1.0)};
-    motion.velocity_px_s = fitFlow(motion.frame, placed);
+    std::vector<MovingPoint> placed;
+    for (const auto& [circle, index] : placement.circles) placed.push_back(ideal[index]);
+    placement.motion = motionFromPoints(*h, placed, time_ns);
     placements.push_back(std::move(placement));
   }
   std::stable_sort(

@@ -26,6 +26,9 @@ std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
 // first. Motions that differ by a turn that leaves the whole lattice as it is are one.
 std::vector<Eigen::Matrix3d> latticeShifts(const CircleBoard& board, double least_overlap);
 
+// A homography takes no fewer points.
+inline constexpr std::size_t kLeastForHomography = 4;
+
 // Homography from points to points (normalised direct linear transform); nothing if degenerate.
 std::optional<Eigen::Matrix3d> fitHomography(const std::vector<Eigen::Vector2d>& from,
                                              const std::vector<Eigen::Vector2d>& to);

@@ -1,8 +1,6 @@
 #include "core/frontend/board_search.h"
 
-#include "core/base/time.h"
 #include "core/frontend/circle_measurement.h"
-#include "core/frontend/circle_pairs.h"
 #include "core/frontend/ring_vote.h"
 
 #include <Eigen/Geometry>
@@ -15,9 +13,16 @@
 namespace evical {
 namespace {
 
-constexpr double kSpeedWindow_s = 0.04;  // half window in which the typical speed is looked up
-constexpr double kSlowest_px_s = 10.0;
-constexpr std::size_t kMostPlacements = 48;
+// Window lengths that are tried, as multiples of that in which edges travel as far as the options say.
+constexpr std::array kWindowFactors = {1.0, 2.0, 0.5};
+constexpr double kSpeedHalfWindow_s = 0.04;  // in which the edges' typical speed is looked up
+constexpr double kSlowest_px_s = 10.0;       // what is slower counts as this
+constexpr std::size_t kMostPlacements = 48;  // that are fitted: each costs as much as a tracked window
+constexpr double kRoughGateFactor = 1.5;     // on the first gate: placements are rougher than predictions
+
+CandidateSource otherThan(CandidateSource source) {
+  return source == CandidateSource::RingVote ? CandidateSource::NormalFlow : CandidateSource::RingVote;
+}
 
 std::vector<CircleCandidate> findCandidates(const BurstWindow& window, CandidateSource source,
                                             const FrontEndOptions& options) {
@@ -33,7 +38,7 @@ struct Judged {
 
 Judged countCircles(const BoardMotion& motion, const BurstWindow& window, const BoardScene& scene,
                     double half_window_s, const FrontEndOptions& options) {
-  const auto circles = measureCircles(window, motion, scene, half_window_s, 0, options.tracking);
+  const auto circles = measureCircles(window, motion, scene, {half_window_s}, options.tracking);
   const int expected = expectedCircles(motion, scene, half_window_s);
   const auto measured = static_cast<int>(circles.size());
   return {motion, measured, std::max(expected - measured, 0)};
@@ -41,8 +46,8 @@ Judged countCircles(const BoardMotion& motion, const BurstWindow& window, const 
 
 std::optional<Judged> judge(const BoardPlacement& placement, const BurstWindow& window,
                             const BoardScene& scene, double half_window_s, const FrontEndOptions& options) {
-  const std::optional<BoardMotion> rough =
-      fitBoardMotion(window, placement.motion, scene, 1.5 * options.tracking.first_gate_px, options.tracking);
+  const std::optional<BoardMotion> rough = fitBoardMotion(
+      window, placement.motion, scene, kRoughGateFactor * options.tracking.first_gate_px, options.tracking);
   if (!rough) return std::nullopt;
   const std::optional<BoardMotion> motion =
       fitBoardMotion(window, *rough, scene, options.tracking.first_gate_px, options.tracking);
@@ -96,75 +101,95 @@ WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& scene
   return best->measured == count ? WindowOutcome::Complete : WindowOutcome::Partial;
 }
 
-void searchWindow(BurstWindow& window, std::vector<EdgeBurst>& bursts, std::int64_t middle_ns,
-                  double speed_px_s, CandidateSource source, const BoardScene& scene,
-                  const FrontEndOptions& options, BoardSearch& search) {
-  keepSupported(scene.resolution_px, options.ring_vote.least_support, bursts);
-  window.assign(bursts, middle_ns);
-  search.bursts = static_cast<int>(bursts.size());
-  if (search.bursts < options.detection.least_window_bursts) {
-    search.outcome = WindowOutcome::TooFewEvents;
-    return;
-  }
-  search.candidates = findCandidates(window, source, options);
-  search.circles = fitMovingCircles(window, search.candidates, speed_px_s, options.moving_circle);
-  if (static_cast<int>(search.circles.size()) < options.grid.least_circles) {
-    search.outcome = WindowOutcome::TooFewCircles;
-    return;
-  }
-  search.lattice = findCircleLattice(search.circles, options.grid);
-  if (search.lattice.size() < 4) {
-    search.outcome = WindowOutcome::NoLattice;
-    return;
-  }
-  if (static_cast<int>(search.lattice.size()) < options.grid.least_circles) {
-    search.outcome = WindowOutcome::TooFewInGrid;
-    return;
-  }
-  search.placements = placeOnBoard(search.lattice, search.circles, scene, middle_ns, options.grid);
-  if (search.placements.empty()) {
-    search.outcome = WindowOutcome::NoLattice;
-    return;
-  }
-  search.outcome = choosePlacement(window, scene, options, search);
+void fail(BoardSearch& search, SearchStage stage, WindowOutcome outcome) {
+  search.ended = stage;
+  search.outcome = outcome;
 }
+
+void searchWindow(const BurstWindow& window, double speed_px_s, const BoardScene& scene,
+                  const FrontEndOptions& options, BoardSearch& search) {
+  const GridOptions& grid = options.grid;
+  search.bursts = static_cast<int>(window.bursts().size());
+  if (search.bursts < options.detection.least_window_bursts)
+    return fail(search, SearchStage::Bursts, WindowOutcome::TooFewEvents);
+  search.candidates = findCandidates(window, search.source, options);
+  search.circles = fitMovingCircles(window, search.candidates, speed_px_s, options.moving_circle);
+  if (static_cast<int>(search.circles.size()) < grid.least_circles)
+    return fail(search, SearchStage::Circles, WindowOutcome::TooFewCircles);
+  search.lattice = findCircleLattice(search.circles, grid);
+  if (search.lattice.size() < kLeastForHomography)
+    return fail(search, SearchStage::Lattice, WindowOutcome::NoLattice);
+  if (static_cast<int>(search.lattice.size()) < grid.least_circles)
+    return fail(search, SearchStage::Lattice, WindowOutcome::TooFewInGrid);
+  search.placements = placeOnBoard(search.lattice, search.circles, scene, window.middle_ns(), grid);
+  if (search.placements.empty()) return fail(search, SearchStage::Placement, WindowOutcome::NoLattice);
+  search.outcome = choosePlacement(window, scene, options, search);
+  search.ended = search.motion ? SearchStage::Done : SearchStage::JointFit;
+}
+
+// Searches around one instant, which share its typical speed and a window's memory.
+class Searcher {
+ public:
+  Searcher(const BurstHistory& history, std::int64_t middle_ns, const BoardScene& scene,
+           const FrontEndOptions& options)
+      : history_(history), middle_ns_(middle_ns), scene_(scene), options_(options), window_(scene) {
+    window_.fill(history, middle_ns, kSpeedHalfWindow_s);
+    speed_px_s_ = std::max(typicalEdgeSpeed_px_s(window_), kSlowest_px_s);
+  }
+
+  double halfWindow_s(double factor, CandidateSource source) const {
+    const double travel_px = source == CandidateSource::RingVote ? options_.ring_vote.window_travel_px
+                                                                 : options_.normal_flow.window_travel_px;
+    return std::clamp(factor * travel_px / (2.0 * speed_px_s_), 0.5 * options_.detection.shortest_window_s,
+                      kSearchReach_s);
+  }
+
+  const BurstWindow& windowOf(double half_window_s) {
+    window_.fillSupported(history_, middle_ns_, half_window_s, options_.ring_vote.least_support);
+    return window_;
+  }
+
+  BoardSearch searchBy(CandidateSource source) {
+    BoardSearch search;
+    for (const double factor : kWindowFactors) {
+      const double half_s = halfWindow_s(factor, source);
+      if (factor > 1.0 && half_s == search.half_window_s) continue;
+      search = BoardSearch{};
+      search.source = source;
+      search.half_window_s = half_s;
+      searchWindow(windowOf(half_s), speed_px_s_, scene_, options_, search);
+      if (search.motion) break;
+    }
+    return search;
+  }
+
+ private:
+  const BurstHistory& history_;
+  std::int64_t middle_ns_;
+  const BoardScene& scene_;
+  const FrontEndOptions& options_;
+  BurstWindow window_;
+  double speed_px_s_ = 0.0;
+};
 
 }  // namespace
 
-BoardSearch searchBoard(const BurstHistory& history, std::int64_t middle_ns, const BoardScene& scene,
-                        const FrontEndOptions& options) {
-  constexpr std::array kWindowFactors = {1.0, 2.0, 0.5};
-  constexpr double kLongestHalf_s = 0.08;
-  BurstWindow window(scene);
-  std::vector<EdgeBurst> bursts;
-  const auto gather = [&](double half_window_s) {
-    const std::int64_t half_ns = nanosecondsFrom(half_window_s);
-    bursts.clear();
-    history.gather(middle_ns - half_ns, middle_ns + half_ns, bursts);
-  };
-  gather(kSpeedWindow_s);
-  window.assign(bursts, middle_ns);
-  const double speed_px_s = std::max(typicalEdgeSpeed_px_s(window), kSlowest_px_s);
+std::vector<BoardSearch> searchBoard(const BurstHistory& history, std::int64_t middle_ns,
+                                     const BoardScene& scene, const FrontEndOptions& options) {
+  Searcher searcher(history, middle_ns, scene, options);
   const CandidateSource first = options.detection.method;
-  const CandidateSource second =
-      first == CandidateSource::RingVote ? CandidateSource::NormalFlow : CandidateSource::RingVote;
-  BoardSearch search;
-  for (const CandidateSource source : {first, second}) {
-    if (source == second && !options.detection.try_both) break;
-    const double travel_px = source == CandidateSource::RingVote ? options.ring_vote.window_travel_px
-                                                                 : options.normal_flow.window_travel_px;
-    for (const double factor : kWindowFactors) {
-      const double half_s = std::clamp(factor * travel_px / (2.0 * speed_px_s),
-                                       0.5 * options.detection.shortest_window_s, kLongestHalf_s);
-      if (factor > 1.0 && half_s == search.half_window_s) continue;
-      search = BoardSearch{};
-      search.half_window_s = half_s;
-      gather(half_s);
-      searchWindow(window, bursts, middle_ns, speed_px_s, source, scene, options, search);
-      if (search.motion) return search;
-    }
-  }
-  return search;
+  std::vector<BoardSearch> searches = {searcher.searchBy(first)};
+  if (!searches.front().motion && options.detection.try_both)
+    searches.push_back(searcher.searchBy(otherThan(first)));
+  return searches;
+}
+
+FlowAround flowAround(const BurstHistory& history, std::int64_t middle_ns,
+                      std::optional<double> half_window_s, const BoardScene& scene,
+                      const FrontEndOptions& options) {
+  Searcher searcher(history, middle_ns, scene, options);
+  const double half_s = half_window_s.value_or(searcher.halfWindow_s(1.0, CandidateSource::NormalFlow));
+  return {half_s, findArcs(searcher.windowOf(half_s), options.normal_flow)};
 }
 
 }  // namespace evical

@@ -8,6 +8,7 @@
 #include "core/frontend/board_scene.h"
 #include "core/frontend/circle_candidate.h"
 #include "core/frontend/circle_lattice.h"
+#include "core/frontend/circle_pairs.h"
 #include "core/frontend/front_end_options.h"
 
 #include <optional>
@@ -15,8 +16,13 @@
 
 namespace evical {
 
-// Everything a drawing may want to show; the outcome says how far it came.
+// What a search goes through, in this order.
+enum class SearchStage { Bursts, Candidates, Circles, Lattice, Placement, JointFit, Done };
+
+// Everything a drawing may want to show.
 struct BoardSearch {
+  CandidateSource source = CandidateSource::NormalFlow;
+  SearchStage ended = SearchStage::Bursts;  // the stage that failed; Done: the board was found
   WindowOutcome outcome = WindowOutcome::TooFewEvents;
   double half_window_s = 0.0;
   int bursts = 0;
@@ -27,8 +33,23 @@ struct BoardSearch {
   std::optional<BoardMotion> motion;
 };
 
-// Tries window lengths until one shows the board; the last try is returned if none does.
-BoardSearch searchBoard(const BurstHistory& history, std::int64_t middle_ns, const BoardScene& scene,
-                        const FrontEndOptions& options);
+// One search for each source of candidates that was tried, in order: the options' method first, and the other
+// where that does not show the board. Each tries window lengths until one shows the board, and is its last
+// try.
+std::vector<BoardSearch> searchBoard(const BurstHistory& history, std::int64_t middle_ns,
+                                     const BoardScene& scene, const FrontEndOptions& options);
+
+// No search looks at bursts further than this from the middle, however slowly edges move.
+inline constexpr double kSearchReach_s = 0.08;
+
+// Normal flow around an instant, for drawings: in a window of this length, or as a search by flow sees it at
+// first.
+struct FlowAround {
+  double half_window_s = 0.0;
+  NormalFlowStages arcs;
+};
+FlowAround flowAround(const BurstHistory& history, std::int64_t middle_ns,
+                      std::optional<double> half_window_s, const BoardScene& scene,
+                      const FrontEndOptions& options);
 
 }  // namespace evical

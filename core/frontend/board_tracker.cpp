@@ -3,7 +3,6 @@
 #include "core/base/time.h"
 #include "core/frontend/board_extent.h"
 #include "core/frontend/board_search.h"
-#include "core/frontend/circle_measurement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +13,7 @@ namespace evical {
 namespace {
 
 constexpr std::int64_t kLongAgo = std::numeric_limits<std::int64_t>::min() / 2;
-constexpr double kLostGateFactor = 2.0;  // after windows that were missed, predictions are worse
+constexpr double kSearchIntervalGrowth = 1.2;  // by each search that finds nothing
 
 }  // namespace
 
@@ -58,7 +57,7 @@ BoardObservations BoardTracker::finish() {
   history_.add(new_bursts_);
   while (started_ &&
          next_begin_ns_ + nanosecondsFrom(options_.detection.shortest_window_s) < last_burst_ns_) {
-    const Slot slot{next_begin_ns_, next_begin_ns_ + slotLength_ns(motion_ ? &*motion_ : nullptr)};
+    const WindowSlot slot{next_begin_ns_, next_begin_ns_ + slotLength_ns(motion_ ? &*motion_ : nullptr)};
     processSlot(slot);
     next_begin_ns_ = slot.end_ns;
   }
@@ -72,18 +71,14 @@ BoardObservations BoardTracker::finish() {
 std::int64_t BoardTracker::slotLength_ns(const BoardMotion* motion) const {
   const DetectionOptions& d = options_.detection;
   if (!motion) return nanosecondsFrom(0.5 * (d.shortest_window_s + d.longest_window_s));
-  const double speed = std::max(speed_px_s(*motion), 1.0);
+  const double speed = std::max(boardSpeed_px_s(*motion, scene_), 1.0);
   return nanosecondsFrom(std::clamp(d.window_travel_px / speed, d.shortest_window_s, d.longest_window_s));
-}
-
-double BoardTracker::speed_px_s(const BoardMotion& motion) const {
-  return boardSpeed_px_s(motion, scene_);
 }
 
 void BoardTracker::processWindows() {
   const std::int64_t margin_ns = nanosecondsFrom(options_.tracking.longest_fit_half_window_s);
   for (;;) {
-    const Slot slot{next_begin_ns_, next_begin_ns_ + slotLength_ns(motion_ ? &*motion_ : nullptr)};
+    const WindowSlot slot{next_begin_ns_, next_begin_ns_ + slotLength_ns(motion_ ? &*motion_ : nullptr)};
     if (slot.end_ns + margin_ns > complete_until_ns_) return;
     processSlot(slot);
     next_begin_ns_ = slot.end_ns;
@@ -91,17 +86,14 @@ void BoardTracker::processWindows() {
   }
 }
 
-void BoardTracker::processSlot(const Slot& slot) {
+void BoardTracker::processSlot(const WindowSlot& slot) {
   const std::int64_t middle_ns = slot.middle_ns();
   if (motion_) {
-    const bool lost =
-        motion_->time_ns < next_begin_ns_ - nanosecondsFrom(2.0 * options_.detection.longest_window_s);
-    const double gate_px = options_.tracking.first_gate_px * (lost ? kLostGateFactor : 1.0);
-    TrackedWindow tracked = track(slot, predicted(*motion_, middle_ns), gate_px);
-    if (tracked.held) {
-      motion_ = tracked.motion;
+    WindowTrace trace = track(slot, *motion_);
+    if (trace.held()) {
+      motion_ = trace.motion;
       tracked_until_ns_ = slot.end_ns;
-      keep(tracked);
+      keep(trace);
       return;
     }
     if (static_cast<double>(middle_ns - motion_->time_ns) * 1e-9 > options_.tracking.longest_gap_s)
@@ -112,96 +104,68 @@ void BoardTracker::processSlot(const Slot& slot) {
     return;
   }
   last_search_ns_ = middle_ns;
-  const BoardSearch search = searchBoard(history_, middle_ns, scene_, options_);
+  const BoardSearch search = searchBoard(history_, middle_ns, scene_, options_).back();
   if (observer_) observer_->windowSearched(search, middle_ns);
   if (search.motion) {
     search_interval_s_ = options_.detection.search_interval_s;
     acquire(slot, *search.motion);
   } else {
-    constexpr double kGrowth = 1.2;
-    search_interval_s_ = std::min(kGrowth * search_interval_s_, options_.detection.longest_search_interval_s);
+    search_interval_s_ =
+        std::min(kSearchIntervalGrowth * search_interval_s_, options_.detection.longest_search_interval_s);
     miss(slot, &search);
   }
 }
 
-void BoardTracker::acquire(const Slot& slot, const BoardMotion& motion) {
-  TrackedWindow tracked = track(slot, motion, options_.tracking.first_gate_px);
-  if (!tracked.held) {
+void BoardTracker::acquire(const WindowSlot& slot, const BoardMotion& motion) {
+  WindowTrace trace = track(slot, motion);
+  if (!trace.held()) {
     miss(slot, nullptr);
     return;
   }
-  tracked.report.tracked = false;
-  motion_ = tracked.motion;
-  trackBackwards(slot, tracked.motion);
+  trace.report.tracked = false;
+  motion_ = trace.motion;
+  trackBackwards(slot, *trace.motion);
   tracked_until_ns_ = slot.end_ns;
-  keep(tracked);
+  keep(trace);
 }
 
-void BoardTracker::trackBackwards(const Slot& from, BoardMotion motion) {
+void BoardTracker::trackBackwards(const WindowSlot& from, BoardMotion motion) {
   const std::int64_t oldest_ns =
       std::max(tracked_until_ns_, from.begin_ns - nanosecondsFrom(options_.detection.history_s));
   std::int64_t end_ns = from.begin_ns;
   while (end_ns > oldest_ns) {
     const std::int64_t length_ns = slotLength_ns(&motion);
-    Slot slot{std::max(end_ns - length_ns, oldest_ns), end_ns};
+    const WindowSlot slot{std::max(end_ns - length_ns, oldest_ns), end_ns};
     if (slot.end_ns - slot.begin_ns < nanosecondsFrom(0.5 * options_.detection.shortest_window_s)) break;
-    TrackedWindow tracked = track(slot, predicted(motion, slot.middle_ns()), options_.tracking.first_gate_px);
-    if (!tracked.held) break;
-    motion = tracked.motion;
+    WindowTrace trace = track(slot, motion);
+    if (!trace.held()) break;
+    motion = *trace.motion;
     std::erase_if(observations_.windows, [&](const WindowReport& report) {
       return report.time_s >= secondsSince(start_ns_, slot.begin_ns) &&
              report.time_s < secondsSince(start_ns_, end_ns) && !report.tracked;
     });
-    keep(tracked);
+    keep(trace);
     end_ns = slot.begin_ns;
   }
 }
 
-TrackedWindow BoardTracker::track(const Slot& slot, const BoardMotion& prediction, double first_gate_px) {
-  TrackedWindow tracked;
-  const std::int64_t middle_ns = slot.middle_ns();
-  // A little wider than the predicted speed asks for: the fit may find a slower board.
-  const double half_fit_s = std::min(1.5 * fitHalfWindow_s(speed_px_s(prediction), options_.tracking),
-                                     options_.tracking.longest_fit_half_window_s);
-  window_bursts_.clear();
-  const std::int64_t half_ns = nanosecondsFrom(std::max(half_fit_s, slot.half_s()));
-  history_.gather(middle_ns - half_ns, middle_ns + half_ns, window_bursts_);
-  window_.assign(window_bursts_, middle_ns);
-  tracked.report.time_s = secondsSince(start_ns_, middle_ns);
-  tracked.report.half_width_s = slot.half_s();
-  tracked.report.events = static_cast<int>(window_bursts_.size());
-  tracked.report.tracked = true;
-  const std::optional<BoardMotion> motion =
-      fitBoardMotion(window_, prediction, scene_, first_gate_px, options_.tracking);
-  if (!motion) return tracked;
-  tracked.motion = *motion;
-  tracked.circles = measureCircles(window_, *motion, scene_, slot.half_s(), start_ns_, options_.tracking);
-  tracked.report.circles = static_cast<int>(tracked.circles.size());
-  const int expected = expectedCircles(*motion, scene_, slot.half_s());
-  const int found = static_cast<int>(tracked.circles.size());
-  tracked.held = found >= options_.grid.least_circles && 2 * found >= expected;
-  if (tracked.held && held_windows_++ % options_.extent.every_windows == 0) {
-    judgeExtent(window_, *motion, tracked.circles, scene_, slot.half_s(), options_, observations_.extent);
-  }
-  if (observer_) observer_->windowTracked(window_, tracked);
-  return tracked;
+WindowTrace BoardTracker::track(const WindowSlot& slot, const BoardMotion& last) {
+  WindowTrace trace = trackWindow({history_, scene_, options_, start_ns_}, slot, last, window_);
+  if (trace.held() && held_windows_++ % options_.extent.every_windows == 0)
+    judgeExtent(window_, trace, scene_, options_, observations_.extent);
+  if (observer_) observer_->windowTracked(window_, trace);
+  return trace;
 }
 
-void BoardTracker::keep(TrackedWindow& tracked) {
-  const int found = static_cast<int>(tracked.circles.size());
-  const int count = scene_.board.circleCount();
-  const bool enough = found >= std::max(4.0, options_.grid.least_partial * count);
-  tracked.report.outcome = !enough          ? WindowOutcome::TooFewInGrid
-                           : found == count ? WindowOutcome::Complete
-                                            : WindowOutcome::Partial;
-  observations_.windows.push_back(tracked.report);
-  if (!enough) return;
-  observations_.views.push_back({tracked.report.time_s,
-                                 found == count ? ViewKind::Complete : ViewKind::Partial,
-                                 std::move(tracked.circles)});
+void BoardTracker::keep(WindowTrace& trace) {
+  observations_.windows.push_back(trace.report);
+  if (trace.report.outcome == WindowOutcome::TooFewInGrid) return;
+  const bool complete = trace.report.outcome == WindowOutcome::Complete;
+  observations_.views.push_back(
+      {trace.report.time_s, complete ? ViewKind::Complete : ViewKind::Partial, std::move(trace.circles)});
 }
 
-void BoardTracker::miss(const Slot& slot, const BoardSearch* search) {
+void BoardTracker::miss(const WindowSlot& slot, const BoardSearch* search) {
   WindowReport report;
   report.time_s = secondsSince(start_ns_, slot.middle_ns());
   report.half_width_s = slot.half_s();

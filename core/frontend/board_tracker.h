@@ -3,10 +3,10 @@
 #pragma once
 
 #include "core/data/board_observations.h"
-#include "core/frontend/board_motion.h"
 #include "core/frontend/edge_bursts.h"
 #include "core/frontend/front_end_observer.h"
 #include "core/frontend/front_end_options.h"
+#include "core/frontend/window_trace.h"
 
 #include <cstdint>
 #include <optional>
@@ -14,13 +14,7 @@
 
 namespace evical {
 
-// One window of the board, tracked from a prediction.
-struct TrackedWindow {
-  BoardMotion motion;
-  std::vector<CircleObservation> circles;
-  WindowReport report;
-  bool held = false;  // good enough to go on from
-};
+struct BoardSearch;
 
 class BoardTracker {
  public:
@@ -44,20 +38,13 @@ class BoardTracker {
   const BoardObservations& observations() const { return observations_; }
 
  private:
-  struct Slot {
-    std::int64_t begin_ns, end_ns;
-    std::int64_t middle_ns() const { return begin_ns + (end_ns - begin_ns) / 2; }
-    double half_s() const { return 0.5e-9 * static_cast<double>(end_ns - begin_ns); }
-  };
-
   void processWindows();
-  void processSlot(const Slot& slot);
-  void acquire(const Slot& slot, const BoardMotion& motion);
-  void trackBackwards(const Slot& from, BoardMotion motion);
-  TrackedWindow track(const Slot& slot, const BoardMotion& prediction, double first_gate_px);
-  void keep(TrackedWindow& tracked);
-  void miss(const Slot& slot, const BoardSearch* search);
-  double speed_px_s(const BoardMotion& motion) const;
+  void processSlot(const WindowSlot& slot);
+  void acquire(const WindowSlot& slot, const BoardMotion& motion);
+  void trackBackwards(const WindowSlot& from, BoardMotion motion);
+  WindowTrace track(const WindowSlot& slot, const BoardMotion& last);
+  void keep(WindowTrace& trace);
+  void miss(const WindowSlot& slot, const BoardSearch* search);
   std::int64_t slotLength_ns(const BoardMotion* motion) const;
 
   BoardScene scene_;
@@ -68,7 +55,7 @@ class BoardTracker {
   BurstWindow window_;
   std::int64_t complete_until_ns_;
   std::int64_t last_burst_ns_;
-  std::vector<EdgeBurst> new_bursts_, window_bursts_;
+  std::vector<EdgeBurst> new_bursts_;
   std::optional<BoardMotion> motion_;  // last window that held
   std::int64_t next_begin_ns_ = 0;     // of the next slot
   std::int64_t last_search_ns_;

@@ -1,5 +1,7 @@
 #include "core/frontend/burst_window.h"
 
+#include "core/base/time.h"
+
 #include <algorithm>
 
 namespace evical {
@@ -57,6 +59,23 @@ std::size_t BurstHistory::count(std::int64_t begin_ns, std::int64_t end_ns) cons
   return sum;
 }
 
+void keepSupported(Resolution resolution_px, int least_support, std::vector<EdgeBurst>& bursts) {
+  const int stride = resolution_px.width_px + 2;
+  std::vector<std::uint8_t> occupied(static_cast<std::size_t>(stride * (resolution_px.height_px + 2)), 0);
+  for (const EdgeBurst& burst : bursts) {
+    occupied[static_cast<std::size_t>((burst.y_px + 1) * stride + burst.x_px + 1)] |= burst.brighter ? 1 : 2;
+  }
+  std::erase_if(bursts, [&](const EdgeBurst& burst) {
+    const std::uint8_t bit = burst.brighter ? 1 : 2;
+    int support = 0;
+    for (int dy = 0; dy <= 2; ++dy) {
+      const auto row = static_cast<std::size_t>((burst.y_px + dy) * stride + burst.x_px);
+      for (std::size_t dx = 0; dx <= 2; ++dx) support += (occupied[row + dx] & bit) != 0;
+    }
+    return support < least_support;
+  });
+}
+
 BurstWindow::BurstWindow(const BoardScene& scene)
     : resolution_px_(scene.resolution_px),
       pixels_(scene.pixels),
@@ -92,6 +111,24 @@ void BurstWindow::assign(const std::vector<EdgeBurst>& bursts, std::int64_t midd
     out.events = burst.events;
     out.lead = burst.brighter == dark_circles_ ? -1.0f : 1.0f;
   }
+}
+
+void BurstWindow::gather(const BurstHistory& history, std::int64_t middle_ns, double half_window_s) {
+  const std::int64_t half_ns = nanosecondsFrom(half_window_s);
+  gathered_.clear();
+  history.gather(middle_ns - half_ns, middle_ns + half_ns, gathered_);
+}
+
+void BurstWindow::fill(const BurstHistory& history, std::int64_t middle_ns, double half_window_s) {
+  gather(history, middle_ns, half_window_s);
+  assign(gathered_, middle_ns);
+}
+
+void BurstWindow::fillSupported(const BurstHistory& history, std::int64_t middle_ns, double half_window_s,
+                                int least_support) {
+  gather(history, middle_ns, half_window_s);
+  keepSupported(resolution_px_, least_support, gathered_);
+  assign(gathered_, middle_ns);
 }
 
 }  // namespace evical

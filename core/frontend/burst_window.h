@@ -31,6 +31,10 @@ class BurstHistory {
   std::deque<std::vector<EdgeBurst>> slices_;
 };
 
+// Drops bursts that stand alone: fewer than `least_support` of their kind in a 3x3 neighbourhood, themselves
+// included.
+void keepSupported(Resolution resolution_px, int least_support, std::vector<EdgeBurst>& bursts);
+
 // A burst in a window. Pixels are the sensor's; ideal pixels as in camera_model.h (the same where nothing is
 // known).
 struct WindowBurst {
@@ -50,6 +54,11 @@ class BurstWindow {
   explicit BurstWindow(const BoardScene& scene);
 
   void assign(const std::vector<EdgeBurst>& bursts, std::int64_t middle_ns);
+  // What the history has no further than half_window_s from the middle.
+  void fill(const BurstHistory& history, std::int64_t middle_ns, double half_window_s);
+  // The same without bursts that stand alone (keepSupported).
+  void fillSupported(const BurstHistory& history, std::int64_t middle_ns, double half_window_s,
+                     int least_support);
 
   const std::vector<WindowBurst>& bursts() const { return bursts_; }
   Resolution resolution_px() const { return resolution_px_; }
@@ -62,12 +71,14 @@ class BurstWindow {
  private:
   int cellColumn(double x_px) const;
   int cellRow(double y_px) const;
+  void gather(const BurstHistory& history, std::int64_t middle_ns, double half_window_s);
 
   Resolution resolution_px_;
   std::shared_ptr<const IdealPixels> pixels_;
   bool dark_circles_;
   int columns_, rows_;
   std::int64_t middle_ns_ = 0;
+  std::vector<EdgeBurst> gathered_;  // kept for its memory
   std::vector<WindowBurst> bursts_;
   std::vector<std::uint32_t> cell_begin_;  // columns_ * rows_ + 1
 };

@@ -19,7 +19,9 @@ constexpr int kMeasureIterations = 4;
 struct EdgePoint {
   Eigen::Vector2d at_middle;  // ideal pixels, moved to the window's middle
   double time_s, scale, weight;
-  double leads;  // +1 at leading edges, -1 at trailing ones
+  double leads;         // +1 at leading edges, -1 at trailing ones
+  std::uint32_t burst;  // index into the window
+  bool used = false;    // by the last round of the fit
 };
 
 void gatherEdgePoints(const BurstWindow& window, const CircleImage& circle, const BoardMotion& motion,
@@ -45,7 +47,7 @@ void gatherEdgePoints(const BurstWindow& window, const CircleImage& circle, cons
     const Eigen::Vector2d velocity_then = velocity + time_s * acceleration;
     const double leads = burst.lead * edge.normal.dot(velocity_then) / (velocity_then.norm() + 1e-9);
     const double weight = crossingWeight(leads, burst.events, motion.typical_events, options);
-    if (weight > 0.0) points.push_back({at_middle, time_s, scale, weight, burst.lead});
+    if (weight > 0.0) points.push_back({at_middle, time_s, scale, weight, burst.lead, i});
   };
   window.visitBox(middle.x() - reach, middle.x() + reach, middle.y() - reach, middle.y() + reach, visit);
 }
@@ -62,7 +64,7 @@ struct CentreFit {
 // Residuals are linear in the shift as long as it is small against the radius; a few rounds settle the
 // weights.
 CentreFit fitCentre(CircleImage circle, const BoardMotion& motion, const TrackingOptions& options,
-                    const std::vector<EdgePoint>& points) {
+                    std::vector<EdgePoint>& points) {
   CentreFit fit;
   const Eigen::Vector2d centre_at_start = circle.centre_px;
   const double prior = 1.0 / (options.radius_offset_sigma_px * options.radius_offset_sigma_px);
@@ -78,10 +80,11 @@ CentreFit fitCentre(CircleImage circle, const BoardMotion& motion, const Trackin
     fit.weight = fit.squares = fit.time_s = 0.0;
     fit.points = fit.inliers = 0;
     fit.sectors = 0;
-    for (const EdgePoint& point : points) {
+    for (EdgePoint& point : points) {
       const EdgeDistance edge = distanceToEdge(circle, point.at_middle);
       const double r = edge.distance_px / point.scale - offset_px;
-      if (std::abs(r) >= options.last_gate_px) continue;
+      point.used = !(std::abs(r) >= options.last_gate_px);
+      if (!point.used) continue;
       const double w = point.weight / (1.0 + r * r * inverse_scale2);
       const Eigen::Vector3d row(-edge.normal.x() / point.scale, -edge.normal.y() / point.scale, -1.0);
       matrix += w * row * row.transpose();
@@ -123,29 +126,93 @@ CircleObservation observation(const CircleImage& circle, const CentreFit& fit, c
   return out;
 }
 
+CircleVerdict judge(const CircleImage& circle, const CentreFit& fit, std::size_t points,
+                    const TrackingOptions& options) {
+  if (fit.points < options.least_circle_bursts) return CircleVerdict::TooFewBursts;
+  if (fit.inliers < options.least_inliers * static_cast<double>(points)) return CircleVerdict::TooFewInliers;
+  if (std::popcount(fit.sectors) < options.least_arc * kSectors) return CircleVerdict::TooShortArc;
+  const double scale = circle.largest_radius_px / circle.sensor_radius_px;
+  if (!(fit.shift.head<2>().norm() < options.largest_centre_shift_px * scale))
+    return CircleVerdict::OffTheBoard;
+  return CircleVerdict::Measured;
+}
+
+// Measures one circle after the other; keeps the memory of one for the next.
+class CircleMeter {
+ public:
+  CircleMeter(const BurstWindow& window, const BoardMotion& motion, const MeasuredSlot& slot,
+              const TrackingOptions& options)
+      : window_(window), motion_(motion), slot_(slot), options_(options) {}
+
+  CircleVerdict measure(const CircleImage& circle, CircleObservation& out) {
+    if (!insideImage(circle, window_.resolution_px())) return CircleVerdict::OutsideImage;
+    gatherEdgePoints(window_, circle, motion_, slot_.half_s, options_, points_);
+    if (static_cast<int>(points_.size()) < options_.least_circle_bursts) return CircleVerdict::TooFewBursts;
+    const CentreFit fit = fitCentre(circle, motion_, options_, points_);
+    const CircleVerdict verdict = judge(circle, fit, points_.size(), options_);
+    if (verdict != CircleVerdict::Measured) return verdict;
+    // The window's own scatter, not one circle's: a dozen points say little about their noise.
+    const double noise2 = std::max(motion_.residual_rms_px * motion_.residual_rms_px, 1e-3);
+    out = observation(circle, fit, motion_, noise2, slot_.start_ns);
+    const double scale = circle.largest_radius_px / circle.sensor_radius_px;
+    const double largest_variance = options_.largest_centre_sigma_px * options_.largest_centre_sigma_px;
+    return out.covariance_px2.trace() < 2.0 * largest_variance * scale * scale ? verdict
+                                                                               : CircleVerdict::TooUnsure;
+  }
+
+  // Of the circle that was measured last.
+  void addInliers(std::vector<EdgeInlier>& inliers) const {
+    for (const EdgePoint& point : points_) {
+      if (!point.used) continue;
+      const WindowBurst& burst = window_.bursts()[point.burst];
+      inliers.push_back({{burst.x_px, burst.y_px}, burst.lead > 0.0f});
+    }
+  }
+
+ private:
+  const BurstWindow& window_;
+  const BoardMotion& motion_;
+  MeasuredSlot slot_;
+  const TrackingOptions& options_;
+  std::vector<EdgePoint> points_;
+};
+
 }  // namespace
 
+const char* circleVerdictName(CircleVerdict verdict) {
+  switch (verdict) {
+    case CircleVerdict::Measured:
+      return "measured";
+    case CircleVerdict::OutsideImage:
+      return "outside the image";
+    case CircleVerdict::TooFewBursts:
+      return "too few bursts";
+    case CircleVerdict::TooFewInliers:
+      return "too few bursts on its edge";
+    case CircleVerdict::TooShortArc:
+      return "too little of its outline";
+    case CircleVerdict::OffTheBoard:
+      return "off the board's fit";
+    case CircleVerdict::TooUnsure:
+      break;
+  }
+  return "too unsure";
+}
+
 std::vector<CircleObservation> measureCircles(const BurstWindow& window, const BoardMotion& motion,
-                                              const BoardScene& scene, double half_slot_s,
-                                              std::int64_t start_ns, const TrackingOptions& options) {
+                                              const BoardScene& scene, const MeasuredSlot& slot,
+                                              const TrackingOptions& options, MeasurementTrace* trace) {
   std::vector<CircleObservation> circles;
-  std::vector<EdgePoint> points;
-  // The window's own scatter, not one circle's: a dozen points say little about their noise.
-  const double noise2 = std::max(motion.residual_rms_px * motion.residual_rms_px, 1e-3);
-  const double largest_variance = options.largest_centre_sigma_px * options.largest_centre_sigma_px;
+  CircleMeter meter(window, motion, slot, options);
+  if (trace)
+    trace->verdicts.assign(static_cast<std::size_t>(scene.board.circleCount()), CircleVerdict::OutsideImage);
   for (const CircleImage& circle : projectBoard(motion.ideal_from_board, scene)) {
-    if (!insideImage(circle, scene.resolution_px)) continue;
-    gatherEdgePoints(window, circle, motion, half_slot_s, options, points);
-    if (static_cast<int>(points.size()) < options.least_circle_bursts) continue;
-    const CentreFit fit = fitCentre(circle, motion, options, points);
-    if (fit.points < options.least_circle_bursts) continue;
-    if (fit.inliers < options.least_inliers * static_cast<double>(points.size())) continue;
-    if (std::popcount(fit.sectors) < options.least_arc * kSectors) continue;
-    const double scale = circle.largest_radius_px / circle.sensor_radius_px;
-    if (!(fit.shift.head<2>().norm() < options.largest_centre_shift_px * scale)) continue;
-    CircleObservation out = observation(circle, fit, motion, noise2, start_ns);
-    if (!(out.covariance_px2.trace() < 2.0 * largest_variance * scale * scale)) continue;
-    circles.push_back(out);
+    CircleObservation out;
+    const CircleVerdict verdict = meter.measure(circle, out);
+    if (verdict == CircleVerdict::Measured) circles.push_back(out);
+    if (!trace) continue;
+    trace->verdicts[static_cast<std::size_t>(circle.circle)] = verdict;
+    if (verdict == CircleVerdict::Measured) meter.addInliers(trace->inliers);
   }
   return circles;
 }

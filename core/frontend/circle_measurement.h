@@ -4,17 +4,49 @@
 #include "core/data/board_observations.h"
 #include "core/frontend/board_motion.h"
 
-#include <optional>
+#include <Eigen/Core>
+
 #include <vector>
 
 namespace evical {
 
-// Fits each circle's centre (and radius offset, held near the board's) to the bursts no further than
-// half_slot_s from the window's middle. Slots of neighbouring windows do not overlap, so no burst serves two
-// measurements. Velocities come from the board's field. times are seconds since start_ns. Circles that have
-// too few bursts, see too little of their arc, or lie too far from the board's fit are left out.
+// Which bursts measure: those no further than half_s from the window's middle. Slots of neighbouring windows
+// do not overlap, so no burst serves two measurements. Times are told in seconds since start_ns.
+struct MeasuredSlot {
+  double half_s = 0.0;
+  std::int64_t start_ns = 0;
+};
+
+// Why a circle of the board has a centre in a window, or has none.
+enum class CircleVerdict {
+  Measured,
+  OutsideImage,   // not wholly inside, at least
+  TooFewBursts,   // around its edge
+  TooFewInliers,  // among the bursts around its edge
+  TooShortArc,    // its bursts lie along too little of its outline
+  OffTheBoard,    // too far from where the board's fit has it
+  TooUnsure,      // of its centre
+};
+const char* circleVerdictName(CircleVerdict verdict);  // in plain words
+
+// A burst that a measured centre was fitted to.
+struct EdgeInlier {
+  Eigen::Vector2f pixel;
+  bool leading;
+};
+
+// What a measurement of all circles leaves out of its result; for drawings.
+struct MeasurementTrace {
+  std::vector<CircleVerdict> verdicts;  // by circle of the board
+  std::vector<EdgeInlier> inliers;
+};
+
+// Fits each circle's centre (and radius offset, held near the board's) to the slot's bursts. Velocities come
+// from the board's field. Circles with another verdict than Measured are left out. The trace is filled where
+// it is asked for.
 std::vector<CircleObservation> measureCircles(const BurstWindow& window, const BoardMotion& motion,
-                                              const BoardScene& scene, double half_slot_s,
-                                              std::int64_t start_ns, const TrackingOptions& options);
+                                              const BoardScene& scene, const MeasuredSlot& slot,
+                                              const TrackingOptions& options,
+                                              MeasurementTrace* trace = nullptr);
 
 }  // namespace evical

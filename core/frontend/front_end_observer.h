@@ -7,13 +7,13 @@ namespace evical {
 
 class BurstWindow;
 struct BoardSearch;
-struct TrackedWindow;
+struct WindowTrace;
 
 // Sees every window as it is looked at. Called from the thread that adds events.
 class FrontEndObserver {
  public:
   virtual ~FrontEndObserver() = default;
-  virtual void windowTracked(const BurstWindow& window, const TrackedWindow& tracked) = 0;
+  virtual void windowTracked(const BurstWindow& window, const WindowTrace& trace) = 0;
   virtual void windowSearched(const BoardSearch& search, std::int64_t middle_ns) = 0;
 };
 

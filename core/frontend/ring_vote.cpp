@@ -159,21 +159,4 @@ std::vector<CircleCandidate> voteForCircles(const BurstWindow& window, const Rin
   return candidates;
 }
 
-void keepSupported(Resolution resolution_px, int least_support, std::vector<EdgeBurst>& bursts) {
-  const int stride = resolution_px.width_px + 2;
-  std::vector<std::uint8_t> occupied(static_cast<std::size_t>(stride * (resolution_px.height_px + 2)), 0);
-  for (const EdgeBurst& burst : bursts) {
-    occupied[static_cast<std::size_t>((burst.y_px + 1) * stride + burst.x_px + 1)] |= burst.brighter ? 1 : 2;
-  }
-  std::erase_if(bursts, [&](const EdgeBurst& burst) {
-    const std::uint8_t bit = burst.brighter ? 1 : 2;
-    int support = 0;
-    for (int dy = 0; dy <= 2; ++dy) {
-      const auto row = static_cast<std::size_t>((burst.y_px + dy) * stride + burst.x_px);
-      for (std::size_t dx = 0; dx <= 2; ++dx) support += (occupied[row + dx] & bit) != 0;
-    }
-    return support < least_support;
-  });
-}
-
 }  // namespace evical

@@ -14,8 +14,4 @@ namespace evical {
 // Best candidates first, by the largest radius the image allows.
 std::vector<CircleCandidate> voteForCircles(const BurstWindow& window, const RingVoteOptions& options);
 
-// Drops bursts that stand alone: fewer than `least_support` of their kind in a 3x3 neighbourhood, themselves
-// included.
-void keepSupported(Resolution resolution_px, int least_support, std::vector<EdgeBurst>& bursts);
-
 }  // namespace evical

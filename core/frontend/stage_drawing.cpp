@@ -157,13 +157,14 @@ RgbImage drawSearch(const BurstWindow& window, const BoardSearch& search, const 
   return canvas.image();
 }
 
-RgbImage drawTrackedWindow(const BurstWindow& window, const TrackedWindow& tracked, const BoardScene& scene,
+RgbImage drawTrackedWindow(const BurstWindow& window, const WindowTrace& trace, const BoardScene& scene,
                            const DrawingStyle& style) {
   DrawingCanvas canvas(window.resolution_px(), style.width_px);
   paintBursts(canvas, window, scene, 0.75);
-  const Colour colour = tracked.held ? kMoving : kLost;
-  paintBoard(canvas, tracked.motion, scene, colour, 1, style);
-  for (const CircleObservation& circle : tracked.circles) {
+  const Colour colour = trace.held() ? kMoving : kLost;
+  const BoardMotion& motion = trace.motion ? *trace.motion : trace.prediction;
+  paintBoard(canvas, motion, scene, colour, 1, style);
+  for (const CircleObservation& circle : trace.circles) {
     const Eigen::Vector2d centre = toSensor(circle.centre_px, scene);
     canvas.cross(centre, kCentre);
     canvas.outline(ellipse(circle.centre_px, circle.covariance_px2, style.covariance_sigmas, scene), kBoard);
@@ -171,9 +172,8 @@ RgbImage drawTrackedWindow(const BurstWindow& window, const TrackedWindow& track
   }
   canvas.title(
       print("%.3f s: %s   %d bursts, %zu of %d circles, fit %.2f px RMS over %d, radius offset %+.2f px",
-            tracked.report.time_s, tracked.held ? "tracked" : "lost", tracked.report.events,
-            tracked.circles.size(), scene.board.circleCount(), tracked.motion.residual_rms_px,
-            tracked.motion.bursts, tracked.motion.radius_offset_px));
+            trace.report.time_s, trace.held() ? "tracked" : "lost", trace.report.events, trace.circles.size(),
+            scene.board.circleCount(), motion.residual_rms_px, motion.bursts, motion.radius_offset_px));
   canvas.legend({{"brighter", kBrighter},
                  {"darker", kDarker},
                  {"fitted board", colour},

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "core/frontend/board_search.h"
-#include "core/frontend/board_tracker.h"
 #include "core/frontend/circle_pairs.h"
 #include "core/frontend/rgb_image.h"
+#include "core/frontend/window_trace.h"
 
 #include <string>
 
@@ -27,8 +27,9 @@ RgbImage drawBursts(const BurstWindow& window, const BoardScene& scene, const st
 RgbImage drawSearch(const BurstWindow& window, const BoardSearch& search, const BoardScene& scene,
                     const NormalFlowStages* arcs = nullptr, const DrawingStyle& style = {});
 
-// The fitted board: projected ellipses with velocities, and the measured centres with numbers and covariance.
-RgbImage drawTrackedWindow(const BurstWindow& window, const TrackedWindow& tracked, const BoardScene& scene,
+// The fitted board, or where there is no fit the predicted one: projected ellipses with velocities, and the
+// measured centres with numbers and covariance.
+RgbImage drawTrackedWindow(const BurstWindow& window, const WindowTrace& trace, const BoardScene& scene,
                            const DrawingStyle& style = {});
 
 }  // namespace evical

@@ -1,8 +1,6 @@
 #include "core/frontend/stage_image_writer.h"
 
 #include "core/base/error.h"
-#include "core/base/time.h"
-#include "core/frontend/ring_vote.h"
 #include "core/frontend/stage_drawing.h"
 
 #include <cstdio>
@@ -35,10 +33,10 @@ StageImageWriter::StageImageWriter(std::filesystem::path directory, int every_nt
                    "Choose another directory.");
 }
 
-void StageImageWriter::windowTracked(const BurstWindow& window, const TrackedWindow& tracked) {
+void StageImageWriter::windowTracked(const BurstWindow& window, const WindowTrace& trace) {
   const int number = windows_++;
   if (number % every_nth_ != 0) return;
-  writePng(numbered(directory_, "window", number), drawTrackedWindow(window, tracked, *scene_));
+  writePng(numbered(directory_, "window", number), drawTrackedWindow(window, trace, *scene_));
   ++images_;
 }
 
@@ -46,15 +44,12 @@ void StageImageWriter::windowSearched(const BoardSearch& search, std::int64_t mi
   const int number = searches_++;
   if (number % every_nth_ != 0) return;
   BurstWindow window(*scene_);
-  std::vector<EdgeBurst> bursts;
-  if (history_) {
-    const std::int64_t half_ns = nanosecondsFrom(search.half_window_s);
-    history_->gather(middle_ns - half_ns, middle_ns + half_ns, bursts);
-    keepSupported(scene_->resolution_px, options_.ring_vote.least_support, bursts);
-  }
-  window.assign(bursts, middle_ns);
+  if (history_)
+    window.fillSupported(*history_, middle_ns, search.half_window_s, options_.ring_vote.least_support);
+  else
+    window.assign({}, middle_ns);
   const std::filesystem::path path = numbered(directory_, "search", number);
-  if (options_.detection.method == CandidateSource::NormalFlow) {
+  if (search.source == CandidateSource::NormalFlow) {
     const NormalFlowStages arcs = findArcs(window, options_.normal_flow);
     writePng(path, drawSearch(window, search, *scene_, &arcs));
   } else {

@@ -20,7 +20,7 @@ class StageImageWriter : public FrontEndObserver {
   StageImageWriter(std::filesystem::path directory, int every_nth, const BoardScene& scene,
                    const BurstHistory* history = nullptr, const FrontEndOptions& options = {});
 
-  void windowTracked(const BurstWindow& window, const TrackedWindow& tracked) override;
+  void windowTracked(const BurstWindow& window, const WindowTrace& trace) override;
   void windowSearched(const BoardSearch& search, std::int64_t middle_ns) override;
 
   int imagesWritten() const { return images_; }

@@ -83,7 +83,7 @@ void search(const Scenario& scenario, const std::vector<Event>& events) {
     for (int k = 0; k < kSearches; ++k) {
       const std::int64_t span_ns = events.back().time_ns - events.front().time_ns;
       const std::int64_t middle_ns = events.front().time_ns + span_ns * (k + 2) / (kSearches + 4);
-      found += searchBoard(history, middle_ns, scene, options).motion.has_value();
+      found += searchBoard(history, middle_ns, scene, options).back().motion.has_value();
     }
     fmt::print("| search, {} | {:.1f} ms | board found in {} of {} |\n",
                source == CandidateSource::NormalFlow ? "normal_flow" : "ring_vote",

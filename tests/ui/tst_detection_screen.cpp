@@ -79,8 +79,8 @@ struct Asked {
     const auto at_ns = [&](double time_s) { return question.start_ns + nanosecondsFrom(time_s); };
     const TimeSpan needed = neededBursts_s(question);
     if (!band->cover(at_ns(needed.begin_s), at_ns(needed.end_s))) qFatal("not read that far");
-    WindowAnalysis analysis = trackWindow(band->history(), question);
-    searchWindow(band->history(), question, analysis);
+    WindowAnalysis analysis = analyseTracking(band->history(), question);
+    addSearch(band->history(), question, analysis);
     return analysis;
   }
 };
@@ -179,11 +179,12 @@ class TestDetectionScreen : public QObject {
                                        [&](const WindowReport& w) { return w.time_s == view.time_s; });
       if (view.time_s < 0.2 || view.time_s > 1.7 || window == windows.end() || ++compared % 10 != 0) continue;
       const WindowAnalysis analysis = asked.at(*window);
-      QVERIFY2(analysis.tracked, qPrintable(QString::number(view.time_s)));
-      QCOMPARE(analysis.circles.size(), view.circles.size());
+      QVERIFY2(analysis.held(), qPrintable(QString::number(view.time_s)));
+      QCOMPARE(analysis.trace().circles.size(), view.circles.size());
       for (std::size_t k = 0; k < view.circles.size(); ++k) {
         const double sigma = std::sqrt(0.5 * view.circles[k].covariance_px2.trace());
-        worst = std::max(worst, (analysis.circles[k].centre_px - view.circles[k].centre_px).norm() / sigma);
+        worst = std::max(worst,
+                         (analysis.trace().circles[k].centre_px - view.circles[k].centre_px).norm() / sigma);
       }
     }
     QVERIFY(compared > 30);
@@ -217,7 +218,7 @@ class TestDetectionScreen : public QObject {
     for (std::size_t k = 10; k + 10 < windows.size(); k += 8) {
       asked.at(windows[k]);
       const std::clock_t begin = std::clock();
-      trackWindow(asked.band->history(), asked.question);
+      analyseTracking(asked.band->history(), asked.question);
       slowest_s = std::max(slowest_s, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
     }
     qInfo("slowest %.1f ms", 1e3 * slowest_s);
@@ -233,7 +234,7 @@ class TestDetectionScreen : public QObject {
     settle(screen);
     screen.setMode(SurfaceMode::NormalFlow);
     const auto coloured = [&] {
-      const NormalFlow& flow = screen.analysis()->arcs.flow.front();
+      const NormalFlow& flow = screen.analysis()->flow.arcs.flow.front();
       return screen.view().frame()->image.pixel(flow.x_px, flow.y_px) ==
              flowColour(static_cast<double>(flow.velocity_px_s.x()),
                         static_cast<double>(flow.velocity_px_s.y()));
@@ -252,6 +253,15 @@ class TestDetectionScreen : public QObject {
       if (stage.verdict == StageVerdict::Failed) failed += stage.stage;
     }
     QCOMPARE(failed, std::string("moving circles"));
+  }
+
+  void analysis_saysWhyACircleIsNotMeasured() {
+    Asked asked(*recorded_);
+    asked.question.observations = recorded_->observations();
+    asked.question.options.tracking.least_inliers = 0.9;
+    const WindowAnalysis analysis = asked.at(recorded_->goodWindow());
+    const std::string text = analysis.stages.back().text;
+    QVERIFY2(text.find("(too few bursts on its edge)") != std::string::npos, text.c_str());
   }
 
   void screen_withoutRecordingSaysSo() {
@@ -274,7 +284,7 @@ class TestDetectionScreen : public QObject {
     screen.setTime(window.time_s);
     settle(screen);
     QVERIFY(screen.view().frame()->events > 1000);
-    QVERIFY(screen.analysis()->tracked);
+    QVERIFY(screen.analysis()->held());
     QVERIFY2(screen.panel().text().contains("In the last run: complete"), qPrintable(screen.panel().text()));
     const int with = pixelsOf(screen.view().grab().toImage(), theme().good);
     screen.setLayerVisible(Layer::Ellipses, false);
@@ -395,10 +405,10 @@ class TestDetectionScreen : public QObject {
     std::jthread job([session = recorded_->session, observer = screen.liveObserver()] {
       readAndDetect(session, {silentProgress(), {}, observer.get()});
     });
-    QTRY_VERIFY_WITH_TIMEOUT(screen.analysis() && screen.analysis()->tracked, 20000 * kSlowdown);
+    QTRY_VERIFY_WITH_TIMEOUT(screen.analysis() && screen.analysis()->held(), 20000 * kSlowdown);
     QTRY_VERIFY_WITH_TIMEOUT(!screen.timeline().windows().empty() && screen.view().frame(),
                              20000 * kSlowdown);
-    QVERIFY(!screen.analysis()->circles.empty());
+    QVERIFY(!screen.analysis()->trace().circles.empty());
     job.join();
     screen.setLive(false);
     screen.setObservations(recorded_->pass.cameras.front());

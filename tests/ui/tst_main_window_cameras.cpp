@@ -48,8 +48,8 @@ void choose(QComboBox* box, int index) {
 // Mean place of the circles that the front end found in the picture.
 QPointF middleOf(const WindowAnalysis& analysis) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (const auto& circle : analysis.circles) sum += circle.centre_px;
-  sum /= static_cast<double>(analysis.circles.size());
+  for (const auto& circle : analysis.trace().circles) sum += circle.centre_px;
+  sum /= static_cast<double>(analysis.trace().circles.size());
   return {sum.x(), sum.y()};
 }
 
@@ -246,7 +246,7 @@ class TestMainWindowCameras : public QObject {
     QPointF middle;
     const auto ready = [&] {
       const auto& analysis = screen.analysis();
-      return screen.view().frame() && analysis && !analysis->circles.empty() &&
+      return screen.view().frame() && analysis && !analysis->trace().circles.empty() &&
              std::abs(analysis->time_s - time_s) < 1e-6;
     };
     screen.setTime(time_s + 0.2);

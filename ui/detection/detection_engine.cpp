@@ -45,11 +45,11 @@ class DetectionEngine::Analyst {
     const TimeSpan needed = neededBursts_s(question);
     const auto at_ns = [&](double time_s) { return question.start_ns + nanosecondsFrom(time_s); };
     band_->cover(at_ns(needed.begin_s), at_ns(needed.end_s));
-    WindowAnalysis analysis = trackWindow(band_->history(), question);
+    WindowAnalysis analysis = analyseTracking(band_->history(), question);
     if (task.wish.style.mode == SurfaceMode::NormalFlow) renderArcs(task, analysis);
     engine_.put(analysis, task.source.opening);
     if (!task.wish.search || engine_.analysis_job_.hasNewer()) return;
-    searchWindow(band_->history(), question, analysis);
+    addSearch(band_->history(), question, analysis);
     if (task.wish.style.mode == SurfaceMode::NormalFlow) renderArcs(task, analysis);
     engine_.put(analysis, task.source.opening);
   }
@@ -72,10 +72,10 @@ class DetectionEngine::Analyst {
 
   void renderArcs(const AnalysisTask& task, const WindowAnalysis& analysis) {
     std::vector<Event> events;
-    gather(*task.source.cache, task.source.start_ns, analysis.time_s - analysis.arcs_half_width_s,
-           analysis.time_s + analysis.arcs_half_width_s, events);
+    gather(*task.source.cache, task.source.start_ns, analysis.time_s - analysis.flow.half_window_s,
+           analysis.time_s + analysis.flow.half_window_s, events);
     SurfaceFrame frame =
-        renderFlow(events, analysis.arcs.flow, task.source.start_ns + nanosecondsFrom(analysis.time_s),
+        renderFlow(events, analysis.flow.arcs.flow, task.source.start_ns + nanosecondsFrom(analysis.time_s),
                    task.source.resolution_px, task.wish.style);
     frame.time_s = analysis.time_s;
     engine_.put(std::move(frame), task.source.opening);

@@ -74,7 +74,7 @@ QLineF flowLine(const NormalFlow& flow, double half_width_s) {
 
 void paintFlow(QPainter& painter, const WindowAnalysis& analysis) {
   QVector<QLineF> lines;
-  for (const NormalFlow& flow : analysis.arcs.flow) lines << flowLine(flow, analysis.arcs_half_width_s);
+  for (const NormalFlow& flow : analysis.flow.arcs.flow) lines << flowLine(flow, analysis.flow.half_window_s);
   usePen(painter, layerColour(Layer::Flow), 1.0);
   painter.drawLines(lines);
 }
@@ -90,13 +90,13 @@ QColor gridColour(double share_of_board) {
 
 void paintClusters(QPainter& painter, const WindowAnalysis& analysis) {
   const std::array<QColor, 3> colours = clusterColours();
-  for (const EventCluster& cluster : analysis.arcs.clusters) {
+  for (const EventCluster& cluster : analysis.flow.arcs.clusters) {
     painter.setPen(Qt::NoPen);
     QColor colour = colours[static_cast<std::size_t>(cluster.kind)];
     colour.setAlphaF(0.75f);
     painter.setBrush(colour);
     for (const std::uint32_t i : cluster.flows) {
-      const NormalFlow& flow = analysis.arcs.flow[i];
+      const NormalFlow& flow = analysis.flow.arcs.flow[i];
       painter.drawRect(QRectF(flow.x_px - 0.5, flow.y_px - 0.5, 1.0, 1.0));
     }
   }
@@ -134,11 +134,11 @@ void paintEllipses(QPainter& painter, const WindowAnalysis& analysis) {
   QColor colour = layerColour(Layer::Ellipses);
   usePen(painter, colour, 2.0);
   painter.setBrush(Qt::NoBrush);
-  paintBoard(painter, *analysis.motion, *analysis.scene);
+  paintBoard(painter, *analysis.trace().motion, *analysis.scene);
   colour.setAlphaF(0.55f);
   painter.setPen(Qt::NoPen);
   painter.setBrush(colour);
-  for (const EdgeInlier& inlier : analysis.inliers) {
+  for (const EdgeInlier& inlier : analysis.trace().measurement.inliers) {
     const QPointF at(static_cast<double>(inlier.pixel.x()), static_cast<double>(inlier.pixel.y()));
     painter.drawRect(QRectF(at - QPointF(0.25, 0.25), QSizeF(0.5, 0.5)));
   }
@@ -148,7 +148,7 @@ void paintCentres(QPainter& painter, double scale, const WindowAnalysis& analysi
   const double arm = 4.0 / scale;
   usePen(painter, layerColour(Layer::Centres));
   painter.setBrush(Qt::NoBrush);
-  for (const CircleObservation& circle : analysis.circles) {
+  for (const CircleObservation& circle : analysis.trace().circles) {
     const QPointF at = toSensor(circle.centre_px, *analysis.scene);
     painter.drawLine(at - QPointF(arm, 0.0), at + QPointF(arm, 0.0));
     painter.drawLine(at - QPointF(0.0, arm), at + QPointF(0.0, arm));
@@ -160,7 +160,7 @@ void paintCentres(QPainter& painter, double scale, const WindowAnalysis& analysi
 void paintGrid(QPainter& painter, double scale, const WindowAnalysis& analysis) {
   const CircleBoard& board = analysis.scene->board;
   QPolygonF chain;
-  for (const CircleObservation& circle : analysis.circles) {
+  for (const CircleObservation& circle : analysis.trace().circles) {
     const bool follows = !chain.isEmpty();
     const QPointF at = toSensor(circle.centre_px, *analysis.scene);
     const int last = std::max(1, board.circleCount() - 1);
@@ -177,7 +177,7 @@ void paintGrid(QPainter& painter, double scale, const WindowAnalysis& analysis) 
   painter.setFont(font);
   for (qsizetype k = 0; k < chain.size(); ++k) {
     const QPointF at = to_widget.map(chain[k]) + QPointF(5.0, -4.0);
-    const QString number = QString::number(analysis.circles[static_cast<std::size_t>(k)].circle);
+    const QString number = QString::number(analysis.trace().circles[static_cast<std::size_t>(k)].circle);
     painter.setPen(theme().panel);
     for (const QPointF& beside : {QPointF(1, 1), QPointF(-1, 1), QPointF(1, -1), QPointF(-1, -1)})
       painter.drawText(at + beside, number);
@@ -327,14 +327,14 @@ void paintLayers(QPainter& painter, double scale, const LayerSet& visible, const
   if (analysis) {
     if (shown(Layer::Flow)) paintFlow(painter, *analysis);
     if (shown(Layer::Clusters)) paintClusters(painter, *analysis);
-    if (shown(Layer::Pairs)) paintPairs(painter, analysis->arcs);
-    if (shown(Layer::Circles) && analysis->bestSearch()) paintSearch(painter, analysis->bestSearch()->search);
-    if (shown(Layer::Prediction) && analysis->prediction) {
+    if (shown(Layer::Pairs)) paintPairs(painter, analysis->flow.arcs);
+    if (shown(Layer::Circles) && analysis->bestSearch()) paintSearch(painter, *analysis->bestSearch());
+    if (shown(Layer::Prediction) && analysis->tracked) {
       usePen(painter, layerColour(Layer::Prediction), 1.5, Qt::DashLine);
       painter.setBrush(Qt::NoBrush);
-      paintBoard(painter, *analysis->prediction, *analysis->scene);
+      paintBoard(painter, analysis->tracked->prediction, *analysis->scene);
     }
-    if (shown(Layer::Ellipses) && analysis->motion) paintEllipses(painter, *analysis);
+    if (shown(Layer::Ellipses) && analysis->trace().motion) paintEllipses(painter, *analysis);
   }
   if (shown(Layer::Reprojection)) {
     usePen(painter, layerColour(Layer::Reprojection), 1.5);

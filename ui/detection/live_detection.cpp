@@ -32,23 +32,21 @@ class LiveDetection::CameraObserver final : public FrontEndObserver {
         scene_(std::make_shared<BoardScene>(tracker.scene())),
         options_(options) {}
 
-  void windowTracked(const BurstWindow& window, const TrackedWindow& tracked) override {
-    start_ns_ = window.middle_ns() - nanosecondsFrom(tracked.report.time_s);
+  void windowTracked(const BurstWindow& window, const WindowTrace& trace) override {
+    start_ns_ = window.middle_ns() - nanosecondsFrom(trace.report.time_s);
     if (!due()) return;
     auto live = begin(window.middle_ns());
     const bool dark = scene_->board.circles == CircleShade::Dark;
     for (const WindowBurst& burst : window.bursts()) {
-      if (std::abs(static_cast<double>(burst.time_s)) > tracked.report.half_width_s) continue;
+      if (std::abs(static_cast<double>(burst.time_s)) > trace.report.half_width_s) continue;
       live->bursts.push_back({window.middle_ns() + nanosecondsFrom(static_cast<double>(burst.time_s)),
                               static_cast<std::uint16_t>(burst.x_px), static_cast<std::uint16_t>(burst.y_px),
                               (burst.lead < 0.0f) == dark});
     }
     auto analysis = std::make_shared<WindowAnalysis>();
-    analysis->half_width_s = tracked.report.half_width_s;
-    analysis->motion = tracked.motion;
-    analysis->circles = tracked.circles;
-    analysis->tracked = tracked.held;
-    analysis->outcome = outcomeOf(tracked);
+    analysis->half_width_s = trace.report.half_width_s;
+    analysis->tracked = trace;
+    analysis->outcome = trace.report.outcome;
     send(std::move(live), std::move(analysis));
   }
 
@@ -63,9 +61,7 @@ class LiveDetection::CameraObserver final : public FrontEndObserver {
     auto analysis = std::make_shared<WindowAnalysis>();
     analysis->half_width_s = search.half_window_s;
     analysis->outcome = search.outcome;
-    // Only flow gives candidates a speed.
-    const bool by_flow = !search.candidates.empty() && search.candidates.front().speed_px_s > 0.0;
-    analysis->searches = {{by_flow ? CandidateSource::NormalFlow : CandidateSource::RingVote, search}};
+    analysis->searches = {search};
     send(std::move(live), std::move(analysis));
   }
 
@@ -75,13 +71,6 @@ class LiveDetection::CameraObserver final : public FrontEndObserver {
     if (now - sent_ < kLeastInterval) return false;
     sent_ = now;
     return true;
-  }
-
-  WindowOutcome outcomeOf(const TrackedWindow& tracked) const {
-    if (!tracked.held) return WindowOutcome::RefinementFailed;
-    const int found = static_cast<int>(tracked.circles.size()), count = scene_->board.circleCount();
-    if (found < std::max(4.0, options_.grid.least_partial * count)) return WindowOutcome::TooFewInGrid;
-    return found == count ? WindowOutcome::Complete : WindowOutcome::Partial;
   }
 
   std::shared_ptr<LiveWindow> begin(std::int64_t middle_ns) {

@@ -16,36 +16,19 @@ std::string print(const char* format, Values... values) {
   return text;
 }
 
-// The stage at which a search with this outcome ended, counted as in searchStages.
-int lostAt(const BoardSearch& search) {
-  switch (search.outcome) {
-    case WindowOutcome::TooFewEvents:
-      return 0;
-    case WindowOutcome::TooFewCircles:
-      return 2;
-    case WindowOutcome::NoLattice:
-      return search.lattice.size() < 4 ? 3 : 4;
-    case WindowOutcome::TooFewInGrid:
-      return search.placements.empty() ? 3 : 5;
-    case WindowOutcome::Ambiguous:
-    case WindowOutcome::RefinementFailed:
-      return 5;
-    case WindowOutcome::Complete:
-    case WindowOutcome::Partial:
-      break;
-  }
-  return 6;
+const char* sourceName(CandidateSource source) {
+  return source == CandidateSource::RingVote ? "ring vote" : "normal flow";
 }
 
-std::string candidateText(const SourceSearch& source, const WindowAnalysis& analysis) {
-  const int candidates = static_cast<int>(source.search.candidates.size());
-  if (source.source != CandidateSource::NormalFlow || analysis.arcs.flow.empty())
-    return print("%d by %s", candidates, sourceName(source.source));
+std::string candidateText(const BoardSearch& search, const NormalFlowStages& arcs) {
+  const int candidates = static_cast<int>(search.candidates.size());
+  if (search.source != CandidateSource::NormalFlow || arcs.flow.empty())
+    return print("%d by %s", candidates, sourceName(search.source));
   int kinds[3] = {0, 0, 0};
-  for (const EventCluster& cluster : analysis.arcs.clusters) ++kinds[static_cast<int>(cluster.kind)];
+  for (const EventCluster& cluster : arcs.clusters) ++kinds[static_cast<int>(cluster.kind)];
   return print("%d by normal flow: %zu flow vectors in %zu clusters (%d run, %d chase, %d other), %zu pairs",
-               candidates, analysis.arcs.flow.size(), analysis.arcs.clusters.size(), kinds[0], kinds[1],
-               kinds[2], analysis.arcs.pairs.size());
+               candidates, arcs.flow.size(), arcs.clusters.size(), kinds[0], kinds[1], kinds[2],
+               arcs.pairs.size());
 }
 
 std::string placementText(const BoardSearch& search) {
@@ -75,97 +58,104 @@ std::string jointText(const BoardSearch& search, const WindowAnalysis& analysis,
              : std::string();
 }
 
-void addSearch(const SourceSearch& source, const WindowAnalysis& analysis, const FrontEndOptions& options,
-               std::vector<StageReport>& stages) {
-  const BoardSearch& search = source.search;
-  const int lost = lostAt(search);
-  const auto add = [&](int stage, const char* name, const std::string& text) {
-    const StageVerdict verdict = stage < lost    ? StageVerdict::Passed
-                                 : stage == lost ? StageVerdict::Failed
-                                                 : StageVerdict::NotReached;
+void addSearchStages(const BoardSearch& search, const WindowAnalysis& analysis,
+                     const FrontEndOptions& options, std::vector<StageReport>& stages) {
+  const auto add = [&](SearchStage stage, const char* name, const std::string& text) {
+    const StageVerdict verdict = stage < search.ended    ? StageVerdict::Passed
+                                 : stage == search.ended ? StageVerdict::Failed
+                                                         : StageVerdict::NotReached;
     stages.push_back({name, verdict, verdict == StageVerdict::NotReached ? "not reached" : text});
   };
-  add(0, "edge bursts",
+  add(SearchStage::Bursts, "edge bursts",
       print("%d within \u00b1%.1f ms (at least %d needed)", search.bursts, 1e3 * search.half_window_s,
             options.detection.least_window_bursts));
-  add(1, "candidates", candidateText(source, analysis));
-  add(2, "moving circles",
+  add(SearchStage::Candidates, "candidates", candidateText(search, analysis.flow.arcs));
+  add(SearchStage::Circles, "moving circles",
       print("%zu of %zu candidates are circles that move (at least %d needed)", search.circles.size(),
             search.candidates.size(), options.grid.least_circles));
-  add(3, "lattice",
+  add(SearchStage::Lattice, "lattice",
       print("%zu circles in one lattice (at least %d needed)", search.lattice.size(),
             options.grid.least_circles));
-  add(4, "placement", placementText(search));
-  add(5, "joint fit", jointText(search, analysis, options.grid));
+  add(SearchStage::Placement, "placement", placementText(search));
+  add(SearchStage::JointFit, "joint fit", jointText(search, analysis, options.grid));
 }
 
-void addTracking(const WindowAnalysis& analysis, std::vector<StageReport>& stages) {
-  if (!analysis.prediction && analysis.tracked) {
-    stages.push_back({"prediction", StageVerdict::Passed, "from the window before: holds"});
-    return;
+std::string trackingText(const WindowTrace& trace, const FrontEndOptions& options) {
+  switch (trace.ended) {
+    case TrackingEnd::NoFit:
+      return "too few bursts where it says that edges are";
+    case TrackingEnd::TooFewCircles:
+      return print("too few circles where it says: %zu (at least %d needed)", trace.circles.size(),
+                   options.grid.least_circles);
+    case TrackingEnd::TooFewOfExpected:
+      return print("too few circles where it says: %zu of %d that should be seen (%.0f %% needed)",
+                   trace.circles.size(), trace.expected, 100.0 * kLeastExpected);
+    case TrackingEnd::Held:
+      break;
   }
-  if (!analysis.prediction) {
+  return print("holds, %.2f px RMS over %d bursts", trace.motion->residual_rms_px, trace.motion->bursts);
+}
+
+void addTracking(const WindowAnalysis& analysis, const FrontEndOptions& options,
+                 std::vector<StageReport>& stages) {
+  if (!analysis.tracked) {
     stages.push_back({"prediction", StageVerdict::Note, "none: no view of the board shortly before"});
     return;
   }
-  const std::string from =
-      print("from the view %.1f ms before: ", 1e3 * (analysis.time_s - analysis.predicted_from_s));
-  if (analysis.tracked) {
-    stages.push_back({"prediction", StageVerdict::Passed,
-                      from + print("holds, %.2f px RMS over %d bursts", analysis.motion->residual_rms_px,
-                                   analysis.motion->bursts)});
-  } else {
-    stages.push_back({"prediction", StageVerdict::Failed, from + "too few circles where it says"});
-  }
+  const WindowTrace& trace = *analysis.tracked;
+  const double gap_ms = 1e-6 * static_cast<double>(trace.prediction.time_ns - trace.predicted_from_ns);
+  const std::string from = gap_ms == 0.0 ? "from the search: "
+                                         : print("from the view %.1f ms %s: ", std::abs(gap_ms),
+                                                 gap_ms > 0.0 ? "before" : "after");
+  stages.push_back({"prediction", trace.held() ? StageVerdict::Passed : StageVerdict::Failed,
+                    from + trackingText(trace, options)});
 }
 
-// The numbers of circles without a centre, as long as they are few.
-std::string missingText(const WindowAnalysis& analysis) {
-  const int count = analysis.scene->board.circleCount();
+// The numbers of circles without a centre, and why they have none, as long as they are few.
+std::string missingText(const WindowTrace& trace, int count) {
   constexpr int kMostNamed = 10;
-  const int missing = count - static_cast<int>(analysis.circles.size());
+  const int missing = count - static_cast<int>(trace.circles.size());
   if (missing < 1 || missing > kMostNamed) return {};
   std::vector<bool> found(static_cast<std::size_t>(count), false);
-  for (const CircleObservation& circle : analysis.circles)
-    found[static_cast<std::size_t>(circle.circle)] = true;
+  for (const CircleObservation& circle : trace.circles) found[static_cast<std::size_t>(circle.circle)] = true;
   std::string text = ", without";
-  for (int circle = 0; circle < count; ++circle) {
-    if (!found[static_cast<std::size_t>(circle)]) text += print(" %d", circle);
+  const std::vector<CircleVerdict>& verdicts = trace.measurement.verdicts;
+  for (std::size_t circle = 0; circle < found.size(); ++circle) {
+    if (found[circle]) continue;
+    text += print(" %zu", circle);
+    if (circle < verdicts.size()) text += print(" (%s)", circleVerdictName(verdicts[circle]));
   }
   return text;
 }
 
 void addCentres(const WindowAnalysis& analysis, std::vector<StageReport>& stages) {
   const int count = analysis.scene->board.circleCount();
-  if (!analysis.motion) {
+  const WindowTrace& trace = analysis.trace();
+  if (!trace.motion) {
     stages.push_back({"centres", StageVerdict::NotReached, "not reached"});
     return;
   }
   std::vector<double> sigmas;
-  for (const CircleObservation& circle : analysis.circles)
+  for (const CircleObservation& circle : trace.circles)
     sigmas.push_back(std::sqrt(0.5 * circle.covariance_px2.trace()));
-  std::string text = print("%zu of %d circles measured", analysis.circles.size(), count);
+  std::string text = print("%zu of %d circles measured", trace.circles.size(), count);
   if (!sigmas.empty()) text += print(", sigma %.3f px", medianOf(std::move(sigmas)));
-  text += missingText(analysis);
+  text += missingText(trace, count);
   const bool good = analysis.outcome == WindowOutcome::Complete || analysis.outcome == WindowOutcome::Partial;
   stages.push_back({"centres", good ? StageVerdict::Passed : StageVerdict::Failed, text});
 }
 
 }  // namespace
 
-const char* sourceName(CandidateSource source) {
-  return source == CandidateSource::RingVote ? "ring vote" : "normal flow";
-}
-
 std::vector<StageReport> describeStages(const WindowAnalysis& analysis, const FrontEndOptions& options) {
   std::vector<StageReport> stages;
-  addTracking(analysis, stages);
-  const SourceSearch* best = analysis.bestSearch();
-  if (best) addSearch(*best, analysis, options, stages);
-  for (const SourceSearch& source : analysis.searches) {
-    if (&source == best) continue;
-    stages.push_back({sourceName(source.source), StageVerdict::Note,
-                      std::string("tried too: ") + windowOutcomeName(source.search.outcome)});
+  addTracking(analysis, options, stages);
+  const BoardSearch* best = analysis.bestSearch();
+  if (best) addSearchStages(*best, analysis, options, stages);
+  for (const BoardSearch& search : analysis.searches) {
+    if (&search == best) continue;
+    stages.push_back({sourceName(search.source), StageVerdict::Note,
+                      std::string("tried too: ") + windowOutcomeName(search.outcome)});
   }
   addCentres(analysis, stages);
   return stages;

@@ -37,10 +37,10 @@ QString capital(const char* text) {
 }
 
 QString headline(const WindowAnalysis& analysis, bool searching) {
-  const QString words = searching && !analysis.tracked ? WindowPanel::tr("Searching ...")
-                                                       : capital(windowOutcomeName(analysis.outcome));
+  const QString words = searching && !analysis.held() ? WindowPanel::tr("Searching ...")
+                                                      : capital(windowOutcomeName(analysis.outcome));
   const QColor colour =
-      searching && !analysis.tracked ? theme().faint_text : windowColour(windowClass(analysis.outcome));
+      searching && !analysis.held() ? theme().faint_text : windowColour(windowClass(analysis.outcome));
   return QStringLiteral("<p style='margin:0; font-size:large'><b>%1</b></p><p style='margin:0'>%2</p>")
       .arg(coloured(colour, words),
            coloured(theme().faint_text, WindowPanel::tr("%1 s ± %2 ms")

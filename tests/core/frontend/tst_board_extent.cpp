@@ -32,10 +32,12 @@ BoardExtent judge(const MovingBoard& moving, const Claim& claim, int random_burs
   motion.residual_rms_px = 0.1;
   const FrontEndOptions options;
   const BoardScene scene(claimed, kDavis_px, std::nullopt);
-  const std::vector<CircleObservation> circles =
-      measureCircles(synthetic.window, motion, scene, kHalfWindow_s, 0, options.tracking);
+  WindowTrace trace;
+  trace.motion = motion;
+  trace.circles = measureCircles(synthetic.window, motion, scene, {kHalfWindow_s}, options.tracking);
+  trace.report.half_width_s = kHalfWindow_s;
   BoardExtent extent;
-  judgeExtent(synthetic.window, motion, circles, scene, kHalfWindow_s, options, extent);
+  judgeExtent(synthetic.window, trace, scene, options, extent);
   return extent;
 }
 

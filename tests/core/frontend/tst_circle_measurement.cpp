@@ -19,7 +19,7 @@ std::vector<CircleObservation> measure(const MovingBoard& moving, const std::vec
   const auto motion =
       fitBoardMotion(synthetic.window, moving.motionAt(0.0), moving.scene(), options.first_gate_px, options);
   if (!motion) return {};
-  return measureCircles(synthetic.window, *motion, moving.scene(), half_slot_s, 0, options);
+  return measureCircles(synthetic.window, *motion, moving.scene(), {half_slot_s}, options);
 }
 
 class TestCircleMeasurement : public QObject {

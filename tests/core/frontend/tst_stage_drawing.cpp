@@ -1,7 +1,6 @@
 #include "core/frontend/stage_drawing.h"
 
 #include "core/base/error.h"
-#include "core/frontend/board_tracker.h"
 #include "core/frontend/stage_image_writer.h"
 #include "tests/core/frontend/synthetic_bursts.h"
 #include "tests/support/test_program.h"
@@ -26,11 +25,11 @@ Rgb at(const RgbImage& image, int x, int y) {
   return {p[0], p[1], p[2]};
 }
 
-TrackedWindow trackedBoard() {
+WindowTrace trackedBoard() {
   const MovingBoard moving;
-  TrackedWindow tracked;
+  WindowTrace tracked;
   tracked.motion = moving.motionAt(0.0);
-  tracked.held = true;
+  tracked.ended = TrackingEnd::Held;
   for (int i = 0; i < moving.board.circleCount(); ++i) {
     CircleObservation circle;
     circle.circle = i;
@@ -102,7 +101,7 @@ void TestStageDrawing::png_thatCannotBeWritten_saysWhere() {
 
 void TestStageDrawing::board_isDrawn() {
   const SyntheticWindow synthetic({});
-  const TrackedWindow tracked = trackedBoard();
+  const WindowTrace tracked = trackedBoard();
   const RgbImage image = drawTrackedWindow(synthetic.window, tracked, scene());
   const int factor = image.width_px / kDavis_px.width_px;
   const int bar = (image.height_px - factor * kDavis_px.height_px) / 2;

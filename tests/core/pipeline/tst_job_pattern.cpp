@@ -92,7 +92,7 @@ class Mailbox : public ProgressSink, public CalibrationObserver {
 class Watcher final : public FrontEndObserver {
  public:
   Watcher(Mailbox& box, const BoardTracker& tracker) : box_(box), tracker_(tracker) {}
-  void windowTracked(const BurstWindow&, const TrackedWindow&) override {
+  void windowTracked(const BurstWindow&, const WindowTrace&) override {
     reports_ = tracker_.observations().windows;
     box_.put([](Mailbox::Contents& contents) { ++contents.tracked; });
   }
