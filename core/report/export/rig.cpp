@@ -27,6 +27,10 @@ std::string fileName(const std::string& name, std::set<std::string>& taken) {
   return unique;
 }
 
+[[noreturn]] void throwNotFinite(const std::string& place) {
+  throw badInput(place, "has numbers that are none (nan, inf)", "Calibrate again");
+}
+
 // Of all that exports may say of a sensor.
 template <class Rows, class State>
 void checkNumbers(const std::string& place, const Rows& rows, const State& state) {
@@ -35,7 +39,7 @@ void checkNumbers(const std::string& place, const Rows& rows, const State& state
     if (row.info.presence != QuantityPresence::WhereBothEstimated)
       finite = finite && quantityNumbers(row.value(state)).allFinite();
   });
-  if (!finite) throw badInput(place, "has numbers that are none (nan, inf)", "Calibrate again");
+  if (!finite) throwNotFinite(place);
 }
 
 RigCamera cameraOf(const NamedResult& result, std::size_t i, std::set<std::string>& taken) {
@@ -81,7 +85,7 @@ Rig rigOf(const NamedResult& result, std::vector<std::string>& notes) {
   rig.status = statusName(result.result.status);
   if (!result.result.reason.empty()) rig.status += ": " + result.result.reason;
   rig.gravity_m_s2 = result.result.state.gravity_in_world_m_s2;
-  checkNumbers("result: gravity_m_s2", {}, 0.0, rig.gravity_m_s2);
+  if (!rig.gravity_m_s2.allFinite()) throwNotFinite("result: gravity_m_s2");
   std::set<std::string> taken;
   for (std::size_t i = 0; i < result.names.cameras.size(); ++i)
     rig.cameras.push_back(cameraOf(result, i, taken));
