@@ -5,7 +5,26 @@
 namespace evical {
 namespace {
 
-constexpr double kSmallAngle2 = 1e-8;  // rad^2; below it the series is exact to double precision
+// Below it the series of half-angle sine and cosine are exact to double precision with two terms.
+constexpr double kSmallAngle2 = 1e-8;  // rad^2
+
+// What Rodrigues' formula and its derivative weigh skew(v) and its square with.
+struct Coefficients {
+  double sine;    // sin(x)/x
+  double cosine;  // (1 - cos(x))/x^2
+  double cubic;   // (x - sin(x))/x^3
+};
+
+// Differences of nearly equal numbers lose digits long before they divide by zero, hence the series with four
+// terms up to 0.01 rad, where the next one is below double precision.
+Coefficients coefficients(double angle2) {
+  if (angle2 < 1e-4)
+    return {1.0 - angle2 / 6.0 * (1.0 - angle2 / 20.0 * (1.0 - angle2 / 42.0)),
+            0.5 - angle2 / 24.0 * (1.0 - angle2 / 30.0 * (1.0 - angle2 / 56.0)),
+            1.0 / 6.0 - angle2 / 120.0 * (1.0 - angle2 / 42.0 * (1.0 - angle2 / 72.0))};
+  const double angle = std::sqrt(angle2), sine = std::sin(angle), cosine = std::cos(angle);
+  return {sine / angle, (1.0 - cosine) / angle2, (angle - sine) / (angle2 * angle)};
+}
 
 }  // namespace
 
@@ -16,18 +35,25 @@ Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
 }
 
 Eigen::Matrix3d so3Exp(const Eigen::Vector3d& rotation_vector_rad) {
-  const double angle2 = rotation_vector_rad.squaredNorm();
-  double a, b;  // sin(x)/x, (1-cos(x))/x^2
-  if (angle2 < kSmallAngle2) {
-    a = 1.0 - angle2 / 6.0;
-    b = 0.5 - angle2 / 24.0;
-  } else {
-    const double angle = std::sqrt(angle2);
-    a = std::sin(angle) / angle;
-    b = (1.0 - std::cos(angle)) / angle2;
-  }
+  const Coefficients by = coefficients(rotation_vector_rad.squaredNorm());
   const Eigen::Matrix3d k = skew(rotation_vector_rad);
-  return Eigen::Matrix3d::Identity() + a * k + b * k * k;
+  return Eigen::Matrix3d::Identity() + by.sine * k + by.cosine * k * k;
+}
+
+void so3ExpAndRightJacobian(const Eigen::Vector3d& rotation_vector_rad, Eigen::Matrix3d& exponential,
+                            Eigen::Matrix3d& right_jacobian) {
+  const double angle2 = rotation_vector_rad.squaredNorm();
+  const Coefficients by = coefficients(angle2);
+  const double x = rotation_vector_rad.x(), y = rotation_vector_rad.y(), z = rotation_vector_rad.z();
+  Eigen::Matrix3d square;  // skew(v)^2 = v v^T - |v|^2
+  square << x * x - angle2, x * y, x * z, x * y, y * y - angle2, y * z, x * z, y * z, z * z - angle2;
+  const Eigen::Matrix3d k = skew(rotation_vector_rad);
+  exponential = by.sine * k + by.cosine * square;
+  right_jacobian = by.cubic * square - by.cosine * k;
+  for (int i = 0; i < 3; ++i) {
+    exponential(i, i) += 1.0;
+    right_jacobian(i, i) += 1.0;
+  }
 }
 
 Eigen::Quaterniond quaternionExp(const Eigen::Vector3d& rotation_vector_rad) {
@@ -58,23 +84,14 @@ Eigen::Vector3d so3Log(const Eigen::Matrix3d& rotation) {
 }
 
 Eigen::Matrix3d so3RightJacobian(const Eigen::Vector3d& rotation_vector_rad) {
-  const double angle2 = rotation_vector_rad.squaredNorm();
-  double b, c;  // (1-cos x)/x^2, (x-sin x)/x^3
-  if (angle2 < 1e-6) {
-    b = 0.5 - angle2 / 24.0;
-    c = 1.0 / 6.0 - angle2 / 120.0;
-  } else {
-    const double angle = std::sqrt(angle2);
-    b = (1.0 - std::cos(angle)) / angle2;
-    c = (angle - std::sin(angle)) / (angle2 * angle);
-  }
-  const Eigen::Matrix3d k = skew(rotation_vector_rad);
-  return Eigen::Matrix3d::Identity() - b * k + c * k * k;
+  Eigen::Matrix3d exponential, right_jacobian;
+  so3ExpAndRightJacobian(rotation_vector_rad, exponential, right_jacobian);
+  return right_jacobian;
 }
 
 Eigen::Matrix3d so3RightJacobianInverse(const Eigen::Vector3d& rotation_vector_rad) {
   const double angle2 = rotation_vector_rad.squaredNorm();
-  double c;  // 1/x^2 - (1+cos x)/(2 x sin x) = 1/x^2 - cot(x/2)/(2x)
+  double c;  // 1/x^2 - (1+cos x)/(2 x sin x) = 1/x^2 - cot(x/2)/(2x); its last digits go with skew(v)^2
   if (angle2 < 1e-6) {
     c = 1.0 / 12.0 + angle2 / 720.0;
   } else {

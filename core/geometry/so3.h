@@ -17,6 +17,10 @@ Eigen::Vector3d so3Log(const Eigen::Matrix3d& rotation);  // norm in [0, pi]
 Eigen::Matrix3d so3RightJacobian(const Eigen::Vector3d& rotation_vector_rad);
 Eigen::Matrix3d so3RightJacobianInverse(const Eigen::Vector3d& rotation_vector_rad);
 
+// Both at once, as they share the trigonometry.
+void so3ExpAndRightJacobian(const Eigen::Vector3d& rotation_vector_rad, Eigen::Matrix3d& exponential,
+                            Eigen::Matrix3d& right_jacobian);
+
 Eigen::Quaterniond quaternionExp(const Eigen::Vector3d& rotation_vector_rad);
 Eigen::Vector3d quaternionLog(const Eigen::Quaterniond& rotation);
 

@@ -16,32 +16,6 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-// Exp(v) and its right Jacobian share the trigonometry.
-void expAndRightJacobian(const Vector3d& v, Matrix3d& exponential, Matrix3d& right_jacobian) {
-  const double angle2 = v.squaredNorm();
-  double a, b, c;  // sin(x)/x, (1-cos x)/x^2, (x-sin x)/x^3
-  if (angle2 < 1e-4) {
-    a = 1.0 - angle2 / 6.0 * (1.0 - angle2 / 20.0 * (1.0 - angle2 / 42.0));
-    b = 0.5 - angle2 / 24.0 * (1.0 - angle2 / 30.0 * (1.0 - angle2 / 56.0));
-    c = 1.0 / 6.0 - angle2 / 120.0 * (1.0 - angle2 / 42.0 * (1.0 - angle2 / 72.0));
-  } else {
-    const double angle = std::sqrt(angle2), sine = std::sin(angle), cosine = std::cos(angle);
-    a = sine / angle;
-    b = (1.0 - cosine) / angle2;
-    c = (angle - sine) / (angle2 * angle);
-  }
-  const double x = v.x(), y = v.y(), z = v.z();
-  Matrix3d square;  // skew(v)^2 = v v^T - |v|^2
-  square << x * x - angle2, x * y, x * z, x * y, y * y - angle2, y * z, x * z, y * z, z * z - angle2;
-  const Matrix3d k = skew(v);
-  exponential = a * k + b * square;
-  right_jacobian = c * square - b * k;
-  for (int i = 0; i < 3; ++i) {
-    exponential(i, i) += 1.0;
-    right_jacobian(i, i) += 1.0;
-  }
-}
-
 // skew(v) * m without forming the skew matrix.
 Matrix3d crossColumns(const Vector3d& v, const Matrix3d& m) {
   Matrix3d product;
@@ -114,7 +88,7 @@ void So3Segment::evaluate(double u, RotationOrder order, RotationSample& sample,
   Factors factors;
   for (std::size_t j = 0; j < 3; ++j) {
     const double weight = l.value[static_cast<Eigen::Index>(j)];
-    expAndRightJacobian(weight * steps_[j], factors.rotations[j], factors.by_step[j]);
+    so3ExpAndRightJacobian(weight * steps_[j], factors.rotations[j], factors.by_step[j]);
     if (jacobians) factors.by_step[j] *= weight;
   }
   const std::array<Matrix3d, 3>& a = factors.rotations;

@@ -1,0 +1,132 @@
+#include "core/geometry/circle_board.h"
+
+#include "core/base/error.h"
+#include "tests/support/test_program.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace {
+
+using namespace evical;
+
+CircleBoard board(BoardType type, int rows, int cols) {
+  CircleBoard made;
+  made.type = type;
+  made.rows = rows;
+  made.cols = cols;
+  made.spacing_m = 0.05;
+  made.radius_m = 0.02;
+  return made;
+}
+
+// Whether the centres, turned by 180 degrees about the middle of all, are the same centres.
+bool turnedIsTheSame(const CircleBoard& board) {
+  const std::vector<Eigen::Vector2d> centres = circleCentres_m(board);
+  Eigen::Vector2d low = centres[0], high = centres[0];
+  for (const Eigen::Vector2d& centre : centres) {
+    low = low.cwiseMin(centre);
+    high = high.cwiseMax(centre);
+  }
+  return std::all_of(centres.begin(), centres.end(), [&](const Eigen::Vector2d& centre) {
+    return std::any_of(centres.begin(), centres.end(), [&](const Eigen::Vector2d& other) {
+      return (low + high - centre - other).norm() < 1e-12;
+    });
+  });
+}
+
+}  // namespace
+
+class TestCircleBoard : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void asymmetricCentres_areStaggered() {
+    const CircleBoard b = board(BoardType::AsymmetricCircles, 11, 4);
+    QCOMPARE(b.circleCount(), 44);
+    QVERIFY((b.centre_m(0, 0) - Eigen::Vector2d(0.0, 0.0)).norm() < 1e-15);
+    QVERIFY((b.centre_m(0, 3) - Eigen::Vector2d(0.30, 0.0)).norm() < 1e-15);
+    QVERIFY((b.centre_m(1, 0) - Eigen::Vector2d(0.05, 0.05)).norm() < 1e-15);
+    QVERIFY((b.centre_m(10, 3) - Eigen::Vector2d(0.30, 0.50)).norm() < 1e-15);
+  }
+
+  void symmetricCentres_areInRowsAndColumns() {
+    const CircleBoard b = board(BoardType::SymmetricCircles, 3, 5);
+    QVERIFY((b.centre_m(1, 0) - Eigen::Vector2d(0.0, 0.05)).norm() < 1e-15);
+    QVERIFY((b.centre_m(2, 4) - Eigen::Vector2d(0.20, 0.10)).norm() < 1e-15);
+  }
+
+  void index_goesByRows_andBack() {
+    const CircleBoard b = board(BoardType::AsymmetricCircles, 11, 4);
+    QCOMPARE(b.index(0, 3), 3);
+    QCOMPARE(b.index(1, 0), 4);
+    QCOMPARE(b.index(10, 3), 43);
+    const std::vector<Eigen::Vector2d> all = circleCentres_m(b);
+    QCOMPARE(all.size(), std::size_t(44));
+    for (int row = 0; row < b.rows; ++row) {
+      for (int col = 0; col < b.cols; ++col) {
+        QCOMPARE(b.centre_m(b.index(row, col)), b.centre_m(row, col));
+        QCOMPARE(all[static_cast<std::size_t>(b.index(row, col))], b.centre_m(row, col));
+      }
+    }
+  }
+
+  void halfTurnAmbiguity_isSaidWhereThePatternHasIt_data() {
+    QTest::addColumn<int>("type");
+    QTest::addColumn<int>("rows");
+    QTest::addColumn<int>("cols");
+    for (const BoardType type : {BoardType::AsymmetricCircles, BoardType::SymmetricCircles})
+      for (const int rows : {2, 3, 10, 11})
+        for (const int cols : {2, 3, 4})
+          QTest::addRow("type %d, %d x %d", static_cast<int>(type), rows, cols)
+              << static_cast<int>(type) << rows << cols;
+  }
+  void halfTurnAmbiguity_isSaidWhereThePatternHasIt() {
+    QFETCH(int, type);
+    QFETCH(int, rows);
+    QFETCH(int, cols);
+    const CircleBoard b = board(static_cast<BoardType>(type), rows, cols);
+    QCOMPARE(b.hasHalfTurnAmbiguity(), turnedIsTheSame(b));
+  }
+
+  void whatMakesNoBoard_isRefused_data() {
+    QTest::addColumn<int>("rows");
+    QTest::addColumn<int>("cols");
+    QTest::addColumn<double>("spacing_m");
+    QTest::addColumn<double>("radius_m");
+    QTest::addColumn<QString>("place");
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    QTest::newRow("good") << 11 << 4 << 0.05 << 0.02 << QString();
+    QTest::newRow("nearly touching") << 11 << 4 << 0.05 << 0.0353 << QString();
+    QTest::newRow("one row") << 1 << 4 << 0.05 << 0.02 << "board";
+    QTest::newRow("one column") << 11 << 1 << 0.05 << 0.02 << "board";
+    QTest::newRow("too many rows") << 101 << 4 << 0.05 << 0.02 << "board";
+    QTest::newRow("too many columns") << 11 << 101 << 0.05 << 0.02 << "board";
+    QTest::newRow("no spacing") << 11 << 4 << 0.0 << 0.02 << "board.spacing_m";
+    QTest::newRow("spacing is no number") << 11 << 4 << kNan << 0.02 << "board.spacing_m";
+    QTest::newRow("no radius") << 11 << 4 << 0.05 << 0.0 << "board.radius_m";
+    QTest::newRow("radius is no number") << 11 << 4 << 0.05 << kNan << "board.radius_m";
+    QTest::newRow("touching") << 11 << 4 << 0.05 << 0.0354 << "board.radius_m";
+  }
+  void whatMakesNoBoard_isRefused() {
+    QFETCH(int, rows);
+    QFETCH(int, cols);
+    QFETCH(double, spacing_m);
+    QFETCH(double, radius_m);
+    QFETCH(QString, place);
+    CircleBoard b = board(BoardType::AsymmetricCircles, rows, cols);
+    b.spacing_m = spacing_m;
+    b.radius_m = radius_m;
+    if (place.isEmpty()) return validate(b);
+    try {
+      validate(b);
+      QFAIL("must throw");
+    } catch (const CalibrationError& error) {
+      QVERIFY(error.kind() == ErrorKind::BadInput);
+      QCOMPARE(QString::fromStdString(error.place()), place);
+    }
+  }
+};
+
+EVICAL_TEST(TestCircleBoard)
+#include "tst_circle_board.moc"
