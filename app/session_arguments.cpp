@@ -27,6 +27,7 @@ Session sessionFrom(const SessionArguments& arguments) {
     }
     setOption(session.options, setting.substr(0, equals), setting.substr(equals + 1));
   }
+  validate(session.options);
   if (arguments.threads > 0) session.options.optimisation.threads = arguments.threads;
   return session;
 }

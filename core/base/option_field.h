@@ -1,96 +1,118 @@
-// One row per option: the struct holds the default, the row holds name, member, range, unit and help. Session
-// files,
-// --set, validation, `evical options` and the forms all walk these rows.
+// One row per option: name, member, default, range, unit and help. Session files, --set, validation, `evical
+// options` and the forms all walk these rows. They are in the source beside the struct:
 //
-//   struct NormalFlowOptions {
-//     int plane_radius_px = 1;
-//     bool operator==(const NormalFlowOptions&) const = default;
-//   };
-//   inline constexpr auto kNormalFlowFields = std::tuple{
-//       Field{"plane_radius_px", &NormalFlowOptions::plane_radius_px, 1, 5, "px", "Half width of the
-//       plane-fit window."}};
-//   static_assert(fieldCount<NormalFlowOptions>() == std::tuple_size_v<decltype(kNormalFlowFields)>);
+//   constexpr std::tuple kFields{
+//       Field{"plane_radius_px", &NormalFlowOptions::plane_radius_px, 1, within(1, 5), "px", "Half width."},
+//       Switch{"quick", &NormalFlowOptions::quick, false, "Fits fewer planes.", Level::Common}};
+//   constexpr auto kDefaults = defaultsOf<NormalFlowOptions>(kFields);  // does not compile if a row is
+//   missing NormalFlowOptions::NormalFlowOptions() : NormalFlowOptions(kDefaults) {} const
+//   OptionTable<NormalFlowOptions>& NormalFlowOptions::table() {
+//     static const OptionTable<NormalFlowOptions> table(kFields);
+//     return table;
+//   }
 #pragma once
 
+#include "core/base/option_struct.h"
+
 #include <array>
-#include <concepts>
 #include <cstddef>
-#include <string_view>
 #include <tuple>
 #include <type_traits>
-#include <utility>
 
 namespace evical {
 
-// A number with an inclusive range.
+// Common options are what people turn, and are shown first; the others are for those who know the method.
+enum class Level { Expert, Common };
+
+template <class Value>
+struct Range {
+  Value least, most;  // both allowed
+};
+template <class Value>
+constexpr Range<Value> within(Value least, Value most) {
+  return {least, most};
+}
+
 template <class Options, class Value>
 struct Field {
   const char* name;
   Value Options::*member;
-  Value minimum, maximum;
+  Value initial;
+  Range<Value> range;
   const char* unit;
   const char* help;
+  Level level = Level::Expert;
 };
 template <class Options, class Value>
-Field(const char*, Value Options::*, std::type_identity_t<Value>, std::type_identity_t<Value>, const char*,
-      const char*) -> Field<Options, Value>;
+Field(const char*, Value Options::*, std::type_identity_t<Value>, Range<std::type_identity_t<Value>>,
+      const char*, const char*, Level = Level::Expert) -> Field<Options, Value>;
 
 // On or off.
 template <class Options>
 struct Switch {
   const char* name;
   bool Options::*member;
+  bool initial;
   const char* help;
+  Level level = Level::Expert;
 };
 template <class Options>
-Switch(const char*, bool Options::*, const char*) -> Switch<Options>;
+Switch(const char*, bool Options::*, bool, const char*, Level = Level::Expert) -> Switch<Options>;
 
 // One of a few words; enumerator i is written as choices[i].
 template <class Options, class Enum, std::size_t Count>
 struct Choice {
   const char* name;
   Enum Options::*member;
+  Enum initial;
   std::array<const char*, Count> choices;
   const char* help;
+  Level level = Level::Expert;
 };
 template <class Options, class Enum, std::size_t Count>
-Choice(const char*, Enum Options::*, std::array<const char*, Count>, const char*)
-    -> Choice<Options, Enum, Count>;
+Choice(const char*, Enum Options::*, std::type_identity_t<Enum>, std::array<const char*, Count>, const char*,
+       Level = Level::Expert) -> Choice<Options, Enum, Count>;
 
-namespace detail {
-
-struct AnyValue {
-  template <class T>
-  constexpr operator T() const;  // NOLINT: converts to whatever the aggregate asks for
+// A relation between two options: the one is never above the other.
+template <class Options, class Value>
+struct Ordered {
+  Value Options::*lower;
+  Value Options::*upper;
 };
-
-template <class Options, std::size_t... I>
-constexpr bool bracesTake(std::index_sequence<I...>) {
-  return requires {
-    Options{(static_cast<void>(I), AnyValue{})...};
-  };
-}
-
-template <class Options, std::size_t Count>
-constexpr std::size_t countFields() {
-  if constexpr (bracesTake<Options>(std::make_index_sequence<Count>{})) {
-    return Count;
-  } else {
-    return countFields<Options, Count - 1>();
-  }
-}
-
-}  // namespace detail
-
-// Number of members of a plain option struct, so that a forgotten row is a build error.
-template <class Options>
-constexpr std::size_t fieldCount() {
-  return detail::countFields<Options, 64>();
-}
+template <class Options, class Value>
+Ordered(Value Options::*, Value Options::*) -> Ordered<Options, Value>;
 
 template <class Fields, class Visitor>
 constexpr void forEachField(const Fields& fields, Visitor&& visit) {
   std::apply([&](const auto&... field) { (visit(field), ...); }, fields);
+}
+
+namespace detail {
+
+template <class Options, class Fields>
+constexpr void giveDefaults(Options& options, const Fields& fields) {
+  forEachField(fields, [&](const auto& field) { options.*field.member = field.initial; });
+}
+
+// Comparing reads every member, and one without a row has no value: then this is no constant expression. (GCC
+// 12 forgets that where a function returns the struct, so it is filled here once more.)
+template <class Options, class Fields>
+constexpr bool giveEveryMember(const Fields& fields) {
+  Options options{NoDefaults{}};
+  giveDefaults(options, fields);
+  const Options copy = options;
+  return copy == options;
+}
+
+}  // namespace detail
+
+// Does not compile where a member has no row.
+template <class Options, const auto& kFields>
+constexpr Options defaultsOf() {
+  static_assert(detail::giveEveryMember<Options>(kFields), "every option needs a row");
+  Options options{NoDefaults{}};
+  detail::giveDefaults(options, kFields);
+  return options;
 }
 
 }  // namespace evical

@@ -1,7 +1,7 @@
 #include "core/base/yaml_node.h"
 
 #include "core/base/nearest_name.h"
-#include "core/base/option_yaml.h"
+#include "core/base/option_table.h"
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>

@@ -1,137 +1,56 @@
 // What initialisation lets people choose.
 #pragma once
 
-#include "core/base/option_field.h"
+#include "core/base/option_struct.h"
 
 namespace evical {
 
 struct InitialisationOptions {
-  double knot_spacing_s = 0.02;
-  double time_offset_search_s = 1.0;
-  double largest_reprojection_px = 2.0;
-  double largest_rotation_disagreement_rad = 0.06;
-  double clear_peak_correlation = 0.7;
-  double clear_peak_lead = 0.02;
-  double pair_gap_s = 0.1;
-  double longest_pair_s = 0.3;
-  int least_views = 15;
-  double least_overlap_s = 3.0;
-  double least_rotation_rate_rad_s = 0.01;
-  double gravity_m_s2 = 9.81;
-  double margin_s = 0.15;
-  double longest_imu_gap_s = 0.05;
-  double least_axis_ratio = 0.05;
-  double position_sigma_m = 2e-3;
-  double acceleration_sigma_m_s2 = 0.1;
-  double translation_sigma_m = 0.2;
-  double accelerometer_bias_sigma_m_s2 = 0.5;
-  double accelerometer_mapping_sigma = 0.05;
-  double largest_scale_error = 0.03;
-  double scale_error_sigmas = 5.0;
-  double camera_knot_spacing_s = 0.03;
-  double longest_shared_gap_s = 0.1;
-  double longest_bridge_s = 0.12;
-  int least_bridges = 4;
-  double least_bridge_agreement = 0.8;
-  int least_imu_samples = 50;
-  double least_acceleration_m_s2 = 4.0;
-  double largest_acceleration_m_s2 = 40.0;
-  double largest_rotation_rate_rad_s = 25.0;
-  double ambiguous_pose_ratio = 2.0;
-  double ambiguous_pose_px = 0.02;
-  double fastest_view_ratio = 1.3;
-  int most_time_offsets = 6;
-  double time_offset_reach_s = 0.1;
-  double better_alignment = 0.8;
-  double agreement_window_s = 3.0;
-  double least_agreement = 0.3;
-  double outlier_sigma = 5.0;
-  bool operator==(const InitialisationOptions&) const = default;
-};
+  double knot_spacing_s;
+  double time_offset_search_s;
+  double largest_reprojection_px;
+  double largest_rotation_disagreement_rad;
+  double clear_peak_correlation;
+  double clear_peak_lead;
+  double pair_gap_s;
+  double longest_pair_s;
+  int least_views;
+  double least_overlap_s;
+  double least_rotation_rate_rad_s;
+  double gravity_m_s2;
+  double margin_s;
+  double longest_imu_gap_s;
+  double least_axis_ratio;
+  double position_sigma_m;
+  double acceleration_sigma_m_s2;
+  double translation_sigma_m;
+  double accelerometer_bias_sigma_m_s2;
+  double accelerometer_mapping_sigma;
+  double largest_scale_error;
+  double scale_error_sigmas;
+  double camera_knot_spacing_s;
+  double longest_shared_gap_s;
+  double longest_bridge_s;
+  int least_bridges;
+  double least_bridge_agreement;
+  int least_imu_samples;
+  double least_acceleration_m_s2;
+  double largest_acceleration_m_s2;
+  double largest_rotation_rate_rad_s;
+  double ambiguous_pose_ratio;
+  double ambiguous_pose_px;
+  double fastest_view_ratio;
+  int most_time_offsets;
+  double time_offset_reach_s;
+  double better_alignment;
+  double agreement_window_s;
+  double least_agreement;
+  double outlier_sigma;
 
-inline constexpr auto kInitialisationFields = std::tuple{
-    Field{"knot_spacing_s", &InitialisationOptions::knot_spacing_s, 0.005, 0.1, "s", "Of both splines."},
-    Field{"time_offset_search_s", &InitialisationOptions::time_offset_search_s, 0.0, 60.0, "s",
-          "The camera's time offset is looked for within plus or minus this."},
-    Field{"largest_reprojection_px", &InitialisationOptions::largest_reprojection_px, 0.05, 20.0, "px",
-          "Views whose circles fit a pose worse than this are left out."},
-    Field{"largest_rotation_disagreement_rad", &InitialisationOptions::largest_rotation_disagreement_rad,
-          1e-3, 1.0, "rad", "Views whose rotation the gyroscope contradicts by more are left out."},
-    Field{"clear_peak_correlation", &InitialisationOptions::clear_peak_correlation, 0.0, 1.0, "",
-          "Correlation of rotation rates below which the time offset gets a warning."},
-    Field{"clear_peak_lead", &InitialisationOptions::clear_peak_lead, 0.0, 1.0, "",
-          "Lead in correlation over the next best time offset below which a warning says so."},
-    Field{"pair_gap_s", &InitialisationOptions::pair_gap_s, 0.01, 2.0, "s",
-          "Views at least this far apart give a relative rotation."},
-    Field{"longest_pair_s", &InitialisationOptions::longest_pair_s, 0.02, 5.0, "s",
-          "But no further than this."},
-    Field{"least_views", &InitialisationOptions::least_views, 4, 100000, "",
-          "Views of the board that are needed."},
-    Field{"least_overlap_s", &InitialisationOptions::least_overlap_s, 0.5, 60.0, "s",
-          "Camera and IMU must both have recorded for this long."},
-    Field{"least_rotation_rate_rad_s", &InitialisationOptions::least_rotation_rate_rad_s, 0.0, 10.0, "rad/s",
-          "RMS rate about its mean below which a recording holds no usable rotation."},
-    Field{"gravity_m_s2", &InitialisationOptions::gravity_m_s2, 0.1, 100.0, "m/s^2", "Norm of gravity."},
-    Field{"margin_s", &InitialisationOptions::margin_s, 0.0, 5.0, "s",
-          "The splines reach this far beyond the first and the last view."},
-    Field{"longest_imu_gap_s", &InitialisationOptions::longest_imu_gap_s, 1e-3, 10.0, "s",
-          "Longer gaps between IMU samples get a warning."},
-    Field{"least_axis_ratio", &InitialisationOptions::least_axis_ratio, 0.0, 1.0, "",
-          "Rotation about a second axis, relative to the first, below which a warning is given."},
-    Field{"position_sigma_m", &InitialisationOptions::position_sigma_m, 1e-6, 1.0, "m",
-          "Of camera positions from single views."},
-    Field{"acceleration_sigma_m_s2", &InitialisationOptions::acceleration_sigma_m_s2, 1e-6, 100.0, "m/s^2",
-          "Of accelerations averaged over a quarter of a knot."},
-    Field{"translation_sigma_m", &InitialisationOptions::translation_sigma_m, 1e-3, 100.0, "m",
-          "Weak prior on the camera's place around the IMU."},
-    Field{"accelerometer_bias_sigma_m_s2", &InitialisationOptions::accelerometer_bias_sigma_m_s2, 1e-3, 100.0,
-          "m/s^2", "Weak prior on the accelerometer's bias around 0."},
-    Field{"accelerometer_mapping_sigma", &InitialisationOptions::accelerometer_mapping_sigma, 1e-6, 1.0, "",
-          "Weak prior on the accelerometer's scales and axes where the board's scale is checked."},
-    Field{"largest_scale_error", &InitialisationOptions::largest_scale_error, 0.0, 10.0, "",
-          "A board that accelerations say is larger or smaller than spacing_m by more makes the result "
-          "doubtful."},
-    Field{"scale_error_sigmas", &InitialisationOptions::scale_error_sigmas, 1.0, 100.0, "sigma",
-          "But only if it is as certain as that."},
-    Field{"camera_knot_spacing_s", &InitialisationOptions::camera_knot_spacing_s, 0.005, 0.1, "s",
-          "Without an IMU: knot spacing of the reference camera's trajectory."},
-    Field{"longest_shared_gap_s", &InitialisationOptions::longest_shared_gap_s, 0.005, 2.0, "s",
-          "Without an IMU: views of the reference camera that are further apart say nothing of the time "
-          "between."},
-    Field{
-        "longest_bridge_s", &InitialisationOptions::longest_bridge_s, 0.01, 5.0, "s",
-        "Without an IMU, cameras that see the board in turns: from the last view of one to the first of the "
-        "other at most. With longer gaps time offsets go astray."},
-    Field{"least_bridges", &InitialisationOptions::least_bridges, 2, 1000, "",
-          "How often the board must pass from one of them to the other, half of it either way."},
-    Field{"least_bridge_agreement", &InitialisationOptions::least_bridge_agreement, 0.0, 1.0, "",
-          "Share of these gaps that must agree: at wrong time offsets some do by chance."},
-    Field{"least_imu_samples", &InitialisationOptions::least_imu_samples, 10, 1000000, "",
-          "Samples that an IMU must have."},
-    Field{"least_acceleration_m_s2", &InitialisationOptions::least_acceleration_m_s2, 0.0, 1000.0, "m/s^2",
-          "A median acceleration below this is taken for a wrong unit."},
-    Field{"largest_acceleration_m_s2", &InitialisationOptions::largest_acceleration_m_s2, 0.0, 10000.0,
-          "m/s^2", "The same above this."},
-    Field{"largest_rotation_rate_rad_s", &InitialisationOptions::largest_rotation_rate_rad_s, 0.1, 1000.0,
-          "rad/s", "RMS rates above this are taken for deg/s."},
-    Field{"ambiguous_pose_ratio", &InitialisationOptions::ambiguous_pose_ratio, 1.0, 100.0, "",
-          "A plane's other pose stays possible while its error is at most this many times the better one's."},
-    Field{"ambiguous_pose_px", &InitialisationOptions::ambiguous_pose_px, 0.0, 10.0, "px",
-          "Added to that bound."},
-    Field{"fastest_view_ratio", &InitialisationOptions::fastest_view_ratio, 1.0, 100.0, "",
-          "Views that turn this many times faster than the gyroscope ever does don't tell the time offset."},
-    Field{"most_time_offsets", &InitialisationOptions::most_time_offsets, 1, 100, "",
-          "Peaks of the correlation that are tried."},
-    Field{"time_offset_reach_s", &InitialisationOptions::time_offset_reach_s, 0.001, 10.0, "s",
-          "How far from such a peak the time offset may be."},
-    Field{"better_alignment", &InitialisationOptions::better_alignment, 0.01, 1.0, "",
-          "A less significant peak is taken where its misfit is below this share of the best one's."},
-    Field{"agreement_window_s", &InitialisationOptions::agreement_window_s, 0.1, 60.0, "s",
-          "Views within this of each other, either way, vote on their rotations."},
-    Field{"least_agreement", &InitialisationOptions::least_agreement, 0.0, 1.0, "",
-          "Share of these with which a view must agree to be kept."},
-    Field{"outlier_sigma", &InitialisationOptions::outlier_sigma, 0.5, 1000.0, "sigma",
-          "Positions and accelerations this far off count half."}};
-static_assert(fieldCount<InitialisationOptions>() == std::tuple_size_v<decltype(kInitialisationFields)>);
+  InitialisationOptions();  // the defaults
+  constexpr explicit InitialisationOptions(NoDefaults) {}
+  bool operator==(const InitialisationOptions&) const = default;
+  static const OptionTable<InitialisationOptions>& table();
+};
 
 }  // namespace evical

@@ -1,7 +1,7 @@
 // All options of a calibration, by group: what session files, --set, `evical options` and forms reach.
 #pragma once
 
-#include "core/base/option_yaml.h"
+#include "core/base/option_row.h"
 #include "core/frontend/front_end_options.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/intrinsics/intrinsics_options.h"
@@ -23,20 +23,23 @@ struct CalibrationOptions {
   bool operator==(const CalibrationOptions&) const = default;
 };
 
-std::vector<std::string> optionGroups();
+// One group: its name, what it is about, and its options with their full names.
+struct OptionSection {
+  std::string name, help;
+  std::vector<OptionRow> rows;
+};
+std::vector<OptionSection> optionSections(const CalibrationOptions& options = {});
 
-// By full name, "group.option"; throws CalibrationError (BadInput) that names the option, the value, and the
-// bound or the nearest known name.
+// By full name, "group.option". Where a group is part of a larger one, its own name may be left out:
+// "optimisation.threads" is "optimisation.solver.threads". Throws CalibrationError (BadInput) that names the
+// option, the value, and the bound or the nearest known name.
 void setOption(CalibrationOptions& options, std::string_view full_name, std::string_view value);
+
+// Once all are set: throws OptionConflict that names two options of which one excludes the other's value.
+void validate(const CalibrationOptions& options);
 
 // With full names, in the order of the groups: all options, and those that aren't at their default.
 std::vector<OptionRow> optionRows(const CalibrationOptions& options = {});
 std::vector<OptionRow> differingOptions(const CalibrationOptions& options);
-
-// Terminal text, docs/options.md, and config/default.yaml: the part `options` of a session with every
-// default.
-std::string optionText(const CalibrationOptions& options = {});
-std::string optionMarkdown();
-std::string optionYaml();
 
 }  // namespace evical

@@ -301,7 +301,8 @@ class Calibration {
     result.reason = uncertainty.reason;
     if (!solution.converged && result.status == CalibrationStatus::Ok)
       addDoubt(
-          "the optimisation did not converge: raise optimisation.max_iterations, or look at the residuals",
+          "the optimisation did not converge: raise optimisation.solver.max_iterations, or look at the "
+          "residuals",
           result);
     addDoubt(priors.doubt, result);
     addDoubt(initial_.doubt, result);

@@ -162,6 +162,7 @@ void validate(const Session& session, const std::string& place) {
   checkReference(session, place);
   checkBoard(session, place);
   checkPriors(session, place);
+  validate(session.options);
 }
 
 std::string sessionYaml(const Session& session, const std::filesystem::path& folder,

@@ -120,19 +120,43 @@ void setFromSession(const YamlNode& node, CalibrationOptions& options, const std
   }
 }
 
+// Groups, and what groups are parts of: "optimisation" of "optimisation.solver".
+std::vector<std::string> groupNames() {
+  std::vector<std::string> names;
+  for (const OptionSection& section : optionSections()) {
+    for (std::size_t end = section.name.find('.'); end != std::string::npos;
+         end = section.name.find('.', end + 1))
+      if (std::string whole = section.name.substr(0, end);
+          std::find(names.begin(), names.end(), whole) == names.end())
+        names.push_back(std::move(whole));
+    names.push_back(section.name);
+  }
+  return names;
+}
+
 // Both `grid: {least_sine: 0.5}` and `grid.least_sine: 0.5`.
-void readOptions(const YamlNode& map, CalibrationOptions& options) {
-  if (map.isNull()) return;
+void setOptions(const YamlNode& map, const std::string& group, CalibrationOptions& options) {
   for (const std::string& key : map.keys()) {
     const YamlNode value = map[key];
+    const std::string name = group.empty() ? key : group + "." + key;
     if (!value.isMap()) {
-      setFromSession(value, options, key);
+      setFromSession(value, options, name);
       continue;
     }
-    const std::vector<std::string> groups = optionGroups();
-    if (std::find(groups.begin(), groups.end(), key) == groups.end())
-      throw value.error("no such group of options", nameAdvice(key, groups));
-    for (const std::string& option : value.keys()) setFromSession(value[option], options, key + "." + option);
+    const std::vector<std::string> groups = groupNames();
+    if (std::find(groups.begin(), groups.end(), name) == groups.end())
+      throw value.error("no such group of options", nameAdvice(name, groups));
+    setOptions(value, name, options);
+  }
+}
+
+void readOptions(const YamlNode& map, CalibrationOptions& options) {
+  if (map.isNull()) return;
+  setOptions(map, "", options);
+  try {
+    validate(options);
+  } catch (const OptionConflict& conflict) {
+    throw map.error(conflict.problem(), conflict.advice());
   }
 }
 

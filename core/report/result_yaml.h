@@ -1,7 +1,7 @@
 // result.yaml: what a calibration says, as a file that programs and people read. Keys are a contract.
 #pragma once
 
-#include "core/base/option_yaml.h"
+#include "core/base/option_row.h"
 #include "core/data/calibration_result.h"
 #include "core/data/calibration_setup.h"
 #include "core/geometry/camera_model.h"

@@ -123,6 +123,25 @@ class TestCalibrationDocument : public QObject {
     QVERIFY(!document.modified());
   }
 
+  void optionThatAnotherExcludes_isRefused() {
+    CalibrationDocument document;
+    document.open(test::simulatedSession());
+    QVERIFY_THROWS_EXCEPTION(OptionConflict, document.setOption("detection.shortest_window_s", "0.1"));
+    QVERIFY(!document.modified());
+    document.setOption("detection.longest_window_s", "0.15");
+    document.setOption("detection.shortest_window_s", "0.1");
+    QCOMPARE(document.session().options.front_end.detection.shortest_window_s, 0.1);
+  }
+
+  void sessionWithOptionsThatExcludeEachOther_hasAProblem() {
+    Session session = readSession(test::simulatedSession().toStdString());
+    QCOMPARE(sessionProblems(session).size(), std::size_t(0));
+    session.options.front_end.tracking.least_polarity_cosine = 0.9;
+    const std::vector<SessionProblem> problems = sessionProblems(session);
+    QCOMPARE(problems.size(), std::size_t(1));
+    QVERIFY2(problems[0].text.contains("tracking.full_polarity_cosine (0.7)"), qPrintable(problems[0].text));
+  }
+
   void run_isOutdatedByAChange_andNotByItsUndo() {
     CalibrationDocument document;
     document.open(test::simulatedSession());

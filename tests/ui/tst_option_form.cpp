@@ -30,10 +30,13 @@ struct Fixture {
     form.setRows(optionRows(options));
     QObject::connect(&form, &OptionForm::edited, &form, [this](const QString& name, const QString& value) {
       try {
-        setOption(options, name.toStdString(), value.toStdString());
+        CalibrationOptions changed = options;
+        setOption(changed, name.toStdString(), value.toStdString());
+        validate(changed);
+        options = changed;
         form.setRows(optionRows(options));
       } catch (const CalibrationError& error) {
-        form.showProblem(name, QString::fromStdString(error.problem()));
+        form.showRefusal(name, error);
       }
     });
     form.show();
@@ -62,6 +65,7 @@ class TestOptionForm : public QObject {
 
   void everyOption_hasAnEditorWithHelpUnitAndRange() {
     Fixture test;
+    test.form.showExpert(true);
     const std::vector<OptionRow> rows = optionRows();
     for (const OptionRow& row : rows) {
       const QString name = QString::fromStdString(row.name);
@@ -95,6 +99,69 @@ class TestOptionForm : public QObject {
     QCOMPARE(test.options.front_end.grid.least_circles, 9);
   }
 
+  void optionThatAnotherExcludes_isRefusedNextToBoth_untilOneIsMended() {
+    Fixture test;
+    const QString lower = "detection.shortest_window_s", upper = "detection.longest_window_s";
+    const QString said = "detection.shortest_window_s (0.1 s) is above detection.longest_window_s (0.05 s)";
+    test.type(lower, "0.1");
+    QCOMPARE(test.options, CalibrationOptions{});
+    QCOMPARE(test.field(lower)->text(), QString("0.1"));
+    for (const QString& name : {lower, upper}) QVERIFY2(test.allText(name).contains(said), qPrintable(name));
+    test.type(upper, "0.15");  // taken, as the value that was refused doesn't count
+    QVERIFY(!test.allText(upper).contains(said));
+    QVERIFY(test.allText(lower).contains(said));
+    test.type(lower, "0.1");
+    QCOMPARE(test.options.front_end.detection.shortest_window_s, 0.1);
+    QVERIFY(!test.allText(lower).contains(said));
+    test.type(upper, "0.05");
+    QVERIFY(test.allText(lower).contains(said));
+    test.type(upper, "0.15");  // what holds
+    for (const QString& name : {lower, upper}) QVERIFY2(!test.allText(name).contains(said), qPrintable(name));
+    test.type(upper, "0.05");
+    test.type(upper, "7");  // a mistake of its own
+    QVERIFY(!test.allText(lower).contains(said));
+    QVERIFY(test.allText(upper).contains("above the most"));
+  }
+
+  void resetThatAnotherExcludes_isRefusedNextToBoth() {
+    Fixture test;
+    test.type("detection.longest_window_s", "0.15");
+    test.type("detection.shortest_window_s", "0.1");
+    QTest::mouseClick(test.form.editor("detection.longest_window_s")->findChild<QToolButton*>(),
+                      Qt::LeftButton);
+    QCOMPARE(test.options.front_end.detection.longest_window_s, 0.15);
+    for (const QString name : {"detection.shortest_window_s", "detection.longest_window_s"})
+      QVERIFY2(test.allText(name).contains("is above"), qPrintable(name));
+  }
+
+  void expertOptions_areShownWhenAskedFor() {
+    Fixture test;
+    QStringList common, all;
+    for (const OptionRow& row : optionRows()) {
+      all << QString::fromStdString(row.name);
+      if (!row.expert) common << all.last();
+    }
+    QCOMPARE(test.form.shownOptions(), common);
+    auto* const button = test.form.findChild<QToolButton*>("expert");
+    QVERIFY(button && button->text().contains(QString("(%1)").arg(all.size() - common.size())));
+    QTest::mouseClick(button, Qt::LeftButton);
+    QCOMPARE(test.form.shownOptions(), all);
+    QTest::mouseClick(button, Qt::LeftButton);
+    QCOMPARE(test.form.shownOptions(), common);
+  }
+
+  void expertOption_thatIsChangedOrSearchedFor_isShown() {
+    Fixture test;
+    QVERIFY(!test.form.shownOptions().contains("tracking.gate_ratio"));
+    test.search()->setText("gate_ratio");
+    QCOMPARE(test.form.shownOptions(), QStringList{"tracking.gate_ratio"});
+    test.search()->clear();
+    QVERIFY(!test.form.shownOptions().contains("tracking.gate_ratio"));
+    setOption(test.options, "tracking.gate_ratio", "0.5");
+    test.form.setRows(optionRows(test.options));
+    QVERIFY(test.form.shownOptions().contains("tracking.gate_ratio"));
+  }
+
   void reset_bringsTheDefaultBack() {
     Fixture test;
     const int before = test.options.front_end.grid.least_circles;
@@ -124,6 +191,7 @@ class TestOptionForm : public QObject {
 
   void search_leavesWhatMatchesInNameOrHelp() {
     Fixture test;
+    test.form.showExpert(true);
     QTest::keyClicks(test.search(), "least circles");
     QVERIFY(test.form.shownOptions().contains("grid.least_circles"));
     QVERIFY(test.form.shownOptions().size() < 8);
@@ -146,6 +214,30 @@ class TestOptionForm : public QObject {
     row.name = "normal_flow.plane_radius_px";
     row.unit = "px";
     QCOMPARE(OptionEditor::shownName(row), QString("plane radius"));
+  }
+
+  void form_looksAsItShould_data() {
+    QTest::addColumn<bool>("dark");
+    QTest::addColumn<bool>("expert");
+    QTest::newRow("light") << false << false;
+    QTest::newRow("dark") << true << false;
+    QTest::newRow("dark_expert") << true << true;
+  }
+  void form_looksAsItShould() {
+    QFETCH(bool, dark);
+    QFETCH(bool, expert);
+    applyTheme(*qApp, dark ? Appearance::Dark : Appearance::Light);
+    Fixture test;
+    test.form.showExpert(expert);
+    for (QToolButton* const heading : test.form.findChildren<QToolButton*>("group"))
+      if (heading->text() == "Detection" || heading->text().contains("solver")) heading->setChecked(true);
+    test.type("detection.shortest_window_s", "0.1");
+    QTest::qWait(50);
+    QVERIFY(test.form.minimumSizeHint().width() <= 340);
+    QDir().mkpath(EVICAL_SCREENSHOTS);
+    QVERIFY(test.form.grab().save(
+        QString(EVICAL_SCREENSHOTS "/option_form_%1.png").arg(QTest::currentDataTag())));
+    applyTheme(*qApp, Appearance::Light);
   }
 
   void form_fitsIntoItsDock() {

@@ -108,6 +108,7 @@ void CalibrationDocument::edit(const Session& session, const QString& what, cons
 void CalibrationDocument::setOption(const QString& name, const QString& value) {
   Session changed = session_;
   evical::setOption(changed.options, name.toStdString(), value.toStdString());
+  validate(changed.options);
   if (changed.options == session_.options) return;
   edit(changed, tr("Set %1").arg(name), name);
 }

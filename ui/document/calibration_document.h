@@ -53,7 +53,8 @@ class CalibrationDocument : public QObject {
 
   // One step for undo; steps in a row with the same non-empty `merge_key` become one.
   void edit(const Session& session, const QString& what, const QString& merge_key = {});
-  // By full name; throws CalibrationError for what is no value of this option.
+  // By full name; throws CalibrationError for what is no value of this option, OptionConflict where
+  // another option excludes it.
   void setOption(const QString& name, const QString& value);
   void resetOptions();
 

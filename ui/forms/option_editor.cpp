@@ -47,7 +47,7 @@ QLabel* smallText(const QString& content, const char* role, QWidget* parent) {
 }  // namespace
 
 QString OptionEditor::shownName(const OptionRow& row) {
-  QString name = text(row.name).section('.', 1);
+  QString name = text(row.name).section('.', -1);
   QString suffix = text(row.unit).toLower();
   suffix.replace('/', '_').remove('^');
   if (!suffix.isEmpty() && name.endsWith("_" + suffix)) name.chop(suffix.size() + 1);
@@ -120,13 +120,20 @@ QWidget* OptionEditor::makeInput() {
   connect(number_, &QLineEdit::editingFinished, this, [this] {
     const QString typed = number_->text().trimmed();
     if (typed != text(row_.value)) emit edited(text(row_.name), typed);
-    if (typed == text(row_.value)) showProblem({});
+    if (typed == text(row_.value)) {
+      showProblem({});
+      emit takenBack();
+    }
   });
   return number_;
 }
 
+bool OptionEditor::somethingElseIsTyped() const {
+  return number_ != nullptr && number_->text().trimmed() != text(row_.value);
+}
+
 void OptionEditor::setRow(const OptionRow& row) {
-  const bool same = row.value == row_.value && !problem_->text().isEmpty();
+  const bool same = row.value == row_.value && !problem_->text().isEmpty() && somethingElseIsTyped();
   row_ = row;
   if (toggle_ != nullptr) toggle_->setChecked(row.value == "true");
   if (choice_ != nullptr) choice_->setCurrentText(text(row.value));
@@ -138,6 +145,10 @@ void OptionEditor::setRow(const OptionRow& row) {
 void OptionEditor::showProblem(const QString& problem) {
   problem_->setText(problem);
   problem_->setVisible(!problem.isEmpty());
+}
+
+void OptionEditor::forgetProblem() {
+  if (!somethingElseIsTyped()) showProblem({});
 }
 
 void OptionEditor::showChanged() {

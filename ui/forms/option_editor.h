@@ -2,7 +2,7 @@
 // One option of a form: name, value, unit, help, reset; a dot where it differs from its default.
 #pragma once
 
-#include "core/base/option_yaml.h"
+#include "core/base/option_row.h"
 
 #include <QWidget>
 
@@ -26,19 +26,22 @@ class OptionEditor : public QWidget {
   bool matches(const QString& search) const;  // in name or help
   void setRow(const OptionRow& row);          // the value that holds
   void showProblem(const QString& text);      // why what was typed does not hold; empty: it does
+  void forgetProblem();                       // unless something that was typed does not hold
 
-  // "plane_radius_px" in px gives "plane radius".
+  // "normal_flow.plane_radius_px" in px gives "plane radius".
   static QString shownName(const OptionRow& row);
   static QString rangeText(const OptionRow& row);
 
  signals:
   void edited(const QString& name, const QString& value);
+  void takenBack();  // what holds was typed again
 
  protected:
   void changeEvent(QEvent* event) override;
 
  private:
   QWidget* makeInput();
+  bool somethingElseIsTyped() const;
   void showChanged();
 
   OptionRow row_;

@@ -16,8 +16,10 @@
 namespace evical::ui {
 namespace {
 
+// "optimisation.solver.threads" gives "Optimisation: solver".
 QString groupTitle(const std::string& option_name) {
-  QString title = QString::fromStdString(option_name).section('.', 0, 0).replace('_', ' ');
+  QString title = QString::fromStdString(option_name).section('.', 0, -2);
+  title.replace(".", ": ").replace('_', ' ');
   if (!title.isEmpty()) title[0] = title[0].toUpper();
   return title;
 }
@@ -30,7 +32,28 @@ OptionForm::OptionForm(QWidget* parent)
       only_changed_(new QToolButton(this)),
       reset_all_(new QToolButton(this)),
       nothing_(new QLabel(tr("No parameter matches."), this)),
+      expert_(new QToolButton(this)),
       groups_layout_(nullptr) {
+  nothing_->setProperty("role", "hint");
+  nothing_->hide();
+  expert_->setObjectName("expert");
+  expert_->setCheckable(true);
+  expert_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  expert_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+  connect(expert_, &QToolButton::toggled, this, &OptionForm::filter);
+  auto* const bar = new QHBoxLayout;
+  fillBar(*bar);
+  auto* const layout = new QVBoxLayout(this);
+  layout->setContentsMargins(8, 8, 4, 8);
+  layout->addLayout(bar);
+  layout->addWidget(nothing_);
+  layout->addWidget(makeList(), 1);
+  layout->addWidget(expert_);
+  constexpr int kLeast_px = 300;
+  setMinimumWidth(kLeast_px);
+}
+
+void OptionForm::fillBar(QHBoxLayout& bar) {
   search_->setPlaceholderText(tr("Search parameters"));
   search_->setClearButtonEnabled(true);
   search_->addAction(icon("search"), QLineEdit::LeadingPosition);
@@ -39,16 +62,15 @@ OptionForm::OptionForm(QWidget* parent)
   only_changed_->setToolTip(tr("Show only what differs from its default"));
   reset_all_->setIcon(icon("reset"));
   reset_all_->setToolTip(tr("All parameters back to their defaults"));
-  nothing_->setProperty("role", "hint");
-  nothing_->hide();
   connect(search_, &QLineEdit::textChanged, this, &OptionForm::filter);
   connect(only_changed_, &QToolButton::toggled, this, &OptionForm::filter);
   connect(reset_all_, &QToolButton::clicked, this, &OptionForm::resetAllRequested);
+  bar.addWidget(search_, 1);
+  bar.addWidget(only_changed_);
+  bar.addWidget(reset_all_);
+}
 
-  auto* const bar = new QHBoxLayout;
-  bar->addWidget(search_, 1);
-  bar->addWidget(only_changed_);
-  bar->addWidget(reset_all_);
+QWidget* OptionForm::makeList() {
   auto* const scroll = new QScrollArea(this);
   scroll->setWidgetResizable(true);
   scroll->setFrameShape(QFrame::NoFrame);
@@ -59,13 +81,7 @@ OptionForm::OptionForm(QWidget* parent)
   groups_layout_->setSpacing(2);
   groups_layout_->addStretch();
   scroll->setWidget(content);
-  auto* const layout = new QVBoxLayout(this);
-  layout->setContentsMargins(8, 8, 4, 8);
-  layout->addLayout(bar);
-  layout->addWidget(nothing_);
-  layout->addWidget(scroll, 1);
-  constexpr int kLeast_px = 300;
-  setMinimumWidth(kLeast_px);
+  return scroll;
 }
 
 void OptionForm::build(const std::vector<OptionRow>& rows) {
@@ -78,10 +94,15 @@ void OptionForm::build(const std::vector<OptionRow>& rows) {
       last_title = title;
     }
     auto* const made = new OptionEditor(row, groups_.back());
-    connect(made, &OptionEditor::edited, this, &OptionForm::edited);
+    connect(made, &OptionEditor::takenBack, this, &OptionForm::forgetProblems);
+    connect(made, &OptionEditor::edited, this, [this](const QString& name, const QString& value) {
+      forgetProblems();
+      emit edited(name, value);
+    });
     groups_.back()->add(made);
     editors_[QString::fromStdString(row.name)] = made;
   }
+  filter();
 }
 
 void OptionForm::setRows(const std::vector<OptionRow>& rows) {
@@ -95,19 +116,41 @@ void OptionForm::setRows(const std::vector<OptionRow>& rows) {
   }
   for (OptionGroup* const group : groups_) group->showChangedCount();
   reset_all_->setEnabled(any_changed);
-  if (only_changed_->isChecked()) filter();
+  filter();
 }
 
-void OptionForm::showProblem(const QString& name, const QString& text) {
-  if (OptionEditor* const found = editor(name)) found->showProblem(text);
+void OptionForm::showRefusal(const QString& name, const CalibrationError& error) {
+  QStringList places = {name};
+  QString text = QString::fromStdString(error.problem());
+  if (const auto* const conflict = dynamic_cast<const OptionConflict*>(&error)) {
+    places = {QString::fromStdString(conflict->lower()), QString::fromStdString(conflict->upper())};
+    text += ". " + QString::fromStdString(error.advice()) + '.';
+  }
+  for (const QString& place : places)
+    if (OptionEditor* const found = editor(place)) found->showProblem(text);
+}
+
+// What a conflict said at an option beside the one that was typed at goes with the next attempt.
+void OptionForm::forgetProblems() {
+  for (const auto& [name, option] : editors_) option->forgetProblem();
+}
+
+void OptionForm::showExpert(bool shown) {
+  expert_->setChecked(shown);
 }
 
 void OptionForm::filter() {
   bool any = false;
   for (OptionGroup* const group : groups_) {
-    group->filter(search_->text().trimmed(), only_changed_->isChecked());
+    group->filter(search_->text().trimmed(), only_changed_->isChecked(), expert_->isChecked());
     any = any || group->anyShown();
   }
+  const auto count = std::count_if(editors_.begin(), editors_.end(),
+                                   [](const auto& editor) { return editor.second->row().expert; });
+  expert_->setText(expert_->isChecked() ? tr("Hide expert options")
+                                        : tr("Show expert options (%1)").arg(count));
+  expert_->setIcon(icon(expert_->isChecked() ? "up" : "down"));
+  expert_->setVisible(search_->text().trimmed().isEmpty() && !only_changed_->isChecked());
   nothing_->setVisible(!any && !groups_.empty());
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // All options as a form, made from the option tables: groups, search, help, reset, and a badge on what
-// differs. It holds no values: it shows rows, and says what the person wants.
+// differs. What people usually turn comes first; a button shows the expert options. The form holds no values:
+// it shows rows, and says what the person wants.
 #pragma once
 
-#include "core/base/option_yaml.h"
+#include "core/base/option_row.h"
 
 #include <QStringList>
 #include <QWidget>
@@ -11,6 +12,7 @@
 #include <map>
 #include <vector>
 
+class QHBoxLayout;
 class QLabel;
 class QLineEdit;
 class QToolButton;
@@ -28,11 +30,12 @@ class OptionForm : public QWidget {
   explicit OptionForm(QWidget* parent = nullptr);
 
   void setRows(const std::vector<OptionRow>& rows);
-  // Next to the field: why a value was refused.
-  void showProblem(const QString& name, const QString& text);
+  // Next to the field: why what was typed there was refused; where another option excludes it, there, too.
+  void showRefusal(const QString& name, const CalibrationError& error);
 
   OptionEditor* editor(const QString& name) const;  // null: no such option
-  QStringList shownOptions() const;                 // that the search leaves
+  QStringList shownOptions() const;                 // that search and level leave
+  void showExpert(bool shown);
 
  signals:
   void edited(const QString& name, const QString& value);
@@ -40,12 +43,16 @@ class OptionForm : public QWidget {
 
  private:
   void build(const std::vector<OptionRow>& rows);
+  void fillBar(QHBoxLayout& bar);
+  QWidget* makeList();
   void filter();
+  void forgetProblems();
 
   QLineEdit* search_;
   QToolButton* only_changed_;
   QToolButton* reset_all_;
   QLabel* nothing_;
+  QToolButton* expert_;
   QVBoxLayout* groups_layout_;
   std::vector<OptionGroup*> groups_;
   std::map<QString, OptionEditor*> editors_;

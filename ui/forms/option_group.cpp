@@ -18,6 +18,7 @@ OptionGroup::OptionGroup(const QString& title, QWidget* parent)
       badge_(new QLabel(this)),
       body_(new QWidget(this)),
       body_layout_(new QVBoxLayout(body_)) {
+  heading_->setObjectName("group");
   heading_->setText(title);
   heading_->setCheckable(true);
   heading_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
@@ -43,14 +44,15 @@ void OptionGroup::add(OptionEditor* editor) {
   body_layout_->addWidget(editor);
 }
 
-void OptionGroup::filter(const QString& search, bool only_changed) {
+void OptionGroup::filter(const QString& search, bool only_changed, bool with_expert) {
   any_shown_ = false;
+  searching_ = !search.isEmpty() || only_changed;
   for (OptionEditor* const editor : editors_) {
-    const bool shown = editor->matches(search) && (!only_changed || editor->isChanged());
+    const bool folded = editor->row().expert && !with_expert && !searching_ && !editor->isChanged();
+    const bool shown = !folded && editor->matches(search) && (!only_changed || editor->isChanged());
     editor->setVisible(shown);
     any_shown_ = any_shown_ || shown;
   }
-  searching_ = !search.isEmpty() || only_changed;
   setVisible(any_shown_);
   showBody();
 }

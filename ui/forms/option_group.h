@@ -21,8 +21,9 @@ class OptionGroup : public QWidget {
   OptionGroup(const QString& title, QWidget* parent);
 
   void add(OptionEditor* editor);
-  // Shows those that match; unfolds while something is searched for.
-  void filter(const QString& search, bool only_changed);
+  // Shows those that match; unfolds while something is searched for. Expert options that are at their default
+  // are shown if `with_expert` says so, or a search finds them.
+  void filter(const QString& search, bool only_changed, bool with_expert);
   void showChangedCount();
   bool anyShown() const { return any_shown_; }
   const std::vector<OptionEditor*>& editors() const { return editors_; }

@@ -172,7 +172,7 @@ void MainWindow::wireParameters() {
     try {
       workbench_.document.setOption(name, value);
     } catch (const CalibrationError& error) {
-      parameters_->showProblem(name, QString::fromStdString(error.problem()));
+      parameters_->showRefusal(name, error);
     }
   });
   show();

@@ -1,4 +1,6 @@
 #include "core/pipeline/session.h"
+
+#include "core/pipeline/option_pages.h"
 #include "tests/core/pipeline/refused_session.h"
 #include "tests/support/test_program.h"
 
@@ -118,6 +120,28 @@ class TestSession : public QObject {
     QCOMPARE(session.options.front_end.bursts.least_events, 3);
   }
 
+  void optionInAGroupOfGroups_isReadInEveryForm_data() {
+    QTest::addColumn<QString>("text");
+    QTest::newRow("nested") << "optimisation: {solver: {threads: 7}}";
+    QTest::newRow("full name") << "optimisation.solver.threads: 7";
+    QTest::newRow("full group") << "optimisation.solver: {threads: 7}";
+    QTest::newRow("old name") << "optimisation.threads: 7";
+    QTest::newRow("old group") << "optimisation: {threads: 7}";
+  }
+  void optionInAGroupOfGroups_isReadInEveryForm() {
+    QFETCH(QString, text);
+    const Session session = sessionWith("bursts.least_events: 3", text);
+    QCOMPARE(session.options.optimisation.threads, 7);
+    QVERIFY(sessionYaml(session, folder()).find("optimisation.solver.threads: 7") != std::string::npos);
+  }
+
+  void everyDefault_canBeRead() {
+    std::string defaults = optionYaml();
+    const Session session = sessionWith("options:\n  grid: {least_circles: 7}\n  bursts.least_events: 3\n",
+                                        QString::fromStdString(defaults));
+    QCOMPARE(differingOptions(session.options).size(), std::size_t(0));
+  }
+
   void session_writtenAndRead_isTheSame() {
     const Session session = sessionWith("", "");
     writeSession(session, folder() / "again.yaml");
@@ -220,6 +244,10 @@ class TestSession : public QObject {
     row("option's value", "least_circles: 7", "least_circles: 1",
         {"options.grid.least_circles", "least of 4"});
     row("option's group", "grid:", "gird:", {"options.gird (line 31)", "'grid'"});
+    row("part of a group", "bursts.least_events: 3", "optimisation: {solve: {threads: 3}}",
+        {"options.optimisation.solve (line 32)", "'optimisation.solver'"});
+    row("options that exclude each other", "bursts.least_events: 3", "detection: {shortest_window_s: 0.1}",
+        {"options (line 30)", "detection.shortest_window_s (0.1 s) is above", "longest_window_s (0.05 s)"});
     row("prior", "time_offset_search_s: 0.5", "time_offset_search_s: 90",
         {"prior.time_offset_search_s", "60 s"});
     row("no YAML", "[346, 260]", "[346, 260", {"session.yaml (line", "no valid YAML"});

@@ -1,4 +1,4 @@
-#include "core/base/option_yaml.h"
+#include "core/base/option_table.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,32 @@
 #include <charconv>
 #include <cmath>
 
-namespace evical::detail {
+namespace evical {
+namespace {
+
+std::string withUnit(const std::string& number, const std::string& unit) {
+  return unit.empty() ? number : number + " " + unit;
+}
+
+std::string conflictText(const OptionRow& lower, const OptionRow& upper) {
+  return fmt::format("{} ({}) is above {} ({})", lower.name, withUnit(lower.value, lower.unit), upper.name,
+                     withUnit(upper.value, upper.unit));
+}
+
+std::string conflictAdvice(const OptionRow& lower, const OptionRow& upper) {
+  return fmt::format("Set {} to at most {}, or {} to at least {}", lower.name,
+                     withUnit(upper.value, upper.unit), upper.name, withUnit(lower.value, lower.unit));
+}
+
+}  // namespace
+
+OptionConflict::OptionConflict(const OptionRow& lower, const OptionRow& upper)
+    : CalibrationError(ErrorKind::BadInput, "options", conflictText(lower, upper),
+                       conflictAdvice(lower, upper)),
+      lower_(lower.name),
+      upper_(upper.name) {}
+
+namespace detail {
 namespace {
 
 // All of `text` as a number, or false. from_chars: no locale, no blanks, no hexadecimal.
@@ -15,10 +40,6 @@ bool parseWhole(std::string_view text, Number& value) {
   if (text.starts_with('+')) text.remove_prefix(1);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc{} && end == text.data() + text.size() && !text.empty();
-}
-
-std::string withUnit(const std::string& number, const char* unit) {
-  return *unit == '\0' ? number : fmt::format("{} {}", number, unit);
 }
 
 template <class Number>
@@ -80,4 +101,5 @@ std::size_t parseChoice(const std::string& name, std::string_view text,
                  nearest.empty() ? "" : fmt::format("Did you mean '{}'?", nearest));
 }
 
-}  // namespace evical::detail
+}  // namespace detail
+}  // namespace evical

@@ -1,0 +1,215 @@
+// The rows of one options struct (option_field.h) behind functions of text: set from text, checked against
+// type, range and each other, listed for people. All values travel as text here, so session files, --set and
+// forms share one way in.
+#pragma once
+
+#include "core/base/nearest_name.h"
+#include "core/base/option_field.h"
+#include "core/base/option_row.h"
+
+#include <cassert>
+#include <concepts>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace evical {
+
+namespace detail {
+
+std::string numberText(double value);
+std::string numberText(std::int64_t value);
+
+// Throw CalibrationError (BadInput, place `name`) that names value, bound and unit.
+double parseReal(const std::string& name, std::string_view text, double minimum, double maximum,
+                 const char* unit);
+std::int64_t parseInteger(const std::string& name, std::string_view text, std::int64_t minimum,
+                          std::int64_t maximum, const char* unit);
+bool parseSwitch(const std::string& name, std::string_view text);
+std::size_t parseChoice(const std::string& name, std::string_view text, std::span<const char* const> choices);
+
+template <std::floating_point T>
+std::string textOf(T value) {
+  return numberText(static_cast<double>(value));
+}
+template <std::integral T>
+std::string textOf(T value) {
+  return numberText(static_cast<std::int64_t>(value));
+}
+
+template <class Options, class Value>
+std::string textOf(const Field<Options, Value>&, Value value) {
+  return textOf(value);
+}
+template <class Options>
+std::string textOf(const Switch<Options>&, bool value) {
+  return value ? "true" : "false";
+}
+template <class Options, class Enum, std::size_t Count>
+std::string textOf(const Choice<Options, Enum, Count>& field, Enum value) {
+  return field.choices.at(static_cast<std::size_t>(value));
+}
+
+template <class Options, class Value>
+Value valueOf(const Field<Options, Value>& field, const std::string& name, std::string_view text) {
+  if constexpr (std::integral<Value>)
+    return static_cast<Value>(parseInteger(name, text, static_cast<std::int64_t>(field.range.least),
+                                           static_cast<std::int64_t>(field.range.most), field.unit));
+  else
+    return static_cast<Value>(parseReal(name, text, field.range.least, field.range.most, field.unit));
+}
+template <class Options>
+bool valueOf(const Switch<Options>&, const std::string& name, std::string_view text) {
+  return parseSwitch(name, text);
+}
+template <class Options, class Enum, std::size_t Count>
+Enum valueOf(const Choice<Options, Enum, Count>& field, const std::string& name, std::string_view text) {
+  return static_cast<Enum>(parseChoice(name, text, field.choices));
+}
+
+template <class Options, class Value>
+void describe(const Field<Options, Value>& field, OptionRow& row) {
+  row.minimum = textOf(field.range.least);
+  row.maximum = textOf(field.range.most);
+  row.unit = field.unit;
+}
+template <class Options>
+void describe(const Switch<Options>&, OptionRow& row) {
+  row.choices = {"false", "true"};
+}
+template <class Options, class Enum, std::size_t Count>
+void describe(const Choice<Options, Enum, Count>& field, OptionRow& row) {
+  row.choices.assign(field.choices.begin(), field.choices.end());
+}
+
+}  // namespace detail
+
+template <class Options>
+class OptionTable {
+ public:
+  template <class Fields, class... Values>
+  explicit OptionTable(const Fields& fields, const Ordered<Options, Values>&... orders);
+
+  bool has(std::string_view name) const;
+
+  // `group` precedes names here and in messages ("grid" gives "grid.least_sine"); empty for none.
+  std::vector<OptionRow> rows(const Options& options, const std::string& group) const;
+
+  // Throws CalibrationError (BadInput) that names the option, and what is wrong or the nearest known name. A
+  // value that does not fit another option's is only found by checkOrder, when all are set.
+  void set(Options& options, const std::string& group, std::string_view name, std::string_view text) const;
+
+  // Throws OptionConflict for the first two options of which the lower is above the upper.
+  void checkOrder(const Options& options, const std::string& group) const;
+
+ private:
+  struct Entry {
+    OptionRow row;  // without group and value
+    std::function<std::string(const Options&)> text;
+    std::function<void(Options&, const std::string& full_name, std::string_view)> set;
+  };
+  struct Order {
+    std::size_t lower, upper;  // indices of entries_
+    std::function<bool(const Options&)> holds;
+  };
+
+  template <class FieldOfTable>
+  void add(const FieldOfTable& field);
+  template <class Fields, class Value>
+  void addOrder(const Fields& fields, const Ordered<Options, Value>& order);
+  OptionRow rowOf(const Entry& entry, const Options& options, const std::string& group) const;
+
+  std::vector<Entry> entries_;
+  std::vector<Order> orders_;
+};
+
+template <class Options>
+template <class Fields, class... Values>
+OptionTable<Options>::OptionTable(const Fields& fields, const Ordered<Options, Values>&... orders) {
+  forEachField(fields, [&](const auto& field) { add(field); });
+  (addOrder(fields, orders), ...);
+}
+
+template <class Options>
+template <class FieldOfTable>
+void OptionTable<Options>::add(const FieldOfTable& field) {
+  Entry entry;
+  entry.row.name = field.name;
+  entry.row.default_value = detail::textOf(field, field.initial);
+  entry.row.help = field.help;
+  entry.row.expert = field.level == Level::Expert;
+  detail::describe(field, entry.row);
+  entry.text = [field](const Options& options) { return detail::textOf(field, options.*field.member); };
+  entry.set = [field](Options& options, const std::string& full_name, std::string_view text) {
+    options.*field.member = detail::valueOf(field, full_name, text);
+  };
+  entries_.push_back(std::move(entry));
+}
+
+template <class Options>
+template <class Fields, class Value>
+void OptionTable<Options>::addOrder(const Fields& fields, const Ordered<Options, Value>& order) {
+  const auto indexOf = [&](Value Options::*member) {
+    std::size_t index = 0, found = entries_.size();
+    forEachField(fields, [&](const auto& field) {
+      if constexpr (std::is_same_v<decltype(field.member), Value Options::*>)
+        if (field.member == member) found = index;
+      ++index;
+    });
+    assert(found < entries_.size());
+    return found;
+  };
+  orders_.push_back({indexOf(order.lower), indexOf(order.upper), [order](const Options& options) {
+                       return options.*order.lower <= options.*order.upper;
+                     }});
+}
+
+template <class Options>
+bool OptionTable<Options>::has(std::string_view name) const {
+  for (const Entry& entry : entries_)
+    if (entry.row.name == name) return true;
+  return false;
+}
+
+template <class Options>
+OptionRow OptionTable<Options>::rowOf(const Entry& entry, const Options& options,
+                                      const std::string& group) const {
+  OptionRow row = entry.row;
+  row.value = entry.text(options);
+  if (!group.empty()) row.name = group + "." + row.name;
+  return row;
+}
+
+template <class Options>
+std::vector<OptionRow> OptionTable<Options>::rows(const Options& options, const std::string& group) const {
+  std::vector<OptionRow> rows;
+  rows.reserve(entries_.size());
+  for (const Entry& entry : entries_) rows.push_back(rowOf(entry, options, group));
+  return rows;
+}
+
+template <class Options>
+void OptionTable<Options>::set(Options& options, const std::string& group, std::string_view name,
+                               std::string_view text) const {
+  const std::string full_name = group.empty() ? std::string(name) : group + "." + std::string(name);
+  std::vector<std::string> names;
+  for (const Entry& entry : entries_) {
+    if (entry.row.name == name) return entry.set(options, full_name, text);
+    names.push_back(entry.row.name);
+  }
+  throw badInput(full_name, "no such option", nameAdvice(name, names));
+}
+
+template <class Options>
+void OptionTable<Options>::checkOrder(const Options& options, const std::string& group) const {
+  for (const Order& order : orders_)
+    if (!order.holds(options))
+      throw OptionConflict(rowOf(entries_[order.lower], options, group),
+                           rowOf(entries_[order.upper], options, group));
+}
+
+}  // namespace evical

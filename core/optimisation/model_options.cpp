@@ -1,0 +1,68 @@
+#include "core/optimisation/model_options.h"
+
+#include "core/base/option_table.h"
+
+namespace evical {
+namespace {
+
+constexpr std::tuple kModelFields{
+    Switch{"free_time_offsets", &ModelOptions::free_time_offsets, true,
+           "Estimate time offsets; else each stays at the session's prior value, or 0 without one.",
+           Level::Common},
+    Switch{"time_offset_drift", &ModelOptions::time_offset_drift, false,
+           "Estimate how each time offset drifts, as clocks of their own do. With a weighed prior it is "
+           "estimated in any case.",
+           Level::Common},
+    Switch{"free_imu_intrinsics", &ModelOptions::free_imu_intrinsics, true,
+           "Estimate scales and misalignments M_g and M_a; else each stays at the session's prior value, or "
+           "the identity without one. Biases stay free.",
+           Level::Common},
+    Switch{"free_gravity_norm", &ModelOptions::free_gravity_norm, false,
+           "Estimate gravity's norm, too, not its direction only.", Level::Common},
+    Choice{"camera_intrinsics", &ModelOptions::camera_intrinsics, CameraIntrinsicsChoice::Automatic,
+           std::array{"automatic", "fixed", "free"},
+           "Whether cameras' intrinsics are solved for with everything else, in the last stage; automatic: "
+           "where they were found from the same recording first.",
+           Level::Common},
+    Switch{
+        "gyroscope_rotation", &ModelOptions::gyroscope_rotation, false,
+        "Estimate how each gyroscope is turned against its accelerometer, whose frame is the IMU's. With a "
+        "weighed prior it is estimated in any case.",
+        Level::Common},
+    Choice{"bias_model", &ModelOptions::bias_model, BiasModel::Constant, std::array{"constant", "linear"},
+           "Biases over a recording: constant, or straight lines between knots that walk at random.",
+           Level::Common},
+    Field{"bias_knot_spacing_s", &ModelOptions::bias_knot_spacing_s, 5.0, within(0.1, 1e4), "s",
+          "Linear biases: knots are at most this far apart, closer where the random walk asks for it.",
+          Level::Common},
+    Field{"most_bias_knots", &ModelOptions::most_bias_knots, 48, within(2, 1000), "",
+          "Linear biases: no more knots an IMU than this, as uncertainty takes time and memory with them."},
+    Field{"gyroscope_random_walk", &ModelOptions::gyroscope_random_walk, 2.66e-5, within(1e-9, 1.0),
+          "rad/s^2/sqrt(Hz)",
+          "Linear biases: how fast gyroscope biases drift where the session does not say it. The default is "
+          "Kalibr's example for an ADIS16448, as the noise densities are.",
+          Level::Common},
+    Field{"accelerometer_random_walk", &ModelOptions::accelerometer_random_walk, 4.33e-4, within(1e-9, 10.0),
+          "m/s^3/sqrt(Hz)", "The same of accelerometer biases.", Level::Common},
+    Field{"rest_speed_px_s", &ModelOptions::rest_speed_px_s, 5.0, within(0.1, 1000.0), "px/s",
+          "Below this image speed the edge lead fades to 0."},
+    Field{"least_centre_sigma_px", &ModelOptions::least_centre_sigma_px, 0.01, within(0.0, 10.0), "px",
+          "Added in squares to the covariance of each measured centre."},
+    Field{"huber_sigma", &ModelOptions::huber_sigma, 2.5, within(0.5, 100.0), "sigma",
+          "Circle residuals beyond this pull with constant force."},
+    Field{"outlier_sigma", &ModelOptions::outlier_sigma, 6.0, within(2.0, 1000.0), "sigma",
+          "Circles further from their place, in units of the spread of all, are dropped between stages."},
+    Field{"outlier_window_fraction", &ModelOptions::outlier_window_fraction, 0.5, within(0.1, 1.0), "",
+          "A window loses all its circles if more than this share of them is dropped."}};
+constexpr auto kModelDefaults = defaultsOf<ModelOptions, kModelFields>();
+
+}  // namespace
+
+ModelOptions::ModelOptions() : ModelOptions(kModelDefaults) {}
+
+const OptionTable<ModelOptions>& ModelOptions::table() {
+  static const OptionTable<ModelOptions> table(kModelFields);
+  return table;
+}
+
+}  // namespace evical

@@ -1,0 +1,36 @@
+// What the batch optimisation estimates, and how it takes measurements.
+#pragma once
+
+#include "core/base/option_struct.h"
+
+namespace evical {
+
+// Automatic: free where they were found from the same recording first, fixed where the session gives them.
+enum class CameraIntrinsicsChoice { Automatic, Fixed, Free };
+enum class BiasModel { Constant, Linear };
+
+struct ModelOptions {
+  bool free_time_offsets;
+  bool time_offset_drift;
+  bool free_imu_intrinsics;
+  bool free_gravity_norm;
+  CameraIntrinsicsChoice camera_intrinsics;
+  bool gyroscope_rotation;
+  BiasModel bias_model;
+  double bias_knot_spacing_s;
+  int most_bias_knots;
+  double gyroscope_random_walk;
+  double accelerometer_random_walk;
+  double rest_speed_px_s;
+  double least_centre_sigma_px;
+  double huber_sigma;
+  double outlier_sigma;
+  double outlier_window_fraction;
+
+  ModelOptions();  // the defaults
+  constexpr explicit ModelOptions(NoDefaults) {}
+  bool operator==(const ModelOptions&) const = default;
+  static const OptionTable<ModelOptions>& table();
+};
+
+}  // namespace evical

@@ -1,0 +1,31 @@
+// How weakly the batch optimisation holds what the recording may leave open.
+#pragma once
+
+#include "core/base/option_struct.h"
+
+namespace evical {
+
+struct PriorOptions {
+  double camera_focal_length_sigma;
+  double camera_principal_point_sigma_px;
+  double camera_distortion_sigma;
+  double edge_lead_sigma_px;
+  double edge_lead_growth_sigma_px;
+  double time_offset_drift_sigma_ppm;
+  double mapping_sigma;
+  double gyroscope_rotation_sigma_deg;
+  double gyroscope_bias_sigma_rad_s;
+  double accelerometer_bias_sigma_m_s2;
+  double translation_sigma_m;
+  double gravity_norm_sigma_m_s2;
+  double smooth_rotation_rad_s2;
+  double smooth_position_m_s2;
+  double smooth_unevenness;
+
+  PriorOptions();  // the defaults
+  constexpr explicit PriorOptions(NoDefaults) {}
+  bool operator==(const PriorOptions&) const = default;
+  static const OptionTable<PriorOptions>& table();
+};
+
+}  // namespace evical

@@ -1,0 +1,22 @@
+// How the batch optimisation goes about it.
+#pragma once
+
+#include "core/base/option_struct.h"
+
+namespace evical {
+
+struct SolverOptions {
+  double function_tolerance;
+  double stage_tolerance;
+  int max_iterations;
+  int max_rounds;
+  double segment_drift;
+  int threads;
+
+  SolverOptions();  // the defaults
+  constexpr explicit SolverOptions(NoDefaults) {}
+  bool operator==(const SolverOptions&) const = default;
+  static const OptionTable<SolverOptions>& table();
+};
+
+}  // namespace evical

@@ -1,0 +1,23 @@
+// How sure a result is, and what makes it doubtful.
+#pragma once
+
+#include "core/base/option_struct.h"
+
+namespace evical {
+
+struct VerdictOptions {
+  double correlation_time_s;
+  double pixel_error_px;
+  double contradiction_sigmas;
+  double turned_gyroscope_sigmas;
+  double needed_rotation_deg;
+  double needed_translation_mm;
+  double needed_time_offset_ms;
+
+  VerdictOptions();  // the defaults
+  constexpr explicit VerdictOptions(NoDefaults) {}
+  bool operator==(const VerdictOptions&) const = default;
+  static const OptionTable<VerdictOptions>& table();
+};
+
+}  // namespace evical
