@@ -1,0 +1,182 @@
+// Recordings that are not there, damaged, or not what the session says.
+#include "tests/system/session_case.h"
+
+using namespace evical::test;
+
+class TestBadRecording : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void recording_thatIsMissing_isNamed();
+  void recording_ofNoKnownFormat_isRefused();
+  void streams_thatAreNotThere_areListedWithThoseThatAre();
+  void streams_thatAreEmpty_areRefused();
+  void resolution_tooSmallForTheEvents_isRefused();
+  void bag_cutShort_isReadAsFarAsItIsWhole();
+  void bag_withABrokenChunk_isReadAroundIt();
+  void bag_withoutAWholeChunk_isRefused();
+  void events_outOfOrder_areReported();
+  void imuGap_isReportedWithItsPlace();
+  void sensors_withoutOverlap_areRefusedWithBothRanges();
+  void accelerations_inG_areRecognised();
+  void angularRates_inDegrees_areRecognised();
+  void init_ofNoSession_writesNone_data();
+  void init_ofNoSession_writesNone();
+};
+
+void TestBadRecording::recording_thatIsMissing_isNamed() {
+  SessionCase test;
+  test.change("recording: \".\"", "recording: gone.bag");
+  const Outcome outcome = test.calibrate();
+  VERIFY_REJECTED(test, outcome, "gone.bag");
+}
+
+void TestBadRecording::recording_ofNoKnownFormat_isRefused() {
+  SessionCase test;
+  writeFile(test.path("other.bag"), QByteArray(5000, '\x07'));
+  test.change("recording: \".\"", "recording: other.bag");
+  const Outcome outcome = test.calibrate();
+  VERIFY_REJECTED(test, outcome, "other.bag.*format");
+}
+
+void TestBadRecording::streams_thatAreNotThere_areListedWithThoseThatAre() {
+  SessionCase test("short_bag");
+  test.change("stream: /davis_left/events", "stream: /davis_right/events");
+  const Outcome outcome = test.calibrate();
+  VERIFY_REJECTED(test, outcome, "/davis_right/events.*/davis_left/events");
+}
+
+void TestBadRecording::streams_thatAreEmpty_areRefused() {
+  SessionCase test;
+  test.replace("imu.txt", "");
+  Outcome outcome = test.calibrate();
+  VERIFY_REJECTED(test, outcome, "imu|IMU");
+  SessionCase events;
+  events.replace("events.txt", "");
+  outcome = events.calibrate();
+  VERIFY_REJECTED(events, outcome, "events");
+}
+
+void TestBadRecording::resolution_tooSmallForTheEvents_isRefused() {
+  SessionCase test;
+  test.change("resolution_px: [346, 260]", "resolution_px: [240, 180]");
+  const Outcome outcome = test.calibrate();
+  VERIFY_REJECTED(test, outcome, "240.*180");
+}
+
+void TestBadRecording::bag_cutShort_isReadAsFarAsItIsWhole() {
+  SessionCase test("short_bag");
+  const QByteArray bag = readFile(test.path("recording.bag"));
+  test.replace("recording.bag", bag.left(bag.size() * 9 / 10));
+  const Outcome outcome = test.calibrate();
+  VERIFY_OUTCOME(outcome, 0);
+  QVERIFY2(outcome.errors.contains(QRegularExpression("truncated|cut|ends|lost")),
+           qPrintable(outcome.errors));
+  QVERIFY(readFile(test.result() + "/result.yaml").contains("notes:"));
+}
+
+void TestBadRecording::bag_withABrokenChunk_isReadAroundIt() {
+  SessionCase test("short_bag");
+  QByteArray bag = readFile(test.path("recording.bag"));
+  for (qsizetype i = 0; i < 2000; ++i) bag[bag.size() / 2 + i] = '\x55';
+  test.replace("recording.bag", bag);
+  const Outcome outcome = test.calibrate();
+  VERIFY_OUTCOME(outcome, 0);
+  QVERIFY2(outcome.errors.contains(QRegularExpression("corrupt|damaged|broken|lost")),
+           qPrintable(outcome.errors));
+}
+
+void TestBadRecording::bag_withoutAWholeChunk_isRefused() {
+  SessionCase test("short_bag");
+  test.replace("recording.bag", readFile(test.path("recording.bag")).left(6000));
+  const Outcome outcome = test.calibrate();
+  VERIFY_REJECTED(test, outcome, "recording.bag");
+}
+
+void TestBadRecording::events_outOfOrder_areReported() {
+  SessionCase test;
+  // Two neighbouring blocks change places.
+  const QByteArray events = readFile(test.path("events.txt"));
+  const auto lineAfter = [&](qsizetype at) { return events.indexOf('\n', at) + 1; };
+  const qsizetype first = lineAfter(events.size() / 2), second = lineAfter(first + 20'000),
+                  end = lineAfter(second + 20'000);
+  test.replace("events.txt", events.left(first) + events.mid(second, end - second) +
+                                 events.mid(first, second - first) + events.mid(end));
+  const Outcome outcome = test.calibrate();
+  QVERIFY2(outcome.errors.contains(QRegularExpression("out of order|backwards")), qPrintable(outcome.errors));
+  VERIFY_OUTCOME(outcome, 0);
+}
+
+void TestBadRecording::imuGap_isReportedWithItsPlace() {
+  SessionCase test;
+  const double start_s = readFile(test.path("imu.txt")).split(' ').first().toDouble();
+  test.editLines("imu.txt", [&](QList<double>& sample) {
+    if (sample[0] - start_s > 3.0 && sample[0] - start_s < 3.2) sample.clear();
+  });
+  const Outcome outcome = test.calibrate();
+  QVERIFY2(outcome.errors.contains(QRegularExpression("no samples for")), qPrintable(outcome.errors));
+  QVERIFY2(outcome.errors.contains(QRegularExpression("from 3\\.0\\d* s on")), qPrintable(outcome.errors));
+}
+
+void TestBadRecording::sensors_withoutOverlap_areRefusedWithBothRanges() {
+  SessionCase test;
+  test.editLines("imu.txt", [](QList<double>& sample) { sample[0] += 100.0; });
+  const Outcome outcome = test.calibrate();
+  QVERIFY2(outcome.exit_code == 1 || outcome.exit_code == 2, qPrintable(outcome.errors));
+  VERIFY_SAYS(outcome, "overlap");
+  VERIFY_SAYS(outcome, "100|10[56]");
+  QVERIFY(!QFile::exists(test.result() + "/trajectory.csv"));
+}
+
+void TestBadRecording::accelerations_inG_areRecognised() {
+  SessionCase test;
+  test.editLines("imu.txt", [](QList<double>& sample) {
+    for (int i = 1; i <= 3; ++i) sample[i] /= 9.81;
+  });
+  Outcome outcome = test.calibrate();
+  VERIFY_REJECTED(test, outcome, "acceleration_unit: g");
+  test.change("acceleration_unit: m/s^2", "acceleration_unit: g");
+  outcome = test.calibrate();
+  VERIFY_OUTCOME(outcome, 0);
+}
+
+void TestBadRecording::angularRates_inDegrees_areRecognised() {
+  SessionCase test;
+  test.editLines("imu.txt", [](QList<double>& sample) {
+    for (int i = 4; i <= 6; ++i) sample[i] *= 57.29577951308232;
+  });
+  const Outcome outcome = test.calibrate();
+  VERIFY_REJECTED(test, outcome, "angular_rate_unit: deg/s");
+}
+
+void TestBadRecording::init_ofNoSession_writesNone_data() {
+  QTest::addColumn<QStringList>("recordings");
+  QTest::addColumn<QString>("says");
+  QTest::newRow("none") << QStringList{} << "RECORDING";
+  QTest::newRow("missing") << QStringList{"gone.bag"} << "gone.bag";
+  QTest::newRow("of no known format") << QStringList{"other.bag"} << "other.bag.*format";
+  QTest::newRow("no events") << QStringList{"imu.txt"} << "imu.txt.*no events";
+  QTest::newRow("useless") << QStringList{"cut.bag"} << "cut.bag";
+  QTest::newRow("a further one that is useless") << QStringList{"events.txt", "cut.bag"} << "cut.bag";
+  QTest::newRow("given twice") << QStringList{"events.txt", "events.txt"} << "already another sensor's";
+}
+
+void TestBadRecording::init_ofNoSession_writesNone() {
+  QFETCH(QStringList, recordings);
+  QFETCH(QString, says);
+  QTemporaryDir folder;
+  for (const QString name : {"events.txt", "imu.txt"})
+    QFile::link(simulated("short") + "/" + name, folder.filePath(name));
+  writeFile(folder.filePath("other.bag"), QByteArray(5000, '\x07'));
+  writeFile(folder.filePath("cut.bag"), readFile(simulated("short_bag") + "/recording.bag").left(5000));
+  const QStringList before = filesIn(folder.path());
+  QStringList command = {"init", "-o", folder.filePath("session.yaml")};
+  for (const QString& recording : recordings) command << folder.filePath(recording);
+  const Outcome outcome = runProgram(command);
+  VERIFY_OUTCOME(outcome, 2);
+  VERIFY_SAYS(outcome, says);
+  QCOMPARE(filesIn(folder.path()), before);
+}
+
+EVICAL_TEST(TestBadRecording)
+#include "tst_bad_recording.moc"
