@@ -36,7 +36,7 @@ class TestRigidTransform : public QObject {
     QVERIFY(((kQuarter * kAny) * point - kQuarter * (kAny * point)).norm() < 1e-14);
     const RigidTransform twice = kQuarter * kQuarter;
     QVERIFY((twice.translation_m - Vector3d(-1.0, 3.0, 6.0)).norm() < 1e-14);
-    QVERIFY(std::abs(rotationAngleBetween_rad(twice.rotation, {}) - pi) < 1e-14);
+    QVERIFY(std::abs(rotationAngleBetween_rad(twice.rotation, Eigen::Quaterniond::Identity()) - pi) < 1e-14);
   }
 
   void product_staysARotation() {
