@@ -13,7 +13,8 @@ enum class ErrorKind {
 
 class CalibrationError : public std::runtime_error {
  public:
-  // `place` names a file, a key, a stream or a time; `advice` is a sentence that tells what to do.
+  // `place` names a file, a key, a stream or a time; `advice` tells what to do. Neither ends with a full
+  // stop.
   CalibrationError(ErrorKind kind, std::string place, std::string problem, std::string advice = {});
 
   ErrorKind kind() const { return kind_; }

@@ -20,7 +20,7 @@ BlockReader::BlockReader(const std::filesystem::path& path, BlockFormat format,
     : format_(std::move(format)),
       decoder_(std::move(decoder)),
       file_(path, std::ios::binary | std::ios::ate) {
-  if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions.");
+  if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions");
   file_size_ = static_cast<std::uint64_t>(file_.tellg());
   position_ = format_.data_offset;
   file_.seekg(static_cast<std::streamoff>(position_));

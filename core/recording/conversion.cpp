@@ -37,7 +37,7 @@ std::vector<std::size_t> chosenStreams(const RecordingReader& reader, const Conv
     for (const StreamInfo& stream : reader.streams())
       if (isWritable(stream)) names += (names.empty() ? "" : ", ") + stream.name;
     throw badInput(missing.front(), "the recording has no stream of events or IMU samples with this name",
-                   fmt::format("It has: {}.", names.empty() ? "none" : names));
+                   fmt::format("It has: {}", names.empty() ? "none" : names));
   }
   if (chosen.empty())
     throw badInput(request.input.string(), "the recording has neither events nor IMU samples");
@@ -47,7 +47,7 @@ std::vector<std::size_t> chosenStreams(const RecordingReader& reader, const Conv
 void checkPaths(const ConversionRequest& request) {
   std::error_code ignored;
   if (std::filesystem::equivalent(request.input, request.output, ignored))
-    throw badInput(request.output.string(), "input and output are the same", "Choose another output.");
+    throw badInput(request.output.string(), "input and output are the same", "Choose another output");
 }
 
 // What the events reach, where the file does not tell.

@@ -50,7 +50,7 @@ const RecordingFormat& recordingFormat(const std::string& name) {
   const auto found = std::find_if(std::begin(kFormats), std::end(kFormats),
                                   [&](const RecordingFormat& format) { return name == format.name; });
   if (found == std::end(kFormats)) {
-    throw badInput(name, "this is no format that can be written", fmt::format("There are: {}.", names()));
+    throw badInput(name, "this is no format that can be written", fmt::format("There are: {}", names()));
   }
   return *found;
 }
@@ -60,7 +60,7 @@ const RecordingFormat& recordingFormatOf(const std::filesystem::path& path) {
   for (const RecordingFormat& format : kFormats)
     if (!format.isFolder() && extension == format.extension) return format;
   throw badInput(path.string(), "the name does not tell the format",
-                 fmt::format("Choose one of: {}.", names()));
+                 fmt::format("Choose one of: {}", names()));
 }
 
 std::unique_ptr<RecordingWriter> createRecording(const std::filesystem::path& path, const std::string& format,

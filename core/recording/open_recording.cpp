@@ -24,9 +24,8 @@ using namespace std::string_view_literals;
 
 constexpr const char* kReadable =
     "Readable are ROS 1 bags (format 2.0), ROS 2 bags (MCAP, sqlite3), AEDAT4, Prophesee RAW and DAT, HDF5 "
-    "(DSEC, TUM-VIE, M3ED, MVSEC, "
-    "Metavision), "
-    "Event Stream, and text or CSV: a folder with events.txt and imu.txt (or .csv), or one such file.";
+    "(DSEC, TUM-VIE, M3ED, MVSEC, Metavision), Event Stream, and text or CSV: a folder with events.txt and "
+    "imu.txt (or .csv), or one such file";
 
 // What people may well hand us, by its first bytes.
 struct OtherFormat {
@@ -35,19 +34,19 @@ struct OtherFormat {
 };
 constexpr OtherFormat kOtherFormats[] = {
     {"version https://git-lfs"sv, "this is a pointer of Git LFS, not the recording",
-     "Fetch it with `git lfs pull`."},
-    {"PK\3\4"sv, "this is a ZIP archive", "Unpack it first."},
-    {"7z\xBC\xAF"sv, "this is a 7z archive", "Unpack it first."},
-    {"\x1F\x8B"sv, "this is packed with gzip", "Unpack it first."},
-    {"\x28\xB5\x2F\xFD"sv, "this is packed with zstd", "Unpack it first."},
-    {"#ROSBAG"sv, "this is a bag of an old format", "Convert it with `rosbag fix`."},
+     "Fetch it with `git lfs pull`"},
+    {"PK\3\4"sv, "this is a ZIP archive", "Unpack it first"},
+    {"7z\xBC\xAF"sv, "this is a 7z archive", "Unpack it first"},
+    {"\x1F\x8B"sv, "this is packed with gzip", "Unpack it first"},
+    {"\x28\xB5\x2F\xFD"sv, "this is packed with zstd", "Unpack it first"},
+    {"#ROSBAG"sv, "this is a bag of an old format", "Convert it with `rosbag fix`"},
     {"#!AER-DAT"sv, "this is an AEDAT file of an old version",
-     "Convert it to AEDAT4 with iniVation's DV or dv-processing."},
+     "Convert it to AEDAT4 with iniVation's DV or dv-processing"},
 };
 
 std::string firstBytes(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw badInput(path.string(), "the file cannot be opened", "Check its permissions.");
+  if (!file) throw badInput(path.string(), "the file cannot be opened", "Check its permissions");
   std::string bytes(1024, '\0');
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(file.gcount()));
@@ -78,14 +77,14 @@ std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) {
-    throw badInput(path.string(), "there is no such file or folder", "Check the path.");
+    throw badInput(path.string(), "there is no such file or folder", "Check the path");
   }
   if (std::filesystem::is_directory(status)) return openFolder(path);
   if (!std::filesystem::is_regular_file(status)) {
-    throw badInput(path.string(), "this is no file that can be read twice", "Give a file or a folder.");
+    throw badInput(path.string(), "this is no file that can be read twice", "Give a file or a folder");
   }
   const std::string start = firstBytes(path);
-  if (start.empty()) throw badInput(path.string(), "the file is empty", "Record again, or copy it again.");
+  if (start.empty()) throw badInput(path.string(), "the file is empty", "Record again, or copy it again");
   if (start.starts_with(rosbag::kMagic)) return std::make_unique<BagReader>(path);
   if (start.starts_with("% ")) return openProphesee(path);
   if (start.starts_with(kEventStreamMagic)) return openEventStream(path);
@@ -110,8 +109,8 @@ std::size_t findStream(const RecordingReader& reader, const std::string& name, S
   }
   const std::string kind = streamTypeName(type);
   throw badInput(name, fmt::format("the recording has no stream of type {} with this name", kind),
-                 names.empty() ? fmt::format("It has no stream of type {} at all.", kind)
-                               : fmt::format("Its streams of this type: {}.", joined(names)));
+                 names.empty() ? fmt::format("It has no stream of type {} at all", kind)
+                               : fmt::format("Its streams of this type: {}", joined(names)));
 }
 
 const char* streamTypeName(StreamType type) {

@@ -48,7 +48,7 @@ void PartFile::fail(const char* what) {
   const std::string reason = std::strerror(errno);
   close();
   throw calibrationFailed(path_.string(), fmt::format("the file {}: {}", what, reason),
-                          "Check the folder, its permissions and the space on the disk.");
+                          "Check the folder, its permissions and the space on the disk");
 }
 
 void PartFile::close() {

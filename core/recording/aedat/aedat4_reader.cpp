@@ -36,7 +36,7 @@ const PacketType* findType(std::string_view id) {
 
 Aedat4Reader::Aedat4Reader(const std::filesystem::path& path)
     : path_(path.string()), file_(path, std::ios::binary | std::ios::ate) {
-  if (!file_) throw badInput(path_, "the file cannot be opened", "Check its permissions.");
+  if (!file_) throw badInput(path_, "the file cannot be opened", "Check its permissions");
   file_size_ = static_cast<std::uint64_t>(file_.tellg());
   const aedat::FileHeader header = readFileHeader();
   position_ = data_position_;
@@ -49,7 +49,7 @@ Aedat4Reader::Aedat4Reader(const std::filesystem::path& path)
 
 aedat::FileHeader Aedat4Reader::readFileHeader() {
   const std::uint64_t at = aedat::kMagic.size();
-  const char* advice = "Copy the file again; if this is how it was recorded, it cannot be read.";
+  const char* advice = "Copy the file again; if this is how it was recorded, it cannot be read";
   std::string bytes;
   const bool has_size = readBytes(at, 4, bytes);
   const std::uint64_t size = has_size ? std::uint64_t{ByteCursor(bytes).number<std::uint32_t>()} + 4 : 4;

@@ -84,7 +84,7 @@ class Aedat4Writer : public RecordingWriter {
     }
     if (events && !stream.resolution_px.known()) {
       throw badInput(path_, fmt::format("the resolution of stream {} is not known", stream.name),
-                     "AEDAT4 needs it; state it.");
+                     "AEDAT4 needs it; state it");
     }
     aedat::StreamDescription description;
     description.id = static_cast<std::int32_t>(streams_.size());

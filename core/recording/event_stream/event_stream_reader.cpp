@@ -91,23 +91,23 @@ std::unique_ptr<RecordingReader> openEventStream(const std::filesystem::path& pa
   const unsigned kind = cursor.number<std::uint8_t>();
   if (cursor.ok() && major != 2) {
     throw badInput(path.string(), fmt::format("this is an Event Stream of version {}.{}", major, minor),
-                   "Readable is version 2; convert it with the tools of event_stream.");
+                   "Readable is version 2; convert it with the tools of event_stream");
   }
   if (cursor.ok() && kind != kDvs && kind != kAtis) {
     throw badInput(path.string(),
                    fmt::format("this is an Event Stream of {} events (type {})", nameOf(kind), kind),
-                   "Readable are DVS and ATIS events.");
+                   "Readable are DVS and ATIS events");
   }
   const int width_px = cursor.number<std::uint16_t>(), height_px = cursor.number<std::uint16_t>();
   if (!cursor.ok()) {
     throw badInput(path.string(),
                    fmt::format("the header is cut off at byte {} of {}", start.size(), kHeader_bytes),
-                   "Copy the file again.");
+                   "Copy the file again");
   }
   if (width_px == 0 || height_px == 0) {
     throw badInput(path.string(),
                    fmt::format("the header, at byte 16, says {} x {} pixels", width_px, height_px),
-                   "Copy the file again.");
+                   "Copy the file again");
   }
   StreamInfo stream;
   stream.name = "events";

@@ -103,7 +103,7 @@ class DsecWriter : public RecordingWriter {
       const std::int64_t since_us = time_us - *offset_us_;
       if (since_us < 0 || since_us > std::numeric_limits<std::uint32_t>::max()) {
         throw calibrationFailed(path_, fmt::format("an event is {} us behind the first", since_us),
-                                "DSEC's layout holds 2^32 us, and nothing before the first event.");
+                                "DSEC's layout holds 2^32 us, and nothing before the first event");
       }
       // The first event that is as late as each millisecond.
       for (; millisecond_ * 1000 <= since_us; ++millisecond_) require(events_->milliseconds.add(count_));
@@ -167,7 +167,7 @@ class DsecWriter : public RecordingWriter {
     }
     if (std::count(types_.begin(), types_.end(), stream.type) > 1) {
       throw badInput(path_, "DSEC's layout holds one camera and one IMU a file",
-                     "Write one file for each, or a bag.");
+                     "Write one file for each, or a bag");
     }
   }
 
@@ -203,7 +203,7 @@ class DsecWriter : public RecordingWriter {
   void require(bool good) const {
     if (good) return;
     throw calibrationFailed(path_, fmt::format("the file cannot be written: {}", hdf5::lastProblem()),
-                            "Check the folder, its permissions and the space on the disk.");
+                            "Check the folder, its permissions and the space on the disk");
   }
 
   std::string path_;

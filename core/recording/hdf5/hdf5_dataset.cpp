@@ -62,7 +62,7 @@ void requireFilters(hid_t creation, const std::string& place, const std::string&
     throw badInput(place,
                    fmt::format("the dataset {} is packed with the HDF5 filter {}, which is not there", path,
                                filterName(filter)),
-                   "Install HDF5's plugin for it, or pack the file anew with gzip (h5repack -f GZIP=1).");
+                   "Install HDF5's plugin for it, or pack the file anew with gzip (h5repack -f GZIP=1)");
   }
 }
 
@@ -94,13 +94,13 @@ DatasetRows::DatasetRows(hid_t file, const DatasetInfo& info, hid_t memory_type,
   }
   if (rows_ > 0 && H5Dget_storage_size(dataset_) == 0) {
     throw badInput(place, fmt::format("{} states {} rows and stores none", path_, rows_),
-                   "The recording was not finished; nothing of it can be read.");
+                   "The recording was not finished; nothing of it can be read");
   }
   if (storesTooLittle()) {
     throw badInput(
         place,
         fmt::format("{} states {} rows and stores {} bytes", path_, rows_, H5Dget_storage_size(dataset_)),
-        "The file is damaged.");
+        "The file is damaged");
   }
   // Opened anew with room for at least one unpacked chunk, so that none is unpacked twice.
   const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);

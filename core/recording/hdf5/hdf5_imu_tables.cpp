@@ -111,7 +111,7 @@ class ImuDatasets : public ImuTable {
 class ImuText : public ImuTable {
  public:
   explicit ImuText(const std::filesystem::path& path) : file_(path) {
-    if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions.");
+    if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions");
   }
 
   void load(std::vector<ImuSample>& samples) override {

@@ -209,7 +209,7 @@ class LayoutFinder {
                                  : fmt::format("the HDF5 file has no events and no IMU in a layout that is "
                                                "known; its datasets: {}{}",
                                                joined(names), datasets_.size() > kMostNamed ? ", ..." : ""),
-                   "Known are DSEC, VECtor, TUM-VIE, e2calib, M3ED, MVSEC, evlib and Metavision.");
+                   "Known are DSEC, VECtor, TUM-VIE, e2calib, M3ED, MVSEC, evlib and Metavision");
   }
 
   hid_t file_;

@@ -45,7 +45,7 @@ Handle openFile(const std::filesystem::path& path) {
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
   if (file.valid()) return file;
   throw badInput(path.string(), fmt::format("the HDF5 file cannot be opened: {}", lastProblem()),
-                 "It may have been cut off, or is still being written: copy it again, or finish recording.");
+                 "It may have been cut off, or is still being written: copy it again, or finish recording");
 }
 
 }  // namespace evical::hdf5

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kLargestSide_px = 16384;  // DAT has 14 bits
 constexpr unsigned char kDatEventBytes = 8;
-constexpr const char* kEncodings = "Readable are EVT2, EVT2.1 and EVT3; convert it with Metavision's tools.";
+constexpr const char* kEncodings = "Readable are EVT2, EVT2.1 and EVT3; convert it with Metavision's tools";
 
 struct Field {
   std::string key, value;
@@ -71,7 +71,7 @@ std::vector<Field> takeFields(const std::filesystem::path& path, std::string_vie
     if (end == std::string_view::npos || !isText(line)) {
       if (!isText(line) && !fields.empty()) break;  // data that look like a line's beginning
       throw badInput(path.string(), fmt::format("the header is cut off in its line at byte {}", offset),
-                     "Copy the file again.");
+                     "Copy the file again");
     }
     offset = end + 1;
     const std::string_view content = trimmed(line.substr(2));
@@ -175,7 +175,7 @@ FileHeader parseHeader(const std::filesystem::path& path, std::string_view start
     throw badInput(
         path.string(),
         fmt::format("the header, which ends at byte {}, does not tell the encoding", header.data_offset),
-        "Add a line \"% evt 2.0\" or \"% evt 3.0\" in front of the file.");
+        "Add a line \"% evt 2.0\" or \"% evt 3.0\" in front of the file");
   }
   header.encoding = encoding ? *encoding : known->encoding;
   if (!header.resolution_px.known() && known != std::end(kSystems))

@@ -69,7 +69,7 @@ std::vector<std::string> otherParts(const std::filesystem::path& path) {
 
 BagReader::BagReader(const std::filesystem::path& path)
     : path_(path.string()), file_(path, std::ios::binary | std::ios::ate) {
-  if (!file_) throw badInput(path_, "the file cannot be opened", "Check its permissions.");
+  if (!file_) throw badInput(path_, "the file cannot be opened", "Check its permissions");
   file_size_ = static_cast<std::uint64_t>(file_.tellg());
   position_ = rosbag::kMagic.size();
   listStreams();

@@ -14,7 +14,7 @@ constexpr std::uint64_t kBlock_bytes = 1 << 20;
 FileBlocks::FileBlocks(const std::filesystem::path& path) {
   file_.rdbuf()->pubsetbuf(nullptr, 0);  // the block is the buffer
   file_.open(path, std::ios::binary | std::ios::ate);
-  if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions.");
+  if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions");
   size_ = static_cast<std::uint64_t>(file_.tellg());
 }
 

@@ -41,7 +41,7 @@ McapSource::McapSource(const std::filesystem::path& path, FaultSink sink)
     : sink_(std::move(sink)), file_(path) {
   std::string_view magic;
   if (!file_.read(0, mcap::kMagic.size(), magic) || magic != mcap::kMagic)
-    throw badInput(path.string(), "the MCAP file is cut off within its first bytes", "Copy it again.");
+    throw badInput(path.string(), "the MCAP file is cut off within its first bytes", "Copy it again");
   rewind();
   if (listFromSummary()) return;
   topics_.clear();

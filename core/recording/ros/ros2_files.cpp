@@ -56,7 +56,7 @@ fs::path existing(const fs::path& path) {
 
 std::string firstBytes(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw badInput(path.string(), "the file cannot be opened", "Check its permissions.");
+  if (!file) throw badInput(path.string(), "the file cannot be opened", "Check its permissions");
   std::string bytes(16, '\0');
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(file.gcount()));
@@ -104,7 +104,7 @@ std::vector<fs::path> ros2Files(const fs::path& path, const FaultSink& sink) {
   });
   if (files.empty()) files = filesByNumber(path);
   if (!files.empty()) return files;
-  throw badInput(path.string(), "the folder has no .db3 or .mcap file", "Copy the whole folder.");
+  throw badInput(path.string(), "the folder has no .db3 or .mcap file", "Copy the whole folder");
 }
 
 bool isRos2Folder(const fs::path& folder) {
@@ -119,7 +119,7 @@ std::unique_ptr<MessageSource> openRos2File(const fs::path& path, const FaultSin
   if (start.starts_with(kZstdMagic) && path.extension() != kUnpackedEnding)
     return std::make_unique<UnpackedSource>(path, sink);
   throw badInput(path.string(), start.empty() ? "the file is empty" : "this is no file of a ROS 2 bag",
-                 "Record again, or copy it again.");
+                 "Record again, or copy it again");
 }
 
 }  // namespace evical::ros

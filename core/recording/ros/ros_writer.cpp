@@ -73,7 +73,7 @@ void RosWriter::flushEvents(std::size_t stream) {
 void RosWriter::requireTime(std::int64_t time_ns) const {
   if (time_ns >= 0 && time_ns / kSecond_ns < seconds_end_) return;
   throw calibrationFailed(path_, fmt::format("a ROS recording cannot hold the time {} ns", time_ns),
-                          fmt::format("It holds times from 0 to {} s.", seconds_end_));
+                          fmt::format("It holds times from 0 to {} s", seconds_end_));
 }
 
 RosWriter::Stream& RosWriter::checkedStream(std::size_t stream, StreamType type) {

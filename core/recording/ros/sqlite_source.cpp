@@ -136,7 +136,7 @@ void SqliteSource::open() {
     throw badInput(path_.string(),
                    fmt::format("the SQLite file of {} bytes cannot be read: {}",
                                std::filesystem::file_size(path_), database_->problem()),
-                   "Copy it again; try `sqlite3 FILE .recover`.");
+                   "Copy it again; try `sqlite3 FILE .recover`");
   }
   throw badInput(path_.string(), "this SQLite file is no ROS 2 bag: it has no tables topics and messages");
 }

@@ -155,7 +155,7 @@ void TopicStreams::select(const std::string& path, const std::vector<std::size_t
     if (state.refused()) {
       throw badInput(
           path, fmt::format("the events of {} are encoded as \"{}\"", streams_[stream].name, state.encoding),
-          fmt::format("Readable are {}.", kReadableEncodings));
+          fmt::format("Readable are {}", kReadableEncodings));
     }
     state.selected = true;
   }

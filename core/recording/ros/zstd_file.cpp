@@ -30,7 +30,7 @@ File temporaryFile(std::filesystem::path& path) {
 
 [[noreturn]] void failWriting(const std::filesystem::path& path) {
   throw calibrationFailed(path.string(), "the recording cannot be unpacked here",
-                          "Check the space on the disk, or set TMPDIR to a folder with more.");
+                          "Check the space on the disk, or set TMPDIR to a folder with more");
 }
 
 // Hands out how many bytes of the input were good.
@@ -61,7 +61,7 @@ std::uint64_t unpack(std::istream& input, const File& output, const std::filesys
 
 UnpackedZstdFile::UnpackedZstdFile(const std::filesystem::path& path, const FaultSink& sink) {
   std::ifstream input(path, std::ios::binary);
-  if (!input) throw badInput(path.string(), "the file cannot be opened", "Check its permissions.");
+  if (!input) throw badInput(path.string(), "the file cannot be opened", "Check its permissions");
   const File output = temporaryFile(path_);
   if (!output) failWriting(path_);
   try {

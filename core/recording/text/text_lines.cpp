@@ -25,7 +25,7 @@ bool isSeparator(char c) {
 
 TextLines::TextLines(const std::filesystem::path& path)
     : file_(path, std::ios::binary), buffer_(kBufferBytes, '\0') {
-  if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions.");
+  if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions");
   size_ = std::filesystem::file_size(path);
 }
 

@@ -96,7 +96,7 @@ void TextTableReader::addSource(const std::filesystem::path& path) {
   if (columns.type == StreamType::Other) {
     throw badInput(path.string(),
                    "the lines are neither events nor IMU samples, and no header names the columns",
-                   "Put a line such as \"t_us,x,y,p\" on top.");
+                   "Put a line such as \"t_us,x,y,p\" on top");
   }
   if (path.extension() == ".csv") format_ = "csv";
   StreamInfo stream;

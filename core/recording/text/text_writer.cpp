@@ -44,7 +44,7 @@ class TextWriter : public RecordingWriter {
       }
       for (const auto& [type, file] : files_) {
         if (type == stream.type)
-          throw badInput(folder.string(), "text holds one stream of each type only", "Write a bag.");
+          throw badInput(folder.string(), "text holds one stream of each type only", "Write a bag");
       }
       files_.emplace_back(stream.type,
                           std::make_unique<PartFile>(folder / (events ? style.events_file : style.imu_file)));
