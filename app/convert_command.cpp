@@ -32,7 +32,8 @@ void printSummary(const ConversionRequest& request, const ConversionSummary& mad
   fmt::print("{} events, {} IMU samples in {} ({})\n", made.events, made.imu_samples, request.output.string(),
              made.format);
   for (const RecordingFault& fault : made.faults)
-    fmt::print("  {}: {}{}{}\n", fault.kind, fault.stream, fault.stream.empty() ? "" : ": ", fault.text);
+    fmt::print("  {}: {}{}{}\n", nameOf(fault.kind), fault.stream, fault.stream.empty() ? "" : ": ",
+               fault.text);
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ void printForPeople(const std::string& recording, const Inspection& inspection, 
   for (const RecordingFault& fault : inspection.faults) {
     const std::string place =
         fault.stream.empty() ? "" : fmt::format(" {} at {:.3f} s:", fault.stream, fault.at_s);
-    fmt::print("  {}:{} {}\n", fault.kind, place, fault.text);
+    fmt::print("  {}:{} {}\n", nameOf(fault.kind), place, fault.text);
   }
 }
 

@@ -1,4 +1,5 @@
-// What a unit of a recording's IMU numbers is in SI; -g for drivers that report the direction of gravity.
+// IMU samples as recordings have them, and what their units are in SI; -g for drivers that report the
+// direction of gravity.
 #pragma once
 
 #include "core/data/imu_sample.h"
@@ -6,6 +7,7 @@
 #include <array>
 #include <numbers>
 #include <span>
+#include <vector>
 
 namespace evical {
 
@@ -27,11 +29,27 @@ constexpr double radiansPerSecond(AngularRateUnit unit) {
   return unit == AngularRateUnit::RadiansPerSecond ? 1.0 : std::numbers::pi / 180.0;
 }
 
-inline void toSi(AccelerationUnit acceleration, AngularRateUnit rate, std::span<ImuSample> samples) {
-  for (ImuSample& sample : samples) {
-    sample.specific_force_m_s2 *= metresPerSecond2(acceleration);
-    sample.angular_rate_rad_s *= radiansPerSecond(rate);
-  }
+// A sample before its units are known: the recording's own numbers, in the IMU's own frame.
+struct RawImuSample {
+  std::int64_t time_ns = 0;
+  Eigen::Vector3d angular_rate = Eigen::Vector3d::Zero();
+  Eigen::Vector3d specific_force = Eigen::Vector3d::Zero();
+};
+
+inline ImuSample toSi(const RawImuSample& raw, AccelerationUnit acceleration, AngularRateUnit rate) {
+  return {raw.time_ns, raw.angular_rate * radiansPerSecond(rate),
+          raw.specific_force * metresPerSecond2(acceleration)};
+}
+
+// Appends to `samples`.
+inline void toSi(std::span<const RawImuSample> raw, AccelerationUnit acceleration, AngularRateUnit rate,
+                 std::vector<ImuSample>& samples) {
+  for (const RawImuSample& sample : raw) samples.push_back(toSi(sample, acceleration, rate));
+}
+
+inline RawImuSample fromSi(const ImuSample& sample, AccelerationUnit acceleration, AngularRateUnit rate) {
+  return {sample.time_ns, sample.angular_rate_rad_s / radiansPerSecond(rate),
+          sample.specific_force_m_s2 / metresPerSecond2(acceleration)};
 }
 
 }  // namespace evical

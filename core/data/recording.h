@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/data/event.h"
-#include "core/data/imu_sample.h"
 #include "core/data/imu_units.h"
+#include "core/data/recording_fault.h"
 #include "core/geometry/camera_model.h"
 
 #include <cstddef>
@@ -36,16 +36,7 @@ struct StreamInfo {
 struct Packet {
   std::size_t stream = 0;  // index into RecordingReader::streams()
   std::vector<Event> events;
-  std::vector<ImuSample> imu_samples;
-};
-
-// What goes wrong in recordings and is reported but not repaired.
-struct RecordingFault {
-  std::string stream;  // empty: the file as a whole
-  std::string kind;    // gap, backward_time, jitter, truncated, corrupt, stuck_axis, saturated_axis, unit,
-                       // hot_pixels, ...
-  double at_s = 0.0;   // since the stream's first time; 0 where it has no place
-  std::string text;    // one sentence for people
+  std::vector<RawImuSample> imu_samples;
 };
 
 }  // namespace evical

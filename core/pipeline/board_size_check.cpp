@@ -124,7 +124,7 @@ std::optional<RecordingFault> unseenCircles(const BoardObservations& observation
   const auto never = std::count(seen.begin(), seen.end(), false);
   if (never == 0) return std::nullopt;
   return RecordingFault{
-      observations.camera, "board_size", 0.0,
+      observations.camera, FaultKind::BoardSize, 0.0,
       fmt::format("{}: {} of the board's {} circles were seen in none of {} views: check "
                   "rows and cols in the session",
                   observations.camera, never, board.circleCount(), observations.views.size())};

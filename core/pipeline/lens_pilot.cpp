@@ -66,7 +66,7 @@ class Pilot {
   }
 
   std::optional<CameraIntrinsics> run() {
-    Packet packet;
+    SensorPacket packet;
     while (!enough() && recording_.read(packet)) {
       context_.throwIfStopped();
       if (packet.events.front().time_ns > end_ns_) break;

@@ -72,15 +72,15 @@ class CameraIntake {
 
   void report(std::vector<RecordingFault>& faults) const {
     if (unsorted_ > 0) {
-      faults.push_back({session_.stream, "backward_time", 0.0,
+      faults.push_back({session_.stream, FaultKind::BackwardTime, 0.0,
                         fmt::format("{}: {} events out of order, sorted", session_.stream, unsorted_)});
     }
     if (late_ > 0) {
-      faults.push_back({session_.stream, "backward_time", 0.0,
+      faults.push_back({session_.stream, FaultKind::BackwardTime, 0.0,
                         fmt::format("{}: time runs backwards: {} events left out", session_.stream, late_)});
     }
     if (outside_ > 0) {
-      faults.push_back({session_.stream, "outside_resolution", 0.0,
+      faults.push_back({session_.stream, FaultKind::OutsideResolution, 0.0,
                         fmt::format("{}: {} events outside {} x {} px left out", session_.stream, outside_,
                                     resolution_px_.width_px, resolution_px_.height_px)});
     }
@@ -191,11 +191,11 @@ class ReadingPass {
   }
 
   void run(BoundedQueue<BurstBatch>& queue, const RunContext& context) {
-    Packet packet;
+    SensorPacket packet;
     while (recording_.read(packet)) {
       context.throwIfStopped();
       context.progress.stageProgress(recording_.fractionRead());
-      const bool is_camera = packet.stream < intakes_.size();
+      const bool is_camera = packet.sensor < intakes_.size();
       if (!is_camera) addSamples(packet);
       if (is_camera && !addEvents(packet, queue)) return;
     }
@@ -224,20 +224,20 @@ class ReadingPass {
     return time_s >= (*session_.time_range_s)[0] && time_s <= (*session_.time_range_s)[1];
   }
 
-  void addSamples(const Packet& packet) {
-    std::vector<ImuSample>& samples = result_.imus[packet.stream - intakes_.size()].samples;
+  void addSamples(const SensorPacket& packet) {
+    std::vector<ImuSample>& samples = result_.imus[packet.sensor - intakes_.size()].samples;
     for (const ImuSample& sample : packet.imu_samples) {
       if (wanted(sample.time_ns)) samples.push_back(sample);
     }
   }
 
-  bool addEvents(Packet& packet, BoundedQueue<BurstBatch>& queue) {
+  bool addEvents(SensorPacket& packet, BoundedQueue<BurstBatch>& queue) {
     if (session_.time_range_s)
       std::erase_if(packet.events, [&](const Event& e) { return !wanted(e.time_ns); });
-    std::vector<Event>& pending = pending_[packet.stream];
+    std::vector<Event>& pending = pending_[packet.sensor];
     pending.insert(pending.end(), packet.events.begin(), packet.events.end());
     if (pending.size() < kBatchEvents) return true;
-    return flush(packet.stream, queue);
+    return flush(packet.sensor, queue);
   }
 
   bool flush(std::size_t camera, BoundedQueue<BurstBatch>& queue) {
@@ -256,7 +256,7 @@ class ReadingPass {
     const auto earlier = [](const ImuSample& a, const ImuSample& b) { return a.time_ns < b.time_ns; };
     if (!std::is_sorted(imu.samples.begin(), imu.samples.end(), earlier)) {
       result_.faults.push_back(
-          {session.stream, "backward_time", 0.0, session.stream + ": samples out of order, sorted"});
+          {session.stream, FaultKind::BackwardTime, 0.0, session.stream + ": samples out of order, sorted"});
       std::stable_sort(imu.samples.begin(), imu.samples.end(), earlier);
     }
     const auto same = [](const ImuSample& a, const ImuSample& b) { return a.time_ns == b.time_ns; };

@@ -12,7 +12,7 @@
 namespace evical {
 namespace {
 
-std::int64_t firstTime_ns(const Packet& packet) {
+std::int64_t firstTime_ns(const SensorPacket& packet) {
   return packet.events.empty() ? packet.imu_samples.front().time_ns : packet.events.front().time_ns;
 }
 
@@ -109,7 +109,7 @@ Resolution SessionRecording::resolution_px(std::size_t camera) const {
                  "Give resolution_px: [width, height] for this camera in the session");
 }
 
-bool SessionRecording::read(Packet& packet) {
+bool SessionRecording::read(SensorPacket& packet) {
   const auto behind =
       std::min_element(sources_.begin(), sources_.end(),
                        [](const Source& a, const Source& b) { return a.time_ns() < b.time_ns(); });
@@ -122,28 +122,31 @@ bool SessionRecording::read(Packet& packet) {
 // The next packet that holds something.
 void SessionRecording::advance(Source& source) {
   do {
-    source.finished = !source.reader->read(source.next);
-  } while (!source.finished && source.next.events.empty() && source.next.imu_samples.empty());
+    source.finished = !source.reader->read(source.raw);
+  } while (!source.finished && source.raw.events.empty() && source.raw.imu_samples.empty());
   if (source.finished) return;
-  const auto found = std::find(source.selected.begin(), source.selected.end(), source.next.stream);
-  source.next.stream = source.sensors[static_cast<std::size_t>(found - source.selected.begin())];
-  bringHome(source.next);
+  const auto found = std::find(source.selected.begin(), source.selected.end(), source.raw.stream);
+  source.next.sensor = source.sensors[static_cast<std::size_t>(found - source.selected.begin())];
+  bringHome(source.raw, source.next);
 }
 
-// Units and clock.
-void SessionRecording::bringHome(Packet& packet) const {
-  const bool is_camera = packet.stream < session_.cameras.size();
-  const std::size_t imu = packet.stream - session_.cameras.size();
+// Units and clock; the events' storage changes hands.
+void SessionRecording::bringHome(Packet& raw, SensorPacket& packet) const {
+  const bool is_camera = packet.sensor < session_.cameras.size();
+  const std::size_t imu = packet.sensor - session_.cameras.size();
+  std::swap(packet.events, raw.events);
+  packet.imu_samples.clear();
+  if (!is_camera) {
+    const StreamInfo& stream = info(packet.sensor);
+    toSi(raw.imu_samples, session_.imus[imu].acceleration_unit.value_or(stream.acceleration_unit),
+         session_.imus[imu].angular_rate_unit.value_or(stream.angular_rate_unit), packet.imu_samples);
+  }
   const double offset_s =
-      is_camera ? session_.cameras[packet.stream].clock_offset_s : session_.imus[imu].clock_offset_s;
+      is_camera ? session_.cameras[packet.sensor].clock_offset_s : session_.imus[imu].clock_offset_s;
   if (const std::int64_t offset_ns = nanosecondsFrom(offset_s); offset_ns != 0) {
     for (Event& event : packet.events) event.time_ns += offset_ns;
     for (ImuSample& sample : packet.imu_samples) sample.time_ns += offset_ns;
   }
-  if (is_camera) return;
-  const StreamInfo& stream = info(packet.stream);
-  toSi(session_.imus[imu].acceleration_unit.value_or(stream.acceleration_unit),
-       session_.imus[imu].angular_rate_unit.value_or(stream.angular_rate_unit), packet.imu_samples);
 }
 
 double SessionRecording::fractionRead() const {

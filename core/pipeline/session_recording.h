@@ -13,14 +13,21 @@
 
 namespace evical {
 
+// Some events of a camera or samples of an IMU; the first camera's is sensor 0, the first IMU's that behind
+// the last camera's.
+struct SensorPacket {
+  std::size_t sensor = 0;
+  std::vector<Event> events;
+  std::vector<ImuSample> imu_samples;
+};
+
 class SessionRecording {
  public:
   // Opens the files and reads the first packet of each. Throws CalibrationError (BadInput) for files and
   // streams that are not there, and for files whose clocks have nothing to do with each other.
   explicit SessionRecording(const Session& session);
 
-  // A packet's stream is a camera's index or, behind the cameras, an IMU's.
-  std::size_t imuStream(std::size_t imu) const { return session_.cameras.size() + imu; }
+  std::size_t imuSensor(std::size_t imu) const { return session_.cameras.size() + imu; }
 
   const StreamInfo& camera(std::size_t camera) const { return info(camera); }
   // The session's, the recording's, or the intrinsics': whichever is known first. Throws where none is.
@@ -29,7 +36,7 @@ class SessionRecording {
   // Time of the first event or sample in any file; 0 where there is none.
   std::int64_t start_ns() const { return start_ns_; }
 
-  bool read(Packet& packet);
+  bool read(SensorPacket& packet);
   double fractionRead() const;
   std::vector<RecordingFault> faults() const;  // complete once read() has returned false
 
@@ -39,7 +46,8 @@ class SessionRecording {
     std::filesystem::path path;
     std::unique_ptr<RecordingReader> reader;
     std::vector<std::size_t> selected, sensors;  // streams of the file, and what they are here
-    Packet next;
+    Packet raw;                                  // as the reader hands it out
+    SensorPacket next;
     bool finished = false;
     std::int64_t time_ns() const;
   };
@@ -50,7 +58,7 @@ class SessionRecording {
   std::size_t sourceOf(const std::filesystem::path& path);
   void addSensor(const std::filesystem::path& path, const std::string& stream, StreamType type);
   void advance(Source& source);
-  void bringHome(Packet& packet) const;
+  void bringHome(Packet& raw, SensorPacket& packet) const;
   void checkClocks() const;
   const StreamInfo& info(std::size_t sensor) const;
 

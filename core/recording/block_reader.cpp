@@ -98,27 +98,28 @@ void BlockReader::finish() {
   const BlockFindings& found = decoder_->findings();
   for (StreamInfo& stream : format_.streams)
     if (stream.type == StreamType::Triggers) stream.messages = found.triggers;
-  const auto report = [this](const char* kind, const Occurrences& occurrences, const char* what) {
+  const auto report = [this](FaultKind kind, const Occurrences& occurrences, const char* what) {
     if (occurrences.count == 0) return;
     addFault(kind, fmt::format("{} {}; from byte {} on.", occurrences.count, what, occurrences.first_byte));
   };
   if (!bytes_.empty()) {
-    addFault("truncated", fmt::format("The last record, at byte {} of {}, is not whole; it is left out.",
-                                      position_ - bytes_.size(), position_));
+    addFault(FaultKind::Truncated,
+             fmt::format("The last record, at byte {} of {}, is not whole; it is left out.",
+                         position_ - bytes_.size(), position_));
   }
-  report("outside", found.outside, "events lie outside of the sensor and are left out");
-  report("untimed", found.untimed, "events have no time or place yet and are left out");
-  report("corrupt", found.unknown, "records are of no known kind and are left out");
-  report("time_wrap", found.wraps, "times the counter of the time began anew; times go on");
-  report("imu_left_out", found.imu, "IMU records have no known scale and are left out");
-  report("exposure_left_out", found.exposure, "events measure grey levels and are left out");
+  report(FaultKind::Outside, found.outside, "events lie outside of the sensor and are left out");
+  report(FaultKind::Untimed, found.untimed, "events have no time or place yet and are left out");
+  report(FaultKind::Corrupt, found.unknown, "records are of no known kind and are left out");
+  report(FaultKind::TimeWrap, found.wraps, "times the counter of the time began anew; times go on");
+  report(FaultKind::ImuLeftOut, found.imu, "IMU records have no known scale and are left out");
+  report(FaultKind::ExposureLeftOut, found.exposure, "events measure grey levels and are left out");
   if (disordered_ > 0) {
-    addFault("unsorted", fmt::format("Time runs backwards {} times by {:.3f} ms at most; sorted.",
-                                     disordered_, 1e-6 * static_cast<double>(largest_disorder_ns_)));
+    addFault(FaultKind::Unsorted, fmt::format("Time runs backwards {} times by {:.3f} ms at most; sorted.",
+                                              disordered_, 1e-6 * static_cast<double>(largest_disorder_ns_)));
   }
 }
 
-void BlockReader::addFault(const char* kind, std::string text) {
+void BlockReader::addFault(FaultKind kind, std::string text) {
   faults_.push_back(
       {format_.streams.empty() ? "" : format_.streams.front().name, kind, 0.0, std::move(text)});
 }

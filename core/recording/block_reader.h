@@ -37,7 +37,7 @@ class BlockReader : public RecordingReader {
   bool decodeBlock();
   bool handOut(Packet& packet);
   void finish();
-  void addFault(const char* kind, std::string text);
+  void addFault(FaultKind kind, std::string text);
 
   BlockFormat format_;
   std::unique_ptr<BlockDecoder> decoder_;

@@ -88,17 +88,19 @@ void findSizes(const ConversionRequest& request, std::vector<StreamInfo>& stream
 void copyPackets(RecordingReader& reader, RecordingWriter& writer, const std::vector<std::size_t>& targets,
                  ConversionSummary& summary, const RunContext& context) {
   Packet packet;
+  std::vector<ImuSample> samples;
   while (reader.read(packet)) {
     context.throwIfStopped();
     context.progress.stageProgress(reader.fractionRead());
     const std::size_t target = targets.at(packet.stream);
     if (target == kNotWritten) continue;
     const StreamInfo& info = reader.streams()[packet.stream];
-    toSi(info.acceleration_unit, info.angular_rate_unit, packet.imu_samples);
+    samples.clear();
+    toSi(packet.imu_samples, info.acceleration_unit, info.angular_rate_unit, samples);
     if (!packet.events.empty()) writer.write(target, EventSpan(packet.events));
-    if (!packet.imu_samples.empty()) writer.write(target, std::span<const ImuSample>(packet.imu_samples));
+    if (!samples.empty()) writer.write(target, std::span<const ImuSample>(samples));
     summary.events += packet.events.size();
-    summary.imu_samples += packet.imu_samples.size();
+    summary.imu_samples += samples.size();
   }
   summary.faults = reader.faults();
 }

@@ -74,15 +74,16 @@ void EventStatistics::add(EventSpan events) {
 void EventStatistics::checkInterval(std::int64_t previous_ns, std::int64_t time_ns) {
   const double step_ms = 1e-6 * static_cast<double>(time_ns - previous_ns);
   if (time_ns >= previous_ns) {
-    addFault("gap", previous_ns, fmt::format("No events for {:.3f} ms.", step_ms));
+    addFault(FaultKind::Gap, previous_ns, fmt::format("No events for {:.3f} ms.", step_ms));
     return;
   }
   ++numbers_.backward_steps;
   const char* reset = previous_ns - time_ns > kClockReset_ns ? "; the clock was reset" : "";
-  addFault("backward_time", previous_ns, fmt::format("Time runs backwards by {:.3f} ms{}.", -step_ms, reset));
+  addFault(FaultKind::BackwardTime, previous_ns,
+           fmt::format("Time runs backwards by {:.3f} ms{}.", -step_ms, reset));
 }
 
-void EventStatistics::addFault(const char* kind, std::int64_t at_ns, std::string text) {
+void EventStatistics::addFault(FaultKind kind, std::int64_t at_ns, std::string text) {
   const auto alike = [kind](const RecordingFault& fault) { return fault.kind == kind; };
   if (std::count_if(faults_.begin(), faults_.end(), alike) >= kMostAlikeFaults) return;
   faults_.push_back({numbers_.info.name, kind, secondsSince(numbers_.first_ns, at_ns), std::move(text)});
@@ -96,10 +97,10 @@ void EventStatistics::finish(StreamSummary& summary, std::vector<RecordingFault>
   summary = numbers_;
   faults.insert(faults.end(), faults_.begin(), faults_.end());
   const std::string& name = summary.info.name;
-  if (summary.count == 0) faults.push_back({name, "empty", 0.0, "The stream has no events."});
+  if (summary.count == 0) faults.push_back({name, FaultKind::Empty, 0.0, "The stream has no events."});
   if (outside_ > 0 && summary.info.resolution_px.known()) {
     faults.push_back(
-        {name, "outside", 0.0,
+        {name, FaultKind::Outside, 0.0,
          fmt::format("{} events lie outside of {} x {} pixels.", outside_,
                      summary.info.resolution_px.width_px, summary.info.resolution_px.height_px)});
   }
@@ -139,7 +140,7 @@ void EventStatistics::findHotPixels(double duration_s, std::vector<RecordingFaul
   if (hot.empty()) return;
   const std::size_t total = hot.size();
   hot.resize(std::min(total, kMostNamedPixels));
-  faults.push_back({numbers_.info.name, "hot_pixels", 0.0,
+  faults.push_back({numbers_.info.name, FaultKind::HotPixels, 0.0,
                     fmt::format("{} hot pixels give {:.1f} % of the events: {}{}.", total, 100.0 * share,
                                 joined(hot), total > hot.size() ? ", ..." : "")});
 }

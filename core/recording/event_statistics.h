@@ -22,7 +22,7 @@ class EventStatistics {
   void checkInterval(std::int64_t previous_ns, std::int64_t time_ns);
   void findHotPixels(double duration_s, std::vector<RecordingFault>& faults) const;
   std::uint32_t neighbourMedian(int x_px, int y_px) const;
-  void addFault(const char* kind, std::int64_t at_ns, std::string text);
+  void addFault(FaultKind kind, std::int64_t at_ns, std::string text);
 
   InspectionOptions options_;
   StreamSummary numbers_;

@@ -41,10 +41,10 @@ void checkTimes(const std::string& name, const Samples& samples, const Inspectio
       const char* reset =
           samples[i - 1].time_ns - samples[i].time_ns > kClockReset_ns ? "; the clock was reset" : "";
       backward.push_back(
-          {name, "backward_time", at_s,
+          {name, FaultKind::BackwardTime, at_s,
            fmt::format("Time runs backwards by {:.3f} ms at sample {}{}.", -1e3 * interval_s, i, reset)});
     } else if (interval_s > options.imu_gap_periods * period_s && period_s > 0.0) {
-      gaps.push_back({name, "gap", at_s,
+      gaps.push_back({name, FaultKind::Gap, at_s,
                       fmt::format("No samples for {:.3f} ms, where {:.3f} ms are usual.", 1e3 * interval_s,
                                   1e3 * period_s)});
     } else {
@@ -57,7 +57,7 @@ void checkTimes(const std::string& name, const Samples& samples, const Inspectio
   const double jitter_s = regular > 0 ? std::sqrt(square_sum_s2 / static_cast<double>(regular)) : 0.0;
   if (jitter_s > options.imu_jitter_periods * period_s) {
     faults.push_back(
-        {name, "jitter", 0.0,
+        {name, FaultKind::Jitter, 0.0,
          fmt::format("The intervals of samples scatter by {:.3f} ms about {:.3f} ms: were they stamped when "
                      "they arrived?",
                      1e3 * jitter_s, 1e3 * period_s)});
@@ -96,14 +96,14 @@ void checkAxis(const std::string& name, const Samples& samples, const Axis& axis
       if (saturated == 0) saturated_at_s = at_s;
       saturated += end - begin;
     } else if (run_s >= options.stuck_axis_s) {
-      stuck.push_back(
-          {name, "stuck_axis", at_s, fmt::format("{} stays at {} for {:.2f} s.", axis.name, value, run_s)});
+      stuck.push_back({name, FaultKind::StuckAxis, at_s,
+                       fmt::format("{} stays at {} for {:.2f} s.", axis.name, value, run_s)});
     }
   }
   appendFaults(faults, std::move(stuck), "such times");
   if (saturated == 0) return;
   faults.push_back(
-      {name, "saturated_axis", saturated_at_s,
+      {name, FaultKind::SaturatedAxis, saturated_at_s,
        fmt::format("{} is at its limit of {:.4g} for {} samples: move less fast, or widen the IMU's range.",
                    axis.name, largest, saturated)});
 }
@@ -114,14 +114,14 @@ void checkUnits(const std::string& name, const Samples& samples, const Inspectio
   if (std::abs(norm - kGravity_m_s2) > options.gravity_tolerance_m_s2) {
     const bool in_g = std::abs(norm * kGravity_m_s2 - kGravity_m_s2) <= options.gravity_tolerance_m_s2;
     faults.push_back(
-        {name, "unit", 0.0,
+        {name, FaultKind::Unit, 0.0,
          fmt::format("The median norm of the specific force is {:.3f}, not 9.8 m/s^2{}.", norm,
                      in_g ? ": the file has it in g" : "; is gravity removed, or the unit another?")});
   }
   const double fastest = largestRate(samples);
   if (fastest > options.largest_rate_rad_s) {
     faults.push_back(
-        {name, "unit", 0.0,
+        {name, FaultKind::Unit, 0.0,
          fmt::format("The angular rate reaches {:.1f}: too fast for rad/s, probably deg/s.", fastest)});
   }
 }
@@ -132,7 +132,8 @@ std::vector<RecordingFault> checkImu(const std::string& name, const std::vector<
                                      const InspectionOptions& options) {
   Faults faults;
   if (samples.size() < 2) {
-    faults.push_back({name, "empty", 0.0, fmt::format("The stream has {} IMU samples.", samples.size())});
+    faults.push_back(
+        {name, FaultKind::Empty, 0.0, fmt::format("The stream has {} IMU samples.", samples.size())});
     return faults;
   }
   const auto broken = [](const ImuSample& s) {
@@ -140,7 +141,7 @@ std::vector<RecordingFault> checkImu(const std::string& name, const std::vector<
   };
   const auto found = std::find_if(samples.begin(), samples.end(), broken);
   if (found != samples.end()) {
-    faults.push_back({name, "not_finite", secondsSince(samples.front().time_ns, found->time_ns),
+    faults.push_back({name, FaultKind::NotFinite, secondsSince(samples.front().time_ns, found->time_ns),
                       fmt::format("{} samples hold values that are no numbers.",
                                   std::count_if(samples.begin(), samples.end(), broken))});
   }

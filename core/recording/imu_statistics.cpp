@@ -7,31 +7,73 @@
 #include <cmath>
 
 namespace evical {
+namespace {
 
-double medianInterval_s(const std::vector<ImuSample>& samples) {
+const Eigen::Vector3d& forceOf(const ImuSample& sample) {
+  return sample.specific_force_m_s2;
+}
+const Eigen::Vector3d& forceOf(const RawImuSample& sample) {
+  return sample.specific_force;
+}
+const Eigen::Vector3d& rateOf(const ImuSample& sample) {
+  return sample.angular_rate_rad_s;
+}
+const Eigen::Vector3d& rateOf(const RawImuSample& sample) {
+  return sample.angular_rate;
+}
+
+template <class Sample>
+double medianIntervalOf(const std::vector<Sample>& samples) {
   std::vector<double> intervals_s;
-  for (std::size_t i = 1; i < samples.size(); ++i) {
+  for (std::size_t i = 1; i < samples.size(); ++i)
     intervals_s.push_back(secondsSince(samples[i - 1].time_ns, samples[i].time_ns));
-  }
   return medianOf(std::move(intervals_s));
 }
 
-double medianForceNorm(const std::vector<ImuSample>& samples) {
+template <class Sample>
+double medianForceNormOf(const std::vector<Sample>& samples) {
   std::vector<double> norms;
-  for (const ImuSample& sample : samples) {
-    const double norm = sample.specific_force_m_s2.norm();
+  for (const Sample& sample : samples) {
+    const double norm = forceOf(sample).norm();
     if (std::isfinite(norm)) norms.push_back(norm);
   }
   return medianOf(std::move(norms));
 }
 
-double largestRate(const std::vector<ImuSample>& samples) {
+template <class Sample>
+double largestRateOf(const std::vector<Sample>& samples) {
   double largest = 0.0;
-  for (const ImuSample& sample : samples) {
-    const double rate = sample.angular_rate_rad_s.cwiseAbs().maxCoeff();
+  for (const Sample& sample : samples) {
+    const double rate = rateOf(sample).cwiseAbs().maxCoeff();
     if (std::isfinite(rate)) largest = std::max(largest, rate);
   }
   return largest;
+}
+
+}  // namespace
+
+double medianInterval_s(const std::vector<ImuSample>& samples) {
+  return medianIntervalOf(samples);
+}
+
+double medianInterval_s(const std::vector<RawImuSample>& samples) {
+  return medianIntervalOf(samples);
+}
+
+double medianForceNorm(const std::vector<ImuSample>& samples) {
+  return medianForceNormOf(samples);
+}
+
+double medianForceNorm(const std::vector<RawImuSample>& samples) {
+  return medianForceNormOf(samples);
+}
+
+double largestRate(const std::vector<ImuSample>& samples) {
+  return largestRateOf(samples);
+}
+
+double largestRate(const std::vector<RawImuSample>& samples) {
+  return largestRateOf(samples);
 }
 
 }  // namespace evical

@@ -12,15 +12,15 @@ namespace {
 
 constexpr double kGravity_m_s2 = 9.80665;
 
-void summarise(const std::vector<ImuSample>& samples, const InspectionOptions& options,
+void summarise(const std::vector<RawImuSample>& samples, const InspectionOptions& options,
                StreamSummary& summary) {
   summary.count = samples.size();
   if (samples.empty()) return;
   summary.first_ns = samples.front().time_ns;
   summary.last_ns = samples.back().time_ns;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    summary.mean_acceleration += samples[i].specific_force_m_s2 / static_cast<double>(samples.size());
-    summary.mean_angular_rate += samples[i].angular_rate_rad_s / static_cast<double>(samples.size());
+    summary.mean_acceleration += samples[i].specific_force / static_cast<double>(samples.size());
+    summary.mean_angular_rate += samples[i].angular_rate / static_cast<double>(samples.size());
     if (i == 0) continue;
     const std::int64_t interval_ns = samples[i].time_ns - samples[i - 1].time_ns;
     summary.backward_steps += interval_ns < 0 ? 1 : 0;
@@ -53,7 +53,7 @@ Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& op
   Inspection inspection;
   inspection.format = reader.format();
   std::map<std::size_t, EventStatistics> events;
-  std::map<std::size_t, std::vector<ImuSample>> imu_samples;
+  std::map<std::size_t, std::vector<RawImuSample>> imu_samples;
   for (std::size_t i = 0; i < reader.streams().size(); ++i) {
     const StreamInfo& info = reader.streams()[i];
     if (info.type == StreamType::Events) events.try_emplace(i, info, options);
@@ -64,7 +64,7 @@ Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& op
     context.throwIfStopped();
     context.progress.stageProgress(reader.fractionRead());
     if (!packet.events.empty()) events.at(packet.stream).add(packet.events);
-    std::vector<ImuSample>& samples = imu_samples[packet.stream];
+    std::vector<RawImuSample>& samples = imu_samples[packet.stream];
     samples.insert(samples.end(), packet.imu_samples.begin(), packet.imu_samples.end());
   }
   inspection.faults = reader.faults();
@@ -75,8 +75,9 @@ Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& op
     if (summary.info.type == StreamType::Events) events.at(i).finish(summary, inspection.faults);
     if (summary.info.type != StreamType::Imu) continue;
     summarise(imu_samples[i], options, summary);
-    toSi(summary.info.acceleration_unit, summary.info.angular_rate_unit, imu_samples[i]);
-    const std::vector<RecordingFault> found = checkImu(summary.info.name, imu_samples[i], options);
+    std::vector<ImuSample> samples;
+    toSi(imu_samples[i], summary.info.acceleration_unit, summary.info.angular_rate_unit, samples);
+    const std::vector<RecordingFault> found = checkImu(summary.info.name, samples, options);
     inspection.faults.insert(inspection.faults.end(), found.begin(), found.end());
   }
   return inspection;

@@ -55,7 +55,7 @@ std::string inspectionJson(const Inspection& inspection, bool with_checksums) {
                {"streams", Json::array()}};
   for (const RecordingFault& fault : inspection.faults) {
     json["faults"].push_back(
-        {{"stream", fault.stream}, {"kind", fault.kind}, {"at_s", fault.at_s}, {"text", fault.text}});
+        {{"stream", fault.stream}, {"kind", nameOf(fault.kind)}, {"at_s", fault.at_s}, {"text", fault.text}});
   }
   for (const StreamSummary& stream : inspection.streams)
     json["streams"].push_back(streamJson(stream, with_checksums));

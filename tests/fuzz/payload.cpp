@@ -33,7 +33,7 @@ void eventPacket(std::string_view bytes) {
 
 void message(std::string_view bytes, ros::Serialization serialization) {
   std::vector<Event> events;
-  std::vector<ImuSample> samples;
+  std::vector<RawImuSample> samples;
   Resolution resolution_px;
   ros::EventPacket packet;
   ros::decodeEventArray(bytes, serialization, events, resolution_px);
@@ -45,7 +45,7 @@ void message(std::string_view bytes, ros::Serialization serialization) {
 
 void aedatPacket(std::string_view bytes) {
   std::vector<Event> events;
-  std::vector<ImuSample> samples;
+  std::vector<RawImuSample> samples;
   aedat::decodeHeader(bytes);
   aedat::decodeTable(bytes);
   aedat::decodeEvents(bytes, events);

@@ -48,7 +48,7 @@ void checkPacket(const evical::RecordingReader& reader, const evical::Packet& pa
                                                evical::isTime(packet.events.back().time_ns));
   const bool filled = !packet.events.empty() || !packet.imu_samples.empty();
   if (!ordered || !timed || !filled || packet.stream >= reader.streams().size()) std::abort();
-  for (const evical::ImuSample& sample : packet.imu_samples)
+  for (const evical::RawImuSample& sample : packet.imu_samples)
     if (!evical::isTime(sample.time_ns)) std::abort();
 }
 

@@ -41,6 +41,13 @@ std::vector<ImuSample> someSamples() {
   return samples;
 }
 
+std::vector<RawImuSample> rawSamples() {
+  std::vector<RawImuSample> samples;
+  for (const ImuSample& sample : someSamples())
+    samples.push_back(fromSi(sample, AccelerationUnit::Gravity, AngularRateUnit::DegreesPerSecond));
+  return samples;
+}
+
 void save(const fs::path& path, const std::string& bytes) {
   fs::create_directories(path.parent_path());
   std::ofstream(path, std::ios::binary) << bytes;
@@ -89,7 +96,7 @@ void savePlainAedat4(const fs::path& path) {
     bytes += packet;
   };
   add(0, aedat::encodeEvents(someEvents()));
-  add(1, aedat::encodeImu(someSamples()));
+  add(1, aedat::encodeImu(rawSamples()));
   save(path, bytes);
 }
 
@@ -140,7 +147,7 @@ void savePayloads(const fs::path& folder) {
   save(folder / "payload/libcaer_cmp", kind(0) + "\x04\x80" + test::encodeEvt3(events));
   save(folder / "payload/ecf", kind(1) + std::string("\x0C\0\0\0", 4) + std::string(40, '\0'));
   save(folder / "payload/aedat_events", kind(2) + aedat::encodeEvents(events));
-  save(folder / "payload/aedat_imu", kind(2) + aedat::encodeImu(someSamples()));
+  save(folder / "payload/aedat_imu", kind(2) + aedat::encodeImu(rawSamples()));
   save(folder / "payload/ros1", kind(3) + test::eventMessage(kStart_ns, kSize_px, events));
   save(folder / "payload/cdr", kind(4) + test::cdrEvents(kSize_px, events));
   save(folder / "payload/cdr_imu", kind(4) + test::cdrImu(someSamples().front()));

@@ -67,7 +67,7 @@ class EventWindowReader::Pass {
         camera_(camera),
         resolution_px_(recording_.resolution_px(camera)),
         start_ns_(recording_.start_ns()) {
-    if (!session.imus.empty()) imu_stream_ = recording_.imuStream(session.referenceImu());
+    if (!session.imus.empty()) imu_ = recording_.imuSensor(session.referenceImu());
   }
 
   bool step() {
@@ -77,11 +77,11 @@ class EventWindowReader::Pass {
       return false;
     }
     started_ = true;
-    if (packet_.stream == camera_) {
+    if (packet_.sensor == camera_) {
       pending_.insert(pending_.end(), packet_.events.begin(), packet_.events.end());
       if (pending_.size() >= kBatchEvents) flush();
     }
-    if (imu_stream_ && packet_.stream == *imu_stream_) {
+    if (imu_ && packet_.sensor == *imu_) {
       for (const ImuSample& sample : packet_.imu_samples)
         rotation_.add(secondsSince(start_ns_, sample.time_ns), sample.angular_rate_rad_s.norm());
     }
@@ -118,9 +118,9 @@ class EventWindowReader::Pass {
   EventCache& cache_;
   SessionRecording recording_;
   std::size_t camera_;
-  std::optional<std::size_t> imu_stream_;
+  std::optional<std::size_t> imu_;
   Resolution resolution_px_;
-  Packet packet_;
+  SensorPacket packet_;
   std::vector<Event> pending_;
   std::int64_t start_ns_;
   bool started_ = false;

@@ -72,7 +72,7 @@ std::map<std::int32_t, Aedat4Reader::Listed> Aedat4Reader::listFromTable(std::in
   const auto at = static_cast<std::uint64_t>(position);
   if (position < 0 || at < data_position_ || at >= file_size_) {
     if (position > 0) {
-      addFault("", "truncated",
+      addFault("", FaultKind::Truncated,
                fmt::format("The table of packets should be at byte {} of {}; the file is cut off or was not "
                            "finished.",
                            position, file_size_));
@@ -85,7 +85,7 @@ std::map<std::int32_t, Aedat4Reader::Listed> Aedat4Reader::listFromTable(std::in
                      unpacker_->unpack(packed_, content, used);
   const auto entries = whole ? aedat::decodeTable(content) : std::nullopt;
   if (!entries) {
-    addFault("", "corrupt",
+    addFault("", FaultKind::Corrupt,
              fmt::format("The table of packets at byte {} is damaged; packets are read without it.", at));
     return listed;
   }
@@ -246,10 +246,10 @@ bool Aedat4Reader::skipDamage(const PacketHeader& header, HeaderState state) {
   resumeBehind(at);
   const bool last = position_ == file_size_ || position_ == table_position_;
   if (last && state == HeaderState::Cut) {
-    addFault("", "truncated",
+    addFault("", FaultKind::Truncated,
              fmt::format("The last packet, at byte {} of {}, is not whole; it is left out.", at, file_size_));
   } else {
-    addFault("", "corrupt",
+    addFault("", FaultKind::Corrupt,
              fmt::format("The packet at byte {} of {} is damaged; {}.", at, file_size_,
                          last ? "nothing behind it can be read"
                               : fmt::format("reading goes on at byte {}", position_)));
@@ -265,12 +265,12 @@ bool Aedat4Reader::unpack(const PacketHeader& header, std::string_view& content)
   if (read && unpacker_->unpack(packed_, content, used)) {
     if (used == size) return true;
     position_ = header.dataPosition() + used;
-    addFault("", "corrupt",
+    addFault("", FaultKind::Corrupt,
              fmt::format("The packet at byte {} states {} bytes and has {}.", header.position, size, used));
     return true;
   }
   resumeBehind(header.position);
-  addFault("", "corrupt",
+  addFault("", FaultKind::Corrupt,
            fmt::format("The packet at byte {} cannot be unpacked; it is left out.", header.position));
   return false;
 }
@@ -297,10 +297,10 @@ void Aedat4Reader::finishEvents(std::size_t stream, Packet& packet) {
   if (!order.changedAnything()) return;
   const std::string& name = streams_[stream].name;
   const auto known = std::find_if(faults_.begin(), faults_.end(), [&](const RecordingFault& fault) {
-    return fault.stream == name && fault.kind == "unsorted";
+    return fault.stream == name && fault.kind == FaultKind::Unsorted;
   });
   if (known == faults_.end()) {
-    faults_.push_back({name, "unsorted", 0.0, order.text()});
+    faults_.push_back({name, FaultKind::Unsorted, 0.0, order.text()});
   } else {
     known->text = order.text();
   }
@@ -331,7 +331,7 @@ bool Aedat4Reader::read(Packet& packet) {
     const auto found = stream_of_id_.find(header.stream);
     if (found == stream_of_id_.end()) {
       addFault(
-          "", "corrupt",
+          "", FaultKind::Corrupt,
           fmt::format("The packet at byte {} is of stream {}, which the file does not list; it is left out.",
                       header.position, header.stream));
       continue;
@@ -345,7 +345,7 @@ bool Aedat4Reader::read(Packet& packet) {
       countListed(stream, content);
     } else if (!decode(stream, content, packet)) {
       addFault(
-          streams_[stream].name, "corrupt",
+          streams_[stream].name, FaultKind::Corrupt,
           fmt::format("The content of the packet at byte {} is damaged; it is left out.", header.position));
     } else if (!packet.events.empty() || !packet.imu_samples.empty()) {
       return true;
@@ -361,7 +361,7 @@ double Aedat4Reader::fractionRead() const {
   return std::min(1.0, static_cast<double>(position_) / static_cast<double>(std::max<std::uint64_t>(1, end)));
 }
 
-void Aedat4Reader::addFault(const std::string& stream, const std::string& kind, const std::string& text) {
+void Aedat4Reader::addFault(const std::string& stream, FaultKind kind, const std::string& text) {
   const auto alike = [&](const RecordingFault& fault) {
     return fault.stream == stream && fault.kind == kind;
   };

@@ -64,7 +64,7 @@ class Aedat4Reader : public RecordingReader {
   void finishEvents(std::size_t stream, Packet& packet);
   void countListed(std::size_t stream, std::string_view content);
   bool handOutRest(Packet& packet);
-  void addFault(const std::string& stream, const std::string& kind, const std::string& text);
+  void addFault(const std::string& stream, FaultKind kind, const std::string& text);
 
   std::string path_;
   std::ifstream file_;

@@ -47,11 +47,9 @@ class Aedat4Writer : public RecordingWriter {
 
   void write(std::size_t stream, std::span<const ImuSample> samples) override {
     Stream& target = checked(stream, StreamType::Imu);
-    for (ImuSample sample : samples) {
+    for (const ImuSample& sample : samples) {
       if (isFull(target.samples, sample.time_ns, kPacketSamples)) flush(stream);
-      sample.specific_force_m_s2 /= metresPerSecond2(AccelerationUnit::Gravity);
-      sample.angular_rate_rad_s /= radiansPerSecond(AngularRateUnit::DegreesPerSecond);
-      target.samples.push_back(sample);
+      target.samples.push_back(fromSi(sample, AccelerationUnit::Gravity, AngularRateUnit::DegreesPerSecond));
     }
   }
 
@@ -68,7 +66,7 @@ class Aedat4Writer : public RecordingWriter {
   struct Stream {
     StreamInfo info;
     std::vector<Event> events;  // of the packet being gathered, as are the samples
-    std::vector<ImuSample> samples;
+    std::vector<RawImuSample> samples;
   };
 
   template <class Element>

@@ -89,7 +89,7 @@ bool decodeEvents(std::string_view bytes, std::vector<Event>& events) {
   return times_good;
 }
 
-bool decodeImu(std::string_view bytes, std::vector<ImuSample>& samples) {
+bool decodeImu(std::string_view bytes, std::vector<RawImuSample>& samples) {
   samples.clear();
   auto [buffer, root, good] = open(bytes, "IMUS");
   if (!good) return false;
@@ -98,12 +98,12 @@ bool decodeImu(std::string_view bytes, std::vector<ImuSample>& samples) {
     const FlatTable table = buffer.tableAt(list.position + 4 * i);
     const auto time_us = buffer.number<std::int64_t>(table, 0);
     if (!isMicrosecond(time_us)) return false;
-    ImuSample sample;
+    RawImuSample sample;
     sample.time_ns = time_us * kMicrosecond_ns;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto row = static_cast<Eigen::Index>(axis);
-      sample.specific_force_m_s2[row] = static_cast<double>(buffer.number<float>(table, 2 + axis));
-      sample.angular_rate_rad_s[row] = static_cast<double>(buffer.number<float>(table, 5 + axis));
+      sample.specific_force[row] = static_cast<double>(buffer.number<float>(table, 2 + axis));
+      sample.angular_rate[row] = static_cast<double>(buffer.number<float>(table, 5 + axis));
     }
     samples.push_back(sample);
   }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/data/event.h"
-#include "core/data/imu_sample.h"
+#include "core/data/imu_units.h"
 
 #include <cstdint>
 #include <optional>
@@ -36,7 +36,7 @@ struct TableEntry {
 std::optional<FileHeader> decodeHeader(std::string_view bytes);
 std::optional<std::vector<TableEntry>> decodeTable(std::string_view bytes);
 bool decodeEvents(std::string_view bytes, std::vector<Event>& events);
-bool decodeImu(std::string_view bytes, std::vector<ImuSample>& samples);  // in g and deg/s
+bool decodeImu(std::string_view bytes, std::vector<RawImuSample>& samples);  // in g and deg/s
 std::optional<std::size_t> countTriggers(std::string_view bytes);
 std::string_view packetType(std::string_view bytes);  // "EVTS", ...; empty if there is none
 
@@ -44,7 +44,7 @@ std::string_view packetType(std::string_view bytes);  // "EVTS", ...; empty if t
 std::string encodeHeader(const FileHeader& header, std::size_t& position_at);
 std::string encodeTable(std::span<const TableEntry> entries);
 std::string encodeEvents(EventSpan events);
-std::string encodeImu(std::span<const ImuSample> samples);  // given in g and deg/s
+std::string encodeImu(std::span<const RawImuSample> samples);  // given in g and deg/s
 
 std::int64_t nearestMicrosecond(std::int64_t time_ns);
 

@@ -121,12 +121,12 @@ std::string encodeEvents(EventSpan events) {
   return bytes;
 }
 
-std::string encodeImu(std::span<const ImuSample> samples) {
+std::string encodeImu(std::span<const RawImuSample> samples) {
   const auto fields = [&](std::string& bytes, std::size_t i) {
-    const ImuSample& sample = samples[i];
+    const RawImuSample& sample = samples[i];
     append(bytes, nearestMicrosecond(sample.time_ns));
-    for (const double value : sample.specific_force_m_s2) append(bytes, static_cast<float>(value));
-    for (const double value : sample.angular_rate_rad_s) append(bytes, static_cast<float>(value));
+    for (const double value : sample.specific_force) append(bytes, static_cast<float>(value));
+    for (const double value : sample.angular_rate) append(bytes, static_cast<float>(value));
   };
   // The temperature is not known; nor is the magnetic field.
   return tables("IMUS", samples.size(), 36, {4, 0, 12, 16, 20, 24, 28, 32}, fields);

@@ -59,18 +59,18 @@ class ImuDatasets : public ImuTable {
     if (!second_) findGravity();
   }
 
-  void load(std::vector<ImuSample>& samples) override {
+  void load(std::vector<RawImuSample>& samples) override {
     while (row_ < rows_ && samples.size() < kPacketSamples) {
       if (skipDamage()) continue;
       const auto first = first_.numbersFrom(row_);
       const double* rate = first.data() + rate_column_;
       const double* acceleration =
           second_ ? second_->numbersFrom(row_).data() : first.data() + 3 - rate_column_;
-      ImuSample sample;
-      sample.angular_rate_rad_s = Eigen::Vector3d(rate[0], rate[1], rate[2]);
-      sample.specific_force_m_s2 = Eigen::Vector3d(acceleration[0], acceleration[1], acceleration[2]);
-      const bool good = times_.convert(row_, time_, sample.time_ns) &&
-                        sample.angular_rate_rad_s.allFinite() && sample.specific_force_m_s2.allFinite();
+      RawImuSample sample;
+      sample.angular_rate = Eigen::Vector3d(rate[0], rate[1], rate[2]);
+      sample.specific_force = Eigen::Vector3d(acceleration[0], acceleration[1], acceleration[2]);
+      const bool good = times_.convert(row_, time_, sample.time_ns) && sample.angular_rate.allFinite() &&
+                        sample.specific_force.allFinite();
       if (good) samples.push_back(sample);
       if (!good) problem_ = fmt::format("row {} of the IMU holds no numbers", row_);
       ++row_;
@@ -114,13 +114,13 @@ class ImuText : public ImuTable {
     if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions");
   }
 
-  void load(std::vector<ImuSample>& samples) override {
+  void load(std::vector<RawImuSample>& samples) override {
     while (samples.size() < kPacketSamples) {
       file_.getline(line_.data(), static_cast<std::streamsize>(line_.size()));
       const bool too_long = file_.fail() && !file_.eof() && file_.gcount() > 0;
       if (file_.fail() && !too_long) return;
       ++number_;
-      ImuSample sample;
+      RawImuSample sample;
       if (too_long) skipLine();
       if (!too_long && parse(sample)) {
         samples.push_back(sample);
@@ -139,7 +139,7 @@ class ImuText : public ImuTable {
   }
 
   // Numbers apart by blanks or commas.
-  bool parse(ImuSample& sample) const {
+  bool parse(RawImuSample& sample) const {
     std::array<double, 7> values{};
     const char* at = line_.data();
     const char* end = at + std::char_traits<char>::length(at);
@@ -151,8 +151,8 @@ class ImuText : public ImuTable {
     }
     TimeScale us;
     us.factor_ns = 1000.0;
-    sample.angular_rate_rad_s = Eigen::Vector3d(values[1], values[2], values[3]);
-    sample.specific_force_m_s2 = Eigen::Vector3d(values[4], values[5], values[6]);
+    sample.angular_rate = Eigen::Vector3d(values[1], values[2], values[3]);
+    sample.specific_force = Eigen::Vector3d(values[4], values[5], values[6]);
     return us.convert(values[0], sample.time_ns);
   }
 

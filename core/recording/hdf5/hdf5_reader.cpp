@@ -145,11 +145,13 @@ bool Hdf5Reader::fillEvents(Source& source, std::vector<Event>& events) {
 
 void Hdf5Reader::noteProblem(const Source& source, const std::string& problem) {
   if (problem.empty()) return;
-  addFault(streams_[source.stream].name, "corrupt", fmt::format("Some rows are left out: {}.", problem));
+  addFault(streams_[source.stream].name, FaultKind::Corrupt,
+           fmt::format("Some rows are left out: {}.", problem));
 }
 
 void Hdf5Reader::noteOrder(const Source& source) {
-  if (source.order.changedAnything()) addFault(streams_[source.stream].name, "unsorted", source.order.text());
+  if (source.order.changedAnything())
+    addFault(streams_[source.stream].name, FaultKind::Unsorted, source.order.text());
 }
 
 // By rows; that of the IMU's text is not known and short.
@@ -163,7 +165,7 @@ double Hdf5Reader::fractionRead() const {
   return rows == 0.0 ? 1.0 : read / rows;
 }
 
-void Hdf5Reader::addFault(const std::string& stream, const char* kind, std::string text) {
+void Hdf5Reader::addFault(const std::string& stream, FaultKind kind, std::string text) {
   const auto alike = [&](const RecordingFault& fault) {
     return fault.stream == stream && fault.kind == kind;
   };

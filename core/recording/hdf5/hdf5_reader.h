@@ -34,7 +34,7 @@ class Hdf5Reader : public RecordingReader {
   bool fillEvents(Source& source, std::vector<Event>& events);
   void noteProblem(const Source& source, const std::string& problem);
   void noteOrder(const Source& source);
-  void addFault(const std::string& stream, const char* kind, std::string text);
+  void addFault(const std::string& stream, FaultKind kind, std::string text);
 
   std::vector<StreamInfo> streams_;
   std::vector<std::unique_ptr<Source>> sources_;  // one a stream

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/data/event.h"
-#include "core/data/imu_sample.h"
+#include "core/data/imu_units.h"
 #include "core/recording/hdf5/hdf5_dataset.h"
 
 #include <array>
@@ -47,7 +47,7 @@ class ImuTable {
   virtual ~ImuTable() = default;
 
   // The next few samples; none at the end.
-  virtual void load(std::vector<ImuSample>& samples) = 0;
+  virtual void load(std::vector<RawImuSample>& samples) = 0;
 
   const TimeScale& timeScale() const { return time_; }
   std::string takeProblem() { return std::exchange(problem_, {}); }

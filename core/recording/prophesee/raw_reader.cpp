@@ -79,8 +79,8 @@ std::unique_ptr<RecordingReader> openProphesee(const std::filesystem::path& path
   if (!only_triggers) format.streams.push_back(streamOf(StreamType::Events, header));
   if (only_triggers || !dat) format.streams.push_back(streamOf(StreamType::Triggers, header));
   if (!only_triggers && !header.resolution_px.known()) {
-    format.notes.push_back(
-        {"events", "no_resolution", 0.0, "The header does not tell the sensor's size; the session must."});
+    format.notes.push_back({"events", FaultKind::NoResolution, 0.0,
+                            "The header does not tell the sensor's size; the session must."});
   }
   return std::make_unique<BlockReader>(
       path, std::move(format),

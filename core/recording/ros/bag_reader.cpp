@@ -77,7 +77,7 @@ BagReader::BagReader(const std::filesystem::path& path)
   topics_.finishLooking();
   const std::vector<std::string> parts = otherParts(path);
   if (parts.empty()) return;
-  addFault("part",
+  addFault(FaultKind::Part,
            fmt::format("The name is that of a part of a recording that was split: {} {} beside it. Only "
                        "this part is read.",
                        joined(parts), parts.size() == 1 ? "lies" : "lie"));
@@ -97,7 +97,7 @@ void BagReader::listStreams() {
   topics_.clear();
   listByScan();
   const bool never_closed = has_header && header.index_position == 0;
-  addFault("no_index",
+  addFault(FaultKind::NoIndex,
            never_closed
                ? "The bag has no index: its recorder did not close it. It is read from the start."
                : fmt::format("The bag's index is damaged, or cut off at byte {}. It is read from the start.",
@@ -175,10 +175,11 @@ void BagReader::loadChunk(std::uint64_t position, const FileRecord& record) {
       read ? rosbag::decompressChunk(record.header.compression, file_bytes_, record.header.size, chunk_)
            : ros::Unpacked::Damaged;
   if (result == ros::Unpacked::Damaged) {
-    addFault("corrupt", fmt::format("The chunk at byte {} cannot be unpacked; it is left out.", position));
+    addFault(FaultKind::Corrupt,
+             fmt::format("The chunk at byte {} cannot be unpacked; it is left out.", position));
   } else if (result == ros::Unpacked::Cut) {
-    addFault("truncated", fmt::format("The chunk at byte {} holds {} of {} bytes; these are read.", position,
-                                      chunk_.size(), record.header.size));
+    addFault(FaultKind::Truncated, fmt::format("The chunk at byte {} holds {} of {} bytes; these are read.",
+                                               position, chunk_.size(), record.header.size));
   }
 }
 
@@ -330,7 +331,7 @@ bool BagReader::nextChunk() {
 void BagReader::reportDamage(std::uint64_t position, RecordState state) {
   const bool last = position_ == file_size_;
   const std::uint64_t lost = std::max(position, position_) - position;
-  addFault(state == RecordState::Cut && last ? "truncated" : "corrupt",
+  addFault(state == RecordState::Cut && last ? FaultKind::Truncated : FaultKind::Corrupt,
            fmt::format("The record at byte {} of {} {}; {}.", position, file_size_,
                        state == RecordState::Damaged ? fmt::format("is damaged, {} bytes are lost", lost)
                                                      : "is cut off or has a false length",
@@ -343,7 +344,7 @@ bool BagReader::nextMessage(Packet& packet) {
   while (chunk_offset_ < chunk_.size()) {
     const std::size_t offset = chunk_offset_;
     if (!takeRecord(chunk_, chunk_offset_, record)) {
-      addFault("corrupt",
+      addFault(FaultKind::Corrupt,
                fmt::format("The chunk at byte {} is damaged from its byte {} on; the rest is left out.",
                            chunk_position_, offset));
       chunk_.clear();

@@ -68,7 +68,7 @@ class BagReader : public RecordingReader {
   bool nextChunk();
   void reportDamage(std::uint64_t position, RecordState state);
   bool nextMessage(Packet& packet);
-  void addFault(const std::string& kind, const std::string& text) { topics_.addFault("", kind, text); }
+  void addFault(FaultKind kind, const std::string& text) { topics_.addFault("", kind, text); }
 
   std::string path_;
   std::ifstream file_;

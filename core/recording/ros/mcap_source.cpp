@@ -90,9 +90,10 @@ bool McapSource::listFromSummary() {
                       bytes == mcap::kMagic && readHead(file_.size() - tail, record) &&
                       record.is(mcap::Op::Footer) && readContent(record, bytes);
   if (!closed) {
-    sink_("no_index", fmt::format("The file has no end: its recorder did not close it, or it is cut off at "
-                                  "byte {}. It is read from the start.",
-                                  file_.size()));
+    sink_(FaultKind::NoIndex,
+          fmt::format("The file has no end: its recorder did not close it, or it is cut off at "
+                      "byte {}. It is read from the start.",
+                      file_.size()));
     return false;
   }
   const std::uint64_t footer = record.position;
@@ -104,8 +105,9 @@ bool McapSource::listFromSummary() {
     whole = at < footer && readHead(at, record) && record.size <= footer - record.content &&
             takeSummaryRecord(record, statistics);
   if (!whole)
-    sink_("no_index", fmt::format("The summary at byte {} is damaged; the file is read from the start.",
-                                  std::min(summary, file_.size())));
+    sink_(FaultKind::NoIndex,
+          fmt::format("The summary at byte {} is damaged; the file is read from the start.",
+                      std::min(summary, file_.size())));
   if (!whole || statistics.channels == 0 || topic_of_channel_.size() != statistics.channels) return false;
   for (const auto& [channel, topic] : topic_of_channel_)
     if (const auto found = statistics.messages.find(channel); found != statistics.messages.end())
@@ -162,7 +164,7 @@ void McapSource::countPending(PendingChunk& chunk) {
   if (known) {
     for (const auto& [channel, count] : chunk.messages) topics_[topic_of_channel_[channel]].messages += count;
   } else if (Record record; readHead(chunk.position, record)) {
-    const FaultSink sink = std::exchange(sink_, [](const std::string&, const std::string&) {});
+    const FaultSink sink = std::exchange(sink_, [](FaultKind, const std::string&) {});
     if (loadChunk(record)) {  // reading will report its damage
       ChunkRecord part;
       while (takeRecord(chunk_, part)) {
@@ -221,8 +223,9 @@ bool McapSource::nextOfChunk(SourceMessage& message) {
   ChunkRecord record;
   const std::size_t at = chunk_size_ - chunk_.size();
   if (!takeRecord(chunk_, record)) {
-    sink_("corrupt", fmt::format("The chunk at byte {} is damaged from its byte {} on; the rest is left out.",
-                                 record_position_, at));
+    sink_(FaultKind::Corrupt,
+          fmt::format("The chunk at byte {} is damaged from its byte {} on; the rest is left out.",
+                      record_position_, at));
     chunk_ = {};
     return false;
   }
@@ -238,7 +241,7 @@ bool McapSource::nextRecord(SourceMessage& message) {
   if (!readHead(position_, record)) {
     ended_ = true;
     if (position_ < file_.size())
-      sink_("truncated", fmt::format("The file ends within a record, at byte {}.", file_.size()));
+      sink_(FaultKind::Truncated, fmt::format("The file ends within a record, at byte {}.", file_.size()));
     return false;
   }
   if (record.size > file_.size() - record.content || !isKnown(record.op)) {
@@ -257,7 +260,7 @@ bool McapSource::nextRecord(SourceMessage& message) {
 bool McapSource::handOut(std::string_view content, SourceMessage& message) {
   mcap::Message record;
   if (!mcap::parseMessage(content, record)) {
-    sink_("corrupt", fmt::format("A message {} is damaged; it is left out.", place()));
+    sink_(FaultKind::Corrupt, fmt::format("A message {} is damaged; it is left out.", place()));
     return false;
   }
   const auto found = topic_of_channel_.find(record.channel);
@@ -305,11 +308,11 @@ bool McapSource::loadChunk(const Record& record) {
 
 void McapSource::reportChunk(Unpacked result, const Record& record, std::uint64_t expected_bytes) {
   if (result == Unpacked::Damaged) {
-    sink_("corrupt",
+    sink_(FaultKind::Corrupt,
           fmt::format("The chunk at byte {} cannot be unpacked; it is left out.", record.position));
   } else if (result == Unpacked::Cut) {
-    sink_("truncated", fmt::format("The chunk at byte {} holds {} of {} bytes; these are read.",
-                                   record.position, chunk_size_, expected_bytes));
+    sink_(FaultKind::Truncated, fmt::format("The chunk at byte {} holds {} of {} bytes; these are read.",
+                                            record.position, chunk_size_, expected_bytes));
   }
 }
 
@@ -317,8 +320,9 @@ void McapSource::checkSum(const mcap::ChunkHead& head, const Record& record) {
   if (head.crc == 0) return;
   const uLong crc = crc32_z(0, reinterpret_cast<const Bytef*>(chunk_.data()), chunk_.size());
   if (crc != head.crc) {
-    sink_("corrupt", fmt::format("The chunk at byte {} does not fit its checksum; it is read nevertheless.",
-                                 record.position));
+    sink_(FaultKind::Corrupt,
+          fmt::format("The chunk at byte {} does not fit its checksum; it is read nevertheless.",
+                      record.position));
   }
 }
 
@@ -327,7 +331,7 @@ void McapSource::skipDamage(const Record& record) {
   const bool is_chunk = record.is(mcap::Op::Chunk);
   position_ = chunkAfter(record.position);
   const bool last = position_ == file_.size();
-  sink_(last && isKnown(record.op) ? "truncated" : "corrupt",
+  sink_(last && isKnown(record.op) ? FaultKind::Truncated : FaultKind::Corrupt,
         fmt::format("The record at byte {} of {} is {}; {}.", record.position, file_.size(),
                     isKnown(record.op) ? "cut off or has a false length" : "damaged",
                     last ? "nothing behind it is read"

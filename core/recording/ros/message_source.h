@@ -24,7 +24,7 @@ struct SourceMessage {
 };
 
 // Takes a fault of the file: kind and text, as in RecordingFault.
-using FaultSink = std::function<void(const std::string& kind, const std::string& text)>;
+using FaultSink = std::function<void(FaultKind kind, const std::string& text)>;
 
 // Constructors throw CalibrationError (BadInput) if nothing can be read; what is lost later goes to their
 // FaultSink.

@@ -90,7 +90,7 @@ std::vector<fs::path> ros2Files(const fs::path& path, const FaultSink& sink) {
     try {
       files = filesOfMetadata(path);
     } catch (const CalibrationError& error) {
-      sink("metadata",
+      sink(FaultKind::Metadata,
            fmt::format("The folder's metadata.yaml cannot be used ({}); its files are read in the "
                        "order of their numbers.",
                        error.what()));
@@ -99,7 +99,7 @@ std::vector<fs::path> ros2Files(const fs::path& path, const FaultSink& sink) {
   for (fs::path& file : files) file = existing(file);
   std::erase_if(files, [&](const fs::path& file) {
     if (fs::exists(file)) return false;
-    sink("truncated", fmt::format("The file {} is missing.", file.filename().string()));
+    sink(FaultKind::Truncated, fmt::format("The file {} is missing.", file.filename().string()));
     return true;
   });
   if (files.empty()) files = filesByNumber(path);

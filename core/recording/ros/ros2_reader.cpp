@@ -43,7 +43,7 @@ bool Ros2Reader::openFile(std::size_t index) {
     source_ = ros::openRos2File(files_[index], sink(files_[index]));
   } catch (const CalibrationError& error) {
     if (files_.size() == 1 || error.kind() != ErrorKind::BadInput) throw;
-    sink(files_[index])("unreadable", error.what());
+    sink(files_[index])(FaultKind::Unreadable, error.what());
     return false;
   }
   matchTopics();
@@ -121,7 +121,7 @@ double Ros2Reader::fractionRead() const {
 }
 
 ros::FaultSink Ros2Reader::sink(const std::filesystem::path& file) {
-  return [this, name = file.filename().string()](const std::string& kind, const std::string& text) {
+  return [this, name = file.filename().string()](FaultKind kind, const std::string& text) {
     topics_.addFault("", kind, files_.size() > 1 ? name + ": " + text : text);
   };
 }

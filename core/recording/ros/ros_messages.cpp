@@ -133,10 +133,10 @@ bool decodeEventArray(std::string_view message, Serialization serialization, std
   return false;
 }
 
-bool decodeImu(std::string_view message, Serialization serialization, std::vector<ImuSample>& samples) {
+bool decodeImu(std::string_view message, Serialization serialization, std::vector<RawImuSample>& samples) {
   samples.clear();
   MessageCursor cursor(message, serialization);
-  ImuSample sample;
+  RawImuSample sample;
   sample.time_ns = cursor.header();
   const auto skip = [&cursor](int numbers) {
     for (int i = 0; i < numbers; ++i) cursor.number<double>();
@@ -145,9 +145,9 @@ bool decodeImu(std::string_view message, Serialization serialization, std::vecto
     for (int i = 0; i < 3; ++i) vector[i] = cursor.number<double>();
   };
   skip(4 + 9);  // orientation and its covariance
-  takeVector(sample.angular_rate_rad_s);
+  takeVector(sample.angular_rate);
   skip(9);
-  takeVector(sample.specific_force_m_s2);
+  takeVector(sample.specific_force);
   skip(9);
   if (!cursor.wellEnded()) return false;
   samples.push_back(sample);

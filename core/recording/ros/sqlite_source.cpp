@@ -114,7 +114,7 @@ SqliteSource::SqliteSource(const std::filesystem::path& path, FaultSink sink)
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   const std::uint64_t stated = statedBytes(path);
   cut_ = !error && size < stated;
-  if (cut_) sink_("truncated", fmt::format("The file ends at byte {} of {}.", size, stated));
+  if (cut_) sink_(FaultKind::Truncated, fmt::format("The file ends at byte {} of {}.", size, stated));
   open();
   listTopics();
   countMessages();
@@ -126,7 +126,7 @@ void SqliteSource::open() {
   const bool has_log = hasWriteAheadLog(path_);
   if (has_log) database_ = std::make_unique<Database>(path_, false, cut_);
   if (has_log && !database_->ok()) {
-    sink_("truncated",
+    sink_(FaultKind::Truncated,
           "The newest messages are in the file's write-ahead log, which cannot be read here; they are left "
           "out.");
   }
@@ -245,8 +245,9 @@ bool SqliteSource::step() {
 
 // In order of storage from the last message on, over what cannot be read.
 bool SqliteSource::readOnBehindDamage(const std::string& reason) {
-  sink_("corrupt", fmt::format("The file is damaged behind message {} ({}); what can be read behind it is.",
-                               last_id_, reason));
+  sink_(FaultKind::Corrupt,
+        fmt::format("The file is damaged behind message {} ({}); what can be read behind it is.", last_id_,
+                    reason));
   by_time_ = false;
   from_id_ = last_id_;
   for (std::int64_t skipped = 1; from_id_ <= largest_id_; skipped *= 2) {
@@ -265,7 +266,7 @@ bool SqliteSource::handOut(SourceMessage& message) {
   if (bytes.starts_with(kZstdMagic)) {
     const Unpacked result = unpackZstdFrame(bytes, unpacked_);
     if (result != Unpacked::Whole) {
-      sink_("corrupt", fmt::format("The message {} cannot be unpacked; it is left out.", place()));
+      sink_(FaultKind::Corrupt, fmt::format("The message {} cannot be unpacked; it is left out.", place()));
       return false;
     }
     bytes = unpacked_;

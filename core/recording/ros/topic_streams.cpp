@@ -61,9 +61,9 @@ void TopicStreams::lookInto(std::size_t stream, std::string_view message) {
     decodeEventArray(message, state.serialization, events, info.resolution_px);
     for (const Event& event : events) count(event.time_ns);
   } else if (state.content == Content::Imu) {
-    std::vector<ImuSample> samples;
+    std::vector<RawImuSample> samples;
     decodeImu(message, state.serialization, samples);
-    for (const ImuSample& sample : samples) count(sample.time_ns);
+    for (const RawImuSample& sample : samples) count(sample.time_ns);
   } else if (state.content == Content::Image) {
     decodeImageSize(message, state.serialization, info.resolution_px);
   } else if (state.content == Content::EventPacket) {
@@ -117,15 +117,16 @@ void TopicStreams::finishLooking() {
     if (encoding == Encoding::Trigger) info.type = StreamType::Triggers;
     state.selected = (info.type == StreamType::Events || info.type == StreamType::Imu) && !state.refused();
     if (state.stampless())
-      addFault(info.name, "no_stamps", "Stamps are 0; the times of recording are used, which jitter by ms.");
+      addFault(info.name, FaultKind::NoStamps,
+               "Stamps are 0; the times of recording are used, which jitter by ms.");
     if (state.refused()) {
-      addFault(info.name, "encoding",
+      addFault(info.name, FaultKind::Encoding,
                fmt::format("The encoding \"{}\" cannot be read; readable are {}.", state.encoding,
                            kReadableEncodings));
     }
     if (encoding == Encoding::LibcaerCmp) {
       addFault(
-          info.name, "encoding",
+          info.name, FaultKind::Encoding,
           "The encoding libcaer_cmp is lossy: drivers write some rows up to 7 px off, and times that wrap "
           "at 65.5 ms in long messages. Record with the encoding libcaer.");
     }
@@ -180,7 +181,7 @@ bool TopicStreams::decode(std::size_t stream, std::string_view message, std::int
       return false;
   }
   if (!whole) {
-    addFault(streams_[stream].name, "corrupt",
+    addFault(streams_[stream].name, FaultKind::Corrupt,
              fmt::format("A message {} is damaged; {}.", place,
                          packet.events.empty() ? "it is left out" : "its end is left out"));
   }
@@ -209,7 +210,7 @@ bool TopicStreams::decodePacket(std::size_t stream, std::string_view message, st
   if (packet.resolution_px.known()) streams_[stream].resolution_px = packet.resolution_px;
   if (encodingOf(packet.encoding) == Encoding::Unknown) {
     addFault(
-        streams_[stream].name, "encoding",
+        streams_[stream].name, FaultKind::Encoding,
         fmt::format("There are messages with the encoding \"{}\", which cannot be read.", packet.encoding));
     return true;
   }
@@ -219,11 +220,11 @@ bool TopicStreams::decodePacket(std::size_t stream, std::string_view message, st
 }
 
 bool TopicStreams::decodeSamples(std::size_t stream, std::string_view message, std::int64_t record_time_ns,
-                                 std::vector<ImuSample>& samples) {
+                                 std::vector<RawImuSample>& samples) {
   const bool whole = decodeImu(message, states_[stream].serialization, samples);
   if (!states_[stream].stampless()) return whole;
   if (!isTime(record_time_ns)) samples.clear();
-  for (ImuSample& sample : samples) sample.time_ns = record_time_ns;
+  for (RawImuSample& sample : samples) sample.time_ns = record_time_ns;
   return whole && isTime(record_time_ns);
 }
 
@@ -248,9 +249,9 @@ void TopicStreams::putInOrder(std::size_t stream, std::vector<Event>& events) {
   std::stable_sort(events.begin(), events.end(),
                    [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; });
   const std::string& name = streams_[stream].name;
-  addFault(name, "unsorted", "");
+  addFault(name, FaultKind::Unsorted, "");
   for (RecordingFault& fault : faults_) {
-    if (fault.stream != name || fault.kind != "unsorted") continue;
+    if (fault.stream != name || fault.kind != FaultKind::Unsorted) continue;
     fault.text = fmt::format("Time runs backwards {} times within messages, by {:.3f} ms at most; sorted.",
                              state.disordered, 1e-6 * static_cast<double>(state.largest_disorder_ns));
   }
@@ -275,29 +276,30 @@ void TopicStreams::finishEventPackets(std::size_t stream) {
   const State& state = states_[stream];
   StreamInfo& info = streams_[stream];
   if (state.decoder.lostMessages() > 0) {
-    addFault(info.name, "lost_messages",
+    addFault(info.name, FaultKind::LostMessages,
              fmt::format("{} messages are missing between those recorded.", state.decoder.lostMessages()));
   }
   const Evt3Counts& counts = state.decoder.evt3Counts();
   if (counts.outside > 0) {
-    addFault(info.name, "outside",
+    addFault(info.name, FaultKind::Outside,
              fmt::format("{} events outside of the sensor are left out.", counts.outside));
   }
   if (state.decoder.triggers() > 0 && !state.trigger_stream)
-    addFault(info.name, "triggers", fmt::format("There are {} external triggers.", state.decoder.triggers()));
+    addFault(info.name, FaultKind::Triggers,
+             fmt::format("There are {} external triggers.", state.decoder.triggers()));
   const std::optional<HostClockOffset> offset = state.decoder.hostClock().offset();
   if (!offset) return;
   info.host_clock_offset_s = offset->offset_s;
   const std::string drift =
       offset->drift_ppm ? fmt::format(", drifting by {:.1f} ppm", *offset->drift_ppm) : "";
-  addFault(info.name, "host_clock",
+  addFault(info.name, FaultKind::HostClock,
            fmt::format("Times are the sensor's own; the host's are later by {:.6f} s{}. For an IMU on the "
                        "host's clock give the camera clock_offset_s: {:.6f}.",
                        offset->offset_s, drift, offset->offset_s));
 }
 
-void TopicStreams::addFault(const std::string& stream, const std::string& kind, const std::string& text) {
-  const int limit = kind == "corrupt" || kind == "unreadable" ? kMostAlikeFaults : 1;
+void TopicStreams::addFault(const std::string& stream, FaultKind kind, const std::string& text) {
+  const int limit = kind == FaultKind::Corrupt || kind == FaultKind::Unreadable ? kMostAlikeFaults : 1;
   const auto alike = [&](const RecordingFault& fault) {
     return fault.stream == stream && fault.kind == kind;
   };

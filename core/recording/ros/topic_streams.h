@@ -49,7 +49,7 @@ class TopicStreams {
   void finishReading();
 
   const std::vector<RecordingFault>& faults() const { return faults_; }
-  void addFault(const std::string& stream, const std::string& kind, const std::string& text);
+  void addFault(const std::string& stream, FaultKind kind, const std::string& text);
   void dropFaultsFrom(std::size_t count) { faults_.resize(count); }
 
  private:
@@ -78,7 +78,7 @@ class TopicStreams {
                     std::vector<Event>& events);
   bool decodePacket(std::size_t stream, std::string_view message, std::vector<Event>& events);
   bool decodeSamples(std::size_t stream, std::string_view message, std::int64_t record_time_ns,
-                     std::vector<ImuSample>& samples);
+                     std::vector<RawImuSample>& samples);
   void putInOrder(std::size_t stream, std::vector<Event>& events);
   void finishEventPackets(std::size_t stream);
 

@@ -68,7 +68,7 @@ UnpackedZstdFile::UnpackedZstdFile(const std::filesystem::path& path, const Faul
     bool whole = false;
     const std::uint64_t good = unpack(input, output, path_, whole);
     if (!whole) {
-      sink("truncated",
+      sink(FaultKind::Truncated,
            fmt::format("The packed file {} is cut off or damaged at byte {}; what is before is read.",
                        path.filename().string(), good));
     }

@@ -108,7 +108,7 @@ void TextTableReader::addSource(const std::filesystem::path& path) {
   stream.acceleration_unit = columns.acceleration_unit;
   stream.angular_rate_unit = columns.angular_rate_unit;
   streams_.push_back(stream);
-  if (!columns.guess.empty()) faults_.push_back({name, "guess", 0.0, columns.guess});
+  if (!columns.guess.empty()) faults_.push_back({name, FaultKind::Guess, 0.0, columns.guess});
   const int digits = digitsOf(columns.time_unit_ns);
   sources_.push_back(
       {TextLines(path), std::move(columns), digits, true, false, std::numeric_limits<std::int64_t>::min()});
@@ -164,9 +164,9 @@ void TextTableReader::fillEvents(Source& source, std::size_t stream, std::vector
   source.finished = true;
 }
 
-void TextTableReader::fillImu(Source& source, std::size_t stream, std::vector<ImuSample>& samples) {
+void TextTableReader::fillImu(Source& source, std::size_t stream, std::vector<RawImuSample>& samples) {
   std::string_view line;
-  ImuSample sample;
+  RawImuSample sample;
   while (samples.size() < kPacketSamples) {
     if (!source.lines.next(line)) {
       source.finished = true;
@@ -194,23 +194,23 @@ bool TextTableReader::parseEvent(const Source& source, std::string_view line, Ev
          parsePolarity(parts_[columns.polarity], event.brighter);
 }
 
-bool TextTableReader::parseImu(const Source& source, std::string_view line, ImuSample& sample) {
+bool TextTableReader::parseImu(const Source& source, std::string_view line, RawImuSample& sample) {
   const TextColumns& columns = source.columns;
   splitColumns(line, parts_);
   return parts_.size() >= columns.count() &&
          parseTime(parts_[columns.time], source.time_digits, sample.time_ns) &&
-         parseVector(parts_, columns.acceleration, sample.specific_force_m_s2) &&
-         parseVector(parts_, columns.rate, sample.angular_rate_rad_s);
+         parseVector(parts_, columns.acceleration, sample.specific_force) &&
+         parseVector(parts_, columns.rate, sample.angular_rate);
 }
 
 void TextTableReader::addBadLine(const Source& source, std::size_t stream) {
   const std::string& name = streams_[stream].name;
   const auto alike = [&](const RecordingFault& fault) {
-    return fault.stream == name && fault.kind != "guess";
+    return fault.stream == name && fault.kind != FaultKind::Guess;
   };
   if (std::count_if(faults_.begin(), faults_.end(), alike) >= kMostBadLines) return;
   const bool last = source.lines.bytesRead() == source.lines.size();
-  faults_.push_back({name, last ? "truncated" : "corrupt", 0.0,
+  faults_.push_back({name, last ? FaultKind::Truncated : FaultKind::Corrupt, 0.0,
                      fmt::format("Line {} is not \"{}\"; it is left out.", source.lines.number(),
                                  streams_[stream].message)});
 }

@@ -43,9 +43,9 @@ class TextTableReader : public RecordingReader {
 
   void addSource(const std::filesystem::path& path);
   void fillEvents(Source& source, std::size_t stream, std::vector<Event>& events);
-  void fillImu(Source& source, std::size_t stream, std::vector<ImuSample>& samples);
+  void fillImu(Source& source, std::size_t stream, std::vector<RawImuSample>& samples);
   bool parseEvent(const Source& source, std::string_view line, Event& event);
-  bool parseImu(const Source& source, std::string_view line, ImuSample& sample);
+  bool parseImu(const Source& source, std::string_view line, RawImuSample& sample);
   static bool isNoRow(const Source& source, std::string_view line);
   void addBadLine(const Source& source, std::size_t stream);
 

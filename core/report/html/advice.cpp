@@ -180,19 +180,21 @@ void adviseDuration(const ReportData& data, const Measures& measures, std::vecto
 
 void adviseFaults(const ReportData& data, std::vector<Advice>& all) {
   struct Remedy {
-    const char *kind, *what;
+    FaultKind kind;
+    const char* what;
   };
   static constexpr std::array<Remedy, 8> kRemedies = {{
-      {"gap",
+      {FaultKind::Gap,
        "Record without losses: a faster disk, a local disk, or fewer events (bias settings, event rate "
        "control)."},
-      {"backward_time", "Find out why times run backwards: a restarted driver, or two sources on one topic."},
-      {"jitter", "Let the sensor stamp its own samples: stamps made on arrival jitter."},
-      {"truncated", "Stop the recorder before you cut its power or copy the file."},
-      {"corrupt", "Check the disk or the transfer: the file has damaged parts."},
-      {"saturated_axis", "Move less violently, or set a larger range of the IMU."},
-      {"stuck_axis", "Check the IMU: an axis that never changes is broken or misread."},
-      {"hot_pixels", "Mask hot pixels in the camera's driver."},
+      {FaultKind::BackwardTime,
+       "Find out why times run backwards: a restarted driver, or two sources on one topic."},
+      {FaultKind::Jitter, "Let the sensor stamp its own samples: stamps made on arrival jitter."},
+      {FaultKind::Truncated, "Stop the recorder before you cut its power or copy the file."},
+      {FaultKind::Corrupt, "Check the disk or the transfer: the file has damaged parts."},
+      {FaultKind::SaturatedAxis, "Move less violently, or set a larger range of the IMU."},
+      {FaultKind::StuckAxis, "Check the IMU: an axis that never changes is broken or misread."},
+      {FaultKind::HotPixels, "Mask hot pixels in the camera's driver."},
   }};
   for (const Remedy& remedy : kRemedies) {
     const auto found = std::find_if(data.faults.begin(), data.faults.end(),

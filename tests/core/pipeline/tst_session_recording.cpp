@@ -15,7 +15,7 @@ constexpr std::size_t kEvents = 40'000;
 
 // Steps back in time between packets, over all streams.
 std::int64_t largestStepBack_ns(SessionRecording& recording) {
-  Packet packet;
+  SensorPacket packet;
   std::int64_t last_ns = recording.start_ns(), largest_ns = 0;
   while (recording.read(packet)) {
     const std::int64_t first_ns =
@@ -43,16 +43,16 @@ class TestSessionRecording : public QObject {
 
  private:
   std::filesystem::path path(const char* name) const { return folder_.filePath(name).toStdString(); }
-  Recording readSession(std::size_t& imu_stream) const {
+  Recording readSession(std::size_t& imu_sensor) const {
     SessionRecording recording(session_);
-    imu_stream = recording.imuStream(0);
+    imu_sensor = recording.imuSensor(0);
     Recording all;
-    Packet packet;
+    SensorPacket packet;
     while (recording.read(packet)) {
       auto& events = all.events;
       auto& samples = all.imu_samples;
-      if (packet.stream == 0) events.insert(events.end(), packet.events.begin(), packet.events.end());
-      if (packet.stream == 1)
+      if (packet.sensor == 0) events.insert(events.end(), packet.events.begin(), packet.events.end());
+      if (packet.sensor == 1)
         samples.insert(samples.end(), packet.imu_samples.begin(), packet.imu_samples.end());
     }
     return all;
@@ -89,9 +89,9 @@ void TestSessionRecording::init() {
 }
 
 void TestSessionRecording::oneFile_isReadAsItIs() {
-  std::size_t imu_stream = 0;
-  const Recording read = readSession(imu_stream);
-  QCOMPARE(imu_stream, std::size_t{1});
+  std::size_t imu_sensor = 0;
+  const Recording read = readSession(imu_sensor);
+  QCOMPARE(imu_sensor, std::size_t{1});
   QVERIFY(same(read.events, written_.events));
   QVERIFY(same(read.imu_samples, written_.imu_samples));
   SessionRecording recording(session_);
@@ -101,8 +101,8 @@ void TestSessionRecording::oneFile_isReadAsItIs() {
 
 void TestSessionRecording::twoFiles_areReadTogether() {
   useTwoFiles();
-  std::size_t imu_stream = 0;
-  const Recording read = readSession(imu_stream);
+  std::size_t imu_sensor = 0;
+  const Recording read = readSession(imu_sensor);
   QVERIFY(same(read.events, written_.events));
   QVERIFY(same(read.imu_samples, written_.imu_samples));
   SessionRecording recording(session_);
@@ -114,8 +114,8 @@ void TestSessionRecording::clockOffset_isAdded() {
   useTwoFiles();
   session_.imus[0].clock_offset_s = -0.25;
   session_.cameras[0].clock_offset_s = 1e-6;
-  std::size_t imu_stream = 0;
-  const Recording read = readSession(imu_stream);
+  std::size_t imu_sensor = 0;
+  const Recording read = readSession(imu_sensor);
   QCOMPARE(qint64(read.imu_samples[7].time_ns), qint64(written_.imu_samples[7].time_ns - 250'000'000));
   QCOMPARE(qint64(read.events[7].time_ns), qint64(written_.events[7].time_ns + 1000));
   QCOMPARE(qint64(SessionRecording(session_).start_ns()), qint64(read.imu_samples.front().time_ns));
@@ -124,8 +124,8 @@ void TestSessionRecording::clockOffset_isAdded() {
 void TestSessionRecording::units_areThoseOfTheSession() {
   session_.imus[0].acceleration_unit = AccelerationUnit::MinusGravity;
   session_.imus[0].angular_rate_unit = AngularRateUnit::DegreesPerSecond;
-  std::size_t imu_stream = 0;
-  const ImuSample read = readSession(imu_stream).imu_samples.at(3), &written = written_.imu_samples.at(3);
+  std::size_t imu_sensor = 0;
+  const ImuSample read = readSession(imu_sensor).imu_samples.at(3), &written = written_.imu_samples.at(3);
   QVERIFY((read.specific_force_m_s2 + 9.80665 * written.specific_force_m_s2).norm() < 1e-12);
   QVERIFY((kDegPerRad * read.angular_rate_rad_s - written.angular_rate_rad_s).norm() < 1e-12);
 }
@@ -146,8 +146,8 @@ void TestSessionRecording::clocksWithoutRelation_areRefused() {
     QVERIFY2(QString(error.what()).contains("1600000000.12"), error.what());
   }
   session_.imus[0].clock_offset_s = 1e-9 * static_cast<double>(start_ns);  // what it advised
-  std::size_t imu_stream = 0;
-  const Recording read = readSession(imu_stream);
+  std::size_t imu_sensor = 0;
+  const Recording read = readSession(imu_sensor);
   QVERIFY(std::abs(read.imu_samples.front().time_ns - written_.imu_samples.front().time_ns) < 1000);
 }
 

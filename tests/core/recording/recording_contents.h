@@ -16,8 +16,8 @@ namespace evical::test {
 
 struct Contents {
   std::vector<StreamInfo> streams;
-  std::map<std::size_t, std::vector<Event>> events;  // by stream
-  std::map<std::size_t, std::vector<ImuSample>> imu;
+  std::map<std::size_t, std::vector<Event>> events;   // by stream
+  std::map<std::size_t, std::vector<ImuSample>> imu;  // in SI units
   std::vector<RecordingFault> faults;
 
   std::size_t eventCount() const {
@@ -30,7 +30,7 @@ struct Contents {
     for (const auto& [stream, list] : imu) count += list.size();
     return count;
   }
-  bool hasFault(const std::string& kind) const {
+  bool hasFault(FaultKind kind) const {
     for (const RecordingFault& fault : faults)
       if (fault.kind == kind) return true;
     return false;
@@ -43,8 +43,8 @@ inline Contents readAll(RecordingReader& reader) {
   while (reader.read(packet)) {
     std::vector<Event>& events = contents.events[packet.stream];
     events.insert(events.end(), packet.events.begin(), packet.events.end());
-    std::vector<ImuSample>& samples = contents.imu[packet.stream];
-    samples.insert(samples.end(), packet.imu_samples.begin(), packet.imu_samples.end());
+    const StreamInfo& info = reader.streams()[packet.stream];
+    toSi(packet.imu_samples, info.acceleration_unit, info.angular_rate_unit, contents.imu[packet.stream]);
   }
   contents.streams = reader.streams();
   contents.faults = reader.faults();

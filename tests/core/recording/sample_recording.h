@@ -66,8 +66,8 @@ inline Recording readRecording(RecordingReader& reader) {
   Packet packet;
   while (reader.read(packet)) {
     recording.events.insert(recording.events.end(), packet.events.begin(), packet.events.end());
-    recording.imu_samples.insert(recording.imu_samples.end(), packet.imu_samples.begin(),
-                                 packet.imu_samples.end());
+    const StreamInfo& info = reader.streams()[packet.stream];
+    toSi(packet.imu_samples, info.acceleration_unit, info.angular_rate_unit, recording.imu_samples);
   }
   return recording;
 }

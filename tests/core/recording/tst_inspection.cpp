@@ -39,7 +39,7 @@ Samples handheld() {
 
 QStringList kinds(const std::vector<RecordingFault>& faults) {
   QStringList names;
-  for (const RecordingFault& fault : faults) names << QString::fromStdString(fault.kind);
+  for (const RecordingFault& fault : faults) names << nameOf(fault.kind);
   return names;
 }
 

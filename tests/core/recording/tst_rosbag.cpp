@@ -165,7 +165,7 @@ void TestRosbag::withoutIndex_everythingIsRead() {
   QVERIFY((reader->streams()[events].resolution_px == Resolution{346, 260}));
   QVERIFY(same(readRecording(*reader).events, sampleRecording(50'000).events));
   QCOMPARE(reader->faults().size(), 1u);
-  QCOMPARE(reader->faults()[0].kind, "no_index");
+  QCOMPARE(reader->faults()[0].kind, FaultKind::NoIndex);
 }
 
 // What is read must be a beginning of what was written, and the loss must be told.

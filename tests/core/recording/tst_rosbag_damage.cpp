@@ -125,7 +125,7 @@ void TestRosbagDamage::truncationWithinAPlainChunk_keepsTheMessagesBefore() {
       readAll(folder_.write("cut.bag", whole.substr(0, second + 2 * (third - second) / 3)));
   QVERIFY(contents.eventCount() > 4 * kEventsEach);
   QVERIFY(contents.eventCount() < 8 * kEventsEach);
-  QVERIFY(contents.hasFault("truncated"));
+  QVERIFY(contents.hasFault(FaultKind::Truncated));
   QVERIFY(isTrue(contents));
 }
 
@@ -160,7 +160,7 @@ void TestRosbagDamage::corruptChunk_losesNoOther() {
   const Contents contents = readAll(folder_.write("chunk.bag", bytes));
   QCOMPARE(contents.eventCount(), 8 * kEventsEach);
   QVERIFY(isTrue(contents));
-  QVERIFY(contents.hasFault("corrupt"));
+  QVERIFY(contents.hasFault(FaultKind::Corrupt));
 }
 
 // The second chunk's header length is nonsense; the index knows where the third begins.
@@ -202,7 +202,7 @@ void TestRosbagDamage::chunkOfZeros_losesNoOther() {
   // Connections are in the first chunk and in the index.
   QCOMPARE(contents.eventCount(), chunk == 0 && !finished ? 0 : 8 * kEventsEach);
   QVERIFY(isTrue(contents));
-  QVERIFY(contents.hasFault(finished || chunk > 0 ? "corrupt" : "no_index"));
+  QVERIFY(contents.hasFault(finished || chunk > 0 ? FaultKind::Corrupt : FaultKind::NoIndex));
 }
 
 void TestRosbagDamage::falseChunkLength_losesNoOther_data() {
@@ -272,7 +272,7 @@ void TestRosbagDamage::messageWithAFalseCount_isLeftOut() {
   }
   const Contents contents = readAll(folder_.write("count.bag", bag.finished()));
   QCOMPARE(contents.eventCount(), 3 * kEventsEach);
-  QVERIFY(contents.hasFault("corrupt"));
+  QVERIFY(contents.hasFault(FaultKind::Corrupt));
 }
 
 void TestRosbagDamage::lyingLengths_takeNoMemory_data() {
@@ -306,7 +306,7 @@ void TestRosbagDamage::stampBeyondASecond_isLeftOut() {
   bag.message(events, kStart_ns, message);
   const Contents contents = readAll(folder_.write("stamp.bag", bag.finished()));
   QCOMPARE(contents.eventCount(), kEventsEach);
-  QVERIFY(contents.hasFault("corrupt"));
+  QVERIFY(contents.hasFault(FaultKind::Corrupt));
 }
 
 EVICAL_TEST(TestRosbagDamage)

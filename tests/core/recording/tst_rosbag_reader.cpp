@@ -223,7 +223,7 @@ void TestRosbagReader::zeroStamps_areReplacedByRecordTimes() {
     bag.message(imu, kStart_ns + i, imuMessage(ImuSample()));
   }
   const Contents contents = readAll(folder_.write("stampless.bag", bag.finished()));
-  QVERIFY(contents.hasFault("no_stamps"));
+  QVERIFY(contents.hasFault(FaultKind::NoStamps));
   QCOMPARE(contents.events.at(0).front().time_ns, kStart_ns);
   QCOMPARE(contents.events.at(0).back().time_ns, kStart_ns + 4);
   QCOMPARE(contents.imu.at(1).back().time_ns, kStart_ns + 4);
@@ -238,7 +238,7 @@ void TestRosbagReader::recordingThatBeginsAtZero_keepsItsTimes() {
   bag.message(events, kStart_ns, eventMessage(10'000, kSize_px, someEvents(50, 10'000)));
   for (const ImuSample& sample : samples) bag.message(imu, kStart_ns, imuMessage(sample));
   const Contents contents = readAll(folder_.write("zero.bag", bag.finished()));
-  QVERIFY(!contents.hasFault("no_stamps"));
+  QVERIFY(!contents.hasFault(FaultKind::NoStamps));
   QVERIFY(sameSamples(contents.imu.at(1), samples));
   QCOMPARE(contents.events.at(0).front().time_ns, std::int64_t{0});
 }
@@ -254,7 +254,7 @@ void TestRosbagReader::unorderedEvents_areSortedInThePacket() {
   const Contents contents = readAll(folder_.write("unordered.bag", bag.finished()));
   QVERIFY(sameEvents(contents.events.at(0), ordered));
   QCOMPARE(contents.faults.size(), std::size_t{1});
-  QCOMPARE(contents.faults[0].kind, std::string("unsorted"));
+  QCOMPARE(contents.faults[0].kind, FaultKind::Unsorted);
   QVERIFY(contents.faults[0].text.find(" 3 times") != std::string::npos);
 }
 
@@ -296,7 +296,7 @@ void TestRosbagReader::partOfASplitBag_saysSo() {
   for (const QString& file : files) std::ofstream(folder / file.toStdString(), std::ios::binary) << bag;
   const Contents contents = readAll(folder / files[0].toStdString());
   QCOMPARE(contents.eventCount(), 5u);
-  QCOMPARE(contents.hasFault("part"), expected);
+  QCOMPARE(contents.hasFault(FaultKind::Part), expected);
   if (expected) QVERIFY(contents.faults[0].text.find("a_") != std::string::npos);
 }
 

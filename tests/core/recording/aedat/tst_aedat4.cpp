@@ -55,12 +55,29 @@ std::vector<aedat::StreamDescription> cameraAndImu(const std::string& source = "
   return {{first_id, "events", "EVTS", source, {64, 48}}, {first_id + 1, "imu", "IMUS", source, {}}};
 }
 
+// As the format has them: in g and deg/s.
+std::vector<RawImuSample> rawSamples(std::size_t count, std::int64_t start_ns) {
+  std::vector<RawImuSample> samples;
+  for (const ImuSample& sample : someSamples(count, start_ns))
+    samples.push_back(fromSi(sample, AccelerationUnit::Gravity, AngularRateUnit::DegreesPerSecond));
+  return samples;
+}
+
+// The first sample of the file's IMU, in the file's own numbers.
+RawImuSample firstRawSample(const std::filesystem::path& path) {
+  const std::unique_ptr<RecordingReader> reader = openRecording(path);
+  Packet packet;
+  while (reader->read(packet))
+    if (!packet.imu_samples.empty()) return packet.imu_samples.front();
+  return {};
+}
+
 // Six packets of 100 events, 10 samples after each.
 FileBuilder smallFile(aedat::Compression compression) {
   FileBuilder file(compression, cameraAndImu());
   for (std::int64_t i = 0; i < 6; ++i) {
     file.add(0, aedat::encodeEvents(eventsAt(i * 1'000'000, 100)));
-    file.add(1, aedat::encodeImu(someSamples(10, i * 10'000'000)));
+    file.add(1, aedat::encodeImu(rawSamples(10, i * 10'000'000)));
   }
   return file;
 }
@@ -123,15 +140,16 @@ void TestAedat4::roundTrip_keepsEventsAndSamples() {
   QCOMPARE(contents.streams[0].messages, 50'000u);  // by the table
   QCOMPARE(contents.streams[0].time_unit_ns, std::int64_t{1000});
   QVERIFY(sameEvents(contents.events.at(0), events));
-  std::vector<ImuSample> read = contents.imu.at(1);
+  const std::vector<ImuSample>& read = contents.imu.at(1);
   QCOMPARE(read.size(), samples.size());
-  QVERIFY(std::abs(read[0].specific_force_m_s2.norm() - 9.81 / 9.80665) < 0.02);  // in g, as the file has it
-  toSi(contents.streams[1].acceleration_unit, contents.streams[1].angular_rate_unit, read);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     QCOMPARE(read[i].time_ns, samples[i].time_ns);
     QVERIFY((read[i].specific_force_m_s2 - samples[i].specific_force_m_s2).norm() < 2e-6);
     QVERIFY((read[i].angular_rate_rad_s - samples[i].angular_rate_rad_s).norm() < 1e-6);
   }
+  const RawImuSample raw = firstRawSample(path);
+  QVERIFY(std::abs(raw.specific_force.norm() - 9.81 / 9.80665) < 0.02);  // in g, as the file has it
+  QVERIFY(std::abs(raw.angular_rate.norm() - 180.0 / M_PI) < 1e-4);      // of 1 rad/s
 }
 
 void TestAedat4::compressions_allRead_data() {
@@ -169,7 +187,7 @@ void TestAedat4::twoCameras_haveTheirSourceInTheName() {
 
 void TestAedat4::withoutXml_packetsTellTheType() {
   FileBuilder file(aedat::Compression::Zstd, {});
-  file.add(3, aedat::encodeImu(someSamples(5, 0)));
+  file.add(3, aedat::encodeImu(rawSamples(5, 0)));
   file.add(7, aedat::encodeEvents(eventsAt(0, 11)));
   const Contents contents = readAll(folder_.write("minimal.aedat4", file.bytes()));
   QCOMPARE(contents.streams.size(), 2u);
@@ -241,7 +259,7 @@ void TestAedat4::lyingSize_isReportedAndReadingGoesOn() {
   FileBuilder file = smallFile(static_cast<aedat::Compression>(compression));
   file.bytes().replace(file.starts()[4] + 4, 4, bytesOf(size));
   const Contents contents = readAll(folder_.write("lying.aedat4", file.bytes()));
-  QVERIFY(contents.hasFault("corrupt"));
+  QVERIFY(contents.hasFault(FaultKind::Corrupt));
   QVERIFY(contents.eventCount() == 500u || contents.eventCount() == 600u);
   QCOMPARE(contents.sampleCount(), 60u);
 }
@@ -254,7 +272,7 @@ void TestAedat4::lyingCounts_loseThePacketOnly() {
   file.add(0, events);
   events.replace(28, 4, bytesOf(-1));
   file.add(0, events);
-  std::string samples = aedat::encodeImu(someSamples(4, 0));
+  std::string samples = aedat::encodeImu(rawSamples(4, 0));
   samples.replace(32, 4, bytesOf(2'000'000'000));  // where the first sample is
   file.add(1, samples);
   file.add(0, aedat::encodeEvents(eventsAt(1'000'000, 10)));
@@ -271,7 +289,7 @@ void TestAedat4::brokenFrame_losesThePacketOnly() {
   const Contents contents = readAll(folder_.write("frame.aedat4", file.bytes()));
   QCOMPARE(contents.eventCount(), 500u);
   QCOMPARE(contents.sampleCount(), 60u);
-  QVERIFY(contents.hasFault("corrupt"));
+  QVERIFY(contents.hasFault(FaultKind::Corrupt));
 }
 
 void TestAedat4::damagedTable_isNotNeeded() {
@@ -283,7 +301,7 @@ void TestAedat4::damagedTable_isNotNeeded() {
   bytes.replace(bytes.size() - 20, 20, std::string(20, '\xEE'));
   const Contents contents = readAll(folder_.write("table.aedat4", bytes));
   QCOMPARE(contents.eventCount(), 5000u);
-  QVERIFY(contents.hasFault("corrupt"));
+  QVERIFY(contents.hasFault(FaultKind::Corrupt));
 }
 
 // A frame of 140 MB of zeros, in a few kilobytes.
@@ -294,7 +312,7 @@ void TestAedat4::bomb_isNotUnpacked() {
   file.add(0, aedat::encodeEvents(eventsAt(1'000'000, 10)));
   const Contents contents = readAll(folder_.write("bomb.aedat4", file.bytes()));
   QCOMPARE(contents.eventCount(), 20u);
-  QVERIFY(contents.hasFault("corrupt"));
+  QVERIFY(contents.hasFault(FaultKind::Corrupt));
 }
 
 void TestAedat4::stepBack_endsThePacket() {
@@ -318,7 +336,7 @@ void TestAedat4::smallStepsBack_areSorted() {
   file.add(0, aedat::encodeEvents(events));
   const Contents contents = readAll(folder_.write("unsorted.aedat4", file.bytes()));
   QVERIFY(sameEvents(contents.events.at(0), eventsAt(0, 10)));
-  QVERIFY(contents.hasFault("unsorted"));
+  QVERIFY(contents.hasFault(FaultKind::Unsorted));
 }
 
 void TestAedat4::noHeader_isBadInput() {

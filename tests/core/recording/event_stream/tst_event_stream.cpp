@@ -57,7 +57,7 @@ void TestEventStream::everyCut_keepsWhatIsWhole() {
     const Contents contents = read(whole.substr(0, size));
     const std::size_t data = size - header.size(), overflows = std::min<std::size_t>(1, data);  // 200 us
     QCOMPARE(contents.eventCount(), (data - overflows) / 5);
-    QCOMPARE(contents.hasFault("truncated"), (data - overflows) % 5 != 0);
+    QCOMPARE(contents.hasFault(FaultKind::Truncated), (data - overflows) % 5 != 0);
   }
   for (std::size_t size = 12; size < header.size(); ++size)
     QVERIFY_EXCEPTION_THROWN(read(whole.substr(0, size)), CalibrationError);
@@ -68,7 +68,7 @@ void TestEventStream::greyLevels_areLeftOut() {
   bytes += std::string("\x05\x01\x00\x01\x00", 5);
   const Contents contents = read(bytes);
   QCOMPARE(contents.eventCount(), 3u);
-  QVERIFY(contents.hasFault("exposure_left_out"));
+  QVERIFY(contents.hasFault(FaultKind::ExposureLeftOut));
 }
 
 void TestEventStream::eventsOutside_areLeftOut() {

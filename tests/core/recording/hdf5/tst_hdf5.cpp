@@ -267,7 +267,7 @@ for side in ('left', 'right'):
   QCOMPARE(samples.size(), 2u);
   QCOMPARE(samples[1].time_ns, std::int64_t{1'685'000});
   QVERIFY((samples[1].specific_force_m_s2 == Eigen::Vector3d(4, 5, 6)));
-  QVERIFY(contents.hasFault("corrupt"));
+  QVERIFY(contents.hasFault(FaultKind::Corrupt));
 }
 
 void TestHdf5::lengthsThatDiffer_areStated() {
@@ -278,7 +278,7 @@ f['events/x'] = x; f['events/y'] = y[:-5]; f['events/p'] = p[:-70]; f['events/t'
             folder_.path());
   const Contents contents = readAll(folder_ / "short.h5");
   QCOMPARE(contents.eventCount(), 2930u);
-  QVERIFY(contents.hasFault("corrupt"));
+  QVERIFY(contents.hasFault(FaultKind::Corrupt));
 }
 
 void TestHdf5::missingDatasets_areBadInput() {
@@ -345,7 +345,7 @@ print(f['events/t'].id.get_chunk_info(1).byte_offset))",
   bytes.replace(place.trimmed().toUInt() + 8, 64, std::string(64, '\xFF'));
   const Contents contents = readAll(folder_.write("chunk_damaged.h5", bytes));
   QCOMPARE(contents.eventCount(), 200'000u - 65'536u);
-  QVERIFY(contents.hasFault("corrupt"));
+  QVERIFY(contents.hasFault(FaultKind::Corrupt));
   QVERIFY(contents.faults[0].text.find("at byte " + place.trimmed().toStdString()) != std::string::npos);
 }
 

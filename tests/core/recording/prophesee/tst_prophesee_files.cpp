@@ -106,7 +106,7 @@ void TestPropheseeFiles::everyCut_keepsWhatIsWhole() {
       if (contents.eventCount() > 0)
         QVERIFY(sameEvents(contents.events.at(0), {expected.begin(), expected.end()}));
       const std::size_t word = std::string(format) == "EVT2" ? 4 : std::string(format) == "EVT3" ? 2 : 8;
-      QCOMPARE(contents.hasFault("truncated"), (size - header.size()) % word != 0);
+      QCOMPARE(contents.hasFault(FaultKind::Truncated), (size - header.size()) % word != 0);
     }
     for (std::size_t size = 1; size < header.size() - 2; ++size) {
       try {
@@ -133,7 +133,7 @@ void TestPropheseeFiles::time_wraps() {
   const std::vector<Event> events = rows(5000, (period_us - 1000) * 1000);
   const Contents contents = read(encoded(format, events));
   QVERIFY(sameEvents(contents.events.at(0), events));
-  if (format != "EVT3") QVERIFY(contents.hasFault("time_wrap"));
+  if (format != "EVT3") QVERIFY(contents.hasFault(FaultKind::TimeWrap));
 }
 
 void TestPropheseeFiles::clockReset_startsAPacket() {
@@ -156,7 +156,7 @@ void TestPropheseeFiles::disorder_isSortedAndSaid() {
   QVERIFY(std::is_sorted(contents.events.at(0).begin(), contents.events.at(0).end(),
                          [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; }));
   QCOMPARE(contents.eventCount(), 100u);
-  QVERIFY(contents.hasFault("unsorted"));
+  QVERIFY(contents.hasFault(FaultKind::Unsorted));
 }
 
 void TestPropheseeFiles::eventsOutside_areLeftOutWithTheirByte() {
@@ -167,7 +167,7 @@ void TestPropheseeFiles::eventsOutside_areLeftOutWithTheirByte() {
     const Contents contents = read(encoded(format, events));
     QCOMPARE(contents.eventCount(), 8u);
     QCOMPARE(contents.faults.size(), 1u);
-    QCOMPARE(contents.faults[0].kind, std::string("outside"));
+    QCOMPARE(contents.faults[0].kind, FaultKind::Outside);
     QVERIFY(contents.faults[0].text.starts_with("2 events"));
   }
   const Contents contents = read(encoded("EVT2", events));
@@ -178,7 +178,7 @@ void TestPropheseeFiles::eventsBeforeTheFirstTime_areLeftOut() {
   const std::string data = encodeEvt2(rows(10, kSecond_ns));
   const Contents contents = read(kEvt2Header + data.substr(4, 8) + data);
   QCOMPARE(contents.eventCount(), 10u);
-  QVERIFY(contents.hasFault("untimed"));
+  QVERIFY(contents.hasFault(FaultKind::Untimed));
 }
 
 void TestPropheseeFiles::strangeWords_areCounted() {
@@ -189,7 +189,7 @@ void TestPropheseeFiles::strangeWords_areCounted() {
   const Contents contents = read(kEvt2Header + data);
   QCOMPARE(contents.eventCount(), 10u);
   QCOMPARE(contents.faults.size(), 2u);
-  QVERIFY(contents.hasFault("corrupt") && contents.hasFault("imu_left_out"));
+  QVERIFY(contents.hasFault(FaultKind::Corrupt) && contents.hasFault(FaultKind::ImuLeftOut));
 }
 
 void TestPropheseeFiles::triggers_areCounted() {
@@ -242,7 +242,7 @@ void TestPropheseeFiles::badHeaders_areRefused() {
 void TestPropheseeFiles::unknownSize_isSaid() {
   const Contents contents = read("% evt 2.0\n% geometry 0x99999\n% end\n" + encodeEvt2(rows(10, kSecond_ns)));
   QVERIFY(!contents.streams[0].resolution_px.known());
-  QVERIFY(contents.hasFault("no_resolution"));
+  QVERIFY(contents.hasFault(FaultKind::NoResolution));
   QCOMPARE(contents.eventCount(), 10u);
 }
 

@@ -53,7 +53,7 @@ bool same(const Event& event, std::int64_t time_ns, int x_px, int y_px, bool bri
   return event.time_ns == time_ns && event.x_px == x_px && event.y_px == y_px && event.brighter == brighter;
 }
 
-const RecordingFault* faultOf(const Contents& contents, const std::string& kind) {
+const RecordingFault* faultOf(const Contents& contents, FaultKind kind) {
   for (const RecordingFault& fault : contents.faults)
     if (fault.kind == kind) return &fault;
   return nullptr;
@@ -145,7 +145,7 @@ void TestEventPackets::libcaerCmp_isDecodedAndWarnedOf() {
   QVERIFY(same(events[2], kStart_ns + 4'098'000, 63, 15, false));
   QVERIFY(same(events[3], kStart_ns + 4'098'000, 63, 16, false));
   QVERIFY(same(events[4], kStart_ns + 10'000'000, 1, 2, false));  // time starts anew
-  QVERIFY(faultOf(contents, "encoding") != nullptr);
+  QVERIFY(faultOf(contents, FaultKind::Encoding) != nullptr);
 }
 
 void TestEventPackets::evt3_livesOnFromMessageToMessage() {
@@ -158,7 +158,7 @@ void TestEventPackets::evt3_livesOnFromMessageToMessage() {
   QVERIFY(same(events[1], 4'098'000, 15, 3, false));
   QVERIFY(same(events[2], 4'098'000, 16, 3, false));
   QVERIFY(same(events[3], 4'098'000, 48, 3, false));  // x 65 is outside
-  QVERIFY(faultOf(contents, "outside") != nullptr);
+  QVERIFY(faultOf(contents, FaultKind::Outside) != nullptr);
 }
 
 void TestEventPackets::evt3_offsetToTheHost_isTheLeastDelay() {
@@ -173,7 +173,7 @@ void TestEventPackets::evt3_offsetToTheHost_isTheLeastDelay() {
   const std::optional<double> offset_s = contents.streams.at(0).host_clock_offset_s;
   QVERIFY(offset_s.has_value());
   QVERIFY(std::abs(*offset_s - (1.7e9 + 250e-6)) < 1e-6);
-  QVERIFY(faultOf(contents, "host_clock") != nullptr);
+  QVERIFY(faultOf(contents, FaultKind::HostClock) != nullptr);
 }
 
 void TestEventPackets::lostMessage_takesThePosition() {
@@ -182,7 +182,7 @@ void TestEventPackets::lostMessage_takesThePosition() {
   const std::vector<Event>& events = contents.events.at(0);
   QCOMPARE(events.size(), std::size_t{2});
   QVERIFY(same(events[1], 4'098'000, 6, 9, false));
-  const RecordingFault* fault = faultOf(contents, "lost_messages");
+  const RecordingFault* fault = faultOf(contents, FaultKind::LostMessages);
   QVERIFY(fault != nullptr && fault->text.starts_with("2 messages"));
 }
 
@@ -203,7 +203,7 @@ void TestEventPackets::triggerTopic_holdsNoEvents() {
 void TestEventPackets::unknownEncoding_isNamed() {
   const std::filesystem::path path = folder_.write("evt4.bag", bagOf({{"evt4", "abcd"}}));
   const Contents contents = readAll(path);
-  const RecordingFault* fault = faultOf(contents, "encoding");
+  const RecordingFault* fault = faultOf(contents, FaultKind::Encoding);
   QVERIFY(fault != nullptr && fault->text.find("evt4") != std::string::npos);
   QCOMPARE(contents.eventCount(), std::size_t{0});
   const std::unique_ptr<RecordingReader> reader = openRecording(path);
@@ -219,7 +219,7 @@ void TestEventPackets::bigEndian_isRefused() {
   const Contents contents =
       contentsOf(bagOf({{"mono", words<std::uint64_t>({7}), kStart_ns, 0, kStart_ns, true}}));
   QCOMPARE(contents.eventCount(), std::size_t{0});
-  QVERIFY(faultOf(contents, "corrupt") != nullptr);
+  QVERIFY(faultOf(contents, FaultKind::Corrupt) != nullptr);
 }
 
 void TestEventPackets::baseThatIsNoTime_isRefused() {
@@ -228,7 +228,7 @@ void TestEventPackets::baseThatIsNoTime_isRefused() {
       const Contents contents = contentsOf(
           bagOf({{encoding, words<std::uint64_t>({7, ~std::uint64_t{0}}), kStart_ns, 0, base_ns}}));
       QCOMPARE(contents.eventCount(), std::size_t{0});
-      QVERIFY(faultOf(contents, "corrupt") != nullptr);
+      QVERIFY(faultOf(contents, FaultKind::Corrupt) != nullptr);
     }
   }
 }
@@ -236,7 +236,7 @@ void TestEventPackets::baseThatIsNoTime_isRefused() {
 void TestEventPackets::oddLength_losesOnlyTheRest() {
   const Contents contents = contentsOf(bagOf({{"mono", words<std::uint64_t>({7, 8}) + "abc"}}));
   QCOMPARE(contents.eventCount(), std::size_t{2});
-  QVERIFY(faultOf(contents, "corrupt") != nullptr);
+  QVERIFY(faultOf(contents, FaultKind::Corrupt) != nullptr);
 }
 
 EVICAL_TEST(TestEventPackets)

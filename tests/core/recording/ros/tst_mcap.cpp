@@ -191,7 +191,7 @@ void TestMcap::truncationAtEveryByte_ofAPlainFile_isSurvived() {
   const std::string whole = mcapFile(kTopics, messages, 3);
   for (std::size_t size = 8; size < whole.size(); size += size % 3 + 1) {
     const Contents contents = readAll(folder_.write("cut.mcap", whole.substr(0, size)));
-    QVERIFY2(contents.hasFault("no_index"), qPrintable(QString("cut at %1").arg(size)));
+    QVERIFY2(contents.hasFault(FaultKind::NoIndex), qPrintable(QString("cut at %1").arg(size)));
     QVERIFY(isPartOf(eventsOf(contents), eventsOfMessages(30)));
   }
 }
@@ -216,7 +216,7 @@ void TestMcap::corruptChunk_losesNoOther() {
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x55);
   bytes[bytes.size() / 2 + 100] = static_cast<char>(bytes[bytes.size() / 2 + 100] ^ 0x55);
   const Contents contents = readAll(folder_.write("damaged.mcap", bytes));
-  QVERIFY(contents.hasFault("corrupt"));
+  QVERIFY(contents.hasFault(FaultKind::Corrupt));
   QVERIFY(contents.eventCount() >= events.size() * 6 / 10);
 }
 
@@ -228,7 +228,7 @@ void TestMcap::lyingSizes_takeNoMemory() {
     const std::size_t compression = bytes.find(name);
     bytes[compression - 4 - 4 - 1] = 0x10;  // the highest byte of the uncompressed size
     const Contents contents = readAll(folder_.write("lie.mcap", bytes));
-    QVERIFY(contents.hasFault("corrupt"));
+    QVERIFY(contents.hasFault(FaultKind::Corrupt));
     QCOMPARE(contents.eventCount(), std::size_t{0});
   }
 }

@@ -18,7 +18,7 @@ Inspection inspect(const char* name) {
   return inspectRecording(*reader);
 }
 
-bool hasFault(const Inspection& inspection, const std::string& kind) {
+bool hasFault(const Inspection& inspection, FaultKind kind) {
   for (const RecordingFault& fault : inspection.faults)
     if (fault.kind == kind) return true;
   return false;
@@ -54,8 +54,8 @@ void TestRosSamples::bagWithEvt3AndTriggers() {
   QCOMPARE(inspection.streams[1].count, std::uint64_t{4157});
   // The first message: stamp 1675956550.318679, its first event at 7.139845 s; delays are below 5 ms.
   QVERIFY(std::abs(events.info.host_clock_offset_s.value_or(0.0) - (1675956550.318679 - 7.139845)) < 5e-3);
-  QVERIFY(hasFault(inspection, "host_clock"));
-  QVERIFY(!hasFault(inspection, "lost_messages"));
+  QVERIFY(hasFault(inspection, FaultKind::HostClock));
+  QVERIFY(!hasFault(inspection, FaultKind::LostMessages));
 }
 
 void TestRosSamples::sqliteFolderWithMono_data() {

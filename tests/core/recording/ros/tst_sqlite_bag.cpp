@@ -110,7 +110,7 @@ void TestSqliteBag::folder_isOneRecording() {
   QVERIFY(sameEvents(contents.events.at(0), eventsOfMessages(60)));
   QVERIFY(sameSamples(contents.imu.at(1), someSamples(60)));
   QCOMPARE(contents.streams.at(0).messages, std::uint64_t{60});
-  QCOMPARE(contents.hasFault("metadata"), yaml.contains("["));
+  QCOMPARE(contents.hasFault(FaultKind::Metadata), yaml.contains("["));
 }
 
 void TestSqliteBag::filePackedWithZstd_isRead() {
@@ -127,7 +127,7 @@ void TestSqliteBag::filePackedWithZstd_isRead() {
   QVERIFY(sameEvents(contents.events.at(0), eventsOfMessages(60)));
   std::ofstream(folder / "p_1.db3.zstd", std::ios::binary) << packed.substr(0, packed.size() * 2 / 3);
   const Contents cut = readAll(folder);
-  QVERIFY(cut.hasFault("truncated"));
+  QVERIFY(cut.hasFault(FaultKind::Truncated));
   QVERIFY(cut.eventCount() >= 3000);
 }
 
@@ -142,7 +142,7 @@ void TestSqliteBag::messagesPackedWithZstd_areRead() {
   const Contents contents = readAll(folder_ / "m.db3");
   QCOMPARE(contents.eventCount(), std::size_t{1900});
   QCOMPARE(contents.sampleCount(), std::size_t{20});
-  QVERIFY(contents.hasFault("corrupt"));
+  QVERIFY(contents.hasFault(FaultKind::Corrupt));
 }
 
 void TestSqliteBag::missingFile_isSaid() {
@@ -152,8 +152,8 @@ void TestSqliteBag::missingFile_isSaid() {
   std::ofstream(folder / "metadata.yaml") << metadata("    - b_0.db3\n    - b_1.db3\n    - b_2.db3\n");
   const Contents contents = readAll(folder);
   QCOMPARE(contents.eventCount(), std::size_t{500});
-  QVERIFY(contents.hasFault("truncated"));
-  QVERIFY(contents.hasFault("unreadable"));
+  QVERIFY(contents.hasFault(FaultKind::Truncated));
+  QVERIFY(contents.hasFault(FaultKind::Unreadable));
 }
 
 void TestSqliteBag::otherDatabase_isRefused() {
@@ -172,7 +172,7 @@ void TestSqliteBag::truncation_isSurvived() {
         folder_.write("cut.db3", whole.substr(0, whole.size() * part / 20 + part));
     try {
       const Contents contents = readAll(path);
-      QVERIFY(contents.hasFault("truncated"));
+      QVERIFY(contents.hasFault(FaultKind::Truncated));
       most = std::max(most, contents.eventCount());
     } catch (const CalibrationError&) {
     }

@@ -120,9 +120,9 @@ void TestTextRecording::badLines_areReportedAndLeftOut() {
   QVERIFY(!read.events[1].brighter);
   QCOMPARE(int(read.events[2].x_px), 10);
   QCOMPARE(reader->faults().size(), 3u);
-  QCOMPARE(reader->faults()[0].kind, std::string("corrupt"));
+  QCOMPARE(reader->faults()[0].kind, FaultKind::Corrupt);
   QVERIFY(reader->faults()[0].text.starts_with("Line 2 "));
-  QCOMPARE(reader->faults()[2].kind, std::string("truncated"));
+  QCOMPARE(reader->faults()[2].kind, FaultKind::Truncated);
 }
 
 void TestTextRecording::stepBack_endsThePacket() {
@@ -190,7 +190,7 @@ void TestTextRecording::columns_areFound() {
   QCOMPARE(int(read.events[1].y_px), 7);
   QVERIFY(read.events[0].brighter && !read.events[1].brighter);
   QCOMPARE(reader->faults().size(), guessed ? 1u : 0u);
-  if (guessed) QCOMPARE(reader->faults()[0].kind, std::string("guess"));
+  if (guessed) QCOMPARE(reader->faults()[0].kind, FaultKind::Guess);
   const bool has_geometry = text.startsWith('%');
   QCOMPARE(reader->streams()[0].resolution_px.width_px, has_geometry ? 640 : 0);
 }
@@ -224,7 +224,7 @@ void TestTextRecording::imuWithoutHeader_isToldByGravity() {
   const auto reader = openRecording(path("imu7.csv"));
   const Recording read = readRecording(*reader);
   QVERIFY((read.imu_samples.at(1).angular_rate_rad_s == Eigen::Vector3d(1, 2, 3)));
-  QCOMPARE(reader->faults().at(0).kind, std::string("guess"));
+  QCOMPARE(reader->faults().at(0).kind, FaultKind::Guess);
 }
 
 void TestTextRecording::columnsThatMakeNoSense_areRefused() {

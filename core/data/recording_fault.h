@@ -1,0 +1,73 @@
+// What goes wrong in recordings and is reported but not repaired.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+
+namespace evical {
+
+// In the order of their names.
+enum class FaultKind {
+  BackwardTime,
+  BoardSize,
+  Corrupt,
+  Empty,
+  Encoding,
+  ExposureLeftOut,
+  Gap,
+  Guess,
+  HostClock,
+  HotPixels,
+  ImuLeftOut,
+  Jitter,
+  LostMessages,
+  Metadata,
+  NoIndex,
+  NoResolution,
+  NoStamps,
+  NotFinite,
+  Outside,
+  OutsideResolution,
+  Part,
+  SaturatedAxis,
+  StuckAxis,
+  TimeWrap,
+  Triggers,
+  Truncated,
+  Unit,
+  Unreadable,
+  Unsorted,
+  Untimed,
+};
+
+// As reports and `evical inspect` spell them, in the enumeration's order.
+inline constexpr std::array kFaultKinds{"backward_time", "board_size",
+                                        "corrupt",       "empty",
+                                        "encoding",      "exposure_left_out",
+                                        "gap",           "guess",
+                                        "host_clock",    "hot_pixels",
+                                        "imu_left_out",  "jitter",
+                                        "lost_messages", "metadata",
+                                        "no_index",      "no_resolution",
+                                        "no_stamps",     "not_finite",
+                                        "outside",       "outside_resolution",
+                                        "part",          "saturated_axis",
+                                        "stuck_axis",    "time_wrap",
+                                        "triggers",      "truncated",
+                                        "unit",          "unreadable",
+                                        "unsorted",      "untimed"};
+static_assert(kFaultKinds.size() == static_cast<std::size_t>(FaultKind::Untimed) + 1);
+
+constexpr const char* nameOf(FaultKind kind) {
+  return kFaultKinds[static_cast<std::size_t>(kind)];
+}
+
+struct RecordingFault {
+  std::string stream;  // empty: the file as a whole
+  FaultKind kind = FaultKind::Corrupt;
+  double at_s = 0.0;  // since the stream's first time; 0 where it has no place
+  std::string text;   // one sentence for people
+};
+
+}  // namespace evical
