@@ -34,10 +34,7 @@ const PacketType* findType(std::string_view id) {
 
 }  // namespace
 
-Aedat4Reader::Aedat4Reader(const std::filesystem::path& path)
-    : path_(path.string()), file_(path, std::ios::binary | std::ios::ate) {
-  if (!file_) throw badInput(path_, "the file cannot be opened", "Check its permissions");
-  file_size_ = static_cast<std::uint64_t>(file_.tellg());
+Aedat4Reader::Aedat4Reader(const std::filesystem::path& path) : path_(path.string()), file_(path) {
   const aedat::FileHeader header = readFileHeader();
   position_ = data_position_;
   compression_ = static_cast<aedat::Compression>(header.compression);
@@ -50,10 +47,10 @@ Aedat4Reader::Aedat4Reader(const std::filesystem::path& path)
 aedat::FileHeader Aedat4Reader::readFileHeader() {
   const std::uint64_t at = aedat::kMagic.size();
   const char* advice = "Copy the file again; if this is how it was recorded, it cannot be read";
-  std::string bytes;
-  const bool has_size = readBytes(at, 4, bytes);
+  std::string_view bytes;
+  const bool has_size = file_.read(at, 4, bytes);
   const std::uint64_t size = has_size ? std::uint64_t{ByteCursor(bytes).number<std::uint32_t>()} + 4 : 4;
-  if (!has_size || size > kLargestHeader_bytes || !readBytes(at, size, bytes)) {
+  if (!has_size || size > kLargestHeader_bytes || !file_.read(at, size, bytes)) {
     throw badInput(path_, fmt::format("the header at byte {} is cut off or damaged", at), advice);
   }
   const std::optional<aedat::FileHeader> header = aedat::decodeHeader(bytes);
@@ -70,19 +67,19 @@ aedat::FileHeader Aedat4Reader::readFileHeader() {
 std::map<std::int32_t, Aedat4Reader::Listed> Aedat4Reader::listFromTable(std::int64_t position) {
   std::map<std::int32_t, Listed> listed;
   const auto at = static_cast<std::uint64_t>(position);
-  if (position < 0 || at < data_position_ || at >= file_size_) {
+  if (position < 0 || at < data_position_ || at >= file_.size()) {
     if (position > 0) {
       addFault("", FaultKind::Truncated,
                fmt::format("The table of packets should be at byte {} of {}; the file is cut off or was not "
                            "finished.",
-                           position, file_size_));
+                           position, file_.size()));
     }
     return listed;
   }
-  std::string_view content;
+  std::string_view packed, content;
   std::size_t used = 0;
-  const bool whole = file_size_ - at <= kLargestTable_bytes && readBytes(at, file_size_ - at, packed_) &&
-                     unpacker_->unpack(packed_, content, used);
+  const bool whole = file_.size() - at <= kLargestTable_bytes && file_.read(at, file_.size() - at, packed) &&
+                     unpacker_->unpack(packed, content, used);
   const auto entries = whole ? aedat::decodeTable(content) : std::nullopt;
   if (!entries) {
     addFault("", FaultKind::Corrupt,
@@ -101,7 +98,7 @@ std::map<std::int32_t, Aedat4Reader::Listed> Aedat4Reader::listFromTable(std::in
 std::map<std::int32_t, Aedat4Reader::Listed> Aedat4Reader::listByScan() {
   std::map<std::int32_t, Listed> listed;
   PacketHeader header;
-  for (std::uint64_t at = data_position_; at < file_size_;) {
+  for (std::uint64_t at = data_position_; at < file_.size();) {
     if (readHeader(at, header) != HeaderState::Good) {
       at = scanForPacket(at + 1);
       continue;
@@ -152,11 +149,11 @@ void Aedat4Reader::addStreams(std::vector<aedat::StreamDescription> described,
 
 std::string Aedat4Reader::typeOfPacket(std::uint64_t position) {
   PacketHeader header;
-  std::string_view content;
+  std::string_view packed, content;
   std::size_t used = 0;
   const bool good = readHeader(position, header) == HeaderState::Good &&
-                    readBytes(header.dataPosition(), static_cast<std::uint64_t>(header.size), packed_) &&
-                    unpacker_->unpack(packed_, content, used);
+                    file_.read(header.dataPosition(), static_cast<std::uint64_t>(header.size), packed) &&
+                    unpacker_->unpack(packed, content, used);
   return good ? std::string(aedat::packetType(content)) : std::string();
 }
 
@@ -165,34 +162,26 @@ void Aedat4Reader::select(const std::vector<std::size_t>& streams) {
   for (const std::size_t stream : streams) states_.at(stream).selected = true;
 }
 
-bool Aedat4Reader::readBytes(std::uint64_t position, std::uint64_t count, std::string& bytes) {
-  if (position > file_size_ || count > file_size_ - position) return false;
-  bytes.resize(static_cast<std::size_t>(count));
-  file_.clear();
-  file_.seekg(static_cast<std::streamoff>(position));
-  file_.read(bytes.data(), static_cast<std::streamsize>(count));
-  return static_cast<std::uint64_t>(file_.gcount()) == count;
-}
-
 Aedat4Reader::HeaderState Aedat4Reader::readHeader(std::uint64_t position, PacketHeader& header) {
   header = {};
   header.position = position;
-  if (position >= file_size_) return HeaderState::End;
-  if (!readBytes(position, aedat::kPacketHeader_bytes, header_bytes_)) return HeaderState::Cut;
-  ByteCursor cursor(header_bytes_);
+  if (position >= file_.size()) return HeaderState::End;
+  std::string_view bytes;
+  if (!file_.read(position, aedat::kPacketHeader_bytes, bytes)) return HeaderState::Cut;
+  ByteCursor cursor(bytes);
   header.stream = cursor.number<std::int32_t>();
   header.size = cursor.number<std::int32_t>();
   const bool possible = header.stream >= 0 && header.stream <= kLargestId && header.size > 0;
   if (!possible || !looksLikeData(header.dataPosition(), header.size)) return HeaderState::Damaged;
-  return header.end() <= file_size_ ? HeaderState::Good : HeaderState::Cut;
+  return header.end() <= file_.size() ? HeaderState::Good : HeaderState::Cut;
 }
 
 // Packed data begin with the frame's magic number, others with their size.
 bool Aedat4Reader::looksLikeData(std::uint64_t position, std::int32_t size) {
-  if (!readBytes(position, 4, header_bytes_)) return position + 4 > file_size_;
-  if (compression_ != aedat::Compression::None) return header_bytes_ == aedat::frameMagic(compression_);
-  return std::uint64_t{ByteCursor(header_bytes_).number<std::uint32_t>()} + 4 ==
-         static_cast<std::uint64_t>(size);
+  std::string_view bytes;
+  if (!file_.read(position, 4, bytes)) return position + 4 > file_.size();
+  if (compression_ != aedat::Compression::None) return bytes == aedat::frameMagic(compression_);
+  return std::uint64_t{ByteCursor(bytes).number<std::uint32_t>()} + 4 == static_cast<std::uint64_t>(size);
 }
 
 // The file's size where there is none.
@@ -206,9 +195,11 @@ std::uint64_t Aedat4Reader::scanForPacket(std::uint64_t from) {
   if (!packed) marks = {"EVTS", "IMUS", "FRME", "TRIG"};
   std::string block;
   PacketHeader header;
-  for (std::uint64_t begin = from; begin < file_size_; begin += kBlock_bytes) {
-    if (!readBytes(begin, std::min(kBlock_bytes + kOverlap_bytes, file_size_ - begin), block)) break;
-    std::uint64_t nearest = file_size_;
+  for (std::uint64_t begin = from; begin < file_.size(); begin += kBlock_bytes) {
+    std::string_view bytes;
+    if (!file_.read(begin, std::min(kBlock_bytes + kOverlap_bytes, file_.size() - begin), bytes)) break;
+    block = bytes;  // looking at packets reads others
+    std::uint64_t nearest = file_.size();
     for (const std::string_view mark : marks) {
       for (std::size_t hit = block.find(mark, lead); hit != std::string::npos;
            hit = block.find(mark, hit + 1)) {
@@ -217,9 +208,9 @@ std::uint64_t Aedat4Reader::scanForPacket(std::uint64_t from) {
         if (readHeader(at, header) == HeaderState::Good) nearest = at;
       }
     }
-    if (nearest != file_size_) return nearest;
+    if (nearest != file_.size()) return nearest;
   }
-  return file_size_;
+  return file_.size();
 }
 
 bool Aedat4Reader::nextPacket(PacketHeader& header) {
@@ -244,13 +235,14 @@ void Aedat4Reader::resumeBehind(std::uint64_t position) {
 bool Aedat4Reader::skipDamage(const PacketHeader& header, HeaderState state) {
   const std::uint64_t at = header.position;
   resumeBehind(at);
-  const bool last = position_ == file_size_ || position_ == table_position_;
+  const bool last = position_ == file_.size() || position_ == table_position_;
   if (last && state == HeaderState::Cut) {
-    addFault("", FaultKind::Truncated,
-             fmt::format("The last packet, at byte {} of {}, is not whole; it is left out.", at, file_size_));
+    addFault(
+        "", FaultKind::Truncated,
+        fmt::format("The last packet, at byte {} of {}, is not whole; it is left out.", at, file_.size()));
   } else {
     addFault("", FaultKind::Corrupt,
-             fmt::format("The packet at byte {} of {} is damaged; {}.", at, file_size_,
+             fmt::format("The packet at byte {} of {} is damaged; {}.", at, file_.size(),
                          last ? "nothing behind it can be read"
                               : fmt::format("reading goes on at byte {}", position_)));
   }
@@ -261,8 +253,9 @@ bool Aedat4Reader::skipDamage(const PacketHeader& header, HeaderState state) {
 bool Aedat4Reader::unpack(const PacketHeader& header, std::string_view& content) {
   std::size_t used = 0;
   const auto size = static_cast<std::uint64_t>(header.size);
-  const bool read = readBytes(header.dataPosition(), size, packed_);
-  if (read && unpacker_->unpack(packed_, content, used)) {
+  std::string_view packed;
+  const bool read = file_.read(header.dataPosition(), size, packed);
+  if (read && unpacker_->unpack(packed, content, used)) {
     if (used == size) return true;
     position_ = header.dataPosition() + used;
     addFault("", FaultKind::Corrupt,
@@ -357,7 +350,7 @@ bool Aedat4Reader::read(Packet& packet) {
 }
 
 double Aedat4Reader::fractionRead() const {
-  const std::uint64_t end = table_position_ != 0 ? table_position_ : file_size_;
+  const std::uint64_t end = table_position_ != 0 ? table_position_ : file_.size();
   return std::min(1.0, static_cast<double>(position_) / static_cast<double>(std::max<std::uint64_t>(1, end)));
 }
 

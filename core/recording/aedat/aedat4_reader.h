@@ -7,10 +7,10 @@
 #include "core/recording/aedat/packets.h"
 #include "core/recording/aedat/stream_description.h"
 #include "core/recording/event_order.h"
+#include "core/recording/random_access_file.h"
 #include "core/recording/recording_reader.h"
 
 #include <cstdint>
-#include <fstream>
 #include <map>
 #include <string>
 #include <vector>
@@ -46,7 +46,6 @@ class Aedat4Reader : public RecordingReader {
     std::uint64_t packets = 0, elements = 0, first_position = 0;
   };
 
-  bool readBytes(std::uint64_t position, std::uint64_t count, std::string& bytes);
   aedat::FileHeader readFileHeader();
   std::map<std::int32_t, Listed> listFromTable(std::int64_t position);
   std::map<std::int32_t, Listed> listByScan();
@@ -67,15 +66,14 @@ class Aedat4Reader : public RecordingReader {
   void addFault(const std::string& stream, FaultKind kind, const std::string& text);
 
   std::string path_;
-  std::ifstream file_;
-  std::uint64_t file_size_ = 0, data_position_ = 0, position_ = 0;
+  RandomAccessFile file_;
+  std::uint64_t data_position_ = 0, position_ = 0;
   std::uint64_t table_position_ = 0;  // 0: none, or damaged
   aedat::Compression compression_ = aedat::Compression::None;
   std::unique_ptr<aedat::Unpacker> unpacker_;
   std::vector<StreamInfo> streams_;
   std::vector<StreamState> states_;
   std::map<std::int32_t, std::size_t> stream_of_id_;
-  std::string header_bytes_, packed_;
   std::vector<Event> rest_;  // behind a large step back in time
   std::size_t rest_stream_ = 0;
   std::vector<RecordingFault> faults_;

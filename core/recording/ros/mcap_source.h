@@ -2,7 +2,7 @@
 // is read in sequence as far as it is whole.
 #pragma once
 
-#include "core/recording/ros/file_blocks.h"
+#include "core/recording/random_access_file.h"
 #include "core/recording/ros/mcap_records.h"
 #include "core/recording/ros/message_source.h"
 
@@ -66,7 +66,7 @@ class McapSource : public MessageSource {
   void skipDamage(const Record& record);
 
   FaultSink sink_;
-  FileBlocks file_;
+  RandomAccessFile file_;
   std::vector<SourceTopic> topics_;
   std::vector<bool> wanted_;
   std::unordered_map<std::uint16_t, SchemaText> schemas_;

@@ -1,24 +1,24 @@
-#include "core/recording/ros/file_blocks.h"
+#include "core/recording/random_access_file.h"
 
 #include "core/base/error.h"
 
 #include <algorithm>
 
-namespace evical::ros {
+namespace evical {
 namespace {
 
 constexpr std::uint64_t kBlock_bytes = 1 << 20;
 
 }  // namespace
 
-FileBlocks::FileBlocks(const std::filesystem::path& path) {
+RandomAccessFile::RandomAccessFile(const std::filesystem::path& path) {
   file_.rdbuf()->pubsetbuf(nullptr, 0);  // the block is the buffer
   file_.open(path, std::ios::binary | std::ios::ate);
   if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions");
   size_ = static_cast<std::uint64_t>(file_.tellg());
 }
 
-bool FileBlocks::read(std::uint64_t position, std::uint64_t count, std::string_view& bytes) {
+bool RandomAccessFile::read(std::uint64_t position, std::uint64_t count, std::string_view& bytes) {
   if (position > size_ || count > size_ - position) return false;
   const bool is_there = position >= block_position_ && position + count <= block_position_ + block_.size();
   if (!is_there) {
@@ -35,4 +35,4 @@ bool FileBlocks::read(std::uint64_t position, std::uint64_t count, std::string_v
   return true;
 }
 
-}  // namespace evical::ros
+}  // namespace evical

@@ -7,12 +7,12 @@
 #include <string>
 #include <string_view>
 
-namespace evical::ros {
+namespace evical {
 
-class FileBlocks {
+class RandomAccessFile {
  public:
   // Throws CalibrationError (BadInput) if the file cannot be opened.
-  explicit FileBlocks(const std::filesystem::path& path);
+  explicit RandomAccessFile(const std::filesystem::path& path);
 
   std::uint64_t size() const { return size_; }  // when it was opened
 
@@ -26,4 +26,4 @@ class FileBlocks {
   std::uint64_t block_position_ = 0;
 };
 
-}  // namespace evical::ros
+}  // namespace evical
