@@ -6,10 +6,10 @@
 #include "core/recording/prophesee/raw_header.h"
 #include "core/recording/prophesee/raw_reader.h"
 #include "core/recording/recording_reader.h"
-#include "core/recording/ros/bag_reader.h"
+#include "core/recording/ros/bag_records.h"
 #include "core/recording/ros/compression.h"
-#include "core/recording/ros/ros2_files.h"
-#include "core/recording/ros/ros2_reader.h"
+#include "core/recording/ros/ros_files.h"
+#include "core/recording/ros/ros_reader.h"
 #include "core/recording/text/text_table_reader.h"
 
 #include <fmt/format.h>
@@ -67,7 +67,7 @@ std::unique_ptr<RecordingReader> openFolder(const std::filesystem::path& path) {
     return std::make_unique<TextTableReader>(path);
   }
   if (isTumVieFolder(path)) return std::make_unique<Hdf5Reader>(path);
-  if (ros::isRos2Folder(path)) return std::make_unique<Ros2Reader>(path);
+  if (ros::isRos2Folder(path)) return std::make_unique<RosReader>(path);
   throw badInput(path.string(), "the folder has no events.txt, imu.txt, events.csv or imu.csv", kReadable);
 }
 
@@ -85,12 +85,12 @@ std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path
   }
   const std::string start = firstBytes(path);
   if (start.empty()) throw badInput(path.string(), "the file is empty", "Record again, or copy it again");
-  if (start.starts_with(rosbag::kMagic)) return std::make_unique<BagReader>(path);
+  if (start.starts_with(rosbag::kMagic)) return std::make_unique<RosReader>(path);
   if (start.starts_with("% ")) return openProphesee(path);
   if (start.starts_with(kEventStreamMagic)) return openEventStream(path);
   if (start.starts_with("\x89HDF\r\n\x1A\n"sv)) return std::make_unique<Hdf5Reader>(path);
   if (start.starts_with(aedat::kMagic)) return std::make_unique<Aedat4Reader>(path);
-  if (isRos2File(path, start)) return std::make_unique<Ros2Reader>(path);
+  if (isRos2File(path, start)) return std::make_unique<RosReader>(path);
   for (const OtherFormat& format : kOtherFormats) {
     if (start.starts_with(format.magic)) throw badInput(path.string(), format.problem, format.advice);
   }

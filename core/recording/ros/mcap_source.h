@@ -19,7 +19,9 @@ class McapSource : public MessageSource {
  public:
   McapSource(const std::filesystem::path& path, FaultSink sink);
 
+  const char* format() const override { return "mcap"; }
   const std::vector<SourceTopic>& topics() const override { return topics_; }
+  bool isIndexed() const override { return !chunk_channels_.empty(); }
   void want(std::vector<bool> topics) override { wanted_ = std::move(topics); }
   bool next(SourceMessage& message) override;
   void rewind() override;

@@ -31,9 +31,12 @@ using FaultSink = std::function<void(FaultKind kind, const std::string& text)>;
 class MessageSource {
  public:
   virtual ~MessageSource() = default;
+  virtual const char* format() const = 0;                      // "mcap", "rosbag"
   virtual const std::vector<SourceTopic>& topics() const = 0;  // may grow while a damaged file is read
-  virtual void want(std::vector<bool> topics) = 0;             // all if never called; before the first next()
-  virtual bool next(SourceMessage& message) = 0;               // false at the end
+  virtual bool isIndexed() const = 0;                          // skips parts in which nothing wanted is
+  // All if never called. While messages are read this is a hint: others may still come.
+  virtual void want(std::vector<bool> topics) = 0;
+  virtual bool next(SourceMessage& message) = 0;  // false at the end
   virtual void rewind() = 0;
   virtual std::string place() const = 0;  // of the last message, for people: "at byte 17"
   virtual double fractionRead() const = 0;

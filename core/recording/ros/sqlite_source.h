@@ -20,7 +20,9 @@ class SqliteSource : public MessageSource {
   SqliteSource(const std::filesystem::path& path, FaultSink sink);
   ~SqliteSource() override;
 
+  const char* format() const override { return "rosbag2"; }
   const std::vector<SourceTopic>& topics() const override { return topics_; }
+  bool isIndexed() const override { return false; }
   void want(std::vector<bool> topics) override { wanted_ = std::move(topics); }
   bool next(SourceMessage& message) override;
   void rewind() override;

@@ -43,11 +43,6 @@ std::size_t TopicStreams::add(const Topic& topic) {
   return index;
 }
 
-void TopicStreams::clear() {
-  streams_.clear();
-  states_.clear();
-}
-
 void TopicStreams::lookInto(std::size_t stream, std::string_view message) {
   if (knows(stream)) return;
   State& state = states_[stream];
@@ -103,10 +98,6 @@ bool TopicStreams::knows(std::size_t stream) const {
       break;
   }
   return state.refused() || (sized && state.looked >= 3);
-}
-
-bool TopicStreams::hasBeenLookedInto(std::size_t stream) const {
-  return states_[stream].looked > 0;
 }
 
 void TopicStreams::finishLooking() {

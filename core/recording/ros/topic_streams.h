@@ -27,13 +27,11 @@ class TopicStreams {
   // The stream of this topic: a new one unless name and type are known, but none once looking has finished.
   std::size_t add(const Topic& topic);
   void countMessages(std::size_t stream, std::uint64_t count) { streams_[stream].messages += count; }
-  void clear();
 
   // Resolution, encoding, and whether stamps are stamps, from the first messages of a stream.
   void lookInto(std::size_t stream, std::string_view message);
   bool knows(std::size_t stream) const;  // that further looking tells nothing
-  bool hasBeenLookedInto(std::size_t stream) const;
-  void finishLooking();  // selects what is read by default, lists triggers
+  void finishLooking();                  // selects what is read by default, lists triggers
 
   const std::vector<StreamInfo>& streams() const { return streams_; }
   void select(const std::string& path, const std::vector<std::size_t>& streams);

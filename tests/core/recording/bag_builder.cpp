@@ -68,10 +68,15 @@ std::uint32_t BagBuilder::addConnection(const std::string& topic, const std::str
   const auto id = static_cast<std::uint32_t>(connections_.size());
   Connection connection;
   connection.header = op(7) + field("conn", bytesOf(id)) + field("topic", topic);
-  connection.data = field("topic", topic) + field("type", type) + field("md5sum", md5) +
-                    field("message_definition", definition);
+  connection.type = field("type", type) + field("md5sum", md5) + field("message_definition", definition);
+  connection.data = field("topic", topic) + connection.type;
   connections_.push_back(connection);
   return id;
+}
+
+void BagBuilder::setTopicInData(std::uint32_t id, const std::optional<std::string>& topic) {
+  Connection& connection = connections_.at(id);
+  connection.data = (topic ? field("topic", *topic) : std::string()) + connection.type;
 }
 
 void BagBuilder::message(std::uint32_t id, std::int64_t record_time_ns, const std::string& content) {

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,9 @@ class BagBuilder {
   std::uint32_t addEvents(const std::string& topic) {
     return addConnection(topic, "dvs_msgs/EventArray", kEventArrayMd5);
   }
+  // What the connection's data say of its topic, which the record's header has too: librosbag's Bag::write
+  // leaves it out, and a publisher may know it by another name.
+  void setTopicInData(std::uint32_t connection, const std::optional<std::string>& topic);
   std::uint32_t addImu(const std::string& topic) { return addConnection(topic, "sensor_msgs/Imu", kImuMd5); }
 
   void message(std::uint32_t connection, std::int64_t record_time_ns, const std::string& content);
@@ -38,7 +42,7 @@ class BagBuilder {
 
  private:
   struct Connection {
-    std::string header, data;
+    std::string header, data, type;  // the type's fields are the end of the data
     bool written = false;
     std::string index;  // of this chunk
     std::uint32_t count = 0;

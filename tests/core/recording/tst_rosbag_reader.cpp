@@ -41,6 +41,9 @@ class TestRosbagReader : public QObject {
   void type_isToldByMd5NameOrDefinition();
   void select_leavesOutTheOthers();
   void twoConnectionsOfATopic_areOneStream();
+  void topicsOfBagWrite_areThoseOfTheRecords_data();
+  void topicsOfBagWrite_areThoseOfTheRecords();
+  void lateTopic_isDescribedAtOpening();
   void sizeOfZero_isTolerated();
   void emptyBag_hasNoStreams();
   void bagWithoutIndex_isReadInSequence();
@@ -181,6 +184,52 @@ void TestRosbagReader::twoConnectionsOfATopic_areOneStream() {
   const Contents contents = readAll(folder_.write("two.bag", bag.finished()));
   QCOMPARE(contents.streams.size(), std::size_t{1});
   QCOMPARE(contents.eventCount(), std::size_t{8});
+}
+
+void TestRosbagReader::topicsOfBagWrite_areThoseOfTheRecords_data() {
+  QTest::addColumn<bool>("finished");
+  QTest::addColumn<QString>("in_data");  // null: nothing
+  for (const bool finished : {true, false}) {
+    const char* index = finished ? "" : ", no index";
+    QTest::addRow("no topic in the data%s", index) << finished << QString();
+    QTest::addRow("empty topic in the data%s", index) << finished << QString("");
+    QTest::addRow("publisher's name in the data%s", index) << finished << QString("/imu");
+  }
+}
+
+// Two IMUs that their data tell nothing about stay two.
+void TestRosbagReader::topicsOfBagWrite_areThoseOfTheRecords() {
+  QFETCH(bool, finished);
+  QFETCH(QString, in_data);
+  BagBuilder bag;
+  const std::vector<ImuSample> samples = someSamples(6);
+  for (std::size_t imu = 0; imu < 2; ++imu) {
+    const std::uint32_t connection = bag.addImu("/imu" + std::to_string(imu));
+    bag.setTopicInData(connection, in_data.isNull() ? std::nullopt : std::optional(in_data.toStdString()));
+    for (std::size_t i = 3 * imu; i < 3 * imu + 3; ++i)
+      bag.message(connection, samples[i].time_ns, imuMessage(samples[i]));
+  }
+  const Contents contents = readAll(folder_.write("write.bag", finished ? bag.finished() : bag.unfinished()));
+  QCOMPARE(contents.streams.size(), std::size_t{2});
+  for (std::size_t imu = 0; imu < 2; ++imu) {
+    QCOMPARE(contents.streams[imu].name, "/imu" + std::to_string(imu));
+    const auto first = samples.begin() + static_cast<std::ptrdiff_t>(3 * imu);
+    QVERIFY(sameSamples(contents.imu.at(imu), {first, first + 3}));
+  }
+}
+
+// The index tells where it begins, however much of others lies before it.
+void TestRosbagReader::lateTopic_isDescribedAtOpening() {
+  BagBuilder bag;
+  const std::uint32_t early = bag.addEvents("/early"), late = bag.addEvents("/late");
+  const std::string message = eventMessage(kStart_ns, {32, 24}, someEvents(1));
+  for (int i = 0; i < 30'000; ++i) {
+    bag.message(early, kStart_ns, message);
+    if (i % 500 == 0) bag.endChunk();
+  }
+  bag.message(late, kStart_ns, eventMessage(kStart_ns, kSize_px, someEvents(1)));
+  const std::unique_ptr<RecordingReader> reader = openRecording(folder_.write("late.bag", bag.finished()));
+  QCOMPARE(reader->streams().at(1).resolution_px, kSize_px);
 }
 
 void TestRosbagReader::sizeOfZero_isTolerated() {

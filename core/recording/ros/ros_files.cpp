@@ -1,7 +1,8 @@
-#include "core/recording/ros/ros2_files.h"
+#include "core/recording/ros/ros_files.h"
 
 #include "core/base/error.h"
 #include "core/base/yaml_node.h"
+#include "core/recording/ros/bag_source.h"
 #include "core/recording/ros/compression.h"
 #include "core/recording/ros/mcap_source.h"
 #include "core/recording/ros/sqlite_source.h"
@@ -67,9 +68,11 @@ std::string firstBytes(const fs::path& path) {
 class UnpackedSource : public MessageSource {
  public:
   UnpackedSource(const fs::path& path, const FaultSink& sink)
-      : file_(path, sink), source_(openRos2File(file_.path(), sink)) {}
+      : file_(path, sink), source_(openRosFile(file_.path(), sink)) {}
 
+  const char* format() const override { return source_->format(); }
   const std::vector<SourceTopic>& topics() const override { return source_->topics(); }
+  bool isIndexed() const override { return source_->isIndexed(); }
   void want(std::vector<bool> topics) override { source_->want(std::move(topics)); }
   bool next(SourceMessage& message) override { return source_->next(message); }
   void rewind() override { source_->rewind(); }
@@ -83,7 +86,7 @@ class UnpackedSource : public MessageSource {
 
 }  // namespace
 
-std::vector<fs::path> ros2Files(const fs::path& path, const FaultSink& sink) {
+std::vector<fs::path> rosFiles(const fs::path& path, const FaultSink& sink) {
   if (!fs::is_directory(path)) return {path};
   std::vector<fs::path> files;
   if (fs::exists(path / "metadata.yaml")) {
@@ -112,13 +115,14 @@ bool isRos2Folder(const fs::path& folder) {
   return !filesByNumber(folder).empty();
 }
 
-std::unique_ptr<MessageSource> openRos2File(const fs::path& path, const FaultSink& sink) {
+std::unique_ptr<MessageSource> openRosFile(const fs::path& path, const FaultSink& sink) {
   const std::string start = firstBytes(path);
+  if (start.starts_with(rosbag::kMagic)) return std::make_unique<BagSource>(path, sink);
   if (start.starts_with(mcap::kMagic.substr(0, 5))) return std::make_unique<McapSource>(path, sink);
   if (start.starts_with(kSqliteMagic)) return std::make_unique<SqliteSource>(path, sink);
   if (start.starts_with(kZstdMagic) && path.extension() != kUnpackedEnding)
     return std::make_unique<UnpackedSource>(path, sink);
-  throw badInput(path.string(), start.empty() ? "the file is empty" : "this is no file of a ROS 2 bag",
+  throw badInput(path.string(), start.empty() ? "the file is empty" : "this is no file of a ROS recording",
                  "Record again, or copy it again");
 }
 

@@ -1,5 +1,5 @@
-// ROS 2 recordings: MCAP and sqlite3 files, alone or as a folder of several, whose messages are one
-// recording.
+// ROS recordings: bags of ROS 1, and MCAP and sqlite3 files of ROS 2, these alone or as a folder of several
+// whose messages are one recording.
 #pragma once
 
 #include "core/recording/recording_reader.h"
@@ -14,10 +14,10 @@
 
 namespace evical {
 
-class Ros2Reader : public RecordingReader {
+class RosReader : public RecordingReader {
  public:
   // A file, or a folder with metadata.yaml or such files.
-  explicit Ros2Reader(const std::filesystem::path& path);
+  explicit RosReader(const std::filesystem::path& path);
 
   const std::vector<StreamInfo>& streams() const override { return topics_.streams(); }
   void select(const std::vector<std::size_t>& streams) override { topics_.select(path_, streams); }

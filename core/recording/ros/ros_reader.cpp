@@ -1,7 +1,7 @@
-#include "core/recording/ros/ros2_reader.h"
+#include "core/recording/ros/ros_reader.h"
 
 #include "core/base/error.h"
-#include "core/recording/ros/ros2_files.h"
+#include "core/recording/ros/ros_files.h"
 
 #include <fmt/format.h>
 
@@ -17,14 +17,12 @@ constexpr int kMostLooked = 20'000;  // messages
 
 }  // namespace
 
-Ros2Reader::Ros2Reader(const std::filesystem::path& path) : path_(path.string()) {
-  files_ = ros::ros2Files(path, sink(path));
-  const std::string name = files_.front().filename().string();
-  format_ = name.find(".mcap") != std::string::npos ? "mcap" : "rosbag2";
+RosReader::RosReader(const std::filesystem::path& path) : path_(path.string()) {
+  files_ = ros::rosFiles(path, sink(path));
   std::size_t readable = 0;
   for (std::size_t i = 0; i < files_.size(); ++i) {
     if (!openFile(i)) continue;
-    ++readable;
+    if (readable++ == 0) format_ = source_->format();
     for (std::size_t topic = 0; topic < streams_of_topics_.size(); ++topic)
       topics_.countMessages(streams_of_topics_[topic], source_->topics()[topic].messages);
     lookIntoFile();
@@ -35,12 +33,12 @@ Ros2Reader::Ros2Reader(const std::filesystem::path& path) : path_(path.string())
 }
 
 // A single file must be readable, one of many need not.
-bool Ros2Reader::openFile(std::size_t index) {
+bool RosReader::openFile(std::size_t index) {
   file_ = index;
   source_.reset();
   streams_of_topics_.clear();
   try {
-    source_ = ros::openRos2File(files_[index], sink(files_[index]));
+    source_ = ros::openRosFile(files_[index], sink(files_[index]));
   } catch (const CalibrationError& error) {
     if (files_.size() == 1 || error.kind() != ErrorKind::BadInput) throw;
     sink(files_[index])(FaultKind::Unreadable, error.what());
@@ -50,13 +48,13 @@ bool Ros2Reader::openFile(std::size_t index) {
   return true;
 }
 
-void Ros2Reader::matchTopics() {
+void RosReader::matchTopics() {
   while (streams_of_topics_.size() < source_->topics().size())
     streams_of_topics_.push_back(topics_.add(source_->topics()[streams_of_topics_.size()].topic));
 }
 
 // Until all streams are known, but not through the whole file.
-void Ros2Reader::lookIntoFile() {
+void RosReader::lookIntoFile() {
   const std::size_t faults = topics_.faults().size();
   const std::vector<ros::SourceTopic>& topics = source_->topics();
   const bool counted =
@@ -71,15 +69,19 @@ void Ros2Reader::lookIntoFile() {
   for (int i = 0; anyUnknown() && i < kMostLooked && looked_bytes < kMostLooked_bytes; ++i) {
     if (!source_->next(message)) break;
     if (message.topic >= unknown.size()) continue;
-    topics_.lookInto(streams_of_topics_[message.topic], message.bytes);
+    const std::size_t stream = streams_of_topics_[message.topic];
+    topics_.lookInto(stream, message.bytes);
     looked_bytes += message.bytes.size();
-    if (topics_.knows(streams_of_topics_[message.topic])) unknown[message.topic] = false;
+    if (!topics_.knows(stream)) continue;
+    for (std::size_t k = 0; k < unknown.size(); ++k)
+      if (streams_of_topics_[k] == stream) unknown[k] = false;
+    if (source_->isIndexed()) source_->want(unknown);
   }
   topics_.dropFaultsFrom(faults);  // reading will find them again
   source_->rewind();
 }
 
-bool Ros2Reader::nextFile() {
+bool RosReader::nextFile() {
   std::size_t index = started_ ? file_ + 1 : 0;
   const bool is_open = !started_ && source_ != nullptr;
   started_ = true;
@@ -95,7 +97,7 @@ bool Ros2Reader::nextFile() {
   return true;
 }
 
-bool Ros2Reader::read(Packet& packet) {
+bool RosReader::read(Packet& packet) {
   if (topics_.handOutRest(packet)) return true;
   if (!started_) nextFile();
   ros::SourceMessage message;
@@ -115,12 +117,12 @@ bool Ros2Reader::read(Packet& packet) {
   return false;
 }
 
-double Ros2Reader::fractionRead() const {
+double RosReader::fractionRead() const {
   const double here = source_ ? source_->fractionRead() : started_ ? 1.0 : 0.0;
   return std::min(1.0, (static_cast<double>(file_) + here) / static_cast<double>(files_.size()));
 }
 
-ros::FaultSink Ros2Reader::sink(const std::filesystem::path& file) {
+ros::FaultSink RosReader::sink(const std::filesystem::path& file) {
   return [this, name = file.filename().string()](FaultKind kind, const std::string& text) {
     topics_.addFault("", kind, files_.size() > 1 ? name + ": " + text : text);
   };

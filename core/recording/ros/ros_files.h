@@ -1,4 +1,4 @@
-// Which files a ROS 2 recording consists of, and opening them whatever they are packed in.
+// Which files a ROS recording consists of, and opening them whatever they are packed in.
 #pragma once
 
 #include "core/recording/ros/message_source.h"
@@ -12,12 +12,13 @@ namespace evical::ros {
 
 // A file, or a folder's files in the order of its metadata.yaml; where there is none, or it is damaged, in
 // the order of their numbers. Throws CalibrationError (BadInput) if there are none.
-std::vector<std::filesystem::path> ros2Files(const std::filesystem::path& path, const FaultSink& sink);
+std::vector<std::filesystem::path> rosFiles(const std::filesystem::path& path, const FaultSink& sink);
 
 // Whether a folder looks like a ROS 2 recording.
 bool isRos2Folder(const std::filesystem::path& folder);
 
-// By content; files packed with zstd (compression_mode FILE) are unpacked to a temporary file.
-std::unique_ptr<MessageSource> openRos2File(const std::filesystem::path& path, const FaultSink& sink);
+// By content: a ROS 1 bag, or MCAP or sqlite3; those packed with zstd (compression_mode FILE) are unpacked to
+// a temporary file.
+std::unique_ptr<MessageSource> openRosFile(const std::filesystem::path& path, const FaultSink& sink);
 
 }  // namespace evical::ros

@@ -1,30 +1,33 @@
 // ROS 1 bags, format 2.0, chunk by chunk: memory is that of the largest chunk. A damaged bag is read as far
-// as it is whole, and what is missing is among the faults.
+// as it is whole, and what is missing goes to the FaultSink.
 #pragma once
 
-#include "core/recording/recording_reader.h"
+#include "core/recording/random_access_file.h"
 #include "core/recording/ros/bag_records.h"
-#include "core/recording/ros/topic_streams.h"
+#include "core/recording/ros/message_source.h"
 
 #include <cstdint>
-#include <fstream>
+#include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
-namespace evical {
+namespace evical::ros {
 
-class BagReader : public RecordingReader {
+class BagSource : public MessageSource {
  public:
-  explicit BagReader(const std::filesystem::path& path);
+  BagSource(const std::filesystem::path& path, FaultSink sink);
 
-  const std::vector<StreamInfo>& streams() const override { return topics_.streams(); }
-  void select(const std::vector<std::size_t>& streams) override { topics_.select(path_, streams); }
-  bool read(Packet& packet) override;
+  const char* format() const override { return "rosbag"; }
+  const std::vector<SourceTopic>& topics() const override { return topics_; }
+  bool isIndexed() const override { return !chunk_connections_.empty(); }
+  void want(std::vector<bool> topics) override { wanted_ = std::move(topics); }
+  bool next(SourceMessage& message) override;
+  void rewind() override;
+  std::string place() const override;
   double fractionRead() const override;
-  const std::vector<RecordingFault>& faults() const override { return topics_.faults(); }
-  std::string format() const override { return "rosbag"; }
 
  private:
   enum class RecordState {
@@ -41,46 +44,40 @@ class BagReader : public RecordingReader {
     std::uint32_t data_size = 0;
     std::uint64_t end() const { return data_position + data_size; }
   };
-  // A connection id, and the chunk in which its first message lies.
-  struct Connection {
-    std::size_t stream = 0;
-    std::uint64_t first_chunk = 0;
-  };
 
-  bool readBytes(std::uint64_t position, std::uint64_t count, std::string& bytes);
   RecordState readRecord(std::uint64_t position, FileRecord& record);
-  void loadChunk(std::uint64_t position, const FileRecord& record);
+  bool loadChunk(std::uint64_t position, const FileRecord& record);
   std::uint64_t scanForChunk(std::uint64_t from);
   std::uint64_t recordAfter(std::uint64_t position, RecordState state, const FileRecord& record,
                             std::uint64_t& chunk_data);
 
-  void listStreams();
+  void listTopics();
   bool listFromIndex(std::uint64_t index_position, std::uint32_t connections, std::uint32_t chunks);
   void listByScan();
-  void addConnection(std::uint32_t id, const rosbag::ConnectionData& data);
-  void addChunkInfo(const FileRecord& record);
-  void lookIntoChunk(std::uint64_t position);
-  void lookIntoFirstMessages();
+  void listFromChunk(std::uint64_t position);
+  void addConnection(const rosbag::RecordHeader& header, const rosbag::ConnectionData& data);
+  void addChunkInfo(std::uint64_t chunk, std::string_view counts);
 
   bool wanted(std::uint32_t connection) const;
   bool chunkIsWanted(std::uint64_t position) const;
   std::uint64_t indexedChunkAfter(std::uint64_t position) const;
+  void skipUnwantedChunks();
   bool nextChunk();
+  bool nextOfChunk(SourceMessage& message);
   void reportDamage(std::uint64_t position, RecordState state);
-  bool nextMessage(Packet& packet);
-  void addFault(FaultKind kind, const std::string& text) { topics_.addFault("", kind, text); }
 
-  std::string path_;
-  std::ifstream file_;
-  std::uint64_t file_size_ = 0;
+  FaultSink sink_;
+  RandomAccessFile file_;
   std::uint64_t position_ = 0;    // of the next record to read
   std::uint64_t chunk_data_ = 0;  // where those of the last chunk begin
-  ros::TopicStreams topics_;
-  std::unordered_map<std::uint32_t, Connection> connections_;
+  std::vector<SourceTopic> topics_;
+  std::vector<bool> wanted_;
+  std::unordered_map<std::uint32_t, std::size_t> topic_of_connection_;
   std::map<std::uint64_t, std::vector<std::uint32_t>> chunk_connections_;  // from the chunk infos
-  std::string header_bytes_, file_bytes_, chunk_;
+  std::string header_bytes_, unpacked_;
   std::uint64_t chunk_position_ = 0;  // in the file
-  std::size_t chunk_offset_ = 0;      // of the next record in the chunk
+  std::string_view chunk_;            // the rest of the records in the chunk being read
+  std::size_t chunk_size_ = 0;        // of all of them
 };
 
-}  // namespace evical
+}  // namespace evical::ros

@@ -1,0 +1,375 @@
+#include "core/recording/ros/bag_source.h"
+
+#include "core/base/nearest_name.h"
+#include "core/recording/byte_cursor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <regex>
+#include <system_error>
+#include <utility>
+
+namespace evical::ros {
+namespace {
+
+constexpr std::uint32_t kLargestHeader_bytes = 1 << 20;  // real ones have below 100 bytes
+
+// Packed data are hardly ever longer than the plain ones.
+std::uint64_t largestPacked(std::uint32_t plain_bytes) {
+  return std::uint64_t{plain_bytes} + plain_bytes / 64 + 4096;
+}
+
+struct ChunkRecord {
+  rosbag::RecordHeader header;
+  std::string_view data;
+};
+
+// Takes the first of the records; false, and they stay, if it is damaged.
+bool takeRecord(std::string_view& records, ChunkRecord& record) {
+  ByteCursor cursor(records);
+  const std::string_view header = cursor.sized();
+  record.data = cursor.sized();
+  if (!cursor.ok() || !rosbag::parseRecordHeader(header, record.header)) return false;
+  records.remove_prefix(cursor.position());
+  return true;
+}
+
+// Those that `rosbag record --split` made before and behind this one: "a_3.bag" for "a_2.bag". Their names
+// may also hold the time at which they were begun, which differs: "a_2024-05-06-07-08-09_2.bag". They count
+// from 0: without that one these are recordings that somebody numbered.
+std::vector<std::string> otherParts(const std::filesystem::path& path) {
+  constexpr const char* kNumbered = R"((.*?)(_\d{4}(?:-\d{2}){5})?_(\d{1,6})\.bag)";
+  const std::regex numbered(kNumbered);
+  std::smatch own, other;
+  const std::string name = path.filename().string();
+  std::vector<std::string> parts;
+  if (!std::regex_match(name, own, numbered)) return parts;
+  const int number = std::stoi(own[3]);
+  bool has_first = number == 0;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(path.parent_path() / ".", error)) {
+    const std::string candidate = entry.path().filename().string();
+    if (!std::regex_match(candidate, other, numbered)) continue;
+    const bool same = own[1] == other[1] && own[2].matched == other[2].matched;
+    if (!same) continue;
+    const int its_number = std::stoi(other[3]);
+    has_first = has_first || its_number == 0;
+    if (std::abs(its_number - number) == 1) parts.push_back(candidate);
+  }
+  if (!has_first) return {};
+  std::sort(parts.begin(), parts.end());
+  return parts;
+}
+
+}  // namespace
+
+BagSource::BagSource(const std::filesystem::path& path, FaultSink sink)
+    : sink_(std::move(sink)), file_(path) {
+  rewind();
+  listTopics();
+  rewind();
+  const std::vector<std::string> parts = otherParts(path);
+  if (parts.empty()) return;
+  sink_(FaultKind::Part,
+        fmt::format("The name is that of a part of a recording that was split: {} {} beside it. Only this "
+                    "part is read.",
+                    joined(parts), parts.size() == 1 ? "lies" : "lie"));
+}
+
+void BagSource::rewind() {
+  position_ = rosbag::kMagic.size();
+  chunk_data_ = 0;
+  chunk_ = {};
+}
+
+std::string BagSource::place() const {
+  return fmt::format("in the chunk at byte {}", chunk_position_);
+}
+
+double BagSource::fractionRead() const {
+  return std::min(
+      1.0, static_cast<double>(position_) / static_cast<double>(std::max<std::uint64_t>(1, file_.size())));
+}
+
+void BagSource::listTopics() {
+  FileRecord record;
+  const bool has_header =
+      readRecord(position_, record) == RecordState::Whole && record.header.is(rosbag::Op::BagHeader);
+  const rosbag::RecordHeader header = record.header;
+  const bool is_empty =
+      has_header && header.index_position == record.end() && header.index_position == file_.size();
+  if (is_empty) return;
+  if (has_header && listFromIndex(header.index_position, header.connection_count, header.chunk_count)) return;
+  topic_of_connection_.clear();  // an index that is not whole is none
+  chunk_connections_.clear();
+  topics_.clear();
+  listByScan();
+  const bool never_closed = has_header && header.index_position == 0;
+  sink_(FaultKind::NoIndex,
+        never_closed
+            ? "The bag has no index: its recorder did not close it. It is read from the start."
+            : fmt::format("The bag's index is damaged, or cut off at byte {}. It is read from the start.",
+                          file_.size()));
+}
+
+BagSource::RecordState BagSource::readRecord(std::uint64_t position, FileRecord& record) {
+  record = {};
+  if (position >= file_.size()) return RecordState::End;
+  std::string_view bytes;
+  if (!file_.read(position, 4, bytes)) return RecordState::Damaged;
+  const auto header_size = ByteCursor(bytes).number<std::uint32_t>();
+  if (header_size > kLargestHeader_bytes) return RecordState::Damaged;
+  if (!file_.read(position + 4, std::uint64_t{header_size} + 4, bytes)) return RecordState::Damaged;
+  header_bytes_ = bytes;  // reading the data moves the file's block
+  ByteCursor cursor(header_bytes_);
+  if (!rosbag::parseRecordHeader(cursor.take(header_size), record.header)) return RecordState::Damaged;
+  record.data_size = cursor.number<std::uint32_t>();
+  record.data_position = position + 8 + header_size;
+  return record.end() <= file_.size() ? RecordState::Whole : RecordState::Cut;
+}
+
+// A chunk's header somewhere from here on, also within data: packed data don't look like one by chance, and
+// chunks hold none. The file's size where there is none.
+std::uint64_t BagSource::scanForChunk(std::uint64_t from) {
+  static constexpr std::string_view kOp("op=\x05", 4);
+  constexpr std::uint64_t kBlock_bytes = 1 << 20;
+  constexpr std::uint64_t kFurthestOp_bytes = 128;  // from the record's beginning; real headers have about 60
+  std::string block;
+  FileRecord record;
+  for (std::uint64_t begin = from; begin < file_.size(); begin += kBlock_bytes) {
+    const std::uint64_t length = std::min(kBlock_bytes + kFurthestOp_bytes, file_.size() - begin);
+    std::string_view bytes;
+    if (!file_.read(begin, length, bytes)) break;
+    block = bytes;  // looking at records reads others
+    for (std::size_t hit = block.find(kOp); hit != std::string::npos; hit = block.find(kOp, hit + 1)) {
+      const std::uint64_t op = begin + hit;
+      for (std::uint64_t at = std::max(from, op - std::min(op, kFurthestOp_bytes)); at < op; ++at) {
+        const RecordState state = readRecord(at, record);
+        const bool has_header = state == RecordState::Whole || state == RecordState::Cut;
+        if (has_header && record.header.is(rosbag::Op::Chunk) && record.data_position > op) return at;
+      }
+    }
+  }
+  return file_.size();
+}
+
+// Where the file goes on behind a record, whatever its length says. `chunk_data` is where those of the last
+// chunk begin: a chunk with a false length may hide the next one.
+std::uint64_t BagSource::recordAfter(std::uint64_t position, RecordState state, const FileRecord& record,
+                                     std::uint64_t& chunk_data) {
+  const bool is_chunk = state != RecordState::Damaged && record.header.is(rosbag::Op::Chunk);
+  if (is_chunk) chunk_data = record.data_position;
+  const bool plausible = !is_chunk || record.data_size <= largestPacked(record.header.size);
+  if (state == RecordState::Whole && plausible) return record.end();
+  return scanForChunk(chunk_data != 0 ? chunk_data : position + 1);
+}
+
+// What can be unpacked of it: a cut chunk is read up to the cut, and one whose length lies as far as its
+// packed data can go. False if that is nothing.
+bool BagSource::loadChunk(std::uint64_t position, const FileRecord& record) {
+  chunk_position_ = position;
+  chunk_ = {};
+  const std::uint64_t largest = largestPacked(record.header.size);
+  const std::uint64_t available =
+      record.data_position < file_.size() ? file_.size() - record.data_position : 0;
+  const std::uint64_t size = std::min({std::uint64_t{record.data_size}, largest, available});
+  std::string_view bytes;
+  Unpacked result = Unpacked::Damaged;
+  if (file_.read(record.data_position, size, bytes)) {
+    const bool is_plain = record.header.compression == "none" && bytes.size() == record.header.size;
+    result = is_plain
+                 ? Unpacked::Whole
+                 : rosbag::decompressChunk(record.header.compression, bytes, record.header.size, unpacked_);
+    chunk_ = is_plain ? bytes : std::string_view(unpacked_);
+  }
+  chunk_size_ = chunk_.size();
+  if (result == Unpacked::Damaged) {
+    sink_(FaultKind::Corrupt,
+          fmt::format("The chunk at byte {} cannot be unpacked; it is left out.", position));
+  } else if (result == Unpacked::Cut) {
+    sink_(FaultKind::Truncated, fmt::format("The chunk at byte {} holds {} of {} bytes; these are read.",
+                                            position, chunk_size_, record.header.size));
+  }
+  return !chunk_.empty();
+}
+
+// False unless the index is there and complete.
+bool BagSource::listFromIndex(std::uint64_t index_position, std::uint32_t connections, std::uint32_t chunks) {
+  if (index_position < position_ || index_position >= file_.size()) return false;
+  FileRecord record;
+  RecordState state = RecordState::Whole;
+  std::uint32_t found_chunks = 0;
+  for (std::uint64_t at = index_position; (state = readRecord(at, record)) == RecordState::Whole;
+       at = record.end()) {
+    std::string_view data;
+    if (!file_.read(record.data_position, record.data_size, data)) return false;
+    if (record.header.is(rosbag::Op::Connection)) {
+      addConnection(record.header, rosbag::parseConnectionData(data));
+    } else if (record.header.is(rosbag::Op::ChunkInfo)) {
+      addChunkInfo(record.header.chunk_position, data);
+      ++found_chunks;
+    } else {
+      return false;
+    }
+  }
+  return state == RecordState::End && topic_of_connection_.size() == connections && found_chunks == chunks;
+}
+
+// Only chunks with connections not met before need to be unpacked: the index data behind a chunk tell.
+void BagSource::listByScan() {
+  FileRecord record;
+  std::uint64_t chunk = 0, chunk_data = 0;
+  bool has_index_data = false, is_new = false;
+  const auto finishChunk = [&] {
+    if (chunk != 0 && (is_new || !has_index_data)) listFromChunk(chunk);
+    chunk = 0;
+    has_index_data = is_new = false;
+  };
+  RecordState state = RecordState::End;
+  for (std::uint64_t at = position_, next = 0;; at = next) {
+    state = readRecord(at, record);
+    if (state == RecordState::End) break;
+    const bool has_header = state == RecordState::Whole || state == RecordState::Cut;
+    const bool is_chunk = has_header && record.header.is(rosbag::Op::Chunk);
+    const bool is_index_data = has_header && record.header.is(rosbag::Op::IndexData);
+    const std::uint32_t connection = record.header.connection;
+    next = recordAfter(at, state, record, chunk_data);
+    if (state == RecordState::Damaged || state == RecordState::Cut)
+      has_index_data = false;  // some may be lost
+    if (is_index_data) {
+      has_index_data = state == RecordState::Whole;
+      is_new = is_new || !topic_of_connection_.contains(connection);
+      continue;
+    }
+    finishChunk();
+    if (is_chunk) chunk = at;
+  }
+  finishChunk();
+}
+
+void BagSource::listFromChunk(std::uint64_t position) {
+  FileRecord record;
+  const RecordState state = readRecord(position, record);
+  const bool usable = state == RecordState::Whole || state == RecordState::Cut;
+  if (!usable || !record.header.is(rosbag::Op::Chunk)) return;
+  const FaultSink sink = std::exchange(sink_, [](FaultKind, const std::string&) {});
+  loadChunk(position, record);  // reading will report its damage
+  sink_ = sink;
+  ChunkRecord part;
+  while (!chunk_.empty() && takeRecord(chunk_, part)) {
+    if (part.header.is(rosbag::Op::Connection))
+      addConnection(part.header, rosbag::parseConnectionData(part.data));
+  }
+  chunk_ = {};
+}
+
+// The record's header has the topic under which messages were stored. The data are the header of the
+// publisher's connection, which may have another name for it, or none where a program wrote the bag itself.
+void BagSource::addConnection(const rosbag::RecordHeader& header, const rosbag::ConnectionData& data) {
+  if (topic_of_connection_.contains(header.connection)) return;
+  topic_of_connection_[header.connection] = topics_.size();
+  const std::string_view topic = header.topic.empty() ? data.topic : header.topic;
+  topics_.push_back({{std::string(topic), std::string(data.type), std::string(data.md5),
+                      std::string(data.definition), Serialization::Ros1},
+                     0});
+}
+
+// u32 connection, u32 messages, and so on.
+void BagSource::addChunkInfo(std::uint64_t chunk, std::string_view counts) {
+  ByteCursor cursor(counts);
+  while (!cursor.atEnd()) {
+    const auto id = cursor.number<std::uint32_t>(), count = cursor.number<std::uint32_t>();
+    if (!cursor.ok()) return;
+    chunk_connections_[chunk].push_back(id);
+    const auto found = topic_of_connection_.find(id);
+    if (found != topic_of_connection_.end()) topics_[found->second].messages += count;
+  }
+}
+
+bool BagSource::wanted(std::uint32_t connection) const {
+  const auto found = topic_of_connection_.find(connection);
+  if (found == topic_of_connection_.end()) return false;
+  return found->second >= wanted_.size() || wanted_[found->second];
+}
+
+bool BagSource::chunkIsWanted(std::uint64_t position) const {
+  const auto found = chunk_connections_.find(position);
+  if (found == chunk_connections_.end()) return true;
+  return std::any_of(found->second.begin(), found->second.end(),
+                     [this](std::uint32_t id) { return wanted(id); });
+}
+
+// 0 where the index knows none.
+std::uint64_t BagSource::indexedChunkAfter(std::uint64_t position) const {
+  const auto found = chunk_connections_.upper_bound(position);
+  return found == chunk_connections_.end() ? 0 : found->first;
+}
+
+// From one chunk to the next, as long as the index knows both.
+void BagSource::skipUnwantedChunks() {
+  while (!chunkIsWanted(position_)) {
+    const std::uint64_t following = indexedChunkAfter(position_);
+    if (following == 0) return;
+    position_ = following;
+  }
+}
+
+// Where a record is damaged, or longer than it can be, the index tells where to go on, or a search.
+bool BagSource::nextChunk() {
+  FileRecord record;
+  for (;;) {
+    skipUnwantedChunks();
+    const std::uint64_t at = position_;
+    const RecordState state = readRecord(at, record);
+    if (state == RecordState::End) return false;
+    const std::uint64_t indexed = indexedChunkAfter(at), end = record.end();
+    const bool fits = state == RecordState::Whole && end <= indexed;
+    position_ = indexed == 0 ? recordAfter(at, state, record, chunk_data_) : fits ? end : indexed;
+    if (state != RecordState::Whole || position_ != end) {
+      reportDamage(at, state);
+      readRecord(at, record);  // the search has read others
+    }
+    const bool is_chunk = state != RecordState::Damaged && record.header.is(rosbag::Op::Chunk);
+    if (is_chunk && chunkIsWanted(at) && loadChunk(at, record)) return true;
+  }
+}
+
+void BagSource::reportDamage(std::uint64_t position, RecordState state) {
+  const bool last = position_ == file_.size();
+  const std::uint64_t lost = std::max(position, position_) - position;
+  sink_(state == RecordState::Cut && last ? FaultKind::Truncated : FaultKind::Corrupt,
+        fmt::format("The record at byte {} of {} {}; {}.", position, file_.size(),
+                    state == RecordState::Damaged ? fmt::format("is damaged, {} bytes are lost", lost)
+                                                  : "is cut off or has a false length",
+                    last ? "nothing behind it is read"
+                         : fmt::format("reading goes on with the chunk at byte {}", position_)));
+}
+
+bool BagSource::nextOfChunk(SourceMessage& message) {
+  ChunkRecord record;
+  while (!chunk_.empty()) {
+    const std::size_t at = chunk_size_ - chunk_.size();
+    if (!takeRecord(chunk_, record)) {
+      sink_(FaultKind::Corrupt,
+            fmt::format("The chunk at byte {} is damaged from its byte {} on; the rest is left out.",
+                        chunk_position_, at));
+      chunk_ = {};
+      return false;
+    }
+    if (!record.header.is(rosbag::Op::Message) || !wanted(record.header.connection)) continue;
+    message = {topic_of_connection_.at(record.header.connection), record.header.time_ns, record.data};
+    return true;
+  }
+  return false;
+}
+
+bool BagSource::next(SourceMessage& message) {
+  do {
+    if (nextOfChunk(message)) return true;
+  } while (nextChunk());
+  return false;
+}
+
+}  // namespace evical::ros
