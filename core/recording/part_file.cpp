@@ -2,18 +2,51 @@
 
 #include "core/base/error.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
+#include <system_error>
 #include <utility>
 
 namespace evical {
+namespace {
 
-PartFile::PartFile(std::filesystem::path path)
-    : path_(std::move(path)), part_path_(path_.string() + ".part") {
-  file_ = std::fopen(part_path_.c_str(), "wb");
-  if (!file_) fail("cannot be created");
+// A rename would put the file in the place of a device or a pipe.
+void requireFileOrNothing(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+  if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return;
+  throw badInput(path.string(),
+                 std::filesystem::is_directory(status) ? "this is a folder" : "this is there and is no file",
+                 "Choose another output");
+}
+
+// mkostemp makes files private; a recording should be as readable as any other file of this person.
+void giveUsualPermissions(int file) {
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  static_cast<void>(::fchmod(file, 0666 & ~mask));
+}
+
+}  // namespace
+
+PartFile::PartFile(std::filesystem::path path) : path_(std::move(path)) {
+  requireFileOrNothing(path_);
+  std::string name = path_.string() + ".part.XXXXXX";
+  const int file = ::mkostemp(name.data(), O_CLOEXEC);
+  if (file < 0) fail("cannot be created");
+  part_path_ = name;
+  giveUsualPermissions(file);
+  file_ = ::fdopen(file, "wb");
+  if (file_) return;
+  ::close(file);
+  ::unlink(part_path_.c_str());
+  fail("cannot be created");
 }
 
 PartFile::~PartFile() {
@@ -33,8 +66,9 @@ void PartFile::overwrite(std::uint64_t position, std::string_view bytes) {
 }
 
 void PartFile::finish() {
-  // Buffered bytes meet a full disk only here.
-  if (std::fflush(file_) != 0) fail("cannot be written");
+  // Buffered bytes meet a full disk only here. Without the sync a power cut may leave the new name with
+  // nothing behind it, and the old content gone.
+  if (std::fflush(file_) != 0 || ::fsync(::fileno(file_)) != 0) fail("cannot be written");
   if (std::fclose(std::exchange(file_, nullptr)) != 0 ||
       std::rename(part_path_.c_str(), path_.c_str()) != 0) {
     const int reason = errno;

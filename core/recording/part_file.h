@@ -8,8 +8,10 @@
 
 namespace evical {
 
-// Writes to "<path>.part"; finish() renames it to `path`, the destructor removes it if finish() was not
-// reached. Everything throws CalibrationError (CalibrationFailed) with path and reason.
+// Writes beside `path`, under a name of its own that begins with `path`'s; finish() brings it to the disk and
+// renames it, the destructor removes it if finish() was not reached. Of several that write to one path the
+// last to finish stays, whole. Everything throws CalibrationError with path and reason: BadInput where
+// something lies at `path` that is no file, else CalibrationFailed.
 class PartFile {
  public:
   explicit PartFile(std::filesystem::path path);
@@ -22,6 +24,9 @@ class PartFile {
                  std::string_view bytes);  // what is already written; then append again
   std::uint64_t size() const { return size_; }
   void finish();
+
+  // Where the content is until then, for libraries that write it themselves.
+  const std::filesystem::path& partPath() const { return part_path_; }
 
  private:
   [[noreturn]] void fail(const char* what);

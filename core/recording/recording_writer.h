@@ -1,5 +1,5 @@
 // Writes recordings that we and others can read. A file appears under its name only once it is whole: until
-// finish() it is "<name>.part", and it is removed when something fails or finish() is never called.
+// finish() it has another one beside, and it is removed when something fails or finish() is never called.
 #pragma once
 
 #include "core/data/recording.h"

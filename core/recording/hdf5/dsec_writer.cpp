@@ -78,8 +78,8 @@ class DsecWriter : public RecordingWriter {
     for (const StreamInfo& stream : streams) types_.push_back(stream.type);
     for (const StreamInfo& stream : streams) requireOnly(stream);
     hdf5::registerFilters();
-    const std::string part_path = path_ + ".part";
-    file_ = hdf5::Handle(H5Fcreate(part_path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    file_ =
+        hdf5::Handle(H5Fcreate(part_.partPath().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
     require(file_.valid());
     for (const StreamInfo& stream : streams) {
       if (stream.type == StreamType::Events) addEvents(stream.resolution_px);
