@@ -166,6 +166,11 @@ void SqliteSource::listTopics() {
       entry.topic.type += fmt::format(" ({})", format);  // known to nobody
       entry.topic.definition.clear();
     }
+    if (statement.text(1).empty() || statement.text(2).empty()) {
+      sink_(FaultKind::Corrupt,
+            fmt::format("The table of topics is damaged: that with id {} has no name or no type.",
+                        statement.integer(0)));
+    }
     topic_of_id_[statement.integer(0)] = topics_.size();
     topics_.push_back(std::move(entry));
   }
@@ -189,7 +194,13 @@ void SqliteSource::countMessages() {
   while (statement.step()) {
     const auto found = topic_of_id_.find(statement.integer(0));
     largest_id_ = std::max(largest_id_, statement.integer(2));
-    if (found == topic_of_id_.end()) continue;
+    if (found == topic_of_id_.end()) {
+      sink_(FaultKind::Corrupt,
+            fmt::format(
+                "{} messages are of a topic with id {}, which the file does not list; they are left out.",
+                statement.integer(1), statement.integer(0)));
+      continue;
+    }
     topics_[found->second].messages = static_cast<std::uint64_t>(statement.integer(1));
     count_ += topics_[found->second].messages;
   }
@@ -203,6 +214,7 @@ void SqliteSource::countMessages() {
 void SqliteSource::rewind() {
   messages_.reset();
   last_id_ = from_id_ = 0;
+  skip_ids_ = 1;
   read_ = 0;
   by_time_ = true;
 }
@@ -243,25 +255,35 @@ bool SqliteSource::step() {
   return !messages_->ok() && readOnBehindDamage(database_->problem());
 }
 
-// In order of storage from the last message on, over what cannot be read.
+// In order of storage from the last message on, over what cannot be read. A page out of place ends again and
+// again where it did before, with messages that were met before: each query begins behind the last one's
+// beginning.
 bool SqliteSource::readOnBehindDamage(const std::string& reason) {
   sink_(FaultKind::Corrupt,
         fmt::format("The file is damaged behind message {} ({}); what can be read behind it is.", last_id_,
                     reason));
   by_time_ = false;
-  from_id_ = last_id_;
-  for (std::int64_t skipped = 1; from_id_ <= largest_id_; skipped *= 2) {
+  if (last_id_ > from_id_) skip_ids_ = 0;
+  from_id_ = std::max(from_id_, last_id_);
+  for (;;) {
+    if (from_id_ > largest_id_ || skip_ids_ > largest_id_ - from_id_) return false;
+    from_id_ += skip_ids_;
+    skip_ids_ = std::max<std::int64_t>(1, 2 * skip_ids_);
     query();
     if (messages_->step()) return true;
     if (messages_->ok()) return false;
-    from_id_ += skipped;
   }
-  return false;
 }
 
 bool SqliteSource::handOut(SourceMessage& message) {
+  const std::int64_t id = messages_->integer(0);
+  if (!by_time_ && id <= last_id_) {
+    sink_(FaultKind::Corrupt,
+          fmt::format("The message with id {} stands behind that with id {}; it is left out.", id, last_id_));
+    return false;
+  }
   ++read_;
-  last_id_ = std::max(last_id_, messages_->integer(0));
+  last_id_ = std::max(last_id_, id);
   std::string_view bytes = messages_->bytes(3);
   if (bytes.starts_with(kZstdMagic)) {
     const Unpacked result = unpackZstdFrame(bytes, unpacked_);

@@ -55,6 +55,7 @@ class SqliteSource : public MessageSource {
   bool by_time_ = true;          // else in the order in which messages were stored
   std::int64_t last_id_ = 0;     // of the messages read, the largest
   std::int64_t from_id_ = 0;     // where the query began
+  std::int64_t skip_ids_ = 1;    // where that met no new message
   std::int64_t largest_id_ = 0;  // of all
   std::uint64_t count_ = 0, read_ = 0;
   std::string unpacked_;

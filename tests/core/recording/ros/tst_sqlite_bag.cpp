@@ -55,6 +55,9 @@ class TestSqliteBag : public QObject {
   void otherDatabase_isRefused();
   void truncation_isSurvived();
   void corruption_isSurvived();
+  void pageOutOfPlace_endsTheReading();
+  void damagedTopics_areSaid_data();
+  void damagedTopics_areSaid();
   void pathWithOddCharacters_isOpened();
 
  private:
@@ -193,6 +196,49 @@ void TestSqliteBag::corruption_isSurvived() {
     }
   }
   QVERIFY(read > 0);
+}
+
+// A page that stands twice moves all that follow: the tree leads to messages that were read before, and to
+// damage behind them, again and again.
+void TestSqliteBag::pageOutOfPlace_endsTheReading() {
+  constexpr std::size_t kPage_bytes = 4096, kEvents = 200 * 100;
+  std::vector<RosMessage> messages = messagesFrom(0, 200);
+  for (const bool with_index : {true, false}) {
+    writeSqliteBag(folder_ / "whole.db3", kTopics, messages, with_index);
+    const std::string whole = fileContent(folder_ / "whole.db3");
+    for (std::size_t at = 4 * kPage_bytes; at + kPage_bytes < whole.size(); at += kPage_bytes + 1021) {
+      const std::string twice = whole.substr(0, at + kPage_bytes) + whole.substr(at);
+      std::size_t events = 0;
+      try {
+        const auto reader = openRecording(folder_.write("twice.db3", twice));
+        for (Packet packet; events <= kEvents && reader->read(packet);) events += packet.events.size();
+        QVERIFY2(events <= kEvents, qPrintable(QString("from %1").arg(at)));
+        QVERIFY2(events == kEvents || !reader->faults().empty(), qPrintable(QString("from %1").arg(at)));
+      } catch (const CalibrationError&) {
+      }
+    }
+  }
+}
+
+void TestSqliteBag::damagedTopics_areSaid_data() {
+  QTest::addColumn<QString>("name");
+  QTest::addColumn<QString>("type");
+  QTest::addColumn<int>("topic");  // of the messages
+  QTest::newRow("no name") << ""
+                           << "sensor_msgs/msg/Imu" << 0;
+  QTest::newRow("no type") << "/imu"
+                           << "" << 0;
+  QTest::newRow("not listed") << "/imu"
+                              << "sensor_msgs/msg/Imu" << 1;
+}
+
+void TestSqliteBag::damagedTopics_areSaid() {
+  QFETCH(QString, name);
+  QFETCH(QString, type);
+  QFETCH(int, topic);
+  const RosMessage message{static_cast<std::size_t>(topic), 1'000, cdrImu(someSamples(1)[0])};
+  writeSqliteBag(folder_ / "topics.db3", {{name.toStdString(), type.toStdString()}}, {message});
+  QVERIFY(readAll(folder_ / "topics.db3").hasFault(FaultKind::Corrupt));
 }
 
 void TestSqliteBag::pathWithOddCharacters_isOpened() {
