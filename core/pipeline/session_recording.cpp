@@ -58,10 +58,11 @@ void SessionRecording::addSensor(const std::filesystem::path& own_recording, con
   try {
     place.stream = findStream(*source.reader, stream, type);
   } catch (const CalibrationError& error) {
-    std::string lost;  // perhaps the stream was in what is lost
-    for (const RecordingFault& fault : source.reader->faults()) lost += ". " + fault.text;
-    throw badInput(fmt::format("{}: {}", path.string(), error.place()), error.problem() + lost,
-                   error.advice());
+    std::string problem = error.problem();
+    for (const RecordingFault& fault : source.reader->faults())  // perhaps the stream was in what is lost
+      problem += (problem.ends_with('.') ? " " : ". ") + fault.text;
+    if (problem.ends_with('.')) problem.pop_back();
+    throw badInput(fmt::format("{}: {}", path.string(), error.place()), problem, error.advice());
   }
   source.selected.push_back(place.stream);
   source.sensors.push_back(places_.size());

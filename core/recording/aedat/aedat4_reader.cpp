@@ -121,8 +121,7 @@ void Aedat4Reader::addStreams(std::vector<aedat::StreamDescription> described,
   std::sort(described.begin(), described.end(), before);
   for (aedat::StreamDescription& stream : described) {
     const auto found = listed.find(stream.id);
-    if (stream.type.empty() && found != listed.end())
-      stream.type = typeOfPacket(found->second.first_position);
+    if (!findType(stream.type) && found != listed.end()) takeTypeOfPackets(stream, found->second);
     const PacketType* type = findType(stream.type);
     if (stream.name.empty() && type) stream.name = type->name;
   }
@@ -145,6 +144,17 @@ void Aedat4Reader::addStreams(std::vector<aedat::StreamDescription> described,
     streams_.push_back(info);
     states_.emplace_back();
   }
+}
+
+// Where the description has none, or a damaged one.
+void Aedat4Reader::takeTypeOfPackets(aedat::StreamDescription& stream, const Listed& listed) {
+  const std::string type = typeOfPacket(listed.first_position);
+  if (!stream.type.empty() && findType(type)) {
+    addFault("", FaultKind::Corrupt,
+             fmt::format("The header says that stream {} is of the type \"{}\"; its packets are \"{}\".",
+                         stream.id, stream.type, type));
+  }
+  if (stream.type.empty() || findType(type)) stream.type = type;
 }
 
 std::string Aedat4Reader::typeOfPacket(std::uint64_t position) {

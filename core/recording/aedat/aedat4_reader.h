@@ -51,6 +51,7 @@ class Aedat4Reader : public RecordingReader {
   std::map<std::int32_t, Listed> listByScan();
   void addStreams(std::vector<aedat::StreamDescription> described,
                   const std::map<std::int32_t, Listed>& listed);
+  void takeTypeOfPackets(aedat::StreamDescription& stream, const Listed& listed);
   std::string typeOfPacket(std::uint64_t position);
   HeaderState readHeader(std::uint64_t position, PacketHeader& header);
   bool looksLikeData(std::uint64_t position, std::int32_t size);

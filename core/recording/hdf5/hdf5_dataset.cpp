@@ -18,7 +18,7 @@ constexpr std::size_t kLargestChunk_bytes = std::size_t{1} << 30;
 
 struct Walk {
   hid_t file;
-  std::vector<DatasetInfo> datasets;
+  DatasetList found;
 };
 
 bool describe(hid_t file, const char* path, DatasetInfo& info) {
@@ -43,10 +43,15 @@ bool describe(hid_t file, const char* path, DatasetInfo& info) {
 
 herr_t visit(hid_t, const char* path, const H5O_info_t* object, void* data) {
   Walk& walk = *static_cast<Walk*>(data);
-  if (object->type != H5O_TYPE_DATASET) return 0;
-  if (walk.datasets.size() >= kMostDatasets) return 1;
+  const bool is_dataset = object->type == H5O_TYPE_DATASET, is_unknown = object->type == H5O_TYPE_UNKNOWN;
+  if (!is_dataset && !is_unknown) return 0;
+  if (walk.found.datasets.size() + walk.found.damaged.size() >= kMostDatasets) return 1;
   DatasetInfo info;
-  if (describe(walk.file, path, info)) walk.datasets.push_back(std::move(info));
+  if (is_dataset && describe(walk.file, path, info)) {
+    walk.found.datasets.push_back(std::move(info));
+  } else {
+    walk.found.damaged.emplace_back(path);
+  }
   return 0;
 }
 
@@ -68,12 +73,12 @@ void requireFilters(hid_t creation, const std::string& place, const std::string&
 
 }  // namespace
 
-std::vector<DatasetInfo> listDatasets(hid_t file, const std::string& place) {
+DatasetList listDatasets(hid_t file, const std::string& place) {
   Walk walk{file, {}};
   if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, visit, &walk, H5O_INFO_BASIC) < 0) {
     throw badInput(place, fmt::format("the HDF5 file's tree is damaged: {}", lastProblem()));
   }
-  return std::move(walk.datasets);
+  return std::move(walk.found);
 }
 
 DatasetRows::DatasetRows(hid_t file, const DatasetInfo& info, hid_t memory_type, const std::string& place)

@@ -22,8 +22,14 @@ struct DatasetInfo {
   bool isReal() const { return type_class == H5T_FLOAT; }
 };
 
+struct DatasetList {
+  std::vector<DatasetInfo> datasets;
+  std::vector<std::string>
+      damaged;  // paths of objects of which not even the kind, or no description, can be read
+};
+
 // All datasets; throws CalibrationError (BadInput) where the file's tree cannot be walked.
-std::vector<DatasetInfo> listDatasets(hid_t file, const std::string& place);
+DatasetList listDatasets(hid_t file, const std::string& place);
 
 // Rows of one column (a list) or several (a table of rank 2), converted by HDF5 to `memory_type`.
 class DatasetRows {

@@ -1,10 +1,10 @@
-#include "core/base/error.h"
 #include "core/recording/hdf5/hdf5_tables.h"
+#include "core/recording/text/text_lines.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
+#include <cctype>
 #include <cmath>
 #include <optional>
 
@@ -108,47 +108,37 @@ class ImuDatasets : public ImuTable {
   std::size_t rate_column_ = 0;
 };
 
+// TUM-VIE's table. Only empty lines, comments and the first, where it has names, are no rows.
 class ImuText : public ImuTable {
  public:
-  explicit ImuText(const std::filesystem::path& path) : file_(path) {
-    if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions");
-  }
+  explicit ImuText(const std::filesystem::path& path) : lines_(path) {}
 
   void load(std::vector<RawImuSample>& samples) override {
-    while (samples.size() < kPacketSamples) {
-      file_.getline(line_.data(), static_cast<std::streamsize>(line_.size()));
-      const bool too_long = file_.fail() && !file_.eof() && file_.gcount() > 0;
-      if (file_.fail() && !too_long) return;
-      ++number_;
+    std::string_view line;
+    while (samples.size() < kPacketSamples && lines_.next(line)) {
       RawImuSample sample;
-      if (too_long) skipLine();
-      if (!too_long && parse(sample)) {
+      if (parse(line, sample)) {
         samples.push_back(sample);
-      } else if (line_[0] != '#' && line_[0] != '\0' && number_ > 1) {
-        problem_ = fmt::format("line {} of the IMU's text is not \"t gyro acc temperature\"", number_);
+      } else if (!isNoRow(line)) {
+        problem_ =
+            fmt::format("line {} of the IMU's text is not \"t gyro acc temperature\"", lines_.number());
       }
     }
   }
 
  private:
-  void skipLine() {
-    while (file_.fail() && !file_.eof() && !file_.bad()) {
-      file_.clear();
-      file_.getline(line_.data(), static_cast<std::streamsize>(line_.size()));
-    }
+  bool isNoRow(std::string_view line) const {
+    const std::string_view first = takeColumn(line);
+    const bool is_name = !first.empty() && std::isalpha(static_cast<unsigned char>(first.front())) != 0;
+    return first.empty() || first.front() == '#' || (lines_.number() == 1 && is_name);
   }
 
-  // Numbers apart by blanks or commas.
-  bool parse(RawImuSample& sample) const {
+  // Numbers apart by blanks or commas. What a disk lost stands as zeros at a line's end.
+  static bool parse(std::string_view line, RawImuSample& sample) {
+    if (line.find('\0') != std::string_view::npos) return false;
     std::array<double, 7> values{};
-    const char* at = line_.data();
-    const char* end = at + std::char_traits<char>::length(at);
-    for (double& value : values) {
-      while (at != end && (*at == ' ' || *at == '\t' || *at == ',')) ++at;
-      const auto [next, error] = std::from_chars(at, end, value);
-      if (error != std::errc() || !std::isfinite(value)) return false;
-      at = next;
-    }
+    for (double& value : values)
+      if (!parseNumber(takeColumn(line), value)) return false;
     TimeScale us;
     us.factor_ns = 1000.0;
     sample.angular_rate = Eigen::Vector3d(values[1], values[2], values[3]);
@@ -156,9 +146,7 @@ class ImuText : public ImuTable {
     return us.convert(values[0], sample.time_ns);
   }
 
-  std::ifstream file_;
-  std::array<char, 1024> line_{};
-  std::uint64_t number_ = 0;
+  TextLines lines_;
 };
 
 }  // namespace

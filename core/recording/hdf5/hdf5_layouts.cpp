@@ -9,6 +9,7 @@
 #include <charconv>
 #include <initializer_list>
 #include <optional>
+#include <set>
 
 namespace evical::hdf5 {
 namespace {
@@ -77,19 +78,26 @@ Resolution parseGeometry(const std::string& text) {
 class LayoutFinder {
  public:
   LayoutFinder(hid_t file, const std::string& place)
-      : file_(file), place_(place), datasets_(listDatasets(file, place)) {}
+      : file_(file), place_(place), list_(listDatasets(file, place)), datasets_(list_.datasets) {}
 
-  std::vector<FoundStream> run() {
+  FoundStreams run() {
     for (const DatasetInfo& dataset : datasets_) {
       const std::size_t rank = dataset.extent.size();
       if (dataset.type_class == H5T_COMPOUND) addCompound(dataset);
       if (rank == 1) addColumns(dataset);
       if (rank == 2) addTable(dataset);
       if (rank >= 3) addListed(dataset, StreamType::Frames);
+      if (isPartOfAStream(dataset)) incomplete_.insert(dataset.folder());
     }
     const auto isReadable = [](const FoundStream& stream) { return stream.events || stream.imu; };
     if (std::none_of(found_.begin(), found_.end(), isReadable)) failWithNames();
-    return std::move(found_);
+    std::vector<std::string> problems;
+    for (const std::string& path : list_.damaged)
+      problems.push_back(fmt::format("{} is damaged; what it holds is left out.", path));
+    for (const std::string& folder : incomplete_)
+      problems.push_back(fmt::format("{} has some of the datasets of a stream, but not all; it is left out.",
+                                     folder.empty() ? "The root" : withoutSlash(folder)));
+    return {std::move(found_), std::move(problems)};
   }
 
  private:
@@ -99,6 +107,16 @@ class LayoutFinder {
         if (dataset.path == folder + name) return &dataset;
     }
     return nullptr;
+  }
+
+  // Of one that lacks another part: a name that is damaged is none that is looked for.
+  bool isPartOfAStream(const DatasetInfo& dataset) const {
+    const std::string folder = dataset.folder(), name = dataset.name();
+    const auto has = [&](std::initializer_list<const char*> names) { return find(folder, names) ? 1 : 0; };
+    if (name == "omega" || name == "accel") return has({"ts"}) + has({"omega"}) + has({"accel"}) < 3;
+    const bool is_column = name == "x" || name == "xs" || name == "y" || name == "ys";
+    const int columns = has({"x", "xs"}) + has({"y", "ys"}) + has({"t", "ts"}) + has({"p", "ps"});
+    return is_column && columns == 3;
   }
 
   const DatasetInfo* findList(const std::string& folder, std::initializer_list<const char*> names) const {
@@ -214,13 +232,15 @@ class LayoutFinder {
 
   hid_t file_;
   std::string place_;
-  std::vector<DatasetInfo> datasets_;
+  DatasetList list_;
+  const std::vector<DatasetInfo>& datasets_;
   std::vector<FoundStream> found_;
+  std::set<std::string> incomplete_;  // folders
 };
 
 }  // namespace
 
-std::vector<FoundStream> findStreams(hid_t file, const std::string& place) {
+FoundStreams findStreams(hid_t file, const std::string& place) {
   return LayoutFinder(file, place).run();
 }
 

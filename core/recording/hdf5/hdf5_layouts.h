@@ -8,6 +8,7 @@
 #include "core/recording/recording_reader.h"
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace evical::hdf5 {
@@ -18,7 +19,12 @@ struct FoundStream {
   std::unique_ptr<ImuTable> imu;
 };
 
+struct FoundStreams {
+  std::vector<FoundStream> streams;
+  std::vector<std::string> problems;  // sentences about what might have been more
+};
+
 // Throws CalibrationError (BadInput) where there is neither an event nor an IMU sample.
-std::vector<FoundStream> findStreams(hid_t file, const std::string& place);
+FoundStreams findStreams(hid_t file, const std::string& place);
 
 }  // namespace evical::hdf5

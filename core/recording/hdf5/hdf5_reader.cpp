@@ -64,7 +64,9 @@ Hdf5Reader::~Hdf5Reader() = default;
 
 void Hdf5Reader::addFile(const std::filesystem::path& path, const std::string& camera) {
   const hdf5::Handle file = hdf5::openFile(path);
-  for (hdf5::FoundStream& found : hdf5::findStreams(file, path.string())) {
+  hdf5::FoundStreams all = hdf5::findStreams(file, path.string());
+  for (const std::string& problem : all.problems) addFault("", FaultKind::Corrupt, problem);
+  for (hdf5::FoundStream& found : all.streams) {
     auto source = std::make_unique<Source>();
     source->events = std::move(found.events);
     source->imu = std::move(found.imu);

@@ -43,17 +43,23 @@ McapSource::McapSource(const std::filesystem::path& path, FaultSink sink)
   if (!file_.read(0, mcap::kMagic.size(), magic) || magic != mcap::kMagic)
     throw badInput(path.string(), "the MCAP file is cut off within its first bytes", "Copy it again");
   rewind();
-  if (listFromSummary()) return;
-  topics_.clear();
-  schemas_.clear();
-  topic_of_channel_.clear();
-  chunk_channels_.clear();
-  listByScan();
+  if (!listFromSummary()) {
+    topics_.clear();
+    schemas_.clear();
+    topic_of_channel_.clear();
+    chunk_channels_.clear();
+    without_schema_.clear();
+    listByScan();
+  }
+  for (const std::string& topic : without_schema_)
+    sink_(FaultKind::Corrupt,
+          fmt::format("The schema of the topic {} is missing; its messages cannot be read.", topic));
 }
 
 void McapSource::rewind() {
   position_ = record_position_ = mcap::kMagic.size();
   chunk_ = {};
+  unknown_channels_.clear();
   ended_ = false;
 }
 
@@ -86,10 +92,10 @@ bool McapSource::listFromSummary() {
   const std::uint64_t tail = mcap::kFooter_bytes + mcap::kMagic.size();
   Record record;
   std::string_view bytes;
-  const bool closed = file_.size() >= mcap::kMagic.size() + tail && file_.read(file_.size() - 8, 8, bytes) &&
-                      bytes == mcap::kMagic && readHead(file_.size() - tail, record) &&
-                      record.is(mcap::Op::Footer) && readContent(record, bytes);
-  if (!closed) {
+  closed_ = file_.size() >= mcap::kMagic.size() + tail && file_.read(file_.size() - 8, 8, bytes) &&
+            bytes == mcap::kMagic && readHead(file_.size() - tail, record) && record.is(mcap::Op::Footer) &&
+            readContent(record, bytes);
+  if (!closed_) {
     sink_(FaultKind::NoIndex,
           fmt::format("The file has no end: its recorder did not close it, or it is cut off at "
                       "byte {}. It is read from the start.",
@@ -189,7 +195,9 @@ void McapSource::addSchema(std::string_view content) {
 void McapSource::addChannel(std::string_view content) {
   mcap::Channel channel;
   if (!mcap::parseChannel(content, channel) || topic_of_channel_.contains(channel.id)) return;
-  const SchemaText& schema = schemas_[channel.schema];
+  const auto known = schemas_.find(channel.schema);
+  const SchemaText schema = known != schemas_.end() ? known->second : SchemaText{};
+  if (known == schemas_.end() && channel.schema != 0) without_schema_.emplace_back(channel.topic);
   SourceTopic entry;
   entry.topic = {std::string(channel.topic), schema.name, "", schema.definition,
                  channel.encoding == "ros1" ? Serialization::Ros1 : Serialization::Cdr};
@@ -240,8 +248,12 @@ bool McapSource::nextRecord(SourceMessage& message) {
   record_position_ = position_;
   if (!readHead(position_, record)) {
     ended_ = true;
-    if (position_ < file_.size())
+    if (position_ < file_.size()) {
       sink_(FaultKind::Truncated, fmt::format("The file ends within a record, at byte {}.", file_.size()));
+    } else if (closed_) {
+      sink_(FaultKind::Corrupt,
+            "Records are damaged: they do not lead to the file's end. Some may be left out.");
+    }
     return false;
   }
   if (record.size > file_.size() - record.content || !isKnown(record.op)) {
@@ -264,6 +276,11 @@ bool McapSource::handOut(std::string_view content, SourceMessage& message) {
     return false;
   }
   const auto found = topic_of_channel_.find(record.channel);
+  if (found == topic_of_channel_.end() && unknown_channels_.insert(record.channel).second) {
+    sink_(FaultKind::Corrupt,
+          fmt::format("Messages are of channel {}, which the file does not describe; they are left out.",
+                      record.channel));
+  }
   if (found == topic_of_channel_.end() || !wanted(found->second)) return false;
   message = {found->second, record.log_time_ns, record.data};
   return true;

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -77,8 +78,11 @@ class McapSource : public MessageSource {
   std::uint64_t position_ = 0;                                          // of the next record
   std::uint64_t record_position_ = 0;                                   // of the last one read
   std::string unpacked_;
-  std::string_view chunk_;      // the rest of the records in the chunk being read
-  std::size_t chunk_size_ = 0;  // of all of them
+  std::string_view chunk_;                    // the rest of the records in the chunk being read
+  std::size_t chunk_size_ = 0;                // of all of them
+  std::vector<std::string> without_schema_;   // topics
+  std::set<std::uint16_t> unknown_channels_;  // of messages
+  bool closed_ = false;                       // the file has its end
   bool ended_ = false;
 };
 

@@ -285,8 +285,9 @@ TextColumns findColumns(std::string_view first_bytes, bool cut) {
   Rows rows;
   std::vector<std::string_view> parts;
   bool has_header = false, metavision = false;
+  const char line_end = lineEndOf(first_bytes);
   for (std::uint64_t number = 1; !first_bytes.empty() && rows.count < kMostRows; ++number) {
-    const std::size_t end = first_bytes.find('\n');
+    const std::size_t end = first_bytes.find(line_end);
     if (end == std::string_view::npos && cut && number > 1) break;
     const std::string_view line = trimmed(first_bytes.substr(0, end));
     first_bytes.remove_prefix(end == std::string_view::npos ? first_bytes.size() : end + 1);

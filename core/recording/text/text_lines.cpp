@@ -23,10 +23,17 @@ bool isSeparator(char c) {
 
 }  // namespace
 
+char lineEndOf(std::string_view first_bytes) {
+  const bool has_newline = first_bytes.find('\n') != std::string_view::npos;
+  return !has_newline && first_bytes.find('\r') != std::string_view::npos ? '\r' : '\n';
+}
+
 TextLines::TextLines(const std::filesystem::path& path)
     : file_(path, std::ios::binary), buffer_(kBufferBytes, '\0') {
   if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions");
   size_ = std::filesystem::file_size(path);
+  refill();
+  line_end_ = lineEndOf({buffer_.data(), end_});
 }
 
 bool TextLines::refill() {
@@ -40,7 +47,7 @@ bool TextLines::refill() {
 
 bool TextLines::next(std::string_view& line) {
   const auto newline = [this] {
-    return static_cast<const char*>(std::memchr(buffer_.data() + begin_, '\n', end_ - begin_));
+    return static_cast<const char*>(std::memchr(buffer_.data() + begin_, line_end_, end_ - begin_));
   };
   const char* found = newline();
   if (!found && refill()) found = newline();

@@ -9,6 +9,9 @@
 
 namespace evical {
 
+// What ends the lines of a text that begins so: a newline, or a carriage return where it has no newline.
+char lineEndOf(std::string_view first_bytes);
+
 class TextLines {
  public:
   explicit TextLines(const std::filesystem::path& path);
@@ -25,6 +28,7 @@ class TextLines {
   bool refill();
 
   std::ifstream file_;
+  char line_end_ = '\n';
   std::string buffer_;
   std::size_t begin_ = 0, end_ = 0;  // what of the buffer is not handed out
   std::uint64_t size_ = 0, consumed_ = 0, number_ = 0;

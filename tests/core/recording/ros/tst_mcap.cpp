@@ -64,6 +64,9 @@ class TestMcap : public QObject {
   void truncationAtEveryByte_ofAPlainFile_isSurvived();
   void corruption_isSurvived_data() { roundTrip_isExact_data(); }
   void corruption_isSurvived();
+  void bytesMissingFromTheBeginning_areSaid_data();
+  void bytesMissingFromTheBeginning_areSaid();
+  void missingSchema_isSaid();
   void corruptChunk_losesNoOther();
   void lyingSizes_takeNoMemory();
 
@@ -208,6 +211,37 @@ void TestMcap::corruption_isSurvived() {
     } catch (const CalibrationError&) {
     }
   }
+}
+
+void TestMcap::bytesMissingFromTheBeginning_areSaid_data() {
+  QTest::addColumn<int>("chunk_messages");
+  QTest::newRow("no chunks") << 0;
+  QTest::newRow("chunks") << 20;
+}
+
+// Of the first records: everything comes out, or there is a fault.
+void TestMcap::bytesMissingFromTheBeginning_areSaid() {
+  QFETCH(int, chunk_messages);
+  const std::string whole = mcapFile(kTopics, someMessages(), static_cast<std::size_t>(chunk_messages));
+  for (std::size_t at = 8; at < 160; at += 3) {
+    for (const std::size_t count : {1, 2, 5, 8, 9, 17, 27, 40, 64}) {
+      std::string bytes = whole;
+      bytes.erase(at, count);
+      const Contents contents = readAll(folder_.write("missing.mcap", bytes));
+      const bool is_whole = contents.eventCount() == 3000 && contents.sampleCount() == 30;
+      QVERIFY2(is_whole || !contents.faults.empty(), qPrintable(QString("%1 at %2").arg(count).arg(at)));
+    }
+  }
+}
+
+void TestMcap::missingSchema_isSaid() {
+  std::string bytes = mcapFile(kTopics, someMessages());
+  std::size_t second = bytes.find('\3');  // the record's kind; its id stands behind the length
+  while (bytes.compare(second + 9, 2, std::string("\2\0", 2)) != 0) second = bytes.find('\3', second + 1);
+  bytes[second] = '\x0C';  // metadata, which readers pass over
+  const Contents contents = readAll(folder_.write("schema.mcap", bytes));
+  QCOMPARE(contents.sampleCount(), std::size_t{0});
+  QVERIFY(contents.hasFault(FaultKind::Corrupt));
 }
 
 void TestMcap::corruptChunk_losesNoOther() {

@@ -24,6 +24,8 @@ class TestTextRecording : public QObject {
   void columns_areFound_data();
   void columns_areFound();
   void euroc_hasTheRateFirst();
+  void carriageReturns_endLines_data();
+  void carriageReturns_endLines();
   void imuUnits_areThoseOfTheHeader();
   void imuWithoutHeader_isToldByGravity();
   void columnsThatMakeNoSense_areRefused();
@@ -206,6 +208,27 @@ void TestTextRecording::euroc_hasTheRateFirst() {
   QVERIFY((read.imu_samples[0].angular_rate_rad_s == Eigen::Vector3d(-0.1, 0.15, 0.03)));
   QVERIFY((read.imu_samples[0].specific_force_m_s2 == Eigen::Vector3d(8.2, -0.4, -3.5)));
   QVERIFY(reader->faults().empty());
+}
+
+void TestTextRecording::carriageReturns_endLines_data() {
+  QTest::addColumn<QString>("end");
+  QTest::newRow("CR") << "\r";
+  QTest::newRow("CR LF") << "\r\n";
+}
+
+void TestTextRecording::carriageReturns_endLines() {
+  QFETCH(QString, end);
+  const std::string line_end = end.toStdString();
+  std::string events, samples = "#timestamp [ns],wx,wy,wz,ax,ay,az" + line_end;
+  for (int i = 0; i < 8000; ++i) events += "0." + std::to_string(100'000 + i) + " 7 9 1" + line_end;
+  for (int i = 0; i < 100; ++i) samples += std::to_string(1'000'000 * i) + ",1,2,3,0.1,0.2,9.8" + line_end;
+  writeFile(path("cr_events.txt"), events);
+  writeFile(path("cr_imu.csv"), samples);
+  const auto events_reader = openRecording(path("cr_events.txt")),
+             imu_reader = openRecording(path("cr_imu.csv"));
+  QCOMPARE(readRecording(*events_reader).events.size(), std::size_t{8000});
+  QCOMPARE(readRecording(*imu_reader).imu_samples.size(), std::size_t{100});
+  QVERIFY(events_reader->faults().empty() && imu_reader->faults().empty());
 }
 
 void TestTextRecording::imuUnits_areThoseOfTheHeader() {
