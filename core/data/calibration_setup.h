@@ -4,6 +4,7 @@
 
 #include "core/data/board_observations.h"
 #include "core/data/calibration_priors.h"
+#include "core/data/camera_lens.h"
 #include "core/data/imu_sample.h"
 #include "core/geometry/circle_board.h"
 
@@ -37,10 +38,9 @@ struct ImuData {
 
 struct CameraData {
   std::string name;
-  std::optional<CameraIntrinsics> intrinsics;
-  BoardObservations observations;  // in the ideal pixels of these intrinsics
+  CameraLens lens;
+  BoardObservations observations;  // in the ideal pixels of lens.seen_with
   SensorPrior prior = {};
-  bool intrinsics_found_first = false;  // from the same recording, not given
 };
 
 // The estimator's input. Times of observations are seconds since start_ns; IMU samples keep their

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/data/bias_drift.h"
-#include "core/geometry/camera_model.h"
+#include "core/data/camera_lens.h"
 #include "core/geometry/rigid_transform.h"
 #include "core/geometry/so3_spline.h"
 #include "core/geometry/vector_spline.h"
@@ -11,7 +11,6 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include <optional>
 #include <vector>
 
 namespace evical {
@@ -20,10 +19,10 @@ struct CameraState {
   RigidTransform reference_from_camera;
   double time_offset_s = 0.0;  // see referenceTime_s
   double edge_lead_px = 0.0;   // measured centres lie this far ahead along their image motion, at 100 px/s
-  double edge_lead_growth_px = 0.0;                 // for each factor e of speed
-  std::optional<CameraIntrinsics> intrinsics = {};  // where they are solved for; else CameraData's hold
-  double time_offset_drift_ppm = 0.0;               // where it is solved for
-  double time_offset_at_s = 0.0;                    // the camera's time at which the offset is time_offset_s
+  double edge_lead_growth_px = 0.0;    // for each factor e of speed
+  CameraLens lens = {};                // `solved` where its intrinsics are estimated
+  double time_offset_drift_ppm = 0.0;  // where it is solved for
+  double time_offset_at_s = 0.0;       // the camera's time at which the offset is time_offset_s
 };
 
 struct ImuState {

@@ -86,6 +86,14 @@ struct MemberOf {
 template <class Outer, class Inner, class Value>
 MemberOf(Inner Outer::*, Value Inner::*) -> MemberOf<Outer, Inner, Value>;
 
+// A lens is read as it is in use, and written where it is solved for.
+struct LensIntrinsics {
+  const std::optional<CameraIntrinsics>& operator()(const CameraState& camera) const {
+    return camera.lens.inUse();
+  }
+  std::optional<CameraIntrinsics>& operator()(CameraState& camera) const { return camera.lens.solved; }
+};
+
 // Where a quantity has no place in a session's prior.
 struct NoPrior {};
 
@@ -245,7 +253,7 @@ inline constexpr auto kCameraQuantities = std::tuple{
                              .presence = QuantityPresence::WhereEstimated,
                              .key = "intrinsics",
                              .std_key = "intrinsics_std"},
-                &CameraState::intrinsics, &CameraUncertainty::intrinsics_std, NoPrior{}}};
+                LensIntrinsics{}, &CameraUncertainty::intrinsics_std, NoPrior{}}};
 
 inline constexpr auto kImuQuantities = std::tuple{
     QuantityRow{detail::rotationInfo(QuantityOwner::Imu, "reference_from_imu"),

@@ -15,7 +15,7 @@ namespace evical {
 struct Estimate {
   std::string reference;
   std::vector<std::string> camera_names, imu_names;
-  std::vector<CameraState> cameras;  // with the intrinsics that are in use
+  std::vector<CameraState> cameras;
   std::vector<ImuState> imus;
   Eigen::Vector3d gravity_in_world_m_s2 = Eigen::Vector3d::Zero();
   UncertaintyReport uncertainty;

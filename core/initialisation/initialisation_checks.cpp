@@ -16,7 +16,7 @@ void checkInput(const CalibrationInput& input, const InitialisationOptions& opti
   if (input.cameras.empty())
     throw calibrationFailed("session", "there is no camera", "Add one under cameras:");
   for (const CameraData& camera : input.cameras) {
-    if (!camera.intrinsics)
+    if (!camera.lens.seen_with)
       throw calibrationFailed(camera.name, "has no intrinsics", "Give them in the session");
   }
   if (input.imus.empty() && input.cameras.size() == 1) {

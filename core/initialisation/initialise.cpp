@@ -150,6 +150,10 @@ void tellSteps(const std::vector<InitialisationStep>& steps, CalibrationObserver
     observer->initialisationStepDone(steps[told].name, steps[told].result, steps[told].duration_s);
 }
 
+void keepLenses(const CalibrationInput& input, CalibrationState& state) {
+  for (std::size_t k = 0; k < input.cameras.size(); ++k) state.cameras[k].lens = input.cameras[k].lens;
+}
+
 // The gyroscopes' samples about the axes of the IMUs, where their turn is known.
 CalibrationInput withStraightGyroscopes(CalibrationInput input) {
   for (ImuData& imu : input.imus) {
@@ -167,6 +171,7 @@ Initialisation initialiseStraight(const CalibrationInput& input, const Initialis
   checkInput(input, options);
   if (input.imus.empty()) {
     initialiseCamerasAlone(input, options, context, result);
+    keepLenses(input, result.state);
     tellSteps(result.steps, context.observer, told);
     context.progress.stageProgress(1.0);
     return result;
@@ -194,6 +199,7 @@ Initialisation initialiseStraight(const CalibrationInput& input, const Initialis
       fitWorldRotation(cameras, unbiased, range.begin_s, range.end_s, options.knot_spacing_s);
   context.throwIfStopped();
   alignTranslations(input, options, cameras, context, result);
+  keepLenses(input, result.state);
   for (std::size_t k = 0; k < input.imus.size(); ++k) {
     if (k != input.reference_imu) alignFurtherImu(input, k, unbiased, options, context, result);
   }

@@ -331,7 +331,7 @@ void assertComplete([[maybe_unused]] const CalibrationInput& input,
   assert(initial.cameras.size() == input.cameras.size() && initial.imus.size() == input.imus.size());
   assert(initial.world_from_imu_rotation.segmentCount() >= 1 && initial.imu_in_world_m.segmentCount() >= 1);
   assert(std::all_of(input.cameras.begin(), input.cameras.end(),
-                     [](const CameraData& camera) { return camera.intrinsics.has_value(); }));
+                     [](const CameraData& camera) { return camera.lens.seen_with.has_value(); }));
 }
 
 }  // namespace

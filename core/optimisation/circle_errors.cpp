@@ -22,12 +22,13 @@ std::optional<Eigen::Vector2d> predictedCentre(const CameraData& camera, const C
                                                const RigidTransform& camera_from_world,
                                                const CircleBoard& board) {
   const Eigen::Vector2d on_board_m = board.centre_m(circle.circle);
-  if (!state.intrinsics)
-    return projectedCircleCentre(*camera.intrinsics, camera_from_world, on_board_m, board.radius_m);
+  if (!state.lens.solved)
+    return projectedCircleCentre(*camera.lens.seen_with, camera_from_world, on_board_m, board.radius_m);
   const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();
   const Eigen::Vector3d in_camera_m = rotation.leftCols<2>() * on_board_m + camera_from_world.translation_m;
-  const auto projected = projectCircleBeside(seenCentre(*camera.intrinsics, circle.centre_px),
-                                             *state.intrinsics, in_camera_m, rotation.col(2), board.radius_m);
+  const auto projected =
+      projectCircleBeside(seenCentre(*camera.lens.seen_with, circle.centre_px), *state.lens.solved,
+                          in_camera_m, rotation.col(2), board.radius_m);
   return projected ? std::optional(projected->centre_px) : std::nullopt;
 }
 
@@ -55,7 +56,7 @@ std::vector<CircleError> circleErrors(const CalibrationInput& input, const Calib
                                             timeOffsetAt_s(camera_state, circle.time_s), circle.time_s),
                             input.board);
         if (centre_px) {
-          const EdgeLeadEffect lead = edgeLeadEffect(*camera.intrinsics, circle, options.rest_speed_px_s);
+          const EdgeLeadEffect lead = edgeLeadEffect(*camera.lens.seen_with, circle, options.rest_speed_px_s);
           error.error_px = *centre_px + edgeLeadOf(camera_state).times(lead) - circle.centre_px;
           const Eigen::Matrix2d covariance = circle.covariance_px2 + floor_px2 * Eigen::Matrix2d::Identity();
           error.normalised2 = error.error_px.dot(covariance.inverse() * error.error_px);

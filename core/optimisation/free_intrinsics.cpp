@@ -23,7 +23,7 @@ const CameraIntrinsics& normalisedCamera() {
 bool intrinsicsAreFree(const CameraData& camera, const OptimisationOptions& options) {
   if (options.camera_intrinsics != CameraIntrinsicsChoice::Automatic)
     return options.camera_intrinsics == CameraIntrinsicsChoice::Free;
-  return camera.intrinsics_found_first;
+  return camera.lens.foundFirst();
 }
 
 SeenCentre seenCentre(const CameraIntrinsics& seen_with, const Eigen::Vector2d& ideal_px) {
@@ -50,7 +50,7 @@ std::optional<ProjectedCircle> projectCircleBeside(const SeenCentre& seen, const
 IntrinsicsBlock::IntrinsicsBlock(const CameraIntrinsics& seen_with, const CameraState& state,
                                  const OptimisationOptions& options)
     : seen_with_(seen_with) {
-  writeIntrinsics(state.intrinsics.value_or(seen_with), parameters_.data());
+  writeIntrinsics(state.lens.solved.value_or(seen_with), parameters_.data());
   writeIntrinsics(seen_with, prior_mean_.data());
   prior_sigma_.fill(options.camera_distortion_sigma);
   prior_sigma_[0] = options.camera_focal_length_sigma * seen_with.focal_length_px.x();

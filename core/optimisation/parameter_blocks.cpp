@@ -44,8 +44,9 @@ ParameterBlocks::ParameterBlocks(const CalibrationInput& input, const Optimisati
     const CameraData& camera = input.cameras[i];
     const bool free = intrinsicsAreFree(camera, options);
     intrinsics_.push_back(
-        free ? std::make_unique<IntrinsicsBlock>(*camera.intrinsics, moved_.cameras[i], options) : nullptr);
-    if (!free) moved_.cameras[i].intrinsics.reset();
+        free ? std::make_unique<IntrinsicsBlock>(*camera.lens.seen_with, moved_.cameras[i], options)
+             : nullptr);
+    if (!free) moved_.cameras[i].lens.solved.reset();
   }
 }
 
@@ -56,7 +57,7 @@ CalibrationState ParameterBlocks::state() const {
       other = mappingFromParameters(triangles_.at(&matrix).data());
     });
   for (std::size_t i = 0; i < state.cameras.size(); ++i)
-    if (intrinsics_[i]) state.cameras[i].intrinsics = intrinsics_[i]->intrinsics();
+    if (intrinsics_[i]) state.cameras[i].lens.solved = intrinsics_[i]->intrinsics();
   return state;
 }
 
@@ -85,7 +86,7 @@ void ParameterBlocks::appendPosition(const SegmentTimes& segment, std::vector<do
 
 double* ParameterBlocks::of(std::optional<CameraIntrinsics>& value) {
   for (std::size_t i = 0; i < moved_.cameras.size(); ++i)
-    if (&moved_.cameras[i].intrinsics == &value && intrinsics_[i]) return intrinsics_[i]->data();
+    if (&moved_.cameras[i].lens.solved == &value && intrinsics_[i]) return intrinsics_[i]->data();
   return nullptr;
 }
 

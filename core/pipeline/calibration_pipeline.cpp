@@ -89,8 +89,7 @@ CalibrationInput inputFrom(const Session& session, const CalibrationRun& run) {
   input.board = session.board;
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
     const SessionCamera& camera = session.cameras[k];
-    const bool found_first = k < run.intrinsics.size() && run.intrinsics[k].has_value();
-    input.cameras.push_back({camera.name, camera.intrinsics, run.pass.cameras[k], camera.prior, found_first});
+    input.cameras.push_back({camera.name, run.pass.lenses.at(k), run.pass.cameras[k], camera.prior});
   }
   input.imus = run.pass.imus;
   for (std::size_t k = 0; k < session.imus.size(); ++k) input.imus[k].prior = session.imus[k].prior;
@@ -138,17 +137,19 @@ void validateByHalves(const Session& session, const CalibrationInput& input, con
           : "halves of the recording: " + validation.failure);
 }
 
-// Of the cameras for which the session gives none; `known` is the session with what was found.
-void calibrateMissingIntrinsics(Session& known, const RunContext& context, CalibrationRun& run) {
-  const auto missing = [](const SessionCamera& camera) { return !camera.intrinsics; };
-  if (std::none_of(known.cameras.begin(), known.cameras.end(), missing)) return;
-  SessionRecording{known};  // streams that are missing are missed now, not after minutes
-  run.intrinsics.resize(known.cameras.size());
-  for (std::size_t k = 0; k < known.cameras.size(); ++k) {
-    if (known.cameras[k].intrinsics) continue;
-    run.intrinsics[k] = calibrateIntrinsics(known, k, context).result;
-    known.cameras[k].intrinsics = run.intrinsics[k]->intrinsics;
+// With those calibrated that the session leaves out; how, is kept in the run.
+std::vector<CameraLens> findLenses(const Session& session, const RunContext& context, CalibrationRun& run) {
+  std::vector<CameraLens> lenses = givenLenses(session);
+  const auto missing = [](const CameraLens& lens) { return !lens.given; };
+  if (std::none_of(lenses.begin(), lenses.end(), missing)) return lenses;
+  SessionRecording{session};  // streams that are missing are missed now, not after minutes
+  run.intrinsics.resize(lenses.size());
+  for (std::size_t k = 0; k < lenses.size(); ++k) {
+    if (lenses[k].given) continue;
+    run.intrinsics[k] = calibrateIntrinsics(session, k, context).result;
+    lenses[k].seen_with = run.intrinsics[k]->intrinsics;
   }
+  return lenses;
 }
 
 void tellIntrinsics(const Session& session, CalibrationRun& run) {
@@ -156,22 +157,22 @@ void tellIntrinsics(const Session& session, CalibrationRun& run) {
   std::string doubt;
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
     const std::string name = "intrinsics of " + session.cameras[k].name;
-    const CameraState& solved = run.result.state.cameras[k];
+    const CameraLens& lens = run.result.state.cameras[k].lens;
     if (k < run.intrinsics.size() && run.intrinsics[k]) {
       const IntrinsicsResult found =
-          solved.intrinsics ? jointIntrinsics(*run.intrinsics[k], session.cameras[k].name, *solved.intrinsics,
-                                              run.result.uncertainty, session.options.intrinsics)
-                            : *run.intrinsics[k];
+          lens.solved ? jointIntrinsics(*run.intrinsics[k], session.cameras[k].name, *lens.solved,
+                                        run.result.uncertainty, session.options.intrinsics)
+                      : *run.intrinsics[k];
       notes.push_back(fmt::format("{}: calibrated from {} views in {:.1f} s, projection known to {:.3f} px",
                                   name, found.views_used, found.elapsed_s, found.image.rms_px));
       for (const std::string& advice : found.advice) notes.push_back(fmt::format("{}: {}", name, advice));
       if (found.status != CalibrationStatus::Ok && doubt.empty())
         doubt = fmt::format("{}: {}", name, found.reason);
     }
-    if (!solved.intrinsics) continue;
+    if (!lens.solved) continue;
     notes.push_back(
         fmt::format("{}: solved with everything else, which moved the projection by {:.3f} px RMS", name,
-                    projectionDifference(*session.cameras[k].intrinsics, *solved.intrinsics).rms_px));
+                    projectionDifference(*lens.seen_with, *lens.solved).rms_px));
   }
   run.result.notes.insert(run.result.notes.begin(), notes.begin(), notes.end());
   addDoubt(doubt, run.result);
@@ -217,7 +218,7 @@ class Calibration {
     return outcomeOf([this] {
       checkSession(session_);
       const Stopwatch stopwatch;
-      calibrateMissingIntrinsics(session_, context_, run_);
+      lenses_ = findLenses(session_, context_, run_);
       const double intrinsics_s = stopwatch.elapsed_s();
       runFrom(CalibrationStage::Detect);
       run_.result.timing.total_s += intrinsics_s;
@@ -274,7 +275,7 @@ class Calibration {
   }
 
   void detect() {
-    run_.pass = readAndDetect(session_, context_);
+    run_.pass = readAndDetect(session_, lenses_, context_);
     prepareInput();
   }
 
@@ -335,8 +336,9 @@ class Calibration {
     tellIntrinsics(session_, run_);
   }
 
-  Session session_;  // with the intrinsics that were found
+  const Session& session_;
   const RunContext& context_;
+  std::vector<CameraLens> lenses_;  // that the front end is to see with
   CalibrationRun run_;
   CalibrationInput input_;
   Initialisation initial_;
@@ -368,13 +370,6 @@ CalibrationRun calibrate(const Session& session, const RunContext& context) {
 CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context,
                          std::vector<std::optional<IntrinsicsResult>> intrinsics) {
   return Calibration(session, context).fromDetections(std::move(pass), std::move(intrinsics)).runOrThrow();
-}
-
-std::optional<CameraIntrinsics> foundIntrinsics(const CalibrationRun& run, std::size_t camera) {
-  if (camera < run.result.state.cameras.size() && run.result.state.cameras[camera].intrinsics)
-    return run.result.state.cameras[camera].intrinsics;
-  if (camera < run.intrinsics.size() && run.intrinsics[camera]) return run.intrinsics[camera]->intrinsics;
-  return std::nullopt;
 }
 
 }  // namespace evical

@@ -17,8 +17,8 @@ namespace evical {
 struct CalibrationRun {
   CalibrationResult result;
   RecordingPass pass;
-  // By camera: as calibrated first, where the session gave none. Empty: it gave all. What the batch made of
-  // them is in the result's state.
+  // By camera: how the lens was calibrated first, where the session gave none. Empty: it gave all. The lens
+  // in use is in the result's state.
   std::vector<std::optional<IntrinsicsResult>> intrinsics;
 };
 
@@ -42,15 +42,11 @@ CalibrationOutcome runCalibration(const Session& session, const RunContext& cont
 // The same for who wants nothing but the result. Throws CalibrationError, and Cancelled when asked to stop.
 CalibrationRun calibrate(const Session& session, const RunContext& context);
 
-// The same from what the front end and the IMUs gave: `pass` as readAndDetect or a simulation makes it,
-// through the session's intrinsics. `intrinsics`: those of them that a run before found, as CalibrationRun
-// has them.
+// The same from what the front end and the IMUs gave: `pass` as readAndDetect or a simulation makes it, with
+// the lenses that it was seen with. `intrinsics`: how a run before found those of them that were not given,
+// as CalibrationRun has them.
 CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context,
                          std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
-
-// A camera's intrinsics as the run has them at its end: solved with everything else, or as calibrated first.
-// Nothing where they stayed as the session gives them.
-std::optional<CameraIntrinsics> foundIntrinsics(const CalibrationRun& run, std::size_t camera);
 
 // How much of the process's memory was in use at most, in MB (10^6 bytes); 0 where the system does not say.
 double peakMemory_mb();

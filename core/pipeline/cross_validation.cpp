@@ -106,8 +106,7 @@ std::array<CalibrationInput, 2> splitIntoHalves(const CalibrationInput& input, c
   for (std::size_t i = 0; i < input.cameras.size(); ++i) {
     const CameraData& camera = input.cameras[i];
     for (CalibrationInput& half : halves) {
-      half.cameras.push_back(
-          {camera.name, camera.intrinsics, {}, camera.prior, camera.intrinsics_found_first});
+      half.cameras.push_back({camera.name, camera.lens, {}, camera.prior});
       half.cameras.back().observations.camera = camera.name;
     }
     splitViews(camera.observations, state.cameras[i], blocks,

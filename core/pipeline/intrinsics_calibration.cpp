@@ -42,7 +42,7 @@ IntrinsicsResult estimate(const Session& alone, const RecordingPass& pass,
   const BoardObservations& observations = pass.cameras.front();
   try {
     return estimateIntrinsics(
-        {alone.board, pass.resolutions_px.front(), observations, alone.cameras.front().intrinsics, start},
+        {alone.board, pass.resolutions_px.front(), observations, pass.lenses.front().seen_with, start},
         alone.options.intrinsics, context);
   } catch (const CalibrationError&) {
     checkBoardSize(observations, alone.board, alone.options.front_end.extent);
@@ -54,22 +54,22 @@ IntrinsicsResult estimate(const Session& alone, const RecordingPass& pass,
 
 IntrinsicsRun calibrateIntrinsics(const Session& session, std::size_t camera, const RunContext& context) {
   const Stopwatch stopwatch;
-  Session alone = cameraAlone(session, camera);
-  SessionCamera& seen = alone.cameras.front();
+  const Session alone = cameraAlone(session, camera);
   context.progress.stageStarted(nameOf(CalibrationStage::FirstLook));
-  seen.intrinsics = lookThroughPlainLenses(alone, context);
+  CameraLens lens;
+  lens.seen_with = lookThroughPlainLenses(alone, context);
   IntrinsicsRun run;
   std::optional<CameraIntrinsics> start;
   for (int pass = 1; pass <= alone.options.intrinsics.most_passes; ++pass) {
     context.progress.stageStarted(nameOf(CalibrationStage::Intrinsics));
-    run.pass = readAndDetect(alone, context.unobserved());
+    run.pass = readAndDetect(alone, {lens}, context.unobserved());
     checkBoardSeen(run.pass.cameras.front(), alone.board);
     run.result = estimate(alone, run.pass, start, context);
     run.result.passes = pass;
     const CameraIntrinsics found = run.result.intrinsics;
     const auto moved =
-        seen.intrinsics ? std::optional(projectionDifference(found, *seen.intrinsics)) : std::nullopt;
-    seen.intrinsics = start = found;
+        lens.seen_with ? std::optional(projectionDifference(found, *lens.seen_with)) : std::nullopt;
+    lens.seen_with = start = found;
     if (!moved) continue;
     run.result.moved_px = moved->rms_px;
     context.progress.log(LogLevel::Debug, fmt::format("pass {}: {} views, moved by {:.4f} px", pass,

@@ -120,8 +120,8 @@ class CameraIntake {
 // The window thread: one tracker a camera.
 class WindowWorker {
  public:
-  WindowWorker(const Session& session, const RunContext& context)
-      : session_(session), context_(context), trackers_(session.cameras.size()) {}
+  WindowWorker(const Session& session, const std::vector<CameraLens>& lenses, const RunContext& context)
+      : session_(session), lenses_(lenses), context_(context), trackers_(session.cameras.size()) {}
 
   void run(BoundedQueue<BurstBatch>& queue) {
     try {
@@ -157,9 +157,9 @@ class WindowWorker {
   void handle(const BurstBatch& batch) {
     std::unique_ptr<BoardTracker>& tracker = trackers_[batch.camera];
     if (batch.opened_px) {
-      tracker = std::make_unique<BoardTracker>(session_.board, *batch.opened_px,
-                                               session_.cameras[batch.camera].intrinsics,
-                                               session_.options.front_end, batch.start_ns);
+      tracker =
+          std::make_unique<BoardTracker>(session_.board, *batch.opened_px, lenses_[batch.camera].seen_with,
+                                         session_.options.front_end, batch.start_ns);
       if (context_.observer != nullptr)
         tracker->observeWith(context_.observer->windowObserver(batch.camera, *tracker));
     }
@@ -170,6 +170,7 @@ class WindowWorker {
   }
 
   const Session& session_;
+  const std::vector<CameraLens>& lenses_;
   const RunContext& context_;
   std::vector<std::unique_ptr<BoardTracker>> trackers_;
   std::exception_ptr failure_;
@@ -273,10 +274,16 @@ class ReadingPass {
 }  // namespace
 
 RecordingPass readAndDetect(const Session& session, const RunContext& context) {
+  return readAndDetect(session, givenLenses(session), context);
+}
+
+RecordingPass readAndDetect(const Session& session, std::vector<CameraLens> lenses,
+                            const RunContext& context) {
   RecordingPass result;
+  result.lenses = std::move(lenses);
   const Stopwatch stopwatch;
   ReadingPass reading(session, result);
-  WindowWorker worker(session, context);
+  WindowWorker worker(session, result.lenses, context);
   BoundedQueue<BurstBatch> queue(kQueuedBatches);
   {
     std::jthread windows([&] { worker.run(queue); });

@@ -18,7 +18,8 @@ class FrontEndObserver;
 struct RecordingPass {
   std::int64_t start_ns = 0;  // first event or sample of the session's streams
   std::vector<BoardObservations> cameras;
-  std::vector<ImuData> imus;  // SI units, in time order
+  std::vector<CameraLens> lenses;  // by camera: what the observations were seen with
+  std::vector<ImuData> imus;       // SI units, in time order
   std::vector<Resolution> resolutions_px;
   std::vector<RecordingFault> faults;
   double read_s = 0.0, detect_s = 0.0;  // the threads' own times, which overlap
@@ -27,5 +28,9 @@ struct RecordingPass {
 // Reads and finds bursts in one thread, searches windows in another; memory does not grow with the number of
 // events. Throws BadInput for streams that are missing, empty, or do not fit the session.
 RecordingPass readAndDetect(const Session& session, const RunContext& context);
+
+// The same through these lenses, one a camera, whatever the session gives.
+RecordingPass readAndDetect(const Session& session, std::vector<CameraLens> lenses,
+                            const RunContext& context);
 
 }  // namespace evical

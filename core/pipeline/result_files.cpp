@@ -29,6 +29,7 @@ void addReport(const Session& session, const NamedResult& named, const Recording
       session.board,
       pass.start_ns,
       pass.cameras,
+      pass.lenses,
       pass.imus,
       pass.resolutions_px,
       pass.faults,
@@ -67,9 +68,8 @@ NamedResult namedResult(const Session& session, const CalibrationResult& result,
   }
   named.names.intrinsics_std.resize(session.cameras.size());
   for (std::size_t k = 0; k < result.state.cameras.size(); ++k) {
-    if (!result.state.cameras[k].intrinsics) continue;
-    named.names.intrinsics[k] = result.state.cameras[k].intrinsics;
-    if (k < result.uncertainty.cameras.size())
+    named.names.intrinsics[k] = result.state.cameras[k].lens.inUse();
+    if (result.state.cameras[k].lens.solved && k < result.uncertainty.cameras.size())
       named.names.intrinsics_std[k] = result.uncertainty.cameras[k].intrinsics_std;
   }
   for (const SessionImu& imu : session.imus) {
@@ -86,7 +86,6 @@ NamedResult namedResult(const Session& session, const CalibrationRun& run, const
   NamedResult named = namedResult(session, run.result, version);
   for (std::size_t k = 0; k < run.intrinsics.size(); ++k) {
     if (!run.intrinsics[k] || named.names.intrinsics_std[k]) continue;
-    named.names.intrinsics[k] = run.intrinsics[k]->intrinsics;
     const IntrinsicsVector sigmas = run.intrinsics[k]->standardDeviations();
     std::copy(sigmas.begin(), sigmas.end(), named.names.intrinsics_std[k].emplace().begin());
   }

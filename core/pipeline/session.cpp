@@ -141,6 +141,12 @@ std::string remarksYaml(const SessionRemarks& remarks, const std::string& sensor
 
 }  // namespace
 
+std::vector<CameraLens> givenLenses(const Session& session) {
+  std::vector<CameraLens> lenses;
+  for (const SessionCamera& camera : session.cameras) lenses.push_back(givenLens(camera.intrinsics));
+  return lenses;
+}
+
 std::size_t Session::referenceImu() const {
   const auto found =
       std::find_if(imus.begin(), imus.end(), [&](const SessionImu& i) { return i.name == reference; });

@@ -53,6 +53,9 @@ struct Session {
   std::size_t referenceCamera() const;  // index into cameras; 0 where the reference is an IMU
 };
 
+// As the session gives them: those that it leaves out are not known yet.
+std::vector<CameraLens> givenLenses(const Session& session);
+
 // Throws CalibrationError (BadInput) with the place "file: key (line n)"; unknown keys with the nearest known
 // one.
 Session readSession(const std::filesystem::path& file);

@@ -130,8 +130,9 @@ void readCamera(const YamlNode& map, NamedResult& named) {
   }
   named.names.camera_streams.push_back(streamOf(map));
   const auto intrinsics = map.find("intrinsics");
+  if (intrinsics) state.lens = givenLens(readIntrinsics(*intrinsics));
   named.names.intrinsics_std.push_back(readIntrinsicsStd(map));
-  named.names.intrinsics.push_back(intrinsics ? std::optional(readIntrinsics(*intrinsics)) : std::nullopt);
+  named.names.intrinsics.push_back(state.lens.given);
   named.result.state.cameras.push_back(state);
   named.result.uncertainty.cameras.push_back(sigma);
   named.result.cameras.push_back(fit);

@@ -40,9 +40,8 @@ std::vector<ShownQuantity> shown(const Rows& rows, const std::string& sensor, co
 }  // namespace
 
 std::vector<ShownQuantity> shownCamera(const NamedResult& named, std::size_t camera, bool with_place) {
-  CameraState state = named.result.state.cameras.at(camera);
+  const CameraState& state = named.result.state.cameras.at(camera);
   CameraUncertainty uncertainty = elementOrNone(named.result.uncertainty.cameras, camera);
-  state.intrinsics = elementOrNone(named.names.intrinsics, camera);
   uncertainty.intrinsics_std = elementOrNone(named.names.intrinsics_std, camera);
   return shown(kCameraQuantities, named.names.cameras.at(camera), state, uncertainty, with_place);
 }

@@ -28,9 +28,7 @@ Estimate estimateOf(const NamedResult& named) {
                     named.result.uncertainty};
   estimate.uncertainty.cameras.resize(estimate.cameras.size());
   estimate.uncertainty.imus.resize(estimate.imus.size());
-  // As calibrated first where they are not part of the state.
-  for (std::size_t i = 0; i < estimate.cameras.size() && i < named.names.intrinsics.size(); ++i)
-    estimate.cameras[i].intrinsics = named.names.intrinsics[i];
+  // Of what was calibrated first where the state does not hold it.
   for (std::size_t i = 0; i < estimate.cameras.size() && i < named.names.intrinsics_std.size(); ++i)
     estimate.uncertainty.cameras[i].intrinsics_std = named.names.intrinsics_std[i];
   return estimate;

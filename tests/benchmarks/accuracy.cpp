@@ -64,6 +64,7 @@ RecordingPass detect(const Scenario& scenario, const Session& session, Outcome& 
     const Stopwatch stopwatch;
     pass.cameras.push_back(tracker.finish());
     busy_s += stopwatch.elapsed_s();
+    pass.lenses.push_back(givenLens(camera));
     pass.cameras.back().camera = scenario.cameras[k].name;
     events_read += pass.cameras.back().events;
   }

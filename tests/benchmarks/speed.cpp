@@ -97,7 +97,7 @@ void optimise(const Scenario& scenario, BoardObservations observations) {
   CalibrationInput input;
   input.start_ns = scenario.start_ns;
   input.board = scenario.board;
-  input.cameras.push_back({camera.name, camera.intrinsics, std::move(observations)});
+  input.cameras.push_back({camera.name, givenLens(camera.intrinsics), std::move(observations)});
   input.imus.push_back(
       {imu.name, {imu.gyroscope_density, imu.accelerometer_density}, simulateImu(scenario, 0)});
   double begin = processCpu_s();

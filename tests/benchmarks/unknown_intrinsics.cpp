@@ -57,11 +57,11 @@ struct Sums {
   }
 };
 
-void printRow(const Scenario& scenario, Way way, const Session& session, const CalibrationRun& run,
+void printRow(const Scenario& scenario, Way way, const CalibrationRun& run,
               const TruthComparison& comparison) {
   const CameraError& error = comparison.cameras.front();
   const CameraUncertainty& sigma = run.result.uncertainty.cameras.front();
-  const CameraIntrinsics used = foundIntrinsics(run, 0).value_or(*session.cameras.front().intrinsics);
+  const CameraIntrinsics used = run.result.state.cameras.front().lens.inUse().value();
   fmt::print(
       "| {} | {} | {} | {:.4f} ({:.4f}) | {:.3f} ({:.3f}) | {:.4f} ({:.4f}) | {:.4f} | {:.1f} | {} |\n",
       scenario.name, scenario.seed, kWayNames[way], error.rotation_deg,
@@ -82,8 +82,6 @@ std::array<CalibrationRun, kWays> calibrateEveryWay(const Session& unknown, cons
   runs[kJoint] = calibrate(unknown, RunContext{});
   Session held = unknown;
   held.options.optimisation.camera_intrinsics = CameraIntrinsicsChoice::Fixed;
-  for (std::size_t k = 0; k < held.cameras.size(); ++k)
-    held.cameras[k].intrinsics = runs[kJoint].intrinsics[k]->intrinsics;
   runs[kFound] = calibrate(held, runs[kJoint].pass, RunContext{}, runs[kJoint].intrinsics);
   return runs;
 }
@@ -136,9 +134,7 @@ int main(int argc, char** argv) {
         const TruthComparison comparison =
             compareWithTruth(namedResult(session, runs[way], "benchmark"), truth);
         sums[way].add(comparison);
-        Session known = session;
-        known.cameras.front().intrinsics = scenario.cameras.front().intrinsics;
-        printRow(scenario, static_cast<Way>(way), known, runs[way], comparison);
+        printRow(scenario, static_cast<Way>(way), runs[way], comparison);
       }
     }
     all_met = printSums(file, scenarios.seeds, sums) && all_met;

@@ -19,6 +19,7 @@ RecordingPass passWith(const Scenario& scenario, BoardObservations observations)
   pass.start_ns = scenario.start_ns;
   observations.camera = scenario.cameras.front().name;
   pass.cameras.push_back(std::move(observations));
+  pass.lenses.push_back(givenLens(scenario.cameras.front().intrinsics));
   for (std::size_t k = 0; k < scenario.imus.size(); ++k) {
     const SimulatedImu& imu = scenario.imus[k];
     pass.imus.push_back(

@@ -50,6 +50,7 @@ SimulatedPass simulatePass(double duration_s, const std::string& scenario) {
   simulated.pass.start_ns = simulated.truth.start_ns;
   for (std::size_t k = 0; k < simulated.truth.cameras.size(); ++k) {
     simulated.pass.cameras.push_back(observationsOf(simulated.truth, k));
+    simulated.pass.lenses.push_back(givenLens(simulated.truth.cameras[k].intrinsics));
     simulated.pass.resolutions_px.push_back(simulated.truth.cameras[k].intrinsics.resolution_px);
   }
   for (std::size_t k = 0; k < simulated.truth.imus.size(); ++k) {

@@ -179,7 +179,7 @@ class TestCalibrationDocument : public QObject {
     QVERIFY(!document.reference().has_value());
   }
 
-  void intrinsicsThatTheRunFound_areItsSessions_andNotOutdated() {
+  void intrinsicsThatTheRunFound_areItsOwn_andNotOutdated() {
     CalibrationDocument document;
     Session session = readSession(test::simulatedSession().toStdString());
     const CameraIntrinsics known = *session.cameras[0].intrinsics;
@@ -187,8 +187,10 @@ class TestCalibrationDocument : public QObject {
     document.startSession(session);
     const auto run = std::make_shared<CalibrationRun>();
     run->intrinsics.emplace_back(IntrinsicsResult{}).value().intrinsics = known;
+    run->result.state.cameras.emplace_back().lens.seen_with = known;
     document.addRun({run, document.session(), {}});
-    QVERIFY(document.last().session.cameras[0].intrinsics == known);
+    QVERIFY(document.last().run->result.state.cameras[0].lens.inUse() == known);
+    QVERIFY(!document.last().session.cameras[0].intrinsics);
     QVERIFY(!document.session().cameras[0].intrinsics);
     QVERIFY(!document.runIsOutdated());
     session.cameras[0].intrinsics = known;

@@ -1,24 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/base/time.h"
-#include "core/pipeline/recording_pass.h"
-#include "core/pipeline/simulation.h"
-#include "core/synthetic/scenario_yaml.h"
 #include "tests/support/test_program.h"
-#include "tests/ui/slowdown.h"
+#include "tests/ui/recorded_windows.h"
 #include "ui/detection/burst_band.h"
-#include "ui/detection/detection_screen.h"
-#include "ui/detection/event_view.h"
 #include "ui/detection/event_window_reader.h"
 #include "ui/detection/newest_request_worker.h"
-#include "ui/detection/timeline.h"
 #include "ui/detection/window_analysis.h"
 #include "ui/detection/window_panel.h"
 #include "ui/theme/theme.h"
 
 #include <QDir>
 #include <QSignalSpy>
-#include <QTemporaryDir>
-#include <QTest>
 
 #include <atomic>
 #include <ctime>
@@ -26,33 +18,9 @@
 
 using namespace evical;
 using namespace evical::ui;
+using namespace evical::ui::test;
 
 namespace {
-
-// Two seconds of the everyday recording, and what the front end says about them.
-struct Recorded {
-  QTemporaryDir folder;
-  Session session;
-  RecordingPass pass;
-
-  Recorded() {
-    Scenario scenario = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/davis346.yaml");
-    scenario.duration_s = 2.0;
-    const SimulationSummary files = simulate(scenario, folder.path().toStdString(), {});
-    session = readSession(files.session);
-    pass = readAndDetect(session, {});
-  }
-  // A window in the middle, with all of its circles.
-  WindowReport goodWindow() const {
-    for (const WindowReport& window : pass.cameras.front().windows) {
-      if (window.time_s > 0.8 && window.outcome == WindowOutcome::Complete) return window;
-    }
-    return pass.cameras.front().windows.at(pass.cameras.front().windows.size() / 2);
-  }
-  std::shared_ptr<const BoardObservations> observations() const {
-    return std::make_shared<BoardObservations>(pass.cameras.front());
-  }
-};
 
 // A burst band over the whole recording, and questions to ask of it.
 struct Asked {
@@ -84,36 +52,6 @@ struct Asked {
     return analysis;
   }
 };
-
-// The screen as it is once the recording has been read and the window at the cursor analysed.
-void settle(DetectionScreen& screen) {
-  QTRY_VERIFY_WITH_TIMEOUT(screen.timeline().end_s() > 1.9, 20000 * kSlowdown);
-  QTRY_VERIFY_WITH_TIMEOUT(screen.analysis() && !screen.analysis()->searches.empty() &&
-                               std::abs(screen.analysis()->time_s - screen.time_s()) < 1e-9 &&
-                               screen.view().frame() &&
-                               std::abs(screen.view().frame()->time_s - screen.time_s()) < 1e-9,
-                           20000 * kSlowdown);
-}
-
-// A camera that stands half a metre before the board and looks straight at it, for two seconds.
-CalibrationState restingState() {
-  CalibrationState state;
-  state.world_from_imu_rotation = makeUniformSo3Spline(0.0, 2.0, 0.1);
-  state.imu_in_world_m.start_s = state.world_from_imu_rotation.start_s;
-  state.imu_in_world_m.knot_spacing_s = state.world_from_imu_rotation.knot_spacing_s;
-  state.imu_in_world_m.control_points.assign(state.world_from_imu_rotation.control_points.size(),
-                                             Eigen::Vector3d(0.05, 0.2, -0.5));
-  state.cameras.resize(1);
-  return state;
-}
-
-int pixelsOf(const QImage& image, const QColor& colour) {
-  int count = 0;
-  for (int y = 0; y < image.height(); ++y) {
-    for (int x = 0; x < image.width(); ++x) count += image.pixelColor(x, y) == colour;
-  }
-  return count;
-}
 
 }  // namespace
 
@@ -279,7 +217,7 @@ class TestDetectionScreen : public QObject {
     screen.resize(1000, 650);
     screen.show();
     screen.setSession(recorded_->session);
-    screen.setObservations(recorded_->pass.cameras.front());
+    screen.setRun(recorded_->run(), recorded_->session);
     const WindowReport window = recorded_->goodWindow();
     screen.setTime(window.time_s);
     settle(screen);
@@ -299,64 +237,14 @@ class TestDetectionScreen : public QObject {
     screen.setTime(recorded_->goodWindow().time_s);
     settle(screen);
     QCOMPARE(screen.analysis()->outcome, WindowOutcome::Complete);
-    FrontEndOptions options = recorded_->session.options.front_end;
-    options.grid.least_circles = 500;
-    screen.setOptions(options);
+    Session changed = recorded_->session;
+    changed.options.front_end.grid.least_circles = 500;
+    screen.setSession(changed);
     QTRY_COMPARE_WITH_TIMEOUT(screen.analysis()->outcome, WindowOutcome::TooFewCircles, 20000 * kSlowdown);
     QVERIFY2(screen.panel().text().contains("Lost at moving circles"), qPrintable(screen.panel().text()));
     QVERIFY2(screen.panel().text().contains("at least 500 needed"), qPrintable(screen.panel().text()));
-    screen.setOptions(recorded_->session.options.front_end);
-    QTRY_COMPARE_WITH_TIMEOUT(screen.analysis()->outcome, WindowOutcome::Complete, 20000 * kSlowdown);
-  }
-
-  void reprojection_isWhereTheCameraSeesTheBoard() {
-    const CalibrationState state = restingState();
-    const SessionCamera& camera = recorded_->session.cameras.front();
-    const auto outlines = reprojectBoard(state, 0, *camera.intrinsics, recorded_->session.board, 1.0);
-    QCOMPARE(outlines.size(), static_cast<std::size_t>(recorded_->session.board.circleCount()));
-    // The first circle lies at the origin: half a metre ahead, 5 cm to the left, 20 cm up.
-    const Eigen::Vector2d centre = *project(*camera.intrinsics, {-0.05, -0.2, 0.5});
-    const QPointF middle = outlines.front().boundingRect().center();
-    QVERIFY(std::hypot(middle.x() - centre.x(), middle.y() - centre.y()) < 0.5);
-    QVERIFY(reprojectBoard(state, 0, *camera.intrinsics, recorded_->session.board, 5.0).empty());
-  }
-
-  void reprojection_leadsAsTheMeasuredEdgesDo() {
-    CalibrationState state = restingState();
-    state.cameras[0].edge_lead_px = 0.8;
-    const Session& session = recorded_->session;
-    const CameraIntrinsics& camera = *session.cameras.front().intrinsics;
-    BoardView view;
-    CircleObservation moving;  // the board's first circle, at 100 px/s to the right
-    moving.circle = 0;
-    moving.centre_px = *idealPixel(camera, *project(camera, {-0.05, -0.2, 0.5}));
-    moving.velocity_px_s = {100.0, 0.0};
-    moving.edge_lead_effect = {1.0, 0.0};
-    view.circles = {moving};
-    const auto at_rest = reprojectBoard(state, 0, camera, session.board, 1.0);
-    const auto leading = reprojectBoard(state, 0, camera, session.board, 1.0, view, 0.0);
-    QCOMPARE(leading.size(), at_rest.size());
-    const QPointF shift = leading[0].boundingRect().center() - at_rest[0].boundingRect().center();
-    QVERIFY2(shift.x() > 0.4 && shift.x() < 0.9 && std::abs(shift.y()) < 0.2,
-             qPrintable(QString("%1 %2").arg(shift.x()).arg(shift.y())));
-    QCOMPARE(leading[1], at_rest[1]);  // not measured
-  }
-
-  void screen_drawsTheReprojectionOfAResult() {
-    DetectionScreen screen;
-    screen.resize(1000, 650);
-    screen.show();
     screen.setSession(recorded_->session);
-    auto run = std::make_shared<CalibrationRun>();
-    run->result.state = restingState();
-    run->pass = recorded_->pass;
-    screen.setResult(run);
-    QCOMPARE(screen.timeline().windows().size(), recorded_->pass.cameras.front().windows.size());
-    screen.setTime(recorded_->goodWindow().time_s);
-    settle(screen);
-    const int without = pixelsOf(screen.view().grab().toImage(), theme().accent);
-    screen.setLayerVisible(Layer::Reprojection, true);
-    QVERIFY(pixelsOf(screen.view().grab().toImage(), theme().accent) > without + 100);
+    QTRY_COMPARE_WITH_TIMEOUT(screen.analysis()->outcome, WindowOutcome::Complete, 20000 * kSlowdown);
   }
 
   void screen_stepsScrubsAndPlays() {
@@ -364,7 +252,7 @@ class TestDetectionScreen : public QObject {
     screen.resize(1000, 650);
     screen.show();
     screen.setSession(recorded_->session);
-    screen.setObservations(recorded_->pass.cameras.front());
+    screen.setRun(recorded_->run(), recorded_->session);
     const WindowReport window = recorded_->goodWindow();
     screen.setTime(window.time_s);
     settle(screen);
@@ -411,7 +299,7 @@ class TestDetectionScreen : public QObject {
     QVERIFY(!screen.analysis()->trace().circles.empty());
     job.join();
     screen.setLive(false);
-    screen.setObservations(recorded_->pass.cameras.front());
+    screen.setRun(recorded_->run(), recorded_->session);
     settle(screen);
   }
 
@@ -447,7 +335,7 @@ class TestDetectionScreen : public QObject {
     };
     QVERIFY(save("detection_empty"));
     screen.setSession(recorded_->session);
-    screen.setObservations(recorded_->pass.cameras.front());
+    screen.setRun(recorded_->run(), recorded_->session);
     screen.setTime(recorded_->goodWindow().time_s);
     settle(screen);
     QVERIFY(save("detection_surface"));
@@ -467,10 +355,10 @@ class TestDetectionScreen : public QObject {
     screen.view().fit();
     screen.setMode(SurfaceMode::Accumulated);
     for (std::size_t k = 0; k < kLayerCount; ++k) screen.setLayerVisible(static_cast<Layer>(k), true);
-    FrontEndOptions options = recorded_->session.options.front_end;
-    options.grid.ambiguity_margin = 100;
-    options.tracking.least_inliers = 0.97;
-    screen.setOptions(options);
+    Session changed = recorded_->session;
+    changed.options.front_end.grid.ambiguity_margin = 100;
+    changed.options.front_end.tracking.least_inliers = 0.97;
+    screen.setSession(changed);
     QTest::qWait(500);
     QVERIFY(save("detection_all_layers"));
     applyTheme(*qApp, Appearance::Light);

@@ -185,7 +185,8 @@ class TestMainWindow : public QObject {
     const StepsPanel* const steps = test.child<StepsPanel>();
     QVERIFY2(steps->textOf("intrinsics").contains("done"), qPrintable(steps->textOf("intrinsics")));
     const RunRecord& last = test.document().last();
-    QVERIFY(std::abs(last.session.cameras[0].intrinsics->focal_length_px.x() - truth_px) < 0.005 * truth_px);
+    const auto lens = [&] { return last.run->result.state.cameras[0].lens; };
+    QVERIFY(std::abs(lens().seen_with->focal_length_px.x() - truth_px) < 0.005 * truth_px);
     QVERIFY(!test.document().runIsOutdated());
     test.window.showScreen("result");
     spin(200);  // filled in a turn of its own
@@ -204,8 +205,7 @@ class TestMainWindow : public QObject {
     QVERIFY(take_over->isVisible());
     QTest::mouseClick(take_over, Qt::LeftButton);
     const auto& taken = test.document().session().cameras[0].intrinsics;
-    QVERIFY(taken &&
-            taken == foundIntrinsics(*test.document().last().run, 0));  // as solved with everything else
+    QVERIFY(taken && taken == lens().solved);  // with everything else
     QVERIFY(std::abs(taken->focal_length_px.x() - truth_px) < 0.005 * truth_px);
     QVERIFY(!take_over->isVisible());
     test.document().undoStack().undo();

@@ -32,7 +32,7 @@ class TestResidualsScreen : public QObject {
     screen.resize(1000, 650);
     screen.show();
     QSignalSpy ready(&screen, &ResidualsScreen::ready);
-    screen.setRun(run_, simulated_.session);
+    screen.setRun(run_);
     QVERIFY(ready.wait(30'000 * kSlowdown));
     settle();
   }
@@ -77,7 +77,7 @@ void TestResidualsScreen::withoutARun_itSaysWhatToDo() {
   QVERIFY(screen.rejectedWindows().empty());
   fill(screen);
   QVERIFY(screen.findChild<QPushButton*>()->isVisible());
-  screen.setRun(nullptr, {});
+  screen.setRun(nullptr);
   QVERIFY(!screen.findChild<QPushButton*>()->isVisible());
   QVERIFY(screen.rejectedWindows().empty());
 }

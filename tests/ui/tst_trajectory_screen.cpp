@@ -36,7 +36,7 @@ Session sessionOf(const CalibrationInput& input) {
   Session session;
   session.board = input.board;
   for (const CameraData& camera : input.cameras) {
-    session.cameras.push_back({camera.name, "", camera.intrinsics->resolution_px, camera.intrinsics});
+    session.cameras.push_back({camera.name, "", camera.lens.given->resolution_px, camera.lens.given});
   }
   for (const ImuData& imu : input.imus) {
     SessionImu& known = session.imus.emplace_back();
@@ -61,7 +61,8 @@ Example makeExample(double duration_s) {
     for (const BoardView& view : camera.observations.views) {
       pass.cameras.back().windows.push_back({view.time_s, 0.01, WindowOutcome::Complete, 0, 0, 0, false});
     }
-    pass.resolutions_px.push_back(camera.intrinsics->resolution_px);
+    pass.lenses.push_back(camera.lens);
+    pass.resolutions_px.push_back(camera.lens.given->resolution_px);
   }
   pass.imus = example.rig.input.imus;
   example.run =
@@ -383,7 +384,7 @@ void TestTrajectoryScreen::halfMinute_drawsFast() {
   view->resize(1000, 700);
   screen.setState(truthOf(rig), rig.input.board);
   screen.setDetections(std::make_shared<BoardObservations>(rig.input.cameras.front().observations),
-                       *rig.input.cameras.front().intrinsics);
+                       *rig.input.cameras.front().lens.given);
   QVERIFY(QTest::qWaitFor([&] { return !screen.busy(); }, kPatience_ms));
   screen.setTime(10.0);
   QImage target(1000, 700, QImage::Format_RGB32);

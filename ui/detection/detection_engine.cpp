@@ -57,12 +57,9 @@ class DetectionEngine::Analyst {
  private:
   void prepare(const AnalysisTask& task) {
     const Source& source = task.source;
-    if (source.session != session_ || source.camera != camera_ || !scene_) {
-      session_ = source.session;
-      camera_ = source.camera;
-      scene_ = std::make_shared<BoardScene>(session_->board, source.resolution_px,
-                                            session_->cameras[camera_].intrinsics);
-      band_.reset();
+    if (!scene_ || task.sight != sight_ || source.resolution_px != scene_->resolution_px) {
+      sight_ = task.sight;
+      scene_ = std::make_shared<BoardScene>(sight_.board, source.resolution_px, sight_.lens);
     }
     if (band_ && task.options.bursts == bursts_ && source.cache == cache_) return;
     bursts_ = task.options.bursts;
@@ -82,8 +79,7 @@ class DetectionEngine::Analyst {
   }
 
   DetectionEngine& engine_;
-  std::shared_ptr<const Session> session_;
-  std::size_t camera_ = 0;
+  Sight sight_;
   std::shared_ptr<const BoardScene> scene_;
   BurstOptions bursts_;
   std::shared_ptr<const EventCache> cache_;
@@ -101,8 +97,6 @@ DetectionEngine::DetectionEngine(QObject* parent)
 DetectionEngine::~DetectionEngine() = default;
 
 void DetectionEngine::open(const Session& session, std::size_t camera) {
-  session_ = std::make_shared<Session>(session);
-  camera_ = camera;
   observations_.reset();
   ++opening_;
   frames_.clear();
@@ -128,11 +122,10 @@ RecordingOverview DetectionEngine::overview() const {
 void DetectionEngine::show(const DetectionWish& wish) {
   if (!reader_) return;
   const RecordingOverview overview = reader_->overview();
-  const Source source{reader_->cache(), overview.start_ns, overview.resolution_px,
-                      session_,         camera_,           opening_};
+  const Source source{reader_->cache(), overview.start_ns, overview.resolution_px, opening_};
   if (!source.cache) return;
   if (wish.style.mode != SurfaceMode::NormalFlow) start(RenderTask{source, wish, nullptr});
-  start(AnalysisTask{source, wish, options_, observations_});
+  start(AnalysisTask{source, sight_, wish, options_, observations_});
 }
 
 void DetectionEngine::showLive(std::shared_ptr<const LiveWindow> window, const SurfaceStyle& style) {

@@ -26,6 +26,14 @@ struct DetectionWish {
   bool flow = true;    // normal flow, too
 };
 
+// What windows are searched for, and seen through.
+struct Sight {
+  CircleBoard board;
+  std::optional<CameraIntrinsics> lens = {};
+
+  bool operator==(const Sight&) const = default;
+};
+
 class DetectionEngine : public QObject {
   Q_OBJECT
 
@@ -34,6 +42,7 @@ class DetectionEngine : public QObject {
   ~DetectionEngine() override;
 
   void open(const Session& session, std::size_t camera);
+  void setSight(const Sight& sight) { sight_ = sight; }
   void setOptions(const FrontEndOptions& options) { options_ = options; }
   void setObservations(std::shared_ptr<const BoardObservations> observations);
   void show(const DetectionWish& wish);  // nothing before the recording is open
@@ -50,13 +59,11 @@ class DetectionEngine : public QObject {
   void analysisReady();
 
  private:
-  // What a session's windows share; made once, by the thread that first needs it.
+  // Where a camera's windows come from.
   struct Source {
     std::shared_ptr<const EventCache> cache;
     std::int64_t start_ns = 0;
     Resolution resolution_px;
-    std::shared_ptr<const Session> session;
-    std::size_t camera = 0;
     int opening = 0;
   };
   struct RenderTask {
@@ -66,6 +73,7 @@ class DetectionEngine : public QObject {
   };
   struct AnalysisTask {
     Source source;
+    Sight sight;
     DetectionWish wish;
     FrontEndOptions options;
     std::shared_ptr<const BoardObservations> observations;
@@ -78,8 +86,7 @@ class DetectionEngine : public QObject {
   void put(SurfaceFrame frame, int opening);
   void put(const WindowAnalysis& analysis, int opening);
 
-  std::shared_ptr<const Session> session_;
-  std::size_t camera_ = 0;
+  Sight sight_;
   FrontEndOptions options_;
   std::shared_ptr<const BoardObservations> observations_;
   std::atomic<int> opening_ = 0;  // what was asked for before the last one is of no use

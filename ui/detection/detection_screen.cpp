@@ -25,18 +25,23 @@ namespace {
 
 constexpr int kFrame_ms = 25;  // some are dropped where there is other work
 
-// What decides about events and windows but the options.
-bool sameRecording(const Session& a, const Session& b) {
+// What decides about the events that are read. Where neither session nor recording says it, the lens tells
+// the resolution; one that is not known yet does not contradict another.
+bool sameEvents(const Session& a, const Session& b) {
   const auto same_source = [](const auto& x, const auto& y) {
     return x.stream == y.stream && x.recording == y.recording && x.clock_offset_s == y.clock_offset_s;
   };
+  const auto same_size = [](const auto& x, const auto& y) {
+    return !x || !y || !x->resolution_px.known() || !y->resolution_px.known() ||
+           x->resolution_px == y->resolution_px;
+  };
   const auto same_camera = [&](const SessionCamera& x, const SessionCamera& y) {
-    return same_source(x, y) && x.resolution_px == y.resolution_px && x.intrinsics == y.intrinsics;
+    return same_source(x, y) && x.resolution_px == y.resolution_px && same_size(x.intrinsics, y.intrinsics);
   };
   const auto same_imu = [&](const SessionImu& x, const SessionImu& y) {
     return same_source(x, y) && x.angular_rate_unit == y.angular_rate_unit;
   };
-  return a.recording == b.recording && a.board == b.board && a.reference == b.reference &&
+  return a.recording == b.recording && a.reference == b.reference &&
          std::equal(a.cameras.begin(), a.cameras.end(), b.cameras.begin(), b.cameras.end(), same_camera) &&
          std::equal(a.imus.begin(), a.imus.end(), b.imus.begin(), b.imus.end(), same_imu);
 }
@@ -77,17 +82,18 @@ void DetectionScreen::connectEngine() {
 }
 
 void DetectionScreen::setSession(const Session& session) {
-  const bool same = session_ && sameRecording(*session_, session);
+  const bool lens_may_help = !engine_->overview().error.empty();
+  const bool same = session_ && sameEvents(*session_, session) &&
+                    !(lens_may_help && givenLenses(*session_) != givenLenses(session));
   session_ = session;
   options_ = session.options.front_end;
   engine_->setOptions(options_);
   timeline_->setUsedRange(session.time_range_s);
   if (same) {
+    engine_->setSight(sight());
     request();
     return;
   }
-  observations_.clear();
-  run_.reset();
   const QSignalBlocker quiet(camera_box_);
   camera_box_->clear();
   for (const SessionCamera& camera : session.cameras)
@@ -104,47 +110,39 @@ void DetectionScreen::chooseCamera(std::size_t camera) {
   timeline_->setRange(0.0, 0.0);
   timeline_->setEventRate({});
   timeline_->setRotationRate({});
-  const auto observations = camera < observations_.size() ? observations_[camera] : nullptr;
-  timeline_->setWindows(observations ? observations->windows : std::vector<WindowReport>{});
   if (session_ && camera < session_->cameras.size()) engine_->open(*session_, camera);
-  engine_->setObservations(observations);
+  showRun();
   view_->setMessage(session_ ? tr("Opening the recording ...")
                              : tr("No recording: open one to see its events"));
   refresh();
 }
 
-void DetectionScreen::setOptions(const FrontEndOptions& options) {
-  if (options == options_) return;
-  options_ = options;
-  engine_->setOptions(options);
-  request();
-}
-
-void DetectionScreen::setObservations(std::vector<std::shared_ptr<const BoardObservations>> observations) {
-  observations_ = std::move(observations);
-  const auto own = camera_ < observations_.size() ? observations_[camera_] : nullptr;
-  timeline_->setWindows(own ? own->windows : std::vector<WindowReport>{});
-  engine_->setObservations(own);
-  request();
-}
-
-void DetectionScreen::setObservations(const BoardObservations& observations) {
-  setObservations(std::vector{std::make_shared<const BoardObservations>(observations)});
-}
-
-void DetectionScreen::appendWindow(const WindowReport& window) {
-  timeline_->appendWindow(window);
-}
-
-void DetectionScreen::setResult(std::shared_ptr<const CalibrationRun> run) {
+void DetectionScreen::setRun(std::shared_ptr<const CalibrationRun> run, const Session& session) {
   run_ = std::move(run);
-  layer_boxes_[static_cast<std::size_t>(Layer::Reprojection)]->setEnabled(run_ != nullptr);
-  std::vector<std::shared_ptr<const BoardObservations>> observations;
-  if (run_) {
-    for (const BoardObservations& camera : run_->pass.cameras)
-      observations.emplace_back(run_, &camera);  // shares the run
-  }
-  setObservations(std::move(observations));
+  run_session_ = session;
+  showRun();
+}
+
+const CalibrationRun* DetectionScreen::runInView() const {
+  const bool here = run_ && session_ && sameEvents(run_session_, *session_);
+  return here && camera_ < run_->pass.cameras.size() ? run_.get() : nullptr;
+}
+
+// Of a run, its own: what it saw fits no other board and no other lens.
+Sight DetectionScreen::sight() const {
+  if (const CalibrationRun* const run = runInView())
+    return {run_session_.board, run->pass.lenses.at(camera_).seen_with};
+  if (!session_ || camera_ >= session_->cameras.size()) return {};
+  return {session_->board, session_->cameras[camera_].intrinsics};
+}
+
+void DetectionScreen::showRun() {
+  const BoardObservations* const seen = runInView() ? &run_->pass.cameras[camera_] : nullptr;
+  layer_boxes_[static_cast<std::size_t>(Layer::Reprojection)]->setEnabled(seen != nullptr);
+  timeline_->setWindows(seen ? seen->windows : std::vector<WindowReport>{});
+  engine_->setObservations(seen ? std::shared_ptr<const BoardObservations>(run_, seen) : nullptr);
+  engine_->setSight(sight());
+  request();
 }
 
 std::shared_ptr<CalibrationObserver> DetectionScreen::liveObserver() {
@@ -305,13 +303,11 @@ void DetectionScreen::refresh() {
     time_box_->setValue(time_s_);
   }
   std::vector<QPolygonF> reprojection;
-  std::optional<CameraIntrinsics> intrinsics;
-  if (run_ && session_) intrinsics = session_->cameras[camera_].intrinsics;
-  if (run_ && !intrinsics) intrinsics = foundIntrinsics(*run_, camera_);
-  if (run_ && frame && session_ && shown(Layer::Reprojection) && intrinsics) {
-    reprojection = reprojectBoard(run_->result.state, camera_, *intrinsics, session_->board, frame->time_s,
-                                  viewAt(run_->pass.cameras, camera_, frame->time_s),
-                                  session_->options.optimisation.rest_speed_px_s);
+  const CalibrationRun* const run = runInView();
+  if (run && frame && shown(Layer::Reprojection)) {
+    reprojection = reprojectBoard(run->result.state, camera_, run_session_.board, frame->time_s,
+                                  viewAt(run->pass.cameras, camera_, frame->time_s),
+                                  run_session_.options.optimisation.rest_speed_px_s);
   }
   view_->setOverlay([analysis = here ? analysis_ : nullptr, layers = layers_,
                      reprojection = std::move(reprojection)](QPainter& painter, double scale) {

@@ -26,6 +26,7 @@ class QToolButton;
 namespace evical::ui {
 
 class DetectionEngine;
+struct Sight;
 class EventView;
 class Timeline;
 class WindowPanel;
@@ -37,16 +38,12 @@ class DetectionScreen : public QWidget {
   explicit DetectionScreen(QWidget* parent = nullptr);
   ~DetectionScreen() override;
 
-  // Reads the recording anew if it, its streams or its board changed; the options come along.
+  // Reads the recording anew if it or its streams changed. The window in view is looked at again at once,
+  // with the session's options.
   void setSession(const Session& session);
-  // The window in view is looked at again, at once.
-  void setOptions(const FrontEndOptions& options);
-  // One for each camera of the session, in its order; empty forgets.
-  void setObservations(std::vector<std::shared_ptr<const BoardObservations>> observations);
-  void setObservations(const BoardObservations& observations);  // of the only camera
-  void appendWindow(const WindowReport& window);                // of the camera in view
-  // Observations, windows and the trajectory for reprojections; null forgets.
-  void setResult(std::shared_ptr<const CalibrationRun> run);
+  // What the run saw, with the board and the lenses that it saw it with, and where it reprojects; `session`
+  // is what it was made from. Shown wherever the recording in view is its own. Null forgets.
+  void setRun(std::shared_ptr<const CalibrationRun> run, const Session& session);
 
   // While a job runs: give these to it, and the screen shows the windows as they are found.
   std::shared_ptr<CalibrationObserver> liveObserver();
@@ -84,6 +81,9 @@ class DetectionScreen : public QWidget {
   void connectEngine();
 
   void chooseCamera(std::size_t camera);
+  const CalibrationRun* runInView() const;  // null: there is none of this recording
+  Sight sight() const;
+  void showRun();
   void select(double time_s);
   void advance();
   void request();  // of the engine: what the cursor, the mode and the layers ask for
@@ -98,8 +98,8 @@ class DetectionScreen : public QWidget {
   std::optional<Session> session_;
   std::size_t camera_ = 0;
   FrontEndOptions options_;
-  std::vector<std::shared_ptr<const BoardObservations>> observations_;
   std::shared_ptr<const CalibrationRun> run_;
+  Session run_session_;
   std::shared_ptr<const WindowAnalysis> analysis_;
   LayerSet layers_ = defaultLayers();
   double time_s_ = 0.1;

@@ -294,29 +294,29 @@ LayerSet defaultLayers() {
 }
 
 std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera,
-                                      const CameraIntrinsics& intrinsics, const CircleBoard& board,
-                                      double time_s) {
-  return reprojectBoard(state, camera, intrinsics, board, time_s, BoardView{}, 0.0);
+                                      const CircleBoard& board, double time_s) {
+  return reprojectBoard(state, camera, board, time_s, BoardView{}, 0.0);
 }
 
 std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera,
-                                      const CameraIntrinsics& intrinsics, const CircleBoard& board,
-                                      double time_s, const BoardView& view, double rest_speed_px_s) {
+                                      const CircleBoard& board, double time_s, const BoardView& view,
+                                      double rest_speed_px_s) {
   std::vector<QPolygonF> outlines;
   if (camera >= state.cameras.size()) return outlines;
   const CameraState& own = state.cameras[camera];
+  if (!own.lens.seen_with) return outlines;
   const double imu_time_s = referenceTime_s(own, time_s);
   if (state.world_from_imu_rotation.segmentCount() < 1 || !state.world_from_imu_rotation.contains(imu_time_s))
     return outlines;
   const RigidTransform camera_from_world =
       cameraFromWorld(state.world_from_imu_rotation, state.imu_in_world_m, own.reference_from_camera,
                       timeOffsetAt_s(own, time_s), time_s);
-  const std::map<int, Eigen::Vector2d> leads = idealLeads(own, intrinsics, view, rest_speed_px_s);
+  const std::map<int, Eigen::Vector2d> leads = idealLeads(own, *own.lens.seen_with, view, rest_speed_px_s);
   for (int circle = 0; circle < board.circleCount(); ++circle) {
-    const auto outline = imageOf(circle, camera_from_world, own.intrinsics.value_or(intrinsics), board);
+    const auto outline = imageOf(circle, camera_from_world, *own.lens.inUse(), board);
     const auto lead = leads.find(circle);
     if (outline)
-      outlines.push_back(lead == leads.end() ? *outline : moved(*outline, lead->second, intrinsics));
+      outlines.push_back(lead == leads.end() ? *outline : moved(*outline, lead->second, *own.lens.seen_with));
   }
   return outlines;
 }

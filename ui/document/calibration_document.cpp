@@ -126,24 +126,15 @@ void CalibrationDocument::set(const Session& session) {
   emit sessionChanged();
 }
 
-// The record's session knows the intrinsics that the run found first, so that screens can use them:
-// detections are in their ideal pixels.
 void CalibrationDocument::addRun(RunRecord record) {
-  const auto& found = record.run->intrinsics;
-  for (std::size_t k = 0; k < std::min(found.size(), record.session.cameras.size()); ++k)
-    if (found[k]) record.session.cameras[k].intrinsics = found[k]->intrinsics;
   previous_ = std::exchange(last_, std::move(record));
   emit runsChanged();
 }
 
 bool CalibrationDocument::runIsOutdated() const {
   if (!last_.run) return false;
-  Session before = last_.session;
-  const auto& found = last_.run->intrinsics;
-  for (std::size_t k = 0; k < std::min(found.size(), before.cameras.size()); ++k)
-    if (found[k]) before.cameras[k].intrinsics.reset();
   const std::filesystem::path folder = "/";
-  return sessionYaml(before, folder) != sessionYaml(session_, folder);
+  return sessionYaml(last_.session, folder) != sessionYaml(session_, folder);
 }
 
 std::vector<SessionProblem> sessionProblems(const Session& session) {

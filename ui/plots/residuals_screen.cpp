@@ -171,9 +171,8 @@ void ResidualsScreen::makeWindows() {
   });
 }
 
-void ResidualsScreen::setRun(std::shared_ptr<const CalibrationRun> run, const Session& session) {
+void ResidualsScreen::setRun(std::shared_ptr<const CalibrationRun> run) {
   run_ = std::move(run);
-  session_ = session;
   statistics_.reset();
   camera_->clear();
   if (run_) {
@@ -194,10 +193,10 @@ int ResidualsScreen::camera() const {
 void ResidualsScreen::compute() {
   if (!run_ || camera_->count() == 0) return job_->discard();
   const int wanted = camera();
-  const auto intrinsics = session_.cameras[static_cast<std::size_t>(wanted)].intrinsics;
-  job_->start([this, run = run_, wanted, intrinsics](const std::stop_token&) {
+  const auto seen_with = run_->pass.lenses.at(static_cast<std::size_t>(wanted)).seen_with;
+  job_->start([this, run = run_, wanted, seen_with](const std::stop_token&) {
     const auto statistics = std::make_shared<const ResidualStatistics>(
-        residualStatistics(run->result.circle_residuals, wanted, intrinsics));
+        residualStatistics(run->result.circle_residuals, wanted, seen_with));
     return [this, statistics] {
       statistics_ = statistics;
       draw();

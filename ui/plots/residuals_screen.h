@@ -33,7 +33,7 @@ class ResidualsScreen : public QWidget {
   ~ResidualsScreen() override;
 
   // Null: empty again. What is drawn is computed in a thread and appears when it is ready.
-  void setRun(std::shared_ptr<const CalibrationRun> run, const Session& session);
+  void setRun(std::shared_ptr<const CalibrationRun> run);
 
   int camera() const;                        // whose residuals are shown
   std::vector<int> rejectedWindows() const;  // views of that camera above the threshold, ascending
@@ -65,7 +65,6 @@ class ResidualsScreen : public QWidget {
   void selectNearest(double x_px, double y_px);
 
   std::shared_ptr<const CalibrationRun> run_;
-  Session session_;
   std::shared_ptr<const ResidualStatistics> statistics_;
   LatestJob* job_;
   QTimer* mark_soon_;

@@ -209,11 +209,11 @@ void SignalsScreen::compute() {
       drawing->begin_s = prediction.time_s.front();
       drawing->end_s = prediction.time_s.back();
     }
-    const SessionCamera& known = session.cameras[camera];
-    if (known.intrinsics) {
-      drawing->rates = rotationRates({known.name, known.intrinsics, run->pass.cameras[camera]}, session.board,
-                                     state.cameras[camera], samples, state.imus[imu], run->pass.start_ns,
-                                     session.options.initialisation, context);
+    const CameraLens& lens = run->pass.lenses.at(camera);
+    if (lens.seen_with) {
+      drawing->rates = rotationRates({session.cameras[camera].name, lens, run->pass.cameras[camera]},
+                                     session.board, state.cameras[camera], samples, state.imus[imu],
+                                     run->pass.start_ns, session.options.initialisation, context);
     }
     return [this, drawing] { draw(*drawing); };
   });

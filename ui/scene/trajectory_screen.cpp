@@ -199,15 +199,16 @@ void TrajectoryScreen::setRun(std::shared_ptr<const CalibrationRun> run, const S
     return;
   }
   d_->setBoard(session.board);
+  const std::vector<CameraLens>& lenses = run->pass.lenses;
   std::vector<std::optional<CameraIntrinsics>> intrinsics;
-  for (const SessionCamera& camera : session.cameras) intrinsics.push_back(camera.intrinsics);
+  for (const CameraState& camera : run->result.state.cameras) intrinsics.push_back(camera.lens.inUse());
   setIntrinsics(intrinsics);
   d_->placed = false;
   d_->pose_inputs.clear();
   d_->sample(std::shared_ptr<const CalibrationState>(run, &run->result.state), run);
-  for (std::size_t k = 0; k < std::min(intrinsics.size(), run->pass.cameras.size()); ++k) {
-    if (!intrinsics[k]) continue;
-    setDetections(std::shared_ptr<const BoardObservations>(run, &run->pass.cameras[k]), *intrinsics[k], k);
+  for (std::size_t k = 0; k < lenses.size(); ++k) {
+    if (!lenses[k].seen_with) continue;
+    setDetections({run, &run->pass.cameras[k]}, *lenses[k].seen_with, k);
   }
 }
 

@@ -27,7 +27,7 @@ ViewPoses estimateViewPoses(const ViewPoseInput& input, const ViewPoses& before,
   if (continues(input, before)) result = before;
   result.of = input;
   const std::vector<BoardView>& views = input.observations->views;
-  CameraData some{input.observations->camera, input.intrinsics, {}};
+  CameraData some{input.observations->camera, givenLens(input.intrinsics), {}};
   while (result.views_done < views.size() && !stop.stop_requested()) {
     const std::size_t end = std::min(result.views_done + kViewsAtOnce, views.size());
     some.observations.views.assign(views.begin() + static_cast<std::ptrdiff_t>(result.views_done),

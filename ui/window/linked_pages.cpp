@@ -13,14 +13,19 @@
 namespace evical::ui {
 namespace {
 
+template <class Screen>
+void showRuns(Screen& screen, const CalibrationDocument& document) {
+  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen,
+                   [&screen, &document] { screen.setRun(document.last().run, document.last().session); });
+}
+
 void wireDetection(DetectionScreen& screen, Workbench& workbench) {
   CalibrationDocument& document = workbench.document;
   CalibrationJob& job = workbench.calibration;
   QObject::connect(&document, &CalibrationDocument::sessionChanged, &screen, [&screen, &document] {
     if (document.hasSession()) screen.setSession(document.session());
   });
-  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen,
-                   [&screen, &document] { screen.setResult(document.last().run); });
+  showRuns(screen, document);
   job.observeWith([&screen] { return screen.liveObserver(); });
   QObject::connect(&job, &CalibrationJob::detecting, &screen, [&screen] { screen.setLive(true); });
   QObject::connect(&job, &CalibrationJob::detectionDone, &screen, [&screen] { screen.setLive(false); });
@@ -83,6 +88,9 @@ void wireConvergence(ConvergenceScreen& screen, Workbench& workbench) {
 }
 
 void wireResiduals(ResidualsScreen& screen, Workbench& workbench) {
+  const CalibrationDocument& document = workbench.document;
+  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen,
+                   [&screen, &document] { screen.setRun(document.last().run); });
   QObject::connect(&screen, &ResidualsScreen::recalibrateWithout, &screen,
                    [&screen, &workbench](const std::vector<int>& views) {
                      const RunRecord& last = workbench.document.last();
@@ -91,12 +99,6 @@ void wireResiduals(ResidualsScreen& screen, Workbench& workbench) {
                      workbench.calibration.startAgain(
                          last.session, withoutViews(last.run->pass, camera, views), last.run->intrinsics);
                    });
-}
-
-template <class Screen>
-void showRuns(Screen& screen, const CalibrationDocument& document) {
-  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen,
-                   [&screen, &document] { screen.setRun(document.last().run, document.last().session); });
 }
 
 // One cursor: a time that is chosen on one screen is shown on the others.
@@ -113,7 +115,6 @@ void wireLinkedPages(const Pages& pages, Workbench& workbench) {
   wireConvergence(*pages.convergence, workbench);
   wireResiduals(*pages.residuals, workbench);
   showRuns(*pages.signal_curves, workbench.document);
-  showRuns(*pages.residuals, workbench.document);
   // While it ran, the detection screen may have followed it.
   QObject::connect(&workbench.calibration, &CalibrationJob::ended, pages.trajectory, [pages] {
     const double time_s = pages.detection->time_s();

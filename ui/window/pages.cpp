@@ -46,7 +46,7 @@ void wireRecording(RecordingScreen& screen, Workbench& workbench, SessionFiles& 
   QObject::connect(&document, &CalibrationDocument::runsChanged, &screen, [&screen, &document] {
     std::vector<std::optional<CameraIntrinsics>> found;
     if (const auto run = document.last().run)
-      for (std::size_t k = 0; k < run->pass.cameras.size(); ++k) found.push_back(foundIntrinsics(*run, k));
+      for (const CameraState& camera : run->result.state.cameras) found.push_back(camera.lens.found());
     screen.setFoundIntrinsics(found);
   });
   const InspectionJob& inspection = workbench.inspection;

@@ -16,9 +16,10 @@ void appendNames(const Quantity& quantity, Eigen::Index size, const CalibrationI
   const std::string sensor = info.owner == QuantityOwner::Camera ? input.cameras[quantity.sensor].name
                              : info.owner == QuantityOwner::Imu  ? input.imus[quantity.sensor].name
                                                                  : std::string(info.name);
-  const std::vector<QuantityPart> parts = info.shape == QuantityShape::Intrinsics
-                                              ? quantityParts(info, input.cameras[quantity.sensor].intrinsics)
-                                              : quantityParts(info);
+  const std::vector<QuantityPart> parts =
+      info.shape == QuantityShape::Intrinsics
+          ? quantityParts(info, input.cameras[quantity.sensor].lens.seen_with)
+          : quantityParts(info);
   for (std::size_t k = 0; k < static_cast<std::size_t>(size); ++k)
     names.push_back(fmt::format("{}.{} [{}]", sensor, parts.at(k).name, parts[k].unit));
 }

@@ -26,6 +26,7 @@ struct ReportData {
   CircleBoard board = {};
   std::int64_t start_ns = 0;
   std::span<const BoardObservations> cameras = {};
+  std::span<const CameraLens> lenses = {};  // what they were seen with
   std::span<const ImuData> imus = {};
   std::span<const Resolution> resolutions_px = {};
   std::span<const RecordingFault> faults = {};

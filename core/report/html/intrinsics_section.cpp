@@ -28,10 +28,10 @@ std::string parameterTable(const ReportData& data, std::size_t index) {
   const auto& cameras = data.named.result.state.cameras;
   const auto& stds = data.named.names.intrinsics_std;
   const bool solved =
-      index < cameras.size() && cameras[index].intrinsics && index < stds.size() && stds[index];
+      index < cameras.size() && cameras[index].lens.solved && index < stds.size() && stds[index];
   std::array<double, kIntrinsicsCount> values{}, solved_values{};
   writeIntrinsics(found.intrinsics, values.data());
-  if (solved) writeIntrinsics(*cameras[index].intrinsics, solved_values.data());
+  if (solved) writeIntrinsics(*cameras[index].lens.solved, solved_values.data());
   const IntrinsicsVector sigmas = found.standardDeviations();
   std::vector<std::vector<std::string>> rows;
   for (const std::string& name : parameterNames(found.intrinsics)) {

@@ -92,8 +92,8 @@ void addResiduals(const ReportData& data, std::size_t index,
 
 CameraMeasures measureCamera(const ReportData& data, std::size_t index) {
   CameraMeasures camera;
-  const auto& known = data.named.names.intrinsics;
-  const std::optional<CameraIntrinsics> intrinsics = index < known.size() ? known[index] : std::nullopt;
+  const std::optional<CameraIntrinsics> intrinsics =
+      index < data.lenses.size() ? data.lenses[index].seen_with : std::nullopt;
   if (index < data.resolutions_px.size()) camera.resolution_px = data.resolutions_px[index];
   if (!camera.resolution_px.known() && intrinsics) camera.resolution_px = intrinsics->resolution_px;
   camera.cells = makeCells(camera.resolution_px);

@@ -125,7 +125,7 @@ void writeCameraNumbers(const ReportData& data, std::size_t i, ReportPage& page)
       "small",
       fmt::format("Intrinsics {}: {}, {} x {} px, focal length {}, {} px, principal point {}, {} px, "
                   "distortion {}.",
-                  state.intrinsics                                    ? "as solved with everything else"
+                  state.lens.solved ? "as solved with everything else"
                   : elementOrNone(data.named.names.intrinsics_std, i) ? "as calibrated first"
                                                                       : "as given",
                   intrinsics->model == CameraModel::PinholeRadtan ? "pinhole, radial-tangential"

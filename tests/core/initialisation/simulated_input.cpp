@@ -165,7 +165,7 @@ SimulatedInput simulateInput(const SimulationOptions& options) {
   for (std::size_t k = 0; k < result.truth.cameras.size(); ++k) {
     CameraData camera;
     camera.name = camera.observations.camera = result.truth.cameras[k].name;
-    camera.intrinsics = result.truth.cameras[k].intrinsics;
+    camera.lens = givenLens(result.truth.cameras[k].intrinsics);
     const auto windows = static_cast<std::size_t>(options.duration_s / options.window_s);
     const std::vector<bool> missing = missingWindows(windows, options, random);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);

@@ -253,7 +253,7 @@ class TestInitialise : public QObject {
     row(
         "no camera", [](auto& input) { input.cameras.clear(); }, "there is no camera");
     row(
-        "no intrinsics", [](auto& input) { input.cameras[0].intrinsics.reset(); }, "has no intrinsics");
+        "no intrinsics", [](auto& input) { input.cameras[0].lens = {}; }, "has no intrinsics");
     row(
         "no IMU", [](auto& input) { input.imus.clear(); }, "neither an IMU nor a second camera");
     row(
@@ -273,7 +273,7 @@ class TestInitialise : public QObject {
     row(
         "wrong focal length and board",
         [](auto& input) {
-          input.cameras[0].intrinsics->distortion[0] = 0.0;
+          input.cameras[0].lens.seen_with->distortion[0] = 0.0;
           for (BoardView& view : input.cameras[0].observations.views)
             for (CircleObservation& circle : view.circles) circle.circle = 43 - circle.circle * 7 % 44;
         },

@@ -23,7 +23,7 @@ class TestRotationRates : public QObject {
     imu.gyroscope_mapping = simulated_.truth.imus[0].gyroscope_mapping;
     const SessionCamera& known = simulated_.session.cameras[0];
     const auto ratesWith = [&](const CameraState& state) {
-      return rotationRates({known.name, known.intrinsics, simulated_.pass.cameras[0]},
+      return rotationRates({known.name, simulated_.pass.lenses[0], simulated_.pass.cameras[0]},
                            simulated_.session.board, state, simulated_.pass.imus[0], imu,
                            simulated_.pass.start_ns, {}, {});
     };

@@ -137,12 +137,12 @@ CameraData observe(const TrueMotion& motion, const CameraState& camera, const Ci
                    const RigOptions& options, Random& random) {
   CameraData data;
   data.name = "left";
-  data.intrinsics =
-      CameraIntrinsics{CameraModel::PinholeRadtan, {346, 260}, {260.0, 260.0}, {173.0, 130.0}, {}};
+  data.lens =
+      givenLens(CameraIntrinsics{CameraModel::PinholeRadtan, {346, 260}, {260.0, 260.0}, {173.0, 130.0}, {}});
   const auto centre = [&](double camera_time_s, int circle) {
     const RigidTransform world_from_camera =
         motion.worldFromImu(referenceTime_s(camera, camera_time_s)) * camera.reference_from_camera;
-    return projectedCircleCentre(*data.intrinsics, inverse(world_from_camera), board.centre_m(circle),
+    return projectedCircleCentre(*data.lens.seen_with, inverse(world_from_camera), board.centre_m(circle),
                                  board.radius_m);
   };
   std::vector<Eigen::Vector2d> noise(static_cast<std::size_t>(board.circleCount()), Eigen::Vector2d::Zero());
@@ -265,9 +265,8 @@ SimulatedRig simulateRig(const RigOptions& options) {
 void seeThrough(const CameraIntrinsics& truth, const CameraIntrinsics& lens, SimulatedRig& rig) {
   CameraData& camera = rig.input.cameras.front();
   seeThrough(truth, lens, camera.observations);
-  camera.intrinsics = lens;
-  camera.intrinsics_found_first = true;
-  rig.truth.cameras.front().intrinsics = truth;
+  camera.lens = {std::nullopt, lens};  // found first
+  rig.truth.cameras.front().lens.solved = truth;
 }
 
 CalibrationState disturbed(const CalibrationState& truth, unsigned seed, double time_offset_error_s) {
@@ -326,8 +325,8 @@ Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const Calibrati
     appendClock(estimate.cameras[i], truth.cameras[i]);
     errors.push_back(estimate.cameras[i].edge_lead_px - truth.cameras[i].edge_lead_px);
     errors.push_back(estimate.cameras[i].edge_lead_growth_px - truth.cameras[i].edge_lead_growth_px);
-    if (!estimate.cameras[i].intrinsics) continue;
-    const CameraIntrinsics &a = *estimate.cameras[i].intrinsics, &b = truth.cameras[i].intrinsics.value();
+    if (!estimate.cameras[i].lens.solved) continue;
+    const CameraIntrinsics &a = *estimate.cameras[i].lens.solved, &b = truth.cameras[i].lens.solved.value();
     append(a.focal_length_px - b.focal_length_px);
     append(a.principal_point_px - b.principal_point_px);
     for (std::size_t k = 0; k < static_cast<std::size_t>(distortionCount(b)); ++k)

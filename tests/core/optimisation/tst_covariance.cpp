@@ -65,7 +65,7 @@ test::SimulatedRig scenarioRig() {
   test::SimulatedRig rig;
   rig.input.start_ns = scenario.start_ns;
   rig.input.board = scenario.board;
-  rig.input.cameras = {{"left", camera.intrinsics, simulateObservations(scenario, 0, 0.05, 0.02)}};
+  rig.input.cameras = {{"left", givenLens(camera.intrinsics), simulateObservations(scenario, 0, 0.05, 0.02)}};
   rig.input.imus = {{"imu", {}, simulateImu(scenario, 0)}};
   const double begin_s = rig.input.cameras[0].observations.views.front().time_s - 0.02;
   const double end_s = rig.input.cameras[0].observations.views.back().time_s + 0.03;

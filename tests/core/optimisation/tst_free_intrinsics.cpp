@@ -42,7 +42,7 @@ test::SimulatedRig rigOf(CameraModel model, const test::RigOptions& options) {
 
 BatchSolution solve(const test::SimulatedRig& rig, unsigned seed, const OptimisationOptions& options = {}) {
   CalibrationState start = test::disturbed(rig.truth, seed);
-  start.cameras[0].intrinsics.reset();
+  start.cameras[0].lens.solved.reset();
   return optimiseBatch(rig.input, start, options, RunContext{});
 }
 
@@ -67,22 +67,22 @@ class TestFreeIntrinsics : public QObject {
     options.centre_sigma_px = 0.0;
     options.imu_noise = 0.0;
     const test::SimulatedRig rig = rigOf(static_cast<CameraModel>(model), options);
-    const CameraIntrinsics& truth = *rig.truth.cameras[0].intrinsics;
-    QVERIFY(projectionDifference(truth, *rig.input.cameras[0].intrinsics).rms_px > 0.1);
+    const CameraIntrinsics& truth = *rig.truth.cameras[0].lens.solved;
+    QVERIFY(projectionDifference(truth, *rig.input.cameras[0].lens.seen_with).rms_px > 0.1);
     const BatchSolution solution = solve(rig, 1);
     QVERIFY(solution.converged);
     const CameraState &camera = solution.state.cameras[0], &true_camera = rig.truth.cameras[0];
-    const double difference_px = projectionDifference(truth, camera.intrinsics.value()).rms_px;
+    const double difference_px = projectionDifference(truth, camera.lens.solved.value()).rms_px;
     QVERIFY2(difference_px < 2e-3, qPrintable(text(difference_px)));
-    QVERIFY2((camera.intrinsics->focal_length_px - truth.focal_length_px).norm() < 0.02,
-             qPrintable(text((camera.intrinsics->focal_length_px - truth.focal_length_px).norm())));
+    QVERIFY2((camera.lens.solved->focal_length_px - truth.focal_length_px).norm() < 0.02,
+             qPrintable(text((camera.lens.solved->focal_length_px - truth.focal_length_px).norm())));
     QVERIFY(rotationAngleBetween_rad(camera.reference_from_camera.rotation,
                                      true_camera.reference_from_camera.rotation) < 5e-5);
     QVERIFY((camera.reference_from_camera.translation_m - true_camera.reference_from_camera.translation_m)
                 .norm() < 3e-4);
     QVERIFY(std::abs(camera.time_offset_s - true_camera.time_offset_s) < 2e-6);
     QVERIFY(solution.cameras[0].reprojection_rms_px < 2e-3);
-    QCOMPARE(camera.intrinsics->distortion[4], 0.0);
+    QCOMPARE(camera.lens.solved->distortion[4], 0.0);
   }
 
   // 36 quantities over 12 seeds: 7 of the extrinsics, 8 of the intrinsics.
@@ -133,9 +133,9 @@ class TestFreeIntrinsics : public QObject {
     test::SimulatedRig rig = test::simulateRig(test::shortRecording());
     test::seeThrough(truth, truth, rig);
     const UncertaintyReport free = estimateUncertainty(rig.input, solve(rig, 1), {}, RunContext{}).report;
-    rig.input.cameras[0].intrinsics_found_first = false;
+    rig.input.cameras[0].lens.given = rig.input.cameras[0].lens.seen_with;
     const BatchSolution fixed = solve(rig, 1);
-    QVERIFY(!fixed.state.cameras[0].intrinsics);
+    QVERIFY(!fixed.state.cameras[0].lens.solved);
     const UncertaintyReport held = estimateUncertainty(rig.input, fixed, {}, RunContext{}).report;
     QVERIFY(!held.cameras[0].intrinsics_std);
     QCOMPARE(held.names.size() + 8, free.names.size());
@@ -148,25 +148,25 @@ class TestFreeIntrinsics : public QObject {
     const test::SimulatedRig rig = rigOf(CameraModel::PinholeRadtan, test::shortRecording());
     OptimisationOptions options;
     options.camera_intrinsics = CameraIntrinsicsChoice::Fixed;
-    QVERIFY(!solve(rig, 1, options).state.cameras[0].intrinsics);
+    QVERIFY(!solve(rig, 1, options).state.cameras[0].lens.solved);
   }
 
   void givenIntrinsics_areSolvedForWhereAsked_withinTheirPrior() {
     test::SimulatedRig rig = rigOf(CameraModel::PinholeRadtan, test::shortRecording());
-    rig.input.cameras[0].intrinsics_found_first = false;
+    rig.input.cameras[0].lens.given = rig.input.cameras[0].lens.seen_with;
     OptimisationOptions options;
     options.camera_intrinsics = CameraIntrinsicsChoice::Free;
-    const CameraIntrinsics &given = *rig.input.cameras[0].intrinsics,
-                           &truth = *rig.truth.cameras[0].intrinsics;
+    const CameraIntrinsics &given = *rig.input.cameras[0].lens.seen_with,
+                           &truth = *rig.truth.cameras[0].lens.solved;
     const double before_px = projectionDifference(truth, given).rms_px;
     const double after_px =
-        projectionDifference(truth, solve(rig, 1, options).state.cameras[0].intrinsics.value()).rms_px;
+        projectionDifference(truth, solve(rig, 1, options).state.cameras[0].lens.solved.value()).rms_px;
     QVERIFY2(after_px < 0.2 * before_px, qPrintable(text(after_px / before_px)));
     options.camera_focal_length_sigma = 1e-6;
     options.camera_principal_point_sigma_px = 1e-4;
     options.camera_distortion_sigma = 1e-6;
     const double held_px =
-        projectionDifference(given, solve(rig, 1, options).state.cameras[0].intrinsics.value()).rms_px;
+        projectionDifference(given, solve(rig, 1, options).state.cameras[0].lens.solved.value()).rms_px;
     QVERIFY2(held_px < 0.01, qPrintable(text(held_px)));
   }
 
@@ -177,23 +177,23 @@ class TestFreeIntrinsics : public QObject {
     seen.distortion[4] = 0.01;
     test::seeThrough(truth, seen, rig);
     const BatchSolution solution = solve(rig, 1);
-    QVERIFY(solution.state.cameras[0].intrinsics->distortion[4] != 0.01);
+    QVERIFY(solution.state.cameras[0].lens.solved->distortion[4] != 0.01);
     const UncertaintyReport report = estimateUncertainty(rig.input, solution, {}, RunContext{}).report;
     QCOMPARE(QString::fromStdString(report.names[17]), QString("left.distortion.k3 [1]"));
-    QVERIFY(projectionDifference(truth, *solution.state.cameras[0].intrinsics).rms_px < 0.05);
+    QVERIFY(projectionDifference(truth, *solution.state.cameras[0].lens.solved).rms_px < 0.05);
   }
 
   void lastStage_releasesThem_whicheverItIs() {
     const test::SimulatedRig rig = rigOf(CameraModel::PinholeRadtan, test::shortRecording());
-    const CameraIntrinsics& seen = *rig.input.cameras[0].intrinsics;
+    const CameraIntrinsics& seen = *rig.input.cameras[0].lens.seen_with;
     OptimisationOptions options;
     options.free_imu_intrinsics = false;
     const BatchSolution without = solve(rig, 1, options);
-    QVERIFY(projectionDifference(seen, without.state.cameras[0].intrinsics.value()).rms_px > 0.1);
+    QVERIFY(projectionDifference(seen, without.state.cameras[0].lens.solved.value()).rms_px > 0.1);
     QVERIFY(without.state.imus[0].gyroscope_mapping == Eigen::Matrix3d::Identity());
     const BatchSolution solution = solve(rig, 1);
     for (const IterationRecord& iteration : solution.iterations)
-      if (iteration.stage == 1) QVERIFY(*iteration.cameras[0].intrinsics == seen);
+      if (iteration.stage == 1) QVERIFY(*iteration.cameras[0].lens.solved == seen);
   }
 };
 

@@ -22,8 +22,7 @@ class TestCrossValidation : public QObject {
     CalibrationInput all;
     all.start_ns = run_.pass.start_ns;
     all.board = simulated_.session.board;
-    all.cameras = {
-        {simulated_.session.cameras[0].name, simulated_.session.cameras[0].intrinsics, run_.pass.cameras[0]}};
+    all.cameras = {{simulated_.session.cameras[0].name, run_.pass.lenses[0], run_.pass.cameras[0]}};
     all.imus = run_.pass.imus;
     return all;
   }

@@ -57,18 +57,19 @@ class TestJointIntrinsics : public QObject {
     found_.principal_point_px += Eigen::Vector2d(-0.5, 0.6);
     found_.distortion[0] += 4e-3;
     seeThrough(truth_, found_, simulated_.pass.cameras[0]);
-    simulated_.session.cameras[0].intrinsics = found_;
+    simulated_.session.cameras[0].intrinsics.reset();
+    simulated_.pass.lenses = {{std::nullopt, found_}};
     run_ = calibrate(simulated_.session, simulated_.pass, {}, {foundFirst()});
   }
 
   void run_solvesForThem_andKeepsWhatWasFoundFirst() {
-    const CameraIntrinsics solved = run_.result.state.cameras[0].intrinsics.value();
+    const CameraIntrinsics solved = run_.result.state.cameras[0].lens.solved.value();
     QVERIFY(run_.intrinsics[0]->intrinsics == found_);
     QCOMPARE(QString::fromStdString(run_.intrinsics[0]->reason), QString(kDoubt));
     // But what was doubtful then is known well now.
     QVERIFY2(run_.result.reason.find("intrinsics") == std::string::npos, run_.result.reason.c_str());
     QVERIFY(!holds(run_.result.notes, "projection known to 3.000 px"));
-    QVERIFY(foundIntrinsics(run_, 0) == solved);
+    QVERIFY(run_.result.state.cameras[0].lens == (CameraLens{std::nullopt, found_, solved}));
     const double before_px = projectionDifference(truth_, found_).rms_px;
     const double after_px = projectionDifference(truth_, solved).rms_px;
     QVERIFY2(after_px < 0.02 && after_px < 0.2 * before_px, qPrintable(QString::number(after_px)));
@@ -108,7 +109,7 @@ class TestJointIntrinsics : public QObject {
 
   void files_holdThemAsSolved() {
     const NamedResult named = namedResult(simulated_.session, run_, "test");
-    QVERIFY(named.names.intrinsics[0] == run_.result.state.cameras[0].intrinsics);
+    QVERIFY(named.names.intrinsics[0] == run_.result.state.cameras[0].lens.solved);
     QVERIFY(named.names.intrinsics_std[0] == run_.result.uncertainty.cameras[0].intrinsics_std);
     QTemporaryDir folder;
     writeResultFiles(folder.path().toStdString(), simulated_.session, run_, "test", "log");
@@ -131,9 +132,9 @@ class TestJointIntrinsics : public QObject {
     session.options.optimisation.camera_intrinsics = CameraIntrinsicsChoice::Fixed;
     session.options.report.cross_validation = false;
     const CalibrationRun run = calibrate(session, simulated_.pass, {}, {foundFirst()});
-    QVERIFY(!run.result.state.cameras[0].intrinsics);
+    QVERIFY(!run.result.state.cameras[0].lens.solved);
     QVERIFY(run.result.reason.find(kDoubt) != std::string::npos);
-    QVERIFY(foundIntrinsics(run, 0) == found_);
+    QVERIFY(run.result.state.cameras[0].lens.found() == found_);
     const NamedResult named = namedResult(session, run, "test");
     QVERIFY(named.names.intrinsics[0] == found_);
     QVERIFY(std::abs((*named.names.intrinsics_std[0])[0] - 0.05) < 1e-12);
@@ -143,8 +144,12 @@ class TestJointIntrinsics : public QObject {
   void givenIntrinsics_stayAsTheyAre() {
     Session session = simulated_.session;
     session.options.report.cross_validation = false;
-    const CalibrationRun run = calibrate(session, simulated_.pass, {});
-    QVERIFY(!run.result.state.cameras[0].intrinsics && !foundIntrinsics(run, 0));
+    session.cameras[0].intrinsics = found_;
+    RecordingPass pass = simulated_.pass;
+    pass.lenses = givenLenses(session);
+    const CalibrationRun run = calibrate(session, pass, {});
+    QVERIFY(run.result.state.cameras[0].lens.given == found_);
+    QVERIFY(!run.result.state.cameras[0].lens.solved && !run.result.state.cameras[0].lens.found());
     QVERIFY(!namedResult(session, run, "test").names.intrinsics_std[0]);
   }
 };

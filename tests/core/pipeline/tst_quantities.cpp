@@ -105,7 +105,7 @@ NamedResult filledResult() {
     filler.fill(row.value(state.imus[1]));
     fillSigma(filler, row.sigma(uncertainty.imus[1]));
   });
-  named.names.intrinsics = {state.cameras[0].intrinsics};
+  named.names.intrinsics = {state.cameras[0].lens.inUse()};
   named.names.intrinsics_std = {uncertainty.cameras[0].intrinsics_std};
   return named;
 }

@@ -195,6 +195,7 @@ class TestResultFiles : public QObject {
     CalibrationRun run = run_;
     IntrinsicsResult& found = run.intrinsics.emplace_back().emplace();
     found.intrinsics = *simulated_.session.cameras[0].intrinsics;
+    run.result.state.cameras[0].lens.given.reset();
     found.covariance.diagonal().head<8>().setConstant(0.0025);
     found.status = CalibrationStatus::Doubtful;
     found.reason = "no views reach the <left> side";

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A short recording with what the front end says of its windows, for tests of the detection screen.
+#pragma once
+
+#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/recording_pass.h"
+#include "core/pipeline/simulation.h"
+#include "core/synthetic/scenario_yaml.h"
+#include "tests/ui/slowdown.h"
+#include "ui/detection/detection_screen.h"
+#include "ui/detection/event_view.h"
+#include "ui/detection/timeline.h"
+
+#include <QImage>
+#include <QTemporaryDir>
+#include <QTest>
+
+#include <cmath>
+#include <memory>
+
+namespace evical::ui::test {
+
+// Two seconds of the everyday recording, and what the front end says about them.
+struct Recorded {
+  QTemporaryDir folder;
+  Session session;
+  RecordingPass pass;
+
+  Recorded() {
+    Scenario scenario = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/davis346.yaml");
+    scenario.duration_s = 2.0;
+    const SimulationSummary files = simulate(scenario, folder.path().toStdString(), {});
+    session = readSession(files.session);
+    pass = readAndDetect(session, {});
+  }
+  // A window in the middle, with all of its circles.
+  WindowReport goodWindow() const {
+    for (const WindowReport& window : pass.cameras.front().windows) {
+      if (window.time_s > 0.8 && window.outcome == WindowOutcome::Complete) return window;
+    }
+    return pass.cameras.front().windows.at(pass.cameras.front().windows.size() / 2);
+  }
+  std::shared_ptr<const BoardObservations> observations() const {
+    return std::make_shared<BoardObservations>(pass.cameras.front());
+  }
+  // That saw these windows, with nothing estimated from them.
+  std::shared_ptr<CalibrationRun> run() const {
+    auto run = std::make_shared<CalibrationRun>();
+    run->pass = pass;
+    return run;
+  }
+};
+
+// The screen as it is once the recording has been read and the window at the cursor analysed.
+inline void settle(DetectionScreen& screen) {
+  QTRY_VERIFY_WITH_TIMEOUT(screen.timeline().end_s() > 1.9, 20000 * kSlowdown);
+  QTRY_VERIFY_WITH_TIMEOUT(screen.analysis() && !screen.analysis()->searches.empty() &&
+                               std::abs(screen.analysis()->time_s - screen.time_s()) < 1e-9 &&
+                               screen.view().frame() &&
+                               std::abs(screen.view().frame()->time_s - screen.time_s()) < 1e-9,
+                           20000 * kSlowdown);
+}
+
+inline int pixelsOf(const QImage& image, const QColor& colour) {
+  int count = 0;
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) count += image.pixelColor(x, y) == colour;
+  }
+  return count;
+}
+
+}  // namespace evical::ui::test
