@@ -37,9 +37,9 @@ void tellEnd(const SessionArguments& arguments, const Session& session, const Ca
     tellFailure(arguments, session, "cancelled", console, outcome.pass);
 }
 
-void tellResult(const SessionArguments& arguments, const Session& session, const CalibrationRun& run,
-                Console& console) {
-  const NamedResult named = namedResult(session, run, kVersion);
+void tellResult(const SessionArguments& arguments, const Session& session,
+                const std::shared_ptr<const CalibrationRun>& run, Console& console) {
+  const NamedResult named = namedResult(session, resultOf(run), kVersion);
   const ExportRemarks remarks = writeResultFiles(arguments.output, session, run, kVersion, console.logText());
   console.stageStarted("done");
   fmt::print("{}", resultTable(named));
@@ -56,7 +56,7 @@ int run(const SessionArguments& arguments) {
   const RunContext context{console, stopOnSignals()};
   CalibrationOutcome outcome = runCalibration(session, context);
   if (outcome.status != RunStatus::Done) tellEnd(arguments, session, outcome, console, folder);
-  const CalibrationRun run = std::move(outcome).runOrThrow();
+  const auto run = std::make_shared<const CalibrationRun>(std::move(outcome).runOrThrow());
   tellResult(arguments, session, run, console);
   return kDone;
 }

@@ -26,8 +26,8 @@ struct CameraUncertainty {
   double time_offset_std_s = 0.0;
   double edge_lead_std_px = 0.0;
   double edge_lead_growth_std_px = 0.0;
-  // Where intrinsics are solved for, in the order of IntrinsicsJacobian (camera_model.h); 0 where one is
-  // held.
+  // Of the lens in use where this recording told it, in the order of IntrinsicsJacobian (camera_model.h); 0
+  // where a coefficient is held.
   std::optional<std::array<double, 9>> intrinsics_std = {};
   double time_offset_drift_std_ppm = 0.0;
 };

@@ -21,6 +21,8 @@ struct ImuNoise {
   double accelerometer_density = 1.86e-3;  // m/s^2/sqrt(Hz)
   double gyroscope_random_walk = 0.0;      // of the bias, rad/s^2/sqrt(Hz); 0: not known
   double accelerometer_random_walk = 0.0;  // m/s^3/sqrt(Hz)
+
+  bool operator==(const ImuNoise&) const = default;
 };
 
 struct ImuData {

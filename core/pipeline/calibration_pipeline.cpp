@@ -152,6 +152,12 @@ std::vector<CameraLens> findLenses(const Session& session, const RunContext& con
   return lenses;
 }
 
+// Of a lens that the batch did not solve for again.
+void keepSigmas(const IntrinsicsResult& found, CameraUncertainty& uncertainty) {
+  const IntrinsicsVector sigmas = found.standardDeviations();
+  std::copy(sigmas.begin(), sigmas.end(), uncertainty.intrinsics_std.emplace().begin());
+}
+
 void tellIntrinsics(const Session& session, CalibrationRun& run) {
   std::vector<std::string> notes;
   std::string doubt;
@@ -166,6 +172,7 @@ void tellIntrinsics(const Session& session, CalibrationRun& run) {
       notes.push_back(fmt::format("{}: calibrated from {} views in {:.1f} s, projection known to {:.3f} px",
                                   name, found.views_used, found.elapsed_s, found.image.rms_px));
       for (const std::string& advice : found.advice) notes.push_back(fmt::format("{}: {}", name, advice));
+      if (!lens.solved) keepSigmas(found, run.result.uncertainty.cameras[k]);
       if (found.status != CalibrationStatus::Ok && doubt.empty())
         doubt = fmt::format("{}: {}", name, found.reason);
     }

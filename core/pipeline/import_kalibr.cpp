@@ -39,9 +39,9 @@ void readImu(const YamlNode& map, const std::string& key, ImportedSession& impor
   imu.noise.accelerometer_density = map["accelerometer_noise_density"].real(1e-7, 10.0, "m/s^2/sqrt(Hz)");
   imu.noise.gyroscope_density = map["gyroscope_noise_density"].real(1e-8, 10.0, "rad/s/sqrt(Hz)");
   if (const auto walk = map.find("accelerometer_random_walk"))
-    imu.accelerometer_random_walk = walk->real(0.0, 10.0, "m/s^3/sqrt(Hz)");
+    imu.noise.accelerometer_random_walk = walk->real(0.0, 10.0, "m/s^3/sqrt(Hz)");
   if (const auto walk = map.find("gyroscope_random_walk"))
-    imu.gyroscope_random_walk = walk->real(0.0, 10.0, "rad/s^2/sqrt(Hz)");
+    imu.noise.gyroscope_random_walk = walk->real(0.0, 10.0, "rad/s^2/sqrt(Hz)");
   const auto model = map.find("model");
   if (model && model->text() != "calibrated")
     imported.notes.push_back(fmt::format(

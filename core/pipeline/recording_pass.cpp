@@ -252,8 +252,6 @@ class ReadingPass {
   void finishImu(const SessionImu& session, ImuData& imu) {
     imu.name = session.name;
     imu.noise = session.noise;
-    imu.noise.gyroscope_random_walk = session.gyroscope_random_walk;
-    imu.noise.accelerometer_random_walk = session.accelerometer_random_walk;
     const auto earlier = [](const ImuSample& a, const ImuSample& b) { return a.time_ns < b.time_ns; };
     if (!std::is_sorted(imu.samples.begin(), imu.samples.end(), earlier)) {
       result_.faults.push_back(

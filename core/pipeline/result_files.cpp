@@ -57,47 +57,29 @@ ExportRemarks addExports(const NamedResult& named, const Session& session, std::
 
 }  // namespace
 
-NamedResult namedResult(const Session& session, const CalibrationResult& result, const std::string& version) {
+NamedResult namedResult(const Session& session, std::shared_ptr<const CalibrationResult> result,
+                        const std::string& version) {
   NamedResult named;
-  named.result = result;
-  named.names.reference = session.reference;
-  for (const SessionCamera& camera : session.cameras) {
-    named.names.cameras.push_back(camera.name);
-    named.names.intrinsics.push_back(camera.intrinsics);
-    named.names.camera_streams.push_back(camera.stream);
-  }
-  named.names.intrinsics_std.resize(session.cameras.size());
-  for (std::size_t k = 0; k < result.state.cameras.size(); ++k) {
-    named.names.intrinsics[k] = result.state.cameras[k].lens.inUse();
-    if (result.state.cameras[k].lens.solved && k < result.uncertainty.cameras.size())
-      named.names.intrinsics_std[k] = result.uncertainty.cameras[k].intrinsics_std;
-  }
-  for (const SessionImu& imu : session.imus) {
-    named.names.imus.push_back(imu.name);
-    named.names.known_of_imus.push_back(
-        {imu.stream, imu.noise, imu.gyroscope_random_walk, imu.accelerometer_random_walk, 0.0});
-  }
-  named.names.version = version;
-  named.names.options = differingOptions(session.options);
+  named.reference = session.reference;
+  for (const SessionCamera& camera : session.cameras) named.cameras.push_back({camera.name, camera.stream});
+  for (const SessionImu& imu : session.imus) named.imus.push_back({imu.name, imu.stream, imu.noise});
+  named.version = version;
+  named.options = differingOptions(session.options);
+  named.result = std::move(result);
   return named;
 }
 
-NamedResult namedResult(const Session& session, const CalibrationRun& run, const std::string& version) {
-  NamedResult named = namedResult(session, run.result, version);
-  for (std::size_t k = 0; k < run.intrinsics.size(); ++k) {
-    if (!run.intrinsics[k] || named.names.intrinsics_std[k]) continue;
-    const IntrinsicsVector sigmas = run.intrinsics[k]->standardDeviations();
-    std::copy(sigmas.begin(), sigmas.end(), named.names.intrinsics_std[k].emplace().begin());
-  }
-  return named;
+std::shared_ptr<const CalibrationResult> resultOf(const std::shared_ptr<const CalibrationRun>& run) {
+  return {run, &run->result};
 }
 
 ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Session& session,
-                               const CalibrationRun& run, const std::string& version,
-                               const std::string& log) {
-  NamedResult named = namedResult(session, run, version);
-  for (std::size_t i = 0; i < named.names.known_of_imus.size() && i < run.pass.imus.size(); ++i)
-    named.names.known_of_imus[i].rate_hz = run.pass.imus[i].rate_hz();
+                               const std::shared_ptr<const CalibrationRun>& shared_run,
+                               const std::string& version, const std::string& log) {
+  const CalibrationRun& run = *shared_run;
+  NamedResult named = namedResult(session, resultOf(shared_run), version);
+  for (std::size_t i = 0; i < named.imus.size() && i < run.pass.imus.size(); ++i)
+    named.imus[i].rate_hz = run.pass.imus[i].rate_hz();
   std::vector<FileContent> files = {{"result.yaml", resultYaml(named)},
                                     {"trajectory.csv", trajectoryCsv(run.result.state)},
                                     {"detections.csv", detectionsCsv(run.pass.cameras)},
@@ -124,12 +106,12 @@ void writeDetectionFiles(const std::filesystem::path& folder, const RecordingPas
 
 void writeFailure(const std::filesystem::path& folder, const Session& session, const std::string& reason,
                   const std::string& version, const std::string& log, const RecordingPass& pass) {
-  CalibrationResult failed;
-  failed.status = CalibrationStatus::Failed;
-  failed.reason = reason;
-  if (!pass.cameras.empty() || !pass.imus.empty()) failed.start_ns = pass.start_ns;
-  failed.timing.read_s = pass.read_s;
-  failed.timing.detect_s = pass.detect_s;
+  const auto failed = std::make_shared<CalibrationResult>();
+  failed->status = CalibrationStatus::Failed;
+  failed->reason = reason;
+  if (!pass.cameras.empty() || !pass.imus.empty()) failed->start_ns = pass.start_ns;
+  failed->timing.read_s = pass.read_s;
+  failed->timing.detect_s = pass.detect_s;
   const NamedResult named = namedResult(session, failed, version);
   std::vector<FileContent> files = {{"result.yaml", resultYaml(named)}, {"log.txt", log}};
   addReport(session, named, pass, files);

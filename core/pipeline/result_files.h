@@ -5,16 +5,18 @@
 #include "core/report/result_yaml.h"
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace evical {
 
-// With intrinsics as solved, or as the session has them.
-NamedResult namedResult(const Session& session, const CalibrationResult& result, const std::string& version);
+// What `session` gives, with the session's names.
+NamedResult namedResult(const Session& session, std::shared_ptr<const CalibrationResult> result,
+                        const std::string& version);
 
-// The same with the intrinsics that the run calibrated first, where they were not solved for again.
-NamedResult namedResult(const Session& session, const CalibrationRun& run, const std::string& version);
+// Keeps the run alive.
+std::shared_ptr<const CalibrationResult> resultOf(const std::shared_ptr<const CalibrationRun>& run);
 
 // What to know of files for other programs, and the targets that got none, each with the reason.
 struct ExportRemarks {
@@ -24,7 +26,8 @@ struct ExportRemarks {
 // report.html with its plots/*.csv, result.yaml, trajectory.csv, detections.csv, windows.csv, log.txt, and a
 // folder a target: kalibr and what the session asks for. The remarks are in log.txt too.
 ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Session& session,
-                               const CalibrationRun& run, const std::string& version, const std::string& log);
+                               const std::shared_ptr<const CalibrationRun>& run, const std::string& version,
+                               const std::string& log);
 
 // detections.csv, windows.csv, log.txt
 void writeDetectionFiles(const std::filesystem::path& folder, const RecordingPass& pass,

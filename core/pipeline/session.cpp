@@ -106,10 +106,10 @@ std::string imuYaml(const SessionImu& imu, const std::filesystem::path& folder) 
   std::string text = sourceYaml(imu, folder);
   text += fmt::format("    accelerometer_noise_density: {}\n    gyroscope_noise_density: {}\n",
                       imu.noise.accelerometer_density, imu.noise.gyroscope_density);
-  if (imu.accelerometer_random_walk > 0.0)
-    text += fmt::format("    accelerometer_random_walk: {}\n", imu.accelerometer_random_walk);
-  if (imu.gyroscope_random_walk > 0.0)
-    text += fmt::format("    gyroscope_random_walk: {}\n", imu.gyroscope_random_walk);
+  if (imu.noise.accelerometer_random_walk > 0.0)
+    text += fmt::format("    accelerometer_random_walk: {}\n", imu.noise.accelerometer_random_walk);
+  if (imu.noise.gyroscope_random_walk > 0.0)
+    text += fmt::format("    gyroscope_random_walk: {}\n", imu.noise.gyroscope_random_walk);
   if (imu.acceleration_unit) {
     text += fmt::format("    acceleration_unit: {}\n",
                         kAccelerationUnits.at(static_cast<std::size_t>(*imu.acceleration_unit)));

@@ -31,10 +31,7 @@ struct SessionImu {
   std::optional<AngularRateUnit> angular_rate_unit;
   std::filesystem::path recording;  // its own; empty: the session's
   double clock_offset_s = 0.0;      // known: to be added to the stream's times
-  // Handed on to other programs; 0: not known.
-  double gyroscope_random_walk = 0.0;      // rad/s^2/sqrt(Hz)
-  double accelerometer_random_walk = 0.0;  // m/s^3/sqrt(Hz)
-  ImuPrior prior = {};                     // the file's prior.imus.<name>
+  ImuPrior prior = {};              // the file's prior.imus.<name>
 };
 
 struct Session {

@@ -102,9 +102,9 @@ SessionImu readImu(const YamlNode& map, const std::string& imu_name, const std::
   imu.noise.accelerometer_density = map["accelerometer_noise_density"].real(1e-7, 10.0, "m/s^2/sqrt(Hz)");
   imu.noise.gyroscope_density = map["gyroscope_noise_density"].real(1e-8, 10.0, "rad/s/sqrt(Hz)");
   if (const auto node = map.find("accelerometer_random_walk"))
-    imu.accelerometer_random_walk = node->real(0.0, 10.0, "m/s^3/sqrt(Hz)");
+    imu.noise.accelerometer_random_walk = node->real(0.0, 10.0, "m/s^3/sqrt(Hz)");
   if (const auto node = map.find("gyroscope_random_walk"))
-    imu.gyroscope_random_walk = node->real(0.0, 10.0, "rad/s^2/sqrt(Hz)");
+    imu.noise.gyroscope_random_walk = node->real(0.0, 10.0, "rad/s^2/sqrt(Hz)");
   if (const auto node = map.find("acceleration_unit"))
     imu.acceleration_unit = static_cast<AccelerationUnit>(node->choice({"m/s^2", "g", "-g"}));
   if (const auto node = map.find("angular_rate_unit"))

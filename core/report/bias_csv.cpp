@@ -21,14 +21,14 @@ Eigen::Vector3d at(const std::vector<Eigen::Vector3d>& sigmas, std::size_t knot)
 
 std::string biasesCsv(const NamedResult& named) {
   std::string text;
-  const CalibrationResult& result = named.result;
+  const CalibrationResult& result = *named.result;
   for (std::size_t i = 0; i < result.state.imus.size(); ++i) {
     const ImuState& imu = result.state.imus[i];
     const ImuUncertainty sigma =
         i < result.uncertainty.imus.size() ? result.uncertainty.imus[i] : ImuUncertainty{};
     for (std::size_t k = 0; k < imu.bias_drift.knots(); ++k) {
       const double time_s = imu.bias_drift.knotTime_s(k);
-      text += fmt::format("{},{:.6f}", quotedCsv(named.names.imus.at(i)), time_s);
+      text += fmt::format("{},{:.6f}", quotedCsv(named.imus.at(i).name), time_s);
       append(imu.gyroscopeBiasAt_rad_s(time_s), text);
       append(at(sigma.gyroscope_drift_std_rad_s, k), text);
       append(imu.accelerometerBiasAt_m_s2(time_s), text);

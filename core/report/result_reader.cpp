@@ -110,7 +110,7 @@ std::optional<std::array<double, 9>> readIntrinsicsStd(const YamlNode& camera) {
   return sigmas;
 }
 
-void readCamera(const YamlNode& map, NamedResult& named) {
+SensorDescription readCamera(const YamlNode& map, const std::string& name, CalibrationResult& result) {
   CameraState state;
   CameraUncertainty sigma;
   CameraFit fit;
@@ -128,28 +128,27 @@ void readCamera(const YamlNode& map, NamedResult& named) {
     get(*circles, "used", fit.circles_used);
     get(*circles, "rejected", fit.circles_rejected);
   }
-  named.names.camera_streams.push_back(streamOf(map));
-  const auto intrinsics = map.find("intrinsics");
-  if (intrinsics) state.lens = givenLens(readIntrinsics(*intrinsics));
-  named.names.intrinsics_std.push_back(readIntrinsicsStd(map));
-  named.names.intrinsics.push_back(state.lens.given);
-  named.result.state.cameras.push_back(state);
-  named.result.uncertainty.cameras.push_back(sigma);
-  named.result.cameras.push_back(fit);
+  if (const auto intrinsics = map.find("intrinsics")) state.lens = givenLens(readIntrinsics(*intrinsics));
+  sigma.intrinsics_std = readIntrinsicsStd(map);
+  result.state.cameras.push_back(state);
+  result.uncertainty.cameras.push_back(sigma);
+  result.cameras.push_back(fit);
+  return {name, streamOf(map)};
 }
 
-KnownOfImu readKnown(const YamlNode& map) {
-  KnownOfImu known;
-  known.stream = streamOf(map);
-  if (map.has("accelerometer_noise_density") && map.has("gyroscope_noise_density"))
-    known.noise = ImuNoise{map["gyroscope_noise_density"].real(), map["accelerometer_noise_density"].real()};
-  get(map, "accelerometer_random_walk", known.accelerometer_random_walk);
-  get(map, "gyroscope_random_walk", known.gyroscope_random_walk);
+SensorDescription readKnown(const YamlNode& map, const std::string& name) {
+  SensorDescription known{name, streamOf(map)};
+  if (map.has("accelerometer_noise_density") && map.has("gyroscope_noise_density")) {
+    known.noise.accelerometer_density = map["accelerometer_noise_density"].real();
+    known.noise.gyroscope_density = map["gyroscope_noise_density"].real();
+  }
+  get(map, "accelerometer_random_walk", known.noise.accelerometer_random_walk);
+  get(map, "gyroscope_random_walk", known.noise.gyroscope_random_walk);
   get(map, "rate_hz", known.rate_hz);
   return known;
 }
 
-void readImu(const YamlNode& map, NamedResult& named) {
+SensorDescription readImu(const YamlNode& map, const std::string& name, CalibrationResult& result) {
   ImuState state;
   ImuUncertainty sigma;
   ImuFit fit;
@@ -159,10 +158,10 @@ void readImu(const YamlNode& map, NamedResult& named) {
     get(*gyroscope, "residual_rms_rad_s", fit.gyroscope_rms_rad_s);
   if (const auto accelerometer = map.find("accelerometer"))
     get(*accelerometer, "residual_rms_m_s2", fit.accelerometer_rms_m_s2);
-  named.names.known_of_imus.push_back(readKnown(map));
-  named.result.state.imus.push_back(state);
-  named.result.uncertainty.imus.push_back(sigma);
-  named.result.imus.push_back(fit);
+  result.state.imus.push_back(state);
+  result.uncertainty.imus.push_back(sigma);
+  result.imus.push_back(fit);
+  return readKnown(map, name);
 }
 
 void readUncertainty(const YamlNode& root, UncertaintyReport& uncertainty) {
@@ -215,22 +214,21 @@ void readCrossValidation(const YamlNode& map, CrossValidation& validation) {
   }
 }
 
-void readRun(const YamlNode& root, NamedResult& named) {
-  get(root, "notes", named.result.notes);
-  get(root, "memory_peak_mb", named.result.memory_peak_mb);
+void readRun(const YamlNode& root, NamedResult& named, CalibrationResult& result) {
+  get(root, "notes", result.notes);
+  get(root, "memory_peak_mb", result.memory_peak_mb);
   if (const auto timing = root.find("timing_s")) {
-    forEachTiming(named.result.timing,
-                  [&](const char* key, double& duration_s) { get(*timing, key, duration_s); });
+    forEachTiming(result.timing, [&](const char* key, double& duration_s) { get(*timing, key, duration_s); });
   }
   const auto program = root.find("program");
   if (!program) return;
-  get(*program, "version", named.names.version);
+  get(*program, "version", named.version);
   if (const auto options = program->find("options"))
     for (const std::string& key : options->keys()) {
       OptionRow row;
       row.name = key;
       row.value = (*options)[key].text();
-      named.names.options.push_back(row);
+      named.options.push_back(row);
     }
 }
 
@@ -243,27 +241,23 @@ NamedResult readResultYaml(const std::filesystem::path& file) {
                      "Give result.yaml of `evical calibrate`, or truth.yaml");
   root[root.has("evical_result") ? "evical_result" : "evical_truth"].integer(1, 1);  // the format's version
   NamedResult named;
+  CalibrationResult result;
   if (const auto status = root.find("status"))
-    named.result.status = static_cast<CalibrationStatus>(status->choice({"ok", "doubtful", "failed"}));
-  get(root, "reason", named.result.reason);
-  get(root, "reference", named.names.reference);
-  if (const auto recording = root.find("recording"))
-    named.result.start_ns = (*recording)["start_ns"].nanoseconds();
+    result.status = static_cast<CalibrationStatus>(status->choice({"ok", "doubtful", "failed"}));
+  get(root, "reason", result.reason);
+  get(root, "reference", named.reference);
+  if (const auto recording = root.find("recording")) result.start_ns = (*recording)["start_ns"].nanoseconds();
   if (const auto cameras = root.find("cameras"))
-    for (const std::string& key : cameras->keys()) {
-      named.names.cameras.push_back(key);
-      readCamera((*cameras)[key], named);
-    }
+    for (const std::string& key : cameras->keys())
+      named.cameras.push_back(readCamera((*cameras)[key], key, result));
   if (const auto imus = root.find("imus"))
-    for (const std::string& key : imus->keys()) {
-      named.names.imus.push_back(key);
-      readImu((*imus)[key], named);
-    }
-  get(root, "gravity_m_s2", named.result.state.gravity_in_world_m_s2);
-  readUncertainty(root, named.result.uncertainty);
+    for (const std::string& key : imus->keys()) named.imus.push_back(readImu((*imus)[key], key, result));
+  get(root, "gravity_m_s2", result.state.gravity_in_world_m_s2);
+  readUncertainty(root, result.uncertainty);
   if (const auto validation = root.find("cross_validation"))
-    readCrossValidation(*validation, named.result.cross_validation.emplace());
-  readRun(root, named);
+    readCrossValidation(*validation, result.cross_validation.emplace());
+  readRun(root, named, result);
+  named.result = std::make_shared<const CalibrationResult>(std::move(result));
   return named;
 }
 

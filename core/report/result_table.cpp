@@ -49,21 +49,21 @@ std::string sensorRows(const std::vector<ShownQuantity>& quantities, const Eigen
 }
 
 std::string givenRow(const NamedResult& named, const std::string& sensor) {
-  const std::string given = givenOf(named.result.uncertainty, sensor);
+  const std::string given = givenOf(named.result->uncertainty, sensor);
   return given.empty() ? "" : fmt::format("    {:<26}{}\n", "given, not estimated", given);
 }
 
 std::string cameraTable(const NamedResult& named, std::size_t i) {
-  const CameraState& state = named.result.state.cameras[i];
+  const CameraState& state = named.result->state.cameras[i];
   std::string text =
       fmt::format("Camera {0}: p_{1} = reference_from_camera * p_camera, t_{1} = t_camera + time offset\n",
-                  named.names.cameras.at(i), named.names.reference);
+                  named.cameras.at(i).name, named.reference);
   text += sensorRows(shownCamera(named, i), state.reference_from_camera.rotation);
-  text += givenRow(named, named.names.cameras[i]);
-  if (const auto sigmas = elementOrNone(named.names.intrinsics_std, i))
-    text += intrinsicsRows(elementOrNone(named.names.intrinsics, i).value_or(CameraIntrinsics{}), *sigmas);
-  if (i >= named.result.cameras.size()) return text;
-  const CameraFit& fit = named.result.cameras[i];
+  text += givenRow(named, named.cameras[i].name);
+  if (const auto sigmas = elementOrNone(named.result->uncertainty.cameras, i).intrinsics_std)
+    text += intrinsicsRows(state.lens.inUse().value_or(CameraIntrinsics{}), *sigmas);
+  if (i >= named.result->cameras.size()) return text;
+  const CameraFit& fit = named.result->cameras[i];
   text += fmt::format("    {:<26}{:>12.4f} px RMS, {:.2f} of what its sigmas say\n", "reprojection",
                       fit.reprojection_rms_px, fit.normalised_rms);
   const int found = fit.windows_complete + fit.windows_partial;
@@ -73,13 +73,13 @@ std::string cameraTable(const NamedResult& named, std::size_t i) {
 }
 
 std::string imuTable(const NamedResult& named, std::size_t i) {
-  const ImuState& state = named.result.state.imus[i];
-  const bool reference = named.names.imus.at(i) == named.names.reference;
-  std::string text = fmt::format("IMU {}{}\n", named.names.imus[i], reference ? " (reference)" : "");
+  const ImuState& state = named.result->state.imus[i];
+  const bool reference = named.imus.at(i).name == named.reference;
+  std::string text = fmt::format("IMU {}{}\n", named.imus[i].name, reference ? " (reference)" : "");
   text += sensorRows(shownImu(named, i, !reference), state.reference_from_imu.rotation);
-  text += givenRow(named, named.names.imus[i]);
-  if (i >= named.result.imus.size()) return text;
-  const ImuFit& fit = named.result.imus[i];
+  text += givenRow(named, named.imus[i].name);
+  if (i >= named.result->imus.size()) return text;
+  const ImuFit& fit = named.result->imus[i];
   return text + fmt::format("    {:<26}{:>12.5f} rad/s and {:.4f} m/s^2 RMS\n", "residuals",
                             fit.gyroscope_rms_rad_s, fit.accelerometer_rms_m_s2);
 }
@@ -115,21 +115,21 @@ Eigen::Vector3d rollPitchYaw_deg(const Eigen::Quaterniond& rotation) {
 
 std::string resultTable(const NamedResult& named) {
   std::string text;
-  for (std::size_t i = 0; i < named.result.state.cameras.size(); ++i) text += cameraTable(named, i);
-  for (std::size_t i = 0; i < named.result.state.imus.size(); ++i) text += imuTable(named, i);
-  if (!named.result.state.imus.empty()) {
-    const Eigen::Vector3d& g = named.result.state.gravity_in_world_m_s2;
+  for (std::size_t i = 0; i < named.result->state.cameras.size(); ++i) text += cameraTable(named, i);
+  for (std::size_t i = 0; i < named.result->state.imus.size(); ++i) text += imuTable(named, i);
+  if (!named.result->state.imus.empty()) {
+    const Eigen::Vector3d& g = named.result->state.gravity_in_world_m_s2;
     text +=
         fmt::format("Gravity in the board's frame: {:.4f}, {:.4f}, {:.4f} m/s^2 (direction +- {:.4f} deg)\n",
-                    g.x(), g.y(), g.z(), kDegPerRad * named.result.uncertainty.gravity_direction_std_rad);
-    if (const double sigma = named.result.uncertainty.gravity_norm_std_m_s2; sigma > 0.0)
+                    g.x(), g.y(), g.z(), kDegPerRad * named.result->uncertainty.gravity_direction_std_rad);
+    if (const double sigma = named.result->uncertainty.gravity_norm_std_m_s2; sigma > 0.0)
       text += tableRow("gravity's norm", g.norm(), sigma, "m/s^2");
   }
-  const Timing& t = named.result.timing;
+  const Timing& t = named.result->timing;
   text += fmt::format(
       "Time: {:.1f} s (read {:.1f}, detect {:.1f}, initialise {:.1f}, optimise {:.1f}); memory {:.0f} MB\n",
-      t.total_s, t.read_s, t.detect_s, t.initialise_s, t.optimise_s, named.result.memory_peak_mb);
-  return text + verdict(named.result);
+      t.total_s, t.read_s, t.detect_s, t.initialise_s, t.optimise_s, named.result->memory_peak_mb);
+  return text + verdict(*named.result);
 }
 
 }  // namespace evical

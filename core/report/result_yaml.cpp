@@ -76,20 +76,20 @@ std::string streamYaml(const std::string& stream) {
 }
 
 std::string cameraYaml(const NamedResult& named, std::size_t i) {
-  const CameraState& state = named.result.state.cameras[i];
-  const CameraUncertainty sigma = elementOrNone(named.result.uncertainty.cameras, i);
-  const CameraFit fit = elementOrNone(named.result.cameras, i);
-  std::string text = fmt::format("  {}:\n", yamlText(named.names.cameras.at(i)));
-  text += streamYaml(elementOrNone(named.names.camera_streams, i));
+  const CameraState& state = named.result->state.cameras[i];
+  const CameraUncertainty sigma = elementOrNone(named.result->uncertainty.cameras, i);
+  const CameraFit fit = elementOrNone(named.result->cameras, i);
+  std::string text = fmt::format("  {}:\n", yamlText(named.cameras.at(i).name));
+  text += streamYaml(named.cameras[i].stream);
   YamlSections sections;
   addPlace(kCameraQuantities, state, sigma, sections);
   addQuantities(kCameraQuantities, state, sigma, Written::Both, sections, besidesPose);
   addTimeOfOffset(state, sections);
   text += sections.text(kSensorIndent);
-  if (const auto intrinsics = elementOrNone(named.names.intrinsics, i)) {
+  if (const std::optional<CameraIntrinsics>& intrinsics = state.lens.inUse()) {
     text += "    intrinsics:\n" + intrinsicsYaml(*intrinsics, 6);
-    if (const auto sigmas = elementOrNone(named.names.intrinsics_std, i))
-      text += "    intrinsics_std:\n" + intrinsicsStdYaml(*intrinsics, *sigmas, 6);
+    if (sigma.intrinsics_std)
+      text += "    intrinsics_std:\n" + intrinsicsStdYaml(*intrinsics, *sigma.intrinsics_std, 6);
   }
   text += fmt::format("    reprojection_rms_px: {}\n    normalised_rms: {}\n",
                       roundedYaml(fit.reprojection_rms_px), roundedYaml(fit.normalised_rms));
@@ -101,27 +101,25 @@ std::string cameraYaml(const NamedResult& named, std::size_t i) {
   return text;
 }
 
-std::string knownYaml(const KnownOfImu& known) {
+std::string knownYaml(const SensorDescription& known) {
   std::string text = streamYaml(known.stream);
   const auto add = [&](const char* key, double value) {
     if (value > 0.0) text += fmt::format("    {}: {}\n", key, exactYaml(value));
   };
-  if (known.noise) {
-    add("accelerometer_noise_density", known.noise->accelerometer_density);
-    add("gyroscope_noise_density", known.noise->gyroscope_density);
-  }
-  add("accelerometer_random_walk", known.accelerometer_random_walk);
-  add("gyroscope_random_walk", known.gyroscope_random_walk);
+  add("accelerometer_noise_density", known.noise.accelerometer_density);
+  add("gyroscope_noise_density", known.noise.gyroscope_density);
+  add("accelerometer_random_walk", known.noise.accelerometer_random_walk);
+  add("gyroscope_random_walk", known.noise.gyroscope_random_walk);
   add("rate_hz", known.rate_hz);
   return text;
 }
 
 std::string imuYaml(const NamedResult& named, std::size_t i) {
-  const ImuState& state = named.result.state.imus[i];
-  const ImuUncertainty sigma = elementOrNone(named.result.uncertainty.imus, i);
-  const ImuFit fit = elementOrNone(named.result.imus, i);
-  std::string text = fmt::format("  {}:\n", yamlText(named.names.imus.at(i)));
-  text += knownYaml(elementOrNone(named.names.known_of_imus, i));
+  const ImuState& state = named.result->state.imus[i];
+  const ImuUncertainty sigma = elementOrNone(named.result->uncertainty.imus, i);
+  const ImuFit fit = elementOrNone(named.result->imus, i);
+  std::string text = fmt::format("  {}:\n", yamlText(named.imus.at(i).name));
+  text += knownYaml(named.imus[i]);
   YamlSections sections;
   addPlace(kImuQuantities, state, sigma, sections);
   addQuantities(kImuQuantities, state, sigma, Written::Both, sections, [](const QuantityInfo& info) {
@@ -170,17 +168,17 @@ std::string crossValidationYaml(const CrossValidation& validation) {
 }
 
 std::string runYaml(const NamedResult& named) {
-  std::string text = named.result.notes.empty() ? "notes: []\n" : "notes:\n";
-  for (const std::string& note : named.result.notes) text += fmt::format("  - {}\n", yamlText(note));
+  std::string text = named.result->notes.empty() ? "notes: []\n" : "notes:\n";
+  for (const std::string& note : named.result->notes) text += fmt::format("  - {}\n", yamlText(note));
   std::string timing;
-  forEachTiming(named.result.timing, [&](const char* key, double duration_s) {
+  forEachTiming(named.result->timing, [&](const char* key, double duration_s) {
     timing += fmt::format("{}{}: {:.3f}", timing.empty() ? "" : ", ", key, duration_s);
   });
   text += fmt::format("timing_s: {{{}}}\n", timing);
-  text += fmt::format("memory_peak_mb: {:.0f}\nprogram:\n  version: {}\n", named.result.memory_peak_mb,
-                      yamlText(named.names.version));
-  text += named.names.options.empty() ? "  options: {}\n" : "  options:\n";
-  for (const OptionRow& row : named.names.options) text += fmt::format("    {}: {}\n", row.name, row.value);
+  text += fmt::format("memory_peak_mb: {:.0f}\nprogram:\n  version: {}\n", named.result->memory_peak_mb,
+                      yamlText(named.version));
+  text += named.options.empty() ? "  options: {}\n" : "  options:\n";
+  for (const OptionRow& row : named.options) text += fmt::format("    {}: {}\n", row.name, row.value);
   return text;
 }
 
@@ -192,19 +190,19 @@ const char* statusName(CalibrationStatus status) {
 }
 
 std::string resultYaml(const NamedResult& named) {
-  const CalibrationState& state = named.result.state;
+  const CalibrationState& state = named.result->state;
   std::string text = fmt::format("evical_result: 1\nstatus: {}\nreason: {}\nreference: {}\n",
-                                 statusName(named.result.status), yamlText(named.result.reason),
-                                 yamlText(named.names.reference));
-  if (named.result.start_ns) text += fmt::format("recording:\n  start_ns: {}\n", *named.result.start_ns);
+                                 statusName(named.result->status), yamlText(named.result->reason),
+                                 yamlText(named.reference));
+  if (named.result->start_ns) text += fmt::format("recording:\n  start_ns: {}\n", *named.result->start_ns);
   text += state.cameras.empty() ? "cameras: {}\n" : "cameras:\n";
   for (std::size_t i = 0; i < state.cameras.size(); ++i) text += cameraYaml(named, i);
   text += state.imus.empty() ? "imus: {}\n" : "imus:\n";
   for (std::size_t i = 0; i < state.imus.size(); ++i) text += imuYaml(named, i);
   if (!state.imus.empty())
     text += fmt::format("gravity_m_s2: {}\n", list(state.gravity_in_world_m_s2, exactYaml));
-  text += uncertaintyYaml(named.result.uncertainty);
-  if (named.result.cross_validation) text += crossValidationYaml(*named.result.cross_validation);
+  text += uncertaintyYaml(named.result->uncertainty);
+  if (named.result->cross_validation) text += crossValidationYaml(*named.result->cross_validation);
   return text + runYaml(named);
 }
 

@@ -4,41 +4,32 @@
 #include "core/base/option_row.h"
 #include "core/data/calibration_result.h"
 #include "core/data/calibration_setup.h"
-#include "core/geometry/camera_model.h"
 
-#include <array>
 #include <filesystem>
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace evical {
 
-// What a session and its recording say of an IMU, handed on to other programs. Empty, 0: not known.
-struct KnownOfImu {
-  std::string stream;
-  std::optional<ImuNoise> noise;
-  double gyroscope_random_walk = 0.0;      // rad/s^2/sqrt(Hz)
-  double accelerometer_random_walk = 0.0;  // m/s^3/sqrt(Hz)
+// What a session and its recording say of a sensor, handed on to other programs. Empty, 0: not known.
+struct SensorDescription {
+  std::string name, stream = {};
+  // Of an IMU:
+  ImuNoise noise = {0.0, 0.0, 0.0, 0.0};
   double rate_hz = 0.0;
+
+  bool operator==(const SensorDescription&) const = default;
 };
 
-// What a result needs besides the numbers to be read by itself. Lists run parallel to those of the state.
-struct ResultNames {
-  std::string reference;
-  std::vector<std::string> cameras, imus;
-  std::vector<std::optional<CameraIntrinsics>> intrinsics;  // as used
-  std::string version;
-  std::vector<OptionRow> options;           // that differ from their defaults
-  std::vector<std::string> camera_streams;  // empty: not known
-  std::vector<KnownOfImu> known_of_imus;
-  // Where intrinsics were calibrated: sigmas of fx fy cx cy and distortion, as in intrinsics_result.h.
-  std::vector<std::optional<std::array<double, 9>>> intrinsics_std = {};
-};
-
+// A result that can be read by itself. Nobody changes the numbers any more, so that all who show or write
+// them share them.
 struct NamedResult {
-  ResultNames names;
-  CalibrationResult result;
+  std::string reference;                         // a sensor's name
+  std::vector<SensorDescription> cameras, imus;  // as those of the state
+  std::string version;
+  std::vector<OptionRow> options;  // that differ from their defaults
+  std::shared_ptr<const CalibrationResult> result = std::make_shared<const CalibrationResult>();
 };
 
 const char* statusName(CalibrationStatus status);

@@ -40,15 +40,13 @@ std::vector<ShownQuantity> shown(const Rows& rows, const std::string& sensor, co
 }  // namespace
 
 std::vector<ShownQuantity> shownCamera(const NamedResult& named, std::size_t camera, bool with_place) {
-  const CameraState& state = named.result.state.cameras.at(camera);
-  CameraUncertainty uncertainty = elementOrNone(named.result.uncertainty.cameras, camera);
-  uncertainty.intrinsics_std = elementOrNone(named.names.intrinsics_std, camera);
-  return shown(kCameraQuantities, named.names.cameras.at(camera), state, uncertainty, with_place);
+  return shown(kCameraQuantities, named.cameras.at(camera).name, named.result->state.cameras.at(camera),
+               elementOrNone(named.result->uncertainty.cameras, camera), with_place);
 }
 
 std::vector<ShownQuantity> shownImu(const NamedResult& named, std::size_t imu, bool with_place) {
-  return shown(kImuQuantities, named.names.imus.at(imu), named.result.state.imus.at(imu),
-               elementOrNone(named.result.uncertainty.imus, imu), with_place);
+  return shown(kImuQuantities, named.imus.at(imu).name, named.result->state.imus.at(imu),
+               elementOrNone(named.result->uncertainty.imus, imu), with_place);
 }
 
 std::string unitAndRemark(const ShownQuantity& quantity) {

@@ -19,18 +19,20 @@ CameraError sizeOfError(const std::string& name, const CameraState& estimate, co
           kMsPerS * std::abs(estimate.time_offset_s - truth.time_offset_s)};
 }
 
+std::vector<std::string> namesOf(const std::vector<SensorDescription>& sensors) {
+  std::vector<std::string> names;
+  for (const SensorDescription& sensor : sensors) names.push_back(sensor.name);
+  return names;
+}
+
 }  // namespace
 
 Estimate estimateOf(const NamedResult& named) {
-  Estimate estimate{named.names.reference,   named.names.cameras,
-                    named.names.imus,        named.result.state.cameras,
-                    named.result.state.imus, named.result.state.gravity_in_world_m_s2,
-                    named.result.uncertainty};
+  const CalibrationState& state = named.result->state;
+  Estimate estimate{named.reference, namesOf(named.cameras),      namesOf(named.imus),      state.cameras,
+                    state.imus,      state.gravity_in_world_m_s2, named.result->uncertainty};
   estimate.uncertainty.cameras.resize(estimate.cameras.size());
   estimate.uncertainty.imus.resize(estimate.imus.size());
-  // Of what was calibrated first where the state does not hold it.
-  for (std::size_t i = 0; i < estimate.cameras.size() && i < named.names.intrinsics_std.size(); ++i)
-    estimate.uncertainty.cameras[i].intrinsics_std = named.names.intrinsics_std[i];
   return estimate;
 }
 

@@ -101,7 +101,8 @@ Outcome run(const Scenario& scenario) {
     outcome.weakest = run.result.uncertainty.weakest;
     outcome.reason = run.result.reason;
     outcome.comparison =
-        compareWithTruth(namedResult(session, run.result, "benchmark"), test::truthOf(scenario));
+        compareWithTruth(namedResult(session, std::make_shared<CalibrationResult>(run.result), "benchmark"),
+                         test::truthOf(scenario));
     for (const CameraUncertainty& camera : run.result.uncertainty.cameras) {
       CameraUncertainty& worst = outcome.uncertainty ? *outcome.uncertainty : outcome.uncertainty.emplace();
       if (camera.translation_std_m.norm() > worst.translation_std_m.norm()) worst = camera;

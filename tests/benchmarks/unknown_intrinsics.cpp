@@ -131,8 +131,8 @@ int main(int argc, char** argv) {
       const std::array<CalibrationRun, kWays> runs = calibrateEveryWay(session, scenario);
       std::filesystem::remove_all(folder);
       for (std::size_t way = 0; way < kWays; ++way) {
-        const TruthComparison comparison =
-            compareWithTruth(namedResult(session, runs[way], "benchmark"), truth);
+        const TruthComparison comparison = compareWithTruth(
+            namedResult(session, std::make_shared<CalibrationResult>(runs[way].result), "benchmark"), truth);
         sums[way].add(comparison);
         printRow(scenario, static_cast<Way>(way), runs[way], comparison);
       }

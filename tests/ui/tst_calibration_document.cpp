@@ -172,7 +172,7 @@ class TestCalibrationDocument : public QObject {
     document.open(test::simulatedSession());
     const QString truth = QFileInfo(test::simulatedSession()).path() + "/truth.yaml";
     document.loadReference(truth);
-    QCOMPARE(document.reference()->named.names.cameras.at(0), std::string("left"));
+    QCOMPARE(document.reference()->named.cameras.at(0).name, std::string("left"));
     QVERIFY_THROWS_EXCEPTION(CalibrationError, document.loadReference(test::simulatedSession()));
     QVERIFY(document.reference().has_value());
     document.forgetReference();

@@ -192,7 +192,7 @@ class TestDetectionOfRun : public QObject {
         return std::abs(w.time_s - time_s) < 1e-9;
       });
       QVERIFY(report != seen.windows.end());
-      QCOMPARE(screen.analysis()->circles.size(), seen.views[k].circles.size());
+      QCOMPARE(screen.analysis()->trace().circles.size(), seen.views[k].circles.size());
       QCOMPARE(screen.analysis()->outcome, report->outcome);
     }
   }

@@ -374,7 +374,7 @@ class TestMainWindow : public QObject {
       QVERIFY2(QFileInfo(QDir(folder).filePath(file)).size() > 0, file);
     }
     const NamedResult read = readResultYaml(QDir(folder).filePath("result.yaml").toStdString());
-    QCOMPARE(read.result.state.cameras.at(0).time_offset_s,
+    QCOMPARE(read.result->state.cameras.at(0).time_offset_s,
              test.document().last().run->result.state.cameras.at(0).time_offset_s);
     QVERIFY(test.child<LogPanel>()->shownText().contains("random walks are not measured"));
     QVERIFY(test.child<ErrorPanel>()->text().contains("not exported: result: has one camera"));

@@ -193,14 +193,17 @@ class TestRecordingScreen : public QObject {
     QVERIFY(!test.session.imus[0].angular_rate_unit);
   }
 
-  void noisePreset_setsBothDensities() {
+  void noisePreset_setsBothDensities_andNoMore() {
     Fixture test;
+    test.session.imus[0].noise.gyroscope_random_walk = 2e-5;
+    test.screen.setSession(test.session);
     auto* const presets = test.screen.findChild<ImuForm*>()->findChildren<QComboBox*>().at(0);
     presets->setCurrentText("Bosch BMI160, typical");
     QCOMPARE(presets->currentText(), QString("Bosch BMI160, typical"));
     emit presets->activated(presets->currentIndex());
     QVERIFY(qAbs(test.session.imus[0].noise.gyroscope_density - 1.2217e-4) < 1e-8);
     QVERIFY(qAbs(test.session.imus[0].noise.accelerometer_density - 1.7652e-3) < 1e-7);
+    QCOMPARE(test.session.imus[0].noise.gyroscope_random_walk, 2e-5);
   }
 
   void numberThatIsNone_isMarked_andChangesNothing() {

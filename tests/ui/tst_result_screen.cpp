@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/pipeline/result_files.h"
+#include "tests/support/own_result.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 #include "ui/screens/correlation_view.h"
@@ -45,8 +46,9 @@ class TestResultScreen : public QObject {
  private slots:
   void initTestCase() {
     applyTheme(*qApp, Appearance::Light);
-    const Session session = readSession(test::simulatedSession().toStdString());
-    result_ = namedResult(session, calibrate(session, RunContext{}).result, "test");
+    const Session session = readSession(evical::ui::test::simulatedSession().toStdString());
+    result_ = namedResult(
+        session, std::make_shared<const CalibrationResult>(calibrate(session, RunContext{}).result), "test");
     truth_ = readResultYaml(session.source.parent_path() / "truth.yaml");
   }
 
@@ -56,9 +58,9 @@ class TestResultScreen : public QObject {
     const ParameterRow* const offset = find(groups, "left.time_offset");
     QVERIFY(offset);
     QCOMPARE(offset->unit, QString("ms"));
-    QCOMPARE(offset->value, 1e3 * result_.result.state.cameras[0].time_offset_s);
+    QCOMPARE(offset->value, 1e3 * result_.result->state.cameras[0].time_offset_s);
     QCOMPARE(find(groups, "left.translation.x")->value,
-             1e3 * result_.result.state.cameras[0].reference_from_camera.translation_m.x());
+             1e3 * result_.result->state.cameras[0].reference_from_camera.translation_m.x());
     QVERIFY(!find(groups, "left.translation.x")->difference);
   }
 
@@ -89,8 +91,9 @@ class TestResultScreen : public QObject {
     };
     QVERIFY(!has());
     NamedResult free = result_;
-    free.result.uncertainty.gravity_norm_std_m_s2 = 0.002;
-    free.result.state.gravity_in_world_m_s2 *= 9.83 / free.result.state.gravity_in_world_m_s2.norm();
+    CalibrationResult& numbers = test::ownResult(free);
+    numbers.uncertainty.gravity_norm_std_m_s2 = 0.002;
+    numbers.state.gravity_in_world_m_s2 *= 9.83 / numbers.state.gravity_in_world_m_s2.norm();
     groups = parameterGroups(free);
     QVERIFY(has());
     compare(groups, free, truth_);
@@ -102,7 +105,7 @@ class TestResultScreen : public QObject {
     compare(groups, result_, result_);
     QVERIFY(std::abs(find(groups, "left.rotation.x")->difference.value()) < 1e-9);
     NamedResult other = result_;
-    other.names.cameras = {"right"};
+    other.cameras = {{"right"}};
     QVERIFY_THROWS_EXCEPTION(CalibrationError, compare(groups, result_, other));
   }
 
@@ -127,7 +130,7 @@ class TestResultScreen : public QObject {
     QCOMPARE(screen.findChild<QComboBox*>()->currentText(), QString("truth.yaml"));
     QVERIFY(!table->isColumnHidden(4));
     NamedResult other = truth_;
-    other.names.cameras = {"right"};
+    other.cameras = {{"right"}};
     screen.setReference(other, "other.yaml");
     QVERIFY(table->isColumnHidden(4));
     QVERIFY(allText(screen).contains("cannot be compared"));

@@ -50,6 +50,12 @@ std::optional<Unit> unitAt(int index) {
   return index > 0 ? std::optional(static_cast<Unit>(index - 1)) : std::nullopt;
 }
 
+// Random walks stay as they are.
+void setDensities(const ImuNoise& noise, SessionImu& imu) {
+  imu.noise.gyroscope_density = noise.gyroscope_density;
+  imu.noise.accelerometer_density = noise.accelerometer_density;
+}
+
 QLabel* explanation(QWidget* parent) {
   auto* const label = new QLabel(
       QObject::tr(
@@ -128,14 +134,14 @@ void ImuForm::setImu(const SessionImu& imu) {
 void ImuForm::usePreset(int index) {
   if (index >= static_cast<int>(std::size(kPresets))) return;
   SessionImu changed = imu_;
-  changed.noise = kPresets[index].noise;
+  setDensities(kPresets[index].noise, changed);
   emit edited(changed, "noise");
 }
 
 void ImuForm::say(const QString& field) {
   SessionImu changed = imu_;
   changed.name = name_->text().trimmed().toStdString();
-  changed.noise = {gyroscope_->value(), accelerometer_->value()};
+  setDensities({gyroscope_->value(), accelerometer_->value()}, changed);
   changed.clock_offset_s = clock_offset_s_->value();
   changed.angular_rate_unit = unitAt<AngularRateUnit>(angular_rate_unit_->currentIndex());
   changed.acceleration_unit = unitAt<AccelerationUnit>(acceleration_unit_->currentIndex());

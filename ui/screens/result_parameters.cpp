@@ -64,18 +64,18 @@ void addQuantity(const ShownQuantity& quantity, const Eigen::Quaterniond& rotati
 }
 
 ParameterGroup cameraGroup(const NamedResult& named, std::size_t i) {
-  const std::string& name = named.names.cameras.at(i);
-  const CameraFit fit = elementOrNone(named.result.cameras, i);
-  const bool reference = name == named.names.reference;
+  const std::string& name = named.cameras.at(i).name;
+  const CameraFit fit = elementOrNone(named.result->cameras, i);
+  const bool reference = name == named.reference;
   const QString shown = QString::fromStdString(name);
   ParameterGroup group{
       reference ? QObject::tr("Camera %1 (reference)").arg(shown)
-                : QObject::tr("Camera %1 in %2").arg(shown, QString::fromStdString(named.names.reference)),
+                : QObject::tr("Camera %1 in %2").arg(shown, QString::fromStdString(named.reference)),
       {}};
   const auto add = [&](bool intrinsics) {
     for (const ShownQuantity& quantity : shownCamera(named, i, !reference))
       if ((quantity.info->shape == QuantityShape::Intrinsics) == intrinsics)
-        addQuantity(quantity, named.result.state.cameras[i].reference_from_camera.rotation, group);
+        addQuantity(quantity, named.result->state.cameras[i].reference_from_camera.rotation, group);
   };
   add(false);
   group.rows.push_back({{}, QObject::tr("Reprojection RMS"), "px", fit.reprojection_rms_px, 0.0, {}});
@@ -84,19 +84,19 @@ ParameterGroup cameraGroup(const NamedResult& named, std::size_t i) {
 }
 
 ParameterGroup imuGroup(const NamedResult& named, std::size_t i) {
-  const std::string& name = named.names.imus.at(i);
-  const bool reference = name == named.names.reference;
+  const std::string& name = named.imus.at(i).name;
+  const bool reference = name == named.reference;
   const QString shown = QString::fromStdString(name);
   ParameterGroup group{
       reference ? QObject::tr("IMU %1 (reference)").arg(shown) : QObject::tr("IMU %1").arg(shown), {}};
   for (const ShownQuantity& quantity : shownImu(named, i, !reference))
-    addQuantity(quantity, named.result.state.imus[i].reference_from_imu.rotation, group);
+    addQuantity(quantity, named.result->state.imus[i].reference_from_imu.rotation, group);
   return group;
 }
 
 ParameterGroup gravityGroup(const NamedResult& named) {
   ParameterGroup group{QObject::tr("Gravity in the board's frame"), {}};
-  const Eigen::Vector3d& gravity = named.result.state.gravity_in_world_m_s2;
+  const Eigen::Vector3d& gravity = named.result->state.gravity_in_world_m_s2;
   for (int axis = 0; axis < 3; ++axis)
     group.rows.push_back(
         {{}, QObject::tr("Gravity %1").arg(QChar("xyz"[axis])), kAcceleration, gravity[axis], 0.0, {}});
@@ -104,9 +104,9 @@ ParameterGroup gravityGroup(const NamedResult& named) {
                         QObject::tr("Direction, off by"),
                         "deg",
                         0.0,
-                        kDegPerRad * named.result.uncertainty.gravity_direction_std_rad,
+                        kDegPerRad * named.result->uncertainty.gravity_direction_std_rad,
                         {}});
-  if (const double sigma = named.result.uncertainty.gravity_norm_std_m_s2; sigma > 0.0)
+  if (const double sigma = named.result->uncertainty.gravity_norm_std_m_s2; sigma > 0.0)
     group.rows.push_back({"gravity.norm", QObject::tr("Norm"), kAcceleration, gravity.norm(), sigma, {}});
   return group;
 }
@@ -129,9 +129,10 @@ QString ParameterRow::sigmasText() const {
 
 std::vector<ParameterGroup> parameterGroups(const NamedResult& named) {
   std::vector<ParameterGroup> groups;
-  for (std::size_t i = 0; i < named.result.state.cameras.size(); ++i) groups.push_back(cameraGroup(named, i));
-  for (std::size_t i = 0; i < named.result.state.imus.size(); ++i) groups.push_back(imuGroup(named, i));
-  if (!named.result.state.imus.empty()) groups.push_back(gravityGroup(named));
+  for (std::size_t i = 0; i < named.result->state.cameras.size(); ++i)
+    groups.push_back(cameraGroup(named, i));
+  for (std::size_t i = 0; i < named.result->state.imus.size(); ++i) groups.push_back(imuGroup(named, i));
+  if (!named.result->state.imus.empty()) groups.push_back(gravityGroup(named));
   return groups;
 }
 

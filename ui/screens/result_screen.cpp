@@ -54,15 +54,15 @@ QString sentence(QString text) {
 
 QString fitText(const NamedResult& named) {
   QStringList parts;
-  for (std::size_t i = 0; i < named.result.cameras.size(); ++i) {
-    const CameraFit& fit = named.result.cameras[i];
+  for (std::size_t i = 0; i < named.result->cameras.size(); ++i) {
+    const CameraFit& fit = named.result->cameras[i];
     parts << QObject::tr("%1: circles fit to %2 px RMS, board used in %3 of %4 windows")
-                 .arg(QString::fromStdString(named.names.cameras.at(i)))
+                 .arg(QString::fromStdString(named.cameras.at(i).name))
                  .arg(fit.reprojection_rms_px, 0, 'g', 3)
                  .arg(fit.windows_used)
                  .arg(fit.windows_total);
   }
-  parts << QObject::tr("took %1 s").arg(named.result.timing.total_s, 0, 'f', 1);
+  parts << QObject::tr("took %1 s").arg(named.result->timing.total_s, 0, 'f', 1);
   return parts.join("; ") + ".";
 }
 
@@ -300,7 +300,7 @@ const NamedResult* ResultScreen::compared() const {
 }
 
 void ResultScreen::showVerdict() {
-  const CalibrationResult& result = result_->result;
+  const CalibrationResult& result = *result_->result;
   const bool ok = result.status == CalibrationStatus::Ok;
   const Theme& t = theme();
   const QColor colour = ok ? t.good : result.status == CalibrationStatus::Doubtful ? t.warning : t.bad;
@@ -334,7 +334,7 @@ void ResultScreen::showParameters() {
 
 void ResultScreen::showDetails() {
   constexpr int kPairs = 3;
-  const UncertaintyReport& report = result_->result.uncertainty;
+  const UncertaintyReport& report = result_->result->uncertainty;
   observability_->setObservability(report.observability, QString::fromStdString(report.weakest));
   observed_->setText(observability_->text());
   QStringList names;
@@ -343,7 +343,7 @@ void ResultScreen::showDetails() {
   const QStringList pairs = correlation_->strongestPairs(kPairs);
   pairs_->setText(pairs.isEmpty() ? QString() : tr("Hardest to tell apart: %1.").arg(pairs.join("; ")));
   notes_->clear();
-  for (const std::string& note : result_->result.notes)
+  for (const std::string& note : result_->result->notes)
     notes_->addItem(sentence(QString::fromStdString(note)));
 }
 

@@ -63,7 +63,7 @@ void wireRecording(RecordingScreen& screen, Workbench& workbench, SessionFiles& 
 
 std::optional<NamedResult> namedRun(const RunRecord& record, const QString& version) {
   if (!record.run) return std::nullopt;
-  return namedResult(record.session, *record.run, version.toStdString());
+  return namedResult(record.session, resultOf(record.run), version.toStdString());
 }
 
 void wireResult(ResultScreen& screen, Workbench& workbench, SessionFiles& files) {

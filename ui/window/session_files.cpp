@@ -295,7 +295,7 @@ void SessionFiles::writeResult(const QString& title, const QString& folder, std:
   const bool begun = workbench_.runner.start(
       title, {}, [record, folder, remarks, version = workbench_.version](const RunContext& context) {
         makeOutputFolder(folder.toStdString());
-        *remarks = writeResultFiles(folder.toStdString(), record.session, *record.run, version.toStdString(),
+        *remarks = writeResultFiles(folder.toStdString(), record.session, record.run, version.toStdString(),
                                     record.log.toStdString());
         for (const std::string& note : remarks->notes) context.progress.log(LogLevel::Info, note);
         for (const std::string& text : remarks->refused) context.progress.log(LogLevel::Warning, text);

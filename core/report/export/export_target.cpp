@@ -30,10 +30,10 @@ constexpr std::array kTargets{
 };
 
 void checkResult(const NamedResult& result) {
-  if (result.result.status == CalibrationStatus::Failed)
-    throw badInput("result", fmt::format("is of a failed calibration: {}", result.result.reason),
+  if (result.result->status == CalibrationStatus::Failed)
+    throw badInput("result", fmt::format("is of a failed calibration: {}", result.result->reason),
                    "Calibrate again; there is nothing to export");
-  if (result.names.cameras.empty()) throw badInput("result", "has no camera", "There is nothing to export");
+  if (result.cameras.empty()) throw badInput("result", "has no camera", "There is nothing to export");
 }
 
 }  // namespace

@@ -43,29 +43,29 @@ void checkNumbers(const std::string& place, const Rows& rows, const State& state
 }
 
 RigCamera cameraOf(const NamedResult& result, std::size_t i, std::set<std::string>& taken) {
-  const std::string& name = result.names.cameras[i];
-  const auto intrinsics = elementOrNone(result.names.intrinsics, i);
+  const std::string& name = result.cameras[i].name;
+  const CameraState& state = result.result->state.cameras.at(i);
+  const std::optional<CameraIntrinsics>& intrinsics = state.lens.inUse();
   if (!intrinsics || !intrinsics->resolution_px.known())
     throw badInput(fmt::format("result: cameras.{}", name),
                    intrinsics ? "has no resolution_px" : "has no intrinsics",
                    "Export the result.yaml of `evical calibrate`");
-  const CameraState& state = result.result.state.cameras.at(i);
   checkNumbers(fmt::format("result: cameras.{}", name), kCameraQuantities, state);
   return {name,
           fileName(name, taken),
-          elementOrNone(result.names.camera_streams, i),
+          result.cameras[i].stream,
           *intrinsics,
           state.reference_from_camera,
           state.time_offset_s,
-          elementOrNone(result.result.cameras, i)};
+          elementOrNone(result.result->cameras, i)};
 }
 
 RigImu imuOf(const NamedResult& result, std::size_t i, std::set<std::string>& taken) {
-  const std::string& name = result.names.imus[i];
-  const KnownOfImu known = elementOrNone(result.names.known_of_imus, i);
-  const ImuState& state = result.result.state.imus.at(i);
+  const std::string& name = result.imus[i].name;
+  const SensorDescription& known = result.imus[i];
+  const ImuState& state = result.result->state.imus.at(i);
   checkNumbers(fmt::format("result: imus.{}", name), kImuQuantities, state);
-  return {name, fileName(name, taken), known.stream, known, state};
+  return {name, fileName(name, taken), known.stream, known.noise, known.rate_hz, state};
 }
 
 // Between the first camera and the others.
@@ -81,17 +81,16 @@ double largestOffset_s(const Rig& rig) {
 Rig rigOf(const NamedResult& result, std::vector<std::string>& notes) {
   Rig rig;
   rig.notes = &notes;
-  rig.program = result.names.version.empty() ? "Evical" : "Evical " + result.names.version;
-  rig.status = statusName(result.result.status);
-  if (!result.result.reason.empty()) rig.status += ": " + result.result.reason;
-  rig.gravity_m_s2 = result.result.state.gravity_in_world_m_s2;
+  rig.program = result.version.empty() ? "Evical" : "Evical " + result.version;
+  rig.status = statusName(result.result->status);
+  if (!result.result->reason.empty()) rig.status += ": " + result.result->reason;
+  rig.gravity_m_s2 = result.result->state.gravity_in_world_m_s2;
   if (!rig.gravity_m_s2.allFinite()) throwNotFinite("result: gravity_m_s2");
   std::set<std::string> taken;
-  for (std::size_t i = 0; i < result.names.cameras.size(); ++i)
-    rig.cameras.push_back(cameraOf(result, i, taken));
-  for (std::size_t i = 0; i < result.names.imus.size(); ++i) rig.imus.push_back(imuOf(result, i, taken));
+  for (std::size_t i = 0; i < result.cameras.size(); ++i) rig.cameras.push_back(cameraOf(result, i, taken));
+  for (std::size_t i = 0; i < result.imus.size(); ++i) rig.imus.push_back(imuOf(result, i, taken));
   std::stable_partition(rig.imus.begin(), rig.imus.end(),
-                        [&](const RigImu& imu) { return imu.name == result.names.reference; });
+                        [&](const RigImu& imu) { return imu.name == result.reference; });
   return rig;
 }
 
@@ -109,13 +108,14 @@ Eigen::Matrix4d matrixOf(const RigidTransform& pose) {
 }
 
 StatedNoise statedNoise(const Rig& rig, const RigImu& imu) {
-  if (!imu.known.noise)
+  const bool known = imu.noise.gyroscope_density > 0.0 && imu.noise.accelerometer_density > 0.0;
+  if (!known)
     rig.notes->push_back(fmt::format(
         "{}: the result does not say the noise densities; Evical's defaults are written, put your own",
         imu.name));
-  const ImuNoise noise = imu.known.noise.value_or(ImuNoise{});
-  StatedNoise stated{noise.gyroscope_density, noise.accelerometer_density, imu.known.gyroscope_random_walk,
-                     imu.known.accelerometer_random_walk};
+  const ImuNoise noise = known ? imu.noise : ImuNoise{};
+  StatedNoise stated{noise.gyroscope_density, noise.accelerometer_density, imu.noise.gyroscope_random_walk,
+                     imu.noise.accelerometer_random_walk};
   if (stated.gyroscope_random_walk > 0.0 && stated.accelerometer_random_walk > 0.0) return stated;
   // Programs refuse 0.
   rig.notes->push_back(fmt::format(
@@ -128,7 +128,7 @@ StatedNoise statedNoise(const Rig& rig, const RigImu& imu) {
 }
 
 double statedRate_hz(const Rig& rig, const RigImu& imu) {
-  if (imu.known.rate_hz > 0.0) return imu.known.rate_hz;
+  if (imu.rate_hz > 0.0) return imu.rate_hz;
   constexpr double kUsualRate_hz = 200.0;
   rig.notes->push_back(fmt::format("{}: the result does not say the rate; {} Hz is written, put your own",
                                    imu.name, kUsualRate_hz));

@@ -22,7 +22,8 @@ struct RigCamera {
 
 struct RigImu {
   std::string name, file_name, stream;
-  KnownOfImu known;
+  ImuNoise noise;        // 0: not known
+  double rate_hz = 0.0;  // 0: not known
   ImuState state;
 };
 

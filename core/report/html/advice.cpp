@@ -160,7 +160,7 @@ void adviseImu(const std::string& name, const ImuData& given, const ImuMeasures&
 void adviseDuration(const ReportData& data, const Measures& measures, std::vector<Advice>& all) {
   constexpr double kShort_s = 15.0, kReasonable_s = 180.0;
   double worst = 0.0;
-  for (const CameraUncertainty& sigma : data.named.result.uncertainty.cameras)
+  for (const CameraUncertainty& sigma : data.named.result->uncertainty.cameras)
     worst = std::max({worst, kDegPerRad * sigma.rotation_std_rad.maxCoeff() / data.needs.rotation_deg,
                       1e3 * sigma.translation_std_m.maxCoeff() / data.needs.translation_mm,
                       1e3 * sigma.time_offset_std_s / data.needs.time_offset_ms});
@@ -205,7 +205,7 @@ void adviseFaults(const ReportData& data, std::vector<Advice>& all) {
 
 void adviseHalves(const ReportData& data, std::vector<Advice>& all) {
   constexpr double kFar = 2.0, kVeryFar = 4.0;
-  const auto& validation = data.named.result.cross_validation;
+  const auto& validation = data.named.result->cross_validation;
   if (!validation || !validation->failure.empty()) return;
   const QuantityDifference* worst = nullptr;
   for (const QuantityDifference& each : validation->quantities)
@@ -227,8 +227,8 @@ std::vector<Advice> adviceFor(const ReportData& data, const Measures& measures) 
     const std::string name = cameraName(data, i);
     adviseDetection(name, measures.cameras[i], all);
     adviseCoverage(name, measures.cameras[i], all);
-    if (i < data.named.result.cameras.size())
-      adviseLens(name, measures.cameras[i], data.named.result.cameras[i], all);
+    if (i < data.named.result->cameras.size())
+      adviseLens(name, measures.cameras[i], data.named.result->cameras[i], all);
   }
   for (std::size_t i = 0; i < measures.imus.size(); ++i)
     adviseImu(imuName(data, i), data.imus[i], measures.imus[i], all);
@@ -239,7 +239,7 @@ std::vector<Advice> adviceFor(const ReportData& data, const Measures& measures) 
 
 void writeAdvice(const ReportData& data, const Measures& measures, ReportPage& page) {
   const std::vector<Advice> all = adviceFor(data, measures);
-  const bool failed = data.named.result.status == CalibrationStatus::Failed;
+  const bool failed = data.named.result->status == CalibrationStatus::Failed;
   if (failed && all.empty()) return;
   page.beginSection("advice", "What to do better next time");
   if (failed) page.text(paragraph("", "First see to the reason above. Beyond that, the data say:"));

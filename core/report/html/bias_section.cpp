@@ -65,14 +65,14 @@ void writeDrift(const Drift& drift, ReportPage& page) {
 }  // namespace
 
 void writeBiases(const ReportData& data, ReportPage& page) {
-  const std::vector<ImuState>& imus = data.named.result.state.imus;
+  const std::vector<ImuState>& imus = data.named.result->state.imus;
   if (std::all_of(imus.begin(), imus.end(), [](const ImuState& imu) { return imu.bias_drift.knots() == 0; }))
     return;
   page.beginSection("biases", "Biases over time");
   for (std::size_t i = 0; i < imus.size(); ++i) {
     const BiasDrift& drift = imus[i].bias_drift;
     if (drift.knots() == 0) continue;
-    const std::vector<ImuUncertainty>& sigmas = data.named.result.uncertainty.imus;
+    const std::vector<ImuUncertainty>& sigmas = data.named.result->uncertainty.imus;
     const ImuUncertainty sigma = i < sigmas.size() ? sigmas[i] : ImuUncertainty{};
     page.heading("IMU " + imuName(data, i));
     writeDrift({fmt::format("imu{}_gyroscope_bias", i + 1), "Gyroscope", "rad/s", drift,

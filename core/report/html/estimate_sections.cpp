@@ -75,7 +75,7 @@ void writeCost(const PlotTable& table, ReportPage& page) {
 }
 
 void writeDistances(const ReportData& data, std::size_t camera, ReportPage& page) {
-  const PlotTable table = distanceTable(data.named.result.iterations, camera);
+  const PlotTable table = distanceTable(data.named.result->iterations, camera);
   PlotFrame frame = iterationFrame(table, "distance from the last values", "distance");
   constexpr double kLeast = 1e-6;
   frame.y = rangeOf(decades(table.values[1], kLeast));
@@ -94,7 +94,7 @@ void writeDistances(const ReportData& data, std::size_t camera, ReportPage& page
 }
 
 std::string observabilityWords(const ReportData& data) {
-  const UncertaintyReport& u = data.named.result.uncertainty;
+  const UncertaintyReport& u = data.named.result->uncertainty;
   const auto unmet =
       std::count_if(u.observability.begin(), u.observability.end(), [](double v) { return v < 1.0; });
   std::string text = fmt::format("The least certain direction is <b>{}</b>. ", escaped(u.weakest));
@@ -110,7 +110,7 @@ std::string observabilityWords(const ReportData& data) {
 }
 
 void writeObservability(const ReportData& data, ReportPage& page) {
-  const std::vector<double>& values = data.named.result.uncertainty.observability;
+  const std::vector<double>& values = data.named.result->uncertainty.observability;
   if (values.empty()) return;
   page.text(paragraph("", observabilityWords(data)));
   PlotTable table("plots/observability.csv", {"direction", "sigma_over_need"});
@@ -164,7 +164,7 @@ PlotTable correlationTable(const UncertaintyReport& u) {
 }  // namespace
 
 void writeConvergence(const ReportData& data, ReportPage& page) {
-  const std::vector<IterationRecord>& iterations = data.named.result.iterations;
+  const std::vector<IterationRecord>& iterations = data.named.result->iterations;
   if (iterations.empty()) return;
   page.beginSection("convergence", "Convergence");
   const PlotTable table = convergenceTable(iterations);
@@ -177,7 +177,7 @@ void writeConvergence(const ReportData& data, ReportPage& page) {
 }
 
 void writeUncertainty(const ReportData& data, ReportPage& page) {
-  const UncertaintyReport& u = data.named.result.uncertainty;
+  const UncertaintyReport& u = data.named.result->uncertainty;
   if (u.names.empty() && u.observability.empty()) return;
   page.beginSection("uncertainty", "Observability and correlation");
   writeObservability(data, page);
@@ -194,7 +194,7 @@ void writeUncertainty(const ReportData& data, ReportPage& page) {
 }
 
 void writeCrossValidation(const ReportData& data, ReportPage& page) {
-  const auto& validation = data.named.result.cross_validation;
+  const auto& validation = data.named.result->cross_validation;
   if (!validation) return;
   page.beginSection("cross-validation", "Two halves of the recording");
   if (!validation->failure.empty()) {
@@ -244,7 +244,7 @@ void writeCrossValidation(const ReportData& data, ReportPage& page) {
 }
 
 void writeRun(const ReportData& data, ReportPage& page) {
-  const CalibrationResult& result = data.named.result;
+  const CalibrationResult& result = *data.named.result;
   page.beginSection("run", "The recording's faults, options, timing");
   page.heading("Faults and notes");
   std::string items;
@@ -262,7 +262,7 @@ void writeRun(const ReportData& data, ReportPage& page) {
               "</details>\n");
   page.heading("Options that differ from the defaults");
   std::vector<std::vector<std::string>> rows;
-  for (const OptionRow& row : data.named.names.options)
+  for (const OptionRow& row : data.named.options)
     rows.push_back({"<code>" + escaped(row.name) + "</code>", escaped(row.value), escaped(row.default_value),
                     escaped(row.help)});
   page.text(rows.empty() ? paragraph("", "None.")
@@ -274,7 +274,7 @@ void writeRun(const ReportData& data, ReportPage& page) {
              "memory [MB]"},
             {{number(t.read_s, 2), number(t.detect_s, 2), number(t.initialise_s, 2), number(t.optimise_s, 2),
               number(t.cross_validate_s, 2), number(t.total_s, 2), number(result.memory_peak_mb, 0)}}));
-  page.text(paragraph("small", "Reading and detecting overlap. evical " + escaped(data.named.names.version)));
+  page.text(paragraph("small", "Reading and detecting overlap. evical " + escaped(data.named.version)));
   page.endSection();
 }
 

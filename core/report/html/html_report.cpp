@@ -12,9 +12,9 @@ namespace {
 using html::escaped;
 
 std::string startText(const NamedResult& named) {
-  if (!named.result.start_ns) return "";
-  return fmt::format(", begins at {}.{:09} s", *named.result.start_ns / 1'000'000'000,
-                     std::abs(*named.result.start_ns % 1'000'000'000));
+  if (!named.result->start_ns) return "";
+  return fmt::format(", begins at {}.{:09} s", *named.result->start_ns / 1'000'000'000,
+                     std::abs(*named.result->start_ns % 1'000'000'000));
 }
 
 std::string wholePage(const ReportData& data, const html::ReportPage& verdict, const html::ReportPage& page) {
@@ -28,9 +28,8 @@ std::string wholePage(const ReportData& data, const html::ReportPage& verdict, c
       "<body>\n<main>\n<header><h1>{1}</h1><p "
       "class=\"small\">{3}{4}</p></header>\n{5}<nav>{6}</nav>\n{7}</main>\n"
       "</body>\n</html>\n",
-      escaped(data.named.names.version), title, html::kReportStyle,
-      "evical " + escaped(data.named.names.version), startText(data.named), verdict.body(), page.contents(),
-      page.body());
+      escaped(data.named.version), title, html::kReportStyle, "evical " + escaped(data.named.version),
+      startText(data.named), verdict.body(), page.contents(), page.body());
 }
 
 }  // namespace

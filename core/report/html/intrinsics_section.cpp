@@ -1,5 +1,6 @@
 // Cameras whose intrinsics were calibrated first: the numbers, how well pixels are known, where views are
 // missing.
+#include "core/base/element.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/report/html/heat_map.h"
 #include "core/report/html/html_text.h"
@@ -25,10 +26,9 @@ std::vector<std::string> parameterNames(const CameraIntrinsics& camera) {
 // With a column of what the batch made of them, where it solved for them.
 std::string parameterTable(const ReportData& data, std::size_t index) {
   const IntrinsicsResult& found = *data.intrinsics[index];
-  const auto& cameras = data.named.result.state.cameras;
-  const auto& stds = data.named.names.intrinsics_std;
-  const bool solved =
-      index < cameras.size() && cameras[index].lens.solved && index < stds.size() && stds[index];
+  const auto& cameras = data.named.result->state.cameras;
+  const auto solved_std = elementOrNone(data.named.result->uncertainty.cameras, index).intrinsics_std;
+  const bool solved = index < cameras.size() && cameras[index].lens.solved && solved_std;
   std::array<double, kIntrinsicsCount> values{}, solved_values{};
   writeIntrinsics(found.intrinsics, values.data());
   if (solved) writeIntrinsics(*cameras[index].lens.solved, solved_values.data());
@@ -38,7 +38,7 @@ std::string parameterTable(const ReportData& data, std::size_t index) {
     const std::size_t k = rows.size();
     std::vector<std::string>& row = rows.emplace_back();
     row = {name, withSigma(values[k], sigmas[static_cast<Eigen::Index>(k)])};
-    if (solved) row.push_back(withSigma(solved_values[k], (*stds[index])[k]));
+    if (solved) row.push_back(withSigma(solved_values[k], (*solved_std)[k]));
     row.emplace_back(k < 4 ? "px" : "");
   }
   return solved ? table({"", "found first", "solved with everything else", "unit"}, rows)

@@ -79,7 +79,7 @@ void addPoses(const BoardObservations& observations, const CalibrationState& sta
 
 void addResiduals(const ReportData& data, std::size_t index,
                   const std::optional<CameraIntrinsics>& intrinsics, CameraMeasures& camera) {
-  for (const CircleResidual& residual : data.named.result.circle_residuals) {
+  for (const CircleResidual& residual : data.named.result->circle_residuals) {
     if (residual.camera != static_cast<int>(index) || !residual.used) continue;
     ImageCell* const cell = cellAt(camera, onSensor(intrinsics, residual.centre_px));
     if (cell == nullptr) continue;
@@ -98,7 +98,7 @@ CameraMeasures measureCamera(const ReportData& data, std::size_t index) {
   if (!camera.resolution_px.known() && intrinsics) camera.resolution_px = intrinsics->resolution_px;
   camera.cells = makeCells(camera.resolution_px);
   addDetections(data.cameras[index], intrinsics, camera);
-  addPoses(data.cameras[index], data.named.result.state, index, data.board, camera);
+  addPoses(data.cameras[index], data.named.result->state, index, data.board, camera);
   addResiduals(data, index, intrinsics, camera);
   return camera;
 }
@@ -131,7 +131,7 @@ ImuMeasures measureImu(const ReportData& data, std::size_t index) {
       moments(given.samples.size(), [&](std::size_t i) { return given.samples[i].specific_force_m_s2; });
   imu.rate_sigma_rad_s = given.noise.gyroscope_density * std::sqrt(imu.rate_hz);
   imu.force_sigma_m_s2 = given.noise.accelerometer_density * std::sqrt(imu.rate_hz);
-  const CalibrationState& state = data.named.result.state;
+  const CalibrationState& state = data.named.result->state;
   if (index >= state.imus.size() || state.imu_in_world_m.segmentCount() < 1) return imu;
   imu.signals = predictSignals(given, data.start_ns, state, index);
   const SignalPrediction& s = imu.signals;

@@ -77,8 +77,8 @@ void addGiven(const UncertaintyReport& uncertainty, const std::string& sensor, R
 }
 
 std::string cameraTiles(const ReportData& data, const Measures& measures, std::size_t i) {
-  const CameraUncertainty sigma = elementOrNone(data.named.result.uncertainty.cameras, i);
-  const CameraState& state = data.named.result.state.cameras[i];
+  const CameraUncertainty sigma = elementOrNone(data.named.result->uncertainty.cameras, i);
+  const CameraState& state = data.named.result->state.cameras[i];
   const std::string name = escaped(cameraName(data, i));
   std::string text;
   text += tile(name + ": rotation", largestSigma(kDegPerRad * sigma.rotation_std_rad, "deg"),
@@ -88,7 +88,7 @@ std::string cameraTiles(const ReportData& data, const Measures& measures, std::s
   text += tile(name + ": time offset",
                withSigma(1e3 * state.time_offset_s, 1e3 * sigma.time_offset_std_s) + " ms",
                fmt::format("sigma needed {}", plain(data.needs.time_offset_ms)));
-  const CameraFit fit = elementOrNone(data.named.result.cameras, i);
+  const CameraFit fit = elementOrNone(data.named.result->cameras, i);
   text += tile(name + ": reprojection", significant(fit.reprojection_rms_px) + " px",
                fmt::format("RMS of {} circles", fit.circles_used));
   if (i < measures.cameras.size())
@@ -98,13 +98,13 @@ std::string cameraTiles(const ReportData& data, const Measures& measures, std::s
 }
 
 void writeCameraNumbers(const ReportData& data, std::size_t i, ReportPage& page) {
-  const CameraState& state = data.named.result.state.cameras[i];
+  const CameraState& state = data.named.result->state.cameras[i];
   page.heading("Camera " + cameraName(data, i));
   page.text(paragraph(
       "", fmt::format("<code>p_reference = reference_from_camera \u00b7 p_camera</code>, reference: "
                       "{}; <code>t_reference = t_camera + time_offset</code>. \u00b1 is one "
                       "standard deviation.",
-                      escaped(data.named.names.reference))));
+                      escaped(data.named.reference))));
   Rows vectors, scalars;
   for (const ShownQuantity& quantity : shownCamera(data.named, i)) {
     if (quantity.info->shape == QuantityShape::Intrinsics) continue;
@@ -115,8 +115,8 @@ void writeCameraNumbers(const ReportData& data, std::size_t i, ReportPage& page)
   }
   page.text(table({"", "x", "y", "z", "unit"}, vectors));
   page.text(table({"", "value", "unit"}, scalars));
-  addGiven(data.named.result.uncertainty, cameraName(data, i), page);
-  const auto intrinsics = elementOrNone(data.named.names.intrinsics, i);
+  addGiven(data.named.result->uncertainty, cameraName(data, i), page);
+  const std::optional<CameraIntrinsics>& intrinsics = state.lens.inUse();
   if (!intrinsics) return;
   std::string distortion;
   for (const double d : intrinsics->distortion)
@@ -125,9 +125,9 @@ void writeCameraNumbers(const ReportData& data, std::size_t i, ReportPage& page)
       "small",
       fmt::format("Intrinsics {}: {}, {} x {} px, focal length {}, {} px, principal point {}, {} px, "
                   "distortion {}.",
-                  state.lens.solved ? "as solved with everything else"
-                  : elementOrNone(data.named.names.intrinsics_std, i) ? "as calibrated first"
-                                                                      : "as given",
+                  state.lens.solved         ? "as solved with everything else"
+                  : state.lens.foundFirst() ? "as calibrated first"
+                                            : "as given",
                   intrinsics->model == CameraModel::PinholeRadtan ? "pinhole, radial-tangential"
                                                                   : "pinhole, equidistant",
                   intrinsics->resolution_px.width_px, intrinsics->resolution_px.height_px,
@@ -137,8 +137,8 @@ void writeCameraNumbers(const ReportData& data, std::size_t i, ReportPage& page)
 }
 
 void writeImuNumbers(const ReportData& data, std::size_t i, ReportPage& page) {
-  const ImuState& state = data.named.result.state.imus[i];
-  const bool reference = imuName(data, i) == data.named.names.reference;
+  const ImuState& state = data.named.result->state.imus[i];
+  const bool reference = imuName(data, i) == data.named.reference;
   page.heading("IMU " + imuName(data, i) + (reference ? " (reference)" : ""));
   Rows rows;
   for (const ShownQuantity& quantity : shownImu(data.named, i, !reference)) {
@@ -151,7 +151,7 @@ void writeImuNumbers(const ReportData& data, std::size_t i, ReportPage& page) {
     rows.push_back(row);
   }
   page.text(table({"", "x", "y", "z", "unit"}, rows));
-  addGiven(data.named.result.uncertainty, imuName(data, i), page);
+  addGiven(data.named.result->uncertainty, imuName(data, i), page);
 }
 
 struct PlacedSensor {
@@ -203,7 +203,7 @@ std::string sensorView(const std::vector<PlacedSensor>& sensors, int across, int
 }  // namespace
 
 void writeVerdict(const ReportData& data, const Measures& measures, ReportPage& page) {
-  const CalibrationResult& result = data.named.result;
+  const CalibrationResult& result = *data.named.result;
   const char* const status = statusName(result.status);
   const char* const meaning = result.status == CalibrationStatus::Ok
                                   ? "The calibration meets the needs stated for it."
@@ -225,7 +225,7 @@ void writeVerdict(const ReportData& data, const Measures& measures, ReportPage& 
 }
 
 void writeNumbers(const ReportData& data, ReportPage& page) {
-  const CalibrationResult& result = data.named.result;
+  const CalibrationResult& result = *data.named.result;
   if (result.state.cameras.empty() && result.state.imus.empty()) return;
   page.beginSection("results", "Results");
   for (std::size_t i = 0; i < result.state.cameras.size(); ++i) writeCameraNumbers(data, i, page);
@@ -243,7 +243,7 @@ void writeNumbers(const ReportData& data, ReportPage& page) {
 }
 
 void writeSensors(const ReportData& data, ReportPage& page) {
-  const CalibrationState& state = data.named.result.state;
+  const CalibrationState& state = data.named.result->state;
   std::vector<PlacedSensor> sensors;
   double extent_mm = 0.0;
   for (std::size_t i = 0; i < state.imus.size(); ++i)

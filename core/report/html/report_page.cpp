@@ -23,12 +23,12 @@ void ReportPage::figure(const std::string& svg, std::string_view caption, const 
 }
 
 std::string cameraName(const ReportData& data, std::size_t index) {
-  if (index < data.named.names.cameras.size()) return data.named.names.cameras[index];
+  if (index < data.named.cameras.size()) return data.named.cameras[index].name;
   return index < data.cameras.size() ? data.cameras[index].camera : fmt::format("camera {}", index + 1);
 }
 
 std::string imuName(const ReportData& data, std::size_t index) {
-  if (index < data.named.names.imus.size()) return data.named.names.imus[index];
+  if (index < data.named.imus.size()) return data.named.imus[index].name;
   return index < data.imus.size() ? data.imus[index].name : fmt::format("IMU {}", index + 1);
 }
 

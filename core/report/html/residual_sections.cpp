@@ -16,7 +16,7 @@ namespace {
 
 std::vector<CircleResidual> usedResiduals(const ReportData& data, std::size_t camera) {
   std::vector<CircleResidual> used;
-  for (const CircleResidual& residual : data.named.result.circle_residuals)
+  for (const CircleResidual& residual : data.named.result->circle_residuals)
     if (residual.used && residual.camera == static_cast<int>(camera) && residual.residual_px.allFinite())
       used.push_back(residual);
   return used;
@@ -238,10 +238,10 @@ void writeSignal(const Signal& signal, const std::vector<double>& time_s, Report
 }  // namespace
 
 void writeReprojection(const ReportData& data, const Measures& measures, ReportPage& page) {
-  if (data.named.result.circle_residuals.empty()) return;
+  if (data.named.result->circle_residuals.empty()) return;
   page.beginSection("reprojection", "Reprojection");
-  for (std::size_t i = 0; i < data.named.result.cameras.size(); ++i) {
-    const CameraFit& fit = data.named.result.cameras[i];
+  for (std::size_t i = 0; i < data.named.result->cameras.size(); ++i) {
+    const CameraFit& fit = data.named.result->cameras[i];
     const std::vector<CircleResidual> residuals = usedResiduals(data, i);
     if (residuals.empty()) continue;
     page.heading("Camera " + cameraName(data, i));

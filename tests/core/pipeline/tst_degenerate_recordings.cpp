@@ -46,7 +46,8 @@ class TestDegenerateRecordings : public QObject {
     const QString named = QString::fromStdString(run.result.uncertainty.weakest);
     QVERIFY2(!named.isEmpty() && named.contains(weakest), qPrintable(named));
     const TruthComparison comparison =
-        compareWithTruth(namedResult(session, run.result, "test"), test::truthOf(simulated));
+        compareWithTruth(namedResult(session, std::make_shared<CalibrationResult>(run.result), "test"),
+                         test::truthOf(simulated));
     for (const QuantityDifference& quantity : comparison.quantities) {
       QVERIFY2(std::abs(quantity.normalised()) <= 4.0,
                qPrintable(QString("%1: error %2, sigma %3")

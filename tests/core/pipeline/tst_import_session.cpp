@@ -146,7 +146,7 @@ class TestImportSession : public QObject {
       QCOMPARE(session.cameras[0].name, std::string("cam0"));
       QVERIFY(session.cameras[0].intrinsics->model == CameraModel::PinholeEquidistant);
       QCOMPARE(session.imus[0].stream, std::string("/davis/imu"));
-      QCOMPARE(session.imus[0].gyroscope_random_walk, 2e-5);
+      QCOMPARE(session.imus[0].noise.gyroscope_random_walk, 2e-5);
       QCOMPARE(session.board.radius_m, 0.02);
       QVERIFY(has(notes, "--radius-m") && has(notes, "looks like images") && has(notes, "under prior"));
       texts.push_back(sessionYaml(session, scratch_.path().toStdString()));

@@ -4,6 +4,7 @@
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/result_files.h"
 #include "core/report/truth_comparison.h"
+#include "tests/support/own_result.h"
 #include "tests/support/seen_through.h"
 #include "tests/support/simulated_pass.h"
 #include "tests/support/test_program.h"
@@ -39,6 +40,9 @@ class TestJointIntrinsics : public QObject {
     first.status = CalibrationStatus::Doubtful;
     first.reason = kDoubt;
     return first;
+  }
+  NamedResult named(const CalibrationRun& run) const {
+    return namedResult(simulated_.session, std::make_shared<const CalibrationResult>(run.result), "test");
   }
   static bool holds(const std::vector<std::string>& texts, const std::string& part) {
     return std::any_of(texts.begin(), texts.end(),
@@ -79,14 +83,15 @@ class TestJointIntrinsics : public QObject {
 
   void errors_areThoseThatTheSigmasSay() {
     NamedResult truth;
-    truth.names.reference = simulated_.session.reference;
-    truth.names.cameras = {"left"};
-    truth.names.imus = {simulated_.session.imus[0].name};
-    truth.names.intrinsics = {truth_};
+    truth.reference = simulated_.session.reference;
+    truth.cameras = {{"left"}};
+    truth.imus = {{simulated_.session.imus[0].name}};
     const SimulatedCamera& camera = simulated_.truth.cameras[0];
-    truth.result.state.cameras = {{camera.imu_from_camera, camera.time_offset_s - camera.pixel.delay_s()}};
-    truth.result.state.imus.resize(1);
-    const TruthComparison comparison = compareWithTruth(namedResult(simulated_.session, run_, "test"), truth);
+    CalibrationState& state = ownResult(truth).state;
+    state.cameras = {{camera.imu_from_camera, camera.time_offset_s - camera.pixel.delay_s()}};
+    state.cameras[0].lens = givenLens(truth_);
+    state.imus.resize(1);
+    const TruthComparison comparison = compareWithTruth(named(run_), truth);
     int compared = 0;
     for (const QuantityDifference& each : comparison.quantities) {
       if (each.name.rfind("left.", 0) != 0) continue;
@@ -108,18 +113,17 @@ class TestJointIntrinsics : public QObject {
   }
 
   void files_holdThemAsSolved() {
-    const NamedResult named = namedResult(simulated_.session, run_, "test");
-    QVERIFY(named.names.intrinsics[0] == run_.result.state.cameras[0].lens.solved);
-    QVERIFY(named.names.intrinsics_std[0] == run_.result.uncertainty.cameras[0].intrinsics_std);
+    const CameraIntrinsics solved = run_.result.state.cameras[0].lens.solved.value();
     QTemporaryDir folder;
-    writeResultFiles(folder.path().toStdString(), simulated_.session, run_, "test", "log");
+    writeResultFiles(folder.path().toStdString(), simulated_.session,
+                     std::make_shared<const CalibrationRun>(run_), "test", "log");
     const NamedResult read = readResultYaml(folder.filePath("result.yaml").toStdString());
-    QVERIFY(read.names.intrinsics[0] == named.names.intrinsics[0]);
-    QVERIFY(read.names.intrinsics_std[0].has_value());
+    QVERIFY(read.result->state.cameras[0].lens.inUse() == solved);
+    QVERIFY(read.result->uncertainty.cameras[0].intrinsics_std.has_value());
     const QString page = readFile(folder.filePath("report.html"));
     QVERIFY(page.contains("Intrinsics as solved with everything else"));
     QVERIFY(page.contains("found first") && page.contains("left.focal_length.x"));
-    const QString focal = QString::number(named.names.intrinsics[0]->focal_length_px.x(), 'f', 6).left(9);
+    const QString focal = QString::number(solved.focal_length_px.x(), 'f', 6).left(9);
     int holding = 0;
     for (const auto& entry :
          std::filesystem::recursive_directory_iterator(folder.path().toStdString() + "/kalibr"))
@@ -135,9 +139,8 @@ class TestJointIntrinsics : public QObject {
     QVERIFY(!run.result.state.cameras[0].lens.solved);
     QVERIFY(run.result.reason.find(kDoubt) != std::string::npos);
     QVERIFY(run.result.state.cameras[0].lens.found() == found_);
-    const NamedResult named = namedResult(session, run, "test");
-    QVERIFY(named.names.intrinsics[0] == found_);
-    QVERIFY(std::abs((*named.names.intrinsics_std[0])[0] - 0.05) < 1e-12);
+    QVERIFY(run.result.state.cameras[0].lens.inUse() == found_);
+    QVERIFY(std::abs((*run.result.uncertainty.cameras[0].intrinsics_std)[0] - 0.05) < 1e-12);
     QVERIFY(!holds(run.result.notes, "solved with everything else"));
   }
 
@@ -150,7 +153,7 @@ class TestJointIntrinsics : public QObject {
     const CalibrationRun run = calibrate(session, pass, {});
     QVERIFY(run.result.state.cameras[0].lens.given == found_);
     QVERIFY(!run.result.state.cameras[0].lens.solved && !run.result.state.cameras[0].lens.found());
-    QVERIFY(!namedResult(session, run, "test").names.intrinsics_std[0]);
+    QVERIFY(!run.result.uncertainty.cameras[0].intrinsics_std);
   }
 };
 

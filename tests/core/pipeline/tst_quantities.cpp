@@ -4,6 +4,7 @@
 #include "core/geometry/so3.h"
 #include "core/pipeline/session_priors.h"
 #include "core/report/truth_comparison.h"
+#include "tests/support/own_result.h"
 #include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
@@ -87,12 +88,13 @@ Eigen::VectorXd priorNumbers(const KnownValue<Value>& known) {
 // A camera and an IMU besides the reference, with all that a row knows of them.
 NamedResult filledResult() {
   NamedResult named;
-  named.names.reference = "reference";
-  named.names.cameras = {"left"};
-  named.names.imus = {"reference", "far"};
+  named.reference = "reference";
+  named.cameras = {{"left"}};
+  named.imus = {{"reference"}, {"far"}};
   Filler filler;
-  CalibrationState& state = named.result.state;
-  UncertaintyReport& uncertainty = named.result.uncertainty;
+  CalibrationResult& result = test::ownResult(named);
+  CalibrationState& state = result.state;
+  UncertaintyReport& uncertainty = result.uncertainty;
   state.cameras.resize(1);
   uncertainty.cameras.resize(1);
   state.imus.resize(2);
@@ -105,8 +107,6 @@ NamedResult filledResult() {
     filler.fill(row.value(state.imus[1]));
     fillSigma(filler, row.sigma(uncertainty.imus[1]));
   });
-  named.names.intrinsics = {state.cameras[0].lens.inUse()};
-  named.names.intrinsics_std = {uncertainty.cameras[0].intrinsics_std};
   return named;
 }
 
@@ -201,8 +201,9 @@ class TestQuantities : public QObject {
   void edgeLeads_areComparedBetweenResults() {
     const NamedResult result = filledResult();
     NamedResult other = result;
-    other.result.state.cameras[0].edge_lead_px += 0.25;
-    other.result.state.cameras[0].edge_lead_growth_px -= 0.125;
+    CameraState& camera = test::ownResult(other).state.cameras[0];
+    camera.edge_lead_px += 0.25;
+    camera.edge_lead_growth_px -= 0.125;
     const auto found = [](const TruthComparison& comparison, const std::string& name) {
       for (const QuantityDifference& each : comparison.quantities)
         if (each.name == name) return each;
@@ -212,11 +213,11 @@ class TestQuantities : public QObject {
     const QuantityDifference lead = found(comparison, "left.edge_lead");
     const QuantityDifference growth = found(comparison, "left.edge_lead_growth");
     QVERIFY(std::abs(lead.difference - 0.25) < 1e-12 && std::abs(growth.difference + 0.125) < 1e-12);
-    QCOMPARE(lead.sigma, result.result.uncertainty.cameras[0].edge_lead_std_px);
-    QCOMPARE(growth.sigma, result.result.uncertainty.cameras[0].edge_lead_growth_std_px);
+    QCOMPARE(lead.sigma, result.result->uncertainty.cameras[0].edge_lead_std_px);
+    QCOMPARE(growth.sigma, result.result->uncertainty.cameras[0].edge_lead_growth_std_px);
     QCOMPARE(QString::fromStdString(lead.unit), QString("px"));
     NamedResult truth = result;
-    truth.result.uncertainty = {};
+    test::ownResult(truth).uncertainty = {};
     QVERIFY(found(compareWithTruth(other, truth), "left.edge_lead").name.empty());
     QVERIFY(!found(compareWithTruth(other, truth), "left.time_offset").name.empty());
   }
@@ -227,7 +228,7 @@ class TestQuantities : public QObject {
       for (const QuantityPart& part : quantityParts(row.info, value))
         QVERIFY2(names.insert(sensor + "." + part.name).second, part.name.c_str());
     };
-    const CalibrationState state = filledResult().result.state;
+    const CalibrationState state = filledResult().result->state;
     forEachQuantity(kCameraQuantities,
                     [&](const auto& row) { add("left", row, row.value(state.cameras[0])); });
     forEachQuantity(kImuQuantities, [&](const auto& row) { add("far", row, row.value(state.imus[1])); });

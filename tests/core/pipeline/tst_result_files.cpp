@@ -44,6 +44,10 @@ QString checkedText(const QString& page) {
                           : text;
 }
 
+std::shared_ptr<const CalibrationRun> shared(const CalibrationRun& run) {
+  return std::make_shared<const CalibrationRun>(run);
+}
+
 }  // namespace
 
 class TestResultFiles : public QObject {
@@ -60,7 +64,7 @@ class TestResultFiles : public QObject {
   void initTestCase() {
     simulated_ = simulatePass(6.0);
     run_ = calibrate(simulated_.session, simulated_.pass, {});
-    writeResultFiles(folder_.path().toStdString(), simulated_.session, run_, "test", "log");
+    writeResultFiles(folder_.path().toStdString(), simulated_.session, shared(run_), "test", "log");
     page_ = readFile(path("report.html"));
     text_ = checkedText(page_);
   }
@@ -85,8 +89,8 @@ class TestResultFiles : public QObject {
 
   void numbers_areThoseOfTheResult() {
     const NamedResult read = readResultYaml(path("result.yaml").toStdString());
-    const CameraState& camera = read.result.state.cameras[0];
-    const CameraUncertainty& sigma = read.result.uncertainty.cameras[0];
+    const CameraState& camera = read.result->state.cameras[0];
+    const CameraUncertainty& sigma = read.result->uncertainty.cameras[0];
     const auto shown = [&](double value, double std) {
       const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(std))), 0, 6);
       return QString::number(value, 'f', decimals).replace('-', QChar(0x2212));
@@ -98,9 +102,9 @@ class TestResultFiles : public QObject {
     }
     const QString ms = shown(1e3 * camera.time_offset_s, 1e3 * sigma.time_offset_std_s);
     QVERIFY2(text_.contains(ms), qPrintable(ms));
-    QVERIFY(text_.contains(QString("of %1 windows").arg(read.result.cameras[0].windows_total)));
-    QVERIFY(read.result.cross_validation.has_value());
-    QVERIFY2(text_.contains(QString::number(read.result.cross_validation->rms_sigmas, 'f', 2)),
+    QVERIFY(text_.contains(QString("of %1 windows").arg(read.result->cameras[0].windows_total)));
+    QVERIFY(read.result->cross_validation.has_value());
+    QVERIFY2(text_.contains(QString::number(read.result->cross_validation->rms_sigmas, 'f', 2)),
              "rms of the halves");
   }
 
@@ -147,7 +151,7 @@ class TestResultFiles : public QObject {
     run.result.notes.emplace_back("a\x01note ]]> <i>");
     run.pass.faults.push_back({"<s>", "gap", 0.0, "<u>gap</u>"});
     QTemporaryDir folder;
-    writeResultFiles(folder.path().toStdString(), session, run, "1<2", "log");
+    writeResultFiles(folder.path().toStdString(), session, shared(run), "1<2", "log");
     const QString page = readFile(folder.filePath("report.html"));
     const QString text = checkedText(page);
     QVERIFY2(text.contains(kHostile), qPrintable(text.left(300)));
@@ -161,7 +165,7 @@ class TestResultFiles : public QObject {
     session.exports = {"openvins", "esvo", "kalibr"};
     QTemporaryDir folder;
     const ExportRemarks remarks =
-        writeResultFiles(folder.path().toStdString(), session, run_, "test", "the log\n");
+        writeResultFiles(folder.path().toStdString(), session, shared(run_), "test", "the log\n");
     QCOMPARE(remarks.refused.size(), std::size_t{1});
     QVERIFY(QString::fromStdString(remarks.refused[0]).startsWith("esvo: not exported"));
     for (const char* const file : {"kalibr/imu.yaml", "openvins/kalibr_imu_chain.yaml", "result.yaml"})
@@ -185,7 +189,7 @@ class TestResultFiles : public QObject {
     run.result.cameras[0].normalised_rms = inf;
     run.result.cross_validation->quantities[0].difference = nan;
     QTemporaryDir folder;
-    writeResultFiles(folder.path().toStdString(), simulated_.session, run, "test", "log");
+    writeResultFiles(folder.path().toStdString(), simulated_.session, shared(run), "test", "log");
     const QString text = checkedText(readFile(folder.filePath("report.html")));
     QVERIFY2(text.contains("Calibration of"), qPrintable(text.left(400)));
   }
@@ -205,7 +209,7 @@ class TestResultFiles : public QObject {
     found.image.cells = {{{86.5, 129.5}, 0, std::numeric_limits<double>::infinity()},
                          {{259.5, 129.5}, 1234, 0.021}};
     QTemporaryDir folder;
-    writeResultFiles(folder.path().toStdString(), simulated_.session, run, "test", "log");
+    writeResultFiles(folder.path().toStdString(), simulated_.session, shared(run), "test", "log");
     const QString page = readFile(folder.filePath("report.html")), text = checkedText(page);
     QVERIFY2(page.contains("<section id=\"intrinsics\">"), qPrintable(text.left(400)));
     for (const char* said : {"Intrinsics as calibrated first", "no views reach the <left> side",
@@ -249,7 +253,7 @@ class TestResultFiles : public QObject {
     for (BoardView& view : run.pass.cameras[0].views)
       std::erase_if(view.circles, [](const CircleObservation& c) { return c.centre_px.x() > 120.0; });
     QTemporaryDir folder;
-    writeResultFiles(folder.path().toStdString(), simulated_.session, run, "test", "log");
+    writeResultFiles(folder.path().toStdString(), simulated_.session, shared(run), "test", "log");
     const QString text = checkedText(readFile(folder.filePath("report.html")));
     for (const char* said : {"gap of 0.3 s", "without losses", "Turn about the z axis", "top right"})
       QVERIFY2(text.contains(said), said);

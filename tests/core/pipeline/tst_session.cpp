@@ -166,8 +166,8 @@ class TestSession : public QObject {
                                       "    accelerometer_random_walk: 3e-4\n");
     writeSession(walks, folder() / "again.yaml");
     const SessionImu again = readSession(folder() / "again.yaml").imus.at(0);
-    QCOMPARE(again.gyroscope_random_walk, 2e-5);
-    QCOMPARE(again.accelerometer_random_walk, 3e-4);
+    QCOMPARE(again.noise.gyroscope_random_walk, 2e-5);
+    QCOMPARE(again.noise.accelerometer_random_walk, 3e-4);
   }
 
   void sensors_mayHaveTheirOwnRecordings() {

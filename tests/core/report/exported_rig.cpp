@@ -55,33 +55,35 @@ cv::Mat matrixK(const std::vector<double>& k) {
 
 NamedResult rig(const RigKind& kind) {
   NamedResult named;
-  named.names.reference = kind.inertial ? "left imu" : "left";
-  named.names.version = "0.1.0";
+  CalibrationResult result;
+  named.reference = kind.inertial ? "left imu" : "left";
+  named.version = "0.1.0";
   const char* const names[] = {"left", "right", "third"};
   for (int i = 0; i < kind.cameras; ++i) {
-    named.names.cameras.emplace_back(names[i]);
-    named.names.camera_streams.push_back(std::string("/") + names[i] + "/events");
-    named.names.intrinsics.emplace_back(intrinsics(kind, i));
+    named.cameras.push_back({names[i], std::string("/") + names[i] + "/events"});
     CameraState camera;
+    camera.lens = givenLens(intrinsics(kind, i));
     camera.reference_from_camera = {quaternionExp({1.1 + 0.01 * i, -0.7 + 0.02 * i, 0.6}),
                                     {0.03, -0.01, 0.02}};
     camera.reference_from_camera.translation_m +=
         camera.reference_from_camera.rotation * Eigen::Vector3d(0.1 * i, 0.002 * i, 0.0);
     camera.time_offset_s = i == 0 ? 0.007301 : -0.0021;
-    named.result.state.cameras.push_back(camera);
+    result.state.cameras.push_back(camera);
     CameraFit fit;
     fit.reprojection_rms_px = 0.125;
     fit.windows_used = 300;
-    named.result.cameras.push_back(fit);
+    result.cameras.push_back(fit);
   }
   for (int i = 0; kind.inertial && i < 2; ++i) {
-    named.names.imus.emplace_back(i == 0 ? "left imu" : "far_imu");
-    named.names.known_of_imus.push_back(
-        {i == 0 ? "/left/imu" : "/far/imu", ImuNoise{1.5e-4, 1.75e-3}, 2e-5, 3e-4, 997.5});
-    named.result.state.imus.push_back(imu(kind.mapped, i));
-    named.result.imus.push_back({0.002, 0.05});
+    named.imus.push_back({i == 0 ? "left imu" : "far_imu",
+                          i == 0 ? "/left/imu" : "/far/imu",
+                          {1.5e-4, 1.75e-3, 2e-5, 3e-4},
+                          997.5});
+    result.state.imus.push_back(imu(kind.mapped, i));
+    result.imus.push_back({0.002, 0.05});
   }
-  named.result.state.gravity_in_world_m_s2 = {0.1, 9.7, 1.4};
+  result.state.gravity_in_world_m_s2 = {0.1, 9.7, 1.4};
+  named.result = std::make_shared<const CalibrationResult>(std::move(result));
   return named;
 }
 
@@ -104,8 +106,8 @@ Lens fisheyeLens(const std::vector<double>& k, const std::vector<double>& distor
 }
 
 double worstDifference_px(const NamedResult& result, std::size_t camera, const ReadCamera& theirs) {
-  const CameraState& ours = result.result.state.cameras.at(camera);
-  const CameraIntrinsics own = result.names.intrinsics.at(camera).value();
+  const CameraState& ours = result.result->state.cameras.at(camera);
+  const CameraIntrinsics own = ours.lens.inUse().value();
   double worst_px = 0.0;
   for (const double camera_time_s : {1.3, 2.9})
     for (int row = 0; row < 5; ++row)

@@ -2,6 +2,7 @@
 #include "core/base/error.h"
 #include "core/report/export/distortion_fit.h"
 #include "tests/core/report/exported_rig.h"
+#include "tests/support/own_result.h"
 #include "tests/support/test_program.h"
 
 #include <Eigen/Geometry>
@@ -60,7 +61,7 @@ class TestExportCameras : public QObject {
     const NamedResult result = rig(kind);
     const ExportedFiles exported = exportTo(result, "ros");
     const Lens lens = rosLens(yamlOf(exported, "ros/left.yaml"));
-    const double offset_s = result.result.state.cameras[0].time_offset_s;  // said in a comment
+    const double offset_s = result.result->state.cameras[0].time_offset_s;  // said in a comment
     const QString script = QString::fromStdString(contentOf(exported, "ros/static_transforms.sh"));
     QVERIFY(script.contains("left 0.007301 s"));
     const auto tf = QRegularExpression(
@@ -95,7 +96,7 @@ class TestExportCameras : public QObject {
     const Eigen::Quaterniond upright =
         Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) *
         Eigen::AngleAxisd(0.5 * 3.14159265358979323846, Eigen::Vector3d::UnitY());
-    result.result.state.cameras[0].reference_from_camera.rotation = upright;
+    test::ownResult(result).state.cameras[0].reference_from_camera.rotation = upright;
     const auto joint =
         QRegularExpression(
             "left_optical_frame\"/>\\s*<origin xyz=\"\\S+ \\S+ \\S+\" rpy=\"(\\S+) (\\S+) (\\S+)\"")
@@ -117,7 +118,7 @@ class TestExportCameras : public QObject {
     const YAML::Node left = yamlOf(exported, "esvo2/left.yaml"), right = yamlOf(exported, "esvo2/right.yaml");
     const Eigen::Matrix4d imu_from_left = pose(dataMatrix(left["T_b_c"]));
     const Eigen::Matrix4d right_from_left = pose(dataMatrix(right["T_right_left"]));
-    const auto& cameras = result.result.state.cameras;
+    const auto& cameras = result.result->state.cameras;
     QVERIFY(worstDifference_px(
                 result, 0, {imu_from_left.inverse(), cameras[0].time_offset_s, rosLens(left)}) < kSame_px);
     QVERIFY(worstDifference_px(result, 1,
@@ -143,9 +144,9 @@ class TestExportCameras : public QObject {
   void esvo_findsTheLeftCamera() {
     const NamedResult result = rig({});
     NamedResult swapped = result;
-    std::swap(swapped.names.cameras[0], swapped.names.cameras[1]);
-    std::swap(swapped.names.intrinsics[0], swapped.names.intrinsics[1]);
-    std::swap(swapped.result.state.cameras[0], swapped.result.state.cameras[1]);
+    std::swap(swapped.cameras[0], swapped.cameras[1]);
+    CalibrationState& state = test::ownResult(swapped).state;
+    std::swap(state.cameras[0], state.cameras[1]);
     QVERIFY(contentOf(exportTo(result, "esvo"), "esvo/left.yaml") ==
             contentOf(exportTo(swapped, "esvo"), "esvo/left.yaml"));
     RigKind one;
@@ -179,7 +180,7 @@ class TestExportCameras : public QObject {
     const Eigen::Matrix4d second_from_first =
         matrix(numbers(root["cameras"]["C1"]["transformationToC0"]), 4, 4);
     const auto undistorted = [&](std::size_t i, const Eigen::Vector3d& p) {
-      const CameraIntrinsics& own = *result.names.intrinsics[i];
+      const CameraIntrinsics& own = *result.result->state.cameras[i].lens.inUse();
       return Eigen::Vector3d((own.focal_length_px.array() * p.hnormalized().array()).matrix().homogeneous() +
                              Eigen::Vector3d(own.principal_point_px.x(), own.principal_point_px.y(), 0.0));
     };
@@ -202,7 +203,7 @@ class TestExportCameras : public QObject {
     const Lens lens =
         radtanLens({k.at<double>(0, 0), k.at<double>(1, 1), k.at<double>(0, 2), k.at<double>(1, 2)},
                    std::vector<double>(distortion.begin<double>(), distortion.end<double>()));
-    const CameraState& camera = result.result.state.cameras[0];
+    const CameraState& camera = result.result->state.cameras[0];
     const Eigen::Matrix4d reference_from_camera =
         poseOf(camera.reference_from_camera.rotation, camera.reference_from_camera.translation_m);
     QVERIFY(worstDifference_px(result, 0, {reference_from_camera.inverse(), camera.time_offset_s, lens}) <
@@ -216,7 +217,7 @@ class TestExportCameras : public QObject {
     RigKind kind;
     kind.fisheye = true;
     NamedResult result = rig(kind);
-    result.names.intrinsics[0]->focal_length_px = {110.0, 110.0};
+    test::ownResult(result).state.cameras[0].lens.seen_with->focal_length_px = {110.0, 110.0};
     try {
       exportTo(result, "metavision");
       QFAIL("taken");
@@ -245,7 +246,7 @@ class TestExportCameras : public QObject {
     };
     for (std::size_t i = 0; i < 2; ++i) {
       const YAML::Node place = root["EXTRI"]["SO3_CjToBr"][i];
-      QCOMPARE(place["key"].as<std::string>(), result.names.camera_streams[i]);
+      QCOMPARE(place["key"].as<std::string>(), result.cameras[i].stream);
       const YAML::Node camera = root["INTRI"]["Camera"][i]["value"], data = camera["ptr_wrapper"]["data"];
       const auto f = numbers(data["focal_length"]), c = numbers(data["principal_point"]),
                  d = numbers(data["disto_param"]);
@@ -265,7 +266,7 @@ class TestExportCameras : public QObject {
     QCOMPARE(cameras[1]["value"]["polymorphic_id"].as<unsigned>(), 1U);
     QCOMPARE(cameras[1]["value"]["ptr_wrapper"]["id"].as<unsigned>(), 2147483652U);
     for (std::size_t i = 0; i < 2; ++i) {
-      const ImuState& state = result.result.state.imus[i];
+      const ImuState& state = result.result->state.imus[i];
       const YAML::Node data = root["INTRI"]["IMU"][i]["value"]["ptr_wrapper"]["data"];
       const auto mapping = [&](const char* sensor) {
         const Eigen::VectorXd m = vector(data[sensor]["MAP_COEFF"]);

@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/report/export/distortion_fit.h"
 #include "tests/core/report/exported_rig.h"
+#include "tests/support/own_result.h"
 #include "tests/support/test_program.h"
 
 #include <Eigen/LU>
@@ -81,7 +82,7 @@ class TestExportInertial : public QObject {
     for (std::size_t i = 0; i < 2; ++i) {
       const YAML::Node imu = imus[numbered("imu", static_cast<Eigen::Index>(i))];
       QCOMPARE(imu["model"].as<std::string>(), std::string(mapped ? "scale-misalignment" : "calibrated"));
-      const ImuState& state = result.result.state.imus[i];
+      const ImuState& state = result.result->state.imus[i];
       turns.emplace_back(Eigen::Matrix3d::Identity());
       if (!mapped) continue;
       const Eigen::Matrix3d lower = rowsMatrix(imu["accelerometers"]["M"]),
@@ -109,7 +110,7 @@ class TestExportInertial : public QObject {
     QVERIFY((step - rowsMatrix(yamlOf(exported, "kalibr/camchain.yaml")["cam1"]["T_cn_cnm1"])).norm() <
             1e-15);
     // T_i_b takes points of the reference (in Kalibr's frames) to this IMU.
-    const ImuState& far = result.result.state.imus[1];
+    const ImuState& far = result.result->state.imus[1];
     const Eigen::Vector3d in_far(0.3, -0.2, 0.5), in_reference = far.reference_from_imu * in_far;
     const Eigen::Vector4d read = Eigen::Matrix4d(rowsMatrix(imus["imu1"]["T_i_b"])) *
                                  Eigen::Vector3d(turns[0] * in_reference).homogeneous();
@@ -124,7 +125,7 @@ class TestExportInertial : public QObject {
   // PyYAML takes 1e-05 for a string, OpenCV and ORB-SLAM3 take 0 for an integer.
   void numbers_haveDecimalPoints() {
     NamedResult result = rig({});
-    result.result.state.cameras[0].time_offset_s = 1e-5;
+    test::ownResult(result).state.cameras[0].time_offset_s = 1e-5;
     const ExportedFiles exported = exportTo(result, "kalibr");
     QVERIFY(contentOf(exported, "kalibr/camchain-imucam.yaml").find("timeshift_cam_imu: 1.0e-05\n") !=
             std::string::npos);
@@ -135,13 +136,14 @@ class TestExportInertial : public QObject {
     kind.third_radial = true;
     const NamedResult result = rig(kind);
     const ExportedFiles exported = exportTo(result, "kalibr");
-    const FittedCamera fitted = fitDistortion(*result.names.intrinsics[0], CameraModel::PinholeRadtan, 4);
+    const FittedCamera fitted =
+        fitDistortion(*result.result->state.cameras[0].lens.inUse(), CameraModel::PinholeRadtan, 4);
     QVERIFY(fitted.worst_px > 1e-6 && fitted.worst_px < 2.0);
     const YAML::Node imu = yamlOf(exported, "kalibr/imu.yaml")["imu0"],
                      camera = yamlOf(exported, "kalibr/camchain-imucam.yaml")["cam0"];
     QCOMPARE(camera["distortion_coeffs"].size(), 4U);
     const Eigen::Matrix3d turn =
-        rowsMatrix(imu["accelerometers"]["M"]).inverse() * result.result.state.imus[0].accelerometer_mapping;
+        rowsMatrix(imu["accelerometers"]["M"]).inverse() * result.result->state.imus[0].accelerometer_mapping;
     const double worst_px =
         worstDifference_px(result, 0,
                            {rowsMatrix(camera["T_cam_imu"]), camera["timeshift_cam_imu"].as<double>(),
@@ -166,7 +168,7 @@ class TestExportInertial : public QObject {
                                   kalibrLens(camera)}) < kSame_px);
     }
     QCOMPARE(imu["model"].as<std::string>(), std::string("rpng"));
-    const ImuState& state = result.result.state.imus[0];
+    const ImuState& state = result.result->state.imus[0];
     const Eigen::Matrix3d tw = rowsMatrix(imu["Tw"]), ta = rowsMatrix(imu["Ta"]),
                           to_gyro = rowsMatrix(imu["R_IMUtoGYRO"]), to_acc = rowsMatrix(imu["R_IMUtoACC"]);
     // rpng uses the upper triangles of the inverses only.
@@ -244,7 +246,7 @@ class TestExportInertial : public QObject {
     };
     const Eigen::Matrix4d imu_from_first = dataMatrix(settings["IMU.T_b_c1"]);
     const Eigen::Matrix4d first_from_second = dataMatrix(settings["Stereo.T_c1_c2"]);
-    const auto& cameras = result.result.state.cameras;
+    const auto& cameras = result.result->state.cameras;
     // The stamps are to be shifted by what the comment and the note say.
     QVERIFY(QString::fromStdString(exported.notes.back()).contains("0.007301 s (left) -0.0021 s (right)"));
     QVERIFY(worstDifference_px(result, 0, {imu_from_first.inverse(), cameras[0].time_offset_s, lens(1)}) <
@@ -283,7 +285,7 @@ class TestExportInertial : public QObject {
     a(2, 2) += accelerometer[8];
     for (int i = 0; i < 9; ++i) g(i % 3, i / 3) += gyroscope[static_cast<std::size_t>(3 + i)];
     const Eigen::Vector3d a_bias(accelerometer.data()), g_bias(gyroscope.data());
-    const ImuState& state = result.result.state.imus[0];
+    const ImuState& state = result.result->state.imus[0];
     const Eigen::Matrix3d turn = a * state.accelerometer_mapping;  // Basalt's IMU frame from ours
     QVERIFY(isRotation(turn));
     QVERIFY(worstMeasured(state, [&](const Eigen::Vector3d& force, const Eigen::Vector3d& rate) {
@@ -316,12 +318,12 @@ class TestExportInertial : public QObject {
     kind.mapped = false;
     const NamedResult result = rig(kind);
     const FittedCamera fitted =
-        fitDistortion(*result.names.intrinsics[0], CameraModel::PinholeEquidistant, 4);
+        fitDistortion(*result.result->state.cameras[0].lens.inUse(), CameraModel::PinholeEquidistant, 4);
     const ExportedFiles exported = exportTo(result, "basalt");
     const YAML::Node lens =
         yamlOf(exported, "basalt/calibration.json")["value0"]["intrinsics"][0]["intrinsics"];
     const auto number = [&](const char* key) { return lens[key].as<double>(); };
-    const CameraState& camera = result.result.state.cameras[0];
+    const CameraState& camera = result.result->state.cameras[0];
     Eigen::Isometry3d reference_from_camera = Eigen::Isometry3d::Identity();
     reference_from_camera.linear() = camera.reference_from_camera.rotation.toRotationMatrix();
     reference_from_camera.translation() = camera.reference_from_camera.translation_m;
@@ -363,7 +365,7 @@ class TestExportInertial : public QObject {
 
   void withoutNoise_notesSaySo() {
     NamedResult result = rig({});
-    result.names.known_of_imus.clear();
+    for (SensorDescription& imu : result.imus) imu = {imu.name};
     const QString notes = QString::fromStdString(exportTo(result, "ultimate-slam").notes.back());
     QVERIFY(notes.contains("rate"));
   }
@@ -392,8 +394,8 @@ class TestExportInertial : public QObject {
 
   void badRequests_areRefused() {
     NamedResult failed = rig({});
-    failed.result.status = CalibrationStatus::Failed;
-    failed.result.reason = "the board was never seen";
+    test::ownResult(failed).status = CalibrationStatus::Failed;
+    test::ownResult(failed).reason = "the board was never seen";
     const auto reason = [](const NamedResult& result, const std::string& target) {
       try {
         exportTo(result, target);
@@ -405,13 +407,14 @@ class TestExportInertial : public QObject {
     QVERIFY(reason(failed, "kalibr").find("the board was never seen") != std::string::npos);
     QVERIFY(reason(rig({}), "opnvins").find("Did you mean 'openvins'?") != std::string::npos);
     NamedResult unset = rig({});
-    unset.result.state.cameras[1].time_offset_s = std::numeric_limits<double>::quiet_NaN();
+    test::ownResult(unset).state.cameras[1].time_offset_s = std::numeric_limits<double>::quiet_NaN();
     QVERIFY(reason(unset, "kalibr").find("cameras.right: has numbers that are none") != std::string::npos);
     unset = rig({});
-    unset.result.state.imus[1].accelerometer_mapping(0, 2) = std::numeric_limits<double>::infinity();
+    test::ownResult(unset).state.imus[1].accelerometer_mapping(0, 2) =
+        std::numeric_limits<double>::infinity();
     QVERIFY(reason(unset, "ros").find("imus.") != std::string::npos);
     NamedResult bare = rig({});
-    bare.names.intrinsics[1].reset();
+    test::ownResult(bare).state.cameras[1].lens = {};
     QVERIFY(reason(bare, "ros").find("cameras.right") != std::string::npos);
   }
 };

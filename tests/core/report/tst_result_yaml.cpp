@@ -4,6 +4,7 @@
 #include "core/report/csv.h"
 #include "core/report/result_table.h"
 #include "core/report/truth_comparison.h"
+#include "tests/support/own_result.h"
 #include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
@@ -17,20 +18,18 @@ namespace {
 
 NamedResult sample() {
   NamedResult named;
-  named.names = {"left_imu", {"left", "1 odd: name"}, {"left_imu", "far_imu"}, {}, "0.1.0", {}, {}, {}};
+  named.reference = "left_imu";
+  named.cameras = {{"left", "/left/events"}, {"1 odd: name"}};
+  named.imus = {{"left_imu", "/left/imu", {1.0 / 3000.0, 2e-3, 1e-5, 1e-4}, 997.25},
+                {"far_imu", "/far imu: odd"}};
+  named.version = "0.1.0";
   CameraIntrinsics intrinsics;
   intrinsics.resolution_px = {346, 260};
   intrinsics.focal_length_px = {1.0 / 3.0 + 260.0, 255.0};
   intrinsics.principal_point_px = {170.25, 131.0};
   intrinsics.distortion = {-0.3, 0.1, 1e-3, 2e-3, 0.05};
-  named.names.intrinsics = {intrinsics, std::nullopt};
-  named.names.intrinsics_std = {std::array{0.05, 0.06, 0.1, 0.12, 1e-4, 2e-4, 3e-5, 4e-5, 5e-3},
-                                std::nullopt};
-  named.names.options = {{"grid.least_circles", "6", "7", "4", "1000", "", "", {}}};
-  named.names.camera_streams = {"/left/events", ""};
-  named.names.known_of_imus = {{"/left/imu", ImuNoise{1.0 / 3000.0, 2e-3}, 1e-5, 1e-4, 997.25},
-                               {"/far imu: odd", std::nullopt, 0.0, 0.0, 0.0}};
-  CalibrationResult& result = named.result;
+  named.options = {{"grid.least_circles", "6", "7", "4", "1000", "", "", {}}};
+  CalibrationResult& result = test::ownResult(named);
   result.status = CalibrationStatus::Doubtful;
   result.reason = "planar motion: \"z\" is a guess\nand more";
   result.start_ns = 1'700'000'000'123'456'789;
@@ -71,6 +70,8 @@ NamedResult sample() {
     result.cameras.push_back(fit);
     result.imus.push_back({0.002, 0.05});
   }
+  result.state.cameras[0].lens = givenLens(intrinsics);
+  result.uncertainty.cameras[0].intrinsics_std = {0.05, 0.06, 0.1, 0.12, 1e-4, 2e-4, 3e-5, 4e-5, 5e-3};
   result.state.gravity_in_world_m_s2 = {0.1, 9.7, 1.4};
   result.uncertainty.gravity_norm_std_m_s2 = 0.012;
   result.uncertainty.given = {"left.time_offset", "1 odd: name.rotation"};
@@ -110,44 +111,45 @@ class TestResultYaml : public QObject {
 
   void estimates_readBackToTheLastBit() {
     const NamedResult written = sample(), read = readBack(resultYaml(written));
-    QCOMPARE(read.names.cameras, written.names.cameras);
-    QCOMPARE(read.names.imus, written.names.imus);
-    QVERIFY(read.names.intrinsics == written.names.intrinsics);
-    QVERIFY(read.names.intrinsics_std == written.names.intrinsics_std);
-    QVERIFY(read.names.camera_streams == written.names.camera_streams);
-    const std::vector<KnownOfImu>& known = read.names.known_of_imus;
-    QVERIFY(known[0].stream == "/left/imu" && known[1].stream == "/far imu: odd");
-    QVERIFY(known[0].noise->gyroscope_density == 1.0 / 3000.0 && !known[1].noise);
-    QVERIFY(known[0].accelerometer_random_walk == 1e-4 && known[0].rate_hz == 997.25);
-    QVERIFY(read.result.status == CalibrationStatus::Doubtful);
-    QVERIFY(read.result.start_ns == 1'700'000'000'123'456'789);
+    QVERIFY(read.cameras == written.cameras);
+    QVERIFY(read.imus == written.imus);
+    QVERIFY(read.imus[0].stream == "/left/imu" && read.imus[1].stream == "/far imu: odd");
+    QVERIFY(read.imus[0].noise.gyroscope_density == 1.0 / 3000.0 &&
+            (read.imus[1].noise == ImuNoise{0.0, 0.0, 0.0, 0.0}));
+    QVERIFY(read.imus[0].noise.accelerometer_random_walk == 1e-4 && read.imus[0].rate_hz == 997.25);
+    QVERIFY(read.result->status == CalibrationStatus::Doubtful);
+    QVERIFY(read.result->start_ns == 1'700'000'000'123'456'789);
     for (std::size_t i = 0; i < 2; ++i) {
-      const CameraState &a = written.result.state.cameras[i], &b = read.result.state.cameras[i];
+      const CameraState &a = written.result->state.cameras[i], &b = read.result->state.cameras[i];
       QVERIFY(a.reference_from_camera.rotation.coeffs() == b.reference_from_camera.rotation.coeffs());
       QVERIFY(a.reference_from_camera.translation_m == b.reference_from_camera.translation_m);
+      QVERIFY(a.lens == b.lens);
+      const auto& lens_std = written.result->uncertainty.cameras[i].intrinsics_std;
+      QVERIFY(read.result->uncertainty.cameras[i].intrinsics_std == lens_std);
       QVERIFY(a.time_offset_s == b.time_offset_s && a.edge_lead_px == b.edge_lead_px &&
               a.edge_lead_growth_px == b.edge_lead_growth_px);
-      const ImuState &c = written.result.state.imus[i], &d = read.result.state.imus[i];
+      const ImuState &c = written.result->state.imus[i], &d = read.result->state.imus[i];
       QVERIFY(c.gyroscope_bias_rad_s == d.gyroscope_bias_rad_s && c.gyroscope_mapping == d.gyroscope_mapping);
       QVERIFY(c.accelerometer_mapping == d.accelerometer_mapping);
       QVERIFY(c.gyroscope_from_accelerometer.coeffs() == d.gyroscope_from_accelerometer.coeffs());
     }
-    QVERIFY(std::isnan(read.result.uncertainty.cameras[0].edge_lead_std_px));
-    QVERIFY(read.result.uncertainty.correlation(0, 1) == 0.25);
-    QCOMPARE(read.result.cameras[0].windows_complete, 1320);
-    QVERIFY(read.result.cross_validation.has_value());
-    QCOMPARE(read.result.cross_validation->windows[1], 13);
-    QCOMPARE(read.result.cross_validation->quantities.size(), std::size_t{2});
-    QCOMPARE(read.result.cross_validation->quantities[0].normalised(), -0.5);
-    QCOMPARE(read.result.cross_validation->quantities[1].name, std::string("1 odd: name.time_offset"));
+    QVERIFY(std::isnan(read.result->uncertainty.cameras[0].edge_lead_std_px));
+    QVERIFY(read.result->uncertainty.correlation(0, 1) == 0.25);
+    QCOMPARE(read.result->cameras[0].windows_complete, 1320);
+    QVERIFY(read.result->cross_validation.has_value());
+    QCOMPARE(read.result->cross_validation->windows[1], 13);
+    QCOMPARE(read.result->cross_validation->quantities.size(), std::size_t{2});
+    QCOMPARE(read.result->cross_validation->quantities[0].normalised(), -0.5);
+    QCOMPARE(read.result->cross_validation->quantities[1].name, std::string("1 odd: name.time_offset"));
   }
 
   void biasesCsv_hasALineForEveryKnot() {
     NamedResult named = sample();
     QVERIFY(biasesCsv(named).empty());
-    ImuState& imu = named.result.state.imus[1];
+    CalibrationResult& result = test::ownResult(named);
+    ImuState& imu = result.state.imus[1];
     imu.bias_drift = {1.0, 2.0, {{0.1, 0.0, 0.0}, {-0.1, 0.0, 0.0}}, {{0.0, 0.0, 0.5}, {0.0, 0.0, -0.5}}};
-    ImuUncertainty& sigma = named.result.uncertainty.imus[1];
+    ImuUncertainty& sigma = result.uncertainty.imus[1];
     sigma.gyroscope_drift_std_rad_s = {{1e-3, 2e-3, 3e-3}, {4e-3, 5e-3, 6e-3}};
     sigma.accelerometer_drift_std_m_s2 = sigma.gyroscope_drift_std_rad_s;
     const QStringList lines = QString::fromStdString(biasesCsv(named)).trimmed().split('\n');
@@ -163,13 +165,13 @@ class TestResultYaml : public QObject {
 
   void failedRun_isAResultToo() {
     NamedResult failed;
-    failed.result.status = CalibrationStatus::Failed;
-    failed.result.reason = "the board was never seen";
+    test::ownResult(failed).status = CalibrationStatus::Failed;
+    test::ownResult(failed).reason = "the board was never seen";
     const NamedResult read = readBack(resultYaml(failed));
-    QVERIFY(read.result.status == CalibrationStatus::Failed);
-    QCOMPARE(read.result.reason, failed.result.reason);
-    QVERIFY(read.result.state.cameras.empty());
-    QVERIFY(!read.result.start_ns);
+    QVERIFY(read.result->status == CalibrationStatus::Failed);
+    QCOMPARE(read.result->reason, failed.result->reason);
+    QVERIFY(read.result->state.cameras.empty());
+    QVERIFY(!read.result->start_ns);
   }
 
   void result_thatIsNone_isRefused_data() {
@@ -213,10 +215,10 @@ class TestResultYaml : public QObject {
   void comparison_givesErrorsInReferenceAxesAndSigmas() {
     const NamedResult truth = sample();
     NamedResult result = truth;
-    RigidTransform& pose = result.result.state.cameras[0].reference_from_camera;
+    RigidTransform& pose = result.result->state.cameras[0].reference_from_camera;
     pose.rotation = quaternionExp(Eigen::Vector3d(0.0, 3e-4, 0.0)) * pose.rotation;
     pose.translation_m.z() -= 4e-4;
-    result.result.state.cameras[0].time_offset_s += 6e-5;
+    result.result->state.cameras[0].time_offset_s += 6e-5;
     const TruthComparison comparison = compareWithTruth(result, truth);
     const auto normalised = [&](const std::string& name) {
       for (const QuantityDifference& q : comparison.quantities)
