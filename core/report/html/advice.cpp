@@ -109,7 +109,7 @@ void adviseLens(const std::string& name, const CameraMeasures& camera, const Cam
                 std::vector<Advice>& all) {
   constexpr int kLeast = 50;
   double largest_px = 0.0;
-  for (const ImageCell& cell : camera.cells)
+  for (const SensorCell& cell : camera.cells)
     if (cell.residuals >= kLeast) largest_px = std::max(largest_px, cell.mean_residual_px.norm());
   constexpr double kBias_px = 0.1;
   if (largest_px > std::max(kBias_px, 0.7 * fit.reprojection_rms_px))

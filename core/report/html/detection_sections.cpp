@@ -93,7 +93,7 @@ std::string outcomeTable(const CameraMeasures& camera) {
 PlotTable cellTable(const CameraMeasures& camera, std::size_t index) {
   PlotTable cells(fmt::format("plots/camera{}_coverage.csv", index + 1),
                   {"x_low_px", "x_high_px", "y_low_px", "y_high_px", "circles"});
-  for (const ImageCell& cell : camera.cells)
+  for (const SensorCell& cell : camera.cells)
     cells.add({cell.low_px.x(), cell.high_px.x(), cell.low_px.y(), cell.high_px.y(),
                static_cast<double>(cell.circles)});
   return cells;

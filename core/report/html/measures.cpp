@@ -13,14 +13,14 @@ Eigen::Vector2d onSensor(const std::optional<CameraIntrinsics>& intrinsics, cons
   return intrinsics ? pixelFromIdeal(*intrinsics, ideal_px) : ideal_px;
 }
 
-std::vector<ImageCell> makeCells(const Resolution& resolution_px) {
-  std::vector<ImageCell> cells;
+std::vector<SensorCell> makeCells(const Resolution& resolution_px) {
+  std::vector<SensorCell> cells;
   if (!resolution_px.known()) return cells;
   const Eigen::Vector2d size_px(static_cast<double>(resolution_px.width_px) / CameraMeasures::kCols,
                                 static_cast<double>(resolution_px.height_px) / CameraMeasures::kRows);
   for (int row = 0; row < CameraMeasures::kRows; ++row) {
     for (int col = 0; col < CameraMeasures::kCols; ++col) {
-      ImageCell& cell = cells.emplace_back();
+      SensorCell& cell = cells.emplace_back();
       cell.low_px = size_px.cwiseProduct(Eigen::Vector2d(col, row));
       cell.high_px = cell.low_px + size_px;
     }
@@ -28,7 +28,7 @@ std::vector<ImageCell> makeCells(const Resolution& resolution_px) {
   return cells;
 }
 
-ImageCell* cellAt(CameraMeasures& camera, const Eigen::Vector2d& pixel) {
+SensorCell* cellAt(CameraMeasures& camera, const Eigen::Vector2d& pixel) {
   if (camera.cells.empty() || !pixel.allFinite()) return nullptr;
   const int col =
       static_cast<int>(std::floor(pixel.x() * CameraMeasures::kCols / camera.resolution_px.width_px));
@@ -50,7 +50,7 @@ void addDetections(const BoardObservations& observations, const std::optional<Ca
     camera.partial += view.kind == ViewKind::Partial ? 1 : 0;
     for (const CircleObservation& circle : view.circles) {
       camera.centres_px.push_back(onSensor(intrinsics, circle.centre_px));
-      if (ImageCell* const cell = cellAt(camera, camera.centres_px.back())) ++cell->circles;
+      if (SensorCell* const cell = cellAt(camera, camera.centres_px.back())) ++cell->circles;
     }
   }
 }
@@ -81,12 +81,12 @@ void addResiduals(const ReportData& data, std::size_t index,
                   const std::optional<CameraIntrinsics>& intrinsics, CameraMeasures& camera) {
   for (const CircleResidual& residual : data.named.result->circle_residuals) {
     if (residual.camera != static_cast<int>(index) || !residual.used) continue;
-    ImageCell* const cell = cellAt(camera, onSensor(intrinsics, residual.centre_px));
+    SensorCell* const cell = cellAt(camera, onSensor(intrinsics, residual.centre_px));
     if (cell == nullptr) continue;
     ++cell->residuals;
     cell->mean_residual_px += residual.residual_px;
   }
-  for (ImageCell& cell : camera.cells)
+  for (SensorCell& cell : camera.cells)
     if (cell.residuals > 0) cell.mean_residual_px /= cell.residuals;
 }
 
@@ -149,7 +149,7 @@ ImuMeasures measureImu(const ReportData& data, std::size_t index) {
 double CameraMeasures::coveredShare() const {
   if (cells.empty()) return 0.0;
   const auto seen =
-      std::count_if(cells.begin(), cells.end(), [](const ImageCell& c) { return c.circles > 0; });
+      std::count_if(cells.begin(), cells.end(), [](const SensorCell& c) { return c.circles > 0; });
   return static_cast<double>(seen) / static_cast<double>(cells.size());
 }
 

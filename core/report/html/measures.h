@@ -13,7 +13,7 @@
 namespace evical::html {
 
 // One cell of the image plane: how many circles were measured in it, and the mean of their residuals.
-struct ImageCell {
+struct SensorCell {
   Eigen::Vector2d low_px = Eigen::Vector2d::Zero(), high_px = Eigen::Vector2d::Zero();  // on the sensor
   int circles = 0, residuals = 0;
   Eigen::Vector2d mean_residual_px = Eigen::Vector2d::Zero();  // predicted - measured
@@ -33,7 +33,7 @@ struct CameraMeasures {
   int windows = 0, views = 0, partial = 0;
   double duration_s = 0.0;
   std::vector<Eigen::Vector2d> centres_px;  // on the sensor
-  std::vector<ImageCell> cells;             // row by row; empty where the resolution is unknown
+  std::vector<SensorCell> cells;            // row by row; empty where the resolution is unknown
   std::vector<BoardPose> poses;             // empty without a trajectory
 
   double detectionRate() const { return windows > 0 ? static_cast<double>(views) / windows : 0.0; }

@@ -55,7 +55,7 @@ void writeBias(const CameraMeasures& camera, std::size_t index, ReportPage& page
   PlotTable bias(fmt::format("plots/camera{}_bias.csv", index + 1),
                  {"x_px", "y_px", "dx_px", "dy_px", "circles"});
   double largest_px = 1e-6;
-  for (const ImageCell& cell : camera.cells) {
+  for (const SensorCell& cell : camera.cells) {
     if (cell.residuals < kLeast) continue;
     const Eigen::Vector2d middle = 0.5 * (cell.low_px + cell.high_px);
     bias.add({middle.x(), middle.y(), cell.mean_residual_px.x(), cell.mean_residual_px.y(),
