@@ -22,8 +22,8 @@ std::string poseText(const RigidTransform& pose) {
                      real(q.w()));
 }
 
-std::string cameraText(const Rig& rig, const RigCamera& camera) {
-  const CameraIntrinsics own = cameraFor(rig, camera, kModels);
+std::string cameraText(const RigCamera& camera, ExportNotes& notes) {
+  const CameraIntrinsics own = cameraFor(camera, kModels, notes);
   const auto& d = own.distortion;
   return fmt::format(
       R"({{"camera_type": "kb4", "intrinsics": {{"fx": {}, "fy": {}, "cx": {}, "cy": {}, "k1": {}, "k2": {}, )"
@@ -55,12 +55,12 @@ std::string correctionText(const RigImu& imu, const LowerTriangularImu& lower) {
                      realList(gyroscope_bias), rowMajor(g.transpose()));
 }
 
-std::string noiseText(const Rig& rig, const RigImu& imu) {
-  const StatedNoise noise = statedNoise(rig, imu);
+std::string noiseText(const RigImu& imu, ExportNotes& notes) {
+  const StatedNoise noise = statedNoise(imu, notes);
   const auto line = [](const char* key, double value) {
     return fmt::format("    \"{}\": [{}],\n", key, realList(std::vector<double>(3, value)));
   };
-  return fmt::format("    \"imu_update_rate\": {},\n", real(statedRate_hz(rig, imu))) +
+  return fmt::format("    \"imu_update_rate\": {},\n", real(statedRate_hz(imu, notes))) +
          line("accel_noise_std", noise.accelerometer_density) +
          line("gyro_noise_std", noise.gyroscope_density) +
          line("accel_bias_std", noise.accelerometer_random_walk) +
@@ -71,22 +71,22 @@ std::string noiseText(const Rig& rig, const RigImu& imu) {
 
 ExportedFiles exportBasalt(const NamedResult& result) {
   ExportedFiles exported;
-  const Rig rig = rigOf(result, exported.notes);
+  const Rig rig = rigOf(result);
   const RigImu& imu = neededImu(rig, kProgram);
-  noteLostImus(rig, kProgram);
-  noteLostOffsets(rig, kProgram);
+  noteLostImus(rig, kProgram, exported.notes);
+  noteLostOffsets(rig, kProgram, exported.notes);
   const LowerTriangularImu lower = lowerTriangular(imu.state);
   std::string text = "{\n  \"value0\": {\n    \"T_imu_cam\": ";
   text += perCamera(rig, [&](const RigCamera& camera) {
     return poseText(turnOf(lower.other_from_imu) * camera.reference_from_camera);
   });
   text += ",\n    \"intrinsics\": " +
-          perCamera(rig, [&](const RigCamera& camera) { return cameraText(rig, camera); });
+          perCamera(rig, [&](const RigCamera& camera) { return cameraText(camera, exported.notes); });
   text += ",\n    \"resolution\": " + perCamera(rig, [](const RigCamera& camera) {
             return fmt::format("[{}, {}]", camera.intrinsics.resolution_px.width_px,
                                camera.intrinsics.resolution_px.height_px);
           });
-  text += ",\n" + correctionText(imu, lower) + noiseText(rig, imu);
+  text += ",\n" + correctionText(imu, lower) + noiseText(imu, exported.notes);
   text += fmt::format("    \"cam_time_offset_ns\": {},\n    \"vignette\": []\n  }}\n}}\n",
                       std::llround(1e9 * rig.cameras[0].time_offset_s));
   exported.files.push_back({"calibration.json", text});

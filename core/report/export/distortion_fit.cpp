@@ -111,7 +111,7 @@ FittedCamera fitDistortion(const CameraIntrinsics& camera, CameraModel model, in
   return fitted;
 }
 
-CameraIntrinsics cameraFor(const Rig& rig, const RigCamera& camera, const KnownModels& known) {
+CameraIntrinsics cameraFor(const RigCamera& camera, const KnownModels& known, ExportNotes& notes) {
   const CameraIntrinsics& own = camera.intrinsics;
   const bool radtan = own.model == CameraModel::PinholeRadtan;
   const bool third = radtan && own.distortion[4] != 0.0;
@@ -128,7 +128,7 @@ CameraIntrinsics cameraFor(const Rig& rig, const RigCamera& camera, const KnownM
         fmt::format("{} has no place for {}, and the nearest lens that it knows is off by up to {:.3g} px",
                     known.program, have, fitted.worst_px),
         "Calibrate the intrinsics with a model that it knows");
-  rig.notes->push_back(
+  notes.push_back(
       fmt::format("{}: {} has no place for {}: refitted over the whole image as {} with {} coefficients, off "
                   "by {:.2g} px RMS, "
                   "{:.2g} px at most",

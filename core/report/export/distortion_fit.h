@@ -25,7 +25,7 @@ struct KnownModels {
 
 // The camera as it is where the program can hold it; else refitted, with a note of the error; where that is
 // more than 2 px anywhere in the image, throws CalibrationError (BadInput).
-CameraIntrinsics cameraFor(const Rig& rig, const RigCamera& camera, const KnownModels& known);
+CameraIntrinsics cameraFor(const RigCamera& camera, const KnownModels& known, ExportNotes& notes);
 
 // In the program's words, 4 or 5 numbers: OpenCV's order, k3 (`coefficients` = 5) last.
 std::vector<double> distortionOf(const CameraIntrinsics& camera, int coefficients);

@@ -37,9 +37,9 @@ std::string metadata(const std::string& comment) {
                      jsonText(comment));
 }
 
-std::string cameraText(const Rig& rig, std::size_t i) {
+std::string cameraText(const Rig& rig, std::size_t i, ExportNotes& notes) {
   const RigCamera& camera = rig.cameras[i];
-  const CameraIntrinsics own = cameraFor(rig, camera, kModels);
+  const CameraIntrinsics own = cameraFor(camera, kModels, notes);
   const bool radtan = own.model == CameraModel::PinholeRadtan;
   const std::vector<double> d = distortionOf(own, radtan && own.distortion[4] != 0.0 ? 5 : 4);
   const RigidTransform this_from_first =
@@ -60,8 +60,8 @@ std::string cameraText(const Rig& rig, std::size_t i) {
 }
 
 // The sensor's limits are on its data sheet, not in a calibration: 0 means not known.
-std::string imuText(const Rig& rig, const RigImu& imu) {
-  const StatedNoise noise = statedNoise(rig, imu);
+std::string imuText(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
+  const StatedNoise noise = statedNoise(imu, notes);
   const auto number = [](const char* key, double value) { return field(key, quoted(value), 6); };
   return "    \"S0\": {\n" + field("name", jsonText(imu.file_name), 6) + number("omegaMax", 0.0) +
          number("accMax", 0.0) + field("omegaOffsetAvg", quotedList(imu.state.gyroscope_bias_rad_s), 6) +
@@ -96,17 +96,18 @@ std::string stereoText(const Rig& rig) {
 
 ExportedFiles exportDvProcessing(const NamedResult& result) {
   ExportedFiles exported;
-  const Rig rig = rigOf(result, exported.notes);
+  const Rig rig = rigOf(result);
   std::string text = "{\n  \"version\": \"2.0\",\n  \"cameras\": {\n";
-  for (std::size_t i = 0; i < rig.cameras.size(); ++i) text += (i == 0 ? "" : ",\n") + cameraText(rig, i);
+  for (std::size_t i = 0; i < rig.cameras.size(); ++i)
+    text += (i == 0 ? "" : ",\n") + cameraText(rig, i, exported.notes);
   text += "\n  }";
   if (!rig.imus.empty()) {
-    noteLostImus(rig, kProgram);
-    noteLostOffsets(rig, kProgram);
-    noteLostMapping(rig, rig.imus[0], kProgram);
-    text += ",\n  \"imus\": {\n" + imuText(rig, rig.imus[0]) + "\n  }";
+    noteLostImus(rig, kProgram, exported.notes);
+    noteLostOffsets(rig, kProgram, exported.notes);
+    noteLostMapping(rig.imus[0], kProgram, exported.notes);
+    text += ",\n  \"imus\": {\n" + imuText(rig, rig.imus[0], exported.notes) + "\n  }";
   }
-  if (rig.imus.empty()) noteNoOffsets(rig, kProgram);
+  if (rig.imus.empty()) noteNoOffsets(rig, kProgram, exported.notes);
   if (rig.cameras.size() > 1) text += ",\n  \"stereo\": {\n" + stereoText(rig) + "\n  }";
   exported.files.push_back({"calibration.json", text + "\n}\n"});
   exported.notes.emplace_back(

@@ -138,8 +138,8 @@ std::string parameterFile(const Rig& rig) {
 
 ExportedFiles exportEkalibr(const NamedResult& result) {
   ExportedFiles exported;
-  Rig rig = rigOf(result, exported.notes);
-  for (RigCamera& camera : rig.cameras) camera.intrinsics = cameraFor(rig, camera, kModels);
+  Rig rig = rigOf(result);
+  for (RigCamera& camera : rig.cameras) camera.intrinsics = cameraFor(camera, kModels, exported.notes);
   exported.files.push_back({"ekalibr_param.yaml", parameterFile(rig)});
   for (const RigCamera& camera : rig.cameras)
     exported.files.push_back(

@@ -11,8 +11,8 @@ namespace evical {
 namespace {
 
 // ESVO's own calibration files have 4 coefficients of plumb_bob.
-CameraIntrinsics esvoCamera(const Rig& rig, const RigCamera& camera, const char* program) {
-  return cameraFor(rig, camera, {program, true, false, true});
+CameraIntrinsics esvoCamera(const RigCamera& camera, const char* program, ExportNotes& notes) {
+  return cameraFor(camera, {program, true, false, true}, notes);
 }
 
 std::string cameraFile(const Rig& rig, const RigCamera& camera, const CameraIntrinsics& own,
@@ -25,17 +25,17 @@ std::string cameraFile(const Rig& rig, const RigCamera& camera, const CameraIntr
 
 ExportedFiles exportPair(const NamedResult& result, const char* program, bool with_imu) {
   ExportedFiles exported;
-  const Rig rig = rigOf(result, exported.notes);
+  const Rig rig = rigOf(result);
   const StereoPair pair = stereoPair(rig, program);
-  noteLostCameras(rig, 2, program);
+  noteLostCameras(rig, 2, program, exported.notes);
   std::string imu_pose;
   if (with_imu) {
-    noteLostImus(rig, program);
-    noteLostMapping(rig, neededImu(rig, program), program);
+    noteLostImus(rig, program, exported.notes);
+    noteLostMapping(neededImu(rig, program), program, exported.notes);
     imu_pose = "T_b_c:\n" + dataMatrix(matrixOf(pair.left.reference_from_camera).topRows<3>(), 2);
   }
-  const CameraIntrinsics left = esvoCamera(rig, pair.left, program);
-  const CameraIntrinsics right = esvoCamera(rig, pair.right, program);
+  const CameraIntrinsics left = esvoCamera(pair.left, program, exported.notes);
+  const CameraIntrinsics right = esvoCamera(pair.right, program, exported.notes);
   const Rectification rectified = rectify(left, right, pair.right_from_left);
   std::string offsets = fmt::format(
       "{} takes no time offset: add {} s to the stamps of {} and {} s to those of {}, so that t_reference "

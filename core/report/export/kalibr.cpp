@@ -13,9 +13,8 @@ namespace {
 
 constexpr KnownModels kModels{"Kalibr", true, false, true};
 
-std::string cameraText(const Rig& rig, std::size_t i) {
+std::string cameraText(const Rig& rig, std::size_t i, const CameraIntrinsics& own) {
   const RigCamera& camera = rig.cameras[i];
-  const CameraIntrinsics own = cameraFor(rig, camera, kModels);
   std::string overlaps;
   for (std::size_t other = 0; other < rig.cameras.size(); ++other)
     if (other != i) overlaps += fmt::format("{}{}", overlaps.empty() ? "" : ", ", other);
@@ -37,21 +36,27 @@ std::string chainText(const Rig& rig, std::size_t i) {
   return "  T_cn_cnm1:\n" + rowsYaml(matrixOf(step), 4);
 }
 
-std::string camchain(const Rig& rig) {
+std::string camchain(const Rig& rig, const std::vector<CameraIntrinsics>& lenses) {
   std::string text = headerComment(rig, {"Kalibr camera chain. T_cn_cnm1 takes points of the camera before "
                                          "to this camera."});
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     text += fmt::format("cam{}:  # {}\n", i, rig.cameras[i].file_name);
     if (i > 0) text += chainText(rig, i);
-    text += cameraText(rig, i);
+    text += cameraText(rig, i, lenses[i]);
   }
   return text;
 }
 
 }  // namespace
 
-std::string kalibrChain(const Rig& rig, const Eigen::Matrix3d& other_from_imu,
-                        const std::vector<std::string>& comment) {
+std::vector<CameraIntrinsics> kalibrLenses(const Rig& rig, ExportNotes& notes) {
+  std::vector<CameraIntrinsics> lenses;
+  for (const RigCamera& camera : rig.cameras) lenses.push_back(cameraFor(camera, kModels, notes));
+  return lenses;
+}
+
+std::string kalibrChain(const Rig& rig, const std::vector<CameraIntrinsics>& lenses,
+                        const Eigen::Matrix3d& other_from_imu, const std::vector<std::string>& comment) {
   std::string text = headerComment(rig, comment);
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     const RigCamera& camera = rig.cameras[i];
@@ -59,13 +64,14 @@ std::string kalibrChain(const Rig& rig, const Eigen::Matrix3d& other_from_imu,
     text += fmt::format("cam{}:  # {}\n  T_cam_imu:\n{}", i, camera.file_name,
                         rowsYaml(matrixOf(camera_from_imu), 4));
     if (i > 0) text += chainText(rig, i);
-    text += cameraText(rig, i) + fmt::format("  timeshift_cam_imu: {}\n", real(camera.time_offset_s));
+    text +=
+        cameraText(rig, i, lenses[i]) + fmt::format("  timeshift_cam_imu: {}\n", real(camera.time_offset_s));
   }
   return text;
 }
 
-std::string kalibrNoise(const Rig& rig, const RigImu& imu, int indent) {
-  const StatedNoise noise = statedNoise(rig, imu);
+std::string kalibrNoise(const RigImu& imu, int indent, ExportNotes& notes) {
+  const StatedNoise noise = statedNoise(imu, notes);
   const std::string blanks(static_cast<std::size_t>(indent), ' ');
   return fmt::format(
       "{0}rostopic: {1}\n{0}update_rate: {2}\n{0}accelerometer_noise_density: {3}  # m/s^2/sqrt(Hz)\n"
@@ -73,8 +79,9 @@ std::string kalibrNoise(const Rig& rig, const RigImu& imu, int indent) {
       "rad/s/sqrt(Hz)\n"
       "{0}gyroscope_random_walk: {6}  # rad/s^2/sqrt(Hz)\n",
       blanks, yamlText(imu.stream.empty() ? fmt::format("/{}", imu.file_name) : imu.stream),
-      real(statedRate_hz(rig, imu)), real(noise.accelerometer_density), real(noise.accelerometer_random_walk),
-      real(noise.gyroscope_density), real(noise.gyroscope_random_walk));
+      real(statedRate_hz(imu, notes)), real(noise.accelerometer_density),
+      real(noise.accelerometer_random_walk), real(noise.gyroscope_density),
+      real(noise.gyroscope_random_walk));
 }
 
 std::string kalibrPlacing(const Rig& rig, const RigImu& imu) {
@@ -104,7 +111,7 @@ std::string mappingText(const RigImu& imu) {
       rowsYaml(lower.gyroscope_rotation, 6));
 }
 
-std::string imuFile(const Rig& rig) {
+std::string imuFile(const Rig& rig, ExportNotes& notes) {
   std::string text = headerComment(
       rig,
       {"Kalibr IMU chain. T_i_b takes points of imu0 to this IMU; time of imu0 = time of this IMU + "
@@ -113,7 +120,7 @@ std::string imuFile(const Rig& rig) {
        "triangular."});
   for (std::size_t i = 0; i < rig.imus.size(); ++i) {
     const RigImu& imu = rig.imus[i];
-    text += fmt::format("imu{}:  # {}\n", i, imu.file_name) + kalibrNoise(rig, imu, 2) +
+    text += fmt::format("imu{}:  # {}\n", i, imu.file_name) + kalibrNoise(imu, 2, notes) +
             kalibrPlacing(rig, imu) + biasComment(imu) + mappingText(imu);
   }
   return text;
@@ -123,15 +130,13 @@ std::string imuFile(const Rig& rig) {
 
 ExportedFiles exportKalibr(const NamedResult& result) {
   ExportedFiles exported;
-  Rig rig = rigOf(result, exported.notes);
-  exported.files.push_back({"camchain.yaml", camchain(rig)});
+  const Rig rig = rigOf(result);
+  const std::vector<CameraIntrinsics> lenses = kalibrLenses(rig, exported.notes);
+  exported.files.push_back({"camchain.yaml", camchain(rig, lenses)});
   if (rig.imus.empty()) {
-    noteNoOffsets(rig, "Kalibr's camchain.yaml");
+    noteNoOffsets(rig, "Kalibr's camchain.yaml", exported.notes);
     return exported;
   }
-  std::vector<std::string> same_notes;  // of the cameras, once more
-  Rig quiet = rig;
-  quiet.notes = &same_notes;
   const Eigen::Matrix3d turn = lowerTriangular(rig.imus.front().state).other_from_imu;
   std::vector<std::string> comment{
       "Kalibr camera-IMU chain. T_cam_imu takes points of the IMU to the camera; t_imu = t_cam + "
@@ -141,8 +146,8 @@ ExportedFiles exportKalibr(const NamedResult& result) {
         "The IMU's frame is Kalibr's, in which the accelerometer's M is lower triangular: it is turned "
         "against "
         "Evical's.");
-  exported.files.push_back({"camchain-imucam.yaml", kalibrChain(quiet, turn, comment)});
-  exported.files.push_back({"imu.yaml", imuFile(rig)});
+  exported.files.push_back({"camchain-imucam.yaml", kalibrChain(rig, lenses, turn, comment)});
+  exported.files.push_back({"imu.yaml", imuFile(rig, exported.notes)});
   return exported;
 }
 

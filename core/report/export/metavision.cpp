@@ -16,8 +16,8 @@ std::string matrixText(const Eigen::MatrixXd& matrix) {
                      matrix.rows(), matrix.cols(), rowMajor(matrix));
 }
 
-std::string cameraText(const Rig& rig, const RigCamera& camera) {
-  const CameraIntrinsics own = cameraFor(rig, camera, kModels);
+std::string cameraText(const RigCamera& camera, ExportNotes& notes) {
+  const CameraIntrinsics own = cameraFor(camera, kModels, notes);
   const std::vector<double> d = distortionOf(own, 5);
   return fmt::format(
       "{{\n  \"n_kept_views\": {},\n  \"image_size\": [{}, {}],\n  \"camera_matrix\": {},\n"
@@ -31,10 +31,10 @@ std::string cameraText(const Rig& rig, const RigCamera& camera) {
 
 ExportedFiles exportMetavision(const NamedResult& result) {
   ExportedFiles exported;
-  const Rig rig = rigOf(result, exported.notes);
+  const Rig rig = rigOf(result);
   for (const RigCamera& camera : rig.cameras) {
     const std::filesystem::path folder = rig.cameras.size() > 1 ? camera.file_name : "";
-    exported.files.push_back({folder / "intrinsics.json", cameraText(rig, camera)});
+    exported.files.push_back({folder / "intrinsics.json", cameraText(camera, exported.notes)});
   }
   std::vector<std::string> lines{
       "Intrinsics for Metavision SDK 4 and before: pinhole, distortion k1 k2 p1 p2 k3 as OpenCV's.",

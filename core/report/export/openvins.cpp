@@ -24,14 +24,14 @@ std::string mappingText(const RigImu& imu) {
 
 ExportedFiles exportOpenVins(const NamedResult& result) {
   ExportedFiles exported;
-  const Rig rig = rigOf(result, exported.notes);
+  const Rig rig = rigOf(result);
   const RigImu& imu = neededImu(rig, "OpenVINS");
-  noteLostImus(rig, "OpenVINS");
-  noteLostOffsets(rig, "OpenVINS");
+  noteLostImus(rig, "OpenVINS", exported.notes);
+  noteLostOffsets(rig, "OpenVINS", exported.notes);
   const std::string first_line = "%YAML:1.0\n";
   exported.files.push_back(
       {"kalibr_imucam_chain.yaml",
-       first_line + kalibrChain(rig, Eigen::Matrix3d::Identity(),
+       first_line + kalibrChain(rig, kalibrLenses(rig, exported.notes), Eigen::Matrix3d::Identity(),
                                 {"OpenVINS. T_cam_imu takes points of the IMU to the camera; t_imu = t_cam + "
                                  "timeshift_cam_imu (that of cam0 is used)."})});
   exported.files.push_back(
@@ -40,8 +40,8 @@ ExportedFiles exportOpenVins(const NamedResult& result) {
            headerComment(
                rig, {"OpenVINS. measured force = Ta R_IMUtoACC f + bias, measured rate = Tw R_IMUtoGYRO w "
                      "+ Tg f + bias."}) +
-           fmt::format("imu0:  # {}\n", imu.file_name) + kalibrNoise(rig, imu, 2) + kalibrPlacing(rig, imu) +
-           biasComment(imu) + mappingText(imu)});
+           fmt::format("imu0:  # {}\n", imu.file_name) + kalibrNoise(imu, 2, exported.notes) +
+           kalibrPlacing(rig, imu) + biasComment(imu) + mappingText(imu)});
   return exported;
 }
 

@@ -33,11 +33,11 @@ std::string cameraText(const CameraIntrinsics& camera, std::size_t number, bool 
 }
 
 // Both cameras of one kind: the settings have one Camera.type.
-std::vector<CameraIntrinsics> camerasOf(const Rig& rig) {
+std::vector<CameraIntrinsics> camerasOf(const Rig& rig, ExportNotes& notes) {
   std::vector<CameraIntrinsics> cameras;
   for (std::size_t i = 0; i < std::min(rig.cameras.size(), kMostCameras); ++i) {
     const bool radtan = rig.cameras[0].intrinsics.model == CameraModel::PinholeRadtan;
-    cameras.push_back(cameraFor(rig, rig.cameras[i], {kProgram, radtan, true, !radtan}));
+    cameras.push_back(cameraFor(rig.cameras[i], {kProgram, radtan, true, !radtan}, notes));
     if (cameras[i].resolution_px != cameras[0].resolution_px)
       throw badInput(fmt::format("result: cameras.{}", rig.cameras[i].name),
                      "has another resolution than the first camera, and ORB-SLAM3 takes one for both",
@@ -46,8 +46,8 @@ std::vector<CameraIntrinsics> camerasOf(const Rig& rig) {
   return cameras;
 }
 
-std::string imuText(const Rig& rig, const RigImu& imu) {
-  const StatedNoise noise = statedNoise(rig, imu);
+std::string imuText(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
+  const StatedNoise noise = statedNoise(imu, notes);
   return opencvMatrix("IMU.T_b_c1", matrixOf(rig.cameras[0].reference_from_camera), 'f') +
          fmt::format(
              "IMU.InsertKFsWhenLost: 0\nIMU.NoiseGyro: {}\nIMU.NoiseAcc: {}\nIMU.GyroWalk: {}\nIMU.AccWalk: "
@@ -55,7 +55,7 @@ std::string imuText(const Rig& rig, const RigImu& imu) {
              "IMU.Frequency: {}\n",
              real(noise.gyroscope_density), real(noise.accelerometer_density),
              real(noise.gyroscope_random_walk), real(noise.accelerometer_random_walk),
-             real(statedRate_hz(rig, imu)));
+             real(statedRate_hz(imu, notes)));
 }
 
 std::string offsetLine(const Rig& rig) {
@@ -70,9 +70,9 @@ std::string offsetLine(const Rig& rig) {
 
 ExportedFiles exportOrbSlam3(const NamedResult& result) {
   ExportedFiles exported;
-  const Rig rig = rigOf(result, exported.notes);
-  noteLostCameras(rig, kMostCameras, kProgram);
-  const std::vector<CameraIntrinsics> cameras = camerasOf(rig);
+  const Rig rig = rigOf(result);
+  noteLostCameras(rig, kMostCameras, kProgram, exported.notes);
+  const std::vector<CameraIntrinsics> cameras = camerasOf(rig, exported.notes);
   const bool stereo = cameras.size() > 1;
   std::string text =
       "%YAML:1.0\n---\n" +
@@ -92,9 +92,9 @@ ExportedFiles exportOrbSlam3(const NamedResult& result) {
                                                              rig.cameras[1].reference_from_camera),
                                                     'f');
   if (!rig.imus.empty()) {
-    noteLostImus(rig, kProgram);
-    noteLostMapping(rig, rig.imus[0], kProgram);
-    text += imuText(rig, rig.imus[0]);
+    noteLostImus(rig, kProgram, exported.notes);
+    noteLostMapping(rig.imus[0], kProgram, exported.notes);
+    text += imuText(rig, rig.imus[0], exported.notes);
   }
   if (!rig.imus.empty() || stereo) exported.notes.push_back(offsetLine(rig));
   exported.files.push_back({"settings.yaml", text});

@@ -78,9 +78,8 @@ double largestOffset_s(const Rig& rig) {
 
 }  // namespace
 
-Rig rigOf(const NamedResult& result, std::vector<std::string>& notes) {
+Rig rigOf(const NamedResult& result) {
   Rig rig;
-  rig.notes = &notes;
   rig.program = result.version.empty() ? "Evical" : "Evical " + result.version;
   rig.status = statusName(result.result->status);
   if (!result.result->reason.empty()) rig.status += ": " + result.result->reason;
@@ -107,10 +106,10 @@ Eigen::Matrix4d matrixOf(const RigidTransform& pose) {
   return matrix;
 }
 
-StatedNoise statedNoise(const Rig& rig, const RigImu& imu) {
+StatedNoise statedNoise(const RigImu& imu, ExportNotes& notes) {
   const bool known = imu.noise.gyroscope_density > 0.0 && imu.noise.accelerometer_density > 0.0;
   if (!known)
-    rig.notes->push_back(fmt::format(
+    notes.push_back(fmt::format(
         "{}: the result does not say the noise densities; Evical's defaults are written, put your own",
         imu.name));
   const ImuNoise noise = known ? imu.noise : ImuNoise{};
@@ -118,7 +117,7 @@ StatedNoise statedNoise(const Rig& rig, const RigImu& imu) {
                      imu.noise.accelerometer_random_walk};
   if (stated.gyroscope_random_walk > 0.0 && stated.accelerometer_random_walk > 0.0) return stated;
   // Programs refuse 0.
-  rig.notes->push_back(fmt::format(
+  notes.push_back(fmt::format(
       "{}: random walks are not measured: a tenth of the noise densities is written, put your own",
       imu.name));
   if (stated.gyroscope_random_walk <= 0.0) stated.gyroscope_random_walk = noise.gyroscope_density / 10.0;
@@ -127,58 +126,58 @@ StatedNoise statedNoise(const Rig& rig, const RigImu& imu) {
   return stated;
 }
 
-double statedRate_hz(const Rig& rig, const RigImu& imu) {
+double statedRate_hz(const RigImu& imu, ExportNotes& notes) {
   if (imu.rate_hz > 0.0) return imu.rate_hz;
   constexpr double kUsualRate_hz = 200.0;
-  rig.notes->push_back(fmt::format("{}: the result does not say the rate; {} Hz is written, put your own",
-                                   imu.name, kUsualRate_hz));
+  notes.push_back(fmt::format("{}: the result does not say the rate; {} Hz is written, put your own",
+                              imu.name, kUsualRate_hz));
   return kUsualRate_hz;
 }
 
-void noteLostMapping(const Rig& rig, const RigImu& imu, const char* program) {
+void noteLostMapping(const RigImu& imu, const char* program, ExportNotes& notes) {
   const auto off = [](const Eigen::Matrix3d& m) {
     return (m - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   };
   const double largest = std::max(off(imu.state.gyroscopeMatrix()), off(imu.state.accelerometer_mapping));
   if (largest == 0.0) return;
-  rig.notes->push_back(
+  notes.push_back(
       fmt::format("{}: {} has no place for scales and misalignment, which are up to {:.2g} % here; correct "
                   "the samples before "
                   "({}'s mapping in result.yaml)",
                   imu.name, program, 100.0 * largest, imu.name));
 }
 
-void noteLostImus(const Rig& rig, const char* program) {
+void noteLostImus(const Rig& rig, const char* program, ExportNotes& notes) {
   if (rig.imus.size() > 1)
-    rig.notes->push_back(fmt::format("{} takes one IMU: only {} is written", program, rig.imus[0].name));
+    notes.push_back(fmt::format("{} takes one IMU: only {} is written", program, rig.imus[0].name));
 }
 
-void noteLostOffsets(const Rig& rig, const char* program) {
+void noteLostOffsets(const Rig& rig, const char* program, ExportNotes& notes) {
   const double largest_s = largestOffset_s(rig);
   if (largest_s == 0.0) return;
-  rig.notes->push_back(
+  notes.push_back(
       fmt::format("{} takes one time offset for all cameras: that of {} is written, others differ by up to "
                   "{:.4g} ms; shift "
                   "their stamps before",
                   program, rig.cameras[0].name, 1e3 * largest_s));
 }
 
-void noteNoOffsets(const Rig& rig, const char* program) {
+void noteNoOffsets(const Rig& rig, const char* program, ExportNotes& notes) {
   if (largestOffset_s(rig) == 0.0) return;
   std::string text =
       fmt::format("{} has no place for the cameras' time offsets: add to the stamps of", program);
   for (const RigCamera& camera : rig.cameras)
     text += fmt::format("{} {} {} s", &camera == &rig.cameras.front() ? "" : ",", camera.name,
                         camera.time_offset_s);
-  rig.notes->push_back(std::move(text));
+  notes.push_back(std::move(text));
 }
 
-void noteLostCameras(const Rig& rig, std::size_t most, const char* program) {
+void noteLostCameras(const Rig& rig, std::size_t most, const char* program, ExportNotes& notes) {
   if (rig.cameras.size() <= most) return;
   std::string left_out;
   for (std::size_t i = most; i < rig.cameras.size(); ++i)
     left_out += (left_out.empty() ? "" : ", ") + rig.cameras[i].name;
-  rig.notes->push_back(fmt::format("{} takes {} cameras: {} is left out", program, most, left_out));
+  notes.push_back(fmt::format("{} takes {} cameras: {} is left out", program, most, left_out));
 }
 
 std::string headerComment(const Rig& rig, const std::vector<std::string>& lines) {

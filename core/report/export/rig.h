@@ -33,16 +33,18 @@ struct StatedNoise {
 };
 
 struct Rig {
-  std::string program;              // "Evical 0.1.0"
-  std::string status;               // "ok", or "doubtful: why"
-  std::vector<RigCamera> cameras;   // at least one
-  std::vector<RigImu> imus;         // the reference first; none in a calibration of cameras only
-  Eigen::Vector3d gravity_m_s2;     // in the board's frame
-  std::vector<std::string>* notes;  // where what a target cannot hold is said
+  std::string program;             // "Evical 0.1.0"
+  std::string status;              // "ok", or "doubtful: why"
+  std::vector<RigCamera> cameras;  // at least one
+  std::vector<RigImu> imus;        // the reference first; none in a calibration of cameras only
+  Eigen::Vector3d gravity_m_s2;    // in the board's frame
 };
 
+// What to know before using the files: appended to by all that find something.
+using ExportNotes = std::vector<std::string>;
+
 // Throws CalibrationError (BadInput) where a camera has no intrinsics or resolution, or a number is none.
-Rig rigOf(const NamedResult& result, std::vector<std::string>& notes);
+Rig rigOf(const NamedResult& result);
 
 // The reference IMU; throws CalibrationError (BadInput) where there is none.
 const RigImu& neededImu(const Rig& rig, const char* program);
@@ -50,16 +52,16 @@ const RigImu& neededImu(const Rig& rig, const char* program);
 Eigen::Matrix4d matrixOf(const RigidTransform& pose);
 
 // What the noise model of the reference IMU is, with a note for each number that nobody has given.
-StatedNoise statedNoise(const Rig& rig, const RigImu& imu);
-double statedRate_hz(const Rig& rig, const RigImu& imu);
+StatedNoise statedNoise(const RigImu& imu, ExportNotes& notes);
+double statedRate_hz(const RigImu& imu, ExportNotes& notes);
 
 // Notes on what a program has no place for: an IMU's scales and misalignment, further IMUs, time offsets that
 // differ from camera to camera, cameras beyond the first few.
-void noteLostMapping(const Rig& rig, const RigImu& imu, const char* program);
-void noteLostImus(const Rig& rig, const char* program);
-void noteLostOffsets(const Rig& rig, const char* program);
-void noteNoOffsets(const Rig& rig, const char* program);  // of cameras among each other
-void noteLostCameras(const Rig& rig, std::size_t most, const char* program);
+void noteLostMapping(const RigImu& imu, const char* program, ExportNotes& notes);
+void noteLostImus(const Rig& rig, const char* program, ExportNotes& notes);
+void noteLostOffsets(const Rig& rig, const char* program, ExportNotes& notes);
+void noteNoOffsets(const Rig& rig, const char* program, ExportNotes& notes);  // of cameras among each other
+void noteLostCameras(const Rig& rig, std::size_t most, const char* program, ExportNotes& notes);
 
 // As YAML comments: who wrote this, how sure it is, and the lines given.
 std::string headerComment(const Rig& rig, const std::vector<std::string>& lines);

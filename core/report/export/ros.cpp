@@ -129,14 +129,14 @@ std::string cameraInfo(const Rig& rig, const RigCamera& camera) {
 
 ExportedFiles exportRos(const NamedResult& result) {
   ExportedFiles exported;
-  const Rig rig = rigOf(result, exported.notes);
+  const Rig rig = rigOf(result);
   for (const RigCamera& camera : rig.cameras)
     exported.files.push_back({camera.file_name + ".yaml", cameraInfo(rig, camera)});
   const std::vector<Joint> joints = jointsOf(rig);
   if (joints.empty()) return exported;
   exported.files.push_back({"static_transforms.sh", tf2Script(rig, joints)});
   exported.files.push_back({"rig.urdf", urdf(rig, joints)});
-  for (const RigImu& imu : rig.imus) noteLostMapping(rig, imu, "ROS");
+  for (const RigImu& imu : rig.imus) noteLostMapping(imu, "ROS", exported.notes);
   exported.notes.push_back(offsetsComment(rig));
   return exported;
 }

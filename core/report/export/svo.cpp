@@ -24,7 +24,7 @@ std::string cameraText(const RigCamera& camera, std::size_t number, const Camera
       dataMatrix(matrixOf(camera.reference_from_camera), 4));
 }
 
-std::string rigFile(const Rig& rig, const char* program, const std::string& time) {
+std::string rigFile(const Rig& rig, const char* program, const std::string& time, ExportNotes& notes) {
   const KnownModels models{program, true, false, true};
   std::string text =
       headerComment(
@@ -32,12 +32,12 @@ std::string rigFile(const Rig& rig, const char* program, const std::string& time
           {fmt::format("Camera rig of {}. T_B_C takes points of the camera to the IMU.", program), time}) +
       "label: \"rig\"\ncameras:\n";
   for (std::size_t i = 0; i < rig.cameras.size(); ++i)
-    text += cameraText(rig.cameras[i], i, cameraFor(rig, rig.cameras[i], models));
+    text += cameraText(rig.cameras[i], i, cameraFor(rig.cameras[i], models, notes));
   return text;
 }
 
-std::string svoImu(const Rig& rig, const RigImu& imu) {
-  const StatedNoise noise = statedNoise(rig, imu);
+std::string svoImu(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
+  const StatedNoise noise = statedNoise(imu, notes);
   const std::string g = real(rig.gravity_m_s2.norm());
   return headerComment(
              rig, {"IMU of SVO. t_imu = t_cam - delay_imu_cam: the sign is the opposite of Kalibr's.",
@@ -50,15 +50,15 @@ std::string svoImu(const Rig& rig, const RigImu& imu) {
              "  velocity_sigma: 1.0\n  omega_bias_sigma: 0.01\n  acc_bias_sigma: 0.1\n",
              real(-rig.cameras[0].time_offset_s), real(noise.gyroscope_density),
              real(noise.accelerometer_density), real(noise.gyroscope_random_walk),
-             real(noise.accelerometer_random_walk), g, real(statedRate_hz(rig, imu)),
+             real(noise.accelerometer_random_walk), g, real(statedRate_hz(imu, notes)),
              realList(imu.state.gyroscope_bias_rad_s), realList(imu.state.accelerometer_bias_m_s2));
 }
 
-const RigImu& checkedImu(const Rig& rig, const char* program) {
+const RigImu& checkedImu(const Rig& rig, const char* program, ExportNotes& notes) {
   const RigImu& imu = neededImu(rig, program);
-  noteLostImus(rig, program);
-  noteLostOffsets(rig, program);
-  noteLostMapping(rig, imu, program);
+  noteLostImus(rig, program, notes);
+  noteLostOffsets(rig, program, notes);
+  noteLostMapping(imu, program, notes);
   return imu;
 }
 
@@ -66,21 +66,22 @@ const RigImu& checkedImu(const Rig& rig, const char* program) {
 
 ExportedFiles exportSvo(const NamedResult& result) {
   ExportedFiles exported;
-  const Rig rig = rigOf(result, exported.notes);
-  const RigImu& imu = checkedImu(rig, "SVO");
-  exported.files.push_back({"calib.yaml", rigFile(rig, "SVO", "The time offset is in imu.yaml.")});
-  exported.files.push_back({"imu.yaml", svoImu(rig, imu)});
+  const Rig rig = rigOf(result);
+  const RigImu& imu = checkedImu(rig, "SVO", exported.notes);
+  exported.files.push_back(
+      {"calib.yaml", rigFile(rig, "SVO", "The time offset is in imu.yaml.", exported.notes)});
+  exported.files.push_back({"imu.yaml", svoImu(rig, imu, exported.notes)});
   return exported;
 }
 
 ExportedFiles exportUltimateSlam(const NamedResult& result) {
   ExportedFiles exported;
-  const Rig rig = rigOf(result, exported.notes);
-  const RigImu& imu = checkedImu(rig, "Ultimate SLAM");
-  exported.files.push_back(
-      {"calib.yaml", rigFile(rig, "Ultimate SLAM", "The time offset is in timeshift.flags.")});
+  const Rig rig = rigOf(result);
+  const RigImu& imu = checkedImu(rig, "Ultimate SLAM", exported.notes);
+  exported.files.push_back({"calib.yaml", rigFile(rig, "Ultimate SLAM",
+                                                  "The time offset is in timeshift.flags.", exported.notes)});
   exported.files.push_back({"imu.yaml", headerComment(rig, {"IMU of Ultimate SLAM, in Kalibr's units."}) +
-                                            kalibrNoise(rig, imu, 0)});
+                                            kalibrNoise(imu, 0, exported.notes)});
   exported.files.push_back(
       {"timeshift.flags", headerComment(rig, {"For --flagfile: t_imu = t_cam + timeshift_cam_imu."}) +
                               fmt::format("--timeshift_cam_imu={}\n", real(rig.cameras[0].time_offset_s))});

@@ -15,8 +15,8 @@ constexpr KnownModels kModels{kProgram, true, false, true};
 constexpr std::size_t kMostCameras = 2;
 
 // camodocal's camera file. Its Kannala-Brandt k2..k5 are k1..k4 elsewhere.
-std::string cameraFile(const Rig& rig, const RigCamera& camera) {
-  const CameraIntrinsics own = cameraFor(rig, camera, kModels);
+std::string cameraFile(const Rig& rig, const RigCamera& camera, ExportNotes& notes) {
+  const CameraIntrinsics own = cameraFor(camera, kModels, notes);
   const bool radtan = own.model == CameraModel::PinholeRadtan;
   const std::vector<double> d = distortionOf(own, 4);
   const std::string f[] = {real(own.focal_length_px.x()), real(own.focal_length_px.y()),
@@ -36,9 +36,9 @@ std::string cameraFile(const Rig& rig, const RigCamera& camera) {
                     real(d[0]), real(d[1]), real(d[2]), real(d[3]), f[0], f[1], f[2], f[3]);
 }
 
-std::string configuration(const Rig& rig, const RigImu& imu) {
+std::string configuration(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
   const std::size_t count = std::min(rig.cameras.size(), kMostCameras);
-  const StatedNoise noise = statedNoise(rig, imu);
+  const StatedNoise noise = statedNoise(imu, notes);
   std::string text =
       "%YAML:1.0\n---\n" +
       headerComment(rig,
@@ -67,15 +67,16 @@ std::string configuration(const Rig& rig, const RigImu& imu) {
 
 ExportedFiles exportVinsFusion(const NamedResult& result) {
   ExportedFiles exported;
-  const Rig rig = rigOf(result, exported.notes);
+  const Rig rig = rigOf(result);
   const RigImu& imu = neededImu(rig, kProgram);
-  noteLostImus(rig, kProgram);
-  noteLostCameras(rig, kMostCameras, kProgram);
-  noteLostOffsets(rig, kProgram);
-  noteLostMapping(rig, imu, kProgram);
-  exported.files.push_back({"vins.yaml", configuration(rig, imu)});
+  noteLostImus(rig, kProgram, exported.notes);
+  noteLostCameras(rig, kMostCameras, kProgram, exported.notes);
+  noteLostOffsets(rig, kProgram, exported.notes);
+  noteLostMapping(imu, kProgram, exported.notes);
+  exported.files.push_back({"vins.yaml", configuration(rig, imu, exported.notes)});
   for (std::size_t i = 0; i < std::min(rig.cameras.size(), kMostCameras); ++i)
-    exported.files.push_back({rig.cameras[i].file_name + ".yaml", cameraFile(rig, rig.cameras[i])});
+    exported.files.push_back(
+        {rig.cameras[i].file_name + ".yaml", cameraFile(rig, rig.cameras[i], exported.notes)});
   return exported;
 }
 
