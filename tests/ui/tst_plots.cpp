@@ -1,117 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What a person does with a plot: looks closer, points at it, hides a curve, keeps it as a file.
 #include "tests/support/test_program.h"
+#include "tests/ui/plot_hands.h"
 #include "tests/ui/plot_pictures.h"
-#include "tests/ui/slowdown.h"
-#include "ui/plots/plot_panel.h"
 #include "ui/theme/theme.h"
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <limits>
 
 using namespace evical;
 using namespace evical::ui;
-using Kind = PlotPanel::SeriesKind;
-
-namespace {
-
-const PlotAxes kTime = {.title = "Gyroscope", .x_label = "time (s)", .y_label = "rad/s", .time = true};
-constexpr PlotColour kAxisColours[] = {PlotColour::X, PlotColour::Y, PlotColour::Z};
-
-struct Samples {
-  std::vector<double> x, y;
-};
-
-Samples noisySine(int count, double rate_hz, double phase) {
-  Samples samples;
-  unsigned state = 1;
-  for (int k = 0; k < count; ++k) {
-    state = state * 1664525u + 1013904223u;
-    const double time_s = k / rate_hz;
-    samples.x.push_back(time_s);
-    samples.y.push_back(std::sin(2.0 * time_s + phase) + 0.2 * (state / 4294967296.0 - 0.5));
-  }
-  return samples;
-}
-
-void addImuAxes(PlotPanel& panel, int count, double rate_hz) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const Samples samples = noisySine(count, rate_hz, axis);
-    panel.setData(panel.addSeries(Kind::Line, {.name = QString("xyz"[axis]), .colour = kAxisColours[axis]}),
-                  samples.x, samples.y);
-  }
-}
-
-// Of this thread: what a redraw costs, whoever else uses the machine.
-double cpuTime_ms() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
-
-bool near(const QColor& a, const QColor& b) {
-  return std::abs(a.red() - b.red()) + std::abs(a.green() - b.green()) + std::abs(a.blue() - b.blue()) < 60;
-}
-
-int pixelsLike(const QImage& image, const QColor& colour, const QRect& area) {
-  int count = 0;
-  for (int y = area.top(); y <= area.bottom(); ++y)
-    for (int x = area.left(); x <= area.right(); ++x) count += near(image.pixelColor(x, y), colour);
-  return count;
-}
-
-void wheel(PlotPanel& panel, const QPointF& at, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
-  QWidget* const chart = panel.findChild<QWidget*>();
-  const QPointF local = chart->mapFromParent(at.toPoint());
-  QWheelEvent event(local, chart->mapToGlobal(local), {}, {0, 120}, Qt::NoButton, modifiers,
-                    Qt::NoScrollPhase, false);
-  QApplication::sendEvent(chart, &event);
-}
-
-void drag(PlotPanel& panel, const QPointF& from, const QPointF& to,
-          Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
-  QWidget* const chart = panel.findChild<QWidget*>();
-  const QPoint a = chart->mapFromParent(from.toPoint()), b = chart->mapFromParent(to.toPoint());
-  QTest::mousePress(chart, Qt::LeftButton, modifiers, a);
-  for (const double part : {0.3, 0.7, 1.0}) {
-    const QPointF point = a + part * QPointF(b - a);
-    QMouseEvent event(QEvent::MouseMove, point, chart->mapToGlobal(point), Qt::NoButton, Qt::LeftButton,
-                      modifiers);
-    QApplication::sendEvent(chart, &event);
-  }
-  QTest::mouseRelease(chart, Qt::LeftButton, modifiers, b);
-}
-
-void hover(PlotPanel& panel, const QPointF& at) {
-  QWidget* const chart = panel.findChild<QWidget*>();
-  const QPointF local = chart->mapFromParent(at.toPoint());
-  QMouseEvent event(QEvent::MouseMove, local, chart->mapToGlobal(local), Qt::NoButton, Qt::NoButton,
-                    Qt::NoModifier);
-  QApplication::sendEvent(chart, &event);
-}
-
-void click(PlotPanel& panel, const QPointF& at) {
-  QWidget* const chart = panel.findChild<QWidget*>();
-  QTest::mouseClick(chart, Qt::LeftButton, Qt::NoModifier, chart->mapFromParent(at.toPoint()));
-}
-
-}  // namespace
+using namespace evical::ui::test;
 
 class TestPlots : public QObject {
   Q_OBJECT
 
-  // One line from (0, 0) to (10, 10).
-  static void fillWithLine(PlotPanel& panel) {
-    panel.setData(panel.addSeries(Kind::Line, {.name = "line"}), {0.0, 10.0}, {0.0, 10.0});
-    panel.resize(600, 400);
-    panel.show();
-    panel.fit();
-    panel.redraw();
-  }
-
  private slots:
-  void init() { test::setPalette(false); }
+  void init() { evical::test::setPalette(false); }
 
   void fit_showsAllDataAndTimeWithoutMargin();
   void wheel_zoomsTimeOnlyAndWithControlTheValues();
@@ -124,21 +30,9 @@ class TestPlots : public QObject {
   void readout_standsBesideTheMouse();
   void cursor_isDrawnWhereItIsSet();
   void threshold_isDragged();
-  void spike_ofOneSampleIsSeenAmongThreeHundredThousand();
-  void longLines_areDrawnFluently_data();
-  void longLines_areDrawnFluently();
-  void colours_followThePalette();
-  void equalScale_holdsAtEverySize();
-  void equalScale_comesBackToWhatWasChosen();
-  void logarithmicAxis_leavesOutWhatIsNotPositive();
-  void points_areDrawnSmallAndLarge_data();
-  void points_areDrawnSmallAndLarge();
-  void manyPoints_areDrawnFluently();
-  void cells_differByTheirValues();
   void legend_hidesASeries();
   void csv_listsEveryPointOfNamedSeries();
   void files_areWrittenOrSaidNotToBe();
-  void picture_isWorthLookingAt();
 };
 
 void TestPlots::fit_showsAllDataAndTimeWithoutMargin() {
@@ -273,159 +167,6 @@ void TestPlots::threshold_isDragged() {
   QVERIFY(panel.xRange() != x);  // elsewhere dragging pans
 }
 
-void TestPlots::spike_ofOneSampleIsSeenAmongThreeHundredThousand() {
-  constexpr int kCount = 300'000;
-  PlotPanel panel(kTime);
-  std::vector<double> x(kCount), y(kCount, 0.0);
-  for (std::size_t k = 0; k < kCount; ++k) x[k] = 1e-3 * static_cast<double>(k);
-  y[123'456] = 1.0;
-  panel.setData(panel.addSeries(Kind::Line, {.name = "spike", .colour = PlotColour::Bad}), x, y);
-  panel.resize(1000, 400);
-  panel.show();
-  panel.fit();
-  panel.redraw();
-  const QPoint top = panel.pixelAt(123.456, 0.9).toPoint();
-  QVERIFY(pixelsLike(panel.grab().toImage(), theme().bad, QRect(top - QPoint(2, 2), QSize(5, 5))) >= 4);
-}
-
-void TestPlots::longLines_areDrawnFluently_data() {
-  QTest::addColumn<int>("count");
-  QTest::addColumn<double>("rate_hz");
-  QTest::newRow("30 s at 1 kHz, three axes") << 30'000 << 1000.0;
-  QTest::newRow("300 k samples, three axes") << 300'000 << 10'000.0;
-}
-
-void TestPlots::longLines_areDrawnFluently() {
-  QFETCH(int, count);
-  QFETCH(double, rate_hz);
-  PlotPanel panel(kTime);
-  addImuAxes(panel, count, rate_hz);
-  panel.resize(1600, 450);
-  panel.show();
-  panel.fit();
-  panel.redraw();
-  std::vector<double> times_ms;
-  for (int k = 0; k < 15; ++k) {
-    panel.setXRange(0.1 * k, 30.0 - 0.3 * k);
-    const double before_ms = cpuTime_ms();
-    panel.redraw();
-    times_ms.push_back(cpuTime_ms() - before_ms);
-  }
-  const double least_ms = *std::min_element(times_ms.begin(), times_ms.end());
-  QVERIFY2(least_ms < 33.0 * kSlowdown,
-           qPrintable(QStringLiteral("%1 ms, 30 frames/s are fluid").arg(least_ms)));
-}
-
-void TestPlots::colours_followThePalette() {
-  PlotPanel panel(kTime);
-  fillWithLine(panel);
-  const QPoint empty = panel.pixelAt(2.2, 8.2).toPoint();
-  QVERIFY(near(panel.grab().toImage().pixelColor(empty), theme().panel));
-  const QColor light = theme().panel;
-  test::setPalette(true);
-  QVERIFY(!near(theme().panel, light));
-  QCoreApplication::processEvents();
-  QVERIFY(near(panel.grab().toImage().pixelColor(empty), theme().panel));
-}
-
-void TestPlots::equalScale_holdsAtEverySize() {
-  PlotPanel panel({.title = "Scatter", .x_label = "x (px)", .y_label = "y (px)", .equal_scale = true});
-  fillWithLine(panel);
-  for (const QSize size : {QSize(700, 300), QSize(300, 700), QSize(500, 500)}) {
-    panel.resize(size);
-    panel.redraw();
-    const QPointF origin = panel.pixelAt(0.0, 0.0), x = panel.pixelAt(5.0, 0.0), y = panel.pixelAt(0.0, 5.0);
-    QVERIFY2(std::abs((x.x() - origin.x()) - (origin.y() - y.y())) <= 2.0,
-             qPrintable(QString::number(size.width())));
-  }
-}
-
-void TestPlots::equalScale_comesBackToWhatWasChosen() {
-  PlotPanel panel({.title = "Scatter", .x_label = "x (px)", .y_label = "y (px)", .equal_scale = true});
-  fillWithLine(panel);
-  panel.redraw();
-  const auto x = panel.xRange(), y = panel.yRange();
-  for (const QSize size : {QSize(900, 250), QSize(250, 900), QSize(60, 60), QSize(600, 400)}) {
-    panel.resize(size);
-    panel.redraw();
-  }
-  QVERIFY(std::abs(panel.xRange().first - x.first) < 0.3 && std::abs(panel.xRange().second - x.second) < 0.3);
-  QVERIFY(std::abs(panel.yRange().first - y.first) < 0.3 && std::abs(panel.yRange().second - y.second) < 0.3);
-}
-
-void TestPlots::logarithmicAxis_leavesOutWhatIsNotPositive() {
-  PlotPanel panel(
-      {.title = "Cost", .x_label = "iteration", .y_label = "cost", .logarithmic_y = true, .whole_x = true});
-  panel.setData(panel.addSeries(Kind::Line, {.name = "cost"}), {0, 1, 2, 3}, {1e6, 1e3, 0.0, 10.0});
-  panel.fit();
-  QVERIFY(panel.yRange().first > 1.0 && panel.yRange().first < 10.0);
-  QVERIFY(panel.yRange().second > 1e6);
-}
-
-void TestPlots::points_areDrawnSmallAndLarge_data() {
-  QTest::addColumn<double>("width_px");
-  QTest::newRow("small") << 2.0;
-  QTest::newRow("large") << 6.0;
-}
-
-void TestPlots::points_areDrawnSmallAndLarge() {
-  QFETCH(double, width_px);
-  PlotPanel panel(kTime);
-  fillWithLine(panel);
-  panel.setData(panel.addSeries(Kind::Points, {.name = "p", .colour = PlotColour::Bad, .width_px = width_px}),
-                {2.0}, {8.0});
-  panel.redraw();
-  const QRect around(panel.pixelAt(2.0, 8.0).toPoint() - QPoint(4, 4), QSize(9, 9));
-  const int drawn = pixelsLike(panel.grab().toImage(), theme().bad, around);
-  QVERIFY2(drawn >= 0.5 * width_px * width_px, qPrintable(QString::number(drawn)));
-}
-
-void TestPlots::manyPoints_areDrawnFluently() {
-  constexpr int kCount = 15'000;
-  std::vector<double> x, y;
-  unsigned state = 1;
-  const auto next = [&state] { return (state = state * 1664525u + 1013904223u) / 4294967296.0 - 0.5; };
-  for (int k = 0; k < kCount; ++k) {
-    x.push_back(next() + next() + next());
-    y.push_back(next() + next() + next());
-  }
-  PlotPanel panel({.title = "Scatter", .x_label = "x (px)", .y_label = "y (px)", .equal_scale = true});
-  panel.setData(panel.addSeries(Kind::Points, {.name = "p", .width_px = 2.0, .opacity = 0.6}), x, y);
-  panel.resize(820, 430);
-  panel.show();
-  panel.fit();
-  panel.redraw();
-  double least_ms = 1e9;
-  for (int k = 0; k < 10; ++k) {
-    const double before_ms = cpuTime_ms();
-    panel.redraw();
-    least_ms = std::min(least_ms, cpuTime_ms() - before_ms);
-  }
-  qInfo("%.1f ms", least_ms);
-  QVERIFY2(least_ms < 33.0 * kSlowdown, qPrintable(QString::number(least_ms)));
-}
-
-void TestPlots::cells_differByTheirValues() {
-  constexpr double kOpen = std::numeric_limits<double>::quiet_NaN();
-  PlotPanel panel({.title = "Cells", .x_label = "x (px)", .y_label = "y (px)"});
-  panel.setCells({QRectF(0.0, 0.0, 3.0, 2.0), 3, 2, {kOpen, 1.0, 10.0, kOpen, 1.0, 10.0}},
-                 PlotColour::Accent);
-  panel.resize(600, 400);
-  panel.show();
-  panel.fit();
-  panel.redraw();
-  QVERIFY(panel.xRange().first <= 0.0 && panel.xRange().second >= 3.0);
-  QVERIFY(panel.yRange().first <= 0.0 && panel.yRange().second >= 2.0);
-  const QImage image = panel.grab().toImage();
-  const auto blueness = [&](double x) {
-    const QColor colour = image.pixelColor(panel.pixelAt(x, 0.4).toPoint());
-    return colour.blue() - colour.red();
-  };
-  QVERIFY(std::abs(blueness(0.55)) < 5);
-  QVERIFY(blueness(1.45) > 10);
-  QVERIFY(blueness(2.55) > blueness(1.45) + 40);
-}
-
 void TestPlots::legend_hidesASeries() {
   PlotPanel panel(kTime);
   fillWithLine(panel);
@@ -460,27 +201,6 @@ void TestPlots::files_areWrittenOrSaidNotToBe() {
   QCOMPARE(QString(file.readAll()), panel.csv());
   QVERIFY(!panel.saveCsv(folder.filePath("no/such/folder.csv")));
   QVERIFY(!panel.savePicture(folder.filePath("no/such/folder.png")));
-}
-
-void TestPlots::picture_isWorthLookingAt() {
-  PlotPanel panel(kTime);
-  const Samples middle = noisySine(30'000, 1000.0, 0.0);
-  std::vector<double> low, high;
-  for (const double y : middle.y) {
-    low.push_back(y - 0.3);
-    high.push_back(y + 0.3);
-  }
-  panel.setBand(panel.addSeries(Kind::Band, {.colour = PlotColour::X, .opacity = 0.2}), middle.x, low, high);
-  addImuAxes(panel, 30'000, 1000.0);
-  panel.setMarks(std::vector<PlotMark>{{10.0, "stage 2"}, {20.0, "stage 3"}});
-  panel.setNote("30 000 samples");
-  panel.show();
-  test::takePictures(panel, "plot_panel", [&] {
-    panel.fit();
-    QCoreApplication::processEvents();
-    panel.setCursorLine(12.0);
-    hover(panel, panel.pixelAt(4.0, 0.5));
-  });
 }
 
 EVICAL_TEST(TestPlots)

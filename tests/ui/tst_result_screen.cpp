@@ -91,7 +91,7 @@ class TestResultScreen : public QObject {
     };
     QVERIFY(!has());
     NamedResult free = result_;
-    CalibrationResult& numbers = test::ownResult(free);
+    CalibrationResult& numbers = evical::test::ownResult(free);
     numbers.uncertainty.gravity_norm_std_m_s2 = 0.002;
     numbers.state.gravity_in_world_m_s2 *= 9.83 / numbers.state.gravity_in_world_m_s2.norm();
     groups = parameterGroups(free);

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A run with a trajectory, the screen that shows it, and what can be seen there.
+#pragma once
+
+#include "core/pipeline/calibration_pipeline.h"
+#include "tests/core/optimisation/simulated_rig.h"
+#include "tests/ui/slowdown.h"
+#include "ui/scene/trajectory_screen.h"
+#include "ui/scene/view3d.h"
+
+#include <QApplication>
+#include <QPalette>
+#include <QTest>
+
+#include <cmath>
+#include <memory>
+
+namespace evical::ui::test {
+
+inline constexpr int kWorkPatience_ms = 20000 * kSlowdown;
+
+struct Example {
+  evical::test::SimulatedRig rig;
+  Session session;
+  std::shared_ptr<const CalibrationRun> run;
+};
+
+inline Session sessionOf(const CalibrationInput& input) {
+  Session session;
+  session.board = input.board;
+  for (const CameraData& camera : input.cameras) {
+    session.cameras.push_back({camera.name, "", camera.lens.given->resolution_px, camera.lens.given});
+  }
+  for (const ImuData& imu : input.imus) {
+    SessionImu& known = session.imus.emplace_back();
+    known.name = imu.name;
+    known.noise = imu.noise;
+  }
+  session.reference = input.imus.front().name;
+  return session;
+}
+
+inline Example makeExample(double duration_s) {
+  evical::test::RigOptions options;
+  options.duration_s = duration_s;
+  options.imu_rate_hz = 200.0;
+  Example example;
+  example.rig = evical::test::simulateRig(options);
+  example.session = sessionOf(example.rig.input);
+  RecordingPass pass;
+  pass.start_ns = example.rig.input.start_ns;
+  for (const CameraData& camera : example.rig.input.cameras) {
+    pass.cameras.push_back(camera.observations);
+    for (const BoardView& view : camera.observations.views) {
+      pass.cameras.back().windows.push_back({view.time_s, 0.01, WindowOutcome::Complete, 0, 0, 0, false});
+    }
+    pass.lenses.push_back(camera.lens);
+    pass.resolutions_px.push_back(camera.lens.given->resolution_px);
+  }
+  pass.imus = example.rig.input.imus;
+  example.run =
+      std::make_shared<const CalibrationRun>(calibrate(example.session, std::move(pass), RunContext{}));
+  return example;
+}
+
+inline std::shared_ptr<const CalibrationState> truthOf(const evical::test::SimulatedRig& rig) {
+  return std::make_shared<const CalibrationState>(rig.truth);
+}
+
+inline void setPalette(bool dark) {
+  QApplication::setPalette(dark ? QPalette(QColor(0x3a, 0x3f, 0x47), QColor(0x1f, 0x22, 0x27))
+                                : QPalette(QColor(0xe8, 0xea, 0xed), QColor(0xf5, 0xf6, 0xf8)));
+}
+
+inline QImage picture(View3D* view) {
+  return view->grab().toImage().convertToFormat(QImage::Format_RGB32);
+}
+
+inline double distance(const QColor& a, const QColor& b) {
+  return std::hypot(a.red() - b.red(), a.green() - b.green(), a.blue() - b.blue());
+}
+
+// Whether a colour appears within a few pixels.
+inline bool hasNear(const QImage& image, const QPointF& at, const QColor& colour, int reach_px = 2) {
+  for (int y = -reach_px; y <= reach_px; ++y) {
+    for (int x = -reach_px; x <= reach_px; ++x) {
+      const QPoint p = at.toPoint() + QPoint(x, y);
+      if (image.rect().contains(p) && distance(image.pixelColor(p), colour) < 12.0) return true;
+    }
+  }
+  return false;
+}
+
+// With the run shown and all work in the background done.
+inline std::unique_ptr<TrajectoryScreen> makeScreen(const Example& example, const QSize& size = {1000, 650}) {
+  auto screen = std::make_unique<TrajectoryScreen>();
+  screen->resize(size);
+  screen->setRun(example.run, example.session);
+  screen->setTime(2.0);
+  if (!QTest::qWaitFor([&] { return !screen->busy(); }, kWorkPatience_ms)) return nullptr;
+  screen->grab();
+  return screen;
+}
+
+inline bool hasOpenGl() {
+  View3D view;
+  view.grab();
+  return view.problem().isEmpty();
+}
+
+}  // namespace evical::ui::test
