@@ -149,7 +149,7 @@ class TestResultFiles : public QObject {
     session.imus[0].name = run.pass.imus[0].name = session.reference = "\"><img src=x onerror=1>";
     run.result.reason = "</style></p><script>1</script>";
     run.result.notes.emplace_back("a\x01note ]]> <i>");
-    run.pass.faults.push_back({"<s>", "gap", 0.0, "<u>gap</u>"});
+    run.pass.faults.push_back({"<s>", FaultKind::Gap, 0.0, "<u>gap</u>"});
     QTemporaryDir folder;
     writeResultFiles(folder.path().toStdString(), session, shared(run), "1<2", "log");
     const QString page = readFile(folder.filePath("report.html"));
@@ -248,7 +248,7 @@ class TestResultFiles : public QObject {
   void advice_isGivenOnlyWhereTheDataSaySo() {
     QVERIFY(!text_.contains("without losses"));
     CalibrationRun run = run_;
-    run.pass.faults.push_back({"imu", "gap", 1.0, "gap of 0.3 s at 1.0 s"});
+    run.pass.faults.push_back({"imu", FaultKind::Gap, 1.0, "gap of 0.3 s at 1.0 s"});
     for (ImuSample& sample : run.pass.imus[0].samples) sample.angular_rate_rad_s.z() *= 0.01;
     for (BoardView& view : run.pass.cameras[0].views)
       std::erase_if(view.circles, [](const CircleObservation& c) { return c.centre_px.x() > 120.0; });

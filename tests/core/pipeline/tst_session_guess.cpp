@@ -148,7 +148,7 @@ class TestSessionGuess : public QObject {
     StreamSummary frames = eventStream("/image");
     frames.info.type = StreamType::Frames;
     Inspection inspection = holding({frames});
-    inspection.faults.push_back({"", "truncated", 0.0, "The file ends in the middle of a chunk"});
+    inspection.faults.push_back({"", FaultKind::Truncated, 0.0, "The file ends in the middle of a chunk"});
     const auto error = whyUseless("r.bag", inspection);
     QVERIFY(error && error->kind() == ErrorKind::BadInput);
     QCOMPARE(error->place(), std::string("r.bag"));
