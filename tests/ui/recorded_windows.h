@@ -10,6 +10,7 @@
 #include "ui/detection/detection_screen.h"
 #include "ui/detection/event_view.h"
 #include "ui/detection/timeline.h"
+#include "ui/detection/window_analysis.h"
 
 #include <QImage>
 #include <QTemporaryDir>

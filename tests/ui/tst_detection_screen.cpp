@@ -4,7 +4,6 @@
 #include "tests/ui/recorded_windows.h"
 #include "ui/detection/burst_band.h"
 #include "ui/detection/event_window_reader.h"
-#include "ui/detection/newest_request_worker.h"
 #include "ui/detection/window_analysis.h"
 #include "ui/detection/window_panel.h"
 #include "ui/theme/theme.h"
