@@ -129,13 +129,14 @@ SessionRemarks remarksOn(const Session& session, const std::vector<InspectedReco
       own.push_back(
           fmt::format("resolution_px: [{}, {}]  # not in the recording; this is how far its events reach",
                       stream->seen_px.width_px, stream->seen_px.height_px));
-    own.push_back("intrinsics: camera.yaml  # not known: calibrated first, from the same events");
-    if (!camera.recording.empty()) own.push_back("clock_offset_s: 0.0  # to be added to this file's times");
+    own.emplace_back("intrinsics: camera.yaml  # not known: calibrated first, from the same events");
+    if (!camera.recording.empty())
+      own.emplace_back("clock_offset_s: 0.0  # to be added to this file's times");
   }
   for (const SessionImu& imu : session.imus) {
     std::vector<std::string>& own = remarks.sensors[imu.name];
-    own.push_back("These noise densities are a common IMU's: take yours from its data sheet.");
-    if (!imu.recording.empty()) own.push_back("clock_offset_s: 0.0  # to be added to this file's times");
+    own.emplace_back("These noise densities are a common IMU's: take yours from its data sheet.");
+    if (!imu.recording.empty()) own.emplace_back("clock_offset_s: 0.0  # to be added to this file's times");
   }
   return remarks;
 }
@@ -147,7 +148,7 @@ std::vector<std::string> notesOn(const Session& session) {
       notes.push_back(
           fmt::format("cameras.{}: give resolution_px, which the recording does not say", camera.name));
   if (session.imus.empty() && session.cameras.size() == 1)
-    notes.push_back("no IMU: name its recording, too; without one there is 'evical intrinsics'");
+    notes.emplace_back("no IMU: name its recording, too; without one there is 'evical intrinsics'");
   return notes;
 }
 
