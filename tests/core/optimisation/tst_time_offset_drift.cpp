@@ -1,9 +1,8 @@
 // Clocks that do not run at the reference's pace.
 #include "core/optimisation/batch_optimiser.h"
-#include "core/optimisation/covariance.h"
+#include "core/optimisation/uncertainty/covariance.h"
 #include "tests/core/optimisation/simulated_rig.h"
 #include "tests/support/test_program.h"
-
 
 #include <algorithm>
 #include <cmath>
