@@ -1,5 +1,6 @@
 // Biases that walk while the recording runs.
 #include "core/optimisation/batch_optimiser.h"
+#include "core/optimisation/bias_knots.h"
 #include "core/optimisation/calibration_problem.h"
 #include "core/optimisation/sample_errors.h"
 #include "core/optimisation/uncertainty/covariance.h"
