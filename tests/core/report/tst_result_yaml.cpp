@@ -215,10 +215,11 @@ class TestResultYaml : public QObject {
   void comparison_givesErrorsInReferenceAxesAndSigmas() {
     const NamedResult truth = sample();
     NamedResult result = truth;
-    RigidTransform& pose = result.result->state.cameras[0].reference_from_camera;
+    CameraState& camera = test::ownResult(result).state.cameras[0];
+    RigidTransform& pose = camera.reference_from_camera;
     pose.rotation = quaternionExp(Eigen::Vector3d(0.0, 3e-4, 0.0)) * pose.rotation;
     pose.translation_m.z() -= 4e-4;
-    result.result->state.cameras[0].time_offset_s += 6e-5;
+    camera.time_offset_s += 6e-5;
     const TruthComparison comparison = compareWithTruth(result, truth);
     const auto normalised = [&](const std::string& name) {
       for (const QuantityDifference& q : comparison.quantities)
