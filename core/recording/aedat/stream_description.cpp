@@ -61,10 +61,10 @@ std::string_view attribute(std::string_view tag, std::string_view name) {
   return tag.substr(0, tag.find('"'));
 }
 
-void store(std::string_view key, std::string value, StreamDescription& stream) {
-  if (key == "originalOutputName") stream.name = std::move(value);
-  if (key == "typeIdentifier") stream.type = std::move(value);
-  if (key == "source") stream.source = std::move(value);
+void store(std::string_view key, const std::string& value, StreamDescription& stream) {
+  if (key == "originalOutputName") stream.name = value;
+  if (key == "typeIdentifier") stream.type = value;
+  if (key == "source") stream.source = value;
   if (key != "sizeX" && key != "sizeY") return;
   const std::int32_t side_px = wholeNumber(value).value_or(0);
   if (side_px < 1 || side_px > kLargestSide_px) return;
