@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing, checks the sources' format, builds with warnings as errors, runs every test, and
-# clang-tidy. Prints at its end how long each of these took.
+# Installs what is missing, checks the sources' format, builds with warnings as errors and runs every test. Prints at
+# its end how long each of these took.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -27,4 +27,3 @@ step format packaging/check-format.sh
 step configure cmake --preset ci
 step build cmake --build --preset ci
 step tests ctest --preset ci
-step clang-tidy packaging/check-tidy.sh
