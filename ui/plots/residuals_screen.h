@@ -19,11 +19,14 @@ class QPushButton;
 class QStackedLayout;
 class QTimer;
 
+namespace evical {
+struct ResidualStatistics;
+}
+
 namespace evical::ui {
 
 class LatestJob;
 class PlotPanel;
-struct ResidualStatistics;
 
 class ResidualsScreen : public QWidget {
   Q_OBJECT
