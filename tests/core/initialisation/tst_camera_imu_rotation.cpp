@@ -43,8 +43,8 @@ class TestCameraImuRotation : public QObject {
     const SimulatedInput simulated = simulateInput(simulation);
     const auto hand_eye = handEyeOf(simulated, simulation.time_offset_s + start_error_s);
     QVERIFY(hand_eye.has_value());
-    const double error_rad = rotationAngleBetween_rad(
-        hand_eye->reference_from_sensor, simulated.truth.cameras[0].reference_from_camera.rotation);
+    const double error_rad = rotationAngleBetween_rad(hand_eye->reference_from_sensor,
+                                                      simulated.truth.cameras[0].imu_from_camera.rotation);
     QVERIFY2(error_rad < 0.3 * kRadPerDeg, qPrintable(QString::number(error_rad)));
     QVERIFY(std::abs(hand_eye->time_offset_s - simulation.time_offset_s) < 2e-3);
     QVERIFY((hand_eye->gyroscope_bias_rad_s - simulated.truth.imus[0].gyroscope_bias_rad_s).norm() < 3e-3);
