@@ -200,6 +200,7 @@ class TestResultFiles : public QObject {
     IntrinsicsResult& found = run.intrinsics.emplace_back().emplace();
     found.intrinsics = *simulated_.session.cameras[0].intrinsics;
     run.result.state.cameras[0].lens.given.reset();
+    run.result.uncertainty.cameras[0].intrinsics_std.emplace().fill(0.05);
     found.covariance.diagonal().head<8>().setConstant(0.0025);
     found.status = CalibrationStatus::Doubtful;
     found.reason = "no views reach the <left> side";
