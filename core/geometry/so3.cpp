@@ -5,7 +5,7 @@
 namespace evical {
 namespace {
 
-// Below it the series of half-angle sine and cosine are exact to double precision with two terms.
+// Below it the series with two terms of sine and cosine are exact to double precision.
 constexpr double kSmallAngle2 = 1e-8;  // rad^2
 
 // What Rodrigues' formula and its derivative weigh skew(v) and its square with.
@@ -34,10 +34,20 @@ Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
   return m;
 }
 
+// Keeps a series of its own: the one above would serve as well, but moves the last digits of estimates.
 Eigen::Matrix3d so3Exp(const Eigen::Vector3d& rotation_vector_rad) {
-  const Coefficients by = coefficients(rotation_vector_rad.squaredNorm());
+  const double angle2 = rotation_vector_rad.squaredNorm();
+  double sine, cosine;  // sin(x)/x, (1-cos(x))/x^2
+  if (angle2 < kSmallAngle2) {
+    sine = 1.0 - angle2 / 6.0;
+    cosine = 0.5 - angle2 / 24.0;
+  } else {
+    const double angle = std::sqrt(angle2);
+    sine = std::sin(angle) / angle;
+    cosine = (1.0 - std::cos(angle)) / angle2;
+  }
   const Eigen::Matrix3d k = skew(rotation_vector_rad);
-  return Eigen::Matrix3d::Identity() + by.sine * k + by.cosine * k * k;
+  return Eigen::Matrix3d::Identity() + sine * k + cosine * k * k;
 }
 
 void so3ExpAndRightJacobian(const Eigen::Vector3d& rotation_vector_rad, Eigen::Matrix3d& exponential,
