@@ -184,8 +184,8 @@ void JobRunner::tick() {
     const std::lock_guard lock(reports_->mutex);
     stages.swap(reports_->new_stages);
     lines.swap(reports_->lines);
-    progress = {reports_->stage, reports_->stage_fraction, reports_->fraction, reports_->stopwatch.elapsed_s(),
-                reports_->remaining_s()};
+    progress = {reports_->stage, reports_->stage_fraction, reports_->fraction,
+                reports_->stopwatch.elapsed_s(), reports_->remaining_s()};
   }
   for (const QString& stage : stages) emit stageStarted(stage);
   for (const LogLine& line : lines) emit logged(line);
