@@ -1,6 +1,6 @@
-// The commands, one file each. Every function adds its command to the program; when that is chosen, its
-// outcome goes to `exit_code`, which must outlive the parsing. What a command throws, main() turns into an
-// exit code.
+// The commands, one file each. Every function adds its command to the program; when that is chosen,
+// its outcome goes to `exit_code`, which must outlive the parsing. What a command throws, main()
+// turns into an exit code.
 #pragma once
 
 namespace CLI {

@@ -1,5 +1,5 @@
-// Arguments that calibrate and detect share: SESSION -o DIR [--set group.option=value ...] [--threads N]
-// [--quiet].
+// Arguments that calibrate and detect share: SESSION -o DIR [--set
+// group.option=value ...] [--threads N] [--quiet].
 #pragma once
 
 #include "core/pipeline/session.h"

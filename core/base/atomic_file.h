@@ -17,8 +17,8 @@ struct FileContent {
   std::string content;
 };
 
-// The same for several files: all are written aside before the first is renamed, so a full disk changes none
-// of them.
+// The same for several files: all are written aside before the first is renamed, so a full
+// disk changes none of them.
 void writeFilesWhole(std::span<const FileContent> files);
 
 // Makes the folder and those above it; throws CalibrationError (BadInput) if it can't be made or written to.

@@ -13,8 +13,8 @@ enum class ErrorKind {
 
 class CalibrationError : public std::runtime_error {
  public:
-  // `place` names a file, a key, a stream or a time; `advice` tells what to do. Neither ends with a full
-  // stop.
+  // `place` names a file, a key, a stream or a time; `advice` tells what to do. Neither
+  // ends with a full stop.
   CalibrationError(ErrorKind kind, std::string place, std::string problem, std::string advice = {});
 
   ErrorKind kind() const { return kind_; }
@@ -30,8 +30,8 @@ class CalibrationError : public std::runtime_error {
 CalibrationError badInput(std::string place, std::string problem, std::string advice = {});
 CalibrationError calibrationFailed(std::string place, std::string problem, std::string advice = {});
 
-// Thrown by RunContext::throwIfStopped. Not an error: whoever started the run turns it into the outcome
-// "cancelled".
+// Thrown by RunContext::throwIfStopped. Not an error: whoever started the run turns
+// it into the outcome "cancelled".
 struct Cancelled {};
 
 }  // namespace evical

@@ -4,9 +4,9 @@
 //   constexpr std::tuple kFields{
 //       Field{"plane_radius_px", &NormalFlowOptions::plane_radius_px, 1, within(1, 5), "px", "Half width."},
 //       Switch{"quick", &NormalFlowOptions::quick, false, "Fits fewer planes.", Level::Common}};
-//   constexpr auto kDefaults = defaultsOf<NormalFlowOptions>(kFields);  // does not compile if a row is
-//   missing NormalFlowOptions::NormalFlowOptions() : NormalFlowOptions(kDefaults) {} const
-//   OptionTable<NormalFlowOptions>& NormalFlowOptions::table() {
+//   constexpr auto kDefaults = defaultsOf<NormalFlowOptions>(kFields);  // a missing row does not compile
+//   NormalFlowOptions::NormalFlowOptions() : NormalFlowOptions(kDefaults) {}
+//   const OptionTable<NormalFlowOptions>& NormalFlowOptions::table() {
 //     static const OptionTable<NormalFlowOptions> table(kFields);
 //     return table;
 //   }

@@ -1,6 +1,6 @@
-// What the header of an options struct needs; its rows, which hold defaults, ranges and help, are in the
-// source beside it (option_field.h, option_table.h), so that a change of a default or a text rebuilds that
-// source only.
+// What the header of an options struct needs; its rows, which hold defaults, ranges and help, are
+// in the source beside it (option_field.h, option_table.h), so that a change of a default or a
+// text rebuilds that source only.
 //
 //   struct NormalFlowOptions {
 //     int plane_radius_px;

@@ -11,8 +11,8 @@ class CalibrationObserver;  // core/data/calibration_observer.h; from here it is
 
 enum class LogLevel { Debug, Info, Warning };
 
-// Called from worker threads; implementations lock where they must. All fractions are real: work done / work
-// to do.
+// Called from worker threads; implementations lock where they must. All fractions are real: work
+// done / work to do.
 class ProgressSink {
  public:
   virtual ~ProgressSink() = default;

@@ -1,5 +1,5 @@
-// Times are integer nanoseconds in files and streams, and seconds since the recording's start in the
-// estimator.
+// Times are integer nanoseconds in files and streams, and seconds since the
+// recording's start in the estimator.
 #pragma once
 
 #include <cmath>

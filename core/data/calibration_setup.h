@@ -1,5 +1,5 @@
-// What is known before a calibration: the sensors by name, the board, the noise. Lists of cameras and IMUs
-// throughout.
+// What is known before a calibration: the sensors by name, the board, the noise. Lists
+// of cameras and IMUs throughout.
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -45,8 +45,8 @@ struct CameraData {
   SensorPrior prior = {};
 };
 
-// The estimator's input. Times of observations are seconds since start_ns; IMU samples keep their
-// nanoseconds.
+// The estimator's input. Times of observations are seconds since start_ns;
+// IMU samples keep their nanoseconds.
 struct CalibrationInput {
   std::int64_t start_ns = 0;
   CircleBoard board;

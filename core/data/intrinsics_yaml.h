@@ -11,9 +11,9 @@ namespace evical {
 
 const char* cameraModelName(CameraModel model);
 
-// Our map (model, resolution_px, focal_length_px, principal_point_px, distortion), one camera of a Kalibr
-// camchain, or a ROS camera_info; resolution from the map or, absent there, unknown. Throws CalibrationError
-// (BadInput).
+// Our map (model, resolution_px, focal_length_px, principal_point_px, distortion), one
+// camera of a Kalibr camchain, or a ROS camera_info; resolution from the map or, absent
+// there, unknown. Throws CalibrationError (BadInput).
 CameraIntrinsics readIntrinsics(const YamlNode& map);
 
 // From a file: any of these, a map with the key `intrinsics`, or a result.yaml. Where the file has several

@@ -1,8 +1,8 @@
-// One row per calibrated quantity, as option_field.h has one per option: the structs hold value, sigma and
-// prior, the row says where, and what is worth knowing of the quantity: its name, shape, units, need, and
-// keys in files. The comparison of results, the halves, result.yaml, priors, tables, the report and the
-// window all walk these rows; a new quantity is a row here, members in the structs, and a parameter block in
-// the batch.
+// One row per calibrated quantity, as option_field.h has one per option: the structs hold value, sigma
+// and prior, the row says where, and what is worth knowing of the quantity: its name, shape, units,
+// need, and keys in files. The comparison of results, the halves, result.yaml, priors, tables, the
+// report and the window all walk these rows; a new quantity is a row here, members in the structs, and a
+// parameter block in the batch.
 #pragma once
 
 #include "core/data/calibration_priors.h"
@@ -59,8 +59,8 @@ struct QuantityInfo {
   int decimals = 5;           // in shown units
   const char* remark = "";    // after the unit
   QuantityNeed need = QuantityNeed::None;
-  // A size in SI units that makes all quantities comparable, so that "no information" means the same for
-  // each.
+  // A size in SI units that makes all quantities comparable, so that "no information"
+  // means the same for each.
   double comparable_unit = 1e-3;
   QuantityRelease release = QuantityRelease::Always;
   QuantityPresence presence = QuantityPresence::Always;

@@ -33,17 +33,17 @@ struct BoardSearch {
   std::optional<BoardMotion> motion;
 };
 
-// One search for each source of candidates that was tried, in order: the options' method first, and the other
-// where that does not show the board. Each tries window lengths until one shows the board, and is its last
-// try.
+// One search for each source of candidates that was tried, in order: the options' method first, and
+// the other where that does not show the board. Each tries window lengths until one shows the board,
+// and is its last try.
 std::vector<BoardSearch> searchBoard(const BurstHistory& history, std::int64_t middle_ns,
                                      const BoardScene& scene, const FrontEndOptions& options);
 
 // No search looks at bursts further than this from the middle, however slowly edges move.
 inline constexpr double kSearchReach_s = 0.08;
 
-// Normal flow around an instant, for drawings: in a window of this length, or as a search by flow sees it at
-// first.
+// Normal flow around an instant, for drawings: in a window of this length, or as a search by
+// flow sees it at first.
 struct FlowAround {
   double half_window_s = 0.0;
   NormalFlowStages arcs;

@@ -31,12 +31,12 @@ class BurstHistory {
   std::deque<std::vector<EdgeBurst>> slices_;
 };
 
-// Drops bursts that stand alone: fewer than `least_support` of their kind in a 3x3 neighbourhood, themselves
-// included.
+// Drops bursts that stand alone: fewer than `least_support` of their kind in
+// a 3x3 neighbourhood, themselves included.
 void keepSupported(Resolution resolution_px, int least_support, std::vector<EdgeBurst>& bursts);
 
-// A burst in a window. Pixels are the sensor's; ideal pixels as in camera_model.h (the same where nothing is
-// known).
+// A burst in a window. Pixels are the sensor's; ideal pixels as in camera_model.h (the
+// same where nothing is known).
 struct WindowBurst {
   float x_px, y_px;
   float ideal_x_px, ideal_y_px;

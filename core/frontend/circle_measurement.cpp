@@ -61,8 +61,8 @@ struct CentreFit {
   unsigned sectors = 0;
 };
 
-// Residuals are linear in the shift as long as it is small against the radius; a few rounds settle the
-// weights.
+// Residuals are linear in the shift as long as it is small against the radius; a
+// few rounds settle the weights.
 CentreFit fitCentre(CircleImage circle, const BoardMotion& motion, const TrackingOptions& options,
                     std::vector<EdgePoint>& points) {
   CentreFit fit;

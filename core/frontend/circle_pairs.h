@@ -21,8 +21,8 @@ struct NormalFlowStages {
   std::vector<ArcPair> pairs;
 };
 
-// Pairs arcs that move alike, one behind the other. Nearest first, mutually; arcs of a clear kind before
-// others.
+// Pairs arcs that move alike, one behind the other. Nearest first, mutually; arcs of
+// a clear kind before others.
 std::vector<ArcPair> pairClusters(const std::vector<EventCluster>& clusters, const NormalFlowField& field,
                                   const NormalFlowOptions& options);
 

@@ -43,8 +43,8 @@ void BurstExtractor::extend(Pixel& pixel, const Event& event) {
   pixel.times_ns[pixel.kept++] = static_cast<std::int32_t>(event.time_ns - pixel.first_ns);
 }
 
-// A burst's first events may be noise from long before it: what pausedAt asks of the next event, asked
-// backwards.
+// A burst's first events may be noise from long before it: what pausedAt asks of
+// the next event, asked backwards.
 int BurstExtractor::ownBegin(const Pixel& pixel) const {
   int begin = 0;
   for (const int last = pixel.kept - 1; begin + 3 <= last; ++begin) {

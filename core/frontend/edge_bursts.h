@@ -27,8 +27,8 @@ class BurstExtractor {
  public:
   BurstExtractor(Resolution resolution_px, const BurstOptions& options);
 
-  // Events in time order, inside the resolution; finished bursts are appended to `bursts`, in order of their
-  // ends.
+  // Events in time order, inside the resolution; finished bursts are appended to `bursts`,
+  // in order of their ends.
   void add(EventSpan events, std::vector<EdgeBurst>& bursts);
   void finish(std::vector<EdgeBurst>& bursts);
 

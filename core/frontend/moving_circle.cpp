@@ -31,8 +31,8 @@ struct CircleSums {
   unsigned sectors = 0;
 };
 
-// One pass over the points; the radius' own scale loosens the gate for large circles, which tilt makes
-// elliptic.
+// One pass over the points; the radius' own scale loosens the gate for large
+// circles, which tilt makes elliptic.
 CircleSums sumUp(const std::vector<CirclePoint>& points, const MovingCircle& circle, double gate_px,
                  const MovingCircleOptions& options, bool normal_equations) {
   CircleSums sums;
@@ -77,8 +77,8 @@ std::optional<MovingCircle> fitFrom(MovingCircle circle, const std::vector<Circl
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     CircleSums sums = sumUp(points, circle, gateAt(iteration, first_radius_px, options), options, true);
     if (sums.bursts < 8) return std::nullopt;
-    // Velocities are in px/s: a prior of 0 +- 1000 px/s, and a whole gate for the rest, keep the matrix
-    // regular.
+    // Velocities are in px/s: a prior of 0 +- 1000 px/s, and a whole gate for the
+    // rest, keep the matrix regular.
     sums.matrix.diagonal() += (Vector5() << 1e-3, 1e-3, 1e-7, 1e-7, 1e-3).finished();
     const Vector5 step = sums.matrix.ldlt().solve(sums.vector);
     if (!step.allFinite()) return std::nullopt;

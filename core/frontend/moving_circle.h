@@ -22,8 +22,8 @@ struct MovingCircle {
   int sectors = 0;  // of 16
 };
 
-// Typical speed of edges in the window, from planes through neighbouring bursts' times; 0 if there are too
-// few.
+// Typical speed of edges in the window, from planes through neighbouring bursts' times; 0
+// if there are too few.
 double typicalEdgeSpeed_px_s(const BurstWindow& window);
 
 // `speed_px_s` > 0 is tried in several multiples where the candidate brings no speed of its own.

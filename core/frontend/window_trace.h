@@ -64,8 +64,8 @@ WindowTrace trackWindow(const TrackingInput& input, const WindowSlot& slot, cons
 const BoardView* viewToTrackFrom(const BoardObservations& observations, double time_s,
                                  const TrackingOptions& options);
 
-// The board's motion at a view. Views keep less of it than the tracker does, so it is fitted once more to the
-// bursts around.
+// The board's motion at a view. Views keep less of it than the tracker does, so it is fitted once
+// more to the bursts around.
 std::optional<BoardMotion> motionAtView(const TrackingInput& input, const BoardView& view);
 
 }  // namespace evical

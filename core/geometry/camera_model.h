@@ -1,6 +1,6 @@
-// Pinhole cameras with radial-tangential or equidistant (fisheye) distortion. Camera frame: z forward, x
-// right, y down; pixels with the centre of the top-left pixel at (0, 0). OpenCV's equations and order of
-// coefficients.
+// Pinhole cameras with radial-tangential or equidistant (fisheye) distortion. Camera frame: z
+// forward, x right, y down; pixels with the centre of the top-left pixel at (0, 0). OpenCV's
+// equations and order of coefficients.
 //
 // "Ideal" pixels are where a camera of the same focal length and principal point without distortion would see
 // a point: u = fx x / z + cx. In ideal pixels, and only there, the image of a circle is an exact conic.
@@ -39,8 +39,8 @@ struct CameraIntrinsics {
 // Columns of the Jacobian with respect to the intrinsics: fx fy cx cy d0 d1 d2 d3 d4.
 using IntrinsicsJacobian = Eigen::Matrix<double, 2, 9>;
 
-// Pixel of a point in the camera frame; nothing if the point is behind the camera or beyond the distortion's
-// range.
+// Pixel of a point in the camera frame; nothing if the point is behind the camera
+// or beyond the distortion's range.
 std::optional<Eigen::Vector2d> project(const CameraIntrinsics& camera, const Eigen::Vector3d& point_in_camera,
                                        Eigen::Matrix<double, 2, 3>* jacobian_point = nullptr,
                                        IntrinsicsJacobian* jacobian_intrinsics = nullptr);

@@ -12,8 +12,8 @@
 
 namespace evical {
 
-// Pixels at the middles of columns x rows cells, row by row, and how those of their rays move with the
-// intrinsics.
+// Pixels at the middles of columns x rows cells, row by row, and how those of their
+// rays move with the intrinsics.
 class ProjectionChange {
  public:
   struct Place {

@@ -1,6 +1,6 @@
-// Rotations: exponential, logarithm and their Jacobians. Right-hand perturbations throughout: R -> R
-// Exp(delta). Formulas: Sola, Deray, Atchuthan, "A micro Lie theory for state estimation in robotics" (2018),
-// section IV.
+// Rotations: exponential, logarithm and their Jacobians. Right-hand perturbations throughout: R
+// -> R Exp(delta). Formulas: Sola, Deray, Atchuthan, "A micro Lie theory for state estimation
+// in robotics" (2018), section IV.
 #pragma once
 
 #include <Eigen/Core>

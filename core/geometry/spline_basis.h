@@ -1,5 +1,5 @@
-// Weights of the uniform cumulative cubic B-spline (docs/maths.md, 2) at u in a segment, and their time
-// derivatives.
+// Weights of the uniform cumulative cubic B-spline (docs/maths.md, 2) at u in a
+// segment, and their time derivatives.
 #pragma once
 
 #include <Eigen/Core>

@@ -35,9 +35,9 @@ VectorSample evaluateVectorSegment(const double* p0, const double* p1, const dou
 VectorSpline makeUniformVectorSpline(double begin_s, double end_s, double knot_spacing_s,
                                      const Eigen::Vector3d& value = Eigen::Vector3d::Zero());
 
-// Linear least squares to values at times within [begin_s, end_s]. `smoothness` weighs the integrated squared
-// second difference of the control points against one sample; the default only bridges stretches without
-// data.
+// Linear least squares to values at times within [begin_s, end_s]. `smoothness` weighs the
+// integrated squared second difference of the control points against one sample; the default
+// only bridges stretches without data.
 VectorSpline fitVectorSpline(std::span<const double> times_s, std::span<const Eigen::Vector3d> values,
                              double begin_s, double end_s, double knot_spacing_s, double smoothness = 1e-8);
 

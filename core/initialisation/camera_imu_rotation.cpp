@@ -35,8 +35,8 @@ std::vector<RotationPair> rotationPairs(const std::vector<CameraPose>& poses, do
   return pairs;
 }
 
-// Rotation that turns the camera's rotation vectors into the gyroscope's (G. Wahba's problem, by SVD),
-// reweighted.
+// Rotation that turns the camera's rotation vectors into the gyroscope's (G.
+// Wahba's problem, by SVD), reweighted.
 void alignVectors(const std::vector<RotationPair>& pairs, const std::vector<Eigen::Vector3d>& felt,
                   double scale_rad, RelativeRotation& result) {
   Eigen::Matrix3d rotation = result.reference_from_sensor.toRotationMatrix();

@@ -12,8 +12,8 @@
 
 namespace evical {
 
-// How a sensor is turned against the reference, and when: a camera by hand-eye, or a further IMU by its
-// own spline.
+// How a sensor is turned against the reference, and when: a camera by hand-eye, or a further
+// IMU by its own spline.
 struct RelativeRotation {
   Eigen::Quaterniond reference_from_sensor = Eigen::Quaterniond::Identity();
   double time_offset_s = 0.0;

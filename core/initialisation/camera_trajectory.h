@@ -14,8 +14,8 @@
 
 namespace evical {
 
-// Where a view allows two poses, takes the one nearer to those of its neighbours in time. Returns how many
-// were swapped.
+// Where a view allows two poses, takes the one nearer to those of its neighbours in time.
+// Returns how many were swapped.
 int resolveBySmoothness(std::vector<CameraPose>& poses, double longest_pair_s);
 
 struct CameraTrajectory {

@@ -1,6 +1,6 @@
-// How fast the camera turned, seen by its views of the board alone, and how fast the gyroscope says it did.
-// Sizes of rotation do not depend on how the camera is mounted, so only the time offset can bring the two
-// together.
+// How fast the camera turned, seen by its views of the board alone, and how fast the gyroscope
+// says it did. Sizes of rotation do not depend on how the camera is mounted, so only the time
+// offset can bring the two together.
 #pragma once
 
 #include "core/base/progress.h"

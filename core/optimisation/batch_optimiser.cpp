@@ -19,8 +19,8 @@
 namespace evical {
 namespace {
 
-// Beyond this a segment's polynomial, continued, says nothing of the trajectory any more: assign anew at
-// once.
+// Beyond this a segment's polynomial, continued, says nothing of the trajectory any
+// more: assign anew at once.
 constexpr double kFurthestDrift_knots = 0.5;
 // Bounds of the noise scales: beyond them something else is wrong, and a sensor must not rule or vanish.
 constexpr double kLeastScale = 0.05, kLargestScale = 1000.0;
@@ -151,8 +151,8 @@ void Batch::solveStage(ReleaseStages stage, int index, double tolerance) {
   }
 }
 
-// Noise scales and outliers, both from all circles and samples; true if anything changed enough to solve
-// again.
+// Noise scales and outliers, both from all circles and samples; true if anything
+// changed enough to solve again.
 bool Batch::updateWeights() {
   const std::vector<CircleError> errors = circleErrors(input_, problem_.state(), options_);
   std::vector<double> circles;

@@ -33,8 +33,8 @@ struct BatchSolution {
 BatchSolution optimiseBatch(const CalibrationInput& input, const CalibrationState& initial,
                             const OptimisationOptions& options, const RunContext& context);
 
-// From a state that is a solution already, of these or of similar data: the last stage only, which nobody
-// observes.
+// From a state that is a solution already, of these or of similar data: the last
+// stage only, which nobody observes.
 BatchSolution refineBatch(const CalibrationInput& input, const CalibrationState& solved,
                           const OptimisationOptions& options, const RunContext& context);
 

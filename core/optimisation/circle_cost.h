@@ -10,10 +10,10 @@
 //
 // Where intrinsics are free, the prediction is that of free_intrinsics.h.
 //
-// Blocks: 4 rotation control points (x y z w), 4 position control points [m], reference_from_camera rotation
-// (x y z w) and translation [m], time offset [s] and its drift [ppm], edge lead [px] and its growth [px];
-// where intrinsics are free also those, fx fy cx cy d0..d4. Without unit. Quaternion blocks as in
-// so3_manifold.h.
+// Blocks: 4 rotation control points (x y z w), 4 position control points [m], reference_from_camera
+// rotation (x y z w) and translation [m], time offset [s] and its drift [ppm], edge lead [px] and
+// its growth [px]; where intrinsics are free also those, fx fy cx cy d0..d4. Without unit.
+// Quaternion blocks as in so3_manifold.h.
 //
 // v is the measured image velocity: of the right direction to a percent or so where it matters, and it keeps
 // the lead linear.

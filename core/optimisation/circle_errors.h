@@ -20,12 +20,12 @@ struct CircleError {
 std::vector<CircleError> circleErrors(const CalibrationInput& input, const CalibrationState& state,
                                       const OptimisationOptions& options);
 
-// Spread of a camera's errors in units of their sigmas, from the median, so that outliers don't matter; 1
-// without circles.
+// Spread of a camera's errors in units of their sigmas, from the median, so that outliers
+// don't matter; 1 without circles.
 double robustScale(const std::vector<CircleError>& errors, std::size_t camera);
 
-// Drops gross outliers, and windows most of whose circles are. Circles outside the splines' range stay
-// selected.
+// Drops gross outliers, and windows most of whose circles are. Circles outside
+// the splines' range stay selected.
 CircleSelection selectCircles(const CalibrationInput& input, const std::vector<CircleError>& errors,
                               const std::vector<double>& scales, const OptimisationOptions& options);
 

@@ -1,8 +1,8 @@
-// What an edge lead does to a measured ellipse centre. Which way and how far the centre moves for each pixel
-// of lead, the measurement itself says: that depends on the ellipse's shape, on which of its arcs fired, and
-// on the lens. The lead of real pixels is not quite the same at every speed: it may grow with the logarithm
-// of the speed, around 100 px/s on the sensor, and fades out near standstill, where edges turn back within a
-// burst.
+// What an edge lead does to a measured ellipse centre. Which way and how far the centre moves for each
+// pixel of lead, the measurement itself says: that depends on the ellipse's shape, on which of its arcs
+// fired, and on the lens. The lead of real pixels is not quite the same at every speed: it may grow with
+// the logarithm of the speed, around 100 px/s on the sensor, and fades out near standstill, where edges
+// turn back within a burst.
 #pragma once
 
 #include "core/data/board_observations.h"

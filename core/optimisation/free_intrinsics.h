@@ -1,8 +1,8 @@
 // A camera's intrinsics as unknowns of the batch.
 //
-// Measured centres stay in the ideal pixels of the camera that the front end saw with: there, covariances,
-// leads and the pixels' errors are known. What another camera predicts is compared on the sensor and brought
-// there:
+// Measured centres stay in the ideal pixels of the camera that the front end saw with: there,
+// covariances, leads and the pixels' errors are known. What another camera predicts is compared on
+// the sensor and brought there:
 //   r = S [ project(camera, centre of the projected circle's conic) - distort(seen_with, measured) ],
 //   S = d(ideal pixel)/d(pixel) of seen_with at the measured centre.
 // Where the camera is the one seen with, r is predicted - measured in ideal pixels, to second order in r.
@@ -55,8 +55,8 @@ class IntrinsicsBlock {
     return intrinsicsFrom(parameters_.data(), seen_with_.model, seen_with_.resolution_px);
   }
 
-  // Holds what the model does not use; all of it, unless released. To be called for each new problem that has
-  // the block.
+  // Holds what the model does not use; all of it, unless released. To be called for each new
+  // problem that has the block.
   void hold(ceres::Problem& problem, bool released);
   ceres::ResidualBlockId addPrior(ceres::Problem& problem);
 

@@ -6,13 +6,13 @@
 // the reference IMU R = 1, l = 0, offset 0, and the last blocks are absent. One cost function holds all
 // samples whose times fall into one spline segment.
 //
-// Blocks of the gyroscope: 4 rotation control points (x y z w), bias [rad/s], mapping, R_ga (gyroscope from
-// accelerometer, x y z w); further IMUs: rotation (x y z w), time offset [s]. Blocks of the accelerometer: 4
-// rotation and 4 position control points [m], gravity in the world [m/s^2], bias [m/s^2], mapping; further
-// IMUs: rotation, lever arm l [m], time offset. Where biases drift, two blocks more at the end: at the knots
-// before and after the samples, how far the bias is from its mean there; between them it is a straight line.
-// Without unit. Mapping: the upper triangle row by row (m00 m01 m02 m11 m12 m22). Quaternion blocks as in
-// so3_manifold.h.
+// Blocks of the gyroscope: 4 rotation control points (x y z w), bias [rad/s], mapping, R_ga (gyroscope
+// from accelerometer, x y z w); further IMUs: rotation (x y z w), time offset [s]. Blocks of the
+// accelerometer: 4 rotation and 4 position control points [m], gravity in the world [m/s^2], bias [m/s^2],
+// mapping; further IMUs: rotation, lever arm l [m], time offset. Where biases drift, two blocks more at
+// the end: at the knots before and after the samples, how far the bias is from its mean there; between
+// them it is a straight line. Without unit. Mapping: the upper triangle row by row (m00 m01 m02 m11 m12
+// m22). Quaternion blocks as in so3_manifold.h.
 #pragma once
 
 #include "core/optimisation/spline_segment.h"

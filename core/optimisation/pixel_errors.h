@@ -1,8 +1,8 @@
-// Errors of edges that repeat wherever an edge crosses the same pixel again: no residual shows them and no
-// number of views averages them. Circles that cross few pixels show a wrong amplitude by them: a change in
-// proportion to the centre's distance from its mean place, of pixel_error / a^1.5 with a the RMS of these
-// distances in pixels, as many independent errors as pixels. Not estimated, only allowed for in the reported
-// sigmas.
+// Errors of edges that repeat wherever an edge crosses the same pixel again: no residual shows them and
+// no number of views averages them. Circles that cross few pixels show a wrong amplitude by them: a
+// change in proportion to the centre's distance from its mean place, of pixel_error / a^1.5 with a the
+// RMS of these distances in pixels, as many independent errors as pixels. Not estimated, only allowed
+// for in the reported sigmas.
 #pragma once
 
 #include "core/data/calibration_setup.h"

@@ -103,8 +103,8 @@ class HeldTranslationCost final : public ceres::SizedCostFunction<1, 3> {
   Eigen::Vector3d weighted_axis_, prior_m_;
 };
 
-// Zero when a vector has its prior's norm: r = (|block| - norm) / sigma, without unit. Block: gravity
-// [m/s^2].
+// Zero when a vector has its prior's norm: r = (|block| - norm) / sigma,
+// without unit. Block: gravity [m/s^2].
 class NormCost final : public ceres::SizedCostFunction<1, 3> {
  public:
   NormCost(double norm, double sigma) : norm_(norm), weight_(1.0 / sigma) {}

@@ -1,6 +1,6 @@
-// Weak costs on a trajectory that no IMU measures, so that stretches without views stay determined: zero for
-// constant velocity, r = acceleration / sigma with the acceleration from three neighbouring control points,
-// without unit.
+// Weak costs on a trajectory that no IMU measures, so that stretches without views stay determined:
+// zero for constant velocity, r = acceleration / sigma with the acceleration from three
+// neighbouring control points, without unit.
 #pragma once
 
 #include <ceres/sized_cost_function.h>

@@ -1,5 +1,5 @@
-// The stretch of both splines that one cost function's measurements fall into, and its evaluation from Ceres'
-// blocks.
+// The stretch of both splines that one cost function's measurements fall into, and
+// its evaluation from Ceres' blocks.
 #pragma once
 
 #include "core/geometry/so3_spline.h"

@@ -1,5 +1,5 @@
-// From a session to a result: read and detect, initialise, optimise, judge. The only place that knows the
-// stages' order.
+// From a session to a result: read and detect, initialise, optimise, judge. The only place
+// that knows the stages' order.
 #pragma once
 
 #include "core/base/error.h"
@@ -34,9 +34,9 @@ struct CalibrationOutcome {
   CalibrationRun runOrThrow() &&;  // the run; else throws the error, or Cancelled
 };
 
-// Cameras without intrinsics are calibrated first, from the same events. Progress goes by the stages of
-// core/data/calibration_stage.h; the observer of `context` sees the cameras' windows once all intrinsics are
-// known.
+// Cameras without intrinsics are calibrated first, from the same events. Progress goes by the
+// stages of core/data/calibration_stage.h; the observer of `context` sees the cameras' windows
+// once all intrinsics are known.
 CalibrationOutcome runCalibration(const Session& session, const RunContext& context);
 
 // The same for who wants nothing but the result. Throws CalibrationError, and Cancelled when asked to stop.

@@ -1,5 +1,5 @@
-// Intrinsics that were found first, judged again by what is known once they are solved for with everything
-// else.
+// Intrinsics that were found first, judged again by what is known once they are
+// solved for with everything else.
 #pragma once
 
 #include "core/data/calibration_result.h"

@@ -20,8 +20,8 @@ constexpr double kSearched = 0.4;               // of a slice: from there on the
 constexpr int kSolveEvery = 3;                  // slices, once there is a camera
 constexpr std::size_t kMostEvents = 8'000'000;  // in a slice
 
-// Equidistant lenses of one parameter stand for all: wide, which shows most boards well enough; none;
-// fisheye.
+// Equidistant lenses of one parameter stand for all: wide, which shows most
+// boards well enough; none; fisheye.
 std::vector<CameraIntrinsics> plainLenses(Resolution resolution_px) {
   const double width_px = std::max(resolution_px.width_px, resolution_px.height_px);
   CameraIntrinsics lens;
@@ -118,8 +118,8 @@ class Pilot {
     if (!rough_ || slices_ % kSolveEvery == 0) solve();
   }
 
-  // The lens that showed most the last time alone, if it shows nearly all of the board: looks that fail take
-  // longest.
+  // The lens that showed most the last time alone, if it shows nearly all of the board:
+  // looks that fail take longest.
   Look throughPlainLenses(const std::vector<EdgeBurst>& bursts) {
     constexpr double kNearlyAll = 0.75;
     Look best = through(lenses_.front(), bursts);

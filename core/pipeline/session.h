@@ -53,8 +53,8 @@ struct Session {
 // As the session gives them: those that it leaves out are not known yet.
 std::vector<CameraLens> givenLenses(const Session& session);
 
-// Throws CalibrationError (BadInput) with the place "file: key (line n)"; unknown keys with the nearest known
-// one.
+// Throws CalibrationError (BadInput) with the place "file: key (line n)"; unknown keys
+// with the nearest known one.
 Session readSession(const std::filesystem::path& file);
 
 // What a session must fulfil whoever made it (reader, importer, forms); `place` precedes the key in messages.
@@ -66,8 +66,8 @@ struct SessionRemarks {
   std::map<std::string, std::vector<std::string>> sensors;  // by name: comments below the sensor's keys
 };
 
-// The file's content, paths relative to `folder` where that makes them simpler; and the file itself, whole or
-// not.
+// The file's content, paths relative to `folder` where that makes them simpler; and the
+// file itself, whole or not.
 std::string sessionYaml(const Session& session, const std::filesystem::path& folder,
                         const SessionRemarks& remarks = {});
 void writeSession(const Session& session, const std::filesystem::path& file);

@@ -1,5 +1,5 @@
-// A scenario becomes a recording in a folder: recording.bag (or one of another format), session.yaml,
-// truth.yaml.
+// A scenario becomes a recording in a folder: recording.bag (or one
+// of another format), session.yaml, truth.yaml.
 #pragma once
 
 #include "core/base/progress.h"

@@ -20,13 +20,13 @@ class RecordingReader {
   // Everything the file holds, also what cannot be decoded; known as soon as the file is open.
   virtual const std::vector<StreamInfo>& streams() const = 0;
 
-  // Which streams read() hands out, by index; all of type Events and Imu if never called. Call before the
-  // first read.
+  // Which streams read() hands out, by index; all of type Events and Imu if never called.
+  // Call before the first read.
   virtual void select(const std::vector<std::size_t>& streams) = 0;
 
-  // The next packet, never an empty one, its events in order of time; false at the end. Reuses the packet's
-  // storage. Packets come as the file has them: between packets, and between streams, time may run backwards
-  // a little.
+  // The next packet, never an empty one, its events in order of time; false at the end. Reuses the
+  // packet's storage. Packets come as the file has them: between packets, and between streams, time
+  // may run backwards a little.
   virtual bool read(Packet& packet) = 0;
 
   virtual double fractionRead() const = 0;  // of the file's bytes, 0..1
@@ -37,8 +37,8 @@ class RecordingReader {
   virtual std::string format() const = 0;  // "rosbag", "text"
 };
 
-// Opens a file or folder by its content. Throws CalibrationError (BadInput) if there is nothing readable at
-// `path`.
+// Opens a file or folder by its content. Throws CalibrationError (BadInput) if there
+// is nothing readable at `path`.
 std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path);
 
 // Index of the stream of this name and type; throws CalibrationError (BadInput) that lists those there are.

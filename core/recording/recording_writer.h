@@ -17,10 +17,10 @@ class RecordingWriter {
  public:
   virtual ~RecordingWriter() = default;
 
-  // `stream` is an index into the streams given at creation; times should not decrease within a stream, and
-  // streams should be written alternately, some 10 ms each. IMU samples are given in SI units; a writer
-  // converts them to what its format states. All throw CalibrationError (CalibrationFailed), e.g. on a full
-  // disk.
+  // `stream` is an index into the streams given at creation; times should not decrease within a stream,
+  // and streams should be written alternately, some 10 ms each. IMU samples are given in SI units; a
+  // writer converts them to what its format states. All throw CalibrationError (CalibrationFailed),
+  // e.g. on a full disk.
   virtual void write(std::size_t stream, EventSpan events) = 0;
   virtual void write(std::size_t stream, std::span<const ImuSample> samples) = 0;
   virtual void finish() = 0;

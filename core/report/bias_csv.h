@@ -1,5 +1,5 @@
-// Biases that drift, as comma separated text: one line a knot of each IMU, between which they are straight
-// lines.
+// Biases that drift, as comma separated text: one line a knot of each IMU, between
+// which they are straight lines.
 #pragma once
 
 #include "core/report/result_yaml.h"

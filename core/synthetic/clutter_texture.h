@@ -1,5 +1,5 @@
-// What lies behind the board: a periodic picture of overlapping flat objects on a cloudy ground, as a room
-// has.
+// What lies behind the board: a periodic picture of overlapping flat objects on a cloudy
+// ground, as a room has.
 #pragma once
 
 #include <cstdint>

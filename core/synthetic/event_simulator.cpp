@@ -74,8 +74,8 @@ void addNoise(const Scenario& scenario, std::size_t index, std::uint64_t packet,
   }
 }
 
-// Brings the workers' events into one order; what jitter has moved beyond the packet's end waits for the next
-// one.
+// Brings the workers' events into one order; what jitter has moved beyond the packet's end
+// waits for the next one.
 class PacketSorter {
  public:
   explicit PacketSorter(const Scenario& scenario, std::size_t camera)

@@ -131,8 +131,8 @@ void PixelArray::runTileRow(int tile_row, Scratch& scratch, std::vector<Event>& 
   }
 }
 
-// The low-pass filter's exact answer to an input that changes linearly over the step; crossings are
-// interpolated.
+// The low-pass filter's exact answer to an input that changes linearly over
+// the step; crossings are interpolated.
 void PixelArray::advance(const Step& step, float input, int x, int y, Pixel& pixel,
                          std::vector<Event>& events) const {
   const float behind = (input - pixel.input) * step.lag;

@@ -23,8 +23,8 @@ class PixelArray {
   // been running before.
   void reset(const RigidTransform& world_from_camera);
 
-  // A stretch of a few milliseconds, then each of its rows of tiles once, in any order and from several
-  // threads.
+  // A stretch of a few milliseconds, then each of its rows of tiles once, in any
+  // order and from several threads.
   void begin(double begin_s, double end_s, const std::function<RigidTransform(double)>& world_from_camera_at);
 
   struct Scratch {

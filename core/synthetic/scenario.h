@@ -1,5 +1,5 @@
-// A simulated recording in numbers: board, sensors, motion, noise, seed. Everything that is simulated follows
-// from it.
+// A simulated recording in numbers: board, sensors, motion, noise, seed. Everything that
+// is simulated follows from it.
 #pragma once
 
 #include "core/data/calibration_state.h"
@@ -29,8 +29,8 @@ struct EventPixelModel {
   double low_pass_s = 3e-4;     // time constant of the photoreceptor
   double stamp_jitter_s = 0.0;  // stamps are late by the absolute value of a normal variable with this sigma
 
-  // By how much an event's stamp is late for a slow edge: latency, the low-pass filter's group delay, and the
-  // jitter's mean.
+  // By how much an event's stamp is late for a slow edge: latency, the low-pass filter's group
+  // delay, and the jitter's mean.
   double delay_s() const {
     constexpr double kMeanOfHalfNormal = 0.7978845608028654;  // sqrt(2 / pi)
     return latency_s + low_pass_s + kMeanOfHalfNormal * stamp_jitter_s;

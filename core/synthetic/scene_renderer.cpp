@@ -197,9 +197,9 @@ float SceneRenderer::sheet(const Eigen::Vector2f& point_m, const Eigen::Matrix2f
   return std::isfinite(inside_px) ? edge(inside_px) : 0.0f;
 }
 
-// How much of a pixel is ink of the circle whose centre it lies `away` from. A disk blurred by sigma looks
-// smaller than it is by sigma^2 / (2 radius): the second order of the Gaussian's convolution with a curved
-// edge.
+// How much of a pixel is ink of the circle whose centre it lies `away` from. A disk blurred by
+// sigma looks smaller than it is by sigma^2 / (2 radius): the second order of the Gaussian's
+// convolution with a curved edge.
 float SceneRenderer::disk(const Eigen::Vector2f& away_m, const Eigen::Matrix2f& board_per_px) const {
   const auto radius = static_cast<float>(board_.radius_m);
   const float distance = away_m.norm();

@@ -61,8 +61,8 @@ SinusoidMotion::SinusoidMotion(const Scenario& scenario)
                                                       m.target_amplitude_m.y(),  m.distance_amplitude_m};
   for (std::size_t q = 0; q < kQuantities; ++q) {
     for (int k = 0; k < m.sinusoids; ++k) {
-      // Frequencies spread evenly in the logarithm, each shifted at random, so that no two axes move
-      // together.
+      // Frequencies spread evenly in the logarithm, each shifted at random, so that
+      // no two axes move together.
       const double part = (k + uniform(generator)) / m.sinusoids;
       const double frequency =
           m.lowest_frequency_hz * std::pow(m.highest_frequency_hz / m.lowest_frequency_hz, part);

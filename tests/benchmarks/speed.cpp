@@ -1,6 +1,6 @@
-// Costs of the hot paths on a simulated recording, as a table: `evical_speed [--duration S] SCENARIO`. CPU
-// time of one thread, so that other work on the machine hardly counts; compare ratios between builds, not
-// machines.
+// Costs of the hot paths on a simulated recording, as a table: `evical_speed [--duration S]
+// SCENARIO`. CPU time of one thread, so that other work on the machine hardly counts; compare
+// ratios between builds, not machines.
 #include "core/frontend/board_search.h"
 #include "core/frontend/board_tracker.h"
 #include "core/initialisation/initialise.h"

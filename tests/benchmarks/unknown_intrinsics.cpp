@@ -1,7 +1,7 @@
 // What it costs not to know a camera's intrinsics, as a table: `evical_unknown_intrinsics [--seeds N]
-// [--duration S] [--folder DIR] SCENARIO...`. Each recording is simulated into a file and calibrated three
-// times, as `evical calibrate` does: with the true intrinsics; with those found first, held; and solved with
-// everything else.
+// [--duration S] [--folder DIR] SCENARIO...`. Each recording is simulated into a file and calibrated
+// three times, as `evical calibrate` does: with the true intrinsics; with those found first, held;
+// and solved with everything else.
 #include "core/geometry/projection_difference.h"
 #include "core/numerics/angles.h"
 #include "core/pipeline/calibration_pipeline.h"

@@ -1,5 +1,5 @@
-// The readers of YAML files, all with the same bytes: sessions, intrinsics, results, scenarios with their
-// boards.
+// The readers of YAML files, all with the same bytes: sessions, intrinsics,
+// results, scenarios with their boards.
 #include "core/base/error.h"
 #include "core/data/intrinsics_yaml.h"
 #include "core/pipeline/session.h"

@@ -1,5 +1,5 @@
-// Encoders of formats that cameras write and Evical only reads: tests and benchmarks make their files with
-// them.
+// Encoders of formats that cameras write and Evical only reads: tests and benchmarks
+// make their files with them.
 #pragma once
 
 #include "core/data/event.h"

@@ -1,5 +1,5 @@
-// A session and what its front end would have found, by simulation without events: seconds instead of
-// minutes.
+// A session and what its front end would have found, by simulation without
+// events: seconds instead of minutes.
 #pragma once
 
 #include "core/pipeline/recording_pass.h"

@@ -1,6 +1,6 @@
-// A folder's tests in one program: each source registers its test class, and the program runs the one that is
-// asked for by the source's name, with Qt Test's own arguments behind it: `test_core_geometry tst_so3_spline
-// -v2`.
+// A folder's tests in one program: each source registers its test class, and the program
+// runs the one that is asked for by the source's name, with Qt Test's own arguments
+// behind it: `test_core_geometry tst_so3_spline -v2`.
 #pragma once
 
 #include <QtTest>

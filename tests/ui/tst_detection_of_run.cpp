@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run on the detection screen: its windows as it saw them, whatever becomes of the document's session, and
-// its reprojections.
+// A run on the detection screen: its windows as it saw them, whatever becomes of the
+// document's session, and its reprojections.
 #include "core/geometry/camera_model.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/recorded_windows.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// On a display of twice the usual density: everything drawn ourselves is sharp, and the mouse points where it
-// seems to.
+// On a display of twice the usual density: everything drawn ourselves is sharp, and the mouse
+// points where it seems to.
 #include "tests/support/test_program.h"
 #include "ui/detection/event_view.h"
 #include "ui/detection/layers.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What goes wrong around the program: disks that are full, recordings that vanish or are cut off while they
-// are used, files that are something else, a computer without OpenGL. The window lives on and says what to
-// do.
+// What goes wrong around the program: disks that are full, recordings that vanish or are cut off
+// while they are used, files that are something else, a computer without OpenGL. The window lives on
+// and says what to do.
 #include "ui/window/main_window.h"
 
 #include "core/recording/conversion.h"
@@ -153,8 +153,8 @@ class TestMainWindowBadInput : public QObject {
     QVERIFY(test.window.close());
   }
 
-  // Its events are in a cache of the program's own; calibrating it again cannot work, and says which file is
-  // gone.
+  // Its events are in a cache of the program's own; calibrating it again cannot work, and
+  // says which file is gone.
   void recordingRemoved_whilePlaying() {
     const QTemporaryDir folder;
     WindowFixture test;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An HD recording in the real window: nothing stalls it, and the event view keeps up while the front end
-// runs.
+// An HD recording in the real window: nothing stalls it, and the event view keeps up
+// while the front end runs.
 #include "ui/window/main_window.h"
 
 #include "tests/support/test_program.h"

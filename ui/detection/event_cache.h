@@ -23,8 +23,8 @@ class EventCache {
   EventCache(const EventCache&) = delete;
   EventCache& operator=(const EventCache&) = delete;
 
-  // One thread writes, events in order of time; x and y below 32768. Throws CalibrationError if the disk is
-  // full.
+  // One thread writes, events in order of time; x and y below 32768. Throws CalibrationError
+  // if the disk is full.
   void append(EventSpan events);
   void finish();  // no more will come
 

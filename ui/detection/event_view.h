@@ -22,8 +22,8 @@ class EventView : public QWidget {
   Q_OBJECT
 
  public:
-  // Paints in the sensor's pixels, (0, 0) being the middle of the top left one; `scale` is widget pixels per
-  // sensor pixel.
+  // Paints in the sensor's pixels, (0, 0) being the middle of the top left one; `scale` is
+  // widget pixels per sensor pixel.
   using Overlay = std::function<void(QPainter& painter, double scale)>;
 
   explicit EventView(QWidget* parent = nullptr);

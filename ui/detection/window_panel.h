@@ -18,8 +18,8 @@ class WindowPanel : public QTextBrowser {
  public:
   explicit WindowPanel(QWidget* parent = nullptr);
 
-  // Either may be missing: what the front end makes of the window now, and what it made of it in the last
-  // pass.
+  // Either may be missing: what the front end makes of the window now, and what it made of
+  // it in the last pass.
   void show(const WindowAnalysis* analysis, const std::optional<WindowReport>& report, bool searching);
   QString text() const;  // as it is read, without markup
 

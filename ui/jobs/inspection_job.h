@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Looks through recordings in the background, one after the other: which streams they have, and what is wrong
-// with them.
+// Looks through recordings in the background, one after the other: which streams they have, and
+// what is wrong with them.
 #pragma once
 
 #include "core/recording/inspection.h"

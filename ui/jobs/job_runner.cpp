@@ -74,8 +74,8 @@ QString JobError::text() const {
   return text;
 }
 
-// What the worker has said and the GUI thread has not read yet. The worker's side outlives the runner's
-// interest.
+// What the worker has said and the GUI thread has not read yet. The worker's
+// side outlives the runner's interest.
 struct JobRunner::Reports final : ProgressSink {
   explicit Reports(std::vector<JobStage> given) : stages(std::move(given)) {}
 

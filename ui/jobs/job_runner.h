@@ -27,8 +27,8 @@ struct JobError {
 
 enum class JobOutcome { Done, Cancelled, Failed };
 
-// A stage as the work names it (ProgressSink::stageStarted), and the share of the whole time that it will
-// take.
+// A stage as the work names it (ProgressSink::stageStarted), and the share of the whole
+// time that it will take.
 struct JobStage {
   QString name;
   double share = 1.0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reprojection residuals: scatter with sigma ellipses, histogram against the normal distribution, RMS of each
-// window with a threshold that marks windows for rejection, and where on the sensor circles were seen and
-// residuals point.
+// Reprojection residuals: scatter with sigma ellipses, histogram against the normal distribution, RMS
+// of each window with a threshold that marks windows for rejection, and where on the sensor circles
+// were seen and residuals point.
 #pragma once
 
 #include "core/pipeline/calibration_pipeline.h"

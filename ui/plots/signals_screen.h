@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the IMU measured against what the calibrated trajectory says it should have, with the residuals below;
-// and the camera's rotation rate against the IMU's, before and after the time offset. All on the camera's
-// clock.
+// What the IMU measured against what the calibrated trajectory says it should have, with the
+// residuals below; and the camera's rotation rate against the IMU's, before and after the time
+// offset. All on the camera's clock.
 #pragma once
 
 #include "core/pipeline/calibration_pipeline.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An OpenGL context of our own that belongs to no window: the same with a desktop, under Xvfb and without any
-// display.
+// An OpenGL context of our own that belongs to no window: the same with a desktop, under
+// Xvfb and without any display.
 #pragma once
 
 #include <memory>

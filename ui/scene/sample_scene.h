@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A little of everything that the trajectory's scene draws: whoever has drawn it once has compiled all
-// shaders.
+// A little of everything that the trajectory's scene draws: whoever has drawn it
+// once has compiled all shaders.
 #pragma once
 
 class vtkRenderer;

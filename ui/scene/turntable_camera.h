@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a 3D view is seen from: a turntable that keeps its axis upright on the screen. No VTK and no Qt
-// widgets.
+// Where a 3D view is seen from: a turntable that keeps its axis upright on the screen. No
+// VTK and no Qt widgets.
 #pragma once
 
 #include <QPointF>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Camera poses from single board views, computed once each while detection goes on. No VTK, no widgets; for
-// worker threads.
+// Camera poses from single board views, computed once each while detection goes on. No VTK,
+// no widgets; for worker threads.
 #pragma once
 
 #include "core/initialisation/camera_poses.h"

@@ -15,8 +15,8 @@ class ObservabilityView : public QWidget {
  public:
   explicit ObservabilityView(QWidget* parent = nullptr);
 
-  // Information in units of what is needed, ascending (UncertaintyReport::observability); the weakest in
-  // words.
+  // Information in units of what is needed, ascending
+  // (UncertaintyReport::observability); the weakest in words.
   void setObservability(const std::vector<double>& information, const QString& weakest);
   QString text() const;  // in words
   QSize minimumSizeHint() const override { return {260, 160}; }

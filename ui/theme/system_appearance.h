@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether the desktop wants dark windows: asked from its portal, told when it changes. (Qt has this from 6.5
-// on.)
+// Whether the desktop wants dark windows: asked from its portal, told when it changes. (Qt
+// has this from 6.5 on.)
 #pragma once
 
 #include <QDBusVariant>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Colours of everything that is drawn by hand: plots, event view, timeline, 3D scene. Widgets follow
-// QPalette.
+// Colours of everything that is drawn by hand: plots, event view, timeline,
+// 3D scene. Widgets follow QPalette.
 #pragma once
 
 #include <QColor>
@@ -30,8 +30,8 @@ const Theme& theme();  // of the palette that is set; GUI thread only
 // Fusion style, palette, style sheet and font. May be called again to switch.
 void applyTheme(QApplication& application, Appearance appearance);
 
-// One of the icons in resources/icons (SVG, by file name without ending), tinted with the palette's text
-// colour.
+// One of the icons in resources/icons (SVG, by file name without ending), tinted
+// with the palette's text colour.
 QIcon icon(const QString& name);
 // The same in a colour of its own, for states: good, warning, bad.
 QIcon icon(const QString& name, const QColor& colour);

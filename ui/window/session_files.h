@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files in and out: sessions, recordings, the demo, results; asks about unsaved changes, remembers recent
-// files.
+// Files in and out: sessions, recordings, the demo, results; asks about
+// unsaved changes, remembers recent files.
 #pragma once
 
 #include "ui/window/workbench.h"

@@ -24,8 +24,8 @@ struct UncertaintyEstimate {
   std::string reason;  // why not Ok, and what to do; empty if it is
 };
 
-// Never fails for want of information: directions that the recording leaves open get sigmas far beyond any
-// need.
+// Never fails for want of information: directions that the recording leaves open get
+// sigmas far beyond any need.
 UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const BatchSolution& solution,
                                         const OptimisationOptions& options, const RunContext& context);
 

@@ -1,5 +1,5 @@
-// What a covariance means to people: which needs it meets, and which direction is the weakest, in plain
-// words.
+// What a covariance means to people: which needs it meets, and which direction is
+// the weakest, in plain words.
 #pragma once
 
 #include "core/data/calibration_result.h"

@@ -1,6 +1,6 @@
-// Whether the recording agrees with what was said to be known: each given value and each prior is held
-// against what the recording alone says, solved once more from the solution with everything free and without
-// priors.
+// Whether the recording agrees with what was said to be known: each given value and each prior
+// is held against what the recording alone says, solved once more from the solution with
+// everything free and without priors.
 #pragma once
 
 #include <string>

@@ -326,9 +326,9 @@ class SplineShift {
   std::vector<double> values_;
 };
 
-// Simulation and extrapolation (J. Cook, L. Stefanski, JASA 1994): errors once more of the size that the
-// splines already have add once more what these have added. Either way, so that what is linear in them
-// cancels.
+// Simulation and extrapolation (J. Cook, L. Stefanski, JASA 1994): errors once more of the size
+// that the splines already have add once more what these have added. Either way, so that what
+// is linear in them cancels.
 Eigen::MatrixXd informationFromNoise(CalibrationProblem& problem, const Layout& layout,
                                      const BandCholesky& splines, const Eigen::MatrixXd& total) {
   constexpr std::uint64_t kSeed = 20260102;  // any

@@ -51,8 +51,8 @@ struct ProjectedInformation {
   std::vector<Eigen::VectorXd> pixel_errors;
 };
 
-// `problem` must be built. Scores are collected over stretches of `stretch_s`. Throws Cancelled when asked to
-// stop.
+// `problem` must be built. Scores are collected over stretches of `stretch_s`. Throws
+// Cancelled when asked to stop.
 ProjectedInformation projectInformation(CalibrationProblem& problem, double stretch_s,
                                         const RunContext& context = {});
 

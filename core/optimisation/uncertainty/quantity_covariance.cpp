@@ -22,8 +22,8 @@ constexpr double kPixelUnit = 0.1;
 // Below this information in the units above a direction counts as open, and its sigma is 1e4 units.
 constexpr double kLeastInformation = 1e-8;
 
-// Inverse of the information, safe against directions without any: they count as having the least, which
-// `open` holds.
+// Inverse of the information, safe against directions without any: they count as having
+// the least, which `open` holds.
 struct SafeInverse {
   Eigen::MatrixXd inverse, open;
 };

@@ -22,9 +22,9 @@ class Unpacker {
   Unpacker(const Unpacker&) = delete;
   Unpacker& operator=(const Unpacker&) = delete;
 
-  // The content of the frame at the front of `packed`, valid until the next call, and how long the frame is;
-  // false if it is damaged, cut off or unreasonably large. Memory grows with what comes out, not with what a
-  // frame claims.
+  // The content of the frame at the front of `packed`, valid until the next call, and how long the frame
+  // is; false if it is damaged, cut off or unreasonably large. Memory grows with what comes out, not
+  // with what a frame claims.
   bool unpack(std::string_view packed, std::string_view& content, std::size_t& frame_bytes);
 
  private:

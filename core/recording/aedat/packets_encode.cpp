@@ -37,8 +37,8 @@ void finishSize(std::string& bytes) {
   put(bytes, 0, static_cast<std::uint32_t>(bytes.size() - 4));
 }
 
-// Size prefix, root offset, type, and a root table whose only field is a vector; its count is the last
-// number.
+// Size prefix, root offset, type, and a root table whose only field is a vector; its
+// count is the last number.
 std::string startVector(std::string_view type, std::size_t count) {
   std::string bytes;
   append(bytes, std::uint32_t{0});

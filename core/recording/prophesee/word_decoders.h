@@ -12,9 +12,9 @@
 
 namespace evical::prophesee {
 
-// A counter of some bits that begins anew when it is full. Only a step from its last quarter to its first is
-// one; other steps back are left as they are. A step to the last quarter soon after is disorder about the
-// wrap.
+// A counter of some bits that begins anew when it is full. Only a step from its last quarter to
+// its first is one; other steps back are left as they are. A step to the last quarter soon after
+// is disorder about the wrap.
 class WrappingCounter {
  public:
   explicit WrappingCounter(int bits) : bits_(bits) {}

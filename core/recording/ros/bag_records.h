@@ -22,8 +22,8 @@ enum class Op : std::uint8_t {
   Connection = 7,
 };
 
-// The fields of any record's header; what a record does not have stays 0 or empty. Views point into the given
-// bytes.
+// The fields of any record's header; what a record does not have stays 0 or empty. Views
+// point into the given bytes.
 struct RecordHeader {
   std::uint8_t op = 0;
   std::uint32_t connection = 0;

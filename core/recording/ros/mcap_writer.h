@@ -1,5 +1,5 @@
-// MCAP files as ROS 2 records them (profile ros2, CDR), with the summary and indexes that other programs seek
-// by.
+// MCAP files as ROS 2 records them (profile ros2, CDR), with the summary and indexes
+// that other programs seek by.
 #pragma once
 
 #include "core/recording/part_file.h"

@@ -26,8 +26,8 @@ struct SourceMessage {
 // Takes a fault of the file: kind and text, as in RecordingFault.
 using FaultSink = std::function<void(FaultKind kind, const std::string& text)>;
 
-// Constructors throw CalibrationError (BadInput) if nothing can be read; what is lost later goes to their
-// FaultSink.
+// Constructors throw CalibrationError (BadInput) if nothing can be read; what is lost
+// later goes to their FaultSink.
 class MessageSource {
  public:
   virtual ~MessageSource() = default;

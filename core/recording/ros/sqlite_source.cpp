@@ -255,9 +255,9 @@ bool SqliteSource::step() {
   return !messages_->ok() && readOnBehindDamage(database_->problem());
 }
 
-// In order of storage from the last message on, over what cannot be read. A page out of place ends again and
-// again where it did before, with messages that were met before: each query begins behind the last one's
-// beginning.
+// In order of storage from the last message on, over what cannot be read. A page out of place ends
+// again and again where it did before, with messages that were met before: each query begins
+// behind the last one's beginning.
 bool SqliteSource::readOnBehindDamage(const std::string& reason) {
   sink_(FaultKind::Corrupt,
         fmt::format("The file is damaged behind message {} ({}); what can be read behind it is.", last_id_,

@@ -34,8 +34,8 @@ class TextLines {
   std::uint64_t size_ = 0, consumed_ = 0, number_ = 0;
 };
 
-// Takes columns off a line's front; they are separated by blanks, tabs or commas. Empty when there are no
-// more.
+// Takes columns off a line's front; they are separated by blanks, tabs or commas. Empty
+// when there are no more.
 std::string_view takeColumn(std::string_view& line);
 
 // Seconds to ns, exactly for up to 9 decimals, rounded beyond; also with an exponent. False if it is no such

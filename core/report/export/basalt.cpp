@@ -40,8 +40,8 @@ std::string perCamera(const Rig& rig, Text&& text_of) {
   return fmt::format("[{}\n    ]", text);
 }
 
-// Basalt corrects raw samples, a = (I + S) a_raw - b, where we describe measuring: I + S = M^-1, b = M^-1
-// bias.
+// Basalt corrects raw samples, a = (I + S) a_raw - b, where we describe measuring: I + S =
+// M^-1, b = M^-1 bias.
 std::string correctionText(const RigImu& imu, const LowerTriangularImu& lower) {
   const Eigen::Matrix3d accelerometer = lower.accelerometer.inverse();
   const Eigen::Matrix3d gyroscope = (lower.gyroscope * lower.gyroscope_rotation).inverse();

@@ -13,8 +13,8 @@ namespace evical {
 // The rig's cameras in models that Kalibr knows.
 std::vector<CameraIntrinsics> kalibrLenses(const Rig& rig, ExportNotes& notes);
 
-// camchain-imucam.yaml: T_cam_imu, timeshift_cam_imu and all of camchain.yaml. The IMU's frame is turned by
-// other_from_imu.
+// camchain-imucam.yaml: T_cam_imu, timeshift_cam_imu and all of camchain.yaml. The IMU's
+// frame is turned by other_from_imu.
 std::string kalibrChain(const Rig& rig, const std::vector<CameraIntrinsics>& lenses,
                         const Eigen::Matrix3d& other_from_imu, const std::vector<std::string>& comment);
 

@@ -16,9 +16,9 @@ struct StereoPair {
 // one only, or where they don't sit side by side.
 StereoPair stereoPair(const Rig& rig, const char* program);
 
-// Both cameras turned so that a point lies in one row of both: half the rotation between them each, then the
-// baseline onto x (Bouguet's method). One focal length and principal point for both, in which the image's
-// middle stays.
+// Both cameras turned so that a point lies in one row of both: half the rotation between them each,
+// then the baseline onto x (Bouguet's method). One focal length and principal point for both, in
+// which the image's middle stays.
 struct Rectification {
   Eigen::Matrix3d rectified_from_left, rectified_from_right;
   Eigen::Matrix<double, 3, 4> left_projection, right_projection;  // of a point in the left rectified frame

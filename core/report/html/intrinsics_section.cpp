@@ -1,5 +1,5 @@
-// Cameras whose intrinsics were calibrated first: the numbers, how well pixels are known, where views are
-// missing.
+// Cameras whose intrinsics were calibrated first: the numbers, how well pixels are
+// known, where views are missing.
 #include "core/base/element.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/report/html/heat_map.h"

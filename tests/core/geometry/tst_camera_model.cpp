@@ -72,8 +72,8 @@ class TestCameraModel : public QObject {
     // y' = 0.4 * 0.91125 + p1 (r^2 + 2 y^2) + 2 p2 x y = 0.3645 + 0.00057 + 0.00048 = 0.36555.
     const CameraIntrinsics radtan = camera(CameraModel::PinholeRadtan, {-0.4, 0.2, 0.001, 0.002, -0.08});
     QVERIFY((distort(radtan, {0.3, 0.4}) - Vector2d(0.274475, 0.36555)).norm() < 1e-15);
-    // 45 degrees off axis, to the right: the angle is pi/4, with k1 = 0.1 it is seen at pi/4 (1 + 0.1
-    // pi^2/16).
+    // 45 degrees off axis, to the right: the angle is pi/4, with k1 = 0.1 it is seen at
+    // pi/4 (1 + 0.1 pi^2/16).
     const CameraIntrinsics fisheye = camera(CameraModel::PinholeEquidistant, {0.1, 0.0, 0.0, 0.0, 0.0});
     const double seen = pi / 4.0 * (1.0 + 0.1 * pi * pi / 16.0);
     QVERIFY((*project(fisheye, {3.0, 0.0, 3.0}) - Vector2d(170.0 + 260.0 * seen, 131.0)).norm() < 1e-12);
@@ -161,8 +161,8 @@ class TestCameraModel : public QObject {
   }
 
   void pointBeyondTheDistortionsFold_isNotSeen() {
-    // r (1 - 0.5 r^2) grows up to r = sqrt(2/3) = 0.8165, where it is 0.5443; farther points would come in
-    // again.
+    // r (1 - 0.5 r^2) grows up to r = sqrt(2/3) = 0.8165, where it is 0.5443; farther
+    // points would come in again.
     const CameraIntrinsics c = camera(CameraModel::PinholeRadtan, {-0.5, 0.0, 0.0, 0.0, 0.0});
     QVERIFY(project(c, {0.816, 0.0, 1.0}));
     QVERIFY(!project(c, {0.817, 0.0, 1.0}));

@@ -13,8 +13,8 @@ using namespace evical::test;
 
 namespace {
 
-// The pose of a plane that looks nearly the same from far away: tilted the other way against the line of
-// sight.
+// The pose of a plane that looks nearly the same from far away: tilted the other way
+// against the line of sight.
 RigidTransform mirrored(const RigidTransform& world_from_camera) {
   const Eigen::Vector3d sight = (world_from_camera.rotation * Eigen::Vector3d::UnitZ()).normalized();
   const Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();

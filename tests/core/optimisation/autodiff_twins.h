@@ -1,6 +1,6 @@
-// The batch's measurement models once more, by other formulas and for automatic derivatives: matrices'
-// product rule instead of the recursions of so3_spline.cpp, the dual conic as a 3 x 3 matrix instead of its
-// entries.
+// The batch's measurement models once more, by other formulas and for automatic derivatives:
+// matrices' product rule instead of the recursions of so3_spline.cpp, the dual conic as a 3 x 3
+// matrix instead of its entries.
 #pragma once
 
 #include "core/optimisation/inertial_cost.h"

@@ -1,5 +1,5 @@
-// Observations of a rig whose truth is known: motion by sinusoids (no spline in it), circles and IMU samples
-// with noise.
+// Observations of a rig whose truth is known: motion by sinusoids (no spline in it), circles
+// and IMU samples with noise.
 #pragma once
 
 #include "core/data/calibration_setup.h"

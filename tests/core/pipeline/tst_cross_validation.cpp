@@ -145,8 +145,8 @@ class TestCrossValidation : public QObject {
   }
 
   void cameraThatSlipped_isSeen() {
-    // From the third block on, every other block, the camera sees the board 1 px aside: no single pose fits
-    // both.
+    // From the third block on, every other block, the camera sees the board 1 px aside:
+    // no single pose fits both.
     const CalibrationInput all = input();
     CalibrationInput slipped = all;
     const double block_s = run_.result.cross_validation->block_s;

@@ -1,5 +1,5 @@
-// Recordings whose motion leaves something open: the result must say so, name it, and claim no more than it
-// knows.
+// Recordings whose motion leaves something open: the result must say so, name it, and claim
+// no more than it knows.
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/result_files.h"
 #include "core/report/truth_comparison.h"

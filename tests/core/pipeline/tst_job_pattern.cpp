@@ -32,8 +32,8 @@ namespace {
 constexpr double kRecording_s = 4.0;
 constexpr auto kTick = std::chrono::milliseconds(5);
 
-// Everything that core says while it works, the newest of each kind; written by its threads, read by the
-// main.
+// Everything that core says while it works, the newest of each kind; written by its
+// threads, read by the main.
 class Mailbox : public ProgressSink, public CalibrationObserver {
  public:
   struct Contents {

@@ -16,8 +16,8 @@ using namespace evical;
 
 namespace {
 
-// Values and sigmas that are different for each row; without digits to spare, so that a file must keep them
-// all.
+// Values and sigmas that are different for each row; without digits to spare, so that a
+// file must keep them all.
 class Filler {
  public:
   double next() {

@@ -37,8 +37,8 @@ class TestViewRejection : public QObject {
   }
 
   void badViews_leftOutCalibrateAsIfTheyHadNeverBeen() {
-    // Shifted as a whole by a fraction of a pixel: too little for the optimiser's own outlier test to drop
-    // the window.
+    // Shifted as a whole by a fraction of a pixel: too little for the optimiser's own outlier
+    // test to drop the window.
     RecordingPass spoilt = simulated_.pass;
     std::vector<int> bad;
     for (int view = 20; view < 60; view += 2) {

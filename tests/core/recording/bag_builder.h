@@ -1,5 +1,5 @@
-// Makes ROS 1 bags byte by byte, with none of the product's code, so that bags can be made that no writer
-// makes.
+// Makes ROS 1 bags byte by byte, with none of the product's code, so that bags can be
+// made that no writer makes.
 #pragma once
 
 #include "core/data/recording.h"

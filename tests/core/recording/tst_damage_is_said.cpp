@@ -1,5 +1,5 @@
-// Files of which a little is spoilt: all events and samples come out, or there is a fault, or the file is
-// refused.
+// Files of which a little is spoilt: all events and samples come out, or there is a fault,
+// or the file is refused.
 #include "core/base/error.h"
 #include "core/recording/recording_writer.h"
 #include "tests/core/recording/recording_contents.h"

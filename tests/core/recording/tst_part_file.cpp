@@ -1,5 +1,5 @@
-// Output files: whole under their name or not there, whoever else writes, and on the disk before they are
-// renamed.
+// Output files: whole under their name or not there, whoever else writes, and on the
+// disk before they are renamed.
 #include "core/base/error.h"
 #include "core/recording/conversion.h"
 #include "core/recording/part_file.h"

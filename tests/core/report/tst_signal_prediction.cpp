@@ -47,8 +47,8 @@ class TestSignalPrediction : public QObject {
     QFETCH(int, imu);
     const SignalPrediction prediction = predict(rig_, rig_.truth, static_cast<std::size_t>(imu));
     QVERIFY(prediction.time_s.size() > 1000);
-    // What a spline of 20 ms leaves of the sinusoids' second derivatives; the prediction are some 2 rad/s and
-    // 10 m/s^2.
+    // What a spline of 20 ms leaves of the sinusoids' second derivatives; the prediction are some
+    // 2 rad/s and 10 m/s^2.
     QVERIFY2(rms(prediction.measured_rate_rad_s, prediction.predicted_rate_rad_s) < 1e-3, "rad/s");
     QVERIFY2(rms(prediction.measured_force_m_s2, prediction.predicted_force_m_s2) < 0.02, "m/s^2");
   }

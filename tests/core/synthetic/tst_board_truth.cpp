@@ -63,13 +63,13 @@ class TestBoardTruth : public QObject {
     }
   }
   void inside_meansTheWholeCircle() {
-    // Fronto-parallel, 400 px/m: the board's 3x2 circles of 8 px radius lie 20 px apart around the image's
-    // middle.
+    // Fronto-parallel, 400 px/m: the board's 3x2 circles of 8 px radius lie 20 px
+    // apart around the image's middle.
     Scenario scenario = test::stillScenario();
     QCOMPARE(circlesInView(SinusoidMotion(scenario), scenario, 0, 0.5), 6);
     QVERIFY(boardInView(SinusoidMotion(scenario), scenario, 0, 0.5));
-    // Columns at x = c + {-30, 10} and, in the middle row, {-10, 30}: 37.5 px left of the middle cuts into
-    // the first.
+    // Columns at x = c + {-30, 10} and, in the middle row, {-10, 30}: 37.5 px left of the
+    // middle cuts into the first.
     scenario.cameras[0].intrinsics.principal_point_px.x() = 37.5;
     QCOMPARE(circlesInView(SinusoidMotion(scenario), scenario, 0, 0.5), 4);
     scenario.cameras[0].intrinsics.principal_point_px.x() = 38.5;

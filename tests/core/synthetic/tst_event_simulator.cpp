@@ -38,8 +38,8 @@ Scenario slidingScenario(double blur_px, double threshold) {
   return scenario;
 }
 
-// Mean lead of the bursts over the true edge, in px along the motion, as in docs/maths.md, 4; and events a
-// burst.
+// Mean lead of the bursts over the true edge, in px along the motion (docs/maths.md, 4), and
+// how many events a burst has.
 struct Leads {
   double first = 0.0, mean = 0.0, last = 0.0, count = 0.0, speed_px_s = 0.0;
   int bursts = 0;

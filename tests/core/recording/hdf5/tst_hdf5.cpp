@@ -1,5 +1,5 @@
-// Files of data sets are made by h5py, which also reads what we write; without it (python3-h5py) those tests
-// are skipped.
+// Files of data sets are made by h5py, which also reads what we write; without it
+// (python3-h5py) those tests are skipped.
 #include "core/base/error.h"
 #include "core/recording/recording_writer.h"
 #include "tests/core/recording/recording_contents.h"
