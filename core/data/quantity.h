@@ -8,11 +8,11 @@
 #include "core/data/calibration_priors.h"
 #include "core/data/calibration_result.h"
 #include "core/data/calibration_state.h"
+#include "core/numerics/angles.h"
 
 #include <Eigen/Core>
 
 #include <functional>
-#include <numbers>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -124,7 +124,6 @@ QuantityRow(QuantityInfo, ValueAt, SigmaAt, PriorAt) -> QuantityRow<ValueAt, Sig
 
 namespace detail {
 
-inline constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
 inline constexpr double kLargestPlace_m = 100.0;  // millimetres written as metres are beyond it
 
 constexpr QuantityInfo rotationInfo(QuantityOwner owner, const char* section) {
@@ -134,7 +133,7 @@ constexpr QuantityInfo rotationInfo(QuantityOwner owner, const char* section) {
           .shape = QuantityShape::Rotation,
           .unit = "rad",
           .shown_unit = "deg",
-          .shown_factor = kDegreesPerRad,
+          .shown_factor = kDegPerRad,
           .need = QuantityNeed::Rotation,
           .relative = true,
           .section = section,
@@ -301,7 +300,7 @@ inline constexpr auto kImuQuantities = std::tuple{
                              .shape = QuantityShape::LocalRotation,
                              .unit = "rad",
                              .shown_unit = "deg",
-                             .shown_factor = detail::kDegreesPerRad,
+                             .shown_factor = kDegPerRad,
                              .remark = "from the accelerometer",
                              .release = QuantityRelease::GyroscopeRotation,
                              .presence = QuantityPresence::WhereNotZero,
