@@ -1,8 +1,6 @@
 // What the front end found: circles of the board over time, each with its own time, covariance and velocity.
 #pragma once
 
-#include "core/geometry/camera_model.h"
-
 #include <Eigen/Core>
 
 #include <array>

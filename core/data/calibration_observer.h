@@ -2,14 +2,15 @@
 // what is handed over lives as long as the call: copy what is to be kept, and be quick.
 #pragma once
 
-#include "core/data/calibration_result.h"
-#include "core/data/calibration_setup.h"
-
 #include <cstddef>
 #include <string_view>
-#include <vector>
 
 namespace evical {
+
+struct BoardObservations;
+struct CalibrationInput;
+struct CalibrationState;
+struct IterationRecord;
 
 // core/frontend/board_tracker.h; from here they are only handed on.
 class BoardTracker;

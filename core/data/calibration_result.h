@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/data/calibration_state.h"
+#include "core/data/calibration_status.h"
 
 #include <Eigen/Core>
 
@@ -12,8 +13,6 @@
 #include <vector>
 
 namespace evical {
-
-enum class CalibrationStatus { Ok, Doubtful, Failed };
 
 struct Timing {
   double read_s = 0.0, detect_s = 0.0, initialise_s = 0.0, optimise_s = 0.0, cross_validate_s = 0.0,

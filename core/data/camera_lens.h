@@ -1,7 +1,7 @@
 // One camera's lens in a calibration, from what was known of it to what came out.
 #pragma once
 
-#include "core/geometry/camera_model.h"
+#include "core/geometry/camera_intrinsics.h"
 
 #include <optional>
 

@@ -1,7 +1,7 @@
 // What makes a verdict doubtful.
 #pragma once
 
-#include "core/data/calibration_result.h"
+#include "core/data/calibration_status.h"
 
 #include <string>
 

@@ -2,8 +2,9 @@
 // IntrinsicsJacobian (camera_model.h): fx fy cx cy d0 d1 d2 d3 d4.
 #pragma once
 
-#include "core/data/calibration_result.h"
-#include "core/geometry/camera_model.h"
+#include "core/data/calibration_status.h"
+
+#include "core/geometry/camera_intrinsics.h"
 
 #include <Eigen/Core>
 

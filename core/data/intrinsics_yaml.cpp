@@ -1,6 +1,7 @@
 #include "core/data/intrinsics_yaml.h"
 
 #include "core/base/nearest_name.h"
+#include "core/geometry/camera_model.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "core/base/yaml_node.h"
-#include "core/geometry/camera_model.h"
+
+#include "core/geometry/camera_intrinsics.h"
 
 #include <filesystem>
 #include <string>

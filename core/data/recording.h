@@ -4,7 +4,7 @@
 #include "core/data/event.h"
 #include "core/data/imu_units.h"
 #include "core/data/recording_fault.h"
-#include "core/geometry/camera_model.h"
+#include "core/geometry/resolution.h"
 
 #include <cstddef>
 #include <cstdint>

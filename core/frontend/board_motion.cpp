@@ -1,5 +1,7 @@
 #include "core/frontend/board_motion.h"
 
+#include "core/geometry/camera_model.h"
+
 #include <Eigen/LU>
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 #include "core/frontend/board_placement.h"
 
 #include "core/frontend/board_motion_from_points.h"
+#include "core/geometry/camera_model.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>

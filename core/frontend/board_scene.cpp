@@ -1,5 +1,7 @@
 #include "core/frontend/board_scene.h"
 
+#include "core/geometry/camera_model.h"
+
 #include <limits>
 #include <utility>
 

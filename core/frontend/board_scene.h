@@ -1,8 +1,10 @@
 // What does not change from window to window: the board, the sensor, and the lens between them.
 #pragma once
 
-#include "core/geometry/camera_model.h"
 #include "core/geometry/circle_board.h"
+
+#include "core/geometry/camera_intrinsics.h"
+#include "core/geometry/undistortion_table.h"
 
 #include <Eigen/Core>
 

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "core/frontend/rgb_image.h"
-#include "core/geometry/camera_model.h"
+
+#include "core/geometry/resolution.h"
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>

@@ -4,7 +4,7 @@
 
 #include "core/data/event.h"
 #include "core/frontend/detection_options.h"
-#include "core/geometry/camera_model.h"
+#include "core/geometry/resolution.h"
 
 #include <array>
 #include <cstdint>

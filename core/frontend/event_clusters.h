@@ -3,7 +3,8 @@
 #pragma once
 
 #include "core/frontend/normal_flow.h"
-#include "core/geometry/camera_model.h"
+
+#include "core/geometry/resolution.h"
 
 #include <Eigen/Core>
 

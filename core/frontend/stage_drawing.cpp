@@ -2,6 +2,7 @@
 
 #include "core/base/time.h"
 #include "core/frontend/drawing_canvas.h"
+#include "core/geometry/camera_model.h"
 
 #include <Eigen/Eigenvalues>
 

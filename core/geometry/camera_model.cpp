@@ -1,6 +1,7 @@
 #include "core/geometry/camera_model.h"
 
 #include "core/base/error.h"
+#include "core/geometry/undistortion_table.h"
 #include "core/numerics/angles.h"
 
 #include <Eigen/LU>

@@ -6,35 +6,14 @@
 // a point: u = fx x / z + cx. In ideal pixels, and only there, the image of a circle is an exact conic.
 #pragma once
 
+#include "core/geometry/camera_intrinsics.h"
+
 #include <Eigen/Core>
 
-#include <array>
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace evical {
-
-enum class CameraModel { PinholeRadtan, PinholeEquidistant };
-
-struct Resolution {
-  int width_px = 0;
-  int height_px = 0;
-  bool operator==(const Resolution&) const = default;
-  bool known() const { return width_px > 0 && height_px > 0; }
-  int pixelCount() const { return width_px * height_px; }
-};
-
-struct CameraIntrinsics {
-  CameraModel model = CameraModel::PinholeRadtan;
-  Resolution resolution_px;
-  Eigen::Vector2d focal_length_px = Eigen::Vector2d::Zero();
-  Eigen::Vector2d principal_point_px = Eigen::Vector2d::Zero();
-  // Radtan: k1 k2 p1 p2 k3; equidistant: k1 k2 k3 k4 and an unused 0.
-  std::array<double, 5> distortion = {0.0, 0.0, 0.0, 0.0, 0.0};
-
-  bool operator==(const CameraIntrinsics&) const = default;
-};
 
 // Columns of the Jacobian with respect to the intrinsics: fx fy cx cy d0 d1 d2 d3 d4.
 using IntrinsicsJacobian = Eigen::Matrix<double, 2, 9>;
@@ -58,23 +37,6 @@ Eigen::Vector2d pixelFromIdeal(const CameraIntrinsics& camera, const Eigen::Vect
 
 // d(ideal pixel)/d(pixel) at an ideal pixel: how much larger a small figure is in ideal pixels.
 Eigen::Matrix2d idealPixelScale(const CameraIntrinsics& camera, const Eigen::Vector2d& ideal_pixel);
-
-// The ideal pixel of every pixel, row by row; NaN where there is none.
-class UndistortionTable {
- public:
-  UndistortionTable() = default;
-  explicit UndistortionTable(const CameraIntrinsics& camera);
-
-  const Eigen::Vector2f& operator()(int x_px, int y_px) const {
-    return ideal_px_[static_cast<std::size_t>(y_px) * static_cast<std::size_t>(width_px_) +
-                     static_cast<std::size_t>(x_px)];
-  }
-  bool empty() const { return ideal_px_.empty(); }
-
- private:
-  int width_px_ = 0;
-  std::vector<Eigen::Vector2f> ideal_px_;
-};
 
 // Throws CalibrationError (BadInput) when the numbers make no camera; `place` goes into the message.
 void validate(const CameraIntrinsics& camera, const std::string& place);

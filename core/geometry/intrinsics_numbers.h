@@ -2,7 +2,7 @@
 // cx cy d0 d1 d2 d3 d4; pixels, and coefficients without unit.
 #pragma once
 
-#include "core/geometry/camera_model.h"
+#include "core/geometry/camera_intrinsics.h"
 
 #include <array>
 

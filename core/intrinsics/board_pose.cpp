@@ -1,5 +1,6 @@
 #include "core/intrinsics/board_pose.h"
 
+#include "core/geometry/camera_model.h"
 #include "core/geometry/circle_conic.h"
 #include "core/geometry/so3.h"
 

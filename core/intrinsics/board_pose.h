@@ -1,6 +1,7 @@
 // The board's pose in one view, from its circles' centres and a camera model.
 #pragma once
 
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/circle_board.h"
 #include "core/geometry/rigid_transform.h"
 #include "core/intrinsics/sensor_views.h"

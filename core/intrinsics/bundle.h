@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/progress.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/circle_board.h"
 #include "core/geometry/rigid_transform.h"
 #include "core/intrinsics/sensor_views.h"

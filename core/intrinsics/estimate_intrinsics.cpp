@@ -1,6 +1,7 @@
 #include "core/intrinsics/estimate_intrinsics.h"
 
 #include "core/base/error.h"
+#include "core/geometry/camera_model.h"
 #include "core/intrinsics/bundle.h"
 #include "core/intrinsics/intrinsics_checks.h"
 #include "core/intrinsics/intrinsics_start.h"

@@ -1,5 +1,7 @@
 #include "core/intrinsics/intrinsics_start.h"
 
+#include "core/geometry/camera_model.h"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 

@@ -1,7 +1,9 @@
 // Where the bundle adjustment starts.
 #pragma once
 
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/circle_board.h"
+#include "core/geometry/resolution.h"
 #include "core/intrinsics/sensor_views.h"
 
 #include <optional>

@@ -1,5 +1,7 @@
 #include "core/intrinsics/sensor_views.h"
 
+#include "core/geometry/camera_model.h"
+
 #include <Eigen/LU>
 
 #include <cmath>

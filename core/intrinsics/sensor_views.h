@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/data/board_observations.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/circle_board.h"
 #include "core/intrinsics/intrinsics_options.h"
 

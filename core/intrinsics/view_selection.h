@@ -3,6 +3,8 @@
 
 #include "core/intrinsics/sensor_views.h"
 
+#include "core/geometry/camera_intrinsics.h"
+
 #include <vector>
 
 namespace evical {

@@ -1,6 +1,9 @@
 #include "core/optimisation/free_intrinsics.h"
 
+#include "core/data/calibration_setup.h"
+#include "core/data/calibration_state.h"
 #include "core/data/intrinsics_result.h"
+#include "core/optimisation/optimisation_options.h"
 #include "core/optimisation/prior_cost.h"
 
 #include <Eigen/LU>

@@ -8,11 +8,9 @@
 // Where the camera is the one seen with, r is predicted - measured in ideal pixels, to second order in r.
 #pragma once
 
-#include "core/data/calibration_setup.h"
-#include "core/data/calibration_state.h"
+#include "core/geometry/camera_model.h"
 #include "core/geometry/circle_conic.h"
 #include "core/geometry/intrinsics_numbers.h"
-#include "core/optimisation/optimisation_options.h"
 
 #include <ceres/manifold.h>
 #include <ceres/problem.h>
@@ -23,6 +21,10 @@
 #include <optional>
 
 namespace evical {
+
+struct CameraData;
+struct CameraState;
+struct OptimisationOptions;
 
 // Whether the batch solves for them.
 bool intrinsicsAreFree(const CameraData& camera, const OptimisationOptions& options);

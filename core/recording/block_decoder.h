@@ -2,7 +2,8 @@
 #pragma once
 
 #include "core/data/event.h"
-#include "core/geometry/camera_model.h"
+
+#include "core/geometry/resolution.h"
 
 #include <algorithm>
 #include <cstddef>

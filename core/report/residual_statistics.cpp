@@ -1,5 +1,7 @@
 #include "core/report/residual_statistics.h"
 
+#include "core/geometry/camera_model.h"
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 

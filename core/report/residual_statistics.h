@@ -2,7 +2,8 @@
 #pragma once
 
 #include "core/data/calibration_result.h"
-#include "core/geometry/camera_model.h"
+
+#include "core/geometry/camera_intrinsics.h"
 
 #include <Eigen/Core>
 

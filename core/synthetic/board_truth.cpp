@@ -1,5 +1,7 @@
 #include "core/synthetic/board_truth.h"
 
+#include "core/geometry/camera_model.h"
+
 #include <Eigen/LU>
 
 #include <algorithm>

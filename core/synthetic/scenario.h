@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/data/calibration_state.h"
-#include "core/geometry/camera_model.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/circle_board.h"
 #include "core/geometry/rigid_transform.h"
 

@@ -1,6 +1,7 @@
 #include "core/synthetic/scenario_yaml.h"
 
 #include "core/base/yaml_node.h"
+#include "core/geometry/camera_model.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
 

@@ -1,5 +1,8 @@
 #include "core/synthetic/scene_renderer.h"
 
+#include "core/geometry/camera_model.h"
+#include "core/geometry/undistortion_table.h"
+
 #include <Eigen/LU>
 
 #include <algorithm>

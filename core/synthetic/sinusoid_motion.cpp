@@ -1,5 +1,6 @@
 #include "core/synthetic/sinusoid_motion.h"
 
+#include "core/geometry/camera_model.h"
 #include "core/geometry/so3.h"
 
 #include <cmath>

@@ -4,7 +4,8 @@
 #pragma once
 
 #include "core/data/event.h"
-#include "core/geometry/camera_model.h"
+
+#include "core/geometry/resolution.h"
 
 #include <QImage>
 

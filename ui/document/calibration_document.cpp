@@ -2,6 +2,7 @@
 #include "ui/document/calibration_document.h"
 
 #include "core/base/error.h"
+#include "core/geometry/camera_model.h"
 
 #include <QFileInfo>
 #include <QUndoCommand>

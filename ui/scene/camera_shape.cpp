@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/scene/camera_shape.h"
 
+#include "core/geometry/camera_model.h"
+
 #include <cmath>
 
 namespace evical::ui {

@@ -2,7 +2,7 @@
 // What a camera sees, as a pyramid.
 #pragma once
 
-#include "core/geometry/camera_model.h"
+#include "core/geometry/camera_intrinsics.h"
 
 #include <Eigen/Core>
 

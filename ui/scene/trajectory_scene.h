@@ -2,7 +2,7 @@
 // Board, trajectory, cameras, IMU, gravity and ground in a VTK renderer. GUI thread only; one scene a view.
 #pragma once
 
-#include "core/geometry/camera_model.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/circle_board.h"
 #include "ui/scene/colour_scale.h"
 #include "ui/scene/trajectory_track.h"

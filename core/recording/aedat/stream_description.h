@@ -1,7 +1,7 @@
 // What the XML in the header of an AEDAT4 file says about its streams.
 #pragma once
 
-#include "core/geometry/camera_model.h"
+#include "core/geometry/resolution.h"
 
 #include <cstdint>
 #include <string>

@@ -1,7 +1,7 @@
 // The text in front of Prophesee's RAW and DAT files, as all versions of the SDK wrote it.
 #pragma once
 
-#include "core/geometry/camera_model.h"
+#include "core/geometry/resolution.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,6 +1,7 @@
 #include "core/report/export/distortion_fit.h"
 
 #include "core/base/error.h"
+#include "core/geometry/camera_model.h"
 
 #include <fmt/format.h>
 #include <Eigen/Cholesky>

@@ -1,8 +1,9 @@
 // Cameras in the models that other programs know.
 #pragma once
 
-#include "core/geometry/camera_model.h"
 #include "core/report/export/rig.h"
+
+#include "core/geometry/camera_intrinsics.h"
 
 #include <string>
 

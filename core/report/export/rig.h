@@ -1,7 +1,7 @@
 // A result as exporters want it: every sensor with all that is known of it, the reference IMU first.
 #pragma once
 
-#include "core/geometry/camera_model.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/rigid_transform.h"
 #include "core/report/result_yaml.h"
 

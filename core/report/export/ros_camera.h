@@ -1,7 +1,7 @@
 // Parts of a ROS camera_info file, which ESVO reads too.
 #pragma once
 
-#include "core/geometry/camera_model.h"
+#include "core/geometry/camera_intrinsics.h"
 
 #include <Eigen/Core>
 

@@ -1,6 +1,7 @@
 #include "core/report/export/stereo.h"
 
 #include "core/base/error.h"
+#include "core/geometry/camera_model.h"
 #include "core/geometry/so3.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,6 @@
 #include "core/report/html/measures.h"
 
+#include "core/geometry/camera_model.h"
 #include "core/geometry/trajectory.h"
 #include "core/numerics/angles.h"
 

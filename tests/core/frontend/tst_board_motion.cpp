@@ -1,5 +1,7 @@
 #include "core/frontend/board_motion.h"
 
+#include "core/geometry/camera_model.h"
+
 #include "tests/core/frontend/synthetic_bursts.h"
 #include "tests/support/test_program.h"
 

@@ -1,5 +1,6 @@
 #include "core/geometry/circle_conic.h"
 
+#include "core/geometry/camera_model.h"
 #include "core/geometry/so3.h"
 #include "tests/support/numeric_jacobian.h"
 #include "tests/support/test_program.h"

@@ -2,6 +2,8 @@
 
 #include "core/geometry/so3.h"
 
+#include "core/geometry/camera_model.h"
+
 #include <Eigen/LU>
 #include <opencv2/calib3d.hpp>
 

@@ -1,0 +1,25 @@
+// The numbers of a camera; what they do to points is in camera_model.h.
+#pragma once
+
+#include "core/geometry/resolution.h"
+
+#include <Eigen/Core>
+
+#include <array>
+
+namespace evical {
+
+enum class CameraModel { PinholeRadtan, PinholeEquidistant };
+
+struct CameraIntrinsics {
+  CameraModel model = CameraModel::PinholeRadtan;
+  Resolution resolution_px;
+  Eigen::Vector2d focal_length_px = Eigen::Vector2d::Zero();
+  Eigen::Vector2d principal_point_px = Eigen::Vector2d::Zero();
+  // Radtan: k1 k2 p1 p2 k3; equidistant: k1 k2 k3 k4 and an unused 0.
+  std::array<double, 5> distortion = {0.0, 0.0, 0.0, 0.0, 0.0};
+
+  bool operator==(const CameraIntrinsics&) const = default;
+};
+
+}  // namespace evical

@@ -1,0 +1,14 @@
+// How many pixels an image or a sensor has.
+#pragma once
+
+namespace evical {
+
+struct Resolution {
+  int width_px = 0;
+  int height_px = 0;
+  bool operator==(const Resolution&) const = default;
+  bool known() const { return width_px > 0 && height_px > 0; }
+  int pixelCount() const { return width_px * height_px; }
+};
+
+}  // namespace evical
