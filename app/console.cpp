@@ -16,18 +16,6 @@ std::stop_source& stopSource() {
   return source;
 }
 
-const char* levelName(LogLevel level) {
-  switch (level) {
-    case LogLevel::Debug:
-      return "debug";
-    case LogLevel::Info:
-      return "info";
-    case LogLevel::Warning:
-      return "warning";
-  }
-  return "";
-}
-
 }  // namespace
 
 Console::Console(bool quiet) : quiet_(quiet), on_terminal_(isatty(STDERR_FILENO) != 0) {}

@@ -14,6 +14,18 @@ class SilentProgress final : public ProgressSink {
 
 }  // namespace
 
+const char* levelName(LogLevel level) {
+  switch (level) {
+    case LogLevel::Debug:
+      return "debug";
+    case LogLevel::Info:
+      return "info";
+    case LogLevel::Warning:
+      return "warning";
+  }
+  return "";
+}
+
 ProgressSink& silentProgress() {
   static SilentProgress sink;
   return sink;

@@ -10,6 +10,7 @@ namespace evical {
 class CalibrationObserver;  // core/data/calibration_observer.h; from here it is only handed on
 
 enum class LogLevel { Debug, Info, Warning };
+const char* levelName(LogLevel level);  // as logs have it
 
 // Called from worker threads; implementations lock where they must. All fractions are real: work
 // done / work to do.

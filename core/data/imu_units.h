@@ -4,8 +4,9 @@
 
 #include "core/data/imu_sample.h"
 
+#include "core/numerics/angles.h"
+
 #include <array>
-#include <numbers>
 #include <span>
 #include <vector>
 
@@ -26,7 +27,7 @@ constexpr double metresPerSecond2(AccelerationUnit unit) {
 }
 
 constexpr double radiansPerSecond(AngularRateUnit unit) {
-  return unit == AngularRateUnit::RadiansPerSecond ? 1.0 : std::numbers::pi / 180.0;
+  return unit == AngularRateUnit::RadiansPerSecond ? 1.0 : kRadPerDeg;
 }
 
 // A sample before its units are known: the recording's own numbers, in the IMU's own frame.

@@ -24,18 +24,6 @@ QString textOf(std::string_view text) {
   return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
 }
 
-const char* levelName(LogLevel level) {
-  switch (level) {
-    case LogLevel::Debug:
-      return "debug";
-    case LogLevel::Info:
-      return "info";
-    case LogLevel::Warning:
-      return "warning";
-  }
-  return "";
-}
-
 JobError internalError(const QString& what) {
   return {false, QObject::tr("internal error"), what,
           QObject::tr("Please report this, with the log and the session file")};
