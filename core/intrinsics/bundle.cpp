@@ -3,6 +3,7 @@
 #include "core/intrinsics/board_pose.h"
 #include "core/intrinsics/circle_centre_cost.h"
 #include "core/numerics/robust.h"
+#include "core/numerics/solver_stop.h"
 
 #include <ceres/ceres.h>
 
@@ -15,18 +16,6 @@ namespace evical {
 namespace {
 
 constexpr double kLeastScale = 1e-3;
-
-// Ends a solve when the run is asked to stop.
-class StopCallback final : public ceres::IterationCallback {
- public:
-  explicit StopCallback(const RunContext& context) : context_(context) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-    return context_.stop.stop_requested() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  const RunContext& context_;
-};
 
 // Draws the edge lead towards 0.
 class LeadPrior final : public ceres::SizedCostFunction<1, 1> {
@@ -135,8 +124,8 @@ class Adjustment {
     solver.gradient_tolerance = 1e-12;
     solver.parameter_tolerance = 1e-12;
     solver.logging_type = ceres::SILENT;
-    StopCallback stop(context_);
-    solver.callbacks.push_back(&stop);
+    const std::unique_ptr<ceres::IterationCallback> stop = stopCallback(context_.stop);
+    solver.callbacks.push_back(stop.get());
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
     context_.throwIfStopped();

@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/time.h"
 #include "core/data/calibration_observer.h"
+#include "core/numerics/solver_stop.h"
 #include "core/optimisation/calibration_problem.h"
 #include "core/optimisation/circle_errors.h"
 #include "core/optimisation/sample_errors.h"
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <memory>
 
 namespace evical {
 namespace {
@@ -45,7 +47,6 @@ class IterationReporter final : public ceres::IterationCallback {
     records_.push_back({stage_ + 1, static_cast<int>(records_.size()), summary.cost,
                         summary.gradient_max_norm, summary.step_norm, state.cameras});
     if (context_.observer != nullptr) context_.observer->iterationDone(records_.back(), state);
-    if (context_.stop.stop_requested()) return ceres::SOLVER_ABORT;
     return problem_.segmentDrift_knots() > kFurthestDrift_knots ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
                                                                 : ceres::SOLVER_CONTINUE;
   }
@@ -130,7 +131,8 @@ void Batch::solveStage(ReleaseStages stage, int index, double tolerance) {
   const int stage_count = static_cast<int>(stages().size()) + 1;  // the last one twice
   IterationReporter reporter(problem_, context_, index, stage_count, progress_, solution_.iterations);
   ceres::Solver::Options solver = solverOptions(options_, tolerance);
-  solver.callbacks.push_back(&reporter);
+  const std::unique_ptr<ceres::IterationCallback> stop = stopCallback(context_.stop);
+  solver.callbacks = {&reporter, stop.get()};
   solution_.converged = false;
   for (int round = 0; round < options_.max_rounds; ++round) {
     context_.throwIfStopped();
