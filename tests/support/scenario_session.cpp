@@ -51,7 +51,7 @@ Session sessionFor(const Scenario& scenario) {
 
 RecordingPass detectedPass(const Scenario& scenario, const Session& session) {
   const CameraIntrinsics& camera = scenario.cameras.front().intrinsics;
-  BoardTracker tracker(scenario.board, camera.resolution_px, camera, session.options.front_end,
+  BoardTracker tracker(session.board, camera.resolution_px, camera, session.options.front_end,
                        scenario.start_ns);
   simulateEvents(scenario, 0, [&](EventSpan events) { tracker.add(events); });
   return passWith(scenario, tracker.finish());

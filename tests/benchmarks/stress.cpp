@@ -1,0 +1,263 @@
+// What a calibration says where one thing is not as the session has it, as a table: `evical_stress [--only NAME...]
+// [--seeds N] [--duration S] [--perfect] SCENARIO...`. The front end runs once a recording; what is perturbed is
+// what comes after it, but for rows that say otherwise (tests/support/perturbations.cpp).
+#include "core/numerics/angles.h"
+#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/result_files.h"
+#include "core/report/truth_comparison.h"
+#include "tests/benchmarks/benchmark_program.h"
+#include "tests/support/perturbations.h"
+#include "tests/support/scenario_session.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace evical {
+namespace {
+
+using test::Perturbation;
+using test::PerturbedStage;
+using test::Recorded;
+
+// Beyond both, a result that is called ok is a wrong one.
+constexpr double kWrongSigmas = 4.0;
+constexpr double kWrongRotation_deg = 0.1, kWrongTranslation_mm = 3.0, kWrongTimeOffset_ms = 1.0;
+
+// Of the worst camera, in units for people; `sigmas`: of its worst number.
+struct PartError {
+  double size = 0.0, sigma = 0.0, sigmas = 0.0;
+
+  bool isWrong(double bound) const { return size > bound && sigmas > kWrongSigmas; }
+};
+
+// Of the worst sensor: spreads of residuals over what was given for them, share of circles that were thrown
+// out, and how many sigmas the recording's halves differ by.
+struct Misfit {
+  double circles = 0.0, gyroscope = 0.0, accelerometer = 0.0, outliers = 0.0, halves_sigmas = 0.0;
+};
+
+struct Outcome {
+  CalibrationStatus status = CalibrationStatus::Failed;
+  std::string reason;
+  PartError rotation_deg, translation_mm, time_offset_ms;
+  Misfit misfit;
+
+  bool isWrong() const {
+    return status != CalibrationStatus::Failed &&
+           (rotation_deg.isWrong(kWrongRotation_deg) || translation_mm.isWrong(kWrongTranslation_mm) ||
+            time_offset_ms.isWrong(kWrongTimeOffset_ms));
+  }
+};
+
+PartError partError(const TruthComparison& comparison, const std::string& part) {
+  std::map<std::string, std::array<double, 2>> squares;  // by camera: of error and sigma
+  PartError error;
+  for (const QuantityDifference& quantity : comparison.quantities) {
+    const std::size_t at = quantity.name.find(part);
+    if (at == std::string::npos || quantity.name.find("drift") != std::string::npos) continue;
+    const std::string sensor = quantity.name.substr(0, at);
+    const auto is_it = [&](const CameraError& camera) { return camera.name == sensor; };
+    if (std::none_of(comparison.cameras.begin(), comparison.cameras.end(), is_it)) continue;
+    auto& [error2, sigma2] = squares[sensor];
+    error2 += quantity.difference * quantity.difference;
+    sigma2 += quantity.sigma * quantity.sigma;
+    error.sigmas = std::max(error.sigmas, std::abs(quantity.normalised()));
+  }
+  for (const auto& [sensor, square] : squares) {
+    error.size = std::max(error.size, std::sqrt(square[0]));
+    error.sigma = std::max(error.sigma, std::sqrt(square[1]));
+  }
+  return error;
+}
+
+Misfit misfitOf(const CalibrationRun& run) {
+  Misfit misfit;
+  for (const CameraFit& fit : run.result.cameras) {
+    misfit.circles = std::max(misfit.circles, fit.normalised_rms);
+    const double circles = std::max(1, fit.circles_used + fit.circles_rejected);
+    misfit.outliers = std::max(misfit.outliers, fit.circles_rejected / circles);
+  }
+  for (std::size_t k = 0; k < run.result.imus.size(); ++k) {
+    const ImuFit& fit = run.result.imus[k];
+    const ImuData& imu = run.pass.imus[k];
+    const double root_rate = std::sqrt(imu.rate_hz());
+    misfit.gyroscope =
+        std::max(misfit.gyroscope, fit.gyroscope_rms_rad_s / (imu.noise.gyroscope_density * root_rate));
+    misfit.accelerometer = std::max(
+        misfit.accelerometer, fit.accelerometer_rms_m_s2 / (imu.noise.accelerometer_density * root_rate));
+  }
+  if (run.result.cross_validation) misfit.halves_sigmas = run.result.cross_validation->rms_sigmas;
+  return misfit;
+}
+
+Outcome calibrated(const Recorded& recorded) {
+  Outcome outcome;
+  try {
+    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+    outcome.status = run.result.status;
+    outcome.reason = run.result.reason;
+    outcome.misfit = misfitOf(run);
+    const TruthComparison comparison = compareWithTruth(
+        namedResult(recorded.session, std::make_shared<CalibrationResult>(run.result), "benchmark"),
+        test::truthOf(recorded.scenario));
+    outcome.rotation_deg = partError(comparison, ".rotation.");
+    outcome.translation_mm = partError(comparison, ".translation.");
+    outcome.time_offset_ms = partError(comparison, ".time_offset");
+  } catch (const CalibrationError& error) {
+    outcome.reason = error.what();
+  }
+  return outcome;
+}
+
+struct Source {
+  bool perfect = false;  // circles as a perfect front end sees them: in seconds
+
+  RecordingPass pass(const Scenario& scenario, const Session& session) const {
+    constexpr double kSigma_px = 0.05, kWindow_s = 0.02;
+    return perfect ? test::perfectPass(scenario, kSigma_px, kWindow_s)
+                   : test::detectedPass(scenario, session);
+  }
+};
+
+Outcome perturbed(const Recorded& base, const Perturbation& perturbation, double size, const Source& source) {
+  Recorded recorded = base;
+  perturbation.apply(recorded, size);
+  if (perturbation.stage == PerturbedStage::FrontEnd)
+    recorded.pass = source.pass(recorded.scenario, recorded.session);
+  return calibrated(recorded);
+}
+
+const char* wordOf(CalibrationStatus status) {
+  return status == CalibrationStatus::Ok         ? "ok"
+         : status == CalibrationStatus::Doubtful ? "doubtful"
+                                                 : "failed";
+}
+
+struct Summary {
+  int cases = 0, wrong = 0, wrong_ok = 0;
+  int named = 0, nameable = 0;  // of those not called ok that have a cause
+  int ok_unspoilt = 0, unspoilt = 0;
+
+  void add(const Perturbation& perturbation, const Outcome& outcome) {
+    ++cases;
+    wrong += outcome.isWrong();
+    wrong_ok += outcome.isWrong() && outcome.status == CalibrationStatus::Ok;
+    if (perturbation.causes.empty()) {
+      ++unspoilt;
+      ok_unspoilt += outcome.status == CalibrationStatus::Ok;
+      return;
+    }
+    if (outcome.status == CalibrationStatus::Ok) return;
+    ++nameable;
+    named += perturbation.isNamedIn(test::firstReason(outcome.reason));
+  }
+  void print() const {
+    fmt::print(
+        "\n{} cases: {} wrong (beyond {} sigmas, and {} deg, {} mm or {} ms), {} of them called ok; the "
+        "first "
+        "reason names the cause in {} of {} doubtful or failed ones; {} of {} unspoilt ones ok\n",
+        cases, wrong, kWrongSigmas, kWrongRotation_deg, kWrongTranslation_mm, kWrongTimeOffset_ms, wrong_ok,
+        named, nameable, ok_unspoilt, unspoilt);
+  }
+};
+
+void printHeader() {
+  fmt::print(
+      "| scenario | seed | perturbation | size | rotation, deg (sigma, sigmas) | translation, mm | time "
+      "offset, "
+      "ms | misfit of circles, gyroscope, accelerometer | outliers, % | halves, sigmas | verdict | first "
+      "reason "
+      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+}
+
+std::string cell(const PartError& error) {
+  return fmt::format("{:.3f} ({:.3f}, {:.1f})", error.size, error.sigma, error.sigmas);
+}
+
+std::string cells(const Misfit& misfit) {
+  return fmt::format("{:.2g} {:.2g} {:.2g} | {:.1f} | {:.1f}", misfit.circles, misfit.gyroscope,
+                     misfit.accelerometer, 100.0 * misfit.outliers, misfit.halves_sigmas);
+}
+
+void printRow(const Scenario& scenario, const Perturbation& perturbation, double size,
+              const Outcome& outcome) {
+  const bool result = outcome.status != CalibrationStatus::Failed;
+  const std::string_view reason = test::firstReason(outcome.reason);
+  const bool named = perturbation.isNamedIn(reason);
+  fmt::print("| {} | {} | {} | {:g} {} | {} | {} | {} | {} | {}{} | {}{} |\n", scenario.name, scenario.seed,
+             perturbation.name, size, perturbation.unit, result ? cell(outcome.rotation_deg) : "",
+             result ? cell(outcome.translation_mm) : "", result ? cell(outcome.time_offset_ms) : "",
+             result ? cells(outcome.misfit) : " | | ", outcome.isWrong() ? "WRONG, " : "",
+             wordOf(outcome.status),
+             outcome.status == CalibrationStatus::Ok || perturbation.causes.empty() ? ""
+             : named                                                                ? "(named) "
+                                                                                    : "(other) ",
+             reason);
+  std::fflush(stdout);
+}
+
+struct Arguments {
+  ScenarioArguments scenarios;
+  std::vector<std::string> only;
+  std::optional<double> size;
+  Source source;
+
+  void addTo(CLI::App& app) {
+    scenarios.addTo(app);
+    app.add_option("--only", only, "Perturbations by name, instead of all");
+    app.add_option("--size", size, "One size, instead of those of the table");
+    app.add_flag("--perfect", source.perfect, "Circles of a perfect front end, without events");
+  }
+  std::vector<Perturbation> rows() const {
+    std::vector<Perturbation> all(test::perturbations().begin(), test::perturbations().end());
+    if (!only.empty()) {
+      all.clear();
+      for (const std::string& name : only) all.push_back(test::perturbation(name));
+    }
+    for (Perturbation& each : all)
+      if (size) each.sizes = {*size};
+    return all;
+  }
+};
+
+int main(int argc, char** argv) {
+  CLI::App app("What a calibration says where one thing is not as the session has it");
+  Arguments arguments;
+  arguments.addTo(app);
+  CLI11_PARSE(app, argc, argv);
+  printHeader();
+  Summary summary;
+  for (const std::string& file : arguments.scenarios.files) {
+    for (int k = 0; k < arguments.scenarios.seeds; ++k) {
+      Recorded base;
+      base.scenario = arguments.scenarios.read(file, k);
+      base.session = test::sessionFor(base.scenario);
+      base.pass = arguments.source.pass(base.scenario, base.session);
+      for (const Perturbation& row : arguments.rows()) {
+        for (const double size : row.sizes) {
+          const Outcome outcome = perturbed(base, row, size, arguments.source);
+          printRow(base.scenario, row, size, outcome);
+          summary.add(row, outcome);
+        }
+      }
+    }
+  }
+  summary.print();
+  return summary.wrong_ok == 0 ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace evical
+
+int main(int argc, char** argv) {
+  return evical::guarded(evical::main, argc, argv);
+}
