@@ -56,7 +56,7 @@ class Pilot {
         context_(context),
         options_(session.options.intrinsics),
         length_ns_(nanosecondsFrom(options_.first_look_length_s)),
-        period_ns_(nanosecondsFrom(std::max(options_.first_look_period_s, options_.first_look_length_s))),
+        period_ns_(nanosecondsFrom(options_.first_look_period_s)),
         recording_(session),
         resolution_px_(recording_.resolution_px(0)),
         lenses_(plainLenses(resolution_px_)) {

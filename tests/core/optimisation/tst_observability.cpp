@@ -1,0 +1,134 @@
+// What covariances given by hand mean in words: which need is not met, along which direction.
+#include "core/optimisation/uncertainty/observability.h"
+
+#include "core/numerics/angles.h"
+#include "tests/support/test_program.h"
+
+#include <cmath>
+
+namespace {
+
+using namespace evical;
+using Eigen::Vector3d;
+
+// One camera and one IMU; the camera's rotation, translation and time offset in columns 0 to 6.
+struct Rig {
+  CalibrationInput input;
+  CalibrationState state;
+  QuantityCovariance covariance;
+  OptimisationOptions options;
+
+  Rig() {
+    input.cameras.resize(1);
+    input.cameras[0].name = "left";
+    input.imus.resize(1);
+    input.imus[0].name = "imu";
+    state.cameras.resize(1);
+    state.imus.resize(1);
+    options.needed_rotation_deg = 0.1;
+    options.needed_translation_mm = 3.0;
+    options.needed_time_offset_ms = 0.1;
+    forEachQuantity(kCameraQuantities, [&](const auto& row) {
+      if (row.info.need != QuantityNeed::None) covariance.quantities.push_back({&row.info, 0, nullptr});
+    });
+    covariance.first_column = {0, 3, 6, 7};
+    covariance.covariance = Eigen::MatrixXd::Zero(7, 7);
+    setSigmas(0.5, 0.5, 0.5);
+  }
+  // In needs.
+  void setSigmas(double rotation, double translation, double time_offset) {
+    const double units[] = {kRadPerDeg * 0.1 * rotation, 3e-3 * translation, 0.1e-3 * time_offset};
+    for (Eigen::Index i = 0; i < 7; ++i) {
+      const double sigma = units[i / 3];
+      covariance.covariance(i, i) = sigma * sigma;
+    }
+  }
+  // The uncertainty of the part at `column` is this many needs along a direction in the reference's frame.
+  void stretch(Eigen::Index column, const Vector3d& direction, double sigma) {
+    covariance.covariance.block<3, 3>(column, column) += sigma * sigma * direction * direction.transpose();
+  }
+  Observability judge() const { return judgeObservability(input, state, covariance, options); }
+};
+
+class TestObservability : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void judge_onSigmasBelowTheNeeds_isOkWithAnEigenvalueForEachDirection() {
+    Rig rig;
+    rig.setSigmas(0.5, 0.25, 0.1);
+    const Observability seen = rig.judge();
+    QCOMPARE(seen.status, CalibrationStatus::Ok);
+    QVERIFY(seen.reason.empty());
+    // One over the squared sigmas in needs, the weakest first: 3 of 1/0.5^2, 3 of 1/0.25^2, 1 of 1/0.1^2.
+    QCOMPARE(seen.eigenvalues.size(), std::size_t{7});
+    const double expected[] = {4.0, 4.0, 4.0, 16.0, 16.0, 16.0, 100.0};
+    for (std::size_t i = 0; i < 7; ++i) QVERIFY(std::abs(seen.eigenvalues[i] - expected[i]) < 1e-6);
+  }
+
+  void judge_onATranslationThatIsUnsure_namesTheCamerasOwnAxisAndTheSigma() {
+    Rig rig;
+    // The camera's z axis is the reference's x axis.
+    rig.state.cameras[0].reference_from_camera.rotation =
+        Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), Vector3d::UnitX());
+    rig.stretch(3, Vector3d::UnitX(), 6e-3);
+    const Observability seen = rig.judge();
+    QCOMPARE(seen.status, CalibrationStatus::Doubtful);
+    QCOMPARE(seen.weakest, std::string("translation along the camera's z axis"));
+    // sqrt(6^2 + 1.5^2) = 6.18 mm.
+    QVERIFY2(
+        seen.reason.starts_with("translation along the camera's z axis has a sigma of 6.2 mm (needed: 3)"),
+        seen.reason.c_str());
+    QVERIFY(seen.eigenvalues.front() < 1.0);
+  }
+
+  void judge_ofTwoCameras_saysWhichSensor() {
+    Rig rig;
+    rig.input.cameras.resize(2);
+    rig.state.cameras.resize(2);
+    rig.stretch(0, Vector3d::UnitY(), kRadPerDeg * 0.3);
+    QVERIFY(
+        rig.judge().reason.starts_with("rotation about left's y axis has a sigma of 0.3 deg (needed: 0.1)"));
+  }
+
+  void judge_alongNoAxis_givesTheDirectionsComponents() {
+    Rig rig;
+    rig.stretch(3, Vector3d(1.0, -1.0, 0.0).normalized(), 6e-3);
+    const std::string weakest = rig.judge().weakest;
+    QVERIFY2(weakest == "translation along (0.71, -0.71, 0.00) in the camera's frame" ||
+                 weakest == "translation along (-0.71, 0.71, 0.00) in the camera's frame",
+             weakest.c_str());
+  }
+
+  void judge_onAHundredTimesTheNeed_callsItUnobservable() {
+    Rig rig;
+    rig.setSigmas(0.5, 0.5, 101.0);
+    QVERIFY(rig.judge().reason.starts_with("time offset of left is not observable in this recording"));
+  }
+
+  void judge_onWhatGoesTogether_namesBoth() {
+    Rig rig;
+    // Rotation about x and translation along y, correlated: the weakest direction has both.
+    const double rotation = kRadPerDeg * 0.1, translation = 3e-3;
+    rig.covariance.covariance(0, 0) = 4.0 * rotation * rotation;
+    rig.covariance.covariance(4, 4) = 4.0 * translation * translation;
+    rig.covariance.covariance(0, 4) = rig.covariance.covariance(4, 0) = 3.9 * rotation * translation;
+    const std::string weakest = rig.judge().weakest;
+    QVERIFY2(weakest.find("rotation about the camera's x axis") != std::string::npos, weakest.c_str());
+    QVERIFY2(weakest.find(" together with ") != std::string::npos, weakest.c_str());
+    QVERIFY2(weakest.find("translation along the camera's y axis") != std::string::npos, weakest.c_str());
+  }
+
+  void judge_withoutQuantitiesThatAreNeeded_isOk() {
+    Rig rig;
+    rig.covariance = {{}, {0}, Eigen::MatrixXd(0, 0)};
+    const Observability seen = rig.judge();
+    QCOMPARE(seen.status, CalibrationStatus::Ok);
+    QVERIFY(seen.eigenvalues.empty());
+  }
+};
+
+}  // namespace
+
+EVICAL_TEST(TestObservability)
+#include "tst_observability.moc"
