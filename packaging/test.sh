@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing, checks the sources' format, builds with warnings as errors and runs every test. Prints at
+# Installs what is missing, checks the sources' format, builds with warnings as errors, runs clang-tidy and
+# every test. Prints at
 # its end how long each of these took.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -26,4 +27,5 @@ step install packaging/install-dependencies.sh
 step format packaging/check-format.sh
 step configure cmake --preset ci
 step build cmake --build --preset ci
+step clang-tidy packaging/check-tidy.sh
 step tests ctest --preset ci

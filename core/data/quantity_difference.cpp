@@ -46,6 +46,8 @@ struct Side {
   const State& state;
   const Uncertainty& uncertainty;
 };
+template <class State, class Uncertainty>
+Side(const State&, const Uncertainty&) -> Side<State, Uncertainty>;
 
 template <class Row, class Sensor>
 bool isCompared(const Row& row, const Sensor& a, const Sensor& b) {
