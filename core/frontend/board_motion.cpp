@@ -138,13 +138,14 @@ double boardSpeed_px_s(const BoardMotion& motion, const BoardScene& scene) {
   return circles.empty() ? 0.0 : sum / static_cast<double>(circles.size());
 }
 
-int expectedCircles(const BoardMotion& motion, const BoardScene& scene, double half_window_s) {
+std::vector<int> circlesExpected(const BoardMotion& motion, const BoardScene& scene, double half_window_s) {
   constexpr double kLeastTravel_px = 1.2;  // an edge that stays within its pixel fires few events or none
-  int expected = 0;
+  std::vector<int> expected;
   for (const CircleImage& circle : projectBoard(motion.ideal_from_board, scene)) {
     const double sensor_scale = circle.sensor_radius_px / circle.largest_radius_px;
     const double travel_px = motion.velocityAt(circle.centre_px).norm() * sensor_scale * 2.0 * half_window_s;
-    expected += insideImage(circle, scene.resolution_px) && travel_px > kLeastTravel_px;
+    if (insideImage(circle, scene.resolution_px) && travel_px > kLeastTravel_px)
+      expected.push_back(circle.circle);
   }
   return expected;
 }

@@ -98,7 +98,10 @@ inline EdgeDistance distanceToEdge(const CircleImage& circle, const Eigen::Vecto
 double boardSpeed_px_s(const BoardMotion& motion, const BoardScene& scene);
 
 // Circles that lie in the image and move far enough in a window of this half width to fire events.
-int expectedCircles(const BoardMotion& motion, const BoardScene& scene, double half_window_s);
+std::vector<int> circlesExpected(const BoardMotion& motion, const BoardScene& scene, double half_window_s);
+inline int expectedCircles(const BoardMotion& motion, const BoardScene& scene, double half_window_s) {
+  return static_cast<int>(circlesExpected(motion, scene, half_window_s).size());
+}
 
 // Bursts no further than this from the window's middle are fitted at that speed.
 double fitHalfWindow_s(double speed_px_s, const TrackingOptions& options);

@@ -2,6 +2,7 @@
 
 #include "core/frontend/circle_measurement.h"
 #include "core/frontend/ring_vote.h"
+#include "core/frontend/rival_placements.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -34,15 +35,9 @@ std::vector<CircleCandidate> findCandidates(const BurstWindow& window, Candidate
 struct Judged {
   BoardMotion motion;
   int measured = 0, missing = 0;
-};
 
-Judged countCircles(const BoardMotion& motion, const BurstWindow& window, const BoardScene& scene,
-                    double half_window_s, const FrontEndOptions& options) {
-  const auto circles = measureCircles(window, motion, scene, {half_window_s}, options.tracking);
-  const int expected = expectedCircles(motion, scene, half_window_s);
-  const auto measured = static_cast<int>(circles.size());
-  return {motion, measured, std::max(expected - measured, 0)};
-}
+  int value() const { return measured - missing; }
+};
 
 std::optional<Judged> judge(const BoardPlacement& placement, const BurstWindow& window,
                             const BoardScene& scene, double half_window_s, const FrontEndOptions& options) {
@@ -52,26 +47,10 @@ std::optional<Judged> judge(const BoardPlacement& placement, const BurstWindow& 
   const std::optional<BoardMotion> motion =
       fitBoardMotion(window, *rough, scene, options.tracking.first_gate_px, options.tracking);
   if (!motion) return std::nullopt;
-  return countCircles(*motion, window, scene, half_window_s, options);
-}
-
-int value(const Judged& judged) {
-  return judged.measured - judged.missing;
-}
-
-// The fitted board again, and every other way to lay it on the same lattice: best first.
-std::vector<Judged> rivalsOf(const Judged& fitted, const BurstWindow& window, const BoardScene& scene,
-                             double half_window_s, const FrontEndOptions& options) {
-  std::vector<Judged> rivals;
-  for (const Eigen::Matrix3d& shift : latticeShifts(scene.board, options.grid.least_rival_overlap)) {
-    BoardMotion motion = fitted.motion;
-    motion.ideal_from_board = fitted.motion.ideal_from_board * shift;
-    motion.ideal_from_board /= motion.ideal_from_board(2, 2);
-    rivals.push_back(countCircles(motion, window, scene, half_window_s, options));
-  }
-  std::stable_sort(rivals.begin(), rivals.end(),
-                   [](const Judged& a, const Judged& b) { return value(a) > value(b); });
-  return rivals;
+  const auto circles = measureCircles(window, *motion, scene, {half_window_s}, options.tracking);
+  const auto measured = static_cast<int>(circles.size());
+  const int expected = expectedCircles(*motion, scene, half_window_s);
+  return Judged{*motion, measured, std::max(expected - measured, 0)};
 }
 
 WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& scene,
@@ -80,16 +59,18 @@ WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& scene
   for (std::size_t k = 0; k < std::min(search.placements.size(), kMostPlacements); ++k) {
     const std::optional<Judged> judged =
         judge(search.placements[k], window, scene, search.half_window_s, options);
-    if (judged && (!best || value(*judged) > value(*best))) best = judged;
+    if (judged && (!best || judged->value() > best->value())) best = judged;
     if (best && best->measured == scene.board.circleCount()) break;
   }
   if (!best) return WindowOutcome::RefinementFailed;
   const int count = scene.board.circleCount();
   if (best->measured < count) {
-    const std::vector<Judged> rivals = rivalsOf(*best, window, scene, search.half_window_s, options);
-    best = rivals.front();
+    const std::vector<PlacementScore> rivals =
+        rivalPlacements(best->motion, window, scene, search.half_window_s, options);
+    const PlacementScore& first = rivals.front();
+    best = Judged{shifted(best->motion, first.shift), first.measured, first.missing};
     if (best->measured < count && rivals.size() > 1 &&
-        value(rivals[1]) > value(*best) - options.grid.ambiguity_margin) {
+        rivals[1].value() > best->value() - options.grid.ambiguity_margin) {
       return WindowOutcome::Ambiguous;
     }
   }

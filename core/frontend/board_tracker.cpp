@@ -5,6 +5,7 @@
 #include "core/frontend/board_search.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -91,6 +92,7 @@ void BoardTracker::processSlot(const WindowSlot& slot) {
   if (motion_) {
     WindowTrace trace = track(slot, *motion_);
     if (trace.held()) {
+      if (held_windows_ % options_.grid.look_every_windows == 0) reconsiderPlacement(slot, trace);
       motion_ = trace.motion;
       tracked_until_ns_ = slot.end_ns;
       keep(trace);
@@ -124,6 +126,9 @@ void BoardTracker::acquire(const WindowSlot& slot, const BoardMotion& motion) {
   }
   trace.report.tracked = false;
   motion_ = trace.motion;
+  placement_watch_.reset();
+  track_begin_ = observations_.views.size();
+  extent_before_track_ = observations_.extent;
   trackBackwards(slot, *trace.motion);
   tracked_until_ns_ = slot.end_ns;
   keep(trace);
@@ -155,6 +160,40 @@ WindowTrace BoardTracker::track(const WindowSlot& slot, const BoardMotion& last)
     judgeExtent(window_, trace, scene_, options_, observations_.extent);
   if (observer_) observer_->windowTracked(window_, trace);
   return trace;
+}
+
+void BoardTracker::reconsiderPlacement(const WindowSlot& slot, WindowTrace& trace) {
+  const std::optional<Eigen::Matrix3d> shift = placement_watch_.look(window_, trace, scene_, options_);
+  if (!shift) return;
+  WindowTrace anew =
+      trackWindow({history_, scene_, options_, start_ns_}, slot, shifted(*trace.motion, *shift), window_);
+  if (!anew.held() || anew.report.circles <= trace.report.circles) return;
+  renumberTrack(*shift);
+  observations_.extent = extent_before_track_;
+  trace = std::move(anew);
+}
+
+// Circles that were seen since the board was found, by the names that they have now.
+void BoardTracker::renumberTrack(const Eigen::Matrix3d& shift) {
+  const std::vector<int> now = renumbering(scene_.board, shift);
+  const auto begin = observations_.views.begin() + static_cast<std::ptrdiff_t>(track_begin_);
+  for (auto view = begin; view != observations_.views.end(); ++view) {
+    for (CircleObservation& circle : view->circles)
+      circle.circle = now[static_cast<std::size_t>(circle.circle)];
+    std::erase_if(view->circles, [](const CircleObservation& circle) { return circle.circle < 0; });
+    std::sort(view->circles.begin(), view->circles.end(),
+              [](const auto& a, const auto& b) { return a.circle < b.circle; });
+    const auto report = std::find_if(observations_.windows.begin(), observations_.windows.end(),
+                                     [&](const auto& window) { return window.time_s == view->time_s; });
+    assert(report != observations_.windows.end());
+    report->circles = static_cast<int>(view->circles.size());
+    report->outcome = outcomeOf(report->circles, scene_, options_.grid);
+    view->kind = report->outcome == WindowOutcome::Complete ? ViewKind::Complete : ViewKind::Partial;
+    if (report->outcome == WindowOutcome::TooFewInGrid) view->circles.clear();
+  }
+  observations_.views.erase(
+      std::remove_if(begin, observations_.views.end(), [](const auto& view) { return view.circles.empty(); }),
+      observations_.views.end());
 }
 
 void BoardTracker::keep(WindowTrace& trace) {

@@ -1,11 +1,13 @@
 // The front end over time: events in, board views out, in bounded memory. The board is searched once, then
-// tracked from window to window; windows that were missed before it was found are tracked backwards.
+// tracked from window to window; windows that were missed before it was found are tracked backwards. Tracking goes on
+// asking whether the board lies as it was found, and lays it anew where windows say that it does not.
 #pragma once
 
 #include "core/data/board_observations.h"
 #include "core/frontend/edge_bursts.h"
 #include "core/frontend/front_end_observer.h"
 #include "core/frontend/front_end_options.h"
+#include "core/frontend/rival_placements.h"
 #include "core/frontend/window_trace.h"
 
 #include <cstdint>
@@ -43,6 +45,8 @@ class BoardTracker {
   void acquire(const WindowSlot& slot, const BoardMotion& motion);
   void trackBackwards(const WindowSlot& from, BoardMotion motion);
   WindowTrace track(const WindowSlot& slot, const BoardMotion& last);
+  void reconsiderPlacement(const WindowSlot& slot, WindowTrace& trace);
+  void renumberTrack(const Eigen::Matrix3d& shift);
   void keep(WindowTrace& trace);
   void miss(const WindowSlot& slot, const BoardSearch* search);
   std::int64_t slotLength_ns(const BoardMotion* motion) const;
@@ -64,6 +68,9 @@ class BoardTracker {
   FrontEndObserver* observer_ = nullptr;
   bool started_ = false;
   int held_windows_ = 0;
+  PlacementWatch placement_watch_;
+  std::size_t track_begin_ = 0;  // its first view: since the board was found last
+  BoardExtent extent_before_track_;
   BoardObservations observations_;
 };
 

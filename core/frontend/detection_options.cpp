@@ -98,7 +98,11 @@ constexpr std::tuple kGridFields{
     Field{"least_rival_overlap", &GridOptions::least_rival_overlap, 0.5, within(0.1, 1.0), "",
           "Other placements that share this part of the circles are held against the one that was found."},
     Field{"most_missing", &GridOptions::most_missing, 0.2, within(0.0, 1.0), "",
-          "Circles that should be seen and are not, as part of those that are, for a board to be believed."}};
+          "Circles that should be seen and are not, as part of those that are, for a board to be believed."},
+    Field{"look_every_windows", &GridOptions::look_every_windows, 10, within(1, 10000), "",
+          "One in so many tracked windows is asked whether the board is laid rightly."},
+    Field{"contradicting_looks", &GridOptions::contradicting_looks, 2, within(1, 1000), "",
+          "A board is laid anew where so many of those windows in a row show it laid another way."}};
 constexpr auto kGridDefaults = defaultsOf<GridOptions, kGridFields>();
 
 constexpr std::tuple kTrackingFields{

@@ -85,6 +85,8 @@ struct GridOptions {
   int ambiguity_margin;
   double most_missing;
   double least_rival_overlap;
+  int look_every_windows;
+  int contradicting_looks;
 
   GridOptions();  // the defaults
   constexpr explicit GridOptions(NoDefaults) {}

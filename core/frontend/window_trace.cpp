@@ -32,15 +32,14 @@ TrackingEnd endOf(int found, int expected, const FrontEndOptions& options) {
   return TrackingEnd::Held;
 }
 
-WindowOutcome outcomeOf(const WindowTrace& trace, const BoardScene& scene, const FrontEndOptions& options) {
-  if (!trace.held()) return WindowOutcome::RefinementFailed;
-  const int found = trace.report.circles, count = scene.board.circleCount();
-  const double least = std::max<double>(kLeastForHomography, options.grid.least_partial * count);
+}  // namespace
+
+WindowOutcome outcomeOf(int found, const BoardScene& scene, const GridOptions& options) {
+  const int count = scene.board.circleCount();
+  const double least = std::max<double>(kLeastForHomography, options.least_partial * count);
   if (found < least) return WindowOutcome::TooFewInGrid;
   return found == count ? WindowOutcome::Complete : WindowOutcome::Partial;
 }
-
-}  // namespace
 
 WindowSlot WindowSlot::around(std::int64_t middle_ns, double half_s) {
   const auto length_ns = static_cast<std::int64_t>(std::llround(2e9 * half_s));
@@ -71,7 +70,7 @@ WindowTrace trackWindow(const TrackingInput& input, const WindowSlot& slot, cons
   trace.report.circles = static_cast<int>(trace.circles.size());
   trace.expected = expectedCircles(*trace.motion, scene, slot.half_s());
   trace.ended = endOf(trace.report.circles, trace.expected, input.options);
-  trace.report.outcome = outcomeOf(trace, scene, input.options);
+  if (trace.held()) trace.report.outcome = outcomeOf(trace.report.circles, scene, input.options.grid);
   return trace;
 }
 

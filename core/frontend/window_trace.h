@@ -53,6 +53,9 @@ struct WindowTrace {
   bool held() const { return ended == TrackingEnd::Held; }
 };
 
+// What a window that holds makes of so many circles.
+WindowOutcome outcomeOf(int found, const BoardScene& scene, const GridOptions& options);
+
 enum class TraceDetail { Result, Everything };
 
 // Tracks the board from its motion at another time, or at the slot's middle. `window` is left with the bursts

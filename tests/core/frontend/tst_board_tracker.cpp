@@ -62,6 +62,9 @@ class TestBoardTracker : public QObject {
   void views_areInTimeOrder();
   void packets_doNotMatter();
   void noEvents_giveNothing();
+  void boardLaidWrongly_isLaidAnewWithAllItsViews_data();
+  void boardLaidWrongly_isLaidAnewWithAllItsViews();
+  void aThirdThatIsHidden_leavesTheQuarterTurnOpen();
 };
 
 void TestBoardTracker::simulatedRecording_isSolved_data() {
@@ -128,6 +131,73 @@ void TestBoardTracker::noEvents_giveNothing() {
   tracker.add({});
   const BoardObservations observations = tracker.finish();
   QVERIFY(observations.views.empty() && observations.windows.empty());
+}
+
+// Near, so that its long side fills the image's: laid a quarter turn wrongly, it ends above and below the image.
+Scenario landscape(std::uint64_t seed) {
+  Scenario scenario = davis346();
+  scenario.seed = seed;
+  scenario.duration_s = 1.5;
+  scenario.motion.distance_m = 0.29;
+  scenario.motion.distance_amplitude_m = 0.01;
+  scenario.motion.angle_amplitude_rad = {0.08, 0.08, 0.08};
+  scenario.motion.target_amplitude_m = {0.005, 0.005};
+  scenario.motion.roll_rad = M_PI / 2.0;
+  return scenario;
+}
+
+// Circles with another number than the truth's, and all; a third of the image shows nothing until it is uncovered.
+struct Numbering {
+  int wrong = 0, all = 0;
+  std::size_t views = 0;
+};
+Numbering numbering(std::uint64_t seed, double uncovered_s, int looks) {
+  const Scenario scenario = landscape(seed);
+  FrontEndOptions options;
+  options.grid.contradicting_looks = looks;
+  options.grid.look_every_windows = 5;  // a short recording
+  BoardTracker tracker(scenario.board, {346, 260}, scenario.cameras[0].intrinsics, options,
+                       scenario.start_ns);
+  const std::int64_t uncovered_ns = scenario.start_ns + static_cast<std::int64_t>(uncovered_s * 1e9);
+  std::vector<Event> seen;
+  simulateEvents(scenario, 0, [&](EventSpan span) {
+    seen.clear();
+    std::copy_if(span.begin(), span.end(), std::back_inserter(seen),
+                 [&](const Event& event) { return event.time_ns > uncovered_ns || event.x_px < 235; });
+    tracker.add(seen);
+  });
+  const BoardObservations observations = tracker.finish();
+  const SinusoidMotion motion(scenario);
+  Numbering numbering;
+  numbering.views = observations.views.size();
+  for (const BoardView& view : observations.views) {
+    for (const CircleObservation& circle : view.circles) {
+      for (const TrueCircle& truth : trueBoardView(motion, scenario, 0, circle.time_s)) {
+        if (truth.circle != circle.circle) continue;
+        ++numbering.all;
+        numbering.wrong += (truth.centre_px - circle.centre_px).norm() > 5.0;
+      }
+    }
+  }
+  return numbering;
+}
+
+void TestBoardTracker::boardLaidWrongly_isLaidAnewWithAllItsViews_data() {
+  QTest::addColumn<int>("seed");
+  for (const int seed : {1, 2, 3}) QTest::addRow("seed %d", seed) << seed;
+}
+
+void TestBoardTracker::boardLaidWrongly_isLaidAnewWithAllItsViews() {
+  QFETCH(int, seed);
+  const Numbering n = numbering(static_cast<std::uint64_t>(seed), 0.3, 2);
+  QVERIFY(n.views > 30);
+  QVERIFY2(n.wrong == 0, qPrintable(QString("%1 of %2").arg(n.wrong).arg(n.all)));
+}
+
+// That these recordings are laid wrongly at first: without looks they stay so.
+void TestBoardTracker::aThirdThatIsHidden_leavesTheQuarterTurnOpen() {
+  const Numbering n = numbering(3, 0.3, 1000);
+  QVERIFY2(n.wrong > n.all / 2, qPrintable(QString("%1 of %2").arg(n.wrong).arg(n.all)));
 }
 
 }  // namespace

@@ -1,0 +1,145 @@
+#include "core/frontend/rival_placements.h"
+
+#include "core/frontend/board_placement.h"
+#include "core/frontend/circle_measurement.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+namespace evical {
+namespace {
+
+// The board's lattice around the board as it is laid, as far as any rival reaches: each place is looked at once, and
+// every rival counts those that it needs.
+class LatticeAround {
+ public:
+  LatticeAround(const BoardMotion& laid, const std::vector<Eigen::Matrix3d>& shifts, const BoardScene& scene)
+      : scene_(scene), motion_(laid) {
+    const CircleBoard& board = scene.board;
+    Eigen::Vector2d least = Eigen::Vector2d::Zero(), most = Eigen::Vector2d::Zero();  // in spacings
+    for (const Eigen::Matrix3d& shift : shifts) {
+      for (int circle = 0; circle < board.circleCount(); ++circle) {
+        const Eigen::Vector2d place = placeOf(shift, circle);
+        least = least.cwiseMin(place);
+        most = most.cwiseMax(place);
+      }
+    }
+    // By an even number of rows, so that rows stay in or out of step.
+    rows_before_ = 2 * static_cast<int>(std::ceil(-0.5 * least.y() - kSlack));
+    columns_before_ = static_cast<int>(std::ceil(-least.x() / columnStep() - kSlack));
+    scene_.board.rows = rows_before_ + static_cast<int>(std::ceil(most.y() - kSlack)) + 1;
+    scene_.board.cols = columns_before_ + static_cast<int>(std::ceil(most.x() / columnStep() - kSlack)) + 1;
+    Eigen::Matrix3d origin = Eigen::Matrix3d::Identity();
+    origin.topRightCorner<2, 1>() =
+        -board.spacing_m * Eigen::Vector2d(columns_before_ * columnStep(), rows_before_);
+    motion_ = shifted(laid, origin);
+  }
+
+  void look(const BurstWindow& window, double half_window_s, const TrackingOptions& options) {
+    const auto count = static_cast<std::size_t>(scene_.board.circleCount());
+    measured_.assign(count, 0);
+    expected_.assign(count, 0);
+    for (const CircleObservation& circle : measureCircles(window, motion_, scene_, {half_window_s}, options))
+      measured_[static_cast<std::size_t>(circle.circle)] = 1;
+    for (const int circle : circlesExpected(motion_, scene_, half_window_s))
+      expected_[static_cast<std::size_t>(circle)] = 1;
+  }
+
+  // Of the board of so many circles that is shifted like this.
+  PlacementScore score(const Eigen::Matrix3d& shift, int circle_count) const {
+    PlacementScore score;
+    score.shift = shift;
+    int expected = 0;
+    for (int circle = 0; circle < circle_count; ++circle) {
+      const auto at = static_cast<std::size_t>(indexOf(placeOf(shift, circle)));
+      score.measured += measured_[at];
+      expected += expected_[at];
+    }
+    score.missing = std::max(expected - score.measured, 0);
+    return score;
+  }
+
+ private:
+  static constexpr double kSlack = 1e-6;
+
+  double columnStep() const { return scene_.board.type == BoardType::AsymmetricCircles ? 2.0 : 1.0; }
+
+  // In spacings, from the first circle of the board as it is laid.
+  Eigen::Vector2d placeOf(const Eigen::Matrix3d& shift, int circle) const {
+    return (shift * board_.centre_m(circle).homogeneous()).hnormalized() / board_.spacing_m;
+  }
+  int indexOf(const Eigen::Vector2d& place) const {
+    const int row = static_cast<int>(std::lround(place.y())) + rows_before_;
+    const bool out_of_step = scene_.board.type == BoardType::AsymmetricCircles && row % 2 != 0;
+    const double column = (place.x() - (out_of_step ? 1.0 : 0.0)) / columnStep();
+    return scene_.board.index(row, static_cast<int>(std::lround(column)) + columns_before_);
+  }
+
+  BoardScene scene_;
+  CircleBoard board_ = scene_.board;  // without what is around it
+  BoardMotion motion_;
+  int rows_before_ = 0, columns_before_ = 0;
+  std::vector<std::uint8_t> measured_, expected_;  // by circle of the surrounding lattice
+};
+
+}  // namespace
+
+std::vector<PlacementScore> rivalPlacements(const BoardMotion& laid, const BurstWindow& window,
+                                            const BoardScene& scene, double half_window_s,
+                                            const FrontEndOptions& options) {
+  const std::vector<Eigen::Matrix3d> shifts = latticeShifts(scene.board, options.grid.least_rival_overlap);
+  LatticeAround lattice(laid, shifts, scene);
+  lattice.look(window, half_window_s, options.tracking);
+  std::vector<PlacementScore> rivals;
+  for (const Eigen::Matrix3d& shift : shifts)
+    rivals.push_back(lattice.score(shift, scene.board.circleCount()));
+  std::stable_sort(rivals.begin(), rivals.end(),
+                   [](const PlacementScore& a, const PlacementScore& b) { return a.value() > b.value(); });
+  return rivals;
+}
+
+BoardMotion shifted(const BoardMotion& motion, const Eigen::Matrix3d& shift) {
+  BoardMotion moved = motion;
+  moved.ideal_from_board = motion.ideal_from_board * shift;
+  moved.ideal_from_board /= moved.ideal_from_board(2, 2);
+  return moved;
+}
+
+std::vector<int> renumbering(const CircleBoard& board, const Eigen::Matrix3d& shift) {
+  constexpr double kSamePlace = 1e-3;  // of the spacing
+  std::vector<int> rival_of(static_cast<std::size_t>(board.circleCount()), -1);
+  for (int rival = 0; rival < board.circleCount(); ++rival) {
+    const Eigen::Vector2d place_m = (shift * board.centre_m(rival).homogeneous()).hnormalized();
+    for (int circle = 0; circle < board.circleCount(); ++circle) {
+      if ((board.centre_m(circle) - place_m).norm() < kSamePlace * board.spacing_m)
+        rival_of[static_cast<std::size_t>(circle)] = rival;
+    }
+  }
+  return rival_of;
+}
+
+std::optional<Eigen::Matrix3d> PlacementWatch::look(const BurstWindow& window, const WindowTrace& trace,
+                                                    const BoardScene& scene, const FrontEndOptions& options) {
+  if (trace.report.circles + options.grid.ambiguity_margin >= scene.board.circleCount()) {
+    reset();  // no rival explains more
+    return std::nullopt;
+  }
+  const std::vector<PlacementScore> rivals =
+      rivalPlacements(*trace.motion, window, scene, trace.report.half_width_s, options);
+  const auto laid = std::find_if(rivals.begin(), rivals.end(),
+                                 [](const PlacementScore& rival) { return rival.shift.isIdentity(0.0); });
+  const PlacementScore& best = rivals.front();
+  if (best.value() <= laid->value() + options.grid.ambiguity_margin) {
+    reset();
+    return std::nullopt;
+  }
+  looks_ = looks_ > 0 && best.shift == favourite_ ? looks_ + 1 : 1;
+  favourite_ = best.shift;
+  if (looks_ < options.grid.contradicting_looks) return std::nullopt;
+  reset();
+  return favourite_;
+}
+
+}  // namespace evical
