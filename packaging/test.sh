@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing, checks the sources' format, builds with warnings as errors, runs clang-tidy and
-# every test. Prints at
-# its end how long each of these took.
+# Installs what is missing, checks the sources' format, builds with warnings as errors, runs clang-tidy and every
+# test. Prints at its end how long each of these took.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
