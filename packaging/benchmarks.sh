@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 packaging/install-dependencies.sh
 cmake --preset release -DEVICAL_TESTS=ON
 cmake --build --preset release --target evical_accuracy evical_intrinsics_accuracy evical_unknown_intrinsics evical_formats evical_speed \
-                                       evical_stress
+                                       evical_stress evical_centre_errors
 accuracy=build/release/tests/benchmarks/evical_accuracy
 scenarios=config/scenarios
 
@@ -17,6 +17,9 @@ scenarios=config/scenarios
             "$scenarios"/{planar_motion,one_axis_rotation,hardly_moving}.yaml
 "$accuracy" --quantities "$scenarios"/{stereo,stereo_two_imus,three_cameras,disjoint_views}.yaml
 "$accuracy" --seeds 20 "$scenarios/davis346_10s.yaml"
+
+# Circle centres along the motion, in ordinary and in small motions.
+build/release/tests/benchmarks/evical_centre_errors --speeds --duration 10 "$scenarios"/{small_motion,davis346,slow,bare_7x3_fast,noisy,board_9x4}.yaml
 
 intrinsics=build/release/tests/benchmarks/evical_intrinsics_accuracy
 "$intrinsics" "$scenarios"/intrinsics_{davis346,fisheye,symmetric}.yaml

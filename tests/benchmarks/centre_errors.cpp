@@ -1,0 +1,235 @@
+// Measured circle centres against the truth of simulated recordings, along the motion: `evical_centre_errors
+// [--seeds N] [--duration S] [--speeds] [--variant OPTION=VALUE,...]... SCENARIO...`. A recording is simulated
+// once, in memory; the front end runs over it with each variant of its options.
+//
+// A centre that is late by a delay d, ahead by an edge lead l, wrong by an acceleration's q, and of a motion
+// that is seen g too large, is off by -d v + l e + q a + g (centre - its mean), with e of docs/maths.md, 9.1.
+// Delay and lead the batch estimates; q and g it takes for motion that was not there. Amplitudes of sinusoids
+// are q w^2 off: q and g are two names for one fault, so each is fitted without the other.
+#include "core/base/option_table.h"
+#include "core/base/stopwatch.h"
+#include "core/frontend/board_tracker.h"
+#include "core/geometry/camera_model.h"
+#include "core/numerics/robust.h"
+#include "core/synthetic/board_truth.h"
+#include "core/synthetic/event_simulator.h"
+#include "tests/benchmarks/benchmark_program.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace evical {
+namespace {
+
+struct CentreError {
+  Eigen::Vector2d error_px = Eigen::Vector2d::Zero(), velocity_px_s = Eigen::Vector2d::Zero(),
+                  acceleration_px_s2 = Eigen::Vector2d::Zero(), from_mean_px = Eigen::Vector2d::Zero(),
+                  lead_effect = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d whitening = Eigen::Matrix2d::Identity();
+  double speed_px_s = 0.0;  // on the sensor
+};
+
+const TrueCircle* find(const std::vector<TrueCircle>& circles, int circle) {
+  const auto found = std::find_if(circles.begin(), circles.end(),
+                                  [&](const TrueCircle& truth) { return truth.circle == circle; });
+  return found == circles.end() ? nullptr : &*found;
+}
+
+std::vector<CentreError> errorsOf(const Scenario& scenario, const BoardObservations& observations) {
+  constexpr double kStep_s = 1e-3;  // of the difference that tells accelerations
+  const SinusoidMotion motion(scenario);
+  const CameraIntrinsics& camera = scenario.cameras.front().intrinsics;
+  std::vector<CentreError> errors;
+  std::vector<int> circles;
+  std::vector<Eigen::Vector2d> truths;
+  for (const BoardView& view : observations.views) {
+    for (const CircleObservation& circle : view.circles) {
+      const auto at = [&](double time_s) { return trueBoardView(motion, scenario, 0, time_s); };
+      const std::vector<TrueCircle> now = at(circle.time_s), before = at(circle.time_s - kStep_s),
+                                    after = at(circle.time_s + kStep_s);
+      const TrueCircle *truth = find(now, circle.circle), *earlier = find(before, circle.circle),
+                       *later = find(after, circle.circle);
+      if (!truth || !earlier || !later) continue;
+      CentreError error;
+      error.error_px = circle.centre_px - truth->centre_px;
+      error.velocity_px_s = truth->velocity_px_s;
+      error.acceleration_px_s2 = (later->velocity_px_s - earlier->velocity_px_s) / (2.0 * kStep_s);
+      error.lead_effect = circle.edge_lead_effect;
+      error.whitening = circle.covariance_px2.inverse().llt().matrixU();
+      error.speed_px_s = (idealPixelScale(camera, truth->centre_px).inverse() * truth->velocity_px_s).norm();
+      errors.push_back(error);
+      circles.push_back(circle.circle);
+      truths.push_back(truth->centre_px);
+    }
+  }
+  std::vector<Eigen::Vector2d> means(static_cast<std::size_t>(scenario.board.circleCount()),
+                                     Eigen::Vector2d::Zero());
+  std::vector<double> counts(means.size(), 0.0);
+  for (std::size_t k = 0; k < truths.size(); ++k) {
+    const auto i = static_cast<std::size_t>(circles[k]);
+    means[i] += (truths[k] - means[i]) / ++counts[i];
+  }
+  for (std::size_t k = 0; k < truths.size(); ++k)
+    errors[k].from_mean_px = truths[k] - means[static_cast<std::size_t>(circles[k])];
+  return errors;
+}
+
+// Delay, lead, and one number more, by least squares; the few wild errors hardly count.
+struct ErrorFit {
+  double delay_s = 0.0, lead_px = 0.0, third = 0.0;
+  double chi = 0.0;  // RMS of whitened errors that remain, with an ordinary weight
+};
+
+template <class Third>
+ErrorFit fitErrors(const std::vector<CentreError>& errors, Third third) {
+  constexpr double kWild2 = 36.0;  // squared errors over sigmas
+  constexpr int kRounds = 4;
+  ErrorFit fit;
+  for (int round = 0; round < kRounds; ++round) {
+    Eigen::Matrix3d matrix = 1e-12 * Eigen::Matrix3d::Identity();
+    Eigen::Vector3d vector = Eigen::Vector3d::Zero();
+    double squares = 0.0, weights = 0.0;
+    for (const CentreError& error : errors) {
+      Eigen::Matrix<double, 2, 3> row;
+      row << -error.velocity_px_s, error.lead_effect, third(error);
+      row = error.whitening * row;
+      const Eigen::Vector2d seen = error.whitening * error.error_px;
+      const double square = (seen - row * Eigen::Vector3d(fit.delay_s, fit.lead_px, fit.third)).squaredNorm();
+      const double weight = round == 0 ? 1.0 : cauchyWeight(square / kWild2);
+      matrix += weight * row.transpose() * row;
+      vector += weight * row.transpose() * seen;
+      squares += weight * square;
+      weights += 2.0 * weight;
+    }
+    const Eigen::Vector3d solution = matrix.ldlt().solve(vector);
+    fit = {solution.x(), solution.y(), solution.z(), std::sqrt(squares / std::max(weights, 1.0))};
+  }
+  return fit;
+}
+
+double rmsOf(const std::vector<CentreError>& errors, const ErrorFit& fit) {
+  double squares = 0.0;
+  for (const CentreError& error : errors)
+    squares +=
+        (error.error_px + fit.delay_s * error.velocity_px_s - fit.lead_px * error.lead_effect).squaredNorm();
+  return errors.empty() ? 0.0 : std::sqrt(squares / (2.0 * static_cast<double>(errors.size())));
+}
+
+// How far centres lie behind along their motion, by speed, apart where the image slows down and where it
+// speeds up.
+void printSpeeds(const std::vector<CentreError>& errors) {
+  constexpr std::array kLimits_px_s = {0.0, 10.0, 20.0, 35.0, 60.0, 120.0, 1e9};
+  fmt::print(
+      "\n| px/s | circles | behind while slowing down, px | behind while speeding up, px "
+      "|\n|---|---|---|---|\n");
+  for (std::size_t k = 0; k + 1 < kLimits_px_s.size(); ++k) {
+    std::array<double, 2> sums = {0.0, 0.0};
+    std::array<int, 2> counts = {0, 0};
+    for (const CentreError& error : errors) {
+      if (error.speed_px_s < kLimits_px_s[k] || error.speed_px_s >= kLimits_px_s[k + 1]) continue;
+      const Eigen::Vector2d along = error.velocity_px_s.normalized();
+      const std::size_t speeding = along.dot(error.acceleration_px_s2) > 0.0 ? 1 : 0;
+      sums[speeding] -= along.dot(error.error_px);
+      ++counts[speeding];
+    }
+    const auto mean = [&](std::size_t i) { return counts[i] == 0 ? 0.0 : sums[i] / counts[i]; };
+    if (counts[0] + counts[1] == 0) continue;
+    fmt::print("| from {:.0f} | {} | {:.3f} | {:.3f} |\n", kLimits_px_s[k], counts[0] + counts[1], mean(0),
+               mean(1));
+  }
+  fmt::print("\n");
+}
+
+// Of the groups that measurements depend on.
+void setOption(const std::string& group, const std::string& name, const std::string& value,
+               FrontEndOptions& options) {
+  if (group == "bursts") return BurstOptions::table().set(options.bursts, group, name, value);
+  if (group == "detection") return DetectionOptions::table().set(options.detection, group, name, value);
+  if (group == "tracking") return TrackingOptions::table().set(options.tracking, group, name, value);
+  throw badInput("--variant " + group, "no such group", "Groups are bursts, detection and tracking");
+}
+
+FrontEndOptions optionsOf(const std::string& variant) {
+  FrontEndOptions options;
+  for (std::size_t begin = 0; begin < variant.size();) {
+    const std::size_t end = std::min(variant.find(',', begin), variant.size());
+    const std::string setting = variant.substr(begin, end - begin);
+    const std::size_t dot = setting.find('.'), equals = setting.find('=');
+    if (dot == std::string::npos || equals == std::string::npos || equals < dot)
+      throw badInput("--variant " + variant, "is no setting", "Write group.option=value,group.option=value");
+    setOption(setting.substr(0, dot), setting.substr(dot + 1, equals - dot - 1), setting.substr(equals + 1),
+              options);
+    begin = end + 1;
+  }
+  return options;
+}
+
+void printHeader() {
+  fmt::print(
+      "| scenario | seed | options | windows | circles | delay, ms | lead, px | q, ms^2 | gain, 1e-3 | RMS, "
+      "px "
+      "| errors over sigmas | front end, s |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+}
+
+void runVariant(const Scenario& scenario, const std::vector<Event>& events, const std::string& variant,
+                bool speeds) {
+  constexpr std::size_t kBatch = 50'000;
+  const CameraIntrinsics& camera = scenario.cameras.front().intrinsics;
+  BoardTracker tracker(scenario.board, camera.resolution_px, camera, optionsOf(variant), scenario.start_ns);
+  const Stopwatch stopwatch;
+  for (std::size_t k = 0; k < events.size(); k += kBatch)
+    tracker.add(EventSpan(events.data() + k, std::min(kBatch, events.size() - k)));
+  const BoardObservations observations = tracker.finish();
+  const double spent_s = stopwatch.elapsed_s();
+  const std::vector<CentreError> errors = errorsOf(scenario, observations);
+  const ErrorFit by_acceleration =
+      fitErrors(errors, [](const CentreError& error) { return error.acceleration_px_s2; });
+  const ErrorFit by_gain = fitErrors(errors, [](const CentreError& error) { return error.from_mean_px; });
+  fmt::print(
+      "| {} | {} | {} | {} of {} | {} | {:.3f} | {:.3f} | {:.1f} | {:.2f} | {:.4f} | {:.2f} | {:.1f} |\n",
+      scenario.name, scenario.seed, variant.empty() ? "default" : variant, observations.views.size(),
+      observations.windows.size(), errors.size(), 1e3 * by_acceleration.delay_s, by_acceleration.lead_px,
+      1e6 * by_acceleration.third, 1e3 * by_gain.third, rmsOf(errors, by_acceleration), by_acceleration.chi,
+      spent_s);
+  if (speeds) printSpeeds(errors);
+  std::fflush(stdout);
+}
+
+int main(int argc, char** argv) {
+  CLI::App app("Errors of circle centres along the motion, on simulated recordings");
+  ScenarioArguments scenarios;
+  std::vector<std::string> variants;
+  bool speeds = false;
+  scenarios.addTo(app);
+  app.add_option("--variant", variants, "Options of a further run: group.option=value,...")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_flag("--speeds", speeds, "Also how far centres lie behind, by speed");
+  CLI11_PARSE(app, argc, argv);
+  variants.insert(variants.begin(), std::string());
+  printHeader();
+  for (const std::string& file : scenarios.files) {
+    for (int k = 0; k < scenarios.seeds; ++k) {
+      const Scenario scenario = scenarios.read(file, k);
+      std::vector<Event> events;
+      simulateEvents(scenario, 0,
+                     [&](EventSpan packet) { events.insert(events.end(), packet.begin(), packet.end()); });
+      for (const std::string& variant : variants) runVariant(scenario, events, variant, speeds);
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace evical
+
+int main(int argc, char** argv) {
+  return evical::guarded(evical::main, argc, argv);
+}
