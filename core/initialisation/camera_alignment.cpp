@@ -119,6 +119,34 @@ void settlePoses(const CameraData& camera, const ImuData& imu, std::int64_t star
                           static_cast<double>(dropped) / views, 0.0});
 }
 
+bool isClear(const std::vector<TimeOffsetPeak>& peaks, const InitialisationOptions& options) {
+  return !peaks.empty() && peaks.front().correlation >= options.clear_peak_correlation;
+}
+
+// Within the range that the options give, or where rates agree nowhere in it, as far as they allow. Far away, short
+// overlaps agree by chance, so that there most of what both have recorded must.
+std::vector<TimeOffsetPeak> timeOffsetPeaks(const CameraData& camera, const std::vector<CameraPose>& poses,
+                                            const GyroRotation& gyro, const InitialisationOptions& options,
+                                            Initialisation& result) {
+  std::vector<TimeOffsetPeak> peaks = correlateTimeOffset(poses, gyro, options, camera.prior);
+  if (isClear(peaks, options) || camera.prior.time_offset ||
+      options.widest_time_offset_search_s <= options.time_offset_search_s)
+    return peaks;
+  constexpr double kLeastShare = 0.5;
+  InitialisationOptions wide = options;
+  wide.time_offset_search_s = options.widest_time_offset_search_s;
+  wide.least_overlap_s = std::max(
+      options.least_overlap_s,
+      kLeastShare * std::min(poses.back().time_s - poses.front().time_s, gyro.end_s() - gyro.begin_s()));
+  std::vector<TimeOffsetPeak> further = correlateTimeOffset(poses, gyro, wide, camera.prior);
+  if (!isClear(further, options)) return peaks;
+  if (!peaks.empty() && further.front().significance <= peaks.front().significance) return peaks;
+  result.warnings.push_back(fmt::format(
+      "{}: the time offset lies beyond initialisation.time_offset_search_s ({:g} s): found at {:.3f} s",
+      camera.name, options.time_offset_search_s, further.front().time_offset_s));
+  return further;
+}
+
 }  // namespace
 
 AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& input, const GyroRotation& gyro,
@@ -129,7 +157,7 @@ AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& inpu
   const std::vector<CameraPose> poses = cameraPoses(camera, input.board, gyro, options, context, result);
   result.steps.back().duration_s = stopwatch.restart_s();
   context.throwIfStopped();
-  const std::vector<TimeOffsetPeak> peaks = correlateTimeOffset(poses, gyro, options, camera.prior);
+  const std::vector<TimeOffsetPeak> peaks = timeOffsetPeaks(camera, poses, gyro, options, result);
   if (peaks.empty()) {
     throw calibrationFailed(camera.name,
                             "too few pairs of views overlap with the gyroscope to find the time offset",
@@ -139,6 +167,10 @@ AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& inpu
   AlignedCamera aligned = bestAlignment(camera, poses, peaks, gyro, options, context);
   context.throwIfStopped();
   const double rotation_s = stopwatch.restart_s();
+  result.agreements.push_back(
+      {camera.name, peaks.front().correlation,
+       compareRotations(aligned.poses, gyro, aligned.hand_eye.time_offset_s, options),
+       findClockStep(offsetsByParts(aligned.poses, gyro, aligned.hand_eye, options))});
   settlePoses(camera, imu, input.start_ns, gyro, options, aligned, result);
   if (result.steps.back().name == "planar poses") result.steps.back().duration_s = stopwatch.restart_s();
   const RelativeRotation& hand_eye = aligned.hand_eye;

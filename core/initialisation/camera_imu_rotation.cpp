@@ -16,25 +16,6 @@ namespace {
 using Vector7 = Eigen::Matrix<double, 7, 1>;
 using Matrix7 = Eigen::Matrix<double, 7, 7>;
 
-struct RotationPair {
-  double from_s, to_s;
-  Eigen::Vector3d seen_rad;  // camera(from)_from_camera(to), rotation vector
-};
-
-std::vector<RotationPair> rotationPairs(const std::vector<CameraPose>& poses, double pair_gap_s,
-                                        double longest_pair_s) {
-  std::vector<RotationPair> pairs;
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    std::size_t l = k + 1;
-    while (l < poses.size() && poses[l].time_s - poses[k].time_s < pair_gap_s) ++l;
-    if (l >= poses.size() || poses[l].time_s - poses[k].time_s > longest_pair_s) continue;
-    pairs.push_back({poses[k].time_s, poses[l].time_s,
-                     quaternionLog(poses[k].world_from_camera.rotation.conjugate() *
-                                   poses[l].world_from_camera.rotation)});
-  }
-  return pairs;
-}
-
 // Rotation that turns the camera's rotation vectors into the gyroscope's (G.
 // Wahba's problem, by SVD), reweighted.
 void alignVectors(const std::vector<RotationPair>& pairs, const std::vector<Eigen::Vector3d>& felt,
@@ -118,6 +99,20 @@ double step(const std::vector<RotationPair>& pairs, const GyroRotation& gyro, do
 }
 
 }  // namespace
+
+std::vector<RotationPair> rotationPairs(const std::vector<CameraPose>& poses, double pair_gap_s,
+                                        double longest_pair_s) {
+  std::vector<RotationPair> pairs;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    std::size_t l = k + 1;
+    while (l < poses.size() && poses[l].time_s - poses[k].time_s < pair_gap_s) ++l;
+    if (l >= poses.size() || poses[l].time_s - poses[k].time_s > longest_pair_s) continue;
+    pairs.push_back({poses[k].time_s, poses[l].time_s,
+                     quaternionLog(poses[k].world_from_camera.rotation.conjugate() *
+                                   poses[l].world_from_camera.rotation)});
+  }
+  return pairs;
+}
 
 std::optional<RelativeRotation> estimateCameraImuRotation(const std::vector<CameraPose>& poses,
                                                           const GyroRotation& gyro, double time_offset_s,

@@ -25,6 +25,15 @@ struct RelativeRotation {
   int pairs = 0;
 };
 
+// How the camera turned between two views.
+struct RotationPair {
+  double from_s, to_s;       // camera clock
+  Eigen::Vector3d seen_rad;  // camera(from)_from_camera(to), rotation vector
+};
+// Each view with the next one that is at least `pair_gap_s` later, if that is no further than `longest_pair_s`.
+std::vector<RotationPair> rotationPairs(const std::vector<CameraPose>& poses, double pair_gap_s,
+                                        double longest_pair_s);
+
 // From a start offset that is right to `time_offset_reach_s`, or exact where the prior gives it; a given
 // rotation is held, too. Nothing if fewer than five pairs are covered.
 std::optional<RelativeRotation> estimateCameraImuRotation(const std::vector<CameraPose>& poses,

@@ -148,10 +148,12 @@ class Alignment {
   }
   double scaleSigma(const Solution& solution) const;
   double cost() const { return cost_; }
+  double accelerationMisfit_m_s2() const { return acceleration_misfit_m_s2_; }
   const Layout& layout() const { return layout_; }
   void summarise(GravityAlignment& result) const {
     result.position_rms_m = sigmas_.position_m;
     result.acceleration_rms_m_s2 = sigmas_.acceleration_m_s2;
+    result.acceleration_misfit_m_s2 = acceleration_misfit_m_s2_;
     for (const Row& row : rows_) {
       if (!row.position) continue;
       ++result.views;
@@ -194,6 +196,7 @@ class Alignment {
   Eigen::MatrixX3d points_;
   std::optional<Vector3d> gravity_m_s2_;
   double cost_ = 0.0;
+  double acceleration_misfit_m_s2_ = 0.0;
 };
 
 void Alignment::addPriors(Eigen::MatrixXd& matrix, Eigen::VectorXd& vector) const {
@@ -341,8 +344,10 @@ void Alignment::reweigh(const Solution& solution) {
   const auto within = [&](double sigma, double option) {
     return std::clamp(sigma / kMedianNorm, kLeast * option, kMost * option);
   };
+  const double acceleration_m_s2 = medianOf(std::move(accelerations));
+  acceleration_misfit_m_s2_ = acceleration_m_s2 / kMedianNorm;
   sigmas_ = {within(medianOf(std::move(positions)), options_.position_sigma_m),
-             within(medianOf(std::move(accelerations)), options_.acceleration_sigma_m_s2)};
+             within(acceleration_m_s2, options_.acceleration_sigma_m_s2)};
   cost_ = 0.0;
   const double scale = options_.outlier_sigma;  // Cauchy's weights
   for (Row& row : rows_) {
@@ -379,6 +384,15 @@ GravityAlignment alignGravity(std::span<const CameraTrack> cameras, std::span<co
   result.board_scale = scaled.shared(layout.scale());
   result.board_scale_std = alignment.scaleSigma(scaled);
   return result;
+}
+
+double accelerationMisfit_m_s2(std::span<const CameraTrack> cameras, std::span<const ImuSample> samples,
+                               std::int64_t start_ns, const So3Spline& rotation,
+                               const InitialisationOptions& options, const RunContext& context) {
+  constexpr int kRounds = 3;
+  Alignment alignment(cameras, samples, start_ns, rotation, options, context);
+  alignment.solve(kRounds);
+  return alignment.accelerationMisfit_m_s2();
 }
 
 double findTurnAboutAxis(const Vector3d& axis_in_imu, std::span<const CameraTrack> cameras,

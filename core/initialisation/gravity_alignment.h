@@ -39,6 +39,7 @@ struct GravityAlignment {
   double position_rms_m = 0.0, acceleration_rms_m_s2 = 0.0;  // robust
   double lever_std_m = 0.0;                                  // of the worst direction of any camera
   int views = 0, outlying_views = 0;                         // far from where the others put the camera
+  double acceleration_misfit_m_s2 = 0.0;  // of the accelerations by their median, however large
   double board_scale = 1.0, board_scale_std = 0.0;
 };
 
@@ -46,6 +47,11 @@ struct GravityAlignment {
 GravityAlignment alignGravity(std::span<const CameraTrack> cameras, std::span<const ImuSample> samples,
                               std::int64_t start_ns, const So3Spline& rotation,
                               const InitialisationOptions& options, const RunContext& context = {});
+
+// How far accelerations are from what positions say, by their median, and nothing else: quicker.
+double accelerationMisfit_m_s2(std::span<const CameraTrack> cameras, std::span<const ImuSample> samples,
+                               std::int64_t start_ns, const So3Spline& rotation,
+                               const InitialisationOptions& options, const RunContext& context = {});
 
 // When all rotation is about one axis of the IMU, rotation alone leaves the angle of the camera about it
 // open; accelerations don't. The angle by which world_from_imu must be turned, R_wb Exp(axis * angle), so

@@ -74,7 +74,10 @@ void checkPoses(const CameraData& camera, const CameraPoses& found, const GyroRo
   const double first_s = found.poses.front().time_s, last_s = found.poses.back().time_s;
   const std::optional<KnownNumber>& known = camera.prior.time_offset;
   const double offset_s = known ? known->value : 0.0;
-  const double search_s = isGiven(known) ? 0.0 : options.time_offset_search_s;
+  const double search_s = isGiven(known) ? 0.0
+                          : known
+                              ? options.time_offset_search_s
+                              : std::max(options.time_offset_search_s, options.widest_time_offset_search_s);
   const double overlap_s = std::min(last_s, gyro.end_s() - offset_s + search_s) -
                            std::max(first_s, gyro.begin_s() - offset_s - search_s);
   if (overlap_s < options.least_overlap_s) {
@@ -88,7 +91,7 @@ void checkPoses(const CameraData& camera, const CameraPoses& found, const GyroRo
                     first_s, last_s, gyro.begin_s(), gyro.end_s()),
         !apart            ? "Record for 30 s"
         : search_s == 0.0 ? "Check the clocks, and the time offset in the session"
-                          : "Check the clocks, or widen initialisation.time_offset_search_s");
+                          : "Check the clocks, or widen the search in initialisation");
   }
 }
 

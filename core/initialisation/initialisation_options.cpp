@@ -10,6 +10,10 @@ constexpr std::tuple kInitialisationFields{
           "Of both splines.", Level::Common},
     Field{"time_offset_search_s", &InitialisationOptions::time_offset_search_s, 1.0, within(0.0, 60.0), "s",
           "The camera's time offset is looked for within plus or minus this.", Level::Common},
+    Field{
+        "widest_time_offset_search_s", &InitialisationOptions::widest_time_offset_search_s, 60.0,
+        within(0.0, 600.0), "s",
+        "Where rotation rates agree at no time offset there, and none is known, the search widens to this."},
     Field{"largest_reprojection_px", &InitialisationOptions::largest_reprojection_px, 2.0, within(0.05, 20.0),
           "px", "Views whose circles fit a pose worse than this are left out.", Level::Common},
     Field{"largest_rotation_disagreement_rad", &InitialisationOptions::largest_rotation_disagreement_rad,
@@ -19,6 +23,11 @@ constexpr std::tuple kInitialisationFields{
           "Correlation of rotation rates below which the time offset gets a warning."},
     Field{"clear_peak_lead", &InitialisationOptions::clear_peak_lead, 0.02, within(0.0, 1.0), "",
           "Lead in correlation over the next best time offset below which a warning says so."},
+    Field{
+        "largest_unexplained_motion", &InitialisationOptions::largest_unexplained_motion, 0.4,
+        within(0.01, 10.0), "",
+        "Share of what the gyroscope turns, or of what accelerations vary by, that no mounting of the camera "
+        "explains: beyond this the calibration fails."},
     Field{"pair_gap_s", &InitialisationOptions::pair_gap_s, 0.1, within(0.01, 2.0), "s",
           "Views at least this far apart give a relative rotation."},
     Field{"longest_pair_s", &InitialisationOptions::longest_pair_s, 0.3, within(0.02, 5.0), "s",

@@ -8,10 +8,12 @@ namespace evical {
 struct InitialisationOptions {
   double knot_spacing_s;
   double time_offset_search_s;
+  double widest_time_offset_search_s;
   double largest_reprojection_px;
   double largest_rotation_disagreement_rad;
   double clear_peak_correlation;
   double clear_peak_lead;
+  double largest_unexplained_motion;
   double pair_gap_s;
   double longest_pair_s;
   int least_views;

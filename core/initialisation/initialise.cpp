@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/data/calibration_observer.h"
+#include "core/initialisation/agreement_check.h"
 #include "core/initialisation/camera_alignment.h"
 #include "core/initialisation/cameras_alone.h"
 #include "core/initialisation/further_imus.h"
@@ -105,6 +106,7 @@ void alignTranslations(const CalibrationInput& input, const InitialisationOption
                     "probably misread",
                     gravity.outlying_views, gravity.views));
   }
+  checkAccelerationsAgree(input, gravity, options, context);
   checkBoardScale(gravity, input.board, options, result);
   state.imu_in_world_m = gravity.imu_in_world_m;
   state.gravity_in_world_m_s2 = gravity.gravity_in_world_m_s2;
@@ -183,6 +185,9 @@ Initialisation initialiseStraight(const CalibrationInput& input, const Initialis
   for (const CameraData& camera : input.cameras) {
     context.throwIfStopped();
     cameras.push_back(alignCamera(camera, input, gyro, options, context, result));
+    // An offset that is given may be what is wrong, which is told of beside what the recording says.
+    if (!isGiven(camera.prior.time_offset))
+      checkRotationsAgree(input, result.agreements.back(), options, context);
     tellSteps(result.steps, context.observer, told);
     constexpr double kShare = 0.7;
     context.progress.stageProgress(kShare * static_cast<double>(cameras.size()) /

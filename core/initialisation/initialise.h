@@ -5,6 +5,8 @@
 #include "core/data/calibration_setup.h"
 #include "core/data/calibration_state.h"
 #include "core/initialisation/initialisation_options.h"
+#include "core/initialisation/offset_by_parts.h"
+#include "core/initialisation/rotation_agreement.h"
 
 #include <string>
 #include <vector>
@@ -19,9 +21,18 @@ struct InitialisationStep {
   double duration_s = 0.0;  // of the work
 };
 
+// Of one camera's rotations with the reference IMU's, at the time offset that was found.
+struct CameraAgreement {
+  std::string camera;
+  double correlation = 1.0;  // of rates
+  RotationAgreement rotation;
+  std::optional<ClockStep> clock_step;
+};
+
 struct Initialisation {
   CalibrationState state;
   std::vector<InitialisationStep> steps;
+  std::vector<CameraAgreement> agreements;  // none where there is no IMU
   std::vector<std::string> warnings;
   std::string doubt;  // what makes any result doubtful; empty if nothing does
 };

@@ -13,9 +13,29 @@ constexpr std::tuple kVerdictFields{
           "amplitude: part of the sigmas."},
     Field{"contradiction_sigmas", &VerdictOptions::contradiction_sigmas, 4.0, within(1.0, 1000.0), "sigma",
           "Known values that lie further than this from what the recording alone says are told of."},
+    Field{"doubtful_contradiction_sigmas", &VerdictOptions::doubtful_contradiction_sigmas, 8.0,
+          within(1.0, 1000.0), "sigma",
+          "Weighed priors that lie further than this from what the recording alone says make the result "
+          "doubtful."},
     Field{"turned_gyroscope_sigmas", &VerdictOptions::turned_gyroscope_sigmas, 6.0, within(1.0, 1000.0),
           "sigma",
           "A gyroscope's turn that is not estimated is told of beyond this and needed_rotation_deg."},
+    Field{"doubtful_circle_misfit", &VerdictOptions::doubtful_circle_misfit, 2.5, within(1.0, 1000.0), "",
+          "Circles that lie more times as far off as the front end says, by their median, make the result "
+          "doubtful."},
+    Field{"failed_circle_misfit", &VerdictOptions::failed_circle_misfit, 25.0, within(1.0, 10000.0), "",
+          "Beyond this there is no result."},
+    Field{"doubtful_imu_misfit", &VerdictOptions::doubtful_imu_misfit, 5.0, within(1.0, 1000.0), "",
+          "Rates or accelerations that are more times as far off as their noise density says make the result "
+          "doubtful."},
+    Field{"failed_imu_misfit", &VerdictOptions::failed_imu_misfit, 200.0, within(1.0, 10000.0), "",
+          "Beyond this there is no result."},
+    Field{"doubtful_outliers", &VerdictOptions::doubtful_outliers, 0.25, within(0.0, 1.0), "",
+          "Share of circles that are left out as contradicting beyond which the result is doubtful."},
+    Field{"failed_outliers", &VerdictOptions::failed_outliers, 0.6, within(0.0, 1.0), "",
+          "Beyond this there is no result."},
+    Field{"doubtful_halves_sigmas", &VerdictOptions::doubtful_halves_sigmas, 3.0, within(0.5, 1000.0),
+          "sigma", "Halves of the recording that differ by more (RMS) make the result doubtful."},
     Field{"needed_rotation_deg", &VerdictOptions::needed_rotation_deg, 0.1, within(1e-4, 90.0), "deg",
           "Rotations less certain than this make the result doubtful.", Level::Common},
     Field{"needed_translation_mm", &VerdictOptions::needed_translation_mm, 1.0, within(1e-3, 1e4), "mm",
@@ -29,7 +49,12 @@ constexpr auto kVerdictDefaults = defaultsOf<VerdictOptions, kVerdictFields>();
 VerdictOptions::VerdictOptions() : VerdictOptions(kVerdictDefaults) {}
 
 const OptionTable<VerdictOptions>& VerdictOptions::table() {
-  static const OptionTable<VerdictOptions> table(kVerdictFields);
+  static const OptionTable<VerdictOptions> table(
+      kVerdictFields,
+      Ordered{&VerdictOptions::contradiction_sigmas, &VerdictOptions::doubtful_contradiction_sigmas},
+      Ordered{&VerdictOptions::doubtful_circle_misfit, &VerdictOptions::failed_circle_misfit},
+      Ordered{&VerdictOptions::doubtful_imu_misfit, &VerdictOptions::failed_imu_misfit},
+      Ordered{&VerdictOptions::doubtful_outliers, &VerdictOptions::failed_outliers});
   return table;
 }
 

@@ -9,7 +9,15 @@ struct VerdictOptions {
   double correlation_time_s;
   double pixel_error_px;
   double contradiction_sigmas;
+  double doubtful_contradiction_sigmas;
   double turned_gyroscope_sigmas;
+  double doubtful_circle_misfit;
+  double failed_circle_misfit;
+  double doubtful_imu_misfit;
+  double failed_imu_misfit;
+  double doubtful_outliers;
+  double failed_outliers;
+  double doubtful_halves_sigmas;
   double needed_rotation_deg;
   double needed_translation_mm;
   double needed_time_offset_ms;

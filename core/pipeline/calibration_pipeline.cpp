@@ -7,15 +7,18 @@
 #include "core/data/calibration_stage.h"
 #include "core/data/doubt.h"
 #include "core/geometry/projection_difference.h"
+#include "core/initialisation/agreement_check.h"
 #include "core/initialisation/initialise.h"
 #include "core/numerics/robust.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/uncertainty/covariance.h"
 #include "core/optimisation/uncertainty/prior_check.h"
 #include "core/pipeline/board_size_check.h"
+#include "core/pipeline/causes.h"
 #include "core/pipeline/cross_validation.h"
 #include "core/pipeline/intrinsics_calibration.h"
 #include "core/pipeline/joint_intrinsics.h"
+#include "core/pipeline/misfit.h"
 #include "core/pipeline/session_recording.h"
 #include "core/recording/inspection.h"
 
@@ -199,6 +202,7 @@ namespace {
 // What the recording itself shows to be wrong goes before anything is estimated from it.
 void checkPass(const Session& session, const RunContext& context, RecordingPass& pass) {
   for (const ImuData& imu : pass.imus) {
+    checkAxesAlive(imu);
     checkUnits(imu, session.options.initialisation);
     const std::vector<RecordingFault> faults = checkImu(imu.name, imu.samples);
     pass.faults.insert(pass.faults.end(), faults.begin(), faults.end());
@@ -214,6 +218,16 @@ void checkPass(const Session& session, const RunContext& context, RecordingPass&
     checkBoardSeen(camera, session.board);
     checkBoardSize(camera, session.board, session.options.front_end.extent);
   }
+}
+
+// Leaves the views out that lie on the smaller part's side of a step, and those near it. Returns their share.
+double keepBeside(const ClockStep& step, std::vector<BoardView>& views) {
+  constexpr double kMargin_s = 1.5;  // as well as it is known where it is
+  const auto before = static_cast<double>(views.size());
+  std::erase_if(views, [&](const BoardView& view) {
+    return step.larger_part_first ? view.time_s > step.at_s - kMargin_s : view.time_s < step.at_s + kMargin_s;
+  });
+  return 1.0 - static_cast<double>(views.size()) / std::max(before, 1.0);
 }
 
 // One run: what its stages hand on to each other, and what each of them does.
@@ -294,9 +308,29 @@ class Calibration {
 
   void initialiseState() {
     initial_ = initialise(input_, session_.options.initialisation, context_);
+    keepLargerParts();
     for (const InitialisationStep& step : initial_.steps)
       context_.progress.log(LogLevel::Info, fmt::format("{}: {}", step.name, step.result));
     for (const std::string& warning : initial_.warnings) context_.progress.log(LogLevel::Warning, warning);
+  }
+
+  // Where clocks step, one offset holds for a part of the recording only.
+  void keepLargerParts() {
+    std::string doubt;
+    for (std::size_t k = 0; k < initial_.agreements.size(); ++k) {
+      const std::optional<ClockStep>& step = initial_.agreements[k].clock_step;
+      if (!step) continue;
+      const double share = keepBeside(*step, input_.cameras[k].observations.views);
+      doubt += fmt::format(
+          "{}{}: its clock and the IMU's step by {:.1f} ms against each other about {:.1f} s after the "
+          "start: "
+          "{:.0f} % of the views lie on the other side and are left out",
+          doubt.empty() ? "" : "; ", input_.cameras[k].name, 1e3 * step->step_s, step->at_s, 100.0 * share);
+    }
+    if (doubt.empty()) return;
+    initial_ = initialise(input_, session_.options.initialisation, context_);
+    initial_.doubt = initial_.doubt.empty() ? doubt : doubt + "; " + initial_.doubt;
+    initial_.warnings.push_back(doubt);
   }
 
   void optimise() {
@@ -314,6 +348,7 @@ class Calibration {
           result);
     addDoubt(priors.doubt, result);
     addDoubt(initial_.doubt, result);
+    judge(solution, uncertainty.turned_gyroscopes);
     result.state = std::move(solution.state);
     result.uncertainty = std::move(uncertainty.report);
     result.cameras = std::move(solution.cameras);
@@ -324,7 +359,27 @@ class Calibration {
     notes_.insert(notes_.end(), priors.notes.begin(), priors.notes.end());
   }
 
-  void compareHalves() { validateByHalves(session_, input_, context_, run_.result); }
+  // What explains a misfit comes before the misfit, and a gyroscope that seems turned only where nothing else does:
+  // much that is not modelled looks like it.
+  void judge(const BatchSolution& solution, const std::string& turned_gyroscopes) {
+    const OptimisationOptions& options = session_.options.optimisation;
+    const MisfitVerdict misfit = judgeMisfit(input_, solution, options);
+    if (misfit.doubt.empty() && turned_gyroscopes.empty()) return;
+    const std::optional<Cause> cause = findCause(input_, solution, options, context_);
+    if (!misfit.failure.empty())
+      throw calibrationFailed(session_.source.string(),
+                              (cause ? cause->text + "; " : std::string()) + misfit.failure,
+                              "Check the board, the lens and the streams in the session");
+    if (misfit.doubt.empty() && !cause) addDoubt(turned_gyroscopes, run_.result);
+    addDoubt(misfit.doubt, run_.result);
+    if (cause) addDoubt(cause->text, run_.result);
+  }
+
+  void compareHalves() {
+    validateByHalves(session_, input_, context_, run_.result);
+    const std::string doubt = doubtOfHalves(*run_.result.cross_validation, session_.options.optimisation);
+    if (run_.result.status == CalibrationStatus::Ok) addDoubt(doubt, run_.result);
+  }
 
   void conclude() {
     CalibrationResult& result = run_.result;

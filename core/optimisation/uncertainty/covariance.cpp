@@ -1,6 +1,5 @@
 #include "core/optimisation/uncertainty/covariance.h"
 
-#include "core/data/doubt.h"
 #include "core/numerics/dense.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/calibration_problem.h"
@@ -26,9 +25,8 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   ProjectedInformation information = projectInformation(problem, options.correlation_time_s, context);
   context.throwIfStopped();
   UncertaintyEstimate estimate;
-  std::string turned;
   if (!options.gyroscope_rotation) {
-    turned = turnedGyroscopes(input, information, withoutNoise(information), options);
+    estimate.turned_gyroscopes = turnedGyroscopes(input, information, withoutNoise(information), options);
     information = withoutLookedForRotation(input, std::move(information));
   }
   information = withoutNoise(std::move(information));
@@ -45,7 +43,6 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   estimate.report.weakest = observability.weakest;
   estimate.status = observability.status;
   estimate.reason = observability.reason;
-  addDoubt(turned, estimate);
   return estimate;
 }
 

@@ -22,6 +22,9 @@ struct UncertaintyEstimate {
   UncertaintyReport report;
   CalibrationStatus status = CalibrationStatus::Ok;
   std::string reason;  // why not Ok, and what to do; empty if it is
+  // What is doubtful of gyroscopes that seem turned: much else that is not modelled looks like it, so that it is
+  // for who has ruled that out.
+  std::string turned_gyroscopes;
 };
 
 // Never fails for want of information: directions that the recording leaves open get

@@ -67,7 +67,8 @@ void Comparison::judge(const std::string& name, const Unit& unit, const std::vec
     const Compared& each = numbers[i];
     const double sigmas = std::abs(each.alone - each.known) / std::hypot(each.known_sigma, each.alone_sigma);
     if (!(sigmas > options_.contradiction_sigmas)) continue;
-    matters = matters || std::abs(each.pull) > unit.need;
+    matters = matters || std::abs(each.pull) > unit.need ||
+              (each.known_sigma > 0.0 && sigmas > options_.doubtful_contradiction_sigmas);
     if (sigmas < worst) continue;
     worst = sigmas;
     const std::string known = each.known_sigma > 0.0

@@ -123,6 +123,16 @@ class TestPriors : public QObject {
     }
   }
 
+  // The recording wins over such a prior; but one of the two is wrong.
+  void weighedPriorThatIsFarOff_isDoubted() {
+    test::SimulatedRig rig = test::simulateRig(shortRecording());
+    const double truth_s = rig.truth.cameras[0].time_offset_s;
+    rig.input.cameras[0].prior.time_offset = KnownNumber{truth_s + 0.02, 1e-3};
+    const Run run = calibrate(rig, {});
+    QVERIFY(std::abs(run.solution.state.cameras[0].time_offset_s - truth_s) < 1e-3);
+    QVERIFY2(run.check.doubt.find("left.time_offset") != std::string::npos, run.check.doubt.c_str());
+  }
+
   void mappingsHeldAtTheIdentity_areContradicted() {
     OptimisationOptions options;
     options.free_imu_intrinsics = false;

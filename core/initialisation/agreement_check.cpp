@@ -1,0 +1,93 @@
+#include "core/initialisation/agreement_check.h"
+
+#include "core/base/error.h"
+#include "core/initialisation/axes_check.h"
+#include "core/numerics/angles.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace evical {
+namespace {
+
+using AxisOf = std::function<double(const ImuSample&)>;
+
+void checkAxisAlive(const ImuData& imu, const std::string& axis, const AxisOf& valueOf) {
+  const double first = valueOf(imu.samples.front());
+  const bool same = std::all_of(imu.samples.begin(), imu.samples.end(),
+                                [&](const ImuSample& sample) { return valueOf(sample) == first; });
+  if (!same) return;
+  throw calibrationFailed(imu.name,
+                          fmt::format("{} stays at {:.4g} throughout: the axis is dead", axis, first),
+                          "Check the IMU and what reads it");
+}
+
+// RMS of the samples' forces about their mean.
+double forceSpread_m_s2(const ImuData& imu) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double squares = 0.0;
+  for (const ImuSample& sample : imu.samples) {
+    sum += sample.specific_force_m_s2;
+    squares += sample.specific_force_m_s2.squaredNorm();
+  }
+  const auto count = static_cast<double>(imu.samples.size());
+  return std::sqrt(std::max(0.0, squares / count - (sum / count).squaredNorm()) / 3.0);
+}
+
+}  // namespace
+
+void checkAxesAlive(const ImuData& imu) {
+  if (imu.samples.empty()) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    checkAxisAlive(imu, fmt::format("angular rate {}", "xyz"[axis]),
+                   [&](const ImuSample& sample) { return sample.angular_rate_rad_s[axis]; });
+    checkAxisAlive(imu, fmt::format("specific force {}", "xyz"[axis]),
+                   [&](const ImuSample& sample) { return sample.specific_force_m_s2[axis]; });
+  }
+}
+
+void checkRotationsAgree(const CalibrationInput& input, const CameraAgreement& agreement,
+                         const InitialisationOptions& options, const RunContext& context) {
+  const RotationAgreement& rotation = agreement.rotation;
+  const std::string& imu = input.imus[input.reference_imu].name;
+  // Rotations of single views are wrong by 1 to 3 mrad, which is all there is in a recording that hardly moves.
+  constexpr double kBeyondNoise_rad = 0.01;
+  if (rotation.pairs == 0 || rotation.rotated < options.largest_unexplained_motion ||
+      rotation.rest_rad < kBeyondNoise_rad)
+    return;
+  constexpr double kFarBetter = 0.5;
+  if (rotation.reflected < kFarBetter * rotation.rotated) {
+    const std::string proof = fmt::format(
+        "the best rotation leaves {:.0f} % of what the gyroscope turns, the best reflection {:.0f} %",
+        100.0 * rotation.rotated, 100.0 * rotation.reflected);
+    const auto cause = findWrongAxes(input, true, options, context);
+    throw calibrationFailed(
+        imu, (cause ? cause->problem : "the gyroscope's axes seem left-handed") + " (" + proof + ")",
+        cause ? cause->advice : "Change the sign of one axis, or swap two, where they are recorded");
+  }
+  throw calibrationFailed(
+      imu,
+      fmt::format(
+          "the IMU's samples seem to be of another recording than {}'s events, or the clocks further "
+          "apart than was looked for: however they are mounted, {:.0f} % of what the gyroscope turns is "
+          "not in the images (correlation of rates {:.2f})",
+          agreement.camera, 100.0 * rotation.rotated, agreement.correlation),
+      "Check which files belong together, and the clocks");
+}
+
+void checkAccelerationsAgree(const CalibrationInput& input, const GravityAlignment& gravity,
+                             const InitialisationOptions& options, const RunContext& context) {
+  const ImuData& imu = input.imus[input.reference_imu];
+  // Gravity is most of the spread, and agrees where only what moves does not.
+  constexpr double kSuspicious = 0.25;
+  if (gravity.acceleration_misfit_m_s2 <
+      kSuspicious * options.largest_unexplained_motion * forceSpread_m_s2(imu))
+    return;
+  if (const auto cause = findWrongAxes(input, false, options, context))
+    throw calibrationFailed(imu.name, cause->problem, cause->advice);
+}
+
+}  // namespace evical

@@ -1,0 +1,22 @@
+// Camera, gyroscope and accelerometer must tell of one motion. Where they do not, what could be wrong is tried,
+// and CalibrationFailed thrown with what explains it best: a result would be wrong by far.
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/data/calibration_setup.h"
+#include "core/initialisation/gravity_alignment.h"
+#include "core/initialisation/initialise.h"
+
+namespace evical {
+
+// No axis that never changes.
+void checkAxesAlive(const ImuData& imu);
+
+void checkRotationsAgree(const CalibrationInput& input, const CameraAgreement& agreement,
+                         const InitialisationOptions& options, const RunContext& context);
+
+// Fails only where the accelerometer's axes, read another way, agree far better.
+void checkAccelerationsAgree(const CalibrationInput& input, const GravityAlignment& gravity,
+                             const InitialisationOptions& options, const RunContext& context);
+
+}  // namespace evical

@@ -1,0 +1,140 @@
+#include "core/initialisation/axes_check.h"
+
+#include "core/base/error.h"
+#include "core/initialisation/camera_alignment.h"
+#include "core/initialisation/gravity_alignment.h"
+#include "core/initialisation/gyro_rotation.h"
+#include "core/initialisation/initialise.h"
+#include "core/initialisation/world_rotation.h"
+
+#include <fmt/format.h>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace evical {
+namespace {
+
+// The 48 signed permutations; the first is the identity.
+std::vector<Eigen::Matrix3d> readings() {
+  std::vector<Eigen::Matrix3d> all;
+  std::array<int, 3> axes = {0, 1, 2};
+  do {
+    for (int signs = 0; signs < 8; ++signs) {
+      Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+      for (int row = 0; row < 3; ++row)
+        matrix(row, axes[static_cast<std::size_t>(row)]) = (signs >> row & 1) != 0 ? -1.0 : 1.0;
+      all.push_back(matrix);
+    }
+  } while (std::next_permutation(axes.begin(), axes.end()));
+  return all;
+}
+
+// "(y, x, -z)"
+std::string axesText(const Eigen::Matrix3d& reading) {
+  std::string text;
+  for (int row = 0; row < 3; ++row) {
+    Eigen::Index axis = 0;
+    reading.row(row).cwiseAbs().maxCoeff(&axis);
+    text += fmt::format("{}{}{}", text.empty() ? "" : ", ", reading(row, axis) < 0.0 ? "-" : "", "xyz"[axis]);
+  }
+  return "(" + text + ")";
+}
+
+class AxesTrial {
+ public:
+  AxesTrial(CalibrationInput input, const InitialisationOptions& options, const RunContext& context)
+      : input_(std::move(input)), options_(options), context_{silentProgress(), context.stop} {
+    const GyroRotation gyro(imu().samples, input_.start_ns);
+    Initialisation unused;
+    const AlignedCamera camera =
+        alignCamera(input_.cameras.front(), input_, gyro, options_, context_, unused);
+    const double offset_s = camera.hand_eye.time_offset_s;
+    const GyroRotation unbiased(imu().samples, input_.start_ns, camera.hand_eye.gyroscope_bias_rad_s);
+    const double begin_s = std::max(camera.poses.front().time_s + offset_s, gyro.begin_s());
+    const double end_s = std::min(camera.poses.back().time_s + offset_s, gyro.end_s());
+    rotation_ = fitWorldRotation({&camera, 1}, unbiased, begin_s, end_s, options_.knot_spacing_s);
+    tracks_ = {{camera.poses, offset_s}};
+  }
+
+  // Of the accelerations, were the accelerometer's axes these.
+  double misfit_m_s2(const Eigen::Matrix3d& reading) const {
+    std::vector<ImuSample> samples = imu().samples;
+    for (ImuSample& sample : samples) sample.specific_force_m_s2 = reading * sample.specific_force_m_s2;
+    return accelerationMisfit_m_s2(tracks_, samples, input_.start_ns, rotation_, options_, context_);
+  }
+
+ private:
+  const ImuData& imu() const { return input_.imus[input_.reference_imu]; }
+
+  CalibrationInput input_;
+  const InitialisationOptions& options_;
+  RunContext context_;
+  So3Spline rotation_;
+  std::vector<CameraTrack> tracks_;
+};
+
+// Rates were negated for the trial where the gyroscope is left-handed.
+AxesCause causeOf(const Eigen::Matrix3d& reading, bool left_handed_gyroscope, const std::string& proof) {
+  const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
+  const bool as_is = reading.isApprox(identity), negated = reading.isApprox(-identity);
+  // Rates are turned by an axis' reflection into the other direction, too.
+  const Eigen::Matrix3d gyroscope =
+      (left_handed_gyroscope ? -1.0 : 1.0) * reading.determinant() * reading.transpose();
+  if (left_handed_gyroscope && as_is)
+    return {"the angular rates seem negated: " + proof,
+            "Change the sign of all three where they are recorded"};
+  if (left_handed_gyroscope && negated)
+    return {
+        "the IMU's axes seem left-handed, mirrored along one or with two swapped, in gyroscope and "
+        "accelerometer alike: " +
+            proof,
+        "Change the sign of one axis, or swap two, of both where they are recorded"};
+  if (left_handed_gyroscope)
+    return {fmt::format("the gyroscope's axes seem left-handed, mirrored or swapped: read as {}, {}",
+                        axesText(gyroscope), proof),
+            "Record them as the accelerometer's"};
+  if (negated)
+    return {
+        "the accelerations seem negated: " + proof,
+        "Change their sign (at rest an accelerometer shows +g upwards); acceleration_unit: -g does it for g"};
+  return {fmt::format("the axes of accelerometer and gyroscope seem permuted against each other: with the "
+                      "accelerometer's read as {}, or the gyroscope's as {}, {}",
+                      axesText(reading), axesText(gyroscope), proof),
+          "Record both in one frame"};
+}
+
+}  // namespace
+
+std::optional<AxesCause> findWrongAxes(const CalibrationInput& input, bool left_handed_gyroscope,
+                                       const InitialisationOptions& options, const RunContext& context) {
+  CalibrationInput tried = input;
+  if (left_handed_gyroscope)
+    for (ImuSample& sample : tried.imus[tried.reference_imu].samples) sample.angular_rate_rad_s *= -1.0;
+  try {
+    const AxesTrial trial(std::move(tried), options, context);
+    constexpr double kFarBetter = 0.5;
+    const std::vector<Eigen::Matrix3d> all = readings();
+    const double as_is_m_s2 = trial.misfit_m_s2(all.front());
+    double least_m_s2 = as_is_m_s2;
+    Eigen::Matrix3d best = all.front();
+    for (const Eigen::Matrix3d& reading : all) {
+      const double misfit_m_s2 = trial.misfit_m_s2(reading);
+      if (misfit_m_s2 >= least_m_s2 * (best.isIdentity() ? kFarBetter : 1.0)) continue;
+      least_m_s2 = misfit_m_s2;
+      best = reading;
+    }
+    if (best.isIdentity() && !left_handed_gyroscope) return std::nullopt;
+    const std::string proof =
+        best.isIdentity()
+            ? fmt::format("with that, accelerations agree to {:.2g} m/s^2", least_m_s2)
+            : fmt::format("accelerations agree to {:.2g} m/s^2 instead of {:.2g}", least_m_s2, as_is_m_s2);
+    return causeOf(best, left_handed_gyroscope, proof);
+  } catch (const CalibrationError&) {
+    return std::nullopt;  // it fails for a reason of its own, however the axes are read
+  }
+}
+
+}  // namespace evical

@@ -1,0 +1,23 @@
+// Which of an IMU's axes are wrong where camera, gyroscope and accelerometer cannot be parts of one right-handed
+// rig: every reading is tried of the accelerometer's axes (each as any other, either way: 48), and the one under
+// which accelerations agree with positions is told.
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/data/calibration_setup.h"
+#include "core/initialisation/initialisation_options.h"
+
+#include <optional>
+#include <string>
+
+namespace evical {
+
+struct AxesCause {
+  std::string problem, advice;
+};
+// `left_handed_gyroscope`: only a reflection of the camera's rotation is the gyroscope's. Nothing where no reading
+// is better by far.
+std::optional<AxesCause> findWrongAxes(const CalibrationInput& input, bool left_handed_gyroscope,
+                                       const InitialisationOptions& options, const RunContext& context);
+
+}  // namespace evical

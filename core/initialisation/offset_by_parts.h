@@ -1,0 +1,30 @@
+// The time offset in parts of a recording, against one that holds for all of it: clocks that step (lost packets, a
+// resynchronisation) show in it at once, while one offset for all of it is wrong for a part and contradicted by
+// circles that look like outliers.
+#pragma once
+
+#include "core/initialisation/camera_imu_rotation.h"
+
+#include <optional>
+#include <vector>
+
+namespace evical {
+
+struct OffsetPart {
+  double begin_s = 0.0, end_s = 0.0;  // camera clock
+  double time_offset_s = 0.0, time_offset_std_s = 0.0;
+};
+// Of parts of some seconds, with everything but the offset as it was found for the whole.
+std::vector<OffsetPart> offsetsByParts(const std::vector<CameraPose>& poses, const GyroRotation& gyro,
+                                       const RelativeRotation& whole, const InitialisationOptions& options);
+
+struct ClockStep {
+  double at_s = 0.0;    // camera clock, to within a part
+  double step_s = 0.0;  // of the offset, from then on
+  double sigmas = 0.0;
+  bool larger_part_first = true;
+};
+// The one that explains the parts best; nothing where one offset does, or a drift.
+std::optional<ClockStep> findClockStep(const std::vector<OffsetPart>& parts);
+
+}  // namespace evical

@@ -1,0 +1,103 @@
+#include "core/pipeline/causes.h"
+
+#include "core/base/error.h"
+#include "core/numerics/angles.h"
+#include "core/pipeline/misfit.h"
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace evical {
+namespace {
+
+struct Trial {
+  CauseKind kind;
+  bool (*isHeld)(const BatchSolution& solution, const OptimisationOptions& options);
+  void (*release)(OptimisationOptions& options);
+  std::string (*words)(const CalibrationInput& input, const BatchSolution& freed);
+  const char* advice;
+};
+
+bool turnIsHeld(const BatchSolution& solution, const OptimisationOptions& options) {
+  return !solution.state.imus.empty() && !options.gyroscope_rotation;
+}
+void releaseTurn(OptimisationOptions& options) {
+  options.gyroscope_rotation = true;
+}
+std::string turnWords(const CalibrationInput& input, const BatchSolution& freed) {
+  std::size_t most = 0;
+  const auto turn_deg = [&](std::size_t k) {
+    return kDegPerRad * Eigen::AngleAxisd(freed.state.imus[k].gyroscope_from_accelerometer).angle();
+  };
+  for (std::size_t k = 1; k < input.imus.size(); ++k)
+    if (turn_deg(k) > turn_deg(most)) most = k;
+  return fmt::format(
+      "{}: the gyroscope seems to be turned by about {:.2g} deg against the accelerometer, and other "
+      "rotations may be off by as much",
+      input.imus[most].name, turn_deg(most));
+}
+
+bool aLensIsHeld(const BatchSolution& solution, const OptimisationOptions&) {
+  return std::any_of(solution.state.cameras.begin(), solution.state.cameras.end(),
+                     [](const CameraState& camera) { return !camera.lens.solved; });
+}
+void releaseLenses(OptimisationOptions& options) {
+  options.camera_intrinsics = CameraIntrinsicsChoice::Free;
+}
+// A board that is stretched or bent looks much like another lens.
+std::string lensWords(const CalibrationInput& input, const BatchSolution& freed) {
+  std::string text;
+  for (std::size_t k = 0; k < input.cameras.size(); ++k) {
+    const std::optional<CameraIntrinsics>& solved = freed.state.cameras[k].lens.solved;
+    if (!solved) continue;
+    const CameraIntrinsics& given = *input.cameras[k].lens.seen_with;
+    const Eigen::Array2d focal = solved->focal_length_px.array() / given.focal_length_px.array() - 1.0;
+    const Eigen::Vector2d centre_px = solved->principal_point_px - given.principal_point_px;
+    text += fmt::format(
+        "{}{}: the lens, or the board's shape, is not as the session says: focal lengths seem {:+.2f} and "
+        "{:+.2f} %, the principal point ({:+.1f}, {:+.1f}) px off",
+        text.empty() ? "" : ", ", input.cameras[k].name, 100.0 * focal.x(), 100.0 * focal.y(), centre_px.x(),
+        centre_px.y());
+  }
+  return text;
+}
+
+constexpr std::array<Trial, 2> kTrials = {
+    {{CauseKind::Lens, &aLensIsHeld, &releaseLenses, &lensWords,
+      "calibrate with optimisation.camera_intrinsics: free, and measure the board"},
+     {CauseKind::GyroscopeTurned, &turnIsHeld, &releaseTurn, &turnWords,
+      "calibrate with optimisation.gyroscope_rotation: true"}}};
+
+}  // namespace
+
+std::optional<Cause> findCause(const CalibrationInput& input, const BatchSolution& solution,
+                               const OptimisationOptions& options, const RunContext& context) {
+  constexpr double kExplains = 0.7;  // at most this share of the misfit's logarithm may be left
+  const double before = totalMisfit(solution);
+  double least = kExplains * before;
+  std::optional<Cause> best;
+  const RunContext quiet{silentProgress(), context.stop};
+  for (const Trial& trial : kTrials) {
+    if (!trial.isHeld(solution, options)) continue;
+    OptimisationOptions freed = options;
+    trial.release(freed);
+    try {
+      const BatchSolution refit = refineBatch(input, solution.state, freed, quiet);
+      const double after = totalMisfit(refit);
+      if (after >= least) continue;
+      least = after;
+      best = Cause{trial.kind,
+                   fmt::format("{} (residuals fall from {:.2g} to {:.2g} times what was given); {}",
+                               trial.words(input, refit), std::exp(before), std::exp(after), trial.advice)};
+    } catch (const CalibrationError&) {
+      continue;  // what cannot be solved explains nothing
+    }
+  }
+  return best;
+}
+
+}  // namespace evical

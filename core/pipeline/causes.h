@@ -1,0 +1,24 @@
+// What could explain a misfit is tried: the batch is solved once more with each of some things free that it holds
+// (docs/maths.md, 10.7), and the one that explains most of the misfit is told, with its number.
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/data/calibration_setup.h"
+#include "core/optimisation/batch_optimiser.h"
+
+#include <optional>
+#include <string>
+
+namespace evical {
+
+enum class CauseKind { GyroscopeTurned, Lens };
+
+struct Cause {
+  CauseKind kind;
+  std::string text;
+};
+// Nothing where none of them explains much.
+std::optional<Cause> findCause(const CalibrationInput& input, const BatchSolution& solution,
+                               const OptimisationOptions& options, const RunContext& context);
+
+}  // namespace evical

@@ -1,0 +1,106 @@
+// One thing at a time that is not as the session says: the result is not wrong and called ok, and the first reason
+// names what was spoilt. Circles are those of a perfect front end, so that a case takes a second or two.
+#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/misfit.h"
+#include "core/pipeline/result_files.h"
+#include "core/report/truth_comparison.h"
+#include "core/synthetic/scenario_yaml.h"
+#include "tests/support/perturbations.h"
+#include "tests/support/scenario_session.h"
+#include "tests/support/test_program.h"
+
+namespace {
+
+using namespace evical;
+
+class TestCauses : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void initTestCase() {
+    base_.scenario = readScenario(std::string(EVICAL_SOURCE_DIR) + "/config/scenarios/davis346_10s.yaml");
+    base_.session = test::sessionFor(base_.scenario);
+    base_.session.options.report.cross_validation = false;  // half of the time, and no part of this
+    base_.pass = test::perfectPass(base_.scenario, 0.05, 0.02);
+  }
+
+  void firstReason_namesTheCause_data() {
+    QTest::addColumn<QString>("name");
+    QTest::addColumn<double>("size");
+    QTest::addColumn<bool>("fails");  // else it is doubtful
+    const auto row = [](const char* name, double size, bool fails) {
+      QTest::addRow("%s %g", name, size) << QString(name) << size << fails;
+    };
+    row("both mirrored", 1, true);
+    row("both swapped", 1, true);
+    row("gyroscope swapped", 1, true);
+    row("gyroscope mirrored", 0, true);
+    row("gyroscope permuted", 1, true);
+    row("forces negated", 1, true);
+    row("rates negated", 1, true);
+    row("gyroscope dead", 0, true);
+    row("accelerometer dead", 2, true);
+    row("another IMU", 1, true);
+    row("clock step", 50, false);
+    row("gyroscope turned", 1, false);
+  }
+  void firstReason_namesTheCause() {
+    QFETCH(QString, name);
+    QFETCH(double, size);
+    QFETCH(bool, fails);
+    const test::Perturbation& perturbation = test::perturbation(name.toStdString());
+    test::Recorded recorded = base_;
+    perturbation.apply(recorded, size);
+    std::string reason;
+    try {
+      const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+      QVERIFY(!fails);
+      QCOMPARE(run.result.status, CalibrationStatus::Doubtful);
+      reason = run.result.reason;
+    } catch (const CalibrationError& error) {
+      QVERIFY2(fails, error.what());
+      reason = error.what();
+    }
+    QVERIFY2(perturbation.isNamedIn(test::firstReason(reason)), reason.c_str());
+  }
+
+  // Clocks that are seconds apart are found, and all the rest is as ever.
+  void timeOffsetBeyondTheSearch_isFound() {
+    test::Recorded recorded = base_;
+    test::perturbation("time offset").apply(recorded, 5.0);
+    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+    QVERIFY2(run.result.status == CalibrationStatus::Ok, run.result.reason.c_str());
+    expectRight(recorded, run);
+  }
+
+  // Of a clock that steps the larger part is used, and is right.
+  void clockThatSteps_isRightInTheLargerPart() {
+    test::Recorded recorded = base_;
+    test::perturbation("clock step").apply(recorded, 50.0);
+    expectRight(recorded, calibrate(recorded.session, recorded.pass, RunContext{}));
+  }
+
+  void nothingSpoilt_isOk() {
+    const CalibrationRun run = calibrate(base_.session, base_.pass, RunContext{});
+    QVERIFY2(run.result.status == CalibrationStatus::Ok, run.result.reason.c_str());
+    expectRight(base_, run);
+  }
+
+ private:
+  void expectRight(const test::Recorded& recorded, const CalibrationRun& run) const {
+    const TruthComparison comparison = compareWithTruth(
+        namedResult(recorded.session, std::make_shared<CalibrationResult>(run.result), "test"),
+        test::truthOf(recorded.scenario));
+    const CameraError& error = comparison.cameras.front();
+    QVERIFY2(error.rotation_deg < 0.1, qPrintable(QString::number(error.rotation_deg)));
+    QVERIFY2(error.translation_mm < 3.0, qPrintable(QString::number(error.translation_mm)));
+    QVERIFY2(error.time_offset_ms < 1.0, qPrintable(QString::number(error.time_offset_ms)));
+  }
+
+  test::Recorded base_;
+};
+
+}  // namespace
+
+EVICAL_TEST(TestCauses)
+#include "tst_causes.moc"
