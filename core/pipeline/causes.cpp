@@ -76,8 +76,10 @@ constexpr std::array<Trial, 2> kTrials = {
 
 std::optional<Cause> findCause(const CalibrationInput& input, const BatchSolution& solution,
                                const OptimisationOptions& options, const RunContext& context) {
-  constexpr double kExplains = 0.7;  // at most this share of the misfit's logarithm may be left
+  constexpr double kExplains = 0.7;         // at most this share of the misfit's logarithm may be left
+  constexpr double kWorthExplaining = 0.2;  // residuals 1.2 times what was given
   const double before = totalMisfit(solution);
+  if (before < kWorthExplaining) return std::nullopt;
   double least = kExplains * before;
   std::optional<Cause> best;
   const RunContext quiet{silentProgress(), context.stop};
