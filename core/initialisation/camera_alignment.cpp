@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
+#include "core/data/unfit_samples.h"
 #include "core/initialisation/camera_imu_rotation.h"
 #include "core/initialisation/initialisation_checks.h"
 #include "core/initialisation/pose_consistency.h"
@@ -94,8 +95,9 @@ void settlePoses(const CameraData& camera, const ImuData& imu, std::int64_t star
                  Initialisation& result) {
   constexpr int kRounds = 2;
   int swapped = 0, dropped = 0;
+  const std::vector<ImuSample> rates = withoutRateSpikes(imu.samples);
   for (int round = 0; round < kRounds; ++round) {
-    const GyroRotation unbiased(imu.samples, start_ns, aligned.hand_eye.gyroscope_bias_rad_s);
+    const GyroRotation unbiased(rates, start_ns, aligned.hand_eye.gyroscope_bias_rad_s);
     AlignedCamera next = aligned;
     const PoseConsistency consistency = keepConsistentPoses(next.poses, unbiased, next.hand_eye, options);
     const auto again =

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/time.h"
+#include "core/data/unfit_samples.h"
 #include "core/geometry/so3.h"
 #include "core/geometry/trajectory.h"
 #include "core/initialisation/time_offset.h"
@@ -38,7 +39,7 @@ std::vector<CameraPose> turnsOf(const GyroRotation& gyro) {
 
 ImuRotation alignFurtherGyroscope(const ImuData& imu, std::int64_t start_ns, const GyroRotation& reference,
                                   const InitialisationOptions& options, const RunContext& context) {
-  const std::vector<CameraPose> turns = turnsOf(GyroRotation(imu.samples, start_ns));
+  const std::vector<CameraPose> turns = turnsOf(GyroRotation(withoutRateSpikes(imu.samples), start_ns));
   const std::vector<TimeOffsetPeak> peaks = correlateTimeOffset(turns, reference, options, imu.prior);
   const std::optional<KnownNumber>& known = imu.prior.time_offset;
   const bool given = isGiven(known);
@@ -83,7 +84,7 @@ LeverArm solveLeverArm(const ImuData& imu, std::int64_t start_ns, const ImuRotat
   Matrix6 matrix = Matrix6::Zero();
   Vector6 vector = Vector6::Zero();
   double squares = 0.0, count = 0.0;
-  for (const ImuSample& sample : imu.samples) {
+  for (const ImuSample& sample : withFitForces(imu.samples)) {
     const double time_s = secondsSince(start_ns, sample.time_ns) + rotation.hand_eye.time_offset_s;
     if (!state.world_from_imu_rotation.contains(time_s) || !state.imu_in_world_m.contains(time_s)) continue;
     const MotionSample motion = motionAt(state.world_from_imu_rotation, state.imu_in_world_m, time_s);

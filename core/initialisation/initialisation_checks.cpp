@@ -1,6 +1,7 @@
 #include "core/initialisation/initialisation_checks.h"
 
 #include "core/base/error.h"
+#include "core/data/unfit_samples.h"
 
 #include <fmt/format.h>
 
@@ -24,8 +25,10 @@ void checkInput(const CalibrationInput& input, const InitialisationOptions& opti
                             "Add one: a camera alone has nothing to be calibrated against");
   }
   for (const ImuData& imu : input.imus) {
-    if (static_cast<int>(imu.samples.size()) >= options.least_imu_samples) continue;
-    throw calibrationFailed(imu.name, fmt::format("has {} samples only", imu.samples.size()),
+    const std::size_t usable =
+        std::min(withoutRateSpikes(imu.samples).size(), withFitForces(imu.samples).size());
+    if (usable >= static_cast<std::size_t>(options.least_imu_samples)) continue;
+    throw calibrationFailed(imu.name, fmt::format("has {} samples only", usable),
                             "Check the IMU's stream, and record for 30 s");
   }
 }

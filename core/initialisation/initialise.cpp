@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/data/calibration_observer.h"
+#include "core/data/unfit_samples.h"
 #include "core/initialisation/agreement_check.h"
 #include "core/initialisation/camera_alignment.h"
 #include "core/initialisation/cameras_alone.h"
@@ -63,9 +64,9 @@ void turnAboutAxis(const CalibrationInput& input, const InitialisationOptions& o
   constexpr double kLeastKnot_s = 0.05;
   const double knot_s = std::max(options.knot_spacing_s, kLeastKnot_s);
   const So3Spline rotation = fitWorldRotation({cameras.data(), 1}, gyro, range.begin_s, range.end_s, knot_s);
-  const double turn_rad =
-      findTurnAboutAxis(first.main_axis_in_imu, tracksOf(input, cameras), referenceImu(input).samples,
-                        input.start_ns, rotation, options, context);
+  const double turn_rad = findTurnAboutAxis(first.main_axis_in_imu, tracksOf(input, cameras),
+                                            withFitForces(referenceImu(input).samples), input.start_ns,
+                                            rotation, options, context);
   for (AlignedCamera& camera : cameras) {
     camera.hand_eye.reference_from_sensor =
         quaternionExp(-turn_rad * first.main_axis_in_imu) * camera.hand_eye.reference_from_sensor;
@@ -92,7 +93,7 @@ void alignTranslations(const CalibrationInput& input, const InitialisationOption
   CalibrationState& state = result.state;
   Stopwatch stopwatch;
   const GravityAlignment gravity =
-      alignGravity(tracksOf(input, cameras), referenceImu(input).samples, input.start_ns,
+      alignGravity(tracksOf(input, cameras), withFitForces(referenceImu(input).samples), input.start_ns,
                    state.world_from_imu_rotation, options, context);
   result.steps.push_back(
       {"gravity and translation",
@@ -166,6 +167,13 @@ CalibrationInput withStraightGyroscopes(CalibrationInput input) {
   return input;
 }
 
+bool saturates(const ImuData& imu) {
+  const UnfitSamples unfit = findUnfitSamples(imu.samples);
+  return std::any_of(kImuAxes.begin(), kImuAxes.end(), [&](const ImuAxis& axis) {
+    return axis.rate && !unfit.saturated[static_cast<std::size_t>(&axis - kImuAxes.data())].empty();
+  });
+}
+
 Initialisation initialiseStraight(const CalibrationInput& input, const InitialisationOptions& options,
                                   const RunContext& context) {
   Initialisation result;
@@ -179,7 +187,8 @@ Initialisation initialiseStraight(const CalibrationInput& input, const Initialis
     return result;
   }
   const ImuData& imu = referenceImu(input);
-  const GyroRotation gyro(imu.samples, input.start_ns);
+  const std::vector<ImuSample> rates = withoutRateSpikes(imu.samples);
+  const GyroRotation gyro(rates, input.start_ns);
   checkGyroscope(imu, gyro, options, result.warnings);
   std::vector<AlignedCamera> cameras;
   for (const CameraData& camera : input.cameras) {
@@ -197,11 +206,12 @@ Initialisation initialiseStraight(const CalibrationInput& input, const Initialis
   checkOverlap(imu, views.begin_s, views.end_s, gyro.begin_s(), gyro.end_s(), options);
   const TimeRange range{std::max(views.begin_s - options.margin_s, gyro.begin_s()),
                         std::min(views.end_s + options.margin_s, gyro.end_s())};
-  const GyroRotation unbiased(imu.samples, input.start_ns, cameras.front().hand_eye.gyroscope_bias_rad_s);
+  const GyroRotation unbiased(rates, input.start_ns, cameras.front().hand_eye.gyroscope_bias_rad_s);
   turnAboutAxis(input, options, range, unbiased, context, cameras, result);
   context.throwIfStopped();
   result.state.world_from_imu_rotation =
-      fitWorldRotation(cameras, unbiased, range.begin_s, range.end_s, options.knot_spacing_s);
+      fitWorldRotation(cameras, unbiased, range.begin_s, range.end_s, options.knot_spacing_s,
+                       saturates(imu) ? kSaturatedDriftKnot_s : kDriftKnot_s);
   context.throwIfStopped();
   alignTranslations(input, options, cameras, context, result);
   keepLenses(input, result.state);

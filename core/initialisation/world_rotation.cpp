@@ -3,13 +3,12 @@
 namespace evical {
 namespace {
 
-constexpr double kDriftKnot_s = 1.0;  // the gyroscope's slow drift is followed this finely
 constexpr int kSamplesPerKnot = 4;
 
 }  // namespace
 
 So3Spline fitWorldRotation(std::span<const AlignedCamera> cameras, const GyroRotation& gyro, double begin_s,
-                           double end_s, double knot_spacing_s) {
+                           double end_s, double knot_spacing_s, double drift_knot_s) {
   std::vector<double> times_s;
   std::vector<Eigen::Quaterniond> world_from_first;
   for (const AlignedCamera& camera : cameras) {
@@ -22,7 +21,7 @@ So3Spline fitWorldRotation(std::span<const AlignedCamera> cameras, const GyroRot
                                  gyro.at(time_s).conjugate());
     }
   }
-  const So3Spline drift = fitSo3Spline(times_s, world_from_first, begin_s, end_s, kDriftKnot_s);
+  const So3Spline drift = fitSo3Spline(times_s, world_from_first, begin_s, end_s, drift_knot_s);
   std::vector<double> sample_times_s;
   std::vector<Eigen::Quaterniond> rotations;
   const int count = segmentsToCover(begin_s, end_s, knot_spacing_s) * kSamplesPerKnot;

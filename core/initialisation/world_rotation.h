@@ -15,8 +15,11 @@ struct AlignedCamera {
   RelativeRotation hand_eye;
 };
 
+// How finely the cameras correct the gyroscope: its slow drift, or what a saturated one has missed.
+inline constexpr double kDriftKnot_s = 1.0, kSaturatedDriftKnot_s = 0.1;
+
 // world_from_imu on the IMU's clock over [begin_s, end_s]; `gyro` with its bias taken out.
 So3Spline fitWorldRotation(std::span<const AlignedCamera> cameras, const GyroRotation& gyro, double begin_s,
-                           double end_s, double knot_spacing_s);
+                           double end_s, double knot_spacing_s, double drift_knot_s = kDriftKnot_s);
 
 }  // namespace evical

@@ -86,7 +86,8 @@ class Batch {
         options_(options),
         context_(context),
         problem_(input, options, initial),
-        weights_(givenWeights(input)) {}
+        weights_(givenWeights(input)),
+        fit_samples_(weights_.used_samples) {}
 
   BatchSolution run();
   BatchSolution refine();
@@ -102,9 +103,10 @@ class Batch {
   void reportFits();
   void reportNotes();
   struct ImuFits {
-    std::vector<ImuFit> fits;                        // RMS by IMU, in SI units
+    std::vector<ImuFit> fits;                        // RMS by IMU, in SI units, of the samples used
     std::vector<double> gyroscopes, accelerometers;  // the same in units of the given noise
   };
+  bool selectImuSamples();  // true if others take part than before
   ImuFits imuFits() const;
 
   const CalibrationInput& input_;
@@ -112,6 +114,7 @@ class Batch {
   const RunContext& context_;
   CalibrationProblem problem_;
   Weights weights_;
+  const std::vector<SampleSelection> fit_samples_;  // by IMU
   BatchSolution solution_;
   double progress_ = 0.0;
 };
@@ -159,8 +162,8 @@ bool Batch::updateWeights() {
   const std::vector<CircleError> errors = circleErrors(input_, problem_.state(), options_);
   std::vector<double> circles;
   for (std::size_t i = 0; i < input_.cameras.size(); ++i) circles.push_back(robustScale(errors, i));
+  bool changed = selectImuSamples();
   const ImuFits imus = imuFits();
-  bool changed = false;
   const auto update = [&](std::vector<double>& old, const std::vector<double>& fresh) {
     constexpr double kNoticeable = 0.05;
     for (std::size_t i = 0; i < old.size(); ++i) {
@@ -190,17 +193,30 @@ void Batch::updateSmoothness() {
   weights_.scales.smooth_position = scale(found.position_m_s2, options_.smooth_position_m_s2);
 }
 
+bool Batch::selectImuSamples() {
+  const CalibrationState state = problem_.state();
+  std::vector<SampleSelection> selected;
+  for (std::size_t i = 0; i < input_.imus.size(); ++i)
+    selected.push_back(
+        selectSamples(sampleErrors(input_, state, i), fit_samples_[i], options_.outlier_sigma));
+  const bool changed = selected != weights_.used_samples;
+  weights_.used_samples = std::move(selected);
+  return changed;
+}
+
 Batch::ImuFits Batch::imuFits() const {
   const CalibrationState state = problem_.state();
   ImuFits all;
   for (std::size_t i = 0; i < input_.imus.size(); ++i) {
     const ImuData& data = input_.imus[i];
     const SampleErrors errors = sampleErrors(input_, state, i);
-    all.fits.push_back({errors.gyroscope_rms_rad_s, errors.accelerometer_rms_m_s2});
+    const SampleSelection& used = weights_.used_samples[i];
+    const ImuFit fit{rmsPerAxis(errors.gyroscope_rad_s, used.gyroscope),
+                     rmsPerAxis(errors.accelerometer_m_s2, used.accelerometer)};
+    all.fits.push_back(fit);
     const double root_rate = std::sqrt(data.rate_hz());
-    all.gyroscopes.push_back(errors.gyroscope_rms_rad_s / (data.noise.gyroscope_density * root_rate));
-    all.accelerometers.push_back(errors.accelerometer_rms_m_s2 /
-                                 (data.noise.accelerometer_density * root_rate));
+    all.gyroscopes.push_back(fit.gyroscope_rms_rad_s / (data.noise.gyroscope_density * root_rate));
+    all.accelerometers.push_back(fit.accelerometer_rms_m_s2 / (data.noise.accelerometer_density * root_rate));
   }
   return all;
 }
@@ -220,7 +236,7 @@ BatchSolution Batch::run() {
 void Batch::holdStillAxes() {
   const CalibrationState state = problem_.state();
   for (std::size_t imu = 0; imu < input_.imus.size(); ++imu)
-    weights_.held_axes[imu] = stillAxes(input_, state, weights_.scales, imu);
+    weights_.held_axes[imu] = stillAxes(input_, state, weights_, imu);
 }
 
 // Solves until convergence with weights that follow from the residuals, and again where they change.
@@ -243,6 +259,7 @@ BatchSolution Batch::finish() {
   solution_.state = problem_.state();
   solution_.scales = weights_.scales;
   solution_.used_circles = weights_.used_circles;
+  solution_.used_samples = weights_.used_samples;
   reportFits();
   reportNotes();
   context_.progress.stageProgress(1.0);
@@ -309,6 +326,8 @@ void Batch::reportNotes() {
   for (std::size_t i = 0; i < input_.imus.size(); ++i) {
     say(input_.imus[i].name, "the gyroscope's residual", solution_.scales.gyroscopes[i]);
     say(input_.imus[i].name, "the accelerometer's residual", solution_.scales.accelerometers[i]);
+    for (std::string& note : notesOfUnused(input_, i, weights_.used_samples[i]))
+      solution_.notes.push_back(std::move(note));
     const StillAxes& held = weights_.held_axes[i];
     sayHeld(input_.imus[i].name, "rotation", held.gyroscope.size(),
             options_.gyroscope_rotation

@@ -25,6 +25,7 @@ struct BatchSolution {
   bool converged = false;
   NoiseScales scales;
   CircleSelection used_circles;  // that took part
+  std::vector<SampleSelection> used_samples;
 };
 
 // Input: a camera and an IMU, or two cameras, all with their intrinsics. `initial` lists them all and gives

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
+#include <cstdint>
 
 namespace evical {
 namespace {
@@ -69,14 +69,18 @@ std::vector<CircleMeasurement> circlesOf(const ProblemBuilder& builder, std::siz
 struct SampleRun {
   std::size_t imu;
   SegmentTimes segment;
-  double time_s;  // of the first, on the reference's clock
-  std::span<const ImuSample> samples;
+  double time_s;           // of the first, on the reference's clock
+  std::size_t begin, end;  // of the IMU's samples
 };
 
+// Those that take part.
 std::vector<InertialMeasurement> samplesOf(const ProblemBuilder& builder, const SampleRun& run,
-                                           Eigen::Vector3d ImuSample::*value) {
+                                           Eigen::Vector3d ImuSample::*value,
+                                           const std::vector<std::uint8_t>& used) {
   std::vector<InertialMeasurement> measurements;
-  for (const ImuSample& sample : run.samples) {
+  for (std::size_t i = run.begin; i < run.end; ++i) {
+    if (!used[i]) continue;
+    const ImuSample& sample = builder.input.imus[run.imu].samples[i];
     const double time_s = secondsSince(builder.input.start_ns, sample.time_ns);
     measurements.push_back(
         {time_s, sample.*value, byDrift_s(builder.parameters.moved().imus[run.imu], time_s)});
@@ -93,7 +97,9 @@ void addGyroscope(ProblemBuilder& builder, const SampleRun& run) {
   const ImuData& data = builder.input.imus[run.imu];
   const double sigma =
       builder.weights.scales.gyroscopes[run.imu] * data.noise.gyroscope_density * std::sqrt(data.rate_hz());
-  std::vector<InertialMeasurement> measurements = samplesOf(builder, run, &ImuSample::angular_rate_rad_s);
+  std::vector<InertialMeasurement> measurements = samplesOf(builder, run, &ImuSample::angular_rate_rad_s,
+                                                            builder.weights.used_samples[run.imu].gyroscope);
+  if (measurements.empty()) return;
   std::vector<double*> blocks;
   builder.parameters.appendRotation(run.segment, blocks);
   blocks.insert(blocks.end(),
@@ -115,7 +121,9 @@ void addAccelerometer(ProblemBuilder& builder, const SampleRun& run) {
   const ImuData& data = builder.input.imus[run.imu];
   const double sigma = builder.weights.scales.accelerometers[run.imu] * data.noise.accelerometer_density *
                        std::sqrt(data.rate_hz());
-  std::vector<InertialMeasurement> measurements = samplesOf(builder, run, &ImuSample::specific_force_m_s2);
+  std::vector<InertialMeasurement> measurements = samplesOf(
+      builder, run, &ImuSample::specific_force_m_s2, builder.weights.used_samples[run.imu].accelerometer);
+  if (measurements.empty()) return;
   std::vector<double*> blocks;
   builder.parameters.appendRotation(run.segment, blocks);
   builder.parameters.appendPosition(run.segment, blocks);
@@ -183,7 +191,7 @@ void addImu(ProblemBuilder& builder, std::size_t imu) {
            sameBiasKnots(state.imus[imu], begin_s, timeOf(samples[end]))) {
       ++end;
     }
-    const SampleRun run = {imu, segment, begin_s, {samples.data() + begin, end - begin}};
+    const SampleRun run = {imu, segment, begin_s, begin, end};
     addGyroscope(builder, run);
     if (inPosition(begin_s)) addAccelerometer(builder, run);
   }

@@ -51,7 +51,9 @@ constexpr std::tuple kModelFields{
     Field{"huber_sigma", &ModelOptions::huber_sigma, 2.5, within(0.5, 100.0), "sigma",
           "Circle residuals beyond this pull with constant force."},
     Field{"outlier_sigma", &ModelOptions::outlier_sigma, 6.0, within(2.0, 1000.0), "sigma",
-          "Circles further from their place, in units of the spread of all, are dropped between stages."},
+          "Circles further from their place, in units of the spread of all, are dropped between stages; so "
+          "are single "
+          "IMU samples, in units also of the spread beside them."},
     Field{"outlier_window_fraction", &ModelOptions::outlier_window_fraction, 0.5, within(0.1, 1.0), "",
           "A window loses all its circles if more than this share of them is dropped."}};
 constexpr auto kModelDefaults = defaultsOf<ModelOptions, kModelFields>();

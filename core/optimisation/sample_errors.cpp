@@ -2,10 +2,95 @@
 
 #include "core/base/time.h"
 #include "core/geometry/trajectory.h"
+#include "core/numerics/robust.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace evical {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kMedianOfChi2With3 = 2.3659738843753377;
+constexpr std::size_t kNeighbours = 16;  // on either side
+
+// The sigma per axis of errors whose norms these are.
+double scaleOfNorms(std::vector<double> norms) {
+  return medianOf(std::move(norms)) / std::sqrt(kMedianOfChi2With3);
+}
+
+struct Range {
+  std::size_t begin, end;
+};
+
+// Of the samples that are fit, without one of them.
+std::vector<double> normsIn(Range range, const std::vector<double>& norms,
+                            const std::vector<std::uint8_t>& fit, std::size_t without) {
+  std::vector<double> found;
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    if (i != without && fit[i] && !std::isnan(norms[i])) found.push_back(norms[i]);
+  }
+  return found;
+}
+
+std::vector<std::uint8_t> select(const std::vector<double>& norms, const std::vector<std::uint8_t>& fit,
+                                 double outlier_sigma) {
+  const double usual = scaleOfNorms(normsIn({0, norms.size()}, norms, fit, norms.size()));
+  std::vector<std::uint8_t> used = fit;
+  for (std::size_t i = 0; i < norms.size(); ++i) {
+    if (!fit[i] || !(norms[i] > outlier_sigma * usual)) continue;
+    const Range beside{i > kNeighbours ? i - kNeighbours : 0, std::min(i + kNeighbours + 1, norms.size())};
+    if (norms[i] > outlier_sigma * scaleOfNorms(normsIn(beside, norms, fit, i))) used[i] = 0;
+  }
+  return used;
+}
+
+}  // namespace
+
+double rmsPerAxis(const std::vector<double>& norms, const std::vector<std::uint8_t>& used) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < norms.size(); ++i) {
+    if (!used[i] || std::isnan(norms[i])) continue;
+    sum += norms[i] * norms[i];
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / (3.0 * count)) : 0.0;
+}
+
+SampleSelection selectSamples(const SampleErrors& errors, const SampleSelection& fit, double outlier_sigma) {
+  return {select(errors.gyroscope_rad_s, fit.gyroscope, outlier_sigma),
+          select(errors.accelerometer_m_s2, fit.accelerometer, outlier_sigma)};
+}
+
+std::vector<std::string> notesOfUnused(const CalibrationInput& input, std::size_t imu,
+                                       const SampleSelection& used) {
+  constexpr std::size_t kMostTimes = 5;
+  const ImuData& data = input.imus[imu];
+  std::vector<std::string> notes;
+  const SampleSelection fit = fitSamples(data.samples);
+  const auto say = [&](const char* sensor, const std::vector<std::uint8_t>& could,
+                       const std::vector<std::uint8_t>& taken) {
+    std::string times;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < taken.size(); ++i) {
+      if (taken[i] || !could[i]) continue;
+      if (count++ < kMostTimes)
+        times += fmt::format("{}{:.3f} s", count > 1 ? ", " : "",
+                             secondsSince(input.start_ns, data.samples[i].time_ns));
+    }
+    if (count == 0) return;
+    notes.push_back(
+        fmt::format("{}: {} of {} samples of the {} contradict the motion (at {}{}) and were left out",
+                    data.name, count, taken.size(), sensor, times, count > kMostTimes ? ", ..." : ""));
+  };
+  say("gyroscope", fit.gyroscope, used.gyroscope);
+  say("accelerometer", fit.accelerometer, used.accelerometer);
+  return notes;
+}
 
 SampleErrors sampleErrors(const CalibrationInput& input, const CalibrationState& state, std::size_t imu) {
   const ImuState& imu_state = state.imus[imu];
@@ -13,32 +98,31 @@ SampleErrors sampleErrors(const CalibrationInput& input, const CalibrationState&
       imu_state.reference_from_imu.rotation.toRotationMatrix().transpose();
   const Eigen::Vector3d& lever_arm = imu_state.reference_from_imu.translation_m;
   SampleErrors errors;
-  double gyroscope2 = 0.0, accelerometer2 = 0.0;
   for (const ImuSample& sample : input.imus[imu].samples) {
+    double& rate_error = errors.gyroscope_rad_s.emplace_back(kNone);
+    double& force_error = errors.accelerometer_m_s2.emplace_back(kNone);
     const double imu_time_s = secondsSince(input.start_ns, sample.time_ns);
     const double time_s = referenceTime_s(imu_state, imu_time_s);
     if (!state.world_from_imu_rotation.contains(time_s)) continue;
     const RotationSample rotation = evaluate(state.world_from_imu_rotation, time_s);
     const Eigen::Vector3d& w = rotation.angular_velocity_rad_s;
-    gyroscope2 += (imu_state.gyroscopeMatrix() * (imu_from_reference * w) +
-                   imu_state.gyroscopeBiasAt_rad_s(imu_time_s) - sample.angular_rate_rad_s)
-                      .squaredNorm();
+    rate_error = (imu_state.gyroscopeMatrix() * (imu_from_reference * w) +
+                  imu_state.gyroscopeBiasAt_rad_s(imu_time_s) - sample.angular_rate_rad_s)
+                     .norm();
     ++errors.gyroscope_samples;
     if (!state.imu_in_world_m.contains(time_s)) continue;
     const Eigen::Vector3d acceleration = evaluate(state.imu_in_world_m, time_s).acceleration;
     const Eigen::Vector3d force =
         rotation.rotation.transpose() * (acceleration - state.gravity_in_world_m_s2) +
         rotation.angular_acceleration_rad_s2.cross(lever_arm) + w.cross(w.cross(lever_arm));
-    accelerometer2 += (imu_state.accelerometer_mapping * (imu_from_reference * force) +
-                       imu_state.accelerometerBiasAt_m_s2(imu_time_s) - sample.specific_force_m_s2)
-                          .squaredNorm();
+    force_error = (imu_state.accelerometer_mapping * (imu_from_reference * force) +
+                   imu_state.accelerometerBiasAt_m_s2(imu_time_s) - sample.specific_force_m_s2)
+                      .norm();
     ++errors.accelerometer_samples;
   }
-  const auto rms = [](double sum, int samples) {
-    return samples > 0 ? std::sqrt(sum / (3.0 * samples)) : 0.0;
-  };
-  errors.gyroscope_rms_rad_s = rms(gyroscope2, errors.gyroscope_samples);
-  errors.accelerometer_rms_m_s2 = rms(accelerometer2, errors.accelerometer_samples);
+  const std::vector<std::uint8_t> all(errors.gyroscope_rad_s.size(), 1);
+  errors.gyroscope_rms_rad_s = rmsPerAxis(errors.gyroscope_rad_s, all);
+  errors.accelerometer_rms_m_s2 = rmsPerAxis(errors.accelerometer_m_s2, all);
   return errors;
 }
 

@@ -46,20 +46,24 @@ std::vector<Eigen::Vector3d> StillAxes::leverless() const {
   return gyroscope.size() == 3 ? gyroscope : std::vector<Eigen::Vector3d>{};
 }
 
-StillAxes stillAxes(const CalibrationInput& input, const CalibrationState& state, const NoiseScales& scales,
+StillAxes stillAxes(const CalibrationInput& input, const CalibrationState& state, const Weights& weights,
                     std::size_t imu) {
   const ImuData& data = input.imus[imu];
   Spread rates, forces;
-  for (const ImuSample& sample : data.samples) {
+  for (std::size_t i = 0; i < data.samples.size(); ++i) {
+    const ImuSample& sample = data.samples[i];
     const double imu_time_s = secondsSince(input.start_ns, sample.time_ns);
     const double time_s = referenceTime_s(state.imus[imu], imu_time_s);
     if (!state.world_from_imu_rotation.contains(time_s)) continue;
-    rates.add(sample.angular_rate_rad_s - state.imus[imu].gyroscopeBiasAt_rad_s(imu_time_s));
-    forces.add(sample.specific_force_m_s2 - state.imus[imu].accelerometerBiasAt_m_s2(imu_time_s));
+    if (weights.used_samples[imu].gyroscope[i])
+      rates.add(sample.angular_rate_rad_s - state.imus[imu].gyroscopeBiasAt_rad_s(imu_time_s));
+    if (weights.used_samples[imu].accelerometer[i])
+      forces.add(sample.specific_force_m_s2 - state.imus[imu].accelerometerBiasAt_m_s2(imu_time_s));
   }
   const double root_rate = std::sqrt(data.rate_hz());
-  return {rates.axesWithout(scales.gyroscopes[imu] * data.noise.gyroscope_density * root_rate),
-          forces.axesWithout(scales.accelerometers[imu] * data.noise.accelerometer_density * root_rate)};
+  return {
+      rates.axesWithout(weights.scales.gyroscopes[imu] * data.noise.gyroscope_density * root_rate),
+      forces.axesWithout(weights.scales.accelerometers[imu] * data.noise.accelerometer_density * root_rate)};
 }
 
 }  // namespace evical

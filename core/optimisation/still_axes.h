@@ -10,7 +10,7 @@ namespace evical {
 
 struct CalibrationInput;
 struct CalibrationState;
-struct NoiseScales;
+struct Weights;
 
 // Unit vectors in the IMU's own frame, perpendicular to each other.
 struct StillAxes {
@@ -21,8 +21,8 @@ struct StillAxes {
   std::vector<Eigen::Vector3d> leverless() const;
 };
 
-// Samples in the splines' range, against their noise as `scales` has it.
-StillAxes stillAxes(const CalibrationInput& input, const CalibrationState& state, const NoiseScales& scales,
+// Samples that are used and lie in the splines' range, against their noise as `weights` have it.
+StillAxes stillAxes(const CalibrationInput& input, const CalibrationState& state, const Weights& weights,
                     std::size_t imu);
 
 }  // namespace evical

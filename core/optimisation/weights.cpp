@@ -20,6 +20,7 @@ Weights givenWeights(const CalibrationInput& input) {
   weights.scales.gyroscopes.assign(input.imus.size(), 1.0);
   weights.scales.accelerometers.assign(input.imus.size(), 1.0);
   weights.used_circles = allCircles(input);
+  for (const ImuData& imu : input.imus) weights.used_samples.push_back(fitSamples(imu.samples));
   weights.held_axes.resize(input.imus.size());
   return weights;
 }

@@ -1,6 +1,7 @@
 // How much each measurement counts in the batch: found from its residuals, round by round.
 #pragma once
 
+#include "core/data/unfit_samples.h"
 #include "core/optimisation/still_axes.h"
 
 #include <cstdint>
@@ -24,13 +25,14 @@ using CircleSelection = std::vector<std::vector<std::vector<std::uint8_t>>>;
 struct Weights {
   NoiseScales scales;
   CircleSelection used_circles;
+  std::vector<SampleSelection> used_samples;  // by IMU
   // By IMU: along these a mapping stays as it is, and translations stay at 0.
   std::vector<StillAxes> held_axes;
 };
 
 CircleSelection allCircles(const CalibrationInput& input);
 
-// Noise as it is given, all circles, nothing held.
+// Noise as it is given, all circles, all samples that are fit, nothing held.
 Weights givenWeights(const CalibrationInput& input);
 
 }  // namespace evical

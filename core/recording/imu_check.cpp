@@ -1,4 +1,5 @@
 #include "core/base/time.h"
+#include "core/data/unfit_samples.h"
 #include "core/recording/imu_statistics.h"
 #include "core/recording/inspection.h"
 
@@ -6,12 +7,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace evical {
 namespace {
 
 constexpr std::size_t kMostAlikeFaults = 10;
-constexpr double kGravity_m_s2 = 9.80665;
 constexpr std::int64_t kClockReset_ns = 1'000'000'000;
 
 using Faults = std::vector<RecordingFault>;
@@ -64,55 +65,55 @@ void checkTimes(const std::string& name, const Samples& samples, const Inspectio
   }
 }
 
-struct Axis {
-  const char* name;
-  bool rate;  // else specific force
-  int index;
-};
-constexpr Axis kAxes[] = {{"angular rate x", true, 0},    {"angular rate y", true, 1},
-                          {"angular rate z", true, 2},    {"specific force x", false, 0},
-                          {"specific force y", false, 1}, {"specific force z", false, 2}};
-
-double valueOf(const ImuSample& sample, const Axis& axis) {
-  return (axis.rate ? sample.angular_rate_rad_s : sample.specific_force_m_s2)[axis.index];
-}
-
-void checkAxis(const std::string& name, const Samples& samples, const Axis& axis,
-               const InspectionOptions& options, Faults& faults) {
-  double largest = 0.0;
-  for (const ImuSample& sample : samples) largest = std::max(largest, std::abs(valueOf(sample, axis)));
-  const bool may_saturate =
-      largest >= (axis.rate ? options.saturated_from_rad_s : options.saturated_from_m_s2);
-  std::size_t saturated = 0;
-  double saturated_at_s = 0.0;
+void checkStuck(const std::string& name, const Samples& samples, const ImuAxis& axis,
+                const std::vector<std::size_t>& saturated, const InspectionOptions& options, Faults& faults) {
   Faults stuck;
   for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end) {
-    const double value = valueOf(samples[begin], axis);
-    for (end = begin + 1; end < samples.size() && valueOf(samples[end], axis) == value;) ++end;
+    const double value = axis.of(samples[begin]);
+    for (end = begin + 1; end < samples.size() && axis.of(samples[end]) == value;) ++end;
     const double at_s = secondsSince(samples.front().time_ns, samples[begin].time_ns);
     const double run_s = secondsSince(samples[begin].time_ns, samples[end - 1].time_ns);
-    if (may_saturate && std::abs(value) == largest &&
-        end - begin >= static_cast<std::size_t>(options.saturated_run_samples)) {
-      if (saturated == 0) saturated_at_s = at_s;
-      saturated += end - begin;
-    } else if (run_s >= options.stuck_axis_s) {
-      stuck.push_back({name, FaultKind::StuckAxis, at_s,
-                       fmt::format("{} stays at {} for {:.2f} s.", axis.name, value, run_s)});
-    }
+    if (run_s < options.stuck_axis_s || std::binary_search(saturated.begin(), saturated.end(), begin))
+      continue;
+    stuck.push_back({name, FaultKind::StuckAxis, at_s,
+                     fmt::format("{} stays at {} for {:.2f} s.", axis.name, value, run_s)});
   }
   appendFaults(faults, std::move(stuck), "such times");
-  if (saturated == 0) return;
+}
+
+void checkSaturated(const std::string& name, const Samples& samples, const ImuAxis& axis,
+                    const std::vector<std::size_t>& saturated, Faults& faults) {
+  if (saturated.empty()) return;
   faults.push_back(
-      {name, FaultKind::SaturatedAxis, saturated_at_s,
-       fmt::format("{} is at its limit of {:.4g} for {} samples: move less fast, or widen the IMU's range.",
-                   axis.name, largest, saturated)});
+      {name, FaultKind::SaturatedAxis,
+       secondsSince(samples.front().time_ns, samples[saturated.front()].time_ns),
+       fmt::format(
+           "{} is at its limit of {:.4g} for {} samples, which calibrations leave out: move less fast, "
+           "or widen the IMU's range.",
+           axis.name, std::abs(axis.of(samples[saturated.front()])), saturated.size())});
+}
+
+void checkSpikes(const std::string& name, const Samples& samples, const char* sensor,
+                 const std::vector<std::size_t>& spikes, Faults& faults) {
+  constexpr std::size_t kMostTimes = 5;
+  if (spikes.empty()) return;
+  std::string times;
+  for (std::size_t k = 0; k < std::min(spikes.size(), kMostTimes); ++k)
+    times += fmt::format("{}{:.3f} s", k > 0 ? ", " : "",
+                         secondsSince(samples.front().time_ns, samples[spikes[k]].time_ns));
+  faults.push_back(
+      {name, FaultKind::Corrupt, secondsSince(samples.front().time_ns, samples[spikes.front()].time_ns),
+       fmt::format(
+           "{} of {} samples of the {} contradict those beside them (at {}{}): calibrations leave them out.",
+           spikes.size(), samples.size(), sensor, times, spikes.size() > kMostTimes ? ", ..." : "")});
 }
 
 void checkUnits(const std::string& name, const Samples& samples, const InspectionOptions& options,
                 Faults& faults) {
   const double norm = medianForceNorm(samples);
-  if (std::abs(norm - kGravity_m_s2) > options.gravity_tolerance_m_s2) {
-    const bool in_g = std::abs(norm * kGravity_m_s2 - kGravity_m_s2) <= options.gravity_tolerance_m_s2;
+  // Brisk motion makes the norms larger, but not their mean in a frame that does not turn.
+  if (!isGravity(norm, options) && !isGravity(steadyForceNorm(samples).value_or(norm), options)) {
+    const bool in_g = isGravity(norm * kStandardGravity_m_s2, options);
     faults.push_back(
         {name, FaultKind::Unit, 0.0,
          fmt::format("The median norm of the specific force is {:.3f}, not 9.8 m/s^2{}.", norm,
@@ -136,18 +137,23 @@ std::vector<RecordingFault> checkImu(const std::string& name, const std::vector<
         {name, FaultKind::Empty, 0.0, fmt::format("The stream has {} IMU samples.", samples.size())});
     return faults;
   }
-  const auto broken = [](const ImuSample& s) {
-    return !s.angular_rate_rad_s.allFinite() || !s.specific_force_m_s2.allFinite();
-  };
-  const auto found = std::find_if(samples.begin(), samples.end(), broken);
-  if (found != samples.end()) {
+  Samples good;
+  std::copy_if(samples.begin(), samples.end(), std::back_inserter(good), isMeasurable);
+  if (good.size() < samples.size()) {
+    const auto found = std::find_if_not(samples.begin(), samples.end(), isMeasurable);
     faults.push_back({name, FaultKind::NotFinite, secondsSince(samples.front().time_ns, found->time_ns),
-                      fmt::format("{} samples hold values that are no numbers.",
-                                  std::count_if(samples.begin(), samples.end(), broken))});
+                      fmt::format("{} samples hold values that are no numbers, or that no sensor measures.",
+                                  samples.size() - good.size())});
   }
   checkTimes(name, samples, options, faults);
-  for (const Axis& axis : kAxes) checkAxis(name, samples, axis, options, faults);
-  checkUnits(name, samples, options, faults);
+  const UnfitSamples unfit = findUnfitSamples(good);
+  for (std::size_t axis = 0; axis < kImuAxes.size(); ++axis) {
+    checkStuck(name, good, kImuAxes[axis], unfit.saturated[axis], options, faults);
+    checkSaturated(name, good, kImuAxes[axis], unfit.saturated[axis], faults);
+  }
+  checkSpikes(name, good, "gyroscope", unfit.gyroscope_spikes, faults);
+  checkSpikes(name, good, "accelerometer", unfit.accelerometer_spikes, faults);
+  checkUnits(name, good, options, faults);
   return faults;
 }
 

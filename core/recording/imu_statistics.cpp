@@ -1,6 +1,7 @@
 #include "core/recording/imu_statistics.h"
 
 #include "core/base/time.h"
+#include "core/geometry/so3.h"
 #include "core/numerics/robust.h"
 
 #include <algorithm>
@@ -67,6 +68,33 @@ double medianForceNorm(const std::vector<ImuSample>& samples) {
 
 double medianForceNorm(const std::vector<RawImuSample>& samples) {
   return medianForceNormOf(samples);
+}
+
+std::optional<double> steadyForceNorm(const std::vector<ImuSample>& samples) {
+  constexpr double kPiece_s = 2.0, kLongestGap_s = 0.1;
+  std::vector<double> norms;
+  Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  // the piece's first frame from this one
+  Eigen::Vector3d sum_m_s = Eigen::Vector3d::Zero();
+  double length_s = 0.0;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const double interval_s = secondsSince(samples[i - 1].time_ns, samples[i].time_ns);
+    if (interval_s <= 0.0 || interval_s > kLongestGap_s || length_s >= kPiece_s) {
+      if (length_s >= kPiece_s) norms.push_back((sum_m_s / length_s).norm());
+      turned.setIdentity();
+      sum_m_s.setZero();
+      length_s = 0.0;
+      continue;
+    }
+    turned = (turned * quaternionExp(interval_s * samples[i].angular_rate_rad_s)).normalized();
+    sum_m_s += turned * (interval_s * samples[i].specific_force_m_s2);
+    length_s += interval_s;
+  }
+  if (norms.empty()) return std::nullopt;
+  return medianOf(std::move(norms));
+}
+
+bool isGravity(double norm_m_s2, const InspectionOptions& options) {
+  return std::abs(norm_m_s2 - kStandardGravity_m_s2) <= options.gravity_tolerance_m_s2;
 }
 
 double largestRate(const std::vector<ImuSample>& samples) {

@@ -10,10 +10,8 @@
 namespace evical {
 namespace {
 
-constexpr double kGravity_m_s2 = 9.80665;
-
-void summarise(const std::vector<RawImuSample>& samples, const InspectionOptions& options,
-               StreamSummary& summary) {
+void summarise(const std::vector<RawImuSample>& samples, const std::vector<ImuSample>& si,
+               const InspectionOptions& options, StreamSummary& summary) {
   summary.count = samples.size();
   if (samples.empty()) return;
   summary.first_ns = samples.front().time_ns;
@@ -29,15 +27,18 @@ void summarise(const std::vector<RawImuSample>& samples, const InspectionOptions
   const double period_s = medianInterval_s(samples);
   if (period_s > 0.0) summary.rate_hz = 1.0 / period_s;
   summary.median_acceleration = medianForceNorm(samples);
+  const double steady = steadyForceNorm(si).value_or(summary.median_acceleration);
   const auto isGravityIn = [&](double unit_m_s2) {
-    return std::abs(summary.median_acceleration * unit_m_s2 - kGravity_m_s2) <=
-           options.gravity_tolerance_m_s2;
+    return isGravity(summary.median_acceleration * unit_m_s2, options) ||
+           isGravity(steady * unit_m_s2, options);
   };
   const StreamInfo& info = summary.info;
   if (info.acceleration_unit != AccelerationUnit::MetresPerSecond2) {
     summary.acceleration_unit = kAccelerationUnits.at(static_cast<std::size_t>(info.acceleration_unit));
   } else {
-    summary.acceleration_unit = isGravityIn(1.0) ? "m/s^2" : isGravityIn(kGravity_m_s2) ? "g" : "unknown";
+    summary.acceleration_unit = isGravityIn(1.0)                     ? "m/s^2"
+                                : isGravityIn(kStandardGravity_m_s2) ? "g"
+                                                                     : "unknown";
   }
   if (info.angular_rate_unit != AngularRateUnit::RadiansPerSecond) {
     summary.angular_rate_unit = kAngularRateUnits.at(static_cast<std::size_t>(info.angular_rate_unit));
@@ -74,9 +75,9 @@ Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& op
     summary.count = summary.info.messages;
     if (summary.info.type == StreamType::Events) events.at(i).finish(summary, inspection.faults);
     if (summary.info.type != StreamType::Imu) continue;
-    summarise(imu_samples[i], options, summary);
     std::vector<ImuSample> samples;
     toSi(imu_samples[i], summary.info.acceleration_unit, summary.info.angular_rate_unit, samples);
+    summarise(imu_samples[i], samples, options, summary);
     const std::vector<RecordingFault> found = checkImu(summary.info.name, samples, options);
     inspection.faults.insert(inspection.faults.end(), found.begin(), found.end());
   }

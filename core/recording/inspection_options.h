@@ -4,13 +4,10 @@
 namespace evical {
 
 struct InspectionOptions {
-  double event_gap_s = 0.1;           // longest time without any event
-  double imu_gap_periods = 1.8;       // longest time between IMU samples, in their median interval
-  double imu_jitter_periods = 0.2;    // largest RMS of IMU intervals about their median, in medians
-  double stuck_axis_s = 1.0;          // an IMU axis that does not change for so long is stuck
-  int saturated_run_samples = 4;      // so many equal samples in a row at an axis's extreme are a saturation
-  double saturated_from_rad_s = 2.0;  // smallest full scale of gyroscopes
-  double saturated_from_m_s2 = 15.0;  // smallest full scale of accelerometers
+  double event_gap_s = 0.1;             // longest time without any event
+  double imu_gap_periods = 1.8;         // longest time between IMU samples, in their median interval
+  double imu_jitter_periods = 0.2;      // largest RMS of IMU intervals about their median, in medians
+  double stuck_axis_s = 1.0;            // an IMU axis that does not change for so long is stuck
   double gravity_tolerance_m_s2 = 0.8;  // of the median norm of the specific force about 9.81 m/s^2
   double largest_rate_rad_s = 36.0;     // beyond this (2000 deg/s are 34.9 rad/s) the rate cannot be in rad/s
   double hot_pixel_factor = 8.0;        // times the events of its neighbours, and of the mean pixel

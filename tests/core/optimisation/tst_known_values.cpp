@@ -101,7 +101,7 @@ class TestKnownValues : public QObject {
 
   void stillAxes_ofRichMotion_areNone() {
     const test::SimulatedRig rig = test::simulateRig(test::shortRecording());
-    const StillAxes still = stillAxes(rig.input, rig.truth, givenWeights(rig.input).scales, 0);
+    const StillAxes still = stillAxes(rig.input, rig.truth, givenWeights(rig.input), 0);
     QVERIFY(still.gyroscope.empty());
     QVERIFY(still.accelerometer.empty());
   }
@@ -110,7 +110,7 @@ class TestKnownValues : public QObject {
     test::RigOptions options = test::shortRecording();
     options.motion = test::Motion::OneAxisRotation;
     const test::SimulatedRig rig = test::simulateRig(options);
-    const StillAxes still = stillAxes(rig.input, rig.truth, givenWeights(rig.input).scales, 0);
+    const StillAxes still = stillAxes(rig.input, rig.truth, givenWeights(rig.input), 0);
     QCOMPARE(still.gyroscope.size(), std::size_t{2});
     // The axis that moved, by the samples themselves.
     Vector3d axis = Vector3d::Zero();

@@ -102,6 +102,25 @@ void TestInspection::imuFaults_areFound_data() {
         for (ImuSample& sample : s) sample.specific_force_m_s2.z() -= 9.81;
       },
       {"unit"});
+  row("brisk motion",
+      [](Samples& s) {  // a median norm of 12.7 m/s^2
+        for (std::size_t i = 0; i < s.size(); ++i) {
+          const double angle = 12.0 * 1e-3 * static_cast<double>(i);
+          s[i].angular_rate_rad_s.x() /= 100.0;
+          s[i].specific_force_m_s2 += Eigen::Vector3d(8.0 * std::sin(angle), 8.0 * std::cos(angle), 0.0);
+        }
+      },
+      {});
+  row("brisk motion, gravity removed",
+      [](Samples& s) {
+        for (std::size_t i = 0; i < s.size(); ++i) {
+          const double angle = 12.0 * 1e-3 * static_cast<double>(i);
+          s[i].angular_rate_rad_s.x() /= 100.0;
+          s[i].specific_force_m_s2 += Eigen::Vector3d(8.0 * std::sin(angle), 8.0 * std::cos(angle), -9.81);
+        }
+      },
+      {"unit"});
+  row("a spike", [](Samples& s) { s[2000].specific_force_m_s2.y() += 3.0; }, {"corrupt"});
   row("deg/s",
       [](Samples& s) {
         for (ImuSample& sample : s) sample.angular_rate_rad_s *= 57.3;

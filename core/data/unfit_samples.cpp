@@ -1,0 +1,216 @@
+#include "core/data/unfit_samples.h"
+
+#include "core/base/time.h"
+#include "core/numerics/robust.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+namespace evical {
+namespace {
+
+constexpr int kRunOfLimit_samples = 4;  // equal ones in a row at the extreme of an axis are a saturation
+// Below the smallest full scale that sensors have (125 deg/s, 2 g less a bias) such runs must be met so often,
+// or be so long.
+constexpr double kFullScale_rad_s = 2.0, kFullScale_m_s2 = 15.0;
+constexpr int kRunsOfLimit = 3, kLongRunOfLimit_samples = 16;
+// Of samples, at most: more often than that they are the sensor's way (values held, a poor resolution).
+constexpr double kMostSpikes = 0.02;
+// In medians of the errors of interpolation, ten sigmas of what is normally distributed.
+constexpr double kSpike_medians = 15.0;
+constexpr std::ptrdiff_t kNeighbours = 16;  // on either side
+constexpr int kMostRounds = 8;
+
+// The extreme at which the axis stays for several samples in a row, as no motion does; nullopt if there is none.
+std::optional<double> limitAt(std::span<const ImuSample> samples, const ImuAxis& axis, double extreme) {
+  const double from = axis.rate ? kFullScale_rad_s : kFullScale_m_s2;
+  int run = 0, runs = 0, longest = 0;
+  for (const ImuSample& sample : samples) {
+    run = axis.of(sample) == extreme ? run + 1 : 0;
+    runs += run == kRunOfLimit_samples ? 1 : 0;
+    longest = std::max(longest, run);
+  }
+  const bool seldom = runs < (std::abs(extreme) >= from ? 1 : kRunsOfLimit);
+  if (extreme == 0.0 || (seldom && longest < kLongRunOfLimit_samples)) return std::nullopt;
+  return extreme;
+}
+
+std::vector<std::size_t> saturatedAlong(std::span<const ImuSample> samples, const ImuAxis& axis) {
+  const auto less = [&](const ImuSample& a, const ImuSample& b) { return axis.of(a) < axis.of(b); };
+  const auto [lowest, highest] = std::minmax_element(samples.begin(), samples.end(), less);
+  const std::optional<double> low = limitAt(samples, axis, axis.of(*lowest));
+  const std::optional<double> high = limitAt(samples, axis, axis.of(*highest));
+  std::vector<std::size_t> saturated;
+  for (std::size_t i = 0; i < samples.size() && axis.of(*lowest) < axis.of(*highest); ++i) {
+    const double value = axis.of(samples[i]);
+    if ((low && value == *low) || (high && value == *high)) saturated.push_back(i);
+  }
+  return saturated;
+}
+
+// One axis's values, and how far each is from the cubic through the two on either side. An isolated error
+// stands out from its neighbours, however brisk the motion.
+class SpikeSearch {
+ public:
+  // `joined`: which values follow those around them without a gap.
+  SpikeSearch(std::vector<double> values, const std::vector<bool>& joined)
+      : values_(std::move(values)), joined_(joined) {
+    for (std::ptrdiff_t i = 0; i < size(); ++i) errors_.push_back(errorAt(i));
+    std::vector<double> steps;  // the resolution is the smallest
+    for (std::size_t i = 1; i < values_.size(); ++i) {
+      if (values_[i] != values_[i - 1]) steps.push_back(std::abs(values_[i] - values_[i - 1]));
+    }
+    const double resolution = steps.empty() ? 0.0 : *std::min_element(steps.begin(), steps.end());
+    least_ = kSpike_medians * std::max(medianOf(errors_), resolution);
+  }
+
+  std::vector<std::size_t> find() {
+    std::vector<std::size_t> found;
+    const auto most = static_cast<std::size_t>(kMostSpikes * static_cast<double>(values_.size()));
+    for (int round = 0; round < kMostRounds; ++round) {
+      const std::vector<std::ptrdiff_t> worst = worstOfEachPlace();
+      if (worst.empty()) break;
+      for (const std::ptrdiff_t i : worst) {
+        found.push_back(static_cast<std::size_t>(i));
+        at(i) += signedErrorAt(i);  // the cubic's value: what is left beside it shows now
+        for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(i - 2, 0); k < std::min(i + 3, size()); ++k)
+          errors_[static_cast<std::size_t>(k)] = errorAt(k);
+      }
+      if (found.size() > most) return {};
+    }
+    return found;
+  }
+
+ private:
+  std::ptrdiff_t size() const { return static_cast<std::ptrdiff_t>(values_.size()); }
+  double& at(std::ptrdiff_t i) { return values_[static_cast<std::size_t>(i)]; }
+  double at(std::ptrdiff_t i) const { return values_[static_cast<std::size_t>(i)]; }
+
+  double signedErrorAt(std::ptrdiff_t i) const {
+    if (!joined_[static_cast<std::size_t>(i)]) return 0.0;
+    return (4.0 * (at(i - 1) + at(i + 1)) - at(i - 2) - at(i + 2)) / 6.0 - at(i);
+  }
+  double errorAt(std::ptrdiff_t i) const { return std::abs(signedErrorAt(i)); }
+
+  bool standsOut(std::ptrdiff_t i) const {
+    const double error = errors_[static_cast<std::size_t>(i)];
+    if (!(error > least_)) return false;
+    const auto first = errors_.begin() + std::max<std::ptrdiff_t>(i - kNeighbours, 0);
+    const auto last = errors_.begin() + std::min(i + kNeighbours + 1, size());
+    return error > kSpike_medians * medianOf(std::vector<double>(first, last));
+  }
+
+  // Of those that stand out within two of each other the one that does most: the others may owe it to that.
+  std::vector<std::ptrdiff_t> worstOfEachPlace() const {
+    std::vector<std::ptrdiff_t> worst;
+    std::ptrdiff_t last = -kNeighbours;
+    for (std::ptrdiff_t i = 0; i < size(); ++i) {
+      if (!standsOut(i)) continue;
+      if (i - last > 2) {
+        worst.push_back(i);
+      } else if (errors_[static_cast<std::size_t>(i)] > errors_[static_cast<std::size_t>(worst.back())]) {
+        worst.back() = i;
+      }
+      last = i;
+    }
+    return worst;
+  }
+
+  std::vector<double> values_, errors_;
+  const std::vector<bool>& joined_;
+  double least_ = 0.0;
+};
+
+// Whether the two samples on either side of each follow without a gap, across which no cubic tells anything.
+std::vector<bool> joinedSamples(std::span<const ImuSample> samples) {
+  constexpr double kLongest_periods = 3.0;  // of four
+  std::vector<double> intervals_s;
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    intervals_s.push_back(secondsSince(samples[i - 1].time_ns, samples[i].time_ns));
+  const double longest_s = 4.0 * kLongest_periods * medianOf(std::move(intervals_s));
+  std::vector<bool> joined(samples.size(), false);
+  for (std::size_t i = 2; i + 2 < samples.size(); ++i)
+    joined[i] = secondsSince(samples[i - 2].time_ns, samples[i + 2].time_ns) <= longest_s;
+  return joined;
+}
+
+std::vector<std::size_t> spikes(std::span<const ImuSample> samples, bool rate) {
+  std::vector<std::size_t> found;
+  const std::vector<bool> joined = joinedSamples(samples);
+  for (const ImuAxis& axis : kImuAxes) {
+    if (axis.rate != rate) continue;
+    std::vector<double> values;
+    for (const ImuSample& sample : samples) values.push_back(axis.of(sample));
+    const std::vector<std::size_t> along = SpikeSearch(std::move(values), joined).find();
+    found.insert(found.end(), along.begin(), along.end());
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+std::vector<ImuSample> those(std::span<const ImuSample> samples, const std::vector<std::uint8_t>& fit) {
+  std::vector<ImuSample> kept;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (fit[i]) kept.push_back(samples[i]);
+  }
+  return kept;
+}
+
+}  // namespace
+
+bool isMeasurable(const ImuSample& sample) {
+  constexpr double kLargest_rad_s = 1e4, kLargest_m_s2 = 1e5;
+  // Not so of what is no number.
+  return sample.angular_rate_rad_s.cwiseAbs().sum() <= kLargest_rad_s &&
+         sample.specific_force_m_s2.cwiseAbs().sum() <= kLargest_m_s2;
+}
+
+UnfitSamples findUnfitSamples(std::span<const ImuSample> samples) {
+  UnfitSamples unfit;
+  if (samples.empty()) return unfit;
+  std::array<std::vector<std::size_t>, 2> clipped;
+  for (std::size_t axis = 0; axis < kImuAxes.size(); ++axis) {
+    unfit.saturated[axis] = saturatedAlong(samples, kImuAxes[axis]);
+    std::vector<std::size_t>& all = clipped[kImuAxes[axis].rate ? 0 : 1];
+    all.insert(all.end(), unfit.saturated[axis].begin(), unfit.saturated[axis].end());
+  }
+  unfit.gyroscope_spikes = spikes(samples, true);
+  unfit.accelerometer_spikes = spikes(samples, false);
+  // The kink where a clip begins is no spike.
+  const auto isClipped = [](const std::vector<std::size_t>& at, std::size_t i) {
+    return std::any_of(at.begin(), at.end(), [i](std::size_t k) { return k <= i + 1 && i <= k + 1; });
+  };
+  std::erase_if(unfit.gyroscope_spikes, [&](std::size_t i) { return isClipped(clipped[0], i); });
+  std::erase_if(unfit.accelerometer_spikes, [&](std::size_t i) { return isClipped(clipped[1], i); });
+  return unfit;
+}
+
+SampleSelection fitSamples(std::span<const ImuSample> samples) {
+  const UnfitSamples unfit = findUnfitSamples(samples);
+  SampleSelection fit{std::vector<std::uint8_t>(samples.size(), 1),
+                      std::vector<std::uint8_t>(samples.size(), 1)};
+  for (std::size_t axis = 0; axis < kImuAxes.size(); ++axis) {
+    std::vector<std::uint8_t>& sensor = kImuAxes[axis].rate ? fit.gyroscope : fit.accelerometer;
+    for (const std::size_t i : unfit.saturated[axis]) {
+      for (std::size_t k = i > 0 ? i - 1 : 0; k <= std::min(i + 1, samples.size() - 1); ++k) sensor[k] = 0;
+    }
+  }
+  for (const std::size_t i : unfit.gyroscope_spikes) fit.gyroscope[i] = 0;
+  for (const std::size_t i : unfit.accelerometer_spikes) fit.accelerometer[i] = 0;
+  return fit;
+}
+
+std::vector<ImuSample> withoutRateSpikes(std::span<const ImuSample> samples) {
+  std::vector<std::uint8_t> kept(samples.size(), 1);
+  for (const std::size_t i : findUnfitSamples(samples).gyroscope_spikes) kept[i] = 0;
+  return those(samples, kept);
+}
+
+std::vector<ImuSample> withFitForces(std::span<const ImuSample> samples) {
+  return those(samples, fitSamples(samples).accelerometer);
+}
+
+}  // namespace evical
