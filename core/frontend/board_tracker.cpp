@@ -14,6 +14,7 @@ namespace evical {
 namespace {
 
 constexpr std::int64_t kLongAgo = std::numeric_limits<std::int64_t>::min() / 2;
+constexpr std::int64_t kLongPause_ns = 1'000'000'000;
 constexpr double kSearchIntervalGrowth = 1.2;  // by each search that finds nothing
 
 }  // namespace
@@ -56,9 +57,10 @@ BoardObservations BoardTracker::finish() {
   if (extractor_) extractor_->finish(new_bursts_);
   for (const EdgeBurst& burst : new_bursts_) last_burst_ns_ = std::max(last_burst_ns_, burst.time_ns);
   history_.add(new_bursts_);
-  while (started_ &&
-         next_begin_ns_ + nanosecondsFrom(options_.detection.shortest_window_s) < last_burst_ns_) {
-    const WindowSlot slot{next_begin_ns_, next_begin_ns_ + slotLength_ns(motion_ ? &*motion_ : nullptr)};
+  const std::int64_t shortest_ns = nanosecondsFrom(options_.detection.shortest_window_s);
+  while (started_ && next_begin_ns_ + shortest_ns < last_burst_ns_ && !stop_.stop_requested()) {
+    skipEmptyTime(last_burst_ns_);
+    const WindowSlot slot = nextSlot();
     processSlot(slot);
     next_begin_ns_ = slot.end_ns;
   }
@@ -76,10 +78,24 @@ std::int64_t BoardTracker::slotLength_ns(const BoardMotion* motion) const {
   return nanosecondsFrom(std::clamp(d.window_travel_px / speed, d.shortest_window_s, d.longest_window_s));
 }
 
+WindowSlot BoardTracker::nextSlot() const {
+  return {next_begin_ns_, next_begin_ns_ + slotLength_ns(motion_ ? &*motion_ : nullptr)};
+}
+
+// Where nothing moves for long there are no windows to look at.
+void BoardTracker::skipEmptyTime(std::int64_t until_ns) {
+  if (motion_) return;
+  const std::int64_t margin_ns = nanosecondsFrom(options_.tracking.longest_fit_half_window_s);
+  const std::int64_t next_ns = history_.nextAfter(next_begin_ns_ - margin_ns).value_or(until_ns);
+  const std::int64_t end_ns = std::min(next_ns, until_ns) - margin_ns;
+  if (end_ns - next_begin_ns_ > kLongPause_ns) next_begin_ns_ = end_ns;
+}
+
 void BoardTracker::processWindows() {
   const std::int64_t margin_ns = nanosecondsFrom(options_.tracking.longest_fit_half_window_s);
-  for (;;) {
-    const WindowSlot slot{next_begin_ns_, next_begin_ns_ + slotLength_ns(motion_ ? &*motion_ : nullptr)};
+  while (!stop_.stop_requested()) {
+    skipEmptyTime(complete_until_ns_);
+    const WindowSlot slot = nextSlot();
     if (slot.end_ns + margin_ns > complete_until_ns_) return;
     processSlot(slot);
     next_begin_ns_ = slot.end_ns;

@@ -12,6 +12,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <stop_token>
+#include <utility>
 #include <vector>
 
 namespace evical {
@@ -32,6 +34,7 @@ class BoardTracker {
                  std::int64_t complete_until_ns);
   BoardObservations finish();
 
+  void stopWith(std::stop_token stop) { stop_ = std::move(stop); }  // then what is left is not looked at
   void observeWith(FrontEndObserver* observer) { observer_ = observer; }  // not owned; null: nobody
 
   const BoardScene& scene() const { return scene_; }
@@ -41,6 +44,8 @@ class BoardTracker {
 
  private:
   void processWindows();
+  WindowSlot nextSlot() const;
+  void skipEmptyTime(std::int64_t until_ns);
   void processSlot(const WindowSlot& slot);
   void acquire(const WindowSlot& slot, const BoardMotion& motion);
   void trackBackwards(const WindowSlot& from, BoardMotion motion);
@@ -65,6 +70,7 @@ class BoardTracker {
   std::int64_t last_search_ns_;
   double search_interval_s_;       // grows while searches fail
   std::int64_t tracked_until_ns_;  // end of the last slot that held
+  std::stop_token stop_;
   FrontEndObserver* observer_ = nullptr;
   bool started_ = false;
   int held_windows_ = 0;

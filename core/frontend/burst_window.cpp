@@ -9,41 +9,41 @@ namespace {
 
 constexpr std::int64_t kSlice_ns = 5'000'000;  // storage only: results do not depend on it
 
-}  // namespace
-
-std::int64_t BurstHistory::sliceOf(std::int64_t time_ns) const {
+std::int64_t sliceOf(std::int64_t time_ns) {
   return time_ns >= 0 ? time_ns / kSlice_ns : (time_ns - kSlice_ns + 1) / kSlice_ns;
 }
 
+}  // namespace
+
+BurstHistory::Slices::const_iterator BurstHistory::firstFrom(std::int64_t index) const {
+  return std::lower_bound(slices_.begin(), slices_.end(), index,
+                          [](const Slice& slice, std::int64_t wanted) { return slice.index < wanted; });
+}
+
+std::vector<EdgeBurst>& BurstHistory::sliceAt(std::int64_t index) {
+  if (slices_.empty() || slices_.back().index < index) return slices_.emplace_back(Slice{index, {}}).bursts;
+  // Where no time is empty its place is known.
+  const auto place = static_cast<std::size_t>(std::max<std::int64_t>(index - slices_.front().index, 0));
+  if (place < slices_.size() && slices_[place].index == index) return slices_[place].bursts;
+  const auto found = firstFrom(index);
+  const auto at = slices_.begin() + (found - slices_.cbegin());
+  return at != slices_.end() && at->index == index ? at->bursts
+                                                   : slices_.insert(at, Slice{index, {}})->bursts;
+}
+
 void BurstHistory::add(const std::vector<EdgeBurst>& bursts) {
-  for (const EdgeBurst& burst : bursts) {
-    const std::int64_t slice = sliceOf(burst.time_ns);
-    if (slices_.empty()) {
-      first_slice_ = slice;
-      slices_.emplace_back();
-    }
-    while (slice < first_slice_) {
-      slices_.emplace_front();
-      --first_slice_;
-    }
-    while (slice >= first_slice_ + static_cast<std::int64_t>(slices_.size())) slices_.emplace_back();
-    slices_[static_cast<std::size_t>(slice - first_slice_)].push_back(burst);
-  }
+  for (const EdgeBurst& burst : bursts) sliceAt(sliceOf(burst.time_ns)).push_back(burst);
 }
 
 void BurstHistory::dropBefore(std::int64_t time_ns) {
   const std::int64_t slice = sliceOf(time_ns);
-  while (!slices_.empty() && first_slice_ < slice) {
-    slices_.pop_front();
-    ++first_slice_;
-  }
+  while (!slices_.empty() && slices_.front().index < slice) slices_.pop_front();
 }
 
 void BurstHistory::gather(std::int64_t begin_ns, std::int64_t end_ns, std::vector<EdgeBurst>& bursts) const {
-  const std::int64_t end_slice =
-      std::min(sliceOf(end_ns - 1) + 1, first_slice_ + static_cast<std::int64_t>(slices_.size()));
-  for (std::int64_t slice = std::max(sliceOf(begin_ns), first_slice_); slice < end_slice; ++slice) {
-    for (const EdgeBurst& burst : slices_[static_cast<std::size_t>(slice - first_slice_)]) {
+  const std::int64_t last = sliceOf(end_ns - 1);
+  for (auto slice = firstFrom(sliceOf(begin_ns)); slice != slices_.end() && slice->index <= last; ++slice) {
+    for (const EdgeBurst& burst : slice->bursts) {
       if (burst.time_ns >= begin_ns && burst.time_ns < end_ns) bursts.push_back(burst);
     }
   }
@@ -51,12 +51,16 @@ void BurstHistory::gather(std::int64_t begin_ns, std::int64_t end_ns, std::vecto
 
 std::size_t BurstHistory::count(std::int64_t begin_ns, std::int64_t end_ns) const {
   std::size_t sum = 0;
-  const std::int64_t end_slice =
-      std::min(sliceOf(end_ns - 1) + 1, first_slice_ + static_cast<std::int64_t>(slices_.size()));
-  for (std::int64_t slice = std::max(sliceOf(begin_ns), first_slice_); slice < end_slice; ++slice) {
-    sum += slices_[static_cast<std::size_t>(slice - first_slice_)].size();
-  }
+  const std::int64_t last = sliceOf(end_ns - 1);
+  for (auto slice = firstFrom(sliceOf(begin_ns)); slice != slices_.end() && slice->index <= last; ++slice)
+    sum += slice->bursts.size();
   return sum;
+}
+
+std::optional<std::int64_t> BurstHistory::nextAfter(std::int64_t from_ns) const {
+  const auto slice = firstFrom(sliceOf(from_ns));
+  if (slice == slices_.end()) return std::nullopt;
+  return std::max(from_ns, slice->index * kSlice_ns);
 }
 
 void keepSupported(Resolution resolution_px, int least_support, std::vector<EdgeBurst>& bursts) {

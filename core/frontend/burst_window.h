@@ -8,12 +8,14 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 namespace evical {
 
-// Recent bursts in slices of time, so that any window of the kept history can be gathered.
+// Recent bursts in slices of time, so that any window of the kept history can be gathered. Time without bursts
+// takes no room.
 class BurstHistory {
  public:
   void add(const std::vector<EdgeBurst>& bursts);
@@ -22,13 +24,21 @@ class BurstHistory {
   // Appends all bursts with begin_ns <= time < end_ns.
   void gather(std::int64_t begin_ns, std::int64_t end_ns, std::vector<EdgeBurst>& bursts) const;
   std::size_t count(std::int64_t begin_ns, std::int64_t end_ns) const;  // to a slice's accuracy
+  // Until when there are no bursts from this time on, to a slice's accuracy; none where none are later.
+  std::optional<std::int64_t> nextAfter(std::int64_t from_ns) const;
   bool empty() const { return slices_.empty(); }
 
  private:
-  std::int64_t sliceOf(std::int64_t time_ns) const;
+  struct Slice {
+    std::int64_t index;  // time over a slice's length
+    std::vector<EdgeBurst> bursts;
+  };
+  using Slices = std::deque<Slice>;
 
-  std::int64_t first_slice_ = 0;
-  std::deque<std::vector<EdgeBurst>> slices_;
+  std::vector<EdgeBurst>& sliceAt(std::int64_t index);
+  Slices::const_iterator firstFrom(std::int64_t index) const;
+
+  Slices slices_;  // ascending, none of them empty
 };
 
 // Drops bursts that stand alone: fewer than `least_support` of their kind in

@@ -160,6 +160,7 @@ class WindowWorker {
       tracker =
           std::make_unique<BoardTracker>(session_.board, *batch.opened_px, lenses_[batch.camera].seen_with,
                                          session_.options.front_end, batch.start_ns);
+      tracker->stopWith(context_.stop);
       if (context_.observer != nullptr)
         tracker->observeWith(context_.observer->windowObserver(batch.camera, *tracker));
     }
@@ -180,8 +181,11 @@ class WindowWorker {
 // Reading: packets to intakes and IMUs, within the session's time range.
 class ReadingPass {
  public:
-  ReadingPass(const Session& session, RecordingPass& result)
-      : session_(session), recording_(session), result_(result), pending_(session.cameras.size()) {
+  ReadingPass(const Session& session, const RunContext& context, RecordingPass& result)
+      : session_(session),
+        recording_(session, context.stop),
+        result_(result),
+        pending_(session.cameras.size()) {
     result.imus.resize(session.imus.size());
     result.start_ns = recording_.start_ns();
     for (std::size_t camera = 0; camera < session.cameras.size(); ++camera) {
@@ -280,7 +284,7 @@ RecordingPass readAndDetect(const Session& session, std::vector<CameraLens> lens
   RecordingPass result;
   result.lenses = std::move(lenses);
   const Stopwatch stopwatch;
-  ReadingPass reading(session, result);
+  ReadingPass reading(session, context, result);
   WindowWorker worker(session, result.lenses, context);
   BoundedQueue<BurstBatch> queue(kQueuedBatches);
   {
@@ -297,6 +301,7 @@ RecordingPass readAndDetect(const Session& session, std::vector<CameraLens> lens
   worker.rethrow();
   context.throwIfStopped();
   result.cameras = worker.finish();
+  context.throwIfStopped();
   result.detect_s = worker.busy_s();
   reading.finish();
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {

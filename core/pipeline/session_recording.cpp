@@ -2,10 +2,12 @@
 
 #include "core/base/error.h"
 #include "core/base/time.h"
+#include "core/data/unfit_samples.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -22,10 +24,12 @@ std::int64_t SessionRecording::Source::time_ns() const {
   return finished ? std::numeric_limits<std::int64_t>::max() : firstTime_ns(next);
 }
 
-SessionRecording::SessionRecording(const Session& session) : session_(session) {
+SessionRecording::SessionRecording(const Session& session, std::stop_token stop)
+    : session_(session), stop_(std::move(stop)) {
   for (const SessionCamera& camera : session.cameras)
     addSensor(camera.recording, camera.stream, StreamType::Events);
   for (const SessionImu& imu : session.imus) addSensor(imu.recording, imu.stream, StreamType::Imu);
+  gates_.resize(places_.size());
   for (Source& source : sources_) {
     source.reader->select(source.selected);
     advance(source);
@@ -122,13 +126,39 @@ bool SessionRecording::read(SensorPacket& packet) {
 
 // The next packet that holds something.
 void SessionRecording::advance(Source& source) {
-  do {
-    source.finished = !source.reader->read(source.raw);
-  } while (!source.finished && source.raw.events.empty() && source.raw.imu_samples.empty());
-  if (source.finished) return;
-  const auto found = std::find(source.selected.begin(), source.selected.end(), source.raw.stream);
-  source.next.sensor = source.sensors[static_cast<std::size_t>(found - source.selected.begin())];
-  bringHome(source.raw, source.next);
+  while (!source.read_out) {
+    source.read_out = stop_.stop_requested() || !source.reader->read(source.raw);
+    if (source.read_out) break;
+    if (source.raw.events.empty() && source.raw.imu_samples.empty()) continue;
+    const auto found = std::find(source.selected.begin(), source.selected.end(), source.raw.stream);
+    source.next.sensor = source.sensors[static_cast<std::size_t>(found - source.selected.begin())];
+    bringHome(source.raw, source.next);
+    letIn(source.next);
+    if (!source.next.events.empty() || !source.next.imu_samples.empty()) return;
+  }
+  source.finished = !flushNext(source);
+}
+
+// What a sensor's stamps were waiting for has not come.
+bool SessionRecording::flushNext(Source& source) {
+  while (source.flushed < source.sensors.size()) {
+    source.next.sensor = source.sensors[source.flushed++];
+    Gate& gate = gates_[source.next.sensor];
+    gate.events.finish(source.next.events);
+    gate.samples.finish(source.next.imu_samples);
+    if (!source.next.events.empty() || !source.next.imu_samples.empty()) return true;
+  }
+  return false;
+}
+
+void SessionRecording::letIn(SensorPacket& packet) {
+  Gate& gate = gates_[packet.sensor];
+  for (const ImuSample& sample : packet.imu_samples) {
+    if (!isMeasurable(sample) && gate.immeasurable++ == 0) gate.immeasurable_ns = sample.time_ns;
+  }
+  std::erase_if(packet.imu_samples, [](const ImuSample& sample) { return !isMeasurable(sample); });
+  gate.events.filter(packet.events);
+  gate.samples.filter(packet.imu_samples);
 }
 
 // Units and clock; the events' storage changes hands.
@@ -158,9 +188,34 @@ double SessionRecording::fractionRead() const {
 
 std::vector<RecordingFault> SessionRecording::faults() const {
   std::vector<RecordingFault> all;
+  for (std::size_t sensor = 0; sensor < gates_.size(); ++sensor) addFaults(sensor, all);
   for (const Source& source : sources_)
     all.insert(all.end(), source.reader->faults().begin(), source.reader->faults().end());
   return all;
+}
+
+void SessionRecording::addFaults(std::size_t sensor, std::vector<RecordingFault>& faults) const {
+  const std::string& stream = info(sensor).name;
+  const Gate& gate = gates_[sensor];
+  const auto sayStrays = [&](const auto& filter, const char* items) {
+    if (filter.strays() == 0) return;
+    const double away_s = secondsSince(filter.strayFrom_ns(), filter.strayTime_ns());
+    faults.push_back(
+        {stream, FaultKind::Corrupt, secondsSince(start_ns_, filter.strayFrom_ns()),
+         fmt::format("{}: {} {} left out, whose time stamps are far from those around them (the first "
+                     "is {:.3f} s {}, at {:.3f} s)",
+                     stream, filter.strays(), items, std::abs(away_s), away_s < 0.0 ? "behind" : "ahead",
+                     secondsSince(start_ns_, filter.strayFrom_ns()))});
+  };
+  sayStrays(gate.events, "events");
+  sayStrays(gate.samples, "IMU samples");
+  if (gate.immeasurable == 0) return;
+  const double at_s = secondsSince(start_ns_, gate.immeasurable_ns);
+  faults.push_back(
+      {stream, FaultKind::NotFinite, at_s,
+       fmt::format("{}: {} IMU samples left out, whose values are no numbers, or none that a sensor "
+                   "measures (the first at {:.3f} s)",
+                   stream, gate.immeasurable, at_s)});
 }
 
 }  // namespace evical

@@ -1,14 +1,17 @@
 // The recordings of a session read as one: the streams of its sensors in packets, with known clock offsets
-// added and IMU samples in SI units. Of several files the one that is furthest behind is read next, so memory
+// added and IMU samples in SI units. What no sensor can have measured, and time stamps that no others bear
+// out, stay outside. Of several files the one that is furthest behind is read next, so memory
 // stays that of a packet a file.
 #pragma once
 
 #include "core/pipeline/session.h"
 #include "core/recording/recording_reader.h"
+#include "core/recording/stray_stamps.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <stop_token>
 #include <vector>
 
 namespace evical {
@@ -25,7 +28,8 @@ class SessionRecording {
  public:
   // Opens the files and reads the first packet of each. Throws CalibrationError (BadInput) for files and
   // streams that are not there, and for files whose clocks have nothing to do with each other.
-  explicit SessionRecording(const Session& session);
+  // Asked to stop, it ends as if the files did.
+  explicit SessionRecording(const Session& session, std::stop_token stop = {});
 
   std::size_t imuSensor(std::size_t imu) const { return session_.cameras.size() + imu; }
 
@@ -38,7 +42,8 @@ class SessionRecording {
 
   bool read(SensorPacket& packet);
   double fractionRead() const;
-  std::vector<RecordingFault> faults() const;  // complete once read() has returned false
+  // Of the files, and what was kept outside; complete once read() has returned false.
+  std::vector<RecordingFault> faults() const;
 
  private:
   // One file.
@@ -48,23 +53,37 @@ class SessionRecording {
     std::vector<std::size_t> selected, sensors;  // streams of the file, and what they are here
     Packet raw;                                  // as the reader hands it out
     SensorPacket next;
+    bool read_out = false;    // then only what its sensors still hold back is left
+    std::size_t flushed = 0;  // of its sensors
     bool finished = false;
     std::int64_t time_ns() const;
   };
   struct Place {
     std::size_t source = 0, stream = 0;
   };
+  // What does not come in from one sensor.
+  struct Gate {
+    StampFilter<Event> events{kEventStamps};
+    StampFilter<ImuSample> samples{kSampleStamps};
+    std::uint64_t immeasurable = 0;
+    std::int64_t immeasurable_ns = 0;  // the first
+  };
 
   std::size_t sourceOf(const std::filesystem::path& path);
   void addSensor(const std::filesystem::path& path, const std::string& stream, StreamType type);
   void advance(Source& source);
   void bringHome(Packet& raw, SensorPacket& packet) const;
+  void letIn(SensorPacket& packet);
+  bool flushNext(Source& source);
+  void addFaults(std::size_t sensor, std::vector<RecordingFault>& faults) const;
   void checkClocks() const;
   const StreamInfo& info(std::size_t sensor) const;
 
   const Session& session_;
+  std::stop_token stop_;
   std::vector<Source> sources_;
   std::vector<Place> places_;  // by sensor
+  std::vector<Gate> gates_;    // by sensor
   std::int64_t start_ns_ = 0;
 };
 

@@ -1,5 +1,14 @@
 // Recordings that are not there, damaged, or not what the session says.
+#include "core/recording/recording_reader.h"
+#include "core/recording/recording_writer.h"
 #include "tests/system/session_case.h"
+
+#include <QElapsedTimer>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
 
 using namespace evical::test;
 
@@ -16,6 +25,9 @@ class TestBadRecording : public QObject {
   void bag_withABrokenChunk_isReadAroundIt();
   void bag_withoutAWholeChunk_isRefused();
   void events_outOfOrder_areReported();
+  void eventStamps_thatLie_costNothing_data();
+  void eventStamps_thatLie_costNothing();
+  void imuSamples_thatAreNoNumbers_areLeftOut();
   void imuGap_isReportedWithItsPlace();
   void sensors_withoutOverlap_areRefusedWithBothRanges();
   void accelerations_inG_areRecognised();
@@ -105,6 +117,63 @@ void TestBadRecording::events_outOfOrder_areReported() {
   const Outcome outcome = test.calibrate();
   QVERIFY2(outcome.errors.contains(QRegularExpression("out of order|backwards")), qPrintable(outcome.errors));
   VERIFY_OUTCOME(outcome, 0);
+}
+
+void TestBadRecording::eventStamps_thatLie_costNothing_data() {
+  QTest::addColumn<double>("where");  // of the file
+  QTest::addColumn<double>("moved_s");
+  const double kDay_s = 86'400.0;
+  QTest::newRow("20 s ahead") << 0.5 << 20.0;
+  QTest::newRow("a day ahead") << 0.5 << kDay_s;
+  QTest::newRow("the last a day ahead") << 1.0 << kDay_s;
+  QTest::newRow("the first 0") << 0.0 << 0.0;
+}
+
+// One line of the events has another time: that event is lost, and said to be.
+void TestBadRecording::eventStamps_thatLie_costNothing() {
+  QFETCH(double, where);
+  QFETCH(double, moved_s);
+  SessionCase test;
+  QByteArray events = readFile(test.path("events.txt")).trimmed();
+  const qsizetype at = static_cast<qsizetype>(where * static_cast<double>(events.size() - 1));
+  const qsizetype begin = events.lastIndexOf('\n', at) + 1, end = events.indexOf(' ', begin);
+  const double time_s = events.mid(begin, end - begin).toDouble();
+  events.replace(begin, end - begin, where == 0.0 ? "0.0" : QByteArray::number(time_s + moved_s, 'f', 9));
+  test.replace("events.txt", events + '\n');
+  QElapsedTimer timer;
+  timer.start();
+  const Outcome outcome = test.calibrate();
+  VERIFY_OUTCOME(outcome, 0);
+  QVERIFY2(outcome.errors.contains("1 events left out, whose time stamps"), qPrintable(outcome.errors));
+  QVERIFY2(!outcome.errors.contains("time runs backwards"), qPrintable(outcome.errors));
+  QVERIFY2(timer.elapsed() < 60'000, qPrintable(QString::number(timer.elapsed())));
+}
+
+// A bag, since text has no samples that are no numbers.
+void TestBadRecording::imuSamples_thatAreNoNumbers_areLeftOut() {
+  SessionCase test("short_bag");
+  const std::string whole = test.path("recording.bag").toStdString(),
+                    spoilt = test.path("spoilt.bag").toStdString();
+  const std::unique_ptr<evical::RecordingReader> reader = evical::openRecording(whole);
+  const std::unique_ptr<evical::RecordingWriter> writer =
+      evical::createRecording(spoilt, "bag", reader->streams());
+  evical::Packet packet;
+  std::size_t samples = 0;
+  while (reader->read(packet)) {
+    const evical::StreamInfo& stream = reader->streams()[packet.stream];
+    std::vector<evical::ImuSample> si;
+    evical::toSi(packet.imu_samples, stream.acceleration_unit, stream.angular_rate_unit, si);
+    for (evical::ImuSample& sample : si)
+      if (samples++ == 500) sample.specific_force_m_s2.x() = std::nan("");
+    if (!packet.events.empty()) writer->write(packet.stream, packet.events);
+    if (!si.empty()) writer->write(packet.stream, si);
+  }
+  writer->finish();
+  test.change("recording: recording.bag", "recording: spoilt.bag");
+  const Outcome outcome = test.calibrate();
+  VERIFY_OUTCOME(outcome, 0);
+  QVERIFY2(outcome.errors.contains("1 IMU samples left out, whose values are no numbers"),
+           qPrintable(outcome.errors));
 }
 
 void TestBadRecording::imuGap_isReportedWithItsPlace() {

@@ -4,7 +4,11 @@
 #include "core/synthetic/event_simulator.h"
 #include "tests/support/test_program.h"
 
+#include <QElapsedTimer>
+
+#include <algorithm>
 #include <cmath>
+#include <stop_token>
 
 namespace {
 
@@ -65,6 +69,8 @@ class TestBoardTracker : public QObject {
   void boardLaidWrongly_isLaidAnewWithAllItsViews_data();
   void boardLaidWrongly_isLaidAnewWithAllItsViews();
   void aThirdThatIsHidden_leavesTheQuarterTurnOpen();
+  void emptyTime_costsNothing();
+  void askedToStop_itLooksAtNoMoreWindows();
 };
 
 void TestBoardTracker::simulatedRecording_isSolved_data() {
@@ -198,6 +204,45 @@ void TestBoardTracker::boardLaidWrongly_isLaidAnewWithAllItsViews() {
 void TestBoardTracker::aThirdThatIsHidden_leavesTheQuarterTurnOpen() {
   const Numbering n = numbering(3, 0.3, 1000);
   QVERIFY2(n.wrong > n.all / 2, qPrintable(QString("%1 of %2").arg(n.wrong).arg(n.all)));
+}
+
+// Window by window a day is six million.
+void TestBoardTracker::emptyTime_costsNothing() {
+  constexpr std::int64_t kDay_ns = 86'400LL * 1'000'000'000;
+  const Detected usual = detect(CandidateSource::NormalFlow);
+  std::vector<Event> torn = events();
+  const std::int64_t half_ns = (torn.front().time_ns + torn.back().time_ns) / 2;
+  for (Event& event : torn)
+    if (event.time_ns > half_ns) event.time_ns += kDay_ns;
+  const Detected same;
+  BoardTracker tracker(same.scenario.board, {346, 260}, same.scenario.cameras[0].intrinsics,
+                       FrontEndOptions{}, same.scenario.start_ns);
+  QElapsedTimer timer;
+  timer.start();
+  for (std::size_t i = 0; i < torn.size(); i += 20'000)
+    tracker.add(EventSpan(torn.data() + i, std::min<std::size_t>(20'000, torn.size() - i)));
+  const BoardObservations observations = tracker.finish();
+  QVERIFY2(timer.elapsed() < 60'000, qPrintable(QString::number(timer.elapsed())));
+  QVERIFY2(
+      observations.views.size() + 30 > usual.observations.views.size(),
+      qPrintable(QString("%1 of %2").arg(observations.views.size()).arg(usual.observations.views.size())));
+  QVERIFY(observations.windows.size() < usual.observations.windows.size() + 100);
+  QVERIFY(observations.views.front().time_s < 1.0 && observations.views.back().time_s > 86'400.0);
+}
+
+void TestBoardTracker::askedToStop_itLooksAtNoMoreWindows() {
+  std::stop_source source;
+  const Detected same;
+  BoardTracker tracker(same.scenario.board, {346, 260}, same.scenario.cameras[0].intrinsics,
+                       FrontEndOptions{}, same.scenario.start_ns);
+  tracker.stopWith(source.get_token());
+  const std::size_t most = events().size() * 95 / 100;  // bursts of slow edges are waited for
+  tracker.add(EventSpan(events().data(), most));
+  const std::size_t windows = tracker.observations().windows.size();
+  QVERIFY2(windows > 3, qPrintable(QString::number(windows)));
+  source.request_stop();
+  tracker.add(EventSpan(events().data() + most, events().size() - most));
+  QCOMPARE(tracker.finish().windows.size(), windows);
 }
 
 }  // namespace

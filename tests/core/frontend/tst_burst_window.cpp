@@ -5,6 +5,7 @@
 #include "tests/core/frontend/synthetic_bursts.h"
 #include "tests/support/test_program.h"
 
+#include <algorithm>
 #include <random>
 
 namespace {
@@ -22,6 +23,7 @@ class TestBurstWindow : public QObject {
   void history_gathersWhatLiesInTime();
   void history_takesBurstsInAnyOrder();
   void history_dropsOld();
+  void history_needsNoRoomForEmptyTime();
 };
 
 void TestBurstWindow::visitBox_findsAllInside() {
@@ -116,6 +118,22 @@ void TestBurstWindow::history_dropsOld() {
   QVERIFY(found.size() >= 50 && found.size() <= 51);
   history.dropBefore(5'000'000'000);
   QVERIFY(history.empty());
+}
+
+// A slice for each 5 ms would be six thousand million a year.
+void TestBurstWindow::history_needsNoRoomForEmptyTime() {
+  constexpr std::int64_t kYear_ns = 365LL * 86'400 * 1'000'000'000;
+  BurstHistory history;
+  history.add({{kYear_ns, 0, 1, 1, 3, true}, {0, 0, 2, 2, 3, true}, {-kYear_ns, 0, 3, 3, 3, true}});
+  history.add({{kYear_ns + 1, 0, 4, 4, 3, true}, {1, 0, 5, 5, 3, true}});
+  std::vector<EdgeBurst> found;
+  history.gather(-2 * kYear_ns, 2 * kYear_ns, found);
+  QCOMPARE(found.size(), std::size_t{5});
+  const auto earlier = [](const EdgeBurst& a, const EdgeBurst& b) { return a.time_ns < b.time_ns; };
+  QVERIFY(std::is_sorted(found.begin(), found.end(), earlier));
+  QCOMPARE(history.count(0, 2), std::size_t{2});
+  QVERIFY(*history.nextAfter(10'000'000) >= kYear_ns - 5'000'000);
+  QVERIFY(!history.nextAfter(kYear_ns + 10'000'000));
 }
 
 }  // namespace

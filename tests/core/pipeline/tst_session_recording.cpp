@@ -6,6 +6,8 @@
 
 #include <QTemporaryDir>
 
+#include <cmath>
+
 using namespace evical;
 using namespace evical::test;
 
@@ -40,6 +42,8 @@ class TestSessionRecording : public QObject {
   void clocksWithoutRelation_areRefused();
   void missingStream_namesFileAndStreams();
   void intrinsicsOfAnotherResolution_areRefused();
+  void samplesThatAreNoMeasurements_stayOutside();
+  void strayStamps_moveNeitherBeginningNorEnd();
 
  private:
   std::filesystem::path path(const char* name) const { return folder_.filePath(name).toStdString(); }
@@ -178,6 +182,52 @@ void TestSessionRecording::intrinsicsOfAnotherResolution_areRefused() {
     QVERIFY2(QString(error.what()).contains("for 640 x 480 px, but the recording is of 346 x 260"),
              error.what());
   }
+}
+
+void TestSessionRecording::samplesThatAreNoMeasurements_stayOutside() {
+  Recording spoilt = written_;
+  spoilt.imu_samples[5].specific_force_m_s2.x() = std::nan("");
+  spoilt.imu_samples[9].angular_rate_rad_s.z() = 1e22;
+  writeAll(*createBag(path("whole.bag"), sampleStreams(), false), spoilt);
+  std::size_t imu_sensor = 0;
+  const Recording read = readSession(imu_sensor);
+  QCOMPARE(read.imu_samples.size(), written_.imu_samples.size() - 2);
+  QCOMPARE(qint64(read.imu_samples[5].time_ns), qint64(written_.imu_samples[6].time_ns));
+  SessionRecording recording(session_);
+  SensorPacket packet;
+  while (recording.read(packet)) continue;
+  QCOMPARE(recording.faults().size(), std::size_t{1});
+  const RecordingFault fault = recording.faults().front();
+  QVERIFY(fault.kind == FaultKind::NotFinite);
+  QCOMPARE(fault.stream, std::string("/dvs/imu"));
+  QVERIFY2(fault.text.find("2 IMU samples left out") != std::string::npos, fault.text.c_str());
+}
+
+void TestSessionRecording::strayStamps_moveNeitherBeginningNorEnd() {
+  constexpr std::int64_t kDay_ns = 86'400LL * 1'000'000'000;
+  Recording spoilt = written_;
+  spoilt.events.front().time_ns = 0;
+  spoilt.events[20'000].time_ns += kDay_ns;
+  spoilt.events.back().time_ns += kDay_ns;
+  spoilt.imu_samples.front().time_ns = 0;
+  writeAll(*createBag(path("whole.bag"), sampleStreams(), false), spoilt);
+  SessionRecording recording(session_);
+  QCOMPARE(qint64(recording.start_ns()), qint64(written_.events[1].time_ns));
+  std::size_t events = 0, samples = 0;
+  SensorPacket packet;
+  while (recording.read(packet)) {
+    for (const Event& event : packet.events)
+      QVERIFY(event.time_ns >= written_.events.front().time_ns &&
+              event.time_ns <= written_.events.back().time_ns);
+    events += packet.events.size();
+    samples += packet.imu_samples.size();
+  }
+  QCOMPARE(events, written_.events.size() - 3);
+  QCOMPARE(samples, written_.imu_samples.size() - 1);
+  QCOMPARE(recording.faults().size(), std::size_t{2});
+  QVERIFY(recording.faults().front().kind == FaultKind::Corrupt);
+  QVERIFY2(recording.faults().front().text.find("3 events left out") != std::string::npos,
+           recording.faults().front().text.c_str());
 }
 
 EVICAL_TEST(TestSessionRecording)

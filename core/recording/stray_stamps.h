@@ -1,0 +1,117 @@
+// Time stamps count only if those that follow bear them out: one event of next year, or a first one stamped 0,
+// must not move a recording's beginning or make everything after it late.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace evical {
+
+// How far a stamp may be from those before it without further proof, and how many that agree are proof.
+struct StampTolerance {
+  std::int64_t ahead_ns, behind_ns;
+  std::size_t enough;
+};
+// Events hardly ever pause for longer; what does is looked at, and costs little. Packets of IMU samples may.
+inline constexpr StampTolerance kEventStamps = {100'000'000, 1'000'000'000, 16};
+inline constexpr StampTolerance kSampleStamps = {1'000'000'000, 1'000'000'000, 3};
+
+// Items of one sensor on their way, in the order in which they were recorded. Those that jump wait until
+// enough follow that agree with them, or until one agrees again with what was before: then they were strays.
+// Item has a member time_ns.
+template <class Item>
+class StampFilter {
+ public:
+  explicit StampFilter(StampTolerance tolerance) : tolerance_(tolerance) {}
+
+  // Leaves in `items` those that count so far.
+  void filter(std::vector<Item>& items);
+  // At the end. Few items in all count as they are.
+  void finish(std::vector<Item>& items);
+
+  std::uint64_t strays() const { return strays_; }
+  // Of the first stray: its stamp, and the one from which it is away.
+  std::int64_t strayTime_ns() const { return stray_time_ns_; }
+  std::int64_t strayFrom_ns() const { return stray_from_ns_; }
+
+ private:
+  static constexpr std::size_t kMostWaiting = 100'000;
+  static constexpr std::int64_t kEnough_ns = 50'000'000;  // a packet with a wrong stamp is shorter
+
+  bool near(const Item& item, std::int64_t time_ns) const {
+    return item.time_ns <= time_ns + tolerance_.ahead_ns && item.time_ns >= time_ns - tolerance_.behind_ns;
+  }
+  void take(const Item& item, std::vector<Item>& kept);
+  void wait(const Item& item, std::vector<Item>& kept);
+  void dropWaiting(std::int64_t from_ns);
+
+  StampTolerance tolerance_;
+  bool started_ = false;
+  std::int64_t latest_ns_ = 0;
+  std::vector<Item> waiting_;
+  std::uint64_t strays_ = 0;
+  std::int64_t stray_time_ns_ = 0, stray_from_ns_ = 0;
+};
+
+template <class Item>
+void StampFilter<Item>::filter(std::vector<Item>& items) {
+  std::size_t good = 0;
+  if (started_ && waiting_.empty()) {
+    for (; good < items.size() && near(items[good], latest_ns_); ++good) {
+      if (items[good].time_ns > latest_ns_) latest_ns_ = items[good].time_ns;
+    }
+    if (good == items.size()) return;  // as nearly always
+  }
+  std::vector<Item> kept(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(good));
+  for (; good < items.size(); ++good) {
+    if (started_ && near(items[good], latest_ns_)) {
+      dropWaiting(latest_ns_);
+      take(items[good], kept);
+    } else {
+      wait(items[good], kept);
+    }
+  }
+  items.swap(kept);
+}
+
+template <class Item>
+void StampFilter<Item>::finish(std::vector<Item>& items) {
+  items.clear();
+  if (!started_) items.swap(waiting_);
+  dropWaiting(latest_ns_);
+}
+
+template <class Item>
+void StampFilter<Item>::take(const Item& item, std::vector<Item>& kept) {
+  if (item.time_ns > latest_ns_) latest_ns_ = item.time_ns;
+  kept.push_back(item);
+}
+
+template <class Item>
+void StampFilter<Item>::wait(const Item& item, std::vector<Item>& kept) {
+  if (!waiting_.empty() && !near(item, waiting_.back().time_ns)) dropWaiting(item.time_ns);
+  waiting_.push_back(item);
+  const std::int64_t length_ns = waiting_.back().time_ns - waiting_.front().time_ns;
+  const bool borne_out =
+      waiting_.size() >= tolerance_.enough &&
+      (!started_ || length_ns >= kEnough_ns || length_ns <= -kEnough_ns || waiting_.size() >= kMostWaiting);
+  if (!borne_out) return;
+  started_ = true;
+  latest_ns_ = waiting_.back().time_ns;
+  for (const Item& each : waiting_) take(each, kept);
+  waiting_.clear();
+}
+
+template <class Item>
+void StampFilter<Item>::dropWaiting(std::int64_t from_ns) {
+  if (waiting_.empty()) return;
+  if (strays_ == 0) {
+    stray_time_ns_ = waiting_.front().time_ns;
+    stray_from_ns_ = from_ns;
+  }
+  strays_ += waiting_.size();
+  waiting_.clear();
+}
+
+}  // namespace evical

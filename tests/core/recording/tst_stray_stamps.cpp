@@ -1,0 +1,148 @@
+#include "core/recording/stray_stamps.h"
+
+#include "core/data/event.h"
+#include "tests/support/test_program.h"
+
+#include <algorithm>
+
+namespace {
+
+using namespace evical;
+
+using Events = std::vector<Event>;
+
+constexpr std::int64_t kStart_ns = 1'600'000'000'000'000'000, kSecond_ns = 1'000'000'000,
+                       kDay_ns = 86'400 * kSecond_ns;
+
+// One each 10 us.
+Events steadyEvents(std::size_t count, std::int64_t start_ns = kStart_ns) {
+  Events events;
+  for (std::size_t i = 0; i < count; ++i)
+    events.push_back(
+        {start_ns + static_cast<std::int64_t>(i) * 10'000, static_cast<std::uint16_t>(i % 346), 0, true});
+  return events;
+}
+
+struct Filtered {
+  Events kept;
+  std::uint64_t strays = 0;
+  std::int64_t stray_ns = 0, from_ns = 0;
+};
+
+Filtered filtered(const Events& events, std::size_t packet) {
+  StampFilter<Event> filter(kEventStamps);
+  Filtered result;
+  for (std::size_t i = 0; i < events.size(); i += packet) {
+    Events part(events.begin() + static_cast<std::ptrdiff_t>(i),
+                events.begin() + static_cast<std::ptrdiff_t>(std::min(i + packet, events.size())));
+    filter.filter(part);
+    result.kept.insert(result.kept.end(), part.begin(), part.end());
+  }
+  Events rest;
+  filter.finish(rest);
+  result.kept.insert(result.kept.end(), rest.begin(), rest.end());
+  result.strays = filter.strays();
+  result.stray_ns = filter.strayTime_ns();
+  result.from_ns = filter.strayFrom_ns();
+  return result;
+}
+
+bool sameTimes(const Events& a, const Events& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const Event& left, const Event& right) { return left.time_ns == right.time_ns; });
+}
+
+class TestStrayStamps : public QObject {
+  Q_OBJECT
+ private slots:
+  void goodEvents_areAllKept_data();
+  void goodEvents_areAllKept();
+  void strayStamps_areDropped_data();
+  void strayStamps_areDropped();
+  void packetWithAWrongStamp_isDropped();
+  void pause_isNoStray();
+  void clockThatGoesBackForGood_isFollowed();
+  void fewEvents_countAsTheyAre();
+};
+
+void TestStrayStamps::goodEvents_areAllKept_data() {
+  QTest::addColumn<int>("packet");
+  for (const int packet : {1, 7, 1000, 100'000}) QTest::addRow("%d", packet) << packet;
+}
+
+void TestStrayStamps::goodEvents_areAllKept() {
+  QFETCH(int, packet);
+  const Events events = steadyEvents(20'000);
+  const Filtered result = filtered(events, static_cast<std::size_t>(packet));
+  QVERIFY(sameTimes(result.kept, events));
+  QCOMPARE(result.strays, std::uint64_t{0});
+}
+
+void TestStrayStamps::strayStamps_areDropped_data() {
+  QTest::addColumn<QList<qsizetype>>("where");
+  QTest::addColumn<qint64>("stamp_ns");
+  const QList<qsizetype> middle = {10'000}, last = {19'999}, first = {0},
+                         several = {5000, 5003, 9000, 15'000};
+  QTest::newRow("20 s ahead") << middle << qint64(kStart_ns + 20 * kSecond_ns);
+  QTest::newRow("half a second ahead") << middle << qint64(kStart_ns + kSecond_ns / 2);
+  QTest::newRow("a day ahead") << middle << qint64(kStart_ns + kDay_ns);
+  QTest::newRow("the last a day ahead") << last << qint64(kStart_ns + kDay_ns);
+  QTest::newRow("the first 0") << first << qint64(0);
+  QTest::newRow("the first a day ahead") << first << qint64(kStart_ns + kDay_ns);
+  QTest::newRow("0 in between") << middle << qint64(0);
+  QTest::newRow("several") << several << qint64(kStart_ns + kDay_ns);
+}
+
+void TestStrayStamps::strayStamps_areDropped() {
+  QFETCH(QList<qsizetype>, where);
+  QFETCH(qint64, stamp_ns);
+  Events events = steadyEvents(20'000), good = events;
+  for (qsizetype k = where.size(); k-- > 0;) {
+    events[static_cast<std::size_t>(where[k])].time_ns = stamp_ns;
+    good.erase(good.begin() + where[k]);
+  }
+  for (const std::size_t packet : {std::size_t{1}, std::size_t{512}, events.size()}) {
+    const Filtered result = filtered(events, packet);
+    QVERIFY(sameTimes(result.kept, good));
+    QCOMPARE(result.strays, static_cast<std::uint64_t>(where.size()));
+    QCOMPARE(qint64(result.stray_ns), stamp_ns);
+    QVERIFY(std::abs(result.from_ns - kStart_ns) < kSecond_ns);
+  }
+}
+
+void TestStrayStamps::packetWithAWrongStamp_isDropped() {
+  Events events = steadyEvents(20'000), good = events;
+  for (std::size_t i = 8000; i < 9000; ++i) events[i].time_ns += 20 * kSecond_ns;
+  good.erase(good.begin() + 8000, good.begin() + 9000);
+  const Filtered result = filtered(events, 1000);
+  QVERIFY(sameTimes(result.kept, good));
+  QCOMPARE(result.strays, std::uint64_t{1000});
+}
+
+// The lens was covered: what comes after is borne out by more of the same.
+void TestStrayStamps::pause_isNoStray() {
+  Events events = steadyEvents(20'000);
+  const Events after = steadyEvents(20'000, kStart_ns + 3600 * kSecond_ns);
+  events.insert(events.end(), after.begin(), after.end());
+  const Filtered result = filtered(events, 700);
+  QVERIFY(sameTimes(result.kept, events));
+  QCOMPARE(result.strays, std::uint64_t{0});
+}
+
+void TestStrayStamps::clockThatGoesBackForGood_isFollowed() {
+  Events events = steadyEvents(20'000);
+  const Events after = steadyEvents(20'000, kStart_ns - 3600 * kSecond_ns);
+  events.insert(events.end(), after.begin(), after.end());
+  QVERIFY(sameTimes(filtered(events, 700).kept, events));
+}
+
+void TestStrayStamps::fewEvents_countAsTheyAre() {
+  const Events events = steadyEvents(5);
+  QVERIFY(sameTimes(filtered(events, 2).kept, events));
+  QVERIFY(filtered({}, 1).kept.empty());
+}
+
+}  // namespace
+
+EVICAL_TEST(TestStrayStamps)
+#include "tst_stray_stamps.moc"
