@@ -7,13 +7,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <string>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 namespace evical {
@@ -43,51 +44,163 @@ void giveUsualPermissions(int file) {
   static_cast<void>(::fchmod(file, 0666 & ~mask));
 }
 
-// Files written beside their targets; those that were not renamed go away again.
+// Why nothing may be put there, as errno has it; 0 if it may. A rename would replace a device or a pipe.
+int whyNoPlace(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+  if (std::filesystem::is_directory(status)) return EISDIR;
+  return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) ? EEXIST : 0;
+}
+
+// A name that nobody else has.
+std::string nameAside(const std::filesystem::path& path) {
+  std::string aside = path.string() + ".part.XXXXXX";
+  const int file = ::mkostemp(aside.data(), O_CLOEXEC);
+  if (file < 0) throw writeError(path, errno);
+  ::close(file);
+  return aside;
+}
+
+// Moves that can be taken back until they are kept.
+class Moves {
+ public:
+  Moves() = default;
+  Moves(const Moves&) = delete;
+  Moves& operator=(const Moves&) = delete;
+  ~Moves() {
+    while (!done_.empty()) {
+      takeBack(done_.back());
+      done_.pop_back();
+    }
+  }
+
+  // Out of the way, if it is there.
+  void hide(const std::filesystem::path& path) {
+    struct stat status {};
+    if (::lstat(path.c_str(), &status) != 0) return;
+    const std::string aside = nameAside(path);
+    if (std::rename(path.c_str(), aside.c_str()) != 0) {
+      const int error = errno;
+      ::unlink(aside.c_str());
+      throw writeError(path, error);
+    }
+    done_.push_back({aside, path, Kind::Hidden});
+  }
+
+  void move(const std::filesystem::path& from, const std::filesystem::path& to) {
+    if (const int error = whyNoPlace(to)) throw writeError(to, error);
+    if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0) {
+      done_.push_back({from, to, Kind::Exchanged});
+      return;
+    }
+    const bool is_new = errno == ENOENT;  // else this file system exchanges nothing
+    if (std::rename(from.c_str(), to.c_str()) != 0) throw writeError(to, errno);
+    done_.push_back({from, to, is_new ? Kind::New : Kind::Replaced});
+  }
+
+  void keep() {
+    for (const Done& each : done_)
+      if (each.kind == Kind::Exchanged || each.kind == Kind::Hidden) ::unlink(each.from.c_str());
+    done_.clear();
+  }
+
+ private:
+  enum class Kind { New, Exchanged, Replaced, Hidden };
+  struct Done {
+    std::filesystem::path from, to;
+    Kind kind;
+  };
+
+  static void takeBack(const Done& done) {
+    if (done.kind == Kind::Exchanged)
+      static_cast<void>(::renameat2(AT_FDCWD, done.from.c_str(), AT_FDCWD, done.to.c_str(), RENAME_EXCHANGE));
+    if (done.kind == Kind::New) static_cast<void>(std::rename(done.to.c_str(), done.from.c_str()));
+    if (done.kind == Kind::Hidden) static_cast<void>(std::rename(done.from.c_str(), done.to.c_str()));
+  }
+
+  std::vector<Done> done_;
+};
+
+// Files written beside their targets; those that were not moved there go away again.
 class FilesAside {
  public:
   FilesAside() = default;
   FilesAside(const FilesAside&) = delete;
   FilesAside& operator=(const FilesAside&) = delete;
   ~FilesAside() {
-    for (const auto& [aside, path] : names_) ::unlink(aside.c_str());
+    for (const FileMove& each : files_) ::unlink(each.from.c_str());
   }
 
   void write(const std::filesystem::path& path, std::string_view content) {
-    std::string aside = path.string() + ".XXXXXX";
+    removeLitterOf(path);
+    if (const int error = whyNoPlace(path)) throw writeError(path, error);
+    std::string aside = path.string() + ".part.XXXXXX";
     const int file = ::mkostemp(aside.data(), O_CLOEXEC);
     if (file < 0) throw writeError(path, errno);
-    names_.emplace_back(aside, path);
+    files_.push_back({aside, path});
     giveUsualPermissions(file);
     int error = writeAndSync(file, content);
     if (::close(file) != 0 && error == 0) error = errno;
     if (error != 0) throw writeError(path, error);
   }
 
-  void rename() {
-    while (!names_.empty()) {
-      const auto& [aside, path] = names_.front();
-      if (std::rename(aside.c_str(), path.c_str()) != 0) throw writeError(path, errno);
-      names_.erase(names_.begin());
-    }
+  void move() {
+    moveFilesWhole(files_);
+    files_.clear();
   }
 
  private:
-  std::vector<std::pair<std::string, std::filesystem::path>> names_;
+  std::vector<FileMove> files_;
 };
+
+// The time of the last change in it.
+std::filesystem::file_time_type lastChange(const std::filesystem::path& path) {
+  std::error_code ignored;
+  std::filesystem::file_time_type latest = std::filesystem::last_write_time(path, ignored);
+  if (ignored || !std::filesystem::is_directory(std::filesystem::symlink_status(path, ignored)))
+    return latest;
+  for (const auto& entry : std::filesystem::directory_iterator(path, ignored)) {
+    std::error_code none;
+    const auto changed = entry.last_write_time(none);
+    if (!none) latest = std::max(latest, changed);
+  }
+  return latest;
+}
 
 }  // namespace
 
 void writeFileWhole(const std::filesystem::path& path, std::string_view content) {
   FilesAside aside;
   aside.write(path, content);
-  aside.rename();
+  aside.move();
 }
 
 void writeFilesWhole(std::span<const FileContent> files) {
   FilesAside aside;
   for (const FileContent& file : files) aside.write(file.path, file.content);
-  aside.rename();
+  aside.move();
+}
+
+void moveFilesWhole(std::span<const FileMove> all) {
+  Moves moves;
+  if (all.size() > 1) moves.hide(all.back().to);
+  for (const FileMove& each : all) moves.move(each.from, each.to);
+  moves.keep();
+}
+
+void removeLitterOf(const std::filesystem::path& path) {
+  constexpr std::chrono::hours kLeft(1);
+  constexpr std::size_t kRandom = 6;
+  const std::string begin = path.filename().string() + ".part.";
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(path.has_parent_path() ? path.parent_path() : ".", error);
+       !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with(begin) || name.size() != begin.size() + kRandom) continue;
+    if (std::filesystem::file_time_type::clock::now() - lastChange(entry->path()) < kLeft) continue;
+    std::error_code ignored;
+    std::filesystem::remove_all(entry->path(), ignored);
+  }
 }
 
 void makeOutputFolder(const std::filesystem::path& folder) {

@@ -12,7 +12,7 @@ class NewFolder {
  public:
   // Throws CalibrationError (BadInput) if it can't be made or written to.
   explicit NewFolder(const std::filesystem::path& folder)
-      : folder_(folder), was_there_(std::filesystem::exists(folder)) {
+      : folder_(folder), was_there_(isThere(folder)) {
     makeOutputFolder(folder);
   }
   ~NewFolder() {
@@ -25,6 +25,11 @@ class NewFolder {
   bool wasThere() const { return was_there_; }
 
  private:
+  static bool isThere(const std::filesystem::path& folder) {
+    std::error_code ignored;
+    return std::filesystem::exists(folder, ignored);
+  }
+
   std::filesystem::path folder_;
   bool was_there_;
 };

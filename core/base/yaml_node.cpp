@@ -22,12 +22,29 @@ struct YamlNode::Node {
 YamlNode::YamlNode(std::shared_ptr<const Node> node, std::string file, std::string key)
     : node_(std::move(node)), file_(std::move(file)), key_(std::move(key)) {}
 
-YamlNode YamlNode::load(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored))
+namespace {
+
+// What waits for a writer, never ends, or is a recording by mistake is not read into memory.
+void requireText(const std::filesystem::path& file) {
+  constexpr std::uintmax_t kLargest_bytes = 64 << 20;
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (status.type() == std::filesystem::file_type::not_found)
     throw badInput(file.string(), "does not exist", "Check the path");
-  if (std::filesystem::is_directory(file, ignored))
-    throw badInput(file.string(), "is a folder, not a YAML file");
+  if (error) throw badInput(file.string(), "cannot be reached: " + error.message(), "Check its permissions");
+  if (std::filesystem::is_directory(status)) throw badInput(file.string(), "is a folder, not a YAML file");
+  if (!std::filesystem::is_regular_file(status))
+    throw badInput(file.string(), "is a device or a pipe, not a YAML file", "Give a file");
+  const std::uintmax_t size_bytes = std::filesystem::file_size(file, error);
+  if (!error && size_bytes > kLargest_bytes)
+    throw badInput(file.string(), fmt::format("has {} MB, too much for a YAML file", size_bytes >> 20),
+                   "Check that it is not the recording itself");
+}
+
+}  // namespace
+
+YamlNode YamlNode::load(const std::filesystem::path& file) {
+  requireText(file);
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream content;
   if (!stream || !(content << stream.rdbuf()))

@@ -80,8 +80,7 @@ ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Sessio
   NamedResult named = namedResult(session, resultOf(shared_run), version);
   for (std::size_t i = 0; i < named.imus.size() && i < run.pass.imus.size(); ++i)
     named.imus[i].rate_hz = run.pass.imus[i].rate_hz();
-  std::vector<FileContent> files = {{"result.yaml", resultYaml(named)},
-                                    {"trajectory.csv", trajectoryCsv(run.result.state)},
+  std::vector<FileContent> files = {{"trajectory.csv", trajectoryCsv(run.result.state)},
                                     {"detections.csv", detectionsCsv(run.pass.cameras)},
                                     {"windows.csv", windowsCsv(run.pass.cameras)}};
   const std::string biases = biasesCsv(named);
@@ -92,6 +91,7 @@ ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Sessio
   for (const auto& texts : {remarks.notes, remarks.refused})
     for (const std::string& text : texts) full_log += text + "\n";
   files.push_back({"log.txt", full_log});
+  files.push_back({"result.yaml", resultYaml(named)});  // the last tells that all are there
   writeExportedFiles(folder, files);
   return remarks;
 }
@@ -113,8 +113,9 @@ void writeFailure(const std::filesystem::path& folder, const Session& session, c
   failed->timing.read_s = pass.read_s;
   failed->timing.detect_s = pass.detect_s;
   const NamedResult named = namedResult(session, failed, version);
-  std::vector<FileContent> files = {{"result.yaml", resultYaml(named)}, {"log.txt", log}};
+  std::vector<FileContent> files = {{"log.txt", log}};
   addReport(session, named, pass, files);
+  files.push_back({"result.yaml", resultYaml(named)});
   writeExportedFiles(folder, files);
 }
 

@@ -9,7 +9,12 @@
 #include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <span>
 #include <string>
@@ -73,25 +78,43 @@ void takeNames(const RecordingReader& reader, StreamType type, Sensors& sensors)
   }
 }
 
-// What there is of a recording, should its session not come to be.
-std::vector<std::filesystem::path> filesOf(const std::filesystem::path& recording) {
-  if (!std::filesystem::is_directory(recording)) return {recording};
-  std::vector<std::filesystem::path> files;
-  for (const char* name : {"events.txt", "imu.txt", "events.csv", "imu.csv"})
-    files.push_back(recording / name);
-  return files;
-}
-
-// A recording without its session and truth is of no use.
-void writeTexts(const std::vector<FileContent>& texts, const std::vector<std::filesystem::path>& recordings) {
-  try {
-    writeFilesWhole(texts);
-  } catch (...) {
-    std::error_code ignored;
-    for (const std::filesystem::path& recording : recordings) std::filesystem::remove(recording, ignored);
-    throw;
+// Where all is made until it is whole: in the folder that it is for, so that it can be moved there.
+class Workshop {
+ public:
+  explicit Workshop(const std::filesystem::path& folder) {
+    removeLitterOf(folder / kName);
+    std::string path = (folder / kName).string() + ".part.XXXXXX";
+    if (::mkdtemp(path.data()) == nullptr)
+      throw calibrationFailed(folder.string(), fmt::format("cannot be written to: {}", std::strerror(errno)),
+                              "Check the folder, its permissions and the space on the disk");
+    folder_ = path;
   }
-}
+  ~Workshop() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  Workshop(const Workshop&) = delete;
+  Workshop& operator=(const Workshop&) = delete;
+
+  const std::filesystem::path& folder() const { return folder_; }
+
+  // All that is in it takes its place in `folder`, these two last.
+  void deliver(const std::filesystem::path& folder, const std::string& truth,
+               const std::string& session) const {
+    std::vector<FileMove> moves;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+      const std::filesystem::path name = entry.path().filename();
+      if (name != truth && name != session) moves.push_back({entry.path(), folder / name});
+    }
+    moves.push_back({folder_ / truth, folder / truth});
+    moves.push_back({folder_ / session, folder / session});
+    moveFilesWhole(moves);
+  }
+
+ private:
+  static constexpr const char* kName = ".simulation";
+  std::filesystem::path folder_;
+};
 
 void writeRecording(const Scenario& scenario, RecordingWriter& writer, SimulationSummary& summary,
                     const RunContext& context) {
@@ -119,21 +142,23 @@ SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path
   const bool text = scenario.format == SimulatedFormat::Text;
   const RecordingFormat& format = recordingFormat(!format_name.empty() ? format_name : text ? "text" : "bag");
   const NewFolder new_folder(folder);
+  const Workshop workshop(folder);
   SimulationSummary summary;
   const std::string file = format.isFolder() ? "." : std::string("recording") + format.extension;
+  const std::filesystem::path made = format.isFolder() ? workshop.folder() : workshop.folder() / file;
   summary.recording = format.isFolder() ? folder : folder / file;
   summary.session = folder / "session.yaml";
   summary.truth = folder / "truth.yaml";
   context.progress.stageStarted("simulate");
-  const std::unique_ptr<RecordingWriter> writer =
-      createRecording(summary.recording, format.name, streamsOf(scenario));
+  const std::unique_ptr<RecordingWriter> writer = createRecording(made, format.name, streamsOf(scenario));
   writeRecording(scenario, *writer, summary, context);
   Scenario named = scenario;
-  const std::unique_ptr<RecordingReader> reader = openRecording(summary.recording);
+  const std::unique_ptr<RecordingReader> reader = openRecording(made);
   takeNames(*reader, StreamType::Events, named.cameras);
   takeNames(*reader, StreamType::Imu, named.imus);
-  writeTexts({{summary.session, sessionYaml(named, file)}, {summary.truth, truthYaml(scenario)}},
-             filesOf(summary.recording));
+  writeFileWhole(workshop.folder() / "truth.yaml", truthYaml(scenario));
+  writeFileWhole(workshop.folder() / "session.yaml", sessionYaml(named, file));
+  workshop.deliver(folder, "truth.yaml", "session.yaml");
   return summary;
 }
 

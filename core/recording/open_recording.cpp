@@ -61,7 +61,20 @@ bool isRos2File(const std::filesystem::path& path, std::string_view start) {
          (start.starts_with(ros::kZstdMagic) && packed_bag);
 }
 
+
+// Of what can be read twice.
+void requireFiles(const std::filesystem::path& folder) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    std::error_code ignored;
+    const std::filesystem::file_status status = entry.status(ignored);
+    if (std::filesystem::is_other(status))
+      throw badInput(entry.path().string(), "this is no file that can be read twice",
+                     "Take it out of the folder");
+  }
+}
+
 std::unique_ptr<RecordingReader> openFolder(const std::filesystem::path& path) {
+  requireFiles(path);
   if (isTextFolder(path)) return std::make_unique<TextTableReader>(path);
   if (std::filesystem::exists(path / "events.txt") || std::filesystem::exists(path / "imu.txt")) {
     return std::make_unique<TextTableReader>(path);
@@ -71,11 +84,8 @@ std::unique_ptr<RecordingReader> openFolder(const std::filesystem::path& path) {
   throw badInput(path.string(), "the folder has no events.txt, imu.txt, events.csv or imu.csv", kReadable);
 }
 
-}  // namespace
-
-std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
+std::unique_ptr<RecordingReader> openPath(const std::filesystem::path& path) {
+  const std::filesystem::file_status status = std::filesystem::status(path);
   if (!std::filesystem::exists(status)) {
     throw badInput(path.string(), "there is no such file or folder", "Check the path");
   }
@@ -97,6 +107,17 @@ std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path
   if (textTableType(start) != StreamType::Other) return std::make_unique<TextTableReader>(path);
   if (prophesee::isBareDat(start)) return openProphesee(path);
   throw badInput(path.string(), "the format is not known", kReadable);
+}
+
+}  // namespace
+
+std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path) {
+  try {
+    return openPath(path);
+  } catch (const std::filesystem::filesystem_error& error) {
+    throw badInput(path.string(), "cannot be reached: " + error.code().message(),
+                   "Check the path and its permissions");
+  }
 }
 
 std::size_t findStream(const RecordingReader& reader, const std::string& name, StreamType type) {

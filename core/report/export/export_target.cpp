@@ -70,17 +70,17 @@ void writeExportedFiles(const std::filesystem::path& folder, std::span<const Fil
   std::vector<FileContent> placed;
   std::vector<std::filesystem::path> made;
   for (const FileContent& file : files) placed.push_back({folder / file.path, file.content});
+  std::error_code ignored;
   try {
     for (const FileContent& file : placed) {
       const std::filesystem::path parent = file.path.parent_path();
-      for (auto missing = parent; !missing.empty() && !std::filesystem::exists(missing);
+      for (auto missing = parent; !missing.empty() && !std::filesystem::exists(missing, ignored);
            missing = missing.parent_path())
         made.push_back(missing);
       makeOutputFolder(parent);
     }
     writeFilesWhole(placed);
   } catch (const CalibrationError&) {
-    std::error_code ignored;
     std::sort(made.begin(), made.end());
     for (auto path = made.rbegin(); path != made.rend(); ++path) std::filesystem::remove(*path, ignored);
     throw;

@@ -3,12 +3,18 @@
 #include "tests/support/test_program.h"
 
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <QTemporaryDir>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <fstream>
 #include <iterator>
+#include <string>
+#include <vector>
 
 using namespace evical;
 
@@ -88,6 +94,85 @@ class TestAtomicFile : public QObject {
     QCOMPARE(contentOf(folder() / "old"), std::string("before"));
     QCOMPARE(entriesIn(folder()), std::ptrdiff_t(1));
     std::filesystem::remove(folder() / "old");
+  }
+
+  void write_overAPipe_leavesThePipe() {
+    const auto pipe = folder() / "pipe";
+    QCOMPARE(::mkfifo(pipe.c_str(), 0600), 0);
+    QVERIFY_EXCEPTION_THROWN(writeFileWhole(pipe, "x"), CalibrationError);
+    QVERIFY(std::filesystem::is_fifo(pipe));
+    QCOMPARE(entriesIn(folder()), std::ptrdiff_t(1));
+    std::filesystem::remove(pipe);
+  }
+
+  void moveSeveral_whereOneCannot_givesAllBack() {
+    std::filesystem::create_directory(folder() / "from");
+    std::vector<FileMove> moves;
+    for (const std::string name : {"new", "old", "barred", "mark"}) {
+      writeFileWhole(folder() / "from" / name, "after");
+      moves.push_back({folder() / "from" / name, folder() / name});
+    }
+    for (const std::string name : {"old", "mark"}) writeFileWhole(folder() / name, "before");
+    std::filesystem::create_directory(folder() / "barred");
+    QVERIFY_EXCEPTION_THROWN(moveFilesWhole(moves), CalibrationError);
+    QCOMPARE(contentOf(folder() / "old"), std::string("before"));
+    QCOMPARE(contentOf(folder() / "mark"), std::string("before"));
+    QVERIFY(!std::filesystem::exists(folder() / "new"));
+    QCOMPARE(entriesIn(folder() / "from"), std::ptrdiff_t(4));
+    QCOMPARE(contentOf(folder() / "from" / "old"), std::string("after"));
+    std::filesystem::remove(folder() / "barred");
+    moveFilesWhole(moves);
+    for (const FileMove& move : moves) QCOMPARE(contentOf(move.to), std::string("after"));
+    QCOMPARE(entriesIn(folder()), std::ptrdiff_t(5));
+    for (const auto& entry : std::filesystem::directory_iterator(folder()))
+      std::filesystem::remove_all(entry.path());
+  }
+
+  // Run by run in another process that is killed at any moment: a mark means that all are of its run.
+  void killedRun_leavesNoPartsOfTwo() {
+    constexpr int kFiles = 20, kKills = 60;
+    const auto nameOf = [&](int file) { return folder() / (file == kFiles ? "mark" : std::to_string(file)); };
+    int marked = 0;
+    for (int kill = 0; kill < kKills; ++kill) {
+      const pid_t child = ::fork();
+      if (child == 0) {
+        std::filesystem::create_directory(folder() / "from");
+        for (int run = 100 * kill;; ++run) {
+          std::vector<FileMove> moves;
+          for (int file = 0; file <= kFiles; ++file) {
+            moves.push_back({folder() / "from" / std::to_string(file), nameOf(file)});
+            std::ofstream(moves.back().from) << run;
+          }
+          moveFilesWhole(moves);
+        }
+      }
+      ::usleep(static_cast<useconds_t>(5000 + 731 * kill % 4000));
+      ::kill(child, SIGKILL);
+      ::waitpid(child, nullptr, 0);
+      if (!std::filesystem::exists(folder() / "mark")) continue;
+      ++marked;
+      for (int file = 0; file < kFiles; ++file)
+        QCOMPARE(contentOf(nameOf(file)), contentOf(folder() / "mark"));
+    }
+    QVERIFY(marked > 0);
+    for (const auto& entry : std::filesystem::directory_iterator(folder()))
+      std::filesystem::remove_all(entry.path());
+  }
+
+  void litter_ofKilledRuns_isRemovedAfterAnHour() {
+    const auto old = folder() / "a.yaml.part.Ab0cdE", young = folder() / "a.yaml.part.Xy1zAb",
+               other = folder() / "a.yaml.part.important", staged = folder() / "a.yaml.part.AAAAAA";
+    for (const auto& file : {old, young, other}) std::ofstream(file) << "x";
+    std::filesystem::create_directory(staged);
+    std::ofstream(staged / "inside") << "x";
+    const auto long_ago = std::filesystem::file_time_type::clock::now() - std::chrono::hours(2);
+    for (const auto& file : {old, other, staged / "inside", staged})
+      std::filesystem::last_write_time(file, long_ago);
+    writeFileWhole(folder() / "a.yaml", "x");
+    QVERIFY(!std::filesystem::exists(old) && !std::filesystem::exists(staged));
+    QVERIFY(std::filesystem::exists(young) && std::filesystem::exists(other));
+    for (const auto& entry : std::filesystem::directory_iterator(folder()))
+      std::filesystem::remove_all(entry.path());
   }
 
   void outputFolder_isMade_butNotBelowAFile() {
