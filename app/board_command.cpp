@@ -1,4 +1,5 @@
 #include "app/commands.h"
+#include "app/output.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/report/board_drawing.h"
@@ -32,9 +33,9 @@ void drawBoard(Arguments arguments) {
                    "Name the file board.pdf or board.svg");
   writeFileWhole(arguments.output, extension == ".pdf" ? boardPdf(board, arguments.margin_m)
                                                        : boardSvg(board, arguments.margin_m));
-  fmt::print("{}: print at 100 %, and check the line below the board: 100 mm\n", arguments.output.string());
+  print("{}: print at 100 %, and check the line below the board: 100 mm\n", arguments.output.string());
   if (board.hasHalfTurnAmbiguity())
-    fmt::print(
+    print(
         "This board looks the same when turned by 180 degrees: it does for intrinsics only, not with an "
         "IMU.\n");
 }

@@ -1,5 +1,6 @@
 #include "app/commands.h"
 #include "app/console.h"
+#include "app/output.h"
 #include "app/session_arguments.h"
 #include "app/version.h"
 #include "core/base/error.h"
@@ -22,9 +23,10 @@ namespace {
 // What was there before is overwritten only by a result, or by the reason why there is none.
 void tellFailure(const SessionArguments& arguments, const Session& session, const std::string& reason,
                  const Console& console, const RecordingPass& pass) {
-  if (!std::filesystem::is_directory(arguments.output)) return;
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(arguments.output, ignored)) return;
   // A failed run keeps an earlier result of the same folder: it is still true of its own recording.
-  if (std::filesystem::exists(std::filesystem::path(arguments.output) / "trajectory.csv")) return;
+  if (std::filesystem::exists(std::filesystem::path(arguments.output) / "trajectory.csv", ignored)) return;
   writeFailure(arguments.output, session, reason, kVersion, console.logText(), pass);
 }
 
@@ -42,11 +44,11 @@ void tellResult(const SessionArguments& arguments, const Session& session,
   const NamedResult named = namedResult(session, resultOf(run), kVersion);
   const ExportRemarks remarks = writeResultFiles(arguments.output, session, run, kVersion, console.logText());
   console.stageStarted("done");
-  fmt::print("{}", resultTable(named));
+  print("{}", resultTable(named));
   if (!arguments.quiet)
-    for (const std::string& note : remarks.notes) fmt::print("{}\n", note);
-  for (const std::string& refusal : remarks.refused) fmt::print(stderr, "{}\n", refusal);
-  if (!arguments.quiet) fmt::print("Files are in {}\n", arguments.output);
+    for (const std::string& note : remarks.notes) print("{}\n", note);
+  for (const std::string& refusal : remarks.refused) printError(refusal + "\n");
+  if (!arguments.quiet) print("Files are in {}\n", arguments.output);
 }
 
 int run(const SessionArguments& arguments) {

@@ -1,4 +1,5 @@
 #include "app/commands.h"
+#include "app/output.h"
 #include "core/report/truth_comparison.h"
 
 #include <fmt/format.h>
@@ -18,8 +19,8 @@ void addCompareCommand(CLI::App& app, int& exit_code) {
   command->add_option("RESULT", arguments->result, "result.yaml")->required();
   command->add_option("TRUTH", arguments->truth, "truth.yaml")->required();
   command->callback([arguments, &exit_code] {
-    fmt::print("{}", comparisonTable(compareWithTruth(readResultYaml(arguments->result),
-                                                      readResultYaml(arguments->truth))));
+    print("{}", comparisonTable(
+                    compareWithTruth(readResultYaml(arguments->result), readResultYaml(arguments->truth))));
     exit_code = kDone;
   });
 }

@@ -1,5 +1,7 @@
 #include "app/console.h"
 
+#include "app/output.h"
+
 #include <fmt/format.h>
 
 #include <unistd.h>
@@ -26,7 +28,7 @@ Console::~Console() {
 }
 
 void Console::clearLine() {
-  if (line_shown_) std::fputs("\r\033[K", stderr);
+  if (line_shown_) printError("\r\033[K");
   line_shown_ = false;
 }
 
@@ -37,7 +39,7 @@ void Console::stageStarted(std::string_view stage) {
   log_text_ += fmt::format("{:9.3f} s  stage    {}\n", of_all_.elapsed_s(), stage);
   if (quiet_) return;
   clearLine();
-  if (!on_terminal_) fmt::print(stderr, "{} ...\n", stage);
+  if (!on_terminal_) printError(fmt::format("{} ...\n", stage));
 }
 
 void Console::stageProgress(double fraction) {
@@ -48,7 +50,7 @@ void Console::stageProgress(double fraction) {
   const double elapsed_s = of_stage_.elapsed_s();
   std::string left;
   if (fraction > 0.02) left = fmt::format(", {:.0f} s left", elapsed_s * (1.0 - fraction) / fraction);
-  fmt::print(stderr, "\r\033[K{}: {:3.0f} %{}", stage_, 100.0 * fraction, left);
+  printError(fmt::format("\r\033[K{}: {:3.0f} %{}", stage_, 100.0 * fraction, left));
   std::fflush(stderr);
   line_shown_ = true;
 }
@@ -58,7 +60,7 @@ void Console::log(LogLevel level, std::string_view text) {
   log_text_ += fmt::format("{:9.3f} s  {:<7}  {}\n", of_all_.elapsed_s(), levelName(level), text);
   if (quiet_ || level == LogLevel::Debug) return;
   clearLine();
-  fmt::print(stderr, "{}{}\n", level == LogLevel::Warning ? "warning: " : "  ", text);
+  printError(fmt::format("{}{}\n", level == LogLevel::Warning ? "warning: " : "  ", text));
 }
 
 std::stop_token stopOnSignals() {

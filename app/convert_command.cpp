@@ -1,5 +1,6 @@
 #include "app/commands.h"
 #include "app/console.h"
+#include "app/output.h"
 #include "core/base/error.h"
 #include "core/recording/conversion.h"
 #include "core/recording/recording_writer.h"
@@ -29,11 +30,10 @@ Resolution resolutionIn(const std::string& text) {
 }
 
 void printSummary(const ConversionRequest& request, const ConversionSummary& made) {
-  fmt::print("{} events, {} IMU samples in {} ({})\n", made.events, made.imu_samples, request.output.string(),
-             made.format);
+  print("{} events, {} IMU samples in {} ({})\n", made.events, made.imu_samples, request.output.string(),
+        made.format);
   for (const RecordingFault& fault : made.faults)
-    fmt::print("  {}: {}{}{}\n", nameOf(fault.kind), fault.stream, fault.stream.empty() ? "" : ": ",
-               fault.text);
+    print("  {}: {}{}{}\n", nameOf(fault.kind), fault.stream, fault.stream.empty() ? "" : ": ", fault.text);
 }
 
 }  // namespace

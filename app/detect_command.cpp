@@ -1,5 +1,6 @@
 #include "app/commands.h"
 #include "app/console.h"
+#include "app/output.h"
 #include "app/session_arguments.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
@@ -58,13 +59,12 @@ int run(const DetectArguments& arguments) {
   writeDetectionFiles(arguments.output, pass, console.logText());
   console.stageStarted("done");
   for (const BoardObservations& camera : pass.cameras) {
-    fmt::print("{}: {} events, board in {} of {} windows\n", camera.camera, camera.events,
-               camera.views.size(), camera.windows.size());
+    print("{}: {} events, board in {} of {} windows\n", camera.camera, camera.events, camera.views.size(),
+          camera.windows.size());
     std::vector<int> counts(kWindowOutcomeCount, 0);
     for (const WindowReport& window : camera.windows) ++counts[static_cast<std::size_t>(window.outcome)];
     for (std::size_t k = 0; k < counts.size(); ++k) {
-      if (counts[k] > 0)
-        fmt::print("  {:6} {}\n", counts[k], windowOutcomeName(static_cast<WindowOutcome>(k)));
+      if (counts[k] > 0) print("  {:6} {}\n", counts[k], windowOutcomeName(static_cast<WindowOutcome>(k)));
     }
   }
   return kDone;

@@ -3,12 +3,14 @@
 #include <CLI/CLI.hpp>
 #include "app/commands.h"
 #include "app/inspect_command.h"
+#include "app/output.h"
 #include "app/version.h"
 #include "core/base/error.h"
 
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
 #include <string_view>
@@ -18,7 +20,7 @@ namespace {
 
 int fail(int exit_code, std::string_view reason) {
   std::fflush(stdout);
-  fmt::print(stderr, "{}\n", reason);
+  printError(fmt::format("{}\n", reason));
   return exit_code;
 }
 
@@ -52,22 +54,32 @@ int run(int argc, char** argv) {
   }
 }
 
-}  // namespace
-}  // namespace evical
-
-int main(int argc, char** argv) {
-  using namespace evical;
-  // A file size limit is a full disk like any other: let write() say so.
-  std::signal(SIGXFSZ, SIG_IGN);
+int runOrFail(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const CalibrationError& error) {
     return fail(error.kind() == ErrorKind::BadInput ? kBadInput : kFailed, error.what());
   } catch (const Cancelled&) {
     return fail(kFailed, "cancelled");
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(kBadInput,
+                fmt::format("{}: cannot be used: {}", error.path1().string(), error.code().message()));
   } catch (const std::bad_alloc&) {
     return fail(kFailed, "not enough memory");
   } catch (const std::exception& error) {
     return fail(kFailed, fmt::format("internal error: {}", error.what()));
   }
+}
+
+}  // namespace
+}  // namespace evical
+
+int main(int argc, char** argv) {
+  using namespace evical;
+  holdStandardStreams();
+  // A file size limit is a full disk like any other: let write() say so.
+  std::signal(SIGXFSZ, SIG_IGN);
+  const int exit_code = runOrFail(argc, argv);
+  const std::string lost = lostOutput();
+  return lost.empty() || exit_code != kDone ? exit_code : fail(kFailed, lost);
 }

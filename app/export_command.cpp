@@ -1,4 +1,6 @@
 #include "app/commands.h"
+#include "app/console.h"
+#include "app/output.h"
 #include "core/base/error.h"
 #include "core/report/export/export_target.h"
 
@@ -7,6 +9,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -26,15 +29,16 @@ std::string targetList() {
 }
 
 int run(const Arguments& arguments) {
+  const std::stop_token stop = stopOnSignals();  // files appear whole, or not at all
   for (const std::string& target : arguments.targets) exportTarget(target, "--to");
   std::error_code ignored;
   const bool folder = std::filesystem::is_directory(arguments.result, ignored);
   const std::filesystem::path file = folder ? arguments.result / "result.yaml" : arguments.result;
   const ExportedFiles exported = exportResult(readResultYaml(file), arguments.targets);
+  if (stop.stop_requested()) throw Cancelled{};
   writeExportedFiles(arguments.output, exported.files);
-  for (const FileContent& written : exported.files)
-    fmt::print("{}\n", (arguments.output / written.path).string());
-  for (const std::string& note : exported.notes) fmt::print("{}\n", note);
+  for (const FileContent& written : exported.files) print("{}\n", (arguments.output / written.path).string());
+  for (const std::string& note : exported.notes) print("{}\n", note);
   return kDone;
 }
 

@@ -1,5 +1,8 @@
 #include "app/commands.h"
+#include "app/console.h"
+#include "app/output.h"
 #include "core/base/atomic_file.h"
+#include "core/base/error.h"
 #include "core/pipeline/import_session.h"
 
 #include <fmt/format.h>
@@ -7,6 +10,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <stop_token>
 #include <string>
 
 namespace evical {
@@ -18,10 +22,12 @@ struct Arguments {
 };
 
 int run(const Arguments& arguments) {
+  const std::stop_token stop = stopOnSignals();  // files appear whole, or not at all
   const ImportedFiles imported = importFiles(arguments.request, arguments.output);
+  if (stop.stop_requested()) throw Cancelled{};
   writeFilesWhole(imported.files);
-  for (const FileContent& written : imported.files) fmt::print("{}\n", written.path.string());
-  for (const std::string& note : imported.notes) fmt::print("{}\n", note);
+  for (const FileContent& written : imported.files) print("{}\n", written.path.string());
+  for (const std::string& note : imported.notes) print("{}\n", note);
   return kDone;
 }
 

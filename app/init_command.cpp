@@ -1,5 +1,6 @@
 #include "app/commands.h"
 #include "app/console.h"
+#include "app/output.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/pipeline/session_guess.h"
@@ -35,7 +36,8 @@ std::vector<InspectedRecording> inspectAll(const InitArguments& arguments, const
 
 int run(const InitArguments& arguments) {
   // What people have filled in is not to be lost.
-  if (std::filesystem::exists(arguments.output))
+  std::error_code ignored;
+  if (std::filesystem::exists(arguments.output, ignored))
     throw badInput(arguments.output.string(), "exists already", "Give another name, or remove it");
   Console console(arguments.quiet);
   const std::vector<InspectedRecording> recordings = inspectAll(arguments, {console, stopOnSignals()});
@@ -44,9 +46,9 @@ int run(const InitArguments& arguments) {
   const SessionDraft draft = draftSession(recordings, folder);
   writeFileWhole(arguments.output, draft.yaml);
   console.stageStarted("done");
-  fmt::print("{}\n", arguments.output.string());
+  print("{}\n", arguments.output.string());
   if (!arguments.quiet)
-    for (const std::string& note : draft.notes) fmt::print("{}\n", note);
+    for (const std::string& note : draft.notes) print("{}\n", note);
   return kDone;
 }
 

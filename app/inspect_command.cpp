@@ -1,4 +1,5 @@
 #include "app/inspect_command.h"
+#include "app/output.h"
 
 #include "core/base/time.h"
 #include "core/recording/inspection.h"
@@ -20,56 +21,55 @@ struct InspectArguments {
 };
 
 void printVector(const char* title, const Eigen::Vector3d& vector, const std::string& unit) {
-  fmt::print("    {:<22} {:.5f}  {:.5f}  {:.5f} {}\n", title, vector.x(), vector.y(), vector.z(), unit);
+  print("    {:<22} {:.5f}  {:.5f}  {:.5f} {}\n", title, vector.x(), vector.y(), vector.z(), unit);
 }
 
 void printEvents(const StreamSummary& stream, bool checksum) {
   const Resolution& size_px = stream.info.resolution_px;
-  fmt::print("    {:<22} {} ({} on, {} off), {:.4g} per s\n", "events", stream.count, stream.on, stream.off,
-             stream.rate_hz);
+  print("    {:<22} {} ({} on, {} off), {:.4g} per s\n", "events", stream.count, stream.on, stream.off,
+        stream.rate_hz);
   if (size_px.known()) {
-    fmt::print("    {:<22} {} x {}\n", "resolution", size_px.width_px, size_px.height_px);
+    print("    {:<22} {} x {}\n", "resolution", size_px.width_px, size_px.height_px);
   } else {
-    fmt::print("    {:<22} not in the file; events reach {} x {}\n", "resolution", stream.seen_px.width_px,
-               stream.seen_px.height_px);
+    print("    {:<22} not in the file; events reach {} x {}\n", "resolution", stream.seen_px.width_px,
+          stream.seen_px.height_px);
   }
   if (!checksum) return;
-  fmt::print("    {:<22} x {}, y {}, t {} {} (mod 2^64)\n", "sums", stream.sum_x, stream.sum_y, stream.sum_t,
-             stream.info.time_unit_ns == 1000 ? "us" : "ns");
+  print("    {:<22} x {}, y {}, t {} {} (mod 2^64)\n", "sums", stream.sum_x, stream.sum_y, stream.sum_t,
+        stream.info.time_unit_ns == 1000 ? "us" : "ns");
 }
 
 void printImu(const StreamSummary& stream) {
-  fmt::print("    {:<22} {}, {:.5g} per s\n", "samples", stream.count, stream.rate_hz);
+  print("    {:<22} {}, {:.5g} per s\n", "samples", stream.count, stream.rate_hz);
   printVector("mean specific force", stream.mean_acceleration, stream.acceleration_unit);
   printVector("mean angular rate", stream.mean_angular_rate, stream.angular_rate_unit);
-  fmt::print("    {:<22} {:.4f} {}\n", "median of its norm", stream.median_acceleration,
-             stream.acceleration_unit);
+  print("    {:<22} {:.4f} {}\n", "median of its norm", stream.median_acceleration, stream.acceleration_unit);
 }
 
 void printStream(const StreamSummary& stream, bool checksum) {
   const StreamInfo& info = stream.info;
-  fmt::print("\n  {}  [{}, {}]\n", info.name, streamTypeName(info.type), info.message);
+  print("\n  {}  [{}, {}]\n", info.name, streamTypeName(info.type), info.message);
   if (info.type != StreamType::Events && info.type != StreamType::Imu) {
-    if (stream.count > 0) fmt::print("    {:<22} {}\n", "messages", stream.count);
+    if (stream.count > 0) print("    {:<22} {}\n", "messages", stream.count);
     return;
   }
   if (info.type == StreamType::Events) printEvents(stream, checksum);
   if (info.type == StreamType::Imu) printImu(stream);
   if (stream.count == 0) return;
-  fmt::print("    {:<22} {} .. {} ns ({:.3f} s)\n", "time", stream.first_ns, stream.last_ns,
-             secondsSince(stream.first_ns, stream.last_ns));
-  fmt::print("    {:<22} {:.3f} ms; time runs backwards {} times\n", "largest gap",
-             1e-6 * static_cast<double>(stream.largest_gap_ns), stream.backward_steps);
+  print("    {:<22} {} .. {} ns ({:.3f} s)\n", "time", stream.first_ns, stream.last_ns,
+        secondsSince(stream.first_ns, stream.last_ns));
+  print("    {:<22} {:.3f} ms; time runs backwards {} times\n", "largest gap",
+        1e-6 * static_cast<double>(stream.largest_gap_ns), stream.backward_steps);
 }
 
 void printForPeople(const std::string& recording, const Inspection& inspection, bool checksum) {
-  fmt::print("{} ({}, {} streams)\n", recording, inspection.format, inspection.streams.size());
+  print("{} ({}, {} streams)\n", recording, inspection.format, inspection.streams.size());
   for (const StreamSummary& stream : inspection.streams) printStream(stream, checksum);
-  fmt::print("\n{}\n", inspection.faults.empty() ? "No faults found." : "Faults:");
+  print("\n{}\n", inspection.faults.empty() ? "No faults found." : "Faults:");
   for (const RecordingFault& fault : inspection.faults) {
     const std::string place =
         fault.stream.empty() ? "" : fmt::format(" {} at {:.3f} s:", fault.stream, fault.at_s);
-    fmt::print("  {}:{} {}\n", nameOf(fault.kind), place, fault.text);
+    print("  {}:{} {}\n", nameOf(fault.kind), place, fault.text);
   }
 }
 
@@ -77,7 +77,7 @@ void inspect(const InspectArguments& arguments) {
   const std::unique_ptr<RecordingReader> reader = openRecording(arguments.recording);
   const Inspection inspection = inspectRecording(*reader);
   if (arguments.json) {
-    fmt::print("{}", inspectionJson(inspection, arguments.checksum));
+    print("{}", inspectionJson(inspection, arguments.checksum));
   } else {
     printForPeople(arguments.recording, inspection, arguments.checksum);
   }

@@ -1,5 +1,6 @@
 #include "app/commands.h"
 #include "app/console.h"
+#include "app/output.h"
 #include "app/session_arguments.h"
 #include "app/version.h"
 #include "core/base/atomic_file.h"
@@ -92,8 +93,8 @@ int run(const IntrinsicsArguments& arguments) {
   found.files.push_back({std::filesystem::path(arguments.output) / "log.txt", console.logText()});
   writeFilesWhole(found.files);
   console.stageStarted("done");
-  fmt::print("{}", found.tables);
-  if (!arguments.quiet) fmt::print("Files of {} are in {}\n", found.names, arguments.output);
+  print("{}", found.tables);
+  if (!arguments.quiet) print("Files of {} are in {}\n", found.names, arguments.output);
   if (failure) throw *failure;
   return kDone;
 }

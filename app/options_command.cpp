@@ -1,4 +1,5 @@
 #include "app/commands.h"
+#include "app/output.h"
 #include "core/pipeline/option_pages.h"
 
 #include <fmt/format.h>
@@ -20,9 +21,9 @@ void addOptionsCommand(CLI::App& app, int& exit_code) {
   command->add_flag("--markdown", arguments->markdown, "As docs/options.md has it");
   command->add_flag("--yaml", arguments->yaml, "As config/default.yaml has it")->excludes("--markdown");
   command->callback([arguments, &exit_code] {
-    fmt::print("{}", arguments->markdown ? optionMarkdown()
-                     : arguments->yaml   ? optionYaml()
-                                         : optionText(arguments->all));
+    print("{}", arguments->markdown ? optionMarkdown()
+                : arguments->yaml   ? optionYaml()
+                                    : optionText(arguments->all));
     exit_code = kDone;
   });
 }

@@ -1,5 +1,6 @@
 #include "app/commands.h"
 #include "app/console.h"
+#include "app/output.h"
 #include "core/pipeline/simulation.h"
 #include "core/recording/recording_writer.h"
 #include "core/synthetic/scenario_yaml.h"
@@ -38,8 +39,8 @@ void addSimulateCommand(CLI::App& app, int& exit_code) {
     const SimulationSummary made =
         simulate(scenario, arguments->folder, {console, stopOnSignals()}, arguments->format);
     console.stageStarted("done");
-    fmt::print("{} events, {} IMU samples\n{}\n{}\n{}\n", made.events, made.imu_samples,
-               made.recording.string(), made.session.string(), made.truth.string());
+    print("{} events, {} IMU samples\n{}\n{}\n{}\n", made.events, made.imu_samples, made.recording.string(),
+          made.session.string(), made.truth.string());
     exit_code = kDone;
   });
 }

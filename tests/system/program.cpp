@@ -39,6 +39,13 @@ Outcome runProgram(const QStringList& arguments, int patience_s) {
   return finished(process, patience_s);
 }
 
+Outcome runProgramRedirected(const QString& redirection, const QStringList& arguments, int patience_s) {
+  QProcess process;
+  const QStringList shell = {"-c", QStringLiteral("exec \"$@\" %1").arg(redirection), "bash", kProgram};
+  process.start("bash", shell + arguments);
+  return finished(process, patience_s);
+}
+
 Outcome runProgramWithFileLimit(const QStringList& arguments, int blocks_of_1024) {
   QProcess process;
   QStringList shell = {"-c", QStringLiteral("ulimit -f %1; exec \"$@\"").arg(blocks_of_1024), "bash",

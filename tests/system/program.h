@@ -18,6 +18,9 @@ struct Outcome {
 
 Outcome runProgram(const QStringList& arguments, int patience_s = 120);
 
+// The same with standard streams as a shell redirects them: "2>&-".
+Outcome runProgramRedirected(const QString& redirection, const QStringList& arguments, int patience_s = 30);
+
 // The same with the largest file it may write, as `ulimit -f` sets it; for full disks.
 Outcome runProgramWithFileLimit(const QStringList& arguments, int blocks_of_1024);
 

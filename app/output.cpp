@@ -1,0 +1,46 @@
+#include "app/output.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <iostream>
+
+namespace evical {
+namespace {
+
+int& lostBecause() {
+  static int error = 0;
+  return error;
+}
+
+}  // namespace
+
+void printText(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() && lostBecause() == 0)
+    lostBecause() = errno;
+}
+
+void printError(std::string_view text) {
+  static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
+}
+
+void holdStandardStreams() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;
+    // The lowest that is free is this one. Output that nobody receives is lost output: read only.
+    static_cast<void>(::open("/dev/null", descriptor == STDERR_FILENO ? O_WRONLY : O_RDONLY));
+  }
+}
+
+std::string lostOutput() {
+  std::cout.flush();  // the parser's help
+  if (std::fflush(stdout) != 0 && lostBecause() == 0) lostBecause() = errno;
+  if (lostBecause() == 0 && std::cout.good() && std::ferror(stdout) == 0) return {};
+  return std::string("standard output cannot be written: ") +
+         (lostBecause() != 0 ? std::strerror(lostBecause()) : "not all of it went out");
+}
+
+}  // namespace evical
