@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/time.h"
 #include "core/data/calibration_observer.h"
+#include "core/numerics/library_threads.h"
 #include "core/numerics/solver_stop.h"
 #include "core/optimisation/calibration_problem.h"
 #include "core/optimisation/circle_errors.h"
@@ -141,6 +142,7 @@ void Batch::solveStage(ReleaseStages stage, int index, double tolerance) {
     context_.throwIfStopped();
     problem_.build(stage, weights_);
     ceres::Solver::Summary summary;
+    const LibraryThreads threads(options_.threads);
     ceres::Solve(solver, &problem_.problem(), &summary);
     context_.throwIfStopped();
     if (summary.termination_type == ceres::FAILURE) {
