@@ -10,6 +10,7 @@
 #include "core/recording/ros/compression.h"
 #include "core/recording/ros/ros_files.h"
 #include "core/recording/ros/ros_reader.h"
+#include "core/recording/separate_reader.h"
 #include "core/recording/text/text_table_reader.h"
 
 #include <fmt/format.h>
@@ -61,6 +62,10 @@ bool isRos2File(const std::filesystem::path& path, std::string_view start) {
          (start.starts_with(ros::kZstdMagic) && packed_bag);
 }
 
+// libhdf5 writes past its own memory on some damaged files.
+std::unique_ptr<RecordingReader> openHdf5(const std::filesystem::path& path) {
+  return std::make_unique<SeparateReader>(path, [&] { return std::make_unique<Hdf5Reader>(path); });
+}
 
 // Of what can be read twice.
 void requireFiles(const std::filesystem::path& folder) {
@@ -79,7 +84,7 @@ std::unique_ptr<RecordingReader> openFolder(const std::filesystem::path& path) {
   if (std::filesystem::exists(path / "events.txt") || std::filesystem::exists(path / "imu.txt")) {
     return std::make_unique<TextTableReader>(path);
   }
-  if (isTumVieFolder(path)) return std::make_unique<Hdf5Reader>(path);
+  if (isTumVieFolder(path)) return openHdf5(path);
   if (ros::isRos2Folder(path)) return std::make_unique<RosReader>(path);
   throw badInput(path.string(), "the folder has no events.txt, imu.txt, events.csv or imu.csv", kReadable);
 }
@@ -98,7 +103,7 @@ std::unique_ptr<RecordingReader> openPath(const std::filesystem::path& path) {
   if (start.starts_with(rosbag::kMagic)) return std::make_unique<RosReader>(path);
   if (start.starts_with("% ")) return openProphesee(path);
   if (start.starts_with(kEventStreamMagic)) return openEventStream(path);
-  if (start.starts_with("\x89HDF\r\n\x1A\n"sv)) return std::make_unique<Hdf5Reader>(path);
+  if (start.starts_with("\x89HDF\r\n\x1A\n"sv)) return openHdf5(path);
   if (start.starts_with(aedat::kMagic)) return std::make_unique<Aedat4Reader>(path);
   if (isRos2File(path, start)) return std::make_unique<RosReader>(path);
   for (const OtherFormat& format : kOtherFormats) {

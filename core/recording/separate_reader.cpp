@@ -1,0 +1,348 @@
+#include "core/recording/separate_reader.h"
+
+#include "core/base/error.h"
+#include "core/recording/byte_cursor.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+namespace evical {
+namespace {
+
+enum class Answer : std::uint8_t { State, Packet, End, Error };
+enum class Question : std::uint8_t { Select, Read };
+
+template <class Number>
+void put(std::string& message, Number number) {
+  static_assert(std::is_trivially_copyable_v<Number>);
+  message.append(reinterpret_cast<const char*>(&number), sizeof(number));
+}
+void put(std::string& message, const std::string& text) {
+  put(message, static_cast<std::uint32_t>(text.size()));
+  message += text;
+}
+
+bool sendAll(int socket, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t sent = ::send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent <= 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(sent));
+  }
+  return true;
+}
+
+bool receiveAll(int socket, char* bytes, std::size_t count) {
+  while (count > 0) {
+    const ssize_t got = ::recv(socket, bytes, count, 0);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return false;
+    bytes += got;
+    count -= static_cast<std::size_t>(got);
+  }
+  return true;
+}
+
+bool sendMessage(int socket, const std::string& message) {
+  std::string length;
+  put(length, static_cast<std::uint64_t>(message.size()));
+  return sendAll(socket, length) && sendAll(socket, message);
+}
+
+bool receiveMessage(int socket, std::string& message) {
+  std::uint64_t length = 0;
+  if (!receiveAll(socket, reinterpret_cast<char*>(&length), sizeof(length))) return false;
+  message.resize(static_cast<std::size_t>(length));
+  return receiveAll(socket, message.data(), message.size());
+}
+
+void putStream(std::string& message, const StreamInfo& info) {
+  put(message, info.name);
+  put(message, info.type);
+  put(message, info.message);
+  put(message, info.resolution_px.width_px);
+  put(message, info.resolution_px.height_px);
+  put(message, info.messages);
+  put(message, info.time_unit_ns);
+  put(message, info.acceleration_unit);
+  put(message, info.angular_rate_unit);
+  put(message, static_cast<std::uint8_t>(info.host_clock_offset_s.has_value()));
+  put(message, info.host_clock_offset_s.value_or(0.0));
+}
+
+StreamInfo takeStream(ByteCursor& cursor) {
+  StreamInfo info;
+  info.name = cursor.sized();
+  info.type = cursor.number<StreamType>();
+  info.message = cursor.sized();
+  info.resolution_px.width_px = cursor.number<int>();
+  info.resolution_px.height_px = cursor.number<int>();
+  info.messages = cursor.number<std::uint64_t>();
+  info.time_unit_ns = cursor.number<std::int64_t>();
+  info.acceleration_unit = cursor.number<AccelerationUnit>();
+  info.angular_rate_unit = cursor.number<AngularRateUnit>();
+  const bool has_offset = cursor.number<std::uint8_t>() != 0;
+  const auto offset_s = cursor.number<double>();
+  if (has_offset) info.host_clock_offset_s = offset_s;
+  return info;
+}
+
+void putFault(std::string& message, const RecordingFault& fault) {
+  put(message, fault.stream);
+  put(message, fault.kind);
+  put(message, fault.at_s);
+  put(message, fault.text);
+}
+
+RecordingFault takeFault(ByteCursor& cursor) {
+  RecordingFault fault;
+  fault.stream = cursor.sized();
+  fault.kind = cursor.number<FaultKind>();
+  fault.at_s = cursor.number<double>();
+  fault.text = cursor.sized();
+  return fault;
+}
+
+std::string stateOf(const RecordingReader& reader) {
+  std::string message;
+  put(message, reader.format());
+  put(message, reader.fractionRead());
+  put(message, static_cast<std::uint32_t>(reader.streams().size()));
+  for (const StreamInfo& info : reader.streams()) putStream(message, info);
+  put(message, static_cast<std::uint32_t>(reader.faults().size()));
+  for (const RecordingFault& fault : reader.faults()) putFault(message, fault);
+  return message;
+}
+
+void putVector(std::string& message, const Eigen::Vector3d& vector) {
+  for (int i = 0; i < 3; ++i) put(message, vector[i]);
+}
+
+std::string messageOf(const Packet& packet, double fraction_read) {
+  std::string message;
+  put(message, Answer::Packet);
+  put(message, fraction_read);
+  put(message, static_cast<std::uint64_t>(packet.stream));
+  put(message, static_cast<std::uint64_t>(packet.events.size()));
+  put(message, static_cast<std::uint64_t>(packet.imu_samples.size()));
+  message.append(reinterpret_cast<const char*>(packet.events.data()), packet.events.size() * sizeof(Event));
+  for (const RawImuSample& sample : packet.imu_samples) {
+    put(message, sample.time_ns);
+    putVector(message, sample.angular_rate);
+    putVector(message, sample.specific_force);
+  }
+  return message;
+}
+
+std::string messageOf(ErrorKind kind, const std::string& place, const std::string& problem,
+                      const std::string& advice) {
+  std::string message;
+  put(message, Answer::Error);
+  put(message, kind);
+  for (const std::string& text : {place, problem, advice}) put(message, text);
+  return message;
+}
+
+std::string answerTo(const std::string& question, RecordingReader& reader) {
+  ByteCursor cursor(question);
+  std::string answer;
+  if (cursor.number<Question>() == Question::Select) {
+    std::vector<std::size_t> streams(cursor.number<std::uint32_t>());
+    for (std::size_t& stream : streams) stream = static_cast<std::size_t>(cursor.number<std::uint64_t>());
+    reader.select(streams);
+    put(answer, Answer::State);
+    return answer + stateOf(reader);
+  }
+  Packet packet;
+  if (reader.read(packet)) return messageOf(packet, reader.fractionRead());
+  put(answer, Answer::End);
+  return answer + stateOf(reader);
+}
+
+// What libraries say when they fall is not for people, who are told what it means.
+void beQuiet() {
+  const int nothing = ::open("/dev/null", O_WRONLY);
+  if (nothing >= 0) ::dup2(nothing, STDERR_FILENO);
+  const rlimit no_core{0, 0};
+  ::setrlimit(RLIMIT_CORE, &no_core);
+  std::signal(SIGINT, SIG_IGN);  // who waits for it decides
+  std::signal(SIGTERM, SIG_IGN);
+  for (const int fatal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) std::signal(fatal, SIG_DFL);
+}
+
+[[noreturn]] void serve(int socket, const SeparateReader::Open& open) {
+  beQuiet();
+  const auto attempt = [&](const auto& work) {
+    try {
+      return work();
+    } catch (const CalibrationError& error) {
+      return messageOf(error.kind(), error.place(), error.problem(), error.advice());
+    } catch (const std::bad_alloc&) {
+      return messageOf(ErrorKind::BadInput, "", "there is not enough memory to read it", "");
+    } catch (const std::exception& error) {
+      return messageOf(ErrorKind::BadInput, "", error.what(), "");
+    }
+  };
+  std::unique_ptr<RecordingReader> reader;
+  const std::string first = attempt([&] {
+    reader = open();
+    std::string state;
+    put(state, Answer::State);
+    return state + stateOf(*reader);
+  });
+  bool heard = sendMessage(socket, first);
+  std::string question;
+  while (heard && reader && receiveMessage(socket, question))
+    heard = sendMessage(socket, attempt([&] { return answerTo(question, *reader); }));
+  ::_exit(0);
+}
+
+[[noreturn]] void throwError(const std::filesystem::path& path, std::string_view message) {
+  ByteCursor cursor(message);
+  const auto kind = cursor.number<ErrorKind>();
+  std::string place(cursor.sized()), problem(cursor.sized()), advice(cursor.sized());
+  if (place.empty()) place = path.string();
+  throw CalibrationError(kind, std::move(place), std::move(problem), std::move(advice));
+}
+
+}  // namespace
+
+SeparateReader::SeparateReader(const std::filesystem::path& path, const Open& open) : path_(path) {
+  int sockets[2];
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets) != 0)
+    throw calibrationFailed(path.string(), fmt::format("cannot be read: {}", std::strerror(errno)),
+                            "Close other files and programs");
+  process_ = ::fork();
+  if (process_ == 0) {
+    ::close(sockets[0]);
+    serve(sockets[1], open);
+  }
+  const int error = errno;
+  ::close(sockets[1]);
+  socket_ = sockets[0];
+  if (process_ < 0) {
+    end();
+    throw calibrationFailed(path.string(), fmt::format("cannot be read: {}", std::strerror(error)),
+                            "Close other programs");
+  }
+  std::string message;
+  if (receiveMessage(socket_, message) && !message.empty()) {
+    std::string_view rest(message);
+    const auto kind = static_cast<Answer>(rest.front());
+    rest.remove_prefix(1);
+    if (kind == Answer::State) {
+      takeState(rest);
+      return;
+    }
+    end();
+    throwError(path, rest);
+  }
+  const std::string reason = reasonOfEnd();
+  end();
+  throw badInput(path.string(), fmt::format("the file is damaged so that its library ends ({})", reason),
+                 "Copy it again, or record again");
+}
+
+SeparateReader::~SeparateReader() {
+  end();
+}
+
+// Whatever it is doing: nobody waits for it any more.
+void SeparateReader::end() {
+  if (socket_ >= 0) ::close(std::exchange(socket_, -1));
+  if (process_ <= 0) return;
+  ::kill(process_, SIGKILL);
+  ::waitpid(process_, nullptr, 0);
+  process_ = -1;
+}
+
+void SeparateReader::takeState(std::string_view message) {
+  ByteCursor cursor(message);
+  format_ = cursor.sized();
+  fraction_read_ = cursor.number<double>();
+  streams_.resize(cursor.number<std::uint32_t>());
+  for (StreamInfo& info : streams_) info = takeStream(cursor);
+  faults_.resize(cursor.number<std::uint32_t>());
+  for (RecordingFault& fault : faults_) fault = takeFault(cursor);
+}
+
+void SeparateReader::select(const std::vector<std::size_t>& streams) {
+  std::string question, answer;
+  put(question, Question::Select);
+  put(question, static_cast<std::uint32_t>(streams.size()));
+  for (const std::size_t stream : streams) put(question, static_cast<std::uint64_t>(stream));
+  finished_ = !sendMessage(socket_, question) || !receiveMessage(socket_, answer);
+  if (!finished_ && static_cast<Answer>(answer.front()) == Answer::Error)
+    throwError(path_, std::string_view(answer).substr(1));
+}
+
+// The next is asked for before this one is looked at, so that both processes work.
+bool SeparateReader::ask() {
+  std::string question;
+  put(question, Question::Read);
+  return sendMessage(socket_, question);
+}
+
+bool SeparateReader::read(Packet& packet) {
+  packet.events.clear();
+  packet.imu_samples.clear();
+  if (finished_) return false;
+  if (!asked_) static_cast<void>(ask());
+  if (!receiveMessage(socket_, message_)) {
+    finished_ = true;
+    faults_.push_back(
+        {"", FaultKind::Corrupt, 0.0,
+         fmt::format("The file is damaged so that its library ended ({}) after {:.0f} % of it: the "
+                     "rest is lost.",
+                     reasonOfEnd(), 100.0 * fraction_read_)});
+    return false;
+  }
+  const auto kind = static_cast<Answer>(message_.front());
+  const std::string_view rest = std::string_view(message_).substr(1);
+  finished_ = kind != Answer::Packet;
+  if (kind == Answer::Error) throwError(path_, rest);
+  if (kind == Answer::End) takeState(rest);
+  if (finished_) return false;
+  asked_ = ask();
+  takePacket(rest, packet);
+  return true;
+}
+
+void SeparateReader::takePacket(std::string_view message, Packet& packet) {
+  ByteCursor cursor(message);
+  fraction_read_ = cursor.number<double>();
+  packet.stream = static_cast<std::size_t>(cursor.number<std::uint64_t>());
+  const auto events = static_cast<std::size_t>(cursor.number<std::uint64_t>());
+  packet.imu_samples.resize(static_cast<std::size_t>(cursor.number<std::uint64_t>()));
+  packet.events.resize(events);
+  const std::string_view bytes = cursor.take(events * sizeof(Event));
+  if (!bytes.empty()) std::memcpy(packet.events.data(), bytes.data(), bytes.size());
+  for (RawImuSample& sample : packet.imu_samples) {
+    sample.time_ns = cursor.number<std::int64_t>();
+    for (int i = 0; i < 3; ++i) sample.angular_rate[i] = cursor.number<double>();
+    for (int i = 0; i < 3; ++i) sample.specific_force[i] = cursor.number<double>();
+  }
+}
+
+// What its process ended by.
+std::string SeparateReader::reasonOfEnd() {
+  int status = 0;
+  const bool known = process_ > 0 && ::waitpid(process_, &status, 0) == process_;
+  process_ = -1;
+  return known && WIFSIGNALED(status) ? fmt::format("by signal {}", WTERMSIG(status)) : "without a word";
+}
+
+}  // namespace evical

@@ -1,0 +1,53 @@
+// A reader in a process of its own, for libraries that a damaged file can bring down: what ends there is that
+// process, and the recording is read as far as it went.
+#pragma once
+
+#include "core/recording/recording_reader.h"
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace evical {
+
+class SeparateReader : public RecordingReader {
+ public:
+  using Open = std::function<std::unique_ptr<RecordingReader>()>;
+
+  // Calls `open` in the other process; what it throws is thrown here. `path` for messages.
+  SeparateReader(const std::filesystem::path& path, const Open& open);
+  ~SeparateReader() override;
+  SeparateReader(const SeparateReader&) = delete;
+  SeparateReader& operator=(const SeparateReader&) = delete;
+
+  const std::vector<StreamInfo>& streams() const override { return streams_; }
+  void select(const std::vector<std::size_t>& streams) override;
+  bool read(Packet& packet) override;
+  double fractionRead() const override { return fraction_read_; }
+  const std::vector<RecordingFault>& faults() const override { return faults_; }
+  std::string format() const override { return format_; }
+
+ private:
+  void end();
+  bool ask();
+  void takeState(std::string_view message);
+  void takePacket(std::string_view message, Packet& packet);
+  std::string reasonOfEnd();
+
+  std::filesystem::path path_;
+  pid_t process_ = -1;
+  int socket_ = -1;
+  bool finished_ = false, asked_ = false;
+  double fraction_read_ = 0.0;
+  std::vector<StreamInfo> streams_;
+  std::vector<RecordingFault> faults_;
+  std::string format_, message_;
+};
+
+}  // namespace evical
