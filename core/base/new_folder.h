@@ -11,8 +11,7 @@ namespace evical {
 class NewFolder {
  public:
   // Throws CalibrationError (BadInput) if it can't be made or written to.
-  explicit NewFolder(const std::filesystem::path& folder)
-      : folder_(folder), was_there_(isThere(folder)) {
+  explicit NewFolder(const std::filesystem::path& folder) : folder_(folder), was_there_(isThere(folder)) {
     makeOutputFolder(folder);
   }
   ~NewFolder() {

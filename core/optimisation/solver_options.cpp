@@ -16,8 +16,8 @@ constexpr std::tuple kSolverFields{
           "Solves of one stage, each with measurements assigned to spline segments anew."},
     Field{"segment_drift", &SolverOptions::segment_drift, 0.05, within(0.001, 0.5), "knots",
           "A time offset may move this far before measurements are assigned to spline segments anew."},
-    Field{"threads", &SolverOptions::threads, 2, within(1, 256), "", "Threads of the batch, those of its linear algebra included.",
-          Level::Common}};
+    Field{"threads", &SolverOptions::threads, 2, within(1, 256), "",
+          "Threads of the batch, those of its linear algebra included.", Level::Common}};
 constexpr auto kSolverDefaults = defaultsOf<SolverOptions, kSolverFields>();
 
 }  // namespace

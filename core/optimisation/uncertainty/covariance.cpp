@@ -20,9 +20,8 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   OptimisationOptions free_to_turn = options;
   free_to_turn.gyroscope_rotation = true;
   CalibrationProblem problem(input, free_to_turn, solution.state);
-  problem.build(lastStage(options),
-                {solution.scales, solution.used_circles, solution.used_samples,
-                 std::vector<StillAxes>(input.imus.size())});
+  problem.build(lastStage(options), {solution.scales, solution.used_circles, solution.used_samples,
+                                     std::vector<StillAxes>(input.imus.size())});
   ProjectedInformation information = projectInformation(problem, options.correlation_time_s, context);
   context.throwIfStopped();
   UncertaintyEstimate estimate;
