@@ -4,25 +4,31 @@
 
 #include "core/data/event.h"
 #include "core/frontend/detection_options.h"
+#include "core/frontend/pixel_level.h"
 #include "core/geometry/resolution.h"
 
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <vector>
 
 namespace evical {
 
 struct EdgeBurst {
-  std::int64_t time_ns;      // median of its events' times
+  std::int64_t time_ns;      // median of its events' times, of those too that a turning edge did not fire
   std::int32_t duration_ns;  // from its first to its last event
   std::uint16_t x_px, y_px;
-  std::uint16_t events;
+  std::uint16_t events;  // as many as an edge fires here that does not turn
   bool brighter;
 };
 
+// The longest that a burst's median waits until the burst is handed out.
+double longestHandOut_s(const BurstOptions& options);
+
 // Turns events into bursts, in one pass and constant memory. A burst ends with an event of the other polarity
-// or with a pause that is long against its own pace.
+// or with a pause that is long against its own pace. Bursts in which the edge was not in the middle of its
+// pixel are left out.
 class BurstExtractor {
  public:
   BurstExtractor(Resolution resolution_px, const BurstOptions& options);
@@ -37,6 +43,7 @@ class BurstExtractor {
   std::uint64_t eventCount() const { return event_count_; }
 
  private:
+  static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min() / 2;
   static constexpr int kKeptTimes = 16;  // thinned by halves when a burst has more events
 
   struct Pixel {
@@ -45,6 +52,10 @@ class BurstExtractor {
     std::uint8_t kept = 0, stride_log2 = 0;
     bool brighter = false;
     std::array<std::int32_t, kKeptTimes> times_ns;  // since first_ns
+    std::int64_t quiet_since_ns = kNever;           // last event of the burst before
+    PixelLevel level;
+
+    std::int64_t timeOf_ns(double kept_event) const;  // between two kept ones, in proportion
   };
   struct Check {
     std::uint32_t pixel;
@@ -53,18 +64,19 @@ class BurstExtractor {
 
   void start(Pixel& pixel, std::uint32_t index, const Event& event);
   void extend(Pixel& pixel, const Event& event);
-  void end(Pixel& pixel, std::uint32_t index, std::vector<EdgeBurst>& bursts) const;
+  void end(Pixel& pixel, std::uint32_t index, std::int64_t now_ns, std::vector<EdgeBurst>& bursts) const;
   int ownBegin(const Pixel& pixel) const;
   bool pausedAt(const Pixel& pixel, std::int64_t time_ns) const;
+  bool restedAt(const Pixel& pixel, std::int64_t time_ns) const;
   void endPaused(std::int64_t now_ns, std::vector<EdgeBurst>& bursts);
 
   Resolution resolution_px_;
-  std::int64_t longest_gap_ns_, shortest_gap_ns_, longest_burst_ns_, check_interval_ns_;
+  std::int64_t longest_gap_ns_, shortest_gap_ns_, longest_burst_ns_, check_interval_ns_, hand_out_ns_;
   double gap_to_pace_;
   int least_events_;
   std::vector<Pixel> pixels_;
   std::deque<Check> checks_;
-  std::int64_t complete_until_ns_;
+  std::int64_t complete_until_ns_, last_event_ns_ = kNever;
   std::uint64_t event_count_ = 0;
 };
 

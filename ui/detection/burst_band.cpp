@@ -23,7 +23,7 @@ BurstBand::BurstBand(std::shared_ptr<const EventCache> cache, Resolution resolut
       resolution_px_(resolution_px),
       options_(options),
       lead_ns_(nanosecondsFrom(options.longest_burst_s + options.longest_gap_s)),
-      lag_ns_(nanosecondsFrom(options.longest_burst_s + 3.0 * options.longest_gap_s)) {}
+      lag_ns_(nanosecondsFrom(longestHandOut_s(options))) {}
 
 void BurstBand::restart(std::int64_t begin_ns) {
   extractor_.emplace(resolution_px_, options_);
