@@ -223,6 +223,9 @@ struct Arguments {
       all.clear();
       for (const std::string& name : only) all.push_back(test::perturbation(name));
     }
+    // A perfect front end sees the true board, whatever the session says.
+    if (source.perfect)
+      std::erase_if(all, [](const Perturbation& each) { return each.stage == PerturbedStage::FrontEnd; });
     for (Perturbation& each : all)
       if (size) each.sizes = {*size};
     return all;
