@@ -144,7 +144,6 @@ void BoardTracker::acquire(const WindowSlot& slot, const BoardMotion& motion) {
   motion_ = trace.motion;
   placement_watch_.reset();
   track_begin_ = observations_.views.size();
-  extent_before_track_ = observations_.extent;
   trackBackwards(slot, *trace.motion);
   tracked_until_ns_ = slot.end_ns;
   keep(trace);
@@ -184,8 +183,8 @@ void BoardTracker::reconsiderPlacement(const WindowSlot& slot, WindowTrace& trac
   WindowTrace anew =
       trackWindow({history_, scene_, options_, start_ns_}, slot, shifted(*trace.motion, *shift), window_);
   if (!anew.held() || anew.report.circles <= trace.report.circles) return;
+  // The extent's counts stay: where the board has more rows than the session says, placements change for ever.
   renumberTrack(*shift);
-  observations_.extent = extent_before_track_;
   trace = std::move(anew);
 }
 

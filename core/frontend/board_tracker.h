@@ -76,7 +76,6 @@ class BoardTracker {
   int held_windows_ = 0;
   PlacementWatch placement_watch_;
   std::size_t track_begin_ = 0;  // its first view: since the board was found last
-  BoardExtent extent_before_track_;
   BoardObservations observations_;
 };
 

@@ -94,7 +94,7 @@ void checkPoses(const CameraData& camera, const CameraPoses& found, const GyroRo
                     first_s, last_s, gyro.begin_s(), gyro.end_s()),
         !apart            ? "Record for 30 s"
         : search_s == 0.0 ? "Check the clocks, and the time offset in the session"
-                          : "Check the clocks, or widen the search in initialisation");
+                          : "Check the clocks, or widen initialisation.widest_time_offset_search_s");
   }
 }
 
