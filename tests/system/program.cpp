@@ -66,7 +66,8 @@ Outcome interruptProgram(const QStringList& arguments, int signal,
     process.waitForReadyRead(20);
     errors += QString::fromUtf8(process.readAllStandardError());
   }
-  ::kill(static_cast<pid_t>(process.processId()), signal);
+  // A process that has ended has the number 0, which means everybody here.
+  if (const auto number = static_cast<pid_t>(process.processId()); number > 0) ::kill(number, signal);
   return finished(process, patience_s, errors);
 }
 
