@@ -9,10 +9,12 @@ constexpr std::tuple kModelFields{
     Switch{"free_time_offsets", &ModelOptions::free_time_offsets, true,
            "Estimate time offsets; else each stays at the session's prior value, or 0 without one.",
            Level::Common},
-    Switch{"time_offset_drift", &ModelOptions::time_offset_drift, false,
-           "Estimate how each time offset drifts, as clocks of their own do. With a weighed prior it is "
-           "estimated in any case.",
-           Level::Common},
+    Switch{
+        "time_offset_drift", &ModelOptions::time_offset_drift, true,
+        "Estimate how each time offset drifts, as clocks of their own do; false where one clock stamps all "
+        "sensors. A given time offset does not drift; with a weighed prior the drift is estimated in any "
+        "case.",
+        Level::Common},
     Switch{"free_imu_intrinsics", &ModelOptions::free_imu_intrinsics, true,
            "Estimate scales and misalignments M_g and M_a; else each stays at the session's prior value, or "
            "the identity without one. Biases stay free.",

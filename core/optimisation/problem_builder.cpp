@@ -10,7 +10,8 @@ bool ProblemBuilder::turnsGyroscope(std::size_t imu) const {
 
 bool ProblemBuilder::drifts(const SensorPrior& prior) const {
   const std::optional<KnownNumber>& drift = prior.time_offset_drift;
-  return options.free_time_offsets && (options.time_offset_drift || drift) && !isGiven(drift);
+  if (drift) return options.free_time_offsets && !drift->isGiven();
+  return options.free_time_offsets && options.time_offset_drift && !isGiven(prior.time_offset);
 }
 
 void ProblemBuilder::addPrior(ceres::CostFunction* cost, const std::vector<double*>& blocks) {

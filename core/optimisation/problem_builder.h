@@ -38,7 +38,8 @@ struct ProblemBuilder {
   bool isReference(std::size_t imu) const { return imu == input.reference_imu; }
   // Where nothing turns about some axis the gyroscope could take any turn about it.
   bool turnsGyroscope(std::size_t imu) const;
-  bool drifts(const SensorPrior& prior) const;  // a clock with this prior
+  // A clock with this prior. One whose offset is given is the reference's own, as far as anybody knows.
+  bool drifts(const SensorPrior& prior) const;
 
   void addPrior(ceres::CostFunction* cost, const std::vector<double*>& blocks);
   void hold(double* block);  // if it is in the problem

@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
 #include "core/report/export/exporters.h"
+#include "core/report/export/rig.h"
 
 #include <fmt/format.h>
 
@@ -63,6 +64,7 @@ ExportedFiles exportResult(const NamedResult& result, std::span<const std::strin
       all.files.push_back({std::filesystem::path(target.name) / file.path, std::move(file.content)});
     for (const std::string& note : one.notes) all.notes.push_back(fmt::format("{}: {}", target.name, note));
   }
+  for (std::string& remark : timingRemarks(result)) all.notes.push_back(std::move(remark));
   return all;
 }
 

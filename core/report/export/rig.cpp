@@ -68,6 +68,22 @@ RigImu imuOf(const NamedResult& result, std::size_t i, std::set<std::string>& ta
   return {name, fileName(name, taken), known.stream, known.noise, known.rate_hz, state};
 }
 
+// An estimate of 0 is within its sigma of it, or nearly.
+bool isThere(double value, double sigma) {
+  constexpr double kChance_sigmas = 3.0;
+  return value != 0.0 && std::abs(value) >= kChance_sigmas * sigma;
+}
+
+template <class State, class Uncertainty>
+void remarkDrift(const std::string& name, const State& state, const Uncertainty& sigma,
+                 std::vector<std::string>& remarks) {
+  if (!isThere(state.time_offset_drift_ppm, sigma.time_offset_drift_std_ppm)) return;
+  remarks.push_back(fmt::format(
+      "{}: its clock drifts by {:.3g} ppm against the reference's; the time offset is that at {:.2f} "
+      "s of its own clock, stamps at other times need more",
+      name, state.time_offset_drift_ppm, state.time_offset_at_s));
+}
+
 // Between the first camera and the others.
 double largestOffset_s(const Rig& rig) {
   double largest_s = 0.0;
@@ -77,6 +93,17 @@ double largestOffset_s(const Rig& rig) {
 }
 
 }  // namespace
+
+std::vector<std::string> timingRemarks(const NamedResult& result) {
+  const CalibrationState& state = result.result->state;
+  const UncertaintyReport& sigmas = result.result->uncertainty;
+  std::vector<std::string> remarks;
+  for (std::size_t i = 0; i < result.cameras.size(); ++i)
+    remarkDrift(result.cameras[i].name, state.cameras.at(i), elementOrNone(sigmas.cameras, i), remarks);
+  for (std::size_t i = 0; i < result.imus.size(); ++i)
+    remarkDrift(result.imus[i].name, state.imus.at(i), elementOrNone(sigmas.imus, i), remarks);
+  return remarks;
+}
 
 Rig rigOf(const NamedResult& result) {
   Rig rig;
@@ -90,6 +117,7 @@ Rig rigOf(const NamedResult& result) {
   for (std::size_t i = 0; i < result.imus.size(); ++i) rig.imus.push_back(imuOf(result, i, taken));
   std::stable_partition(rig.imus.begin(), rig.imus.end(),
                         [&](const RigImu& imu) { return imu.name == result.reference; });
+  rig.timing = timingRemarks(result);
   return rig;
 }
 
@@ -195,6 +223,7 @@ std::string readMe(const Rig& rig, const std::vector<std::string>& lines) {
   std::string text = fmt::format("Written by {}. Calibration: {}\n", rig.program, rig.status);
   std::replace(text.begin(), text.end() - 1, '\n', ' ');
   for (const std::string& line : lines) text += line + "\n";
+  for (const std::string& line : rig.timing) text += line + "\n";
   return text;
 }
 

@@ -33,11 +33,12 @@ struct StatedNoise {
 };
 
 struct Rig {
-  std::string program;             // "Evical 0.1.0"
-  std::string status;              // "ok", or "doubtful: why"
-  std::vector<RigCamera> cameras;  // at least one
-  std::vector<RigImu> imus;        // the reference first; none in a calibration of cameras only
-  Eigen::Vector3d gravity_m_s2;    // in the board's frame
+  std::string program;              // "Evical 0.1.0"
+  std::string status;               // "ok", or "doubtful: why"
+  std::vector<RigCamera> cameras;   // at least one
+  std::vector<RigImu> imus;         // the reference first; none in a calibration of cameras only
+  std::vector<std::string> timing;  // timingRemarks
+  Eigen::Vector3d gravity_m_s2;     // in the board's frame
 };
 
 // What to know before using the files: appended to by all that find something.
@@ -45,6 +46,9 @@ using ExportNotes = std::vector<std::string>;
 
 // Throws CalibrationError (BadInput) where a camera has no intrinsics or resolution, or a number is none.
 Rig rigOf(const NamedResult& result);
+
+// What no program has a place for: clocks that drift, with more than chance.
+std::vector<std::string> timingRemarks(const NamedResult& result);
 
 // The reference IMU; throws CalibrationError (BadInput) where there is none.
 const RigImu& neededImu(const Rig& rig, const char* program);
@@ -63,7 +67,7 @@ void noteLostOffsets(const Rig& rig, const char* program, ExportNotes& notes);
 void noteNoOffsets(const Rig& rig, const char* program, ExportNotes& notes);  // of cameras among each other
 void noteLostCameras(const Rig& rig, std::size_t most, const char* program, ExportNotes& notes);
 
-// As YAML comments: who wrote this, how sure it is, and the lines given.
+// As YAML comments: who wrote this, how sure it is, the lines given, and what is to be said of times.
 std::string headerComment(const Rig& rig, const std::vector<std::string>& lines);
 // The same as text of a file beside a format without comments.
 std::string readMe(const Rig& rig, const std::vector<std::string>& lines);

@@ -35,8 +35,9 @@ double rotationError_deg(const CameraState& a, const CameraState& b) {
 double translationError_mm(const CameraState& a, const CameraState& b) {
   return 1e3 * (a.reference_from_camera.translation_m - b.reference_from_camera.translation_m).norm();
 }
+// At the time of one of the two: clocks drift.
 double offsetError_ms(const CameraState& a, const CameraState& b) {
-  return 1e3 * std::abs(a.time_offset_s - b.time_offset_s);
+  return 1e3 * std::abs(a.time_offset_s - timeOffsetAt_s(b, a.time_offset_at_s));
 }
 
 // Stops as soon as it has heard of work.

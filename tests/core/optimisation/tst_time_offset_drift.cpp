@@ -23,10 +23,15 @@ test::RigOptions driftingRig(unsigned seed = 1) {
   return options;
 }
 
-OptimisationOptions withDrift(double sigma_ppm = 50.0) {
+OptimisationOptions withPrior(double sigma_ppm) {
   OptimisationOptions options;
-  options.time_offset_drift = true;
   options.time_offset_drift_sigma_ppm = sigma_ppm;
+  return options;
+}
+
+OptimisationOptions withoutDrift() {
+  OptimisationOptions options;
+  options.time_offset_drift = false;
   return options;
 }
 
@@ -46,7 +51,7 @@ class TestTimeOffsetDrift : public QObject {
     options.second_imu = true;
     const test::SimulatedRig rig = test::simulateRig(options);
     const BatchSolution solution =
-        optimiseBatch(rig.input, test::disturbed(rig.truth, 1), withDrift(1e4), RunContext{});
+        optimiseBatch(rig.input, test::disturbed(rig.truth, 1), withPrior(1e4), RunContext{});
     const CameraState& camera = solution.state.cameras[0];
     QVERIFY2(std::abs(camera.time_offset_drift_ppm - kDrift_ppm) < 2.0,
              qPrintable(QString::number(camera.time_offset_drift_ppm)));
@@ -65,7 +70,7 @@ class TestTimeOffsetDrift : public QObject {
     double drifts = 0.0, offsets = 0.0;
     for (unsigned seed = 1; seed <= kSeeds; ++seed) {
       const test::SimulatedRig rig = test::simulateRig(driftingRig(seed));
-      const OptimisationOptions options = withDrift(1e4);
+      const OptimisationOptions options = withPrior(1e4);
       const BatchSolution solution =
           optimiseBatch(rig.input, test::disturbed(rig.truth, seed), options, RunContext{});
       const UncertaintyReport report = estimateUncertainty(rig.input, solution, options, RunContext{}).report;
@@ -86,30 +91,61 @@ class TestTimeOffsetDrift : public QObject {
     QVERIFY2(of_offsets > 0.5 && of_offsets < 1.6, qPrintable(QString::number(of_offsets)));
   }
 
-  void withoutTheOption_nothingDrifts() {
+  // Nobody has to ask for it.
+  void drift_isFoundByDefault() {
     const test::SimulatedRig rig = test::simulateRig(driftingRig());
     const BatchSolution solution = optimiseBatch(rig.input, test::disturbed(rig.truth, 1), {}, RunContext{});
-    QCOMPARE(solution.state.cameras[0].time_offset_drift_ppm, 0.0);
     const UncertaintyReport report = estimateUncertainty(rig.input, solution, {}, RunContext{}).report;
+    const double error_ppm = solution.state.cameras[0].time_offset_drift_ppm - kDrift_ppm;
+    QVERIFY2(std::abs(error_ppm) < 4.0 * report.cameras[0].time_offset_drift_std_ppm,
+             qPrintable(QString::number(error_ppm)));
+    QVERIFY(report.cameras[0].time_offset_drift_std_ppm < 0.5 * kDrift_ppm);
+  }
+
+  void withoutTheOption_nothingDrifts() {
+    const test::SimulatedRig rig = test::simulateRig(driftingRig());
+    const OptimisationOptions options = withoutDrift();
+    const BatchSolution solution =
+        optimiseBatch(rig.input, test::disturbed(rig.truth, 1), options, RunContext{});
+    QCOMPARE(solution.state.cameras[0].time_offset_drift_ppm, 0.0);
+    const UncertaintyReport report = estimateUncertainty(rig.input, solution, options, RunContext{}).report;
     QCOMPARE(report.cameras[0].time_offset_drift_std_ppm, 0.0);
     QCOMPARE(placeOf(report, "left.time_offset_drift [ppm]"), std::ptrdiff_t(report.names.size()));
     QVERIFY(report.given.empty());
   }
 
+  // Who gives an offset knows of one clock, unless a prior says that there are two.
+  void givenOffset_doesNotDrift() {
+    test::SimulatedRig rig = test::simulateRig(driftingRig());
+    SensorPrior& prior = rig.input.cameras[0].prior;
+    prior.time_offset = KnownNumber{rig.truth.cameras[0].time_offset_s + 1e-6 * kDrift_ppm * 4.0};
+    BatchSolution solution = optimiseBatch(rig.input, test::disturbed(rig.truth, 1), {}, RunContext{});
+    QCOMPARE(solution.state.cameras[0].time_offset_drift_ppm, 0.0);
+    UncertaintyReport report = estimateUncertainty(rig.input, solution, {}, RunContext{}).report;
+    QCOMPARE(report.given, std::vector<std::string>{"left.time_offset"});
+
+    prior.time_offset_drift = KnownNumber{0.0, 1e4};
+    solution = optimiseBatch(rig.input, test::disturbed(rig.truth, 1), {}, RunContext{});
+    report = estimateUncertainty(rig.input, solution, {}, RunContext{}).report;
+    QVERIFY(std::abs(solution.state.cameras[0].time_offset_drift_ppm - kDrift_ppm) <
+            4.0 * report.cameras[0].time_offset_drift_std_ppm);
+  }
+
   // Without the option, too: who knows it says so.
   void knownDrift_isHeldOrWeighed() {
     test::SimulatedRig rig = test::simulateRig(driftingRig());
+    const OptimisationOptions options = withoutDrift();
     std::optional<KnownNumber>& prior = rig.input.cameras[0].prior.time_offset_drift;
     prior = KnownNumber{kDrift_ppm};
-    BatchSolution solution = optimiseBatch(rig.input, test::disturbed(rig.truth, 1), {}, RunContext{});
+    BatchSolution solution = optimiseBatch(rig.input, test::disturbed(rig.truth, 1), options, RunContext{});
     QCOMPARE(solution.state.cameras[0].time_offset_drift_ppm, kDrift_ppm);
-    UncertaintyReport report = estimateUncertainty(rig.input, solution, {}, RunContext{}).report;
+    UncertaintyReport report = estimateUncertainty(rig.input, solution, options, RunContext{}).report;
     QCOMPARE(report.given, std::vector<std::string>{"left.time_offset_drift"});
     QCOMPARE(report.cameras[0].time_offset_drift_std_ppm, 0.0);
 
     prior = KnownNumber{kDrift_ppm + 0.5, 0.5};
-    solution = optimiseBatch(rig.input, test::disturbed(rig.truth, 1), {}, RunContext{});
-    report = estimateUncertainty(rig.input, solution, {}, RunContext{}).report;
+    solution = optimiseBatch(rig.input, test::disturbed(rig.truth, 1), options, RunContext{});
+    report = estimateUncertainty(rig.input, solution, options, RunContext{}).report;
     const double sigma_ppm = report.cameras[0].time_offset_drift_std_ppm;
     QVERIFY2(sigma_ppm > 0.1 && sigma_ppm < 0.55, qPrintable(QString::number(sigma_ppm)));
     QVERIFY(std::abs(solution.state.cameras[0].time_offset_drift_ppm - kDrift_ppm) < 4.0 * 0.5);

@@ -99,7 +99,7 @@ class TestJointIntrinsics : public QObject {
                qPrintable(QString("%1: %2").arg(QString::fromStdString(each.name)).arg(each.normalised())));
       compared += each.sigma > 0.0;
     }
-    QCOMPARE(compared, 7 + 8);
+    QCOMPARE(compared, 7 + 1 + 8);  // extrinsics, drift, lens
   }
 
   void halves_solveForThemToo() {

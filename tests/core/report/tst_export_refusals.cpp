@@ -4,6 +4,7 @@
 #include "tests/support/own_result.h"
 #include "tests/support/test_program.h"
 
+#include <algorithm>
 #include <limits>
 
 using namespace evical;
@@ -26,6 +27,33 @@ class TestExportRefusals : public QObject {
     for (SensorDescription& imu : result.imus) imu = {imu.name};
     const QString notes = QString::fromStdString(exportTo(result, "ultimate-slam").notes.back());
     QVERIFY(notes.contains("rate"));
+  }
+
+  // Within three sigmas a drift is chance, and nothing is said.
+  void driftingClock_isSaid_data() {
+    QTest::addColumn<QString>("target");
+    for (const ExportTarget& target : exportTargets()) QTest::newRow(target.name) << target.name;
+  }
+  void driftingClock_isSaid() {
+    QFETCH(QString, target);
+    NamedResult result = rig({});
+    CalibrationResult& own = test::ownResult(result);
+    own.uncertainty.cameras.resize(own.state.cameras.size());
+    own.state.cameras[0].time_offset_drift_ppm = 41.5;
+    own.state.cameras[0].time_offset_at_s = 12.25;
+    own.uncertainty.cameras[0].time_offset_drift_std_ppm = 10.0;
+    const ExportedFiles exported = exportTo(result, target.toStdString());
+    const QString note = QString::fromStdString(exported.notes.back());
+    QVERIFY2(note.contains("left: its clock drifts by 41.5 ppm") && note.contains("12.25 s"),
+             qPrintable(note));
+    const bool in_a_file = std::any_of(
+        exported.files.begin(), exported.files.end(),
+        [](const FileContent& file) { return file.content.find("drifts by 41.5 ppm") != std::string::npos; });
+    QVERIFY(in_a_file);
+
+    own.uncertainty.cameras[0].time_offset_drift_std_ppm = 20.0;
+    for (const std::string& each : exportTo(result, target.toStdString()).notes)
+      QVERIFY(each.find("drifts") == std::string::npos);
   }
 
   void camerasOnly_isRefusedWhereAnImuIsNeeded_data() {
