@@ -45,6 +45,10 @@ struct ImuUncertainty {
   double time_offset_drift_std_ppm = 0.0;
 };
 
+struct BoardUncertainty {
+  double scale_std = 0.0, stretch_std = 0.0;
+};
+
 // Over all calibrated quantities, in one order that `names` gives ("left.rotation.x [rad]", ...).
 struct UncertaintyReport {
   std::vector<std::string> names;
@@ -52,6 +56,7 @@ struct UncertaintyReport {
   Eigen::MatrixXd correlation;
   std::vector<CameraUncertainty> cameras;
   std::vector<ImuUncertainty> imus;
+  BoardUncertainty board;
   std::vector<std::string> given;  // held at known values, not estimated: "left.time_offset"
   double gravity_direction_std_rad = 0.0;
   double gravity_norm_std_m_s2 = 0.0;  // 0: its norm is held

@@ -70,12 +70,24 @@ double sensorTime_s(const Sensor& sensor, double reference_time_s) {
   return (reference_time_s - sensor.time_offset_s + pace * sensor.time_offset_at_s) / (1.0 + pace);
 }
 
+// The board as it is, against what is said of it (circle_board.h): a point (x, y) of it lies at
+// scale ((1 + stretch / 2) x, (1 - stretch / 2) y).
+struct BoardState {
+  double scale = 1.0, stretch = 0.0;
+
+  Eigen::Vector2d place_m(const Eigen::Vector2d& on_board_m) const {
+    return scale *
+           Eigen::Vector2d((1.0 + 0.5 * stretch) * on_board_m.x(), (1.0 - 0.5 * stretch) * on_board_m.y());
+  }
+};
+
 // Times of the splines are seconds since the recording's start on the reference IMU's clock.
 struct CalibrationState {
   So3Spline world_from_imu_rotation;
   VectorSpline imu_in_world_m;
   std::vector<CameraState> cameras;
   std::vector<ImuState> imus;
+  BoardState board = {};
   Eigen::Vector3d gravity_in_world_m_s2 = Eigen::Vector3d(0.0, 0.0, -9.81);  // points down
 };
 

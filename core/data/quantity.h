@@ -20,7 +20,7 @@
 
 namespace evical {
 
-enum class QuantityOwner { Camera, Imu, Rig };
+enum class QuantityOwner { Camera, Imu, Board, Rig };
 
 enum class QuantityShape {
   Scalar,
@@ -36,7 +36,14 @@ enum class QuantityShape {
 enum class QuantityNeed { None, Rotation, Translation, TimeOffset };
 
 // Which option lets it be estimated, where not all runs do.
-enum class QuantityRelease { Always, TimeOffsets, ImuIntrinsics, GyroscopeRotation, TimeOffsetDrift };
+enum class QuantityRelease {
+  Always,
+  TimeOffsets,
+  ImuIntrinsics,
+  GyroscopeRotation,
+  TimeOffsetDrift,
+  BoardSize
+};
 
 // When there is something to compare or to show.
 enum class QuantityPresence {
@@ -309,6 +316,32 @@ inline constexpr auto kImuQuantities = std::tuple{
                              .std_key = "rotation_std_deg"},
                 &ImuState::gyroscope_from_accelerometer, &ImuUncertainty::gyroscope_rotation_std_rad,
                 &ImuPrior::gyroscope_rotation}};
+
+inline constexpr auto kBoardQuantities =
+    std::tuple{QuantityRow{QuantityInfo{.name = "scale",
+                                        .title = "size",
+                                        .owner = QuantityOwner::Board,
+                                        .shape = QuantityShape::Scalar,
+                                        .unit = "1",
+                                        .remark = "times what the session says",
+                                        .release = QuantityRelease::BoardSize,
+                                        .presence = QuantityPresence::WhereEstimated,
+                                        .written = QuantityWriting::WherePresent,
+                                        .key = "scale",
+                                        .std_key = "scale_std"},
+                           &BoardState::scale, &BoardUncertainty::scale_std, NoPrior{}},
+               QuantityRow{QuantityInfo{.name = "stretch",
+                                        .title = "stretch",
+                                        .owner = QuantityOwner::Board,
+                                        .shape = QuantityShape::Scalar,
+                                        .unit = "1",
+                                        .remark = "of its rows against its columns",
+                                        .release = QuantityRelease::BoardSize,
+                                        .presence = QuantityPresence::WhereEstimated,
+                                        .written = QuantityWriting::WherePresent,
+                                        .key = "stretch",
+                                        .std_key = "stretch_std"},
+                           &BoardState::stretch, &BoardUncertainty::stretch_std, NoPrior{}}};
 
 // The one quantity of the rig as a whole has sigmas of its own kind (UncertaintyReport), so it is no row.
 inline constexpr QuantityInfo kGravityQuantity = {.name = "gravity",

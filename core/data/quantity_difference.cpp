@@ -100,10 +100,12 @@ void addInQuadrature(std::optional<std::array<double, 9>>& sum,
 }
 
 template <class Rows, class Uncertainty>
+void addSigmas(const Rows& rows, Uncertainty& sum, const Uncertainty& other) {
+  forEachQuantity(rows, [&](const auto& row) { addInQuadrature(row.sigma(sum), row.sigma(other)); });
+}
+template <class Rows, class Uncertainty>
 void addSensors(const Rows& rows, std::vector<Uncertainty>& sums, const std::vector<Uncertainty>& others) {
-  for (std::size_t i = 0; i < sums.size() && i < others.size(); ++i)
-    forEachQuantity(rows,
-                    [&](const auto& row) { addInQuadrature(row.sigma(sums[i]), row.sigma(others[i])); });
+  for (std::size_t i = 0; i < sums.size() && i < others.size(); ++i) addSigmas(rows, sums[i], others[i]);
 }
 
 }  // namespace
@@ -133,6 +135,8 @@ std::vector<QuantityDifference> difference(const Estimate& a, const Estimate& b)
     compareSensor(kImuQuantities, a.imu_names[i], Side{a.imus.at(i), a.uncertainty.imus.at(i)},
                   Side{other, b.uncertainty.imus.at(j)}, a.imu_names[i] == a.reference, differences);
   }
+  compareSensor(kBoardQuantities, "board", Side{a.board, a.uncertainty.board},
+                Side{b.board, b.uncertainty.board}, false, differences);
   if (const double sigma = a.uncertainty.gravity_norm_std_m_s2; sigma > 0.0)
     differences.all.push_back({"gravity.norm", kGravityQuantity.shown_unit,
                                a.gravity_in_world_m_s2.norm() - b.gravity_in_world_m_s2.norm(), sigma});
@@ -149,6 +153,7 @@ UncertaintyReport differenceUncertainty(const UncertaintyReport& a, const Uncert
   UncertaintyReport sum = a;
   addSensors(kCameraQuantities, sum.cameras, b.cameras);
   addSensors(kImuQuantities, sum.imus, b.imus);
+  addSigmas(kBoardQuantities, sum.board, b.board);
   sum.gravity_norm_std_m_s2 = std::hypot(a.gravity_norm_std_m_s2, b.gravity_norm_std_m_s2);
   sum.gravity_direction_std_rad = std::hypot(a.gravity_direction_std_rad, b.gravity_direction_std_rad);
   return sum;

@@ -17,6 +17,7 @@ struct Estimate {
   std::vector<std::string> camera_names, imu_names;
   std::vector<CameraState> cameras;
   std::vector<ImuState> imus;
+  BoardState board;
   Eigen::Vector3d gravity_in_world_m_s2 = Eigen::Vector3d::Zero();
   UncertaintyReport uncertainty;
 };

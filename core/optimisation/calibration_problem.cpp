@@ -90,9 +90,14 @@ void CalibrationProblem::setManifolds(ProblemBuilder& builder) {
   for (std::size_t i = 0; i < state.cameras.size(); ++i)
     if (IntrinsicsBlock* block = parameters_.intrinsics(i))
       block->hold(*problem_, builder.stage == lastStage(options_));
-  if (builder.stage == ReleaseStages::Mappings) return;
-  for (const Quantity& quantity : parameters_.quantities())
-    if (quantity.info->release == QuantityRelease::ImuIntrinsics) builder.hold(quantity.block);
+  const bool last = builder.stage == lastStage(options_);
+  for (const Quantity& quantity : parameters_.quantities()) {
+    const QuantityRelease release = quantity.info->release;
+    const bool held =
+        (release == QuantityRelease::ImuIntrinsics && builder.stage != ReleaseStages::Mappings) ||
+        (release == QuantityRelease::BoardSize && !(last && options_.free_board_size));
+    if (held) builder.hold(quantity.block);
+  }
 }
 
 // The trajectory is the reference camera's own.

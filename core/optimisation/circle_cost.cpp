@@ -26,10 +26,12 @@ enum Block {
   kTimeOffsetDrift,
   kEdgeLead,
   kEdgeLeadGrowth,
+  kBoardScale,
+  kBoardStretch,
   kIntrinsics,  // where they are free
   kBlocks
 };
-constexpr std::array<int, kBlocks> kBlockSizes = {4, 4, 4, 4, 3, 3, 3, 3, 4, 3, 1, 1, 1, 1, 9};
+constexpr std::array<int, kBlocks> kBlockSizes = {4, 4, 4, 4, 3, 3, 3, 3, 4, 3, 1, 1, 1, 1, 1, 1, 9};
 
 void writeZero(double** jacobians, int blocks, Eigen::Index row) {
   for (int block = 0; block < blocks; ++block) {
@@ -38,12 +40,13 @@ void writeZero(double** jacobians, int blocks, Eigen::Index row) {
   }
 }
 
-// The camera's blocks, ready for use.
+// The blocks of the camera and the board, ready for use.
 struct Mount {
   Matrix3d camera_from_imu;
   Vector3d camera_in_imu;
   double time_offset_s, time_offset_drift_ppm;
   EdgeLead lead;
+  BoardState board;
 
   explicit Mount(double const* const* parameters)
       : camera_from_imu(
@@ -51,7 +54,8 @@ struct Mount {
         camera_in_imu(parameters[kCameraTranslation]),
         time_offset_s(*parameters[kTimeOffset]),
         time_offset_drift_ppm(*parameters[kTimeOffsetDrift]),
-        lead{*parameters[kEdgeLead], *parameters[kEdgeLeadGrowth]} {}
+        lead{*parameters[kEdgeLead], *parameters[kEdgeLeadGrowth]},
+        board{*parameters[kBoardScale], *parameters[kBoardStretch]} {}
 };
 
 // One circle at its time, and what moves it.
@@ -62,9 +66,10 @@ struct PlacedCircle {
   Matrix3d imu_from_world;
   Vector3d in_imu, normal_in_imu, in_camera, normal_in_camera;
 
-  void place(const Mount& mount, const Eigen::Vector2d& on_board_m) {
+  void place(const Mount& mount, const Vector2d& on_board_m) {
     imu_from_world = rotation.rotation.transpose();
-    in_imu = imu_from_world * (Vector3d(on_board_m.x(), on_board_m.y(), 0.0) - position.value);
+    const Vector2d in_world_m = mount.board.place_m(on_board_m);
+    in_imu = imu_from_world * (Vector3d(in_world_m.x(), in_world_m.y(), 0.0) - position.value);
     normal_in_imu = imu_from_world.col(2);
     in_camera = mount.camera_from_imu * (in_imu - mount.camera_in_imu);
     normal_in_camera = mount.camera_from_imu * normal_in_imu;
@@ -105,6 +110,14 @@ void writeJacobians(const Mount& mount, const PlacedCircle& placed, const Projec
     if (jacobians[kTimeOffsetDrift])
       jacobianRows<2, 1>(jacobians, kTimeOffsetDrift, row) = circle.by_drift_s * by_time;
   }
+  const auto by_board = -by_position.leftCols<2>();  // the circle moves where the IMU does not
+  if (jacobians[kBoardScale])
+    jacobianRows<2, 1>(jacobians, kBoardScale, row) =
+        by_board * mount.board.place_m(circle.on_board_m) / mount.board.scale;
+  if (jacobians[kBoardStretch])
+    jacobianRows<2, 1>(jacobians, kBoardStretch, row) =
+        by_board * Vector2d(0.5 * mount.board.scale * circle.on_board_m.x(),
+                            -0.5 * mount.board.scale * circle.on_board_m.y());
   if (jacobians[kEdgeLead]) jacobianRows<2, 1>(jacobians, kEdgeLead, row) = by_px * circle.lead.of_lead;
   if (jacobians[kEdgeLeadGrowth])
     jacobianRows<2, 1>(jacobians, kEdgeLeadGrowth, row) = by_px * circle.lead.of_growth;

@@ -20,8 +20,8 @@ namespace {
 std::optional<Eigen::Vector2d> predictedCentre(const CameraData& camera, const CameraState& state,
                                                const CircleObservation& circle,
                                                const RigidTransform& camera_from_world,
-                                               const CircleBoard& board) {
-  const Eigen::Vector2d on_board_m = board.centre_m(circle.circle);
+                                               const CircleBoard& board, const BoardState& board_state) {
+  const Eigen::Vector2d on_board_m = board_state.place_m(board.centre_m(circle.circle));
   if (!state.lens.solved)
     return projectedCircleCentre(*camera.lens.seen_with, camera_from_world, on_board_m, board.radius_m);
   const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();
@@ -54,7 +54,7 @@ std::vector<CircleError> circleErrors(const CalibrationInput& input, const Calib
             predictedCentre(camera, camera_state, circle,
                             cameraFromWorld(rotation, position, camera_state.reference_from_camera,
                                             timeOffsetAt_s(camera_state, circle.time_s), circle.time_s),
-                            input.board);
+                            input.board, state.board);
         if (centre_px) {
           const EdgeLeadEffect lead = edgeLeadEffect(*camera.lens.seen_with, circle, options.rest_speed_px_s);
           error.error_px = *centre_px + edgeLeadOf(camera_state).times(lead) - circle.centre_px;

@@ -148,6 +148,7 @@ void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& 
                 const PixelErrors& pixel_errors) {
   ParameterBlocks& parameters = builder.parameters;
   CameraState& state = parameters.moved().cameras[camera];
+  BoardState& board = parameters.moved().board;
   const std::vector<CircleMeasurement> measurements = circlesOf(builder, camera, pixel_errors);
   for (std::size_t begin = 0, end = 0; begin < measurements.size(); begin = end) {
     const double begin_s = referenceTime_s(state, measurements[begin].time_s);
@@ -162,10 +163,10 @@ void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& 
     std::vector<double*> blocks;
     parameters.appendRotation(segment, blocks);
     parameters.appendPosition(segment, blocks);
-    blocks.insert(blocks.end(),
-                  {state.reference_from_camera.rotation.coeffs().data(),
-                   state.reference_from_camera.translation_m.data(), &state.time_offset_s,
-                   &state.time_offset_drift_ppm, &state.edge_lead_px, &state.edge_lead_growth_px});
+    blocks.insert(blocks.end(), {state.reference_from_camera.rotation.coeffs().data(),
+                                 state.reference_from_camera.translation_m.data(), &state.time_offset_s,
+                                 &state.time_offset_drift_ppm, &state.edge_lead_px,
+                                 &state.edge_lead_growth_px, &board.scale, &board.stretch});
     if (IntrinsicsBlock* intrinsics = parameters.intrinsics(camera)) blocks.push_back(intrinsics->data());
     builder.residuals.push_back({builder.problem.AddResidualBlock(cost, nullptr, blocks), SensorKind::Circles,
                                  camera, begin_s, cost});

@@ -19,8 +19,12 @@ constexpr std::tuple kModelFields{
            "Estimate scales and misalignments M_g and M_a; else each stays at the session's prior value, or "
            "the identity without one. Biases stay free.",
            Level::Common},
-    Switch{"free_gravity_norm", &ModelOptions::free_gravity_norm, false,
+    Switch{"free_gravity_norm", &ModelOptions::free_gravity_norm, true,
            "Estimate gravity's norm, too, not its direction only.", Level::Common},
+    Switch{"free_board_size", &ModelOptions::free_board_size, true,
+           "Estimate the board's size and its stretch about what the session says, so that translations' "
+           "sigmas say what its measurement leaves open.",
+           Level::Common},
     Choice{"camera_intrinsics", &ModelOptions::camera_intrinsics, CameraIntrinsicsChoice::Automatic,
            std::array{"automatic", "fixed", "free"},
            "Whether cameras' intrinsics are solved for with everything else, in the last stage; automatic: "

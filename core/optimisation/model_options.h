@@ -14,6 +14,7 @@ struct ModelOptions {
   bool time_offset_drift;
   bool free_imu_intrinsics;
   bool free_gravity_norm;
+  bool free_board_size;
   CameraIntrinsicsChoice camera_intrinsics;
   bool gyroscope_rotation;
   BiasModel bias_model;

@@ -101,6 +101,7 @@ std::vector<Quantity> ParameterBlocks::quantities() {
   for (std::size_t i = 0; i < moved_.imus.size(); ++i)
     forEachQuantity(kImuQuantities,
                     [&](const auto& row) { add(row.info, i, of(row.value(moved_.imus[i]))); });
+  forEachQuantity(kBoardQuantities, [&](const auto& row) { add(row.info, 0, of(row.value(moved_.board))); });
   add(kGravityQuantity, 0, moved_.gravity_in_world_m_s2.data());
   return all;
 }

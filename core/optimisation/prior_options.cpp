@@ -28,8 +28,12 @@ constexpr std::tuple kPriorFields{
           within(1e-6, 100.0), "m/s^2", "Weak prior on accelerometer biases around 0."},
     Field{"translation_sigma_m", &PriorOptions::translation_sigma_m, 0.5, within(1e-3, 1e3), "m",
           "Weak prior on translations between sensors around 0, for motions that don't tell them."},
-    Field{"gravity_norm_sigma_m_s2", &PriorOptions::gravity_norm_sigma_m_s2, 0.05, within(1e-6, 10.0),
+    Field{"gravity_norm_sigma_m_s2", &PriorOptions::gravity_norm_sigma_m_s2, 0.02, within(1e-6, 10.0),
           "m/s^2", "Prior on gravity's norm around initialisation.gravity_m_s2, where it is free.",
+          Level::Common},
+    Field{"board_spacing_sigma", &PriorOptions::board_spacing_sigma, 0.002, within(1e-7, 1.0), "",
+          "How well the board was measured, relative: prior on its size; the session's board.spacing_std. A "
+          "ruler over the whole board tells 0.1 to 0.2 %.",
           Level::Common},
     Field{
         "smooth_rotation_rad_s2", &PriorOptions::smooth_rotation_rad_s2, 200.0, within(0.1, 1e6), "rad/s^2",

@@ -3,6 +3,8 @@
 
 #include "core/base/option_struct.h"
 
+#include <numbers>
+
 namespace evical {
 
 struct PriorOptions {
@@ -18,6 +20,7 @@ struct PriorOptions {
   double accelerometer_bias_sigma_m_s2;
   double translation_sigma_m;
   double gravity_norm_sigma_m_s2;
+  double board_spacing_sigma;
   double smooth_rotation_rad_s2;
   double smooth_position_m_s2;
   double smooth_unevenness;
@@ -27,5 +30,10 @@ struct PriorOptions {
   bool operator==(const PriorOptions&) const = default;
   static const OptionTable<PriorOptions>& table();
 };
+
+// Of the ratio of a board's two directions, each of which was measured.
+inline double boardStretchSigma(const PriorOptions& options) {
+  return std::numbers::sqrt2 * options.board_spacing_sigma;
+}
 
 }  // namespace evical

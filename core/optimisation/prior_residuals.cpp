@@ -128,6 +128,15 @@ void addKnownValues(ProblemBuilder& builder, const Rows& rows, const Prior& prio
   });
 }
 
+// How far the board may be from what is said of it: both of its directions were measured.
+void addBoardPriors(ProblemBuilder& builder) {
+  if (!builder.options.free_board_size) return;
+  BoardState& board = builder.parameters.moved().board;
+  constexpr double kSize = 1.0;
+  addPrior(builder, &board.scale, 1, &kSize, builder.options.board_spacing_sigma);
+  addPrior(builder, &board.stretch, 1, kZero.data(), boardStretchSigma(builder.options));
+}
+
 }  // namespace
 
 void addPriors(ProblemBuilder& builder) {
@@ -137,6 +146,7 @@ void addPriors(ProblemBuilder& builder) {
     addImuPriors(builder, i);
     if (builder.stage == ReleaseStages::Mappings) addMappingPriors(builder, i);
   }
+  addBoardPriors(builder);
   double* gravity = state.gravity_in_world_m_s2.data();
   if (builder.options.free_gravity_norm && builder.has(gravity))
     builder.addPrior(new NormCost(builder.input.gravity_norm_m_s2, builder.options.gravity_norm_sigma_m_s2),

@@ -20,6 +20,9 @@ constexpr std::tuple kVerdictFields{
     Field{"turned_gyroscope_sigmas", &VerdictOptions::turned_gyroscope_sigmas, 6.0, within(1.0, 1000.0),
           "sigma",
           "A gyroscope's turn that is not estimated is told of beyond this and needed_rotation_deg."},
+    Field{
+        "doubtful_scale_sigmas", &VerdictOptions::doubtful_scale_sigmas, 3.0, within(1.0, 1000.0), "sigma",
+        "A board, or a gravity, that lies further from what was given than this makes the result doubtful."},
     Field{"doubtful_circle_misfit", &VerdictOptions::doubtful_circle_misfit, 2.5, within(1.0, 1000.0), "",
           "Circles that lie more times as far off as the front end says, by their median, make the result "
           "doubtful."},
@@ -39,7 +42,11 @@ constexpr std::tuple kVerdictFields{
     Field{"needed_rotation_deg", &VerdictOptions::needed_rotation_deg, 0.1, within(1e-4, 90.0), "deg",
           "Rotations less certain than this make the result doubtful.", Level::Common},
     Field{"needed_translation_mm", &VerdictOptions::needed_translation_mm, 1.0, within(1e-3, 1e4), "mm",
-          "Translations less certain than this make the result doubtful.", Level::Common},
+          "Translations less certain than this, were the board known exactly, make the result doubtful.",
+          Level::Common},
+    Field{"needed_scale_mm", &VerdictOptions::needed_scale_mm, 3.0, within(1e-3, 1e4), "mm",
+          "Translations that the board's measure leaves less certain than this make the result doubtful.",
+          Level::Common},
     Field{"needed_time_offset_ms", &VerdictOptions::needed_time_offset_ms, 0.1, within(1e-4, 1e4), "ms",
           "Time offsets less certain than this make the result doubtful.", Level::Common}};
 constexpr auto kVerdictDefaults = defaultsOf<VerdictOptions, kVerdictFields>();

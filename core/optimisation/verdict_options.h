@@ -11,6 +11,7 @@ struct VerdictOptions {
   double contradiction_sigmas;
   double doubtful_contradiction_sigmas;
   double turned_gyroscope_sigmas;
+  double doubtful_scale_sigmas;
   double doubtful_circle_misfit;
   double failed_circle_misfit;
   double doubtful_imu_misfit;
@@ -20,6 +21,7 @@ struct VerdictOptions {
   double doubtful_halves_sigmas;
   double needed_rotation_deg;
   double needed_translation_mm;
+  double needed_scale_mm;
   double needed_time_offset_ms;
 
   VerdictOptions();  // the defaults

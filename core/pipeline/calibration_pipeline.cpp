@@ -348,6 +348,7 @@ class Calibration {
           result);
     addDoubt(priors.doubt, result);
     addDoubt(initial_.doubt, result);
+    addDoubt(uncertainty.scale_doubt, result);
     judge(solution, uncertainty.turned_gyroscopes);
     result.state = std::move(solution.state);
     result.uncertainty = std::move(uncertainty.report);
@@ -356,7 +357,8 @@ class Calibration {
     result.iterations = std::move(solution.iterations);
     result.circle_residuals = std::move(solution.circle_residuals);
     notes_ = std::move(solution.notes);
-    notes_.insert(notes_.end(), priors.notes.begin(), priors.notes.end());
+    for (const auto* more : {&uncertainty.notes, &priors.notes})
+      notes_.insert(notes_.end(), more->begin(), more->end());
   }
 
   // What explains a misfit comes before the misfit, and a gyroscope that seems turned only where nothing else does:

@@ -66,9 +66,17 @@ Half estimateHalf(const CalibrationInput& input, const CalibrationState& solved,
   return half;
 }
 
+// Board and gravity are the same in both, and mostly by their priors: no difference would show their errors,
+// which are in the sigmas.
+OptimisationOptions withScaleHeld(OptimisationOptions options) {
+  options.free_board_size = options.free_gravity_norm = false;
+  return options;
+}
+
 Estimate estimateOf(const CalibrationInput& input, const Half& half) {
   const CalibrationState& state = half.solution.state;
-  Estimate estimate{{}, {}, {}, state.cameras, state.imus, state.gravity_in_world_m_s2, half.uncertainty};
+  Estimate estimate{
+      {}, {}, {}, state.cameras, state.imus, state.board, state.gravity_in_world_m_s2, half.uncertainty};
   for (const CameraData& camera : input.cameras) estimate.camera_names.push_back(camera.name);
   for (const ImuData& imu : input.imus) estimate.imu_names.push_back(imu.name);
   estimate.reference =
@@ -130,6 +138,7 @@ CrossValidation crossValidate(const CalibrationInput& input, const CalibrationSt
   CrossValidation validation;
   validation.block_s = Blocks(solved, block_s).length_s();
   const std::array<CalibrationInput, 2> inputs = splitIntoHalves(input, solved, block_s);
+  const OptimisationOptions of_halves = withScaleHeld(options);
   for (std::size_t half = 0; half < 2; ++half)
     for (const CameraData& camera : inputs[half].cameras)
       validation.windows[half] += static_cast<int>(camera.observations.views.size());
@@ -140,7 +149,7 @@ CrossValidation crossValidate(const CalibrationInput& input, const CalibrationSt
       for (const CameraData& camera : inputs[half].cameras)
         if (camera.observations.views.empty())
           throw calibrationFailed(camera.name, "one half of the recording does not show the board");
-      halves[half] = estimateHalf(inputs[half], solved, options, quiet);
+      halves[half] = estimateHalf(inputs[half], solved, of_halves, quiet);
       context.progress.stageProgress(0.5 * (static_cast<double>(half) + 1.0));
     }
   } catch (const CalibrationError& error) {

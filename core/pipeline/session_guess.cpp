@@ -121,7 +121,8 @@ const StreamSummary* streamOf(const std::string& name, const std::filesystem::pa
 SessionRemarks remarksOn(const Session& session, const std::vector<InspectedRecording>& recordings) {
   SessionRemarks remarks;
   remarks.board =
-      "The board: give type and measures, and remove the '#'. With an IMU it needs an odd number of rows.";
+      "The board: give type and measures, and remove the '#'. With an IMU it needs an odd number of rows. "
+      "Measure spacing_m over as many circles as there are; spacing_std says how well (0.002: 0.2 %).";
   for (const SessionCamera& camera : session.cameras) {
     std::vector<std::string>& own = remarks.sensors[camera.name];
     const StreamSummary* const stream = streamOf(camera.stream, camera.recording, recordings);

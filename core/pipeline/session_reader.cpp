@@ -1,5 +1,6 @@
 #include "core/base/nearest_name.h"
 #include "core/data/intrinsics_yaml.h"
+#include "core/numerics/normal_gravity.h"
 #include "core/pipeline/session.h"
 #include "core/pipeline/session_priors.h"
 #include "core/report/export/export_target.h"
@@ -35,7 +36,7 @@ std::array<double, 2> readTimeRange(const YamlNode& node) {
 }
 
 CircleBoard readBoard(const YamlNode& map) {
-  map.allowOnly({"type", "rows", "cols", "spacing_m", "radius_m", "circles"});
+  map.allowOnly({"type", "rows", "cols", "spacing_m", "spacing_std", "radius_m", "circles"});
   CircleBoard board;
   board.type = static_cast<BoardType>(map["type"].choice({"asymmetric_circles", "symmetric_circles"}));
   board.rows = map["rows"].integer(2, 100);
@@ -173,16 +174,35 @@ void readSensors(const YamlNode& root, const std::filesystem::path& folder, Sess
     session.reference = session.imus.empty() ? session.cameras[0].name : session.imus[0].name;
 }
 
+// How well the board was measured, relative; 0: exactly.
+void readSpacingStd(const YamlNode& board, CalibrationOptions& options) {
+  const auto node = board.find("spacing_std");
+  if (!node) return;
+  options.optimisation.free_board_size = node->real(0.0, 1.0, "") > 0.0;
+  if (options.optimisation.free_board_size)
+    setFromSession(*node, options, "optimisation.board_spacing_sigma");
+}
+
+// Where on earth it was recorded.
+void readGravity(const YamlNode& map, CalibrationOptions& options) {
+  map.allowOnly({"latitude_deg", "height_m"});
+  const double latitude_deg = map["latitude_deg"].real(-90.0, 90.0, "deg");
+  const auto height = map.find("height_m");
+  const double height_m = height ? height->real(-1000.0, 10000.0, "m") : 0.0;
+  options.initialisation.gravity_m_s2 = normalGravity_m_s2(latitude_deg, height_m);
+  options.optimisation.gravity_norm_sigma_m_s2 = kGravityAnomaly_m_s2;
+}
+
 void readPriors(const YamlNode& map, Session& session) {
   map.allowOnly({"time_offset_search_s", "gravity_norm_m_s2", "gravity_norm_std_m_s2", "cameras", "imus"});
   if (const auto node = map.find("time_offset_search_s"))
     setFromSession(*node, session.options, "initialisation.time_offset_search_s");
-  if (const auto node = map.find("gravity_norm_m_s2"))
+  const auto gravity_std = map.find("gravity_norm_std_m_s2");
+  if (const auto node = map.find("gravity_norm_m_s2")) {
     setFromSession(*node, session.options, "initialisation.gravity_m_s2");
-  if (const auto node = map.find("gravity_norm_std_m_s2")) {
-    setFromSession(*node, session.options, "optimisation.gravity_norm_sigma_m_s2");
-    session.options.optimisation.free_gravity_norm = true;
+    session.options.optimisation.free_gravity_norm = gravity_std.has_value();  // else it is given
   }
+  if (gravity_std) setFromSession(*gravity_std, session.options, "optimisation.gravity_norm_sigma_m_s2");
   readSensorPriors(map, session);
 }
 
@@ -193,8 +213,8 @@ Session readSession(const std::filesystem::path& file) {
   if (!root.isMap() || !root.has("evical_session"))
     throw root.error("is no session file: the key evical_session is missing",
                      "Make one with `evical init RECORDING`, `evical simulate` or `evical import`");
-  root.allowOnly({"evical_session", "recording", "time_range_s", "board", "cameras", "imus", "reference",
-                  "prior", "options", "export"});
+  root.allowOnly({"evical_session", "recording", "time_range_s", "board", "gravity", "cameras", "imus",
+                  "reference", "prior", "options", "export"});
   root["evical_session"].integer(1, 1);
   const std::filesystem::path folder = file.parent_path();
   Session session;
@@ -202,6 +222,8 @@ Session readSession(const std::filesystem::path& file) {
   session.recording = besideSession(root["recording"], folder);
   if (const auto node = root.find("time_range_s")) session.time_range_s = readTimeRange(*node);
   session.board = readBoard(root["board"]);
+  readSpacingStd(root["board"], session.options);
+  if (const auto node = root.find("gravity"); node && !node->isNull()) readGravity(*node, session.options);
   readSensors(root, folder, session);
   if (const auto node = root.find("prior"); node && !node->isNull()) readPriors(*node, session);
   if (const auto node = root.find("options")) readOptions(*node, session.options);

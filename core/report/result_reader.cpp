@@ -252,6 +252,8 @@ NamedResult readResultYaml(const std::filesystem::path& file) {
       named.cameras.push_back(readCamera((*cameras)[key], key, result));
   if (const auto imus = root.find("imus"))
     for (const std::string& key : imus->keys()) named.imus.push_back(readImu((*imus)[key], key, result));
+  if (const auto board = root.find("board"))
+    readQuantities(*board, kBoardQuantities, result.state.board, result.uncertainty.board);
   get(root, "gravity_m_s2", result.state.gravity_in_world_m_s2);
   readUncertainty(root, result.uncertainty);
   if (const auto validation = root.find("cross_validation"))

@@ -117,6 +117,10 @@ std::string resultTable(const NamedResult& named) {
   std::string text;
   for (std::size_t i = 0; i < named.result->state.cameras.size(); ++i) text += cameraTable(named, i);
   for (std::size_t i = 0; i < named.result->state.imus.size(); ++i) text += imuTable(named, i);
+  if (const std::vector<ShownQuantity> board = shownBoard(named); !board.empty()) {
+    text += "Board\n";
+    for (const ShownQuantity& quantity : board) text += quantityRows(quantity);
+  }
   if (!named.result->state.imus.empty()) {
     const Eigen::Vector3d& g = named.result->state.gravity_in_world_m_s2;
     text +=

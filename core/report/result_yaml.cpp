@@ -134,6 +134,14 @@ std::string imuYaml(const NamedResult& named, std::size_t i) {
   return text + sections.text(kSensorIndent);
 }
 
+std::string boardYaml(const CalibrationResult& result) {
+  YamlSections sections;
+  addQuantities(kBoardQuantities, result.state.board, result.uncertainty.board, Written::Both, sections,
+                [](const QuantityInfo&) { return true; });
+  const std::string text = sections.text(2);
+  return text.empty() ? "" : "board:\n" + text;
+}
+
 std::string uncertaintyYaml(const UncertaintyReport& uncertainty) {
   std::string text =
       fmt::format("gravity_direction_std_deg: {}\nobservability:\n  weakest: {}\n  values: {}\n",
@@ -199,6 +207,7 @@ std::string resultYaml(const NamedResult& named) {
   for (std::size_t i = 0; i < state.cameras.size(); ++i) text += cameraYaml(named, i);
   text += state.imus.empty() ? "imus: {}\n" : "imus:\n";
   for (std::size_t i = 0; i < state.imus.size(); ++i) text += imuYaml(named, i);
+  text += boardYaml(*named.result);
   if (!state.imus.empty())
     text += fmt::format("gravity_m_s2: {}\n", list(state.gravity_in_world_m_s2, exactYaml));
   text += uncertaintyYaml(named.result->uncertainty);

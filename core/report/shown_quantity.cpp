@@ -49,6 +49,10 @@ std::vector<ShownQuantity> shownImu(const NamedResult& named, std::size_t imu, b
                elementOrNone(named.result->uncertainty.imus, imu), with_place);
 }
 
+std::vector<ShownQuantity> shownBoard(const NamedResult& named) {
+  return shown(kBoardQuantities, "board", named.result->state.board, named.result->uncertainty.board, true);
+}
+
 std::string unitAndRemark(const ShownQuantity& quantity) {
   const std::string remark = quantity.info->remark;
   return quantity.info->shown_unit + (remark.empty() ? "" : " " + remark);

@@ -25,6 +25,7 @@ struct ShownQuantity {
 // Those there are, in the order of quantity.h; without the place if asked, which a reference does not have.
 std::vector<ShownQuantity> shownCamera(const NamedResult& named, std::size_t camera, bool with_place = true);
 std::vector<ShownQuantity> shownImu(const NamedResult& named, std::size_t imu, bool with_place = true);
+std::vector<ShownQuantity> shownBoard(const NamedResult& named);  // none where its size is held
 
 // "px at 100 px/s"
 std::string unitAndRemark(const ShownQuantity& quantity);

@@ -46,7 +46,9 @@ BoardForm::BoardForm(QWidget* parent)
   circles_->setToolTip(tr("Which way the printed circles differ from their background"));
   problem_->setProperty("role", "problem");
   problem_->setWordWrap(true);
-  auto* const spacing_hint = new QLabel(tr("Between two rows. Measure it on the print."), this);
+  auto* const spacing_hint = new QLabel(tr("Between two rows. Measure over as many as there are, and divide; "
+                                           "how well is board_spacing_sigma in Parameters."),
+                                        this);
   spacing_hint->setProperty("role", "hint");
   spacing_hint->setWordWrap(true);
   auto* const form = new QFormLayout;

@@ -94,6 +94,13 @@ ParameterGroup imuGroup(const NamedResult& named, std::size_t i) {
   return group;
 }
 
+ParameterGroup boardGroup(const NamedResult& named) {
+  ParameterGroup group{QObject::tr("Board"), {}};
+  for (const ShownQuantity& quantity : shownBoard(named))
+    addQuantity(quantity, Eigen::Quaterniond::Identity(), group);
+  return group;
+}
+
 ParameterGroup gravityGroup(const NamedResult& named) {
   ParameterGroup group{QObject::tr("Gravity in the board's frame"), {}};
   const Eigen::Vector3d& gravity = named.result->state.gravity_in_world_m_s2;
@@ -132,6 +139,7 @@ std::vector<ParameterGroup> parameterGroups(const NamedResult& named) {
   for (std::size_t i = 0; i < named.result->state.cameras.size(); ++i)
     groups.push_back(cameraGroup(named, i));
   for (std::size_t i = 0; i < named.result->state.imus.size(); ++i) groups.push_back(imuGroup(named, i));
+  if (ParameterGroup board = boardGroup(named); !board.rows.empty()) groups.push_back(std::move(board));
   if (!named.result->state.imus.empty()) groups.push_back(gravityGroup(named));
   return groups;
 }

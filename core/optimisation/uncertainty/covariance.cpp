@@ -8,6 +8,7 @@
 #include "core/optimisation/uncertainty/drift_uncertainty.h"
 #include "core/optimisation/uncertainty/observability.h"
 #include "core/optimisation/uncertainty/projected_information.h"
+#include "core/optimisation/uncertainty/scale_check.h"
 #include "core/optimisation/uncertainty/turned_gyroscope.h"
 #include "core/optimisation/uncertainty/uncertainty_report.h"
 
@@ -38,7 +39,11 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   const Eigen::MatrixXd tangent_from_report = inverseOf(report_from_tangent);
   reportDrift(information, problem.driftBlocks(), congruence(tangent_from_report, covariance.covariance),
               estimate.report);
-  const Observability observability = judgeObservability(input, solution.state, covariance, options);
+  ScaleCheck scale = checkScale(input, solution.state, covariance, options);
+  estimate.scale_doubt = std::move(scale.doubt);
+  estimate.notes = std::move(scale.notes);
+  const Observability observability =
+      judgeObservability(input, solution.state, covariance, withScaleKnown(covariance), options);
   estimate.report.observability = observability.eigenvalues;
   estimate.report.weakest = observability.weakest;
   estimate.status = observability.status;

@@ -10,6 +10,7 @@
 #include "core/data/calibration_result.h"
 
 #include <string>
+#include <vector>
 
 namespace evical {
 
@@ -25,6 +26,8 @@ struct UncertaintyEstimate {
   // What is doubtful of gyroscopes that seem turned: much else that is not modelled looks like it, so that it is
   // for who has ruled that out.
   std::string turned_gyroscopes;
+  std::string scale_doubt;         // of the board's size, its stretch, or gravity
+  std::vector<std::string> notes;  // what is worth knowing of the sigmas
 };
 
 // Never fails for want of information: directions that the recording leaves open get

@@ -1,5 +1,6 @@
 #include "core/optimisation/uncertainty/observability.h"
 
+#include "core/data/doubt.h"
 #include "core/numerics/angles.h"
 #include "core/numerics/dense.h"
 
@@ -21,6 +22,14 @@ double needed(QuantityNeed need, const OptimisationOptions& options) {
     default:
       return options.needed_time_offset_ms * 1e-3;
   }
+}
+
+// In its worst direction.
+double largestSigma(const QuantityCovariance& covariance, std::size_t quantity) {
+  const Eigen::Index first = covariance.first_column[quantity],
+                     size = covariance.first_column[quantity + 1] - first;
+  const SymmetricEigen eigen = symmetricEigen(covariance.covariance.block(first, first, size, size));
+  return std::sqrt(std::max(0.0, eigen.values[size - 1]));
 }
 
 bool isCamera(const Quantity& quantity) {
@@ -166,8 +175,23 @@ Observability Judge::judge() const {
 }  // namespace
 
 Observability judgeObservability(const CalibrationInput& input, const CalibrationState& state,
-                                 const QuantityCovariance& covariance, const OptimisationOptions& options) {
-  return Judge(input, state, covariance, options).judge();
+                                 const QuantityCovariance& covariance, const QuantityCovariance& scale_known,
+                                 const OptimisationOptions& options) {
+  Observability result = Judge(input, state, scale_known, options).judge();
+  for (std::size_t i = 0; i < covariance.quantities.size(); ++i) {
+    const QuantityInfo& info = *covariance.quantities[i].info;
+    if (info.need != QuantityNeed::Translation) continue;
+    const double whole_mm = 1e3 * largestSigma(covariance, i), own_mm = 1e3 * largestSigma(scale_known, i);
+    if (whole_mm < options.needed_scale_mm || own_mm > options.needed_translation_mm) continue;
+    const std::string& sensor = info.owner == QuantityOwner::Camera
+                                    ? input.cameras[covariance.quantities[i].sensor].name
+                                    : input.imus[covariance.quantities[i].sensor].name;
+    addDoubt(fmt::format("the board's measure leaves the translation of {} open by {:.2g} mm (needed: "
+                         "{:.2g}): measure it better and say so by board.spacing_std, or come nearer to it",
+                         sensor, whole_mm, options.needed_scale_mm),
+             result);
+  }
+  return result;
 }
 
 }  // namespace evical

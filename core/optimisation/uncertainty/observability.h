@@ -13,12 +13,16 @@
 namespace evical {
 
 struct Observability {
-  std::vector<double> eigenvalues;  // as UncertaintyReport::observability
+  std::vector<double> eigenvalues;  // as UncertaintyReport::observability, with the scale known
   std::string weakest;
   CalibrationStatus status = CalibrationStatus::Ok;
   std::string reason;
 };
+
+// What a recording can mend is judged as if the board and gravity were known (`scale_known`, as withScaleKnown
+// has it); what only a better measure of the board can, against a need of its own.
 Observability judgeObservability(const CalibrationInput& input, const CalibrationState& state,
-                                 const QuantityCovariance& covariance, const OptimisationOptions& options);
+                                 const QuantityCovariance& covariance, const QuantityCovariance& scale_known,
+                                 const OptimisationOptions& options);
 
 }  // namespace evical

@@ -9,13 +9,25 @@
 namespace evical {
 namespace {
 
+std::string ownerName(const Quantity& quantity, const CalibrationInput& input) {
+  switch (quantity.info->owner) {
+    case QuantityOwner::Camera:
+      return input.cameras[quantity.sensor].name;
+    case QuantityOwner::Imu:
+      return input.imus[quantity.sensor].name;
+    case QuantityOwner::Board:
+      return "board";
+    case QuantityOwner::Rig:
+      break;
+  }
+  return quantity.info->name;
+}
+
 // "left.rotation.x [rad]"; of intrinsics and gravity those that are held stand at the end.
 void appendNames(const Quantity& quantity, Eigen::Index size, const CalibrationInput& input,
                  std::vector<std::string>& names) {
   const QuantityInfo& info = *quantity.info;
-  const std::string sensor = info.owner == QuantityOwner::Camera ? input.cameras[quantity.sensor].name
-                             : info.owner == QuantityOwner::Imu  ? input.imus[quantity.sensor].name
-                                                                 : std::string(info.name);
+  const std::string sensor = ownerName(quantity, input);
   const std::vector<QuantityPart> parts =
       info.shape == QuantityShape::Intrinsics
           ? quantityParts(info, input.cameras[quantity.sensor].lens.seen_with)
@@ -40,6 +52,9 @@ void storeStandardDeviations(const Quantity& quantity, const Eigen::VectorXd& si
       break;
     case QuantityOwner::Imu:
       storeSigma(kImuQuantities, *quantity.info, sigma, report.imus[quantity.sensor]);
+      break;
+    case QuantityOwner::Board:
+      storeSigma(kBoardQuantities, *quantity.info, sigma, report.board);
       break;
     case QuantityOwner::Rig:
       report.gravity_direction_std_rad = sigma.head<2>().norm() / std::sqrt(2.0);

@@ -224,12 +224,21 @@ void writeVerdict(const ReportData& data, const Measures& measures, ReportPage& 
   if (!tiles.empty()) page.text("<div class=\"tiles\">\n" + tiles + "</div>\n");
 }
 
+void writeBoardNumbers(const ReportData& data, ReportPage& page) {
+  Rows rows;
+  for (const ShownQuantity& quantity : shownBoard(data.named)) rows.push_back(scalarRow(quantity));
+  if (rows.empty()) return;
+  page.heading("Board");
+  page.text(table({"", "value", "unit"}, rows));
+}
+
 void writeNumbers(const ReportData& data, ReportPage& page) {
   const CalibrationResult& result = *data.named.result;
   if (result.state.cameras.empty() && result.state.imus.empty()) return;
   page.beginSection("results", "Results");
   for (std::size_t i = 0; i < result.state.cameras.size(); ++i) writeCameraNumbers(data, i, page);
   for (std::size_t i = 0; i < result.state.imus.size(); ++i) writeImuNumbers(data, i, page);
+  writeBoardNumbers(data, page);
   const Eigen::Vector3d& g = result.state.gravity_in_world_m_s2;
   const double norm_std_m_s2 = result.uncertainty.gravity_norm_std_m_s2;
   page.text(paragraph(

@@ -222,7 +222,8 @@ struct CircleTwin {
     const Matrix3<T> imu_from_camera = matrixOf(turned(base[8], p[8]));
     const Matrix3<T> camera_from_world = (world_from_imu * imu_from_camera).transpose();
     const Vector3<T> camera_in_world = world_from_imu * vectorAt(p[9]) + positionAt(p + 4, position_place);
-    const Vector3<T> centre_in_world(T(circle.on_board_m.x()), T(circle.on_board_m.y()), T(0.0));
+    const Vector3<T> centre_in_world(p[14][0] * (1.0 + p[15][0] / 2.0) * circle.on_board_m.x(),
+                                     p[14][0] * (1.0 - p[15][0] / 2.0) * circle.on_board_m.y(), T(0.0));
     Matrix3<T> h = camera_from_world;
     h.col(2) = camera_from_world * (centre_in_world - camera_in_world);
     const T r2(model.radius_m * model.radius_m);
@@ -240,7 +241,7 @@ struct CircleTwin {
     const Eigen::Matrix2d ideal_from_sensor = idealPixelScale(model.camera, circle.centre_px);
     const Eigen::Vector2d seen = pixelFromIdeal(model.camera, circle.centre_px);
     const Eigen::Matrix<T, 2, 1> off =
-        pixelOf(model.camera.model, p[14], centre[0], centre[1]) - seen.template cast<T>();
+        pixelOf(model.camera.model, p[16], centre[0], centre[1]) - seen.template cast<T>();
     return circle.centre_px.template cast<T>() + ideal_from_sensor.template cast<T>() * off;
   }
 

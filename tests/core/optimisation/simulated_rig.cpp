@@ -134,7 +134,7 @@ void fitTruth(const TrueMotion& motion, const RigOptions& options, CalibrationSt
 }
 
 CameraData observe(const TrueMotion& motion, const CameraState& camera, const CircleBoard& board,
-                   const RigOptions& options, Random& random) {
+                   const BoardState& true_board, const RigOptions& options, Random& random) {
   CameraData data;
   data.name = "left";
   data.lens =
@@ -142,8 +142,8 @@ CameraData observe(const TrueMotion& motion, const CameraState& camera, const Ci
   const auto centre = [&](double camera_time_s, int circle) {
     const RigidTransform world_from_camera =
         motion.worldFromImu(referenceTime_s(camera, camera_time_s)) * camera.reference_from_camera;
-    return projectedCircleCentre(*data.lens.seen_with, inverse(world_from_camera), board.centre_m(circle),
-                                 board.radius_m);
+    return projectedCircleCentre(*data.lens.seen_with, inverse(world_from_camera),
+                                 true_board.place_m(board.centre_m(circle)), board.radius_m);
   };
   std::vector<Eigen::Vector2d> noise(static_cast<std::size_t>(board.circleCount()), Eigen::Vector2d::Zero());
   const double keep =
@@ -218,6 +218,17 @@ ImuData measure(const std::string& name, const TrueMotion& motion, ImuState& imu
   return data;
 }
 
+void spreadScale(const RigOptions& options, CalibrationState& truth) {
+  constexpr unsigned kOther = 77;  // seed: what else is drawn stays the same
+  Random random(options.seed + kOther);
+  const PriorOptions priors;
+  truth.board = options.board;
+  truth.board.scale += options.scale_spread * priors.board_spacing_sigma * random.normal();
+  truth.board.stretch += options.scale_spread * boardStretchSigma(priors) * random.normal();
+  truth.gravity_in_world_m_s2 *=
+      1.0 + options.scale_spread * priors.gravity_norm_sigma_m_s2 * random.normal() / options.gravity_m_s2;
+}
+
 }  // namespace
 
 SimulatedRig simulateRig(const RigOptions& options) {
@@ -233,6 +244,7 @@ SimulatedRig simulateRig(const RigOptions& options) {
   rig.truth.cameras = {camera};
   rig.truth.gravity_in_world_m_s2 =
       quaternionExp(random.uniform3(0.15)) * Vector3d(0.0, options.gravity_m_s2, 0.0);
+  spreadScale(options, rig.truth);
   const TrueMotion motion =
       makeMotion(options.motion, rig.input.board, inverse(camera.reference_from_camera), random);
   for (int i = 0; i < (options.second_imu ? 2 : 1); ++i) {
@@ -253,7 +265,7 @@ SimulatedRig simulateRig(const RigOptions& options) {
     }
     rig.truth.imus.push_back(imu);
   }
-  rig.input.cameras = {observe(motion, camera, rig.input.board, options, random)};
+  rig.input.cameras = {observe(motion, camera, rig.input.board, rig.truth.board, options, random)};
   for (ImuState& imu : rig.truth.imus) {
     rig.input.imus.push_back(measure(rig.input.imus.empty() ? "imu" : "imu_2", motion, imu,
                                      rig.truth.gravity_in_world_m_s2, options, random));
@@ -297,6 +309,7 @@ CalibrationState disturbed(const CalibrationState& truth, unsigned seed, double 
     imu.time_offset_s += 1e-3;
     imu.time_offset_drift_ppm = 0.0;
   }
+  state.board = {};
   state.gravity_in_world_m_s2 = quaternionExp(random.uniform3(0.01)) * state.gravity_in_world_m_s2;
   return state;
 }
@@ -345,8 +358,14 @@ Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const Calibrati
     if (options.gyroscope_rotation)
       append(quaternionLog(b.gyroscope_from_accelerometer.conjugate() * a.gyroscope_from_accelerometer));
   }
+  if (options.free_board_size) {
+    errors.push_back(estimate.board.scale - truth.board.scale);
+    errors.push_back(estimate.board.stretch - truth.board.stretch);
+  }
   append(gravityTilts(truth.gravity_in_world_m_s2).transpose() *
          (estimate.gravity_in_world_m_s2.normalized() - truth.gravity_in_world_m_s2.normalized()));
+  if (options.free_gravity_norm)
+    errors.push_back(estimate.gravity_in_world_m_s2.norm() - truth.gravity_in_world_m_s2.norm());
   return Eigen::Map<const Eigen::VectorXd>(errors.data(), static_cast<Eigen::Index>(errors.size()));
 }
 

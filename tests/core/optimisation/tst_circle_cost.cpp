@@ -127,7 +127,9 @@ class TestCircleCost : public QObject {
     circle.by_drift_s = 0.003;
     circle.lead = {{0.8, 0.6}, {0.4, 0.3}};
     circle.centre_px =
-        *projectedCircleCentre(model.camera, camera_from_world, circle.on_board_m, model.radius_m) +
+        *projectedCircleCentre(model.camera, camera_from_world,
+                               BoardState{blocks[14][0], blocks[15][0]}.place_m(circle.on_board_m),
+                               model.radius_m) +
         blocks[12][0] * circle.lead.of_lead + blocks[13][0] * circle.lead.of_growth;
     QVERIFY(residualsAt(CircleCost(model, segmentTimes(), {circle}), blocks).norm() < 1e-9);
   }

@@ -2,6 +2,7 @@
 #include "core/optimisation/uncertainty/observability.h"
 
 #include "core/numerics/angles.h"
+#include "core/optimisation/uncertainty/scale_check.h"
 #include "tests/support/test_program.h"
 
 #include <cmath>
@@ -47,7 +48,9 @@ struct Rig {
   void stretch(Eigen::Index column, const Vector3d& direction, double sigma) {
     covariance.covariance.block<3, 3>(column, column) += sigma * sigma * direction * direction.transpose();
   }
-  Observability judge() const { return judgeObservability(input, state, covariance, options); }
+  Observability judge() const {
+    return judgeObservability(input, state, covariance, withScaleKnown(covariance), options);
+  }
 };
 
 class TestObservability : public QObject {
@@ -117,6 +120,32 @@ class TestObservability : public QObject {
     QVERIFY2(weakest.find("rotation about the camera's x axis") != std::string::npos, weakest.c_str());
     QVERIFY2(weakest.find(" together with ") != std::string::npos, weakest.c_str());
     QVERIFY2(weakest.find("translation along the camera's y axis") != std::string::npos, weakest.c_str());
+  }
+
+  // What a wrong measure of the board does is no fault of the motion: it has a need of its own.
+  void judge_onWhatTheBoardLeavesOpen_asksForABetterMeasure() {
+    Rig rig;
+    rig.options.needed_translation_mm = 1.0;
+    rig.setSigmas(0.5, 0.1, 0.5);
+    const QuantityInfo& scale = quantityInfo(kBoardQuantities, &BoardState::scale);
+    rig.covariance.quantities.push_back({&scale, 0, nullptr});
+    rig.covariance.first_column.push_back(8);
+    rig.covariance.covariance.conservativeResizeLike(Eigen::MatrixXd::Zero(8, 8));
+    const auto openBy = [&](double sigma_m) {
+      Rig open = rig;
+      constexpr double kScaleSigma = 2e-3;
+      open.covariance.covariance(7, 7) = kScaleSigma * kScaleSigma;
+      open.covariance.covariance(5, 7) = open.covariance.covariance(7, 5) = kScaleSigma * sigma_m;
+      open.covariance.covariance(5, 5) += sigma_m * sigma_m;
+      return open.judge();
+    };
+    const Observability near = openBy(2e-3), far = openBy(4e-3);
+    QCOMPARE(near.status, CalibrationStatus::Ok);
+    QVERIFY(near.eigenvalues.front() > 1.0);
+    QCOMPARE(far.status, CalibrationStatus::Doubtful);
+    QVERIFY2(far.reason.starts_with("the board's measure leaves the translation of left open by 4 mm"),
+             far.reason.c_str());
+    QVERIFY(far.reason.find("Record again") == std::string::npos);
   }
 
   void judge_withoutQuantitiesThatAreNeeded_isOk() {

@@ -202,6 +202,14 @@ class TestSession : public QObject {
     QCOMPARE(session.reference, std::string("left"));
   }
 
+  void spacingsSigma_isAnOption() {
+    const Session exact = sessionWith("radius_m: 0.02", "radius_m: 0.02\n  spacing_std: 0");
+    QVERIFY(!exact.options.optimisation.free_board_size);
+    const Session measured = sessionWith("radius_m: 0.02", "radius_m: 0.02\n  spacing_std: 0.0005");
+    QVERIFY(measured.options.optimisation.free_board_size);
+    QCOMPARE(measured.options.optimisation.board_spacing_sigma, 0.0005);
+  }
+
   void mistake_isRefusedWithItsPlace_data() {
     QTest::addColumn<QString>("from");
     QTest::addColumn<QString>("to");
@@ -222,6 +230,12 @@ class TestSession : public QObject {
     row("backward range", "[1, 30]", "[30, 1]", {"time_range_s (line 3)", "no range"});
     row("text for a number", "0.05", "5cm", {"board.spacing_m (line 8)", "'5cm'"});
     row("number out of range", "0.05", "50", {"board.spacing_m (line 8)", "50 m", "10 m"});
+    row("spacing's sigma", "radius_m: 0.02", "radius_m: 0.02\n  spacing_std: -0.001",
+        {"board.spacing_std", "below"});
+    row("latitude", "reference: left_imu", "reference: left_imu\ngravity: {latitude_deg: 91}",
+        {"gravity.latitude_deg", "90"});
+    row("gravity without a latitude", "reference: left_imu", "reference: left_imu\ngravity: {height_m: 300}",
+        {"gravity.latitude_deg", "missing"});
     row("circles that touch", "0.02", "0.2", {"board", "radius_m"});
     row("board type", "asymmetric_circles", "asymetric_circles", {"board.type (line 5)", "Did you mean"});
     row("even rows", "rows: 11", "rows: 10", {"board.rows", "180 degrees"});

@@ -136,6 +136,16 @@ class TestSessionPriors : public QObject {
     QVERIFY(readSession(file()).options == session.options);
   }
 
+  void gravityByPlace_isNormalGravity() {
+    const Session session = read("  time_offset_search_s: 1\ngravity: {latitude_deg: 45, height_m: 1000}\n");
+    // GRS 80 has 9.80620 m/s^2 at 45 deg on the ellipsoid, and 3.086e-6 m/s^2 less for each metre above it.
+    QVERIFY(std::abs(session.options.initialisation.gravity_m_s2 - 9.80311) < 2e-5);
+    QCOMPARE(session.options.optimisation.gravity_norm_sigma_m_s2, 1e-3);
+    QVERIFY(session.options.optimisation.free_gravity_norm);
+    writeSession(session, file());
+    QVERIFY(readSession(file()).options == session.options);
+  }
+
   void sensorsOfAResult_canBePasted() {
     const Session session = read(kPasted);
     QVERIFY(session.cameras[0].prior.translation->sigma.has_value());

@@ -1,0 +1,135 @@
+// Boards that are not quite what the session says, and gravity that is not 9.81 m/s^2: errors and sigmas against
+// the truth, and what is said of them.
+#include "core/optimisation/batch_optimiser.h"
+#include "core/optimisation/uncertainty/covariance.h"
+#include "tests/core/optimisation/simulated_rig.h"
+#include "tests/support/test_program.h"
+
+namespace {
+
+using namespace evical;
+using Eigen::Vector3d;
+
+struct Run {
+  test::SimulatedRig rig;
+  BatchSolution solution;
+  UncertaintyEstimate estimate;
+
+  Vector3d translationError_m() const {
+    return solution.state.cameras[0].reference_from_camera.translation_m -
+           rig.truth.cameras[0].reference_from_camera.translation_m;
+  }
+  // In sigmas, along the axis where it is most of them.
+  double translationError_sigmas() const {
+    return translationError_m()
+        .cwiseQuotient(estimate.report.cameras[0].translation_std_m)
+        .cwiseAbs()
+        .maxCoeff();
+  }
+};
+
+Run calibrate(const test::RigOptions& simulation, const OptimisationOptions& options = {}) {
+  Run run;
+  run.rig = test::simulateRig(simulation);
+  CalibrationState start = test::disturbed(run.rig.truth, simulation.seed);
+  start.gravity_in_world_m_s2 *= run.rig.input.gravity_norm_m_s2 / start.gravity_in_world_m_s2.norm();
+  run.solution = optimiseBatch(run.rig.input, start, options, RunContext{});
+  run.estimate = estimateUncertainty(run.rig.input, run.solution, options, RunContext{});
+  return run;
+}
+
+test::RigOptions boardOf(double scale, double stretch) {
+  test::RigOptions simulation = test::shortRecording();
+  simulation.duration_s = 6.0;
+  simulation.board = {scale, stretch};
+  return simulation;
+}
+
+class TestBoardSize : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void stretchedBoard_isFound() {
+    const Run run = calibrate(boardOf(1.0, 0.005));
+    const double sigma = run.estimate.report.board.stretch_std;
+    QVERIFY2(sigma > 0.0 && sigma < 2e-4, qPrintable(QString::number(sigma)));
+    QVERIFY2(std::abs(run.solution.state.board.stretch - 0.005) < 4.0 * sigma,
+             qPrintable(QString::number(run.solution.state.board.stretch)));
+    QVERIFY2(run.translationError_sigmas() < 4.0, qPrintable(QString::number(run.translationError_sigmas())));
+    QVERIFY2(run.estimate.scale_doubt.empty(), run.estimate.scale_doubt.c_str());
+
+    OptimisationOptions held;
+    held.free_board_size = false;
+    const Run blind = calibrate(boardOf(1.0, 0.005), held);
+    QVERIFY2(blind.translationError_m().norm() > 5.0 * run.translationError_m().norm(),
+             qPrintable(QString::number(1e3 * blind.translationError_m().norm())));
+  }
+
+  // Within what a ruler leaves open: nothing to complain of, and sigmas that allow for it.
+  void boardOffByTwoOfItsSigmas_isWithinTheSigmas() {
+    for (const double scale : {0.996, 1.004}) {
+      const Run run = calibrate(boardOf(scale, 0.0));
+      QVERIFY2(run.translationError_sigmas() < 4.0,
+               qPrintable(QString::number(run.translationError_sigmas())));
+      QVERIFY2(std::abs(run.solution.state.board.scale - scale) < 4.0 * run.estimate.report.board.scale_std,
+               qPrintable(QString::number(run.solution.state.board.scale)));
+      QVERIFY2(run.estimate.scale_doubt.empty(), run.estimate.scale_doubt.c_str());
+    }
+    OptimisationOptions held;
+    held.free_board_size = held.free_gravity_norm = false;
+    const Run wrong = calibrate(boardOf(0.99, 0.0), held);
+    QVERIFY2(wrong.translationError_sigmas() > 6.0,
+             qPrintable(QString::number(wrong.translationError_sigmas())));
+  }
+
+  void boardThatIsFarOff_isDoubted_data() {
+    QTest::addColumn<double>("scale");
+    QTest::addColumn<QString>("words");
+    QTest::newRow("larger") << 1.015 << "larger than board.spacing_m";
+    QTest::newRow("smaller") << 0.985 << "smaller than board.spacing_m";
+  }
+  void boardThatIsFarOff_isDoubted() {
+    QFETCH(double, scale);
+    QFETCH(QString, words);
+    const Run run = calibrate(boardOf(scale, 0.0));
+    const QString doubt = QString::fromStdString(run.estimate.scale_doubt);
+    QVERIFY2(doubt.contains(words), qPrintable(doubt));
+  }
+
+  void stretchBeyondWhatWasMeasured_isDoubted() {
+    const Run run = calibrate(boardOf(1.0, -0.02));
+    const QString doubt = QString::fromStdString(run.estimate.scale_doubt);
+    QVERIFY2(doubt.contains("shorter along its rows"), qPrintable(doubt));
+    QVERIFY(run.translationError_sigmas() < 4.0);
+  }
+
+  void gravityOfTheTropics_isWithinTheSigmas() {
+    test::RigOptions simulation = boardOf(1.0, 0.0);
+    simulation.gravity_m_s2 = 9.78;
+    const Run run = calibrate(simulation);
+    QVERIFY2(run.translationError_sigmas() < 4.0, qPrintable(QString::number(run.translationError_sigmas())));
+    const double error_m_s2 = run.solution.state.gravity_in_world_m_s2.norm() - 9.78;
+    QVERIFY2(std::abs(error_m_s2) < 4.0 * run.estimate.report.gravity_norm_std_m_s2,
+             qPrintable(QString::number(error_m_s2)));
+    QVERIFY2(run.estimate.scale_doubt.empty(), run.estimate.scale_doubt.c_str());
+  }
+
+  void whatTheBoardLeavesOpen_isSaidAndInTheSigmas() {
+    OptimisationOptions held;
+    held.free_board_size = held.free_gravity_norm = false;
+    const Run run = calibrate(boardOf(1.0, 0.0)), exact = calibrate(boardOf(1.0, 0.0), held);
+    QVERIFY(run.estimate.report.cameras[0].translation_std_m.norm() >
+            exact.estimate.report.cameras[0].translation_std_m.norm());
+    QCOMPARE(run.estimate.notes.size(), std::size_t{1});
+    QVERIFY2(run.estimate.notes[0].starts_with("left: if the board is 0.1 % larger than said"),
+             run.estimate.notes[0].c_str());
+    QVERIFY(exact.estimate.notes.empty());
+    QCOMPARE(exact.solution.state.board.scale, 1.0);
+    QCOMPARE(exact.estimate.report.board.scale_std, 0.0);
+  }
+};
+
+}  // namespace
+
+EVICAL_TEST(TestBoardSize)
+#include "tst_board_size.moc"
