@@ -36,8 +36,8 @@ CalibrationProblem::CalibrationProblem(const CalibrationInput& input, const Opti
   // Between cameras no wrong amplitude of one counts for much: where the board is, either sees anew.
   const double pixel_error_px = input.imus.empty() ? 0.0 : options.pixel_error_px;
   for (const CameraData& camera : input.cameras) {
-    circle_models_.push_back({*camera.lens.seen_with, input.board.radius_m, options.huber_sigma,
-                              intrinsicsAreFree(camera, options)});
+    circle_models_.push_back(
+        {*camera.lens.seen_with, input.board.radius_m, options.huber_sigma, options.freesIntrinsics()});
     pixel_errors_.emplace_back(camera, input.board, pixel_error_px);
   }
 }

@@ -1,6 +1,5 @@
 #include "core/optimisation/free_intrinsics.h"
 
-#include "core/data/calibration_setup.h"
 #include "core/data/calibration_state.h"
 #include "core/data/intrinsics_result.h"
 #include "core/optimisation/optimisation_options.h"
@@ -22,12 +21,6 @@ const CameraIntrinsics& normalisedCamera() {
 }
 
 }  // namespace
-
-bool intrinsicsAreFree(const CameraData& camera, const OptimisationOptions& options) {
-  if (options.camera_intrinsics != CameraIntrinsicsChoice::Automatic)
-    return options.camera_intrinsics == CameraIntrinsicsChoice::Free;
-  return camera.lens.foundFirst();
-}
 
 SeenCentre seenCentre(const CameraIntrinsics& seen_with, const Eigen::Vector2d& ideal_px) {
   return {ideal_px, pixelFromIdeal(seen_with, ideal_px), idealPixelScale(seen_with, ideal_px)};

@@ -22,12 +22,8 @@
 
 namespace evical {
 
-struct CameraData;
 struct CameraState;
 struct OptimisationOptions;
-
-// Whether the batch solves for them.
-bool intrinsicsAreFree(const CameraData& camera, const OptimisationOptions& options);
 
 // A measured centre, ready to be compared with what other intrinsics predict.
 struct SeenCentre {

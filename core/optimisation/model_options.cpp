@@ -25,11 +25,12 @@ constexpr std::tuple kModelFields{
            "Estimate the board's size and its stretch about what the session says, so that translations' "
            "sigmas say what its measurement leaves open.",
            Level::Common},
-    Choice{"camera_intrinsics", &ModelOptions::camera_intrinsics, CameraIntrinsicsChoice::Automatic,
-           std::array{"automatic", "fixed", "free"},
-           "Whether cameras' intrinsics are solved for with everything else, in the last stage; automatic: "
-           "where they were found from the same recording first.",
-           Level::Common},
+    Choice{
+        "camera_intrinsics", &ModelOptions::camera_intrinsics, CameraIntrinsicsChoice::Free,
+        std::array{"fixed", "free"},
+        "Whether cameras' intrinsics are solved for with everything else, in the last stage: those that were "
+        "given, too, as no lens is exactly what its file says. Fixed ones are tested all the same.",
+        Level::Common},
     Switch{
         "gyroscope_rotation", &ModelOptions::gyroscope_rotation, false,
         "Estimate how each gyroscope is turned against its accelerometer, whose frame is the IMU's. With a "
@@ -58,8 +59,7 @@ constexpr std::tuple kModelFields{
           "Circle residuals beyond this pull with constant force."},
     Field{"outlier_sigma", &ModelOptions::outlier_sigma, 6.0, within(2.0, 1000.0), "sigma",
           "Circles further from their place, in units of the spread of all, are dropped between stages; so "
-          "are single "
-          "IMU samples, in units also of the spread beside them."},
+          "are single IMU samples, in units also of the spread beside them."},
     Field{"outlier_window_fraction", &ModelOptions::outlier_window_fraction, 0.5, within(0.1, 1.0), "",
           "A window loses all its circles if more than this share of them is dropped."}};
 constexpr auto kModelDefaults = defaultsOf<ModelOptions, kModelFields>();

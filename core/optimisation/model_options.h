@@ -5,8 +5,7 @@
 
 namespace evical {
 
-// Automatic: free where they were found from the same recording first, fixed where the session gives them.
-enum class CameraIntrinsicsChoice { Automatic, Fixed, Free };
+enum class CameraIntrinsicsChoice { Fixed, Free };
 enum class BiasModel { Constant, Linear };
 
 struct ModelOptions {
@@ -30,6 +29,7 @@ struct ModelOptions {
 
   ModelOptions();  // the defaults
   constexpr explicit ModelOptions(NoDefaults) {}
+  bool freesIntrinsics() const { return camera_intrinsics == CameraIntrinsicsChoice::Free; }
   bool operator==(const ModelOptions&) const = default;
   static const OptionTable<ModelOptions>& table();
 };

@@ -20,6 +20,11 @@ constexpr std::tuple kVerdictFields{
     Field{"turned_gyroscope_sigmas", &VerdictOptions::turned_gyroscope_sigmas, 6.0, within(1.0, 1000.0),
           "sigma",
           "A gyroscope's turn that is not estimated is told of beyond this and needed_rotation_deg."},
+    Field{"wrong_lens_sigmas", &VerdictOptions::wrong_lens_sigmas, 6.0, within(1.0, 1000.0), "sigma",
+          "A lens that is not estimated, but seems another beyond this and wrong_lens_px, makes the result "
+          "doubtful."},
+    Field{"wrong_lens_px", &VerdictOptions::wrong_lens_px, 0.2, within(0.0, 1000.0), "px",
+          "RMS over the image by which it projects elsewhere."},
     Field{
         "doubtful_scale_sigmas", &VerdictOptions::doubtful_scale_sigmas, 3.0, within(1.0, 1000.0), "sigma",
         "A board, or a gravity, that lies further from what was given than this makes the result doubtful."},

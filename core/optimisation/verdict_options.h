@@ -11,6 +11,8 @@ struct VerdictOptions {
   double contradiction_sigmas;
   double doubtful_contradiction_sigmas;
   double turned_gyroscope_sigmas;
+  double wrong_lens_sigmas;
+  double wrong_lens_px;
   double doubtful_scale_sigmas;
   double doubtful_circle_misfit;
   double failed_circle_misfit;

@@ -349,6 +349,7 @@ class Calibration {
     addDoubt(priors.doubt, result);
     addDoubt(initial_.doubt, result);
     addDoubt(uncertainty.scale_doubt, result);
+    addDoubt(uncertainty.wrong_lenses, result);
     judge(solution, uncertainty.turned_gyroscopes);
     result.state = std::move(solution.state);
     result.uncertainty = std::move(uncertainty.report);

@@ -9,7 +9,7 @@
 #include "core/optimisation/uncertainty/observability.h"
 #include "core/optimisation/uncertainty/projected_information.h"
 #include "core/optimisation/uncertainty/scale_check.h"
-#include "core/optimisation/uncertainty/turned_gyroscope.h"
+#include "core/optimisation/uncertainty/score_test.h"
 #include "core/optimisation/uncertainty/uncertainty_report.h"
 
 namespace evical {
@@ -17,20 +17,17 @@ namespace evical {
 UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const BatchSolution& solution,
                                         const OptimisationOptions& options, const RunContext& context) {
   context.throwIfStopped();
-  // With gyroscopes free to turn, so that one that is turned is noticed where that is not estimated.
-  OptimisationOptions free_to_turn = options;
-  free_to_turn.gyroscope_rotation = true;
-  CalibrationProblem problem(input, free_to_turn, solution.state);
+  const OptimisationOptions tested = freeToBeTested(options);
+  CalibrationProblem problem(input, tested, solution.state);
   problem.build(lastStage(options), {solution.scales, solution.used_circles, solution.used_samples,
                                      std::vector<StillAxes>(input.imus.size())});
   ProjectedInformation information = projectInformation(problem, options.correlation_time_s, context);
   context.throwIfStopped();
   UncertaintyEstimate estimate;
-  if (!options.gyroscope_rotation) {
-    estimate.turned_gyroscopes = turnedGyroscopes(input, information, withoutNoise(information), options);
-    information = withoutLookedForRotation(input, std::move(information));
-  }
-  information = withoutNoise(std::move(information));
+  HeldDoubts held = testHeldValues(input, solution.state, information, options);
+  estimate.turned_gyroscopes = std::move(held.gyroscopes);
+  estimate.wrong_lenses = std::move(held.lenses);
+  information = withoutNoise(withoutHeldValues(input, options, std::move(information)));
   const Eigen::MatrixXd report_from_tangent =
       reportFromTangent(information, solution.state, problem.problem());
   const QuantityCovariance covariance = quantityCovariance(information, report_from_tangent);

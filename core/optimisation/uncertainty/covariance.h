@@ -26,6 +26,7 @@ struct UncertaintyEstimate {
   // What is doubtful of gyroscopes that seem turned: much else that is not modelled looks like it, so that it is
   // for who has ruled that out.
   std::string turned_gyroscopes;
+  std::string wrong_lenses;        // what is doubtful of lenses that are held
   std::string scale_doubt;         // of the board's size, its stretch, or gravity
   std::vector<std::string> notes;  // what is worth knowing of the sigmas
 };

@@ -266,6 +266,8 @@ SimulatedRig simulateRig(const RigOptions& options) {
     rig.truth.imus.push_back(imu);
   }
   rig.input.cameras = {observe(motion, camera, rig.input.board, rig.truth.board, options, random)};
+  rig.truth.cameras[0].lens = rig.input.cameras[0].lens;
+  rig.truth.cameras[0].lens.solved = rig.truth.cameras[0].lens.given;
   for (ImuState& imu : rig.truth.imus) {
     rig.input.imus.push_back(measure(rig.input.imus.empty() ? "imu" : "imu_2", motion, imu,
                                      rig.truth.gravity_in_world_m_s2, options, random));
@@ -293,6 +295,7 @@ CalibrationState disturbed(const CalibrationState& truth, unsigned seed, double 
         camera.reference_from_camera.rotation * quaternionExp(random.uniform3(0.01));
     camera.reference_from_camera.translation_m += random.uniform3(0.02);
     camera.time_offset_s += time_offset_error_s;
+    camera.lens.solved.reset();
     camera.edge_lead_px = 0.0;
     camera.time_offset_drift_ppm = 0.0;
   }

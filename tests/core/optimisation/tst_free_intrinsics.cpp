@@ -133,10 +133,11 @@ class TestFreeIntrinsics : public QObject {
     test::SimulatedRig rig = test::simulateRig(test::shortRecording());
     test::seeThrough(truth, truth, rig);
     const UncertaintyReport free = estimateUncertainty(rig.input, solve(rig, 1), {}, RunContext{}).report;
-    rig.input.cameras[0].lens.given = rig.input.cameras[0].lens.seen_with;
-    const BatchSolution fixed = solve(rig, 1);
+    OptimisationOptions options;
+    options.camera_intrinsics = CameraIntrinsicsChoice::Fixed;
+    const BatchSolution fixed = solve(rig, 1, options);
     QVERIFY(!fixed.state.cameras[0].lens.solved);
-    const UncertaintyReport held = estimateUncertainty(rig.input, fixed, {}, RunContext{}).report;
+    const UncertaintyReport held = estimateUncertainty(rig.input, fixed, options, RunContext{}).report;
     QVERIFY(!held.cameras[0].intrinsics_std);
     QCOMPARE(held.names.size() + 8, free.names.size());
     const CameraUncertainty &with = free.cameras[0], &without = held.cameras[0];
@@ -151,11 +152,10 @@ class TestFreeIntrinsics : public QObject {
     QVERIFY(!solve(rig, 1, options).state.cameras[0].lens.solved);
   }
 
-  void givenIntrinsics_areSolvedForWhereAsked_withinTheirPrior() {
+  void givenIntrinsics_areSolvedFor_withinTheirPrior() {
     test::SimulatedRig rig = rigOf(CameraModel::PinholeRadtan, test::shortRecording());
     rig.input.cameras[0].lens.given = rig.input.cameras[0].lens.seen_with;
     OptimisationOptions options;
-    options.camera_intrinsics = CameraIntrinsicsChoice::Free;
     const CameraIntrinsics &given = *rig.input.cameras[0].lens.seen_with,
                            &truth = *rig.truth.cameras[0].lens.solved;
     const double before_px = projectionDifference(truth, given).rms_px;
@@ -168,6 +168,28 @@ class TestFreeIntrinsics : public QObject {
     const double held_px =
         projectionDifference(given, solve(rig, 1, options).state.cameras[0].lens.solved.value()).rms_px;
     QVERIFY2(held_px < 0.01, qPrintable(text(held_px)));
+  }
+
+  // Rao's score test: what is held is tested all the same, and named.
+  void heldLensThatIsWrong_isDoubted() {
+    test::SimulatedRig rig = test::simulateRig(test::shortRecording());
+    const CameraIntrinsics given = *rig.input.cameras[0].lens.given;
+    OptimisationOptions options;
+    options.camera_intrinsics = CameraIntrinsicsChoice::Fixed;
+    const auto doubtOf = [&](const CameraIntrinsics& lens) {
+      rig.input.cameras[0].lens = givenLens(lens);
+      return estimateUncertainty(rig.input, solve(rig, 1, options), options, RunContext{}).wrong_lenses;
+    };
+    QCOMPARE(doubtOf(given), std::string());
+    CameraIntrinsics longer = given, aside = given;
+    longer.focal_length_px *= 1.01;
+    aside.principal_point_px.x() += 2.0;
+    const QString by_length = QString::fromStdString(doubtOf(longer));
+    QVERIFY2(by_length.contains("left: the lens is not as the session says: focal lengths seem -"),
+             qPrintable(by_length));
+    const QString by_centre = QString::fromStdString(doubtOf(aside));
+    QVERIFY2(by_centre.contains("principal point (-"), qPrintable(by_centre));
+    QVERIFY(by_centre.contains("optimisation.camera_intrinsics: free"));
   }
 
   void k3_isSolvedForWhereItIsUsed() {

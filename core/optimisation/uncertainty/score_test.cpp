@@ -1,0 +1,168 @@
+#include "core/optimisation/uncertainty/score_test.h"
+
+#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/projection_difference.h"
+#include "core/numerics/angles.h"
+#include "core/optimisation/free_intrinsics.h"
+#include "core/optimisation/uncertainty/credible_information.h"
+
+#include <fmt/format.h>
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace evical {
+namespace {
+
+// Free for the test's sake, not because there is a prior to be weighed or an option that asks for it.
+bool isHeld(const Quantity& quantity, const CalibrationInput& input, const OptimisationOptions& options) {
+  if (quantity.info->shape == QuantityShape::Intrinsics) return !options.freesIntrinsics();
+  if (quantity.info->release != QuantityRelease::GyroscopeRotation || options.gyroscope_rotation)
+    return false;
+  const auto& prior = input.imus[quantity.sensor].prior.gyroscope_rotation;
+  return !(prior && prior->sigma);
+}
+
+class ScaledInverse {
+ public:
+  explicit ScaledInverse(const Eigen::MatrixXd& information)
+      : scale_(information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()),
+        solver_(scale_.asDiagonal() * information * scale_.asDiagonal()) {}
+
+  Eigen::VectorXd times(const Eigen::VectorXd& vector) const {
+    return scale_.cwiseProduct(solver_.solve(scale_.cwiseProduct(vector)));
+  }
+  double sigma(Eigen::Index i) const {
+    return std::sqrt(std::max(0.0, times(Eigen::VectorXd::Unit(scale_.size(), i))[i]));
+  }
+
+ private:
+  Eigen::VectorXd scale_;
+  Eigen::LDLT<Eigen::MatrixXd> solver_;
+};
+
+// How one quantity would step, and by how many sigmas along its axis that is most certain.
+struct Step {
+  Eigen::VectorXd change;
+  double sigmas = 0.0;
+};
+
+class Steps {
+ public:
+  // Sigmas take residuals for uncorrelated: under what is looked for they are not, and sigmas that allow for
+  // that would hide it.
+  Steps(const ProjectedInformation& information, const ProjectedInformation& credible)
+      : information_(information),
+        step_(-ScaledInverse(information.total).times(information.gradient)),
+        covariance_(credible.total) {}
+
+  Step of(std::size_t quantity) const {
+    constexpr double kLeastSigma = 1e-12;
+    const Eigen::Index first = information_.first_column[quantity],
+                       size = information_.first_column[quantity + 1] - first;
+    Step step{step_.segment(first, size)};
+    for (Eigen::Index k = 0; k < size; ++k)
+      step.sigmas = std::max(step.sigmas,
+                             std::abs(step.change[k]) / std::max(covariance_.sigma(first + k), kLeastSigma));
+    return step;
+  }
+
+ private:
+  const ProjectedInformation& information_;
+  Eigen::VectorXd step_;
+  ScaledInverse covariance_;
+};
+
+void add(std::string& doubts, const std::string& doubt) {
+  doubts += (doubts.empty() ? "" : "; ") + doubt;
+}
+
+void testGyroscope(const std::string& imu, const Step& step, const OptimisationOptions& options,
+                   std::string& doubts) {
+  const double turn_deg = kDegPerRad * step.change.norm();
+  if (turn_deg < options.needed_rotation_deg || step.sigmas < options.turned_gyroscope_sigmas) return;
+  add(doubts,
+      fmt::format("{}: the gyroscope seems to be turned by about {:.2g} deg against the accelerometer, "
+                  "and other rotations may be off by as much; calibrate with "
+                  "optimisation.gyroscope_rotation: true",
+                  imu, turn_deg));
+}
+
+void testLens(const std::string& camera, const CameraIntrinsics& held, const Step& step,
+              const OptimisationOptions& options, std::string& doubts) {
+  if (step.sigmas < options.wrong_lens_sigmas) return;
+  std::array<double, 9> numbers{};
+  writeIntrinsics(held, numbers.data());
+  for (Eigen::Index k = 0; k < step.change.size(); ++k)  // those that the model does not use come last
+    numbers[static_cast<std::size_t>(k)] += step.change[k];
+  const CameraIntrinsics freed = intrinsicsFrom(numbers.data(), held.model, held.resolution_px);
+  const Eigen::Array2d focal = freed.focal_length_px.array() / held.focal_length_px.array() - 1.0;
+  const Eigen::Vector2d centre_px = freed.principal_point_px - held.principal_point_px;
+  const double moved_px = std::max(projectionDifference(held, freed).rms_px, centre_px.norm());
+  if (moved_px < options.wrong_lens_px) return;
+  constexpr double kPercent = 100.0;
+  add(doubts,
+      fmt::format("{}: the lens is not as the session says: focal lengths seem {:+.2f} and {:+.2f} %, the "
+                  "principal point ({:+.1f}, {:+.1f}) px off ({:.0f} sigmas); calibrate with "
+                  "optimisation.camera_intrinsics: free",
+                  camera, kPercent * focal.x(), kPercent * focal.y(), centre_px.x(), centre_px.y(),
+                  step.sigmas));
+}
+
+}  // namespace
+
+OptimisationOptions freeToBeTested(OptimisationOptions options) {
+  options.gyroscope_rotation = true;
+  options.camera_intrinsics = CameraIntrinsicsChoice::Free;
+  return options;
+}
+
+HeldDoubts testHeldValues(const CalibrationInput& input, const CalibrationState& state,
+                          const ProjectedInformation& information, const OptimisationOptions& options) {
+  HeldDoubts doubts;
+  std::vector<std::size_t> held;
+  for (std::size_t i = 0; i < information.quantities.size(); ++i)
+    if (isHeld(information.quantities[i], input, options)) held.push_back(i);
+  if (held.empty()) return doubts;
+  const Steps steps(information, withoutNoise(information));
+  for (const std::size_t i : held) {
+    const Quantity& quantity = information.quantities[i];
+    if (quantity.info->owner == QuantityOwner::Camera)
+      testLens(input.cameras[quantity.sensor].name, *state.cameras[quantity.sensor].lens.inUse(), steps.of(i),
+               options, doubts.lenses);
+    else
+      testGyroscope(input.imus[quantity.sensor].name, steps.of(i), options, doubts.gyroscopes);
+  }
+  return doubts;
+}
+
+ProjectedInformation withoutHeldValues(const CalibrationInput& input, const OptimisationOptions& options,
+                                       ProjectedInformation information) {
+  std::vector<Eigen::Index> kept;
+  std::vector<Quantity> quantities;
+  std::vector<Eigen::Index> first_column = {0};
+  for (std::size_t i = 0; i < information.quantities.size(); ++i) {
+    if (isHeld(information.quantities[i], input, options)) continue;
+    quantities.push_back(information.quantities[i]);
+    for (Eigen::Index k = information.first_column[i]; k < information.first_column[i + 1]; ++k)
+      kept.push_back(k);
+    first_column.push_back(static_cast<Eigen::Index>(kept.size()));
+  }
+  const auto shrinkMatrix = [&](Eigen::MatrixXd& matrix) { matrix = matrix(kept, kept).eval(); };
+  const auto shrinkVector = [&](Eigen::VectorXd& vector) { vector = vector(kept).eval(); };
+  information.quantities = std::move(quantities);
+  information.first_column = std::move(first_column);
+  shrinkMatrix(information.total);
+  shrinkMatrix(information.from_noise);
+  shrinkVector(information.gradient);
+  for (MeasurementGroup& group : information.groups) shrinkMatrix(group.information);
+  for (Eigen::VectorXd& score : information.scores) shrinkVector(score);
+  for (Eigen::VectorXd& effect : information.pixel_errors) shrinkVector(effect);
+  if (information.drift_by_quantities.size() > 0)
+    information.drift_by_quantities = information.drift_by_quantities(Eigen::all, kept).eval();
+  return information;
+}
+
+}  // namespace evical
