@@ -95,7 +95,8 @@ void CalibrationProblem::setManifolds(ProblemBuilder& builder) {
     const QuantityRelease release = quantity.info->release;
     const bool held =
         (release == QuantityRelease::ImuIntrinsics && builder.stage != ReleaseStages::Mappings) ||
-        (release == QuantityRelease::BoardSize && !(last && options_.free_board_size));
+        (release == QuantityRelease::BoardSize && !(last && options_.free_board_size)) ||
+        (quantity.block == &parameters_.moved().board.scale && builder.scaleIsHeld());
     if (held) builder.hold(quantity.block);
   }
 }

@@ -8,6 +8,10 @@ bool ProblemBuilder::turnsGyroscope(std::size_t imu) const {
          weights.held_axes[imu].gyroscope.empty();
 }
 
+bool ProblemBuilder::scaleIsHeld() const {
+  return !input.imus.empty() && !weights.held_axes[input.reference_imu].accelerometer.empty();
+}
+
 bool ProblemBuilder::drifts(const SensorPrior& prior) const {
   const std::optional<KnownNumber>& drift = prior.time_offset_drift;
   if (drift) return options.free_time_offsets && !drift->isGiven();

@@ -38,6 +38,8 @@ struct ProblemBuilder {
   bool isReference(std::size_t imu) const { return imu == input.reference_imu; }
   // Where nothing turns about some axis the gyroscope could take any turn about it.
   bool turnsGyroscope(std::size_t imu) const;
+  // Where hardly anything accelerates along some axis, errors of the circles would pass for a board of another size.
+  bool scaleIsHeld() const;
   // A clock with this prior. One whose offset is given is the reference's own, as far as anybody knows.
   bool drifts(const SensorPrior& prior) const;
 

@@ -323,14 +323,13 @@ class Calibration {
       const double share = keepBeside(*step, input_.cameras[k].observations.views);
       doubt += fmt::format(
           "{}{}: its clock and the IMU's step by {:.1f} ms against each other about {:.1f} s after the "
-          "start: "
-          "{:.0f} % of the views lie on the other side and are left out",
+          "start: {:.0f} % of the views lie on the other side and are left out",
           doubt.empty() ? "" : "; ", input_.cameras[k].name, 1e3 * step->step_s, step->at_s, 100.0 * share);
     }
     if (doubt.empty()) return;
     initial_ = initialise(input_, session_.options.initialisation, context_);
-    initial_.doubt = initial_.doubt.empty() ? doubt : doubt + "; " + initial_.doubt;
     initial_.warnings.push_back(doubt);
+    clock_doubt_ = doubt;
   }
 
   void optimise() {
@@ -347,9 +346,9 @@ class Calibration {
           "residuals",
           result);
     addDoubt(priors.doubt, result);
-    addDoubt(initial_.doubt, result);
-    addDoubt(uncertainty.scale_doubt, result);
+    addDoubt(boardDoubt(uncertainty), result);
     addDoubt(uncertainty.wrong_lenses, result);
+    addDoubt(clock_doubt_, result);
     judge(solution, uncertainty.turned_gyroscopes);
     result.state = std::move(solution.state);
     result.uncertainty = std::move(uncertainty.report);
@@ -360,6 +359,14 @@ class Calibration {
     notes_ = std::move(solution.notes);
     for (const auto* more : {&uncertainty.notes, &priors.notes})
       notes_.insert(notes_.end(), more->begin(), more->end());
+  }
+
+  // A board that is far off is told by the first look, which nothing pulls towards what was given; but that look may
+  // have been led astray by what the batch has put right since.
+  std::string boardDoubt(const UncertaintyEstimate& uncertainty) const {
+    const bool free = session_.options.optimisation.free_board_size;
+    return initial_.doubt.empty() || (free && uncertainty.scale_doubt.empty()) ? uncertainty.scale_doubt
+                                                                               : initial_.doubt;
   }
 
   // What explains a misfit comes before the misfit, and a gyroscope that seems turned only where nothing else does:
@@ -407,6 +414,7 @@ class Calibration {
   CalibrationRun run_;
   CalibrationInput input_;
   Initialisation initial_;
+  std::string clock_doubt_;         // that clocks step
   std::vector<std::string> notes_;  // of the batch
 };
 

@@ -42,6 +42,8 @@ class TestCauses : public QObject {
     row("accelerometer dead", 2, true);
     row("another IMU", 1, true);
     row("clock step", 50, false);
+    row("board spacing", 2, false);
+    row("board spacing", -2.5, false);
     row("gyroscope turned", 1, false);
   }
   void firstReason_namesTheCause() {
@@ -62,6 +64,35 @@ class TestCauses : public QObject {
       reason = error.what();
     }
     QVERIFY2(perturbation.isNamedIn(test::firstReason(reason)), reason.c_str());
+  }
+
+  // What is an unknown with a sigma is found instead of complained about.
+  void whatIsAnUnknown_isRepaired_data() {
+    QTest::addColumn<QString>("name");
+    QTest::addColumn<double>("size");
+    const auto row = [](const char* name, double size) {
+      QTest::addRow("%s %g", name, size) << QString(name) << size;
+    };
+    row("board spacing", 0.5);
+    row("board spacing", -0.5);
+    row("board stretch", 0.25);
+    row("board stretch", 0.5);
+    row("gravity", 9.78);
+    row("focal length", 0.3);
+    row("focal length", 1);
+    row("focal length x", 1);
+    row("centre", 2);
+    row("distortion", 0.9);
+    row("clock drift", 50);
+  }
+  void whatIsAnUnknown_isRepaired() {
+    QFETCH(QString, name);
+    QFETCH(double, size);
+    test::Recorded recorded = base_;
+    test::perturbation(name.toStdString()).apply(recorded, size);
+    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+    QVERIFY2(run.result.status == CalibrationStatus::Ok, run.result.reason.c_str());
+    expectRight(recorded, run);
   }
 
   // Clocks that are seconds apart are found, and all the rest is as ever.

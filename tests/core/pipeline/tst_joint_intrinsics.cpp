@@ -144,8 +144,9 @@ class TestJointIntrinsics : public QObject {
     QVERIFY(!holds(run.result.notes, "solved with everything else"));
   }
 
-  void givenIntrinsics_stayAsTheyAre() {
+  void givenIntrinsics_stayAsTheyAreWhereAsked() {
     Session session = simulated_.session;
+    session.options.optimisation.camera_intrinsics = CameraIntrinsicsChoice::Fixed;
     session.options.report.cross_validation = false;
     session.cameras[0].intrinsics = found_;
     RecordingPass pass = simulated_.pass;

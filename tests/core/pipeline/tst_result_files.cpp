@@ -195,11 +195,13 @@ class TestResultFiles : public QObject {
   }
 
   void calibratedIntrinsics_haveTheirSection() {
-    QVERIFY(!page_.contains("<section id=\"intrinsics\">") && text_.contains("Intrinsics as given"));
+    QVERIFY(!page_.contains("<section id=\"intrinsics\">") &&
+            text_.contains("Intrinsics as solved with everything else"));
     CalibrationRun run = run_;
     IntrinsicsResult& found = run.intrinsics.emplace_back().emplace();
     found.intrinsics = *simulated_.session.cameras[0].intrinsics;
     run.result.state.cameras[0].lens.given.reset();
+    run.result.state.cameras[0].lens.solved.reset();
     run.result.uncertainty.cameras[0].intrinsics_std.emplace().fill(0.05);
     found.covariance.diagonal().head<8>().setConstant(0.0025);
     found.status = CalibrationStatus::Doubtful;
