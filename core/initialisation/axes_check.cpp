@@ -5,6 +5,7 @@
 #include "core/initialisation/gravity_alignment.h"
 #include "core/initialisation/gyro_rotation.h"
 #include "core/initialisation/initialise.h"
+#include "core/initialisation/knot_spacing.h"
 #include "core/initialisation/world_rotation.h"
 
 #include <fmt/format.h>
@@ -55,7 +56,8 @@ class AxesTrial {
     const GyroRotation unbiased(imu().samples, input_.start_ns, camera.hand_eye.gyroscope_bias_rad_s);
     const double begin_s = std::max(camera.poses.front().time_s + offset_s, gyro.begin_s());
     const double end_s = std::min(camera.poses.back().time_s + offset_s, gyro.end_s());
-    rotation_ = fitWorldRotation({&camera, 1}, unbiased, begin_s, end_s, options_.knot_spacing_s);
+    rotation_ = fitWorldRotation({&camera, 1}, unbiased, begin_s, end_s,
+                                 options_.knot_spacing_s > 0.0 ? options_.knot_spacing_s : kUsualKnot_s);
     tracks_ = {{camera.poses, offset_s}};
   }
 

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/data/unfit_samples.h"
+#include "core/initialisation/knot_spacing.h"
 
 #include <fmt/format.h>
 
@@ -10,6 +11,11 @@
 namespace evical {
 
 void checkInput(const CalibrationInput& input, const InitialisationOptions& options) {
+  if (options.knot_spacing_s > 0.0 && options.knot_spacing_s < kClosestKnots_s) {
+    throw badInput(
+        "initialisation.knot_spacing_s", fmt::format("{:g} s is too close", options.knot_spacing_s),
+        fmt::format("Give at least {:g} s, or 0 for knots that follow the motion", kClosestKnots_s));
+  }
   if (input.board.hasHalfTurnAmbiguity()) {
     throw badInput("board", "looks the same when turned by half a turn, so its pose is ambiguous",
                    "Use an asymmetric board with an odd number of rows; this one serves for intrinsics only");

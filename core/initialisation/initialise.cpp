@@ -10,6 +10,7 @@
 #include "core/initialisation/further_imus.h"
 #include "core/initialisation/gravity_alignment.h"
 #include "core/initialisation/initialisation_checks.h"
+#include "core/initialisation/knot_spacing.h"
 #include "core/initialisation/world_rotation.h"
 
 #include "core/geometry/so3.h"
@@ -29,10 +30,6 @@ namespace {
 const ImuData& referenceImu(const CalibrationInput& input) {
   return input.imus[input.reference_imu];
 }
-
-struct TimeRange {
-  double begin_s = std::numeric_limits<double>::infinity(), end_s = -begin_s;
-};
 
 TimeRange viewRange(const std::vector<AlignedCamera>& cameras) {
   TimeRange range;
@@ -71,6 +68,31 @@ void turnAboutAxis(const CalibrationInput& input, const InitialisationOptions& o
     camera.hand_eye.reference_from_sensor =
         quaternionExp(-turn_rad * first.main_axis_in_imu) * camera.hand_eye.reference_from_sensor;
   }
+}
+
+// Of both splines, as the most demanding sensor needs it: with two spacings the normal equations' band would be
+// wider by their ratio, which costs what fewer control points save.
+double commonKnotSpacing_s(const CalibrationInput& input, const InitialisationOptions& options,
+                           const std::vector<AlignedCamera>& cameras, TimeRange range,
+                           const GyroRotation& reference, Initialisation& result) {
+  if (options.knot_spacing_s > 0.0) return options.knot_spacing_s;
+  Stopwatch stopwatch;
+  const ViewPrecision views = viewPrecision(input.cameras, cameras);
+  const ImuData* asking = &referenceImu(input);
+  KnotSpacing asked = knotSpacing(*asking, input.start_ns, range, reference, views);
+  const double closest_s = closestKnots_s(*asking);
+  for (const ImuData& imu : input.imus) {
+    if (&imu == &referenceImu(input)) continue;
+    const GyroRotation own(withoutRateSpikes(imu.samples), input.start_ns);
+    const KnotSpacing other = knotSpacing(imu, input.start_ns, range, own, views);
+    if (other.spacing_s() >= asked.spacing_s()) continue;
+    asking = &imu;
+    asked = other;
+  }
+  const double spacing_s = std::max(asked.spacing_s(), closest_s);
+  result.steps.push_back(
+      {"knot spacing", describe(asking->name, asked, spacing_s), 0.0, 0.0, stopwatch.restart_s()});
+  return spacing_s;
 }
 
 void checkBoardScale(const GravityAlignment& gravity, const CircleBoard& board,
@@ -209,8 +231,9 @@ Initialisation initialiseStraight(const CalibrationInput& input, const Initialis
   const GyroRotation unbiased(rates, input.start_ns, cameras.front().hand_eye.gyroscope_bias_rad_s);
   turnAboutAxis(input, options, range, unbiased, context, cameras, result);
   context.throwIfStopped();
+  const double knot_s = commonKnotSpacing_s(input, options, cameras, range, unbiased, result);
   result.state.world_from_imu_rotation =
-      fitWorldRotation(cameras, unbiased, range.begin_s, range.end_s, options.knot_spacing_s,
+      fitWorldRotation(cameras, unbiased, range.begin_s, range.end_s, knot_s,
                        saturates(imu) ? kSaturatedDriftKnot_s : kDriftKnot_s);
   context.throwIfStopped();
   alignTranslations(input, options, cameras, context, result);

@@ -56,6 +56,14 @@ MotionModel motionModel(Motion kind, double distance_m) {
       m.angle_amplitude_rad = {0.12, 0.12, 0.5};
       m.image_speed_px_s = 50.0;
       break;
+    case Motion::Shaky:  // hands that tremble: 4 degrees at 2 to 7 Hz
+      m.distance_amplitude_m = 0.01;
+      m.angle_amplitude_rad = {0.07, 0.07, 0.07};
+      m.target_amplitude_m = {0.01, 0.01};
+      m.lowest_frequency_hz = 2.0;
+      m.highest_frequency_hz = 7.0;
+      m.image_speed_px_s = 0.0;
+      break;
   }
   return m;
 }

@@ -7,7 +7,7 @@
 
 namespace evical::test {
 
-enum class Motion { Everyday, Slow, Fast, OneAxis, Planar, HardlyMoving, Periodic, Symmetric };
+enum class Motion { Everyday, Slow, Fast, OneAxis, Planar, HardlyMoving, Periodic, Symmetric, Shaky };
 
 struct SimulationOptions {
   double duration_s = 30.0;

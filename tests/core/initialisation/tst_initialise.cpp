@@ -155,10 +155,9 @@ class TestInitialise : public QObject {
     SimulationOptions simulation = shortRecording();
     simulation.time_offset_s = -0.4;
     const SimulatedInput simulated = simulateInput(simulation);
-    const InitialisationOptions options;
-    const CalibrationState state = initialise(simulated.input, options, RunContext{}).state;
+    const CalibrationState state = initialise(simulated.input, {}, RunContext{}).state;
     QCOMPARE(state.imu_in_world_m.start_s, state.world_from_imu_rotation.start_s);
-    QCOMPARE(state.imu_in_world_m.knot_spacing_s, options.knot_spacing_s);
+    QCOMPARE(state.imu_in_world_m.knot_spacing_s, state.world_from_imu_rotation.knot_spacing_s);
     QCOMPARE(state.imu_in_world_m.control_points.size(), state.world_from_imu_rotation.control_points.size());
     // Views reach from 0 to 8 s of the camera, -0.4 to 7.6 s of the IMU, which begins at 0.
     QVERIFY(std::abs(state.imu_in_world_m.start_s) < 1e-3);

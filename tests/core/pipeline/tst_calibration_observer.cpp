@@ -65,8 +65,9 @@ class TestCalibrationObserver : public QObject {
     QCOMPARE(notebook.input.imus.at(0).samples.size(), run.pass.imus.at(0).samples.size());
     QVERIFY(notebook.duration_of_steps_s > 0.0);
     QVERIFY(notebook.duration_of_steps_s < 1.05 * run.result.timing.initialise_s + 0.01);
-    QCOMPARE(notebook.steps, (QStringList{"camera poses", "planar poses", "time offset",
-                                          "camera-IMU rotation", "gravity and translation", "board scale"}));
+    QCOMPARE(notebook.steps,
+             (QStringList{"camera poses", "planar poses", "time offset", "camera-IMU rotation",
+                          "knot spacing", "gravity and translation", "board scale"}));
     QCOMPARE(notebook.iterations.size(), run.result.iterations.size());
     QCOMPARE(notebook.iterations.back().cost, run.result.iterations.back().cost);
     QCOMPARE(notebook.state.cameras.at(0).time_offset_s, run.result.state.cameras.at(0).time_offset_s);

@@ -1,0 +1,57 @@
+// How far apart the splines' knots may lie for the motion (docs/maths.md, 8.11). Rates and accelerations are
+// fitted by what splines with knots of some spacing can follow: what the closest knots leave is noise, and
+// what wider ones leave beyond that they miss.
+#pragma once
+
+#include "core/data/calibration_setup.h"
+#include "core/initialisation/gyro_rotation.h"
+#include "core/initialisation/world_rotation.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+
+namespace evical {
+
+// Where nothing is known of the motion, and for trials.
+inline constexpr double kUsualKnot_s = 0.02;
+inline constexpr double kClosestKnots_s = 0.005, kWidestKnots_s = 0.1;
+
+// How well one view tells where the camera is: splines must not miss that much either.
+struct ViewPrecision {
+  double angle_rad = std::numeric_limits<double>::infinity();
+  double position_m = std::numeric_limits<double>::infinity();
+};
+// Of the most precise camera.
+ViewPrecision viewPrecision(std::span<const CameraData> cameras, std::span<const AlignedCamera> aligned);
+
+// What one sensor of an IMU asks for, in its unit.
+struct KnotDemand {
+  double spacing_s = kWidestKnots_s;  // the widest with which splines miss little
+  double noise = 0.0;                 // of a sample, along one axis
+  double missed = 0.0;                // by splines with that spacing, RMS along one axis
+};
+
+struct KnotSpacing {
+  KnotDemand rates, accelerations;
+  double spacing_s() const { return std::min(rates.spacing_s, accelerations.spacing_s); }
+};
+
+struct TimeRange {
+  double begin_s = std::numeric_limits<double>::infinity(), end_s = -begin_s;
+};
+
+// Closer knots would follow single samples, and their noise.
+double closestKnots_s(const ImuData& imu);
+
+// Of one IMU's samples within the range, on its clock; `rotation` is its gyroscope's, without bias. Too few
+// samples ask for kUsualKnot_s.
+KnotSpacing knotSpacing(const ImuData& imu, std::int64_t start_ns, TimeRange range,
+                        const GyroRotation& rotation, const ViewPrecision& views);
+
+// For people: why knots are `spacing_s` apart, as this IMU asked for.
+std::string describe(const std::string& imu, const KnotSpacing& asked, double spacing_s);
+
+}  // namespace evical
