@@ -11,7 +11,7 @@ cmake --build --preset release --target evical_accuracy evical_intrinsics_accura
 accuracy=build/release/tests/benchmarks/evical_accuracy
 scenarios=config/scenarios
 
-"$accuracy" "$scenarios"/{davis346,board_9x4,board_7x3,bare_7x3_fast,vga,hd,fisheye,noisy,fast,slow,large_offset}.yaml \
+"$accuracy" "$scenarios"/{davis346,board_9x4,board_7x3,bare_7x3_fast,vga,hd,fisheye,noisy,fast,slow,shaky,large_offset}.yaml \
             "$scenarios"/{imu_200hz,badly_scaled_imu,partial_views,near,far,bright_circles,low_contrast}.yaml \
             "$scenarios"/{blur_0.4px,blur_1px,threshold_0.15,threshold_0.5}.yaml \
             "$scenarios"/{planar_motion,one_axis_rotation,hardly_moving}.yaml
