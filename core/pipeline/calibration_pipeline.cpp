@@ -346,6 +346,7 @@ class Calibration {
           "residuals",
           result);
     addDoubt(priors.doubt, result);
+    addDoubt(uncertainty.stretch_doubt, result);
     addDoubt(boardDoubt(uncertainty), result);
     addDoubt(uncertainty.wrong_lenses, result);
     addDoubt(clock_doubt_, result);

@@ -290,11 +290,12 @@ void spikes(Recorded& recorded, double count) {
   }
 }
 
+// Samples that are no numbers, which do not get past whoever reads a recording (SessionRecording).
 void notNumbers(Recorded& recorded, double count) {
   std::mt19937_64 generator(recorded.scenario.seed);
   for (int k = 0; k < static_cast<int>(count); ++k)
-    samplesOf(recorded)[anySample(recorded, generator)].specific_force_m_s2.x() =
-        std::numeric_limits<double>::quiet_NaN();
+    samplesOf(recorded).erase(samplesOf(recorded).begin() +
+                              static_cast<std::ptrdiff_t>(anySample(recorded, generator)));
 }
 
 // Of another run of the same rig.

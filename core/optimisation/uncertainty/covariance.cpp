@@ -37,7 +37,8 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   reportDrift(information, problem.driftBlocks(), congruence(tangent_from_report, covariance.covariance),
               estimate.report);
   ScaleCheck scale = checkScale(input, solution.state, covariance, options);
-  estimate.scale_doubt = std::move(scale.doubt);
+  estimate.scale_doubt = std::move(scale.size_doubt);
+  estimate.stretch_doubt = std::move(scale.stretch_doubt);
   estimate.notes = std::move(scale.notes);
   const Observability observability =
       judgeObservability(input, solution.state, covariance, withScaleKnown(covariance), options);

@@ -27,7 +27,8 @@ struct UncertaintyEstimate {
   // for who has ruled that out.
   std::string turned_gyroscopes;
   std::string wrong_lenses;        // what is doubtful of lenses that are held
-  std::string scale_doubt;         // of the board's size, its stretch, or gravity
+  std::string scale_doubt;         // of the board's size, or gravity
+  std::string stretch_doubt;       // of the board's stretch
   std::vector<std::string> notes;  // what is worth knowing of the sigmas
 };
 

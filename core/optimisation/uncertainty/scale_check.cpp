@@ -75,11 +75,13 @@ Weighed excessOfBoard(const CalibrationInput& input, const CalibrationState& sta
 
 std::string sizeDoubt(const CalibrationInput& input, const Weighed& excess) {
   return fmt::format(
-      "accelerations make the board {:.2g} % {} than board.spacing_m says ({:.4g} m), {:.1f} sigmas off: "
-      "measure it over as many circles as there are; or gravity is not {:.4g} m/s^2 here: give "
+      "accelerations make the board {0:.2g} % {1} than board.spacing_m says ({2:.4g} m), or gravity {0:.2g} "
+      "% "
+      "{3} than {4:.4g} m/s^2 ({5:.1f} sigmas): measure the board over as many circles as there are, and "
+      "give "
       "gravity.latitude_deg",
       100.0 * std::abs(excess.found), excess.found > 0.0 ? "larger" : "smaller", input.board.spacing_m,
-      std::abs(excess.sigmas()), input.gravity_norm_m_s2);
+      excess.found > 0.0 ? "smaller" : "larger", input.gravity_norm_m_s2, std::abs(excess.sigmas()));
 }
 
 std::string stretchDoubt(const Weighed& stretch) {
@@ -117,12 +119,12 @@ ScaleCheck checkScale(const CalibrationInput& input, const CalibrationState& sta
                       const QuantityCovariance& covariance, const OptimisationOptions& options) {
   ScaleCheck check;
   const Weighed excess = excessOfBoard(input, state, covariance, options);
-  if (std::abs(excess.sigmas()) > options.doubtful_scale_sigmas) check.doubt = sizeDoubt(input, excess);
+  if (std::abs(excess.sigmas()) > options.doubtful_scale_sigmas) check.size_doubt = sizeDoubt(input, excess);
   Combination stretch(covariance);
   stretch.add(columnOf(covariance, stretchInfo()), 1.0, boardStretchSigma(options), state.board.stretch);
   const Weighed stretched = stretch.weighed(covariance);
   if (std::abs(stretched.sigmas()) > options.doubtful_scale_sigmas)
-    check.doubt += (check.doubt.empty() ? "" : "; ") + stretchDoubt(stretched);
+    check.stretch_doubt = stretchDoubt(stretched);
   addEffects(input, covariance, check.notes);
   return check;
 }

@@ -13,7 +13,8 @@
 namespace evical {
 
 struct ScaleCheck {
-  std::string doubt;               // of the board's size, its stretch, or gravity; empty without any
+  std::string size_doubt;          // of the board's size, or gravity; empty without any
+  std::string stretch_doubt;       // the same of its stretch
   std::vector<std::string> notes;  // how far a wrong measure moves each translation
 };
 

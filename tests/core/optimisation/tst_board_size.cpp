@@ -99,7 +99,7 @@ class TestBoardSize : public QObject {
 
   void stretchBeyondWhatWasMeasured_isDoubted() {
     const Run run = calibrate(boardOf(1.0, -0.02));
-    const QString doubt = QString::fromStdString(run.estimate.scale_doubt);
+    const QString doubt = QString::fromStdString(run.estimate.stretch_doubt);
     QVERIFY2(doubt.contains("shorter along its rows"), qPrintable(doubt));
     QVERIFY(run.translationError_sigmas() < 4.0);
   }
