@@ -43,6 +43,7 @@ struct ImuUncertainty {
   std::vector<Eigen::Vector3d> gyroscope_drift_std_rad_s, accelerometer_drift_std_m_s2;
   Eigen::Vector3d gyroscope_rotation_std_rad = Eigen::Vector3d::Zero();  // about the accelerometer's axes
   double time_offset_drift_std_ppm = 0.0;
+  double accelerometer_delay_std_s = 0.0;
 };
 
 struct BoardUncertainty {

@@ -35,6 +35,8 @@ struct ImuState {
   Eigen::Matrix3d accelerometer_mapping = Eigen::Matrix3d::Identity();  // the same
   // The IMU's frame is the accelerometer's; the gyroscope may be turned against it.
   Eigen::Quaterniond gyroscope_from_accelerometer = Eigen::Quaterniond::Identity();
+  // The IMU's clock is the gyroscope's: the accelerometer's sample stamped t is of t less this.
+  double accelerometer_delay_s = 0.0;
 
   BiasDrift bias_drift;                                        // without knots: biases are constant
   double time_offset_drift_ppm = 0.0, time_offset_at_s = 0.0;  // as a camera's
@@ -68,6 +70,11 @@ template <class Sensor>
 double sensorTime_s(const Sensor& sensor, double reference_time_s) {
   const double pace = 1e-6 * sensor.time_offset_drift_ppm;
   return (reference_time_s - sensor.time_offset_s + pace * sensor.time_offset_at_s) / (1.0 + pace);
+}
+
+// When the accelerometer measured what is stamped so; the gyroscope at referenceTime_s.
+inline double accelerometerTime_s(const ImuState& imu, double imu_time_s) {
+  return referenceTime_s(imu, imu_time_s) - imu.accelerometer_delay_s;
 }
 
 // The board as it is, against what is said of it (circle_board.h): a point (x, y) of it lies at

@@ -80,9 +80,8 @@ void placeBiasKnots(const OptimisationOptions& options, const ImuNoise& noise, c
 }
 
 bool sameBiasKnots(const ImuState& imu, double time_s, double other_s) {
-  if (imu.bias_drift.knots() < 2) return true;
-  return imu.bias_drift.segmentAt(sensorTime_s(imu, time_s)) ==
-         imu.bias_drift.segmentAt(sensorTime_s(imu, other_s));
+  const BiasDrift& drift = imu.bias_drift;
+  return drift.knots() < 2 || drift.segmentAt(time_s) == drift.segmentAt(other_s);
 }
 
 std::optional<DriftTimes> appendDriftBlocks(const BiasDrift& drift, std::vector<Eigen::Vector3d>& knots,

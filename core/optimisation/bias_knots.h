@@ -41,7 +41,7 @@ class BiasMeanCost final : public ceres::CostFunction {
 void placeBiasKnots(const OptimisationOptions& options, const ImuNoise& noise, const So3Spline& trajectory,
                     ImuState& imu);
 
-// Whether two times on the reference's clock lie between the same knots of this IMU.
+// Whether two times on the IMU's own clock lie between the same knots.
 bool sameBiasKnots(const ImuState& imu, double time_s, double other_s);
 
 // The blocks of a cost function of samples between two knots, the first at `time_s` on the IMU's own clock;

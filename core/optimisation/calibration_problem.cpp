@@ -15,7 +15,7 @@ ceres::Problem::Options borrowManifolds() {
   return options;
 }
 
-// Of every sensor at the trajectory's begin and at its end.
+// Of every sensor at the trajectory's begin and at its end, an accelerometer's with its delay.
 std::vector<double> timeOffsets_s(const CalibrationState& state) {
   const So3Spline& trajectory = state.world_from_imu_rotation;
   std::vector<double> offsets_s;
@@ -24,7 +24,11 @@ std::vector<double> timeOffsets_s(const CalibrationState& state) {
       offsets_s.push_back(timeOffsetAt_s(sensor, time_s));
   };
   for (const CameraState& camera : state.cameras) append(camera);
-  for (const ImuState& imu : state.imus) append(imu);
+  for (const ImuState& imu : state.imus) {
+    append(imu);
+    for (const double time_s : {trajectory.start_s, trajectory.endTime_s()})
+      offsets_s.push_back(timeOffsetAt_s(imu, time_s) - imu.accelerometer_delay_s);
+  }
   return offsets_s;
 }
 

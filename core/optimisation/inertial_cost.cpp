@@ -67,6 +67,7 @@ enum AccelerometerBlock {
   kGravity = 8,
   kForceBias,
   kForceMapping,
+  kDelay,
   kForceRotation,
   kLeverArm,
   kForceTimeOffset,
@@ -78,14 +79,15 @@ struct Accelerometer {
   bool further;
   Vector3d gravity, bias, lever_arm = Vector3d::Zero();
   Matrix3d mapping, imu_from_reference = Matrix3d::Identity();  // mapping: times the weight
-  double weight, time_offset_s = 0.0, time_offset_drift_ppm = 0.0;
+  double weight, delay_s, time_offset_s = 0.0, time_offset_drift_ppm = 0.0;
 
   Accelerometer(ImuRole role, double sample_weight, double const* const* parameters)
       : further(role == ImuRole::Further),
         gravity(parameters[kGravity]),
         bias(parameters[kForceBias]),
         mapping(sample_weight * mappingFromParameters(parameters[kForceMapping])),
-        weight(sample_weight) {
+        weight(sample_weight),
+        delay_s(*parameters[kDelay]) {
     if (!further) return;
     imu_from_reference =
         Eigen::Map<const Eigen::Quaterniond>(parameters[kForceRotation]).toRotationMatrix().transpose();
@@ -93,8 +95,16 @@ struct Accelerometer {
     time_offset_s = *parameters[kForceTimeOffset];
     time_offset_drift_ppm = *parameters[kForceTimeOffsetDrift];
   }
-  // The rates matter through the lever arm only.
-  RotationOrder order() const { return further ? RotationOrder::Acceleration : RotationOrder::Rotation; }
+  // On the reference's clock.
+  double timeOf_s(const InertialMeasurement& sample) const {
+    return sample.time_s + time_offset_s + sample.by_drift_s * time_offset_drift_ppm - delay_s;
+  }
+  // Rates matter through the lever arm, and for how the force changes.
+  RotationOrder order(bool with_rate) const {
+    return further     ? RotationOrder::Acceleration
+           : with_rate ? RotationOrder::Velocity
+                       : RotationOrder::Rotation;
+  }
 };
 
 struct MotionAtSample {
@@ -134,7 +144,15 @@ void writeSplineRows(const Accelerometer& model, const MotionAtSample& motion, c
   }
 }
 
-// And with respect to everything else but the time offset.
+// With respect to the delay, and to the time offset and its drift.
+void writeTimeRows(const Accelerometer& model, const Vector3d& force_rate, const InertialMeasurement& sample,
+                   Eigen::Index row, double** jacobians) {
+  const Vector3d by_time = model.mapping * (model.imu_from_reference * force_rate);
+  if (jacobians[kDelay]) jacobianRows<3, 1>(jacobians, kDelay, row) = -by_time;
+  if (model.further) writeTimeRows(jacobians, kForceTimeOffset, row, by_time, sample);
+}
+
+// And with respect to everything else but times.
 void writeModelRows(const Accelerometer& model, const MotionAtSample& motion, const SpecificForce& force,
                     Eigen::Index row, double** jacobians) {
   const Matrix3d by_force = model.mapping * model.imu_from_reference;
@@ -245,7 +263,7 @@ AccelerometerCost::AccelerometerCost(ImuRole role, double sigma_m_s2, const Segm
                                      std::vector<InertialMeasurement> samples,
                                      std::optional<DriftTimes> drift)
     : role_(role), weight_(1.0 / sigma_m_s2), segment_(segment), samples_(std::move(samples)), drift_(drift) {
-  *mutable_parameter_block_sizes() = {4, 4, 4, 4, 3, 3, 3, 3, 3, 3, 6};
+  *mutable_parameter_block_sizes() = {4, 4, 4, 4, 3, 3, 3, 3, 3, 3, 6, 1};
   if (role == ImuRole::Further)
     mutable_parameter_block_sizes()->insert(parameter_block_sizes().end(), {4, 3, 1, 1});
   if (drift) appendDriftBlocks(*mutable_parameter_block_sizes());
@@ -256,14 +274,21 @@ bool AccelerometerCost::Evaluate(double const* const* parameters, double* residu
                                  double** jacobians) const {
   const Accelerometer model(role_, weight_, parameters);
   const bool by_spline = anyOf(jacobians, 0, kGravity);
+  const bool by_time =
+      anyOf(jacobians, kDelay, 1) || (model.further && anyOf(jacobians, kForceTimeOffset, 2));
   const So3Segment rotation_segment = rotationSegment(segment_, parameters, by_spline);
   const auto moveTo = [&](double time_s, MotionAtSample& motion, bool with_jacobians) {
-    rotation_segment.evaluate(segment_.rotationPlace(time_s), model.order(), motion.rotation,
+    rotation_segment.evaluate(segment_.rotationPlace(time_s), model.order(by_time), motion.rotation,
                               with_jacobians ? &motion.by_control_points : nullptr);
     motion.position = positionAt(segment_, parameters + kPosition, time_s);
   };
+  const Vector3d jerk = jerkOf(segment_, parameters + kPosition);
   // The angular jerk isn't worth a formula: it acts through the lever arm of further IMUs only.
-  const auto forceRate = [&](double time_s) -> Vector3d {
+  const auto forceRate = [&](double time_s, const MotionAtSample& at,
+                             const SpecificForce& force) -> Vector3d {
+    if (!model.further)
+      return at.rotation.rotation.transpose() * jerk -
+             at.rotation.angular_velocity_rad_s.cross(force.from_motion);
     const double step_s = 1e-4 * segment_.rotation_spacing_s;
     MotionAtSample before, after;
     moveTo(time_s - step_s, before, false);
@@ -275,8 +300,7 @@ bool AccelerometerCost::Evaluate(double const* const* parameters, double* residu
   MotionAtSample motion;
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(3 * i);
-    const double time_s =
-        samples_[i].time_s + model.time_offset_s + samples_[i].by_drift_s * model.time_offset_drift_ppm;
+    const double time_s = model.timeOf_s(samples_[i]);
     moveTo(time_s, motion, by_spline);
     const SpecificForce force =
         specificForce(motion.rotation, motion.position, model.gravity, model.lever_arm);
@@ -285,9 +309,7 @@ bool AccelerometerCost::Evaluate(double const* const* parameters, double* residu
     if (!jacobians) continue;
     if (by_spline) writeSplineRows(model, motion, force, row, jacobians);
     writeModelRows(model, motion, force, row, jacobians);
-    if (model.further && anyOf(jacobians, kForceTimeOffset, 2))
-      writeTimeRows(jacobians, kForceTimeOffset, row,
-                    model.mapping * model.imu_from_reference * forceRate(time_s), samples_[i]);
+    if (by_time) writeTimeRows(model, forceRate(time_s, motion, force), samples_[i], row, jacobians);
   }
   if (drift_) {
     const int first = static_cast<int>(parameter_block_sizes().size()) - 2;

@@ -21,7 +21,8 @@ bool isReleased(const QuantityInfo& info, const OptimisationOptions& options, bo
 template <class Known>
 std::optional<Known> heldWithoutPrior([[maybe_unused]] const QuantityInfo& info) {
   if constexpr (std::is_same_v<Known, KnownNumber>)
-    if (info.release == QuantityRelease::TimeOffsets) return KnownNumber{0.0};
+    if (info.release == QuantityRelease::TimeOffsets || info.release == QuantityRelease::ImuIntrinsics)
+      return KnownNumber{0.0};
   if constexpr (std::is_same_v<Known, KnownMapping>)
     if (info.release == QuantityRelease::ImuIntrinsics) return KnownMapping{Eigen::Matrix3d::Identity()};
   return std::nullopt;

@@ -65,13 +65,50 @@ std::vector<CircleMeasurement> circlesOf(const ProblemBuilder& builder, std::siz
   return measurements;
 }
 
-// Samples of one IMU that share spline segments and the knots of its biases.
+// Samples of a gyroscope or an accelerometer that share spline segments and the knots of its biases.
 struct SampleRun {
   std::size_t imu;
   SegmentTimes segment;
-  double time_s;           // of the first, on the reference's clock
+  double stamp_s;          // of the first, on the IMU's own clock
+  double time_s, last_s;   // when it and the last one were measured, on the reference's
   std::size_t begin, end;  // of the IMU's samples
 };
+
+// `timeOf` tells when the sensor measured what is stamped so, `within` whether the splines reach there.
+template <class TimeOf, class Within>
+std::vector<SampleRun> runsOf(const ProblemBuilder& builder, std::size_t imu, TimeOf&& timeOf,
+                              Within&& within) {
+  const ImuState& state = builder.parameters.moved().imus[imu];
+  const auto& samples = builder.input.imus[imu].samples;
+  std::vector<SampleRun> runs;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double stamp_s = secondsSince(builder.input.start_ns, samples[i].time_ns);
+    const double time_s = timeOf(state, stamp_s);
+    if (!within(time_s)) continue;
+    const SegmentTimes segment = builder.parameters.segmentAt(time_s);
+    if (runs.empty() || runs.back().end != i || !sameSegment(segment, runs.back().segment) ||
+        !sameBiasKnots(state, stamp_s, runs.back().stamp_s))
+      runs.push_back({imu, segment, stamp_s, time_s, time_s, i, i});
+    runs.back().end = i + 1;
+    runs.back().last_s = time_s;
+  }
+  return runs;
+}
+
+// Where samples begin late in a segment or end early, as where a delay has carried a few across a border, its
+// outermost control points would rest on next to nothing.
+std::vector<SampleRun> withoutStumps(const std::vector<SampleRun>& runs) {
+  constexpr double kLeastShare = 0.5;  // of the segment
+  std::vector<SampleRun> kept;
+  const auto nextTo = [&](std::size_t i, std::size_t other) {
+    return other < runs.size() && std::abs(runs[i].segment.position - runs[other].segment.position) <= 1;
+  };
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const bool whole = runs[i].last_s - runs[i].time_s >= kLeastShare * runs[i].segment.position_spacing_s;
+    if (whole || (i > 0 && nextTo(i, i - 1) && nextTo(i, i + 1))) kept.push_back(runs[i]);
+  }
+  return kept;
+}
 
 // Those that take part.
 std::vector<InertialMeasurement> samplesOf(const ProblemBuilder& builder, const SampleRun& run,
@@ -127,8 +164,9 @@ void addAccelerometer(ProblemBuilder& builder, const SampleRun& run) {
   std::vector<double*> blocks;
   builder.parameters.appendRotation(run.segment, blocks);
   builder.parameters.appendPosition(run.segment, blocks);
-  blocks.insert(blocks.end(), {all.gravity_in_world_m_s2.data(), state.accelerometer_bias_m_s2.data(),
-                               builder.parameters.of(state.accelerometer_mapping)});
+  blocks.insert(blocks.end(),
+                {all.gravity_in_world_m_s2.data(), state.accelerometer_bias_m_s2.data(),
+                 builder.parameters.of(state.accelerometer_mapping), &state.accelerometer_delay_s});
   if (!builder.isReference(run.imu)) {
     blocks.insert(blocks.end(), {state.reference_from_imu.rotation.coeffs().data(),
                                  state.reference_from_imu.translation_m.data(), &state.time_offset_s,
@@ -175,27 +213,14 @@ void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& 
 
 void addImu(ProblemBuilder& builder, std::size_t imu) {
   const CalibrationState& state = builder.parameters.moved();
-  const auto& samples = builder.input.imus[imu].samples;
-  const auto timeOf = [&](const ImuSample& sample) {
-    return referenceTime_s(state.imus[imu], secondsSince(builder.input.start_ns, sample.time_ns));
-  };
   const auto inRotation = [&](double time_s) { return state.world_from_imu_rotation.contains(time_s); };
-  const auto inPosition = [&](double time_s) { return state.imu_in_world_m.contains(time_s); };
-  for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end) {
-    const double begin_s = timeOf(samples[begin]);
-    end = begin + 1;
-    if (!inRotation(begin_s)) continue;
-    const SegmentTimes segment = builder.parameters.segmentAt(begin_s);
-    while (end < samples.size() && inRotation(timeOf(samples[end])) &&
-           inPosition(timeOf(samples[end])) == inPosition(begin_s) &&
-           sameSegment(segment, builder.parameters.segmentAt(timeOf(samples[end]))) &&
-           sameBiasKnots(state.imus[imu], begin_s, timeOf(samples[end]))) {
-      ++end;
-    }
-    const SampleRun run = {imu, segment, begin_s, begin, end};
+  const auto inBoth = [&](double time_s) {
+    return inRotation(time_s) && state.imu_in_world_m.contains(time_s);
+  };
+  for (const SampleRun& run : runsOf(builder, imu, referenceTime_s<ImuState>, inRotation))
     addGyroscope(builder, run);
-    if (inPosition(begin_s)) addAccelerometer(builder, run);
-  }
+  for (const SampleRun& run : withoutStumps(runsOf(builder, imu, accelerometerTime_s, inBoth)))
+    addAccelerometer(builder, run);
 }
 
 }  // namespace evical

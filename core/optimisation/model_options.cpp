@@ -15,10 +15,11 @@ constexpr std::tuple kModelFields{
         "sensors. A given time offset does not drift; with a weighed prior the drift is estimated in any "
         "case.",
         Level::Common},
-    Switch{"free_imu_intrinsics", &ModelOptions::free_imu_intrinsics, true,
-           "Estimate scales and misalignments M_g and M_a; else each stays at the session's prior value, or "
-           "the identity without one. Biases stay free.",
-           Level::Common},
+    Switch{
+        "free_imu_intrinsics", &ModelOptions::free_imu_intrinsics, true,
+        "Estimate scales and misalignments M_g and M_a and the accelerometer's delay; else each stays at the "
+        "session's prior value, or the identity and 0 without one. Biases stay free.",
+        Level::Common},
     Switch{"free_gravity_norm", &ModelOptions::free_gravity_norm, true,
            "Estimate gravity's norm, too, not its direction only.", Level::Common},
     Switch{"free_board_size", &ModelOptions::free_board_size, true,

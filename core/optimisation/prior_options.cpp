@@ -22,6 +22,8 @@ constexpr std::tuple kPriorFields{
           "Weak prior on each entry of M_g and M_a around the identity.", Level::Common},
     Field{"gyroscope_rotation_sigma_deg", &PriorOptions::gyroscope_rotation_sigma_deg, 5.0,
           within(1e-3, 180.0), "deg", "Weak prior on gyroscopes' turns around 0."},
+    Field{"accelerometer_delay_sigma_s", &PriorOptions::accelerometer_delay_sigma_s, 0.005, within(1e-6, 1.0),
+          "s", "Prior on how late accelerometers are against their gyroscopes, around 0."},
     Field{"gyroscope_bias_sigma_rad_s", &PriorOptions::gyroscope_bias_sigma_rad_s, 1.0, within(1e-6, 100.0),
           "rad/s", "Weak prior on gyroscope biases around 0."},
     Field{"accelerometer_bias_sigma_m_s2", &PriorOptions::accelerometer_bias_sigma_m_s2, 1.0,

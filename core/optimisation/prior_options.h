@@ -16,6 +16,7 @@ struct PriorOptions {
   double time_offset_drift_sigma_ppm;
   double mapping_sigma;
   double gyroscope_rotation_sigma_deg;
+  double accelerometer_delay_sigma_s;
   double gyroscope_bias_sigma_rad_s;
   double accelerometer_bias_sigma_m_s2;
   double translation_sigma_m;

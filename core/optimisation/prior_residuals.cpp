@@ -82,7 +82,7 @@ void addImuPriors(ProblemBuilder& builder, std::size_t imu) {
     builder.residuals.push_back({id});
 }
 
-void addMappingPriors(ProblemBuilder& builder, std::size_t imu) {
+void addIntrinsicsPriors(ProblemBuilder& builder, std::size_t imu) {
   const ImuPrior& prior = builder.input.imus[imu].prior;
   const StillAxes& held = builder.weights.held_axes[imu];
   const double sigma = builder.options.mapping_sigma;
@@ -91,6 +91,9 @@ void addMappingPriors(ProblemBuilder& builder, std::size_t imu) {
          *accelerometer = builder.parameters.of(state.accelerometer_mapping);
   if (!prior.gyroscope_mapping) addPrior(builder, gyroscope, 6, kIdentity.data(), sigma);
   if (!prior.accelerometer_mapping) addPrior(builder, accelerometer, 6, kIdentity.data(), sigma);
+  if (!prior.accelerometer_delay)
+    addPrior(builder, &state.accelerometer_delay_s, 1, kZero.data(),
+             builder.options.accelerometer_delay_sigma_s);
   holdMapping(builder, gyroscope, held.gyroscope, prior.gyroscope_mapping);
   holdMapping(builder, accelerometer, held.accelerometer, prior.accelerometer_mapping);
   if (!builder.turnsGyroscope(imu) || prior.gyroscope_rotation) return;
@@ -144,7 +147,7 @@ void addPriors(ProblemBuilder& builder) {
   addCameraPriors(builder);
   for (std::size_t i = 0; i < state.imus.size(); ++i) {
     addImuPriors(builder, i);
-    if (builder.stage == ReleaseStages::Mappings) addMappingPriors(builder, i);
+    if (builder.stage == ReleaseStages::Mappings) addIntrinsicsPriors(builder, i);
   }
   addBoardPriors(builder);
   double* gravity = state.gravity_in_world_m_s2.data();

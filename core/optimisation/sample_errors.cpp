@@ -1,7 +1,7 @@
 #include "core/optimisation/sample_errors.h"
 
 #include "core/base/time.h"
-#include "core/geometry/trajectory.h"
+#include "core/data/imu_prediction.h"
 #include "core/numerics/robust.h"
 
 #include <fmt/format.h>
@@ -94,31 +94,19 @@ std::vector<std::string> notesOfUnused(const CalibrationInput& input, std::size_
 
 SampleErrors sampleErrors(const CalibrationInput& input, const CalibrationState& state, std::size_t imu) {
   const ImuState& imu_state = state.imus[imu];
-  const Eigen::Matrix3d imu_from_reference =
-      imu_state.reference_from_imu.rotation.toRotationMatrix().transpose();
-  const Eigen::Vector3d& lever_arm = imu_state.reference_from_imu.translation_m;
   SampleErrors errors;
   for (const ImuSample& sample : input.imus[imu].samples) {
     double& rate_error = errors.gyroscope_rad_s.emplace_back(kNone);
     double& force_error = errors.accelerometer_m_s2.emplace_back(kNone);
-    const double imu_time_s = secondsSince(input.start_ns, sample.time_ns);
-    const double time_s = referenceTime_s(imu_state, imu_time_s);
-    if (!state.world_from_imu_rotation.contains(time_s)) continue;
-    const RotationSample rotation = evaluate(state.world_from_imu_rotation, time_s);
-    const Eigen::Vector3d& w = rotation.angular_velocity_rad_s;
-    rate_error = (imu_state.gyroscopeMatrix() * (imu_from_reference * w) +
-                  imu_state.gyroscopeBiasAt_rad_s(imu_time_s) - sample.angular_rate_rad_s)
-                     .norm();
-    ++errors.gyroscope_samples;
-    if (!state.imu_in_world_m.contains(time_s)) continue;
-    const Eigen::Vector3d acceleration = evaluate(state.imu_in_world_m, time_s).acceleration;
-    const Eigen::Vector3d force =
-        rotation.rotation.transpose() * (acceleration - state.gravity_in_world_m_s2) +
-        rotation.angular_acceleration_rad_s2.cross(lever_arm) + w.cross(w.cross(lever_arm));
-    force_error = (imu_state.accelerometer_mapping * (imu_from_reference * force) +
-                   imu_state.accelerometerBiasAt_m_s2(imu_time_s) - sample.specific_force_m_s2)
-                      .norm();
-    ++errors.accelerometer_samples;
+    const double stamp_s = secondsSince(input.start_ns, sample.time_ns);
+    if (const auto rate = predictedRate_rad_s(state, imu_state, stamp_s)) {
+      rate_error = (*rate - sample.angular_rate_rad_s).norm();
+      ++errors.gyroscope_samples;
+    }
+    if (const auto force = predictedForce_m_s2(state, imu_state, stamp_s)) {
+      force_error = (*force - sample.specific_force_m_s2).norm();
+      ++errors.accelerometer_samples;
+    }
   }
   const std::vector<std::uint8_t> all(errors.gyroscope_rad_s.size(), 1);
   errors.gyroscope_rms_rad_s = rmsPerAxis(errors.gyroscope_rad_s, all);

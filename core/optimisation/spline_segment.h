@@ -26,4 +26,11 @@ inline VectorSample positionAt(const SegmentTimes& times, const double* const* b
                                times.position_spacing_s);
 }
 
+// The third derivative of the position, the same all over the segment.
+inline Eigen::Vector3d jerkOf(const SegmentTimes& times, const double* const* blocks) {
+  const auto point = [&](int k) { return Eigen::Map<const Eigen::Vector3d>(blocks[k]); };
+  const double spacing_s = times.position_spacing_s;
+  return (point(3) - point(0) + 3.0 * (point(1) - point(2))) / (spacing_s * spacing_s * spacing_s);
+}
+
 }  // namespace evical

@@ -53,11 +53,11 @@ StillAxes stillAxes(const CalibrationInput& input, const CalibrationState& state
   for (std::size_t i = 0; i < data.samples.size(); ++i) {
     const ImuSample& sample = data.samples[i];
     const double imu_time_s = secondsSince(input.start_ns, sample.time_ns);
-    const double time_s = referenceTime_s(state.imus[imu], imu_time_s);
-    if (!state.world_from_imu_rotation.contains(time_s)) continue;
-    if (weights.used_samples[imu].gyroscope[i])
+    const auto isWithin = [&](double time_s) { return state.world_from_imu_rotation.contains(time_s); };
+    if (weights.used_samples[imu].gyroscope[i] && isWithin(referenceTime_s(state.imus[imu], imu_time_s)))
       rates.add(sample.angular_rate_rad_s - state.imus[imu].gyroscopeBiasAt_rad_s(imu_time_s));
-    if (weights.used_samples[imu].accelerometer[i])
+    if (weights.used_samples[imu].accelerometer[i] &&
+        isWithin(accelerometerTime_s(state.imus[imu], imu_time_s)))
       forces.add(sample.specific_force_m_s2 - state.imus[imu].accelerometerBiasAt_m_s2(imu_time_s));
   }
   const double root_rate = std::sqrt(data.rate_hz());

@@ -125,9 +125,11 @@ std::array<CalibrationInput, 2> splitIntoHalves(const CalibrationInput& input, c
     for (CalibrationInput& half : halves) half.imus.push_back({imu.name, imu.noise, {}, imu.prior});
     const double margin_knots = i == input.reference_imu ? 0.0 : kMargin_knots;
     for (const ImuSample& sample : imu.samples) {
-      const double time_s = referenceTime_s(state.imus[i], secondsSince(input.start_ns, sample.time_ns));
-      const int half = blocks.halfAt(time_s, margin_knots);
-      if (half >= 0) halves[static_cast<std::size_t>(half)].imus[i].samples.push_back(sample);
+      const double stamp_s = secondsSince(input.start_ns, sample.time_ns);
+      // A stamp's force may have been measured before a border, and its rate after it.
+      const int half = blocks.halfAt(referenceTime_s(state.imus[i], stamp_s), margin_knots);
+      if (half >= 0 && half == blocks.halfAt(accelerometerTime_s(state.imus[i], stamp_s), margin_knots))
+        halves[static_cast<std::size_t>(half)].imus[i].samples.push_back(sample);
     }
   }
   return halves;

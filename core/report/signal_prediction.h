@@ -14,8 +14,8 @@
 
 namespace evical {
 
-// One entry a sample within both splines' range, in the IMU's own frame; scale, misalignment, bias, lever arm
-// and time offset are in the predictions, so that measured - predicted is noise if all is well.
+// One entry a sample within both splines' range, in the IMU's own frame; scale, misalignment, bias, lever arm,
+// time offset and delay are in the predictions, so that measured - predicted is noise if all is well.
 struct SignalPrediction {
   std::vector<double> time_s;  // the IMU's own clock, since start_ns
   std::vector<Eigen::Vector3d> measured_rate_rad_s, predicted_rate_rad_s;

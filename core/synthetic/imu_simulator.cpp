@@ -21,6 +21,11 @@ void simulate(const Scenario& scenario, std::size_t index, Use&& use) {
     const double x = normal(generator), y = normal(generator), z = normal(generator);
     return Eigen::Vector3d(x, y, z);
   };
+  const auto forceAt = [&](double time_s) -> Eigen::Vector3d {
+    const MotionState state = motionOfFrame(motion.imuAt(time_s), imu.reference_from_imu);
+    return state.world_from_body.rotation.conjugate() *
+           (state.acceleration_in_world_m_s2 - scenario.gravity_in_world_m_s2);
+  };
   const double period_s = 1.0 / imu.rate_hz, root_rate = std::sqrt(imu.rate_hz);
   const Eigen::Matrix3d by_rate = imu.gyroscopeMatrix();
   Eigen::Vector3d gyroscope_bias = imu.gyroscope_bias_rad_s, accelerometer_bias = imu.accelerometer_bias_m_s2;
@@ -28,8 +33,7 @@ void simulate(const Scenario& scenario, std::size_t index, Use&& use) {
   for (std::size_t k = 0; k < count; ++k) {
     const double reference_time_s = static_cast<double>(k) * period_s;
     const MotionState state = motionOfFrame(motion.imuAt(reference_time_s), imu.reference_from_imu);
-    const Eigen::Vector3d force = state.world_from_body.rotation.conjugate() *
-                                  (state.acceleration_in_world_m_s2 - scenario.gravity_in_world_m_s2);
+    const Eigen::Vector3d force = forceAt(reference_time_s - imu.accelerometer_delay_s);
     ImuSample sample;
     sample.time_ns = scenario.start_ns + nanosecondsFrom(sensorTime_s(imu, reference_time_s));
     sample.angular_rate_rad_s = by_rate * state.angular_velocity_in_body_rad_s + gyroscope_bias +

@@ -177,7 +177,8 @@ void readImu(const YamlNode& map, SimulatedImu& imu) {
   map.allowOnly({"name", "stream", "rate_hz", "gyroscope_noise_density", "accelerometer_noise_density",
                  "gyroscope_walk_density", "accelerometer_walk_density", "gyroscope_bias_rad_s",
                  "accelerometer_bias_m_s2", "gyroscope_mapping", "accelerometer_mapping",
-                 "gyroscope_from_accelerometer_deg", "time_offset_s", "reference_from_imu"});
+                 "gyroscope_from_accelerometer_deg", "accelerometer_delay_s", "time_offset_s",
+                 "reference_from_imu"});
   get(map, "name", imu.name);
   get(map, "stream", imu.stream);
   get(map, "rate_hz", imu.rate_hz, 1.0, 1e5, "Hz");
@@ -192,6 +193,7 @@ void readImu(const YamlNode& map, SimulatedImu& imu) {
   Eigen::Vector3d turn_rad = quaternionLog(imu.gyroscope_from_accelerometer);
   get(map, "gyroscope_from_accelerometer_deg", turn_rad, -20.0, 20.0, kRadPerDeg);
   imu.gyroscope_from_accelerometer = quaternionExp(turn_rad);
+  get(map, "accelerometer_delay_s", imu.accelerometer_delay_s, -0.1, 0.1, "s");
   get(map, "time_offset_s", imu.time_offset_s, -60.0, 60.0, "s");
   if (const auto node = map.find("reference_from_imu")) readTransform(*node, imu.reference_from_imu);
 }

@@ -1,5 +1,6 @@
 #include "core/optimisation/uncertainty/credible_information.h"
 
+#include "core/data/quantity.h"
 #include "core/numerics/dense.h"
 
 #include <cmath>
@@ -11,7 +12,20 @@ namespace {
 // Errors of a window's circles have parts in common, and the splines therefore larger errors than their
 // information says: three times, in simulated recordings.
 constexpr double kNoiseFactor = 10.0;
+// Delays are told from the trajectory's jerk, whose errors are an accelerometer's own: white, so that they count
+// nearly as they are.
+constexpr double kDelayNoiseFactor = 3.0;
 constexpr double kLeastShare = 1e-12;  // of the strongest direction, for the decomposition only
+
+// What noise has added, times its factor.
+Eigen::MatrixXd feigned(const ProjectedInformation& information) {
+  const QuantityInfo& delay = quantityInfo(kImuQuantities, &ImuState::accelerometer_delay_s);
+  Eigen::VectorXd root = Eigen::VectorXd::Constant(information.total.rows(), std::sqrt(kNoiseFactor));
+  for (std::size_t i = 0; i < information.quantities.size(); ++i)
+    if (information.quantities[i].info == &delay)
+      root[information.first_column[i]] = std::sqrt(kDelayNoiseFactor);
+  return root.asDiagonal() * information.from_noise * root.asDiagonal();
+}
 
 }  // namespace
 
@@ -30,9 +44,8 @@ ProjectedInformation withoutNoise(ProjectedInformation information) {
   const Eigen::MatrixXd from_sigmas = scale.asDiagonal() * whole.vectors * root.asDiagonal();
   const Eigen::MatrixXd to_sigmas =
       root.cwiseInverse().asDiagonal() * whole.vectors.transpose() * inverse_scale.asDiagonal();
-  const SymmetricEigen noise = symmetricEigen(congruence(to_sigmas, information.from_noise));
-  const Eigen::VectorXd kept =
-      (1.0 - kNoiseFactor * noise.values.array()).cwiseMax(0.0).cwiseMin(1.0).sqrt().matrix();
+  const SymmetricEigen noise = symmetricEigen(congruence(to_sigmas, feigned(information)));
+  const Eigen::VectorXd kept = (1.0 - noise.values.array()).cwiseMax(0.0).cwiseMin(1.0).sqrt().matrix();
   const Eigen::MatrixXd keep_in_sigmas =
       productTransposed(product(from_sigmas, noise.vectors) * kept.asDiagonal(), noise.vectors);
   const Eigen::MatrixXd keep = product(keep_in_sigmas, to_sigmas);

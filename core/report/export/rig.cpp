@@ -84,6 +84,15 @@ void remarkDrift(const std::string& name, const State& state, const Uncertainty&
       name, state.time_offset_drift_ppm, state.time_offset_at_s));
 }
 
+void remarkDelay(const std::string& name, const ImuState& state, const ImuUncertainty& sigma,
+                 std::vector<std::string>& remarks) {
+  if (!isThere(state.accelerometer_delay_s, sigma.accelerometer_delay_std_s)) return;
+  remarks.push_back(
+      fmt::format("{}: the accelerometer's samples are {:.3g} ms later than the gyroscope's of the "
+                  "same stamp; take that from their stamps before",
+                  name, 1e3 * state.accelerometer_delay_s));
+}
+
 // Between the first camera and the others.
 double largestOffset_s(const Rig& rig) {
   double largest_s = 0.0;
@@ -100,8 +109,11 @@ std::vector<std::string> timingRemarks(const NamedResult& result) {
   std::vector<std::string> remarks;
   for (std::size_t i = 0; i < result.cameras.size(); ++i)
     remarkDrift(result.cameras[i].name, state.cameras.at(i), elementOrNone(sigmas.cameras, i), remarks);
-  for (std::size_t i = 0; i < result.imus.size(); ++i)
-    remarkDrift(result.imus[i].name, state.imus.at(i), elementOrNone(sigmas.imus, i), remarks);
+  for (std::size_t i = 0; i < result.imus.size(); ++i) {
+    const ImuUncertainty sigma = elementOrNone(sigmas.imus, i);
+    remarkDrift(result.imus[i].name, state.imus.at(i), sigma, remarks);
+    remarkDelay(result.imus[i].name, state.imus[i], sigma, remarks);
+  }
   return remarks;
 }
 

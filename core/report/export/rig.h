@@ -47,7 +47,7 @@ using ExportNotes = std::vector<std::string>;
 // Throws CalibrationError (BadInput) where a camera has no intrinsics or resolution, or a number is none.
 Rig rigOf(const NamedResult& result);
 
-// What no program has a place for: clocks that drift, with more than chance.
+// What no program has a place for: clocks that drift and accelerometers that are late, more than by chance.
 std::vector<std::string> timingRemarks(const NamedResult& result);
 
 // The reference IMU; throws CalibrationError (BadInput) where there is none.

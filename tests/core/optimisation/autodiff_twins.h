@@ -166,19 +166,19 @@ struct AccelerometerTwin {
 
   template <class T>
   bool operator()(T const* const* p, T* residuals) const {
-    const std::size_t last = further ? 15 : 11;
+    const std::size_t last = further ? 16 : 12;
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      const T time_s =
-          further ? samples[i].time_s + p[13][0] + samples[i].by_drift_s * p[14][0] : T(samples[i].time_s);
+      T time_s = samples[i].time_s - p[11][0];
+      if (further) time_s += p[14][0] + samples[i].by_drift_s * p[15][0];
       const T place = (time_s - segment.rotation_start_s) / segment.rotation_spacing_s;
       const TwinRotation<T> rotation = rotationAt(base, p, place, segment.rotation_spacing_s);
       const T position_place = (time_s - segment.position_start_s) / segment.position_spacing_s;
       Vector3<T> in_world =
           accelerationAt(p + 4, position_place, segment.position_spacing_s) - vectorAt(p[8]);
       // The lever arm's own acceleration, in the world: R'' l.
-      if (further) in_world += rotation.second_s2 * vectorAt(p[12]);
+      if (further) in_world += rotation.second_s2 * vectorAt(p[13]);
       Vector3<T> force = rotation.value.transpose() * in_world;
-      if (further) force = matrixOf(turned(base[11], p[11])).transpose() * force;
+      if (further) force = matrixOf(turned(base[12], p[12])).transpose() * force;
       Vector3<T> error = mappingAt(p[10]) * force + vectorAt(p[9]) - samples[i].value.template cast<T>();
       if (drift) error += driftAt(*drift, samples[i].time_s, p[last], p[last + 1]);
       Eigen::Map<Vector3<T>>(residuals + 3 * i) = error / T(sigma);

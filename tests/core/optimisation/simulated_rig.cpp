@@ -179,6 +179,12 @@ CameraData observe(const TrueMotion& motion, const CameraState& camera, const Ci
   return data;
 }
 
+Vector3d forceAt(const TrueMotion& motion, double time_s, const Vector3d& gravity, const Vector3d& lever) {
+  const Vector3d w = motion.angularVelocity(time_s), a = motion.angularAcceleration(time_s);
+  return motion.worldFromImu(time_s).rotation.conjugate() * (motion.acceleration(time_s) - gravity) +
+         a.cross(lever) + w.cross(w.cross(lever));
+}
+
 // Biases start at the state's and walk from there; the state's become their means.
 ImuData measure(const std::string& name, const TrueMotion& motion, ImuState& imu, const Vector3d& gravity,
                 const RigOptions& options, Random& random) {
@@ -191,14 +197,11 @@ ImuData measure(const std::string& name, const TrueMotion& motion, ImuState& imu
   Vector3d gyroscope_sum = Vector3d::Zero(), accelerometer_sum = Vector3d::Zero();
   for (double t = -kMargin_s; t < options.duration_s + kMargin_s; t += 1.0 / options.imu_rate_hz) {
     const double reference_s = referenceTime_s(imu, t);
-    const Vector3d w = motion.angularVelocity(reference_s), a = motion.angularAcceleration(reference_s);
-    const Vector3d force =
-        motion.worldFromImu(reference_s).rotation.conjugate() * (motion.acceleration(reference_s) - gravity) +
-        a.cross(lever) + w.cross(w.cross(lever));
+    const Vector3d force = forceAt(motion, accelerometerTime_s(imu, t), gravity, lever);
     ImuSample sample;
     sample.time_ns = kStart_ns + nanosecondsFrom(t);
     sample.angular_rate_rad_s =
-        imu.gyroscopeMatrix() * (imu_from_reference * w) + gyroscope_bias +
+        imu.gyroscopeMatrix() * (imu_from_reference * motion.angularVelocity(reference_s)) + gyroscope_bias +
         options.imu_noise * data.noise.gyroscope_density * root_rate * random.normal3();
     sample.specific_force_m_s2 =
         imu.accelerometer_mapping * (imu_from_reference * force) + accelerometer_bias +
@@ -258,6 +261,7 @@ SimulatedRig simulateRig(const RigOptions& options) {
       }
     }
     imu.gyroscope_from_accelerometer = quaternionExp(options.gyroscope_turn_rad * Vector3d(0.48, -0.6, 0.64));
+    imu.accelerometer_delay_s = options.accelerometer_delay_s;
     if (i > 0) {
       imu.reference_from_imu = {quaternionExp(Vector3d(0.1, 1.4, -0.3)), {0.06, -0.09, 0.05}};
       imu.time_offset_s = 3.3e-3;
@@ -306,6 +310,7 @@ CalibrationState disturbed(const CalibrationState& truth, unsigned seed, double 
     imu.gyroscope_mapping.setIdentity();
     imu.accelerometer_mapping.setIdentity();
     imu.gyroscope_from_accelerometer.setIdentity();
+    imu.accelerometer_delay_s = 0.0;
     if (i == 0) continue;
     imu.reference_from_imu.rotation = imu.reference_from_imu.rotation * quaternionExp(random.uniform3(0.01));
     imu.reference_from_imu.translation_m += random.uniform3(0.02);
@@ -358,6 +363,7 @@ Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const Calibrati
     append(a.accelerometer_bias_m_s2 - b.accelerometer_bias_m_s2);
     appendUpperTriangle(a.gyroscope_mapping - b.gyroscope_mapping);
     appendUpperTriangle(a.accelerometer_mapping - b.accelerometer_mapping);
+    errors.push_back(a.accelerometer_delay_s - b.accelerometer_delay_s);
     if (options.gyroscope_rotation)
       append(quaternionLog(b.gyroscope_from_accelerometer.conjugate() * a.gyroscope_from_accelerometer));
   }

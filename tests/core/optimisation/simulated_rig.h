@@ -27,6 +27,7 @@ struct RigOptions {
   double gyroscope_walk = 0.0, accelerometer_walk = 0.0;  // of biases, SI, / sqrt(Hz): Wiener processes
   double gyroscope_turn_rad = 0.0;                        // of every gyroscope against its accelerometer
   double time_offset_drift_ppm = 0.0;                     // of all clocks against the reference's
+  double accelerometer_delay_s = 0.0;                     // of every accelerometer against its gyroscope
   BoardState board = {};                                  // against what the input says of it
   // Times the default priors: the board's size and stretch, and gravity's norm, drawn anew for each seed.
   double scale_spread = 0.0;

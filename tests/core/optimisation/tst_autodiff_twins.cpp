@@ -108,7 +108,7 @@ class TestAutodiffTwins : public QObject {
       Blocks blocks = rotationsOf(turns, states);
       states.appendPositions(blocks);
       blocks.insert(blocks.end(),
-                    {{0.3, 9.7, -0.5}, States::numbers(states.vector(0.1)), mappingNumbers(states)});
+                    {{0.3, 9.7, -0.5}, States::numbers(states.vector(0.1)), mappingNumbers(states), {0.0}});
       if (further)
         blocks.insert(blocks.end(),
                       {turnOf(turns.sensor_rad, states), States::numbers(states.vector(0.1)), {0.0}, {0.0}});
@@ -116,6 +116,24 @@ class TestAutodiffTwins : public QObject {
       const auto drift = drifts ? std::optional(DriftTimes{0.99, 0.1}) : std::nullopt;
       compareInertial<AccelerometerCost>(
           blocks, AccelerometerTwin{{}, further, 0.5, segmentTimes(), samplesOf(10.0, states), drift});
+    }
+  }
+
+  void delays_areTheirTwins() {
+    for (const bool further : {false, true}) {
+      States states(12);
+      const Turns turns = {0.3, 0.7};
+      Blocks blocks = rotationsOf(turns, states);
+      states.appendPositions(blocks);
+      blocks.insert(
+          blocks.end(),
+          {{0.3, 9.7, -0.5}, States::numbers(states.vector(0.1)), mappingNumbers(states), {0.0013}});
+      if (further)
+        blocks.insert(
+            blocks.end(),
+            {turnOf(turns.sensor_rad, states), States::numbers(states.vector(0.1)), {0.0017}, {0.4}});
+      compareInertial<AccelerometerCost>(
+          blocks, AccelerometerTwin{{}, further, 0.5, segmentTimes(), samplesOf(10.0, states), std::nullopt});
     }
   }
 
@@ -135,6 +153,7 @@ class TestAutodiffTwins : public QObject {
     accelerometer.insert(accelerometer.end(), {{0.3, 9.7, -0.5},
                                                States::numbers(states.vector(0.1)),
                                                mappingNumbers(states),
+                                               {0.0},
                                                turnOf(turns.sensor_rad, states),
                                                States::numbers(states.vector(0.1)),
                                                {0.0017},

@@ -5,6 +5,7 @@
 #include "tests/support/test_program.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace {
 
@@ -97,6 +98,25 @@ class TestCalibrationProblem : public QObject {
     problem.build(ReleaseStages::Mappings, weights);
     QVERIFY(std::abs(4.0 * costOf(problem, SensorKind::Gyroscope) / gyroscopes - 1.0) < 1e-12);
     QCOMPARE(costOf(problem, SensorKind::Accelerometer), accelerometers);
+  }
+
+  // By more than half a knot: most forces lie in another segment than the rates of the same stamp.
+  void build_putsForcesWhereTheyWereMeasured() {
+    test::RigOptions late = test::shortRecording();
+    late.duration_s = 0.4;
+    late.accelerometer_delay_s = 0.013;
+    const test::SimulatedRig rig = test::simulateRig(late);
+    const OptimisationOptions options;
+    CalibrationProblem problem(rig.input, options, rig.truth);
+    problem.build(ReleaseStages::Mappings, givenWeights(rig.input));
+    const double samples = static_cast<double>(rig.input.imus[0].samples.size());
+    for (const SensorKind kind : {SensorKind::Gyroscope, SensorKind::Accelerometer}) {
+      const double each = costOf(problem, kind) / samples;  // half the square of three residuals
+      QVERIFY2(each > 1.0 && each < 2.0, qPrintable(QString::number(each)));
+    }
+    QCOMPARE(problem.segmentDrift_knots(), 0.0);
+    *blockOf(problem, QuantityOwner::Imu, "accelerometer_delay") -= 0.01;
+    QVERIFY(std::abs(problem.segmentDrift_knots() - 0.5) < 1e-9);
   }
 
   void build_withAHeldAxis_holdsTheGyroscopesTurn() {

@@ -158,7 +158,7 @@ class TestCovariance : public QObject {
     QVERIFY(!report.weakest.empty());
   }
 
-  // The claim of docs/maths.md, 10.1. 40 quantities over 20 seeds: their common RMS is known to about 5 %,
+  // The claim of docs/maths.md, 10.1. 41 quantities over 20 seeds: their common RMS is known to about 5 %,
   // each one's to 16 %.
   void sigmas_areHonest() {
     test::RigOptions options = test::shortRecording();

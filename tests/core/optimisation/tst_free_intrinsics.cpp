@@ -80,7 +80,8 @@ class TestFreeIntrinsics : public QObject {
                                      true_camera.reference_from_camera.rotation) < 5e-5);
     QVERIFY((camera.reference_from_camera.translation_m - true_camera.reference_from_camera.translation_m)
                 .norm() < 3e-4);
-    QVERIFY(std::abs(camera.time_offset_s - true_camera.time_offset_s) < 2e-6);
+    const double offset_s = std::abs(camera.time_offset_s - true_camera.time_offset_s);
+    QVERIFY2(offset_s < 4e-6, qPrintable(text(offset_s)));
     QVERIFY(solution.cameras[0].reprojection_rms_px < 2e-3);
     QCOMPARE(camera.lens.solved->distortion[4], 0.0);
   }
@@ -130,7 +131,9 @@ class TestFreeIntrinsics : public QObject {
 
   void extrinsicSigmas_holdThoseOfTheLens() {
     const CameraIntrinsics truth = trueCamera(CameraModel::PinholeRadtan);
-    test::SimulatedRig rig = test::simulateRig(test::shortRecording());
+    test::RigOptions recording = test::shortRecording();
+    recording.duration_s = 6.0;  // of less, residuals' correlation is hardly known, and sigmas scatter
+    test::SimulatedRig rig = test::simulateRig(recording);
     test::seeThrough(truth, truth, rig);
     const UncertaintyReport free = estimateUncertainty(rig.input, solve(rig, 1), {}, RunContext{}).report;
     OptimisationOptions options;

@@ -70,6 +70,7 @@ class TestInertialCost : public QObject {
     blocks.push_back({0.3, 9.7, -0.5});
     blocks.push_back(States::numbers(states.vector(0.1)));
     blocks.push_back(mappingNumbers(states));
+    blocks.push_back({states.uniform(0.002)});
     if (further) {
       blocks.push_back(States::numbers(quaternionExp(states.vector(1.0))));
       blocks.push_back(States::numbers(states.vector(0.1)));
@@ -104,7 +105,7 @@ class TestInertialCost : public QObject {
       blocks = rotations;
       states.appendPositions(blocks);
       blocks.insert(blocks.end(),
-                    {{0.3, 9.7, -0.5}, States::numbers(states.vector(0.1)), mappingNumbers(states)});
+                    {{0.3, 9.7, -0.5}, States::numbers(states.vector(0.1)), mappingNumbers(states), {0.001}});
       if (further)
         blocks.insert(blocks.end(), {States::numbers(quaternionExp(states.vector(1.0))),
                                      States::numbers(states.vector(0.1)),
@@ -129,6 +130,7 @@ class TestInertialCost : public QObject {
     blocks.push_back({0.0, 0.0, -9.81});
     blocks.push_back({0.0, 0.0, 0.0});
     blocks.push_back({1.0, 0.0, 0.0, 1.0, 0.0, 1.0});
+    blocks.push_back({0.0});
     blocks.push_back({0.0, 0.0, 0.0, 1.0});
     blocks.push_back({lever_m, 0.0, 0.0});
     blocks.push_back({0.0});
@@ -136,6 +138,25 @@ class TestInertialCost : public QObject {
     const Vector3d measured(-rate_rad_s * rate_rad_s * lever_m, 0.0, 9.81);
     const AccelerometerCost cost(ImuRole::Further, 1.0, segmentTimes(), {{1.007, measured}});
     QVERIFY(residualsAt(cost, blocks).norm() < 1e-9);
+  }
+
+  // What an accelerometer with a delay measures at t, one without measures that much before.
+  void accelerometer_thatIsLate_measuresWhatWas() {
+    constexpr double kDelay_s = 0.003;
+    States states(8);
+    Blocks blocks;
+    states.appendRotations(0.05, blocks);
+    states.appendPositions(blocks);
+    blocks.insert(blocks.end(),
+                  {{0.3, 9.7, -0.5}, {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 1.0, 0.0, 1.0}, {kDelay_s}});
+    Blocks prompt = blocks;
+    prompt.back() = {0.0};
+    const auto cost = [](double time_s) {
+      return AccelerometerCost(ImuRole::Reference, 1.0, segmentTimes(), {{time_s, Vector3d::Zero()}});
+    };
+    const Eigen::VectorXd late = residualsAt(cost(1.012), blocks);
+    QVERIFY((late - residualsAt(cost(1.012 - kDelay_s), prompt)).norm() < 1e-9);
+    QVERIFY((late - residualsAt(cost(1.012), prompt)).norm() > 1e-3);
   }
 
   void mapping_roundTrip() {

@@ -42,7 +42,9 @@ class TestCrossValidation : public QObject {
     const CalibrationInput all = input();
     const auto halves = splitIntoHalves(all, run_.result.state, 1.0);
     const std::size_t samples = all.imus[0].samples.size();
-    QCOMPARE(halves[0].imus[0].samples.size() + halves[1].imus[0].samples.size(), samples);
+    // But for those at a border whose force belongs to one half and whose rate to the other.
+    const std::size_t taken = halves[0].imus[0].samples.size() + halves[1].imus[0].samples.size();
+    QVERIFY2(taken <= samples && 1000 * taken > 998 * samples, qPrintable(QString::number(taken)));
     const auto timesOf = [&](const CalibrationInput& half) {
       std::set<std::int64_t> times;
       for (const ImuSample& sample : half.imus[0].samples) times.insert(sample.time_ns);
@@ -115,7 +117,7 @@ class TestCrossValidation : public QObject {
     session.options.optimisation.free_imu_intrinsics = false;
     const CalibrationRun run = calibrate(session, simulated_.pass, {});
     QVERIFY(run.result.state.cameras[0].time_offset_s == found.time_offset_s);
-    QCOMPARE(run.result.uncertainty.given.size(), std::size_t{4});
+    QCOMPARE(run.result.uncertainty.given.size(), std::size_t{5});
     const std::string note = "given, not estimated: left.translation, left.time_offset";
     QVERIFY(std::any_of(run.result.notes.begin(), run.result.notes.end(),
                         [&](const std::string& each) { return each.starts_with(note); }));
@@ -128,7 +130,7 @@ class TestCrossValidation : public QObject {
       ++held;
       QVERIFY2(each.difference == 0.0, each.name.c_str());
     }
-    QVERIFY2(held == 4 + 12, qPrintable(QString::number(held)));
+    QVERIFY2(held == 4 + 12 + 1, qPrintable(QString::number(held)));
     QVERIFY2(validation.rms_sigmas > 0.2 && validation.rms_sigmas < 2.5,
              qPrintable(QString::number(validation.rms_sigmas)));
   }

@@ -56,6 +56,21 @@ class TestExportRefusals : public QObject {
       QVERIFY(each.find("drifts") == std::string::npos);
   }
 
+  void lateAccelerometer_isSaid() {
+    NamedResult result = rig({});
+    CalibrationResult& own = test::ownResult(result);
+    own.state.imus[1].accelerometer_delay_s = 3.25e-3;
+    own.uncertainty.imus.resize(2);
+    own.uncertainty.imus[1].accelerometer_delay_std_s = 1e-4;
+    const ExportedFiles exported = exportTo(result, "kalibr");
+    const QString note = QString::fromStdString(exported.notes.back());
+    QVERIFY2(note.contains("far_imu: the accelerometer's samples are 3.25 ms later"), qPrintable(note));
+    QVERIFY(exported.files.front().content.find("3.25 ms later") != std::string::npos);
+    own.uncertainty.imus[1].accelerometer_delay_std_s = 2e-3;
+    for (const std::string& each : exportTo(result, "kalibr").notes)
+      QVERIFY(each.find("later") == std::string::npos);
+  }
+
   void camerasOnly_isRefusedWhereAnImuIsNeeded_data() {
     QTest::addColumn<QString>("target");
     for (const char* target : {"openvins", "vins-fusion", "basalt", "svo", "ultimate-slam", "esvo2"})

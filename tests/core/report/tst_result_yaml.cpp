@@ -50,6 +50,7 @@ NamedResult sample() {
     imu.gyroscope_mapping(0, 1) = 0.003;
     imu.accelerometer_mapping(2, 2) = 1.01;
     imu.gyroscope_from_accelerometer = quaternionExp({0.01, -0.02, 0.005});
+    imu.accelerometer_delay_s = 0.01 / 3.0;
     result.state.imus.push_back(imu);
     CameraUncertainty sigma;
     sigma.rotation_std_rad.setConstant(1e-4);
@@ -132,6 +133,7 @@ class TestResultYaml : public QObject {
       QVERIFY(c.gyroscope_bias_rad_s == d.gyroscope_bias_rad_s && c.gyroscope_mapping == d.gyroscope_mapping);
       QVERIFY(c.accelerometer_mapping == d.accelerometer_mapping);
       QVERIFY(c.gyroscope_from_accelerometer.coeffs() == d.gyroscope_from_accelerometer.coeffs());
+      QVERIFY(c.accelerometer_delay_s == d.accelerometer_delay_s);
     }
     QVERIFY(std::isnan(read.result->uncertainty.cameras[0].edge_lead_std_px));
     QVERIFY(read.result->uncertainty.correlation(0, 1) == 0.25);

@@ -27,7 +27,8 @@ double rms(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vecto
 class TestSignalPrediction : public QObject {
   Q_OBJECT
 
-  SimulatedRig rig_;  // two IMUs, the second with a lever arm and a clock of its own; no noise
+  // Two IMUs, the second with a lever arm and a clock of its own; accelerometers that are late; no noise.
+  SimulatedRig rig_;
 
  private slots:
   void initTestCase() {
@@ -35,6 +36,7 @@ class TestSignalPrediction : public QObject {
     options.duration_s = 3.0;
     options.imu_noise = 0.0;
     options.second_imu = true;
+    options.accelerometer_delay_s = 0.004;
     rig_ = simulateRig(options);
   }
 

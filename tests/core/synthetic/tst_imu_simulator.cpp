@@ -41,6 +41,17 @@ class TestImuSimulator : public QObject {
                   .norm() < 1e-12);
     }
   }
+  // By three samples: their forces are those of three samples before, their rates are not.
+  void lateAccelerometer_measuresWhatWas() {
+    Scenario scenario = test::wavedScenario();
+    const std::vector<ImuSample> prompt = simulateImu(scenario, 0);
+    scenario.imus.front().accelerometer_delay_s = 3.0 / scenario.imus.front().rate_hz;
+    const std::vector<ImuSample> late = simulateImu(scenario, 0);
+    for (std::size_t k = 3; k < late.size(); k += 50) {
+      QVERIFY((late[k].specific_force_m_s2 - prompt[k - 3].specific_force_m_s2).norm() < 1e-9);
+      QVERIFY(late[k].angular_rate_rad_s == prompt[k].angular_rate_rad_s);
+    }
+  }
   void noise_hasTheStatedDensity() {
     Scenario scenario = test::stillScenario();
     scenario.duration_s = 10.0;

@@ -131,11 +131,13 @@ class TestScenarioYaml : public QObject {
     QCOMPARE(imu["accelerometer"]["mapping"].items()[0].reals(3)[2],
              scenario.imus[0].accelerometer_mapping(0, 2));
     scenario.imus[0].gyroscope_from_accelerometer = quaternionExp({0.0, 0.02, 0.0});
+    scenario.imus[0].accelerometer_delay_s = 0.0025;
     const YamlNode turned = YamlNode::parse(truthYaml(scenario), "truth.yaml");
     const std::vector<double> turn =
         turned["imus"]["left_imu"]["gyroscope"]["gyroscope_from_accelerometer_xyzw"].reals(4);
     QCOMPARE(turn[1], std::sin(0.01));
     QCOMPARE(turn[3], std::cos(0.01));
+    QCOMPARE(turned["imus"]["left_imu"]["accelerometer"]["delay_s"].real(), 0.0025);
     QCOMPARE(truth["gravity_m_s2"].reals(3)[1], scenario.gravity_in_world_m_s2.y());
     QCOMPARE(truth["reference"].text(), std::string("left_imu"));
   }
