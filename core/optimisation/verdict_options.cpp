@@ -42,6 +42,8 @@ constexpr std::tuple kVerdictFields{
           "Share of circles that are left out as contradicting beyond which the result is doubtful."},
     Field{"failed_outliers", &VerdictOptions::failed_outliers, 0.6, within(0.0, 1.0), "",
           "Beyond this there is no result."},
+    Field{"saturated_share", &VerdictOptions::saturated_share, 0.01, within(0.0, 1.0), "",
+          "An IMU that was at a limit for more of its samples is the first reason of a doubtful result."},
     Field{"doubtful_halves_sigmas", &VerdictOptions::doubtful_halves_sigmas, 3.0, within(0.5, 1000.0),
           "sigma", "Halves of the recording that differ by more (RMS) make the result doubtful."},
     Field{"needed_rotation_deg", &VerdictOptions::needed_rotation_deg, 0.1, within(1e-4, 90.0), "deg",

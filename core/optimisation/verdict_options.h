@@ -20,6 +20,7 @@ struct VerdictOptions {
   double failed_imu_misfit;
   double doubtful_outliers;
   double failed_outliers;
+  double saturated_share;
   double doubtful_halves_sigmas;
   double needed_rotation_deg;
   double needed_translation_mm;

@@ -351,6 +351,7 @@ class Calibration {
     addDoubt(uncertainty.wrong_lenses, result);
     addDoubt(clock_doubt_, result);
     judge(solution, uncertainty.turned_gyroscopes);
+    if (result.status == CalibrationStatus::Doubtful) addDoubt(saturationIn(input_, options), result);
     result.state = std::move(solution.state);
     result.uncertainty = std::move(uncertainty.report);
     result.cameras = std::move(solution.cameras);

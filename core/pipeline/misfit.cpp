@@ -1,5 +1,7 @@
 #include "core/pipeline/misfit.h"
 
+#include "core/data/unfit_samples.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,9 +25,10 @@ std::vector<Measure> measuresOf(const CalibrationInput& input, const BatchSoluti
     const double spread = solution.scales.circles[k];
     all.push_back(
         {spread, options.doubtful_circle_misfit, options.failed_circle_misfit,
-         fmt::format("{}: circles lie {:.2g} times as far from where they should as their own sigmas say, "
-                     "so that something of the board or the lens is not as the session says",
-                     name, spread)});
+         fmt::format(
+             "{}: circles lie {:.2g} times as far from where they should as their own sigmas say: the board "
+             "is not flat, or the lens not of the model that the session says",
+             name, spread)});
     const CameraFit& fit = solution.cameras[k];
     const double outliers =
         static_cast<double>(fit.circles_rejected) / std::max(1, fit.circles_rejected + fit.circles_used);
@@ -76,6 +79,21 @@ std::string doubtOfHalves(const CrossValidation& validation, const VerdictOption
       "not "
       "as the session says",
       validation.rms_sigmas, worst->name);
+}
+
+std::string saturationIn(const CalibrationInput& input, const VerdictOptions& options) {
+  std::string words;
+  for (const ImuData& imu : input.imus) {
+    const UnfitSamples unfit = findUnfitSamples(imu.samples);
+    for (std::size_t axis = 0; axis < kImuAxes.size(); ++axis) {
+      const double share = static_cast<double>(unfit.saturated[axis].size()) /
+                           std::max(1.0, static_cast<double>(imu.samples.size()));
+      if (share <= options.saturated_share) continue;
+      words += fmt::format("{}{}: {} is at its limit for {:.0f} % of the samples", words.empty() ? "" : ", ",
+                           imu.name, kImuAxes[axis].name, 100.0 * share);
+    }
+  }
+  return words.empty() ? words : words + ", which were left out: move less fast, or widen the IMU's range";
 }
 
 double totalMisfit(const BatchSolution& solution) {

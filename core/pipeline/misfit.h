@@ -20,6 +20,9 @@ MisfitVerdict judgeMisfit(const CalibrationInput& input, const BatchSolution& so
 // Where the halves of a recording are further apart than their sigmas allow; empty where they are not.
 std::string doubtOfHalves(const CrossValidation& validation, const VerdictOptions& options);
 
+// IMUs that were at a limit for long; empty without any. No doubt of its own, but the cause of most others.
+std::string saturationIn(const CalibrationInput& input, const VerdictOptions& options);
+
 // The misfits of all sensors as one number, 0 where none exceeds what was given: for comparing explanations.
 double totalMisfit(const BatchSolution& solution);
 

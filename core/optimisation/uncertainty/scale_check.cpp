@@ -86,7 +86,7 @@ std::string sizeDoubt(const CalibrationInput& input, const Weighed& excess) {
 
 std::string stretchDoubt(const Weighed& stretch) {
   return fmt::format(
-      "the board is {:.2g} % {} along its rows than along its columns, {:.1f} sigmas beyond what "
+      "the board is stretched: {:.2g} % {} along its rows than along its columns, {:.1f} sigmas beyond what "
       "board.spacing_std allows: measure it in both directions, and see that it lies flat",
       100.0 * std::abs(stretch.found), stretch.found > 0.0 ? "longer" : "shorter",
       std::abs(stretch.sigmas()));

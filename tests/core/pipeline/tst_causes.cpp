@@ -43,6 +43,8 @@ class TestCauses : public QObject {
     row("another IMU", 1, true);
     row("clock step", 50, false);
     row("board spacing", 2, false);
+    row("board stretch", 1, false);
+    row("forces clipped", 9, false);
     row("board spacing", -2.5, false);
     row("gyroscope turned", 1, false);
   }
