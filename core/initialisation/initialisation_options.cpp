@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::tuple kInitialisationFields{
     Field{"knot_spacing_s", &InitialisationOptions::knot_spacing_s, 0.0, within(0.0, 0.1), "s",
-          "Of both splines; 0: as close as the motion asks for, 5 to 100 ms.", Level::Common},
+          "Of both splines; 0: as close as the motion asks for, 2.5 to 100 ms.", Level::Common},
     Field{"time_offset_search_s", &InitialisationOptions::time_offset_search_s, 1.0, within(0.0, 60.0), "s",
           "The camera's time offset is looked for within plus or minus this.", Level::Common},
     Field{

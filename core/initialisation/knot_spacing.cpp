@@ -21,9 +21,10 @@ namespace evical {
 namespace {
 
 // From the closest to the widest.
-constexpr std::array kSpacings_s = {kClosestKnots_s, 0.006, 0.007, 0.008, 0.009, 0.010,         0.012, 0.014,
-                                    0.016,           0.018, 0.020, 0.023, 0.026, 0.030,         0.035, 0.040,
-                                    0.045,           0.050, 0.060, 0.070, 0.085, kWidestKnots_s};
+constexpr std::array kSpacings_s = {kClosestKnots_s, 0.003, 0.0035, 0.004, 0.005,         0.006, 0.007,
+                                    0.008,           0.009, 0.010,  0.012, 0.014,         0.016, 0.018,
+                                    0.020,           0.023, 0.026,  0.030, 0.035,         0.040, 0.045,
+                                    0.050,           0.060, 0.070,  0.085, kWidestKnots_s};
 // A spline with fewer samples to a knot follows their noise.
 constexpr double kLeastSamples_a_knot = 2.5;
 // What splines may miss, of the noise of a sample, and of what one view tells: it repeats with the motion, and

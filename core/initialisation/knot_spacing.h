@@ -17,7 +17,7 @@ namespace evical {
 
 // Where nothing is known of the motion, and for trials.
 inline constexpr double kUsualKnot_s = 0.02;
-inline constexpr double kClosestKnots_s = 0.005, kWidestKnots_s = 0.1;
+inline constexpr double kClosestKnots_s = 0.0025, kWidestKnots_s = 0.1;
 
 // How well one view tells where the camera is: splines must not miss that much either.
 struct ViewPrecision {

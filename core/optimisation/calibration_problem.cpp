@@ -100,7 +100,10 @@ void CalibrationProblem::setManifolds(ProblemBuilder& builder) {
     const bool held =
         (release == QuantityRelease::ImuIntrinsics && builder.stage != ReleaseStages::Mappings) ||
         (release == QuantityRelease::BoardSize && !(last && options_.free_board_size)) ||
-        (quantity.block == &parameters_.moved().board.scale && builder.scaleIsHeld());
+        (quantity.block == &parameters_.moved().board.scale && builder.scaleIsHeld()) ||
+        (quantity.info->owner == QuantityOwner::Imu &&
+         quantity.block == &parameters_.moved().imus[quantity.sensor].accelerometer_delay_s &&
+         builder.delayIsHeld(quantity.sensor));
     if (held) builder.hold(quantity.block);
   }
 }

@@ -16,6 +16,7 @@ struct ModelOptions {
   bool free_board_size;
   CameraIntrinsicsChoice camera_intrinsics;
   bool gyroscope_rotation;
+  double delay_misfit;
   BiasModel bias_model;
   double bias_knot_spacing_s;
   int most_bias_knots;

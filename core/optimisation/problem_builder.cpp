@@ -12,6 +12,10 @@ bool ProblemBuilder::scaleIsHeld() const {
   return !input.imus.empty() && !weights.held_axes[input.reference_imu].accelerometer.empty();
 }
 
+bool ProblemBuilder::delayIsHeld(std::size_t imu) const {
+  return weights.scales.accelerometers[imu] > options.delay_misfit;
+}
+
 bool ProblemBuilder::drifts(const SensorPrior& prior) const {
   const std::optional<KnownNumber>& drift = prior.time_offset_drift;
   if (drift) return options.free_time_offsets && !drift->isGiven();

@@ -40,6 +40,8 @@ struct ProblemBuilder {
   bool turnsGyroscope(std::size_t imu) const;
   // Where hardly anything accelerates along some axis, errors of the circles would pass for a board of another size.
   bool scaleIsHeld() const;
+  // Where splines cannot follow the accelerations, the delay would be the one at which they miss least.
+  bool delayIsHeld(std::size_t imu) const;
   // A clock with this prior. One whose offset is given is the reference's own, as far as anybody knows.
   bool drifts(const SensorPrior& prior) const;
 

@@ -346,8 +346,8 @@ class Calibration {
           "residuals",
           result);
     addDoubt(priors.doubt, result);
+    addDoubt(boardDoubt(uncertainty, solution.state), result);
     addDoubt(uncertainty.stretch_doubt, result);
-    addDoubt(boardDoubt(uncertainty), result);
     addDoubt(uncertainty.wrong_lenses, result);
     addDoubt(clock_doubt_, result);
     judge(solution, uncertainty.turned_gyroscopes);
@@ -363,12 +363,17 @@ class Calibration {
       notes_.insert(notes_.end(), more->begin(), more->end());
   }
 
-  // A board that is far off is told by the first look, which nothing pulls towards what was given; but that look may
-  // have been led astray by what the batch has put right since.
-  std::string boardDoubt(const UncertaintyEstimate& uncertainty) const {
-    const bool free = session_.options.optimisation.free_board_size;
-    return initial_.doubt.empty() || (free && uncertainty.scale_doubt.empty()) ? uncertainty.scale_doubt
-                                                                               : initial_.doubt;
+  // A board that is far off is told by the first look, which nothing pulls towards what was given; but that look is
+  // led astray by a stretch, or by a lens that the batch has put right since.
+  std::string boardDoubt(const UncertaintyEstimate& uncertainty, const CalibrationState& state) const {
+    constexpr double kAnotherLens_px = 1.0;
+    const bool led_astray =
+        !uncertainty.stretch_doubt.empty() ||
+        std::any_of(state.cameras.begin(), state.cameras.end(), [](const CameraState& camera) {
+          const CameraLens& lens = camera.lens;
+          return lens.solved && projectionDifference(*lens.seen_with, *lens.solved).rms_px > kAnotherLens_px;
+        });
+    return initial_.doubt.empty() || led_astray ? uncertainty.scale_doubt : initial_.doubt;
   }
 
   // What explains a misfit comes before the misfit, and a gyroscope that seems turned only where nothing else does:

@@ -60,7 +60,7 @@ class TestCalibrationJob : public QObject {
     QVERIFY(test.run);
     QVERIFY(!test.job.running());
     QCOMPARE(test.inputs, std::size_t{1});
-    QCOMPARE(test.notes.size(), 6);
+    QCOMPARE(test.notes.size(), 7);
     QVERIFY(!test.detections.empty());
     for (std::size_t i = 1; i < test.detections.size(); ++i) {
       QVERIFY(test.detections[i]->at(0).windows.size() > test.detections[i - 1]->at(0).windows.size());

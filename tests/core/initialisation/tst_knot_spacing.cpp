@@ -98,7 +98,7 @@ class TestKnotSpacing : public QObject {
     row("slow", Motion::Slow, 50.0, 100.0);
     row("everyday", Motion::Everyday, 40.0, 85.0);
     row("fast", Motion::Fast, 8.0, 20.0);
-    row("shaky", Motion::Shaky, 5.0, 8.0);
+    row("shaky", Motion::Shaky, 2.4, 8.0);
   }
   void spacing_followsTheMotion() {
     QFETCH(int, motion);
@@ -207,7 +207,7 @@ class TestKnotSpacing : public QObject {
     imu.noise.gyroscope_density *= 10.0;
     imu.noise.accelerometer_density *= 10.0;
     const KnotSpacing found = spacingOf(imu);
-    QVERIFY2(found.spacing_s() < 2.0 * right_s, qPrintable(describe(found)));
+    QVERIFY2(found.spacing_s() < 2.5 * right_s, qPrintable(describe(found)));
   }
 
   void shakyHands_areFollowedByTheBatch() {
@@ -218,7 +218,8 @@ class TestKnotSpacing : public QObject {
     const double fixed = scalesAfterBatch(input, 0.02).accelerometers[0];
     QVERIFY2(fixed > 4.0, qPrintable(QString::number(fixed)));
     const double followed = scalesAfterBatch(input, 0.0).accelerometers[0];
-    QVERIFY2(followed > 0.8 && followed < 1.3, qPrintable(QString::number(followed)));
+    // Knots with 2.5 samples each take 40 % of the noise's variance along.
+    QVERIFY2(followed > 0.7 && followed < 1.3, qPrintable(QString::number(followed)));
   }
 
   // There nothing holds close knots but views: the rest of the recording tells the same as without the gap.
