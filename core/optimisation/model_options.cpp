@@ -39,8 +39,7 @@ constexpr std::tuple kModelFields{
         Level::Common},
     Field{"delay_misfit", &ModelOptions::delay_misfit, 1.3, within(1.0, 1000.0), "",
           "Accelerometers' delays are held where accelerations are further off than this many times their "
-          "noise: "
-          "where splines cannot follow the motion they would choose a delay at which they miss less."},
+          "noise: where splines cannot follow the motion they would choose a delay at which they miss less."},
     Choice{"bias_model", &ModelOptions::bias_model, BiasModel::Constant, std::array{"constant", "linear"},
            "Biases over a recording: constant, or straight lines between knots that walk at random.",
            Level::Common},

@@ -76,10 +76,8 @@ Weighed excessOfBoard(const CalibrationInput& input, const CalibrationState& sta
 std::string sizeDoubt(const CalibrationInput& input, const Weighed& excess) {
   return fmt::format(
       "accelerations make the board {0:.2g} % {1} than board.spacing_m says ({2:.4g} m), or gravity {0:.2g} "
-      "% "
-      "{3} than {4:.4g} m/s^2 ({5:.1f} sigmas): measure the board over as many circles as there are, and "
-      "give "
-      "gravity.latitude_deg",
+      "% {3} than {4:.4g} m/s^2 ({5:.1f} sigmas): measure the board over as many circles as there are, and "
+      "give gravity.latitude_deg",
       100.0 * std::abs(excess.found), excess.found > 0.0 ? "larger" : "smaller", input.board.spacing_m,
       excess.found > 0.0 ? "smaller" : "larger", input.gravity_norm_m_s2, std::abs(excess.sigmas()));
 }

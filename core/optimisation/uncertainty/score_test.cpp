@@ -3,7 +3,6 @@
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/projection_difference.h"
 #include "core/numerics/angles.h"
-#include "core/optimisation/free_intrinsics.h"
 #include "core/optimisation/uncertainty/credible_information.h"
 
 #include <fmt/format.h>

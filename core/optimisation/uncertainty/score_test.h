@@ -19,7 +19,7 @@ OptimisationOptions freeToBeTested(OptimisationOptions options);
 // free all the same.
 struct HeldDoubts {
   std::string gyroscopes;  // turns that are certain and larger than the rotation that is needed
-  std::string lenses;      // that project elsewhere, for certain and by more than lens_error_px
+  std::string lenses;      // that project elsewhere, for certain and by more than wrong_lens_px
 };
 HeldDoubts testHeldValues(const CalibrationInput& input, const CalibrationState& state,
                           const ProjectedInformation& information, const OptimisationOptions& options);
