@@ -1,6 +1,7 @@
 #include "core/synthetic/board_truth.h"
 
 #include "core/geometry/camera_model.h"
+#include "core/synthetic/session_errors.h"
 
 #include <Eigen/LU>
 
@@ -32,10 +33,9 @@ struct Ellipse {
   double largest_radius;
 };
 
-std::optional<Ellipse> imageOfCircle(const Eigen::Matrix3d& h, const CircleBoard& board, int circle) {
-  const Eigen::Vector2d c = board.centre_m(circle);
-  const double r2 = board.radius_m * board.radius_m;
-  if (!((h * Eigen::Vector3d(c.x(), c.y(), 1.0)).z() > board.radius_m)) return std::nullopt;
+std::optional<Ellipse> imageOfCircle(const Eigen::Matrix3d& h, const Eigen::Vector2d& c, double radius_m) {
+  const double r2 = radius_m * radius_m;
+  if (!((h * Eigen::Vector3d(c.x(), c.y(), 1.0)).z() > radius_m)) return std::nullopt;
   Eigen::Matrix3d dual;
   dual << c.x() * c.x() - r2, c.x() * c.y(), c.x(), c.x() * c.y(), c.y() * c.y() - r2, c.y(), c.x(), c.y(),
       1.0;
@@ -69,9 +69,11 @@ std::vector<TrueCircle> trueBoardView(const SinusoidMotion& motion, const Scenar
                         after = homographyAt(time_s + kStep_s);
   std::vector<TrueCircle> circles;
   for (int i = 0; i < scenario.board.circleCount(); ++i) {
-    const std::optional<Ellipse> ellipse = imageOfCircle(now, scenario.board, i);
-    const std::optional<Ellipse> earlier = imageOfCircle(before, scenario.board, i);
-    const std::optional<Ellipse> later = imageOfCircle(after, scenario.board, i);
+    const Eigen::Vector2d on_board_m = trueCentre_m(scenario, i);
+    const auto imageIn = [&](const Eigen::Matrix3d& h) {
+      return imageOfCircle(h, on_board_m, scenario.board.radius_m);
+    };
+    const std::optional<Ellipse> ellipse = imageIn(now), earlier = imageIn(before), later = imageIn(after);
     if (!ellipse || !earlier || !later) continue;
     circles.push_back({i, ellipse->centre, (later->centre - earlier->centre) / (2.0 * kStep_s),
                        insideImage(*ellipse, camera.intrinsics)});

@@ -1,6 +1,7 @@
 #include "core/synthetic/event_simulator.h"
 
 #include "core/base/time.h"
+#include "core/synthetic/event_readout.h"
 #include "core/synthetic/pixel_array.h"
 #include "core/synthetic/random.h"
 #include "core/synthetic/sinusoid_motion.h"
@@ -79,9 +80,9 @@ void addNoise(const Scenario& scenario, std::size_t index, std::uint64_t packet,
 class PacketSorter {
  public:
   explicit PacketSorter(const Scenario& scenario, std::size_t camera)
-      : scenario_(scenario), camera_(camera) {}
+      : scenario_(scenario), camera_(camera), readout_(scenario.cameras[camera].pixel) {}
 
-  // All events of the packet; those returned are earlier than all that are still to come.
+  // All events of the packet; those returned are not later than all that are still to come.
   EventSpan sorted(const std::vector<std::vector<Event>>& found, std::uint64_t packet, double end_s) {
     events_.swap(waiting_);
     const std::size_t old = events_.size();
@@ -94,9 +95,14 @@ class PacketSorter {
     const auto rest = std::lower_bound(events_.begin(), events_.end(), end_ns,
                                        [](const Event& event, std::int64_t t) { return event.time_ns < t; });
     waiting_.assign(rest, events_.end());
-    return {events_.begin(), rest};
+    events_.erase(rest, events_.end());
+    readout_.pass(events_);
+    return events_;
   }
-  EventSpan rest() const { return waiting_; }
+  EventSpan rest() {
+    readout_.pass(waiting_);
+    return waiting_;
+  }
 
  private:
   // Late by the absolute value of a normal variable.
@@ -111,6 +117,7 @@ class PacketSorter {
 
   const Scenario& scenario_;
   std::size_t camera_;
+  EventReadout readout_;
   std::vector<Event> events_, waiting_;
 };
 
@@ -141,7 +148,7 @@ void simulateEvents(const Scenario& scenario, std::size_t camera, const EventSin
     if (const EventSpan events = sorter.sorted(found, packet, end_s); !events.empty()) sink(events);
     context.progress.stageProgress(static_cast<double>(k + 1) / packets);
   }
-  if (!sorter.rest().empty()) sink(sorter.rest());
+  if (const EventSpan rest = sorter.rest(); !rest.empty()) sink(rest);
 }
 
 }  // namespace evical

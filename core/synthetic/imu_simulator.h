@@ -15,7 +15,8 @@ struct SimulatedBiases {
 // Stamps on the IMU's own clock, nanoseconds in the scenario's epoch; SI units.
 std::vector<ImuSample> simulateImu(const Scenario& scenario, std::size_t imu);
 
-// Means of the biases over all samples: they walk from where the scenario has them.
+// Means of the biases over all samples: they walk from where the scenario has them, and a gyroscope that feels
+// forces shows their mean.
 SimulatedBiases meanBiases(const Scenario& scenario, std::size_t imu);
 
 }  // namespace evical

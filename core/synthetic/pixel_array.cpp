@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace evical {
 namespace {
@@ -26,6 +27,8 @@ PixelArray::PixelArray(const Scenario& scenario, std::size_t camera)
       model_(scenario.cameras[camera].pixel),
       renderer_(scenario, camera),
       width_px_(scenario.cameras[camera].intrinsics.resolution_px.width_px),
+      rests_(scenario.scene.lamp_flicker <= 0.0 && model_.leak_rate_hz <= 0.0),
+      lamp_is_weak_(4.0 * scenario.scene.lamp_flicker < std::min(model_.threshold_on, model_.threshold_off)),
       pixels_(static_cast<std::size_t>(scenario.cameras[camera].intrinsics.resolution_px.pixelCount())),
       settled_(static_cast<std::size_t>(renderer_.tileColumns() * renderer_.tileRows()), kMoving) {
   // Log intensity is taken as linear within a step, which must be short against the blur.
@@ -37,9 +40,25 @@ PixelArray::PixelArray(const Scenario& scenario, std::size_t camera)
   const auto factor = [&] {
     return std::max(1.0 + model_.threshold_mismatch * random.normal(), kLeastFactor);
   };
+  findOwnLight();
   for (Pixel& pixel : pixels_) {
     pixel.threshold_on = static_cast<float>(model_.threshold_on * factor());
     pixel.threshold_off = static_cast<float>(model_.threshold_off * factor());
+  }
+}
+
+// Log of the light against that halfway between ink and paper, which corners have less of.
+void PixelArray::findOwnLight() {
+  if (model_.low_pass_light_power == 0.0 && model_.low_pass_polarity == 0.0) return;
+  const Resolution& size = scenario_.cameras[camera_].intrinsics.resolution_px;
+  const Eigen::Vector2d half(0.5 * size.width_px, 0.5 * size.height_px);
+  const SceneModel& scene = scenario_.scene;
+  const double middle = 0.5 * std::log(scene.bright_reflectance * scene.dark_reflectance);
+  for (int y = 0; y < size.height_px; ++y) {
+    for (int x = 0; x < size.width_px; ++x) {
+      const double corner = (Eigen::Vector2d(x, y) - half).squaredNorm() / half.squaredNorm();
+      own_light_.push_back(static_cast<float>(std::log(1.0 - model_.vignetting * corner) - middle));
+    }
   }
 }
 
@@ -66,10 +85,49 @@ void PixelArray::reset(const RigidTransform& world_from_camera) {
   std::fill(settled_.begin(), settled_.end(), kMoving);
 }
 
+PixelArray::Response PixelArray::responseWith(double constant_s, double length_s) const {
+  if (constant_s <= 0.0) return {0.0f, 0.0f, 0.0};
+  return {static_cast<float>(std::exp(-length_s / constant_s)), static_cast<float>(constant_s / length_s),
+          constant_s};
+}
+
 PixelArray::Step PixelArray::stepBetween(double begin_s, double end_s) const {
-  const double dt = end_s - begin_s, tau = model_.low_pass_s;
-  if (tau <= 0.0) return {begin_s, end_s, 0.0f, 0.0f};
-  return {begin_s, end_s, static_cast<float>(std::exp(-dt / tau)), static_cast<float>(tau / dt)};
+  const SceneModel& scene = scenario_.scene;
+  const double phase = 2.0 * std::numbers::pi * scene.lamp_flicker_hz * end_s;
+  return {begin_s, end_s, responseWith(model_.low_pass_s, end_s - begin_s),
+          static_cast<float>(std::log1p(scene.lamp_flicker * std::sin(phase))),
+          static_cast<float>(model_.leak_rate_hz * (end_s - begin_s))};
+}
+
+// More light, a faster pixel; darkening is slower than brightening.
+PixelArray::Response PixelArray::responseOf(const Step& step, float input, int x, int y,
+                                            const Pixel& pixel) const {
+  if (own_light_.empty() || model_.low_pass_s <= 0.0) return step.response;
+  const float light = 0.5f * (input + pixel.input) + own_light_[static_cast<std::size_t>(y * width_px_ + x)];
+  const auto polarity = static_cast<float>(model_.low_pass_polarity), usual = step.response.lag;
+  const float lag = usual * (input > pixel.level ? 1.0f - polarity : 1.0f + polarity) *
+                    std::exp(-static_cast<float>(model_.low_pass_light_power) * light);
+  return {std::exp(-1.0f / lag), lag, lag * (step.end_s - step.begin_s)};
+}
+
+// Drawn anew after each event.
+float PixelArray::thresholdNow(const Pixel& pixel, bool on, int x, int y) const {
+  const float mean = on ? pixel.threshold_on : pixel.threshold_off;
+  if (model_.threshold_noise <= 0.0) return mean;
+  constexpr std::uint64_t kStream = 0x150u;
+  constexpr double kLeastFactor = 0.3;
+  const auto place = static_cast<std::uint64_t>(y * width_px_ + x);
+  Random random(scenario_.seed, kStream + 2 * camera_ + (on ? 1 : 0), (place << 32) + pixel.event_count);
+  return mean * static_cast<float>(std::max(1.0 + model_.threshold_noise * random.normal(), kLeastFactor));
+}
+
+// So many that the lamp's light is nearly linear within one.
+int PixelArray::leastSteps(double length_s) const {
+  constexpr double kStepsPerPeriod = 8.0;
+  int steps = 2;
+  if (scenario_.scene.lamp_flicker > 0.0)
+    while (steps < kStepsPerPeriod * scenario_.scene.lamp_flicker_hz * length_s) steps *= 2;
+  return steps;
 }
 
 void PixelArray::begin(double begin_s, double end_s,
@@ -89,7 +147,7 @@ void PixelArray::begin(double begin_s, double end_s,
       travel_px = std::max(travel_px, view.travel_px);
     }
   }
-  int steps = 2;
+  int steps = leastSteps(end_s - begin_s);
   while (steps < kMostSteps && static_cast<float>(steps) * step_travel_px_ < travel_px) steps *= 2;
   instants_.clear();
   for (int k = 0; k <= steps; ++k)
@@ -106,9 +164,9 @@ void PixelArray::runTileRow(int tile_row, Scratch& scratch, std::vector<Event>& 
     renderer_.look(tile, ends, scratch.view);
     const bool constant = scratch.view.constant;
     if (constant && settled == static_cast<char>(scratch.view.content)) continue;
-    int steps = 2;
+    int steps = leastSteps(end_s_ - begin_s_);
     while (steps < all && static_cast<float>(steps) * step_travel_px_ < scratch.view.travel_px) steps *= 2;
-    if (constant) steps = 1;
+    if (constant && lamp_is_weak_) steps = 1;
     scratch.input.resize(static_cast<std::size_t>(tile.pixelCount()));
     for (int k = 1; k <= steps; ++k) {
       const double length_s = end_s_ - begin_s_;
@@ -119,11 +177,11 @@ void PixelArray::runTileRow(int tile_row, Scratch& scratch, std::vector<Event>& 
       for (int y = tile.y_px; y < tile.y_px + tile.height_px; ++y) {
         Pixel* pixel = &at(tile.x_px, y);
         for (int x = tile.x_px; x < tile.x_px + tile.width_px; ++x)
-          advance(step, *input++, x, y, *pixel++, events);
+          advance(step, *input++ + step.lamp, x, y, *pixel++, events);
       }
     }
     constexpr float kSettled = 1e-4f;
-    settled = constant ? static_cast<char>(scratch.view.content) : kMoving;
+    settled = constant && rests_ ? static_cast<char>(scratch.view.content) : kMoving;
     for (int k = 0; settled != kMoving && k < tile.pixelCount(); ++k) {
       const Pixel& pixel = at(tile.x_px + k % tile.width_px, tile.y_px + k / tile.width_px);
       if (std::abs(pixel.level - pixel.input) > kSettled) settled = kMoving;
@@ -135,15 +193,19 @@ void PixelArray::runTileRow(int tile_row, Scratch& scratch, std::vector<Event>& 
 // the step; crossings are interpolated.
 void PixelArray::advance(const Step& step, float input, int x, int y, Pixel& pixel,
                          std::vector<Event>& events) const {
-  const float behind = (input - pixel.input) * step.lag;
+  const Response response = responseOf(step, input, x, y, pixel);
+  const float behind = (input - pixel.input) * response.lag;
   const float before = pixel.level, transient = before - pixel.input + behind, earlier_input = pixel.input;
-  const float after = input - behind + transient * step.decay;
+  const float after = input - behind + transient * response.decay;
   pixel.input = input;
   pixel.level = after;
-  if (after < pixel.reference + pixel.threshold_on && after > pixel.reference - pixel.threshold_off) return;
+  pixel.reference -= step.leak * pixel.threshold_on;
+  if (after < pixel.reference + thresholdNow(pixel, true, x, y) &&
+      after > pixel.reference - thresholdNow(pixel, false, x, y))
+    return;
   // Steps are long against the filter: its answer bends within one, and a straight line would stamp events
   // too late where slopes grow and too early where they fall.
-  const double bend_s = kSettlingTimes * model_.low_pass_s, length_s = step.end_s - step.begin_s;
+  const double bend_s = kSettlingTimes * response.constant_s, length_s = step.end_s - step.begin_s;
   if (bend_s <= 0.0 || 2.0 * bend_s > length_s) {
     emitCrossings(step, before, after, x, y, pixel, events);
     return;
@@ -151,8 +213,8 @@ void PixelArray::advance(const Step& step, float input, int x, int y, Pixel& pix
   const double part = bend_s / length_s;
   const double middle =
       earlier_input + part * (input - earlier_input) - behind + transient * std::exp(-kSettlingTimes);
-  const Step first{step.begin_s, step.begin_s + bend_s, 0.0f, 0.0f},
-      second{step.begin_s + bend_s, step.end_s, 0.0f, 0.0f};
+  Step first = step, second = step;
+  first.end_s = second.begin_s = step.begin_s + bend_s;
   emitCrossings(first, before, middle, x, y, pixel, events);
   emitCrossings(second, middle, after, x, y, pixel, events);
 }
@@ -163,7 +225,8 @@ void PixelArray::emitCrossings(const Step& step, double before, double after, in
   double level = before, time_s = step.begin_s;
   for (;;) {
     const bool on = after > pixel.reference;
-    const double crossing = on ? pixel.reference + pixel.threshold_on : pixel.reference - pixel.threshold_off;
+    const float threshold = thresholdNow(pixel, on, x, y);
+    const double crossing = on ? pixel.reference + threshold : pixel.reference - threshold;
     if (on ? after < crossing : after > crossing) return;
     double crossing_s = on == (level >= crossing) ? time_s : step.begin_s + (crossing - before) / slope;
     crossing_s = std::clamp(crossing_s, time_s, step.end_s);
@@ -182,6 +245,7 @@ void PixelArray::emitCrossings(const Step& step, double before, double after, in
     }
     pixel.reference = static_cast<float>(crossing);
     pixel.last_event_s = crossing_s;
+    ++pixel.event_count;
     level = crossing;
     time_s = crossing_s;
     events.push_back({pixelStamp_ns(scenario_, camera_, crossing_s), static_cast<std::uint16_t>(x),

@@ -4,6 +4,7 @@
 #include "core/data/event.h"
 #include "core/synthetic/scene_renderer.h"
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -39,17 +40,29 @@ class PixelArray {
     float input = 0.0f;      // log intensity at the end of the last step
     float reference = 0.0f;  // level at the last event
     float threshold_on = 0.0f, threshold_off = 0.0f;
+    std::uint32_t event_count = 0;
     double last_event_s = -1.0;
+  };
+  // Of the low-pass filter over a step.
+  struct Response {
+    float decay, lag;  // exp(-dt / tau), tau / dt
+    double constant_s;
   };
   struct Step {
     double begin_s, end_s;
-    float decay, lag;  // exp(-dt / tau), tau / dt
+    Response response;  // of a pixel at the light halfway
+    float lamp, leak;   // log of the lamp's light at the step's end, part of a threshold that leaks away
   };
 
   void advance(const Step& step, float input, int x, int y, Pixel& pixel, std::vector<Event>& events) const;
   void emitCrossings(const Step& step, double before, double after, int x, int y, Pixel& pixel,
                      std::vector<Event>& events) const;
+  void findOwnLight();
+  int leastSteps(double length_s) const;
   Step stepBetween(double begin_s, double end_s) const;
+  Response responseWith(double constant_s, double length_s) const;
+  Response responseOf(const Step& step, float input, int x, int y, const Pixel& pixel) const;
+  float thresholdNow(const Pixel& pixel, bool on, int x, int y) const;
   Pixel& at(int x, int y) { return pixels_[static_cast<std::size_t>(y * width_px_ + x)]; }
 
   const Scenario& scenario_;
@@ -58,6 +71,9 @@ class PixelArray {
   SceneRenderer renderer_;
   int width_px_;
   float step_travel_px_;
+  // Whether pixels may be left alone where nothing moves, and whether the lamp alone makes them fire.
+  bool rests_, lamp_is_weak_;
+  std::vector<float> own_light_;  // log, added to what a pixel sees; empty where all answer alike
   std::vector<Pixel> pixels_;
   std::vector<char> settled_;  // per tile: the content that all pixels have come to rest on
 

@@ -29,6 +29,17 @@ struct EventPixelModel {
   double low_pass_s = 3e-4;     // time constant of the photoreceptor
   double stamp_jitter_s = 0.0;  // stamps are late by the absolute value of a normal variable with this sigma
 
+  // What else real pixels do; all off by default. low_pass_s is that at the light halfway between ink and paper:
+  // it goes with a power of the light, and brightening is faster than it by this share, darkening slower.
+  double low_pass_light_power = 0.0;  // 1: twice the light, half the time
+  double low_pass_polarity = 0.0;
+  double vignetting = 0.0;       // share of the light that the image's corners lack: they are slower
+  double threshold_noise = 0.0;  // sigma from event to event, relative
+  double leak_rate_hz = 0.0;     // of brightening events where nothing changes
+  // Of the arbiter: events wait for their turn, and are stamped at it; those that would wait longer are lost.
+  double readout_rate_hz = 0.0;  // 0: without limit
+  double longest_wait_s = 1e-3;
+
   // By how much an event's stamp is late for a slow edge: latency, the low-pass filter's group
   // delay, and the jitter's mean.
   double delay_s() const {
@@ -46,6 +57,26 @@ struct SimulatedCamera {
   EventPixelModel pixel;
 };
 
+// What else is wrong with an IMU, its clock and its messages; all off by default.
+struct ImuFaults {
+  double low_pass_hz = 0.0;  // of a first-order filter in gyroscope and accelerometer; without its delay
+  double gyroscope_range_rad_s = 0.0, accelerometer_range_m_s2 = 0.0;  // limits of each axis
+  double gyroscope_step_rad_s = 0.0, accelerometer_step_m_s2 = 0.0;    // what samples are rounded to
+  double g_sensitivity_rad_s_per_m_s2 = 0.0;  // rate that each axis shows for its own specific force
+  // Noise that lasts: its sigma, over this time.
+  double gyroscope_wander_rad_s = 0.0, accelerometer_wander_m_s2 = 0.0, wander_time_s = 0.01;
+  int spikes = 0;  // samples that are 150 m/s^2 and 30 rad/s off
+
+  double clock_drift_ppm = 0.0;  // its stamps run fast, about the recording's middle
+  double clock_step_s = 0.0;     // that its stamps make after 60 % of the recording
+  double stamp_jitter_s = 0.0;   // sigma
+  int batch = 1;                 // so many samples are stamped as if the last one's time were all of theirs
+  double lost_share = 0.0;       // of samples, one by one
+  int lost_packets = 0;          // of 50 ms
+
+  bool operator==(const ImuFaults&) const = default;
+};
+
 // What is true of an IMU, and how it measures. Biases are those at the start where they walk.
 struct SimulatedImu : ImuState {
   std::string name = "imu";
@@ -55,6 +86,17 @@ struct SimulatedImu : ImuState {
   double accelerometer_density = 1.86e-3;  // m/s^2/sqrt(Hz)
   double gyroscope_walk = 0.0;             // rad/s^2/sqrt(Hz)
   double accelerometer_walk = 0.0;         // m/s^3/sqrt(Hz)
+  ImuFaults faults;
+};
+
+// What hands add to a motion; all off by default. Stops come every so often and take so long, speeding down
+// and up within a quarter of a second; tremor goes on during them.
+struct HandModel {
+  double tremor_rad = 0.0, tremor_m = 0.0;  // sigmas of all quantities, at 8 to 12 Hz
+  double jerks_per_s = 0.0;                 // bumps of some 0.1 s at random moments
+  double jerk_rad = 0.0;                    // how far they turn it
+  double stop_every_s = 0.0, stop_s = 1.0;
+  double walking_m = 0.0;  // up and down at 1.9 Hz, and half as much to the sides at half of that
 };
 
 // The first camera looks at a point that wanders around the board's middle, from a distance and along a
@@ -75,6 +117,7 @@ struct MotionModel {
   int sinusoids = 3;
   double image_speed_px_s =
       70.0;  // RMS over circles and time: frequencies are scaled to reach it; 0 keeps them
+  HandModel hand = {};
 };
 
 struct SceneModel {
@@ -84,6 +127,17 @@ struct SceneModel {
   double clutter_distance_m = 0.3;    // behind the board
   double clutter_object_share = 0.5;  // of the variance: flat objects with outlines; the rest is clouds
   double clutter_detail_px = 2.0;     // smallest structure, at the mean distance
+  double lamp_flicker = 0.0;          // amplitude of the light's, relative
+  double lamp_flicker_hz = 100.0;
+};
+
+// What the session says wrongly, relative to the truth.
+struct SessionErrors {
+  double spacing = 0.0, focal_length = 0.0;  // 0.01: 1 % too large
+  double principal_point_px = 0.0;           // along x
+  double imu_noise_factor = 1.0;             // of both densities
+
+  bool operator==(const SessionErrors&) const = default;
 };
 
 enum class SimulatedFormat { Bag, Text };
@@ -94,6 +148,7 @@ struct Scenario {
   double duration_s = 30.0;
   std::int64_t start_ns = 1'700'000'000'000'000'000;
   CircleBoard board;
+  double board_stretch = 0.0;  // of the real one: 0.01 makes its columns 1 % longer than `board` says
   SceneModel scene;
   MotionModel motion;
   Eigen::Vector3d gravity_in_world_m_s2 = {0.0, 9.81, 0.0};  // the board hangs upright: y points down
@@ -101,6 +156,7 @@ struct Scenario {
   std::vector<SimulatedImu> imus;  // the first is the reference
   SimulatedFormat format = SimulatedFormat::Bag;
   bool intrinsics_in_session = true;
+  SessionErrors session_errors;
 };
 
 }  // namespace evical

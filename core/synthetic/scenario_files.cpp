@@ -3,6 +3,7 @@
 #include "core/data/quantity_yaml.h"
 #include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "core/synthetic/session_errors.h"
 
 #include <fmt/format.h>
 
@@ -26,13 +27,30 @@ std::string transformText(const char* key, const RigidTransform& transform) {
                      vectorText(transform.rotation.coeffs()), vectorText(transform.translation_m));
 }
 
-std::string cameraTruth(const SimulatedCamera& camera) {
+// Where the reference IMU's clock runs fast, a camera's offset grows.
+std::string driftTruth(const Scenario& scenario, const SimulatedCamera& camera) {
+  const double drift_ppm = scenario.imus.empty() ? 0.0 : scenario.imus.front().faults.clock_drift_ppm;
+  if (drift_ppm == 0.0) return {};
+  return fmt::format("    time_offset_drift_ppm: {}\n    time_offset_at_s: {}\n", drift_ppm,
+                     0.5 * scenario.duration_s - camera.time_offset_s);
+}
+
+std::string cameraTruth(const Scenario& scenario, const SimulatedCamera& camera) {
   return fmt::format("  {}:\n{}", yamlText(camera.name),
                      transformText("reference_from_camera", camera.imu_from_camera)) +
          fmt::format("    time_offset_s: {}\n    clock_offset_s: {}\n    photoreceptor_delay_s: {}\n",
                      camera.time_offset_s - camera.pixel.delay_s(), camera.time_offset_s,
                      camera.pixel.delay_s()) +
-         "    intrinsics:\n" + intrinsicsYaml(camera.intrinsics, kSensorIndent);
+         driftTruth(scenario, camera) + "    intrinsics:\n" +
+         intrinsicsYaml(camera.intrinsics, kSensorIndent);
+}
+
+// Against what the session says of it (BoardState).
+std::string boardTruth(const Scenario& scenario) {
+  const double longer = scenario.board_stretch, said = 1.0 + scenario.session_errors.spacing;
+  if (longer == 0.0 && said == 1.0) return {};
+  return fmt::format("board:\n  scale: {}\n  stretch: {}\n", (1.0 + 0.5 * longer) / said,
+                     -longer / (1.0 + 0.5 * longer));
 }
 
 // Pose, clock and delay against another camera's.
@@ -72,14 +90,17 @@ std::string truthYaml(const Scenario& scenario) {
   std::string text = fmt::format("evical_truth: 1\nscenario: {}\nseed: {}\nreference: {}\ncameras:\n",
                                  yamlText(scenario.name), scenario.seed, yamlText(reference));
   for (const SimulatedCamera& camera : scenario.cameras)
-    text += cameraTruth(scenario.imus.empty() ? relativeTo(scenario.cameras.front(), camera) : camera);
+    text +=
+        cameraTruth(scenario, scenario.imus.empty() ? relativeTo(scenario.cameras.front(), camera) : camera);
+  text += boardTruth(scenario);
   if (scenario.imus.empty()) return text;
   text += "imus:\n";
   for (std::size_t i = 0; i < scenario.imus.size(); ++i) text += imuTruth(scenario, i);
   return text + fmt::format("gravity_m_s2: {}\n", vectorText(scenario.gravity_in_world_m_s2));
 }
 
-std::string sessionYaml(const Scenario& scenario, const std::string& recording_file) {
+std::string sessionYaml(const Scenario& truth, const std::string& recording_file) {
+  const Scenario scenario = asSessionSays(truth);
   std::string text = fmt::format("evical_session: 1\nrecording: {}\n{}cameras:\n", yamlText(recording_file),
                                  boardSession(scenario.board));
   for (const SimulatedCamera& camera : scenario.cameras) {

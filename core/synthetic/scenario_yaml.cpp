@@ -66,19 +66,22 @@ void getMapping(const YamlNode& map, const char* key, Eigen::Matrix3d& value) {
                       fmt::format("No entry may differ by more than {}", kLargest));
 }
 
-void readBoard(const YamlNode& map, CircleBoard& board) {
-  map.allowOnly({"type", "circles", "rows", "cols", "spacing_m", "radius_m"});
+void readBoard(const YamlNode& map, Scenario& scenario) {
+  CircleBoard& board = scenario.board;
+  map.allowOnly({"type", "circles", "rows", "cols", "spacing_m", "radius_m", "stretch"});
   get(map, "type", board.type, {"asymmetric_circles", "symmetric_circles"});
   get(map, "circles", board.circles, {"dark", "bright"});
   get(map, "rows", board.rows, 2, 100);
   get(map, "cols", board.cols, 2, 100);
   get(map, "spacing_m", board.spacing_m, 1e-4, 10.0, "m");
   get(map, "radius_m", board.radius_m, 1e-5, 10.0, "m");
+  get(map, "stretch", scenario.board_stretch, -0.1, 0.1, "");
 }
 
 void readScene(const YamlNode& map, SceneModel& scene) {
   map.allowOnly({"bright_reflectance", "dark_reflectance", "margin_m", "clutter_contrast",
-                 "clutter_object_share", "clutter_distance_m", "clutter_detail_px"});
+                 "clutter_object_share", "clutter_distance_m", "clutter_detail_px", "lamp_flicker",
+                 "lamp_flicker_hz"});
   get(map, "bright_reflectance", scene.bright_reflectance, 1e-3, 1.0, "");
   get(map, "dark_reflectance", scene.dark_reflectance, 1e-3, 1.0, "");
   get(map, "margin_m", scene.margin_m, 0.0, 10.0, "m");
@@ -86,14 +89,34 @@ void readScene(const YamlNode& map, SceneModel& scene) {
   get(map, "clutter_object_share", scene.clutter_object_share, 0.0, 1.0, "");
   get(map, "clutter_distance_m", scene.clutter_distance_m, 0.0, 100.0, "m");
   get(map, "clutter_detail_px", scene.clutter_detail_px, 0.5, 100.0, "px");
+  get(map, "lamp_flicker", scene.lamp_flicker, 0.0, 0.9, "");
+  get(map, "lamp_flicker_hz", scene.lamp_flicker_hz, 1.0, 1e4, "Hz");
   if (scene.dark_reflectance >= scene.bright_reflectance)
     throw map.error("dark_reflectance must be less than bright_reflectance");
+}
+
+void readHand(const YamlNode& map, HandModel& hand) {
+  map.allowOnly({"tremor_deg", "tremor_m", "jerks_per_s", "jerk_deg", "stop_every_s", "stop_s", "walking_m"});
+  double tremor_deg = hand.tremor_rad / kRadPerDeg, jerk_deg = hand.jerk_rad / kRadPerDeg;
+  get(map, "tremor_deg", tremor_deg, 0.0, 10.0, "deg");
+  get(map, "tremor_m", hand.tremor_m, 0.0, 0.1, "m");
+  get(map, "jerks_per_s", hand.jerks_per_s, 0.0, 10.0, "1/s");
+  get(map, "jerk_deg", jerk_deg, 0.0, 30.0, "deg");
+  get(map, "stop_every_s", hand.stop_every_s, 0.0, 1000.0, "s");
+  get(map, "stop_s", hand.stop_s, 0.0, 100.0, "s");
+  get(map, "walking_m", hand.walking_m, 0.0, 0.2, "m");
+  hand.tremor_rad = tremor_deg * kRadPerDeg;
+  hand.jerk_rad = jerk_deg * kRadPerDeg;
+  constexpr double kRamps_s = 0.5;
+  if (hand.stop_every_s > 0.0 && hand.stop_s + kRamps_s > hand.stop_every_s)
+    throw map.error("stops would follow each other without an end",
+                    "Make stop_every_s at least stop_s and half a second");
 }
 
 void readMotion(const YamlNode& map, MotionModel& motion) {
   map.allowOnly({"distance_m", "distance_amplitude_m", "angle_amplitude_deg", "target_amplitude_m",
                  "roll_deg", "lowest_frequency_hz", "highest_frequency_hz", "sinusoids", "image_speed_px_s",
-                 "turn_deg", "turn_amplitude_deg", "turn_period_s"});
+                 "turn_deg", "turn_amplitude_deg", "turn_period_s", "hand"});
   double roll_deg = motion.roll_rad / kRadPerDeg, turn_deg = motion.turn_rad / kRadPerDeg,
          turn_amplitude_deg = motion.turn_amplitude_rad / kRadPerDeg;
   get(map, "distance_m", motion.distance_m, 0.01, 100.0, "m");
@@ -108,6 +131,7 @@ void readMotion(const YamlNode& map, MotionModel& motion) {
   get(map, "turn_deg", turn_deg, -180.0, 180.0, "deg");
   get(map, "turn_amplitude_deg", turn_amplitude_deg, 0.0, 180.0, "deg");
   get(map, "turn_period_s", motion.turn_period_s, 0.01, 1000.0, "s");
+  if (const auto node = map.find("hand")) readHand(*node, motion.hand);
   motion.roll_rad = roll_deg * kRadPerDeg;
   motion.turn_rad = turn_deg * kRadPerDeg;
   motion.turn_amplitude_rad = turn_amplitude_deg * kRadPerDeg;
@@ -149,7 +173,9 @@ void readIntrinsicsOf(const YamlNode& map, CameraIntrinsics& camera) {
 
 void readPixel(const YamlNode& map, EventPixelModel& pixel) {
   map.allowOnly({"threshold_on", "threshold_off", "threshold_mismatch", "refractory_s", "background_rate_hz",
-                 "hot_pixels", "hot_pixel_rate_hz", "blur_px", "latency_s", "low_pass_s", "stamp_jitter_s"});
+                 "hot_pixels", "hot_pixel_rate_hz", "blur_px", "latency_s", "low_pass_s", "stamp_jitter_s",
+                 "low_pass_light_power", "low_pass_polarity", "vignetting", "threshold_noise", "leak_rate_hz",
+                 "readout_rate_hz", "longest_wait_s"});
   get(map, "threshold_on", pixel.threshold_on, 0.01, 5.0, "");
   get(map, "threshold_off", pixel.threshold_off, 0.01, 5.0, "");
   get(map, "threshold_mismatch", pixel.threshold_mismatch, 0.0, 0.5, "");
@@ -161,6 +187,13 @@ void readPixel(const YamlNode& map, EventPixelModel& pixel) {
   get(map, "latency_s", pixel.latency_s, 0.0, 0.1, "s");
   get(map, "low_pass_s", pixel.low_pass_s, 0.0, 0.1, "s");
   get(map, "stamp_jitter_s", pixel.stamp_jitter_s, 0.0, 0.1, "s");
+  get(map, "low_pass_light_power", pixel.low_pass_light_power, 0.0, 2.0, "");
+  get(map, "low_pass_polarity", pixel.low_pass_polarity, -0.9, 0.9, "");
+  get(map, "vignetting", pixel.vignetting, 0.0, 0.9, "");
+  get(map, "threshold_noise", pixel.threshold_noise, 0.0, 0.5, "");
+  get(map, "leak_rate_hz", pixel.leak_rate_hz, 0.0, 100.0, "Hz");
+  get(map, "readout_rate_hz", pixel.readout_rate_hz, 0.0, 1e10, "Hz");
+  get(map, "longest_wait_s", pixel.longest_wait_s, 0.0, 10.0, "s");
 }
 
 void readCamera(const YamlNode& map, SimulatedCamera& camera) {
@@ -173,12 +206,35 @@ void readCamera(const YamlNode& map, SimulatedCamera& camera) {
   if (const auto node = map.find("pixel")) readPixel(*node, camera.pixel);
 }
 
+void readImuFaults(const YamlNode& map, ImuFaults& faults) {
+  map.allowOnly({"low_pass_hz", "gyroscope_range_rad_s", "accelerometer_range_m_s2", "gyroscope_step_rad_s",
+                 "accelerometer_step_m_s2", "g_sensitivity_rad_s_per_m_s2", "gyroscope_wander_rad_s",
+                 "accelerometer_wander_m_s2", "wander_time_s", "spikes", "clock_drift_ppm", "clock_step_s",
+                 "stamp_jitter_s", "batch", "lost_share", "lost_packets"});
+  get(map, "low_pass_hz", faults.low_pass_hz, 0.0, 1e5, "Hz");
+  get(map, "gyroscope_range_rad_s", faults.gyroscope_range_rad_s, 0.0, 1e3, "rad/s");
+  get(map, "accelerometer_range_m_s2", faults.accelerometer_range_m_s2, 0.0, 1e4, "m/s^2");
+  get(map, "gyroscope_step_rad_s", faults.gyroscope_step_rad_s, 0.0, 1.0, "rad/s");
+  get(map, "accelerometer_step_m_s2", faults.accelerometer_step_m_s2, 0.0, 10.0, "m/s^2");
+  get(map, "g_sensitivity_rad_s_per_m_s2", faults.g_sensitivity_rad_s_per_m_s2, -0.1, 0.1, "rad s/m");
+  get(map, "gyroscope_wander_rad_s", faults.gyroscope_wander_rad_s, 0.0, 1.0, "rad/s");
+  get(map, "accelerometer_wander_m_s2", faults.accelerometer_wander_m_s2, 0.0, 10.0, "m/s^2");
+  get(map, "wander_time_s", faults.wander_time_s, 1e-4, 1000.0, "s");
+  get(map, "spikes", faults.spikes, 0, 100000);
+  get(map, "clock_drift_ppm", faults.clock_drift_ppm, -1e5, 1e5, "ppm");
+  get(map, "clock_step_s", faults.clock_step_s, -60.0, 60.0, "s");
+  get(map, "stamp_jitter_s", faults.stamp_jitter_s, 0.0, 0.1, "s");
+  get(map, "batch", faults.batch, 1, 1000);
+  get(map, "lost_share", faults.lost_share, 0.0, 0.99, "");
+  get(map, "lost_packets", faults.lost_packets, 0, 100000);
+}
+
 void readImu(const YamlNode& map, SimulatedImu& imu) {
   map.allowOnly({"name", "stream", "rate_hz", "gyroscope_noise_density", "accelerometer_noise_density",
                  "gyroscope_walk_density", "accelerometer_walk_density", "gyroscope_bias_rad_s",
                  "accelerometer_bias_m_s2", "gyroscope_mapping", "accelerometer_mapping",
                  "gyroscope_from_accelerometer_deg", "accelerometer_delay_s", "time_offset_s",
-                 "reference_from_imu"});
+                 "reference_from_imu", "faults"});
   get(map, "name", imu.name);
   get(map, "stream", imu.stream);
   get(map, "rate_hz", imu.rate_hz, 1.0, 1e5, "Hz");
@@ -196,6 +252,7 @@ void readImu(const YamlNode& map, SimulatedImu& imu) {
   get(map, "accelerometer_delay_s", imu.accelerometer_delay_s, -0.1, 0.1, "s");
   get(map, "time_offset_s", imu.time_offset_s, -60.0, 60.0, "s");
   if (const auto node = map.find("reference_from_imu")) readTransform(*node, imu.reference_from_imu);
+  if (const auto node = map.find("faults")) readImuFaults(*node, imu.faults);
 }
 
 // `one` is a map that changes the first sensor, `all` a list in which each map changes the base's sensor of
@@ -232,9 +289,15 @@ void readGravity(const YamlNode& root, Eigen::Vector3d& gravity) {
   gravity *= norm / gravity.norm();
 }
 
-// What the recording's session knows.
+// What the recording's session knows, and what it has wrong.
 void readSession(const YamlNode& map, Scenario& scenario) {
-  map.allowOnly({"intrinsics"});
+  map.allowOnly(
+      {"intrinsics", "spacing_error", "focal_length_error", "principal_point_error_px", "imu_noise_factor"});
+  SessionErrors& errors = scenario.session_errors;
+  get(map, "spacing_error", errors.spacing, -0.5, 1.0, "");
+  get(map, "focal_length_error", errors.focal_length, -0.5, 1.0, "");
+  get(map, "principal_point_error_px", errors.principal_point_px, -1000.0, 1000.0, "px");
+  get(map, "imu_noise_factor", errors.imu_noise_factor, 1e-3, 1e3, "");
   if (const auto node = map.find("intrinsics"))
     scenario.intrinsics_in_session = node->choice({"false", "true"}) == 1;
 }
@@ -270,7 +333,7 @@ Scenario readFrom(const std::filesystem::path& path, int depth) {
   get(root, "format", scenario.format, {"bag", "text"});
   if (const auto node = root.find("session")) readSession(*node, scenario);
   readGravity(root, scenario.gravity_in_world_m_s2);
-  if (const auto node = root.find("board")) readBoard(*node, scenario.board);
+  if (const auto node = root.find("board")) readBoard(*node, scenario);
   if (const auto node = root.find("scene")) readScene(*node, scenario.scene);
   if (const auto node = root.find("motion")) readMotion(*node, scenario.motion);
   readSensors(root, "camera", "cameras", false, scenario.cameras, readCamera);

@@ -47,6 +47,7 @@ float largestStretch(const Eigen::Matrix2f& matrix) {
 
 SceneRenderer::SceneRenderer(const Scenario& scenario, std::size_t index)
     : board_(scenario.board),
+      row_spacing_m_((1.0 + scenario.board_stretch) * scenario.board.spacing_m),
       scene_(scenario.scene),
       width_px_(scenario.cameras[index].intrinsics.resolution_px.width_px),
       height_px_(scenario.cameras[index].intrinsics.resolution_px.height_px),
@@ -60,7 +61,7 @@ SceneRenderer::SceneRenderer(const Scenario& scenario, std::size_t index)
   log_ink_ = std::log(ink_);
   const bool asymmetric = board_.type == BoardType::AsymmetricCircles;
   const Eigen::Vector2d last(board_.spacing_m * (asymmetric ? 2 * board_.cols - 1 : board_.cols - 1),
-                             board_.spacing_m * (board_.rows - 1));
+                             row_spacing_m_ * (board_.rows - 1));
   board_low_m_ = Eigen::Vector2d::Constant(-scene_.margin_m).cast<float>();
   board_high_m_ = (last.array() + scene_.margin_m).matrix().cast<float>();
   const UndistortionTable ideal(camera);
@@ -120,12 +121,13 @@ float SceneRenderer::travel(std::size_t pixel, const Instants& instants) const {
 
 void SceneRenderer::findCircles(const Eigen::Vector2f& low_m, const Eigen::Vector2f& high_m,
                                 TileView& view) const {
-  const auto spacing = static_cast<float>(board_.spacing_m), radius = static_cast<float>(board_.radius_m);
+  const auto spacing = static_cast<float>(row_spacing_m_), radius = static_cast<float>(board_.radius_m);
   const int first = std::max(0, static_cast<int>(std::ceil((low_m.y() - radius) / spacing)));
   const int last = std::min(board_.rows - 1, static_cast<int>(std::floor((high_m.y() + radius) / spacing)));
   for (int row = first; row <= last; ++row) {
     for (int col = 0; col < board_.cols; ++col) {
-      const Eigen::Vector2f centre = board_.centre_m(row, col).cast<float>();
+      const Eigen::Vector2f centre(static_cast<float>(board_.centre_m(row, col).x()),
+                                   static_cast<float>(row_spacing_m_ * row));
       const Eigen::Vector2f nearest = centre.cwiseMax(low_m).cwiseMin(high_m);
       if ((nearest - centre).norm() < radius) view.circles_m.push_back(centre);
     }

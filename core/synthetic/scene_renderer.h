@@ -58,6 +58,7 @@ class SceneRenderer {
   void findCircles(const Eigen::Vector2f& low_m, const Eigen::Vector2f& high_m, TileView& view) const;
 
   CircleBoard board_;
+  double row_spacing_m_;  // of the real board
   SceneModel scene_;
   int width_px_, height_px_;
   float blur_px_, paper_, ink_, log_paper_, log_ink_;

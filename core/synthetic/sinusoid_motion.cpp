@@ -71,23 +71,37 @@ SinusoidMotion::SinusoidMotion(const Scenario& scenario)
       sinusoids_[q].push_back({amplitudes[q] * share, kTwoPi * frequency, kTwoPi * uniform(generator)});
     }
   }
-  if (m.image_speed_px_s <= 0.0) return;
-  const double speed = imageSpeedRms_px_s();
-  if (speed <= 0.0) return;
+  // The speed is that of the waving alone, without stops and what else hands add.
+  scenario_.motion.hand = {};
+  const double speed = m.image_speed_px_s > 0.0 ? imageSpeedRms_px_s() : 0.0;
   for (auto& quantity : sinusoids_) {
-    for (Sinusoid& s : quantity) s.angular_frequency *= m.image_speed_px_s / speed;
+    for (Sinusoid& s : quantity)
+      if (speed > 0.0) s.angular_frequency *= m.image_speed_px_s / speed;
   }
+  scenario_.motion.hand = m.hand;
+  addHand();
+}
+
+void SinusoidMotion::addHand() {
+  const HandModel& hand = scenario_.motion.hand;
+  for (std::size_t q = 0; q < kQuantities; ++q) {
+    const bool turns = q <= AngleZ;
+    unstopped_[q] = tremor(turns ? hand.tremor_rad : hand.tremor_m, scenario_.seed, q);
+    if (turns) jerks_[q] = jerks(hand, scenario_.duration_s, scenario_.seed, q);
+  }
+  if (hand.walking_m <= 0.0) return;
+  constexpr double kSteps_hz = 1.9;
+  sinusoids_[TargetY].push_back({hand.walking_m, kTwoPi * kSteps_hz, 0.0});
+  sinusoids_[TargetX].push_back({0.5 * hand.walking_m, 0.5 * kTwoPi * kSteps_hz, 1.0});
 }
 
 SinusoidMotion::Value SinusoidMotion::at(Quantity quantity, double time_s) const {
+  const Value time = motionTime(scenario_.motion.hand, time_s);
   Value sum;
-  for (const Sinusoid& s : sinusoids_[quantity]) {
-    const double phase = s.angular_frequency * time_s + s.phase;
-    const double sine = s.amplitude * std::sin(phase), cosine = s.amplitude * std::cos(phase);
-    sum.value += sine;
-    sum.first += s.angular_frequency * cosine;
-    sum.second -= s.angular_frequency * s.angular_frequency * sine;
-  }
+  for (const Sinusoid& s : sinusoids_[quantity]) sum += s.at(time.value);
+  sum = throughTime(sum, time);
+  for (const Sinusoid& s : unstopped_[quantity]) sum += s.at(time_s);
+  for (const Jerk& jerk : jerks_[quantity]) sum += jerk.at(time_s);
   return sum;
 }
 

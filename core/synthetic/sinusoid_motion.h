@@ -1,6 +1,7 @@
-// The simulated motion, analytic to its second derivative; sums of sinusoids, never a spline.
+// The simulated motion, analytic to its second derivative; sums of sinusoids and what hands add, never a spline.
 #pragma once
 
+#include "core/synthetic/hand_motion.h"
 #include "core/synthetic/scenario.h"
 
 #include <Eigen/Core>
@@ -36,21 +37,19 @@ class SinusoidMotion {
   double imageSpeedRms_px_s() const;
 
  private:
-  struct Sinusoid {
-    double amplitude, angular_frequency, phase;
-  };
-  struct Value {
-    double value = 0.0, first = 0.0, second = 0.0;
-  };
+  using Sinusoid = MotionSinusoid;
+  using Value = MotionValue;
   enum Quantity { AngleX, AngleY, AngleZ, TargetX, TargetY, Distance, kQuantities };
 
+  void addHand();
   Value at(Quantity quantity, double time_s) const;
   MotionState gazeAt(double time_s) const;  // the first camera but for its turns
   MotionState firstCameraAt(double time_s) const;
 
   Scenario scenario_;
   Eigen::Vector3d board_middle_m_;
-  std::array<std::vector<Sinusoid>, kQuantities> sinusoids_;
+  std::array<std::vector<Sinusoid>, kQuantities> sinusoids_, unstopped_;  // those that stops hold up, and not
+  std::array<std::vector<Jerk>, kQuantities> jerks_;
   RigidTransform camera_from_imu_;  // first camera
 };
 

@@ -10,6 +10,7 @@
 #include "core/synthetic/board_truth.h"
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/imu_simulator.h"
+#include "core/synthetic/session_errors.h"
 #include "tests/benchmarks/benchmark_program.h"
 #include "tests/support/scenario_session.h"
 
@@ -52,9 +53,10 @@ RecordingPass detect(const Scenario& scenario, const Session& session, Outcome& 
   pass.start_ns = scenario.start_ns;
   double busy_s = 0.0;
   std::uint64_t events_read = 0;
+  const Scenario said = asSessionSays(scenario);
   for (std::size_t k = 0; k < scenario.cameras.size(); ++k) {
-    const CameraIntrinsics& camera = scenario.cameras[k].intrinsics;
-    BoardTracker tracker(scenario.board, camera.resolution_px, camera, session.options.front_end,
+    const CameraIntrinsics& camera = said.cameras[k].intrinsics;
+    BoardTracker tracker(session.board, camera.resolution_px, camera, session.options.front_end,
                          scenario.start_ns);
     simulateEvents(scenario, k, [&](EventSpan events) {
       const Stopwatch stopwatch;
@@ -69,7 +71,7 @@ RecordingPass detect(const Scenario& scenario, const Session& session, Outcome& 
     events_read += pass.cameras.back().events;
   }
   for (std::size_t k = 0; k < scenario.imus.size(); ++k) {
-    const SimulatedImu& imu = scenario.imus[k];
+    const SimulatedImu& imu = said.imus[k];
     pass.imus.push_back(
         {imu.name, {imu.gyroscope_density, imu.accelerometer_density}, simulateImu(scenario, k)});
   }

@@ -5,6 +5,8 @@
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "core/synthetic/session_errors.h"
+#include "tests/support/seen_through.h"
 
 #include <fmt/format.h>
 
@@ -14,14 +16,17 @@
 namespace evical::test {
 namespace {
 
-RecordingPass passWith(const Scenario& scenario, BoardObservations observations) {
+// Of lens and noise as the session has them, which need not be true.
+RecordingPass passWith(const Scenario& scenario, const CameraIntrinsics& lens,
+                       BoardObservations observations) {
+  const Scenario said = asSessionSays(scenario);
   RecordingPass pass;
   pass.start_ns = scenario.start_ns;
   observations.camera = scenario.cameras.front().name;
   pass.cameras.push_back(std::move(observations));
-  pass.lenses.push_back(givenLens(scenario.cameras.front().intrinsics));
+  pass.lenses.push_back(givenLens(lens));
   for (std::size_t k = 0; k < scenario.imus.size(); ++k) {
-    const SimulatedImu& imu = scenario.imus[k];
+    const SimulatedImu& imu = said.imus[k];
     pass.imus.push_back(
         {imu.name, {imu.gyroscope_density, imu.accelerometer_density}, simulateImu(scenario, k)});
   }
@@ -30,7 +35,8 @@ RecordingPass passWith(const Scenario& scenario, BoardObservations observations)
 
 }  // namespace
 
-Session sessionFor(const Scenario& scenario) {
+Session sessionFor(const Scenario& truth) {
+  const Scenario scenario = asSessionSays(truth);
   Session session;
   session.source = scenario.name;
   session.board = scenario.board;
@@ -50,15 +56,19 @@ Session sessionFor(const Scenario& scenario) {
 }
 
 RecordingPass detectedPass(const Scenario& scenario, const Session& session) {
-  const CameraIntrinsics& camera = scenario.cameras.front().intrinsics;
+  const CameraIntrinsics camera = asSessionSays(scenario).cameras.front().intrinsics;
   BoardTracker tracker(session.board, camera.resolution_px, camera, session.options.front_end,
                        scenario.start_ns);
   simulateEvents(scenario, 0, [&](EventSpan events) { tracker.add(events); });
-  return passWith(scenario, tracker.finish());
+  return passWith(scenario, camera, tracker.finish());
 }
 
 RecordingPass perfectPass(const Scenario& scenario, double centre_sigma_px, double window_s) {
-  return passWith(scenario, simulateObservations(scenario, 0, centre_sigma_px, window_s));
+  const CameraIntrinsics &truth = scenario.cameras.front().intrinsics,
+                         said = asSessionSays(scenario).cameras.front().intrinsics;
+  BoardObservations observations = simulateObservations(scenario, 0, centre_sigma_px, window_s);
+  if (said != truth) seeThrough(truth, said, observations);
+  return passWith(scenario, said, std::move(observations));
 }
 
 NamedResult truthOf(const Scenario& scenario) {

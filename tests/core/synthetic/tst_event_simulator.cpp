@@ -152,6 +152,68 @@ class TestEventSimulator : public QObject {
     const Leads slow = leadsOf(scenario);  // against a truth that has the 3 ms in it
     QVERIFY2(std::abs(slow.mean - prompt.mean) < 0.03, qPrintable(QString::number(slow.mean - prompt.mean)));
   }
+  // Slow in the dark, and slower where it darkens: leading and trailing edges of dark circles move apart, but
+  // the middle of both stays as late as the time constant says.
+  void unevenPixels_areLateByTheSameOnTheWhole() {
+    Scenario scenario = slidingScenario(0.6, 0.3);
+    EventPixelModel& pixel = scenario.cameras[0].pixel;
+    pixel.latency_s = 0.0;
+    pixel.low_pass_s = 1e-3;
+    const Leads even = leadsOf(scenario);
+    pixel.low_pass_polarity = 0.5;
+    const Leads uneven = leadsOf(scenario);
+    const QString said = QString("%1 and %2 px").arg(even.mean).arg(uneven.mean);
+    QVERIFY2(std::abs(uneven.mean - even.mean) < 0.03, qPrintable(said));
+    const std::vector<Event> uneven_events = eventsOf(scenario);
+    pixel.low_pass_polarity = 0.0;
+    QVERIFY(!same(uneven_events, eventsOf(scenario)));
+    pixel.low_pass_light_power = 0.5;
+    const Leads by_light = leadsOf(scenario);
+    QVERIFY2(std::abs(by_light.mean - even.mean) < 0.06, qPrintable(QString::number(by_light.mean)));
+  }
+  void leak_firesBrighteningWhereNothingChanges() {
+    Scenario scenario = test::stillScenario();
+    scenario.cameras[0].pixel.leak_rate_hz = 2.0;
+    scenario.duration_s = 3.0;
+    const std::vector<Event> events = eventsOf(scenario);
+    // At first references lie up to two thresholds away, which is a second.
+    const auto late = std::count_if(events.begin(), events.end(), [&](const Event& e) {
+      return e.time_ns > scenario.start_ns + 1'000'000'000;
+    });
+    QVERIFY(std::abs(static_cast<double>(late) / (2.0 * 128 * 96 * 2.0) - 1.0) < 0.02);
+    QVERIFY(std::all_of(events.begin(), events.end(), [](const Event& e) { return e.brighter; }));
+  }
+  // Strong enough for one threshold up and one down in each period, of pixels whose reference is not in the middle.
+  void lamp_flickersInTime() {
+    Scenario scenario = test::stillScenario();
+    scenario.scene.lamp_flicker = 0.25;  // 0.51 of log intensity from top to bottom, thresholds are 0.3
+    scenario.cameras[0].pixel.low_pass_s = 0.0;
+    const std::vector<Event> events = eventsOf(scenario);
+    const double per_period = static_cast<double>(events.size()) / (128 * 96 * 100.0 * scenario.duration_s);
+    QVERIFY2(per_period > 1.2 && per_period < 2.0, qPrintable(QString::number(per_period)));
+  }
+  void thresholdNoise_changesEventsOfOnePixel() {
+    Scenario scenario = slidingScenario(0.6, 0.3);
+    const std::vector<Event> steady = eventsOf(scenario);
+    scenario.cameras[0].pixel.threshold_noise = 0.05;
+    const std::vector<Event> noisy = eventsOf(scenario);
+    QVERIFY(!same(steady, noisy));
+    QVERIFY(std::abs(static_cast<double>(noisy.size()) / static_cast<double>(steady.size()) - 1.0) < 0.05);
+  }
+  // No more than so many in any stretch, in order, and none later than it may wait.
+  void arbiter_letsThroughOneByOne() {
+    Scenario scenario = test::wavedScenario();
+    scenario.duration_s = 0.3;
+    const std::vector<Event> free = eventsOf(scenario);
+    EventPixelModel& pixel = scenario.cameras[0].pixel;
+    pixel.readout_rate_hz = 0.5 * static_cast<double>(free.size()) / scenario.duration_s;
+    pixel.longest_wait_s = 1e-3;
+    const std::vector<Event> queued = eventsOf(scenario);
+    QVERIFY(queued.size() < free.size());
+    QVERIFY(static_cast<double>(queued.size()) < 0.51 * static_cast<double>(free.size()));
+    QVERIFY(std::is_sorted(queued.begin(), queued.end(),
+                           [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; }));
+  }
   // Against a truth with the delay in it a burst's mean is off by the same pixels at every speed.
   void edges_leadAlikeAtEverySpeed() {
     Scenario scenario = slidingScenario(1.0, 0.3);

@@ -5,7 +5,13 @@
 #include "tests/core/synthetic/scenarios.h"
 #include "tests/support/test_program.h"
 
+#include <functional>
+
 using namespace evical;
+
+Q_DECLARE_METATYPE(evical::ImuFaults)
+Q_DECLARE_METATYPE(
+    std::function<bool(const std::vector<evical::ImuSample>&, const std::vector<evical::ImuSample>&)>)
 
 class TestImuSimulator : public QObject {
   Q_OBJECT
@@ -51,6 +57,99 @@ class TestImuSimulator : public QObject {
       QVERIFY((late[k].specific_force_m_s2 - prompt[k - 3].specific_force_m_s2).norm() < 1e-9);
       QVERIFY(late[k].angular_rate_rad_s == prompt[k].angular_rate_rad_s);
     }
+  }
+  // As its amplitude at 5 Hz, behind a filter of 20 Hz: 1 / sqrt(1 + (5/20)^2); not late.
+  void lowPass_flattensWithoutDelay() {
+    Scenario scenario = test::stillScenario();
+    scenario.motion.angle_amplitude_rad = {0.0, 0.1, 0.0};
+    scenario.motion.sinusoids = 1;
+    scenario.motion.lowest_frequency_hz = scenario.motion.highest_frequency_hz = 5.0;
+    const std::vector<ImuSample> prompt = simulateImu(scenario, 0);
+    scenario.imus.front().faults.low_pass_hz = 20.0;
+    const std::vector<ImuSample> flat = simulateImu(scenario, 0);
+    double products = 0.0, squares = 0.0, flat_squares = 0.0;
+    for (std::size_t k = 0; k < prompt.size(); ++k) {
+      products += prompt[k].angular_rate_rad_s.dot(flat[k].angular_rate_rad_s);
+      squares += prompt[k].angular_rate_rad_s.squaredNorm();
+      flat_squares += flat[k].angular_rate_rad_s.squaredNorm();
+    }
+    QVERIFY(std::abs(std::sqrt(flat_squares / squares) - 1.0 / std::sqrt(1.0 + 1.0 / 16.0)) < 2e-3);
+    QVERIFY(products / std::sqrt(squares * flat_squares) > 0.9999);
+  }
+  void faults_areThoseAskedFor_data() {
+    QTest::addColumn<ImuFaults>("faults");
+    QTest::addColumn<std::function<bool(const std::vector<ImuSample>&, const std::vector<ImuSample>&)>>(
+        "shows");
+    using Samples = std::vector<ImuSample>;
+    using Shows = std::function<bool(const Samples&, const Samples&)>;
+    const auto row = [](const char* name, const ImuFaults& faults, Shows shows) {
+      QTest::newRow(name) << faults << std::move(shows);
+    };
+    row("range", {.accelerometer_range_m_s2 = 8.0}, [](const Samples&, const Samples& spoilt) {
+      return std::all_of(spoilt.begin(), spoilt.end(), [](const ImuSample& s) {
+        return s.specific_force_m_s2.cwiseAbs().maxCoeff() <= 8.0;
+      });
+    });
+    row("steps", {.gyroscope_step_rad_s = 0.01}, [](const Samples& ideal, const Samples& spoilt) {
+      const double x = spoilt[77].angular_rate_rad_s.x() / 0.01;
+      return std::abs(x - std::round(x)) < 1e-9 &&
+             (ideal[77].angular_rate_rad_s - spoilt[77].angular_rate_rad_s).cwiseAbs().maxCoeff() <= 0.005001;
+    });
+    row("g-sensitivity", {.g_sensitivity_rad_s_per_m_s2 = 1e-3},
+        [](const Samples& ideal, const Samples& spoilt) {
+          return (spoilt[9].angular_rate_rad_s - ideal[9].angular_rate_rad_s -
+                  1e-3 * ideal[9].specific_force_m_s2)
+                     .norm() < 1e-12;
+        });
+    row("spikes", {.spikes = 3}, [](const Samples& ideal, const Samples& spoilt) {
+      int count = 0;
+      for (std::size_t k = 0; k < ideal.size(); ++k)
+        count += (ideal[k].specific_force_m_s2 - spoilt[k].specific_force_m_s2).norm() > 100.0;
+      return count == 3;
+    });
+    row("drift", {.clock_drift_ppm = 1000.0}, [](const Samples& ideal, const Samples& spoilt) {
+      return ideal[0].time_ns - spoilt[0].time_ns == 500'000 && ideal[500].time_ns == spoilt[500].time_ns;
+    });
+    row("step", {.clock_step_s = 0.02}, [](const Samples& ideal, const Samples& spoilt) {
+      return ideal[590].time_ns == spoilt[590].time_ns &&
+             spoilt[610].time_ns - ideal[610].time_ns == 20'000'000;
+    });
+    row("batches", {.batch = 5}, [](const Samples& ideal, const Samples& spoilt) {
+      return spoilt[4].time_ns == ideal[4].time_ns && spoilt[4].time_ns - spoilt[0].time_ns == 80'000;
+    });
+    row("lost", {.lost_share = 0.5},
+        [](const Samples&, const Samples& spoilt) { return spoilt.size() > 430 && spoilt.size() < 570; });
+    row("packet", {.lost_packets = 1}, [](const Samples& ideal, const Samples& spoilt) {
+      return ideal.size() - spoilt.size() > 0 && ideal.size() - spoilt.size() < 50;
+    });
+  }
+  void faults_areThoseAskedFor() {
+    using Samples = std::vector<ImuSample>;
+    QFETCH(ImuFaults, faults);
+    using Shows = std::function<bool(const Samples&, const Samples&)>;
+    QFETCH(Shows, shows);
+    Scenario scenario = test::wavedScenario();
+    const Samples ideal = simulateImu(scenario, 0);
+    scenario.imus.front().faults = faults;
+    const Samples spoilt = simulateImu(scenario, 0);
+    QVERIFY(shows(ideal, spoilt));
+    QVERIFY(!shows(ideal, ideal));
+    const auto before = [](const ImuSample& a, const ImuSample& b) { return a.time_ns < b.time_ns; };
+    QVERIFY(std::is_sorted(spoilt.begin(), spoilt.end(), before));
+  }
+  void wander_lastsAsLongAsSaid() {
+    Scenario scenario = test::stillScenario();
+    scenario.duration_s = 20.0;
+    scenario.imus.front().faults = {.gyroscope_wander_rad_s = 0.1, .wander_time_s = 0.02};
+    const std::vector<ImuSample> samples = simulateImu(scenario, 0);
+    double squares = 0.0, products = 0.0;  // with what comes 20 samples, one such time, later
+    for (std::size_t k = 0; k + 20 < samples.size(); ++k) {
+      squares += samples[k].angular_rate_rad_s.squaredNorm();
+      products += samples[k].angular_rate_rad_s.dot(samples[k + 20].angular_rate_rad_s);
+    }
+    const double sigma = std::sqrt(squares / (3.0 * static_cast<double>(samples.size())));
+    QVERIFY(std::abs(sigma / 0.1 - 1.0) < 0.1);
+    QVERIFY(std::abs(products / squares - std::exp(-1.0)) < 0.1);
   }
   void noise_hasTheStatedDensity() {
     Scenario scenario = test::stillScenario();

@@ -48,6 +48,24 @@ class TestScenarioYaml : public QObject {
     QCOMPARE(scenario.imus[0].name, std::string("left_imu"));
     QCOMPARE(scenario.imus[1].rate_hz, 400.0);
   }
+  void errorsOfTheSession_areInItAndNotInTheTruth() {
+    const Scenario scenario = read(
+        "base: davis346.yaml\nsession: {spacing_error: 0.01, focal_length_error: 0.02, imu_noise_factor: "
+        "3}\n");
+    const std::string session = sessionYaml(scenario, "recording.bag"), truth = truthYaml(scenario);
+    QVERIFY(session.find("spacing_m: 0.0505") != std::string::npos);
+    QVERIFY(session.find("267.64") != std::string::npos);  // 262.4 and 2 %
+    QVERIFY(session.find("gyroscope_noise_density: 0.000561") != std::string::npos);
+    QVERIFY(truth.find("262.4") != std::string::npos);
+  }
+  void realisticScenarios_areLessKind() {
+    for (const char* name : {"realistic.yaml", "realistic_10s.yaml"}) {
+      const Scenario scenario = readScenario(kScenarios / name);
+      QVERIFY(scenario.motion.hand.tremor_rad > 0.0);
+      QVERIFY(scenario.imus[0].faults.clock_drift_ppm > 0.0);
+      QVERIFY(scenario.cameras[0].pixel.low_pass_light_power > 0.0);
+    }
+  }
   void mistakes_areNamed_data() {
     QTest::addColumn<QString>("text");
     QTest::addColumn<QString>("place");
@@ -89,6 +107,12 @@ class TestScenarioYaml : public QObject {
     QTest::newRow("same names") << "base: davis346.yaml\nimus: [{}, {name: left_imu, stream: /b}]\n"
                                 << ""
                                 << "left_imu";
+    QTest::newRow("endless stops") << "base: davis346.yaml\nmotion: {hand: {stop_every_s: 1}}\n"
+                                   << "motion.hand"
+                                   << "stop_every_s";
+    QTest::newRow("unknown fault") << "base: davis346.yaml\nimu: {faults: {drift: 1}}\n"
+                                   << "imu.faults.drift"
+                                   << "clock_drift_ppm";
     QTest::newRow("endless base") << "base: scenario.yaml\n"
                                   << "base"
                                   << "without an end";

@@ -53,6 +53,34 @@ class TestSinusoidMotion : public QObject {
     checkDerivatives([&](double t) { return motion.imuAt(t); });
     checkDerivatives([&](double t) { return motion.cameraAt(0, t); });
   }
+  void hands_derivativesMatchNumericDifferences() {
+    Scenario scenario = test::wavedScenario();
+    scenario.motion.hand = {.tremor_rad = 0.0003,
+                            .tremor_m = 0.0003,
+                            .jerks_per_s = 2.0,
+                            .jerk_rad = 0.01,
+                            .stop_every_s = 2.0,
+                            .stop_s = 0.5,
+                            .walking_m = 0.01};
+    const SinusoidMotion motion(scenario);
+    checkDerivatives([&](double t) { return motion.imuAt(t); });
+  }
+  // Every two seconds: from 1.25 s a ramp down, from 1.5 s still, from 1.75 s a ramp up.
+  void stops_holdTheMotionUp() {
+    Scenario scenario = test::wavedScenario();
+    const SinusoidMotion without(scenario);
+    scenario.motion.hand.stop_every_s = 2.0;
+    scenario.motion.hand.stop_s = 0.25;
+    const SinusoidMotion with(scenario);
+    const auto distance_m = [](const RigidTransform& a, const RigidTransform& b) {
+      return (a.translation_m - b.translation_m).norm();
+    };
+    QVERIFY(distance_m(with.worldFromCamera(0, 1.2), without.worldFromCamera(0, 1.2)) < 1e-12);
+    QVERIFY(distance_m(with.worldFromCamera(0, 1.51), with.worldFromCamera(0, 1.74)) < 1e-12);
+    QVERIFY(with.imuAt(1.6).angular_velocity_in_body_rad_s.norm() < 1e-12);
+    // A stop and two ramps of half the speed are half a second less of motion.
+    QVERIFY(distance_m(with.worldFromCamera(0, 2.3), without.worldFromCamera(0, 1.8)) < 1e-12);
+  }
   void turns_keepTheCameraWhereItIs() {
     Scenario scenario = test::wavedScenario();
     scenario.motion.image_speed_px_s = 0.0;

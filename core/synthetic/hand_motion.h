@@ -1,0 +1,42 @@
+// What hands add to a motion of sinusoids (HandModel): the tremor, bumps and steps of each quantity, and the
+// stops, which stretch time.
+#pragma once
+
+#include "core/synthetic/scenario.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace evical {
+
+// A quantity and its derivatives in time.
+struct MotionValue {
+  double value = 0.0, first = 0.0, second = 0.0;
+
+  MotionValue& operator+=(const MotionValue& other);
+};
+
+struct MotionSinusoid {
+  double amplitude, angular_frequency, phase;
+
+  MotionValue at(double time_s) const;
+};
+
+// The motion's own time against the clock's: it stands still in stops. Twice differentiable.
+MotionValue motionTime(const HandModel& hand, double time_s);
+// A value of the motion's time as one of the clock's.
+MotionValue throughTime(const MotionValue& value, const MotionValue& time);
+
+// A quick turn there and back.
+struct Jerk {
+  double size, middle_s;
+
+  MotionValue at(double time_s) const;
+};
+
+// Two or three of them, drawn from seed and quantity, at 8 to 12 Hz; none without tremor.
+std::vector<MotionSinusoid> tremor(double sigma, std::uint64_t seed, std::size_t quantity);
+std::vector<Jerk> jerks(const HandModel& hand, double duration_s, std::uint64_t seed, std::size_t quantity);
+
+}  // namespace evical

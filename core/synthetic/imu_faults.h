@@ -1,0 +1,33 @@
+// What a real IMU, its clock and its driver do to samples that are otherwise ideal (ImuFaults).
+#pragma once
+
+#include "core/data/imu_sample.h"
+#include "core/synthetic/scenario.h"
+
+#include <array>
+#include <numbers>
+#include <vector>
+
+namespace evical {
+
+// What a first-order filter makes of truth(time), its delay taken off: delays are the clocks' affair. The
+// integral over its answer to a pulse, by the rule of Gauss and Laguerre; as it is for a cutoff of 0.
+template <class Truth>
+Eigen::Vector3d lowPassed(const Truth& truth, double time_s, double cutoff_hz) {
+  if (cutoff_hz <= 0.0) return truth(time_s);
+  constexpr std::array<std::array<double, 2>, 4> kNodesAndWeights = {
+      {{0.322547689619392, 0.603154104341634},
+       {1.745761101158346, 0.357418692437800},
+       {4.536620296921128, 0.038887908515005},
+       {9.395070912301133, 0.000539294705561}}};
+  const double constant_s = 0.5 / (std::numbers::pi * cutoff_hz);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const auto& [node, weight] : kNodesAndWeights)
+    sum += weight * truth(time_s + constant_s * (1.0 - node));
+  return sum;
+}
+
+// Changes what was measured, then its stamps, then what gets lost. In time order.
+void spoilSamples(const Scenario& scenario, std::size_t imu, std::vector<ImuSample>& samples);
+
+}  // namespace evical

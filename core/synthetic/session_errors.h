@@ -1,0 +1,16 @@
+// The scenario as its session has it: what is true, but for what the session says wrongly.
+#pragma once
+
+#include "core/synthetic/scenario.h"
+
+namespace evical {
+
+Scenario asSessionSays(Scenario scenario);
+
+// Where a circle's centre really is on the board.
+inline Eigen::Vector2d trueCentre_m(const Scenario& scenario, int circle) {
+  const Eigen::Vector2d centre_m = scenario.board.centre_m(circle);
+  return {centre_m.x(), (1.0 + scenario.board_stretch) * centre_m.y()};
+}
+
+}  // namespace evical
