@@ -1,5 +1,5 @@
 // What a calibration says where one thing is not as the session has it, as a table: `evical_stress [--only NAME...]
-// [--seeds N] [--duration S] [--perfect] SCENARIO...`. The front end runs once a recording; what is perturbed is
+// [--seeds N] [--duration S] [--perfect] [--notes] SCENARIO...`. The front end runs once a recording; what is perturbed is
 // what comes after it, but for rows that say otherwise (tests/support/perturbations.cpp).
 #include "core/numerics/angles.h"
 #include "core/pipeline/calibration_pipeline.h"
@@ -10,6 +10,7 @@
 #include "tests/support/scenario_session.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -48,6 +49,7 @@ struct Misfit {
 struct Outcome {
   CalibrationStatus status = CalibrationStatus::Failed;
   std::string reason;
+  std::vector<std::string> notes;
   PartError rotation_deg, translation_mm, time_offset_ms;
   Misfit misfit;
 
@@ -105,6 +107,7 @@ Outcome calibrated(const Recorded& recorded) {
     const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
     outcome.status = run.result.status;
     outcome.reason = run.result.reason;
+    outcome.notes = run.result.notes;
     outcome.misfit = misfitOf(run);
     const TruthComparison comparison = compareWithTruth(
         namedResult(recorded.session, std::make_shared<CalibrationResult>(run.result), "benchmark"),
@@ -210,11 +213,13 @@ struct Arguments {
   std::vector<std::string> only;
   std::optional<double> size;
   Source source;
+  bool notes = false;
 
   void addTo(CLI::App& app) {
     scenarios.addTo(app);
     app.add_option("--only", only, "Perturbations by name, instead of all");
     app.add_option("--size", size, "One size, instead of those of the table");
+    app.add_flag("--notes", notes, "Also the notes of each result");
     app.add_flag("--perfect", source.perfect, "Circles of a perfect front end, without events");
   }
   std::vector<Perturbation> rows() const {
@@ -249,6 +254,7 @@ int main(int argc, char** argv) {
         for (const double size : row.sizes) {
           const Outcome outcome = perturbed(base, row, size, arguments.source);
           printRow(base.scenario, row, size, outcome);
+          if (arguments.notes) fmt::print("{}\n", fmt::join(outcome.notes, "\n"));
           summary.add(row, outcome);
         }
       }

@@ -1,0 +1,78 @@
+#include "tests/support/perturbing.h"
+
+#include "core/geometry/camera_model.h"
+#include "core/synthetic/sinusoid_motion.h"
+
+#include <cmath>
+
+namespace evical::test {
+namespace {
+
+// Moves every circle to where it is seen if the board's points lie `displacement(point)` from where they should.
+template <class Displacement>
+void deformBoard(Recorded& recorded, Displacement&& displacement) {
+  const SinusoidMotion motion(recorded.scenario);
+  for (std::size_t k = 0; k < recorded.pass.cameras.size(); ++k) {
+    const SimulatedCamera& camera = recorded.scenario.cameras[k];
+    CameraIntrinsics ideal = *recorded.pass.lenses[k].seen_with;
+    ideal.distortion = {};
+    ideal.model = CameraModel::PinholeRadtan;
+    for (BoardView& view : recorded.pass.cameras[k].views) {
+      for (CircleObservation& circle : view.circles) {
+        const double time_s = circle.time_s + camera.time_offset_s - camera.pixel.delay_s();
+        const RigidTransform camera_from_world = inverse(motion.worldFromCamera(k, time_s));
+        const Eigen::Vector2d on_board_m = recorded.scenario.board.centre_m(circle.circle);
+        const Eigen::Vector3d point_m(on_board_m.x(), on_board_m.y(), 0.0);
+        const auto seen = project(ideal, camera_from_world * (point_m + displacement(point_m)).eval());
+        const auto expected = project(ideal, camera_from_world * point_m);
+        if (seen && expected) circle.centre_px += *seen - *expected;
+      }
+    }
+  }
+}
+
+void spacing(Recorded& recorded, double percent) {
+  recorded.session.board.spacing_m *= 1.0 + 0.01 * percent;
+  recorded.session.board.radius_m *= 1.0 + 0.01 * percent;
+}
+
+void stretch(Recorded& recorded, double percent) {
+  deformBoard(recorded, [&](const Eigen::Vector3d& point_m) {
+    return Eigen::Vector3d(0.0, 0.01 * percent * point_m.y(), 0.0);
+  });
+}
+
+// Its middle stands out by this, as of paper that has come off in the middle: a parabola along the columns.
+void bow(Recorded& recorded, double height_mm) {
+  const CircleBoard& board = recorded.scenario.board;
+  const double length_m = board.centre_m(board.rows - 1, 0).y();
+  deformBoard(recorded, [&](const Eigen::Vector3d& point_m) {
+    const double u = 2.0 * point_m.y() / length_m - 1.0;
+    return Eigen::Vector3d(0.0, 0.0, -1e-3 * height_mm * (1.0 - u * u));
+  });
+}
+
+void rows(Recorded& recorded, double more) {
+  recorded.session.board.rows += static_cast<int>(more);
+}
+void cols(Recorded& recorded, double more) {
+  recorded.session.board.cols += static_cast<int>(more);
+}
+
+void gravityNorm(Recorded& recorded, double norm_m_s2) {
+  recorded.scenario.gravity_in_world_m_s2 *= norm_m_s2 / recorded.scenario.gravity_in_world_m_s2.norm();
+  simulateImuAnew(recorded);
+}
+
+}  // namespace
+
+std::vector<Perturbation> boardPerturbations() {
+  return {{"board spacing", "%", {0.5, 1, 2, -1, -2.5}, {"spacing", "board's scale"}, spacing},
+          {"board stretch", "%", {0.25, 0.5, 1}, {"stretch", "board's shape", "ratio"}, stretch},
+          {"board bow", "mm", {0.5, 1, 2}, {"bow", "bent", "flat", "board's shape"}, bow},
+          {"board rows", "", {2, -2}, {"rows"}, rows, PerturbedStage::FrontEnd},
+          {"board cols", "", {1, -1}, {"cols"}, cols, PerturbedStage::FrontEnd},
+          {"gravity", "m/s^2", {9.78, 9.83, 9.9}, {"gravity"}, gravityNorm}};
+}
+
+}  // namespace evical::test

@@ -1,0 +1,153 @@
+#include "tests/support/perturbing.h"
+
+#include "core/geometry/camera_model.h"
+#include "core/numerics/angles.h"
+#include "core/synthetic/sinusoid_motion.h"
+#include "tests/support/seen_through.h"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+
+namespace evical::test {
+namespace {
+
+// What the session says; circles are then those that the front end sees through it.
+template <class Change>
+void changeLens(Recorded& recorded, Change&& change) {
+  for (std::size_t k = 0; k < recorded.pass.cameras.size(); ++k) {
+    const CameraIntrinsics truth = *recorded.pass.lenses[k].seen_with;
+    CameraIntrinsics said = truth;
+    change(said);
+    recorded.session.cameras[k].intrinsics = said;
+    recorded.pass.lenses[k] = givenLens(said);
+    seeThrough(truth, said, recorded.pass.cameras[k]);
+  }
+}
+
+void focalLength(Recorded& recorded, double percent) {
+  changeLens(recorded, [&](CameraIntrinsics& lens) { lens.focal_length_px *= 1.0 + 0.01 * percent; });
+}
+void focalLengthX(Recorded& recorded, double percent) {
+  changeLens(recorded, [&](CameraIntrinsics& lens) { lens.focal_length_px.x() *= 1.0 + 0.01 * percent; });
+}
+void centre(Recorded& recorded, double shift_px) {
+  changeLens(recorded, [&](CameraIntrinsics& lens) { lens.principal_point_px.x() += shift_px; });
+}
+void swappedCentre(Recorded& recorded, double) {
+  changeLens(recorded, [](CameraIntrinsics& lens) {
+    std::swap(lens.principal_point_px.x(), lens.principal_point_px.y());
+  });
+}
+void distortion(Recorded& recorded, double share) {
+  changeLens(recorded, [&](CameraIntrinsics& lens) {
+    for (double& coefficient : lens.distortion) coefficient *= share;
+  });
+}
+
+// The session takes a lens for one of the other kind, with a focal length that fits in the middle.
+void otherModel(Recorded& recorded, double) {
+  changeLens(recorded, [](CameraIntrinsics& lens) {
+    lens.model = lens.model == CameraModel::PinholeRadtan ? CameraModel::PinholeEquidistant
+                                                          : CameraModel::PinholeRadtan;
+    lens.distortion = {};
+  });
+}
+
+void shadeSwapped(Recorded& recorded, double) {
+  CircleShade& shade = recorded.session.board.circles;
+  shade = shade == CircleShade::Dark ? CircleShade::Bright : CircleShade::Dark;
+}
+
+// From 60 % of the recording on the camera looks elsewhere; truth is where it looked before.
+void cameraMoved(Recorded& recorded, double angle_deg) {
+  constexpr double kFrom = 0.6;
+  const SinusoidMotion motion(recorded.scenario);
+  const Eigen::Quaterniond turn(
+      Eigen::AngleAxisd(kRadPerDeg * angle_deg, Eigen::Vector3d(1.0, 1.0, 0.0).normalized()));
+  for (std::size_t k = 0; k < recorded.pass.cameras.size(); ++k) {
+    const SimulatedCamera& camera = recorded.scenario.cameras[k];
+    CameraIntrinsics ideal = *recorded.pass.lenses[k].seen_with;
+    ideal.distortion = {};
+    ideal.model = CameraModel::PinholeRadtan;
+    for (BoardView& view : recorded.pass.cameras[k].views) {
+      if (view.time_s < kFrom * recorded.scenario.duration_s) continue;
+      for (CircleObservation& circle : view.circles) {
+        const double time_s = circle.time_s + camera.time_offset_s - camera.pixel.delay_s();
+        const Eigen::Vector2d on_board_m = recorded.scenario.board.centre_m(circle.circle);
+        const Eigen::Vector3d in_camera_m =
+            inverse(motion.worldFromCamera(k, time_s)) * Eigen::Vector3d(on_board_m.x(), on_board_m.y(), 0.0);
+        const auto before = project(ideal, in_camera_m);
+        const auto after = project(ideal, (turn.conjugate() * in_camera_m).eval());
+        if (before && after) circle.centre_px += *after - *before;
+      }
+    }
+  }
+}
+
+template <class Hidden>
+void hide(Recorded& recorded, Hidden&& isHidden) {
+  for (BoardObservations& observations : recorded.pass.cameras) {
+    for (BoardView& view : observations.views)
+      std::erase_if(view.circles, [&](const CircleObservation& circle) {
+        return isHidden(view.time_s, recorded.scenario.board.centre_m(circle.circle));
+      });
+    constexpr std::size_t kFewest = 6;
+    std::erase_if(observations.views, [](const BoardView& view) { return view.circles.size() < kFewest; });
+  }
+}
+
+// A hand that comes every two seconds for one, somewhere else each time, and hides what is near.
+void handOverBoard(Recorded& recorded, double share) {
+  const CircleBoard& board = recorded.scenario.board;
+  const Eigen::Vector2d far_m = board.centre_m(board.circleCount() - 1);
+  const double reach_m = share * far_m.norm();
+  hide(recorded, [&](double time_s, const Eigen::Vector2d& circle_m) {
+    const double turn = std::floor(0.5 * time_s);
+    const Eigen::Vector2d hand_m = far_m.cwiseProduct(
+        Eigen::Vector2d(0.5 + 0.5 * std::sin(2.0 * turn), 0.5 + 0.5 * std::sin(3.0 * turn)));
+    return 0.5 * time_s - turn < 0.5 && (circle_m - hand_m).norm() < reach_m;
+  });
+}
+
+void hiddenAtFirst(Recorded& recorded, double duration_s) {
+  const CircleBoard& board = recorded.scenario.board;
+  const double from_m = 2.0 / 3.0 * board.centre_m(board.rows - 1, 0).y();
+  hide(recorded, [&](double time_s, const Eigen::Vector2d& circle_m) {
+    return time_s < duration_s && circle_m.y() > from_m;
+  });
+}
+
+constexpr double kPriorSigma_deg = 0.05, kPriorSigma_ms = 0.1;
+
+void wrongRotationPrior(Recorded& recorded, double sigmas) {
+  const Eigen::Quaterniond truth = recorded.scenario.cameras.front().imu_from_camera.rotation;
+  const double sigma_rad = kRadPerDeg * kPriorSigma_deg;
+  const Eigen::Quaterniond error(Eigen::AngleAxisd(sigmas * sigma_rad, Eigen::Vector3d::UnitY()));
+  recorded.session.cameras.front().prior.rotation =
+      KnownRotation{truth * error, Eigen::Vector3d::Constant(sigma_rad)};
+}
+void wrongOffsetPrior(Recorded& recorded, double sigmas) {
+  const SimulatedCamera& camera = recorded.scenario.cameras.front();
+  recorded.session.cameras.front().prior.time_offset = KnownNumber{
+      camera.time_offset_s - camera.pixel.delay_s() + 1e-3 * sigmas * kPriorSigma_ms, 1e-3 * kPriorSigma_ms};
+}
+
+}  // namespace
+
+std::vector<Perturbation> cameraPerturbations() {
+  return {{"focal length", "%", {0.3, 1, 5}, {"lens", "focal", "intrinsics"}, focalLength},
+          {"focal length x", "%", {0.3, 1, 3}, {"lens", "focal", "intrinsics"}, focalLengthX},
+          {"centre", "px", {1, 2, 10}, {"lens", "principal", "intrinsics"}, centre},
+          {"swapped centre", "", {1}, {"lens", "principal", "intrinsics"}, swappedCentre},
+          {"distortion", "of truth", {0.9, 0.5, 0}, {"lens", "distortion", "intrinsics"}, distortion},
+          {"other lens model", "", {1}, {"lens", "model", "intrinsics", "focal_length"}, otherModel},
+          {"dark for bright", "", {1}, {"dark", "bright"}, shadeSwapped, PerturbedStage::FrontEnd},
+          {"camera moved", "deg", {0.2, 1, 5}, {"moved", "parts", "halves", "thirds"}, cameraMoved},
+          {"hand over board", "of it", {0.1, 0.3, 0.5}, {}, handOverBoard},
+          {"third hidden at first", "s", {1, 3, 5}, {}, hiddenAtFirst},
+          {"prior of rotation", "sigmas", {10, 20, 40}, {"prior"}, wrongRotationPrior},
+          {"prior of time offset", "sigmas", {10, 20, 40}, {"prior"}, wrongOffsetPrior}};
+}
+
+}  // namespace evical::test
