@@ -1,14 +1,16 @@
 #include "core/initialisation/agreement_check.h"
 
 #include "core/base/error.h"
+#include "core/base/time.h"
 #include "core/initialisation/axes_check.h"
-#include "core/numerics/angles.h"
+#include "core/numerics/robust.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <vector>
 
 namespace evical {
 namespace {
@@ -39,6 +41,33 @@ double forceSpread_m_s2(const ImuData& imu) {
 
 }  // namespace
 
+// Drivers that stamp a message's samples when it arrives: nothing tells motion from their steps.
+void checkStampsApart(const ImuData& imu) {
+  if (imu.samples.size() < 3) return;
+  std::vector<double> intervals_s;
+  for (std::size_t k = 1; k < imu.samples.size(); ++k)
+    intervals_s.push_back(secondsSince(imu.samples[k - 1].time_ns, imu.samples[k].time_ns));
+  constexpr double kGap_periods = 10.0, kLeastTime = 0.5;
+  constexpr std::size_t kLargestBatch = 200;
+  const double period_s = medianOf(intervals_s);
+  std::size_t gaps = 0;
+  double in_gaps_s = 0.0;
+  for (const double interval_s : intervals_s) {
+    if (interval_s <= kGap_periods * period_s) continue;
+    ++gaps;
+    in_gaps_s += interval_s;
+  }
+  const double whole_s = secondsSince(imu.samples.front().time_ns, imu.samples.back().time_ns);
+  if (gaps * kLargestBatch < intervals_s.size() || in_gaps_s < kLeastTime * whole_s) return;
+  throw calibrationFailed(
+      imu.name,
+      fmt::format("samples are stamped in batches of about {}, {:.3g} ms apart and then none for {:.3g} ms: "
+                  "as they arrived, not as they were measured",
+                  imu.samples.size() / std::max<std::size_t>(gaps, 1), 1e3 * period_s,
+                  1e3 * in_gaps_s / static_cast<double>(gaps)),
+      "Have the driver stamp each sample, or spread the stamps of a batch over its time");
+}
+
 void checkAxesAlive(const ImuData& imu) {
   if (imu.samples.empty()) return;
   for (int axis = 0; axis < 3; ++axis) {
@@ -55,11 +84,16 @@ void checkRotationsAgree(const CalibrationInput& input, const CameraAgreement& a
   const std::string& imu = input.imus[input.reference_imu].name;
   // Rotations of single views are wrong by 1 to 3 mrad, which is all there is in a recording that hardly moves.
   constexpr double kBeyondNoise_rad = 0.01;
-  if (rotation.pairs == 0 || rotation.rotated < options.largest_unexplained_motion ||
-      rotation.rest_rad < kBeyondNoise_rad)
-    return;
-  constexpr double kFarBetter = 0.5;
-  if (rotation.reflected < kFarBetter * rotation.rotated) {
+  if (rotation.pairs == 0 || rotation.rest_rad < kBeyondNoise_rad) return;
+  // Where motion about one axis outweighs the others, a wrong hand leaves little; but a reflection then leaves less.
+  constexpr double kFarBetter = 0.5, kMuchBetter = 0.2, kSuspicious = 0.25;
+  const bool unexplained = rotation.rotated >= options.largest_unexplained_motion;
+  const bool left_handed = unexplained
+                               ? rotation.reflected < kFarBetter * rotation.rotated
+                               : rotation.rotated >= kSuspicious * options.largest_unexplained_motion &&
+                                     rotation.reflected < kMuchBetter * rotation.rotated;
+  if (!unexplained && !left_handed) return;
+  if (left_handed) {
     const std::string proof = fmt::format(
         "the best rotation leaves {:.0f} % of what the gyroscope turns, the best reflection {:.0f} %",
         100.0 * rotation.rotated, 100.0 * rotation.reflected);

@@ -9,7 +9,8 @@
 
 namespace evical {
 
-// No axis that never changes.
+// No batches of samples that are stamped alike, and no axis that never changes.
+void checkStampsApart(const ImuData& imu);
 void checkAxesAlive(const ImuData& imu);
 
 void checkRotationsAgree(const CalibrationInput& input, const CameraAgreement& agreement,

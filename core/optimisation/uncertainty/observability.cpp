@@ -106,12 +106,22 @@ std::string Judge::weakestWords(const std::vector<Part>& parts, const Eigen::Vec
   return text;
 }
 
+const char* nameOf(QuantityNeed need) {
+  return need == QuantityNeed::Rotation      ? "rotation"
+         : need == QuantityNeed::Translation ? "translation"
+                                             : "time offset";
+}
+
 // Empty if the part is certain enough in every direction.
 std::string Judge::unmetNeed(const Part& part) const {
   const Quantity& quantity = covariance_.quantities[part.quantity];
   const Eigen::Index first = covariance_.first_column[part.quantity];
-  const SymmetricEigen eigen =
-      symmetricEigen(covariance_.covariance.block(first, first, part.size, part.size));
+  const Eigen::MatrixXd own = covariance_.covariance.block(first, first, part.size, part.size);
+  // Of a problem that has no inverse: nothing compares with what is no number, and so would be certain enough.
+  if (!own.allFinite() || !(own.diagonal().minCoeff() > 0.0))
+    return fmt::format("the {} of {} has no sigma: splines or sensors are without measurements",
+                       nameOf(part.need), sensorName(quantity));
+  const SymmetricEigen eigen = symmetricEigen(own);
   const double sigma = std::sqrt(std::max(0.0, eigen.values[part.size - 1]));
   if (!(sigma > needed(part.need, options_))) return {};
   const std::string words = partWords(quantity, part.need, eigen.vectors.col(part.size - 1));

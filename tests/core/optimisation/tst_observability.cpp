@@ -6,6 +6,7 @@
 #include "tests/support/test_program.h"
 
 #include <cmath>
+#include <limits>
 
 namespace {
 
@@ -103,6 +104,18 @@ class TestObservability : public QObject {
              weakest.c_str());
   }
 
+  // What is no number compares with nothing, and must not pass for certain.
+  void judge_onSigmasThatAreNoNumbers_isDoubtful() {
+    for (const double variance : {std::numeric_limits<double>::quiet_NaN(), -1.0, 0.0}) {
+      Rig rig;
+      rig.setSigmas(0.1, 0.1, 0.1);
+      rig.covariance.covariance(4, 4) = variance;
+      const Observability judged = rig.judge();
+      QCOMPARE(judged.status, CalibrationStatus::Doubtful);
+      QVERIFY2(judged.reason.find("the translation of left has no sigma") != std::string::npos,
+               judged.reason.c_str());
+    }
+  }
   void judge_onAHundredTimesTheNeed_callsItUnobservable() {
     Rig rig;
     rig.setSigmas(0.5, 0.5, 101.0);
