@@ -17,7 +17,7 @@ constexpr std::tuple kVerdictFields{
           within(1.0, 1000.0), "sigma",
           "Weighed priors that lie further than this from what the recording alone says make the result "
           "doubtful."},
-    Field{"turned_gyroscope_sigmas", &VerdictOptions::turned_gyroscope_sigmas, 6.0, within(1.0, 1000.0),
+    Field{"turned_gyroscope_sigmas", &VerdictOptions::turned_gyroscope_sigmas, 4.5, within(1.0, 1000.0),
           "sigma",
           "A gyroscope's turn that is not estimated is told of beyond this and needed_rotation_deg."},
     Field{"wrong_lens_sigmas", &VerdictOptions::wrong_lens_sigmas, 6.0, within(1.0, 1000.0), "sigma",

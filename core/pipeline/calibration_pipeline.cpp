@@ -202,6 +202,7 @@ namespace {
 // What the recording itself shows to be wrong goes before anything is estimated from it.
 void checkPass(const Session& session, const RunContext& context, RecordingPass& pass) {
   for (const ImuData& imu : pass.imus) {
+    checkStampsApart(imu);
     checkAxesAlive(imu);
     checkUnits(imu, session.options.initialisation);
     const std::vector<RecordingFault> faults = checkImu(imu.name, imu.samples);
@@ -350,7 +351,8 @@ class Calibration {
     addDoubt(uncertainty.stretch_doubt, result);
     addDoubt(uncertainty.wrong_lenses, result);
     addDoubt(clock_doubt_, result);
-    judge(solution, uncertainty.turned_gyroscopes);
+    // A prior that is far off looks like a turned gyroscope, too.
+    judge(solution, priors.doubt.empty() ? uncertainty.turned_gyroscopes : std::string());
     if (result.status == CalibrationStatus::Doubtful) addDoubt(saturationIn(input_, options), result);
     result.state = std::move(solution.state);
     result.uncertainty = std::move(uncertainty.report);

@@ -47,6 +47,11 @@ class TestCauses : public QObject {
     row("forces clipped", 9, false);
     row("board spacing", -2.5, false);
     row("gyroscope turned", 1, false);
+    row("gyroscope turned", 0.3, false);
+    row("batches", 5, true);
+    row("batches", 50, true);
+    row("prior of rotation", 20, false);
+    row("prior of time offset", 10, false);
   }
   void firstReason_namesTheCause() {
     QFETCH(QString, name);
@@ -66,6 +71,24 @@ class TestCauses : public QObject {
       reason = error.what();
     }
     QVERIFY2(perturbation.isNamedIn(test::firstReason(reason)), reason.c_str());
+  }
+
+  // Seed 3 turns more about one axis than about the others, and a mirrored gyroscope leaves a third unexplained.
+  void leftHandedAxes_areNamedWhereOneAxisOutweighs() {
+    test::Recorded other = base_;
+    other.scenario.seed = 3;
+    other.pass = test::perfectPass(other.scenario, 0.05, 0.02);
+    for (const char* name : {"both mirrored", "gyroscope swapped", "rates negated"}) {
+      test::Recorded recorded = other;
+      const test::Perturbation& perturbation = test::perturbation(name);
+      perturbation.apply(recorded, 1.0);
+      try {
+        calibrate(recorded.session, recorded.pass, RunContext{});
+        QFAIL(name);
+      } catch (const CalibrationError& error) {
+        QVERIFY2(perturbation.isNamedIn(test::firstReason(error.what())), error.what());
+      }
+    }
   }
 
   // What is an unknown with a sigma is found instead of complained about.
