@@ -25,6 +25,7 @@ class InputFile {
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
 
+  const std::filesystem::path& folder() const { return folder_; }
   const std::filesystem::path& write(const std::uint8_t* data, std::size_t size) const {
     std::ofstream file(path_, std::ios::binary);
     file.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));

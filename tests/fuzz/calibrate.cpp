@@ -1,0 +1,21 @@
+// Recordings that parse but lie go the whole way from file to verdict: bytes are lies (tests/support/lying_recording.h).
+// Ends in a result or in words, within the fuzzer's bounds of time and memory.
+#include "core/base/error.h"
+#include "core/pipeline/calibration_pipeline.h"
+#include "tests/fuzz/input_file.h"
+#include "tests/support/lying_recording.h"
+
+#include <cstdlib>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const evical::fuzz::InputFile place("unused");
+  static const evical::test::LyingRecording lying(place.folder());
+  try {
+    const evical::CalibrationRun run = evical::calibrate(lying.tell({data, size}), evical::RunContext{});
+    for (const evical::CameraState& camera : run.result.state.cameras)
+      if (!camera.reference_from_camera.translation_m.allFinite()) std::abort();
+  } catch (const evical::CalibrationError&) {
+    // what lies are answered with
+  }
+  return 0;
+}
