@@ -366,11 +366,13 @@ class Calibration {
   }
 
   // A board that is far off is told by the first look, which nothing pulls towards what was given; but that look is
-  // led astray by a stretch, or by a lens that the batch has put right since.
+  // led astray by a stretch, or by a lens or a late accelerometer that the batch has put right since.
   std::string boardDoubt(const UncertaintyEstimate& uncertainty, const CalibrationState& state) const {
-    constexpr double kAnotherLens_px = 1.0;
+    constexpr double kAnotherLens_px = 1.0, kLate_s = 2e-3;
     const bool led_astray =
         !uncertainty.stretch_doubt.empty() ||
+        std::any_of(state.imus.begin(), state.imus.end(),
+                    [](const ImuState& imu) { return std::abs(imu.accelerometer_delay_s) > kLate_s; }) ||
         std::any_of(state.cameras.begin(), state.cameras.end(), [](const CameraState& camera) {
           const CameraLens& lens = camera.lens;
           return lens.solved && projectionDifference(*lens.seen_with, *lens.solved).rms_px > kAnotherLens_px;

@@ -91,6 +91,17 @@ class TestCauses : public QObject {
     }
   }
 
+  // The first look at the board takes accelerations for those of their stamps: in seed 5 it seems 3 % smaller.
+  void lateAccelerometer_isNoWrongBoard() {
+    test::Recorded recorded = base_;
+    recorded.scenario.seed = 5;
+    recorded.pass = test::perfectPass(recorded.scenario, 0.05, 0.02);
+    test::perturbation("accelerometer late").apply(recorded, 5.0);
+    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+    QVERIFY2(run.result.status == CalibrationStatus::Ok, run.result.reason.c_str());
+    expectRight(recorded, run);
+  }
+
   // What is an unknown with a sigma is found instead of complained about.
   void whatIsAnUnknown_isRepaired_data() {
     QTest::addColumn<QString>("name");
