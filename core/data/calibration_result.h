@@ -24,7 +24,7 @@ struct CameraUncertainty {
   Eigen::Vector3d translation_std_m = Eigen::Vector3d::Zero();  // in the reference
   double time_offset_std_s = 0.0;
   double edge_lead_std_px = 0.0;
-  double edge_lead_growth_std_px = 0.0;
+  double slow_edge_lead_std_px = 0.0;
   // Of the lens in use where this recording told it, in the order of IntrinsicsJacobian (camera_model.h); 0
   // where a coefficient is held.
   std::optional<std::array<double, 9>> intrinsics_std = {};

@@ -17,9 +17,9 @@ namespace evical {
 
 struct CameraState {
   RigidTransform reference_from_camera;
-  double time_offset_s = 0.0;  // see referenceTime_s
-  double edge_lead_px = 0.0;   // measured centres lie this far ahead along their image motion, at 100 px/s
-  double edge_lead_growth_px = 0.0;    // for each factor e of speed
+  double time_offset_s = 0.0;          // see referenceTime_s
+  double edge_lead_px = 0.0;           // measured centres lie this far ahead along their image motion
+  double slow_edge_lead_px = 0.0;      // this much further, near standstill
   CameraLens lens = {};                // `solved` where its intrinsics are estimated
   double time_offset_drift_ppm = 0.0;  // where it is solved for
   double time_offset_at_s = 0.0;       // the camera's time at which the offset is time_offset_s

@@ -24,7 +24,6 @@ struct IntrinsicsOptions {
   double outlier_view_fraction;
   double least_centre_sigma_px;
   double edge_lead_sigma_px;
-  double rest_speed_px_s;
   double correlation_time_s;
   int max_iterations;
   int most_passes;

@@ -24,9 +24,7 @@ SensorCircle sensorCircle(const CircleObservation& circle, double time_s, const 
   const double floor_px2 = options.least_centre_sigma_px * options.least_centre_sigma_px;
   out.covariance_px2 = sensor_from_ideal * circle.covariance_px2 * sensor_from_ideal.transpose() +
                        floor_px2 * Eigen::Matrix2d::Identity();
-  const double speed_px_s = (sensor_from_ideal * circle.velocity_px_s).norm();
-  const double moving = speed_px_s / std::hypot(speed_px_s, options.rest_speed_px_s);
-  out.lead_effect = moving * (sensor_from_ideal * circle.edge_lead_effect);
+  out.lead_effect = sensor_from_ideal * circle.edge_lead_effect;
   return out;
 }
 

@@ -25,7 +25,7 @@ enum Block {
   kTimeOffset,
   kTimeOffsetDrift,
   kEdgeLead,
-  kEdgeLeadGrowth,
+  kSlowEdgeLead,
   kBoardScale,
   kBoardStretch,
   kIntrinsics,  // where they are free
@@ -54,7 +54,7 @@ struct Mount {
         camera_in_imu(parameters[kCameraTranslation]),
         time_offset_s(*parameters[kTimeOffset]),
         time_offset_drift_ppm(*parameters[kTimeOffsetDrift]),
-        lead{*parameters[kEdgeLead], *parameters[kEdgeLeadGrowth]},
+        lead{*parameters[kEdgeLead], *parameters[kSlowEdgeLead]},
         board{*parameters[kBoardScale], *parameters[kBoardStretch]} {}
 };
 
@@ -119,8 +119,8 @@ void writeJacobians(const Mount& mount, const PlacedCircle& placed, const Projec
         by_board * Vector2d(0.5 * mount.board.scale * circle.on_board_m.x(),
                             -0.5 * mount.board.scale * circle.on_board_m.y());
   if (jacobians[kEdgeLead]) jacobianRows<2, 1>(jacobians, kEdgeLead, row) = by_px * circle.lead.of_lead;
-  if (jacobians[kEdgeLeadGrowth])
-    jacobianRows<2, 1>(jacobians, kEdgeLeadGrowth, row) = by_px * circle.lead.of_growth;
+  if (jacobians[kSlowEdgeLead])
+    jacobianRows<2, 1>(jacobians, kSlowEdgeLead, row) = by_px * circle.lead.of_slow;
 }
 
 }  // namespace

@@ -56,7 +56,8 @@ std::vector<CircleError> circleErrors(const CalibrationInput& input, const Calib
                                             timeOffsetAt_s(camera_state, circle.time_s), circle.time_s),
                             input.board, state.board);
         if (centre_px) {
-          const EdgeLeadEffect lead = edgeLeadEffect(*camera.lens.seen_with, circle, options.rest_speed_px_s);
+          const EdgeLeadEffect lead =
+              edgeLeadEffect(*camera.lens.seen_with, circle, options.slow_edge_speed_px_s);
           error.error_px = *centre_px + edgeLeadOf(camera_state).times(lead) - circle.centre_px;
           const Eigen::Matrix2d covariance = circle.covariance_px2 + floor_px2 * Eigen::Matrix2d::Identity();
           error.normalised2 = error.error_px.dot(covariance.inverse() * error.error_px);

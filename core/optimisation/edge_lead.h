@@ -1,8 +1,7 @@
 // What an edge lead does to a measured ellipse centre. Which way and how far the centre moves for each
 // pixel of lead, the measurement itself says: that depends on the ellipse's shape, on which of its arcs
-// fired, and on the lens. The lead of real pixels is not quite the same at every speed: it may grow with
-// the logarithm of the speed, around 100 px/s on the sensor, and fades out near standstill, where edges
-// turn back within a burst.
+// fired, and on the lens. The lead is one length at all speeds but the lowest: slow edges, which turn back and
+// whose bursts noise joins, are seen a little further behind (docs/maths.md, 9.1).
 #pragma once
 
 #include "core/data/board_observations.h"
@@ -16,29 +15,26 @@
 namespace evical {
 
 struct EdgeLeadEffect {
-  Eigen::Vector2d of_lead, of_growth;  // px per px
+  Eigen::Vector2d of_lead, of_slow;  // px per px
 };
 
-// A camera's lead at 100 px/s, and its growth.
+// A camera's lead, and what edges that hardly move add to it.
 struct EdgeLead {
-  double lead_px, growth_px;
+  double lead_px, slow_px;
 
   Eigen::Vector2d times(const EdgeLeadEffect& effect) const {
-    return lead_px * effect.of_lead + growth_px * effect.of_growth;
+    return lead_px * effect.of_lead + slow_px * effect.of_slow;
   }
 };
 inline EdgeLead edgeLeadOf(const CameraState& camera) {
-  return {camera.edge_lead_px, camera.edge_lead_growth_px};
+  return {camera.edge_lead_px, camera.slow_edge_lead_px};
 }
 
 inline EdgeLeadEffect edgeLeadEffect(const CameraIntrinsics& camera, const CircleObservation& circle,
-                                     double rest_speed_px_s) {
-  constexpr double kReferenceSpeed_px_s = 100.0;
+                                     double slow_edge_speed_px_s) {
   const Eigen::Matrix2d stretch = idealPixelScale(camera, circle.centre_px);
   const double speed_px_s = (stretch.inverse() * circle.velocity_px_s).norm();
-  const double with_rest_px_s = std::hypot(speed_px_s, rest_speed_px_s);
-  const Eigen::Vector2d effect = speed_px_s / with_rest_px_s * circle.edge_lead_effect;
-  return {effect, std::log(with_rest_px_s / kReferenceSpeed_px_s) * effect};
+  return {circle.edge_lead_effect, std::exp(-speed_px_s / slow_edge_speed_px_s) * circle.edge_lead_effect};
 }
 
 }  // namespace evical

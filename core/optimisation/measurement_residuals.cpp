@@ -38,7 +38,7 @@ CircleMeasurement circleOf(const ProblemBuilder& builder, std::size_t camera, st
   m.on_board_m = builder.input.board.centre_m(observed.circle);
   m.centre_px = observed.centre_px;
   m.whitening_px = covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity());
-  m.lead = edgeLeadEffect(*data.lens.seen_with, observed, builder.options.rest_speed_px_s);
+  m.lead = edgeLeadEffect(*data.lens.seen_with, observed, builder.options.slow_edge_speed_px_s);
   m.pixel_error_px = pixel_errors.at(observed);
   m.view = static_cast<int>(view);
   m.circle = static_cast<int>(circle);
@@ -203,8 +203,8 @@ void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& 
     parameters.appendPosition(segment, blocks);
     blocks.insert(blocks.end(), {state.reference_from_camera.rotation.coeffs().data(),
                                  state.reference_from_camera.translation_m.data(), &state.time_offset_s,
-                                 &state.time_offset_drift_ppm, &state.edge_lead_px,
-                                 &state.edge_lead_growth_px, &board.scale, &board.stretch});
+                                 &state.time_offset_drift_ppm, &state.edge_lead_px, &state.slow_edge_lead_px,
+                                 &board.scale, &board.stretch});
     if (IntrinsicsBlock* intrinsics = parameters.intrinsics(camera)) blocks.push_back(intrinsics->data());
     builder.residuals.push_back({builder.problem.AddResidualBlock(cost, nullptr, blocks), SensorKind::Circles,
                                  camera, begin_s, cost});

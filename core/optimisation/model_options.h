@@ -22,7 +22,7 @@ struct ModelOptions {
   int most_bias_knots;
   double gyroscope_random_walk;
   double accelerometer_random_walk;
-  double rest_speed_px_s;
+  double slow_edge_speed_px_s;
   double least_centre_sigma_px;
   double huber_sigma;
   double outlier_sigma;

@@ -12,7 +12,7 @@ struct PriorOptions {
   double camera_principal_point_sigma_px;
   double camera_distortion_sigma;
   double edge_lead_sigma_px;
-  double edge_lead_growth_sigma_px;
+  double slow_edge_lead_sigma_px;
   double time_offset_drift_sigma_ppm;
   double mapping_sigma;
   double gyroscope_rotation_sigma_deg;

@@ -47,8 +47,7 @@ void addCameraPriors(ProblemBuilder& builder) {
   std::vector<CameraState>& cameras = builder.parameters.moved().cameras;
   for (CameraState& camera : cameras) {
     addPrior(builder, &camera.edge_lead_px, 1, kZero.data(), builder.options.edge_lead_sigma_px);
-    addPrior(builder, &camera.edge_lead_growth_px, 1, kZero.data(),
-             builder.options.edge_lead_growth_sigma_px);
+    addPrior(builder, &camera.slow_edge_lead_px, 1, kZero.data(), builder.options.slow_edge_lead_sigma_px);
   }
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     IntrinsicsBlock* block = builder.parameters.intrinsics(i);

@@ -307,7 +307,7 @@ void DetectionScreen::refresh() {
   if (run && frame && shown(Layer::Reprojection)) {
     reprojection = reprojectBoard(run->result.state, camera_, run_session_.board, frame->time_s,
                                   viewAt(run->pass.cameras, camera_, frame->time_s),
-                                  run_session_.options.optimisation.rest_speed_px_s);
+                                  run_session_.options.optimisation.slow_edge_speed_px_s);
   }
   view_->setOverlay([analysis = here ? analysis_ : nullptr, layers = layers_,
                      reprojection = std::move(reprojection)](QPainter& painter, double scale) {

@@ -203,10 +203,10 @@ std::optional<QPolygonF> imageOf(int circle, const RigidTransform& camera_from_w
 
 // By circle, in ideal pixels; only of those that were measured.
 std::map<int, Eigen::Vector2d> idealLeads(const CameraState& camera, const CameraIntrinsics& intrinsics,
-                                          const BoardView& view, double rest_speed_px_s) {
+                                          const BoardView& view, double slow_edge_speed_px_s) {
   std::map<int, Eigen::Vector2d> leads;
   for (const CircleObservation& circle : view.circles) {
-    const EdgeLeadEffect effect = edgeLeadEffect(intrinsics, circle, rest_speed_px_s);
+    const EdgeLeadEffect effect = edgeLeadEffect(intrinsics, circle, slow_edge_speed_px_s);
     leads[circle.circle] = edgeLeadOf(camera).times(effect);
   }
   return leads;
@@ -300,7 +300,7 @@ std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t
 
 std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera,
                                       const CircleBoard& board, double time_s, const BoardView& view,
-                                      double rest_speed_px_s) {
+                                      double slow_edge_speed_px_s) {
   std::vector<QPolygonF> outlines;
   if (camera >= state.cameras.size()) return outlines;
   const CameraState& own = state.cameras[camera];
@@ -311,7 +311,8 @@ std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t
   const RigidTransform camera_from_world =
       cameraFromWorld(state.world_from_imu_rotation, state.imu_in_world_m, own.reference_from_camera,
                       timeOffsetAt_s(own, time_s), time_s);
-  const std::map<int, Eigen::Vector2d> leads = idealLeads(own, *own.lens.seen_with, view, rest_speed_px_s);
+  const std::map<int, Eigen::Vector2d> leads =
+      idealLeads(own, *own.lens.seen_with, view, slow_edge_speed_px_s);
   for (int circle = 0; circle < board.circleCount(); ++circle) {
     const auto outline = imageOf(circle, camera_from_world, *own.lens.inUse(), board);
     const auto lead = leads.find(circle);

@@ -39,7 +39,7 @@ std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t
 // Where they are expected to be measured: ahead by the camera's edge lead, of which the view says which way.
 std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera,
                                       const CircleBoard& board, double time_s, const BoardView& view,
-                                      double rest_speed_px_s);
+                                      double slow_edge_speed_px_s);
 
 // `scale` is widget pixels per sensor pixel. The analysis may be null.
 void paintLayers(QPainter& painter, double scale, const LayerSet& visible, const WindowAnalysis* analysis,

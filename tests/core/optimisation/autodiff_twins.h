@@ -250,7 +250,7 @@ struct CircleTwin {
     for (std::size_t i = 0; i < circles.size(); ++i) {
       const CircleMeasurement& circle = circles[i];
       const Eigen::Matrix<T, 2, 1> lead = p[12][0] * circle.lead.of_lead.template cast<T>() +
-                                          p[13][0] * circle.lead.of_growth.template cast<T>();
+                                          p[13][0] * circle.lead.of_slow.template cast<T>();
       Eigen::Matrix<T, 2, 1> error = circle.whitening_px.template cast<T>() *
                                      (idealPixelOf(p, circle) + lead - circle.centre_px.template cast<T>());
       const T length = sqrt(error.squaredNorm());

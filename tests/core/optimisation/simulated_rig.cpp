@@ -345,7 +345,7 @@ Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const Calibrati
     appendTransform(estimate.cameras[i].reference_from_camera, truth.cameras[i].reference_from_camera);
     appendClock(estimate.cameras[i], truth.cameras[i]);
     errors.push_back(estimate.cameras[i].edge_lead_px - truth.cameras[i].edge_lead_px);
-    errors.push_back(estimate.cameras[i].edge_lead_growth_px - truth.cameras[i].edge_lead_growth_px);
+    errors.push_back(estimate.cameras[i].slow_edge_lead_px - truth.cameras[i].slow_edge_lead_px);
     if (!estimate.cameras[i].lens.solved) continue;
     const CameraIntrinsics &a = *estimate.cameras[i].lens.solved, &b = truth.cameras[i].lens.solved.value();
     append(a.focal_length_px - b.focal_length_px);

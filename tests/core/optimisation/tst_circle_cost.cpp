@@ -130,7 +130,7 @@ class TestCircleCost : public QObject {
         *projectedCircleCentre(model.camera, camera_from_world,
                                BoardState{blocks[14][0], blocks[15][0]}.place_m(circle.on_board_m),
                                model.radius_m) +
-        blocks[12][0] * circle.lead.of_lead + blocks[13][0] * circle.lead.of_growth;
+        blocks[12][0] * circle.lead.of_lead + blocks[13][0] * circle.lead.of_slow;
     QVERIFY(residualsAt(CircleCost(model, segmentTimes(), {circle}), blocks).norm() < 1e-9);
   }
 

@@ -203,7 +203,7 @@ class TestQuantities : public QObject {
     NamedResult other = result;
     CameraState& camera = test::ownResult(other).state.cameras[0];
     camera.edge_lead_px += 0.25;
-    camera.edge_lead_growth_px -= 0.125;
+    camera.slow_edge_lead_px -= 0.125;
     const auto found = [](const TruthComparison& comparison, const std::string& name) {
       for (const QuantityDifference& each : comparison.quantities)
         if (each.name == name) return each;
@@ -211,10 +211,10 @@ class TestQuantities : public QObject {
     };
     const TruthComparison comparison = compareWithTruth(other, result);
     const QuantityDifference lead = found(comparison, "left.edge_lead");
-    const QuantityDifference growth = found(comparison, "left.edge_lead_growth");
-    QVERIFY(std::abs(lead.difference - 0.25) < 1e-12 && std::abs(growth.difference + 0.125) < 1e-12);
+    const QuantityDifference slow = found(comparison, "left.slow_edge_lead");
+    QVERIFY(std::abs(lead.difference - 0.25) < 1e-12 && std::abs(slow.difference + 0.125) < 1e-12);
     QCOMPARE(lead.sigma, result.result->uncertainty.cameras[0].edge_lead_std_px);
-    QCOMPARE(growth.sigma, result.result->uncertainty.cameras[0].edge_lead_growth_std_px);
+    QCOMPARE(slow.sigma, result.result->uncertainty.cameras[0].slow_edge_lead_std_px);
     QCOMPARE(QString::fromStdString(lead.unit), QString("px"));
     NamedResult truth = result;
     test::ownResult(truth).uncertainty = {};

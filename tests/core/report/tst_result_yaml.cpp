@@ -42,7 +42,7 @@ NamedResult sample() {
                                     {0.01, -1.0 / 3.0, 1e-9}};
     camera.time_offset_s = 0.1 / 3.0;
     camera.edge_lead_px = -0.021;
-    camera.edge_lead_growth_px = 0.003;
+    camera.slow_edge_lead_px = 0.003;
     result.state.cameras.push_back(camera);
     ImuState imu;
     if (i == 1) imu.reference_from_imu = {quaternionExp(Eigen::Vector3d(0.0, 0.2, 0.0)), {0.1, 0.0, 0.0}};
@@ -128,7 +128,7 @@ class TestResultYaml : public QObject {
       const auto& lens_std = written.result->uncertainty.cameras[i].intrinsics_std;
       QVERIFY(read.result->uncertainty.cameras[i].intrinsics_std == lens_std);
       QVERIFY(a.time_offset_s == b.time_offset_s && a.edge_lead_px == b.edge_lead_px &&
-              a.edge_lead_growth_px == b.edge_lead_growth_px);
+              a.slow_edge_lead_px == b.slow_edge_lead_px);
       const ImuState &c = written.result->state.imus[i], &d = read.result->state.imus[i];
       QVERIFY(c.gyroscope_bias_rad_s == d.gyroscope_bias_rad_s && c.gyroscope_mapping == d.gyroscope_mapping);
       QVERIFY(c.accelerometer_mapping == d.accelerometer_mapping);
