@@ -48,6 +48,7 @@ struct ImuUncertainty {
 
 struct BoardUncertainty {
   double scale_std = 0.0, stretch_std = 0.0;
+  double row_curvature_std_1_m = 0.0, column_curvature_std_1_m = 0.0, twist_std_1_m = 0.0;
 };
 
 // Over all calibrated quantities, in one order that `names` gives ("left.rotation.x [rad]", ...).

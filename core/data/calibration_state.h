@@ -78,13 +78,16 @@ inline double accelerometerTime_s(const ImuState& imu, double imu_time_s) {
 }
 
 // The board as it is, against what is said of it (circle_board.h): a point (x, y) of it lies at
-// scale ((1 + stretch / 2) x, (1 - stretch / 2) y).
+// scale ((1 + stretch / 2) x, (1 - stretch / 2) y), and behind the plane that touches it at its origin by
+// (row_curvature x^2 + column_curvature y^2) / 2 + twist x y: a sheet that is bent about any one axis.
 struct BoardState {
   double scale = 1.0, stretch = 0.0;
+  double row_curvature_1_m = 0.0, column_curvature_1_m = 0.0, twist_1_m = 0.0;
 
-  Eigen::Vector2d place_m(const Eigen::Vector2d& on_board_m) const {
-    return scale *
-           Eigen::Vector2d((1.0 + 0.5 * stretch) * on_board_m.x(), (1.0 - 0.5 * stretch) * on_board_m.y());
+  Eigen::Vector3d place_m(const Eigen::Vector2d& on_board_m) const {
+    const double x = on_board_m.x(), y = on_board_m.y();
+    return {scale * (1.0 + 0.5 * stretch) * x, scale * (1.0 - 0.5 * stretch) * y,
+            0.5 * (row_curvature_1_m * x * x + column_curvature_1_m * y * y) + twist_1_m * x * y};
   }
 };
 

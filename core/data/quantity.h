@@ -42,7 +42,8 @@ enum class QuantityRelease {
   ImuIntrinsics,
   GyroscopeRotation,
   TimeOffsetDrift,
-  BoardSize
+  BoardSize,
+  BoardBow
 };
 
 // When there is something to compare or to show.
@@ -211,6 +212,22 @@ constexpr QuantityInfo mappingInfo(const char* name, const char* sensor) {
           .std_key = "mapping_std"};
 }
 
+constexpr QuantityInfo curvatureInfo(const char* name, const char* title, const char* key,
+                                     const char* std_key) {
+  return {.name = name,
+          .title = title,
+          .owner = QuantityOwner::Board,
+          .shape = QuantityShape::Scalar,
+          .unit = "1/m",
+          .shown_unit = "1/m",
+          .comparable_unit = 1e-2,
+          .release = QuantityRelease::BoardBow,
+          .presence = QuantityPresence::WhereEstimated,
+          .written = QuantityWriting::WherePresent,
+          .key = key,
+          .std_key = std_key};
+}
+
 }  // namespace detail
 
 inline constexpr auto kCameraQuantities = std::tuple{
@@ -332,31 +349,39 @@ inline constexpr auto kImuQuantities = std::tuple{
                 &ImuState::gyroscope_from_accelerometer, &ImuUncertainty::gyroscope_rotation_std_rad,
                 &ImuPrior::gyroscope_rotation}};
 
-inline constexpr auto kBoardQuantities =
-    std::tuple{QuantityRow{QuantityInfo{.name = "scale",
-                                        .title = "size",
-                                        .owner = QuantityOwner::Board,
-                                        .shape = QuantityShape::Scalar,
-                                        .unit = "1",
-                                        .remark = "times what the session says",
-                                        .release = QuantityRelease::BoardSize,
-                                        .presence = QuantityPresence::WhereEstimated,
-                                        .written = QuantityWriting::WherePresent,
-                                        .key = "scale",
-                                        .std_key = "scale_std"},
-                           &BoardState::scale, &BoardUncertainty::scale_std, NoPrior{}},
-               QuantityRow{QuantityInfo{.name = "stretch",
-                                        .title = "stretch",
-                                        .owner = QuantityOwner::Board,
-                                        .shape = QuantityShape::Scalar,
-                                        .unit = "1",
-                                        .remark = "of its rows against its columns",
-                                        .release = QuantityRelease::BoardSize,
-                                        .presence = QuantityPresence::WhereEstimated,
-                                        .written = QuantityWriting::WherePresent,
-                                        .key = "stretch",
-                                        .std_key = "stretch_std"},
-                           &BoardState::stretch, &BoardUncertainty::stretch_std, NoPrior{}}};
+inline constexpr auto kBoardQuantities = std::tuple{
+    QuantityRow{QuantityInfo{.name = "scale",
+                             .title = "size",
+                             .owner = QuantityOwner::Board,
+                             .shape = QuantityShape::Scalar,
+                             .unit = "1",
+                             .remark = "times what the session says",
+                             .release = QuantityRelease::BoardSize,
+                             .presence = QuantityPresence::WhereEstimated,
+                             .written = QuantityWriting::WherePresent,
+                             .key = "scale",
+                             .std_key = "scale_std"},
+                &BoardState::scale, &BoardUncertainty::scale_std, NoPrior{}},
+    QuantityRow{QuantityInfo{.name = "stretch",
+                             .title = "stretch",
+                             .owner = QuantityOwner::Board,
+                             .shape = QuantityShape::Scalar,
+                             .unit = "1",
+                             .remark = "of its rows against its columns",
+                             .release = QuantityRelease::BoardSize,
+                             .presence = QuantityPresence::WhereEstimated,
+                             .written = QuantityWriting::WherePresent,
+                             .key = "stretch",
+                             .std_key = "stretch_std"},
+                &BoardState::stretch, &BoardUncertainty::stretch_std, NoPrior{}},
+    QuantityRow{detail::curvatureInfo("row_curvature", "curvature along its rows", "row_curvature_1_m",
+                                      "row_curvature_std_1_m"),
+                &BoardState::row_curvature_1_m, &BoardUncertainty::row_curvature_std_1_m, NoPrior{}},
+    QuantityRow{detail::curvatureInfo("column_curvature", "curvature along its columns",
+                                      "column_curvature_1_m", "column_curvature_std_1_m"),
+                &BoardState::column_curvature_1_m, &BoardUncertainty::column_curvature_std_1_m, NoPrior{}},
+    QuantityRow{detail::curvatureInfo("twist", "twist", "twist_1_m", "twist_std_1_m"), &BoardState::twist_1_m,
+                &BoardUncertainty::twist_std_1_m, NoPrior{}}};
 
 // The one quantity of the rig as a whole has sigmas of its own kind (UncertaintyReport), so it is no row.
 inline constexpr QuantityInfo kGravityQuantity = {.name = "gravity",

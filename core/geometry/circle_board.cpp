@@ -11,6 +11,11 @@ Eigen::Vector2d CircleBoard::centre_m(int row, int col) const {
   return {column_step * spacing_m, row * spacing_m};
 }
 
+Eigen::Vector2d CircleBoard::extent_m() const {
+  return centre_m(rows - 1, cols - 1)
+      .cwiseMax(centre_m(rows - 2, cols - 1));  // of staggered rows one ends later
+}
+
 bool CircleBoard::hasHalfTurnAmbiguity() const {
   return type == BoardType::SymmetricCircles || rows % 2 == 0;
 }

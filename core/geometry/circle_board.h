@@ -30,6 +30,9 @@ struct CircleBoard {
     return centre_m(circle_index / cols, circle_index % cols);
   }
 
+  // Between the outermost centres.
+  Eigen::Vector2d extent_m() const;
+
   // True if the pattern turned by 180 degrees is the same pattern: every symmetric board, and an asymmetric
   // one with an even number of rows. Such a board does for intrinsics only.
   bool hasHalfTurnAmbiguity() const;

@@ -124,7 +124,7 @@ std::vector<ReleaseStages> Batch::stages() const {
   std::vector<ReleaseStages> all = {ReleaseStages::Extrinsics};
   if (input_.imus.size() > 1) all.push_back(ReleaseStages::FurtherImus);
   if (!input_.imus.empty() && options_.free_imu_intrinsics) all.push_back(ReleaseStages::Mappings);
-  const bool late = options_.freesIntrinsics() || options_.free_board_size;
+  const bool late = options_.freesIntrinsics() || options_.free_board_size || options_.board_bow;
   if (late && all.back() != lastStage(options_)) all.push_back(lastStage(options_));  // that releases them
   return all;
 }

@@ -100,6 +100,7 @@ void CalibrationProblem::setManifolds(ProblemBuilder& builder) {
     const bool held =
         (release == QuantityRelease::ImuIntrinsics && builder.stage != ReleaseStages::Mappings) ||
         (release == QuantityRelease::BoardSize && !(last && options_.free_board_size)) ||
+        (release == QuantityRelease::BoardBow && !(last && options_.board_bow)) ||
         (quantity.block == &parameters_.moved().board.scale && builder.scaleIsHeld()) ||
         (quantity.info->owner == QuantityOwner::Imu &&
          quantity.block == &parameters_.moved().imus[quantity.sensor].accelerometer_delay_s &&

@@ -28,10 +28,13 @@ enum Block {
   kSlowEdgeLead,
   kBoardScale,
   kBoardStretch,
+  kBoardRowCurvature,
+  kBoardColumnCurvature,
+  kBoardTwist,
   kIntrinsics,  // where they are free
   kBlocks
 };
-constexpr std::array<int, kBlocks> kBlockSizes = {4, 4, 4, 4, 3, 3, 3, 3, 4, 3, 1, 1, 1, 1, 1, 1, 9};
+constexpr std::array<int, kBlocks> kBlockSizes = {4, 4, 4, 4, 3, 3, 3, 3, 4, 3, 1, 1, 1, 1, 1, 1, 1, 1, 1, 9};
 
 void writeZero(double** jacobians, int blocks, Eigen::Index row) {
   for (int block = 0; block < blocks; ++block) {
@@ -55,7 +58,8 @@ struct Mount {
         time_offset_s(*parameters[kTimeOffset]),
         time_offset_drift_ppm(*parameters[kTimeOffsetDrift]),
         lead{*parameters[kEdgeLead], *parameters[kSlowEdgeLead]},
-        board{*parameters[kBoardScale], *parameters[kBoardStretch]} {}
+        board{*parameters[kBoardScale], *parameters[kBoardStretch], *parameters[kBoardRowCurvature],
+              *parameters[kBoardColumnCurvature], *parameters[kBoardTwist]} {}
 };
 
 // One circle at its time, and what moves it.
@@ -68,8 +72,7 @@ struct PlacedCircle {
 
   void place(const Mount& mount, const Vector2d& on_board_m) {
     imu_from_world = rotation.rotation.transpose();
-    const Vector2d in_world_m = mount.board.place_m(on_board_m);
-    in_imu = imu_from_world * (Vector3d(in_world_m.x(), in_world_m.y(), 0.0) - position.value);
+    in_imu = imu_from_world * (mount.board.place_m(on_board_m) - position.value);
     normal_in_imu = imu_from_world.col(2);
     in_camera = mount.camera_from_imu * (in_imu - mount.camera_in_imu);
     normal_in_camera = mount.camera_from_imu * normal_in_imu;
@@ -78,6 +81,20 @@ struct PlacedCircle {
 
 bool movesInTime(double** jacobians) {
   return jacobians && (jacobians[kTimeOffset] || jacobians[kTimeOffsetDrift]);
+}
+
+// `by_place`: derivative of the residual by where the circle is in the world.
+void writeBoardJacobians(const BoardState& board, const Vector2d& on_board_m, const Matrix23d& by_place,
+                         Eigen::Index row, double** jacobians) {
+  const double x = on_board_m.x(), y = on_board_m.y();
+  const auto write = [&](Block block, const Vector3d& place_by_block) {
+    if (jacobians[block]) jacobianRows<2, 1>(jacobians, block, row) = by_place * place_by_block;
+  };
+  write(kBoardScale, {(1.0 + 0.5 * board.stretch) * x, (1.0 - 0.5 * board.stretch) * y, 0.0});
+  write(kBoardStretch, {0.5 * board.scale * x, -0.5 * board.scale * y, 0.0});
+  write(kBoardRowCurvature, {0.0, 0.0, 0.5 * x * x});
+  write(kBoardColumnCurvature, {0.0, 0.0, 0.5 * y * y});
+  write(kBoardTwist, {0.0, 0.0, x * y});
 }
 
 // `by_px`: derivative of the residual with respect to the predicted centre.
@@ -110,14 +127,7 @@ void writeJacobians(const Mount& mount, const PlacedCircle& placed, const Projec
     if (jacobians[kTimeOffsetDrift])
       jacobianRows<2, 1>(jacobians, kTimeOffsetDrift, row) = circle.by_drift_s * by_time;
   }
-  const auto by_board = -by_position.leftCols<2>();  // the circle moves where the IMU does not
-  if (jacobians[kBoardScale])
-    jacobianRows<2, 1>(jacobians, kBoardScale, row) =
-        by_board * mount.board.place_m(circle.on_board_m) / mount.board.scale;
-  if (jacobians[kBoardStretch])
-    jacobianRows<2, 1>(jacobians, kBoardStretch, row) =
-        by_board * Vector2d(0.5 * mount.board.scale * circle.on_board_m.x(),
-                            -0.5 * mount.board.scale * circle.on_board_m.y());
+  writeBoardJacobians(mount.board, circle.on_board_m, -by_position, row, jacobians);
   if (jacobians[kEdgeLead]) jacobianRows<2, 1>(jacobians, kEdgeLead, row) = by_px * circle.lead.of_lead;
   if (jacobians[kSlowEdgeLead])
     jacobianRows<2, 1>(jacobians, kSlowEdgeLead, row) = by_px * circle.lead.of_slow;

@@ -12,8 +12,9 @@
 //
 // Blocks: 4 rotation control points (x y z w), 4 position control points [m], reference_from_camera
 // rotation (x y z w) and translation [m], time offset [s] and its drift [ppm], edge lead [px] and
-// that of slow edges [px], the board's scale and stretch (BoardState; its circles keep the radius that was given, which
-// changes their centres by far less than could be seen); where intrinsics are free also those, fx fy cx cy
+// that of slow edges [px], the board's scale, stretch, two curvatures and twist [1/m] (BoardState; its circles keep the
+// radius that was given and the plane's normal, which changes their centres by far less than could be seen); where
+// intrinsics are free also those, fx fy cx cy
 // d0..d4. Without unit.
 // Quaternion blocks as in so3_manifold.h.
 //

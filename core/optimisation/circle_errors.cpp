@@ -21,14 +21,12 @@ std::optional<Eigen::Vector2d> predictedCentre(const CameraData& camera, const C
                                                const CircleObservation& circle,
                                                const RigidTransform& camera_from_world,
                                                const CircleBoard& board, const BoardState& board_state) {
-  const Eigen::Vector2d on_board_m = board_state.place_m(board.centre_m(circle.circle));
-  if (!state.lens.solved)
-    return projectedCircleCentre(*camera.lens.seen_with, camera_from_world, on_board_m, board.radius_m);
-  const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();
-  const Eigen::Vector3d in_camera_m = rotation.leftCols<2>() * on_board_m + camera_from_world.translation_m;
-  const auto projected =
-      projectCircleBeside(seenCentre(*camera.lens.seen_with, circle.centre_px), *state.lens.solved,
-                          in_camera_m, rotation.col(2), board.radius_m);
+  const Eigen::Vector3d in_camera_m = camera_from_world * board_state.place_m(board.centre_m(circle.circle));
+  const Eigen::Vector3d normal = camera_from_world.rotation * Eigen::Vector3d::UnitZ();
+  const auto projected = state.lens.solved
+                             ? projectCircleBeside(seenCentre(*camera.lens.seen_with, circle.centre_px),
+                                                   *state.lens.solved, in_camera_m, normal, board.radius_m)
+                             : projectCircle(*camera.lens.seen_with, in_camera_m, normal, board.radius_m);
   return projected ? std::optional(projected->centre_px) : std::nullopt;
 }
 

@@ -28,6 +28,8 @@ bool isReleased(const QuantityInfo& info, const OptimisationOptions& options, bo
       return options.free_imu_intrinsics && (options.gyroscope_rotation || weighed);
     case QuantityRelease::BoardSize:
       return options.free_board_size;
+    case QuantityRelease::BoardBow:
+      return options.board_bow;
     case QuantityRelease::TimeOffsetDrift:
       break;
   }

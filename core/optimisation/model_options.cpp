@@ -26,6 +26,10 @@ constexpr std::tuple kModelFields{
            "Estimate the board's size and its stretch about what the session says, so that translations' "
            "sigmas say what its measurement leaves open.",
            Level::Common},
+    Switch{"board_bow", &ModelOptions::board_bow, true,
+           "Estimate how the board is bent along its rows and its columns, and twisted, as a sheet is that "
+           "comes off; a board that is taken for flat is tested all the same.",
+           Level::Common},
     Choice{
         "camera_intrinsics", &ModelOptions::camera_intrinsics, CameraIntrinsicsChoice::Free,
         std::array{"fixed", "free"},

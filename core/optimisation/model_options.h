@@ -14,6 +14,7 @@ struct ModelOptions {
   bool free_imu_intrinsics;
   bool free_gravity_norm;
   bool free_board_size;
+  bool board_bow;
   CameraIntrinsicsChoice camera_intrinsics;
   bool gyroscope_rotation;
   double delay_misfit;

@@ -37,6 +37,8 @@ constexpr std::tuple kPriorFields{
           "How well the board was measured, relative: prior on its size; the session's board.spacing_std. A "
           "ruler over the whole board tells 0.1 to 0.2 %.",
           Level::Common},
+    Field{"board_bow_sigma_mm", &PriorOptions::board_bow_sigma_mm, 2.0, within(1e-4, 1e4), "mm",
+          "Prior around 0 on how far the middle of the board stands out over each of its lengths."},
     Field{
         "smooth_rotation_rad_s2", &PriorOptions::smooth_rotation_rad_s2, 200.0, within(0.1, 1e6), "rad/s^2",
         "Without an IMU: angular accelerations at each knot are 0 +- smooth_unevenness times their RMS where "

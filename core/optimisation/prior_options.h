@@ -22,6 +22,7 @@ struct PriorOptions {
   double translation_sigma_m;
   double gravity_norm_sigma_m_s2;
   double board_spacing_sigma;
+  double board_bow_sigma_mm;
   double smooth_rotation_rad_s2;
   double smooth_position_m_s2;
   double smooth_unevenness;

@@ -1,5 +1,6 @@
 #include "core/optimisation/prior_residuals.h"
 
+#include "core/data/board_bow.h"
 #include "core/numerics/angles.h"
 #include "core/optimisation/bias_knots.h"
 #include "core/optimisation/known_values.h"
@@ -132,8 +133,16 @@ void addKnownValues(ProblemBuilder& builder, const Rows& rows, const Prior& prio
 
 // How far the board may be from what is said of it: both of its directions were measured.
 void addBoardPriors(ProblemBuilder& builder) {
-  if (!builder.options.free_board_size) return;
   BoardState& board = builder.parameters.moved().board;
+  const auto addBow = [&](double& curvature_1_m, const QuantityInfo& info) {
+    const double height_m = 1e-3 * builder.options.board_bow_sigma_mm;
+    addPrior(builder, &curvature_1_m, 1, kZero.data(), height_m / bowHeight_m2(info, builder.input.board));
+  };
+  if (builder.options.board_bow)
+    forEachQuantity(kBoardQuantities, [&](const auto& row) {
+      if (row.info.release == QuantityRelease::BoardBow) addBow(row.value(board), row.info);
+    });
+  if (!builder.options.free_board_size) return;
   constexpr double kSize = 1.0;
   addPrior(builder, &board.scale, 1, &kSize, builder.options.board_spacing_sigma);
   addPrior(builder, &board.stretch, 1, kZero.data(), boardStretchSigma(builder.options));

@@ -25,6 +25,11 @@ constexpr std::tuple kVerdictFields{
           "doubtful."},
     Field{"wrong_lens_px", &VerdictOptions::wrong_lens_px, 0.2, within(0.0, 1000.0), "px",
           "RMS over the image by which it projects elsewhere."},
+    Field{"bent_board_sigmas", &VerdictOptions::bent_board_sigmas, 6.0, within(1.0, 1000.0), "sigma",
+          "A board that is taken for flat, but seems bent beyond this and bent_board_mm, makes the result "
+          "doubtful."},
+    Field{"bent_board_mm", &VerdictOptions::bent_board_mm, 0.3, within(0.0, 1000.0), "mm",
+          "How far its middle stands out over its length."},
     Field{
         "doubtful_scale_sigmas", &VerdictOptions::doubtful_scale_sigmas, 3.0, within(1.0, 1000.0), "sigma",
         "A board, or a gravity, that lies further from what was given than this makes the result doubtful."},

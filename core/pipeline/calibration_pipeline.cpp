@@ -349,10 +349,12 @@ class Calibration {
     addDoubt(priors.doubt, result);
     addDoubt(boardDoubt(uncertainty, solution.state), result);
     addDoubt(uncertainty.stretch_doubt, result);
+    addDoubt(uncertainty.bow_doubt, result);
     addDoubt(uncertainty.wrong_lenses, result);
     addDoubt(clock_doubt_, result);
     // A prior that is far off looks like a turned gyroscope, too.
-    judge(solution, priors.doubt.empty() ? uncertainty.turned_gyroscopes : std::string());
+    const std::string turned = priors.doubt.empty() ? uncertainty.turned_gyroscopes : std::string();
+    judge(solution, uncertainty.bent_board.empty() ? turned : uncertainty.bent_board);
     if (result.status == CalibrationStatus::Doubtful) addDoubt(saturationIn(input_, options), result);
     result.state = std::move(solution.state);
     result.uncertainty = std::move(uncertainty.report);
@@ -381,17 +383,17 @@ class Calibration {
   }
 
   // What explains a misfit comes before the misfit, and a gyroscope that seems turned only where nothing else does:
-  // much that is not modelled looks like it.
-  void judge(const BatchSolution& solution, const std::string& turned_gyroscopes) {
+  // much that is not modelled looks like it, a bent board, too.
+  void judge(const BatchSolution& solution, const std::string& held) {
     const OptimisationOptions& options = session_.options.optimisation;
     const MisfitVerdict misfit = judgeMisfit(input_, solution, options);
-    if (misfit.doubt.empty() && turned_gyroscopes.empty()) return;
+    if (misfit.doubt.empty() && held.empty()) return;
     const std::optional<Cause> cause = findCause(input_, solution, options, context_);
     if (!misfit.failure.empty())
       throw calibrationFailed(session_.source.string(),
                               (cause ? cause->text + "; " : std::string()) + misfit.failure,
                               "Check the board, the lens and the streams in the session");
-    if (misfit.doubt.empty() && !cause) addDoubt(turned_gyroscopes, run_.result);
+    if (misfit.doubt.empty() && !cause) addDoubt(held, run_.result);
     addDoubt(misfit.doubt, run_.result);
     if (cause) addDoubt(cause->text, run_.result);
   }

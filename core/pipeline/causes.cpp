@@ -1,6 +1,7 @@
 #include "core/pipeline/causes.h"
 
 #include "core/base/error.h"
+#include "core/data/board_bow.h"
 #include "core/numerics/angles.h"
 #include "core/pipeline/misfit.h"
 
@@ -66,8 +67,20 @@ std::string lensWords(const CalibrationInput& input, const BatchSolution& freed)
   return text;
 }
 
-constexpr std::array<Trial, 2> kTrials = {
-    {{CauseKind::Lens, &aLensIsHeld, &releaseLenses, &lensWords,
+bool flatnessIsHeld(const BatchSolution&, const OptimisationOptions& options) {
+  return !options.board_bow;
+}
+void releaseBow(OptimisationOptions& options) {
+  options.board_bow = true;
+}
+std::string bentBoardWords(const CalibrationInput& input, const BatchSolution& freed) {
+  return bowWords(freed.state.board, input.board);
+}
+
+constexpr std::array<Trial, 3> kTrials = {
+    {{CauseKind::BentBoard, &flatnessIsHeld, &releaseBow, &bentBoardWords,
+      "lay it on glass, or calibrate with optimisation.board_bow: true"},
+     {CauseKind::Lens, &aLensIsHeld, &releaseLenses, &lensWords,
       "calibrate with optimisation.camera_intrinsics: free, and measure the board"},
      {CauseKind::GyroscopeTurned, &turnIsHeld, &releaseTurn, &turnWords,
       "calibrate with optimisation.gyroscope_rotation: true"}}};

@@ -11,7 +11,7 @@
 
 namespace evical {
 
-enum class CauseKind { GyroscopeTurned, Lens };
+enum class CauseKind { GyroscopeTurned, Lens, BentBoard };
 
 struct Cause {
   CauseKind kind;

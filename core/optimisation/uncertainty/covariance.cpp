@@ -26,6 +26,7 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   UncertaintyEstimate estimate;
   HeldDoubts held = testHeldValues(input, solution.state, information, options);
   estimate.turned_gyroscopes = std::move(held.gyroscopes);
+  estimate.bent_board = std::move(held.board);
   estimate.wrong_lenses = std::move(held.lenses);
   information = withoutNoise(withoutHeldValues(input, options, std::move(information)));
   const Eigen::MatrixXd report_from_tangent =
@@ -39,6 +40,7 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   ScaleCheck scale = checkScale(input, solution.state, covariance, options);
   estimate.scale_doubt = std::move(scale.size_doubt);
   estimate.stretch_doubt = std::move(scale.stretch_doubt);
+  estimate.bow_doubt = std::move(scale.bow_doubt);
   estimate.notes = std::move(scale.notes);
   const Observability observability =
       judgeObservability(input, solution.state, covariance, withScaleKnown(covariance), options);

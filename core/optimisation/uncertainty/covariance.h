@@ -26,9 +26,11 @@ struct UncertaintyEstimate {
   // What is doubtful of gyroscopes that seem turned: much else that is not modelled looks like it, so that it is
   // for who has ruled that out.
   std::string turned_gyroscopes;
+  std::string bent_board;          // the same of a board that is taken for flat
   std::string wrong_lenses;        // what is doubtful of lenses that are held
   std::string scale_doubt;         // of the board's size, or gravity
   std::string stretch_doubt;       // of the board's stretch
+  std::string bow_doubt;           // of how far it is bent
   std::vector<std::string> notes;  // what is worth knowing of the sigmas
 };
 

@@ -1,5 +1,6 @@
 #include "core/optimisation/uncertainty/scale_check.h"
 
+#include "core/data/board_bow.h"
 #include "core/data/quantity.h"
 
 #include <fmt/format.h>
@@ -90,6 +91,30 @@ std::string stretchDoubt(const Weighed& stretch) {
       std::abs(stretch.sigmas()));
 }
 
+// The curvatures that are certain.
+BoardState certainBow(const BoardState& found, const QuantityCovariance& covariance,
+                      const OptimisationOptions& options) {
+  BoardState bent;
+  forEachQuantity(kBoardQuantities, [&](const auto& row) {
+    const auto column = columnOf(covariance, row.info);
+    if (row.info.release != QuantityRelease::BoardBow || !column) return;
+    const double sigma = std::sqrt(std::max(0.0, covariance.covariance(*column, *column)));
+    if (std::abs(row.value(found)) > options.bent_board_sigmas * sigma) row.value(bent) = row.value(found);
+  });
+  return bent;
+}
+
+// What is bent a little is estimated, and right; what is bent a lot is no longer what was modelled.
+void checkBow(const CircleBoard& board, const BoardState& bent, const OptimisationOptions& options,
+              ScaleCheck& check) {
+  const double bow_mm = largestBow_mm(bent, board);
+  if (bow_mm < options.bent_board_mm) return;
+  if (bow_mm > options.doubtful_scale_sigmas * options.board_bow_sigma_mm)
+    check.bow_doubt = bowWords(bent, board) + ", further than is modelled well: lay it on glass";
+  else
+    check.notes.push_back(bowWords(bent, board) + ", which is estimated with the rest");
+}
+
 // "left: a board 0.1 % larger than said moves its translation by 0.68 mm"
 void addEffects(const CalibrationInput& input, const QuantityCovariance& covariance,
                 std::vector<std::string>& notes) {
@@ -124,6 +149,7 @@ ScaleCheck checkScale(const CalibrationInput& input, const CalibrationState& sta
   if (std::abs(stretched.sigmas()) > options.doubtful_scale_sigmas)
     check.stretch_doubt = stretchDoubt(stretched);
   addEffects(input, covariance, check.notes);
+  checkBow(input.board, certainBow(state.board, covariance, options), options, check);
   return check;
 }
 

@@ -13,9 +13,11 @@
 namespace evical {
 
 struct ScaleCheck {
-  std::string size_doubt;          // of the board's size, or gravity; empty without any
-  std::string stretch_doubt;       // the same of its stretch
-  std::vector<std::string> notes;  // how far a wrong measure moves each translation
+  std::string size_doubt;     // of the board's size, or gravity; empty without any
+  std::string stretch_doubt;  // the same of its stretch
+  std::string bow_doubt;      // of how far it is bent, where that is estimated
+  std::vector<std::string>
+      notes;  // how far a wrong measure moves each translation, and how the board is bent
 };
 
 // `covariance` is that of the solution `state`, whose priors are those of the options.

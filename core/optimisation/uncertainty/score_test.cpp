@@ -1,5 +1,6 @@
 #include "core/optimisation/uncertainty/score_test.h"
 
+#include "core/data/board_bow.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/projection_difference.h"
 #include "core/numerics/angles.h"
@@ -18,6 +19,7 @@ namespace {
 // Free for the test's sake, not because there is a prior to be weighed or an option that asks for it.
 bool isHeld(const Quantity& quantity, const CalibrationInput& input, const OptimisationOptions& options) {
   if (quantity.info->shape == QuantityShape::Intrinsics) return !options.freesIntrinsics();
+  if (quantity.info->release == QuantityRelease::BoardBow) return !options.board_bow;
   if (quantity.info->release != QuantityRelease::GyroscopeRotation || options.gyroscope_rotation)
     return false;
   const auto& prior = input.imus[quantity.sensor].prior.gyroscope_rotation;
@@ -110,10 +112,31 @@ void testLens(const std::string& camera, const CameraIntrinsics& held, const Ste
                   step.sigmas));
 }
 
+// Of the curvatures that are certain; which one is most is in the words.
+class BoardTest {
+ public:
+  void add(const QuantityInfo& info, const Step& step, const OptimisationOptions& options) {
+    if (step.sigmas < options.bent_board_sigmas) return;
+    sigmas_ = std::max(sigmas_, step.sigmas);
+    forEachQuantity(kBoardQuantities, [&](const auto& row) {
+      if (&row.info == &info) row.value(bent_) = step.change[0];
+    });
+  }
+  std::string doubt(const CircleBoard& board, const OptimisationOptions& options) const {
+    if (largestBow_mm(bent_, board) < options.bent_board_mm) return {};
+    return fmt::format("{} ({:.0f} sigmas): lay it on glass, or calibrate with optimisation.board_bow: true",
+                       bowWords(bent_, board), sigmas_);
+  }
+
+ private:
+  BoardState bent_;
+  double sigmas_ = 0.0;
+};
+
 }  // namespace
 
 OptimisationOptions freeToBeTested(OptimisationOptions options) {
-  options.gyroscope_rotation = true;
+  options.gyroscope_rotation = options.board_bow = true;
   options.camera_intrinsics = CameraIntrinsicsChoice::Free;
   return options;
 }
@@ -126,14 +149,18 @@ HeldDoubts testHeldValues(const CalibrationInput& input, const CalibrationState&
     if (isHeld(information.quantities[i], input, options)) held.push_back(i);
   if (held.empty()) return doubts;
   const Steps steps(information, withoutNoise(information));
+  BoardTest board;
   for (const std::size_t i : held) {
     const Quantity& quantity = information.quantities[i];
-    if (quantity.info->owner == QuantityOwner::Camera)
+    if (quantity.info->owner == QuantityOwner::Board)
+      board.add(*quantity.info, steps.of(i), options);
+    else if (quantity.info->owner == QuantityOwner::Camera)
       testLens(input.cameras[quantity.sensor].name, *state.cameras[quantity.sensor].lens.inUse(), steps.of(i),
                options, doubts.lenses);
     else
       testGyroscope(input.imus[quantity.sensor].name, steps.of(i), options, doubts.gyroscopes);
   }
+  doubts.board = board.doubt(input.board, options);
   return doubts;
 }
 

@@ -1,5 +1,5 @@
-// What is held although the recording could tell it: a gyroscope's turn against its accelerometer, and a lens.
-// Whether either is wrong is noticed by how far the estimate would step if it were free (Rao's score test),
+// What is held although the recording could tell it: a gyroscope's turn against its accelerometer, a lens, and that the
+// board is flat. Whether one of them is wrong is noticed by how far the estimate would step if it were free (Rao's score test),
 // against that step's sigma.
 #pragma once
 
@@ -20,6 +20,7 @@ OptimisationOptions freeToBeTested(OptimisationOptions options);
 struct HeldDoubts {
   std::string gyroscopes;  // turns that are certain and larger than the rotation that is needed
   std::string lenses;      // that project elsewhere, for certain and by more than wrong_lens_px
+  std::string board;       // that is bent, for certain and by more than bent_board_mm
 };
 HeldDoubts testHeldValues(const CalibrationInput& input, const CalibrationState& state,
                           const ProjectedInformation& information, const OptimisationOptions& options);

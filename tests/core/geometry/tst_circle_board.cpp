@@ -56,6 +56,15 @@ class TestCircleBoard : public QObject {
     QVERIFY((b.centre_m(2, 4) - Eigen::Vector2d(0.20, 0.10)).norm() < 1e-15);
   }
 
+  void extent_isBetweenTheOutermostCentres() {
+    const auto is = [](const Eigen::Vector2d& extent_m, double x_m, double y_m) {
+      return (extent_m - Eigen::Vector2d(x_m, y_m)).norm() < 1e-15;
+    };
+    QVERIFY(is(board(BoardType::AsymmetricCircles, 11, 4).extent_m(), 0.35, 0.50));
+    QVERIFY(is(board(BoardType::AsymmetricCircles, 4, 3).extent_m(), 0.25, 0.15));
+    QVERIFY(is(board(BoardType::SymmetricCircles, 3, 5).extent_m(), 0.20, 0.10));
+  }
+
   void index_goesByRows_andBack() {
     const CircleBoard b = board(BoardType::AsymmetricCircles, 11, 4);
     QCOMPARE(b.index(0, 3), 3);

@@ -223,7 +223,11 @@ struct CircleTwin {
     const Matrix3<T> camera_from_world = (world_from_imu * imu_from_camera).transpose();
     const Vector3<T> camera_in_world = world_from_imu * vectorAt(p[9]) + positionAt(p + 4, position_place);
     const Vector3<T> centre_in_world(p[14][0] * (1.0 + p[15][0] / 2.0) * circle.on_board_m.x(),
-                                     p[14][0] * (1.0 - p[15][0] / 2.0) * circle.on_board_m.y(), T(0.0));
+                                     p[14][0] * (1.0 - p[15][0] / 2.0) * circle.on_board_m.y(),
+                                     (p[16][0] * circle.on_board_m.x() * circle.on_board_m.x() +
+                                      p[17][0] * circle.on_board_m.y() * circle.on_board_m.y()) /
+                                             2.0 +
+                                         p[18][0] * circle.on_board_m.x() * circle.on_board_m.y());
     Matrix3<T> h = camera_from_world;
     h.col(2) = camera_from_world * (centre_in_world - camera_in_world);
     const T r2(model.radius_m * model.radius_m);
@@ -241,7 +245,7 @@ struct CircleTwin {
     const Eigen::Matrix2d ideal_from_sensor = idealPixelScale(model.camera, circle.centre_px);
     const Eigen::Vector2d seen = pixelFromIdeal(model.camera, circle.centre_px);
     const Eigen::Matrix<T, 2, 1> off =
-        pixelOf(model.camera.model, p[16], centre[0], centre[1]) - seen.template cast<T>();
+        pixelOf(model.camera.model, p[19], centre[0], centre[1]) - seen.template cast<T>();
     return circle.centre_px.template cast<T>() + ideal_from_sensor.template cast<T>() * off;
   }
 

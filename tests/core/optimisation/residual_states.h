@@ -74,8 +74,8 @@ inline Blocks circleBlocks(States& states, double step_rad) {
   blocks.push_back({0.3});  // not drawn: the Huber kink must not lie within a step of any of these draws
   blocks.push_back({states.uniform(0.3)});
   blocks.push_back({states.uniform(0.3)});
-  blocks.push_back({1.01});  // the board's scale and stretch, not drawn either
-  blocks.push_back({0.02});
+  for (const double of_board : {1.01, 0.02, 0.3, -0.2, 0.1})
+    blocks.push_back({of_board});  // not drawn either
   return blocks;
 }
 

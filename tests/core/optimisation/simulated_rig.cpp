@@ -142,8 +142,11 @@ CameraData observe(const TrueMotion& motion, const CameraState& camera, const Ci
   const auto centre = [&](double camera_time_s, int circle) {
     const RigidTransform world_from_camera =
         motion.worldFromImu(referenceTime_s(camera, camera_time_s)) * camera.reference_from_camera;
-    return projectedCircleCentre(*data.lens.seen_with, inverse(world_from_camera),
-                                 true_board.place_m(board.centre_m(circle)), board.radius_m);
+    const RigidTransform camera_from_world = inverse(world_from_camera);
+    const auto projected =
+        projectCircle(*data.lens.seen_with, camera_from_world * true_board.place_m(board.centre_m(circle)),
+                      camera_from_world.rotation * Vector3d::UnitZ(), board.radius_m);
+    return projected ? std::optional(projected->centre_px) : std::nullopt;
   };
   std::vector<Eigen::Vector2d> noise(static_cast<std::size_t>(board.circleCount()), Eigen::Vector2d::Zero());
   const double keep =
@@ -370,6 +373,11 @@ Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const Calibrati
   if (options.free_board_size) {
     errors.push_back(estimate.board.scale - truth.board.scale);
     errors.push_back(estimate.board.stretch - truth.board.stretch);
+  }
+  if (options.board_bow) {
+    errors.push_back(estimate.board.row_curvature_1_m - truth.board.row_curvature_1_m);
+    errors.push_back(estimate.board.column_curvature_1_m - truth.board.column_curvature_1_m);
+    errors.push_back(estimate.board.twist_1_m - truth.board.twist_1_m);
   }
   append(gravityTilts(truth.gravity_in_world_m_s2).transpose() *
          (estimate.gravity_in_world_m_s2.normalized() - truth.gravity_in_world_m_s2.normalized()));

@@ -45,6 +45,14 @@ test::RigOptions boardOf(double scale, double stretch) {
   return simulation;
 }
 
+// By this over its columns.
+test::RigOptions bentBoard(double height_m) {
+  test::RigOptions simulation = boardOf(1.0, 0.0);
+  constexpr double kLength_m = 0.5;
+  simulation.board.column_curvature_1_m = 8.0 * height_m / (kLength_m * kLength_m);
+  return simulation;
+}
+
 class TestBoardSize : public QObject {
   Q_OBJECT
 
@@ -60,7 +68,8 @@ class TestBoardSize : public QObject {
 
     OptimisationOptions held;
     held.free_board_size = false;
-    held.camera_intrinsics = CameraIntrinsicsChoice::Fixed;  // which would take part of it
+    held.camera_intrinsics = CameraIntrinsicsChoice::Fixed;  // lens and bow would take part of it
+    held.board_bow = false;
     const Run blind = calibrate(boardOf(1.0, 0.005), held);
     QVERIFY2(blind.translationError_m().norm() > 5.0 * run.translationError_m().norm(),
              qPrintable(QString::number(1e3 * blind.translationError_m().norm())));
@@ -102,6 +111,76 @@ class TestBoardSize : public QObject {
     const QString doubt = QString::fromStdString(run.estimate.stretch_doubt);
     QVERIFY2(doubt.contains("shorter along its rows"), qPrintable(doubt));
     QVERIFY(run.translationError_sigmas() < 4.0);
+  }
+
+  // The middle of its half metre of columns stands out, or lies back, by a millimetre.
+  void bentBoard_isFound() {
+    OptimisationOptions flat;
+    flat.board_bow = false;
+    for (const double height_m : {1e-3, -1e-3}) {
+      const Run run = calibrate(bentBoard(height_m)), blind = calibrate(bentBoard(height_m), flat);
+      const BoardState &board = run.solution.state.board, truth = bentBoard(height_m).board;
+      const BoardUncertainty& sigma = run.estimate.report.board;
+      const double error_1_m = board.column_curvature_1_m - truth.column_curvature_1_m;
+      QVERIFY2(sigma.column_curvature_std_1_m > 0.0 && sigma.column_curvature_std_1_m < 2e-3,  // 0.06 mm
+               qPrintable(QString::number(sigma.column_curvature_std_1_m)));
+      QVERIFY2(std::abs(error_1_m) < 4.0 * sigma.column_curvature_std_1_m,
+               qPrintable(QString::number(error_1_m)));
+      QVERIFY(std::abs(board.row_curvature_1_m) < 4.0 * sigma.row_curvature_std_1_m);
+      QVERIFY(std::abs(board.twist_1_m) < 4.0 * sigma.twist_std_1_m);
+      QVERIFY2(run.translationError_sigmas() < 4.0,
+               qPrintable(QString::number(run.translationError_sigmas())));
+      QVERIFY(run.estimate.bow_doubt.empty() && run.estimate.bent_board.empty());
+      QVERIFY2(run.estimate.notes.back().starts_with("the board seems bent: over the 0.5 m of its columns"),
+               run.estimate.notes.back().c_str());
+      QCOMPARE(blind.solution.state.board.column_curvature_1_m, 0.0);
+      QCOMPARE(blind.estimate.report.board.column_curvature_std_1_m, 0.0);
+      QVERIFY(blind.estimate.report.cameras[0].rotation_std_rad.norm() >
+              1.3 * run.estimate.report.cameras[0].rotation_std_rad.norm());
+    }
+  }
+
+  // A cylinder about a diagonal, which is a twist, too.
+  void twistedBoard_isFound() {
+    test::RigOptions simulation = boardOf(1.0, 0.0);
+    simulation.board.row_curvature_1_m = simulation.board.column_curvature_1_m = 0.02;
+    simulation.board.twist_1_m = -0.02;
+    const Run run = calibrate(simulation);
+    const BoardState& board = run.solution.state.board;
+    const BoardUncertainty& sigma = run.estimate.report.board;
+    QVERIFY2(std::abs(board.twist_1_m + 0.02) < 4.0 * sigma.twist_std_1_m,
+             qPrintable(QString::number(board.twist_1_m)));
+    QVERIFY2(std::abs(board.row_curvature_1_m - 0.02) < 4.0 * sigma.row_curvature_std_1_m,
+             qPrintable(QString::number(board.row_curvature_1_m)));
+    QVERIFY2(run.translationError_sigmas() < 4.0, qPrintable(QString::number(run.translationError_sigmas())));
+  }
+
+  void boardBentBeyondWhatIsModelled_isDoubted() {
+    const std::string doubt = calibrate(bentBoard(8e-3)).estimate.bow_doubt;
+    QVERIFY2(
+        doubt.starts_with("the board seems bent: over the 0.5 m of its columns the middle stands out by"),
+        doubt.c_str());
+    QVERIFY(calibrate(boardOf(1.0, 0.0)).estimate.bow_doubt.empty());
+  }
+
+  // Rao's score test, with lenses free, which take part of it, and held.
+  void bentBoardThatIsTakenForFlat_isDoubted() {
+    for (const CameraIntrinsicsChoice lens : {CameraIntrinsicsChoice::Free, CameraIntrinsicsChoice::Fixed}) {
+      OptimisationOptions options;
+      options.camera_intrinsics = lens;
+      options.board_bow = false;
+      const QString out = QString::fromStdString(calibrate(bentBoard(1e-3), options).estimate.bent_board);
+      QVERIFY2(
+          out.startsWith("the board seems bent: over the 0.5 m of its columns the middle stands out by 1"),
+          qPrintable(out));
+      QVERIFY(out.contains("lay it on glass"));
+      const QString back = QString::fromStdString(calibrate(bentBoard(-1e-3), options).estimate.bent_board);
+      QVERIFY2(back.contains("lies back by "), qPrintable(back));
+      const Run flat = calibrate(bentBoard(0.0), options),
+                stretched = calibrate(boardOf(1.0, 0.005), options);
+      QVERIFY2(flat.estimate.bent_board.empty(), flat.estimate.bent_board.c_str());
+      QVERIFY2(stretched.estimate.bent_board.empty(), stretched.estimate.bent_board.c_str());
+    }
   }
 
   void gravityOfTheTropics_isWithinTheSigmas() {

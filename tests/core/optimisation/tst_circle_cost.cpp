@@ -126,11 +126,11 @@ class TestCircleCost : public QObject {
     circle.whitening_px.setIdentity();
     circle.by_drift_s = 0.003;
     circle.lead = {{0.8, 0.6}, {0.4, 0.3}};
-    circle.centre_px =
-        *projectedCircleCentre(model.camera, camera_from_world,
-                               BoardState{blocks[14][0], blocks[15][0]}.place_m(circle.on_board_m),
-                               model.radius_m) +
-        blocks[12][0] * circle.lead.of_lead + blocks[13][0] * circle.lead.of_slow;
+    const BoardState board{blocks[14][0], blocks[15][0], blocks[16][0], blocks[17][0], blocks[18][0]};
+    circle.centre_px = projectCircle(model.camera, camera_from_world * board.place_m(circle.on_board_m),
+                                     camera_from_world.rotation * Vector3d::UnitZ(), model.radius_m)
+                           ->centre_px +
+                       blocks[12][0] * circle.lead.of_lead + blocks[13][0] * circle.lead.of_slow;
     QVERIFY(residualsAt(CircleCost(model, segmentTimes(), {circle}), blocks).norm() < 1e-9);
   }
 

@@ -113,6 +113,8 @@ class TestCauses : public QObject {
     row("board spacing", -0.5);
     row("board stretch", 0.25);
     row("board stretch", 0.5);
+    row("board bow", 0.5);
+    row("board bow", 2);
     row("gravity", 9.78);
     row("focal length", 0.3);
     row("focal length", 1);
@@ -145,6 +147,19 @@ class TestCauses : public QObject {
     test::Recorded recorded = base_;
     test::perturbation("clock step").apply(recorded, 50.0);
     expectRight(recorded, calibrate(recorded.session, recorded.pass, RunContext{}));
+  }
+
+  // Of a board that is taken for flat, by the score test and, of the larger misfit, by a trial.
+  void bentBoardTakenForFlat_isTheFirstReason() {
+    for (const double height_mm : {0.5, 2.0}) {
+      test::Recorded recorded = base_;
+      const test::Perturbation& bow = test::perturbation("board bow");
+      bow.apply(recorded, height_mm);
+      recorded.session.options.optimisation.board_bow = false;
+      const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+      QCOMPARE(run.result.status, CalibrationStatus::Doubtful);
+      QVERIFY2(bow.isNamedIn(test::firstReason(run.result.reason)), run.result.reason.c_str());
+    }
   }
 
   void nothingSpoilt_isOk() {
