@@ -69,11 +69,42 @@ void checkPriors(const Session& session, const std::string& place) {
   for (const SessionCamera& camera : session.cameras) check("cameras", camera.name, camera.prior);
 }
 
-std::string boardYaml(const CircleBoard& board) {
-  return fmt::format(
-      "board:\n  type: {}\n  rows: {}\n  cols: {}\n  spacing_m: {}\n  radius_m: {}\n  circles: {}\n",
-      board.type == BoardType::AsymmetricCircles ? "asymmetric_circles" : "symmetric_circles", board.rows,
-      board.cols, board.spacing_m, board.radius_m, board.circles == CircleShade::Dark ? "dark" : "bright");
+// Whether it still tells what it once did: either may have been changed since.
+bool tellsSpacing(const std::optional<MeasuredLength>& measured, const CircleBoard& board) {
+  return measured && measured->spacing_m() == board.spacing_m;
+}
+bool tellsSigma(const std::optional<MeasuredLength>& measured, const OptimisationOptions& options) {
+  if (!measured) return false;
+  return measured->std_m > 0.0
+             ? options.board_spacing_sigma == measured->relativeStd() && options.free_board_size
+             : !options.free_board_size;
+}
+
+void forgetSigma(OptimisationOptions& options) {
+  const OptimisationOptions defaults;
+  options.board_spacing_sigma = defaults.board_spacing_sigma;
+  options.free_board_size = defaults.free_board_size;
+}
+
+std::string boardYaml(const Session& session) {
+  const CircleBoard& board = session.board;
+  const std::optional<MeasuredLength>& measured = session.measured;
+  return fmt::format("board:\n  type: {}\n  rows: {}\n  cols: {}\n  {}\n  radius_m: {}\n  circles: {}\n",
+                     board.type == BoardType::AsymmetricCircles ? "asymmetric_circles" : "symmetric_circles",
+                     board.rows, board.cols,
+                     tellsSpacing(measured, board)
+                         ? fmt::format("measured: {{spacings: {}, length_m: {}, std_m: {}}}",
+                                       measured->spacings, measured->length_m, measured->std_m)
+                         : fmt::format("spacing_m: {}", board.spacing_m),
+                     board.radius_m, board.circles == CircleShade::Dark ? "dark" : "bright");
+}
+
+// What the board's measure says of it is no option in a file.
+CalibrationOptions writtenOptions(const Session& session) {
+  CalibrationOptions options = session.options;
+  if (tellsSpacing(session.measured, session.board) && tellsSigma(session.measured, options.optimisation))
+    forgetSigma(options.optimisation);
+  return options;
 }
 
 std::string recordingText(const std::filesystem::path& file, const std::filesystem::path& folder) {
@@ -141,6 +172,16 @@ std::string remarksYaml(const SessionRemarks& remarks, const std::string& sensor
 
 }  // namespace
 
+void setMeasuredLength(const std::optional<MeasuredLength>& measured, Session& session) {
+  OptimisationOptions& options = session.options.optimisation;
+  if (tellsSigma(session.measured, options)) forgetSigma(options);
+  session.measured = measured;
+  if (!measured) return;
+  session.board.spacing_m = measured->spacing_m();
+  options.free_board_size = measured->std_m > 0.0;
+  if (options.free_board_size) options.board_spacing_sigma = measured->relativeStd();
+}
+
 std::vector<CameraLens> givenLenses(const Session& session) {
   std::vector<CameraLens> lenses;
   for (const SessionCamera& camera : session.cameras) lenses.push_back(givenLens(camera.intrinsics));
@@ -177,7 +218,7 @@ std::string sessionYaml(const Session& session, const std::filesystem::path& fol
       fmt::format("evical_session: 1\nrecording: {}\n", yamlText(recordingText(session.recording, folder)));
   if (session.time_range_s)
     text += fmt::format("time_range_s: [{}, {}]\n", (*session.time_range_s)[0], (*session.time_range_s)[1]);
-  const std::string board = boardYaml(session.board);
+  const std::string board = boardYaml(session);
   text += remarks.board.empty() ? board : commented(remarks.board) + commented(board);
   text += "cameras:\n";
   for (const SessionCamera& camera : session.cameras)
@@ -187,7 +228,7 @@ std::string sessionYaml(const Session& session, const std::filesystem::path& fol
   text += fmt::format("reference: {}\n", yamlText(session.reference));
   if (const std::string priors = sensorPriorsYaml(session); !priors.empty()) text += "prior:\n" + priors;
   if (!session.exports.empty()) text += fmt::format("export: [{}]\n", joined(session.exports));
-  const std::vector<OptionRow> rows = differingOptions(session.options);
+  const std::vector<OptionRow> rows = differingOptions(writtenOptions(session));
   text += rows.empty() ? "options: {}\n" : "options:\n";
   for (const OptionRow& row : rows) text += fmt::format("  {}: {}\n", row.name, row.value);
   return text;

@@ -4,6 +4,7 @@
 #include "core/data/calibration_priors.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/imu_units.h"
+#include "core/geometry/measured_length.h"
 #include "core/pipeline/calibration_options.h"
 
 #include <array>
@@ -39,6 +40,7 @@ struct Session {
   std::filesystem::path recording;                    // absolute, or relative to the working directory
   std::optional<std::array<double, 2>> time_range_s;  // since the recording's start
   CircleBoard board;
+  std::optional<MeasuredLength> measured;  // what tells the board's spacing and, as an option, its sigma
   std::vector<SessionCamera> cameras;
   std::vector<SessionImu> imus;
   std::string reference;  // an IMU; a camera where there is no IMU
@@ -49,6 +51,9 @@ struct Session {
   std::size_t referenceImu() const;     // index into imus; 0 where there is none
   std::size_t referenceCamera() const;  // index into cameras; 0 where the reference is an IMU
 };
+
+// The board's spacing, and how well it is known, follow; without a length the spacing stays, and is as well known as any.
+void setMeasuredLength(const std::optional<MeasuredLength>& measured, Session& session);
 
 // As the session gives them: those that it leaves out are not known yet.
 std::vector<CameraLens> givenLenses(const Session& session);

@@ -122,7 +122,8 @@ SessionRemarks remarksOn(const Session& session, const std::vector<InspectedReco
   SessionRemarks remarks;
   remarks.board =
       "The board: give type and measures, and remove the '#'. With an IMU it needs an odd number of rows. "
-      "Measure spacing_m over as many circles as there are; spacing_std says how well (0.002: 0.2 %).";
+      "Measure over as many circles as there are: measured: {spacings: 10, length_m: 0.5, std_m: 0.0005}, "
+      "in the place of spacing_m, has the length over ten spacings and the ruler's sigma.";
   for (const SessionCamera& camera : session.cameras) {
     std::vector<std::string>& own = remarks.sensors[camera.name];
     const StreamSummary* const stream = streamOf(camera.stream, camera.recording, recordings);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace evical {
 namespace {
@@ -35,22 +36,55 @@ std::array<double, 2> readTimeRange(const YamlNode& node) {
   return {range[0], range[1]};
 }
 
-CircleBoard readBoard(const YamlNode& map) {
-  map.allowOnly({"type", "rows", "cols", "spacing_m", "spacing_std", "radius_m", "circles"});
+// A length over many spacings, in the place of spacing_m: beside it, it must say the same.
+std::optional<MeasuredLength> readMeasured(const YamlNode& board) {
+  const auto map = board.find("measured");
+  if (!map) return std::nullopt;
+  map->allowOnly({"spacings", "length_m", "std_m"});
+  constexpr int kMost = 200;
+  constexpr double kLargest_m = 100.0;
+  MeasuredLength measured;
+  measured.spacings = (*map)["spacings"].integer(1, kMost);
+  measured.length_m = (*map)["length_m"].real(1e-4, kLargest_m, "m");
+  if (const auto node = map->find("std_m")) measured.std_m = node->real(0.0, kLargest_m, "m");
+  if (const auto node = board.find("spacing_std"))
+    throw node->error("is said twice: board.measured has a std_m", "Remove one of the two");
+  constexpr double kSigmas = 3.0, kRounded = 1e-6;
+  const auto spacing = board.find("spacing_m");
+  if (!spacing) return measured;
+  const double spacing_m = spacing->real(1e-4, 10.0, "m");
+  if (std::abs(spacing_m / measured.spacing_m() - 1.0) > kSigmas * measured.relativeStd() + kRounded)
+    throw spacing->error(
+        fmt::format("{} m contradicts board.measured: {} m over {} spacings are {:.6g} m each", spacing_m,
+                    measured.length_m, measured.spacings, measured.spacing_m()),
+        "Correct one of them, or remove spacing_m; between the first circle and the last there is one "
+        "spacing less than circles");
+  return measured;
+}
+
+// Of a check that says which of a map's keys is wrong: "board.radius_m".
+template <class Check>
+void checkedAt(const YamlNode& map, const Check& check) {
+  try {
+    check();
+  } catch (const CalibrationError& problem) {
+    const std::string key = problem.place().substr(problem.place().rfind('.') + 1);
+    throw map.find(key).value_or(map).error(problem.problem(), problem.advice());
+  }
+}
+
+CircleBoard readBoard(const YamlNode& map, const std::optional<MeasuredLength>& measured) {
+  map.allowOnly({"type", "rows", "cols", "measured", "spacing_m", "spacing_std", "radius_m", "circles"});
   CircleBoard board;
   board.type = static_cast<BoardType>(map["type"].choice({"asymmetric_circles", "symmetric_circles"}));
   board.rows = map["rows"].integer(2, 100);
   board.cols = map["cols"].integer(2, 100);
-  board.spacing_m = map["spacing_m"].real(1e-4, 10.0, "m");
+  board.spacing_m = measured ? measured->spacing_m() : map["spacing_m"].real(1e-4, 10.0, "m");
   board.radius_m = map["radius_m"].real(1e-5, 10.0, "m");
   if (const auto node = map.find("circles"))
     board.circles = static_cast<CircleShade>(node->choice({"dark", "bright"}));
-  try {
-    validate(board);
-  } catch (const CalibrationError& problem) {
-    const std::string key = problem.place().substr(problem.place().find('.') + 1);  // "board.radius_m"
-    throw map.find(key).value_or(map).error(problem.problem(), problem.advice());
-  }
+  checkedAt(map, [&] { validate(board); });
+  if (measured) checkedAt(map["measured"], [&] { validate(*measured, board); });
   return board;
 }
 
@@ -221,7 +255,9 @@ Session readSession(const std::filesystem::path& file) {
   session.source = file;
   session.recording = besideSession(root["recording"], folder);
   if (const auto node = root.find("time_range_s")) session.time_range_s = readTimeRange(*node);
-  session.board = readBoard(root["board"]);
+  const std::optional<MeasuredLength> measured = readMeasured(root["board"]);
+  session.board = readBoard(root["board"], measured);
+  setMeasuredLength(measured, session);
   readSpacingStd(root["board"], session.options);
   if (const auto node = root.find("gravity"); node && !node->isNull()) readGravity(*node, session.options);
   readSensors(root, folder, session);

@@ -13,6 +13,7 @@
 #include "ui/screens/time_range_form.h"
 #include "ui/theme/theme.h"
 
+#include <QCheckBox>
 #include <QComboBox>
 #include <QLabel>
 #include <QSignalSpy>
@@ -116,6 +117,32 @@ class TestRecordingScreen : public QObject {
     Fixture::type(form->findChildren<NumberField*>().at(0), "35.5");
     QCOMPARE(test.session.board.spacing_m, 0.0355);
     QCOMPARE(test.edits.size(), 2);
+  }
+
+  void boardMeasuredOverManySpacings_tellsSpacingAndSigma() {
+    Fixture test;
+    auto* const form = test.screen.findChild<BoardForm*>();
+    auto* const measured = form->findChild<QCheckBox*>();
+    NumberField* const spacing = form->findChildren<NumberField*>().at(0);
+    NumberField *const length = form->findChildren<NumberField*>().at(2),
+                       *const sigma = form->findChildren<NumberField*>().at(3);
+    QSpinBox* const spacings = form->findChildren<QSpinBox*>().at(2);
+    QVERIFY(!measured->isChecked() && spacing->isEnabled() && !length->isEnabled());
+    measured->click();
+    QVERIFY(test.session.measured == (MeasuredLength{10, 10 * test.session.board.spacing_m, 0.0005}));
+    QVERIFY(!spacing->isEnabled() && length->isEnabled());
+    Fixture::type(length, "352");
+    QCOMPARE(test.session.board.spacing_m, 0.352 / 10);
+    QCOMPARE(spacing->text(), QString("35.2"));
+    spacings->setValue(8);
+    QCOMPARE(test.session.board.spacing_m, 0.352 / 8);
+    Fixture::type(sigma, "0.2");
+    QCOMPARE(test.session.options.optimisation.board_spacing_sigma, 0.0002 / 0.352);
+    QCOMPARE(test.edits.size(), 4);
+    measured->click();
+    QVERIFY(!test.session.measured && spacing->isEnabled());
+    QCOMPARE(test.session.board.spacing_m, 0.352 / 8);
+    QCOMPARE(test.session.options.optimisation.board_spacing_sigma, PriorOptions().board_spacing_sigma);
   }
 
   void timeRange_isEdited_andEmptyMeansAll() {

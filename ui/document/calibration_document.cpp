@@ -160,7 +160,10 @@ std::vector<SessionProblem> sessionProblems(const Session& session) {
                                                                 : error.problem() + ". " + error.advice())});
     }
   };
-  check("board", [&] { validate(session.board); });
+  check("board", [&] {
+    validate(session.board);
+    if (session.measured) validate(*session.measured, session.board);
+  });
   for (const SessionCamera& camera : session.cameras) {
     if (!camera.intrinsics || !camera.intrinsics->resolution_px.known()) continue;
     check(QString::fromStdString("cameras." + camera.name + ".intrinsics"),

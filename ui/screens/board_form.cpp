@@ -4,6 +4,7 @@
 #include "ui/forms/number_field.h"
 #include "ui/screens/board_drawing.h"
 
+#include <QCheckBox>
 #include <QComboBox>
 #include <QFormLayout>
 #include <QHBoxLayout>
@@ -16,12 +17,21 @@ namespace {
 
 constexpr double kMmPerM = 1e3;
 
-QSpinBox* countBox(const QString& tip, QWidget* parent) {
+QSpinBox* countBox(int least, const QString& tip, QWidget* parent) {
+  constexpr int kMost = 100;
   auto* const box = new QSpinBox(parent);
-  box->setRange(2, 100);
+  box->setRange(least, kMost);
   box->setToolTip(tip);
   box->setFocusPolicy(Qt::StrongFocus);
   return box;
+}
+
+// To start from: as long as the board is said to be.
+MeasuredLength overWholeBoard(const CircleBoard& board) {
+  MeasuredLength length;
+  length.spacings = mostSpacings(board);
+  length.length_m = length.spacings * board.spacing_m;
+  return length;
 }
 
 }  // namespace
@@ -29,10 +39,18 @@ QSpinBox* countBox(const QString& tip, QWidget* parent) {
 BoardForm::BoardForm(QWidget* parent)
     : QWidget(parent),
       type_(new QComboBox(this)),
-      rows_(countBox(tr("Staggered lines of circles; odd, so that the board has an up and a down"), this)),
-      cols_(countBox(tr("Circles in one line"), this)),
+      rows_(countBox(2, tr("Staggered lines of circles; odd, so that the board has an up and a down"), this)),
+      cols_(countBox(2, tr("Circles in one line"), this)),
       spacing_mm_(new NumberField(0.1, 10'000.0, this)),
       radius_mm_(new NumberField(0.01, 10'000.0, this)),
+      is_measured_(new QCheckBox(tr("Measured over several spacings"), this)),
+      length_mm_(new NumberField(0.1, 100'000.0, this)),
+      spacings_(
+          countBox(1,
+                   tr("From the first circle to the last there is one less than there are rows; in a line of "
+                      "a staggered board two from circle to circle"),
+                   this)),
+      length_std_mm_(new NumberField(0.0, 1'000.0, this)),
       circles_(new QComboBox(this)),
       problem_(new QLabel(this)),
       drawing_(new BoardDrawing(this)) {
@@ -46,17 +64,12 @@ BoardForm::BoardForm(QWidget* parent)
   circles_->setToolTip(tr("Which way the printed circles differ from their background"));
   problem_->setProperty("role", "problem");
   problem_->setWordWrap(true);
-  auto* const spacing_hint = new QLabel(tr("Between two rows. Measure over as many as there are, and divide; "
-                                           "how well is board_spacing_sigma in Parameters."),
-                                        this);
-  spacing_hint->setProperty("role", "hint");
-  spacing_hint->setWordWrap(true);
   auto* const form = new QFormLayout;
   form->addRow(tr("Type"), type_);
   form->addRow(tr("Rows"), rows_);
   form->addRow(tr("Columns"), cols_);
   form->addRow(tr("Spacing [mm]"), spacing_mm_);
-  form->addRow(spacing_hint);
+  addMeasure(*form);
   form->addRow(tr("Radius [mm]"), radius_mm_);
   form->addRow(tr("Circles"), circles_);
   form->addRow(problem_);
@@ -71,13 +84,38 @@ BoardForm::BoardForm(QWidget* parent)
   connect(cols_, &QSpinBox::valueChanged, this, [this] { say("cols"); });
   connect(spacing_mm_, &NumberField::valueEdited, this, [this] { say("spacing_m"); });
   connect(radius_mm_, &NumberField::valueEdited, this, [this] { say("radius_m"); });
-  setBoard({});
+  setBoard({}, {});
   setProblem({});
 }
 
-void BoardForm::setBoard(const CircleBoard& board) {
+void BoardForm::addMeasure(QFormLayout& form) {
+  is_measured_->setToolTip(
+      tr("A ruler tells a length over the whole board ten times as well as one spacing"));
+  length_mm_->setToolTip(tr("Between the centres of two circles in one line, as far apart as there are"));
+  length_std_mm_->setToolTip(tr("How well ruler and eye tell the length, one sigma; 0: exactly"));
+  form.addRow(is_measured_);
+  form.addRow(tr("Length [mm]"), length_mm_);
+  form.addRow(tr("Spacings in it"), spacings_);
+  form.addRow(tr("Its sigma [mm]"), length_std_mm_);
+  connect(is_measured_, &QCheckBox::clicked, this, [this] { sayMeasured("measured"); });
+  connect(length_mm_, &NumberField::valueEdited, this, [this] { sayMeasured("measured.length_m"); });
+  connect(spacings_, &QSpinBox::valueChanged, this, [this] { sayMeasured("measured.spacings"); });
+  connect(length_std_mm_, &NumberField::valueEdited, this, [this] { sayMeasured("measured.std_m"); });
+}
+
+void BoardForm::setBoard(const CircleBoard& board, const std::optional<MeasuredLength>& measured) {
   board_ = board;
-  const QSignalBlocker quiet_rows(rows_), quiet_cols(cols_);
+  measured_ = measured;
+  const QSignalBlocker quiet_rows(rows_), quiet_cols(cols_), quiet_spacings(spacings_);
+  is_measured_->setChecked(measured.has_value());
+  const MeasuredLength length = measured.value_or(overWholeBoard(board));
+  length_mm_->setValue(kMmPerM * length.length_m);
+  spacings_->setValue(length.spacings);
+  length_std_mm_->setValue(kMmPerM * length.std_m);
+  for (QWidget* const field : {static_cast<QWidget*>(length_mm_), static_cast<QWidget*>(spacings_),
+                               static_cast<QWidget*>(length_std_mm_)})
+    field->setEnabled(measured.has_value());
+  spacing_mm_->setEnabled(!measured);
   type_->setCurrentIndex(static_cast<int>(board.type));
   rows_->setValue(board.rows);
   cols_->setValue(board.cols);
@@ -97,6 +135,18 @@ void BoardForm::say(const QString& field) {
   board.circles = static_cast<CircleShade>(circles_->currentIndex());
   if (board == board_) return;
   emit edited(board, "board." + field);
+}
+
+void BoardForm::sayMeasured(const QString& field) {
+  std::optional<MeasuredLength> changed;
+  if (is_measured_->isChecked()) {
+    changed = measured_.value_or(overWholeBoard(board_));
+    if (field == "measured.length_m") changed->length_m = length_mm_->value() / kMmPerM;
+    if (field == "measured.std_m") changed->std_m = length_std_mm_->value() / kMmPerM;
+    changed->spacings = spacings_->value();
+  }
+  if (changed == measured_) return;
+  emit measured(changed, "board." + field);
 }
 
 void BoardForm::setProblem(const QString& text) {

@@ -3,10 +3,15 @@
 #pragma once
 
 #include "core/geometry/circle_board.h"
+#include "core/geometry/measured_length.h"
 
 #include <QWidget>
 
+#include <optional>
+
+class QCheckBox;
 class QComboBox;
+class QFormLayout;
 class QLabel;
 class QSpinBox;
 
@@ -21,21 +26,30 @@ class BoardForm : public QWidget {
  public:
   explicit BoardForm(QWidget* parent = nullptr);
 
-  void setBoard(const CircleBoard& board);
+  void setBoard(const CircleBoard& board, const std::optional<MeasuredLength>& measured);
   void setProblem(const QString& text);
 
  signals:
   void edited(const evical::CircleBoard& board, const QString& field);
+  // The length that tells the spacing; nothing where the spacing is given as it is.
+  void measured(const std::optional<evical::MeasuredLength>& measured, const QString& field);
 
  private:
+  void addMeasure(QFormLayout& form);
   void say(const QString& field);
+  void sayMeasured(const QString& field);
 
   CircleBoard board_;
+  std::optional<MeasuredLength> measured_;
   QComboBox* type_;
   QSpinBox* rows_;
   QSpinBox* cols_;
   NumberField* spacing_mm_;
   NumberField* radius_mm_;
+  QCheckBox* is_measured_;
+  NumberField* length_mm_;
+  QSpinBox* spacings_;
+  NumberField* length_std_mm_;
   QComboBox* circles_;
   QLabel* problem_;
   BoardDrawing* drawing_;

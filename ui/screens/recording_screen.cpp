@@ -102,6 +102,12 @@ RecordingScreen::RecordingScreen(QWidget* parent)
     changed.board = board;
     emit sessionEdited(changed, tr("Change the board"), field);
   });
+  connect(board_, &BoardForm::measured, this,
+          [this](const std::optional<MeasuredLength>& measured, const QString& field) {
+            Session changed = session_;
+            setMeasuredLength(measured, changed);
+            emit sessionEdited(changed, tr("Measure the board"), field);
+          });
   connect(time_range_, &TimeRangeForm::edited, this, [this](const TimeRangeForm::Range& range_s) {
     Session changed = session_;
     changed.time_range_s = range_s;
@@ -206,7 +212,7 @@ void RecordingScreen::setSession(const Session& session) {
   stack_->setCurrentIndex(session.recording.empty() ? 0 : 1);
   title_->setText(QString::fromStdString(session.recording.filename().string()));
   path_->setText(QString::fromStdString(session.recording.parent_path().string()));
-  board_->setBoard(session.board);
+  board_->setBoard(session.board, session.measured);
   other_recording ? listStreams() : streams_->setSession(session);
   time_range_->setRange(session.time_range_s);
   showSensors();

@@ -210,6 +210,55 @@ class TestSession : public QObject {
     QCOMPARE(measured.options.optimisation.board_spacing_sigma, 0.0005);
   }
 
+  void measuredLength_tellsSpacingAndSigma() {
+    const Session session =
+        sessionWith("spacing_m: 0.05", "measured: {spacings: 10, length_m: 0.352, std_m: 0.0005}");
+    QCOMPARE(session.board.spacing_m, 0.352 / 10);
+    QVERIFY(session.options.optimisation.free_board_size);
+    QCOMPARE(session.options.optimisation.board_spacing_sigma, 0.0005 / 0.352);
+    QVERIFY(session.measured == (MeasuredLength{10, 0.352, 0.0005}));
+    const Session rough = sessionWith("spacing_m: 0.05", "measured: {spacings: 10, length_m: 0.352}");
+    QCOMPARE(rough.options.optimisation.board_spacing_sigma, 0.0005 / 0.352);  // half a millimetre
+    const Session exact =
+        sessionWith("spacing_m: 0.05", "measured: {spacings: 10, length_m: 0.352, std_m: 0}");
+    QVERIFY(!exact.options.optimisation.free_board_size);
+    const Session both = sessionWith(
+        "spacing_m: 0.05", "spacing_m: 0.05\n  measured: {spacings: 10, length_m: 0.501, std_m: 0.0005}");
+    QCOMPARE(both.board.spacing_m, 0.501 / 10);  // within the ruler's sigmas
+  }
+
+  void measuredLength_isWrittenAsItWasRead() {
+    for (const char* const std_m : {"0.0005", "0"}) {
+      const Session session = sessionWith(
+          "spacing_m: 0.05", QString("measured: {spacings: 10, length_m: 0.352, std_m: %1}").arg(std_m));
+      const std::string text = sessionYaml(session, folder());
+      QVERIFY2(QString::fromStdString(text).contains(
+                   QString("measured: {spacings: 10, length_m: 0.352, std_m: %1}").arg(std_m)),
+               text.c_str());
+      QVERIFY(!QString::fromStdString(text).contains("board_spacing_sigma"));
+      QVERIFY(!QString::fromStdString(text).contains("free_board_size"));
+      const Session again = readSession(write("again.yaml", text));
+      QVERIFY(again.measured == session.measured);
+      QVERIFY(again.board == session.board);
+      QVERIFY(again.options == session.options);
+    }
+  }
+
+  void spacingThatIsChangedByHand_isNoLongerMeasured() {
+    Session session =
+        sessionWith("spacing_m: 0.05", "measured: {spacings: 10, length_m: 0.352, std_m: 0.0005}");
+    setMeasuredLength(std::nullopt, session);
+    QCOMPARE(session.board.spacing_m, 0.352 / 10);
+    QCOMPARE(session.options.optimisation.board_spacing_sigma, PriorOptions().board_spacing_sigma);
+    setMeasuredLength(MeasuredLength{10, 0.352, 0.0}, session);
+    QVERIFY(!session.options.optimisation.free_board_size);
+    setMeasuredLength(MeasuredLength{10, 0.352, 0.0005}, session);
+    QVERIFY(session.options.optimisation.free_board_size);
+    session.board.spacing_m = 0.04;
+    const QString text = QString::fromStdString(sessionYaml(session, folder()));
+    QVERIFY(text.contains("spacing_m: 0.04") && !text.contains("measured"));
+  }
+
   void mistake_isRefusedWithItsPlace_data() {
     QTest::addColumn<QString>("from");
     QTest::addColumn<QString>("to");
@@ -232,6 +281,18 @@ class TestSession : public QObject {
     row("number out of range", "0.05", "50", {"board.spacing_m (line 8)", "50 m", "10 m"});
     row("spacing's sigma", "radius_m: 0.02", "radius_m: 0.02\n  spacing_std: -0.001",
         {"board.spacing_std", "below"});
+    row("length that contradicts the spacing", "spacing_m: 0.05",
+        "spacing_m: 0.05\n  measured: {spacings: 11, length_m: 0.5}",
+        {"board.spacing_m (line 8)", "contradicts board.measured", "0.0454545", "spacing less than circles"});
+    row("sigma said twice", "radius_m: 0.02",
+        "radius_m: 0.02\n  spacing_std: 0.001\n  measured: {spacings: 10, length_m: 0.5}",
+        {"board.spacing_std", "std_m", "Remove one"});
+    row("longer than the board", "spacing_m: 0.05", "measured: {spacings: 11, length_m: 0.55}",
+        {"board.measured.spacings (line 8)", "up to 10"});
+    row("millimetres for metres", "spacing_m: 0.05", "measured: {spacings: 10, length_m: 0.5, std_m: 0.5}",
+        {"board.measured.std_m (line 8)", "no sigma"});
+    row("measured by nothing", "spacing_m: 0.05", "measured: {spacings: 10}",
+        {"board.measured.length_m", "missing"});
     row("latitude", "reference: left_imu", "reference: left_imu\ngravity: {latitude_deg: 91}",
         {"gravity.latitude_deg", "90"});
     row("gravity without a latitude", "reference: left_imu", "reference: left_imu\ngravity: {height_m: 300}",
