@@ -1,6 +1,7 @@
 // One camera's lens in a calibration, from what was known of it to what came out.
 #pragma once
 
+#include "core/data/lens_uncertainty.h"
 #include "core/geometry/camera_intrinsics.h"
 
 #include <optional>
@@ -11,6 +12,8 @@ struct CameraLens {
   std::optional<CameraIntrinsics> given = {};      // by the session; absent: not known beforehand
   std::optional<CameraIntrinsics> seen_with = {};  // by the front end: observations are in its ideal pixels
   std::optional<CameraIntrinsics> solved = {};     // together with everything else, where it was free
+  std::optional<LensUncertainty> given_with =
+      {};  // how well the session knows what it gives; absent: not said
 
   // Calibrated before everything else, from the same recording.
   bool foundFirst() const { return seen_with && !given; }
@@ -23,8 +26,9 @@ struct CameraLens {
 };
 
 // A lens that is known beforehand, or is not.
-inline CameraLens givenLens(const std::optional<CameraIntrinsics>& intrinsics) {
-  return {intrinsics, intrinsics};
+inline CameraLens givenLens(const std::optional<CameraIntrinsics>& intrinsics,
+                            const std::optional<LensUncertainty>& uncertainty = {}) {
+  return {intrinsics, intrinsics, {}, intrinsics ? uncertainty : std::nullopt};
 }
 
 }  // namespace evical

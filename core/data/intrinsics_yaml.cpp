@@ -4,6 +4,7 @@
 #include "core/geometry/camera_model.h"
 
 #include <fmt/format.h>
+#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <vector>
@@ -115,6 +116,49 @@ YamlNode pickCamera(const YamlNode& cameras, const std::string& name, const std:
       fmt::format("There are: {}", joined(names)));
 }
 
+// Of `count` numbers from the first on; the other ones that a lens could have correlate with nothing. Files round: what
+// is no matrix of correlations but for that is one.
+IntrinsicsMatrix readCorrelation(const YamlNode& node, Eigen::Index first, Eigen::Index count) {
+  const std::vector<YamlNode> rows = node.items();
+  if (static_cast<Eigen::Index>(rows.size()) < first + count)
+    throw node.error(fmt::format("has {} rows", rows.size()),
+                     fmt::format("Give {}: fx, fy, cx, cy and the coefficients", count));
+  IntrinsicsMatrix matrix = IntrinsicsMatrix::Identity();
+  for (Eigen::Index row = 0; row < count; ++row) {
+    const std::vector<double> values = rows[static_cast<std::size_t>(first + row)].reals(rows.size());
+    for (Eigen::Index column = 0; column < count; ++column)
+      matrix(row, column) = values[static_cast<std::size_t>(first + column)];
+  }
+  constexpr double kRounded = 1e-3;
+  const IntrinsicsMatrix lifted = matrix + kRounded * IntrinsicsMatrix::Identity();
+  if (!matrix.isApprox(matrix.transpose(), kRounded) ||
+      (matrix.diagonal().array() - 1.0).abs().maxCoeff() > kRounded || lifted.llt().info() != Eigen::Success)
+    throw node.error("is no matrix of correlations",
+                     "It is symmetric, with 1 on its diagonal and nothing beyond 1");
+  return matrix;
+}
+
+// Of a result's, which are between all quantities.
+std::optional<IntrinsicsMatrix> correlationInResult(const YamlNode& root, const std::string& camera,
+                                                    int count) {
+  const auto uncertainty = root.find("uncertainty");
+  if (!uncertainty) return std::nullopt;
+  const std::vector<YamlNode> names = (*uncertainty)["names"].items();
+  const std::string first_name = camera + ".focal_length.x ";
+  const auto first = std::find_if(names.begin(), names.end(),
+                                  [&](const YamlNode& name) { return name.text().starts_with(first_name); });
+  if (first == names.end()) return std::nullopt;
+  return readCorrelation((*uncertainty)["correlation"], first - names.begin(), count);
+}
+
+// `beside`: the map that has intrinsics, and sigmas where they are known.
+KnownIntrinsics withSigmas(const YamlNode& beside) {
+  KnownIntrinsics known{readIntrinsics(beside["intrinsics"]), {}};
+  if (const auto sigmas = beside.find("intrinsics_std"))
+    known.uncertainty = readLensUncertainty(*sigmas, beside.find("correlation"), known.camera);
+  return known;
+}
+
 bool isCamchain(const YamlNode& root) {
   return root.isMap() && (root.has("cam0") || root.has("cam1")) && !root.has("camera_model");
 }
@@ -143,15 +187,66 @@ CameraIntrinsics readIntrinsics(const YamlNode& map) {
 
 CameraIntrinsics readIntrinsicsFile(const std::filesystem::path& file, const std::string& camera_name,
                                     const std::string& stream) {
+  return readKnownIntrinsics(file, camera_name, stream).camera;
+}
+
+KnownIntrinsics readKnownIntrinsics(const std::filesystem::path& file, const std::string& camera_name,
+                                    const std::string& stream) {
   const YamlNode root = YamlNode::load(file);
   if (!root.isMap())
     throw root.error("holds no camera intrinsics", "Give intrinsics as Evical, Kalibr or ROS write them");
-  if (root.has("evical_result"))
-    return readIntrinsics(pickCamera(root["cameras"], camera_name, stream)["intrinsics"]);
-  if (isCamchain(root)) return readIntrinsics(pickCamera(root, camera_name, stream));
-  if (root.has("Intrinsics")) return readIntrinsics(root["Intrinsics"]);
-  if (root.has("intrinsics") && root["intrinsics"].isMap()) return readIntrinsics(root["intrinsics"]);
-  return readIntrinsics(root);
+  if (root.has("evical_result")) {
+    const YamlNode camera = pickCamera(root["cameras"], camera_name, stream);
+    KnownIntrinsics known = withSigmas(camera);
+    const std::string name = camera.key().substr(camera.key().rfind('.') + 1);
+    if (known.uncertainty)
+      known.uncertainty->correlation = correlationInResult(root, name, 4 + distortionCount(known.camera));
+    return known;
+  }
+  if (isCamchain(root)) return {readIntrinsics(pickCamera(root, camera_name, stream)), {}};
+  if (root.has("Intrinsics")) return {readIntrinsics(root["Intrinsics"]), {}};
+  if (root.has("intrinsics") && root["intrinsics"].isMap()) return withSigmas(root);
+  return {readIntrinsics(root), {}};
+}
+
+LensUncertainty readLensUncertainty(const YamlNode& sigmas, const std::optional<YamlNode>& correlation,
+                                    const CameraIntrinsics& camera) {
+  sigmas.allowOnly({"focal_length_px", "principal_point_px", "distortion"});
+  LensUncertainty uncertainty;
+  const auto count = static_cast<std::size_t>(distortionCount(camera));
+  const auto take = [&](const char* key, std::size_t numbers, Eigen::Index at) {
+    const YamlNode node = sigmas[key];
+    const std::vector<double> values = node.reals(numbers);
+    if (*std::min_element(values.begin(), values.end()) < 0.0)
+      throw node.error("has a sigma below 0", "0 stands for what is not known any better than usual");
+    std::copy(values.begin(), values.end(), uncertainty.std.begin() + at);
+  };
+  take("focal_length_px", 2, 0);
+  take("principal_point_px", 2, 2);
+  take("distortion", count, 4);
+  if (correlation)
+    uncertainty.correlation = readCorrelation(*correlation, 0, static_cast<Eigen::Index>(4 + count));
+  return uncertainty;
+}
+
+std::string lensUncertaintyYaml(const LensUncertainty& uncertainty, const CameraIntrinsics& camera,
+                                int indent) {
+  const std::string blanks(static_cast<std::size_t>(indent), ' ');
+  const IntrinsicsVector& s = uncertainty.std;
+  const Eigen::Index count = 4 + distortionCount(camera);
+  const auto list = [](const auto& numbers) {
+    std::string text;
+    for (const double number : numbers) text += fmt::format("{}{}", text.empty() ? "" : ", ", number);
+    return "[" + text + "]";
+  };
+  std::string text = fmt::format(
+      "{0}intrinsics_std:\n{0}  focal_length_px: {1}\n{0}  principal_point_px: {2}\n{0}  distortion: {3}\n",
+      blanks, list(s.segment<2>(0)), list(s.segment<2>(2)), list(s.segment(4, count - 4)));
+  if (!uncertainty.correlation) return text;
+  text += blanks + "intrinsics_correlation:\n";
+  for (Eigen::Index row = 0; row < count; ++row)
+    text += fmt::format("{}  - {}\n", blanks, list(uncertainty.correlation->row(row).head(count)));
+  return text;
 }
 
 std::string intrinsicsYaml(const CameraIntrinsics& camera, int indent) {

@@ -3,9 +3,11 @@
 
 #include "core/base/yaml_node.h"
 
+#include "core/data/lens_uncertainty.h"
 #include "core/geometry/camera_intrinsics.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace evical {
@@ -21,6 +23,21 @@ CameraIntrinsics readIntrinsics(const YamlNode& map);
 // cameras, the one with this name or this stream (rostopic).
 CameraIntrinsics readIntrinsicsFile(const std::filesystem::path& file, const std::string& camera_name,
                                     const std::string& stream);
+
+// The same with what the file says of how sure it is: results of `evical intrinsics` and `evical calibrate` do.
+struct KnownIntrinsics {
+  CameraIntrinsics camera;
+  std::optional<LensUncertainty> uncertainty;
+};
+KnownIntrinsics readKnownIntrinsics(const std::filesystem::path& file, const std::string& camera_name,
+                                    const std::string& stream);
+
+// Our map of sigmas (focal_length_px, principal_point_px, distortion), and rows of correlations between the numbers
+// that this camera has; and both as they are written, under the keys that a session has for them.
+LensUncertainty readLensUncertainty(const YamlNode& sigmas, const std::optional<YamlNode>& correlation,
+                                    const CameraIntrinsics& camera);
+std::string lensUncertaintyYaml(const LensUncertainty& uncertainty, const CameraIntrinsics& camera,
+                                int indent);
 
 // Our map, one key a line, each indented by `indent` blanks.
 std::string intrinsicsYaml(const CameraIntrinsics& camera, int indent);

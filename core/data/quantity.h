@@ -100,6 +100,7 @@ struct LensIntrinsics {
     return camera.lens.inUse();
   }
   std::optional<CameraIntrinsics>& operator()(CameraState& camera) const { return camera.lens.solved; }
+  bool operator==(const LensIntrinsics&) const = default;
 };
 
 // Where a quantity has no place in a session's prior.

@@ -5,6 +5,7 @@
 #include "core/optimisation/optimisation_options.h"
 #include "core/optimisation/prior_cost.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -18,6 +19,23 @@ const CameraIntrinsics& normalisedCamera() {
   static const CameraIntrinsics camera{
       CameraModel::PinholeRadtan, {1, 1}, Eigen::Vector2d::Ones(), Eigen::Vector2d::Zero(), {}};
   return camera;
+}
+
+IntrinsicsMatrix priorCovariance(const CameraLens& lens, const OptimisationOptions& options) {
+  IntrinsicsVector weak = IntrinsicsVector::Constant(options.camera_distortion_sigma);
+  weak.head<2>() = options.camera_focal_length_sigma * lens.seen_with->focal_length_px;
+  weak.segment<2>(2).setConstant(options.camera_principal_point_sigma_px);
+  IntrinsicsMatrix covariance = weak.cwiseAbs2().asDiagonal();
+  if (!lens.given_with) return covariance;
+  const IntrinsicsMatrix given = lens.given_with->covariance();
+  // Rounded correlations may leave no proper matrix: this is far less than their rounding.
+  constexpr double kRounded = 1e-3;
+  for (int i = 0; i < kIntrinsicsCount; ++i) {
+    if (given(i, i) <= 0.0) continue;
+    for (int j = 0; j < kIntrinsicsCount; ++j)
+      if (given(j, j) > 0.0) covariance(i, j) = given(i, j) * (i == j ? 1.0 + kRounded : 1.0);
+  }
+  return covariance;
 }
 
 }  // namespace
@@ -43,17 +61,15 @@ std::optional<ProjectedCircle> projectCircleBeside(const SeenCentre& seen, const
   return projected;
 }
 
-IntrinsicsBlock::IntrinsicsBlock(const CameraIntrinsics& seen_with, const CameraState& state,
+IntrinsicsBlock::IntrinsicsBlock(const CameraLens& lens, const CameraState& state,
                                  const OptimisationOptions& options)
-    : seen_with_(seen_with) {
-  writeIntrinsics(state.lens.solved.value_or(seen_with), parameters_.data());
-  writeIntrinsics(seen_with, prior_mean_.data());
-  prior_sigma_.fill(options.camera_distortion_sigma);
-  prior_sigma_[0] = options.camera_focal_length_sigma * seen_with.focal_length_px.x();
-  prior_sigma_[1] = options.camera_focal_length_sigma * seen_with.focal_length_px.y();
-  prior_sigma_[2] = prior_sigma_[3] = options.camera_principal_point_sigma_px;
+    : seen_with_(*lens.seen_with) {
+  writeIntrinsics(state.lens.solved.value_or(seen_with_), parameters_.data());
+  writeIntrinsics(seen_with_, prior_mean_.data());
+  const IntrinsicsMatrix covariance = priorCovariance(lens, options);
+  prior_weight_ = covariance.llt().matrixL().solve(IntrinsicsMatrix::Identity());
   std::vector<int> unused;
-  for (int i = 4 + distortionCount(seen_with); i < kIntrinsicsCount; ++i) unused.push_back(i);
+  for (int i = 4 + distortionCount(seen_with_); i < kIntrinsicsCount; ++i) unused.push_back(i);
   if (!unused.empty()) manifold_ = std::make_unique<ceres::SubsetManifold>(kIntrinsicsCount, unused);
 }
 
@@ -64,8 +80,7 @@ void IntrinsicsBlock::hold(ceres::Problem& problem, bool released) {
 }
 
 ceres::ResidualBlockId IntrinsicsBlock::addPrior(ceres::Problem& problem) {
-  using Vector = Eigen::Matrix<double, 9, 1>;
-  auto* cost = new PriorCost(Vector(prior_mean_.data()), Vector(prior_sigma_.data()));
+  auto* cost = new PriorCost(prior_mean_, PriorCost::InverseFactor{prior_weight_});
   return problem.AddResidualBlock(cost, nullptr, data());
 }
 

@@ -8,6 +8,7 @@
 // Where the camera is the one seen with, r is predicted - measured in ideal pixels, to second order in r.
 #pragma once
 
+#include "core/data/camera_lens.h"
 #include "core/geometry/camera_model.h"
 #include "core/geometry/circle_conic.h"
 #include "core/geometry/intrinsics_numbers.h"
@@ -42,9 +43,9 @@ std::optional<ProjectedCircle> projectCircleBeside(const SeenCentre& seen, const
 // Ceres' block, fx fy cx cy d0..d4, with what is known of it. Stays where it is: Ceres points into it.
 class IntrinsicsBlock {
  public:
-  // Starts at the state's intrinsics, or else at those seen with, around which the prior is.
-  IntrinsicsBlock(const CameraIntrinsics& seen_with, const CameraState& state,
-                  const OptimisationOptions& options);
+  // Starts at the state's intrinsics, or else at those seen with, around which the prior is: as wide as is said of a
+  // given lens, else weak.
+  IntrinsicsBlock(const CameraLens& lens, const CameraState& state, const OptimisationOptions& options);
   IntrinsicsBlock(const IntrinsicsBlock&) = delete;
   IntrinsicsBlock& operator=(const IntrinsicsBlock&) = delete;
 
@@ -60,7 +61,9 @@ class IntrinsicsBlock {
 
  private:
   CameraIntrinsics seen_with_;
-  std::array<double, 9> parameters_{}, prior_mean_{}, prior_sigma_{};
+  std::array<double, 9> parameters_{};
+  IntrinsicsVector prior_mean_;
+  IntrinsicsMatrix prior_weight_;              // of what is off the mean, so that it becomes a residual
   std::unique_ptr<ceres::Manifold> manifold_;  // none where all nine are used
 };
 

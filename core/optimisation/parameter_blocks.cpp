@@ -43,9 +43,8 @@ ParameterBlocks::ParameterBlocks(const CalibrationInput& input, const Optimisati
   for (std::size_t i = 0; i < input.cameras.size(); ++i) {
     const CameraData& camera = input.cameras[i];
     const bool free = options.freesIntrinsics();
-    intrinsics_.push_back(
-        free ? std::make_unique<IntrinsicsBlock>(*camera.lens.seen_with, moved_.cameras[i], options)
-             : nullptr);
+    intrinsics_.push_back(free ? std::make_unique<IntrinsicsBlock>(camera.lens, moved_.cameras[i], options)
+                               : nullptr);
     if (!free) moved_.cameras[i].lens.solved.reset();
   }
 }

@@ -7,13 +7,22 @@
 #include <ceres/sized_cost_function.h>
 #include <Eigen/Core>
 
+#include <utility>
+
 namespace evical {
 
-// Zero when a block has its prior's mean: r = (block - mean) / sigma, without unit. Block: numbers.
+// Zero when a block has its prior's mean: r = (block - mean) / sigma, without unit; where its numbers are correlated,
+// r = L^-1 (block - mean), L the Cholesky factor of their covariance. Block: numbers.
 class PriorCost final : public ceres::CostFunction {
  public:
+  struct InverseFactor {
+    Eigen::MatrixXd matrix;  // L^-1
+  };
+
   PriorCost(const Eigen::VectorXd& mean, const Eigen::VectorXd& sigma)
-      : mean_(mean), weight_(sigma.cwiseInverse()) {
+      : PriorCost(mean, InverseFactor{sigma.cwiseInverse().asDiagonal()}) {}
+  PriorCost(const Eigen::VectorXd& mean, InverseFactor weight)
+      : mean_(mean), weight_(std::move(weight.matrix)) {
     mutable_parameter_block_sizes()->push_back(static_cast<int>(mean.size()));
     set_num_residuals(static_cast<int>(mean.size()));
   }
@@ -23,14 +32,16 @@ class PriorCost final : public ceres::CostFunction {
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     const Eigen::Index size = mean_.size();
     const Eigen::Map<const Eigen::VectorXd> block(parameters[0], size);
-    Eigen::Map<Eigen::VectorXd>(residuals, size) = weight_.cwiseProduct(block - mean_);
-    if (jacobians && jacobians[0])
-      Eigen::Map<Eigen::MatrixXd>(jacobians[0], size, size) = weight_.asDiagonal();
+    Eigen::Map<Eigen::VectorXd>(residuals, size) = weight_ * (block - mean_);
+    if (jacobians && jacobians[0]) Eigen::Map<RowMajor>(jacobians[0], size, size) = weight_;
     return true;
   }
 
  private:
-  Eigen::VectorXd mean_, weight_;
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  Eigen::VectorXd mean_;
+  Eigen::MatrixXd weight_;
 };
 
 // The axes about which a rotation's sigmas are: those of the frame into which it turns, or from which.

@@ -130,6 +130,8 @@ std::string cameraYaml(const SessionCamera& camera, const std::filesystem::path&
     text += fmt::format("    resolution_px: [{}, {}]\n", camera.resolution_px.width_px,
                         camera.resolution_px.height_px);
   if (camera.intrinsics) text += "    intrinsics:\n" + intrinsicsYaml(*camera.intrinsics, 6);
+  if (camera.intrinsics && camera.intrinsics_uncertainty)
+    text += lensUncertaintyYaml(*camera.intrinsics_uncertainty, *camera.intrinsics, 4);
   return text;
 }
 
@@ -184,7 +186,8 @@ void setMeasuredLength(const std::optional<MeasuredLength>& measured, Session& s
 
 std::vector<CameraLens> givenLenses(const Session& session) {
   std::vector<CameraLens> lenses;
-  for (const SessionCamera& camera : session.cameras) lenses.push_back(givenLens(camera.intrinsics));
+  for (const SessionCamera& camera : session.cameras)
+    lenses.push_back(givenLens(camera.intrinsics, camera.intrinsics_uncertainty));
   return lenses;
 }
 

@@ -23,6 +23,7 @@ struct SessionCamera {
   std::filesystem::path recording = {};        // its own; empty: the session's
   double clock_offset_s = 0.0;                 // known: to be added to the stream's times
   SensorPrior prior = {};                      // the file's prior.cameras.<name>
+  std::optional<LensUncertainty> intrinsics_uncertainty = {};  // from another recording; absent: not said
 };
 
 struct SessionImu {

@@ -110,14 +110,21 @@ Sensor readSource(const YamlNode& map, const std::string& sensor_name, const std
 
 SessionCamera readCamera(const YamlNode& map, const std::string& camera_name,
                          const std::filesystem::path& folder) {
-  map.allowOnly({"recording", "stream", "clock_offset_s", "resolution_px", "intrinsics"});
+  map.allowOnly({"recording", "stream", "clock_offset_s", "resolution_px", "intrinsics", "intrinsics_std",
+                 "intrinsics_correlation"});
   SessionCamera camera = readSource<SessionCamera>(map, camera_name, folder);
   if (const auto node = map.find("resolution_px")) camera.resolution_px = readResolution(*node);
-  const auto intrinsics = map.find("intrinsics");
+  const auto intrinsics = map.find("intrinsics"), sigmas = map.find("intrinsics_std");
+  if (sigmas && !intrinsics)
+    throw sigmas->error("is of intrinsics that are not given", "Give intrinsics, too");
   if (!intrinsics) return camera;
-  camera.intrinsics = intrinsics->isMap() ? readIntrinsics(*intrinsics)
-                                          : readIntrinsicsFile(besideSession(*intrinsics, folder),
-                                                               camera.name, camera.stream);
+  KnownIntrinsics known = intrinsics->isMap() ? KnownIntrinsics{readIntrinsics(*intrinsics), {}}
+                                              : readKnownIntrinsics(besideSession(*intrinsics, folder),
+                                                                    camera.name, camera.stream);
+  if (sigmas)
+    known.uncertainty = readLensUncertainty(*sigmas, map.find("intrinsics_correlation"), known.camera);
+  camera.intrinsics = known.camera;
+  camera.intrinsics_uncertainty = known.uncertainty;
   Resolution& own = camera.intrinsics->resolution_px;
   if (!own.known()) own = camera.resolution_px;
   if (!camera.resolution_px.known()) camera.resolution_px = own;

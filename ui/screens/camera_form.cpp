@@ -161,7 +161,10 @@ void CameraForm::say(const QString& field) {
   changed.clock_offset_s = clock_offset_s_->value();
   if (field == "resolution_px" && changed.intrinsics)
     changed.intrinsics->resolution_px = changed.resolution_px;
-  if (field == "intrinsics") changed.intrinsics = typedIntrinsics();
+  if (field == "intrinsics") {
+    changed.intrinsics = typedIntrinsics();
+    changed.intrinsics_uncertainty.reset();  // which was of other numbers
+  }
   const bool same = changed.name == camera_.name && changed.resolution_px == camera_.resolution_px &&
                     changed.intrinsics == camera_.intrinsics &&
                     changed.clock_offset_s == camera_.clock_offset_s;
@@ -177,7 +180,8 @@ void CameraForm::setFound(const std::optional<CameraIntrinsics>& found) {
 void CameraForm::takeOver() {
   if (!found_) return;
   SessionCamera changed = camera_;
-  changed.intrinsics = found_;
+  changed.intrinsics = found_;  // without its sigmas: the same recording would count twice
+  changed.intrinsics_uncertainty.reset();
   changed.resolution_px = found_->resolution_px;
   emit edited(changed, "found_intrinsics");
 }
@@ -191,7 +195,9 @@ void CameraForm::chooseFile() {
 void CameraForm::loadIntrinsics(const QString& file) {
   SessionCamera changed = camera_;
   try {
-    changed.intrinsics = readIntrinsicsFile(file.toStdString(), camera_.name, camera_.stream);
+    const KnownIntrinsics known = readKnownIntrinsics(file.toStdString(), camera_.name, camera_.stream);
+    changed.intrinsics = known.camera;
+    changed.intrinsics_uncertainty = known.uncertainty;
   } catch (const CalibrationError& error) {
     showText(file_problem_, QFileInfo(file).fileName() + ": " + QString::fromStdString(error.problem()) +
                                 ". " + QString::fromStdString(error.advice()));

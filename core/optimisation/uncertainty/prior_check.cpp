@@ -47,6 +47,7 @@ class Comparison {
   template <class Rows, class State, class Sigma, class Prior>
   void compareSensor(const std::string& sensor, const Rows& rows, bool reference, const Prior& prior,
                      const State& solution, const State& alone, const Sigma& sigma);
+  void compareLens(std::size_t camera);
   // Of several numbers the one that is furthest off is said.
   void judge(const std::string& name, const Unit& unit, const std::vector<Compared>& numbers,
              const std::vector<std::string>& parts);
@@ -152,7 +153,28 @@ void Comparison::compareSensor(const std::string& sensor, const Rows& rows, bool
   });
 }
 
+// Of a lens that was given with sigmas.
+void Comparison::compareLens(std::size_t camera) {
+  const CameraLens& lens = input_.cameras[camera].lens;
+  const auto &solved = solution_.cameras[camera].lens.solved, &alone = alone_.cameras[camera].lens.solved;
+  if (!lens.given_with || !solved || !alone) return;
+  const QuantityInfo& info = quantityInfo(kCameraQuantities, LensIntrinsics{});
+  const Eigen::VectorXd known = quantityNumbers(lens.given), found = quantityNumbers(solved),
+                        found_alone = quantityNumbers(alone),
+                        alone_sigma = quantityNumbers(sigmas_.cameras[camera].intrinsics_std);
+  const IntrinsicsVector known_sigma = lens.given_with->covariance().diagonal().cwiseSqrt();
+  const std::vector<QuantityPart> parts = quantityParts(info, lens.given);
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    if (known_sigma[i] <= 0.0) continue;
+    judge(input_.cameras[camera].name + "." + parts[k].name,
+          {parts[k].shown_unit.empty() ? "" : " " + parts[k].shown_unit, 1.0, kNoNeed},
+          {{known[i], known_sigma[i], found_alone[i], alone_sigma[i], found_alone[i] - found[i]}}, {""});
+  }
+}
+
 PriorCheck Comparison::run() {
+  for (std::size_t i = 0; i < input_.cameras.size(); ++i) compareLens(i);
   for (std::size_t i = 0; i < input_.cameras.size(); ++i)
     compareSensor(input_.cameras[i].name, kCameraQuantities, input_.isReferenceCamera(i),
                   input_.cameras[i].prior, solution_.cameras[i], alone_.cameras[i], sigmas_.cameras[i]);
@@ -163,7 +185,10 @@ PriorCheck Comparison::run() {
 }
 
 CalibrationInput withoutPriors(CalibrationInput input) {
-  for (CameraData& camera : input.cameras) camera.prior = {};
+  for (CameraData& camera : input.cameras) {
+    camera.prior = {};
+    camera.lens.given_with.reset();
+  }
   for (ImuData& imu : input.imus) imu.prior = {};
   return input;
 }
@@ -175,7 +200,7 @@ void freeDrift(const SensorPrior& prior, OptimisationOptions& options) {
 
 bool hasPrior(const CalibrationInput& input) {
   for (const CameraData& camera : input.cameras)
-    if (camera.prior != SensorPrior{}) return true;
+    if (camera.prior != SensorPrior{} || camera.lens.given_with) return true;
   for (const ImuData& imu : input.imus)
     if (imu.prior != ImuPrior{}) return true;
   return false;
