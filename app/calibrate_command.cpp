@@ -35,6 +35,7 @@ void tellEnd(const SessionArguments& arguments, const Session& session, const Ca
              const Console& console, const NewFolder& folder) {
   if (outcome.error && outcome.error->kind() == ErrorKind::CalibrationFailed)
     tellFailure(arguments, session, outcome.error->what(), console, outcome.pass);
+  if (outcome.error && outcome.error->repair()) printError(tryText(arguments, *outcome.error->repair()));
   if (outcome.status == RunStatus::Cancelled && folder.wasThere())
     tellFailure(arguments, session, "cancelled", console, outcome.pass);
 }
@@ -45,6 +46,7 @@ void tellResult(const SessionArguments& arguments, const Session& session,
   const ExportRemarks remarks = writeResultFiles(arguments.output, session, run, kVersion, console.logText());
   console.stageStarted("done");
   print("{}", resultTable(named));
+  if (const std::optional<Repair>& repair = run->result.repair) print("{}", tryText(arguments, *repair));
   if (!arguments.quiet)
     for (const std::string& note : remarks.notes) print("{}\n", note);
   for (const std::string& refusal : remarks.refused) printError(refusal + "\n");

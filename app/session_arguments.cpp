@@ -10,7 +10,9 @@ namespace evical {
 void addSessionArguments(CLI::App& command, SessionArguments& arguments) {
   command.add_option("SESSION", arguments.session, "Session file")->required();
   command.add_option("-o,--output", arguments.output, "Folder for the results")->required();
-  command.add_option("--set", arguments.settings, "group.option=value; see 'evical options'")
+  command
+      .add_option("--set", arguments.settings,
+                  "group.option=value, see 'evical options'; or imus.NAME.KEY=value of units and axes")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_option("--threads", arguments.threads, "Threads of the optimisation")
@@ -25,11 +27,18 @@ Session sessionFrom(const SessionArguments& arguments) {
     if (equals == std::string::npos) {
       throw badInput("--set " + setting, "has no '='", "Write --set group.option=value");
     }
-    setOption(session.options, setting.substr(0, equals), setting.substr(equals + 1));
+    setInSession(session, setting.substr(0, equals), setting.substr(equals + 1));
   }
   validate(session.options);
   if (arguments.threads > 0) session.options.optimisation.threads = arguments.threads;
   return session;
+}
+
+std::string tryText(const SessionArguments& arguments, const Repair& repair) {
+  std::string text = fmt::format("Try: evical calibrate {}", arguments.session);
+  for (const std::string& setting : arguments.settings)
+    if (!setting.starts_with(repair.key + "=")) text += " --set " + setting;
+  return text + fmt::format(" --set {} -o {}\n", repair.text(), arguments.output);
 }
 
 }  // namespace evical

@@ -25,4 +25,7 @@ void addSessionArguments(CLI::App& command, SessionArguments& arguments);
 // The session with the settings applied.
 Session sessionFrom(const SessionArguments& arguments);
 
+// The same command with what mends its result.
+std::string tryText(const SessionArguments& arguments, const Repair& repair);
+
 }  // namespace evical

@@ -22,6 +22,11 @@ CalibrationError::CalibrationError(ErrorKind kind, std::string place, std::strin
       problem_(std::move(problem)),
       advice_(std::move(advice)) {}
 
+CalibrationError CalibrationError::repairedBy(std::optional<Repair> repair) && {
+  repair_ = std::move(repair);
+  return std::move(*this);
+}
+
 CalibrationError badInput(std::string place, std::string problem, std::string advice) {
   return {ErrorKind::BadInput, std::move(place), std::move(problem), std::move(advice)};
 }

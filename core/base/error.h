@@ -1,6 +1,9 @@
 // The one exception that core throws at people: what went wrong, where, and what to do.
 #pragma once
 
+#include "core/base/repair.h"
+
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -21,10 +24,14 @@ class CalibrationError : public std::runtime_error {
   const std::string& place() const { return place_; }
   const std::string& problem() const { return problem_; }
   const std::string& advice() const { return advice_; }
+  // Of a cause that is certain, what can be set so that it is none any more.
+  const std::optional<Repair>& repair() const { return repair_; }
+  CalibrationError repairedBy(std::optional<Repair> repair) &&;
 
  private:
   ErrorKind kind_;
   std::string place_, problem_, advice_;
+  std::optional<Repair> repair_;
 };
 
 CalibrationError badInput(std::string place, std::string problem, std::string advice = {});

@@ -1,6 +1,7 @@
 // What a calibration says: the state, how sure it is, and how well it explains the data.
 #pragma once
 
+#include "core/base/repair.h"
 #include "core/data/calibration_state.h"
 #include "core/data/calibration_status.h"
 
@@ -63,8 +64,8 @@ struct UncertaintyReport {
   double gravity_direction_std_rad = 0.0;
   double gravity_norm_std_m_s2 = 0.0;  // 0: its norm is held
 
-  // Eigenvalues of the information matrix in units of what a user needs (0.1 deg, 1 mm, 0.1 ms): below 1, the
-  // need is not met in that direction. Ascending.
+  // Eigenvalues of the information matrix in units of what a user needs (0.1 deg, 1 mm, 0.1 ms), with the board and
+  // gravity known: below 1, the need is not met in that direction. Ascending.
   std::vector<double> observability;
   std::string weakest;  // in plain words: "translation along the camera's z axis"
 };
@@ -118,6 +119,7 @@ struct CrossValidation {
 struct CalibrationResult {
   CalibrationStatus status = CalibrationStatus::Ok;
   std::string reason;                    // why not ok, in plain words
+  std::optional<Repair> repair;          // of the first of the reasons
   std::optional<std::int64_t> start_ns;  // of the recording: where times in seconds begin
   CalibrationState state;
   UncertaintyReport uncertainty;

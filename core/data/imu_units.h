@@ -7,7 +7,9 @@
 #include "core/numerics/angles.h"
 
 #include <array>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace evical {
@@ -29,6 +31,30 @@ constexpr double metresPerSecond2(AccelerationUnit unit) {
 constexpr double radiansPerSecond(AngularRateUnit unit) {
   return unit == AngularRateUnit::RadiansPerSecond ? 1.0 : kRadPerDeg;
 }
+
+// How a sensor's own axes are read as the IMU's x, y and z: 2 is its y, -2 the opposite of that.
+using AxesReading = std::array<int, 3>;
+inline constexpr AxesReading kAxesAsTheyAre = {1, 2, 3};
+
+inline Eigen::Vector3d readAs(const AxesReading& reading, const Eigen::Vector3d& own) {
+  const auto axis = [&](std::size_t i) {
+    return reading[i] < 0 ? -own[-reading[i] - 1] : own[reading[i] - 1];
+  };
+  return {axis(0), axis(1), axis(2)};
+}
+
+// What reading so is that has been read by `first` already.
+inline AxesReading readAfter(const AxesReading& first, const AxesReading& then) {
+  const auto axis = [&](std::size_t i) {
+    const int own = first[static_cast<std::size_t>(then[i] < 0 ? -then[i] : then[i]) - 1];
+    return then[i] < 0 ? -own : own;
+  };
+  return {axis(0), axis(1), axis(2)};
+}
+
+// "y,x,-z", and back: nothing where that is not each axis once.
+std::string axesText(const AxesReading& reading);
+std::optional<AxesReading> axesFrom(const std::string& text);
 
 // A sample before its units are known: the recording's own numbers, in the IMU's own frame.
 struct RawImuSample {

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/time.h"
+#include "core/data/unfit_samples.h"
 #include "core/initialisation/axes_check.h"
 #include "core/numerics/robust.h"
 
@@ -9,23 +10,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <vector>
 
 namespace evical {
 namespace {
-
-using AxisOf = std::function<double(const ImuSample&)>;
-
-void checkAxisAlive(const ImuData& imu, const std::string& axis, const AxisOf& valueOf) {
-  const double first = valueOf(imu.samples.front());
-  const bool same = std::all_of(imu.samples.begin(), imu.samples.end(),
-                                [&](const ImuSample& sample) { return valueOf(sample) == first; });
-  if (!same) return;
-  throw calibrationFailed(imu.name,
-                          fmt::format("{} stays at {:.4g} throughout: the axis is dead", axis, first),
-                          "Check the IMU and what reads it");
-}
 
 // RMS of the samples' forces about their mean.
 double forceSpread_m_s2(const ImuData& imu) {
@@ -70,11 +58,14 @@ void checkStampsApart(const ImuData& imu) {
 
 void checkAxesAlive(const ImuData& imu) {
   if (imu.samples.empty()) return;
-  for (int axis = 0; axis < 3; ++axis) {
-    checkAxisAlive(imu, fmt::format("angular rate {}", "xyz"[axis]),
-                   [&](const ImuSample& sample) { return sample.angular_rate_rad_s[axis]; });
-    checkAxisAlive(imu, fmt::format("specific force {}", "xyz"[axis]),
-                   [&](const ImuSample& sample) { return sample.specific_force_m_s2[axis]; });
+  for (const ImuAxis& axis : kImuAxes) {
+    const double first = axis.of(imu.samples.front());
+    if (std::any_of(imu.samples.begin(), imu.samples.end(),
+                    [&](const ImuSample& sample) { return axis.of(sample) != first; }))
+      continue;
+    throw calibrationFailed(imu.name,
+                            fmt::format("{} stays at {:.4g} throughout: the axis is dead", axis.name, first),
+                            "Check the IMU and what reads it");
   }
 }
 
@@ -100,7 +91,8 @@ void checkRotationsAgree(const CalibrationInput& input, const CameraAgreement& a
     const auto cause = findWrongAxes(input, true, options, context);
     throw calibrationFailed(
         imu, (cause ? cause->problem : "the gyroscope's axes seem left-handed") + " (" + proof + ")",
-        cause ? cause->advice : "Change the sign of one axis, or swap two, where they are recorded");
+        cause ? cause->advice : "Change the sign of one axis, or swap two, where they are recorded")
+        .repairedBy(cause ? cause->repair : std::nullopt);
   }
   throw calibrationFailed(
       imu,
@@ -121,7 +113,7 @@ void checkAccelerationsAgree(const CalibrationInput& input, const GravityAlignme
       kSuspicious * options.largest_unexplained_motion * forceSpread_m_s2(imu))
     return;
   if (const auto cause = findWrongAxes(input, false, options, context))
-    throw calibrationFailed(imu.name, cause->problem, cause->advice);
+    throw calibrationFailed(imu.name, cause->problem, cause->advice).repairedBy(cause->repair);
 }
 
 }  // namespace evical

@@ -1,6 +1,7 @@
 #include "core/initialisation/axes_check.h"
 
 #include "core/base/error.h"
+#include "core/data/imu_units.h"
 #include "core/initialisation/camera_alignment.h"
 #include "core/initialisation/gravity_alignment.h"
 #include "core/initialisation/gyro_rotation.h"
@@ -33,15 +34,19 @@ std::vector<Eigen::Matrix3d> readings() {
   return all;
 }
 
-// "(y, x, -z)"
-std::string axesText(const Eigen::Matrix3d& reading) {
-  std::string text;
+AxesReading axesOf(const Eigen::Matrix3d& reading) {
+  AxesReading axes = {};
   for (int row = 0; row < 3; ++row) {
     Eigen::Index axis = 0;
     reading.row(row).cwiseAbs().maxCoeff(&axis);
-    text += fmt::format("{}{}{}", text.empty() ? "" : ", ", reading(row, axis) < 0.0 ? "-" : "", "xyz"[axis]);
+    axes[static_cast<std::size_t>(row)] = static_cast<int>(axis + 1) * (reading(row, axis) < 0.0 ? -1 : 1);
   }
-  return "(" + text + ")";
+  return axes;
+}
+
+// "(y,x,-z)"
+std::string axesWords(const Eigen::Matrix3d& reading) {
+  return "(" + axesText(axesOf(reading)) + ")";
 }
 
 class AxesTrial {
@@ -79,15 +84,21 @@ class AxesTrial {
 };
 
 // Rates were negated for the trial where the gyroscope is left-handed.
-AxesCause causeOf(const Eigen::Matrix3d& reading, bool left_handed_gyroscope, const std::string& proof) {
+// The frame is the accelerometer's, so that of two that do not match the gyroscope is read anew. Readings are of the samples
+// as they came, which the session may already have turned.
+AxesCause causeOf(const Eigen::Matrix3d& reading, bool left_handed_gyroscope, const std::string& imu,
+                  const std::string& proof) {
   const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
   const bool as_is = reading.isApprox(identity), negated = reading.isApprox(-identity);
   // Rates are turned by an axis' reflection into the other direction, too.
   const Eigen::Matrix3d gyroscope =
       (left_handed_gyroscope ? -1.0 : 1.0) * reading.determinant() * reading.transpose();
+  const auto read = [&](const char* sensor, const Eigen::Matrix3d& as) {
+    return Repair{fmt::format("imus.{}.{}_axes", imu, sensor), axesText(axesOf(as))};
+  };
   if (left_handed_gyroscope && as_is)
     return {"the angular rates seem negated: " + proof,
-            "Change the sign of all three where they are recorded"};
+            "Change the sign of all three where they are recorded", read("gyroscope", -identity)};
   if (left_handed_gyroscope && negated)
     return {
         "the IMU's axes seem left-handed, mirrored along one or with two swapped, in gyroscope and "
@@ -96,16 +107,17 @@ AxesCause causeOf(const Eigen::Matrix3d& reading, bool left_handed_gyroscope, co
         "Change the sign of one axis, or swap two, of both where they are recorded"};
   if (left_handed_gyroscope)
     return {fmt::format("the gyroscope's axes seem left-handed, mirrored or swapped: read as {}, {}",
-                        axesText(gyroscope), proof),
-            "Record them as the accelerometer's"};
+                        axesWords(gyroscope), proof),
+            "Record them as the accelerometer's", read("gyroscope", gyroscope)};
   if (negated)
     return {
         "the accelerations seem negated: " + proof,
-        "Change their sign (at rest an accelerometer shows +g upwards); acceleration_unit: -g does it for g"};
+        "Change their sign (at rest an accelerometer shows +g upwards); acceleration_unit: -g does it for g",
+        read("accelerometer", -identity)};
   return {fmt::format("the axes of accelerometer and gyroscope seem permuted against each other: with the "
                       "accelerometer's read as {}, or the gyroscope's as {}, {}",
-                      axesText(reading), axesText(gyroscope), proof),
-          "Record both in one frame"};
+                      axesWords(reading), axesWords(gyroscope), proof),
+          "Record both in one frame", read("gyroscope", gyroscope)};
 }
 
 }  // namespace
@@ -133,7 +145,7 @@ std::optional<AxesCause> findWrongAxes(const CalibrationInput& input, bool left_
         best.isIdentity()
             ? fmt::format("with that, accelerations agree to {:.2g} m/s^2", least_m_s2)
             : fmt::format("accelerations agree to {:.2g} m/s^2 instead of {:.2g}", least_m_s2, as_is_m_s2);
-    return causeOf(best, left_handed_gyroscope, proof);
+    return causeOf(best, left_handed_gyroscope, input.imus[input.reference_imu].name, proof);
   } catch (const CalibrationError&) {
     return std::nullopt;  // it fails for a reason of its own, however the axes are read
   }

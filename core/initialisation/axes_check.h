@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/base/progress.h"
+#include "core/base/repair.h"
 #include "core/data/calibration_setup.h"
 #include "core/initialisation/initialisation_options.h"
 
@@ -14,6 +15,7 @@ namespace evical {
 
 struct AxesCause {
   std::string problem, advice;
+  std::optional<Repair> repair = {};  // where one sensor alone is read wrongly
 };
 // `left_handed_gyroscope`: only a reflection of the camera's rotation is the gyroscope's. Nothing where no reading
 // is better by far.

@@ -201,11 +201,11 @@ void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& 
     std::vector<double*> blocks;
     parameters.appendRotation(segment, blocks);
     parameters.appendPosition(segment, blocks);
-    blocks.insert(blocks.end(), {state.reference_from_camera.rotation.coeffs().data(),
-                                 state.reference_from_camera.translation_m.data(), &state.time_offset_s,
-                                 &state.time_offset_drift_ppm, &state.edge_lead_px,
-                                 &state.slow_edge_lead_px, &board.scale, &board.stretch,
-                                 &board.row_curvature_1_m, &board.column_curvature_1_m, &board.twist_1_m});
+    blocks.insert(blocks.end(),
+                  {state.reference_from_camera.rotation.coeffs().data(),
+                   state.reference_from_camera.translation_m.data(), &state.time_offset_s,
+                   &state.time_offset_drift_ppm, &state.edge_lead_px, &state.slow_edge_lead_px, &board.scale,
+                   &board.stretch, &board.row_curvature_1_m, &board.column_curvature_1_m, &board.twist_1_m});
     if (IntrinsicsBlock* intrinsics = parameters.intrinsics(camera)) blocks.push_back(intrinsics->data());
     builder.residuals.push_back({builder.problem.AddResidualBlock(cost, nullptr, blocks), SensorKind::Circles,
                                  camera, begin_s, cost});

@@ -19,6 +19,7 @@
 #include "core/pipeline/intrinsics_calibration.h"
 #include "core/pipeline/joint_intrinsics.h"
 #include "core/pipeline/misfit.h"
+#include "core/pipeline/session_keys.h"
 #include "core/pipeline/session_recording.h"
 #include "core/recording/inspection.h"
 
@@ -51,12 +52,14 @@ void checkUnits(const ImuData& imu, const InitialisationOptions& options) {
         imu.name,
         fmt::format("accelerations have a median norm of {:.3g} m/s^2, gravity has 9.81{}", norm,
                     g ? ": they look like g" : ""),
-        g ? "Set acceleration_unit: g for this IMU" : "Check acceleration_unit (m/s^2, g, -g) of this IMU");
+        g ? "Set acceleration_unit: g for this IMU" : "Check acceleration_unit (m/s^2, g, -g) of this IMU")
+        .repairedBy(g ? std::optional(Repair{"imus." + imu.name + ".acceleration_unit", "g"}) : std::nullopt);
   }
   const double rms = std::sqrt(rate2 / static_cast<double>(imu.samples.size()));
   if (rms > options.largest_rotation_rate_rad_s) {
     throw badInput(imu.name, fmt::format("angular rates of {:.0f} rad/s RMS look like deg/s", rms),
-                   "Set angular_rate_unit: deg/s for this IMU");
+                   "Set angular_rate_unit: deg/s for this IMU")
+        .repairedBy(Repair{"imus." + imu.name + ".angular_rate_unit", "deg/s"});
   }
 }
 
@@ -180,6 +183,7 @@ void tellIntrinsics(const Session& session, CalibrationRun& run) {
         doubt = fmt::format("{}: {}", name, found.reason);
     }
     if (!lens.solved) continue;
+    if (lens.given_with) notes.push_back(name + ": weighed by the sigmas that they were given with");
     notes.push_back(
         fmt::format("{}: solved with everything else, which moved the projection by {:.3f} px RMS", name,
                     projectionDifference(*lens.seen_with, *lens.solved).rms_px));
@@ -276,6 +280,8 @@ class Calibration {
     } catch (const CalibrationError& error) {
       outcome.status = RunStatus::Failed;
       outcome.error = error;
+      if (error.repair())
+        outcome.error = CalibrationError(error).repairedBy(ofRawAxes(*error.repair(), session_));
     }
     outcome.pass = std::move(run_.pass);
     return outcome;
@@ -343,18 +349,20 @@ class Calibration {
     result.reason = uncertainty.reason;
     if (!solution.converged && result.status == CalibrationStatus::Ok)
       addDoubt(
-          "the optimisation did not converge: raise optimisation.solver.max_iterations, or look at the "
-          "residuals",
+          Doubt{"the optimisation did not converge: raise optimisation.solver.max_iterations, or see the "
+                "residuals",
+                Repair{"optimisation.solver.max_iterations", std::to_string(2 * options.max_iterations)}},
           result);
     addDoubt(priors.doubt, result);
     addDoubt(boardDoubt(uncertainty, solution.state), result);
     addDoubt(uncertainty.stretch_doubt, result);
     addDoubt(uncertainty.bow_doubt, result);
-    addDoubt(uncertainty.wrong_lenses, result);
+    addDoubt(Doubt{uncertainty.wrong_lenses, kFreeLenses}, result);
     addDoubt(clock_doubt_, result);
     // A prior that is far off looks like a turned gyroscope, too.
     const std::string turned = priors.doubt.empty() ? uncertainty.turned_gyroscopes : std::string();
-    judge(solution, uncertainty.bent_board.empty() ? turned : uncertainty.bent_board);
+    judge(solution, uncertainty.bent_board.empty() ? Doubt{turned, kFreeTurn}
+                                                   : Doubt{uncertainty.bent_board, kFreeBow});
     if (result.status == CalibrationStatus::Doubtful) addDoubt(saturationIn(input_, options), result);
     result.state = std::move(solution.state);
     result.uncertainty = std::move(uncertainty.report);
@@ -384,18 +392,19 @@ class Calibration {
 
   // What explains a misfit comes before the misfit, and a gyroscope that seems turned only where nothing else does:
   // much that is not modelled looks like it, a bent board, too.
-  void judge(const BatchSolution& solution, const std::string& held) {
+  void judge(const BatchSolution& solution, const Doubt& held) {
     const OptimisationOptions& options = session_.options.optimisation;
     const MisfitVerdict misfit = judgeMisfit(input_, solution, options);
-    if (misfit.doubt.empty() && held.empty()) return;
+    if (misfit.doubt.empty() && held.text.empty()) return;
     const std::optional<Cause> cause = findCause(input_, solution, options, context_);
     if (!misfit.failure.empty())
       throw calibrationFailed(session_.source.string(),
                               (cause ? cause->text + "; " : std::string()) + misfit.failure,
-                              "Check the board, the lens and the streams in the session");
+                              "Check the board, the lens and the streams in the session")
+          .repairedBy(cause ? std::optional(cause->repair) : std::nullopt);
     if (misfit.doubt.empty() && !cause) addDoubt(held, run_.result);
     addDoubt(misfit.doubt, run_.result);
-    if (cause) addDoubt(cause->text, run_.result);
+    if (cause) addDoubt(Doubt{cause->text, cause->repair}, run_.result);
   }
 
   void compareHalves() {

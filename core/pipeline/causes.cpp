@@ -13,6 +13,11 @@
 #include <cmath>
 
 namespace evical {
+
+const Repair kFreeLenses{"optimisation.model.camera_intrinsics", "free"};
+const Repair kFreeTurn{"optimisation.model.gyroscope_rotation", "true"};
+const Repair kFreeBow{"optimisation.model.board_bow", "true"};
+
 namespace {
 
 struct Trial {
@@ -21,6 +26,7 @@ struct Trial {
   void (*release)(OptimisationOptions& options);
   std::string (*words)(const CalibrationInput& input, const BatchSolution& freed);
   const char* advice;
+  const Repair& repair;
 };
 
 bool turnIsHeld(const BatchSolution& solution, const OptimisationOptions& options) {
@@ -77,13 +83,13 @@ std::string bentBoardWords(const CalibrationInput& input, const BatchSolution& f
   return bowWords(freed.state.board, input.board);
 }
 
-constexpr std::array<Trial, 3> kTrials = {
+const std::array<Trial, 3> kTrials = {
     {{CauseKind::BentBoard, &flatnessIsHeld, &releaseBow, &bentBoardWords,
-      "lay it on glass, or calibrate with optimisation.board_bow: true"},
+      "lay it on glass, or calibrate with optimisation.board_bow: true", kFreeBow},
      {CauseKind::Lens, &aLensIsHeld, &releaseLenses, &lensWords,
-      "calibrate with optimisation.camera_intrinsics: free, and measure the board"},
+      "calibrate with optimisation.camera_intrinsics: free, and measure the board", kFreeLenses},
      {CauseKind::GyroscopeTurned, &turnIsHeld, &releaseTurn, &turnWords,
-      "calibrate with optimisation.gyroscope_rotation: true"}}};
+      "calibrate with optimisation.gyroscope_rotation: true", kFreeTurn}}};
 
 }  // namespace
 
@@ -107,7 +113,8 @@ std::optional<Cause> findCause(const CalibrationInput& input, const BatchSolutio
       least = after;
       best = Cause{trial.kind,
                    fmt::format("{} (residuals fall from {:.2g} to {:.2g} times what was given); {}",
-                               trial.words(input, refit), std::exp(before), std::exp(after), trial.advice)};
+                               trial.words(input, refit), std::exp(before), std::exp(after), trial.advice),
+                   trial.repair};
     } catch (const CalibrationError&) {
       continue;  // what cannot be solved explains nothing
     }

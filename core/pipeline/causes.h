@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/base/progress.h"
+#include "core/base/repair.h"
 #include "core/data/calibration_setup.h"
 #include "core/optimisation/batch_optimiser.h"
 
@@ -16,7 +17,11 @@ enum class CauseKind { GyroscopeTurned, Lens, BentBoard };
 struct Cause {
   CauseKind kind;
   std::string text;
+  Repair repair;
 };
+// What sets free that is held otherwise.
+extern const Repair kFreeLenses, kFreeTurn, kFreeBow;
+
 // Nothing where none of them explains much.
 std::optional<Cause> findCause(const CalibrationInput& input, const BatchSolution& solution,
                                const OptimisationOptions& options, const RunContext& context);

@@ -31,6 +31,7 @@ struct SessionImu {
   ImuNoise noise;
   std::optional<AccelerationUnit> acceleration_unit;  // absent: as the recording's format says
   std::optional<AngularRateUnit> angular_rate_unit;
+  AxesReading gyroscope_axes = kAxesAsTheyAre, accelerometer_axes = kAxesAsTheyAre;
   std::filesystem::path recording;  // its own; empty: the session's
   double clock_offset_s = 0.0;      // known: to be added to the stream's times
   ImuPrior prior = {};              // the file's prior.imus.<name>
@@ -55,6 +56,10 @@ struct Session {
 
 // The board's spacing, and how well it is known, follow; without a length the spacing stays, and is as well known as any.
 void setMeasuredLength(const std::optional<MeasuredLength>& measured, Session& session);
+
+// One key, as `--set` and repairs have it: an option, or imus.<name>. and acceleration_unit, angular_rate_unit,
+// gyroscope_axes or accelerometer_axes. Throws CalibrationError (BadInput).
+void setInSession(Session& session, const std::string& key, const std::string& value);
 
 // As the session gives them: those that it leaves out are not known yet.
 std::vector<CameraLens> givenLenses(const Session& session);

@@ -2,6 +2,7 @@
 #include "core/data/intrinsics_yaml.h"
 #include "core/numerics/normal_gravity.h"
 #include "core/pipeline/session.h"
+#include "core/pipeline/session_keys.h"
 #include "core/pipeline/session_priors.h"
 #include "core/report/export/export_target.h"
 
@@ -136,10 +137,18 @@ SessionCamera readCamera(const YamlNode& map, const std::string& camera_name,
   return camera;
 }
 
+void setFromNode(const YamlNode& node, const std::string& key, SessionImu& imu) {
+  try {
+    setInImu(imu, key, node.text());
+  } catch (const CalibrationError& problem) {
+    throw node.error(problem.problem(), problem.advice());
+  }
+}
+
 SessionImu readImu(const YamlNode& map, const std::string& imu_name, const std::filesystem::path& folder) {
   map.allowOnly({"recording", "stream", "clock_offset_s", "accelerometer_noise_density",
                  "gyroscope_noise_density", "accelerometer_random_walk", "gyroscope_random_walk",
-                 "acceleration_unit", "angular_rate_unit"});
+                 "acceleration_unit", "angular_rate_unit", "gyroscope_axes", "accelerometer_axes"});
   SessionImu imu = readSource<SessionImu>(map, imu_name, folder);
   imu.noise.accelerometer_density = map["accelerometer_noise_density"].real(1e-7, 10.0, "m/s^2/sqrt(Hz)");
   imu.noise.gyroscope_density = map["gyroscope_noise_density"].real(1e-8, 10.0, "rad/s/sqrt(Hz)");
@@ -147,10 +156,9 @@ SessionImu readImu(const YamlNode& map, const std::string& imu_name, const std::
     imu.noise.accelerometer_random_walk = node->real(0.0, 10.0, "m/s^3/sqrt(Hz)");
   if (const auto node = map.find("gyroscope_random_walk"))
     imu.noise.gyroscope_random_walk = node->real(0.0, 10.0, "rad/s^2/sqrt(Hz)");
-  if (const auto node = map.find("acceleration_unit"))
-    imu.acceleration_unit = static_cast<AccelerationUnit>(node->choice({"m/s^2", "g", "-g"}));
-  if (const auto node = map.find("angular_rate_unit"))
-    imu.angular_rate_unit = static_cast<AngularRateUnit>(node->choice({"rad/s", "deg/s"}));
+  for (const char* const key :
+       {"acceleration_unit", "angular_rate_unit", "gyroscope_axes", "accelerometer_axes"})
+    if (const auto node = map.find(key)) setFromNode(*node, key, imu);
   return imu;
 }
 

@@ -171,6 +171,10 @@ void SessionRecording::bringHome(Packet& raw, SensorPacket& packet) const {
     const StreamInfo& stream = info(packet.sensor);
     toSi(raw.imu_samples, session_.imus[imu].acceleration_unit.value_or(stream.acceleration_unit),
          session_.imus[imu].angular_rate_unit.value_or(stream.angular_rate_unit), packet.imu_samples);
+    for (ImuSample& sample : packet.imu_samples) {
+      sample.angular_rate_rad_s = readAs(session_.imus[imu].gyroscope_axes, sample.angular_rate_rad_s);
+      sample.specific_force_m_s2 = readAs(session_.imus[imu].accelerometer_axes, sample.specific_force_m_s2);
+    }
   }
   const double offset_s =
       is_camera ? session_.cameras[packet.sensor].clock_offset_s : session_.imus[imu].clock_offset_s;

@@ -245,6 +245,8 @@ NamedResult readResultYaml(const std::filesystem::path& file) {
   if (const auto status = root.find("status"))
     result.status = static_cast<CalibrationStatus>(status->choice({"ok", "doubtful", "failed"}));
   get(root, "reason", result.reason);
+  if (const auto repair = root.find("repair"))
+    result.repair = Repair{(*repair)["set"].text(), (*repair)["to"].text()};
   get(root, "reference", named.reference);
   if (const auto recording = root.find("recording")) result.start_ns = (*recording)["start_ns"].nanoseconds();
   if (const auto cameras = root.find("cameras"))

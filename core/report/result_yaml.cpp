@@ -202,6 +202,8 @@ std::string resultYaml(const NamedResult& named) {
   std::string text = fmt::format("evical_result: 1\nstatus: {}\nreason: {}\nreference: {}\n",
                                  statusName(named.result->status), yamlText(named.result->reason),
                                  yamlText(named.reference));
+  if (const std::optional<Repair>& repair = named.result->repair)
+    text += fmt::format("repair: {{set: {}, to: {}}}\n", yamlText(repair->key), yamlText(repair->value));
   if (named.result->start_ns) text += fmt::format("recording:\n  start_ns: {}\n", *named.result->start_ns);
   text += state.cameras.empty() ? "cameras: {}\n" : "cameras:\n";
   for (std::size_t i = 0; i < state.cameras.size(); ++i) text += cameraYaml(named, i);

@@ -13,6 +13,7 @@
 #include "ui/detection/detection_screen.h"
 #include "ui/detection/event_view.h"
 #include "ui/detection/timeline.h"
+#include "ui/forms/repair_button.h"
 #include "ui/scene/trajectory_screen.h"
 #include "ui/scene/view3d.h"
 #include "ui/screens/stream_table.h"
@@ -85,6 +86,31 @@ class TestMainWindowBadInput : public QObject {
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
     QVERIFY(QFile::exists(folder + "/result.yaml"));
     QVERIFY(!test.child<ErrorPanel>()->isVisible());
+  }
+
+  // An accelerometer that is read the wrong way round: the panel offers what mends it, a click does, and undo takes it
+  // back.
+  void failureWithARepair_isMendedByAClick() {
+    WindowFixture test;
+    Session session = readSession(simulatedSession().toStdString());
+    session.imus[0].accelerometer_axes = {-1, -2, -3};
+    test.document().startSession(session);
+    test.press(Qt::Key_F5);
+    QCOMPARE(test.waitForJob(), JobOutcome::Failed);
+    auto* const button = test.child<ErrorPanel>()->findChild<RepairButton*>();
+    QVERIFY2(test.child<ErrorPanel>()->text().contains("negated"),
+             qPrintable(test.child<ErrorPanel>()->text()));
+    QVERIFY(button->isVisible());
+    QCOMPARE(button->text(), QString("Set accelerometer_axes to x,y,z and calibrate again"));
+    QTest::mouseClick(button, Qt::LeftButton);
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    QVERIFY(test.document().session().imus[0].accelerometer_axes == kAxesAsTheyAre);
+    QVERIFY(test.document().last().run);
+    QVERIFY(!test.child<ErrorPanel>()->isVisible());
+    test.press(Qt::Key_Z, Qt::ControlModifier);
+    QVERIFY((test.document().session().imus[0].accelerometer_axes == AxesReading{-1, -2, -3}));
+    answerQuestion(QMessageBox::Discard);
+    QVERIFY(test.window.close());
   }
 
   void fullDisk_sessionStaysUnsaved() {

@@ -6,6 +6,7 @@
 #include "tests/support/own_result.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
+#include "ui/forms/repair_button.h"
 #include "ui/screens/correlation_view.h"
 #include "ui/screens/observability_view.h"
 #include "ui/screens/result_parameters.h"
@@ -63,6 +64,32 @@ class TestResultScreen : public QObject {
     QCOMPARE(find(groups, "left.translation.x")->value,
              1e3 * result_.result->state.cameras[0].reference_from_camera.translation_m.x());
     QVERIFY(!find(groups, "left.translation.x")->difference);
+  }
+
+  void repairOfTheFirstReason_isOffered() {
+    ResultScreen screen;
+    auto* const button = screen.findChild<RepairButton*>();
+    const auto show = [&](const std::optional<Repair>& repair) {
+      auto doubtful = std::make_shared<CalibrationResult>(*result_.result);
+      doubtful->status = CalibrationStatus::Doubtful;
+      doubtful->reason = "left_imu: the gyroscope seems to be turned";
+      doubtful->repair = repair;
+      NamedResult named = result_;
+      named.result = doubtful;
+      screen.setResult(named);
+    };
+    show({});
+    QVERIFY(button->isHidden());
+    const Repair repair{"optimisation.model.gyroscope_rotation", "true"};
+    show(repair);
+    QVERIFY(!button->isHidden());
+    QCOMPARE(button->text(), QString("Set gyroscope_rotation to true and calibrate again"));
+    std::optional<Repair> wanted;
+    connect(&screen, &ResultScreen::repairRequested, this, [&](const Repair& asked) { wanted = asked; });
+    button->click();
+    QVERIFY(wanted == repair);
+    screen.setResult(result_);
+    QVERIFY(button->isHidden());
   }
 
   void texts_haveTwoDigitsOfTheSigma() {

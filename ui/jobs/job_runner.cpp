@@ -42,7 +42,7 @@ Ending runToEnd(const JobRunner::Work& work, const RunContext& context) {
     return {JobOutcome::Cancelled, {}};
   } catch (const CalibrationError& error) {
     return {JobOutcome::Failed, JobError{error.kind() == ErrorKind::BadInput, textOf(error.place()),
-                                         textOf(error.problem()), textOf(error.advice())}};
+                                         textOf(error.problem()), textOf(error.advice()), error.repair()}};
   } catch (const std::bad_alloc&) {
     return {JobOutcome::Failed,
             JobError{false, QObject::tr("memory"), QObject::tr("there is not enough of it"),

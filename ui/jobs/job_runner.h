@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/base/progress.h"
+#include "core/base/repair.h"
 
 #include <QObject>
 #include <QString>
@@ -11,6 +12,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <thread>
 #include <vector>
@@ -21,6 +23,7 @@ namespace evical::ui {
 struct JobError {
   bool bad_input = false;  // the person can mend it: session, recording, options
   QString place, problem, advice;
+  std::optional<Repair> repair = {};
 
   QString text() const;
 };

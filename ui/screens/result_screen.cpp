@@ -2,6 +2,7 @@
 #include "ui/screens/result_screen.h"
 
 #include "core/base/error.h"
+#include "ui/forms/repair_button.h"
 #include "ui/screens/correlation_view.h"
 #include "ui/screens/observability_view.h"
 #include "ui/screens/result_parameters.h"
@@ -140,6 +141,7 @@ ResultScreen::ResultScreen(QWidget* parent)
       comparison_(label("hint", this)),
       observed_(label("", this)),
       pairs_(label("hint", this)),
+      repair_(new RepairButton(this)),
       against_(new QComboBox(this)),
       parameters_(new QTreeWidget(this)),
       observability_(new ObservabilityView(this)),
@@ -172,7 +174,10 @@ QWidget* ResultScreen::makeHeader() {
   auto* const header = new QWidget(this);
   auto* const words = new QVBoxLayout;
   words->setSpacing(2);
-  for (QLabel* const line : {verdict_, reason_, fit_, outdated_}) words->addWidget(line);
+  for (QLabel* const line : {verdict_, reason_}) words->addWidget(line);
+  words->addWidget(repair_, 0, Qt::AlignLeft);
+  for (QLabel* const line : {fit_, outdated_}) words->addWidget(line);
+  connect(repair_, &RepairButton::repairRequested, this, &ResultScreen::repairRequested);
   outdated_->setText(tr("The session has changed since: calibrate again to see what comes of it."));
   auto* const save = new QPushButton(icon("export"), tr("Export..."), header);
   save->setObjectName("export");
@@ -309,6 +314,7 @@ void ResultScreen::showVerdict() {
   verdict_->setText(verdictWords(result.status));
   reason_->setText(ok ? tr("The recording determines every quantity as well as needed.")
                       : sentence(QString::fromStdString(result.reason)));
+  repair_->setRepair(result.repair);
   fit_->setText(fitText(*result_));
 }
 

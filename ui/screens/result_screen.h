@@ -20,6 +20,7 @@ namespace evical::ui {
 
 class CorrelationView;
 class ObservabilityView;
+class RepairButton;
 
 class ResultScreen : public QWidget {
   Q_OBJECT
@@ -39,6 +40,7 @@ class ResultScreen : public QWidget {
   void reportRequested();
   void referenceRequested();
   void calibrateRequested();
+  void repairRequested(const evical::Repair& repair);
 
  protected:
   void changeEvent(QEvent* event) override;
@@ -60,6 +62,7 @@ class ResultScreen : public QWidget {
   QString reference_title_;
   QStackedWidget* stack_;
   QLabel *icon_, *verdict_, *reason_, *fit_, *outdated_, *comparison_, *observed_, *pairs_;
+  RepairButton* repair_;
   QComboBox* against_;
   QTreeWidget* parameters_;
   ObservabilityView* observability_;

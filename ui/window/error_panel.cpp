@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/error_panel.h"
 
+#include "ui/forms/repair_button.h"
 #include "ui/theme/theme.h"
 
 #include <QEvent>
@@ -33,7 +34,8 @@ ErrorPanel::ErrorPanel(QWidget* parent)
       icon_(new QLabel(this)),
       title_(wrappedLabel(this)),
       problem_(wrappedLabel(this)),
-      advice_(wrappedLabel(this)) {
+      advice_(wrappedLabel(this)),
+      repair_(new RepairButton(this)) {
   setProperty("card", "bad");
   title_->setProperty("role", "heading");
   auto* const close = new QToolButton(this);
@@ -48,6 +50,8 @@ ErrorPanel::ErrorPanel(QWidget* parent)
   grid->addWidget(title_, 0, 1);
   grid->addWidget(problem_, 1, 1);
   grid->addWidget(advice_, 2, 1);
+  grid->addWidget(repair_, 3, 1, Qt::AlignLeft);
+  connect(repair_, &RepairButton::repairRequested, this, &ErrorPanel::repairRequested);
   grid->addWidget(close, 0, 2, 2, 1, Qt::AlignTop);
   setFocusPolicy(Qt::StrongFocus);
   showIcon();
@@ -59,6 +63,7 @@ void ErrorPanel::showError(const QString& what_was_tried, const JobError& error)
   problem_->setText(sentence(error.place.isEmpty() ? error.problem : error.place + ": " + error.problem));
   advice_->setText(error.advice.isEmpty() ? QString() : tr("What to do: %1").arg(sentence(error.advice)));
   advice_->setVisible(!error.advice.isEmpty());
+  repair_->setRepair(error.repair);
   setAccessibleName(text());
   show();
 }

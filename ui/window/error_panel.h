@@ -10,6 +10,8 @@ class QLabel;
 
 namespace evical::ui {
 
+class RepairButton;
+
 class ErrorPanel : public QFrame {
   Q_OBJECT
 
@@ -19,6 +21,9 @@ class ErrorPanel : public QFrame {
   void showError(const QString& what_was_tried, const JobError& error);
   void dismiss();
   QString text() const;
+
+ signals:
+  void repairRequested(const evical::Repair& repair);
 
  protected:
   void changeEvent(QEvent* event) override;
@@ -31,6 +36,7 @@ class ErrorPanel : public QFrame {
   QLabel* title_;
   QLabel* problem_;
   QLabel* advice_;
+  RepairButton* repair_;
 };
 
 }  // namespace evical::ui

@@ -153,6 +153,8 @@ void MainWindow::wireDocument() {
     error_->dismiss();
   });
   connect(pages_.result, &ResultScreen::calibrateRequested, this, &MainWindow::calibrate);
+  connect(pages_.result, &ResultScreen::repairRequested, this, &MainWindow::repair);
+  connect(error_, &ErrorPanel::repairRequested, this, &MainWindow::repair);
   connect(files_, &SessionFiles::failed, this, &MainWindow::showProblem);
   connect(files_, &SessionFiles::opened, this, [this] {
     error_->dismiss();
@@ -237,6 +239,23 @@ void MainWindow::calibrate() {
     return;
   }
   workbench_.calibration.start(workbench_.document.session());
+}
+
+void MainWindow::repair(const Repair& repair) {
+  if (workbench_.runner.running()) return;
+  const QString key = QString::fromStdString(repair.key);
+  Session changed = workbench_.document.session();
+  try {
+    setInSession(changed, repair.key, repair.value);
+    validate(changed, "session");
+  } catch (const CalibrationError& error) {
+    showProblem(tr("%1 cannot be set").arg(key),
+                {true, QString::fromStdString(error.place()), QString::fromStdString(error.problem()),
+                 QString::fromStdString(error.advice())});
+    return;
+  }
+  workbench_.document.edit(changed, tr("Set %1").arg(key));
+  calibrate();
 }
 
 void MainWindow::cancel() {

@@ -35,6 +35,7 @@ class MainWindow : public QMainWindow {
 
  public slots:
   void calibrate();
+  void repair(const Repair& repair);  // sets it in the session, and calibrates again
   void cancel();
 
  protected:

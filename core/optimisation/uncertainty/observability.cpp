@@ -24,16 +24,34 @@ double needed(QuantityNeed need, const OptimisationOptions& options) {
   }
 }
 
-// In its worst direction.
-double largestSigma(const QuantityCovariance& covariance, std::size_t quantity) {
+Eigen::MatrixXd ownCovariance(const QuantityCovariance& covariance, std::size_t quantity) {
   const Eigen::Index first = covariance.first_column[quantity],
                      size = covariance.first_column[quantity + 1] - first;
-  const SymmetricEigen eigen = symmetricEigen(covariance.covariance.block(first, first, size, size));
-  return std::sqrt(std::max(0.0, eigen.values[size - 1]));
+  return covariance.covariance.block(first, first, size, size);
+}
+
+bool hasSigmas(const QuantityCovariance& covariance, std::size_t quantity) {
+  const Eigen::MatrixXd own = ownCovariance(covariance, quantity);
+  return own.allFinite() && own.diagonal().minCoeff() > 0.0;
+}
+
+// In its worst direction.
+struct Worst {
+  double sigma;
+  Eigen::VectorXd direction;
+};
+Worst worstOf(const QuantityCovariance& covariance, std::size_t quantity) {
+  const SymmetricEigen eigen = symmetricEigen(ownCovariance(covariance, quantity));
+  const Eigen::Index last = eigen.values.size() - 1;
+  return {std::sqrt(std::max(0.0, eigen.values[last])), eigen.vectors.col(last)};
 }
 
 bool isCamera(const Quantity& quantity) {
   return quantity.info->owner == QuantityOwner::Camera;
+}
+
+const std::string& sensorName(const CalibrationInput& input, const Quantity& quantity) {
+  return isCamera(quantity) ? input.cameras[quantity.sensor].name : input.imus[quantity.sensor].name;
 }
 
 class Judge {
@@ -50,9 +68,6 @@ class Judge {
     Eigen::Index at, size;  // rows among those needed
     QuantityNeed need;
   };
-  std::string sensorName(const Quantity& quantity) const {
-    return isCamera(quantity) ? input_.cameras[quantity.sensor].name : input_.imus[quantity.sensor].name;
-  }
   // A direction in the reference IMU's frame, said in the sensor's own: its axis, or the components.
   std::string axisWords(const Quantity& quantity, const Eigen::Vector3d& in_reference) const;
   std::string partWords(const Quantity& quantity, QuantityNeed need, const Eigen::VectorXd& direction) const;
@@ -74,7 +89,8 @@ std::string Judge::axisWords(const Quantity& quantity, const Eigen::Vector3d& in
   Eigen::Index axis = 0;
   const double share = direction.cwiseAbs().maxCoeff(&axis);
   if (direction[axis] < 0.0) direction = -direction;
-  const std::string owner = camera && input_.cameras.size() == 1 ? "the camera" : sensorName(quantity);
+  const std::string owner =
+      camera && input_.cameras.size() == 1 ? "the camera" : sensorName(input_, quantity);
   constexpr double kAlmostAlong = 0.9;
   if (share > kAlmostAlong) return fmt::format("{}'s {} axis", owner, std::string(1, "xyz"[axis]));
   return fmt::format("({:.2f}, {:.2f}, {:.2f}) in {}'s frame", direction.x(), direction.y(), direction.z(),
@@ -89,7 +105,7 @@ std::string Judge::partWords(const Quantity& quantity, QuantityNeed need,
     case QuantityNeed::Translation:
       return "translation along " + axisWords(quantity, direction);
     default:
-      return "time offset of " + sensorName(quantity);
+      return "time offset of " + sensorName(input_, quantity);
   }
 }
 
@@ -115,16 +131,13 @@ const char* nameOf(QuantityNeed need) {
 // Empty if the part is certain enough in every direction.
 std::string Judge::unmetNeed(const Part& part) const {
   const Quantity& quantity = covariance_.quantities[part.quantity];
-  const Eigen::Index first = covariance_.first_column[part.quantity];
-  const Eigen::MatrixXd own = covariance_.covariance.block(first, first, part.size, part.size);
   // Of a problem that has no inverse: nothing compares with what is no number, and so would be certain enough.
-  if (!own.allFinite() || !(own.diagonal().minCoeff() > 0.0))
+  if (!hasSigmas(covariance_, part.quantity))
     return fmt::format("the {} of {} has no sigma: splines or sensors are without measurements",
-                       nameOf(part.need), sensorName(quantity));
-  const SymmetricEigen eigen = symmetricEigen(own);
-  const double sigma = std::sqrt(std::max(0.0, eigen.values[part.size - 1]));
+                       nameOf(part.need), sensorName(input_, quantity));
+  const auto [sigma, direction] = worstOf(covariance_, part.quantity);
   if (!(sigma > needed(part.need, options_))) return {};
-  const std::string words = partWords(quantity, part.need, eigen.vectors.col(part.size - 1));
+  const std::string words = partWords(quantity, part.need, direction);
   constexpr double kHopeless = 100.0;
   if (sigma > kHopeless * needed(part.need, options_)) return words + " is not observable in this recording";
   switch (part.need) {
@@ -191,14 +204,11 @@ Observability judgeObservability(const CalibrationInput& input, const Calibratio
   for (std::size_t i = 0; i < covariance.quantities.size(); ++i) {
     const QuantityInfo& info = *covariance.quantities[i].info;
     if (info.need != QuantityNeed::Translation) continue;
-    const double whole_mm = 1e3 * largestSigma(covariance, i), own_mm = 1e3 * largestSigma(scale_known, i);
+    const double whole_mm = 1e3 * worstOf(covariance, i).sigma, own_mm = 1e3 * worstOf(scale_known, i).sigma;
     if (whole_mm < options.needed_scale_mm || own_mm > options.needed_translation_mm) continue;
-    const std::string& sensor = info.owner == QuantityOwner::Camera
-                                    ? input.cameras[covariance.quantities[i].sensor].name
-                                    : input.imus[covariance.quantities[i].sensor].name;
     addDoubt(fmt::format("the board's measure leaves the translation of {} open by {:.2g} mm (needed: "
                          "{:.2g}): measure it better and say so by board.spacing_std, or come nearer to it",
-                         sensor, whole_mm, options.needed_scale_mm),
+                         sensorName(input, covariance.quantities[i]), whole_mm, options.needed_scale_mm),
              result);
   }
   return result;

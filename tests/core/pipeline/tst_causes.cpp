@@ -133,6 +133,46 @@ class TestCauses : public QObject {
     expectRight(recorded, run);
   }
 
+  // What comes with a reason as data is set, and is right.
+  void repair_mendsIt_data() {
+    QTest::addColumn<QString>("name");
+    QTest::addColumn<double>("size");
+    QTest::addColumn<QString>("repair");
+    const auto row = [](const char* name, double size, const char* repair) {
+      QTest::addRow("%s %g", name, size) << QString(name) << size << QString(repair);
+    };
+    row("forces in g", 1, "imus.left_imu.acceleration_unit=g");
+    row("rates in deg/s", 1, "imus.left_imu.angular_rate_unit=deg/s");
+    row("forces negated", 1, "imus.left_imu.accelerometer_axes=-x,-y,-z");
+    row("rates negated", 1, "imus.left_imu.gyroscope_axes=-x,-y,-z");
+    row("gyroscope swapped", 1, "imus.left_imu.gyroscope_axes=y,x,z");
+    row("gyroscope mirrored", 2, "imus.left_imu.gyroscope_axes=x,y,-z");
+    row("gyroscope permuted", 1, "imus.left_imu.gyroscope_axes=z,x,y");
+    row("gyroscope turned", 1, "optimisation.model.gyroscope_rotation=true");
+  }
+  void repair_mendsIt() {
+    QFETCH(QString, name);
+    QFETCH(double, size);
+    test::Recorded recorded = base_;
+    test::perturbation(name.toStdString()).apply(recorded, size);
+    const std::optional<Repair> repair = repairOf(recorded);
+    QVERIFY(repair);
+    QTEST(QString::fromStdString(repair->text()), "repair");
+    setInSession(recorded.session, repair->key, repair->value);
+    const SessionImu& imu = recorded.session.imus[0];
+    for (ImuSample& sample : recorded.pass.imus[0].samples) {  // which were read as the session had it before
+      sample.angular_rate_rad_s =
+          readAs(imu.gyroscope_axes, sample.angular_rate_rad_s) *
+          radiansPerSecond(imu.angular_rate_unit.value_or(AngularRateUnit::RadiansPerSecond));
+      sample.specific_force_m_s2 =
+          readAs(imu.accelerometer_axes, sample.specific_force_m_s2) *
+          metresPerSecond2(imu.acceleration_unit.value_or(AccelerationUnit::MetresPerSecond2));
+    }
+    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+    QVERIFY(!run.result.repair);
+    expectRight(recorded, run);
+  }
+
   // Clocks that are seconds apart are found, and all the rest is as ever.
   void timeOffsetBeyondTheSearch_isFound() {
     test::Recorded recorded = base_;
@@ -169,6 +209,13 @@ class TestCauses : public QObject {
   }
 
  private:
+  static std::optional<Repair> repairOf(const test::Recorded& recorded) {
+    try {
+      return calibrate(recorded.session, recorded.pass, RunContext{}).result.repair;
+    } catch (const CalibrationError& error) {
+      return error.repair();
+    }
+  }
   void expectRight(const test::Recorded& recorded, const CalibrationRun& run) const {
     const TruthComparison comparison = compareWithTruth(
         namedResult(recorded.session, std::make_shared<CalibrationResult>(run.result), "test"),

@@ -1,6 +1,7 @@
 #include "core/pipeline/session.h"
 
 #include "core/pipeline/option_pages.h"
+#include "core/pipeline/session_keys.h"
 #include "tests/core/pipeline/refused_session.h"
 #include "tests/support/test_program.h"
 
@@ -210,6 +211,95 @@ class TestSession : public QObject {
     QCOMPARE(measured.options.optimisation.board_spacing_sigma, 0.0005);
   }
 
+  void sigmasOfALens_comeWithItsFile_andAreWritten() {
+    const char* const file = R"(evical_intrinsics: 1
+intrinsics:
+  model: pinhole_radtan
+  resolution_px: [346, 260]
+  focal_length_px: [260, 261]
+  principal_point_px: [171, 132]
+  distortion: [-0.3, 0.1, 0.001, 0.002]
+intrinsics_std:
+  focal_length_px: [0.2, 0.21]
+  principal_point_px: [0.3, 0.31]
+  distortion: [0.001, 0.002, 0.0001, 0.0002]
+correlation:
+  - [1, 0.9, 0, 0, 0, 0, 0, 0]
+  - [0.9, 1, 0, 0, 0, 0, 0, 0]
+  - [0, 0, 1, 0, 0, 0, 0, 0]
+  - [0, 0, 0, 1, 0, 0, 0, 0]
+  - [0, 0, 0, 0, 1, -0.8, 0, 0]
+  - [0, 0, 0, 0, -0.8, 1, 0, 0]
+  - [0, 0, 0, 0, 0, 0, 1, 0]
+  - [0, 0, 0, 0, 0, 0, 0, 1]
+)";
+    const Session session = sessionWithIntrinsicsFile(file);
+    const LensUncertainty uncertainty = session.cameras[0].intrinsics_uncertainty.value();
+    QCOMPARE(uncertainty.std[1], 0.21);
+    QCOMPARE(uncertainty.std[7], 0.0002);
+    QCOMPARE(uncertainty.std[8], 0.0);
+    QCOMPARE(uncertainty.correlation.value()(5, 4), -0.8);
+    QCOMPARE(uncertainty.correlation.value()(8, 8), 1.0);
+    QVERIFY(givenLenses(session)[0].given_with == uncertainty);
+    const Session again = readSession(write("again.yaml", sessionYaml(session, folder())));
+    QVERIFY(again.cameras[0].intrinsics_uncertainty == uncertainty);
+    QVERIFY(!sessionWithIntrinsicsFile(kCameraInfo).cameras[0].intrinsics_uncertainty);
+  }
+
+  void sigmasOfALens_mayStandInTheSession() {
+    const QString sigmas =
+        kInlineIntrinsics +
+        "    intrinsics_std: {focal_length_px: [0.2, 0.2], principal_point_px: [0.3, 0.3], "
+        "distortion: [0, 0, 0, 0]}\n";
+    const Session session = sessionWith(kInlineIntrinsics, sigmas);
+    QCOMPARE(session.cameras[0].intrinsics_uncertainty.value().std[3], 0.3);
+    QVERIFY(!session.cameras[0].intrinsics_uncertainty->correlation);
+  }
+
+  void imusAxes_areReadAndWritten_andAreAPermutation() {
+    const Session session =
+        sessionWith("angular_rate_unit: deg/s", "angular_rate_unit: deg/s\n    gyroscope_axes: y,x,-z");
+    QVERIFY((session.imus[0].gyroscope_axes == AxesReading{2, 1, -3}));
+    QVERIFY(session.imus[0].accelerometer_axes == kAxesAsTheyAre);
+    const Eigen::Vector3d read = readAs(session.imus[0].gyroscope_axes, {1.0, 2.0, 3.0});
+    QCOMPARE((read - Eigen::Vector3d(2.0, 1.0, -3.0)).norm(), 0.0);
+    const Session again = readSession(write("again.yaml", sessionYaml(session, folder())));
+    QVERIFY(again.imus[0].gyroscope_axes == session.imus[0].gyroscope_axes);
+    for (const char* const none : {"x,y", "x,x,z", "x,y,z,", "x y z", "x,y,w", ""}) QVERIFY(!axesFrom(none));
+    QVERIFY((axesFrom("-x, -y, -z") == AxesReading{-1, -2, -3}));
+  }
+
+  void oneKey_isSet() {
+    Session session = sessionWith("", "");
+    setInSession(session, "imus.left_imu.acceleration_unit", "g");
+    QVERIFY(session.imus[0].acceleration_unit == AccelerationUnit::Gravity);
+    setInSession(session, "imus.left_imu.accelerometer_axes", "-x,-y,-z");
+    QVERIFY((session.imus[0].accelerometer_axes == AxesReading{-1, -2, -3}));
+    setInSession(session, "optimisation.gyroscope_rotation", "true");
+    QVERIFY(session.options.optimisation.gyroscope_rotation);
+    for (const auto& [key, value] :
+         {std::pair{"imus.right_imu.acceleration_unit", "g"},
+          std::pair{"imus.left_imu.acceleration_unit", "gravities"}, std::pair{"imus.left_imu.colour", "red"},
+          std::pair{"imus.left_imu.gyroscope_axes", "y,x"}})
+      QVERIFY_EXCEPTION_THROWN(setInSession(session, key, value), CalibrationError);
+  }
+
+  // What was read as -x,-y,-z already, and is to be read so again, is as it came.
+  void repairOfAxes_isOfWhatTheSensorGives() {
+    Session session = sessionWith("", "");
+    const Repair negate{"imus.left_imu.accelerometer_axes", "-x,-y,-z"};
+    QVERIFY(ofRawAxes(negate, session) == negate);
+    session.imus[0].accelerometer_axes = {-1, -2, -3};
+    QCOMPARE(ofRawAxes(negate, session).value, std::string("x,y,z"));
+    session.imus[0].accelerometer_axes = {2, 3, 1};
+    const Repair swap{"imus.left_imu.accelerometer_axes", "y,x,z"};
+    const Eigen::Vector3d own(1.0, 2.0, 3.0);
+    const Eigen::Vector3d twice = readAs({2, 1, 3}, readAs({2, 3, 1}, own));
+    QCOMPARE((readAs(axesFrom(ofRawAxes(swap, session).value).value(), own) - twice).norm(), 0.0);
+    const Repair option{"optimisation.model.gyroscope_rotation", "true"};
+    QVERIFY(ofRawAxes(option, session) == option);
+  }
+
   void measuredLength_tellsSpacingAndSigma() {
     const Session session =
         sessionWith("spacing_m: 0.05", "measured: {spacings: 10, length_m: 0.352, std_m: 0.0005}");
@@ -293,6 +383,14 @@ class TestSession : public QObject {
         {"board.measured.std_m (line 8)", "no sigma"});
     row("measured by nothing", "spacing_m: 0.05", "measured: {spacings: 10}",
         {"board.measured.length_m", "missing"});
+    row("sigmas of no lens",
+        "    intrinsics:\n      model: pinhole_radtan\n      focal_length_px: [260.5, 255]\n      "
+        "principal_point_px: [170, 131]\n      distortion: [-0.3, 0.1, 0.001, 0.002]\n",
+        "    intrinsics_std: {focal_length_px: [1, 1], principal_point_px: [1, 1], distortion: [0, 0, 0, "
+        "0]}\n",
+        {"cameras.left.intrinsics_std", "not given"});
+    row("axes", "angular_rate_unit: deg/s", "gyroscope_axes: x,x,z",
+        {"imus.left_imu.gyroscope_axes", "'x,x,z'"});
     row("latitude", "reference: left_imu", "reference: left_imu\ngravity: {latitude_deg: 91}",
         {"gravity.latitude_deg", "90"});
     row("gravity without a latitude", "reference: left_imu", "reference: left_imu\ngravity: {height_m: 300}",

@@ -1,0 +1,17 @@
+// What would mend what is wrong, where that can be set: as data, so that a command line can print it and a window offer it.
+#pragma once
+
+#include <string>
+
+namespace evical {
+
+struct Repair {
+  // An option, "optimisation.model.gyroscope_rotation", or a key of a session's IMU, "imus.left_imu.acceleration_unit";
+  // setInSession (core/pipeline/session.h) takes both.
+  std::string key, value;
+
+  bool operator==(const Repair&) const = default;
+  std::string text() const { return key + "=" + value; }
+};
+
+}  // namespace evical

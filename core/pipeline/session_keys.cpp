@@ -1,0 +1,71 @@
+#include "core/pipeline/session_keys.h"
+
+#include "core/base/error.h"
+#include "core/base/nearest_name.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace evical {
+namespace {
+
+const std::vector<std::string> kImuKeys = {"acceleration_unit", "angular_rate_unit", "gyroscope_axes",
+                                           "accelerometer_axes"};
+
+template <class Unit, class Names>
+Unit unitFrom(const Names& names, const std::string& key, const std::string& value) {
+  const auto found = std::find(names.begin(), names.end(), value);
+  if (found == names.end())
+    throw badInput(key, fmt::format("'{}' is none of its values", value),
+                   nameAdvice(value, std::vector<std::string>(names.begin(), names.end())));
+  return static_cast<Unit>(found - names.begin());
+}
+
+AxesReading axesOrThrow(const std::string& key, const std::string& value) {
+  if (const std::optional<AxesReading> axes = axesFrom(value)) return *axes;
+  throw badInput(key, fmt::format("'{}' is no reading of axes", value),
+                 "Give each of x, y and z once, '-' before one that is the other way round: y,x,-z");
+}
+
+}  // namespace
+
+void setInImu(SessionImu& imu, const std::string& key, const std::string& value) {
+  if (key == "acceleration_unit") {
+    imu.acceleration_unit = unitFrom<AccelerationUnit>(kAccelerationUnits, key, value);
+  } else if (key == "angular_rate_unit") {
+    imu.angular_rate_unit = unitFrom<AngularRateUnit>(kAngularRateUnits, key, value);
+  } else if (key == "gyroscope_axes") {
+    imu.gyroscope_axes = axesOrThrow(key, value);
+  } else if (key == "accelerometer_axes") {
+    imu.accelerometer_axes = axesOrThrow(key, value);
+  } else {
+    throw badInput(key, "no such key of an IMU can be set", nameAdvice(key, kImuKeys));
+  }
+}
+
+void setInSession(Session& session, const std::string& key, const std::string& value) {
+  const std::string imus = "imus.";
+  const std::size_t dot = key.rfind('.');
+  if (!key.starts_with(imus) || dot < imus.size()) return setOption(session.options, key, value);
+  const std::string name = key.substr(imus.size(), dot - imus.size());
+  std::vector<std::string> names;
+  for (SessionImu& imu : session.imus) {
+    if (imu.name == name) return setInImu(imu, key.substr(dot + 1), value);
+    names.push_back(imu.name);
+  }
+  throw badInput(key, "the session has no such IMU", nameAdvice(name, names));
+}
+
+Repair ofRawAxes(const Repair& repair, const Session& session) {
+  const std::optional<AxesReading> then = axesFrom(repair.value);
+  if (!then) return repair;
+  for (const SessionImu& imu : session.imus)
+    for (const auto& [key, first] : {std::pair{".gyroscope_axes", imu.gyroscope_axes},
+                                     std::pair{".accelerometer_axes", imu.accelerometer_axes}})
+      if (repair.key == "imus." + imu.name + key) return {repair.key, axesText(readAfter(first, *then))};
+  return repair;
+}
+
+}  // namespace evical

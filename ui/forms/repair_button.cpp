@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/forms/repair_button.h"
+
+#include "ui/theme/theme.h"
+
+namespace evical::ui {
+
+RepairButton::RepairButton(QWidget* parent) : QPushButton(evical::ui::icon("calibrate"), {}, parent) {
+  setObjectName("repair");
+  setRepair({});
+  connect(this, &QPushButton::clicked, this, [this] {
+    if (repair_) emit repairRequested(Repair(*repair_));
+  });
+}
+
+void RepairButton::setRepair(const std::optional<Repair>& repair) {
+  repair_ = repair;
+  setVisible(repair.has_value());
+  if (!repair) return;
+  const QString key = QString::fromStdString(repair->key), value = QString::fromStdString(repair->value);
+  setText(tr("Set %1 to %2 and calibrate again").arg(key.section('.', -1), value));
+  setToolTip(tr("%1: %2 in the session; Ctrl+Z takes it back").arg(key, value));
+}
+
+}  // namespace evical::ui

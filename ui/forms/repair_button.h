@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Offers what would mend a result or a failure: to be set in the session, and calibrated again.
+#pragma once
+
+#include "core/base/repair.h"
+
+#include <QPushButton>
+
+#include <optional>
+
+namespace evical::ui {
+
+class RepairButton : public QPushButton {
+  Q_OBJECT
+
+ public:
+  explicit RepairButton(QWidget* parent = nullptr);
+
+  void setRepair(const std::optional<Repair>& repair);  // hidden without one
+
+ signals:
+  void repairRequested(const evical::Repair& repair);
+
+ private:
+  std::optional<Repair> repair_;
+};
+
+}  // namespace evical::ui
