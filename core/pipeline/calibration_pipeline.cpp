@@ -349,8 +349,8 @@ class Calibration {
     result.reason = uncertainty.reason;
     if (!solution.converged && result.status == CalibrationStatus::Ok)
       addDoubt(
-          Doubt{"the optimisation did not converge: raise optimisation.solver.max_iterations, or see the "
-                "residuals",
+          Doubt{"the optimisation did not converge: raise optimisation.solver.max_iterations, "
+                "or see the residuals",
                 Repair{"optimisation.solver.max_iterations", std::to_string(2 * options.max_iterations)}},
           result);
     addDoubt(priors.doubt, result);
