@@ -1,9 +1,7 @@
 #include "tests/support/perturbing.h"
 
-#include "core/geometry/camera_model.h"
-#include "core/synthetic/sinusoid_motion.h"
-
 #include <cmath>
+#include <utility>
 
 namespace evical::test {
 namespace {
@@ -11,24 +9,11 @@ namespace {
 // Moves every circle to where it is seen if the board's points lie `displacement(point)` from where they should.
 template <class Displacement>
 void deformBoard(Recorded& recorded, Displacement&& displacement) {
-  const SinusoidMotion motion(recorded.scenario);
-  for (std::size_t k = 0; k < recorded.pass.cameras.size(); ++k) {
-    const SimulatedCamera& camera = recorded.scenario.cameras[k];
-    CameraIntrinsics ideal = *recorded.pass.lenses[k].seen_with;
-    ideal.distortion = {};
-    ideal.model = CameraModel::PinholeRadtan;
-    for (BoardView& view : recorded.pass.cameras[k].views) {
-      for (CircleObservation& circle : view.circles) {
-        const double time_s = circle.time_s + camera.time_offset_s - camera.pixel.delay_s();
-        const RigidTransform camera_from_world = inverse(motion.worldFromCamera(k, time_s));
-        const Eigen::Vector2d on_board_m = recorded.scenario.board.centre_m(circle.circle);
-        const Eigen::Vector3d point_m(on_board_m.x(), on_board_m.y(), 0.0);
-        const auto seen = project(ideal, camera_from_world * (point_m + displacement(point_m)).eval());
-        const auto expected = project(ideal, camera_from_world * point_m);
-        if (seen && expected) circle.centre_px += *seen - *expected;
-      }
-    }
-  }
+  moveCircles(recorded, [&](const RigidTransform& camera_from_world, const Eigen::Vector3d& point_m,
+                            const BoardView&) {
+    return std::pair<Eigen::Vector3d, Eigen::Vector3d>(
+        camera_from_world * point_m, camera_from_world * (point_m + displacement(point_m)).eval());
+  });
 }
 
 void spacing(Recorded& recorded, double percent) {

@@ -62,27 +62,15 @@ void shadeSwapped(Recorded& recorded, double) {
 // From 60 % of the recording on the camera looks elsewhere; truth is where it looked before.
 void cameraMoved(Recorded& recorded, double angle_deg) {
   constexpr double kFrom = 0.6;
-  const SinusoidMotion motion(recorded.scenario);
   const Eigen::Quaterniond turn(
       Eigen::AngleAxisd(kRadPerDeg * angle_deg, Eigen::Vector3d(1.0, 1.0, 0.0).normalized()));
-  for (std::size_t k = 0; k < recorded.pass.cameras.size(); ++k) {
-    const SimulatedCamera& camera = recorded.scenario.cameras[k];
-    CameraIntrinsics ideal = *recorded.pass.lenses[k].seen_with;
-    ideal.distortion = {};
-    ideal.model = CameraModel::PinholeRadtan;
-    for (BoardView& view : recorded.pass.cameras[k].views) {
-      if (view.time_s < kFrom * recorded.scenario.duration_s) continue;
-      for (CircleObservation& circle : view.circles) {
-        const double time_s = circle.time_s + camera.time_offset_s - camera.pixel.delay_s();
-        const Eigen::Vector2d on_board_m = recorded.scenario.board.centre_m(circle.circle);
-        const Eigen::Vector3d in_camera_m =
-            inverse(motion.worldFromCamera(k, time_s)) * Eigen::Vector3d(on_board_m.x(), on_board_m.y(), 0.0);
-        const auto before = project(ideal, in_camera_m);
-        const auto after = project(ideal, (turn.conjugate() * in_camera_m).eval());
-        if (before && after) circle.centre_px += *after - *before;
-      }
-    }
-  }
+  moveCircles(recorded, [&](const RigidTransform& camera_from_world, const Eigen::Vector3d& point_m,
+                            const BoardView& view) {
+    const Eigen::Vector3d in_camera_m = camera_from_world * point_m;
+    const bool moved = view.time_s >= kFrom * recorded.scenario.duration_s;
+    return std::pair<Eigen::Vector3d, Eigen::Vector3d>(
+        in_camera_m, moved ? (turn.conjugate() * in_camera_m).eval() : in_camera_m);
+  });
 }
 
 template <class Hidden>

@@ -1,7 +1,9 @@
 // What the sources of perturbations have in common.
 #pragma once
 
+#include "core/geometry/camera_model.h"
 #include "core/synthetic/imu_simulator.h"
+#include "core/synthetic/sinusoid_motion.h"
 #include "tests/support/perturbations.h"
 
 #include <algorithm>
@@ -33,6 +35,31 @@ template <class Change>
 void simulateFaults(Recorded& recorded, Change&& change) {
   change(recorded.scenario.imus.front().faults);
   simulateImuAnew(recorded);
+}
+
+// Moves every circle by as much as the image of what `pairAt(camera_from_world, point_m, view)` gives moves: where its
+// centre is in the camera by the truth, and where it shall be seen instead, in metres.
+template <class PairAt>
+void moveCircles(Recorded& recorded, PairAt&& pairAt) {
+  const SinusoidMotion motion(recorded.scenario);
+  for (std::size_t k = 0; k < recorded.pass.cameras.size(); ++k) {
+    const SimulatedCamera& camera = recorded.scenario.cameras[k];
+    CameraIntrinsics ideal = *recorded.pass.lenses[k].seen_with;
+    ideal.distortion = {};
+    ideal.model = CameraModel::PinholeRadtan;
+    for (BoardView& view : recorded.pass.cameras[k].views) {
+      for (CircleObservation& circle : view.circles) {
+        const double time_s = circle.time_s + camera.time_offset_s - camera.pixel.delay_s();
+        const RigidTransform camera_from_world = inverse(motion.worldFromCamera(k, time_s));
+        const Eigen::Vector2d on_board_m = recorded.scenario.board.centre_m(circle.circle);
+        const auto [true_m, seen_m] =
+            pairAt(camera_from_world, Eigen::Vector3d(on_board_m.x(), on_board_m.y(), 0.0), view);
+        const auto before = project(ideal, true_m);
+        const auto after = project(ideal, seen_m);
+        if (before && after) circle.centre_px += *after - *before;
+      }
+    }
+  }
 }
 
 inline std::size_t anySample(Recorded& recorded, std::mt19937_64& generator) {
