@@ -261,7 +261,6 @@ inline constexpr auto kCameraQuantities = std::tuple{
                              .unit = "px",
                              .shown_unit = "px",
                              .decimals = 4,
-                             .remark = "more, near standstill",
                              .comparable_unit = 1e-2,
                              .presence = QuantityPresence::WhereBothEstimated,
                              .key = "slow_edge_lead_px",

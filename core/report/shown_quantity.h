@@ -27,7 +27,7 @@ std::vector<ShownQuantity> shownCamera(const NamedResult& named, std::size_t cam
 std::vector<ShownQuantity> shownImu(const NamedResult& named, std::size_t imu, bool with_place = true);
 std::vector<ShownQuantity> shownBoard(const NamedResult& named);  // none where its size is held
 
-// "px at 100 px/s"
+// "ms against the gyroscope"
 std::string unitAndRemark(const ShownQuantity& quantity);
 
 // Of a 3 x 3 matrix: scales stand on its diagonal, misalignments beside it.

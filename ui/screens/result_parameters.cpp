@@ -30,7 +30,7 @@ QString shownUnit(const std::string& unit) {
   return QString::fromStdString(unit).replace("^2", QChar(0xb2));
 }
 
-// "Edge lead at 100 px/s", "Gyroscope scale xx", "Focal length x".
+// "Accelerometer delay against the gyroscope", "Gyroscope scale xx", "Focal length x".
 QString nameOf(const ShownQuantity& quantity, const ShownNumber& number) {
   QString name = QObject::tr(quantity.info->title);
   if (const QString remark = QObject::tr(quantity.info->remark); !remark.isEmpty()) name += " " + remark;
