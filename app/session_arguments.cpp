@@ -12,7 +12,8 @@ void addSessionArguments(CLI::App& command, SessionArguments& arguments) {
   command.add_option("-o,--output", arguments.output, "Folder for the results")->required();
   command
       .add_option("--set", arguments.settings,
-                  "group.option=value, see 'evical options'; or imus.NAME.KEY=value of units and axes")
+                  "group.option=value, see 'evical options'; imus.NAME.KEY=value of units and axes; or "
+                  "time_range_s=[begin,end]")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command.add_option("--threads", arguments.threads, "Threads of the optimisation")

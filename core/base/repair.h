@@ -6,7 +6,8 @@
 namespace evical {
 
 struct Repair {
-  // An option, "optimisation.model.gyroscope_rotation", or a key of a session's IMU, "imus.left_imu.acceleration_unit";
+  // An option, "optimisation.model.gyroscope_rotation", a key of a session's IMU, "imus.left_imu.acceleration_unit", or
+  // "time_range_s";
   // setInSession (core/pipeline/session.h) takes both.
   std::string key, value;
 

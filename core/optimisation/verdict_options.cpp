@@ -51,6 +51,10 @@ constexpr std::tuple kVerdictFields{
           "An IMU that was at a limit for more of its samples is the first reason of a doubtful result."},
     Field{"doubtful_halves_sigmas", &VerdictOptions::doubtful_halves_sigmas, 3.0, within(0.5, 1000.0),
           "sigma", "Halves of the recording that differ by more (RMS) make the result doubtful."},
+    Field{"changed_sigmas", &VerdictOptions::changed_sigmas, 8.0, within(1.0, 1000.0), "sigma",
+          "A camera that seems to have moved on its mount, or a clock or biases that seem to step, by more "
+          "than this and "
+          "what is needed make the result doubtful."},
     Field{"needed_rotation_deg", &VerdictOptions::needed_rotation_deg, 0.1, within(1e-4, 90.0), "deg",
           "Rotations less certain than this make the result doubtful.", Level::Common},
     Field{"needed_translation_mm", &VerdictOptions::needed_translation_mm, 1.0, within(1e-3, 1e4), "mm",

@@ -24,6 +24,7 @@ struct VerdictOptions {
   double failed_outliers;
   double saturated_share;
   double doubtful_halves_sigmas;
+  double changed_sigmas;
   double needed_rotation_deg;
   double needed_translation_mm;
   double needed_scale_mm;

@@ -359,10 +359,7 @@ class Calibration {
     addDoubt(uncertainty.bow_doubt, result);
     addDoubt(Doubt{uncertainty.wrong_lenses, kFreeLenses}, result);
     addDoubt(clock_doubt_, result);
-    // A prior that is far off looks like a turned gyroscope, too.
-    const std::string turned = priors.doubt.empty() ? uncertainty.turned_gyroscopes : std::string();
-    judge(solution, uncertainty.bent_board.empty() ? Doubt{turned, kFreeTurn}
-                                                   : Doubt{uncertainty.bent_board, kFreeBow});
+    judge(solution, heldDoubt(uncertainty, !priors.doubt.empty()), uncertainty.change);
     if (result.status == CalibrationStatus::Doubtful) addDoubt(saturationIn(input_, options), result);
     result.state = std::move(solution.state);
     result.uncertainty = std::move(uncertainty.report);
@@ -390,21 +387,32 @@ class Calibration {
     return initial_.doubt.empty() || led_astray ? uncertainty.scale_doubt : initial_.doubt;
   }
 
-  // What explains a misfit comes before the misfit, and a gyroscope that seems turned only where nothing else does:
+  // Of what is held. A prior that is far off looks like a turned gyroscope, too.
+  static Doubt heldDoubt(const UncertaintyEstimate& uncertainty, bool prior_is_off) {
+    if (!uncertainty.bent_board.empty()) return {uncertainty.bent_board, kFreeBow};
+    if (prior_is_off) return {};
+    if (!uncertainty.turned_gyroscopes.empty()) return {uncertainty.turned_gyroscopes, kFreeTurn};
+    return {uncertainty.wandering_imus};
+  }
+
+  // What explains a misfit comes before the misfit; what moved within the recording comes first, and a gyroscope that seems turned only where nothing else does:
   // much that is not modelled looks like it, a bent board, too.
-  void judge(const BatchSolution& solution, const Doubt& held) {
+  void judge(const BatchSolution& solution, const Doubt& held, const Doubt& change) {
     const OptimisationOptions& options = session_.options.optimisation;
     const MisfitVerdict misfit = judgeMisfit(input_, solution, options);
-    if (misfit.doubt.empty() && held.text.empty()) return;
-    const std::optional<Cause> cause = findCause(input_, solution, options, context_);
+    if (misfit.doubt.empty() && held.text.empty() && change.text.empty()) return;
+    Doubt cause = change;
+    if (cause.text.empty())
+      if (const std::optional<Cause> found = findCause(input_, solution, options, context_))
+        cause = {found->text, found->repair};
     if (!misfit.failure.empty())
       throw calibrationFailed(session_.source.string(),
-                              (cause ? cause->text + "; " : std::string()) + misfit.failure,
+                              cause.text + (cause.text.empty() ? "" : "; ") + misfit.failure,
                               "Check the board, the lens and the streams in the session")
-          .repairedBy(cause ? std::optional(cause->repair) : std::nullopt);
-    if (misfit.doubt.empty() && !cause) addDoubt(held, run_.result);
+          .repairedBy(cause.repair);
+    if (misfit.doubt.empty() && cause.text.empty()) addDoubt(held, run_.result);
     addDoubt(misfit.doubt, run_.result);
-    if (cause) addDoubt(Doubt{cause->text, cause->repair}, run_.result);
+    addDoubt(cause, run_.result);
   }
 
   void compareHalves() {

@@ -31,6 +31,14 @@ AxesReading axesOrThrow(const std::string& key, const std::string& value) {
 
 }  // namespace
 
+std::array<double, 2> timeRangeFrom(const YamlNode& node) {
+  const std::vector<double> range_s = node.reals(2);
+  if (range_s[0] < 0.0 || range_s[1] <= range_s[0])
+    throw node.error(fmt::format("[{}, {}] is no range", range_s[0], range_s[1]),
+                     "Give begin and end in seconds since the recording's start, begin first");
+  return {range_s[0], range_s[1]};
+}
+
 void setInImu(SessionImu& imu, const std::string& key, const std::string& value) {
   if (key == "acceleration_unit") {
     imu.acceleration_unit = unitFrom<AccelerationUnit>(kAccelerationUnits, key, value);
@@ -46,6 +54,10 @@ void setInImu(SessionImu& imu, const std::string& key, const std::string& value)
 }
 
 void setInSession(Session& session, const std::string& key, const std::string& value) {
+  if (key == "time_range_s") {
+    session.time_range_s = timeRangeFrom(YamlNode::parse(value, key));
+    return;
+  }
   const std::string imus = "imus.";
   const std::size_t dot = key.rfind('.');
   if (!key.starts_with(imus) || dot < imus.size()) return setOption(session.options, key, value);

@@ -1,11 +1,16 @@
 // Keys of a session that are set one at a time.
 #pragma once
 
+#include "core/base/yaml_node.h"
 #include "core/pipeline/session.h"
 
+#include <array>
 #include <string>
 
 namespace evical {
+
+// Seconds since the recording's start, [begin, end]. Throws CalibrationError (BadInput).
+std::array<double, 2> timeRangeFrom(const YamlNode& node);
 
 // acceleration_unit, angular_rate_unit, gyroscope_axes or accelerometer_axes. Throws CalibrationError (BadInput).
 void setInImu(SessionImu& imu, const std::string& key, const std::string& value);

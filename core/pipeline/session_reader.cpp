@@ -29,14 +29,6 @@ std::filesystem::path besideSession(const YamlNode& node, const std::filesystem:
   return path;
 }
 
-std::array<double, 2> readTimeRange(const YamlNode& node) {
-  const std::vector<double> range = node.reals(2);
-  if (range[0] < 0.0 || range[1] <= range[0])
-    throw node.error(fmt::format("[{}, {}] is no range", range[0], range[1]),
-                     "Give begin and end in seconds since the recording's start, begin first");
-  return {range[0], range[1]};
-}
-
 // A length over many spacings, in the place of spacing_m: beside it, it must say the same.
 std::optional<MeasuredLength> readMeasured(const YamlNode& board) {
   const auto map = board.find("measured");
@@ -269,7 +261,7 @@ Session readSession(const std::filesystem::path& file) {
   Session session;
   session.source = file;
   session.recording = besideSession(root["recording"], folder);
-  if (const auto node = root.find("time_range_s")) session.time_range_s = readTimeRange(*node);
+  if (const auto node = root.find("time_range_s")) session.time_range_s = timeRangeFrom(*node);
   const std::optional<MeasuredLength> measured = readMeasured(root["board"]);
   session.board = readBoard(root["board"], measured);
   setMeasuredLength(measured, session);

@@ -1,6 +1,7 @@
 #include "tests/support/perturbations.h"
 
 #include "core/base/error.h"
+#include "core/base/time.h"
 #include "tests/support/perturbing.h"
 
 #include <algorithm>
@@ -46,6 +47,18 @@ const Perturbation& perturbation(std::string_view name) {
   std::string names;
   for (const Perturbation& each : table()) names += (names.empty() ? "" : ", ") + std::string(each.name);
   throw badInput("perturbation", "there is none called " + std::string(name), "There are " + names);
+}
+
+void cutTo(const std::array<double, 2>& range_s, Recorded& recorded) {
+  const auto isOutside = [&](double time_s) { return time_s < range_s[0] || time_s > range_s[1]; };
+  for (BoardObservations& camera : recorded.pass.cameras) {
+    std::erase_if(camera.views, [&](const BoardView& view) { return isOutside(view.time_s); });
+    std::erase_if(camera.windows, [&](const auto& window) { return isOutside(window.time_s); });
+  }
+  for (ImuData& imu : recorded.pass.imus)
+    std::erase_if(imu.samples, [&](const ImuSample& sample) {
+      return isOutside(secondsSince(recorded.pass.start_ns, sample.time_ns));
+    });
 }
 
 std::string_view firstReason(std::string_view reason) {

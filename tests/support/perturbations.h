@@ -6,6 +6,7 @@
 #include "core/pipeline/session.h"
 #include "core/synthetic/scenario.h"
 
+#include <array>
 #include <span>
 #include <string>
 #include <string_view>
@@ -40,6 +41,9 @@ struct Perturbation {
 std::span<const Perturbation> perturbations();
 // The one of this name; throws CalibrationError (BadInput) where there is none.
 const Perturbation& perturbation(std::string_view name);
+
+// What a session's time_range_s leaves of it.
+void cutTo(const std::array<double, 2>& range_s, Recorded& recorded);
 
 // As the pipeline tells it: several are joined by semicolons, the first is the one that people act on.
 std::string_view firstReason(std::string_view reason);

@@ -4,6 +4,7 @@
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/calibration_problem.h"
 #include "core/optimisation/known_values.h"
+#include "core/optimisation/uncertainty/change_test.h"
 #include "core/optimisation/uncertainty/credible_information.h"
 #include "core/optimisation/uncertainty/drift_uncertainty.h"
 #include "core/optimisation/uncertainty/observability.h"
@@ -26,9 +27,13 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   UncertaintyEstimate estimate;
   HeldDoubts held = testHeldValues(input, solution.state, information, options);
   estimate.turned_gyroscopes = std::move(held.gyroscopes);
+  estimate.wandering_imus = std::move(held.wandering_imus);
   estimate.bent_board = std::move(held.board);
   estimate.wrong_lenses = std::move(held.lenses);
-  information = withoutNoise(withoutHeldValues(input, options, std::move(information)));
+  information = withoutHeldValues(input, options, std::move(information));
+  ChangeDoubt change = doubtOfChanges(input, information, options);
+  if (change.sigmas > held.gyroscope_sigmas) estimate.change = std::move(change.doubt);
+  information = withoutNoise(std::move(information));
   const Eigen::MatrixXd report_from_tangent =
       reportFromTangent(information, solution.state, problem.problem());
   const QuantityCovariance covariance = quantityCovariance(information, report_from_tangent);

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "core/data/calibration_result.h"
+#include "core/data/doubt.h"
 
 #include <string>
 #include <vector>
@@ -26,6 +27,9 @@ struct UncertaintyEstimate {
   // What is doubtful of gyroscopes that seem turned: much else that is not modelled looks like it, so that it is
   // for who has ruled that out.
   std::string turned_gyroscopes;
+  std::string wandering_imus;  // of IMUs whose errors last, which looks much the same
+  Doubt
+      change;  // of what moved, or stepped, within the recording, where that is more certain than such turns
   std::string bent_board;          // the same of a board that is taken for flat
   std::string wrong_lenses;        // what is doubtful of lenses that are held
   std::string scale_doubt;         // of the board's size, or gravity

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <random>
 #include <unordered_map>
 
@@ -344,6 +345,51 @@ Eigen::MatrixXd informationFromNoise(CalibrationProblem& problem, const Layout& 
   return 0.5 * (ahead + totalInformation(problem, layout)) - total;
 }
 
+// Sums over stretches of time.
+class Stretches {
+ public:
+  Stretches(Eigen::Index size, double length_s) : size_(size), length_s_(length_s) {}
+
+  void add(double time_s, std::size_t group, const Eigen::VectorXd& score, const Eigen::MatrixXd& share) {
+    Sums& sums = sums_[static_cast<std::int64_t>(std::floor(time_s / length_s_))];
+    if (sums.information.size() == 0) sums.information = Eigen::MatrixXd::Zero(size_, size_);
+    sums.information += share;
+    if (sums.scores.size() <= group) sums.scores.resize(group + 1, Eigen::VectorXd::Zero(size_));
+    sums.scores[group] += score;
+  }
+
+  void moveInto(ProjectedInformation& result) {
+    if (sums_.empty()) return;
+    const std::int64_t first = sums_.begin()->first, last = sums_.rbegin()->first;
+    const auto count = static_cast<std::size_t>(last - first + 1);
+    result.stretch_s = length_s_;
+    result.first_stretch_s = static_cast<double>(first) * length_s_;
+    result.scores.assign(count, Eigen::VectorXd::Zero(size_));
+    result.information_by_stretch.assign(count, Eigen::MatrixXd::Zero(size_, size_));
+    for (auto& [stretch, sums] : sums_) {
+      const auto at = static_cast<std::size_t>(stretch - first);
+      result.information_by_stretch[at] = std::move(sums.information);
+      for (std::size_t g = 0; g < sums.scores.size(); ++g)
+        result.scores[at] += std::sqrt(unabsorbed(result.groups[g])) * sums.scores[g];
+    }
+  }
+
+ private:
+  struct Sums {
+    std::vector<Eigen::VectorXd> scores;  // by group
+    Eigen::MatrixXd information;
+  };
+
+  // By how much squared residuals would be larger, had the unknowns not been fitted to them.
+  static double unabsorbed(const MeasurementGroup& group) {
+    return std::max(1.0, group.residuals / std::max(1.0, group.residuals - group.absorbed));
+  }
+
+  Eigen::Index size_;
+  double length_s_;
+  std::map<std::int64_t, Sums> sums_;
+};
+
 }  // namespace
 
 double MeasurementGroup::variance() const {
@@ -368,45 +414,28 @@ ProjectedInformation projectInformation(CalibrationProblem& problem, double stre
   result.drift_by_quantities = elimination.driftByQuantities();
   result.drift_covariance = elimination.driftCovariance();
 
-  struct Score {
-    std::size_t group;
-    std::int64_t stretch;
-    Eigen::VectorXd value;
-  };
-  std::vector<Score> scores;
+  Stretches stretches(size, stretch_s);
   BlockJacobian block;
   for (const BlockInfo& info : problem.blocks()) {
     layout.evaluate(info, block);
     const Eigen::MatrixXd projected = elimination.project(block);
     const std::size_t g = groupOf(result.groups, info, size);
     MeasurementGroup& group = result.groups[g];
-    group.information.noalias() += projected.transpose() * projected;
+    const Eigen::MatrixXd share = projected.transpose() * projected;
+    group.information += share;
     group.squared_residuals += block.residuals.squaredNorm();
     group.residuals += static_cast<double>(block.residuals.size());
     const Eigen::VectorXd score = projected.transpose() * block.residuals;
     result.gradient += score;
     if (info.kind == SensorKind::Prior) continue;
     if (info.circles) addPixelErrors(info, projected, result.pixel_errors);
-    scores.push_back({g, static_cast<std::int64_t>(std::floor(info.time_s / stretch_s)), score});
+    stretches.add(info.time_s, g, score, share);
   }
   for (const MeasurementGroup& group : result.groups) result.total += group.information;
   countAbsorbed(problem, layout, elimination, result.groups);
   result.from_noise = informationFromNoise(problem, layout, elimination.splines(), result.total);
 
-  std::int64_t first = std::numeric_limits<std::int64_t>::max(),
-               last = std::numeric_limits<std::int64_t>::min();
-  for (const Score& score : scores) {
-    first = std::min(first, score.stretch);
-    last = std::max(last, score.stretch);
-  }
-  if (scores.empty()) return result;
-  result.scores.assign(static_cast<std::size_t>(last - first + 1), Eigen::VectorXd::Zero(size));
-  for (const Score& score : scores) {
-    const MeasurementGroup& group = result.groups[score.group];
-    const double scale =
-        std::sqrt(std::max(1.0, group.residuals / std::max(1.0, group.residuals - group.absorbed)));
-    result.scores[static_cast<std::size_t>(score.stretch - first)] += scale * score.value;
-  }
+  stretches.moveInto(result);
   return result;
 }
 

@@ -39,8 +39,10 @@ struct ProjectedInformation {
   Eigen::MatrixXd total;                   // P^T P
   Eigen::VectorXd gradient;                // P^T r, r all residuals: 0 by what is free at the optimum
   std::vector<MeasurementGroup> groups;
-  // P^T e of the measurements in each stretch of time, residuals scaled up for what was absorbed.
+  // P^T e of the measurements in each stretch of time, residuals scaled up for what was absorbed, and P^T P.
   std::vector<Eigen::VectorXd> scores;
+  std::vector<Eigen::MatrixXd> information_by_stretch;
+  double first_stretch_s = 0.0, stretch_s = 0.0;  // when the first begins, and how long each is
   // What the splines' own errors add to P^T P on average. Where nothing moves the derivatives still hold
   // noise, and noise squared looks like information.
   Eigen::MatrixXd from_noise;

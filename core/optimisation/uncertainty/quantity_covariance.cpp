@@ -1,8 +1,8 @@
 #include "core/optimisation/uncertainty/quantity_covariance.h"
 
 #include "core/numerics/dense.h"
-#include "core/numerics/newey_west.h"
 #include "core/optimisation/uncertainty/projected_information.h"
+#include "core/optimisation/uncertainty/score_scatter.h"
 
 #include <Eigen/Geometry>
 
@@ -11,10 +11,6 @@
 
 namespace evical {
 namespace {
-
-// Scores come in stretches of the correlation time: weights that fall to zero over the next three see
-// correlation over up to about that time in full.
-constexpr std::size_t kLags = 3;
 
 // A comparable size of focal lengths and principal point, the first four intrinsics.
 constexpr double kPixelUnit = 0.1;
@@ -95,8 +91,7 @@ QuantityCovariance quantityCovariance(const ProjectedInformation& information,
   for (const Eigen::VectorXd& effect : information.pixel_errors) given += effect * effect.transpose();
   const Eigen::MatrixXd inverse = product(report_from_tangent, safe.inverse);
   Eigen::MatrixXd covariance = congruence(inverse, measured + given);
-  const Eigen::MatrixXd correlated =
-      congruence(inverse, neweyWestByLag(information.scores, size, kLags) + given);
+  const Eigen::MatrixXd correlated = congruence(inverse, scoreScatter(information.scores, size) + given);
   Eigen::VectorXd growth(size);
   for (Eigen::Index i = 0; i < size; ++i) {
     const double asked = std::max(covariance(i, i), correlated(i, i));

@@ -5,6 +5,7 @@
 #include "core/geometry/projection_difference.h"
 #include "core/numerics/angles.h"
 #include "core/optimisation/uncertainty/credible_information.h"
+#include "core/optimisation/uncertainty/score_scatter.h"
 
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
@@ -48,6 +49,8 @@ class ScaledInverse {
 struct Step {
   Eigen::VectorXd change;
   double sigmas = 0.0;
+  double left =
+      1.0;  // with all steps made, the variance of what each stretch of time says of it over what noise leaves
 };
 
 class Steps {
@@ -56,7 +59,8 @@ class Steps {
   // that would hide it.
   Steps(const ProjectedInformation& information, const ProjectedInformation& credible)
       : information_(information),
-        step_(-ScaledInverse(information.total).times(information.gradient)),
+        inverse_(information.total),
+        step_(-inverse_.times(information.gradient)),
         covariance_(credible.total) {}
 
   Step of(std::size_t quantity) const {
@@ -67,11 +71,24 @@ class Steps {
     for (Eigen::Index k = 0; k < size; ++k)
       step.sigmas = std::max(step.sigmas,
                              std::abs(step.change[k]) / std::max(covariance_.sigma(first + k), kLeastSigma));
+    step.left = leftOf(first, size);
     return step;
   }
 
  private:
+  double leftOf(Eigen::Index first, Eigen::Index size) const {
+    Eigen::MatrixXd weights(step_.size(), size);  // of the scores in the estimate
+    for (Eigen::Index k = 0; k < size; ++k)
+      weights.col(k) = inverse_.times(Eigen::VectorXd::Unit(step_.size(), first + k));
+    std::vector<Eigen::VectorXd> left;
+    for (std::size_t k = 0; k < information_.scores.size(); ++k)
+      left.emplace_back(weights.transpose() *
+                        (information_.scores[k] + information_.information_by_stretch[k] * step_));
+    return scatterRatio(scoreScatter(left, size), weights.middleRows(first, size));
+  }
+
   const ProjectedInformation& information_;
+  ScaledInverse inverse_;
   Eigen::VectorXd step_;
   ScaledInverse covariance_;
 };
@@ -80,11 +97,21 @@ void add(std::string& doubts, const std::string& doubt) {
   doubts += (doubts.empty() ? "" : "; ") + doubt;
 }
 
+// A turn explains what there is to explain: errors that come and go look like one, too, but leave most of themselves.
 void testGyroscope(const std::string& imu, const Step& step, const OptimisationOptions& options,
-                   std::string& doubts) {
+                   HeldDoubts& doubts) {
   const double turn_deg = kDegPerRad * step.change.norm();
   if (turn_deg < options.needed_rotation_deg || step.sigmas < options.turned_gyroscope_sigmas) return;
-  add(doubts,
+  const double sigmas = step.sigmas / std::sqrt(std::max(1.0, step.left));
+  if (sigmas < options.turned_gyroscope_sigmas)
+    return add(
+        doubts.wandering_imus,
+        fmt::format("{}: for tenths of a second at a time its samples are further off than the stated noise "
+                    "density allows, and no turn of the gyroscope explains it: check its noise density, its "
+                    "filters and what shakes it",
+                    imu));
+  doubts.gyroscope_sigmas = std::max(doubts.gyroscope_sigmas, sigmas);
+  add(doubts.gyroscopes,
       fmt::format("{}: the gyroscope seems to be turned by about {:.2g} deg against the accelerometer, "
                   "and other rotations may be off by as much; calibrate with "
                   "optimisation.gyroscope_rotation: true",
@@ -158,7 +185,7 @@ HeldDoubts testHeldValues(const CalibrationInput& input, const CalibrationState&
       testLens(input.cameras[quantity.sensor].name, *state.cameras[quantity.sensor].lens.inUse(), steps.of(i),
                options, doubts.lenses);
     else
-      testGyroscope(input.imus[quantity.sensor].name, steps.of(i), options, doubts.gyroscopes);
+      testGyroscope(input.imus[quantity.sensor].name, steps.of(i), options, doubts);
   }
   doubts.board = board.doubt(input.board, options);
   return doubts;
@@ -185,6 +212,7 @@ ProjectedInformation withoutHeldValues(const CalibrationInput& input, const Opti
   shrinkVector(information.gradient);
   for (MeasurementGroup& group : information.groups) shrinkMatrix(group.information);
   for (Eigen::VectorXd& score : information.scores) shrinkVector(score);
+  for (Eigen::MatrixXd& share : information.information_by_stretch) shrinkMatrix(share);
   for (Eigen::VectorXd& effect : information.pixel_errors) shrinkVector(effect);
   if (information.drift_by_quantities.size() > 0)
     information.drift_by_quantities = information.drift_by_quantities(Eigen::all, kept).eval();

@@ -19,8 +19,10 @@ OptimisationOptions freeToBeTested(OptimisationOptions options);
 // free all the same.
 struct HeldDoubts {
   std::string gyroscopes;  // turns that are certain and larger than the rotation that is needed
-  std::string lenses;      // that project elsewhere, for certain and by more than wrong_lens_px
-  std::string board;       // that is bent, for certain and by more than bent_board_mm
+  double gyroscope_sigmas = 0.0;
+  std::string wandering_imus;  // that look so, but for errors that last and that no turn explains
+  std::string lenses;          // that project elsewhere, for certain and by more than wrong_lens_px
+  std::string board;           // that is bent, for certain and by more than bent_board_mm
 };
 HeldDoubts testHeldValues(const CalibrationInput& input, const CalibrationState& state,
                           const ProjectedInformation& information, const OptimisationOptions& options);

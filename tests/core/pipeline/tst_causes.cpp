@@ -52,6 +52,10 @@ class TestCauses : public QObject {
     row("batches", 50, true);
     row("prior of rotation", 20, false);
     row("prior of time offset", 10, false);
+    row("camera moved", 0.2, false);
+    row("camera moved", 5, false);
+    row("wandering noise", 0.01, false);
+    row("walking biases", 1e-3, false);
   }
   void firstReason_namesTheCause() {
     QFETCH(QString, name);
@@ -182,6 +186,35 @@ class TestCauses : public QObject {
     expectRight(recorded, run);
   }
 
+  // The part that the repair keeps is ok or too short to be, and right.
+  void cameraThatMoved_isRightInTheLargerPart() {
+    test::Recorded recorded = base_;
+    test::perturbation("camera moved").apply(recorded, 1.0);
+    const std::optional<Repair> repair = repairOf(recorded);
+    QVERIFY(repair);
+    setInSession(recorded.session, repair->key, repair->value);
+    const std::array<double, 2> range_s = recorded.session.time_range_s.value();
+    constexpr double kMoved_s = 6.0;
+    QVERIFY2(range_s[0] < 0.5 && range_s[1] > kMoved_s - 1.5 && range_s[1] < kMoved_s,
+             repair->text().c_str());
+    test::cutTo(range_s, recorded);
+    expectRight(recorded, calibrate(recorded.session, recorded.pass, RunContext{}));
+  }
+
+  // A hundred times as fast as what they are taken for: what is left is told by the sigmas.
+  void walkingBiases_areRepaired() {
+    test::Recorded recorded = base_;
+    test::perturbation("walking biases").apply(recorded, 1e-3);
+    const std::optional<Repair> repair = repairOf(recorded);
+    QVERIFY(repair);
+    QCOMPARE(repair->text(), std::string("optimisation.model.bias_model=linear"));
+    setInSession(recorded.session, repair->key, repair->value);
+    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+    QVERIFY(!run.result.repair);
+    const double sigmas = comparisonOf(recorded, run).normalisedRms();
+    QVERIFY2(sigmas < 2.5, qPrintable(QString::number(sigmas)));
+  }
+
   // Of a clock that steps the larger part is used, and is right.
   void clockThatSteps_isRightInTheLargerPart() {
     test::Recorded recorded = base_;
@@ -216,10 +249,13 @@ class TestCauses : public QObject {
       return error.repair();
     }
   }
-  void expectRight(const test::Recorded& recorded, const CalibrationRun& run) const {
-    const TruthComparison comparison = compareWithTruth(
+  static TruthComparison comparisonOf(const test::Recorded& recorded, const CalibrationRun& run) {
+    return compareWithTruth(
         namedResult(recorded.session, std::make_shared<CalibrationResult>(run.result), "test"),
         test::truthOf(recorded.scenario));
+  }
+  void expectRight(const test::Recorded& recorded, const CalibrationRun& run) const {
+    const TruthComparison comparison = comparisonOf(recorded, run);
     const CameraError& error = comparison.cameras.front();
     QVERIFY2(error.rotation_deg < 0.1, qPrintable(QString::number(error.rotation_deg)));
     QVERIFY2(error.translation_mm < 3.0, qPrintable(QString::number(error.translation_mm)));

@@ -277,10 +277,13 @@ correlation:
     QVERIFY((session.imus[0].accelerometer_axes == AxesReading{-1, -2, -3}));
     setInSession(session, "optimisation.gyroscope_rotation", "true");
     QVERIFY(session.options.optimisation.gyroscope_rotation);
+    setInSession(session, "time_range_s", "[2,11.5]");
+    QVERIFY((session.time_range_s == std::array<double, 2>{2.0, 11.5}));
     for (const auto& [key, value] :
          {std::pair{"imus.right_imu.acceleration_unit", "g"},
           std::pair{"imus.left_imu.acceleration_unit", "gravities"}, std::pair{"imus.left_imu.colour", "red"},
-          std::pair{"imus.left_imu.gyroscope_axes", "y,x"}})
+          std::pair{"imus.left_imu.gyroscope_axes", "y,x"}, std::pair{"time_range_s", "[3, 2]"},
+          std::pair{"time_range_s", "5"}, std::pair{"time_range_s", "[-1, 2]"}})
       QVERIFY_EXCEPTION_THROWN(setInSession(session, key, value), CalibrationError);
   }
 

@@ -1,0 +1,261 @@
+#include "core/optimisation/uncertainty/change_test.h"
+
+#include "core/numerics/angles.h"
+#include "core/optimisation/uncertainty/score_scatter.h"
+
+#include <fmt/format.h>
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace evical {
+namespace {
+
+// The numbers of one sensor that change together.
+struct Candidate {
+  ChangeKind kind;
+  QuantityOwner owner;
+  std::size_t sensor;
+  std::vector<Eigen::Index> columns;
+  std::vector<double> largest;  // of each number: holds directions without information
+};
+
+std::optional<ChangeKind> kindOf(const QuantityInfo& info) {
+  if (info.need == QuantityNeed::TimeOffset) return ChangeKind::Clock;
+  if (info.need != QuantityNeed::None) return ChangeKind::Pose;
+  const bool bias = &info == &quantityInfo(kImuQuantities, &ImuState::gyroscope_bias_rad_s) ||
+                    &info == &quantityInfo(kImuQuantities, &ImuState::accelerometer_bias_m_s2);
+  return bias ? std::optional(ChangeKind::Biases) : std::nullopt;
+}
+
+std::vector<Candidate> candidatesOf(const ProjectedInformation& information) {
+  constexpr double kLargest = 1000.0;  // of what makes quantities comparable: 57 deg, 1 m, 0.1 s
+  std::vector<Candidate> all;
+  for (std::size_t i = 0; i < information.quantities.size(); ++i) {
+    const Quantity& quantity = information.quantities[i];
+    const std::optional<ChangeKind> kind = kindOf(*quantity.info);
+    if (!kind) continue;
+    auto found = std::find_if(all.begin(), all.end(), [&](const Candidate& each) {
+      return each.kind == *kind && each.owner == quantity.info->owner && each.sensor == quantity.sensor;
+    });
+    if (found == all.end())
+      found = all.insert(all.end(), {*kind, quantity.info->owner, quantity.sensor, {}, {}});
+    for (Eigen::Index k = information.first_column[i]; k < information.first_column[i + 1]; ++k) {
+      found->columns.push_back(k);
+      found->largest.push_back(kLargest * quantity.info->comparable_unit);
+    }
+  }
+  return all;
+}
+
+class ChangeTest {
+ public:
+  explicit ChangeTest(const ProjectedInformation& information)
+      : information_(information),
+        scale_(information.total.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()),
+        solver_(scale_.asDiagonal() * information.total * scale_.asDiagonal()),
+        gradient_(Eigen::VectorXd::Zero(information.total.rows())) {
+    for (const Eigen::VectorXd& score : information.scores) gradient_ += score;
+  }
+
+  // The most certain one; nothing in recordings too short for two parts.
+  std::optional<SensorChange> best(const Candidate& candidate) const {
+    std::optional<SensorChange> best;
+    for (const Step& step : likelySteps(candidate)) {
+      const double sigmas = sigmasOf(step, scoresLeft(candidate, step));
+      if (best && sigmas <= best->sigmas) continue;
+      const double at_s =
+          information_.first_stretch_s + static_cast<double>(step.from) * information_.stretch_s;
+      best = {candidate.kind, candidate.owner, candidate.sensor, at_s, step.change, sigmas};
+    }
+    return best;
+  }
+
+ private:
+  // Of all stretches from one on.
+  struct Part {
+    std::size_t from;
+    Eigen::VectorXd score;
+    Eigen::MatrixXd information;
+  };
+  struct Step {
+    std::size_t from;
+    Eigen::VectorXd change;
+    Eigen::MatrixXd others;  // what the other unknowns, which are free to follow, take of it
+    Eigen::MatrixXd information;
+
+    double explains = 0.0;  // chi-square, with all as stated
+  };
+
+  // The moments at which a step explains most.
+  std::vector<Step> likelySteps(const Candidate& candidate) const {
+    constexpr double kLeastPart_s = 1.5;  // shorter parts tell little
+    constexpr std::size_t kTried = 30;
+    const std::size_t count = information_.scores.size();
+    std::vector<Step> steps;
+    if (count == 0) return steps;
+    const auto least = static_cast<std::size_t>(std::ceil(kLeastPart_s / information_.stretch_s));
+    Part part{count, Eigen::VectorXd::Zero(gradient_.size()),
+              Eigen::MatrixXd::Zero(gradient_.size(), gradient_.size())};
+    const auto explainsMore = [](const Step& a, const Step& b) { return a.explains > b.explains; };
+    while (part.from > least) {
+      --part.from;
+      part.score += information_.scores[part.from];
+      part.information += information_.information_by_stretch[part.from];
+      if (count - part.from < least) continue;
+      steps.push_back(stepOf(candidate, part));
+      std::push_heap(steps.begin(), steps.end(), explainsMore);
+      if (steps.size() <= kTried) continue;
+      std::pop_heap(steps.begin(), steps.end(), explainsMore);
+      steps.pop_back();
+    }
+    return steps;
+  }
+
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const {
+    return scale_.asDiagonal() * solver_.solve(scale_.asDiagonal() * right);
+  }
+
+  Step stepOf(const Candidate& candidate, const Part& part) const {
+    const std::vector<Eigen::Index>& columns = candidate.columns;
+    Step step{part.from, {}, solve(part.information(Eigen::all, columns)), {}, 0.0};
+    step.information =
+        part.information(columns, columns) - part.information(columns, Eigen::all) * step.others;
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      step.information.diagonal()[static_cast<Eigen::Index>(k)] +=
+          1.0 / (candidate.largest[k] * candidate.largest[k]);
+    step.change = -step.information.ldlt().solve(part.score(columns) - step.others.transpose() * gradient_);
+    step.explains = step.change.dot(step.information * step.change);
+    return step;
+  }
+
+  // Of the step, stretch by stretch, once it is made.
+  std::vector<Eigen::VectorXd> scoresLeft(const Candidate& candidate, const Step& step) const {
+    const std::vector<Eigen::Index>& columns = candidate.columns;
+    const Eigen::VectorXd moved = -solve(gradient_) - step.others * step.change;
+    std::vector<Eigen::VectorXd> left;
+    for (std::size_t k = 0; k < information_.scores.size(); ++k) {
+      Eigen::VectorXd here = moved;
+      if (k >= step.from) here(columns) += step.change;
+      const Eigen::VectorXd score = information_.scores[k] + information_.information_by_stretch[k] * here;
+      Eigen::VectorXd of_step = -step.others.transpose() * score;
+      if (k >= step.from) of_step += score(columns);
+      left.push_back(std::move(of_step));
+    }
+    return left;
+  }
+
+  // By information or by the scatter of what is left, whichever is less certain; and where more is left than noise
+  // leaves, a step must stand out from that, too.
+  static double sigmasOf(const Step& step, const std::vector<Eigen::VectorXd>& left) {
+    constexpr double kLeastScatter = 1e-9;
+    const Eigen::MatrixXd scatter = scoreScatter(left, step.change.size());
+    const Eigen::VectorXd root = step.information.diagonal().cwiseSqrt();
+    Eigen::MatrixXd scaled = root.cwiseInverse().asDiagonal() * scatter * root.cwiseInverse().asDiagonal();
+    scaled.diagonal().array() += kLeastScatter;
+    const Eigen::VectorXd pull = (step.information * step.change).cwiseQuotient(root);
+    const double sigmas2 = std::min(step.explains, pull.dot(scaled.ldlt().solve(pull)));
+    const auto by_chance = static_cast<double>(step.change.size());
+    return std::sqrt(std::max(0.0, sigmas2 - by_chance) /
+                     std::max(1.0, scatterRatio(scatter, step.information)));
+  }
+
+  const ProjectedInformation& information_;
+  Eigen::VectorXd scale_;
+  Eigen::LDLT<Eigen::MatrixXd> solver_;
+  Eigen::VectorXd gradient_;
+};
+
+double rotation_deg(const SensorChange& change) {
+  return kDegPerRad * change.change.head<3>().norm();
+}
+double translation_mm(const SensorChange& change) {
+  return change.change.size() > 3 ? 1e3 * change.change.tail<3>().norm() : 0.0;
+}
+double timeOffset_ms(const SensorChange& change) {
+  return 1e3 * change.change[0];
+}
+
+bool matters(const SensorChange& change, const OptimisationOptions& options) {
+  if (change.sigmas < options.changed_sigmas) return false;
+  switch (change.kind) {
+    case ChangeKind::Clock:
+      return std::abs(timeOffset_ms(change)) > options.needed_time_offset_ms;
+    case ChangeKind::Pose:
+      return rotation_deg(change) > options.needed_rotation_deg ||
+             translation_mm(change) > options.needed_translation_mm;
+    case ChangeKind::Biases:
+      return options.bias_model == BiasModel::Constant;
+  }
+  return false;
+}
+
+std::string nameOf(const CalibrationInput& input, const SensorChange& change) {
+  return change.owner == QuantityOwner::Camera ? input.cameras[change.sensor].name
+                                               : input.imus[change.sensor].name;
+}
+std::string referenceName(const CalibrationInput& input) {
+  return input.imus.empty() ? input.cameras[input.reference_camera].name
+                            : input.imus[input.reference_imu].name;
+}
+
+std::string wordsOf(const CalibrationInput& input, const SensorChange& change) {
+  const std::string name = nameOf(input, change);
+  switch (change.kind) {
+    case ChangeKind::Clock:
+      return fmt::format(
+          "{}: its clock and that of {} seem to step by {:.2g} ms against each other about {:.1f} s after "
+          "the "
+          "start ({:.0f} sigmas): calibrate the larger part alone",
+          name, referenceName(input), std::abs(timeOffset_ms(change)), change.at_s, change.sigmas);
+    case ChangeKind::Pose:
+      return fmt::format(
+          "{}: it seems to have moved against {} about {:.1f} s after the start, by {:.2g} deg and {:.2g} mm "
+          "({:.0f} sigmas): fasten it and record again, or calibrate the larger part alone",
+          name, referenceName(input), change.at_s, rotation_deg(change), translation_mm(change),
+          change.sigmas);
+    case ChangeKind::Biases:
+      return fmt::format(
+          "{}: its biases change within the recording, by {:.2g} rad/s and {:.2g} m/s^2 ({:.0f} sigmas): "
+          "calibrate with optimisation.model.bias_model: linear",
+          name, change.change.head<3>().norm(), change.change.tail<3>().norm(), change.sigmas);
+  }
+  return {};
+}
+
+Repair repairOf(const SensorChange& change, const ProjectedInformation& information) {
+  constexpr double kMargin_s = 0.5;  // as well as the moment is known
+  if (change.kind == ChangeKind::Biases) return {"optimisation.model.bias_model", "linear"};
+  const double begin_s = std::max(0.0, information.first_stretch_s);
+  const double end_s =
+      information.first_stretch_s + information.stretch_s * static_cast<double>(information.scores.size());
+  const bool late = change.at_s - begin_s > end_s - change.at_s;
+  return {"time_range_s", late ? fmt::format("[{:.1f},{:.1f}]", begin_s, change.at_s - kMargin_s)
+                               : fmt::format("[{:.1f},{:.1f}]", change.at_s + kMargin_s, end_s)};
+}
+
+}  // namespace
+
+std::vector<SensorChange> findChanges(const ProjectedInformation& information) {
+  std::vector<SensorChange> changes;
+  const ChangeTest test(information);
+  for (const Candidate& candidate : candidatesOf(information))
+    if (std::optional<SensorChange> change = test.best(candidate)) changes.push_back(std::move(*change));
+  return changes;
+}
+
+ChangeDoubt doubtOfChanges(const CalibrationInput& input, const ProjectedInformation& information,
+                           const OptimisationOptions& options) {
+  ChangeDoubt result;
+  for (const SensorChange& change : findChanges(information)) {
+    if (change.sigmas < result.sigmas || !matters(change, options)) continue;
+    result = {Doubt{wordsOf(input, change), repairOf(change, information)}, change.sigmas};
+  }
+  return result;
+}
+
+}  // namespace evical
