@@ -1,7 +1,9 @@
 #include "core/synthetic/board_truth.h"
 
 #include "core/geometry/camera_model.h"
+#include "core/synthetic/board_surface.h"
 #include "core/synthetic/session_errors.h"
+#include "core/synthetic/visitors.h"
 
 #include <Eigen/LU>
 
@@ -17,11 +19,26 @@ double worldTime_s(const SimulatedCamera& camera, double stamp_s) {
   return stamp_s + camera.time_offset_s - camera.pixel.delay_s();
 }
 
-Eigen::Matrix3d idealFromBoard(const RigidTransform& world_from_camera, const CameraIntrinsics& intrinsics) {
+// Of a plane z = height + slope . (x, y).
+struct Sheet {
+  double height_m = 0.0;
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();
+};
+
+// The plane that touches the board's sheet at a point of it.
+Sheet touching(const BoardSurface& surface, const Eigen::Vector2d& point_m) {
+  if (!surface.isBent()) return {};
+  const Eigen::Vector2d slope = surface.slope(point_m);
+  return {surface.behind_m(point_m) - slope.dot(point_m), slope};
+}
+
+Eigen::Matrix3d idealFromSheet(const RigidTransform& world_from_camera, const Sheet& sheet,
+                               const CameraIntrinsics& intrinsics) {
   const RigidTransform camera_from_world = inverse(world_from_camera);
   const Eigen::Matrix3d r = camera_from_world.rotation.toRotationMatrix();
   Eigen::Matrix3d h;
-  h << r.col(0), r.col(1), camera_from_world.translation_m;
+  h << r.col(0) + sheet.slope.x() * r.col(2), r.col(1) + sheet.slope.y() * r.col(2),
+      camera_from_world.translation_m + sheet.height_m * r.col(2);
   Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
   k.diagonal().head<2>() = intrinsics.focal_length_px;
   k.topRightCorner<2, 1>() = intrinsics.principal_point_px;
@@ -62,21 +79,26 @@ std::vector<TrueCircle> trueBoardView(const SinusoidMotion& motion, const Scenar
   constexpr double kStep_s = 1e-5;  // central difference: exact to 1e-6 px/s for such motions
   const SimulatedCamera& camera = scenario.cameras[index];
   const double time_s = worldTime_s(camera, stamp_s);
-  const auto homographyAt = [&](double t) {
-    return idealFromBoard(motion.worldFromCamera(index, t), camera.intrinsics);
-  };
-  const Eigen::Matrix3d now = homographyAt(time_s), before = homographyAt(time_s - kStep_s),
-                        after = homographyAt(time_s + kStep_s);
+  const RigidTransform now = motion.worldFromCamera(index, time_s),
+                       before = motion.worldFromCamera(index, time_s - kStep_s),
+                       after = motion.worldFromCamera(index, time_s + kStep_s);
+  const BoardSurface surface(scenario);
+  const std::optional<Figure> hand = handAt(scenario, time_s);
   std::vector<TrueCircle> circles;
   for (int i = 0; i < scenario.board.circleCount(); ++i) {
     const Eigen::Vector2d on_board_m = trueCentre_m(scenario, i);
-    const auto imageIn = [&](const Eigen::Matrix3d& h) {
-      return imageOfCircle(h, on_board_m, scenario.board.radius_m);
+    const Sheet sheet = touching(surface, on_board_m);
+    const auto imageIn = [&](const RigidTransform& world_from_camera) {
+      return imageOfCircle(idealFromSheet(world_from_camera, sheet, camera.intrinsics), on_board_m,
+                           scenario.board.radius_m);
     };
     const std::optional<Ellipse> ellipse = imageIn(now), earlier = imageIn(before), later = imageIn(after);
     if (!ellipse || !earlier || !later) continue;
     circles.push_back({i, ellipse->centre, (later->centre - earlier->centre) / (2.0 * kStep_s),
-                       insideImage(*ellipse, camera.intrinsics)});
+                       insideImage(*ellipse, camera.intrinsics),
+                       hand && isHidden(*hand, now.translation_m,
+                                        {on_board_m.x(), on_board_m.y(), surface.behind_m(on_board_m)},
+                                        scenario.board.radius_m)});
   }
   return circles;
 }
@@ -84,7 +106,8 @@ std::vector<TrueCircle> trueBoardView(const SinusoidMotion& motion, const Scenar
 int circlesInView(const SinusoidMotion& motion, const Scenario& scenario, std::size_t camera,
                   double stamp_s) {
   int count = 0;
-  for (const TrueCircle& circle : trueBoardView(motion, scenario, camera, stamp_s)) count += circle.inside;
+  for (const TrueCircle& circle : trueBoardView(motion, scenario, camera, stamp_s))
+    count += circle.isVisible();
   return count;
 }
 
@@ -105,7 +128,7 @@ BoardObservations simulateObservations(const Scenario& scenario, std::size_t cam
     BoardView view;
     view.time_s = time_s;
     for (const TrueCircle& truth : trueBoardView(motion, scenario, camera, time_s)) {
-      if (!truth.inside) continue;
+      if (!truth.isVisible()) continue;
       CircleObservation circle;
       circle.circle = truth.circle;
       circle.time_s = time_s;

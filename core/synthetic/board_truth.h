@@ -15,6 +15,9 @@ struct TrueCircle {
   Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();      // of the ellipse, ideal pixels
   Eigen::Vector2d velocity_px_s = Eigen::Vector2d::Zero();  // ideal pixels
   bool inside = false;                                      // the whole circle is in the image
+  bool hidden = false;                                      // a hand is before some of it
+
+  bool isVisible() const { return inside && !hidden; }
 };
 
 // All circles in front of the camera, at a time that the camera's *stamps* show: the delay of pixels and the
@@ -22,12 +25,12 @@ struct TrueCircle {
 std::vector<TrueCircle> trueBoardView(const SinusoidMotion& motion, const Scenario& scenario,
                                       std::size_t camera, double stamp_s);
 
-// Circles that are wholly in the image; and whether they suffice for a partial grid (docs/maths.md, 5.4),
+// Circles that are wholly in the image and not hidden; and whether they suffice for a partial grid (docs/maths.md, 5.4),
 // here at least 4 and 40 %.
 int circlesInView(const SinusoidMotion& motion, const Scenario& scenario, std::size_t camera, double stamp_s);
 bool boardInView(const SinusoidMotion& motion, const Scenario& scenario, std::size_t camera, double stamp_s);
 
-// Truth with Gaussian noise of `noise_px` per axis, every `period_s`, circles wholly in the image only.
+// Truth with Gaussian noise of `noise_px` per axis, every `period_s`, visible circles only.
 BoardObservations simulateObservations(const Scenario& scenario, std::size_t camera, double noise_px,
                                        double period_s);
 

@@ -65,7 +65,7 @@ void PixelArray::findOwnLight() {
 void PixelArray::reset(const RigidTransform& world_from_camera) {
   constexpr std::uint64_t kReferenceStream = 0xf0u;
   Random random(scenario_.seed, kReferenceStream + camera_);
-  const SceneRenderer::Instant instant = renderer_.at(world_from_camera);
+  const SceneRenderer::Instant instant = renderer_.at(world_from_camera, 0.0);
   Scratch scratch;
   for (int row = 0; row < renderer_.tileRows(); ++row) {
     for (int column = 0; column < renderer_.tileColumns(); ++column) {
@@ -134,24 +134,25 @@ void PixelArray::begin(double begin_s, double end_s,
                        const std::function<RigidTransform(double)>& world_from_camera_at) {
   begin_s_ = begin_s;
   end_s_ = end_s;
-  const SceneRenderer::Instant first = renderer_.at(world_from_camera_at(begin_s)),
-                               middle = renderer_.at(world_from_camera_at(0.5 * (begin_s + end_s))),
-                               last = renderer_.at(world_from_camera_at(end_s));
+  const auto instantAt = [&](double time_s) { return renderer_.at(world_from_camera_at(time_s), time_s); };
+  const SceneRenderer::Instant first = instantAt(begin_s), middle = instantAt(0.5 * (begin_s + end_s)),
+                               last = instantAt(end_s);
   constexpr int kSamples = 8;  // a side: the fastest place is near one of them
   float travel_px = 0.0f;
   SceneRenderer::TileView view;
   for (int i = 0; i <= kSamples; ++i) {
     for (int j = 0; j <= kSamples; ++j) {
       const int column = (renderer_.tileColumns() - 1) * i / kSamples, row = (tileRows() - 1) * j / kSamples;
-      renderer_.look(renderer_.tile(column, row), {&first, &middle, &last}, view);
-      travel_px = std::max(travel_px, view.travel_px);
+      const SceneRenderer::Tile tile = renderer_.tile(column, row);
+      renderer_.look(tile, {&first, &middle, &last}, view);
+      travel_px =
+          std::max({travel_px, view.travel_px, renderer_.visitorsTravel_px(tile, {&first, &middle, &last})});
     }
   }
   int steps = leastSteps(end_s - begin_s);
   while (steps < kMostSteps && static_cast<float>(steps) * step_travel_px_ < travel_px) steps *= 2;
   instants_.clear();
-  for (int k = 0; k <= steps; ++k)
-    instants_.push_back(renderer_.at(world_from_camera_at(begin_s + (end_s - begin_s) * k / steps)));
+  for (int k = 0; k <= steps; ++k) instants_.push_back(instantAt(begin_s + (end_s - begin_s) * k / steps));
 }
 
 void PixelArray::runTileRow(int tile_row, Scratch& scratch, std::vector<Event>& events) {

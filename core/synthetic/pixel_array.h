@@ -21,7 +21,7 @@ class PixelArray {
   int tileRows() const { return renderer_.tileRows(); }
 
   // Settles all pixels on what they see; their references lie anywhere within the thresholds, as if they had
-  // been running before.
+  // been running before. It is the recording's start.
   void reset(const RigidTransform& world_from_camera);
 
   // A stretch of a few milliseconds, then each of its rows of tiles once, in any

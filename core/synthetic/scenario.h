@@ -120,6 +120,36 @@ struct MotionModel {
   HandModel hand = {};
 };
 
+// How far the board is from flat: by how much the middle of its rows and of its columns stands out, and its corners by
+// a twist (core/data/board_bow.h).
+struct SimulatedBow {
+  double rows_m = 0.0, columns_m = 0.0, twist_m = 0.0;
+
+  bool operator==(const SimulatedBow&) const = default;
+};
+
+// A lamp that the board's varnish mirrors: a spot that moves over the board with the view.
+struct GlossModel {
+  double strength = 0.0;      // of the spot's middle, added to the board's reflectance; 0: a matt board
+  double spread_rad = 0.035;  // sigma of the directions into which the lamp is mirrored
+};
+
+// A hand that comes in front of the board every so often, stays for so long and goes; all off by default. It
+// throws a shadow of the scene's lamp onto the board.
+struct HandOverBoard {
+  double every_s = 0.0, stay_s = 1.0;
+  double height_m = 0.08;        // in front of the board
+  double shadow = 0.6;           // share of the lamp's light that it takes
+  double shadow_edge_m = 0.004;  // sigma of the shadow's edge
+};
+
+// People who walk past between the board and what lies behind it; off by default.
+struct PeopleModel {
+  double every_s = 0.0;
+  double speed_m_s = 1.2;
+  double distance_m = 0.25;  // behind the board
+};
+
 struct SceneModel {
   double bright_reflectance = 0.85, dark_reflectance = 0.06;
   double margin_m = 0.06;             // of the board around its outer circles' centres
@@ -129,6 +159,11 @@ struct SceneModel {
   double clutter_detail_px = 2.0;     // smallest structure, at the mean distance
   double lamp_flicker = 0.0;          // amplitude of the light's, relative
   double lamp_flicker_hz = 100.0;
+  Eigen::Vector3d lamp_m = {0.1, -0.3,
+                            -1.5};  // from the board's middle; the camera is where z is negative too
+  GlossModel gloss = {};
+  HandOverBoard hand = {};
+  PeopleModel people = {};
 };
 
 // What the session says wrongly, relative to the truth.
@@ -149,6 +184,7 @@ struct Scenario {
   std::int64_t start_ns = 1'700'000'000'000'000'000;
   CircleBoard board;
   double board_stretch = 0.0;  // of the real one: 0.01 makes its columns 1 % longer than `board` says
+  SimulatedBow board_bow = {};
   SceneModel scene;
   MotionModel motion;
   Eigen::Vector3d gravity_in_world_m_s2 = {0.0, 9.81, 0.0};  // the board hangs upright: y points down

@@ -1,6 +1,7 @@
 #include "core/base/yaml_node.h"
 #include "core/data/intrinsics_yaml.h"
 #include "core/data/quantity_yaml.h"
+#include "core/synthetic/board_surface.h"
 #include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "core/synthetic/session_errors.h"
@@ -45,12 +46,18 @@ std::string cameraTruth(const Scenario& scenario, const SimulatedCamera& camera)
          intrinsicsYaml(camera.intrinsics, kSensorIndent);
 }
 
-// Against what the session says of it (BoardState).
+// Against what the session says of it (BoardState), whose curvatures are of what it says too.
 std::string boardTruth(const Scenario& scenario) {
   const double longer = scenario.board_stretch, said = 1.0 + scenario.session_errors.spacing;
-  if (longer == 0.0 && said == 1.0) return {};
-  return fmt::format("board:\n  scale: {}\n  stretch: {}\n", (1.0 + 0.5 * longer) / said,
-                     -longer / (1.0 + 0.5 * longer));
+  const BoardSurface surface(scenario);
+  if (longer == 0.0 && said == 1.0 && !surface.isBent()) return {};
+  std::string text = fmt::format("board:\n  scale: {}\n  stretch: {}\n", (1.0 + 0.5 * longer) / said,
+                                 -longer / (1.0 + 0.5 * longer));
+  if (!surface.isBent()) return text;
+  const Eigen::Matrix2d true_from_said = Eigen::Vector2d(1.0, 1.0 + longer).asDiagonal() * (1.0 / said);
+  const Eigen::Matrix2d seen = true_from_said * surface.curvature_1_m() * true_from_said;
+  return text + fmt::format("  row_curvature_1_m: {}\n  column_curvature_1_m: {}\n  twist_1_m: {}\n",
+                            seen(0, 0), seen(1, 1), seen(0, 1));
 }
 
 // Pose, clock and delay against another camera's.

@@ -4,6 +4,7 @@
 #include "core/geometry/camera_model.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
+#include "core/synthetic/visitors.h"
 
 #include <fmt/format.h>
 
@@ -16,6 +17,7 @@ namespace evical {
 namespace {
 
 constexpr double kAny = std::numeric_limits<double>::max();
+constexpr double kLargestBow_m = 0.1, kNearestLamp_m = 0.05;
 
 // All of these leave the value alone where the key is absent: that is how a scenario changes its base.
 void get(const YamlNode& map, const char* key, double& value, double minimum, double maximum,
@@ -68,7 +70,8 @@ void getMapping(const YamlNode& map, const char* key, Eigen::Matrix3d& value) {
 
 void readBoard(const YamlNode& map, Scenario& scenario) {
   CircleBoard& board = scenario.board;
-  map.allowOnly({"type", "circles", "rows", "cols", "spacing_m", "radius_m", "stretch"});
+  map.allowOnly({"type", "circles", "rows", "cols", "spacing_m", "radius_m", "stretch", "row_bow_m",
+                 "column_bow_m", "twist_m"});
   get(map, "type", board.type, {"asymmetric_circles", "symmetric_circles"});
   get(map, "circles", board.circles, {"dark", "bright"});
   get(map, "rows", board.rows, 2, 100);
@@ -76,12 +79,45 @@ void readBoard(const YamlNode& map, Scenario& scenario) {
   get(map, "spacing_m", board.spacing_m, 1e-4, 10.0, "m");
   get(map, "radius_m", board.radius_m, 1e-5, 10.0, "m");
   get(map, "stretch", scenario.board_stretch, -0.1, 0.1, "");
+  get(map, "row_bow_m", scenario.board_bow.rows_m, -kLargestBow_m, kLargestBow_m, "m");
+  get(map, "column_bow_m", scenario.board_bow.columns_m, -kLargestBow_m, kLargestBow_m, "m");
+  get(map, "twist_m", scenario.board_bow.twist_m, -kLargestBow_m, kLargestBow_m, "m");
+}
+
+void readGloss(const YamlNode& map, GlossModel& gloss) {
+  map.allowOnly({"strength", "spread_deg"});
+  double spread_deg = gloss.spread_rad / kRadPerDeg;
+  get(map, "strength", gloss.strength, 0.0, 100.0, "");
+  get(map, "spread_deg", spread_deg, 0.1, 30.0, "deg");
+  gloss.spread_rad = spread_deg * kRadPerDeg;
+}
+
+void readHandOverBoard(const YamlNode& map, HandOverBoard& hand) {
+  map.allowOnly({"every_s", "stay_s", "height_m", "shadow", "shadow_edge_m"});
+  get(map, "every_s", hand.every_s, 0.0, 1000.0, "s");
+  get(map, "stay_s", hand.stay_s, 0.0, 100.0, "s");
+  get(map, "height_m", hand.height_m, 0.0, 1.0, "m");
+  get(map, "shadow", hand.shadow, 0.0, 0.99, "");
+  get(map, "shadow_edge_m", hand.shadow_edge_m, 1e-4, 0.1, "m");
+  if (hand.every_s > 0.0 && hand.stay_s + kHandComesAndGoes_s > hand.every_s)
+    throw map.error("the hand would come again before it is gone",
+                    fmt::format("Make every_s at least stay_s and {} s", kHandComesAndGoes_s));
+}
+
+void readPeople(const YamlNode& map, PeopleModel& people) {
+  map.allowOnly({"every_s", "speed_m_s", "distance_m"});
+  get(map, "every_s", people.every_s, 0.0, 1000.0, "s");
+  get(map, "speed_m_s", people.speed_m_s, 0.1, 10.0, "m/s");
+  get(map, "distance_m", people.distance_m, 0.0, 100.0, "m");
+  constexpr double kLeast_s = 0.2;
+  if (people.every_s > 0.0 && people.every_s < kLeast_s)
+    throw map["every_s"].error("is a crowd", fmt::format("Give 0, or {} s or more", kLeast_s));
 }
 
 void readScene(const YamlNode& map, SceneModel& scene) {
   map.allowOnly({"bright_reflectance", "dark_reflectance", "margin_m", "clutter_contrast",
                  "clutter_object_share", "clutter_distance_m", "clutter_detail_px", "lamp_flicker",
-                 "lamp_flicker_hz"});
+                 "lamp_flicker_hz", "lamp_m", "gloss", "hand", "people"});
   get(map, "bright_reflectance", scene.bright_reflectance, 1e-3, 1.0, "");
   get(map, "dark_reflectance", scene.dark_reflectance, 1e-3, 1.0, "");
   get(map, "margin_m", scene.margin_m, 0.0, 10.0, "m");
@@ -91,6 +127,16 @@ void readScene(const YamlNode& map, SceneModel& scene) {
   get(map, "clutter_detail_px", scene.clutter_detail_px, 0.5, 100.0, "px");
   get(map, "lamp_flicker", scene.lamp_flicker, 0.0, 0.9, "");
   get(map, "lamp_flicker_hz", scene.lamp_flicker_hz, 1.0, 1e4, "Hz");
+  get(map, "lamp_m", scene.lamp_m, -100.0, 100.0);
+  if (const auto node = map.find("gloss")) readGloss(*node, scene.gloss);
+  if (const auto node = map.find("hand")) readHandOverBoard(*node, scene.hand);
+  if (const auto node = map.find("people")) readPeople(*node, scene.people);
+  if (scene.lamp_m.z() > -2.0 * scene.hand.height_m || scene.lamp_m.z() > -kNearestLamp_m)
+    throw map.error("lamp_m is not in front of the board, or the hand is too near to it",
+                    "Its z is negative: the lamp's height over the board, at least twice the hand's");
+  if (scene.people.every_s > 0.0 && scene.people.distance_m > scene.clutter_distance_m)
+    throw map.error("people would walk behind what lies behind the board",
+                    "Make clutter_distance_m at least people.distance_m");
   if (scene.dark_reflectance >= scene.bright_reflectance)
     throw map.error("dark_reflectance must be less than bright_reflectance");
 }

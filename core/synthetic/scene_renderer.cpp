@@ -12,8 +12,7 @@
 namespace evical {
 namespace {
 
-constexpr float kEdgeReach = 4.0f;  // in sigmas of the blur
-constexpr int kEdgeSteps = 512;     // of the tabulated error function
+constexpr int kEdgeSteps = 512;  // of the tabulated error function
 
 // The optics' point spread, and the pixel's own area: a square of side 1 has the variance 1/12.
 double effectiveBlur_px(const EventPixelModel& pixel) {
@@ -31,11 +30,6 @@ ClutterTextureOptions textureOptions(const Scenario& scenario, std::size_t camer
           effectiveBlur_px(scenario.cameras[camera].pixel) * texelsPerPixel(scenario)};
 }
 
-// d(board)/d(ray) at a ray that meets the plane at `point`, `depth` being the homography's third coordinate.
-Eigen::Matrix2f derivative(const Eigen::Matrix3f& plane_from_ray, const Eigen::Vector2f& point, float depth) {
-  return (plane_from_ray.topLeftCorner<2, 2>() - point * plane_from_ray.block<1, 2>(2, 0)) / depth;
-}
-
 // The matrix's largest singular value.
 float largestStretch(const Eigen::Matrix2f& matrix) {
   const float half_trace = 0.5f * matrix.squaredNorm(), determinant = matrix.determinant();
@@ -45,10 +39,19 @@ float largestStretch(const Eigen::Matrix2f& matrix) {
 
 }  // namespace
 
+// d(plane)/d(ray) at a ray that meets the plane at `point`, `depth` being the homography's third coordinate.
+Eigen::Matrix2f SceneRenderer::planeDerivative(const Eigen::Matrix3f& plane_from_ray,
+                                               const Eigen::Vector2f& point, float depth) {
+  return (plane_from_ray.topLeftCorner<2, 2>() - point * plane_from_ray.block<1, 2>(2, 0)) / depth;
+}
+
 SceneRenderer::SceneRenderer(const Scenario& scenario, std::size_t index)
-    : board_(scenario.board),
+    : scenario_(scenario),
+      board_(scenario.board),
+      surface_(scenario),
       row_spacing_m_((1.0 + scenario.board_stretch) * scenario.board.spacing_m),
       scene_(scenario.scene),
+      is_visited_(scene_.gloss.strength > 0.0 || scene_.hand.every_s > 0.0 || scene_.people.every_s > 0.0),
       width_px_(scenario.cameras[index].intrinsics.resolution_px.width_px),
       height_px_(scenario.cameras[index].intrinsics.resolution_px.height_px),
       blur_px_(static_cast<float>(effectiveBlur_px(scenario.cameras[index].pixel))),
@@ -74,6 +77,10 @@ SceneRenderer::SceneRenderer(const Scenario& scenario, std::size_t index)
       ray_per_px_.push_back(per_px.cast<float>());
     }
   }
+  const Eigen::Vector2d middle_m = 0.5 * board_.extent_m();
+  lamp_m_ = (Eigen::Vector3d(middle_m.x(), middle_m.y(), 0.0) + scene_.lamp_m).cast<float>();
+  shadow_sigma_m_ = static_cast<float>(
+      std::hypot(scene_.hand.shadow_edge_m, blur_px_ * scenario.motion.distance_m / f.x()));
   const double px_per_m = f.x() / (scenario.motion.distance_m + scene_.clutter_distance_m);
   texels_per_m_ = static_cast<float>(texelsPerPixel(scenario) * px_per_m);
   for (int i = 0; i <= kEdgeSteps; ++i) {
@@ -82,15 +89,21 @@ SceneRenderer::SceneRenderer(const Scenario& scenario, std::size_t index)
   }
 }
 
-SceneRenderer::Instant SceneRenderer::at(const RigidTransform& world_from_camera) const {
-  const RigidTransform camera_from_world = inverse(world_from_camera);
+// Of the plane that lies so far behind the board's.
+Eigen::Matrix3f SceneRenderer::planeFromRay(const RigidTransform& camera_from_world, double depth_m) {
   const Eigen::Matrix3d r = camera_from_world.rotation.toRotationMatrix();
-  const auto planeFromRay = [&](double depth_m) {
-    Eigen::Matrix3d h;
-    h << r.col(0), r.col(1), camera_from_world.translation_m + depth_m * r.col(2);
-    return Eigen::Matrix3f(h.inverse().cast<float>());
-  };
-  return {planeFromRay(0.0), planeFromRay(scene_.clutter_distance_m)};
+  Eigen::Matrix3d h;
+  h << r.col(0), r.col(1), camera_from_world.translation_m + depth_m * r.col(2);
+  return h.inverse().cast<float>();
+}
+
+SceneRenderer::Instant SceneRenderer::at(const RigidTransform& world_from_camera, double time_s) const {
+  const RigidTransform camera_from_world = inverse(world_from_camera);
+  Instant instant{planeFromRay(camera_from_world, 0.0),
+                  planeFromRay(camera_from_world, scene_.clutter_distance_m),
+                  world_from_camera.translation_m.cast<float>()};
+  if (is_visited_) instant.figures = figuresAt(camera_from_world, time_s);
+  return instant;
 }
 
 SceneRenderer::Tile SceneRenderer::tile(int column, int row) const {
@@ -110,7 +123,8 @@ float SceneRenderer::travel(std::size_t pixel, const Instants& instants) const {
       const Eigen::Vector3f from = before * ray, to = after * ray;
       if (!(from.z() > 0.0f) || !(to.z() > 0.0f)) continue;
       const Eigen::Vector2f shift_m = to.hnormalized() - from.hnormalized();
-      const Eigen::Matrix2f per_px = derivative(before, from.hnormalized(), from.z()) * ray_per_px_[pixel];
+      const Eigen::Matrix2f per_px =
+          planeDerivative(before, from.hnormalized(), from.z()) * ray_per_px_[pixel];
       const float length = (per_px.inverse() * shift_m).norm();
       if (std::isfinite(length)) path += length;
     }
@@ -135,6 +149,11 @@ void SceneRenderer::findCircles(const Eigen::Vector2f& low_m, const Eigen::Vecto
 }
 
 void SceneRenderer::look(const Tile& tile, const Instants& instants, TileView& view) const {
+  lookAtPlanes(tile, instants, view);
+  if (is_visited_) lookForVisits(tile, instants, view);
+}
+
+void SceneRenderer::lookAtPlanes(const Tile& tile, const Instants& instants, TileView& view) const {
   view.content = Content::Mixed;
   view.constant = false;
   view.travel_px = 0.0f;
@@ -150,12 +169,12 @@ void SceneRenderer::look(const Tile& tile, const Instants& instants, TileView& v
         const Eigen::Vector3f b = instant->board_from_ray * rays_[pixel].homogeneous();
         visible = visible && b.z() > 0.0f;
         if (!visible) continue;
-        const Eigen::Vector2f point = b.hnormalized();
+        Eigen::Vector2f point = b.hnormalized();
+        Eigen::Matrix2f per_px = planeDerivative(instant->board_from_ray, point, b.z()) * ray_per_px_[pixel];
+        if (surface_.isBent()) bend(*instant, point, per_px);
         low = low.cwiseMin(point);
         high = high.cwiseMax(point);
-        metres_per_px =
-            std::max(metres_per_px,
-                     largestStretch(derivative(instant->board_from_ray, point, b.z()) * ray_per_px_[pixel]));
+        metres_per_px = std::max(metres_per_px, largestStretch(per_px));
       }
     }
   }
@@ -215,24 +234,42 @@ float SceneRenderer::disk(const Eigen::Vector2f& away_m, const Eigen::Matrix2f& 
   return edge((radius - distance) / metres_per_px - shrunk_px);
 }
 
-// The board's part of a pixel and, where the sheet ends, the clutter's.
-float SceneRenderer::onBoard(const Instant& instant, std::size_t pixel, const TileView& view) const {
+// From where a pixel sees the plane to where it sees the sheet.
+void SceneRenderer::bend(const Instant& instant, Eigen::Vector2f& point_m,
+                         Eigen::Matrix2f& board_per_px) const {
+  const BoardSurface::Hit hit = surface_.hit(point_m, instant.camera_m);
+  point_m = hit.point_m;
+  board_per_px = (hit.stretch * board_per_px).eval();
+}
+
+// Half of all the time is spent here: a flat board pays nothing for bent ones, nor a plain scene for visits.
+template <bool kBent>
+[[gnu::always_inline]] inline SceneRenderer::BoardPart SceneRenderer::partOf(const Instant& instant,
+                                                                             std::size_t pixel,
+                                                                             const TileView& view) const {
   const Eigen::Vector2f& ray = rays_[pixel];
   const Eigen::Matrix3f& h = instant.board_from_ray;
   const float depth = h(2, 0) * ray.x() + h(2, 1) * ray.y() + h(2, 2);
-  if (!(depth > 0.0f)) return clutter(instant, ray);
+  if (!(depth > 0.0f)) return {};
   const float inverse_depth = 1.0f / depth;
-  const Eigen::Vector2f point((h(0, 0) * ray.x() + h(0, 1) * ray.y() + h(0, 2)) * inverse_depth,
-                              (h(1, 0) * ray.x() + h(1, 1) * ray.y() + h(1, 2)) * inverse_depth);
+  const Eigen::Vector2f on_plane((h(0, 0) * ray.x() + h(0, 1) * ray.y() + h(0, 2)) * inverse_depth,
+                                 (h(1, 0) * ray.x() + h(1, 1) * ray.y() + h(1, 2)) * inverse_depth);
+  const Eigen::Vector2f point =
+      surface_.isBent() ? surface_.hit(on_plane, instant.camera_m).point_m : on_plane;
   const auto boardPerPixel = [&] {
-    return Eigen::Matrix2f(derivative(h, point, depth) * ray_per_px_[pixel]);
+    Eigen::Matrix2f per_px = planeDerivative(h, on_plane, depth) * ray_per_px_[pixel];
+    if constexpr (kBent) {
+      Eigen::Vector2f place = on_plane;
+      bend(instant, place, per_px);
+    }
+    return per_px;
   };
   float on_board = 1.0f;
   if (view.content == Content::Mixed) {
     const float inside_m = (point - board_low_m_).cwiseMin(board_high_m_ - point).minCoeff();
-    if (inside_m < -view.reach_m) return clutter(instant, ray);
+    if (inside_m < -view.reach_m) return {};
     if (inside_m < view.reach_m) on_board = sheet(point, boardPerPixel());
-    if (on_board <= 0.0f) return clutter(instant, ray);
+    if (on_board <= 0.0f) return {};
   }
   const auto radius = static_cast<float>(board_.radius_m);
   const float outer = radius + view.reach_m, inner = std::max(radius - view.reach_m, 0.0f);
@@ -243,14 +280,28 @@ float SceneRenderer::onBoard(const Instant& instant, std::size_t pixel, const Ti
     if (square >= outer * outer) continue;
     ink = square < inner * inner ? 1.0f : std::max(ink, disk(away, boardPerPixel()));
   }
+  return {on_board, ink, point};
+}
+
+SceneRenderer::BoardPart SceneRenderer::boardPart(const Instant& instant, std::size_t pixel,
+                                                  const TileView& view) const {
+  return surface_.isBent() ? partOf<true>(instant, pixel, view) : partOf<false>(instant, pixel, view);
+}
+
+// The board's part of a pixel and, where the sheet ends, the clutter's.
+template <bool kBent>
+float SceneRenderer::onBoard(const Instant& instant, std::size_t pixel, const TileView& view) const {
+  const auto [on_board, ink, point] = partOf<kBent>(instant, pixel, view);
+  if (on_board <= 0.0f) return clutter(instant, rays_[pixel]);
   if (on_board >= 1.0f && (ink <= 0.0f || ink >= 1.0f)) return ink <= 0.0f ? log_paper_ : log_ink_;
   const float reflectance = paper_ + (ink_ - paper_) * ink;
   if (on_board >= 1.0f) return std::log(reflectance);
-  return std::log(on_board * reflectance + (1.0f - on_board) * std::exp(clutter(instant, ray)));
+  return std::log(on_board * reflectance + (1.0f - on_board) * std::exp(clutter(instant, rays_[pixel])));
 }
 
 void SceneRenderer::render(const Instant& instant, const Tile& tile, const TileView& view,
                            float* log_intensity) const {
+  if (view.isVisited()) return renderVisited(instant, tile, view, log_intensity);
   for (int y = tile.y_px; y < tile.y_px + tile.height_px; ++y) {
     auto pixel = static_cast<std::size_t>(y * width_px_ + tile.x_px);
     for (int x = 0; x < tile.width_px; ++x, ++pixel, ++log_intensity) {
@@ -263,7 +314,8 @@ void SceneRenderer::render(const Instant& instant, const Tile& tile, const TileV
           break;
         case Content::Circles:
         case Content::Mixed:
-          *log_intensity = onBoard(instant, pixel, view);
+          *log_intensity =
+              surface_.isBent() ? onBoard<true>(instant, pixel, view) : onBoard<false>(instant, pixel, view);
           break;
       }
     }

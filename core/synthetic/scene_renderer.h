@@ -3,8 +3,10 @@
 #pragma once
 
 #include "core/geometry/rigid_transform.h"
+#include "core/synthetic/board_surface.h"
 #include "core/synthetic/clutter_texture.h"
 #include "core/synthetic/scenario.h"
+#include "core/synthetic/visitors.h"
 
 #include <Eigen/Core>
 
@@ -19,11 +21,18 @@ class SceneRenderer {
 
   SceneRenderer(const Scenario& scenario, std::size_t camera);
 
-  // The planes' homographies for one instant: from undistorted rays (x/z, y/z) to metres on the planes.
+  // The planes' homographies for one instant: from undistorted rays (x/z, y/z) to metres on the planes; and who
+  // is there, the hand last.
+  struct PlacedFigure {
+    Figure figure;
+    Eigen::Matrix3f plane_from_ray;
+  };
   struct Instant {
     Eigen::Matrix3f board_from_ray, background_from_ray;
+    Eigen::Vector3f camera_m = Eigen::Vector3f::Zero();
+    std::vector<PlacedFigure> figures = {};
   };
-  Instant at(const RigidTransform& world_from_camera) const;
+  Instant at(const RigidTransform& world_from_camera, double time_s) const;
 
   struct Tile {
     int x_px = 0, y_px = 0, width_px = 0, height_px = 0;
@@ -41,25 +50,73 @@ class SceneRenderer {
     float travel_px = 0.0f;  // how far the image moves there, at most
     float reach_m = 0.0f;    // further than this from an edge on the board nothing of it is seen
     std::vector<Eigen::Vector2f> circles_m;  // centres of those that it may show
+    // What comes and goes: figures in a set of bits, the hand's shadow, the lamp in the varnish.
+    unsigned figures = 0;
+    bool shadow = false, gloss = false;
+    bool isVisited() const { return figures != 0 || shadow || gloss; }
   };
   using Instants = std::array<const Instant*, 3>;  // begin, middle, end
   void look(const Tile& tile, const Instants& instants, TileView& view) const;
+  // How far figures' images move there, if they are there or not.
+  float visitorsTravel_px(const Tile& tile, const Instants& instants) const;
 
   // Row by row.
   void render(const Instant& instant, const Tile& tile, const TileView& view, float* log_intensity) const;
 
  private:
+  static constexpr float kEdgeReach = 4.0f;  // in sigmas of the blur
+
+  // How much of a pixel lies on the sheet, where, and how much of that is ink.
+  struct BoardPart {
+    float on_board = 0.0f, ink = 0.0f;
+    Eigen::Vector2f point_m = Eigen::Vector2f::Zero();
+  };
+  // Of a figure, by one pixel.
+  struct Seen {
+    Eigen::Vector2f own_m = Eigen::Vector2f::Zero();
+    float metres_per_px = 0.0f;
+  };
+
+  static Eigen::Matrix3f planeFromRay(const RigidTransform& camera_from_world, double depth_m);
+  static Eigen::Matrix2f planeDerivative(const Eigen::Matrix3f& plane_from_ray, const Eigen::Vector2f& point,
+                                         float depth);
+  void lookAtPlanes(const Tile& tile, const Instants& instants, TileView& view) const;
+  void bend(const Instant& instant, Eigen::Vector2f& point_m, Eigen::Matrix2f& board_per_px) const;
+  template <bool kBent>
+  BoardPart partOf(const Instant& instant, std::size_t pixel, const TileView& view) const;
+  BoardPart boardPart(const Instant& instant, std::size_t pixel, const TileView& view) const;
   float edge(float distance_px) const;  // blurred step, 0..1
   float clutter(const Instant& instant, const Eigen::Vector2f& ray) const;
+  template <bool kBent>
   float onBoard(const Instant& instant, std::size_t pixel, const TileView& view) const;
   float sheet(const Eigen::Vector2f& point_m, const Eigen::Matrix2f& board_per_px) const;
   float disk(const Eigen::Vector2f& away_m, const Eigen::Matrix2f& board_per_px) const;
   float travel(std::size_t pixel, const Instants& instants) const;
   void findCircles(const Eigen::Vector2f& low_m, const Eigen::Vector2f& high_m, TileView& view) const;
 
+  // visited_scene.cpp
+  std::vector<PlacedFigure> figuresAt(const RigidTransform& camera_from_world, double time_s) const;
+  bool see(const PlacedFigure& placed, std::size_t pixel, Seen& seen) const;
+  float travelOf(const PlacedFigure& placed, const Instants& instants, std::size_t pixel) const;
+  void lookForVisits(const Tile& tile, const Instants& instants, TileView& view) const;
+  Eigen::Vector3f pointOnBoard(const Instant& instant, std::size_t pixel) const;
+  Eigen::Vector3f onSheet(const Eigen::Vector2f& point_m) const;
+  Eigen::Vector2f castOnto(const Eigen::Vector2f& point_m) const;
+  Eigen::Vector3f offTheLamp(const Instant& instant, const Eigen::Vector3f& point_m) const;
+  float litSheet(const Instant& instant, const BoardPart& board, const TileView& view) const;
+  void cover(const PlacedFigure& placed, std::size_t pixel, float& light) const;
+  float visited(const Instant& instant, std::size_t pixel, const TileView& view) const;
+  void renderVisited(const Instant& instant, const Tile& tile, const TileView& view,
+                     float* log_intensity) const;
+
+  Scenario scenario_;
   CircleBoard board_;
+  BoardSurface surface_;
   double row_spacing_m_;  // of the real board
   SceneModel scene_;
+  bool is_visited_;  // now and then: by figures, or by a lamp that the varnish mirrors
+  Eigen::Vector3f lamp_m_;
+  float shadow_sigma_m_;  // of its edge as it is seen
   int width_px_, height_px_;
   float blur_px_, paper_, ink_, log_paper_, log_ink_;
   Eigen::Vector2f board_low_m_, board_high_m_;  // the sheet's corners

@@ -1,9 +1,13 @@
 #include "core/synthetic/board_truth.h"
+#include "core/synthetic/scene_renderer.h"
 #include "tests/core/synthetic/scenarios.h"
 #include "tests/support/test_program.h"
 
 #include <Eigen/Dense>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <numbers>
 
 using namespace evical;
@@ -29,6 +33,32 @@ Eigen::Vector2d centreByPoints(const RigidTransform& world_from_camera, const Ca
   a << 2.0 * c(0), c(1), c(1), 2.0 * c(2);
   const Eigen::Vector2d centre = -a.inverse() * Eigen::Vector2d(c(3), c(4));
   return centre.cwiseProduct(camera.focal_length_px) + camera.principal_point_px;
+}
+
+// Where the renderer has a circle's ink, of the first camera: its centroid, which is the ellipse's centre.
+Eigen::Vector2d inkAt(const Scenario& scenario, const RigidTransform& world_from_camera,
+                      const Eigen::Vector2d& about_px, int reach_px) {
+  const SceneRenderer renderer(scenario, 0);
+  const SceneRenderer::Instant instant = renderer.at(world_from_camera, 0.0);
+  SceneRenderer::TileView view;
+  std::array<float, SceneRenderer::kTile_px * SceneRenderer::kTile_px> shades;
+  double all = 0.0;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (int row = 0; row < renderer.tileRows(); ++row) {
+    for (int column = 0; column < renderer.tileColumns(); ++column) {
+      const SceneRenderer::Tile tile = renderer.tile(column, row);
+      renderer.look(tile, {&instant, &instant, &instant}, view);
+      renderer.render(instant, tile, view, shades.data());
+      for (int k = 0; k < tile.pixelCount(); ++k) {
+        const Eigen::Vector2d pixel(tile.x_px + k % tile.width_px, tile.y_px + k / tile.width_px);
+        if ((pixel - about_px).norm() > reach_px) continue;
+        const double ink = scenario.scene.bright_reflectance - std::exp(shades[static_cast<std::size_t>(k)]);
+        all += ink;
+        sum += ink * pixel;
+      }
+    }
+  }
+  return sum / all;
 }
 
 }  // namespace
@@ -76,6 +106,78 @@ class TestBoardTruth : public QObject {
     QCOMPARE(circlesInView(SinusoidMotion(scenario), scenario, 0, 0.5), 6);
     scenario.cameras[0].intrinsics.principal_point_px.x() = -2.0;
     QVERIFY(!boardInView(SinusoidMotion(scenario), scenario, 0, 0.5));
+  }
+  // Points of the bent sheet, each projected by itself.
+  void bentBoard_isSeenWhereItsPointsAre() {
+    Scenario scenario = test::wavedScenario();
+    const SinusoidMotion motion(scenario);
+    scenario.board_bow = {0.001, -0.002, 0.0015};
+    scenario.board.radius_m = 1e-3;  // so small that the mean of points' images is the ellipse's centre
+    const CameraIntrinsics& camera = scenario.cameras[0].intrinsics;
+    const Eigen::Vector2d extent = scenario.board.extent_m();
+    const double rows = 8.0 * 0.001 / (extent.x() * extent.x()),
+                 columns = -8.0 * 0.002 / (extent.y() * extent.y()),
+                 twist = 4.0 * 0.0015 / (extent.x() * extent.y());
+    const double stamp_s = 0.7, world_s = stamp_s - scenario.cameras[0].pixel.delay_s();
+    for (const TrueCircle& circle : trueBoardView(motion, scenario, 0, stamp_s)) {
+      const Eigen::Vector2d middle = scenario.board.centre_m(circle.circle);
+      Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+      constexpr int kPoints = 40;
+      for (int k = 0; k < kPoints; ++k) {
+        const double angle = 2.0 * std::numbers::pi * k / kPoints;
+        const double x = middle.x() + 1e-3 * std::cos(angle), y = middle.y() + 1e-3 * std::sin(angle);
+        const Eigen::Vector3d point(x, y, 0.5 * (rows * x * x + columns * y * y) + twist * x * y);
+        const Eigen::Vector2d ray = (inverse(motion.worldFromCamera(0, world_s)) * point).hnormalized();
+        mean += (ray.cwiseProduct(camera.focal_length_px) + camera.principal_point_px) / kPoints;
+      }
+      QVERIFY2((circle.centre_px - mean).norm() < 1e-3,
+               qPrintable(QString::number((circle.centre_px - mean).norm())));
+    }
+  }
+  void bentBoard_isRenderedWhereItsTruthIs() {
+    Scenario scenario = test::stillScenario();
+    scenario.scene.margin_m = 0.2;  // nothing but paper about each circle
+    scenario.motion.angle_amplitude_rad = {0.3, 0.3, 0.3};
+    const SinusoidMotion motion(scenario);
+    const double stamp_s = 0.3;
+    const RigidTransform pose = motion.worldFromCamera(0, stamp_s - scenario.cameras[0].pixel.delay_s());
+    const std::vector<TrueCircle> flat = trueBoardView(motion, scenario, 0, stamp_s);
+    double farthest_px = 0.0;
+    for (const double height_m : {0.0, 0.001}) {
+      scenario.board_bow = {height_m, -height_m, height_m};
+      for (const TrueCircle& truth : trueBoardView(motion, scenario, 0, stamp_s)) {
+        if (!truth.inside) continue;
+        const Eigen::Vector2d ink = inkAt(scenario, pose, truth.centre_px, 12);
+        QVERIFY2((ink - truth.centre_px).norm() < 0.02,
+                 qPrintable(QString("%1 mm: %2 px").arg(1e3 * height_m).arg((ink - truth.centre_px).norm())));
+        const Eigen::Vector2d moved =
+            truth.centre_px - flat[static_cast<std::size_t>(truth.circle)].centre_px;
+        farthest_px = std::max(farthest_px, moved.norm());
+      }
+    }
+    QVERIFY2(farthest_px > 0.2, qPrintable(QString::number(farthest_px)));
+  }
+  // Wherever the hand is, of what it is in front of nothing is visible; it comes and goes.
+  void circlesBehindAHand_areHidden() {
+    Scenario scenario = test::stillScenario();
+    scenario.duration_s = 30.0;
+    scenario.scene.hand.every_s = 3.0;
+    const SinusoidMotion motion(scenario);
+    int all = 0, some = 0, last = 6, changes = 0;
+    for (double time_s = 0.0; time_s < scenario.duration_s; time_s += 0.05) {
+      const int visible = circlesInView(motion, scenario, 0, time_s);
+      all += visible == 6;
+      some += visible < 6;
+      changes += (visible == 6) != (last == 6);
+      last = visible;
+    }
+    // It stays for 1 s of 3, and comes and goes for 1.6 s more.
+    QVERIFY2(some > 150 && some < 500 && all > 100, qPrintable(QString("%1 and %2").arg(some).arg(all)));
+    QVERIFY(changes >= 18);  // ten visits
+    for (const BoardView& view : simulateObservations(scenario, 0, 0.05, 0.02).views)
+      for (const TrueCircle& truth : trueBoardView(motion, scenario, 0, view.time_s))
+        QVERIFY(!truth.hidden || std::none_of(view.circles.begin(), view.circles.end(),
+                                              [&](const auto& seen) { return seen.circle == truth.circle; }));
   }
   void observations_scatterAsTheirCovarianceSays() {
     Scenario scenario = test::wavedScenario();

@@ -227,6 +227,45 @@ class TestEventSimulator : public QObject {
     qInfo("%s", qPrintable(said));
     QVERIFY2(std::abs(fast.mean - slow.mean) < 0.02, qPrintable(said));  // 0.1 ms between 100 and 300 px/s
   }
+  // A board that does not move, before which nothing else does: only what comes and goes fires.
+  void handsAndPeople_fireWhereNothingElseMoves() {
+    Scenario scenario = test::stillScenario();
+    scenario.duration_s = 2.4;
+    QVERIFY(eventsOf(scenario).empty());
+    scenario.scene.hand = {.every_s = 2.4, .stay_s = 0.5};
+    const std::vector<Event> hand = eventsOf(scenario);
+    QVERIFY2(hand.size() > 3000, qPrintable(QString::number(hand.size())));
+    scenario.scene.hand.shadow = 0.0;
+    const std::vector<Event> unshaded = eventsOf(scenario);
+    QVERIFY(unshaded.size() < hand.size());
+    scenario.scene.hand = {};
+    scenario.scene.people = {.every_s = 1.0, .distance_m = 0.2};
+    const std::vector<Event> people = eventsOf(scenario);
+    QVERIFY2(people.size() > 300, qPrintable(QString::number(people.size())));
+    QVERIFY(same(people, eventsOf(scenario, 3)));
+    // Behind the board: its middle hides them.
+    QVERIFY(std::none_of(people.begin(), people.end(), [](const Event& e) {
+      return std::abs(e.x_px - 63) < 20 && std::abs(e.y_px - 47) < 20;
+    }));
+  }
+  // The lamp in the varnish of a board that slides sideways stays where it is in the image, and hides ink.
+  void gloss_addsLightWhereTheLampIsMirrored() {
+    Scenario scenario = slidingScenario(0.6, 0.3);
+    const auto eventsNear = [&](int x, int y) {
+      const std::vector<Event> events = eventsOf(scenario);
+      return static_cast<double>(std::count_if(events.begin(), events.end(), [&](const Event& e) {
+        return std::abs(e.x_px - x) < 8 && std::abs(e.y_px - y) < 8;
+      }));
+    };
+    const auto matt = eventsNear(63, 47), matt_aside = eventsNear(63, 80);
+    scenario.scene.gloss.strength = 3.0;
+    // Mirrored in the image's middle if it is behind the camera.
+    scenario.scene.lamp_m = {0.0, 0.0, -1.5};
+    const auto glossy = eventsNear(63, 47), glossy_aside = eventsNear(63, 80);
+    const QString said = QString("%1 %2 %3 %4").arg(matt).arg(glossy).arg(matt_aside).arg(glossy_aside);
+    QVERIFY2(matt > 100 && glossy < 0.6 * matt, qPrintable(said));
+    QVERIFY2(glossy_aside == matt_aside, qPrintable(said));
+  }
   void seed_decidesEverything() {
     Scenario scenario = test::wavedScenario();
     scenario.duration_s = 0.2;

@@ -113,6 +113,25 @@ class TestScenarioYaml : public QObject {
     QTest::newRow("unknown fault") << "base: davis346.yaml\nimu: {faults: {drift: 1}}\n"
                                    << "imu.faults.drift"
                                    << "clock_drift_ppm";
+    QTest::newRow("hand without an end") << "base: davis346.yaml\nscene: {hand: {every_s: 2, stay_s: 1}}\n"
+                                         << "scene.hand"
+                                         << "every_s";
+    QTest::newRow("lamp behind the board") << "base: davis346.yaml\nscene: {lamp_m: [0, 0, 1]}\n"
+                                           << "scene"
+                                           << "lamp_m";
+    QTest::newRow("people behind the wall")
+        << "base: davis346.yaml\nscene: {people: {every_s: 2, distance_m: 1}}\n"
+        << "scene"
+        << "clutter_distance_m";
+    QTest::newRow("a crowd") << "base: davis346.yaml\nscene: {people: {every_s: 0.01}}\n"
+                             << "scene.people.every_s"
+                             << "crowd";
+    QTest::newRow("unknown gloss") << "base: davis346.yaml\nscene: {gloss: {width_deg: 3}}\n"
+                                   << "scene.gloss.width_deg"
+                                   << "spread_deg";
+    QTest::newRow("a roll of paper") << "base: davis346.yaml\nboard: {row_bow_m: 0.5}\n"
+                                     << "board.row_bow_m"
+                                     << "0.5";
     QTest::newRow("endless base") << "base: scenario.yaml\n"
                                   << "base"
                                   << "without an end";
@@ -164,6 +183,18 @@ class TestScenarioYaml : public QObject {
     QCOMPARE(turned["imus"]["left_imu"]["accelerometer"]["delay_s"].real(), 0.0025);
     QCOMPARE(truth["gravity_m_s2"].reals(3)[1], scenario.gravity_in_world_m_s2.y());
     QCOMPARE(truth["reference"].text(), std::string("left_imu"));
+  }
+  // What bow and spacing are against what the session says: the middle of 0.5 m of columns stands out by 1 mm.
+  void truth_hasTheBoardsBow() {
+    const Scenario scenario = read(
+        "base: davis346.yaml\nboard: {column_bow_m: 0.001, twist_m: 0.0007}\nsession: {spacing_error: "
+        "0.01}\n");
+    const YamlNode board = YamlNode::parse(truthYaml(scenario), "truth.yaml")["board"];
+    QVERIFY(std::abs(board["column_curvature_1_m"].real() - 0.001 * 8.0 / (0.5 * 0.5) / (1.01 * 1.01)) <
+            1e-9);
+    QVERIFY(std::abs(board["twist_1_m"].real() - 0.0007 * 4.0 / (0.5 * 0.35) / (1.01 * 1.01)) < 1e-9);
+    QCOMPARE(board["row_curvature_1_m"].real(), 0.0);
+    QVERIFY(std::abs(board["scale"].real() - 1.0 / 1.01) < 1e-12);
   }
   void session_fitsTheRecording() {
     Scenario scenario = readScenario(kScenarios / "davis346.yaml");
