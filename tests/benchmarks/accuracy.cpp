@@ -1,7 +1,7 @@
 // Accuracy against the truth of simulated recordings, as a table: `evical_accuracy [--seeds N] [--duration S]
-// [--quantities] [--within SIGMAS | --verdicts] SCENARIO...`. Recordings are simulated in memory and go through the
+// [--quantities] [--within SIGMAS [--or-doubtful] [--board] | --verdicts] [--windows SHARE] SCENARIO...`. Recordings are simulated in memory and go through the
 // same front end, initialisation and batch as `evical calibrate`. Fails where a target is missed; with --within, where an
-// error of rotation, translation or time offset is larger than so many of its sigmas; with --verdicts, where a wrong
+// error of rotation, translation or time offset is larger than so many of its sigmas (and called ok); with --verdicts, where a wrong
 // result is called ok, or the errors over sigmas of 20 seeds or more leave 0.7 to 1.4.
 #include "core/base/stopwatch.h"
 #include "core/frontend/board_tracker.h"
@@ -165,14 +165,15 @@ void printQuantities(const Outcome& outcome) {
              outcome.reason);
 }
 
-// In sigmas, of what is needed; very large where there is no result.
-double worstSigmas(const Outcome& outcome) {
+// In sigmas, of what is needed, and of the board's shape if that matters; very large where there is none.
+double worstSigmas(const Outcome& outcome, bool with_board) {
   if (!outcome.comparison) return std::numeric_limits<double>::max();
   double worst = 0.0;
-  for (const QuantityDifference& quantity : outcome.comparison->quantities)
-    for (const char* part : {".rotation.", ".translation.", ".time_offset"})
-      if (quantity.name.find(part) != std::string::npos && quantity.name.find("drift") == std::string::npos)
-        worst = std::max(worst, std::abs(quantity.normalised()));
+  for (const QuantityDifference& quantity : outcome.comparison->quantities) {
+    const auto has = [&](const char* part) { return quantity.name.find(part) != std::string::npos; };
+    const bool needed = (has(".rotation.") || has(".translation.") || has(".time_offset")) && !has("drift");
+    if (needed || (with_board && has("board."))) worst = std::max(worst, std::abs(quantity.normalised()));
+  }
   return worst;
 }
 
@@ -254,21 +255,27 @@ struct OffsetSpread {
 
 struct Arguments {
   ScenarioArguments scenarios;
-  bool all_quantities = false, verdicts = false;
+  bool all_quantities = false, verdicts = false, or_doubtful = false, board = false;
   std::optional<double> within;
+  double windows = 0.0;
 
   void addTo(CLI::App& app) {
     scenarios.addTo(app);
     app.add_flag("--quantities", all_quantities,
                  "Also every quantity's error and sigma, and the weakest direction");
     app.add_option("--within", within, "Fail where an error is beyond so many sigmas, instead of by targets");
+    app.add_flag("--or-doubtful", or_doubtful,
+                 "With --within: results that are not called ok may be further off");
+    app.add_flag("--board", board, "With --within: the board's size and shape too");
+    app.add_option("--windows", windows, "Fail where the board is found in a smaller share of what shows it");
     app.add_flag(
         "--verdicts", verdicts,
         "Fail where a wrong result is ok, or sigmas of 20 seeds are not honest, instead of by targets");
   }
   bool isGood(const Outcome& outcome, bool met) const {
     if (isWrongOk(outcome)) fmt::print("WRONG, but called ok\n");
-    if (within) return worstSigmas(outcome) <= *within;
+    if (outcome.windows_found < windows) return false;
+    if (within) return worstSigmas(outcome, board) <= *within || (or_doubtful && outcome.verdict != "ok");
     return verdicts ? !isWrongOk(outcome) : met;
   }
 };
