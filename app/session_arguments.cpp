@@ -1,6 +1,7 @@
 #include "app/session_arguments.h"
 
 #include "core/base/error.h"
+#include "core/base/shell_word.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -36,10 +37,10 @@ Session sessionFrom(const SessionArguments& arguments) {
 }
 
 std::string tryText(const SessionArguments& arguments, const Repair& repair) {
-  std::string text = fmt::format("Try: evical calibrate {}", arguments.session);
+  std::string text = fmt::format("Try: evical calibrate {}", shellWord(arguments.session));
   for (const std::string& setting : arguments.settings)
-    if (!setting.starts_with(repair.key + "=")) text += " --set " + setting;
-  return text + fmt::format(" --set {} -o {}\n", repair.text(), arguments.output);
+    if (!setting.starts_with(repair.key + "=")) text += " --set " + shellWord(setting);
+  return text + fmt::format(" --set {} -o {}\n", shellWord(repair.text()), shellWord(arguments.output));
 }
 
 }  // namespace evical
