@@ -85,11 +85,11 @@ std::string bentBoardWords(const CalibrationInput& input, const BatchSolution& f
 
 const std::array<Trial, 3> kTrials = {
     {{CauseKind::BentBoard, &flatnessIsHeld, &releaseBow, &bentBoardWords,
-      "lay it on glass, or calibrate with optimisation.board_bow: true", kFreeBow},
+      "lay it on glass, or calibrate with optimisation.model.board_bow: true", kFreeBow},
      {CauseKind::Lens, &aLensIsHeld, &releaseLenses, &lensWords,
-      "calibrate with optimisation.camera_intrinsics: free, and measure the board", kFreeLenses},
+      "calibrate with optimisation.model.camera_intrinsics: free, and measure the board", kFreeLenses},
      {CauseKind::GyroscopeTurned, &turnIsHeld, &releaseTurn, &turnWords,
-      "calibrate with optimisation.gyroscope_rotation: true", kFreeTurn}}};
+      "calibrate with optimisation.model.gyroscope_rotation: true", kFreeTurn}}};
 
 }  // namespace
 

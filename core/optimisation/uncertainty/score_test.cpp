@@ -114,7 +114,7 @@ void testGyroscope(const std::string& imu, const Step& step, const OptimisationO
   add(doubts.gyroscopes,
       fmt::format("{}: the gyroscope seems to be turned by about {:.2g} deg against the accelerometer, "
                   "and other rotations may be off by as much; calibrate with "
-                  "optimisation.gyroscope_rotation: true",
+                  "optimisation.model.gyroscope_rotation: true",
                   imu, turn_deg));
 }
 
@@ -134,7 +134,7 @@ void testLens(const std::string& camera, const CameraIntrinsics& held, const Ste
   add(doubts,
       fmt::format("{}: the lens is not as the session says: focal lengths seem {:+.2f} and {:+.2f} %, the "
                   "principal point ({:+.1f}, {:+.1f}) px off ({:.0f} sigmas); calibrate with "
-                  "optimisation.camera_intrinsics: free",
+                  "optimisation.model.camera_intrinsics: free",
                   camera, kPercent * focal.x(), kPercent * focal.y(), centre_px.x(), centre_px.y(),
                   step.sigmas));
 }
@@ -151,8 +151,9 @@ class BoardTest {
   }
   std::string doubt(const CircleBoard& board, const OptimisationOptions& options) const {
     if (largestBow_mm(bent_, board) < options.bent_board_mm) return {};
-    return fmt::format("{} ({:.0f} sigmas): lay it on glass, or calibrate with optimisation.board_bow: true",
-                       bowWords(bent_, board), sigmas_);
+    return fmt::format(
+        "{} ({:.0f} sigmas): lay it on glass, or calibrate with optimisation.model.board_bow: true",
+        bowWords(bent_, board), sigmas_);
   }
 
  private:

@@ -277,7 +277,7 @@ class TestFreeIntrinsics : public QObject {
              qPrintable(by_length));
     const QString by_centre = QString::fromStdString(doubtOf(aside));
     QVERIFY2(by_centre.contains("principal point (-"), qPrintable(by_centre));
-    QVERIFY(by_centre.contains("optimisation.camera_intrinsics: free"));
+    QVERIFY(by_centre.contains("optimisation.model.camera_intrinsics: free"));
   }
 
   void k3_isSolvedForWhereItIsUsed() {
