@@ -75,9 +75,8 @@ std::string doubtOfHalves(const CrossValidation& validation, const VerdictOption
   for (const QuantityDifference& each : validation.quantities)
     if (worst == nullptr || std::abs(each.normalised()) > std::abs(worst->normalised())) worst = &each;
   return fmt::format(
-      "the two halves of the recording differ by {:.1f} sigmas (RMS), the most in {}: something moved, or is "
-      "not "
-      "as the session says",
+      "the two halves of the recording differ by {:.1f} sigmas (RMS), the most in {}: "
+      "something moved, or is not as the session says",
       validation.rms_sigmas, worst->name);
 }
 

@@ -73,8 +73,8 @@ distortion_coefficients: {rows: 1, cols: 5, data: [-0.3, 0.1, 0, 0, 0.01]}
 )";
 
 const QString kInlineIntrinsics =
-    "intrinsics:\n      model: pinhole_radtan\n      focal_length_px: [260.5, 255]\n      "
-    "principal_point_px: [170, 131]\n      distortion: [-0.3, 0.1, 0.001, 0.002]\n";
+    "intrinsics:\n      model: pinhole_radtan\n      focal_length_px: [260.5, 255]\n"
+    "      principal_point_px: [170, 131]\n      distortion: [-0.3, 0.1, 0.001, 0.002]\n";
 
 }  // namespace
 
@@ -387,10 +387,10 @@ correlation:
     row("measured by nothing", "spacing_m: 0.05", "measured: {spacings: 10}",
         {"board.measured.length_m", "missing"});
     row("sigmas of no lens",
-        "    intrinsics:\n      model: pinhole_radtan\n      focal_length_px: [260.5, 255]\n      "
-        "principal_point_px: [170, 131]\n      distortion: [-0.3, 0.1, 0.001, 0.002]\n",
-        "    intrinsics_std: {focal_length_px: [1, 1], principal_point_px: [1, 1], distortion: [0, 0, 0, "
-        "0]}\n",
+        "    intrinsics:\n      model: pinhole_radtan\n      focal_length_px: [260.5, 255]\n"
+        "      principal_point_px: [170, 131]\n      distortion: [-0.3, 0.1, 0.001, 0.002]\n",
+        "    intrinsics_std: {focal_length_px: [1, 1], principal_point_px: [1, 1], "
+        "distortion: [0, 0, 0, 0]}\n",
         {"cameras.left.intrinsics_std", "not given"});
     row("axes", "angular_rate_unit: deg/s", "gyroscope_axes: x,x,z",
         {"imus.left_imu.gyroscope_axes", "'x,x,z'"});
