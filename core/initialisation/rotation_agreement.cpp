@@ -79,13 +79,10 @@ LeftOver leftOver(const std::vector<Turned>& pairs, double determinant) {
 RotationAgreement compareRotations(const std::vector<CameraPose>& poses, const GyroRotation& gyro,
                                    double time_offset_s, const InitialisationOptions& options) {
   std::vector<Turned> turned;
-  std::vector<Eigen::Vector3d> seen, felt;
   for (const RotationPair& pair : rotationPairs(poses, options.pair_gap_s, options.longest_pair_s)) {
     const double from_s = pair.from_s + time_offset_s, to_s = pair.to_s + time_offset_s;
     if (!gyro.covers(from_s, to_s)) continue;
     turned.push_back({pair.seen_rad, gyro.between(from_s, to_s)});
-    seen.push_back(turned.back().seen_rad);
-    felt.push_back(turned.back().felt_rad);
   }
   RotationAgreement agreement;
   agreement.pairs = static_cast<int>(turned.size());
@@ -94,7 +91,6 @@ RotationAgreement compareRotations(const std::vector<CameraPose>& poses, const G
   agreement.rotated = rotation.share;
   agreement.rest_rad = rotation.rad;
   agreement.reflected = leftOver(turned, -1.0).share;
-  agreement.rate_ratio = medianNorm(felt) / std::max(medianNorm(seen), 1e-9);
   return agreement;
 }
 

@@ -12,9 +12,8 @@ namespace evical {
 // median of |turned|, without means, which a bias may be.
 struct RotationAgreement {
   double rotated = 0.0, reflected = 0.0;
-  double rest_rad = 0.0;    // what the best rotation leaves, by itself
-  double rate_ratio = 1.0;  // the gyroscope's rotation by the camera's
-  int pairs = 0;            // 0: none overlap, and the rest says nothing
+  double rest_rad = 0.0;  // what the best rotation leaves, by itself
+  int pairs = 0;          // 0: none overlap, and the rest says nothing
 };
 RotationAgreement compareRotations(const std::vector<CameraPose>& poses, const GyroRotation& gyro,
                                    double time_offset_s, const InitialisationOptions& options);
