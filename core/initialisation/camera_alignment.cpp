@@ -134,7 +134,7 @@ std::vector<TimeOffsetPeak> timeOffsetPeaks(const CameraData& camera, const std:
   if (isClear(peaks, options) || camera.prior.time_offset ||
       options.widest_time_offset_search_s <= options.time_offset_search_s)
     return peaks;
-  constexpr double kLeastShare = 0.5;
+  constexpr double kLeastShare = 0.5;  // chosen: where little overlaps, little agrees by chance
   InitialisationOptions wide = options;
   wide.time_offset_search_s = options.widest_time_offset_search_s;
   wide.least_overlap_s = std::max(
