@@ -1,6 +1,7 @@
 #include "core/optimisation/uncertainty/change_test.h"
 
 #include "core/numerics/angles.h"
+#include "core/numerics/scaled_inverse.h"
 #include "core/optimisation/uncertainty/score_scatter.h"
 
 #include <fmt/format.h>
@@ -56,8 +57,7 @@ class ChangeTest {
  public:
   explicit ChangeTest(const ProjectedInformation& information)
       : information_(information),
-        scale_(information.total.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()),
-        solver_(scale_.asDiagonal() * information.total * scale_.asDiagonal()),
+        inverse_(information.total),
         gradient_(Eigen::VectorXd::Zero(information.total.rows())) {
     for (const Eigen::VectorXd& score : information.scores) gradient_ += score;
   }
@@ -116,13 +116,9 @@ class ChangeTest {
     return steps;
   }
 
-  Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const {
-    return scale_.asDiagonal() * solver_.solve(scale_.asDiagonal() * right);
-  }
-
   Step stepOf(const Candidate& candidate, const Part& part) const {
     const std::vector<Eigen::Index>& columns = candidate.columns;
-    Step step{part.from, {}, solve(part.information(Eigen::all, columns)), {}, 0.0};
+    Step step{part.from, {}, inverse_.times(Eigen::MatrixXd(part.information(Eigen::all, columns))), {}, 0.0};
     step.information =
         part.information(columns, columns) - part.information(columns, Eigen::all) * step.others;
     for (std::size_t k = 0; k < columns.size(); ++k)
@@ -136,7 +132,7 @@ class ChangeTest {
   // Of the step, stretch by stretch, once it is made.
   std::vector<Eigen::VectorXd> scoresLeft(const Candidate& candidate, const Step& step) const {
     const std::vector<Eigen::Index>& columns = candidate.columns;
-    const Eigen::VectorXd moved = -solve(gradient_) - step.others * step.change;
+    const Eigen::VectorXd moved = -inverse_.times(gradient_) - step.others * step.change;
     std::vector<Eigen::VectorXd> left;
     for (std::size_t k = 0; k < information_.scores.size(); ++k) {
       Eigen::VectorXd here = moved;
@@ -165,8 +161,7 @@ class ChangeTest {
   }
 
   const ProjectedInformation& information_;
-  Eigen::VectorXd scale_;
-  Eigen::LDLT<Eigen::MatrixXd> solver_;
+  ScaledInverse inverse_;
   Eigen::VectorXd gradient_;
 };
 

@@ -55,6 +55,7 @@ ProjectedInformation withoutNoise(ProjectedInformation information) {
     information.total += group.information;
   }
   for (Eigen::VectorXd& score : information.scores) score = (keep * score).eval();
+  for (Eigen::MatrixXd& share : information.information_by_stretch) share = congruence(keep, share);
   for (Eigen::VectorXd& effect : information.pixel_errors) effect = (keep * effect).eval();
   return information;
 }

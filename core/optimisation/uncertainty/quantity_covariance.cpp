@@ -1,6 +1,7 @@
 #include "core/optimisation/uncertainty/quantity_covariance.h"
 
 #include "core/numerics/dense.h"
+#include "core/numerics/scaled_inverse.h"
 #include "core/optimisation/uncertainty/projected_information.h"
 #include "core/optimisation/uncertainty/score_scatter.h"
 
@@ -8,12 +9,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace evical {
 namespace {
 
 // A comparable size of focal lengths and principal point, the first four intrinsics.
 constexpr double kPixelUnit = 0.1;
+
+constexpr double kLeastVariance = 1e-300;
 
 // Below this information in the units above a direction counts as open, and its sigma is 1e4 units.
 constexpr double kLeastInformation = 1e-8;
@@ -47,6 +51,69 @@ Eigen::MatrixXd reportFromTangent(const Quantity& quantity, Eigen::Index size, c
     return tilts * plus;
   }
   return Eigen::MatrixXd::Identity(size, size);
+}
+
+constexpr auto kBlock = static_cast<std::ptrdiff_t>(kScoreLags) + 1;  // stretches
+
+// By blocks of a few stretches of time, at every stretch: within a block errors may be correlated.
+struct BlockErrors {
+  Eigen::MatrixXd left;  // covariance of the scores that are left in blocks
+  Eigen::MatrixXd information;
+  Eigen::MatrixXd white_left;  // what they would have of errors that are white
+  // Covariance of the estimate, by how it would step without a block (jackknife): what is left in a block once the estimate
+  // has followed it shows only a part of its errors, the less the more the block weighs.
+  Eigen::MatrixXd whole;
+};
+
+BlockErrors blockErrors(const ProjectedInformation& information, const Eigen::MatrixXd& total,
+                        const Eigen::MatrixXd& inverse) {
+  constexpr double kWeight = 1.0 / static_cast<double>(kBlock);  // of each, since they overlap
+  constexpr double kLargestShare = 0.98;  // of a block that holds all that is known of something
+  const auto count = static_cast<std::ptrdiff_t>(information.scores.size());
+  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(total.rows(), total.cols());
+  BlockErrors errors{zero, zero, zero, zero};
+  for (std::ptrdiff_t first = 1 - kBlock; first < count; ++first) {
+    Eigen::VectorXd score = Eigen::VectorXd::Zero(total.rows());
+    Eigen::MatrixXd share = zero;
+    for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(first, 0); k < std::min(first + kBlock, count); ++k) {
+      score += information.scores[static_cast<std::size_t>(k)];
+      share += information.information_by_stretch[static_cast<std::size_t>(k)];
+    }
+    const Eigen::VectorXd step = ScaledInverse(total - kLargestShare * share).times(score);
+    errors.left.noalias() += kWeight * score * score.transpose();
+    errors.information += kWeight * share;
+    errors.white_left += kWeight * (share - congruence(share, inverse));
+    errors.whole.noalias() += kWeight * step * step.transpose();
+  }
+  return errors;
+}
+
+// Of each number, for errors that are correlated, over the sigma that takes them for white.
+Eigen::VectorXd growthOf(const ProjectedInformation& information, const Eigen::MatrixXd& white,
+                         const SafeInverse& safe, const Eigen::MatrixXd& given,
+                         const Eigen::MatrixXd& report_from_tangent) {
+  const Eigen::MatrixXd inverse = product(report_from_tangent, safe.inverse);
+  const BlockErrors errors = blockErrors(information, information.total + safe.open, safe.inverse);
+  const Eigen::VectorXd known = congruence(inverse, given).diagonal();
+  const Eigen::VectorXd left = congruence(inverse, errors.left).diagonal();
+  const Eigen::VectorXd white_left = congruence(inverse, errors.white_left).diagonal();
+  const Eigen::VectorXd stated = congruence(inverse, errors.information).diagonal();
+  const Eigen::VectorXd whole = congruence(report_from_tangent, errors.whole).diagonal() + known;
+  // White errors leave their own scatter to within this share: a mean over squares of blocks that overlap.
+  constexpr double kCertain_sigmas = 3.0;
+  const double doubtless =
+      kCertain_sigmas * std::sqrt(4.0 / 3.0 * static_cast<double>(kBlock) /
+                                  std::max(1.0, static_cast<double>(information.scores.size())));
+  Eigen::VectorXd growth(white.rows());
+  for (Eigen::Index i = 0; i < growth.size(); ++i) {
+    const double variance = std::max(white(i, i), kLeastVariance);
+    const double scale =
+        (variance - known[i]) / std::max(stated[i], kLeastVariance);  // of residuals, squared
+    const double ratio = left[i] / std::max(scale * white_left[i], kLeastVariance);
+    const double certain = std::clamp((ratio - 1.0) / doubtless, 0.0, 1.0);
+    growth[i] = std::sqrt(1.0 + certain * std::max(0.0, whole[i] / variance - 1.0));
+  }
+  return growth;
 }
 
 }  // namespace
@@ -91,12 +158,7 @@ QuantityCovariance quantityCovariance(const ProjectedInformation& information,
   for (const Eigen::VectorXd& effect : information.pixel_errors) given += effect * effect.transpose();
   const Eigen::MatrixXd inverse = product(report_from_tangent, safe.inverse);
   Eigen::MatrixXd covariance = congruence(inverse, measured + given);
-  const Eigen::MatrixXd correlated = congruence(inverse, scoreScatter(information.scores, size) + given);
-  Eigen::VectorXd growth(size);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const double asked = std::max(covariance(i, i), correlated(i, i));
-    growth[i] = std::sqrt(std::max(1.0, asked / std::max(covariance(i, i), 1e-300)));
-  }
+  const Eigen::VectorXd growth = growthOf(information, covariance, safe, given, report_from_tangent);
   covariance = (growth.asDiagonal() * covariance * growth.asDiagonal()).eval();
   return {information.quantities, information.first_column, covariance};
 }

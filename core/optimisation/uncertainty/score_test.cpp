@@ -4,11 +4,11 @@
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/projection_difference.h"
 #include "core/numerics/angles.h"
+#include "core/numerics/scaled_inverse.h"
 #include "core/optimisation/uncertainty/credible_information.h"
 #include "core/optimisation/uncertainty/score_scatter.h"
 
 #include <fmt/format.h>
-#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <array>
@@ -26,24 +26,6 @@ bool isHeld(const Quantity& quantity, const CalibrationInput& input, const Optim
   const auto& prior = input.imus[quantity.sensor].prior.gyroscope_rotation;
   return !(prior && prior->sigma);
 }
-
-class ScaledInverse {
- public:
-  explicit ScaledInverse(const Eigen::MatrixXd& information)
-      : scale_(information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()),
-        solver_(scale_.asDiagonal() * information * scale_.asDiagonal()) {}
-
-  Eigen::VectorXd times(const Eigen::VectorXd& vector) const {
-    return scale_.cwiseProduct(solver_.solve(scale_.cwiseProduct(vector)));
-  }
-  double sigma(Eigen::Index i) const {
-    return std::sqrt(std::max(0.0, times(Eigen::VectorXd::Unit(scale_.size(), i))[i]));
-  }
-
- private:
-  Eigen::VectorXd scale_;
-  Eigen::LDLT<Eigen::MatrixXd> solver_;
-};
 
 // How one quantity would step, and by how many sigmas along its axis that is most certain.
 struct Step {
@@ -79,7 +61,7 @@ class Steps {
   double leftOf(Eigen::Index first, Eigen::Index size) const {
     Eigen::MatrixXd weights(step_.size(), size);  // of the scores in the estimate
     for (Eigen::Index k = 0; k < size; ++k)
-      weights.col(k) = inverse_.times(Eigen::VectorXd::Unit(step_.size(), first + k));
+      weights.col(k) = inverse_.times(Eigen::VectorXd(Eigen::VectorXd::Unit(step_.size(), first + k)));
     std::vector<Eigen::VectorXd> left;
     for (std::size_t k = 0; k < information_.scores.size(); ++k)
       left.emplace_back(weights.transpose() *

@@ -88,7 +88,7 @@ class TestBoardSize : public QObject {
     OptimisationOptions held;
     held.free_board_size = held.free_gravity_norm = false;
     const Run wrong = calibrate(boardOf(0.99, 0.0), held);
-    QVERIFY2(wrong.translationError_sigmas() > 6.0,
+    QVERIFY2(wrong.translationError_sigmas() > 4.0,
              qPrintable(QString::number(wrong.translationError_sigmas())));
   }
 

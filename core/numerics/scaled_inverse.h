@@ -1,0 +1,36 @@
+// Symmetric matrices whose columns have units of their own: factored with a diagonal of 1.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+
+namespace evical {
+
+class ScaledInverse {
+ public:
+  explicit ScaledInverse(const Eigen::MatrixXd& symmetric)
+      : scale_(symmetric.diagonal().cwiseMax(kLeastDiagonal).cwiseSqrt().cwiseInverse()),
+        solver_(scale_.asDiagonal() * symmetric * scale_.asDiagonal()) {}
+
+  Eigen::MatrixXd times(const Eigen::MatrixXd& right) const {
+    return scale_.asDiagonal() * solver_.solve(scale_.asDiagonal() * right);
+  }
+  Eigen::VectorXd times(const Eigen::VectorXd& right) const {
+    return scale_.cwiseProduct(solver_.solve(scale_.cwiseProduct(right)));
+  }
+  double sigma(Eigen::Index i) const {
+    const Eigen::VectorXd unit = Eigen::VectorXd::Unit(scale_.size(), i);
+    return std::sqrt(std::max(0.0, times(unit)[i]));
+  }
+
+ private:
+  static constexpr double kLeastDiagonal = 1e-300;
+
+  Eigen::VectorXd scale_;
+  Eigen::LDLT<Eigen::MatrixXd> solver_;
+};
+
+}  // namespace evical
