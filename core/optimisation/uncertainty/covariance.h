@@ -2,9 +2,9 @@
 //
 // Sigmas come from the Schur complement over the splines of the whitened Gauss-Newton information. Two
 // corrections keep them honest: each sensor's measurements count with the variance that their residuals show,
-// and residuals near in time may be correlated (W. Newey, K. West, "A simple, positive semi-definite,
-// heteroskedasticity and autocorrelation consistent covariance matrix", Econometrica 1987): where that asks
-// for more than the first, it prevails.
+// and residuals near in time may be correlated: where more of them is left than uncorrelated ones leave (W. Newey,
+// K. West, "A simple, positive semi-definite, heteroskedasticity and autocorrelation consistent covariance
+// matrix", Econometrica 1987), a jackknife over blocks of time counts instead.
 #pragma once
 
 #include "core/data/calibration_result.h"

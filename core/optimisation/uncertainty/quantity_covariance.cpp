@@ -57,9 +57,8 @@ constexpr auto kBlock = static_cast<std::ptrdiff_t>(kScoreLags) + 1;  // stretch
 
 // By blocks of a few stretches of time, at every stretch: within a block errors may be correlated.
 struct BlockErrors {
-  Eigen::MatrixXd left;  // covariance of the scores that are left in blocks
   Eigen::MatrixXd information;
-  Eigen::MatrixXd white_left;  // what they would have of errors that are white
+  Eigen::MatrixXd white_left;  // what scoreScatter would be of errors that are white
   // Covariance of the estimate, by how it would step without a block (jackknife): what is left in a block once the estimate
   // has followed it shows only a part of its errors, the less the more the block weighs.
   Eigen::MatrixXd whole;
@@ -71,7 +70,7 @@ BlockErrors blockErrors(const ProjectedInformation& information, const Eigen::Ma
   constexpr double kLargestShare = 0.98;  // of a block that holds all that is known of something
   const auto count = static_cast<std::ptrdiff_t>(information.scores.size());
   const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(total.rows(), total.cols());
-  BlockErrors errors{zero, zero, zero, zero};
+  BlockErrors errors{zero, zero, zero};
   for (std::ptrdiff_t first = 1 - kBlock; first < count; ++first) {
     Eigen::VectorXd score = Eigen::VectorXd::Zero(total.rows());
     Eigen::MatrixXd share = zero;
@@ -80,7 +79,6 @@ BlockErrors blockErrors(const ProjectedInformation& information, const Eigen::Ma
       share += information.information_by_stretch[static_cast<std::size_t>(k)];
     }
     const Eigen::VectorXd step = ScaledInverse(total - kLargestShare * share).times(score);
-    errors.left.noalias() += kWeight * score * score.transpose();
     errors.information += kWeight * share;
     errors.white_left += kWeight * (share - congruence(share, inverse));
     errors.whole.noalias() += kWeight * step * step.transpose();
@@ -95,7 +93,7 @@ Eigen::VectorXd growthOf(const ProjectedInformation& information, const Eigen::M
   const Eigen::MatrixXd inverse = product(report_from_tangent, safe.inverse);
   const BlockErrors errors = blockErrors(information, information.total + safe.open, safe.inverse);
   const Eigen::VectorXd known = congruence(inverse, given).diagonal();
-  const Eigen::VectorXd left = congruence(inverse, errors.left).diagonal();
+  const Eigen::VectorXd left = congruence(inverse, scoreScatter(information.scores, white.rows())).diagonal();
   const Eigen::VectorXd white_left = congruence(inverse, errors.white_left).diagonal();
   const Eigen::VectorXd stated = congruence(inverse, errors.information).diagonal();
   const Eigen::VectorXd whole = congruence(report_from_tangent, errors.whole).diagonal() + known;

@@ -31,8 +31,6 @@ bool isHeld(const Quantity& quantity, const CalibrationInput& input, const Optim
 struct Step {
   Eigen::VectorXd change;
   double sigmas = 0.0;
-  double left =
-      1.0;  // with all steps made, the variance of what each stretch of time says of it over what noise leaves
 };
 
 class Steps {
@@ -53,12 +51,13 @@ class Steps {
     for (Eigen::Index k = 0; k < size; ++k)
       step.sigmas = std::max(step.sigmas,
                              std::abs(step.change[k]) / std::max(covariance_.sigma(first + k), kLeastSigma));
-    step.left = leftOf(first, size);
     return step;
   }
 
- private:
-  double leftOf(Eigen::Index first, Eigen::Index size) const {
+  // With all steps made, the variance of what each stretch of time says of this one, over what noise leaves.
+  double leftOf(std::size_t quantity) const {
+    const Eigen::Index first = information_.first_column[quantity],
+                       size = information_.first_column[quantity + 1] - first;
     Eigen::MatrixXd weights(step_.size(), size);  // of the scores in the estimate
     for (Eigen::Index k = 0; k < size; ++k)
       weights.col(k) = inverse_.times(Eigen::VectorXd(Eigen::VectorXd::Unit(step_.size(), first + k)));
@@ -69,6 +68,7 @@ class Steps {
     return scatterRatio(scoreScatter(left, size), weights.middleRows(first, size));
   }
 
+ private:
   const ProjectedInformation& information_;
   ScaledInverse inverse_;
   Eigen::VectorXd step_;
@@ -80,11 +80,12 @@ void add(std::string& doubts, const std::string& doubt) {
 }
 
 // A turn explains what there is to explain: errors that come and go look like one, too, but leave most of themselves.
-void testGyroscope(const std::string& imu, const Step& step, const OptimisationOptions& options,
-                   HeldDoubts& doubts) {
+void testGyroscope(const std::string& imu, const Steps& steps, std::size_t quantity,
+                   const OptimisationOptions& options, HeldDoubts& doubts) {
+  const Step step = steps.of(quantity);
   const double turn_deg = kDegPerRad * step.change.norm();
   if (turn_deg < options.needed_rotation_deg || step.sigmas < options.turned_gyroscope_sigmas) return;
-  const double sigmas = step.sigmas / std::sqrt(std::max(1.0, step.left));
+  const double sigmas = step.sigmas / std::sqrt(std::max(1.0, steps.leftOf(quantity)));
   if (sigmas < options.turned_gyroscope_sigmas)
     return add(
         doubts.wandering_imus,
@@ -168,7 +169,7 @@ HeldDoubts testHeldValues(const CalibrationInput& input, const CalibrationState&
       testLens(input.cameras[quantity.sensor].name, *state.cameras[quantity.sensor].lens.inUse(), steps.of(i),
                options, doubts.lenses);
     else
-      testGyroscope(input.imus[quantity.sensor].name, steps.of(i), options, doubts);
+      testGyroscope(input.imus[quantity.sensor].name, steps, i, options, doubts);
   }
   doubts.board = board.doubt(input.board, options);
   return doubts;

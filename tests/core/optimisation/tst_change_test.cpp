@@ -20,13 +20,19 @@ using namespace evical;
 constexpr double kAt_s = 5.0;
 
 test::SimulatedRig rigOf(unsigned seed, bool second_imu = false) {
-  test::RigOptions options;
+  test::RigOptions options = test::shortRecording(seed);
   options.duration_s = 8.0;
-  options.imu_rate_hz = 200.0;
-  options.window_s = 0.03;
   options.second_imu = second_imu;
-  options.seed = seed;
   return test::simulateRig(options);
+}
+
+// The camera's, by 2 ms.
+test::SimulatedRig rigWithSteppingClock() {
+  test::SimulatedRig rig = rigOf(1);
+  for (BoardView& view : rig.input.cameras[0].observations.views)
+    for (CircleObservation& circle : view.circles)
+      if (circle.time_s > kAt_s) circle.time_s += 2e-3;
+  return rig;
 }
 
 UncertaintyEstimate estimateOf(const test::SimulatedRig& rig, const OptimisationOptions& options = {}) {
@@ -48,10 +54,7 @@ class TestChangeTest : public QObject {
 
   // With the part before it as what to calibrate.
   void clockThatSteps_isToldWithItsMoment() {
-    test::SimulatedRig rig = rigOf(1);
-    for (BoardView& view : rig.input.cameras[0].observations.views)
-      for (CircleObservation& circle : view.circles)
-        if (circle.time_s > kAt_s) circle.time_s += 2e-3;
+    const test::SimulatedRig rig = rigWithSteppingClock();
     const Doubt change = estimateOf(rig).change;
     QVERIFY2(change.text.find("left: its clock and that of imu seem to step by") == 0, change.text.c_str());
     QVERIFY2(std::abs(millisecondsIn(change.text) - 2.0) < 0.4, change.text.c_str());
@@ -90,10 +93,7 @@ class TestChangeTest : public QObject {
   }
 
   void options_tellWhatIsLarge() {
-    test::SimulatedRig rig = rigOf(1);
-    for (BoardView& view : rig.input.cameras[0].observations.views)
-      for (CircleObservation& circle : view.circles)
-        if (circle.time_s > kAt_s) circle.time_s += 2e-3;
+    const test::SimulatedRig rig = rigWithSteppingClock();
     OptimisationOptions options;
     options.needed_time_offset_ms = 5.0;
     QVERIFY(estimateOf(rig, options).change.text.find("clock") == std::string::npos);
