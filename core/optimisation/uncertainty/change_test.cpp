@@ -91,7 +91,22 @@ class ChangeTest {
     double explains = 0.0;  // chi-square, with all as stated
   };
 
-  // The moments at which a step explains most.
+  // By stretch, how many of those before it tell anything of these numbers: others have a little all the same, by
+  // what the trajectory carries over.
+  std::vector<std::size_t> tellingBefore(const Candidate& candidate) const {
+    constexpr double kLeastShare = 0.05;  // of the mean
+    const Eigen::Index first = candidate.columns.front();
+    double sum = 0.0;
+    for (const Eigen::MatrixXd& share : information_.information_by_stretch) sum += share(first, first);
+    const double least = kLeastShare * sum / static_cast<double>(information_.information_by_stretch.size());
+    std::vector<std::size_t> before = {0};
+    for (const Eigen::MatrixXd& share : information_.information_by_stretch)
+      before.push_back(before.back() + (share(first, first) > least ? 1 : 0));
+    return before;
+  }
+
+  // The moments at which a step explains most. Either part has its share of what the sensor measured: one view
+  // before a gap is no part.
   std::vector<Step> likelySteps(const Candidate& candidate) const {
     constexpr double kLeastPart_s = 1.5;  // shorter parts tell little
     constexpr std::size_t kTried = 30;
@@ -99,6 +114,8 @@ class ChangeTest {
     std::vector<Step> steps;
     if (count == 0) return steps;
     const auto least = static_cast<std::size_t>(std::ceil(kLeastPart_s / information_.stretch_s));
+    const std::vector<std::size_t> telling = tellingBefore(candidate);
+    const auto enough = [&](std::size_t stretches) { return stretches * count >= telling.back() * least; };
     Part part{count, Eigen::VectorXd::Zero(gradient_.size()),
               Eigen::MatrixXd::Zero(gradient_.size(), gradient_.size())};
     const auto explainsMore = [](const Step& a, const Step& b) { return a.explains > b.explains; };
@@ -107,6 +124,7 @@ class ChangeTest {
       part.score += information_.scores[part.from];
       part.information += information_.information_by_stretch[part.from];
       if (count - part.from < least) continue;
+      if (!enough(telling[part.from]) || !enough(telling.back() - telling[part.from])) continue;
       steps.push_back(stepOf(candidate, part));
       std::push_heap(steps.begin(), steps.end(), explainsMore);
       if (steps.size() <= kTried) continue;
