@@ -23,7 +23,7 @@ struct Height {
   double mm;
 };
 
-Height largest(const BoardState& state, const CircleBoard& board) {
+Height largest(const BoardState& state, const Board& board) {
   const auto height = [&](const QuantityInfo& info, double curvature_1_m) {
     return Height{&info, 1e3 * curvature_1_m * bowHeight_m2(info, board)};
   };
@@ -38,14 +38,14 @@ Height largest(const BoardState& state, const CircleBoard& board) {
 }  // namespace
 
 // An arc's sagitta, and x y between the middle and a corner.
-double bowHeight_m2(const QuantityInfo& curvature, const CircleBoard& board) {
+double bowHeight_m2(const QuantityInfo& curvature, const Board& board) {
   const Eigen::Vector2d extent_m = board.extent_m();
   if (&curvature == &twistInfo()) return extent_m.x() * extent_m.y() / 4.0;
   const double length_m = &curvature == &rowInfo() ? extent_m.x() : extent_m.y();
   return length_m * length_m / 8.0;
 }
 
-std::string bowWords(const BoardState& state, const CircleBoard& board) {
+std::string bowWords(const BoardState& state, const Board& board) {
   const Height most = largest(state, board);
   if (most.of == &twistInfo())
     return fmt::format(
@@ -57,7 +57,7 @@ std::string bowWords(const BoardState& state, const CircleBoard& board) {
                      most.mm > 0.0 ? "stands out" : "lies back", std::abs(most.mm));
 }
 
-double largestBow_mm(const BoardState& state, const CircleBoard& board) {
+double largestBow_mm(const BoardState& state, const Board& board) {
   return std::abs(largest(state, board).mm);
 }
 

@@ -3,7 +3,7 @@
 
 #include "core/data/calibration_state.h"
 #include "core/data/quantity.h"
-#include "core/geometry/circle_board.h"
+#include "core/geometry/board.h"
 
 #include <string>
 
@@ -11,12 +11,12 @@ namespace evical {
 
 // What one unit of this curvature (row_curvature, column_curvature, twist) makes of it: by how much the middle of its
 // rows, or of its columns, stands out against their ends; of a twist, two corners against the other two's plane.
-double bowHeight_m2(const QuantityInfo& curvature, const CircleBoard& board);
+double bowHeight_m2(const QuantityInfo& curvature, const Board& board);
 
 // "the board seems bent: over the 0.5 m of its columns the middle stands out by 1.1 mm"; of the largest.
-std::string bowWords(const BoardState& state, const CircleBoard& board);
+std::string bowWords(const BoardState& state, const Board& board);
 
 // That in mm, without a sign.
-double largestBow_mm(const BoardState& state, const CircleBoard& board);
+double largestBow_mm(const BoardState& state, const Board& board);
 
 }  // namespace evical

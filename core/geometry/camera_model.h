@@ -1,9 +1,12 @@
-// Pinhole cameras with radial-tangential or equidistant (fisheye) distortion. Camera frame: z
-// forward, x right, y down; pixels with the centre of the top-left pixel at (0, 0). OpenCV's
-// equations and order of coefficients.
+// Cameras: pinholes with radial-tangential or equidistant (fisheye) distortion, OpenCV's equations and order of
+// coefficients; and for wide lenses the double sphere (V. Usenko, N. Demmel, D. Cremers, "The double sphere camera
+// model", 3DV 2018), the enhanced unified model, EUCM (B. Khomutenko, G. Garcia, P. Martinet, RA-L 2016), and the
+// unified model with radial-tangential distortion, omni (C. Mei, P. Rives, ICRA 2007). docs/maths.md, 3.1. Camera
+// frame: z forward, x right, y down; pixels with the centre of the top-left pixel at (0, 0).
 //
-// "Ideal" pixels are where a camera of the same focal length and principal point without distortion would see
-// a point: u = fx x / z + cx. In ideal pixels, and only there, the image of a circle is an exact conic.
+// "Ideal" pixels are where a camera without distortion, with the same scale on its axis, would see a point: u = f x /
+// z + cx with idealFocalLength_px. In ideal pixels, and only there, the image of a circle is an exact conic. Towards
+// 90 degrees off axis they go to infinity: there are none beyond 85 degrees.
 #pragma once
 
 #include "core/geometry/camera_intrinsics.h"
@@ -18,19 +21,26 @@ namespace evical {
 // Columns of the Jacobian with respect to the intrinsics: fx fy cx cy d0 d1 d2 d3 d4.
 using IntrinsicsJacobian = Eigen::Matrix<double, 2, 9>;
 
-// Pixel of a point in the camera frame; nothing if the point is behind the camera
-// or beyond the distortion's range.
+// Pixel of a point in the camera frame; nothing where the camera does not see it: for pinholes what is not in front or
+// beyond the distortion's range, for the wide models, which see to more than 90 degrees off axis, where two directions
+// would have one pixel.
 std::optional<Eigen::Vector2d> project(const CameraIntrinsics& camera, const Eigen::Vector3d& point_in_camera,
                                        Eigen::Matrix<double, 2, 3>* jacobian_point = nullptr,
                                        IntrinsicsJacobian* jacobian_intrinsics = nullptr);
 
-// Distorts (x/z, y/z); the Jacobian is d(distorted)/d(normalised).
+// Distorts (x/z, y/z), so that pixel = focal length * distorted + principal point; the Jacobian is
+// d(distorted)/d(normalised).
 Eigen::Vector2d distort(const CameraIntrinsics& camera, const Eigen::Vector2d& normalised,
                         Eigen::Matrix2d* jacobian = nullptr);
 
-// (x/z, y/z) of the ray through a pixel, by Newton's iteration; nothing where it does not converge or where
-// the ray is more than 85 degrees off axis.
+// (x/z, y/z) of the ray through a pixel; nothing where there is none or where it is more than 85 degrees off axis.
 std::optional<Eigen::Vector2d> unproject(const CameraIntrinsics& camera, const Eigen::Vector2d& pixel);
+
+// The same ray as a unit vector, of the wide models at any angle.
+std::optional<Eigen::Vector3d> unprojectRay(const CameraIntrinsics& camera, const Eigen::Vector2d& pixel);
+
+// Pixels by x/z and y/z on the axis: the focal length, but 1 / (1 + xi) of it where a model has spheres' centres apart.
+Eigen::Vector2d idealFocalLength_px(const CameraIntrinsics& camera);
 
 std::optional<Eigen::Vector2d> idealPixel(const CameraIntrinsics& camera, const Eigen::Vector2d& pixel);
 Eigen::Vector2d pixelFromIdeal(const CameraIntrinsics& camera, const Eigen::Vector2d& ideal_pixel);

@@ -1,5 +1,6 @@
 #include "core/geometry/circle_conic.h"
 
+#include "core/geometry/camera_model.h"
 #include "core/geometry/so3.h"
 
 namespace evical {
@@ -13,10 +14,11 @@ std::optional<ProjectedCircle> projectCircle(const CameraIntrinsics& camera,
   if (!(p.z() > 0.0) || !(denominator > 1e-6 * p.z() * p.z())) return std::nullopt;
   const Eigen::Vector2d numerator = p.head<2>() * p.z() + r2 * n.z() * n.head<2>();
   const Eigen::Vector2d normalised = numerator / denominator;
-  const Eigen::Vector2d scale = camera.focal_length_px / denominator;
+  const Eigen::Vector2d focal_length_px = idealFocalLength_px(camera);
+  const Eigen::Vector2d scale = focal_length_px / denominator;
 
   ProjectedCircle projected;
-  projected.centre_px = camera.focal_length_px.cwiseProduct(normalised) + camera.principal_point_px;
+  projected.centre_px = focal_length_px.cwiseProduct(normalised) + camera.principal_point_px;
   projected.by_centre << p.z(), 0.0, p.x() - 2.0 * normalised.x() * p.z(),  //
       0.0, p.z(), p.y() - 2.0 * normalised.y() * p.z();
   projected.by_normal << n.z(), 0.0, n.x() - 2.0 * normalised.x() * n.z(),  //

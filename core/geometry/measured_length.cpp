@@ -9,11 +9,11 @@
 
 namespace evical {
 
-int mostSpacings(const CircleBoard& board) {
+int mostSpacings(const Board& board) {
   return static_cast<int>(std::lround(board.extent_m().maxCoeff() / board.spacing_m));
 }
 
-void validate(const MeasuredLength& measured, const CircleBoard& board) {
+void validate(const MeasuredLength& measured, const Board& board) {
   const int most = mostSpacings(board);
   if (measured.spacings < 1 || measured.spacings > most)
     throw badInput("board.measured.spacings",

@@ -1,7 +1,7 @@
 // How a board was measured: with a ruler, from one circle's centre to that of another in the same line.
 #pragma once
 
-#include "core/geometry/circle_board.h"
+#include "core/geometry/board.h"
 
 namespace evical {
 
@@ -17,9 +17,9 @@ struct MeasuredLength {
 };
 
 // In the board's longest line.
-int mostSpacings(const CircleBoard& board);
+int mostSpacings(const Board& board);
 
 // Throws CalibrationError (BadInput, place "board.measured...") where the board has no such line, or nobody measures so.
-void validate(const MeasuredLength& measured, const CircleBoard& board);
+void validate(const MeasuredLength& measured, const Board& board);
 
 }  // namespace evical

@@ -18,9 +18,9 @@ struct RayPixel {
 };
 
 std::optional<RayPixel> rayPixel(const CameraIntrinsics& camera, const Eigen::Vector2d& pixel) {
-  const auto normalised = unproject(camera, pixel);
-  if (!normalised) return std::nullopt;
-  RayPixel out{pixel, normalised->homogeneous().normalized(), {}};
+  const auto ray = unprojectRay(camera, pixel);
+  if (!ray) return std::nullopt;
+  RayPixel out{pixel, *ray, {}};
   Eigen::Matrix<double, 2, 3> by_point;
   if (!project(camera, out.ray, &by_point)) return std::nullopt;
   out.by_turn = -by_point * skew(out.ray);

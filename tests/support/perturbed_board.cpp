@@ -29,8 +29,8 @@ void stretch(Recorded& recorded, double percent) {
 
 // Its middle stands out by this, as of paper that has come off in the middle: a parabola along the columns.
 void bow(Recorded& recorded, double height_mm) {
-  const CircleBoard& board = recorded.scenario.board;
-  const double length_m = board.centre_m(board.rows - 1, 0).y();
+  const Board& board = recorded.scenario.board;
+  const double length_m = board.point_m(board.rows - 1, 0).y();
   deformBoard(recorded, [&](const Eigen::Vector3d& point_m) {
     const double u = 2.0 * point_m.y() / length_m - 1.0;
     return Eigen::Vector3d(0.0, 0.0, -1e-3 * height_mm * (1.0 - u * u));

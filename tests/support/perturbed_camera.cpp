@@ -78,7 +78,7 @@ void hide(Recorded& recorded, Hidden&& isHidden) {
   for (BoardObservations& observations : recorded.pass.cameras) {
     for (BoardView& view : observations.views)
       std::erase_if(view.circles, [&](const CircleObservation& circle) {
-        return isHidden(view.time_s, recorded.scenario.board.centre_m(circle.circle));
+        return isHidden(view.time_s, recorded.scenario.board.point_m(circle.circle));
       });
     constexpr std::size_t kFewest = 6;
     std::erase_if(observations.views, [](const BoardView& view) { return view.circles.size() < kFewest; });
@@ -87,8 +87,8 @@ void hide(Recorded& recorded, Hidden&& isHidden) {
 
 // A hand that comes every two seconds for one, somewhere else each time, and hides what is near.
 void handOverBoard(Recorded& recorded, double share) {
-  const CircleBoard& board = recorded.scenario.board;
-  const Eigen::Vector2d far_m = board.centre_m(board.circleCount() - 1);
+  const Board& board = recorded.scenario.board;
+  const Eigen::Vector2d far_m = board.point_m(board.pointCount() - 1);
   const double reach_m = share * far_m.norm();
   hide(recorded, [&](double time_s, const Eigen::Vector2d& circle_m) {
     const double turn = std::floor(0.5 * time_s);
@@ -99,8 +99,8 @@ void handOverBoard(Recorded& recorded, double share) {
 }
 
 void hiddenAtFirst(Recorded& recorded, double duration_s) {
-  const CircleBoard& board = recorded.scenario.board;
-  const double from_m = 2.0 / 3.0 * board.centre_m(board.rows - 1, 0).y();
+  const Board& board = recorded.scenario.board;
+  const double from_m = 2.0 / 3.0 * board.point_m(board.rows - 1, 0).y();
   hide(recorded, [&](double time_s, const Eigen::Vector2d& circle_m) {
     return time_s < duration_s && circle_m.y() > from_m;
   });

@@ -51,7 +51,7 @@ void moveCircles(Recorded& recorded, PairAt&& pairAt) {
       for (CircleObservation& circle : view.circles) {
         const double time_s = circle.time_s + camera.time_offset_s - camera.pixel.delay_s();
         const RigidTransform camera_from_world = inverse(motion.worldFromCamera(k, time_s));
-        const Eigen::Vector2d on_board_m = recorded.scenario.board.centre_m(circle.circle);
+        const Eigen::Vector2d on_board_m = recorded.scenario.board.point_m(circle.circle);
         const auto [true_m, seen_m] =
             pairAt(camera_from_world, Eigen::Vector3d(on_board_m.x(), on_board_m.y(), 0.0), view);
         const auto before = project(ideal, true_m);

@@ -36,18 +36,59 @@ struct NamedCamera {
 };
 
 std::vector<NamedCamera> cameras() {
+  CameraIntrinsics omni = camera(CameraModel::OmniRadtan, {1.3, -0.2, 0.05, 0.001, -0.0005});
+  omni.focal_length_px *= 2.0;  // else it sees more than 85 degrees
   return {{"no distortion", camera(CameraModel::PinholeRadtan, {})},
           {"barrel", camera(CameraModel::PinholeRadtan, {-0.36, 0.16, 0.001, -0.0005, 0.0})},
           {"with k3", camera(CameraModel::PinholeRadtan, {-0.4, 0.25, -0.001, 0.002, -0.08})},
           {"pincushion", camera(CameraModel::PinholeRadtan, {0.1, 0.02, 0.0, 0.0, 0.0})},
           {"equidistant", camera(CameraModel::PinholeEquidistant, {})},
-          {"fisheye", camera(CameraModel::PinholeEquidistant, {-0.02, 0.01, -0.004, 0.0007, 0.0})}};
+          {"fisheye", camera(CameraModel::PinholeEquidistant, {-0.02, 0.01, -0.004, 0.0007, 0.0})},
+          {"double sphere", camera(CameraModel::DoubleSphere, {-0.17, 0.59, 0.0, 0.0, 0.0})},
+          {"double sphere, xi > 0", camera(CameraModel::DoubleSphere, {0.3, 0.4, 0.0, 0.0, 0.0})},
+          {"double sphere that is a pinhole", camera(CameraModel::DoubleSphere, {})},
+          {"eucm", camera(CameraModel::Eucm, {0.63, 1.04, 0.0, 0.0, 0.0})},
+          {"eucm, alpha < 1/2", camera(CameraModel::Eucm, {0.35, 0.8, 0.0, 0.0, 0.0})},
+          {"omni", omni},
+          {"omni, xi < 1", camera(CameraModel::OmniRadtan, {0.8, -0.15, 0.03, -0.001, 0.002})}};
 }
 
-void cameraRows() {
+// Those that see beyond 90 degrees, so far as their pixels say.
+std::vector<NamedCamera> wideCameras() {
+  CameraIntrinsics sphere = camera(CameraModel::DoubleSphere, {-0.17, 0.59, 0.0, 0.0, 0.0});
+  CameraIntrinsics forward = camera(CameraModel::DoubleSphere, {0.3, 0.7, 0.0, 0.0, 0.0});
+  CameraIntrinsics eucm = camera(CameraModel::Eucm, {0.63, 1.04, 0.0, 0.0, 0.0});
+  CameraIntrinsics omni = camera(CameraModel::OmniRadtan, {1.3, -0.02, 0.01, 0.001, -0.0005});
+  sphere.focal_length_px = {46.0, 47.0};
+  forward.focal_length_px = {80.0, 78.0};
+  eucm.focal_length_px = {60.0, 61.0};
+  omni.focal_length_px = {140.0, 142.0};
+  return {{"double sphere", sphere}, {"double sphere, xi > 0", forward}, {"eucm", eucm}, {"omni", omni}};
+}
+
+// At this angle off the axis, which way round.
+Vector3d direction(double angle_deg, double round_rad) {
+  const double angle = angle_deg * pi / 180.0;
+  return {std::sin(angle) * std::cos(round_rad), std::sin(angle) * std::sin(round_rad), std::cos(angle)};
+}
+
+void addRows(const std::vector<NamedCamera>& all) {
   QTest::addColumn<int>("index");
-  const std::vector<NamedCamera> all = cameras();
   for (std::size_t i = 0; i < all.size(); ++i) QTest::newRow(all[i].name) << static_cast<int>(i);
+}
+void cameraRows() {
+  addRows(cameras());
+}
+void wideRows() {
+  addRows(wideCameras());
+}
+
+CameraIntrinsics withChange(const CameraIntrinsics& camera, const Eigen::VectorXd& delta) {
+  CameraIntrinsics other = camera;
+  other.focal_length_px += delta.head<2>();
+  other.principal_point_px += delta.segment<2>(2);
+  for (std::size_t i = 0; i < 5; ++i) other.distortion[i] += delta[4 + static_cast<Eigen::Index>(i)];
+  return other;
 }
 
 // Pixels all over the image, its corners and its centre of distortion among them.
@@ -121,20 +162,14 @@ class TestCameraModel : public QObject {
   void jacobianOfTheIntrinsics_matchesNumericDifferences() {
     QFETCH(int, index);
     const CameraIntrinsics c = cameras()[static_cast<std::size_t>(index)].camera;
-    const auto changed = [&](const Eigen::VectorXd& d) {
-      CameraIntrinsics other = c;
-      other.focal_length_px += d.head<2>();
-      other.principal_point_px += d.segment<2>(2);
-      for (std::size_t i = 0; i < 5; ++i) other.distortion[i] += d[4 + static_cast<Eigen::Index>(i)];
-      return other;
-    };
     for (const Vector2d& pixel : pixels(c)) {
       const Vector3d point = unproject(c, pixel)->homogeneous();
       IntrinsicsJacobian jacobian;
       QVERIFY(project(c, point, nullptr, &jacobian));
       const Eigen::MatrixXd numeric = test::numericJacobian(
-          [&](const Eigen::VectorXd& d) -> Eigen::VectorXd { return *project(changed(d), point); }, 9, 1e-4);
-      QVERIFY(test::relativeDifference(jacobian, numeric) < 1e-9);
+          [&](const Eigen::VectorXd& d) -> Eigen::VectorXd { return *project(withChange(c, d), point); }, 9,
+          1e-4);
+      QVERIFY(test::relativeDifference(jacobian, numeric) < 1e-8);
     }
   }
 
@@ -156,8 +191,13 @@ class TestCameraModel : public QObject {
   void pointThatIsNotInFront_isNotSeen() {
     QFETCH(int, index);
     const CameraIntrinsics c = cameras()[static_cast<std::size_t>(index)].camera;
-    for (const Vector3d& point : {Vector3d(0.1, 0.2, 0.0), Vector3d(0.1, 0.2, -1.0), Vector3d(0.0, 0.0, -1.0),
-                                  Vector3d(0.1, 0.2, kNan), Vector3d(kNan, 0.2, 1.0)})
+    for (const Vector3d& point :
+         {Vector3d(0.0, 0.0, -1.0), Vector3d(0.01, 0.02, -1.0), Vector3d(0.0, 0.0, 0.0),
+          Vector3d(0.1, 0.2, kNan), Vector3d(kNan, 0.2, 1.0)})
+      QVERIFY(!project(c, point));
+    const bool wide = c.model != CameraModel::PinholeRadtan && c.model != CameraModel::PinholeEquidistant;
+    if (wide) return;
+    for (const Vector3d& point : {Vector3d(0.1, 0.2, 0.0), Vector3d(0.1, 0.2, -1.0)})
       QVERIFY(!project(c, point));
   }
 
@@ -192,7 +232,7 @@ class TestCameraModel : public QObject {
       const std::optional<Vector2d> ideal = idealPixel(c, pixel);
       QVERIFY(ideal);
       QVERIFY((pixelFromIdeal(c, *ideal) - pixel).norm() < 1e-9);
-      const Vector2d ray = (*ideal - c.principal_point_px).cwiseQuotient(c.focal_length_px);
+      const Vector2d ray = (*ideal - c.principal_point_px).cwiseQuotient(idealFocalLength_px(c));
       QVERIFY((ray - *unproject(c, pixel)).norm() < 1e-12);
     }
   }
@@ -206,6 +246,141 @@ class TestCameraModel : public QObject {
           [&](const Eigen::VectorXd& d) -> Eigen::VectorXd { return *idealPixel(c, pixel + d); }, 2, 1e-2);
       QVERIFY(test::relativeDifference(idealPixelScale(c, *idealPixel(c, pixel)), numeric) < 1e-7);
     }
+  }
+
+  // So that what is so large in ideal pixels is as large on the sensor, in the middle.
+  void idealPixels_haveTheSensorsScaleOnTheAxis_data() { cameraRows(); }
+  void idealPixels_haveTheSensorsScaleOnTheAxis() {
+    QFETCH(int, index);
+    const CameraIntrinsics c = cameras()[static_cast<std::size_t>(index)].camera;
+    QVERIFY((idealPixelScale(c, c.principal_point_px) - Eigen::Matrix2d::Identity()).norm() < 1e-12);
+    Eigen::Matrix<double, 2, 3> jacobian;
+    QVERIFY(project(c, {0.0, 0.0, 2.0}, &jacobian));
+    QVERIFY((2.0 * jacobian.leftCols<2>().diagonal() - idealFocalLength_px(c)).norm() < 1e-9);
+  }
+
+  // Every pixel of a wide image has one ray, which may lie behind the camera, and is where that ray is seen.
+  void rayAtAnyAngle_isSeenAtItsPixel_data() { wideRows(); }
+  void rayAtAnyAngle_isSeenAtItsPixel() {
+    QFETCH(int, index);
+    const CameraIntrinsics c = wideCameras()[static_cast<std::size_t>(index)].camera;
+    double least_z = 1.0;
+    for (const Vector2d& pixel : pixels(c)) {
+      const std::optional<Vector3d> ray = unprojectRay(c, pixel);
+      if (!ray) continue;  // beyond the image circle
+      QVERIFY(std::abs(ray->norm() - 1.0) < 1e-12);
+      const std::optional<Vector2d> seen = project(c, 3.0 * *ray);
+      QVERIFY(seen);
+      QVERIFY2((*seen - pixel).norm() < 1e-8, qPrintable(QString::number((*seen - pixel).norm())));
+      QCOMPARE(unproject(c, pixel).has_value(), ray->z() > std::cos(85.0 * pi / 180.0));
+      least_z = std::min(least_z, ray->z());
+    }
+    QVERIFY2(least_z < std::cos(95.0 * pi / 180.0), qPrintable(QString::number(least_z)));
+  }
+
+  void directionBeyond90Degrees_isTheRayOfItsPixel_data() { wideRows(); }
+  void directionBeyond90Degrees_isTheRayOfItsPixel() {
+    QFETCH(int, index);
+    const CameraIntrinsics c = wideCameras()[static_cast<std::size_t>(index)].camera;
+    for (const double angle_deg : {30.0, 80.0, 89.9999, 90.0, 90.0001, 97.0, 105.0}) {
+      for (double round_rad = 0.0; round_rad < 6.0; round_rad += 0.7) {
+        const Vector3d point = 0.6 * direction(angle_deg, round_rad);
+        Eigen::Matrix<double, 2, 3> by_point;
+        IntrinsicsJacobian by_intrinsics;
+        const auto pixel = project(c, point, &by_point, &by_intrinsics);
+        QVERIFY(pixel);
+        QVERIFY((*unprojectRay(c, *pixel) - point.normalized()).norm() < 1e-9);
+        const Eigen::MatrixXd point_numeric = test::numericJacobian(
+            [&](const Eigen::VectorXd& d) -> Eigen::VectorXd { return *project(c, point + d); }, 3, 1e-4);
+        QVERIFY(test::relativeDifference(by_point, point_numeric) < 1e-8);
+        const Eigen::MatrixXd numeric = test::numericJacobian(
+            [&](const Eigen::VectorXd& d) -> Eigen::VectorXd { return *project(withChange(c, d), point); }, 9,
+            1e-4);
+        QVERIFY(test::relativeDifference(by_intrinsics, numeric) < 1e-8);
+      }
+    }
+  }
+
+  // Up to where the model ends the image moves outwards with the angle; there it is at its edge, and beyond there is
+  // nothing. The angles, of a unit circle seen through one more (docs/maths.md, 3.1), are found by halving.
+  void imageRadius_growsUpToTheModelsEnd_data() { addRows(cameras()); }
+  void imageRadius_growsUpToTheModelsEnd() {
+    QFETCH(int, index);
+    const CameraIntrinsics c = cameras()[static_cast<std::size_t>(index)].camera;
+    double before = -1.0;
+    bool ended = false;
+    for (double angle_deg = 0.0; angle_deg < 180.0; angle_deg += 0.25) {
+      const auto pixel = project(c, direction(angle_deg, 0.4));
+      QVERIFY(!(ended && pixel));
+      ended = ended || !pixel;
+      if (!pixel) continue;
+      const double radius = (*pixel - c.principal_point_px).cwiseQuotient(c.focal_length_px).norm();
+      QVERIFY2(radius > before, qPrintable(QString::number(angle_deg)));
+      before = radius;
+    }
+    QVERIFY(ended);
+  }
+
+  void doubleSphere_endsWhereItsImageTurnsBack_data() {
+    QTest::addColumn<double>("xi");
+    QTest::addColumn<double>("alpha");
+    QTest::addColumn<double>("end_deg");
+    // With w = cos(pi - angle) at the second sphere, min(alpha, 1 - alpha) / max(alpha, 1 - alpha), the angle at the first
+    // is pi - acos(xi (1 - w^2) + w sqrt(1 - xi^2 (1 - w^2))).
+    QTest::newRow("xi = 0, alpha = 0.6") << 0.0 << 0.6 << 131.810315;            // acos(-2/3)
+    QTest::newRow("xi = 0, alpha = 0.4") << 0.0 << 0.4 << 131.810315;            // the image goes to infinity
+    QTest::newRow("xi = -0.5, alpha = 1") << -0.5 << 1.0 << 60.0;                // acos(1/2)
+    QTest::newRow("xi = -0.2, alpha = 2/3") << -0.2 << 2.0 / 3.0 << 110.025778;  // -0.2 0.75 + 0.5 sqrt(0.97)
+  }
+  void doubleSphere_endsWhereItsImageTurnsBack() {
+    QFETCH(double, xi);
+    QFETCH(double, alpha);
+    QFETCH(double, end_deg);
+    const CameraIntrinsics c = camera(CameraModel::DoubleSphere, {xi, alpha, 0.0, 0.0, 0.0});
+    QVERIFY(project(c, direction(end_deg - 1e-3, 1.0)));
+    QVERIFY(!project(c, direction(end_deg + 1e-3, 1.0)));
+  }
+
+  // alpha = 0.5 and beta = 1, or xi = 0, is the stereographic projection, 2 tan(angle / 2); so is omni with xi = 1.
+  void stereographicProjection_isAmongAllThree() {
+    const CameraIntrinsics sphere = camera(CameraModel::DoubleSphere, {0.0, 0.5, 0.0, 0.0, 0.0});
+    const CameraIntrinsics eucm = camera(CameraModel::Eucm, {0.5, 1.0, 0.0, 0.0, 0.0});
+    CameraIntrinsics omni = camera(CameraModel::OmniRadtan, {1.0, 0.0, 0.0, 0.0, 0.0});
+    omni.focal_length_px *= 2.0;
+    for (const double angle_deg : {10.0, 60.0, 90.0, 120.0, 170.0}) {
+      const double radius = 2.0 * std::tan(0.5 * angle_deg * pi / 180.0);
+      const Vector2d expected(170.0 + 260.0 * radius * std::cos(0.3), 131.0 + 250.0 * radius * std::sin(0.3));
+      for (const CameraIntrinsics& c : {sphere, eucm, omni})
+        QVERIFY((*project(c, direction(angle_deg, 0.3)) - expected).norm() < 1e-9);
+    }
+  }
+
+  // One lens, calibrated three times: the data set TUM VI's left camera (512 x 512) with Kalibr as a pinhole with
+  // equidistant distortion, and as EUCM and double sphere by Basalt's authors. They agree up to 80 degrees off axis to less
+  // than a pixel of 266 from the middle.
+  void publishedCamerasOfOneLens_agree() {
+    const auto lens = [](CameraModel model, Vector2d f, Vector2d c, const std::array<double, 5>& d) {
+      return CameraIntrinsics{model, {512, 512}, f, c, d};
+    };
+    const CameraIntrinsics kb4 =
+        lens(CameraModel::PinholeEquidistant, {190.978477, 190.973307}, {254.931706, 256.897443},
+             {0.00348238940, 0.000715034845, -0.00205323614, 0.000202936736, 0.0});
+    const CameraIntrinsics sphere =
+        lens(CameraModel::DoubleSphere, {158.286000, 158.274346}, {254.961166, 256.889439},
+             {-0.172130860, 0.593117759, 0.0, 0.0, 0.0});
+    const CameraIntrinsics eucm = lens(CameraModel::Eucm, {191.147998, 191.131509}, {254.958577, 256.881547},
+                                       {0.629106087, 1.04180674, 0.0, 0.0, 0.0});
+    double sphere_px = 0.0, eucm_px = 0.0;
+    for (double angle_deg = 0.0; angle_deg <= 80.0; angle_deg += 5.0) {
+      for (double round_rad = 0.0; round_rad < 6.0; round_rad += 1.0) {
+        const Vector3d ray = direction(angle_deg, round_rad);
+        sphere_px = std::max(sphere_px, (*project(sphere, ray) - *project(kb4, ray)).norm());
+        eucm_px = std::max(eucm_px, (*project(eucm, ray) - *project(kb4, ray)).norm());
+      }
+    }
+    qInfo("double sphere %.2f px, EUCM %.2f px from Kalibr's", sphere_px, eucm_px);
+    QVERIFY2(sphere_px < 0.8, qPrintable(QString::number(sphere_px)));
+    QVERIFY2(eucm_px < 1.5, qPrintable(QString::number(eucm_px)));
   }
 
   void undistortionTable_holdsTheIdealPixelOfEveryPixel() {
@@ -252,6 +427,38 @@ class TestCameraModel : public QObject {
     } catch (const CalibrationError& error) {
       QVERIFY(error.kind() == ErrorKind::BadInput);
       QCOMPARE(error.place(), std::string("left"));
+      QVERIFY2(QString(error.what()).contains(says), error.what());
+    }
+  }
+
+  void coefficientsOutOfRange_areRefused_data() {
+    QTest::addColumn<int>("model");
+    QTest::addColumn<double>("first");
+    QTest::addColumn<double>("second");
+    QTest::addColumn<QString>("says");
+    const int sphere = static_cast<int>(CameraModel::DoubleSphere),
+              eucm = static_cast<int>(CameraModel::Eucm), omni = static_cast<int>(CameraModel::OmniRadtan);
+    QTest::newRow("double sphere") << sphere << -0.2 << 0.6 << QString();
+    QTest::newRow("order of EUCM in a double sphere") << sphere << 0.6 << 1.1 << "alpha is 1.1";
+    QTest::newRow("alpha below 0") << sphere << -0.2 << -0.1 << "alpha is -0.1";
+    QTest::newRow("xi of 1") << sphere << 1.0 << 0.6 << "xi is 1";
+    QTest::newRow("eucm") << eucm << 0.6 << 1.1 << QString();
+    QTest::newRow("beta of 0") << eucm << 0.6 << 0.0 << "beta is 0";
+    QTest::newRow("alpha above 1") << eucm << 1.1 << 0.6 << "alpha is 1.1";
+    QTest::newRow("omni") << omni << 1.5 << -0.2 << QString();
+    QTest::newRow("omni, xi below 0") << omni << -0.1 << -0.2 << "xi is -0.1";
+  }
+  void coefficientsOutOfRange_areRefused() {
+    QFETCH(int, model);
+    QFETCH(double, first);
+    QFETCH(double, second);
+    QFETCH(QString, says);
+    const CameraIntrinsics c = camera(static_cast<CameraModel>(model), {first, second, 0.0, 0.0, 0.0});
+    if (says.isEmpty()) return validate(c, "left");
+    try {
+      validate(c, "left");
+      QFAIL("must throw");
+    } catch (const CalibrationError& error) {
       QVERIFY2(QString(error.what()).contains(says), error.what());
     }
   }

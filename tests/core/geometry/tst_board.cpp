@@ -1,4 +1,4 @@
-#include "core/geometry/circle_board.h"
+#include "core/geometry/board.h"
 
 #include "core/base/error.h"
 #include "tests/support/test_program.h"
@@ -10,8 +10,8 @@ namespace {
 
 using namespace evical;
 
-CircleBoard board(BoardType type, int rows, int cols) {
-  CircleBoard made;
+Board board(BoardType type, int rows, int cols) {
+  Board made;
   made.type = type;
   made.rows = rows;
   made.cols = cols;
@@ -21,8 +21,8 @@ CircleBoard board(BoardType type, int rows, int cols) {
 }
 
 // Whether the centres, turned by 180 degrees about the middle of all, are the same centres.
-bool turnedIsTheSame(const CircleBoard& board) {
-  const std::vector<Eigen::Vector2d> centres = circleCentres_m(board);
+bool turnedIsTheSame(const Board& board) {
+  const std::vector<Eigen::Vector2d> centres = boardPoints_m(board);
   Eigen::Vector2d low = centres[0], high = centres[0];
   for (const Eigen::Vector2d& centre : centres) {
     low = low.cwiseMin(centre);
@@ -37,23 +37,23 @@ bool turnedIsTheSame(const CircleBoard& board) {
 
 }  // namespace
 
-class TestCircleBoard : public QObject {
+class TestBoard : public QObject {
   Q_OBJECT
 
  private slots:
   void asymmetricCentres_areStaggered() {
-    const CircleBoard b = board(BoardType::AsymmetricCircles, 11, 4);
-    QCOMPARE(b.circleCount(), 44);
-    QVERIFY((b.centre_m(0, 0) - Eigen::Vector2d(0.0, 0.0)).norm() < 1e-15);
-    QVERIFY((b.centre_m(0, 3) - Eigen::Vector2d(0.30, 0.0)).norm() < 1e-15);
-    QVERIFY((b.centre_m(1, 0) - Eigen::Vector2d(0.05, 0.05)).norm() < 1e-15);
-    QVERIFY((b.centre_m(10, 3) - Eigen::Vector2d(0.30, 0.50)).norm() < 1e-15);
+    const Board b = board(BoardType::AsymmetricCircles, 11, 4);
+    QCOMPARE(b.pointCount(), 44);
+    QVERIFY((b.point_m(0, 0) - Eigen::Vector2d(0.0, 0.0)).norm() < 1e-15);
+    QVERIFY((b.point_m(0, 3) - Eigen::Vector2d(0.30, 0.0)).norm() < 1e-15);
+    QVERIFY((b.point_m(1, 0) - Eigen::Vector2d(0.05, 0.05)).norm() < 1e-15);
+    QVERIFY((b.point_m(10, 3) - Eigen::Vector2d(0.30, 0.50)).norm() < 1e-15);
   }
 
   void symmetricCentres_areInRowsAndColumns() {
-    const CircleBoard b = board(BoardType::SymmetricCircles, 3, 5);
-    QVERIFY((b.centre_m(1, 0) - Eigen::Vector2d(0.0, 0.05)).norm() < 1e-15);
-    QVERIFY((b.centre_m(2, 4) - Eigen::Vector2d(0.20, 0.10)).norm() < 1e-15);
+    const Board b = board(BoardType::SymmetricCircles, 3, 5);
+    QVERIFY((b.point_m(1, 0) - Eigen::Vector2d(0.0, 0.05)).norm() < 1e-15);
+    QVERIFY((b.point_m(2, 4) - Eigen::Vector2d(0.20, 0.10)).norm() < 1e-15);
   }
 
   void extent_isBetweenTheOutermostCentres() {
@@ -66,16 +66,16 @@ class TestCircleBoard : public QObject {
   }
 
   void index_goesByRows_andBack() {
-    const CircleBoard b = board(BoardType::AsymmetricCircles, 11, 4);
+    const Board b = board(BoardType::AsymmetricCircles, 11, 4);
     QCOMPARE(b.index(0, 3), 3);
     QCOMPARE(b.index(1, 0), 4);
     QCOMPARE(b.index(10, 3), 43);
-    const std::vector<Eigen::Vector2d> all = circleCentres_m(b);
+    const std::vector<Eigen::Vector2d> all = boardPoints_m(b);
     QCOMPARE(all.size(), std::size_t(44));
     for (int row = 0; row < b.rows; ++row) {
       for (int col = 0; col < b.cols; ++col) {
-        QCOMPARE(b.centre_m(b.index(row, col)), b.centre_m(row, col));
-        QCOMPARE(all[static_cast<std::size_t>(b.index(row, col))], b.centre_m(row, col));
+        QCOMPARE(b.point_m(b.index(row, col)), b.point_m(row, col));
+        QCOMPARE(all[static_cast<std::size_t>(b.index(row, col))], b.point_m(row, col));
       }
     }
   }
@@ -94,8 +94,43 @@ class TestCircleBoard : public QObject {
     QFETCH(int, type);
     QFETCH(int, rows);
     QFETCH(int, cols);
-    const CircleBoard b = board(static_cast<BoardType>(type), rows, cols);
+    const Board b = board(static_cast<BoardType>(type), rows, cols);
     QCOMPARE(b.hasHalfTurnAmbiguity(), turnedIsTheSame(b));
+  }
+
+  // Four a tag, tags from the bottom left, as Kalibr counts them; x to the right, y down from the top left tag's
+  // corner.
+  void aprilGrid_isCountedAsKalibrDoes() {
+    Board b = board(BoardType::AprilGrid, 2, 3);
+    b.radius_m = 0.0;
+    b.tag_size_m = 0.04;
+    validate(b);
+    QCOMPARE(b.pointCount(), 24);
+    const auto isAt = [&](int index, double x_m, double y_m) {
+      return (b.point_m(index) - Eigen::Vector2d(x_m, y_m)).norm() < 1e-12;
+    };
+    QVERIFY(isAt(0, 0.0, 0.09) && isAt(1, 0.04, 0.09) && isAt(2, 0.04, 0.05) && isAt(3, 0.0, 0.05));
+    QVERIFY(isAt(8, 0.10, 0.09) && isAt(12, 0.0, 0.04) && isAt(15, 0.0, 0.0) && isAt(22, 0.14, 0.0));
+    QVERIFY((b.extent_m() - Eigen::Vector2d(0.14, 0.09)).norm() < 1e-12);
+    QVERIFY(!b.hasHalfTurnAmbiguity());
+    b.tag_size_m = 0.05;
+    QVERIFY_EXCEPTION_THROWN(validate(b), CalibrationError);
+  }
+
+  void squares_haveInnerCorners() {
+    Board charuco = board(BoardType::Charuco, 5, 7);
+    charuco.radius_m = 0.0;
+    charuco.tag_size_m = 0.03;
+    validate(charuco);
+    QCOMPARE(charuco.pointCount(), 24);
+    QVERIFY((charuco.point_m(7) - Eigen::Vector2d(0.05, 0.05)).norm() < 1e-12);
+    Board squares = board(BoardType::Checkerboard, 6, 9);
+    QVERIFY_EXCEPTION_THROWN(validate(squares), CalibrationError);  // it has no circles, but a radius
+    squares.radius_m = 0.0;
+    validate(squares);
+    QVERIFY(!squares.hasHalfTurnAmbiguity() && squares.pointCount() == 54);
+    squares.cols = 8;
+    QVERIFY(squares.hasHalfTurnAmbiguity());
   }
 
   void whatMakesNoBoard_isRefused_data() {
@@ -123,7 +158,7 @@ class TestCircleBoard : public QObject {
     QFETCH(double, spacing_m);
     QFETCH(double, radius_m);
     QFETCH(QString, place);
-    CircleBoard b = board(BoardType::AsymmetricCircles, rows, cols);
+    Board b = board(BoardType::AsymmetricCircles, rows, cols);
     b.spacing_m = spacing_m;
     b.radius_m = radius_m;
     if (place.isEmpty()) return validate(b);
@@ -137,5 +172,5 @@ class TestCircleBoard : public QObject {
   }
 };
 
-EVICAL_TEST(TestCircleBoard)
-#include "tst_circle_board.moc"
+EVICAL_TEST(TestBoard)
+#include "tst_board.moc"

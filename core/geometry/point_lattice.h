@@ -1,0 +1,36 @@
+// Orders circles into a lattice: from a seed circle and two neighbours outwards, each step predicted by its
+// neighbours. Outliers and missing circles are normal.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <vector>
+
+namespace evical {
+
+struct LatticeCircle {
+  Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();
+  double radius_px = 0.0;
+};
+
+struct LatticeOptions {
+  double shortest_step_radii = 0.0;  // between neighbours, in their radii
+  double longest_step_radii = 0.0;
+  double largest_radius_ratio = 0.0;  // of neighbours
+  double step_tolerance = 0.0;        // of a step, to where its neighbours predict it
+  double least_sine = 0.0;            // between the lattice's two directions
+  int least_circles = 0;              // that a lattice has
+};
+
+struct LatticeNode {
+  int i = 0, j = 0;        // steps along the lattice's two directions, positively oriented in the image
+  std::size_t circle = 0;  // index into the circles
+};
+
+using CircleLattice = std::vector<LatticeNode>;
+
+// The lattice with the most circles; empty if no three circles make one.
+CircleLattice findCircleLattice(const std::vector<LatticeCircle>& circles, const LatticeOptions& options);
+
+}  // namespace evical
