@@ -10,7 +10,9 @@ const char* windowOutcomeName(WindowOutcome outcome) {
                                                                           "no lattice",
                                                                           "too few circles in the lattice",
                                                                           "ambiguous placement",
-                                                                          "circles lost in refinement"};
+                                                                          "circles lost in refinement",
+                                                                          "too blurred",
+                                                                          "unreadable"};
   return kNames[static_cast<std::size_t>(outcome)];
 }
 

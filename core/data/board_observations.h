@@ -1,4 +1,5 @@
-// What the front end found: circles of the board over time, each with its own time, covariance and velocity.
+// What was found of the board: its points over time, each with its own time, covariance and velocity. They are
+// called circles, as which event cameras see them; corners are circles of radius 0.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +14,7 @@ namespace evical {
 // One circle in one window. All pixel quantities are *ideal* pixels (camera_model.h) where the camera's
 // intrinsics are known, and the sensor's own otherwise.
 struct CircleObservation {
-  int circle = 0;  // index on the board, CircleBoard::index
+  int circle = 0;  // index on the board, Board::index
   double time_s =
       0.0;  // camera clock, since the recording's start: where centre and velocity are uncorrelated
   Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();  // of the ellipse
@@ -25,6 +26,8 @@ struct CircleObservation {
   double angle_rad = 0.0;                                  // of the major axis, from x towards y
   int events = 0;                                          // edge bursts that the fit rests on
   double residual_rms_px = 0.0;                            // of those, normal to the ellipse
+  // Of frames: the sensor's row less the middle one. Lines are exposed one after the other, and time_s is the middle's.
+  double rows_below_middle = 0.0;
 };
 
 enum class ViewKind { Complete, Partial };
@@ -46,8 +49,10 @@ enum class WindowOutcome {
   TooFewInGrid,      // lattice found, too few circles on it
   Ambiguous,         // several placements on the board fit as well
   RefinementFailed,  // circles lost when all were fitted together
+  Blurred,           // of a frame: the board moved too far while it was exposed
+  Unreadable,        // of a frame: its picture is damaged
 };
-inline constexpr std::size_t kWindowOutcomeCount = 8;
+inline constexpr std::size_t kWindowOutcomeCount = 10;
 const char* windowOutcomeName(WindowOutcome outcome);  // in plain words, for tables and logs
 
 struct WindowReport {
@@ -71,12 +76,16 @@ struct BoardExtent {
   LatticeEnds rows, cols;
 };
 
+// What measured the points: the front end from events, ours from frames, or another program.
+enum class CameraKind { Events, Frames, Points };
+
 struct BoardObservations {
   std::string camera;
+  CameraKind kind = CameraKind::Events;
   std::vector<BoardView> views;       // in time order
   std::vector<WindowReport> windows;  // all of them, in time order
   BoardExtent extent;
-  std::uint64_t events = 0;  // read
+  std::uint64_t events = 0;  // read; or frames, or points
 };
 
 }  // namespace evical

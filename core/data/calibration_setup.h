@@ -6,7 +6,7 @@
 #include "core/data/calibration_priors.h"
 #include "core/data/camera_lens.h"
 #include "core/data/imu_sample.h"
-#include "core/geometry/circle_board.h"
+#include "core/geometry/board.h"
 
 #include <cmath>
 #include <optional>
@@ -38,18 +38,22 @@ struct ImuData {
   }
 };
 
+// Whether a frame camera exposes all its rows at once, or one after the other.
+enum class Shutter { Global, Rolling };
+
 struct CameraData {
   std::string name;
   CameraLens lens;
   BoardObservations observations;  // in the ideal pixels of lens.seen_with
   SensorPrior prior = {};
+  Shutter shutter = Shutter::Global;
 };
 
 // The estimator's input. Times of observations are seconds since start_ns;
 // IMU samples keep their nanoseconds.
 struct CalibrationInput {
   std::int64_t start_ns = 0;
-  CircleBoard board;
+  Board board;
   std::vector<CameraData> cameras;
   std::vector<ImuData> imus;
   std::size_t reference_imu = 0;     // index into imus

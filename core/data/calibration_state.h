@@ -23,6 +23,7 @@ struct CameraState {
   CameraLens lens = {};                // `solved` where its intrinsics are estimated
   double time_offset_drift_ppm = 0.0;  // where it is solved for
   double time_offset_at_s = 0.0;       // the camera's time at which the offset is time_offset_s
+  double line_delay_us = 0.0;          // of frames: from one row's exposure to the next one's
 };
 
 struct ImuState {
@@ -77,7 +78,7 @@ inline double accelerometerTime_s(const ImuState& imu, double imu_time_s) {
   return referenceTime_s(imu, imu_time_s) - imu.accelerometer_delay_s;
 }
 
-// The board as it is, against what is said of it (circle_board.h): a point (x, y) of it lies at
+// The board as it is, against what is said of it (board.h): a point (x, y) of it lies at
 // scale ((1 + stretch / 2) x, (1 - stretch / 2) y), and behind the plane that touches it at its origin by
 // (row_curvature x^2 + column_curvature y^2) / 2 + twist x y: a sheet that is bent about any one axis.
 struct BoardState {

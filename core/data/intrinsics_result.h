@@ -4,7 +4,7 @@
 
 #include "core/data/calibration_status.h"
 
-#include "core/geometry/camera_intrinsics.h"
+#include "core/geometry/intrinsics_numbers.h"
 
 #include <Eigen/Core>
 
@@ -49,9 +49,10 @@ struct IntrinsicsResult {
   IntrinsicsVector standardDeviations() const { return covariance.diagonal().cwiseMax(0.0).cwiseSqrt(); }
 };
 
-// Coefficients in use: 4, or 5 with k3.
+// Coefficients in use: those of the model; of radtan 4, or 5 with k3.
 inline int distortionCount(const CameraIntrinsics& camera) {
-  return camera.model == CameraModel::PinholeRadtan && camera.distortion[4] != 0.0 ? 5 : 4;
+  const bool without_k3 = camera.model == CameraModel::PinholeRadtan && camera.distortion[4] == 0.0;
+  return coefficientCount(camera.model) - (without_k3 ? 1 : 0);
 }
 
 }  // namespace evical

@@ -1,7 +1,10 @@
 #include "core/data/intrinsics_yaml.h"
 
 #include "core/base/nearest_name.h"
+#include "core/data/intrinsics_result.h"
 #include "core/geometry/camera_model.h"
+#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/sphere_lens.h"
 
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
@@ -29,9 +32,15 @@ Resolution resolution(const YamlNode& node) {
 void setDistortion(const YamlNode& node, CameraIntrinsics& camera) {
   const std::vector<double> values = node.reals();
   const bool radtan = camera.model == CameraModel::PinholeRadtan;
-  if (values.size() != 4 && !(radtan && values.size() == 5))
-    throw node.error(fmt::format("has {} coefficients", values.size()),
-                     radtan ? "Give k1, k2, p1, p2 and if you like k3" : "Give k1, k2, k3, k4");
+  const auto count = static_cast<std::size_t>(coefficientCount(camera.model));
+  if (values.size() != count && !(radtan && values.size() == 4)) {
+    const auto names = distortionNames(camera.model);
+    throw node.error(
+        fmt::format("has {} coefficients", values.size()),
+        radtan ? "Give k1, k2, p1, p2 and if you like k3"
+               : fmt::format("Give {}",
+                             fmt::join(names.begin(), names.begin() + static_cast<int>(count), ", ")));
+  }
   camera.distortion = {};
   std::copy(values.begin(), values.end(), camera.distortion.begin());
 }
@@ -39,7 +48,7 @@ void setDistortion(const YamlNode& node, CameraIntrinsics& camera) {
 CameraIntrinsics readOwn(const YamlNode& map) {
   map.allowOnly({"model", "resolution_px", "focal_length_px", "principal_point_px", "distortion"});
   CameraIntrinsics camera;
-  camera.model = static_cast<CameraModel>(map["model"].choice({"pinhole_radtan", "pinhole_equidistant"}));
+  camera.model = static_cast<CameraModel>(map["model"].choice(kCameraModelNames));
   if (const auto node = map.find("resolution_px")) camera.resolution_px = resolution(*node);
   camera.focal_length_px = pair(map["focal_length_px"]);
   camera.principal_point_px = pair(map["principal_point_px"]);
@@ -47,16 +56,45 @@ CameraIntrinsics readOwn(const YamlNode& map) {
   return camera;
 }
 
+// The numbers before the focal lengths are the model's own: [xi alpha], [alpha beta], [xi], and none.
+CameraIntrinsics kalibrLens(const YamlNode& node, CameraModel model, std::size_t own) {
+  const std::vector<double> values = node.reals(own + 4);
+  CameraIntrinsics camera;
+  camera.model = model;
+  std::copy_n(values.begin(), own, camera.distortion.begin());
+  camera.focal_length_px = {values[own], values[own + 1]};
+  camera.principal_point_px = {values[own + 2], values[own + 3]};
+  return camera;
+}
+
+CameraIntrinsics readKalibrOmni(const YamlNode& map) {
+  CameraIntrinsics camera = kalibrLens(map["intrinsics"], CameraModel::OmniRadtan, 1);
+  if (map["distortion_model"].choice({"radtan", "none"}) == 1) return camera;
+  const std::vector<double> values = map["distortion_coeffs"].reals(4);
+  std::copy(values.begin(), values.end(), camera.distortion.begin() + 1);
+  return camera;
+}
+
+CameraIntrinsics readKalibrPinhole(const YamlNode& map) {
+  const std::size_t distortion = map["distortion_model"].choice({"radtan", "equidistant", "none"});
+  const CameraModel model = distortion == 1 ? CameraModel::PinholeEquidistant : CameraModel::PinholeRadtan;
+  CameraIntrinsics camera = kalibrLens(map["intrinsics"], model, 0);
+  if (distortion != 2) setDistortion(map["distortion_coeffs"], camera);
+  return camera;
+}
+
+CameraIntrinsics readKalibrSphere(const YamlNode& map, CameraModel model) {
+  if (const auto distortion = map.find("distortion_model")) distortion->choice({"none"});
+  return kalibrLens(map["intrinsics"], model, 2);
+}
+
 // Keys that Kalibr adds for other purposes (T_cam_imu, rostopic, ...) are left alone.
 CameraIntrinsics readKalibr(const YamlNode& map) {
-  map["camera_model"].choice({"pinhole"});
-  CameraIntrinsics camera;
-  const std::size_t distortion = map["distortion_model"].choice({"radtan", "equidistant", "none"});
-  camera.model = distortion == 1 ? CameraModel::PinholeEquidistant : CameraModel::PinholeRadtan;
-  const std::vector<double> values = map["intrinsics"].reals(4);
-  camera.focal_length_px = {values[0], values[1]};
-  camera.principal_point_px = {values[2], values[3]};
-  if (distortion != 2) setDistortion(map["distortion_coeffs"], camera);
+  const std::size_t kind = map["camera_model"].choice({"pinhole", "ds", "eucm", "omni"});
+  CameraIntrinsics camera =
+      kind == 0   ? readKalibrPinhole(map)
+      : kind == 3 ? readKalibrOmni(map)
+                  : readKalibrSphere(map, kind == 1 ? CameraModel::DoubleSphere : CameraModel::Eucm);
   if (const auto node = map.find("resolution")) camera.resolution_px = resolution(*node);
   return camera;
 }
@@ -165,10 +203,6 @@ bool isCamchain(const YamlNode& root) {
 
 }  // namespace
 
-const char* cameraModelName(CameraModel model) {
-  return model == CameraModel::PinholeRadtan ? "pinhole_radtan" : "pinhole_equidistant";
-}
-
 CameraIntrinsics readIntrinsics(const YamlNode& map) {
   if (!map.isMap()) throw map.error("must be a map of intrinsics", "Give model, focal_length_px, ...");
   const CameraIntrinsics camera = map.has("polymorphic_name")                ? readEkalibr(map)
@@ -251,8 +285,6 @@ std::string lensUncertaintyYaml(const LensUncertainty& uncertainty, const Camera
 
 std::string intrinsicsYaml(const CameraIntrinsics& camera, int indent) {
   const std::string blanks(static_cast<std::size_t>(indent), ' ');
-  const auto& d = camera.distortion;
-  const bool fifth = camera.model == CameraModel::PinholeRadtan && d[4] != 0.0;
   std::string text = fmt::format("{}model: {}\n", blanks, cameraModelName(camera.model));
   if (camera.resolution_px.known())
     text += fmt::format("{}resolution_px: [{}, {}]\n", blanks, camera.resolution_px.width_px,
@@ -261,9 +293,13 @@ std::string intrinsicsYaml(const CameraIntrinsics& camera, int indent) {
                       camera.focal_length_px.y());
   text += fmt::format("{}principal_point_px: [{}, {}]\n", blanks, camera.principal_point_px.x(),
                       camera.principal_point_px.y());
-  text += fmt::format("{}distortion: [{}, {}, {}, {}{}]\n", blanks, d[0], d[1], d[2], d[3],
-                      fifth ? fmt::format(", {}", d[4]) : "");
-  return text;
+  const auto names = distortionNames(camera.model);
+  const int count = distortionCount(camera);
+  const std::string legend = fmt::format("{}", fmt::join(names.begin(), names.begin() + count, ", "));
+  const auto& d = camera.distortion;
+  const bool pinhole = !isSphereModel(camera.model);
+  return text + fmt::format("{}distortion: [{}]{}\n", blanks, fmt::join(d.begin(), d.begin() + count, ", "),
+                            pinhole ? "" : "  # " + legend);
 }
 
 }  // namespace evical

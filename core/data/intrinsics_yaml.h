@@ -12,8 +12,6 @@
 
 namespace evical {
 
-const char* cameraModelName(CameraModel model);
-
 // Our map (model, resolution_px, focal_length_px, principal_point_px, distortion), one
 // camera of a Kalibr camchain, or a ROS camera_info; resolution from the map or, absent
 // there, unknown. Throws CalibrationError (BadInput).

@@ -43,7 +43,8 @@ enum class QuantityRelease {
   GyroscopeRotation,
   TimeOffsetDrift,
   BoardSize,
-  BoardBow
+  BoardBow,
+  LineDelay
 };
 
 // When there is something to compare or to show.
@@ -242,6 +243,21 @@ inline constexpr auto kCameraQuantities = std::tuple{
                 &CameraUncertainty::time_offset_std_s, &SensorPrior::time_offset},
     QuantityRow{detail::timeOffsetDriftInfo(QuantityOwner::Camera), &CameraState::time_offset_drift_ppm,
                 &CameraUncertainty::time_offset_drift_std_ppm, &SensorPrior::time_offset_drift},
+    QuantityRow{QuantityInfo{.name = "line_delay",
+                             .title = "line delay",
+                             .owner = QuantityOwner::Camera,
+                             .shape = QuantityShape::Scalar,
+                             .unit = "us",
+                             .shown_unit = "us",
+                             .decimals = 3,
+                             .remark = "from row to row",
+                             .comparable_unit = 0.1,
+                             .release = QuantityRelease::LineDelay,
+                             .presence = QuantityPresence::WhereNotZero,
+                             .written = QuantityWriting::WherePresent,
+                             .key = "line_delay_us",
+                             .std_key = "line_delay_std_us"},
+                &CameraState::line_delay_us, &CameraUncertainty::line_delay_std_us, NoPrior{}},
     QuantityRow{QuantityInfo{.name = "edge_lead",
                              .title = "edge lead",
                              .owner = QuantityOwner::Camera,

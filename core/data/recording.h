@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/data/event.h"
+#include "core/data/frame.h"
 #include "core/data/imu_units.h"
 #include "core/data/recording_fault.h"
 #include "core/geometry/resolution.h"
@@ -14,7 +15,7 @@
 
 namespace evical {
 
-enum class StreamType { Events, Imu, Frames, Triggers, Other };
+enum class StreamType { Events, Imu, Frames, Points, Triggers, Other };
 
 struct StreamInfo {
   std::string name;  // topic, or the stream's name in the file
@@ -29,14 +30,26 @@ struct StreamInfo {
   // Where times are the sensor's own and the file also tells when the host received them: what to add to get
   // the host's, as IMU samples from elsewhere have them. Better once all has been read.
   std::optional<double> host_clock_offset_s = std::nullopt;
+  bool readable = true;  // false: it is only listed; a fault says why where that is not obvious
+  bool timed = true;     // false: pictures without times, numbered 1 s apart; they tell intrinsics only
 };
 
-// What one call of RecordingReader::read hands out: some events or some samples of one stream, the samples'
-// numbers in the stream's units.
+// What one call of RecordingReader::read hands out, all of one stream: some events, some samples in the stream's
+// units, a few frames, or the points of one time.
 struct Packet {
   std::size_t stream = 0;  // index into RecordingReader::streams()
   std::vector<Event> events;
   std::vector<RawImuSample> imu_samples;
+  std::vector<Frame> frames;
+  std::vector<MeasuredPoint> points;
+
+  bool empty() const { return events.empty() && imu_samples.empty() && frames.empty() && points.empty(); }
+  void clear() {
+    events.clear();
+    imu_samples.clear();
+    frames.clear();
+    points.clear();
+  }
 };
 
 }  // namespace evical

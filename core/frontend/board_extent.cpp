@@ -15,7 +15,7 @@ struct Line {
 };
 
 Line rowOf(const BoardScene& scene, int row) {
-  const CircleBoard& board = scene.board;
+  const Board& board = scene.board;
   Line line{scene, {0.0, row * board.spacing_m}};
   line.scene.board.rows = 1;
   if (board.type == BoardType::AsymmetricCircles && row % 2 != 0) line.origin_m.x() = board.spacing_m;
@@ -23,7 +23,7 @@ Line rowOf(const BoardScene& scene, int row) {
 }
 
 Line columnOf(const BoardScene& scene, int col) {
-  Line line{scene, {scene.board.centre_m(0, 1).x() * col, 0.0}};
+  Line line{scene, {scene.board.point_m(0, 1).x() * col, 0.0}};
   line.scene.board.cols = 1;
   return line;
 }
@@ -61,7 +61,7 @@ class ExtentJudge {
   LineState stateOf(const Line& line, int seen) const {
     const int expected = expectedCircles(motionOf(line), line.scene, halfSlot_s());
     const double least = options_.extent.least_line;
-    if (expected < std::max(2.0, least * line.scene.board.circleCount())) return LineState::OutOfView;
+    if (expected < std::max(2.0, least * line.scene.board.pointCount())) return LineState::OutOfView;
     if (seen >= std::max(2.0, least * expected)) return LineState::Present;
     return seen <= (1.0 - least) * 0.5 * expected ? LineState::Absent : LineState::Unclear;
   }

@@ -78,7 +78,7 @@ BoardMotion predicted(const BoardMotion& motion, std::int64_t time_ns) {
 }
 
 std::optional<CircleImage> imageOfCircle(const Eigen::Matrix3d& h, const BoardScene& scene, int index) {
-  const Eigen::Vector2d c = scene.board.centre_m(index);
+  const Eigen::Vector2d c = scene.board.point_m(index);
   const double r2 = scene.board.radius_m * scene.board.radius_m;
   Eigen::Matrix3d dual;
   dual << c.x() * c.x() - r2, c.x() * c.y(), c.x(), c.x() * c.y(), c.y() * c.y() - r2, c.y(), c.x(), c.y(),
@@ -108,7 +108,7 @@ std::optional<CircleImage> imageOfCircle(const Eigen::Matrix3d& h, const BoardSc
 
 std::vector<CircleImage> projectBoard(const Eigen::Matrix3d& ideal_from_board, const BoardScene& scene) {
   std::vector<CircleImage> circles;
-  for (int i = 0; i < scene.board.circleCount(); ++i) {
+  for (int i = 0; i < scene.board.pointCount(); ++i) {
     std::optional<CircleImage> circle = imageOfCircle(ideal_from_board, scene, i);
     if (!circle) continue;
     const double r = circle->sensor_radius_px;

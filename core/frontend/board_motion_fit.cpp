@@ -187,7 +187,7 @@ std::optional<BoardMotion> fitBoardMotion(const BurstWindow& window, const Board
   NormalVector from_prior = NormalVector::Zero();
   from_prior.segment<kFlowTerms>(2 * kFlowTerms) = motion.acceleration_px_s2;
   const double half_window_s = fitHalfWindow_s(boardSpeed_px_s(motion, scene), options);
-  std::vector<std::vector<FitPoint>> points(static_cast<std::size_t>(scene.board.circleCount()));
+  std::vector<std::vector<FitPoint>> points(static_cast<std::size_t>(scene.board.pointCount()));
   double gate_px = first_gate_px;
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     NormalEquations equations;

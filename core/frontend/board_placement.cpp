@@ -2,8 +2,9 @@
 
 #include "core/frontend/board_motion_from_points.h"
 #include "core/geometry/camera_model.h"
+#include "core/geometry/homography.h"
+#include "core/geometry/lattice_placement.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
@@ -22,74 +23,10 @@ constexpr double kNearlyBest = 0.8;
 // How far the board's axes may be from equally long (logarithm of the ratio) and perpendicular (cosine).
 constexpr double kAxesTolerance = 0.2;
 
-using LatticePlace = std::pair<int, int>;
-using LatticeMap = std::array<int, 4>;  // row by row
-
-constexpr std::array<LatticeMap, 4> kTurns = {{{1, 0, 0, 1}, {0, -1, 1, 0}, {-1, 0, 0, -1}, {0, 1, -1, 0}}};
-
-// Turns of the lattice, each also sheared: a tilted board's shortest steps may not be its square's sides.
-std::vector<LatticeMap> latticeMaps() {
-  constexpr std::array<LatticeMap, 5> kShears = {
-      {{1, 0, 0, 1}, {1, 1, 0, 1}, {1, -1, 0, 1}, {1, 0, 1, 1}, {1, 0, -1, 1}}};
-  std::vector<LatticeMap> maps;
-  for (const LatticeMap& s : kShears) {
-    for (const LatticeMap& t : kTurns) {
-      maps.push_back({t[0] * s[0] + t[1] * s[2], t[0] * s[1] + t[1] * s[3],  //
-                      t[2] * s[0] + t[3] * s[2], t[2] * s[1] + t[3] * s[3]});
-    }
-  }
-  return maps;
-}
-
-// The board's circles in steps of its own square lattice, positively oriented like the image's.
-std::map<LatticePlace, int> boardLattice(const CircleBoard& board) {
-  std::map<LatticePlace, int> lattice;
-  for (int row = 0; row < board.rows; ++row) {
-    for (int col = 0; col < board.cols; ++col) {
-      const int x = 2 * col + row % 2, y = row;
-      const bool asymmetric = board.type == BoardType::AsymmetricCircles;
-      const LatticePlace place = asymmetric ? LatticePlace{(x - y) / 2, (x + y) / 2} : LatticePlace{col, row};
-      lattice[place] = board.index(row, col);
-    }
-  }
-  return lattice;
-}
-
-struct Shifted {
-  LatticeMap map;
-  LatticePlace shift;
-  int count;
-};
-
-LatticePlace apply(const LatticeMap& map, const LatticeNode& node) {
-  return {map[0] * node.i + map[1] * node.j, map[2] * node.i + map[3] * node.j};
-}
-
-std::vector<Shifted> bestShifts(const CircleLattice& lattice, const std::map<LatticePlace, int>& board) {
-  std::vector<Shifted> shifts;
-  int best = 0;
-  for (const LatticeMap& map : latticeMaps()) {
-    std::map<LatticePlace, int> counts;
-    for (const LatticeNode& node : lattice) {
-      const LatticePlace at = apply(map, node);
-      for (const auto& [place, circle] : board) ++counts[{place.first - at.first, place.second - at.second}];
-    }
-    for (const auto& [shift, count] : counts) {
-      best = std::max(best, count);
-      shifts.push_back({map, shift, count});
-    }
-  }
-  std::erase_if(shifts, [&](const Shifted& s) { return s.count < kNearlyBest * best; });
-  std::sort(shifts.begin(), shifts.end(),
-            [](const Shifted& a, const Shifted& b) { return a.count > b.count; });
-  return shifts;
-}
-
 // The board's two axes as the camera sees them must be about equally long and perpendicular.
 bool looksSquare(const Eigen::Matrix3d& ideal_from_board, const CameraIntrinsics& camera) {
   Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
-  k(0, 0) = camera.focal_length_px.x();
-  k(1, 1) = camera.focal_length_px.y();
+  k.diagonal().head<2>() = idealFocalLength_px(camera);
   k.topRightCorner<2, 1>() = camera.principal_point_px;
   const Eigen::Matrix3d axes = k.inverse() * ideal_from_board;
   const double x = axes.col(0).norm(), y = axes.col(1).norm();
@@ -106,13 +43,13 @@ MovingPoint toIdeal(const MovingCircle& circle, const std::optional<CameraIntrin
 
 // Homography with the circles that agree; drops the others from the placement.
 std::optional<Eigen::Matrix3d> fitAgreeing(std::vector<std::pair<int, std::size_t>>& placed,
-                                           const std::vector<MovingPoint>& ideal, const CircleBoard& board,
+                                           const std::vector<MovingPoint>& ideal, const Board& board,
                                            const GridOptions& options) {
   for (;;) {
     if (static_cast<int>(placed.size()) < options.least_circles) return std::nullopt;
     std::vector<Eigen::Vector2d> from, to;
     for (const auto& [circle, index] : placed) {
-      from.push_back(board.centre_m(circle));
+      from.push_back(board.point_m(circle));
       to.push_back(ideal[index].centre_px);
     }
     const std::optional<Eigen::Matrix3d> h = fitHomography(from, to);
@@ -136,16 +73,16 @@ std::optional<Eigen::Matrix3d> fitAgreeing(std::vector<std::pair<int, std::size_
 
 // Circles that the lattice missed or had given to an outlier: whatever lies where the homography puts them.
 void fillGaps(const Eigen::Matrix3d& ideal_from_board, const std::vector<MovingPoint>& ideal,
-              const CircleBoard& board, const GridOptions& options,
+              const Board& board, const GridOptions& options,
               std::vector<std::pair<int, std::size_t>>& placed) {
-  std::vector<bool> found(static_cast<std::size_t>(board.circleCount()), false), used(ideal.size(), false);
+  std::vector<bool> found(static_cast<std::size_t>(board.pointCount()), false), used(ideal.size(), false);
   for (const auto& [circle, index] : placed) found[static_cast<std::size_t>(circle)] = used[index] = true;
   const auto imageOf = [&](const Eigen::Vector2d& on_board) {
     return Eigen::Vector2d((ideal_from_board * on_board.homogeneous()).hnormalized());
   };
-  for (int circle = 0; circle < board.circleCount(); ++circle) {
+  for (int circle = 0; circle < board.pointCount(); ++circle) {
     if (found[static_cast<std::size_t>(circle)]) continue;
-    const Eigen::Vector2d centre = board.centre_m(circle), predicted_px = imageOf(centre);
+    const Eigen::Vector2d centre = board.point_m(circle), predicted_px = imageOf(centre);
     const double step_px = (imageOf(centre + Eigen::Vector2d(board.spacing_m, 0.0)) - predicted_px).norm();
     std::size_t nearest = ideal.size();
     double nearest_px = 0.5 * options.step_tolerance * step_px;
@@ -183,81 +120,44 @@ std::vector<Eigen::Matrix3d> withoutTwins(const std::vector<Eigen::Matrix3d>& mo
 
 }  // namespace
 
-std::vector<Eigen::Matrix3d> latticeShifts(const CircleBoard& board, double least_overlap) {
+std::vector<Eigen::Matrix3d> latticeShifts(const Board& board, double least_overlap) {
   const std::map<LatticePlace, int> lattice = boardLattice(board);
   Eigen::Matrix2d metres_per_step = board.spacing_m * Eigen::Matrix2d::Identity();
   if (board.type == BoardType::AsymmetricCircles)
     metres_per_step << board.spacing_m, board.spacing_m, -board.spacing_m, board.spacing_m;
   std::vector<Eigen::Matrix3d> shifts = {Eigen::Matrix3d::Identity()}, onto_itself = shifts;
-  for (const LatticeMap& turn : kTurns) {
+  for (const LatticeMap& turn : kLatticeTurns) {
     std::map<LatticePlace, int> counts;
     for (const auto& [from, circle] : lattice) {
-      const LatticePlace at = apply(turn, {from.first, from.second, 0});
+      const LatticePlace at = applied(turn, from);
       for (const auto& [to, other] : lattice) ++counts[{to.first - at.first, to.second - at.second}];
     }
     for (const auto& [shift, count] : counts) {
-      if (count < least_overlap * board.circleCount()) continue;
-      if (turn == kTurns.front() && shift == LatticePlace{0, 0}) continue;
+      if (count < least_overlap * board.pointCount()) continue;
+      if (turn == kLatticeTurns.front() && shift == LatticePlace{0, 0}) continue;
       Eigen::Matrix2d turned;
       turned << turn[0], turn[1], turn[2], turn[3];
       Eigen::Matrix3d motion = Eigen::Matrix3d::Identity();
       motion.topLeftCorner<2, 2>() = metres_per_step * turned * metres_per_step.inverse();
       motion.topRightCorner<2, 1>() = metres_per_step * Eigen::Vector2d(shift.first, shift.second);
       shifts.push_back(motion);
-      if (count == board.circleCount()) onto_itself.push_back(motion);
+      if (count == board.pointCount()) onto_itself.push_back(motion);
     }
   }
   return withoutTwins(shifts, onto_itself);
-}
-
-std::optional<Eigen::Matrix3d> fitHomography(const std::vector<Eigen::Vector2d>& from,
-                                             const std::vector<Eigen::Vector2d>& to) {
-  const auto normaliser = [](const std::vector<Eigen::Vector2d>& points) {
-    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-    for (const Eigen::Vector2d& p : points) mean += p;
-    mean /= static_cast<double>(points.size());
-    double spread = 0.0;
-    for (const Eigen::Vector2d& p : points) spread += (p - mean).squaredNorm();
-    const double s = std::sqrt(2.0 * static_cast<double>(points.size()) / std::max(spread, 1e-30));
-    return (Eigen::Matrix3d() << s, 0, -s * mean.x(), 0, s, -s * mean.y(), 0, 0, 1).finished();
-  };
-  if (from.size() < kLeastForHomography) return std::nullopt;
-  const Eigen::Matrix3d nf = normaliser(from), nt = normaliser(to);
-  Eigen::Matrix<double, 9, 9> sums = Eigen::Matrix<double, 9, 9>::Zero();
-  for (std::size_t k = 0; k < from.size(); ++k) {
-    const Eigen::Vector3d f = nf * from[k].homogeneous();
-    const Eigen::Vector2d t = (nt * to[k].homogeneous()).hnormalized();
-    Eigen::Matrix<double, 2, 9> rows;
-    rows << f.transpose(), Eigen::RowVector3d::Zero(), -t.x() * f.transpose(),  //
-        Eigen::RowVector3d::Zero(), f.transpose(), -t.y() * f.transpose();
-    sums += rows.transpose() * rows;
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> eigen(sums);
-  if (!(eigen.eigenvalues()(1) > 1e-9)) return std::nullopt;
-  const Eigen::Matrix<double, 9, 1> v = eigen.eigenvectors().col(0);
-  Eigen::Matrix3d h;
-  h << v(0), v(1), v(2), v(3), v(4), v(5), v(6), v(7), v(8);
-  h = nt.inverse() * h * nf;
-  if (std::abs(h(2, 2)) < 1e-12) return std::nullopt;
-  return h / h(2, 2);
 }
 
 std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
                                          const std::vector<MovingCircle>& circles, const BoardScene& scene,
                                          std::int64_t time_ns, const GridOptions& options) {
   std::vector<BoardPlacement> placements;
-  const std::map<LatticePlace, int> board_lattice = boardLattice(scene.board);
   std::vector<MovingPoint> ideal;
   for (const MovingCircle& circle : circles) ideal.push_back(toIdeal(circle, scene.camera));
-  for (const Shifted& shifted : bestShifts(lattice, board_lattice)) {
+  for (LatticePlacement& laid : layOnBoard(lattice, scene.board, kNearlyBest)) {
     BoardPlacement placement;
-    for (const LatticeNode& node : lattice) {
-      const LatticePlace at = apply(shifted.map, node);
-      const auto found =
-          board_lattice.find({at.first + shifted.shift.first, at.second + shifted.shift.second});
-      if (found == board_lattice.end() || !ideal[node.circle].centre_px.allFinite()) continue;
-      placement.circles.emplace_back(found->second, node.circle);
-    }
+    placement.circles = std::move(laid);
+    std::erase_if(placement.circles,
+                  [&](const auto& circle) { return !ideal[circle.second].centre_px.allFinite(); });
     std::optional<Eigen::Matrix3d> h = fitAgreeing(placement.circles, ideal, scene.board, options);
     if (h) {
       fillGaps(*h, ideal, scene.board, options, placement.circles);

@@ -24,13 +24,6 @@ std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
 // Motions of the board plane that lay the board's lattice onto itself, shifted or turned, so that at least
 // `least_overlap` of its circles meet circles: what a placement may be confused with. The identity is the
 // first. Motions that differ by a turn that leaves the whole lattice as it is are one.
-std::vector<Eigen::Matrix3d> latticeShifts(const CircleBoard& board, double least_overlap);
-
-// A homography takes no fewer points.
-inline constexpr std::size_t kLeastForHomography = 4;
-
-// Homography from points to points (normalised direct linear transform); nothing if degenerate.
-std::optional<Eigen::Matrix3d> fitHomography(const std::vector<Eigen::Vector2d>& from,
-                                             const std::vector<Eigen::Vector2d>& to);
+std::vector<Eigen::Matrix3d> latticeShifts(const Board& board, double least_overlap);
 
 }  // namespace evical

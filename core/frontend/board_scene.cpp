@@ -26,7 +26,7 @@ std::shared_ptr<const IdealPixels> idealPixels(const CameraIntrinsics& camera, R
 
 }  // namespace
 
-BoardScene::BoardScene(const CircleBoard& the_board, Resolution resolution,
+BoardScene::BoardScene(const Board& the_board, Resolution resolution,
                        std::optional<CameraIntrinsics> intrinsics)
     : board(the_board), resolution_px(resolution), camera(std::move(intrinsics)) {
   if (camera) pixels = idealPixels(*camera, resolution);

@@ -1,7 +1,7 @@
 // What does not change from window to window: the board, the sensor, and the lens between them.
 #pragma once
 
-#include "core/geometry/circle_board.h"
+#include "core/geometry/board.h"
 
 #include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/undistortion_table.h"
@@ -34,12 +34,12 @@ struct IdealPixels {
 
 // Copies are cheap: they share the lens's tables.
 struct BoardScene {
-  CircleBoard board;
+  Board board;
   Resolution resolution_px;
   std::optional<CameraIntrinsics> camera;
   std::shared_ptr<const IdealPixels> pixels;  // null without a camera: ideal pixels are the sensor's own
 
-  BoardScene(const CircleBoard& board, Resolution resolution_px, std::optional<CameraIntrinsics> camera);
+  BoardScene(const Board& board, Resolution resolution_px, std::optional<CameraIntrinsics> camera);
 };
 
 }  // namespace evical

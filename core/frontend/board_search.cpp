@@ -3,6 +3,7 @@
 #include "core/frontend/circle_measurement.h"
 #include "core/frontend/ring_vote.h"
 #include "core/frontend/rival_placements.h"
+#include "core/geometry/homography.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -60,10 +61,10 @@ WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& scene
     const std::optional<Judged> judged =
         judge(search.placements[k], window, scene, search.half_window_s, options);
     if (judged && (!best || judged->value() > best->value())) best = judged;
-    if (best && best->measured == scene.board.circleCount()) break;
+    if (best && best->measured == scene.board.pointCount()) break;
   }
   if (!best) return WindowOutcome::RefinementFailed;
-  const int count = scene.board.circleCount();
+  const int count = scene.board.pointCount();
   if (best->measured < count) {
     const std::vector<PlacementScore> rivals =
         rivalPlacements(best->motion, window, scene, search.half_window_s, options);

@@ -19,7 +19,7 @@ constexpr double kSearchIntervalGrowth = 1.2;  // by each search that finds noth
 
 }  // namespace
 
-BoardTracker::BoardTracker(const CircleBoard& board, Resolution resolution_px,
+BoardTracker::BoardTracker(const Board& board, Resolution resolution_px,
                            std::optional<CameraIntrinsics> camera, const FrontEndOptions& options,
                            std::int64_t start_ns)
     : scene_(board, resolution_px, std::move(camera)),

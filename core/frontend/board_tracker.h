@@ -23,7 +23,7 @@ struct BoardSearch;
 class BoardTracker {
  public:
   // Times in the observations are seconds since start_ns. Without a camera all pixels are the sensor's own.
-  BoardTracker(const CircleBoard& board, Resolution resolution_px, std::optional<CameraIntrinsics> camera,
+  BoardTracker(const Board& board, Resolution resolution_px, std::optional<CameraIntrinsics> camera,
                const FrontEndOptions& options, std::int64_t start_ns);
 
   // Events in time order, inside the resolution.

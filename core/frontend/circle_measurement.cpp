@@ -205,7 +205,7 @@ std::vector<CircleObservation> measureCircles(const BurstWindow& window, const B
   std::vector<CircleObservation> circles;
   CircleMeter meter(window, motion, slot, options);
   if (trace)
-    trace->verdicts.assign(static_cast<std::size_t>(scene.board.circleCount()), CircleVerdict::OutsideImage);
+    trace->verdicts.assign(static_cast<std::size_t>(scene.board.pointCount()), CircleVerdict::OutsideImage);
   for (const CircleImage& circle : projectBoard(motion.ideal_from_board, scene)) {
     CircleObservation out;
     const CircleVerdict verdict = meter.measure(circle, out);

@@ -17,10 +17,10 @@ class LatticeAround {
  public:
   LatticeAround(const BoardMotion& laid, const std::vector<Eigen::Matrix3d>& shifts, const BoardScene& scene)
       : scene_(scene), motion_(laid) {
-    const CircleBoard& board = scene.board;
+    const Board& board = scene.board;
     Eigen::Vector2d least = Eigen::Vector2d::Zero(), most = Eigen::Vector2d::Zero();  // in spacings
     for (const Eigen::Matrix3d& shift : shifts) {
-      for (int circle = 0; circle < board.circleCount(); ++circle) {
+      for (int circle = 0; circle < board.pointCount(); ++circle) {
         const Eigen::Vector2d place = placeOf(shift, circle);
         least = least.cwiseMin(place);
         most = most.cwiseMax(place);
@@ -38,7 +38,7 @@ class LatticeAround {
   }
 
   void look(const BurstWindow& window, double half_window_s, const TrackingOptions& options) {
-    const auto count = static_cast<std::size_t>(scene_.board.circleCount());
+    const auto count = static_cast<std::size_t>(scene_.board.pointCount());
     measured_.assign(count, 0);
     expected_.assign(count, 0);
     for (const CircleObservation& circle : measureCircles(window, motion_, scene_, {half_window_s}, options))
@@ -68,7 +68,7 @@ class LatticeAround {
 
   // In spacings, from the first circle of the board as it is laid.
   Eigen::Vector2d placeOf(const Eigen::Matrix3d& shift, int circle) const {
-    return (shift * board_.centre_m(circle).homogeneous()).hnormalized() / board_.spacing_m;
+    return (shift * board_.point_m(circle).homogeneous()).hnormalized() / board_.spacing_m;
   }
   int indexOf(const Eigen::Vector2d& place) const {
     const int row = static_cast<int>(std::lround(place.y())) + rows_before_;
@@ -78,7 +78,7 @@ class LatticeAround {
   }
 
   BoardScene scene_;
-  CircleBoard board_ = scene_.board;  // without what is around it
+  Board board_ = scene_.board;  // without what is around it
   BoardMotion motion_;
   int rows_before_ = 0, columns_before_ = 0;
   std::vector<std::uint8_t> measured_, expected_;  // by circle of the surrounding lattice
@@ -94,7 +94,7 @@ std::vector<PlacementScore> rivalPlacements(const BoardMotion& laid, const Burst
   lattice.look(window, half_window_s, options.tracking);
   std::vector<PlacementScore> rivals;
   for (const Eigen::Matrix3d& shift : shifts)
-    rivals.push_back(lattice.score(shift, scene.board.circleCount()));
+    rivals.push_back(lattice.score(shift, scene.board.pointCount()));
   std::stable_sort(rivals.begin(), rivals.end(),
                    [](const PlacementScore& a, const PlacementScore& b) { return a.value() > b.value(); });
   return rivals;
@@ -107,13 +107,13 @@ BoardMotion shifted(const BoardMotion& motion, const Eigen::Matrix3d& shift) {
   return moved;
 }
 
-std::vector<int> renumbering(const CircleBoard& board, const Eigen::Matrix3d& shift) {
+std::vector<int> renumbering(const Board& board, const Eigen::Matrix3d& shift) {
   constexpr double kSamePlace = 1e-3;  // of the spacing
-  std::vector<int> rival_of(static_cast<std::size_t>(board.circleCount()), -1);
-  for (int rival = 0; rival < board.circleCount(); ++rival) {
-    const Eigen::Vector2d place_m = (shift * board.centre_m(rival).homogeneous()).hnormalized();
-    for (int circle = 0; circle < board.circleCount(); ++circle) {
-      if ((board.centre_m(circle) - place_m).norm() < kSamePlace * board.spacing_m)
+  std::vector<int> rival_of(static_cast<std::size_t>(board.pointCount()), -1);
+  for (int rival = 0; rival < board.pointCount(); ++rival) {
+    const Eigen::Vector2d place_m = (shift * board.point_m(rival).homogeneous()).hnormalized();
+    for (int circle = 0; circle < board.pointCount(); ++circle) {
+      if ((board.point_m(circle) - place_m).norm() < kSamePlace * board.spacing_m)
         rival_of[static_cast<std::size_t>(circle)] = rival;
     }
   }
@@ -122,7 +122,7 @@ std::vector<int> renumbering(const CircleBoard& board, const Eigen::Matrix3d& sh
 
 std::optional<Eigen::Matrix3d> PlacementWatch::look(const BurstWindow& window, const WindowTrace& trace,
                                                     const BoardScene& scene, const FrontEndOptions& options) {
-  if (trace.report.circles + options.grid.ambiguity_margin >= scene.board.circleCount()) {
+  if (trace.report.circles + options.grid.ambiguity_margin >= scene.board.pointCount()) {
     reset();  // no rival explains more
     return std::nullopt;
   }

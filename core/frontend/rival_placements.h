@@ -30,7 +30,7 @@ std::vector<PlacementScore> rivalPlacements(const BoardMotion& laid, const Burst
 BoardMotion shifted(const BoardMotion& motion, const Eigen::Matrix3d& shift);
 
 // Board circle of the rival for each circle of the board as it was laid; -1 where the rival has none.
-std::vector<int> renumbering(const CircleBoard& board, const Eigen::Matrix3d& shift);
+std::vector<int> renumbering(const Board& board, const Eigen::Matrix3d& shift);
 
 // Holds a tracked board against its rivals.
 class PlacementWatch {

@@ -174,7 +174,7 @@ RgbImage drawTrackedWindow(const BurstWindow& window, const WindowTrace& trace, 
   canvas.title(
       print("%.3f s: %s   %d bursts, %zu of %d circles, fit %.2f px RMS over %d, radius offset %+.2f px",
             trace.report.time_s, trace.held() ? "tracked" : "lost", trace.report.events, trace.circles.size(),
-            scene.board.circleCount(), motion.residual_rms_px, motion.bursts, motion.radius_offset_px));
+            scene.board.pointCount(), motion.residual_rms_px, motion.bursts, motion.radius_offset_px));
   canvas.legend({{"brighter", kBrighter},
                  {"darker", kDarker},
                  {"fitted board", colour},

@@ -3,6 +3,7 @@
 #include "core/base/time.h"
 #include "core/frontend/board_motion_from_points.h"
 #include "core/frontend/board_placement.h"
+#include "core/geometry/homography.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +36,7 @@ TrackingEnd endOf(int found, int expected, const FrontEndOptions& options) {
 }  // namespace
 
 WindowOutcome outcomeOf(int found, const BoardScene& scene, const GridOptions& options) {
-  const int count = scene.board.circleCount();
+  const int count = scene.board.pointCount();
   const double least = std::max<double>(kLeastForHomography, options.least_partial * count);
   if (found < least) return WindowOutcome::TooFewInGrid;
   return found == count ? WindowOutcome::Complete : WindowOutcome::Partial;
@@ -90,7 +91,7 @@ std::optional<BoardMotion> motionAtView(const TrackingInput& input, const BoardV
   std::vector<Eigen::Vector2d> on_board, in_image;
   std::vector<MovingPoint> points;
   for (const CircleObservation& circle : view.circles) {
-    on_board.push_back(input.scene.board.centre_m(circle.circle));
+    on_board.push_back(input.scene.board.point_m(circle.circle));
     in_image.push_back(circle.centre_px + (view.time_s - circle.time_s) * circle.velocity_px_s);
     points.push_back({in_image.back(), circle.velocity_px_s});
   }

@@ -17,9 +17,9 @@
 namespace evical {
 namespace {
 
-std::vector<CameraPose> cameraPoses(const CameraData& camera, const CircleBoard& board,
-                                    const GyroRotation& gyro, const InitialisationOptions& options,
-                                    const RunContext& context, Initialisation& result) {
+std::vector<CameraPose> cameraPoses(const CameraData& camera, const Board& board, const GyroRotation& gyro,
+                                    const InitialisationOptions& options, const RunContext& context,
+                                    Initialisation& result) {
   CameraPoses found = estimateCameraPoses(camera, board, options, context);
   checkPoses(camera, found, gyro, options);
   result.steps.push_back(

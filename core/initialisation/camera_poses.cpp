@@ -1,5 +1,6 @@
 #include "core/initialisation/camera_poses.h"
 
+#include "core/geometry/camera_model.h"
 #include "core/geometry/circle_conic.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/robust.h"
@@ -30,7 +31,7 @@ Points atOneTime(const BoardView& view) {
 }
 
 // Gauss-Newton on the ellipses' centres; returns the RMS error in pixels, per circle.
-double refine(const Points& points, const CameraIntrinsics& camera, const CircleBoard& board,
+double refine(const Points& points, const CameraIntrinsics& camera, const Board& board,
               RigidTransform& camera_from_board) {
   constexpr int kIterations = 8;
   constexpr double kConverged = 1e-5;  // rad, m: a hundredth of what noise does
@@ -42,7 +43,7 @@ double refine(const Points& points, const CameraIntrinsics& camera, const Circle
     for (const auto& [circle, pixel] : points) {
       Eigen::Matrix<double, 2, 6> jacobian;
       const auto centre =
-          projectedCircleCentre(camera, camera_from_board, board.centre_m(circle), board.radius_m, &jacobian);
+          projectedCircleCentre(camera, camera_from_board, board.point_m(circle), board.radius_m, &jacobian);
       if (!centre) return kNoFit_px;
       const Eigen::Vector2d error = *centre - pixel;
       matrix += jacobian.transpose() * jacobian;
@@ -62,13 +63,14 @@ double refine(const Points& points, const CameraIntrinsics& camera, const Circle
 
 std::vector<std::pair<double, RigidTransform>> planarPoses(const Points& points,
                                                            const CameraIntrinsics& camera,
-                                                           const CircleBoard& board) {
+                                                           const Board& board) {
   std::vector<cv::Point3d> on_board;
   std::vector<cv::Point2d> rays;
   for (const auto& [circle, pixel] : points) {
-    const Eigen::Vector2d centre = board.centre_m(circle);
+    const Eigen::Vector2d centre = board.point_m(circle);
     on_board.emplace_back(centre.x(), centre.y(), 0.0);
-    const Eigen::Vector2d ray = (pixel - camera.principal_point_px).cwiseQuotient(camera.focal_length_px);
+    const Eigen::Vector2d ray =
+        (pixel - camera.principal_point_px).cwiseQuotient(idealFocalLength_px(camera));
     rays.emplace_back(ray.x(), ray.y());
   }
   std::vector<cv::Mat> rotations, translations;
@@ -100,7 +102,7 @@ double disagreement(const RigidTransform& pose, double time_s, const CameraPose&
 
 }  // namespace
 
-CameraPoses estimateCameraPoses(const CameraData& camera, const CircleBoard& board,
+CameraPoses estimateCameraPoses(const CameraData& camera, const Board& board,
                                 const InitialisationOptions& options, const RunContext& context) {
   CameraPoses result;
   std::vector<double> errors_px;

@@ -28,7 +28,7 @@ struct CameraPoses {
 };
 
 // One pose a view, its circles brought to view.time_s.
-CameraPoses estimateCameraPoses(const CameraData& camera, const CircleBoard& board,
+CameraPoses estimateCameraPoses(const CameraData& camera, const Board& board,
                                 const InitialisationOptions& options, const RunContext& context = {});
 
 // Where a view allows two poses, takes the one whose rotation from its neighbours is as large as the

@@ -95,7 +95,7 @@ double commonKnotSpacing_s(const CalibrationInput& input, const InitialisationOp
   return spacing_s;
 }
 
-void checkBoardScale(const GravityAlignment& gravity, const CircleBoard& board,
+void checkBoardScale(const GravityAlignment& gravity, const Board& board,
                      const InitialisationOptions& options, Initialisation& result) {
   const double excess = gravity.board_scale - 1.0, sigma = gravity.board_scale_std;
   result.steps.push_back({"board scale",

@@ -2,6 +2,7 @@
 
 #include "core/base/time.h"
 #include "core/data/unfit_samples.h"
+#include "core/geometry/camera_model.h"
 #include "core/geometry/so3_spline.h"
 #include "core/geometry/spline_basis.h"
 #include "core/numerics/band_cholesky.h"
@@ -196,7 +197,7 @@ ViewPrecision viewPrecision(std::span<const CameraData> cameras, std::span<const
     std::vector<double> angles_rad, distances_m;
     for (const CameraPose& pose : aligned[k].poses) {
       const double circles = static_cast<double>(cameras[k].observations.views[pose.view].circles.size());
-      const double focal_px = cameras[k].lens.seen_with->focal_length_px.mean();
+      const double focal_px = idealFocalLength_px(*cameras[k].lens.seen_with).mean();
       angles_rad.push_back(pose.reprojection_px / (focal_px * std::sqrt(circles)));
       distances_m.push_back(pose.world_from_camera.translation_m.norm());
     }

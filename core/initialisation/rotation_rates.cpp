@@ -38,10 +38,9 @@ double RotationRates::rmsDifferenceAfter_rad_s() const {
   return rmsDifference(camera_rad_s, imu_after_rad_s);
 }
 
-RotationRates rotationRates(const CameraData& camera, const CircleBoard& board,
-                            const CameraState& camera_state, const ImuData& imu, const ImuState& imu_state,
-                            std::int64_t start_ns, const InitialisationOptions& options,
-                            const RunContext& context) {
+RotationRates rotationRates(const CameraData& camera, const Board& board, const CameraState& camera_state,
+                            const ImuData& imu, const ImuState& imu_state, std::int64_t start_ns,
+                            const InitialisationOptions& options, const RunContext& context) {
   RotationRates rates;
   if (imu.samples.size() < 2) return rates;
   const auto imuTime_s = [&](double camera_time_s) {

@@ -25,9 +25,8 @@ struct RotationRates {
 };
 
 // Pairs outside the IMU's samples are left out. Throws Cancelled when asked to stop.
-RotationRates rotationRates(const CameraData& camera, const CircleBoard& board,
-                            const CameraState& camera_state, const ImuData& imu, const ImuState& imu_state,
-                            std::int64_t start_ns, const InitialisationOptions& options,
-                            const RunContext& context);
+RotationRates rotationRates(const CameraData& camera, const Board& board, const CameraState& camera_state,
+                            const ImuData& imu, const ImuState& imu_state, std::int64_t start_ns,
+                            const InitialisationOptions& options, const RunContext& context);
 
 }  // namespace evical

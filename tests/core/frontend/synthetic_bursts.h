@@ -85,7 +85,7 @@ struct SyntheticWindow {
 
 // A board in front of a pinhole camera (focal length 260 px) that moves with constant rates.
 struct MovingBoard {
-  CircleBoard board = {BoardType::AsymmetricCircles, 11, 4, 0.03, 0.012, CircleShade::Dark};
+  Board board = {BoardType::AsymmetricCircles, 11, 4, 0.03, 0.012, CircleShade::Dark};
   Eigen::Vector3d angles_rad = {0.2, -0.3, 0.1}, angular_rates_rad_s = {0.2, -0.1, 0.3};
   Eigen::Vector3d middle_m = {0.0, 0.0, 0.5}, velocity_m_s = {0.15, 0.08, 0.1};
 
@@ -95,7 +95,7 @@ struct MovingBoard {
                                       Eigen::AngleAxisd(a.y(), Eigen::Vector3d::UnitY()) *
                                       Eigen::AngleAxisd(a.z(), Eigen::Vector3d::UnitZ()))
                                          .toRotationMatrix();
-    const Eigen::Vector2d half = 0.5 * (board.centre_m(0) + board.centre_m(board.circleCount() - 1));
+    const Eigen::Vector2d half = 0.5 * (board.point_m(0) + board.point_m(board.pointCount() - 1));
     const Eigen::Vector3d origin = middle_m + time_s * velocity_m_s - rotation.leftCols<2>() * half;
     Eigen::Matrix3d h;
     h << rotation.col(0), rotation.col(1), origin;
@@ -123,9 +123,9 @@ struct MovingBoard {
     motion.time_ns = static_cast<std::int64_t>(std::llround(time_s * 1e9));
     motion.ideal_from_board = homographyAt(time_s);
     motion.frame = {{172.5, 129.5}, 100.0};
-    Eigen::MatrixXd rows(2 * board.circleCount(), 8);
-    Eigen::VectorXd velocities(2 * board.circleCount());
-    for (int i = 0; i < board.circleCount(); ++i) {
+    Eigen::MatrixXd rows(2 * board.pointCount(), 8);
+    Eigen::VectorXd velocities(2 * board.pointCount());
+    for (int i = 0; i < board.pointCount(); ++i) {
       rows.middleRows<2>(2 * i) = motion.frame.basis(imageAt(i, time_s).centre_px);
       velocities.segment<2>(2 * i) = velocityAt(i, time_s);
     }
@@ -140,7 +140,7 @@ inline std::vector<EdgeBurst> burstsOf(const MovingBoard& moving, double half_wi
   constexpr int kSteps = 60;
   std::normal_distribution<double> normal;
   std::vector<EdgeBurst> bursts;
-  for (int i = 0; i < moving.board.circleCount(); ++i) {
+  for (int i = 0; i < moving.board.pointCount(); ++i) {
     std::vector<CircleImage> images;
     for (int k = 0; k <= kSteps; ++k)
       images.push_back(moving.imageAt(i, half_window_s * (2.0 * k / kSteps - 1.0)));

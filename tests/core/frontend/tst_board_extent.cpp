@@ -21,11 +21,11 @@ BoardExtent judge(const MovingBoard& moving, const Claim& claim, int random_burs
   std::vector<EdgeBurst> bursts = burstsOf(moving, kHalfWindow_s, 0.1, random);
   addRandomBursts(random_bursts, kHalfWindow_s, random, bursts);
   const SyntheticWindow synthetic(bursts, moving.board.circles);
-  CircleBoard claimed = moving.board;
+  Board claimed = moving.board;
   claimed.rows = claim.rows;
   claimed.cols = claim.cols;
   Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
-  shift.topRightCorner<2, 1>() = moving.board.centre_m(claim.first_row, claim.first_col);
+  shift.topRightCorner<2, 1>() = moving.board.point_m(claim.first_row, claim.first_col);
   BoardMotion motion = moving.motionAt(0.0);
   motion.ideal_from_board = motion.ideal_from_board * shift;
   motion.ideal_from_board /= motion.ideal_from_board(2, 2);

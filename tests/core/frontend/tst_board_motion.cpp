@@ -42,13 +42,13 @@ class TestBoardMotion : public QObject {
 void TestBoardMotion::imageOfCircle_holdsImagesOfItsPoints() {
   const MovingBoard moving;
   const Eigen::Matrix3d h = moving.homographyAt(0.0);
-  for (int i = 0; i < moving.board.circleCount(); ++i) {
+  for (int i = 0; i < moving.board.pointCount(); ++i) {
     const CircleImage image = moving.imageAt(i, 0.0);
     double largest_px = 0.0;
     for (int k = 0; k < 72; ++k) {
       const double angle = 2.0 * M_PI * k / 72;
-      const Eigen::Vector2d point = moving.board.centre_m(i) +
-                                    moving.board.radius_m * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+      const Eigen::Vector2d point =
+          moving.board.point_m(i) + moving.board.radius_m * Eigen::Vector2d(std::cos(angle), std::sin(angle));
       const Eigen::Vector2d q = apply(h, point) - image.centre_px;
       QVERIFY(std::abs(q.dot(image.shape * q) - 1.0) < 1e-9);
       QVERIFY(std::abs(distanceToEdge(image, apply(h, point)).distance_px) < 1e-8);
@@ -141,10 +141,10 @@ void TestBoardMotion::prediction_movesTheBoard() {
   motion.acceleration_px_s2 = 10.0 * someFlow();
   const BoardMotion next = predicted(motion, 10'000'000);
   QCOMPARE(next.time_ns, 10'000'000);
-  const CircleBoard board = MovingBoard().board;
-  for (int i = 0; i < board.circleCount(); ++i) {
-    const Eigen::Vector2d before = apply(motion.ideal_from_board, board.centre_m(i));
-    const Eigen::Vector2d after = apply(next.ideal_from_board, board.centre_m(i));
+  const Board board = MovingBoard().board;
+  for (int i = 0; i < board.pointCount(); ++i) {
+    const Eigen::Vector2d before = apply(motion.ideal_from_board, board.point_m(i));
+    const Eigen::Vector2d after = apply(next.ideal_from_board, board.point_m(i));
     // Of second order in the travel of half a pixel over 80 px.
     QVERIFY((after - before - motion.travel(before, 0.01)).norm() < 0.01);
     QVERIFY((next.velocityAt(after) - motion.velocityAt(after) - 0.01 * motion.accelerationAt(after)).norm() <
@@ -198,7 +198,7 @@ void TestBoardMotion::fit_withoutNoise_recoversMotion() {
   const TrackingOptions options;
   const auto fit = fitBoardMotion(synthetic.window, start, moving.scene(), options.first_gate_px, options);
   QVERIFY(fit.has_value());
-  for (int i = 0; i < moving.board.circleCount(); ++i) {
+  for (int i = 0; i < moving.board.pointCount(); ++i) {
     const Eigen::Vector2d truth = moving.imageAt(i, 0.0).centre_px;
     const Eigen::Vector2d found = imageOfCircle(fit->ideal_from_board, moving.scene(), i)->centre_px;
     QVERIFY2((found - truth).norm() < 0.02, qPrintable(QString::number((found - truth).norm())));

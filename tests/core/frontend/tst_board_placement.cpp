@@ -1,4 +1,5 @@
 #include "core/frontend/board_placement.h"
+#include "core/geometry/homography.h"
 
 #include "tests/core/frontend/synthetic_bursts.h"
 #include "tests/support/test_program.h"
@@ -13,13 +14,13 @@ namespace {
 using namespace evical;
 using namespace evical::test;
 
-CircleBoard asymmetric(int rows, int cols) {
+Board asymmetric(int rows, int cols) {
   return {BoardType::AsymmetricCircles, rows, cols, 0.03, 0.012, CircleShade::Dark};
 }
 
 // A board seen askew, circle by circle; true_index tells who is who (-1: an outlier).
 struct BoardImage {
-  CircleBoard board;
+  Board board;
   std::vector<MovingCircle> circles;
   std::vector<int> true_index;
   Eigen::Matrix3d homography;
@@ -38,14 +39,14 @@ CameraIntrinsics pinhole() {
   return camera;
 }
 
-BoardImage imageOf(const CircleBoard& board, double noise_px, std::mt19937& random) {
+BoardImage imageOf(const Board& board, double noise_px, std::mt19937& random) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   std::normal_distribution<double> normal;
   MovingBoard moving;
   moving.board = board;
   moving.angles_rad = {0.5 * uniform(random), 0.5 * uniform(random), M_PI * uniform(random)};
   BoardImage image{board, {}, {}, moving.homographyAt(0.0)};
-  for (int i = 0; i < board.circleCount(); ++i) {
+  for (int i = 0; i < board.pointCount(); ++i) {
     MovingCircle circle;
     circle.centre_px =
         moving.imageAt(i, 0.0).centre_px + noise_px * Eigen::Vector2d(normal(random), normal(random));
@@ -147,7 +148,7 @@ void TestBoardPlacement::completeBoard_isPlaced() {
     shuffle(image, random);
     const std::vector<BoardPlacement> placements = place(image, nullptr, pinhole());
     if (placements.empty()) continue;
-    const bool complete = static_cast<int>(placements.front().circles.size()) >= image.board.circleCount();
+    const bool complete = static_cast<int>(placements.front().circles.size()) >= image.board.pointCount();
     if (complete) (wrongIn(placements.front(), image) == 0 ? placed : wrong) += 1;
   }
   QVERIFY2(placed >= kTries * 95 / 100, qPrintable(QString::number(placed)));
@@ -175,7 +176,7 @@ void TestBoardPlacement::completeBoard_isOrderedLikeOpenCv() {
     QVERIFY(!placements.empty());
     if (!found) continue;
     ++compared;
-    QCOMPARE(static_cast<int>(placements.front().circles.size()), image.board.circleCount());
+    QCOMPARE(static_cast<int>(placements.front().circles.size()), image.board.pointCount());
     for (const auto& [circle, index] : placements.front().circles) {
       const cv::Point2f& theirs = ordered[static_cast<std::size_t>(circle)];
       QVERIFY((image.circles[index].centre_px - Eigen::Vector2d(theirs.x, theirs.y)).norm() < 1e-3);
@@ -274,7 +275,7 @@ void TestBoardPlacement::camera_rulesOutShearedPlacements() {
 }
 
 void TestBoardPlacement::turnsOntoItself_areNoRivals() {
-  CircleBoard board;
+  Board board;
   board.spacing_m = 0.05;
   board.radius_m = 0.02;
   const auto turns = [&](BoardType type, int rows, int cols) {
@@ -298,7 +299,7 @@ void TestBoardPlacement::homography_isRecovered() {
   const BoardImage image = imageOf(asymmetric(11, 4), 0.0, random);
   std::vector<Eigen::Vector2d> from, to;
   for (int i = 0; i < 44; ++i) {
-    from.push_back(image.board.centre_m(i));
+    from.push_back(image.board.point_m(i));
     to.push_back((image.homography * from.back().homogeneous()).hnormalized());
   }
   const std::optional<Eigen::Matrix3d> h = fitHomography(from, to);

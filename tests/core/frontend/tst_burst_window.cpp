@@ -72,7 +72,7 @@ void TestBurstWindow::idealPixels_comeFromTable() {
   camera.focal_length_px = {260.0, 260.0};
   camera.principal_point_px = {172.5, 129.5};
   camera.distortion = {-0.3, 0.08, 0.0, 0.0, 0.0};
-  BoardScene scene(CircleBoard{}, kDavis_px, camera);
+  BoardScene scene(Board{}, kDavis_px, camera);
   IdealPixels pixels = *scene.pixels;
   pixels.stretch.assign(pixels.stretch.size(), {4.0f, 0.0f, 1.0f});
   scene.pixels = std::make_shared<IdealPixels>(pixels);

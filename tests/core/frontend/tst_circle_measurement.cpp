@@ -37,7 +37,7 @@ void TestCircleMeasurement::withoutNoise_centresAreExact() {
   const MovingBoard moving;
   const std::vector<CircleObservation> circles =
       measure(moving, burstsOf(moving, kHalfWindow_s, 0.0, random), kHalfWindow_s);
-  QCOMPARE(static_cast<int>(circles.size()), moving.board.circleCount());
+  QCOMPARE(static_cast<int>(circles.size()), moving.board.pointCount());
   for (const CircleObservation& circle : circles) {
     const CircleImage truth = moving.imageAt(circle.circle, circle.time_s);
     QVERIFY2((circle.centre_px - truth.centre_px).norm() < 0.02,
@@ -97,7 +97,7 @@ void TestCircleMeasurement::circlesWithoutBursts_areLeftOut() {
   });
   std::set<int> found;
   for (const CircleObservation& circle : measure(moving, bursts, kHalfWindow_s)) found.insert(circle.circle);
-  QCOMPARE(static_cast<int>(found.size()), moving.board.circleCount() - 3);
+  QCOMPARE(static_cast<int>(found.size()), moving.board.pointCount() - 3);
   for (const int i : hidden) QVERIFY(!found.contains(i));
 }
 

@@ -30,7 +30,7 @@ WindowTrace trackedBoard() {
   WindowTrace tracked;
   tracked.motion = moving.motionAt(0.0);
   tracked.ended = TrackingEnd::Held;
-  for (int i = 0; i < moving.board.circleCount(); ++i) {
+  for (int i = 0; i < moving.board.pointCount(); ++i) {
     CircleObservation circle;
     circle.circle = i;
     circle.centre_px = moving.imageAt(i, 0.0).centre_px;
@@ -105,7 +105,7 @@ void TestStageDrawing::board_isDrawn() {
   const RgbImage image = drawTrackedWindow(synthetic.window, tracked, scene());
   const int factor = image.width_px / kDavis_px.width_px;
   const int bar = (image.height_px - factor * kDavis_px.height_px) / 2;
-  for (int i = 0; i < MovingBoard().board.circleCount(); ++i) {
+  for (int i = 0; i < MovingBoard().board.pointCount(); ++i) {
     const CircleImage circle = MovingBoard().imageAt(i, 0.0);
     const Eigen::Vector2d side = circle.centre_px + Eigen::Vector2d(std::sqrt(1.0 / circle.shape(0, 0)), 0.0);
     int brightest = 0;

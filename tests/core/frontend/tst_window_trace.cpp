@@ -70,7 +70,7 @@ struct TrackedBoard {
       const Eigen::Vector2d pixel(burst.x_px, burst.y_px);
       int nearest = 0;
       double nearest_px = 1e9;
-      for (int i = 0; i < moving.board.circleCount(); ++i) {
+      for (int i = 0; i < moving.board.pointCount(); ++i) {
         const double distance_px = (moving.imageAt(i, 0.0).centre_px - pixel).norm();
         if (distance_px < nearest_px) nearest = i;
         nearest_px = std::min(nearest_px, distance_px);

@@ -107,7 +107,7 @@ Scenario makeScenario(const SimulationOptions& options) {
 }
 
 // The same pattern one row on: half a column aside and one spacing down; circles beyond the board are lost.
-void shiftByRow(BoardView& view, const CircleBoard& board) {
+void shiftByRow(BoardView& view, const Board& board) {
   std::vector<CircleObservation> shifted;
   for (CircleObservation circle : view.circles) {
     const int row = circle.circle / board.cols, col = circle.circle % board.cols + row % 2;
@@ -141,8 +141,8 @@ std::optional<BoardView> observe(const SinusoidMotion& motion, const Scenario& s
     view.circles.push_back(circle);
   }
   const int count = static_cast<int>(view.circles.size());
-  if (count < 0.4 * scenario.board.circleCount()) return std::nullopt;
-  view.kind = count == scenario.board.circleCount() ? ViewKind::Complete : ViewKind::Partial;
+  if (count < 0.4 * scenario.board.pointCount()) return std::nullopt;
+  view.kind = count == scenario.board.pointCount() ? ViewKind::Complete : ViewKind::Partial;
   return view;
 }
 
