@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 
 seconds=${1:-60}
 targets=("${@:2}")
-[ "${#targets[@]}" -gt 0 ] || targets=(bag mcap db3 packed aedat4 hdf5 raw es text payload yaml calibrate)
+[ "${#targets[@]}" -gt 0 ] || targets=(bag mcap db3 packed aedat2 aedat3 aedat4 hdf5 raw es text pictures payload yaml calibrate)
 
 packaging/install-dependencies.sh --fuzz
 build=build/fuzz

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/data/event.h"
-
+#include "core/data/imu_units.h"
 #include "core/geometry/resolution.h"
 
 #include <algorithm>
@@ -42,7 +42,11 @@ class BlockDecoder {
 
   const BlockFindings& findings() const { return findings_; }
 
+  // What was between the events, since the vector was emptied last; of formats that have an IMU.
+  std::vector<RawImuSample>& imuSamples() { return imu_samples_; }
+
  protected:
+  std::vector<RawImuSample> imu_samples_;
   BlockFindings findings_;
 };
 

@@ -25,21 +25,25 @@ BlockReader::BlockReader(const std::filesystem::path& path, BlockFormat format,
   position_ = format_.data_offset;
   file_.seekg(static_cast<std::streamoff>(position_));
   faults_ = std::move(format_.notes);
+  for (StreamInfo& stream : format_.streams) stream.readable = stream.type != StreamType::Triggers;
+  while (imu_stream_ < format_.streams.size() && format_.streams[imu_stream_].type != StreamType::Imu)
+    ++imu_stream_;
+  imu_wanted_ = imu_stream_ < format_.streams.size();
 }
 
 void BlockReader::select(const std::vector<std::size_t>& streams) {
-  const auto events = [this](std::size_t stream) {
-    return format_.streams.at(stream).type == StreamType::Events;
+  const auto wants = [&](StreamType type) {
+    return std::any_of(streams.begin(), streams.end(),
+                       [&](std::size_t stream) { return format_.streams.at(stream).type == type; });
   };
-  selected_ = std::any_of(streams.begin(), streams.end(), events);
+  events_wanted_ = wants(StreamType::Events);
+  imu_wanted_ = wants(StreamType::Imu);
 }
 
 bool BlockReader::read(Packet& packet) {
-  packet.stream = 0;
-  packet.events.clear();
-  packet.imu_samples.clear();
-  if (!selected_) return false;
-  while (!handOut(packet)) {
+  packet.clear();
+  if (!events_wanted_ && !imu_wanted_) return false;
+  while (!handOut(packet) && !handOutSamples(packet)) {
     if (finished_ || !decodeBlock()) return false;
   }
   return true;
@@ -66,7 +70,8 @@ bool BlockReader::decodeBlock() {
 
 // Small steps back are sorted; before a large one the packet ends, since sorting would only hide it.
 bool BlockReader::handOut(Packet& packet) {
-  if (handed_out_ == decoded_.size()) return false;
+  if (!events_wanted_ || handed_out_ == decoded_.size()) return false;
+  packet.stream = 0;
   std::size_t end = handed_out_ + 1;
   bool sorted = true;
   for (; end < decoded_.size(); ++end) {
@@ -91,6 +96,17 @@ bool BlockReader::handOut(Packet& packet) {
   packet.events.assign(begin, behind);
   handed_out_ = end;
   return true;
+}
+
+// Behind the events of their block.
+bool BlockReader::handOutSamples(Packet& packet) {
+  std::vector<RawImuSample>& samples = decoder_->imuSamples();
+  if (imu_wanted_ && !samples.empty()) {
+    packet.stream = imu_stream_;
+    std::swap(packet.imu_samples, samples);
+  }
+  samples.clear();
+  return !packet.imu_samples.empty();
 }
 
 void BlockReader::finish() {

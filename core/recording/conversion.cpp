@@ -44,6 +44,19 @@ std::vector<std::size_t> chosenStreams(const RecordingReader& reader, const Conv
   return chosen;
 }
 
+// Where nobody chose: what people may miss.
+void sayWhatIsLeftOut(const RecordingReader& reader, const ConversionRequest& request,
+                      const RunContext& context) {
+  if (!request.streams.empty()) return;
+  std::string names;
+  for (const StreamInfo& stream : reader.streams())
+    if (stream.type == StreamType::Frames || stream.type == StreamType::Points)
+      names += (names.empty() ? "" : ", ") + stream.name;
+  if (!names.empty())
+    context.progress.log(LogLevel::Warning,
+                         fmt::format("Frames and points are not written; left out: {}.", names));
+}
+
 void checkPaths(const ConversionRequest& request) {
   std::error_code ignored;
   if (std::filesystem::equivalent(request.input, request.output, ignored))
@@ -113,6 +126,7 @@ ConversionSummary convertRecording(const ConversionRequest& request, const RunCo
   const std::unique_ptr<RecordingReader> reader = openRecording(request.input);
   checkPaths(request);
   const std::vector<std::size_t> chosen = chosenStreams(*reader, request);
+  sayWhatIsLeftOut(*reader, request, context);
   ConversionSummary summary;
   summary.format = format.name;
   std::vector<std::size_t> targets(reader->streams().size(), kNotWritten);

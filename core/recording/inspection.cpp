@@ -1,5 +1,6 @@
 #include "core/recording/inspection.h"
 
+#include "core/base/time.h"
 #include "core/recording/event_statistics.h"
 #include "core/recording/imu_statistics.h"
 
@@ -47,6 +48,57 @@ void summarise(const std::vector<RawImuSample>& samples, const std::vector<ImuSa
   }
 }
 
+// Of frames, and of points by their times.
+class TimeStatistics {
+ public:
+  void add(std::int64_t time_ns) {
+    if (count_++ == 0)
+      first_ns_ = time_ns;
+    else if (time_ns < last_ns_)
+      ++backward_steps_;
+    else
+      largest_gap_ns_ = std::max(largest_gap_ns_, time_ns - last_ns_);
+    last_ns_ = time_ns;
+  }
+  void add(const Frame& frame) {
+    add(frame.time_ns);
+    if (frame.exposure_s <= 0.0) return;
+    shortest_exposure_s_ =
+        longest_exposure_s_ == 0.0 ? frame.exposure_s : std::min(shortest_exposure_s_, frame.exposure_s);
+    longest_exposure_s_ = std::max(longest_exposure_s_, frame.exposure_s);
+  }
+
+  void finish(StreamSummary& summary) const {
+    summary.count = count_;
+    summary.first_ns = first_ns_;
+    summary.last_ns = last_ns_;
+    summary.backward_steps = backward_steps_;
+    summary.largest_gap_ns = largest_gap_ns_;
+    summary.shortest_exposure_s = shortest_exposure_s_;
+    summary.longest_exposure_s = longest_exposure_s_;
+    const double span_s = secondsSince(first_ns_, last_ns_);
+    if (summary.info.timed && span_s > 0.0) summary.rate_hz = static_cast<double>(count_ - 1) / span_s;
+  }
+
+ private:
+  std::uint64_t count_ = 0, backward_steps_ = 0;
+  std::int64_t first_ns_ = 0, last_ns_ = 0, largest_gap_ns_ = 0;
+  double shortest_exposure_s_ = 0.0, longest_exposure_s_ = 0.0;
+};
+
+// Frames are not read by default.
+void selectAll(RecordingReader& reader) {
+  std::vector<std::size_t> readable;
+  bool has_frames = false;
+  for (std::size_t i = 0; i < reader.streams().size(); ++i) {
+    const StreamInfo& info = reader.streams()[i];
+    if (!info.readable) continue;
+    readable.push_back(i);
+    has_frames = has_frames || info.type == StreamType::Frames;
+  }
+  if (has_frames) reader.select(readable);
+}
+
 }  // namespace
 
 Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& options,
@@ -55,6 +107,8 @@ Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& op
   inspection.format = reader.format();
   std::map<std::size_t, EventStatistics> events;
   std::map<std::size_t, std::vector<RawImuSample>> imu_samples;
+  std::map<std::size_t, TimeStatistics> others;  // streams of frames and points that hand something out
+  selectAll(reader);
   for (std::size_t i = 0; i < reader.streams().size(); ++i) {
     const StreamInfo& info = reader.streams()[i];
     if (info.type == StreamType::Events) events.try_emplace(i, info, options);
@@ -65,6 +119,9 @@ Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& op
     context.throwIfStopped();
     context.progress.stageProgress(reader.fractionRead());
     if (!packet.events.empty()) events.at(packet.stream).add(packet.events);
+    for (const Frame& frame : packet.frames) others[packet.stream].add(frame);
+    for (const MeasuredPoint& point : packet.points) others[packet.stream].add(point.time_ns);
+    if (packet.imu_samples.empty()) continue;
     std::vector<RawImuSample>& samples = imu_samples[packet.stream];
     samples.insert(samples.end(), packet.imu_samples.begin(), packet.imu_samples.end());
   }
@@ -73,6 +130,7 @@ Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& op
     StreamSummary& summary = inspection.streams.emplace_back();
     summary.info = reader.streams()[i];
     summary.count = summary.info.messages;
+    if (const auto found = others.find(i); found != others.end()) found->second.finish(summary);
     if (summary.info.type == StreamType::Events) events.at(i).finish(summary, inspection.faults);
     if (summary.info.type != StreamType::Imu) continue;
     std::vector<ImuSample> samples;

@@ -16,16 +16,18 @@ namespace evical {
 
 struct StreamSummary {
   StreamInfo info;
-  std::uint64_t count = 0;  // events, IMU samples; messages of other streams
+  std::uint64_t count = 0;  // events, IMU samples, frames, points; messages of other streams
   std::int64_t first_ns = 0, last_ns = 0;
   std::uint64_t backward_steps = 0;
   std::int64_t largest_gap_ns = 0;
-  double rate_hz = 0.0;  // events: mean; IMU: of the median interval
+  double rate_hz = 0.0;  // events, frames: mean; IMU: of the median interval
 
   // Events.
   std::uint64_t on = 0, off = 0;
   std::uint64_t sum_x = 0, sum_y = 0, sum_t = 0;  // modulo 2^64; times in the file's own unit
   Resolution seen_px;                             // largest coordinates + 1
+
+  double shortest_exposure_s = 0.0, longest_exposure_s = 0.0;  // of frames; 0: not known
 
   // IMU, as the file has them.
   // Of the numbers below: what the format states or, where that is SI, a guess from the numbers; "unknown"
@@ -42,7 +44,7 @@ struct Inspection {
   std::vector<RecordingFault> faults;
 };
 
-// Reads to the end; call on a fresh reader. Event memory is a count a pixel; IMU samples are held.
+// Reads to the end, also frames, of which nothing is decoded; call on a fresh reader. Event memory is a count a pixel; IMU samples are held.
 Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& options = {},
                             const RunContext& context = {});
 

@@ -11,13 +11,28 @@ Json numbers(const Eigen::Vector3d& vector) {
   return {vector.x(), vector.y(), vector.z()};
 }
 
+Json sizeJson(const Resolution& size_px) {
+  return size_px.known() ? Json{size_px.width_px, size_px.height_px} : Json();
+}
+
+void addFrames(const StreamSummary& stream, Json& json) {
+  const StreamInfo& info = stream.info;
+  json.update(
+      {{"resolution_px", sizeJson(info.resolution_px)}, {"readable", info.readable}, {"timed", info.timed}});
+  if (stream.longest_exposure_s > 0.0)
+    json["exposure_s"] = {stream.shortest_exposure_s, stream.longest_exposure_s};
+}
+
 Json streamJson(const StreamSummary& stream, bool with_checksums) {
   const StreamInfo& info = stream.info;
   Json json = {{"name", info.name},
                {"type", streamTypeName(info.type)},
                {"message", info.message},
                {"count", stream.count}};
-  if (info.type != StreamType::Events && info.type != StreamType::Imu) return json;
+  const bool frames = info.type == StreamType::Frames;
+  if (frames) addFrames(stream, json);
+  const bool timeless = frames && (!info.timed || !info.readable);
+  if ((info.type != StreamType::Events && info.type != StreamType::Imu && !frames) || timeless) return json;
   if (info.type == StreamType::Events) json.update({{"on", stream.on}, {"off", stream.off}});
   json.update({{"first_ns", stream.first_ns},
                {"last_ns", stream.last_ns},
@@ -32,8 +47,8 @@ Json streamJson(const StreamSummary& stream, bool with_checksums) {
                  {"mean_angular_rate", numbers(stream.mean_angular_rate)}});
     return json;
   }
-  json["resolution_px"] =
-      info.resolution_px.known() ? Json{info.resolution_px.width_px, info.resolution_px.height_px} : Json();
+  if (frames) return json;
+  json["resolution_px"] = sizeJson(info.resolution_px);
   if (info.host_clock_offset_s) json["host_clock_offset_s"] = *info.host_clock_offset_s;
   json["seen_px"] = {stream.seen_px.width_px, stream.seen_px.height_px};
   if (with_checksums) {

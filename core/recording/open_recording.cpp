@@ -1,8 +1,13 @@
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
+#include "core/recording/aedat/aedat2_reader.h"
+#include "core/recording/aedat/aedat3_reader.h"
 #include "core/recording/aedat/aedat4_reader.h"
 #include "core/recording/event_stream/event_stream_reader.h"
 #include "core/recording/hdf5/hdf5_reader.h"
+#include "core/recording/joined_reader.h"
+#include "core/recording/pictures/picture_lists.h"
+#include "core/recording/pictures/picture_reader.h"
 #include "core/recording/prophesee/raw_header.h"
 #include "core/recording/prophesee/raw_reader.h"
 #include "core/recording/recording_reader.h"
@@ -17,6 +22,8 @@
 
 #include <fstream>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 namespace evical {
 namespace {
@@ -24,9 +31,9 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr const char* kReadable =
-    "Readable are ROS 1 bags (format 2.0), ROS 2 bags (MCAP, sqlite3), AEDAT4, Prophesee RAW and DAT, HDF5 "
-    "(DSEC, TUM-VIE, M3ED, MVSEC, Metavision), Event Stream, and text or CSV: a folder with events.txt and "
-    "imu.txt (or .csv), or one such file";
+    "Readable are ROS 1 bags (format 2.0), ROS 2 bags (MCAP, sqlite3), AEDAT 2, 3.1 and 4, Prophesee RAW and "
+    "DAT, HDF5 (DSEC, TUM-VIE, M3ED, MVSEC, Metavision), Event Stream, text or CSV: a folder with events.txt "
+    "and imu.txt (or .csv), or one such file, and folders of pictures (EuRoC, Kalibr, DSEC, TUM-VIE, others)";
 
 // What people may well hand us, by its first bytes.
 struct OtherFormat {
@@ -42,7 +49,7 @@ constexpr OtherFormat kOtherFormats[] = {
     {"\x28\xB5\x2F\xFD"sv, "this is packed with zstd", "Unpack it first"},
     {"#ROSBAG"sv, "this is a bag of an old format", "Convert it with `rosbag fix`"},
     {"#!AER-DAT"sv, "this is an AEDAT file of an old version",
-     "Convert it to AEDAT4 with iniVation's DV or dv-processing"},
+     "Readable are 2.0, 3.1 and 4.0; convert it with jAER or iniVation's DV"},
 };
 
 std::string firstBytes(const std::filesystem::path& path) {
@@ -78,15 +85,33 @@ void requireFiles(const std::filesystem::path& folder) {
   }
 }
 
+// A reader and the pictures that stand beside what it reads; one of the two may be missing.
+std::unique_ptr<RecordingReader> withPictures(std::unique_ptr<RecordingReader> reader,
+                                              pictures::PictureFolder found) {
+  std::vector<JoinedReader::Part> parts;
+  if (reader) parts.push_back({std::move(reader), ""});
+  if (!found.lists.empty()) parts.push_back({std::make_unique<PictureReader>(std::move(found.lists)), ""});
+  for (const pictures::SensorFile& imu : found.imus)
+    parts.push_back({std::make_unique<TextTableReader>(imu.path), imu.name});
+  for (const pictures::SensorFile& events : found.events)
+    parts.push_back({openHdf5(events.path), events.name});
+  if (parts.size() == 1 && parts.front().name.empty()) return std::move(parts.front().reader);
+  return std::make_unique<JoinedReader>(std::move(parts));
+}
+
 std::unique_ptr<RecordingReader> openFolder(const std::filesystem::path& path) {
   requireFiles(path);
-  if (isTextFolder(path)) return std::make_unique<TextTableReader>(path);
-  if (std::filesystem::exists(path / "events.txt") || std::filesystem::exists(path / "imu.txt")) {
-    return std::make_unique<TextTableReader>(path);
-  }
-  if (isTumVieFolder(path)) return openHdf5(path);
+  if (isTextFolder(path))
+    return withPictures(std::make_unique<TextTableReader>(path), pictures::findRpgPictures(path));
+  if (isTumVieFolder(path)) return withPictures(openHdf5(path), pictures::findTumViePictures(path));
   if (ros::isRos2Folder(path)) return std::make_unique<RosReader>(path);
-  throw badInput(path.string(), "the folder has no events.txt, imu.txt, events.csv or imu.csv", kReadable);
+  pictures::PictureFolder found = pictures::findPictures(path);
+  if (found.lists.empty()) {
+    throw badInput(path.string(), "the folder has no recording: no events, no IMU samples, no pictures",
+                   kReadable);
+  }
+  const bool tum_vie = found.lists.front().layout == "TUM-VIE" && hasTumVieImu(path);
+  return withPictures(tum_vie ? openHdf5(path) : nullptr, std::move(found));
 }
 
 std::unique_ptr<RecordingReader> openPath(const std::filesystem::path& path) {
@@ -105,6 +130,8 @@ std::unique_ptr<RecordingReader> openPath(const std::filesystem::path& path) {
   if (start.starts_with(kEventStreamMagic)) return openEventStream(path);
   if (start.starts_with("\x89HDF\r\n\x1A\n"sv)) return openHdf5(path);
   if (start.starts_with(aedat::kMagic)) return std::make_unique<Aedat4Reader>(path);
+  if (start.starts_with(kAedat2Magic)) return openAedat2(path);
+  if (start.starts_with(kAedat3Magic)) return std::make_unique<Aedat3Reader>(path);
   if (isRos2File(path, start)) return std::make_unique<RosReader>(path);
   for (const OtherFormat& format : kOtherFormats) {
     if (start.starts_with(format.magic)) throw badInput(path.string(), format.problem, format.advice);
@@ -125,15 +152,19 @@ std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path
   }
 }
 
-std::size_t findStream(const RecordingReader& reader, const std::string& name, StreamType type) {
+std::size_t findStream(const RecordingReader& reader, const std::string& name,
+                       std::span<const StreamType> types) {
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < reader.streams().size(); ++i) {
-    const StreamInfo& stream = reader.streams()[i];
-    if (stream.type != type) continue;
-    if (stream.name == name) return i;
-    names.push_back(stream.name);
+  std::string kind;
+  for (const StreamType type : types) {
+    kind += (kind.empty() ? "" : " or ") + std::string(streamTypeName(type));
+    for (std::size_t i = 0; i < reader.streams().size(); ++i) {
+      const StreamInfo& stream = reader.streams()[i];
+      if (stream.type != type) continue;
+      if (stream.name == name) return i;
+      names.push_back(stream.name);
+    }
   }
-  const std::string kind = streamTypeName(type);
   throw badInput(name, fmt::format("the recording has no stream of type {} with this name", kind),
                  names.empty() ? fmt::format("It has no stream of type {} at all", kind)
                                : fmt::format("Its streams of this type: {}", joined(names)));
@@ -147,6 +178,8 @@ const char* streamTypeName(StreamType type) {
       return "imu";
     case StreamType::Frames:
       return "frames";
+    case StreamType::Points:
+      return "points";
     case StreamType::Triggers:
       return "triggers";
     case StreamType::Other:

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ class RecordingReader {
   // Everything the file holds, also what cannot be decoded; known as soon as the file is open.
   virtual const std::vector<StreamInfo>& streams() const = 0;
 
-  // Which streams read() hands out, by index; all of type Events and Imu if never called.
+  // Which streams read() hands out, by index; all of type Events, Imu and Points if never called. Frames are
+  // handed out as they are stored: what is not looked at is not decoded.
   // Call before the first read.
   virtual void select(const std::vector<std::size_t>& streams) = 0;
 
@@ -41,9 +43,14 @@ class RecordingReader {
 // is nothing readable at `path`.
 std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path);
 
-// Index of the stream of this name and type; throws CalibrationError (BadInput) that lists those there are.
-std::size_t findStream(const RecordingReader& reader, const std::string& name, StreamType type);
+// Index of the stream of this name and one of these types, of several the first type's; throws CalibrationError
+// (BadInput) that lists those there are.
+std::size_t findStream(const RecordingReader& reader, const std::string& name,
+                       std::span<const StreamType> types);
+inline std::size_t findStream(const RecordingReader& reader, const std::string& name, StreamType type) {
+  return findStream(reader, name, std::span(&type, 1));
+}
 
-const char* streamTypeName(StreamType type);  // "events", "imu", "frames", "triggers" or "other"
+const char* streamTypeName(StreamType type);  // "events", "imu", "frames", "points", "triggers" or "other"
 
 }  // namespace evical

@@ -81,6 +81,8 @@ void putStream(std::string& message, const StreamInfo& info) {
   put(message, info.angular_rate_unit);
   put(message, static_cast<std::uint8_t>(info.host_clock_offset_s.has_value()));
   put(message, info.host_clock_offset_s.value_or(0.0));
+  put(message, static_cast<std::uint8_t>(info.readable));
+  put(message, static_cast<std::uint8_t>(info.timed));
 }
 
 StreamInfo takeStream(ByteCursor& cursor) {
@@ -97,6 +99,8 @@ StreamInfo takeStream(ByteCursor& cursor) {
   const bool has_offset = cursor.number<std::uint8_t>() != 0;
   const auto offset_s = cursor.number<double>();
   if (has_offset) info.host_clock_offset_s = offset_s;
+  info.readable = cursor.number<std::uint8_t>() != 0;
+  info.timed = cursor.number<std::uint8_t>() != 0;
   return info;
 }
 
@@ -131,6 +135,31 @@ void putVector(std::string& message, const Eigen::Vector3d& vector) {
   for (int i = 0; i < 3; ++i) put(message, vector[i]);
 }
 
+void putFrame(std::string& message, const Frame& frame) {
+  put(message, frame.time_ns);
+  put(message, frame.exposure_s);
+  put(message, frame.format);
+  put(message, static_cast<std::uint8_t>(frame.big_endian));
+  put(message, frame.size_px.width_px);
+  put(message, frame.size_px.height_px);
+  put(message, static_cast<std::uint64_t>(frame.row_bytes));
+  put(message, static_cast<std::uint64_t>(frame.bytes.size()));
+  message.append(reinterpret_cast<const char*>(frame.bytes.data()), frame.bytes.size());
+}
+
+void takeFrame(ByteCursor& cursor, Frame& frame) {
+  frame.time_ns = cursor.number<std::int64_t>();
+  frame.exposure_s = cursor.number<double>();
+  frame.format = cursor.number<FrameFormat>();
+  frame.big_endian = cursor.number<std::uint8_t>() != 0;
+  frame.size_px.width_px = cursor.number<int>();
+  frame.size_px.height_px = cursor.number<int>();
+  frame.row_bytes = static_cast<std::size_t>(cursor.number<std::uint64_t>());
+  const std::string_view bytes = cursor.take(cursor.number<std::uint64_t>());
+  frame.bytes.assign(bytes.begin(), bytes.end());
+}
+
+// Points come from text only, which is read without this.
 std::string messageOf(const Packet& packet, double fraction_read) {
   std::string message;
   put(message, Answer::Packet);
@@ -138,12 +167,14 @@ std::string messageOf(const Packet& packet, double fraction_read) {
   put(message, static_cast<std::uint64_t>(packet.stream));
   put(message, static_cast<std::uint64_t>(packet.events.size()));
   put(message, static_cast<std::uint64_t>(packet.imu_samples.size()));
+  put(message, static_cast<std::uint64_t>(packet.frames.size()));
   message.append(reinterpret_cast<const char*>(packet.events.data()), packet.events.size() * sizeof(Event));
   for (const RawImuSample& sample : packet.imu_samples) {
     put(message, sample.time_ns);
     putVector(message, sample.angular_rate);
     putVector(message, sample.specific_force);
   }
+  for (const Frame& frame : packet.frames) putFrame(message, frame);
   return message;
 }
 
@@ -297,8 +328,7 @@ bool SeparateReader::ask() {
 }
 
 bool SeparateReader::read(Packet& packet) {
-  packet.events.clear();
-  packet.imu_samples.clear();
+  packet.clear();
   if (finished_) return false;
   if (!asked_) static_cast<void>(ask());
   if (!receiveMessage(socket_, message_)) {
@@ -327,6 +357,7 @@ void SeparateReader::takePacket(std::string_view message, Packet& packet) {
   packet.stream = static_cast<std::size_t>(cursor.number<std::uint64_t>());
   const auto events = static_cast<std::size_t>(cursor.number<std::uint64_t>());
   packet.imu_samples.resize(static_cast<std::size_t>(cursor.number<std::uint64_t>()));
+  packet.frames.resize(static_cast<std::size_t>(cursor.number<std::uint64_t>()));
   packet.events.resize(events);
   const std::string_view bytes = cursor.take(events * sizeof(Event));
   if (!bytes.empty()) std::memcpy(packet.events.data(), bytes.data(), bytes.size());
@@ -335,6 +366,7 @@ void SeparateReader::takePacket(std::string_view message, Packet& packet) {
     for (int i = 0; i < 3; ++i) sample.angular_rate[i] = cursor.number<double>();
     for (int i = 0; i < 3; ++i) sample.specific_force[i] = cursor.number<double>();
   }
+  for (Frame& frame : packet.frames) takeFrame(cursor, frame);
 }
 
 // What its process ended by.

@@ -16,6 +16,8 @@ struct StampTolerance {
 // Events hardly ever pause for longer; what does is looked at, and costs little. Packets of IMU samples may.
 inline constexpr StampTolerance kEventStamps = {100'000'000, 1'000'000'000, 16};
 inline constexpr StampTolerance kSampleStamps = {1'000'000'000, 1'000'000'000, 3};
+// Those of one frame agree, and prove nothing.
+inline constexpr StampTolerance kPointStamps = {1'000'000'000, 1'000'000'000, 1000};
 
 // Items of one sensor on their way, in the order in which they were recorded. Those that jump wait until
 // enough follow that agree with them, or until one agrees again with what was before: then they were strays.

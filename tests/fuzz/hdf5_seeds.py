@@ -28,3 +28,11 @@ with file("mvsec") as f:
     f["davis/left/imu"], f["davis/left/imu_ts"] = np.hstack([a, w]), ts * 1e-6
 with file("e2calib") as f:
     f["x"], f["y"], f["p"], f["t"] = x, y, p, t
+pictures = (np.arange(5 * 4 * 6) % 251).astype("u1").reshape(5, 4, 6, 1)
+for name, options in dict(plain={}, gzip=dict(chunks=(1, 4, 6, 1), compression="gzip"),
+                          lzf=dict(chunks=(2, 3, 4, 1), compression="lzf")).items():
+    with file(f"pictures_{name}") as f:
+        f["ovc/ts"] = ts
+        f.create_dataset("ovc/left/data", data=pictures, **options)
+with file("pictures_mvsec") as f:
+    f["davis/left/image_raw"], f["davis/left/image_raw_ts"] = pictures[..., 0], ts * 1e-6

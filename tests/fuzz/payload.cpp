@@ -1,8 +1,10 @@
 // What stands packed or nested in recordings, without the file around it, which bytes at random seldom get
-// past: event_camera_msgs payloads, chunks of Metavision's ECF, packets of AEDAT4, CDR messages.
+// past: event_camera_msgs payloads, chunks of Metavision's ECF, packets of AEDAT4, CDR messages, headers of pictures.
 #include "core/recording/aedat/packets.h"
 #include "core/recording/hdf5/ecf_decoder.h"
+#include "core/recording/picture_bytes.h"
 #include "core/recording/ros/event_packet_decoder.h"
+#include "core/recording/ros/image_messages.h"
 #include "core/recording/ros/ros_messages.h"
 
 #include <array>
@@ -38,7 +40,10 @@ void message(std::string_view bytes, ros::Serialization serialization) {
   ros::EventPacket packet;
   ros::decodeEventArray(bytes, serialization, events, resolution_px);
   ros::decodeImu(bytes, serialization, samples);
-  ros::decodeImageSize(bytes, serialization, resolution_px);
+  ros::ImageMessage image;
+  Frame frame;
+  if (ros::parseImage(bytes, serialization, image)) ros::toFrame(image, frame);
+  if (ros::parsePackedImage(bytes, serialization, image)) ros::toPackedFrame(image, frame);
   if (!ros::parseEventPacket(bytes, serialization, packet)) return;
   ros::EventPacketDecoder().decode(packet, events);
 }
@@ -50,6 +55,9 @@ void aedatPacket(std::string_view bytes) {
   aedat::decodeTable(bytes);
   aedat::decodeEvents(bytes, events);
   aedat::decodeImu(bytes, samples);
+  Frame frame;
+  std::string unusable;
+  aedat::decodeFrame(bytes, frame, unusable);
   aedat::countTriggers(bytes);
   aedat::packetType(bytes);
 }
@@ -76,6 +84,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       return 0;
     case 4:
       message(bytes, ros::Serialization::Cdr);
+      return 0;
+    case 5:
+      pictureSize(bytes);
       return 0;
     default:
       return -1;

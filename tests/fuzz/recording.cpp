@@ -15,6 +15,7 @@
 #include <iterator>
 #include <memory>
 #include <string_view>
+#include <vector>
 
 namespace {
 
@@ -30,11 +31,14 @@ constexpr Family kFamilies[] = {
     {"mcap", "\x89MCAP0\r\n"sv, "input.mcap"},
     {"db3", "SQLite format 3\0"sv, "input.db3"},
     {"packed", "\x28\xB5\x2F\xFD"sv, "input.mcap.zstd"},
+    {"aedat2", "#!AER-DAT2.0"sv, "input.aedat"},
+    {"aedat3", "#!AER-DAT3.1"sv, "input.aedat"},
     {"aedat4", "#!AER-DAT4.0\r\n"sv, "input.aedat4"},
     {"hdf5", "\x89HDF\r\n\x1A\n"sv, "input.h5"},
     {"raw", "% "sv, "input.raw"},
     {"es", "Event Stream"sv, "input.es"},
     {"text", ""sv, "input.csv"},
+    {"pictures", ""sv, "data.csv"},
 };
 
 const Family& family() {
@@ -49,15 +53,32 @@ void checkPacket(const evical::RecordingReader& reader, const evical::Packet& pa
   const bool ordered = std::is_sorted(packet.events.begin(), packet.events.end(), before);
   const bool timed = packet.events.empty() || (evical::isTime(packet.events.front().time_ns) &&
                                                evical::isTime(packet.events.back().time_ns));
-  const bool filled = !packet.events.empty() || !packet.imu_samples.empty();
+  const bool filled = !packet.empty();
   if (!ordered || !timed || !filled || packet.stream >= reader.streams().size()) std::abort();
   for (const evical::RawImuSample& sample : packet.imu_samples)
     if (!evical::isTime(sample.time_ns)) std::abort();
+  for (const evical::Frame& frame : packet.frames) {
+    const bool encoded = frame.format == evical::FrameFormat::Encoded;
+    const std::size_t rows_bytes = frame.row_bytes * static_cast<std::size_t>(frame.size_px.height_px);
+    const bool whole =
+        encoded ? !frame.bytes.empty() : frame.size_px.known() && rows_bytes <= frame.bytes.size();
+    if (!whole || !evical::isTime(frame.time_ns)) std::abort();
+  }
+}
+
+// The bytes are the list of the pictures and, of one of them, also the content.
+std::unique_ptr<evical::RecordingReader> openPictures(const std::filesystem::path& path) {
+  const std::filesystem::path folder = path.parent_path();
+  std::filesystem::create_directory(folder / "data");
+  const auto anew = std::filesystem::copy_options::overwrite_existing;
+  std::filesystem::copy_file(path, folder / "data" / "1.png", anew);
+  return evical::openRecording(folder);
 }
 
 // HDF5 in this process: what ends there is what is looked for.
 std::unique_ptr<evical::RecordingReader> opened(const std::filesystem::path& path) {
   if (family().name == "hdf5") return std::make_unique<evical::Hdf5Reader>(path);
+  if (family().name == "pictures") return openPictures(path);
   return evical::openRecording(path);
 }
 
@@ -73,6 +94,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       evical::inspectionJson(evical::inspectRecording(*reader), true);
       return 0;
     }
+    std::vector<std::size_t> streams;  // also frames, which are not read by default
+    for (std::size_t i = 0; i < reader->streams().size(); ++i)
+      if (reader->streams()[i].readable) streams.push_back(i);
+    if (!streams.empty()) reader->select(streams);
     evical::Packet packet;
     while (reader->read(packet)) checkPacket(*reader, packet);
   } catch (const evical::CalibrationError&) {

@@ -4,7 +4,12 @@
 #include "core/recording/aedat/stream_description.h"
 #include "core/recording/recording_writer.h"
 #include "core/recording/ros/compression.h"
+#include "tests/core/recording/aedat/aedat2_builder.h"
+#include "tests/core/recording/aedat/aedat3_builder.h"
+#include "tests/core/recording/aedat/frame_packets.h"
 #include "tests/core/recording/bag_builder.h"
+#include "tests/core/recording/picture_samples.h"
+#include "tests/core/recording/ros/image_builder.h"
 #include "tests/core/recording/ros/ros2_builder.h"
 #include "tests/support/packed_events.h"
 
@@ -100,6 +105,45 @@ void savePlainAedat4(const fs::path& path) {
   save(path, bytes);
 }
 
+// Events, an IMU sample and frames in each.
+void saveAedats(const fs::path& folder) {
+  std::string davis = test::aedat2Header("DAVIS240C"), unnamed = test::aedat2Header("");
+  for (const Event& event : someEvents()) {
+    const auto time_us = static_cast<std::int32_t>(event.time_ns / 1000);
+    davis += test::aedat2Record(test::davisAddress(event, 240, 180), time_us);
+    davis += test::aedat2Imu({8192, 1, 2, 3, 4, 5, 6}, time_us);
+    unnamed += test::aedat2Record(test::dvs128Address(event), time_us);
+  }
+  save(folder / "aedat2/davis", davis + test::aedat2Record(0x8000'0011U, 1'000'000));
+  save(folder / "aedat2/unnamed", unnamed);
+  save(folder / "aedat3/all", test::aedat3Header() + test::aedat3Events(someEvents()) +
+                                  test::aedat3Imu(1'000'000, {0.0F, 0.0F, 1.0F, 2.0F, 3.0F, 4.0F, 25.0F}) +
+                                  test::aedat3FramePacket({1, 1'000'000, 1'002'000}) +
+                                  test::aedat3FramePacket({3, 1'000'000, 1'002'000}));
+}
+
+void savePictures(const fs::path& folder) {
+  save(folder / "pictures/euroc", "#timestamp [ns],filename\n1403636579763555584,1.png\n-7,1.png\n");
+  save(folder / "pictures/png", test::pngBytes(64, 64) + "\n5 1.png\n");
+  const auto kind = [](char number) { return std::string(1, number); };
+  save(folder / "payload/png", kind(5) + test::pngBytes(64, 64));
+  save(folder / "payload/jpeg", kind(5) + test::jpegBytes(64, 64));
+  save(folder / "payload/pgm", kind(5) + "P5\n# comment\n64 64 255\n");
+  const test::TestFrame frame{1000, 900, 1100, 0, 0, 3, 2, 0, 0, "abcdef"};
+  save(folder / "payload/aedat_frame", kind(2) + test::framePacket(frame));
+  const test::TestImage image{kStart_ns, 3, 2, "mono8", false, 3, "abcdef"};
+  save(folder / "payload/ros1_image", kind(3) + test::imageMessage(image, false));
+  save(folder / "payload/cdr_image", kind(4) + test::imageMessage(image, true));
+  save(folder / "payload/cdr_packed",
+       kind(4) + test::compressedMessage(kStart_ns, "png", test::pngBytes(8, 6), true));
+  test::BagBuilder bag;
+  bag.message(bag.addConnection("/camera", "sensor_msgs/Image", "060021388200f6f0f447d0fcd9c64743"),
+              kStart_ns, test::imageMessage(image, false));
+  bag.message(bag.addConnection("/packed", "sensor_msgs/CompressedImage", "*"), kStart_ns,
+              test::compressedMessage(kStart_ns, "jpeg", test::jpegBytes(8, 6), false));
+  save(folder / "bag/frames", bag.finished());
+}
+
 void saveRos(const fs::path& folder) {
   using test::bytesOf, test::sized;
   test::BagBuilder bag("bz2"), packets;
@@ -160,6 +204,8 @@ int main(int argc, char** argv) {
   const fs::path folder = argv[1];
   saveWritten(folder);
   savePlainAedat4(folder / "aedat4/plain");
+  saveAedats(folder);
+  savePictures(folder);
   saveRos(folder);
   saveCameraFormats(folder);
   savePayloads(folder);

@@ -133,6 +133,7 @@ void Aedat4Reader::addStreams(std::vector<aedat::StreamDescription> described,
     info.name = names[i];
     info.message = described[i].type;
     info.type = type ? type->type : StreamType::Other;
+    info.readable = info.type != StreamType::Triggers && info.type != StreamType::Other;
     info.resolution_px = described[i].size_px;
     if (found != listed.end()) {
       info.messages = std::max(found->second.packets, found->second.elements);
@@ -142,7 +143,7 @@ void Aedat4Reader::addStreams(std::vector<aedat::StreamDescription> described,
     info.angular_rate_unit = AngularRateUnit::DegreesPerSecond;
     stream_of_id_[described[i].id] = i;
     streams_.push_back(info);
-    states_.emplace_back();
+    states_.emplace_back().selected = info.readable && info.type != StreamType::Frames;
   }
 }
 
@@ -280,13 +281,25 @@ bool Aedat4Reader::unpack(const PacketHeader& header, std::string_view& content)
 
 bool Aedat4Reader::decode(std::size_t stream, std::string_view content, Packet& packet) {
   packet.stream = stream;
-  packet.events.clear();
-  packet.imu_samples.clear();
-  const bool events = streams_[stream].type == StreamType::Events;
-  const bool whole =
-      events ? aedat::decodeEvents(content, packet.events) : aedat::decodeImu(content, packet.imu_samples);
-  if (!whole) return false;
-  if (events) finishEvents(stream, packet);
+  packet.clear();
+  if (streams_[stream].type == StreamType::Imu) return aedat::decodeImu(content, packet.imu_samples);
+  if (streams_[stream].type == StreamType::Frames) return decodeFrame(stream, content, packet.frames);
+  if (!aedat::decodeEvents(content, packet.events)) return false;
+  finishEvents(stream, packet);
+  return true;
+}
+
+bool Aedat4Reader::decodeFrame(std::size_t stream, std::string_view content, std::vector<Frame>& frames) {
+  StreamInfo& info = streams_[stream];
+  Frame frame;
+  std::string unusable;
+  if (!aedat::decodeFrame(content, frame, unusable)) return false;
+  if (!unusable.empty()) {
+    addFault(info.name, FaultKind::Encoding, fmt::format("Frames {}; they are left out.", unusable));
+    return true;
+  }
+  if (!info.resolution_px.known()) info.resolution_px = frame.size_px;
+  frames.push_back(std::move(frame));
   return true;
 }
 
@@ -312,8 +325,7 @@ void Aedat4Reader::finishEvents(std::size_t stream, Packet& packet) {
 bool Aedat4Reader::handOutRest(Packet& packet) {
   if (rest_.empty()) return false;
   packet.stream = rest_stream_;
-  packet.imu_samples.clear();
-  packet.events.clear();
+  packet.clear();
   std::swap(packet.events, rest_);
   finishEvents(packet.stream, packet);
   return true;
@@ -342,7 +354,7 @@ bool Aedat4Reader::read(Packet& packet) {
     const std::size_t stream = found->second;
     const StreamType type = streams_[stream].type;
     const bool triggers = type == StreamType::Triggers;
-    const bool wanted = states_[stream].selected && (type == StreamType::Events || type == StreamType::Imu);
+    const bool wanted = states_[stream].selected && streams_[stream].readable;
     if (!(wanted || triggers) || !unpack(header, content)) continue;
     if (triggers) {
       countListed(stream, content);
@@ -350,12 +362,11 @@ bool Aedat4Reader::read(Packet& packet) {
       addFault(
           streams_[stream].name, FaultKind::Corrupt,
           fmt::format("The content of the packet at byte {} is damaged; it is left out.", header.position));
-    } else if (!packet.events.empty() || !packet.imu_samples.empty()) {
+    } else if (!packet.empty()) {
       return true;
     }
   }
-  packet.events.clear();
-  packet.imu_samples.clear();
+  packet.clear();
   return false;
 }
 
@@ -368,7 +379,8 @@ void Aedat4Reader::addFault(const std::string& stream, FaultKind kind, const std
   const auto alike = [&](const RecordingFault& fault) {
     return fault.stream == stream && fault.kind == kind;
   };
-  if (std::count_if(faults_.begin(), faults_.end(), alike) < kMostAlikeFaults)
+  const std::ptrdiff_t most = kind == FaultKind::Encoding ? 1 : kMostAlikeFaults;
+  if (std::count_if(faults_.begin(), faults_.end(), alike) < most)
     faults_.push_back({stream, kind, 0.0, text});
 }
 

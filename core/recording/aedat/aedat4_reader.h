@@ -1,5 +1,5 @@
 // AEDAT4, as iniVation's DV records it: events, IMU samples (in g and deg/s), frames and triggers of one or
-// several cameras; the latter two are listed only. The table at the end is used where it is there and whole,
+// several cameras; triggers are listed only. The table at the end is used where it is there and whole,
 // and not needed.
 #pragma once
 
@@ -61,6 +61,7 @@ class Aedat4Reader : public RecordingReader {
   bool skipDamage(const PacketHeader& header, HeaderState state);
   bool unpack(const PacketHeader& header, std::string_view& content);
   bool decode(std::size_t stream, std::string_view content, Packet& packet);
+  bool decodeFrame(std::size_t stream, std::string_view content, std::vector<Frame>& frames);
   void finishEvents(std::size_t stream, Packet& packet);
   void countListed(std::size_t stream, std::string_view content);
   bool handOutRest(Packet& packet);

@@ -3,8 +3,11 @@
 #include "core/base/time.h"
 #include "core/recording/aedat/flat_buffer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <limits>
 
 namespace evical::aedat {
@@ -12,6 +15,8 @@ namespace {
 
 constexpr std::size_t kEvent_bytes = 16;  // i64 t, i16 x, i16 y, u8 on, 3 bytes of padding
 constexpr std::int64_t kLatest_us = kLatestTime_ns / kMicrosecond_ns;
+
+constexpr std::int64_t kLongestExposure_us = 3'600'000'000;
 
 bool isMicrosecond(std::int64_t time_us) {
   return time_us >= -kLatest_us && time_us <= kLatest_us;
@@ -29,6 +34,36 @@ Reading open(std::string_view bytes, std::string_view type) {
   reading.root = reading.buffer.root();
   reading.good = reading.buffer.ok();
   return reading;
+}
+
+// OpenCV's numbers for its types of 1, 3 and 4 channels of 8 bit.
+struct PixelFormat {
+  int number;
+  FrameFormat format;
+  std::size_t pixel_bytes;
+};
+constexpr PixelFormat kPixelFormats[] = {
+    {0, FrameFormat::Gray8, 1}, {16, FrameFormat::Bgr8, 3}, {24, FrameFormat::Bgra8, 4}};
+
+// What is not known of begin and end of the exposure is 0 or absent; newer files then tell its length, and
+// the frame's time is its begin.
+bool takeFrameTime(FlatBuffer& buffer, const FlatTable& root, Frame& frame) {
+  const auto time_us = buffer.number<std::int64_t>(root, 0);
+  const auto begin_us = buffer.number<std::int64_t>(root, 3), end_us = buffer.number<std::int64_t>(root, 4);
+  const auto length_us = buffer.number<std::int64_t>(root, 11);
+  if (!buffer.ok() || !isMicrosecond(time_us) || !isMicrosecond(begin_us) || !isMicrosecond(end_us))
+    return false;
+  frame.time_ns = time_us * kMicrosecond_ns;
+  std::int64_t exposure_us = 0;
+  if (begin_us != 0 && end_us >= begin_us) {
+    exposure_us = end_us - begin_us;
+    frame.time_ns = begin_us * kMicrosecond_ns + exposure_us * (kMicrosecond_ns / 2);
+  } else if (length_us > 0 && isMicrosecond(time_us + std::min(length_us, kLongestExposure_us))) {
+    exposure_us = std::min(length_us, kLongestExposure_us);
+    frame.time_ns += exposure_us * (kMicrosecond_ns / 2);
+  }
+  frame.exposure_s = 1e-6 * static_cast<double>(exposure_us);
+  return true;
 }
 
 }  // namespace
@@ -109,6 +144,36 @@ bool decodeImu(std::string_view bytes, std::vector<RawImuSample>& samples) {
   }
   if (!buffer.ok()) samples.clear();
   return buffer.ok();
+}
+
+bool decodeFrame(std::string_view bytes, Frame& frame, std::string& unusable) {
+  frame = {};
+  unusable.clear();
+  auto [buffer, root, good] = open(bytes, "FRME");
+  if (!good || !takeFrameTime(buffer, root, frame)) return false;
+  const int format = buffer.number<std::int8_t>(root, 5);
+  const int width = buffer.number<std::int16_t>(root, 6), height = buffer.number<std::int16_t>(root, 7);
+  const int left = buffer.number<std::int16_t>(root, 8), top = buffer.number<std::int16_t>(root, 9);
+  const FlatVector pixels = buffer.vector(root, 10, 1);
+  if (!buffer.ok() || width <= 0 || height <= 0) return false;
+  const PixelFormat* const known = std::find_if(std::begin(kPixelFormats), std::end(kPixelFormats),
+                                                [&](const PixelFormat& f) { return f.number == format; });
+  if (known == std::end(kPixelFormats)) {
+    unusable = fmt::format("are in the format {}; readable are 8 bit grey, BGR and BGRA", format);
+    return true;
+  }
+  if (left != 0 || top != 0) {
+    unusable = fmt::format("show a part of the sensor, from column {} and row {} on", left, top);
+    return true;
+  }
+  frame.format = known->format;
+  frame.size_px = {width, height};
+  frame.row_bytes = known->pixel_bytes * static_cast<std::size_t>(width);
+  const std::size_t size = frame.row_bytes * static_cast<std::size_t>(height);
+  if (size > pixels.count) return false;
+  const char* const from = buffer.data() + pixels.position;
+  frame.bytes.assign(from, from + size);
+  return true;
 }
 
 std::optional<std::size_t> countTriggers(std::string_view bytes) {

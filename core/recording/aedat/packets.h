@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/data/event.h"
+#include "core/data/frame.h"
 #include "core/data/imu_units.h"
 
 #include <cstdint>
@@ -37,6 +38,9 @@ std::optional<FileHeader> decodeHeader(std::string_view bytes);
 std::optional<std::vector<TableEntry>> decodeTable(std::string_view bytes);
 bool decodeEvents(std::string_view bytes, std::vector<Event>& events);
 bool decodeImu(std::string_view bytes, std::vector<RawImuSample>& samples);  // in g and deg/s
+// Its time is the middle of the exposure. `unusable` says, in the end of a sentence, why a whole frame cannot
+// be used; it is empty otherwise.
+bool decodeFrame(std::string_view bytes, Frame& frame, std::string& unusable);
 std::optional<std::size_t> countTriggers(std::string_view bytes);
 std::string_view packetType(std::string_view bytes);  // "EVTS", ...; empty if there is none
 

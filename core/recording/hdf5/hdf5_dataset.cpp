@@ -55,7 +55,16 @@ herr_t visit(hid_t, const char* path, const H5O_info_t* object, void* data) {
   return 0;
 }
 
-// Throws if a filter is not there.
+}  // namespace
+
+DatasetList listDatasets(hid_t file, const std::string& place) {
+  Walk walk{file, {}};
+  if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, visit, &walk, H5O_INFO_BASIC) < 0) {
+    throw badInput(place, fmt::format("the HDF5 file's tree is damaged: {}", lastProblem()));
+  }
+  return std::move(walk.found);
+}
+
 void requireFilters(hid_t creation, const std::string& place, const std::string& path) {
   const int count = H5Pget_nfilters(creation);
   for (int i = 0; i < count; ++i) {
@@ -69,16 +78,6 @@ void requireFilters(hid_t creation, const std::string& place, const std::string&
                                filterName(filter)),
                    "Install HDF5's plugin for it, or pack the file anew with gzip (h5repack -f GZIP=1)");
   }
-}
-
-}  // namespace
-
-DatasetList listDatasets(hid_t file, const std::string& place) {
-  Walk walk{file, {}};
-  if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, visit, &walk, H5O_INFO_BASIC) < 0) {
-    throw badInput(place, fmt::format("the HDF5 file's tree is damaged: {}", lastProblem()));
-  }
-  return std::move(walk.found);
 }
 
 DatasetRows::DatasetRows(hid_t file, const DatasetInfo& info, hid_t memory_type, const std::string& place)

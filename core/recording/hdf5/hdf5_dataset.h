@@ -31,6 +31,9 @@ struct DatasetList {
 // All datasets; throws CalibrationError (BadInput) where the file's tree cannot be walked.
 DatasetList listDatasets(hid_t file, const std::string& place);
 
+// Throws CalibrationError (BadInput) where a filter of a dataset's creation properties is not there.
+void requireFilters(hid_t creation, const std::string& place, const std::string& path);
+
 // Rows of one column (a list) or several (a table of rank 2), converted by HDF5 to `memory_type`.
 class DatasetRows {
  public:

@@ -1,4 +1,5 @@
 #include "core/recording/hdf5/hdf5_tables.h"
+#include "core/recording/hdf5/hdf5_times.h"
 #include "core/recording/text/text_lines.h"
 
 #include <fmt/format.h>
@@ -12,36 +13,8 @@ namespace evical::hdf5 {
 namespace {
 
 constexpr std::size_t kPacketSamples = 10;
-constexpr std::int64_t kNanoseconds = 100'000'000'000'000'000;
 constexpr double kGravity_m_s2 = 9.80665;
 constexpr std::size_t kSamplesForGravity = 1000;
-
-// Times of either kind.
-class Times {
- public:
-  Times(hid_t file, const DatasetInfo& info, TimeScale& time, const std::string& place) {
-    time.is_real = info.isReal();
-    if (time.is_real) {
-      real_.emplace(file, info, H5T_NATIVE_DOUBLE, place);
-      time.unit_ns = 1;
-      return;
-    }
-    whole_.emplace(file, info, H5T_NATIVE_INT64, place);
-    const auto first = whole_->numbersFrom(0);
-    if (!first.empty() && (first[0] > kNanoseconds || first[0] < -kNanoseconds)) time.unit_ns = 1;
-  }
-
-  DatasetRows& rows() { return real_ ? static_cast<DatasetRows&>(*real_) : *whole_; }
-
-  bool convert(std::uint64_t row, const TimeScale& time, std::int64_t& time_ns) {
-    return real_ ? time.convert(real_->numbersFrom(row)[0], time_ns)
-                 : time.convert(whole_->numbersFrom(row)[0], time_ns);
-  }
-
- private:
-  std::optional<Rows<std::int64_t>> whole_;
-  std::optional<Rows<double>> real_;
-};
 
 // Rate and acceleration each begin at a column of a table; both tables may be the same.
 class ImuDatasets : public ImuTable {

@@ -86,18 +86,20 @@ class LayoutFinder {
       if (dataset.type_class == H5T_COMPOUND) addCompound(dataset);
       if (rank == 1) addColumns(dataset);
       if (rank == 2) addTable(dataset);
-      if (rank >= 3) addListed(dataset, StreamType::Frames);
+      if (rank >= 3) addFrames(dataset);
       if (isPartOfAStream(dataset)) incomplete_.insert(dataset.folder());
     }
-    const auto isReadable = [](const FoundStream& stream) { return stream.events || stream.imu; };
+    const auto isReadable = [](const FoundStream& stream) {
+      return stream.events || stream.imu || stream.frames;
+    };
     if (std::none_of(found_.begin(), found_.end(), isReadable)) failWithNames();
-    std::vector<std::string> problems;
+    std::vector<std::string>& problems = problems_;
     for (const std::string& path : list_.damaged)
       problems.push_back(fmt::format("{} is damaged; what it holds is left out.", path));
     for (const std::string& folder : incomplete_)
       problems.push_back(fmt::format("{} has some of the datasets of a stream, but not all; it is left out.",
                                      folder.empty() ? "The root" : withoutSlash(folder)));
-    return {std::move(found_), std::move(problems)};
+    return {std::move(found_), std::move(problems_)};
   }
 
  private:
@@ -129,7 +131,7 @@ class LayoutFinder {
     info.name = name.empty() ? streamTypeName(type) : std::move(name);
     info.type = type;
     info.message = std::move(message);
-    found_.push_back({info, nullptr, nullptr});
+    found_.push_back({info, nullptr, nullptr, nullptr});
     return found_.back();
   }
 
@@ -213,9 +215,36 @@ class LayoutFinder {
     }
   }
 
+  // M3ED's times stand in the folder above, for both cameras; MVSEC's beside the pictures.
+  void addFrames(const DatasetInfo& dataset) {
+    const std::string folder = dataset.folder(), above = withoutSlash(folder);
+    const std::string parent = above.substr(0, above.rfind('/') + 1);
+    const DatasetInfo* times = findList(folder, {(dataset.name() + "_ts").c_str(), "ts"});
+    if (!times) times = findList(parent, {"ts"});
+    const bool pictures = dataset.name() == "data" || dataset.name() == "image_raw";
+    if (!times || !pictures || dataset.type_class != H5T_INTEGER) {
+      addListed(dataset, StreamType::Frames);
+      return;
+    }
+    try {
+      auto frames = std::make_unique<FrameTable>(file_, dataset, *times, place_);
+      FoundStream& stream = add(dataset.path, StreamType::Frames, "pictures, times");
+      stream.info.messages = frames->rows();
+      stream.info.resolution_px = frames->size_px();
+      stream.info.time_unit_ns = frames->timeScale().unit_ns;
+      stream.frames = std::move(frames);
+    } catch (const CalibrationError& error) {
+      problems_.push_back(fmt::format("Pictures are left out: {}.", error.problem()));
+      addListed(dataset, StreamType::Frames);
+    }
+  }
+
   void addListed(const DatasetInfo& dataset, StreamType type) {
     const bool bytes = dataset.type_class == H5T_INTEGER || type == StreamType::Triggers;
-    if (bytes) add(dataset.path, type, "").info.messages = dataset.extent[0];
+    if (!bytes) return;
+    StreamInfo& info = add(dataset.path, type, "").info;
+    info.messages = dataset.extent[0];
+    info.readable = false;
   }
 
   [[noreturn]] void failWithNames() const {
@@ -236,6 +265,7 @@ class LayoutFinder {
   const std::vector<DatasetInfo>& datasets_;
   std::vector<FoundStream> found_;
   std::set<std::string> incomplete_;  // folders
+  std::vector<std::string> problems_;
 };
 
 }  // namespace

@@ -1,9 +1,11 @@
 // Finds events, IMU samples, frames and triggers among the datasets of a file, in the layouts that data sets
 // use: DSEC, VECtor, TUM-VIE (events/{x,y,t,p}, t_offset), e2calib (the same at the root), M3ED
-// (prophesee/left/{x,y,t,p}, ovc/imu/{ts,omega,accel}), MVSEC (davis/left/events, imu, imu_ts), evlib
+// (prophesee/left/{x,y,t,p}, ovc/imu/{ts,omega,accel}, ovc/left/data with ovc/ts), MVSEC
+// (davis/left/events, imu, imu_ts, image_raw, image_raw_ts), evlib
 // (raw_events/{x,y,t,p}), Metavision (CD/events, EXT_TRIGGER/events).
 #pragma once
 
+#include "core/recording/hdf5/hdf5_frames.h"
 #include "core/recording/hdf5/hdf5_tables.h"
 #include "core/recording/recording_reader.h"
 
@@ -15,8 +17,9 @@ namespace evical::hdf5 {
 
 struct FoundStream {
   StreamInfo info;
-  std::unique_ptr<EventTable> events;  // one of the two, or neither: it is listed only
+  std::unique_ptr<EventTable> events;  // one of the three, or none: it is listed only
   std::unique_ptr<ImuTable> imu;
+  std::unique_ptr<FrameTable> frames;
 };
 
 struct FoundStreams {
@@ -24,7 +27,7 @@ struct FoundStreams {
   std::vector<std::string> problems;  // sentences about what might have been more
 };
 
-// Throws CalibrationError (BadInput) where there is neither an event nor an IMU sample.
+// Throws CalibrationError (BadInput) where there is neither an event nor an IMU sample nor a picture.
 FoundStreams findStreams(hid_t file, const std::string& place);
 
 }  // namespace evical::hdf5

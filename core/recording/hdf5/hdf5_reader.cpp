@@ -38,6 +38,7 @@ std::vector<std::filesystem::path> cameraFiles(const std::filesystem::path& fold
 struct Hdf5Reader::Source {
   std::unique_ptr<hdf5::EventTable> events;
   std::unique_ptr<hdf5::ImuTable> imu;
+  std::unique_ptr<hdf5::FrameTable> frames;
   std::size_t stream = 0;
   bool wanted = true, finished = false;
   std::uint64_t row = 0;
@@ -48,6 +49,10 @@ struct Hdf5Reader::Source {
 
 bool isTumVieFolder(const std::filesystem::path& folder) {
   return !cameraFiles(folder).empty();
+}
+
+bool hasTumVieImu(const std::filesystem::path& folder) {
+  return std::filesystem::is_regular_file(folder / kImuText);
 }
 
 Hdf5Reader::Hdf5Reader(const std::filesystem::path& path) {
@@ -70,12 +75,15 @@ void Hdf5Reader::addFile(const std::filesystem::path& path, const std::string& c
     auto source = std::make_unique<Source>();
     source->events = std::move(found.events);
     source->imu = std::move(found.imu);
+    source->frames = std::move(found.frames);
+    source->wanted = !source->frames;  // frames are not read by default
     source->stream = streams_.size();
     if (!camera.empty() && found.info.type == StreamType::Events) found.info.name = camera;
     streams_.push_back(found.info);
-    const std::string problem = source->events ? source->events->takeProblem()
-                                : source->imu  ? source->imu->takeProblem()
-                                               : std::string();
+    const std::string problem = source->events   ? source->events->takeProblem()
+                                : source->imu    ? source->imu->takeProblem()
+                                : source->frames ? source->frames->takeProblem()
+                                                 : std::string();
     noteProblem(*source, problem);
     sources_.push_back(std::move(source));
   }
@@ -105,11 +113,11 @@ bool Hdf5Reader::read(Packet& packet) {
   for (;;) {
     Source* behind = nullptr;
     for (const auto& source : sources_) {
-      const bool runs = source->wanted && !source->finished && (source->events || source->imu);
+      const bool runs =
+          source->wanted && !source->finished && (source->events || source->imu || source->frames);
       if (runs && (!behind || source->last_ns < behind->last_ns)) behind = source.get();
     }
-    packet.events.clear();
-    packet.imu_samples.clear();
+    packet.clear();
     if (!behind) return false;
     if (fill(*behind, packet)) return true;
   }
@@ -118,6 +126,7 @@ bool Hdf5Reader::read(Packet& packet) {
 bool Hdf5Reader::fill(Source& source, Packet& packet) {
   packet.stream = source.stream;
   if (source.events) return fillEvents(source, packet.events);
+  if (source.frames) return fillFrames(source, packet.frames);
   source.imu->load(packet.imu_samples);
   noteProblem(source, source.imu->takeProblem());
   source.finished = packet.imu_samples.empty();
@@ -145,6 +154,18 @@ bool Hdf5Reader::fillEvents(Source& source, std::vector<Event>& events) {
   return true;
 }
 
+bool Hdf5Reader::fillFrames(Source& source, std::vector<Frame>& frames) {
+  if (source.row >= source.frames->rows()) {
+    source.finished = true;
+    return false;
+  }
+  Frame& frame = frames.emplace_back();
+  const bool good = source.frames->load(source.row++, frame);
+  noteProblem(source, source.frames->takeProblem());
+  if (good) source.last_ns = frame.time_ns;
+  return good;
+}
+
 void Hdf5Reader::noteProblem(const Source& source, const std::string& problem) {
   if (problem.empty()) return;
   addFault(streams_[source.stream].name, FaultKind::Corrupt,
@@ -160,9 +181,9 @@ void Hdf5Reader::noteOrder(const Source& source) {
 double Hdf5Reader::fractionRead() const {
   double read = 0.0, rows = 0.0;
   for (const auto& source : sources_) {
-    if (!source->wanted || !source->events) continue;
+    if (!source->wanted || (!source->events && !source->frames)) continue;
     read += static_cast<double>(source->row);
-    rows += static_cast<double>(source->events->rows());
+    rows += static_cast<double>(source->events ? source->events->rows() : source->frames->rows());
   }
   return rows == 0.0 ? 1.0 : read / rows;
 }

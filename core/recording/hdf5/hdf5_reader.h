@@ -32,6 +32,7 @@ class Hdf5Reader : public RecordingReader {
   void addImuText(const std::filesystem::path& path);
   bool fill(Source& source, Packet& packet);
   bool fillEvents(Source& source, std::vector<Event>& events);
+  bool fillFrames(Source& source, std::vector<Frame>& frames);
   void noteProblem(const Source& source, const std::string& problem);
   void noteOrder(const Source& source);
   void addFault(const std::string& stream, FaultKind kind, std::string text);
@@ -41,7 +42,8 @@ class Hdf5Reader : public RecordingReader {
   std::vector<RecordingFault> faults_;
 };
 
-// Whether a folder holds TUM-VIE's files.
+// Whether a folder holds TUM-VIE's files of events.
 bool isTumVieFolder(const std::filesystem::path& folder);
+bool hasTumVieImu(const std::filesystem::path& folder);  // which may stand there without them
 
 }  // namespace evical

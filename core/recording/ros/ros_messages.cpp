@@ -154,16 +154,6 @@ bool decodeImu(std::string_view message, Serialization serialization, std::vecto
   return true;
 }
 
-bool decodeImageSize(std::string_view message, Serialization serialization, Resolution& resolution_px) {
-  MessageCursor cursor(message, serialization);
-  cursor.header();
-  Resolution stated_px;
-  takeResolution(cursor, stated_px);
-  if (!cursor.ok() || !stated_px.known()) return false;
-  resolution_px = stated_px;
-  return true;
-}
-
 bool parseEventPacket(std::string_view message, Serialization serialization, EventPacket& packet) {
   packet = {};
   MessageCursor cursor(message, serialization);

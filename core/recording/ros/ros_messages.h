@@ -17,7 +17,6 @@ namespace evical::ros {
 bool decodeEventArray(std::string_view message, Serialization serialization, std::vector<Event>& events,
                       Resolution& resolution_px);
 bool decodeImu(std::string_view message, Serialization serialization, std::vector<RawImuSample>& samples);
-bool decodeImageSize(std::string_view message, Serialization serialization, Resolution& resolution_px);
 
 // event_camera_msgs/EventPacket: events in an encoding of the sensor.
 struct EventPacket {

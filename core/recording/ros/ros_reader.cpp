@@ -112,8 +112,7 @@ bool RosReader::read(Packet& packet) {
     if (!nextFile()) source_.reset();
   }
   topics_.finishReading();
-  packet.events.clear();
-  packet.imu_samples.clear();
+  packet.clear();
   return false;
 }
 

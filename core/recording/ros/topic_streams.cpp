@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/time.h"
+#include "core/recording/ros/image_messages.h"
 #include "core/recording/ros/ros_messages.h"
 
 #include <fmt/format.h>
@@ -17,10 +18,26 @@ constexpr int kEnoughMessages = 50;
 constexpr std::uint64_t kEnoughStamps = 1000;
 constexpr std::int64_t kLargestSorted_ns = 10'000'000;
 
+bool parse(Content content, std::string_view message, Serialization serialization, ImageMessage& image) {
+  return content == Content::Image ? parseImage(message, serialization, image)
+                                   : parsePackedImage(message, serialization, image);
+}
+
+bool isReadable(Content content, std::string_view encoding) {
+  return content == Content::Image ? isReadableImage(encoding) : isReadablePackedImage(encoding);
+}
+
 }  // namespace
 
 bool TopicStreams::State::refused() const {
-  return content == Content::EventPacket && !encoding.empty() && encodingOf(encoding) == Encoding::Unknown;
+  if (encoding.empty()) return false;
+  if (content == Content::EventPacket) return encodingOf(encoding) == Encoding::Unknown;
+  return (content == Content::Image || content == Content::PackedImage) && !isReadable(content, encoding);
+}
+
+const char* TopicStreams::State::readableEncodings() const {
+  if (content == Content::Image) return kReadableImages;
+  return content == Content::PackedImage ? kReadablePackedImages : kReadableEncodings;
 }
 
 std::size_t TopicStreams::add(const Topic& topic) {
@@ -59,8 +76,8 @@ void TopicStreams::lookInto(std::size_t stream, std::string_view message) {
     std::vector<RawImuSample> samples;
     decodeImu(message, state.serialization, samples);
     for (const RawImuSample& sample : samples) count(sample.time_ns);
-  } else if (state.content == Content::Image) {
-    decodeImageSize(message, state.serialization, info.resolution_px);
+  } else if (info.type == StreamType::Frames) {
+    lookIntoImage(stream, message);
   } else if (state.content == Content::EventPacket) {
     lookIntoPacket(stream, message);
   }
@@ -80,20 +97,29 @@ void TopicStreams::lookIntoPacket(std::size_t stream, std::string_view message) 
     streams_[stream].host_clock_offset_s = offset->offset_s;
 }
 
+void TopicStreams::lookIntoImage(std::size_t stream, std::string_view message) {
+  State& state = states_[stream];
+  ImageMessage image;
+  if (!parse(state.content, message, state.serialization, image)) return;
+  if (image.size_px.known()) streams_[stream].resolution_px = image.size_px;
+  if (state.encoding.empty()) state.encoding = image.encoding;
+  (image.stamp_ns == 0 ? state.zero_stamps : state.other_stamps) += 1;
+}
+
 bool TopicStreams::knows(std::size_t stream) const {
   const State& state = states_[stream];
   const bool sized = streams_[stream].resolution_px.known();
   if (state.looked >= kEnoughMessages) return true;
   switch (state.content) {
     case Content::Other:
-    case Content::PackedImage:
       return true;
     case Content::EventArray:
       return state.other_stamps > 0 && (sized || state.other_stamps > kEnoughStamps);
     case Content::Imu:
       return state.other_stamps > 0;
     case Content::Image:
-      return sized;
+    case Content::PackedImage:
+      return state.other_stamps > 0 || state.stampless();
     case Content::EventPacket:
       break;
   }
@@ -106,14 +132,15 @@ void TopicStreams::finishLooking() {
     StreamInfo& info = streams_[i];
     const Encoding encoding = encodingOf(state.encoding);
     if (encoding == Encoding::Trigger) info.type = StreamType::Triggers;
-    state.selected = (info.type == StreamType::Events || info.type == StreamType::Imu) && !state.refused();
+    info.readable = info.type != StreamType::Triggers && info.type != StreamType::Other && !state.refused();
+    state.selected = info.readable && info.type != StreamType::Frames;
     if (state.stampless())
       addFault(info.name, FaultKind::NoStamps,
                "Stamps are 0; the times of recording are used, which jitter by ms.");
     if (state.refused()) {
       addFault(info.name, FaultKind::Encoding,
                fmt::format("The encoding \"{}\" cannot be read; readable are {}.", state.encoding,
-                           kReadableEncodings));
+                           state.readableEncodings()));
     }
     if (encoding == Encoding::LibcaerCmp) {
       addFault(
@@ -133,6 +160,7 @@ void TopicStreams::listTriggers() {
     StreamInfo triggers;
     triggers.name = streams_[i].name + "/triggers";
     triggers.type = StreamType::Triggers;
+    triggers.readable = false;
     triggers.message = streams_[i].message;
     states_[i].trigger_stream = streams_.size();
     streams_.push_back(std::move(triggers));
@@ -145,9 +173,10 @@ void TopicStreams::select(const std::string& path, const std::vector<std::size_t
   for (const std::size_t stream : streams) {
     State& state = states_.at(stream);
     if (state.refused()) {
-      throw badInput(
-          path, fmt::format("the events of {} are encoded as \"{}\"", streams_[stream].name, state.encoding),
-          fmt::format("Readable are {}", kReadableEncodings));
+      throw badInput(path,
+                     fmt::format("the {} of {} are encoded as \"{}\"", streamTypeName(streams_[stream].type),
+                                 streams_[stream].name, state.encoding),
+                     fmt::format("Readable are {}; record or convert them so", state.readableEncodings()));
     }
     state.selected = true;
   }
@@ -156,8 +185,7 @@ void TopicStreams::select(const std::string& path, const std::vector<std::size_t
 bool TopicStreams::decode(std::size_t stream, std::string_view message, std::int64_t record_time_ns,
                           const std::string& place, Packet& packet) {
   packet.stream = stream;
-  packet.events.clear();
-  packet.imu_samples.clear();
+  packet.clear();
   bool whole = true;
   switch (streams_[stream].type) {
     case StreamType::Events:
@@ -167,6 +195,9 @@ bool TopicStreams::decode(std::size_t stream, std::string_view message, std::int
       whole = decodeSamples(stream, message, record_time_ns, packet.imu_samples);
       break;
     case StreamType::Frames:
+      whole = decodeFrame(stream, message, record_time_ns, packet.frames);
+      break;
+    case StreamType::Points:
     case StreamType::Triggers:
     case StreamType::Other:
       return false;
@@ -176,7 +207,7 @@ bool TopicStreams::decode(std::size_t stream, std::string_view message, std::int
              fmt::format("A message {} is damaged; {}.", place,
                          packet.events.empty() ? "it is left out" : "its end is left out"));
   }
-  return !packet.events.empty() || !packet.imu_samples.empty();
+  return !packet.empty();
 }
 
 bool TopicStreams::decodeEvents(std::size_t stream, std::string_view message, std::int64_t record_time_ns,
@@ -219,6 +250,27 @@ bool TopicStreams::decodeSamples(std::size_t stream, std::string_view message, s
   return whole && isTime(record_time_ns);
 }
 
+bool TopicStreams::decodeFrame(std::size_t stream, std::string_view message, std::int64_t record_time_ns,
+                               std::vector<Frame>& frames) {
+  const State& state = states_[stream];
+  StreamInfo& info = streams_[stream];
+  ImageMessage image;
+  if (!parse(state.content, message, state.serialization, image)) return false;
+  if (!isReadable(state.content, image.encoding)) {
+    addFault(info.name, FaultKind::Encoding,
+             fmt::format("There are frames with the encoding \"{}\", which cannot be read; readable are {}.",
+                         image.encoding, state.readableEncodings()));
+    return true;
+  }
+  Frame frame;
+  const bool whole = state.content == Content::Image ? toFrame(image, frame) : toPackedFrame(image, frame);
+  if (state.stampless()) frame.time_ns = record_time_ns;
+  if (!whole || !isTime(frame.time_ns)) return false;
+  if (!info.resolution_px.known()) info.resolution_px = image.size_px;
+  frames.push_back(std::move(frame));
+  return true;
+}
+
 // Small steps back are sorted; before a large one the packet ends, since sorting would only hide it.
 void TopicStreams::putInOrder(std::size_t stream, std::vector<Event>& events) {
   State& state = states_[stream];
@@ -251,8 +303,7 @@ void TopicStreams::putInOrder(std::size_t stream, std::vector<Event>& events) {
 bool TopicStreams::handOutRest(Packet& packet) {
   if (rest_.empty()) return false;
   packet.stream = rest_stream_;
-  packet.imu_samples.clear();
-  packet.events.clear();
+  packet.clear();
   std::swap(packet.events, rest_);
   putInOrder(packet.stream, packet.events);
   return true;

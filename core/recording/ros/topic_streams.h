@@ -62,21 +62,25 @@ class TopicStreams {
     // Steps back within messages, put in order.
     std::uint64_t disordered = 0;
     std::int64_t largest_disorder_ns = 0;
+    std::string encoding;  // of event packets and pictures, from their first message
     // Of event packets.
-    std::string encoding;
     EventPacketDecoder decoder;
     bool has_triggers = false;
     std::optional<std::size_t> trigger_stream;
     bool refused() const;  // its encoding
+    const char* readableEncodings() const;
   };
 
   void lookIntoPacket(std::size_t stream, std::string_view message);
+  void lookIntoImage(std::size_t stream, std::string_view message);
   void listTriggers();
   bool decodeEvents(std::size_t stream, std::string_view message, std::int64_t record_time_ns,
                     std::vector<Event>& events);
   bool decodePacket(std::size_t stream, std::string_view message, std::vector<Event>& events);
   bool decodeSamples(std::size_t stream, std::string_view message, std::int64_t record_time_ns,
                      std::vector<RawImuSample>& samples);
+  bool decodeFrame(std::size_t stream, std::string_view message, std::int64_t record_time_ns,
+                   std::vector<Frame>& frames);
   void putInOrder(std::size_t stream, std::vector<Event>& events);
   void finishEventPackets(std::size_t stream);
 

@@ -126,13 +126,21 @@ bool isOneOf(std::string_view name, std::initializer_list<std::string_view> name
 }
 
 struct HeaderColumns {
-  std::optional<std::size_t> time, x, y, polarity, acceleration, rate;
+  std::optional<std::size_t> time, x, y, polarity, acceleration, rate, point, sigma, alpha;
   std::optional<std::int64_t> unit_ns;
   AccelerationUnit acceleration_unit = AccelerationUnit::MetresPerSecond2;
   AngularRateUnit angular_rate_unit = AngularRateUnit::RadiansPerSecond;
 
   bool nameEvents() const { return time && x && y && polarity; }
   bool nameImu() const { return time && acceleration && rate; }
+  bool namePoints() const { return time && point && x && y; }
+
+  // Kalibr's table is "timestamp, omega_x, ..., alpha_x, ...", in ns; elsewhere alpha is a rate.
+  void takeKalibrs() {
+    if (!rate || acceleration || !alpha) return;
+    acceleration = alpha;
+    if (time && !unit_ns) unit_ns = 1;
+  }
 
   void add(std::string_view name, std::size_t i) {
     const auto first = [i](std::optional<std::size_t>& column) {
@@ -142,6 +150,8 @@ struct HeaderColumns {
     if (startsWithOne(name, {"ang", "gyr", "w_", "wx", "gx", "omega"})) {
       if (name.find("deg") != std::string_view::npos) angular_rate_unit = AngularRateUnit::DegreesPerSecond;
       first(rate);
+    } else if (name.starts_with("alpha")) {
+      first(alpha);
     } else if (startsWithOne(name, {"acc", "lin", "a_", "ax"})) {
       if (name.ends_with("[g]") || name.ends_with("(g)")) acceleration_unit = AccelerationUnit::Gravity;
       first(acceleration);
@@ -154,6 +164,10 @@ struct HeaderColumns {
       first(y);
     } else if (isOneOf(letters, {"p", "pol", "polarity", "on"})) {
       first(polarity);
+    } else if (isOneOf(letters, {"point", "circle", "corner"})) {
+      first(point);
+    } else if (isOneOf(letters, {"sigma", "std"})) {
+      first(sigma);
     }
   }
 };
@@ -167,6 +181,7 @@ HeaderColumns readHeader(std::string_view line) {
   splitColumns(names, columns);
   HeaderColumns header;
   for (std::size_t i = 0; i < columns.size(); ++i) header.add(trimmed(columns[i]), i);
+  header.takeKalibrs();
   return header;
 }
 
@@ -182,11 +197,15 @@ bool readGeometry(std::string_view line, Resolution& size_px) {
 }
 
 void applyHeader(const HeaderColumns& header, TextColumns& columns) {
-  columns.type = header.nameEvents() ? StreamType::Events : StreamType::Imu;
+  columns.type = header.nameEvents() ? StreamType::Events
+                 : header.nameImu()  ? StreamType::Imu
+                                     : StreamType::Points;
   columns.time = *header.time;
   columns.x = header.x.value_or(0);
   columns.y = header.y.value_or(0);
   columns.polarity = header.polarity.value_or(0);
+  columns.point = header.point.value_or(0);
+  columns.sigma = header.sigma;
   columns.acceleration = header.acceleration.value_or(0);
   columns.rate = header.rate.value_or(0);
   columns.acceleration_unit = header.acceleration_unit;
@@ -262,6 +281,7 @@ void describeGuess(TextColumns& columns, bool has_header) {
 
 std::size_t TextColumns::count() const {
   if (type == StreamType::Events) return std::max({time, x, y, polarity}) + 1;
+  if (type == StreamType::Points) return std::max({time, x, y, point, sigma.value_or(0)}) + 1;
   return std::max({time, acceleration + 2, rate + 2}) + 1;
 }
 
@@ -299,7 +319,7 @@ TextColumns findColumns(std::string_view first_bytes, bool cut) {
     splitColumns(line, parts);
     if (addRow(parts, rows) || rows.count > 0) continue;  // a bad line among rows is the reader's to report
     const HeaderColumns header = readHeader(line);
-    if (!has_header && (header.nameEvents() || header.nameImu())) {
+    if (!has_header && (header.nameEvents() || header.nameImu() || header.namePoints())) {
       applyHeader(header, columns);
       columns.header_line = number;
       has_header = true;

@@ -60,6 +60,12 @@ std::string firstBytes(const std::filesystem::path& path) {
   return bytes;
 }
 
+const char* messageOf(StreamType type) {
+  return type == StreamType::Events   ? "t x y p"
+         : type == StreamType::Points ? "t point x y"
+                                      : "t ax ay az gx gy gz";
+}
+
 }  // namespace
 
 StreamType textTableType(std::string_view first_bytes) {
@@ -96,13 +102,13 @@ void TextTableReader::addSource(const std::filesystem::path& path) {
   if (columns.type == StreamType::Other) {
     throw badInput(path.string(),
                    "the lines are neither events nor IMU samples, and no header names the columns",
-                   "Put a line such as \"t_us,x,y,p\" on top");
+                   "Put a line such as \"t_us,x,y,p\" or \"time_s,point,x_px,y_px\" on top");
   }
   if (path.extension() == ".csv") format_ = "csv";
   StreamInfo stream;
   stream.name = name;
   stream.type = columns.type;
-  stream.message = columns.type == StreamType::Events ? "t x y p" : "t ax ay az gx gy gz";
+  stream.message = messageOf(columns.type);
   stream.resolution_px = columns.resolution_px;
   stream.time_unit_ns = columns.time_unit_ns == 1000 ? 1000 : 1;
   stream.acceleration_unit = columns.acceleration_unit;
@@ -121,9 +127,8 @@ void TextTableReader::select(const std::vector<std::size_t>& streams) {
 
 // The stream that is behind goes first, so that files are read side by side.
 bool TextTableReader::read(Packet& packet) {
-  packet.events.clear();
-  packet.imu_samples.clear();
-  while (packet.events.empty() && packet.imu_samples.empty()) {
+  packet.clear();
+  while (packet.empty()) {
     Source* behind = nullptr;
     for (Source& source : sources_) {
       const bool runs = source.wanted && !source.finished;
@@ -133,6 +138,8 @@ bool TextTableReader::read(Packet& packet) {
     packet.stream = static_cast<std::size_t>(behind - sources_.data());
     if (behind->columns.type == StreamType::Events) {
       fillEvents(*behind, packet.stream, packet.events);
+    } else if (behind->columns.type == StreamType::Points) {
+      fillPoints(*behind, packet.stream, packet.points);
     } else {
       fillImu(*behind, packet.stream, packet.imu_samples);
     }
@@ -181,6 +188,27 @@ void TextTableReader::fillImu(Source& source, std::size_t stream, std::vector<Ra
   }
 }
 
+// A packet holds the points of one time.
+void TextTableReader::fillPoints(Source& source, std::size_t stream, std::vector<MeasuredPoint>& points) {
+  if (source.next_point) points.push_back(*source.next_point);
+  source.next_point.reset();
+  std::string_view line;
+  MeasuredPoint point;
+  while (source.lines.next(line)) {
+    if (!parsePoint(source, line, point)) {
+      if (!isNoRow(source, line)) addBadLine(source, stream);
+      continue;
+    }
+    source.last_ns = point.time_ns;
+    if (!points.empty() && point.time_ns != points.back().time_ns) {
+      source.next_point = point;
+      return;
+    }
+    points.push_back(point);
+  }
+  source.finished = true;
+}
+
 bool TextTableReader::isNoRow(const Source& source, std::string_view line) {
   return source.lines.number() == source.columns.header_line || isComment(line);
 }
@@ -192,6 +220,24 @@ bool TextTableReader::parseEvent(const Source& source, std::string_view line, Ev
          parseTime(parts_[columns.time], source.time_digits, event.time_ns) &&
          parsePixel(parts_[columns.x], event.x_px) && parsePixel(parts_[columns.y], event.y_px) &&
          parsePolarity(parts_[columns.polarity], event.brighter);
+}
+
+bool TextTableReader::parsePoint(const Source& source, std::string_view line, MeasuredPoint& point) {
+  const TextColumns& columns = source.columns;
+  splitColumns(line, parts_);
+  std::uint16_t index = 0;
+  double x_px = 0.0, y_px = 0.0, sigma_px = 0.0;
+  if (parts_.size() < columns.count() ||
+      !parseTime(parts_[columns.time], source.time_digits, point.time_ns) ||
+      !parseNumber(parts_[columns.point], index) || !parseNumber(parts_[columns.x], x_px) ||
+      !parseNumber(parts_[columns.y], y_px) ||
+      (columns.sigma && !parseNumber(parts_[*columns.sigma], sigma_px)) || sigma_px < 0.0)
+    return false;
+  point.point = index;
+  point.x_px = static_cast<float>(x_px);
+  point.y_px = static_cast<float>(y_px);
+  point.sigma_px = static_cast<float>(sigma_px);
+  return true;
 }
 
 bool TextTableReader::parseImu(const Source& source, std::string_view line, RawImuSample& sample) {

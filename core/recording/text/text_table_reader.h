@@ -1,5 +1,5 @@
-// Text and CSV, a table a file: events or IMU samples, whose columns a header line names, or which are
-// guessed and then said (text_columns.h). A folder with "events.txt" and "imu.txt" as in the RPG event camera
+// Text and CSV, a table a file: events, IMU samples, or points of a board that another program found, whose
+// columns a header line names, or which are guessed and then said (text_columns.h). A folder with "events.txt" and "imu.txt" as in the RPG event camera
 // data set, or "events.csv" and "imu.csv", or one such file alone. Times are read exactly to the ns. Lines
 // starting with '#' or
 // '%' are comments.
@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,11 +40,14 @@ class TextTableReader : public RecordingReader {
     std::int64_t last_ns;
     Event next_event{};  // read, but it belongs to the next packet
     bool has_next_event = false;
+    std::optional<MeasuredPoint> next_point = {};  // the same
   };
 
   void addSource(const std::filesystem::path& path);
   void fillEvents(Source& source, std::size_t stream, std::vector<Event>& events);
   void fillImu(Source& source, std::size_t stream, std::vector<RawImuSample>& samples);
+  void fillPoints(Source& source, std::size_t stream, std::vector<MeasuredPoint>& points);
+  bool parsePoint(const Source& source, std::string_view line, MeasuredPoint& point);
   bool parseEvent(const Source& source, std::string_view line, Event& event);
   bool parseImu(const Source& source, std::string_view line, RawImuSample& sample);
   static bool isNoRow(const Source& source, std::string_view line);

@@ -18,6 +18,7 @@ struct Contents {
   std::vector<StreamInfo> streams;
   std::map<std::size_t, std::vector<Event>> events;   // by stream
   std::map<std::size_t, std::vector<ImuSample>> imu;  // in SI units
+  std::map<std::size_t, std::vector<Frame>> frames;
   std::vector<RecordingFault> faults;
 
   std::size_t eventCount() const {
@@ -28,6 +29,11 @@ struct Contents {
   std::size_t sampleCount() const {
     std::size_t count = 0;
     for (const auto& [stream, list] : imu) count += list.size();
+    return count;
+  }
+  std::size_t frameCount() const {
+    std::size_t count = 0;
+    for (const auto& [stream, list] : frames) count += list.size();
     return count;
   }
   bool hasFault(FaultKind kind) const {
@@ -44,6 +50,10 @@ inline Contents readAll(RecordingReader& reader) {
     std::vector<Event>& events = contents.events[packet.stream];
     events.insert(events.end(), packet.events.begin(), packet.events.end());
     const StreamInfo& info = reader.streams()[packet.stream];
+    if (!packet.frames.empty()) {
+      std::vector<Frame>& frames = contents.frames[packet.stream];
+      frames.insert(frames.end(), packet.frames.begin(), packet.frames.end());
+    }
     toSi(packet.imu_samples, info.acceleration_unit, info.angular_rate_unit, contents.imu[packet.stream]);
   }
   contents.streams = reader.streams();
@@ -55,6 +65,19 @@ inline Contents readAll(const std::filesystem::path& path) {
   return readAll(*openRecording(path));
 }
 
+// Also frames, which are not read by default.
+inline Contents readEverything(RecordingReader& reader) {
+  std::vector<std::size_t> streams;
+  for (std::size_t i = 0; i < reader.streams().size(); ++i)
+    if (reader.streams()[i].readable) streams.push_back(i);
+  reader.select(streams);
+  return readAll(reader);
+}
+
+inline Contents readEverything(const std::filesystem::path& path) {
+  return readEverything(*openRecording(path));
+}
+
 class ScratchFolder {
  public:
   std::filesystem::path operator/(const std::string& name) const {
@@ -62,6 +85,7 @@ class ScratchFolder {
   }
   std::filesystem::path path() const { return directory_.path().toStdString(); }
   std::filesystem::path write(const std::string& name, const std::string& content) const {
+    std::filesystem::create_directories((*this / name).parent_path());
     std::ofstream(*this / name, std::ios::binary) << content;
     return *this / name;
   }

@@ -1,5 +1,8 @@
 #include "core/recording/inspection.h"
 #include "core/recording/inspection_json.h"
+#include "tests/core/recording/aedat/aedat3_builder.h"
+#include "tests/core/recording/picture_samples.h"
+#include "tests/core/recording/recording_contents.h"
 #include "tests/core/recording/sample_recording.h"
 #include "tests/support/test_program.h"
 
@@ -55,6 +58,8 @@ class TestInspection : public QObject {
   void summary_matchesTheRecording();
   void eventFaults_areFound();
   void json_holdsTheContractsKeys();
+  void frames_areCountedWithTheirExposures();
+  void untimedPictures_areToldSo();
   void hostileSamples_areSurvived();
   void hostileEvents_areSurvived();
 
@@ -205,6 +210,37 @@ void TestInspection::json_holdsTheContractsKeys() {
   QCOMPARE(events["type"].toString(), "events");
   QCOMPARE(events["resolution_px"].toArray(), QJsonArray({346, 260}));
   QVERIFY(!parsed(false)["streams"][0].toObject().contains("sum_x"));
+}
+
+void TestInspection::frames_areCountedWithTheirExposures() {
+  const ScratchFolder scratch;
+  std::string bytes = test::aedat3Header();
+  for (int i = 0; i < 5; ++i) bytes += test::aedat3FramePacket({1, 50'000 * i, 50'000 * i + 1000 * (i + 1)});
+  const Inspection inspection = inspectRecording(*openRecording(scratch.write("frames.aedat", bytes)));
+  const StreamSummary& frames = inspection.streams.at(0);
+  QCOMPARE(frames.count, std::uint64_t{5});
+  QVERIFY(std::abs(frames.rate_hz - 4 / 0.202) < 1e-9);
+  QCOMPARE(frames.shortest_exposure_s, 0.001);
+  QCOMPARE(frames.longest_exposure_s, 0.005);
+  QCOMPARE(frames.largest_gap_ns, std::int64_t{50'500'000});
+  QVERIFY((frames.info.resolution_px == Resolution{3, 2}));
+  const QJsonObject json =
+      QJsonDocument::fromJson(QByteArray::fromStdString(inspectionJson(inspection, true)))["streams"][0]
+          .toObject();
+  QCOMPARE(json["type"].toString(), "frames");
+  QCOMPARE(json["resolution_px"].toArray(), QJsonArray({3, 2}));
+  QCOMPARE(json["exposure_s"].toArray(), QJsonArray({0.001, 0.005}));
+  QVERIFY(json.contains("rate_hz") && json["readable"].toBool() && json["timed"].toBool());
+}
+
+void TestInspection::untimedPictures_areToldSo() {
+  const ScratchFolder scratch;
+  for (const char* name : {"pictures/1.png", "pictures/2.png"}) scratch.write(name, test::pngBytes(8, 6));
+  const Inspection inspection = inspectRecording(*openRecording(scratch / "pictures"));
+  QCOMPARE(inspection.streams.at(0).count, std::uint64_t{2});
+  QCOMPARE(inspection.streams[0].rate_hz, 0.0);
+  QVERIFY(!inspection.streams[0].info.timed);
+  QCOMPARE(kinds(inspection.faults), QStringList({"guess"}));
 }
 
 void TestInspection::hostileSamples_areSurvived() {

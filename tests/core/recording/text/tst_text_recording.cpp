@@ -29,11 +29,35 @@ class TestTextRecording : public QObject {
   void imuUnits_areThoseOfTheHeader();
   void imuWithoutHeader_isToldByGravity();
   void columnsThatMakeNoSense_areRefused();
+  void points_areReadByTheirHeader();
 
  private:
   std::filesystem::path path(const char* name) const { return folder_.filePath(name).toStdString(); }
   QTemporaryDir folder_;
 };
+
+// A packet holds what was measured at one time.
+void TestTextRecording::points_areReadByTheirHeader() {
+  QFile file(QString::fromStdString(path("points.csv").string()));
+  QVERIFY(file.open(QIODevice::WriteOnly));
+  file.write(
+      "time_ns,point,x_px,y_px,sigma_px\n1404733405732800000,7,10.25,20.5,0.1\n"
+      "1404733405732800000,8,11,21,0.2\nnonsense\n1404733405782800000,7,-0.25,21,0\n");
+  file.close();
+  const auto reader = openRecording(path("points.csv"));
+  QVERIFY(reader->streams().at(0).type == StreamType::Points);
+  Packet packet;
+  QVERIFY(reader->read(packet));
+  QCOMPARE(packet.points.size(), std::size_t{2});
+  QCOMPARE(packet.points[0].time_ns, std::int64_t{1404733405732800000});
+  QVERIFY(packet.points[0].point == 7 && packet.points[0].x_px == 10.25F && packet.points[0].y_px == 20.5F);
+  QCOMPARE(packet.points[1].sigma_px, 0.2F);
+  QVERIFY(reader->read(packet));
+  QCOMPARE(packet.points.size(), std::size_t{1});
+  QCOMPARE(packet.points[0].x_px, -0.25F);
+  QVERIFY(!reader->read(packet));
+  QVERIFY(!reader->faults().empty() && reader->faults().back().text.find("Line 4") == 0);
+}
 
 void TestTextRecording::seconds_areExact_data() {
   QTest::addColumn<QByteArray>("text");

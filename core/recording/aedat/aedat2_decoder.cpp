@@ -1,0 +1,130 @@
+#include "core/recording/aedat/aedat2_decoder.h"
+
+#include "core/base/time.h"
+
+namespace evical::aedat {
+namespace {
+
+constexpr std::int64_t kMicrosecond_ns = 1000;
+constexpr std::int64_t kHalfRange_us = std::int64_t{1} << 31;
+constexpr std::int64_t kLargestWrapped_us = kLatestTime_ns / kMicrosecond_ns - 4 * kHalfRange_us;
+// The MPU-6150's at the full scales that jAER sets: 4 g and 500 deg/s.
+constexpr double kAcceleration_per_g = 8192.0, kRate_per_deg_s = 65.5;
+constexpr std::uint32_t kImuMask = 0x8000'0C00;
+
+}  // namespace
+
+std::uint32_t bigEndian32(const char* bytes) {
+  std::uint32_t value = 0;
+  for (int i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(bytes[i]);
+  return value;
+}
+
+bool isDavisImuWord(std::uint32_t address) {
+  return (address & kImuMask) == kImuMask;
+}
+
+// Bit 10: an edge at the external input; bit 31: a pixel's brightness, or the IMU.
+bool isDavisEvent(std::uint32_t address) {
+  return (address & 0x8000'0400) == 0;
+}
+
+unsigned davisX(std::uint32_t address) {
+  return address >> 12 & 0x3FF;
+}
+
+unsigned davisY(std::uint32_t address) {
+  return address >> 22 & 0x1FF;
+}
+
+std::size_t Aedat2Decoder::decode(std::string_view bytes, std::uint64_t offset, std::vector<Event>& events) {
+  EventAppender appender(events);
+  const std::size_t records = bytes.size() / kAedat2Record_bytes;
+  appender.reserve(records);
+  for (std::size_t i = 0; i < records; ++i) {
+    const std::size_t at = i * kAedat2Record_bytes;
+    const std::uint32_t address = bigEndian32(bytes.data() + at);
+    const auto time_us = static_cast<std::int32_t>(bigEndian32(bytes.data() + at + 4));
+    const std::int64_t time_ns = unwrapped_us(time_us, offset + at) * kMicrosecond_ns;
+    if (layout_ == AddressLayout::Davis) {
+      addDavis(address, time_ns, offset + at, appender);
+    } else {
+      addDvs128(address, time_ns, offset + at, appender);
+    }
+  }
+  return records * kAedat2Record_bytes;
+}
+
+// A step of more than half the range is the counter's beginning anew, or, the other way, a late record from
+// before that.
+std::int64_t Aedat2Decoder::unwrapped_us(std::int32_t time_us, std::uint64_t byte) {
+  const std::int64_t step_us = started_ ? std::int64_t{time_us} - last_us_ : 0;
+  if (step_us < -kHalfRange_us && wrapped_us_ <= kLargestWrapped_us) {
+    wrapped_us_ += 2 * kHalfRange_us;
+    findings_.wraps.add(byte);
+  } else if (step_us > kHalfRange_us && wrapped_us_ >= 2 * kHalfRange_us) {
+    wrapped_us_ -= 2 * kHalfRange_us;
+  }
+  started_ = true;
+  last_us_ = time_us;
+  return wrapped_us_ + time_us;
+}
+
+void Aedat2Decoder::addDvs128(std::uint32_t address, std::int64_t time_ns, std::uint64_t byte,
+                              EventAppender& events) {
+  if ((address & 0x8000) != 0) {
+    ++findings_.triggers;
+  } else if (address >> 16 != 0) {
+    findings_.unknown.add(byte);
+  } else {
+    addEvent(address >> 1 & 0x7F, address >> 8 & 0x7F, (address & 1) == 0, time_ns, byte, events);
+  }
+}
+
+void Aedat2Decoder::addDavis(std::uint32_t address, std::int64_t time_ns, std::uint64_t byte,
+                             EventAppender& events) {
+  if (isDavisEvent(address)) {
+    addEvent(davisX(address), davisY(address), (address & 0x800) != 0, time_ns, byte, events);
+  } else if (isDavisImuWord(address)) {
+    addImuWord(address, time_ns, byte);
+  } else if ((address & 0x8000'0000) != 0) {
+    findings_.exposure.add(byte);
+  } else {
+    ++findings_.triggers;
+  }
+}
+
+void Aedat2Decoder::addEvent(unsigned x, unsigned y, bool brighter, std::int64_t time_ns, std::uint64_t byte,
+                             EventAppender& events) {
+  const auto width = static_cast<unsigned>(size_px_.width_px),
+             height = static_cast<unsigned>(size_px_.height_px);
+  if (x < width && y < height) {
+    events.add(time_ns, width - 1 - x, height - 1 - y, brighter);
+  } else {
+    findings_.outside.add(byte);
+  }
+}
+
+// Seven follow one another: the acceleration's axes, the temperature, the gyroscope's axes, as the chip itself
+// has them.
+void Aedat2Decoder::addImuWord(std::uint32_t address, std::int64_t time_ns, std::uint64_t byte) {
+  const unsigned code = address >> 28 & 7;
+  if (code != next_imu_word_ && code != 0) {
+    findings_.unknown.add(byte);
+    next_imu_word_ = 0;
+    return;
+  }
+  imu_words_[code] = static_cast<std::int16_t>(address >> 12 & 0xFFFF);
+  next_imu_word_ = code + 1;
+  if (next_imu_word_ < imu_words_.size()) return;
+  next_imu_word_ = 0;
+  RawImuSample sample;
+  sample.time_ns = time_ns;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    sample.specific_force[axis] = imu_words_[static_cast<std::size_t>(axis)] / kAcceleration_per_g;
+    sample.angular_rate[axis] = imu_words_[static_cast<std::size_t>(axis) + 4] / kRate_per_deg_s;
+  }
+  imu_samples_.push_back(sample);
+}
+
+}  // namespace evical::aedat

@@ -1,0 +1,45 @@
+// The pairs of address and time that an AEDAT 2.0 file consists of behind its header.
+#pragma once
+
+#include "core/recording/block_decoder.h"
+
+#include <array>
+#include <cstdint>
+
+namespace evical::aedat {
+
+enum class AddressLayout { Dvs128, Davis };
+
+class Aedat2Decoder : public BlockDecoder {
+ public:
+  Aedat2Decoder(AddressLayout layout, const Resolution& size_px) : layout_(layout), size_px_(size_px) {}
+
+  std::size_t decode(std::string_view bytes, std::uint64_t offset, std::vector<Event>& events) override;
+
+ private:
+  std::int64_t unwrapped_us(std::int32_t time_us, std::uint64_t byte);
+  void addDvs128(std::uint32_t address, std::int64_t time_ns, std::uint64_t byte, EventAppender& events);
+  void addDavis(std::uint32_t address, std::int64_t time_ns, std::uint64_t byte, EventAppender& events);
+  void addEvent(unsigned x, unsigned y, bool brighter, std::int64_t time_ns, std::uint64_t byte,
+                EventAppender& events);
+  void addImuWord(std::uint32_t address, std::int64_t time_ns, std::uint64_t byte);
+
+  AddressLayout layout_;
+  Resolution size_px_;
+  bool started_ = false;
+  std::int32_t last_us_ = 0;
+  std::int64_t wrapped_us_ = 0;  // what wraps have added
+  std::array<double, 7> imu_words_{};
+  unsigned next_imu_word_ = 0;
+};
+
+inline constexpr std::size_t kAedat2Record_bytes = 8;
+std::uint32_t bigEndian32(const char* bytes);
+
+bool isDavisImuWord(std::uint32_t address);
+// Places of an event of a DAVIS as the address has them: from the bottom right.
+bool isDavisEvent(std::uint32_t address);
+unsigned davisX(std::uint32_t address);
+unsigned davisY(std::uint32_t address);
+
+}  // namespace evical::aedat

@@ -1,0 +1,50 @@
+// Which pictures a folder holds, and when they were taken: EuRoC, Kalibr, DSEC, TUM-VIE, the RPG event camera
+// data set, or pictures without times.
+#pragma once
+
+#include "core/data/recording_fault.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace evical::pictures {
+
+struct Picture {
+  std::int64_t time_ns = 0;
+  double exposure_s = 0.0;  // 0: not known
+  std::string name;         // from the list's folder on
+};
+
+// Pictures of one camera, in the order of the folder's own list or of their names.
+struct PictureList {
+  std::string name;    // of the stream
+  std::string layout;  // "EuRoC"
+  std::filesystem::path folder;
+  std::vector<Picture> pictures;
+  bool timed = true;  // false: they are numbered, 1 s apart
+  std::vector<RecordingFault> faults;
+};
+
+struct SensorFile {
+  std::string name;  // of the stream
+  std::filesystem::path path;
+};
+
+struct PictureFolder {
+  std::vector<PictureList> lists;  // none: there are no pictures in a layout that is known
+  std::vector<SensorFile> imus;    // EuRoC's and Kalibr's tables
+  std::vector<SensorFile> events;  // DSEC's HDF5
+};
+
+// EuRoC: the folder mav0, or the one that it is in, or that of one camera (data.csv, data/). Kalibr: folders
+// of pictures that are named by their ns, and imu0.csv. DSEC: the folder that images/ is in, or itself.
+// TUM-VIE: left_images/, right_images/. RPG: images.txt.
+PictureFolder findPictures(const std::filesystem::path& folder);
+
+// Only those that stand beside the text of an RPG recording, or beside the events of a TUM-VIE recording.
+PictureFolder findRpgPictures(const std::filesystem::path& folder);
+PictureFolder findTumViePictures(const std::filesystem::path& folder);
+
+}  // namespace evical::pictures

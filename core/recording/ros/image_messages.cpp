@@ -1,0 +1,110 @@
+#include "core/recording/ros/image_messages.h"
+
+#include "core/recording/picture_bytes.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace evical::ros {
+namespace {
+
+constexpr std::uint32_t kLargest_px = 65536;
+
+// Names of sensor_msgs/image_encodings.h.
+struct ImageEncoding {
+  std::string_view name;
+  FrameFormat format;
+  std::size_t pixel_bytes;
+};
+constexpr ImageEncoding kEncodings[] = {{"mono8", FrameFormat::Gray8, 1},
+                                        {"8UC1", FrameFormat::Gray8, 1},
+                                        {"mono16", FrameFormat::Gray16, 2},
+                                        {"16UC1", FrameFormat::Gray16, 2},
+                                        {"rgb8", FrameFormat::Rgb8, 3},
+                                        {"bgr8", FrameFormat::Bgr8, 3},
+                                        {"rgba8", FrameFormat::Rgba8, 4},
+                                        {"bgra8", FrameFormat::Bgra8, 4},
+                                        {"bayer_rggb8", FrameFormat::BayerRggb8, 1},
+                                        {"bayer_bggr8", FrameFormat::BayerBggr8, 1},
+                                        {"bayer_gbrg8", FrameFormat::BayerGbrg8, 1},
+                                        {"bayer_grbg8", FrameFormat::BayerGrbg8, 1}};
+
+const ImageEncoding* find(std::string_view name) {
+  const auto same = [&](const ImageEncoding& encoding) { return encoding.name == name; };
+  const auto* const found = std::find_if(std::begin(kEncodings), std::end(kEncodings), same);
+  return found == std::end(kEncodings) ? nullptr : found;
+}
+
+bool has(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
+
+void assign(const ImageMessage& image, Frame& frame) {
+  frame = {};
+  frame.time_ns = image.stamp_ns;
+  frame.bytes.assign(image.bytes.begin(), image.bytes.end());
+}
+
+}  // namespace
+
+bool isReadableImage(std::string_view encoding) {
+  return find(encoding) != nullptr;
+}
+
+// compressed_image_transport writes "bgr8; jpeg compressed bgr8", compressed_depth_image_transport "16UC1;
+// compressedDepth png", whose pictures stand behind a header of their own.
+bool isReadablePackedImage(std::string_view format) {
+  if (has(format, "compressedDepth")) return false;
+  return format.empty() || has(format, "jpeg") || has(format, "jpg") || has(format, "png");
+}
+
+bool parseImage(std::string_view message, Serialization serialization, ImageMessage& image) {
+  image = {};
+  MessageCursor cursor(message, serialization);
+  image.stamp_ns = cursor.header();
+  const auto height = cursor.number<std::uint32_t>(), width = cursor.number<std::uint32_t>();
+  image.encoding = cursor.text();
+  image.big_endian = cursor.number<std::uint8_t>() != 0;
+  image.row_bytes = cursor.number<std::uint32_t>();
+  image.bytes = cursor.sequence();
+  if (!cursor.wellEnded() || width == 0 || height == 0 || width > kLargest_px || height > kLargest_px)
+    return false;
+  image.size_px = {static_cast<int>(width), static_cast<int>(height)};
+  return true;
+}
+
+bool parsePackedImage(std::string_view message, Serialization serialization, ImageMessage& image) {
+  image = {};
+  MessageCursor cursor(message, serialization);
+  image.stamp_ns = cursor.header();
+  image.encoding = cursor.text();
+  image.bytes = cursor.sequence();
+  if (!cursor.wellEnded()) return false;
+  image.size_px = pictureSize(image.bytes);
+  return true;
+}
+
+bool toFrame(const ImageMessage& image, Frame& frame) {
+  const ImageEncoding* const encoding = find(image.encoding);
+  const auto width = static_cast<std::uint64_t>(image.size_px.width_px);
+  const auto height = static_cast<std::uint64_t>(image.size_px.height_px);
+  const std::uint64_t row_bytes = image.row_bytes;
+  if (!encoding || row_bytes < width * encoding->pixel_bytes || row_bytes * height > image.bytes.size())
+    return false;
+  assign(image, frame);
+  frame.format = encoding->format;
+  frame.big_endian = image.big_endian;
+  frame.size_px = image.size_px;
+  frame.row_bytes = image.row_bytes;
+  return true;
+}
+
+bool toPackedFrame(const ImageMessage& image, Frame& frame) {
+  const PictureKind kind = pictureKind(image.bytes);
+  if (kind != PictureKind::Jpeg && kind != PictureKind::Png) return false;
+  assign(image, frame);
+  frame.format = FrameFormat::Encoded;
+  return true;
+}
+
+}  // namespace evical::ros

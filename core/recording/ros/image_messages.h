@@ -1,0 +1,40 @@
+// The messages of ROS that carry pictures: sensor_msgs/Image and sensor_msgs/CompressedImage. Pixels stay as
+// they are stored.
+#pragma once
+
+#include "core/data/frame.h"
+#include "core/recording/ros/message_cursor.h"
+
+#include <cstdint>
+#include <string_view>
+
+namespace evical::ros {
+
+// The encodings and formats that the two below hand out, for people.
+inline constexpr const char* kReadableImages =
+    "mono8, mono16, 8UC1, 16UC1, rgb8, bgr8, rgba8, bgra8 and bayer_*8";
+inline constexpr const char* kReadablePackedImages = "jpeg and png";
+
+bool isReadableImage(std::string_view encoding);      // "mono8"
+bool isReadablePackedImage(std::string_view format);  // "jpeg", "bgr8; png compressed bgr8"; empty: perhaps
+
+// What a message says of its picture; the views point into it.
+struct ImageMessage {
+  std::int64_t stamp_ns = 0;
+  Resolution size_px;         // of packed ones from the picture's own header, where that tells
+  std::string_view encoding;  // or the format of a packed one
+  bool big_endian = false;
+  std::size_t row_bytes = 0;
+  std::string_view bytes;
+};
+
+// False if the bytes do not fit what they claim.
+bool parseImage(std::string_view message, Serialization serialization, ImageMessage& image);
+bool parsePackedImage(std::string_view message, Serialization serialization, ImageMessage& image);
+
+// Of a message whose encoding or format is readable; false if its numbers contradict one another, or packed
+// bytes are no such picture.
+bool toFrame(const ImageMessage& image, Frame& frame);
+bool toPackedFrame(const ImageMessage& image, Frame& frame);
+
+}  // namespace evical::ros
