@@ -43,6 +43,8 @@ Session sessionFor(const Scenario& truth) {
   for (const SimulatedCamera& camera : scenario.cameras) {
     session.cameras.push_back(
         {camera.name, camera.stream, camera.intrinsics.resolution_px, camera.intrinsics});
+    if (camera.frames && camera.frames->line_delay_us != 0.0)
+      session.cameras.back().shutter = Shutter::Rolling;
   }
   for (const SimulatedImu& imu : scenario.imus) {
     SessionImu out;

@@ -1,0 +1,64 @@
+#include "core/frames/board_finder.h"
+
+#include "core/frames/pattern_finder.h"
+
+#include <opencv2/core.hpp>
+
+namespace evical {
+namespace {
+
+std::unique_ptr<PatternFinder> finderOf(const Board& board, const FrameOptions& options) {
+  validate(board);
+  switch (board.type) {
+    case BoardType::Checkerboard:
+      return makeCheckerboardFinder(board, options);
+    case BoardType::AprilGrid:
+      return makeTagGridFinder(board, options);
+    case BoardType::Charuco:
+      return makeCharucoFinder(board, options);
+    default:
+      return makeCircleFinder(board, options);
+  }
+}
+
+constexpr int kSmallestSide_px = 16;  // OpenCV's finders need some
+
+bool isLargeEnough(const GrayImage& image) {
+  return image.size_px.width_px >= kSmallestSide_px && image.size_px.height_px >= kSmallestSide_px;
+}
+
+}  // namespace
+
+BoardFinder::BoardFinder(const Board& board, const FrameOptions& options)
+    : finder_(finderOf(board, options)) {}
+BoardFinder::~BoardFinder() = default;
+BoardFinder::BoardFinder(BoardFinder&&) noexcept = default;
+BoardFinder& BoardFinder::operator=(BoardFinder&&) noexcept = default;
+
+FoundPoints BoardFinder::find(const GrayImage& image) {
+  if (!isLargeEnough(image)) return {};
+  try {
+    return finder_->search(image);
+  } catch (const cv::Exception&) {
+    return {};  // its finders assert what pictures without a board may not hold
+  }
+}
+
+FoundPoints BoardFinder::measure(const GrayImage& image, const PlaneMap& map, double gate_px) const {
+  return isLargeEnough(image) ? finder_->measure(image, map, gate_px) : FoundPoints{};
+}
+
+std::string BoardFinder::doubt() const {
+  return finder_->doubt();
+}
+
+std::optional<PlaneMap> mapOf(const FoundPoints& points, const Board& board) {
+  std::vector<Eigen::Vector2d> on_board, in_picture;
+  for (const FoundPoint& point : points) {
+    on_board.push_back(board.point_m(point.point));
+    in_picture.push_back(point.at_px);
+  }
+  return PlaneMap::fit(std::move(on_board), in_picture, board.spacing_m);
+}
+
+}  // namespace evical

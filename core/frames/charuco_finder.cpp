@@ -1,0 +1,149 @@
+#include "core/frames/agreeing_points.h"
+#include "core/frames/corner_measurement.h"
+#include "core/frames/pattern_finder.h"
+#include "core/geometry/charuco_layout.h"
+
+#include <fmt/format.h>
+#include <opencv2/aruco.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include <algorithm>
+#include <array>
+
+namespace evical {
+namespace {
+
+constexpr std::array kFamilies = {MarkerFamily::Of4x4, MarkerFamily::Of5x5, MarkerFamily::Of6x6,
+                                  MarkerFamily::Of7x7, MarkerFamily::Original};
+
+const char* nameOf(MarkerFamily family) {
+  constexpr std::array kNames = {"any", "4x4", "5x5", "6x6", "7x7", "original"};
+  return kNames.at(static_cast<std::size_t>(family));
+}
+
+// The first markers of a family: its smaller sets are the beginnings of its larger ones, and a set that holds
+// no more than the board needs takes less for a marker that is none.
+cv::Ptr<cv::aruco::Dictionary> dictionaryOf(MarkerFamily family, int markers) {
+  if (family == MarkerFamily::Original)
+    return cv::aruco::getPredefinedDictionary(cv::aruco::DICT_ARUCO_ORIGINAL);
+  constexpr int kSetsOfFamily = 4;
+  constexpr std::array<int, kSetsOfFamily> kSizes = {50, 100, 250, 1000};
+  int set = 0;
+  while (set + 1 < kSetsOfFamily && kSizes.at(static_cast<std::size_t>(set)) < markers) ++set;
+  const int first = (static_cast<int>(family) - static_cast<int>(MarkerFamily::Of4x4)) * kSetsOfFamily;
+  return cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50 + first + set);
+}
+
+struct SeenMarker {
+  int id = 0;
+  std::array<Eigen::Vector2d, 4> corners_px;  // from the top left, clockwise
+};
+
+std::vector<SeenMarker> readMarkers(const cv::Mat& picture, MarkerFamily family, int markers) {
+  std::vector<std::vector<cv::Point2f>> corners;
+  std::vector<int> ids;
+  cv::aruco::detectMarkers(picture, dictionaryOf(family, markers), corners, ids);
+  std::vector<SeenMarker> seen;
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    if (ids[k] >= markers) continue;
+    SeenMarker& marker = seen.emplace_back();
+    marker.id = ids[k];
+    for (std::size_t c = 0; c < 4; ++c) marker.corners_px.at(c) = {corners[k][c].x, corners[k][c].y};
+  }
+  return seen;
+}
+
+// One way to read a picture: a dictionary, and which squares are dark.
+struct Reading {
+  MarkerFamily family = MarkerFamily::Automatic;
+  bool first_is_bright = false;
+  std::vector<ReadPoint> points;
+};
+
+class CharucoFinder : public PatternFinder {
+ public:
+  CharucoFinder(const Board& board, const FrameOptions& options)
+      : board_(board), options_(options), family_(options.markers) {}
+
+  FoundPoints search(const GrayImage& image) override {
+    const Reading reading = bestReading(image);
+    constexpr std::size_t kFewestPoints = 8;  // of two markers
+    if (reading.points.size() < kFewestPoints) return {};
+    if (!settled_ && reading.points.size() >= 2 * kFewestPoints) {
+      settled_ = true;
+      family_ = reading.family;
+    }
+    first_is_bright_ = reading.first_is_bright;
+    std::vector<Eigen::Vector2d> on_board, in_picture;
+    for (const ReadPoint& point : reading.points) {
+      on_board.push_back(point.on_board_m);
+      in_picture.push_back(point.at_px);
+    }
+    const std::optional<PlaneMap> map = PlaneMap::fit(on_board, in_picture, board_.spacing_m);
+    if (!map) return {};
+    const FoundPoints found = measure(image, *map, 2.0 * options_.largest_move_px);
+    const std::optional<PlaneMap> nearer = mapOf(found, board_);
+    return nearer ? measure(image, *nearer, options_.largest_move_px) : FoundPoints{};
+  }
+
+  FoundPoints measure(const GrayImage& image, const PlaneMap& map, double gate_px) const override {
+    return measureCorners(image, board_, charucoCorners(board_, first_is_bright_), map, gate_px, options_);
+  }
+
+  std::string doubt() const override {
+    if (settled_ || best_family_ == MarkerFamily::Automatic) return {};
+    return fmt::format("markers of {} bits were seen that do not lie as on a board of {} x {} squares",
+                       nameOf(best_family_), board_.rows, board_.cols);
+  }
+
+ private:
+  Reading bestReading(const GrayImage& image) {
+    const cv::Mat picture(image.size_px.height_px, image.size_px.width_px, CV_8UC1,
+                          const_cast<std::uint8_t*>(image.pixels.data()));
+    Reading best;
+    for (const MarkerFamily family : kFamilies) {
+      if (family_ != MarkerFamily::Automatic && family != family_) continue;
+      const std::vector<SeenMarker> seen = readMarkers(picture, family, board_.rows * board_.cols / 2);
+      constexpr std::size_t kSome = 4;
+      if (seen.size() >= kSome) best_family_ = family;
+      for (const bool first_is_bright : {false, true}) {
+        // Only boards with an even number of rows were ever drawn both ways.
+        if (first_is_bright && board_.rows % 2 != 0) continue;
+        Reading reading{family, first_is_bright, agreeing(seen, first_is_bright)};
+        if (reading.points.size() > best.points.size()) best = std::move(reading);
+      }
+    }
+    return best;
+  }
+
+  std::vector<ReadPoint> agreeing(const std::vector<SeenMarker>& seen, bool first_is_bright) const {
+    const std::vector<BoardSquare> squares = charucoMarkers(board_, first_is_bright);
+    const double margin = 0.5 * (board_.spacing_m - board_.tag_size_m), size = board_.tag_size_m;
+    const std::array<Eigen::Vector2d, 4> corners = {
+        Eigen::Vector2d{0, 0}, {size, 0}, {size, size}, {0, size}};
+    std::vector<ReadPoint> points;
+    double side_px = 0.0;
+    for (const SeenMarker& marker : seen) {
+      if (marker.id >= static_cast<int>(squares.size())) continue;
+      const Eigen::Vector2d first = squareCorner_m(board_, squares[static_cast<std::size_t>(marker.id)]) +
+                                    Eigen::Vector2d::Constant(margin);
+      for (std::size_t c = 0; c < corners.size(); ++c)
+        points.push_back({first + corners.at(c), marker.corners_px.at(c)});
+      side_px = std::max(side_px, (marker.corners_px[1] - marker.corners_px[0]).norm());
+    }
+    return agreeingPoints(points, side_px);
+  }
+
+  Board board_;
+  FrameOptions options_;
+  MarkerFamily family_, best_family_ = MarkerFamily::Automatic;
+  bool settled_ = false, first_is_bright_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<PatternFinder> makeCharucoFinder(const Board& board, const FrameOptions& options) {
+  return std::make_unique<CharucoFinder>(board, options);
+}
+
+}  // namespace evical

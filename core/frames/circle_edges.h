@@ -1,0 +1,33 @@
+// Measures circles near where they are expected: ellipses fitted to their edges.
+#pragma once
+
+#include "core/frames/found_point.h"
+#include "core/frames/frame_options.h"
+#include "core/frames/gray_image.h"
+#include "core/frames/plane_map.h"
+#include "core/geometry/board.h"
+
+#include <optional>
+
+namespace evical {
+
+struct Ellipse {
+  Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d from_unit_circle = Eigen::Matrix2d::Identity();
+};
+
+struct MeasuredEllipse {
+  Ellipse ellipse;
+  Eigen::Matrix2d covariance_px2 = Eigen::Matrix2d::Identity();  // of the centre
+};
+
+// Edge points are where brightness changes most along normals of the expected ellipse, within `reach_px` of it.
+// Nothing where too little of an ellipse is seen.
+std::optional<MeasuredEllipse> measureEllipse(const GrayImage& image, const Ellipse& expected,
+                                              double reach_px, CircleShade shade, double least_contrast);
+
+// All circles within `gate_px` of where the map puts them.
+FoundPoints measureCircles(const GrayImage& image, const Board& board, const PlaneMap& map, double gate_px,
+                           const FrameOptions& options);
+
+}  // namespace evical

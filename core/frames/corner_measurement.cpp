@@ -1,0 +1,164 @@
+#include "core/frames/corner_measurement.h"
+
+#include "core/frames/brightness.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace evical {
+namespace {
+
+constexpr double kSmallestHalfWidth_px = 1.5;  // a smaller window shows no two edges
+constexpr int kMostIterations = 12;
+constexpr double kSettled_px = 0.003;
+
+// A window of pixels around a place, with what the sums over it need.
+class Window {
+ public:
+  Window(const GrayImage& image, const Eigen::Vector2d& centre_px, double half_width_px)
+      : image_(image), centre_(centre_px), reach_(half_width_px + 1.0) {
+    first_x_ = static_cast<int>(std::ceil(centre_px.x() - reach_));
+    first_y_ = static_cast<int>(std::ceil(centre_px.y() - reach_));
+    last_x_ = static_cast<int>(std::floor(centre_px.x() + reach_));
+    last_y_ = static_cast<int>(std::floor(centre_px.y() + reach_));
+  }
+
+  // Calls with each pixel's place from the centre, gradient and weight.
+  template <class Function>
+  void forEach(const Function& function) const {
+    const int width = image_.size_px.width_px;
+    for (int y = first_y_; y <= last_y_; ++y) {
+      for (int x = first_x_; x <= last_x_; ++x) {
+        const Eigen::Vector2d from_centre = Eigen::Vector2d(x, y) - centre_;
+        const double inside = 1.0 - from_centre.squaredNorm() / (reach_ * reach_);
+        if (inside <= 0.0) continue;
+        const std::uint8_t* p = &image_.pixels[static_cast<std::size_t>(y * width + x)];
+        const Eigen::Vector2d gradient(0.5 * (p[1] - p[-1]), 0.5 * (p[width] - p[-width]));
+        function(x - first_x_ + 1, y - first_y_ + 1, from_centre, gradient, inside * inside);
+      }
+    }
+  }
+
+  int columns() const { return last_x_ - first_x_ + 3; }
+  int rows() const { return last_y_ - first_y_ + 3; }
+
+ private:
+  const GrayImage& image_;
+  Eigen::Vector2d centre_;
+  double reach_;
+  int first_x_, first_y_, last_x_, last_y_;
+};
+
+struct Sums {
+  Eigen::Matrix2d gradients = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d products = Eigen::Vector2d::Zero();
+};
+
+Sums sumsOf(const Window& window) {
+  Sums sums;
+  window.forEach([&](int, int, const Eigen::Vector2d& from_centre, const Eigen::Vector2d& g, double weight) {
+    const Eigen::Matrix2d product = weight * g * g.transpose();
+    sums.gradients += product;
+    sums.products += product * from_centre;
+  });
+  return sums;
+}
+
+// Two edges: one alone leaves the corner free to slide along it.
+bool hasTwoEdges(const Eigen::Matrix2d& gradients) {
+  constexpr double kLeastRatio = 0.02;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(gradients, Eigen::EigenvaluesOnly);
+  return eigen.eigenvalues()(0) > kLeastRatio * eigen.eigenvalues()(1) && eigen.eigenvalues()(1) > 1.0;
+}
+
+// The corner is where sum w g (g . d) = 0: of first order, errors e of the gradients move it by
+// G^-1 sum w (g d^T + g . d) e. With e made of the neighbours' noise that is a sum over pixels, each with a
+// factor of its own.
+Eigen::Matrix2d covarianceOf(const Window& window, const Eigen::Matrix2d& gradients, double noise_sigma) {
+  const int columns = window.columns();
+  std::vector<Eigen::Vector2d> factors(static_cast<std::size_t>(columns * window.rows()),
+                                       Eigen::Vector2d::Zero());
+  window.forEach([&](int x, int y, const Eigen::Vector2d& d, const Eigen::Vector2d& g, double weight) {
+    const auto at = [&](int column, int row) -> Eigen::Vector2d& {
+      return factors[static_cast<std::size_t>(row * columns + column)];
+    };
+    const Eigen::Matrix2d half = 0.5 * weight * (g * d.transpose() + g.dot(d) * Eigen::Matrix2d::Identity());
+    at(x + 1, y) += half.col(0);
+    at(x - 1, y) -= half.col(0);
+    at(x, y + 1) += half.col(1);
+    at(x, y - 1) -= half.col(1);
+  });
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (const Eigen::Vector2d& factor : factors) sum += factor * factor.transpose();
+  const Eigen::Matrix2d inverse = gradients.inverse();
+  return noise_sigma * noise_sigma * inverse * sum * inverse;
+}
+
+// The fields around a corner are dark and bright as they should be.
+bool looksRight(const GrayImage& image, const Eigen::Vector2d& at_px, const Eigen::Matrix2d& field_px,
+                bool dark_ahead, double least_contrast) {
+  const Eigen::Vector2d x = field_px.col(0), y = field_px.col(1);
+  const auto mean = [&](const Eigen::Vector2d& way) {
+    constexpr std::array<double, 4> kParts = {0.4, 0.6, 0.8, 1.0};  // noise averages out
+    double sum = 0.0;
+    for (const double part : kParts) sum += brightnessAt(image, at_px + part * way);
+    return sum / static_cast<double>(kParts.size());
+  };
+  const auto ends = [&](const Eigen::Vector2d& way) { return std::minmax({mean(way), mean(-way)}); };
+  const auto ahead = ends(x + y), across = ends(x - y);
+  return (dark_ahead ? across.first - ahead.second : ahead.first - across.second) > least_contrast;
+}
+
+double smallestScale(const Eigen::Matrix2d& scale) {
+  const double a = scale.col(0).norm(), b = scale.col(1).norm();
+  return std::abs(scale.determinant()) / std::max(a, b);  // the parallelogram's smaller height
+}
+
+}  // namespace
+
+std::optional<MeasuredCorner> measureCorner(const GrayImage& image, const Eigen::Vector2d& start_px,
+                                            double half_width_px, double noise_sigma) {
+  Eigen::Vector2d at = start_px;
+  for (int iteration = 0;; ++iteration) {
+    if (!isInside(image, at, half_width_px + 2.0) || (at - start_px).norm() > half_width_px + 1.0)
+      return std::nullopt;
+    const Window window(image, at, half_width_px);
+    const Sums sums = sumsOf(window);
+    if (!hasTwoEdges(sums.gradients)) return std::nullopt;
+    const Eigen::Vector2d step = sums.gradients.inverse() * sums.products;
+    if (iteration >= kMostIterations || step.norm() < kSettled_px)
+      return MeasuredCorner{at + step, covarianceOf(window, sums.gradients, noise_sigma)};
+    at += step;
+  }
+}
+
+FoundPoints measureCorners(const GrayImage& image, const Board& board, const CornerPattern& pattern,
+                           const PlaneMap& map, double gate_px, const FrameOptions& options) {
+  const double noise = noiseSigma(image);
+  const double contrast = std::max(options.least_contrast, 2.0 * noise);
+  const Eigen::Matrix2d floor_px2 =
+      options.smallest_sigma_px * options.smallest_sigma_px * Eigen::Matrix2d::Identity();
+  FoundPoints found;
+  for (int point = 0; point < board.pointCount(); ++point) {
+    const auto [expected, scale] = map.placeOf(board.point_m(point));
+    const double room_px = pattern.plain_m * smallestScale(scale) - 1.0;
+    const double half_width = std::min<double>(options.subpixel_window_px, room_px);
+    if (!(half_width >= kSmallestHalfWidth_px)) continue;
+    const std::optional<MeasuredCorner> corner = measureCorner(image, expected, half_width, noise);
+    if (!corner || (corner->at_px - expected).norm() > gate_px) continue;
+    // In the fields' middles, and not further off than the window.
+    const double field = std::min(0.6 * pattern.plain_m, half_width / smallestScale(scale));
+    if (!isInside(image, corner->at_px, 2.0 * field * scale.norm())) continue;
+    if (!looksRight(image, corner->at_px, field * scale, pattern.dark_ahead[static_cast<std::size_t>(point)],
+                    contrast))
+      continue;
+    found.push_back({point, corner->at_px, corner->covariance_px2 + floor_px2, Eigen::Matrix2d::Zero()});
+  }
+  return found;
+}
+
+}  // namespace evical

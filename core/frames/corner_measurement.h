@@ -1,0 +1,30 @@
+// Measures corners near where they are expected.
+#pragma once
+
+#include "core/frames/corner_pattern.h"
+#include "core/frames/found_point.h"
+#include "core/frames/frame_options.h"
+#include "core/frames/gray_image.h"
+#include "core/frames/plane_map.h"
+
+#include <optional>
+
+namespace evical {
+
+struct MeasuredCorner {
+  Eigen::Vector2d at_px = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d covariance_px2 = Eigen::Matrix2d::Zero();  // of the picture's noise alone
+};
+
+// The place at which every gradient of a window around it is perpendicular to the way there (W. Forstner and E.
+// Gulch, 1987; OpenCV's cornerSubPix), each weighted by its distance. Nothing where that runs out of the window
+// or the picture, or where there is one edge or none.
+std::optional<MeasuredCorner> measureCorner(const GrayImage& image, const Eigen::Vector2d& start_px,
+                                            double half_width_px, double noise_sigma);
+
+// All corners that are seen within `gate_px` of where the map puts them, and that have dark and bright fields as
+// the pattern says.
+FoundPoints measureCorners(const GrayImage& image, const Board& board, const CornerPattern& pattern,
+                           const PlaneMap& map, double gate_px, const FrameOptions& options);
+
+}  // namespace evical

@@ -1,0 +1,30 @@
+// How frames are searched for the board.
+#pragma once
+
+#include "core/base/option_struct.h"
+
+namespace evical {
+
+enum class TagBorder { Automatic, One, Two };
+enum class MarkerFamily { Automatic, Of4x4, Of5x5, Of6x6, Of7x7, Original };
+
+struct FrameOptions {
+  double rate_hz;
+  double largest_blur_px;
+  double least_points;
+  TagBorder tag_border;
+  MarkerFamily markers;
+  int subpixel_window_px;
+  double smallest_sigma_px;
+  double largest_move_px;
+  double least_contrast;
+  double prediction_gate_px;
+  int search_every_frames;
+
+  FrameOptions();  // the defaults
+  constexpr explicit FrameOptions(NoDefaults) {}
+  bool operator==(const FrameOptions&) const = default;
+  static const OptionTable<FrameOptions>& table();
+};
+
+}  // namespace evical

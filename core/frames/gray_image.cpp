@@ -1,0 +1,145 @@
+#include "core/frames/gray_image.h"
+
+#include "core/base/error.h"
+#include "core/frames/picture_header.h"
+
+#include <fmt/format.h>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+namespace evical {
+namespace {
+
+constexpr std::int64_t kMostPixels = 200'000'000;  // more than any sensor has
+constexpr double kWhitePart = 0.995;
+
+struct Layout {
+  int type = CV_8UC1;
+  int to_gray = -1;  // cv::cvtColor's code; -1: it is gray
+};
+
+// OpenCV names a Bayer pattern by its second row's second and third pixel, its newer aliases and everybody
+// else by the first row and column.
+Layout layoutOf(FrameFormat format) {
+  switch (format) {
+    case FrameFormat::Gray16:
+      return {CV_16UC1, -1};
+    case FrameFormat::Rgb8:
+      return {CV_8UC3, cv::COLOR_RGB2GRAY};
+    case FrameFormat::Bgr8:
+      return {CV_8UC3, cv::COLOR_BGR2GRAY};
+    case FrameFormat::Rgba8:
+      return {CV_8UC4, cv::COLOR_RGBA2GRAY};
+    case FrameFormat::Bgra8:
+      return {CV_8UC4, cv::COLOR_BGRA2GRAY};
+    case FrameFormat::BayerRggb8:
+      return {CV_8UC1, cv::COLOR_BayerRGGB2GRAY};
+    case FrameFormat::BayerBggr8:
+      return {CV_8UC1, cv::COLOR_BayerBGGR2GRAY};
+    case FrameFormat::BayerGbrg8:
+      return {CV_8UC1, cv::COLOR_BayerGBRG2GRAY};
+    case FrameFormat::BayerGrbg8:
+      return {CV_8UC1, cv::COLOR_BayerGRBG2GRAY};
+    default:
+      return {};
+  }
+}
+
+void refuseAbsurdSize(const Resolution& size, const std::string& place) {
+  if (size.known() && std::int64_t{size.width_px} * size.height_px <= kMostPixels) return;
+  throw badInput(
+      place,
+      fmt::format("says that it has {} x {} pixels, which no picture has", size.width_px, size.height_px),
+      "The file is damaged: leave this picture out, or copy it again");
+}
+
+cv::Mat eightBits(const cv::Mat& sixteen) {
+  std::vector<std::size_t> histogram(65536, 0);
+  for (int y = 0; y < sixteen.rows; ++y)
+    for (int x = 0; x < sixteen.cols; ++x) ++histogram[sixteen.at<std::uint16_t>(y, x)];
+  const auto wanted = static_cast<std::size_t>(kWhitePart * static_cast<double>(sixteen.total()));
+  std::size_t white = 0;
+  for (std::size_t below = histogram[0]; below < wanted && white < 65535; below += histogram[white]) ++white;
+  cv::Mat eight;
+  sixteen.convertTo(eight, CV_8U, 255.0 / static_cast<double>(std::max<std::size_t>(white, 1)));
+  return eight;
+}
+
+void swapBytes(cv::Mat& sixteen) {
+  for (int y = 0; y < sixteen.rows; ++y)
+    for (int x = 0; x < sixteen.cols; ++x) {
+      auto& value = sixteen.at<std::uint16_t>(y, x);
+      value = static_cast<std::uint16_t>(value << 8 | value >> 8);
+    }
+}
+
+cv::Mat rawPixels(const Frame& frame, const std::string& place) {
+  refuseAbsurdSize(frame.size_px, place);
+  const Layout layout = layoutOf(frame.format);
+  const auto width = static_cast<std::size_t>(frame.size_px.width_px);
+  const auto height = static_cast<std::size_t>(frame.size_px.height_px);
+  const std::size_t needed = width * static_cast<std::size_t>(CV_ELEM_SIZE(layout.type));
+  const std::size_t step = frame.row_bytes == 0 ? needed : frame.row_bytes;
+  if (step < needed || frame.bytes.size() < needed ||
+      (height > 1 && (frame.bytes.size() - needed) / (height - 1) < step))
+    throw badInput(place,
+                   fmt::format("has {} bytes, and {} x {} pixels of its format need {}", frame.bytes.size(),
+                               width, height, std::max(step, needed) * (height - 1) + needed),
+                   "The picture is truncated: leave it out, or copy the recording again");
+  if (layout.to_gray >= 0 && layout.type == CV_8UC1 && (width < 3 || height < 3))
+    throw badInput(place, "is too small for a Bayer pattern", "Leave this picture out");
+  // OpenCV has no type for pixels that it must not write to; nothing here writes to them.
+  const cv::Mat seen(frame.size_px.height_px, frame.size_px.width_px, layout.type,
+                     const_cast<std::uint8_t*>(frame.bytes.data()), step);
+  if (layout.to_gray < 0) return seen.clone();
+  cv::Mat gray;
+  cv::cvtColor(seen, gray, layout.to_gray);
+  return gray;
+}
+
+cv::Mat decoded(const Frame& frame, const std::string& place) {
+  const std::optional<PictureHeader> header = readPictureHeader(frame.bytes);
+  if (!header)
+    throw badInput(place, "is neither a JPEG, PNG, PGM, TIFF nor BMP picture, or is cut off in its header",
+                   "Leave this picture out, or save it as PNG");
+  refuseAbsurdSize(header->size_px, place);
+  cv::Mat picture;
+  if (!header->truncated) {
+    try {
+      picture = cv::imdecode(frame.bytes,
+                             cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
+    } catch (const cv::Exception&) {
+      picture.release();  // said below
+    }
+  }
+  if (picture.empty() || (picture.type() != CV_8UC1 && picture.type() != CV_16UC1))
+    throw badInput(place, "is a damaged or truncated picture",
+                   "Leave this picture out, or copy the recording again");
+  return picture;
+}
+
+}  // namespace
+
+GrayImage decodeFrame(const Frame& frame, const std::string& place) {
+  const bool encoded = frame.format == FrameFormat::Encoded;
+  cv::Mat picture = encoded ? decoded(frame, place) : rawPixels(frame, place);
+  GrayImage image{{picture.cols, picture.rows}, {}};
+  if (encoded && frame.size_px.known() && !(frame.size_px == image.size_px))
+    throw badInput(place,
+                   fmt::format("has {} x {} pixels, and {} x {} were announced", image.size_px.width_px,
+                               image.size_px.height_px, frame.size_px.width_px, frame.size_px.height_px),
+                   "Leave this picture out: it is of another camera or damaged");
+  if (picture.type() == CV_16UC1) {
+    if (!encoded && frame.big_endian != (std::endian::native == std::endian::big)) swapBytes(picture);
+    picture = eightBits(picture);
+  }
+  image.pixels.assign(picture.datastart, picture.dataend);
+  return image;
+}
+
+}  // namespace evical

@@ -1,0 +1,35 @@
+// What the finders of the different boards have in common.
+#pragma once
+
+#include "core/frames/found_point.h"
+#include "core/frames/frame_options.h"
+#include "core/frames/gray_image.h"
+#include "core/frames/plane_map.h"
+#include "core/geometry/board.h"
+
+#include <memory>
+#include <string>
+
+namespace evical {
+
+class PatternFinder {
+ public:
+  PatternFinder() = default;
+  PatternFinder(const PatternFinder&) = delete;
+  PatternFinder& operator=(const PatternFinder&) = delete;
+  virtual ~PatternFinder() = default;
+
+  virtual FoundPoints search(const GrayImage& image) = 0;
+  virtual FoundPoints measure(const GrayImage& image, const PlaneMap& map, double gate_px) const = 0;
+  virtual std::string doubt() const { return {}; }
+};
+
+std::unique_ptr<PatternFinder> makeCheckerboardFinder(const Board& board, const FrameOptions& options);
+std::unique_ptr<PatternFinder> makeTagGridFinder(const Board& board, const FrameOptions& options);
+std::unique_ptr<PatternFinder> makeCharucoFinder(const Board& board, const FrameOptions& options);
+std::unique_ptr<PatternFinder> makeCircleFinder(const Board& board, const FrameOptions& options);
+
+// The map that found points make; nothing where they are too few.
+std::optional<PlaneMap> mapOf(const FoundPoints& points, const Board& board);
+
+}  // namespace evical

@@ -1,0 +1,58 @@
+#include "core/frames/plane_map.h"
+
+#include "core/geometry/homography.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+namespace evical {
+namespace {
+
+// Of slopes and bends against the mean: few points do not tell them, and far from all they are not to be trusted.
+constexpr double kRidge = 0.003;
+constexpr double kFarthest = 4.0;  // steps; what is further weighs less than a thousandth of what is nearest
+
+}  // namespace
+
+std::optional<PlaneMap> PlaneMap::fit(std::vector<Eigen::Vector2d> on_board_m,
+                                      const std::vector<Eigen::Vector2d>& in_picture_px, double step_m) {
+  const std::optional<Eigen::Matrix3d> homography = fitHomography(on_board_m, in_picture_px);
+  if (!homography) return std::nullopt;
+  PlaneMap map;
+  map.picture_from_board_ = *homography;
+  map.step_m_ = step_m;
+  map.known_m_ = std::move(on_board_m);
+  for (std::size_t k = 0; k < in_picture_px.size(); ++k)
+    map.left_px_.emplace_back(in_picture_px[k] - map.plain(map.known_m_[k]).at_px);
+  return map;
+}
+
+PlaneMap::Place PlaneMap::plain(const Eigen::Vector2d& on_board_m) const {
+  const Eigen::Vector3d image = picture_from_board_ * on_board_m.homogeneous();
+  const Eigen::Vector2d at = image.hnormalized();
+  return {at, (picture_from_board_.topLeftCorner<2, 2>() - at * picture_from_board_.block<1, 2>(2, 0)) /
+                  image.z()};
+}
+
+// A surface of second order through the known points' remainders, the nearest first.
+PlaneMap::Place PlaneMap::placeOf(const Eigen::Vector2d& on_board_m) const {
+  Eigen::Matrix<double, 6, 6> sums = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 2> products = Eigen::Matrix<double, 6, 2>::Zero();
+  for (std::size_t k = 0; k < known_m_.size(); ++k) {
+    const Eigen::Vector2d d = (known_m_[k] - on_board_m) / step_m_;
+    if (d.squaredNorm() > kFarthest * kFarthest) continue;
+    const double near = 1.0 / (0.5 + d.squaredNorm()), weight = near * near;
+    Eigen::Matrix<double, 6, 1> row;
+    row << 1.0, d, d.x() * d.x(), d.x() * d.y(), d.y() * d.y();
+    sums.noalias() += weight * row * row.transpose();
+    products.noalias() += weight * row * left_px_[k].transpose();
+  }
+  const Place place = plain(on_board_m);
+  if (!(sums(0, 0) > 0.0)) return place;
+  sums.diagonal().tail<5>().array() += kRidge * sums(0, 0);
+  const Eigen::Matrix<double, 6, 2> surface = sums.ldlt().solve(products);
+  return {place.at_px + surface.row(0).transpose(),
+          place.px_per_m + surface.middleRows<2>(1).transpose() / step_m_};
+}
+
+}  // namespace evical

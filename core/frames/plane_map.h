@@ -1,0 +1,33 @@
+// Where the board's points lie in a picture, told by some of them: a homography, and on top of it what the lens
+// bends, from the nearest known points.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <vector>
+
+namespace evical {
+
+class PlaneMap {
+ public:
+  // Nothing where the points make no homography. `step_m` is a typical distance between neighbours.
+  static std::optional<PlaneMap> fit(std::vector<Eigen::Vector2d> on_board_m,
+                                     const std::vector<Eigen::Vector2d>& in_picture_px, double step_m);
+
+  struct Place {
+    Eigen::Vector2d at_px = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d px_per_m = Eigen::Matrix2d::Identity();
+  };
+  Place placeOf(const Eigen::Vector2d& on_board_m) const;
+  Eigen::Vector2d at(const Eigen::Vector2d& on_board_m) const { return placeOf(on_board_m).at_px; }
+
+ private:
+  Place plain(const Eigen::Vector2d& on_board_m) const;
+
+  Eigen::Matrix3d picture_from_board_ = Eigen::Matrix3d::Identity();
+  std::vector<Eigen::Vector2d> known_m_, left_px_;  // what the homography leaves
+  double step_m_ = 1.0;
+};
+
+}  // namespace evical

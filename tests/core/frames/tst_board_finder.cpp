@@ -1,0 +1,327 @@
+// Every kind of board in rendered pictures with a known truth: all points found, in their order, with errors that
+// their covariances tell.
+#include "core/base/error.h"
+#include "core/frames/board_finder.h"
+#include "core/frames/ideal_views.h"
+#include "core/frames/views_from_frames.h"
+#include "core/geometry/camera_model.h"
+#include "tests/support/rendered_board.h"
+#include "tests/support/test_program.h"
+
+#include <Eigen/LU>
+#include <opencv2/aruco.hpp>
+#include <opencv2/aruco/charuco.hpp>
+#include <opencv2/core.hpp>
+
+#include <cmath>
+#include <ctime>
+
+namespace {
+
+using namespace evical;
+
+CameraIntrinsics aCamera() {
+  CameraIntrinsics camera;
+  camera.resolution_px = {752, 480};
+  camera.focal_length_px = {460.0, 458.0};
+  camera.principal_point_px = {367.0, 248.0};
+  camera.distortion = {-0.28, 0.074, 0.0002, 0.0, 0.0};
+  return camera;
+}
+
+Board boardOf(BoardType type, int rows, int cols, double spacing_m, double radius_m, double tag_size_m) {
+  Board board;
+  board.type = type;
+  board.rows = rows;
+  board.cols = cols;
+  board.spacing_m = spacing_m;
+  board.radius_m = radius_m;
+  board.tag_size_m = tag_size_m;
+  return board;
+}
+
+PrintedBoard asymmetricCircles() {
+  return {boardOf(BoardType::AsymmetricCircles, 11, 4, 0.05, 0.02, 0.0), 2, 0, false};
+}
+PrintedBoard brightCircles() {
+  PrintedBoard printed{boardOf(BoardType::SymmetricCircles, 6, 9, 0.05, 0.018, 0.0), 2, 0, false};
+  printed.board.circles = CircleShade::Bright;
+  return printed;
+}
+PrintedBoard checkerboard() {
+  return {boardOf(BoardType::Checkerboard, 6, 9, 0.05, 0.0, 0.0), 2, 0, false};
+}
+PrintedBoard kalibrGrid() {
+  return {boardOf(BoardType::AprilGrid, 6, 6, 0.088 * 1.3, 0.0, 0.088), 2, 0, false};
+}
+PrintedBoard plainGrid() {
+  return {boardOf(BoardType::AprilGrid, 4, 5, 0.088 * 1.3, 0.0, 0.088), 1, 0, false};
+}
+PrintedBoard charuco() {
+  return {boardOf(BoardType::Charuco, 7, 10, 0.05, 0.0, 0.037), 2, cv::aruco::DICT_5X5_250, false};
+}
+PrintedBoard legacyCharuco() {
+  return {boardOf(BoardType::Charuco, 6, 9, 0.05, 0.0, 0.037), 2, cv::aruco::DICT_4X4_50, true};
+}
+
+// The board fills most of the picture.
+double distanceFor(const Board& board) {
+  return 1.15 * std::max(board.extent_m().x() * 460.0 / 600.0, board.extent_m().y() * 460.0 / 400.0);
+}
+
+struct Errors {
+  int found = 0, wrong = 0;
+  double squares = 0.0, normalised = 0.0, stated = 0.0;
+
+  double rms_px() const { return std::sqrt(squares / (2.0 * found)); }
+  double sigma_px() const { return std::sqrt(stated / found); }
+  double ratio() const { return std::sqrt(normalised / (2.0 * found)); }
+};
+
+// Of boards that look the same upside down either end may be the first.
+FoundPoints asTrue(FoundPoints points, const Board& board, const CameraIntrinsics& camera,
+                   const RigidTransform& pose) {
+  if (points.empty() || !board.hasHalfTurnAmbiguity()) return points;
+  const auto truth = truePoint(board, points.front().point, camera, pose);
+  if (truth && (*truth - points.front().at_px).norm() < 20.0) return points;
+  for (FoundPoint& point : points) point.point = board.pointCount() - 1 - point.point;
+  return points;
+}
+
+// A circle's place and covariance by what the lens makes of circles, a corner's as it was measured.
+std::optional<CircleObservation> undistorted(const FoundPoint& point, const CameraIntrinsics& camera) {
+  const std::vector<ViewFromFrame> views = viewsFromFrames({{0.0, 0.0, {point}}}, 2);
+  return inIdealPixels(views.front().view.circles.front(), camera);
+}
+
+void compare(const FoundPoints& points, const Board& board, const CameraIntrinsics& camera,
+             const RigidTransform& camera_from_board, Errors& errors) {
+  for (const FoundPoint& point : asTrue(points, board, camera, camera_from_board)) {
+    const auto truth = truePoint(board, point.point, camera, camera_from_board);
+    const auto ideal = undistorted(point, camera);
+    if (!truth || !ideal || (*truth - point.at_px).norm() > 2.0) {
+      ++errors.wrong;
+      continue;
+    }
+    const Eigen::Vector2d error = pixelFromIdeal(camera, ideal->centre_px) - *truth;
+    ++errors.found;
+    errors.squares += error.squaredNorm();
+    errors.normalised += error.dot(point.covariance_px2.inverse() * error);
+    errors.stated += 0.5 * point.covariance_px2.trace();
+  }
+}
+
+int pointsInView(const Board& board, const CameraIntrinsics& camera, const RigidTransform& pose) {
+  int count = 0;
+  for (int k = 0; k < board.pointCount(); ++k) {
+    const auto at = truePoint(board, k, camera, pose);
+    const double margin = board.hasCircles() ? 1.5 * board.radius_m * 460.0 / pose.translation_m.z() : 8.0;
+    count += at && (at->array() > margin).all() && at->x() < camera.resolution_px.width_px - margin &&
+             at->y() < camera.resolution_px.height_px - margin;
+  }
+  return count;
+}
+
+RigidTransform wholeBoard(const Board& board, const Eigen::Vector3d& turn) {
+  return lookAt(board, (std::abs(turn.z()) > 1.0 ? 1.45 : 1.0) * distanceFor(board), turn);
+}
+
+class TestBoardFinder : public QObject {
+  Q_OBJECT
+ private slots:
+  void rendered_isFoundWithErrorsAsStated_data();
+  void rendered_isFoundWithErrorsAsStated();
+  void point0_isTheSameCornerHoweverTheBoardIsHeld_data();
+  void point0_isTheSameCornerHoweverTheBoardIsHeld();
+  void part_isFoundWhereItSaysWhichPartItIs_data();
+  void part_isFoundWhereItSaysWhichPartItIs();
+  void pictureWithoutBoard_showsNothing_data();
+  void pictureWithoutBoard_showsNothing();
+  void wrongNumbers_areDoubted_data();
+  void wrongNumbers_areDoubted();
+  void drawingOfOpenCv_isFound();
+  void coarsePicture_isFound();
+};
+
+void TestBoardFinder::rendered_isFoundWithErrorsAsStated_data() {
+  QTest::addColumn<PrintedBoard>("printed");
+  QTest::newRow("asymmetric circles") << asymmetricCircles();
+  QTest::newRow("bright circles") << brightCircles();
+  QTest::newRow("checkerboard") << checkerboard();
+  QTest::newRow("Kalibr's grid") << kalibrGrid();
+  QTest::newRow("grid with a border of 1 bit") << plainGrid();
+  QTest::newRow("ChArUco") << charuco();
+  QTest::newRow("ChArUco, legacy") << legacyCharuco();
+}
+
+// Under perspective, a lens that bends edges by 30 px, blur and noise. What is added to covariances for print and
+// optics, which these pictures have not, is left out.
+void TestBoardFinder::rendered_isFoundWithErrorsAsStated() {
+  QFETCH(const PrintedBoard, printed);
+  const Board& board = printed.board;
+  const CameraIntrinsics camera = aCamera();
+  FrameOptions options;
+  options.smallest_sigma_px = 0.005;
+  BoardFinder finder(board, options);
+  Errors errors;
+  int possible = 0;
+  double seconds = 0.0;
+  unsigned seed = 0;
+  for (const Eigen::Vector3d& turn : {Eigen::Vector3d(0.0, 0.0, 0.02), Eigen::Vector3d(0.45, 0.1, 0.2),
+                                      Eigen::Vector3d(-0.2, 0.5, -0.3), Eigen::Vector3d(0.1, -0.3, 2.0)}) {
+    const RigidTransform pose = wholeBoard(board, turn);
+    const GrayImage image = renderBoard(printed, camera, pose, {40.0, 200.0, 0.8, 6.0, ++seed});
+    const std::clock_t begin = std::clock();
+    const FoundPoints points = finder.find(image);
+    seconds += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    compare(points, board, camera, pose, errors);
+    possible += pointsInView(board, camera, pose);
+  }
+  qInfo("%d of %d, %d wrong, %.3f px RMS a coordinate for %.3f stated, ratio %.2f, %.1f ms a frame",
+        errors.found, possible, errors.wrong, errors.rms_px(), errors.sigma_px(), errors.ratio(),
+        1e3 * seconds / 4);
+  QCOMPARE(errors.wrong, 0);
+  QVERIFY(errors.found > 0.98 * possible);
+  QVERIFY(errors.ratio() > 0.7 && errors.ratio() < 1.4);
+  QCOMPARE(finder.doubt(), std::string());
+}
+
+void TestBoardFinder::point0_isTheSameCornerHoweverTheBoardIsHeld_data() {
+  QTest::addColumn<PrintedBoard>("printed");
+  QTest::newRow("asymmetric circles") << asymmetricCircles();
+  QTest::newRow("checkerboard") << checkerboard();
+}
+
+void TestBoardFinder::point0_isTheSameCornerHoweverTheBoardIsHeld() {
+  QFETCH(const PrintedBoard, printed);
+  QVERIFY(!printed.board.hasHalfTurnAmbiguity());
+  for (const double turn : {0.0, 1.57, 3.14, -1.57}) {
+    BoardFinder finder(printed.board, FrameOptions{});
+    const RigidTransform pose = lookAt(printed.board, 1.6 * distanceFor(printed.board), {0.1, 0.1, turn});
+    Errors errors;
+    compare(finder.find(renderBoard(printed, aCamera(), pose, {})), printed.board, aCamera(), pose, errors);
+    QCOMPARE(errors.wrong, 0);
+    QCOMPARE(errors.found, printed.board.pointCount());
+  }
+}
+
+void TestBoardFinder::part_isFoundWhereItSaysWhichPartItIs_data() {
+  QTest::addColumn<PrintedBoard>("printed");
+  QTest::addColumn<bool>("says");
+  QTest::newRow("Kalibr's grid") << kalibrGrid() << true;
+  QTest::newRow("ChArUco") << charuco() << true;
+  QTest::newRow("asymmetric circles") << asymmetricCircles() << false;
+}
+
+// The board's left half, or so, is out of the picture. Of circles that are cut off on all sides several places on
+// the board would do.
+void TestBoardFinder::part_isFoundWhereItSaysWhichPartItIs() {
+  QFETCH(const PrintedBoard, printed);
+  QFETCH(const bool, says);
+  const Board& board = printed.board;
+  CameraIntrinsics camera = aCamera();
+  camera.distortion = {};
+  const double beside = 0.6 * board.extent_m().x();
+  const RigidTransform pose =
+      lookAt(board, (says ? 0.7 : 0.5) * distanceFor(board), {0.1, 0.2, 0.1}, {says ? -beside : 0.0, 0.0});
+  BoardFinder finder(board, FrameOptions{});
+  Errors errors;
+  compare(finder.find(renderBoard(printed, camera, pose, {})), board, camera, pose, errors);
+  const int in_view = pointsInView(board, camera, pose);
+  QCOMPARE(errors.wrong, 0);
+  QVERIFY(in_view < 0.8 * board.pointCount());
+  if (says) QVERIFY2(errors.found > 0.9 * in_view, std::to_string(errors.found).c_str());
+}
+
+void TestBoardFinder::pictureWithoutBoard_showsNothing_data() {
+  QTest::addColumn<PrintedBoard>("printed");
+  QTest::newRow("asymmetric circles") << asymmetricCircles();
+  QTest::newRow("checkerboard") << checkerboard();
+  QTest::newRow("Kalibr's grid") << kalibrGrid();
+  QTest::newRow("ChArUco") << charuco();
+}
+
+// Another board, nothing but noise, one grey, and hardly a picture.
+void TestBoardFinder::pictureWithoutBoard_showsNothing() {
+  QFETCH(const PrintedBoard, printed);
+  BoardFinder finder(printed.board, FrameOptions{});
+  const PrintedBoard other = printed.board.hasCircles() ? checkerboard() : asymmetricCircles();
+  QVERIFY(finder.find(renderBoard(other, aCamera(), wholeBoard(other.board, {0.1, 0.1, 0.1}), {})).empty());
+  QVERIFY(finder.find(renderBoard(other, aCamera(), wholeBoard(other.board, {}), {128, 128, 0.7, 20.0, 1}))
+              .empty());
+  QVERIFY(finder.find({{640, 480}, std::vector<std::uint8_t>(640 * 480, 90)}).empty());
+  QVERIFY(finder.find({{1, 1}, {0}}).empty());
+  QVERIFY(finder.find({{20, 16}, std::vector<std::uint8_t>(320, 90)}).empty());
+}
+
+void TestBoardFinder::wrongNumbers_areDoubted_data() {
+  QTest::addColumn<PrintedBoard>("printed");
+  QTest::addColumn<Board>("said");
+  QTest::addColumn<TagBorder>("border");
+  QTest::addColumn<QString>("doubt");
+  const PrintedBoard grid = kalibrGrid();
+  QTest::newRow("too few tags")
+      << grid << boardOf(BoardType::AprilGrid, 5, 6, 0.1144, 0.0, 0.088) << TagBorder::Automatic
+      << "a tag of number 35 was seen, and a board of 5 x 6 tags has 0 to 29: rows and cols";
+  QTest::newRow("rows for columns")
+      << grid << boardOf(BoardType::AprilGrid, 4, 9, 0.1144, 0.0, 0.088) << TagBorder::Automatic
+      << "the tags that were seen do not lie as on a board of 4 x 9 tags: rows and cols";
+  QTest::newRow("border") << grid << grid.board << TagBorder::One
+                          << "the border of 2 bits fits, not that of 1";
+  QTest::newRow("right") << grid << grid.board << TagBorder::Two << "";
+}
+
+void TestBoardFinder::wrongNumbers_areDoubted() {
+  QFETCH(const PrintedBoard, printed);
+  QFETCH(const Board, said);
+  QFETCH(const TagBorder, border);
+  QFETCH(const QString, doubt);
+  FrameOptions options;
+  options.tag_border = border;
+  BoardFinder finder(said, options);
+  for (const double turn : {0.0, 0.1, 0.2})
+    finder.find(renderBoard(printed, aCamera(), wholeBoard(printed.board, {0.1, 0.1, turn}), {}));
+  QCOMPARE(QString::fromStdString(finder.doubt()), doubt);
+}
+
+// A board as OpenCV itself draws it.
+void TestBoardFinder::drawingOfOpenCv_isFound() {
+  for (const int rows : {5, 6}) {
+    const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_6X6_250);
+    const auto drawn = cv::aruco::CharucoBoard::create(8, rows, 0.04F, 0.03F, dictionary);
+    cv::Mat picture;
+    drawn->draw({640, 80 * rows}, picture, 0);
+    cv::copyMakeBorder(picture, picture, 40, 40, 40, 40, cv::BORDER_CONSTANT, 255);
+    GrayImage image{{picture.cols, picture.rows}, {}};
+    image.pixels.assign(picture.datastart, picture.dataend);
+    BoardFinder finder(boardOf(BoardType::Charuco, rows, 8, 0.04, 0.0, 0.03), FrameOptions{});
+    const FoundPoints points = finder.find(image);
+    QCOMPARE(points.size(), static_cast<std::size_t>(7 * (rows - 1)));
+    for (const FoundPoint& point : points) {
+      const Eigen::Vector2d expected(40.0 + 80.0 * (point.point % 7 + 1) - 0.5,
+                                     40.0 + 80.0 * (point.point / 7 + 1) - 0.5);
+      QVERIFY((point.at_px - expected).norm() < 0.1);
+    }
+  }
+}
+
+// A sensor of few pixels: the checkerboard is searched in an enlarged picture.
+void TestBoardFinder::coarsePicture_isFound() {
+  CameraIntrinsics camera = aCamera();
+  camera.resolution_px = {128, 128};
+  camera.focal_length_px = {90.0, 90.0};
+  camera.principal_point_px = {64.0, 64.0};
+  const Board board = checkerboard().board;
+  const RigidTransform pose = lookAt(board, 0.4, {0.1, 0.1, 0.1});
+  BoardFinder finder(board, FrameOptions{});
+  Errors errors;
+  compare(finder.find(renderBoard(checkerboard(), camera, pose, {40, 200, 0.5, 2.0, 1})), board, camera, pose,
+          errors);
+  QCOMPARE(errors.wrong, 0);
+  QCOMPARE(errors.found, board.pointCount());
+}
+
+}  // namespace
+
+EVICAL_TEST(TestBoardFinder)
+#include "tst_board_finder.moc"

@@ -1,0 +1,45 @@
+// Pictures of boards with a known truth: every pixel the mean over its area of the pattern behind it.
+#pragma once
+
+#include "core/frames/found_point.h"
+#include "core/frames/gray_image.h"
+#include "core/geometry/board.h"
+#include "core/geometry/camera_intrinsics.h"
+#include "core/geometry/rigid_transform.h"
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace evical {
+
+// What a board's numbers leave open.
+struct PrintedBoard {
+  Board board;
+  int border_bits = 2;           // AprilGrid
+  int dictionary = 0;            // ChArUco: OpenCV's number
+  bool first_is_bright = false;  // ChArUco
+};
+
+struct Exposure {
+  double dark = 40.0, bright = 210.0;
+  double blur_px = 0.7;  // sigma
+  double noise = 3.0;    // sigma
+  unsigned seed = 1;
+};
+
+// Brightness of the board's plane, 0 to 1.
+std::function<double(const Eigen::Vector2d&)> patternOf(const PrintedBoard& printed);
+
+GrayImage renderBoard(const PrintedBoard& printed, const CameraIntrinsics& camera,
+                      const RigidTransform& camera_from_board, const Exposure& exposure);
+
+// Where a point is: of a circle, where the lens puts its ellipse's centre. Nothing behind the camera.
+std::optional<Eigen::Vector2d> truePoint(const Board& board, int point, const CameraIntrinsics& camera,
+                                         const RigidTransform& camera_from_board);
+
+// The camera's view of the board's middle from a distance, turned by rotation vector about it.
+RigidTransform lookAt(const Board& board, double distance_m, const Eigen::Vector3d& turn_rad,
+                      const Eigen::Vector2d& beside_m = Eigen::Vector2d::Zero());
+
+}  // namespace evical
