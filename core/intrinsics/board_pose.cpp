@@ -5,9 +5,11 @@
 #include "core/geometry/so3.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 
 #include <opencv2/calib3d.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -52,19 +54,44 @@ double refine(const std::vector<Ray>& rays, double radius_m, RigidTransform& pos
   return squares;
 }
 
+// Towards which a camera is turned that sees all of these directions within reach of x/z, y/z; as it is where they are
+// near its axis anyway.
+Eigen::Quaterniond turnTowards(const std::vector<Eigen::Vector3d>& directions) {
+  constexpr double kNear = 0.5;  // cosine of 60 degrees
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double least_z = 1.0;
+  for (const Eigen::Vector3d& direction : directions) {
+    sum += direction;
+    least_z = std::min(least_z, direction.z());
+  }
+  if (least_z > kNear || sum.norm() < kNear) return Eigen::Quaterniond::Identity();
+  return Eigen::Quaterniond::FromTwoVectors(sum, Eigen::Vector3d::UnitZ());
+}
+
 }  // namespace
 
-std::optional<RigidTransform> boardPose(const SensorView& view, const CircleBoard& board,
+std::optional<RigidTransform> boardPose(const SensorView& view, const Board& board,
                                         const CameraIntrinsics& camera) {
   std::vector<Ray> rays;
   std::vector<cv::Point3d> on_board;
   std::vector<cv::Point2d> normalised;
+  std::vector<Eigen::Vector3d> directions;
+  std::vector<const SensorCircle*> seen;
   for (const SensorCircle& circle : view.circles) {
-    const auto ray = unproject(camera, circle.centre_px);
-    if (!circle.used || !ray) continue;
-    rays.push_back({circle.on_board_m, *ray});
-    on_board.emplace_back(circle.on_board_m.x(), circle.on_board_m.y(), 0.0);
-    normalised.emplace_back(ray->x(), ray->y());
+    const auto direction = circle.used ? unprojectRay(camera, circle.centre_px) : std::nullopt;
+    if (!direction) continue;
+    directions.push_back(*direction);
+    seen.push_back(&circle);
+  }
+  const Eigen::Quaterniond turned_from_camera = turnTowards(directions);
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    constexpr double kLeastZ = 0.08;  // 85 degrees off the axis
+    const Eigen::Vector3d turned = turned_from_camera * directions[k];
+    if (turned.z() < kLeastZ) continue;
+    const Eigen::Vector2d& at_m = seen[k]->on_board_m;
+    rays.push_back({at_m, turned.hnormalized()});
+    on_board.emplace_back(at_m.x(), at_m.y(), 0.0);
+    normalised.emplace_back(rays.back().normalised.x(), rays.back().normalised.y());
   }
   if (rays.size() < 4) return std::nullopt;
   std::vector<cv::Mat> rotations, translations;
@@ -84,6 +111,10 @@ std::optional<RigidTransform> boardPose(const SensorView& view, const CircleBoar
     if (!(squares < least)) continue;
     least = squares;
     best = pose;
+  }
+  if (best) {
+    best->rotation = turned_from_camera.conjugate() * best->rotation;
+    best->translation_m = turned_from_camera.conjugate() * best->translation_m;
   }
   return best;
 }

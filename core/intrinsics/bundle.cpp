@@ -1,5 +1,6 @@
 #include "core/intrinsics/bundle.h"
 
+#include "core/geometry/sphere_lens.h"
 #include "core/intrinsics/board_pose.h"
 #include "core/intrinsics/circle_centre_cost.h"
 #include "core/numerics/robust.h"
@@ -33,7 +34,7 @@ class LeadPrior final : public ceres::SizedCostFunction<1, 1> {
 
 class Adjustment {
  public:
-  Adjustment(const CameraIntrinsics& start, const std::vector<SensorView>& views, const CircleBoard& board,
+  Adjustment(const CameraIntrinsics& start, const std::vector<SensorView>& views, const Board& board,
              const IntrinsicsOptions& options, const RunContext& context)
       : board_(board), options_(options), context_(context) {
     bundle_.intrinsics = start;
@@ -47,16 +48,41 @@ class Adjustment {
   }
 
   Bundle run() {
-    constexpr int kMostRounds = 8;
     updateWeights();
-    for (int round = 0; round < kMostRounds; ++round) {
-      solve();
-      if (!updateWeights()) break;
+    adjust();
+    // A wide lens starts roughly, and where its poses were wrong they stay so.
+    if (isSphereModel(bundle_.intrinsics.model) && placeDroppedViews()) {
+      updateWeights();
+      adjust();
     }
     return std::move(bundle_);
   }
 
  private:
+  void adjust() {
+    constexpr int kMostRounds = 8;
+    for (int round = 0; round < kMostRounds; ++round) {
+      solve();
+      if (!updateWeights()) break;
+    }
+  }
+
+  // With the intrinsics that were found; true if there were any.
+  bool placeDroppedViews() {
+    bool any = false;
+    for (std::size_t v = 0; v < bundle_.views.size(); ++v) {
+      SensorView view = bundle_.views[v];
+      if (std::any_of(view.circles.begin(), view.circles.end(), [](const auto& c) { return c.used; }))
+        continue;
+      for (SensorCircle& circle : view.circles) circle.used = true;
+      const auto pose = boardPose(view, board_, bundle_.intrinsics);
+      if (!pose) continue;
+      bundle_.poses[v] = *pose;
+      any = true;
+    }
+    return any;
+  }
+
   static void drop(SensorView& view) {
     for (SensorCircle& circle : view.circles) circle.used = false;
   }
@@ -145,6 +171,7 @@ class Adjustment {
       if (!free[i]) fixed.push_back(static_cast<int>(i));
     problem.AddParameterBlock(intrinsics.data(), 9,
                               fixed.empty() ? nullptr : new ceres::SubsetManifold(9, fixed));
+    setBounds(problem, intrinsics);
     problem.AddResidualBlock(new LeadPrior(options_.edge_lead_sigma_px), nullptr, &bundle_.edge_lead_px);
     for (std::size_t v = 0; v < bundle_.views.size(); ++v) {
       writePose(bundle_.poses[v], poses[v].data());
@@ -159,7 +186,17 @@ class Adjustment {
     }
   }
 
-  const CircleBoard& board_;
+  void setBounds(ceres::Problem& problem, std::array<double, 9>& intrinsics) {
+    const IntrinsicsBounds bounds = intrinsicsBounds(bundle_.intrinsics.model);
+    for (std::size_t i = 0; i < intrinsics.size(); ++i) {
+      if (!std::isfinite(bounds.lower[i])) continue;
+      intrinsics[i] = std::clamp(intrinsics[i], bounds.lower[i], bounds.upper[i]);
+      problem.SetParameterLowerBound(intrinsics.data(), static_cast<int>(i), bounds.lower[i]);
+      problem.SetParameterUpperBound(intrinsics.data(), static_cast<int>(i), bounds.upper[i]);
+    }
+  }
+
+  const Board& board_;
   const IntrinsicsOptions& options_;
   const RunContext& context_;
   Bundle bundle_;
@@ -168,9 +205,10 @@ class Adjustment {
 }  // namespace
 
 FreeIntrinsics freeIntrinsics(CameraModel model, const IntrinsicsOptions& options) {
-  FreeIntrinsics free;
-  free.fill(true);
-  free[8] = model == CameraModel::PinholeRadtan && options.radtan_coefficients == 5;
+  FreeIntrinsics free{};
+  const int coefficients =
+      model == CameraModel::PinholeRadtan ? options.radtan_coefficients : coefficientCount(model);
+  std::fill_n(free.begin(), 4 + coefficients, true);
   return free;
 }
 
@@ -201,8 +239,8 @@ int Bundle::viewsUsed() const {
   }));
 }
 
-Bundle solveBundle(const CameraIntrinsics& start, const std::vector<SensorView>& views,
-                   const CircleBoard& board, const IntrinsicsOptions& options, const RunContext& context) {
+Bundle solveBundle(const CameraIntrinsics& start, const std::vector<SensorView>& views, const Board& board,
+                   const IntrinsicsOptions& options, const RunContext& context) {
   return Adjustment(start, views, board, options, context).run();
 }
 

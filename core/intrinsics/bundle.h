@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/base/progress.h"
+#include "core/geometry/board.h"
 #include "core/geometry/camera_intrinsics.h"
-#include "core/geometry/circle_board.h"
 #include "core/geometry/rigid_transform.h"
 #include "core/intrinsics/sensor_views.h"
 
@@ -31,7 +31,7 @@ struct Bundle {
 };
 
 // From a start and views; rounds of solving, with weights and outliers as the errors show them.
-Bundle solveBundle(const CameraIntrinsics& start, const std::vector<SensorView>& views,
-                   const CircleBoard& board, const IntrinsicsOptions& options, const RunContext& context);
+Bundle solveBundle(const CameraIntrinsics& start, const std::vector<SensorView>& views, const Board& board,
+                   const IntrinsicsOptions& options, const RunContext& context);
 
 }  // namespace evical

@@ -1,6 +1,5 @@
 #include "core/intrinsics/circle_centre_cost.h"
 
-#include "core/geometry/camera_model.h"
 #include "core/geometry/circle_conic.h"
 #include "core/geometry/so3.h"
 
@@ -43,6 +42,30 @@ CircleCentreCost::CircleCentreCost(CameraModel model, const SensorCircle& circle
           scale),
       radius_m_(radius_m) {}
 
+std::optional<Eigen::Vector2d> CircleCentreCost::predict(const CameraIntrinsics& camera,
+                                                         const RigidTransform& camera_from_board,
+                                                         IntrinsicsJacobian* by_intrinsics,
+                                                         Eigen::Matrix<double, 2, 6>* by_pose) const {
+  Eigen::Matrix<double, 2, 3> by_point;
+  if (radius_m_ == 0.0) {
+    const Eigen::Matrix3d rotation = camera_from_board.rotation.toRotationMatrix();
+    const Eigen::Vector3d on_board(on_board_m_.x(), on_board_m_.y(), 0.0);
+    const auto pixel =
+        project(camera, rotation * on_board + camera_from_board.translation_m, &by_point, by_intrinsics);
+    if (!pixel) return std::nullopt;
+    *by_pose << -by_point * rotation * skew(on_board), by_point;
+    return pixel;
+  }
+  Eigen::Matrix<double, 2, 6> centre_by_pose;
+  const auto centre =
+      projectedCircleCentre(normalisedCamera(), camera_from_board, on_board_m_, radius_m_, &centre_by_pose);
+  if (!centre) return std::nullopt;
+  const auto pixel = project(camera, centre->homogeneous(), &by_point, by_intrinsics);
+  if (!pixel) return std::nullopt;
+  *by_pose = by_point.leftCols<2>() * centre_by_pose;
+  return pixel;
+}
+
 bool CircleCentreCost::Evaluate(double const* const* parameters, double* residuals,
                                 double** jacobians) const {
   Eigen::Map<Eigen::Vector2d> residual(residuals);
@@ -50,12 +73,8 @@ bool CircleCentreCost::Evaluate(double const* const* parameters, double* residua
   const double lead_px = *parameters[1];
   const RigidTransform camera_from_board = poseFrom(parameters[2]);
   Eigen::Matrix<double, 2, 6> by_pose;
-  const auto centre =
-      projectedCircleCentre(normalisedCamera(), camera_from_board, on_board_m_, radius_m_, &by_pose);
-  Eigen::Matrix<double, 2, 3> by_point;
   IntrinsicsJacobian by_intrinsics;
-  const auto pixel =
-      centre ? project(camera, centre->homogeneous(), &by_point, &by_intrinsics) : std::nullopt;
+  const auto pixel = predict(camera, camera_from_board, &by_intrinsics, &by_pose);
   if (!pixel) {
     residual.setConstant(kNowhere_sigma);
     const auto& sizes = parameter_block_sizes();
@@ -75,7 +94,7 @@ bool CircleCentreCost::Evaluate(double const* const* parameters, double* residua
   }
   if (jacobians[2]) {
     Eigen::Map<Eigen::Matrix<double, 2, kPoseBlock, Eigen::RowMajor>> by_block(jacobians[2]);
-    by_pose = (whitening_px_ * by_point.leftCols<2>() * by_pose).eval();
+    by_pose = (whitening_px_ * by_pose).eval();
     by_block << by_pose.leftCols<3>(), Eigen::Vector2d::Zero(), by_pose.rightCols<3>();
   }
   return true;

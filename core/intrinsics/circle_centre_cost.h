@@ -1,12 +1,14 @@
 // Zero when a measured circle is where camera and pose put it, on the sensor (docs/maths.md, 7.1):
 //   r = L^-1 [ distorted(centre of the projected circle's conic) + lead * effect - measured ],
-// L the Cholesky factor of the centre's covariance. Without unit.
+// L the Cholesky factor of the centre's covariance. Without unit. A circle of radius 0 is a corner, which is projected
+// directly, and so at any angle that the camera sees.
 //
 // Blocks: intrinsics (fx fy cx cy d0..d4), edge lead [px], camera_from_board (x y z w, then metres). The
 // pose's Jacobian is with respect to its manifold's step: three columns for the rotation, one of zeros, three
 // for the translation.
 #pragma once
 
+#include "core/geometry/camera_model.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/rigid_transform.h"
 #include "core/intrinsics/sensor_views.h"
@@ -14,6 +16,8 @@
 #include <ceres/manifold.h>
 #include <ceres/sized_cost_function.h>
 #include <Eigen/Core>
+
+#include <optional>
 
 namespace evical {
 
@@ -27,6 +31,11 @@ class CircleCentreCost final : public ceres::SizedCostFunction<2, 9, 1, kPoseBlo
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
  private:
+  std::optional<Eigen::Vector2d> predict(const CameraIntrinsics& camera,
+                                         const RigidTransform& camera_from_board,
+                                         IntrinsicsJacobian* by_intrinsics,
+                                         Eigen::Matrix<double, 2, 6>* by_pose) const;
+
   CameraModel model_;
   Eigen::Vector2d on_board_m_, centre_px_, lead_effect_;
   Eigen::Matrix2d whitening_px_;

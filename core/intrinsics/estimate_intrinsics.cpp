@@ -9,6 +9,7 @@
 #include "core/intrinsics/view_selection.h"
 
 #include <fmt/format.h>
+#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -31,12 +32,33 @@ void checkCount(const std::vector<SensorView>& views, std::size_t count, const c
 
 // What a solution starts from.
 struct Estimation {
-  const CircleBoard& board;
+  const Board& board;
   Resolution resolution_px;
   std::optional<CameraIntrinsics> guess;
   const IntrinsicsOptions& options;
   const RunContext& context;
+  bool wide_too = true;  // whether automatic may take a double sphere
 };
+
+// Sum of squared errors in units of their sigmas, of which none counts more than the bound.
+double boundedSum(const Bundle& bundle, double bound) {
+  double sum = 0.0;
+  for (std::size_t v = 0; v < bundle.views.size(); ++v)
+    for (const SensorCircle& circle : bundle.views[v].circles) {
+      const Eigen::Vector2d error_px = bundle.error_px(v, circle);
+      sum += std::min(error_px.dot(circle.covariance_px2.llt().solve(error_px)), bound * bound);
+    }
+  return sum;
+}
+
+// Medians of solutions that are much alike hardly differ.
+bool fitsBetter(const Bundle& bundle, const Bundle& other, const IntrinsicsOptions& options) {
+  constexpr double kAlike = 1.05;
+  const auto [less, more] = std::minmax(bundle.scale, other.scale);
+  if (!(more < kAlike * less)) return bundle.scale < other.scale;
+  const double bound = options.outlier_sigma * less;
+  return boundedSum(bundle, bound) < boundedSum(other, bound);
+}
 
 Bundle bestOf(const std::vector<CameraIntrinsics>& starts, const std::vector<SensorView>& views,
               const Estimation& given) {
@@ -44,22 +66,50 @@ Bundle bestOf(const std::vector<CameraIntrinsics>& starts, const std::vector<Sen
   for (const CameraIntrinsics& start : starts) {
     given.context.throwIfStopped();
     Bundle bundle = solveBundle(start, views, given.board, given.options, given.context);
-    if (!best || bundle.scale < best->scale) best = std::move(bundle);
+    if (!best || fitsBetter(bundle, *best, given.options)) best = std::move(bundle);
   }
-  return *best;
+  if (best->intrinsics.model != CameraModel::DoubleSphere) return *best;
+  Bundle other = solveBundle(otherSide(best->intrinsics), views, given.board, given.options, given.context);
+  return fitsBetter(other, *best, given.options) ? other : *best;
 }
 
-// Equidistant only where radial-tangential does not do.
+CameraModel modelOf(IntrinsicsModel wanted) {
+  return static_cast<CameraModel>(static_cast<int>(wanted) -
+                                  static_cast<int>(IntrinsicsModel::PinholeRadtan));
+}
+
+int circlesOf(const Bundle& bundle) {
+  std::size_t count = 0;
+  for (const SensorView& view : bundle.views) count += view.circles.size();
+  return static_cast<int>(count);
+}
+
+// Where all circles are used and the errors are as large as their sigmas, another model could not do better.
+bool fits(const Bundle& bundle) {
+  constexpr double kFits = 1.5, kNearlyAll = 0.95;
+  return bundle.scale < kFits && bundle.circlesUsed() >= kNearlyAll * circlesOf(bundle);
+}
+
+// What a model cannot see far out it drops, and the rest fits well.
+double misfit(const Bundle& bundle) {
+  return bundle.scale * circlesOf(bundle) / std::max(1, bundle.circlesUsed());
+}
+
+// Equidistant only where radial-tangential does not do, double sphere only where neither does.
 Bundle solve(const std::vector<SensorView>& views, const Estimation& given) {
   const auto with = [&](CameraModel model) {
-    return bestOf(intrinsicsStarts(views, model, given.resolution_px, given.guess), views, given);
+    return bestOf(intrinsicsStarts(views, given.board, model, given.resolution_px, given.guess), views,
+                  given);
   };
   const IntrinsicsModel wanted = given.options.model;
-  if (wanted == IntrinsicsModel::PinholeEquidistant) return with(CameraModel::PinholeEquidistant);
+  if (wanted != IntrinsicsModel::Automatic) return with(modelOf(wanted));
   Bundle radtan = with(CameraModel::PinholeRadtan);
-  if (wanted == IntrinsicsModel::PinholeRadtan) return radtan;
   Bundle equidistant = with(CameraModel::PinholeEquidistant);
-  return equidistant.scale < given.options.equidistant_gain * radtan.scale ? equidistant : radtan;
+  Bundle pinhole = equidistant.scale < given.options.equidistant_gain * radtan.scale ? std::move(equidistant)
+                                                                                     : std::move(radtan);
+  if (!given.wide_too || fits(pinhole)) return pinhole;
+  Bundle sphere = with(CameraModel::DoubleSphere);
+  return misfit(sphere) < given.options.double_sphere_gain * misfit(pinhole) ? sphere : pinhole;
 }
 
 void addFit(const Bundle& bundle, IntrinsicsResult& result) {
@@ -85,9 +135,7 @@ IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const Intrinsi
   const std::vector<SensorView> all = sensorViews(input.observations, input.board, input.seen_with, options);
   checkCount(all, all.size(), "views", input, options);
   const CameraIntrinsics rough =
-      input.start
-          ? *input.start
-          : intrinsicsStarts(all, CameraModel::PinholeRadtan, input.resolution_px, input.seen_with).back();
+      input.start ? *input.start : roughStart(all, input.board, input.resolution_px, input.seen_with);
   const std::vector<SensorView> views = selectViews(all, input.board, rough, options);
   checkCount(views, views.size(), "views, far enough from each other in time,", input, options);
   const Estimation given{input.board, input.resolution_px, input.seen_with, options, context};
@@ -101,22 +149,23 @@ IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const Intrinsi
   checkCount(views, static_cast<std::size_t>(result.views_used), "views that fit each other", input, options);
   const BundleUncertainty uncertainty = bundleUncertainty(bundle, input.board, options);
   result.covariance = uncertainty.covariance;
-  result.edge_lead_std_px = uncertainty.edge_lead_std_px;
+  // Only moving edges in events lead; of all else the prior alone would speak.
+  if (input.observations.kind == CameraKind::Events) result.edge_lead_std_px = uncertainty.edge_lead_std_px;
   result.normalised_rms = uncertainty.normalised_rms;
   result.largest_tilt_deg = largestTilt_deg(bundle);
-  const IntrinsicsVector sigmas = result.standardDeviations();
-  checkTilts(bundle, (sigmas.head<2>().cwiseQuotient(result.intrinsics.focal_length_px)).maxCoeff(), options);
+  checkTilts(bundle, focalLengthRelativeStd(result.intrinsics, result.covariance), options);
   result.image = imageMap(bundle, result.covariance);
   result.advice = coverageAdvice(bundle, result.image);
   judge(bundle.converged, options, result);
   return result;
 }
 
-std::optional<RoughCamera> roughCamera(const std::vector<SensorView>& all, const CircleBoard& board,
+std::optional<RoughCamera> roughCamera(const std::vector<SensorView>& all, const Board& board,
                                        const CameraIntrinsics& guess, const IntrinsicsOptions& options,
                                        const RunContext& context) {
   constexpr std::size_t kLeastViews = 4, kMostViews = 40;
   constexpr int kMostIterations = 15;        // a valley is followed to its end by the whole recording only
+  constexpr bool kWideToo = false;           // the front end sees up to 85 degrees, where a pinhole will do
   constexpr double kMostFocalLength = 20.0;  // image widths: views that all look alike lead anywhere
   if (all.size() < kLeastViews) return std::nullopt;
   std::vector<SensorView> views;
@@ -124,11 +173,12 @@ std::optional<RoughCamera> roughCamera(const std::vector<SensorView>& all, const
   for (std::size_t k = 0; k < all.size(); k += every) views.push_back(all[k]);
   IntrinsicsOptions rough = options;
   rough.max_iterations = std::min(options.max_iterations, kMostIterations);
-  const Bundle bundle = solve(views, {board, guess.resolution_px, guess, rough, context});
+  const Bundle bundle = solve(views, {board, guess.resolution_px, guess, rough, context, kWideToo});
   const CameraIntrinsics& camera = bundle.intrinsics;
-  const bool sane = camera.focal_length_px.allFinite() && camera.focal_length_px.minCoeff() > 1.0 &&
-                    camera.focal_length_px.maxCoeff() < kMostFocalLength * guess.resolution_px.width_px &&
-                    unproject(camera, camera.principal_point_px);
+  const bool sane =
+      camera.focal_length_px.allFinite() && camera.focal_length_px.minCoeff() > 1.0 &&
+      idealFocalLength_px(camera).maxCoeff() < kMostFocalLength * guess.resolution_px.width_px &&
+      unproject(camera, camera.principal_point_px);
   if (!sane || bundle.circlesUsed() == 0) return std::nullopt;
   const BundleUncertainty uncertainty = bundleUncertainty(bundle, board, options);
   if (uncertainty.normalised_rms == 0.0) return std::nullopt;  // not more circles than unknowns

@@ -9,7 +9,7 @@
 #include "core/base/progress.h"
 #include "core/data/board_observations.h"
 #include "core/data/intrinsics_result.h"
-#include "core/geometry/circle_board.h"
+#include "core/geometry/board.h"
 #include "core/intrinsics/intrinsics_options.h"
 #include "core/intrinsics/sensor_views.h"
 
@@ -19,7 +19,7 @@
 namespace evical {
 
 struct IntrinsicsInput {
-  const CircleBoard& board;
+  const Board& board;
   Resolution resolution_px;
   const BoardObservations& observations;
   std::optional<CameraIntrinsics> seen_with;  // none: the observations are in the sensor's own pixels
@@ -39,7 +39,7 @@ struct RoughCamera {
 
 // The same without checks, from a handful of views; `guess` is a lens that shows the board somehow. Nothing
 // where the views make no camera.
-std::optional<RoughCamera> roughCamera(const std::vector<SensorView>& views, const CircleBoard& board,
+std::optional<RoughCamera> roughCamera(const std::vector<SensorView>& views, const Board& board,
                                        const CameraIntrinsics& guess, const IntrinsicsOptions& options,
                                        const RunContext& context);
 

@@ -1,6 +1,7 @@
 #include "core/intrinsics/intrinsics_checks.h"
 
 #include "core/base/error.h"
+#include "core/geometry/sphere_lens.h"
 #include "core/numerics/angles.h"
 
 #include <fmt/format.h>
@@ -96,6 +97,17 @@ std::string missingPlaces(const std::vector<SensorView>& views, Resolution resol
   return none.empty() || none.size() == regions.size() ? std::string() : joinedInWords(none);
 }
 
+double focalLengthRelativeStd(const CameraIntrinsics& camera, const IntrinsicsMatrix& covariance) {
+  double largest = 0.0;
+  for (Eigen::Index axis = 0; axis < 2; ++axis) {
+    IntrinsicsVector by_numbers = IntrinsicsVector::Zero();  // of the logarithm
+    by_numbers[axis] = 1.0 / camera.focal_length_px[axis];
+    if (hasCentresApart(camera.model)) by_numbers[4] = -1.0 / (1.0 + camera.distortion[0]);
+    largest = std::max(largest, by_numbers.dot(covariance * by_numbers));
+  }
+  return std::sqrt(std::max(largest, 0.0));
+}
+
 double largestTilt_deg(const Bundle& bundle) {
   std::vector<double> tilts_deg;
   for (const Eigen::Vector3d& normal : normals(bundle))
@@ -144,8 +156,7 @@ std::vector<std::string> coverageAdvice(const Bundle& bundle, const ImageMap& im
 }
 
 void judge(bool converged, const IntrinsicsOptions& options, IntrinsicsResult& result) {
-  const IntrinsicsVector sigmas = result.standardDeviations();
-  const double focal = (sigmas.head<2>().cwiseQuotient(result.intrinsics.focal_length_px)).maxCoeff();
+  const double focal = focalLengthRelativeStd(result.intrinsics, result.covariance);
   std::vector<std::string> reasons;
   if (!converged) reasons.emplace_back("the bundle adjustment did not converge");
   if (!(focal <= options.needed_focal_length))

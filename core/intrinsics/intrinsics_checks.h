@@ -6,6 +6,10 @@
 
 namespace evical {
 
+// Relative sigma of the focal length; of pixels by angle on the axis, for the wide models' own number means nothing
+// without their xi.
+double focalLengthRelativeStd(const CameraIntrinsics& camera, const IntrinsicsMatrix& covariance);
+
 // Throws CalibrationFailed where hardly any view is tilted: the focal length is not observable then.
 void checkTilts(const Bundle& bundle, double focal_length_relative_std, const IntrinsicsOptions& options);
 

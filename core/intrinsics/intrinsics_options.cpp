@@ -7,11 +7,17 @@ namespace {
 
 constexpr std::tuple kIntrinsicsFields{
     Choice{"model", &IntrinsicsOptions::model, IntrinsicsModel::Automatic,
-           std::array{"automatic", "pinhole_radtan", "pinhole_equidistant"},
-           "Distortion model; automatic takes equidistant only where it explains the views clearly better.",
+           std::array{"automatic", "pinhole_radtan", "pinhole_equidistant", "double_sphere", "eucm",
+                      "omni_radtan"},
+           "Lens model; automatic takes equidistant only where it explains the views clearly better, and "
+           "double sphere "
+           "where neither of both fits.",
            Level::Common},
     Field{"equidistant_gain", &IntrinsicsOptions::equidistant_gain, 0.85, within(0.1, 1.0), "",
           "Clearly better: residuals smaller than this times those of radial-tangential."},
+    Field{"double_sphere_gain", &IntrinsicsOptions::double_sphere_gain, 0.85, within(0.1, 1.0), "",
+          "The same of double sphere against the better of both, where circles that a model leaves out count "
+          "too."},
     Field{"radtan_coefficients", &IntrinsicsOptions::radtan_coefficients, 4, within(4, 5), "",
           "4: k1 k2 p1 p2; 5: k3 as well, for strong distortion.", Level::Common},
     Field{"first_look_period_s", &IntrinsicsOptions::first_look_period_s, 1.2, within(0.1, 60.0), "s",

@@ -5,11 +5,13 @@
 
 namespace evical {
 
-enum class IntrinsicsModel { Automatic, PinholeRadtan, PinholeEquidistant };
+// Automatic, or CameraModel's in their order.
+enum class IntrinsicsModel { Automatic, PinholeRadtan, PinholeEquidistant, DoubleSphere, Eucm, OmniRadtan };
 
 struct IntrinsicsOptions {
   IntrinsicsModel model;
   double equidistant_gain;
+  double double_sphere_gain;
   int radtan_coefficients;
   double first_look_period_s;
   double first_look_length_s;

@@ -1,44 +1,23 @@
 #include "core/intrinsics/intrinsics_start.h"
 
 #include "core/geometry/camera_model.h"
-
-#include <Eigen/Cholesky>
-#include <Eigen/Geometry>
+#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/lens_fit.h"
+#include "core/geometry/projection_difference.h"
+#include "core/geometry/sphere_lens.h"
+#include "core/intrinsics/board_pose.h"
+#include "core/numerics/angles.h"
+#include "core/numerics/robust.h"
 
 #include <opencv2/calib3d.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
 
 namespace evical {
 namespace {
-
-constexpr int kFitted = 8;  // all but k3
-
-void step(CameraIntrinsics& camera, const Eigen::Matrix<double, kFitted, 1>& by) {
-  camera.focal_length_px += by.head<2>();
-  camera.principal_point_px += by.segment<2>(2);
-  for (std::size_t i = 0; i < 4; ++i) camera.distortion[i] += by[static_cast<Eigen::Index>(4 + i)];
-}
-
-// One Gauss-Newton step towards the pixels of the rays; false where that leads nowhere.
-bool fitStep(const std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>& pixels_and_rays,
-             CameraIntrinsics& camera) {
-  Eigen::Matrix<double, kFitted, kFitted> matrix = Eigen::Matrix<double, kFitted, kFitted>::Zero();
-  Eigen::Matrix<double, kFitted, 1> vector = Eigen::Matrix<double, kFitted, 1>::Zero();
-  for (const auto& [pixel, ray] : pixels_and_rays) {
-    IntrinsicsJacobian jacobian;
-    const auto projected = project(camera, ray.homogeneous(), nullptr, &jacobian);
-    if (!projected) continue;
-    matrix += jacobian.leftCols<kFitted>().transpose() * jacobian.leftCols<kFitted>();
-    vector -= jacobian.leftCols<kFitted>().transpose() * (*projected - pixel);
-  }
-  constexpr double kDamping = 1e-9;
-  matrix.diagonal() *= 1.0 + kDamping;
-  const Eigen::Matrix<double, kFitted, 1> by = matrix.ldlt().solve(vector);
-  if (!by.allFinite()) return false;
-  step(camera, by);
-  return camera.focal_length_px.minCoeff() > 1.0;
-}
 
 CameraIntrinsics plain(CameraModel model, Resolution resolution_px) {
   CameraIntrinsics camera;
@@ -79,31 +58,71 @@ std::optional<CameraIntrinsics> byOpenCv(const std::vector<SensorView>& views, R
   }
 }
 
+// Stereographic lenses that see so far in the image's corners.
+std::vector<CameraIntrinsics> wideGuesses(CameraModel model, Resolution resolution_px) {
+  const double corner_px = 0.5 * std::hypot(resolution_px.width_px, resolution_px.height_px);
+  std::vector<CameraIntrinsics> guesses;
+  for (const double angle_deg : {50.0, 75.0, 100.0}) {
+    CameraIntrinsics camera = plain(CameraModel::PinholeRadtan, resolution_px);
+    camera.focal_length_px.setConstant(0.5 * corner_px / std::tan(0.5 * kRadPerDeg * angle_deg));
+    guesses.push_back(plainLens(camera, model));
+  }
+  return guesses;
+}
+
+// Median distance of circles from where the camera would see the board as a whole, in some views; those that it does not
+// see are infinitely far.
+double startError_px(const CameraIntrinsics& camera, const std::vector<SensorView>& views,
+                     const Board& board) {
+  constexpr std::size_t kMostViews = 20;
+  std::vector<double> errors_px;
+  for (std::size_t v = 0; v < views.size(); v += views.size() / kMostViews + 1) {
+    const auto pose = boardPose(views[v], board, camera);
+    for (const SensorCircle& circle : views[v].circles) {
+      const Eigen::Vector3d on_board(circle.on_board_m.x(), circle.on_board_m.y(), 0.0);
+      const auto pixel = pose ? project(camera, *pose * on_board) : std::nullopt;
+      errors_px.push_back(pixel ? (*pixel - circle.centre_px).norm()
+                                : std::numeric_limits<double>::infinity());
+    }
+  }
+  return medianOf(std::move(errors_px), std::numeric_limits<double>::infinity());
+}
+
+// Nearest first.
+void sortByError(const std::vector<SensorView>& views, const Board& board,
+                 std::vector<CameraIntrinsics>& starts) {
+  std::vector<std::pair<double, CameraIntrinsics>> sorted;
+  for (const CameraIntrinsics& start : starts) sorted.emplace_back(startError_px(start, views, board), start);
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t k = 0; k < starts.size(); ++k) starts[k] = sorted[k].second;
+}
+
 }  // namespace
 
 CameraIntrinsics sameLens(const CameraIntrinsics& camera, CameraModel model) {
   if (camera.model == model) return camera;
-  constexpr int kColumns = 24, kRows = 18, kIterations = 15;
-  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> pixels_and_rays;
-  for (int row = 0; row < kRows; ++row) {
-    for (int column = 0; column < kColumns; ++column) {
-      const Eigen::Vector2d pixel((column + 0.5) * camera.resolution_px.width_px / kColumns,
-                                  (row + 0.5) * camera.resolution_px.height_px / kRows);
-      if (const auto ray = unproject(camera, pixel)) pixels_and_rays.emplace_back(pixel, *ray);
-    }
-  }
-  CameraIntrinsics same = plain(model, camera.resolution_px);
-  same.focal_length_px = camera.focal_length_px;
-  same.principal_point_px = camera.principal_point_px;
-  const CameraIntrinsics start = same;
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
-    if (!fitStep(pixels_and_rays, same)) return start;
-  }
-  return same;
+  return fitLens(camera, model, model == CameraModel::PinholeRadtan ? 4 : coefficientCount(model)).camera;
 }
 
-std::vector<CameraIntrinsics> intrinsicsStarts(const std::vector<SensorView>& views, CameraModel model,
-                                               Resolution resolution_px,
+CameraIntrinsics otherSide(const CameraIntrinsics& sphere) {
+  constexpr double kXi = 0.2, kStep = 0.01;
+  const double xi = sphere.distortion[0] < 0.0 ? kXi : -kXi;
+  CameraIntrinsics nearest = sphere, side = sphere;
+  side.focal_length_px = (1.0 + xi) * idealFocalLength_px(sphere);
+  double least_px = std::numeric_limits<double>::infinity();
+  for (double alpha = 0.3; alpha < 0.95; alpha += kStep) {
+    side.distortion = {xi, alpha, 0.0, 0.0, 0.0};
+    const ProjectionDifference difference = projectionDifference(sphere, side);
+    if (difference.places == 0 || difference.rms_px >= least_px) continue;
+    least_px = difference.rms_px;
+    nearest = side;
+  }
+  return nearest;
+}
+
+std::vector<CameraIntrinsics> intrinsicsStarts(const std::vector<SensorView>& views, const Board& board,
+                                               CameraModel model, Resolution resolution_px,
                                                const std::optional<CameraIntrinsics>& seen_with) {
   std::vector<CameraIntrinsics> starts;
   if (seen_with) starts.push_back(sameLens(*seen_with, model));
@@ -111,8 +130,26 @@ std::vector<CameraIntrinsics> intrinsicsStarts(const std::vector<SensorView>& vi
   const bool guessed = !seen_with || seen_with->distortion == CameraIntrinsics{}.distortion;
   const auto camera = guessed ? byOpenCv(views, resolution_px) : std::nullopt;
   if (camera) starts.push_back(sameLens(*camera, model));
+  if (isSphereModel(model)) {
+    for (const CameraIntrinsics& guess : wideGuesses(model, resolution_px)) starts.push_back(guess);
+    sortByError(views, board, starts);
+    constexpr std::size_t kTried = 2;
+    starts.resize(kTried);
+  }
   if (starts.empty()) starts.push_back(plain(model, resolution_px));
   return starts;
+}
+
+CameraIntrinsics roughStart(const std::vector<SensorView>& views, const Board& board,
+                            Resolution resolution_px, const std::optional<CameraIntrinsics>& seen_with) {
+  constexpr double kGood_px = 1.0, kClearlyBetter = 0.3;
+  const CameraIntrinsics pinhole =
+      intrinsicsStarts(views, board, CameraModel::PinholeRadtan, resolution_px, seen_with).back();
+  const double error_px = startError_px(pinhole, views, board);
+  if (error_px < kGood_px) return pinhole;
+  const CameraIntrinsics wide =
+      intrinsicsStarts(views, board, CameraModel::DoubleSphere, resolution_px, seen_with).front();
+  return startError_px(wide, views, board) < kClearlyBetter * error_px ? wide : pinhole;
 }
 
 }  // namespace evical

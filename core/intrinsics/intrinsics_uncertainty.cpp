@@ -30,7 +30,7 @@ struct ViewInformation {
 };
 
 ViewInformation viewInformation(const SensorView& view, const RigidTransform& pose, const Bundle& bundle,
-                                const CircleBoard& board, const IntrinsicsOptions& options) {
+                                const Board& board, const IntrinsicsOptions& options) {
   Eigen::Matrix<double, kIntrinsicsCount, 1> intrinsics;
   writeIntrinsics(bundle.intrinsics, intrinsics.data());
   Eigen::Matrix<double, kPoseBlock, 1> pose_block;
@@ -97,7 +97,7 @@ SharedMatrix inverseOf(const SharedMatrix& information, const std::vector<int>& 
 
 }  // namespace
 
-BundleUncertainty bundleUncertainty(const Bundle& bundle, const CircleBoard& board,
+BundleUncertainty bundleUncertainty(const Bundle& bundle, const Board& board,
                                     const IntrinsicsOptions& options) {
   std::vector<int> free;
   const FreeIntrinsics is_free = freeIntrinsics(bundle.intrinsics.model, options);

@@ -14,7 +14,7 @@ struct BundleUncertainty {
   double normalised_rms = 0.0;  // of residuals over their sigmas
 };
 
-BundleUncertainty bundleUncertainty(const Bundle& bundle, const CircleBoard& board,
+BundleUncertainty bundleUncertainty(const Bundle& bundle, const Board& board,
                                     const IntrinsicsOptions& options);
 
 // Coverage by the circles used, and what the covariance means for the pixels of given rays. A turn of the

@@ -9,13 +9,13 @@
 namespace evical {
 namespace {
 
-SensorCircle sensorCircle(const CircleObservation& circle, double time_s, const CircleBoard& board,
+SensorCircle sensorCircle(const CircleObservation& circle, double time_s, const Board& board,
                           const std::optional<CameraIntrinsics>& seen_with,
                           const IntrinsicsOptions& options) {
   const Eigen::Vector2d ideal = circle.centre_px + (time_s - circle.time_s) * circle.velocity_px_s;
   Eigen::Matrix2d sensor_from_ideal = Eigen::Matrix2d::Identity();
   SensorCircle out;
-  out.on_board_m = board.centre_m(circle.circle);
+  out.on_board_m = board.point_m(circle.circle);
   out.centre_px = ideal;
   if (seen_with) {
     out.centre_px = pixelFromIdeal(*seen_with, ideal);
@@ -30,11 +30,11 @@ SensorCircle sensorCircle(const CircleObservation& circle, double time_s, const 
 
 }  // namespace
 
-std::vector<SensorView> sensorViews(const BoardObservations& observations, const CircleBoard& board,
+std::vector<SensorView> sensorViews(const BoardObservations& observations, const Board& board,
                                     const std::optional<CameraIntrinsics>& seen_with,
                                     const IntrinsicsOptions& options) {
   std::vector<SensorView> views;
-  const double least = std::max(4.0, options.least_circles * board.circleCount());
+  const double least = std::max(4.0, options.least_circles * board.pointCount());
   for (const BoardView& view : observations.views) {
     if (static_cast<double>(view.circles.size()) < least) continue;
     SensorView& out = views.emplace_back();

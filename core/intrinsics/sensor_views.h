@@ -3,8 +3,8 @@
 #pragma once
 
 #include "core/data/board_observations.h"
+#include "core/geometry/board.h"
 #include "core/geometry/camera_intrinsics.h"
-#include "core/geometry/circle_board.h"
 #include "core/intrinsics/intrinsics_options.h"
 
 #include <Eigen/Core>
@@ -30,7 +30,7 @@ struct SensorView {
 
 // `seen_with`: the camera whose ideal pixels the observations are in; none: they are the sensor's. Views with
 // fewer circles than options.least_circles are left out.
-std::vector<SensorView> sensorViews(const BoardObservations& observations, const CircleBoard& board,
+std::vector<SensorView> sensorViews(const BoardObservations& observations, const Board& board,
                                     const std::optional<CameraIntrinsics>& seen_with,
                                     const IntrinsicsOptions& options);
 

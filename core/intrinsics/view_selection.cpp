@@ -27,7 +27,7 @@ struct Candidate {
   bool taken = false, too_near = false;
 };
 
-std::vector<Candidate> candidatesOf(const std::vector<SensorView>& views, const CircleBoard& board,
+std::vector<Candidate> candidatesOf(const std::vector<SensorView>& views, const Board& board,
                                     const CameraIntrinsics& camera) {
   std::vector<Candidate> candidates;
   for (const SensorView& view : views) {
@@ -48,7 +48,7 @@ std::vector<Candidate> candidatesOf(const std::vector<SensorView>& views, const 
 
 }  // namespace
 
-std::vector<SensorView> selectViews(const std::vector<SensorView>& views, const CircleBoard& board,
+std::vector<SensorView> selectViews(const std::vector<SensorView>& views, const Board& board,
                                     const CameraIntrinsics& camera, const IntrinsicsOptions& options) {
   std::vector<Candidate> candidates = candidatesOf(views, board, camera);
   std::array<int, kColumns* kRows> in_cell = {};
@@ -57,7 +57,7 @@ std::vector<SensorView> selectViews(const std::vector<SensorView>& views, const 
   const auto gain = [&](const Candidate& candidate) {
     double sum = 0.0;
     for (const std::size_t cell : candidate.cells) sum += 1.0 / (1.0 + in_cell[cell]);
-    const double full = kTiltWeight * board.circleCount();
+    const double full = kTiltWeight * board.pointCount();
     return sum + full / (1.0 + of_tilt[candidate.tilt]);
   };
   std::vector<SensorView> selected;

@@ -11,7 +11,7 @@ namespace evical {
 
 // Up to options.most_views of them, in time order; the same for the same views. Tilts are seen with `camera`,
 // a rough one will do.
-std::vector<SensorView> selectViews(const std::vector<SensorView>& views, const CircleBoard& board,
+std::vector<SensorView> selectViews(const std::vector<SensorView>& views, const Board& board,
                                     const CameraIntrinsics& camera, const IntrinsicsOptions& options);
 
 }  // namespace evical

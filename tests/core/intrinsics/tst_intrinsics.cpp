@@ -91,10 +91,24 @@ class TestIntrinsics : public QObject {
     circle.centre_px = {200.0, 150.0};
     circle.covariance_px2 << 0.02, 0.005, 0.005, 0.01;
     circle.lead_effect = {0.8, -0.5};
-    for (const CameraModel model : {CameraModel::PinholeRadtan, CameraModel::PinholeEquidistant}) {
-      const CircleCentreCost cost(model, circle, 0.02, 1.3);
+    struct Case {
+      CameraModel model;
+      double radius_m;
+      std::array<double, 5> distortion;
+    };
+    const Case cases[] = {{CameraModel::PinholeRadtan, 0.02, {-0.3, 0.1, 0.001, -0.002, 0.01}},
+                          {CameraModel::PinholeRadtan, 0.0, {-0.3, 0.1, 0.001, -0.002, 0.01}},
+                          {CameraModel::PinholeEquidistant, 0.02, {-0.3, 0.1, 0.001, -0.002, 0.0}},
+                          {CameraModel::DoubleSphere, 0.02, {-0.2, 0.6, 0.0, 0.0, 0.0}},
+                          {CameraModel::DoubleSphere, 0.0, {-0.2, 0.6, 0.0, 0.0, 0.0}},
+                          {CameraModel::Eucm, 0.02, {0.6, 1.1, 0.0, 0.0, 0.0}},
+                          {CameraModel::Eucm, 0.0, {0.6, 1.1, 0.0, 0.0, 0.0}},
+                          {CameraModel::OmniRadtan, 0.02, {1.2, -0.1, 0.02, 0.001, -0.002}},
+                          {CameraModel::OmniRadtan, 0.0, {1.2, -0.1, 0.02, 0.001, -0.002}}};
+    for (const auto& [model, radius_m, distortion] : cases) {
+      const CircleCentreCost cost(model, circle, radius_m, 1.3);
       Eigen::VectorXd shared(10);
-      shared << 262.0, 263.0, 171.0, 131.0, -0.3, 0.1, 0.001, -0.002, 0.01, 0.2;
+      shared << 262.0, 263.0, 171.0, 131.0, Eigen::Map<const Eigen::VectorXd>(distortion.data(), 5), 0.2;
       const auto residualAt = [&](const Eigen::VectorXd& delta) -> Eigen::VectorXd {
         // Coefficients of the distortion are small numbers, lengths in pixels large ones.
         Eigen::VectorXd moved = shared + delta.head(10);
