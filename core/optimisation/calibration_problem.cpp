@@ -23,7 +23,11 @@ std::vector<double> timeOffsets_s(const CalibrationState& state) {
     for (const double time_s : {trajectory.start_s, trajectory.endTime_s()})
       offsets_s.push_back(timeOffsetAt_s(sensor, time_s));
   };
-  for (const CameraState& camera : state.cameras) append(camera);
+  for (const CameraState& camera : state.cameras) {
+    append(camera);
+    constexpr double kFurthestRow = 1000.0;  // from the middle one
+    offsets_s.push_back(1e-6 * kFurthestRow * camera.line_delay_us);
+  }
   for (const ImuState& imu : state.imus) {
     append(imu);
     for (const double time_s : {trajectory.start_s, trajectory.endTime_s()})
@@ -88,8 +92,13 @@ void CalibrationProblem::setManifolds(ProblemBuilder& builder) {
     if (!builder.turnsGyroscope(i)) builder.hold(gyroscope_rotation);
     if (!builder.drifts(input_.imus[i].prior)) builder.hold(&state.imus[i].time_offset_drift_ppm);
   }
-  for (std::size_t i = 0; i < state.cameras.size(); ++i)
+  for (std::size_t i = 0; i < state.cameras.size(); ++i) {
     if (!builder.drifts(input_.cameras[i].prior)) builder.hold(&state.cameras[i].time_offset_drift_ppm);
+    if (!builder.rolls(i)) builder.hold(&state.cameras[i].line_delay_us);
+    if (input_.cameras[i].observations.kind == CameraKind::Events) continue;
+    builder.hold(&state.cameras[i].edge_lead_px);  // of moving edges in events only
+    builder.hold(&state.cameras[i].slow_edge_lead_px);
+  }
   if (!options_.free_gravity_norm) set(state.gravity_in_world_m_s2.data(), &sphere_);
   for (std::size_t i = 0; i < state.cameras.size(); ++i)
     if (IntrinsicsBlock* block = parameters_.intrinsics(i))

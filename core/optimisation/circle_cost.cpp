@@ -24,6 +24,7 @@ enum Block {
   kCameraTranslation,
   kTimeOffset,
   kTimeOffsetDrift,
+  kLineDelay,
   kEdgeLead,
   kSlowEdgeLead,
   kBoardScale,
@@ -34,7 +35,8 @@ enum Block {
   kIntrinsics,  // where they are free
   kBlocks
 };
-constexpr std::array<int, kBlocks> kBlockSizes = {4, 4, 4, 4, 3, 3, 3, 3, 4, 3, 1, 1, 1, 1, 1, 1, 1, 1, 1, 9};
+constexpr std::array<int, kBlocks> kBlockSizes = {4, 4, 4, 4, 3, 3, 3, 3, 4, 3, 1,
+                                                  1, 1, 1, 1, 1, 1, 1, 1, 1, 9};
 
 void writeZero(double** jacobians, int blocks, Eigen::Index row) {
   for (int block = 0; block < blocks; ++block) {
@@ -47,7 +49,7 @@ void writeZero(double** jacobians, int blocks, Eigen::Index row) {
 struct Mount {
   Matrix3d camera_from_imu;
   Vector3d camera_in_imu;
-  double time_offset_s, time_offset_drift_ppm;
+  double time_offset_s, time_offset_drift_ppm, line_delay_us;
   EdgeLead lead;
   BoardState board;
 
@@ -57,6 +59,7 @@ struct Mount {
         camera_in_imu(parameters[kCameraTranslation]),
         time_offset_s(*parameters[kTimeOffset]),
         time_offset_drift_ppm(*parameters[kTimeOffsetDrift]),
+        line_delay_us(*parameters[kLineDelay]),
         lead{*parameters[kEdgeLead], *parameters[kSlowEdgeLead]},
         board{*parameters[kBoardScale], *parameters[kBoardStretch], *parameters[kBoardRowCurvature],
               *parameters[kBoardColumnCurvature], *parameters[kBoardTwist]} {}
@@ -80,7 +83,7 @@ struct PlacedCircle {
 };
 
 bool movesInTime(double** jacobians) {
-  return jacobians && (jacobians[kTimeOffset] || jacobians[kTimeOffsetDrift]);
+  return jacobians && (jacobians[kTimeOffset] || jacobians[kTimeOffsetDrift] || jacobians[kLineDelay]);
 }
 
 // `by_place`: derivative of the residual by where the circle is in the world.
@@ -126,6 +129,7 @@ void writeJacobians(const Mount& mount, const PlacedCircle& placed, const Projec
     if (jacobians[kTimeOffset]) jacobianRows<2, 1>(jacobians, kTimeOffset, row) = by_time;
     if (jacobians[kTimeOffsetDrift])
       jacobianRows<2, 1>(jacobians, kTimeOffsetDrift, row) = circle.by_drift_s * by_time;
+    if (jacobians[kLineDelay]) jacobianRows<2, 1>(jacobians, kLineDelay, row) = circle.by_line_s * by_time;
   }
   writeBoardJacobians(mount.board, circle.on_board_m, -by_position, row, jacobians);
   if (jacobians[kEdgeLead]) jacobianRows<2, 1>(jacobians, kEdgeLead, row) = by_px * circle.lead.of_lead;
@@ -170,8 +174,9 @@ bool CircleCost::Evaluate(double const* const* parameters, double* residuals, do
     const CircleMeasurement& circle = circles_[i];
     const auto row = static_cast<Eigen::Index>(2 * i);
     Eigen::Map<Vector2d> residual(residuals + row);
-    const double time_s =
-        circle.time_s + mount.time_offset_s + circle.by_drift_s * mount.time_offset_drift_ppm;
+    const double time_s = circle.time_s + mount.time_offset_s +
+                          circle.by_drift_s * mount.time_offset_drift_ppm +
+                          circle.by_line_s * mount.line_delay_us;
     rotation_segment.evaluate(segment_.rotationPlace(time_s), order, placed.rotation,
                               jacobians ? &placed.by_control_points : nullptr);
     placed.position = positionAt(segment_, parameters + kPosition, time_s);

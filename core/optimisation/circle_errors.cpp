@@ -19,9 +19,9 @@ namespace {
 // In the ideal pixels of the observations.
 std::optional<Eigen::Vector2d> predictedCentre(const CameraData& camera, const CameraState& state,
                                                const CircleObservation& circle,
-                                               const RigidTransform& camera_from_world,
-                                               const CircleBoard& board, const BoardState& board_state) {
-  const Eigen::Vector3d in_camera_m = camera_from_world * board_state.place_m(board.centre_m(circle.circle));
+                                               const RigidTransform& camera_from_world, const Board& board,
+                                               const BoardState& board_state) {
+  const Eigen::Vector3d in_camera_m = camera_from_world * board_state.place_m(board.point_m(circle.circle));
   const Eigen::Vector3d normal = camera_from_world.rotation * Eigen::Vector3d::UnitZ();
   const auto projected = state.lens.solved
                              ? projectCircleBeside(seenCentre(*camera.lens.seen_with, circle.centre_px),
@@ -45,13 +45,13 @@ std::vector<CircleError> circleErrors(const CalibrationInput& input, const Calib
       const auto& circles = camera.observations.views[v].circles;
       for (std::size_t i = 0; i < circles.size(); ++i) {
         const CircleObservation& circle = circles[i];
-        const double time_s = referenceTime_s(camera_state, circle.time_s);
+        const double time_s = circleTime_s(camera_state, circle);
         if (!rotation.contains(time_s) || !position.contains(time_s)) continue;
         CircleError error{c, v, i, Eigen::Vector2d::Zero(), std::numeric_limits<double>::infinity()};
         const auto centre_px =
             predictedCentre(camera, camera_state, circle,
                             cameraFromWorld(rotation, position, camera_state.reference_from_camera,
-                                            timeOffsetAt_s(camera_state, circle.time_s), circle.time_s),
+                                            time_s - circle.time_s, circle.time_s),
                             input.board, state.board);
         if (centre_px) {
           const EdgeLeadEffect lead =

@@ -10,6 +10,11 @@
 
 namespace evical {
 
+// When it was measured, on the reference's clock.
+inline double circleTime_s(const CameraState& camera, const CircleObservation& circle) {
+  return referenceTime_s(camera, circle.time_s) + 1e-6 * camera.line_delay_us * circle.rows_below_middle;
+}
+
 struct CircleError {
   std::size_t camera = 0, view = 0, index = 0;         // index: position in the view's list
   Eigen::Vector2d error_px = Eigen::Vector2d::Zero();  // predicted - measured, edge lead included

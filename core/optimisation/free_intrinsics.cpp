@@ -2,6 +2,7 @@
 
 #include "core/data/calibration_state.h"
 #include "core/data/intrinsics_result.h"
+#include "core/geometry/sphere_lens.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/optimisation/prior_cost.h"
 
@@ -9,6 +10,7 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace evical {
@@ -21,12 +23,25 @@ const CameraIntrinsics& normalisedCamera() {
   return camera;
 }
 
+// With spheres apart, a focal length alone says little: it is f / (1 + xi) that is known so well, whatever xi is.
+void holdScaleRatherThanLength(const CameraIntrinsics& camera, IntrinsicsMatrix& covariance) {
+  constexpr int kXi = 4;
+  if (!hasCentresApart(camera.model)) return;
+  const Eigen::Vector2d by_xi = idealFocalLength_px(camera);
+  covariance.topLeftCorner<2, 2>() += covariance(kXi, kXi) * by_xi * by_xi.transpose();
+  covariance.block<2, 1>(0, kXi) = covariance(kXi, kXi) * by_xi;
+  covariance.block<1, 2>(kXi, 0) = covariance.block<2, 1>(0, kXi).transpose();
+}
+
 IntrinsicsMatrix priorCovariance(const CameraLens& lens, const OptimisationOptions& options) {
   IntrinsicsVector weak = IntrinsicsVector::Constant(options.camera_distortion_sigma);
   weak.head<2>() = options.camera_focal_length_sigma * lens.seen_with->focal_length_px;
   weak.segment<2>(2).setConstant(options.camera_principal_point_sigma_px);
   IntrinsicsMatrix covariance = weak.cwiseAbs2().asDiagonal();
-  if (!lens.given_with) return covariance;
+  if (!lens.given_with) {
+    holdScaleRatherThanLength(*lens.seen_with, covariance);
+    return covariance;
+  }
   const IntrinsicsMatrix given = lens.given_with->covariance();
   // Rounded correlations may leave no proper matrix: this is far less than their rounding.
   constexpr double kRounded = 1e-3;
@@ -76,6 +91,13 @@ IntrinsicsBlock::IntrinsicsBlock(const CameraLens& lens, const CameraState& stat
 void IntrinsicsBlock::hold(ceres::Problem& problem, bool released) {
   if (!problem.HasParameterBlock(data())) return;
   if (manifold_) problem.SetManifold(data(), manifold_.get());
+  const IntrinsicsBounds bounds = intrinsicsBounds(seen_with_.model);
+  for (int i = 0; i < kIntrinsicsCount; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (!std::isfinite(bounds.lower[k])) continue;
+    problem.SetParameterLowerBound(data(), i, bounds.lower[k]);
+    problem.SetParameterUpperBound(data(), i, bounds.upper[k]);
+  }
   if (!released) problem.SetParameterBlockConstant(data());
 }
 

@@ -30,6 +30,8 @@ bool isReleased(const QuantityInfo& info, const OptimisationOptions& options, bo
       return options.free_board_size;
     case QuantityRelease::BoardBow:
       return options.board_bow;
+    case QuantityRelease::LineDelay:
+      return true;  // where a shutter rolls
     case QuantityRelease::TimeOffsetDrift:
       break;
   }

@@ -2,6 +2,7 @@
 
 #include "core/base/time.h"
 #include "core/optimisation/bias_knots.h"
+#include "core/optimisation/circle_errors.h"
 #include "core/optimisation/edge_lead.h"
 #include "core/optimisation/inertial_cost.h"
 
@@ -35,7 +36,8 @@ CircleMeasurement circleOf(const ProblemBuilder& builder, std::size_t camera, st
   CircleMeasurement m;
   m.time_s = observed.time_s;
   m.by_drift_s = byDrift_s(builder.parameters.moved().cameras[camera], observed.time_s);
-  m.on_board_m = builder.input.board.centre_m(observed.circle);
+  m.by_line_s = 1e-6 * observed.rows_below_middle;
+  m.on_board_m = builder.input.board.point_m(observed.circle);
   m.centre_px = observed.centre_px;
   m.whitening_px = covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity());
   m.lead = edgeLeadEffect(*data.lens.seen_with, observed, builder.options.slow_edge_speed_px_s);
@@ -43,6 +45,10 @@ CircleMeasurement circleOf(const ProblemBuilder& builder, std::size_t camera, st
   m.view = static_cast<int>(view);
   m.circle = static_cast<int>(circle);
   return m;
+}
+
+double measuredAt_s(const CameraState& camera, const CircleMeasurement& circle) {
+  return referenceTime_s(camera, circle.time_s) + circle.by_line_s * camera.line_delay_us;
 }
 
 // Those that take part and lie within the splines, in order of time.
@@ -54,14 +60,15 @@ std::vector<CircleMeasurement> circlesOf(const ProblemBuilder& builder, std::siz
   for (std::size_t view = 0; view < views.size(); ++view) {
     for (std::size_t i = 0; i < views[view].circles.size(); ++i) {
       if (!builder.weights.used_circles[camera][view][i]) continue;
-      const double time_s = referenceTime_s(state.cameras[camera], views[view].circles[i].time_s);
+      const double time_s = circleTime_s(state.cameras[camera], views[view].circles[i]);
       if (!state.world_from_imu_rotation.contains(time_s) || !state.imu_in_world_m.contains(time_s)) continue;
       measurements.push_back(circleOf(builder, camera, view, i, pixel_errors));
     }
   }
-  std::stable_sort(
-      measurements.begin(), measurements.end(),
-      [](const CircleMeasurement& a, const CircleMeasurement& b) { return a.time_s < b.time_s; });
+  std::stable_sort(measurements.begin(), measurements.end(),
+                   [&](const CircleMeasurement& a, const CircleMeasurement& b) {
+                     return measuredAt_s(state.cameras[camera], a) < measuredAt_s(state.cameras[camera], b);
+                   });
   return measurements;
 }
 
@@ -189,10 +196,10 @@ void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& 
   BoardState& board = parameters.moved().board;
   const std::vector<CircleMeasurement> measurements = circlesOf(builder, camera, pixel_errors);
   for (std::size_t begin = 0, end = 0; begin < measurements.size(); begin = end) {
-    const double begin_s = referenceTime_s(state, measurements[begin].time_s);
+    const double begin_s = measuredAt_s(state, measurements[begin]);
     const SegmentTimes segment = parameters.segmentAt(begin_s);
     while (end < measurements.size() &&
-           sameSegment(segment, parameters.segmentAt(referenceTime_s(state, measurements[end].time_s)))) {
+           sameSegment(segment, parameters.segmentAt(measuredAt_s(state, measurements[end])))) {
       ++end;
     }
     auto* cost = new CircleCost(model, segment,
@@ -201,11 +208,11 @@ void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& 
     std::vector<double*> blocks;
     parameters.appendRotation(segment, blocks);
     parameters.appendPosition(segment, blocks);
-    blocks.insert(blocks.end(),
-                  {state.reference_from_camera.rotation.coeffs().data(),
-                   state.reference_from_camera.translation_m.data(), &state.time_offset_s,
-                   &state.time_offset_drift_ppm, &state.edge_lead_px, &state.slow_edge_lead_px, &board.scale,
-                   &board.stretch, &board.row_curvature_1_m, &board.column_curvature_1_m, &board.twist_1_m});
+    blocks.insert(blocks.end(), {state.reference_from_camera.rotation.coeffs().data(),
+                                 state.reference_from_camera.translation_m.data(), &state.time_offset_s,
+                                 &state.time_offset_drift_ppm, &state.line_delay_us, &state.edge_lead_px,
+                                 &state.slow_edge_lead_px, &board.scale, &board.stretch,
+                                 &board.row_curvature_1_m, &board.column_curvature_1_m, &board.twist_1_m});
     if (IntrinsicsBlock* intrinsics = parameters.intrinsics(camera)) blocks.push_back(intrinsics->data());
     builder.residuals.push_back({builder.problem.AddResidualBlock(cost, nullptr, blocks), SensorKind::Circles,
                                  camera, begin_s, cost});

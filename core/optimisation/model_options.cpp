@@ -30,6 +30,10 @@ constexpr std::tuple kModelFields{
            "Estimate how the board is bent along its rows and its columns, and twisted, as a sheet is that "
            "comes off; a board that is taken for flat is tested all the same.",
            Level::Common},
+    Switch{
+        "line_delay", &ModelOptions::line_delay, false,
+        "Estimate every frame camera's line delay, as if all shutters rolled; those that the session calls "
+        "rolling have theirs estimated in any case, and the others are tested."},
     Choice{
         "camera_intrinsics", &ModelOptions::camera_intrinsics, CameraIntrinsicsChoice::Free,
         std::array{"fixed", "free"},

@@ -15,6 +15,7 @@ struct ModelOptions {
   bool free_gravity_norm;
   bool free_board_size;
   bool board_bow;
+  bool line_delay;
   CameraIntrinsicsChoice camera_intrinsics;
   bool gyroscope_rotation;
   double delay_misfit;

@@ -5,8 +5,8 @@
 
 namespace evical {
 
-PixelErrors::PixelErrors(const CameraData& camera, const CircleBoard& board, double pixel_error_px)
-    : mean_px_(static_cast<std::size_t>(board.circleCount()), Eigen::Vector2d::Zero()) {
+PixelErrors::PixelErrors(const CameraData& camera, const Board& board, double pixel_error_px)
+    : mean_px_(static_cast<std::size_t>(board.pointCount()), Eigen::Vector2d::Zero()) {
   std::vector<double> counts(mean_px_.size(), 0.0);
   const auto forEach = [&](auto&& visit) {
     for (const BoardView& view : camera.observations.views)

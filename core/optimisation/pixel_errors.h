@@ -15,7 +15,7 @@ namespace evical {
 
 class PixelErrors {
  public:
-  PixelErrors(const CameraData& camera, const CircleBoard& board, double pixel_error_px);
+  PixelErrors(const CameraData& camera, const Board& board, double pixel_error_px);
 
   // What one sigma changes in the circle's centre; ideal pixels.
   Eigen::Vector2d at(const CircleObservation& circle) const;

@@ -22,6 +22,12 @@ bool ProblemBuilder::drifts(const SensorPrior& prior) const {
   return options.free_time_offsets && options.time_offset_drift && !isGiven(prior.time_offset);
 }
 
+bool ProblemBuilder::rolls(std::size_t camera) const {
+  const CameraData& data = input.cameras[camera];
+  return data.observations.kind != CameraKind::Events && stage != ReleaseStages::Extrinsics &&
+         (data.shutter == Shutter::Rolling || options.line_delay);
+}
+
 void ProblemBuilder::addPrior(ceres::CostFunction* cost, const std::vector<double*>& blocks) {
   residuals.push_back({problem.AddResidualBlock(cost, nullptr, blocks)});
 }

@@ -46,7 +46,8 @@ struct ProblemBuilder {
   bool drifts(const SensorPrior& prior) const;
 
   void addPrior(ceres::CostFunction* cost, const std::vector<double*>& blocks);
-  void hold(double* block);  // if it is in the problem
+  bool rolls(std::size_t camera) const;  // its shutter, or as if it did for a test
+  void hold(double* block);              // if it is in the problem
 };
 
 }  // namespace evical

@@ -25,6 +25,12 @@ constexpr std::tuple kVerdictFields{
           "doubtful."},
     Field{"wrong_lens_px", &VerdictOptions::wrong_lens_px, 0.2, within(0.0, 1000.0), "px",
           "RMS over the image by which it projects elsewhere."},
+    Field{
+        "rolling_shutter_sigmas", &VerdictOptions::rolling_shutter_sigmas, 6.0, within(1.0, 1000.0), "sigma",
+        "A shutter that the session calls global, but that seems to roll beyond this and rolling_shutter_ms, "
+        "makes the result doubtful."},
+    Field{"rolling_shutter_ms", &VerdictOptions::rolling_shutter_ms, 1.5, within(0.0, 1000.0), "ms",
+          "From the first row's exposure to the last one's: no sensor that rolls reads a frame faster."},
     Field{"bent_board_sigmas", &VerdictOptions::bent_board_sigmas, 6.0, within(1.0, 1000.0), "sigma",
           "A board that is taken for flat, but seems bent beyond this and bent_board_mm, makes the result "
           "doubtful."},

@@ -13,6 +13,8 @@ struct VerdictOptions {
   double turned_gyroscope_sigmas;
   double wrong_lens_sigmas;
   double wrong_lens_px;
+  double rolling_shutter_sigmas;
+  double rolling_shutter_ms;
   double bent_board_sigmas;
   double bent_board_mm;
   double doubtful_scale_sigmas;

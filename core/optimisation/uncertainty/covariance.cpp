@@ -30,6 +30,7 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   estimate.wandering_imus = std::move(held.wandering_imus);
   estimate.bent_board = std::move(held.board);
   estimate.wrong_lenses = std::move(held.lenses);
+  estimate.rolling_shutters = std::move(held.shutters);
   information = withoutHeldValues(input, options, std::move(information));
   ChangeDoubt change = doubtOfChanges(input, information, options);
   if (change.sigmas > held.gyroscope_sigmas) estimate.change = std::move(change.doubt);

@@ -105,7 +105,7 @@ BoardState certainBow(const BoardState& found, const QuantityCovariance& covaria
 }
 
 // What is bent a little is estimated, and right; what is bent a lot is no longer what was modelled.
-void checkBow(const CircleBoard& board, const BoardState& bent, const OptimisationOptions& options,
+void checkBow(const Board& board, const BoardState& bent, const OptimisationOptions& options,
               ScaleCheck& check) {
   const double bow_mm = largestBow_mm(bent, board);
   if (bow_mm < options.bent_board_mm) return;

@@ -1,6 +1,7 @@
 #include "core/optimisation/uncertainty/score_test.h"
 
 #include "core/data/board_bow.h"
+#include "core/geometry/camera_model.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/projection_difference.h"
 #include "core/numerics/angles.h"
@@ -21,6 +22,8 @@ namespace {
 bool isHeld(const Quantity& quantity, const CalibrationInput& input, const OptimisationOptions& options) {
   if (quantity.info->shape == QuantityShape::Intrinsics) return !options.freesIntrinsics();
   if (quantity.info->release == QuantityRelease::BoardBow) return !options.board_bow;
+  if (quantity.info->release == QuantityRelease::LineDelay)
+    return !options.line_delay && input.cameras[quantity.sensor].shutter != Shutter::Rolling;
   if (quantity.info->release != QuantityRelease::GyroscopeRotation || options.gyroscope_rotation)
     return false;
   const auto& prior = input.imus[quantity.sensor].prior.gyroscope_rotation;
@@ -109,7 +112,7 @@ void testLens(const std::string& camera, const CameraIntrinsics& held, const Ste
   for (Eigen::Index k = 0; k < step.change.size(); ++k)  // those that the model does not use come last
     numbers[static_cast<std::size_t>(k)] += step.change[k];
   const CameraIntrinsics freed = intrinsicsFrom(numbers.data(), held.model, held.resolution_px);
-  const Eigen::Array2d focal = freed.focal_length_px.array() / held.focal_length_px.array() - 1.0;
+  const Eigen::Array2d focal = idealFocalLength_px(freed).array() / idealFocalLength_px(held).array() - 1.0;
   const Eigen::Vector2d centre_px = freed.principal_point_px - held.principal_point_px;
   const double moved_px = std::max(projectionDifference(held, freed).rms_px, centre_px.norm());
   if (moved_px < options.wrong_lens_px) return;
@@ -122,6 +125,16 @@ void testLens(const std::string& camera, const CameraIntrinsics& held, const Ste
                   step.sigmas));
 }
 
+void testShutter(const CameraData& camera, const Step& step, const OptimisationOptions& options,
+                 std::string& doubts) {
+  const double readout_ms = 1e-3 * std::abs(step.change[0]) * camera.lens.seen_with->resolution_px.height_px;
+  if (step.sigmas < options.rolling_shutter_sigmas || readout_ms < options.rolling_shutter_ms) return;
+  add(doubts, fmt::format("{}: its shutter rolls: each row is exposed {:.2g} us {} the one above it ({:.0f} "
+                          "sigmas); set shutter: rolling for this camera",
+                          camera.name, std::abs(step.change[0]), step.change[0] > 0.0 ? "after" : "before",
+                          step.sigmas));
+}
+
 // Of the curvatures that are certain; which one is most is in the words.
 class BoardTest {
  public:
@@ -132,7 +145,7 @@ class BoardTest {
       if (&row.info == &info) row.value(bent_) = step.change[0];
     });
   }
-  std::string doubt(const CircleBoard& board, const OptimisationOptions& options) const {
+  std::string doubt(const Board& board, const OptimisationOptions& options) const {
     if (largestBow_mm(bent_, board) < options.bent_board_mm) return {};
     return fmt::format(
         "{} ({:.0f} sigmas): lay it on glass, or calibrate with optimisation.model.board_bow: true",
@@ -147,7 +160,7 @@ class BoardTest {
 }  // namespace
 
 OptimisationOptions freeToBeTested(OptimisationOptions options) {
-  options.gyroscope_rotation = options.board_bow = true;
+  options.gyroscope_rotation = options.board_bow = options.line_delay = true;
   options.camera_intrinsics = CameraIntrinsicsChoice::Free;
   return options;
 }
@@ -165,6 +178,8 @@ HeldDoubts testHeldValues(const CalibrationInput& input, const CalibrationState&
     const Quantity& quantity = information.quantities[i];
     if (quantity.info->owner == QuantityOwner::Board)
       board.add(*quantity.info, steps.of(i), options);
+    else if (quantity.info->release == QuantityRelease::LineDelay)
+      testShutter(input.cameras[quantity.sensor], steps.of(i), options, doubts.shutters);
     else if (quantity.info->owner == QuantityOwner::Camera)
       testLens(input.cameras[quantity.sensor].name, *state.cameras[quantity.sensor].lens.inUse(), steps.of(i),
                options, doubts.lenses);

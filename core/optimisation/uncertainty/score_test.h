@@ -23,6 +23,7 @@ struct HeldDoubts {
   std::string wandering_imus;  // that look so, but for errors that last and that no turn explains
   std::string lenses;          // that project elsewhere, for certain and by more than wrong_lens_px
   std::string board;           // that is bent, for certain and by more than bent_board_mm
+  std::string shutters;        // that are said to be global, and roll
 };
 HeldDoubts testHeldValues(const CalibrationInput& input, const CalibrationState& state,
                           const ProjectedInformation& information, const OptimisationOptions& options);

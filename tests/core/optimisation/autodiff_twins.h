@@ -3,6 +3,7 @@
 // matrix instead of its entries.
 #pragma once
 
+#include "core/geometry/camera_model.h"
 #include "core/optimisation/inertial_cost.h"
 #include "tests/core/optimisation/residual_states.h"
 
@@ -187,23 +188,44 @@ struct AccelerometerTwin {
   }
 };
 
-// Where a point at (x/z, y/z) falls on the sensor; OpenCV's equations. `numbers`: fx fy cx cy d0..d4.
+// OpenCV's equations; `d`: k1 k2 p1 p2 k3.
+template <class T>
+Eigen::Matrix<T, 2, 1> radtanPoint(const std::array<T, 5>& d, const T& x, const T& y) {
+  const T r2 = x * x + y * y;
+  const T radial = 1.0 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]));
+  return {x * radial + 2.0 * d[2] * x * y + d[3] * (r2 + 2.0 * x * x),
+          y * radial + d[2] * (r2 + 2.0 * y * y) + 2.0 * d[3] * x * y};
+}
+
+// How far from the middle a point at r = tan(theta) is seen, by angles: from the point xi behind the first sphere's centre at
+// tan(phi) = sin(theta) / (cos(theta) + xi), and from there, on a sphere of its own, sin(phi) / (alpha + (1 - alpha) cos(phi)).
+template <class T>
+T radiusOf(CameraModel model, const T* d, const T& r) {
+  const T theta = atan(r), theta2 = theta * theta;
+  if (model == CameraModel::PinholeEquidistant)
+    return theta * (1.0 + theta2 * (d[0] + theta2 * (d[1] + theta2 * (d[2] + theta2 * d[3]))));
+  if (model == CameraModel::OmniRadtan) return sin(theta) / (cos(theta) + d[0]);
+  if (model == CameraModel::DoubleSphere) {
+    const T phi = atan2(sin(theta), cos(theta) + d[0]);
+    return sin(phi) / (d[1] + (1.0 - d[1]) * cos(phi));
+  }
+  const T phi = atan(sqrt(d[1]) * r);  // EUCM: an ellipsoid for the sphere
+  return sin(phi) / sqrt(d[1]) / (d[0] + (1.0 - d[0]) * cos(phi));
+}
+
+// Where a point at (x/z, y/z) falls on the sensor. `numbers`: fx fy cx cy d0..d4.
 template <class T>
 Eigen::Matrix<T, 2, 1> pixelOf(CameraModel model, const T* numbers, const T& x, const T& y) {
   const T* d = numbers + 4;
-  const T r2 = x * x + y * y;
-  T xd, yd;
-  if (model == CameraModel::PinholeRadtan) {
-    const T radial = 1.0 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]));
-    xd = x * radial + 2.0 * d[2] * x * y + d[3] * (r2 + 2.0 * x * x);
-    yd = y * radial + d[2] * (r2 + 2.0 * y * y) + 2.0 * d[3] * x * y;
-  } else {
-    const T r = sqrt(r2), theta = atan(r), theta2 = theta * theta;
-    const T scale = theta * (1.0 + theta2 * (d[0] + theta2 * (d[1] + theta2 * (d[2] + theta2 * d[3])))) / r;
-    xd = x * scale;
-    yd = y * scale;
+  Eigen::Matrix<T, 2, 1> point(x, y);
+  if (model != CameraModel::PinholeRadtan) {
+    const T r = sqrt(x * x + y * y);
+    point *= radiusOf(model, d, r) / r;
   }
-  return {numbers[0] * xd + numbers[2], numbers[1] * yd + numbers[3]};
+  if (model == CameraModel::PinholeRadtan) point = radtanPoint<T>({d[0], d[1], d[2], d[3], d[4]}, x, y);
+  if (model == CameraModel::OmniRadtan)
+    point = radtanPoint<T>({d[1], d[2], d[3], d[4], T(0.0)}, T(point[0]), T(point[1]));
+  return {numbers[0] * point[0] + numbers[2], numbers[1] * point[1] + numbers[3]};
 }
 
 struct CircleTwin {
@@ -215,19 +237,19 @@ struct CircleTwin {
   // (x/z, y/z) of the centre of the ellipse: the last column of H C* H^T, C* = diag(r^2, r^2, -1).
   template <class T>
   Eigen::Matrix<T, 2, 1> normalisedCentre(T const* const* p, const CircleMeasurement& circle) const {
-    const T time_s = circle.time_s + p[10][0] + circle.by_drift_s * p[11][0];
+    const T time_s = circle.time_s + p[10][0] + circle.by_drift_s * p[11][0] + circle.by_line_s * p[12][0];
     const T rotation_place = (time_s - segment.rotation_start_s) / segment.rotation_spacing_s;
     const T position_place = (time_s - segment.position_start_s) / segment.position_spacing_s;
     const Matrix3<T> world_from_imu = rotationAt(base, p, rotation_place, segment.rotation_spacing_s).value;
     const Matrix3<T> imu_from_camera = matrixOf(turned(base[8], p[8]));
     const Matrix3<T> camera_from_world = (world_from_imu * imu_from_camera).transpose();
     const Vector3<T> camera_in_world = world_from_imu * vectorAt(p[9]) + positionAt(p + 4, position_place);
-    const Vector3<T> centre_in_world(p[14][0] * (1.0 + p[15][0] / 2.0) * circle.on_board_m.x(),
-                                     p[14][0] * (1.0 - p[15][0] / 2.0) * circle.on_board_m.y(),
-                                     (p[16][0] * circle.on_board_m.x() * circle.on_board_m.x() +
-                                      p[17][0] * circle.on_board_m.y() * circle.on_board_m.y()) /
+    const Vector3<T> centre_in_world(p[15][0] * (1.0 + p[16][0] / 2.0) * circle.on_board_m.x(),
+                                     p[15][0] * (1.0 - p[16][0] / 2.0) * circle.on_board_m.y(),
+                                     (p[17][0] * circle.on_board_m.x() * circle.on_board_m.x() +
+                                      p[18][0] * circle.on_board_m.y() * circle.on_board_m.y()) /
                                              2.0 +
-                                         p[18][0] * circle.on_board_m.x() * circle.on_board_m.y());
+                                         p[19][0] * circle.on_board_m.x() * circle.on_board_m.y());
     Matrix3<T> h = camera_from_world;
     h.col(2) = camera_from_world * (centre_in_world - camera_in_world);
     const T r2(model.radius_m * model.radius_m);
@@ -240,12 +262,12 @@ struct CircleTwin {
   Eigen::Matrix<T, 2, 1> idealPixelOf(T const* const* p, const CircleMeasurement& circle) const {
     const Eigen::Matrix<T, 2, 1> centre = normalisedCentre(p, circle);
     if (!model.free_intrinsics)
-      return centre.cwiseProduct(model.camera.focal_length_px.template cast<T>()) +
+      return centre.cwiseProduct(idealFocalLength_px(model.camera).template cast<T>()) +
              model.camera.principal_point_px.template cast<T>();
     const Eigen::Matrix2d ideal_from_sensor = idealPixelScale(model.camera, circle.centre_px);
     const Eigen::Vector2d seen = pixelFromIdeal(model.camera, circle.centre_px);
     const Eigen::Matrix<T, 2, 1> off =
-        pixelOf(model.camera.model, p[19], centre[0], centre[1]) - seen.template cast<T>();
+        pixelOf(model.camera.model, p[20], centre[0], centre[1]) - seen.template cast<T>();
     return circle.centre_px.template cast<T>() + ideal_from_sensor.template cast<T>() * off;
   }
 
@@ -253,8 +275,8 @@ struct CircleTwin {
   bool operator()(T const* const* p, T* residuals) const {
     for (std::size_t i = 0; i < circles.size(); ++i) {
       const CircleMeasurement& circle = circles[i];
-      const Eigen::Matrix<T, 2, 1> lead = p[12][0] * circle.lead.of_lead.template cast<T>() +
-                                          p[13][0] * circle.lead.of_slow.template cast<T>();
+      const Eigen::Matrix<T, 2, 1> lead = p[13][0] * circle.lead.of_lead.template cast<T>() +
+                                          p[14][0] * circle.lead.of_slow.template cast<T>();
       Eigen::Matrix<T, 2, 1> error = circle.whitening_px.template cast<T>() *
                                      (idealPixelOf(p, circle) + lead - circle.centre_px.template cast<T>());
       const T length = sqrt(error.squaredNorm());

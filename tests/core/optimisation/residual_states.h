@@ -72,6 +72,7 @@ inline Blocks circleBlocks(States& states, double step_rad) {
   blocks.push_back(States::numbers(states.vector(0.05)));
   blocks.push_back({states.uniform(0.004)});
   blocks.push_back({0.3});  // not drawn: the Huber kink must not lie within a step of any of these draws
+  blocks.push_back({30.0});
   blocks.push_back({states.uniform(0.3)});
   blocks.push_back({states.uniform(0.3)});
   for (const double of_board : {1.01, 0.02, 0.3, -0.2, 0.1})
@@ -86,6 +87,7 @@ inline std::vector<CircleMeasurement> circlesNear(const CircleModel& model, cons
   for (std::size_t i = 0; i < circles.size(); ++i) {
     circles[i].time_s = 1.004 + 0.005 * static_cast<double>(i);
     circles[i].by_drift_s = 0.002 * (static_cast<double>(i) - 1.0);
+    circles[i].by_line_s = 1e-4 * (static_cast<double>(i) - 0.7);
     circles[i].on_board_m = {0.1 * static_cast<double>(i), 0.05 * static_cast<double>(i)};
     circles[i].centre_px.setZero();
     circles[i].whitening_px.setIdentity();
@@ -106,8 +108,12 @@ inline std::vector<CircleMeasurement> circlesNear(const CircleModel& model, cons
 inline CircleModel freeModel(CameraModel lens) {
   CircleModel model = circleModel();
   model.camera.model = lens;
-  model.camera.distortion = lens == CameraModel::PinholeRadtan ? std::array{-0.31, 0.11, 2e-3, -1e-3, 0.02}
-                                                               : std::array{-0.04, 0.02, -0.01, 3e-3, 0.0};
+  constexpr std::array<std::array<double, 5>, 5> kByModel = {{{-0.31, 0.11, 2e-3, -1e-3, 0.02},
+                                                              {-0.04, 0.02, -0.01, 3e-3, 0.0},
+                                                              {-0.2, 0.6, 0.0, 0.0, 0.0},
+                                                              {0.6, 1.1, 0.0, 0.0, 0.0},
+                                                              {1.2, -0.2, 0.05, 1e-3, -2e-3}}};
+  model.camera.distortion = kByModel[static_cast<std::size_t>(lens)];
   model.free_intrinsics = true;
   return model;
 }
@@ -127,7 +133,8 @@ inline CameraIntrinsics otherLens(const CameraIntrinsics& camera, States& states
   CameraIntrinsics other = camera;
   other.focal_length_px += states.vector(2.0).head<2>();
   other.principal_point_px += states.vector(2.0).head<2>();
-  for (std::size_t k = 0; k < 4; ++k) other.distortion[k] += states.uniform(2e-3);
+  const std::size_t coefficients = coefficientCount(camera.model) == 2 ? 2 : 4;
+  for (std::size_t k = 0; k < coefficients; ++k) other.distortion[k] += states.uniform(2e-3);
   return other;
 }
 

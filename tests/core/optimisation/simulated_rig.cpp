@@ -85,11 +85,11 @@ class Random {
   std::normal_distribution<double> normal_;
 };
 
-TrueMotion makeMotion(Motion kind, const CircleBoard& board, const RigidTransform& camera_from_imu,
+TrueMotion makeMotion(Motion kind, const Board& board, const RigidTransform& camera_from_imu,
                       Random& random) {
   TrueMotion motion;
   motion.camera_from_imu = camera_from_imu;
-  const Eigen::Vector2d middle = 0.5 * (board.centre_m(0) + board.centre_m(board.rows - 1, board.cols - 1));
+  const Eigen::Vector2d middle = 0.5 * (board.point_m(0) + board.point_m(board.rows - 1, board.cols - 1));
   motion.world_from_camera_centre = {quaternionExp({0.05, -0.1, 0.1}), {middle.x(), middle.y(), -0.7}};
   for (int i = 0; i < 2; ++i) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -133,7 +133,7 @@ void fitTruth(const TrueMotion& motion, const RigOptions& options, CalibrationSt
   truth.imu_in_world_m = fitVectorSpline(times_s, positions, begin_s, end_s, options.knot_spacing_s);
 }
 
-CameraData observe(const TrueMotion& motion, const CameraState& camera, const CircleBoard& board,
+CameraData observe(const TrueMotion& motion, const CameraState& camera, const Board& board,
                    const BoardState& true_board, const RigOptions& options, Random& random) {
   CameraData data;
   data.name = "left";
@@ -144,21 +144,34 @@ CameraData observe(const TrueMotion& motion, const CameraState& camera, const Ci
         motion.worldFromImu(referenceTime_s(camera, camera_time_s)) * camera.reference_from_camera;
     const RigidTransform camera_from_world = inverse(world_from_camera);
     const auto projected =
-        projectCircle(*data.lens.seen_with, camera_from_world * true_board.place_m(board.centre_m(circle)),
+        projectCircle(*data.lens.seen_with, camera_from_world * true_board.place_m(board.point_m(circle)),
                       camera_from_world.rotation * Vector3d::UnitZ(), board.radius_m);
     return projected ? std::optional(projected->centre_px) : std::nullopt;
   };
-  std::vector<Eigen::Vector2d> noise(static_cast<std::size_t>(board.circleCount()), Eigen::Vector2d::Zero());
+  // Which row sees the point when it is that row's turn.
+  const auto rowBelowMiddle = [&](double frame_time_s, int point) {
+    constexpr double kMiddleRow = 129.5;
+    constexpr int kRounds = 5;
+    double row = 0.0;
+    for (int round = 0; round < kRounds; ++round)
+      if (const auto seen = centre(frame_time_s + 1e-6 * camera.line_delay_us * row, point))
+        row = seen->y() - kMiddleRow;
+    return row;
+  };
+  if (options.frames) data.observations.kind = CameraKind::Frames;
+  if (options.line_delay_us != 0.0) data.shutter = Shutter::Rolling;
+  std::vector<Eigen::Vector2d> noise(static_cast<std::size_t>(board.pointCount()), Eigen::Vector2d::Zero());
   const double keep =
       options.centre_correlation_s > 0.0 ? std::exp(-options.window_s / options.centre_correlation_s) : 0.0;
   for (double t = 0.0; t < options.duration_s; t += options.window_s) {
     BoardView view;
     view.time_s = t;
-    for (int i = 0; i < board.circleCount(); ++i) {
+    for (int i = 0; i < board.pointCount(); ++i) {
       CircleObservation circle;
       circle.circle = i;
-      circle.time_s = t + random.uniform(-5e-3, 5e-3);
-      const auto now = centre(circle.time_s, i);
+      circle.time_s = options.frames ? t : t + random.uniform(-5e-3, 5e-3);
+      if (options.frames) circle.rows_below_middle = rowBelowMiddle(t, i);
+      const auto now = centre(circle.time_s + 1e-6 * camera.line_delay_us * circle.rows_below_middle, i);
       const auto before = centre(circle.time_s - 1e-4, i), after = centre(circle.time_s + 1e-4, i);
       auto& n = noise[static_cast<std::size_t>(i)];
       n = keep * n + std::sqrt(1.0 - keep * keep) * Eigen::Vector2d(random.normal(), random.normal());
@@ -167,16 +180,18 @@ CameraData observe(const TrueMotion& motion, const CameraState& camera, const Ci
       circle.velocity_px_s = (*after - *before) / 2e-4;
       const double stated_px = options.centre_sigma_px > 0.0 ? options.centre_sigma_px : 0.05;
       circle.covariance_px2 = stated_px * stated_px * Eigen::Matrix2d::Identity();
-      circle.edge_lead_effect = circle.velocity_px_s.normalized();
-      circle.centre_px =
-          *now + camera.edge_lead_px * circle.velocity_px_s / std::hypot(circle.velocity_px_s.norm(), 5.0) +
-          options.centre_sigma_px * n;
+      circle.centre_px = *now + options.centre_sigma_px * n;
+      if (!options.frames) {
+        circle.edge_lead_effect = circle.velocity_px_s.normalized();
+        circle.centre_px +=
+            camera.edge_lead_px * circle.velocity_px_s / std::hypot(circle.velocity_px_s.norm(), 5.0);
+      }
       if (random.uniform(0.0, 1.0) < options.outlier_share)
         circle.centre_px += 10.0 * random.normal3().head<2>();
       view.circles.push_back(circle);
     }
     view.kind =
-        static_cast<int>(view.circles.size()) == board.circleCount() ? ViewKind::Complete : ViewKind::Partial;
+        static_cast<int>(view.circles.size()) == board.pointCount() ? ViewKind::Complete : ViewKind::Partial;
     if (view.circles.size() >= 4) data.observations.views.push_back(view);
   }
   return data;
@@ -247,6 +262,8 @@ SimulatedRig simulateRig(const RigOptions& options) {
   camera.time_offset_s = random.uniform(-0.01, 0.01);
   camera.edge_lead_px = random.uniform(-0.3, 0.3);
   camera.time_offset_drift_ppm = options.time_offset_drift_ppm;
+  camera.line_delay_us = options.line_delay_us;
+  if (options.frames) camera.edge_lead_px = 0.0;
   rig.truth.cameras = {camera};
   rig.truth.gravity_in_world_m_s2 =
       quaternionExp(random.uniform3(0.15)) * Vector3d(0.0, options.gravity_m_s2, 0.0);
@@ -304,7 +321,7 @@ CalibrationState disturbed(const CalibrationState& truth, unsigned seed, double 
     camera.time_offset_s += time_offset_error_s;
     camera.lens.solved.reset();
     camera.edge_lead_px = 0.0;
-    camera.time_offset_drift_ppm = 0.0;
+    camera.time_offset_drift_ppm = camera.line_delay_us = 0.0;
   }
   for (std::size_t i = 0; i < state.imus.size(); ++i) {
     ImuState& imu = state.imus[i];
@@ -347,6 +364,8 @@ Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const Calibrati
   for (std::size_t i = 0; i < truth.cameras.size(); ++i) {
     appendTransform(estimate.cameras[i].reference_from_camera, truth.cameras[i].reference_from_camera);
     appendClock(estimate.cameras[i], truth.cameras[i]);
+    if (truth.cameras[i].line_delay_us != 0.0)
+      errors.push_back(estimate.cameras[i].line_delay_us - truth.cameras[i].line_delay_us);
     errors.push_back(estimate.cameras[i].edge_lead_px - truth.cameras[i].edge_lead_px);
     errors.push_back(estimate.cameras[i].slow_edge_lead_px - truth.cameras[i].slow_edge_lead_px);
     if (!estimate.cameras[i].lens.solved) continue;

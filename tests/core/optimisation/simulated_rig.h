@@ -29,6 +29,8 @@ struct RigOptions {
   double time_offset_drift_ppm = 0.0;                     // of all clocks against the reference's
   double accelerometer_delay_s = 0.0;                     // of every accelerometer against its gyroscope
   BoardState board = {};                                  // against what the input says of it
+  bool frames = false;                                    // corners of frames in the place of moving circles
+  double line_delay_us = 0.0;                             // of their rolling shutter
   // Times the default priors: the board's size and stretch, and gravity's norm, drawn anew for each seed.
   double scale_spread = 0.0;
   unsigned seed = 1;

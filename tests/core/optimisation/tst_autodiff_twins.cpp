@@ -183,6 +183,7 @@ class TestAutodiffTwins : public QObject {
       // At the knots of the rotation's segment.
       blocks[10] = {0.0};
       blocks[11] = {0.0};
+      blocks[12] = {0.0};
       circles[0].time_s = 1.0;
       circles[1].time_s = 1.0 + kSpacing_s;
       compareCircles(model, blocks, circles);
@@ -205,6 +206,9 @@ class TestAutodiffTwins : public QObject {
     QTest::addColumn<int>("lens");
     QTest::newRow("radtan") << static_cast<int>(CameraModel::PinholeRadtan);
     QTest::newRow("equidistant") << static_cast<int>(CameraModel::PinholeEquidistant);
+    QTest::newRow("double sphere") << static_cast<int>(CameraModel::DoubleSphere);
+    QTest::newRow("eucm") << static_cast<int>(CameraModel::Eucm);
+    QTest::newRow("omni") << static_cast<int>(CameraModel::OmniRadtan);
   }
   void circlesOfFreeIntrinsics_areTheirTwins() {
     QFETCH(int, lens);

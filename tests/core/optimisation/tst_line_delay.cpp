@@ -1,0 +1,88 @@
+// Rows that are exposed one after the other.
+#include "core/optimisation/batch_optimiser.h"
+#include "core/optimisation/uncertainty/covariance.h"
+#include "tests/core/optimisation/simulated_rig.h"
+#include "tests/support/test_program.h"
+
+#include <cmath>
+
+namespace {
+
+using namespace evical;
+
+constexpr double kLineDelay_us = 30.0;
+
+test::SimulatedRig rigOf(unsigned seed, double line_delay_us) {
+  test::RigOptions options = test::shortRecording(seed);
+  options.duration_s = 6.0;
+  options.frames = true;
+  options.line_delay_us = line_delay_us;
+  return test::simulateRig(options);
+}
+
+OptimisationOptions heldLens() {
+  OptimisationOptions options;
+  options.camera_intrinsics = CameraIntrinsicsChoice::Fixed;
+  return options;
+}
+
+BatchSolution solve(const test::SimulatedRig& rig, unsigned seed) {
+  return optimiseBatch(rig.input, test::disturbed(rig.truth, seed), heldLens(), RunContext{});
+}
+
+QByteArray text(double number) {
+  return QByteArray::number(number);
+}
+
+}  // namespace
+
+class TestLineDelay : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void rollingShutter_isFound_withAnHonestSigma() {
+    constexpr unsigned kSeeds = 12;
+    double delay = 0.0, extrinsics = 0.0;
+    for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+      const test::SimulatedRig rig = rigOf(seed, kLineDelay_us);
+      const BatchSolution solution = solve(rig, seed);
+      const UncertaintyReport report =
+          estimateUncertainty(rig.input, solution, heldLens(), RunContext{}).report;
+      const double error_us = solution.state.cameras[0].line_delay_us - kLineDelay_us;
+      const double sigma_us = report.cameras[0].line_delay_std_us;
+      QVERIFY2(sigma_us > 0.01 && sigma_us < 0.3, text(sigma_us));
+      QVERIFY2(std::abs(error_us) < 4.0 * sigma_us, text(error_us));
+      delay += error_us * error_us / (sigma_us * sigma_us * kSeeds);
+      QCOMPARE(report.names[8], std::string("left.line_delay [us]"));
+      constexpr Eigen::Index kExtrinsics = 7;  // rotation, translation, time offset
+      const Eigen::VectorXd normalised = test::reportedErrors(solution.state, rig.truth, heldLens())
+                                             .head(kExtrinsics)
+                                             .cwiseQuotient(report.standard_deviations.head(kExtrinsics));
+      extrinsics += normalised.squaredNorm() / (kExtrinsics * kSeeds);
+    }
+    QVERIFY2(std::sqrt(delay) > 0.6 && std::sqrt(delay) < 1.5, text(std::sqrt(delay)));
+    QVERIFY2(std::sqrt(extrinsics) > 0.7 && std::sqrt(extrinsics) < 1.4, text(std::sqrt(extrinsics)));
+  }
+
+  void shutterCalledGlobal_isToldOfWhereItRolls() {
+    test::SimulatedRig rig = rigOf(1, kLineDelay_us);
+    rig.input.cameras[0].shutter = Shutter::Global;
+    const UncertaintyEstimate estimate =
+        estimateUncertainty(rig.input, solve(rig, 1), heldLens(), RunContext{});
+    QVERIFY2(estimate.rolling_shutters.find("its shutter rolls") != std::string::npos,
+             estimate.rolling_shutters.c_str());
+    QCOMPARE(estimate.report.cameras[0].line_delay_std_us, 0.0);
+  }
+
+  void globalShutter_isNot() {
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      const test::SimulatedRig rig = rigOf(seed, 0.0);
+      const UncertaintyEstimate estimate =
+          estimateUncertainty(rig.input, solve(rig, seed), heldLens(), RunContext{});
+      QVERIFY2(estimate.rolling_shutters.empty(), estimate.rolling_shutters.c_str());
+    }
+  }
+};
+
+EVICAL_TEST(TestLineDelay)
+#include "tst_line_delay.moc"
