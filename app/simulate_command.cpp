@@ -39,8 +39,8 @@ void addSimulateCommand(CLI::App& app, int& exit_code) {
     const SimulationSummary made =
         simulate(scenario, arguments->folder, {console, stopOnSignals()}, arguments->format);
     console.stageStarted("done");
-    print("{} events, {} IMU samples\n{}\n{}\n{}\n", made.events, made.imu_samples, made.recording.string(),
-          made.session.string(), made.truth.string());
+    print("{} events, {} frames, {} IMU samples\n{}\n{}\n{}\n", made.events, made.frames, made.imu_samples,
+          made.recording.string(), made.session.string(), made.truth.string());
     exit_code = kDone;
   });
 }

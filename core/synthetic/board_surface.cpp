@@ -6,7 +6,7 @@
 namespace evical {
 namespace {
 
-double curvatureOf(double BoardState::*of, double height_m, const CircleBoard& board) {
+double curvatureOf(double BoardState::*of, double height_m, const Board& board) {
   return height_m / bowHeight_m2(quantityInfo(kBoardQuantities, of), board);
 }
 

@@ -40,7 +40,7 @@ Eigen::Matrix3d idealFromSheet(const RigidTransform& world_from_camera, const Sh
   h << r.col(0) + sheet.slope.x() * r.col(2), r.col(1) + sheet.slope.y() * r.col(2),
       camera_from_world.translation_m + sheet.height_m * r.col(2);
   Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
-  k.diagonal().head<2>() = intrinsics.focal_length_px;
+  k.diagonal().head<2>() = idealFocalLength_px(intrinsics);
   k.topRightCorner<2, 1>() = intrinsics.principal_point_px;
   return k * h;
 }
@@ -85,7 +85,7 @@ std::vector<TrueCircle> trueBoardView(const SinusoidMotion& motion, const Scenar
   const BoardSurface surface(scenario);
   const std::optional<Figure> hand = handAt(scenario, time_s);
   std::vector<TrueCircle> circles;
-  for (int i = 0; i < scenario.board.circleCount(); ++i) {
+  for (int i = 0; i < scenario.board.pointCount(); ++i) {
     const Eigen::Vector2d on_board_m = trueCentre_m(scenario, i);
     const Sheet sheet = touching(surface, on_board_m);
     const auto imageIn = [&](const RigidTransform& world_from_camera) {
@@ -112,7 +112,7 @@ int circlesInView(const SinusoidMotion& motion, const Scenario& scenario, std::s
 }
 
 bool boardInView(const SinusoidMotion& motion, const Scenario& scenario, std::size_t camera, double stamp_s) {
-  const int least = std::max(4, static_cast<int>(std::ceil(0.4 * scenario.board.circleCount())));
+  const int least = std::max(4, static_cast<int>(std::ceil(0.4 * scenario.board.pointCount())));
   return circlesInView(motion, scenario, camera, stamp_s) >= least;
 }
 
@@ -145,8 +145,8 @@ BoardObservations simulateObservations(const Scenario& scenario, std::size_t cam
     report.time_s = time_s;
     report.half_width_s = 0.5 * period_s;
     report.circles = count;
-    const bool partial = count >= std::max(4, static_cast<int>(0.4 * scenario.board.circleCount()));
-    view.kind = count == scenario.board.circleCount() ? ViewKind::Complete : ViewKind::Partial;
+    const bool partial = count >= std::max(4, static_cast<int>(0.4 * scenario.board.pointCount()));
+    view.kind = count == scenario.board.pointCount() ? ViewKind::Complete : ViewKind::Partial;
     report.outcome = !partial                          ? WindowOutcome::TooFewInGrid
                      : view.kind == ViewKind::Complete ? WindowOutcome::Complete
                                                        : WindowOutcome::Partial;

@@ -3,14 +3,15 @@
 #pragma once
 
 #include "core/data/calibration_state.h"
+#include "core/geometry/board.h"
 #include "core/geometry/camera_intrinsics.h"
-#include "core/geometry/circle_board.h"
 #include "core/geometry/rigid_transform.h"
 
 #include <Eigen/Core>
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,17 @@ struct EventPixelModel {
   }
 };
 
+// What a frame camera takes of the same scene.
+struct FrameModel {
+  double rate_hz = 20.0;
+  double exposure_s = 4e-3;
+  double line_delay_us = 0.0;  // of a rolling shutter, from row to row
+  double noise = 1.5;          // sigma, of 255
+  double blur_px = 0.6;        // sigma of the optics' point spread; the pixel's area comes on top
+
+  bool operator==(const FrameModel&) const = default;
+};
+
 struct SimulatedCamera {
   std::string name = "camera";
   std::string stream = "/camera/events";
@@ -55,6 +67,10 @@ struct SimulatedCamera {
   RigidTransform imu_from_camera;
   double time_offset_s = 0.0;  // imu_time = camera_time + offset, of the clocks alone
   EventPixelModel pixel;
+  std::optional<FrameModel> frames = {};  // in the place of events
+
+  // By how much a stamp is late.
+  double delay_s() const { return frames ? 0.0 : pixel.delay_s(); }
 };
 
 // What else is wrong with an IMU, its clock and its messages; all off by default.
@@ -182,7 +198,7 @@ struct Scenario {
   std::uint64_t seed = 1;
   double duration_s = 30.0;
   std::int64_t start_ns = 1'700'000'000'000'000'000;
-  CircleBoard board;
+  Board board;
   double board_stretch = 0.0;  // of the real one: 0.01 makes its columns 1 % longer than `board` says
   SimulatedBow board_bow = {};
   SceneModel scene;

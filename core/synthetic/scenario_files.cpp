@@ -36,13 +36,17 @@ std::string driftTruth(const Scenario& scenario, const SimulatedCamera& camera) 
                      0.5 * scenario.duration_s - camera.time_offset_s);
 }
 
+std::string lineTruth(const SimulatedCamera& camera) {
+  if (!camera.frames || camera.frames->line_delay_us == 0.0) return {};
+  return fmt::format("    line_delay_us: {}\n", camera.frames->line_delay_us);
+}
+
 std::string cameraTruth(const Scenario& scenario, const SimulatedCamera& camera) {
   return fmt::format("  {}:\n{}", yamlText(camera.name),
                      transformText("reference_from_camera", camera.imu_from_camera)) +
          fmt::format("    time_offset_s: {}\n    clock_offset_s: {}\n    photoreceptor_delay_s: {}\n",
-                     camera.time_offset_s - camera.pixel.delay_s(), camera.time_offset_s,
-                     camera.pixel.delay_s()) +
-         driftTruth(scenario, camera) + "    intrinsics:\n" +
+                     camera.time_offset_s - camera.delay_s(), camera.time_offset_s, camera.delay_s()) +
+         lineTruth(camera) + driftTruth(scenario, camera) + "    intrinsics:\n" +
          intrinsicsYaml(camera.intrinsics, kSensorIndent);
 }
 
@@ -64,7 +68,8 @@ std::string boardTruth(const Scenario& scenario) {
 SimulatedCamera relativeTo(const SimulatedCamera& reference, SimulatedCamera camera) {
   camera.imu_from_camera = inverse(reference.imu_from_camera) * camera.imu_from_camera;
   camera.time_offset_s -= reference.time_offset_s;
-  camera.pixel.latency_s -= reference.pixel.delay_s();
+  camera.pixel.latency_s -= reference.delay_s();
+  if (camera.frames) camera.time_offset_s += reference.delay_s();  // they have no delay to take it from
   return camera;
 }
 
@@ -82,11 +87,14 @@ std::string imuTruth(const Scenario& scenario, std::size_t index) {
   return fmt::format("  {}:\n{}", yamlText(imu.name), sections.text(4));
 }
 
-std::string boardSession(const CircleBoard& board) {
-  return fmt::format(
-      "board:\n  type: {}\n  rows: {}\n  cols: {}\n  spacing_m: {}\n  radius_m: {}\n  circles: {}\n",
-      board.type == BoardType::AsymmetricCircles ? "asymmetric_circles" : "symmetric_circles", board.rows,
-      board.cols, board.spacing_m, board.radius_m, board.circles == CircleShade::Dark ? "dark" : "bright");
+std::string boardSession(const Board& board) {
+  std::string text = fmt::format("board:\n  type: {}\n  rows: {}\n  cols: {}\n  spacing_m: {}\n",
+                                 boardTypeName(board.type), board.rows, board.cols, board.spacing_m);
+  if (board.hasCircles())
+    text += fmt::format("  radius_m: {}\n  circles: {}\n", board.radius_m,
+                        board.circles == CircleShade::Dark ? "dark" : "bright");
+  if (board.tag_size_m > 0.0) text += fmt::format("  tag_size_m: {}\n", board.tag_size_m);
+  return text;
 }
 
 }  // namespace
@@ -112,8 +120,11 @@ std::string sessionYaml(const Scenario& truth, const std::string& recording_file
                                  boardSession(scenario.board));
   for (const SimulatedCamera& camera : scenario.cameras) {
     const Resolution& size = camera.intrinsics.resolution_px;
-    text += fmt::format("  {}:\n    stream: {}\n    resolution_px: [{}, {}]\n", yamlText(camera.name),
-                        yamlText(camera.stream), size.width_px, size.height_px);
+    text += fmt::format("  {}:\n", yamlText(camera.name));
+    if (camera.frames) text += fmt::format("    recording: {}\n", kFramesFolder);
+    text += fmt::format("    stream: {}\n    resolution_px: [{}, {}]\n", yamlText(camera.stream),
+                        size.width_px, size.height_px);
+    if (camera.frames && camera.frames->line_delay_us != 0.0) text += "    shutter: rolling\n";
     if (scenario.intrinsics_in_session)
       text += "    intrinsics:\n" + intrinsicsYaml(camera.intrinsics, kSensorIndent);
   }

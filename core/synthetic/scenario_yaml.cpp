@@ -2,6 +2,7 @@
 
 #include "core/base/yaml_node.h"
 #include "core/geometry/camera_model.h"
+#include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
 #include "core/synthetic/visitors.h"
@@ -69,15 +70,17 @@ void getMapping(const YamlNode& map, const char* key, Eigen::Matrix3d& value) {
 }
 
 void readBoard(const YamlNode& map, Scenario& scenario) {
-  CircleBoard& board = scenario.board;
+  Board& board = scenario.board;
   map.allowOnly({"type", "circles", "rows", "cols", "spacing_m", "radius_m", "stretch", "row_bow_m",
-                 "column_bow_m", "twist_m"});
-  get(map, "type", board.type, {"asymmetric_circles", "symmetric_circles"});
+                 "column_bow_m", "twist_m", "tag_size_m"});
+  get(map, "type", board.type, {"asymmetric_circles", "symmetric_circles", "checkerboard", "aprilgrid"});
   get(map, "circles", board.circles, {"dark", "bright"});
-  get(map, "rows", board.rows, 2, 100);
-  get(map, "cols", board.cols, 2, 100);
+  get(map, "rows", board.rows, 1, 100);
+  get(map, "cols", board.cols, 1, 100);
   get(map, "spacing_m", board.spacing_m, 1e-4, 10.0, "m");
   get(map, "radius_m", board.radius_m, 1e-5, 10.0, "m");
+  get(map, "tag_size_m", board.tag_size_m, 1e-4, 10.0, "m");
+  if (!board.hasCircles()) board.radius_m = 0.0;
   get(map, "stretch", scenario.board_stretch, -0.1, 0.1, "");
   get(map, "row_bow_m", scenario.board_bow.rows_m, -kLargestBow_m, kLargestBow_m, "m");
   get(map, "column_bow_m", scenario.board_bow.columns_m, -kLargestBow_m, kLargestBow_m, "m");
@@ -200,7 +203,7 @@ void readTransform(const YamlNode& map, RigidTransform& transform) {
 
 void readIntrinsicsOf(const YamlNode& map, CameraIntrinsics& camera) {
   map.allowOnly({"model", "resolution_px", "focal_length_px", "principal_point_px", "distortion"});
-  get(map, "model", camera.model, {"pinhole_radtan", "pinhole_equidistant"});
+  get(map, "model", camera.model, kCameraModelNames);
   if (const auto node = map.find("resolution_px")) {
     const std::vector<YamlNode> sides = node->items();
     if (sides.size() != 2) throw node->error("must be [width, height]");
@@ -210,7 +213,7 @@ void readIntrinsicsOf(const YamlNode& map, CameraIntrinsics& camera) {
   get(map, "principal_point_px", camera.principal_point_px);
   if (const auto node = map.find("distortion")) {
     const std::vector<double> numbers = node->reals();
-    const std::size_t most = camera.model == CameraModel::PinholeRadtan ? 5 : 4;
+    const auto most = static_cast<std::size_t>(coefficientCount(camera.model));
     if (numbers.size() > most) throw node->error(fmt::format("has more than {} numbers", most));
     camera.distortion.fill(0.0);
     std::copy(numbers.begin(), numbers.end(), camera.distortion.begin());
@@ -242,14 +245,27 @@ void readPixel(const YamlNode& map, EventPixelModel& pixel) {
   get(map, "longest_wait_s", pixel.longest_wait_s, 0.0, 10.0, "s");
 }
 
+void readFrames(const YamlNode& map, FrameModel& frames) {
+  map.allowOnly({"rate_hz", "exposure_s", "line_delay_us", "noise", "blur_px"});
+  get(map, "rate_hz", frames.rate_hz, 0.1, 1000.0, "Hz");
+  get(map, "exposure_s", frames.exposure_s, 0.0, 1.0, "s");
+  get(map, "line_delay_us", frames.line_delay_us, -1000.0, 1000.0, "us");
+  get(map, "noise", frames.noise, 0.0, 255.0, "");
+  get(map, "blur_px", frames.blur_px, 0.05, 20.0, "px");
+}
+
 void readCamera(const YamlNode& map, SimulatedCamera& camera) {
-  map.allowOnly({"name", "stream", "time_offset_s", "imu_from_camera", "intrinsics", "pixel"});
+  map.allowOnly({"name", "stream", "time_offset_s", "imu_from_camera", "intrinsics", "pixel", "frames"});
   get(map, "name", camera.name);
   get(map, "stream", camera.stream);
   get(map, "time_offset_s", camera.time_offset_s, -60.0, 60.0, "s");
   if (const auto node = map.find("imu_from_camera")) readTransform(*node, camera.imu_from_camera);
   if (const auto node = map.find("intrinsics")) readIntrinsicsOf(*node, camera.intrinsics);
   if (const auto node = map.find("pixel")) readPixel(*node, camera.pixel);
+  if (const auto node = map.find("frames")) {
+    if (!camera.frames) camera.frames.emplace();
+    readFrames(*node, *camera.frames);
+  }
 }
 
 void readImuFaults(const YamlNode& map, ImuFaults& faults) {
@@ -355,8 +371,17 @@ void validateWhole(const Scenario& scenario, const std::string& file) {
   } catch (const CalibrationError& error) {
     throw badInput(file + ": " + error.place(), error.problem(), error.advice());
   }
-  for (const SimulatedCamera& camera : scenario.cameras)
+  for (const SimulatedCamera& camera : scenario.cameras) {
     validate(camera.intrinsics, fmt::format("{}: intrinsics of {}", file, camera.name));
+    if (camera.frames && camera.stream.find('/') != std::string::npos)
+      throw badInput(fmt::format("{}: stream of {}", file, camera.name),
+                     fmt::format("'{}' is no name for a folder of frames", camera.stream),
+                     "Give it one without slashes");
+    if (!camera.frames && !scenario.board.hasCircles())
+      throw badInput(fmt::format("{}: board.type", file),
+                     fmt::format("{} is an event camera, and the board has no circles", camera.name),
+                     "Give the camera frames, or the board circles");
+  }
 }
 
 Scenario readFrom(const std::filesystem::path& path, int depth) {

@@ -17,6 +17,9 @@ Scenario readScenario(const std::filesystem::path& path);
 // clocks' offset less the pixels' delay; both stand beside it.
 std::string truthYaml(const Scenario& scenario);
 
+// Where frame cameras' pictures are, beside the recording: a folder for each, named by its stream.
+inline constexpr const char* kFramesFolder = "frames";
+
 // A session for the recording `recording_file` in the same folder.
 std::string sessionYaml(const Scenario& scenario, const std::string& recording_file);
 

@@ -68,7 +68,7 @@ SceneRenderer::SceneRenderer(const Scenario& scenario, std::size_t index)
   board_low_m_ = Eigen::Vector2d::Constant(-scene_.margin_m).cast<float>();
   board_high_m_ = (last.array() + scene_.margin_m).matrix().cast<float>();
   const UndistortionTable ideal(camera);
-  const Eigen::Vector2d& f = camera.focal_length_px;
+  const Eigen::Vector2d f = idealFocalLength_px(camera);
   for (int y = 0; y < height_px_; ++y) {
     for (int x = 0; x < width_px_; ++x) {
       const Eigen::Vector2d pixel = ideal(x, y).cast<double>();
@@ -140,7 +140,7 @@ void SceneRenderer::findCircles(const Eigen::Vector2f& low_m, const Eigen::Vecto
   const int last = std::min(board_.rows - 1, static_cast<int>(std::floor((high_m.y() + radius) / spacing)));
   for (int row = first; row <= last; ++row) {
     for (int col = 0; col < board_.cols; ++col) {
-      const Eigen::Vector2f centre(static_cast<float>(board_.centre_m(row, col).x()),
+      const Eigen::Vector2f centre(static_cast<float>(board_.point_m(row, col).x()),
                                    static_cast<float>(row_spacing_m_ * row));
       const Eigen::Vector2f nearest = centre.cwiseMax(low_m).cwiseMin(high_m);
       if ((nearest - centre).norm() < radius) view.circles_m.push_back(centre);

@@ -110,7 +110,7 @@ class SceneRenderer {
                      float* log_intensity) const;
 
   Scenario scenario_;
-  CircleBoard board_;
+  Board board_;
   BoardSurface surface_;
   double row_spacing_m_;  // of the real board
   SceneModel scene_;

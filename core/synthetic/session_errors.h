@@ -9,7 +9,7 @@ Scenario asSessionSays(Scenario scenario);
 
 // Where a circle's centre really is on the board.
 inline Eigen::Vector2d trueCentre_m(const Scenario& scenario, int circle) {
-  const Eigen::Vector2d centre_m = scenario.board.centre_m(circle);
+  const Eigen::Vector2d centre_m = scenario.board.point_m(circle);
   return {centre_m.x(), (1.0 + scenario.board_stretch) * centre_m.y()};
 }
 

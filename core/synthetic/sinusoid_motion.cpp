@@ -18,9 +18,9 @@ double uniform(std::mt19937_64& generator) {
   return static_cast<double>(generator() >> 11) * 0x1.0p-53;
 }
 
-Eigen::Vector3d middleOf(const CircleBoard& board) {
-  Eigen::Vector2d low = board.centre_m(0), high = low;
-  for (const Eigen::Vector2d& centre : circleCentres_m(board)) {
+Eigen::Vector3d middleOf(const Board& board) {
+  Eigen::Vector2d low = board.point_m(0), high = low;
+  for (const Eigen::Vector2d& centre : boardPoints_m(board)) {
     low = low.cwiseMin(centre);
     high = high.cwiseMax(centre);
   }
@@ -176,7 +176,7 @@ double SinusoidMotion::imageSpeedRms_px_s() const {
     const MotionState state = firstCameraAt(scenario_.duration_s * k / kInstants);
     const RigidTransform camera_from_world = inverse(state.world_from_body);
     const Eigen::Vector3d velocity = camera_from_world.rotation * state.velocity_in_world_m_s;
-    for (const Eigen::Vector2d& centre : circleCentres_m(scenario_.board)) {
+    for (const Eigen::Vector2d& centre : boardPoints_m(scenario_.board)) {
       const Eigen::Vector3d point = camera_from_world * Eigen::Vector3d(centre.x(), centre.y(), 0.0);
       Eigen::Matrix<double, 2, 3> jacobian;
       const std::optional<Eigen::Vector2d> pixel = project(camera.intrinsics, point, &jacobian);

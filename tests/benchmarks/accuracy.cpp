@@ -7,10 +7,12 @@
 #include "core/frontend/board_tracker.h"
 #include "core/numerics/angles.h"
 #include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/camera_views.h"
 #include "core/pipeline/result_files.h"
 #include "core/report/truth_comparison.h"
 #include "core/synthetic/board_truth.h"
 #include "core/synthetic/event_simulator.h"
+#include "core/synthetic/frame_simulator.h"
 #include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/session_errors.h"
 #include "tests/benchmarks/benchmark_program.h"
@@ -24,6 +26,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,7 +53,46 @@ struct Outcome {
   std::optional<CameraUncertainty> uncertainty;
 };
 
-// Front end over the events as they are simulated; its own time is measured apart.
+// The front end over the events as they are simulated; its own time is measured apart.
+BoardObservations fromEvents(const Scenario& scenario, const Session& session, std::size_t k,
+                             const CameraIntrinsics& camera, double& busy_s) {
+  BoardTracker tracker(session.board, camera.resolution_px, camera, session.options.front_end,
+                       scenario.start_ns);
+  simulateEvents(scenario, k, [&](EventSpan events) {
+    const Stopwatch stopwatch;
+    tracker.add(events);
+    busy_s += stopwatch.elapsed_s();
+  });
+  const Stopwatch stopwatch;
+  BoardObservations found = tracker.finish();
+  busy_s += stopwatch.elapsed_s();
+  return found;
+}
+
+// The same of frames.
+BoardObservations fromFrames(const Scenario& scenario, const Session& session, std::size_t k,
+                             const CameraIntrinsics& camera, double& busy_s) {
+  const RunContext context;
+  const CameraLens lens = givenLens(camera);
+  CameraBatch batch;
+  batch.camera = k;
+  batch.kind = CameraKind::Frames;
+  batch.opened_px = camera.resolution_px;
+  batch.start_ns = scenario.start_ns;
+  const std::unique_ptr<CameraViews> views = cameraViews(batch, {session, lens, context});
+  simulateFrames(scenario, k, [&](const Frame& frame) {
+    const Stopwatch stopwatch;
+    batch.frames = {frame};
+    views->take(batch);
+    busy_s += stopwatch.elapsed_s();
+  });
+  const Stopwatch stopwatch;
+  std::vector<RecordingFault> faults;
+  BoardObservations found = views->finish(faults);
+  busy_s += stopwatch.elapsed_s();
+  return found;
+}
+
 RecordingPass detect(const Scenario& scenario, const Session& session, Outcome& outcome) {
   RecordingPass pass;
   pass.start_ns = scenario.start_ns;
@@ -59,16 +101,8 @@ RecordingPass detect(const Scenario& scenario, const Session& session, Outcome& 
   const Scenario said = asSessionSays(scenario);
   for (std::size_t k = 0; k < scenario.cameras.size(); ++k) {
     const CameraIntrinsics& camera = said.cameras[k].intrinsics;
-    BoardTracker tracker(session.board, camera.resolution_px, camera, session.options.front_end,
-                         scenario.start_ns);
-    simulateEvents(scenario, k, [&](EventSpan events) {
-      const Stopwatch stopwatch;
-      tracker.add(events);
-      busy_s += stopwatch.elapsed_s();
-    });
-    const Stopwatch stopwatch;
-    pass.cameras.push_back(tracker.finish());
-    busy_s += stopwatch.elapsed_s();
+    const auto find = scenario.cameras[k].frames ? fromFrames : fromEvents;
+    pass.cameras.push_back(find(scenario, session, k, camera, busy_s));
     pass.lenses.push_back(givenLens(camera));
     pass.cameras.back().camera = scenario.cameras[k].name;
     events_read += pass.cameras.back().events;

@@ -58,9 +58,9 @@ class Cover {
  public:
   Cover(const Scenario& scenario, const SinusoidMotion& motion, Hidden hidden)
       : scenario_(scenario), motion_(motion), hidden_(hidden) {
-    const CircleBoard& board = scenario.board;
+    const Board& board = scenario.board;
     double last_m = 0.0;
-    for (const Eigen::Vector2d& centre : circleCentres_m(board))
+    for (const Eigen::Vector2d& centre : boardPoints_m(board))
       last_m = std::max(last_m, hidden == Hidden::AlongColumns ? centre.y() : centre.x());
     from_m_ = 2.0 / 3.0 * last_m;
     const CameraIntrinsics& camera = scenario.cameras.front().intrinsics;

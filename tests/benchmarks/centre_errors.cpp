@@ -69,7 +69,7 @@ std::vector<CentreError> errorsOf(const Scenario& scenario, const BoardObservati
       truths.push_back(truth->centre_px);
     }
   }
-  std::vector<Eigen::Vector2d> means(static_cast<std::size_t>(scenario.board.circleCount()),
+  std::vector<Eigen::Vector2d> means(static_cast<std::size_t>(scenario.board.pointCount()),
                                      Eigen::Vector2d::Zero());
   std::vector<double> counts(means.size(), 0.0);
   for (std::size_t k = 0; k < truths.size(); ++k) {

@@ -16,9 +16,9 @@ namespace {
 
 // Centre of the conic through the projections of many points of a circle.
 Eigen::Vector2d centreByPoints(const RigidTransform& world_from_camera, const CameraIntrinsics& camera,
-                               const CircleBoard& board, int circle) {
+                               const Board& board, int circle) {
   constexpr int kPoints = 60;
-  const Eigen::Vector2d middle = board.centre_m(circle);
+  const Eigen::Vector2d middle = board.point_m(circle);
   Eigen::Matrix<double, kPoints, 6> rows;
   for (int k = 0; k < kPoints; ++k) {
     const double angle = 2.0 * std::numbers::pi * k / kPoints;
@@ -120,7 +120,7 @@ class TestBoardTruth : public QObject {
                  twist = 4.0 * 0.0015 / (extent.x() * extent.y());
     const double stamp_s = 0.7, world_s = stamp_s - scenario.cameras[0].pixel.delay_s();
     for (const TrueCircle& circle : trueBoardView(motion, scenario, 0, stamp_s)) {
-      const Eigen::Vector2d middle = scenario.board.centre_m(circle.circle);
+      const Eigen::Vector2d middle = scenario.board.point_m(circle.circle);
       Eigen::Vector2d mean = Eigen::Vector2d::Zero();
       constexpr int kPoints = 40;
       for (int k = 0; k < kPoints; ++k) {

@@ -1,0 +1,38 @@
+// Where a board is printed and where it is paper: circles, squares, or tags as Kalibr's AprilGrid has them, with a
+// border of two modules and a small black square at every corner between tags.
+#pragma once
+
+#include "core/geometry/board.h"
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <vector>
+
+namespace evical {
+
+class BoardPattern {
+ public:
+  // Of all types but ChArUco, which none of the simulator's scenarios has.
+  explicit BoardPattern(const Board& board);
+
+  // Whether there is ink, at metres on the board; paper beyond its edge.
+  bool isInk(const Eigen::Vector2f& p) const;
+
+  // The printed part's corners.
+  const Eigen::Vector2f& low_m() const { return low_m_; }
+  const Eigen::Vector2f& high_m() const { return high_m_; }
+
+ private:
+  bool inCircle(const Eigen::Vector2f& p) const;
+  bool inDarkSquare(const Eigen::Vector2f& p) const;
+  bool inTag(const Eigen::Vector2f& p) const;
+
+  Board board_;
+  float spacing_m_, radius_m_, tag_m_;
+  Eigen::Vector2f low_m_, high_m_;
+  std::vector<std::uint64_t>
+      tags_;  // a bit for each module of the inner square, row by row from its top left
+};
+
+}  // namespace evical

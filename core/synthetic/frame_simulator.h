@@ -1,0 +1,19 @@
+// Frames of a simulated camera: the board and what lies behind it, as its lens blurs them while rows are exposed.
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/data/frame.h"
+#include "core/synthetic/scenario.h"
+
+#include <cstddef>
+#include <functional>
+
+namespace evical {
+
+// Calls `sink` with frames in order of time, 8 bit, stamped with the middle of the exposure of the middle row on the
+// camera's own clock. Deterministic from the seed, whatever the number of threads. The camera is one with `frames`.
+void simulateFrames(const Scenario& scenario, std::size_t camera,
+                    const std::function<void(const Frame&)>& sink, const RunContext& context = {},
+                    int threads = 2);
+
+}  // namespace evical
