@@ -18,8 +18,8 @@ struct AxisCheck {
   std::vector<bool> seen;  // by line, in any view
 };
 
-std::vector<bool> circlesSeen(const BoardObservations& observations, const CircleBoard& board) {
-  std::vector<bool> seen(static_cast<std::size_t>(board.circleCount()), false);
+std::vector<bool> circlesSeen(const BoardObservations& observations, const Board& board) {
+  std::vector<bool> seen(static_cast<std::size_t>(board.pointCount()), false);
   for (const BoardView& view : observations.views)
     for (const CircleObservation& circle : view.circles) seen[static_cast<std::size_t>(circle.circle)] = true;
   return seen;
@@ -63,7 +63,7 @@ std::string outcomes(const BoardObservations& observations) {
   return text.empty() ? "no windows" : text;
 }
 
-void checkBoardSeen(const BoardObservations& observations, const CircleBoard& board) {
+void checkBoardSeen(const BoardObservations& observations, const Board& board) {
   if (!observations.views.empty()) return;
   int lattices = 0;
   for (const WindowReport& window : observations.windows) {
@@ -85,8 +85,8 @@ void checkBoardSeen(const BoardObservations& observations, const CircleBoard& bo
             "session; 'evical detect --images' draws what is seen");
 }
 
-void checkBoardSize(const BoardObservations& observations, const CircleBoard& board,
-                    const ExtentOptions& options) {
+void checkBoardSize(const BoardObservations& observations, const Board& board, const ExtentOptions& options) {
+  if (observations.kind != CameraKind::Events) return;  // whose lattice alone may be laid wrongly
   const std::vector<bool> seen = circlesSeen(observations, board);
   AxisCheck rows{"row", observations.extent.rows, std::vector<bool>(static_cast<std::size_t>(board.rows))};
   AxisCheck cols{"column", observations.extent.cols, std::vector<bool>(static_cast<std::size_t>(board.cols))};
@@ -117,7 +117,7 @@ void checkBoardSize(const BoardObservations& observations, const CircleBoard& bo
                           "Check rows and cols in the session");
 }
 
-std::optional<RecordingFault> unseenCircles(const BoardObservations& observations, const CircleBoard& board) {
+std::optional<RecordingFault> unseenCircles(const BoardObservations& observations, const Board& board) {
   constexpr std::size_t kEnoughViews = 30;
   if (observations.views.size() < kEnoughViews) return std::nullopt;
   const std::vector<bool> seen = circlesSeen(observations, board);
@@ -127,7 +127,11 @@ std::optional<RecordingFault> unseenCircles(const BoardObservations& observation
       observations.camera, FaultKind::BoardSize, 0.0,
       fmt::format("{}: {} of the board's {} circles were seen in none of {} views: check "
                   "rows and cols in the session",
-                  observations.camera, never, board.circleCount(), observations.views.size())};
+                  observations.camera, never, board.pointCount(), observations.views.size())};
+}
+
+const char* measurementsOf(CameraKind kind) {
+  return kind == CameraKind::Events ? "events" : kind == CameraKind::Frames ? "frames" : "points";
 }
 
 }  // namespace evical

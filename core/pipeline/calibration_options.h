@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/option_row.h"
+#include "core/frames/frame_options.h"
 #include "core/frontend/front_end_options.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/intrinsics/intrinsics_options.h"
@@ -16,6 +17,7 @@ namespace evical {
 
 struct CalibrationOptions {
   FrontEndOptions front_end;
+  FrameOptions frames;
   IntrinsicsOptions intrinsics;
   InitialisationOptions initialisation;
   OptimisationOptions optimisation;

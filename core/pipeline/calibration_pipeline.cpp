@@ -95,7 +95,8 @@ CalibrationInput inputFrom(const Session& session, const CalibrationRun& run) {
   input.board = session.board;
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
     const SessionCamera& camera = session.cameras[k];
-    input.cameras.push_back({camera.name, run.pass.lenses.at(k), run.pass.cameras[k], camera.prior});
+    input.cameras.push_back(
+        {camera.name, run.pass.lenses.at(k), run.pass.cameras[k], camera.prior, camera.shutter});
   }
   input.imus = run.pass.imus;
   for (std::size_t k = 0; k < session.imus.size(); ++k) input.imus[k].prior = session.imus[k].prior;
@@ -124,9 +125,11 @@ void checkSession(const Session& session) {
 
 void logDetections(const RecordingPass& pass, const RunContext& context) {
   for (const BoardObservations& camera : pass.cameras) {
-    context.progress.log(LogLevel::Info, fmt::format("{}: {} events, board in {} of {} windows ({})",
-                                                     camera.camera, camera.events, camera.views.size(),
-                                                     camera.windows.size(), outcomes(camera)));
+    const bool windows = camera.kind == CameraKind::Events;
+    context.progress.log(LogLevel::Info,
+                         fmt::format("{}: {} {}, board in {} of {} {} ({})", camera.camera, camera.events,
+                                     measurementsOf(camera.kind), camera.views.size(), camera.windows.size(),
+                                     windows ? "windows" : "frames", outcomes(camera)));
   }
 }
 
@@ -353,6 +356,7 @@ class Calibration {
                 "or see the residuals",
                 Repair{"optimisation.solver.max_iterations", std::to_string(2 * options.max_iterations)}},
           result);
+    addDoubt(Doubt{uncertainty.rolling_shutters}, result);
     addDoubt(priors.doubt, result);
     addDoubt(boardDoubt(uncertainty, solution.state), result);
     addDoubt(uncertainty.stretch_doubt, result);

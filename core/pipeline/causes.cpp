@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/data/board_bow.h"
+#include "core/geometry/camera_model.h"
 #include "core/numerics/angles.h"
 #include "core/pipeline/misfit.h"
 
@@ -62,7 +63,8 @@ std::string lensWords(const CalibrationInput& input, const BatchSolution& freed)
     const std::optional<CameraIntrinsics>& solved = freed.state.cameras[k].lens.solved;
     if (!solved) continue;
     const CameraIntrinsics& given = *input.cameras[k].lens.seen_with;
-    const Eigen::Array2d focal = solved->focal_length_px.array() / given.focal_length_px.array() - 1.0;
+    const Eigen::Array2d focal =
+        idealFocalLength_px(*solved).array() / idealFocalLength_px(given).array() - 1.0;
     const Eigen::Vector2d centre_px = solved->principal_point_px - given.principal_point_px;
     text += fmt::format(
         "{}{}: the lens, or the board's shape, is not as the session says: focal lengths seem {:+.2f} and "

@@ -5,6 +5,7 @@
 #include "core/data/quantity_difference.h"
 #include "core/numerics/angles.h"
 #include "core/optimisation/batch_optimiser.h"
+#include "core/optimisation/circle_errors.h"
 #include "core/optimisation/uncertainty/covariance.h"
 
 #include <algorithm>
@@ -46,7 +47,7 @@ void splitViews(const BoardObservations& all, const CameraState& camera, const B
     for (std::size_t half = 0; half < 2; ++half) {
       BoardView part = view;
       std::erase_if(part.circles, [&](const CircleObservation& circle) {
-        return blocks.halfAt(referenceTime_s(camera, circle.time_s), kMargin_knots) != static_cast<int>(half);
+        return blocks.halfAt(circleTime_s(camera, circle), kMargin_knots) != static_cast<int>(half);
       });
       if (!part.circles.empty()) halves[half]->views.push_back(std::move(part));
     }

@@ -65,7 +65,7 @@ void readImu(const YamlNode& entry, Session& session) {
 
 void readBoard(const YamlNode& prior, const ImportRequest& request, ImportedSession& imported) {
   const YamlNode pattern = prior["CirclePattern"];
-  CircleBoard& board = imported.session.board;
+  Board& board = imported.session.board;
   board.type = static_cast<BoardType>(pattern["Type"].choice({"ASYMMETRIC_GRID", "SYMMETRIC_GRID"}));
   board.rows = pattern["Rows"].integer(2, 100);
   board.cols = pattern["Cols"].integer(2, 100);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 
 namespace evical {
 namespace {
@@ -11,12 +12,37 @@ namespace {
 // eKalibr's own boards have it, and it is what prints well.
 constexpr double kUsualRadiusRate = 2.5;  // spacing by radius
 
+// Kalibr's rows and columns are of tags; its spacing is the gap between two as a share of a tag.
+void readAprilGrid(const YamlNode& root, Board& board) {
+  board.type = BoardType::AprilGrid;
+  board.rows = root["tagRows"].integer(1, 100);
+  board.cols = root["tagCols"].integer(1, 100);
+  board.tag_size_m = root["tagSize"].real(1e-4, 10.0, "m");
+  board.spacing_m = (1.0 + root["tagSpacing"].real(1e-3, 100.0, "")) * board.tag_size_m;
+  board.radius_m = 0.0;
+}
+
+void readCheckerboard(const YamlNode& root, Board& board) {
+  board.type = BoardType::Checkerboard;
+  board.rows = root["targetRows"].integer(2, 100);
+  board.cols = root["targetCols"].integer(2, 100);
+  board.spacing_m = root["rowSpacingMeters"].real(1e-4, 10.0, "m");
+  board.radius_m = 0.0;
+  constexpr double kSame = 1e-6;
+  const YamlNode other = root["colSpacingMeters"];
+  if (std::abs(other.real(1e-4, 10.0, "m") / board.spacing_m - 1.0) > kSame)
+    throw other.error("is another one than rowSpacingMeters, and Evical's checkerboards have squares",
+                      "Measure the board again, or use another one");
+}
+
 void readTarget(const YamlNode& root, const ImportRequest& request, ImportedSession& imported) {
   const std::string type = root["target_type"].text();
+  Board& board = imported.session.board;
+  if (type == "aprilgrid") return readAprilGrid(root, board);
+  if (type == "checkerboard") return readCheckerboard(root, board);
   if (type != "circlegrid")
-    throw root["target_type"].error(fmt::format("is '{}', and Evical sees circles only", type),
-                                    "Use a circle grid: `evical board` prints one");
-  CircleBoard& board = imported.session.board;
+    throw root["target_type"].error(fmt::format("'{}' is no target that Evical knows", type),
+                                    "Known are aprilgrid, checkerboard and circlegrid");
   const bool asymmetric =
       root["asymmetricGrid"].choice({"false", "true", "False", "True", "0", "1"}) % 2 == 1;
   board.type = asymmetric ? BoardType::AsymmetricCircles : BoardType::SymmetricCircles;

@@ -50,11 +50,18 @@ IntrinsicsResult estimate(const Session& alone, const RecordingPass& pass,
   }
 }
 
-}  // namespace
+// Frames and points are measured on the sensor, whatever the lens: once is enough.
+IntrinsicsRun fromSensorPixels(const Session& alone, const RunContext& context) {
+  context.progress.stageStarted(nameOf(CalibrationStage::Intrinsics));
+  IntrinsicsRun run;
+  run.pass = readAndDetect(alone, {CameraLens{}}, context.unobserved());
+  checkBoardSeen(run.pass.cameras.front(), alone.board);
+  run.result = estimate(alone, run.pass, {}, context);
+  run.result.passes = 1;
+  return run;
+}
 
-IntrinsicsRun calibrateIntrinsics(const Session& session, std::size_t camera, const RunContext& context) {
-  const Stopwatch stopwatch;
-  const Session alone = cameraAlone(session, camera);
+IntrinsicsRun fromEvents(const Session& alone, const RunContext& context) {
   context.progress.stageStarted(nameOf(CalibrationStage::FirstLook));
   CameraLens lens;
   lens.seen_with = lookThroughPlainLenses(alone, context);
@@ -76,6 +83,16 @@ IntrinsicsRun calibrateIntrinsics(const Session& session, std::size_t camera, co
                                                       run.result.views_found, moved->rms_px));
     if (kRefitShare * moved->rms_px < alone.options.intrinsics.settled_px) break;
   }
+  return run;
+}
+
+}  // namespace
+
+IntrinsicsRun calibrateIntrinsics(const Session& session, std::size_t camera, const RunContext& context) {
+  const Stopwatch stopwatch;
+  const Session alone = cameraAlone(session, camera);
+  const bool events = SessionRecording(alone).camera(0).type == StreamType::Events;
+  IntrinsicsRun run = events ? fromEvents(alone, context) : fromSensorPixels(alone, context);
   checkBoardSize(run.pass.cameras.front(), alone.board, alone.options.front_end.extent);
   run.result.elapsed_s = stopwatch.elapsed_s();
   return run;

@@ -21,8 +21,8 @@ constexpr int kSolveEvery = 3;                  // slices, once there is a camer
 constexpr std::size_t kMostEvents = 8'000'000;  // in a slice
 
 // Equidistant lenses of one parameter stand for all: wide, which shows most
-// boards well enough; none; fisheye.
-std::vector<CameraIntrinsics> plainLenses(Resolution resolution_px) {
+// boards well enough; none; fisheye; and where a wide model is asked for, one wider still.
+std::vector<CameraIntrinsics> plainLenses(Resolution resolution_px, bool wide_model) {
   const double width_px = std::max(resolution_px.width_px, resolution_px.height_px);
   CameraIntrinsics lens;
   lens.resolution_px = resolution_px;
@@ -32,6 +32,9 @@ std::vector<CameraIntrinsics> plainLenses(Resolution resolution_px) {
   lenses[1].focal_length_px.setConstant(width_px);
   lenses[2].focal_length_px.setConstant(0.45 * width_px);
   lenses[0].model = lenses[2].model = CameraModel::PinholeEquidistant;
+  if (!wide_model) return lenses;
+  lenses.push_back(lenses[2]);
+  lenses.back().focal_length_px.setConstant(0.3 * width_px);
   return lenses;
 }
 
@@ -59,7 +62,7 @@ class Pilot {
         period_ns_(nanosecondsFrom(options_.first_look_period_s)),
         recording_(session),
         resolution_px_(recording_.resolution_px(0)),
-        lenses_(plainLenses(resolution_px_)) {
+        lenses_(plainLenses(resolution_px_, options_.model >= IntrinsicsModel::DoubleSphere)) {
     const double begin_s = session.time_range_s ? session.time_range_s->front() : 0.0;
     slice_begin_ns_ = recording_.start_ns() + nanosecondsFrom(begin_s);
     if (session.time_range_s) end_ns_ = recording_.start_ns() + nanosecondsFrom(session.time_range_s->back());
@@ -123,7 +126,7 @@ class Pilot {
   Look throughPlainLenses(const std::vector<EdgeBurst>& bursts) {
     constexpr double kNearlyAll = 0.75;
     Look best = through(lenses_.front(), bursts);
-    const double all = static_cast<double>(best.views.size()) * session_.board.circleCount();
+    const double all = static_cast<double>(best.views.size()) * session_.board.pointCount();
     if (!best.views.empty() && static_cast<double>(best.circles()) >= kNearlyAll * all) return best;
     std::vector<std::future<Look>> looks;
     for (std::size_t k = 1; k < lenses_.size(); ++k)

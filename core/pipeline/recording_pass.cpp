@@ -4,8 +4,10 @@
 #include "core/base/stopwatch.h"
 #include "core/base/time.h"
 #include "core/data/calibration_observer.h"
-#include "core/frontend/board_tracker.h"
+#include "core/pipeline/board_size_check.h"
 #include "core/pipeline/bounded_queue.h"
+#include "core/pipeline/camera_views.h"
+#include "core/pipeline/event_intake.h"
 #include "core/pipeline/session_recording.h"
 
 #include <fmt/format.h>
@@ -24,108 +26,21 @@ namespace {
 constexpr std::size_t kQueuedBatches = 16;
 constexpr std::size_t kBatchEvents = 50'000;
 
-// What the reading thread hands to the window thread: bursts of one camera.
-struct BurstBatch {
-  std::size_t camera = 0;
-  std::vector<EdgeBurst> bursts;
-  std::int64_t first_event_ns = 0, complete_until_ns = 0;
-  std::uint64_t events = 0;
-  std::optional<Resolution> opened_px;  // with the first batch
-  std::int64_t start_ns = 0;
-};
+CameraKind kindOf(StreamType type) {
+  return type == StreamType::Frames   ? CameraKind::Frames
+         : type == StreamType::Points ? CameraKind::Points
+                                      : CameraKind::Events;
+}
 
-// One camera's events on their way: checked, sorted, turned into bursts.
-class CameraIntake {
- public:
-  CameraIntake(std::size_t camera, const SessionCamera& session, Resolution resolution_px,
-               const BurstOptions& bursts)
-      : camera_(camera), session_(session), burst_options_(bursts), resolution_px_(resolution_px) {}
-
-  std::optional<BurstBatch> take(std::vector<Event>& events) {
-    putInOrder(events);
-    if (events.empty()) return std::nullopt;
-    BurstBatch batch;
-    if (!extractor_) {
-      extractor_.emplace(resolution_px_, burst_options_);
-      batch.opened_px = resolution_px_;
-    }
-    batch.camera = camera_;
-    batch.first_event_ns = events.front().time_ns;
-    extractor_->add(events, batch.bursts);
-    batch.complete_until_ns = extractor_->completeUntil_ns();
-    batch.events = events.size();
-    last_ns_ = events.back().time_ns;
-    return batch;
-  }
-
-  std::optional<BurstBatch> finish() {
-    if (!extractor_) return std::nullopt;
-    BurstBatch batch;
-    batch.camera = camera_;
-    extractor_->finish(batch.bursts);
-    batch.first_event_ns = batch.complete_until_ns = last_ns_;
-    return batch;
-  }
-
-  std::uint64_t eventCount() const { return extractor_ ? extractor_->eventCount() : 0; }
-  Resolution resolution_px() const { return resolution_px_; }
-
-  void report(std::vector<RecordingFault>& faults) const {
-    if (unsorted_ > 0) {
-      faults.push_back({session_.stream, FaultKind::BackwardTime, 0.0,
-                        fmt::format("{}: {} events out of order, sorted", session_.stream, unsorted_)});
-    }
-    if (late_ > 0) {
-      faults.push_back({session_.stream, FaultKind::BackwardTime, 0.0,
-                        fmt::format("{}: time runs backwards: {} events left out", session_.stream, late_)});
-    }
-    if (outside_ > 0) {
-      faults.push_back({session_.stream, FaultKind::OutsideResolution, 0.0,
-                        fmt::format("{}: {} events outside {} x {} px left out", session_.stream, outside_,
-                                    resolution_px_.width_px, resolution_px_.height_px)});
-    }
-  }
-
- private:
-  void putInOrder(std::vector<Event>& events) {
-    const auto earlier = [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; };
-    if (!std::is_sorted(events.begin(), events.end(), earlier)) {
-      for (std::size_t k = 1; k < events.size(); ++k) unsorted_ += events[k].time_ns < events[k - 1].time_ns;
-      std::stable_sort(events.begin(), events.end(), earlier);
-    }
-    seen_ += events.size();
-    outside_ += std::erase_if(events, [&](const Event& event) {
-      return event.x_px >= resolution_px_.width_px || event.y_px >= resolution_px_.height_px;
-    });
-    late_ += std::erase_if(events, [&](const Event& event) { return event.time_ns < last_ns_; });
-    // A few stray coordinates are a broken packet; many are a wrong resolution.
-    constexpr std::uint64_t kEnough = 1000;
-    if (seen_ >= kEnough && 20 * outside_ > seen_) {
-      throw badInput(session_.name,
-                     fmt::format("resolution_px {} x {} is too small: {} of {} events lie outside",
-                                 resolution_px_.width_px, resolution_px_.height_px, outside_, seen_),
-                     "Give the sensor's own resolution, and intrinsics that belong to it");
-    }
-  }
-
-  std::size_t camera_;
-  const SessionCamera& session_;
-  BurstOptions burst_options_;
-  Resolution resolution_px_;
-  std::optional<BurstExtractor> extractor_;
-  std::int64_t last_ns_ = std::numeric_limits<std::int64_t>::min();
-  std::uint64_t seen_ = 0, outside_ = 0, unsorted_ = 0, late_ = 0;
-};
-
-// The window thread: one tracker a camera.
+// The window thread: what each camera saw of the board.
 class WindowWorker {
  public:
   WindowWorker(const Session& session, const std::vector<CameraLens>& lenses, const RunContext& context)
-      : session_(session), lenses_(lenses), context_(context), trackers_(session.cameras.size()) {}
+      : session_(session), lenses_(lenses), context_(context), views_(session.cameras.size()) {}
 
-  void run(BoundedQueue<BurstBatch>& queue) {
+  void run(BoundedQueue<CameraBatch>& queue) {
     try {
-      while (std::optional<BurstBatch> batch = queue.pop()) {
+      while (std::optional<CameraBatch> batch = queue.pop()) {
         if (context_.stop.stop_requested()) break;
         const Stopwatch stopwatch;
         handle(*batch);
@@ -141,12 +56,17 @@ class WindowWorker {
     if (failure_) std::rethrow_exception(failure_);
   }
   double busy_s() const { return busy_s_; }
+  // Before it finishes; of frames, where nothing else says it.
+  void tellResolutions(std::vector<Resolution>& resolutions_px) const {
+    for (std::size_t k = 0; k < views_.size(); ++k)
+      if (views_[k] && !resolutions_px[k].known()) resolutions_px[k] = views_[k]->resolution_px();
+  }
 
-  std::vector<BoardObservations> finish() {
-    std::vector<BoardObservations> observations(trackers_.size());
+  std::vector<BoardObservations> finish(std::vector<RecordingFault>& faults) {
+    std::vector<BoardObservations> observations(views_.size());
     const Stopwatch stopwatch;
-    for (std::size_t k = 0; k < trackers_.size(); ++k) {
-      if (trackers_[k]) observations[k] = trackers_[k]->finish();
+    for (std::size_t k = 0; k < views_.size(); ++k) {
+      if (views_[k]) observations[k] = views_[k]->finish(faults);
       observations[k].camera = session_.cameras[k].name;
     }
     busy_s_ += stopwatch.elapsed_s();
@@ -154,26 +74,19 @@ class WindowWorker {
   }
 
  private:
-  void handle(const BurstBatch& batch) {
-    std::unique_ptr<BoardTracker>& tracker = trackers_[batch.camera];
-    if (batch.opened_px) {
-      tracker =
-          std::make_unique<BoardTracker>(session_.board, *batch.opened_px, lenses_[batch.camera].seen_with,
-                                         session_.options.front_end, batch.start_ns);
-      tracker->stopWith(context_.stop);
-      if (context_.observer != nullptr)
-        tracker->observeWith(context_.observer->windowObserver(batch.camera, *tracker));
-    }
-    const std::size_t before = tracker->observations().windows.size();
-    tracker->addBursts(batch.bursts, batch.first_event_ns, batch.complete_until_ns);
-    if (context_.observer != nullptr && tracker->observations().windows.size() > before)
-      context_.observer->windowsDetected(batch.camera, tracker->observations());
+  void handle(const CameraBatch& batch) {
+    std::unique_ptr<CameraViews>& views = views_[batch.camera];
+    if (batch.opened_px) views = cameraViews(batch, {session_, lenses_[batch.camera], context_});
+    const std::size_t before = views->soFar().windows.size();
+    views->take(batch);
+    if (context_.observer != nullptr && views->soFar().windows.size() > before)
+      context_.observer->windowsDetected(batch.camera, views->soFar());
   }
 
   const Session& session_;
   const std::vector<CameraLens>& lenses_;
   const RunContext& context_;
-  std::vector<std::unique_ptr<BoardTracker>> trackers_;
+  std::vector<std::unique_ptr<CameraViews>> views_;  // by camera
   std::exception_ptr failure_;
   double busy_s_ = 0.0;
 };
@@ -182,47 +95,59 @@ class WindowWorker {
 class ReadingPass {
  public:
   ReadingPass(const Session& session, const RunContext& context, RecordingPass& result)
-      : session_(session),
-        recording_(session, context.stop),
-        result_(result),
-        pending_(session.cameras.size()) {
+      : session_(session), recording_(session, context.stop), result_(result) {
     result.imus.resize(session.imus.size());
     result.start_ns = recording_.start_ns();
     for (std::size_t camera = 0; camera < session.cameras.size(); ++camera) {
-      intakes_.push_back(std::make_unique<CameraIntake>(camera, session.cameras[camera],
-                                                        recording_.resolution_px(camera),
-                                                        session.options.front_end.bursts));
+      const Resolution resolution_px = recording_.resolution_px(camera);
+      result.resolutions_px.push_back(resolution_px);
+      Intake& intake = intakes_.emplace_back();
+      intake.kind = kindOf(recording_.camera(camera).type);
+      if (intake.kind == CameraKind::Events)
+        intake.events.emplace(camera, session.cameras[camera], resolution_px,
+                              session.options.front_end.bursts);
     }
   }
 
-  void run(BoundedQueue<BurstBatch>& queue, const RunContext& context) {
+  void run(BoundedQueue<CameraBatch>& queue, const RunContext& context) {
     SensorPacket packet;
     while (recording_.read(packet)) {
       context.throwIfStopped();
       context.progress.stageProgress(recording_.fractionRead());
       const bool is_camera = packet.sensor < intakes_.size();
       if (!is_camera) addSamples(packet);
-      if (is_camera && !addEvents(packet, queue)) return;
+      if (is_camera && !addMeasured(packet, queue)) return;
     }
     for (std::size_t camera = 0; camera < intakes_.size(); ++camera) {
+      if (!intakes_[camera].events) continue;
       flush(camera, queue);
-      if (std::optional<BurstBatch> batch = intakes_[camera]->finish()) queue.push(std::move(*batch));
+      if (std::optional<CameraBatch> batch = intakes_[camera].events->finish()) queue.push(std::move(*batch));
     }
   }
 
   void finish() {
     for (std::size_t k = 0; k < session_.imus.size(); ++k) finishImu(session_.imus[k], result_.imus[k]);
-    for (const auto& intake : intakes_) {
-      intake->report(result_.faults);
-      result_.resolutions_px.push_back(intake->resolution_px());
-    }
+    for (const Intake& intake : intakes_)
+      if (intake.events) intake.events->report(result_.faults);
     const std::vector<RecordingFault> faults = recording_.faults();
     result_.faults.insert(result_.faults.end(), faults.begin(), faults.end());
   }
 
-  std::uint64_t eventCount(std::size_t camera) const { return intakes_[camera]->eventCount(); }
+  // Of events, frames or points.
+  std::uint64_t count(std::size_t camera) const {
+    const Intake& intake = intakes_[camera];
+    return intake.events ? intake.events->eventCount() : intake.count;
+  }
+  CameraKind kind(std::size_t camera) const { return intakes_[camera].kind; }
 
  private:
+  struct Intake {
+    CameraKind kind = CameraKind::Events;
+    std::optional<EventIntake> events;
+    std::vector<Event> pending;
+    std::uint64_t count = 0;  // of all else
+  };
+
   bool wanted(std::int64_t time_ns) const {
     if (!session_.time_range_s) return true;
     const double time_s = secondsSince(result_.start_ns, time_ns);
@@ -236,18 +161,35 @@ class ReadingPass {
     }
   }
 
-  bool addEvents(SensorPacket& packet, BoundedQueue<BurstBatch>& queue) {
-    if (session_.time_range_s)
-      std::erase_if(packet.events, [&](const Event& e) { return !wanted(e.time_ns); });
-    std::vector<Event>& pending = pending_[packet.sensor];
+  bool addMeasured(SensorPacket& packet, BoundedQueue<CameraBatch>& queue) {
+    const auto unwanted = [&](const auto& item) { return !wanted(item.time_ns); };
+    std::erase_if(packet.events, unwanted);
+    std::erase_if(packet.points, unwanted);
+    std::erase_if(packet.frames, unwanted);
+    Intake& intake = intakes_[packet.sensor];
+    if (intake.kind == CameraKind::Events) return addEvents(packet, queue);
+    if (packet.points.empty() && packet.frames.empty()) return true;
+    CameraBatch batch;
+    if (intake.count == 0) batch.opened_px = result_.resolutions_px[packet.sensor];
+    batch.camera = packet.sensor;
+    batch.kind = intake.kind;
+    batch.start_ns = result_.start_ns;
+    intake.count += packet.points.size() + packet.frames.size();
+    batch.points = std::move(packet.points);
+    batch.frames = std::move(packet.frames);
+    return queue.push(std::move(batch));
+  }
+
+  bool addEvents(SensorPacket& packet, BoundedQueue<CameraBatch>& queue) {
+    std::vector<Event>& pending = intakes_[packet.sensor].pending;
     pending.insert(pending.end(), packet.events.begin(), packet.events.end());
     if (pending.size() < kBatchEvents) return true;
     return flush(packet.sensor, queue);
   }
 
-  bool flush(std::size_t camera, BoundedQueue<BurstBatch>& queue) {
-    std::optional<BurstBatch> batch = intakes_[camera]->take(pending_[camera]);
-    pending_[camera].clear();
+  bool flush(std::size_t camera, BoundedQueue<CameraBatch>& queue) {
+    std::optional<CameraBatch> batch = intakes_[camera].events->take(intakes_[camera].pending);
+    intakes_[camera].pending.clear();
     if (!batch) return true;
     batch->start_ns = result_.start_ns;
     return queue.push(std::move(*batch));
@@ -269,8 +211,7 @@ class ReadingPass {
   const Session& session_;
   SessionRecording recording_;
   RecordingPass& result_;
-  std::vector<std::unique_ptr<CameraIntake>> intakes_;
-  std::vector<std::vector<Event>> pending_;  // by camera
+  std::vector<Intake> intakes_;  // by camera
 };
 
 }  // namespace
@@ -286,7 +227,7 @@ RecordingPass readAndDetect(const Session& session, std::vector<CameraLens> lens
   const Stopwatch stopwatch;
   ReadingPass reading(session, context, result);
   WindowWorker worker(session, result.lenses, context);
-  BoundedQueue<BurstBatch> queue(kQueuedBatches);
+  BoundedQueue<CameraBatch> queue(kQueuedBatches);
   {
     std::jthread windows([&] { worker.run(queue); });
     try {
@@ -300,17 +241,20 @@ RecordingPass readAndDetect(const Session& session, std::vector<CameraLens> lens
   }
   worker.rethrow();
   context.throwIfStopped();
-  result.cameras = worker.finish();
+  worker.tellResolutions(result.resolutions_px);
+  result.cameras = worker.finish(result.faults);
   context.throwIfStopped();
   result.detect_s = worker.busy_s();
   reading.finish();
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
-    result.cameras[k].events = reading.eventCount(k);
+    result.cameras[k].kind = reading.kind(k);
+    result.cameras[k].events = reading.count(k);
     if (result.cameras[k].events > 0) continue;
-    throw badInput(session.recording.string(),
-                   fmt::format("stream {} holds no events{}", session.cameras[k].stream,
-                               session.time_range_s ? " in time_range_s" : ""),
-                   "Check the recording with 'evical inspect'");
+    throw badInput(
+        session.recording.string(),
+        fmt::format("stream {} holds no {}{}", session.cameras[k].stream, measurementsOf(reading.kind(k)),
+                    session.time_range_s ? " in time_range_s" : ""),
+        "Check the recording with 'evical inspect'");
   }
   for (const ImuData& imu : result.imus) {
     if (!imu.samples.empty()) continue;

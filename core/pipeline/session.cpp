@@ -46,14 +46,20 @@ void checkDifferent(const Session& session, const std::string& place) {
 
 void checkBoard(const Session& session, const std::string& place) {
   if (session.imus.empty() || !session.board.hasHalfTurnAmbiguity()) return;
-  const bool symmetric = session.board.type == BoardType::SymmetricCircles;
+  const BoardType type = session.board.type;
   throw badInput(
-      place + (symmetric ? ": board.type" : ": board.rows"),
+      place + (type == BoardType::SymmetricCircles ? ": board.type" : ": board.rows"),
       fmt::format(
           "{} looks the same when turned by 180 degrees, so the camera's pose would jump and no IMU can "
           "be calibrated with it",
-          symmetric ? "a symmetric board" : "an asymmetric board with an even number of rows"),
-      "Use an asymmetric board with an odd number of rows, or leave out the IMUs to calibrate intrinsics");
+          type == BoardType::SymmetricCircles ? "a symmetric board"
+          : type == BoardType::Checkerboard
+              ? "a checkerboard whose rows and columns of inner corners are both even or both odd"
+              : "an asymmetric board with an even number of rows"),
+      type == BoardType::Checkerboard
+          ? "Use one with an even and an odd number, or leave out the IMUs to calibrate intrinsics"
+          : "Use an asymmetric board with an odd number of rows, or leave out the IMUs to calibrate "
+            "intrinsics");
 }
 
 // The rest is checked where it is read; but the reference may change later.
@@ -70,7 +76,7 @@ void checkPriors(const Session& session, const std::string& place) {
 }
 
 // Whether it still tells what it once did: either may have been changed since.
-bool tellsSpacing(const std::optional<MeasuredLength>& measured, const CircleBoard& board) {
+bool tellsSpacing(const std::optional<MeasuredLength>& measured, const Board& board) {
   return measured && measured->spacing_m() == board.spacing_m;
 }
 bool tellsSigma(const std::optional<MeasuredLength>& measured, const OptimisationOptions& options) {
@@ -87,16 +93,18 @@ void forgetSigma(OptimisationOptions& options) {
 }
 
 std::string boardYaml(const Session& session) {
-  const CircleBoard& board = session.board;
+  const Board& board = session.board;
   const std::optional<MeasuredLength>& measured = session.measured;
-  return fmt::format("board:\n  type: {}\n  rows: {}\n  cols: {}\n  {}\n  radius_m: {}\n  circles: {}\n",
-                     board.type == BoardType::AsymmetricCircles ? "asymmetric_circles" : "symmetric_circles",
-                     board.rows, board.cols,
-                     tellsSpacing(measured, board)
-                         ? fmt::format("measured: {{spacings: {}, length_m: {}, std_m: {}}}",
-                                       measured->spacings, measured->length_m, measured->std_m)
-                         : fmt::format("spacing_m: {}", board.spacing_m),
-                     board.radius_m, board.circles == CircleShade::Dark ? "dark" : "bright");
+  std::string text = fmt::format(
+      "board:\n  type: {}\n  rows: {}\n  cols: {}\n  {}\n", boardTypeName(board.type), board.rows, board.cols,
+      tellsSpacing(measured, board) ? fmt::format("measured: {{spacings: {}, length_m: {}, std_m: {}}}",
+                                                  measured->spacings, measured->length_m, measured->std_m)
+                                    : fmt::format("spacing_m: {}", board.spacing_m));
+  if (board.hasCircles())
+    text += fmt::format("  radius_m: {}\n  circles: {}\n", board.radius_m,
+                        board.circles == CircleShade::Dark ? "dark" : "bright");
+  if (board.tag_size_m > 0.0) text += fmt::format("  tag_size_m: {}\n", board.tag_size_m);
+  return text;
 }
 
 // What the board's measure says of it is no option in a file.
@@ -129,6 +137,7 @@ std::string cameraYaml(const SessionCamera& camera, const std::filesystem::path&
   if (camera.resolution_px.known())
     text += fmt::format("    resolution_px: [{}, {}]\n", camera.resolution_px.width_px,
                         camera.resolution_px.height_px);
+  if (camera.shutter == Shutter::Rolling) text += "    shutter: rolling\n";
   if (camera.intrinsics) text += "    intrinsics:\n" + intrinsicsYaml(*camera.intrinsics, 6);
   if (camera.intrinsics && camera.intrinsics_uncertainty)
     text += lensUncertaintyYaml(*camera.intrinsics_uncertainty, *camera.intrinsics, 4);

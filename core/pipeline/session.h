@@ -24,6 +24,7 @@ struct SessionCamera {
   double clock_offset_s = 0.0;                 // known: to be added to the stream's times
   SensorPrior prior = {};                      // the file's prior.cameras.<name>
   std::optional<LensUncertainty> intrinsics_uncertainty = {};  // from another recording; absent: not said
+  Shutter shutter = Shutter::Global;                           // of frames
 };
 
 struct SessionImu {
@@ -41,7 +42,7 @@ struct Session {
   std::filesystem::path source;                       // the file it was read from
   std::filesystem::path recording;                    // absolute, or relative to the working directory
   std::optional<std::array<double, 2>> time_range_s;  // since the recording's start
-  CircleBoard board;
+  Board board;
   std::optional<MeasuredLength> measured;  // what tells the board's spacing and, as an option, its sigma
   std::vector<SessionCamera> cameras;
   std::vector<SessionImu> imus;

@@ -41,6 +41,9 @@ void addSensors(const std::filesystem::path& own_recording, const Inspection& in
   for (const StreamSummary& stream : inspection.streams) {
     if (!isSensor(stream, type)) continue;
     if (type == StreamType::Events) session.cameras.push_back(guessedCamera(stream, session, own_recording));
+    const bool frames = type == StreamType::Frames && stream.info.readable && stream.info.timed;
+    if (frames || type == StreamType::Points)
+      session.cameras.push_back(guessedCamera(stream, session, own_recording));
     if (type == StreamType::Imu) session.imus.push_back(guessedImu(stream, session, own_recording));
   }
 }
@@ -82,7 +85,9 @@ void keepReference(Session& session) {
 Session withMissingSensors(const Session& session, const std::filesystem::path& recording,
                            const Inspection& inspection) {
   Session found = session;
-  if (session.cameras.empty()) addSensors(recording, inspection, StreamType::Events, found);
+  // Where there are events, frames beside them are for who adds them.
+  for (const StreamType type : {StreamType::Events, StreamType::Frames, StreamType::Points})
+    if (found.cameras.empty()) addSensors(recording, inspection, type, found);
   if (session.imus.empty()) addSensors(recording, inspection, StreamType::Imu, found);
   keepReference(found);
   return found;
@@ -97,10 +102,12 @@ Session guessedSession(const std::filesystem::path& recording, const Inspection&
 std::optional<CalibrationError> whyUseless(const std::filesystem::path& recording,
                                            const Inspection& inspection) {
   const auto useful = [](const StreamSummary& stream) {
-    return stream.info.type == StreamType::Events || stream.info.type == StreamType::Imu;
+    const StreamType type = stream.info.type;
+    const bool frames = type == StreamType::Frames && stream.info.readable;
+    return frames || type == StreamType::Events || type == StreamType::Imu || type == StreamType::Points;
   };
   if (std::any_of(inspection.streams.begin(), inspection.streams.end(), useful)) return std::nullopt;
-  std::string problem = "it holds neither events nor IMU samples";
+  std::string problem = "it holds neither events, frames, points nor IMU samples";
   for (const RecordingFault& fault : inspection.faults) problem += ". " + fault.text;
   return badInput(recording.string(), problem,
                   "Check that the whole file was copied and that the camera's driver was recorded");

@@ -66,14 +66,31 @@ void checkedAt(const YamlNode& map, const Check& check) {
   }
 }
 
-CircleBoard readBoard(const YamlNode& map, const std::optional<MeasuredLength>& measured) {
-  map.allowOnly({"type", "rows", "cols", "measured", "spacing_m", "spacing_std", "radius_m", "circles"});
-  CircleBoard board;
-  board.type = static_cast<BoardType>(map["type"].choice({"asymmetric_circles", "symmetric_circles"}));
-  board.rows = map["rows"].integer(2, 100);
-  board.cols = map["cols"].integer(2, 100);
-  board.spacing_m = measured ? measured->spacing_m() : map["spacing_m"].real(1e-4, 10.0, "m");
-  board.radius_m = map["radius_m"].real(1e-5, 10.0, "m");
+// Of an AprilGrid also as Kalibr has it: the gap between two tags as a share of a tag's edge.
+double readSpacing_m(const YamlNode& map, double tag_size_m) {
+  const auto share = map.find("tag_spacing"), spacing = map.find("spacing_m");
+  if (share && spacing)
+    throw share->error("says the same as spacing_m, which is there as well",
+                       "Keep spacing_m, from one tag to the next, or tag_spacing, the gap between two tags "
+                       "as a share of tag_size_m");
+  return share ? (1.0 + share->real(1e-3, 100.0, "")) * tag_size_m : map["spacing_m"].real(1e-4, 10.0, "m");
+}
+
+Board readBoard(const YamlNode& map, const std::optional<MeasuredLength>& measured) {
+  Board board;
+  board.type = static_cast<BoardType>(map["type"].choice(
+      {"asymmetric_circles", "symmetric_circles", "checkerboard", "aprilgrid", "charuco"}));
+  const bool tags = board.type == BoardType::AprilGrid || board.type == BoardType::Charuco;
+  std::vector<std::string> keys = {"type", "rows", "cols", "measured", "spacing_m", "spacing_std"};
+  if (board.hasCircles()) keys.insert(keys.end(), {"radius_m", "circles"});
+  if (tags) keys.emplace_back("tag_size_m");
+  if (board.type == BoardType::AprilGrid) keys.emplace_back("tag_spacing");
+  map.allowOnly(keys);
+  board.rows = map["rows"].integer(1, 100);
+  board.cols = map["cols"].integer(1, 100);
+  if (tags) board.tag_size_m = map["tag_size_m"].real(1e-4, 10.0, "m");
+  board.spacing_m = measured ? measured->spacing_m() : readSpacing_m(map, board.tag_size_m);
+  board.radius_m = board.hasCircles() ? map["radius_m"].real(1e-5, 10.0, "m") : 0.0;
   if (const auto node = map.find("circles"))
     board.circles = static_cast<CircleShade>(node->choice({"dark", "bright"}));
   checkedAt(map, [&] { validate(board); });
@@ -103,10 +120,12 @@ Sensor readSource(const YamlNode& map, const std::string& sensor_name, const std
 
 SessionCamera readCamera(const YamlNode& map, const std::string& camera_name,
                          const std::filesystem::path& folder) {
-  map.allowOnly({"recording", "stream", "clock_offset_s", "resolution_px", "intrinsics", "intrinsics_std",
-                 "intrinsics_correlation"});
+  map.allowOnly({"recording", "stream", "clock_offset_s", "resolution_px", "shutter", "intrinsics",
+                 "intrinsics_std", "intrinsics_correlation"});
   SessionCamera camera = readSource<SessionCamera>(map, camera_name, folder);
   if (const auto node = map.find("resolution_px")) camera.resolution_px = readResolution(*node);
+  if (const auto node = map.find("shutter"))
+    camera.shutter = static_cast<Shutter>(node->choice({"global", "rolling"}));
   const auto intrinsics = map.find("intrinsics"), sigmas = map.find("intrinsics_std");
   if (sigmas && !intrinsics)
     throw sigmas->error("is of intrinsics that are not given", "Give intrinsics, too");

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -14,8 +15,24 @@
 namespace evical {
 namespace {
 
+constexpr std::array kCameraStreams = {StreamType::Events, StreamType::Frames, StreamType::Points};
+constexpr std::array kImuStreams = {StreamType::Imu};
+
+// Calls visit(items) with what the packet holds of each kind.
+template <class SomePacket, class Visitor>
+void forEachKind(SomePacket& packet, Visitor&& visit) {
+  visit(packet.events);
+  visit(packet.imu_samples);
+  visit(packet.frames);
+  visit(packet.points);
+}
+
 std::int64_t firstTime_ns(const SensorPacket& packet) {
-  return packet.events.empty() ? packet.imu_samples.front().time_ns : packet.events.front().time_ns;
+  std::int64_t time_ns = 0;
+  forEachKind(packet, [&](const auto& items) {
+    if (!items.empty()) time_ns = items.front().time_ns;
+  });
+  return time_ns;
 }
 
 }  // namespace
@@ -27,13 +44,14 @@ std::int64_t SessionRecording::Source::time_ns() const {
 SessionRecording::SessionRecording(const Session& session, std::stop_token stop)
     : session_(session), stop_(std::move(stop)) {
   for (const SessionCamera& camera : session.cameras)
-    addSensor(camera.recording, camera.stream, StreamType::Events);
-  for (const SessionImu& imu : session.imus) addSensor(imu.recording, imu.stream, StreamType::Imu);
+    addSensor(camera.recording, camera.stream, kCameraStreams);
+  for (const SessionImu& imu : session.imus) addSensor(imu.recording, imu.stream, kImuStreams);
   gates_.resize(places_.size());
   for (Source& source : sources_) {
     source.reader->select(source.selected);
     advance(source);
   }
+  checkTimed();
   checkClocks();
   const auto earliest =
       std::min_element(sources_.begin(), sources_.end(),
@@ -55,12 +73,12 @@ std::size_t SessionRecording::sourceOf(const std::filesystem::path& path) {
 }
 
 void SessionRecording::addSensor(const std::filesystem::path& own_recording, const std::string& stream,
-                                 StreamType type) {
+                                 std::span<const StreamType> types) {
   const std::filesystem::path& path = own_recording.empty() ? session_.recording : own_recording;
   Place place{sourceOf(path), 0};
   Source& source = sources_[place.source];
   try {
-    place.stream = findStream(*source.reader, stream, type);
+    place.stream = findStream(*source.reader, stream, types);
   } catch (const CalibrationError& error) {
     std::string problem = error.problem();
     for (const RecordingFault& fault : source.reader->faults())  // perhaps the stream was in what is lost
@@ -71,6 +89,18 @@ void SessionRecording::addSensor(const std::filesystem::path& own_recording, con
   source.selected.push_back(place.stream);
   source.sensors.push_back(places_.size());
   places_.push_back(place);
+}
+
+void SessionRecording::checkTimed() const {
+  if (session_.cameras.size() == 1 && session_.imus.empty()) return;
+  for (std::size_t camera = 0; camera < session_.cameras.size(); ++camera) {
+    if (info(camera).timed) continue;
+    throw badInput(
+        session_.cameras[camera].name,
+        "its pictures have no times, so nothing can be calibrated against them",
+        "Name them by their times in ns, or give a data.csv as EuRoC has it; for its intrinsics alone "
+        "there is 'evical intrinsics'");
+  }
 }
 
 void SessionRecording::checkClocks() const {
@@ -110,6 +140,7 @@ Resolution SessionRecording::resolution_px(std::size_t camera) const {
   if (own.resolution_px.known()) return own.resolution_px;
   if (stated.known()) return stated;
   if (own.intrinsics && own.intrinsics->resolution_px.known()) return own.intrinsics->resolution_px;
+  if (info(camera).type == StreamType::Frames) return {};  // the first that is decoded tells
   throw badInput(own.name, "the recording does not say the sensor's resolution",
                  "Give resolution_px: [width, height] for this camera in the session");
 }
@@ -129,12 +160,12 @@ void SessionRecording::advance(Source& source) {
   while (!source.read_out) {
     source.read_out = stop_.stop_requested() || !source.reader->read(source.raw);
     if (source.read_out) break;
-    if (source.raw.events.empty() && source.raw.imu_samples.empty()) continue;
+    if (source.raw.empty()) continue;
     const auto found = std::find(source.selected.begin(), source.selected.end(), source.raw.stream);
     source.next.sensor = source.sensors[static_cast<std::size_t>(found - source.selected.begin())];
     bringHome(source.raw, source.next);
     letIn(source.next);
-    if (!source.next.events.empty() || !source.next.imu_samples.empty()) return;
+    if (!source.next.empty()) return;
   }
   source.finished = !flushNext(source);
 }
@@ -146,7 +177,9 @@ bool SessionRecording::flushNext(Source& source) {
     Gate& gate = gates_[source.next.sensor];
     gate.events.finish(source.next.events);
     gate.samples.finish(source.next.imu_samples);
-    if (!source.next.events.empty() || !source.next.imu_samples.empty()) return true;
+    gate.frames.finish(source.next.frames);
+    gate.points.finish(source.next.points);
+    if (!source.next.empty()) return true;
   }
   return false;
 }
@@ -159,13 +192,17 @@ void SessionRecording::letIn(SensorPacket& packet) {
   std::erase_if(packet.imu_samples, [](const ImuSample& sample) { return !isMeasurable(sample); });
   gate.events.filter(packet.events);
   gate.samples.filter(packet.imu_samples);
+  gate.frames.filter(packet.frames);
+  gate.points.filter(packet.points);
 }
 
-// Units and clock; the events' storage changes hands.
+// Units and clock; the storage changes hands.
 void SessionRecording::bringHome(Packet& raw, SensorPacket& packet) const {
   const bool is_camera = packet.sensor < session_.cameras.size();
   const std::size_t imu = packet.sensor - session_.cameras.size();
   std::swap(packet.events, raw.events);
+  std::swap(packet.frames, raw.frames);
+  std::swap(packet.points, raw.points);
   packet.imu_samples.clear();
   if (!is_camera) {
     const StreamInfo& stream = info(packet.sensor);
@@ -179,8 +216,9 @@ void SessionRecording::bringHome(Packet& raw, SensorPacket& packet) const {
   const double offset_s =
       is_camera ? session_.cameras[packet.sensor].clock_offset_s : session_.imus[imu].clock_offset_s;
   if (const std::int64_t offset_ns = nanosecondsFrom(offset_s); offset_ns != 0) {
-    for (Event& event : packet.events) event.time_ns += offset_ns;
-    for (ImuSample& sample : packet.imu_samples) sample.time_ns += offset_ns;
+    forEachKind(packet, [&](auto& items) {
+      for (auto& item : items) item.time_ns += offset_ns;
+    });
   }
 }
 
@@ -213,6 +251,8 @@ void SessionRecording::addFaults(std::size_t sensor, std::vector<RecordingFault>
   };
   sayStrays(gate.events, "events");
   sayStrays(gate.samples, "IMU samples");
+  sayStrays(gate.frames, "frames");
+  sayStrays(gate.points, "points");
   if (gate.immeasurable == 0) return;
   const double at_s = secondsSince(start_ns_, gate.immeasurable_ns);
   faults.push_back(

@@ -11,17 +11,22 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <stop_token>
 #include <vector>
 
 namespace evical {
 
-// Some events of a camera or samples of an IMU; the first camera's is sensor 0, the first IMU's that behind
-// the last camera's.
+// Some events, frames or points of a camera or samples of an IMU; the first camera's is sensor 0, the first IMU's
+// that behind the last camera's.
 struct SensorPacket {
   std::size_t sensor = 0;
   std::vector<Event> events;
   std::vector<ImuSample> imu_samples;
+  std::vector<Frame> frames;
+  std::vector<MeasuredPoint> points;
+
+  bool empty() const { return events.empty() && imu_samples.empty() && frames.empty() && points.empty(); }
 };
 
 class SessionRecording {
@@ -34,7 +39,8 @@ class SessionRecording {
   std::size_t imuSensor(std::size_t imu) const { return session_.cameras.size() + imu; }
 
   const StreamInfo& camera(std::size_t camera) const { return info(camera); }
-  // The session's, the recording's, or the intrinsics': whichever is known first. Throws where none is.
+  // The session's, the recording's, or the intrinsics': whichever is known first. Throws where none is, but of
+  // frames, which tell it themselves.
   Resolution resolution_px(std::size_t camera) const;
 
   // Time of the first event or sample in any file; 0 where there is none.
@@ -65,17 +71,21 @@ class SessionRecording {
   struct Gate {
     StampFilter<Event> events{kEventStamps};
     StampFilter<ImuSample> samples{kSampleStamps};
+    StampFilter<Frame> frames{kSampleStamps};
+    StampFilter<MeasuredPoint> points{kPointStamps};
     std::uint64_t immeasurable = 0;
     std::int64_t immeasurable_ns = 0;  // the first
   };
 
   std::size_t sourceOf(const std::filesystem::path& path);
-  void addSensor(const std::filesystem::path& path, const std::string& stream, StreamType type);
+  void addSensor(const std::filesystem::path& path, const std::string& stream,
+                 std::span<const StreamType> types);
   void advance(Source& source);
   void bringHome(Packet& raw, SensorPacket& packet) const;
   void letIn(SensorPacket& packet);
   bool flushNext(Source& source);
   void addFaults(std::size_t sensor, std::vector<RecordingFault>& faults) const;
+  void checkTimed() const;
   void checkClocks() const;
   const StreamInfo& info(std::size_t sensor) const;
 

@@ -66,15 +66,20 @@ void simulateCameras(const Scenario& scenario,
   const int threads = scenario.cameras.size() == 1 ? 2 : 1;
   const RunContext quiet{silentProgress(), context.stop};
   std::vector<std::unique_ptr<CameraThread>> cameras;
-  for (std::size_t k = 0; k < scenario.cameras.size(); ++k)
-    cameras.push_back(std::make_unique<CameraThread>(scenario, k, k == 0 ? context : quiet, threads));
-  while (true) {
+  std::vector<std::size_t> indices;
+  for (std::size_t k = 0; k < scenario.cameras.size(); ++k) {
+    if (scenario.cameras[k].frames) continue;
+    cameras.push_back(
+        std::make_unique<CameraThread>(scenario, k, indices.empty() ? context : quiet, threads));
+    indices.push_back(k);
+  }
+  while (!cameras.empty()) {
     const auto first = std::min_element(cameras.begin(), cameras.end(), [](const auto& a, const auto& b) {
       return a->time_ns() < b->time_ns();
     });
     const EventSpan events = (*first)->next();
     if (events.empty()) return;
-    sink(static_cast<std::size_t>(first - cameras.begin()), events);
+    sink(indices[static_cast<std::size_t>(first - cameras.begin())], events);
     (*first)->advance();
   }
 }

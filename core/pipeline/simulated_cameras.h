@@ -1,4 +1,4 @@
-// Events of all cameras of a scenario as one stream in order of time, a thread a camera.
+// Events of all event cameras of a scenario as one stream in order of time, a thread a camera.
 #pragma once
 
 #include "core/base/progress.h"

@@ -3,9 +3,11 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/new_folder.h"
+#include "core/frames/png_file.h"
 #include "core/pipeline/simulated_cameras.h"
 #include "core/recording/recording_reader.h"
 #include "core/recording/recording_writer.h"
+#include "core/synthetic/frame_simulator.h"
 #include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
 
@@ -15,6 +17,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <memory>
 #include <span>
 #include <string>
@@ -27,6 +30,7 @@ namespace {
 std::vector<StreamInfo> streamsOf(const Scenario& scenario) {
   std::vector<StreamInfo> streams;
   for (const SimulatedCamera& camera : scenario.cameras) {
+    if (camera.frames) continue;
     StreamInfo info;
     info.name = camera.stream;
     info.type = StreamType::Events;
@@ -67,14 +71,49 @@ class ImuFeed {
 };
 
 // What the sensors' streams are called in the recording: not every format keeps names.
-template <class Sensors>
-void takeNames(const RecordingReader& reader, StreamType type, Sensors& sensors) {
+void takeNames(const RecordingReader& reader, StreamType type, const std::vector<std::string*>& streams) {
   std::vector<std::string> names;
   for (const StreamInfo& stream : reader.streams())
     if (stream.type == type) names.push_back(stream.name);
-  for (std::size_t i = 0; i < sensors.size(); ++i) {
-    const bool kept = std::find(names.begin(), names.end(), sensors[i].stream) != names.end();
-    if (!kept && i < names.size()) sensors[i].stream = names[i];
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    const bool kept = std::find(names.begin(), names.end(), *streams[i]) != names.end();
+    if (!kept && i < names.size()) *streams[i] = names[i];
+  }
+}
+
+void takeNames(const RecordingReader& reader, Scenario& scenario) {
+  std::vector<std::string*> events, imus;
+  for (SimulatedCamera& camera : scenario.cameras)
+    if (!camera.frames) events.push_back(&camera.stream);
+  for (SimulatedImu& imu : scenario.imus) imus.push_back(&imu.stream);
+  takeNames(reader, StreamType::Events, events);
+  takeNames(reader, StreamType::Imu, imus);
+}
+
+// Whole or not, the folder that it is in is made aside.
+void writePicture(const std::filesystem::path& path, const std::string& content) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(content.data(), static_cast<std::streamsize>(content.size()));
+  file.flush();
+  if (!file)
+    throw calibrationFailed(path.string(), fmt::format("cannot be written: {}", std::strerror(errno)),
+                            "Check the space on the disk");
+}
+
+// Frames of all frame cameras: files named by their stamps in ns, as Kalibr wants them.
+void writeFrames(const Scenario& scenario, const std::filesystem::path& folder, SimulationSummary& summary,
+                 const RunContext& context) {
+  for (std::size_t k = 0; k < scenario.cameras.size(); ++k) {
+    if (!scenario.cameras[k].frames) continue;
+    const std::filesystem::path own = folder / kFramesFolder / scenario.cameras[k].stream;
+    std::filesystem::create_directories(own);
+    simulateFrames(
+        scenario, k,
+        [&](const Frame& frame) {
+          writePicture(own / fmt::format("{}.png", frame.time_ns), encodedPng(frame));
+          ++summary.frames;
+        },
+        context);
   }
 }
 
@@ -119,15 +158,21 @@ class Workshop {
 void writeRecording(const Scenario& scenario, RecordingWriter& writer, SimulationSummary& summary,
                     const RunContext& context) {
   std::vector<ImuFeed> feeds;
+  std::vector<std::size_t> streams;  // by camera; of frame cameras none is used
+  std::size_t next = 0;
+  for (const SimulatedCamera& camera : scenario.cameras) {
+    streams.push_back(next);
+    if (!camera.frames) ++next;
+  }
   for (std::size_t k = 0; k < scenario.imus.size(); ++k) {
-    feeds.emplace_back(scenario.cameras.size() + k, simulateImu(scenario, k));
+    feeds.emplace_back(next + k, simulateImu(scenario, k));
     summary.imu_samples += feeds.back().size();
   }
   simulateCameras(
       scenario,
       [&](std::size_t camera, EventSpan events) {
         for (ImuFeed& feed : feeds) feed.writeUntil(events.back().time_ns, writer);
-        writer.write(camera, events);
+        writer.write(streams[camera], events);
         summary.events += events.size();
       },
       context);
@@ -150,14 +195,19 @@ SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path
   summary.session = folder / "session.yaml";
   summary.truth = folder / "truth.yaml";
   context.progress.stageStarted("simulate");
-  const std::unique_ptr<RecordingWriter> writer = createRecording(made, format.name, streamsOf(scenario));
-  writeRecording(scenario, *writer, summary, context);
   Scenario named = scenario;
-  const std::unique_ptr<RecordingReader> reader = openRecording(made);
-  takeNames(*reader, StreamType::Events, named.cameras);
-  takeNames(*reader, StreamType::Imu, named.imus);
+  const std::vector<StreamInfo> streams = streamsOf(scenario);
+  if (streams.empty()) {
+    summary.recording = folder / kFramesFolder;
+  } else {
+    const std::unique_ptr<RecordingWriter> writer = createRecording(made, format.name, streams);
+    writeRecording(scenario, *writer, summary, context);
+    takeNames(*openRecording(made), named);
+  }
+  writeFrames(scenario, workshop.folder(), summary, context);
   writeFileWhole(workshop.folder() / "truth.yaml", truthYaml(scenario));
-  writeFileWhole(workshop.folder() / "session.yaml", sessionYaml(named, file));
+  writeFileWhole(workshop.folder() / "session.yaml",
+                 sessionYaml(named, streams.empty() ? kFramesFolder : file));
   workshop.deliver(folder, "truth.yaml", "session.yaml");
   return summary;
 }

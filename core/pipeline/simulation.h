@@ -12,7 +12,7 @@
 namespace evical {
 
 struct SimulationSummary {
-  std::uint64_t events = 0, imu_samples = 0;
+  std::uint64_t events = 0, frames = 0, imu_samples = 0;
   std::filesystem::path recording, session, truth;
 };
 

@@ -10,7 +10,7 @@ namespace {
 using namespace evical;
 
 // Views of a board of which only the first rows and columns are ever seen.
-BoardObservations observe(const CircleBoard& board, int rows_seen, int cols_seen, const BoardExtent& extent) {
+BoardObservations observe(const Board& board, int rows_seen, int cols_seen, const BoardExtent& extent) {
   BoardObservations observations;
   observations.camera = "left";
   observations.extent = extent;
@@ -25,7 +25,7 @@ BoardObservations observe(const CircleBoard& board, int rows_seen, int cols_seen
   return observations;
 }
 
-std::string failureOf(const CircleBoard& board, int rows_seen, int cols_seen, const BoardExtent& extent) {
+std::string failureOf(const Board& board, int rows_seen, int cols_seen, const BoardExtent& extent) {
   try {
     checkBoardSize(observe(board, rows_seen, cols_seen, extent), board, ExtentOptions{});
   } catch (const CalibrationError& error) {
@@ -60,7 +60,7 @@ void TestBoardSizeCheck::fewViews_sayNothing() {
 }
 
 void TestBoardSizeCheck::largerBoard_isNamedWithItsSide() {
-  CircleBoard board;
+  Board board;
   board.rows = 9;
   const std::string rows = failureOf(board, 9, 4, {{80, 76, 80, 0}, {80, 0, 80, 0}});
   VERIFY_SAYS(rows, "left: .*seems larger than 9 x 4: .*beyond its first or last row in 95 % of 80 views");
@@ -69,7 +69,7 @@ void TestBoardSizeCheck::largerBoard_isNamedWithItsSide() {
 }
 
 void TestBoardSizeCheck::smallerBoard_isNamedWithWhatWasNeverSeen() {
-  CircleBoard board;
+  Board board;
   board.rows = 13;
   VERIFY_SAYS(failureOf(board, 11, 4, {{80, 0, 80, 75}, {80, 0, 80, 0}}),
               "seems smaller than 13 x 4: the last 2 of 13 rows were never seen in 800 views");
@@ -88,7 +88,7 @@ void TestBoardSizeCheck::otherBoard_isBoth() {
 }
 
 void TestBoardSizeCheck::circlesNeverSeen_areWorthAWarning() {
-  const CircleBoard board;
+  const Board board;
   QVERIFY(!unseenCircles(observe(board, 11, 4, {}), board));
   const auto fault = unseenCircles(observe(board, 10, 4, {}), board);
   QVERIFY(fault);

@@ -6,6 +6,7 @@
 #include <QTemporaryDir>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 
 using namespace evical;
@@ -127,6 +128,24 @@ class TestImportSession : public QObject {
     QCOMPARE(session.options.initialisation.gravity_m_s2, 9.79);
   }
 
+  void kalibrsOtherTargets_becomeBoards() {
+    const ImportRequest request = kalibr();
+    std::vector<std::string> notes;
+    write("target.yaml",
+          "target_type: 'aprilgrid'\ntagCols: 6\ntagRows: 5\ntagSize: 0.088\ntagSpacing: 0.3\n");
+    const Board tags = written(request, notes).board;
+    QVERIFY(tags.type == BoardType::AprilGrid && tags.rows == 5 && tags.cols == 6);
+    QVERIFY(std::abs(tags.spacing_m - 0.1144) < 1e-9 && tags.tag_size_m == 0.088);
+    QCOMPARE(tags.pointCount(), 120);
+    QVERIFY((tags.point_m(0) - Eigen::Vector2d(0.0, 4 * 0.1144 + 0.088)).norm() < 1e-9);
+    write("target.yaml",
+          "target_type: 'checkerboard'\ntargetCols: 7\ntargetRows: 6\nrowSpacingMeters: 0.06\n"
+          "colSpacingMeters: 0.06\n");
+    const Board squares = written(request, notes).board;
+    QVERIFY(squares.type == BoardType::Checkerboard && squares.rows == 6 && squares.cols == 7);
+    QCOMPARE(squares.spacing_m, 0.06);
+  }
+
   void ekalibr_recordingThatIsElsewhere_isSaid() {
     const ImportedSession imported = importSession(
         {{write("config.yaml", QString(kEkalibr).replace("recording.bag", "/else/where.bag").toStdString())},
@@ -168,6 +187,20 @@ class TestImportSession : public QObject {
     QVERIFY(has(imported.notes, "cam0: its pose and time offset are left out"));
   }
 
+  void camchain_ofADoubleSphere_becomesIntrinsics() {
+    const QString ds = QString(kCamchain)
+                           .replace("camera_model: pinhole", "camera_model: ds")
+                           .replace("[260, 261, 171, 132]", "[-0.2, 0.6, 260, 261, 171, 132]")
+                           .replace("equidistant", "none")
+                           .replace("[0.1, 0.01, 0, 0]", "[]");
+    const ImportedFiles imported =
+        importFiles({{write("camchain.yaml", ds.toStdString())}, "kalibr", {}, std::nullopt}, "lens.yaml");
+    const CameraIntrinsics read = readIntrinsics(YamlNode::parse(imported.files[0].content, "lens"));
+    QCOMPARE(read.model, CameraModel::DoubleSphere);
+    QCOMPARE(read.focal_length_px.y(), 261.0);
+    QCOMPARE(read.distortion, (std::array<double, 5>{-0.2, 0.6, 0.0, 0.0, 0.0}));
+  }
+
   void badInput_isNamed_data() {
     QTest::addColumn<QString>("file");  // replaces the one of its name
     QTest::addColumn<QString>("from");
@@ -175,16 +208,24 @@ class TestImportSession : public QObject {
     QTest::addColumn<QString>("said");
     QTest::newRow("model") << "camchain.yaml"
                            << "camera_model: pinhole"
-                           << "camera_model: omni"
-                           << "omni";
+                           << "camera_model: scaramuzza"
+                           << "scaramuzza";
+    QTest::newRow("numbers of another model") << "camchain.yaml"
+                                              << "camera_model: pinhole"
+                                              << "camera_model: ds"
+                                              << "distortion_model";
     QTest::newRow("distortion") << "camchain.yaml"
                                 << "equidistant"
                                 << "fov"
                                 << "fov";
-    QTest::newRow("aprilgrid") << "target.yaml"
-                               << "circlegrid"
-                               << "aprilgrid"
-                               << "aprilgrid";
+    QTest::newRow("target") << "target.yaml"
+                            << "circlegrid"
+                            << "dots"
+                            << "'dots' is no target that Evical knows";
+    QTest::newRow("aprilgrid without tags") << "target.yaml"
+                                            << "circlegrid"
+                                            << "aprilgrid"
+                                            << "tagRows";
     QTest::newRow("symmetric with IMU") << "target.yaml"
                                         << "True"
                                         << "False"

@@ -72,6 +72,9 @@ distortion_model: plumb_bob
 distortion_coefficients: {rows: 1, cols: 5, data: [-0.3, 0.1, 0, 0, 0.01]}
 )";
 
+const QString kCircles =
+    "board:\n  type: asymmetric_circles\n  rows: 11\n  cols: 4\n  spacing_m: 0.05\n  radius_m: 0.02\n"
+    "  circles: bright\n";
 const QString kInlineIntrinsics =
     "intrinsics:\n      model: pinhole_radtan\n      focal_length_px: [260.5, 255]\n"
     "      principal_point_px: [170, 131]\n      distortion: [-0.3, 0.1, 0.001, 0.002]\n";
@@ -154,6 +157,67 @@ class TestSession : public QObject {
     QVERIFY(again.imus[0].acceleration_unit == session.imus[0].acceleration_unit);
     QVERIFY(again.options == session.options);
     QCOMPARE(sessionYaml(again, folder()), sessionYaml(session, folder()));
+  }
+
+  void boardsWithoutCircles_areReadAndWritten_data() {
+    QTest::addColumn<QString>("board");
+    QTest::addColumn<int>("points");
+    QTest::addColumn<double>("spacing_m");
+    QTest::newRow("aprilgrid") << "type: aprilgrid, rows: 6, cols: 5, tag_size_m: 0.08, spacing_m: 0.1" << 120
+                               << 0.1;
+    QTest::newRow("as Kalibr says it")
+        << "type: aprilgrid, rows: 6, cols: 5, tag_size_m: 0.08, tag_spacing: 0.25" << 120 << 0.1;
+    QTest::newRow("checkerboard") << "type: checkerboard, rows: 6, cols: 9, spacing_m: 0.03" << 54 << 0.03;
+    QTest::newRow("charuco") << "type: charuco, rows: 6, cols: 9, spacing_m: 0.03, tag_size_m: 0.02" << 40
+                             << 0.03;
+  }
+  void boardsWithoutCircles_areReadAndWritten() {
+    QFETCH(QString, board);
+    QFETCH(int, points);
+    QFETCH(double, spacing_m);
+    const Session session = sessionWith(kCircles, "board: {" + board + "}\n");
+    QCOMPARE(session.board.pointCount(), points);
+    QVERIFY(std::abs(session.board.spacing_m - spacing_m) < 1e-12);
+    writeSession(session, folder() / "again.yaml");
+    QVERIFY(readSession(folder() / "again.yaml").board == session.board);
+  }
+
+  void boardsThatAreNone_areRefused_data() {
+    QTest::addColumn<QString>("board");
+    QTest::addColumn<QString>("said");
+    QTest::newRow("radius of corners")
+        << "type: checkerboard, rows: 6, cols: 9, spacing_m: 0.03, radius_m: 0.01"
+        << "radius_m";
+    QTest::newRow("no tag size") << "type: aprilgrid, rows: 6, cols: 5, spacing_m: 0.1"
+                                 << "tag_size_m";
+    QTest::newRow("twice") << "type: aprilgrid, rows: 6, cols: 5, tag_size_m: 0.08, tag_spacing: 0.25, "
+                              "spacing_m: 0.1"
+                           << "says the same as spacing_m";
+    QTest::newRow("tags that touch") << "type: aprilgrid, rows: 6, cols: 5, tag_size_m: 0.1, spacing_m: 0.1"
+                                     << "less than the distance from one tag to the next";
+    QTest::newRow("half turn") << "type: checkerboard, rows: 6, cols: 8, spacing_m: 0.03"
+                               << "both even or both odd";
+    QTest::newRow("unknown") << "type: dots, rows: 6, cols: 8, spacing_m: 0.03"
+                             << "aprilgrid";
+  }
+  void boardsThatAreNone_areRefused() {
+    QFETCH(QString, board);
+    QFETCH(QString, said);
+    try {
+      sessionWith(kCircles, "board: {" + board + "}\n");
+      QFAIL("taken");
+    } catch (const CalibrationError& error) {
+      QVERIFY2(QString(error.what()).contains(said), error.what());
+    }
+  }
+
+  void shutter_isKept() {
+    const Session session =
+        sessionWith("    stream: /left/events\n", "    stream: /left/events\n    shutter: rolling\n");
+    QVERIFY(session.cameras[0].shutter == Shutter::Rolling);
+    writeSession(session, folder() / "again.yaml");
+    QVERIFY(readSession(folder() / "again.yaml").cameras[0].shutter == Shutter::Rolling);
+    QVERIFY(sessionWith("", "").cameras[0].shutter == Shutter::Global);
   }
 
   void exportsAndRandomWalks_areKept() {

@@ -107,7 +107,7 @@ class TestSessionGuess : public QObject {
     QVERIFY(!session.cameras[0].intrinsics && session.cameras[0].recording.empty());
     QCOMPARE(session.imus.size(), std::size_t{1});
     QCOMPARE(session.reference, std::string("left_imu"));
-    QVERIFY(session.board == CircleBoard{});
+    QVERIFY(session.board == Board{});
   }
 
   void session_withoutAnImuRefersToItsFirstCamera() {
@@ -144,16 +144,29 @@ class TestSessionGuess : public QObject {
     QCOMPARE(session.reference, std::string("a_imu"));
   }
 
-  void useless_isWhatHasNeitherEventsNorImuSamples() {
-    StreamSummary frames = eventStream("/image");
+  // Beside events they are for who asks for them.
+  void frames_areCamerasWhereNothingElseSees() {
+    StreamSummary frames = eventStream("/cam0/image");
     frames.info.type = StreamType::Frames;
-    Inspection inspection = holding({frames});
+    const Session alone = guessedSession("r.bag", holding({frames, imuStream("/imu")}));
+    QCOMPARE(alone.cameras.size(), std::size_t{1});
+    QCOMPARE(alone.cameras[0].stream, std::string("/cam0/image"));
+    const Session beside = guessedSession("r.bag", holding({frames, eventStream("/events")}));
+    QVERIFY(beside.cameras.size() == 1 && beside.cameras[0].stream == "/events");
+    frames.info.timed = false;
+    QVERIFY(guessedSession("r.bag", holding({frames})).cameras.empty());
+  }
+
+  void useless_isWhatHasNeitherEventsNorImuSamples() {
+    StreamSummary triggers = eventStream("/triggers");
+    triggers.info.type = StreamType::Triggers;
+    Inspection inspection = holding({triggers});
     inspection.faults.push_back({"", FaultKind::Truncated, 0.0, "The file ends in the middle of a chunk"});
     const auto error = whyUseless("r.bag", inspection);
     QVERIFY(error && error->kind() == ErrorKind::BadInput);
     QCOMPARE(error->place(), std::string("r.bag"));
-    QCOMPARE(error->problem(),
-             std::string("it holds neither events nor IMU samples. The file ends in the middle of a chunk"));
+    QCOMPARE(error->problem(), std::string("it holds neither events, frames, points nor IMU samples. The "
+                                           "file ends in the middle of a chunk"));
     inspection.streams.push_back(imuStream("/imu"));
     QVERIFY(!whyUseless("r.bag", inspection));
   }

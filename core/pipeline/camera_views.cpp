@@ -1,0 +1,48 @@
+#include "core/pipeline/camera_views.h"
+
+#include "core/base/error.h"
+#include "core/data/calibration_observer.h"
+#include "core/frontend/board_tracker.h"
+#include "core/pipeline/frame_views.h"
+#include "core/pipeline/point_views.h"
+
+namespace evical {
+namespace {
+
+class EventViews final : public CameraViews {
+ public:
+  EventViews(const CameraBatch& first, const ViewRequest& request)
+      : tracker_(request.session.board, *first.opened_px, request.lens.seen_with,
+                 request.session.options.front_end, first.start_ns) {
+    tracker_.stopWith(request.context.stop);
+    if (request.context.observer != nullptr)
+      tracker_.observeWith(request.context.observer->windowObserver(first.camera, tracker_));
+  }
+
+  void take(const CameraBatch& batch) override {
+    tracker_.addBursts(batch.bursts, batch.first_event_ns, batch.complete_until_ns);
+  }
+  const BoardObservations& soFar() const override { return tracker_.observations(); }
+  BoardObservations finish(std::vector<RecordingFault>& /*faults*/) override { return tracker_.finish(); }
+
+ private:
+  BoardTracker tracker_;
+};
+
+}  // namespace
+
+std::unique_ptr<CameraViews> cameraViews(const CameraBatch& first, const ViewRequest& request) {
+  const Session& session = request.session;
+  if (first.kind == CameraKind::Points)
+    return std::make_unique<PointViews>(session.board, session.cameras[first.camera].stream, first,
+                                        request.lens.seen_with);
+  if (first.kind == CameraKind::Frames) return std::make_unique<FrameViews>(first, request);
+  if (!session.board.hasCircles())
+    throw badInput(session.cameras[first.camera].name,
+                   std::string("an event camera in motion cannot see a board of type ") +
+                       boardTypeName(session.board.type),
+                   "Use a grid of circles; checkerboards and AprilGrids are for frame cameras");
+  return std::make_unique<EventViews>(first, request);
+}
+
+}  // namespace evical

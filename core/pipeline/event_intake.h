@@ -1,0 +1,42 @@
+// One camera's events on their way from the recording to the front end: checked, sorted, turned into bursts.
+#pragma once
+
+#include "core/data/event.h"
+#include "core/data/recording_fault.h"
+#include "core/frontend/edge_bursts.h"
+#include "core/pipeline/camera_batch.h"
+#include "core/pipeline/session.h"
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace evical {
+
+class EventIntake {
+ public:
+  EventIntake(std::size_t camera, const SessionCamera& session, Resolution resolution_px,
+              const BurstOptions& bursts)
+      : camera_(camera), session_(session), burst_options_(bursts), resolution_px_(resolution_px) {}
+
+  // Nothing where no event is left. Throws BadInput where too many lie outside the resolution.
+  std::optional<CameraBatch> take(std::vector<Event>& events);
+  std::optional<CameraBatch> finish();
+
+  std::uint64_t eventCount() const { return extractor_ ? extractor_->eventCount() : 0; }
+  void report(std::vector<RecordingFault>& faults) const;
+
+ private:
+  void putInOrder(std::vector<Event>& events);
+
+  std::size_t camera_;
+  const SessionCamera& session_;
+  BurstOptions burst_options_;
+  Resolution resolution_px_;
+  std::optional<BurstExtractor> extractor_;
+  std::int64_t last_ns_ = std::numeric_limits<std::int64_t>::min();
+  std::uint64_t seen_ = 0, outside_ = 0, unsorted_ = 0, late_ = 0;
+};
+
+}  // namespace evical

@@ -1,0 +1,40 @@
+// Points of the board that another program has measured, as views: those of one time are one view.
+#pragma once
+
+#include "core/geometry/board.h"
+#include "core/geometry/camera_intrinsics.h"
+#include "core/pipeline/camera_views.h"
+
+#include <optional>
+#include <string>
+
+namespace evical {
+
+class PointViews final : public CameraViews {
+ public:
+  PointViews(const Board& board, std::string stream, const CameraBatch& first,
+             const std::optional<CameraIntrinsics>& lens);
+
+  // Throws BadInput where points are not this board's, or not this sensor's.
+  void take(const CameraBatch& batch) override;
+  const BoardObservations& soFar() const override { return observations_; }
+  BoardObservations finish(std::vector<RecordingFault>& faults) override;
+
+ private:
+  bool belongs(const MeasuredPoint& point);
+  void checkShare() const;
+
+  const Board& board_;
+  std::string stream_;
+  Resolution resolution_px_;
+  std::int64_t start_ns_;
+  std::optional<CameraIntrinsics> lens_;
+  BoardObservations observations_;
+  std::uint64_t seen_ = 0, unknown_ = 0, outside_ = 0, twice_ = 0;
+  int largest_ = 0;  // index of a point that the board does not have
+};
+
+// Image velocities by those of the same point in the views before and behind, where these are near.
+void setVelocities(BoardObservations& observations);
+
+}  // namespace evical
