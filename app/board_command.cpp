@@ -9,30 +9,49 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace evical {
 namespace {
 
 struct Arguments {
-  CircleBoard board;
-  std::string type = "asymmetric_circles", circles = "dark";
+  Board board;
+  BoardType type = BoardType::AsymmetricCircles;
+  std::string circles = "dark";
+  std::optional<double> radius_m, tag_size_m;
+  TagPrint print;
   double margin_m = 0.02;
   std::filesystem::path output;
 };
 
-void drawBoard(Arguments arguments) {
-  CircleBoard& board = arguments.board;
-  board.type =
-      arguments.type == "symmetric_circles" ? BoardType::SymmetricCircles : BoardType::AsymmetricCircles;
+// What is not said is what suits the board: Kalibr's gaps between tags, and markers with some room.
+Board completeBoard(const Arguments& arguments) {
+  Board board = arguments.board;
+  board.type = arguments.type;
   board.circles = arguments.circles == "bright" ? CircleShade::Bright : CircleShade::Dark;
+  board.radius_m = arguments.radius_m.value_or(board.hasCircles() ? board.radius_m : 0.0);
+  constexpr double kTagOfGrid = 1.0 / 1.3, kMarkerOfSquare = 0.75;
+  if (board.type == BoardType::AprilGrid)
+    board.tag_size_m = arguments.tag_size_m.value_or(kTagOfGrid * board.spacing_m);
+  else if (board.type == BoardType::Charuco)
+    board.tag_size_m = arguments.tag_size_m.value_or(kMarkerOfSquare * board.spacing_m);
+  else if (arguments.tag_size_m)
+    throw badInput("--tag-size-m", "is of aprilgrid and charuco, and this board has no tags", "Leave it out");
+  return board;
+}
+
+void drawBoard(const Arguments& arguments) {
+  const Board board = completeBoard(arguments);
   const std::string extension = arguments.output.extension().string();
   if (extension != ".pdf" && extension != ".svg")
     throw badInput(arguments.output.string(), "is neither .pdf nor .svg",
                    "Name the file board.pdf or board.svg");
-  writeFileWhole(arguments.output, extension == ".pdf" ? boardPdf(board, arguments.margin_m)
-                                                       : boardSvg(board, arguments.margin_m));
+  writeFileWhole(arguments.output, extension == ".pdf"
+                                       ? boardPdf(board, arguments.margin_m, arguments.print)
+                                       : boardSvg(board, arguments.margin_m, arguments.print));
   print("{}: print at 100 %, and check the line below the board: 100 mm\n", arguments.output.string());
   if (board.hasHalfTurnAmbiguity())
     print(
@@ -40,23 +59,51 @@ void drawBoard(Arguments arguments) {
         "IMU.\n");
 }
 
+std::map<std::string, BoardType> typesByName() {
+  std::map<std::string, BoardType> types;
+  for (const BoardType type : {BoardType::AsymmetricCircles, BoardType::SymmetricCircles,
+                               BoardType::Checkerboard, BoardType::AprilGrid, BoardType::Charuco})
+    types[boardTypeName(type)] = type;
+  return types;
+}
+
 }  // namespace
 
 void addBoardCommand(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("board", "A printable target, true to scale");
-  command->add_option("--rows", arguments->board.rows, "Rows of circles")->capture_default_str();
-  command->add_option("--cols", arguments->board.cols, "Circles in a row")->capture_default_str();
-  command->add_option("--spacing-m", arguments->board.spacing_m, "Between two rows, metres")
+  command
+      ->add_option("--rows", arguments->board.rows,
+                   "Of circles, of a checkerboard's inner corners, of tags, of a ChArUco board's squares")
       ->capture_default_str();
-  command->add_option("--radius-m", arguments->board.radius_m, "Of a circle, metres")->capture_default_str();
-  command->add_option("--type", arguments->type, "Pattern")
-      ->check(CLI::IsMember({"asymmetric_circles", "symmetric_circles"}))
+  command->add_option("--cols", arguments->board.cols, "Circles, corners, tags or squares in a row")
       ->capture_default_str();
+  command
+      ->add_option("--spacing-m", arguments->board.spacing_m,
+                   "Between two rows of circles; a square's edge; from one tag to the next. Metres")
+      ->capture_default_str();
+  command->add_option("--radius-m", arguments->radius_m, "Of a circle, metres (0.02)");
+  command->add_option("--tag-size-m", arguments->tag_size_m,
+                      "Black edge of a tag, metres (aprilgrid: spacing / 1.3; charuco: 0.75 spacing)");
+  command
+      ->add_option("--tag-border", arguments->print.border_bits,
+                   "Of an AprilGrid's tags, bits: Kalibr's is 2")
+      ->check(CLI::Range(1, 2))
+      ->capture_default_str();
+  command
+      ->add_option("--markers", arguments->print.markers, "ArUco dictionary of a ChArUco board, by its bits")
+      ->check(CLI::IsMember(markerNames()))
+      ->capture_default_str();
+  command
+      ->add_option_function<std::string>(
+          "--type", [arguments](const std::string& name) { arguments->type = typesByName().at(name); },
+          "Pattern")
+      ->check(CLI::IsMember(typesByName()))
+      ->default_str(boardTypeName(arguments->type));
   command->add_option("--circles", arguments->circles, "Their shade")
       ->check(CLI::IsMember({"dark", "bright"}))
       ->capture_default_str();
-  command->add_option("--margin-m", arguments->margin_m, "Around the outer circles, metres")
+  command->add_option("--margin-m", arguments->margin_m, "Around the outermost edges, metres")
       ->capture_default_str();
   command->add_option("-o,--output", arguments->output, "The file, .pdf or .svg")->required();
   command->callback([arguments, &exit_code] {

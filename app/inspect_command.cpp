@@ -46,13 +46,32 @@ void printImu(const StreamSummary& stream) {
   print("    {:<22} {:.4f} {}\n", "median of its norm", stream.median_acceleration, stream.acceleration_unit);
 }
 
+void printFrames(const StreamSummary& stream) {
+  const StreamInfo& info = stream.info;
+  print("    {:<22} {}", "frames", stream.count);
+  if (stream.rate_hz > 0.0) print(", {:.4g} per s", stream.rate_hz);
+  print("\n");
+  if (info.resolution_px.known())
+    print("    {:<22} {} x {}\n", "resolution", info.resolution_px.width_px, info.resolution_px.height_px);
+  if (stream.longest_exposure_s > 0.0)
+    print("    {:<22} {:.3f} .. {:.3f} ms\n", "exposure", 1e3 * stream.shortest_exposure_s,
+          1e3 * stream.longest_exposure_s);
+  const char* use = !info.readable ? "nothing here: they are only listed"
+                    : info.timed   ? "pictures of a frame camera, with their times"
+                                   : "a camera's intrinsics only, for want of times";
+  print("    {:<22} {}\n", "good for", use);
+}
+
 void printStream(const StreamSummary& stream, bool checksum) {
   const StreamInfo& info = stream.info;
   print("\n  {}  [{}, {}]\n", info.name, streamTypeName(info.type), info.message);
-  if (info.type != StreamType::Events && info.type != StreamType::Imu) {
+  const bool frames = info.type == StreamType::Frames;
+  if (frames) printFrames(stream);
+  if (info.type != StreamType::Events && info.type != StreamType::Imu && !frames) {
     if (stream.count > 0) print("    {:<22} {}\n", "messages", stream.count);
     return;
   }
+  if (frames && (!info.readable || !info.timed)) return;
   if (info.type == StreamType::Events) printEvents(stream, checksum);
   if (info.type == StreamType::Imu) printImu(stream);
   if (stream.count == 0) return;
@@ -90,8 +109,9 @@ void addInspectCommand(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("inspect", "Show what a recording holds, and what is wrong with it.");
   command
-      ->add_option("recording", arguments->recording,
-                   "A bag, a text file, or a folder with events.txt and imu.txt.")
+      ->add_option(
+          "recording", arguments->recording,
+          "A file or folder of any format that can be read: a bag, AEDAT, RAW, HDF5, text, pictures.")
       ->required();
   command->add_flag("--json", arguments->json, "Print JSON instead of text.");
   command->add_flag("--checksum", arguments->checksum, "Add sums over all events, to compare readers.");

@@ -3,6 +3,9 @@
 #include "core/base/yaml_node.h"
 #include "core/data/intrinsics_yaml.h"
 #include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/lens_fit.h"
+#include "core/geometry/sphere_lens.h"
+#include "core/report/export/kalibr_text.h"
 #include "core/report/result_yaml.h"
 #include "core/report/table_row.h"
 
@@ -121,34 +124,49 @@ std::string intrinsicsResultYaml(const NamedIntrinsics& named) {
                             yamlText(named.version));
 }
 
-std::string cameraInfoYaml(const std::string& camera, const CameraIntrinsics& c) {
+namespace {
+
+// What ROS knows of a lens that is no pinhole, and a comment that says so.
+struct RosLens {
+  CameraIntrinsics camera;
+  std::string comment;
+};
+RosLens rosLens(const CameraIntrinsics& camera) {
+  if (!isSphereModel(camera.model)) return {camera, {}};
+  const LensFit fit = fitLens(camera, CameraModel::PinholeEquidistant, 4);
+  return {fit.camera,
+          fmt::format("# ROS has no place for the model {}: refitted as equidistant{}, off by {:.2g} px "
+                      "RMS, {:.2g} px at most\n",
+                      cameraModelName(camera.model), fit.whole_image ? "" : " up to 85 deg off the axis",
+                      fit.rms_px, fit.worst_px)};
+}
+
+}  // namespace
+
+std::string cameraInfoYaml(const std::string& camera, const CameraIntrinsics& own) {
+  const auto [c, comment] = rosLens(own);
   const bool radtan = c.model == CameraModel::PinholeRadtan;
   const std::size_t count = radtan ? 5 : 4;
   const double fx = c.focal_length_px.x(), fy = c.focal_length_px.y();
   const double cx = c.principal_point_px.x(), cy = c.principal_point_px.y();
-  return fmt::format(
-      "image_width: {}\nimage_height: {}\ncamera_name: {}\n"
-      "camera_matrix:\n  rows: 3\n  cols: 3\n  data: [{}, 0, {}, 0, {}, {}, 0, 0, 1]\n"
-      "distortion_model: {}\ndistortion_coefficients:\n  rows: 1\n  cols: {}\n  data: {}\n"
-      "rectification_matrix:\n  rows: 3\n  cols: 3\n  data: [1, 0, 0, 0, 1, 0, 0, 0, 1]\n"
-      "projection_matrix:\n  rows: 3\n  cols: 4\n  data: [{}, 0, {}, 0, 0, {}, {}, 0, 0, 0, 1, 0]\n",
-      c.resolution_px.width_px, c.resolution_px.height_px, yamlText(camera), fx, cx, fy, cy,
-      radtan ? "plumb_bob" : "equidistant", count, coefficients(c, count), fx, cx, fy, cy);
+  return comment +
+         fmt::format(
+             "image_width: {}\nimage_height: {}\ncamera_name: {}\n"
+             "camera_matrix:\n  rows: 3\n  cols: 3\n  data: [{}, 0, {}, 0, {}, {}, 0, 0, 1]\n"
+             "distortion_model: {}\ndistortion_coefficients:\n  rows: 1\n  cols: {}\n  data: {}\n"
+             "rectification_matrix:\n  rows: 3\n  cols: 3\n  data: [1, 0, 0, 0, 1, 0, 0, 0, 1]\n"
+             "projection_matrix:\n  rows: 3\n  cols: 4\n  data: [{}, 0, {}, 0, 0, {}, {}, 0, 0, 0, 1, 0]\n",
+             c.resolution_px.width_px, c.resolution_px.height_px, yamlText(camera), fx, cx, fy, cy,
+             radtan ? "plumb_bob" : "equidistant", count, coefficients(c, count), fx, cx, fy, cy);
 }
 
 std::string camchainYaml(const std::string& stream, const CameraIntrinsics& c) {
-  const bool radtan = c.model == CameraModel::PinholeRadtan;
   std::string text;
-  // Kalibr's radtan has no k3.
-  if (distortionCount(c) == 5)
+  if (c.model == CameraModel::PinholeRadtan && distortionCount(c) == 5)
     text += fmt::format("# k3 = {} is left out: Kalibr's radtan has no such coefficient\n", c.distortion[4]);
-  return text + fmt::format(
-                    "cam0:\n  camera_model: pinhole\n  intrinsics: [{}, {}, {}, {}]\n"
-                    "  distortion_model: {}\n  distortion_coeffs: {}\n  resolution: [{}, {}]\n"
-                    "  rostopic: {}\n  cam_overlaps: []\n",
-                    c.focal_length_px.x(), c.focal_length_px.y(), c.principal_point_px.x(),
-                    c.principal_point_px.y(), radtan ? "radtan" : "equidistant", coefficients(c, 4),
-                    c.resolution_px.width_px, c.resolution_px.height_px, yamlText(stream));
+  return text + fmt::format("cam0:\n{}  resolution: [{}, {}]\n  rostopic: {}\n  cam_overlaps: []\n",
+                            kalibrLensText(c), c.resolution_px.width_px, c.resolution_px.height_px,
+                            yamlText(stream));
 }
 
 std::string intrinsicsTable(const NamedIntrinsics& named) {
@@ -161,7 +179,9 @@ std::string intrinsicsTable(const NamedIntrinsics& named) {
                       r.image.rms_px, r.image.max_px);
   text += fmt::format("    {:<26}{:>12.4f} px RMS, {:.2f} of what its sigmas say\n", "reprojection",
                       r.reprojection_rms_px, r.normalised_rms);
-  text += fmt::format("    {:<26}{:>12.4f} +- {:.4f} px\n", "edge lead", r.edge_lead_px, r.edge_lead_std_px);
+  if (r.edge_lead_std_px > 0.0)
+    text +=
+        fmt::format("    {:<26}{:>12.4f} +- {:.4f} px\n", "edge lead", r.edge_lead_px, r.edge_lead_std_px);
   text += fmt::format("    {:<26}{:>12} of {}, {} circles, {} dropped; tilted by up to {:.0f} deg\n", "views",
                       r.views_used, r.views_found, r.circles_used, r.circles_rejected, r.largest_tilt_deg);
   text += "Where circles were seen (. none, - few, + some, # many):\n" + coveragePicture(r.image);

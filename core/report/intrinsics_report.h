@@ -16,6 +16,7 @@ struct NamedIntrinsics {
 
 // Reads back as intrinsics of a session (core/data/intrinsics_yaml.h).
 std::string intrinsicsResultYaml(const NamedIntrinsics& named);
+// ROS knows pinholes only: others are refitted, and a comment says how well that goes.
 std::string cameraInfoYaml(const std::string& camera, const CameraIntrinsics& intrinsics);
 std::string camchainYaml(const std::string& stream, const CameraIntrinsics& intrinsics);
 

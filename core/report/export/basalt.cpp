@@ -1,3 +1,4 @@
+#include "core/geometry/intrinsics_numbers.h"
 #include "core/report/export/distortion_fit.h"
 #include "core/report/export/export_text.h"
 #include "core/report/export/exporters.h"
@@ -12,7 +13,7 @@ namespace evical {
 namespace {
 
 constexpr const char* kProgram = "Basalt";
-constexpr KnownModels kModels{kProgram, false, false, true};
+constexpr KnownModels kModels{kProgram, false, false, true, true, true, false};
 
 std::string poseText(const RigidTransform& pose) {
   const Eigen::Vector3d& p = pose.translation_m;
@@ -24,12 +25,16 @@ std::string poseText(const RigidTransform& pose) {
 
 std::string cameraText(const RigCamera& camera, ExportNotes& notes) {
   const CameraIntrinsics own = cameraFor(camera, kModels, notes);
-  const auto& d = own.distortion;
-  return fmt::format(
-      R"({{"camera_type": "kb4", "intrinsics": {{"fx": {}, "fy": {}, "cx": {}, "cy": {}, "k1": {}, "k2": {}, )"
-      R"("k3": {}, "k4": {}}}}})",
-      real(own.focal_length_px.x()), real(own.focal_length_px.y()), real(own.principal_point_px.x()),
-      real(own.principal_point_px.y()), real(d[0]), real(d[1]), real(d[2]), real(d[3]));
+  const char* type = own.model == CameraModel::DoubleSphere ? "ds"
+                     : own.model == CameraModel::Eucm       ? "eucm"
+                                                            : "kb4";
+  std::string coefficients;
+  const auto names = distortionNames(own.model);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(coefficientCount(own.model)); ++k)
+    coefficients += fmt::format(R"(, "{}": {})", names[k], real(own.distortion[k]));
+  return fmt::format(R"({{"camera_type": "{}", "intrinsics": {{"fx": {}, "fy": {}, "cx": {}, "cy": {}{}}}}})",
+                     type, real(own.focal_length_px.x()), real(own.focal_length_px.y()),
+                     real(own.principal_point_px.x()), real(own.principal_point_px.y()), coefficients);
 }
 
 template <class Text>

@@ -9,22 +9,14 @@
 
 namespace evical {
 
-struct FittedCamera {
-  CameraIntrinsics camera;
-  double rms_px = 0.0, worst_px = 0.0;  // over the image: how far apart both see the same ray
-};
-
-// The camera of another model, or with fewer coefficients (4 of radtan: without k3), that comes nearest over
-// the whole image, by least squares of pixels.
-FittedCamera fitDistortion(const CameraIntrinsics& camera, CameraModel model, int coefficients);
-
-// What a program can hold.
+// What a program can hold; one of radtan and equidistant at least.
 struct KnownModels {
   const char* program;
   bool radtan = true, third_radial = false, equidistant = true;
+  bool double_sphere = false, eucm = false, omni = false;
 };
 
-// The camera as it is where the program can hold it; else refitted, with a note of the error; where that is
+// The camera as it is where the program can hold it; else refitted (lens_fit.h), with a note of the error; where that is
 // more than 2 px anywhere in the image, throws CalibrationError (BadInput).
 CameraIntrinsics cameraFor(const RigCamera& camera, const KnownModels& known, ExportNotes& notes);
 

@@ -11,21 +11,16 @@
 namespace evical {
 namespace {
 
-constexpr KnownModels kModels{"Kalibr", true, false, true};
+constexpr KnownModels kModels{"Kalibr", true, false, true, true, true, true};
 
 std::string cameraText(const Rig& rig, std::size_t i, const CameraIntrinsics& own) {
   const RigCamera& camera = rig.cameras[i];
   std::string overlaps;
   for (std::size_t other = 0; other < rig.cameras.size(); ++other)
     if (other != i) overlaps += fmt::format("{}{}", overlaps.empty() ? "" : ", ", other);
-  return fmt::format(
-      "  cam_overlaps: [{}]\n  camera_model: pinhole\n  distortion_coeffs: [{}]\n  distortion_model: {}\n"
-      "  intrinsics: [{}, {}, {}, {}]\n  resolution: [{}, {}]\n  rostopic: {}\n",
-      overlaps, realList(distortionOf(own, 4)),
-      own.model == CameraModel::PinholeRadtan ? "radtan" : "equidistant", real(own.focal_length_px.x()),
-      real(own.focal_length_px.y()), real(own.principal_point_px.x()), real(own.principal_point_px.y()),
-      own.resolution_px.width_px, own.resolution_px.height_px,
-      yamlText(camera.stream.empty() ? fmt::format("/{}", camera.file_name) : camera.stream));
+  return fmt::format("  cam_overlaps: [{}]\n{}  resolution: [{}, {}]\n  rostopic: {}\n", overlaps,
+                     kalibrLensText(own), own.resolution_px.width_px, own.resolution_px.height_px,
+                     yamlText(camera.stream.empty() ? fmt::format("/{}", camera.file_name) : camera.stream));
 }
 
 // Rows are indented further than their key, or OpenCV's parser (OpenVINS) fails.
@@ -49,10 +44,31 @@ std::string camchain(const Rig& rig, const std::vector<CameraIntrinsics>& lenses
 
 }  // namespace
 
-std::vector<CameraIntrinsics> kalibrLenses(const Rig& rig, ExportNotes& notes) {
+std::vector<CameraIntrinsics> lensesFor(const KnownModels& known, const Rig& rig, ExportNotes& notes) {
   std::vector<CameraIntrinsics> lenses;
-  for (const RigCamera& camera : rig.cameras) lenses.push_back(cameraFor(camera, kModels, notes));
+  for (const RigCamera& camera : rig.cameras) lenses.push_back(cameraFor(camera, known, notes));
   return lenses;
+}
+
+std::string kalibrLensText(const CameraIntrinsics& camera) {
+  const bool spheres = camera.model == CameraModel::DoubleSphere || camera.model == CameraModel::Eucm;
+  const bool omni = camera.model == CameraModel::OmniRadtan;
+  const auto* const coefficients = camera.distortion.data();
+  const std::ptrdiff_t own = spheres ? 2 : omni ? 1 : 0;  // of them are among the intrinsics, first
+  std::vector<double> intrinsics(coefficients, coefficients + own);
+  intrinsics.insert(intrinsics.end(), camera.focal_length_px.begin(), camera.focal_length_px.end());
+  intrinsics.insert(intrinsics.end(), camera.principal_point_px.begin(), camera.principal_point_px.end());
+  const std::vector<double> distortion(coefficients + own, coefficients + own + (spheres ? 0 : 4));
+  const char* model = camera.model == CameraModel::DoubleSphere ? "ds"
+                      : camera.model == CameraModel::Eucm       ? "eucm"
+                      : omni                                    ? "omni"
+                                                                : "pinhole";
+  const char* distortion_model = spheres                                           ? "none"
+                                 : camera.model == CameraModel::PinholeEquidistant ? "equidistant"
+                                                                                   : "radtan";
+  return fmt::format(
+      "  camera_model: {}\n  distortion_coeffs: [{}]\n  distortion_model: {}\n  intrinsics: [{}]\n", model,
+      realList(distortion), distortion_model, realList(intrinsics));
 }
 
 std::string kalibrChain(const Rig& rig, const std::vector<CameraIntrinsics>& lenses,
@@ -131,7 +147,7 @@ std::string imuFile(const Rig& rig, ExportNotes& notes) {
 ExportedFiles exportKalibr(const NamedResult& result) {
   ExportedFiles exported;
   const Rig rig = rigOf(result);
-  const std::vector<CameraIntrinsics> lenses = kalibrLenses(rig, exported.notes);
+  const std::vector<CameraIntrinsics> lenses = lensesFor(kModels, rig, exported.notes);
   exported.files.push_back({"camchain.yaml", camchain(rig, lenses)});
   if (rig.imus.empty()) {
     noteNoOffsets(rig, "Kalibr's camchain.yaml", exported.notes);

@@ -1,6 +1,7 @@
 // Parts of Kalibr's files, which OpenVINS and Ultimate SLAM read too.
 #pragma once
 
+#include "core/report/export/distortion_fit.h"
 #include "core/report/export/rig.h"
 
 #include <Eigen/Core>
@@ -10,8 +11,11 @@
 
 namespace evical {
 
-// The rig's cameras in models that Kalibr knows.
-std::vector<CameraIntrinsics> kalibrLenses(const Rig& rig, ExportNotes& notes);
+// The rig's cameras in models that the program knows.
+std::vector<CameraIntrinsics> lensesFor(const KnownModels& known, const Rig& rig, ExportNotes& notes);
+
+// Kalibr's camera_model, distortion_coeffs, distortion_model and intrinsics. Its radtan has no k3.
+std::string kalibrLensText(const CameraIntrinsics& camera);
 
 // camchain-imucam.yaml: T_cam_imu, timeshift_cam_imu and all of camchain.yaml. The IMU's
 // frame is turned by other_from_imu.

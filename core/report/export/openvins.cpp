@@ -31,7 +31,8 @@ ExportedFiles exportOpenVins(const NamedResult& result) {
   const std::string first_line = "%YAML:1.0\n";
   exported.files.push_back(
       {"kalibr_imucam_chain.yaml",
-       first_line + kalibrChain(rig, kalibrLenses(rig, exported.notes), Eigen::Matrix3d::Identity(),
+       first_line + kalibrChain(rig, lensesFor({"OpenVINS"}, rig, exported.notes),
+                                Eigen::Matrix3d::Identity(),
                                 {"OpenVINS. T_cam_imu takes points of the IMU to the camera; t_imu = t_cam + "
                                  "timeshift_cam_imu (that of cam0 is used)."})});
   exported.files.push_back(

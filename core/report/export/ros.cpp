@@ -116,12 +116,12 @@ std::string urdf(const Rig& rig, const std::vector<Joint>& joints) {
   return text;
 }
 
-std::string cameraInfo(const Rig& rig, const RigCamera& camera) {
+std::string cameraInfo(const Rig& rig, const RigCamera& camera, const CameraIntrinsics& own) {
   Eigen::Matrix<double, 3, 4> projection = Eigen::Matrix<double, 3, 4>::Zero();
-  projection.leftCols<3>() = cameraMatrix(camera.intrinsics);
+  projection.leftCols<3>() = cameraMatrix(own);
   return headerComment(rig, {"ROS camera_info of one camera. Where it sits and its time offset: see "
                              "static_transforms.sh."}) +
-         cameraInfoBody(camera.file_name, camera.intrinsics, 5) + "rectification_matrix:\n" +
+         cameraInfoBody(camera.file_name, own, 5) + "rectification_matrix:\n" +
          dataMatrix(Eigen::Matrix3d::Identity(), 2) + "projection_matrix:\n" + dataMatrix(projection, 2);
 }
 
@@ -130,8 +130,10 @@ std::string cameraInfo(const Rig& rig, const RigCamera& camera) {
 ExportedFiles exportRos(const NamedResult& result) {
   ExportedFiles exported;
   const Rig rig = rigOf(result);
+  constexpr KnownModels kModels{"ROS", true, true, true};
   for (const RigCamera& camera : rig.cameras)
-    exported.files.push_back({camera.file_name + ".yaml", cameraInfo(rig, camera)});
+    exported.files.push_back(
+        {camera.file_name + ".yaml", cameraInfo(rig, camera, cameraFor(camera, kModels, exported.notes))});
   const std::vector<Joint> joints = jointsOf(rig);
   if (joints.empty()) return exported;
   exported.files.push_back({"static_transforms.sh", tf2Script(rig, joints)});

@@ -11,20 +11,34 @@ namespace evical {
 namespace {
 
 constexpr const char* kProgram = "VINS-Fusion";
-constexpr KnownModels kModels{kProgram, true, false, true};
+constexpr KnownModels kModels{kProgram, true, false, true, false, false, true};
 constexpr std::size_t kMostCameras = 2;
+
+// Of camodocal's MEI.
+std::string omniText(const CameraIntrinsics& own) {
+  const auto& d = own.distortion;
+  return fmt::format(
+      "mirror_parameters:\n   xi: {}\ndistortion_parameters:\n   k1: {}\n   k2: {}\n   p1: {}\n   p2: {}\n"
+      "projection_parameters:\n   gamma1: {}\n   gamma2: {}\n   u0: {}\n   v0: {}\n",
+      real(d[0]), real(d[1]), real(d[2]), real(d[3]), real(d[4]), real(own.focal_length_px.x()),
+      real(own.focal_length_px.y()), real(own.principal_point_px.x()), real(own.principal_point_px.y()));
+}
 
 // camodocal's camera file. Its Kannala-Brandt k2..k5 are k1..k4 elsewhere.
 std::string cameraFile(const Rig& rig, const RigCamera& camera, ExportNotes& notes) {
   const CameraIntrinsics own = cameraFor(camera, kModels, notes);
   const bool radtan = own.model == CameraModel::PinholeRadtan;
+  const bool omni = own.model == CameraModel::OmniRadtan;
   const std::vector<double> d = distortionOf(own, 4);
   const std::string f[] = {real(own.focal_length_px.x()), real(own.focal_length_px.y()),
                            real(own.principal_point_px.x()), real(own.principal_point_px.y())};
   std::string text = "%YAML:1.0\n---\n" + headerComment(rig, {"Camera of VINS-Fusion (camodocal)."}) +
                      fmt::format("model_type: {}\ncamera_name: {}\nimage_width: {}\nimage_height: {}\n",
-                                 radtan ? "PINHOLE" : "KANNALA_BRANDT", camera.file_name,
-                                 own.resolution_px.width_px, own.resolution_px.height_px);
+                                 omni     ? "MEI"
+                                 : radtan ? "PINHOLE"
+                                          : "KANNALA_BRANDT",
+                                 camera.file_name, own.resolution_px.width_px, own.resolution_px.height_px);
+  if (omni) return text + omniText(own);
   if (!radtan)
     return text + fmt::format(
                       "projection_parameters:\n   k2: {}\n   k3: {}\n   k4: {}\n   k5: {}\n   mu: {}\n   mv: "

@@ -34,6 +34,10 @@ const char* remedy(WindowOutcome outcome) {
       return "Show the whole board more often: parts without an edge of it cannot be placed.";
     case WindowOutcome::RefinementFailed:
       return "Move more evenly, or more slowly: circles are blurred or overlaid by other edges.";
+    case WindowOutcome::Blurred:
+      return "Move more slowly, or set a shorter exposure and more light: frames are blurred.";
+    case WindowOutcome::Unreadable:
+      return "Copy the recording again: many of its pictures are damaged.";
     default:
       return "";
   }

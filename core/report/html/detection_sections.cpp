@@ -12,8 +12,8 @@
 namespace evical::html {
 namespace {
 
-constexpr std::array<const char*, kWindowOutcomeCount> kOutcomeClasses = {"o0", "o1", "o2", "o3",
-                                                                          "o4", "o5", "o6", "o7"};
+constexpr std::array<const char*, kWindowOutcomeCount> kOutcomeClasses = {"o0", "o1", "o2", "o3", "o4",
+                                                                          "o5", "o6", "o7", "o8", "o9"};
 
 // Runs of windows with one outcome.
 PlotTable timelineTable(const BoardObservations& camera, std::size_t index) {
@@ -77,7 +77,9 @@ std::string outcomeTable(const CameraMeasures& camera) {
       "circles, but in no lattice",
       "a lattice of too few circles: the board only just in view",
       "several ways to lay the board on what was seen",
-      "circles lost when all were fitted together: blur or clutter"};
+      "circles lost when all were fitted together: blur or clutter",
+      "the board moved too far while the frame was exposed",
+      "a damaged picture"};
   std::vector<std::vector<std::string>> rows;
   for (std::size_t k = 0; k < kWindowOutcomeCount; ++k) {
     if (camera.outcomes[k] == 0) continue;
@@ -220,10 +222,10 @@ void writeDetections(const ReportData& data, const Measures& measures, ReportPag
     page.heading("Camera " + cameraName(data, i));
     const PlotTable runs = timelineTable(data.cameras[i], i), counts = circlesTable(data.cameras[i], i);
     page.figure(
-        timelineSvg(runs, counts, camera, data.board.circleCount()),
+        timelineSvg(runs, counts, camera, data.board.pointCount()),
         fmt::format("The bar says what became of each window, the dots how many of the board's {} circles "
                     "were found. Long stretches without the board are lost for the calibration.",
-                    data.board.circleCount()),
+                    data.board.pointCount()),
         &runs);
     page.text(outcomeTable(camera));
     page.keep(runs);

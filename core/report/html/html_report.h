@@ -23,7 +23,7 @@ struct ReportNeeds {
 struct ReportData {
   const NamedResult& named;
   std::string recording;  // as people know it: the file's name
-  CircleBoard board = {};
+  Board board = {};
   std::int64_t start_ns = 0;
   std::span<const BoardObservations> cameras = {};
   std::span<const CameraLens> lenses = {};  // what they were seen with

@@ -110,11 +110,10 @@ void writeCamera(const ReportData& data, std::size_t index, ReportPage& page) {
   page.text(paragraph(
       "", fmt::format("{}, {} x {} px, from {} of {} views ({} circles, {} dropped), tilted by up to {} deg; "
                       "reprojection {} px RMS.",
-                      found.intrinsics.model == CameraModel::PinholeRadtan ? "Pinhole, radial-tangential"
-                                                                           : "Pinhole, equidistant",
-                      found.intrinsics.resolution_px.width_px, found.intrinsics.resolution_px.height_px,
-                      found.views_used, found.views_found, found.circles_used, found.circles_rejected,
-                      number(found.largest_tilt_deg, 0), significant(found.reprojection_rms_px))));
+                      cameraModelTitle(found.intrinsics.model), found.intrinsics.resolution_px.width_px,
+                      found.intrinsics.resolution_px.height_px, found.views_used, found.views_found,
+                      found.circles_used, found.circles_rejected, number(found.largest_tilt_deg, 0),
+                      significant(found.reprojection_rms_px))));
   if (!found.reason.empty())
     page.text(paragraph("", fmt::format("<b class=\"bad\">Doubtful</b>: {}.", escaped(found.reason))));
   for (const std::string& advice : found.advice) page.text(paragraph("", escaped(advice) + "."));

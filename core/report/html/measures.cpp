@@ -57,10 +57,10 @@ void addDetections(const BoardObservations& observations, const std::optional<Ca
 }
 
 void addPoses(const BoardObservations& observations, const CalibrationState& state, std::size_t index,
-              const CircleBoard& board, CameraMeasures& camera) {
+              const Board& board, CameraMeasures& camera) {
   if (index >= state.cameras.size() || state.imu_in_world_m.segmentCount() < 1) return;
   Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();
-  for (const Eigen::Vector2d& centre_m : circleCentres_m(board)) middle_m += centre_m / board.circleCount();
+  for (const Eigen::Vector2d& centre_m : boardPoints_m(board)) middle_m += centre_m / board.pointCount();
   const CameraState& mounted = state.cameras[index];
   for (const BoardView& view : observations.views) {
     const double time_s = referenceTime_s(mounted, view.time_s);

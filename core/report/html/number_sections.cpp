@@ -1,5 +1,7 @@
 // Verdict, results with their sigmas, how the sensors sit.
 #include "core/base/element.h"
+#include "core/data/intrinsics_result.h"
+#include "core/geometry/intrinsics_numbers.h"
 #include "core/numerics/angles.h"
 #include "core/report/html/html_text.h"
 #include "core/report/html/report_page.h"
@@ -118,9 +120,11 @@ void writeCameraNumbers(const ReportData& data, std::size_t i, ReportPage& page)
   addGiven(data.named.result->uncertainty, cameraName(data, i), page);
   const std::optional<CameraIntrinsics>& intrinsics = state.lens.inUse();
   if (!intrinsics) return;
+  const auto names = distortionNames(intrinsics->model);
   std::string distortion;
-  for (const double d : intrinsics->distortion)
-    distortion += (distortion.empty() ? "" : ", ") + significant(d, 4);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(distortionCount(*intrinsics)); ++k)
+    distortion +=
+        fmt::format("{}{} {}", k == 0 ? "" : ", ", names[k], significant(intrinsics->distortion[k], 4));
   page.text(paragraph(
       "small",
       fmt::format("Intrinsics {}: {}, {} x {} px, focal length {}, {} px, principal point {}, {} px, "
@@ -128,11 +132,9 @@ void writeCameraNumbers(const ReportData& data, std::size_t i, ReportPage& page)
                   state.lens.solved         ? "as solved with everything else"
                   : state.lens.foundFirst() ? "as calibrated first"
                                             : "as given",
-                  intrinsics->model == CameraModel::PinholeRadtan ? "pinhole, radial-tangential"
-                                                                  : "pinhole, equidistant",
-                  intrinsics->resolution_px.width_px, intrinsics->resolution_px.height_px,
-                  number(intrinsics->focal_length_px.x(), 3), number(intrinsics->focal_length_px.y(), 3),
-                  number(intrinsics->principal_point_px.x(), 3),
+                  cameraModelTitle(intrinsics->model), intrinsics->resolution_px.width_px,
+                  intrinsics->resolution_px.height_px, number(intrinsics->focal_length_px.x(), 3),
+                  number(intrinsics->focal_length_px.y(), 3), number(intrinsics->principal_point_px.x(), 3),
                   number(intrinsics->principal_point_px.y(), 3), distortion)));
 }
 

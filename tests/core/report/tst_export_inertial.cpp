@@ -1,7 +1,7 @@
 // Files for visual-inertial programs, read back in each program's own convention: a world point must land on
 // the same pixel, and the IMU must measure the same.
 #include "core/base/error.h"
-#include "core/report/export/distortion_fit.h"
+#include "core/geometry/lens_fit.h"
 #include "tests/core/report/exported_rig.h"
 #include "tests/support/own_result.h"
 #include "tests/support/test_program.h"
@@ -136,8 +136,8 @@ class TestExportInertial : public QObject {
     kind.third_radial = true;
     const NamedResult result = rig(kind);
     const ExportedFiles exported = exportTo(result, "kalibr");
-    const FittedCamera fitted =
-        fitDistortion(*result.result->state.cameras[0].lens.inUse(), CameraModel::PinholeRadtan, 4);
+    const LensFit fitted =
+        fitLens(*result.result->state.cameras[0].lens.inUse(), CameraModel::PinholeRadtan, 4);
     QVERIFY(fitted.worst_px > 1e-6 && fitted.worst_px < 2.0);
     const YAML::Node imu = yamlOf(exported, "kalibr/imu.yaml")["imu0"],
                      camera = yamlOf(exported, "kalibr/camchain-imucam.yaml")["cam0"];
@@ -317,8 +317,8 @@ class TestExportInertial : public QObject {
     RigKind kind;
     kind.mapped = false;
     const NamedResult result = rig(kind);
-    const FittedCamera fitted =
-        fitDistortion(*result.result->state.cameras[0].lens.inUse(), CameraModel::PinholeEquidistant, 4);
+    const LensFit fitted =
+        fitLens(*result.result->state.cameras[0].lens.inUse(), CameraModel::PinholeEquidistant, 4);
     const ExportedFiles exported = exportTo(result, "basalt");
     const YAML::Node lens =
         yamlOf(exported, "basalt/calibration.json")["value0"]["intrinsics"][0]["intrinsics"];

@@ -1,4 +1,5 @@
 #include "core/data/intrinsics_yaml.h"
+#include "core/geometry/projection_difference.h"
 #include "core/report/intrinsics_report.h"
 #include "tests/support/test_program.h"
 
@@ -57,6 +58,41 @@ class TestIntrinsicsReport : public QObject {
       std::ofstream(file) << text;
       QVERIFY2(readIntrinsicsFile(file, "left", "/davis/events") == camera, text.c_str());
     }
+  }
+
+  // ROS knows pinholes only: its file holds an equidistant lens, and says how near that comes.
+  void wideModels_readBackButFromRos_data() {
+    QTest::addColumn<int>("model");
+    QTest::addColumn<QString>("distortion");
+    QTest::newRow("double sphere") << static_cast<int>(CameraModel::DoubleSphere)
+                                   << "distortion: [-0.2, 0.6]  # xi, alpha";
+    QTest::newRow("eucm") << static_cast<int>(CameraModel::Eucm) << "distortion: [0.6, 1.1]  # alpha, beta";
+    QTest::newRow("omni") << static_cast<int>(CameraModel::OmniRadtan)
+                          << "distortion: [1.2, -0.1, 0.01, 0.001, 0.002]  # xi, k1, k2, p1, p2";
+  }
+  void wideModels_readBackButFromRos() {
+    QFETCH(int, model);
+    QFETCH(QString, distortion);
+    NamedIntrinsics named = sample(static_cast<CameraModel>(model));
+    CameraIntrinsics& camera = named.result.intrinsics;
+    camera.distortion = {1.2, -0.1, 0.01, 0.001, 0.002};
+    if (camera.model == CameraModel::DoubleSphere) camera.distortion = {-0.2, 0.6, 0.0, 0.0, 0.0};
+    if (camera.model == CameraModel::Eucm) camera.distortion = {0.6, 1.1, 0.0, 0.0, 0.0};
+    const std::string result = intrinsicsResultYaml(named);
+    QVERIFY2(QString::fromStdString(result).contains(distortion), result.c_str());
+    const YamlNode known = YamlNode::parse(result, "intrinsics.yaml");
+    QVERIFY(readIntrinsics(known["intrinsics"]) == camera);
+    QVERIFY(readIntrinsics(YamlNode::parse(camchainYaml("/events", camera), "camchain.yaml")["cam0"]) ==
+            camera);
+    const std::string info = cameraInfoYaml("left", camera);
+    const QString first_line = QString::fromStdString(info).section('\n', 0, 0);
+    QVERIFY2(first_line.startsWith("# ROS has no place for the model "), info.c_str());
+    const CameraIntrinsics fitted = readIntrinsics(YamlNode::parse(info, "camera_info.yaml"));
+    QCOMPARE(fitted.model, CameraModel::PinholeEquidistant);
+    QVERIFY(projectionDifference(camera, fitted).rms_px < 0.5);
+    QCOMPARE(known["intrinsics_std"]["distortion"].reals().size(),
+             static_cast<std::size_t>(distortionCount(camera)));
+    QCOMPARE(known["correlation"].items().size(), static_cast<std::size_t>(4 + distortionCount(camera)));
   }
 
   void map_hasSigmasAndCorrelations() {
