@@ -115,7 +115,7 @@ class TestDetectionOfRun : public QObject {
     const CameraIntrinsics& camera = *recorded_->session.cameras.front().intrinsics;
     const CalibrationState state = restingState(camera);
     const auto outlines = reprojectBoard(state, 0, recorded_->session.board, 1.0);
-    QCOMPARE(outlines.size(), static_cast<std::size_t>(recorded_->session.board.circleCount()));
+    QCOMPARE(outlines.size(), static_cast<std::size_t>(recorded_->session.board.pointCount()));
     QVERIFY(distanceFrom_px(outlines.front(), *project(camera, kFirstCircle)) < 0.5);
     QVERIFY(reprojectBoard(state, 0, recorded_->session.board, 5.0).empty());
   }

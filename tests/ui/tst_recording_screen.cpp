@@ -2,6 +2,7 @@
 #include "ui/screens/recording_screen.h"
 
 #include "core/data/intrinsics_yaml.h"
+#include "core/geometry/camera_model.h"
 #include "core/pipeline/session_guess.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
@@ -117,6 +118,28 @@ class TestRecordingScreen : public QObject {
     Fixture::type(form->findChildren<NumberField*>().at(0), "35.5");
     QCOMPARE(test.session.board.spacing_m, 0.0355);
     QCOMPARE(test.edits.size(), 2);
+  }
+
+  void boardOfAnotherType_hasItsOwnSizes() {
+    Fixture test;
+    auto* const form = test.screen.findChild<BoardForm*>();
+    QComboBox* const type = form->findChildren<QComboBox*>().at(0);
+    NumberField *const radius = form->findChildren<NumberField*>().at(1),
+                       *const tag = form->findChildren<NumberField*>().at(4);
+    QVERIFY(radius->isEnabled() && !tag->isEnabled());
+    const auto choose = [&](const QString& name) {
+      type->setCurrentText(name);
+      emit type->activated(type->currentIndex());
+    };
+    choose("AprilGrid");
+    QVERIFY(test.session.board.type == BoardType::AprilGrid && test.session.board.radius_m == 0.0);
+    QVERIFY(!radius->isEnabled() && tag->isEnabled());
+    validate(test.session.board);
+    Fixture::type(tag, "30");
+    QCOMPARE(test.session.board.tag_size_m, 0.03);
+    choose("Asymmetric (staggered)");
+    QVERIFY(test.session.board.tag_size_m == 0.0 && test.session.board.radius_m > 0.0);
+    validate(test.session.board);
   }
 
   void boardMeasuredOverManySpacings_tellsSpacingAndSigma() {
@@ -269,12 +292,34 @@ class TestRecordingScreen : public QObject {
       model->setCurrentIndex(index);
       emit model->activated(index);
     };
-    choose(2);
+    const int not_known = model->count() - 1;
+    choose(not_known);
     QVERIFY(!test.session.cameras[0].intrinsics);
-    QCOMPARE(model->currentIndex(), 2);
+    QCOMPARE(model->currentIndex(), not_known);
     choose(1);
     QVERIFY(test.session.cameras[0].intrinsics);
     QVERIFY(test.session.cameras[0].intrinsics->model == CameraModel::PinholeEquidistant);
+  }
+
+  // The fields are those of the model, and start as a lens of that model does.
+  void coefficients_areThoseOfTheModel() {
+    Fixture test;
+    auto* const form = test.screen.findChild<CameraForm*>();
+    auto* const model = form->findChild<QComboBox*>();
+    const double focal_px = test.session.cameras[0].intrinsics->focal_length_px.x();
+    const std::pair<CameraModel, QString> models[] = {{CameraModel::DoubleSphere, "xi, alpha"},
+                                                      {CameraModel::Eucm, "alpha, beta"},
+                                                      {CameraModel::OmniRadtan, "xi, k1, k2, p1, p2"},
+                                                      {CameraModel::PinholeEquidistant, "k1, k2, k3, k4"}};
+    for (const auto& [lens, names] : models) {
+      model->setCurrentIndex(static_cast<int>(lens));
+      emit model->activated(static_cast<int>(lens));
+      const CameraIntrinsics& typed = *test.session.cameras[0].intrinsics;
+      QVERIFY(typed.model == lens);
+      validate(typed, "left");
+      QVERIFY(std::abs(idealFocalLength_px(typed).x() - focal_px) < 1e-9);
+      QCOMPARE(form->findChild<QLabel*>("coefficient_names")->text(), names);
+    }
   }
 
   void rename_keepsTheReference() {

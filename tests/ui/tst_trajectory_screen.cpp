@@ -63,9 +63,9 @@ void TestTrajectoryScreen::board_isWhereItsCirclesAre() {
   screen.grab();
   screen.view()->look(StandardView::Front);
   const QImage image = picture(screen.view());
-  const CircleBoard& board = example_.session.board;
-  for (int circle = 0; circle < board.circleCount(); ++circle) {
-    const Eigen::Vector2d centre = board.centre_m(circle);
+  const Board& board = example_.session.board;
+  for (int circle = 0; circle < board.pointCount(); ++circle) {
+    const Eigen::Vector2d centre = board.point_m(circle);
     const auto inside = screen.view()->project({centre.x(), centre.y(), 0.0});
     const auto beside = screen.view()->project({centre.x(), centre.y() + 1.2 * board.radius_m, 0.0});
     QVERIFY(inside && beside);
@@ -143,7 +143,7 @@ void TestTrajectoryScreen::throughTheCamera_showsWhatItSees() {
   screen->setTime(view->time_s);
   const double scale = screen->view()->height() / (1.2 * intrinsics.resolution_px.height_px);
   for (const CircleObservation& circle : view->circles) {
-    const Eigen::Vector2d centre = example_.session.board.centre_m(circle.circle);
+    const Eigen::Vector2d centre = example_.session.board.point_m(circle.circle);
     const auto at = screen->view()->project({centre.x(), centre.y(), 0.0});
     QVERIFY(at);
     const Eigen::Vector2d from_axis_px = circle.centre_px +

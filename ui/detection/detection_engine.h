@@ -28,7 +28,7 @@ struct DetectionWish {
 
 // What windows are searched for, and seen through.
 struct Sight {
-  CircleBoard board;
+  Board board;
   std::optional<CameraIntrinsics> lens = {};
 
   bool operator==(const Sight&) const = default;

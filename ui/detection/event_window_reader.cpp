@@ -67,6 +67,10 @@ class EventWindowReader::Pass {
         camera_(camera),
         resolution_px_(recording_.resolution_px(camera)),
         start_ns_(recording_.start_ns()) {
+    if (recording_.camera(camera).type != StreamType::Events)
+      throw badInput(session.cameras[camera].name,
+                     "its stream holds no events, and only those are shown here",
+                     "Choose an event camera; what is found in frames and points is in detections.csv");
     if (!session.imus.empty()) imu_ = recording_.imuSensor(session.referenceImu());
   }
 

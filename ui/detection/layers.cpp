@@ -158,12 +158,12 @@ void paintCentres(QPainter& painter, double scale, const WindowAnalysis& analysi
 
 // Along the rows from the first circle to the last, as calibrators are used to, and each one's number.
 void paintGrid(QPainter& painter, double scale, const WindowAnalysis& analysis) {
-  const CircleBoard& board = analysis.scene->board;
+  const Board& board = analysis.scene->board;
   QPolygonF chain;
   for (const CircleObservation& circle : analysis.trace().circles) {
     const bool follows = !chain.isEmpty();
     const QPointF at = toSensor(circle.centre_px, *analysis.scene);
-    const int last = std::max(1, board.circleCount() - 1);
+    const int last = std::max(1, board.pointCount() - 1);
     usePen(painter, gridColour(static_cast<double>(circle.circle) / last), 1.2);
     if (follows) painter.drawLine(chain.last(), at);
     chain << at;
@@ -189,10 +189,10 @@ void paintGrid(QPainter& painter, double scale, const WindowAnalysis& analysis) 
 
 // Image of a circle's outline through the camera, distortion and all; nothing if part of it is not seen.
 std::optional<QPolygonF> imageOf(int circle, const RigidTransform& camera_from_world,
-                                 const CameraIntrinsics& intrinsics, const CircleBoard& board) {
+                                 const CameraIntrinsics& intrinsics, const Board& board) {
   QPolygonF outline;
   for (int k = 0; k < kOutlinePoints; ++k) {
-    const Eigen::Vector2d on_board = board.centre_m(circle) + board.radius_m * onCircle(k);
+    const Eigen::Vector2d on_board = board.point_m(circle) + board.radius_m * onCircle(k);
     const auto pixel =
         project(intrinsics, camera_from_world * Eigen::Vector3d(on_board.x(), on_board.y(), 0.0));
     if (!pixel) return std::nullopt;
@@ -293,14 +293,13 @@ LayerSet defaultLayers() {
   return layers;
 }
 
-std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera,
-                                      const CircleBoard& board, double time_s) {
+std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera, const Board& board,
+                                      double time_s) {
   return reprojectBoard(state, camera, board, time_s, BoardView{}, 0.0);
 }
 
-std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera,
-                                      const CircleBoard& board, double time_s, const BoardView& view,
-                                      double slow_edge_speed_px_s) {
+std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera, const Board& board,
+                                      double time_s, const BoardView& view, double slow_edge_speed_px_s) {
   std::vector<QPolygonF> outlines;
   if (camera >= state.cameras.size()) return outlines;
   const CameraState& own = state.cameras[camera];
@@ -313,7 +312,7 @@ std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t
                       timeOffsetAt_s(own, time_s), time_s);
   const std::map<int, Eigen::Vector2d> leads =
       idealLeads(own, *own.lens.seen_with, view, slow_edge_speed_px_s);
-  for (int circle = 0; circle < board.circleCount(); ++circle) {
+  for (int circle = 0; circle < board.pointCount(); ++circle) {
     const auto outline = imageOf(circle, camera_from_world, *own.lens.inUse(), board);
     const auto lead = leads.find(circle);
     if (outline)

@@ -4,7 +4,7 @@
 
 #include "core/data/board_observations.h"
 #include "core/data/calibration_state.h"
-#include "core/geometry/circle_board.h"
+#include "core/geometry/board.h"
 
 #include <QColor>
 #include <QPolygonF>
@@ -34,12 +34,11 @@ std::vector<QColor> layerColours(Layer layer);
 LayerSet defaultLayers();
 
 // Outlines of the board's circles where a calibration's trajectory puts them; empty outside the trajectory.
-std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera,
-                                      const CircleBoard& board, double time_s);
+std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera, const Board& board,
+                                      double time_s);
 // Where they are expected to be measured: ahead by the camera's edge lead, of which the view says which way.
-std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera,
-                                      const CircleBoard& board, double time_s, const BoardView& view,
-                                      double slow_edge_speed_px_s);
+std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera, const Board& board,
+                                      double time_s, const BoardView& view, double slow_edge_speed_px_s);
 
 // `scale` is widget pixels per sensor pixel. The analysis may be null.
 void paintLayers(QPainter& painter, double scale, const LayerSet& visible, const WindowAnalysis* analysis,

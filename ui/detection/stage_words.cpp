@@ -38,7 +38,7 @@ std::string placementText(const BoardSearch& search) {
 }
 
 std::string jointText(const BoardSearch& search, const WindowAnalysis& analysis, const GridOptions& options) {
-  const int count = analysis.scene->board.circleCount();
+  const int count = analysis.scene->board.pointCount();
   switch (search.outcome) {
     case WindowOutcome::Ambiguous:
       return print("another placement explains nearly as many circles (ambiguity_margin is %d)",
@@ -129,7 +129,7 @@ std::string missingText(const WindowTrace& trace, int count) {
 }
 
 void addCentres(const WindowAnalysis& analysis, std::vector<StageReport>& stages) {
-  const int count = analysis.scene->board.circleCount();
+  const int count = analysis.scene->board.pointCount();
   const WindowTrace& trace = analysis.trace();
   if (!trace.motion) {
     stages.push_back({"centres", StageVerdict::NotReached, "not reached"});

@@ -3,6 +3,7 @@
 
 #include "core/geometry/camera_model.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace evical::ui {
@@ -12,10 +13,14 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 Vector3d cornerRay(const CameraIntrinsics& camera, const Vector2d& pixel) {
-  const auto ray = unproject(camera, pixel);
-  const Vector2d normalised =
-      ray ? *ray : (pixel - camera.principal_point_px).cwiseQuotient(camera.focal_length_px).eval();
-  return {normalised.x(), normalised.y(), 1.0};
+  const Vector2d straight = (pixel - camera.principal_point_px).cwiseQuotient(camera.focal_length_px);
+  const auto ray = unprojectRay(camera, pixel);
+  if (!ray) return {straight.x(), straight.y(), 1.0};
+  constexpr double kWidest =
+      3.0;  // x/z that can still be drawn: wider lenses are shown as if they saw so far
+  const double length = ray->head<2>().norm(), reach = ray->z() > 0.0 ? length / ray->z() : kWidest;
+  const Vector2d shown = ray->head<2>() * (std::min(reach, kWidest) / std::max(length, 1e-12));
+  return {shown.x(), shown.y(), 1.0};
 }
 
 }  // namespace

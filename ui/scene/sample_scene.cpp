@@ -15,7 +15,7 @@ void addSampleScene(vtkRenderer* renderer) {
   }
   track->stations.push_back({0.0, {pose}});
   TrajectoryScene scene(renderer);  // what it has added stays with the renderer
-  scene.setBoard(CircleBoard{});
+  scene.setBoard(Board{});
   scene.setTrack(track);
   scene.setGravity(Eigen::Vector3d(0.0, 9.81, 0.0));
   scene.setRawPoses({pose});

@@ -22,7 +22,7 @@ Vector3d onBoard(double x_m, double y_m, double z_m = 0.0) {
   return {x_m, y_m, z_m};
 }
 
-std::array<Vector3d, 4> paperAt(const CircleBoard& board, double z_m, double wider_m = 0.0) {
+std::array<Vector3d, 4> paperAt(const Board& board, double z_m, double wider_m = 0.0) {
   auto [first, last] = paperCorners_m(board);
   first.array() -= wider_m;
   last.array() += wider_m;
@@ -77,9 +77,9 @@ void ShapeBuilder::writeTo(vtkPolyData* data) const {
   data->GetPointData()->SetScalars(colours_);
 }
 
-std::array<Vector2d, 2> paperCorners_m(const CircleBoard& board) {
-  Vector2d least = board.centre_m(0), most = least;
-  for (const Vector2d& centre : circleCentres_m(board)) {
+std::array<Vector2d, 2> paperCorners_m(const Board& board) {
+  Vector2d least = board.point_m(0), most = least;
+  for (const Vector2d& centre : boardPoints_m(board)) {
     least = least.cwiseMin(centre);
     most = most.cwiseMax(centre);
   }
@@ -87,7 +87,7 @@ std::array<Vector2d, 2> paperCorners_m(const CircleBoard& board) {
   return {least - margin, most + margin};
 }
 
-void addBoard(ShapeBuilder& shapes, const CircleBoard& board, const BoardColours& colours) {
+void addBoard(ShapeBuilder& shapes, const Board& board, const BoardColours& colours) {
   const bool dark_circles = board.circles == CircleShade::Dark;
   const double lift_m = 0.05 * board.radius_m;  // so that circles, paper and back are told apart in depth
   shapes.setColour(dark_circles ? colours.paper : colours.ink);
@@ -96,7 +96,7 @@ void addBoard(ShapeBuilder& shapes, const CircleBoard& board, const BoardColours
   shapes.polygon(paperAt(board, lift_m));
   shapes.setColour(dark_circles ? colours.ink : colours.paper);
   std::vector<Vector3d> rim(kCircleCorners);
-  for (const Vector2d& centre : circleCentres_m(board)) {
+  for (const Vector2d& centre : boardPoints_m(board)) {
     for (int k = 0; k < kCircleCorners; ++k) {
       const double angle = 2.0 * M_PI * k / kCircleCorners;
       rim[static_cast<std::size_t>(k)] = onBoard(centre.x() + board.radius_m * std::cos(angle),
@@ -106,7 +106,7 @@ void addBoard(ShapeBuilder& shapes, const CircleBoard& board, const BoardColours
   }
 }
 
-void addBoardEdge(ShapeBuilder& shapes, const CircleBoard& board) {
+void addBoardEdge(ShapeBuilder& shapes, const Board& board) {
   const auto corners = paperAt(board, 0.0, 0.1 * board.radius_m);  // apart from the paper's own edge
   for (std::size_t k = 0; k < 4; ++k) shapes.line(corners[k], corners[(k + 1) % 4]);
 }

@@ -2,7 +2,7 @@
 // The shapes of a calibration scene as coloured lines and polygons. For sources that draw with VTK.
 #pragma once
 
-#include "core/geometry/circle_board.h"
+#include "core/geometry/board.h"
 #include "core/geometry/rigid_transform.h"
 #include "ui/scene/camera_shape.h"
 
@@ -45,9 +45,9 @@ struct BoardColours {
   QColor paper, ink, back, edge;
 };
 // The paper's rectangle in the board frame: first and opposite corner.
-std::array<Eigen::Vector2d, 2> paperCorners_m(const CircleBoard& board);
-void addBoard(ShapeBuilder& shapes, const CircleBoard& board, const BoardColours& colours);
-void addBoardEdge(ShapeBuilder& shapes, const CircleBoard& board);
+std::array<Eigen::Vector2d, 2> paperCorners_m(const Board& board);
+void addBoard(ShapeBuilder& shapes, const Board& board, const BoardColours& colours);
+void addBoardEdge(ShapeBuilder& shapes, const Board& board);
 
 void addFrustum(ShapeBuilder& shapes, const CameraShape& camera, const RigidTransform& world_from_camera,
                 double depth_m);

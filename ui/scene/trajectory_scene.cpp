@@ -103,7 +103,7 @@ struct TrajectoryScene::Private {
     visible.fill(true);
   }
 
-  std::optional<CircleBoard> board_data;
+  std::optional<Board> board_data;
   std::vector<CameraShape> cameras;
   std::shared_ptr<const TrajectoryTrack> track_data = std::make_shared<TrajectoryTrack>();
   std::optional<Vector3d> gravity_m_s2;
@@ -183,7 +183,7 @@ TrajectoryScene::TrajectoryScene(vtkRenderer* renderer) : d_(std::make_unique<Pr
 
 TrajectoryScene::~TrajectoryScene() = default;
 
-void TrajectoryScene::setBoard(const std::optional<CircleBoard>& board) {
+void TrajectoryScene::setBoard(const std::optional<Board>& board) {
   d_->board_data = board;
   applyTheme();
 }

@@ -2,8 +2,8 @@
 // Board, trajectory, cameras, IMU, gravity and ground in a VTK renderer. GUI thread only; one scene a view.
 #pragma once
 
+#include "core/geometry/board.h"
 #include "core/geometry/camera_intrinsics.h"
-#include "core/geometry/circle_board.h"
 #include "ui/scene/colour_scale.h"
 #include "ui/scene/trajectory_track.h"
 
@@ -39,7 +39,7 @@ class TrajectoryScene {
   explicit TrajectoryScene(vtkRenderer* renderer);
   ~TrajectoryScene();
 
-  void setBoard(const std::optional<CircleBoard>& board);
+  void setBoard(const std::optional<Board>& board);
   void setIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& cameras);
   void setTrack(std::shared_ptr<const TrajectoryTrack> track);
   void setGravity(const std::optional<Eigen::Vector3d>& gravity_in_world_m_s2);

@@ -82,7 +82,7 @@ struct TrajectoryScreen::Private {
   PoseReadout* readout;
   TrajectoryScene scene;
 
-  std::optional<CircleBoard> board;
+  std::optional<Board> board;
   std::vector<CameraShape> cameras;
   std::shared_ptr<const CalibrationState> state;  // that is drawn
   std::shared_ptr<const TrajectoryTrack> track = std::make_shared<TrajectoryTrack>();
@@ -98,7 +98,7 @@ struct TrajectoryScreen::Private {
 
   void buildLayout();
   void connectTools();
-  void setBoard(const CircleBoard& new_board);
+  void setBoard(const Board& new_board);
   void sample(std::shared_ptr<const CalibrationState> new_state, std::shared_ptr<const CalibrationRun> run);
   void estimatePoses();
   void showTrack(Track new_track);
@@ -173,11 +173,11 @@ void TrajectoryScreen::clear() {
   d_->showViewPoses({});
 }
 
-void TrajectoryScreen::setBoard(const CircleBoard& board) {
+void TrajectoryScreen::setBoard(const Board& board) {
   d_->setBoard(board);
 }
 
-void TrajectoryScreen::Private::setBoard(const CircleBoard& new_board) {
+void TrajectoryScreen::Private::setBoard(const Board& new_board) {
   if (board == new_board) return;
   board = new_board;
   placed = false;
@@ -212,7 +212,7 @@ void TrajectoryScreen::setRun(std::shared_ptr<const CalibrationRun> run, const S
   }
 }
 
-void TrajectoryScreen::setState(std::shared_ptr<const CalibrationState> state, const CircleBoard& board) {
+void TrajectoryScreen::setState(std::shared_ptr<const CalibrationState> state, const Board& board) {
   d_->setBoard(board);
   d_->sample(std::move(state), nullptr);
 }

@@ -14,7 +14,7 @@ namespace evical::ui {
 struct ViewPoseInput {
   std::shared_ptr<const BoardObservations> observations;
   CameraIntrinsics intrinsics;
-  CircleBoard board;
+  Board board;
 };
 
 struct ViewPoses {

@@ -7,20 +7,50 @@
 #include <QPainter>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
+#include <vector>
 
 namespace evical::ui {
 namespace {
 
 constexpr double kMargin_px = 34.0;  // for axes and measures
 
-std::optional<QString> problemOf(const CircleBoard& board) {
+std::optional<QString> problemOf(const Board& board) {
   try {
     validate(board);
     return std::nullopt;
   } catch (const CalibrationError& error) {
     return QString::fromStdString(error.problem());
   }
+}
+
+// How far the print reaches beyond the outermost points.
+double beyond_m(const Board& board) {
+  if (board.hasCircles()) return board.radius_m;
+  return board.type == BoardType::AprilGrid ? board.spacing_m - board.tag_size_m : board.spacing_m;
+}
+
+// Squares of corners, as corners of their upper left and the length of a side; of tags their black squares.
+struct Squares {
+  std::vector<Eigen::Vector2d> at_m;
+  double side_m = 0.0;
+};
+Squares darkSquares(const Board& board) {
+  Squares squares;
+  if (board.type == BoardType::AprilGrid) {
+    squares.side_m = board.tag_size_m;
+    for (int row = 0; row < board.rows; ++row)
+      for (int col = 0; col < board.cols; ++col)
+        squares.at_m.push_back(board.spacing_m * Eigen::Vector2d(col, row));
+    return squares;
+  }
+  const Eigen::Vector2d last = board.extent_m() / board.spacing_m;
+  squares.side_m = board.spacing_m;
+  for (int row = -1; row <= static_cast<int>(std::lround(last.y())); ++row)
+    for (int col = -1; col <= static_cast<int>(std::lround(last.x())); ++col)
+      if ((row + col) % 2 == 0) squares.at_m.push_back(board.spacing_m * Eigen::Vector2d(col, row));
+  return squares;
 }
 
 QString millimetres(double length_m) {
@@ -34,9 +64,9 @@ BoardDrawing::BoardDrawing(QWidget* parent) : QWidget(parent) {
   setBoard({});
 }
 
-void BoardDrawing::setBoard(const CircleBoard& board) {
+void BoardDrawing::setBoard(const Board& board) {
   board_ = board;
-  setAccessibleName(tr("Board with %1 circles").arg(board.circleCount()));
+  setAccessibleName(tr("Board with %1 points").arg(board.pointCount()));
   update();
 }
 
@@ -49,29 +79,35 @@ void BoardDrawing::paintEvent(QPaintEvent*) {
     return;
   }
   // The board's long side lies along the drawing's: x of the board points down then, as on a turned sheet.
-  const int columns = board_.type == BoardType::AsymmetricCircles ? 2 * board_.cols - 1 : board_.cols - 1;
-  const double width_m = columns * board_.spacing_m + 2.0 * board_.radius_m;
-  const double height_m = (board_.rows - 1) * board_.spacing_m + 2.0 * board_.radius_m;
+  const Eigen::Vector2d extent_m = board_.extent_m();
+  const double around_m = beyond_m(board_);
+  const double width_m = extent_m.x() + 2.0 * around_m, height_m = extent_m.y() + 2.0 * around_m;
   const double px_per_m =
       std::min((width() - 2.0 * kMargin_px) / width_m, (height() - 2.0 * kMargin_px) / height_m);
-  const QPointF origin(0.5 * (width() - width_m * px_per_m) + board_.radius_m * px_per_m,
-                       0.5 * (height() - height_m * px_per_m) + board_.radius_m * px_per_m);
-  const double edge_px = (board_.radius_m + 0.3 * board_.spacing_m) * px_per_m;
+  const QPointF origin(0.5 * (width() - width_m * px_per_m) + around_m * px_per_m,
+                       0.5 * (height() - height_m * px_per_m) + around_m * px_per_m);
+  const double edge_px = (around_m + 0.3 * board_.spacing_m) * px_per_m;
   painter.setPen(QPen(theme().grid_line, 1.0));
   painter.setBrush(board_.circles == CircleShade::Dark ? QColor(Qt::white) : QColor(0x22, 0x22, 0x22));
-  const QSizeF sheet((width_m - 2.0 * board_.radius_m) * px_per_m,
-                     (height_m - 2.0 * board_.radius_m) * px_per_m);
+  const QSizeF sheet(extent_m.x() * px_per_m, extent_m.y() * px_per_m);
   painter.drawRoundedRect(QRectF(origin, sheet).adjusted(-edge_px, -edge_px, edge_px, edge_px), 4.0, 4.0);
-  paintCircles(painter, px_per_m, origin);
+  paintPattern(painter, px_per_m, origin);
   paintMeasures(painter, px_per_m, origin);
 }
 
-void BoardDrawing::paintCircles(QPainter& painter, double px_per_m, QPointF origin) const {
+void BoardDrawing::paintPattern(QPainter& painter, double px_per_m, QPointF origin) const {
   painter.setPen(Qt::NoPen);
   painter.setBrush(board_.circles == CircleShade::Dark ? QColor(0x22, 0x22, 0x22) : QColor(Qt::white));
+  if (!board_.hasCircles()) {
+    const Squares squares = darkSquares(board_);
+    for (const Eigen::Vector2d& at_m : squares.at_m)
+      painter.drawRect(QRectF(origin + px_per_m * QPointF(at_m.x(), at_m.y()),
+                              QSizeF(px_per_m * squares.side_m, px_per_m * squares.side_m)));
+    return;
+  }
   const double radius_px = board_.radius_m * px_per_m;
-  for (int i = 0; i < board_.circleCount(); ++i) {
-    const Eigen::Vector2d centre_m = board_.centre_m(i);
+  for (int i = 0; i < board_.pointCount(); ++i) {
+    const Eigen::Vector2d centre_m = board_.point_m(i);
     painter.drawEllipse(origin + px_per_m * QPointF(centre_m.x(), centre_m.y()), radius_px, radius_px);
   }
 }
@@ -83,9 +119,9 @@ void BoardDrawing::paintMeasures(QPainter& painter, double px_per_m, QPointF ori
   painter.setPen(QPen(theme().axes[1], 2.0));
   painter.drawLine(origin, origin + QPointF(0.0, kAxis_px));
 
-  const Eigen::Vector2d last_m = board_.centre_m(board_.rows - 1, board_.cols - 1);
-  const Eigen::Vector2d neighbour_m = board_.centre_m(0, 1);
-  const double edge_px = (board_.radius_m + 0.3 * board_.spacing_m) * px_per_m;
+  const Eigen::Vector2d last_m = board_.extent_m();
+  const Eigen::Vector2d neighbour_m = board_.point_m(0, 1);
+  const double edge_px = (beyond_m(board_) + 0.3 * board_.spacing_m) * px_per_m;
   painter.setPen(QPen(theme().accent, 1.5));
   const double above_px = origin.y() - edge_px - 6.0;
   const QPointF begin(origin.x(), above_px), end(origin.x() + px_per_m * neighbour_m.x(), above_px);
@@ -97,7 +133,11 @@ void BoardDrawing::paintMeasures(QPainter& painter, double px_per_m, QPointF ori
   const double below_px = origin.y() + px_per_m * last_m.y() + edge_px + 4.0;
   painter.drawText(
       QRectF(0.0, below_px, width(), kMargin_px), Qt::AlignHCenter | Qt::AlignTop,
-      tr("%1 circles, diameter %2").arg(board_.circleCount()).arg(millimetres(2.0 * board_.radius_m)));
+      board_.hasCircles()
+          ? tr("%1 circles, diameter %2").arg(board_.pointCount()).arg(millimetres(2.0 * board_.radius_m))
+      : board_.type == BoardType::AprilGrid
+          ? tr("%1 tags of %2").arg(board_.rows * board_.cols).arg(millimetres(board_.tag_size_m))
+          : tr("%1 inner corners").arg(board_.pointCount()));
 }
 
 }  // namespace evical::ui

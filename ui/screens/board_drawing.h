@@ -2,7 +2,7 @@
 // The board as it is described, to scale, with its measures: what is typed can be held against the print.
 #pragma once
 
-#include "core/geometry/circle_board.h"
+#include "core/geometry/board.h"
 
 #include <QWidget>
 
@@ -14,17 +14,17 @@ class BoardDrawing : public QWidget {
  public:
   explicit BoardDrawing(QWidget* parent = nullptr);
 
-  void setBoard(const CircleBoard& board);
+  void setBoard(const Board& board);
   QSize minimumSizeHint() const override { return {180, 160}; }
 
  protected:
   void paintEvent(QPaintEvent* event) override;
 
  private:
-  void paintCircles(QPainter& painter, double px_per_m, QPointF origin) const;
+  void paintPattern(QPainter& painter, double px_per_m, QPointF origin) const;
   void paintMeasures(QPainter& painter, double px_per_m, QPointF origin) const;
 
-  CircleBoard board_;
+  Board board_;
 };
 
 }  // namespace evical::ui

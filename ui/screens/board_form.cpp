@@ -27,11 +27,24 @@ QSpinBox* countBox(int least, const QString& tip, QWidget* parent) {
 }
 
 // To start from: as long as the board is said to be.
-MeasuredLength overWholeBoard(const CircleBoard& board) {
+MeasuredLength overWholeBoard(const Board& board) {
   MeasuredLength length;
   length.spacings = mostSpacings(board);
   length.length_m = length.spacings * board.spacing_m;
   return length;
+}
+
+bool hasTags(const Board& board) {
+  return board.type == BoardType::AprilGrid || board.type == BoardType::Charuco;
+}
+
+// What a board of another type has, where it has none yet: as boards usually have it.
+void setSizes(Board& board) {
+  constexpr double kRadius = 0.4, kTag = 0.75;  // of the spacing
+  if (!board.hasCircles()) board.radius_m = 0.0;
+  if (board.hasCircles() && board.radius_m == 0.0) board.radius_m = kRadius * board.spacing_m;
+  if (!hasTags(board)) board.tag_size_m = 0.0;
+  if (hasTags(board) && board.tag_size_m == 0.0) board.tag_size_m = kTag * board.spacing_m;
 }
 
 }  // namespace
@@ -39,8 +52,11 @@ MeasuredLength overWholeBoard(const CircleBoard& board) {
 BoardForm::BoardForm(QWidget* parent)
     : QWidget(parent),
       type_(new QComboBox(this)),
-      rows_(countBox(2, tr("Staggered lines of circles; odd, so that the board has an up and a down"), this)),
-      cols_(countBox(2, tr("Circles in one line"), this)),
+      rows_(countBox(1,
+                     tr("Staggered lines of circles (odd, so that the board has an up and a down); a "
+                        "checkerboard's inner corners, tags, or a ChArUco board's squares"),
+                     this)),
+      cols_(countBox(1, tr("The same in one line"), this)),
       spacing_mm_(new NumberField(0.1, 10'000.0, this)),
       radius_mm_(new NumberField(0.01, 10'000.0, this)),
       is_measured_(new QCheckBox(tr("Measured over several spacings"), this)),
@@ -51,15 +67,20 @@ BoardForm::BoardForm(QWidget* parent)
                       "a staggered board two from circle to circle"),
                    this)),
       length_std_mm_(new NumberField(0.0, 1'000.0, this)),
+      tag_mm_(new NumberField(0.1, 10'000.0, this)),
       circles_(new QComboBox(this)),
       problem_(new QLabel(this)),
       drawing_(new BoardDrawing(this)) {
-  type_->addItems({tr("Asymmetric (staggered)"), tr("Symmetric")});
+  type_->addItems(
+      {tr("Asymmetric (staggered)"), tr("Symmetric"), tr("Checkerboard"), tr("AprilGrid"), tr("ChArUco")});
   circles_->addItems({tr("Dark on bright"), tr("Bright on dark")});
-  type_->setToolTip(tr("Whether every other line is shifted by half a step"));
+  type_->setToolTip(
+      tr("Circles, every other line shifted by half a step or none; the others are for frame "
+         "cameras only"));
   spacing_mm_->setToolTip(
       tr("Asymmetric: between two staggered lines, half of what lies between neighbours in a "
-         "line. Symmetric: between neighbours"));
+         "line. Symmetric: between neighbours. A square's edge; from one tag to the next"));
+  tag_mm_->setToolTip(tr("Edge of a tag's black square"));
   radius_mm_->setToolTip(tr("Of a circle, as printed"));
   circles_->setToolTip(tr("Which way the printed circles differ from their background"));
   problem_->setProperty("role", "problem");
@@ -71,6 +92,7 @@ BoardForm::BoardForm(QWidget* parent)
   form->addRow(tr("Spacing [mm]"), spacing_mm_);
   addMeasure(*form);
   form->addRow(tr("Radius [mm]"), radius_mm_);
+  form->addRow(tr("Tag [mm]"), tag_mm_);
   form->addRow(tr("Circles"), circles_);
   form->addRow(problem_);
   auto* const layout = new QHBoxLayout(this);
@@ -84,6 +106,7 @@ BoardForm::BoardForm(QWidget* parent)
   connect(cols_, &QSpinBox::valueChanged, this, [this] { say("cols"); });
   connect(spacing_mm_, &NumberField::valueEdited, this, [this] { say("spacing_m"); });
   connect(radius_mm_, &NumberField::valueEdited, this, [this] { say("radius_m"); });
+  connect(tag_mm_, &NumberField::valueEdited, this, [this] { say("tag_size_m"); });
   setBoard({}, {});
   setProblem({});
 }
@@ -103,7 +126,7 @@ void BoardForm::addMeasure(QFormLayout& form) {
   connect(length_std_mm_, &NumberField::valueEdited, this, [this] { sayMeasured("measured.std_m"); });
 }
 
-void BoardForm::setBoard(const CircleBoard& board, const std::optional<MeasuredLength>& measured) {
+void BoardForm::setBoard(const Board& board, const std::optional<MeasuredLength>& measured) {
   board_ = board;
   measured_ = measured;
   const QSignalBlocker quiet_rows(rows_), quiet_cols(cols_), quiet_spacings(spacings_);
@@ -121,17 +144,23 @@ void BoardForm::setBoard(const CircleBoard& board, const std::optional<MeasuredL
   cols_->setValue(board.cols);
   spacing_mm_->setValue(kMmPerM * board.spacing_m);
   radius_mm_->setValue(kMmPerM * board.radius_m);
+  tag_mm_->setValue(kMmPerM * board.tag_size_m);
   circles_->setCurrentIndex(static_cast<int>(board.circles));
+  radius_mm_->setEnabled(board.hasCircles());
+  circles_->setEnabled(board.hasCircles());
+  tag_mm_->setEnabled(hasTags(board));
   drawing_->setBoard(board);
 }
 
 void BoardForm::say(const QString& field) {
-  CircleBoard board = board_;
+  Board board = board_;
   board.type = static_cast<BoardType>(type_->currentIndex());
+  if (board.type != board_.type) setSizes(board);
   board.rows = rows_->value();
   board.cols = cols_->value();
   if (field == "spacing_m") board.spacing_m = spacing_mm_->value() / kMmPerM;
   if (field == "radius_m") board.radius_m = radius_mm_->value() / kMmPerM;
+  if (field == "tag_size_m") board.tag_size_m = tag_mm_->value() / kMmPerM;
   board.circles = static_cast<CircleShade>(circles_->currentIndex());
   if (board == board_) return;
   emit edited(board, "board." + field);

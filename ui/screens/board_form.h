@@ -2,7 +2,7 @@
 // The printed board: its numbers, and a drawing that follows them.
 #pragma once
 
-#include "core/geometry/circle_board.h"
+#include "core/geometry/board.h"
 #include "core/geometry/measured_length.h"
 
 #include <QWidget>
@@ -26,11 +26,11 @@ class BoardForm : public QWidget {
  public:
   explicit BoardForm(QWidget* parent = nullptr);
 
-  void setBoard(const CircleBoard& board, const std::optional<MeasuredLength>& measured);
+  void setBoard(const Board& board, const std::optional<MeasuredLength>& measured);
   void setProblem(const QString& text);
 
  signals:
-  void edited(const evical::CircleBoard& board, const QString& field);
+  void edited(const evical::Board& board, const QString& field);
   // The length that tells the spacing; nothing where the spacing is given as it is.
   void measured(const std::optional<evical::MeasuredLength>& measured, const QString& field);
 
@@ -39,7 +39,7 @@ class BoardForm : public QWidget {
   void say(const QString& field);
   void sayMeasured(const QString& field);
 
-  CircleBoard board_;
+  Board board_;
   std::optional<MeasuredLength> measured_;
   QComboBox* type_;
   QSpinBox* rows_;
@@ -50,6 +50,7 @@ class BoardForm : public QWidget {
   NumberField* length_mm_;
   QSpinBox* spacings_;
   NumberField* length_std_mm_;
+  NumberField* tag_mm_;
   QComboBox* circles_;
   QLabel* problem_;
   BoardDrawing* drawing_;

@@ -3,6 +3,8 @@
 
 #include "core/base/error.h"
 #include "core/data/intrinsics_yaml.h"
+#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/lens_fit.h"
 #include "ui/screens/clock_offset_field.h"
 #include "ui/theme/theme.h"
 
@@ -18,7 +20,8 @@
 namespace evical::ui {
 namespace {
 
-constexpr int kNotKnown = 2;  // in the list of models
+constexpr int kNotKnown =
+    static_cast<int>(kCameraModelNames.size());  // in the list of models, after all of them
 constexpr double kMostPixels = 30'000.0, kMostDistortion = 100.0;
 
 QLabel* problemLabel(QWidget* parent) {
@@ -48,17 +51,20 @@ CameraForm::CameraForm(QWidget* parent)
       focal_y_px_(new NumberField(0.0, 10 * kMostPixels, this)),
       centre_x_px_(new NumberField(-kMostPixels, kMostPixels, this)),
       centre_y_px_(new NumberField(-kMostPixels, kMostPixels, this)),
+      coefficient_names_(new QLabel(this)),
       take_over_(new QPushButton(tr("Take over what the last run found"), this)),
       file_problem_(problemLabel(this)),
       problem_(problemLabel(this)) {
-  model_->addItems(
-      {tr("Pinhole, radial-tangential"), tr("Pinhole, equidistant"), tr("Not known: from this recording")});
+  for (int model = 0; model < kNotKnown; ++model)
+    model_->addItem(QString::fromUtf8(cameraModelTitle(static_cast<CameraModel>(model))));
+  model_->addItem(tr("Not known: from this recording"));
   name_->setToolTip(tr("What the camera is called in the session, the result and the exports"));
   width_px_->setToolTip(tr("Width of the sensor; 0: as the recording says"));
   height_px_->setToolTip(tr("Height of the sensor; 0: as the recording says"));
-  model_->setToolTip(
-      tr("How the lens bends rays: equidistant for wide angles. Where it is not known, the "
-         "intrinsics are calibrated first, from the same events."));
+  model_->setToolTip(tr(
+      "How the lens bends rays: equidistant for wide angles, double sphere, EUCM and omni for those beyond "
+      "some 150 degrees. Where it is not known, the "
+      "intrinsics are calibrated first, from the same events."));
   focal_x_px_->setToolTip(tr("fx"));
   focal_y_px_->setToolTip(tr("fy"));
   centre_x_px_->setToolTip(tr("cx"));
@@ -66,6 +72,7 @@ CameraForm::CameraForm(QWidget* parent)
   auto* const file = new QPushButton(icon("open"), tr("Intrinsics from a file..."), this);
   file->setToolTip(tr("Evical's own map or result, a Kalibr camchain, or a ROS camera_info"));
   connect(file, &QPushButton::clicked, this, &CameraForm::chooseFile);
+  coefficient_names_->setObjectName("coefficient_names");
   take_over_->setObjectName("take_over");
   take_over_->setToolTip(tr("So that they are saved with the session and used in the next runs"));
   take_over_->hide();
@@ -89,6 +96,7 @@ CameraForm::CameraForm(QWidget* parent)
   form_->addRow(tr("Focal length [px]"), pairOf(focal_x_px_, focal_y_px_));
   form_->addRow(tr("Principal point [px]"), pairOf(centre_x_px_, centre_y_px_));
   form_->addRow(tr("Distortion"), coefficients);
+  form_->addRow(QString(), coefficient_names_);
   form_->addRow(take_over_);
   form_->addRow(tr("Clock offset [s]"), clock_offset_s_);
 
@@ -128,18 +136,24 @@ void CameraForm::setCamera(const SessionCamera& camera) {
   focal_y_px_->setValue(shown.focal_length_px.y());
   centre_x_px_->setValue(shown.principal_point_px.x());
   centre_y_px_->setValue(shown.principal_point_px.y());
-  const bool equidistant = shown.model == CameraModel::PinholeEquidistant;
-  const char* const radtan_names[] = {"k1", "k2", "p1", "p2", "k3"};
-  const char* const equidistant_names[] = {"k1", "k2", "k3", "k4", ""};
-  for (std::size_t i = 0; i < distortion_.size(); ++i) {
-    distortion_[i]->setValue(shown.distortion[i]);
-    distortion_[i]->setToolTip(equidistant ? equidistant_names[i] : radtan_names[i]);
-  }
-  distortion_.back()->setVisible(!equidistant);
+  showCoefficients(shown);
   take_over_->setVisible(found_ && !camera.intrinsics);
   for (NumberField* const field : intrinsicsFields()) field->setEnabled(camera.intrinsics.has_value());
   clock_offset_s_->setValue(camera.clock_offset_s);
   form_->setRowVisible(clock_offset_s_, !camera.recording.empty());
+}
+
+void CameraForm::showCoefficients(const CameraIntrinsics& shown) {
+  const auto names = distortionNames(shown.model);
+  const auto count = static_cast<std::size_t>(coefficientCount(shown.model));
+  QStringList legend;
+  for (std::size_t i = 0; i < distortion_.size(); ++i) {
+    distortion_[i]->setValue(shown.distortion[i]);
+    distortion_[i]->setToolTip(names[i]);
+    distortion_[i]->setVisible(i < count);
+    if (i < count) legend << names[i];
+  }
+  coefficient_names_->setText(legend.join(", "));
 }
 
 std::optional<CameraIntrinsics> CameraForm::typedIntrinsics() const {
@@ -149,8 +163,16 @@ std::optional<CameraIntrinsics> CameraForm::typedIntrinsics() const {
   typed.resolution_px = camera_.resolution_px;
   typed.focal_length_px = {focal_x_px_->value(), focal_y_px_->value()};
   typed.principal_point_px = {centre_x_px_->value(), centre_y_px_->value()};
-  for (std::size_t i = 0; i < distortion_.size(); ++i) typed.distortion[i] = distortion_[i]->value();
-  if (typed.model == CameraModel::PinholeEquidistant) typed.distortion.back() = 0.0;
+  // Another model's coefficients mean nothing in this one.
+  const CameraIntrinsics before = camera_.intrinsics.value_or(typed);
+  if (!camera_.intrinsics || before.model != typed.model) {
+    const CameraIntrinsics other = plainLens(before, typed.model);
+    typed.distortion = other.distortion;
+    typed.focal_length_px = other.focal_length_px;
+    return typed;
+  }
+  const auto count = static_cast<std::size_t>(coefficientCount(typed.model));
+  for (std::size_t i = 0; i < count; ++i) typed.distortion[i] = distortion_[i]->value();
   return typed;
 }
 

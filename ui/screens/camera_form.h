@@ -41,6 +41,7 @@ class CameraForm : public QWidget {
   void takeOver();
   void say(const QString& field);
   std::optional<CameraIntrinsics> typedIntrinsics() const;  // none: not known
+  void showCoefficients(const CameraIntrinsics& shown);
   QWidget* pairOf(NumberField* first, NumberField* second);
   std::vector<NumberField*> intrinsicsFields() const;
 
@@ -51,6 +52,7 @@ class CameraForm : public QWidget {
   QComboBox* model_;
   NumberField *focal_x_px_, *focal_y_px_, *centre_x_px_, *centre_y_px_;
   std::array<NumberField*, 5> distortion_;
+  QLabel* coefficient_names_;
   std::optional<CameraIntrinsics> found_;
   QPushButton* take_over_;
   QLabel *file_problem_, *problem_;

@@ -97,7 +97,7 @@ RecordingScreen::RecordingScreen(QWidget* parent)
   auto* const layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(stack_);
-  connect(board_, &BoardForm::edited, this, [this](const CircleBoard& board, const QString& field) {
+  connect(board_, &BoardForm::edited, this, [this](const Board& board, const QString& field) {
     Session changed = session_;
     changed.board = board;
     emit sessionEdited(changed, tr("Change the board"), field);

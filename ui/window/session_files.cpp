@@ -178,9 +178,10 @@ void SessionFiles::chooseSession() {
 }
 
 QString SessionFiles::askForRecording(const QString& title) {
-  return QFileDialog::getOpenFileName(window_, title, lastFolder(),
-                                      tr("Recordings (*.bag *.mcap *.db3 *.zstd *.aedat4 *.raw *.dat *.h5 "
-                                         "*.hdf5 *.es *.txt *.csv);;All files (*)"));
+  return QFileDialog::getOpenFileName(
+      window_, title, lastFolder(),
+      tr("Recordings (*.bag *.mcap *.db3 *.zstd *.aedat4 *.aedat *.raw *.dat *.h5 "
+         "*.hdf5 *.es *.txt *.csv);;All files (*)"));
 }
 
 void SessionFiles::chooseRecording() {
