@@ -95,6 +95,14 @@ double commonKnotSpacing_s(const CalibrationInput& input, const InitialisationOp
   return spacing_s;
 }
 
+// A last segment of which little is measured would leave its outermost control points open.
+double endOfWholeKnots_s(TimeRange range, double knot_s) {
+  constexpr double kLeastShare = 0.75;  // more than the batch asks for, as delays and offsets move samples
+  const double knots = (range.end_s - range.begin_s) / knot_s;
+  const double whole = std::floor(knots);
+  return whole < 1.0 || knots - whole >= kLeastShare ? range.end_s : range.begin_s + whole * knot_s;
+}
+
 void checkBoardScale(const GravityAlignment& gravity, const Board& board,
                      const InitialisationOptions& options, Initialisation& result) {
   const double excess = gravity.board_scale - 1.0, sigma = gravity.board_scale_std;
@@ -226,12 +234,13 @@ Initialisation initialiseStraight(const CalibrationInput& input, const Initialis
   }
   const TimeRange views = viewRange(cameras);
   checkOverlap(imu, views.begin_s, views.end_s, gyro.begin_s(), gyro.end_s(), options);
-  const TimeRange range{std::max(views.begin_s - options.margin_s, gyro.begin_s()),
-                        std::min(views.end_s + options.margin_s, gyro.end_s())};
+  TimeRange range{std::max(views.begin_s - options.margin_s, gyro.begin_s()),
+                  std::min(views.end_s + options.margin_s, gyro.end_s())};
   const GyroRotation unbiased(rates, input.start_ns, cameras.front().hand_eye.gyroscope_bias_rad_s);
   turnAboutAxis(input, options, range, unbiased, context, cameras, result);
   context.throwIfStopped();
   const double knot_s = commonKnotSpacing_s(input, options, cameras, range, unbiased, result);
+  range.end_s = endOfWholeKnots_s(range, knot_s);
   result.state.world_from_imu_rotation =
       fitWorldRotation(cameras, unbiased, range.begin_s, range.end_s, knot_s,
                        saturates(imu) ? kSaturatedDriftKnot_s : kDriftKnot_s);

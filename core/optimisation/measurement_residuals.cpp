@@ -5,6 +5,7 @@
 #include "core/optimisation/circle_errors.h"
 #include "core/optimisation/edge_lead.h"
 #include "core/optimisation/inertial_cost.h"
+#include "core/optimisation/sample_runs.h"
 
 #include <Eigen/Cholesky>
 
@@ -19,10 +20,6 @@ namespace {
 template <class Sensor>
 double byDrift_s(const Sensor& sensor, double time_s) {
   return 1e-6 * (time_s - sensor.time_offset_at_s);
-}
-
-bool sameSegment(const SegmentTimes& a, const SegmentTimes& b) {
-  return a.rotation == b.rotation && a.position == b.position;
 }
 
 CircleMeasurement circleOf(const ProblemBuilder& builder, std::size_t camera, std::size_t view,
@@ -70,51 +67,6 @@ std::vector<CircleMeasurement> circlesOf(const ProblemBuilder& builder, std::siz
                      return measuredAt_s(state.cameras[camera], a) < measuredAt_s(state.cameras[camera], b);
                    });
   return measurements;
-}
-
-// Samples of a gyroscope or an accelerometer that share spline segments and the knots of its biases.
-struct SampleRun {
-  std::size_t imu;
-  SegmentTimes segment;
-  double stamp_s;          // of the first, on the IMU's own clock
-  double time_s, last_s;   // when it and the last one were measured, on the reference's
-  std::size_t begin, end;  // of the IMU's samples
-};
-
-// `timeOf` tells when the sensor measured what is stamped so, `within` whether the splines reach there.
-template <class TimeOf, class Within>
-std::vector<SampleRun> runsOf(const ProblemBuilder& builder, std::size_t imu, TimeOf&& timeOf,
-                              Within&& within) {
-  const ImuState& state = builder.parameters.moved().imus[imu];
-  const auto& samples = builder.input.imus[imu].samples;
-  std::vector<SampleRun> runs;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const double stamp_s = secondsSince(builder.input.start_ns, samples[i].time_ns);
-    const double time_s = timeOf(state, stamp_s);
-    if (!within(time_s)) continue;
-    const SegmentTimes segment = builder.parameters.segmentAt(time_s);
-    if (runs.empty() || runs.back().end != i || !sameSegment(segment, runs.back().segment) ||
-        !sameBiasKnots(state, stamp_s, runs.back().stamp_s))
-      runs.push_back({imu, segment, stamp_s, time_s, time_s, i, i});
-    runs.back().end = i + 1;
-    runs.back().last_s = time_s;
-  }
-  return runs;
-}
-
-// Where samples begin late in a segment or end early, as where a delay has carried a few across a border, its
-// outermost control points would rest on next to nothing.
-std::vector<SampleRun> withoutStumps(const std::vector<SampleRun>& runs) {
-  constexpr double kLeastShare = 0.5;  // of the segment
-  std::vector<SampleRun> kept;
-  const auto nextTo = [&](std::size_t i, std::size_t other) {
-    return other < runs.size() && std::abs(runs[i].segment.position - runs[other].segment.position) <= 1;
-  };
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const bool whole = runs[i].last_s - runs[i].time_s >= kLeastShare * runs[i].segment.position_spacing_s;
-    if (whole || (i > 0 && nextTo(i, i - 1) && nextTo(i, i + 1))) kept.push_back(runs[i]);
-  }
-  return kept;
 }
 
 // Those that take part.
@@ -193,6 +145,7 @@ void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& 
                 const PixelErrors& pixel_errors) {
   ParameterBlocks& parameters = builder.parameters;
   CameraState& state = parameters.moved().cameras[camera];
+  CameraState& sensor = parameters.moved().cameras[parameters.sensorOf(camera)];
   BoardState& board = parameters.moved().board;
   const std::vector<CircleMeasurement> measurements = circlesOf(builder, camera, pixel_errors);
   for (std::size_t begin = 0, end = 0; begin < measurements.size(); begin = end) {
@@ -208,9 +161,9 @@ void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& 
     std::vector<double*> blocks;
     parameters.appendRotation(segment, blocks);
     parameters.appendPosition(segment, blocks);
-    blocks.insert(blocks.end(), {state.reference_from_camera.rotation.coeffs().data(),
-                                 state.reference_from_camera.translation_m.data(), &state.time_offset_s,
-                                 &state.time_offset_drift_ppm, &state.line_delay_us, &state.edge_lead_px,
+    blocks.insert(blocks.end(), {sensor.reference_from_camera.rotation.coeffs().data(),
+                                 sensor.reference_from_camera.translation_m.data(), &state.time_offset_s,
+                                 &sensor.time_offset_drift_ppm, &state.line_delay_us, &state.edge_lead_px,
                                  &state.slow_edge_lead_px, &board.scale, &board.stretch,
                                  &board.row_curvature_1_m, &board.column_curvature_1_m, &board.twist_1_m});
     if (IntrinsicsBlock* intrinsics = parameters.intrinsics(camera)) blocks.push_back(intrinsics->data());
@@ -221,14 +174,8 @@ void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& 
 
 void addImu(ProblemBuilder& builder, std::size_t imu) {
   const CalibrationState& state = builder.parameters.moved();
-  const auto inRotation = [&](double time_s) { return state.world_from_imu_rotation.contains(time_s); };
-  const auto inBoth = [&](double time_s) {
-    return inRotation(time_s) && state.imu_in_world_m.contains(time_s);
-  };
-  for (const SampleRun& run : runsOf(builder, imu, referenceTime_s<ImuState>, inRotation))
-    addGyroscope(builder, run);
-  for (const SampleRun& run : withoutStumps(runsOf(builder, imu, accelerometerTime_s, inBoth)))
-    addAccelerometer(builder, run);
+  for (const SampleRun& run : gyroscopeRuns(builder.input, state, imu)) addGyroscope(builder, run);
+  for (const SampleRun& run : accelerometerRuns(builder.input, state, imu)) addAccelerometer(builder, run);
 }
 
 }  // namespace evical

@@ -26,11 +26,20 @@ void forEachMatrix(const ImuState& imu, ImuState& other, Visitor&& visit) {
   });
 }
 
+void copySensor(CameraState& from, CameraState& to) {
+  forEachQuantity(kCameraQuantities, [&](const auto& row) {
+    if (row.info.of_sensor) row.value(to) = row.value(from);
+  });
+}
+
 }  // namespace
 
 ParameterBlocks::ParameterBlocks(const CalibrationInput& input, const OptimisationOptions& options,
                                  const CalibrationState& initial)
     : moved_(initial) {
+  for (std::size_t i = 0; i < input.cameras.size(); ++i)
+    sensors_.push_back(options.share_sensors ? input.sensorOf(i) : i);
+  followSensors();
   for (CameraState& camera : moved_.cameras) startDrift(moved_.world_from_imu_rotation, camera);
   for (ImuState& imu : moved_.imus) startDrift(moved_.world_from_imu_rotation, imu);
   setGivenValues(input, options, moved_);
@@ -42,10 +51,12 @@ ParameterBlocks::ParameterBlocks(const CalibrationInput& input, const Optimisati
   }
   for (std::size_t i = 0; i < input.cameras.size(); ++i) {
     const CameraData& camera = input.cameras[i];
-    const bool free = options.freesIntrinsics();
-    intrinsics_.push_back(free ? std::make_unique<IntrinsicsBlock>(camera.lens, moved_.cameras[i], options)
+    const bool free = options.freesIntrinsics() && ownsSensor(i);
+    CameraLens lens = camera.lens;
+    if (camera.same_sensor_as) lens.given_with.reset();  // what is known of a sensor counts once
+    intrinsics_.push_back(free ? std::make_unique<IntrinsicsBlock>(lens, moved_.cameras[i], options)
                                : nullptr);
-    if (!free) moved_.cameras[i].lens.solved.reset();
+    if (!options.freesIntrinsics()) moved_.cameras[i].lens.solved.reset();
   }
 }
 
@@ -57,20 +68,18 @@ CalibrationState ParameterBlocks::state() const {
     });
   for (std::size_t i = 0; i < state.cameras.size(); ++i)
     if (intrinsics_[i]) state.cameras[i].lens.solved = intrinsics_[i]->intrinsics();
+  for (std::size_t i = 0; i < state.cameras.size(); ++i)
+    if (!ownsSensor(i)) copySensor(state.cameras[sensorOf(i)], state.cameras[i]);
   return state;
 }
 
+void ParameterBlocks::followSensors() {
+  for (std::size_t i = 0; i < moved_.cameras.size(); ++i)
+    if (!ownsSensor(i)) copySensor(moved_.cameras[sensorOf(i)], moved_.cameras[i]);
+}
+
 SegmentTimes ParameterBlocks::segmentAt(double time_s) const {
-  const So3Spline& r = moved_.world_from_imu_rotation;
-  const VectorSpline& p = moved_.imu_in_world_m;
-  SegmentTimes segment;
-  segment.rotation = placeInSpline(r, time_s).segment;
-  segment.position = placeInSpline(p.start_s, p.knot_spacing_s, p.segmentCount(), time_s).segment;
-  segment.rotation_start_s = r.start_s + segment.rotation * r.knot_spacing_s;
-  segment.position_start_s = p.start_s + segment.position * p.knot_spacing_s;
-  segment.rotation_spacing_s = r.knot_spacing_s;
-  segment.position_spacing_s = p.knot_spacing_s;
-  return segment;
+  return evical::segmentAt(moved_.world_from_imu_rotation, moved_.imu_in_world_m, time_s);
 }
 
 void ParameterBlocks::appendRotation(const SegmentTimes& segment, std::vector<double*>& blocks) {
@@ -95,8 +104,9 @@ std::vector<Quantity> ParameterBlocks::quantities() {
     if (block != nullptr) all.push_back({&info, sensor, block});
   };
   for (std::size_t i = 0; i < moved_.cameras.size(); ++i)
-    forEachQuantity(kCameraQuantities,
-                    [&](const auto& row) { add(row.info, i, of(row.value(moved_.cameras[i]))); });
+    forEachQuantity(kCameraQuantities, [&](const auto& row) {
+      if (ownsSensor(i) || !row.info.of_sensor) add(row.info, i, of(row.value(moved_.cameras[i])));
+    });
   for (std::size_t i = 0; i < moved_.imus.size(); ++i)
     forEachQuantity(kImuQuantities,
                     [&](const auto& row) { add(row.info, i, of(row.value(moved_.imus[i]))); });

@@ -3,6 +3,7 @@
 #include "core/base/time.h"
 #include "core/data/imu_prediction.h"
 #include "core/numerics/robust.h"
+#include "core/optimisation/sample_runs.h"
 
 #include <fmt/format.h>
 
@@ -97,14 +98,19 @@ SampleErrors sampleErrors(const CalibrationInput& input, const CalibrationState&
   SampleErrors errors;
   for (const ImuSample& sample : input.imus[imu].samples) {
     double& rate_error = errors.gyroscope_rad_s.emplace_back(kNone);
-    double& force_error = errors.accelerometer_m_s2.emplace_back(kNone);
+    errors.accelerometer_m_s2.push_back(kNone);
     const double stamp_s = secondsSince(input.start_ns, sample.time_ns);
-    if (const auto rate = predictedRate_rad_s(state, imu_state, stamp_s)) {
-      rate_error = (*rate - sample.angular_rate_rad_s).norm();
-      ++errors.gyroscope_samples;
-    }
-    if (const auto force = predictedForce_m_s2(state, imu_state, stamp_s)) {
-      force_error = (*force - sample.specific_force_m_s2).norm();
+    const auto rate = predictedRate_rad_s(state, imu_state, stamp_s);
+    if (!rate) continue;
+    rate_error = (*rate - sample.angular_rate_rad_s).norm();
+    ++errors.gyroscope_samples;
+  }
+  for (const SampleRun& run : accelerometerRuns(input, state, imu)) {
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      const ImuSample& sample = input.imus[imu].samples[i];
+      const auto force = predictedForce_m_s2(state, imu_state, secondsSince(input.start_ns, sample.time_ns));
+      if (!force) continue;
+      errors.accelerometer_m_s2[i] = (*force - sample.specific_force_m_s2).norm();
       ++errors.accelerometer_samples;
     }
   }

@@ -11,11 +11,11 @@
 
 namespace evical {
 
-// RMS per axis over the samples in the splines' range; 0 without any.
+// RMS per axis over the samples that the batch has blocks for (sample_runs.h); 0 without any.
 struct SampleErrors {
   double gyroscope_rms_rad_s = 0.0, accelerometer_rms_m_s2 = 0.0;
   int gyroscope_samples = 0, accelerometer_samples = 0;
-  // Norm of each sample's error; NaN outside the splines' range.
+  // Norm of each sample's error; NaN of the others.
   std::vector<double> gyroscope_rad_s, accelerometer_m_s2;
 };
 SampleErrors sampleErrors(const CalibrationInput& input, const CalibrationState& state, std::size_t imu);

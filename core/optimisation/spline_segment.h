@@ -16,6 +16,21 @@ struct SegmentTimes {
   double positionPlace(double time_s) const { return (time_s - position_start_s) / position_spacing_s; }
 };
 
+inline bool sameSegment(const SegmentTimes& a, const SegmentTimes& b) {
+  return a.rotation == b.rotation && a.position == b.position;
+}
+
+inline SegmentTimes segmentAt(const So3Spline& r, const VectorSpline& p, double time_s) {
+  SegmentTimes segment;
+  segment.rotation = placeInSpline(r, time_s).segment;
+  segment.position = placeInSpline(p.start_s, p.knot_spacing_s, p.segmentCount(), time_s).segment;
+  segment.rotation_start_s = r.start_s + segment.rotation * r.knot_spacing_s;
+  segment.position_start_s = p.start_s + segment.position * p.knot_spacing_s;
+  segment.rotation_spacing_s = r.knot_spacing_s;
+  segment.position_spacing_s = p.knot_spacing_s;
+  return segment;
+}
+
 inline So3Segment rotationSegment(const SegmentTimes& times, const double* const* blocks,
                                   bool with_jacobians) {
   return So3Segment(blocks[0], blocks[1], blocks[2], blocks[3], times.rotation_spacing_s, with_jacobians);

@@ -1,6 +1,7 @@
 #include "core/optimisation/batch_optimiser.h"
 
 #include "core/base/error.h"
+#include "core/base/time.h"
 #include "core/geometry/rigid_transform.h"
 #include "core/optimisation/circle_errors.h"
 #include "tests/core/optimisation/simulated_rig.h"
@@ -68,6 +69,28 @@ class TestBatchOptimiser : public QObject {
   Q_OBJECT
 
  private slots:
+  // A recording ends anywhere between two knots: what nothing there is known of must not count as noise.
+  void lastSegment_ofWhichLittleIsMeasured_spoilsNoWeights() {
+    test::SimulatedRig rig = test::simulateRig(noisy());
+    CalibrationState state = test::disturbed(rig.truth, 1);
+    const double knot_s = state.imu_in_world_m.knot_spacing_s;
+    const double end_s = state.imu_in_world_m.start_s + 150.3 * knot_s;
+    constexpr std::size_t kControlPoints = 151 + 3;
+    state.imu_in_world_m.control_points.resize(kControlPoints);
+    state.world_from_imu_rotation.control_points.resize(kControlPoints);
+    for (std::size_t k = kControlPoints - 3; k < kControlPoints; ++k)
+      state.imu_in_world_m.control_points[k] += Eigen::Vector3d(0.01, 0.0, 0.0);  // as a start may leave it
+    std::erase_if(rig.input.imus[0].samples, [&](const ImuSample& sample) {
+      return secondsSince(rig.input.start_ns, sample.time_ns) > end_s;
+    });
+    std::erase_if(rig.input.cameras[0].observations.views,
+                  [&](const BoardView& view) { return view.time_s > end_s - 2.0 * knot_s; });
+    const BatchSolution solution = optimiseBatch(rig.input, state, {}, RunContext{});
+    QVERIFY2(solution.scales.accelerometers[0] > 0.7 && solution.scales.accelerometers[0] < 1.1,
+             QByteArray::number(solution.scales.accelerometers[0]));
+    QVERIFY(translationError_mm(solution.state.cameras[0], rig.truth.cameras[0]) < 5.0);
+  }
+
   // What remains is how far cubic splines with these knots are from sinusoids.
   void batch_onNoiselessData_recoversTruth() {
     const test::SimulatedRig rig = test::simulateRig(noiseless());
