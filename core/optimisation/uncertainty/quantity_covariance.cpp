@@ -161,4 +161,21 @@ QuantityCovariance quantityCovariance(const ProjectedInformation& information,
   return {information.quantities, information.first_column, covariance};
 }
 
+QuantityCovariance withPixelDelay(const CalibrationInput& input, double delay_sigma_s,
+                                  QuantityCovariance covariance) {
+  const auto hasEvents = [](const CameraData& camera) {
+    return camera.observations.kind == CameraKind::Events;
+  };
+  if (input.imus.empty() && std::all_of(input.cameras.begin(), input.cameras.end(), hasEvents))
+    return covariance;
+  const QuantityInfo* const offset = &quantityInfo(kCameraQuantities, &CameraState::time_offset_s);
+  for (std::size_t i = 0; i < covariance.quantities.size(); ++i) {
+    const Quantity& quantity = covariance.quantities[i];
+    if (quantity.info != offset || !hasEvents(input.cameras[quantity.sensor])) continue;
+    const Eigen::Index column = covariance.first_column[i];
+    covariance.covariance(column, column) += delay_sigma_s * delay_sigma_s;
+  }
+  return covariance;
+}
+
 }  // namespace evical

@@ -32,4 +32,9 @@ Eigen::MatrixXd reportFromTangent(const ProjectedInformation& information, const
 QuantityCovariance quantityCovariance(const ProjectedInformation& information,
                                       const Eigen::MatrixXd& report_from_tangent);
 
+// Events are late by their pixels' delay, and so are all of an event camera's: its time offset is uncertain by as much
+// as that delay, and nothing in the recording tells. Not where all is measured by such pixels.
+QuantityCovariance withPixelDelay(const CalibrationInput& input, double delay_sigma_s,
+                                  QuantityCovariance covariance);
+
 }  // namespace evical

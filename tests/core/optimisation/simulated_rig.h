@@ -31,6 +31,8 @@ struct RigOptions {
   BoardState board = {};                                  // against what the input says of it
   bool frames = false;                                    // corners of frames in the place of moving circles
   double line_delay_us = 0.0;                             // of their rolling shutter
+  bool frames_too = false;                                // a second camera: frames of the first one's sensor
+  Eigen::Vector3d frames_apart_m = Eigen::Vector3d::Zero();  // which they are said to be of, and are not
   // Times the default priors: the board's size and stretch, and gravity's norm, drawn anew for each seed.
   double scale_spread = 0.0;
   unsigned seed = 1;
@@ -41,6 +43,12 @@ struct SimulatedRig {
   CalibrationState truth;  // splines fitted to the true motion
 };
 SimulatedRig simulateRig(const RigOptions& options);
+
+// The rig measures circles, not events: no pixel delays them.
+inline OptimisationOptions withoutPixelDelay(OptimisationOptions options = {}) {
+  options.pixel_delay_ms = 0.0;
+  return options;
+}
 
 // For many seeds: 3 s, few samples and views.
 inline RigOptions shortRecording(unsigned seed = 1) {

@@ -31,7 +31,8 @@ struct Run {
   double delay_s() const { return solution.state.imus[0].accelerometer_delay_s; }
   double delaySigma_s() const { return report.imus[0].accelerometer_delay_std_s; }
 };
-Run calibrate(const test::SimulatedRig& rig, unsigned seed = 1, const OptimisationOptions& options = {}) {
+Run calibrate(const test::SimulatedRig& rig, unsigned seed = 1,
+              const OptimisationOptions& options = test::withoutPixelDelay()) {
   Run run;
   run.solution = optimiseBatch(rig.input, test::disturbed(rig.truth, seed), options, RunContext{});
   run.report = estimateUncertainty(rig.input, run.solution, options, RunContext{}).report;

@@ -70,7 +70,7 @@ class TestTimeOffsetDrift : public QObject {
     double drifts = 0.0, offsets = 0.0;
     for (unsigned seed = 1; seed <= kSeeds; ++seed) {
       const test::SimulatedRig rig = test::simulateRig(driftingRig(seed));
-      const OptimisationOptions options = withPrior(1e4);
+      const OptimisationOptions options = test::withoutPixelDelay(withPrior(1e4));
       const BatchSolution solution =
           optimiseBatch(rig.input, test::disturbed(rig.truth, seed), options, RunContext{});
       const UncertaintyReport report = estimateUncertainty(rig.input, solution, options, RunContext{}).report;
