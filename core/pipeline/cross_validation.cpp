@@ -115,8 +115,10 @@ std::array<CalibrationInput, 2> splitIntoHalves(const CalibrationInput& input, c
   for (std::size_t i = 0; i < input.cameras.size(); ++i) {
     const CameraData& camera = input.cameras[i];
     for (CalibrationInput& half : halves) {
-      half.cameras.push_back({camera.name, camera.lens, {}, camera.prior});
-      half.cameras.back().observations.camera = camera.name;
+      CameraData& part = half.cameras.emplace_back(
+          CameraData{camera.name, camera.lens, {}, camera.prior, camera.shutter, camera.same_sensor_as});
+      part.observations.camera = camera.name;
+      part.observations.kind = camera.observations.kind;
     }
     splitViews(camera.observations, state.cameras[i], blocks,
                {&halves[0].cameras[i].observations, &halves[1].cameras[i].observations});
