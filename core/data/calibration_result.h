@@ -71,6 +71,13 @@ struct UncertaintyReport {
   std::string weakest;  // in plain words: "translation along the camera's z axis"
 };
 
+// Of two cameras that are one sensor: how much later the first stamps what both see (a DAVIS's events against its
+// frames), in the middle of the recording.
+struct SensorLatency {
+  std::size_t camera = 0, against = 0;
+  double latency_s = 0.0, std_s = 0.0;
+};
+
 struct CameraFit {
   double reprojection_rms_px = 0.0;
   double normalised_rms = 0.0;  // of residuals divided by their sigma, as weighted
@@ -124,6 +131,7 @@ struct CalibrationResult {
   std::optional<std::int64_t> start_ns;  // of the recording: where times in seconds begin
   CalibrationState state;
   UncertaintyReport uncertainty;
+  std::vector<SensorLatency> latencies;
   std::vector<CameraFit> cameras;
   std::vector<ImuFit> imus;
   std::vector<IterationRecord> iterations;

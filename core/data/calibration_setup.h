@@ -47,6 +47,9 @@ struct CameraData {
   BoardObservations observations;  // in the ideal pixels of lens.seen_with
   SensorPrior prior = {};
   Shutter shutter = Shutter::Global;
+  // Another camera whose chip gives these measurements, too (a DAVIS's events and frames): one pose, one lens, one
+  // clock, and a time offset of its own. That camera has none.
+  std::optional<std::size_t> same_sensor_as = {};
 };
 
 // The estimator's input. Times of observations are seconds since start_ns;
@@ -60,6 +63,8 @@ struct CalibrationInput {
   std::size_t reference_camera = 0;  // index into cameras: the reference where there is no IMU
   double gravity_norm_m_s2 = 9.81;   // where the batch is to find it: the middle of its prior
 
+  // The camera that stands for this one's chip: itself, where it has a chip of its own.
+  std::size_t sensorOf(std::size_t camera) const { return cameras[camera].same_sensor_as.value_or(camera); }
   // Where all else is relative to this camera.
   bool isReferenceCamera(std::size_t camera) const { return imus.empty() && camera == reference_camera; }
 };

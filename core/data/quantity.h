@@ -74,7 +74,8 @@ struct QuantityInfo {
   QuantityRelease release = QuantityRelease::Always;
   QuantityPresence presence = QuantityPresence::Always;
   QuantityWriting written = QuantityWriting::Always;
-  bool relative = false;  // to the reference, which has none of its own
+  bool relative = false;   // to the reference, which has none of its own
+  bool of_sensor = false;  // the same for cameras that are one sensor
 
   // In result.yaml and in a session's prior; without a section the keys are the sensor's own.
   const char* section = "";
@@ -146,6 +147,7 @@ constexpr QuantityInfo rotationInfo(QuantityOwner owner, const char* section) {
           .shown_factor = kDegPerRad,
           .need = QuantityNeed::Rotation,
           .relative = true,
+          .of_sensor = true,
           .section = section,
           .key = "rotation_xyzw",
           .std_key = "rotation_std_deg"};
@@ -162,6 +164,7 @@ constexpr QuantityInfo translationInfo(QuantityOwner owner, const char* section)
           .decimals = 4,
           .need = QuantityNeed::Translation,
           .relative = true,
+          .of_sensor = true,
           .section = section,
           .key = "translation_m",
           .std_key = "translation_std_m",
@@ -197,6 +200,7 @@ constexpr QuantityInfo timeOffsetDriftInfo(QuantityOwner owner) {
           .presence = QuantityPresence::WhereNotZero,
           .written = QuantityWriting::WherePresent,
           .relative = true,
+          .of_sensor = true,
           .key = "time_offset_drift_ppm",
           .std_key = "time_offset_drift_std_ppm"};
 }
@@ -289,6 +293,7 @@ inline constexpr auto kCameraQuantities = std::tuple{
                              .unit = "px",
                              .shown_unit = "px",
                              .presence = QuantityPresence::WhereEstimated,
+                             .of_sensor = true,
                              .key = "intrinsics",
                              .std_key = "intrinsics_std"},
                 LensIntrinsics{}, &CameraUncertainty::intrinsics_std, NoPrior{}}};

@@ -51,6 +51,7 @@ CalibrationProblem::CalibrationProblem(const CalibrationInput& input, const Opti
 }
 
 void CalibrationProblem::build(ReleaseStages stage, const Weights& weights) {
+  parameters_.followSensors();
   const CalibrationState& state = parameters_.moved();
   residuals_.clear();
   assigned_offsets_s_ = timeOffsets_s(state);
@@ -101,7 +102,7 @@ void CalibrationProblem::setManifolds(ProblemBuilder& builder) {
   }
   if (!options_.free_gravity_norm) set(state.gravity_in_world_m_s2.data(), &sphere_);
   for (std::size_t i = 0; i < state.cameras.size(); ++i)
-    if (IntrinsicsBlock* block = parameters_.intrinsics(i))
+    if (IntrinsicsBlock* block = parameters_.intrinsics(i); block && parameters_.ownsSensor(i))
       block->hold(*problem_, builder.stage == lastStage(options_));
   const bool last = builder.stage == lastStage(options_);
   for (const Quantity& quantity : parameters_.quantities()) {

@@ -34,6 +34,10 @@ constexpr std::tuple kModelFields{
         "line_delay", &ModelOptions::line_delay, false,
         "Estimate every frame camera's line delay, as if all shutters rolled; those that the session calls "
         "rolling have theirs estimated in any case, and the others are tested."},
+    Switch{
+        "share_sensors", &ModelOptions::share_sensors, true,
+        "Cameras with same_sensor_as have one pose, one lens and one clock with the other; false: each has "
+        "its own, and whether they agree is only told. Shared ones are tested all the same."},
     Choice{
         "camera_intrinsics", &ModelOptions::camera_intrinsics, CameraIntrinsicsChoice::Free,
         std::array{"fixed", "free"},

@@ -16,6 +16,7 @@ struct ModelOptions {
   bool free_board_size;
   bool board_bow;
   bool line_delay;
+  bool share_sensors;
   CameraIntrinsicsChoice camera_intrinsics;
   bool gyroscope_rotation;
   double delay_misfit;

@@ -46,9 +46,14 @@ class ParameterBlocks {
   double* of(Eigen::Quaterniond& value) { return value.coeffs().data(); }
   double* of(Eigen::Matrix3d& value) { return triangles_.at(&value).data(); }
   double* of(std::optional<CameraIntrinsics>& value);
-  IntrinsicsBlock* intrinsics(std::size_t camera) {
-    return intrinsics_[camera].get();
-  }  // null if they are fixed
+  // Of the camera's sensor; null if they are fixed.
+  IntrinsicsBlock* intrinsics(std::size_t camera) { return intrinsics_[sensorOf(camera)].get(); }
+
+  // The camera whose blocks hold what cameras that are one sensor have in common: itself, where each has its own.
+  std::size_t sensorOf(std::size_t camera) const { return sensors_[camera]; }
+  bool ownsSensor(std::size_t camera) const { return sensors_[camera] == camera; }
+  // Cameras without blocks of their own follow those that have them, in moved().
+  void followSensors();
 
   SegmentTimes segmentAt(double time_s) const;
   void appendRotation(const SegmentTimes& segment, std::vector<double*>& blocks);
@@ -62,6 +67,7 @@ class ParameterBlocks {
   CalibrationState moved_;
   std::map<const Eigen::Matrix3d*, std::array<double, 6>> triangles_;  // of the matrices in moved_
   std::vector<std::unique_ptr<IntrinsicsBlock>> intrinsics_;           // by camera
+  std::vector<std::size_t> sensors_;                                   // by camera
 };
 
 }  // namespace evical

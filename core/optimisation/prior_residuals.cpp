@@ -59,10 +59,11 @@ void addCameraPriors(ProblemBuilder& builder) {
   }
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     IntrinsicsBlock* block = builder.parameters.intrinsics(i);
-    if (block != nullptr && builder.has(block->data()))
+    if (block != nullptr && builder.parameters.ownsSensor(i) && builder.has(block->data()))
       builder.residuals.push_back({block->addPrior(builder.problem)});
   }
   for (std::size_t i = 0; i < cameras.size(); ++i) {
+    if (builder.input.cameras[i].same_sensor_as) continue;  // what is known of a sensor counts once
     const std::optional<KnownVector>& known = builder.input.cameras[i].prior.translation;
     double* translation = cameras[i].reference_from_camera.translation_m.data();
     if (!known) addPrior(builder, translation, 3, kZero.data(), builder.options.translation_sigma_m);

@@ -11,6 +11,10 @@ constexpr std::tuple kVerdictFields{
     Field{"pixel_error_px", &VerdictOptions::pixel_error_px, 0.1, within(0.0, 10.0), "px",
           "Error of edges that repeats at the same pixel, so that motion over few pixels shows a wrong "
           "amplitude: part of the sigmas."},
+    Field{"pixel_delay_ms", &VerdictOptions::pixel_delay_ms, 0.03, within(0.0, 100.0), "ms",
+          "How well it is known by how much pixels delay events, which light and speed change: part of the "
+          "sigmas "
+          "of event cameras' time offsets against frames and IMUs."},
     Field{"contradiction_sigmas", &VerdictOptions::contradiction_sigmas, 4.0, within(1.0, 1000.0), "sigma",
           "Known values that lie further than this from what the recording alone says are told of."},
     Field{"doubtful_contradiction_sigmas", &VerdictOptions::doubtful_contradiction_sigmas, 8.0,
@@ -25,6 +29,9 @@ constexpr std::tuple kVerdictFields{
           "doubtful."},
     Field{"wrong_lens_px", &VerdictOptions::wrong_lens_px, 0.2, within(0.0, 1000.0), "px",
           "RMS over the image by which it projects elsewhere."},
+    Field{"other_sensor_sigmas", &VerdictOptions::other_sensor_sigmas, 4.5, within(1.0, 1000.0), "sigma",
+          "Cameras with same_sensor_as whose poses or lenses differ by more than this and what is needed, or "
+          "wrong_lens_px, make the result doubtful."},
     Field{
         "rolling_shutter_sigmas", &VerdictOptions::rolling_shutter_sigmas, 6.0, within(1.0, 1000.0), "sigma",
         "A shutter that the session calls global, but that seems to roll beyond this and rolling_shutter_ms, "

@@ -8,11 +8,13 @@ namespace evical {
 struct VerdictOptions {
   double correlation_time_s;
   double pixel_error_px;
+  double pixel_delay_ms;
   double contradiction_sigmas;
   double doubtful_contradiction_sigmas;
   double turned_gyroscope_sigmas;
   double wrong_lens_sigmas;
   double wrong_lens_px;
+  double other_sensor_sigmas;
   double rolling_shutter_sigmas;
   double rolling_shutter_ms;
   double bent_board_sigmas;

@@ -13,6 +13,7 @@
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/uncertainty/covariance.h"
 #include "core/optimisation/uncertainty/prior_check.h"
+#include "core/optimisation/uncertainty/shared_sensors.h"
 #include "core/pipeline/board_size_check.h"
 #include "core/pipeline/causes.h"
 #include "core/pipeline/cross_validation.h"
@@ -97,6 +98,8 @@ CalibrationInput inputFrom(const Session& session, const CalibrationRun& run) {
     const SessionCamera& camera = session.cameras[k];
     input.cameras.push_back(
         {camera.name, run.pass.lenses.at(k), run.pass.cameras[k], camera.prior, camera.shutter});
+    if (const std::size_t sensor = session.sensorOf(k); sensor != k)
+      input.cameras.back().same_sensor_as = sensor;
   }
   input.imus = run.pass.imus;
   for (std::size_t k = 0; k < session.imus.size(); ++k) input.imus[k].prior = session.imus[k].prior;
@@ -154,10 +157,11 @@ std::vector<CameraLens> findLenses(const Session& session, const RunContext& con
   SessionRecording{session};  // streams that are missing are missed now, not after minutes
   run.intrinsics.resize(lenses.size());
   for (std::size_t k = 0; k < lenses.size(); ++k) {
-    if (lenses[k].given) continue;
+    if (lenses[k].given || session.sensorOf(k) != k) continue;
     run.intrinsics[k] = calibrateIntrinsics(session, k, context).result;
     lenses[k].seen_with = run.intrinsics[k]->intrinsics;
   }
+  for (std::size_t k = 0; k < lenses.size(); ++k) lenses[k] = lenses[session.sensorOf(k)];
   return lenses;
 }
 
@@ -171,6 +175,7 @@ void tellIntrinsics(const Session& session, CalibrationRun& run) {
   std::vector<std::string> notes;
   std::string doubt;
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
+    if (session.sensorOf(k) != k) continue;
     const std::string name = "intrinsics of " + session.cameras[k].name;
     const CameraLens& lens = run.result.state.cameras[k].lens;
     if (k < run.intrinsics.size() && run.intrinsics[k]) {
@@ -356,6 +361,7 @@ class Calibration {
                 "or see the residuals",
                 Repair{"optimisation.solver.max_iterations", std::to_string(2 * options.max_iterations)}},
           result);
+    addDoubt(Doubt{uncertainty.other_sensors}, result);
     addDoubt(Doubt{uncertainty.rolling_shutters}, result);
     addDoubt(priors.doubt, result);
     addDoubt(boardDoubt(uncertainty, solution.state), result);
@@ -367,6 +373,7 @@ class Calibration {
     if (result.status == CalibrationStatus::Doubtful) addDoubt(saturationIn(input_, options), result);
     result.state = std::move(solution.state);
     result.uncertainty = std::move(uncertainty.report);
+    result.latencies = sensorLatencies(input_, result.state, result.uncertainty);
     result.cameras = std::move(solution.cameras);
     result.imus = std::move(solution.imus);
     result.iterations = std::move(solution.iterations);

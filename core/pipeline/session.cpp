@@ -44,6 +44,32 @@ void checkDifferent(const Session& session, const std::string& place) {
   for (const SessionImu& imu : session.imus) check("imus", imu);
 }
 
+// Its pose, its lens and its clock are that other camera's.
+void checkSharedSensor(const Session& session, const SessionCamera& camera, const std::string& place) {
+  const std::string key = fmt::format("{}: cameras.{}.same_sensor_as", place, camera.name);
+  std::vector<std::string> others;
+  for (const SessionCamera& other : session.cameras)
+    if (other.name != camera.name && other.same_sensor_as.empty()) others.push_back(other.name);
+  if (std::find(others.begin(), others.end(), camera.same_sensor_as) == others.end())
+    throw badInput(
+        key, fmt::format("'{}' is no other camera with a sensor of its own", camera.same_sensor_as),
+        others.empty() ? "Remove it: there is no such camera" : nameAdvice(camera.same_sensor_as, others));
+  const std::string whose =
+      fmt::format("'{}' has that already: it is the same sensor", camera.same_sensor_as);
+  if (camera.intrinsics)
+    throw badInput(fmt::format("{}: cameras.{}.intrinsics", place, camera.name), whose,
+                   fmt::format("Give intrinsics of '{}' only", camera.same_sensor_as));
+  const SensorPrior& prior = camera.prior;
+  if (prior.rotation || prior.translation || prior.time_offset_drift)
+    throw badInput(fmt::format("{}: prior.cameras.{}", place, camera.name), whose,
+                   fmt::format("Give what is known of '{}' only; a time offset each has of its own",
+                               camera.same_sensor_as));
+  if (session.imus.empty() && session.reference == camera.name)
+    throw badInput(place + ": reference",
+                   fmt::format("'{}' has its pose from '{}'", camera.name, camera.same_sensor_as),
+                   fmt::format("Make '{}' the reference", camera.same_sensor_as));
+}
+
 void checkBoard(const Session& session, const std::string& place) {
   if (session.imus.empty() || !session.board.hasHalfTurnAmbiguity()) return;
   const BoardType type = session.board.type;
@@ -138,6 +164,8 @@ std::string cameraYaml(const SessionCamera& camera, const std::filesystem::path&
     text += fmt::format("    resolution_px: [{}, {}]\n", camera.resolution_px.width_px,
                         camera.resolution_px.height_px);
   if (camera.shutter == Shutter::Rolling) text += "    shutter: rolling\n";
+  if (!camera.same_sensor_as.empty())
+    text += fmt::format("    same_sensor_as: {}\n", yamlText(camera.same_sensor_as));
   if (camera.intrinsics) text += "    intrinsics:\n" + intrinsicsYaml(*camera.intrinsics, 6);
   if (camera.intrinsics && camera.intrinsics_uncertainty)
     text += lensUncertaintyYaml(*camera.intrinsics_uncertainty, *camera.intrinsics, 4);
@@ -200,9 +228,18 @@ void setMeasuredLength(const std::optional<MeasuredLength>& measured, Session& s
 
 std::vector<CameraLens> givenLenses(const Session& session) {
   std::vector<CameraLens> lenses;
-  for (const SessionCamera& camera : session.cameras)
-    lenses.push_back(givenLens(camera.intrinsics, camera.intrinsics_uncertainty));
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
+    const SessionCamera& sensor = session.cameras[session.sensorOf(k)];
+    lenses.push_back(givenLens(sensor.intrinsics, sensor.intrinsics_uncertainty));
+  }
   return lenses;
+}
+
+std::size_t Session::sensorOf(std::size_t camera) const {
+  const std::string& name = cameras[camera].same_sensor_as;
+  const auto found = std::find_if(cameras.begin(), cameras.end(),
+                                  [&](const SessionCamera& each) { return each.name == name; });
+  return name.empty() || found == cameras.end() ? camera : static_cast<std::size_t>(found - cameras.begin());
 }
 
 std::size_t Session::referenceImu() const {
@@ -226,6 +263,8 @@ void validate(const Session& session, const std::string& place) {
   checkReference(session, place);
   checkBoard(session, place);
   checkPriors(session, place);
+  for (const SessionCamera& camera : session.cameras)
+    if (!camera.same_sensor_as.empty()) checkSharedSensor(session, camera, place);
   validate(session.options);
 }
 

@@ -25,6 +25,8 @@ struct SessionCamera {
   SensorPrior prior = {};                      // the file's prior.cameras.<name>
   std::optional<LensUncertainty> intrinsics_uncertainty = {};  // from another recording; absent: not said
   Shutter shutter = Shutter::Global;                           // of frames
+  // The camera whose chip this one's stream comes from, too: pose and lens are that one's. Empty: its own.
+  std::string same_sensor_as = {};
 };
 
 struct SessionImu {
@@ -51,6 +53,8 @@ struct Session {
   CalibrationOptions options;
   std::vector<std::string> exports;  // targets besides kalibr, as `evical export --to` names them
 
+  // Of what same_sensor_as names; the camera itself, where it names none.
+  std::size_t sensorOf(std::size_t camera) const;
   std::size_t referenceImu() const;     // index into imus; 0 where there is none
   std::size_t referenceCamera() const;  // index into cameras; 0 where the reference is an IMU
 };

@@ -120,12 +120,13 @@ Sensor readSource(const YamlNode& map, const std::string& sensor_name, const std
 
 SessionCamera readCamera(const YamlNode& map, const std::string& camera_name,
                          const std::filesystem::path& folder) {
-  map.allowOnly({"recording", "stream", "clock_offset_s", "resolution_px", "shutter", "intrinsics",
-                 "intrinsics_std", "intrinsics_correlation"});
+  map.allowOnly({"recording", "stream", "clock_offset_s", "resolution_px", "shutter", "same_sensor_as",
+                 "intrinsics", "intrinsics_std", "intrinsics_correlation"});
   SessionCamera camera = readSource<SessionCamera>(map, camera_name, folder);
   if (const auto node = map.find("resolution_px")) camera.resolution_px = readResolution(*node);
   if (const auto node = map.find("shutter"))
     camera.shutter = static_cast<Shutter>(node->choice({"global", "rolling"}));
+  if (const auto node = map.find("same_sensor_as")) camera.same_sensor_as = name(*node);
   const auto intrinsics = map.find("intrinsics"), sigmas = map.find("intrinsics_std");
   if (sigmas && !intrinsics)
     throw sigmas->error("is of intrinsics that are not given", "Give intrinsics, too");

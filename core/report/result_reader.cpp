@@ -136,6 +136,22 @@ SensorDescription readCamera(const YamlNode& map, const std::string& name, Calib
   return {name, streamOf(map)};
 }
 
+void readLatencies(const YamlNode& cameras, const NamedResult& named, CalibrationResult& result) {
+  for (std::size_t i = 0; i < named.cameras.size(); ++i) {
+    const YamlNode camera = cameras[named.cameras[i].name];
+    const auto against = camera.find("latency_against");
+    if (!against) continue;
+    SensorLatency latency{i};
+    const auto other = std::find_if(named.cameras.begin(), named.cameras.end(),
+                                    [&](const auto& each) { return each.name == against->text(); });
+    if (other == named.cameras.end()) throw against->error("is none of the cameras");
+    latency.against = static_cast<std::size_t>(other - named.cameras.begin());
+    get(camera, "latency_s", latency.latency_s);
+    get(camera, "latency_std_s", latency.std_s);
+    result.latencies.push_back(latency);
+  }
+}
+
 SensorDescription readKnown(const YamlNode& map, const std::string& name) {
   SensorDescription known{name, streamOf(map)};
   if (map.has("accelerometer_noise_density") && map.has("gyroscope_noise_density")) {
@@ -256,6 +272,7 @@ NamedResult readResultYaml(const std::filesystem::path& file) {
     for (const std::string& key : imus->keys()) named.imus.push_back(readImu((*imus)[key], key, result));
   if (const auto board = root.find("board"))
     readQuantities(*board, kBoardQuantities, result.state.board, result.uncertainty.board);
+  if (const auto cameras = root.find("cameras")) readLatencies(*cameras, named, result);
   get(root, "gravity_m_s2", result.state.gravity_in_world_m_s2);
   readUncertainty(root, result.uncertainty);
   if (const auto validation = root.find("cross_validation"))

@@ -75,6 +75,16 @@ std::string streamYaml(const std::string& stream) {
   return stream.empty() ? "" : fmt::format("    stream: {}\n", yamlText(stream));
 }
 
+std::string latencyYaml(const NamedResult& named, std::size_t camera) {
+  std::string text;
+  for (const SensorLatency& latency : named.result->latencies)
+    if (latency.camera == camera)
+      text += fmt::format("    latency_s: {}\n    latency_std_s: {}\n    latency_against: {}\n",
+                          exactYaml(latency.latency_s), roundedYaml(latency.std_s),
+                          yamlText(named.cameras.at(latency.against).name));
+  return text;
+}
+
 std::string cameraYaml(const NamedResult& named, std::size_t i) {
   const CameraState& state = named.result->state.cameras[i];
   const CameraUncertainty sigma = elementOrNone(named.result->uncertainty.cameras, i);
@@ -85,7 +95,7 @@ std::string cameraYaml(const NamedResult& named, std::size_t i) {
   addPlace(kCameraQuantities, state, sigma, sections);
   addQuantities(kCameraQuantities, state, sigma, Written::Both, sections, besidesPose);
   addTimeOfOffset(state, sections);
-  text += sections.text(kSensorIndent);
+  text += sections.text(kSensorIndent) + latencyYaml(named, i);
   if (const std::optional<CameraIntrinsics>& intrinsics = state.lens.inUse()) {
     text += "    intrinsics:\n" + intrinsicsYaml(*intrinsics, 6);
     if (sigma.intrinsics_std)

@@ -37,11 +37,30 @@ std::vector<ShownQuantity> shown(const Rows& rows, const std::string& sensor, co
   return all;
 }
 
+// Follows from two time offsets.
+constexpr QuantityInfo kLatency{.name = "latency",
+                                .title = "latency",
+                                .owner = QuantityOwner::Camera,
+                                .shape = QuantityShape::Scalar,
+                                .unit = "s",
+                                .shown_unit = "ms",
+                                .shown_factor = 1e3,
+                                .decimals = 4,
+                                .remark = "of events against the frames of the same sensor"};
+
 }  // namespace
 
 std::vector<ShownQuantity> shownCamera(const NamedResult& named, std::size_t camera, bool with_place) {
-  return shown(kCameraQuantities, named.cameras.at(camera).name, named.result->state.cameras.at(camera),
-               elementOrNone(named.result->uncertainty.cameras, camera), with_place);
+  const std::string& name = named.cameras.at(camera).name;
+  std::vector<ShownQuantity> all =
+      shown(kCameraQuantities, name, named.result->state.cameras.at(camera),
+            elementOrNone(named.result->uncertainty.cameras, camera), with_place);
+  for (const SensorLatency& latency : named.result->latencies)
+    if (latency.camera == camera)
+      all.push_back({&kLatency,
+                     {{name + "." + kLatency.name, "", kLatency.shown_unit,
+                       kLatency.shown_factor * latency.latency_s, kLatency.shown_factor * latency.std_s}}});
+  return all;
 }
 
 std::vector<ShownQuantity> shownImu(const NamedResult& named, std::size_t imu, bool with_place) {

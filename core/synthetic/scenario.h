@@ -68,6 +68,7 @@ struct SimulatedCamera {
   double time_offset_s = 0.0;  // imu_time = camera_time + offset, of the clocks alone
   EventPixelModel pixel;
   std::optional<FrameModel> frames = {};  // in the place of events
+  std::string same_sensor_as = {};        // a camera whose lens and place it has, and the session says so
 
   // By how much a stamp is late.
   double delay_s() const { return frames ? 0.0 : pixel.delay_s(); }

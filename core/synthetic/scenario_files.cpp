@@ -125,7 +125,9 @@ std::string sessionYaml(const Scenario& truth, const std::string& recording_file
     text += fmt::format("    stream: {}\n    resolution_px: [{}, {}]\n", yamlText(camera.stream),
                         size.width_px, size.height_px);
     if (camera.frames && camera.frames->line_delay_us != 0.0) text += "    shutter: rolling\n";
-    if (scenario.intrinsics_in_session)
+    if (!camera.same_sensor_as.empty())
+      text += fmt::format("    same_sensor_as: {}\n", yamlText(camera.same_sensor_as));
+    else if (scenario.intrinsics_in_session)
       text += "    intrinsics:\n" + intrinsicsYaml(camera.intrinsics, kSensorIndent);
   }
   if (scenario.imus.empty())

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -255,10 +256,12 @@ void readFrames(const YamlNode& map, FrameModel& frames) {
 }
 
 void readCamera(const YamlNode& map, SimulatedCamera& camera) {
-  map.allowOnly({"name", "stream", "time_offset_s", "imu_from_camera", "intrinsics", "pixel", "frames"});
+  map.allowOnly({"name", "stream", "time_offset_s", "same_sensor_as", "imu_from_camera", "intrinsics",
+                 "pixel", "frames"});
   get(map, "name", camera.name);
   get(map, "stream", camera.stream);
   get(map, "time_offset_s", camera.time_offset_s, -60.0, 60.0, "s");
+  get(map, "same_sensor_as", camera.same_sensor_as);
   if (const auto node = map.find("imu_from_camera")) readTransform(*node, camera.imu_from_camera);
   if (const auto node = map.find("intrinsics")) readIntrinsicsOf(*node, camera.intrinsics);
   if (const auto node = map.find("pixel")) readPixel(*node, camera.pixel);
@@ -364,6 +367,21 @@ void readSession(const YamlNode& map, Scenario& scenario) {
     scenario.intrinsics_in_session = node->choice({"false", "true"}) == 1;
 }
 
+void shareSensors(const std::string& file, std::vector<SimulatedCamera>& cameras) {
+  for (SimulatedCamera& camera : cameras) {
+    if (camera.same_sensor_as.empty()) continue;
+    const auto sensor = std::find_if(cameras.begin(), cameras.end(), [&](const SimulatedCamera& other) {
+      return other.name == camera.same_sensor_as && other.same_sensor_as.empty();
+    });
+    if (sensor == cameras.end())
+      throw badInput(fmt::format("{}: same_sensor_as of {}", file, camera.name),
+                     fmt::format("'{}' is no camera with a sensor of its own", camera.same_sensor_as),
+                     "Name one of the other cameras");
+    camera.intrinsics = sensor->intrinsics;
+    camera.imu_from_camera = sensor->imu_from_camera;
+  }
+}
+
 // What can be wrong only once a scenario and its bases are put together.
 void validateWhole(const Scenario& scenario, const std::string& file) {
   try {
@@ -416,6 +434,7 @@ Scenario readFrom(const std::filesystem::path& path, int depth) {
 
 Scenario readScenario(const std::filesystem::path& path) {
   Scenario scenario = readFrom(path, 0);
+  shareSensors(path.string(), scenario.cameras);
   validateWhole(scenario, path.string());
   return scenario;
 }

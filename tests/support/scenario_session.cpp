@@ -45,6 +45,8 @@ Session sessionFor(const Scenario& truth) {
         {camera.name, camera.stream, camera.intrinsics.resolution_px, camera.intrinsics});
     if (camera.frames && camera.frames->line_delay_us != 0.0)
       session.cameras.back().shutter = Shutter::Rolling;
+    session.cameras.back().same_sensor_as = camera.same_sensor_as;
+    if (!camera.same_sensor_as.empty()) session.cameras.back().intrinsics.reset();
   }
   for (const SimulatedImu& imu : scenario.imus) {
     SessionImu out;

@@ -11,6 +11,7 @@
 #include "core/optimisation/uncertainty/projected_information.h"
 #include "core/optimisation/uncertainty/scale_check.h"
 #include "core/optimisation/uncertainty/score_test.h"
+#include "core/optimisation/uncertainty/shared_sensors.h"
 #include "core/optimisation/uncertainty/uncertainty_report.h"
 
 namespace evical {
@@ -32,13 +33,17 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   estimate.wrong_lenses = std::move(held.lenses);
   estimate.rolling_shutters = std::move(held.shutters);
   information = withoutHeldValues(input, options, std::move(information));
+  estimate.other_sensors = doubtOfSensors(input, solution.state, information, options);
+  information = withSharedSensors(input, options, std::move(information));
   ChangeDoubt change = doubtOfChanges(input, information, options);
   if (change.sigmas > held.gyroscope_sigmas) estimate.change = std::move(change.doubt);
   information = withoutNoise(std::move(information));
   const Eigen::MatrixXd report_from_tangent =
       reportFromTangent(information, solution.state, problem.problem());
-  const QuantityCovariance covariance = quantityCovariance(information, report_from_tangent);
+  const QuantityCovariance covariance = withPixelDelay(input, 1e-3 * options.pixel_delay_ms,
+                                                       quantityCovariance(information, report_from_tangent));
   estimate.report = makeReport(input, covariance);
+  reportSharedSensors(input, options, estimate.report);
   estimate.report.given = givenQuantities(input, options);
   const Eigen::MatrixXd tangent_from_report = inverseOf(report_from_tangent);
   reportDrift(information, problem.driftBlocks(), congruence(tangent_from_report, covariance.covariance),

@@ -33,6 +33,7 @@ struct UncertaintyEstimate {
   std::string bent_board;          // the same of a board that is taken for flat
   std::string wrong_lenses;        // what is doubtful of lenses that are held
   std::string rolling_shutters;    // of those that are said to be global
+  std::string other_sensors;       // of cameras that are said to be one sensor
   std::string scale_doubt;         // of the board's size, or gravity
   std::string stretch_doubt;       // of the board's stretch
   std::string bow_doubt;           // of how far it is bent

@@ -7,6 +7,7 @@
 #include "core/numerics/angles.h"
 #include "core/numerics/scaled_inverse.h"
 #include "core/optimisation/uncertainty/credible_information.h"
+#include "core/optimisation/uncertainty/kept_columns.h"
 #include "core/optimisation/uncertainty/score_scatter.h"
 
 #include <fmt/format.h>
@@ -161,6 +162,7 @@ class BoardTest {
 
 OptimisationOptions freeToBeTested(OptimisationOptions options) {
   options.gyroscope_rotation = options.board_bow = options.line_delay = true;
+  options.share_sensors = false;
   options.camera_intrinsics = CameraIntrinsicsChoice::Free;
   return options;
 }
@@ -192,30 +194,10 @@ HeldDoubts testHeldValues(const CalibrationInput& input, const CalibrationState&
 
 ProjectedInformation withoutHeldValues(const CalibrationInput& input, const OptimisationOptions& options,
                                        ProjectedInformation information) {
-  std::vector<Eigen::Index> kept;
-  std::vector<Quantity> quantities;
-  std::vector<Eigen::Index> first_column = {0};
-  for (std::size_t i = 0; i < information.quantities.size(); ++i) {
-    if (isHeld(information.quantities[i], input, options)) continue;
-    quantities.push_back(information.quantities[i]);
-    for (Eigen::Index k = information.first_column[i]; k < information.first_column[i + 1]; ++k)
-      kept.push_back(k);
-    first_column.push_back(static_cast<Eigen::Index>(kept.size()));
-  }
-  const auto shrinkMatrix = [&](Eigen::MatrixXd& matrix) { matrix = matrix(kept, kept).eval(); };
-  const auto shrinkVector = [&](Eigen::VectorXd& vector) { vector = vector(kept).eval(); };
-  information.quantities = std::move(quantities);
-  information.first_column = std::move(first_column);
-  shrinkMatrix(information.total);
-  shrinkMatrix(information.from_noise);
-  shrinkVector(information.gradient);
-  for (MeasurementGroup& group : information.groups) shrinkMatrix(group.information);
-  for (Eigen::VectorXd& score : information.scores) shrinkVector(score);
-  for (Eigen::MatrixXd& share : information.information_by_stretch) shrinkMatrix(share);
-  for (Eigen::VectorXd& effect : information.pixel_errors) shrinkVector(effect);
-  if (information.drift_by_quantities.size() > 0)
-    information.drift_by_quantities = information.drift_by_quantities(Eigen::all, kept).eval();
-  return information;
+  KeptColumns kept(information);
+  for (std::size_t i = 0; i < information.quantities.size(); ++i)
+    if (!isHeld(information.quantities[i], input, options)) kept.keep(i);
+  return withColumns(kept, std::move(information));
 }
 
 }  // namespace evical

@@ -250,6 +250,22 @@ void spreadScale(const RigOptions& options, CalibrationState& truth) {
       1.0 + options.scale_spread * priors.gravity_norm_sigma_m_s2 * random.normal() / options.gravity_m_s2;
 }
 
+void addFrames(const TrueMotion& motion, RigOptions options, SimulatedRig& rig) {
+  constexpr unsigned kOther = 555;  // seed: what else is drawn stays the same
+  Random random(options.seed + kOther);
+  CameraState camera = rig.truth.cameras.front();
+  camera.time_offset_s += random.uniform(0.0, 5e-3);
+  camera.edge_lead_px = 0.0;
+  camera.reference_from_camera.translation_m += options.frames_apart_m;
+  options.frames = true;
+  options.window_s = 0.05;
+  CameraData data = observe(motion, camera, rig.input.board, rig.truth.board, options, random);
+  data.name = "frames";
+  data.same_sensor_as = 0;
+  rig.input.cameras.push_back(std::move(data));
+  rig.truth.cameras.push_back(camera);
+}
+
 }  // namespace
 
 SimulatedRig simulateRig(const RigOptions& options) {
@@ -297,6 +313,7 @@ SimulatedRig simulateRig(const RigOptions& options) {
                                      rig.truth.gravity_in_world_m_s2, options, random));
   }
   fitTruth(motion, options, rig.truth);
+  if (options.frames_too) addFrames(motion, options, rig);
   return rig;
 }
 

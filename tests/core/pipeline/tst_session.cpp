@@ -220,6 +220,44 @@ class TestSession : public QObject {
     QVERIFY(sessionWith("", "").cameras[0].shutter == Shutter::Global);
   }
 
+  void camerasOfOneSensor_haveOneLens() {
+    const Session session =
+        sessionWith("imus:\n", "  frames:\n    stream: /left/image_raw\n    same_sensor_as: left\nimus:\n");
+    QCOMPARE(session.sensorOf(1), std::size_t{0});
+    QCOMPARE(session.sensorOf(0), std::size_t{0});
+    const std::vector<CameraLens> lenses = givenLenses(session);
+    QVERIFY(lenses[1].given && lenses[1] == lenses[0]);
+    writeSession(session, folder() / "again.yaml");
+    QCOMPARE(sessionYaml(readSession(folder() / "again.yaml"), folder()), sessionYaml(session, folder()));
+  }
+
+  void camerasOfNoSensor_areRefused_data() {
+    QTest::addColumn<QString>("camera");
+    QTest::addColumn<QStringList>("said");
+    const QString frames = "  frames:\n    stream: /left/image_raw\n    same_sensor_as: ";
+    QTest::newRow("unknown") << frames + "lift\n" << QStringList{"cameras.frames.same_sensor_as", "'left'"};
+    QTest::newRow("itself") << frames + "frames\n" << QStringList{"no other camera", "left"};
+    QTest::newRow("of one that has none")
+        << frames + "left\n  more:\n    stream: /more\n    same_sensor_as: frames\n"
+        << QStringList{"cameras.more.same_sensor_as", "with a sensor of its own"};
+    QTest::newRow("two lenses")
+        << frames +
+               "left\n    resolution_px: [346, 260]\n    intrinsics: {model: pinhole_radtan, "
+               "focal_length_px: "
+               "[260, 260], principal_point_px: [170, 130], distortion: [0, 0, 0, 0]}\n"
+        << QStringList{"cameras.frames.intrinsics", "Give intrinsics of 'left' only"};
+  }
+  void camerasOfNoSensor_areRefused() {
+    QFETCH(QString, camera);
+    QFETCH(QStringList, said);
+    try {
+      sessionWith("imus:\n", camera + "imus:\n");
+      QFAIL("taken");
+    } catch (const CalibrationError& error) {
+      test::verifyRefusal(error, said);
+    }
+  }
+
   void exportsAndRandomWalks_areKept() {
     const Session session =
         sessionWith("reference: left_imu\n", "reference: left_imu\nexport: [openvins, ros]\n");
