@@ -2,7 +2,6 @@
 
 #include "core/base/time.h"
 #include "core/geometry/camera_model.h"
-#include "core/geometry/undistortion_table.h"
 #include "core/synthetic/board_pattern.h"
 #include "core/synthetic/clutter_texture.h"
 #include "core/synthetic/random.h"
@@ -25,6 +24,18 @@ constexpr int kSide = 9;          // of the grid of places that make a pixel at 
 constexpr float kReach = 2.3f;    // of that grid, in sigmas of the blur
 constexpr double kWhite = 235.0;  // what white paper gives, of 255
 
+using RayPerPixel = Eigen::Matrix<float, 3, 2>;
+
+// How a ray of length 1 moves with its pixel; it stays of that length.
+RayPerPixel rayPerPixel(const CameraIntrinsics& lens, const Eigen::Vector3d& ray) {
+  Eigen::Matrix<double, 2, 3> by_ray;
+  if (!project(lens, ray, &by_ray)) return RayPerPixel::Zero();
+  Eigen::Matrix<double, 3, 2> across;
+  across.col(0) = ray.unitOrthogonal();
+  across.col(1) = ray.cross(across.col(0));
+  return (across * (by_ray * across).inverse()).cast<float>();
+}
+
 // Ray to plane, and how that moves with the pixel.
 struct Place {
   Eigen::Vector2f at_m;
@@ -32,15 +43,14 @@ struct Place {
   bool ahead = false;
 };
 
-Place placeOn(const Eigen::Matrix3f& plane_from_ray, const Eigen::Vector2f& ray,
-              const Eigen::Matrix2f& ray_per_px) {
-  const Eigen::Vector3f h = plane_from_ray * ray.homogeneous();
+Place placeOn(const Eigen::Matrix3f& plane_from_ray, const Eigen::Vector3f& ray,
+              const RayPerPixel& ray_per_px) {
+  const Eigen::Vector3f h = plane_from_ray * ray;
   Place place;
   place.ahead = h.z() > 0.0f;
   if (!place.ahead) return place;
   place.at_m = h.hnormalized();
-  place.per_px = (plane_from_ray.topLeftCorner<2, 2>() - place.at_m * plane_from_ray.block<1, 2>(2, 0)) /
-                 h.z() * ray_per_px;
+  place.per_px = (plane_from_ray.topRows<2>() - place.at_m * plane_from_ray.row(2)) / h.z() * ray_per_px;
   return place;
 }
 
@@ -57,18 +67,16 @@ class FrameRenderer {
         texture_({scenario.seed, scenario.scene.clutter_contrast, scenario.scene.clutter_object_share,
                   blur_px_ * texelsPerPixel()}) {
     const CameraIntrinsics& lens = camera_.intrinsics;
-    const UndistortionTable ideal(lens);
     for (int y = 0; y < lens.resolution_px.height_px; ++y) {
       for (int x = 0; x < lens.resolution_px.width_px; ++x) {
-        const Eigen::Vector2d pixel = ideal(x, y).cast<double>();
-        rays_.push_back((pixel - lens.principal_point_px).cwiseQuotient(lens.focal_length_px).cast<float>());
-        const Eigen::Matrix2d per_px =
-            lens.focal_length_px.cwiseInverse().asDiagonal() * idealPixelScale(lens, pixel);
-        ray_per_px_.push_back(per_px.cast<float>());
+        const auto ray =
+            unprojectRay(lens, Eigen::Vector2d(x, y));  // none: dark, as beyond a fisheye's circle
+        rays_.push_back(ray.value_or(Eigen::Vector3d::Zero()).cast<float>());
+        ray_per_px_.push_back(ray ? rayPerPixel(lens, *ray) : RayPerPixel::Zero());
       }
     }
     const double px_per_m =
-        lens.focal_length_px.x() / (scenario.motion.distance_m + scenario.scene.clutter_distance_m);
+        idealFocalLength_px(lens).x() / (scenario.motion.distance_m + scenario.scene.clutter_distance_m);
     texels_per_m_ = static_cast<float>(texelsPerPixel() * px_per_m);
     placeWeights();
   }
@@ -162,7 +170,7 @@ class FrameRenderer {
 
   float backgroundOf(std::size_t pixel, const Eigen::Matrix3f& behind) const {
     constexpr float kMiddle = 0.25f;  // reflectance
-    const Eigen::Vector3f h = behind * rays_[pixel].homogeneous();
+    const Eigen::Vector3f h = behind * rays_[pixel];
     if (!(h.z() > 0.0f)) return kMiddle;
     const Eigen::Vector2f at = texels_per_m_ * h.hnormalized();
     return std::min(1.0f, kMiddle * std::exp(texture_(at.x(), at.y())));
@@ -189,8 +197,8 @@ class FrameRenderer {
   float blur_px_;
   ClutterTexture texture_;
   float texels_per_m_ = 1.0f;
-  std::vector<Eigen::Vector2f> rays_;
-  std::vector<Eigen::Matrix2f> ray_per_px_;
+  std::vector<Eigen::Vector3f> rays_;
+  std::vector<RayPerPixel> ray_per_px_;
   std::vector<Eigen::Vector2f> offsets_px_;
   std::vector<float> weights_;
 };

@@ -129,6 +129,8 @@ struct MotionModel {
   double turn_rad = 0.0;  // about its y axis, on average
   double turn_amplitude_rad = 0.0;
   double turn_period_s = 4.0;
+  double tilt_amplitude_rad = 0.0;  // and about its x axis
+  double tilt_period_s = 7.0;
   double lowest_frequency_hz = 0.3;  // before scaling to the speed
   double highest_frequency_hz = 1.2;
   int sinusoids = 3;

@@ -166,9 +166,11 @@ void readHand(const YamlNode& map, HandModel& hand) {
 void readMotion(const YamlNode& map, MotionModel& motion) {
   map.allowOnly({"distance_m", "distance_amplitude_m", "angle_amplitude_deg", "target_amplitude_m",
                  "roll_deg", "lowest_frequency_hz", "highest_frequency_hz", "sinusoids", "image_speed_px_s",
-                 "turn_deg", "turn_amplitude_deg", "turn_period_s", "hand"});
+                 "turn_deg", "turn_amplitude_deg", "turn_period_s", "tilt_amplitude_deg", "tilt_period_s",
+                 "hand"});
   double roll_deg = motion.roll_rad / kRadPerDeg, turn_deg = motion.turn_rad / kRadPerDeg,
-         turn_amplitude_deg = motion.turn_amplitude_rad / kRadPerDeg;
+         turn_amplitude_deg = motion.turn_amplitude_rad / kRadPerDeg,
+         tilt_amplitude_deg = motion.tilt_amplitude_rad / kRadPerDeg;
   get(map, "distance_m", motion.distance_m, 0.01, 100.0, "m");
   get(map, "distance_amplitude_m", motion.distance_amplitude_m, 0.0, 100.0, "m");
   get(map, "angle_amplitude_deg", motion.angle_amplitude_rad, 0.0, 80.0, kRadPerDeg);
@@ -181,10 +183,13 @@ void readMotion(const YamlNode& map, MotionModel& motion) {
   get(map, "turn_deg", turn_deg, -180.0, 180.0, "deg");
   get(map, "turn_amplitude_deg", turn_amplitude_deg, 0.0, 180.0, "deg");
   get(map, "turn_period_s", motion.turn_period_s, 0.01, 1000.0, "s");
+  get(map, "tilt_amplitude_deg", tilt_amplitude_deg, 0.0, 180.0, "deg");
+  get(map, "tilt_period_s", motion.tilt_period_s, 0.01, 1000.0, "s");
   if (const auto node = map.find("hand")) readHand(*node, motion.hand);
   motion.roll_rad = roll_deg * kRadPerDeg;
   motion.turn_rad = turn_deg * kRadPerDeg;
   motion.turn_amplitude_rad = turn_amplitude_deg * kRadPerDeg;
+  motion.tilt_amplitude_rad = tilt_amplitude_deg * kRadPerDeg;
   if (motion.highest_frequency_hz < motion.lowest_frequency_hz)
     throw map.error("highest_frequency_hz must not be less than lowest_frequency_hz");
   // The sum of n sinusoids of variance a^2 / 2n reaches a sqrt(n).

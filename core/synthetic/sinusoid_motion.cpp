@@ -105,6 +105,30 @@ SinusoidMotion::Value SinusoidMotion::at(Quantity quantity, double time_s) const
   return sum;
 }
 
+namespace {
+
+struct Swing {
+  double amplitude_rad, frequency_rad_s;
+};
+
+// About an axis of its own, to and fro about a mean angle.
+MotionState turned(MotionState state, const Eigen::Vector3d& axis, double mean_rad, Swing swing,
+                   double time_s) {
+  const double phase = swing.frequency_rad_s * time_s;
+  const double rate = swing.amplitude_rad * swing.frequency_rad_s * std::cos(phase),
+               acceleration =
+                   -swing.amplitude_rad * swing.frequency_rad_s * swing.frequency_rad_s * std::sin(phase);
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(mean_rad + swing.amplitude_rad * std::sin(phase), axis));
+  const Eigen::Vector3d w = turn.conjugate() * state.angular_velocity_in_body_rad_s,
+                        dw = turn.conjugate() * state.angular_acceleration_in_body_rad_s2;
+  state.world_from_body.rotation = state.world_from_body.rotation * turn;
+  state.angular_velocity_in_body_rad_s = w + rate * axis;
+  state.angular_acceleration_in_body_rad_s2 = dw + w.cross(rate * axis) + acceleration * axis;
+  return state;
+}
+
+}  // namespace
+
 // Rotation Rz(c) Ry(b) Rx(a) after the mean roll; the camera looks along its z axis at the target.
 MotionState SinusoidMotion::gazeAt(double time_s) const {
   const Value a = at(AngleX, time_s), b = at(AngleY, time_s), c = at(AngleZ, time_s);
@@ -139,18 +163,11 @@ MotionState SinusoidMotion::gazeAt(double time_s) const {
 
 MotionState SinusoidMotion::firstCameraAt(double time_s) const {
   const MotionModel& m = scenario_.motion;
-  const double frequency = kTwoPi / m.turn_period_s, phase = frequency * time_s;
-  const double rate = m.turn_amplitude_rad * frequency * std::cos(phase),
-               acceleration = -m.turn_amplitude_rad * frequency * frequency * std::sin(phase);
-  const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
-  const Eigen::Quaterniond turn(Eigen::AngleAxisd(m.turn_rad + m.turn_amplitude_rad * std::sin(phase), y));
-  MotionState state = gazeAt(time_s);
-  const Eigen::Vector3d w = turn.conjugate() * state.angular_velocity_in_body_rad_s,
-                        dw = turn.conjugate() * state.angular_acceleration_in_body_rad_s2;
-  state.world_from_body.rotation = state.world_from_body.rotation * turn;
-  state.angular_velocity_in_body_rad_s = w + rate * y;
-  state.angular_acceleration_in_body_rad_s2 = dw + w.cross(rate * y) + acceleration * y;
-  return state;
+  const MotionState aside = turned(gazeAt(time_s), Eigen::Vector3d::UnitY(), m.turn_rad,
+                                   {m.turn_amplitude_rad, kTwoPi / m.turn_period_s}, time_s);
+  if (m.tilt_amplitude_rad == 0.0) return aside;
+  return turned(aside, Eigen::Vector3d::UnitX(), 0.0, {m.tilt_amplitude_rad, kTwoPi / m.tilt_period_s},
+                time_s);
 }
 
 MotionState SinusoidMotion::imuAt(double time_s) const {

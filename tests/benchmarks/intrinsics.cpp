@@ -1,7 +1,10 @@
 // Intrinsics against the truth of simulated recordings, as a table: `evical_intrinsics_accuracy [--seeds N]
 // [--duration S] [--folder DIR] SCENARIO...`. Each recording is simulated into a file and goes through
 // everything that `evical intrinsics` does.
+#include "core/geometry/camera_model.h"
 #include "core/geometry/projection_difference.h"
+#include "core/geometry/sphere_lens.h"
+#include "core/numerics/angles.h"
 #include "core/pipeline/intrinsics_calibration.h"
 #include "core/pipeline/simulation.h"
 #include "tests/benchmarks/benchmark_program.h"
@@ -24,7 +27,19 @@ struct Targets {
   double focal_percent = 0.05, principal_px = 0.2, projection_px = 0.1, radius_share = 1.0;
 };
 
+// Of the way from the principal point to the image's furthest corner: where a lens of 190 degrees ends.
+double shareOfImageCircle(const CameraIntrinsics& camera) {
+  constexpr double kFurthest_rad = 95.0 * kRadPerDeg;
+  const Eigen::Vector3d ray(std::sin(kFurthest_rad), 0.0, std::cos(kFurthest_rad));
+  const auto border = project(camera, ray);
+  const Eigen::Vector2d size(camera.resolution_px.width_px - 1, camera.resolution_px.height_px - 1);
+  const Eigen::Vector2d& centre = camera.principal_point_px;
+  const double corner_px = centre.cwiseMax(size - centre).norm();
+  return border ? (*border - centre).norm() / corner_px : 1.0;
+}
+
 Targets targetsOf(const CameraIntrinsics& camera) {
+  if (isSphereModel(camera.model)) return {0.05, 0.2, 0.15, 0.95 * shareOfImageCircle(camera)};
   if (camera.model == CameraModel::PinholeEquidistant) return {0.05, 0.2, 0.2, 0.95};
   return {};
 }
@@ -54,7 +69,9 @@ Outcome compare(const Scenario& scenario, const IntrinsicsResult& result) {
     ++outcome.parameters;
   }
   const double focal_percent =
-      100.0 * error.head<2>().cwiseQuotient(truth.focal_length_px).cwiseAbs().maxCoeff();
+      100.0 * (idealFocalLength_px(result.intrinsics).array() / idealFocalLength_px(truth).array() - 1.0)
+                  .abs()
+                  .maxCoeff();
   const double principal_px = error.segment<2>(2).norm();
   const ProjectionDifference projection =
       projectionDifference(truth, result.intrinsics, targets.radius_share);
