@@ -125,6 +125,26 @@ const StreamSummary* streamOf(const std::string& name, const std::filesystem::pa
   return nullptr;
 }
 
+// Frames in the event cameras' recordings, as the cameras that they could be.
+std::vector<std::string> framesBeside(const SessionCamera& camera,
+                                      const std::vector<InspectedRecording>& recordings) {
+  std::vector<std::string> lines;
+  const StreamSummary* const own = streamOf(camera.stream, camera.recording, recordings);
+  if (own == nullptr || own->info.type != StreamType::Events) return lines;
+  for (const InspectedRecording& recording : recordings) {
+    if (recording.file != (camera.recording.empty() ? recordings.front().file : camera.recording)) continue;
+    for (const StreamSummary& stream : recording.inspection.streams) {
+      if (!isSensor(stream, StreamType::Frames) || !stream.info.readable || !stream.info.timed) continue;
+      const bool same = stream.info.resolution_px == camera.resolution_px;
+      lines.push_back(
+          fmt::format("There are frames, too, {} as a camera of their own: frames: {{stream: {}{}}}",
+                      same ? "of this sensor perhaps," : "usable", stream.info.name,
+                      same ? ", same_sensor_as: " + camera.name : ""));
+    }
+  }
+  return lines;
+}
+
 SessionRemarks remarksOn(const Session& session, const std::vector<InspectedRecording>& recordings) {
   SessionRemarks remarks;
   remarks.board =
@@ -138,7 +158,8 @@ SessionRemarks remarksOn(const Session& session, const std::vector<InspectedReco
       own.push_back(
           fmt::format("resolution_px: [{}, {}]  # not in the recording; this is how far its events reach",
                       stream->seen_px.width_px, stream->seen_px.height_px));
-    own.emplace_back("intrinsics: camera.yaml  # not known: calibrated first, from the same events");
+    own.emplace_back("intrinsics: camera.yaml  # not known: calibrated first, from the same recording");
+    for (std::string& line : framesBeside(camera, recordings)) own.push_back(std::move(line));
     if (!camera.recording.empty())
       own.emplace_back("clock_offset_s: 0.0  # to be added to this file's times");
   }
@@ -168,15 +189,21 @@ SessionDraft draftSession(const std::vector<InspectedRecording>& recordings,
   SessionDraft draft;
   Session& session = draft.session;
   session.recording = recordings.at(0).file;
-  for (const InspectedRecording& each : recordings) {
+  for (const InspectedRecording& each : recordings)
     if (const auto useless = whyUseless(each.file, each.inspection)) throw CalibrationError(*useless);
-    const bool is_own = &each == &recordings.front();
-    const std::filesystem::path own_recording = is_own ? std::filesystem::path() : each.file;
-    addSensors(own_recording, each.inspection, StreamType::Events, session);
-    addSensors(own_recording, each.inspection, StreamType::Imu, session);
-  }
+  const auto addAll = [&](StreamType type) {
+    for (const InspectedRecording& each : recordings) {
+      const bool is_own = &each == &recordings.front();
+      addSensors(is_own ? std::filesystem::path() : each.file, each.inspection, type, session);
+    }
+  };
+  // Where there are events, frames beside them are remarks.
+  for (const StreamType type : {StreamType::Events, StreamType::Frames, StreamType::Points})
+    if (session.cameras.empty()) addAll(type);
+  addAll(StreamType::Imu);
   if (session.cameras.empty())
-    throw badInput(session.recording.string(), "there are no events to calibrate a camera from",
+    throw badInput(session.recording.string(),
+                   "there are no events, frames or points to calibrate a camera from",
                    "Name the camera's recording, too");
   keepReference(session);
   validate(session, session.recording.string());

@@ -20,6 +20,12 @@ StreamSummary eventStream(const std::string& name, Resolution resolution_px = {3
   return stream;
 }
 
+StreamSummary frameStream(const std::string& name, Resolution resolution_px = {346, 260}) {
+  StreamSummary stream = eventStream(name, resolution_px);
+  stream.info.type = StreamType::Frames;
+  return stream;
+}
+
 StreamSummary imuStream(const std::string& name, const std::string& acceleration_unit = "m/s^2") {
   StreamSummary stream;
   stream.info.name = name;
@@ -212,6 +218,23 @@ class TestSessionGuess : public QObject {
     QCOMPARE(draft.session.imus.at(0).recording.string(), std::string("imu.csv"));
     QCOMPARE(draft.session.reference, std::string("imu"));
     QVERIFY(draft.yaml.find("    # clock_offset_s: ") != std::string::npos);
+  }
+
+  void draft_ofFramesAlone_hasFrameCameras() {
+    const SessionDraft draft = draftSession(
+        {{"r.bag", holding({frameStream("/cam0/image_raw", {752, 480}), imuStream("/imu0")})}}, ".");
+    QCOMPARE(draft.session.cameras.at(0).stream, std::string("/cam0/image_raw"));
+    QCOMPARE(draft.session.imus.size(), std::size_t{1});
+  }
+
+  void draft_remarksOnFramesBesideEvents() {
+    const SessionDraft draft =
+        draftSession({{"r.bag", holding({eventStream("/left/events"), frameStream("/left/image"),
+                                         frameStream("/cam0/image", {752, 480})})}},
+                     ".");
+    QCOMPARE(draft.session.cameras.size(), std::size_t{1});
+    QVERIFY(draft.yaml.find("frames: {stream: /left/image, same_sensor_as: left}") != std::string::npos);
+    QVERIFY(draft.yaml.find("frames: {stream: /cam0/image}") != std::string::npos);
   }
 
   void draft_thatMakesNoSessionIsRefused() {
