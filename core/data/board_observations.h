@@ -28,6 +28,8 @@ struct CircleObservation {
   double residual_rms_px = 0.0;                            // of those, normal to the ellipse
   // Of frames: the sensor's row less the middle one. Lines are exposed one after the other, and time_s is the middle's.
   double rows_below_middle = 0.0;
+  // Of frames: their exposure less the mean of all; 0 where it is not known.
+  double longer_exposed_s = 0.0;
 };
 
 enum class ViewKind { Complete, Partial };

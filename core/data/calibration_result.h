@@ -31,6 +31,7 @@ struct CameraUncertainty {
   std::optional<std::array<double, 9>> intrinsics_std = {};
   double time_offset_drift_std_ppm = 0.0;
   double line_delay_std_us = 0.0;
+  double exposure_share_std = 0.0;
 };
 
 struct ImuUncertainty {

@@ -24,6 +24,8 @@ struct CameraState {
   double time_offset_drift_ppm = 0.0;  // where it is solved for
   double time_offset_at_s = 0.0;       // the camera's time at which the offset is time_offset_s
   double line_delay_us = 0.0;          // of frames: from one row's exposure to the next one's
+  double exposure_share =
+      0.0;  // of frames: how much of a longer exposure passes from the stamp to the middle
 };
 
 struct ImuState {

@@ -44,7 +44,8 @@ enum class QuantityRelease {
   TimeOffsetDrift,
   BoardSize,
   BoardBow,
-  LineDelay
+  LineDelay,
+  ExposureShare
 };
 
 // When there is something to compare or to show.
@@ -262,6 +263,20 @@ inline constexpr auto kCameraQuantities = std::tuple{
                              .key = "line_delay_us",
                              .std_key = "line_delay_std_us"},
                 &CameraState::line_delay_us, &CameraUncertainty::line_delay_std_us, NoPrior{}},
+    QuantityRow{QuantityInfo{.name = "exposure_share",
+                             .title = "exposure's share",
+                             .owner = QuantityOwner::Camera,
+                             .shape = QuantityShape::Scalar,
+                             .unit = "1",
+                             .decimals = 4,
+                             .remark = "from a frame's stamp to its middle: 0.5 if exposures begin at stamps",
+                             .comparable_unit = 0.01,
+                             .release = QuantityRelease::ExposureShare,
+                             .presence = QuantityPresence::WhereNotZero,
+                             .written = QuantityWriting::WherePresent,
+                             .key = "exposure_share",
+                             .std_key = "exposure_share_std"},
+                &CameraState::exposure_share, &CameraUncertainty::exposure_share_std, NoPrior{}},
     QuantityRow{QuantityInfo{.name = "edge_lead",
                              .title = "edge lead",
                              .owner = QuantityOwner::Camera,

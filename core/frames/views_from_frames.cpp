@@ -50,10 +50,22 @@ double medianSpeed(const BoardView& view) {
   return *middle;
 }
 
+// Over the frames whose exposure is known.
+double meanExposure_s(const std::vector<PointsInFrame>& frames) {
+  double sum_s = 0.0;
+  int count = 0;
+  for (const PointsInFrame& frame : frames) {
+    sum_s += frame.exposure_s;
+    count += frame.exposure_s > 0.0 ? 1 : 0;
+  }
+  return count > 0 ? sum_s / count : 0.0;
+}
+
 }  // namespace
 
 std::vector<ViewFromFrame> viewsFromFrames(const std::vector<PointsInFrame>& frames, int points_of_board) {
   std::vector<ViewFromFrame> views;
+  const double mean_exposure_s = meanExposure_s(frames);
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const PointsInFrame& frame = frames[k];
     ViewFromFrame& made = views.emplace_back();
@@ -66,6 +78,7 @@ std::vector<ViewFromFrame> viewsFromFrames(const std::vector<PointsInFrame>& fra
       seen.time_s = frame.time_s;
       seen.centre_px = point.at_px;
       seen.velocity_px_s = velocityOf(frames, k, point.point);
+      if (frame.exposure_s > 0.0) seen.longer_exposed_s = frame.exposure_s - mean_exposure_s;
       setEllipse(point.ellipse_px2, seen);
       const Eigen::Vector2d blur = kBlurShare * frame.exposure_s * seen.velocity_px_s;
       seen.covariance_px2 = point.covariance_px2 + blur * blur.transpose();

@@ -96,6 +96,7 @@ void CalibrationProblem::setManifolds(ProblemBuilder& builder) {
   for (std::size_t i = 0; i < state.cameras.size(); ++i) {
     if (!builder.drifts(input_.cameras[i].prior)) builder.hold(&state.cameras[i].time_offset_drift_ppm);
     if (!builder.rolls(i)) builder.hold(&state.cameras[i].line_delay_us);
+    if (!builder.exposuresVary(i)) builder.hold(&state.cameras[i].exposure_share);
     if (input_.cameras[i].observations.kind == CameraKind::Events) continue;
     builder.hold(&state.cameras[i].edge_lead_px);  // of moving edges in events only
     builder.hold(&state.cameras[i].slow_edge_lead_px);

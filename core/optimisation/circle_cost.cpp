@@ -32,11 +32,12 @@ enum Block {
   kBoardRowCurvature,
   kBoardColumnCurvature,
   kBoardTwist,
+  kExposureShare,
   kIntrinsics,  // where they are free
   kBlocks
 };
 constexpr std::array<int, kBlocks> kBlockSizes = {4, 4, 4, 4, 3, 3, 3, 3, 4, 3, 1,
-                                                  1, 1, 1, 1, 1, 1, 1, 1, 1, 9};
+                                                  1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 9};
 
 void writeZero(double** jacobians, int blocks, Eigen::Index row) {
   for (int block = 0; block < blocks; ++block) {
@@ -49,7 +50,7 @@ void writeZero(double** jacobians, int blocks, Eigen::Index row) {
 struct Mount {
   Matrix3d camera_from_imu;
   Vector3d camera_in_imu;
-  double time_offset_s, time_offset_drift_ppm, line_delay_us;
+  double time_offset_s, time_offset_drift_ppm, line_delay_us, exposure_share;
   EdgeLead lead;
   BoardState board;
 
@@ -60,6 +61,7 @@ struct Mount {
         time_offset_s(*parameters[kTimeOffset]),
         time_offset_drift_ppm(*parameters[kTimeOffsetDrift]),
         line_delay_us(*parameters[kLineDelay]),
+        exposure_share(*parameters[kExposureShare]),
         lead{*parameters[kEdgeLead], *parameters[kSlowEdgeLead]},
         board{*parameters[kBoardScale], *parameters[kBoardStretch], *parameters[kBoardRowCurvature],
               *parameters[kBoardColumnCurvature], *parameters[kBoardTwist]} {}
@@ -83,7 +85,8 @@ struct PlacedCircle {
 };
 
 bool movesInTime(double** jacobians) {
-  return jacobians && (jacobians[kTimeOffset] || jacobians[kTimeOffsetDrift] || jacobians[kLineDelay]);
+  return jacobians && (jacobians[kTimeOffset] || jacobians[kTimeOffsetDrift] || jacobians[kLineDelay] ||
+                       jacobians[kExposureShare]);
 }
 
 // `by_place`: derivative of the residual by where the circle is in the world.
@@ -130,6 +133,8 @@ void writeJacobians(const Mount& mount, const PlacedCircle& placed, const Projec
     if (jacobians[kTimeOffsetDrift])
       jacobianRows<2, 1>(jacobians, kTimeOffsetDrift, row) = circle.by_drift_s * by_time;
     if (jacobians[kLineDelay]) jacobianRows<2, 1>(jacobians, kLineDelay, row) = circle.by_line_s * by_time;
+    if (jacobians[kExposureShare])
+      jacobianRows<2, 1>(jacobians, kExposureShare, row) = circle.by_exposure_s * by_time;
   }
   writeBoardJacobians(mount.board, circle.on_board_m, -by_position, row, jacobians);
   if (jacobians[kEdgeLead]) jacobianRows<2, 1>(jacobians, kEdgeLead, row) = by_px * circle.lead.of_lead;
@@ -174,9 +179,9 @@ bool CircleCost::Evaluate(double const* const* parameters, double* residuals, do
     const CircleMeasurement& circle = circles_[i];
     const auto row = static_cast<Eigen::Index>(2 * i);
     Eigen::Map<Vector2d> residual(residuals + row);
-    const double time_s = circle.time_s + mount.time_offset_s +
-                          circle.by_drift_s * mount.time_offset_drift_ppm +
-                          circle.by_line_s * mount.line_delay_us;
+    const double time_s =
+        circle.time_s + mount.time_offset_s + circle.by_drift_s * mount.time_offset_drift_ppm +
+        circle.by_line_s * mount.line_delay_us + circle.by_exposure_s * mount.exposure_share;
     rotation_segment.evaluate(segment_.rotationPlace(time_s), order, placed.rotation,
                               jacobians ? &placed.by_control_points : nullptr);
     placed.position = positionAt(segment_, parameters + kPosition, time_s);

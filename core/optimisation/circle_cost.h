@@ -1,7 +1,8 @@
 // Zero when the measured ellipse centres are those of the projected circles, leading by the edge lead along
 // their image motion (docs/maths.md, 9.1):
 //   r = L^-1 [ centre(camera_from_world(t), circle) + lead (edge_lead.h) - measured ],
-//   t = t_measured + time_offset + time_offset_drift (t_measured - t_0) + line_delay (row - middle row),
+//   t = t_measured + time_offset + time_offset_drift (t_measured - t_0) + line_delay (row - middle row)
+//     + exposure_share (exposure - mean exposure),
 //   camera_from_world(t) = (world_from_imu(t) reference_from_camera)^-1,
 // L the Cholesky factor of the centre's covariance, ideal pixels; each circle's residual is shortened so that
 // its square is Huber's loss. One cost function holds all circles of one camera whose times fall into one
@@ -13,7 +14,8 @@
 // Blocks: 4 rotation control points (x y z w), 4 position control points [m], reference_from_camera
 // rotation (x y z w) and translation [m], time offset [s] and its drift [ppm], line delay [us], edge lead [px] and
 // that of slow edges [px], the board's scale, stretch, two curvatures and twist [1/m] (BoardState; its circles keep the
-// radius that was given and the plane's normal, which changes their centres by far less than could be seen); where
+// radius that was given and the plane's normal, which changes their centres by far less than could be seen), the
+// exposure's share; where
 // intrinsics are free also those, fx fy cx cy
 // d0..d4. Without unit.
 // Quaternion blocks as in so3_manifold.h.
@@ -36,9 +38,10 @@
 namespace evical {
 
 struct CircleMeasurement {
-  double time_s = 0.0;      // camera clock
-  double by_drift_s = 0.0;  // how far each ppm of its drift moves that
-  double by_line_s = 0.0;   // and each microsecond of line delay
+  double time_s = 0.0;         // camera clock
+  double by_drift_s = 0.0;     // how far each ppm of its drift moves that
+  double by_line_s = 0.0;      // and each microsecond of line delay
+  double by_exposure_s = 0.0;  // and all of what the frame was exposed longer than others
   Eigen::Vector2d on_board_m, centre_px;
   Eigen::Matrix2d whitening_px;  // L^-1
   EdgeLeadEffect lead;

@@ -12,7 +12,8 @@ namespace evical {
 
 // When it was measured, on the reference's clock.
 inline double circleTime_s(const CameraState& camera, const CircleObservation& circle) {
-  return referenceTime_s(camera, circle.time_s) + 1e-6 * camera.line_delay_us * circle.rows_below_middle;
+  return referenceTime_s(camera, circle.time_s) + 1e-6 * camera.line_delay_us * circle.rows_below_middle +
+         camera.exposure_share * circle.longer_exposed_s;
 }
 
 struct CircleError {

@@ -32,6 +32,8 @@ bool isReleased(const QuantityInfo& info, const OptimisationOptions& options, bo
       return options.board_bow;
     case QuantityRelease::LineDelay:
       return true;  // where a shutter rolls
+    case QuantityRelease::ExposureShare:
+      return true;  // where exposures vary
     case QuantityRelease::TimeOffsetDrift:
       break;
   }

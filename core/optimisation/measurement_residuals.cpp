@@ -34,6 +34,7 @@ CircleMeasurement circleOf(const ProblemBuilder& builder, std::size_t camera, st
   m.time_s = observed.time_s;
   m.by_drift_s = byDrift_s(builder.parameters.moved().cameras[camera], observed.time_s);
   m.by_line_s = 1e-6 * observed.rows_below_middle;
+  m.by_exposure_s = observed.longer_exposed_s;
   m.on_board_m = builder.input.board.point_m(observed.circle);
   m.centre_px = observed.centre_px;
   m.whitening_px = covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity());
@@ -45,7 +46,8 @@ CircleMeasurement circleOf(const ProblemBuilder& builder, std::size_t camera, st
 }
 
 double measuredAt_s(const CameraState& camera, const CircleMeasurement& circle) {
-  return referenceTime_s(camera, circle.time_s) + circle.by_line_s * camera.line_delay_us;
+  return referenceTime_s(camera, circle.time_s) + circle.by_line_s * camera.line_delay_us +
+         circle.by_exposure_s * camera.exposure_share;
 }
 
 // Those that take part and lie within the splines, in order of time.
@@ -161,11 +163,12 @@ void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& 
     std::vector<double*> blocks;
     parameters.appendRotation(segment, blocks);
     parameters.appendPosition(segment, blocks);
-    blocks.insert(blocks.end(), {sensor.reference_from_camera.rotation.coeffs().data(),
-                                 sensor.reference_from_camera.translation_m.data(), &state.time_offset_s,
-                                 &sensor.time_offset_drift_ppm, &state.line_delay_us, &state.edge_lead_px,
-                                 &state.slow_edge_lead_px, &board.scale, &board.stretch,
-                                 &board.row_curvature_1_m, &board.column_curvature_1_m, &board.twist_1_m});
+    blocks.insert(blocks.end(),
+                  {sensor.reference_from_camera.rotation.coeffs().data(),
+                   sensor.reference_from_camera.translation_m.data(), &state.time_offset_s,
+                   &sensor.time_offset_drift_ppm, &state.line_delay_us, &state.edge_lead_px,
+                   &state.slow_edge_lead_px, &board.scale, &board.stretch, &board.row_curvature_1_m,
+                   &board.column_curvature_1_m, &board.twist_1_m, &state.exposure_share});
     if (IntrinsicsBlock* intrinsics = parameters.intrinsics(camera)) blocks.push_back(intrinsics->data());
     builder.residuals.push_back({builder.problem.AddResidualBlock(cost, nullptr, blocks), SensorKind::Circles,
                                  camera, begin_s, cost});

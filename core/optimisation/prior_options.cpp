@@ -18,6 +18,10 @@ constexpr std::tuple kPriorFields{
           "Prior on what edges that hardly move add to that lead, around 0."},
     Field{"time_offset_drift_sigma_ppm", &PriorOptions::time_offset_drift_sigma_ppm, 50.0, within(1e-4, 1e5),
           "ppm", "Prior on the drift of time offsets around 0."},
+    Field{"exposure_share_sigma", &PriorOptions::exposure_share_sigma, 0.5, within(1e-4, 100.0), "",
+          "Prior, around 0, on how much of a frame's exposure passes from its stamp to its middle; estimated "
+          "where "
+          "exposures vary. Stamps are at the exposure's begin (0.5), middle (0) or end (-0.5)."},
     Field{"mapping_sigma", &PriorOptions::mapping_sigma, 0.05, within(1e-6, 10.0), "",
           "Weak prior on each entry of M_g and M_a around the identity.", Level::Common},
     Field{"gyroscope_rotation_sigma_deg", &PriorOptions::gyroscope_rotation_sigma_deg, 5.0,

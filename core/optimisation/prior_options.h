@@ -14,6 +14,7 @@ struct PriorOptions {
   double edge_lead_sigma_px;
   double slow_edge_lead_sigma_px;
   double time_offset_drift_sigma_ppm;
+  double exposure_share_sigma;
   double mapping_sigma;
   double gyroscope_rotation_sigma_deg;
   double accelerometer_delay_sigma_s;

@@ -58,6 +58,10 @@ void addCameraPriors(ProblemBuilder& builder) {
                kSlowest_us / builder.input.cameras[i].lens.seen_with->resolution_px.height_px);
   }
   for (std::size_t i = 0; i < cameras.size(); ++i) {
+    if (builder.exposuresVary(i))
+      addPrior(builder, &cameras[i].exposure_share, 1, kZero.data(), builder.options.exposure_share_sigma);
+  }
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
     IntrinsicsBlock* block = builder.parameters.intrinsics(i);
     if (block != nullptr && builder.parameters.ownsSensor(i) && builder.has(block->data()))
       builder.residuals.push_back({block->addPrior(builder.problem)});

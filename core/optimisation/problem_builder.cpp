@@ -28,6 +28,20 @@ bool ProblemBuilder::rolls(std::size_t camera) const {
          (data.shutter == Shutter::Rolling || options.line_delay);
 }
 
+// Where all frames are exposed as long, what passes before a stamp is part of the time offset.
+bool ProblemBuilder::exposuresVary(std::size_t camera) const {
+  constexpr double kLeast_s = 1e-4;  // RMS: half of it is a time that can be told
+  if (stage == ReleaseStages::Extrinsics) return false;
+  double squares = 0.0;
+  std::size_t points = 0;
+  for (const BoardView& view : input.cameras[camera].observations.views) {
+    for (const CircleObservation& point : view.circles)
+      squares += point.longer_exposed_s * point.longer_exposed_s;
+    points += view.circles.size();
+  }
+  return squares > kLeast_s * kLeast_s * static_cast<double>(points);
+}
+
 void ProblemBuilder::addPrior(ceres::CostFunction* cost, const std::vector<double*>& blocks) {
   residuals.push_back({problem.AddResidualBlock(cost, nullptr, blocks)});
 }

@@ -46,8 +46,9 @@ struct ProblemBuilder {
   bool drifts(const SensorPrior& prior) const;
 
   void addPrior(ceres::CostFunction* cost, const std::vector<double*>& blocks);
-  bool rolls(std::size_t camera) const;  // its shutter, or as if it did for a test
-  void hold(double* block);              // if it is in the problem
+  bool rolls(std::size_t camera) const;          // its shutter, or as if it did for a test
+  bool exposuresVary(std::size_t camera) const;  // so much that the exposure's share can be told
+  void hold(double* block);                      // if it is in the problem
 };
 
 }  // namespace evical

@@ -237,7 +237,8 @@ struct CircleTwin {
   // (x/z, y/z) of the centre of the ellipse: the last column of H C* H^T, C* = diag(r^2, r^2, -1).
   template <class T>
   Eigen::Matrix<T, 2, 1> normalisedCentre(T const* const* p, const CircleMeasurement& circle) const {
-    const T time_s = circle.time_s + p[10][0] + circle.by_drift_s * p[11][0] + circle.by_line_s * p[12][0];
+    const T time_s = circle.time_s + p[10][0] + circle.by_drift_s * p[11][0] + circle.by_line_s * p[12][0] +
+                     circle.by_exposure_s * p[20][0];
     const T rotation_place = (time_s - segment.rotation_start_s) / segment.rotation_spacing_s;
     const T position_place = (time_s - segment.position_start_s) / segment.position_spacing_s;
     const Matrix3<T> world_from_imu = rotationAt(base, p, rotation_place, segment.rotation_spacing_s).value;
@@ -267,7 +268,7 @@ struct CircleTwin {
     const Eigen::Matrix2d ideal_from_sensor = idealPixelScale(model.camera, circle.centre_px);
     const Eigen::Vector2d seen = pixelFromIdeal(model.camera, circle.centre_px);
     const Eigen::Matrix<T, 2, 1> off =
-        pixelOf(model.camera.model, p[20], centre[0], centre[1]) - seen.template cast<T>();
+        pixelOf(model.camera.model, p[21], centre[0], centre[1]) - seen.template cast<T>();
     return circle.centre_px.template cast<T>() + ideal_from_sensor.template cast<T>() * off;
   }
 

@@ -77,6 +77,7 @@ inline Blocks circleBlocks(States& states, double step_rad) {
   blocks.push_back({states.uniform(0.3)});
   for (const double of_board : {1.01, 0.02, 0.3, -0.2, 0.1})
     blocks.push_back({of_board});  // not drawn either
+  blocks.push_back({0.05});
   return blocks;
 }
 
@@ -88,6 +89,7 @@ inline std::vector<CircleMeasurement> circlesNear(const CircleModel& model, cons
     circles[i].time_s = 1.004 + 0.005 * static_cast<double>(i);
     circles[i].by_drift_s = 0.002 * (static_cast<double>(i) - 1.0);
     circles[i].by_line_s = 1e-4 * (static_cast<double>(i) - 0.7);
+    circles[i].by_exposure_s = 2e-2 * (static_cast<double>(i) - 1.2);
     circles[i].on_board_m = {0.1 * static_cast<double>(i), 0.05 * static_cast<double>(i)};
     circles[i].centre_px.setZero();
     circles[i].whitening_px.setIdentity();

@@ -133,6 +133,11 @@ void fitTruth(const TrueMotion& motion, const RigOptions& options, CalibrationSt
   truth.imu_in_world_m = fitVectorSpline(times_s, positions, begin_s, end_s, options.knot_spacing_s);
 }
 
+// As automatic exposure does when the light changes.
+double longerExposed_s(double time_s) {
+  return 3e-3 * std::sin(4.1 * time_s);
+}
+
 CameraData observe(const TrueMotion& motion, const CameraState& camera, const Board& board,
                    const BoardState& true_board, const RigOptions& options, Random& random) {
   CameraData data;
@@ -171,7 +176,10 @@ CameraData observe(const TrueMotion& motion, const CameraState& camera, const Bo
       circle.circle = i;
       circle.time_s = options.frames ? t : t + random.uniform(-5e-3, 5e-3);
       if (options.frames) circle.rows_below_middle = rowBelowMiddle(t, i);
-      const auto now = centre(circle.time_s + 1e-6 * camera.line_delay_us * circle.rows_below_middle, i);
+      if (options.frames && camera.exposure_share != 0.0) circle.longer_exposed_s = longerExposed_s(t);
+      const auto now = centre(circle.time_s + 1e-6 * camera.line_delay_us * circle.rows_below_middle +
+                                  camera.exposure_share * circle.longer_exposed_s,
+                              i);
       const auto before = centre(circle.time_s - 1e-4, i), after = centre(circle.time_s + 1e-4, i);
       auto& n = noise[static_cast<std::size_t>(i)];
       n = keep * n + std::sqrt(1.0 - keep * keep) * Eigen::Vector2d(random.normal(), random.normal());
@@ -279,6 +287,7 @@ SimulatedRig simulateRig(const RigOptions& options) {
   camera.edge_lead_px = random.uniform(-0.3, 0.3);
   camera.time_offset_drift_ppm = options.time_offset_drift_ppm;
   camera.line_delay_us = options.line_delay_us;
+  camera.exposure_share = options.exposure_share;
   if (options.frames) camera.edge_lead_px = 0.0;
   rig.truth.cameras = {camera};
   rig.truth.gravity_in_world_m_s2 =
@@ -338,7 +347,7 @@ CalibrationState disturbed(const CalibrationState& truth, unsigned seed, double 
     camera.time_offset_s += time_offset_error_s;
     camera.lens.solved.reset();
     camera.edge_lead_px = 0.0;
-    camera.time_offset_drift_ppm = camera.line_delay_us = 0.0;
+    camera.time_offset_drift_ppm = camera.line_delay_us = camera.exposure_share = 0.0;
   }
   for (std::size_t i = 0; i < state.imus.size(); ++i) {
     ImuState& imu = state.imus[i];
@@ -383,6 +392,8 @@ Eigen::VectorXd reportedErrors(const CalibrationState& estimate, const Calibrati
     appendClock(estimate.cameras[i], truth.cameras[i]);
     if (truth.cameras[i].line_delay_us != 0.0)
       errors.push_back(estimate.cameras[i].line_delay_us - truth.cameras[i].line_delay_us);
+    if (truth.cameras[i].exposure_share != 0.0)
+      errors.push_back(estimate.cameras[i].exposure_share - truth.cameras[i].exposure_share);
     errors.push_back(estimate.cameras[i].edge_lead_px - truth.cameras[i].edge_lead_px);
     errors.push_back(estimate.cameras[i].slow_edge_lead_px - truth.cameras[i].slow_edge_lead_px);
     if (!estimate.cameras[i].lens.solved) continue;

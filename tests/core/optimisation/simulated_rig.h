@@ -31,6 +31,7 @@ struct RigOptions {
   BoardState board = {};                                  // against what the input says of it
   bool frames = false;                                    // corners of frames in the place of moving circles
   double line_delay_us = 0.0;                             // of their rolling shutter
+  double exposure_share = 0.0;                            // of what frames are exposed longer than others
   bool frames_too = false;                                // a second camera: frames of the first one's sensor
   Eigen::Vector3d frames_apart_m = Eigen::Vector3d::Zero();  // which they are said to be of, and are not
   // Times the default priors: the board's size and stretch, and gravity's norm, drawn anew for each seed.

@@ -118,15 +118,16 @@ class TestCircleCost : public QObject {
     }
     const RigidTransform reference_from_camera = {Eigen::Quaterniond(blocks[8].data()),
                                                   Vector3d(blocks[9].data())};
-    const RigidTransform camera_from_world =
-        cameraFromWorld(rotation, position, reference_from_camera,
-                        blocks[10][0] + 0.003 * blocks[11][0] - 8e-5 * blocks[12][0], 1.006);
+    const RigidTransform camera_from_world = cameraFromWorld(
+        rotation, position, reference_from_camera,
+        blocks[10][0] + 0.003 * blocks[11][0] - 8e-5 * blocks[12][0] + 2e-3 * blocks[20][0], 1.006);
     CircleMeasurement circle;
     circle.time_s = 1.006;
     circle.on_board_m = {0.1, 0.05};
     circle.whitening_px.setIdentity();
     circle.by_drift_s = 0.003;
     circle.by_line_s = -8e-5;
+    circle.by_exposure_s = 2e-3;
     circle.lead = {{0.8, 0.6}, {0.4, 0.3}};
     const BoardState board{blocks[15][0], blocks[16][0], blocks[17][0], blocks[18][0], blocks[19][0]};
     circle.centre_px = projectCircle(model.camera, camera_from_world * board.place_m(circle.on_board_m),

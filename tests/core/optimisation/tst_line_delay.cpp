@@ -64,6 +64,38 @@ class TestLineDelay : public QObject {
     QVERIFY2(std::sqrt(extrinsics) > 0.7 && std::sqrt(extrinsics) < 1.4, text(std::sqrt(extrinsics)));
   }
 
+  // Stamps at the begin of exposures that vary: half of what is longer passes before the middle.
+  void exposuresShare_isFound_withAnHonestSigma() {
+    constexpr unsigned kSeeds = 12;
+    constexpr double kShare = 0.5;
+    double share = 0.0;
+    for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+      test::RigOptions rig_options = test::shortRecording(seed);
+      rig_options.frames = true;
+      rig_options.exposure_share = kShare;
+      const test::SimulatedRig rig = test::simulateRig(rig_options);
+      const BatchSolution solution = solve(rig, seed);
+      const UncertaintyReport report =
+          estimateUncertainty(rig.input, solution, heldLens(), RunContext{}).report;
+      const double error = solution.state.cameras[0].exposure_share - kShare;
+      const double sigma = report.cameras[0].exposure_share_std;
+      QVERIFY2(sigma > 1e-3 && sigma < 0.03, text(sigma));
+      QCOMPARE(report.names[8], std::string("left.exposure_share [1]"));
+      share += error * error / (sigma * sigma * kSeeds);
+    }
+    QVERIFY2(std::sqrt(share) > 0.6 && std::sqrt(share) < 1.5, text(std::sqrt(share)));
+  }
+
+  void exposuresThatDoNotVary_leaveTheShareAt0() {
+    const test::SimulatedRig rig = rigOf(1, 0.0);
+    const BatchSolution solution = solve(rig, 1);
+    QCOMPARE(solution.state.cameras[0].exposure_share, 0.0);
+    QCOMPARE(estimateUncertainty(rig.input, solution, heldLens(), RunContext{})
+                 .report.cameras[0]
+                 .exposure_share_std,
+             0.0);
+  }
+
   void shutterCalledGlobal_isToldOfWhereItRolls() {
     test::SimulatedRig rig = rigOf(1, kLineDelay_us);
     rig.input.cameras[0].shutter = Shutter::Global;
