@@ -70,6 +70,11 @@ Eigen::Vector2d Board::extent_m() const {
   }
 }
 
+double Board::printBeyond_m() const {
+  if (hasCircles()) return radius_m;
+  return type == BoardType::AprilGrid ? spacing_m - tag_size_m : spacing_m;
+}
+
 bool Board::hasHalfTurnAmbiguity() const {
   switch (type) {
     case BoardType::SymmetricCircles:

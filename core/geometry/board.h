@@ -42,8 +42,9 @@ struct Board {
   // bottom left, corners from the bottom left against the clock.
   Eigen::Vector2d point_m(int index) const;
 
-  // Between the outermost points.
+  // Between the outermost points, and how far the print reaches beyond them.
   Eigen::Vector2d extent_m() const;
+  double printBeyond_m() const;
 
   // True if the pattern turned by 180 degrees is the same pattern: symmetric circles, asymmetric ones with an
   // even number of rows, checkerboards whose rows and columns are both even or both odd. Such a board does for

@@ -17,9 +17,7 @@ BoardPattern::BoardPattern(const Board& board)
       radius_m_(static_cast<float>(board.radius_m)),
       tag_m_(static_cast<float>(board.tag_size_m)) {
   const Eigen::Vector2f extent = board.extent_m().cast<float>();
-  const float beyond_m = board.hasCircles()                      ? radius_m_
-                         : board.type == BoardType::Checkerboard ? spacing_m_
-                                                                 : spacing_m_ - tag_m_;
+  const auto beyond_m = static_cast<float>(board.printBeyond_m());
   low_m_ = Eigen::Vector2f::Constant(-beyond_m);
   high_m_ = extent + Eigen::Vector2f::Constant(beyond_m);
   if (board.type == BoardType::AprilGrid) tags_ = firstTags(board.rows * board.cols);
