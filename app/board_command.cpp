@@ -61,9 +61,8 @@ void drawBoard(const Arguments& arguments) {
 
 std::map<std::string, BoardType> typesByName() {
   std::map<std::string, BoardType> types;
-  for (const BoardType type : {BoardType::AsymmetricCircles, BoardType::SymmetricCircles,
-                               BoardType::Checkerboard, BoardType::AprilGrid, BoardType::Charuco})
-    types[boardTypeName(type)] = type;
+  for (std::size_t type = 0; type < kBoardTypeNames.size(); ++type)
+    types[kBoardTypeNames[type]] = static_cast<BoardType>(type);
   return types;
 }
 

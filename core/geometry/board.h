@@ -6,11 +6,21 @@
 
 #include <Eigen/Core>
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
 namespace evical {
 
 enum class BoardType { AsymmetricCircles, SymmetricCircles, Checkerboard, AprilGrid, Charuco };
+// As sessions write them, in the enumeration's order.
+inline constexpr std::array kBoardTypeNames = {"asymmetric_circles", "symmetric_circles", "checkerboard",
+                                               "aprilgrid", "charuco"};
+static_assert(kBoardTypeNames.size() == static_cast<std::size_t>(BoardType::Charuco) + 1);
+constexpr const char* boardTypeName(BoardType type) {
+  return kBoardTypeNames[static_cast<std::size_t>(type)];
+}
+
 enum class CircleShade { Dark, Bright };  // dark circles on a bright board, or the inverse
 
 struct Board {
@@ -30,6 +40,8 @@ struct Board {
   bool hasCircles() const {
     return type == BoardType::AsymmetricCircles || type == BoardType::SymmetricCircles;
   }
+
+  bool hasTags() const { return type == BoardType::AprilGrid || type == BoardType::Charuco; }
 
   int pointCount() const;
   // Of circles and of corners between squares; tags' corners have no such place.
@@ -51,8 +63,6 @@ struct Board {
   // intrinsics only.
   bool hasHalfTurnAmbiguity() const;
 };
-
-const char* boardTypeName(BoardType type);  // as sessions write it: "asymmetric_circles"
 
 // All points, by index.
 std::vector<Eigen::Vector2d> boardPoints_m(const Board& board);
