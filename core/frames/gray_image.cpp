@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/frames/picture_header.h"
+#include "core/frames/picture_view.h"
 
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
@@ -93,9 +94,7 @@ cv::Mat rawPixels(const Frame& frame, const std::string& place) {
                    "The picture is truncated: leave it out, or copy the recording again");
   if (layout.to_gray >= 0 && layout.type == CV_8UC1 && (width < 3 || height < 3))
     throw badInput(place, "is too small for a Bayer pattern", "Leave this picture out");
-  // OpenCV has no type for pixels that it must not write to; nothing here writes to them.
-  const cv::Mat seen(frame.size_px.height_px, frame.size_px.width_px, layout.type,
-                     const_cast<std::uint8_t*>(frame.bytes.data()), step);
+  const cv::Mat seen = viewOf(frame.size_px, layout.type, frame.bytes, step);
   if (layout.to_gray < 0) return seen.clone();
   cv::Mat gray;
   cv::cvtColor(seen, gray, layout.to_gray);
