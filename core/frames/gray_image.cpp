@@ -1,7 +1,7 @@
 #include "core/frames/gray_image.h"
 
 #include "core/base/error.h"
-#include "core/frames/picture_header.h"
+#include "core/data/picture_header.h"
 #include "core/frames/picture_view.h"
 
 #include <fmt/format.h>
@@ -12,6 +12,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
+#include <string_view>
 
 namespace evical {
 namespace {
@@ -102,13 +104,14 @@ cv::Mat rawPixels(const Frame& frame, const std::string& place) {
 }
 
 cv::Mat decoded(const Frame& frame, const std::string& place) {
-  const std::optional<PictureHeader> header = readPictureHeader(frame.bytes);
-  if (!header)
+  const std::string_view bytes(reinterpret_cast<const char*>(frame.bytes.data()), frame.bytes.size());
+  const std::optional<Resolution> claimed_px = claimedPictureSize(bytes);
+  if (!claimed_px)
     throw badInput(place, "is neither a JPEG, PNG, PGM, TIFF nor BMP picture, or is cut off in its header",
                    "Leave this picture out, or save it as PNG");
-  refuseAbsurdSize(header->size_px, place);
+  refuseAbsurdSize(*claimed_px, place);
   cv::Mat picture;
-  if (!header->truncated) {
+  if (!isTruncatedJpeg(bytes)) {
     try {
       picture = cv::imdecode(frame.bytes,
                              cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
