@@ -10,20 +10,14 @@
 #include <utility>
 
 namespace evical {
-namespace {
 
-constexpr double kUnsaidSigma_px =
-    0.2;  // of corners as detectors give them; what they scatter is found anyway
-
-}  // namespace
-
-PointViews::PointViews(const Board& board, std::string stream, const CameraBatch& first,
-                       const std::optional<CameraIntrinsics>& lens)
-    : board_(board),
-      stream_(std::move(stream)),
+PointViews::PointViews(const CameraBatch& first, const ViewRequest& request)
+    : board_(request.session.board),
+      stream_(request.session.cameras[first.camera].stream),
       resolution_px_(*first.opened_px),
       start_ns_(first.start_ns),
-      lens_(lens) {
+      unsaid_sigma_px_(request.session.options.frames.point_sigma_px),
+      lens_(request.lens.seen_with) {
   so_far_.kind = CameraKind::Points;
 }
 
@@ -67,7 +61,7 @@ FoundPoints PointViews::pointsOf(const CameraBatch& batch) {
   for (const MeasuredPoint& measured : batch.points) {
     if (!belongs(measured)) continue;
     const double sigma_px =
-        measured.sigma_px > 0.0F ? static_cast<double>(measured.sigma_px) : kUnsaidSigma_px;
+        measured.sigma_px > 0.0F ? static_cast<double>(measured.sigma_px) : unsaid_sigma_px_;
     FoundPoint& point = points.emplace_back();
     point.point = measured.point;
     point.at_px = Eigen::Vector2d(measured.x_px, measured.y_px);

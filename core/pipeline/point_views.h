@@ -2,8 +2,6 @@
 #pragma once
 
 #include "core/frames/views_from_frames.h"
-#include "core/geometry/board.h"
-#include "core/geometry/camera_intrinsics.h"
 #include "core/pipeline/camera_views.h"
 
 #include <optional>
@@ -14,8 +12,7 @@ namespace evical {
 
 class PointViews final : public CameraViews {
  public:
-  PointViews(const Board& board, std::string stream, const CameraBatch& first,
-             const std::optional<CameraIntrinsics>& lens);
+  PointViews(const CameraBatch& first, const ViewRequest& request);
 
   // Throws BadInput where points are not this board's, or not this sensor's.
   void take(const CameraBatch& batch) override;
@@ -31,6 +28,7 @@ class PointViews final : public CameraViews {
   std::string stream_;
   Resolution resolution_px_;
   std::int64_t start_ns_;
+  double unsaid_sigma_px_;
   std::optional<CameraIntrinsics> lens_;
   BoardObservations so_far_;  // without views, which are known at the end
   std::vector<PointsInFrame> frames_;
