@@ -4,6 +4,7 @@
 #include "core/base/error.h"
 #include "core/report/bias_csv.h"
 #include "core/report/csv.h"
+#include "core/report/detections_csv.h"
 #include "core/report/export/export_target.h"
 #include "core/report/html/html_report.h"
 
