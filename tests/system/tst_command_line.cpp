@@ -9,6 +9,7 @@
 #include <QRegularExpression>
 #include <QTemporaryDir>
 
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 
@@ -16,8 +17,9 @@ using namespace evical::test;
 
 namespace {
 
-const QStringList kResultFiles = {"detections.csv", "kalibr",      "log.txt",        "plots",
-                                  "report.html",    "result.yaml", "trajectory.csv", "windows.csv"};
+const QStringList kResultFiles = {"detections.csv", "detections.yaml", "kalibr",
+                                  "log.txt",        "plots",           "report.html",
+                                  "result.yaml",    "trajectory.csv",  "windows.csv"};
 const QStringList kKalibrFiles = {"camchain-imucam.yaml", "camchain.yaml", "imu.yaml"};
 
 QString session(const QString& recording = "short") {
@@ -52,6 +54,7 @@ class TestCommandLine : public QObject {
   void init_writesTheSessionThatTheRecordingSuggests();
   void init_takesSensorsOfSeveralRecordings();
   void detect_writesDetectionsOnly();
+  void calibrate_startsFromDetections();
   void quiet_saysNothingButTheResult();
   void interruption_leavesNothingHalfWritten_data();
   void interruption_leavesNothingHalfWritten();
@@ -305,9 +308,34 @@ void TestCommandLine::detect_writesDetectionsOnly() {
   QTemporaryDir folder;
   const Outcome outcome = runProgram({"detect", session(), "-o", folder.filePath("seen")});
   VERIFY_EXIT(outcome, 0);
-  const QStringList expected = {"detections.csv", "log.txt", "windows.csv"};
+  const QStringList expected = {"detections.csv", "detections.yaml", "log.txt", "windows.csv"};
   QCOMPARE(filesIn(folder.filePath("seen")), expected);
   QVERIFY(readFile(folder.filePath("seen/detections.csv")).count('\n') > 1000);
+}
+
+void TestCommandLine::calibrate_startsFromDetections() {
+  QTemporaryDir folder;
+  const QString whole = folder.filePath("whole"), seen = folder.filePath("seen");
+  VERIFY_EXIT(runProgram({"calibrate", session(), "-o", whole}), 0);
+  VERIFY_EXIT(runProgram({"detect", session(), "-o", seen}), 0);
+  const auto path = [](const QString& file) { return std::filesystem::path(file.toStdString()); };
+  for (const QString& from : {whole, seen}) {
+    const QString again = from + "_again";
+    VERIFY_EXIT(runProgram({"calibrate", session(), "--detections", from, "-o", again}), 0);
+    QCOMPARE(filesIn(again), kResultFiles);
+    for (const char* file : {"/detections.csv", "/windows.csv", "/detections.yaml"})
+      QCOMPARE(readFile(again + file), readFile(whole + file));
+    for (const auto& each : evical::compareWithTruth(evical::readResultYaml(path(again + "/result.yaml")),
+                                                     evical::readResultYaml(path(whole + "/result.yaml")))
+                                .quantities)
+      QVERIFY2(std::abs(each.difference) < 1e-6, each.name.c_str());
+  }
+  QFile::remove(seen + "/detections.yaml");
+  const Outcome refused =
+      runProgram({"calibrate", session(), "--detections", seen, "-o", folder.filePath("none")});
+  VERIFY_EXIT(refused, 2);
+  QVERIFY2(refused.reason().contains("detections.yaml"), qPrintable(refused.errors));
+  QVERIFY(!QFileInfo::exists(folder.filePath("none")));
 }
 
 void TestCommandLine::quiet_saysNothingButTheResult() {
