@@ -42,7 +42,7 @@ class TestCommandLine : public QObject {
   void usage_thatIsWrongEndsWith2();
   void options_asMarkdownAreTheManual();
   void options_asYamlAreTheDefaultFile();
-  void board_isWrittenAsPdfAndSvg();
+  void board_isWrittenAsPdfSvgAndPng();
   void simulate_isTheSameFromTheSameSeed();
   void calibrate_writesAResultNearTheTruth_data();
   void calibrate_writesAResultNearTheTruth();
@@ -94,7 +94,7 @@ void TestCommandLine::usage_thatIsWrongEndsWith2_data() {
   QTest::newRow("no folder") << QStringList{"calibrate", session()};
   QTest::newRow("unknown flag") << QStringList{"options", "--pdf"};
   QTest::newRow("setting without value") << QStringList{"calibrate", session(), "-o", "x", "--set", "grid"};
-  QTest::newRow("board as a picture") << QStringList{"board", "-o", "board.png"};
+  QTest::newRow("board as a picture") << QStringList{"board", "-o", "board.jpg"};
 }
 
 void TestCommandLine::usage_thatIsWrongEndsWith2() {
@@ -118,15 +118,16 @@ void TestCommandLine::options_asYamlAreTheDefaultFile() {
            "config/default.yaml is old: evical options --yaml > config/default.yaml");
 }
 
-void TestCommandLine::board_isWrittenAsPdfAndSvg() {
+void TestCommandLine::board_isWrittenAsPdfSvgAndPng() {
   QTemporaryDir folder;
-  for (const QString file : {"board.pdf", "board.svg"}) {
+  for (const QString file : {"board.pdf", "board.svg", "board.png"}) {
     const Outcome outcome = runProgram({"board", "--rows", "7", "--cols", "3", "--spacing-m", "0.03",
-                                        "--radius-m", "0.01", "-o", folder.filePath(file)});
+                                        "--radius-m", "0.01", "--paper", "A4", "-o", folder.filePath(file)});
     VERIFY_EXIT(outcome, 0);
     QVERIFY(readFile(folder.filePath(file)).size() > 1000);
   }
   QVERIFY(readFile(folder.filePath("board.pdf")).startsWith("%PDF"));
+  QVERIFY(readFile(folder.filePath("board.png")).startsWith("\x89PNG"));
   QVERIFY(readFile(folder.filePath("board.svg")).contains("<svg"));
 }
 
