@@ -23,7 +23,8 @@ struct Arguments {
   std::string circles = "dark";
   std::optional<double> radius_m, tag_size_m;
   TagPrint print;
-  double margin_m = 0.02;
+  SheetOptions sheet;
+  double resolution_dpi = 300.0;
   std::filesystem::path output;
 };
 
@@ -46,12 +47,16 @@ Board completeBoard(const Arguments& arguments) {
 void drawBoard(const Arguments& arguments) {
   const Board board = completeBoard(arguments);
   const std::string extension = arguments.output.extension().string();
-  if (extension != ".pdf" && extension != ".svg")
-    throw badInput(arguments.output.string(), "is neither .pdf nor .svg",
-                   "Name the file board.pdf or board.svg");
-  writeFileWhole(arguments.output, extension == ".pdf"
-                                       ? boardPdf(board, arguments.margin_m, arguments.print)
-                                       : boardSvg(board, arguments.margin_m, arguments.print));
+  if (extension == ".pdf")
+    writeFileWhole(arguments.output, boardPdf(board, arguments.sheet, arguments.print));
+  else if (extension == ".svg")
+    writeFileWhole(arguments.output, boardSvg(board, arguments.sheet, arguments.print));
+  else if (extension == ".png")
+    writeFileWhole(arguments.output,
+                   boardPng(board, arguments.resolution_dpi, arguments.sheet, arguments.print));
+  else
+    throw badInput(arguments.output.string(), "is neither .pdf, .svg nor .png",
+                   "Name the file board.pdf, board.svg or board.png");
   print("{}: print at 100 %, and check the line below the board: 100 mm\n", arguments.output.string());
   if (board.hasHalfTurnAmbiguity())
     print(
@@ -59,11 +64,16 @@ void drawBoard(const Arguments& arguments) {
         "IMU.\n");
 }
 
+std::map<std::string, Paper> papersByName() {
+  std::map<std::string, Paper> by_name;
+  for (const Paper& paper : papers()) by_name[paper.name] = paper;
+  return by_name;
+}
+
 std::map<std::string, BoardType> typesByName() {
   std::map<std::string, BoardType> types;
-  for (const BoardType type : {BoardType::AsymmetricCircles, BoardType::SymmetricCircles,
-                               BoardType::Checkerboard, BoardType::AprilGrid, BoardType::Charuco})
-    types[boardTypeName(type)] = type;
+  for (std::size_t type = 0; type < kBoardTypeNames.size(); ++type)
+    types[kBoardTypeNames[type]] = static_cast<BoardType>(type);
   return types;
 }
 
@@ -103,9 +113,16 @@ void addBoardCommand(CLI::App& app, int& exit_code) {
   command->add_option("--circles", arguments->circles, "Their shade")
       ->check(CLI::IsMember({"dark", "bright"}))
       ->capture_default_str();
-  command->add_option("--margin-m", arguments->margin_m, "Around the outermost edges, metres")
+  command->add_option("--margin-m", arguments->sheet.margin_m, "Around the outermost edges, metres")
       ->capture_default_str();
-  command->add_option("-o,--output", arguments->output, "The file, .pdf or .svg")->required();
+  command
+      ->add_option_function<std::string>(
+          "--paper",
+          [arguments](const std::string& name) { arguments->sheet.paper = papersByName().at(name); },
+          "Sheet of this size with the board in its middle; else as large as the board needs")
+      ->check(CLI::IsMember(papersByName()));
+  command->add_option("--dpi", arguments->resolution_dpi, "Of a .png, pixels an inch")->capture_default_str();
+  command->add_option("-o,--output", arguments->output, "The file: .pdf, .svg or .png")->required();
   command->callback([arguments, &exit_code] {
     drawBoard(*arguments);
     exit_code = kDone;

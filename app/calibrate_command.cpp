@@ -5,8 +5,10 @@
 #include "app/version.h"
 #include "core/base/error.h"
 #include "core/base/new_folder.h"
+#include "core/data/calibration_stage.h"
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/result_files.h"
+#include "core/pipeline/saved_detections.h"
 #include "core/report/result_table.h"
 
 #include <fmt/format.h>
@@ -15,6 +17,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace evical {
@@ -53,12 +56,20 @@ void tellResult(const SessionArguments& arguments, const Session& session,
   if (!arguments.quiet) print("Files are in {}\n", arguments.output);
 }
 
+CalibrationOutcome calibrated(const SessionArguments& arguments, const Session& session,
+                              const RunContext& context) {
+  if (arguments.detections.empty()) return runCalibration(session, context);
+  context.progress.stageStarted(nameOf(CalibrationStage::Detect));
+  RestoredDetections restored = restoreDetections(arguments.detections, session, context);
+  return runCalibration(session, std::move(restored.pass), context, std::move(restored.intrinsics));
+}
+
 int run(const SessionArguments& arguments) {
   const Session session = sessionFrom(arguments);
   Console console(arguments.quiet);
   const NewFolder folder(arguments.output);
   const RunContext context{console, stopOnSignals()};
-  CalibrationOutcome outcome = runCalibration(session, context);
+  CalibrationOutcome outcome = calibrated(arguments, session, context);
   if (outcome.status != RunStatus::Done) tellEnd(arguments, session, outcome, console, folder);
   const auto run = std::make_shared<const CalibrationRun>(std::move(outcome).runOrThrow());
   tellResult(arguments, session, run, console);
@@ -71,6 +82,10 @@ void addCalibrateCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<SessionArguments>();
   CLI::App* const command = app.add_subcommand("calibrate", "Calibrate cameras and IMUs of a session");
   addSessionArguments(*command, *arguments);
+  command->add_option(
+      "--detections", arguments->detections,
+      "Result folder of an earlier run of this session: what cameras saw is taken from it, only IMUs "
+      "are read again");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

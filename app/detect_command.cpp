@@ -56,7 +56,7 @@ int run(const DetectArguments& arguments) {
   console.stageStarted(nameOf(CalibrationStage::Detect));
   const RecordingPass pass = readAndDetect(session, context);
   for (const RecordingFault& fault : pass.faults) console.log(LogLevel::Warning, fault.text);
-  writeDetectionFiles(arguments.output, pass, console.logText());
+  writeDetectionFiles(arguments.output, session, pass, console.logText());
   console.stageStarted("done");
   for (const BoardObservations& camera : pass.cameras) {
     print("{}: {} events, board in {} of {} windows\n", camera.camera, camera.events, camera.views.size(),

@@ -8,7 +8,7 @@
 #include "core/base/new_folder.h"
 #include "core/pipeline/intrinsics_calibration.h"
 #include "core/pipeline/session_recording.h"
-#include "core/report/csv.h"
+#include "core/report/detections_csv.h"
 #include "core/report/intrinsics_report.h"
 
 #include <fmt/format.h>

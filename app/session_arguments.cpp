@@ -40,6 +40,7 @@ std::string tryText(const SessionArguments& arguments, const Repair& repair) {
   std::string text = fmt::format("Try: evical calibrate {}", shellWord(arguments.session));
   for (const std::string& setting : arguments.settings)
     if (!setting.starts_with(repair.key + "=")) text += " --set " + shellWord(setting);
+  if (!arguments.detections.empty()) text += " --detections " + shellWord(arguments.detections);
   return text + fmt::format(" --set {} -o {}\n", shellWord(repair.text()), shellWord(arguments.output));
 }
 

@@ -18,6 +18,8 @@ struct SessionArguments {
   std::vector<std::string> settings;
   int threads = 0;  // 0: as the options say
   bool quiet = false;
+  std::string
+      detections;  // of calibrate: a folder of an earlier run to start from; empty: from the recording
 };
 
 void addSessionArguments(CLI::App& command, SessionArguments& arguments);

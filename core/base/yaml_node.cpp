@@ -175,7 +175,11 @@ std::vector<double> YamlNode::reals(std::size_t count) const {
 }
 
 std::size_t YamlNode::choice(std::initializer_list<const char*> words) const {
-  return detail::parseChoice(place(), text(), std::span<const char* const>(words.begin(), words.size()));
+  return choice(std::span<const char* const>(words.begin(), words.size()));
+}
+
+std::size_t YamlNode::choice(std::span<const char* const> words) const {
+  return detail::parseChoice(place(), text(), words);
 }
 
 std::string yamlText(std::string_view text) {

@@ -9,6 +9,7 @@
 #include <initializer_list>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,6 +47,7 @@ class YamlNode {
   std::vector<double> reals() const;
   std::vector<double> reals(std::size_t count) const;
   std::size_t choice(std::initializer_list<const char*> words) const;
+  std::size_t choice(std::span<const char* const> words) const;
 
   const std::string& key() const { return key_; }  // "board.rows"
   std::string place() const;                       // "session.yaml: board.rows (line 5)"

@@ -493,9 +493,9 @@ template <class Row, class State, class Uncertainty>
 bool isPresent(const Row& row, const State& state, const Uncertainty& uncertainty) {
   switch (row.info.presence) {
     case QuantityPresence::Always:
-    case QuantityPresence::WhereBothEstimated:
       return true;
     case QuantityPresence::WhereNotZero:
+    case QuantityPresence::WhereBothEstimated:
       if (!quantityNumbers(row.value(state)).isZero(0.0)) return true;
       [[fallthrough]];
     case QuantityPresence::WhereEstimated:

@@ -4,6 +4,8 @@
 
 #include <opencv2/calib3d.hpp>
 
+#include <utility>
+
 namespace evical {
 
 std::vector<ReadPoint> agreeingPoints(const std::vector<ReadPoint>& points, double tolerance_px) {
@@ -20,6 +22,15 @@ std::vector<ReadPoint> agreeingPoints(const std::vector<ReadPoint>& points, doub
     if (agrees[k] != 0) agreeing.push_back(points[k]);
   if (2 * agreeing.size() < points.size()) agreeing.clear();
   return agreeing;
+}
+
+std::optional<PlaneMap> mapOf(const std::vector<ReadPoint>& points, double step_m) {
+  std::vector<Eigen::Vector2d> on_board, in_picture;
+  for (const ReadPoint& point : points) {
+    on_board.push_back(point.on_board_m);
+    in_picture.push_back(point.at_px);
+  }
+  return PlaneMap::fit(std::move(on_board), in_picture, step_m);
 }
 
 }  // namespace evical

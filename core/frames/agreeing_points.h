@@ -1,9 +1,11 @@
 // Points that a decoder read off a picture, of which some may be false.
 #pragma once
 
-#include "core/frames/found_point.h"
-#include "core/geometry/board.h"
+#include "core/frames/plane_map.h"
 
+#include <Eigen/Core>
+
+#include <optional>
 #include <vector>
 
 namespace evical {
@@ -15,5 +17,8 @@ struct ReadPoint {
 // Those that one plane explains within `tolerance_px`, which must leave room for what a lens bends; none where
 // fewer than half do.
 std::vector<ReadPoint> agreeingPoints(const std::vector<ReadPoint>& points, double tolerance_px);
+
+// The map that points make; nothing where they are too few. `step_m` as PlaneMap has it.
+std::optional<PlaneMap> mapOf(const std::vector<ReadPoint>& points, double step_m);
 
 }  // namespace evical

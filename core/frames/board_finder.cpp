@@ -1,5 +1,6 @@
 #include "core/frames/board_finder.h"
 
+#include "core/frames/agreeing_points.h"
 #include "core/frames/pattern_finder.h"
 
 #include <opencv2/core.hpp>
@@ -53,12 +54,9 @@ std::string BoardFinder::doubt() const {
 }
 
 std::optional<PlaneMap> mapOf(const FoundPoints& points, const Board& board) {
-  std::vector<Eigen::Vector2d> on_board, in_picture;
-  for (const FoundPoint& point : points) {
-    on_board.push_back(board.point_m(point.point));
-    in_picture.push_back(point.at_px);
-  }
-  return PlaneMap::fit(std::move(on_board), in_picture, board.spacing_m);
+  std::vector<ReadPoint> known;
+  for (const FoundPoint& point : points) known.push_back({board.point_m(point.point), point.at_px});
+  return mapOf(known, board.spacing_m);
 }
 
 }  // namespace evical

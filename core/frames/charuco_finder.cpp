@@ -1,6 +1,7 @@
 #include "core/frames/agreeing_points.h"
 #include "core/frames/corner_measurement.h"
 #include "core/frames/pattern_finder.h"
+#include "core/frames/picture_view.h"
 #include "core/geometry/charuco_layout.h"
 
 #include <fmt/format.h>
@@ -74,12 +75,7 @@ class CharucoFinder : public PatternFinder {
       family_ = reading.family;
     }
     first_is_bright_ = reading.first_is_bright;
-    std::vector<Eigen::Vector2d> on_board, in_picture;
-    for (const ReadPoint& point : reading.points) {
-      on_board.push_back(point.on_board_m);
-      in_picture.push_back(point.at_px);
-    }
-    const std::optional<PlaneMap> map = PlaneMap::fit(on_board, in_picture, board_.spacing_m);
+    const std::optional<PlaneMap> map = mapOf(reading.points, board_.spacing_m);
     if (!map) return {};
     const FoundPoints found = measure(image, *map, 2.0 * options_.largest_move_px);
     const std::optional<PlaneMap> nearer = mapOf(found, board_);
@@ -98,8 +94,7 @@ class CharucoFinder : public PatternFinder {
 
  private:
   Reading bestReading(const GrayImage& image) {
-    const cv::Mat picture(image.size_px.height_px, image.size_px.width_px, CV_8UC1,
-                          const_cast<std::uint8_t*>(image.pixels.data()));
+    const cv::Mat picture = viewOf(image);
     Reading best;
     for (const MarkerFamily family : kFamilies) {
       if (family_ != MarkerFamily::Automatic && family != family_) continue;

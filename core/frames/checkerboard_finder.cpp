@@ -2,6 +2,7 @@
 #include "core/frames/brightness.h"
 #include "core/frames/corner_measurement.h"
 #include "core/frames/pattern_finder.h"
+#include "core/frames/picture_view.h"
 
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
@@ -89,8 +90,7 @@ class CheckerboardFinder : public PatternFinder {
 
  private:
   std::optional<Grid> searchAtSizes(const GrayImage& image) const {
-    const cv::Mat picture(image.size_px.height_px, image.size_px.width_px, CV_8UC1,
-                          const_cast<std::uint8_t*>(image.pixels.data()));
+    const cv::Mat picture = viewOf(image);
     const int longest = std::max(picture.cols, picture.rows);
     if (longest < kShortestSide_px) return searchScaled(picture, 4.0, board_);
     for (const int side : kSearchedSides_px) {

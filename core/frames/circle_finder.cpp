@@ -1,5 +1,7 @@
+#include "core/frames/agreeing_points.h"
 #include "core/frames/circle_edges.h"
 #include "core/frames/pattern_finder.h"
+#include "core/frames/picture_view.h"
 #include "core/geometry/lattice_placement.h"
 
 #include <Eigen/LU>
@@ -63,8 +65,7 @@ void addBlobs(const cv::Mat& mask, double largest_area_px2, std::vector<Blob>& b
 // Fields that are darker (or brighter) than their neighbourhood, at several sizes of that: a circle is found
 // where it is some times larger than the circle.
 std::vector<Blob> findBlobs(const GrayImage& image, CircleShade shade) {
-  const cv::Mat picture(image.size_px.height_px, image.size_px.width_px, CV_8UC1,
-                        const_cast<std::uint8_t*>(image.pixels.data()));
+  const cv::Mat picture = viewOf(image);
   cv::Mat smooth;
   cv::GaussianBlur(picture, smooth, {3, 3}, 0.0);
   const int shortest = std::min(picture.cols, picture.rows);
@@ -142,12 +143,10 @@ class CircleFinder : public PatternFinder {
 
   std::optional<PlaneMap> mapOfPlacement(const LatticePlacement& placement,
                                          const std::vector<Blob>& blobs) const {
-    std::vector<Eigen::Vector2d> on_board, in_picture;
-    for (const auto& [circle, blob] : placement) {
-      on_board.push_back(board_.point_m(circle));
-      in_picture.push_back(blobs[blob].centre_px);
-    }
-    return PlaneMap::fit(std::move(on_board), in_picture, board_.spacing_m);
+    std::vector<ReadPoint> known;
+    for (const auto& [circle, blob] : placement)
+      known.push_back({board_.point_m(circle), blobs[blob].centre_px});
+    return mapOf(known, board_.spacing_m);
   }
 
   // A sheared or shrunk lattice would make other ellipses of circles than are seen.

@@ -1,11 +1,11 @@
 #include "core/frames/corner_pattern.h"
 
+#include "core/geometry/tag_bits.h"
+
 #include <algorithm>
 
 namespace evical {
 namespace {
-
-constexpr int kTagBits = 6;  // a row of tag36h11 without its border
 
 std::vector<bool> alternating(const Board& board, bool first) {
   std::vector<bool> dark_ahead(static_cast<std::size_t>(board.pointCount()));
@@ -23,7 +23,7 @@ CornerPattern checkerboardCorners(const Board& board) {
 }
 
 CornerPattern tagGridCorners(const Board& board, int border_bits) {
-  const double border_m = board.tag_size_m * border_bits / (kTagBits + 2 * border_bits);
+  const double border_m = board.tag_size_m * border_bits / (kTagSide_bits + 2 * border_bits);
   CornerPattern pattern{std::min(border_m, board.spacing_m - board.tag_size_m), {}};
   // From the bottom left against the clock: the tag itself lies towards +x -y, -x -y, -x +y, +x +y.
   for (int k = 0; k < board.pointCount(); ++k) pattern.dark_ahead.push_back(k % 2 == 1);

@@ -21,6 +21,9 @@ constexpr std::tuple kFrameFields{
           "Half width of the window in which a corner is measured, where the pattern leaves that much room."},
     Field{"smallest_sigma_px", &FrameOptions::smallest_sigma_px, 0.05, within(0.001, 5.0), "px",
           "Added to what a picture's noise makes of a point's uncertainty: print, optics, pixels."},
+    Field{"point_sigma_px", &FrameOptions::point_sigma_px, 0.2, within(0.001, 100.0), "px",
+          "Of points that another program measured, where it does not say how well; what they scatter is "
+          "found anyway."},
     Field{"largest_move_px", &FrameOptions::largest_move_px, 2.0, within(0.5, 20.0), "px",
           "A corner that is measured further from where the others put it is dropped."},
     Field{"least_contrast", &FrameOptions::least_contrast, 8.0, within(1.0, 200.0), "",

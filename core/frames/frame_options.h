@@ -16,6 +16,7 @@ struct FrameOptions {
   MarkerFamily markers;
   int subpixel_window_px;
   double smallest_sigma_px;
+  double point_sigma_px;
   double largest_move_px;
   double least_contrast;
   double prediction_gate_px;

@@ -1,7 +1,8 @@
 #include "core/frames/gray_image.h"
 
 #include "core/base/error.h"
-#include "core/frames/picture_header.h"
+#include "core/data/picture_header.h"
+#include "core/frames/picture_view.h"
 
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
@@ -11,6 +12,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
+#include <string_view>
 
 namespace evical {
 namespace {
@@ -93,9 +96,7 @@ cv::Mat rawPixels(const Frame& frame, const std::string& place) {
                    "The picture is truncated: leave it out, or copy the recording again");
   if (layout.to_gray >= 0 && layout.type == CV_8UC1 && (width < 3 || height < 3))
     throw badInput(place, "is too small for a Bayer pattern", "Leave this picture out");
-  // OpenCV has no type for pixels that it must not write to; nothing here writes to them.
-  const cv::Mat seen(frame.size_px.height_px, frame.size_px.width_px, layout.type,
-                     const_cast<std::uint8_t*>(frame.bytes.data()), step);
+  const cv::Mat seen = viewOf(frame.size_px, layout.type, frame.bytes, step);
   if (layout.to_gray < 0) return seen.clone();
   cv::Mat gray;
   cv::cvtColor(seen, gray, layout.to_gray);
@@ -103,13 +104,14 @@ cv::Mat rawPixels(const Frame& frame, const std::string& place) {
 }
 
 cv::Mat decoded(const Frame& frame, const std::string& place) {
-  const std::optional<PictureHeader> header = readPictureHeader(frame.bytes);
-  if (!header)
+  const std::string_view bytes(reinterpret_cast<const char*>(frame.bytes.data()), frame.bytes.size());
+  const std::optional<Resolution> claimed_px = claimedPictureSize(bytes);
+  if (!claimed_px)
     throw badInput(place, "is neither a JPEG, PNG, PGM, TIFF nor BMP picture, or is cut off in its header",
                    "Leave this picture out, or save it as PNG");
-  refuseAbsurdSize(header->size_px, place);
+  refuseAbsurdSize(*claimed_px, place);
   cv::Mat picture;
-  if (!header->truncated) {
+  if (!isTruncatedJpeg(bytes)) {
     try {
       picture = cv::imdecode(frame.bytes,
                              cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);

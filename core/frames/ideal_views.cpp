@@ -85,4 +85,12 @@ BoardObservations inIdealPixels(const BoardObservations& of_sensor, const Camera
   return ideal;
 }
 
+BoardObservations throughLens(BoardObservations of_sensor, int height_px,
+                              const std::optional<CameraIntrinsics>& lens) {
+  for (BoardView& view : of_sensor.views)
+    for (CircleObservation& point : view.circles)
+      point.rows_below_middle = point.centre_px.y() - 0.5 * (height_px - 1);
+  return lens ? inIdealPixels(of_sensor, *lens) : of_sensor;
+}
+
 }  // namespace evical

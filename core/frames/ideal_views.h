@@ -19,4 +19,9 @@ std::optional<CircleObservation> inIdealPixels(const CircleObservation& of_senso
 // All views; points that the lens does not see are left out.
 BoardObservations inIdealPixels(const BoardObservations& of_sensor, const CameraIntrinsics& camera);
 
+// The same where the lens is known, and in the sensor's pixels where it is not; either way with the rows of a sensor
+// of this height in which the points were seen.
+BoardObservations throughLens(BoardObservations of_sensor, int height_px,
+                              const std::optional<CameraIntrinsics>& lens);
+
 }  // namespace evical

@@ -1,6 +1,7 @@
 #include "core/frames/agreeing_points.h"
 #include "core/frames/corner_measurement.h"
 #include "core/frames/pattern_finder.h"
+#include "core/frames/picture_view.h"
 
 #include <apriltag/apriltag.h>
 #include <apriltag/tag36h11.h>
@@ -55,10 +56,8 @@ class TagReader {
     detector_->quad_decimate = image.size_px.pixelCount() > kManyPixels ? 2.0F : 1.0F;
     // Kalibr's tags touch the small squares between them, and the detector sees them as one: bright pixels grow
     // by one to the right and downwards. Of rendered grids 36 of 36 tags are so found where 13 were before.
-    const cv::Mat seen_by_camera(image.size_px.height_px, image.size_px.width_px, CV_8UC1,
-                                 const_cast<std::uint8_t*>(image.pixels.data()));
     cv::Mat grown;
-    cv::dilate(seen_by_camera, grown, cv::Mat::ones(2, 2, CV_8UC1));
+    cv::dilate(viewOf(image), grown, cv::Mat::ones(2, 2, CV_8UC1));
     const double shift_px = 0.5 + 0.5;  // by the growth; of a pixel's middle
     image_u8_t picture = {grown.cols, grown.rows, static_cast<int>(grown.step), grown.data};
     const std::unique_ptr<zarray_t, void (*)(zarray_t*)> detections(
@@ -104,12 +103,7 @@ class TagGridFinder : public PatternFinder {
     const std::vector<ReadPoint> agreeing =
         agreeingPoints(corners, board_.spacing_m / board_.tag_size_m * largestSide_px(tags));
     countMisfit(corners, agreeing);
-    std::vector<Eigen::Vector2d> on_board, in_picture;
-    for (const ReadPoint& point : agreeing) {
-      on_board.push_back(point.on_board_m);
-      in_picture.push_back(point.at_px);
-    }
-    const std::optional<PlaneMap> map = PlaneMap::fit(on_board, in_picture, board_.spacing_m);
+    const std::optional<PlaneMap> map = mapOf(agreeing, board_.spacing_m);
     return map ? spread(image, *map) : FoundPoints{};
   }
 

@@ -70,6 +70,11 @@ Eigen::Vector2d Board::extent_m() const {
   }
 }
 
+double Board::printBeyond_m() const {
+  if (hasCircles()) return radius_m;
+  return type == BoardType::AprilGrid ? spacing_m - tag_size_m : spacing_m;
+}
+
 bool Board::hasHalfTurnAmbiguity() const {
   switch (type) {
     case BoardType::SymmetricCircles:
@@ -81,12 +86,6 @@ bool Board::hasHalfTurnAmbiguity() const {
     default:
       return false;
   }
-}
-
-const char* boardTypeName(BoardType type) {
-  constexpr std::array<const char*, 5> kNames = {"asymmetric_circles", "symmetric_circles", "checkerboard",
-                                                 "aprilgrid", "charuco"};
-  return kNames.at(static_cast<std::size_t>(type));
 }
 
 std::vector<Eigen::Vector2d> boardPoints_m(const Board& board) {
@@ -114,7 +113,7 @@ void validate(const Board& board) {
   if (board.hasCircles()) validateCircles(board);
   if (!board.hasCircles() && board.radius_m != 0.0)
     throw badInput("board.radius_m", "is of circles, and this board has none", "Remove it");
-  if (tags || board.type == BoardType::Charuco) validateTags(board);
+  if (board.hasTags()) validateTags(board);
 }
 
 }  // namespace evical

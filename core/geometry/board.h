@@ -6,11 +6,21 @@
 
 #include <Eigen/Core>
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
 namespace evical {
 
 enum class BoardType { AsymmetricCircles, SymmetricCircles, Checkerboard, AprilGrid, Charuco };
+// As sessions write them, in the enumeration's order.
+inline constexpr std::array kBoardTypeNames = {"asymmetric_circles", "symmetric_circles", "checkerboard",
+                                               "aprilgrid", "charuco"};
+static_assert(kBoardTypeNames.size() == static_cast<std::size_t>(BoardType::Charuco) + 1);
+constexpr const char* boardTypeName(BoardType type) {
+  return kBoardTypeNames[static_cast<std::size_t>(type)];
+}
+
 enum class CircleShade { Dark, Bright };  // dark circles on a bright board, or the inverse
 
 struct Board {
@@ -31,6 +41,8 @@ struct Board {
     return type == BoardType::AsymmetricCircles || type == BoardType::SymmetricCircles;
   }
 
+  bool hasTags() const { return type == BoardType::AprilGrid || type == BoardType::Charuco; }
+
   int pointCount() const;
   // Of circles and of corners between squares; tags' corners have no such place.
   int index(int row, int col) const { return row * pointsInRow() + col; }
@@ -42,16 +54,15 @@ struct Board {
   // bottom left, corners from the bottom left against the clock.
   Eigen::Vector2d point_m(int index) const;
 
-  // Between the outermost points.
+  // Between the outermost points, and how far the print reaches beyond them.
   Eigen::Vector2d extent_m() const;
+  double printBeyond_m() const;
 
   // True if the pattern turned by 180 degrees is the same pattern: symmetric circles, asymmetric ones with an
   // even number of rows, checkerboards whose rows and columns are both even or both odd. Such a board does for
   // intrinsics only.
   bool hasHalfTurnAmbiguity() const;
 };
-
-const char* boardTypeName(BoardType type);  // as sessions write it: "asymmetric_circles"
 
 // All points, by index.
 std::vector<Eigen::Vector2d> boardPoints_m(const Board& board);

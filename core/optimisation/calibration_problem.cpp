@@ -16,17 +16,18 @@ ceres::Problem::Options borrowManifolds() {
 }
 
 // Of every sensor at the trajectory's begin and at its end, an accelerometer's with its delay.
-std::vector<double> timeOffsets_s(const CalibrationState& state) {
+std::vector<double> timeOffsets_s(const CalibrationInput& input, const CalibrationState& state) {
   const So3Spline& trajectory = state.world_from_imu_rotation;
   std::vector<double> offsets_s;
   const auto append = [&](const auto& sensor) {
     for (const double time_s : {trajectory.start_s, trajectory.endTime_s()})
       offsets_s.push_back(timeOffsetAt_s(sensor, time_s));
   };
-  for (const CameraState& camera : state.cameras) {
-    append(camera);
-    constexpr double kFurthestRow = 1000.0;  // from the middle one
-    offsets_s.push_back(1e-6 * kFurthestRow * camera.line_delay_us);
+  for (std::size_t i = 0; i < state.cameras.size(); ++i) {
+    append(state.cameras[i]);
+    const double furthest_row =
+        0.5 * input.cameras[i].lens.seen_with->resolution_px.height_px;  // from the middle one
+    offsets_s.push_back(1e-6 * furthest_row * state.cameras[i].line_delay_us);
   }
   for (const ImuState& imu : state.imus) {
     append(imu);
@@ -54,7 +55,7 @@ void CalibrationProblem::build(ReleaseStages stage, const Weights& weights) {
   parameters_.followSensors();
   const CalibrationState& state = parameters_.moved();
   residuals_.clear();
-  assigned_offsets_s_ = timeOffsets_s(state);
+  assigned_offsets_s_ = timeOffsets_s(input_, state);
   problem_ = std::make_unique<ceres::Problem>(borrowManifolds());
   ProblemBuilder builder{input_, options_, weights, stage, parameters_, *problem_, residuals_};
   for (std::size_t i = 0; i < state.cameras.size(); ++i)
@@ -71,7 +72,7 @@ void CalibrationProblem::build(ReleaseStages stage, const Weights& weights) {
 
 double CalibrationProblem::segmentDrift_knots() const {
   const CalibrationState& state = parameters_.moved();
-  const std::vector<double> offsets_s = timeOffsets_s(state);
+  const std::vector<double> offsets_s = timeOffsets_s(input_, state);
   double largest_s = 0.0;
   for (std::size_t i = 0; i < offsets_s.size(); ++i)
     largest_s = std::max(largest_s, std::abs(offsets_s[i] - assigned_offsets_s_[i]));

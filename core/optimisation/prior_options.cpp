@@ -16,6 +16,10 @@ constexpr std::tuple kPriorFields{
           "Prior on the lead of measured centres along their image motion, around 0."},
     Field{"slow_edge_lead_sigma_px", &PriorOptions::slow_edge_lead_sigma_px, 0.02, within(1e-6, 10.0), "px",
           "Prior on what edges that hardly move add to that lead, around 0."},
+    Field{"longest_readout_ms", &PriorOptions::longest_readout_ms, 40.0, within(0.1, 1e4), "ms",
+          "Prior on how long a rolling shutter takes from its first row to its last, around 0: no longer "
+          "than a "
+          "frame of 25 a second."},
     Field{"time_offset_drift_sigma_ppm", &PriorOptions::time_offset_drift_sigma_ppm, 50.0, within(1e-4, 1e5),
           "ppm", "Prior on the drift of time offsets around 0."},
     Field{"exposure_share_sigma", &PriorOptions::exposure_share_sigma, 0.5, within(1e-4, 100.0), "",

@@ -13,6 +13,7 @@ struct PriorOptions {
   double camera_distortion_sigma;
   double edge_lead_sigma_px;
   double slow_edge_lead_sigma_px;
+  double longest_readout_ms;
   double time_offset_drift_sigma_ppm;
   double exposure_share_sigma;
   double mapping_sigma;

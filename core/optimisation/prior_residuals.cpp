@@ -50,12 +50,11 @@ void addCameraPriors(ProblemBuilder& builder) {
     addPrior(builder, &camera.edge_lead_px, 1, kZero.data(), builder.options.edge_lead_sigma_px);
     addPrior(builder, &camera.slow_edge_lead_px, 1, kZero.data(), builder.options.slow_edge_lead_sigma_px);
   }
-  // No sensor reads its rows more slowly than 25 frames a second.
-  constexpr double kSlowest_us = 1e6 / 25.0;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     if (builder.rolls(i))
       addPrior(builder, &cameras[i].line_delay_us, 1, kZero.data(),
-               kSlowest_us / builder.input.cameras[i].lens.seen_with->resolution_px.height_px);
+               1e3 * builder.options.longest_readout_ms /
+                   builder.input.cameras[i].lens.seen_with->resolution_px.height_px);
   }
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     if (builder.exposuresVary(i))

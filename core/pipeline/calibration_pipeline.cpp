@@ -211,18 +211,23 @@ double peakMemory_mb() {
 
 namespace {
 
+// Of a pass that comes from a run before, they may be known.
+void addFault(const RecordingFault& fault, std::vector<RecordingFault>& faults) {
+  const auto same = [&](const RecordingFault& known) { return known.text == fault.text; };
+  if (std::none_of(faults.begin(), faults.end(), same)) faults.push_back(fault);
+}
+
 // What the recording itself shows to be wrong goes before anything is estimated from it.
 void checkPass(const Session& session, const RunContext& context, RecordingPass& pass) {
   for (const ImuData& imu : pass.imus) {
     checkStampsApart(imu);
     checkAxesAlive(imu);
     checkUnits(imu, session.options.initialisation);
-    const std::vector<RecordingFault> faults = checkImu(imu.name, imu.samples);
-    pass.faults.insert(pass.faults.end(), faults.begin(), faults.end());
+    for (const RecordingFault& fault : checkImu(imu.name, imu.samples)) addFault(fault, pass.faults);
   }
   for (const BoardObservations& camera : pass.cameras) {
     const std::optional<RecordingFault> unseen = unseenCircles(camera, session.board);
-    if (unseen) pass.faults.push_back(*unseen);
+    if (unseen) addFault(*unseen, pass.faults);
   }
   for (const RecordingFault& fault : pass.faults) context.progress.log(LogLevel::Warning, fault.text);
   logDetections(pass, context);
@@ -264,6 +269,7 @@ class Calibration {
     run_.pass = std::move(pass);
     run_.intrinsics = std::move(intrinsics);
     return outcomeOf([this] {
+      checkSession(session_);
       prepareInput();
       runFrom(CalibrationStage::Initialise);
     });
@@ -479,13 +485,18 @@ CalibrationOutcome runCalibration(const Session& session, const RunContext& cont
   return Calibration(session, context).fromRecording();
 }
 
+CalibrationOutcome runCalibration(const Session& session, RecordingPass pass, const RunContext& context,
+                                  std::vector<std::optional<IntrinsicsResult>> intrinsics) {
+  return Calibration(session, context).fromDetections(std::move(pass), std::move(intrinsics));
+}
+
 CalibrationRun calibrate(const Session& session, const RunContext& context) {
   return runCalibration(session, context).runOrThrow();
 }
 
 CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context,
                          std::vector<std::optional<IntrinsicsResult>> intrinsics) {
-  return Calibration(session, context).fromDetections(std::move(pass), std::move(intrinsics)).runOrThrow();
+  return runCalibration(session, std::move(pass), context, std::move(intrinsics)).runOrThrow();
 }
 
 }  // namespace evical

@@ -39,12 +39,14 @@ struct CalibrationOutcome {
 // once all intrinsics are known.
 CalibrationOutcome runCalibration(const Session& session, const RunContext& context);
 
-// The same for who wants nothing but the result. Throws CalibrationError, and Cancelled when asked to stop.
-CalibrationRun calibrate(const Session& session, const RunContext& context);
+// The same from what the front end and the IMUs gave: `pass` as readAndDetect, restoreDetections or a simulation
+// makes it, with the lenses that it was seen with. `intrinsics`: how a run before found those of them that were not
+// given, as CalibrationRun has them.
+CalibrationOutcome runCalibration(const Session& session, RecordingPass pass, const RunContext& context,
+                                  std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
 
-// The same from what the front end and the IMUs gave: `pass` as readAndDetect or a simulation makes it, with
-// the lenses that it was seen with. `intrinsics`: how a run before found those of them that were not given,
-// as CalibrationRun has them.
+// Both for who wants nothing but the result. Throw CalibrationError, and Cancelled when asked to stop.
+CalibrationRun calibrate(const Session& session, const RunContext& context);
 CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context,
                          std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
 

@@ -33,9 +33,7 @@ class EventViews final : public CameraViews {
 
 std::unique_ptr<CameraViews> cameraViews(const CameraBatch& first, const ViewRequest& request) {
   const Session& session = request.session;
-  if (first.kind == CameraKind::Points)
-    return std::make_unique<PointViews>(session.board, session.cameras[first.camera].stream, first,
-                                        request.lens.seen_with);
+  if (first.kind == CameraKind::Points) return std::make_unique<PointViews>(first, request);
   if (first.kind == CameraKind::Frames) return std::make_unique<FrameViews>(first, request);
   if (!session.board.hasCircles())
     throw badInput(session.cameras[first.camera].name,

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace evical {
 
 FrameViews::FrameViews(const CameraBatch& first, const ViewRequest& request)
@@ -68,10 +70,7 @@ BoardObservations FrameViews::finish(std::vector<RecordingFault>& faults) {
   observations.kind = CameraKind::Frames;
   if (const std::string doubt = tracker_.doubt(); !doubt.empty())
     faults.push_back({camera_.stream, FaultKind::BoardSize, 0.0, fmt::format("{}: {}", camera_.name, doubt)});
-  for (BoardView& view : observations.views)
-    for (CircleObservation& point : view.circles)
-      point.rows_below_middle = point.centre_px.y() - 0.5 * (resolution_px_.height_px - 1);
-  return lens_ ? inIdealPixels(observations, *lens_) : observations;
+  return throughLens(std::move(observations), resolution_px_.height_px, lens_);
 }
 
 }  // namespace evical

@@ -7,47 +7,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 namespace evical {
-namespace {
 
-constexpr double kUnsaidSigma_px =
-    0.2;  // of corners as detectors give them; what they scatter is found anyway
-
-// Where one point was, view by view.
-using Track = std::vector<std::pair<double, CircleObservation*>>;
-
-Eigen::Vector2d velocityBetween_px_s(const Track& track, std::size_t i) {
-  constexpr double kNear_s = 0.3;
-  const std::size_t before = i > 0 && track[i].first - track[i - 1].first < kNear_s ? i - 1 : i;
-  const std::size_t behind =
-      i + 1 < track.size() && track[i + 1].first - track[i].first < kNear_s ? i + 1 : i;
-  const double time_s = track[behind].first - track[before].first;
-  if (time_s <= 0.0) return Eigen::Vector2d::Zero();
-  return (track[behind].second->centre_px - track[before].second->centre_px) / time_s;
-}
-
-}  // namespace
-
-void setVelocities(BoardObservations& observations) {
-  std::map<int, Track> tracks;
-  for (BoardView& view : observations.views)
-    for (CircleObservation& circle : view.circles) tracks[circle.circle].push_back({view.time_s, &circle});
-  for (const auto& [point, track] : tracks)
-    for (std::size_t i = 0; i < track.size(); ++i)
-      track[i].second->velocity_px_s = velocityBetween_px_s(track, i);
-}
-
-PointViews::PointViews(const Board& board, std::string stream, const CameraBatch& first,
-                       const std::optional<CameraIntrinsics>& lens)
-    : board_(board),
-      stream_(std::move(stream)),
+PointViews::PointViews(const CameraBatch& first, const ViewRequest& request)
+    : board_(request.session.board),
+      stream_(request.session.cameras[first.camera].stream),
       resolution_px_(*first.opened_px),
       start_ns_(first.start_ns),
-      lens_(lens) {
-  observations_.kind = CameraKind::Points;
+      unsaid_sigma_px_(request.session.options.frames.point_sigma_px),
+      lens_(request.lens.seen_with) {
+  so_far_.kind = CameraKind::Points;
 }
 
 bool PointViews::belongs(const MeasuredPoint& point) {
@@ -84,44 +55,43 @@ void PointViews::checkShare() const {
                    "Give the camera's own resolution_px, and points in its own pixels");
 }
 
+// Each point once, in order of their indices.
+FoundPoints PointViews::pointsOf(const CameraBatch& batch) {
+  FoundPoints points;
+  for (const MeasuredPoint& measured : batch.points) {
+    if (!belongs(measured)) continue;
+    const double sigma_px =
+        measured.sigma_px > 0.0F ? static_cast<double>(measured.sigma_px) : unsaid_sigma_px_;
+    FoundPoint& point = points.emplace_back();
+    point.point = measured.point;
+    point.at_px = Eigen::Vector2d(measured.x_px, measured.y_px);
+    point.covariance_px2 = sigma_px * sigma_px * Eigen::Matrix2d::Identity();
+  }
+  const auto before = [](const FoundPoint& a, const FoundPoint& b) { return a.point < b.point; };
+  const auto same = [](const FoundPoint& a, const FoundPoint& b) { return a.point == b.point; };
+  std::stable_sort(points.begin(), points.end(), before);
+  const auto repeated = std::unique(points.begin(), points.end(), same);
+  twice_ += static_cast<std::uint64_t>(points.end() - repeated);
+  points.erase(repeated, points.end());
+  return points;
+}
+
 void PointViews::take(const CameraBatch& batch) {
   if (batch.points.empty()) return;
-  BoardView view;
-  view.time_s = secondsSince(start_ns_, batch.points.front().time_ns);
-  for (const MeasuredPoint& point : batch.points) {
-    if (!belongs(point)) continue;
-    CircleObservation circle;
-    circle.circle = point.point;
-    circle.time_s = view.time_s;
-    circle.centre_px = Eigen::Vector2d(point.x_px, point.y_px);
-    const double sigma_px = point.sigma_px > 0.0F ? static_cast<double>(point.sigma_px) : kUnsaidSigma_px;
-    circle.rows_below_middle = circle.centre_px.y() - 0.5 * (resolution_px_.height_px - 1);
-    circle.covariance_px2 = sigma_px * sigma_px * Eigen::Matrix2d::Identity();
-    view.circles.push_back(circle);
-  }
+  PointsInFrame seen;
+  seen.time_s = secondsSince(start_ns_, batch.points.front().time_ns);
+  seen.points = pointsOf(batch);
   checkShare();
-  const auto before = [](const CircleObservation& a, const CircleObservation& b) {
-    return a.circle < b.circle;
-  };
-  const auto same = [](const CircleObservation& a, const CircleObservation& b) {
-    return a.circle == b.circle;
-  };
-  std::stable_sort(view.circles.begin(), view.circles.end(), before);
-  const auto repeated = std::unique(view.circles.begin(), view.circles.end(), same);
-  twice_ += static_cast<std::uint64_t>(view.circles.end() - repeated);
-  view.circles.erase(repeated, view.circles.end());
-  const auto count = static_cast<int>(view.circles.size());
-  view.kind = count == board_.pointCount() ? ViewKind::Complete : ViewKind::Partial;
   constexpr int kLeastPoints = 4;  // of a pose
   WindowReport window;
-  window.time_s = view.time_s;
+  window.time_s = seen.time_s;
   window.candidates = static_cast<int>(batch.points.size());
-  window.circles = count;
-  window.outcome = count < kLeastPoints              ? WindowOutcome::TooFewCircles
-                   : view.kind == ViewKind::Complete ? WindowOutcome::Complete
-                                                     : WindowOutcome::Partial;
-  observations_.windows.push_back(window);
-  if (count >= kLeastPoints) observations_.views.push_back(std::move(view));
+  window.circles = static_cast<int>(seen.points.size());
+  window.outcome = window.circles < kLeastPoints           ? WindowOutcome::TooFewCircles
+                   : window.circles == board_.pointCount() ? WindowOutcome::Complete
+                                                           : WindowOutcome::Partial;
+  so_far_.windows.push_back(window);
+  if (window.circles >= kLeastPoints) frames_.push_back(std::move(seen));
 }
 
 BoardObservations PointViews::finish(std::vector<RecordingFault>& faults) {
@@ -130,15 +100,17 @@ BoardObservations PointViews::finish(std::vector<RecordingFault>& faults) {
     if (count > 0)
       faults.push_back({stream_, kind, 0.0, fmt::format("{}: {} points {}", stream_, count, what)});
   };
-  if (!std::is_sorted(observations_.views.begin(), observations_.views.end(), earlier))
+  if (!std::is_sorted(frames_.begin(), frames_.end(), earlier))
     faults.push_back({stream_, FaultKind::BackwardTime, 0.0, stream_ + ": views out of order, sorted"});
-  std::stable_sort(observations_.views.begin(), observations_.views.end(), earlier);
-  std::stable_sort(observations_.windows.begin(), observations_.windows.end(), earlier);
+  std::stable_sort(frames_.begin(), frames_.end(), earlier);
+  BoardObservations observations = so_far_;
+  std::stable_sort(observations.windows.begin(), observations.windows.end(), earlier);
   say(FaultKind::Corrupt, unknown_, "left out that the board does not have");
   say(FaultKind::OutsideResolution, outside_, "outside the sensor left out");
   say(FaultKind::Corrupt, twice_, "left out that were measured twice at the same time");
-  setVelocities(observations_);
-  return lens_ ? inIdealPixels(observations_, *lens_) : std::move(observations_);
+  for (ViewFromFrame& made : viewsFromFrames(frames_, board_.pointCount()))
+    observations.views.push_back(std::move(made.view));
+  return throughLens(std::move(observations), resolution_px_.height_px, lens_);
 }
 
 }  // namespace evical

@@ -214,6 +214,16 @@ class ReadingPass {
   std::vector<Intake> intakes_;  // by camera
 };
 
+void checkSamples(const Session& session, const RecordingPass& pass) {
+  for (const ImuData& imu : pass.imus) {
+    if (!imu.samples.empty()) continue;
+    throw badInput(
+        session.recording.string(),
+        fmt::format("IMU {} has no samples{}", imu.name, session.time_range_s ? " in time_range_s" : ""),
+        "Check the recording with 'evical inspect'");
+  }
+}
+
 }  // namespace
 
 RecordingPass readAndDetect(const Session& session, const RunContext& context) {
@@ -256,13 +266,24 @@ RecordingPass readAndDetect(const Session& session, std::vector<CameraLens> lens
                     session.time_range_s ? " in time_range_s" : ""),
         "Check the recording with 'evical inspect'");
   }
-  for (const ImuData& imu : result.imus) {
-    if (!imu.samples.empty()) continue;
-    throw badInput(
-        session.recording.string(),
-        fmt::format("IMU {} has no samples{}", imu.name, session.time_range_s ? " in time_range_s" : ""),
-        "Check the recording with 'evical inspect'");
-  }
+  checkSamples(session, result);
+  return result;
+}
+
+RecordingPass readImus(const Session& session, std::int64_t start_ns, const RunContext& context) {
+  RecordingPass result;
+  if (session.imus.empty()) return result;
+  Session imus_only = session;
+  imus_only.cameras.clear();
+  const Stopwatch stopwatch;
+  ReadingPass reading(imus_only, context, result);
+  result.start_ns = start_ns;
+  BoundedQueue<CameraBatch> none(1);
+  reading.run(none, context);
+  context.throwIfStopped();
+  reading.finish();
+  checkSamples(session, result);
+  result.read_s = stopwatch.elapsed_s();
   return result;
 }
 

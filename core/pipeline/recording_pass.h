@@ -33,4 +33,7 @@ RecordingPass readAndDetect(const Session& session, const RunContext& context);
 RecordingPass readAndDetect(const Session& session, std::vector<CameraLens> lenses,
                             const RunContext& context);
 
+// The IMUs alone, of a recording whose start is known: what cameras saw is not read.
+RecordingPass readImus(const Session& session, std::int64_t start_ns, const RunContext& context);
+
 }  // namespace evical

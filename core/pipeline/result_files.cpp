@@ -2,6 +2,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/pipeline/saved_detections.h"
 #include "core/report/bias_csv.h"
 #include "core/report/csv.h"
 #include "core/report/export/export_target.h"
@@ -80,9 +81,8 @@ ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Sessio
   NamedResult named = namedResult(session, resultOf(shared_run), version);
   for (std::size_t i = 0; i < named.imus.size() && i < run.pass.imus.size(); ++i)
     named.imus[i].rate_hz = run.pass.imus[i].rate_hz();
-  std::vector<FileContent> files = {{"trajectory.csv", trajectoryCsv(run.result.state)},
-                                    {"detections.csv", detectionsCsv(run.pass.cameras)},
-                                    {"windows.csv", windowsCsv(run.pass.cameras)}};
+  std::vector<FileContent> files = detectionFiles(session, run.pass, run.intrinsics);
+  files.push_back({"trajectory.csv", trajectoryCsv(run.result.state)});
   const std::string biases = biasesCsv(named);
   if (!biases.empty()) files.push_back({"biases.csv", biases});
   addReport(session, named, run.pass, files, run.intrinsics);
@@ -96,11 +96,11 @@ ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Sessio
   return remarks;
 }
 
-void writeDetectionFiles(const std::filesystem::path& folder, const RecordingPass& pass,
-                         const std::string& log) {
-  const std::vector<FileContent> files = {{folder / "detections.csv", detectionsCsv(pass.cameras)},
-                                          {folder / "windows.csv", windowsCsv(pass.cameras)},
-                                          {folder / "log.txt", log}};
+void writeDetectionFiles(const std::filesystem::path& folder, const Session& session,
+                         const RecordingPass& pass, const std::string& log) {
+  std::vector<FileContent> files = {{"log.txt", log}};
+  for (FileContent& file : detectionFiles(session, pass, {})) files.push_back(std::move(file));
+  for (FileContent& file : files) file.path = folder / file.path;
   writeFilesWhole(files);
 }
 

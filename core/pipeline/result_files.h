@@ -23,15 +23,15 @@ struct ExportRemarks {
   std::vector<std::string> notes, refused;
 };
 
-// report.html with its plots/*.csv, result.yaml, trajectory.csv, detections.csv, windows.csv, log.txt, and a
+// report.html with its plots/*.csv, result.yaml, trajectory.csv, the files of saved_detections.h, log.txt, and a
 // folder a target: kalibr and what the session asks for. The remarks are in log.txt too.
 ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Session& session,
                                const std::shared_ptr<const CalibrationRun>& run, const std::string& version,
                                const std::string& log);
 
-// detections.csv, windows.csv, log.txt
-void writeDetectionFiles(const std::filesystem::path& folder, const RecordingPass& pass,
-                         const std::string& log);
+// The files of saved_detections.h, and log.txt.
+void writeDetectionFiles(const std::filesystem::path& folder, const Session& session,
+                         const RecordingPass& pass, const std::string& log);
 
 // result.yaml with status failed and the reason, a report of what there is in `pass`, and log.txt; only where
 // the folder is there already.

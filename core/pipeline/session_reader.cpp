@@ -78,17 +78,15 @@ double readSpacing_m(const YamlNode& map, double tag_size_m) {
 
 Board readBoard(const YamlNode& map, const std::optional<MeasuredLength>& measured) {
   Board board;
-  board.type = static_cast<BoardType>(map["type"].choice(
-      {"asymmetric_circles", "symmetric_circles", "checkerboard", "aprilgrid", "charuco"}));
-  const bool tags = board.type == BoardType::AprilGrid || board.type == BoardType::Charuco;
+  board.type = static_cast<BoardType>(map["type"].choice(kBoardTypeNames));
   std::vector<std::string> keys = {"type", "rows", "cols", "measured", "spacing_m", "spacing_std"};
   if (board.hasCircles()) keys.insert(keys.end(), {"radius_m", "circles"});
-  if (tags) keys.emplace_back("tag_size_m");
+  if (board.hasTags()) keys.emplace_back("tag_size_m");
   if (board.type == BoardType::AprilGrid) keys.emplace_back("tag_spacing");
   map.allowOnly(keys);
   board.rows = map["rows"].integer(1, 100);
   board.cols = map["cols"].integer(1, 100);
-  if (tags) board.tag_size_m = map["tag_size_m"].real(1e-4, 10.0, "m");
+  if (board.hasTags()) board.tag_size_m = map["tag_size_m"].real(1e-4, 10.0, "m");
   board.spacing_m = measured ? measured->spacing_m() : readSpacing_m(map, board.tag_size_m);
   board.radius_m = board.hasCircles() ? map["radius_m"].real(1e-5, 10.0, "m") : 0.0;
   if (const auto node = map.find("circles"))

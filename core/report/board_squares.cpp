@@ -2,15 +2,13 @@
 
 #include "core/base/error.h"
 #include "core/geometry/charuco_layout.h"
+#include "core/geometry/tag_bits.h"
 
-#include <apriltag/apriltag.h>
-#include <apriltag/tag36h11.h>
 #include <fmt/format.h>
 #include <opencv2/aruco.hpp>
 
 #include <algorithm>
 #include <array>
-#include <memory>
 
 namespace evical {
 namespace {
@@ -48,21 +46,20 @@ Boxes checkerboard(const Board& board) {
   return boxes;
 }
 
-Bits tagBits(const apriltag_family_t& family, int id) {
-  constexpr std::size_t kBits = 6;
-  Bits bits(kBits, std::vector<bool>(kBits));
-  for (std::uint32_t bit = 0; bit < family.nbits; ++bit)  // places are counted from the border of 1 bit
-    bits[family.bit_y[bit] - 1][family.bit_x[bit] - 1] =
-        (family.codes[id] >> (family.nbits - 1 - bit) & 1) != 0;
+Bits bitsOf(const TagBits& tag) {
+  Bits bits;
+  for (int row = 0; row < kTagSide_bits; ++row) {
+    bits.emplace_back();
+    for (int col = 0; col < kTagSide_bits; ++col) bits.back().push_back(tag.isBright(row, col));
+  }
   return bits;
 }
 
 Boxes tagGrid(const Board& board, int border_bits) {
-  const std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)> family(tag36h11_create(),
-                                                                                tag36h11_destroy);
-  if (board.rows * board.cols > static_cast<int>(family->ncodes))
-    throw badInput("board",
-                   fmt::format("needs {} tags, and tag36h11 has {}", board.rows * board.cols, family->ncodes),
+  const int needed = board.rows * board.cols;
+  const std::vector<TagBits> tags = firstTags(needed);
+  if (needed > static_cast<int>(tags.size()))
+    throw badInput("board", fmt::format("needs {} tags, and tag36h11 has {}", needed, tags.size()),
                    "Use fewer rows or columns");
   Boxes boxes;
   const double gap_m = board.spacing_m - board.tag_size_m;
@@ -73,7 +70,7 @@ Boxes tagGrid(const Board& board, int border_bits) {
   for (int row = 0; row < board.rows; ++row)
     for (int col = 0; col < board.cols; ++col)
       paintTag(board.spacing_m * Eigen::Vector2d(col, row), board.tag_size_m, border_bits,
-               tagBits(*family, (board.rows - 1 - row) * board.cols + col), boxes);
+               bitsOf(tags[static_cast<std::size_t>((board.rows - 1 - row) * board.cols + col)]), boxes);
   return boxes;
 }
 

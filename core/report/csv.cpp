@@ -30,32 +30,4 @@ std::string trajectoryCsv(const CalibrationState& state) {
   return text;
 }
 
-std::string detectionsCsv(const std::vector<BoardObservations>& cameras) {
-  std::string text =
-      "camera,window_time_s,grid,circle,time_s,x_px,y_px,var_x_px2,cov_xy_px2,var_y_px2,vx_px_s,vy_px_s,"
-      "major_px,minor_px,angle_rad,bursts,residual_rms_px\n";
-  for (const BoardObservations& camera : cameras)
-    for (const BoardView& view : camera.views)
-      for (const CircleObservation& c : view.circles)
-        fmt::format_to(
-            std::back_inserter(text),
-            "{},{:.6f},{},{},{:.9f},{:.4f},{:.4f},{:.4e},{:.4e},{:.4e},{:.2f},{:.2f},{:.3f},{:.3f},{:.4f},{},"
-            "{:.4f}\n",
-            camera.camera, view.time_s, view.kind == ViewKind::Complete ? "complete" : "partial", c.circle,
-            c.time_s, c.centre_px.x(), c.centre_px.y(), c.covariance_px2(0, 0), c.covariance_px2(0, 1),
-            c.covariance_px2(1, 1), c.velocity_px_s.x(), c.velocity_px_s.y(), c.semi_axes_px.x(),
-            c.semi_axes_px.y(), c.angle_rad, c.events, c.residual_rms_px);
-  return text;
-}
-
-std::string windowsCsv(const std::vector<BoardObservations>& cameras) {
-  std::string text = "camera,time_s,half_width_s,outcome,bursts,candidates,circles,tracked\n";
-  for (const BoardObservations& camera : cameras)
-    for (const WindowReport& w : camera.windows)
-      fmt::format_to(std::back_inserter(text), "{},{:.6f},{:.6f},{},{},{},{},{}\n", camera.camera, w.time_s,
-                     w.half_width_s, windowOutcomeName(w.outcome), w.events, w.candidates, w.circles,
-                     w.tracked ? 1 : 0);
-  return text;
-}
-
 }  // namespace evical

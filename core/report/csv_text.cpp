@@ -11,4 +11,8 @@ std::string quotedCsv(const std::string& text) {
   return safe + "\"";
 }
 
+std::string csvWord(const std::string& text) {
+  return text.find_first_of(",\"\n\r") == std::string::npos ? text : quotedCsv(text);
+}
+
 }  // namespace evical

@@ -1,44 +1,13 @@
 #include "core/synthetic/board_pattern.h"
 
-#include <apriltag/apriltag.h>
-#include <apriltag/tag36h11.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <memory>
 
 namespace evical {
 namespace {
 
-constexpr int kModules = 6;        // of the inner square's side
 constexpr int kBorderModules = 2;  // as Kalibr prints them
-constexpr int kSide = kModules + 2 * kBorderModules;
-
-// The library keeps its own way of doing this to itself.
-void destroy(image_u8_t* image) {
-  std::free(image->buf);
-  std::free(image);
-}
-
-// Bits of the first tags of the family, 1 where they are black.
-std::vector<std::uint64_t> blackModules(int tags) {
-  const std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)> family(tag36h11_create(),
-                                                                                tag36h11_destroy);
-  std::vector<std::uint64_t> all;
-  const int inner = (family->total_width - kModules) / 2;
-  for (int tag = 0; tag < std::min(tags, static_cast<int>(family->ncodes)); ++tag) {
-    const std::unique_ptr<image_u8_t, void (*)(image_u8_t*)> image(apriltag_to_image(family.get(), tag),
-                                                                   destroy);
-    std::uint64_t bits = 0;
-    for (int row = 0; row < kModules; ++row)
-      for (int col = 0; col < kModules; ++col)
-        if (image->buf[(inner + row) * image->stride + inner + col] == 0)
-          bits |= std::uint64_t{1} << (row * kModules + col);
-    all.push_back(bits);
-  }
-  return all;
-}
+constexpr int kSide = kTagSide_bits + 2 * kBorderModules;
 
 }  // namespace
 
@@ -48,12 +17,10 @@ BoardPattern::BoardPattern(const Board& board)
       radius_m_(static_cast<float>(board.radius_m)),
       tag_m_(static_cast<float>(board.tag_size_m)) {
   const Eigen::Vector2f extent = board.extent_m().cast<float>();
-  const float beyond_m = board.hasCircles()                      ? radius_m_
-                         : board.type == BoardType::Checkerboard ? spacing_m_
-                                                                 : spacing_m_ - tag_m_;
+  const auto beyond_m = static_cast<float>(board.printBeyond_m());
   low_m_ = Eigen::Vector2f::Constant(-beyond_m);
   high_m_ = extent + Eigen::Vector2f::Constant(beyond_m);
-  if (board.type == BoardType::AprilGrid) tags_ = blackModules(board.rows * board.cols);
+  if (board.type == BoardType::AprilGrid) tags_ = firstTags(board.rows * board.cols);
 }
 
 bool BoardPattern::isInk(const Eigen::Vector2f& p) const {
@@ -101,9 +68,9 @@ bool BoardPattern::inTag(const Eigen::Vector2f& p) const {
     return std::clamp(static_cast<int>(place / tag_m_ * kSide), 0, kSide - 1) - kBorderModules;
   };
   const int x = at(within.x()), y = at(within.y());
-  if (x < 0 || y < 0 || x >= kModules || y >= kModules) return true;
+  if (x < 0 || y < 0 || x >= kTagSide_bits || y >= kTagSide_bits) return true;
   const auto tag = static_cast<std::size_t>((board_.rows - 1 - row) * board_.cols + col);
-  return tag < tags_.size() && (tags_[tag] >> (y * kModules + x) & 1u) != 0;
+  return tag < tags_.size() && !tags_[tag].isBright(y, x);
 }
 
 }  // namespace evical

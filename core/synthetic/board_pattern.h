@@ -3,10 +3,10 @@
 #pragma once
 
 #include "core/geometry/board.h"
+#include "core/geometry/tag_bits.h"
 
 #include <Eigen/Core>
 
-#include <cstdint>
 #include <vector>
 
 namespace evical {
@@ -31,8 +31,7 @@ class BoardPattern {
   Board board_;
   float spacing_m_, radius_m_, tag_m_;
   Eigen::Vector2f low_m_, high_m_;
-  std::vector<std::uint64_t>
-      tags_;  // a bit for each module of the inner square, row by row from its top left
+  std::vector<TagBits> tags_;
 };
 
 }  // namespace evical

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <span>
 #include <vector>
 
 namespace evical {
@@ -74,7 +75,8 @@ void readBoard(const YamlNode& map, Scenario& scenario) {
   Board& board = scenario.board;
   map.allowOnly({"type", "circles", "rows", "cols", "spacing_m", "radius_m", "stretch", "row_bow_m",
                  "column_bow_m", "twist_m", "tag_size_m"});
-  get(map, "type", board.type, {"asymmetric_circles", "symmetric_circles", "checkerboard", "aprilgrid"});
+  constexpr std::span kSimulatedTypes = std::span(kBoardTypeNames).first<4>();  // all but ChArUco
+  if (const auto node = map.find("type")) board.type = static_cast<BoardType>(node->choice(kSimulatedTypes));
   get(map, "circles", board.circles, {"dark", "bright"});
   get(map, "rows", board.rows, 1, 100);
   get(map, "cols", board.cols, 1, 100);

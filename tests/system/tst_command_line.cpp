@@ -9,6 +9,7 @@
 #include <QRegularExpression>
 #include <QTemporaryDir>
 
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 
@@ -16,8 +17,9 @@ using namespace evical::test;
 
 namespace {
 
-const QStringList kResultFiles = {"detections.csv", "kalibr",      "log.txt",        "plots",
-                                  "report.html",    "result.yaml", "trajectory.csv", "windows.csv"};
+const QStringList kResultFiles = {"detections.csv", "detections.yaml", "kalibr",
+                                  "log.txt",        "plots",           "report.html",
+                                  "result.yaml",    "trajectory.csv",  "windows.csv"};
 const QStringList kKalibrFiles = {"camchain-imucam.yaml", "camchain.yaml", "imu.yaml"};
 
 QString session(const QString& recording = "short") {
@@ -40,7 +42,7 @@ class TestCommandLine : public QObject {
   void usage_thatIsWrongEndsWith2();
   void options_asMarkdownAreTheManual();
   void options_asYamlAreTheDefaultFile();
-  void board_isWrittenAsPdfAndSvg();
+  void board_isWrittenAsPdfSvgAndPng();
   void simulate_isTheSameFromTheSameSeed();
   void calibrate_writesAResultNearTheTruth_data();
   void calibrate_writesAResultNearTheTruth();
@@ -52,6 +54,7 @@ class TestCommandLine : public QObject {
   void init_writesTheSessionThatTheRecordingSuggests();
   void init_takesSensorsOfSeveralRecordings();
   void detect_writesDetectionsOnly();
+  void calibrate_startsFromDetections();
   void quiet_saysNothingButTheResult();
   void interruption_leavesNothingHalfWritten_data();
   void interruption_leavesNothingHalfWritten();
@@ -91,7 +94,7 @@ void TestCommandLine::usage_thatIsWrongEndsWith2_data() {
   QTest::newRow("no folder") << QStringList{"calibrate", session()};
   QTest::newRow("unknown flag") << QStringList{"options", "--pdf"};
   QTest::newRow("setting without value") << QStringList{"calibrate", session(), "-o", "x", "--set", "grid"};
-  QTest::newRow("board as a picture") << QStringList{"board", "-o", "board.png"};
+  QTest::newRow("board as a picture") << QStringList{"board", "-o", "board.jpg"};
 }
 
 void TestCommandLine::usage_thatIsWrongEndsWith2() {
@@ -115,15 +118,16 @@ void TestCommandLine::options_asYamlAreTheDefaultFile() {
            "config/default.yaml is old: evical options --yaml > config/default.yaml");
 }
 
-void TestCommandLine::board_isWrittenAsPdfAndSvg() {
+void TestCommandLine::board_isWrittenAsPdfSvgAndPng() {
   QTemporaryDir folder;
-  for (const QString file : {"board.pdf", "board.svg"}) {
+  for (const QString file : {"board.pdf", "board.svg", "board.png"}) {
     const Outcome outcome = runProgram({"board", "--rows", "7", "--cols", "3", "--spacing-m", "0.03",
-                                        "--radius-m", "0.01", "-o", folder.filePath(file)});
+                                        "--radius-m", "0.01", "--paper", "A4", "-o", folder.filePath(file)});
     VERIFY_EXIT(outcome, 0);
     QVERIFY(readFile(folder.filePath(file)).size() > 1000);
   }
   QVERIFY(readFile(folder.filePath("board.pdf")).startsWith("%PDF"));
+  QVERIFY(readFile(folder.filePath("board.png")).startsWith("\x89PNG"));
   QVERIFY(readFile(folder.filePath("board.svg")).contains("<svg"));
 }
 
@@ -305,9 +309,34 @@ void TestCommandLine::detect_writesDetectionsOnly() {
   QTemporaryDir folder;
   const Outcome outcome = runProgram({"detect", session(), "-o", folder.filePath("seen")});
   VERIFY_EXIT(outcome, 0);
-  const QStringList expected = {"detections.csv", "log.txt", "windows.csv"};
+  const QStringList expected = {"detections.csv", "detections.yaml", "log.txt", "windows.csv"};
   QCOMPARE(filesIn(folder.filePath("seen")), expected);
   QVERIFY(readFile(folder.filePath("seen/detections.csv")).count('\n') > 1000);
+}
+
+void TestCommandLine::calibrate_startsFromDetections() {
+  QTemporaryDir folder;
+  const QString whole = folder.filePath("whole"), seen = folder.filePath("seen");
+  VERIFY_EXIT(runProgram({"calibrate", session(), "-o", whole}), 0);
+  VERIFY_EXIT(runProgram({"detect", session(), "-o", seen}), 0);
+  const auto path = [](const QString& file) { return std::filesystem::path(file.toStdString()); };
+  for (const QString& from : {whole, seen}) {
+    const QString again = from + "_again";
+    VERIFY_EXIT(runProgram({"calibrate", session(), "--detections", from, "-o", again}), 0);
+    QCOMPARE(filesIn(again), kResultFiles);
+    for (const char* file : {"/detections.csv", "/windows.csv", "/detections.yaml"})
+      QCOMPARE(readFile(again + file), readFile(whole + file));
+    for (const auto& each : evical::compareWithTruth(evical::readResultYaml(path(again + "/result.yaml")),
+                                                     evical::readResultYaml(path(whole + "/result.yaml")))
+                                .quantities)
+      QVERIFY2(std::abs(each.difference) < 1e-6, each.name.c_str());
+  }
+  QFile::remove(seen + "/detections.yaml");
+  const Outcome refused =
+      runProgram({"calibrate", session(), "--detections", seen, "-o", folder.filePath("none")});
+  VERIFY_EXIT(refused, 2);
+  QVERIFY2(refused.reason().contains("detections.yaml"), qPrintable(refused.errors));
+  QVERIFY(!QFileInfo::exists(folder.filePath("none")));
 }
 
 void TestCommandLine::quiet_saysNothingButTheResult() {

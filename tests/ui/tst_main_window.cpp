@@ -369,7 +369,7 @@ class TestMainWindow : public QObject {
     QTest::mouseClick(test.child<QPushButton>("export"), Qt::LeftButton);
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
     for (const char* const file :
-         {"result.yaml", "trajectory.csv", "detections.csv", "windows.csv", "log.txt",
+         {"result.yaml", "trajectory.csv", "detections.csv", "detections.yaml", "windows.csv", "log.txt",
           "kalibr/camchain-imucam.yaml", "openvins/kalibr_imu_chain.yaml"}) {
       QVERIFY2(QFileInfo(QDir(folder).filePath(file)).size() > 0, file);
     }

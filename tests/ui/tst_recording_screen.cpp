@@ -7,6 +7,7 @@
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 #include "ui/forms/number_field.h"
+#include "ui/screens/board_drawing.h"
 #include "ui/screens/board_form.h"
 #include "ui/screens/camera_form.h"
 #include "ui/screens/imu_form.h"
@@ -140,6 +141,23 @@ class TestRecordingScreen : public QObject {
     choose("Asymmetric (staggered)");
     QVERIFY(test.session.board.tag_size_m == 0.0 && test.session.board.radius_m > 0.0);
     validate(test.session.board);
+  }
+
+  void boardOfMoreTagsThanThereAre_isSaidInsteadOfDrawn() {
+    BoardDrawing drawing;
+    drawing.resize(400, 400);
+    Board board;
+    board.type = BoardType::AprilGrid;
+    board.radius_m = 0.0;
+    board.tag_size_m = 0.04;
+    const auto inkOf = [&](int rows) {
+      board.rows = board.cols = rows;
+      drawing.setBoard(board);
+      const QImage picture = drawing.grab().toImage();
+      return picture.pixelColor(200, 200).lightness() < 60 || picture.pixelColor(206, 206).lightness() < 60;
+    };
+    QVERIFY(inkOf(3));    // in the middle a tag
+    QVERIFY(!inkOf(25));  // 625
   }
 
   void boardMeasuredOverManySpacings_tellsSpacingAndSigma() {

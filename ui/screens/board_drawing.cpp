@@ -7,50 +7,16 @@
 #include <QPainter>
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
-#include <vector>
 
 namespace evical::ui {
 namespace {
 
 constexpr double kMargin_px = 34.0;  // for axes and measures
+constexpr QColor kInk(0x22, 0x22, 0x22);
 
-std::optional<QString> problemOf(const Board& board) {
-  try {
-    validate(board);
-    return std::nullopt;
-  } catch (const CalibrationError& error) {
-    return QString::fromStdString(error.problem());
-  }
-}
-
-// How far the print reaches beyond the outermost points.
-double beyond_m(const Board& board) {
-  if (board.hasCircles()) return board.radius_m;
-  return board.type == BoardType::AprilGrid ? board.spacing_m - board.tag_size_m : board.spacing_m;
-}
-
-// Squares of corners, as corners of their upper left and the length of a side; of tags their black squares.
-struct Squares {
-  std::vector<Eigen::Vector2d> at_m;
-  double side_m = 0.0;
-};
-Squares darkSquares(const Board& board) {
-  Squares squares;
-  if (board.type == BoardType::AprilGrid) {
-    squares.side_m = board.tag_size_m;
-    for (int row = 0; row < board.rows; ++row)
-      for (int col = 0; col < board.cols; ++col)
-        squares.at_m.push_back(board.spacing_m * Eigen::Vector2d(col, row));
-    return squares;
-  }
-  const Eigen::Vector2d last = board.extent_m() / board.spacing_m;
-  squares.side_m = board.spacing_m;
-  for (int row = -1; row <= static_cast<int>(std::lround(last.y())); ++row)
-    for (int col = -1; col <= static_cast<int>(std::lround(last.x())); ++col)
-      if ((row + col) % 2 == 0) squares.at_m.push_back(board.spacing_m * Eigen::Vector2d(col, row));
-  return squares;
+// Corners are between dark squares on bright paper, whatever circles once were.
+QColor paperOf(const Board& board) {
+  return board.hasCircles() && board.circles == CircleShade::Bright ? kInk : QColor(Qt::white);
 }
 
 QString millimetres(double length_m) {
@@ -66,6 +32,14 @@ BoardDrawing::BoardDrawing(QWidget* parent) : QWidget(parent) {
 
 void BoardDrawing::setBoard(const Board& board) {
   board_ = board;
+  squares_.clear();
+  problem_.clear();
+  try {
+    validate(board_);
+    squares_ = boardSquares(board_, {});
+  } catch (const CalibrationError& error) {
+    problem_ = QString::fromStdString(error.problem());
+  }
   setAccessibleName(tr("Board with %1 points").arg(board.pointCount()));
   update();
 }
@@ -74,13 +48,13 @@ void BoardDrawing::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
   painter.setPen(theme().faint_text);
-  if (const std::optional<QString> problem = problemOf(board_)) {
-    painter.drawText(rect().adjusted(12, 12, -12, -12), Qt::AlignCenter | Qt::TextWordWrap, *problem);
+  if (!problem_.isEmpty()) {
+    painter.drawText(rect().adjusted(12, 12, -12, -12), Qt::AlignCenter | Qt::TextWordWrap, problem_);
     return;
   }
   // The board's long side lies along the drawing's: x of the board points down then, as on a turned sheet.
   const Eigen::Vector2d extent_m = board_.extent_m();
-  const double around_m = beyond_m(board_);
+  const double around_m = board_.printBeyond_m();
   const double width_m = extent_m.x() + 2.0 * around_m, height_m = extent_m.y() + 2.0 * around_m;
   const double px_per_m =
       std::min((width() - 2.0 * kMargin_px) / width_m, (height() - 2.0 * kMargin_px) / height_m);
@@ -88,7 +62,7 @@ void BoardDrawing::paintEvent(QPaintEvent*) {
                        0.5 * (height() - height_m * px_per_m) + around_m * px_per_m);
   const double edge_px = (around_m + 0.3 * board_.spacing_m) * px_per_m;
   painter.setPen(QPen(theme().grid_line, 1.0));
-  painter.setBrush(board_.circles == CircleShade::Dark ? QColor(Qt::white) : QColor(0x22, 0x22, 0x22));
+  painter.setBrush(paperOf(board_));
   const QSizeF sheet(extent_m.x() * px_per_m, extent_m.y() * px_per_m);
   painter.drawRoundedRect(QRectF(origin, sheet).adjusted(-edge_px, -edge_px, edge_px, edge_px), 4.0, 4.0);
   paintPattern(painter, px_per_m, origin);
@@ -97,14 +71,13 @@ void BoardDrawing::paintEvent(QPaintEvent*) {
 
 void BoardDrawing::paintPattern(QPainter& painter, double px_per_m, QPointF origin) const {
   painter.setPen(Qt::NoPen);
-  painter.setBrush(board_.circles == CircleShade::Dark ? QColor(0x22, 0x22, 0x22) : QColor(Qt::white));
-  if (!board_.hasCircles()) {
-    const Squares squares = darkSquares(board_);
-    for (const Eigen::Vector2d& at_m : squares.at_m)
-      painter.drawRect(QRectF(origin + px_per_m * QPointF(at_m.x(), at_m.y()),
-                              QSizeF(px_per_m * squares.side_m, px_per_m * squares.side_m)));
-    return;
+  for (const PaintedBox& square : squares_) {
+    painter.setBrush(square.bright ? QColor(Qt::white) : kInk);
+    painter.drawRect(QRectF(origin + px_per_m * QPointF(square.corner_m.x(), square.corner_m.y()),
+                            px_per_m * QSizeF(square.size_m.x(), square.size_m.y())));
   }
+  if (!board_.hasCircles()) return;
+  painter.setBrush(board_.circles == CircleShade::Dark ? kInk : QColor(Qt::white));
   const double radius_px = board_.radius_m * px_per_m;
   for (int i = 0; i < board_.pointCount(); ++i) {
     const Eigen::Vector2d centre_m = board_.point_m(i);
@@ -121,7 +94,7 @@ void BoardDrawing::paintMeasures(QPainter& painter, double px_per_m, QPointF ori
 
   const Eigen::Vector2d last_m = board_.extent_m();
   const Eigen::Vector2d neighbour_m = board_.point_m(0, 1);
-  const double edge_px = (beyond_m(board_) + 0.3 * board_.spacing_m) * px_per_m;
+  const double edge_px = (board_.printBeyond_m() + 0.3 * board_.spacing_m) * px_per_m;
   painter.setPen(QPen(theme().accent, 1.5));
   const double above_px = origin.y() - edge_px - 6.0;
   const QPointF begin(origin.x(), above_px), end(origin.x() + px_per_m * neighbour_m.x(), above_px);

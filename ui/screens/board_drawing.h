@@ -3,8 +3,12 @@
 #pragma once
 
 #include "core/geometry/board.h"
+#include "core/report/board_squares.h"
 
+#include <QString>
 #include <QWidget>
+
+#include <vector>
 
 namespace evical::ui {
 
@@ -25,6 +29,8 @@ class BoardDrawing : public QWidget {
   void paintMeasures(QPainter& painter, double px_per_m, QPointF origin) const;
 
   Board board_;
+  std::vector<PaintedBox> squares_;  // of a board without circles
+  QString problem_;                  // why it cannot be drawn; empty: it can
 };
 
 }  // namespace evical::ui

@@ -34,17 +34,13 @@ MeasuredLength overWholeBoard(const Board& board) {
   return length;
 }
 
-bool hasTags(const Board& board) {
-  return board.type == BoardType::AprilGrid || board.type == BoardType::Charuco;
-}
-
 // What a board of another type has, where it has none yet: as boards usually have it.
 void setSizes(Board& board) {
   constexpr double kRadius = 0.4, kTag = 0.75;  // of the spacing
   if (!board.hasCircles()) board.radius_m = 0.0;
   if (board.hasCircles() && board.radius_m == 0.0) board.radius_m = kRadius * board.spacing_m;
-  if (!hasTags(board)) board.tag_size_m = 0.0;
-  if (hasTags(board) && board.tag_size_m == 0.0) board.tag_size_m = kTag * board.spacing_m;
+  if (!board.hasTags()) board.tag_size_m = 0.0;
+  if (board.hasTags() && board.tag_size_m == 0.0) board.tag_size_m = kTag * board.spacing_m;
 }
 
 }  // namespace
@@ -148,7 +144,7 @@ void BoardForm::setBoard(const Board& board, const std::optional<MeasuredLength>
   circles_->setCurrentIndex(static_cast<int>(board.circles));
   radius_mm_->setEnabled(board.hasCircles());
   circles_->setEnabled(board.hasCircles());
-  tag_mm_->setEnabled(hasTags(board));
+  tag_mm_->setEnabled(board.hasTags());
   drawing_->setBoard(board);
 }
 

@@ -1,6 +1,6 @@
 #include "core/recording/ros/image_messages.h"
 
-#include "core/recording/picture_bytes.h"
+#include "core/data/picture_header.h"
 
 #include <algorithm>
 #include <iterator>

@@ -17,6 +17,18 @@ Board squares() {
   return board;
 }
 
+// A session with one camera, and what its points become.
+struct Fixture {
+  Session session;
+  CameraLens lens;
+  RunContext context;
+  std::optional<PointViews> views;
+
+  explicit Fixture(const std::optional<CameraIntrinsics>& intrinsics = {}, double point_sigma_px = 0.2);
+  BoardObservations finish() { return views->finish(faults); }
+  std::vector<RecordingFault> faults;
+};
+
 // The board's first points 2 px apart, moved by so much.
 CameraBatch batchAt(double time_s, int points, float shift_px = 0.0F) {
   CameraBatch batch;
@@ -28,6 +40,14 @@ CameraBatch batchAt(double time_s, int points, float shift_px = 0.0F) {
   return batch;
 }
 
+Fixture::Fixture(const std::optional<CameraIntrinsics>& intrinsics, double point_sigma_px)
+    : lens(givenLens(intrinsics)) {
+  session.board = squares();
+  session.cameras.push_back({"camera", "points", {}, {}});
+  session.options.frames.point_sigma_px = point_sigma_px;
+  views.emplace(batchAt(0.0, 0), ViewRequest{session, lens, context});
+}
+
 }  // namespace
 
 class TestPointViews : public QObject {
@@ -35,14 +55,12 @@ class TestPointViews : public QObject {
 
  private slots:
   void pointsOfOneTime_areAView_withVelocities() {
-    const Board board = squares();
-    PointViews views(board, "points", batchAt(0.0, 0), {});
-    views.take(batchAt(0.0, 12));
-    views.take(batchAt(0.1, 12, 3.0F));
-    views.take(batchAt(0.2, 5, 6.0F));
-    std::vector<RecordingFault> faults;
-    const BoardObservations found = views.finish(faults);
-    QVERIFY(faults.empty());
+    Fixture test;
+    test.views->take(batchAt(0.0, 12));
+    test.views->take(batchAt(0.1, 12, 3.0F));
+    test.views->take(batchAt(0.2, 5, 6.0F));
+    const BoardObservations found = test.finish();
+    QVERIFY(test.faults.empty());
     QCOMPARE(found.views.size(), std::size_t{3});
     QVERIFY(found.views[0].kind == ViewKind::Complete && found.views[2].kind == ViewKind::Partial);
     QVERIFY((found.views[1].circles[4].velocity_px_s - Eigen::Vector2d(30.0, 0.0)).norm() < 1e-4);
@@ -52,34 +70,38 @@ class TestPointViews : public QObject {
 
   // The same rays, whatever the lens: ideal pixels of a lens without distortion are the sensor's.
   void pointsThroughALens_areInItsIdealPixels() {
-    const Board board = squares();
     CameraIntrinsics lens{CameraModel::PinholeRadtan, {100, 80}, {90.0, 90.0}, {49.5, 39.5}, {}};
     lens.distortion[0] = -0.3;
-    PointViews views(board, "points", batchAt(0.0, 0), lens);
-    views.take(batchAt(0.0, 12));
-    std::vector<RecordingFault> faults;
-    const BoardObservations found = views.finish(faults);
-    QVERIFY(found.views[0].circles[0].centre_px.x() < 9.0);  // barrel distortion drew it inwards
+    Fixture test(lens);
+    test.views->take(batchAt(0.0, 12));
+    QVERIFY(test.finish().views[0].circles[0].centre_px.x() < 9.0);  // barrel distortion drew it inwards
+  }
+
+  void sigma_isWhatIsSaid_orTheOptions() {
+    Fixture test({}, 0.3);
+    CameraBatch batch = batchAt(0.0, 12);
+    batch.points[1].sigma_px = 0.5F;
+    test.views->take(batch);
+    const std::vector<CircleObservation> circles = test.finish().views[0].circles;
+    QVERIFY(circles[0].covariance_px2.isApprox(0.09 * Eigen::Matrix2d::Identity()));
+    QVERIFY(circles[1].covariance_px2.isApprox(0.25 * Eigen::Matrix2d::Identity()));
   }
 
   void fewStrayPoints_areLeftOutAndSaid() {
-    const Board board = squares();
-    PointViews views(board, "points", batchAt(0.0, 0), {});
+    Fixture test;
     CameraBatch batch = batchAt(0.0, 12);
     batch.points.push_back({0, 12, 50.0F, 50.0F, 0.0F});  // the board has none
     batch.points.push_back({0, 3, 200.0F, 50.0F, 0.0F});  // beyond the sensor
     batch.points.push_back({0, 5, 50.0F, 50.0F, 0.0F});   // the second one
-    views.take(batch);
-    std::vector<RecordingFault> faults;
-    QCOMPARE(views.finish(faults).views[0].circles.size(), std::size_t{12});
-    QCOMPARE(faults.size(), std::size_t{3});
+    test.views->take(batch);
+    QCOMPARE(test.finish().views[0].circles.size(), std::size_t{12});
+    QCOMPARE(test.faults.size(), std::size_t{3});
   }
 
   void pointsOfAnotherBoard_areRefused() {
-    const Board board = squares();
-    PointViews views(board, "points", batchAt(0.0, 0), {});
+    Fixture test;
     try {
-      for (int k = 0; k < 100; ++k) views.take(batchAt(0.1 * k, 24));
+      for (int k = 0; k < 100; ++k) test.views->take(batchAt(0.1 * k, 24));
       QFAIL("taken");
     } catch (const CalibrationError& error) {
       QVERIFY(error.kind() == ErrorKind::BadInput);
@@ -88,11 +110,10 @@ class TestPointViews : public QObject {
   }
 
   void tooFewPoints_areNoView() {
-    const Board board = squares();
-    PointViews views(board, "points", batchAt(0.0, 0), {});
-    views.take(batchAt(0.0, 3));
-    QVERIFY(views.soFar().views.empty());
-    QVERIFY(views.soFar().windows[0].outcome == WindowOutcome::TooFewCircles);
+    Fixture test;
+    test.views->take(batchAt(0.0, 3));
+    QVERIFY(test.views->soFar().windows[0].outcome == WindowOutcome::TooFewCircles);
+    QVERIFY(test.finish().views.empty());
   }
 };
 

@@ -110,6 +110,17 @@ class TestResultYaml : public QObject {
     QCOMPARE(resultYaml(readBack(text)), text);
   }
 
+  // Of frames and points there is none: it is held at 0.
+  void edgeLead_isShownWhereItIsEstimated() {
+    NamedResult named = sample();
+    QCOMPARE(QString::fromStdString(resultTable(named)).count("edge lead"), 2);
+    CalibrationResult& result = test::ownResult(named);
+    result.state.cameras[1].edge_lead_px = result.state.cameras[1].slow_edge_lead_px = 0.0;
+    result.uncertainty.cameras[1].edge_lead_std_px = 0.0;
+    QCOMPARE(QString::fromStdString(resultTable(named)).count("edge lead"), 1);
+    QCOMPARE(QString::fromStdString(resultTable(named)).count("lead of slow edges"), 1);
+  }
+
   void estimates_readBackToTheLastBit() {
     const NamedResult written = sample(), read = readBack(resultYaml(written));
     QVERIFY(read.cameras == written.cameras);

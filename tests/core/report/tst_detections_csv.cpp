@@ -1,0 +1,141 @@
+// Detections as tables: written and read they are the same, and what is damaged is refused with its line.
+#include "core/base/error.h"
+#include "core/report/detections_csv.h"
+#include "tests/support/test_program.h"
+
+#include <QTemporaryDir>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+using namespace evical;
+
+namespace {
+
+CircleObservation circleAt(int index, double time_s) {
+  CircleObservation circle;
+  circle.circle = index;
+  circle.time_s = time_s + 1e-9 / 3.0;
+  circle.centre_px = {100.0 / 3.0, 1e-7 * index + 20.0};
+  circle.covariance_px2 << 0.01 / 3.0, -1e-4 / 7.0, -1e-4 / 7.0, 0.02 / 3.0;
+  circle.velocity_px_s = {-200.0 / 3.0, 0.1};
+  circle.edge_lead_effect = {-1.0 / 3.0, 1.0 / 7.0};
+  circle.semi_axes_px = {10.0 / 3.0, 3.0};
+  circle.angle_rad = -1.0 / 3.0;
+  circle.events = 123;
+  circle.residual_rms_px = 0.1 / 3.0;
+  circle.rows_below_middle = -17.0 / 3.0;
+  return circle;
+}
+
+std::vector<BoardObservations> sample() {
+  std::vector<BoardObservations> cameras(2);
+  cameras[0].camera = "left, \"upper\"";
+  cameras[0].views = {{0.1 / 3.0, ViewKind::Complete, {circleAt(0, 0.0), circleAt(1, 0.0)}},
+                      {0.2, ViewKind::Partial, {circleAt(1, 0.2)}}};
+  cameras[0].windows = {{0.1 / 3.0, 0.01 / 3.0, WindowOutcome::Complete, 1000, 5, 2, true},
+                        {0.2, 0.01, WindowOutcome::Partial, 900, 4, 1, false}};
+  cameras[1].camera = "blind";
+  cameras[1].windows = {{0.3, 0.0, WindowOutcome::Unreadable, 0, 0, 0, false}};
+  return cameras;
+}
+
+bool same(const CircleObservation& a, const CircleObservation& b) {
+  return a.circle == b.circle && a.time_s == b.time_s && a.centre_px == b.centre_px &&
+         a.covariance_px2 == b.covariance_px2 && a.velocity_px_s == b.velocity_px_s &&
+         a.edge_lead_effect == b.edge_lead_effect && a.semi_axes_px == b.semi_axes_px &&
+         a.angle_rad == b.angle_rad && a.events == b.events && a.residual_rms_px == b.residual_rms_px &&
+         a.rows_below_middle == b.rows_below_middle;
+}
+
+bool same(const WindowReport& a, const WindowReport& b) {
+  return a.time_s == b.time_s && a.half_width_s == b.half_width_s && a.outcome == b.outcome &&
+         a.events == b.events && a.candidates == b.candidates && a.circles == b.circles &&
+         a.tracked == b.tracked;
+}
+
+}  // namespace
+
+class TestDetectionsCsv : public QObject {
+  Q_OBJECT
+
+  QTemporaryDir scratch_;
+
+  std::filesystem::path folder() const { return scratch_.path().toStdString(); }
+  void write(const std::string& detections, const std::string& windows) const {
+    std::ofstream(folder() / "detections.csv") << detections;
+    std::ofstream(folder() / "windows.csv") << windows;
+  }
+
+ private slots:
+  void detections_readBackToTheLastBit() {
+    const std::vector<BoardObservations> written = sample();
+    write(detectionsCsv(written), windowsCsv(written));
+    const std::vector<BoardObservations> read = readDetections(folder(), 2);
+    QCOMPARE(read.size(), written.size());
+    for (std::size_t k = 0; k < read.size(); ++k) {
+      QCOMPARE(read[k].camera, written[k].camera);
+      QVERIFY(std::equal(read[k].windows.begin(), read[k].windows.end(), written[k].windows.begin(),
+                         written[k].windows.end(), [](const auto& a, const auto& b) { return same(a, b); }));
+      QCOMPARE(read[k].views.size(), written[k].views.size());
+      for (std::size_t v = 0; v < read[k].views.size(); ++v) {
+        const BoardView &a = read[k].views[v], &b = written[k].views[v];
+        QVERIFY(a.time_s == b.time_s && a.kind == b.kind);
+        QVERIFY(std::equal(a.circles.begin(), a.circles.end(), b.circles.begin(), b.circles.end(),
+                           [](const auto& x, const auto& y) { return same(x, y); }));
+      }
+    }
+  }
+
+  void damagedTables_areRefused_data() {
+    QTest::addColumn<QByteArray>("what");
+    QTest::addColumn<QByteArray>("by");
+    QTest::addColumn<QByteArray>("said");
+    QTest::newRow("column missing") << QByteArray("edge_lead_effect_x") << QByteArray("x")
+                                    << QByteArray("has no column edge_lead_effect_x");
+    QTest::newRow("line cut off") << QByteArray("-5.666666666666667\n") << QByteArray("")
+                                  << QByteArray("columns");
+    QTest::newRow("no number") << QByteArray("33.33") << QByteArray("a33.33") << QByteArray("(line 2): x_px");
+    QTest::newRow("not finite") << QByteArray("33.333333333333336") << QByteArray("nan")
+                                << QByteArray("(line 2): x_px");
+    QTest::newRow("another board's circle") << QByteArray("complete,1,") << QByteArray("complete,2,")
+                                            << QByteArray("(line 3): circle '2' is not in 0..1");
+    QTest::newRow("no covariance") << QByteArray("0.006666666666666667")
+                                   << QByteArray("-0.006666666666666667")
+                                   << QByteArray("(line 2): var_x_px2");
+    QTest::newRow("backwards") << QByteArray(",0.2,partial") << QByteArray(",0.01,partial")
+                               << QByteArray("(line 4): window_time_s '0.01' runs backwards");
+    QTest::newRow("unknown kind") << QByteArray("partial") << QByteArray("whole")
+                                  << QByteArray("(line 4): grid 'whole' is not known");
+    QTest::newRow("quotes left open")
+        << QByteArray("upper\"\"\"") << QByteArray("upper\"\"") << QByteArray("columns");
+    QTest::newRow("empty") << QByteArray() << QByteArray() << QByteArray("is empty");
+  }
+
+  void damagedTables_areRefused() {
+    QFETCH(const QByteArray, what);
+    QFETCH(const QByteArray, by);
+    QFETCH(const QByteArray, said);
+    QByteArray text = what.isEmpty() ? QByteArray() : QByteArray::fromStdString(detectionsCsv(sample()));
+    QVERIFY(what.isEmpty() || text.contains(what));
+    if (!what.isEmpty()) text.replace(text.indexOf(what), what.size(), by);
+    write(text.toStdString(), windowsCsv(sample()));
+    try {
+      readDetections(folder(), 2);
+      QFAIL("read");
+    } catch (const CalibrationError& error) {
+      QVERIFY(error.kind() == ErrorKind::BadInput);
+      QVERIFY2(QByteArray(error.what()).contains(said), error.what());
+    }
+  }
+
+  void missingTables_areSaid() {
+    write(detectionsCsv(sample()), windowsCsv(sample()));
+    std::filesystem::remove(folder() / "windows.csv");
+    QVERIFY_EXCEPTION_THROWN(readDetections(folder(), 2), CalibrationError);
+  }
+};
+
+EVICAL_TEST(TestDetectionsCsv)
+#include "tst_detections_csv.moc"
