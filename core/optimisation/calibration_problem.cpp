@@ -28,6 +28,9 @@ std::vector<double> timeOffsets_s(const CalibrationInput& input, const Calibrati
     const double furthest_row =
         0.5 * input.cameras[i].lens.seen_with->resolution_px.height_px;  // from the middle one
     offsets_s.push_back(1e-6 * furthest_row * state.cameras[i].line_delay_us);
+    constexpr double kFurthest_sigmas = 2.0;
+    offsets_s.push_back(kFurthest_sigmas * exposureSpread_s(input.cameras[i].observations) *
+                        state.cameras[i].exposure_share);
   }
   for (const ImuState& imu : state.imus) {
     append(imu);

@@ -1,6 +1,19 @@
 #include "core/optimisation/problem_builder.h"
 
+#include <cmath>
+
 namespace evical {
+
+double exposureSpread_s(const BoardObservations& observations) {
+  double squares = 0.0;
+  std::size_t points = 0;
+  for (const BoardView& view : observations.views) {
+    for (const CircleObservation& point : view.circles)
+      squares += point.longer_exposed_s * point.longer_exposed_s;
+    points += view.circles.size();
+  }
+  return points > 0 ? std::sqrt(squares / static_cast<double>(points)) : 0.0;
+}
 
 bool ProblemBuilder::turnsGyroscope(std::size_t imu) const {
   const std::optional<KnownRotation>& prior = input.imus[imu].prior.gyroscope_rotation;
@@ -30,16 +43,9 @@ bool ProblemBuilder::rolls(std::size_t camera) const {
 
 // Where all frames are exposed as long, what passes before a stamp is part of the time offset.
 bool ProblemBuilder::exposuresVary(std::size_t camera) const {
-  constexpr double kLeast_s = 1e-4;  // RMS: half of it is a time that can be told
-  if (stage == ReleaseStages::Extrinsics) return false;
-  double squares = 0.0;
-  std::size_t points = 0;
-  for (const BoardView& view : input.cameras[camera].observations.views) {
-    for (const CircleObservation& point : view.circles)
-      squares += point.longer_exposed_s * point.longer_exposed_s;
-    points += view.circles.size();
-  }
-  return squares > kLeast_s * kLeast_s * static_cast<double>(points);
+  constexpr double kLeast_s = 1e-4;  // half of it is a time that can be told
+  return stage != ReleaseStages::Extrinsics &&
+         exposureSpread_s(input.cameras[camera].observations) > kLeast_s;
 }
 
 void ProblemBuilder::addPrior(ceres::CostFunction* cost, const std::vector<double*>& blocks) {

@@ -25,6 +25,9 @@ struct BlockInfo {
   const CircleCost* circles = nullptr;
 };
 
+// RMS over a camera's points; 0 where exposures are all the same, or not known.
+double exposureSpread_s(const BoardObservations& observations);
+
 struct ProblemBuilder {
   const CalibrationInput& input;
   const OptimisationOptions& options;

@@ -36,19 +36,20 @@ const std::vector<std::string> kDetectionColumns = {"camera",
                                                     "residual_rms_px",
                                                     "edge_lead_effect_x",
                                                     "edge_lead_effect_y",
-                                                    "rows_below_middle"};
+                                                    "rows_below_middle",
+                                                    "longer_exposed_s"};
 const std::vector<std::string> kWindowColumns = {"camera", "time_s",     "half_width_s", "outcome",
                                                  "bursts", "candidates", "circles",      "tracked"};
 const std::vector<std::string_view> kGrids = {"complete", "partial"};  // in ViewKind's order
 
 void writeCircle(const std::string& camera, const BoardView& view, const CircleObservation& c,
                  std::string& text) {
-  fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+  fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
                  camera, view.time_s, kGrids[static_cast<std::size_t>(view.kind)], c.circle, c.time_s,
                  c.centre_px.x(), c.centre_px.y(), c.covariance_px2(0, 0), c.covariance_px2(0, 1),
                  c.covariance_px2(1, 1), c.velocity_px_s.x(), c.velocity_px_s.y(), c.semi_axes_px.x(),
                  c.semi_axes_px.y(), c.angle_rad, c.events, c.residual_rms_px, c.edge_lead_effect.x(),
-                 c.edge_lead_effect.y(), c.rows_below_middle);
+                 c.edge_lead_effect.y(), c.rows_below_middle, c.longer_exposed_s);
 }
 
 CircleObservation circleFrom(const CsvReader& line, int points_of_board) {
@@ -68,6 +69,7 @@ CircleObservation circleFrom(const CsvReader& line, int points_of_board) {
   c.residual_rms_px = line.real(16);
   c.edge_lead_effect = {line.real(17), line.real(18)};
   c.rows_below_middle = line.real(19);
+  c.longer_exposed_s = line.real(20);
   return c;
 }
 

@@ -26,6 +26,7 @@ CircleObservation circleAt(int index, double time_s) {
   circle.events = 123;
   circle.residual_rms_px = 0.1 / 3.0;
   circle.rows_below_middle = -17.0 / 3.0;
+  circle.longer_exposed_s = 1e-3 / 7.0;
   return circle;
 }
 
@@ -46,7 +47,7 @@ bool same(const CircleObservation& a, const CircleObservation& b) {
          a.covariance_px2 == b.covariance_px2 && a.velocity_px_s == b.velocity_px_s &&
          a.edge_lead_effect == b.edge_lead_effect && a.semi_axes_px == b.semi_axes_px &&
          a.angle_rad == b.angle_rad && a.events == b.events && a.residual_rms_px == b.residual_rms_px &&
-         a.rows_below_middle == b.rows_below_middle;
+         a.rows_below_middle == b.rows_below_middle && a.longer_exposed_s == b.longer_exposed_s;
 }
 
 bool same(const WindowReport& a, const WindowReport& b) {
