@@ -2,6 +2,7 @@
 #include "app/output.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/report/blink_page.h"
 #include "core/report/board_drawing.h"
 
 #include <fmt/format.h>
@@ -24,6 +25,7 @@ struct Arguments {
   std::optional<double> radius_m, tag_size_m;
   TagPrint print;
   double margin_m = 0.02;
+  bool blink = false;
   std::filesystem::path output;
 };
 
@@ -43,12 +45,27 @@ Board completeBoard(const Arguments& arguments) {
   return board;
 }
 
+void writeBlinkPage(const Board& board, const Arguments& arguments) {
+  if (arguments.output.extension() != ".html")
+    throw badInput(arguments.output.string(), "is no .html file, as a page that blinks must be",
+                   "Name the file board.html");
+  writeFileWhole(arguments.output, blinkPage(board, arguments.margin_m, arguments.print));
+  print(
+      "{}: open it in a browser on the screen that is to flash; it asks for a length and says what the "
+      "session needs. "
+      "For 'evical intrinsics' of event cameras only.\n",
+      arguments.output.string());
+}
+
 void drawBoard(const Arguments& arguments) {
   const Board board = completeBoard(arguments);
   const std::string extension = arguments.output.extension().string();
+  if (arguments.blink) return writeBlinkPage(board, arguments);
   if (extension != ".pdf" && extension != ".svg")
     throw badInput(arguments.output.string(), "is neither .pdf nor .svg",
-                   "Name the file board.pdf or board.svg");
+                   extension == ".html"
+                       ? "A page that flashes the board is made with --blink; print board.pdf or board.svg"
+                       : "Name the file board.pdf or board.svg");
   writeFileWhole(arguments.output, extension == ".pdf"
                                        ? boardPdf(board, arguments.margin_m, arguments.print)
                                        : boardSvg(board, arguments.margin_m, arguments.print));
@@ -105,7 +122,10 @@ void addBoardCommand(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--margin-m", arguments->margin_m, "Around the outermost edges, metres")
       ->capture_default_str();
-  command->add_option("-o,--output", arguments->output, "The file, .pdf or .svg")->required();
+  command->add_flag("--blink", arguments->blink,
+                    "A page that flashes the board on a screen, for the intrinsics of event cameras: .html");
+  command->add_option("-o,--output", arguments->output, "The file: .pdf or .svg, or .html with --blink")
+      ->required();
   command->callback([arguments, &exit_code] {
     drawBoard(*arguments);
     exit_code = kDone;

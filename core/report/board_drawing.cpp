@@ -139,17 +139,10 @@ std::string pdfContent(const Sheet& sheet) {
   return content;
 }
 
-}  // namespace
-
-std::string boardSvg(const Board& board, double margin_m, const TagPrint& print) {
-  const Sheet sheet = layOut(board, margin_m, print);
-  const std::string width = number(sheet.width_mm), height = number(sheet.height_mm);
-  std::string svg = fmt::format(
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}mm\" "
-      "height=\"{1}mm\" viewBox=\"0 0 {0} {1}\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n",
-      width, height);
+std::string svgElements(const Sheet& sheet) {
+  std::string svg;
   if (sheet.bright_circles)
-    svg += fmt::format("<rect width=\"{}\" height=\"{}\" fill=\"black\"/>\n", width,
+    svg += fmt::format("<rect width=\"{}\" height=\"{}\" fill=\"black\"/>\n", number(sheet.width_mm),
                        number(sheet.board_height_mm));
   svg += fmt::format("<g fill=\"{}\">\n", sheet.bright_circles ? "white" : "black");
   for (const Eigen::Vector2d& centre : sheet.centres_mm)
@@ -159,7 +152,25 @@ std::string boardSvg(const Board& board, double margin_m, const TagPrint& print)
     svg += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"{}/>\n", number(box.x_mm),
                        number(box.y_mm), number(box.width_mm), number(box.height_mm),
                        box.bright ? " fill=\"white\"" : "");
-  svg += fmt::format("</g>\n<path d=\"M 5 {} h {}\" stroke=\"black\" stroke-width=\"0.25\"/>\n",
+  return svg + "</g>\n";
+}
+
+}  // namespace
+
+BoardPicture boardPicture(const Board& board, double margin_m, const TagPrint& print) {
+  const Sheet sheet = layOut(board, margin_m, print);
+  return {sheet.width_mm, sheet.board_height_mm, svgElements(sheet)};
+}
+
+std::string boardSvg(const Board& board, double margin_m, const TagPrint& print) {
+  const Sheet sheet = layOut(board, margin_m, print);
+  const std::string width = number(sheet.width_mm), height = number(sheet.height_mm);
+  std::string svg = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}mm\" "
+      "height=\"{1}mm\" viewBox=\"0 0 {0} {1}\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n",
+      width, height);
+  svg += svgElements(sheet);
+  svg += fmt::format("<path d=\"M 5 {} h {}\" stroke=\"black\" stroke-width=\"0.25\"/>\n",
                      number(sheet.board_height_mm + 4.0), number(kRulerLength_mm));
   return svg + fmt::format(
                    "<text x=\"5\" y=\"{}\" font-family=\"Helvetica, Arial, sans-serif\" "

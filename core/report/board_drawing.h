@@ -14,4 +14,12 @@ namespace evical {
 std::string boardSvg(const Board& board, double margin_m, const TagPrint& print = {});
 std::string boardPdf(const Board& board, double margin_m, const TagPrint& print = {});
 
+// The board alone, without ruler and words: elements of SVG in millimetres, for pages that put more around it. What
+// they do not paint is meant to be white.
+struct BoardPicture {
+  double width_mm = 0.0, height_mm = 0.0;
+  std::string elements;
+};
+BoardPicture boardPicture(const Board& board, double margin_m, const TagPrint& print = {});
+
 }  // namespace evical
