@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -17,6 +18,14 @@ constexpr double kLargestBlur_px = 1.0;  // within the shortest part of a slot
 
 double middle_s(const FlashCounts& counts, std::int64_t start_ns) {
   return 0.5 * (secondsSince(start_ns, counts.begin_ns) + secondsSince(start_ns, counts.end_ns));
+}
+
+double nearestNeighbours_px(const FoundPoints& points) {
+  double nearest_px = std::numeric_limits<double>::max();
+  for (std::size_t k = 0; k < points.size(); ++k)
+    for (std::size_t j = 0; j < k; ++j)
+      nearest_px = std::min(nearest_px, (points[k].at_px - points[j].at_px).norm());
+  return nearest_px;
 }
 
 FlashCounts sumOfMiddle(const FlashSlot& slot, std::size_t parts) {
@@ -63,10 +72,28 @@ void BlinkTracker::see(const FlashSlot& slot) {
     return;
   }
   window.outcome = WindowOutcome::NoLattice;
-  FoundPoints found = finder_.find(whole);
+  FoundPoints found = follow(whole, window.time_s);
+  window.tracked = !found.empty();
+  if (found.empty()) found = finder_.find(whole);
   if (found.empty() && slot.size() > 1) found = finder_.find(sumOfMiddle(slot, 1));
   if (!found.empty() && slot.size() > 1) found = withoutMotion(slot, std::move(found), window);
   keep(std::move(found), window);
+}
+
+// Near where it was last: a search that takes a tenth of the time. Nothing where that is not nearly all of it.
+FoundPoints BlinkTracker::follow(const FlashCounts& whole, double time_s) {
+  constexpr double kLongestGap_s = 0.5, kNearlyAll = 0.9, kToNeighbours = 0.4;
+  const bool search = seen_.empty() || time_s - seen_.back().time_s > kLongestGap_s ||
+                      followed_++ >= frames_.search_every_frames;
+  FoundPoints found;
+  if (!search) {
+    const FoundPoints& last = seen_.back().points;
+    found = finder_.measure(whole, last,
+                            std::min(frames_.prediction_gate_px, kToNeighbours * nearestNeighbours_px(last)));
+    if (static_cast<double>(found.size()) >= kNearlyAll * static_cast<double>(last.size())) return found;
+  }
+  followed_ = 0;
+  return {};
 }
 
 FoundPoints BlinkTracker::withoutMotion(const FlashSlot& slot, FoundPoints found,

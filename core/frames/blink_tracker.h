@@ -38,6 +38,7 @@ class BlinkTracker {
  private:
   void gather(EventSpan events);
   void see(const FlashSlot& slot);
+  FoundPoints follow(const FlashCounts& whole, double time_s);
   FoundPoints withoutMotion(const FlashSlot& slot, FoundPoints found, WindowReport& window) const;
   void keep(FoundPoints points, WindowReport window);
 
@@ -51,6 +52,7 @@ class BlinkTracker {
   FlashFinder finder_;
   std::optional<FlashGathering> gathering_;
   std::vector<PointsInFrame> seen_;
+  int followed_ = 0;  // slots since the last search
   BoardObservations so_far_;
 };
 
