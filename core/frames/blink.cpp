@@ -8,7 +8,11 @@ namespace evical {
 namespace {
 
 constexpr double kBin_s = 1e-9 * static_cast<double>(kBlinkBin_ns);
-constexpr std::size_t kMostKept = 4'000'000;
+
+// Spread over the sensor.
+bool isNth(const Event& event, std::uint32_t n) {
+  return (event.x_px + 7u * event.y_px) % n == 0;
+}
 
 // From lag 0 to the last, each by its own number of products; 1 at lag 0.
 std::vector<double> autocorrelation(std::span<const float> signal, std::size_t lags) {
@@ -99,6 +103,7 @@ double shareOfBlinkingPixels(EventSpan events, Resolution resolution_px, double 
 void BlinkNotice::restart(std::int64_t time_ns) {
   balance_.clear();
   kept_.clear();
+  every_nth_ = 1;
   origin_ns_ = time_ns;
   judge_at_ = static_cast<std::size_t>(0.5 * options_.look_s / kBin_s);
 }
@@ -110,9 +115,16 @@ std::size_t BlinkNotice::binOf(const Event& event) const {
 void BlinkNotice::add(EventSpan events) {
   for (const Event& event : events) {
     if (!blink_) weigh(event);
-    if (!blink_ && kept_.size() >= kMostKept) kept_.erase(kept_.begin(), kept_.begin() + kMostKept / 2);
-    kept_.push_back(event);
+    keep(event);
   }
+}
+
+void BlinkNotice::keep(const Event& event) {
+  if (!isNth(event, every_nth_)) return;
+  kept_.push_back(event);
+  if (blink_ || kept_.size() < most_kept_) return;
+  every_nth_ *= 2;
+  std::erase_if(kept_, [&](const Event& other) { return !isNth(other, every_nth_); });
 }
 
 void BlinkNotice::weigh(const Event& event) {
@@ -149,6 +161,7 @@ void BlinkNotice::finish() {
 }
 
 std::vector<Event> BlinkNotice::takeEvents() {
+  if (std::exchange(every_nth_, 1) > 1) kept_.clear();
   return std::exchange(kept_, {});
 }
 

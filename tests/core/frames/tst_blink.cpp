@@ -57,6 +57,7 @@ class TestBlink : public QObject {
   void noiseAndSlowChanges_haveNoRhythm();
   void share_isThatOfTheEventsInBlinkingPixels();
   void blink_isNoticedWhereItBegins();
+  void blinkOfMorePixelsThanCanBeKept_isNoticedByAPartOfThem();
   void lampThatMakesFewEvents_isNotNoticed();
   void halfPeriods_beginWithTheirBursts_data();
   void halfPeriods_beginWithTheirBursts();
@@ -121,6 +122,15 @@ void TestBlink::blink_isNoticedWhereItBegins() {
   QVERIFY(std::is_sorted(kept.begin(), kept.end(),
                          [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; }));
   QVERIFY(kept.back().time_ns > 5'000'000'000);
+}
+
+void TestBlink::blinkOfMorePixelsThanCanBeKept_isNoticedByAPartOfThem() {
+  BlinkNotice notice(kSize, BlinkOptions{}, 3000);  // a period makes 2400 events
+  notice.add(blinkingScene(20, 30.0, 1.0, 2000.0));
+  notice.finish();
+  QVERIFY(notice.blink());
+  QVERIFY2(std::abs(notice.blink()->share - 0.97) < 0.03, QByteArray::number(notice.blink()->share));
+  QVERIFY(notice.takeEvents().empty());  // they would make pictures with gaps
 }
 
 void TestBlink::lampThatMakesFewEvents_isNotNoticed() {
