@@ -2,6 +2,7 @@
 #include "app/output.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/report/blink_page.h"
 #include "core/report/board_drawing.h"
 
 #include <fmt/format.h>
@@ -25,6 +26,7 @@ struct Arguments {
   TagPrint print;
   SheetOptions sheet;
   double resolution_dpi = 300.0;
+  bool blink = false;
   std::filesystem::path output;
 };
 
@@ -44,9 +46,22 @@ Board completeBoard(const Arguments& arguments) {
   return board;
 }
 
+void writeBlinkPage(const Board& board, const Arguments& arguments) {
+  if (arguments.output.extension() != ".html")
+    throw badInput(arguments.output.string(), "is no .html file, as a page that blinks must be",
+                   "Name the file board.html");
+  writeFileWhole(arguments.output, blinkPage(board, arguments.margin_m, arguments.print));
+  print(
+      "{}: open it in a browser on the screen that is to flash; it asks for a length and says what the "
+      "session needs. "
+      "For 'evical intrinsics' of event cameras only.\n",
+      arguments.output.string());
+}
+
 void drawBoard(const Arguments& arguments) {
   const Board board = completeBoard(arguments);
   const std::string extension = arguments.output.extension().string();
+  if (arguments.blink) return writeBlinkPage(board, arguments);
   if (extension == ".pdf")
     writeFileWhole(arguments.output, boardPdf(board, arguments.sheet, arguments.print));
   else if (extension == ".svg")
@@ -55,8 +70,11 @@ void drawBoard(const Arguments& arguments) {
     writeFileWhole(arguments.output,
                    boardPng(board, arguments.resolution_dpi, arguments.sheet, arguments.print));
   else
-    throw badInput(arguments.output.string(), "is neither .pdf, .svg nor .png",
-                   "Name the file board.pdf, board.svg or board.png");
+    throw badInput(
+        arguments.output.string(), "is neither .pdf, .svg nor .png",
+        extension == ".html"
+            ? "A page that flashes the board is made with --blink; print board.pdf, board.svg or board.png"
+            : "Name the file board.pdf, board.svg or board.png");
   print("{}: print at 100 %, and check the line below the board: 100 mm\n", arguments.output.string());
   if (board.hasHalfTurnAmbiguity())
     print(
@@ -122,7 +140,10 @@ void addBoardCommand(CLI::App& app, int& exit_code) {
           "Sheet of this size with the board in its middle; else as large as the board needs")
       ->check(CLI::IsMember(papersByName()));
   command->add_option("--dpi", arguments->resolution_dpi, "Of a .png, pixels an inch")->capture_default_str();
-  command->add_option("-o,--output", arguments->output, "The file: .pdf, .svg or .png")->required();
+  command->add_flag("--blink", arguments->blink,
+                    "A page that flashes the board on a screen, for the intrinsics of event cameras: .html");
+  command->add_option("-o,--output", arguments->output, "The file: .pdf, .svg or .png, or .html with --blink")
+      ->required();
   command->callback([arguments, &exit_code] {
     drawBoard(*arguments);
     exit_code = kDone;

@@ -49,6 +49,9 @@ class ImageWriters final : public CalibrationObserver {
 
 int run(const DetectArguments& arguments) {
   const Session session = sessionFrom(arguments);
+  if (!session.more_recordings.empty())
+    throw badInput(arguments.session + ": recording", "is a list, and detections are shown of one recording",
+                   "Name one of them, or use 'evical intrinsics', which takes all");
   makeOutputFolder(arguments.output);
   Console console(arguments.quiet);
   ImageWriters images(arguments, session);

@@ -8,11 +8,12 @@
 namespace evical {
 namespace {
 
-std::unique_ptr<PatternFinder> finderOf(const Board& board, const FrameOptions& options) {
+std::unique_ptr<PatternFinder> finderOf(const Board& board, const FrameOptions& options,
+                                        CheckerboardParts parts) {
   validate(board);
   switch (board.type) {
     case BoardType::Checkerboard:
-      return makeCheckerboardFinder(board, options);
+      return makeCheckerboardFinder(board, options, parts);
     case BoardType::AprilGrid:
       return makeTagGridFinder(board, options);
     case BoardType::Charuco:
@@ -30,8 +31,8 @@ bool isLargeEnough(const GrayImage& image) {
 
 }  // namespace
 
-BoardFinder::BoardFinder(const Board& board, const FrameOptions& options)
-    : finder_(finderOf(board, options)) {}
+BoardFinder::BoardFinder(const Board& board, const FrameOptions& options, CheckerboardParts parts)
+    : finder_(finderOf(board, options, parts)) {}
 BoardFinder::~BoardFinder() = default;
 BoardFinder::BoardFinder(BoardFinder&&) noexcept = default;
 BoardFinder& BoardFinder::operator=(BoardFinder&&) noexcept = default;

@@ -22,10 +22,15 @@ namespace evical {
 
 class PatternFinder;
 
+// Of a checkerboard no part tells which part it is. Any will do where nothing but the lens is wanted: then its points
+// are called those of the board's beginning.
+enum class CheckerboardParts { None, Any };
+
 class BoardFinder {
  public:
   // Throws CalibrationError (BadInput) where the board's numbers make no board.
-  BoardFinder(const Board& board, const FrameOptions& options);
+  BoardFinder(const Board& board, const FrameOptions& options,
+              CheckerboardParts parts = CheckerboardParts::None);
   ~BoardFinder();
   BoardFinder(BoardFinder&&) noexcept;
   BoardFinder& operator=(BoardFinder&&) noexcept;

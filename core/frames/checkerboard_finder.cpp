@@ -4,6 +4,7 @@
 #include "core/frames/pattern_finder.h"
 #include "core/frames/picture_view.h"
 
+#include <fmt/format.h>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -13,24 +14,32 @@
 namespace evical {
 namespace {
 
-using Grid = std::vector<Eigen::Vector2d>;  // by Board::index
+// Inner corners, row by row: of all of the board, or of what is seen of it.
+struct Grid {
+  int rows = 0, cols = 0;
+  std::vector<Eigen::Vector2d> corners;
+
+  Eigen::Vector2d& at(int row, int col) { return corners[static_cast<std::size_t>(row * cols + col)]; }
+};
 
 // Searches are slow in large pictures, and mostly need none of their detail.
 constexpr std::array<int, 2> kSearchedSides_px = {400, 800};
 constexpr int kShortestSide_px = 300;  // smaller pictures are enlarged
 
-Eigen::Vector2d& at(Grid& grid, const Board& board, int row, int col) {
-  return grid[static_cast<std::size_t>(board.index(row, col))];
+// OpenCV may count the rows from either end, and then sees a mirrored board.
+void putRight(Grid& grid) {
+  const Eigen::Vector2d x = grid.at(0, grid.cols - 1) - grid.at(0, 0);
+  const Eigen::Vector2d y = grid.at(grid.rows - 1, 0) - grid.at(0, 0);
+  if (x.x() * y.y() - x.y() * y.x() > 0.0) return;
+  for (int row = 0; row < grid.rows / 2; ++row)
+    for (int col = 0; col < grid.cols; ++col) std::swap(grid.at(row, col), grid.at(grid.rows - 1 - row, col));
 }
 
-// OpenCV may count the rows from either end, and then sees a mirrored board.
-void putRight(Grid& grid, const Board& board) {
-  const Eigen::Vector2d x = at(grid, board, 0, board.cols - 1) - at(grid, board, 0, 0);
-  const Eigen::Vector2d y = at(grid, board, board.rows - 1, 0) - at(grid, board, 0, 0);
-  if (x.x() * y.y() - x.y() * y.x() > 0.0) return;
-  for (int row = 0; row < board.rows / 2; ++row)
-    for (int col = 0; col < board.cols; ++col)
-      std::swap(at(grid, board, row, col), at(grid, board, board.rows - 1 - row, col));
+Grid gridOf(const std::vector<cv::Point2f>& corners, int rows, int cols) {
+  Grid grid{rows, cols, {}};
+  for (const cv::Point2f& corner : corners) grid.corners.emplace_back(corner.x, corner.y);
+  putRight(grid);
+  return grid;
 }
 
 std::optional<Grid> searchIn(const cv::Mat& picture, const Board& board) {
@@ -44,70 +53,141 @@ std::optional<Grid> searchIn(const cv::Mat& picture, const Board& board) {
                                         cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE);
   }
   if (!found || corners.size() != static_cast<std::size_t>(board.pointCount())) return std::nullopt;
-  Grid grid;
-  for (const cv::Point2f& corner : corners) grid.emplace_back(corner.x, corner.y);
-  putRight(grid, board);
-  return grid;
+  return gridOf(corners, board.rows, board.cols);
+}
+
+// As much of a checkerboard as there is.
+std::optional<Grid> searchPartIn(const cv::Mat& picture) {
+  constexpr int kSmallest = 3;
+  std::vector<cv::Point2f> corners;
+  cv::Mat meta;
+  const bool found = cv::findChessboardCornersSB(picture, {kSmallest, kSmallest}, corners,
+                                                 cv::CALIB_CB_ACCURACY | cv::CALIB_CB_LARGER, meta);
+  if (!found || meta.total() != corners.size()) return std::nullopt;
+  return gridOf(corners, meta.rows, meta.cols);
 }
 
 // At another size; places are those of the picture itself.
-std::optional<Grid> searchScaled(const cv::Mat& picture, double scale, const Board& board) {
+template <class Search>
+std::optional<Grid> searchScaled(const cv::Mat& picture, double scale, const Search& search) {
   cv::Mat scaled;
   cv::resize(picture, scaled, {}, scale, scale, scale < 1.0 ? cv::INTER_AREA : cv::INTER_CUBIC);
-  std::optional<Grid> grid = searchIn(scaled, board);
+  std::optional<Grid> grid = search(scaled);
   if (!grid) return grid;
   const Eigen::Vector2d half = Eigen::Vector2d::Constant(0.5);  // pixels' centres are at whole numbers
-  for (Eigen::Vector2d& corner : *grid) corner = (corner + half) / scale - half;
+  for (Eigen::Vector2d& corner : grid->corners) corner = (corner + half) / scale - half;
   return grid;
+}
+
+template <class Search>
+std::optional<Grid> searchAtSizes(const GrayImage& image, const Search& search) {
+  const cv::Mat picture = viewOf(image);
+  const int longest = std::max(picture.cols, picture.rows);
+  if (longest < kShortestSide_px) return searchScaled(picture, 4.0, search);
+  for (const int side : kSearchedSides_px) {
+    if (longest <= side) continue;
+    if (auto grid = searchScaled(picture, static_cast<double>(side) / longest, search)) return grid;
+  }
+  return search(picture);
+}
+
+Grid quarterTurned(Grid& grid) {
+  Grid turned{grid.cols, grid.rows, {}};
+  for (int row = 0; row < turned.rows; ++row)
+    for (int col = 0; col < turned.cols; ++col) turned.corners.push_back(grid.at(grid.rows - 1 - col, row));
+  return turned;
+}
+
+Grid beginningOf(Grid& grid, int rows, int cols) {
+  Grid part{std::min(rows, grid.rows), std::min(cols, grid.cols), {}};
+  for (int row = 0; row < part.rows; ++row)
+    for (int col = 0; col < part.cols; ++col) part.corners.push_back(grid.at(row, col));
+  return part;
 }
 
 class CheckerboardFinder : public PatternFinder {
  public:
-  CheckerboardFinder(const Board& board, const FrameOptions& options)
-      : board_(board), options_(options), pattern_(checkerboardCorners(board)) {
+  CheckerboardFinder(const Board& board, const FrameOptions& options, CheckerboardParts parts)
+      : board_(board), options_(options), parts_(parts), pattern_(checkerboardCorners(board)) {
     if (std::min(board.rows, board.cols) < 3)
       throw badInput("board", "a checkerboard of fewer than 3 x 3 inner corners is not found in frames",
                      "Use a board with more squares");
   }
 
   FoundPoints search(const GrayImage& image) override {
-    std::optional<Grid> grid = searchAtSizes(image);
-    if (!grid) return {};
-    turnByShade(image, *grid);
     FoundPoints rough;
-    for (const Eigen::Vector2d& corner : *grid) {
-      FoundPoint& point = rough.emplace_back();
-      point.point = static_cast<int>(rough.size()) - 1;
-      point.at_px = corner;
-    }
+    if (parts_ == CheckerboardParts::Any) rough = searchPart(image);
+    const bool is_part = !rough.empty() && static_cast<int>(rough.size()) < board_.pointCount();
+    if (rough.empty()) rough = searchWhole(image);
     const std::optional<PlaneMap> map = mapOf(rough, board_);
-    return map ? measure(image, *map, options_.largest_move_px) : FoundPoints{};
+    if (!map) return {};
+    FoundPoints found = measure(image, *map, options_.largest_move_px);
+    if (is_part) keepThoseOf(rough, found);  // beyond it there are none, or none that were seen
+    return found;
   }
 
   FoundPoints measure(const GrayImage& image, const PlaneMap& map, double gate_px) const override {
     return measureCorners(image, board_, pattern_, map, gate_px, options_);
   }
 
- private:
-  std::optional<Grid> searchAtSizes(const GrayImage& image) const {
-    const cv::Mat picture = viewOf(image);
-    const int longest = std::max(picture.cols, picture.rows);
-    if (longest < kShortestSide_px) return searchScaled(picture, 4.0, board_);
-    for (const int side : kSearchedSides_px) {
-      if (longest <= side) continue;
-      if (auto grid = searchScaled(picture, static_cast<double>(side) / longest, board_)) return grid;
-    }
-    return searchIn(picture, board_);
+  std::string doubt() const override {
+    constexpr double kNowAndThen = 0.3;  // a line is added to it that is none
+    return larger_ > kNowAndThen * parts_found_
+               ? fmt::format(
+                     "of the checkerboard up to {} x {} inner corners are seen, and the session says {} x "
+                     "{}: check rows and cols",
+                     largest_.rows, largest_.cols, board_.rows, board_.cols)
+               : std::string();
   }
 
-  // How much darker the squares are that should be.
+ private:
+  FoundPoints searchWhole(const GrayImage& image) {
+    std::optional<Grid> grid =
+        searchAtSizes(image, [&](const cv::Mat& picture) { return searchIn(picture, board_); });
+    if (!grid) return {};
+    turnByShade(image, *grid);
+    return numbered(*grid, 0, 0);
+  }
+
+  // At the board's beginning, or one row or column further, as squares there are dark or bright.
+  FoundPoints searchPart(const GrayImage& image) {
+    std::optional<Grid> grid = searchAtSizes(image, searchPartIn);
+    if (!grid) return {};
+    const bool lies = grid->rows <= board_.rows && grid->cols <= board_.cols;
+    if (!lies && grid->cols <= board_.rows && grid->rows <= board_.cols) grid = quarterTurned(*grid);
+    ++parts_found_;
+    if (grid->rows > board_.rows || grid->cols > board_.cols) {
+      ++larger_;
+      if (grid->corners.size() > static_cast<std::size_t>(largest_.rows * largest_.cols))
+        largest_ = {grid->rows, grid->cols};
+      if (FoundPoints whole = searchWhole(image); !whole.empty()) return whole;
+      grid = beginningOf(*grid, board_.rows, board_.cols);
+    }
+    if (shadeOf(image, *grid) >= 0.0) return numbered(*grid, 0, 0);
+    if (grid->cols < board_.cols) return numbered(*grid, 0, 1);
+    if (grid->rows < board_.rows) return numbered(*grid, 1, 0);
+    turnByShade(image, *grid);
+    return numbered(*grid, 0, 0);
+  }
+
+  FoundPoints numbered(Grid& grid, int first_row, int first_col) const {
+    FoundPoints points;
+    for (int row = 0; row < grid.rows; ++row)
+      for (int col = 0; col < grid.cols; ++col) {
+        FoundPoint& point = points.emplace_back();
+        point.point = board_.index(first_row + row, first_col + col);
+        point.at_px = grid.at(row, col);
+      }
+    return points;
+  }
+
+  // How much darker the squares are that should be, the grid's first corner being the board's.
   double shadeOf(const GrayImage& image, Grid& grid) const {
     std::array<double, 2> sums{}, counts{};
-    for (int row = 0; row + 1 < board_.rows; ++row) {
-      for (int col = 0; col + 1 < board_.cols; ++col) {
-        const Eigen::Vector2d middle =
-            0.25 * (at(grid, board_, row, col) + at(grid, board_, row, col + 1) +
-                    at(grid, board_, row + 1, col) + at(grid, board_, row + 1, col + 1));
+    for (int row = 0; row + 1 < grid.rows; ++row) {
+      for (int col = 0; col + 1 < grid.cols; ++col) {
+        const Eigen::Vector2d middle = 0.25 * (grid.at(row, col) + grid.at(row, col + 1) +
+                                               grid.at(row + 1, col) + grid.at(row + 1, col + 1));
         if (!isInside(image, middle, 1.0)) continue;
         const std::size_t dark =
             pattern_.dark_ahead[static_cast<std::size_t>(board_.index(row, col))] ? 1 : 0;
@@ -125,18 +205,26 @@ class CheckerboardFinder : public PatternFinder {
     if (board_.hasHalfTurnAmbiguity())
       pattern_.dark_ahead.flip();
     else
-      std::reverse(grid.begin(), grid.end());
+      std::reverse(grid.corners.begin(), grid.corners.end());
   }
+
+  struct Size {
+    int rows = 0, cols = 0;
+  };
 
   Board board_;
   FrameOptions options_;
+  CheckerboardParts parts_;
   CornerPattern pattern_;
+  int parts_found_ = 0, larger_ = 0;  // pictures in which some was seen, and more than the board has
+  Size largest_;
 };
 
 }  // namespace
 
-std::unique_ptr<PatternFinder> makeCheckerboardFinder(const Board& board, const FrameOptions& options) {
-  return std::make_unique<CheckerboardFinder>(board, options);
+std::unique_ptr<PatternFinder> makeCheckerboardFinder(const Board& board, const FrameOptions& options,
+                                                      CheckerboardParts parts) {
+  return std::make_unique<CheckerboardFinder>(board, options, parts);
 }
 
 }  // namespace evical

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <vector>
 
 namespace evical {
@@ -18,5 +19,13 @@ struct FoundPoint {
 
 // In order of their indices, each at most once.
 using FoundPoints = std::vector<FoundPoint>;
+
+// Leaves out what the other has not.
+inline void keepThoseOf(const FoundPoints& other, FoundPoints& points) {
+  std::erase_if(points, [&](const FoundPoint& point) {
+    return !std::binary_search(other.begin(), other.end(), point,
+                               [](const FoundPoint& a, const FoundPoint& b) { return a.point < b.point; });
+  });
+}
 
 }  // namespace evical

@@ -1,6 +1,7 @@
 // What the finders of the different boards have in common.
 #pragma once
 
+#include "core/frames/board_finder.h"
 #include "core/frames/found_point.h"
 #include "core/frames/frame_options.h"
 #include "core/frames/gray_image.h"
@@ -24,7 +25,8 @@ class PatternFinder {
   virtual std::string doubt() const { return {}; }
 };
 
-std::unique_ptr<PatternFinder> makeCheckerboardFinder(const Board& board, const FrameOptions& options);
+std::unique_ptr<PatternFinder> makeCheckerboardFinder(const Board& board, const FrameOptions& options,
+                                                      CheckerboardParts parts);
 std::unique_ptr<PatternFinder> makeTagGridFinder(const Board& board, const FrameOptions& options);
 std::unique_ptr<PatternFinder> makeCharucoFinder(const Board& board, const FrameOptions& options);
 std::unique_ptr<PatternFinder> makeCircleFinder(const Board& board, const FrameOptions& options);

@@ -128,6 +128,13 @@ void addFit(const Bundle& bundle, IntrinsicsResult& result) {
   result.reprojection_rms_px = std::sqrt(squares / std::max(1, result.circles_used));
 }
 
+bool hasLead(const Bundle& bundle) {
+  const auto leads = [](const SensorCircle& circle) { return !circle.lead_effect.isZero(); };
+  return std::any_of(bundle.views.begin(), bundle.views.end(), [&](const SensorView& view) {
+    return std::any_of(view.circles.begin(), view.circles.end(), leads);
+  });
+}
+
 }  // namespace
 
 IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const IntrinsicsOptions& options,
@@ -150,7 +157,7 @@ IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const Intrinsi
   const BundleUncertainty uncertainty = bundleUncertainty(bundle, input.board, options);
   result.covariance = uncertainty.covariance;
   // Only moving edges in events lead; of all else the prior alone would speak.
-  if (input.observations.kind == CameraKind::Events) result.edge_lead_std_px = uncertainty.edge_lead_std_px;
+  if (hasLead(bundle)) result.edge_lead_std_px = uncertainty.edge_lead_std_px;
   result.normalised_rms = uncertainty.normalised_rms;
   result.largest_tilt_deg = largestTilt_deg(bundle);
   checkTilts(bundle, focalLengthRelativeStd(result.intrinsics, result.covariance), options);

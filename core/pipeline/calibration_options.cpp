@@ -27,6 +27,8 @@ void forEachGroup(Options& all, Visitor&& visit) {
   visit("tracking", "All circles of a window together, and from window to window", front_end.tracking);
   visit("extent", "Does the board have the rows and columns that the session says?", front_end.extent);
   visit("frames", "Frame cameras: how their pictures are searched for the board", all.frames);
+  visit("blink", "Blinking boards before event cameras: how the blink is noticed and the flashes added up",
+        all.blink);
   visit("intrinsics", "Camera intrinsics, where the session gives none", all.intrinsics);
   visit("initialisation", "From single views to a first trajectory", all.initialisation);
   visit("optimisation.model", "Batch optimisation: what is estimated, and how measurements are taken",

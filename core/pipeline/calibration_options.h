@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/option_row.h"
+#include "core/frames/blink_options.h"
 #include "core/frames/frame_options.h"
 #include "core/frontend/front_end_options.h"
 #include "core/initialisation/initialisation_options.h"
@@ -18,6 +19,7 @@ namespace evical {
 struct CalibrationOptions {
   FrontEndOptions front_end;
   FrameOptions frames;
+  BlinkOptions blink;
   IntrinsicsOptions intrinsics;
   InitialisationOptions initialisation;
   OptimisationOptions optimisation;

@@ -14,6 +14,7 @@
 #include "core/optimisation/uncertainty/covariance.h"
 #include "core/optimisation/uncertainty/prior_check.h"
 #include "core/optimisation/uncertainty/shared_sensors.h"
+#include "core/pipeline/blink_views.h"
 #include "core/pipeline/board_size_check.h"
 #include "core/pipeline/causes.h"
 #include "core/pipeline/cross_validation.h"
@@ -111,6 +112,13 @@ CalibrationInput inputFrom(const Session& session, const CalibrationRun& run) {
 }
 
 void checkSession(const Session& session) {
+  if (session.board_blinks)
+    throw badInput(
+        session.source.string() + ": board.blinking",
+        "a board that blinks tells no time offsets, for nobody knows when exactly the screen flashes on "
+        "the sensors' clocks, and the camera must all but stand still before it",
+        "Calibrate each camera's intrinsics with 'evical intrinsics', then move the sensors before a "
+        "printed board of circles");
   if (session.imus.empty() && session.cameras.size() == 1) {
     throw badInput(
         session.source.string() + ": imus", "there is neither an IMU nor a second camera",
@@ -232,7 +240,11 @@ void checkPass(const Session& session, const RunContext& context, RecordingPass&
   for (const RecordingFault& fault : pass.faults) context.progress.log(LogLevel::Warning, fault.text);
   logDetections(pass, context);
   checkDuration(session, pass);
-  for (const BoardObservations& camera : pass.cameras) {
+  for (std::size_t k = 0; k < pass.cameras.size(); ++k) {
+    const BoardObservations& camera = pass.cameras[k];
+    if (camera.views.empty())
+      if (const std::optional<CalibrationError> blink = unexpectedBlink(session, k))
+        throw CalibrationError(*blink);
     checkBoardSeen(camera, session.board);
     checkBoardSize(camera, session.board, session.options.front_end.extent);
   }

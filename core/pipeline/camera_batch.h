@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/data/board_observations.h"
+#include "core/data/event.h"
 #include "core/data/frame.h"
 #include "core/frontend/edge_bursts.h"
 #include "core/geometry/resolution.h"
@@ -17,6 +18,7 @@ struct CameraBatch {
   std::size_t camera = 0;
   std::vector<EdgeBurst> bursts;
   std::int64_t first_event_ns = 0, complete_until_ns = 0;
+  std::vector<Event> events;  // of a blinking board, in the place of bursts
   std::vector<Frame> frames;
   std::vector<MeasuredPoint> points;  // of one time
   // With a camera's first batch.

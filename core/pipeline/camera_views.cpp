@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/data/calibration_observer.h"
 #include "core/frontend/board_tracker.h"
+#include "core/pipeline/blink_views.h"
 #include "core/pipeline/frame_views.h"
 #include "core/pipeline/point_views.h"
 
@@ -35,11 +36,14 @@ std::unique_ptr<CameraViews> cameraViews(const CameraBatch& first, const ViewReq
   const Session& session = request.session;
   if (first.kind == CameraKind::Points) return std::make_unique<PointViews>(first, request);
   if (first.kind == CameraKind::Frames) return std::make_unique<FrameViews>(first, request);
+  if (session.board_blinks) return std::make_unique<BlinkViews>(first, request);
   if (!session.board.hasCircles())
-    throw badInput(session.cameras[first.camera].name,
-                   std::string("an event camera in motion cannot see a board of type ") +
-                       boardTypeName(session.board.type),
-                   "Use a grid of circles; checkerboards and AprilGrids are for frame cameras");
+    throw badInput(
+        session.cameras[first.camera].name,
+        std::string("an event camera in motion cannot see a board of type ") +
+            boardTypeName(session.board.type),
+        "Use a grid of circles; or, for 'evical intrinsics', show this board on a screen that flashes "
+        "('evical board --blink') and say blinking: true in the session's board");
   return std::make_unique<EventViews>(first, request);
 }
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace evical {
 
@@ -12,15 +13,20 @@ std::optional<CameraBatch> EventIntake::take(std::vector<Event>& events) {
   putInOrder(events);
   if (events.empty()) return std::nullopt;
   CameraBatch batch;
-  if (!extractor_) {
-    extractor_.emplace(resolution_px_, burst_options_);
+  if (count_ == 0) {
     batch.opened_px = resolution_px_;
+    if (use_ == EventUse::Bursts) extractor_.emplace(resolution_px_, burst_options_);
   }
+  count_ += events.size();
   batch.camera = camera_;
   batch.first_event_ns = events.front().time_ns;
-  extractor_->add(events, batch.bursts);
-  batch.complete_until_ns = extractor_->completeUntil_ns();
-  last_ns_ = events.back().time_ns;
+  batch.complete_until_ns = last_ns_ = events.back().time_ns;
+  if (extractor_) {
+    extractor_->add(events, batch.bursts);
+    batch.complete_until_ns = extractor_->completeUntil_ns();
+  } else {
+    batch.events = std::move(events);
+  }
   return batch;
 }
 

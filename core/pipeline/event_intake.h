@@ -1,4 +1,5 @@
-// One camera's events on their way from the recording to the front end: checked, sorted, turned into bursts.
+// One camera's events on their way from the recording to the front end: checked, sorted, turned into bursts; or
+// handed on as they are, where the board blinks.
 #pragma once
 
 #include "core/data/event.h"
@@ -14,17 +15,23 @@
 
 namespace evical {
 
+enum class EventUse { Bursts, AsTheyAre };
+
 class EventIntake {
  public:
   EventIntake(std::size_t camera, const SessionCamera& session, Resolution resolution_px,
-              const BurstOptions& bursts)
-      : camera_(camera), session_(session), burst_options_(bursts), resolution_px_(resolution_px) {}
+              const BurstOptions& bursts, EventUse use)
+      : camera_(camera),
+        session_(session),
+        burst_options_(bursts),
+        resolution_px_(resolution_px),
+        use_(use) {}
 
   // Nothing where no event is left. Throws BadInput where too many lie outside the resolution.
   std::optional<CameraBatch> take(std::vector<Event>& events);
   std::optional<CameraBatch> finish();
 
-  std::uint64_t eventCount() const { return extractor_ ? extractor_->eventCount() : 0; }
+  std::uint64_t eventCount() const { return count_; }
   void report(std::vector<RecordingFault>& faults) const;
 
  private:
@@ -34,6 +41,8 @@ class EventIntake {
   const SessionCamera& session_;
   BurstOptions burst_options_;
   Resolution resolution_px_;
+  EventUse use_;
+  std::uint64_t count_ = 0;  // handed on
   std::optional<BurstExtractor> extractor_;
   std::int64_t last_ns_ = std::numeric_limits<std::int64_t>::min();
   std::uint64_t seen_ = 0, outside_ = 0, unsorted_ = 0, late_ = 0;

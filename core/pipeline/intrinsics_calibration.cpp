@@ -6,13 +6,16 @@
 #include "core/data/calibration_stage.h"
 #include "core/geometry/projection_difference.h"
 #include "core/intrinsics/estimate_intrinsics.h"
+#include "core/pipeline/blink_views.h"
 #include "core/pipeline/board_size_check.h"
 #include "core/pipeline/lens_pilot.h"
 #include "core/pipeline/session_recording.h"
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <utility>
+#include <vector>
 
 namespace evical {
 namespace {
@@ -50,11 +53,56 @@ IntrinsicsResult estimate(const Session& alone, const RecordingPass& pass,
   }
 }
 
-// Frames and points are measured on the sensor, whatever the lens: once is enough.
+// The second pass's views come behind the first's.
+void append(RecordingPass&& more, RecordingPass& pass) {
+  constexpr double kBetween_s = 1.0;
+  BoardObservations &all = pass.cameras.front(), &added = more.cameras.front();
+  if (more.resolutions_px != pass.resolutions_px)
+    throw badInput(all.camera, "its recordings have other resolutions", "Name recordings of one camera");
+  const double later_s = all.windows.empty() ? 0.0 : all.windows.back().time_s + kBetween_s;
+  for (WindowReport& window : added.windows) window.time_s += later_s;
+  for (BoardView& view : added.views) {
+    view.time_s += later_s;
+    for (CircleObservation& point : view.circles) point.time_s += later_s;
+  }
+  all.events += added.events;
+  all.windows.insert(all.windows.end(), added.windows.begin(), added.windows.end());
+  all.views.insert(all.views.end(), added.views.begin(), added.views.end());
+  pass.faults.insert(pass.faults.end(), more.faults.begin(), more.faults.end());
+}
+
+// One after the other; those in which nothing blinks are told and left out, if others do.
+RecordingPass passOver(const Session& alone, const RunContext& context) {
+  std::optional<RecordingPass> all;
+  std::optional<CalibrationError> failure;
+  std::vector<std::filesystem::path> recordings = alone.more_recordings;
+  recordings.insert(recordings.begin(), alone.recording);
+  for (const std::filesystem::path& recording : recordings) {
+    Session one = alone;
+    one.recording = recording;
+    one.more_recordings.clear();
+    try {
+      RecordingPass pass = readAndDetect(one, {CameraLens{}}, context.unobserved());
+      if (all)
+        append(std::move(pass), *all);
+      else
+        all = std::move(pass);
+    } catch (const CalibrationError& error) {
+      if (error.kind() == ErrorKind::BadInput || recordings.size() == 1) throw;
+      context.progress.log(LogLevel::Warning,
+                           fmt::format("{}: {}", recording.filename().string(), error.what()));
+      if (!failure) failure = error;
+    }
+  }
+  if (!all) throw CalibrationError(*failure);
+  return std::move(*all);
+}
+
+// Frames, points and flashes are measured on the sensor, whatever the lens: once is enough.
 IntrinsicsRun fromSensorPixels(const Session& alone, const RunContext& context) {
   context.progress.stageStarted(nameOf(CalibrationStage::Intrinsics));
   IntrinsicsRun run;
-  run.pass = readAndDetect(alone, {CameraLens{}}, context.unobserved());
+  run.pass = passOver(alone, context);
   checkBoardSeen(run.pass.cameras.front(), alone.board);
   run.result = estimate(alone, run.pass, {}, context);
   run.result.passes = 1;
@@ -70,6 +118,9 @@ IntrinsicsRun fromEvents(const Session& alone, const RunContext& context) {
   for (int pass = 1; pass <= alone.options.intrinsics.most_passes; ++pass) {
     context.progress.stageStarted(nameOf(CalibrationStage::Intrinsics));
     run.pass = readAndDetect(alone, {lens}, context.unobserved());
+    if (run.pass.cameras.front().views.empty())
+      if (const std::optional<CalibrationError> blink = unexpectedBlink(alone, 0))
+        throw CalibrationError(*blink);
     checkBoardSeen(run.pass.cameras.front(), alone.board);
     run.result = estimate(alone, run.pass, start, context);
     run.result.passes = pass;
@@ -91,7 +142,7 @@ IntrinsicsRun fromEvents(const Session& alone, const RunContext& context) {
 IntrinsicsRun calibrateIntrinsics(const Session& session, std::size_t camera, const RunContext& context) {
   const Stopwatch stopwatch;
   const Session alone = cameraAlone(session, camera);
-  const bool events = SessionRecording(alone).camera(0).type == StreamType::Events;
+  const bool events = SessionRecording(alone).camera(0).type == StreamType::Events && !alone.board_blinks;
   IntrinsicsRun run = events ? fromEvents(alone, context) : fromSensorPixels(alone, context);
   checkBoardSize(run.pass.cameras.front(), alone.board, alone.options.front_end.extent);
   run.result.elapsed_s = stopwatch.elapsed_s();

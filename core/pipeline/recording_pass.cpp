@@ -105,7 +105,8 @@ class ReadingPass {
       intake.kind = kindOf(recording_.camera(camera).type);
       if (intake.kind == CameraKind::Events)
         intake.events.emplace(camera, session.cameras[camera], resolution_px,
-                              session.options.front_end.bursts);
+                              session.options.front_end.bursts,
+                              session.board_blinks ? EventUse::AsTheyAre : EventUse::Bursts);
     }
   }
 

@@ -71,7 +71,7 @@ void checkSharedSensor(const Session& session, const SessionCamera& camera, cons
 }
 
 void checkBoard(const Session& session, const std::string& place) {
-  if (session.imus.empty() || !session.board.hasHalfTurnAmbiguity()) return;
+  if (session.imus.empty() || session.board_blinks || !session.board.hasHalfTurnAmbiguity()) return;
   const BoardType type = session.board.type;
   throw badInput(
       place + (type == BoardType::SymmetricCircles ? ": board.type" : ": board.rows"),
@@ -86,6 +86,20 @@ void checkBoard(const Session& session, const std::string& place) {
           ? "Use one with an even and an odd number, or leave out the IMUs to calibrate intrinsics"
           : "Use an asymmetric board with an odd number of rows, or leave out the IMUs to calibrate "
             "intrinsics");
+}
+
+void checkRecordings(const Session& session, const std::string& place) {
+  if (session.more_recordings.empty()) return;
+  if (!session.board_blinks)
+    throw badInput(place + ": recording", "is a list, which only a board that blinks can have",
+                   "Name one recording, or say blinking: true in the board if it does");
+  if (session.time_range_s)
+    throw badInput(place + ": time_range_s", "says not which of several recordings it is of",
+                   "Remove it, or name one recording");
+  for (const SessionCamera& camera : session.cameras)
+    if (!camera.recording.empty())
+      throw badInput(fmt::format("{}: cameras.{}.recording", place, camera.name),
+                     "is another recording beside a list of them", "Remove it, or name one recording");
 }
 
 // The rest is checked where it is read; but the reference may change later.
@@ -129,6 +143,7 @@ std::string boardYaml(const Session& session) {
   if (board.hasCircles())
     text += fmt::format("  radius_m: {}\n  circles: {}\n", board.radius_m,
                         board.circles == CircleShade::Dark ? "dark" : "bright");
+  if (session.board_blinks) text += "  blinking: true\n";
   if (board.tag_size_m > 0.0) text += fmt::format("  tag_size_m: {}\n", board.tag_size_m);
   return text;
 }
@@ -145,6 +160,14 @@ std::string recordingText(const std::filesystem::path& file, const std::filesyst
   const auto recording = std::filesystem::weakly_canonical(file);
   const auto relative = recording.lexically_relative(std::filesystem::weakly_canonical(folder));
   return relative.empty() || *relative.begin() == ".." ? recording.string() : relative.string();
+}
+
+std::string recordingsText(const Session& session, const std::filesystem::path& folder) {
+  if (session.more_recordings.empty()) return yamlText(recordingText(session.recording, folder));
+  std::string text = "[" + yamlText(recordingText(session.recording, folder));
+  for (const std::filesystem::path& file : session.more_recordings)
+    text += ", " + yamlText(recordingText(file, folder));
+  return text + "]";
 }
 
 // Which stream of which file, in which clock.
@@ -262,6 +285,7 @@ void validate(const Session& session, const std::string& place) {
   checkDifferent(session, place);
   checkReference(session, place);
   checkBoard(session, place);
+  checkRecordings(session, place);
   checkPriors(session, place);
   for (const SessionCamera& camera : session.cameras)
     if (!camera.same_sensor_as.empty()) checkSharedSensor(session, camera, place);
@@ -270,8 +294,7 @@ void validate(const Session& session, const std::string& place) {
 
 std::string sessionYaml(const Session& session, const std::filesystem::path& folder,
                         const SessionRemarks& remarks) {
-  std::string text =
-      fmt::format("evical_session: 1\nrecording: {}\n", yamlText(recordingText(session.recording, folder)));
+  std::string text = fmt::format("evical_session: 1\nrecording: {}\n", recordingsText(session, folder));
   if (session.time_range_s)
     text += fmt::format("time_range_s: [{}, {}]\n", (*session.time_range_s)[0], (*session.time_range_s)[1]);
   const std::string board = boardYaml(session);

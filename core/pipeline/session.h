@@ -41,10 +41,13 @@ struct SessionImu {
 };
 
 struct Session {
-  std::filesystem::path source;                       // the file it was read from
-  std::filesystem::path recording;                    // absolute, or relative to the working directory
-  std::optional<std::array<double, 2>> time_range_s;  // since the recording's start
+  std::filesystem::path source;                             // the file it was read from
+  std::filesystem::path recording;                          // absolute, or relative to the working directory
+  std::vector<std::filesystem::path> more_recordings = {};  // of a blinking board: one for each of its places
+  std::optional<std::array<double, 2>> time_range_s;        // since the recording's start
   Board board;
+  // It is on a screen, or of lamps, that flash: for intrinsics alone, from events of a camera that stands still.
+  bool board_blinks = false;
   std::optional<MeasuredLength> measured;  // what tells the board's spacing and, as an option, its sigma
   std::vector<SessionCamera> cameras;
   std::vector<SessionImu> imus;

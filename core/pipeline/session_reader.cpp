@@ -79,7 +79,8 @@ double readSpacing_m(const YamlNode& map, double tag_size_m) {
 Board readBoard(const YamlNode& map, const std::optional<MeasuredLength>& measured) {
   Board board;
   board.type = static_cast<BoardType>(map["type"].choice(kBoardTypeNames));
-  std::vector<std::string> keys = {"type", "rows", "cols", "measured", "spacing_m", "spacing_std"};
+  std::vector<std::string> keys = {"type",      "rows",        "cols",    "measured",
+                                   "spacing_m", "spacing_std", "blinking"};
   if (board.hasCircles()) keys.insert(keys.end(), {"radius_m", "circles"});
   if (board.hasTags()) keys.emplace_back("tag_size_m");
   if (board.type == BoardType::AprilGrid) keys.emplace_back("tag_spacing");
@@ -265,6 +266,19 @@ void readPriors(const YamlNode& map, Session& session) {
   readSensorPriors(map, session);
 }
 
+// One, or of a blinking board several.
+void readRecordings(const YamlNode& node, const std::filesystem::path& folder, Session& session) {
+  if (!node.isSequence()) {
+    session.recording = besideSession(node, folder);
+    return;
+  }
+  const std::vector<YamlNode> items = node.items();
+  if (items.empty()) throw node.error("is empty", "Name a recording");
+  session.recording = besideSession(items.front(), folder);
+  for (std::size_t k = 1; k < items.size(); ++k)
+    session.more_recordings.push_back(besideSession(items[k], folder));
+}
+
 }  // namespace
 
 Session readSession(const std::filesystem::path& file) {
@@ -278,10 +292,12 @@ Session readSession(const std::filesystem::path& file) {
   const std::filesystem::path folder = file.parent_path();
   Session session;
   session.source = file;
-  session.recording = besideSession(root["recording"], folder);
+  readRecordings(root["recording"], folder, session);
   if (const auto node = root.find("time_range_s")) session.time_range_s = timeRangeFrom(*node);
   const std::optional<MeasuredLength> measured = readMeasured(root["board"]);
   session.board = readBoard(root["board"], measured);
+  if (const auto node = root["board"].find("blinking"))
+    session.board_blinks = node->choice({"false", "true"}) == 1;
   setMeasuredLength(measured, session);
   readSpacingStd(root["board"], session.options);
   if (const auto node = root.find("gravity"); node && !node->isNull()) readGravity(*node, session.options);

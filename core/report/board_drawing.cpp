@@ -47,7 +47,26 @@ std::string svgBox(const SheetBox& box) {
                      box.bright ? " fill=\"white\"" : "");
 }
 
+std::string svgBoard(const BoardSheet& sheet) {
+  std::string svg = "<g fill=\"black\">\n";
+  for (const SheetBox& box : sheet.boxes) svg += svgBox(box);
+  svg += fmt::format("</g>\n<g fill=\"{}\">\n", sheet.bright_circles ? "white" : "black");
+  for (const Eigen::Vector2d& centre : sheet.centres_mm)
+    svg += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\"/>\n", shortNumber(centre.x()),
+                       shortNumber(centre.y()), shortNumber(sheet.radius_mm));
+  return svg + "</g>\n";
+}
+
 }  // namespace
+
+BoardPicture boardPicture(const Board& board, double margin_m, const TagPrint& print) {
+  SheetOptions options;
+  options.margin_m = margin_m;
+  const BoardSheet sheet = layOut(board, options, print);
+  return {sheet.field.width_mm, sheet.field.height_mm,
+          fmt::format("<g transform=\"translate({} {})\">\n{}</g>\n", shortNumber(-sheet.field.x_mm),
+                      shortNumber(-sheet.field.y_mm), svgBoard(sheet))};
+}
 
 std::string boardSvg(const Board& board, const SheetOptions& options, const TagPrint& print) {
   const BoardSheet sheet = layOut(board, options, print);
@@ -55,15 +74,9 @@ std::string boardSvg(const Board& board, const SheetOptions& options, const TagP
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}mm\" "
       "height=\"{1}mm\" viewBox=\"0 0 {0} {1}\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n",
       shortNumber(sheet.width_mm), shortNumber(sheet.height_mm));
-  svg += "<g fill=\"black\">\n";
-  for (const SheetBox& box : sheet.boxes) svg += svgBox(box);
-  svg += svgBox(sheet.ruler);
-  svg += fmt::format("</g>\n<g fill=\"{}\">\n", sheet.bright_circles ? "white" : "black");
-  for (const Eigen::Vector2d& centre : sheet.centres_mm)
-    svg += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\"/>\n", shortNumber(centre.x()),
-                       shortNumber(centre.y()), shortNumber(sheet.radius_mm));
+  svg += svgBoard(sheet) + svgBox(sheet.ruler);
   return svg + fmt::format(
-                   "</g>\n<text x=\"{}\" y=\"{}\" font-family=\"Helvetica, Arial, sans-serif\" "
+                   "<text x=\"{}\" y=\"{}\" font-family=\"Helvetica, Arial, sans-serif\" "
                    "font-size=\"{}\">{}</text>\n</svg>\n",
                    shortNumber(sheet.caption_x_mm), shortNumber(sheet.caption_y_mm),
                    shortNumber(sheet.text_size_mm), sheet.caption);

@@ -31,4 +31,12 @@ std::string boardPdf(const Board& board, const SheetOptions& options = {}, const
 std::string boardPng(const Board& board, double resolution_dpi, const SheetOptions& options = {},
                      const TagPrint& print = {});
 
+// The board alone, without ruler and words: elements of SVG in millimetres, for pages that put more around it. What
+// they do not paint is meant to be white.
+struct BoardPicture {
+  double width_mm = 0.0, height_mm = 0.0;
+  std::string elements;
+};
+BoardPicture boardPicture(const Board& board, double margin_m, const TagPrint& print = {});
+
 }  // namespace evical

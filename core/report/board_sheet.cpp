@@ -133,9 +133,9 @@ BoardSheet layOut(const Board& board, const SheetOptions& options, const TagPrin
   // In the middle of what the footer leaves.
   const Eigen::Vector2d field_at_mm = 0.5 * (size_mm - needed_mm);
   const Eigen::Vector2d first_mm = field_at_mm + Eigen::Vector2d::Constant(margin_mm);
+  sheet.field = {field_at_mm.x(), field_at_mm.y(), field_mm.x(), field_mm.y(), false};
   sheet.bright_circles = board.hasCircles() && board.circles == CircleShade::Bright;
-  if (sheet.bright_circles)
-    sheet.boxes.push_back({field_at_mm.x(), field_at_mm.y(), field_mm.x(), field_mm.y(), false});
+  if (sheet.bright_circles) sheet.boxes.push_back(sheet.field);
   for (const Eigen::Vector2d& centre_mm : pattern.centres_mm)
     sheet.centres_mm.push_back(first_mm + centre_mm);
   for (SheetBox box : pattern.boxes) {

@@ -18,6 +18,7 @@ struct SheetBox {
 
 struct BoardSheet {
   double width_mm = 0.0, height_mm = 0.0;
+  SheetBox field;  // the board with its margins
   double radius_mm = 0.0;
   std::vector<Eigen::Vector2d> centres_mm;
   std::vector<SheetBox> boxes;  // painted in this order

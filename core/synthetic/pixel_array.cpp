@@ -65,6 +65,8 @@ void PixelArray::findOwnLight() {
 void PixelArray::reset(const RigidTransform& world_from_camera) {
   constexpr std::uint64_t kReferenceStream = 0xf0u;
   Random random(scenario_.seed, kReferenceStream + camera_);
+  if (scenario_.scene.blink_hz > 0.0)
+    flashing_ = std::make_unique<FlashingBoard>(scenario_, camera_, world_from_camera);
   const SceneRenderer::Instant instant = renderer_.at(world_from_camera, 0.0);
   Scratch scratch;
   for (int row = 0; row < renderer_.tileRows(); ++row) {
@@ -76,6 +78,9 @@ void PixelArray::reset(const RigidTransform& world_from_camera) {
       for (int k = 0; k < tile.pixelCount(); ++k) {
         Pixel& pixel = at(tile.x_px + k % tile.width_px, tile.y_px + k / tile.width_px);
         pixel.level = pixel.input = scratch.input[static_cast<std::size_t>(k)];
+        if (flashing_)
+          pixel.level = pixel.input =
+              std::log(flashing_->last(static_cast<std::size_t>(&pixel - pixels_.data())).shown);
         const auto part = static_cast<float>(random.uniform());
         pixel.reference =
             pixel.level + part * (pixel.threshold_on + pixel.threshold_off) - pixel.threshold_on;
@@ -134,6 +139,7 @@ void PixelArray::begin(double begin_s, double end_s,
                        const std::function<RigidTransform(double)>& world_from_camera_at) {
   begin_s_ = begin_s;
   end_s_ = end_s;
+  if (flashing_) return flashing_->begin(world_from_camera_at(end_s));
   const auto instantAt = [&](double time_s) { return renderer_.at(world_from_camera_at(time_s), time_s); };
   const SceneRenderer::Instant first = instantAt(begin_s), middle = instantAt(0.5 * (begin_s + end_s)),
                                last = instantAt(end_s);
@@ -155,7 +161,30 @@ void PixelArray::begin(double begin_s, double end_s,
   for (int k = 0; k <= steps; ++k) instants_.push_back(instantAt(begin_s + (end_s - begin_s) * k / steps));
 }
 
+// In steps that are as long as a screen takes to turn.
+void PixelArray::runFlashingRow(int tile_row, std::vector<Event>& events) {
+  constexpr double kStep_s = 7e-4;
+  const double length_s = end_s_ - begin_s_;
+  const int count = std::max(2, static_cast<int>(std::ceil(length_s / kStep_s)));
+  std::vector<Step> steps;
+  for (int k = 1; k <= count; ++k)
+    steps.push_back(stepBetween(begin_s_ + length_s * (k - 1) / count, begin_s_ + length_s * k / count));
+  const int first = tile_row * SceneRenderer::kTile_px;
+  const int height_px = static_cast<int>(pixels_.size()) / width_px_;
+  for (int y = first; y < std::min(first + SceneRenderer::kTile_px, height_px); ++y)
+    for (int x = 0; x < width_px_; ++x) {
+      const FlashingBoard::Stretch stretch = flashing_->take(static_cast<std::size_t>(y * width_px_ + x));
+      for (int k = 0; k < count; ++k) {
+        const Step& step = steps[static_cast<std::size_t>(k)];
+        const float part = static_cast<float>(k + 1) / static_cast<float>(count);
+        const float light = stretch.reflectance(part, flashing_->isShown(step.end_s));
+        advance(step, std::log(light) + step.lamp, x, y, at(x, y), events);
+      }
+    }
+}
+
 void PixelArray::runTileRow(int tile_row, Scratch& scratch, std::vector<Event>& events) {
+  if (flashing_) return runFlashingRow(tile_row, events);
   const int all = static_cast<int>(instants_.size()) - 1;
   const SceneRenderer::Instants ends = {&instants_.front(), &instants_[instants_.size() / 2],
                                         &instants_.back()};

@@ -2,10 +2,12 @@
 #pragma once
 
 #include "core/data/event.h"
+#include "core/synthetic/flashing_board.h"
 #include "core/synthetic/scene_renderer.h"
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace evical {
@@ -55,6 +57,7 @@ class PixelArray {
   };
 
   void advance(const Step& step, float input, int x, int y, Pixel& pixel, std::vector<Event>& events) const;
+  void runFlashingRow(int tile_row, std::vector<Event>& events);
   void emitCrossings(const Step& step, double before, double after, int x, int y, Pixel& pixel,
                      std::vector<Event>& events) const;
   void findOwnLight();
@@ -69,6 +72,7 @@ class PixelArray {
   std::size_t camera_;
   const EventPixelModel& model_;
   SceneRenderer renderer_;
+  std::unique_ptr<FlashingBoard> flashing_;  // where the board blinks, in the renderer's place
   int width_px_;
   float step_travel_px_;
   // Whether pixels may be left alone where nothing moves, and whether the lamp alone makes them fire.

@@ -178,6 +178,7 @@ struct SceneModel {
   double clutter_detail_px = 2.0;     // smallest structure, at the mean distance
   double lamp_flicker = 0.0;          // amplitude of the light's, relative
   double lamp_flicker_hz = 100.0;
+  double blink_hz = 0.0;  // of a board on a screen that flashes: the pattern, and white; 0: it is printed
   Eigen::Vector3d lamp_m = {0.1, -0.3,
                             -1.5};  // from the board's middle; the camera is where z is negative too
   GlossModel gloss = {};

@@ -87,12 +87,14 @@ std::string imuTruth(const Scenario& scenario, std::size_t index) {
   return fmt::format("  {}:\n{}", yamlText(imu.name), sections.text(4));
 }
 
-std::string boardSession(const Board& board) {
+std::string boardSession(const Scenario& scenario) {
+  const Board& board = scenario.board;
   std::string text = fmt::format("board:\n  type: {}\n  rows: {}\n  cols: {}\n  spacing_m: {}\n",
                                  boardTypeName(board.type), board.rows, board.cols, board.spacing_m);
   if (board.hasCircles())
     text += fmt::format("  radius_m: {}\n  circles: {}\n", board.radius_m,
                         board.circles == CircleShade::Dark ? "dark" : "bright");
+  if (scenario.scene.blink_hz > 0.0) text += "  blinking: true\n";
   if (board.tag_size_m > 0.0) text += fmt::format("  tag_size_m: {}\n", board.tag_size_m);
   return text;
 }
@@ -117,7 +119,7 @@ std::string truthYaml(const Scenario& scenario) {
 std::string sessionYaml(const Scenario& truth, const std::string& recording_file) {
   const Scenario scenario = asSessionSays(truth);
   std::string text = fmt::format("evical_session: 1\nrecording: {}\n{}cameras:\n", yamlText(recording_file),
-                                 boardSession(scenario.board));
+                                 boardSession(scenario));
   for (const SimulatedCamera& camera : scenario.cameras) {
     const Resolution& size = camera.intrinsics.resolution_px;
     text += fmt::format("  {}:\n", yamlText(camera.name));

@@ -123,7 +123,7 @@ void readPeople(const YamlNode& map, PeopleModel& people) {
 void readScene(const YamlNode& map, SceneModel& scene) {
   map.allowOnly({"bright_reflectance", "dark_reflectance", "margin_m", "clutter_contrast",
                  "clutter_object_share", "clutter_distance_m", "clutter_detail_px", "lamp_flicker",
-                 "lamp_flicker_hz", "lamp_m", "gloss", "hand", "people"});
+                 "lamp_flicker_hz", "blink_hz", "lamp_m", "gloss", "hand", "people"});
   get(map, "bright_reflectance", scene.bright_reflectance, 1e-3, 1.0, "");
   get(map, "dark_reflectance", scene.dark_reflectance, 1e-3, 1.0, "");
   get(map, "margin_m", scene.margin_m, 0.0, 10.0, "m");
@@ -133,6 +133,7 @@ void readScene(const YamlNode& map, SceneModel& scene) {
   get(map, "clutter_detail_px", scene.clutter_detail_px, 0.5, 100.0, "px");
   get(map, "lamp_flicker", scene.lamp_flicker, 0.0, 0.9, "");
   get(map, "lamp_flicker_hz", scene.lamp_flicker_hz, 1.0, 1e4, "Hz");
+  get(map, "blink_hz", scene.blink_hz, 0.0, 200.0, "Hz");
   get(map, "lamp_m", scene.lamp_m, -100.0, 100.0);
   if (const auto node = map.find("gloss")) readGloss(*node, scene.gloss);
   if (const auto node = map.find("hand")) readHandOverBoard(*node, scene.hand);
@@ -402,10 +403,10 @@ void validateWhole(const Scenario& scenario, const std::string& file) {
       throw badInput(fmt::format("{}: stream of {}", file, camera.name),
                      fmt::format("'{}' is no name for a folder of frames", camera.stream),
                      "Give it one without slashes");
-    if (!camera.frames && !scenario.board.hasCircles())
+    if (!camera.frames && !scenario.board.hasCircles() && scenario.scene.blink_hz <= 0.0)
       throw badInput(fmt::format("{}: board.type", file),
                      fmt::format("{} is an event camera, and the board has no circles", camera.name),
-                     "Give the camera frames, or the board circles");
+                     "Give the camera frames, or the board circles, or let it blink: scene.blink_hz");
   }
 }
 

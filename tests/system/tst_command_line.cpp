@@ -43,6 +43,7 @@ class TestCommandLine : public QObject {
   void options_asMarkdownAreTheManual();
   void options_asYamlAreTheDefaultFile();
   void board_isWrittenAsPdfSvgAndPng();
+  void boardThatBlinks_isAPage();
   void simulate_isTheSameFromTheSameSeed();
   void calibrate_writesAResultNearTheTruth_data();
   void calibrate_writesAResultNearTheTruth();
@@ -95,6 +96,8 @@ void TestCommandLine::usage_thatIsWrongEndsWith2_data() {
   QTest::newRow("unknown flag") << QStringList{"options", "--pdf"};
   QTest::newRow("setting without value") << QStringList{"calibrate", session(), "-o", "x", "--set", "grid"};
   QTest::newRow("board as a picture") << QStringList{"board", "-o", "board.jpg"};
+  QTest::newRow("board as a page that does not blink") << QStringList{"board", "-o", "board.html"};
+  QTest::newRow("board that blinks on paper") << QStringList{"board", "--blink", "-o", "board.pdf"};
 }
 
 void TestCommandLine::usage_thatIsWrongEndsWith2() {
@@ -116,6 +119,19 @@ void TestCommandLine::options_asYamlAreTheDefaultFile() {
   VERIFY_EXIT(outcome, 0);
   QVERIFY2(outcome.output.toUtf8() == readFile(EVICAL_SOURCE_DIR "/config/default.yaml"),
            "config/default.yaml is old: evical options --yaml > config/default.yaml");
+}
+
+void TestCommandLine::boardThatBlinks_isAPage() {
+  QTemporaryDir folder;
+  for (const QString type :
+       {"asymmetric_circles", "symmetric_circles", "checkerboard", "aprilgrid", "charuco"}) {
+    const QString page = folder.filePath(type + ".html");
+    const Outcome outcome = runProgram({"board", "--type", type, "--rows", "7", "--cols", "4", "--spacing-m",
+                                        "0.05", "--blink", "-o", page});
+    QVERIFY2(outcome.exit_code == 0, qPrintable(outcome.errors));
+    QVERIFY(readFile(page).startsWith("<!DOCTYPE html>"));
+    QVERIFY(readFile(page).contains(("type: \"" + type + "\", rows: 7, cols: 4").toUtf8()));
+  }
 }
 
 void TestCommandLine::board_isWrittenAsPdfSvgAndPng() {

@@ -1,0 +1,76 @@
+#include "core/frames/flash_gathering.h"
+
+#include "core/base/time.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace evical {
+namespace {
+
+constexpr int kMostParts = 16;        // of a slot
+constexpr double kLongestHalf = 1.2;  // periods: in a longer one the light was out of sight
+constexpr int kLongestPause = 3;      // periods without any event
+
+}  // namespace
+
+FlashGathering::FlashGathering(Resolution resolution_px, double period_s, double slot_s, Sink sink)
+    : resolution_px_(resolution_px),
+      period_ns_(nanosecondsFrom(period_s)),
+      bin_ns_(std::max<std::int64_t>(1, period_ns_ / HalfPeriods::kBinsPerPeriod)),
+      slot_ns_(nanosecondsFrom(std::max(slot_s, period_s))),
+      part_ns_(slot_ns_ / kMostParts),
+      sink_(std::move(sink)) {}
+
+void FlashGathering::start(std::int64_t time_ns) {
+  handOut();
+  half_periods_ = {};
+  pending_.clear();
+  balance_ = 0.0;
+  bin_end_ns_ = time_ns + bin_ns_;
+  current_ = {time_ns, time_ns, 0,
+              std::vector<std::uint16_t>(static_cast<std::size_t>(resolution_px_.pixelCount()))};
+  whole_ = false;
+  started_ = true;
+}
+
+void FlashGathering::add(const Event& event) {
+  if (!started_ || event.time_ns > bin_end_ns_ + kLongestPause * period_ns_) start(event.time_ns);
+  while (event.time_ns >= bin_end_ns_) closeBin();
+  balance_ += event.brighter ? 1.0 : -1.0;
+  pending_.push_back(event);
+}
+
+void FlashGathering::closeBin() {
+  const bool turned = half_periods_.add(std::exchange(balance_, 0.0));
+  const std::int64_t settled_ns = bin_end_ns_ - HalfPeriods::kTurn_bins * bin_ns_;
+  for (; !pending_.empty() && pending_.front().time_ns < settled_ns; pending_.pop_front())
+    current_.add(pending_.front(), resolution_px_.width_px);
+  if (turned) endHalfPeriod(settled_ns);
+  bin_end_ns_ += bin_ns_;
+}
+
+void FlashGathering::endHalfPeriod(std::int64_t at_ns) {
+  FlashCounts half = std::move(current_);
+  half.end_ns = at_ns;
+  half.half_periods = 1;
+  current_ = {at_ns, at_ns, 0, std::vector<std::uint16_t>(half.counts.size())};
+  const bool fits = std::exchange(whole_, true) && static_cast<double>(at_ns - half.begin_ns) <
+                                                       kLongestHalf * static_cast<double>(period_ns_);
+  if (!fits) return handOut();
+  if (!slot_.empty() && slot_.back().end_ns - slot_.back().begin_ns < part_ns_)
+    slot_.back() = sumOf(std::array{std::move(slot_.back()), std::move(half)});
+  else
+    slot_.push_back(std::move(half));
+  if (at_ns - slot_.front().begin_ns >= slot_ns_) handOut();
+}
+
+// One half period alone may be half as bright as the other.
+void FlashGathering::handOut() {
+  int half_periods = 0;
+  for (const FlashCounts& part : slot_) half_periods += part.half_periods;
+  if (half_periods >= 2) sink_(slot_);
+  slot_.clear();
+}
+
+}  // namespace evical

@@ -1,0 +1,46 @@
+// Gathers the events of a blinking light into counts of half periods, and these into slots of some length, in one
+// pass and bounded memory.
+#pragma once
+
+#include "core/frames/flash_counts.h"
+#include "core/frames/half_periods.h"
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <vector>
+
+namespace evical {
+
+// Some half periods one after the other; those of a fast blink several in one.
+using FlashSlot = std::vector<FlashCounts>;
+
+class FlashGathering {
+ public:
+  using Sink = std::function<void(const FlashSlot&)>;
+
+  FlashGathering(Resolution resolution_px, double period_s, double slot_s, Sink sink);
+
+  // Events in order of time, inside the resolution.
+  void add(const Event& event);
+  void finish() { handOut(); }
+
+ private:
+  void start(std::int64_t time_ns);
+  void closeBin();
+  void endHalfPeriod(std::int64_t at_ns);
+  void handOut();
+
+  Resolution resolution_px_;
+  std::int64_t period_ns_, bin_ns_, slot_ns_, part_ns_;
+  Sink sink_;
+  HalfPeriods half_periods_;
+  std::int64_t bin_end_ns_ = 0;
+  double balance_ = 0.0;                  // of the bin under way
+  bool started_ = false, whole_ = false;  // whether the half period under way was seen from its beginning
+  std::deque<Event> pending_;             // that may yet belong to the next half period
+  FlashCounts current_;
+  FlashSlot slot_;
+};
+
+}  // namespace evical

@@ -1,0 +1,64 @@
+// What a pixel of a blurred image sees of a board of any kind and of the clutter behind it, at one instant. It is the
+// same scene as SceneRenderer's, whose tiles know circles only.
+#pragma once
+
+#include "core/geometry/rigid_transform.h"
+#include "core/synthetic/board_pattern.h"
+#include "core/synthetic/clutter_texture.h"
+#include "core/synthetic/scenario.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace evical {
+
+class SceneLight {
+ public:
+  // `optics_blur_px`: the point spread's sigma; the pixel's area comes on top.
+  SceneLight(const Scenario& scenario, std::size_t camera, double optics_blur_px);
+
+  // From rays to metres on the planes.
+  struct Planes {
+    Eigen::Matrix3f board_from_ray, behind_from_ray;
+  };
+  Planes at(const RigidTransform& world_from_camera) const;
+
+  // Reflectances as the pixel averages them: with the board's pattern, and with plain paper in its place.
+  struct Light {
+    float shown = 0.0f, hidden = 0.0f;
+  };
+  Light of(std::size_t pixel, const Planes& planes) const;
+
+ private:
+  // Ray to plane, and how that moves with the pixel.
+  struct Place {
+    Eigen::Vector2f at_m = Eigen::Vector2f::Zero();
+    Eigen::Matrix2f per_px = Eigen::Matrix2f::Zero();
+    bool ahead = false;
+  };
+  // Of a pixel: what lies behind the sheet, its paper, its ink.
+  using Shares = std::array<float, 3>;
+
+  double texelsPerPixel() const;
+  void placeWeights();
+  Place placeOn(const Eigen::Matrix3f& plane_from_ray, std::size_t pixel) const;
+  bool onSheet(const Eigen::Vector2f& p) const;
+  int shadeAt(const Eigen::Vector2f& p) const { return onSheet(p) ? (pattern_.isInk(p) ? 2 : 1) : 0; }
+  Shares sharesOf(const Place& place) const;
+  float backgroundOf(std::size_t pixel, const Eigen::Matrix3f& behind) const;
+
+  Scenario scenario_;
+  BoardPattern pattern_;
+  float blur_px_, paper_, ink_;
+  ClutterTexture texture_;
+  float texels_per_m_ = 1.0f;
+  std::vector<Eigen::Vector3f> rays_;  // of length 1; zero where there is none
+  std::vector<Eigen::Matrix<float, 3, 2>> ray_per_px_;
+  std::vector<Eigen::Vector2f> offsets_px_;
+  std::vector<float> weights_;
+};
+
+}  // namespace evical
