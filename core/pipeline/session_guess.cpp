@@ -76,6 +76,12 @@ void keepReference(Session& session) {
     const auto is_reference = [&](const auto& sensor) { return sensor.name == session.reference; };
     if (std::none_of(sensors.begin(), sensors.end(), is_reference)) session.reference = sensors.front().name;
   };
+  const auto isSensorOf = [&](const SessionCamera& camera) {
+    return [&camera](const SessionCamera& other) { return other.name == camera.same_sensor_as; };
+  };
+  for (SessionCamera& camera : session.cameras)
+    if (std::none_of(session.cameras.begin(), session.cameras.end(), isSensorOf(camera)))
+      camera.same_sensor_as.clear();
   if (!session.imus.empty())
     choose(session.imus);
   else if (!session.cameras.empty())

@@ -22,7 +22,7 @@ SessionCamera guessedCamera(const StreamSummary& stream, const Session& session,
 SessionImu guessedImu(const StreamSummary& stream, const Session& session,
                       const std::filesystem::path& own_recording = {});
 
-// Where the reference is no longer there, the first that could be it.
+// Where the reference is no longer there, the first that could be it; cameras whose sensor's is gone have their own.
 void keepReference(Session& session);
 
 // With the sensors of a further recording that the session lacks: its IMUs where there is none yet, its

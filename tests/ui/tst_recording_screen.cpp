@@ -348,6 +348,30 @@ class TestRecordingScreen : public QObject {
     QCOMPARE(test.session.reference, std::string("handheld"));
   }
 
+  void shutterAndSensor_areChosen() {
+    Fixture test;
+    SessionCamera frames;
+    frames.name = "frames";
+    frames.stream = "/davis_left/image_raw";
+    test.session.cameras.push_back(frames);
+    test.screen.setSession(test.session);
+    const auto choose = [&](const char* box_name, int form, int index) {
+      auto* const box = test.screen.findChildren<CameraForm*>().at(form)->findChild<QComboBox*>(box_name);
+      box->setCurrentIndex(index);
+      emit box->activated(index);
+    };
+    choose("shutter", 1, 1);
+    QVERIFY(test.session.cameras[1].shutter == Shutter::Rolling);
+    choose("same_sensor_as", 1, 1);
+    QCOMPARE(test.session.cameras[1].same_sensor_as, test.session.cameras[0].name);
+    auto* const name = test.screen.findChildren<CameraForm*>().at(0)->findChildren<QLineEdit*>().at(0);
+    Fixture::type(name, "davis");
+    QCOMPARE(test.session.cameras[1].same_sensor_as, std::string("davis"));
+    auto* const of_first =
+        test.screen.findChildren<CameraForm*>().at(0)->findChild<QComboBox*>("same_sensor_as");
+    QCOMPARE(of_first->count(), 1);  // which another camera's sensor is cannot be another's
+  }
+
   void problems_areSaidAtTheirFields() {
     Fixture test;
     test.screen.setProblems({{"cameras.left.intrinsics", "no intrinsics"}, {"board", "circles touch"}});

@@ -17,6 +17,8 @@
 #include <QLineEdit>
 #include <QPushButton>
 
+#include <algorithm>
+
 namespace evical::ui {
 namespace {
 
@@ -47,6 +49,8 @@ CameraForm::CameraForm(QWidget* parent)
       height_px_(new NumberField(0.0, kMostPixels, this)),
       clock_offset_s_(clockOffsetField(this)),
       model_(new QComboBox(this)),
+      shutter_(new QComboBox(this)),
+      sensor_(new QComboBox(this)),
       focal_x_px_(new NumberField(0.0, 10 * kMostPixels, this)),
       focal_y_px_(new NumberField(0.0, 10 * kMostPixels, this)),
       centre_x_px_(new NumberField(-kMostPixels, kMostPixels, this)),
@@ -58,6 +62,14 @@ CameraForm::CameraForm(QWidget* parent)
   for (int model = 0; model < kNotKnown; ++model)
     model_->addItem(QString::fromUtf8(cameraModelTitle(static_cast<CameraModel>(model))));
   model_->addItem(tr("Not known: from this recording"));
+  shutter_->setObjectName("shutter");
+  shutter_->addItems({tr("Global: all rows at once"), tr("Rolling: row after row")});  // in Shutter's order
+  shutter_->setToolTip(
+      tr("Of frame cameras; event cameras have none. A rolling one gets its line delay estimated."));
+  sensor_->setObjectName("same_sensor_as");
+  sensor_->setToolTip(
+      tr("A DAVIS gives events and frames from one sensor: they have one lens and one pose, and the result "
+         "tells by how much events are later."));
   name_->setToolTip(tr("What the camera is called in the session, the result and the exports"));
   width_px_->setToolTip(tr("Width of the sensor; 0: as the recording says"));
   height_px_->setToolTip(tr("Height of the sensor; 0: as the recording says"));
@@ -89,6 +101,8 @@ CameraForm::CameraForm(QWidget* parent)
   form_->setContentsMargins(8, 8, 8, 8);
   form_->addRow(tr("Name"), name_);
   form_->addRow(tr("Resolution [px]"), pairOf(width_px_, height_px_));
+  form_->addRow(tr("Shutter"), shutter_);
+  form_->addRow(tr("Sensor"), sensor_);
   form_->addRow(file);
   form_->addRow(file_problem_);
   form_->addRow(problem_);
@@ -102,6 +116,8 @@ CameraForm::CameraForm(QWidget* parent)
 
   connect(name_, &QLineEdit::editingFinished, this, [this] { say("name"); });
   connect(model_, &QComboBox::activated, this, [this] { say("intrinsics"); });
+  connect(shutter_, &QComboBox::activated, this, [this] { say("shutter"); });
+  connect(sensor_, &QComboBox::activated, this, [this] { say("same_sensor_as"); });
   for (NumberField* const field : {width_px_, height_px_})
     connect(field, &NumberField::valueEdited, this, [this] { say("resolution_px"); });
   connect(clock_offset_s_, &NumberField::valueEdited, this, [this] { say("clock_offset_s"); });
@@ -125,11 +141,14 @@ QWidget* CameraForm::pairOf(NumberField* first, NumberField* second) {
   return pair;
 }
 
-void CameraForm::setCamera(const SessionCamera& camera) {
+void CameraForm::setCamera(const SessionCamera& camera, const std::vector<std::string>& others) {
   camera_ = camera;
+  others_ = others;
+  showSensor();
   name_->setText(QString::fromStdString(camera.name));
   width_px_->setValue(camera.resolution_px.width_px);
   height_px_->setValue(camera.resolution_px.height_px);
+  shutter_->setCurrentIndex(static_cast<int>(camera.shutter));
   const CameraIntrinsics shown = camera.intrinsics.value_or(CameraIntrinsics{});
   model_->setCurrentIndex(camera.intrinsics ? static_cast<int>(shown.model) : kNotKnown);
   focal_x_px_->setValue(shown.focal_length_px.x());
@@ -141,6 +160,19 @@ void CameraForm::setCamera(const SessionCamera& camera) {
   for (NumberField* const field : intrinsicsFields()) field->setEnabled(camera.intrinsics.has_value());
   clock_offset_s_->setValue(camera.clock_offset_s);
   form_->setRowVisible(clock_offset_s_, !camera.recording.empty());
+}
+
+// Another camera's sensor has that camera's lens.
+void CameraForm::showSensor() {
+  sensor_->clear();
+  sensor_->addItem(tr("Its own"));
+  for (const std::string& other : others_)
+    sensor_->addItem(tr("The same as %1's").arg(QString::fromStdString(other)));
+  const auto found = std::find(others_.begin(), others_.end(), camera_.same_sensor_as);
+  const bool shared = !camera_.same_sensor_as.empty() && found != others_.end();
+  sensor_->setCurrentIndex(shared ? static_cast<int>(found - others_.begin()) + 1 : 0);
+  form_->setRowVisible(sensor_, !others_.empty() || !camera_.same_sensor_as.empty());
+  model_->setEnabled(!shared);
 }
 
 void CameraForm::showCoefficients(const CameraIntrinsics& shown) {
@@ -181,6 +213,13 @@ void CameraForm::say(const QString& field) {
   changed.name = name_->text().trimmed().toStdString();
   changed.resolution_px = {static_cast<int>(width_px_->value()), static_cast<int>(height_px_->value())};
   changed.clock_offset_s = clock_offset_s_->value();
+  changed.shutter = static_cast<Shutter>(shutter_->currentIndex());
+  if (field == "same_sensor_as") {
+    const int chosen = sensor_->currentIndex();
+    changed.same_sensor_as = chosen > 0 ? others_[static_cast<std::size_t>(chosen) - 1] : std::string();
+    if (chosen > 0) changed.intrinsics.reset();
+    if (chosen > 0) changed.intrinsics_uncertainty.reset();
+  }
   if (field == "resolution_px" && changed.intrinsics)
     changed.intrinsics->resolution_px = changed.resolution_px;
   if (field == "intrinsics") {
@@ -188,9 +227,10 @@ void CameraForm::say(const QString& field) {
     changed.intrinsics_uncertainty.reset();  // which was of other numbers
   }
   const bool same = changed.name == camera_.name && changed.resolution_px == camera_.resolution_px &&
-                    changed.intrinsics == camera_.intrinsics &&
+                    changed.intrinsics == camera_.intrinsics && changed.shutter == camera_.shutter &&
+                    changed.same_sensor_as == camera_.same_sensor_as &&
                     changed.clock_offset_s == camera_.clock_offset_s;
-  if (same || changed.name.empty()) return setCamera(camera_);
+  if (same || changed.name.empty()) return setCamera(camera_, others_);
   emit edited(changed, field);
 }
 

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 class QComboBox;
@@ -26,7 +27,8 @@ class CameraForm : public QWidget {
  public:
   explicit CameraForm(QWidget* parent = nullptr);
 
-  void setCamera(const SessionCamera& camera);
+  // `others`: names of cameras whose sensor this one's stream may come from, too.
+  void setCamera(const SessionCamera& camera, const std::vector<std::string>& others = {});
   void setProblem(const QString& text);
   // Those that the last run found; offered while the camera has none of its own.
   void setFound(const std::optional<CameraIntrinsics>& found);
@@ -41,15 +43,17 @@ class CameraForm : public QWidget {
   void takeOver();
   void say(const QString& field);
   std::optional<CameraIntrinsics> typedIntrinsics() const;  // none: not known
+  void showSensor();
   void showCoefficients(const CameraIntrinsics& shown);
   QWidget* pairOf(NumberField* first, NumberField* second);
   std::vector<NumberField*> intrinsicsFields() const;
 
   SessionCamera camera_;
+  std::vector<std::string> others_;
   QFormLayout* form_;
   QLineEdit* name_;
   NumberField *width_px_, *height_px_, *clock_offset_s_;
-  QComboBox* model_;
+  QComboBox *model_, *shutter_, *sensor_;
   NumberField *focal_x_px_, *focal_y_px_, *centre_x_px_, *centre_y_px_;
   std::array<NumberField*, 5> distortion_;
   QLabel* coefficient_names_;

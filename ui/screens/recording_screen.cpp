@@ -218,6 +218,16 @@ void RecordingScreen::setSession(const Session& session) {
   showSensors();
 }
 
+// Other cameras whose sensor this one's stream may come from, too: none where others have it from this one.
+std::vector<std::string> RecordingScreen::possibleSensors(std::size_t camera) const {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < session_.cameras.size(); ++i) {
+    if (session_.cameras[i].same_sensor_as == session_.cameras[camera].name) return {};
+    if (i != camera && session_.cameras[i].same_sensor_as.empty()) names.push_back(session_.cameras[i].name);
+  }
+  return names;
+}
+
 // Forms stay while the number of sensors does: an edit must not take the focus away.
 void RecordingScreen::showSensors() {
   if (cameras_.size() != session_.cameras.size() || imus_.size() != session_.imus.size()) {
@@ -241,7 +251,7 @@ void RecordingScreen::showSensors() {
   reference_->clear();
   for (std::size_t i = 0; i < cameras_.size(); ++i, ++tab) {
     cameras_[i]->setFound(foundIntrinsics(i));
-    cameras_[i]->setCamera(session_.cameras[i]);
+    cameras_[i]->setCamera(session_.cameras[i], possibleSensors(i));
     sensors_->setTabText(tab, QString::fromStdString(session_.cameras[i].name));
     if (imus_.empty()) reference_->addItem(sensors_->tabText(tab));
   }
@@ -364,6 +374,8 @@ void RecordingScreen::chooseRole(int row, int role) {
 void RecordingScreen::renameReference(const std::string& from, const std::string& to,
                                       Session& session) const {
   if (session.reference == from) session.reference = to;
+  for (SessionCamera& camera : session.cameras)
+    if (camera.same_sensor_as == from) camera.same_sensor_as = to;
 }
 
 void RecordingScreen::editCamera(std::size_t index, const SessionCamera& camera, const QString& field) {

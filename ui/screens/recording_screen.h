@@ -64,6 +64,7 @@ class RecordingScreen : public QWidget {
   void chooseRole(int row, int role);
   QWidget* makeRangeAndFiles(QWidget* parent);
   std::optional<CameraIntrinsics> foundIntrinsics(std::size_t camera) const;
+  std::vector<std::string> possibleSensors(std::size_t camera) const;
   void renameReference(const std::string& from, const std::string& to, Session& session) const;
   void editCamera(std::size_t index, const SessionCamera& camera, const QString& field);
   void editImu(std::size_t index, const SessionImu& imu, const QString& field);
