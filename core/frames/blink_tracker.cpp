@@ -76,6 +76,7 @@ void BlinkTracker::see(const FlashSlot& slot) {
   window.tracked = !found.empty();
   if (found.empty()) found = finder_.find(whole);
   if (found.empty() && slot.size() > 1) found = finder_.find(sumOfMiddle(slot, 1));
+  if (!window.tracked) searched_points_ = found.size();
   if (!found.empty() && slot.size() > 1) found = withoutMotion(slot, std::move(found), window);
   keep(std::move(found), window);
 }
@@ -90,7 +91,7 @@ FoundPoints BlinkTracker::follow(const FlashCounts& whole, double time_s) {
     const FoundPoints& last = seen_.back().points;
     found = finder_.measure(whole, last,
                             std::min(frames_.prediction_gate_px, kToNeighbours * nearestNeighbours_px(last)));
-    if (static_cast<double>(found.size()) >= kNearlyAll * static_cast<double>(last.size())) return found;
+    if (static_cast<double>(found.size()) >= kNearlyAll * static_cast<double>(searched_points_)) return found;
   }
   followed_ = 0;
   return {};

@@ -22,6 +22,8 @@ class BlinkTracker {
   // Throws CalibrationError (BadInput) where the board's numbers make no board.
   BlinkTracker(std::string camera, const Board& board, Resolution resolution_px, const FrameOptions& frames,
                const BlinkOptions& options, std::int64_t start_ns);
+  BlinkTracker(const BlinkTracker&) = delete;
+  BlinkTracker& operator=(const BlinkTracker&) = delete;
 
   // Events in order of time, inside the resolution.
   void add(EventSpan events);
@@ -52,7 +54,8 @@ class BlinkTracker {
   FlashFinder finder_;
   std::optional<FlashGathering> gathering_;
   std::vector<PointsInFrame> seen_;
-  int followed_ = 0;  // slots since the last search
+  int followed_ = 0;                 // slots since the last search
+  std::size_t searched_points_ = 0;  // that it found
   BoardObservations so_far_;
 };
 

@@ -65,6 +65,7 @@ FoundPoints FlashFinder::find(const FlashCounts& sum) {
     FoundPoints found = finder_.find(larger);
     if (found.empty()) continue;
     flashing_ = flashing;
+    last_found_ = found;
     return onSensor(picture, larger, std::move(found));
   }
   return {};
@@ -77,7 +78,7 @@ FoundPoints FlashFinder::measure(const FlashCounts& sum, const FoundPoints& near
   if (!map || !flashing_) return {};
   const GrayImage picture = pictureOf(sum, size_px_, *flashing_), larger = enlarged(picture, times_);
   FoundPoints found = finder_.measure(larger, *map, times_ * gate_px);
-  keepThoseOf(near, found);
+  if (board_.type == BoardType::Checkerboard) keepThoseOf(last_found_, found);
   return onSensor(picture, larger, std::move(found));
 }
 

@@ -17,7 +17,8 @@ class FlashFinder {
 
   // None where the board is not found. Whether the ink flashes or the paper is found out, and remembered.
   FoundPoints find(const FlashCounts& sum);
-  // The points of a view nearby in time that lie within the gate.
+  // The points that lie within the gate of where a view nearby in time puts them; of a checkerboard, those that were found
+  // last: nothing says whether there are others.
   FoundPoints measure(const FlashCounts& sum, const FoundPoints& near, double gate_px) const;
 
   std::string doubt() const { return finder_.doubt(); }
@@ -32,6 +33,7 @@ class FlashFinder {
   FrameOptions options_;  // for these
   BoardFinder finder_;
   std::optional<Flashing> flashing_;
+  FoundPoints last_found_;
 };
 
 }  // namespace evical

@@ -2,6 +2,7 @@
 
 #include "core/base/time.h"
 #include "core/frames/ideal_views.h"
+#include "core/pipeline/board_size_check.h"
 #include "core/pipeline/session_recording.h"
 
 #include <fmt/format.h>
@@ -27,6 +28,18 @@ BoardObservations BlinkViews::finish(std::vector<RecordingFault>& faults) {
   if (const std::string doubt = tracker_.doubt(); !doubt.empty())
     faults.push_back({camera_.stream, FaultKind::BoardSize, 0.0, fmt::format("{}: {}", camera_.name, doubt)});
   return lens_ ? inIdealPixels(observations, *lens_) : observations;
+}
+
+void checkBlinkingBoardSeen(const BoardObservations& observations, const Board& board) {
+  if (!observations.views.empty()) return;
+  throw calibrationFailed(
+      observations.camera,
+      fmt::format("something blinks, but a {} of {} x {} was never found in {} pictures of its flashes ({})",
+                  boardTypeName(board.type), board.rows, board.cols, observations.windows.size(),
+                  outcomes(observations)),
+      "Check type, rows and cols of the session's board, that it is in focus and large enough in the image, "
+      "and that the "
+      "camera all but stands still");
 }
 
 std::optional<CalibrationError> unexpectedBlink(const Session& session, std::size_t camera) {

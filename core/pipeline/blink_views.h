@@ -31,4 +31,7 @@ class BlinkViews final : public CameraViews {
 // session says that the board blinks. Reads the recording's first seconds once more.
 std::optional<CalibrationError> unexpectedBlink(const Session& session, std::size_t camera);
 
+// Throws CalibrationFailed where something blinks, but never showed the board.
+void checkBlinkingBoardSeen(const BoardObservations& observations, const Board& board);
+
 }  // namespace evical

@@ -103,6 +103,8 @@ IntrinsicsRun fromSensorPixels(const Session& alone, const RunContext& context) 
   context.progress.stageStarted(nameOf(CalibrationStage::Intrinsics));
   IntrinsicsRun run;
   run.pass = passOver(alone, context);
+  if (alone.board_blinks && run.pass.cameras.front().kind == CameraKind::Events)
+    checkBlinkingBoardSeen(run.pass.cameras.front(), alone.board);
   checkBoardSeen(run.pass.cameras.front(), alone.board);
   run.result = estimate(alone, run.pass, {}, context);
   run.result.passes = 1;

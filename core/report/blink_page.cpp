@@ -78,7 +78,7 @@ function sessionText(spacing_m) {
   return text + "  blinking: true\n";
 }
 
-let frame_s = 1 / 60, frames_per_half = 1, flashing = false, frames = 0;
+let layout, frames_per_half = 1, flashing = false, frames = 0;
 
 // The fastest up to 30 Hz is the first choice.
 function ratesOf(refresh_hz) {
@@ -89,13 +89,14 @@ function ratesOf(refresh_hz) {
 }
 
 function show() {
-  const layout = layOut(screen.width, screen.height, window.devicePixelRatio || 1);
   const bar_px = byId("bar").getBoundingClientRect().width;
   byId("session").textContent = sessionText(trueSpacing_m(layout, bar_px, parseFloat(byId("length").value)));
 }
 
+// In full screen as was told before; else in what there is, which is then told.
 function place() {
-  const layout = layOut(window.innerWidth, window.innerHeight, window.devicePixelRatio || 1);
+  layout = layOut(window.innerWidth, window.innerHeight, window.devicePixelRatio || 1);
+  show();
   const width = board.width_mm * layout.px_per_mm, height = board.height_mm * layout.px_per_mm;
   const svg = byId("board");
   svg.setAttribute("width", width);
@@ -115,8 +116,14 @@ function start() {
   document.body.classList.add("flashing");
   flashing = true;
   frames = 0;
+  stayAwake();
   place();
   requestAnimationFrame(tick);
+}
+
+// Where the browser lets pages do so.
+function stayAwake() {
+  if (navigator.wakeLock) navigator.wakeLock.request("screen").catch(() => {});
 }
 
 function stop() {
@@ -150,7 +157,8 @@ byId("start").addEventListener("click", () => {
 byId("stage").addEventListener("click", stop);
 document.addEventListener("keydown", (event) => { if (event.key === "Escape") stop(); });
 document.addEventListener("fullscreenchange", () => { if (document.fullscreenElement) place(); else stop(); });
-window.addEventListener("resize", () => { show(); if (flashing) place(); });
+window.addEventListener("resize", () => { if (flashing) place(); });
+layout = layOut(screen.width, screen.height, window.devicePixelRatio || 1);
 show();
 </script>
 </body>

@@ -132,6 +132,16 @@ class TestBlinkingBoard : public QObject {
     QVERIFY2(error.contains("blinks at 15 Hz") && error.contains("blinking: true"), qPrintable(error));
   }
 
+  void otherBoardThanBlinks_isSaid() {
+    Session other = session();
+    other.board.type = BoardType::AprilGrid;
+    other.board.tag_size_m = 0.05;
+    other.time_range_s = {{0.0, 1.0}};
+    const QString error =
+        errorOf([&] { calibrateIntrinsics(other, 0, RunContext{}); }, ErrorKind::CalibrationFailed);
+    QVERIFY2(error.contains("something blinks") && error.contains("aprilgrid of 6 x 9"), qPrintable(error));
+  }
+
   void realScreen_givesItsLens_data() {
     QTest::addColumn<int>("rows");
     QTest::addColumn<int>("cols");

@@ -31,14 +31,22 @@ Board aprilGrid() {
   return board;
 }
 
-// The page's script, with `more` at its end, in node; what it prints.
-QString runInNode(const std::string& page, const QString& more) {
-  QString script = QString::fromStdString(page);
-  script = script.mid(script.indexOf("<script>") + 8);
-  script = script.left(script.indexOf("</script>"));
-  script = script.left(script.indexOf("measureRefresh((refresh_hz)"));  // from there on it needs a browser
+QString scriptOf(const Board& board) {
+  const QString page = QString::fromStdString(blinkPage(board, 0.01));
+  const qsizetype begin = page.indexOf("<script>") + 8;
+  return page.mid(begin, page.indexOf("</script>") - begin);
+}
+
+// Without what needs a browser.
+QString functionsOf(const Board& board) {
+  const QString script = scriptOf(board);
+  return script.left(script.indexOf("measureRefresh((refresh_hz)"));
+}
+
+// What it prints.
+QString runInNode(const QString& script) {
   QProcess node;
-  node.start("node", {"-e", script + more});
+  node.start("node", {"-e", script});
   node.waitForFinished();
   return QString::fromUtf8(node.readAllStandardOutput() + node.readAllStandardError());
 }
@@ -76,21 +84,53 @@ class TestBlinkPage : public QObject {
     QVERIFY_EXCEPTION_THROWN(blinkPage(board, 0.01), CalibrationError);
   }
 
+  // A stage of what the page uses of a browser: it flashes, at half the chosen rate in frames, until Escape.
+  void script_flashesUntilEscape() {
+    if (QStandardPaths::findExecutable("node").isEmpty()) QSKIP("node is not installed");
+    const QString browser = R"(
+const elements = {}, handlers = {}, queue = [];
+const element = (id) => elements[id] = elements[id] || { value: id === "length" ? "150" : "2", style: {}, setAttribute() {},
+  getBoundingClientRect: () => ({ width: 600 }), add() {}, addEventListener: (name, then) => handlers[id + name] = then };
+const classes = new Set();
+globalThis.document = { getElementById: element, addEventListener: (name, then) => handlers[name] = then,
+  body: { classList: { add: (name) => classes.add(name), remove: (name) => classes.delete(name) } }, documentElement: {} };
+globalThis.window = { innerWidth: 1280, innerHeight: 720, devicePixelRatio: 1, addEventListener() {} };
+globalThis.screen = { width: 1920, height: 1080 };
+globalThis.Option = class {};
+globalThis.requestAnimationFrame = (then) => queue.push(then);
+if (!globalThis.navigator) globalThis.navigator = {};
+)";
+    const QString play = R"(
+let now = 0;
+const shown = [];
+for (let k = 0; k < 70; ++k) queue.splice(0).forEach((then) => then(now += 1000 / 60));
+console.log(elements.refresh.textContent, elements.session.textContent.includes("0.035000"));
+handlers.startclick();
+console.log(classes.has("flashing"), elements.session.textContent.includes("0.023250"));
+for (let k = 0; k < 8; ++k) { queue.splice(0).forEach((then) => then(now += 1000 / 60)); shown.push(elements.ink.style.visibility[0]); }
+console.log(shown.join(""));
+handlers.keydown({ key: "Escape" });
+console.log(classes.has("flashing"));
+)";
+    const QString said = runInNode(browser + scriptOf(checkerboard()) + play);
+    QCOMPARE(said, QString("(the screen shows 60 pictures a second) true\ntrue true\nvvhhvvhh\nfalse\n"));
+  }
+
   void script_saysTheTrueSpacing() {
     if (QStandardPaths::findExecutable("node").isEmpty()) QSKIP("node is not installed");
     // Of a screen of 1920 x 1080 px, 0.25 mm each, the checkerboard of 320 mm x 230 mm takes 1080 px in height.
     const QString said =
-        runInNode(blinkPage(checkerboard(), 0.01),
-                  "const layout = layOut(1920, 1080, 1);"
-                  "console.log(layout.spacing_px, trueSpacing_m(layout, 600, 150));"
-                  "console.log(sessionText(trueSpacing_m(layout, 600, 150)));"
-                  "console.log(trueSpacing_m(layout, 600, NaN));"
+        runInNode(functionsOf(checkerboard()) +
+                  "const placed = layOut(1920, 1080, 1);"
+                  "console.log(placed.spacing_px, trueSpacing_m(placed, 600, 150));"
+                  "console.log(sessionText(trueSpacing_m(placed, 600, 150)));"
+                  "console.log(trueSpacing_m(placed, 600, NaN));"
                   "console.log(JSON.stringify(ratesOf(60).chosen), ratesOf(144).chosen.hz);");
     QVERIFY2(said.contains("140 0.035\n"), qPrintable(said));  // floor(30 * 1080 / 230)
     QVERIFY2(said.contains("spacing_m: 0.035000\n  blinking: true"), qPrintable(said));
     QVERIFY2(said.contains("undefined"), qPrintable(said));
     QVERIFY2(said.contains("{\"frames\":1,\"hz\":30} 24"), qPrintable(said));
-    const QString tags = runInNode(blinkPage(aprilGrid(), 0.01), "console.log(sessionText(0.045));");
+    const QString tags = runInNode(functionsOf(aprilGrid()) + "console.log(sessionText(0.045));");
     QVERIFY2(tags.contains("tag_size_m: 0.036000"), qPrintable(tags));
   }
 };
