@@ -81,9 +81,10 @@ Eigen::Vector2d ownSize_mm(const Board& board, const Eigen::Vector2d& needed_mm)
 Eigen::Vector2d paperSize_mm(const Paper& paper, const Board& board, const Eigen::Vector2d& needed_mm,
                              const Eigen::Vector2d& beside_mm) {
   const Eigen::Vector2d upright(paper.short_mm, paper.long_mm), lying(paper.long_mm, paper.short_mm);
+  constexpr double kRounding_mm = 1e-6;
   double largest = 0.0;  // of what the board may be, by what it is
   for (const Eigen::Vector2d& size_mm : {upright, lying}) {
-    if ((needed_mm.array() <= size_mm.array()).all()) return size_mm;
+    if ((needed_mm.array() <= size_mm.array() + kRounding_mm).all()) return size_mm;
     largest = std::max(largest, ((size_mm - beside_mm).array() / (needed_mm - beside_mm).array()).minCoeff());
   }
   const double spacing_mm = std::floor(1e4 * largest * board.spacing_m) / 10.0;
