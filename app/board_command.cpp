@@ -50,7 +50,7 @@ void writeBlinkPage(const Board& board, const Arguments& arguments) {
   if (arguments.output.extension() != ".html")
     throw badInput(arguments.output.string(), "is no .html file, as a page that blinks must be",
                    "Name the file board.html");
-  writeFileWhole(arguments.output, blinkPage(board, arguments.margin_m, arguments.print));
+  writeFileWhole(arguments.output, blinkPage(board, arguments.sheet.margin_m, arguments.print));
   print(
       "{}: open it in a browser on the screen that is to flash; it asks for a length and says what the "
       "session needs. "
