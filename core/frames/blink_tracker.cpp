@@ -77,15 +77,17 @@ void BlinkTracker::see(const FlashSlot& slot) {
   if (found.empty()) found = finder_.find(whole);
   if (found.empty() && slot.size() > 1) found = finder_.find(sumOfMiddle(slot, 1));
   if (!window.tracked) searched_points_ = found.size();
+  most_points_ = std::max(most_points_, searched_points_);
   if (!found.empty() && slot.size() > 1) found = withoutMotion(slot, std::move(found), window);
   keep(std::move(found), window);
 }
 
-// Near where it was last: a search that takes a tenth of the time. Nothing where that is not nearly all of it.
+// Near where it was last: a search that takes a tenth of the time. Nothing where that is not nearly all of it, or the last
+// search has found less than others.
 FoundPoints BlinkTracker::follow(const FlashCounts& whole, double time_s) {
   constexpr double kLongestGap_s = 0.5, kNearlyAll = 0.9, kToNeighbours = 0.4;
   const bool search = seen_.empty() || time_s - seen_.back().time_s > kLongestGap_s ||
-                      followed_++ >= frames_.search_every_frames;
+                      searched_points_ < most_points_ || followed_++ >= frames_.search_every_frames;
   FoundPoints found;
   if (!search) {
     const FoundPoints& last = seen_.back().points;

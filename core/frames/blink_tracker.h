@@ -54,8 +54,8 @@ class BlinkTracker {
   FlashFinder finder_;
   std::optional<FlashGathering> gathering_;
   std::vector<PointsInFrame> seen_;
-  int followed_ = 0;                 // slots since the last search
-  std::size_t searched_points_ = 0;  // that it found
+  int followed_ = 0;                                   // slots since the last search
+  std::size_t searched_points_ = 0, most_points_ = 0;  // that it found, and that any found
   BoardObservations so_far_;
 };
 
