@@ -46,7 +46,7 @@ constexpr QuantityInfo kLatency{.name = "latency",
                                 .shown_unit = "ms",
                                 .shown_factor = 1e3,
                                 .decimals = 4,
-                                .remark = "of events against the frames of the same sensor"};
+                                .remark = "against frames"};
 
 }  // namespace
 

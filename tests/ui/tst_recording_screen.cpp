@@ -102,6 +102,30 @@ class TestRecordingScreen : public QObject {
     QCOMPARE(test.edits.size(), 2);
   }
 
+  void framesAndPoints_mayBeCameras() {
+    Fixture test;
+    StreamSummary frames;
+    frames.info.name = "/cam0/image_raw";
+    frames.info.type = StreamType::Frames;
+    frames.info.resolution_px = {752, 480};
+    frames.count = 300;
+    StreamSummary untimed = frames;
+    untimed.info.name = "pictures";
+    untimed.info.timed = false;
+    StreamSummary points = frames;
+    points.info.name = "corners.csv";
+    points.info.type = StreamType::Points;
+    test.screen.addInspection(
+        "frames.bag", std::make_shared<Inspection>(Inspection{"rosbag", {frames, untimed, points}, {}}));
+    QCOMPARE(test.streams()->item(2, 2)->text(), QString("frames, 752 x 480 px"));
+    test.choose(2, StreamRole::Camera);
+    QCOMPARE(test.session.cameras.back().stream, frames.info.name);
+    QCOMPARE(test.session.cameras.back().recording.string(), std::string("frames.bag"));
+    test.choose(4, StreamRole::Camera);
+    QCOMPARE(test.session.cameras.size(), std::size_t{3});
+    QVERIFY(!test.streams()->cellWidget(3, 0)->findChild<QComboBox*>()->isEnabled());
+  }
+
   void role_isReadInFull() {
     Fixture test;
     QApplication::processEvents();
@@ -355,21 +379,26 @@ class TestRecordingScreen : public QObject {
     frames.stream = "/davis_left/image_raw";
     test.session.cameras.push_back(frames);
     test.screen.setSession(test.session);
-    const auto choose = [&](const char* box_name, int form, int index) {
-      auto* const box = test.screen.findChildren<CameraForm*>().at(form)->findChild<QComboBox*>(box_name);
+    const auto nameOf = [](CameraForm* form) { return form->findChildren<QLineEdit*>().at(0); };
+    const auto formOf = [&](const QString& camera) {
+      for (CameraForm* const form : test.screen.findChildren<CameraForm*>())
+        if (nameOf(form)->text() == camera) return form;
+      return static_cast<CameraForm*>(nullptr);
+    };
+    const QString first = QString::fromStdString(test.session.cameras[0].name);
+    const auto choose = [&](const char* box_name, int index) {
+      auto* const box = formOf("frames")->findChild<QComboBox*>(box_name);
       box->setCurrentIndex(index);
       emit box->activated(index);
     };
-    choose("shutter", 1, 1);
+    choose("shutter", 1);
     QVERIFY(test.session.cameras[1].shutter == Shutter::Rolling);
-    choose("same_sensor_as", 1, 1);
-    QCOMPARE(test.session.cameras[1].same_sensor_as, test.session.cameras[0].name);
-    auto* const name = test.screen.findChildren<CameraForm*>().at(0)->findChildren<QLineEdit*>().at(0);
-    Fixture::type(name, "davis");
+    choose("same_sensor_as", 1);
+    QCOMPARE(test.session.cameras[1].same_sensor_as, first.toStdString());
+    Fixture::type(nameOf(formOf(first)), "davis");
     QCOMPARE(test.session.cameras[1].same_sensor_as, std::string("davis"));
-    auto* const of_first =
-        test.screen.findChildren<CameraForm*>().at(0)->findChild<QComboBox*>("same_sensor_as");
-    QCOMPARE(of_first->count(), 1);  // which another camera's sensor is cannot be another's
+    // Which another camera's sensor is cannot be another's.
+    QCOMPARE(formOf("davis")->findChild<QComboBox*>("same_sensor_as")->count(), 1);
   }
 
   void problems_areSaidAtTheirFields() {

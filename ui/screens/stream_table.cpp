@@ -47,6 +47,15 @@ QString contentText(const StreamSummary& stream) {
     case StreamType::Imu:
       return QObject::tr("IMU, %1, %2")
           .arg(unitText(stream.acceleration_unit), unitText(stream.angular_rate_unit));
+    case StreamType::Frames:
+      if (!stream.info.readable) return text(stream.info.message);
+      if (!stream.info.resolution_px.known())
+        return QObject::tr("frames (%1)").arg(text(stream.info.message));
+      return QObject::tr("frames, %1 x %2 px")
+          .arg(stream.info.resolution_px.width_px)
+          .arg(stream.info.resolution_px.height_px);
+    case StreamType::Points:
+      return QObject::tr("points of the board");
     default:
       return text(stream.info.message);
   }
@@ -57,13 +66,19 @@ QString rangeText(const StreamSummary& stream) {
   return QObject::tr("%1 s").arg(secondsSince(stream.first_ns, stream.last_ns), 0, 'f', 2);
 }
 
-QComboBox* roleBox(StreamType type, QWidget* parent) {
+// Frames without times are for intrinsics alone, which the window does not calibrate by themselves.
+bool canBeCamera(const StreamInfo& info) {
+  return info.type == StreamType::Events || info.type == StreamType::Points ||
+         (info.type == StreamType::Frames && info.readable && info.timed);
+}
+
+QComboBox* roleBox(const StreamInfo& info, QWidget* parent) {
   auto* const box = new QComboBox(parent);
   box->setFocusPolicy(Qt::StrongFocus);
   box->addItem(icon("ignore"), QObject::tr("Ignore"), static_cast<int>(StreamRole::Ignore));
-  if (type == StreamType::Events)
+  if (canBeCamera(info))
     box->addItem(icon("camera"), QObject::tr("Camera"), static_cast<int>(StreamRole::Camera));
-  if (type == StreamType::Imu)
+  if (info.type == StreamType::Imu)
     box->addItem(icon("imu"), QObject::tr("IMU"), static_cast<int>(StreamRole::Imu));
   box->setEnabled(box->count() > 1);
   return box;
@@ -116,7 +131,7 @@ void StreamTable::addStream(const StreamSummary& stream, const std::vector<Recor
                             const std::filesystem::path& own_recording) {
   const int row = rowCount();
   insertRow(row);
-  QComboBox* const box = roleBox(stream.info.type, this);
+  QComboBox* const box = roleBox(stream.info, this);
   box->setAccessibleName(tr("Role of %1").arg(text(stream.info.name)));
   // In the row's middle, at its own height.
   auto* const cell = new QWidget(this);
