@@ -95,8 +95,8 @@ class TestDetectionsCsv : public QObject {
     QTest::addColumn<QByteArray>("said");
     QTest::newRow("column missing") << QByteArray("edge_lead_effect_x") << QByteArray("x")
                                     << QByteArray("has no column edge_lead_effect_x");
-    QTest::newRow("line cut off") << QByteArray("-5.666666666666667\n") << QByteArray("")
-                                  << QByteArray("columns");
+    QTest::newRow("a number missing")
+        << QByteArray(",-5.666666666666667,") << QByteArray(",") << QByteArray("columns");
     QTest::newRow("no number") << QByteArray("33.33") << QByteArray("a33.33") << QByteArray("(line 2): x_px");
     QTest::newRow("not finite") << QByteArray("33.333333333333336") << QByteArray("nan")
                                 << QByteArray("(line 2): x_px");
