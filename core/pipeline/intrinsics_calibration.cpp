@@ -29,6 +29,7 @@ Session cameraAlone(const Session& session, std::size_t camera) {
   Session alone = session;
   alone.cameras = {session.cameras[camera]};
   alone.cameras.front().intrinsics.reset();
+  alone.cameras.front().same_sensor_as.clear();
   alone.imus.clear();
   alone.reference = alone.cameras.front().name;
   if (!alone.time_range_s) return alone;

@@ -84,18 +84,32 @@ std::string detectionsYaml(const Session& session, const RecordingPass& pass,
   return text + faultsYaml(session, pass);
 }
 
+// What was known of the lens, and what the camera was seen with: its sensor's lens.
+CameraLens restoredLens(const YamlNode& root, const Session& session, std::size_t k) {
+  const SessionCamera& sensor = session.sensor(k);
+  CameraLens lens = givenLens(sensor.intrinsics, sensor.intrinsics_uncertainty);
+  lens.seen_with = checkedLens(checkedCamera(root, sensor), sensor);
+  if (session.sensorOf(k) == k) return lens;
+  SessionCamera camera = session.cameras[k];
+  camera.intrinsics = lens.seen_with;
+  checkedLens(checkedCamera(root, camera), camera);
+  return lens;
+}
+
 // What detections.yaml says of one of the session's cameras.
-void restoreCamera(const YamlNode& map, const SessionCamera& camera, RestoredDetections& restored) {
+void restoreCamera(const YamlNode& root, const Session& session, std::size_t k,
+                   RestoredDetections& restored) {
+  const SessionCamera& camera = session.cameras[k];
+  const YamlNode map = checkedCamera(root, camera);
   BoardObservations& seen = restored.pass.cameras.emplace_back();
   seen.camera = camera.name;
   seen.kind = static_cast<CameraKind>(map["kind"].choice(kKinds));
   seen.events = static_cast<std::uint64_t>(std::max<std::int64_t>(0, map["measurements"].nanoseconds()));
   seen.extent = {endsFrom(map["extent"]["rows"]), endsFrom(map["extent"]["cols"])};
   restored.pass.resolutions_px.push_back(checkedResolution(map, camera));
-  CameraLens lens = givenLens(camera.intrinsics, camera.intrinsics_uncertainty);
-  lens.seen_with = checkedLens(map, camera);
+  const CameraLens lens = restoredLens(root, session, k);
   restored.intrinsics.emplace_back();
-  if (lens.foundFirst())
+  if (lens.foundFirst() && session.sensorOf(k) == k)
     restored.intrinsics.back() = foundIntrinsicsFrom(map["found_first"], *lens.seen_with);
   restored.pass.lenses.push_back(lens);
 }
@@ -158,8 +172,7 @@ RestoredDetections restoreDetections(const std::filesystem::path& folder, const 
   checkSession(root, session, context);
   RestoredDetections restored;
   restored.pass.start_ns = root["start_ns"].nanoseconds();
-  for (const SessionCamera& camera : session.cameras)
-    restoreCamera(checkedCamera(root, camera), camera, restored);
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) restoreCamera(root, session, k, restored);
   restored.pass.faults = faultsFrom(root["faults"]);
   restoreViews(folder, session, restored.pass);
   readSamples(session, context, restored.pass);

@@ -252,7 +252,7 @@ void setMeasuredLength(const std::optional<MeasuredLength>& measured, Session& s
 std::vector<CameraLens> givenLenses(const Session& session) {
   std::vector<CameraLens> lenses;
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
-    const SessionCamera& sensor = session.cameras[session.sensorOf(k)];
+    const SessionCamera& sensor = session.sensor(k);
     lenses.push_back(givenLens(sensor.intrinsics, sensor.intrinsics_uncertainty));
   }
   return lenses;

@@ -58,6 +58,7 @@ struct Session {
 
   // Of what same_sensor_as names; the camera itself, where it names none.
   std::size_t sensorOf(std::size_t camera) const;
+  const SessionCamera& sensor(std::size_t camera) const { return cameras[sensorOf(camera)]; }
   std::size_t referenceImu() const;     // index into imus; 0 where there is none
   std::size_t referenceCamera() const;  // index into cameras; 0 where the reference is an IMU
 };

@@ -128,18 +128,18 @@ const StreamInfo& SessionRecording::info(std::size_t sensor) const {
 
 Resolution SessionRecording::resolution_px(std::size_t camera) const {
   const SessionCamera& own = session_.cameras[camera];
+  const std::optional<CameraIntrinsics>& lens = session_.sensor(camera).intrinsics;
   const Resolution stated = info(camera).resolution_px;
-  if (own.intrinsics && stated.known() && own.intrinsics->resolution_px.known() &&
-      own.intrinsics->resolution_px != stated) {
+  if (lens && stated.known() && lens->resolution_px.known() && lens->resolution_px != stated) {
     throw badInput(own.name,
                    fmt::format("its intrinsics are for {} x {} px, but the recording is of {} x {}",
-                               own.intrinsics->resolution_px.width_px,
-                               own.intrinsics->resolution_px.height_px, stated.width_px, stated.height_px),
+                               lens->resolution_px.width_px, lens->resolution_px.height_px, stated.width_px,
+                               stated.height_px),
                    "Use intrinsics of this camera at this resolution, or leave them out to calibrate them");
   }
   if (own.resolution_px.known()) return own.resolution_px;
   if (stated.known()) return stated;
-  if (own.intrinsics && own.intrinsics->resolution_px.known()) return own.intrinsics->resolution_px;
+  if (lens && lens->resolution_px.known()) return lens->resolution_px;
   if (info(camera).type == StreamType::Frames) return {};  // the first that is decoded tells
   throw badInput(own.name, "the recording does not say the sensor's resolution",
                  "Give resolution_px: [width, height] for this camera in the session");

@@ -133,7 +133,7 @@ Sight DetectionScreen::sight() const {
   if (const CalibrationRun* const run = runInView())
     return {run_session_.board, run->pass.lenses.at(camera_).seen_with};
   if (!session_ || camera_ >= session_->cameras.size()) return {};
-  return {session_->board, session_->cameras[camera_].intrinsics};
+  return {session_->board, session_->sensor(camera_).intrinsics};
 }
 
 void DetectionScreen::showRun() {

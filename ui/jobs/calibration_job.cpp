@@ -82,8 +82,9 @@ CalibrationJob::CalibrationJob(JobRunner& runner, QObject* parent) : QObject(par
 
 bool CalibrationJob::start(const Session& session) {
   const auto windows = make_observer_ && !runner_.running() ? make_observer_() : nullptr;
-  const bool all_known = std::all_of(session.cameras.begin(), session.cameras.end(),
-                                     [](const SessionCamera& camera) { return camera.intrinsics; });
+  const std::vector<CameraLens> lenses = givenLenses(session);
+  const bool all_known = std::all_of(lenses.begin(), lenses.end(),
+                                     [](const CameraLens& lens) { return lens.given.has_value(); });
   const RunStart from = all_known ? RunStart::KnownIntrinsics : RunStart::UnknownIntrinsics;
   const bool begun = run(session, from, windows,
                          [session](const RunContext& context) { return calibrate(session, context); });

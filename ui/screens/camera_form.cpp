@@ -156,7 +156,7 @@ void CameraForm::setCamera(const SessionCamera& camera, const std::vector<std::s
   centre_x_px_->setValue(shown.principal_point_px.x());
   centre_y_px_->setValue(shown.principal_point_px.y());
   showCoefficients(shown);
-  take_over_->setVisible(found_ && !camera.intrinsics);
+  showTakeOver();
   for (NumberField* const field : intrinsicsFields()) field->setEnabled(camera.intrinsics.has_value());
   clock_offset_s_->setValue(camera.clock_offset_s);
   form_->setRowVisible(clock_offset_s_, !camera.recording.empty());
@@ -236,7 +236,12 @@ void CameraForm::say(const QString& field) {
 
 void CameraForm::setFound(const std::optional<CameraIntrinsics>& found) {
   found_ = found;
-  take_over_->setVisible(found_ && !camera_.intrinsics);
+  showTakeOver();
+}
+
+// A lens that is another camera's is taken over there.
+void CameraForm::showTakeOver() {
+  take_over_->setVisible(found_ && !camera_.intrinsics && camera_.same_sensor_as.empty());
 }
 
 void CameraForm::takeOver() {

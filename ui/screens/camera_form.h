@@ -44,6 +44,7 @@ class CameraForm : public QWidget {
   void say(const QString& field);
   std::optional<CameraIntrinsics> typedIntrinsics() const;  // none: not known
   void showSensor();
+  void showTakeOver();
   void showCoefficients(const CameraIntrinsics& shown);
   QWidget* pairOf(NumberField* first, NumberField* second);
   std::vector<NumberField*> intrinsicsFields() const;

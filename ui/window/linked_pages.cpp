@@ -34,7 +34,7 @@ void wireDetection(DetectionScreen& screen, Workbench& workbench) {
 
 std::vector<std::optional<CameraIntrinsics>> intrinsicsOf(const Session& session) {
   std::vector<std::optional<CameraIntrinsics>> all;
-  for (const SessionCamera& camera : session.cameras) all.push_back(camera.intrinsics);
+  for (const CameraLens& lens : givenLenses(session)) all.push_back(lens.given);
   return all;
 }
 
@@ -57,11 +57,9 @@ void wireTrajectory(TrajectoryScreen& screen, Workbench& workbench) {
   });
   QObject::connect(&job, &CalibrationJob::detectionsChanged, &screen,
                    [&screen, &document](const std::shared_ptr<const LiveDetections>& cameras) {
-                     const Session& session = document.session();
-                     for (std::size_t k = 0; k < std::min(cameras->size(), session.cameras.size()); ++k) {
-                       if (!session.cameras[k].intrinsics) continue;
-                       screen.setDetections({cameras, &(*cameras)[k]}, *session.cameras[k].intrinsics, k);
-                     }
+                     const auto intrinsics = intrinsicsOf(document.session());
+                     for (std::size_t k = 0; k < std::min(cameras->size(), intrinsics.size()); ++k)
+                       if (intrinsics[k]) screen.setDetections({cameras, &(*cameras)[k]}, *intrinsics[k], k);
                    });
   QObject::connect(&job, &CalibrationJob::iterationsChanged, &screen,
                    [&screen, &document](const std::shared_ptr<const LiveIterations>& iterations) {

@@ -135,6 +135,31 @@ class TestSavedDetections : public QObject {
     restoreDetections(result(), measured, RunContext{});
   }
 
+  // The frames have the lens of the events' camera, be it given or found first.
+  void camerasOfOneSensor_areRestored() {
+    QTemporaryDir folder;
+    const std::filesystem::path path = folder.path().toStdString();
+    Scenario scenario = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/davis346_frames.yaml");
+    scenario.duration_s = 3.0;
+    simulate(scenario, path, RunContext{});
+    const Session session = readSession(path / "session.yaml");
+    const RecordingPass pass = readAndDetect(session, RunContext{});
+    for (const FileContent& file : detectionFiles(session, pass, {}))
+      writeFileWhole(path / file.name, file.content);
+    const RestoredDetections restored = restoreDetections(path, session, RunContext{});
+    QVERIFY(restored.pass.lenses == pass.lenses);
+    QCOMPARE(restored.pass.cameras[1].views.size(), pass.cameras[1].views.size());
+
+    Session other = session;
+    other.cameras[0].intrinsics->focal_length_px *= 1.01;
+    try {
+      restoreDetections(path, other, RunContext{});
+      QFAIL("taken");
+    } catch (const CalibrationError& error) {
+      QVERIFY2(QString(error.what()).contains("other intrinsics"), error.what());
+    }
+  }
+
   void fewerCameras_areTaken() {
     Session one = session_;
     one.cameras.pop_back();
