@@ -2,6 +2,7 @@
 
 #include "core/geometry/camera_model.h"
 #include "core/synthetic/board_surface.h"
+#include "core/synthetic/scenario_boards.h"
 #include "core/synthetic/session_errors.h"
 #include "core/synthetic/visitors.h"
 
@@ -79,18 +80,19 @@ std::vector<TrueCircle> trueBoardView(const SinusoidMotion& motion, const Scenar
   constexpr double kStep_s = 1e-5;  // central difference: exact to 1e-6 px/s for such motions
   const SimulatedCamera& camera = scenario.cameras[index];
   const double time_s = worldTime_s(camera, stamp_s);
-  const RigidTransform now = motion.worldFromCamera(index, time_s),
-                       before = motion.worldFromCamera(index, time_s - kStep_s),
-                       after = motion.worldFromCamera(index, time_s + kStep_s);
-  const BoardSurface surface(scenario);
-  const std::optional<Figure> hand = handAt(scenario, time_s);
+  const RigidTransform now = motion.boardFromCamera(index, time_s),
+                       before = motion.boardFromCamera(index, time_s - kStep_s),
+                       after = motion.boardFromCamera(index, time_s + kStep_s);
+  const Scenario scene = sceneOf(scenario, index);
+  const BoardSurface surface(scene);
+  const std::optional<Figure> hand = handAt(scene, time_s);
   std::vector<TrueCircle> circles;
-  for (int i = 0; i < scenario.board.pointCount(); ++i) {
-    const Eigen::Vector2d on_board_m = trueCentre_m(scenario, i);
+  for (int i = 0; i < scene.board.pointCount(); ++i) {
+    const Eigen::Vector2d on_board_m = trueCentre_m(scene, i);
     const Sheet sheet = touching(surface, on_board_m);
     const auto imageIn = [&](const RigidTransform& world_from_camera) {
       return imageOfCircle(idealFromSheet(world_from_camera, sheet, camera.intrinsics), on_board_m,
-                           scenario.board.radius_m);
+                           scene.board.radius_m);
     };
     const std::optional<Ellipse> ellipse = imageIn(now), earlier = imageIn(before), later = imageIn(after);
     if (!ellipse || !earlier || !later) continue;
@@ -98,7 +100,7 @@ std::vector<TrueCircle> trueBoardView(const SinusoidMotion& motion, const Scenar
                        insideImage(*ellipse, camera.intrinsics),
                        hand && isHidden(*hand, now.translation_m,
                                         {on_board_m.x(), on_board_m.y(), surface.behind_m(on_board_m)},
-                                        scenario.board.radius_m)});
+                                        scene.board.radius_m)});
   }
   return circles;
 }
@@ -112,13 +114,14 @@ int circlesInView(const SinusoidMotion& motion, const Scenario& scenario, std::s
 }
 
 bool boardInView(const SinusoidMotion& motion, const Scenario& scenario, std::size_t camera, double stamp_s) {
-  const int least = std::max(4, static_cast<int>(std::ceil(0.4 * scenario.board.pointCount())));
+  const int least = std::max(4, static_cast<int>(std::ceil(0.4 * boardOf(scenario, camera).pointCount())));
   return circlesInView(motion, scenario, camera, stamp_s) >= least;
 }
 
 BoardObservations simulateObservations(const Scenario& scenario, std::size_t camera, double noise_px,
                                        double period_s) {
   const SinusoidMotion motion(scenario);
+  const int points = boardOf(scenario, camera).pointCount();
   std::mt19937_64 generator(scenario.seed * 15485863 + camera);
   std::normal_distribution<double> normal;
   BoardObservations observations;
@@ -145,8 +148,8 @@ BoardObservations simulateObservations(const Scenario& scenario, std::size_t cam
     report.time_s = time_s;
     report.half_width_s = 0.5 * period_s;
     report.circles = count;
-    const bool partial = count >= std::max(4, static_cast<int>(0.4 * scenario.board.pointCount()));
-    view.kind = count == scenario.board.pointCount() ? ViewKind::Complete : ViewKind::Partial;
+    const bool partial = count >= std::max(4, static_cast<int>(0.4 * points));
+    view.kind = count == points ? ViewKind::Complete : ViewKind::Partial;
     report.outcome = !partial                          ? WindowOutcome::TooFewInGrid
                      : view.kind == ViewKind::Complete ? WindowOutcome::Complete
                                                        : WindowOutcome::Partial;

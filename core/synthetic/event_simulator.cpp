@@ -4,6 +4,7 @@
 #include "core/synthetic/event_readout.h"
 #include "core/synthetic/pixel_array.h"
 #include "core/synthetic/random.h"
+#include "core/synthetic/scenario_boards.h"
 #include "core/synthetic/sinusoid_motion.h"
 
 #include <algorithm>
@@ -126,8 +127,9 @@ class PacketSorter {
 void simulateEvents(const Scenario& scenario, std::size_t camera, const EventSink& sink,
                     const RunContext& context, int threads) {
   const SinusoidMotion motion(scenario);
-  PixelArray pixels(scenario, camera);
-  const auto poseAt = [&](double t) { return motion.worldFromCamera(camera, t); };
+  const Scenario scene = sceneOf(scenario, camera);
+  PixelArray pixels(scene, camera);
+  const auto poseAt = [&](double t) { return motion.boardFromCamera(camera, t); };
   const int workers = std::max(threads, 1);
   pixels.reset(poseAt(0.0));
   PacketSorter sorter(scenario, camera);

@@ -2,6 +2,7 @@
 
 #include "core/base/time.h"
 #include "core/synthetic/random.h"
+#include "core/synthetic/scenario_boards.h"
 #include "core/synthetic/scene_light.h"
 #include "core/synthetic/sinusoid_motion.h"
 
@@ -25,7 +26,7 @@ class FrameRenderer {
         index_(index),
         camera_(scenario.cameras[index]),
         motion_(scenario),
-        light_(scenario, index, camera_.frames->blur_px) {}
+        light_(sceneOf(scenario, index), index, camera_.frames->blur_px) {}
 
   // The pixels of a row of the frame whose middle is exposed at this time on the reference's clock.
   void render(int row, double time_s, Random& noise, std::uint8_t* pixels) const {
@@ -35,7 +36,7 @@ class FrameRenderer {
     std::array<SceneLight::Planes, kExposures> planes;
     for (std::size_t k = 0; k < kExposures; ++k) {
       const double share = (static_cast<double>(k) + 0.5) / kExposures - 0.5;
-      planes[k] = light_.at(motion_.worldFromCamera(index_, row_s + share * model.exposure_s));
+      planes[k] = light_.at(motion_.boardFromCamera(index_, row_s + share * model.exposure_s));
     }
     for (int x = 0; x < size.width_px; ++x) {
       const auto i = static_cast<std::size_t>(row) * static_cast<std::size_t>(size.width_px) +

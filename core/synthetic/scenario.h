@@ -68,6 +68,7 @@ struct SimulatedCamera {
   double time_offset_s = 0.0;  // imu_time = camera_time + offset, of the clocks alone
   EventPixelModel pixel;
   std::optional<FrameModel> frames = {};  // in the place of events
+  std::string board = "board";            // that it sees, by name
   std::string same_sensor_as = {};        // a camera whose lens and place it has, and the session says so
 
   // By how much a stamp is late.
@@ -195,6 +196,13 @@ struct SessionErrors {
   bool operator==(const SessionErrors&) const = default;
 };
 
+// Beside the scenario's own, for the cameras that name it.
+struct SimulatedBoard {
+  std::string name = "board";
+  Board board;
+  RigidTransform world_from_board;
+};
+
 enum class SimulatedFormat { Bag, Text };
 
 struct Scenario {
@@ -205,6 +213,7 @@ struct Scenario {
   Board board;
   double board_stretch = 0.0;  // of the real one: 0.01 makes its columns 1 % longer than `board` says
   SimulatedBow board_bow = {};
+  std::vector<SimulatedBoard> further_boards = {};
   SceneModel scene;
   MotionModel motion;
   Eigen::Vector3d gravity_in_world_m_s2 = {0.0, 9.81, 0.0};  // the board hangs upright: y points down

@@ -51,17 +51,31 @@ std::string cameraTruth(const Scenario& scenario, const SimulatedCamera& camera)
 }
 
 // Against what the session says of it (BoardState), whose curvatures are of what it says too.
-std::string boardTruth(const Scenario& scenario) {
+std::string sheetTruth(const Scenario& scenario, const std::string& indent) {
   const double longer = scenario.board_stretch, said = 1.0 + scenario.session_errors.spacing;
   const BoardSurface surface(scenario);
   if (longer == 0.0 && said == 1.0 && !surface.isBent()) return {};
-  std::string text = fmt::format("board:\n  scale: {}\n  stretch: {}\n", (1.0 + 0.5 * longer) / said,
+  std::string text = fmt::format("{0}scale: {1}\n{0}stretch: {2}\n", indent, (1.0 + 0.5 * longer) / said,
                                  -longer / (1.0 + 0.5 * longer));
   if (!surface.isBent()) return text;
   const Eigen::Matrix2d true_from_said = Eigen::Vector2d(1.0, 1.0 + longer).asDiagonal() * (1.0 / said);
   const Eigen::Matrix2d seen = true_from_said * surface.curvature_1_m() * true_from_said;
-  return text + fmt::format("  row_curvature_1_m: {}\n  column_curvature_1_m: {}\n  twist_1_m: {}\n",
-                            seen(0, 0), seen(1, 1), seen(0, 1));
+  return text + fmt::format("{0}row_curvature_1_m: {1}\n{0}column_curvature_1_m: {2}\n{0}twist_1_m: {3}\n",
+                            indent, seen(0, 0), seen(1, 1), seen(0, 1));
+}
+
+std::string boardTruth(const Scenario& scenario) {
+  if (scenario.further_boards.empty()) {
+    const std::string sheet = sheetTruth(scenario, "  ");
+    return sheet.empty() ? "" : "board:\n" + sheet;
+  }
+  const std::string sheet = sheetTruth(scenario, "    ");
+  std::string text =
+      fmt::format("boards:\n  {}:{}\n{}", SimulatedBoard().name, sheet.empty() ? " {}" : "", sheet);
+  for (const SimulatedBoard& further : scenario.further_boards)
+    text += fmt::format("  {}:\n{}", yamlText(further.name),
+                        transformText("world_from_board", further.world_from_board));
+  return text;
 }
 
 // Pose, clock and delay against another camera's.
@@ -87,15 +101,24 @@ std::string imuTruth(const Scenario& scenario, std::size_t index) {
   return fmt::format("  {}:\n{}", yamlText(imu.name), sections.text(4));
 }
 
-std::string boardSession(const Scenario& scenario) {
-  const Board& board = scenario.board;
-  std::string text = fmt::format("board:\n  type: {}\n  rows: {}\n  cols: {}\n  spacing_m: {}\n",
+std::string boardText(const Board& board, bool blinks, const std::string& indent) {
+  std::string text = fmt::format("{0}type: {1}\n{0}rows: {2}\n{0}cols: {3}\n{0}spacing_m: {4}\n", indent,
                                  boardTypeName(board.type), board.rows, board.cols, board.spacing_m);
   if (board.hasCircles())
-    text += fmt::format("  radius_m: {}\n  circles: {}\n", board.radius_m,
+    text += fmt::format("{0}radius_m: {1}\n{0}circles: {2}\n", indent, board.radius_m,
                         board.circles == CircleShade::Dark ? "dark" : "bright");
-  if (scenario.scene.blink_hz > 0.0) text += "  blinking: true\n";
-  if (board.tag_size_m > 0.0) text += fmt::format("  tag_size_m: {}\n", board.tag_size_m);
+  if (blinks) text += indent + "blinking: true\n";
+  if (board.tag_size_m > 0.0) text += fmt::format("{}tag_size_m: {}\n", indent, board.tag_size_m);
+  return text;
+}
+
+std::string boardSession(const Scenario& scenario) {
+  const bool blinks = scenario.scene.blink_hz > 0.0;
+  if (scenario.further_boards.empty()) return "board:\n" + boardText(scenario.board, blinks, "  ");
+  std::string text =
+      fmt::format("boards:\n  {}:\n", SimulatedBoard().name) + boardText(scenario.board, blinks, "    ");
+  for (const SimulatedBoard& further : scenario.further_boards)
+    text += fmt::format("  {}:\n", yamlText(further.name)) + boardText(further.board, false, "    ");
   return text;
 }
 
@@ -127,6 +150,7 @@ std::string sessionYaml(const Scenario& truth, const std::string& recording_file
     text += fmt::format("    stream: {}\n    resolution_px: [{}, {}]\n", yamlText(camera.stream),
                         size.width_px, size.height_px);
     if (camera.frames && camera.frames->line_delay_us != 0.0) text += "    shutter: rolling\n";
+    if (!scenario.further_boards.empty()) text += fmt::format("    board: {}\n", yamlText(camera.board));
     if (!camera.same_sensor_as.empty())
       text += fmt::format("    same_sensor_as: {}\n", yamlText(camera.same_sensor_as));
     else if (scenario.intrinsics_in_session)

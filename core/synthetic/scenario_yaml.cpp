@@ -5,6 +5,8 @@
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
+#include "core/synthetic/scenario_boards.h"
+#include "core/synthetic/scenario_fields.h"
 #include "core/synthetic/visitors.h"
 
 #include <fmt/format.h>
@@ -19,41 +21,8 @@
 namespace evical {
 namespace {
 
-constexpr double kAny = std::numeric_limits<double>::max();
-constexpr double kLargestBow_m = 0.1, kNearestLamp_m = 0.05;
+constexpr double kNearestLamp_m = 0.05;
 
-// All of these leave the value alone where the key is absent: that is how a scenario changes its base.
-void get(const YamlNode& map, const char* key, double& value, double minimum, double maximum,
-         const char* unit) {
-  if (const auto node = map.find(key)) value = node->real(minimum, maximum, unit);
-}
-void get(const YamlNode& map, const char* key, int& value, int minimum, int maximum) {
-  if (const auto node = map.find(key)) value = node->integer(minimum, maximum);
-}
-void get(const YamlNode& map, const char* key, std::string& value) {
-  const auto node = map.find(key);
-  if (!node) return;
-  value = node->text();
-  if (value.empty()) throw node->error("must not be empty");
-}
-template <class Enum>
-void get(const YamlNode& map, const char* key, Enum& value, std::initializer_list<const char*> words) {
-  if (const auto node = map.find(key)) value = static_cast<Enum>(node->choice(words));
-}
-template <int Size>
-void get(const YamlNode& map, const char* key, Eigen::Matrix<double, Size, 1>& value, double minimum = -kAny,
-         double maximum = kAny, double unit = 1.0) {
-  const auto node = map.find(key);
-  if (!node) return;
-  const std::vector<double> numbers = node->reals(Size);
-  for (int i = 0; i < Size; ++i) {
-    const double number = numbers[static_cast<std::size_t>(i)];
-    if (number < minimum || number > maximum)
-      throw node->error(fmt::format("{} is out of range", number),
-                        fmt::format("Give numbers from {} to {}", minimum, maximum));
-    value(i) = unit * number;
-  }
-}
 // Upper triangular and near the identity, or it is no IMU.
 void getMapping(const YamlNode& map, const char* key, Eigen::Matrix3d& value) {
   const auto node = map.find(key);
@@ -69,25 +38,6 @@ void getMapping(const YamlNode& map, const char* key, Eigen::Matrix3d& value) {
   if ((value - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kLargest)
     throw node->error("is too far from the identity",
                       fmt::format("No entry may differ by more than {}", kLargest));
-}
-
-void readBoard(const YamlNode& map, Scenario& scenario) {
-  Board& board = scenario.board;
-  map.allowOnly({"type", "circles", "rows", "cols", "spacing_m", "radius_m", "stretch", "row_bow_m",
-                 "column_bow_m", "twist_m", "tag_size_m"});
-  constexpr std::span kSimulatedTypes = std::span(kBoardTypeNames).first<4>();  // all but ChArUco
-  if (const auto node = map.find("type")) board.type = static_cast<BoardType>(node->choice(kSimulatedTypes));
-  get(map, "circles", board.circles, {"dark", "bright"});
-  get(map, "rows", board.rows, 1, 100);
-  get(map, "cols", board.cols, 1, 100);
-  get(map, "spacing_m", board.spacing_m, 1e-4, 10.0, "m");
-  get(map, "radius_m", board.radius_m, 1e-5, 10.0, "m");
-  get(map, "tag_size_m", board.tag_size_m, 1e-4, 10.0, "m");
-  if (!board.hasCircles()) board.radius_m = 0.0;
-  get(map, "stretch", scenario.board_stretch, -0.1, 0.1, "");
-  get(map, "row_bow_m", scenario.board_bow.rows_m, -kLargestBow_m, kLargestBow_m, "m");
-  get(map, "column_bow_m", scenario.board_bow.columns_m, -kLargestBow_m, kLargestBow_m, "m");
-  get(map, "twist_m", scenario.board_bow.twist_m, -kLargestBow_m, kLargestBow_m, "m");
 }
 
 void readGloss(const YamlNode& map, GlossModel& gloss) {
@@ -201,15 +151,6 @@ void readMotion(const YamlNode& map, MotionModel& motion) {
                     "Make distance_amplitude_m less than distance_m / sqrt(sinusoids)");
 }
 
-void readTransform(const YamlNode& map, RigidTransform& transform) {
-  map.allowOnly({"rotation_xyzw", "translation_m"});
-  Eigen::Vector4d rotation = transform.rotation.coeffs();
-  get(map, "rotation_xyzw", rotation);
-  get(map, "translation_m", transform.translation_m);
-  if (rotation.norm() < 1e-6) throw map["rotation_xyzw"].error("must not be zero");
-  transform.rotation.coeffs() = rotation.normalized();
-}
-
 void readIntrinsicsOf(const YamlNode& map, CameraIntrinsics& camera) {
   map.allowOnly({"model", "resolution_px", "focal_length_px", "principal_point_px", "distortion"});
   get(map, "model", camera.model, kCameraModelNames);
@@ -264,12 +205,13 @@ void readFrames(const YamlNode& map, FrameModel& frames) {
 }
 
 void readCamera(const YamlNode& map, SimulatedCamera& camera) {
-  map.allowOnly({"name", "stream", "time_offset_s", "same_sensor_as", "imu_from_camera", "intrinsics",
-                 "pixel", "frames"});
+  map.allowOnly({"name", "stream", "time_offset_s", "same_sensor_as", "board", "imu_from_camera",
+                 "intrinsics", "pixel", "frames"});
   get(map, "name", camera.name);
   get(map, "stream", camera.stream);
   get(map, "time_offset_s", camera.time_offset_s, -60.0, 60.0, "s");
   get(map, "same_sensor_as", camera.same_sensor_as);
+  get(map, "board", camera.board);
   if (const auto node = map.find("imu_from_camera")) readTransform(*node, camera.imu_from_camera);
   if (const auto node = map.find("intrinsics")) readIntrinsicsOf(*node, camera.intrinsics);
   if (const auto node = map.find("pixel")) readPixel(*node, camera.pixel);
@@ -392,18 +334,15 @@ void shareSensors(const std::string& file, std::vector<SimulatedCamera>& cameras
 
 // What can be wrong only once a scenario and its bases are put together.
 void validateWhole(const Scenario& scenario, const std::string& file) {
-  try {
-    validate(scenario.board);
-  } catch (const CalibrationError& error) {
-    throw badInput(file + ": " + error.place(), error.problem(), error.advice());
-  }
-  for (const SimulatedCamera& camera : scenario.cameras) {
+  validateBoards(scenario, file);
+  for (std::size_t k = 0; k < scenario.cameras.size(); ++k) {
+    const SimulatedCamera& camera = scenario.cameras[k];
     validate(camera.intrinsics, fmt::format("{}: intrinsics of {}", file, camera.name));
     if (camera.frames && camera.stream.find('/') != std::string::npos)
       throw badInput(fmt::format("{}: stream of {}", file, camera.name),
                      fmt::format("'{}' is no name for a folder of frames", camera.stream),
                      "Give it one without slashes");
-    if (!camera.frames && !scenario.board.hasCircles() && scenario.scene.blink_hz <= 0.0)
+    if (!camera.frames && !boardOf(scenario, k).hasCircles() && scenario.scene.blink_hz <= 0.0)
       throw badInput(fmt::format("{}: board.type", file),
                      fmt::format("{} is an event camera, and the board has no circles", camera.name),
                      "Give the camera frames, or the board circles, or let it blink: scene.blink_hz");
@@ -413,7 +352,8 @@ void validateWhole(const Scenario& scenario, const std::string& file) {
 Scenario readFrom(const std::filesystem::path& path, int depth) {
   const YamlNode root = YamlNode::load(path);
   root.allowOnly({"base", "description", "seed", "duration_s", "format", "gravity_m_s2", "gravity_norm_m_s2",
-                  "board", "scene", "motion", "camera", "cameras", "imu", "imus", "session"});
+                  "board", "further_boards", "scene", "motion", "camera", "cameras", "imu", "imus",
+                  "session"});
   Scenario scenario;
   scenario.cameras.resize(1);
   scenario.imus.resize(1);
@@ -431,6 +371,7 @@ Scenario readFrom(const std::filesystem::path& path, int depth) {
   if (const auto node = root.find("session")) readSession(*node, scenario);
   readGravity(root, scenario.gravity_in_world_m_s2);
   if (const auto node = root.find("board")) readBoard(*node, scenario);
+  if (const auto node = root.find("further_boards")) readFurtherBoards(*node, scenario);
   if (const auto node = root.find("scene")) readScene(*node, scenario.scene);
   if (const auto node = root.find("motion")) readMotion(*node, scenario.motion);
   readSensors(root, "camera", "cameras", false, scenario.cameras, readCamera);

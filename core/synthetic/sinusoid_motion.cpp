@@ -1,4 +1,5 @@
 #include "core/synthetic/sinusoid_motion.h"
+#include "core/synthetic/scenario_boards.h"
 
 #include "core/geometry/camera_model.h"
 #include "core/geometry/so3.h"
@@ -182,6 +183,10 @@ RigidTransform SinusoidMotion::worldFromCamera(std::size_t camera, double time_s
   const RigidTransform world_from_first = firstCameraAt(time_s).world_from_body;
   if (camera == 0) return world_from_first;
   return world_from_first * camera_from_imu_ * scenario_.cameras[camera].imu_from_camera;
+}
+
+RigidTransform SinusoidMotion::boardFromCamera(std::size_t camera, double time_s) const {
+  return boardFromWorld(scenario_, camera) * worldFromCamera(camera, time_s);
 }
 
 double SinusoidMotion::imageSpeedRms_px_s() const {

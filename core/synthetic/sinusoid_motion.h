@@ -32,6 +32,8 @@ class SinusoidMotion {
   MotionState imuAt(double time_s) const;
   MotionState cameraAt(std::size_t camera, double time_s) const;
   RigidTransform worldFromCamera(std::size_t camera, double time_s) const;
+  // Of the board that it sees.
+  RigidTransform boardFromCamera(std::size_t camera, double time_s) const;
 
   // RMS image speed of those of the board's circles that are in the first camera's image.
   double imageSpeedRms_px_s() const;

@@ -1,0 +1,28 @@
+// The boards of a scenario: how they are read, and what each camera sees of them. A camera sees one board, with clutter
+// behind it, and nothing of the others.
+#pragma once
+
+#include "core/base/yaml_node.h"
+#include "core/synthetic/scenario.h"
+
+#include <cstddef>
+#include <string>
+
+namespace evical {
+
+void readBoard(const YamlNode& map, Scenario& scenario);
+void readFurtherBoards(const YamlNode& list, Scenario& scenario);
+
+// What can be wrong only once a scenario and its bases are put together. Throws CalibrationError (BadInput).
+void validateBoards(const Scenario& scenario, const std::string& file);
+
+const Board& boardOf(const Scenario& scenario, std::size_t camera);
+
+// Nothing where the camera sees the board whose frame is the world.
+const SimulatedBoard* furtherBoardOf(const Scenario& scenario, std::size_t camera);
+
+// As if this camera's board were the only one, its frame the world: poses are to be taken by boardFromWorld.
+Scenario sceneOf(const Scenario& scenario, std::size_t camera);
+RigidTransform boardFromWorld(const Scenario& scenario, std::size_t camera);
+
+}  // namespace evical
