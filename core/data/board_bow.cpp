@@ -45,14 +45,13 @@ double bowHeight_m2(const QuantityInfo& curvature, const Board& board) {
   return length_m * length_m / 8.0;
 }
 
-std::string bowWords(const BoardState& state, const Board& board) {
+std::string bowWords(const BoardState& state, const Board& board, const std::string& called) {
   const Height most = largest(state, board);
   if (most.of == &twistInfo())
-    return fmt::format(
-        "the board seems bent: twisted, so that its corners stand out or lie back by {:.2g} mm",
-        std::abs(most.mm));
+    return fmt::format("the {} seems bent: twisted, so that its corners stand out or lie back by {:.2g} mm",
+                       called, std::abs(most.mm));
   const bool rows = most.of == &rowInfo();
-  return fmt::format("the board seems bent: over the {:.2g} m of its {} the middle {} by {:.2g} mm",
+  return fmt::format("the {} seems bent: over the {:.2g} m of its {} the middle {} by {:.2g} mm", called,
                      rows ? board.extent_m().x() : board.extent_m().y(), rows ? "rows" : "columns",
                      most.mm > 0.0 ? "stands out" : "lies back", std::abs(most.mm));
 }

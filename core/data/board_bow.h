@@ -14,7 +14,7 @@ namespace evical {
 double bowHeight_m2(const QuantityInfo& curvature, const Board& board);
 
 // "the board seems bent: over the 0.5 m of its columns the middle stands out by 1.1 mm"; of the largest.
-std::string bowWords(const BoardState& state, const Board& board);
+std::string bowWords(const BoardState& state, const Board& board, const std::string& called = "board");
 
 // That in mm, without a sign.
 double largestBow_mm(const BoardState& state, const Board& board);

@@ -50,6 +50,8 @@ struct ImuUncertainty {
 };
 
 struct BoardUncertainty {
+  Eigen::Vector3d rotation_std_rad = Eigen::Vector3d::Zero();   // about the world's axes
+  Eigen::Vector3d translation_std_m = Eigen::Vector3d::Zero();  // in the world
   double scale_std = 0.0, stretch_std = 0.0;
   double row_curvature_std_1_m = 0.0, column_curvature_std_1_m = 0.0, twist_std_1_m = 0.0;
 };
@@ -62,6 +64,7 @@ struct UncertaintyReport {
   std::vector<CameraUncertainty> cameras;
   std::vector<ImuUncertainty> imus;
   BoardUncertainty board;
+  std::vector<BoardUncertainty> further_boards;
   std::vector<std::string> given;  // held at known values, not estimated: "left.time_offset"
   double gravity_direction_std_rad = 0.0;
   double gravity_norm_std_m_s2 = 0.0;  // 0: its norm is held
@@ -70,6 +73,12 @@ struct UncertaintyReport {
   // gravity known: below 1, the need is not met in that direction. Ascending.
   std::vector<double> observability;
   std::string weakest;  // in plain words: "translation along the camera's z axis"
+
+  // 0: the world's.
+  BoardUncertainty& boardAt(std::size_t index) { return index == 0 ? board : further_boards.at(index - 1); }
+  const BoardUncertainty& boardAt(std::size_t index) const {
+    return index == 0 ? board : further_boards.at(index - 1);
+  }
 };
 
 // Of two cameras that are one sensor: how much later the first stamps what both see (a DAVIS's events against its

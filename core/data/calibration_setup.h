@@ -41,6 +41,13 @@ struct ImuData {
 // Whether a frame camera exposes all its rows at once, or one after the other.
 enum class Shutter { Global, Rolling };
 
+// Beside the board whose frame is the world: another one, that keeps its place before it.
+struct FurtherBoard {
+  std::string name;
+  Board board;
+  std::optional<double> spacing_std = {};  // relative; absent: as well known as the world's
+};
+
 struct CameraData {
   std::string name;
   CameraLens lens;
@@ -50,13 +57,16 @@ struct CameraData {
   // Another camera whose chip gives these measurements, too (a DAVIS's events and frames): one pose, one lens, one
   // clock, and a time offset of its own. That camera has none.
   std::optional<std::size_t> same_sensor_as = {};
+  std::size_t board = 0;  // that it sees: CalibrationInput::boardAt
 };
 
 // The estimator's input. Times of observations are seconds since start_ns;
 // IMU samples keep their nanoseconds.
 struct CalibrationInput {
   std::int64_t start_ns = 0;
-  Board board;
+  std::string board_name = "board";
+  Board board;  // its frame is the world
+  std::vector<FurtherBoard> further_boards = {};
   std::vector<CameraData> cameras;
   std::vector<ImuData> imus;
   std::size_t reference_imu = 0;     // index into imus
@@ -65,6 +75,29 @@ struct CalibrationInput {
 
   // The camera that stands for this one's chip: itself, where it has a chip of its own.
   std::size_t sensorOf(std::size_t camera) const { return cameras[camera].same_sensor_as.value_or(camera); }
+  // 0: the world's.
+  const Board& boardAt(std::size_t board_index) const {
+    return board_index == 0 ? board : further_boards.at(board_index - 1).board;
+  }
+  const Board& boardOf(std::size_t camera) const { return boardAt(cameras[camera].board); }
+  const std::string& boardName(std::size_t board_index) const {
+    return board_index == 0 ? board_name : further_boards.at(board_index - 1).name;
+  }
+  // In a session's words: "board", or one of several.
+  std::string boardKey(std::size_t board_index) const {
+    return further_boards.empty() ? "board" : "boards." + boardName(board_index);
+  }
+  // In plain words: "board", "board tags".
+  std::string boardWords(std::size_t board_index) const {
+    return further_boards.empty() ? "board" : "board " + boardName(board_index);
+  }
+  // How well its spacing is known, relative, where the world's is so well known.
+  double spacingSigma(std::size_t board_index, double of_world) const {
+    return board_index == 0 ? of_world : further_boards.at(board_index - 1).spacing_std.value_or(of_world);
+  }
+  std::size_t boardCount() const { return 1 + further_boards.size(); }
+  // The camera whose board is the world: the reference, or the first one where that is an IMU.
+  std::size_t worldCamera() const { return imus.empty() ? reference_camera : 0; }
   // Where all else is relative to this camera.
   bool isReferenceCamera(std::size_t camera) const { return imus.empty() && camera == reference_camera; }
 };

@@ -1,4 +1,4 @@
-// All that the estimator estimates, initial or final. Frames: world = board; body = the reference IMU, or the
+// All that the estimator estimates, initial or final. Frames: world = board (the first of several); body = the reference IMU, or the
 // reference camera where there is no IMU.
 #pragma once
 
@@ -86,12 +86,18 @@ inline double accelerometerTime_s(const ImuState& imu, double imu_time_s) {
 struct BoardState {
   double scale = 1.0, stretch = 0.0;
   double row_curvature_1_m = 0.0, column_curvature_1_m = 0.0, twist_1_m = 0.0;
+  RigidTransform world_from_board = {};  // identity for the one whose frame is the world
 
-  Eigen::Vector3d place_m(const Eigen::Vector2d& on_board_m) const {
+  // In the board's own frame, and in the world's.
+  Eigen::Vector3d onSheet_m(const Eigen::Vector2d& on_board_m) const {
     const double x = on_board_m.x(), y = on_board_m.y();
     return {scale * (1.0 + 0.5 * stretch) * x, scale * (1.0 - 0.5 * stretch) * y,
             0.5 * (row_curvature_1_m * x * x + column_curvature_1_m * y * y) + twist_1_m * x * y};
   }
+  Eigen::Vector3d place_m(const Eigen::Vector2d& on_board_m) const {
+    return world_from_board * onSheet_m(on_board_m);
+  }
+  Eigen::Vector3d normal() const { return world_from_board.rotation * Eigen::Vector3d::UnitZ(); }
 };
 
 // Times of the splines are seconds since the recording's start on the reference IMU's clock.
@@ -101,7 +107,14 @@ struct CalibrationState {
   std::vector<CameraState> cameras;
   std::vector<ImuState> imus;
   BoardState board = {};
+  std::vector<BoardState> further_boards = {};
   Eigen::Vector3d gravity_in_world_m_s2 = Eigen::Vector3d(0.0, 0.0, -9.81);  // points down
+
+  // 0: the world's.
+  BoardState& boardAt(std::size_t index) { return index == 0 ? board : further_boards.at(index - 1); }
+  const BoardState& boardAt(std::size_t index) const {
+    return index == 0 ? board : further_boards.at(index - 1);
+  }
 };
 
 }  // namespace evical

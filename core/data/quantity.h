@@ -235,6 +235,15 @@ constexpr QuantityInfo curvatureInfo(const char* name, const char* title, const 
           .std_key = std_key};
 }
 
+// The place of a further board in the world: nobody asks for it, but that it is known.
+constexpr QuantityInfo ofFurtherBoard(QuantityInfo info) {
+  info.need = QuantityNeed::None;
+  info.of_sensor = false;
+  info.presence = QuantityPresence::WhereNotZero;
+  info.written = QuantityWriting::WherePresent;
+  return info;
+}
+
 }  // namespace detail
 
 inline constexpr auto kCameraQuantities = std::tuple{
@@ -386,6 +395,12 @@ inline constexpr auto kImuQuantities = std::tuple{
                 &ImuPrior::gyroscope_rotation}};
 
 inline constexpr auto kBoardQuantities = std::tuple{
+    QuantityRow{detail::ofFurtherBoard(detail::rotationInfo(QuantityOwner::Board, "world_from_board")),
+                MemberOf{&BoardState::world_from_board, &RigidTransform::rotation},
+                &BoardUncertainty::rotation_std_rad, NoPrior{}},
+    QuantityRow{detail::ofFurtherBoard(detail::translationInfo(QuantityOwner::Board, "world_from_board")),
+                MemberOf{&BoardState::world_from_board, &RigidTransform::translation_m},
+                &BoardUncertainty::translation_std_m, NoPrior{}},
     QuantityRow{QuantityInfo{.name = "scale",
                              .title = "size",
                              .owner = QuantityOwner::Board,
@@ -431,6 +446,14 @@ inline constexpr QuantityInfo kGravityQuantity = {.name = "gravity",
 template <class Rows, class Visitor>
 constexpr void forEachQuantity(const Rows& rows, Visitor&& visit) {
   std::apply([&](const auto&... row) { (visit(row), ...); }, rows);
+}
+
+// How a board's sheet is: all of it but its place.
+template <class Visitor>
+constexpr void forEachSheetQuantity(Visitor&& visit) {
+  forEachQuantity(kBoardQuantities, [&](const auto& row) {
+    if constexpr (std::is_same_v<decltype(row.value(std::declval<BoardState&>())), double&>) visit(row);
+  });
 }
 
 // Of the row whose value is this member.

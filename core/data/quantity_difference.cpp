@@ -135,8 +135,11 @@ std::vector<QuantityDifference> difference(const Estimate& a, const Estimate& b)
     compareSensor(kImuQuantities, a.imu_names[i], Side{a.imus.at(i), a.uncertainty.imus.at(i)},
                   Side{other, b.uncertainty.imus.at(j)}, a.imu_names[i] == a.reference, differences);
   }
-  compareSensor(kBoardQuantities, "board", Side{a.board, a.uncertainty.board},
-                Side{b.board, b.uncertainty.board}, false, differences);
+  for (std::size_t i = 0; i < a.boards.size(); ++i) {
+    const std::size_t j = i == 0 ? 0 : sensorIndex(a.board_names.at(i), b.board_names, "boards");
+    compareSensor(kBoardQuantities, a.board_names.at(i), Side{a.boards[i], a.uncertainty.boardAt(i)},
+                  Side{b.boards.at(j), b.uncertainty.boardAt(j)}, i == 0, differences);
+  }
   if (const double sigma = a.uncertainty.gravity_norm_std_m_s2; sigma > 0.0)
     differences.all.push_back({"gravity.norm", kGravityQuantity.shown_unit,
                                a.gravity_in_world_m_s2.norm() - b.gravity_in_world_m_s2.norm(), sigma});
@@ -154,6 +157,7 @@ UncertaintyReport differenceUncertainty(const UncertaintyReport& a, const Uncert
   addSensors(kCameraQuantities, sum.cameras, b.cameras);
   addSensors(kImuQuantities, sum.imus, b.imus);
   addSigmas(kBoardQuantities, sum.board, b.board);
+  addSensors(kBoardQuantities, sum.further_boards, b.further_boards);
   sum.gravity_norm_std_m_s2 = std::hypot(a.gravity_norm_std_m_s2, b.gravity_norm_std_m_s2);
   sum.gravity_direction_std_rad = std::hypot(a.gravity_direction_std_rad, b.gravity_direction_std_rad);
   return sum;

@@ -11,13 +11,15 @@
 
 namespace evical {
 
-// An estimate without its trajectory, or what is true. Lists run parallel: as many uncertainties as sensors.
+// An estimate without its trajectory, or what is true. Lists run parallel: as many uncertainties as sensors
+// and further boards.
 struct Estimate {
   std::string reference;
   std::vector<std::string> camera_names, imu_names;
   std::vector<CameraState> cameras;
   std::vector<ImuState> imus;
-  BoardState board;
+  std::vector<std::string> board_names = {"board"};  // the world's, then the further ones
+  std::vector<BoardState> boards = std::vector<BoardState>(1);
   Eigen::Vector3d gravity_in_world_m_s2 = Eigen::Vector3d::Zero();
   UncertaintyReport uncertainty;
 };

@@ -156,7 +156,8 @@ AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& inpu
                           Initialisation& result) {
   const ImuData& imu = input.imus[input.reference_imu];
   Stopwatch stopwatch;
-  const std::vector<CameraPose> poses = cameraPoses(camera, input.board, gyro, options, context, result);
+  const std::vector<CameraPose> poses =
+      cameraPoses(camera, input.boardAt(camera.board), gyro, options, context, result);
   result.steps.back().duration_s = stopwatch.restart_s();
   context.throwIfStopped();
   const std::vector<TimeOffsetPeak> peaks = timeOffsetPeaks(camera, poses, gyro, options, result);

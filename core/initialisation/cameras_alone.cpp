@@ -5,12 +5,14 @@
 #include "core/initialisation/bridged_cameras.h"
 #include "core/initialisation/camera_alignment.h"
 #include "core/initialisation/camera_trajectory.h"
+#include "core/initialisation/further_boards.h"
 #include "core/initialisation/initialisation_checks.h"
 #include "core/numerics/angles.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 namespace evical {
@@ -38,6 +40,8 @@ class CamerasAlone {
       if (k != input_.reference_camera) findOnReference(k, felt, gyro);
     }
     followAllInTurns();
+    alignFurtherBoards(input_, before_further_, trajectory_, options_.longest_shared_gap_s, options_,
+                       result_);
     result_.state.world_from_imu_rotation = std::move(trajectory_.world_from_camera_rotation);
     result_.state.imu_in_world_m = std::move(trajectory_.camera_in_world_m);
   }
@@ -47,7 +51,8 @@ class CamerasAlone {
 
   void followReference() {
     Stopwatch stopwatch;
-    CameraPoses found = estimateCameraPoses(reference(), input_.board, options_, context_);
+    CameraPoses found =
+        estimateCameraPoses(reference(), input_.boardAt(reference().board), options_, context_);
     checkViews(reference(), found, options_);
     const int swapped = resolveBySmoothness(found.poses, options_.longest_pair_s);
     poses_ = found.poses;
@@ -70,18 +75,22 @@ class CamerasAlone {
   void findOnReference(std::size_t k, const CalibrationInput& felt, const GyroRotation& gyro) {
     const std::size_t steps = result_.steps.size(), warnings = result_.warnings.size();
     try {
-      place(k, alignCamera(input_.cameras[k], felt, gyro, options_, context_, result_));
+      AlignedCamera aligned = alignCamera(input_.cameras[k], felt, gyro, options_, context_, result_);
+      if (input_.cameras[k].board > 0)
+        before_further_.emplace(k, std::move(aligned));
+      else
+        place(k, aligned);
     } catch (const CalibrationError&) {
       result_.steps.resize(steps);
       result_.warnings.resize(warnings);
-      if (!bridge(k)) throw;
+      if (input_.cameras[k].board > 0 || !bridge(k)) throw;
     }
   }
 
   bool bridge(std::size_t k) {
     Stopwatch stopwatch;
     const CameraData& camera = input_.cameras[k];
-    CameraPoses found = estimateCameraPoses(camera, input_.board, options_, context_);
+    CameraPoses found = estimateCameraPoses(camera, input_.boardAt(camera.board), options_, context_);
     resolveBySmoothness(found.poses, options_.longest_pair_s);
     const auto bridged = bridgeCameras(poses_, found.poses, camera.prior.time_offset, options_, context_);
     if (!bridged) return false;
@@ -154,6 +163,7 @@ class CamerasAlone {
   std::vector<CameraPose> poses_;  // of the reference
   CameraTrajectory trajectory_;
   std::vector<std::pair<std::size_t, std::vector<CameraPose>>> in_turns_;
+  std::map<std::size_t, AlignedCamera> before_further_;  // cameras that see other boards than the reference
 };
 
 }  // namespace

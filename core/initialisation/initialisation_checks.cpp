@@ -16,12 +16,18 @@ void checkInput(const CalibrationInput& input, const InitialisationOptions& opti
         "initialisation.knot_spacing_s", fmt::format("{:g} s is too close", options.knot_spacing_s),
         fmt::format("Give at least {:g} s, or 0 for knots that follow the motion", kClosestKnots_s));
   }
-  if (input.board.hasHalfTurnAmbiguity()) {
-    throw badInput("board", "looks the same when turned by half a turn, so its pose is ambiguous",
+  for (std::size_t i = 0; i < input.boardCount(); ++i) {
+    if (!input.boardAt(i).hasHalfTurnAmbiguity()) continue;
+    throw badInput(input.boardKey(i), "looks the same when turned by half a turn, so its pose is ambiguous",
                    "Use an asymmetric board with an odd number of rows; this one serves for intrinsics only");
   }
   if (input.cameras.empty())
     throw calibrationFailed("session", "there is no camera", "Add one under cameras:");
+  if (input.cameras[input.worldCamera()].board != 0)
+    throw badInput("boards",
+                   fmt::format("{} does not see the one whose frame is the world",
+                               input.cameras[input.worldCamera()].name),
+                   "Put the board first that it sees");
   for (const CameraData& camera : input.cameras) {
     if (!camera.lens.seen_with)
       throw calibrationFailed(camera.name, "has no intrinsics", "Give them in the session");

@@ -7,6 +7,7 @@
 #include "core/initialisation/agreement_check.h"
 #include "core/initialisation/camera_alignment.h"
 #include "core/initialisation/cameras_alone.h"
+#include "core/initialisation/further_boards.h"
 #include "core/initialisation/further_imus.h"
 #include "core/initialisation/gravity_alignment.h"
 #include "core/initialisation/initialisation_checks.h"
@@ -21,6 +22,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -42,9 +44,9 @@ TimeRange viewRange(const std::vector<AlignedCamera>& cameras) {
 
 std::vector<CameraTrack> tracksOf(const CalibrationInput& input, const std::vector<AlignedCamera>& cameras) {
   std::vector<CameraTrack> tracks;
-  for (std::size_t k = 0; k < cameras.size(); ++k)
+  for (const AlignedCamera& camera : cameras)
     tracks.push_back(
-        {cameras[k].poses, cameras[k].hand_eye.time_offset_s, input.cameras[k].prior.translation});
+        {camera.poses, camera.hand_eye.time_offset_s, input.cameras[camera.camera].prior.translation});
   return tracks;
 }
 
@@ -142,14 +144,14 @@ void alignTranslations(const CalibrationInput& input, const InitialisationOption
   state.imu_in_world_m = gravity.imu_in_world_m;
   state.gravity_in_world_m_s2 = gravity.gravity_in_world_m_s2;
   state.imus.resize(input.imus.size());
+  state.cameras.resize(input.cameras.size());
   ImuState& reference = state.imus[input.reference_imu];
   reference.gyroscope_bias_rad_s = cameras.front().hand_eye.gyroscope_bias_rad_s;
   reference.accelerometer_bias_m_s2 = gravity.accelerometer_bias_m_s2;
   for (std::size_t k = 0; k < cameras.size(); ++k) {
-    CameraState camera;
+    CameraState& camera = state.cameras.at(cameras[k].camera);
     camera.reference_from_camera = {cameras[k].hand_eye.reference_from_sensor, gravity.cameras_in_imu_m[k]};
     camera.time_offset_s = cameras[k].hand_eye.time_offset_s;
-    state.cameras.push_back(camera);
   }
 }
 
@@ -204,6 +206,46 @@ bool saturates(const ImuData& imu) {
   });
 }
 
+// Those that see other boards than the world's; the others stay.
+std::map<std::size_t, AlignedCamera> takeFurther(const CalibrationInput& input,
+                                                 std::vector<AlignedCamera>& cameras) {
+  std::map<std::size_t, AlignedCamera> further;
+  for (AlignedCamera& camera : cameras)
+    if (input.cameras[camera.camera].board > 0) further.emplace(camera.camera, std::move(camera));
+  std::erase_if(cameras, [&](const AlignedCamera& camera) { return further.contains(camera.camera); });
+  return further;
+}
+
+// Known where the cameras see the world's board.
+CameraTrajectory bodyTrajectory(const std::vector<AlignedCamera>& cameras, const CalibrationState& state) {
+  CameraTrajectory body{state.world_from_imu_rotation, state.imu_in_world_m, {}};
+  for (const AlignedCamera& camera : cameras)
+    for (const CameraPose& pose : camera.poses)
+      body.view_times_s.push_back(pose.time_s + camera.hand_eye.time_offset_s);
+  std::sort(body.view_times_s.begin(), body.view_times_s.end());
+  return body;
+}
+
+// Each camera's poses, time offset and rotation on the reference IMU, whatever board it sees.
+std::vector<AlignedCamera> alignCameras(const CalibrationInput& input, const GyroRotation& gyro,
+                                        const InitialisationOptions& options, const RunContext& context,
+                                        std::size_t& told, Initialisation& result) {
+  std::vector<AlignedCamera> cameras;
+  for (const CameraData& camera : input.cameras) {
+    context.throwIfStopped();
+    cameras.push_back(alignCamera(camera, input, gyro, options, context, result));
+    cameras.back().camera = cameras.size() - 1;
+    // An offset that is given may be what is wrong, which is told of beside what the recording says.
+    if (!isGiven(camera.prior.time_offset))
+      checkRotationsAgree(input, result.agreements.back(), options, context);
+    tellSteps(result.steps, context.observer, told);
+    constexpr double kShare = 0.7;
+    context.progress.stageProgress(kShare * static_cast<double>(cameras.size()) /
+                                   static_cast<double>(input.cameras.size()));
+  }
+  return cameras;
+}
+
 Initialisation initialiseStraight(const CalibrationInput& input, const InitialisationOptions& options,
                                   const RunContext& context) {
   Initialisation result;
@@ -220,22 +262,12 @@ Initialisation initialiseStraight(const CalibrationInput& input, const Initialis
   const std::vector<ImuSample> rates = withoutRateSpikes(imu.samples);
   const GyroRotation gyro(rates, input.start_ns);
   checkGyroscope(imu, gyro, options, result.warnings);
-  std::vector<AlignedCamera> cameras;
-  for (const CameraData& camera : input.cameras) {
-    context.throwIfStopped();
-    cameras.push_back(alignCamera(camera, input, gyro, options, context, result));
-    // An offset that is given may be what is wrong, which is told of beside what the recording says.
-    if (!isGiven(camera.prior.time_offset))
-      checkRotationsAgree(input, result.agreements.back(), options, context);
-    tellSteps(result.steps, context.observer, told);
-    constexpr double kShare = 0.7;
-    context.progress.stageProgress(kShare * static_cast<double>(cameras.size()) /
-                                   static_cast<double>(input.cameras.size()));
-  }
+  std::vector<AlignedCamera> cameras = alignCameras(input, gyro, options, context, told, result);
   const TimeRange views = viewRange(cameras);
   checkOverlap(imu, views.begin_s, views.end_s, gyro.begin_s(), gyro.end_s(), options);
   TimeRange range{std::max(views.begin_s - options.margin_s, gyro.begin_s()),
                   std::min(views.end_s + options.margin_s, gyro.end_s())};
+  const std::map<std::size_t, AlignedCamera> before_further = takeFurther(input, cameras);
   const GyroRotation unbiased(rates, input.start_ns, cameras.front().hand_eye.gyroscope_bias_rad_s);
   turnAboutAxis(input, options, range, unbiased, context, cameras, result);
   context.throwIfStopped();
@@ -246,6 +278,9 @@ Initialisation initialiseStraight(const CalibrationInput& input, const Initialis
                        saturates(imu) ? kSaturatedDriftKnot_s : kDriftKnot_s);
   context.throwIfStopped();
   alignTranslations(input, options, cameras, context, result);
+  constexpr double kCarried_s = 0.3;  // by the IMU, from one view of the world's board to the next
+  alignFurtherBoards(input, before_further, bodyTrajectory(cameras, result.state), kCarried_s, options,
+                     result);
   keepLenses(input, result.state);
   for (std::size_t k = 0; k < input.imus.size(); ++k) {
     if (k != input.reference_imu) alignFurtherImu(input, k, unbiased, options, context, result);

@@ -193,11 +193,12 @@ std::array<Signal, 2> signalsOf(const ImuData& imu, std::int64_t start_ns, TimeR
 
 ViewPrecision viewPrecision(std::span<const CameraData> cameras, std::span<const AlignedCamera> aligned) {
   ViewPrecision best;
-  for (std::size_t k = 0; k < cameras.size(); ++k) {
+  for (const AlignedCamera& each : aligned) {
+    const CameraData& camera = cameras[each.camera];
     std::vector<double> angles_rad, distances_m;
-    for (const CameraPose& pose : aligned[k].poses) {
-      const double circles = static_cast<double>(cameras[k].observations.views[pose.view].circles.size());
-      const double focal_px = idealFocalLength_px(*cameras[k].lens.seen_with).mean();
+    for (const CameraPose& pose : each.poses) {
+      const double circles = static_cast<double>(camera.observations.views[pose.view].circles.size());
+      const double focal_px = idealFocalLength_px(*camera.lens.seen_with).mean();
       angles_rad.push_back(pose.reprojection_px / (focal_px * std::sqrt(circles)));
       distances_m.push_back(pose.world_from_camera.translation_m.norm());
     }

@@ -13,6 +13,7 @@ namespace evical {
 struct AlignedCamera {
   std::vector<CameraPose> poses;
   RelativeRotation hand_eye;
+  std::size_t camera = 0;  // index into the input's
 };
 
 // How finely the cameras correct the gyroscope: its slow drift, or what a saturated one has missed.

@@ -48,9 +48,10 @@ CalibrationProblem::CalibrationProblem(const CalibrationInput& input, const Opti
   // Between cameras no wrong amplitude of one counts for much: where the board is, either sees anew.
   const double pixel_error_px = input.imus.empty() ? 0.0 : options.pixel_error_px;
   for (const CameraData& camera : input.cameras) {
+    const Board& board = input.boardAt(camera.board);
     circle_models_.push_back(
-        {*camera.lens.seen_with, input.board.radius_m, options.huber_sigma, options.freesIntrinsics()});
-    pixel_errors_.emplace_back(camera, input.board, pixel_error_px);
+        {*camera.lens.seen_with, board.radius_m, options.huber_sigma, options.freesIntrinsics()});
+    pixel_errors_.emplace_back(camera, board, pixel_error_px);
   }
 }
 
@@ -90,6 +91,10 @@ void CalibrationProblem::setManifolds(ProblemBuilder& builder) {
   };
   for (auto& point : state.world_from_imu_rotation.control_points) set(point.coeffs().data(), &so3_);
   for (CameraState& camera : state.cameras) set(camera.reference_from_camera.rotation.coeffs().data(), &so3_);
+  for (std::size_t i = 0; i < input_.boardCount(); ++i)
+    set(state.boardAt(i).world_from_board.rotation.coeffs().data(), &so3_);
+  builder.hold(state.board.world_from_board.rotation.coeffs().data());
+  builder.hold(state.board.world_from_board.translation_m.data());
   for (std::size_t i = 0; i < state.imus.size(); ++i) {
     double* gyroscope_rotation = state.imus[i].gyroscope_from_accelerometer.coeffs().data();
     set(state.imus[i].reference_from_imu.rotation.coeffs().data(), &so3_);

@@ -33,11 +33,13 @@ enum Block {
   kBoardColumnCurvature,
   kBoardTwist,
   kExposureShare,
+  kBoardRotation,
+  kBoardTranslation,
   kIntrinsics,  // where they are free
   kBlocks
 };
-constexpr std::array<int, kBlocks> kBlockSizes = {4, 4, 4, 4, 3, 3, 3, 3, 4, 3, 1,
-                                                  1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 9};
+constexpr std::array<int, kBlocks> kBlockSizes = {4, 4, 4, 4, 3, 3, 3, 3, 4, 3, 1, 1,
+                                                  1, 1, 1, 1, 1, 1, 1, 1, 1, 4, 3, 9};
 
 void writeZero(double** jacobians, int blocks, Eigen::Index row) {
   for (int block = 0; block < blocks; ++block) {
@@ -53,6 +55,7 @@ struct Mount {
   double time_offset_s, time_offset_drift_ppm, line_delay_us, exposure_share;
   EdgeLead lead;
   BoardState board;
+  Matrix3d world_from_board;  // its rotation
 
   explicit Mount(double const* const* parameters)
       : camera_from_imu(
@@ -63,8 +66,13 @@ struct Mount {
         line_delay_us(*parameters[kLineDelay]),
         exposure_share(*parameters[kExposureShare]),
         lead{*parameters[kEdgeLead], *parameters[kSlowEdgeLead]},
-        board{*parameters[kBoardScale], *parameters[kBoardStretch], *parameters[kBoardRowCurvature],
-              *parameters[kBoardColumnCurvature], *parameters[kBoardTwist]} {}
+        board{*parameters[kBoardScale],
+              *parameters[kBoardStretch],
+              *parameters[kBoardRowCurvature],
+              *parameters[kBoardColumnCurvature],
+              *parameters[kBoardTwist],
+              {Eigen::Quaterniond(parameters[kBoardRotation]), Vector3d(parameters[kBoardTranslation])}},
+        world_from_board(board.world_from_board.rotation.toRotationMatrix()) {}
 };
 
 // One circle at its time, and what moves it.
@@ -73,12 +81,14 @@ struct PlacedCircle {
   RotationJacobians by_control_points;
   VectorSample position;
   Matrix3d imu_from_world;
-  Vector3d in_imu, normal_in_imu, in_camera, normal_in_camera;
+  Vector3d on_sheet_m, in_imu, normal_in_imu, in_camera, normal_in_camera;
 
   void place(const Mount& mount, const Vector2d& on_board_m) {
     imu_from_world = rotation.rotation.transpose();
-    in_imu = imu_from_world * (mount.board.place_m(on_board_m) - position.value);
-    normal_in_imu = imu_from_world.col(2);
+    on_sheet_m = mount.board.onSheet_m(on_board_m);
+    in_imu = imu_from_world * (mount.world_from_board * on_sheet_m +
+                               mount.board.world_from_board.translation_m - position.value);
+    normal_in_imu = imu_from_world * mount.world_from_board.col(2);
     in_camera = mount.camera_from_imu * (in_imu - mount.camera_in_imu);
     normal_in_camera = mount.camera_from_imu * normal_in_imu;
   }
@@ -89,8 +99,8 @@ bool movesInTime(double** jacobians) {
                        jacobians[kExposureShare]);
 }
 
-// `by_place`: derivative of the residual by where the circle is in the world.
-void writeBoardJacobians(const BoardState& board, const Vector2d& on_board_m, const Matrix23d& by_place,
+// `by_place`: derivative of the residual by where the circle is in the board's frame.
+void writeSheetJacobians(const BoardState& board, const Vector2d& on_board_m, const Matrix23d& by_place,
                          Eigen::Index row, double** jacobians) {
   const double x = on_board_m.x(), y = on_board_m.y();
   const auto write = [&](Block block, const Vector3d& place_by_block) {
@@ -101,6 +111,19 @@ void writeBoardJacobians(const BoardState& board, const Vector2d& on_board_m, co
   write(kBoardRowCurvature, {0.0, 0.0, 0.5 * x * x});
   write(kBoardColumnCurvature, {0.0, 0.0, 0.5 * y * y});
   write(kBoardTwist, {0.0, 0.0, x * y});
+}
+
+// By where the circle and the board's normal are in the world.
+void writeBoardJacobians(const Mount& mount, const PlacedCircle& placed, const Vector2d& on_board_m,
+                         const Matrix23d& by_place, const Matrix23d& by_normal, Eigen::Index row,
+                         double** jacobians) {
+  writeSheetJacobians(mount.board, on_board_m, by_place * mount.world_from_board, row, jacobians);
+  if (jacobians[kBoardRotation]) {
+    writeRotationRows<2>(jacobians, kBoardRotation, row,
+                         -by_place * mount.world_from_board * skew(placed.on_sheet_m) -
+                             by_normal * mount.world_from_board * skew(Vector3d::UnitZ()));
+  }
+  if (jacobians[kBoardTranslation]) jacobianRows<2, 3>(jacobians, kBoardTranslation, row) = by_place;
 }
 
 // `by_px`: derivative of the residual with respect to the predicted centre.
@@ -136,7 +159,8 @@ void writeJacobians(const Mount& mount, const PlacedCircle& placed, const Projec
     if (jacobians[kExposureShare])
       jacobianRows<2, 1>(jacobians, kExposureShare, row) = circle.by_exposure_s * by_time;
   }
-  writeBoardJacobians(mount.board, circle.on_board_m, -by_position, row, jacobians);
+  writeBoardJacobians(mount, placed, circle.on_board_m, -by_position,
+                      by_normal * mount.camera_from_imu * placed.imu_from_world, row, jacobians);
   if (jacobians[kEdgeLead]) jacobianRows<2, 1>(jacobians, kEdgeLead, row) = by_px * circle.lead.of_lead;
   if (jacobians[kSlowEdgeLead])
     jacobianRows<2, 1>(jacobians, kSlowEdgeLead, row) = by_px * circle.lead.of_slow;

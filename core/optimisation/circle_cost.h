@@ -15,9 +15,8 @@
 // rotation (x y z w) and translation [m], time offset [s] and its drift [ppm], line delay [us], edge lead [px] and
 // that of slow edges [px], the board's scale, stretch, two curvatures and twist [1/m] (BoardState; its circles keep the
 // radius that was given and the plane's normal, which changes their centres by far less than could be seen), the
-// exposure's share; where
-// intrinsics are free also those, fx fy cx cy
-// d0..d4. Without unit.
+// exposure's share, world_from_board's rotation (x y z w) and translation [m]; where intrinsics are free also
+// those, fx fy cx cy d0..d4. Without unit.
 // Quaternion blocks as in so3_manifold.h.
 //
 // v is the measured image velocity: of the right direction to a percent or so where it matters, and it keeps

@@ -22,7 +22,7 @@ std::optional<Eigen::Vector2d> predictedCentre(const CameraData& camera, const C
                                                const RigidTransform& camera_from_world, const Board& board,
                                                const BoardState& board_state) {
   const Eigen::Vector3d in_camera_m = camera_from_world * board_state.place_m(board.point_m(circle.circle));
-  const Eigen::Vector3d normal = camera_from_world.rotation * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d normal = camera_from_world.rotation * board_state.normal();
   const auto projected = state.lens.solved
                              ? projectCircleBeside(seenCentre(*camera.lens.seen_with, circle.centre_px),
                                                    *state.lens.solved, in_camera_m, normal, board.radius_m)
@@ -52,7 +52,7 @@ std::vector<CircleError> circleErrors(const CalibrationInput& input, const Calib
             predictedCentre(camera, camera_state, circle,
                             cameraFromWorld(rotation, position, camera_state.reference_from_camera,
                                             time_s - circle.time_s, circle.time_s),
-                            input.board, state.board);
+                            input.boardOf(c), state.boardAt(camera.board));
         if (centre_px) {
           const EdgeLeadEffect lead =
               edgeLeadEffect(*camera.lens.seen_with, circle, options.slow_edge_speed_px_s);

@@ -35,7 +35,7 @@ CircleMeasurement circleOf(const ProblemBuilder& builder, std::size_t camera, st
   m.by_drift_s = byDrift_s(builder.parameters.moved().cameras[camera], observed.time_s);
   m.by_line_s = 1e-6 * observed.rows_below_middle;
   m.by_exposure_s = observed.longer_exposed_s;
-  m.on_board_m = builder.input.board.point_m(observed.circle);
+  m.on_board_m = builder.input.boardOf(camera).point_m(observed.circle);
   m.centre_px = observed.centre_px;
   m.whitening_px = covariance.llt().matrixL().solve(Eigen::Matrix2d::Identity());
   m.lead = edgeLeadEffect(*data.lens.seen_with, observed, builder.options.slow_edge_speed_px_s);
@@ -148,7 +148,7 @@ void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& 
   ParameterBlocks& parameters = builder.parameters;
   CameraState& state = parameters.moved().cameras[camera];
   CameraState& sensor = parameters.moved().cameras[parameters.sensorOf(camera)];
-  BoardState& board = parameters.moved().board;
+  BoardState& board = parameters.moved().boardAt(builder.input.cameras[camera].board);
   const std::vector<CircleMeasurement> measurements = circlesOf(builder, camera, pixel_errors);
   for (std::size_t begin = 0, end = 0; begin < measurements.size(); begin = end) {
     const double begin_s = measuredAt_s(state, measurements[begin]);
@@ -163,12 +163,13 @@ void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& 
     std::vector<double*> blocks;
     parameters.appendRotation(segment, blocks);
     parameters.appendPosition(segment, blocks);
-    blocks.insert(blocks.end(),
-                  {sensor.reference_from_camera.rotation.coeffs().data(),
-                   sensor.reference_from_camera.translation_m.data(), &state.time_offset_s,
-                   &sensor.time_offset_drift_ppm, &state.line_delay_us, &state.edge_lead_px,
-                   &state.slow_edge_lead_px, &board.scale, &board.stretch, &board.row_curvature_1_m,
-                   &board.column_curvature_1_m, &board.twist_1_m, &state.exposure_share});
+    blocks.insert(blocks.end(), {sensor.reference_from_camera.rotation.coeffs().data(),
+                                 sensor.reference_from_camera.translation_m.data(), &state.time_offset_s,
+                                 &sensor.time_offset_drift_ppm, &state.line_delay_us, &state.edge_lead_px,
+                                 &state.slow_edge_lead_px, &board.scale, &board.stretch,
+                                 &board.row_curvature_1_m, &board.column_curvature_1_m, &board.twist_1_m,
+                                 &state.exposure_share, board.world_from_board.rotation.coeffs().data(),
+                                 board.world_from_board.translation_m.data()});
     if (IntrinsicsBlock* intrinsics = parameters.intrinsics(camera)) blocks.push_back(intrinsics->data());
     builder.residuals.push_back({builder.problem.AddResidualBlock(cost, nullptr, blocks), SensorKind::Circles,
                                  camera, begin_s, cost});

@@ -110,7 +110,9 @@ std::vector<Quantity> ParameterBlocks::quantities() {
   for (std::size_t i = 0; i < moved_.imus.size(); ++i)
     forEachQuantity(kImuQuantities,
                     [&](const auto& row) { add(row.info, i, of(row.value(moved_.imus[i]))); });
-  forEachQuantity(kBoardQuantities, [&](const auto& row) { add(row.info, 0, of(row.value(moved_.board))); });
+  for (std::size_t i = 0; i <= moved_.further_boards.size(); ++i)
+    forEachQuantity(kBoardQuantities,
+                    [&](const auto& row) { add(row.info, i, of(row.value(moved_.boardAt(i)))); });
   add(kGravityQuantity, 0, moved_.gravity_in_world_m_s2.data());
   return all;
 }

@@ -36,8 +36,8 @@ struct PriorOptions {
 };
 
 // Of the ratio of a board's two directions, each of which was measured.
-inline double boardStretchSigma(const PriorOptions& options) {
-  return std::numbers::sqrt2 * options.board_spacing_sigma;
+inline double boardStretchSigma(double spacing_sigma) {
+  return std::numbers::sqrt2 * spacing_sigma;
 }
 
 }  // namespace evical

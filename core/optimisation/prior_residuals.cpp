@@ -142,21 +142,25 @@ void addKnownValues(ProblemBuilder& builder, const Rows& rows, const Prior& prio
   });
 }
 
-// How far the board may be from what is said of it: both of its directions were measured.
-void addBoardPriors(ProblemBuilder& builder) {
-  BoardState& board = builder.parameters.moved().board;
+// How far a board may be from what is said of it: both of its directions were measured.
+void addBoardPriors(ProblemBuilder& builder, std::size_t index) {
+  constexpr double kWithin_m = 100.0;  // what no view tells of a board's place has an end
+  BoardState& board = builder.parameters.moved().boardAt(index);
+  addPrior(builder, board.world_from_board.translation_m.data(), 3, kZero.data(), kWithin_m);
   const auto addBow = [&](double& curvature_1_m, const QuantityInfo& info) {
     const double height_m = 1e-3 * builder.options.board_bow_sigma_mm;
-    addPrior(builder, &curvature_1_m, 1, kZero.data(), height_m / bowHeight_m2(info, builder.input.board));
+    addPrior(builder, &curvature_1_m, 1, kZero.data(),
+             height_m / bowHeight_m2(info, builder.input.boardAt(index)));
   };
   if (builder.options.board_bow)
-    forEachQuantity(kBoardQuantities, [&](const auto& row) {
+    forEachSheetQuantity([&](const auto& row) {
       if (row.info.release == QuantityRelease::BoardBow) addBow(row.value(board), row.info);
     });
   if (!builder.options.free_board_size) return;
   constexpr double kSize = 1.0;
-  addPrior(builder, &board.scale, 1, &kSize, builder.options.board_spacing_sigma);
-  addPrior(builder, &board.stretch, 1, kZero.data(), boardStretchSigma(builder.options));
+  const double spacing_sigma = builder.input.spacingSigma(index, builder.options.board_spacing_sigma);
+  addPrior(builder, &board.scale, 1, &kSize, spacing_sigma);
+  addPrior(builder, &board.stretch, 1, kZero.data(), boardStretchSigma(spacing_sigma));
 }
 
 }  // namespace
@@ -168,7 +172,7 @@ void addPriors(ProblemBuilder& builder) {
     addImuPriors(builder, i);
     if (builder.stage == ReleaseStages::Mappings) addIntrinsicsPriors(builder, i);
   }
-  addBoardPriors(builder);
+  for (std::size_t i = 0; i < builder.input.boardCount(); ++i) addBoardPriors(builder, i);
   double* gravity = state.gravity_in_world_m_s2.data();
   if (builder.options.free_gravity_norm && builder.has(gravity))
     builder.addPrior(new NormCost(builder.input.gravity_norm_m_s2, builder.options.gravity_norm_sigma_m_s2),

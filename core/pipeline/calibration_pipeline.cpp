@@ -94,13 +94,16 @@ void holdTimeOffsets(CalibrationInput& input) {
 CalibrationInput inputFrom(const Session& session, const CalibrationRun& run) {
   CalibrationInput input;
   input.start_ns = run.pass.start_ns;
+  input.board_name = session.board_name;
   input.board = session.board;
+  input.further_boards = session.further_boards;
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
     const SessionCamera& camera = session.cameras[k];
     input.cameras.push_back(
         {camera.name, run.pass.lenses.at(k), run.pass.cameras[k], camera.prior, camera.shutter});
     if (const std::size_t sensor = session.sensorOf(k); sensor != k)
       input.cameras.back().same_sensor_as = sensor;
+    input.cameras.back().board = session.boardIndexOf(k);
   }
   input.imus = run.pass.imus;
   for (std::size_t k = 0; k < session.imus.size(); ++k) input.imus[k].prior = session.imus[k].prior;
@@ -125,7 +128,8 @@ void checkSession(const Session& session) {
         "Add one: a camera alone has nothing to be calibrated against; for its intrinsics there is "
         "'evical intrinsics'");
   }
-  if (session.cameras.size() > 1 && session.board.hasHalfTurnAmbiguity()) {
+  for (std::size_t k = 0; session.cameras.size() > 1 && k < session.cameras.size(); ++k) {
+    if (!session.boardOf(k).hasHalfTurnAmbiguity()) continue;
     throw badInput(session.source.string() + ": board",
                    "the board looks the same when turned by 180 degrees, so cameras can not be calibrated "
                    "against each other",
@@ -233,8 +237,8 @@ void checkPass(const Session& session, const RunContext& context, RecordingPass&
     checkUnits(imu, session.options.initialisation);
     for (const RecordingFault& fault : checkImu(imu.name, imu.samples)) addFault(fault, pass.faults);
   }
-  for (const BoardObservations& camera : pass.cameras) {
-    const std::optional<RecordingFault> unseen = unseenCircles(camera, session.board);
+  for (std::size_t k = 0; k < pass.cameras.size(); ++k) {
+    const std::optional<RecordingFault> unseen = unseenCircles(pass.cameras[k], session.boardOf(k));
     if (unseen) addFault(*unseen, pass.faults);
   }
   for (const RecordingFault& fault : pass.faults) context.progress.log(LogLevel::Warning, fault.text);
@@ -245,8 +249,8 @@ void checkPass(const Session& session, const RunContext& context, RecordingPass&
     if (camera.views.empty())
       if (const std::optional<CalibrationError> blink = unexpectedBlink(session, k))
         throw CalibrationError(*blink);
-    checkBoardSeen(camera, session.board);
-    checkBoardSize(camera, session.board, session.options.front_end.extent);
+    checkBoardSeen(camera, session.boardOf(k));
+    checkBoardSize(camera, session.boardOf(k), session.options.front_end.extent);
   }
 }
 

@@ -13,7 +13,7 @@ namespace {
 class EventViews final : public CameraViews {
  public:
   EventViews(const CameraBatch& first, const ViewRequest& request)
-      : tracker_(request.session.board, *first.opened_px, request.lens.seen_with,
+      : tracker_(request.session.boardOf(first.camera), *first.opened_px, request.lens.seen_with,
                  request.session.options.front_end, first.start_ns) {
     tracker_.stopWith(request.context.stop);
     if (request.context.observer != nullptr)
@@ -37,11 +37,11 @@ std::unique_ptr<CameraViews> cameraViews(const CameraBatch& first, const ViewReq
   if (first.kind == CameraKind::Points) return std::make_unique<PointViews>(first, request);
   if (first.kind == CameraKind::Frames) return std::make_unique<FrameViews>(first, request);
   if (session.board_blinks) return std::make_unique<BlinkViews>(first, request);
-  if (!session.board.hasCircles())
+  const Board& board = session.boardOf(first.camera);
+  if (!board.hasCircles())
     throw badInput(
         session.cameras[first.camera].name,
-        std::string("an event camera in motion cannot see a board of type ") +
-            boardTypeName(session.board.type),
+        std::string("an event camera in motion cannot see a board of type ") + boardTypeName(board.type),
         "Use a grid of circles; or, for 'evical intrinsics', show this board on a screen that flashes "
         "('evical board --blink') and say blinking: true in the session's board");
   return std::make_unique<EventViews>(first, request);

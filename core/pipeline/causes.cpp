@@ -82,7 +82,11 @@ void releaseBow(OptimisationOptions& options) {
   options.board_bow = true;
 }
 std::string bentBoardWords(const CalibrationInput& input, const BatchSolution& freed) {
-  return bowWords(freed.state.board, input.board);
+  std::size_t most = 0;
+  const auto bow_mm = [&](std::size_t i) { return largestBow_mm(freed.state.boardAt(i), input.boardAt(i)); };
+  for (std::size_t i = 1; i < input.boardCount(); ++i)
+    if (bow_mm(i) > bow_mm(most)) most = i;
+  return bowWords(freed.state.boardAt(most), input.boardAt(most), input.boardWords(most));
 }
 
 const std::array<Trial, 3> kTrials = {

@@ -76,8 +76,17 @@ OptimisationOptions withScaleHeld(OptimisationOptions options) {
 
 Estimate estimateOf(const CalibrationInput& input, const Half& half) {
   const CalibrationState& state = half.solution.state;
-  Estimate estimate{
-      {}, {}, {}, state.cameras, state.imus, state.board, state.gravity_in_world_m_s2, half.uncertainty};
+  Estimate estimate;
+  estimate.cameras = state.cameras;
+  estimate.imus = state.imus;
+  estimate.gravity_in_world_m_s2 = state.gravity_in_world_m_s2;
+  estimate.uncertainty = half.uncertainty;
+  estimate.board_names.clear();
+  estimate.boards.clear();
+  for (std::size_t i = 0; i < input.boardCount(); ++i) {
+    estimate.board_names.push_back(input.boardName(i));
+    estimate.boards.push_back(state.boardAt(i));
+  }
   for (const CameraData& camera : input.cameras) estimate.camera_names.push_back(camera.name);
   for (const ImuData& imu : input.imus) estimate.imu_names.push_back(imu.name);
   estimate.reference =
@@ -107,7 +116,9 @@ std::array<CalibrationInput, 2> splitIntoHalves(const CalibrationInput& input, c
   std::array<CalibrationInput, 2> halves;
   for (CalibrationInput& half : halves) {
     half.start_ns = input.start_ns;
+    half.board_name = input.board_name;
     half.board = input.board;
+    half.further_boards = input.further_boards;
     half.reference_imu = input.reference_imu;
     half.reference_camera = input.reference_camera;
     half.gravity_norm_m_s2 = input.gravity_norm_m_s2;
@@ -115,8 +126,8 @@ std::array<CalibrationInput, 2> splitIntoHalves(const CalibrationInput& input, c
   for (std::size_t i = 0; i < input.cameras.size(); ++i) {
     const CameraData& camera = input.cameras[i];
     for (CalibrationInput& half : halves) {
-      CameraData& part = half.cameras.emplace_back(
-          CameraData{camera.name, camera.lens, {}, camera.prior, camera.shutter, camera.same_sensor_as});
+      CameraData& part = half.cameras.emplace_back(CameraData{
+          camera.name, camera.lens, {}, camera.prior, camera.shutter, camera.same_sensor_as, camera.board});
       part.observations.camera = camera.name;
       part.observations.kind = camera.observations.kind;
     }

@@ -31,12 +31,7 @@ void checkSame(const YamlNode& map, const char* key, const std::string& session,
 
 // A board that was measured once more is still the same one: what is held against it is how its sizes are to each
 // other.
-void checkBoard(const YamlNode& map, const Board& board) {
-  checkSame(map, "type", boardTypeName(board.type), "a board of type");
-  checkSame(map, "rows", std::to_string(board.rows), "a board whose rows are");
-  checkSame(map, "cols", std::to_string(board.cols), "a board whose columns are");
-  if (board.hasCircles())
-    checkSame(map, "circles", board.circles == CircleShade::Dark ? "dark" : "bright", "circles that are");
+void checkSizes(const YamlNode& map, const Board& board) {
   constexpr double kMeasuredAgain = 0.05;
   const double spacing_m = map["spacing_m"].real(1e-6, 100.0, "m");
   const auto check = [&](const char* key, double session_m) {
@@ -107,8 +102,16 @@ YamlNode loadDetections(const std::filesystem::path& folder) {
   return root;
 }
 
+void checkBoard(const YamlNode& said, const Board& board) {
+  checkSame(said, "type", boardTypeName(board.type), "a board of type");
+  checkSame(said, "rows", std::to_string(board.rows), "a board whose rows are");
+  checkSame(said, "cols", std::to_string(board.cols), "a board whose columns are");
+  if (board.hasCircles())
+    checkSame(said, "circles", board.circles == CircleShade::Dark ? "dark" : "bright", "circles that are");
+  checkSizes(said, board);
+}
+
 void checkSession(const YamlNode& detections, const Session& session, const RunContext& context) {
-  checkBoard(detections["board"], session.board);
   checkTimeRange(detections, session);
   logOptions(detections["options"], session, context);
   const std::string recording = detections["recording"].text(), own = session.recording.filename().string();

@@ -15,7 +15,10 @@ namespace evical {
 // detections.yaml of a run's folder.
 YamlNode loadDetections(const std::filesystem::path& folder);
 
-// The board and the time range. That options of detection differ, which change nothing now, and that the recording
+// The board that a camera sees, by what is said of it.
+void checkBoard(const YamlNode& said, const Board& board);
+
+// The time range. That options of detection differ, which change nothing now, and that the recording
 // has another name is only logged.
 void checkSession(const YamlNode& detections, const Session& session, const RunContext& context);
 

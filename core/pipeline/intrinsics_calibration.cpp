@@ -30,6 +30,9 @@ Session cameraAlone(const Session& session, std::size_t camera) {
   alone.cameras = {session.cameras[camera]};
   alone.cameras.front().intrinsics.reset();
   alone.cameras.front().same_sensor_as.clear();
+  alone.cameras.front().board.clear();
+  alone.board = session.boardOf(camera);
+  alone.further_boards.clear();
   alone.imus.clear();
   alone.reference = alone.cameras.front().name;
   if (!alone.time_range_s) return alone;

@@ -12,7 +12,7 @@
 namespace evical {
 
 PointViews::PointViews(const CameraBatch& first, const ViewRequest& request)
-    : board_(request.session.board),
+    : board_(request.session.boardOf(first.camera)),
       stream_(request.session.cameras[first.camera].stream),
       resolution_px_(*first.opened_px),
       start_ns_(first.start_ns),

@@ -20,6 +20,13 @@
 namespace evical {
 namespace {
 
+std::vector<SeenBoard> seenBoards(const Session& session) {
+  std::vector<SeenBoard> boards;
+  for (std::size_t k = 0; k < session.cameras.size(); ++k)
+    boards.push_back({session.boardOf(k), session.boardIndexOf(k)});
+  return boards;
+}
+
 void addReport(const Session& session, const NamedResult& named, const RecordingPass& pass,
                std::vector<FileContent>& files,
                std::span<const std::optional<IntrinsicsResult>> intrinsics = {}) {
@@ -27,7 +34,7 @@ void addReport(const Session& session, const NamedResult& named, const Recording
   const ReportData data{
       named,
       session.recording.filename().string(),
-      session.board,
+      seenBoards(session),
       pass.start_ns,
       pass.cameras,
       pass.lenses,
@@ -64,6 +71,8 @@ NamedResult namedResult(const Session& session, std::shared_ptr<const Calibratio
   named.reference = session.reference;
   for (const SessionCamera& camera : session.cameras) named.cameras.push_back({camera.name, camera.stream});
   for (const SessionImu& imu : session.imus) named.imus.push_back({imu.name, imu.stream, imu.noise});
+  named.boards = {session.board_name};
+  for (const FurtherBoard& further : session.further_boards) named.boards.push_back(further.name);
   named.version = version;
   named.options = differingOptions(session.options);
   named.result = std::move(result);

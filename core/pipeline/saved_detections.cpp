@@ -21,7 +21,7 @@ constexpr std::array kKinds = {"events", "frames", "points"};  // in CameraKind'
 
 std::string boardYaml(const Board& board) {
   return fmt::format(
-      "board: {{type: {}, rows: {}, cols: {}, spacing_m: {}, radius_m: {}, circles: {}, tag_size_m: {}}}\n",
+      "{{type: {}, rows: {}, cols: {}, spacing_m: {}, radius_m: {}, circles: {}, tag_size_m: {}}}",
       boardTypeName(board.type), board.rows, board.cols, board.spacing_m, board.radius_m,
       board.circles == CircleShade::Dark ? "dark" : "bright", board.tag_size_m);
 }
@@ -78,9 +78,11 @@ std::string detectionsYaml(const Session& session, const RecordingPass& pass,
                                  yamlText(session.recording.filename().string()), pass.start_ns);
   if (session.time_range_s)
     text += fmt::format("time_range_s: [{}, {}]\n", (*session.time_range_s)[0], (*session.time_range_s)[1]);
-  text += boardYaml(session.board) + optionsYaml(session) + "cameras:\n";
-  for (std::size_t k = 0; k < session.cameras.size(); ++k)
+  text += fmt::format("board: {}\n{}cameras:\n", boardYaml(session.board), optionsYaml(session));
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
     text += cameraYaml(session.cameras[k], pass, k, k < intrinsics.size() ? intrinsics[k] : std::nullopt);
+    if (session.boardIndexOf(k) > 0) text += fmt::format("    board: {}\n", boardYaml(session.boardOf(k)));
+  }
   return text + faultsYaml(session, pass);
 }
 
@@ -101,6 +103,7 @@ void restoreCamera(const YamlNode& root, const Session& session, std::size_t k,
                    RestoredDetections& restored) {
   const SessionCamera& camera = session.cameras[k];
   const YamlNode map = checkedCamera(root, camera);
+  checkBoard(map.find("board").value_or(root["board"]), session.boardOf(k));
   BoardObservations& seen = restored.pass.cameras.emplace_back();
   seen.camera = camera.name;
   seen.kind = static_cast<CameraKind>(map["kind"].choice(kKinds));
@@ -134,7 +137,11 @@ void keepWithin(const std::optional<std::array<double, 2>>& range_s, Items& item
 }
 
 void restoreViews(const std::filesystem::path& folder, const Session& session, RecordingPass& pass) {
-  std::vector<BoardObservations> saved = readDetections(folder, session.board.pointCount());
+  std::vector<int> point_counts;
+  for (std::size_t k = 0; k < session.cameras.size(); ++k)
+    point_counts.push_back(session.boardOf(k).pointCount());
+  std::vector<BoardObservations> saved =
+      readDetections(folder, *std::max_element(point_counts.begin(), point_counts.end()));
   for (BoardObservations& camera : pass.cameras) {
     for (BoardObservations& each : saved) {
       if (each.camera != camera.camera) continue;

@@ -70,11 +70,43 @@ void checkSharedSensor(const Session& session, const SessionCamera& camera, cons
                    fmt::format("Make '{}' the reference", camera.same_sensor_as));
 }
 
-void checkBoard(const Session& session, const std::string& place) {
-  if (session.imus.empty() || session.board_blinks || !session.board.hasHalfTurnAmbiguity()) return;
-  const BoardType type = session.board.type;
+bool hasNamedBoards(const Session& session) {
+  return !session.further_boards.empty() || session.board_name != Session().board_name;
+}
+
+// Of several, each camera sees one, each is seen, and the first is the world.
+void checkBoards(const Session& session, const std::string& place) {
+  std::vector<std::string> names = {session.board_name};
+  for (const FurtherBoard& further : session.further_boards) names.push_back(further.name);
+  std::vector<bool> seen(names.size());
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
+    const std::string& name = session.cameras[k].board;
+    const std::string key = fmt::format("{}: cameras.{}.board", place, session.cameras[k].name);
+    if (name.empty() && names.size() > 1)
+      throw badInput(key, "is missing: there are several boards", "Say which one this camera sees");
+    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
+      throw badInput(key, fmt::format("there is no board '{}'", name), nameAdvice(name, names));
+    seen[session.boardIndexOf(k)] = true;
+  }
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (!seen[i])
+      throw badInput(fmt::format("{}: boards.{}", place, names[i]), "no camera sees it",
+                     "Remove it, or say so at the camera that does: board: " + names[i]);
+  if (session.boardIndexOf(session.worldCamera()) != 0)
+    throw badInput(place + ": boards",
+                   fmt::format("the first one's frame is the world, so '{}' must see it",
+                               session.cameras[session.worldCamera()].name),
+                   "Put the board first that it sees");
+  if (names.size() > 1 && session.board_blinks)
+    throw badInput(place + ": boards", "a board that blinks stands alone",
+                   "Calibrate each camera's intrinsics with a session of its own");
+}
+
+void checkBoard(const Session& session, const Board& board, const std::string& key) {
+  if (session.imus.empty() || session.board_blinks || !board.hasHalfTurnAmbiguity()) return;
+  const BoardType type = board.type;
   throw badInput(
-      place + (type == BoardType::SymmetricCircles ? ": board.type" : ": board.rows"),
+      key + (type == BoardType::SymmetricCircles ? ".type" : ".rows"),
       fmt::format(
           "{} looks the same when turned by 180 degrees, so the camera's pose would jump and no IMU can "
           "be calibrated with it",
@@ -132,19 +164,38 @@ void forgetSigma(OptimisationOptions& options) {
   options.free_board_size = defaults.free_board_size;
 }
 
+// The keys of one, on lines of their own.
+std::vector<std::string> boardLines(const Board& board, const std::optional<MeasuredLength>& measured) {
+  std::vector<std::string> lines = {fmt::format("type: {}", boardTypeName(board.type)),
+                                    fmt::format("rows: {}", board.rows), fmt::format("cols: {}", board.cols),
+                                    tellsSpacing(measured, board)
+                                        ? fmt::format("measured: {{spacings: {}, length_m: {}, std_m: {}}}",
+                                                      measured->spacings, measured->length_m, measured->std_m)
+                                        : fmt::format("spacing_m: {}", board.spacing_m)};
+  if (board.hasCircles()) {
+    lines.push_back(fmt::format("radius_m: {}", board.radius_m));
+    lines.push_back(fmt::format("circles: {}", board.circles == CircleShade::Dark ? "dark" : "bright"));
+  }
+  if (board.tag_size_m > 0.0) lines.push_back(fmt::format("tag_size_m: {}", board.tag_size_m));
+  return lines;
+}
+
+std::string indented(const std::vector<std::string>& lines, std::size_t indent) {
+  std::string text;
+  for (const std::string& line : lines) text += std::string(indent, ' ') + line + "\n";
+  return text;
+}
+
 std::string boardYaml(const Session& session) {
-  const Board& board = session.board;
-  const std::optional<MeasuredLength>& measured = session.measured;
-  std::string text = fmt::format(
-      "board:\n  type: {}\n  rows: {}\n  cols: {}\n  {}\n", boardTypeName(board.type), board.rows, board.cols,
-      tellsSpacing(measured, board) ? fmt::format("measured: {{spacings: {}, length_m: {}, std_m: {}}}",
-                                                  measured->spacings, measured->length_m, measured->std_m)
-                                    : fmt::format("spacing_m: {}", board.spacing_m));
-  if (board.hasCircles())
-    text += fmt::format("  radius_m: {}\n  circles: {}\n", board.radius_m,
-                        board.circles == CircleShade::Dark ? "dark" : "bright");
-  if (session.board_blinks) text += "  blinking: true\n";
-  if (board.tag_size_m > 0.0) text += fmt::format("  tag_size_m: {}\n", board.tag_size_m);
+  std::vector<std::string> first = boardLines(session.board, session.measured);
+  if (session.board_blinks) first.emplace_back("blinking: true");
+  if (!hasNamedBoards(session)) return "board:\n" + indented(first, 2);
+  std::string text = fmt::format("boards:\n  {}:\n", yamlText(session.board_name)) + indented(first, 4);
+  for (const FurtherBoard& further : session.further_boards) {
+    std::vector<std::string> lines = boardLines(further.board, {});
+    if (further.spacing_std) lines.push_back(fmt::format("spacing_std: {}", *further.spacing_std));
+    text += fmt::format("  {}:\n", yamlText(further.name)) + indented(lines, 4);
+  }
   return text;
 }
 
@@ -189,6 +240,7 @@ std::string cameraYaml(const SessionCamera& camera, const std::filesystem::path&
   if (camera.shutter == Shutter::Rolling) text += "    shutter: rolling\n";
   if (!camera.same_sensor_as.empty())
     text += fmt::format("    same_sensor_as: {}\n", yamlText(camera.same_sensor_as));
+  if (!camera.board.empty()) text += fmt::format("    board: {}\n", yamlText(camera.board));
   if (camera.intrinsics) text += "    intrinsics:\n" + intrinsicsYaml(*camera.intrinsics, 6);
   if (camera.intrinsics && camera.intrinsics_uncertainty)
     text += lensUncertaintyYaml(*camera.intrinsics_uncertainty, *camera.intrinsics, 4);
@@ -265,6 +317,18 @@ std::size_t Session::sensorOf(std::size_t camera) const {
   return name.empty() || found == cameras.end() ? camera : static_cast<std::size_t>(found - cameras.begin());
 }
 
+std::size_t Session::boardIndexOf(std::size_t camera) const {
+  const std::string& name = cameras[camera].board;
+  const auto found = std::find_if(further_boards.begin(), further_boards.end(),
+                                  [&](const FurtherBoard& each) { return each.name == name; });
+  return found == further_boards.end() ? 0 : static_cast<std::size_t>(found - further_boards.begin()) + 1;
+}
+
+const Board& Session::boardOf(std::size_t camera) const {
+  const std::size_t index = boardIndexOf(camera);
+  return index == 0 ? board : further_boards[index - 1].board;
+}
+
 std::size_t Session::referenceImu() const {
   const auto found =
       std::find_if(imus.begin(), imus.end(), [&](const SessionImu& i) { return i.name == reference; });
@@ -284,7 +348,11 @@ void validate(const Session& session, const std::string& place) {
                                            : "Describe at least one camera");
   checkDifferent(session, place);
   checkReference(session, place);
-  checkBoard(session, place);
+  checkBoards(session, place);
+  checkBoard(session, session.board,
+             place + (hasNamedBoards(session) ? ": boards." + session.board_name : ": board"));
+  for (const FurtherBoard& further : session.further_boards)
+    checkBoard(session, further.board, place + ": boards." + further.name);
   checkRecordings(session, place);
   checkPriors(session, place);
   for (const SessionCamera& camera : session.cameras)

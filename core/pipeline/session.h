@@ -27,6 +27,7 @@ struct SessionCamera {
   Shutter shutter = Shutter::Global;                           // of frames
   // The camera whose chip this one's stream comes from, too: pose and lens are that one's. Empty: its own.
   std::string same_sensor_as = {};
+  std::string board = {};  // which of several it sees; empty: the first
 };
 
 struct SessionImu {
@@ -45,7 +46,9 @@ struct Session {
   std::filesystem::path recording;                          // absolute, or relative to the working directory
   std::vector<std::filesystem::path> more_recordings = {};  // of a blinking board: one for each of its places
   std::optional<std::array<double, 2>> time_range_s;        // since the recording's start
-  Board board;
+  std::string board_name = "board";
+  Board board;  // of several the one whose frame is the world: that of the camera worldCamera()
+  std::vector<FurtherBoard> further_boards = {};
   // It is on a screen, or of lamps, that flash: for intrinsics alone, from events of a camera that stands still.
   bool board_blinks = false;
   std::optional<MeasuredLength> measured;  // what tells the board's spacing and, as an option, its sigma
@@ -59,6 +62,11 @@ struct Session {
   // Of what same_sensor_as names; the camera itself, where it names none.
   std::size_t sensorOf(std::size_t camera) const;
   const SessionCamera& sensor(std::size_t camera) const { return cameras[sensorOf(camera)]; }
+  std::size_t boardIndexOf(std::size_t camera) const;  // 0: the first
+  const Board& boardOf(std::size_t camera) const;
+  std::size_t worldCamera() const {
+    return referenceCamera();
+  }                                     // the first one, where the reference is an IMU
   std::size_t referenceImu() const;     // index into imus; 0 where there is none
   std::size_t referenceCamera() const;  // index into cameras; 0 where the reference is an IMU
 };

@@ -120,12 +120,13 @@ Sensor readSource(const YamlNode& map, const std::string& sensor_name, const std
 SessionCamera readCamera(const YamlNode& map, const std::string& camera_name,
                          const std::filesystem::path& folder) {
   map.allowOnly({"recording", "stream", "clock_offset_s", "resolution_px", "shutter", "same_sensor_as",
-                 "intrinsics", "intrinsics_std", "intrinsics_correlation"});
+                 "board", "intrinsics", "intrinsics_std", "intrinsics_correlation"});
   SessionCamera camera = readSource<SessionCamera>(map, camera_name, folder);
   if (const auto node = map.find("resolution_px")) camera.resolution_px = readResolution(*node);
   if (const auto node = map.find("shutter"))
     camera.shutter = static_cast<Shutter>(node->choice({"global", "rolling"}));
   if (const auto node = map.find("same_sensor_as")) camera.same_sensor_as = name(*node);
+  if (const auto node = map.find("board")) camera.board = name(*node);
   const auto intrinsics = map.find("intrinsics"), sigmas = map.find("intrinsics_std");
   if (sigmas && !intrinsics)
     throw sigmas->error("is of intrinsics that are not given", "Give intrinsics, too");
@@ -243,6 +244,43 @@ void readSpacingStd(const YamlNode& board, CalibrationOptions& options) {
     setFromSession(*node, options, "optimisation.board_spacing_sigma");
 }
 
+void readFirstBoard(const YamlNode& map, Session& session) {
+  const std::optional<MeasuredLength> measured = readMeasured(map);
+  session.board = readBoard(map, measured);
+  if (const auto node = map.find("blinking")) session.board_blinks = node->choice({"false", "true"}) == 1;
+  setMeasuredLength(measured, session);
+  readSpacingStd(map, session.options);
+}
+
+FurtherBoard readFurtherBoard(const YamlNode& map, const std::string& board_name) {
+  if (const auto node = map.find("blinking"))
+    throw node->error("a board that blinks stands alone", "Remove it, or the other boards");
+  const std::optional<MeasuredLength> measured = readMeasured(map);
+  constexpr double kExactly = 1e-7;
+  FurtherBoard further{board_name, readBoard(map, measured)};
+  if (measured && measured->std_m > 0.0) further.spacing_std = measured->relativeStd();
+  if (const auto node = map.find("spacing_std"))
+    further.spacing_std = std::max(kExactly, node->real(0.0, 1.0, ""));
+  return further;
+}
+
+// One, or several by name: the world's first, which is that of the reference.
+void readBoards(const YamlNode& root, Session& session) {
+  const auto several = root.find("boards");
+  if (!several) return readFirstBoard(root["board"], session);
+  if (root.has("board"))
+    throw several->error("is there beside board", "Keep one of the two: boards has them by name");
+  const std::vector<std::string> names = several->keys();
+  if (names.empty()) throw several->error("is empty", "Describe at least one board");
+  const std::string& seen = session.cameras[session.worldCamera()].board;
+  const bool known = std::find(names.begin(), names.end(), seen) != names.end();
+  session.board_name = known ? seen : names.front();
+  readFirstBoard((*several)[session.board_name], session);
+  for (const std::string& each : names)
+    if (each != session.board_name)
+      session.further_boards.push_back(readFurtherBoard((*several)[each], each));
+}
+
 // Where on earth it was recorded.
 void readGravity(const YamlNode& map, CalibrationOptions& options) {
   map.allowOnly({"latitude_deg", "height_m"});
@@ -286,22 +324,17 @@ Session readSession(const std::filesystem::path& file) {
   if (!root.isMap() || !root.has("evical_session"))
     throw root.error("is no session file: the key evical_session is missing",
                      "Make one with `evical init RECORDING`, `evical simulate` or `evical import`");
-  root.allowOnly({"evical_session", "recording", "time_range_s", "board", "gravity", "cameras", "imus",
-                  "reference", "prior", "options", "export"});
+  root.allowOnly({"evical_session", "recording", "time_range_s", "board", "boards", "gravity", "cameras",
+                  "imus", "reference", "prior", "options", "export"});
   root["evical_session"].integer(1, 1);
   const std::filesystem::path folder = file.parent_path();
   Session session;
   session.source = file;
   readRecordings(root["recording"], folder, session);
   if (const auto node = root.find("time_range_s")) session.time_range_s = timeRangeFrom(*node);
-  const std::optional<MeasuredLength> measured = readMeasured(root["board"]);
-  session.board = readBoard(root["board"], measured);
-  if (const auto node = root["board"].find("blinking"))
-    session.board_blinks = node->choice({"false", "true"}) == 1;
-  setMeasuredLength(measured, session);
-  readSpacingStd(root["board"], session.options);
   if (const auto node = root.find("gravity"); node && !node->isNull()) readGravity(*node, session.options);
   readSensors(root, folder, session);
+  readBoards(root, session);
   if (const auto node = root.find("prior"); node && !node->isNull()) readPriors(*node, session);
   if (const auto node = root.find("options")) readOptions(*node, session.options);
   if (const auto node = root.find("export"); node && !node->isNull())

@@ -230,6 +230,21 @@ void readCrossValidation(const YamlNode& map, CrossValidation& validation) {
   }
 }
 
+// One, or several by name: the world's first.
+void readBoards(const YamlNode& root, NamedResult& named, CalibrationResult& result) {
+  if (const auto board = root.find("board"))
+    readQuantities(*board, kBoardQuantities, result.state.board, result.uncertainty.board);
+  const auto several = root.find("boards");
+  if (!several) return;
+  named.boards = several->keys();
+  if (named.boards.empty()) throw several->error("is empty");
+  result.state.further_boards.resize(named.boards.size() - 1);
+  result.uncertainty.further_boards.resize(named.boards.size() - 1);
+  for (std::size_t i = 0; i < named.boards.size(); ++i)
+    if (const YamlNode map = (*several)[named.boards[i]]; map.isMap())
+      readQuantities(map, kBoardQuantities, result.state.boardAt(i), result.uncertainty.boardAt(i));
+}
+
 void readRun(const YamlNode& root, NamedResult& named, CalibrationResult& result) {
   get(root, "notes", result.notes);
   get(root, "memory_peak_mb", result.memory_peak_mb);
@@ -270,8 +285,7 @@ NamedResult readResultYaml(const std::filesystem::path& file) {
       named.cameras.push_back(readCamera((*cameras)[key], key, result));
   if (const auto imus = root.find("imus"))
     for (const std::string& key : imus->keys()) named.imus.push_back(readImu((*imus)[key], key, result));
-  if (const auto board = root.find("board"))
-    readQuantities(*board, kBoardQuantities, result.state.board, result.uncertainty.board);
+  readBoards(root, named, result);
   if (const auto cameras = root.find("cameras")) readLatencies(*cameras, named, result);
   get(root, "gravity_m_s2", result.state.gravity_in_world_m_s2);
   readUncertainty(root, result.uncertainty);

@@ -117,9 +117,11 @@ std::string resultTable(const NamedResult& named) {
   std::string text;
   for (std::size_t i = 0; i < named.result->state.cameras.size(); ++i) text += cameraTable(named, i);
   for (std::size_t i = 0; i < named.result->state.imus.size(); ++i) text += imuTable(named, i);
-  if (const std::vector<ShownQuantity> board = shownBoard(named); !board.empty()) {
-    text += "Board\n";
-    for (const ShownQuantity& quantity : board) text += quantityRows(quantity);
+  for (std::size_t i = 0; i < named.boards.size(); ++i) {
+    const std::vector<ShownQuantity> board = shownBoard(named, i);
+    if (board.empty()) continue;
+    text += boardTitle(named, i) + "\n";
+    text += sensorRows(board, named.result->state.boardAt(i).world_from_board.rotation);
   }
   if (!named.result->state.imus.empty()) {
     const Eigen::Vector3d& g = named.result->state.gravity_in_world_m_s2;

@@ -144,12 +144,28 @@ std::string imuYaml(const NamedResult& named, std::size_t i) {
   return text + sections.text(kSensorIndent);
 }
 
-std::string boardYaml(const CalibrationResult& result) {
+std::string boardYaml(const BoardState& state, const BoardUncertainty& sigma, std::size_t indent) {
   YamlSections sections;
-  addQuantities(kBoardQuantities, result.state.board, result.uncertainty.board, Written::Both, sections,
+  addQuantities(kBoardQuantities, state, sigma, Written::Both, sections,
                 [](const QuantityInfo&) { return true; });
-  const std::string text = sections.text(2);
-  return text.empty() ? "" : "board:\n" + text;
+  return sections.text(indent);
+}
+
+// One, or several by name: the world's first.
+std::string boardsYaml(const NamedResult& named) {
+  const CalibrationResult& result = *named.result;
+  if (named.boards.size() < 2) {
+    const std::string text = boardYaml(result.state.board, result.uncertainty.board, 2);
+    return text.empty() ? "" : "board:\n" + text;
+  }
+  std::string text = "boards:\n";
+  for (std::size_t i = 0; i < named.boards.size() && i <= result.state.further_boards.size(); ++i) {
+    const BoardUncertainty sigma =
+        i == 0 ? result.uncertainty.board : elementOrNone(result.uncertainty.further_boards, i - 1);
+    const std::string board = boardYaml(result.state.boardAt(i), sigma, 4);
+    text += fmt::format("  {}:{}\n", yamlText(named.boards[i]), board.empty() ? " {}" : "") + board;
+  }
+  return text;
 }
 
 std::string uncertaintyYaml(const UncertaintyReport& uncertainty) {
@@ -219,7 +235,7 @@ std::string resultYaml(const NamedResult& named) {
   for (std::size_t i = 0; i < state.cameras.size(); ++i) text += cameraYaml(named, i);
   text += state.imus.empty() ? "imus: {}\n" : "imus:\n";
   for (std::size_t i = 0; i < state.imus.size(); ++i) text += imuYaml(named, i);
-  text += boardYaml(*named.result);
+  text += boardsYaml(named);
   if (!state.imus.empty())
     text += fmt::format("gravity_m_s2: {}\n", list(state.gravity_in_world_m_s2, exactYaml));
   text += uncertaintyYaml(named.result->uncertainty);

@@ -27,6 +27,7 @@ struct SensorDescription {
 struct NamedResult {
   std::string reference;                         // a sensor's name
   std::vector<SensorDescription> cameras, imus;  // as those of the state
+  std::vector<std::string> boards = {"board"};   // the world's, then the further ones
   std::string version;
   std::vector<OptionRow> options;  // that differ from their defaults
   std::shared_ptr<const CalibrationResult> result = std::make_shared<const CalibrationResult>();

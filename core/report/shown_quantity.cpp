@@ -68,8 +68,16 @@ std::vector<ShownQuantity> shownImu(const NamedResult& named, std::size_t imu, b
                elementOrNone(named.result->uncertainty.imus, imu), with_place);
 }
 
-std::vector<ShownQuantity> shownBoard(const NamedResult& named) {
-  return shown(kBoardQuantities, "board", named.result->state.board, named.result->uncertainty.board, true);
+std::vector<ShownQuantity> shownBoard(const NamedResult& named, std::size_t board) {
+  const CalibrationResult& result = *named.result;
+  if (board > result.state.further_boards.size()) return {};
+  const BoardUncertainty sigma =
+      board == 0 ? result.uncertainty.board : elementOrNone(result.uncertainty.further_boards, board - 1);
+  return shown(kBoardQuantities, named.boards.at(board), result.state.boardAt(board), sigma, board > 0);
+}
+
+std::string boardTitle(const NamedResult& named, std::size_t board) {
+  return named.boards.size() < 2 ? "Board" : "Board " + named.boards.at(board);
 }
 
 std::string unitAndRemark(const ShownQuantity& quantity) {

@@ -25,7 +25,9 @@ struct ShownQuantity {
 // Those there are, in the order of quantity.h; without the place if asked, which a reference does not have.
 std::vector<ShownQuantity> shownCamera(const NamedResult& named, std::size_t camera, bool with_place = true);
 std::vector<ShownQuantity> shownImu(const NamedResult& named, std::size_t imu, bool with_place = true);
-std::vector<ShownQuantity> shownBoard(const NamedResult& named);  // none where its size is held
+// None where its size is held; of a further board also its place in the world.
+std::vector<ShownQuantity> shownBoard(const NamedResult& named, std::size_t board);
+std::string boardTitle(const NamedResult& named, std::size_t board);  // "Board", or "Board tags" of several
 
 // "ms against the gyroscope"
 std::string unitAndRemark(const ShownQuantity& quantity);

@@ -29,11 +29,19 @@ std::vector<std::string> namesOf(const std::vector<SensorDescription>& sensors) 
 
 Estimate estimateOf(const NamedResult& named) {
   const CalibrationState& state = named.result->state;
-  Estimate estimate{
-      named.reference, namesOf(named.cameras),      namesOf(named.imus),      state.cameras, state.imus,
-      state.board,     state.gravity_in_world_m_s2, named.result->uncertainty};
+  Estimate estimate{named.reference,
+                    namesOf(named.cameras),
+                    namesOf(named.imus),
+                    state.cameras,
+                    state.imus,
+                    named.boards,
+                    {state.board},
+                    state.gravity_in_world_m_s2,
+                    named.result->uncertainty};
+  estimate.boards.insert(estimate.boards.end(), state.further_boards.begin(), state.further_boards.end());
   estimate.uncertainty.cameras.resize(estimate.cameras.size());
   estimate.uncertainty.imus.resize(estimate.imus.size());
+  estimate.uncertainty.further_boards.resize(state.further_boards.size());
   return estimate;
 }
 

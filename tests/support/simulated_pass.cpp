@@ -13,9 +13,12 @@ Session sessionOf(const Scenario& scenario) {
   Session session;
   session.source = "session.yaml";
   session.board = scenario.board;
+  for (const SimulatedBoard& further : scenario.further_boards)
+    session.further_boards.push_back({further.name, further.board});
   for (const SimulatedCamera& camera : scenario.cameras) {
     session.cameras.push_back(
         {camera.name, camera.stream, camera.intrinsics.resolution_px, camera.intrinsics});
+    if (!scenario.further_boards.empty()) session.cameras.back().board = camera.board;
   }
   for (const SimulatedImu& imu : scenario.imus) {
     SessionImu& known = session.imus.emplace_back();
@@ -30,6 +33,7 @@ Session sessionOf(const Scenario& scenario) {
 BoardObservations observationsOf(const Scenario& scenario, std::size_t camera) {
   BoardObservations observations = simulateObservations(scenario, camera, kNoise_px, kWindow_s);
   observations.camera = scenario.cameras[camera].name;
+  if (scenario.cameras[camera].frames) observations.kind = CameraKind::Frames;
   for (const BoardView& view : observations.views) {
     WindowReport& window = observations.windows.emplace_back();
     window.time_s = view.time_s;
@@ -43,8 +47,12 @@ BoardObservations observationsOf(const Scenario& scenario, std::size_t camera) {
 }  // namespace
 
 SimulatedPass simulatePass(double duration_s, const std::string& scenario) {
+  return simulatePass(duration_s, readScenario(EVICAL_SOURCE_DIR "/config/scenarios/" + scenario + ".yaml"));
+}
+
+SimulatedPass simulatePass(double duration_s, const Scenario& scenario) {
   SimulatedPass simulated;
-  simulated.truth = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/" + scenario + ".yaml");
+  simulated.truth = scenario;
   simulated.truth.duration_s = duration_s;
   simulated.session = sessionOf(simulated.truth);
   simulated.pass.start_ns = simulated.truth.start_ns;

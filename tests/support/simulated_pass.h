@@ -18,5 +18,6 @@ struct SimulatedPass {
 
 // A scenario of config/scenarios, shortened; circle centres with a noise of 0.05 px.
 SimulatedPass simulatePass(double duration_s, const std::string& scenario = "davis346");
+SimulatedPass simulatePass(double duration_s, const Scenario& scenario);
 
 }  // namespace evical::test

@@ -94,10 +94,10 @@ ParameterGroup imuGroup(const NamedResult& named, std::size_t i) {
   return group;
 }
 
-ParameterGroup boardGroup(const NamedResult& named) {
-  ParameterGroup group{QObject::tr("Board"), {}};
-  for (const ShownQuantity& quantity : shownBoard(named))
-    addQuantity(quantity, Eigen::Quaterniond::Identity(), group);
+ParameterGroup boardGroup(const NamedResult& named, std::size_t board) {
+  ParameterGroup group{QString::fromStdString(boardTitle(named, board)), {}};
+  for (const ShownQuantity& quantity : shownBoard(named, board))
+    addQuantity(quantity, named.result->state.boardAt(board).world_from_board.rotation, group);
   return group;
 }
 
@@ -139,7 +139,8 @@ std::vector<ParameterGroup> parameterGroups(const NamedResult& named) {
   for (std::size_t i = 0; i < named.result->state.cameras.size(); ++i)
     groups.push_back(cameraGroup(named, i));
   for (std::size_t i = 0; i < named.result->state.imus.size(); ++i) groups.push_back(imuGroup(named, i));
-  if (ParameterGroup board = boardGroup(named); !board.rows.empty()) groups.push_back(std::move(board));
+  for (std::size_t i = 0; i < named.boards.size(); ++i)
+    if (ParameterGroup board = boardGroup(named, i); !board.rows.empty()) groups.push_back(std::move(board));
   if (!named.result->state.imus.empty()) groups.push_back(gravityGroup(named));
   return groups;
 }

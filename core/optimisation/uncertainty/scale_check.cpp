@@ -9,17 +9,27 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace evical {
 namespace {
 
-// Where one number of a quantity stands in the covariance; nothing where it is held.
+// Where a number of one board stands in the covariance; nothing where it is held.
 std::optional<Eigen::Index> columnOf(const QuantityCovariance& covariance, const QuantityInfo& info,
-                                     Eigen::Index part = 0) {
+                                     std::size_t board = 0) {
+  for (std::size_t i = 0; i < covariance.quantities.size(); ++i)
+    if (covariance.quantities[i].info == &info && covariance.quantities[i].sensor == board)
+      return covariance.first_column[i];
+  return std::nullopt;
+}
+
+// Of gravity's norm, behind its two tilts.
+std::optional<Eigen::Index> gravityNormColumn(const QuantityCovariance& covariance) {
+  constexpr Eigen::Index kNorm = 2;
   for (std::size_t i = 0; i < covariance.quantities.size(); ++i) {
-    if (covariance.quantities[i].info != &info) continue;
-    const Eigen::Index first = covariance.first_column[i];
-    if (first + part < covariance.first_column[i + 1]) return first + part;
+    if (covariance.quantities[i].info != &kGravityQuantity) continue;
+    const Eigen::Index column = covariance.first_column[i] + kNorm;
+    if (column < covariance.first_column[i + 1]) return column;
   }
   return std::nullopt;
 }
@@ -30,7 +40,6 @@ const QuantityInfo& scaleInfo() {
 const QuantityInfo& stretchInfo() {
   return quantityInfo(kBoardQuantities, &BoardState::stretch);
 }
-constexpr Eigen::Index kGravityNorm = 2;  // behind its two tilts
 
 // What is known of a number, and what the solution made of it.
 struct Weighed {
@@ -69,34 +78,54 @@ Weighed excessOfBoard(const CalibrationInput& input, const CalibrationState& sta
                       const QuantityCovariance& covariance, const OptimisationOptions& options) {
   Combination excess(covariance);
   excess.add(columnOf(covariance, scaleInfo()), 1.0, options.board_spacing_sigma, state.board.scale - 1.0);
-  excess.add(columnOf(covariance, kGravityQuantity, kGravityNorm), -1.0 / input.gravity_norm_m_s2,
-             options.gravity_norm_sigma_m_s2, state.gravity_in_world_m_s2.norm() - input.gravity_norm_m_s2);
+  excess.add(gravityNormColumn(covariance), -1.0 / input.gravity_norm_m_s2, options.gravity_norm_sigma_m_s2,
+             state.gravity_in_world_m_s2.norm() - input.gravity_norm_m_s2);
   return excess.weighed(covariance);
+}
+
+// How much larger a further board is than said, by what the world's is said to be.
+Weighed ratioToWorld(const CalibrationInput& input, const CalibrationState& state, std::size_t board,
+                     const QuantityCovariance& covariance, const OptimisationOptions& options) {
+  Combination ratio(covariance);
+  for (const auto& [index, weight] : {std::pair<std::size_t, double>{board, 1.0}, {0, -1.0}})
+    ratio.add(columnOf(covariance, scaleInfo(), index), weight,
+              input.spacingSigma(index, options.board_spacing_sigma), state.boardAt(index).scale - 1.0);
+  return ratio.weighed(covariance);
 }
 
 std::string sizeDoubt(const CalibrationInput& input, const Weighed& excess) {
   return fmt::format(
-      "accelerations make the board {0:.2g} % {1} than board.spacing_m says ({2:.4g} m), or gravity {0:.2g} "
+      "accelerations make the board {0:.2g} % {1} than {6}.spacing_m says ({2:.4g} m), or gravity {0:.2g} "
       "% {3} than {4:.4g} m/s^2 ({5:.1f} sigmas): measure the board over as many circles as there are, and "
       "give gravity.latitude_deg",
       100.0 * std::abs(excess.found), excess.found > 0.0 ? "larger" : "smaller", input.board.spacing_m,
-      excess.found > 0.0 ? "smaller" : "larger", input.gravity_norm_m_s2, std::abs(excess.sigmas()));
+      excess.found > 0.0 ? "smaller" : "larger", input.gravity_norm_m_s2, std::abs(excess.sigmas()),
+      input.boardKey(0));
 }
 
-std::string stretchDoubt(const Weighed& stretch) {
+// Of two boards' sizes, one must be wrong where they contradict each other.
+std::string ratioDoubt(const CalibrationInput& input, std::size_t board, const Weighed& ratio) {
   return fmt::format(
-      "the board is stretched: {:.2g} % {} along its rows than along its columns, {:.1f} sigmas beyond what "
+      "{} and {} contradict each other: measured against the first, the second is {:.2g} % {} than its "
+      "spacing_m of {:.4g} m says ({:.1f} sigmas): measure both over as many spacings as there are",
+      input.boardKey(0), input.boardKey(board), 100.0 * std::abs(ratio.found),
+      ratio.found > 0.0 ? "larger" : "smaller", input.boardAt(board).spacing_m, std::abs(ratio.sigmas()));
+}
+
+std::string stretchDoubt(const std::string& board, const Weighed& stretch) {
+  return fmt::format(
+      "the {} is stretched: {:.2g} % {} along its rows than along its columns, {:.1f} sigmas beyond what "
       "board.spacing_std allows: measure it in both directions, and see that it lies flat",
-      100.0 * std::abs(stretch.found), stretch.found > 0.0 ? "longer" : "shorter",
+      board, 100.0 * std::abs(stretch.found), stretch.found > 0.0 ? "longer" : "shorter",
       std::abs(stretch.sigmas()));
 }
 
 // The curvatures that are certain.
-BoardState certainBow(const BoardState& found, const QuantityCovariance& covariance,
+BoardState certainBow(std::size_t board, const BoardState& found, const QuantityCovariance& covariance,
                       const OptimisationOptions& options) {
   BoardState bent;
-  forEachQuantity(kBoardQuantities, [&](const auto& row) {
-    const auto column = columnOf(covariance, row.info);
+  forEachSheetQuantity([&](const auto& row) {
+    const auto column = columnOf(covariance, row.info, board);
     if (row.info.release != QuantityRelease::BoardBow || !column) return;
     const double sigma = std::sqrt(std::max(0.0, covariance.covariance(*column, *column)));
     if (std::abs(row.value(found)) > options.bent_board_sigmas * sigma) row.value(bent) = row.value(found);
@@ -105,14 +134,17 @@ BoardState certainBow(const BoardState& found, const QuantityCovariance& covaria
 }
 
 // What is bent a little is estimated, and right; what is bent a lot is no longer what was modelled.
-void checkBow(const Board& board, const BoardState& bent, const OptimisationOptions& options,
-              ScaleCheck& check) {
+void checkBow(const CalibrationInput& input, std::size_t index, const BoardState& bent,
+              const OptimisationOptions& options, ScaleCheck& check) {
+  const Board& board = input.boardAt(index);
   const double bow_mm = largestBow_mm(bent, board);
   if (bow_mm < options.bent_board_mm) return;
   if (bow_mm > options.doubtful_scale_sigmas * options.board_bow_sigma_mm)
-    check.bow_doubt = bowWords(bent, board) + ", further than is modelled well: lay it on glass";
+    check.bow_doubt =
+        bowWords(bent, board, input.boardWords(index)) + ", further than is modelled well: lay it on glass";
   else
-    check.notes.push_back(bowWords(bent, board) + ", which is estimated with the rest");
+    check.notes.push_back(bowWords(bent, board, input.boardWords(index)) +
+                          ", which is estimated with the rest");
 }
 
 // "left: a board 0.1 % larger than said moves its translation by 0.68 mm"
@@ -141,23 +173,36 @@ void addEffects(const CalibrationInput& input, const QuantityCovariance& covaria
 ScaleCheck checkScale(const CalibrationInput& input, const CalibrationState& state,
                       const QuantityCovariance& covariance, const OptimisationOptions& options) {
   ScaleCheck check;
+  const auto isDoubtful = [&](const Weighed& weighed, const std::string& known) {
+    return known.empty() && std::abs(weighed.sigmas()) > options.doubtful_scale_sigmas;
+  };
   const Weighed excess = excessOfBoard(input, state, covariance, options);
-  if (std::abs(excess.sigmas()) > options.doubtful_scale_sigmas) check.size_doubt = sizeDoubt(input, excess);
-  Combination stretch(covariance);
-  stretch.add(columnOf(covariance, stretchInfo()), 1.0, boardStretchSigma(options), state.board.stretch);
-  const Weighed stretched = stretch.weighed(covariance);
-  if (std::abs(stretched.sigmas()) > options.doubtful_scale_sigmas)
-    check.stretch_doubt = stretchDoubt(stretched);
+  if (isDoubtful(excess, check.size_doubt)) check.size_doubt = sizeDoubt(input, excess);
   addEffects(input, covariance, check.notes);
-  checkBow(input.board, certainBow(state.board, covariance, options), options, check);
+  for (std::size_t i = 0; i < input.boardCount(); ++i) {
+    const BoardState& board = state.boardAt(i);
+    const double spacing_sigma = input.spacingSigma(i, options.board_spacing_sigma);
+    if (i > 0) {
+      const Weighed ratio = ratioToWorld(input, state, i, covariance, options);
+      if (isDoubtful(ratio, check.size_doubt)) check.size_doubt = ratioDoubt(input, i, ratio);
+    }
+    Combination stretch(covariance);
+    stretch.add(columnOf(covariance, stretchInfo(), i), 1.0, boardStretchSigma(spacing_sigma), board.stretch);
+    const Weighed stretched = stretch.weighed(covariance);
+    if (isDoubtful(stretched, check.stretch_doubt))
+      check.stretch_doubt = stretchDoubt(input.boardWords(i), stretched);
+    checkBow(input, i, certainBow(i, board, covariance, options), options, check);
+  }
   return check;
 }
 
 QuantityCovariance withScaleKnown(const QuantityCovariance& covariance) {
   std::vector<Eigen::Index> known;
-  for (const auto column : {columnOf(covariance, scaleInfo()), columnOf(covariance, stretchInfo()),
-                            columnOf(covariance, kGravityQuantity, kGravityNorm)})
-    if (column) known.push_back(*column);
+  for (std::size_t i = 0; i < covariance.quantities.size(); ++i)
+    if (const QuantityInfo* const info = covariance.quantities[i].info;
+        info == &scaleInfo() || info == &stretchInfo())
+      known.push_back(covariance.first_column[i]);
+  if (const auto norm = gravityNormColumn(covariance)) known.push_back(*norm);
   if (known.empty()) return covariance;
   const Eigen::MatrixXd of_known = covariance.covariance(known, known);
   const Eigen::MatrixXd mixed = covariance.covariance(Eigen::all, known);

@@ -142,15 +142,15 @@ class BoardTest {
   void add(const QuantityInfo& info, const Step& step, const OptimisationOptions& options) {
     if (step.sigmas < options.bent_board_sigmas) return;
     sigmas_ = std::max(sigmas_, step.sigmas);
-    forEachQuantity(kBoardQuantities, [&](const auto& row) {
+    forEachSheetQuantity([&](const auto& row) {
       if (&row.info == &info) row.value(bent_) = step.change[0];
     });
   }
-  std::string doubt(const Board& board, const OptimisationOptions& options) const {
+  std::string doubt(const Board& board, const std::string& called, const OptimisationOptions& options) const {
     if (largestBow_mm(bent_, board) < options.bent_board_mm) return {};
     return fmt::format(
         "{} ({:.0f} sigmas): lay it on glass, or calibrate with optimisation.model.board_bow: true",
-        bowWords(bent_, board), sigmas_);
+        bowWords(bent_, board, called), sigmas_);
   }
 
  private:
@@ -175,11 +175,11 @@ HeldDoubts testHeldValues(const CalibrationInput& input, const CalibrationState&
     if (isHeld(information.quantities[i], input, options)) held.push_back(i);
   if (held.empty()) return doubts;
   const Steps steps(information, withoutNoise(information));
-  BoardTest board;
+  std::vector<BoardTest> boards(input.boardCount());
   for (const std::size_t i : held) {
     const Quantity& quantity = information.quantities[i];
     if (quantity.info->owner == QuantityOwner::Board)
-      board.add(*quantity.info, steps.of(i), options);
+      boards[quantity.sensor].add(*quantity.info, steps.of(i), options);
     else if (quantity.info->release == QuantityRelease::LineDelay)
       testShutter(input.cameras[quantity.sensor], steps.of(i), options, doubts.shutters);
     else if (quantity.info->owner == QuantityOwner::Camera)
@@ -188,7 +188,8 @@ HeldDoubts testHeldValues(const CalibrationInput& input, const CalibrationState&
     else
       testGyroscope(input.imus[quantity.sensor].name, steps, i, options, doubts);
   }
-  doubts.board = board.doubt(input.board, options);
+  for (std::size_t i = 0; i < boards.size() && doubts.board.empty(); ++i)
+    doubts.board = boards[i].doubt(input.boardAt(i), input.boardWords(i), options);
   return doubts;
 }
 

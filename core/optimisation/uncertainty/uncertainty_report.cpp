@@ -16,7 +16,7 @@ std::string ownerName(const Quantity& quantity, const CalibrationInput& input) {
     case QuantityOwner::Imu:
       return input.imus[quantity.sensor].name;
     case QuantityOwner::Board:
-      return "board";
+      return input.boardName(quantity.sensor);
     case QuantityOwner::Rig:
       break;
   }
@@ -54,7 +54,7 @@ void storeStandardDeviations(const Quantity& quantity, const Eigen::VectorXd& si
       storeSigma(kImuQuantities, *quantity.info, sigma, report.imus[quantity.sensor]);
       break;
     case QuantityOwner::Board:
-      storeSigma(kBoardQuantities, *quantity.info, sigma, report.board);
+      storeSigma(kBoardQuantities, *quantity.info, sigma, report.boardAt(quantity.sensor));
       break;
     case QuantityOwner::Rig:
       report.gravity_direction_std_rad = sigma.head<2>().norm() / std::sqrt(2.0);
@@ -69,6 +69,7 @@ UncertaintyReport makeReport(const CalibrationInput& input, const QuantityCovari
   UncertaintyReport report;
   report.cameras.resize(input.cameras.size());
   report.imus.resize(input.imus.size());
+  report.further_boards.resize(input.further_boards.size());
   report.standard_deviations = quantities.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   const Eigen::VectorXd inverse = report.standard_deviations.cwiseMax(1e-300).cwiseInverse();
   report.correlation = inverse.asDiagonal() * quantities.covariance * inverse.asDiagonal();

@@ -220,12 +220,13 @@ void writeDetections(const ReportData& data, const Measures& measures, ReportPag
     const CameraMeasures& camera = measures.cameras[i];
     if (camera.windows == 0) continue;
     page.heading("Camera " + cameraName(data, i));
+    const int points = data.boards.at(i).board.pointCount();
     const PlotTable runs = timelineTable(data.cameras[i], i), counts = circlesTable(data.cameras[i], i);
     page.figure(
-        timelineSvg(runs, counts, camera, data.board.pointCount()),
+        timelineSvg(runs, counts, camera, points),
         fmt::format("The bar says what became of each window, the dots how many of the board's {} circles "
                     "were found. Long stretches without the board are lost for the calibration.",
-                    data.board.pointCount()),
+                    points),
         &runs);
     page.text(outcomeTable(camera));
     page.keep(runs);

@@ -19,11 +19,17 @@ struct ReportNeeds {
   double rotation_deg = 0.1, translation_mm = 1.0, time_offset_ms = 0.1;
 };
 
+// The board that a camera sees: `index` as in CalibrationState::boardAt.
+struct SeenBoard {
+  Board board;
+  std::size_t index = 0;
+};
+
 // Lists may be empty or shorter than those of the result where a calibration failed early.
 struct ReportData {
   const NamedResult& named;
-  std::string recording;  // as people know it: the file's name
-  Board board = {};
+  std::string recording;               // as people know it: the file's name
+  std::vector<SeenBoard> boards = {};  // by camera
   std::int64_t start_ns = 0;
   std::span<const BoardObservations> cameras = {};
   std::span<const CameraLens> lenses = {};  // what they were seen with

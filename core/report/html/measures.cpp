@@ -57,17 +57,19 @@ void addDetections(const BoardObservations& observations, const std::optional<Ca
 }
 
 void addPoses(const BoardObservations& observations, const CalibrationState& state, std::size_t index,
-              const Board& board, CameraMeasures& camera) {
+              const SeenBoard& seen, CameraMeasures& camera) {
   if (index >= state.cameras.size() || state.imu_in_world_m.segmentCount() < 1) return;
   Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();
-  for (const Eigen::Vector2d& centre_m : boardPoints_m(board)) middle_m += centre_m / board.pointCount();
+  for (const Eigen::Vector2d& centre_m : boardPoints_m(seen.board))
+    middle_m += centre_m / seen.board.pointCount();
   const CameraState& mounted = state.cameras[index];
   for (const BoardView& view : observations.views) {
     const double time_s = referenceTime_s(mounted, view.time_s);
     if (!state.world_from_imu_rotation.contains(time_s) || !state.imu_in_world_m.contains(time_s)) continue;
     const RigidTransform pose =
         cameraFromWorld(state.world_from_imu_rotation, state.imu_in_world_m, mounted.reference_from_camera,
-                        timeOffsetAt_s(mounted, view.time_s), view.time_s);
+                        timeOffsetAt_s(mounted, view.time_s), view.time_s) *
+        state.boardAt(seen.index).world_from_board;
     const Eigen::Vector3d normal = pose.rotation * Eigen::Vector3d::UnitZ();
     const Eigen::Vector3d along = pose.rotation * Eigen::Vector3d::UnitX();
     const Eigen::Vector3d at =
@@ -99,7 +101,7 @@ CameraMeasures measureCamera(const ReportData& data, std::size_t index) {
   if (!camera.resolution_px.known() && intrinsics) camera.resolution_px = intrinsics->resolution_px;
   camera.cells = makeCells(camera.resolution_px);
   addDetections(data.cameras[index], intrinsics, camera);
-  addPoses(data.cameras[index], data.named.result->state, index, data.board, camera);
+  addPoses(data.cameras[index], data.named.result->state, index, data.boards.at(index), camera);
   addResiduals(data, index, intrinsics, camera);
   return camera;
 }

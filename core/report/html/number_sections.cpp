@@ -227,11 +227,19 @@ void writeVerdict(const ReportData& data, const Measures& measures, ReportPage& 
 }
 
 void writeBoardNumbers(const ReportData& data, ReportPage& page) {
-  Rows rows;
-  for (const ShownQuantity& quantity : shownBoard(data.named)) rows.push_back(scalarRow(quantity));
-  if (rows.empty()) return;
-  page.heading("Board");
-  page.text(table({"", "value", "unit"}, rows));
+  for (std::size_t i = 0; i < data.named.boards.size(); ++i) {
+    Rows vectors, scalars;
+    for (const ShownQuantity& quantity : shownBoard(data.named, i)) {
+      if (quantity.info->shape == QuantityShape::Scalar)
+        scalars.push_back(scalarRow(quantity));
+      else
+        addVectors(vectors, quantity, data.named.result->state.boardAt(i).world_from_board.rotation);
+    }
+    if (vectors.empty() && scalars.empty()) continue;
+    page.heading(escaped(boardTitle(data.named, i)));
+    if (!vectors.empty()) page.text(table({"", "x", "y", "z", "unit"}, vectors));
+    if (!scalars.empty()) page.text(table({"", "value", "unit"}, scalars));
+  }
 }
 
 void writeNumbers(const ReportData& data, ReportPage& page) {

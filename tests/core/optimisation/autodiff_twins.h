@@ -245,14 +245,15 @@ struct CircleTwin {
     const Matrix3<T> imu_from_camera = matrixOf(turned(base[8], p[8]));
     const Matrix3<T> camera_from_world = (world_from_imu * imu_from_camera).transpose();
     const Vector3<T> camera_in_world = world_from_imu * vectorAt(p[9]) + positionAt(p + 4, position_place);
-    const Vector3<T> centre_in_world(p[15][0] * (1.0 + p[16][0] / 2.0) * circle.on_board_m.x(),
+    const Matrix3<T> world_from_board = matrixOf(turned(base[21], p[21]));
+    const Vector3<T> centre_on_sheet(p[15][0] * (1.0 + p[16][0] / 2.0) * circle.on_board_m.x(),
                                      p[15][0] * (1.0 - p[16][0] / 2.0) * circle.on_board_m.y(),
                                      (p[17][0] * circle.on_board_m.x() * circle.on_board_m.x() +
                                       p[18][0] * circle.on_board_m.y() * circle.on_board_m.y()) /
                                              2.0 +
                                          p[19][0] * circle.on_board_m.x() * circle.on_board_m.y());
-    Matrix3<T> h = camera_from_world;
-    h.col(2) = camera_from_world * (centre_in_world - camera_in_world);
+    Matrix3<T> h = camera_from_world * world_from_board;
+    h.col(2) = camera_from_world * (world_from_board * centre_on_sheet + vectorAt(p[22]) - camera_in_world);
     const T r2(model.radius_m * model.radius_m);
     const Vector3<T> dual(r2, r2, T(-1.0));
     const Matrix3<T> conic = h * dual.asDiagonal() * h.transpose();
@@ -268,7 +269,7 @@ struct CircleTwin {
     const Eigen::Matrix2d ideal_from_sensor = idealPixelScale(model.camera, circle.centre_px);
     const Eigen::Vector2d seen = pixelFromIdeal(model.camera, circle.centre_px);
     const Eigen::Matrix<T, 2, 1> off =
-        pixelOf(model.camera.model, p[21], centre[0], centre[1]) - seen.template cast<T>();
+        pixelOf(model.camera.model, p[23], centre[0], centre[1]) - seen.template cast<T>();
     return circle.centre_px.template cast<T>() + ideal_from_sensor.template cast<T>() * off;
   }
 

@@ -78,6 +78,9 @@ inline Blocks circleBlocks(States& states, double step_rad) {
   for (const double of_board : {1.01, 0.02, 0.3, -0.2, 0.1})
     blocks.push_back({of_board});  // not drawn either
   blocks.push_back({0.05});
+  // Nor is the board's place in the world, which keeps it before the camera.
+  blocks.push_back(States::numbers(quaternionExp(Eigen::Vector3d(0.05, -0.04, 0.1))));
+  blocks.push_back({0.03, -0.02, 0.04});
   return blocks;
 }
 

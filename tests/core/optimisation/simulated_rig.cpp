@@ -150,7 +150,7 @@ CameraData observe(const TrueMotion& motion, const CameraState& camera, const Bo
     const RigidTransform camera_from_world = inverse(world_from_camera);
     const auto projected =
         projectCircle(*data.lens.seen_with, camera_from_world * true_board.place_m(board.point_m(circle)),
-                      camera_from_world.rotation * Vector3d::UnitZ(), board.radius_m);
+                      camera_from_world.rotation * true_board.normal(), board.radius_m);
     return projected ? std::optional(projected->centre_px) : std::nullopt;
   };
   // Which row sees the point when it is that row's turn.
@@ -253,7 +253,8 @@ void spreadScale(const RigOptions& options, CalibrationState& truth) {
   const PriorOptions priors;
   truth.board = options.board;
   truth.board.scale += options.scale_spread * priors.board_spacing_sigma * random.normal();
-  truth.board.stretch += options.scale_spread * boardStretchSigma(priors) * random.normal();
+  truth.board.stretch +=
+      options.scale_spread * boardStretchSigma(priors.board_spacing_sigma) * random.normal();
   truth.gravity_in_world_m_s2 *=
       1.0 + options.scale_spread * priors.gravity_norm_sigma_m_s2 * random.normal() / options.gravity_m_s2;
 }
@@ -272,6 +273,29 @@ void addFrames(const TrueMotion& motion, RigOptions options, SimulatedRig& rig) 
   data.same_sensor_as = 0;
   rig.input.cameras.push_back(std::move(data));
   rig.truth.cameras.push_back(camera);
+}
+
+// Another camera, turned away from the first, and before it another board, turned as well.
+void addFurtherBoard(const TrueMotion& motion, RigOptions options, SimulatedRig& rig) {
+  constexpr unsigned kOther = 333;  // seed: what else is drawn stays the same
+  Random random(options.seed + kOther);
+  const RigidTransform first_from_second = {quaternionExp(Vector3d(0.1, 0.6, -0.2) + random.uniform3(0.1)),
+                                            Vector3d(0.05, -0.02, 0.03) + random.uniform3(0.02)};
+  CameraState camera = rig.truth.cameras.front();
+  camera.reference_from_camera = camera.reference_from_camera * first_from_second;
+  camera.time_offset_s += random.uniform(0.0, 5e-3);
+  BoardState board;
+  board.world_from_board = motion.worldFromImu(0.5 * options.duration_s) * camera.reference_from_camera *
+                           RigidTransform{quaternionExp(random.uniform3(0.3)), Vector3d(-0.12, -0.18, 0.6)};
+  rig.input.further_boards = {{"tags", rig.input.board}};
+  CameraData data = observe(motion, camera, rig.input.board, board, options, random);
+  data.name = "right";
+  data.board = 1;
+  camera.lens = data.lens;
+  camera.lens.solved = data.lens.given;
+  rig.input.cameras.push_back(std::move(data));
+  rig.truth.cameras.push_back(camera);
+  rig.truth.further_boards = {board};
 }
 
 }  // namespace
@@ -323,6 +347,7 @@ SimulatedRig simulateRig(const RigOptions& options) {
   }
   fitTruth(motion, options, rig.truth);
   if (options.frames_too) addFrames(motion, options, rig);
+  if (options.further_board) addFurtherBoard(motion, options, rig);
   return rig;
 }
 
@@ -364,6 +389,12 @@ CalibrationState disturbed(const CalibrationState& truth, unsigned seed, double 
     imu.time_offset_drift_ppm = 0.0;
   }
   state.board = {};
+  for (BoardState& board : state.further_boards) {
+    RigidTransform& place = board.world_from_board;
+    board = {};
+    board.world_from_board = {place.rotation * quaternionExp(random.uniform3(0.01)),
+                              place.translation_m + random.uniform3(0.02)};
+  }
   state.gravity_in_world_m_s2 = quaternionExp(random.uniform3(0.01)) * state.gravity_in_world_m_s2;
   return state;
 }

@@ -34,6 +34,7 @@ struct RigOptions {
   double exposure_share = 0.0;                            // of what frames are exposed longer than others
   bool frames_too = false;                                // a second camera: frames of the first one's sensor
   Eigen::Vector3d frames_apart_m = Eigen::Vector3d::Zero();  // which they are said to be of, and are not
+  bool further_board = false;  // a second camera, that sees another board than the first
   // Times the default priors: the board's size and stretch, and gravity's norm, drawn anew for each seed.
   double scale_spread = 0.0;
   unsigned seed = 1;

@@ -129,9 +129,12 @@ class TestCircleCost : public QObject {
     circle.by_line_s = -8e-5;
     circle.by_exposure_s = 2e-3;
     circle.lead = {{0.8, 0.6}, {0.4, 0.3}};
-    const BoardState board{blocks[15][0], blocks[16][0], blocks[17][0], blocks[18][0], blocks[19][0]};
+    const BoardState board{
+        blocks[15][0], blocks[16][0], blocks[17][0],
+        blocks[18][0], blocks[19][0], {Eigen::Quaterniond(blocks[21].data()), Vector3d(blocks[22].data())},
+    };
     circle.centre_px = projectCircle(model.camera, camera_from_world * board.place_m(circle.on_board_m),
-                                     camera_from_world.rotation * Vector3d::UnitZ(), model.radius_m)
+                                     camera_from_world.rotation * board.normal(), model.radius_m)
                            ->centre_px +
                        blocks[13][0] * circle.lead.of_lead + blocks[14][0] * circle.lead.of_slow;
     QVERIFY(residualsAt(CircleCost(model, segmentTimes(), {circle}), blocks).norm() < 1e-9);

@@ -145,7 +145,7 @@ class TestSavedDetections : public QObject {
     const Session session = readSession(path / "session.yaml");
     const RecordingPass pass = readAndDetect(session, RunContext{});
     for (const FileContent& file : detectionFiles(session, pass, {}))
-      writeFileWhole(path / file.name, file.content);
+      writeFileWhole(path / file.path, file.content);
     const RestoredDetections restored = restoreDetections(path, session, RunContext{});
     QVERIFY(restored.pass.lenses == pass.lenses);
     QCOMPARE(restored.pass.cameras[1].views.size(), pass.cameras[1].views.size());

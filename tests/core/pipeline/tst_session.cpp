@@ -258,6 +258,71 @@ class TestSession : public QObject {
     }
   }
 
+  void severalBoards_areReadAndWritten() {
+    const QString text =
+        QString(kGood)
+            .replace(kCircles,
+                     "boards:\n"
+                     "  tags: {type: aprilgrid, rows: 6, cols: 6, tag_size_m: 0.088, tag_spacing: 0.3, "
+                     "spacing_std: 0.001}\n"
+                     "  plate: {type: asymmetric_circles, rows: 11, cols: 4, radius_m: 0.02,\n"
+                     "          measured: {spacings: 10, length_m: 0.502, std_m: 0.0005}}\n")
+            .replace("    resolution_px: [346, 260]\n", "    resolution_px: [346, 260]\n    board: plate\n")
+            .replace("imus:\n", "  right: {stream: /right/frames, board: tags}\nimus:\n");
+    const Session session = readSession(write("session.yaml", text.toStdString()));
+    QCOMPARE(session.board_name, std::string("plate"));  // which the first camera sees: the world
+    QCOMPARE(session.board.spacing_m, 0.0502);
+    QCOMPARE(session.options.optimisation.board_spacing_sigma, 0.0005 / 0.502);
+    QCOMPARE(session.further_boards.size(), std::size_t{1});
+    QCOMPARE(session.further_boards[0].name, std::string("tags"));
+    QCOMPARE(session.further_boards[0].spacing_std, std::optional(0.001));
+    QCOMPARE(session.boardIndexOf(0), std::size_t{0});
+    QCOMPARE(session.boardOf(1).tag_size_m, 0.088);
+    writeSession(session, folder() / "again.yaml");
+    const Session again = readSession(folder() / "again.yaml");
+    QVERIFY(again.board == session.board && again.board_name == session.board_name);
+    QVERIFY(again.further_boards[0].board == session.further_boards[0].board);
+    QCOMPARE(again.further_boards[0].spacing_std, std::optional(0.001));
+    QCOMPARE(again.cameras[1].board, std::string("tags"));
+  }
+
+  void boardsThatNobodySees_areRefused_data() {
+    QTest::addColumn<QString>("boards");
+    QTest::addColumn<QString>("of_left");
+    QTest::addColumn<QStringList>("said");
+    const QString plate =
+        "  plate: {type: asymmetric_circles, rows: 11, cols: 4, spacing_m: 0.05, radius_m: 0.02}\n";
+    const QString tags = "  tags: {type: aprilgrid, rows: 6, cols: 6, tag_size_m: 0.088, spacing_m: 0.1}\n";
+    QTest::newRow("none") << "boards: {}\n"
+                          << "" << QStringList{"boards", "is empty"};
+    QTest::newRow("unseen") << "boards:\n" + plate + tags << "board: plate"
+                            << QStringList{"boards.tags", "no camera sees it"};
+    QTest::newRow("not said") << "boards:\n" + plate + tags << ""
+                              << QStringList{"cameras.left.board", "is missing"};
+    QTest::newRow("other name") << "boards:\n" + plate << "board: plat"
+                                << QStringList{"cameras.left.board", "Did you mean 'plate'"};
+    QTest::newRow("both") << kCircles + "boards:\n" + plate << "board: plate"
+                          << QStringList{"boards", "is there beside board"};
+    QTest::newRow("symmetric") << "boards:\n" + QString(plate).replace("11", "10") << "board: plate"
+                               << QStringList{"boards.plate.rows", "turned by 180 degrees"};
+  }
+  void boardsThatNobodySees_areRefused() {
+    QFETCH(QString, boards);
+    QFETCH(QString, of_left);
+    QFETCH(QStringList, said);
+    const QString resolution = "    resolution_px: [346, 260]\n";
+    const QString text =
+        QString(kGood)
+            .replace(kCircles, boards)
+            .replace(resolution, resolution + (of_left.isEmpty() ? "" : "    " + of_left + "\n"));
+    try {
+      readSession(write("session.yaml", text.toStdString()));
+      QFAIL("taken");
+    } catch (const CalibrationError& error) {
+      test::verifyRefusal(error, said);
+    }
+  }
+
   void exportsAndRandomWalks_areKept() {
     const Session session =
         sessionWith("reference: left_imu\n", "reference: left_imu\nexport: [openvins, ros]\n");

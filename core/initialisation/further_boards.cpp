@@ -1,0 +1,68 @@
+#include "core/initialisation/further_boards.h"
+
+#include "core/base/error.h"
+#include "core/base/stopwatch.h"
+#include "core/initialisation/board_alignment.h"
+#include "core/numerics/angles.h"
+
+#include <fmt/format.h>
+
+namespace evical {
+namespace {
+
+void checkAlignment(const std::string& board, const CalibrationInput& input,
+                    const std::optional<BoardAlignment>& found, double gap_s,
+                    const InitialisationOptions& options) {
+  if (!found) {
+    throw calibrationFailed(
+        board,
+        fmt::format(
+            "fewer than {} views of it lie within {:.2g} s of views of '{}', so nobody knows where one "
+            "stands against the other",
+            options.least_views, gap_s, input.boardName(0)),
+        "Move so that each camera has its board in view at the same time, most of the time");
+  }
+  constexpr double kLeastAgreement = 0.75;  // the gyroscope has left few views that are misread
+  if (found->agreeing >= kLeastAgreement) return;
+  throw calibrationFailed(
+      board,
+      fmt::format("only {:.0f} % of its views agree on where it stands against '{}'", 100.0 * found->agreeing,
+                  input.boardName(0)),
+      "Check that the boards stay where they are against each other, and which camera sees which board");
+}
+
+}  // namespace
+
+void alignFurtherBoards(const CalibrationInput& input, const std::map<std::size_t, AlignedCamera>& aligned,
+                        const CameraTrajectory& body, double gap_s, const InitialisationOptions& options,
+                        Initialisation& result) {
+  result.state.further_boards.resize(input.further_boards.size());
+  for (std::size_t board = 1; board < input.boardCount(); ++board) {
+    Stopwatch stopwatch;
+    std::vector<BoardSight> sights;
+    std::vector<std::size_t> cameras;
+    for (const auto& [k, camera] : aligned) {
+      if (input.cameras[k].board != board) continue;
+      sights.push_back({camera.poses, camera.hand_eye.time_offset_s, camera.hand_eye.reference_from_sensor,
+                        input.cameras[k].prior.translation});
+      cameras.push_back(k);
+    }
+    const std::string& name = input.boardName(board);
+    const auto found = alignBoard(body, sights, gap_s, options.least_views);
+    checkAlignment(name, input, found, gap_s, options);
+    result.state.boardAt(board).world_from_board = found->world_from_board;
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+      CameraState& state = result.state.cameras.at(cameras[i]);
+      state.reference_from_camera = {sights[i].body_from_camera, found->cameras_in_body_m[i]};
+      state.time_offset_s = sights[i].time_offset_s;
+    }
+    result.steps.push_back(
+        {"board to board",
+         fmt::format("{}: {} views agree to {:.3f} deg and {:.2f} mm on where it stands against {}", name,
+                     found->views, found->rotation_rms_rad * kDegPerRad, 1e3 * found->position_rms_m,
+                     input.boardName(0)),
+         found->position_rms_m, 0.0, stopwatch.restart_s()});
+  }
+}
+
+}  // namespace evical
