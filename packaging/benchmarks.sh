@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.." || exit 2
 packaging/install-dependencies.sh
 cmake --preset release -DEVICAL_TESTS=ON
 cmake --build --preset release --target evical_accuracy evical_intrinsics_accuracy evical_unknown_intrinsics evical_formats evical_speed \
-                                       evical_stress evical_centre_errors evical_board_starts
+                                       evical_stress evical_centre_errors evical_board_starts evical_frame_cameras
 benchmarks=build/release/tests/benchmarks
 scenarios=config/scenarios
 failed=0
@@ -39,6 +39,9 @@ run evical_centre_errors --speeds --duration 10 "$scenarios"/{small_motion,davis
 
 # The board, wherever a recording begins.
 run evical_board_starts --duration 20 "${single[@]}"
+
+# Frame cameras, further boards, lenses; real ones, too, where EVICAL_DATA names them.
+run evical_frame_cameras
 
 run evical_intrinsics_accuracy "$scenarios"/intrinsics_*.yaml
 run evical_intrinsics_accuracy --seeds 10 --duration 15 "$scenarios/intrinsics_davis346.yaml"

@@ -3,20 +3,10 @@
 // same front end, initialisation and batch as `evical calibrate`. Fails where a target is missed; with --within, where an
 // error of rotation, translation or time offset is larger than so many of its sigmas (and called ok); with --verdicts, where a wrong
 // result is called ok, or the errors over sigmas of 20 seeds or more leave 0.7 to 1.4.
-#include "core/base/stopwatch.h"
-#include "core/frontend/board_tracker.h"
 #include "core/numerics/angles.h"
-#include "core/pipeline/calibration_pipeline.h"
-#include "core/pipeline/camera_views.h"
-#include "core/pipeline/result_files.h"
 #include "core/report/truth_comparison.h"
-#include "core/synthetic/board_truth.h"
-#include "core/synthetic/event_simulator.h"
-#include "core/synthetic/frame_simulator.h"
-#include "core/synthetic/imu_simulator.h"
-#include "core/synthetic/session_errors.h"
 #include "tests/benchmarks/benchmark_program.h"
-#include "tests/support/scenario_session.h"
+#include "tests/benchmarks/scenario_run.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -26,7 +16,6 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,115 +31,6 @@ Targets targetsOf(const std::string& scenario) {
   if (scenario == "davis346" || scenario == "stereo_two_imus") return {0.95, 0.03, 0.7, 0.1};
   if (scenario == "stereo") return {0.95, 0.03, 0.5, 0.1};
   return {};
-}
-
-struct Outcome {
-  std::string verdict, weakest, reason;
-  double windows_found = 0.0;  // of those with enough of the board in view
-  double events_per_s = 0.0;
-  double detect_s = 0.0, solve_s = 0.0;
-  std::optional<TruthComparison> comparison;
-  std::optional<CameraUncertainty> uncertainty;
-};
-
-// The front end over the events as they are simulated; its own time is measured apart.
-BoardObservations fromEvents(const Scenario& scenario, const Session& session, std::size_t k,
-                             const CameraIntrinsics& camera, double& busy_s) {
-  BoardTracker tracker(session.board, camera.resolution_px, camera, session.options.front_end,
-                       scenario.start_ns);
-  simulateEvents(scenario, k, [&](EventSpan events) {
-    const Stopwatch stopwatch;
-    tracker.add(events);
-    busy_s += stopwatch.elapsed_s();
-  });
-  const Stopwatch stopwatch;
-  BoardObservations found = tracker.finish();
-  busy_s += stopwatch.elapsed_s();
-  return found;
-}
-
-// The same of frames.
-BoardObservations fromFrames(const Scenario& scenario, const Session& session, std::size_t k,
-                             const CameraIntrinsics& camera, double& busy_s) {
-  const RunContext context;
-  const CameraLens lens = givenLens(camera);
-  CameraBatch batch;
-  batch.camera = k;
-  batch.kind = CameraKind::Frames;
-  batch.opened_px = camera.resolution_px;
-  batch.start_ns = scenario.start_ns;
-  const std::unique_ptr<CameraViews> views = cameraViews(batch, {session, lens, context});
-  simulateFrames(scenario, k, [&](const Frame& frame) {
-    const Stopwatch stopwatch;
-    batch.frames = {frame};
-    views->take(batch);
-    busy_s += stopwatch.elapsed_s();
-  });
-  const Stopwatch stopwatch;
-  std::vector<RecordingFault> faults;
-  BoardObservations found = views->finish(faults);
-  busy_s += stopwatch.elapsed_s();
-  return found;
-}
-
-RecordingPass detect(const Scenario& scenario, const Session& session, Outcome& outcome) {
-  RecordingPass pass;
-  pass.start_ns = scenario.start_ns;
-  double busy_s = 0.0;
-  std::uint64_t events_read = 0;
-  const Scenario said = asSessionSays(scenario);
-  for (std::size_t k = 0; k < scenario.cameras.size(); ++k) {
-    const CameraIntrinsics& camera = said.cameras[k].intrinsics;
-    const auto find = scenario.cameras[k].frames ? fromFrames : fromEvents;
-    pass.cameras.push_back(find(scenario, session, k, camera, busy_s));
-    pass.lenses.push_back(givenLens(camera));
-    pass.cameras.back().camera = scenario.cameras[k].name;
-    events_read += pass.cameras.back().events;
-  }
-  for (std::size_t k = 0; k < scenario.imus.size(); ++k) {
-    const SimulatedImu& imu = said.imus[k];
-    pass.imus.push_back(
-        {imu.name, {imu.gyroscope_density, imu.accelerometer_density}, simulateImu(scenario, k)});
-  }
-  pass.detect_s = outcome.detect_s = busy_s;
-  outcome.events_per_s = static_cast<double>(events_read) / scenario.duration_s;
-  return pass;
-}
-
-double windowsFound(const Scenario& scenario, const BoardObservations& observations) {
-  const SinusoidMotion motion(scenario);
-  int seen = 0, found = 0;
-  for (const WindowReport& window : observations.windows) {
-    if (!boardInView(motion, scenario, 0, window.time_s)) continue;
-    ++seen;
-    found += window.outcome == WindowOutcome::Complete || window.outcome == WindowOutcome::Partial;
-  }
-  return seen == 0 ? 0.0 : static_cast<double>(found) / seen;
-}
-
-Outcome run(const Scenario& scenario) {
-  Outcome outcome;
-  const Session session = test::sessionFor(scenario);
-  RecordingPass pass = detect(scenario, session, outcome);
-  outcome.windows_found = windowsFound(scenario, pass.cameras.front());
-  const Stopwatch stopwatch;
-  try {
-    const CalibrationRun run = calibrate(session, std::move(pass), RunContext{});
-    outcome.verdict = statusName(run.result.status);
-    outcome.weakest = run.result.uncertainty.weakest;
-    outcome.reason = run.result.reason;
-    outcome.comparison =
-        compareWithTruth(namedResult(session, std::make_shared<CalibrationResult>(run.result), "benchmark"),
-                         test::truthOf(scenario));
-    for (const CameraUncertainty& camera : run.result.uncertainty.cameras) {
-      CameraUncertainty& worst = outcome.uncertainty ? *outcome.uncertainty : outcome.uncertainty.emplace();
-      if (camera.translation_std_m.norm() > worst.translation_std_m.norm()) worst = camera;
-    }
-  } catch (const CalibrationError& error) {
-    outcome.verdict = std::string("failed: ") + error.what();
-  }
-  outcome.solve_s = stopwatch.elapsed_s();
-  return outcome;
 }
 
 void printHeader() {
@@ -326,7 +206,7 @@ int main(int argc, char** argv) {
     std::vector<Outcome> outcomes;
     for (int k = 0; k < arguments.scenarios.seeds; ++k) {
       const Scenario scenario = arguments.scenarios.read(file, k);
-      outcomes.push_back(run(scenario));
+      outcomes.push_back(runScenario(scenario));
       const bool met = printRow(scenario, outcomes.back());
       all_good = arguments.isGood(outcomes.back(), met) && all_good;
       spread.add(scenario, outcomes.back());

@@ -4,10 +4,10 @@
 #include "core/geometry/camera_model.h"
 #include "core/geometry/projection_difference.h"
 #include "core/geometry/sphere_lens.h"
-#include "core/numerics/angles.h"
 #include "core/pipeline/intrinsics_calibration.h"
 #include "core/pipeline/simulation.h"
 #include "tests/benchmarks/benchmark_program.h"
+#include "tests/benchmarks/scenario_run.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -26,17 +26,6 @@ namespace {
 struct Targets {
   double focal_percent = 0.05, principal_px = 0.2, projection_px = 0.1, radius_share = 1.0;
 };
-
-// Of the way from the principal point to the image's furthest corner: where a lens of 190 degrees ends.
-double shareOfImageCircle(const CameraIntrinsics& camera) {
-  constexpr double kFurthest_rad = 95.0 * kRadPerDeg;
-  const Eigen::Vector3d ray(std::sin(kFurthest_rad), 0.0, std::cos(kFurthest_rad));
-  const auto border = project(camera, ray);
-  const Eigen::Vector2d size(camera.resolution_px.width_px - 1, camera.resolution_px.height_px - 1);
-  const Eigen::Vector2d& centre = camera.principal_point_px;
-  const double corner_px = centre.cwiseMax(size - centre).norm();
-  return border ? (*border - centre).norm() / corner_px : 1.0;
-}
 
 Targets targetsOf(const CameraIntrinsics& camera) {
   if (isSphereModel(camera.model)) return {0.05, 0.2, 0.15, 0.95 * shareOfImageCircle(camera)};

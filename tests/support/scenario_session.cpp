@@ -40,6 +40,8 @@ Session sessionFor(const Scenario& truth) {
   Session session;
   session.source = scenario.name;
   session.board = scenario.board;
+  for (const SimulatedBoard& further : scenario.further_boards)
+    session.further_boards.push_back({further.name, further.board});
   for (const SimulatedCamera& camera : scenario.cameras) {
     session.cameras.push_back(
         {camera.name, camera.stream, camera.intrinsics.resolution_px, camera.intrinsics});
@@ -47,6 +49,7 @@ Session sessionFor(const Scenario& truth) {
       session.cameras.back().shutter = Shutter::Rolling;
     session.cameras.back().same_sensor_as = camera.same_sensor_as;
     if (!camera.same_sensor_as.empty()) session.cameras.back().intrinsics.reset();
+    if (!scenario.further_boards.empty()) session.cameras.back().board = camera.board;
   }
   for (const SimulatedImu& imu : scenario.imus) {
     SessionImu out;

@@ -7,6 +7,7 @@
 #include "core/pipeline/session.h"
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "tests/support/real_recordings.h"
 #include "tests/support/test_program.h"
 
 #include <QDir>
@@ -44,24 +45,6 @@ QString errorOf(const std::function<void()>& work, ErrorKind kind) {
     return error.kind() == kind ? QString(error.what()) : "of another kind: " + QString(error.what());
   }
   return "none";
-}
-
-Session realSession(const QDir& folder, int rows, int cols) {
-  Session session;
-  session.board.type = BoardType::Checkerboard;
-  session.board.rows = rows;
-  session.board.cols = cols;
-  session.board.spacing_m = 0.055;
-  session.board.radius_m = 0.0;
-  session.board_blinks = true;
-  for (const QString& name : folder.entryList({"*.aedat"}, QDir::Files, QDir::Name))
-    session.more_recordings.emplace_back(folder.filePath(name).toStdString());
-  session.recording = session.more_recordings.front();
-  session.more_recordings.erase(session.more_recordings.begin());
-  session.cameras.push_back({"camera", "events", {}, {}});
-  session.reference = "camera";
-  session.options.intrinsics.least_views = 8;
-  return session;
 }
 
 }  // namespace
@@ -153,10 +136,9 @@ class TestBlinkingBoard : public QObject {
   void realScreen_givesItsLens() {
     QFETCH(const int, rows);
     QFETCH(const int, cols);
-    const QDir folder(qEnvironmentVariable("EVICAL_DATA") + "/real/dvs128_blinking");
-    if (qEnvironmentVariableIsEmpty("EVICAL_DATA") || !folder.exists("calibration_2.aedat"))
-      QSKIP("EVICAL_DATA, the folder of sample recordings, is not set");
-    const Session all = realSession(folder, rows, cols);
+    const QString folder = test::realRecordings();
+    if (folder.isEmpty()) QSKIP("EVICAL_DATA, the folder of sample recordings, is not set");
+    const Session all = test::dvs128Blinking(folder, rows, cols);
     QCOMPARE(static_cast<int>(all.more_recordings.size()), 8);
     int found = 0;
     std::vector<std::filesystem::path> recordings = all.more_recordings;

@@ -1,0 +1,300 @@
+// What frame cameras, further boards and lenses reach, as one table: `evical_frame_cameras [--only NAME...] [--seconds S]`. Simulated
+// recordings against their truth; real ones, in the folder that EVICAL_DATA names, against what is published of them. Fails where a
+// target is missed.
+#include "core/base/stopwatch.h"
+#include "core/geometry/projection_difference.h"
+#include "core/geometry/so3.h"
+#include "core/numerics/angles.h"
+#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/intrinsics_calibration.h"
+#include "core/pipeline/simulation.h"
+#include "tests/benchmarks/benchmark_program.h"
+#include "tests/benchmarks/scenario_run.h"
+#include "tests/support/real_recordings.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <QTemporaryDir>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace evical {
+namespace {
+
+constexpr double kMmPerM = 1e3, kMsPerS = 1e3;
+
+class Table {
+ public:
+  Table() { fmt::print("| recording | what | found | target | |\n|---|---|---|---|---|\n"); }
+
+  void add(const std::string& recording, const std::string& what, const std::string& found,
+           const std::string& target, bool met) {
+    fmt::print("| {} | {} | {} | {} | {} |\n", recording, what, found, target, met ? "met" : "MISSED");
+    std::fflush(stdout);
+    all_met_ = all_met_ && met;
+  }
+  void atMost(const std::string& recording, const std::string& what, double found, double target,
+              const char* unit) {
+    add(recording, what, fmt::format("{:.3g} {}", found, unit), fmt::format("{:g} {}", target, unit),
+        found <= target);
+  }
+  void failed(const std::string& recording, const std::string& why) {
+    add(recording, "all", why, "a result", false);
+  }
+  bool allMet() const { return all_met_; }
+
+ private:
+  bool all_met_ = true;
+};
+
+Scenario scenarioOf(const std::string& name, std::optional<double> duration_s) {
+  Scenario scenario = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/" + name + ".yaml");
+  if (duration_s) scenario.duration_s = *duration_s;
+  return scenario;
+}
+
+// Of one camera against another, or the reference IMU.
+struct RelativeError {
+  double rotation_deg, translation_mm, time_offset_ms;
+};
+RelativeError errorOf(const RigidTransform& found, const RigidTransform& truth, double offset_error_s) {
+  return {kDegPerRad * rotationAngleBetween_rad(found.rotation, truth.rotation),
+          kMmPerM * (found.translation_m - truth.translation_m).norm(), kMsPerS * std::abs(offset_error_s)};
+}
+RelativeError camerasError(const CalibrationState& found, const CalibrationState& truth, std::size_t a,
+                           std::size_t b) {
+  const auto between = [&](const CalibrationState& state) {
+    return inverse(state.cameras[a].reference_from_camera) * state.cameras[b].reference_from_camera;
+  };
+  const auto later_s = [&](const CalibrationState& state) {
+    const double time_s = found.cameras[a].time_offset_at_s;
+    return timeOffsetAt_s(state.cameras[b], time_s) - timeOffsetAt_s(state.cameras[a], time_s);
+  };
+  return errorOf(between(found), between(truth), later_s(found) - later_s(truth));
+}
+RelativeError cameraError(const CalibrationState& found, const CalibrationState& truth, std::size_t k) {
+  const CameraState &a = found.cameras[k], &b = truth.cameras[k];
+  return errorOf(a.reference_from_camera, b.reference_from_camera,
+                 a.time_offset_s - timeOffsetAt_s(b, a.time_offset_at_s));
+}
+
+void addError(Table& table, const std::string& recording, const std::string& of, const RelativeError& error,
+              const RelativeError& target) {
+  table.atMost(recording, of + ": rotation", error.rotation_deg, target.rotation_deg, "deg");
+  table.atMost(recording, of + ": translation", error.translation_mm, target.translation_mm, "mm");
+  table.atMost(recording, of + ": time offset", error.time_offset_ms, target.time_offset_ms, "ms");
+}
+
+// Two honest estimates of one thing differ by less.
+constexpr double kAgree_sigmas = 3.0;
+
+double worstSigmas(const CalibrationResult& result) {
+  const CameraState &a = result.state.cameras[0], &b = result.state.cameras[1];
+  const CameraUncertainty &sa = result.uncertainty.cameras[0], &sb = result.uncertainty.cameras[1];
+  const Eigen::Vector3d turn =
+      quaternionLog(a.reference_from_camera.rotation * b.reference_from_camera.rotation.conjugate());
+  const Eigen::Vector3d shift = a.reference_from_camera.translation_m - b.reference_from_camera.translation_m;
+  const auto sigma = [](const Eigen::Vector3d& x, const Eigen::Vector3d& y) -> Eigen::Vector3d {
+    return (x.array().square() + y.array().square()).sqrt();
+  };
+  return std::max(
+      turn.cwiseQuotient(sigma(sa.rotation_std_rad, sb.rotation_std_rad)).cwiseAbs().maxCoeff(),
+      shift.cwiseQuotient(sigma(sa.translation_std_m, sb.translation_std_m)).cwiseAbs().maxCoeff());
+}
+
+void davisWithFrames(Table& table, std::optional<double> seconds) {
+  const std::string name = "davis346_frames";
+  const Scenario scenario = scenarioOf(name, seconds);
+  const Outcome both = runScenario(scenario);
+  const Outcome apart =
+      runScenario(scenario, [](Session& session) { session.options.optimisation.share_sensors = false; });
+  Scenario of_events = scenario;
+  of_events.cameras.resize(1);
+  const Outcome events = runScenario(of_events);
+  if (!both.result || !apart.result || !events.result || both.result->latencies.empty())
+    return table.failed(name, both.verdict);
+  const CalibrationState truth = trueState(scenario);
+  const double latency_s = truth.cameras[1].time_offset_s - truth.cameras[0].time_offset_s;
+  table.atMost(name, "events' latency", kMsPerS * std::abs(both.result->latencies[0].latency_s - latency_s),
+               0.05, "ms");
+  table.atMost(name, "events and frames apart: poses differ by", worstSigmas(*apart.result), kAgree_sigmas,
+               "sigmas");
+  constexpr double kScatter = 1.1;  // of sigmas that are estimated from the recording
+  const CameraUncertainty &s = both.result->uncertainty.cameras[0],
+                          &alone = events.result->uncertainty.cameras[0];
+  table.atMost(name, "sigma of rotation, of that with events alone",
+               s.rotation_std_rad.norm() / alone.rotation_std_rad.norm(), kScatter, "times");
+  table.atMost(name, "sigma of translation, of that with events alone",
+               s.translation_std_m.norm() / alone.translation_std_m.norm(), kScatter, "times");
+}
+
+void hybridStereo(Table& table, std::optional<double> seconds) {
+  const std::string name = "hybrid_stereo";
+  const Scenario scenario = scenarioOf(name, seconds);
+  const Outcome outcome = runScenario(scenario);
+  if (!outcome.result) return table.failed(name, outcome.verdict);
+  const CalibrationState truth = trueState(scenario);
+  addError(table, name, "events to frames", camerasError(outcome.result->state, truth, 0, 1),
+           {0.02, 0.5, 0.05});
+  addError(table, name, "events to IMU", cameraError(outcome.result->state, truth, 0), {0.1, 2.0, 0.2});
+  table.add(name, "verdict", outcome.verdict, "ok", outcome.verdict == "ok");
+}
+
+void frameStereo(Table& table, std::optional<double> seconds) {
+  const std::string name = "frame_stereo_imu";
+  const Scenario scenario = scenarioOf(name, seconds);
+  const QTemporaryDir folder;
+  const SimulationSummary made = simulate(scenario, folder.path().toStdString(), {});
+  const Stopwatch stopwatch;
+  const CalibrationRun run = calibrate(readSession(made.session), RunContext{});
+  table.atMost(name, "wall time from its files", stopwatch.elapsed_s(), 20.0, "s");
+  const CalibrationState truth = trueState(scenario);
+  addError(table, name, "camera to camera", camerasError(run.result.state, truth, 0, 1), {0.01, 0.2, 0.1});
+  addError(table, name, "camera to IMU", cameraError(run.result.state, truth, 0), {0.03, 1.5, 0.1});
+  const std::string verdict = statusName(run.result.status);
+  table.add(name, "verdict", verdict, "ok", verdict == "ok");
+}
+
+void rollingShutter(Table& table, std::optional<double> seconds) {
+  const std::string name = "rolling_shutter";
+  const Scenario scenario = scenarioOf(name, seconds);
+  const Outcome rolling = runScenario(scenario);
+  const Outcome global =
+      runScenario(scenario, [](Session& session) { session.cameras[0].shutter = Shutter::Global; });
+  if (!rolling.result) return table.failed(name, rolling.verdict);
+  table.atMost(
+      name, fmt::format("line delay of {:g} us", scenario.cameras[0].frames->line_delay_us),
+      std::abs(rolling.result->state.cameras[0].line_delay_us - scenario.cameras[0].frames->line_delay_us),
+      0.3, "us");
+  const std::string said = global.result ? global.result->reason : global.verdict;
+  table.add(name, "taken for global", global.verdict + ", " + said.substr(0, said.find(':', 20)),
+            "doubtful, its shutter rolls",
+            global.verdict == "doubtful" && said.find("its shutter rolls") != std::string::npos);
+}
+
+void wideFrame(Table& table, std::optional<double> seconds) {
+  const std::string name = "wide_frame";
+  const Scenario scenario = scenarioOf(name, seconds);
+  const QTemporaryDir folder;
+  const SimulationSummary made = simulate(scenario, folder.path().toStdString(), {});
+  const IntrinsicsResult found = calibrateIntrinsics(readSession(made.session), 0, {}).result;
+  constexpr double kOfImageCircle = 0.95;
+  const CameraIntrinsics& truth = scenario.cameras[0].intrinsics;
+  table.atMost(
+      name, "projection, RMS over 95 % of the image circle",
+      projectionDifference(truth, found.intrinsics, kOfImageCircle * shareOfImageCircle(truth)).rms_px, 0.15,
+      "px");
+}
+
+void twoBoards(Table& table, std::optional<double> seconds) {
+  const std::string name = "two_boards";
+  const Scenario scenario = scenarioOf(name, seconds);
+  const Outcome outcome = runScenario(scenario);
+  if (!outcome.result) return table.failed(name, outcome.verdict);
+  const CalibrationState truth = trueState(scenario);
+  addError(table, name, "events to frames", camerasError(outcome.result->state, truth, 0, 1),
+           {0.02, 0.5, 0.05});
+  const RelativeError tags = errorOf(outcome.result->state.boardAt(1).world_from_board,
+                                     scenario.further_boards[0].world_from_board, 0.0);
+  table.atMost(name, "board to board: rotation", tags.rotation_deg, 0.02, "deg");
+  table.atMost(name, "board to board: translation", tags.translation_mm, 0.5, "mm");
+}
+
+void eurocImuApril(Table& table, const QString& real) {
+  const std::string name = "euroc_imu_april (real)";
+  const QTemporaryDir work;
+  const CalibrationResult result =
+      calibrate(test::eurocImuApril(real, QDir(work.path())), RunContext{}).result;
+  const CameraState& camera = result.state.cameras[0];
+  const Eigen::Vector3d turn_deg = kDegPerRad * quaternionLog(camera.reference_from_camera.rotation);
+  table.atMost(name, "rotation against 89.1 deg", std::abs(turn_deg.norm() - 89.1), 0.3, "deg");
+  table.atMost(
+      name, "translation against (-21.6, -64.7, 9.8) mm",
+      (kMmPerM * camera.reference_from_camera.translation_m - Eigen::Vector3d(-21.6, -64.7, 9.8)).norm(), 5.0,
+      "mm");
+  table.atMost(name, "time offset", kMsPerS * std::abs(camera.time_offset_s), 1.0, "ms");
+  table.add(name, "verdict", statusName(result.status), "doubtful",
+            result.status == CalibrationStatus::Doubtful);
+}
+
+void efcalib(Table& table, const QString& real) {
+  const std::string name = "efcalib (real)";
+  const QTemporaryDir work;
+  const CalibrationRun run = calibrate(test::efcalib(real, QDir(work.path())), RunContext{});
+  const RigidTransform& frames = run.result.state.cameras[1].reference_from_camera;
+  table.atMost(name, "rotation against (5.10, -9.13, -0.85) deg",
+               (kDegPerRad * quaternionLog(frames.rotation) - Eigen::Vector3d(5.10, -9.13, -0.85)).norm(),
+               0.2, "deg");
+  table.atMost(name, "translation against (118.0, -8.7, 19.1) mm",
+               (kMmPerM * frames.translation_m - Eigen::Vector3d(118.0, -8.7, 19.1)).norm(), 2.0, "mm");
+  table.atMost(name, "residuals of events", run.intrinsics[0]->reprojection_rms_px, 0.12, "px");
+  table.atMost(name, "residuals of frames", run.intrinsics[1]->reprojection_rms_px, 0.17, "px");
+}
+
+void dvs128Blinking(Table& table, const QString& real) {
+  const std::string name = "dvs128_blinking (real)";
+  const IntrinsicsRun run = calibrateIntrinsics(test::dvs128Blinking(real, 4, 8), 0, RunContext{});
+  table.atMost(name, "focal length against 89.8 px",
+               std::abs(run.result.intrinsics.focal_length_px.mean() - 89.8), 1.5, "px");
+}
+
+void checkerboardPictures(Table& table, const std::string& name, const QDir& folder, const QString& pattern,
+                          double focal_px, double percent) {
+  const QTemporaryDir work;
+  const IntrinsicsRun run =
+      calibrateIntrinsics(test::pictures(folder, pattern, QDir(work.path())), 0, RunContext{});
+  table.atMost(name, fmt::format("focal length against {:g} px", focal_px),
+               100.0 * std::abs(run.result.intrinsics.focal_length_px.mean() / focal_px - 1.0), percent, "%");
+}
+
+void realOnes(Table& table, const std::function<bool(const char*)>& asked) {
+  const QString real = test::realRecordings();
+  if (real.isEmpty()) {
+    fmt::print(stderr, "EVICAL_DATA is not set: without what is real\n");
+    return;
+  }
+  if (asked("euroc_imu_april")) eurocImuApril(table, real);
+  if (asked("efcalib")) efcalib(table, real);
+  if (asked("dvs128_blinking")) dvs128Blinking(table, real);
+  if (asked("vector_blinking"))
+    checkerboardPictures(table, "vector_blinking (real)", QDir(real + "/vector_blinking"), "*.png", 327.52,
+                         0.2);
+  const QDir opencv("/usr/share/doc/opencv-doc/examples/data");
+  if (asked("opencv-doc") && opencv.exists("left01.jpg"))
+    checkerboardPictures(table, "opencv-doc (real)", opencv, "left??.jpg", 534.0, 0.3);
+}
+
+int main(int argc, char** argv) {
+  CLI::App app("What frame cameras, further boards and lenses reach, against their targets");
+  std::vector<std::string> only;
+  std::optional<double> seconds;
+  app.add_option("--only", only, "Recordings by name, instead of all");
+  app.add_option("--seconds", seconds, "Of simulated recordings, instead of their own")
+      ->check(CLI::Range(2.0, 3600.0));
+  CLI11_PARSE(app, argc, argv);
+  const auto asked = [&](const char* name) {
+    return only.empty() || std::find(only.begin(), only.end(), name) != only.end();
+  };
+  Table table;
+  if (asked("davis346_frames")) davisWithFrames(table, seconds);
+  if (asked("hybrid_stereo")) hybridStereo(table, seconds);
+  if (asked("frame_stereo_imu")) frameStereo(table, seconds);
+  if (asked("rolling_shutter")) rollingShutter(table, seconds);
+  if (asked("wide_frame")) wideFrame(table, seconds);
+  if (asked("two_boards")) twoBoards(table, seconds);
+  realOnes(table, asked);
+  return table.allMet() ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace evical
+
+int main(int argc, char** argv) {
+  return evical::guarded(evical::main, argc, argv);
+}
