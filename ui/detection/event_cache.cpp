@@ -1,18 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/detection/event_cache.h"
 
-#include "core/base/error.h"
-
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
 #include <limits>
-#include <string>
-#include <system_error>
 
 namespace evical::ui {
 namespace {
@@ -23,23 +13,10 @@ constexpr std::int64_t kLongestBlock_ns = std::numeric_limits<std::uint32_t>::ma
 }  // namespace
 
 EventCache::EventCache(const std::filesystem::path& folder)
-    : folder_(folder),
+    : file_(folder, {"events", "Make room there: 8 bytes an event are needed"}),
       complete_until_ns_(std::numeric_limits<std::int64_t>::min()),
       last_written_ns_(complete_until_ns_) {
-  std::error_code ignored;
-  std::filesystem::create_directories(folder, ignored);
-  std::string path = (folder / "evical_events_XXXXXX").string();
-  file_ = mkostemp(path.data(), O_CLOEXEC);
-  if (file_ < 0) {
-    throw badInput(folder.string(), std::string("no temporary file can be made: ") + std::strerror(errno),
-                   "Make the folder writable");
-  }
-  unlink(path.c_str());  // the file itself lives until it is closed
   open_.reserve(kBlockEvents);
-}
-
-EventCache::~EventCache() {
-  close(file_);
 }
 
 void EventCache::append(EventSpan events) {
@@ -60,21 +37,7 @@ void EventCache::finish() {
 }
 
 void EventCache::writeBlock() {
-  const auto* bytes = reinterpret_cast<const char*>(open_.data());
-  std::size_t left = open_.size() * sizeof(Stored);
-  auto position = static_cast<off_t>(written_ * sizeof(Stored));
-  while (left > 0) {
-    const ssize_t done = pwrite(file_, bytes, left, position);
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) {
-      throw calibrationFailed(folder_.string(),
-                              std::string("events cannot be cached: ") + std::strerror(errno),
-                              "Make room there: 8 bytes an event are needed");
-    }
-    bytes += done;
-    position += done;
-    left -= static_cast<std::size_t>(done);
-  }
+  file_.write(open_.data(), open_.size() * sizeof(Stored), written_ * sizeof(Stored));
   const std::lock_guard lock(mutex_);
   blocks_.push_back({open_first_ns_, written_, open_.size()});
   written_ += open_.size();
@@ -99,18 +62,7 @@ std::uint64_t EventCache::eventCount() const {
 
 void EventCache::readBlock(const Block& block, std::vector<Stored>& stored) const {
   stored.resize(block.count);
-  auto* bytes = reinterpret_cast<char*>(stored.data());
-  std::size_t left = stored.size() * sizeof(Stored);
-  auto position = static_cast<off_t>(block.offset * sizeof(Stored));
-  while (left > 0) {
-    const ssize_t done = pread(file_, bytes, left, position);
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0)
-      throw calibrationFailed(folder_.string(), "cached events cannot be read", "Open the session again");
-    bytes += done;
-    position += done;
-    left -= static_cast<std::size_t>(done);
-  }
+  file_.read(stored.data(), stored.size() * sizeof(Stored), block.offset * sizeof(Stored));
 }
 
 std::vector<EventCache::Block> EventCache::blocksWithin(std::int64_t begin_ns, std::int64_t end_ns) const {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "core/data/event.h"
+#include "ui/detection/cache_file.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -19,9 +20,6 @@ class EventCache {
  public:
   // Throws CalibrationError if there can be no file in the folder.
   explicit EventCache(const std::filesystem::path& folder);
-  ~EventCache();
-  EventCache(const EventCache&) = delete;
-  EventCache& operator=(const EventCache&) = delete;
 
   // One thread writes, events in order of time; x and y below 32768. Throws CalibrationError
   // if the disk is full.
@@ -55,8 +53,7 @@ class EventCache {
   std::span<const Stored> readWithin(const Block& block, std::int64_t begin_ns, std::int64_t end_ns,
                                      std::vector<Stored>& stored) const;
 
-  std::filesystem::path folder_;
-  int file_ = -1;
+  CacheFile file_;
   std::vector<Stored> open_;  // the writer's own
   std::int64_t open_first_ns_ = 0, last_ns_ = 0;
 
