@@ -21,14 +21,14 @@
 
 namespace evical::ui::test {
 
-// Two seconds of the everyday recording, and what the front end says about them.
+// Two seconds of a scenario, and what the front end says about them.
 struct Recorded {
   QTemporaryDir folder;
   Session session;
   RecordingPass pass;
 
-  Recorded() {
-    Scenario scenario = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/davis346.yaml");
+  explicit Recorded(const std::string& name = "davis346") {
+    Scenario scenario = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/" + name + ".yaml");
     scenario.duration_s = 2.0;
     const SimulationSummary files = simulate(scenario, folder.path().toStdString(), {});
     session = readSession(files.session);

@@ -33,6 +33,10 @@ class DetectionEngine::Analyst {
   explicit Analyst(DetectionEngine& engine) : engine_(engine) {}
 
   void handle(const AnalysisTask& task) {
+    if (task.source.kind == CameraKind::Frames) {
+      handleFrame(task);
+      return;
+    }
     prepare(task);
     WindowQuestion question;
     question.start_ns = task.source.start_ns;
@@ -55,6 +59,38 @@ class DetectionEngine::Analyst {
   }
 
  private:
+  // First by the frames just before; where that finds less than all, followed from further away, as a run does. What
+  // was found is kept: a frame lasts longer than the cursor stays at one place.
+  void handleFrame(const AnalysisTask& task) {
+    const Source& source = task.source;
+    FrameQuestion question;
+    question.frames = source.frames;
+    question.start_ns = source.start_ns;
+    question.frame = *source.frames->nearest(source.start_ns + nanosecondsFrom(task.wish.time_s));
+    question.frames_read = source.frames->count();
+    question.camera = task.camera;
+    question.board = task.sight.board;
+    question.options = task.frame_options;
+    if (question == frame_question_) {
+      engine_.put(frame_analysis_, source.opening);
+      return;
+    }
+    WindowAnalysis analysis = analyseFrame(question);
+    const auto longer = static_cast<std::size_t>(question.options.search_every_frames);
+    const bool look_further = goesFurther(analysis) && longer > question.frames_before;
+    analysis.frame->settled = !look_further;
+    engine_.put(analysis, source.opening);
+    if (look_further) {
+      if (engine_.analysis_job_.hasNewer()) return;
+      FrameQuestion again = question;
+      again.frames_before = longer;
+      analysis = analyseFrame(again);
+      engine_.put(analysis, source.opening);
+    }
+    frame_question_ = std::move(question);
+    frame_analysis_ = std::move(analysis);
+  }
+
   void prepare(const AnalysisTask& task) {
     const Source& source = task.source;
     if (!scene_ || task.sight != sight_ || source.resolution_px != scene_->resolution_px) {
@@ -84,6 +120,8 @@ class DetectionEngine::Analyst {
   BurstOptions bursts_;
   std::shared_ptr<const EventCache> cache_;
   std::optional<BurstBand> band_;
+  FrameQuestion frame_question_;
+  WindowAnalysis frame_analysis_;
 };
 
 DetectionEngine::DetectionEngine(QObject* parent)
@@ -98,6 +136,7 @@ DetectionEngine::~DetectionEngine() = default;
 
 void DetectionEngine::open(const Session& session, std::size_t camera) {
   observations_.reset();
+  camera_ = session.cameras[camera].name;
   ++opening_;
   frames_.clear();
   analyses_.clear();
@@ -122,10 +161,24 @@ RecordingOverview DetectionEngine::overview() const {
 void DetectionEngine::show(const DetectionWish& wish) {
   if (!reader_) return;
   const RecordingOverview overview = reader_->overview();
-  const Source source{reader_->cache(), overview.start_ns, overview.resolution_px, opening_};
-  if (!source.cache) return;
-  if (wish.style.mode != SurfaceMode::NormalFlow) start(RenderTask{source, wish, nullptr});
-  start(AnalysisTask{source, sight_, wish, options_, observations_});
+  const RecordingCaches caches = reader_->caches();
+  const Source source{overview.kind,     caches.events,          caches.frames,
+                      overview.start_ns, overview.resolution_px, opening_};
+  const bool frames = overview.kind == CameraKind::Frames;
+  if (frames ? !caches.frames || caches.frames->count() == 0 : !caches.events) return;
+  if (frames || wish.style.mode != SurfaceMode::NormalFlow) start(RenderTask{source, wish, nullptr});
+  start(AnalysisTask{source, sight_, wish, options_, frame_options_, camera_, observations_});
+}
+
+std::optional<double> DetectionEngine::timeOfFrameBeside_s(double time_s, int direction) const {
+  if (!reader_) return std::nullopt;
+  const RecordingOverview overview = reader_->overview();
+  const auto frames = reader_->caches().frames;
+  if (overview.kind != CameraKind::Frames || !frames) return std::nullopt;
+  const auto nearest = frames->nearest(overview.start_ns + nanosecondsFrom(time_s));
+  if (!nearest || (direction < 0 && *nearest == 0) || (direction > 0 && *nearest + 1 == frames->count()))
+    return std::nullopt;
+  return secondsSince(overview.start_ns, frames->time_ns(direction > 0 ? *nearest + 1 : *nearest - 1));
 }
 
 void DetectionEngine::showLive(std::shared_ptr<const LiveWindow> window, const SurfaceStyle& style) {
@@ -156,7 +209,29 @@ void DetectionEngine::start(AnalysisTask task) {
   });
 }
 
+void DetectionEngine::renderFrame(const RenderTask& task) {
+  const FrameCache& frames = *task.source.frames;
+  const std::size_t at = *frames.nearest(task.source.start_ns + nanosecondsFrom(task.wish.time_s));
+  SurfaceFrame shown;
+  shown.time_s = secondsSince(task.source.start_ns, frames.time_ns(at));
+  shown.photograph = FrameLabel{at + 1, frames.count(), 0.0};
+  try {
+    const Frame frame = frames.frame(at);
+    shown.photograph->exposure_s = frame.exposure_s;
+    shown.image = pictureOf(decodeFrame(frame, "frame"));
+    frame_px_ = shown.resolution_px();
+  } catch (const CalibrationError&) {
+    // The analysis says why; the place of the picture stays what it was.
+    shown.image = emptyImage(frame_px_.known() ? frame_px_ : Resolution{640, 480}, task.wish.style);
+  }
+  put(std::move(shown), task.source.opening);
+}
+
 void DetectionEngine::render(const RenderTask& task) {
+  if (task.source.kind == CameraKind::Frames && !task.live) {
+    renderFrame(task);
+    return;
+  }
   SurfaceStyle style = task.wish.style;
   if (task.live) {
     style.mode = SurfaceMode::Accumulated;

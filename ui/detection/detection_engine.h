@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The work behind the detection screen, in three threads: one reads the recording, one draws the surface at
-// the cursor, one runs the front end on the window there. Only the newest wish of each kind is fulfilled.
+// The work behind the detection screen, in three threads: one reads the recording, one draws the surface or the frame
+// at the cursor, one runs the front end on the window there. Only the newest wish of each kind is fulfilled.
 #pragma once
 
 #include "core/pipeline/session.h"
 #include "ui/detection/decaying_surface.h"
 #include "ui/detection/event_window_reader.h"
+#include "ui/detection/frame_analysis.h"
 #include "ui/detection/live_detection.h"
 #include "ui/detection/surface_frame.h"
 #include "ui/detection/window_analysis.h"
@@ -43,13 +44,18 @@ class DetectionEngine : public QObject {
 
   void open(const Session& session, std::size_t camera);
   void setSight(const Sight& sight) { sight_ = sight; }
-  void setOptions(const FrontEndOptions& options) { options_ = options; }
+  void setOptions(const FrontEndOptions& options, const FrameOptions& frames) {
+    options_ = options;
+    frame_options_ = frames;
+  }
   void setObservations(std::shared_ptr<const BoardObservations> observations);
   void show(const DetectionWish& wish);  // nothing before the recording is open
   void showLive(std::shared_ptr<const LiveWindow> window, const SurfaceStyle& style);
 
   bool isOpen() const { return reader_ != nullptr; }
   RecordingOverview overview() const;
+  // Of the frame after the nearest (+1) or before it (-1); nothing where there is none.
+  std::optional<double> timeOfFrameBeside_s(double time_s, int direction) const;
   std::shared_ptr<const SurfaceFrame> takeFrame() { return frames_.take(); }
   std::shared_ptr<const WindowAnalysis> takeAnalysis() { return analyses_.take(); }
 
@@ -61,7 +67,9 @@ class DetectionEngine : public QObject {
  private:
   // Where a camera's windows come from.
   struct Source {
+    CameraKind kind = CameraKind::Events;
     std::shared_ptr<const EventCache> cache;
+    std::shared_ptr<const FrameCache> frames;
     std::int64_t start_ns = 0;
     Resolution resolution_px;
     int opening = 0;
@@ -76,6 +84,8 @@ class DetectionEngine : public QObject {
     Sight sight;
     DetectionWish wish;
     FrontEndOptions options;
+    FrameOptions frame_options;
+    std::string camera;
     std::shared_ptr<const BoardObservations> observations;
   };
   class Analyst;
@@ -83,11 +93,14 @@ class DetectionEngine : public QObject {
   void start(RenderTask task);
   void start(AnalysisTask task);
   void render(const RenderTask& task);
+  void renderFrame(const RenderTask& task);
   void put(SurfaceFrame frame, int opening);
   void put(const WindowAnalysis& analysis, int opening);
 
   Sight sight_;
   FrontEndOptions options_;
+  FrameOptions frame_options_;
+  std::string camera_;
   std::shared_ptr<const BoardObservations> observations_;
   std::atomic<int> opening_ = 0;  // what was asked for before the last one is of no use
   Mailbox<SurfaceFrame> frames_;
@@ -95,6 +108,7 @@ class DetectionEngine : public QObject {
   std::shared_ptr<EventWindowReader> reader_;
   std::unique_ptr<Analyst> analyst_;
   DecayingSurface surface_;  // the renderer's
+  Resolution frame_px_;      // the same: of the last frame that could be decoded
   // Last: their threads use the rest.
   LatestJob read_job_{OutdatedWork::Dropped};
   LatestJob render_job_{OutdatedWork::Delivered};

@@ -87,7 +87,7 @@ void DetectionScreen::setSession(const Session& session) {
                     !(lens_may_help && givenLenses(*session_) != givenLenses(session));
   session_ = session;
   options_ = session.options.front_end;
-  engine_->setOptions(options_);
+  engine_->setOptions(options_, session.options.frames);
   timeline_->setUsedRange(session.time_range_s);
   if (same) {
     engine_->setSight(sight());
@@ -106,6 +106,7 @@ void DetectionScreen::setSession(const Session& session) {
 void DetectionScreen::chooseCamera(std::size_t camera) {
   camera_ = camera;
   analysis_.reset();
+  adaptTo(CameraKind::Events);
   view_->setFrame(nullptr);
   timeline_->setRange(0.0, 0.0);
   timeline_->setEventRate({});
@@ -164,7 +165,7 @@ void DetectionScreen::setLive(bool live) {
 }
 
 void DetectionScreen::showLiveFrame(std::shared_ptr<const LiveWindow> window) {
-  if (!live_ || !window || window->camera != camera_) return;
+  if (!live_ || !window || window->camera != camera_ || framesInView()) return;
   if (window->windows) timeline_->setWindows(*window->windows);
   if (!following_) return;
   analysis_ = window->analysis;
@@ -177,7 +178,7 @@ void DetectionScreen::showLiveFrame(std::shared_ptr<const LiveWindow> window) {
 }
 
 void DetectionScreen::setTime(double time_s) {
-  if (live_ && following_) return;
+  if (following()) return;
   if (time_s == time_s_) return;
   time_s_ = time_s;
   timeline_->setTime(time_s);
@@ -190,6 +191,10 @@ void DetectionScreen::select(double time_s) {
   emit timeSelected(time_s_);
 }
 
+void DetectionScreen::setCamera(std::size_t camera) {
+  camera_box_->setCurrentIndex(static_cast<int>(camera));
+}
+
 void DetectionScreen::setMode(SurfaceMode mode) {
   mode_box_->setCurrentIndex(static_cast<int>(mode));
 }
@@ -200,7 +205,7 @@ void DetectionScreen::setLayerVisible(Layer layer, bool visible) {
 
 void DetectionScreen::setPlaying(bool playing) {
   if (playing == timer_.isActive()) return;
-  if (playing && (!engine_->isOpen() || (live_ && following_))) return;
+  if (playing && (!engine_->isOpen() || following())) return;
   if (playing) {
     if (time_s_ >= endOfPlay_s() - 1e-3) setTime(timeline_->begin_s());
     since_frame_.start();
@@ -229,11 +234,13 @@ void DetectionScreen::step(int direction) {
   setPlaying(false);
   following_ = false;
   follow_button_->setChecked(false);
-  select(timeline_->stepFrom(time_s_, direction));
+  const auto frame_s = engine_->timeOfFrameBeside_s(time_s_, direction);
+  if (framesInView() && !frame_s) return;
+  select(framesInView() ? *frame_s : timeline_->stepFrom(time_s_, direction));
 }
 
 void DetectionScreen::request() {
-  if (live_ && following_) return;
+  if (following()) return;
   const bool playing = timer_.isActive();
   const DetectionOptions& detection = options_.detection;
   const auto window = timeline_->windowAt(time_s_);
@@ -260,6 +267,7 @@ void DetectionScreen::takeOverview() {
     status_->setToolTip(tr("Recordings are read once, so that any instant can be shown at once"));
   }
   if (!overview.started) return;
+  adaptTo(overview.kind);
   timeline_->setRange(0.0, std::max(overview.read_until_s, timeline_->end_s()));
   timeline_->setEventRate(overview.event_rate);
   timeline_->setRotationRate(overview.rotation_rate);
@@ -274,7 +282,7 @@ void DetectionScreen::takeFrame() {
 
 void DetectionScreen::takeAnalysis() {
   const auto analysis = engine_->takeAnalysis();
-  if (live_ && following_) return;
+  if (following()) return;
   analysis_ = analysis;
   refresh();
 }
@@ -289,14 +297,8 @@ void DetectionScreen::refresh() {
   const auto& frame = view_->frame();
   const bool here =
       analysis_ && frame && std::abs(analysis_->time_s - frame->time_s) <= analysis_->half_width_s;
-  const bool searching = here && analysis_->searches.empty() && !timer_.isActive() && !(live_ && following_);
-  panel_->show(here ? analysis_.get() : nullptr, timeline_->windowAt(time_s_), searching);
-  if (frame) {
-    view_->setCaption(tr("%1%2 s    %L3 events")
-                          .arg(live_ && following_ ? tr("live  ") : QString())
-                          .arg(frame->time_s, 0, 'f', 4)
-                          .arg(static_cast<qulonglong>(frame->events)));
-  }
+  refreshPanel(here);
+  if (frame) view_->setCaption(caption());
   {
     const QSignalBlocker quiet(time_box_);
     time_box_->setMaximum(std::max(timeline_->end_s(), time_s_));
@@ -313,6 +315,25 @@ void DetectionScreen::refresh() {
                      reprojection = std::move(reprojection)](QPainter& painter, double scale) {
     paintLayers(painter, scale, layers, analysis.get(), reprojection);
   });
+}
+
+void DetectionScreen::refreshPanel(bool here) {
+  if (framesInView() && analysis_ && !here) return;  // what is shown is of a frame that was just left
+  const bool unsettled = here && (framesInView() ? !analysis_->frame->settled : analysis_->searches.empty());
+  const bool searching = unsettled && !timer_.isActive() && !following();
+  const double time_s = here && framesInView() ? analysis_->time_s : time_s_;
+  panel_->show(here ? analysis_.get() : nullptr, timeline_->windowAt(time_s), searching);
+}
+
+QString DetectionScreen::caption() const {
+  const SurfaceFrame& frame = *view_->frame();
+  const QString time = tr("%1 s").arg(frame.time_s, 0, 'f', 4);
+  if (const auto& label = frame.photograph)
+    return time + tr("    frame %L1 of %L2")
+                      .arg(static_cast<qulonglong>(label->number))
+                      .arg(static_cast<qulonglong>(label->count));
+  return (following() ? tr("live  ") : QString()) + time +
+         tr("    %L1 events").arg(static_cast<qulonglong>(frame.events));
 }
 
 void DetectionScreen::keyPressEvent(QKeyEvent* event) {

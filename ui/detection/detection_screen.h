@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the camera saw and what the front end makes of it: the events at the cursor with a layer for each
-// stage, a timeline of the whole recording, and why a window came out as it did.
+// What the camera saw and what the front end makes of it: the events or the frame at the cursor with a layer for each
+// stage, a timeline of the whole recording, and why a window or a frame came out as it did.
 #pragma once
 
 #include "core/pipeline/calibration_pipeline.h"
@@ -19,6 +19,7 @@
 class QCheckBox;
 class QComboBox;
 class QDoubleSpinBox;
+class QGridLayout;
 class QHBoxLayout;
 class QLabel;
 class QToolButton;
@@ -51,6 +52,8 @@ class DetectionScreen : public QWidget {
   bool isLive() const { return live_; }
   void showLiveFrame(std::shared_ptr<const LiveWindow> window);
 
+  std::size_t camera() const { return camera_; }
+  bool framesInView() const { return kind_ == CameraKind::Frames; }  // of that camera
   double time_s() const { return time_s_; }
   bool isPlaying() const { return timer_.isActive(); }
   EventView& view() { return *view_; }
@@ -59,11 +62,12 @@ class DetectionScreen : public QWidget {
   const std::shared_ptr<const WindowAnalysis>& analysis() const { return analysis_; }
 
  public slots:
+  void setCamera(std::size_t camera);  // of the session
   void setTime(double time_s);
   void setMode(evical::ui::SurfaceMode mode);
   void setLayerVisible(evical::ui::Layer layer, bool visible);
   void setPlaying(bool playing);
-  void step(int direction);  // to the next window (+1) or the one before (-1)
+  void step(int direction);  // to the next window or frame (+1) or the one before (-1)
 
  signals:
   void timeSelected(double time_s);  // by the user, or by playing
@@ -91,12 +95,17 @@ class DetectionScreen : public QWidget {
   void takeFrame();
   void takeAnalysis();
   void refresh();  // caption, panel, overlay
+  void refreshPanel(bool here);
+  QString caption() const;
+  void adaptTo(CameraKind kind);  // controls that say nothing of this kind go
+  bool following() const { return live_ && following_ && !framesInView(); }
   double endOfPlay_s() const;
   SurfaceStyle style() const;
   bool shown(Layer layer) const { return layers_.test(static_cast<std::size_t>(layer)); }
 
   std::optional<Session> session_;
   std::size_t camera_ = 0;
+  CameraKind kind_ = CameraKind::Events;  // of that camera
   FrontEndOptions options_;
   std::shared_ptr<const CalibrationRun> run_;
   Session run_session_;
@@ -113,7 +122,8 @@ class DetectionScreen : public QWidget {
   QComboBox *mode_box_ = nullptr, *speed_box_ = nullptr, *camera_box_ = nullptr;
   QDoubleSpinBox *fade_box_ = nullptr, *time_box_ = nullptr;
   QToolButton *play_button_ = nullptr, *follow_button_ = nullptr;
-  QLabel* status_ = nullptr;
+  QLabel *status_ = nullptr, *fade_label_ = nullptr, *verdict_title_ = nullptr;
+  QGridLayout* layer_grid_ = nullptr;
   std::vector<QCheckBox*> layer_boxes_;
   std::vector<std::pair<QToolButton*, QString>> icons_;
   LiveDetection* live_detection_ = nullptr;

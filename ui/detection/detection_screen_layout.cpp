@@ -72,6 +72,7 @@ DetectionScreen::DetectionScreen(QWidget* parent) : QWidget(parent) {
   layout->addWidget(makeTransport());
   layout->addWidget(timeline_);
   connectEngine();
+  adaptTo(CameraKind::Events);
   applyColours();
   chooseCamera(0);
   setFocusProxy(view_);
@@ -107,8 +108,8 @@ QWidget* DetectionScreen::makeToolBar() {
   camera_box_->hide();
   row->addWidget(camera_box_);
   row->addWidget(mode_box_);
-  auto* fade_label = new QLabel(tr("fading"));
-  row->addWidget(fade_label);
+  fade_label_ = new QLabel(tr("fading"));
+  row->addWidget(fade_label_);
   row->addWidget(fade_box_);
   row->addStretch(1);
   status_ = new QLabel;
@@ -118,10 +119,10 @@ QWidget* DetectionScreen::makeToolBar() {
   connect(addButton(row, "zoom-in", tr("Zoom in (+), or turn the wheel over the picture")),
           &QToolButton::clicked, this, [this] { view_->zoomBy(2.0, QRectF(view_->rect()).center()); });
   connect(addButton(row, "zoom-fit", tr("Whole sensor (F)")), &QToolButton::clicked, view_, &EventView::fit);
-  connect(mode_box_, &QComboBox::currentIndexChanged, this, [this, fade_label](int mode) {
+  connect(mode_box_, &QComboBox::currentIndexChanged, this, [this](int mode) {
     const bool fades = static_cast<SurfaceMode>(mode) == SurfaceMode::Decayed;
     fade_box_->setEnabled(fades);
-    fade_label->setEnabled(fades);
+    fade_label_->setEnabled(fades);
     request();
   });
   connect(fade_box_, &QDoubleSpinBox::valueChanged, this, [this] { request(); });
@@ -137,11 +138,11 @@ QWidget* DetectionScreen::makeSidePanel() {
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(2);
   column->addWidget(sectionTitle(tr("Layers")));
-  auto* grid = new QGridLayout;
-  grid->setVerticalSpacing(2);
+  layer_grid_ = new QGridLayout;
+  layer_grid_->setVerticalSpacing(2);
   for (std::size_t k = 0; k < kLayerCount; ++k) {
     const LayerWords words = layerWords(static_cast<Layer>(k));
-    auto* box = new QCheckBox(words.name);
+    auto* box = new QCheckBox(words.name, side);
     box->setToolTip(words.help);
     box->setChecked(layers_.test(k));
     connect(box, &QCheckBox::toggled, this, [this, k](bool on) {
@@ -149,14 +150,13 @@ QWidget* DetectionScreen::makeSidePanel() {
       request();
       refresh();
     });
-    const auto rows = static_cast<int>(kLayerCount + 1) / 2;
-    grid->addWidget(box, static_cast<int>(k) % rows, static_cast<int>(k) / rows);
     layer_boxes_.push_back(box);
   }
-  column->addLayout(grid);
+  column->addLayout(layer_grid_);
   layer_boxes_[static_cast<std::size_t>(Layer::Reprojection)]->setEnabled(false);
   column->addSpacing(6);
-  column->addWidget(sectionTitle(tr("What became of this window")));
+  verdict_title_ = sectionTitle({});
+  column->addWidget(verdict_title_);
   panel_ = new WindowPanel;
   column->addWidget(panel_, 1);
   return side;
@@ -169,11 +169,11 @@ QWidget* DetectionScreen::makeTransport() {
   row->setSpacing(4);
   connect(addButton(row, "to-start", tr("To the start (Home)")), &QToolButton::clicked, this,
           [this] { select(timeline_->begin_s()); });
-  connect(addButton(row, "step-back", tr("Window before (Left)")), &QToolButton::clicked, this,
+  connect(addButton(row, "step-back", tr("Window or frame before (Left)")), &QToolButton::clicked, this,
           [this] { step(-1); });
   play_button_ = addButton(row, "play", tr("Play (Space)"));
   connect(play_button_, &QToolButton::clicked, this, [this] { setPlaying(!isPlaying()); });
-  connect(addButton(row, "step-forward", tr("Next window (Right)")), &QToolButton::clicked, this,
+  connect(addButton(row, "step-forward", tr("Next window or frame (Right)")), &QToolButton::clicked, this,
           [this] { step(+1); });
   connect(addButton(row, "to-end", tr("To the end (End)")), &QToolButton::clicked, this,
           [this] { select(timeline_->end_s()); });
@@ -205,6 +205,27 @@ QWidget* DetectionScreen::makeTransport() {
     request();
   });
   return bar;
+}
+
+void DetectionScreen::adaptTo(CameraKind kind) {
+  if (layer_grid_->count() > 0 && kind == kind_) return;
+  kind_ = kind;
+  const bool frames = framesInView();
+  mode_box_->setVisible(!frames);
+  fade_label_->setVisible(!frames);
+  fade_box_->setVisible(!frames);
+  verdict_title_->setText(frames ? tr("What became of this frame") : tr("What became of this window"));
+  view_->setAccessibleName(frames ? tr("Frame") : tr("Events"));
+  std::vector<QCheckBox*> shown;
+  for (std::size_t k = 0; k < kLayerCount; ++k) {
+    QCheckBox* const box = layer_boxes_[k];
+    layer_grid_->removeWidget(box);
+    box->setVisible(!frames || isOfFrames(static_cast<Layer>(k)));
+    if (!frames || isOfFrames(static_cast<Layer>(k))) shown.push_back(box);
+  }
+  const int rows = (static_cast<int>(shown.size()) + 1) / 2;
+  for (int k = 0; k < static_cast<int>(shown.size()); ++k)
+    layer_grid_->addWidget(shown[static_cast<std::size_t>(k)], k % rows, k / rows);
 }
 
 void DetectionScreen::applyColours() {

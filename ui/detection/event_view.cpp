@@ -108,6 +108,7 @@ QString EventView::readout() const {
   const Resolution size_px = frame_->resolution_px();
   if (x < 0 || y < 0 || x >= size_px.width_px || y >= size_px.height_px) return {};
   const QString place = QStringLiteral("x %1  y %2").arg(x).arg(y);
+  if (frame_->photograph) return place + tr("    brightness %1").arg(qGray(frame_->image.pixel(x, y)));
   const auto hit = frame_->newestAt(x, y);
   if (!hit) return place + tr("    no event");
   return place +

@@ -56,54 +56,61 @@ std::string wordsOf(const CalibrationError& error) {
   return error.place() + ": " + error.problem() + (error.advice().empty() ? "" : ". " + error.advice());
 }
 
+CameraKind kindOf(const SessionRecording& recording, const Session& session, std::size_t camera) {
+  switch (recording.camera(camera).type) {
+    case StreamType::Events:
+      return CameraKind::Events;
+    case StreamType::Frames:
+      return CameraKind::Frames;
+    default:
+      throw badInput(
+          session.cameras[camera].name,
+          "its stream holds points that another program measured, and no pictures",
+          "Choose a camera with events or frames; what is known of the points is in detections.csv");
+  }
+}
+
+// An event camera's size is known; of frames it need not be.
+std::optional<Resolution> knownSize(const SessionRecording& recording, std::size_t camera) {
+  try {
+    return recording.resolution_px(camera);
+  } catch (const CalibrationError&) {
+    return std::nullopt;
+  }
+}
+
+std::optional<std::size_t> companionOf(const SessionRecording& recording, const Session& session,
+                                       std::size_t camera, CameraKind kind) {
+  const StreamType wanted = kind == CameraKind::Events ? StreamType::Frames : StreamType::Events;
+  std::optional<std::size_t> first;
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
+    if (recording.camera(k).type != wanted || !knownSize(recording, k)) continue;
+    if (session.sensorOf(k) == session.sensorOf(camera)) return k;
+    if (!first) first = k;
+  }
+  return first;
+}
+
 }  // namespace
 
-// The reading thread's own state.
-class EventWindowReader::Pass {
+// The calibration's rules: sorted within a batch; late events and those outside are left out.
+class EventWindowReader::EventIntake {
  public:
-  Pass(const Session& session, std::size_t camera, EventCache& cache)
-      : cache_(cache),
-        recording_(session),
-        camera_(camera),
-        resolution_px_(recording_.resolution_px(camera)),
-        start_ns_(recording_.start_ns()) {
-    if (recording_.camera(camera).type != StreamType::Events)
-      throw badInput(session.cameras[camera].name,
-                     "its stream holds no events, and only those are shown here",
-                     "Choose an event camera; what is found in frames and points is in detections.csv");
-    if (!session.imus.empty()) imu_ = recording_.imuSensor(session.referenceImu());
-  }
+  EventIntake(EventCache& cache, Resolution resolution_px, std::int64_t start_ns)
+      : cache_(cache), resolution_px_(resolution_px), start_ns_(start_ns) {}
 
-  bool step() {
-    if (!recording_.read(packet_)) {
-      flush();
-      cache_.finish();
-      return false;
-    }
-    started_ = true;
-    if (packet_.sensor == camera_) {
-      pending_.insert(pending_.end(), packet_.events.begin(), packet_.events.end());
-      if (pending_.size() >= kBatchEvents) flush();
-    }
-    if (imu_ && packet_.sensor == *imu_) {
-      for (const ImuSample& sample : packet_.imu_samples)
-        rotation_.add(secondsSince(start_ns_, sample.time_ns), sample.angular_rate_rad_s.norm());
-    }
-    return true;
+  void take(const std::vector<Event>& events) {
+    pending_.insert(pending_.end(), events.begin(), events.end());
+    if (pending_.size() >= kBatchEvents) flush();
   }
-
-  void describe(RecordingOverview& overview) const {
-    overview.started = started_;
-    overview.start_ns = start_ns_;
-    overview.resolution_px = resolution_px_;
-    overview.read_until_s = last_ns_ >= start_ns_ ? secondsSince(start_ns_, last_ns_) : 0.0;
-    overview.event_rate = events_.perSecond();
-    overview.rotation_rate = rotation_.means();
-    overview.fraction_read = recording_.fractionRead();
+  void finish() {
+    flush();
+    cache_.finish();
   }
+  std::int64_t last_ns() const { return last_ns_; }
+  RateCurve rate() const { return rate_.perSecond(); }
 
  private:
-  // The calibration's rules: sorted within a batch; late events and those outside are left out.
   void flush() {
     const auto earlier = [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; };
     if (!std::is_sorted(pending_.begin(), pending_.end(), earlier))
@@ -115,21 +122,89 @@ class EventWindowReader::Pass {
     if (pending_.empty()) return;
     cache_.append(pending_);
     last_ns_ = pending_.back().time_ns;
-    for (const Event& event : pending_) events_.add(secondsSince(start_ns_, event.time_ns), 0.0);
+    for (const Event& event : pending_) rate_.add(secondsSince(start_ns_, event.time_ns), 0.0);
     pending_.clear();
   }
 
   EventCache& cache_;
-  SessionRecording recording_;
-  std::size_t camera_;
-  std::optional<std::size_t> imu_;
   Resolution resolution_px_;
-  SensorPacket packet_;
-  std::vector<Event> pending_;
   std::int64_t start_ns_;
-  bool started_ = false;
+  std::vector<Event> pending_;
   std::int64_t last_ns_ = std::numeric_limits<std::int64_t>::min();
-  Bins events_, rotation_;
+  Bins rate_;
+};
+
+// The reading thread's own state.
+class EventWindowReader::Pass {
+ public:
+  Pass(const Session& session, std::size_t camera, const std::filesystem::path& folder)
+      : recording_(session),
+        kind_(kindOf(recording_, session, camera)),
+        camera_(camera),
+        companion_(companionOf(recording_, session, camera, kind_)),
+        resolution_px_(recording_.resolution_px(camera)),
+        start_ns_(recording_.start_ns()) {
+    const bool events = kind_ == CameraKind::Events;
+    if (events || companion_) {
+      events_camera_ = events ? camera : *companion_;
+      caches_.events_px = *knownSize(recording_, *events_camera_);
+      auto cache = std::make_shared<EventCache>(folder);
+      events_.emplace(*cache, caches_.events_px, start_ns_);
+      caches_.events = std::move(cache);
+    }
+    if (!events || companion_) {
+      frames_camera_ = events ? *companion_ : camera;
+      caches_.frames = frames_ = std::make_shared<FrameCache>(folder);
+    }
+    if (!session.imus.empty()) imu_ = recording_.imuSensor(session.referenceImu());
+  }
+
+  const RecordingCaches& caches() const { return caches_; }
+
+  bool step() {
+    if (!recording_.read(packet_)) {
+      if (events_) events_->finish();
+      return false;
+    }
+    started_ = true;
+    if (packet_.sensor == events_camera_) events_->take(packet_.events);
+    if (packet_.sensor == frames_camera_) {
+      for (const Frame& frame : packet_.frames) frames_->append(frame);
+    }
+    if (packet_.sensor == imu_) {
+      for (const ImuSample& sample : packet_.imu_samples)
+        rotation_.add(secondsSince(start_ns_, sample.time_ns), sample.angular_rate_rad_s.norm());
+    }
+    return true;
+  }
+
+  void describe(RecordingOverview& overview) const {
+    overview.started = started_;
+    overview.start_ns = start_ns_;
+    overview.kind = kind_;
+    overview.companion = companion_;
+    overview.resolution_px = resolution_px_;
+    const std::int64_t last_ns =
+        kind_ == CameraKind::Events ? events_->last_ns() : frames_->lastTime_ns().value_or(start_ns_);
+    overview.read_until_s = last_ns >= start_ns_ ? secondsSince(start_ns_, last_ns) : 0.0;
+    if (events_) overview.event_rate = events_->rate();
+    overview.rotation_rate = rotation_.means();
+    overview.fraction_read = recording_.fractionRead();
+  }
+
+ private:
+  SessionRecording recording_;
+  CameraKind kind_;
+  std::size_t camera_;
+  std::optional<std::size_t> companion_, events_camera_, frames_camera_, imu_;
+  Resolution resolution_px_;
+  std::int64_t start_ns_;
+  RecordingCaches caches_;
+  std::optional<EventIntake> events_;
+  std::shared_ptr<FrameCache> frames_;
+  SensorPacket packet_;
+  bool started_ = false;
+  Bins rotation_;
 };
 
 EventWindowReader::EventWindowReader(const Session& session, std::size_t camera,
@@ -141,9 +216,9 @@ RecordingOverview EventWindowReader::overview() const {
   return state ? state->overview : RecordingOverview{};
 }
 
-std::shared_ptr<const EventCache> EventWindowReader::cache() const {
+RecordingCaches EventWindowReader::caches() const {
   const std::shared_ptr<const State> state = published_.take();
-  return state && state->overview.started ? state->cache : nullptr;
+  return state && state->overview.started ? state->caches : RecordingCaches{};
 }
 
 void EventWindowReader::publish() {
@@ -151,8 +226,8 @@ void EventWindowReader::publish() {
 }
 
 void EventWindowReader::readAll(const std::stop_token& stop) {
-  state_.cache = std::make_shared<EventCache>(folder_);
-  Pass pass(session_, camera_, *state_.cache);
+  Pass pass(session_, camera_, folder_);
+  state_.caches = pass.caches();
   auto told = std::chrono::steady_clock::now();
   while (pass.step()) {
     if (stop.stop_requested()) return;

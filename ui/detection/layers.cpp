@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/detection/layers.h"
 
-#include "core/geometry/trajectory.h"
+#include "core/numerics/robust.h"
 #include "core/optimisation/edge_lead.h"
+#include "ui/detection/trajectory_pose.h"
 #include "ui/detection/window_analysis.h"
 #include "ui/theme/theme.h"
 
@@ -63,6 +64,20 @@ QPolygonF ellipse(const Eigen::Vector2d& centre, const Eigen::Matrix2d& covarian
 void paintBoard(QPainter& painter, const BoardMotion& motion, const BoardScene& scene) {
   for (const CircleImage& circle : projectBoard(motion.ideal_from_board, scene))
     painter.drawPolygon(ellipse(circle.centre_px, circle.shape.inverse(), 1.0, scene));
+}
+
+// Each circle's own, as the picture shows it; corners have none.
+void paintImages(QPainter& painter, const std::vector<CircleObservation>& points) {
+  usePen(painter, layerColour(Layer::Ellipses), 2.0);
+  painter.setBrush(Qt::NoBrush);
+  for (const CircleObservation& point : points) {
+    if (!(point.semi_axes_px.minCoeff() > 0.0)) continue;
+    painter.save();
+    painter.translate(toPoint(point.centre_px));
+    painter.rotate(point.angle_rad * 180.0 / std::numbers::pi);
+    painter.drawEllipse(QPointF(), point.semi_axes_px.x(), point.semi_axes_px.y());
+    painter.restore();
+  }
 }
 
 // As far as the edge moves in the window.
@@ -148,7 +163,7 @@ void paintCentres(QPainter& painter, double scale, const WindowAnalysis& analysi
   const double arm = 4.0 / scale;
   usePen(painter, layerColour(Layer::Centres));
   painter.setBrush(Qt::NoBrush);
-  for (const CircleObservation& circle : analysis.trace().circles) {
+  for (const CircleObservation& circle : analysis.points()) {
     const QPointF at = toSensor(circle.centre_px, *analysis.scene);
     painter.drawLine(at - QPointF(arm, 0.0), at + QPointF(arm, 0.0));
     painter.drawLine(at - QPointF(0.0, arm), at + QPointF(0.0, arm));
@@ -156,11 +171,19 @@ void paintCentres(QPainter& painter, double scale, const WindowAnalysis& analysi
   }
 }
 
-// Along the rows from the first circle to the last, as calibrators are used to, and each one's number.
+// Half of the points have no neighbour in the chain that is nearer than this, in the widget's pixels.
+double usualStep_px(const QPolygonF& chain) {
+  std::vector<double> steps_px;
+  for (qsizetype k = 1; k < chain.size(); ++k) steps_px.push_back(QLineF(chain[k - 1], chain[k]).length());
+  return medianOf(std::move(steps_px));
+}
+
+// Along the rows from the first point to the last, as calibrators are used to, and each one's number where there is
+// room.
 void paintGrid(QPainter& painter, double scale, const WindowAnalysis& analysis) {
   const Board& board = analysis.scene->board;
   QPolygonF chain;
-  for (const CircleObservation& circle : analysis.trace().circles) {
+  for (const CircleObservation& circle : analysis.points()) {
     const bool follows = !chain.isEmpty();
     const QPointF at = toSensor(circle.centre_px, *analysis.scene);
     const int last = std::max(1, board.pointCount() - 1);
@@ -168,6 +191,8 @@ void paintGrid(QPainter& painter, double scale, const WindowAnalysis& analysis) 
     if (follows) painter.drawLine(chain.last(), at);
     chain << at;
   }
+  constexpr double kRoomForNumber_px = 16.0;
+  if (scale * usualStep_px(chain) < kRoomForNumber_px) return;
   painter.save();
   const QTransform to_widget = painter.transform();
   painter.resetTransform();
@@ -177,7 +202,7 @@ void paintGrid(QPainter& painter, double scale, const WindowAnalysis& analysis) 
   painter.setFont(font);
   for (qsizetype k = 0; k < chain.size(); ++k) {
     const QPointF at = to_widget.map(chain[k]) + QPointF(5.0, -4.0);
-    const QString number = QString::number(analysis.trace().circles[static_cast<std::size_t>(k)].circle);
+    const QString number = QString::number(analysis.points()[static_cast<std::size_t>(k)].circle);
     painter.setPen(theme().panel);
     for (const QPointF& beside : {QPointF(1, 1), QPointF(-1, 1), QPointF(1, -1), QPointF(-1, -1)})
       painter.drawText(at + beside, number);
@@ -199,6 +224,21 @@ std::optional<QPolygonF> imageOf(int circle, const RigidTransform& camera_from_w
     outline << toPoint(*pixel);
   }
   return outline;
+}
+
+// When the rows that show it were exposed, of a sensor whose middle row was at this time.
+std::optional<QPolygonF> imageInRows(int circle, const CalibrationState& state, const CameraState& camera,
+                                     const Board& board, double time_s) {
+  const CameraIntrinsics& lens = *camera.lens.inUse();
+  const auto imageAt = [&](double at_s) -> std::optional<QPolygonF> {
+    const auto camera_from_world = cameraFromWorldAt(state, camera, at_s);
+    return camera_from_world ? imageOf(circle, *camera_from_world, lens, board) : std::nullopt;
+  };
+  const auto outline = imageAt(time_s);
+  if (!outline || camera.line_delay_us == 0.0) return outline;
+  const double rows_below_middle =
+      outline->boundingRect().center().y() - 0.5 * (lens.resolution_px.height_px - 1);
+  return imageAt(time_s + 1e-6 * camera.line_delay_us * rows_below_middle);
 }
 
 // By circle, in ideal pixels; only of those that were measured.
@@ -293,6 +333,11 @@ LayerSet defaultLayers() {
   return layers;
 }
 
+bool isOfFrames(Layer layer) {
+  return layer == Layer::Ellipses || layer == Layer::Centres || layer == Layer::Grid ||
+         layer == Layer::Reprojection;
+}
+
 std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera, const Board& board,
                                       double time_s) {
   return reprojectBoard(state, camera, board, time_s, BoardView{}, 0.0);
@@ -304,16 +349,12 @@ std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t
   if (camera >= state.cameras.size()) return outlines;
   const CameraState& own = state.cameras[camera];
   if (!own.lens.seen_with) return outlines;
-  const double imu_time_s = referenceTime_s(own, time_s);
-  if (state.world_from_imu_rotation.segmentCount() < 1 || !state.world_from_imu_rotation.contains(imu_time_s))
-    return outlines;
-  const RigidTransform camera_from_world =
-      cameraFromWorld(state.world_from_imu_rotation, state.imu_in_world_m, own.reference_from_camera,
-                      timeOffsetAt_s(own, time_s), time_s);
+  const double late_s =
+      view.circles.empty() ? 0.0 : own.exposure_share * view.circles.front().longer_exposed_s;
   const std::map<int, Eigen::Vector2d> leads =
       idealLeads(own, *own.lens.seen_with, view, slow_edge_speed_px_s);
   for (int circle = 0; circle < board.pointCount(); ++circle) {
-    const auto outline = imageOf(circle, camera_from_world, *own.lens.inUse(), board);
+    const auto outline = imageInRows(circle, state, own, board, time_s + late_s);
     const auto lead = leads.find(circle);
     if (outline)
       outlines.push_back(lead == leads.end() ? *outline : moved(*outline, lead->second, *own.lens.seen_with));
@@ -335,11 +376,19 @@ void paintLayers(QPainter& painter, double scale, const LayerSet& visible, const
       paintBoard(painter, analysis->tracked->prediction, *analysis->scene);
     }
     if (shown(Layer::Ellipses) && analysis->trace().motion) paintEllipses(painter, *analysis);
+    if (shown(Layer::Ellipses) && analysis->frame) paintImages(painter, analysis->frame->points);
   }
   if (shown(Layer::Reprojection)) {
     usePen(painter, layerColour(Layer::Reprojection), 1.5);
     painter.setBrush(Qt::NoBrush);
-    for (const QPolygonF& outline : reprojection) painter.drawPolygon(outline);
+    constexpr double kCorner_px = 5.0;
+    for (const QPolygonF& outline : reprojection) {
+      if (outline.boundingRect().isEmpty()) {
+        painter.drawEllipse(outline.first(), kCorner_px / scale, kCorner_px / scale);
+      } else {
+        painter.drawPolygon(outline);
+      }
+    }
   }
   if (!analysis) return;
   if (shown(Layer::Centres)) paintCentres(painter, scale, *analysis);

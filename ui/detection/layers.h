@@ -32,11 +32,14 @@ LayerWords layerWords(Layer layer);
 QColor layerColour(Layer layer);  // of the theme; the first, where a layer has several
 std::vector<QColor> layerColours(Layer layer);
 LayerSet defaultLayers();
+bool isOfFrames(Layer layer);  // says something of frames, too, not only of events
 
-// Outlines of the board's circles where a calibration's trajectory puts them; empty outside the trajectory.
+// Outlines of the board's circles where a calibration's trajectory puts them, of corners a point each; empty outside
+// the trajectory.
 std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera, const Board& board,
                                       double time_s);
-// Where they are expected to be measured: ahead by the camera's edge lead, of which the view says which way.
+// Where they are expected to be measured: ahead by the camera's edge lead, of which the view says which way, and of
+// frames when their rows were exposed.
 std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera, const Board& board,
                                       double time_s, const BoardView& view, double slow_edge_speed_px_s);
 

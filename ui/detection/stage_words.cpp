@@ -2,19 +2,12 @@
 #include "ui/detection/window_analysis.h"
 
 #include "core/numerics/robust.h"
+#include "ui/detection/print.h"
 
 #include <cmath>
-#include <cstdio>
 
 namespace evical::ui {
 namespace {
-
-template <class... Values>
-std::string print(const char* format, Values... values) {
-  char text[400];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 const char* sourceName(CandidateSource source) {
   return source == CandidateSource::RingVote ? "ring vote" : "normal flow";

@@ -96,7 +96,8 @@ void paintDecayed(const SurfaceStyle& style, SurfaceFrame& frame) {
 }
 
 std::optional<SurfaceFrame::Hit> SurfaceFrame::newestAt(int x_px, int y_px) const {
-  if (x_px < 0 || y_px < 0 || x_px >= image.width() || y_px >= image.height()) return std::nullopt;
+  if (x_px < 0 || y_px < 0 || x_px >= image.width() || y_px >= image.height() || newest.empty())
+    return std::nullopt;
   const std::int32_t packed =
       newest[static_cast<std::size_t>(y_px) * static_cast<std::size_t>(image.width()) +
              static_cast<std::size_t>(x_px)];

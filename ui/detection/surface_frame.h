@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Events as a picture with one point a sensor pixel, and what hovering over it tells. Pure functions of their
+// Events or a frame as a picture with one point a sensor pixel, and what hovering over it tells. Pure functions of their
 // inputs, for worker threads: colours come with the style, since theme() belongs to the GUI thread.
 #pragma once
 
@@ -37,14 +37,21 @@ inline double fadedAfter_s(const SurfaceStyle& style) {
   return 5.0 * style.decay_s;
 }
 
+// Which frame of a camera it is.
+struct FrameLabel {
+  std::size_t number = 0, count = 0;  // from 1 on; of the frames read so far
+  double exposure_s = 0.0;            // 0: not known
+};
+
 struct SurfaceFrame {
   static constexpr std::int32_t kNoEvent = std::numeric_limits<std::int32_t>::min();
 
-  double time_s = 0.0;  // of the cursor, since the recording's start
+  double time_s = 0.0;  // of the cursor, or of the frame, since the recording's start
   QImage image;         // RGB32
   std::vector<std::int32_t>
-      newest;  // by pixel: 2 * microseconds since the cursor, + 1 if brighter; or kNoEvent
+      newest;  // by pixel: 2 * microseconds since the cursor, + 1 if brighter; or kNoEvent; empty of frames
   std::size_t events = 0;
+  std::optional<FrameLabel> photograph;  // where this is a frame
 
   Resolution resolution_px() const { return {image.width(), image.height()}; }
 

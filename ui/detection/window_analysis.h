@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the front end makes of one window, with every stage kept and told in words. Pure functions of bursts
-// and options, for a worker thread; the front end's own (core/frontend/window_trace.h) do the work.
+// What the front end makes of one window of events or of one frame, with every stage kept and told in words. Pure
+// functions of bursts and options, for a worker thread; the front end's own (core/frontend/window_trace.h) do the work.
 #pragma once
 
 #include "core/frontend/board_scene.h"
@@ -37,6 +37,21 @@ struct StageReport {
   std::string text;  // numbers, and why it failed
 };
 
+// What was found in a frame, where that is what is looked at.
+struct FrameFinding {
+  std::size_t number = 0, count = 0;        // from 1 on; of the frames read so far
+  Resolution size_px;                       // unknown where it cannot be decoded
+  double exposure_s = 0.0;                  // 0: not known
+  bool due = true;                          // at the rate that is asked for
+  bool settled = true;                      // no second look is under way
+  bool tracked = false;                     // followed from the frames before instead of found in all of it
+  double blur_px = 0.0;                     // how far the board moves while the frame is exposed
+  double darkest = 0.0, brightest = 255.0;  // 5th and 95th percentile of its pixels
+  std::vector<CircleObservation> points;    // in the sensor's own pixels; also those of no use
+  std::string problem;                      // why it cannot be read
+  std::string doubt;                        // what speaks against the board's numbers
+};
+
 struct WindowAnalysis {
   double time_s = 0.0, half_width_s = 0.0;
   std::shared_ptr<const BoardScene> scene;
@@ -44,6 +59,7 @@ struct WindowAnalysis {
   std::vector<BoardSearch> searches;    // in order; one more where the first found nothing
   std::optional<WindowTrace> acquired;  // from what the search found
   FlowAround flow;
+  std::optional<FrameFinding> frame;
   WindowOutcome outcome = WindowOutcome::TooFewEvents;
   std::vector<StageReport> stages;
   double took_s = 0.0;
@@ -51,6 +67,8 @@ struct WindowAnalysis {
   bool held() const { return tracked && tracked->held(); }
   // Tracked or acquired: that which has the last word. Empty where there is neither.
   const WindowTrace& trace() const;
+  // The board's points that were found, of either kind.
+  const std::vector<CircleObservation>& points() const { return frame ? frame->points : trace().circles; }
   // The one that tells most: that which found the board, or else got furthest. Null if none was made.
   const BoardSearch* bestSearch() const;
 };

@@ -36,16 +36,27 @@ QString capital(const char* text) {
   return word;
 }
 
+// Outcomes are named as windows of events have them.
+const char* outcomeWords(WindowOutcome outcome, bool of_frame) {
+  if (of_frame && outcome == WindowOutcome::NoLattice) return "no board found";
+  if (of_frame && outcome == WindowOutcome::TooFewInGrid) return "too few points";
+  return windowOutcomeName(outcome);
+}
+
+QString timeText(const WindowAnalysis& analysis) {
+  const QString time = WindowPanel::tr("%1 s").arg(analysis.time_s, 0, 'f', 4);
+  if (analysis.frame) return time;
+  return time + WindowPanel::tr(" ± %1 ms").arg(1e3 * analysis.half_width_s, 0, 'f', 1);
+}
+
 QString headline(const WindowAnalysis& analysis, bool searching) {
-  const QString words = searching && !analysis.held() ? WindowPanel::tr("Searching ...")
-                                                      : capital(windowOutcomeName(analysis.outcome));
+  const QString words = searching && !analysis.held()
+                            ? WindowPanel::tr("Searching ...")
+                            : capital(outcomeWords(analysis.outcome, analysis.frame.has_value()));
   const QColor colour =
       searching && !analysis.held() ? theme().faint_text : windowColour(windowClass(analysis.outcome));
   return QStringLiteral("<p style='margin:0; font-size:large'><b>%1</b></p><p style='margin:0'>%2</p>")
-      .arg(coloured(colour, words),
-           coloured(theme().faint_text, WindowPanel::tr("%1 s ± %2 ms")
-                                            .arg(analysis.time_s, 0, 'f', 4)
-                                            .arg(1e3 * analysis.half_width_s, 0, 'f', 1)));
+      .arg(coloured(colour, words), coloured(theme().faint_text, timeText(analysis)));
 }
 
 // The last stage that failed, up where it is seen at once.
@@ -71,12 +82,13 @@ QString stageRow(const StageReport& stage) {
            capital(stage.stage.c_str()).toHtmlEscaped(), faint ? coloured(theme().faint_text, text) : text);
 }
 
-QString passLine(const WindowReport& report) {
-  const QString how = report.circles > 0 ? WindowPanel::tr(", %1 circles%2")
-                                               .arg(report.circles)
-                                               .arg(report.tracked ? WindowPanel::tr(", tracked") : QString())
-                                         : QString();
-  return WindowPanel::tr("In the last run: %1%2").arg(windowOutcomeName(report.outcome), how);
+QString passLine(const WindowReport& report, bool of_frame) {
+  const QString found = of_frame ? WindowPanel::tr(", %1 points%2") : WindowPanel::tr(", %1 circles%2");
+  const QString how =
+      report.circles > 0
+          ? found.arg(report.circles).arg(report.tracked ? WindowPanel::tr(", tracked") : QString())
+          : QString();
+  return WindowPanel::tr("In the last run: %1%2").arg(outcomeWords(report.outcome, of_frame), how);
 }
 
 }  // namespace
@@ -98,8 +110,8 @@ void WindowPanel::show(const WindowAnalysis* analysis, const std::optional<Windo
   if (analysis) {
     html = headline(*analysis, searching);
     if (report)
-      html +=
-          QStringLiteral("<p style='margin:0'>%1</p>").arg(coloured(theme().faint_text, passLine(*report)));
+      html += QStringLiteral("<p style='margin:0'>%1</p>")
+                  .arg(coloured(theme().faint_text, passLine(*report, analysis->frame.has_value())));
     if (!searching) html += lostLine(*analysis);
     html += QStringLiteral("<table style='margin-top:8px'>");
     for (const StageReport& stage : analysis->stages) html += stageRow(stage);

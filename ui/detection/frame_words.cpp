@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/numerics/robust.h"
+#include "ui/detection/frame_analysis.h"
+#include "ui/detection/print.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace evical::ui {
+namespace {
+
+bool isOfUse(const WindowAnalysis& analysis) {
+  return analysis.outcome == WindowOutcome::Complete || analysis.outcome == WindowOutcome::Partial;
+}
+
+std::string whichText(const FrameFinding& frame) {
+  std::string text = print("%zu of %zu", frame.number, frame.count);
+  if (frame.size_px.known()) text += print(", %d x %d px", frame.size_px.width_px, frame.size_px.height_px);
+  return text + (frame.exposure_s > 0.0 ? print(", exposed for %.2f ms", 1e3 * frame.exposure_s)
+                                        : std::string(", exposure not known"));
+}
+
+StageReport pictureStage(const WindowAnalysis& analysis, const FrameOptions& options) {
+  const FrameFinding& frame = *analysis.frame;
+  const double contrast = frame.brightest - frame.darkest;
+  const bool pale = !isOfUse(analysis) && contrast < options.least_contrast;
+  std::string text = print("9 of 10 pixels lie between %.0f and %.0f of 255", frame.darkest, frame.brightest);
+  if (pale) text += print(": hardly any contrast (least_contrast is %.0f)", options.least_contrast);
+  return {"picture", pale ? StageVerdict::Failed : StageVerdict::Passed, text};
+}
+
+StageReport searchStage(const WindowAnalysis& analysis) {
+  const FrameFinding& frame = *analysis.frame;
+  if (frame.points.empty())
+    return {"search", StageVerdict::Failed,
+            "no board where the frames before put it, and none in all of the frame"};
+  return {"search", StageVerdict::Passed,
+          frame.tracked ? "followed from the frames before" : "found in all of the frame"};
+}
+
+StageReport pointsStage(const WindowAnalysis& analysis, const FrameOptions& options) {
+  const std::vector<CircleObservation>& points = analysis.frame->points;
+  const int count = analysis.scene->board.pointCount();
+  if (points.empty()) return {"points", StageVerdict::NotReached, "not reached"};
+  std::string text = print("%zu of %d", points.size(), count);
+  if (analysis.outcome == WindowOutcome::TooFewInGrid)
+    return {"points", StageVerdict::Failed,
+            text + print(": at least %.0f needed (least_points is %.2f)",
+                         std::max(4.0, std::ceil(options.least_points * count)), options.least_points)};
+  std::vector<double> sigmas_px;
+  for (const CircleObservation& point : points)
+    sigmas_px.push_back(std::sqrt(0.5 * point.covariance_px2.trace()));
+  text += print(", sigma %.3f px", medianOf(std::move(sigmas_px)));
+  return {"points", StageVerdict::Passed, text};
+}
+
+StageReport blurStage(const WindowAnalysis& analysis, const FrameOptions& options) {
+  const FrameFinding& frame = *analysis.frame;
+  const bool blurred = analysis.outcome == WindowOutcome::Blurred;
+  if (!isOfUse(analysis) && !blurred) return {"blur", StageVerdict::NotReached, "not reached"};
+  if (!(frame.exposure_s > 0.0))
+    return {"blur", StageVerdict::Note, "not known, as the recording does not tell the exposure"};
+  return {"blur", blurred ? StageVerdict::Failed : StageVerdict::Passed,
+          print("the board moves %.2f px while the frame is exposed (largest_blur_px is %.1f)", frame.blur_px,
+                options.largest_blur_px)};
+}
+
+}  // namespace
+
+std::vector<StageReport> describeFrame(const WindowAnalysis& analysis, const FrameOptions& options) {
+  const FrameFinding& frame = *analysis.frame;
+  std::vector<StageReport> stages{{"frame", StageVerdict::Note, whichText(frame)}};
+  if (!frame.due)
+    stages.push_back({"rate", StageVerdict::Note,
+                      print("a run leaves this frame out (frames.rate_hz is %g)", options.rate_hz)});
+  if (!frame.problem.empty()) {
+    stages.push_back({frame.size_px.known() ? "board" : "picture", StageVerdict::Failed, frame.problem});
+    return stages;
+  }
+  stages.push_back(pictureStage(analysis, options));
+  stages.push_back(searchStage(analysis));
+  stages.push_back(pointsStage(analysis, options));
+  stages.push_back(blurStage(analysis, options));
+  if (!frame.doubt.empty()) stages.push_back({"board", StageVerdict::Failed, frame.doubt});
+  return stages;
+}
+
+}  // namespace evical::ui

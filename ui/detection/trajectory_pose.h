@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where a calibration's trajectory puts a camera.
+#pragma once
+
+#include "core/data/calibration_state.h"
+
+#include <optional>
+
+namespace evical::ui {
+
+// At a time of the camera's own clock; nothing outside the trajectory.
+std::optional<RigidTransform> cameraFromWorldAt(const CalibrationState& state, const CameraState& camera,
+                                                double camera_time_s);
+
+}  // namespace evical::ui
