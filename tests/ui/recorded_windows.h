@@ -21,15 +21,15 @@
 
 namespace evical::ui::test {
 
-// Two seconds of a scenario, and what the front end says about them.
+// The first seconds of a scenario, and what the front end says about them.
 struct Recorded {
   QTemporaryDir folder;
   Session session;
   RecordingPass pass;
 
-  explicit Recorded(const std::string& name = "davis346") {
+  explicit Recorded(const std::string& name = "davis346", double duration_s = 2.0) {
     Scenario scenario = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/" + name + ".yaml");
-    scenario.duration_s = 2.0;
+    scenario.duration_s = duration_s;
     const SimulationSummary files = simulate(scenario, folder.path().toStdString(), {});
     session = readSession(files.session);
     pass = readAndDetect(session, {});

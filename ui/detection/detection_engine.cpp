@@ -5,9 +5,11 @@
 #include "core/base/modest_thread.h"
 #include "core/base/time.h"
 #include "ui/detection/burst_band.h"
+#include "ui/detection/trajectory_pose.h"
 
 #include <QStandardPaths>
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 
@@ -128,6 +130,9 @@ DetectionEngine::DetectionEngine(QObject* parent)
     : QObject(parent),
       frames_(
           [this] { QMetaObject::invokeMethod(this, &DetectionEngine::frameReady, Qt::QueuedConnection); }),
+      companions_([this] {
+        QMetaObject::invokeMethod(this, &DetectionEngine::companionReady, Qt::QueuedConnection);
+      }),
       analyses_(
           [this] { QMetaObject::invokeMethod(this, &DetectionEngine::analysisReady, Qt::QueuedConnection); }),
       analyst_(std::make_unique<Analyst>(*this)) {}
@@ -136,7 +141,10 @@ DetectionEngine::~DetectionEngine() = default;
 
 void DetectionEngine::open(const Session& session, std::size_t camera) {
   observations_.reset();
-  camera_ = session.cameras[camera].name;
+  camera_name_ = session.cameras[camera].name;
+  camera_ = camera;
+  result_.reset();
+  companions_.clear();
   ++opening_;
   frames_.clear();
   analyses_.clear();
@@ -162,12 +170,21 @@ void DetectionEngine::show(const DetectionWish& wish) {
   if (!reader_) return;
   const RecordingOverview overview = reader_->overview();
   const RecordingCaches caches = reader_->caches();
-  const Source source{overview.kind,     caches.events,          caches.frames,
-                      overview.start_ns, overview.resolution_px, opening_};
+  const Source source{overview.kind,
+                      caches.events,
+                      caches.frames,
+                      overview.start_ns,
+                      overview.resolution_px,
+                      opening_,
+                      caches.events_px,
+                      camera_,
+                      overview.companion.value_or(camera_),
+                      result_};
   const bool frames = overview.kind == CameraKind::Frames;
   if (frames ? !caches.frames || caches.frames->count() == 0 : !caches.events) return;
-  if (frames || wish.style.mode != SurfaceMode::NormalFlow) start(RenderTask{source, wish, nullptr});
-  start(AnalysisTask{source, sight_, wish, options_, frame_options_, camera_, observations_});
+  const bool flow = !frames && wish.style.mode == SurfaceMode::NormalFlow;  // drawn by the analysis
+  if (!flow || wish.picture == PictureChoice::SideBySide) start(RenderTask{source, wish, nullptr});
+  start(AnalysisTask{source, sight_, wish, options_, frame_options_, camera_name_, observations_});
 }
 
 std::optional<double> DetectionEngine::timeOfFrameBeside_s(double time_s, int direction) const {
@@ -209,29 +226,77 @@ void DetectionEngine::start(AnalysisTask task) {
   });
 }
 
-void DetectionEngine::renderFrame(const RenderTask& task) {
-  const FrameCache& frames = *task.source.frames;
-  const std::size_t at = *frames.nearest(task.source.start_ns + nanosecondsFrom(task.wish.time_s));
+SurfaceFrame DetectionEngine::pictureAt(const Source& source, std::int64_t time_ns,
+                                        const SurfaceStyle& style) {
+  const FrameCache& frames = *source.frames;
+  const std::size_t at = *frames.nearest(time_ns);
   SurfaceFrame shown;
-  shown.time_s = secondsSince(task.source.start_ns, frames.time_ns(at));
-  shown.photograph = FrameLabel{at + 1, frames.count(), 0.0};
+  shown.time_s = secondsSince(source.start_ns, frames.time_ns(at));
+  shown.photograph = FrameLabel{at + 1, frames.count()};
   try {
-    const Frame frame = frames.frame(at);
-    shown.photograph->exposure_s = frame.exposure_s;
-    shown.image = pictureOf(decodeFrame(frame, "frame"));
+    shown.image = pictureOf(decodeFrame(frames.frame(at), "frame"));
     frame_px_ = shown.resolution_px();
   } catch (const CalibrationError&) {
     // The analysis says why; the place of the picture stays what it was.
-    shown.image = emptyImage(frame_px_.known() ? frame_px_ : Resolution{640, 480}, task.wish.style);
+    shown.image = emptyImage(frame_px_.known() ? frame_px_ : Resolution{640, 480}, style);
   }
-  put(std::move(shown), task.source.opening);
+  return shown;
+}
+
+void DetectionEngine::addEvents(const RenderTask& task, SurfaceFrame& frame) {
+  const Source& source = task.source;
+  if (!source.cache || !source.result ||
+      !EventsOverFrame::isPossible(*source.result, source.companion, source.camera))
+    return;
+  if (!events_over_frame_ ||
+      !events_over_frame_->isOf(source.result, source.companion, source.camera, source.events_px))
+    events_over_frame_ =
+        std::make_unique<EventsOverFrame>(source.result, source.companion, source.camera, source.events_px);
+  const double until_s = events_over_frame_->eventTime_s(frame.time_s);
+  std::vector<Event> events;
+  gather(*source.cache, source.start_ns, until_s - fadedAfter_s(task.wish.style), until_s, events);
+  frame.events = paintEventsOver(*events_over_frame_, events, source.start_ns, frame.time_s, task.wish.style,
+                                 frame.image);
+}
+
+// At the same moment, as far as a result tells how far the clocks are apart.
+void DetectionEngine::renderCompanion(const RenderTask& task) {
+  const Source& source = task.source;
+  const bool of_frames = source.kind == CameraKind::Events;
+  if (of_frames ? !source.frames || source.frames->count() == 0 : !source.cache) return;
+  double time_s = task.wish.time_s;
+  if (source.result && std::max(source.camera, source.companion) < source.result->cameras.size())
+    time_s = timeOnClockOf_s(source.result->cameras[source.companion], source.result->cameras[source.camera],
+                             time_s);
+  const std::int64_t time_ns = source.start_ns + nanosecondsFrom(time_s);
+  SurfaceStyle style = task.wish.style;
+  style.mode = SurfaceMode::Decayed;
+  SurfaceFrame frame;
+  try {
+    frame = of_frames ? pictureAt(source, time_ns, style)
+                      : companion_surface_.render(source.cache, time_ns, source.events_px, style);
+  } catch (const CalibrationError&) {
+    return;  // the cache cannot be read, as the main picture's reader says
+  }
+  if (!of_frames) frame.time_s = time_s;
+  if (source.opening == opening_) companions_.put(std::make_shared<SurfaceFrame>(std::move(frame)));
 }
 
 void DetectionEngine::render(const RenderTask& task) {
-  if (task.source.kind == CameraKind::Frames && !task.live) {
-    renderFrame(task);
-    return;
+  RenderTask shown = task;
+  if (!task.live && task.source.kind == CameraKind::Frames) {
+    SurfaceFrame frame =
+        pictureAt(task.source, task.source.start_ns + nanosecondsFrom(task.wish.time_s), task.wish.style);
+    shown.wish.time_s = frame.time_s;
+    if (task.wish.picture == PictureChoice::Overlaid) addEvents(task, frame);
+    put(std::move(frame), task.source.opening);
+  } else {
+    if (task.live || task.wish.style.mode != SurfaceMode::NormalFlow) renderSurface(task);
   }
+  if (!task.live && task.wish.picture == PictureChoice::SideBySide) renderCompanion(shown);
+}
+
+void DetectionEngine::renderSurface(const RenderTask& task) {
   SurfaceStyle style = task.wish.style;
   if (task.live) {
     style.mode = SurfaceMode::Accumulated;

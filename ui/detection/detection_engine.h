@@ -6,6 +6,7 @@
 #include "core/pipeline/session.h"
 #include "ui/detection/decaying_surface.h"
 #include "ui/detection/event_window_reader.h"
+#include "ui/detection/events_over_frame.h"
 #include "ui/detection/frame_analysis.h"
 #include "ui/detection/live_detection.h"
 #include "ui/detection/surface_frame.h"
@@ -20,11 +21,15 @@
 
 namespace evical::ui {
 
+// Of a camera that has a companion of the other kind.
+enum class PictureChoice { Alone, SideBySide, Overlaid };
+
 struct DetectionWish {
   double time_s = 0.0, half_width_s = 0.01;
   SurfaceStyle style;
-  bool search = true;  // from nothing, too
-  bool flow = true;    // normal flow, too
+  PictureChoice picture = PictureChoice::Alone;  // Overlaid: of frames, where a result says how
+  bool search = true;                            // from nothing, too
+  bool flow = true;                              // normal flow, too
 };
 
 // What windows are searched for, and seen through.
@@ -48,6 +53,8 @@ class DetectionEngine : public QObject {
     options_ = options;
     frame_options_ = frames;
   }
+  // What a run found, of the recording that is open; null: nothing.
+  void setResult(std::shared_ptr<const CalibrationState> result) { result_ = std::move(result); }
   void setObservations(std::shared_ptr<const BoardObservations> observations);
   void show(const DetectionWish& wish);  // nothing before the recording is open
   void showLive(std::shared_ptr<const LiveWindow> window, const SurfaceStyle& style);
@@ -57,11 +64,13 @@ class DetectionEngine : public QObject {
   // Of the frame after the nearest (+1) or before it (-1); nothing where there is none.
   std::optional<double> timeOfFrameBeside_s(double time_s, int direction) const;
   std::shared_ptr<const SurfaceFrame> takeFrame() { return frames_.take(); }
+  std::shared_ptr<const SurfaceFrame> takeCompanion() { return companions_.take(); }
   std::shared_ptr<const WindowAnalysis> takeAnalysis() { return analyses_.take(); }
 
  signals:
   void overviewChanged();
   void frameReady();
+  void companionReady();
   void analysisReady();
 
  private:
@@ -73,6 +82,9 @@ class DetectionEngine : public QObject {
     std::int64_t start_ns = 0;
     Resolution resolution_px;
     int opening = 0;
+    Resolution events_px = {};
+    std::size_t camera = 0, companion = 0;
+    std::shared_ptr<const CalibrationState> result = nullptr;
   };
   struct RenderTask {
     Source source;
@@ -93,22 +105,30 @@ class DetectionEngine : public QObject {
   void start(RenderTask task);
   void start(AnalysisTask task);
   void render(const RenderTask& task);
-  void renderFrame(const RenderTask& task);
+  void renderSurface(const RenderTask& task);
+  void renderCompanion(const RenderTask& task);
+  SurfaceFrame pictureAt(const Source& source, std::int64_t time_ns, const SurfaceStyle& style);
+  void addEvents(const RenderTask& task, SurfaceFrame& frame);
   void put(SurfaceFrame frame, int opening);
   void put(const WindowAnalysis& analysis, int opening);
 
   Sight sight_;
   FrontEndOptions options_;
   FrameOptions frame_options_;
-  std::string camera_;
+  std::string camera_name_;
+  std::size_t camera_ = 0;
+  std::shared_ptr<const CalibrationState> result_;
   std::shared_ptr<const BoardObservations> observations_;
   std::atomic<int> opening_ = 0;  // what was asked for before the last one is of no use
-  Mailbox<SurfaceFrame> frames_;
+  Mailbox<SurfaceFrame> frames_, companions_;
   Mailbox<WindowAnalysis> analyses_;
   std::shared_ptr<EventWindowReader> reader_;
   std::unique_ptr<Analyst> analyst_;
-  DecayingSurface surface_;  // the renderer's
-  Resolution frame_px_;      // the same: of the last frame that could be decoded
+  // The renderer's.
+  DecayingSurface surface_;
+  DecayingSurface companion_surface_;
+  Resolution frame_px_;  // of the last frame that could be decoded
+  std::unique_ptr<EventsOverFrame> events_over_frame_;
   // Last: their threads use the rest.
   LatestJob read_job_{OutdatedWork::Dropped};
   LatestJob render_job_{OutdatedWork::Delivered};

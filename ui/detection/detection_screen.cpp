@@ -46,20 +46,6 @@ bool sameEvents(const Session& a, const Session& b) {
          std::equal(a.imus.begin(), a.imus.end(), b.imus.begin(), b.imus.end(), same_imu);
 }
 
-// The measured view of the window in sight; empty where there is none.
-BoardView viewAt(const std::vector<BoardObservations>& cameras, std::size_t camera, double time_s) {
-  if (camera >= cameras.size()) return {};
-  constexpr double kHalfWindow_s = 0.05;
-  const BoardView* nearest = nullptr;
-  double distance_s = kHalfWindow_s;
-  for (const BoardView& view : cameras[camera].views) {
-    if (std::abs(view.time_s - time_s) > distance_s) continue;
-    distance_s = std::abs(view.time_s - time_s);
-    nearest = &view;
-  }
-  return nearest != nullptr ? *nearest : BoardView{};
-}
-
 }  // namespace
 
 DetectionScreen::~DetectionScreen() = default;
@@ -70,6 +56,7 @@ void DetectionScreen::connectEngine() {
   connect(engine_.get(), &DetectionEngine::overviewChanged, this, &DetectionScreen::takeOverview);
   connect(engine_.get(), &DetectionEngine::frameReady, this, &DetectionScreen::takeFrame);
   connect(engine_.get(), &DetectionEngine::analysisReady, this, &DetectionScreen::takeAnalysis);
+  connectPictures();
   connect(live_detection_, &LiveDetection::windowReady, this,
           [this] { showLiveFrame(live_detection_->take()); });
   connect(timeline_, &Timeline::timeSelected, this, [this](double time_s) {
@@ -106,8 +93,11 @@ void DetectionScreen::setSession(const Session& session) {
 void DetectionScreen::chooseCamera(std::size_t camera) {
   camera_ = camera;
   analysis_.reset();
+  companion_.reset();
   adaptTo(CameraKind::Events);
+  offerPictures();
   view_->setFrame(nullptr);
+  companion_view_->setFrame(nullptr);
   timeline_->setRange(0.0, 0.0);
   timeline_->setEventRate({});
   timeline_->setRotationRate({});
@@ -142,7 +132,9 @@ void DetectionScreen::showRun() {
   layer_boxes_[static_cast<std::size_t>(Layer::Reprojection)]->setEnabled(seen != nullptr);
   timeline_->setWindows(seen ? seen->windows : std::vector<WindowReport>{});
   engine_->setObservations(seen ? std::shared_ptr<const BoardObservations>(run_, seen) : nullptr);
+  engine_->setResult(seen ? std::shared_ptr<const CalibrationState>(run_, &run_->result.state) : nullptr);
   engine_->setSight(sight());
+  offerPictures();
   request();
 }
 
@@ -249,6 +241,7 @@ void DetectionScreen::request() {
   wish.half_width_s =
       window ? window->half_width_s : 0.25 * (detection.shortest_window_s + detection.longest_window_s);
   wish.style = style();
+  wish.picture = picture();
   wish.search = !playing || shown(Layer::Circles);
   wish.flow = !playing || shown(Layer::Flow) || shown(Layer::Clusters) || shown(Layer::Pairs);
   engine_->show(wish);
@@ -268,6 +261,8 @@ void DetectionScreen::takeOverview() {
   }
   if (!overview.started) return;
   adaptTo(overview.kind);
+  companion_ = overview.companion;
+  offerPictures();
   timeline_->setRange(0.0, std::max(overview.read_until_s, timeline_->end_s()));
   timeline_->setEventRate(overview.event_rate);
   timeline_->setRotationRate(overview.rotation_rate);
@@ -298,23 +293,18 @@ void DetectionScreen::refresh() {
   const bool here =
       analysis_ && frame && std::abs(analysis_->time_s - frame->time_s) <= analysis_->half_width_s;
   refreshPanel(here);
-  if (frame) view_->setCaption(caption());
+  if (frame) view_->setCaption((following() ? tr("live  ") : QString()) + captionOf(*frame));
   {
     const QSignalBlocker quiet(time_box_);
     time_box_->setMaximum(std::max(timeline_->end_s(), time_s_));
     time_box_->setValue(time_s_);
   }
-  std::vector<QPolygonF> reprojection;
-  const CalibrationRun* const run = runInView();
-  if (run && frame && shown(Layer::Reprojection)) {
-    reprojection = reprojectBoard(run->result.state, camera_, run_session_.board, frame->time_s,
-                                  viewAt(run->pass.cameras, camera_, frame->time_s),
-                                  run_session_.options.optimisation.slow_edge_speed_px_s);
-  }
-  view_->setOverlay([analysis = here ? analysis_ : nullptr, layers = layers_,
-                     reprojection = std::move(reprojection)](QPainter& painter, double scale) {
+  const auto reprojection = frame ? reprojectionInto(camera_, frame->time_s) : std::vector<QPolygonF>{};
+  view_->setOverlay([analysis = here ? analysis_ : nullptr, layers = layers_, reprojection](QPainter& painter,
+                                                                                            double scale) {
     paintLayers(painter, scale, layers, analysis.get(), reprojection);
   });
+  refreshCompanion();
 }
 
 void DetectionScreen::refreshPanel(bool here) {
@@ -323,17 +313,6 @@ void DetectionScreen::refreshPanel(bool here) {
   const bool searching = unsettled && !timer_.isActive() && !following();
   const double time_s = here && framesInView() ? analysis_->time_s : time_s_;
   panel_->show(here ? analysis_.get() : nullptr, timeline_->windowAt(time_s), searching);
-}
-
-QString DetectionScreen::caption() const {
-  const SurfaceFrame& frame = *view_->frame();
-  const QString time = tr("%1 s").arg(frame.time_s, 0, 'f', 4);
-  if (const auto& label = frame.photograph)
-    return time + tr("    frame %L1 of %L2")
-                      .arg(static_cast<qulonglong>(label->number))
-                      .arg(static_cast<qulonglong>(label->count));
-  return (following() ? tr("live  ") : QString()) + time +
-         tr("    %L1 events").arg(static_cast<qulonglong>(frame.events));
 }
 
 void DetectionScreen::keyPressEvent(QKeyEvent* event) {

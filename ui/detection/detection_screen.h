@@ -27,6 +27,7 @@ class QToolButton;
 namespace evical::ui {
 
 class DetectionEngine;
+enum class PictureChoice;
 struct Sight;
 class EventView;
 class Timeline;
@@ -57,6 +58,7 @@ class DetectionScreen : public QWidget {
   double time_s() const { return time_s_; }
   bool isPlaying() const { return timer_.isActive(); }
   EventView& view() { return *view_; }
+  EventView& companionView() { return *companion_view_; }  // beside it, where both are chosen
   Timeline& timeline() { return *timeline_; }
   WindowPanel& panel() { return *panel_; }
   const std::shared_ptr<const WindowAnalysis>& analysis() const { return analysis_; }
@@ -65,6 +67,8 @@ class DetectionScreen : public QWidget {
   void setCamera(std::size_t camera);  // of the session
   void setTime(double time_s);
   void setMode(evical::ui::SurfaceMode mode);
+  void setPicture(evical::ui::PictureChoice picture);
+  QString whyNoOverlay() const;  // empty where events can be drawn over the frame
   void setLayerVisible(evical::ui::Layer layer, bool visible);
   void setPlaying(bool playing);
   void step(int direction);  // to the next window or frame (+1) or the one before (-1)
@@ -94,10 +98,16 @@ class DetectionScreen : public QWidget {
   void takeOverview();
   void takeFrame();
   void takeAnalysis();
+  void takeCompanion();
   void refresh();  // caption, panel, overlay
   void refreshPanel(bool here);
-  QString caption() const;
+  static QString captionOf(const SurfaceFrame& frame);
   void adaptTo(CameraKind kind);  // controls that say nothing of this kind go
+  void connectPictures();
+  PictureChoice picture() const;
+  void offerPictures();  // those that there are of this camera
+  void refreshCompanion();
+  std::vector<QPolygonF> reprojectionInto(std::size_t camera, double time_s) const;
   bool following() const { return live_ && following_ && !framesInView(); }
   double endOfPlay_s() const;
   SurfaceStyle style() const;
@@ -116,10 +126,11 @@ class DetectionScreen : public QWidget {
 
   QTimer timer_;
   QElapsedTimer since_frame_;
-  EventView* view_ = nullptr;
+  std::optional<std::size_t> companion_;  // the camera of the other kind
+  EventView *view_ = nullptr, *companion_view_ = nullptr;
   Timeline* timeline_ = nullptr;
   WindowPanel* panel_ = nullptr;
-  QComboBox *mode_box_ = nullptr, *speed_box_ = nullptr, *camera_box_ = nullptr;
+  QComboBox *mode_box_ = nullptr, *speed_box_ = nullptr, *camera_box_ = nullptr, *picture_box_ = nullptr;
   QDoubleSpinBox *fade_box_ = nullptr, *time_box_ = nullptr;
   QToolButton *play_button_ = nullptr, *follow_button_ = nullptr;
   QLabel *status_ = nullptr, *fade_label_ = nullptr, *verdict_title_ = nullptr;

@@ -62,7 +62,10 @@ DetectionScreen::DetectionScreen(QWidget* parent) : QWidget(parent) {
   timeline_ = new Timeline;
   auto* middle = new QHBoxLayout;
   middle->setSpacing(8);
+  companion_view_ = new EventView;
+  companion_view_->hide();
   middle->addWidget(view_, 1);
+  middle->addWidget(companion_view_, 1);
   middle->addWidget(makeSidePanel());
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(8, 6, 8, 4);
@@ -106,7 +109,11 @@ QWidget* DetectionScreen::makeToolBar() {
   camera_box_ = new QComboBox;
   camera_box_->setToolTip(tr("Camera"));
   camera_box_->hide();
+  picture_box_ = new QComboBox;
+  picture_box_->addItems({{}, tr("Side by side"), tr("Events over frame")});
+  picture_box_->hide();
   row->addWidget(camera_box_);
+  row->addWidget(picture_box_);
   row->addWidget(mode_box_);
   fade_label_ = new QLabel(tr("fading"));
   row->addWidget(fade_label_);
@@ -212,8 +219,6 @@ void DetectionScreen::adaptTo(CameraKind kind) {
   kind_ = kind;
   const bool frames = framesInView();
   mode_box_->setVisible(!frames);
-  fade_label_->setVisible(!frames);
-  fade_box_->setVisible(!frames);
   verdict_title_->setText(frames ? tr("What became of this frame") : tr("What became of this window"));
   view_->setAccessibleName(frames ? tr("Frame") : tr("Events"));
   std::vector<QCheckBox*> shown;

@@ -40,7 +40,6 @@ inline double fadedAfter_s(const SurfaceStyle& style) {
 // Which frame of a camera it is.
 struct FrameLabel {
   std::size_t number = 0, count = 0;  // from 1 on; of the frames read so far
-  double exposure_s = 0.0;            // 0: not known
 };
 
 struct SurfaceFrame {

@@ -14,4 +14,8 @@ std::optional<RigidTransform> cameraFromWorldAt(const CalibrationState& state, c
                          timeOffsetAt_s(camera, camera_time_s), camera_time_s);
 }
 
+double timeOnClockOf_s(const CameraState& other, const CameraState& camera, double camera_time_s) {
+  return sensorTime_s(other, referenceTime_s(camera, camera_time_s));
+}
+
 }  // namespace evical::ui

@@ -12,4 +12,7 @@ namespace evical::ui {
 std::optional<RigidTransform> cameraFromWorldAt(const CalibrationState& state, const CameraState& camera,
                                                 double camera_time_s);
 
+// When one camera's clock shows this time, what another's shows.
+double timeOnClockOf_s(const CameraState& other, const CameraState& camera, double camera_time_s);
+
 }  // namespace evical::ui
