@@ -32,6 +32,7 @@ class TestTrajectoryScreen : public QObject {
   void residual_coversWhatTheCameraSaw();
   void layers_comeAndGo();
   void throughTheCamera_showsWhatItSees();
+  void kindsOfCameras_haveColoursAndALegend();
   void theme_changesThePicture();
   void screenshots();
 
@@ -154,6 +155,41 @@ void TestTrajectoryScreen::throughTheCamera_showsWhatItSees() {
   }
   QTest::keyClick(screen->view(), Qt::Key_Left);
   QVERIFY(!through->isChecked());
+}
+
+void TestTrajectoryScreen::kindsOfCameras_haveColoursAndALegend() {
+  if (!has_opengl_) QSKIP("no OpenGL here");
+  auto run = std::make_shared<CalibrationRun>(*example_.run);
+  run->result.state.cameras.push_back(run->result.state.cameras.front());
+  run->result.state.cameras.back().reference_from_camera.translation_m.x() += 0.1;
+  run->pass.cameras.push_back(run->pass.cameras.front());
+  run->pass.lenses.push_back(run->pass.lenses.front());
+  const auto pixelsOf = [](const QImage& image, const QRect& where, const QColor& colour) {
+    int count = 0;
+    for (int y = where.top(); y <= where.bottom(); ++y) {
+      for (int x = where.left(); x <= where.right(); ++x)
+        count += distance(image.pixelColor(x, y), colour) < 10.0 ? 1 : 0;
+    }
+    return count;
+  };
+  int scene[2], corner[2];
+  for (const bool frames : {false, true}) {
+    run->pass.cameras.back().kind = frames ? CameraKind::Frames : CameraKind::Events;
+    Example rig = example_;
+    rig.run = run;
+    const auto screen = makeScreen(rig);
+    QVERIFY(screen);
+    for (const SceneLayer layer : {SceneLayer::Axes, SceneLayer::ImuAxes, SceneLayer::RawPoses})
+      screen->setLayerVisible(layer, false);
+    const QImage image = picture(screen->view());
+    const QRect legend(0, 0, 40, 80);
+    scene[frames] = pixelsOf(image, image.rect(), theme().good) - pixelsOf(image, legend, theme().good);
+    corner[frames] = std::min(pixelsOf(image, legend, theme().good), pixelsOf(image, legend, theme().accent));
+    QDir().mkpath(EVICAL_SCREENSHOTS);
+    QVERIFY(!frames || screen->grab().save(EVICAL_SCREENSHOTS "/trajectory_kinds.png"));
+  }
+  QVERIFY2(scene[0] < 5 && scene[1] > 50, qPrintable(QString("%1 and %2").arg(scene[0]).arg(scene[1])));
+  QVERIFY2(corner[0] == 0 && corner[1] > 50, qPrintable(QString("%1 and %2").arg(corner[0]).arg(corner[1])));
 }
 
 void TestTrajectoryScreen::theme_changesThePicture() {

@@ -31,6 +31,21 @@ void paintCursor(QPainter& painter, const QPointF& at) {
   painter.drawEllipse(at, kCursor_px, kCursor_px);
 }
 
+// Top left, one below the other.
+void paintLegend(QPainter& painter, const std::vector<LegendEntry>& legend) {
+  const QFontMetricsF metrics(painter.font());
+  constexpr double kSwatch_px = 10.0, kGap_px = 6.0;
+  double y = kMargin_px;
+  for (const LegendEntry& entry : legend) {
+    const QRectF line(kMargin_px, y, kSwatch_px, metrics.height());
+    painter.fillRect(QRectF(line.left(), line.center().y() - 0.5 * kSwatch_px, kSwatch_px, kSwatch_px),
+                     entry.colour);
+    const double width = metrics.horizontalAdvance(entry.text);
+    paintLabel(painter, {line.right() + kGap_px + 0.5 * width, line.center().y()}, entry.text, theme().text);
+    y += 1.3 * metrics.height();
+  }
+}
+
 void paintMessage(QPainter& painter, const TrajectoryOverlay& overlay) {
   const QFontMetricsF metrics(painter.font());
   QRectF box = metrics.boundingRect(QRectF(0.0, 0.0, 0.8 * overlay.screen.width(), overlay.screen.height()),
@@ -64,6 +79,7 @@ void paintOverlay(QPainter& painter, const TrajectoryOverlay& overlay) {
         QRectF(overlay.screen.width() - kBarWidth_px - kMargin_px, kMargin_px, kBarWidth_px, kBarHeight_px),
         *overlay.scale);
   }
+  paintLegend(painter, overlay.legend);
   const QRectF all(QPointF(), overlay.screen);
   painter.setPen(theme().faint_text);
   painter.drawText(all.adjusted(kMargin_px, kMargin_px, -kMargin_px, -kMargin_px),

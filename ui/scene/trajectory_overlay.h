@@ -15,6 +15,7 @@ struct TrajectoryOverlay {
   ViewPose pose;
   QSizeF screen;
   std::vector<SceneLabel> labels;
+  std::vector<LegendEntry> legend;
   std::optional<Eigen::Vector3d> cursor_m;
   std::optional<ColourScale> scale;
   QString hint;     // small, in the corner

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace evical::ui {
 namespace {
@@ -84,6 +85,18 @@ class Box {
   Vector3d least_ = Vector3d::Zero(), most_ = Vector3d::Zero();
 };
 
+// Against that of events.
+double lengthOf(CameraKind kind) {
+  constexpr double kShorter = 0.75;
+  return kind == CameraKind::Events ? 1.0 : kind == CameraKind::Frames ? kShorter : kShorter * kShorter;
+}
+
+QColor faint(const QColor& colour) {
+  const QColor behind = theme().panel;
+  return {(colour.red() + behind.red()) / 2, (colour.green() + behind.green()) / 2,
+          (colour.blue() + behind.blue()) / 2};
+}
+
 }  // namespace
 
 struct TrajectoryScene::Private {
@@ -105,6 +118,7 @@ struct TrajectoryScene::Private {
 
   std::optional<Board> board_data;
   std::vector<CameraShape> cameras;
+  std::vector<CameraKind> kinds;
   std::shared_ptr<const TrajectoryTrack> track_data = std::make_shared<TrajectoryTrack>();
   std::optional<Vector3d> gravity_m_s2;
   std::vector<RigidTransform> raw, current_cameras, current_imus;
@@ -146,6 +160,12 @@ struct TrajectoryScene::Private {
     while (cameras.size() <= index) cameras.push_back(cameraShape(std::nullopt));
     return cameras[index];
   }
+  CameraKind kind(std::size_t camera) const {
+    return camera < kinds.size() ? kinds[camera] : CameraKind::Events;
+  }
+  bool hasSeveralKinds() const {
+    return std::any_of(kinds.begin(), kinds.end(), [&](CameraKind k) { return k != kinds.front(); });
+  }
   double unit_m() const {
     if (!board_data) return 0.6;
     const auto [first, last] = paperCorners_m(*board_data);
@@ -177,6 +197,18 @@ struct TrajectoryScene::Private {
   Vector3d arrowEnd() const { return arrowStart() - kArrow * unit_m() * up(); }
 };
 
+QColor cameraColour(CameraKind kind) {
+  switch (kind) {
+    case CameraKind::Events:
+      break;
+    case CameraKind::Frames:
+      return theme().good;
+    case CameraKind::Points:
+      return theme().dark ? QColor(0xc7, 0x92, 0xea) : QColor(0x8e, 0x3f, 0xb5);
+  }
+  return theme().accent;
+}
+
 TrajectoryScene::TrajectoryScene(vtkRenderer* renderer) : d_(std::make_unique<Private>(renderer)) {
   buildSurroundings();
 }
@@ -191,6 +223,12 @@ void TrajectoryScene::setBoard(const std::optional<Board>& board) {
 void TrajectoryScene::setIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& cameras) {
   d_->cameras.clear();
   for (const auto& intrinsics : cameras) d_->cameras.push_back(cameraShape(intrinsics));
+  buildStations();
+  buildInstant();
+}
+
+void TrajectoryScene::setCameraKinds(const std::vector<CameraKind>& kinds) {
+  d_->kinds = kinds;
   buildStations();
   buildInstant();
 }
@@ -252,6 +290,19 @@ std::optional<ColourScale> TrajectoryScene::colourScale() const {
   const bool speed = d_->colour == TrajectoryColour::Speed;
   return ColourScale{speed ? QStringLiteral("speed [m/s]") : QStringLiteral("residual [px]"),
                      scaleEnd(d_->colouredValues()), theme().dark};
+}
+
+std::vector<LegendEntry> TrajectoryScene::legend() const {
+  std::vector<LegendEntry> entries;
+  if (!d_->hasSeveralKinds() || empty()) return entries;
+  constexpr std::array kWords = {std::pair(CameraKind::Events, "event camera"),
+                                 std::pair(CameraKind::Frames, "frame camera"),
+                                 std::pair(CameraKind::Points, "camera of given points")};
+  for (const auto& [kind, words] : kWords) {
+    if (std::find(d_->kinds.begin(), d_->kinds.end(), kind) != d_->kinds.end())
+      entries.push_back({QString::fromUtf8(words), cameraColour(kind)});
+  }
+  return entries;
 }
 
 std::vector<SceneLabel> TrajectoryScene::labels() const {
@@ -317,10 +368,12 @@ void TrajectoryScene::buildTrack() {
 
 void TrajectoryScene::buildStations() {
   ShapeBuilder shapes;
-  shapes.setColour(theme().faint_text);
   for (const CameraStation& station : d_->track_data->stations) {
     for (std::size_t k = 0; k < station.world_from_cameras.size(); ++k) {
-      addFrustum(shapes, d_->camera(k), station.world_from_cameras[k], kStationDepth * d_->unit_m());
+      const CameraKind kind = d_->kind(k);
+      shapes.setColour(d_->hasSeveralKinds() ? faint(cameraColour(kind)) : theme().faint_text);
+      addFrustum(shapes, d_->camera(k), station.world_from_cameras[k],
+                 lengthOf(kind) * kStationDepth * d_->unit_m());
     }
   }
   d_->stations.show(shapes);
@@ -335,10 +388,11 @@ void TrajectoryScene::buildRawPoses() {
 
 void TrajectoryScene::buildInstant() {
   ShapeBuilder frusta, planes, axes;
-  frusta.setColour(theme().accent);
-  planes.setColour(theme().accent);
-  const double depth_m = kCurrentDepth * d_->unit_m();
   for (std::size_t k = 0; k < d_->current_cameras.size(); ++k) {
+    const CameraKind kind = d_->kind(k);
+    const double depth_m = lengthOf(kind) * kCurrentDepth * d_->unit_m();
+    frusta.setColour(cameraColour(kind));
+    planes.setColour(cameraColour(kind));
     addFrustum(frusta, d_->camera(k), d_->current_cameras[k], depth_m);
     addImagePlane(planes, d_->camera(k), d_->current_cameras[k], depth_m);
   }

@@ -2,6 +2,7 @@
 // Board, trajectory, cameras, IMU, gravity and ground in a VTK renderer. GUI thread only; one scene a view.
 #pragma once
 
+#include "core/data/board_observations.h"
 #include "core/geometry/board.h"
 #include "core/geometry/camera_intrinsics.h"
 #include "ui/scene/colour_scale.h"
@@ -29,6 +30,13 @@ struct SceneLabel {
   QColor colour;
 };
 
+// What a colour stands for.
+struct LegendEntry {
+  QString text;
+  QColor colour;
+};
+QColor cameraColour(CameraKind kind);  // of the theme
+
 struct SceneExtent {
   Eigen::Vector3d up, front, centre_m;
   double radius_m = 0.0;
@@ -41,6 +49,9 @@ class TrajectoryScene {
 
   void setBoard(const std::optional<Board>& board);
   void setIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& cameras);
+  // By camera; those that are not told have events. Kinds differ in colour and in how long their frusta are, as the
+  // cameras of one sensor lie in each other.
+  void setCameraKinds(const std::vector<CameraKind>& kinds);
   void setTrack(std::shared_ptr<const TrajectoryTrack> track);
   void setGravity(const std::optional<Eigen::Vector3d>& gravity_in_world_m_s2);
   // Poses from single views, of cameras or already of the IMU.
@@ -57,7 +68,8 @@ class TrajectoryScene {
   // What the trajectory is coloured by; nothing without one.
   std::optional<ColourScale> colourScale() const;
   std::vector<SceneLabel> labels() const;
-  bool empty() const;  // neither board nor poses
+  std::vector<LegendEntry> legend() const;  // of the kinds of cameras, where there are several
+  bool empty() const;                       // neither board nor poses
   SceneExtent extent() const;
   double gridSpacing_m() const;
 

@@ -167,6 +167,7 @@ void TrajectoryScreen::clear() {
   d_->board.reset();
   d_->scene.setBoard(std::nullopt);
   setIntrinsics({});
+  d_->scene.setCameraKinds({});
   d_->pose_inputs.clear();
   d_->placed = false;
   d_->showTrack({nullptr, std::make_shared<TrajectoryTrack>()});
@@ -203,6 +204,9 @@ void TrajectoryScreen::setRun(std::shared_ptr<const CalibrationRun> run, const S
   std::vector<std::optional<CameraIntrinsics>> intrinsics;
   for (const CameraState& camera : run->result.state.cameras) intrinsics.push_back(camera.lens.inUse());
   setIntrinsics(intrinsics);
+  std::vector<CameraKind> kinds;
+  for (const BoardObservations& camera : run->pass.cameras) kinds.push_back(camera.kind);
+  d_->scene.setCameraKinds(kinds);
   d_->placed = false;
   d_->pose_inputs.clear();
   d_->sample(std::shared_ptr<const CalibrationState>(run, &run->result.state), run);
@@ -364,6 +368,7 @@ void TrajectoryScreen::Private::paint(QPainter& painter) const {
   overlay.pose = view->viewPose();
   overlay.screen = view->size();
   overlay.labels = scene.labels();
+  overlay.legend = scene.legend();
   if (instant) overlay.cursor_m = instant->imu.world_from_imu.translation_m;
   if (scene.isVisible(SceneLayer::Trajectory)) overlay.scale = scene.colourScale();
   overlay.message = message();
