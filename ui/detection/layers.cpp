@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -171,11 +172,17 @@ void paintCentres(QPainter& painter, double scale, const WindowAnalysis& analysi
   }
 }
 
-// Half of the points have no neighbour in the chain that is nearer than this, in the widget's pixels.
-double usualStep_px(const QPolygonF& chain) {
-  std::vector<double> steps_px;
-  for (qsizetype k = 1; k < chain.size(); ++k) steps_px.push_back(QLineF(chain[k - 1], chain[k]).length());
-  return medianOf(std::move(steps_px));
+// From a point to the nearest other one, as the median of some fifty.
+double usualGap(const QPolygonF& points) {
+  std::vector<double> gaps;
+  const qsizetype step = std::max<qsizetype>(1, points.size() / 50);
+  for (qsizetype k = 0; k < points.size(); k += step) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (qsizetype other = 0; other < points.size(); ++other)
+      if (other != k) nearest = std::min(nearest, QLineF(points[k], points[other]).length());
+    gaps.push_back(nearest);
+  }
+  return medianOf(std::move(gaps));
 }
 
 // Along the rows from the first point to the last, as calibrators are used to, and each one's number where there is
@@ -191,8 +198,8 @@ void paintGrid(QPainter& painter, double scale, const WindowAnalysis& analysis) 
     if (follows) painter.drawLine(chain.last(), at);
     chain << at;
   }
-  constexpr double kRoomForNumber_px = 16.0;
-  if (scale * usualStep_px(chain) < kRoomForNumber_px) return;
+  constexpr double kRoomForNumber_px = 24.0;  // of the widget
+  if (scale * usualGap(chain) < kRoomForNumber_px) return;
   painter.save();
   const QTransform to_widget = painter.transform();
   painter.resetTransform();
