@@ -3,7 +3,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/new_folder.h"
-#include "core/frames/png_file.h"
+#include "core/frames/picture_file.h"
 #include "core/pipeline/simulated_cameras.h"
 #include "core/recording/recording_reader.h"
 #include "core/recording/recording_writer.h"
@@ -107,10 +107,13 @@ void writeFrames(const Scenario& scenario, const std::filesystem::path& folder, 
     if (!scenario.cameras[k].frames) continue;
     const std::filesystem::path own = folder / kFramesFolder / scenario.cameras[k].stream;
     std::filesystem::create_directories(own);
+    const int quality = scenario.cameras[k].frames->jpeg_quality;
     simulateFrames(
         scenario, k,
         [&](const Frame& frame) {
-          writePicture(own / fmt::format("{}.png", frame.time_ns), encodedPng(frame));
+          const bool lossless = quality == 0;
+          writePicture(own / fmt::format("{}.{}", frame.time_ns, lossless ? "png" : "jpg"),
+                       lossless ? encodedPng(frame) : encodedJpeg(frame, quality));
           ++summary.frames;
         },
         context);

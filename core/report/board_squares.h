@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/geometry/board.h"
+#include "core/geometry/marker_bits.h"
 
 #include <string>
 #include <vector>
@@ -10,12 +11,9 @@ namespace evical {
 
 // What a board's numbers leave open.
 struct TagPrint {
-  int border_bits = 2;          // of an AprilGrid's tags: Kalibr's 2, or 1
-  std::string markers = "5x5";  // of a ChArUco board: ArUco's dictionary by its bits
+  int border_bits = 2;                  // of an AprilGrid's tags: Kalibr's 2, or 1
+  std::string markers = kUsualMarkers;  // of a ChArUco board: ArUco's dictionary by its bits
 };
-
-// Names of dictionaries.
-const std::vector<std::string>& markerNames();
 
 struct PaintedBox {
   Eigen::Vector2d corner_m = Eigen::Vector2d::Zero(),

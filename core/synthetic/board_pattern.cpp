@@ -21,6 +21,7 @@ BoardPattern::BoardPattern(const Board& board)
   low_m_ = Eigen::Vector2f::Constant(-beyond_m);
   high_m_ = extent + Eigen::Vector2f::Constant(beyond_m);
   if (board.type == BoardType::AprilGrid) tags_ = firstTags(board.rows * board.cols);
+  if (board.type == BoardType::Charuco) markers_ = firstMarkers(kUsualMarkers, board.rows * board.cols / 2);
 }
 
 bool BoardPattern::isInk(const Eigen::Vector2f& p) const {
@@ -30,6 +31,8 @@ bool BoardPattern::isInk(const Eigen::Vector2f& p) const {
       return inDarkSquare(p);
     case BoardType::AprilGrid:
       return inTag(p);
+    case BoardType::Charuco:
+      return inDarkSquare(p) || inMarker(p);
     default:
       return inCircle(p);
   }
@@ -53,6 +56,27 @@ bool BoardPattern::inDarkSquare(const Eigen::Vector2f& p) const {
   const auto row = static_cast<int>(std::floor(p.y() / spacing_m_)),
              col = static_cast<int>(std::floor(p.x() / spacing_m_));
   return (row + col) % 2 == 0;
+}
+
+// In a bright square; they are numbered row by row, and the first square of all is dark.
+bool BoardPattern::inMarker(const Eigen::Vector2f& p) const {
+  const auto row = static_cast<int>(std::floor(p.y() / spacing_m_)) + 1,
+             col = static_cast<int>(std::floor(p.x() / spacing_m_)) + 1;
+  const auto number = static_cast<std::size_t>((row * board_.cols + col) / 2);
+  if (row < 0 || col < 0 || row >= board_.rows || col >= board_.cols || number >= markers_.size())
+    return false;
+  const PatternBits& bits = markers_[number];
+  const Eigen::Vector2f corner_m =
+      spacing_m_ * Eigen::Vector2f(static_cast<float>(col - 1), static_cast<float>(row - 1));
+  const Eigen::Array2f place = (p - corner_m).array() - 0.5f * (spacing_m_ - tag_m_);
+  if ((place < 0.0f).any() || (place >= tag_m_).any()) return false;
+  const auto size = static_cast<int>(bits.size());
+  const auto at = [&](float along_m) {
+    return static_cast<int>(along_m / tag_m_ * static_cast<float>(size + 2)) - 1;
+  };
+  const int x = at(place.x()), y = at(place.y());
+  if (x < 0 || y < 0 || x >= size || y >= size) return true;  // its border
+  return !bits[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)];
 }
 
 bool BoardPattern::inTag(const Eigen::Vector2f& p) const {

@@ -1,8 +1,9 @@
 // Where a board is printed and where it is paper: circles, squares, or tags as Kalibr's AprilGrid has them, with a
-// border of two modules and a small black square at every corner between tags.
+// border of two modules and a small black square at every corner between tags, or ChArUco boards with usual markers.
 #pragma once
 
 #include "core/geometry/board.h"
+#include "core/geometry/marker_bits.h"
 #include "core/geometry/tag_bits.h"
 
 #include <Eigen/Core>
@@ -13,7 +14,6 @@ namespace evical {
 
 class BoardPattern {
  public:
-  // Of all types but ChArUco, which none of the simulator's scenarios has.
   explicit BoardPattern(const Board& board);
 
   // Whether there is ink, at metres on the board; paper beyond its edge.
@@ -27,11 +27,13 @@ class BoardPattern {
   bool inCircle(const Eigen::Vector2f& p) const;
   bool inDarkSquare(const Eigen::Vector2f& p) const;
   bool inTag(const Eigen::Vector2f& p) const;
+  bool inMarker(const Eigen::Vector2f& p) const;
 
   Board board_;
   float spacing_m_, radius_m_, tag_m_;
   Eigen::Vector2f low_m_, high_m_;
   std::vector<TagBits> tags_;
+  std::vector<PatternBits> markers_;
 };
 
 }  // namespace evical

@@ -17,7 +17,7 @@ namespace {
 
 // Where the camera's stamps of `stamp_s` look in the reference IMU's time.
 double worldTime_s(const SimulatedCamera& camera, double stamp_s) {
-  return stamp_s + camera.time_offset_s - camera.pixel.delay_s();
+  return stamp_s + camera.time_offset_s - camera.delay_s();
 }
 
 // Of a plane z = height + slope . (x, y).

@@ -56,6 +56,7 @@ struct FrameModel {
   double line_delay_us = 0.0;  // of a rolling shutter, from row to row
   double noise = 1.5;          // sigma, of 255
   double blur_px = 0.6;        // sigma of the optics' point spread; the pixel's area comes on top
+  int jpeg_quality = 0;        // 1 to 100; 0: pictures are PNG, without loss
 
   bool operator==(const FrameModel&) const = default;
 };

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <set>
-#include <span>
 
 namespace evical {
 namespace {
@@ -13,8 +12,7 @@ namespace {
 constexpr double kLargestBow_m = 0.1;
 
 void readMeasures(const YamlNode& map, Board& board) {
-  constexpr std::span kSimulatedTypes = std::span(kBoardTypeNames).first<4>();  // all but ChArUco
-  if (const auto node = map.find("type")) board.type = static_cast<BoardType>(node->choice(kSimulatedTypes));
+  if (const auto node = map.find("type")) board.type = static_cast<BoardType>(node->choice(kBoardTypeNames));
   get(map, "circles", board.circles, {"dark", "bright"});
   get(map, "rows", board.rows, 1, 100);
   get(map, "cols", board.cols, 1, 100);

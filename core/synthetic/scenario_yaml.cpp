@@ -196,12 +196,13 @@ void readPixel(const YamlNode& map, EventPixelModel& pixel) {
 }
 
 void readFrames(const YamlNode& map, FrameModel& frames) {
-  map.allowOnly({"rate_hz", "exposure_s", "line_delay_us", "noise", "blur_px"});
+  map.allowOnly({"rate_hz", "exposure_s", "line_delay_us", "noise", "blur_px", "jpeg_quality"});
   get(map, "rate_hz", frames.rate_hz, 0.1, 1000.0, "Hz");
   get(map, "exposure_s", frames.exposure_s, 0.0, 1.0, "s");
   get(map, "line_delay_us", frames.line_delay_us, -1000.0, 1000.0, "us");
   get(map, "noise", frames.noise, 0.0, 255.0, "");
   get(map, "blur_px", frames.blur_px, 0.05, 20.0, "px");
+  get(map, "jpeg_quality", frames.jpeg_quality, 0, 100);
 }
 
 void readCamera(const YamlNode& map, SimulatedCamera& camera) {

@@ -112,8 +112,11 @@ SceneLight::Place SceneLight::placeOn(const Eigen::Matrix3f& plane_from_ray, std
   return place;
 }
 
+// It ends so far from the outer circles' centres, or from the ink of other boards.
 bool SceneLight::onSheet(const Eigen::Vector2f& p) const {
-  const auto margin = static_cast<float>(scenario_.scene.margin_m);
+  const Board& board = scenario_.board;
+  const auto margin =
+      static_cast<float>(scenario_.scene.margin_m - (board.hasCircles() ? board.printBeyond_m() : 0.0));
   return (p.array() > pattern_.low_m().array() - margin).all() &&
          (p.array() < pattern_.high_m().array() + margin).all();
 }

@@ -4,7 +4,9 @@
 #include "core/pipeline/intrinsics_calibration.h"
 #include "core/pipeline/session.h"
 #include "core/pipeline/simulation.h"
+#include "core/synthetic/board_truth.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "core/synthetic/sinusoid_motion.h"
 
 #include "core/geometry/projection_difference.h"
 #include "core/geometry/so3.h"
@@ -46,6 +48,43 @@ class TestSimulatedFrames : public QObject {
     folder_ = std::make_unique<QTemporaryDir>();
     scenario_ = rollingShutter();
     simulate(scenario_, path(), RunContext{});
+  }
+
+  // Corners lie where the simulator's motion puts them.
+  void charucoInJpegs_isFound() {
+    Scenario scenario = scenario_;
+    scenario.duration_s = 2.0;
+    scenario.board = {};
+    scenario.board.type = BoardType::Charuco;
+    scenario.board.rows = 7;
+    scenario.board.cols = 10;
+    scenario.board.spacing_m = 0.07;
+    scenario.board.tag_size_m = 0.052;
+    scenario.board.radius_m = 0.0;
+    scenario.cameras.front().frames->line_delay_us = 0.0;
+    scenario.cameras.front().frames->jpeg_quality = 85;
+    const QTemporaryDir folder;
+    const SimulationSummary made = simulate(scenario, folder.path().toStdString(), RunContext{});
+    const Session charuco = readSession(made.session);
+    const RecordingPass pass = readAndDetect(charuco, givenLenses(charuco), RunContext{});
+    const BoardObservations& seen = pass.cameras.front();
+    QVERIFY2(seen.views.size() >= 18, text(static_cast<double>(seen.views.size())));
+    const SinusoidMotion motion(scenario);
+    double squares_px2 = 0.0;
+    int corners = 0;
+    for (const BoardView& view : seen.views) {
+      const std::vector<TrueCircle> truth = trueBoardView(motion, scenario, 0, view.time_s);
+      for (const CircleObservation& corner : view.circles) {
+        const auto is = std::find_if(truth.begin(), truth.end(),
+                                     [&](const TrueCircle& each) { return each.circle == corner.circle; });
+        QVERIFY(is != truth.end());
+        squares_px2 += (corner.centre_px - is->centre_px).squaredNorm();
+        ++corners;
+      }
+    }
+    QVERIFY2(corners > 600, text(corners));
+    const double rms_px = std::sqrt(squares_px2 / corners);
+    QVERIFY2(rms_px < 0.15, text(rms_px));
   }
 
   void rollingShutter_isCalibratedWithinItsSigmas() {

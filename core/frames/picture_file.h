@@ -1,4 +1,4 @@
-// A frame as the bytes of a PNG file.
+// A frame as the bytes of a picture's file.
 #pragma once
 
 #include "core/data/frame.h"
@@ -9,5 +9,8 @@ namespace evical {
 
 // Of Gray8 frames. Compressed quickly rather than well.
 std::string encodedPng(const Frame& frame);
+
+// With loss; quality 1 to 100.
+std::string encodedJpeg(const Frame& frame, int quality);
 
 }  // namespace evical

@@ -1,0 +1,19 @@
+// The markers of ChArUco boards: ArUco's dictionaries.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace evical {
+
+// Of a square of bits, row by row from the top left, without the border: which are bright.
+using PatternBits = std::vector<std::vector<bool>>;
+
+inline constexpr const char* kUsualMarkers = "5x5";
+const std::vector<std::string>& markerNames();  // of dictionaries
+
+// The first `count` markers by number. Throws CalibrationError (BadInput) where there is no such dictionary, or it has
+// fewer.
+std::vector<PatternBits> firstMarkers(const std::string& dictionary, int count);
+
+}  // namespace evical
