@@ -48,6 +48,12 @@ struct FurtherBoard {
   std::optional<double> spacing_std = {};  // relative; absent: as well known as the world's
 };
 
+// The board that a camera sees: its index as in CalibrationState::boardAt.
+struct SeenBoard {
+  Board board;
+  std::size_t index = 0;
+};
+
 struct CameraData {
   std::string name;
   CameraLens lens;

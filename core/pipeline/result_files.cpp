@@ -22,8 +22,7 @@ namespace {
 
 std::vector<SeenBoard> seenBoards(const Session& session) {
   std::vector<SeenBoard> boards;
-  for (std::size_t k = 0; k < session.cameras.size(); ++k)
-    boards.push_back({session.boardOf(k), session.boardIndexOf(k)});
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) boards.push_back(session.seenBoard(k));
   return boards;
 }
 

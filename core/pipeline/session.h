@@ -64,6 +64,7 @@ struct Session {
   const SessionCamera& sensor(std::size_t camera) const { return cameras[sensorOf(camera)]; }
   std::size_t boardIndexOf(std::size_t camera) const;  // 0: the first
   const Board& boardOf(std::size_t camera) const;
+  SeenBoard seenBoard(std::size_t camera) const { return {boardOf(camera), boardIndexOf(camera)}; }
   std::size_t worldCamera() const {
     return referenceCamera();
   }                                     // the first one, where the reference is an IMU

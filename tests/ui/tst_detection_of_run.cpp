@@ -114,10 +114,10 @@ class TestDetectionOfRun : public QObject {
   void reprojection_isWhereTheCameraSeesTheBoard() {
     const CameraIntrinsics& camera = *recorded_->session.cameras.front().intrinsics;
     const CalibrationState state = restingState(camera);
-    const auto outlines = reprojectBoard(state, 0, recorded_->session.board, 1.0);
+    const auto outlines = reprojectBoard(state, 0, {recorded_->session.board}, 1.0);
     QCOMPARE(outlines.size(), static_cast<std::size_t>(recorded_->session.board.pointCount()));
     QVERIFY(distanceFrom_px(outlines.front(), *project(camera, kFirstCircle)) < 0.5);
-    QVERIFY(reprojectBoard(state, 0, recorded_->session.board, 5.0).empty());
+    QVERIFY(reprojectBoard(state, 0, {recorded_->session.board}, 5.0).empty());
   }
 
   void reprojection_isThroughTheLensThatWasSolvedFor() {
@@ -126,7 +126,7 @@ class TestDetectionOfRun : public QObject {
     CameraIntrinsics solved = given;
     solved.focal_length_px *= 1.05;
     state.cameras[0].lens.solved = solved;
-    const auto outlines = reprojectBoard(state, 0, recorded_->session.board, 1.0);
+    const auto outlines = reprojectBoard(state, 0, {recorded_->session.board}, 1.0);
     QVERIFY(distanceFrom_px(outlines.front(), *project(solved, kFirstCircle)) < 0.5);
     QVERIFY(distanceFrom_px(outlines.front(), *project(given, kFirstCircle)) > 2.0);
   }
@@ -143,8 +143,8 @@ class TestDetectionOfRun : public QObject {
     moving.velocity_px_s = {100.0, 0.0};
     moving.edge_lead_effect = {1.0, 0.0};
     view.circles = {moving};
-    const auto at_rest = reprojectBoard(state, 0, session.board, 1.0);
-    const auto leading = reprojectBoard(state, 0, session.board, 1.0, view, 0.0);
+    const auto at_rest = reprojectBoard(state, 0, {session.board}, 1.0);
+    const auto leading = reprojectBoard(state, 0, {session.board}, 1.0, view, 0.0);
     QCOMPARE(leading.size(), at_rest.size());
     const QPointF shift = leading[0].boundingRect().center() - at_rest[0].boundingRect().center();
     QVERIFY2(shift.x() > 0.4 && shift.x() < 0.9 && std::abs(shift.y()) < 0.2,

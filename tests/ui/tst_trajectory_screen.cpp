@@ -59,7 +59,7 @@ void TestTrajectoryScreen::board_isWhereItsCirclesAre() {
   if (!has_opengl_) QSKIP("no OpenGL here");
   TrajectoryScreen screen;
   screen.resize(1000, 650);
-  screen.setBoard(example_.session.board);
+  screen.setBoards(example_.session);
   screen.setLayerVisible(SceneLayer::Axes, false);
   screen.grab();
   screen.view()->look(StandardView::Front);

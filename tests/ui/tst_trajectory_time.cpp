@@ -65,7 +65,7 @@ void TestTrajectoryTime::rawPoses_growWithTheDetections() {
   if (!has_opengl_) QSKIP("no OpenGL here");
   TrajectoryScreen screen;
   screen.resize(1000, 650);
-  screen.setBoard(example_.session.board);
+  screen.setBoards(example_.session);
   QImage before = picture(screen.view());
   for (const std::size_t views : {20U, 60U, 120U}) {
     auto some = std::make_shared<BoardObservations>(example_.run->pass.cameras.front());
@@ -143,7 +143,10 @@ void TestTrajectoryTime::halfMinute_drawsFast() {
   screen.view()->setParent(nullptr);
   view.reset(screen.view());
   view->resize(1000, 700);
-  screen.setState(truthOf(rig), rig.input.board);
+  Session session;
+  session.board = rig.input.board;
+  screen.setBoards(session);
+  screen.setState(truthOf(rig));
   screen.setDetections(std::make_shared<BoardObservations>(rig.input.cameras.front().observations),
                        *rig.input.cameras.front().lens.given);
   QVERIFY(QTest::qWaitFor([&] { return !screen.busy(); }, kWorkPatience_ms));
@@ -170,7 +173,8 @@ void TestTrajectoryTime::halfMinute_drawsFast() {
 void TestTrajectoryTime::liveStates_keepTheView() {
   TrajectoryScreen screen;
   screen.resize(1000, 650);
-  screen.setState(truthOf(example_.rig), example_.session.board);
+  screen.setBoards(example_.session);
+  screen.setState(truthOf(example_.rig));
   QVERIFY(QTest::qWaitFor([&] { return !screen.busy(); }, kWorkPatience_ms));
   screen.grab();
   QTest::keyClick(screen.view(), Qt::Key_Left);
@@ -178,7 +182,7 @@ void TestTrajectoryTime::liveStates_keepTheView() {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const auto state =
         std::make_shared<const CalibrationState>(evical::test::disturbed(example_.rig.truth, seed, 0.0));
-    screen.setState(state, example_.session.board);
+    screen.setState(state);
     QVERIFY(QTest::qWaitFor([&] { return !screen.busy(); }, kWorkPatience_ms));
     screen.grab();
     const Vector3d eye_now = screen.view()->viewPose().eye_m;

@@ -122,9 +122,9 @@ const CalibrationRun* DetectionScreen::runInView() const {
 // Of a run, its own: what it saw fits no other board and no other lens.
 Sight DetectionScreen::sight() const {
   if (const CalibrationRun* const run = runInView())
-    return {run_session_.board, run->pass.lenses.at(camera_).seen_with};
+    return {run_session_.boardOf(camera_), run->pass.lenses.at(camera_).seen_with};
   if (!session_ || camera_ >= session_->cameras.size()) return {};
-  return {session_->board, session_->sensor(camera_).intrinsics};
+  return {session_->boardOf(camera_), session_->sensor(camera_).intrinsics};
 }
 
 void DetectionScreen::showRun() {

@@ -57,6 +57,8 @@ QString DetectionScreen::whyNoOverlay() const {
   if (!run) return tr("Calibrate first: the result tells where the frame camera sees what events saw");
   if (!EventsOverFrame::isPossible(run->result.state, *companion_, camera_))
     return tr("The last run has no lens of one of the two cameras, or no trajectory");
+  if (run_session_.boardIndexOf(camera_) + run_session_.boardIndexOf(*companion_) > 0)
+    return tr("Both cameras must see one board, whose frame is the world");
   return {};
 }
 
@@ -103,7 +105,7 @@ QString DetectionScreen::captionOf(const SurfaceFrame& frame) {
 std::vector<QPolygonF> DetectionScreen::reprojectionInto(std::size_t camera, double time_s) const {
   const CalibrationRun* const run = runInView();
   if (!run || !shown(Layer::Reprojection)) return {};
-  return reprojectBoard(run->result.state, camera, run_session_.board, time_s,
+  return reprojectBoard(run->result.state, camera, run_session_.seenBoard(camera), time_s,
                         viewAt(run->pass.cameras, camera, time_s),
                         run_session_.options.optimisation.slow_edge_speed_px_s);
 }

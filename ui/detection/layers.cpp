@@ -235,11 +235,12 @@ std::optional<QPolygonF> imageOf(int circle, const RigidTransform& camera_from_w
 
 // When the rows that show it were exposed, of a sensor whose middle row was at this time.
 std::optional<QPolygonF> imageInRows(int circle, const CalibrationState& state, const CameraState& camera,
-                                     const Board& board, double time_s) {
+                                     const SeenBoard& seen, double time_s) {
   const CameraIntrinsics& lens = *camera.lens.inUse();
   const auto imageAt = [&](double at_s) -> std::optional<QPolygonF> {
     const auto camera_from_world = cameraFromWorldAt(state, camera, at_s);
-    return camera_from_world ? imageOf(circle, *camera_from_world, lens, board) : std::nullopt;
+    if (!camera_from_world) return std::nullopt;
+    return imageOf(circle, *camera_from_world * state.boardAt(seen.index).world_from_board, lens, seen.board);
   };
   const auto outline = imageAt(time_s);
   if (!outline || camera.line_delay_us == 0.0) return outline;
@@ -345,23 +346,24 @@ bool isOfFrames(Layer layer) {
          layer == Layer::Reprojection;
 }
 
-std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera, const Board& board,
-                                      double time_s) {
-  return reprojectBoard(state, camera, board, time_s, BoardView{}, 0.0);
+std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera,
+                                      const SeenBoard& seen, double time_s) {
+  return reprojectBoard(state, camera, seen, time_s, BoardView{}, 0.0);
 }
 
-std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera, const Board& board,
-                                      double time_s, const BoardView& view, double slow_edge_speed_px_s) {
+std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera,
+                                      const SeenBoard& seen, double time_s, const BoardView& view,
+                                      double slow_edge_speed_px_s) {
   std::vector<QPolygonF> outlines;
-  if (camera >= state.cameras.size()) return outlines;
+  if (camera >= state.cameras.size() || seen.index > state.further_boards.size()) return outlines;
   const CameraState& own = state.cameras[camera];
   if (!own.lens.seen_with) return outlines;
   const double late_s =
       view.circles.empty() ? 0.0 : own.exposure_share * view.circles.front().longer_exposed_s;
   const std::map<int, Eigen::Vector2d> leads =
       idealLeads(own, *own.lens.seen_with, view, slow_edge_speed_px_s);
-  for (int circle = 0; circle < board.pointCount(); ++circle) {
-    const auto outline = imageInRows(circle, state, own, board, time_s + late_s);
+  for (int circle = 0; circle < seen.board.pointCount(); ++circle) {
+    const auto outline = imageInRows(circle, state, own, seen, time_s + late_s);
     const auto lead = leads.find(circle);
     if (outline)
       outlines.push_back(lead == leads.end() ? *outline : moved(*outline, lead->second, *own.lens.seen_with));

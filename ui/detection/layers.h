@@ -3,8 +3,8 @@
 #pragma once
 
 #include "core/data/board_observations.h"
+#include "core/data/calibration_setup.h"
 #include "core/data/calibration_state.h"
-#include "core/geometry/board.h"
 
 #include <QColor>
 #include <QPolygonF>
@@ -36,12 +36,13 @@ bool isOfFrames(Layer layer);  // says something of frames, too, not only of eve
 
 // Outlines of the board's circles where a calibration's trajectory puts them, of corners a point each; empty outside
 // the trajectory.
-std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera, const Board& board,
-                                      double time_s);
+std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera,
+                                      const SeenBoard& seen, double time_s);
 // Where they are expected to be measured: ahead by the camera's edge lead, of which the view says which way, and of
 // frames when their rows were exposed.
-std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera, const Board& board,
-                                      double time_s, const BoardView& view, double slow_edge_speed_px_s);
+std::vector<QPolygonF> reprojectBoard(const CalibrationState& state, std::size_t camera,
+                                      const SeenBoard& seen, double time_s, const BoardView& view,
+                                      double slow_edge_speed_px_s);
 
 // `scale` is widget pixels per sensor pixel. The analysis may be null.
 void paintLayers(QPainter& painter, double scale, const LayerSet& visible, const WindowAnalysis* analysis,

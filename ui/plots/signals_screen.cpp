@@ -212,7 +212,7 @@ void SignalsScreen::compute() {
     const CameraLens& lens = run->pass.lenses.at(camera);
     if (lens.seen_with) {
       drawing->rates = rotationRates({session.cameras[camera].name, lens, run->pass.cameras[camera]},
-                                     session.board, state.cameras[camera], samples, state.imus[imu],
+                                     session.boardOf(camera), state.cameras[camera], samples, state.imus[imu],
                                      run->pass.start_ns, session.options.initialisation, context);
     }
     return [this, drawing] { draw(*drawing); };

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/scene/scene_shapes.h"
 
+#include "core/base/error.h"
+#include "core/report/board_squares.h"
+
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 
@@ -18,16 +21,36 @@ using Eigen::Vector3d;
 constexpr int kCircleCorners = 40;
 constexpr int kConeCorners = 16;
 
-Vector3d onBoard(double x_m, double y_m, double z_m = 0.0) {
-  return {x_m, y_m, z_m};
+using Corners = std::array<Vector3d, 4>;
+
+Corners rectangle(const Vector2d& first, const Vector2d& last, double z_m) {
+  return {Vector3d(first.x(), first.y(), z_m), Vector3d(last.x(), first.y(), z_m),
+          Vector3d(last.x(), last.y(), z_m), Vector3d(first.x(), last.y(), z_m)};
 }
 
-std::array<Vector3d, 4> paperAt(const Board& board, double z_m, double wider_m = 0.0) {
-  auto [first, last] = paperCorners_m(board);
-  first.array() -= wider_m;
-  last.array() += wider_m;
-  return {onBoard(first.x(), first.y(), z_m), onBoard(last.x(), first.y(), z_m),
-          onBoard(last.x(), last.y(), z_m), onBoard(first.x(), last.y(), z_m)};
+Corners paperAt(const Board& board, double z_m, double wider_m = 0.0) {
+  const auto [first, last] = paperCorners_m(board);
+  return rectangle(first.array() - wider_m, last.array() + wider_m, z_m);
+}
+
+// So that ink, paper and back are told apart in depth.
+double lift(const Board& board) {
+  constexpr double kOfRadius = 0.05, kOfSpacing = 0.0125;
+  return board.hasCircles() ? kOfRadius * board.radius_m : kOfSpacing * board.spacing_m;
+}
+
+// None of a board that nobody can print.
+std::vector<PaintedBox> squaresOf(const Board& board) {
+  try {
+    return boardSquares(board, {});
+  } catch (const CalibrationError&) {
+    return {};
+  }
+}
+
+Corners inWorld(const PlacedBoard& placed, Corners corners) {
+  for (Vector3d& corner : corners) corner = placed.world_from_board * corner;
+  return corners;
 }
 
 }  // namespace
@@ -83,31 +106,43 @@ std::array<Vector2d, 2> paperCorners_m(const Board& board) {
     least = least.cwiseMin(centre);
     most = most.cwiseMax(centre);
   }
-  const Vector2d margin = Vector2d::Constant(board.radius_m + 0.5 * board.spacing_m);
+  const Vector2d margin = Vector2d::Constant(board.printBeyond_m() + 0.5 * board.spacing_m);
   return {least - margin, most + margin};
 }
 
-void addBoard(ShapeBuilder& shapes, const Board& board, const BoardColours& colours) {
+void addBoard(ShapeBuilder& shapes, const PlacedBoard& placed, const BoardColours& colours) {
+  const Board& board = placed.board;
   const bool dark_circles = board.circles == CircleShade::Dark;
-  const double lift_m = 0.05 * board.radius_m;  // so that circles, paper and back are told apart in depth
-  shapes.setColour(dark_circles ? colours.paper : colours.ink);
-  shapes.polygon(paperAt(board, 0.0));
+  const QColor &paper = dark_circles ? colours.paper : colours.ink,
+               &ink = dark_circles ? colours.ink : colours.paper;
+  const double lift_m = lift(board);
+  shapes.setColour(paper);
+  shapes.polygon(inWorld(placed, paperAt(board, 0.0)));
   shapes.setColour(colours.back);
-  shapes.polygon(paperAt(board, lift_m));
-  shapes.setColour(dark_circles ? colours.ink : colours.paper);
+  shapes.polygon(inWorld(placed, paperAt(board, lift_m)));
+  // Tags are dark, and have bright bits on them.
+  for (const PaintedBox& box : squaresOf(board)) {
+    const Vector2d last = box.corner_m + box.size_m;
+    shapes.setColour(box.bright ? paper : ink);
+    shapes.polygon(inWorld(placed, rectangle(box.corner_m, last, box.bright ? -2.0 * lift_m : -lift_m)));
+  }
+  if (!board.hasCircles()) return;
+  shapes.setColour(ink);
   std::vector<Vector3d> rim(kCircleCorners);
   for (const Vector2d& centre : boardPoints_m(board)) {
     for (int k = 0; k < kCircleCorners; ++k) {
       const double angle = 2.0 * M_PI * k / kCircleCorners;
-      rim[static_cast<std::size_t>(k)] = onBoard(centre.x() + board.radius_m * std::cos(angle),
-                                                 centre.y() + board.radius_m * std::sin(angle), -lift_m);
+      rim[static_cast<std::size_t>(k)] =
+          placed.world_from_board * Vector3d(centre.x() + board.radius_m * std::cos(angle),
+                                             centre.y() + board.radius_m * std::sin(angle), -lift_m);
     }
     shapes.polygon(rim);
   }
 }
 
-void addBoardEdge(ShapeBuilder& shapes, const Board& board) {
-  const auto corners = paperAt(board, 0.0, 0.1 * board.radius_m);  // apart from the paper's own edge
+void addBoardEdge(ShapeBuilder& shapes, const PlacedBoard& placed) {
+  // Apart from the paper's own edge.
+  const auto corners = inWorld(placed, paperAt(placed.board, 0.0, 2.0 * lift(placed.board)));
   for (std::size_t k = 0; k < 4; ++k) shapes.line(corners[k], corners[(k + 1) % 4]);
 }
 

@@ -5,6 +5,7 @@
 #include "core/geometry/board.h"
 #include "core/geometry/rigid_transform.h"
 #include "ui/scene/camera_shape.h"
+#include "ui/scene/placed_board.h"
 
 #include <vtkCellArray.h>
 #include <vtkNew.h>
@@ -46,8 +47,9 @@ struct BoardColours {
 };
 // The paper's rectangle in the board frame: first and opposite corner.
 std::array<Eigen::Vector2d, 2> paperCorners_m(const Board& board);
-void addBoard(ShapeBuilder& shapes, const Board& board, const BoardColours& colours);
-void addBoardEdge(ShapeBuilder& shapes, const Board& board);
+
+void addBoard(ShapeBuilder& shapes, const PlacedBoard& placed, const BoardColours& colours);
+void addBoardEdge(ShapeBuilder& shapes, const PlacedBoard& placed);
 
 void addFrustum(ShapeBuilder& shapes, const CameraShape& camera, const RigidTransform& world_from_camera,
                 double depth_m);

@@ -117,6 +117,7 @@ struct TrajectoryScene::Private {
   }
 
   std::optional<Board> board_data;
+  std::vector<PlacedBoard> further_boards;
   std::vector<CameraShape> cameras;
   std::vector<CameraKind> kinds;
   std::shared_ptr<const TrajectoryTrack> track_data = std::make_shared<TrajectoryTrack>();
@@ -179,6 +180,9 @@ struct TrajectoryScene::Private {
     if (board_data) {
       for (const Eigen::Vector2d& c : paperCorners_m(*board_data)) points.emplace_back(c.x(), c.y(), 0.0);
     }
+    for (const PlacedBoard& placed : further_boards)
+      for (const Eigen::Vector2d& c : paperCorners_m(placed.board))
+        points.push_back(placed.world_from_board * Vector3d(c.x(), c.y(), 0.0));
     for (const RigidTransform& pose : raw) points.push_back(pose.translation_m);
     return points;
   }
@@ -218,6 +222,11 @@ TrajectoryScene::~TrajectoryScene() = default;
 void TrajectoryScene::setBoard(const std::optional<Board>& board) {
   d_->board_data = board;
   applyTheme();
+}
+
+void TrajectoryScene::setFurtherBoards(std::vector<PlacedBoard> boards) {
+  d_->further_boards = std::move(boards);
+  buildBoard();
 }
 
 void TrajectoryScene::setIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& cameras) {
@@ -348,9 +357,13 @@ double TrajectoryScene::gridSpacing_m() const {
 void TrajectoryScene::buildBoard() {
   ShapeBuilder sheet, edge;
   if (d_->board_data) {
-    addBoard(sheet, *d_->board_data, boardColours());
+    std::vector<PlacedBoard> boards = d_->further_boards;
+    boards.push_back({*d_->board_data});
     edge.setColour(theme().faint_text);
-    addBoardEdge(edge, *d_->board_data);
+    for (const PlacedBoard& board : boards) {
+      addBoard(sheet, board, boardColours());
+      addBoardEdge(edge, board);
+    }
   }
   d_->board.show(sheet);
   d_->board_edge.show(edge);

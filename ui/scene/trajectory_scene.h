@@ -6,6 +6,7 @@
 #include "core/geometry/board.h"
 #include "core/geometry/camera_intrinsics.h"
 #include "ui/scene/colour_scale.h"
+#include "ui/scene/placed_board.h"
 #include "ui/scene/trajectory_track.h"
 
 #include <QColor>
@@ -47,7 +48,8 @@ class TrajectoryScene {
   explicit TrajectoryScene(vtkRenderer* renderer);
   ~TrajectoryScene();
 
-  void setBoard(const std::optional<Board>& board);
+  void setBoard(const std::optional<Board>& board);  // whose frame is the world
+  void setFurtherBoards(std::vector<PlacedBoard> boards);
   void setIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& cameras);
   // By camera; those that are not told have events. Kinds differ in colour and in how long their frusta are, as the
   // cameras of one sensor lie in each other.

@@ -82,7 +82,9 @@ struct TrajectoryScreen::Private {
   PoseReadout* readout;
   TrajectoryScene scene;
 
-  std::optional<Board> board;
+  std::optional<Board> board;          // whose frame is the world
+  std::vector<Board> further_boards;   // where they are, the state tells
+  std::vector<SeenBoard> seen_boards;  // by camera
   std::vector<CameraShape> cameras;
   std::shared_ptr<const CalibrationState> state;  // that is drawn
   std::shared_ptr<const TrajectoryTrack> track = std::make_shared<TrajectoryTrack>();
@@ -98,7 +100,9 @@ struct TrajectoryScreen::Private {
 
   void buildLayout();
   void connectTools();
-  void setBoard(const Board& new_board);
+  void setBoards(const Session& session);
+  void placeFurtherBoards();
+  std::optional<RigidTransform> worldFromBoardOf(std::size_t camera) const;
   void sample(std::shared_ptr<const CalibrationState> new_state, std::shared_ptr<const CalibrationRun> run);
   void estimatePoses();
   void showTrack(Track new_track);
@@ -165,6 +169,8 @@ void TrajectoryScreen::clear() {
   d_->track_job.discard();
   d_->poses_job.discard();
   d_->board.reset();
+  d_->further_boards.clear();
+  d_->seen_boards.clear();
   d_->scene.setBoard(std::nullopt);
   setIntrinsics({});
   d_->scene.setCameraKinds({});
@@ -174,16 +180,36 @@ void TrajectoryScreen::clear() {
   d_->showViewPoses({});
 }
 
-void TrajectoryScreen::setBoard(const Board& board) {
-  d_->setBoard(board);
+void TrajectoryScreen::setBoards(const Session& session) {
+  d_->setBoards(session);
 }
 
-void TrajectoryScreen::Private::setBoard(const Board& new_board) {
-  if (board == new_board) return;
-  board = new_board;
+void TrajectoryScreen::Private::setBoards(const Session& session) {
+  further_boards.clear();
+  for (const FurtherBoard& further : session.further_boards) further_boards.push_back(further.board);
+  seen_boards.clear();
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) seen_boards.push_back(session.seenBoard(k));
+  placeFurtherBoards();
+  if (board == session.board) return;
+  board = session.board;
   placed = false;
-  scene.setBoard(new_board);
+  scene.setBoard(board);
   placeWorld();
+}
+
+void TrajectoryScreen::Private::placeFurtherBoards() {
+  std::vector<PlacedBoard> boards;
+  for (std::size_t i = 0; state && i < std::min(further_boards.size(), state->further_boards.size()); ++i)
+    boards.push_back({further_boards[i], state->further_boards[i].world_from_board});
+  scene.setFurtherBoards(std::move(boards));
+}
+
+// Of the board that a camera sees; nothing where nobody knows it yet.
+std::optional<RigidTransform> TrajectoryScreen::Private::worldFromBoardOf(std::size_t camera) const {
+  const std::size_t index = camera < seen_boards.size() ? seen_boards[camera].index : 0;
+  if (index == 0) return RigidTransform{};
+  if (!state || index > state->further_boards.size()) return std::nullopt;
+  return state->boardAt(index).world_from_board;
 }
 
 void TrajectoryScreen::setIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& cameras) {
@@ -196,10 +222,10 @@ void TrajectoryScreen::setIntrinsics(const std::vector<std::optional<CameraIntri
 void TrajectoryScreen::setRun(std::shared_ptr<const CalibrationRun> run, const Session& session) {
   if (!run) {
     clear();
-    setBoard(session.board);
+    setBoards(session);
     return;
   }
-  d_->setBoard(session.board);
+  d_->setBoards(session);
   const std::vector<CameraLens>& lenses = run->pass.lenses;
   std::vector<std::optional<CameraIntrinsics>> intrinsics;
   for (const CameraState& camera : run->result.state.cameras) intrinsics.push_back(camera.lens.inUse());
@@ -216,8 +242,7 @@ void TrajectoryScreen::setRun(std::shared_ptr<const CalibrationRun> run, const S
   }
 }
 
-void TrajectoryScreen::setState(std::shared_ptr<const CalibrationState> state, const Board& board) {
-  d_->setBoard(board);
+void TrajectoryScreen::setState(std::shared_ptr<const CalibrationState> state) {
   d_->sample(std::move(state), nullptr);
 }
 
@@ -237,7 +262,8 @@ void TrajectoryScreen::setDetections(std::shared_ptr<const BoardObservations> ob
                                      const CameraIntrinsics& intrinsics, std::size_t camera) {
   if (!observations || !d_->board) return;
   if (d_->pose_inputs.size() <= camera) d_->pose_inputs.resize(camera + 1);
-  d_->pose_inputs[camera] = {std::move(observations), intrinsics, *d_->board};
+  const Board& board = camera < d_->seen_boards.size() ? d_->seen_boards[camera].board : *d_->board;
+  d_->pose_inputs[camera] = {std::move(observations), intrinsics, board};
   d_->estimatePoses();
 }
 
@@ -257,6 +283,7 @@ void TrajectoryScreen::Private::showTrack(Track new_track) {
   track = std::move(new_track.samples);
   const bool known = state && hasTrajectory(*state) && !state->imus.empty();  // cameras cannot tell
   scene.setGravity(known ? std::optional(state->gravity_in_world_m_s2) : std::nullopt);
+  placeFurtherBoards();
   scene.setTrack(track);
   tools->offerResiduals(track->hasResiduals());
   if (!track->hasResiduals()) q->setTrajectoryColour(TrajectoryColour::Speed);
@@ -279,22 +306,26 @@ void TrajectoryScreen::Private::showRawPoses() {
     const bool known = state && hasTrajectory(*state) && k < state->cameras.size();
     const RigidTransform camera_from_body =
         known ? inverse(state->cameras[k].reference_from_camera) : RigidTransform{};
-    for (const CameraPose& pose : view_poses[k].poses) {
-      bodies.push_back(pose.world_from_camera * camera_from_body);
-    }
+    const std::optional<RigidTransform> world_from_board = worldFromBoardOf(k);
+    if (!world_from_board) continue;
+    for (const CameraPose& pose : view_poses[k].poses)
+      bodies.push_back(*world_from_board * pose.world_from_camera * camera_from_body);
   }
   scene.setRawPoses(bodies);
 }
 
 std::vector<RigidTransform> TrajectoryScreen::Private::rawCamerasNow() const {
   std::vector<RigidTransform> cameras_now;
-  for (const ViewPoses& of_camera : view_poses) {
+  for (std::size_t k = 0; k < view_poses.size(); ++k) {
+    const ViewPoses& of_camera = view_poses[k];
+    const std::optional<RigidTransform> world_from_board = worldFromBoardOf(k);
+    if (!world_from_board) continue;
     const auto nearest = std::min_element(of_camera.poses.begin(), of_camera.poses.end(),
                                           [this](const CameraPose& a, const CameraPose& b) {
                                             return std::abs(a.time_s - time_s) < std::abs(b.time_s - time_s);
                                           });
     if (nearest != of_camera.poses.end() && std::abs(nearest->time_s - time_s) < kNearestRawPose_s) {
-      cameras_now.push_back(nearest->world_from_camera);
+      cameras_now.push_back(*world_from_board * nearest->world_from_camera);
     }
   }
   return cameras_now;

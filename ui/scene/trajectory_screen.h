@@ -29,7 +29,7 @@ class TrajectoryScreen : public QWidget {
 
   // Forgets all that was set.
   void clear();
-  void setBoard(const Board& board);
+  void setBoards(const Session& session);
   void setIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& cameras);
 
   // A finished calibration: trajectory, residuals, and poses from its single views. Null: none.
@@ -37,7 +37,7 @@ class TrajectoryScreen : public QWidget {
 
   // While a calibration runs: the estimate so far, and before there is one the board views so far, from which
   // poses are computed (again given with more views: only the new ones).
-  void setState(std::shared_ptr<const CalibrationState> state, const Board& board);
+  void setState(std::shared_ptr<const CalibrationState> state);
   void setDetections(std::shared_ptr<const BoardObservations> observations,
                      const CameraIntrinsics& intrinsics, std::size_t camera = 0);
 

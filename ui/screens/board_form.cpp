@@ -65,6 +65,7 @@ BoardForm::BoardForm(QWidget* parent)
       length_std_mm_(new NumberField(0.0, 1'000.0, this)),
       tag_mm_(new NumberField(0.1, 10'000.0, this)),
       circles_(new QComboBox(this)),
+      further_(new QLabel(this)),
       problem_(new QLabel(this)),
       drawing_(new BoardDrawing(this)) {
   type_->addItems(
@@ -90,6 +91,7 @@ BoardForm::BoardForm(QWidget* parent)
   form->addRow(tr("Radius [mm]"), radius_mm_);
   form->addRow(tr("Tag [mm]"), tag_mm_);
   form->addRow(tr("Circles"), circles_);
+  form->addRow(further_);
   form->addRow(problem_);
   auto* const layout = new QHBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
@@ -103,8 +105,24 @@ BoardForm::BoardForm(QWidget* parent)
   connect(spacing_mm_, &NumberField::valueEdited, this, [this] { say("spacing_m"); });
   connect(radius_mm_, &NumberField::valueEdited, this, [this] { say("radius_m"); });
   connect(tag_mm_, &NumberField::valueEdited, this, [this] { say("tag_size_m"); });
+  further_->setObjectName("further_boards");
+  further_->setWordWrap(true);
   setBoard({}, {});
+  setFurtherBoards({}, {});
   setProblem({});
+}
+
+void BoardForm::setFurtherBoards(const std::string& name, const std::vector<FurtherBoard>& further) {
+  QStringList others;
+  for (const FurtherBoard& each : further)
+    others << tr("%1 (%2, %3 x %4)")
+                  .arg(QString::fromStdString(each.name), boardTypeName(each.board.type))
+                  .arg(each.board.rows)
+                  .arg(each.board.cols);
+  further_->setText(
+      tr("This is '%1', whose frame is the world. Beside it: %2, which the session's file describes.")
+          .arg(QString::fromStdString(name), others.join(", ")));
+  further_->setVisible(!further.empty());
 }
 
 void BoardForm::addMeasure(QFormLayout& form) {

@@ -2,6 +2,7 @@
 // The printed board: its numbers, and a drawing that follows them.
 #pragma once
 
+#include "core/data/calibration_setup.h"
 #include "core/geometry/board.h"
 #include "core/geometry/measured_length.h"
 
@@ -27,6 +28,8 @@ class BoardForm : public QWidget {
   explicit BoardForm(QWidget* parent = nullptr);
 
   void setBoard(const Board& board, const std::optional<MeasuredLength>& measured);
+  // What a session has beside the board that the form shows; its name where there are any.
+  void setFurtherBoards(const std::string& name, const std::vector<FurtherBoard>& further);
   void setProblem(const QString& text);
 
  signals:
@@ -52,7 +55,7 @@ class BoardForm : public QWidget {
   NumberField* length_std_mm_;
   NumberField* tag_mm_;
   QComboBox* circles_;
-  QLabel* problem_;
+  QLabel *further_, *problem_;
   BoardDrawing* drawing_;
 };
 

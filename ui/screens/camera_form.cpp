@@ -51,6 +51,7 @@ CameraForm::CameraForm(QWidget* parent)
       model_(new QComboBox(this)),
       shutter_(new QComboBox(this)),
       sensor_(new QComboBox(this)),
+      board_(new QComboBox(this)),
       focal_x_px_(new NumberField(0.0, 10 * kMostPixels, this)),
       focal_y_px_(new NumberField(0.0, 10 * kMostPixels, this)),
       centre_x_px_(new NumberField(-kMostPixels, kMostPixels, this)),
@@ -70,6 +71,8 @@ CameraForm::CameraForm(QWidget* parent)
   sensor_->setToolTip(
       tr("A DAVIS gives events and frames from one sensor: they have one lens and one pose, and the result "
          "tells by how much events are later."));
+  board_->setObjectName("board");
+  board_->setToolTip(tr("Of the session's boards the one before this camera"));
   name_->setToolTip(tr("What the camera is called in the session, the result and the exports"));
   width_px_->setToolTip(tr("Width of the sensor; 0: as the recording says"));
   height_px_->setToolTip(tr("Height of the sensor; 0: as the recording says"));
@@ -103,6 +106,7 @@ CameraForm::CameraForm(QWidget* parent)
   form_->addRow(tr("Resolution [px]"), pairOf(width_px_, height_px_));
   form_->addRow(tr("Shutter"), shutter_);
   form_->addRow(tr("Sensor"), sensor_);
+  form_->addRow(tr("Board"), board_);
   form_->addRow(file);
   form_->addRow(file_problem_);
   form_->addRow(problem_);
@@ -118,6 +122,7 @@ CameraForm::CameraForm(QWidget* parent)
   connect(model_, &QComboBox::activated, this, [this] { say("intrinsics"); });
   connect(shutter_, &QComboBox::activated, this, [this] { say("shutter"); });
   connect(sensor_, &QComboBox::activated, this, [this] { say("same_sensor_as"); });
+  connect(board_, &QComboBox::activated, this, [this] { say("board"); });
   for (NumberField* const field : {width_px_, height_px_})
     connect(field, &NumberField::valueEdited, this, [this] { say("resolution_px"); });
   connect(clock_offset_s_, &NumberField::valueEdited, this, [this] { say("clock_offset_s"); });
@@ -141,10 +146,13 @@ QWidget* CameraForm::pairOf(NumberField* first, NumberField* second) {
   return pair;
 }
 
-void CameraForm::setCamera(const SessionCamera& camera, const std::vector<std::string>& others) {
+void CameraForm::setCamera(const SessionCamera& camera, const std::vector<std::string>& others,
+                           const std::vector<std::string>& boards) {
   camera_ = camera;
   others_ = others;
+  boards_ = boards;
   showSensor();
+  showBoard();
   name_->setText(QString::fromStdString(camera.name));
   width_px_->setValue(camera.resolution_px.width_px);
   height_px_->setValue(camera.resolution_px.height_px);
@@ -173,6 +181,14 @@ void CameraForm::showSensor() {
   sensor_->setCurrentIndex(shared ? static_cast<int>(found - others_.begin()) + 1 : 0);
   form_->setRowVisible(sensor_, !others_.empty() || !camera_.same_sensor_as.empty());
   model_->setEnabled(!shared);
+}
+
+void CameraForm::showBoard() {
+  board_->clear();
+  for (const std::string& board : boards_) board_->addItem(QString::fromStdString(board));
+  const auto found = std::find(boards_.begin(), boards_.end(), camera_.board);
+  board_->setCurrentIndex(found == boards_.end() ? -1 : static_cast<int>(found - boards_.begin()));
+  form_->setRowVisible(board_, !boards_.empty());
 }
 
 void CameraForm::showCoefficients(const CameraIntrinsics& shown) {
@@ -220,6 +236,7 @@ void CameraForm::say(const QString& field) {
     if (chosen > 0) changed.intrinsics.reset();
     if (chosen > 0) changed.intrinsics_uncertainty.reset();
   }
+  if (field == "board") changed.board = board_->currentText().toStdString();
   if (field == "resolution_px" && changed.intrinsics)
     changed.intrinsics->resolution_px = changed.resolution_px;
   if (field == "intrinsics") {
@@ -228,9 +245,9 @@ void CameraForm::say(const QString& field) {
   }
   const bool same = changed.name == camera_.name && changed.resolution_px == camera_.resolution_px &&
                     changed.intrinsics == camera_.intrinsics && changed.shutter == camera_.shutter &&
-                    changed.same_sensor_as == camera_.same_sensor_as &&
+                    changed.same_sensor_as == camera_.same_sensor_as && changed.board == camera_.board &&
                     changed.clock_offset_s == camera_.clock_offset_s;
-  if (same || changed.name.empty()) return setCamera(camera_, others_);
+  if (same || changed.name.empty()) return setCamera(camera_, others_, boards_);
   emit edited(changed, field);
 }
 

@@ -27,8 +27,10 @@ class CameraForm : public QWidget {
  public:
   explicit CameraForm(QWidget* parent = nullptr);
 
-  // `others`: names of cameras whose sensor this one's stream may come from, too.
-  void setCamera(const SessionCamera& camera, const std::vector<std::string>& others = {});
+  // `others`: names of cameras whose sensor this one's stream may come from, too. `boards`: those it may see, where
+  // there are several.
+  void setCamera(const SessionCamera& camera, const std::vector<std::string>& others = {},
+                 const std::vector<std::string>& boards = {});
   void setProblem(const QString& text);
   // Those that the last run found; offered while the camera has none of its own.
   void setFound(const std::optional<CameraIntrinsics>& found);
@@ -44,17 +46,18 @@ class CameraForm : public QWidget {
   void say(const QString& field);
   std::optional<CameraIntrinsics> typedIntrinsics() const;  // none: not known
   void showSensor();
+  void showBoard();
   void showTakeOver();
   void showCoefficients(const CameraIntrinsics& shown);
   QWidget* pairOf(NumberField* first, NumberField* second);
   std::vector<NumberField*> intrinsicsFields() const;
 
   SessionCamera camera_;
-  std::vector<std::string> others_;
+  std::vector<std::string> others_, boards_;
   QFormLayout* form_;
   QLineEdit* name_;
   NumberField *width_px_, *height_px_, *clock_offset_s_;
-  QComboBox *model_, *shutter_, *sensor_;
+  QComboBox *model_, *shutter_, *sensor_, *board_;
   NumberField *focal_x_px_, *focal_y_px_, *centre_x_px_, *centre_y_px_;
   std::array<NumberField*, 5> distortion_;
   QLabel* coefficient_names_;

@@ -213,6 +213,7 @@ void RecordingScreen::setSession(const Session& session) {
   title_->setText(QString::fromStdString(session.recording.filename().string()));
   path_->setText(QString::fromStdString(session.recording.parent_path().string()));
   board_->setBoard(session.board, session.measured);
+  board_->setFurtherBoards(session.board_name, session.further_boards);
   other_recording ? listStreams() : streams_->setSession(session);
   time_range_->setRange(session.time_range_s);
   showSensors();
@@ -225,6 +226,14 @@ std::vector<std::string> RecordingScreen::possibleSensors(std::size_t camera) co
     if (session_.cameras[i].same_sensor_as == session_.cameras[camera].name) return {};
     if (i != camera && session_.cameras[i].same_sensor_as.empty()) names.push_back(session_.cameras[i].name);
   }
+  return names;
+}
+
+// None where there is but one.
+std::vector<std::string> RecordingScreen::boardNames() const {
+  if (session_.further_boards.empty()) return {};
+  std::vector<std::string> names = {session_.board_name};
+  for (const FurtherBoard& further : session_.further_boards) names.push_back(further.name);
   return names;
 }
 
@@ -251,7 +260,7 @@ void RecordingScreen::showSensors() {
   reference_->clear();
   for (std::size_t i = 0; i < cameras_.size(); ++i, ++tab) {
     cameras_[i]->setFound(foundIntrinsics(i));
-    cameras_[i]->setCamera(session_.cameras[i], possibleSensors(i));
+    cameras_[i]->setCamera(session_.cameras[i], possibleSensors(i), boardNames());
     sensors_->setTabText(tab, QString::fromStdString(session_.cameras[i].name));
     if (imus_.empty()) reference_->addItem(sensors_->tabText(tab));
   }

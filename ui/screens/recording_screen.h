@@ -65,6 +65,7 @@ class RecordingScreen : public QWidget {
   QWidget* makeRangeAndFiles(QWidget* parent);
   std::optional<CameraIntrinsics> foundIntrinsics(std::size_t camera) const;
   std::vector<std::string> possibleSensors(std::size_t camera) const;
+  std::vector<std::string> boardNames() const;
   void renameReference(const std::string& from, const std::string& to, Session& session) const;
   void editCamera(std::size_t index, const SessionCamera& camera, const QString& field);
   void editImu(std::size_t index, const SessionImu& imu, const QString& field);

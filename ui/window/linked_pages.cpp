@@ -42,7 +42,7 @@ void wireTrajectory(TrajectoryScreen& screen, Workbench& workbench) {
   const CalibrationDocument& document = workbench.document;
   const CalibrationJob& job = workbench.calibration;
   const auto show_session = [&screen, &document] {
-    screen.setBoard(document.session().board);
+    screen.setBoards(document.session());
     screen.setIntrinsics(intrinsicsOf(document.session()));
   };
   QObject::connect(&document, &CalibrationDocument::runsChanged, &screen, [&screen, &document, show_session] {
@@ -63,7 +63,7 @@ void wireTrajectory(TrajectoryScreen& screen, Workbench& workbench) {
                    });
   QObject::connect(&job, &CalibrationJob::iterationsChanged, &screen,
                    [&screen, &document](const std::shared_ptr<const LiveIterations>& iterations) {
-                     screen.setState({iterations, &iterations->state}, document.session().board);
+                     screen.setState({iterations, &iterations->state});
                    });
 }
 

@@ -19,12 +19,6 @@ struct ReportNeeds {
   double rotation_deg = 0.1, translation_mm = 1.0, time_offset_ms = 0.1;
 };
 
-// The board that a camera sees: `index` as in CalibrationState::boardAt.
-struct SeenBoard {
-  Board board;
-  std::size_t index = 0;
-};
-
 // Lists may be empty or shorter than those of the result where a calibration failed early.
 struct ReportData {
   const NamedResult& named;
