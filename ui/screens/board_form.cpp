@@ -47,6 +47,7 @@ void setSizes(Board& board) {
 
 BoardForm::BoardForm(QWidget* parent)
     : QWidget(parent),
+      form_(new QFormLayout),
       type_(new QComboBox(this)),
       rows_(countBox(1,
                      tr("Staggered lines of circles (odd, so that the board has an up and a down); a "
@@ -82,20 +83,19 @@ BoardForm::BoardForm(QWidget* parent)
   circles_->setToolTip(tr("Which way the printed circles differ from their background"));
   problem_->setProperty("role", "problem");
   problem_->setWordWrap(true);
-  auto* const form = new QFormLayout;
-  form->addRow(tr("Type"), type_);
-  form->addRow(tr("Rows"), rows_);
-  form->addRow(tr("Columns"), cols_);
-  form->addRow(tr("Spacing [mm]"), spacing_mm_);
-  addMeasure(*form);
-  form->addRow(tr("Radius [mm]"), radius_mm_);
-  form->addRow(tr("Tag [mm]"), tag_mm_);
-  form->addRow(tr("Circles"), circles_);
-  form->addRow(further_);
-  form->addRow(problem_);
+  form_->addRow(tr("Type"), type_);
+  form_->addRow(tr("Rows"), rows_);
+  form_->addRow(tr("Columns"), cols_);
+  form_->addRow(tr("Spacing [mm]"), spacing_mm_);
+  addMeasure(*form_);
+  form_->addRow(tr("Radius [mm]"), radius_mm_);
+  form_->addRow(tr("Tag [mm]"), tag_mm_);
+  form_->addRow(tr("Circles"), circles_);
+  form_->addRow(tr("Beside it"), further_);
+  form_->addRow(problem_);
   auto* const layout = new QHBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
-  layout->addLayout(form);
+  layout->addLayout(form_);
   layout->addWidget(drawing_, 1);
 
   connect(type_, &QComboBox::activated, this, [this] { say("type"); });
@@ -106,7 +106,6 @@ BoardForm::BoardForm(QWidget* parent)
   connect(radius_mm_, &NumberField::valueEdited, this, [this] { say("radius_m"); });
   connect(tag_mm_, &NumberField::valueEdited, this, [this] { say("tag_size_m"); });
   further_->setObjectName("further_boards");
-  further_->setWordWrap(true);
   setBoard({}, {});
   setFurtherBoards({}, {});
   setProblem({});
@@ -119,10 +118,11 @@ void BoardForm::setFurtherBoards(const std::string& name, const std::vector<Furt
                   .arg(QString::fromStdString(each.name), boardTypeName(each.board.type))
                   .arg(each.board.rows)
                   .arg(each.board.cols);
-  further_->setText(
-      tr("This is '%1', whose frame is the world. Beside it: %2, which the session's file describes.")
-          .arg(QString::fromStdString(name), others.join(", ")));
-  further_->setVisible(!further.empty());
+  further_->setText(others.join(", "));
+  further_->setToolTip(
+      tr("The form is of '%1', whose frame is the world; the others are in the session's file")
+          .arg(QString::fromStdString(name)));
+  form_->setRowVisible(further_, !further.empty());
 }
 
 void BoardForm::addMeasure(QFormLayout& form) {

@@ -44,6 +44,7 @@ class BoardForm : public QWidget {
 
   Board board_;
   std::optional<MeasuredLength> measured_;
+  QFormLayout* form_;
   QComboBox* type_;
   QSpinBox* rows_;
   QSpinBox* cols_;
