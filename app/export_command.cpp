@@ -39,7 +39,8 @@ int run(const Arguments& arguments) {
   writeExportedFiles(arguments.output, exported.files);
   for (const FileContent& written : exported.files) print("{}\n", (arguments.output / written.path).string());
   for (const std::string& note : exported.notes) print("{}\n", note);
-  return kDone;
+  for (const std::string& refusal : exported.refused) printError(refusal);
+  return exported.refused.empty() ? kDone : kFailed;
 }
 
 }  // namespace

@@ -49,17 +49,14 @@ void addReport(const Session& session, const NamedResult& named, const Recording
 ExportRemarks addExports(const NamedResult& named, const Session& session, std::vector<FileContent>& files) {
   std::set<std::string> targets(session.exports.begin(), session.exports.end());
   targets.insert("kalibr");
-  ExportRemarks remarks;
-  for (const std::string& target : targets) {
-    try {
-      ExportedFiles one = exportResult(named, std::span(&target, 1));
-      std::move(one.files.begin(), one.files.end(), std::back_inserter(files));
-      std::move(one.notes.begin(), one.notes.end(), std::back_inserter(remarks.notes));
-    } catch (const CalibrationError& refusal) {
-      remarks.refused.push_back(fmt::format("{}: not exported: {}", target, refusal.what()));
-    }
+  const std::vector<std::string> names(targets.begin(), targets.end());
+  try {
+    ExportedFiles exported = exportResult(named, names);
+    std::move(exported.files.begin(), exported.files.end(), std::back_inserter(files));
+    return {std::move(exported.notes), std::move(exported.refused)};
+  } catch (const CalibrationError& refusal) {
+    return {{}, {fmt::format("not exported: {}", refusal.what())}};
   }
-  return remarks;
 }
 
 }  // namespace

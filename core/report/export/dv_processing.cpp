@@ -32,9 +32,14 @@ std::string field(const char* key, const std::string& value, int indent) {
   return fmt::format("{:{}}\"{}\": {},\n", "", indent, key, value);
 }
 
+// The program reads it of IMUs; a camera's would have to tell of the pattern, too, and may be left out.
 std::string metadata(const std::string& comment) {
   return fmt::format("      \"metadata\": {{\"calibrationTime\": \"\", \"comment\": {}}}\n    }}",
                      jsonText(comment));
+}
+
+std::string lastField(const char* key, const std::string& value) {
+  return fmt::format("      \"{}\": {}\n    }}", key, value);
 }
 
 std::string cameraText(const Rig& rig, std::size_t i, ExportNotes& notes) {
@@ -54,16 +59,14 @@ std::string cameraText(const Rig& rig, std::size_t i, ExportNotes& notes) {
                quotedList(Eigen::Map<const Eigen::VectorXd>(d.data(), static_cast<Eigen::Index>(d.size()))),
                6) +
          field("distortionModel", radtan ? "\"radialTangential\"" : "\"equidistant\"", 6) +
-         field("transformationToC0", quotedList(matrixOf(this_from_first)), 6) +
-         metadata("transformationToC0 takes points of camera C0 to this camera. " + rig.program + ", " +
-                  rig.status);
+         lastField("transformationToC0", quotedList(matrixOf(this_from_first)));
 }
 
-// The sensor's limits are on its data sheet, not in a calibration: 0 means not known.
+// It is looked up by its camera's name. The sensor's limits are on its data sheet, not in a calibration: 0 means not known.
 std::string imuText(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
   const StatedNoise noise = statedNoise(imu, notes);
   const auto number = [](const char* key, double value) { return field(key, quoted(value), 6); };
-  return "    \"S0\": {\n" + field("name", jsonText(imu.file_name), 6) + number("omegaMax", 0.0) +
+  return "    \"S0\": {\n" + field("name", jsonText(rig.cameras[0].file_name), 6) + number("omegaMax", 0.0) +
          number("accMax", 0.0) + field("omegaOffsetAvg", quotedList(imu.state.gyroscope_bias_rad_s), 6) +
          field("accOffsetAvg", quotedList(imu.state.accelerometer_bias_m_s2), 6) +
          number("omegaOffsetVar", 0.0) + number("accOffsetVar", 0.0) +
@@ -74,7 +77,9 @@ std::string imuText(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
          field("timeOffsetMicros", fmt::format("\"{}\"", std::llround(1e6 * rig.cameras[0].time_offset_s)),
                6) +
          field("transformationToC0", quotedList(matrixOf(inverse(rig.cameras[0].reference_from_camera))), 6) +
-         metadata("transformationToC0 takes points of the IMU to camera C0; t_C0 = t_imu - timeOffsetMicros");
+         metadata(
+             "transformationToC0 takes points of the IMU to camera C0; t_C0 = t_imu - timeOffsetMicros. " +
+             rig.program + ", " + rig.status);
 }
 
 // OpenCV's: x_right^T F x_left = 0 in undistorted pixels, E = [t]x R in normalised coordinates.
@@ -111,9 +116,9 @@ ExportedFiles exportDvProcessing(const NamedResult& result) {
   if (rig.cameras.size() > 1) text += ",\n  \"stereo\": {\n" + stereoText(rig) + "\n  }";
   exported.files.push_back({"calibration.json", text + "\n}\n"});
   exported.notes.emplace_back(
-      "the cameras' names must be the devices' (DAVIS346_00000002, as a recording says): change them where "
-      "they are "
-      "not");
+      "the cameras' names must be the devices' (DAVIS346_00000002, as a recording says), and the IMU's that "
+      "of "
+      "its camera, by which it is looked up: change them where they are not");
   if (!rig.imus.empty())
     exported.notes.emplace_back("omegaMax and accMax are 0: put the sensor's limits from its data sheet");
   std::vector<std::string> lines{

@@ -39,7 +39,7 @@ std::string mapText(const char* name, const std::vector<Sensor>& sensors, Value&
   return text;
 }
 
-// Its order of radial-tangential coefficients: k1 k2 k3 t1 t2.
+// Its order of radial-tangential coefficients: k1 k2 k3 t1 t2. Since the end of 2024 it refuses a camera without notes.
 std::string cameraText(const CameraIntrinsics& camera, unsigned pointer_id, const std::string& polymorphic,
                        const std::string& blanks) {
   const auto& d = camera.distortion;
@@ -48,10 +48,13 @@ std::string cameraText(const CameraIntrinsics& camera, unsigned pointer_id, cons
       radtan ? std::vector<double>{d[0], d[1], d[4], d[2], d[3]} : distortionOf(camera, 4);
   return fmt::format(
       "{0}{1}\n{0}ptr_wrapper:\n{0}  id: {2}\n{0}  data:\n{0}    img_width: {3}\n{0}    img_height: {4}\n"
-      "{0}    focal_length: [{5}, {6}]\n{0}    principal_point: [{7}, {8}]\n{0}    disto_param: [{9}]\n",
+      "{0}    focal_length: [{5}, {6}]\n{0}    focal_length_note: \"fx, fy\"\n"
+      "{0}    principal_point: [{7}, {8}]\n{0}    principal_point_note: \"cx, cy\"\n"
+      "{0}    disto_param: [{9}]\n{0}    disto_param_note: \"{10}\"\n",
       blanks, polymorphic, kFirst | pointer_id, camera.resolution_px.width_px, camera.resolution_px.height_px,
       real(camera.focal_length_px.x()), real(camera.focal_length_px.y()), real(camera.principal_point_px.x()),
-      real(camera.principal_point_px.y()), realList(distortion));
+      real(camera.principal_point_px.y()), realList(distortion),
+      radtan ? "k1, k2, k3, t1, t2" : "k1, k2, k3, k4");
 }
 
 const char* polymorphicName(CameraModel model) {

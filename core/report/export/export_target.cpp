@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <system_error>
 
 namespace evical {
@@ -54,12 +55,21 @@ const ExportTarget& exportTarget(std::string_view name, const std::string& place
 ExportedFiles exportResult(const NamedResult& result, std::span<const std::string> targets) {
   checkResult(result);
   ExportedFiles all;
+  const std::size_t different = std::set<std::string>(targets.begin(), targets.end()).size();
+  std::size_t refusals = 0;
   for (std::size_t i = 0; i < targets.size(); ++i) {
     if (std::find(targets.begin(), targets.begin() + static_cast<std::ptrdiff_t>(i), targets[i]) !=
         targets.begin() + static_cast<std::ptrdiff_t>(i))
       continue;
     const ExportTarget& target = exportTarget(targets[i], "--to");
-    ExportedFiles one = target.write(result);
+    ExportedFiles one;
+    try {
+      one = target.write(result);
+    } catch (const CalibrationError& refusal) {
+      if (++refusals == different) throw;
+      all.refused.push_back(fmt::format("{}: not exported: {}", target.name, refusal.what()));
+      continue;
+    }
     for (FileContent& file : one.files)
       all.files.push_back({std::filesystem::path(target.name) / file.path, std::move(file.content)});
     for (const std::string& note : one.notes) all.notes.push_back(fmt::format("{}: {}", target.name, note));

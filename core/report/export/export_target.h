@@ -16,8 +16,9 @@
 namespace evical {
 
 struct ExportedFiles {
-  std::vector<FileContent> files;  // paths relative to the output folder: "kalibr/imu.yaml"
-  std::vector<std::string> notes;  // what to know before using them
+  std::vector<FileContent> files;         // paths relative to the output folder: "kalibr/imu.yaml"
+  std::vector<std::string> notes;         // what to know before using them
+  std::vector<std::string> refused = {};  // of several targets those that got nothing, each with the reason
 };
 
 struct ExportTarget {
@@ -31,8 +32,9 @@ std::span<const ExportTarget> exportTargets();
 // Throws CalibrationError (BadInput) for a name that nobody knows, with the nearest one; `place` precedes it.
 const ExportTarget& exportTarget(std::string_view name, const std::string& place);
 
-// Files of several targets, each below its name. Throws CalibrationError (BadInput) for the result of a
-// failed calibration and for one that a target cannot hold.
+// Files of several targets, each below its name; a target that cannot hold the result stops none of the others. Throws
+// CalibrationError (BadInput) for the result of a failed calibration, for names that nobody knows, and where no
+// target can hold it.
 ExportedFiles exportResult(const NamedResult& result, std::span<const std::string> targets);
 
 // Writes all or none, and the folders that they need.

@@ -164,6 +164,13 @@ ExportedFiles exportKalibr(const NamedResult& result) {
         "Evical's.");
   exported.files.push_back({"camchain-imucam.yaml", kalibrChain(rig, lenses, turn, comment)});
   exported.files.push_back({"imu.yaml", imuFile(rig, exported.notes)});
+  ExportNotes said;  // with imu.yaml
+  for (const RigImu& imu : rig.imus)
+    exported.files.push_back(
+        {fmt::format("input-{}.yaml", imu.file_name),
+         headerComment(rig, {"For kalibr_calibrate_imu_camera --imu, which takes no imu.yaml: "
+                             "that is laid out as Kalibr's own results are."}) +
+             kalibrNoise(imu, 0, said)});
   return exported;
 }
 

@@ -99,10 +99,12 @@ std::string xmlComment(const std::string& text) {
 }
 
 std::string urdf(const Rig& rig, const std::vector<Joint>& joints) {
-  std::string text = xmlComment(readMe(
-      rig,
-      {"The origin of a joint takes points of the child to the parent. Paste into a robot's description.",
-       offsetsComment(rig)}));
+  std::string text = xmlComment(readMe(rig, {"The origin of a joint takes points of the child to the parent. "
+                                             "Whole as it is, or to be pasted into a robot's "
+                                             "description.",
+                                             offsetsComment(rig)}));
+  text = "<?xml version=\"1.0\"?>\n" + text + "<robot name=\"rig\">\n" +
+         fmt::format("<link name=\"{}\"/>\n", joints.front().parent);
   for (const Joint& joint : joints) {
     const Eigen::Vector3d rpy = rollPitchYaw(joint.parent_from_child.rotation.toRotationMatrix());
     const Eigen::Vector3d& p = joint.parent_from_child.translation_m;
@@ -113,7 +115,7 @@ std::string urdf(const Rig& rig, const std::vector<Joint>& joints) {
         joint.child, joint.parent, real(p.x()), real(p.y()), real(p.z()), real(rpy.x()), real(rpy.y()),
         real(rpy.z()));
   }
-  return text;
+  return text + "</robot>\n";
 }
 
 std::string cameraInfo(const Rig& rig, const RigCamera& camera, const CameraIntrinsics& own) {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace evical {
 namespace {
@@ -13,6 +14,12 @@ namespace {
 constexpr const char* kProgram = "VINS-Fusion";
 constexpr KnownModels kModels{kProgram, true, false, true, false, false, true};
 constexpr std::size_t kMostCameras = 2;
+
+// Keys that say nothing of a calibration: where they are missing the program takes 0, and finds nothing.
+constexpr const char* kOwnKeys =
+    "output_path: \"/tmp/\"\nmultiple_thread: 1\nmax_cnt: 150\nmin_dist: 30\nfreq: 10\nF_threshold: 1.0\n"
+    "show_track: 1\nflow_back: 1\nmax_solver_time: 0.04\nmax_num_iterations: 8\nkeyframe_parallax: 10.0\n"
+    "load_previous_pose_graph: 0\npose_graph_save_path: \"/tmp/\"\nsave_image: 0\n";
 
 // Of camodocal's MEI.
 std::string omniText(const CameraIntrinsics& own) {
@@ -55,10 +62,12 @@ std::string configuration(const Rig& rig, const RigImu& imu, ExportNotes& notes)
   const StatedNoise noise = statedNoise(imu, notes);
   std::string text =
       "%YAML:1.0\n---\n" +
-      headerComment(rig,
-                    {"The calibration's part of a VINS-Fusion configuration. body_T_camN takes points of the "
-                     "camera to the IMU; t_imu = t_cam + td.",
-                     "Noise is continuous (Kalibr's units); many set it ten times larger."}) +
+      headerComment(
+          rig,
+          {"The calibration's part of a VINS-Fusion configuration. body_T_camN takes points of the "
+           "camera to the IMU; t_imu = t_cam + td.",
+           "Noise is that of a sample, as the program takes it: densities times the square root of the rate.",
+           "What follows td is the program's own, with the values of its EuRoC configuration."}) +
       fmt::format("imu: 1\nnum_of_cam: {}\nimu_topic: {}\n", count, yamlText(imu.stream));
   for (std::size_t i = 0; i < count; ++i)
     text += fmt::format("image{}_topic: {}\n", i, yamlText(rig.cameras[i].stream));
@@ -70,11 +79,15 @@ std::string configuration(const Rig& rig, const RigImu& imu, ExportNotes& notes)
   for (std::size_t i = 0; i < count; ++i)
     text += opencvMatrix(fmt::format("body_T_cam{}", i).c_str(),
                          matrixOf(rig.cameras[i].reference_from_camera), 'd');
+  // Its pre-integration multiplies each by the time step, and adds the squares.
+  const double of_sample = std::sqrt(statedRate_hz(imu, notes));
   return text +
          fmt::format("acc_n: {}\ngyr_n: {}\nacc_w: {}\ngyr_w: {}\ng_norm: {}\nestimate_td: 0\ntd: {}\n",
-                     real(noise.accelerometer_density), real(noise.gyroscope_density),
-                     real(noise.accelerometer_random_walk), real(noise.gyroscope_random_walk),
-                     real(rig.gravity_m_s2.norm()), real(rig.cameras[0].time_offset_s));
+                     real(of_sample * noise.accelerometer_density), real(of_sample * noise.gyroscope_density),
+                     real(of_sample * noise.accelerometer_random_walk),
+                     real(of_sample * noise.gyroscope_random_walk), real(rig.gravity_m_s2.norm()),
+                     real(rig.cameras[0].time_offset_s)) +
+         kOwnKeys;
 }
 
 }  // namespace

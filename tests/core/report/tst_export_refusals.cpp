@@ -93,6 +93,17 @@ class TestExportRefusals : public QObject {
                 .contains("add to the stamps of left 0.007301 s, right -0.0021 s"));
   }
 
+  void whatOneTargetRefuses_theOthersGet() {
+    RigKind kind;
+    kind.inertial = false;
+    const ExportedFiles exported =
+        exportResult(rig(kind), std::vector<std::string>{"openvins", "kalibr", "openvins"});
+    QCOMPARE(exported.files.size(), 1U);
+    QCOMPARE(exported.refused.size(), 1U);
+    QVERIFY(exported.refused[0].starts_with("openvins: not exported: ") &&
+            exported.refused[0].find("has no IMU") != std::string::npos);
+  }
+
   void badRequests_areRefused() {
     NamedResult failed = rig({});
     test::ownResult(failed).status = CalibrationStatus::Failed;
