@@ -39,7 +39,7 @@ int run(const Arguments& arguments) {
   writeExportedFiles(arguments.output, exported.files);
   for (const FileContent& written : exported.files) print("{}\n", (arguments.output / written.path).string());
   for (const std::string& note : exported.notes) print("{}\n", note);
-  for (const std::string& refusal : exported.refused) printError(refusal);
+  for (const std::string& refusal : exported.refused) printError(refusal + "\n");
   return exported.refused.empty() ? kDone : kFailed;
 }
 

@@ -1,4 +1,5 @@
 #include "core/base/error.h"
+#include "core/geometry/projection_difference.h"
 #include "core/report/export/distortion_fit.h"
 #include "core/report/export/export_text.h"
 #include "core/report/export/exporters.h"
@@ -12,6 +13,16 @@ namespace {
 
 constexpr const char* kProgram = "ORB-SLAM3";
 constexpr std::size_t kMostCameras = 2;
+
+// Keys that say nothing of a calibration, without which the program does not start (Settings.cc); real ones must look so.
+constexpr const char* kOwnKeys =
+    "Camera.fps: 20\nCamera.RGB: 1\n"
+    "ORBextractor.nFeatures: 1000\nORBextractor.scaleFactor: 1.2\nORBextractor.nLevels: 8\n"
+    "ORBextractor.iniThFAST: 20\nORBextractor.minThFAST: 7\n"
+    "Viewer.KeyFrameSize: 0.05\nViewer.KeyFrameLineWidth: 1.0\nViewer.GraphLineWidth: 0.9\nViewer.PointSize: "
+    "2.0\n"
+    "Viewer.CameraSize: 0.08\nViewer.CameraLineWidth: 3.0\nViewer.ViewpointX: 0.0\nViewer.ViewpointY: -0.7\n"
+    "Viewer.ViewpointZ: -3.5\nViewer.ViewpointF: 500.0\nViewer.imageViewScale: 1.0\n";
 
 std::string cameraText(const CameraIntrinsics& camera, std::size_t number, bool stereo) {
   const std::string prefix = fmt::format("Camera{}.", number);
@@ -58,6 +69,18 @@ std::string imuText(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
              real(statedRate_hz(imu, notes)));
 }
 
+// Its Settings.h hands camera 1's distortion out for camera 2, and its Settings.cc reads that one's.
+std::string secondLensNote(const std::vector<CameraIntrinsics>& cameras) {
+  CameraIntrinsics as_read = cameras[1];
+  as_read.distortion = cameras[0].distortion;
+  const ProjectionDifference wrong = projectionDifference(cameras[1], as_read);
+  return fmt::format(
+      "ORB-SLAM3 itself takes camera 1's distortion for camera 2: {:.2f} px RMS, {:.2f} px at most; rectify "
+      "the images "
+      "before where that is too much",
+      wrong.rms_px, wrong.max_px);
+}
+
 std::string offsetLine(const Rig& rig) {
   std::string text = "No time offset has a place here: add to the stamps of the images";
   for (const RigCamera& camera : rig.cameras)
@@ -76,11 +99,12 @@ ExportedFiles exportOrbSlam3(const NamedResult& result) {
   const bool stereo = cameras.size() > 1;
   std::string text =
       "%YAML:1.0\n---\n" +
-      headerComment(rig, {"The calibration's part of ORB-SLAM3 settings (ORBextractor, Viewer and "
-                          "Camera.fps are yours).",
-                          "IMU.T_b_c1 takes points of camera 1 to the IMU, Stereo.T_c1_c2 points of "
-                          "camera 2 to camera 1.",
-                          offsetLine(rig)}) +
+      headerComment(rig,
+                    {"ORB-SLAM3 settings. Camera.fps, Camera.RGB, ORBextractor and Viewer say nothing of the "
+                     "calibration: adjust them.",
+                     "IMU.T_b_c1 takes points of camera 1 to the IMU, Stereo.T_c1_c2 points of "
+                     "camera 2 to camera 1.",
+                     offsetLine(rig)}) +
       fmt::format("File.version: \"1.0\"\nCamera.type: \"{}\"\n",
                   cameras[0].model == CameraModel::PinholeRadtan ? "PinHole" : "KannalaBrandt8");
   for (std::size_t i = 0; i < cameras.size(); ++i) text += cameraText(cameras[i], i + 1, stereo);
@@ -96,6 +120,8 @@ ExportedFiles exportOrbSlam3(const NamedResult& result) {
     noteLostMapping(rig.imus[0], kProgram, exported.notes);
     text += imuText(rig, rig.imus[0], exported.notes);
   }
+  text += kOwnKeys;
+  if (stereo) exported.notes.push_back(secondLensNote(cameras));
   if (!rig.imus.empty() || stereo) exported.notes.push_back(offsetLine(rig));
   exported.files.push_back({"settings.yaml", text});
   return exported;

@@ -269,6 +269,22 @@ class TestExportInertial : public QObject {
     cv::FileStorage opened(contentOf(exported, "orb-slam3/settings.yaml"),
                            cv::FileStorage::READ | cv::FileStorage::MEMORY);
     QVERIFY(opened["Camera1.fx"].isReal() && opened["IMU.GyroWalk"].isReal());
+    // Settings.cc: what it demands, and as which type.
+    for (const char* const key : {"Camera.fps", "Camera.RGB", "Camera.width", "Camera.height",
+                                  "ORBextractor.nFeatures", "ORBextractor.nLevels", "ORBextractor.iniThFAST",
+                                  "ORBextractor.minThFAST", "IMU.InsertKFsWhenLost"})
+      QVERIFY2(opened[key].isInt(), key);
+    for (const char* const key :
+         {"ORBextractor.scaleFactor", "Viewer.KeyFrameSize", "Viewer.KeyFrameLineWidth",
+          "Viewer.GraphLineWidth", "Viewer.PointSize", "Viewer.CameraSize", "Viewer.CameraLineWidth",
+          "Viewer.ViewpointX", "Viewer.ViewpointY", "Viewer.ViewpointZ", "Viewer.ViewpointF",
+          "Viewer.imageViewScale", "Stereo.ThDepth", "IMU.NoiseGyro", "IMU.NoiseAcc", "IMU.AccWalk",
+          "IMU.Frequency"})
+      QVERIFY2(opened[key].isReal(), key);
+    const auto of_lens = [](const std::string& note) {
+      return note.find("takes camera 1's distortion for camera 2") != std::string::npos;
+    };
+    QCOMPARE(std::count_if(exported.notes.begin(), exported.notes.end(), of_lens), 1);
   }
 
   void orbSlam3_withoutImu_countsTimeByTheFirstCamera() {
