@@ -74,6 +74,12 @@ bool hasNamedBoards(const Session& session) {
   return !session.further_boards.empty() || session.board_name != Session().board_name;
 }
 
+bool isSensor(const Session& session, const std::string& name) {
+  const auto named = [&](const auto& sensor) { return sensor.name == name; };
+  return std::any_of(session.cameras.begin(), session.cameras.end(), named) ||
+         std::any_of(session.imus.begin(), session.imus.end(), named);
+}
+
 // Of several, each camera sees one, each is seen, and the first is the world.
 void checkBoards(const Session& session, const std::string& place) {
   std::vector<std::string> names = {session.board_name};
@@ -88,6 +94,11 @@ void checkBoards(const Session& session, const std::string& place) {
       throw badInput(key, fmt::format("there is no board '{}'", name), nameAdvice(name, names));
     seen[session.boardIndexOf(k)] = true;
   }
+  // Both are the beginnings of quantities' names.
+  for (const std::string& name : hasNamedBoards(session) ? names : std::vector<std::string>())
+    if (isSensor(session, name))
+      throw badInput(fmt::format("{}: boards.{}", place, name), "is also a sensor's name",
+                     "Call one of them otherwise");
   for (std::size_t i = 0; i < names.size(); ++i)
     if (!seen[i])
       throw badInput(fmt::format("{}: boards.{}", place, names[i]), "no camera sees it",

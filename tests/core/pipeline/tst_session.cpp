@@ -301,6 +301,9 @@ class TestSession : public QObject {
                               << QStringList{"cameras.left.board", "is missing"};
     QTest::newRow("other name") << "boards:\n" + plate << "board: plat"
                                 << QStringList{"cameras.left.board", "Did you mean 'plate'"};
+    QTest::newRow("of a sensor") << "boards:\n" + QString(plate).replace("plate", "left_imu")
+                                 << "board: left_imu"
+                                 << QStringList{"boards.left_imu", "is also a sensor's name"};
     QTest::newRow("both") << kCircles + "boards:\n" + plate << "board: plate"
                           << QStringList{"boards", "is there beside board"};
     QTest::newRow("symmetric") << "boards:\n" + QString(plate).replace("11", "10") << "board: plate"
