@@ -8,6 +8,7 @@
 #include "core/data/calibration_stage.h"
 #include "core/frontend/board_tracker.h"
 #include "core/frontend/stage_image_writer.h"
+#include "core/pipeline/board_size_check.h"
 #include "core/pipeline/recording_pass.h"
 #include "core/pipeline/result_files.h"
 
@@ -62,8 +63,9 @@ int run(const DetectArguments& arguments) {
   writeDetectionFiles(arguments.output, session, pass, console.logText());
   console.stageStarted("done");
   for (const BoardObservations& camera : pass.cameras) {
-    print("{}: {} events, board in {} of {} windows\n", camera.camera, camera.events, camera.views.size(),
-          camera.windows.size());
+    print("{}: {} {}, board in {} of {} {}\n", camera.camera, camera.events, measurementsOf(camera.kind),
+          camera.views.size(), camera.windows.size(),
+          camera.kind == CameraKind::Events ? "windows" : "frames");
     std::vector<int> counts(kWindowOutcomeCount, 0);
     for (const WindowReport& window : camera.windows) ++counts[static_cast<std::size_t>(window.outcome)];
     for (std::size_t k = 0; k < counts.size(); ++k) {
