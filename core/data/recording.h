@@ -30,8 +30,9 @@ struct StreamInfo {
   // Where times are the sensor's own and the file also tells when the host received them: what to add to get
   // the host's, as IMU samples from elsewhere have them. Better once all has been read.
   std::optional<double> host_clock_offset_s = std::nullopt;
-  bool readable = true;  // false: it is only listed; a fault says why where that is not obvious
-  bool timed = true;     // false: pictures without times, numbered 1 s apart; they tell intrinsics only
+  bool readable = true;     // false: it is only listed; a fault says why where that is not obvious
+  bool timed = true;        // false: pictures without times, numbered 1 s apart; they tell intrinsics only
+  std::string source = {};  // the device that gave it, where the file says so: "DAVIS346_00000002"
 };
 
 // What one call of RecordingReader::read hands out, all of one stream: some events, some samples in the stream's

@@ -131,6 +131,7 @@ void Aedat4Reader::addStreams(std::vector<aedat::StreamDescription> described,
     const auto found = listed.find(described[i].id);
     StreamInfo info;
     info.name = names[i];
+    info.source = described[i].source;
     info.message = described[i].type;
     info.type = type ? type->type : StreamType::Other;
     info.readable = info.type != StreamType::Triggers && info.type != StreamType::Other;

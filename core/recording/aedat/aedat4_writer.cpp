@@ -1,4 +1,5 @@
 #include "core/base/error.h"
+#include "core/recording/aedat/device_names.h"
 #include "core/recording/aedat/packet_compression.h"
 #include "core/recording/aedat/packets.h"
 #include "core/recording/aedat/stream_description.h"
@@ -27,7 +28,8 @@ class Aedat4Writer : public RecordingWriter {
                aedat::Compression compression)
       : path_(path.string()), file_(path), compression_(compression) {
     std::vector<aedat::StreamDescription> descriptions;
-    for (const StreamInfo& stream : streams) descriptions.push_back(describe(stream));
+    const std::vector<aedat::DeviceName> names = aedat::deviceNames(streams);
+    for (std::size_t i = 0; i < streams.size(); ++i) descriptions.push_back(describe(streams[i], names[i]));
     aedat::FileHeader header;
     header.compression = static_cast<std::int32_t>(compression);
     header.description = aedat::descriptionsXml(descriptions, aedat::compressionName(compression));
@@ -75,7 +77,7 @@ class Aedat4Writer : public RecordingWriter {
     return elements.size() >= most || time_ns - elements.front().time_ns >= kPacketSpan_ns;
   }
 
-  aedat::StreamDescription describe(const StreamInfo& stream) {
+  aedat::StreamDescription describe(const StreamInfo& stream, const aedat::DeviceName& name) {
     const bool events = stream.type == StreamType::Events;
     if (!events && stream.type != StreamType::Imu) {
       throw badInput(path_, fmt::format("stream {} holds neither events nor IMU samples", stream.name));
@@ -86,9 +88,9 @@ class Aedat4Writer : public RecordingWriter {
     }
     aedat::StreamDescription description;
     description.id = static_cast<std::int32_t>(streams_.size());
-    description.name = stream.name;
+    description.name = name.output;
     description.type = events ? "EVTS" : "IMUS";
-    description.source = "Evical";
+    description.source = name.source;
     description.size_px = stream.resolution_px;
     streams_.push_back({stream, {}, {}});
     return description;

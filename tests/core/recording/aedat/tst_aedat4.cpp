@@ -93,6 +93,8 @@ class TestAedat4 : public QObject {
   void compressions_allRead_data();
   void compressions_allRead();
   void twoCameras_haveTheirSourceInTheName();
+  void namesOfDevices_areKept_data();
+  void namesOfDevices_areKept();
   void withoutXml_packetsTellTheType();
   void cutAnywhere_readsWhatIsWhole();
   void damageAnywhere_neverCrashes_data();
@@ -126,7 +128,7 @@ void TestAedat4::roundTrip_keepsEventsAndSamples() {
   const std::vector<ImuSample> samples = someSamples(500);
   const std::filesystem::path path = folder_ / "round_trip.aedat4";
   const auto writer = createAedat4(
-      path, {{"left <1>", StreamType::Events, "", {64, 48}}, {"imu", StreamType::Imu, "", {}}}, zstd);
+      path, {{"/left <1>/dvs", StreamType::Events, "", {64, 48}}, {"/imu", StreamType::Imu, "", {}}}, zstd);
   for (std::size_t i = 0; i < 50; ++i) {
     writer->write(0, EventSpan(events).subspan(i * 1000, 1000));
     writer->write(1, std::span(samples).subspan(i * 10, 10));
@@ -135,7 +137,10 @@ void TestAedat4::roundTrip_keepsEventsAndSamples() {
   const Contents contents = readAll(path);
   QVERIFY(contents.faults.empty());
   QCOMPARE(contents.streams.size(), 2u);
-  QCOMPARE(contents.streams[0].name, std::string("left <1>"));
+  // As dv-processing looks for them, of the one camera there is.
+  QCOMPARE(contents.streams[0].name, std::string("events"));
+  QCOMPARE(contents.streams[1].name, std::string("imu"));
+  for (const StreamInfo& stream : contents.streams) QCOMPARE(stream.source, std::string("left <1>"));
   QCOMPARE(contents.streams[0].resolution_px.width_px, 64);
   QCOMPARE(contents.streams[0].messages, 50'000u);  // by the table
   QCOMPARE(contents.streams[0].time_unit_ns, std::int64_t{1000});
@@ -183,6 +188,43 @@ void TestAedat4::twoCameras_haveTheirSourceInTheName() {
   QVERIFY(contents.streams[4].type == StreamType::Frames);
   QCOMPARE(contents.events.at(0).size(), 7u);
   QCOMPARE(contents.events.at(2).size(), 9u);
+}
+
+void TestAedat4::namesOfDevices_areKept_data() {
+  using Names = QStringList;
+  QTest::addColumn<QStringList>("topics");  // events, but for those that end with imu
+  QTest::addColumn<QString>("source");      // of all of them
+  QTest::addColumn<QStringList>("read");
+  QTest::newRow("a camera") << Names{"/davis/events", "/davis/imu"} << ""
+                            << Names{"davis: events", "davis: imu"};
+  QTest::newRow("without a device") << Names{"events", "imu"} << "" << Names{"Evical: events", "Evical: imu"};
+  QTest::newRow("two cameras") << Names{"/left/events", "/left/imu", "/right/events", "/right/imu"} << ""
+                               << Names{"left: left/events", "left: left/imu", "right: right/events",
+                                        "right: right/imu"};
+  QTest::newRow("two IMUs") << Names{"/davis/events", "/davis/imu", "/board/imu"} << ""
+                            << Names{"davis: events", "davis: /davis/imu", "davis: /board/imu"};
+  QTest::newRow("as it was") << Names{"DAVIS346_2/accumulated"} << "DAVIS346_2"
+                             << Names{"DAVIS346_2: events"};
+}
+
+void TestAedat4::namesOfDevices_areKept() {
+  QFETCH(const QStringList, topics);
+  QFETCH(const QString, source);
+  QFETCH(const QStringList, read);
+  std::vector<StreamInfo> streams;
+  for (const QString& topic : topics) {
+    StreamInfo& stream = streams.emplace_back();
+    stream.name = topic.toStdString();
+    stream.type = topic.endsWith("imu") ? StreamType::Imu : StreamType::Events;
+    stream.resolution_px = {64, 48};
+    stream.source = source.toStdString();
+  }
+  const std::filesystem::path path = folder_ / "names.aedat4";
+  createAedat4(path, streams, false)->finish();
+  QStringList found;
+  for (const StreamInfo& stream : readAll(path).streams)
+    found << QString::fromStdString(stream.source + ": " + stream.name);
+  QCOMPARE(found, read);
 }
 
 void TestAedat4::withoutXml_packetsTellTheType() {
