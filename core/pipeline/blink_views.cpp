@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 
 namespace evical {
 
@@ -45,7 +46,13 @@ void checkBlinkingBoardSeen(const BoardObservations& observations, const Board& 
 std::optional<CalibrationError> unexpectedBlink(const Session& session, std::size_t camera) {
   constexpr double kLooks = 3.0;
   if (session.board_blinks) return std::nullopt;
-  SessionRecording recording(session);
+  std::unique_ptr<SessionRecording> opened;
+  try {
+    opened = std::make_unique<SessionRecording>(session);
+  } catch (const CalibrationError&) {
+    return std::nullopt;  // gone since it was detected: it tells nothing
+  }
+  SessionRecording& recording = *opened;
   if (recording.camera(camera).type != StreamType::Events) return std::nullopt;
   const Resolution size_px = recording.resolution_px(camera);
   const double begin_s = session.time_range_s ? session.time_range_s->front() : 0.0;

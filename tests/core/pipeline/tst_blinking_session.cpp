@@ -1,4 +1,5 @@
 // What a session may say of a board that blinks, and of several recordings of it.
+#include "core/pipeline/blink_views.h"
 #include "core/pipeline/session.h"
 #include "tests/core/pipeline/refused_session.h"
 #include "tests/support/test_program.h"
@@ -80,6 +81,15 @@ class TestBlinkingSession : public QObject {
     } catch (const CalibrationError& error) {
       test::verifyRefusal(error, said);
     }
+  }
+
+  // A run may start from detections whose recording is elsewhere by now.
+  void recordingThatIsGone_tellsNothing() {
+    Session session;
+    session.recording = folder() / "gone.bag";
+    session.cameras.push_back({"left", "/left/events", {64, 48}, {}});
+    session.reference = "left";
+    QVERIFY(!unexpectedBlink(session, 0));
   }
 
  private:
