@@ -20,7 +20,10 @@ namespace {
 const QStringList kResultFiles = {"detections.csv", "detections.yaml", "kalibr",
                                   "log.txt",        "plots",           "report.html",
                                   "result.yaml",    "trajectory.csv",  "windows.csv"};
-const QStringList kKalibrFiles = {"camchain-imucam.yaml", "camchain.yaml", "imu.yaml"};
+// With an input file for the IMU of this name.
+QStringList kalibrFiles(const QString& imu) {
+  return {"camchain-imucam.yaml", "camchain.yaml", "imu.yaml", "input-" + imu + ".yaml"};
+}
 
 QString session(const QString& recording = "short") {
   return simulated(recording) + "/session.yaml";
@@ -50,6 +53,7 @@ class TestCommandLine : public QObject {
   void export_writesTheFoldersOfTargets();
   void export_ofBadInputWritesNothing_data();
   void export_ofBadInputWritesNothing();
+  void export_goesOnWhereOneTargetRefuses();
   void import_writesASession();
   void init_writesTheSessionThatTheRecordingSuggests_data();
   void init_writesTheSessionThatTheRecordingSuggests();
@@ -173,7 +177,7 @@ void TestCommandLine::calibrate_writesAResultNearTheTruth() {
   const Outcome outcome = runProgram({"calibrate", session(recording), "-o", result});
   VERIFY_EXIT(outcome, 0);
   QCOMPARE(filesIn(result), kResultFiles);
-  QCOMPARE(filesIn(result + "/kalibr"), kKalibrFiles);
+  QCOMPARE(filesIn(result + "/kalibr"), kalibrFiles("left_imu"));
   const QByteArray yaml = readFile(result + "/result.yaml");
   for (const char* key :
        {"evical_result: 1", "status: ", "reference: left_imu", "rotation_std_deg:", "time_offset_std_s:",
@@ -218,7 +222,7 @@ void TestCommandLine::export_writesTheFoldersOfTargets() {
         runProgram({"export", result, "--to", "kalibr,openvins", "--to", "ros", "-o", output});
     VERIFY_EXIT(outcome, 0);
     QCOMPARE(filesIn(output), (QStringList{"kalibr", "openvins", "ros"}));
-    QCOMPARE(filesIn(output + "/kalibr"), kKalibrFiles);
+    QCOMPARE(filesIn(output + "/kalibr"), kalibrFiles("imu"));
     QVERIFY(outcome.output.contains("random walks are not measured"));
   }
 }
@@ -239,7 +243,7 @@ void TestCommandLine::export_ofBadInputWritesNothing_data() {
       << "no board";
   QTest::newRow("unknown target") << kSmallResult << "kalibre"
                                   << "Did you mean 'kalibr'?";
-  QTest::newRow("one camera as a pair") << kSmallResult << "kalibr,esvo"
+  QTest::newRow("one camera as a pair") << kSmallResult << "esvo"
                                         << "has one camera";
 }
 
@@ -254,6 +258,16 @@ void TestCommandLine::export_ofBadInputWritesNothing() {
   VERIFY_EXIT(outcome, 2);
   QVERIFY2(outcome.reason().contains(said), qPrintable(outcome.errors));
   QVERIFY(!QFileInfo::exists(folder.filePath("out")));
+}
+
+void TestCommandLine::export_goesOnWhereOneTargetRefuses() {
+  QTemporaryDir folder;
+  writeFile(folder.filePath("result.yaml"), kSmallResult);
+  const Outcome outcome =
+      runProgram({"export", folder.path(), "--to", "esvo,kalibr", "-o", folder.filePath("out")});
+  VERIFY_EXIT(outcome, 1);
+  QVERIFY2(outcome.reason().contains("esvo: not exported: "), qPrintable(outcome.errors));
+  QCOMPARE(filesIn(folder.filePath("out")), QStringList{"kalibr"});
 }
 
 void TestCommandLine::import_writesASession() {
