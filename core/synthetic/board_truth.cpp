@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 
 namespace evical {
@@ -83,7 +84,9 @@ std::vector<TrueCircle> trueBoardView(const SinusoidMotion& motion, const Scenar
   const RigidTransform now = motion.boardFromCamera(index, time_s),
                        before = motion.boardFromCamera(index, time_s - kStep_s),
                        after = motion.boardFromCamera(index, time_s + kStep_s);
-  const Scenario scene = sceneOf(scenario, index);
+  std::optional<Scenario> of_further;
+  if (furtherBoardOf(scenario, index)) of_further = sceneOf(scenario, index);
+  const Scenario& scene = of_further ? *of_further : scenario;
   const BoardSurface surface(scene);
   const std::optional<Figure> hand = handAt(scene, time_s);
   std::vector<TrueCircle> circles;

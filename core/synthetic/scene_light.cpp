@@ -25,6 +25,12 @@ constexpr std::array<std::array<float, 2>, 12> kAround = {{{1, 0},
                                                            {0, 0.5f},
                                                            {0, -0.5f}}};
 
+// The sheet ends so far from the outer circles' centres, or from the ink of other boards.
+float marginOf(const Scenario& scenario) {
+  const Board& board = scenario.board;
+  return static_cast<float>(scenario.scene.margin_m - (board.hasCircles() ? board.printBeyond_m() : 0.0));
+}
+
 Eigen::Matrix3f planeFromRay(const RigidTransform& camera_from_world, double depth_m) {
   const Eigen::Matrix3d r = camera_from_world.rotation.toRotationMatrix();
   Eigen::Matrix3d h;
@@ -47,6 +53,8 @@ Eigen::Matrix<float, 3, 2> rayPerPixel(const CameraIntrinsics& lens, const Eigen
 SceneLight::SceneLight(const Scenario& scenario, std::size_t camera, double optics_blur_px)
     : scenario_(scenario),
       pattern_(scenario.board),
+      sheet_low_m_(pattern_.low_m().array() - marginOf(scenario)),
+      sheet_high_m_(pattern_.high_m().array() + marginOf(scenario)),
       blur_px_(static_cast<float>(std::sqrt(optics_blur_px * optics_blur_px + 1.0 / 12.0))),
       texture_({scenario.seed, scenario.scene.clutter_contrast, scenario.scene.clutter_object_share,
                 blur_px_ * texelsPerPixel()}) {
@@ -110,15 +118,6 @@ SceneLight::Place SceneLight::placeOn(const Eigen::Matrix3f& plane_from_ray, std
   place.per_px =
       (plane_from_ray.topRows<2>() - place.at_m * plane_from_ray.row(2)) / h.z() * ray_per_px_[pixel];
   return place;
-}
-
-// It ends so far from the outer circles' centres, or from the ink of other boards.
-bool SceneLight::onSheet(const Eigen::Vector2f& p) const {
-  const Board& board = scenario_.board;
-  const auto margin =
-      static_cast<float>(scenario_.scene.margin_m - (board.hasCircles() ? board.printBeyond_m() : 0.0));
-  return (p.array() > pattern_.low_m().array() - margin).all() &&
-         (p.array() < pattern_.high_m().array() + margin).all();
 }
 
 SceneLight::Shares SceneLight::sharesOf(const Place& place) const {

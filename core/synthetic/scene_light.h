@@ -45,13 +45,16 @@ class SceneLight {
   double texelsPerPixel() const;
   void placeWeights();
   Place placeOn(const Eigen::Matrix3f& plane_from_ray, std::size_t pixel) const;
-  bool onSheet(const Eigen::Vector2f& p) const;
+  bool onSheet(const Eigen::Vector2f& p) const {
+    return (p.array() > sheet_low_m_).all() && (p.array() < sheet_high_m_).all();
+  }
   int shadeAt(const Eigen::Vector2f& p) const { return onSheet(p) ? (pattern_.isInk(p) ? 2 : 1) : 0; }
   Shares sharesOf(const Place& place) const;
   float backgroundOf(std::size_t pixel, const Eigen::Matrix3f& behind) const;
 
   Scenario scenario_;
   BoardPattern pattern_;
+  Eigen::Array2f sheet_low_m_, sheet_high_m_;  // its corners
   float blur_px_, paper_, ink_;
   ClutterTexture texture_;
   float texels_per_m_ = 1.0f;
