@@ -119,9 +119,7 @@ std::optional<Eigen::Vector2d> EventsOverFrame::inFrame(const Eigen::Vector3d& p
   const CameraIntrinsics& lens = *frames().lens.inUse();
   const auto pixel = project(lens, *frame_camera_from_world_ * point_in_world);
   if (!pixel || frames().line_delay_us == 0.0) return pixel;
-  const double rows_below_middle = pixel->y() - 0.5 * (lens.resolution_px.height_px - 1);
-  const auto then =
-      cameraFromWorldAt(*state_, frames(), frame_time_s_ + 1e-6 * frames().line_delay_us * rows_below_middle);
+  const auto then = cameraFromWorldAt(*state_, frames(), rowTime_s(frames(), frame_time_s_, pixel->y()));
   return then ? project(lens, *then * point_in_world) : pixel;
 }
 

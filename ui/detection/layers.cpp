@@ -244,9 +244,7 @@ std::optional<QPolygonF> imageInRows(int circle, const CalibrationState& state, 
   };
   const auto outline = imageAt(time_s);
   if (!outline || camera.line_delay_us == 0.0) return outline;
-  const double rows_below_middle =
-      outline->boundingRect().center().y() - 0.5 * (lens.resolution_px.height_px - 1);
-  return imageAt(time_s + 1e-6 * camera.line_delay_us * rows_below_middle);
+  return imageAt(rowTime_s(camera, time_s, outline->boundingRect().center().y()));
 }
 
 // By circle, in ideal pixels; only of those that were measured.

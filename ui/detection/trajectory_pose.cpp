@@ -14,6 +14,11 @@ std::optional<RigidTransform> cameraFromWorldAt(const CalibrationState& state, c
                          timeOffsetAt_s(camera, camera_time_s), camera_time_s);
 }
 
+double rowTime_s(const CameraState& camera, double frame_time_s, double y_px) {
+  const double middle_px = 0.5 * (camera.lens.inUse()->resolution_px.height_px - 1);
+  return frame_time_s + 1e-6 * camera.line_delay_us * (y_px - middle_px);
+}
+
 double timeOnClockOf_s(const CameraState& other, const CameraState& camera, double camera_time_s) {
   return sensorTime_s(other, referenceTime_s(camera, camera_time_s));
 }

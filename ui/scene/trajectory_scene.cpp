@@ -225,6 +225,7 @@ void TrajectoryScene::setBoard(const std::optional<Board>& board) {
 }
 
 void TrajectoryScene::setFurtherBoards(std::vector<PlacedBoard> boards) {
+  if (boards.empty() && d_->further_boards.empty()) return;
   d_->further_boards = std::move(boards);
   buildBoard();
 }
