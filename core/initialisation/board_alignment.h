@@ -18,8 +18,8 @@ namespace evical {
 
 // One camera that sees the board.
 struct BoardSight {
-  std::vector<CameraPose> poses;  // board_from_camera; camera time
-  double time_offset_s = 0.0;     // body_time = camera_time + time_offset_s
+  std::span<const CameraPose> poses;  // board_from_camera; camera time
+  double time_offset_s = 0.0;         // body_time = camera_time + time_offset_s
   Eigen::Quaterniond body_from_camera = Eigen::Quaterniond::Identity();
   std::optional<KnownVector> translation = {};  // of body_from_camera
 };

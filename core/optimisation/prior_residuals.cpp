@@ -146,7 +146,7 @@ void addKnownValues(ProblemBuilder& builder, const Rows& rows, const Prior& prio
 void addBoardPriors(ProblemBuilder& builder, std::size_t index) {
   constexpr double kWithin_m = 100.0;  // what no view tells of a board's place has an end
   BoardState& board = builder.parameters.moved().boardAt(index);
-  addPrior(builder, board.world_from_board.translation_m.data(), 3, kZero.data(), kWithin_m);
+  if (index > 0) addPrior(builder, board.world_from_board.translation_m.data(), 3, kZero.data(), kWithin_m);
   const auto addBow = [&](double& curvature_1_m, const QuantityInfo& info) {
     const double height_m = 1e-3 * builder.options.board_bow_sigma_mm;
     addPrior(builder, &curvature_1_m, 1, kZero.data(),

@@ -7,6 +7,7 @@
 #include "core/data/quantity_yaml.h"
 #include "core/numerics/angles.h"
 #include "core/report/intrinsics_report.h"
+#include "core/report/shown_quantity.h"
 
 #include <fmt/format.h>
 
@@ -160,9 +161,7 @@ std::string boardsYaml(const NamedResult& named) {
   }
   std::string text = "boards:\n";
   for (std::size_t i = 0; i < named.boards.size() && i <= result.state.further_boards.size(); ++i) {
-    const BoardUncertainty sigma =
-        i == 0 ? result.uncertainty.board : elementOrNone(result.uncertainty.further_boards, i - 1);
-    const std::string board = boardYaml(result.state.boardAt(i), sigma, 4);
+    const std::string board = boardYaml(result.state.boardAt(i), boardUncertainty(result.uncertainty, i), 4);
     text += fmt::format("  {}:{}\n", yamlText(named.boards[i]), board.empty() ? " {}" : "") + board;
   }
   return text;

@@ -71,9 +71,12 @@ std::vector<ShownQuantity> shownImu(const NamedResult& named, std::size_t imu, b
 std::vector<ShownQuantity> shownBoard(const NamedResult& named, std::size_t board) {
   const CalibrationResult& result = *named.result;
   if (board > result.state.further_boards.size()) return {};
-  const BoardUncertainty sigma =
-      board == 0 ? result.uncertainty.board : elementOrNone(result.uncertainty.further_boards, board - 1);
-  return shown(kBoardQuantities, named.boards.at(board), result.state.boardAt(board), sigma, board > 0);
+  return shown(kBoardQuantities, named.boards.at(board), result.state.boardAt(board),
+               boardUncertainty(result.uncertainty, board), board > 0);
+}
+
+BoardUncertainty boardUncertainty(const UncertaintyReport& report, std::size_t board) {
+  return board == 0 ? report.board : elementOrNone(report.further_boards, board - 1);
 }
 
 std::string boardTitle(const NamedResult& named, std::size_t board) {

@@ -27,6 +27,8 @@ std::vector<ShownQuantity> shownCamera(const NamedResult& named, std::size_t cam
 std::vector<ShownQuantity> shownImu(const NamedResult& named, std::size_t imu, bool with_place = true);
 // None where its size is held; of a further board also its place in the world.
 std::vector<ShownQuantity> shownBoard(const NamedResult& named, std::size_t board);
+BoardUncertainty boardUncertainty(const UncertaintyReport& report,
+                                  std::size_t board);                 // all 0 where there is none
 std::string boardTitle(const NamedResult& named, std::size_t board);  // "Board", or "Board tags" of several
 
 // "ms against the gyroscope"
