@@ -3,32 +3,12 @@
 #include "core/synthetic/board_truth.h"
 #include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "tests/support/scenario_session.h"
 
 namespace evical::test {
 namespace {
 
 constexpr double kNoise_px = 0.05, kWindow_s = 0.02;
-
-Session sessionOf(const Scenario& scenario) {
-  Session session;
-  session.source = "session.yaml";
-  session.board = scenario.board;
-  for (const SimulatedBoard& further : scenario.further_boards)
-    session.further_boards.push_back({further.name, further.board});
-  for (const SimulatedCamera& camera : scenario.cameras) {
-    session.cameras.push_back(
-        {camera.name, camera.stream, camera.intrinsics.resolution_px, camera.intrinsics});
-    if (!scenario.further_boards.empty()) session.cameras.back().board = camera.board;
-  }
-  for (const SimulatedImu& imu : scenario.imus) {
-    SessionImu& known = session.imus.emplace_back();
-    known.name = imu.name;
-    known.stream = imu.stream;
-    known.noise = {imu.gyroscope_density, imu.accelerometer_density};
-  }
-  session.reference = scenario.imus.empty() ? scenario.cameras.front().name : scenario.imus.front().name;
-  return session;
-}
 
 BoardObservations observationsOf(const Scenario& scenario, std::size_t camera) {
   BoardObservations observations = simulateObservations(scenario, camera, kNoise_px, kWindow_s);
@@ -54,7 +34,8 @@ SimulatedPass simulatePass(double duration_s, const Scenario& scenario) {
   SimulatedPass simulated;
   simulated.truth = scenario;
   simulated.truth.duration_s = duration_s;
-  simulated.session = sessionOf(simulated.truth);
+  simulated.session = sessionFor(simulated.truth);
+  simulated.session.source = "session.yaml";
   simulated.pass.start_ns = simulated.truth.start_ns;
   for (std::size_t k = 0; k < simulated.truth.cameras.size(); ++k) {
     simulated.pass.cameras.push_back(observationsOf(simulated.truth, k));

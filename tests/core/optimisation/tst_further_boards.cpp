@@ -1,8 +1,6 @@
 // Cameras that see different boards: where these stand against each other is estimated, too.
 #include "core/data/quantity_difference.h"
-#include "core/optimisation/batch_optimiser.h"
-#include "core/optimisation/uncertainty/covariance.h"
-#include "tests/core/optimisation/simulated_rig.h"
+#include "tests/core/optimisation/solved_rig.h"
 #include "tests/support/test_program.h"
 
 #include <algorithm>
@@ -16,18 +14,6 @@ test::SimulatedRig rigOf(unsigned seed) {
   test::RigOptions options = test::shortRecording(seed);
   options.further_board = true;
   return test::simulateRig(options);
-}
-
-struct Solved {
-  BatchSolution solution;
-  UncertaintyEstimate estimate;
-};
-
-Solved solve(const test::SimulatedRig& rig, unsigned seed) {
-  const OptimisationOptions options = test::withoutPixelDelay();
-  Solved solved{optimiseBatch(rig.input, test::disturbed(rig.truth, seed), options, RunContext{}), {}};
-  solved.estimate = estimateUncertainty(rig.input, solved.solution, options, RunContext{});
-  return solved;
 }
 
 Estimate estimateOf(const test::SimulatedRig& rig, const CalibrationState& state,
@@ -52,10 +38,6 @@ bool isOfPlace(const QuantityDifference& quantity) {
   return has(".rotation.") || has(".translation.") || has(".time_offset");
 }
 
-QByteArray text(double number) {
-  return QByteArray::number(number);
-}
-
 }  // namespace
 
 class TestFurtherBoards : public QObject {
@@ -68,7 +50,7 @@ class TestFurtherBoards : public QObject {
     int count = 0, board_count = 0;
     for (unsigned seed = 1; seed <= kSeeds; ++seed) {
       const test::SimulatedRig rig = rigOf(seed);
-      const Solved solved = solve(rig, seed);
+      const test::SolvedRig solved = solve(rig, seed, test::withoutPixelDelay());
       UncertaintyReport nothing;
       nothing.cameras.resize(2);
       nothing.imus.resize(1);
@@ -85,13 +67,13 @@ class TestFurtherBoards : public QObject {
     }
     QCOMPARE(board_count, static_cast<int>(6 * kSeeds));
     const double cameras_rms = std::sqrt(squares / count), board_rms = std::sqrt(of_board / board_count);
-    QVERIFY2(cameras_rms > 0.7 && cameras_rms < 1.4, text(cameras_rms));
-    QVERIFY2(board_rms > 0.7 && board_rms < 1.4, text(board_rms));
+    QVERIFY2(cameras_rms > 0.7 && cameras_rms < 1.4, QByteArray::number(cameras_rms));
+    QVERIFY2(board_rms > 0.7 && board_rms < 1.4, QByteArray::number(board_rms));
   }
 
   void theWorldsBoard_hasNoPlaceOfItsOwn() {
     const test::SimulatedRig rig = rigOf(1);
-    const Solved solved = solve(rig, 1);
+    const test::SolvedRig solved = solve(rig, 1, test::withoutPixelDelay());
     QCOMPARE(solved.solution.state.board.world_from_board.translation_m, Eigen::Vector3d::Zero().eval());
     const std::vector<std::string>& names = solved.estimate.report.names;
     const auto reported = [&](const char* name) {
@@ -103,11 +85,11 @@ class TestFurtherBoards : public QObject {
 
   void sizesThatContradictEachOther_areToldOf() {
     test::SimulatedRig rig = rigOf(2);
-    QVERIFY(solve(rig, 2).estimate.scale_doubt.empty());
+    QVERIFY(solve(rig, 2, test::withoutPixelDelay()).estimate.scale_doubt.empty());
     Board& board = rig.input.further_boards[0].board;
     board.spacing_m *= 1.02;
     board.radius_m *= 1.02;
-    const std::string doubt = solve(rig, 2).estimate.scale_doubt;
+    const std::string doubt = solve(rig, 2, test::withoutPixelDelay()).estimate.scale_doubt;
     QVERIFY2(doubt.find("boards.board and boards.tags contradict each other") == 0, doubt.c_str());
     QVERIFY2(doubt.find("smaller than its spacing_m") != std::string::npos, doubt.c_str());
   }

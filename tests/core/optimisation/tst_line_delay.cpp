@@ -30,10 +30,6 @@ BatchSolution solve(const test::SimulatedRig& rig, unsigned seed) {
   return optimiseBatch(rig.input, test::disturbed(rig.truth, seed), heldLens(), RunContext{});
 }
 
-QByteArray text(double number) {
-  return QByteArray::number(number);
-}
-
 }  // namespace
 
 class TestLineDelay : public QObject {
@@ -50,8 +46,8 @@ class TestLineDelay : public QObject {
           estimateUncertainty(rig.input, solution, heldLens(), RunContext{}).report;
       const double error_us = solution.state.cameras[0].line_delay_us - kLineDelay_us;
       const double sigma_us = report.cameras[0].line_delay_std_us;
-      QVERIFY2(sigma_us > 0.01 && sigma_us < 0.3, text(sigma_us));
-      QVERIFY2(std::abs(error_us) < 4.0 * sigma_us, text(error_us));
+      QVERIFY2(sigma_us > 0.01 && sigma_us < 0.3, QByteArray::number(sigma_us));
+      QVERIFY2(std::abs(error_us) < 4.0 * sigma_us, QByteArray::number(error_us));
       delay += error_us * error_us / (sigma_us * sigma_us * kSeeds);
       QCOMPARE(report.names[8], std::string("left.line_delay [us]"));
       constexpr Eigen::Index kExtrinsics = 7;  // rotation, translation, time offset
@@ -60,8 +56,9 @@ class TestLineDelay : public QObject {
                                              .cwiseQuotient(report.standard_deviations.head(kExtrinsics));
       extrinsics += normalised.squaredNorm() / (kExtrinsics * kSeeds);
     }
-    QVERIFY2(std::sqrt(delay) > 0.6 && std::sqrt(delay) < 1.5, text(std::sqrt(delay)));
-    QVERIFY2(std::sqrt(extrinsics) > 0.7 && std::sqrt(extrinsics) < 1.4, text(std::sqrt(extrinsics)));
+    QVERIFY2(std::sqrt(delay) > 0.6 && std::sqrt(delay) < 1.5, QByteArray::number(std::sqrt(delay)));
+    QVERIFY2(std::sqrt(extrinsics) > 0.7 && std::sqrt(extrinsics) < 1.4,
+             QByteArray::number(std::sqrt(extrinsics)));
   }
 
   // Stamps at the begin of exposures that vary: half of what is longer passes before the middle.
@@ -79,11 +76,11 @@ class TestLineDelay : public QObject {
           estimateUncertainty(rig.input, solution, heldLens(), RunContext{}).report;
       const double error = solution.state.cameras[0].exposure_share - kShare;
       const double sigma = report.cameras[0].exposure_share_std;
-      QVERIFY2(sigma > 1e-3 && sigma < 0.03, text(sigma));
+      QVERIFY2(sigma > 1e-3 && sigma < 0.03, QByteArray::number(sigma));
       QCOMPARE(report.names[8], std::string("left.exposure_share [1]"));
       share += error * error / (sigma * sigma * kSeeds);
     }
-    QVERIFY2(std::sqrt(share) > 0.6 && std::sqrt(share) < 1.5, text(std::sqrt(share)));
+    QVERIFY2(std::sqrt(share) > 0.6 && std::sqrt(share) < 1.5, QByteArray::number(std::sqrt(share)));
   }
 
   void exposuresThatDoNotVary_leaveTheShareAt0() {

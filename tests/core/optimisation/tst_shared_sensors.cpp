@@ -1,8 +1,6 @@
 // Events and frames of one chip: one pose and one lens, and the events' latency.
-#include "core/optimisation/batch_optimiser.h"
-#include "core/optimisation/uncertainty/covariance.h"
 #include "core/optimisation/uncertainty/shared_sensors.h"
-#include "tests/core/optimisation/simulated_rig.h"
+#include "tests/core/optimisation/solved_rig.h"
 #include "tests/support/test_program.h"
 
 #include <algorithm>
@@ -19,23 +17,8 @@ test::SimulatedRig rigOf(unsigned seed, const Eigen::Vector3d& apart_m = Eigen::
   return test::simulateRig(options);
 }
 
-struct Solved {
-  BatchSolution solution;
-  UncertaintyEstimate estimate;
-};
-
-Solved solve(const test::SimulatedRig& rig, unsigned seed, const OptimisationOptions& options = {}) {
-  Solved solved{optimiseBatch(rig.input, test::disturbed(rig.truth, seed), options, RunContext{}), {}};
-  solved.estimate = estimateUncertainty(rig.input, solved.solution, options, RunContext{});
-  return solved;
-}
-
 bool reports(const UncertaintyReport& report, const std::string& name) {
   return std::find(report.names.begin(), report.names.end(), name) != report.names.end();
-}
-
-QByteArray text(double number) {
-  return QByteArray::number(number);
 }
 
 }  // namespace
@@ -49,22 +32,23 @@ class TestSharedSensors : public QObject {
     double squares = 0.0;
     for (unsigned seed = 1; seed <= kSeeds; ++seed) {
       const test::SimulatedRig rig = rigOf(seed);
-      const Solved solved = solve(rig, seed, test::withoutPixelDelay());
+      const test::SolvedRig solved = solve(rig, seed, test::withoutPixelDelay());
       const std::vector<SensorLatency> latencies =
           sensorLatencies(rig.input, solved.solution.state, solved.estimate.report);
       QCOMPARE(latencies.size(), std::size_t{1});
       QCOMPARE(latencies[0].camera, std::size_t{0});  // that of the events
       const double truth_s = rig.truth.cameras[1].time_offset_s - rig.truth.cameras[0].time_offset_s;
       const double error_s = latencies[0].latency_s - truth_s;
-      QVERIFY2(latencies[0].std_s > 1e-6 && latencies[0].std_s < 1e-4, text(latencies[0].std_s));
+      QVERIFY2(latencies[0].std_s > 1e-6 && latencies[0].std_s < 1e-4,
+               QByteArray::number(latencies[0].std_s));
       squares += error_s * error_s / (latencies[0].std_s * latencies[0].std_s * kSeeds);
     }
-    QVERIFY2(std::sqrt(squares) > 0.5 && std::sqrt(squares) < 1.5, text(std::sqrt(squares)));
+    QVERIFY2(std::sqrt(squares) > 0.5 && std::sqrt(squares) < 1.5, QByteArray::number(std::sqrt(squares)));
   }
 
   void poseAndLens_areOne_andNoLessCertainThanOfEventsAlone() {
     const test::SimulatedRig rig = rigOf(1);
-    const Solved both = solve(rig, 1);
+    const test::SolvedRig both = solve(rig, 1);
     const auto& cameras = both.solution.state.cameras;
     QCOMPARE(cameras[0].reference_from_camera.translation_m, cameras[1].reference_from_camera.translation_m);
     QCOMPARE(cameras[0].reference_from_camera.rotation.coeffs(),
@@ -90,7 +74,7 @@ class TestSharedSensors : public QObject {
     double squares = 0.0;
     for (unsigned seed = 1; seed <= kSeeds; ++seed) {
       test::SimulatedRig rig = rigOf(seed);
-      const Solved solved = solve(rig, seed);
+      const test::SolvedRig solved = solve(rig, seed);
       CalibrationState state = solved.solution.state;
       state.cameras.pop_back();  // whose quantities come in between
       rig.truth.cameras.pop_back();
@@ -100,7 +84,7 @@ class TestSharedSensors : public QObject {
                      .squaredNorm() /
                  (kExtrinsics * kSeeds);
     }
-    QVERIFY2(std::sqrt(squares) > 0.7 && std::sqrt(squares) < 1.4, text(std::sqrt(squares)));
+    QVERIFY2(std::sqrt(squares) > 0.7 && std::sqrt(squares) < 1.4, QByteArray::number(std::sqrt(squares)));
   }
 
   void anotherSensor_isToldOf() {
@@ -122,15 +106,16 @@ class TestSharedSensors : public QObject {
   void sensorsThatAreOnlyCompared_haveTheirOwn() {
     OptimisationOptions options;
     options.share_sensors = false;
-    const Solved same = solve(rigOf(1), 1, options);
+    const test::SolvedRig same = solve(rigOf(1), 1, options);
     QVERIFY(reports(same.estimate.report, "frames.translation.x [m]"));
     const auto& cameras = same.solution.state.cameras;
     QVERIFY(cameras[0].reference_from_camera.translation_m != cameras[1].reference_from_camera.translation_m);
-    const Solved other = solve(rigOf(1, {0.0, 0.02, 0.0}), 1, options);
+    const test::SolvedRig other = solve(rigOf(1, {0.0, 0.02, 0.0}), 1, options);
     const auto& apart = other.solution.state.cameras;
     const Eigen::Vector3d between_m =
         apart[1].reference_from_camera.translation_m - apart[0].reference_from_camera.translation_m;
-    QVERIFY2((between_m - Eigen::Vector3d(0.0, 0.02, 0.0)).norm() < 3e-3, text(between_m.norm()));
+    QVERIFY2((between_m - Eigen::Vector3d(0.0, 0.02, 0.0)).norm() < 3e-3,
+             QByteArray::number(between_m.norm()));
     const std::string& doubt = other.estimate.other_sensors;
     QVERIFY2(doubt.find("frames is not the same sensor as left") == 0, doubt.c_str());
   }
