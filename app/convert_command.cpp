@@ -30,8 +30,8 @@ Resolution resolutionIn(const std::string& text) {
 }
 
 void printSummary(const ConversionRequest& request, const ConversionSummary& made) {
-  print("{} events, {} IMU samples in {} ({})\n", made.events, made.imu_samples, request.output.string(),
-        made.format);
+  print("{} events, {} IMU samples{} in {} ({})\n", made.events, made.imu_samples,
+        made.frames > 0 ? fmt::format(", {} frames", made.frames) : "", request.output.string(), made.format);
   for (const RecordingFault& fault : made.faults)
     print("  {}: {}{}{}\n", nameOf(fault.kind), fault.stream, fault.stream.empty() ? "" : ": ", fault.text);
 }

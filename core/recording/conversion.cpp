@@ -17,16 +17,18 @@ namespace {
 
 constexpr std::size_t kNotWritten = static_cast<std::size_t>(-1);
 
-bool isWritable(const StreamInfo& stream) {
+bool isWritable(const StreamInfo& stream, const RecordingFormat& format) {
+  if (stream.type == StreamType::Frames) return format.frames && stream.readable && stream.timed;
   return stream.type == StreamType::Events || stream.type == StreamType::Imu;
 }
 
-std::vector<std::size_t> chosenStreams(const RecordingReader& reader, const ConversionRequest& request) {
+std::vector<std::size_t> chosenStreams(const RecordingReader& reader, const RecordingFormat& format,
+                                       const ConversionRequest& request) {
   std::vector<std::size_t> chosen;
   std::vector<std::string> missing = request.streams;
   for (std::size_t i = 0; i < reader.streams().size(); ++i) {
     const StreamInfo& stream = reader.streams()[i];
-    if (!isWritable(stream)) continue;
+    if (!isWritable(stream, format)) continue;
     const bool named =
         std::find(request.streams.begin(), request.streams.end(), stream.name) != request.streams.end();
     if (named || request.streams.empty()) chosen.push_back(i);
@@ -35,26 +37,31 @@ std::vector<std::size_t> chosenStreams(const RecordingReader& reader, const Conv
   if (!missing.empty()) {
     std::string names;
     for (const StreamInfo& stream : reader.streams())
-      if (isWritable(stream)) names += (names.empty() ? "" : ", ") + stream.name;
-    throw badInput(missing.front(), "the recording has no stream of events or IMU samples with this name",
+      if (isWritable(stream, format)) names += (names.empty() ? "" : ", ") + stream.name;
+    throw badInput(missing.front(),
+                   fmt::format("the recording has no stream with this name that {} holds", format.name),
                    fmt::format("It has: {}", names.empty() ? "none" : names));
   }
   if (chosen.empty())
-    throw badInput(request.input.string(), "the recording has neither events nor IMU samples");
+    throw badInput(request.input.string(), fmt::format("the recording has neither events nor IMU samples{}",
+                                                       format.frames ? " nor frames with times" : ""));
   return chosen;
 }
 
 // Where nobody chose: what people may miss.
-void sayWhatIsLeftOut(const RecordingReader& reader, const ConversionRequest& request,
-                      const RunContext& context) {
+void sayWhatIsLeftOut(const RecordingReader& reader, const RecordingFormat& format,
+                      const ConversionRequest& request, const RunContext& context) {
   if (!request.streams.empty()) return;
   std::string names;
   for (const StreamInfo& stream : reader.streams())
-    if (stream.type == StreamType::Frames || stream.type == StreamType::Points)
+    if ((stream.type == StreamType::Frames && !isWritable(stream, format)) ||
+        stream.type == StreamType::Points)
       names += (names.empty() ? "" : ", ") + stream.name;
   if (!names.empty())
-    context.progress.log(LogLevel::Warning,
-                         fmt::format("Frames and points are not written; left out: {}.", names));
+    context.progress.log(
+        LogLevel::Warning,
+        fmt::format("{} holds no {}; left out: {}.", format.name,
+                    format.frames ? "points, nor frames without times" : "frames and points", names));
 }
 
 void checkPaths(const ConversionRequest& request) {
@@ -102,6 +109,7 @@ void copyPackets(RecordingReader& reader, RecordingWriter& writer, const std::ve
                  ConversionSummary& summary, const RunContext& context) {
   Packet packet;
   std::vector<ImuSample> samples;
+  bool exposed = false;
   while (reader.read(packet)) {
     context.throwIfStopped();
     context.progress.stageProgress(reader.fractionRead());
@@ -112,9 +120,16 @@ void copyPackets(RecordingReader& reader, RecordingWriter& writer, const std::ve
     toSi(packet.imu_samples, info.acceleration_unit, info.angular_rate_unit, samples);
     if (!packet.events.empty()) writer.write(target, EventSpan(packet.events));
     if (!samples.empty()) writer.write(target, std::span<const ImuSample>(samples));
+    for (const Frame& frame : packet.frames) {
+      writer.writeFrame(target, frame);
+      exposed = exposed || frame.exposure_s > 0.0;
+    }
     summary.events += packet.events.size();
     summary.imu_samples += samples.size();
+    summary.frames += packet.frames.size();
   }
+  if (exposed)
+    context.progress.log(LogLevel::Warning, "How long frames were exposed has no place in the new file.");
   summary.faults = reader.faults();
 }
 
@@ -136,8 +151,8 @@ ConversionSummary convertRecording(const ConversionRequest& request, const RunCo
       request.format.empty() ? recordingFormatOf(request.output) : recordingFormat(request.format);
   const std::unique_ptr<RecordingReader> reader = openRecording(request.input);
   checkPaths(request);
-  const std::vector<std::size_t> chosen = chosenStreams(*reader, request);
-  sayWhatIsLeftOut(*reader, request, context);
+  const std::vector<std::size_t> chosen = chosenStreams(*reader, format, request);
+  sayWhatIsLeftOut(*reader, format, request, context);
   ConversionSummary summary;
   summary.format = format.name;
   std::vector<std::size_t> targets(reader->streams().size(), kNotWritten);

@@ -1,4 +1,4 @@
-// Copies a recording's events and IMU samples into another format.
+// Copies a recording's events, IMU samples and, where the format holds them, frames into another format.
 #pragma once
 
 #include "core/base/progress.h"
@@ -14,14 +14,14 @@ namespace evical {
 struct ConversionRequest {
   std::filesystem::path input, output;
   std::string format;                // of recordingFormats(); empty: by the output's extension
-  std::vector<std::string> streams;  // names; all of events and IMU samples if empty
+  std::vector<std::string> streams;  // names; all that the format holds if empty
   Resolution resolution_px;          // of event streams whose file does not tell theirs
 };
 
 struct ConversionSummary {
   std::string format;
   std::vector<StreamInfo> streams;  // written; in SI units
-  std::uint64_t events = 0, imu_samples = 0;
+  std::uint64_t events = 0, imu_samples = 0, frames = 0;
   std::vector<RecordingFault> faults;  // of the input
 };
 

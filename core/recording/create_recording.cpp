@@ -26,8 +26,8 @@ std::unique_ptr<RecordingWriter> createLz4Aedat4(const std::filesystem::path& pa
 
 // One line a format; everything that writes recordings walks this table.
 constexpr RecordingFormat kFormats[] = {
-    {"bag", ".bag", "ROS 1 bag", createPlainBag},
-    {"mcap", ".mcap", "ROS 2 recording in MCAP, zstd", createPackedMcap},
+    {"bag", ".bag", "ROS 1 bag", createPlainBag, true},
+    {"mcap", ".mcap", "ROS 2 recording in MCAP, zstd", createPackedMcap, true},
     {"aedat4", ".aedat4", "iniVation AEDAT4", createLz4Aedat4},
     {"dsec", ".h5", "HDF5 in DSEC's layout, IMU samples in /imu", createDsec},
     {"text", "", "a folder with events.txt and imu.txt", createText},
@@ -41,6 +41,10 @@ std::string names() {
 }
 
 }  // namespace
+
+void RecordingWriter::writeFrame(std::size_t /*stream*/, const Frame& /*frame*/) {
+  throw badInput("recording", "this format holds no frames", "Formats that do: bag, mcap");
+}
 
 std::span<const RecordingFormat> recordingFormats() {
   return kFormats;

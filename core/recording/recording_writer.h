@@ -23,11 +23,14 @@ class RecordingWriter {
   // e.g. on a full disk.
   virtual void write(std::size_t stream, EventSpan events) = 0;
   virtual void write(std::size_t stream, std::span<const ImuSample> samples) = 0;
+  // As it is stored; of one stream either all encoded or none. Only where RecordingFormat::frames says so.
+  virtual void writeFrame(std::size_t stream, const Frame& frame);
   virtual void finish() = 0;
 };
 
-// A ROS 1 bag with dvs_msgs/EventArray and sensor_msgs/Imu; a stream's name is its topic, an event stream
-// needs its resolution. Times must be within [0, 2^32) s.
+// A ROS 1 bag with dvs_msgs/EventArray, sensor_msgs/Imu and, of frames, Image or (of JPEG and PNG files) CompressedImage,
+// which have no place for exposures; a stream's name is its topic, an event stream needs its resolution. Times must be
+// within [0, 2^32) s.
 std::unique_ptr<RecordingWriter> createBag(const std::filesystem::path& path,
                                            const std::vector<StreamInfo>& streams, bool lz4);
 
@@ -64,6 +67,7 @@ struct RecordingFormat {
   const char* description;  // for people
   std::unique_ptr<RecordingWriter> (*create)(const std::filesystem::path& path,
                                              const std::vector<StreamInfo>& streams);
+  bool frames = false;  // also holds frames
   bool isFolder() const { return *extension == '\0'; }
 };
 std::span<const RecordingFormat> recordingFormats();

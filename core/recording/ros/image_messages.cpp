@@ -1,6 +1,7 @@
 #include "core/recording/ros/image_messages.h"
 
 #include "core/data/picture_header.h"
+#include "core/recording/ros/message_bytes.h"
 
 #include <algorithm>
 #include <iterator>
@@ -104,6 +105,36 @@ bool toPackedFrame(const ImageMessage& image, Frame& frame) {
   if (kind != PictureKind::Jpeg && kind != PictureKind::Png) return false;
   assign(image, frame);
   frame.format = FrameFormat::Encoded;
+  return true;
+}
+
+bool encodeImage(const Frame& frame, std::uint32_t sequence, Serialization serialization,
+                 std::string& message) {
+  const auto* const encoding =
+      std::find_if(std::begin(kEncodings), std::end(kEncodings),
+                   [&](const ImageEncoding& known) { return known.format == frame.format; });
+  if (encoding == std::end(kEncodings)) return false;
+  MessageBytes bytes(message, serialization);
+  bytes.appendHeader(sequence, frame.time_ns);
+  bytes.append(static_cast<std::uint32_t>(frame.size_px.height_px));
+  bytes.append(static_cast<std::uint32_t>(frame.size_px.width_px));
+  bytes.appendText(encoding->name);
+  bytes.append(static_cast<std::uint8_t>(frame.big_endian ? 1 : 0));
+  bytes.append(static_cast<std::uint32_t>(frame.row_bytes));
+  bytes.appendSequence(frame.bytes);
+  return true;
+}
+
+bool encodePackedImage(const Frame& frame, std::uint32_t sequence, Serialization serialization,
+                       std::string& message) {
+  if (frame.format != FrameFormat::Encoded) return false;
+  const PictureKind kind =
+      pictureKind({reinterpret_cast<const char*>(frame.bytes.data()), frame.bytes.size()});
+  if (kind != PictureKind::Jpeg && kind != PictureKind::Png) return false;
+  MessageBytes bytes(message, serialization);
+  bytes.appendHeader(sequence, frame.time_ns);
+  bytes.appendText(kind == PictureKind::Jpeg ? "jpeg" : "png");
+  bytes.appendSequence(frame.bytes);
   return true;
 }
 

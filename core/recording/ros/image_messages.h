@@ -6,6 +6,7 @@
 #include "core/recording/ros/message_cursor.h"
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace evical::ros {
@@ -36,5 +37,12 @@ bool parsePackedImage(std::string_view message, Serialization serialization, Ima
 // bytes are no such picture.
 bool toFrame(const ImageMessage& image, Frame& frame);
 bool toPackedFrame(const ImageMessage& image, Frame& frame);
+
+// Both append a message; false, and nothing, where the frame has no place in one of its kind: packed ones hold JPEG and
+// PNG only. Exposures have no place in either.
+bool encodeImage(const Frame& frame, std::uint32_t sequence, Serialization serialization,
+                 std::string& message);
+bool encodePackedImage(const Frame& frame, std::uint32_t sequence, Serialization serialization,
+                       std::string& message);
 
 }  // namespace evical::ros

@@ -72,7 +72,38 @@ constexpr MessageType kImu2 = {
     "================================================================================\n"
     "MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n"};
 
-constexpr std::array kTypes = {&kEventArray1, &kEventArray2, &kEventPacket1, &kEventPacket2, &kImu1, &kImu2};
+constexpr MessageType kImage1 = {
+    Content::Image, "sensor_msgs/Image", "060021388200f6f0f447d0fcd9c64743",
+    "Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 step\nuint8[] "
+    "data\n"
+    "================================================================================\n"
+    "MSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n"};
+
+constexpr MessageType kImage2 = {
+    Content::Image, "sensor_msgs/msg/Image", "",
+    "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 "
+    "step\nuint8[] data\n"
+    "================================================================================\n"
+    "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n"
+    "================================================================================\n"
+    "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n"};
+
+constexpr MessageType kPackedImage1 = {
+    Content::PackedImage, "sensor_msgs/CompressedImage", "8f7a12909da2c9d3332d540a0977563f",
+    "Header header\nstring format\nuint8[] data\n"
+    "================================================================================\n"
+    "MSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n"};
+
+constexpr MessageType kPackedImage2 = {
+    Content::PackedImage, "sensor_msgs/msg/CompressedImage", "",
+    "std_msgs/Header header\nstring format\nuint8[] data\n"
+    "================================================================================\n"
+    "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n"
+    "================================================================================\n"
+    "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n"};
+
+constexpr std::array kTypes = {&kEventArray1, &kEventArray2, &kEventPacket1, &kEventPacket2, &kImu1,
+                               &kImu2,        &kImage1,      &kImage2,       &kPackedImage1, &kPackedImage2};
 
 struct KnownName {
   std::string_view type;  // as ROS 1 writes it
@@ -121,6 +152,13 @@ const MessageType& eventArrayType(Serialization serialization) {
 }
 const MessageType& imuType(Serialization serialization) {
   return serialization == Serialization::Cdr ? kImu2 : kImu1;
+}
+
+const MessageType& imageType(Serialization serialization) {
+  return serialization == Serialization::Cdr ? kImage2 : kImage1;
+}
+const MessageType& packedImageType(Serialization serialization) {
+  return serialization == Serialization::Cdr ? kPackedImage2 : kPackedImage1;
 }
 
 Content contentOf(std::string_view type, std::string_view md5, std::string_view definition) {

@@ -20,6 +20,8 @@ struct MessageType {
 };
 const MessageType& eventArrayType(Serialization serialization);
 const MessageType& imuType(Serialization serialization);
+const MessageType& imageType(Serialization serialization);
+const MessageType& packedImageType(Serialization serialization);
 
 // By md5 first, then by the names of packages that are known, then by the fields of the definition, and where
 // there is none by the last part of the name: packages get renamed and copied.

@@ -1,5 +1,7 @@
 #include "core/recording/ros/ros_messages.h"
 
+#include "core/recording/ros/message_bytes.h"
+
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -74,39 +76,6 @@ std::uint64_t sizeOfEvents(std::uint64_t count, Serialization serialization) {
   if (serialization == Serialization::Ros1) return count * kEventBytes;
   return count == 0 ? 0 : 16 * count - 3;
 }
-
-class MessageBytes {
- public:
-  MessageBytes(std::string& bytes, Serialization serialization)
-      : bytes_(bytes), cdr_(serialization == Serialization::Cdr), begin_(bytes.size()) {
-    if (cdr_) bytes_.append("\0\1\0\0", 4);
-    if (cdr_) begin_ += 4;
-  }
-
-  template <class Number>
-  void append(Number value) {
-    if (cdr_) bytes_.append((sizeof value - (bytes_.size() - begin_) % sizeof value) % sizeof value, '\0');
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
-  }
-
-  void appendTime(std::int64_t time_ns) {
-    append(static_cast<std::uint32_t>(time_ns / kSecond_ns));
-    append(static_cast<std::uint32_t>(time_ns % kSecond_ns));
-  }
-
-  // Without frame_id.
-  void appendHeader(std::uint32_t sequence, std::int64_t stamp_ns) {
-    if (!cdr_) append(sequence);
-    appendTime(stamp_ns);
-    append(std::uint32_t{cdr_ ? 1U : 0U});
-    if (cdr_) bytes_.push_back('\0');
-  }
-
- private:
-  std::string& bytes_;
-  bool cdr_;
-  std::size_t begin_;  // what alignment counts from
-};
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 #include "core/recording/ros/ros_writer.h"
 
 #include "core/base/error.h"
+#include "core/recording/ros/image_messages.h"
 #include "core/recording/ros/ros_messages.h"
 
 #include <fmt/format.h>
@@ -19,8 +20,9 @@ RosWriter::RosWriter(const std::filesystem::path& path, const std::vector<Stream
     : path_(path.string()), serialization_(serialization), seconds_end_(seconds_end) {
   for (const StreamInfo& stream : streams) {
     const bool events = stream.type == StreamType::Events;
-    if (!events && stream.type != StreamType::Imu) {
-      throw badInput(path_, fmt::format("stream {} holds neither events nor IMU samples", stream.name));
+    if (!events && stream.type != StreamType::Imu && stream.type != StreamType::Frames) {
+      throw badInput(path_,
+                     fmt::format("stream {} holds neither events, IMU samples nor frames", stream.name));
     }
     if (events && !stream.resolution_px.known()) {
       throw badInput(path_, fmt::format("the resolution of stream {} is missing", stream.name));
@@ -30,8 +32,10 @@ RosWriter::RosWriter(const std::filesystem::path& path, const std::vector<Stream
 }
 
 const MessageType& RosWriter::messageType(std::size_t stream) const {
-  const bool events = streams_[stream].info.type == StreamType::Events;
-  return events ? eventArrayType(serialization_) : imuType(serialization_);
+  const Stream& of = streams_[stream];
+  if (of.info.type == StreamType::Events) return eventArrayType(serialization_);
+  if (of.info.type == StreamType::Imu) return imuType(serialization_);
+  return of.packed ? packedImageType(serialization_) : imageType(serialization_);
 }
 
 void RosWriter::write(std::size_t stream, EventSpan events) {
@@ -55,6 +59,20 @@ void RosWriter::write(std::size_t stream, std::span<const ImuSample> samples) {
     encodeImu(sample, target.sequence, serialization_, message_);
     appendMessage(stream, target.sequence++, sample.time_ns, message_);
   }
+}
+
+void RosWriter::writeFrame(std::size_t stream, const Frame& frame) {
+  Stream& target = checkedStream(stream, StreamType::Frames);
+  requireTime(frame.time_ns);
+  if (target.sequence == 0) target.packed = frame.format == FrameFormat::Encoded;
+  message_.clear();
+  const bool encoded = target.packed ? encodePackedImage(frame, target.sequence, serialization_, message_)
+                                     : encodeImage(frame, target.sequence, serialization_, message_);
+  if (!encoded)
+    throw calibrationFailed(
+        path_, fmt::format("a frame of {} has no place among sensor_msgs", target.info.name),
+        "JPEG, PNG and plain pixels have; of one stream all frames are either files or plain pixels");
+  appendMessage(stream, target.sequence++, frame.time_ns, message_);
 }
 
 void RosWriter::flushEvents() {

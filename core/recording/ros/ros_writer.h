@@ -16,10 +16,11 @@ class RosWriter : public RecordingWriter {
  public:
   void write(std::size_t stream, EventSpan events) override;
   void write(std::size_t stream, std::span<const ImuSample> samples) override;
+  void writeFrame(std::size_t stream, const Frame& frame) override;
 
  protected:
   // Times must be within [0, seconds_end) s. Throws CalibrationError (BadInput) for streams that hold neither
-  // events nor IMU samples, or events without a resolution.
+  // events, IMU samples nor frames, or events without a resolution.
   RosWriter(const std::filesystem::path& path, const std::vector<StreamInfo>& streams,
             Serialization serialization, std::int64_t seconds_end);
 
@@ -36,6 +37,7 @@ class RosWriter : public RecordingWriter {
     StreamInfo info;
     std::uint32_t sequence = 0;
     std::vector<Event> events;  // of the message being gathered
+    bool packed = false;        // frames as files of their own, as the first is
   };
 
   void flushEvents(std::size_t stream);

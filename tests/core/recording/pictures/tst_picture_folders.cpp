@@ -52,7 +52,8 @@ class TestPictureFolders : public QObject {
   void listsThatLeaveTheFolder_areNotFollowed();
   void timesBeyondTheLimit_areLeftOut();
   void byDefault_picturesAreNotRead();
-  void conversion_leavesPicturesOutAndSaysSo();
+  void conversion_takesThemAlongOrSaysThatItDoesNot_data();
+  void conversion_takesThemAlongOrSaysThatItDoesNot();
   void cameras_areReadSideBySide();
   void emptyFolders_areNoRecording();
   void sizes_areRead_data();
@@ -315,7 +316,15 @@ void TestPictureFolders::byDefault_picturesAreNotRead() {
   QVERIFY_EXCEPTION_THROWN(pictures->select({7}), std::out_of_range);
 }
 
-void TestPictureFolders::conversion_leavesPicturesOutAndSaysSo() {
+void TestPictureFolders::conversion_takesThemAlongOrSaysThatItDoesNot_data() {
+  QTest::addColumn<QString>("output");
+  QTest::addColumn<int>("frames");
+  QTest::newRow("bag") << "a.bag" << 2;
+  QTest::newRow("MCAP") << "a.mcap" << 2;
+  QTest::newRow("AEDAT4") << "a.aedat4" << 0;
+}
+
+void TestPictureFolders::conversion_takesThemAlongOrSaysThatItDoesNot() {
   class Log : public ProgressSink {
    public:
     void stageStarted(std::string_view) override {}
@@ -323,16 +332,21 @@ void TestPictureFolders::conversion_leavesPicturesOutAndSaysSo() {
     void log(LogLevel, std::string_view text) override { said += text; }
     std::string said;
   };
+  QFETCH(QString, output);
+  QFETCH(int, frames);
   addEurocCamera("mav0/cam0", 2);
   scratch_->write("mav0/imu0/data.csv", kEurocImu);
   ConversionRequest request;
   request.input = *scratch_ / "mav0";
-  request.output = *scratch_ / "imu.bag";
+  request.output = *scratch_ / output.toStdString();
   Log log;
   const ConversionSummary summary = convertRecording(request, RunContext{log});
   QCOMPARE(summary.imu_samples, std::uint64_t{2});
-  QVERIFY2(log.said.find("cam0") != std::string::npos, log.said.c_str());
-  QCOMPARE(readAll(*scratch_ / "imu.bag").streams.size(), std::size_t{1});
+  QCOMPARE(summary.frames, static_cast<std::uint64_t>(frames));
+  QCOMPARE(log.said.find("left out: cam0") == std::string::npos, frames > 0);
+  const Contents contents = readEverything(request.output);
+  QCOMPARE(contents.frameCount(), static_cast<std::size_t>(frames));
+  QCOMPARE(contents.sampleCount(), std::size_t{2});
 }
 
 void TestPictureFolders::cameras_areReadSideBySide() {
