@@ -16,7 +16,11 @@
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <stop_token>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace evical {
@@ -30,12 +34,11 @@ struct DetectArguments : SessionArguments {
 // Draws windows of every camera, each into a folder of its name.
 class ImageWriters final : public CalibrationObserver {
  public:
-  ImageWriters(const DetectArguments& arguments, const Session& session)
-      : arguments_(arguments), session_(session) {}
+  ImageWriters(const DetectArguments& arguments, const Session& session, std::filesystem::path output)
+      : arguments_(arguments), session_(session), output_(std::move(output)) {}
 
   FrontEndObserver* windowObserver(std::size_t camera, const BoardTracker& tracker) override {
-    const std::filesystem::path folder =
-        std::filesystem::path(arguments_.output) / "images" / session_.cameras[camera].name;
+    const std::filesystem::path folder = output_ / "images" / session_.cameras[camera].name;
     makeOutputFolder(folder);
     writers_.push_back(std::make_unique<StageImageWriter>(folder, arguments_.every_nth, tracker.scene(),
                                                           &tracker.history(), session_.options.front_end));
@@ -45,32 +48,53 @@ class ImageWriters final : public CalibrationObserver {
  private:
   const DetectArguments& arguments_;
   const Session& session_;
+  std::filesystem::path output_;
   std::vector<std::unique_ptr<StageImageWriter>> writers_;
 };
 
-int run(const DetectArguments& arguments) {
-  const Session session = sessionFrom(arguments);
-  if (!session.more_recordings.empty())
-    throw badInput(arguments.session + ": recording", "is a list, and detections are shown of one recording",
-                   "Name one of them, or use 'evical intrinsics', which takes all");
-  makeOutputFolder(arguments.output);
+void printOutcome(const BoardObservations& camera) {
+  print("{}: {} {}, board in {} of {} {}\n", camera.camera, camera.events, measurementsOf(camera.kind),
+        camera.views.size(), camera.windows.size(), camera.kind == CameraKind::Events ? "windows" : "frames");
+  std::vector<int> counts(kWindowOutcomeCount, 0);
+  for (const WindowReport& window : camera.windows) ++counts[static_cast<std::size_t>(window.outcome)];
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    if (counts[k] > 0) print("  {:6} {}\n", counts[k], windowOutcomeName(static_cast<WindowOutcome>(k)));
+  }
+}
+
+void detectIn(const Session& session, const std::filesystem::path& output, const DetectArguments& arguments,
+              const std::stop_token& stop) {
+  makeOutputFolder(output);
   Console console(arguments.quiet);
-  ImageWriters images(arguments, session);
-  const RunContext context{console, stopOnSignals(), arguments.images ? &images : nullptr};
+  ImageWriters images(arguments, session, output);
+  const RunContext context{console, stop, arguments.images ? &images : nullptr};
   console.stageStarted(nameOf(CalibrationStage::Detect));
   const RecordingPass pass = readAndDetect(session, context);
   for (const RecordingFault& fault : pass.faults) console.log(LogLevel::Warning, fault.text);
-  writeDetectionFiles(arguments.output, session, pass, console.logText());
+  writeDetectionFiles(output, session, pass, console.logText());
   console.stageStarted("done");
-  for (const BoardObservations& camera : pass.cameras) {
-    print("{}: {} {}, board in {} of {} {}\n", camera.camera, camera.events, measurementsOf(camera.kind),
-          camera.views.size(), camera.windows.size(),
-          camera.kind == CameraKind::Events ? "windows" : "frames");
-    std::vector<int> counts(kWindowOutcomeCount, 0);
-    for (const WindowReport& window : camera.windows) ++counts[static_cast<std::size_t>(window.outcome)];
-    for (std::size_t k = 0; k < counts.size(); ++k) {
-      if (counts[k] > 0) print("  {:6} {}\n", counts[k], windowOutcomeName(static_cast<WindowOutcome>(k)));
+  for (const BoardObservations& camera : pass.cameras) printOutcome(camera);
+}
+
+// Of several recordings each into a folder of its name, numbered where two have the same.
+int run(const DetectArguments& arguments) {
+  const Session session = sessionFrom(arguments);
+  const std::stop_token stop = stopOnSignals();
+  std::vector<std::filesystem::path> recordings = session.more_recordings;
+  recordings.insert(recordings.begin(), session.recording);
+  std::map<std::string, int> taken;
+  for (const std::filesystem::path& recording : recordings) {
+    Session one = session;
+    one.recording = recording;
+    one.more_recordings.clear();
+    std::filesystem::path output = arguments.output;
+    if (recordings.size() > 1) {
+      const std::string name = recording.stem().string();
+      const int number = ++taken[name];
+      output /= number == 1 ? name : fmt::format("{}_{}", name, number);
+      print("{}\n", recording.string());
     }
+    detectIn(one, output, arguments, stop);
   }
   return kDone;
 }

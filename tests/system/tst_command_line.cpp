@@ -59,6 +59,7 @@ class TestCommandLine : public QObject {
   void init_writesTheSessionThatTheRecordingSuggests();
   void init_takesSensorsOfSeveralRecordings();
   void detect_writesDetectionsOnly();
+  void detect_ofSeveralRecordingsWritesAFolderEach();
   void calibrate_startsFromDetections();
   void quiet_saysNothingButTheResult();
   void interruption_leavesNothingHalfWritten_data();
@@ -342,6 +343,22 @@ void TestCommandLine::detect_writesDetectionsOnly() {
   const QStringList expected = {"detections.csv", "detections.yaml", "log.txt", "windows.csv"};
   QCOMPARE(filesIn(folder.filePath("seen")), expected);
   QVERIFY(readFile(folder.filePath("seen/detections.csv")).count('\n') > 1000);
+}
+
+void TestCommandLine::detect_ofSeveralRecordingsWritesAFolderEach() {
+  QTemporaryDir folder;
+  const QString recording = simulated("blinking") + "/recording.bag";
+  QString text = QString::fromUtf8(readFile(session("blinking")));
+  const qsizetype begin = text.indexOf("recording:");
+  text.replace(begin, text.indexOf('\n', begin) - begin, QString("recording: [%1, %1]").arg(recording));
+  writeFile(folder.filePath("session.yaml"), text.toUtf8());
+  const Outcome outcome =
+      runProgram({"detect", folder.filePath("session.yaml"), "-o", folder.filePath("seen")});
+  VERIFY_EXIT(outcome, 0);
+  QCOMPARE(filesIn(folder.filePath("seen")), (QStringList{"recording", "recording_2"}));
+  const QByteArray seen = readFile(folder.filePath("seen/recording/detections.csv"));
+  QVERIFY(seen.count('\n') > 54);
+  QCOMPARE(readFile(folder.filePath("seen/recording_2/detections.csv")), seen);
 }
 
 void TestCommandLine::calibrate_startsFromDetections() {
