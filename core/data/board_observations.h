@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -78,6 +79,12 @@ struct BoardExtent {
   LatticeEnds rows, cols;
 };
 
+// How much later a camera's pixels tell of edges that brighten them than of edges that darken them; a camera clock's
+// time offset holds the mean of both.
+struct PolarityDelay {
+  double later_s = 0.0, std_s = 0.0;
+};
+
 // What measured the points: the front end from events, ours from frames, or another program.
 enum class CameraKind { Events, Frames, Points };
 
@@ -87,7 +94,8 @@ struct BoardObservations {
   std::vector<BoardView> views;       // in time order
   std::vector<WindowReport> windows;  // all of them, in time order
   BoardExtent extent;
-  std::uint64_t events = 0;  // read; or frames, or points
+  std::uint64_t events = 0;                          // read; or frames, or points
+  std::optional<PolarityDelay> polarity_delay = {};  // of events, where speeds differ enough to tell
 };
 
 }  // namespace evical

@@ -68,6 +68,7 @@ BoardObservations BoardTracker::finish() {
   const auto earlier = [](const auto& a, const auto& b) { return a.time_s < b.time_s; };
   std::sort(observations_.views.begin(), observations_.views.end(), earlier);
   std::sort(observations_.windows.begin(), observations_.windows.end(), earlier);
+  observations_.polarity_delay = polarity_delay_.result(scene_.board.circles);
   return std::move(observations_);
 }
 
@@ -215,6 +216,7 @@ void BoardTracker::keep(WindowTrace& trace) {
   observations_.windows.push_back(trace.report);
   if (trace.report.outcome == WindowOutcome::TooFewInGrid) return;
   const bool complete = trace.report.outcome == WindowOutcome::Complete;
+  polarity_delay_.add(boardSpeed_px_s(*trace.motion, scene_), trace.motion->radius_offset_px);
   observations_.views.push_back(
       {trace.report.time_s, complete ? ViewKind::Complete : ViewKind::Partial, std::move(trace.circles)});
 }

@@ -7,6 +7,7 @@
 #include "core/frontend/edge_bursts.h"
 #include "core/frontend/front_end_observer.h"
 #include "core/frontend/front_end_options.h"
+#include "core/frontend/polarity_delay.h"
 #include "core/frontend/rival_placements.h"
 #include "core/frontend/window_trace.h"
 
@@ -75,6 +76,7 @@ class BoardTracker {
   bool started_ = false;
   int held_windows_ = 0;
   PlacementWatch placement_watch_;
+  PolarityDelayFit polarity_delay_;
   std::size_t track_begin_ = 0;  // its first view: since the board was found last
   BoardObservations observations_;
 };

@@ -15,6 +15,10 @@ constexpr std::tuple kVerdictFields{
           "How well it is known by how much pixels delay events, which light and speed change: part of the "
           "sigmas "
           "of event cameras' time offsets against frames and IMUs."},
+    Field{"slow_pixels_ms", &VerdictOptions::slow_pixels_ms, 0.6, within(0.0, 100.0), "ms",
+          "Brightening and darkening edges may be told of with so different delays; beyond, pixels are "
+          "called slow, "
+          "and a quarter of what is more is part of the sigmas of time offsets."},
     Field{"contradiction_sigmas", &VerdictOptions::contradiction_sigmas, 4.0, within(1.0, 1000.0), "sigma",
           "Known values that lie further than this from what the recording alone says are told of."},
     Field{"doubtful_contradiction_sigmas", &VerdictOptions::doubtful_contradiction_sigmas, 8.0,

@@ -9,6 +9,7 @@ struct VerdictOptions {
   double correlation_time_s;
   double pixel_error_px;
   double pixel_delay_ms;
+  double slow_pixels_ms;
   double contradiction_sigmas;
   double doubtful_contradiction_sigmas;
   double turned_gyroscope_sigmas;

@@ -80,6 +80,24 @@ std::string doubtOfHalves(const CrossValidation& validation, const VerdictOption
       validation.rms_sigmas, worst->name);
 }
 
+std::vector<std::string> notesOnSlowPixels(const CalibrationInput& input, const VerdictOptions& options) {
+  constexpr double kCertain_sigmas = 5.0;
+  std::vector<std::string> notes;
+  for (const CameraData& camera : input.cameras) {
+    const auto& delay = camera.observations.polarity_delay;
+    if (!delay) continue;
+    const double later_ms = 1e3 * delay->later_s;
+    if (!(std::abs(later_ms) > options.slow_pixels_ms + kCertain_sigmas * 1e3 * delay->std_s)) continue;
+    notes.push_back(fmt::format(
+        "{}: edges that {} the image are seen {:.1f} ms later than those that {} it: pixels are slow. The "
+        "time offset holds their delay at this light: record where it is brighter, or with "
+        "faster biases",
+        camera.name, later_ms > 0.0 ? "brighten" : "darken", std::abs(later_ms),
+        later_ms > 0.0 ? "darken" : "brighten"));
+  }
+  return notes;
+}
+
 std::string saturationIn(const CalibrationInput& input, const VerdictOptions& options) {
   std::string words;
   for (const ImuData& imu : input.imus) {

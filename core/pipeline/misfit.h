@@ -7,6 +7,7 @@
 #include "core/optimisation/batch_optimiser.h"
 
 #include <string>
+#include <vector>
 
 namespace evical {
 
@@ -22,6 +23,9 @@ std::string doubtOfHalves(const CrossValidation& validation, const VerdictOption
 
 // IMUs that were at a limit for long; empty without any. No doubt of its own, but the cause of most others.
 std::string saturationIn(const CalibrationInput& input, const VerdictOptions& options);
+
+// Event cameras whose pixels tell of brightening and of darkening edges with different delays: a note for each.
+std::vector<std::string> notesOnSlowPixels(const CalibrationInput& input, const VerdictOptions& options);
 
 // The misfits of all sensors as one number, 0 where none exceeds what was given: for comparing explanations.
 double totalMisfit(const BatchSolution& solution);

@@ -40,8 +40,8 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   information = withoutNoise(std::move(information));
   const Eigen::MatrixXd report_from_tangent =
       reportFromTangent(information, solution.state, problem.problem());
-  const QuantityCovariance covariance = withPixelDelay(input, 1e-3 * options.pixel_delay_ms,
-                                                       quantityCovariance(information, report_from_tangent));
+  const QuantityCovariance covariance =
+      withPixelDelay(input, options, quantityCovariance(information, report_from_tangent));
   estimate.report = makeReport(input, covariance);
   reportSharedSensors(input, options, estimate.report);
   estimate.report.given = givenQuantities(input, options);

@@ -114,6 +114,15 @@ Eigen::VectorXd growthOf(const ProjectedInformation& information, const Eigen::M
   return growth;
 }
 
+// Centres lie behind by a mean of what brightening and darkening edges do; which, to a quarter either way, is not known.
+double delayVariance_s2(const BoardObservations& seen, const OptimisationOptions& options) {
+  constexpr double kShare = 0.25;
+  const double delay_s = 1e-3 * options.pixel_delay_ms;
+  if (!seen.polarity_delay) return delay_s * delay_s;
+  const double more_s = std::max(0.0, std::abs(seen.polarity_delay->later_s) - 1e-3 * options.slow_pixels_ms);
+  return delay_s * delay_s + kShare * kShare * more_s * more_s;
+}
+
 }  // namespace
 
 Eigen::Matrix<double, 3, 2> gravityTilts(const Eigen::Vector3d& gravity) {
@@ -161,7 +170,7 @@ QuantityCovariance quantityCovariance(const ProjectedInformation& information,
   return {information.quantities, information.first_column, covariance};
 }
 
-QuantityCovariance withPixelDelay(const CalibrationInput& input, double delay_sigma_s,
+QuantityCovariance withPixelDelay(const CalibrationInput& input, const OptimisationOptions& options,
                                   QuantityCovariance covariance) {
   const auto hasEvents = [](const CameraData& camera) {
     return camera.observations.kind == CameraKind::Events;
@@ -173,7 +182,8 @@ QuantityCovariance withPixelDelay(const CalibrationInput& input, double delay_si
     const Quantity& quantity = covariance.quantities[i];
     if (quantity.info != offset || !hasEvents(input.cameras[quantity.sensor])) continue;
     const Eigen::Index column = covariance.first_column[i];
-    covariance.covariance(column, column) += delay_sigma_s * delay_sigma_s;
+    covariance.covariance(column, column) +=
+        delayVariance_s2(input.cameras[quantity.sensor].observations, options);
   }
   return covariance;
 }

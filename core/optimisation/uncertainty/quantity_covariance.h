@@ -33,8 +33,9 @@ QuantityCovariance quantityCovariance(const ProjectedInformation& information,
                                       const Eigen::MatrixXd& report_from_tangent);
 
 // Events are late by their pixels' delay, and so are all of an event camera's: its time offset is uncertain by as much
-// as that delay, and nothing in the recording tells. Not where all is measured by such pixels.
-QuantityCovariance withPixelDelay(const CalibrationInput& input, double delay_sigma_s,
+// as that delay, and nothing in the recording tells; more so where the two polarities' delays differ. Not where all is
+// measured by such pixels.
+QuantityCovariance withPixelDelay(const CalibrationInput& input, const OptimisationOptions& options,
                                   QuantityCovariance covariance);
 
 }  // namespace evical

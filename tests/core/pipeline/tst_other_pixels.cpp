@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace {
 
@@ -25,8 +27,9 @@ class TestOtherPixels : public QObject {
   void calibration_endsWithinItsSigmasOfTheTruth_data() {
     QTest::addColumn<QString>("recording");
     QTest::addColumn<QList<double>>("delays_ms");
-    QTest::newRow("fast pixels") << QString("dark_3x7.iebcs") << QList<double>{-0.44, -0.58};
-    QTest::newRow("slow pixels") << QString("dark_3x7.v2e-default") << QList<double>{2.07, 2.39};
+    QTest::addColumn<bool>("slow");
+    QTest::newRow("fast pixels") << QString("dark_3x7.iebcs") << QList<double>{-0.44, -0.58} << false;
+    QTest::newRow("slow pixels") << QString("dark_3x7.v2e-default") << QList<double>{2.07, 2.39} << true;
   }
 
   void calibration_endsWithinItsSigmasOfTheTruth() {
@@ -34,6 +37,7 @@ class TestOtherPixels : public QObject {
     if (folder.isEmpty()) QSKIP("EVICAL_DATA, the folder of sample recordings, is not set");
     QFETCH(QString, recording);
     QFETCH(QList<double>, delays_ms);
+    QFETCH(bool, slow);
     const Session session = readSession((folder + "/pixels/" + recording + "/session.yaml").toStdString());
     const CalibrationRun run = calibrate(session, RunContext{});
     const CameraState& camera = run.result.state.cameras.front();
@@ -55,6 +59,11 @@ class TestOtherPixels : public QObject {
     QVERIFY((turn.cwiseAbs().array() < kSigmas * sigma.rotation_std_rad.array()).all());
     QVERIFY((shift.cwiseAbs().array() < kSigmas * sigma.translation_std_m.array()).all());
     QVERIFY(sigma.rotation_std_rad.maxCoeff() < 0.1 * kRadPerDeg);
+    const std::vector<std::string>& notes = run.result.notes;
+    QCOMPARE(std::any_of(
+                 notes.begin(), notes.end(),
+                 [](const std::string& note) { return note.find("pixels are slow") != std::string::npos; }),
+             slow);
   }
 };
 

@@ -1,0 +1,29 @@
+// How much later pixels tell of edges that brighten them than of edges that darken them: a sign of little light, or of
+// slow biases. Bursts lie behind their edge by its pixels' delay times its speed, at a circle's leading and at its trailing
+// edge, of which one brightens and one darkens; so circles seem to grow or to shrink with their speed:
+//   radius offset = r0 + s (d_brightening - d_darkening) / 2 * speed,  s = 1 for dark circles, -1 for bright ones.
+// docs/maths.md, 10.1.
+#pragma once
+
+#include "core/data/board_observations.h"
+#include "core/geometry/board.h"
+
+#include <optional>
+
+namespace evical {
+
+class PolarityDelayFit {
+ public:
+  // Of one window: how fast the board's image moves, and how far bursts lie outside the circles' edges, both in the
+  // sensor's pixels. Edges that hardly move are left out.
+  void add(double speed_px_s, double radius_offset_px);
+
+  // Nothing of few windows, or of one speed. The sigma is of windows whose errors are independent.
+  std::optional<PolarityDelay> result(CircleShade shade) const;
+
+ private:
+  double count_ = 0.0, speed_ = 0.0, offset_ = 0.0;  // sums
+  double speed2_ = 0.0, offset2_ = 0.0, product_ = 0.0;
+};
+
+}  // namespace evical
