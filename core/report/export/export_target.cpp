@@ -29,6 +29,9 @@ constexpr std::array kTargets{
     ExportTarget{"dv-processing", "DV, dv-processing: calibration.json", exportDvProcessing},
     ExportTarget{"metavision", "Metavision up to SDK 4: intrinsics.json", exportMetavision},
     ExportTarget{"ekalibr", "eKalibr: parameters and camera intrinsics", exportEkalibr},
+    ExportTarget{"kimera", "Kimera-VIO: camera and IMU parameters", exportKimera},
+    ExportTarget{"dm-vio", "DM-VIO, DSO: camera.txt, camchain.yaml, noise", exportDmVio},
+    ExportTarget{"rtabmap", "RTAB-Map: cameras, stereo pair, IMU's local transform", exportRtabmap},
 };
 
 void checkResult(const NamedResult& result) {
