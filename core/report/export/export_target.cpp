@@ -32,6 +32,8 @@ constexpr std::array kTargets{
     ExportTarget{"kimera", "Kimera-VIO: camera and IMU parameters", exportKimera},
     ExportTarget{"dm-vio", "DM-VIO, DSO: camera.txt, camchain.yaml, noise", exportDmVio},
     ExportTarget{"rtabmap", "RTAB-Map: cameras, stereo pair, IMU's local transform", exportRtabmap},
+    ExportTarget{"opencv", "OpenCV: cameras and stereo pair (FileStorage)", exportOpenCv},
+    ExportTarget{"matlab", "MATLAB, Octave: a function that makes all of it", exportMatlab},
 };
 
 void checkResult(const NamedResult& result) {

@@ -21,5 +21,7 @@ ExportedFiles exportEkalibr(const NamedResult& result);
 ExportedFiles exportKimera(const NamedResult& result);
 ExportedFiles exportDmVio(const NamedResult& result);
 ExportedFiles exportRtabmap(const NamedResult& result);
+ExportedFiles exportOpenCv(const NamedResult& result);
+ExportedFiles exportMatlab(const NamedResult& result);
 
 }  // namespace evical
