@@ -21,7 +21,7 @@ constexpr std::array kTargets{
     ExportTarget{"vins-fusion", "VINS-Fusion, ESVIO: vins.yaml and a camera file each", exportVinsFusion},
     ExportTarget{"orb-slam3", "ORB-SLAM3: the calibration part of a settings file", exportOrbSlam3},
     ExportTarget{"basalt", "Basalt: calibration.json", exportBasalt},
-    ExportTarget{"ros", "ROS: camera_info, static transforms (tf2), URDF joints", exportRos},
+    ExportTarget{"ros", "ROS: camera_info, static transforms (tf2, launch), URDF", exportRos},
     ExportTarget{"svo", "SVO, EVO: camera rig and IMU files", exportSvo},
     ExportTarget{"ultimate-slam", "Ultimate SLAM: camera rig, imu.yaml, time shift flag", exportUltimateSlam},
     ExportTarget{"esvo", "ESVO: left.yaml, right.yaml", exportEsvo},
