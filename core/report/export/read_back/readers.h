@@ -1,0 +1,12 @@
+// One function a target, for the table of targets: reads the files in the target's folder as the program does. Throws
+// CalibrationError (BadInput) that names file and key where the program would not take them.
+#pragma once
+
+#include "core/report/export/read_back.h"
+
+namespace evical {
+
+ReadBack readKalibr(const std::filesystem::path& folder);
+ReadBack readRos(const std::filesystem::path& folder);
+
+}  // namespace evical

@@ -1,0 +1,209 @@
+// What was exported, read from disk as each target's program does: nothing but rounding lies between it and the result,
+// and what the program would not take is found and named.
+#include "core/base/error.h"
+#include "core/report/export/read_back.h"
+#include "tests/core/report/exported_rig.h"
+#include "tests/support/own_result.h"
+#include "tests/support/test_program.h"
+
+#include <QFile>
+#include <QTemporaryDir>
+
+#include <algorithm>
+
+using namespace evical;
+using namespace evical::test;
+
+namespace {
+
+constexpr double kSame_px = 1e-9, kSame_deg = 1e-11, kSame_mm = 1e-11, kSame = 1e-12;
+
+// The target's files below the folder; nothing where the target cannot hold the result.
+bool exportInto(const QTemporaryDir& folder, const NamedResult& result, const std::string& target) {
+  try {
+    writeExportedFiles(folder.path().toStdString(),
+                       exportResult(result, std::vector<std::string>{target}).files);
+    return true;
+  } catch (const CalibrationError&) {
+    return false;
+  }
+}
+
+void replaceIn(const QString& path, const QByteArray& before, const QByteArray& after) {
+  QFile file(path);
+  QVERIFY2(file.open(QIODevice::ReadOnly), qPrintable(path));
+  QByteArray text = file.readAll();
+  file.close();
+  const qsizetype at = text.indexOf(before);
+  QVERIFY2(at >= 0, qPrintable(path + " lacks " + before));
+  text.replace(at, before.size(), after);
+  QVERIFY(file.open(QIODevice::WriteOnly));
+  file.write(text);
+}
+
+}  // namespace
+
+class TestExportReadBack : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void everyTarget_readsBack_data() {
+    QTest::addColumn<QString>("target");
+    QTest::addColumn<bool>("fisheye");
+    QTest::addColumn<bool>("third_radial");
+    QTest::addColumn<bool>("mapped");
+    QTest::addColumn<bool>("inertial");
+    QTest::addColumn<int>("cameras");
+    const auto row = [](const char* target, const char* what, const RigKind& kind) {
+      QTest::addRow("%s, %s", target, what)
+          << target << kind.fisheye << kind.third_radial << kind.mapped << kind.inertial << kind.cameras;
+    };
+    for (const ExportTarget& target : exportTargets()) {
+      if (target.read == nullptr) continue;
+      row(target.name, "radtan", {});
+      row(target.name, "radtan with k3", {false, true, true, true, 2});
+      row(target.name, "equidistant", {true, false, true, true, 2});
+      row(target.name, "ideal IMUs", {false, false, false, true, 2});
+      row(target.name, "one camera", {false, false, true, true, 1});
+      row(target.name, "three cameras", {false, false, true, true, 3});
+      row(target.name, "cameras only", {false, false, true, false, 2});
+      row(target.name, "one camera only", {false, false, true, false, 1});
+    }
+  }
+  void everyTarget_readsBack() {
+    QFETCH(QString, target);
+    QFETCH(bool, fisheye);
+    QFETCH(bool, third_radial);
+    QFETCH(bool, mapped);
+    QFETCH(bool, inertial);
+    QFETCH(int, cameras);
+    const NamedResult result = rig({fisheye, third_radial, mapped, inertial, cameras});
+    const ExportTarget& row = exportTarget(target.toStdString(), "test");
+    QTemporaryDir folder;
+    if (!exportInto(folder, result, row.name)) return;
+    const ReadBack read = row.read((folder.path() + "/" + target).toStdString());
+    const ReadBackDifference difference = differenceOf(result, read);
+    QVERIFY2(difference.problems.empty(), difference.problems.empty() ? "" : difference.problems[0].c_str());
+    QCOMPARE(difference.cameras, std::min(result.cameras.size(), read.most_cameras));
+    QVERIFY(difference.imus <= std::min(result.imus.size(), read.most_imus));
+    QVERIFY(difference.lens_px || difference.refitted_px);
+    // Nothing but what the files round.
+    double rounding = 0.0, step_s = 0.0;
+    for (const ReadFile& file : read.files) {
+      rounding = std::max(rounding, file.rounding);
+      step_s = std::max(step_s, file.time_step_s);
+    }
+    const bool exact = rounding <= kSame;
+    QVERIFY(difference.lens_px.value_or(0.0) < (exact ? kSame_px : 1e-3));
+    QVERIFY(difference.refitted_px.value_or(0.0) < 2.0);
+    QVERIFY(difference.rotation_deg.value_or(0.0) < (exact ? kSame_deg : 1e-4));
+    QVERIFY(difference.translation_mm.value_or(0.0) < (exact ? kSame_mm : 1e-3));
+    QVERIFY(difference.time_ms.value_or(0.0) <= 500.0 * step_s + kSame);
+    QVERIFY(difference.numbers.value_or(0.0) < (exact ? kSame : 1e-6));
+    const ExportCheck check = checkExport(result, row, folder.path().toStdString());
+    QVERIFY2(check.same, check.text.c_str());
+    QVERIFY(QString::fromStdString(check.text).startsWith(target + ": reads back: "));
+  }
+
+  // Each number of a result is in the files of each target that has a place for it: a result that differs does not
+  // read back.
+  void anotherResult_isFound_data() {
+    QTest::addColumn<QString>("target");
+    for (const ExportTarget& target : exportTargets())
+      if (target.read != nullptr) QTest::newRow(target.name) << target.name;
+  }
+  void anotherResult_isFound() {
+    QFETCH(QString, target);
+    const NamedResult result = rig({});
+    const ExportTarget& row = exportTarget(target.toStdString(), "test");
+    QTemporaryDir folder;
+    QVERIFY(exportInto(folder, result, row.name));
+    const std::filesystem::path path = folder.path().toStdString();
+    const ReadBackDifference same = differenceOf(result, row.read(path / row.name));
+    const auto found = [&](auto&& change) {
+      NamedResult other = result;
+      change(ownResult(other).state);
+      return !checkExport(other, row, path).same;
+    };
+    const auto lens = [](CalibrationState& state) {
+      CameraIntrinsics own = *state.cameras[0].lens.inUse();
+      own.focal_length_px.x() += 0.1;
+      state.cameras[0].lens = givenLens(own);
+    };
+    // 0.1 px of focal length is less than some lenses' refits are off.
+    QVERIFY(found(lens) || !same.lens_px);
+    QCOMPARE(found([](CalibrationState& state) {
+               state.cameras[1].reference_from_camera.translation_m.y() += 1e-5;
+             }),
+             same.translation_mm.has_value());
+    QCOMPARE(found([](CalibrationState& state) { state.cameras[0].time_offset_s += 1e-5; }),
+             same.time_ms.has_value());
+  }
+
+  void damage_isFoundAndNamed_data() {
+    QTest::addColumn<QString>("target");
+    QTest::addColumn<QString>("file");
+    QTest::addColumn<QByteArray>("before");
+    QTest::addColumn<QByteArray>("after");
+    QTest::addColumn<QString>("said");
+    const auto row = [](const char* target, const char* file, const char* before, const char* after,
+                        const char* said) {
+      QTest::addRow("%s/%s: %s", target, file, said)
+          << target << file << QByteArray(before) << QByteArray(after) << said;
+    };
+    row("kalibr", "camchain-imucam.yaml", "timeshift_cam_imu: 0.007301", "timeshift_cam_imu: 7.301e-03x",
+        "cam0.timeshift_cam_imu");
+    row("kalibr", "camchain-imucam.yaml", "timeshift_cam_imu: 0.007301", "timeshift_cam_imu: 0.0073",
+        "left: the time offset is off by 0.001 ms");
+    row("kalibr", "camchain.yaml", "camera_model", "model", "cam0.camera_model");
+    row("kalibr", "imu.yaml", "update_rate: 997.5", "", "imu0.update_rate");
+    row("kalibr", "input-left_imu.yaml", "update_rate: 997.5", "update_rate: 99e1", "update_rate");
+    row("ros", "left.yaml", "cols: 5", "cols: 4", "distortion_coefficients");
+    row("ros", "left.yaml", "image_width: 346", "image_width: 347", "the resolution is 347 x 260");
+    row("ros", "right.yaml", "camera_name: right", "camera_name: rigth", "no file has the camera right");
+    row("ros", "static_transforms.sh", "--qx ", "--rx ", "'--rx' is no option");
+    row("ros", "rig.urdf", "</robot>", "", "is no XML");
+    row("ros", "rig.urdf", "link=\"left_imu\"", "link=\"imu\"", "there is no link imu");
+  }
+  void damage_isFoundAndNamed() {
+    QFETCH(QString, target);
+    QFETCH(QString, file);
+    QFETCH(QByteArray, before);
+    QFETCH(QByteArray, after);
+    QFETCH(QString, said);
+    const NamedResult result = rig({});
+    const ExportTarget& row = exportTarget(target.toStdString(), "test");
+    QTemporaryDir folder;
+    QVERIFY(exportInto(folder, result, row.name));
+    replaceIn(folder.filePath(target + "/" + file), before, after);
+    const ExportCheck check = checkExport(result, row, folder.path().toStdString());
+    QVERIFY2(!check.same, check.text.c_str());
+    const QString text = QString::fromStdString(check.text);
+    QVERIFY2(text.startsWith(target + ": does not read back: ") && text.contains(said), qPrintable(text));
+  }
+
+  // Whatever file is away or cut short, it is said; never is something read past.
+  void missingAndCutFiles_areFound_data() { anotherResult_isFound_data(); }
+  void missingAndCutFiles_areFound() {
+    QFETCH(QString, target);
+    const NamedResult result = rig({});
+    const ExportTarget& row = exportTarget(target.toStdString(), "test");
+    for (const FileContent& file : exportResult(result, std::vector<std::string>{row.name}).files) {
+      if (file.path.filename() == "README.txt") continue;
+      for (const double share : {-1.0, 0.0, 0.3, 0.6}) {
+        QTemporaryDir folder;
+        QVERIFY(exportInto(folder, result, row.name));
+        const QString path = folder.filePath(QString::fromStdString(file.path.string()));
+        if (share < 0.0)
+          QVERIFY(QFile::remove(path));
+        else
+          QVERIFY(QFile::resize(path, static_cast<qint64>(share * static_cast<double>(file.content.size()))));
+        const ExportCheck check = checkExport(result, row, folder.path().toStdString());
+        QVERIFY2(!check.same, qPrintable(path + " " + QString::number(share)));
+      }
+    }
+  }
+};
+
+EVICAL_TEST(TestExportReadBack)
+#include "tst_export_read_back.moc"
