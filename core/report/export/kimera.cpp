@@ -61,16 +61,25 @@ std::string imuFile(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
          kOwnImuKeys;
 }
 
+// FrontendType and BackendType of its own: 0 and 1 are one camera and two.
+std::string pipelineFile(const Rig& rig, std::size_t cameras) {
+  return "%YAML:1.0\n---\n" +
+         headerComment(rig,
+                       {"Pipeline of Kimera-VIO. frontend_type: 0 is one camera, 1 two; the others are the "
+                        "program's own, with the values of its EuRoC parameters."}) +
+         fmt::format("frontend_type: {}\nbackend_type: 1\ndisplay_type: 0\nparallel_run: 1\n", cameras - 1);
+}
+
 // The left camera first; of cameras that do not sit side by side the first one only, for the mono pipeline.
 std::size_t sortCameras(Rig& rig, ExportNotes& notes) {
   const std::optional<StereoPair> pair = sideBySide(rig);
   if (pair && pair->left.name != rig.cameras[0].name) std::swap(rig.cameras[0], rig.cameras[1]);
   if (pair) return 2;
   if (rig.cameras.size() > 1)
-    notes.push_back(fmt::format("{} and {} do not sit side by side, as Kimera-VIO's stereo asks for",
-                                rig.cameras[0].name, rig.cameras[1].name));
-  notes.push_back(fmt::format("{} alone is written: set frontend_type: 0 (mono) in PipelineParams.yaml",
-                              rig.cameras[0].name));
+    notes.push_back(
+        fmt::format("{} and {} do not sit side by side, as Kimera-VIO's stereo asks for: {} alone is "
+                    "written, for its mono pipeline",
+                    rig.cameras[0].name, rig.cameras[1].name, rig.cameras[0].name));
   return 1;
 }
 
@@ -93,6 +102,7 @@ ExportedFiles exportKimera(const NamedResult& result) {
     exported.files.push_back(
         {kNames[i], cameraFile(rig, rig.cameras[i], cameraFor(rig.cameras[i], models, exported.notes))});
   exported.files.push_back({"ImuParams.yaml", imuFile(rig, imu, exported.notes)});
+  exported.files.push_back({"PipelineParams.yaml", pipelineFile(rig, count)});
   return exported;
 }
 

@@ -266,7 +266,12 @@ class TestExportSlam : public QObject {
     const ExportedFiles exported = exportTo(result, "kimera");
     QVERIFY_THROWS_EXCEPTION(std::runtime_error, contentOf(exported, "kimera/RightCameraParams.yaml"));
     QVERIFY(hasNote(exported, "left and right do not sit side by side"));
-    QVERIFY(hasNote(exported, "frontend_type: 0"));
+    // Pipeline-definitions.cpp at 6b8ec96 reads the right camera's file where the front end is 1, StereoImu.
+    QCOMPARE(kimeraFile(exported, "PipelineParams.yaml").get<int>("frontend_type"), 0);
+    const KimeraFile of_a_pair = kimeraFile(exportTo(rig({}), "kimera"), "PipelineParams.yaml");
+    for (const char* const key : {"frontend_type", "backend_type", "display_type", "parallel_run"})
+      QVERIFY2(of_a_pair.isInt(key), key);
+    QCOMPARE(of_a_pair.get<int>("frontend_type"), 1);
     QVERIFY(hasNote(exported, "right is left out"));
   }
 
