@@ -1,5 +1,6 @@
 // After ros-perception/image_common, camera_calibration_parsers/src/parse_yml.cpp (at 00bed63: readCalibrationYml);
-// ros2/geometry2, tf2_ros/src/static_transform_broadcaster_program.cpp (at 04e7636: parse_args); and ros/urdfdom,
+// ros2/geometry2, tf2_ros/src/static_transform_broadcaster_program.cpp (at 04e7636: parse_args), which launch files of
+// ROS 2 start, too; ros/geometry2's program of that name, to which ROS 1 hands nine words; and ros/urdfdom,
 // urdf_parser/src/model.cpp and joint.cpp (at 02a883b: parseURDF, parseJoint).
 #include "core/base/error.h"
 #include "core/report/export/read_back/read_numbers.h"
@@ -8,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <map>
@@ -140,6 +142,57 @@ ReadFile readTransforms(const std::filesystem::path& path) {
   return filePlacing(path, all);
 }
 
+// ROS 1 takes numbers and frames by their order.
+ReadFile readLaunch(const std::filesystem::path& path) {
+  const XmlElement launch = readXml(path);
+  if (launch.name != "launch") throw badInput(path.string(), "has no launch element");
+  std::vector<Placed> all;
+  std::set<std::string> names;
+  for (const XmlElement* node : launch.all("node")) {
+    if (node->attribute("pkg") != "tf2_ros" || node->attribute("type") != "static_transform_publisher")
+      throw badInput(node->place, "starts another program");
+    if (!names.insert(node->attribute("name")).second)
+      throw badInput(node->place, "has a name that is there twice");
+    std::istringstream arguments(node->attribute("args"));
+    std::vector<std::string> words;
+    for (std::string word; arguments >> word;) words.push_back(word);
+    constexpr std::array kOrder{
+        "--x", "--y", "--z", "--qx", "--qy", "--qz", "--qw", "--frame-id", "--child-frame-id"};
+    if (words.size() != kOrder.size()) throw badInput(node->place, "has no nine args");
+    std::vector<std::string> named;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      named.emplace_back(kOrder[i]);
+      named.push_back(words[i]);
+    }
+    all.push_back(placedBy(named, node->place));
+  }
+  if (all.empty()) throw badInput(path.string(), "publishes nothing");
+  return filePlacing(path, all);
+}
+
+// Of the Python of a launch file the arguments of its nodes.
+ReadFile readPythonLaunch(const std::filesystem::path& path) {
+  const std::string text = textOf(path), opening = "arguments=['", closing = "'])";
+  if (text.find("def generate_launch_description():\n") == std::string::npos || !text.ends_with("\n    ])\n"))
+    throw badInput(path.string(), "is no whole launch description");
+  std::vector<Placed> all;
+  for (std::size_t at = text.find(opening); at != std::string::npos; at = text.find(opening, at)) {
+    at += opening.size();
+    const std::size_t end = text.find(closing, at);
+    if (end == std::string::npos) throw badInput(path.string(), "has arguments without an end");
+    std::vector<std::string> words;
+    const std::string list = text.substr(at, end - at), between = "', '";
+    for (std::size_t word = 0; word <= list.size();) {
+      const std::size_t next = std::min(list.find(between, word), list.size());
+      words.push_back(list.substr(word, next - word));
+      word = next + between.size();
+    }
+    all.push_back(placedBy(words, fmt::format("{}: node {}", path.string(), all.size() + 1)));
+  }
+  if (all.empty()) throw badInput(path.string(), "publishes nothing");
+  return filePlacing(path, all);
+}
+
 Eigen::Vector3d threeNumbers(const std::string& text, const std::string& place) {
   std::istringstream words(text);
   std::vector<double> values;
@@ -190,6 +243,8 @@ ReadBack readRos(const std::filesystem::path& folder) {
   std::error_code ignored;
   if (read.files.size() == 1 && !std::filesystem::exists(folder / "rig.urdf", ignored)) return read;
   read.files.push_back(readTransforms(folder / "static_transforms.sh"));
+  read.files.push_back(readLaunch(folder / "static_transforms.launch"));
+  read.files.push_back(readPythonLaunch(folder / "static_transforms.launch.py"));
   read.files.push_back(readUrdf(folder / "rig.urdf"));
   return read;
 }
