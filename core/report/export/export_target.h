@@ -29,7 +29,7 @@ struct ExportTarget {
   const char* description;
   ExportedFiles (*write)(const NamedResult& result);  // paths relative to the target's folder
   // The written files as the program takes them (read_back.h).
-  ReadBack (*read)(const std::filesystem::path& folder) = nullptr;
+  ReadBack (*read)(const std::filesystem::path& folder);
 };
 
 std::span<const ExportTarget> exportTargets();

@@ -19,7 +19,7 @@ namespace evical {
 namespace {
 
 // How much of the relative rounding of single numbers may come together; in lenses, numbers of thousands of pixels.
-constexpr double kSumOfRoundings = 100.0, kPixels = 1e4;
+constexpr double kSumOfRoundings = 10.0, kPixels = 1e4;
 
 bool isCalled(const std::string& name, const std::string& sensor, const std::string& file_name,
               const std::string& stream) {

@@ -55,7 +55,7 @@ struct ReadFile {
 };
 
 // Relative rounding of a program that keeps its numbers as float.
-inline constexpr double kFloatRounding = 1e-7;
+inline constexpr double kFloatRounding = 6e-8;
 
 struct ReadBack {
   static constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
