@@ -15,15 +15,18 @@ namespace {
 
 // PyYAML's resolvers: 1e-05 is a string, 5 an int.
 double pythonFloat(const YamlNode& node) {
+  constexpr std::size_t kLongest = 100;  // the library's matching goes as deep as a text is long
   static const std::regex kFloat(R"([-+]?([0-9][0-9_]*)?\.[0-9_]*([eE][-+][0-9]+)?)");
-  if (!std::regex_match(node.text(), kFloat))
+  if (node.text().size() > kLongest || !std::regex_match(node.text(), kFloat))
     throw node.error(fmt::format("'{}' is no float to Kalibr's YAML parser", node.text()));
   return node.real();
 }
 
 double pythonNumber(const YamlNode& node) {
   static const std::regex kInt("[-+]?[0-9]+");
-  return std::regex_match(node.text(), kInt) ? node.real() : pythonFloat(node);
+  constexpr std::size_t kLongest = 100;
+  return node.text().size() <= kLongest && std::regex_match(node.text(), kInt) ? node.real()
+                                                                               : pythonFloat(node);
 }
 
 std::vector<double> pythonNumbers(const YamlNode& list, std::size_t count) {
