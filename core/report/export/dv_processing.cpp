@@ -1,11 +1,9 @@
-#include "core/geometry/so3.h"
 #include "core/report/export/distortion_fit.h"
 #include "core/report/export/export_text.h"
 #include "core/report/export/exporters.h"
-#include "core/report/export/ros_camera.h"
+#include "core/report/export/stereo.h"
 
 #include <fmt/format.h>
-#include <Eigen/LU>
 
 #include <cmath>
 
@@ -82,14 +80,12 @@ std::string imuText(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
              rig.program + ", " + rig.status);
 }
 
-// OpenCV's: x_right^T F x_left = 0 in undistorted pixels, E = [t]x R in normalised coordinates.
 std::string stereoText(const Rig& rig) {
   const RigidTransform right_from_left =
       inverse(rig.cameras[1].reference_from_camera) * rig.cameras[0].reference_from_camera;
-  const Eigen::Matrix3d essential =
-      skew(right_from_left.translation_m) * right_from_left.rotation.toRotationMatrix();
-  const Eigen::Matrix3d fundamental = cameraMatrix(rig.cameras[1].intrinsics).inverse().transpose() *
-                                      essential * cameraMatrix(rig.cameras[0].intrinsics).inverse();
+  const Eigen::Matrix3d essential = essentialMatrix(right_from_left);
+  const Eigen::Matrix3d fundamental =
+      fundamentalMatrix(rig.cameras[0].intrinsics, rig.cameras[1].intrinsics, right_from_left);
   return "    \"C0_C1\": {\n" + field("leftCameraName", jsonText(rig.cameras[0].file_name), 6) +
          field("rightCameraName", jsonText(rig.cameras[1].file_name), 6) +
          field("fundamentalMatrix", quotedList(fundamental), 6) +

@@ -18,5 +18,10 @@ ExportedFiles exportEsvo2(const NamedResult& result);
 ExportedFiles exportDvProcessing(const NamedResult& result);
 ExportedFiles exportMetavision(const NamedResult& result);
 ExportedFiles exportEkalibr(const NamedResult& result);
+ExportedFiles exportKimera(const NamedResult& result);
+ExportedFiles exportDmVio(const NamedResult& result);
+ExportedFiles exportRtabmap(const NamedResult& result);
+ExportedFiles exportOpenCv(const NamedResult& result);
+ExportedFiles exportMatlab(const NamedResult& result);
 
 }  // namespace evical

@@ -81,14 +81,6 @@ std::string secondLensNote(const std::vector<CameraIntrinsics>& cameras) {
       wrong.rms_px, wrong.max_px);
 }
 
-std::string offsetLine(const Rig& rig) {
-  std::string text = "No time offset has a place here: add to the stamps of the images";
-  for (const RigCamera& camera : rig.cameras)
-    text += fmt::format(" {} s ({})", real(camera.time_offset_s), camera.file_name);
-  return text +
-         fmt::format(" so that t_{} = t_cam + that.", rig.imus.empty() ? rig.cameras[0].file_name : "imu");
-}
-
 }  // namespace
 
 ExportedFiles exportOrbSlam3(const NamedResult& result) {
@@ -104,7 +96,7 @@ ExportedFiles exportOrbSlam3(const NamedResult& result) {
                      "calibration: adjust them.",
                      "IMU.T_b_c1 takes points of camera 1 to the IMU, Stereo.T_c1_c2 points of "
                      "camera 2 to camera 1.",
-                     offsetLine(rig)}) +
+                     stampShifts(rig)}) +
       fmt::format("File.version: \"1.0\"\nCamera.type: \"{}\"\n",
                   cameras[0].model == CameraModel::PinholeRadtan ? "PinHole" : "KannalaBrandt8");
   for (std::size_t i = 0; i < cameras.size(); ++i) text += cameraText(cameras[i], i + 1, stereo);
@@ -122,7 +114,7 @@ ExportedFiles exportOrbSlam3(const NamedResult& result) {
   }
   text += kOwnKeys;
   if (stereo) exported.notes.push_back(secondLensNote(cameras));
-  if (!rig.imus.empty() || stereo) exported.notes.push_back(offsetLine(rig));
+  if (!rig.imus.empty() || stereo) exported.notes.push_back(stampShifts(rig));
   exported.files.push_back({"settings.yaml", text});
   return exported;
 }

@@ -3,6 +3,7 @@
 #include "core/base/element.h"
 #include "core/base/error.h"
 #include "core/data/quantity.h"
+#include "core/report/export/export_text.h"
 
 #include <fmt/format.h>
 
@@ -218,6 +219,14 @@ void noteLostCameras(const Rig& rig, std::size_t most, const char* program, Expo
   for (std::size_t i = most; i < rig.cameras.size(); ++i)
     left_out += (left_out.empty() ? "" : ", ") + rig.cameras[i].name;
   notes.push_back(fmt::format("{} takes {} cameras: {} is left out", program, most, left_out));
+}
+
+std::string stampShifts(const Rig& rig) {
+  std::string text = "No time offset has a place here: add to the stamps of the images";
+  for (const RigCamera& camera : rig.cameras)
+    text += fmt::format(" {} s ({})", real(camera.time_offset_s), camera.file_name);
+  return text +
+         fmt::format(" so that t_{} = t_cam + that.", rig.imus.empty() ? rig.cameras[0].file_name : "imu");
 }
 
 std::string headerComment(const Rig& rig, const std::vector<std::string>& lines) {

@@ -67,6 +67,9 @@ void noteLostOffsets(const Rig& rig, const char* program, ExportNotes& notes);
 void noteNoOffsets(const Rig& rig, const char* program, ExportNotes& notes);  // of cameras among each other
 void noteLostCameras(const Rig& rig, std::size_t most, const char* program, ExportNotes& notes);
 
+// For programs without any: what to add to which images' stamps.
+std::string stampShifts(const Rig& rig);
+
 // As YAML comments: who wrote this, how sure it is, the lines given, and what is to be said of times.
 std::string headerComment(const Rig& rig, const std::vector<std::string>& lines);
 // The same as text of a file beside a format without comments.

@@ -6,8 +6,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
-#include <numbers>
+#include <span>
+#include <utility>
 
 namespace evical {
 
@@ -71,20 +73,34 @@ std::string offsetsComment(const Rig& rig) {
   return text;
 }
 
+// As ROS 2 names them since Humble; ROS 1 takes them in this order without names.
+constexpr std::array kRos2Flags{
+    "--x", "--y", "--z", "--qx", "--qy", "--qz", "--qw", "--frame-id", "--child-frame-id"};
+
+// x y z qx qy qz qw frame child, each after its flag where there are flags.
+std::vector<std::string> poseArguments(const Joint& joint, std::span<const char* const> flags) {
+  const Eigen::Vector3d& p = joint.parent_from_child.translation_m;
+  const Eigen::Quaterniond& q = joint.parent_from_child.rotation;
+  std::vector<std::string> values;
+  for (const double value : {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()}) values.push_back(real(value));
+  values.push_back(joint.parent);
+  values.push_back(joint.child);
+  std::vector<std::string> arguments;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!flags.empty()) arguments.emplace_back(flags[i]);
+    arguments.push_back(std::move(values[i]));
+  }
+  return arguments;
+}
+
 std::string tf2Script(const Rig& rig, const std::vector<Joint>& joints) {
   std::string text =
       "#!/bin/sh\n" + headerComment(rig, {"The pose of the child in the frame: takes points of the "
                                           "child to the frame. z of optical frames is forward.",
                                           offsetsComment(rig)});
-  for (const Joint& joint : joints) {
-    const Eigen::Vector3d& p = joint.parent_from_child.translation_m;
-    const Eigen::Quaterniond& q = joint.parent_from_child.rotation;
-    text += fmt::format(
-        "ros2 run tf2_ros static_transform_publisher --x {} --y {} --z {} --qx {} --qy {} --qz {} --qw {} "
-        "--frame-id {} --child-frame-id {} &\n",
-        real(p.x()), real(p.y()), real(p.z()), real(q.x()), real(q.y()), real(q.z()), real(q.w()),
-        joint.parent, joint.child);
-  }
+  for (const Joint& joint : joints)
+    text += fmt::format("ros2 run tf2_ros static_transform_publisher {} &\n",
+                        fmt::join(poseArguments(joint, kRos2Flags), " "));
   return text + "wait\n";
 }
 
@@ -96,6 +112,34 @@ std::string xmlComment(const std::string& text) {
     comment += letter;
   }
   return comment.append("-->\n");
+}
+
+std::string launchRos1(const Rig& rig, const std::vector<Joint>& joints) {
+  std::string text =
+      "<?xml version=\"1.0\"?>\n" +
+      xmlComment(readMe(rig, {"ROS 1, tf2_ros: x y z qx qy qz qw frame child. The pose takes points of "
+                              "the child to the frame.",
+                              offsetsComment(rig)})) +
+      "<launch>\n";
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    text += fmt::format(
+        "  <node pkg=\"tf2_ros\" type=\"static_transform_publisher\" name=\"static_transform_{}\" "
+        "args=\"{}\"/>\n",
+        i + 1, fmt::join(poseArguments(joints[i], {}), " "));
+  return text + "</launch>\n";
+}
+
+std::string launchRos2(const Rig& rig, const std::vector<Joint>& joints) {
+  std::string text = headerComment(rig, {"ROS 2, tf2_ros. The pose takes points of the child to the frame.",
+                                         offsetsComment(rig)}) +
+                     "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n\n\n"
+                     "def generate_launch_description():\n    return LaunchDescription([\n";
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    text += fmt::format(
+        "        Node(package='tf2_ros', executable='static_transform_publisher',\n"
+        "             name='static_transform_{}',\n             arguments=['{}']),\n",
+        i + 1, fmt::join(poseArguments(joints[i], kRos2Flags), "', '"));
+  return text + "    ])\n";
 }
 
 std::string urdf(const Rig& rig, const std::vector<Joint>& joints) {
@@ -139,6 +183,8 @@ ExportedFiles exportRos(const NamedResult& result) {
   const std::vector<Joint> joints = jointsOf(rig);
   if (joints.empty()) return exported;
   exported.files.push_back({"static_transforms.sh", tf2Script(rig, joints)});
+  exported.files.push_back({"static_transforms.launch", launchRos1(rig, joints)});
+  exported.files.push_back({"static_transforms.launch.py", launchRos2(rig, joints)});
   exported.files.push_back({"rig.urdf", urdf(rig, joints)});
   for (const RigImu& imu : rig.imus) noteLostMapping(imu, "ROS", exported.notes);
   exported.notes.push_back(offsetsComment(rig));

@@ -3,11 +3,14 @@
 #include "core/base/error.h"
 #include "core/geometry/camera_model.h"
 #include "core/geometry/so3.h"
+#include "core/report/export/ros_camera.h"
 
 #include <fmt/format.h>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace evical {
 namespace {
@@ -27,23 +30,41 @@ Eigen::Vector2d cornersMean(const CameraIntrinsics& camera, const Eigen::Matrix3
 
 }  // namespace
 
-StereoPair stereoPair(const Rig& rig, const char* program) {
-  if (rig.cameras.size() < 2)
-    throw badInput("result", fmt::format("has one camera, and {} is for stereo", program),
-                   fmt::format("Leave {} out, or calibrate two cameras", program));
+std::optional<StereoPair> sideBySide(const Rig& rig) {
+  if (rig.cameras.size() < 2) return std::nullopt;
   StereoPair pair{rig.cameras[0], rig.cameras[1], {}};
   const RigidTransform second_from_first =
       inverse(rig.cameras[1].reference_from_camera) * rig.cameras[0].reference_from_camera;
   const Eigen::Matrix3d half = so3Exp(0.5 * so3Log(second_from_first.rotation.toRotationMatrix()));
   const Eigen::Vector3d baseline = half.transpose() * second_from_first.translation_m;
   if (!(std::abs(baseline.x()) > std::max(std::abs(baseline.y()), std::abs(baseline.z()))))
-    throw badInput("result",
-                   fmt::format("{} and {} do not sit side by side, as {} asks for", pair.left.name,
-                               pair.right.name, program),
-                   fmt::format("Leave {} out", program));
+    return std::nullopt;
   if (baseline.x() > 0.0) std::swap(pair.left, pair.right);
   pair.right_from_left = inverse(pair.right.reference_from_camera) * pair.left.reference_from_camera;
   return pair;
+}
+
+StereoPair stereoPair(const Rig& rig, const char* program) {
+  if (rig.cameras.size() < 2)
+    throw badInput("result", fmt::format("has one camera, and {} is for stereo", program),
+                   fmt::format("Leave {} out, or calibrate two cameras", program));
+  std::optional<StereoPair> pair = sideBySide(rig);
+  if (!pair)
+    throw badInput("result",
+                   fmt::format("{} and {} do not sit side by side, as {} asks for", rig.cameras[0].name,
+                               rig.cameras[1].name, program),
+                   fmt::format("Leave {} out", program));
+  return *std::move(pair);
+}
+
+Eigen::Matrix3d essentialMatrix(const RigidTransform& second_from_first) {
+  return skew(second_from_first.translation_m) * second_from_first.rotation.toRotationMatrix();
+}
+
+Eigen::Matrix3d fundamentalMatrix(const CameraIntrinsics& first, const CameraIntrinsics& second,
+                                  const RigidTransform& second_from_first) {
+  return cameraMatrix(second).inverse().transpose() * essentialMatrix(second_from_first) *
+         cameraMatrix(first).inverse();
 }
 
 Rectification rectify(const CameraIntrinsics& left, const CameraIntrinsics& right,

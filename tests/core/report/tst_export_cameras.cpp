@@ -36,6 +36,23 @@ Lens rosLens(const YAML::Node& camera) {
                                                                      : fisheyeLens(k, distortion);
 }
 
+// args of the nodes of a ROS 1 launch file, which is XML and names each node once.
+QStringList ros1Arguments(const std::string& launch) {
+  QXmlStreamReader xml(QByteArray::fromStdString(launch));
+  QStringList arguments, names;
+  while (!xml.atEnd()) {
+    if (xml.readNext() != QXmlStreamReader::StartElement || xml.name() != QString("node")) continue;
+    const auto attributes = xml.attributes();
+    if (attributes.value("pkg") != QString("tf2_ros") ||
+        attributes.value("type") != QString("static_transform_publisher") ||
+        names.contains(attributes.value("name").toString()))
+      return {};
+    names << attributes.value("name").toString();
+    arguments << attributes.value("args").toString();
+  }
+  return xml.hasError() ? QStringList() : arguments;
+}
+
 Eigen::Matrix4d poseOf(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation) {
   Eigen::Isometry3d full = Eigen::Isometry3d::Identity();
   full.linear() = rotation.toRotationMatrix();
@@ -88,6 +105,19 @@ class TestExportCameras : public QObject {
     const Eigen::Matrix4d by_urdf = poseOf(rotation, {number(joint, 1), number(joint, 2), number(joint, 3)});
     QVERIFY(worstDifference_px(result, 0, {by_urdf.inverse(), offset_s, lens}) < kSame_px);
     QVERIFY(script.contains("--child-frame-id far_imu"));
+    // tf2_ros' static_transform_publisher: ROS 1 takes nine words, ROS 2 flags; the numbers are the script's.
+    QStringList words = tf.capturedTexts().mid(1);
+    words << "left_imu"
+          << "left_optical_frame";
+    QCOMPARE(ros1Arguments(contentOf(exported, "ros/static_transforms.launch")).value(0), words.join(' '));
+    QStringList flagged;
+    const QStringList flags{
+        "--x", "--y", "--z", "--qx", "--qy", "--qz", "--qw", "--frame-id", "--child-frame-id"};
+    for (qsizetype i = 0; i < flags.size(); ++i) flagged << flags[i] << words[i];
+    const QString python = QString::fromStdString(contentOf(exported, "ros/static_transforms.launch.py"));
+    QVERIFY2(python.contains("arguments=['" + flagged.join("', '") + "']"), qPrintable(python));
+    QVERIFY(python.contains("def generate_launch_description():"));
+    QCOMPARE(python.count("Node(package='tf2_ros', executable='static_transform_publisher',"), 3);
     const std::string description = contentOf(exported, "ros/rig.urdf");
     QVERIFY(description.find("right -0.0021 s") != std::string::npos);
     QXmlStreamReader urdf(QByteArray::fromStdString(description));

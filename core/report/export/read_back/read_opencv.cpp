@@ -1,0 +1,106 @@
+// After opencv/opencv, samples/cpp/tutorial_code/calib3d/camera_calibration/camera_calibration.cpp and
+// samples/cpp/stereo_calib.cpp (at aa2dde3), and opencv/opencv_contrib, modules/ccalib/samples/omni_calibration.cpp:
+// matrices are read with >> cv::Mat.
+#include "core/base/error.h"
+#include "core/report/export/read_back/opencv_file.h"
+#include "core/report/export/read_back/read_numbers.h"
+#include "core/report/export/read_back/read_pair.h"
+#include "core/report/export/read_back/readers.h"
+
+#include <Eigen/LU>
+#include <opencv2/core.hpp>
+
+#include <system_error>
+
+namespace evical {
+namespace {
+
+// A column of 5 for cv::projectPoints, of 4 for cv::fisheye's and, beside xi, for cv::omnidir's.
+CameraIntrinsics lensOf(const OpencvFile& file, const char* k_key, const char* d_key, const char* xi_key,
+                        Resolution size) {
+  const Eigen::Matrix3d k = file[k_key].matrix(3, 3, CV_64F);
+  const std::vector<double> intrinsics{k(0, 0), k(1, 1), k(0, 2), k(1, 2)};
+  const bool omni = file.has(xi_key);
+  const bool radtan = !omni && file[d_key]["rows"].integer() == 5;
+  const Eigen::VectorXd d = file[d_key].matrix(radtan ? 5 : 4, 1, CV_64F);
+  if (radtan) return lensFrom(CameraModel::PinholeRadtan, intrinsics, {d.begin(), d.end()}, size);
+  if (!omni) return lensFrom(CameraModel::PinholeEquidistant, intrinsics, {d.begin(), d.end()}, size);
+  return lensFrom(CameraModel::OmniRadtan, intrinsics,
+                  {file[xi_key].matrix(1, 1, CV_64F)(0, 0), d[0], d[1], d[2], d[3]}, size);
+}
+
+RigidTransform poseAt(const OpencvFile& file, const char* key) {
+  return rigidFrom(file[key].matrix(4, 4, CV_64F), file[key].place());
+}
+
+ReadCamera cameraOf(const OpencvFile& file, const std::string& name) {
+  ReadCamera camera;
+  camera.name = name;
+  camera.lens = lensOf(file, "camera_matrix", "distortion_coefficients", "xi",
+                       {file["image_width"].integer(), file["image_height"].integer()});
+  if ((file["fisheye_model"].integer() != 0) != (camera.lens->model == CameraModel::PinholeEquidistant))
+    file["fisheye_model"].fail("does not go with the distortion_coefficients");
+  file["avg_reprojection_error"].number();
+  camera.frame_from_camera = poseAt(file, "reference_from_camera");
+  camera.time_offset_s = file["time_offset_s"].number();
+  return camera;
+}
+
+ReadImu imuOf(const OpencvFile& file, const std::string& name) {
+  ReadImu imu;
+  imu.name = name;
+  imu.reference_from_imu = poseAt(file, "reference_from_imu");
+  imu.time_offset_s = file["time_offset_s"].number();
+  imu.accelerometer = file["accelerometer_matrix"].matrix(3, 3, CV_64F);
+  imu.gyroscope = file["gyroscope_matrix"].matrix(3, 3, CV_64F);
+  imu.accelerometer_bias_m_s2 = file["accelerometer_bias"].matrix(3, 1, CV_64F);
+  imu.gyroscope_bias_rad_s = file["gyroscope_bias"].matrix(3, 1, CV_64F);
+  imu.rate_hz = file["rate_hz"].number();
+  imu.noise = {file["gyroscope_noise_density"].number(), file["accelerometer_noise_density"].number(),
+               file["gyroscope_random_walk"].number(), file["accelerometer_random_walk"].number()};
+  return imu;
+}
+
+PairAsRead readPair(const std::filesystem::path& folder) {
+  const OpencvFile in(folder / "intrinsics.yml"), ex(folder / "extrinsics.yml");
+  const Eigen::MatrixXd rotation = ex["R"].matrix(3, 3, CV_64F), translation = ex["T"].matrix(3, 1, CV_64F);
+  const Eigen::MatrixXd pose = (Eigen::MatrixXd(3, 4) << rotation, translation).finished();
+  const PairAsRead pair{lensOf(in, "M1", "D1", "xi1", {}), lensOf(in, "M2", "D2", "xi2", {}),
+                        rigidFrom(pose, ex["R"].place())};
+  for (const char* const key : {"E", "F"}) ex[key].matrix(3, 3, CV_64F);
+  ex["Q"].matrix(4, 4, CV_64F);
+  // Rectified, the cameras differ by the baseline along x and by nothing else.
+  constexpr double kSame = 1e-9;
+  const Eigen::Matrix3d r1 = ex["R1"].matrix(3, 3, CV_64F), r2 = ex["R2"].matrix(3, 3, CV_64F);
+  const Eigen::MatrixXd p2 = ex["P2"].matrix(3, 4, CV_64F);
+  const Eigen::Vector3d baseline = r2 * pair.right_from_left.translation_m;
+  ex["P1"].matrix(3, 4, CV_64F);
+  if ((r2 * pair.right_from_left.rotation * r1.transpose() - Eigen::Matrix3d::Identity()).norm() > kSame ||
+      (baseline - Eigen::Vector3d(p2(0, 3) / p2(0, 0), 0.0, 0.0)).norm() > kSame)
+    ex["R"].fail("is not what R1, R2 and P2 rectify");
+  return pair;
+}
+
+}  // namespace
+
+ReadBack readOpenCv(const std::filesystem::path& folder) {
+  ReadBack read;
+  std::vector<ReadCamera> cameras;
+  for (const std::filesystem::path& path : filesLike(folder, "", ".yaml")) {
+    const OpencvFile file(path);
+    ReadFile one{path};
+    if (file.has("reference_from_imu"))
+      one.imus.push_back(imuOf(file, path.stem().string()));
+    else
+      one.cameras.push_back(cameraOf(file, path.stem().string()));
+    cameras.insert(cameras.end(), one.cameras.begin(), one.cameras.end());
+    read.files.push_back(std::move(one));
+  }
+  std::error_code ignored;
+  if (std::filesystem::exists(folder / "intrinsics.yml", ignored) ||
+      std::filesystem::exists(folder / "extrinsics.yml", ignored))
+    read.files.push_back(pairAmong(cameras, readPair(folder), folder / "extrinsics.yml"));
+  return read;
+}
+
+}  // namespace evical
