@@ -168,6 +168,33 @@ class TestExportReadBack : public QObject {
              same.time_ms.has_value());
   }
 
+  // Programs that take something of one camera for both: refused, or refitted, so that what is written reads back.
+  void unlikeCameras_readBackOrAreRefused_data() { anotherResult_isFound_data(); }
+  void unlikeCameras_readBackOrAreRefused() {
+    QFETCH(QString, target);
+    const ExportTarget& row = exportTarget(target.toStdString(), "test");
+    for (const bool other_size : {false, true}) {
+      NamedResult result = rig({});
+      CameraIntrinsics right = *result.result->state.cameras[1].lens.inUse();
+      if (other_size) {
+        right.resolution_px = {640, 480};
+        right.principal_point_px *= 1.85;
+        right.focal_length_px *= 1.85;
+      } else {
+        right.model = CameraModel::PinholeEquidistant;
+        right.distortion = {-0.03, 0.011, -0.004, 0.0007, 0.0};
+      }
+      ownResult(result).state.cameras[1].lens = givenLens(right);
+      QTemporaryDir folder;
+      if (!exportInto(folder, result, row.name)) {
+        QVERIFY(other_size && (target.startsWith("esvo") || target == "orb-slam3"));
+        continue;
+      }
+      const ExportCheck check = checkExport(result, row, folder.path().toStdString());
+      QVERIFY2(check.same, check.text.c_str());
+    }
+  }
+
   void damage_isFoundAndNamed_data() {
     QTest::addColumn<QString>("target");
     QTest::addColumn<QString>("file");
@@ -210,6 +237,7 @@ class TestExportReadBack : public QObject {
     row("esvo", "right.yaml", "distortion_coefficients", "coefficients", "distortion_coefficients");
     row("esvo", "right.yaml", "projection_matrix:\n  rows: 3\n  cols: 4\n  data: [2",
         "projection_matrix:\n  data: [3", "rectification_matrix");
+    row("esvo2", "right.yaml", "T_b_c:", "T_c_b:", "T_b_c");
     row("esvo2", "left.yaml", "T_b_c:", "T_c_b:", "T_b_c");
     // As Evical wrote it once: "No such node (patternType)".
     row("dv-processing", "calibration.json", "\"position\"",
