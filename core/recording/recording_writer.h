@@ -24,6 +24,9 @@ class RecordingWriter {
   virtual void write(std::size_t stream, EventSpan events) = 0;
   virtual void write(std::size_t stream, std::span<const ImuSample> samples) = 0;
   virtual void finish() = 0;
+
+  // What readers will call the streams given at creation, in their order: not every format keeps names.
+  virtual std::vector<std::string> streamNames() const = 0;
 };
 
 // A ROS 1 bag with dvs_msgs/EventArray and sensor_msgs/Imu; a stream's name is its topic, an event stream
@@ -32,7 +35,8 @@ std::unique_ptr<RecordingWriter> createBag(const std::filesystem::path& path,
                                            const std::vector<StreamInfo>& streams, bool lz4);
 
 // AEDAT4 with lz4 or zstd, as DV plays it; times are rounded to the us, IMU samples become 32 bit numbers.
-// Event streams need their resolution. Streams are numbered in the order given and keep their names.
+// Event streams need their resolution. Streams are numbered in the order given, and called as dv-processing looks for them
+// where a camera has one of a type ("events", "imu"); see RecordingWriter::streamNames.
 std::unique_ptr<RecordingWriter> createAedat4(const std::filesystem::path& path,
                                               const std::vector<StreamInfo>& streams, bool zstd);
 

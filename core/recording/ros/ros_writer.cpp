@@ -57,6 +57,12 @@ void RosWriter::write(std::size_t stream, std::span<const ImuSample> samples) {
   }
 }
 
+std::vector<std::string> RosWriter::streamNames() const {
+  std::vector<std::string> names;
+  for (const Stream& stream : streams_) names.push_back(stream.info.name);
+  return names;
+}
+
 void RosWriter::flushEvents() {
   for (std::size_t i = 0; i < streams_.size(); ++i) flushEvents(i);
 }

@@ -16,6 +16,7 @@ class RosWriter : public RecordingWriter {
  public:
   void write(std::size_t stream, EventSpan events) override;
   void write(std::size_t stream, std::span<const ImuSample> samples) override;
+  std::vector<std::string> streamNames() const override;
 
  protected:
   // Times must be within [0, seconds_end) s. Throws CalibrationError (BadInput) for streams that hold neither
