@@ -68,7 +68,9 @@ void printStream(const StreamSummary& stream, bool checksum) {
   const bool frames = info.type == StreamType::Frames;
   if (frames) printFrames(stream);
   if (info.type != StreamType::Events && info.type != StreamType::Imu && !frames) {
-    if (stream.count > 0) print("    {:<22} {}\n", "messages", stream.count);
+    // Trigger streams are listed where a format has room for them.
+    if (stream.count > 0 || info.type == StreamType::Triggers)
+      print("    {:<22} {}\n", "messages", stream.count);
     return;
   }
   if (frames && (!info.readable || !info.timed)) return;
