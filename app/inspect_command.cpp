@@ -113,7 +113,7 @@ void addInspectCommand(CLI::App& app, int& exit_code) {
   command
       ->add_option(
           "recording", arguments->recording,
-          "A file or folder of any format that can be read: a bag, AEDAT, RAW, HDF5, text, pictures.")
+          "A file or folder of any format that can be read: a bag, AEDAT, RAW, HDF5, NumPy, text, pictures.")
       ->required();
   command->add_flag("--json", arguments->json, "Print JSON instead of text.");
   command->add_flag("--checksum", arguments->checksum, "Add sums over all events, to compare readers.");
