@@ -68,7 +68,9 @@ void printStream(const StreamSummary& stream, bool checksum) {
   const bool frames = info.type == StreamType::Frames;
   if (frames) printFrames(stream);
   if (info.type != StreamType::Events && info.type != StreamType::Imu && !frames) {
-    if (stream.count > 0) print("    {:<22} {}\n", "messages", stream.count);
+    // Trigger streams are listed where a format has room for them.
+    if (stream.count > 0 || info.type == StreamType::Triggers)
+      print("    {:<22} {}\n", "messages", stream.count);
     return;
   }
   if (frames && (!info.readable || !info.timed)) return;
@@ -111,7 +113,7 @@ void addInspectCommand(CLI::App& app, int& exit_code) {
   command
       ->add_option(
           "recording", arguments->recording,
-          "A file or folder of any format that can be read: a bag, AEDAT, RAW, HDF5, text, pictures.")
+          "A file or folder of any format that can be read: a bag, AEDAT, RAW, HDF5, NumPy, text, pictures.")
       ->required();
   command->add_flag("--json", arguments->json, "Print JSON instead of text.");
   command->add_flag("--checksum", arguments->checksum, "Add sums over all events, to compare readers.");

@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 
 seconds=${1:-60}
 targets=("${@:2}")
-[ "${#targets[@]}" -gt 0 ] || targets=(bag mcap db3 packed aedat2 aedat3 aedat4 hdf5 raw es text pictures payload detections yaml calibrate)
+[ "${#targets[@]}" -gt 0 ] || targets=(bag mcap db3 packed aedat2 aedat3 aedat4 hdf5 npy npz raw es text pictures payload detections yaml calibrate)
 
 packaging/install-dependencies.sh --fuzz
 build=build/fuzz
@@ -33,6 +33,8 @@ while IFS= read -r -d '' file; do
     'SQLite'*) target=db3 ;;
     *MCAP*) target=mcap ;;
     *HDF*) target=hdf5 ;;
+    *NUMPY*) target=npy ;;
+    PK*) target=npz ;;
     [0-9]*) target=text ;;
     *) continue ;;
   esac

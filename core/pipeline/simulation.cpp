@@ -5,7 +5,6 @@
 #include "core/base/new_folder.h"
 #include "core/frames/picture_file.h"
 #include "core/pipeline/simulated_cameras.h"
-#include "core/recording/recording_reader.h"
 #include "core/recording/recording_writer.h"
 #include "core/synthetic/frame_simulator.h"
 #include "core/synthetic/imu_simulator.h"
@@ -13,7 +12,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -70,24 +68,12 @@ class ImuFeed {
   std::size_t next_ = 0;
 };
 
-// What the sensors' streams are called in the recording: not every format keeps names.
-void takeNames(const RecordingReader& reader, StreamType type, const std::vector<std::string*>& streams) {
-  std::vector<std::string> names;
-  for (const StreamInfo& stream : reader.streams())
-    if (stream.type == type) names.push_back(stream.name);
-  for (std::size_t i = 0; i < streams.size(); ++i) {
-    const bool kept = std::find(names.begin(), names.end(), *streams[i]) != names.end();
-    if (!kept && i < names.size()) *streams[i] = names[i];
-  }
-}
-
-void takeNames(const RecordingReader& reader, Scenario& scenario) {
-  std::vector<std::string*> events, imus;
+// Of the streams of streamsOf, which not every format calls as the scenario does.
+void takeNames(const std::vector<std::string>& names, Scenario& scenario) {
+  auto name = names.begin();
   for (SimulatedCamera& camera : scenario.cameras)
-    if (!camera.frames) events.push_back(&camera.stream);
-  for (SimulatedImu& imu : scenario.imus) imus.push_back(&imu.stream);
-  takeNames(reader, StreamType::Events, events);
-  takeNames(reader, StreamType::Imu, imus);
+    if (!camera.frames) camera.stream = *name++;
+  for (SimulatedImu& imu : scenario.imus) imu.stream = *name++;
 }
 
 // Whole or not, the folder that it is in is made aside.
@@ -205,7 +191,7 @@ SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path
   } else {
     const std::unique_ptr<RecordingWriter> writer = createRecording(made, format.name, streams);
     writeRecording(scenario, *writer, summary, context);
-    takeNames(*openRecording(made), named);
+    takeNames(writer->streamNames(), named);
   }
   writeFrames(scenario, workshop.folder(), summary, context);
   writeFileWhole(workshop.folder() / "truth.yaml", truthYaml(scenario));

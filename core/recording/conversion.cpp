@@ -133,14 +133,13 @@ void copyPackets(RecordingReader& reader, RecordingWriter& writer, const std::ve
   summary.faults = reader.faults();
 }
 
-// Not every format keeps them, and sessions name streams.
-void sayNewNames(const std::filesystem::path& output, const std::vector<StreamInfo>& streams,
+// Sessions name streams.
+void sayNewNames(const std::vector<StreamInfo>& streams, const std::vector<std::string>& written,
                  const RunContext& context) {
-  const std::vector<StreamInfo> written = openRecording(output)->streams();
   std::string text;
-  for (std::size_t i = 0; written.size() == streams.size() && i < streams.size(); ++i)
-    if (written[i].name != streams[i].name)
-      text += fmt::format("{}{} is called {}", text.empty() ? "" : ", ", streams[i].name, written[i].name);
+  for (std::size_t i = 0; i < streams.size(); ++i)
+    if (written[i] != streams[i].name)
+      text += fmt::format("{}{} is called {}", text.empty() ? "" : ", ", streams[i].name, written[i]);
   if (!text.empty()) context.progress.log(LogLevel::Info, "In the new file " + text);
 }
 
@@ -172,7 +171,7 @@ ConversionSummary convertRecording(const ConversionRequest& request, const RunCo
       createRecording(request.output, format.name, summary.streams);
   copyPackets(*reader, *writer, targets, summary, context);
   writer->finish();
-  if (!format.isFolder()) sayNewNames(request.output, summary.streams, context);
+  if (!format.isFolder()) sayNewNames(summary.streams, writer->streamNames(), context);
   return summary;
 }
 

@@ -6,6 +6,7 @@
 #include "core/recording/event_stream/event_stream_reader.h"
 #include "core/recording/hdf5/hdf5_reader.h"
 #include "core/recording/joined_reader.h"
+#include "core/recording/numpy/numpy_reader.h"
 #include "core/recording/pictures/picture_lists.h"
 #include "core/recording/pictures/picture_reader.h"
 #include "core/recording/prophesee/raw_header.h"
@@ -32,8 +33,10 @@ using namespace std::string_view_literals;
 
 constexpr const char* kReadable =
     "Readable are ROS 1 bags (format 2.0), ROS 2 bags (MCAP, sqlite3), AEDAT 2, 3.1 and 4, Prophesee RAW and "
-    "DAT, HDF5 (DSEC, TUM-VIE, M3ED, MVSEC, Metavision), Event Stream, text or CSV: a folder with events.txt "
-    "and imu.txt (or .csv), or one such file, and folders of pictures (EuRoC, Kalibr, DSEC, TUM-VIE, others)";
+    "DAT, HDF5 (DSEC, TUM-VIE, M3ED, MVSEC, Metavision), Event Stream, NumPy's .npy and .npz, text or CSV: a "
+    "folder "
+    "with events.txt and imu.txt (or .csv), or one such file, and folders of pictures (EuRoC, Kalibr, DSEC, "
+    "TUM-VIE, others)";
 
 // What people may well hand us, by its first bytes.
 struct OtherFormat {
@@ -106,6 +109,7 @@ std::unique_ptr<RecordingReader> openFolder(const std::filesystem::path& path) {
   if (isTumVieFolder(path)) return withPictures(openHdf5(path), pictures::findTumViePictures(path));
   if (ros::isRos2Folder(path)) return std::make_unique<RosReader>(path);
   pictures::PictureFolder found = pictures::findPictures(path);
+  if (isNumpyFolder(path)) return withPictures(std::make_unique<NumpyReader>(path), std::move(found));
   if (found.lists.empty()) {
     throw badInput(path.string(), "the folder has no recording: no events, no IMU samples, no pictures",
                    kReadable);
@@ -132,6 +136,7 @@ std::unique_ptr<RecordingReader> openPath(const std::filesystem::path& path) {
   if (start.starts_with(aedat::kMagic)) return std::make_unique<Aedat4Reader>(path);
   if (start.starts_with(kAedat2Magic)) return openAedat2(path);
   if (start.starts_with(kAedat3Magic)) return std::make_unique<Aedat3Reader>(path);
+  if (isNumpyFile(path, start)) return std::make_unique<NumpyReader>(path);
   if (isRos2File(path, start)) return std::make_unique<RosReader>(path);
   for (const OtherFormat& format : kOtherFormats) {
     if (start.starts_with(format.magic)) throw badInput(path.string(), format.problem, format.advice);

@@ -26,6 +26,9 @@ class RecordingWriter {
   // As it is stored; of one stream either all encoded or none. Only where RecordingFormat::frames says so.
   virtual void writeFrame(std::size_t stream, const Frame& frame);
   virtual void finish() = 0;
+
+  // What readers will call the streams given at creation, in their order: not every format keeps names.
+  virtual std::vector<std::string> streamNames() const = 0;
 };
 
 // A ROS 1 bag with dvs_msgs/EventArray, sensor_msgs/Imu and, of frames, Image or (of JPEG and PNG files) CompressedImage,
@@ -35,7 +38,8 @@ std::unique_ptr<RecordingWriter> createBag(const std::filesystem::path& path,
                                            const std::vector<StreamInfo>& streams, bool lz4);
 
 // AEDAT4 with lz4 or zstd, as DV plays it; times are rounded to the us, IMU samples become 32 bit numbers.
-// Event streams need their resolution. Streams are numbered in the order given and keep their names.
+// Event streams need their resolution. Streams are numbered in the order given, and called as dv-processing looks for them
+// where a camera has one of a type ("events", "imu"); see RecordingWriter::streamNames.
 std::unique_ptr<RecordingWriter> createAedat4(const std::filesystem::path& path,
                                               const std::vector<StreamInfo>& streams, bool zstd);
 

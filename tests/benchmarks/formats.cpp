@@ -5,6 +5,7 @@
 #include "core/recording/recording_writer.h"
 #include "core/synthetic/event_simulator.h"
 #include "tests/benchmarks/benchmark_program.h"
+#include "tests/core/recording/numpy/numpy_builder.h"
 #include "tests/core/recording/ros/ros2_builder.h"
 #include "tests/support/packed_events.h"
 
@@ -62,6 +63,7 @@ class Rows {
     addWritten();
     addSqlite();
     addCameraFormats();
+    addArrays();
   }
   const std::vector<Row>& list() const { return list_; }
 
@@ -118,6 +120,38 @@ class Rows {
     addEncoded(
         "Event Stream", test::eventStreamHeader(size_px_.width_px, size_px_.height_px, false),
         [this](EventSpan events) { return test::encodeEventStream(events, size_px_.height_px, false); });
+  }
+
+  // What numpy.save, numpy.savez and numpy.savez_compressed write; without zip64 each array has 4 GB at most.
+  void addArrays() {
+    addEncoded("NumPy, structured", "", [this](EventSpan events) {
+      std::string bytes;
+      for (const Event& event : events)
+        bytes += timeBytes(event) + test::numberBytes(event.x_px) + test::numberBytes(event.y_px) +
+                 polarity(event);
+      return test::npyArray("[('t', '<i8'), ('x', '<u2'), ('y', '<u2'), ('p', '|b1')]", shape(), bytes);
+    });
+    addEncoded("NumPy archive", "", [this](EventSpan events) { return archiveOf(events, false); });
+    addEncoded("NumPy archive, deflated", "", [this](EventSpan events) { return archiveOf(events, true); });
+    list_.back().packed = false;  // zlib's speed
+  }
+
+  static std::string timeBytes(const Event& event) { return test::numberBytes(event.time_ns / 1000); }
+  static char polarity(const Event& event) { return event.brighter ? '\1' : '\0'; }
+  std::string shape() const { return fmt::format("({},)", events_.size()); }
+
+  std::string archiveOf(EventSpan events, bool deflate) const {
+    std::string x, y, t, p;
+    for (const Event& event : events) {
+      x += test::numberBytes(event.x_px);
+      y += test::numberBytes(event.y_px);
+      t += timeBytes(event);
+      p += polarity(event);
+    }
+    return test::zipArchive({{"x.npy", test::npyArray("'<u2'", shape(), x), deflate},
+                             {"y.npy", test::npyArray("'<u2'", shape(), y), deflate},
+                             {"t.npy", test::npyArray("'<i8'", shape(), t), deflate},
+                             {"p.npy", test::npyArray("'|b1'", shape(), p), deflate}});
   }
 
   void addEncoded(const char* name, const std::string& header,

@@ -35,6 +35,8 @@ constexpr Family kFamilies[] = {
     {"aedat3", "#!AER-DAT3.1"sv, "input.aedat"},
     {"aedat4", "#!AER-DAT4.0\r\n"sv, "input.aedat4"},
     {"hdf5", "\x89HDF\r\n\x1A\n"sv, "input.h5"},
+    {"npy", "\x93NUMPY"sv, "input.npy"},
+    {"npz", "PK\3\4"sv, "input.npz"},
     {"raw", "% "sv, "input.raw"},
     {"es", "Event Stream"sv, "input.es"},
     {"text", ""sv, "input.csv"},

@@ -8,6 +8,7 @@
 #include "tests/core/recording/aedat/aedat3_builder.h"
 #include "tests/core/recording/aedat/frame_packets.h"
 #include "tests/core/recording/bag_builder.h"
+#include "tests/core/recording/numpy/numpy_builder.h"
 #include "tests/core/recording/picture_samples.h"
 #include "tests/core/recording/ros/image_builder.h"
 #include "tests/core/recording/ros/ros2_builder.h"
@@ -182,6 +183,38 @@ void saveCameraFormats(const fs::path& folder) {
   save(folder / "text/g", "time_us,acc_x [g],acc_y,acc_z,gyro_x [deg/s],gyro_y,gyro_z\n7,0,0,1,1,2,3\n");
 }
 
+void saveArrays(const fs::path& folder) {
+  std::string x, y, t, p, rows, reals;
+  for (const Event& event : someEvents()) {
+    x += test::numberBytes(event.x_px);
+    y += test::numberBytes(event.y_px);
+    t += test::numberBytes(event.time_ns / 1000);
+    p += static_cast<char>(event.brighter ? 1 : 0);
+    rows += t.substr(t.size() - 8) + x.substr(x.size() - 2) + y.substr(y.size() - 2) + p.back();
+    for (const double part :
+         {1e-9 * static_cast<double>(event.time_ns), 1.0 * event.x_px, 1.0 * event.y_px, 1.0})
+      reals += test::numberBytes(part);
+  }
+  const std::string structured =
+      test::npyArray("[('t', '<i8'), ('x', '<u2'), ('y', '<u2'), ('p', '|b1')]", "(60,)", rows);
+  save(folder / "npy/structured", structured);
+  save(folder / "npy/nested",
+       test::npyArray("[('xy', '>u2', (2,)), ('', '|V3'), ('a', [(('n', 't'), '<f4'), ('p', '?')])]", "(1,)",
+                      std::string(12, '\1')));
+  save(folder / "npy/rows", test::npyArray("'<f8'", "(60, 4)", reals));
+  save(folder / "npy/columns", test::npyArray("'<f8'", "(60, 4)", reals, true));
+  for (const bool deflate : {false, true}) {
+    const std::string how = deflate ? "npz/deflated" : "npz/stored";
+    const std::vector<test::ZipFile> files = {
+        {"x.npy", test::npyArray("'<u2'", "(60,)", x), deflate},
+        {"y.npy", test::npyArray("'<u2'", "(60,)", y), deflate},
+        {"t.npy", test::npyArray("'<i8'", "(60,)", t), deflate, deflate},
+        {"p.npy", test::npyArray("'|b1'", "(60,)", p), deflate}};
+    save(folder / how, test::zipArchive(files, deflate));
+    save(folder / (how + "_structured"), test::zipArchive({{"e.npy", structured, deflate}}));
+  }
+}
+
 void savePayloads(const fs::path& folder) {
   const std::vector<Event> events = someEvents();
   const auto kind = [](char number) { return std::string(1, number); };
@@ -208,6 +241,7 @@ int main(int argc, char** argv) {
   savePictures(folder);
   saveRos(folder);
   saveCameraFormats(folder);
+  saveArrays(folder);
   savePayloads(folder);
   std::string packed;
   ros::packZstd(contentOf(folder / "mcap/plain"), packed);

@@ -33,6 +33,7 @@ class Aedat4Writer : public RecordingWriter {
     aedat::FileHeader header;
     header.compression = static_cast<std::int32_t>(compression);
     header.description = aedat::descriptionsXml(descriptions, aedat::compressionName(compression));
+    read_names_ = aedat::uniqueNames(descriptions);
     const std::string bytes = aedat::encodeHeader(header, table_position_at_);
     table_position_at_ += aedat::kMagic.size();
     file_.append(aedat::kMagic);
@@ -63,6 +64,8 @@ class Aedat4Writer : public RecordingWriter {
     file_.overwrite(table_position_at_, bytesOf(table_position));
     file_.finish();
   }
+
+  std::vector<std::string> streamNames() const override { return read_names_; }
 
  private:
   struct Stream {
@@ -137,6 +140,7 @@ class Aedat4Writer : public RecordingWriter {
   aedat::Compression compression_;
   std::size_t table_position_at_ = 0;
   std::vector<Stream> streams_;
+  std::vector<std::string> read_names_;
   std::vector<aedat::TableEntry> table_;
   std::string packed_;
 };

@@ -33,14 +33,13 @@ std::vector<DeviceName> deviceNames(const std::vector<StreamInfo>& streams) {
       names[i].source = names[static_cast<std::size_t>(camera - streams.begin())].source;
     if (names[i].source.empty()) names[i].source = kNobody;
   }
-  std::vector<DeviceName> written = names;
   for (std::size_t i = 0; i < streams.size(); ++i) {
     std::size_t same = 0;
     for (std::size_t j = 0; j < streams.size(); ++j)
       same += streams[j].type == streams[i].type && names[j].source == names[i].source;
-    if (same == 1) written[i].output = is_camera(streams[i]) ? "events" : "imu";
+    if (same == 1) names[i].output = is_camera(streams[i]) ? "events" : "imu";
   }
-  return written;
+  return names;
 }
 
 }  // namespace evical::aedat

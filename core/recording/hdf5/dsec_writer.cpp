@@ -124,6 +124,13 @@ class DsecWriter : public RecordingWriter {
     }
   }
 
+  // The groups of the layout.
+  std::vector<std::string> streamNames() const override {
+    std::vector<std::string> names;
+    for (const StreamType type : types_) names.emplace_back(type == StreamType::Events ? "events" : "imu");
+    return names;
+  }
+
   void finish() override {
     const hdf5::Quiet quiet;
     if (events_) {

@@ -75,6 +75,12 @@ void RosWriter::writeFrame(std::size_t stream, const Frame& frame) {
   appendMessage(stream, target.sequence++, frame.time_ns, message_);
 }
 
+std::vector<std::string> RosWriter::streamNames() const {
+  std::vector<std::string> names;
+  for (const Stream& stream : streams_) names.push_back(stream.info.name);
+  return names;
+}
+
 void RosWriter::flushEvents() {
   for (std::size_t i = 0; i < streams_.size(); ++i) flushEvents(i);
 }

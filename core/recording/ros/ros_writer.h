@@ -17,6 +17,7 @@ class RosWriter : public RecordingWriter {
   void write(std::size_t stream, EventSpan events) override;
   void write(std::size_t stream, std::span<const ImuSample> samples) override;
   void writeFrame(std::size_t stream, const Frame& frame) override;
+  std::vector<std::string> streamNames() const override;
 
  protected:
   // Times must be within [0, seconds_end) s. Throws CalibrationError (BadInput) for streams that hold neither

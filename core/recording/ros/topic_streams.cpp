@@ -92,7 +92,6 @@ void TopicStreams::lookIntoPacket(std::size_t stream, std::string_view message) 
   std::vector<Event> events;
   EventPacketDecoder decoder;
   decoder.decode(packet, events);
-  state.has_triggers = state.has_triggers || decoder.triggers() > 0;
   if (const auto offset = decoder.hostClock().offset(); offset && !streams_[stream].host_clock_offset_s)
     streams_[stream].host_clock_offset_s = offset->offset_s;
 }
@@ -153,10 +152,11 @@ void TopicStreams::finishLooking() {
   listed_ = true;
 }
 
-// Streams of their own, behind all topics.
+// Streams of their own, behind all topics: as of RAW files of every topic that may hold some, since they come whenever a pin
+// is pulsed, perhaps only at the end.
 void TopicStreams::listTriggers() {
   for (std::size_t i = 0, topics = streams_.size(); i < topics; ++i) {
-    if (!states_[i].has_triggers || streams_[i].type != StreamType::Events) continue;
+    if (encodingOf(states_[i].encoding) != Encoding::Evt3 || streams_[i].type != StreamType::Events) continue;
     StreamInfo triggers;
     triggers.name = streams_[i].name + "/triggers";
     triggers.type = StreamType::Triggers;

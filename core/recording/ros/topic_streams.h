@@ -65,7 +65,6 @@ class TopicStreams {
     std::string encoding;  // of event packets and pictures, from their first message
     // Of event packets.
     EventPacketDecoder decoder;
-    bool has_triggers = false;
     std::optional<std::size_t> trigger_stream;
     bool refused() const;  // its encoding
     const char* readableEncodings() const;

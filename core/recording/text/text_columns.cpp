@@ -1,6 +1,7 @@
 #include "core/recording/text/text_columns.h"
 
 #include "core/numerics/robust.h"
+#include "core/recording/column_guess.h"
 #include "core/recording/text/text_lines.h"
 
 #include <fmt/format.h>
@@ -16,9 +17,6 @@ namespace evical {
 namespace {
 
 constexpr std::size_t kMostRows = 2000;
-constexpr double kEpoch_ns = 1e17;          // as ns since 1970 it is 1973; as us, the year 5138
-constexpr double kFewestEventsPerS = 50.0;  // of a file that is worth a guess
-constexpr std::size_t kEnoughRows = 100;
 constexpr std::size_t kImuColumns = 7;
 
 std::string_view trimmed(std::string_view text) {
@@ -27,25 +25,6 @@ std::string_view trimmed(std::string_view text) {
   const std::size_t end = text.find_last_not_of(kAround);
   return end == std::string_view::npos ? std::string_view{} : text.substr(begin, end + 1 - begin);
 }
-
-// One column in the first rows.
-struct ColumnNumbers {
-  double first = 0.0, last = 0.0, largest = std::numeric_limits<double>::lowest();
-  bool whole = true, decreases = false, polarity = true;
-  int pixels = 0, others = 0;  // whether the numbers can be coordinates
-
-  void add(double number, bool first_row) {
-    if (first_row) first = number;
-    decreases = decreases || (!first_row && number < last);
-    last = number;
-    largest = std::max(largest, number);
-    const bool is_whole = number == std::floor(number);
-    whole = whole && is_whole;
-    (is_whole && number >= 0.0 && number <= 65535.0 ? pixels : others) += 1;
-    polarity = polarity && (number == 0.0 || number == 1.0 || number == -1.0);
-  }
-  bool isPixel() const { return pixels > others; }  // a line may be bad
-};
 
 struct Rows {
   std::vector<ColumnNumbers> columns;
@@ -78,38 +57,6 @@ bool addRow(const std::vector<std::string_view>& line, Rows& rows) {
 
 bool isGravity(double norm) {
   return std::abs(norm - kStandardGravity_m_s2) < 0.8 || std::abs(norm - 1.0) < 0.08;
-}
-
-const char* unitName(std::int64_t unit_ns) {
-  return unit_ns == 1 ? "ns" : unit_ns == 1000 ? "us" : unit_ns == 1'000'000 ? "ms" : "s";
-}
-
-std::optional<std::int64_t> unitNamed(std::string_view text) {
-  for (const std::string_view name : {"ns", "nsec", "nanoseconds"})
-    if (text == name) return 1;
-  for (const std::string_view name : {"us", "usec", "microseconds"})
-    if (text == name) return 1000;
-  for (const std::string_view name : {"ms", "msec", "milliseconds"})
-    if (text == name) return 1'000'000;
-  for (const std::string_view name : {"s", "sec", "secs", "seconds"})
-    if (text == name) return 1'000'000'000;
-  return std::nullopt;
-}
-
-// The unit at the end of "timestamp [ns]", "t_us", "time(s)".
-std::optional<std::int64_t> unitOf(std::string_view name) {
-  while (!name.empty() && (name.back() == ']' || name.back() == ')' || name.back() == ' '))
-    name.remove_suffix(1);
-  const std::size_t before = name.find_last_of("[(_ ");
-  return before == std::string_view::npos ? std::nullopt : unitNamed(trimmed(name.substr(before + 1)));
-}
-
-std::int64_t unitFromNumbers(const ColumnNumbers& time, std::size_t rows) {
-  if (!time.whole) return 1'000'000'000;
-  if (time.largest >= kEpoch_ns) return 1;
-  const double span_s = 1e-6 * (time.last - time.first);
-  const bool too_slow = rows >= kEnoughRows && static_cast<double>(rows) < kFewestEventsPerS * span_s;
-  return too_slow ? 1 : 1000;
 }
 
 bool startsWithOne(std::string_view name, std::initializer_list<std::string_view> starts) {
@@ -157,7 +104,7 @@ struct HeaderColumns {
       first(acceleration);
     } else if (!time && (startsWithOne(name, {"time", "stamp"}) || isOneOf(letters, {"t", "ts", "sec"}))) {
       time = i;
-      unit_ns = unitOf(name);
+      unit_ns = timeUnitOf(name);
     } else if (letters == "x") {
       first(x);
     } else if (letters == "y") {
@@ -213,35 +160,14 @@ void applyHeader(const HeaderColumns& header, TextColumns& columns) {
   columns.time_unit_ns = header.unit_ns.value_or(0);
 }
 
-// The column that never decreases and exceeds the others is the time, one of two values the polarity; of the
-// rest the order is x, y.
 bool guessEvents(const Rows& rows, TextColumns& columns) {
-  if (rows.columns.size() != 4) return false;
-  const auto& all = rows.columns;
-  if (!all[0].whole && all[1].isPixel() && all[2].isPixel() && all[3].polarity) {
-    columns.type = StreamType::Events;  // the convention
-    return true;
-  }
-  std::optional<std::size_t> time, polarity;
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (all[i].decreases) continue;
-    const bool better = !time || (all[*time].whole && !all[i].whole) ||
-                        (all[*time].whole == all[i].whole && all[i].largest > all[*time].largest);
-    if (better) time = i;
-  }
-  if (!time) return false;
-  for (std::size_t i = 0; i < 4; ++i)
-    if (i != *time && all[i].polarity) polarity = i;
-  if (!polarity) return false;
-  std::vector<std::size_t> rest;
-  for (std::size_t i = 0; i < 4; ++i)
-    if (i != *time && i != *polarity && all[i].isPixel()) rest.push_back(i);
-  if (rest.size() != 2) return false;
+  const std::optional<EventColumns> events = guessEventColumns(rows.columns);
+  if (!events) return false;
   columns.type = StreamType::Events;
-  columns.time = *time;
-  columns.polarity = *polarity;
-  columns.x = rest[0];
-  columns.y = rest[1];
+  columns.time = events->time;
+  columns.x = events->x;
+  columns.y = events->y;
+  columns.polarity = events->polarity;
   return true;
 }
 
@@ -255,7 +181,7 @@ bool guessImu(const Rows& rows, TextColumns& columns) {
 }
 
 void describeGuess(TextColumns& columns, bool has_header) {
-  const char* unit = unitName(columns.time_unit_ns);
+  const char* unit = timeUnitName(columns.time_unit_ns);
   if (has_header) {
     columns.guess = fmt::format("The header does not tell the unit of time; {} is assumed.", unit);
     return;
@@ -340,7 +266,7 @@ TextColumns findColumns(std::string_view first_bytes, bool cut) {
   if (!has_header && !guessEvents(rows, columns) && !guessImu(rows, columns)) return columns;
   if (has_header && columns.time_unit_ns != 0) return columns;
   const bool known = columns.time < rows.columns.size();
-  columns.time_unit_ns = known ? unitFromNumbers(rows.columns[columns.time], rows.count) : 1'000'000'000;
+  columns.time_unit_ns = known ? guessTimeUnit_ns(rows.columns[columns.time], rows.count) : 1'000'000'000;
   const bool obvious = has_header && known && !rows.columns[columns.time].whole;
   if (!obvious) describeGuess(columns, has_header);
   return columns;

@@ -77,6 +77,13 @@ class TextWriter : public RecordingWriter {
     for (auto& [type, file] : files_) file->finish();
   }
 
+  std::vector<std::string> streamNames() const override {
+    std::vector<std::string> names;
+    for (const auto& [type, file] : files_)
+      names.emplace_back(type == StreamType::Events ? style_.events_file : style_.imu_file);
+    return names;
+  }
+
  private:
   void appendTime(std::int64_t time_ns) {
     if (!style_.in_seconds) {

@@ -42,6 +42,7 @@ class TestSampleData : public QObject {
       QTest::newRow(file) << QString(file) << sums << samples;
     };
     row("real/dvxplorer_events_imu.aedat4", {111954, 55023, 18342405, 15105898}, 475);
+    row("derived/npz_dvxplorer.npz", {20000, 9911, 3294224, 2695156});
     row("real/evlib_event.txt", {17, 0, 1801, 1103});
     row("real/gen3_evt2.raw", {539481, 367855, 171811022, 110162026});
     row("real/ros1_evt3_with_triggers.bag", {343474, 125183, 116731888, 80879209});

@@ -74,6 +74,7 @@ class TestEventPackets : public QObject {
   void evt3_offsetToTheHost_isTheLeastDelay();
   void lostMessage_takesThePosition();
   void triggers_areListed();
+  void triggers_areListedWhereverTheyOccur();
   void triggerTopic_holdsNoEvents();
   void unknownEncoding_isNamed();
   void bigEndian_isRefused();
@@ -192,6 +193,25 @@ void TestEventPackets::triggers_areListed() {
   QCOMPARE(contents.streams.size(), std::size_t{2});
   QCOMPARE(contents.streams[1].type, StreamType::Triggers);
   QCOMPARE(contents.streams[1].messages, std::uint64_t{3});
+}
+
+// Far behind the messages that are looked into when a recording is opened.
+void TestEventPackets::triggers_areListedWhereverTheyOccur() {
+  constexpr std::uint64_t kMessages = 200;
+  for (const std::uint64_t triggers : {0, 2}) {
+    std::vector<PacketFields> packets;
+    for (std::uint64_t i = 0; i < kMessages; ++i)
+      packets.push_back({"evt3", evt3({0x8001, 0x6000 + i, 0x0003, 0x2004}), kStart_ns, i});
+    if (triggers > 0) packets.push_back({"evt3", evt3({0xA101, 0xA100}), kStart_ns, kMessages});
+    const std::filesystem::path path = folder_.write("late.bag", bagOf(packets));
+    const std::unique_ptr<RecordingReader> reader = openRecording(path);
+    QCOMPARE(reader->streams().size(), std::size_t{2});
+    QCOMPARE(reader->streams()[1].name, std::string("/camera/triggers"));
+    const Contents contents = readAll(*reader);
+    QCOMPARE(contents.eventCount(), std::size_t{kMessages});
+    QCOMPARE(contents.streams[1].messages, triggers);
+    QVERIFY(faultOf(contents, FaultKind::Triggers) == nullptr);
+  }
 }
 
 void TestEventPackets::triggerTopic_holdsNoEvents() {

@@ -1,0 +1,43 @@
+// The bytes of a file, of a part of one, or of what is deflated there, in order and without keeping them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace evical::numpy {
+
+// Where the bytes of an array are: alone in a file, or as a member of an archive.
+struct ByteRange {
+  std::filesystem::path path;
+  std::uint64_t position = 0;
+  std::uint64_t packed_bytes = 0;  // in the file, which has as many
+  std::uint64_t bytes = 0;         // unpacked: no more than that many, whatever the file claims
+  bool deflated = false;
+  std::optional<std::uint32_t> checksum;  // CRC-32 of the unpacked bytes
+};
+
+class ByteStream {
+ public:
+  virtual ~ByteStream() = default;
+
+  // The next bytes, as many as there are up to `count`; 0 at the end and where the rest is damaged.
+  virtual std::size_t read(char* bytes, std::size_t count) = 0;
+
+  // False where there are fewer.
+  virtual bool skip(std::uint64_t count) = 0;
+
+  // What is wrong with the bytes read so far; empty if nothing is. A checksum is compared once all bytes have gone by.
+  virtual std::string problem() const = 0;
+};
+
+// Throws CalibrationError (BadInput) if the file cannot be opened.
+std::unique_ptr<ByteStream> openBytes(const ByteRange& range);
+
+// Bytes that deflated ones can unpack to at most.
+std::uint64_t mostInflated(std::uint64_t packed_bytes);
+
+}  // namespace evical::numpy

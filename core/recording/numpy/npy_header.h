@@ -1,0 +1,48 @@
+// What the header of a .npy file or member says: the format of NumPy's numpy/lib/format.py, versions 1 to 3.
+#pragma once
+
+#include "core/recording/numpy/byte_stream.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace evical::numpy {
+
+inline constexpr std::string_view kArrayMagic = "\x93NUMPY";
+
+struct NumberType {
+  enum class Kind { Truth, Signed, Unsigned, Real };
+  Kind kind = Kind::Signed;
+  int bytes = 1;  // 1, 2, 4, 8; real numbers 2, 4, 8
+  bool big_endian = false;
+  std::int64_t unit_ns = 0;  // of NumPy's dates and time spans; 0: they have none
+};
+
+// A part of each element.
+struct Field {
+  std::string name;                // empty where elements are plain numbers
+  std::optional<NumberType> type;  // nothing: no numbers that are read
+  std::size_t offset = 0;          // in the element
+  std::size_t count = 1;           // a list of numbers
+};
+
+struct ArrayHeader {
+  std::vector<Field> fields;
+  std::size_t element_bytes = 0;     // never 0
+  std::vector<std::uint64_t> shape;  // as claimed; the product is below 2^63
+  bool by_columns = false;           // the first index varies fastest
+  bool objects = false;              // pickled Python objects
+  std::uint64_t data_offset = 0;     // behind the header
+
+  std::uint64_t elements() const;
+  bool isStructured() const { return fields.size() != 1 || !fields.front().name.empty(); }
+};
+
+// Throws CalibrationError (BadInput) at `place` where it is none, or damaged.
+ArrayHeader readArrayHeader(ByteStream& bytes, const std::string& place);
+
+}  // namespace evical::numpy

@@ -1,0 +1,43 @@
+// Which arrays of a file or folder are events, by their names and types, and where those do not tell by their numbers:
+//   structured arrays with fields like x, y, t, p (tonic, dv, Metavision, expelliarmus, N-ImageNet's event_data),
+//   arrays of one field each (vid2e, e2vid, DSEC's names with t_offset), also xy (EVIMO2, event_utils) and xyp,
+//   rows or columns of four numbers (EVIMO, data of RPG), of which the numbers tell what they are.
+#pragma once
+
+#include "core/geometry/resolution.h"
+#include "core/recording/numpy/numpy_columns.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace evical::numpy {
+
+struct EventLayout {
+  std::string name;               // of the stream
+  std::string message;            // what the arrays are, for people
+  std::array<Column, 4> columns;  // x, y, t, p
+  std::uint64_t rows = 0;         // as many as all columns have
+  std::int64_t unit_ns = 1000;    // of time
+  std::int64_t offset_ns = 0;     // to add to times
+  double step_ns = 0.0;           // between two times where these are real numbers of too few bits
+  Resolution size_px;
+  std::string guess;    // what was guessed, for people; empty if nothing was
+  std::string problem;  // rows that some columns lack
+};
+
+struct FoundArrays {
+  std::vector<EventLayout> events;
+  std::vector<std::string> problems;  // sentences about what might have been more
+  std::vector<const Array*> others;   // that are no part of events
+};
+
+// The arrays must outlive what is found.
+FoundArrays findEvents(const std::vector<Array>& arrays);
+
+// Whether arrays of these names are a stream of events: x, y, t, p in any of the spellings.
+bool nameEvents(const std::vector<std::string>& arrays);
+
+}  // namespace evical::numpy

@@ -1,0 +1,275 @@
+#include "core/recording/numpy/numpy_reader.h"
+
+#include "core/base/error.h"
+#include "core/base/nearest_name.h"
+#include "core/recording/numpy/numpy_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace evical {
+namespace {
+
+constexpr std::size_t kMostNamed = 20;
+constexpr std::ptrdiff_t kMostAlikeFaults = 10;
+constexpr const char* kReadable =
+    "Readable are structured arrays with fields x, y, t, p, arrays of these names (also xy, timestamps, "
+    "polarity and "
+    "the like), and rows of four numbers that are t, x, y, p in some order";
+
+std::string list(const std::vector<std::string>& names) {
+  const std::vector<std::string> first(
+      names.begin(), names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), kMostNamed)));
+  return joined(first) + (names.size() > kMostNamed ? ", ..." : "");
+}
+
+bool isOfAnImu(const std::string& name) {
+  return name.find("imu") != std::string::npos || name.find("gyro") != std::string::npos ||
+         name.find("accel") != std::string::npos;
+}
+
+// Of a folder of numbered files the first that has events; the number of files if none has.
+std::size_t firstWithEvents(const std::vector<std::filesystem::path>& files) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    try {
+      const numpy::FoundFiles found = numpy::arraysIn(files[i]);
+      for (const numpy::EventLayout& layout : numpy::findEvents(found.arrays).events)
+        if (layout.rows > 0) return i;
+    } catch (const CalibrationError&) {
+      // reading says so
+    }
+  }
+  return files.size();
+}
+
+}  // namespace
+
+bool isNumpyFile(const std::filesystem::path& path, std::string_view first_bytes) {
+  return numpy::isArrayFile(path, first_bytes);
+}
+
+bool isNumpyFolder(const std::filesystem::path& folder) {
+  if (numpy::nameEvents(numpy::arrayNames(folder))) return true;
+  const std::vector<std::filesystem::path> files = numpy::numberedFiles(folder);
+  return firstWithEvents(files) < files.size();
+}
+
+NumpyReader::NumpyReader(const std::filesystem::path& path) : path_(path) {
+  numpy::FoundFiles found;
+  std::size_t first_file = 0;
+  if (!std::filesystem::is_directory(path)) {
+    found = numpy::arraysIn(path);
+  } else if (numpy::nameEvents(numpy::arrayNames(path))) {
+    found = numpy::arraysOfFolder(path);
+  } else {
+    files_ = numpy::numberedFiles(path);
+    first_file = firstWithEvents(files_);
+    if (first_file == files_.size())
+      throw badInput(path.string(), "the folder has no arrays of events", kReadable);
+    found = numpy::arraysIn(files_[first_file]);
+  }
+  for (const std::string& problem : found.problems) addFault("", FaultKind::Corrupt, problem);
+  addArrays(found.arrays);
+  if (!found.unread.empty())
+    addFault("", FaultKind::Unreadable,
+             fmt::format("Not read, as they stand beside the events: {}.", list(found.unread)));
+  for (Source& source : sources_) source.next_file = first_file;
+}
+
+void NumpyReader::addArrays(const std::vector<numpy::Array>& arrays) {
+  const numpy::FoundArrays found = numpy::findEvents(arrays);
+  if (found.events.empty()) failWithNames(arrays, found.problems);
+  for (const numpy::EventLayout& layout : found.events) addStream(layout);
+  for (const std::string& problem : found.problems) addFault("", FaultKind::Unreadable, problem);
+  sayWhatIsLeftOut(found.others);
+}
+
+void NumpyReader::addStream(const numpy::EventLayout& layout) {
+  StreamInfo stream;
+  stream.name = layout.name;
+  stream.type = StreamType::Events;
+  stream.message = layout.message;
+  stream.resolution_px = layout.size_px;
+  stream.messages = files_.empty() ? layout.rows : 0;
+  stream.time_unit_ns = layout.unit_ns == 1000 ? 1000 : 1;
+  streams_.push_back(std::move(stream));
+  Source& source = sources_.emplace_back();
+  source.layout = layout;
+  if (!layout.problem.empty()) addFault(layout.name, FaultKind::Truncated, layout.problem);
+  if (!layout.guess.empty()) addFault(layout.name, FaultKind::Guess, layout.guess);
+  if (layout.step_ns > 0.0) {
+    addFault(layout.name, FaultKind::Encoding,
+             fmt::format("Times are numbers of {} bits, which step by {:.3f} ms; save them with 64 bits.",
+                         8 * layout.columns[2].type.bytes, 1e-6 * layout.step_ns));
+  }
+}
+
+void NumpyReader::sayWhatIsLeftOut(const std::vector<const numpy::Array*>& others) {
+  std::vector<std::string> objects, imus;
+  for (const numpy::Array* array : others) {
+    if (array->header.objects) {
+      objects.push_back(array->name);
+    } else if (isOfAnImu(array->name)) {
+      imus.push_back(array->name);
+    } else if (array->header.shape.size() >= 3) {
+      StreamInfo stream;
+      stream.name = array->name;
+      stream.type = StreamType::Frames;
+      stream.message = "array";
+      stream.messages = array->header.shape.front();
+      stream.readable = false;
+      streams_.push_back(std::move(stream));
+    }
+  }
+  if (!objects.empty())
+    addFault("", FaultKind::Unreadable,
+             fmt::format("Python objects are not read, whatever they hold: {}.", list(objects)));
+  if (!imus.empty())
+    addFault("", FaultKind::ImuLeftOut,
+             fmt::format("IMU samples are not read from arrays: {}. Give the IMU as CSV.", list(imus)));
+}
+
+void NumpyReader::failWithNames(const std::vector<numpy::Array>& arrays,
+                                const std::vector<std::string>& problems) const {
+  std::vector<std::string> names;
+  bool objects = false;
+  for (const numpy::Array& array : arrays) {
+    names.push_back(array.name);
+    objects = objects || array.header.objects;
+  }
+  std::string problem = names.empty() ? "the file has no arrays"
+                        : objects ? "the arrays are no events but Python objects, which are never unpickled: "
+                        : arrays.size() == 1 ? "this array is no events: "
+                                             : "these arrays are no events: ";
+  problem += list(names);
+  // Sentences, but errors have none with a full stop at their end.
+  if (!faults_.empty()) problem += ". " + faults_.front().text.substr(0, faults_.front().text.size() - 1);
+  if (!problems.empty()) problem += ". " + problems.front().substr(0, problems.front().size() - 1);
+  if (arrays.size() == 1 && arrays.front().range.path == path_ && !objects &&
+      !arrays.front().header.isStructured())
+    problem += ". Where each field has a file of its own, give the folder";
+  throw badInput(path_.string(), problem, kReadable);
+}
+
+void NumpyReader::select(const std::vector<std::size_t>& streams) {
+  for (Source& source : sources_) source.wanted = false;
+  for (const std::size_t stream : streams) {
+    static_cast<void>(streams_.at(stream));  // a wrong index is a bug of the caller's
+    if (stream < sources_.size()) sources_[stream].wanted = true;
+  }
+}
+
+// The stream that is behind goes first, so that they are read side by side.
+bool NumpyReader::read(Packet& packet) {
+  for (;;) {
+    Source* behind = nullptr;
+    for (Source& source : sources_)
+      if (source.wanted && !source.finished && (!behind || source.last_ns < behind->last_ns))
+        behind = &source;
+    packet.clear();
+    if (!behind) return false;
+    packet.stream = static_cast<std::size_t>(behind - sources_.data());
+    if (fill(*behind, packet.events)) return true;
+  }
+}
+
+bool NumpyReader::fill(Source& source, std::vector<Event>& events) {
+  if (!source.rest.empty()) {
+    std::swap(events, source.rest);
+    source.rest.clear();
+  } else if (!source.table && !openNext(source)) {
+    finish(source);
+    return false;
+  } else if (!source.table->load(events)) {
+    closeTable(source);
+    return false;
+  }
+  if (events.empty()) return false;
+  const std::size_t count = source.order.arrange(events);
+  const auto step = events.begin() + static_cast<std::ptrdiff_t>(count);
+  source.rest.assign(step, events.end());
+  events.erase(step, events.end());
+  source.last_ns = events.back().time_ns;
+  return true;
+}
+
+// The file itself, or the next of numbered ones; what is in those is taken as what is in the first.
+bool NumpyReader::openNext(Source& source) {
+  if (files_.empty()) {
+    if (source.next_file++ > 0) return false;
+    source.table = std::make_unique<numpy::EventTable>(source.layout);
+    return true;
+  }
+  while (source.next_file < files_.size()) {
+    const std::filesystem::path& file = files_[source.next_file++];
+    try {
+      const numpy::FoundFiles found = numpy::arraysIn(file);
+      std::vector<numpy::EventLayout> layouts = numpy::findEvents(found.arrays).events;
+      const auto layout = std::find_if(
+          layouts.begin(), layouts.end(),
+          [&](const numpy::EventLayout& candidate) { return candidate.name == source.layout.name; });
+      if (layout == layouts.end()) throw badInput(file.string(), "it has no arrays of events");
+      layout->unit_ns = source.layout.unit_ns;
+      if (!layout->problem.empty())
+        addFault(source.layout.name, FaultKind::Truncated, file.filename().string() + ": " + layout->problem);
+      source.table = std::make_unique<numpy::EventTable>(*layout);
+      return true;
+    } catch (const CalibrationError& error) {
+      addFault(source.layout.name, FaultKind::Unreadable,
+               fmt::format("{} is left out: {}.", file.filename().string(), error.problem()));
+    }
+  }
+  return false;
+}
+
+void NumpyReader::closeTable(Source& source) {
+  const numpy::EventTable& table = *source.table;
+  const std::string problem = table.problem();
+  const std::string file = files_.empty() ? "" : files_[source.next_file - 1].filename().string() + ": ";
+  if (!problem.empty())
+    addFault(source.layout.name, table.rowsRead() < table.rows() ? FaultKind::Truncated : FaultKind::Corrupt,
+             fmt::format("{}{}; {} of {} rows were read.", file, problem, table.rowsRead(), table.rows()));
+  const auto say = [&](FaultKind kind, const Occurrences& rows, const char* what) {
+    if (rows.count == 0) return;
+    addFault(source.layout.name, kind,
+             fmt::format("{}{} {}, from row {} on.", file, rows.count, what, rows.first_byte));
+  };
+  say(FaultKind::Untimed, table.untimed(), "rows have no time and are left out");
+  say(FaultKind::Outside, table.outside(), "rows have coordinates that are no pixels and are left out");
+  source.table.reset();
+}
+
+void NumpyReader::finish(Source& source) {
+  source.finished = true;
+  if (source.order.changedAnything()) addFault(source.layout.name, FaultKind::Unsorted, source.order.text());
+}
+
+// By rows, or by files.
+double NumpyReader::fractionRead() const {
+  double read = 0.0, all = 0.0;
+  for (const Source& source : sources_) {
+    if (!source.wanted) continue;
+    const auto rows = static_cast<double>(source.table ? source.table->rowsRead() : 0);
+    if (files_.empty()) {
+      const auto total = static_cast<double>(source.layout.rows);
+      read += source.table ? rows : source.next_file > 0 ? total : 0.0;
+      all += total;
+    } else {
+      read += static_cast<double>(source.next_file) - (source.table ? 0.5 : 0.0);
+      all += static_cast<double>(files_.size());
+    }
+  }
+  return all == 0.0 ? 1.0 : std::min(1.0, read / all);
+}
+
+void NumpyReader::addFault(const std::string& stream, FaultKind kind, const std::string& text) {
+  const auto alike = [&](const RecordingFault& fault) {
+    return fault.stream == stream && fault.kind == kind;
+  };
+  if (std::count_if(faults_.begin(), faults_.end(), alike) < kMostAlikeFaults)
+    faults_.push_back({stream, kind, 0.0, text});
+}
+
+}  // namespace evical

@@ -1,0 +1,71 @@
+// Events in NumPy's files, as tonic, Metavision, event libraries and data sets save them: .npy, .npz, a folder of arrays of one
+// field each (EVIMO2's dataset_events_t.npy, ..._xy.npy, ..._p.npy), or a folder of numbered files one after another
+// (vid2e, EventScape). numpy_layouts.h says which arrays are events, and what is guessed is said.
+// Python objects are never unpickled. Pictures and IMU samples in arrays are not read.
+#pragma once
+
+#include "core/recording/event_order.h"
+#include "core/recording/numpy/numpy_events.h"
+#include "core/recording/recording_reader.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace evical {
+
+class NumpyReader : public RecordingReader {
+ public:
+  // Throws CalibrationError (BadInput) where no arrays are events.
+  explicit NumpyReader(const std::filesystem::path& path);
+
+  const std::vector<StreamInfo>& streams() const override { return streams_; }
+  void select(const std::vector<std::size_t>& streams) override;
+  bool read(Packet& packet) override;
+  double fractionRead() const override;
+  const std::vector<RecordingFault>& faults() const override { return faults_; }
+  std::string format() const override { return "numpy"; }
+
+ private:
+  // A stream of events.
+  struct Source {
+    numpy::EventLayout layout;
+    std::unique_ptr<numpy::EventTable> table;  // of the file that is read
+    std::size_t next_file = 0;
+    bool wanted = true, finished = false;
+    std::int64_t last_ns = std::numeric_limits<std::int64_t>::min();
+    std::vector<Event> rest;  // behind a large step back in time
+    EventOrder order;
+    std::uint64_t untimed = 0, outside = 0;
+  };
+
+  void addArrays(const std::vector<numpy::Array>& arrays);
+  void addStream(const numpy::EventLayout& layout);
+  void sayWhatIsLeftOut(const std::vector<const numpy::Array*>& others);
+  [[noreturn]] void failWithNames(const std::vector<numpy::Array>& arrays,
+                                  const std::vector<std::string>& problems) const;
+  bool fill(Source& source, std::vector<Event>& events);
+  bool openNext(Source& source);
+  void closeTable(Source& source);
+  void finish(Source& source);
+  void addFault(const std::string& stream, FaultKind kind, const std::string& text);
+
+  std::filesystem::path path_;
+  std::vector<std::filesystem::path> files_;  // of a folder of numbered files
+  std::vector<Source> sources_;               // of the streams of events, which come first
+  std::vector<StreamInfo> streams_;
+  std::vector<RecordingFault> faults_;
+};
+
+// Whether a file is an array, or an archive of arrays.
+bool isNumpyFile(const std::filesystem::path& path, std::string_view first_bytes);
+
+// Whether a folder's arrays are events by their names, or by being numbered.
+bool isNumpyFolder(const std::filesystem::path& folder);
+
+}  // namespace evical

@@ -1,0 +1,26 @@
+// The directory of a ZIP archive, such as .npz files are: members stored or deflated, of any size (zip64).
+#pragma once
+
+#include "core/recording/numpy/byte_stream.h"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace evical::numpy {
+
+struct ZipMember {
+  std::string name;
+  ByteRange range;
+  bool cut = false;     // the file has fewer bytes than the directory says
+  std::string problem;  // why it cannot be read; empty if it can
+};
+
+// Throws CalibrationError (BadInput) where the directory, which stands at the end, is missing or damaged.
+std::vector<ZipMember> zipMembers(const std::filesystem::path& path);
+
+// The name of the member that a file of this beginning has first; empty if it is no ZIP archive.
+std::string_view firstZipMember(std::string_view first_bytes);
+
+}  // namespace evical::numpy

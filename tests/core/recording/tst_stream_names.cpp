@@ -1,0 +1,119 @@
+// What writers say that streams will be called is what readers call them: nobody has to open the new file to know.
+#include "core/recording/conversion.h"
+#include "core/recording/recording_writer.h"
+
+#include "tests/core/recording/recording_contents.h"
+#include "tests/support/test_program.h"
+
+#include <span>
+
+namespace {
+
+using namespace evical;
+using namespace evical::test;
+
+class Log : public ProgressSink {
+ public:
+  void stageStarted(std::string_view /*stage*/) override {}
+  void stageProgress(double /*fraction*/) override {}
+  void log(LogLevel /*level*/, std::string_view text) override { said += text; }
+  std::string said;
+};
+
+class TestStreamNames : public QObject {
+  Q_OBJECT
+
+ private slots:
+  void streamNames_areThoseThatReadersGive_data();
+  void streamNames_areThoseThatReadersGive();
+  void conversion_tellsNewNames_alsoOfAnEmptyRecording();
+
+ private:
+  ScratchFolder scratch_;
+};
+
+StreamInfo stream(const std::string& name, const std::string& source = {}) {
+  const bool events = name.find("imu") == std::string::npos;
+  StreamInfo info;
+  info.name = name;
+  info.type = events ? StreamType::Events : StreamType::Imu;
+  if (events) info.resolution_px = {64, 48};
+  info.source = source;
+  return info;
+}
+
+std::vector<StreamInfo> streamsNamed(const QStringList& names) {
+  std::vector<StreamInfo> streams;
+  for (const QString& name : names) {
+    const QStringList parts = name.split('|');
+    streams.push_back(stream(parts[0].toStdString(), parts.size() > 1 ? parts[1].toStdString() : ""));
+  }
+  return streams;
+}
+
+void writeSome(RecordingWriter& writer, const std::vector<StreamInfo>& streams) {
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    if (streams[i].type == StreamType::Events) {
+      writer.write(i, EventSpan(someEvents(20)));
+    } else {
+      writer.write(i, std::span<const ImuSample>(someSamples(5)));
+    }
+  }
+  writer.finish();
+}
+
+void TestStreamNames::streamNames_areThoseThatReadersGive_data() {
+  QTest::addColumn<QString>("format");
+  QTest::addColumn<QStringList>("given");  // "name" or "name|source"
+  for (const RecordingFormat& format : recordingFormats()) {
+    const QString name = format.name;
+    QTest::addRow("%s, camera and IMU", format.name) << name << QStringList{"/dvs/events", "/dvs/imu"};
+    QTest::addRow("%s, camera alone", format.name) << name << QStringList{"events"};
+    QTest::addRow("%s, IMU alone", format.name) << name << QStringList{"some_imu"};
+    if (format.isFolder() || name == "dsec") continue;  // one stream of a type
+    QTest::addRow("%s, rig", format.name)
+        << name << QStringList{"/left/events", "/right/events", "/left/imu", "/right/imu"};
+    QTest::addRow("%s, nobody's", format.name) << name << QStringList{"a", "b", "imu"};
+    QTest::addRow("%s, sources", format.name)
+        << name << QStringList{"DVX_1/events|DVX_1", "DVX_2/events|DVX_2", "imu|DVX_2"};
+    QTest::addRow("%s, two of one source", format.name)
+        << name << QStringList{"noisy|DVX_1", "clean|DVX_1", "DVX_2/clean|DVX_2"};
+  }
+}
+
+void TestStreamNames::streamNames_areThoseThatReadersGive() {
+  QFETCH(QString, format);
+  QFETCH(QStringList, given);
+  const RecordingFormat& chosen = recordingFormat(format.toStdString());
+  std::filesystem::path path = scratch_ / QTest::currentDataTag();
+  path += chosen.extension;
+  if (chosen.isFolder()) std::filesystem::create_directories(path);
+  const std::vector<StreamInfo> streams = streamsNamed(given);
+  const std::unique_ptr<RecordingWriter> writer = createRecording(path, chosen.name, streams);
+  writeSome(*writer, streams);
+  const std::vector<std::string> names = writer->streamNames();
+  QCOMPARE(names.size(), streams.size());
+  const std::unique_ptr<RecordingReader> reader = openRecording(path);
+  QCOMPARE(reader->streams().size(), streams.size());
+  for (std::size_t i = 0; i < streams.size(); ++i)
+    findStream(*reader, names[i], streams[i].type);  // throws where there is none
+}
+
+// A file with topics only is a recording that nobody can do anything with, but the conversion has succeeded.
+void TestStreamNames::conversion_tellsNewNames_alsoOfAnEmptyRecording() {
+  ConversionRequest request;
+  request.input = scratch_.write("empty/samples.csv", "t_s,ax,ay,az,gx,gy,gz\n");
+  for (const char* file : {"empty.bag", "empty.mcap", "empty.aedat4", "empty.h5"}) {
+    request.output = scratch_ / file;
+    Log log;
+    QCOMPARE(convertRecording(request, RunContext{log}).imu_samples, std::uint64_t{0});
+    const bool renamed = request.output.extension() == ".aedat4" || request.output.extension() == ".h5";
+    const bool told = log.said.find("samples.csv is called imu") != std::string::npos;
+    QVERIFY2(told == renamed, (request.output.string() + ": " + log.said).c_str());
+  }
+}
+
+}  // namespace
+
+EVICAL_TEST(TestStreamNames)
+#include "tst_stream_names.moc"
