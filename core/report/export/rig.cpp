@@ -58,6 +58,7 @@ RigCamera cameraOf(const NamedResult& result, std::size_t i, std::set<std::strin
           *intrinsics,
           state.reference_from_camera,
           state.time_offset_s,
+          state.line_delay_us,
           elementOrNone(result.result->cameras, i)};
 }
 
@@ -94,6 +95,15 @@ void remarkDelay(const std::string& name, const ImuState& state, const ImuUncert
                   name, 1e3 * state.accelerometer_delay_s));
 }
 
+void remarkRollingShutter(const std::string& name, const CameraState& state, const CameraUncertainty& sigma,
+                          std::vector<std::string>& remarks) {
+  if (!isThere(state.line_delay_us, sigma.line_delay_std_us)) return;
+  remarks.push_back(
+      fmt::format("{}: rows are exposed one after the other, {:.4g} us apart; the time offset is that of "
+                  "the middle one",
+                  name, state.line_delay_us));
+}
+
 // Between the first camera and the others.
 double largestOffset_s(const Rig& rig) {
   double largest_s = 0.0;
@@ -108,8 +118,11 @@ std::vector<std::string> timingRemarks(const NamedResult& result) {
   const CalibrationState& state = result.result->state;
   const UncertaintyReport& sigmas = result.result->uncertainty;
   std::vector<std::string> remarks;
-  for (std::size_t i = 0; i < result.cameras.size(); ++i)
-    remarkDrift(result.cameras[i].name, state.cameras.at(i), elementOrNone(sigmas.cameras, i), remarks);
+  for (std::size_t i = 0; i < result.cameras.size(); ++i) {
+    const CameraUncertainty sigma = elementOrNone(sigmas.cameras, i);
+    remarkDrift(result.cameras[i].name, state.cameras.at(i), sigma, remarks);
+    remarkRollingShutter(result.cameras[i].name, state.cameras[i], sigma, remarks);
+  }
   for (std::size_t i = 0; i < result.imus.size(); ++i) {
     const ImuUncertainty sigma = elementOrNone(sigmas.imus, i);
     remarkDrift(result.imus[i].name, state.imus.at(i), sigma, remarks);

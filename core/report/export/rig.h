@@ -17,6 +17,8 @@ struct RigCamera {
   CameraIntrinsics intrinsics;
   RigidTransform reference_from_camera;
   double time_offset_s = 0.0;  // imu_time = camera_time + time_offset_s
+  double line_delay_us =
+      0.0;  // of a rolling shutter, from row to row; the time offset is that of the middle one
   CameraFit fit;
 };
 
@@ -47,7 +49,8 @@ using ExportNotes = std::vector<std::string>;
 // Throws CalibrationError (BadInput) where a camera has no intrinsics or resolution, or a number is none.
 Rig rigOf(const NamedResult& result);
 
-// What no program has a place for: clocks that drift and accelerometers that are late, more than by chance.
+// What programs have no place for: clocks that drift, accelerometers that are late and shutters that roll, more than by
+// chance.
 std::vector<std::string> timingRemarks(const NamedResult& result);
 
 // The reference IMU; throws CalibrationError (BadInput) where there is none.

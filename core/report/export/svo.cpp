@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace evical {
 namespace {
 
@@ -14,11 +16,11 @@ std::string cameraText(const RigCamera& camera, const std::string& label, std::s
                                    own.principal_point_px.x(), own.principal_point_px.y());
   const std::vector<double> d = distortionOf(own, 4);
   return fmt::format(
-      "- camera:\n    label: {}\n    id: {}\n    line-delay-nanoseconds: 0\n    image_height: {}\n"
+      "- camera:\n    label: {}\n    id: {}\n    line-delay-nanoseconds: {}\n    image_height: {}\n"
       "    image_width: {}\n    type: pinhole\n    intrinsics:\n{}    distortion:\n      type: {}\n"
       "      parameters:\n{}  T_B_C:\n{}",
-      yamlText(label), number, own.resolution_px.height_px, own.resolution_px.width_px,
-      dataMatrix(intrinsics, 6),
+      yamlText(label), number, std::lround(1e3 * camera.line_delay_us), own.resolution_px.height_px,
+      own.resolution_px.width_px, dataMatrix(intrinsics, 6),
       own.model == CameraModel::PinholeRadtan ? "radial-tangential" : "equidistant",
       dataMatrix(Eigen::Map<const Eigen::VectorXd>(d.data(), 4), 8),
       dataMatrix(matrixOf(camera.reference_from_camera), 4));

@@ -56,6 +56,20 @@ class TestExportRefusals : public QObject {
       QVERIFY(each.find("drifts") == std::string::npos);
   }
 
+  void rollingShutter_isSaid() {
+    NamedResult result = rig({});
+    CalibrationResult& own = test::ownResult(result);
+    own.state.cameras[0].line_delay_us = 29.5;
+    own.uncertainty.cameras.resize(own.state.cameras.size());
+    own.uncertainty.cameras[0].line_delay_std_us = 0.1;
+    const ExportedFiles exported = exportTo(result, "kalibr");
+    const QString note = QString::fromStdString(exported.notes.back());
+    QVERIFY2(note.contains("left: rows are exposed one after the other, 29.5 us apart"), qPrintable(note));
+    QVERIFY(exported.files.front().content.find("29.5 us apart") != std::string::npos);
+    const std::string svo = exportTo(result, "svo").files.front().content;
+    QVERIFY(svo.find("line-delay-nanoseconds: 29500") != std::string::npos);
+  }
+
   void lateAccelerometer_isSaid() {
     NamedResult result = rig({});
     CalibrationResult& own = test::ownResult(result);
