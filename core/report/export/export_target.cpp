@@ -29,6 +29,7 @@ constexpr std::array kTargets{
     ExportTarget{"dv-processing", "DV, dv-processing: calibration.json", exportDvProcessing},
     ExportTarget{"metavision", "Metavision up to SDK 4: intrinsics.json", exportMetavision},
     ExportTarget{"ekalibr", "eKalibr: parameters and camera intrinsics", exportEkalibr},
+    ExportTarget{"dsec", "DSEC: cam_to_cam.yaml", exportDsec},
     ExportTarget{"numpy", "NumPy: calibration.npz", exportNumpy},
 };
 

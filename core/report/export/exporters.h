@@ -18,6 +18,7 @@ ExportedFiles exportEsvo2(const NamedResult& result);
 ExportedFiles exportDvProcessing(const NamedResult& result);
 ExportedFiles exportMetavision(const NamedResult& result);
 ExportedFiles exportEkalibr(const NamedResult& result);
+ExportedFiles exportDsec(const NamedResult& result);
 ExportedFiles exportNumpy(const NamedResult& result);
 
 }  // namespace evical

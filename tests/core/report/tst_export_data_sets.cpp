@@ -1,0 +1,223 @@
+// Calibration files laid out as those of data sets, read as the data sets' own tools and their users' do.
+#include "core/base/error.h"
+#include "core/geometry/camera_model.h"
+#include "tests/core/report/exported_rig.h"
+#include "tests/support/own_result.h"
+#include "tests/support/test_program.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+using namespace evical;
+using namespace evical::test;
+
+namespace {
+
+constexpr double kSame_px = 1e-9;
+
+ExportedFiles exportTo(const NamedResult& result, const std::string& target) {
+  return exportResult(result, std::vector<std::string>{target});
+}
+
+Eigen::Matrix4d poseOf(const RigidTransform& pose) {
+  Eigen::Isometry3d full = Eigen::Isometry3d::Identity();
+  full.linear() = pose.rotation.toRotationMatrix();
+  full.translation() = pose.translation_m;
+  return full.matrix();
+}
+
+Eigen::Matrix4d imuFromCamera(const NamedResult& result, std::size_t camera) {
+  return poseOf(result.result->state.cameras.at(camera).reference_from_camera);
+}
+
+double offset_s(const NamedResult& result, std::size_t camera) {
+  return result.result->state.cameras.at(camera).time_offset_s;
+}
+
+bool isSaid(const ExportedFiles& exported, const std::string& text) {
+  for (const std::string& note : exported.notes)
+    if (note.find(text) != std::string::npos) return true;
+  return false;
+}
+
+std::string refusal(const NamedResult& result, const std::string& target) {
+  try {
+    exportTo(result, target);
+    return "taken";
+  } catch (const CalibrationError& error) {
+    return error.what();
+  }
+}
+
+Eigen::Matrix3d threeByThree(const YAML::Node& camera_matrix) {
+  const std::vector<double> k = numbers(camera_matrix);
+  return (Eigen::Matrix3d() << k.at(0), 0.0, k.at(2), 0.0, k.at(1), k.at(3), 0.0, 0.0, 1.0).finished();
+}
+
+// As get_camera_calib_dsec_yaml of tub-rip/ES-PTAM (mapper_emvs_stereo/src/calib.cpp, 79ef978) takes a camera.
+Lens dsecLens(const YAML::Node& camera, const std::string& type) {
+  if (camera["camera_type"].as<std::string>() != type) throw std::runtime_error("another type");
+  if (camera["resolution"][1].as<int>() != 260 || camera["resolution"][0].as<int>() != 346)
+    throw std::runtime_error("resolution");
+  if (camera["distortion_model"].as<std::string>() != "radtan") throw std::runtime_error("another lens");
+  std::vector<double> k, d;
+  for (int i = 0; i < 4; ++i) {
+    k.push_back(camera["camera_matrix"][i].as<double>());
+    d.push_back(camera["distortion_coeffs"][i].as<double>());
+  }
+  return radtanLens(k, d);
+}
+
+NamedResult eventsAndFrames() {
+  RigKind kind;
+  kind.frames = 2;
+  return rig(kind);
+}
+
+}  // namespace
+
+class TestExportDataSets : public QObject {
+  Q_OBJECT
+
+ private slots:
+  // Names and directions: uzh-rpg/DSEC, README.md (0df8d87).
+  void dsec_reprojects() {
+    const NamedResult result = eventsAndFrames();
+    const YAML::Node root = yamlOf(exportTo(result, "dsec"), "dsec/cam_to_cam.yaml");
+    const YAML::Node cameras = root["intrinsics"], places = root["extrinsics"];
+    Eigen::Matrix4d this_from_first = Eigen::Matrix4d::Identity();
+    const std::size_t ours[] = {0, 2, 3, 1};
+    for (int i = 0; i < 4; ++i) {
+      if (i > 0) {
+        const Eigen::Matrix4d step = rowsMatrix(places["T_" + std::to_string(i) + std::to_string(i - 1)]);
+        QVERIFY(step == rowsMatrix(cameras[numbered("cam", i)]["T_cn_cnm1"]));
+        this_from_first = step * this_from_first;
+      }
+      const YAML::Node camera = cameras[numbered("cam", i)], level = cameras[numbered("camRect", i)];
+      QVERIFY(
+          worstDifference_px(result, ours[i],
+                             {this_from_first * imuFromCamera(result, 0).inverse(), offset_s(result, ours[i]),
+                              dsecLens(camera, i % 3 == 0 ? "event" : "frame")}) < kSame_px);
+      QCOMPARE(camera["camera_location"].as<std::string>(), std::string(i < 2 ? "left" : "right"));
+      QCOMPARE(camera["camera_model"].as<std::string>(), std::string("pinhole"));
+      QVERIFY(!camera["is_rectified"].as<bool>() && level["is_rectified"].as<bool>());
+      QVERIFY(!level["distortion_coeffs"]);
+      QCOMPARE(level["resolution"][0].as<int>(), 346);
+    }
+  }
+
+  // A point has one row in both rectified images, and its disparity gives it back.
+  void dsec_disparityIsDepth_data() {
+    QTest::addColumn<int>("left");
+    QTest::addColumn<int>("right");
+    QTest::addColumn<QString>("key");
+    QTest::newRow("events") << 0 << 3 << "cams_03";
+    QTest::newRow("frames") << 1 << 2 << "cams_12";
+  }
+  void dsec_disparityIsDepth() {
+    QFETCH(int, left);
+    QFETCH(int, right);
+    QFETCH(QString, key);
+    const NamedResult result = eventsAndFrames();
+    const YAML::Node root = yamlOf(exportTo(result, "dsec"), "dsec/cam_to_cam.yaml");
+    const auto leveled = [&](int i) -> Eigen::Matrix3d {
+      return rowsMatrix(root["extrinsics"][numbered("R_rect", i)]);
+    };
+    const auto k = [&](int i) {
+      return threeByThree(root["intrinsics"][numbered("camRect", i)]["camera_matrix"]);
+    };
+    const std::size_t ours[] = {0, 2, 3, 1};
+    const Eigen::Matrix4d right_from_left =
+        imuFromCamera(result, ours[right]).inverse() * imuFromCamera(result, ours[left]);
+    const Eigen::Vector3d on_left(0.2, -0.3, 1.5);  // rectified
+    const Eigen::Vector3d in_left = leveled(left).transpose() * on_left;
+    const Eigen::Vector3d on_right = leveled(right) * (right_from_left * in_left.homogeneous()).head<3>();
+    const Eigen::Vector2d a = (k(left) * on_left).hnormalized(), b = (k(right) * on_right).hnormalized();
+    QVERIFY(std::abs(a.y() - b.y()) < kSame_px && a.x() - b.x() > 5.0);
+    const Eigen::Matrix4d q = rowsMatrix(root["disparity_to_depth"][key.toStdString()]);
+    const Eigen::Vector3d back = (q * Eigen::Vector4d(a.x(), a.y(), a.x() - b.x(), 1.0)).hnormalized();
+    QVERIFY((back - on_left).norm() < 1e-12);
+    // Loaders take it apart into baseline and focal length.
+    QVERIFY(std::abs(1.0 / q(3, 2) - right_from_left.topRightCorner<3, 1>().norm()) < 1e-12);
+    QVERIFY(q(2, 3) == k(left)(0, 0) && q(2, 3) > 0.0);
+  }
+
+  // compute_remapping of uzh-rpg/dsec-det (src/dsec_det/remapping.py, db941c2), of points far away.
+  void dsec_mapsFramesToEvents() {
+    const NamedResult result = eventsAndFrames();
+    const YAML::Node root = yamlOf(exportTo(result, "dsec"), "dsec/cam_to_cam.yaml");
+    const Eigen::Matrix3d k0 = threeByThree(root["intrinsics"]["camRect0"]["camera_matrix"]),
+                          k1 = threeByThree(root["intrinsics"]["camRect1"]["camera_matrix"]),
+                          r0 = rowsMatrix(root["extrinsics"]["R_rect0"]),
+                          r1 = rowsMatrix(root["extrinsics"]["R_rect1"]),
+                          r10 = rowsMatrix(root["extrinsics"]["T_10"]).topLeftCorner<3, 3>();
+    const Eigen::Matrix3d p_r0_r1 = k0 * r0 * r10.transpose() * r1.transpose() * k1.inverse();
+    const Eigen::Vector3d in_event(0.1, -0.2, 1.0);
+    const Eigen::Vector3d in_frame =
+        (imuFromCamera(result, 2).inverse() * imuFromCamera(result, 0)).topLeftCorner<3, 3>() * in_event;
+    const Eigen::Vector2d event_px = (k0 * r0 * in_event).hnormalized(),
+                          frame_px = (k1 * r1 * in_frame).hnormalized();
+    QVERIFY(((p_r0_r1 * frame_px.homogeneous()).hnormalized() - event_px).norm() < kSame_px);
+  }
+
+  void dsec_ofEventsAlone_goesFromCamera0To3() {
+    const NamedResult result = rig({});
+    const ExportedFiles exported = exportTo(result, "dsec");
+    const YAML::Node root = yamlOf(exported, "dsec/cam_to_cam.yaml"), places = root["extrinsics"];
+    const Eigen::Matrix4d right_from_left =
+        rowsMatrix(places["T_32"]) * rowsMatrix(places["T_21"]) * rowsMatrix(places["T_10"]);
+    QVERIFY(worstDifference_px(result, 1,
+                               {right_from_left * imuFromCamera(result, 0).inverse(), offset_s(result, 1),
+                                dsecLens(root["intrinsics"]["cam3"], "event")}) < kSame_px);
+    QVERIFY(!root["intrinsics"]["cam1"] && !places["R_rect1"] && !root["disparity_to_depth"]["cams_12"]);
+    QVERIFY(isSaid(exported, "left event camera: left, right event camera: right, left frame camera: none"));
+    QVERIFY(isSaid(exported, "add to the stamps of left 0.007301 s, right -0.0021 s"));
+    QVERIFY(isSaid(exported, "DSEC says nothing of IMUs: left imu"));
+    const std::string text = contentOf(exported, "dsec/cam_to_cam.yaml");
+    QVERIFY(text.find("right -0.0021 s") != std::string::npos);
+
+    RigKind one;
+    one.cameras = 1;
+    const YAML::Node alone = yamlOf(exportTo(rig(one), "dsec"), "dsec/cam_to_cam.yaml");
+    QVERIFY(!alone["extrinsics"]["T_10"] && !alone["disparity_to_depth"]);
+    QVERIFY(rowsMatrix(alone["extrinsics"]["R_rect0"]).isIdentity(0.0));
+    QVERIFY(numbers(alone["intrinsics"]["camRect0"]["camera_matrix"]) ==
+            numbers(alone["intrinsics"]["cam0"]["camera_matrix"]));
+  }
+
+  // Whichever of them comes first.
+  void dsec_findsTheLeftCamera() {
+    const NamedResult result = eventsAndFrames();
+    NamedResult swapped = result;
+    CalibrationState& state = ownResult(swapped).state;
+    std::swap(swapped.cameras[0], swapped.cameras[3]);
+    std::swap(state.cameras[0], state.cameras[3]);
+    std::swap(swapped.cameras[1], swapped.cameras[2]);
+    std::swap(state.cameras[1], state.cameras[2]);
+    const YAML::Node a = yamlOf(exportTo(result, "dsec"), "dsec/cam_to_cam.yaml"),
+                     b = yamlOf(exportTo(swapped, "dsec"), "dsec/cam_to_cam.yaml");
+    QCOMPARE(YAML::Dump(a), YAML::Dump(b));
+  }
+
+  void dsec_refusesWhatItCannotHold() {
+    NamedResult frames = eventsAndFrames();
+    for (SensorDescription& camera : frames.cameras) camera.kind = CameraKind::Frames;
+    QVERIFY(refusal(frames, "dsec").find("has no event camera") != std::string::npos);
+    RigKind wide;
+    wide.fisheye = true;
+    NamedResult strong = rig(wide);
+    ownResult(strong).state.cameras[0].lens.seen_with->focal_length_px = {110.0, 110.0};
+    QVERIFY(refusal(strong, "dsec").find("DSEC has no place for equidistant distortion") !=
+            std::string::npos);
+    RigKind third;
+    third.third_radial = true;
+    QVERIFY(
+        isSaid(exportTo(rig(third), "dsec"), "DSEC has no place for radial-tangential distortion with k3"));
+    RigKind three;
+    three.cameras = 3;
+    QVERIFY(isSaid(exportTo(rig(three), "dsec"), "DSEC has two cameras of a kind: third is left out"));
+  }
+};
+
+EVICAL_TEST(TestExportDataSets)
+#include "tst_export_data_sets.moc"
