@@ -30,6 +30,7 @@ constexpr std::array kTargets{
     ExportTarget{"metavision", "Metavision up to SDK 4: intrinsics.json", exportMetavision},
     ExportTarget{"ekalibr", "eKalibr: parameters and camera intrinsics", exportEkalibr},
     ExportTarget{"dsec", "DSEC: cam_to_cam.yaml", exportDsec},
+    ExportTarget{"tum-vie", "TUM-VIE: camera-calibrationA.json", exportTumVie},
     ExportTarget{"numpy", "NumPy: calibration.npz", exportNumpy},
 };
 

@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <opencv2/core.hpp>
 
 using namespace evical;
 using namespace evical::test;
@@ -68,9 +69,42 @@ Lens dsecLens(const YAML::Node& camera, const std::string& type) {
   return radtanLens(k, d);
 }
 
-NamedResult eventsAndFrames() {
+Eigen::Matrix4d poseOf(const cv::FileNode& pose) {
+  Eigen::Isometry3d full = Eigen::Isometry3d::Identity();
+  full.linear() = Eigen::Quaterniond(static_cast<double>(pose["qw"]), static_cast<double>(pose["qx"]),
+                                     static_cast<double>(pose["qy"]), static_cast<double>(pose["qz"]))
+                      .toRotationMatrix();
+  full.translation() = Eigen::Vector3d(static_cast<double>(pose["px"]), static_cast<double>(pose["py"]),
+                                       static_cast<double>(pose["pz"]));
+  return full.matrix();
+}
+
+// As get_camera_calib_json of tub-rip/ES-PTAM (mapper_emvs_stereo/src/calib.cpp, 79ef978) takes one of TUM-VIE.
+Lens tumVieLens(const cv::FileNode& root, int i) {
+  if (static_cast<double>(root["resolution"][i][0]) != 346.0 ||
+      static_cast<double>(root["resolution"][i][1]) != 260.0)
+    throw std::runtime_error("resolution");
+  const cv::FileNode camera = root["intrinsics"][i];
+  if (static_cast<std::string>(camera["camera_type"]) != "kb4") throw std::runtime_error("another lens");
+  std::vector<double> k, d;
+  for (const char* const key : {"fx", "fy", "cx", "cy"})
+    k.push_back(static_cast<double>(camera["intrinsics"][key]));
+  for (const char* const key : {"k1", "k2", "k3", "k4"}) {
+    if (!camera["intrinsics"][key].isReal()) throw std::runtime_error(key);
+    d.push_back(static_cast<double>(camera["intrinsics"][key]));
+  }
+  return fisheyeLens(k, d);
+}
+
+cv::FileStorage tumVieFile(const ExportedFiles& exported) {
+  return {contentOf(exported, "tum-vie/camera-calibrationA.json"),
+          cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_JSON};
+}
+
+NamedResult eventsAndFrames(bool fisheye = false) {
   RigKind kind;
   kind.frames = 2;
+  kind.fisheye = fisheye;
   return rig(kind);
 }
 
@@ -216,6 +250,51 @@ class TestExportDataSets : public QObject {
     RigKind three;
     three.cameras = 3;
     QVERIFY(isSaid(exportTo(rig(three), "dsec"), "DSEC has two cameras of a kind: third is left out"));
+  }
+
+  // Event cameras are 2 and 3 there, whether or not there are frames.
+  void tumVie_reprojects_data() {
+    QTest::addColumn<bool>("frames");
+    QTest::newRow("events and frames") << true;
+    QTest::newRow("events alone") << false;
+  }
+  void tumVie_reprojects() {
+    QFETCH(bool, frames);
+    RigKind kind;
+    kind.fisheye = true;
+    NamedResult result = frames ? eventsAndFrames(true) : rig(kind);
+    for (CameraState& camera : ownResult(result).state.cameras)
+      camera.time_offset_s = 0.007301;  // one for all
+    const ExportedFiles exported = exportTo(result, "tum-vie");
+    const cv::FileStorage file = tumVieFile(exported);
+    const cv::FileNode root = file["value0"];
+    QCOMPARE(root["T_imu_cam"].size(), 4U);
+    const std::vector<std::size_t> ours =
+        frames ? std::vector<std::size_t>{2, 3, 0, 1} : std::vector<std::size_t>{0, 1, 0, 1};
+    const ImuState& imu = result.result->state.imus[0];
+    for (int i = 0; i < 4; ++i) {
+      ReadCamera read{poseOf(root["T_imu_cam"][i]).inverse(),
+                      1e-9 * static_cast<double>(root["cam_time_offset_ns"]), tumVieLens(root, i)};
+      // Its IMU's frame is the one in which the accelerometer's matrix is lower triangular.
+      const Eigen::Matrix4d turn =
+          poseOf(root["T_imu_cam"][i]) * imuFromCamera(result, ours[static_cast<std::size_t>(i)]).inverse();
+      QVERIFY((turn.topRightCorner<3, 1>().norm()) < 1e-12);
+      const Eigen::Matrix3d theirs = imu.accelerometer_mapping * turn.topLeftCorner<3, 3>().transpose();
+      QVERIFY(Eigen::Matrix3d(theirs.triangularView<Eigen::StrictlyUpper>()).norm() < 1e-12);
+      read.their_imu_from_ours = turn.topLeftCorner<3, 3>();
+      QVERIFY(worstDifference_px(result, ours[static_cast<std::size_t>(i)], read) < kSame_px);
+    }
+    QCOMPARE(isSaid(exported, "TUM-VIE expects four cameras"), !frames);
+    QVERIFY(contentOf(exported, "tum-vie/README.txt").find("right event camera: right") != std::string::npos);
+  }
+
+  void tumVie_holdsItsOneLensOnly() {
+    const ExportedFiles exported = exportTo(eventsAndFrames(), "tum-vie");
+    QVERIFY(isSaid(exported, "frame1: TUM-VIE has no place for radial-tangential distortion: refitted"));
+    QVERIFY(isSaid(exported, "TUM-VIE takes one time offset for all cameras: that of frame0"));
+    RigKind one;
+    one.cameras = 1;
+    QVERIFY(refusal(rig(one), "tum-vie").find("Take basalt") != std::string::npos);
   }
 };
 

@@ -73,7 +73,8 @@ class TestExportRefusals : public QObject {
 
   void camerasOnly_isRefusedWhereAnImuIsNeeded_data() {
     QTest::addColumn<QString>("target");
-    for (const char* target : {"openvins", "vins-fusion", "basalt", "svo", "ultimate-slam", "esvo2"})
+    for (const char* target :
+         {"openvins", "vins-fusion", "basalt", "svo", "ultimate-slam", "esvo2", "tum-vie"})
       QTest::newRow(target) << target;
   }
   void camerasOnly_isRefusedWhereAnImuIsNeeded() {
