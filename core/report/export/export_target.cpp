@@ -30,6 +30,8 @@ constexpr std::array kTargets{
     ExportTarget{"metavision", "Metavision up to SDK 4: intrinsics.json", exportMetavision},
     ExportTarget{"ekalibr", "eKalibr: parameters and camera intrinsics", exportEkalibr},
     ExportTarget{"dsec", "DSEC: cam_to_cam.yaml", exportDsec},
+    ExportTarget{"evimo2", "EVIMO, EVIMO2: params.txt, calib.txt, extrinsics.txt of each camera",
+                 exportEvimo2},
     ExportTarget{"tum-vie", "TUM-VIE: camera-calibrationA.json", exportTumVie},
     ExportTarget{"numpy", "NumPy: calibration.npz", exportNumpy},
 };

@@ -9,6 +9,10 @@
 #include <Eigen/LU>
 #include <opencv2/core.hpp>
 
+#include <algorithm>
+#include <map>
+#include <sstream>
+
 using namespace evical;
 using namespace evical::test;
 
@@ -99,6 +103,51 @@ Lens tumVieLens(const cv::FileNode& root, int i) {
 cv::FileStorage tumVieFile(const ExportedFiles& exported) {
   return {contentOf(exported, "tum-vie/camera-calibrationA.json"),
           cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_JSON};
+}
+
+// As evimo/dataset.h of better-flow/evimo (02db528) reads a camera's folder: read_params, read_cam_intr, read_extr; the
+// time offset as read_camera_extrinsics of tools/evimo2_v2_generate/generate_extrinsics_npz.py (35286e2) calls it.
+struct EvimoCamera {
+  std::map<std::string, std::string> parameters;
+  std::vector<double> lens, place, background;
+  double pose_to_event_s, image_to_event_s;
+};
+
+EvimoCamera evimoCamera(const ExportedFiles& exported, const std::string& name) {
+  EvimoCamera camera{};
+  std::istringstream parameters(contentOf(exported, "evimo2/" + name + "/params.txt"));
+  for (std::string line; std::getline(parameters, line);) {
+    const std::size_t colon = line.find(':');
+    camera.parameters[line.substr(0, colon)] =
+        QString::fromStdString(line.substr(colon + 1)).trimmed().toStdString();
+  }
+  const auto read = [](std::istream& stream, int count) {
+    std::vector<double> numbers(static_cast<std::size_t>(count));
+    for (double& number : numbers)
+      if (!(stream >> number)) throw std::runtime_error("too few numbers");
+    return numbers;
+  };
+  std::istringstream lens(contentOf(exported, "evimo2/" + name + "/calib.txt"));
+  camera.lens = read(lens, 8);
+  const std::string text = contentOf(exported, "evimo2/" + name + "/extrinsics.txt");
+  if (std::count(text.begin(), text.end(), '\n') != 4) throw std::runtime_error("not four lines");
+  std::istringstream place(text);
+  camera.place = read(place, 6);
+  camera.background = read(place, 7);
+  camera.pose_to_event_s = read(place, 1)[0];
+  camera.image_to_event_s = read(place, 1)[0];
+  return camera;
+}
+
+// tf's setRPY, about fixed axes.
+Eigen::Matrix4d evimoPose(const std::vector<double>& place) {
+  Eigen::Isometry3d full = Eigen::Isometry3d::Identity();
+  full.linear() = (Eigen::AngleAxisd(place[5], Eigen::Vector3d::UnitZ()) *
+                   Eigen::AngleAxisd(place[4], Eigen::Vector3d::UnitY()) *
+                   Eigen::AngleAxisd(place[3], Eigen::Vector3d::UnitX()))
+                      .toRotationMatrix();
+  full.translation() = Eigen::Vector3d(place[0], place[1], place[2]);
+  return full.matrix();
 }
 
 NamedResult eventsAndFrames(bool fisheye = false) {
@@ -295,6 +344,32 @@ class TestExportDataSets : public QObject {
     RigKind one;
     one.cameras = 1;
     QVERIFY(refusal(rig(one), "tum-vie").find("Take basalt") != std::string::npos);
+  }
+
+  void evimo2_reprojects_data() {
+    QTest::addColumn<bool>("fisheye");
+    QTest::newRow("radtan") << false;
+    QTest::newRow("equidistant") << true;
+  }
+  void evimo2_reprojects() {
+    QFETCH(bool, fisheye);
+    const NamedResult result = eventsAndFrames(fisheye);
+    const ExportedFiles exported = exportTo(result, "evimo2");
+    for (std::size_t i = 0; i < result.cameras.size(); ++i) {
+      const EvimoCamera camera = evimoCamera(exported, result.cameras[i].name);
+      const std::vector<double> k(camera.lens.begin(), camera.lens.begin() + 4),
+          d(camera.lens.begin() + 4, camera.lens.end());
+      // A pose's stamp becomes the events' time by pose_to_event: t_imu + that = t_camera.
+      QVERIFY(worstDifference_px(result, i,
+                                 {evimoPose(camera.place).inverse(), -camera.pose_to_event_s,
+                                  fisheye ? fisheyeLens(k, d) : radtanLens(k, d)}) < kSame_px);
+      QCOMPARE(camera.parameters.at("dist_model"), std::string(fisheye ? "equidistant" : "radtan"));
+      QCOMPARE(std::stoi(camera.parameters.at("res_x")), 260);  // rows
+      QCOMPARE(std::stoi(camera.parameters.at("res_y")), 346);
+      QCOMPARE(camera.parameters.at(i < 2 ? "ros_event_topic" : "ros_image_topic"), result.cameras[i].stream);
+      QVERIFY(camera.image_to_event_s == 0.0 && camera.background[3] == 1.0);
+    }
+    QVERIFY(isSaid(exported, "here it is that of left imu"));
   }
 };
 
