@@ -30,6 +30,7 @@ constexpr std::array kTargets{
     ExportTarget{"metavision", "Metavision up to SDK 4: intrinsics.json", exportMetavision},
     ExportTarget{"ekalibr", "eKalibr: parameters and camera intrinsics", exportEkalibr},
     ExportTarget{"dsec", "DSEC: cam_to_cam.yaml", exportDsec},
+    ExportTarget{"m3ed", "M3ED: calibration.h5", exportM3ed},
     ExportTarget{"evimo2", "EVIMO, EVIMO2: params.txt, calib.txt, extrinsics.txt of each camera",
                  exportEvimo2},
     ExportTarget{"tum-vie", "TUM-VIE: camera-calibrationA.json", exportTumVie},

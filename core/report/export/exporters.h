@@ -19,6 +19,7 @@ ExportedFiles exportDvProcessing(const NamedResult& result);
 ExportedFiles exportMetavision(const NamedResult& result);
 ExportedFiles exportEkalibr(const NamedResult& result);
 ExportedFiles exportDsec(const NamedResult& result);
+ExportedFiles exportM3ed(const NamedResult& result);
 ExportedFiles exportEvimo2(const NamedResult& result);
 ExportedFiles exportTumVie(const NamedResult& result);
 ExportedFiles exportNumpy(const NamedResult& result);
