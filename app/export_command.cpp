@@ -3,10 +3,12 @@
 #include "app/output.h"
 #include "core/base/error.h"
 #include "core/report/export/export_target.h"
+#include "core/report/export/read_back.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <stop_token>
@@ -19,28 +21,69 @@ namespace {
 struct Arguments {
   std::filesystem::path result, output;
   std::vector<std::string> targets;
+  bool check = false;
 };
+
+constexpr const char* kAll = "all";
 
 std::string targetList() {
   std::string text = "Targets, each written to a folder of its name:\n";
   for (const ExportTarget& target : exportTargets())
     text += fmt::format("  {:<14} {}\n", target.name, target.description);
-  return text;
+  return text + fmt::format("  {:<14} every one of them that can hold the result\n", kAll);
+}
+
+bool wantsAll(const std::vector<std::string>& targets) {
+  return std::find(targets.begin(), targets.end(), kAll) != targets.end();
+}
+
+std::vector<std::string> namedTargets(const std::vector<std::string>& targets) {
+  if (!wantsAll(targets)) {
+    for (const std::string& target : targets) exportTarget(target, "--to");
+    return targets;
+  }
+  std::vector<std::string> all;
+  for (const ExportTarget& target : exportTargets()) all.emplace_back(target.name);
+  return all;
+}
+
+// The written files as the programs take them; false where one would not, or would take other numbers.
+bool checkAll(const NamedResult& result, const std::vector<std::string>& targets,
+              const std::filesystem::path& folder, const std::stop_token& stop) {
+  bool same = true;
+  for (const std::string& target : targets) {
+    if (stop.stop_requested()) throw Cancelled{};
+    const ExportCheck check = checkExport(result, exportTarget(target, "--to"), folder);
+    if (check.same)
+      print("{}\n", check.text);
+    else
+      printError(check.text + "\n");
+    same = same && check.same;
+  }
+  return same;
 }
 
 int run(const Arguments& arguments) {
   const std::stop_token stop = stopOnSignals();  // files appear whole, or not at all
-  for (const std::string& target : arguments.targets) exportTarget(target, "--to");
+  const std::vector<std::string> targets = namedTargets(arguments.targets);
   std::error_code ignored;
   const bool folder = std::filesystem::is_directory(arguments.result, ignored);
   const std::filesystem::path file = folder ? arguments.result / "result.yaml" : arguments.result;
-  const ExportedFiles exported = exportResult(readResultYaml(file), arguments.targets);
+  const NamedResult result = readResultYaml(file);
+  const ExportedFiles exported = exportResult(result, targets);
   if (stop.stop_requested()) throw Cancelled{};
   writeExportedFiles(arguments.output, exported.files);
   for (const FileContent& written : exported.files) print("{}\n", (arguments.output / written.path).string());
   for (const std::string& note : exported.notes) print("{}\n", note);
-  for (const std::string& refusal : exported.refused) printError(refusal + "\n");
-  return exported.refused.empty() ? kDone : kFailed;
+  // Of all targets some refuse as a matter of course: those that are for two cameras, or need an IMU.
+  const bool expected = wantsAll(arguments.targets);
+  for (const std::string& refusal : exported.refused)
+    if (expected)
+      print("{}\n", refusal);
+    else
+      printError(refusal + "\n");
+  const bool same = !arguments.check || checkAll(result, exported.targets, arguments.output, stop);
+  return same && (expected || exported.refused.empty()) ? kDone : kFailed;
 }
 
 }  // namespace
@@ -49,8 +92,13 @@ void addExportCommand(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* const command = app.add_subcommand("export", "A result in other programs' formats");
   command->add_option("RESULT", arguments->result, "result.yaml, or the folder that has it")->required();
-  command->add_option("--to", arguments->targets, "Targets, separated by commas")->required()->delimiter(',');
+  command->add_option("--to", arguments->targets, "Targets, separated by commas, or all")
+      ->required()
+      ->delimiter(',');
   command->add_option("-o,--output", arguments->output, "Folder for the targets' folders")->required();
+  command->add_flag(
+      "--check", arguments->check,
+      "Read the written files back as each target's program does, and tell how far they are from RESULT");
   command->footer(targetList());
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

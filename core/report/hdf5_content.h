@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <variant>
@@ -21,5 +20,10 @@ struct Hdf5Dataset {
 // The file's bytes, with an attribute `comment` of the root. The same datasets are the same bytes: it bears no time.
 // Throws CalibrationError (CalibrationFailed) where the library cannot.
 std::string hdf5Content(std::span<const Hdf5Dataset> datasets, const std::string& comment);
+
+// Those of the paths that the content has, in their order. Throws CalibrationError (BadInput), which names `file`, where it
+// is no HDF5 file, or one of them is neither float64 nor int64 nor text.
+std::vector<Hdf5Dataset> hdf5Datasets(const std::string& content, const std::string& file,
+                                      std::span<const std::string> paths);
 
 }  // namespace evical

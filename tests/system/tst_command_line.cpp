@@ -54,6 +54,9 @@ class TestCommandLine : public QObject {
   void export_ofBadInputWritesNothing_data();
   void export_ofBadInputWritesNothing();
   void export_goesOnWhereOneTargetRefuses();
+  void export_check_tellsWhatItRead();
+  void export_check_findsWhatIsInTheWay();
+  void export_toAll_namesWhatRefuses();
   void import_writesASession();
   void init_writesTheSessionThatTheRecordingSuggests_data();
   void init_writesTheSessionThatTheRecordingSuggests();
@@ -268,6 +271,45 @@ void TestCommandLine::export_goesOnWhereOneTargetRefuses() {
   VERIFY_EXIT(outcome, 1);
   QVERIFY2(outcome.reason().contains("esvo: not exported: "), qPrintable(outcome.errors));
   QCOMPARE(filesIn(folder.filePath("out")), QStringList{"kalibr"});
+}
+
+void TestCommandLine::export_check_tellsWhatItRead() {
+  QTemporaryDir folder;
+  writeFile(folder.filePath("result.yaml"), kSmallResult);
+  const Outcome outcome = runProgram(
+      {"export", folder.path(), "--to", "kalibr,esvo,ros", "--check", "-o", folder.filePath("out")});
+  VERIFY_EXIT(outcome, 1);  // one camera is no stereo pair: refused, and not checked
+  QVERIFY2(outcome.output.contains("kalibr: reads back: 1 camera within 0 px, 1 IMU, poses within "),
+           qPrintable(outcome.output));
+  QVERIFY(outcome.output.contains("ros: reads back: ") && !outcome.output.contains("esvo: reads back"));
+  QVERIFY(outcome.errors.contains("esvo: not exported: ") && !outcome.errors.contains("does not read back"));
+}
+
+// The check is of what is on the disk, and a program that is given the folder meets what lay there before.
+void TestCommandLine::export_check_findsWhatIsInTheWay() {
+  QTemporaryDir folder;
+  writeFile(folder.filePath("result.yaml"), kSmallResult);
+  QVERIFY(QDir(folder.path()).mkpath("out/ros"));
+  writeFile(folder.filePath("out/ros/old.yaml"), "image_width: 346\n");
+  const Outcome outcome =
+      runProgram({"export", folder.path(), "--to", "ros,kalibr", "--check", "-o", folder.filePath("out")});
+  VERIFY_EXIT(outcome, 1);
+  QVERIFY2(outcome.reason().contains("ros: does not read back: ") && outcome.reason().contains("old.yaml"),
+           qPrintable(outcome.errors));
+  QVERIFY(outcome.output.contains("kalibr: reads back: "));
+}
+
+void TestCommandLine::export_toAll_namesWhatRefuses() {
+  QTemporaryDir folder;
+  writeFile(folder.filePath("result.yaml"), kSmallResult);
+  const Outcome outcome =
+      runProgram({"export", folder.path(), "--to", "all", "--check", "-o", folder.filePath("out")});
+  VERIFY_EXIT(outcome, 0);
+  QVERIFY2(outcome.output.contains("esvo: not exported: "), qPrintable(outcome.output));
+  const QStringList written = filesIn(folder.filePath("out"));
+  QVERIFY(written.size() > 8 && !written.contains("esvo"));
+  for (const QString& target : written)
+    QVERIFY2(outcome.output.contains(target + ": reads back: "), qPrintable(target));
 }
 
 void TestCommandLine::import_writesASession() {

@@ -75,7 +75,8 @@ std::string noiseText(const RigImu& imu, ExportNotes& notes) {
 
 }  // namespace
 
-std::string basaltCalibration(const Rig& rig, const char* program, ExportNotes& notes) {
+std::string basaltCalibration(const Rig& rig, const char* program, ExportNotes& notes,
+                              const std::string& more) {
   const RigImu& imu = neededImu(rig, program);
   noteLostImus(rig, program, notes);
   noteLostOffsets(rig, program, notes);
@@ -91,8 +92,8 @@ std::string basaltCalibration(const Rig& rig, const char* program, ExportNotes& 
                                camera.intrinsics.resolution_px.height_px);
           });
   text += ",\n" + correctionText(imu, lower) + noiseText(imu, notes);
-  return text + fmt::format("    \"cam_time_offset_ns\": {},\n    \"vignette\": []\n  }}\n}}\n",
-                            std::llround(1e9 * rig.cameras[0].time_offset_s));
+  return text + fmt::format("    \"cam_time_offset_ns\": {},\n    \"vignette\": []{}\n  }}\n}}\n",
+                            std::llround(1e9 * rig.cameras[0].time_offset_s), more);
 }
 
 std::vector<std::string> basaltMeanings(const RigImu& imu) {

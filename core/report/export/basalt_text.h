@@ -8,9 +8,10 @@
 
 namespace evical {
 
-// Of all cameras, in this order; their lenses are such as the program takes. Throws CalibrationError (BadInput) where
-// there is no IMU.
-std::string basaltCalibration(const Rig& rig, const char* program, ExportNotes& notes);
+// Of all cameras, in this order; their lenses are such as the program takes. `more` are further members, each after a
+// comma. Throws CalibrationError (BadInput) where there is no IMU.
+std::string basaltCalibration(const Rig& rig, const char* program, ExportNotes& notes,
+                              const std::string& more = {});
 
 // What its keys mean.
 std::vector<std::string> basaltMeanings(const RigImu& imu);

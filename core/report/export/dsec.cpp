@@ -1,3 +1,4 @@
+#include "core/base/yaml_node.h"
 #include "core/report/export/data_set_cameras.h"
 #include "core/report/export/distortion_fit.h"
 #include "core/report/export/export_text.h"
@@ -73,7 +74,8 @@ std::string chainText(const Places& places, std::size_t i) {
 
 std::string cameraText(const Places& places, std::size_t i) {
   const Place& place = places[i];
-  return headText(place, i, false) + chainText(places, i) +
+  return headText(place, i, false) + fmt::format("    camera_name: {}\n", yamlText(place.camera->name)) +
+         chainText(places, i) +
          fmt::format("    distortion_model: radtan\n    distortion_coeffs: [{}]\n    camera_matrix: [{}]\n",
                      realList(distortionOf(place.lens, 4)), matrixList(cameraMatrix(place.lens))) +
          headText(place, i, true) + fmt::format("    camera_matrix: [{}]\n", matrixList(place.rectified));

@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
 #include "core/report/export/exporters.h"
+#include "core/report/export/read_back/readers.h"
 #include "core/report/export/rig.h"
 
 #include <fmt/format.h>
@@ -16,25 +17,30 @@ namespace evical {
 namespace {
 
 constexpr std::array kTargets{
-    ExportTarget{"kalibr", "Kalibr: camchain-imucam.yaml, camchain.yaml, imu.yaml", exportKalibr},
-    ExportTarget{"openvins", "OpenVINS: kalibr_imucam_chain.yaml, kalibr_imu_chain.yaml", exportOpenVins},
-    ExportTarget{"vins-fusion", "VINS-Fusion, ESVIO: vins.yaml and a camera file each", exportVinsFusion},
-    ExportTarget{"orb-slam3", "ORB-SLAM3: the calibration part of a settings file", exportOrbSlam3},
-    ExportTarget{"basalt", "Basalt: calibration.json", exportBasalt},
-    ExportTarget{"ros", "ROS: camera_info, static transforms (tf2), URDF joints", exportRos},
-    ExportTarget{"svo", "SVO, EVO: camera rig and IMU files", exportSvo},
-    ExportTarget{"ultimate-slam", "Ultimate SLAM: camera rig, imu.yaml, time shift flag", exportUltimateSlam},
-    ExportTarget{"esvo", "ESVO: left.yaml, right.yaml", exportEsvo},
-    ExportTarget{"esvo2", "ESVO2: left.yaml, right.yaml with T_b_c", exportEsvo2},
-    ExportTarget{"dv-processing", "DV, dv-processing: calibration.json", exportDvProcessing},
-    ExportTarget{"metavision", "Metavision up to SDK 4: intrinsics.json", exportMetavision},
-    ExportTarget{"ekalibr", "eKalibr: parameters and camera intrinsics", exportEkalibr},
-    ExportTarget{"dsec", "DSEC: cam_to_cam.yaml", exportDsec},
-    ExportTarget{"m3ed", "M3ED: calibration.h5", exportM3ed},
+    ExportTarget{"kalibr", "Kalibr: camchain-imucam.yaml, camchain.yaml, imu.yaml", exportKalibr, readKalibr},
+    ExportTarget{"openvins", "OpenVINS: kalibr_imucam_chain.yaml, kalibr_imu_chain.yaml", exportOpenVins,
+                 readOpenVins},
+    ExportTarget{"vins-fusion", "VINS-Fusion, ESVIO: vins.yaml and a camera file each", exportVinsFusion,
+                 readVinsFusion},
+    ExportTarget{"orb-slam3", "ORB-SLAM3: the calibration part of a settings file", exportOrbSlam3,
+                 readOrbSlam3},
+    ExportTarget{"basalt", "Basalt: calibration.json", exportBasalt, readBasalt},
+    ExportTarget{"ros", "ROS: camera_info, static transforms (tf2), URDF joints", exportRos, readRos},
+    ExportTarget{"svo", "SVO, EVO: camera rig and IMU files", exportSvo, readSvo},
+    ExportTarget{"ultimate-slam", "Ultimate SLAM: camera rig, imu.yaml, time shift flag", exportUltimateSlam,
+                 readUltimateSlam},
+    ExportTarget{"esvo", "ESVO: left.yaml, right.yaml", exportEsvo, readEsvo},
+    ExportTarget{"esvo2", "ESVO2: left.yaml, right.yaml with T_b_c", exportEsvo2, readEsvo2},
+    ExportTarget{"dv-processing", "DV, dv-processing: calibration.json", exportDvProcessing,
+                 readDvProcessing},
+    ExportTarget{"metavision", "Metavision up to SDK 4: intrinsics.json", exportMetavision, readMetavision},
+    ExportTarget{"ekalibr", "eKalibr: parameters and camera intrinsics", exportEkalibr, readEkalibr},
+    ExportTarget{"dsec", "DSEC: cam_to_cam.yaml", exportDsec, readDsec},
+    ExportTarget{"m3ed", "M3ED: calibration.h5", exportM3ed, readM3ed},
     ExportTarget{"evimo2", "EVIMO, EVIMO2: params.txt, calib.txt, extrinsics.txt of each camera",
-                 exportEvimo2},
-    ExportTarget{"tum-vie", "TUM-VIE: camera-calibrationA.json", exportTumVie},
-    ExportTarget{"numpy", "NumPy: calibration.npz", exportNumpy},
+                 exportEvimo2, readEvimo2},
+    ExportTarget{"tum-vie", "TUM-VIE: camera-calibrationA.json", exportTumVie, readTumVie},
+    ExportTarget{"numpy", "NumPy: calibration.npz", exportNumpy, readNumpy},
 };
 
 void checkResult(const NamedResult& result) {
@@ -76,6 +82,7 @@ ExportedFiles exportResult(const NamedResult& result, std::span<const std::strin
       all.refused.push_back(fmt::format("{}: not exported: {}", target.name, refusal.what()));
       continue;
     }
+    all.targets.emplace_back(target.name);
     for (FileContent& file : one.files)
       all.files.push_back({std::filesystem::path(target.name) / file.path, std::move(file.content)});
     for (const std::string& note : one.notes) all.notes.push_back(fmt::format("{}: {}", target.name, note));

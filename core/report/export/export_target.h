@@ -19,12 +19,17 @@ struct ExportedFiles {
   std::vector<FileContent> files;         // paths relative to the output folder: "kalibr/imu.yaml"
   std::vector<std::string> notes;         // what to know before using them
   std::vector<std::string> refused = {};  // of several targets those that got nothing, each with the reason
+  std::vector<std::string> targets = {};  // those that have files
 };
+
+struct ReadBack;
 
 struct ExportTarget {
   const char* name;
   const char* description;
   ExportedFiles (*write)(const NamedResult& result);  // paths relative to the target's folder
+  // The written files as the program takes them (read_back.h).
+  ReadBack (*read)(const std::filesystem::path& folder);
 };
 
 std::span<const ExportTarget> exportTargets();

@@ -25,6 +25,7 @@ void addCamera(const std::string& group, const RigCamera& camera, const RigCamer
                std::vector<Hdf5Dataset>& datasets, ExportNotes& notes) {
   const CameraIntrinsics own = cameraFor(camera, kModels, notes);
   const std::string calib = group + "/calib/";
+  datasets.push_back({calib + "camera_name", {}, camera.name});
   datasets.push_back({calib + "camera_model", {}, std::string("pinhole")});
   datasets.push_back({calib + "distortion_coeffs", {4}, distortionOf(own, 4)});
   datasets.push_back({calib + "distortion_model", {}, std::string("radtan")});

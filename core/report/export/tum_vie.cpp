@@ -2,6 +2,7 @@
 #include "core/report/export/basalt_text.h"
 #include "core/report/export/data_set_cameras.h"
 #include "core/report/export/distortion_fit.h"
+#include "core/report/export/export_text.h"
 #include "core/report/export/exporters.h"
 
 #include <fmt/format.h>
@@ -38,7 +39,11 @@ ExportedFiles exportTumVie(const NamedResult& result) {
        {&placed.left_frame, &placed.right_frame, &placed.left_event, &placed.right_event})
     if (*camera) (*camera)->intrinsics = cameraFor(**camera, kModels, exported.notes);
   rig.cameras = inTheirOrder(placed, exported.notes);
-  exported.files.push_back({"camera-calibrationA.json", basaltCalibration(rig, kProgram, exported.notes)});
+  std::string names;
+  for (const RigCamera& camera : rig.cameras) names += (names.empty() ? "" : ", ") + jsonText(camera.name);
+  exported.files.push_back(
+      {"camera-calibrationA.json", basaltCalibration(rig, kProgram, exported.notes,
+                                                     fmt::format(",\n    \"camera_names\": [{}]", names))});
   std::vector<std::string> lines{
       "Cameras: 0 and 1 are frame cameras, left and right, 2 and 3 event cameras.",
       "There is no mocap-imu-calibrationA.json: Evical sees no markers of a motion capture system.",

@@ -1,0 +1,50 @@
+// OpenCV's own FileStorage, with the file and key in what it says. It keeps apart whole and real numbers: "20" is an int,
+// "20.0" a real one.
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core/persistence.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace evical {
+
+// A place in a file. All methods throw CalibrationError (BadInput) where the key is missing or of another kind.
+class OpencvNode {
+ public:
+  OpencvNode(cv::FileNode node, std::string file, std::string key);
+
+  bool has(const std::string& key) const;
+  OpencvNode operator[](const std::string& key) const;
+
+  double number() const;  // an int or a real one
+  int integer() const;    // an int only
+  std::string text() const;
+  std::vector<double> numbers(std::size_t count) const;            // of a list
+  Eigen::MatrixXd rows(std::size_t rows, std::size_t cols) const;  // of a list of lists
+  // Of !!opencv-matrix; `kind` CV_32F or CV_64F, or -1 where the program takes both.
+  Eigen::MatrixXd matrix(int rows, int cols, int kind) const;
+
+  std::string place() const;  // "vins.yaml: acc_n"
+  [[noreturn]] void fail(const std::string& problem) const;
+
+ private:
+  cv::FileNode node_;
+  std::string file_, key_;
+};
+
+class OpencvFile {
+ public:
+  explicit OpencvFile(const std::filesystem::path& file);
+  OpencvNode root() const;
+  OpencvNode operator[](const std::string& key) const { return root()[key]; }
+  bool has(const std::string& key) const { return root().has(key); }
+
+ private:
+  std::string file_;
+  cv::FileStorage storage_;
+};
+
+}  // namespace evical

@@ -1,0 +1,101 @@
+// After UZ-SLAMLab/ORB_SLAM3: src/Settings.cc (at 1464d8f). It keeps floats, takes matrices of floats only, and ends
+// where a key is missing or an int is a real number. Of two pinholes it rectifies both with the first one's distortion
+// (Settings.h); what is read here is each camera's own, and the exporter says what that costs.
+#include "core/report/export/read_back/opencv_file.h"
+#include "core/report/export/read_back/read_numbers.h"
+#include "core/report/export/read_back/readers.h"
+
+#include <fmt/format.h>
+#include <opencv2/core.hpp>
+
+namespace evical {
+namespace {
+
+double asFloat(const OpencvNode& node) {
+  return static_cast<double>(static_cast<float>(node.number()));
+}
+
+std::vector<double> numbersOf(const OpencvFile& file, int camera, std::initializer_list<const char*> keys) {
+  std::vector<double> values;
+  for (const char* key : keys) values.push_back(asFloat(file[fmt::format("Camera{}.{}", camera, key)]));
+  return values;
+}
+
+CameraIntrinsics lensOf(const OpencvFile& file, int camera, bool stereo) {
+  const std::string type = file["Camera.type"].text();
+  const Resolution size{file["Camera.width"].integer(), file["Camera.height"].integer()};
+  const std::vector<double> k = numbersOf(file, camera, {"fx", "fy", "cx", "cy"});
+  if (type == "KannalaBrandt8") {
+    for (const char* key : {"overlappingBegin", "overlappingEnd"})
+      if (stereo) file[fmt::format("Camera{}.{}", camera, key)].integer();
+    return lensFrom(CameraModel::PinholeEquidistant, k, numbersOf(file, camera, {"k1", "k2", "k3", "k4"}),
+                    size);
+  }
+  if (type != "PinHole") file["Camera.type"].fail("must be PinHole or KannalaBrandt8");
+  std::vector<double> distortion = numbersOf(file, camera, {"k1", "k2", "p1", "p2"});
+  const std::string third = fmt::format("Camera{}.k3", camera);
+  if (file.has(third)) distortion.push_back(asFloat(file[third]));
+  return lensFrom(CameraModel::PinholeRadtan, k, distortion, size);
+}
+
+RigidTransform poseOf(const OpencvFile& file, const char* key) {
+  const OpencvNode node = file[key];
+  return rigidFrom(node.matrix(4, 4, CV_32F), node.place());
+}
+
+void askForOwnKeys(const OpencvFile& file) {
+  for (const char* key : {"Camera.fps", "Camera.RGB", "ORBextractor.nFeatures", "ORBextractor.nLevels",
+                          "ORBextractor.iniThFAST", "ORBextractor.minThFAST"})
+    file[key].integer();
+  for (const char* key :
+       {"ORBextractor.scaleFactor", "Viewer.KeyFrameSize", "Viewer.KeyFrameLineWidth",
+        "Viewer.GraphLineWidth", "Viewer.PointSize", "Viewer.CameraSize", "Viewer.CameraLineWidth",
+        "Viewer.ViewpointX", "Viewer.ViewpointY", "Viewer.ViewpointZ", "Viewer.ViewpointF"})
+    file[key].number();
+  if (file.has("IMU.InsertKFsWhenLost")) file["IMU.InsertKFsWhenLost"].integer();
+}
+
+ReadImu imuOf(const OpencvFile& file) {
+  ReadImu imu;
+  imu.noise = {asFloat(file["IMU.NoiseGyro"]), asFloat(file["IMU.NoiseAcc"]), asFloat(file["IMU.GyroWalk"]),
+               asFloat(file["IMU.AccWalk"])};
+  imu.rate_hz = asFloat(file["IMU.Frequency"]);
+  return imu;
+}
+
+}  // namespace
+
+ReadBack readOrbSlam3(const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / "settings.yaml";
+  const OpencvFile file(path);
+  ReadBack read;
+  read.most_cameras = 2;
+  read.most_imus = 1;
+  ReadFile settings{path};
+  settings.rounding = kFloatRounding;
+  if (file["File.version"].text() != "1.0")
+    file["File.version"].fail("must be 1.0, or older settings are expected");
+  askForOwnKeys(file);
+  // Which of its modes there are data for.
+  const bool stereo = file.has("Camera2.fx"), inertial = file.has("IMU.NoiseGyro");
+  settings.about_first_camera = !inertial;
+  ReadCamera first;
+  first.lens = lensOf(file, 1, stereo);
+  first.frame_from_camera = RigidTransform{};
+  if (inertial) {
+    first.frame_from_camera = poseOf(file, "IMU.T_b_c1");
+    settings.imus.push_back(imuOf(file));
+  }
+  settings.cameras.push_back(first);
+  if (stereo) {
+    file["Stereo.ThDepth"].number();
+    ReadCamera second;
+    second.lens = lensOf(file, 2, stereo);
+    second.frame_from_camera = *first.frame_from_camera * poseOf(file, "Stereo.T_c1_c2");
+    settings.cameras.push_back(second);
+  }
+  read.files.push_back(std::move(settings));
+  return read;
+}
+
+}  // namespace evical

@@ -1,0 +1,28 @@
+// One function a target, for the table of targets: reads the files in the target's folder as the program does. Throws
+// CalibrationError (BadInput) that names file and key where the program would not take them.
+#pragma once
+
+#include "core/report/export/read_back.h"
+
+namespace evical {
+
+ReadBack readKalibr(const std::filesystem::path& folder);
+ReadBack readOpenVins(const std::filesystem::path& folder);
+ReadBack readVinsFusion(const std::filesystem::path& folder);
+ReadBack readOrbSlam3(const std::filesystem::path& folder);
+ReadBack readBasalt(const std::filesystem::path& folder);
+ReadBack readRos(const std::filesystem::path& folder);
+ReadBack readSvo(const std::filesystem::path& folder);
+ReadBack readUltimateSlam(const std::filesystem::path& folder);
+ReadBack readEsvo(const std::filesystem::path& folder);
+ReadBack readEsvo2(const std::filesystem::path& folder);
+ReadBack readDvProcessing(const std::filesystem::path& folder);
+ReadBack readMetavision(const std::filesystem::path& folder);
+ReadBack readEkalibr(const std::filesystem::path& folder);
+ReadBack readDsec(const std::filesystem::path& folder);
+ReadBack readM3ed(const std::filesystem::path& folder);
+ReadBack readEvimo2(const std::filesystem::path& folder);
+ReadBack readTumVie(const std::filesystem::path& folder);
+ReadBack readNumpy(const std::filesystem::path& folder);
+
+}  // namespace evical
