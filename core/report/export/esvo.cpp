@@ -11,8 +11,20 @@ namespace evical {
 namespace {
 
 // ESVO's own calibration files have 4 coefficients of plumb_bob.
-CameraIntrinsics esvoCamera(const RigCamera& camera, const char* program, ExportNotes& notes) {
+CameraIntrinsics leftCamera(const RigCamera& camera, const char* program, ExportNotes& notes) {
   return cameraFor(camera, {program, true, false, true}, notes);
+}
+
+// The program takes size and distortion model of both cameras from the left one's file.
+CameraIntrinsics rightCamera(const RigCamera& camera, const CameraIntrinsics& left, const char* program,
+                             ExportNotes& notes) {
+  if (camera.intrinsics.resolution_px != left.resolution_px)
+    throw badInput(
+        fmt::format("result: cameras.{}", camera.name),
+        fmt::format("has another resolution than the left camera, and {} takes one for both", program),
+        fmt::format("Leave {} out", program));
+  const bool radtan = left.model == CameraModel::PinholeRadtan;
+  return cameraFor(camera, {program, radtan, false, !radtan}, notes);
 }
 
 std::string cameraFile(const Rig& rig, const RigCamera& camera, const CameraIntrinsics& own,
@@ -34,8 +46,8 @@ ExportedFiles exportPair(const NamedResult& result, const char* program, bool wi
     noteLostMapping(neededImu(rig, program), program, exported.notes);
     imu_pose = "T_b_c:\n" + dataMatrix(matrixOf(pair.left.reference_from_camera).topRows<3>(), 2);
   }
-  const CameraIntrinsics left = esvoCamera(pair.left, program, exported.notes);
-  const CameraIntrinsics right = esvoCamera(pair.right, program, exported.notes);
+  const CameraIntrinsics left = leftCamera(pair.left, program, exported.notes);
+  const CameraIntrinsics right = rightCamera(pair.right, left, program, exported.notes);
   const Rectification rectified = rectify(left, right, pair.right_from_left);
   std::string offsets = fmt::format(
       "{} takes no time offset: add {} s to the stamps of {} and {} s to those of {}, so that t_reference "

@@ -264,7 +264,7 @@ std::string textOf(const ReadBackDifference& difference) {
                                 *difference.translation_mm));
   if (difference.time_ms) parts.push_back(fmt::format("time offsets within {:.1g} ms", *difference.time_ms));
   if (difference.numbers)
-    parts.push_back(fmt::format("other numbers within {:.1g} of them", *difference.numbers));
+    parts.push_back(fmt::format("scales, biases and noise within {:.1g}", *difference.numbers));
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 

@@ -10,6 +10,7 @@
 #include <QTemporaryDir>
 
 #include <algorithm>
+#include <cstdlib>
 
 using namespace evical;
 using namespace evical::test;
@@ -27,6 +28,13 @@ bool exportInto(const QTemporaryDir& folder, const NamedResult& result, const st
   } catch (const CalibrationError&) {
     return false;
   }
+}
+
+// Without the exporter's care that a file is on the disk.
+void overwrite(const QTemporaryDir& folder, const FileContent& file) {
+  QFile written(folder.filePath(QString::fromStdString(file.path.string())));
+  QVERIFY(written.open(QIODevice::WriteOnly));
+  written.write(file.content.data(), static_cast<qint64>(file.content.size()));
 }
 
 void setWideLenses(NamedResult& result, CameraModel model) {
@@ -158,6 +166,33 @@ class TestExportReadBack : public QObject {
              same.time_ms.has_value());
   }
 
+  // Programs that take something of one camera for both: refused, or refitted, so that what is written reads back.
+  void unlikeCameras_readBackOrAreRefused_data() { anotherResult_isFound_data(); }
+  void unlikeCameras_readBackOrAreRefused() {
+    QFETCH(QString, target);
+    const ExportTarget& row = exportTarget(target.toStdString(), "test");
+    for (const bool other_size : {false, true}) {
+      NamedResult result = rig({});
+      CameraIntrinsics right = *result.result->state.cameras[1].lens.inUse();
+      if (other_size) {
+        right.resolution_px = {640, 480};
+        right.principal_point_px *= 1.85;
+        right.focal_length_px *= 1.85;
+      } else {
+        right.model = CameraModel::PinholeEquidistant;
+        right.distortion = {-0.03, 0.011, -0.004, 0.0007, 0.0};
+      }
+      ownResult(result).state.cameras[1].lens = givenLens(right);
+      QTemporaryDir folder;
+      if (!exportInto(folder, result, row.name)) {
+        QVERIFY(other_size && (target.startsWith("esvo") || target == "orb-slam3"));
+        continue;
+      }
+      const ExportCheck check = checkExport(result, row, folder.path().toStdString());
+      QVERIFY2(check.same, check.text.c_str());
+    }
+  }
+
   void damage_isFoundAndNamed_data() {
     QTest::addColumn<QString>("target");
     QTest::addColumn<QString>("file");
@@ -200,6 +235,7 @@ class TestExportReadBack : public QObject {
     row("esvo", "right.yaml", "distortion_coefficients", "coefficients", "distortion_coefficients");
     row("esvo", "right.yaml", "projection_matrix:\n  rows: 3\n  cols: 4\n  data: [2",
         "projection_matrix:\n  data: [3", "rectification_matrix");
+    row("esvo2", "right.yaml", "T_b_c:", "T_c_b:", "T_b_c");
     row("esvo2", "left.yaml", "T_b_c:", "T_c_b:", "T_b_c");
     // As Evical wrote it once: "No such node (patternType)".
     row("dv-processing", "calibration.json", "\"position\"",
@@ -284,20 +320,50 @@ class TestExportReadBack : public QObject {
     QFETCH(QString, target);
     const NamedResult result = rig({});
     const ExportTarget& row = exportTarget(target.toStdString(), "test");
+    QTemporaryDir folder;
+    QVERIFY(exportInto(folder, result, row.name));
     for (const FileContent& file : exportResult(result, std::vector<std::string>{row.name}).files) {
       if (file.path.filename() == "README.txt") continue;
+      const QString path = folder.filePath(QString::fromStdString(file.path.string()));
       for (const double share : {-1.0, 0.0, 0.3, 0.6}) {
-        QTemporaryDir folder;
-        QVERIFY(exportInto(folder, result, row.name));
-        const QString path = folder.filePath(QString::fromStdString(file.path.string()));
         if (share < 0.0)
           QVERIFY(QFile::remove(path));
         else
           QVERIFY(QFile::resize(path, static_cast<qint64>(share * static_cast<double>(file.content.size()))));
         const ExportCheck check = checkExport(result, row, folder.path().toStdString());
         QVERIFY2(!check.same, qPrintable(path + " " + QString::number(share)));
+        overwrite(folder, file);
       }
     }
+    QVERIFY(checkExport(result, row, folder.path().toStdString()).same);
+  }
+
+  // A byte changed anywhere: said or harmless, but nothing but CalibrationError is thrown, and no memory is touched.
+  void spoiltFiles_endNothing_data() { anotherResult_isFound_data(); }
+  void spoiltFiles_endNothing() {
+    QFETCH(QString, target);
+    const NamedResult result = rig({true, false, true, true, 2});
+    const ExportTarget& row = exportTarget(target.toStdString(), "test");
+    QTemporaryDir folder;
+    QVERIFY(exportInto(folder, result, row.name));
+    const std::filesystem::path path = folder.path().toStdString();
+    std::srand(11);
+    int found = 0;
+    constexpr int kTimes = 60;
+    const auto files = exportResult(result, std::vector<std::string>{row.name}).files;
+    for (int i = 0; i < kTimes; ++i) {
+      const FileContent& file = files.at(static_cast<std::size_t>(std::rand()) % files.size());
+      FileContent spoilt = file;
+      // Beyond the comments at the top.
+      const std::size_t at =
+          file.content.size() / 4 + static_cast<std::size_t>(std::rand()) % (3 * file.content.size() / 4);
+      spoilt.content[at] = "\0x-9.:[]{}\"\n #"[std::rand() % 14];
+      overwrite(folder, spoilt);
+      found += checkExport(result, row, path).same ? 0 : 1;
+      overwrite(folder, file);
+    }
+    // README.txt is not read, and HDF5 pads its files.
+    QVERIFY(found > kTimes / (target == "m3ed" ? 20 : 6) && checkExport(result, row, path).same);
   }
 };
 

@@ -1,6 +1,7 @@
-// After HKUST-Aerial-Robotics/ESVO: esvo_core/src/container/CameraSystem.cpp (at 995f61b: loadCalibInfo), which ESVO2
-// shares (NAIL-HNU/ESVIO_AA, at 1c19bd9); T_b_c is read beside it by ESVO2's own nodes. Size and distortion model of both
-// cameras are the left one's, and of coefficients four are taken.
+// After HKUST-Aerial-Robotics/ESVO: esvo_core/src/container/CameraSystem.cpp (at 995f61b: loadCalibInfo); NAIL-HNU/ESVO2:
+// esvo2_core/src/container/CameraSystem.cpp (at 2edd832) and image_representation/src/ImageRepresentation.cpp (at 27d2f5f),
+// which asks each camera's file for T_right_left and T_b_c. Size and distortion model of both cameras are the left one's,
+// and of coefficients four are taken.
 #include "core/base/error.h"
 #include "core/report/export/read_back/read_numbers.h"
 #include "core/report/export/read_back/readers.h"
@@ -66,6 +67,7 @@ ReadBack readPair(const std::filesystem::path& folder, bool with_imu) {
     ReadCamera camera;
     camera.name = pair.cameras[0].name;
     camera.frame_from_camera = poseOf(left, "T_b_c");
+    for (const char* key : {"T_right_left", "T_b_c"}) poseOf(right, key);
     read.files.push_back({left_path, {camera}});
   }
   return read;

@@ -1,7 +1,7 @@
-// After ethz-asl/kalibr, kalibr_common/ConfigReader.py (at 0b8b9e8, with the model eucm that its AslamCamera has):
-// CameraChainParameters of camchain.yaml and camchain-imucam.yaml, ImuParameters of what --imu is given. imu.yaml has
-// the keys of IccSensors.py's IccImu.ImuParameters, which writes such files. Kalibr parses with PyYAML, whose floats have
-// a point, and insists on floats.
+// After ethz-asl/kalibr, kalibr_common/ConfigReader.py (at 0b8b9e8; its check of eucm as chengfzy/kalibr has it at 31a324b):
+// CameraChainParameters of camchain.yaml and camchain-imucam.yaml, ImuParameters of what --imu is given. imu.yaml has the
+// keys of IccSensors.py's IccImu.ImuParameters, which writes such files. Kalibr parses with PyYAML, whose floats have a
+// point, and insists on floats.
 #include "core/base/error.h"
 #include "core/report/export/read_back/read_numbers.h"
 #include "core/report/export/read_back/readers.h"
@@ -15,15 +15,18 @@ namespace {
 
 // PyYAML's resolvers: 1e-05 is a string, 5 an int.
 double pythonFloat(const YamlNode& node) {
+  constexpr std::size_t kLongest = 100;  // the library's matching goes as deep as a text is long
   static const std::regex kFloat(R"([-+]?([0-9][0-9_]*)?\.[0-9_]*([eE][-+][0-9]+)?)");
-  if (!std::regex_match(node.text(), kFloat))
+  if (node.text().size() > kLongest || !std::regex_match(node.text(), kFloat))
     throw node.error(fmt::format("'{}' is no float to Kalibr's YAML parser", node.text()));
   return node.real();
 }
 
 double pythonNumber(const YamlNode& node) {
   static const std::regex kInt("[-+]?[0-9]+");
-  return std::regex_match(node.text(), kInt) ? node.real() : pythonFloat(node);
+  constexpr std::size_t kLongest = 100;
+  return node.text().size() <= kLongest && std::regex_match(node.text(), kInt) ? node.real()
+                                                                               : pythonFloat(node);
 }
 
 std::vector<double> pythonNumbers(const YamlNode& list, std::size_t count) {
@@ -74,8 +77,10 @@ CameraIntrinsics lensOf(const YamlNode& camera) {
     if (all[i] < 0.0) throw node.error("focal lengths and principal point must not be negative");
   }
   if (model.model == CameraModel::OmniRadtan && all[0] < 0.0) throw node.error("xi must not be negative");
-  if (model.model == CameraModel::DoubleSphere && (all[1] < 0.0 || all[1] >= 1.0))
-    throw node.error("alpha must be in [0, 1)");
+  const bool eucm = model.model == CameraModel::Eucm;
+  const double alpha = all[eucm ? 0 : 1];
+  if (model.own == 2 && (alpha < 0.0 || alpha >= 1.0)) throw node.error("alpha must be in [0, 1)");
+  if (eucm && all[1] < 0.0) throw node.error("beta must not be negative");
   const auto split = all.begin() + static_cast<std::ptrdiff_t>(model.own);
   std::vector<double> distortion(all.begin(), split);
   for (const double value : pythonNumbers(camera["distortion_coeffs"], model.own == 2 ? 0 : 4))
