@@ -86,6 +86,8 @@ ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Sessio
   NamedResult named = namedResult(session, resultOf(shared_run), version);
   for (std::size_t i = 0; i < named.imus.size() && i < run.pass.imus.size(); ++i)
     named.imus[i].rate_hz = run.pass.imus[i].rate_hz();
+  for (std::size_t i = 0; i < named.cameras.size() && i < run.pass.cameras.size(); ++i)
+    named.cameras[i].kind = run.pass.cameras[i].kind;
   std::vector<FileContent> files = detectionFiles(session, run.pass, run.intrinsics);
   files.push_back({"trajectory.csv", trajectoryCsv(run.result.state)});
   const std::string biases = biasesCsv(named);

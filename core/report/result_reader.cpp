@@ -133,7 +133,10 @@ SensorDescription readCamera(const YamlNode& map, const std::string& name, Calib
   result.state.cameras.push_back(state);
   result.uncertainty.cameras.push_back(sigma);
   result.cameras.push_back(fit);
-  return {name, streamOf(map)};
+  SensorDescription known{name, streamOf(map)};
+  if (const auto kind = map.find("kind"))
+    known.kind = static_cast<CameraKind>(kind->choice({"events", "frames", "points"}));
+  return known;
 }
 
 void readLatencies(const YamlNode& cameras, const NamedResult& named, CalibrationResult& result) {

@@ -76,6 +76,11 @@ std::string streamYaml(const std::string& stream) {
   return stream.empty() ? "" : fmt::format("    stream: {}\n", yamlText(stream));
 }
 
+std::string kindYaml(CameraKind kind) {
+  if (kind == CameraKind::Events) return "";
+  return fmt::format("    kind: {}\n", kind == CameraKind::Frames ? "frames" : "points");
+}
+
 std::string latencyYaml(const NamedResult& named, std::size_t camera) {
   std::string text;
   for (const SensorLatency& latency : named.result->latencies)
@@ -91,7 +96,7 @@ std::string cameraYaml(const NamedResult& named, std::size_t i) {
   const CameraUncertainty sigma = elementOrNone(named.result->uncertainty.cameras, i);
   const CameraFit fit = elementOrNone(named.result->cameras, i);
   std::string text = fmt::format("  {}:\n", yamlText(named.cameras.at(i).name));
-  text += streamYaml(named.cameras[i].stream);
+  text += streamYaml(named.cameras[i].stream) + kindYaml(named.cameras[i].kind);
   YamlSections sections;
   addPlace(kCameraQuantities, state, sigma, sections);
   addQuantities(kCameraQuantities, state, sigma, Written::Both, sections, besidesPose);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/option_row.h"
+#include "core/data/board_observations.h"
 #include "core/data/calibration_result.h"
 #include "core/data/calibration_setup.h"
 
@@ -18,6 +19,8 @@ struct SensorDescription {
   // Of an IMU:
   ImuNoise noise = {0.0, 0.0, 0.0, 0.0};
   double rate_hz = 0.0;
+  // Of a camera; older files do not say it, and are of events.
+  CameraKind kind = CameraKind::Events;
 
   bool operator==(const SensorDescription&) const = default;
 };

@@ -1,3 +1,5 @@
+#include "core/report/export/basalt_text.h"
+
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/report/export/distortion_fit.h"
 #include "core/report/export/export_text.h"
@@ -23,8 +25,7 @@ std::string poseText(const RigidTransform& pose) {
                      real(q.w()));
 }
 
-std::string cameraText(const RigCamera& camera, ExportNotes& notes) {
-  const CameraIntrinsics own = cameraFor(camera, kModels, notes);
+std::string cameraText(const CameraIntrinsics& own) {
   const char* type = own.model == CameraModel::DoubleSphere ? "ds"
                      : own.model == CameraModel::Eucm       ? "eucm"
                                                             : "kb4";
@@ -74,27 +75,28 @@ std::string noiseText(const RigImu& imu, ExportNotes& notes) {
 
 }  // namespace
 
-ExportedFiles exportBasalt(const NamedResult& result) {
-  ExportedFiles exported;
-  const Rig rig = rigOf(result);
-  const RigImu& imu = neededImu(rig, kProgram);
-  noteLostImus(rig, kProgram, exported.notes);
-  noteLostOffsets(rig, kProgram, exported.notes);
+std::string basaltCalibration(const Rig& rig, const char* program, ExportNotes& notes,
+                              const std::string& more) {
+  const RigImu& imu = neededImu(rig, program);
+  noteLostImus(rig, program, notes);
+  noteLostOffsets(rig, program, notes);
   const LowerTriangularImu lower = lowerTriangular(imu.state);
   std::string text = "{\n  \"value0\": {\n    \"T_imu_cam\": ";
   text += perCamera(rig, [&](const RigCamera& camera) {
     return poseText(turnOf(lower.other_from_imu) * camera.reference_from_camera);
   });
   text += ",\n    \"intrinsics\": " +
-          perCamera(rig, [&](const RigCamera& camera) { return cameraText(camera, exported.notes); });
+          perCamera(rig, [](const RigCamera& camera) { return cameraText(camera.intrinsics); });
   text += ",\n    \"resolution\": " + perCamera(rig, [](const RigCamera& camera) {
             return fmt::format("[{}, {}]", camera.intrinsics.resolution_px.width_px,
                                camera.intrinsics.resolution_px.height_px);
           });
-  text += ",\n" + correctionText(imu, lower) + noiseText(imu, exported.notes);
-  text += fmt::format("    \"cam_time_offset_ns\": {},\n    \"vignette\": []\n  }}\n}}\n",
-                      std::llround(1e9 * rig.cameras[0].time_offset_s));
-  exported.files.push_back({"calibration.json", text});
+  text += ",\n" + correctionText(imu, lower) + noiseText(imu, notes);
+  return text + fmt::format("    \"cam_time_offset_ns\": {},\n    \"vignette\": []{}\n  }}\n}}\n",
+                            std::llround(1e9 * rig.cameras[0].time_offset_s), more);
+}
+
+std::vector<std::string> basaltMeanings(const RigImu& imu) {
   std::vector<std::string> lines{
       "T_imu_cam takes points of the camera to the IMU; t_imu = t_cam + cam_time_offset_ns.",
       "corrected force = (I + S) raw - b, with S and b of calib_accel_bias; the same for calib_gyro_bias."};
@@ -103,6 +105,16 @@ ExportedFiles exportBasalt(const NamedResult& result) {
         "The IMU's frame is Basalt's, in which S of the accelerometer is lower triangular: it is turned "
         "against "
         "Evical's.");
+  return lines;
+}
+
+ExportedFiles exportBasalt(const NamedResult& result) {
+  ExportedFiles exported;
+  Rig rig = rigOf(result);
+  neededImu(rig, kProgram);
+  for (RigCamera& camera : rig.cameras) camera.intrinsics = cameraFor(camera, kModels, exported.notes);
+  exported.files.push_back({"calibration.json", basaltCalibration(rig, kProgram, exported.notes)});
+  std::vector<std::string> lines = basaltMeanings(rig.imus.front());
   lines.insert(lines.end(), exported.notes.begin(), exported.notes.end());
   exported.files.push_back({"README.txt", readMe(rig, lines)});
   return exported;

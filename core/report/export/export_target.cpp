@@ -41,6 +41,12 @@ constexpr std::array kTargets{
                  readRtabmap},
     ExportTarget{"opencv", "OpenCV: cameras and stereo pair (FileStorage)", exportOpenCv, readOpenCv},
     ExportTarget{"matlab", "MATLAB, Octave: a function that makes all of it", exportMatlab, readMatlab},
+    ExportTarget{"dsec", "DSEC: cam_to_cam.yaml", exportDsec, readDsec},
+    ExportTarget{"m3ed", "M3ED: calibration.h5", exportM3ed, readM3ed},
+    ExportTarget{"evimo2", "EVIMO, EVIMO2: params.txt, calib.txt, extrinsics.txt of each camera",
+                 exportEvimo2, readEvimo2},
+    ExportTarget{"tum-vie", "TUM-VIE: camera-calibrationA.json", exportTumVie, readTumVie},
+    ExportTarget{"numpy", "NumPy: calibration.npz", exportNumpy, readNumpy},
 };
 
 void checkResult(const NamedResult& result) {

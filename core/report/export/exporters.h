@@ -23,5 +23,10 @@ ExportedFiles exportDmVio(const NamedResult& result);
 ExportedFiles exportRtabmap(const NamedResult& result);
 ExportedFiles exportOpenCv(const NamedResult& result);
 ExportedFiles exportMatlab(const NamedResult& result);
+ExportedFiles exportDsec(const NamedResult& result);
+ExportedFiles exportM3ed(const NamedResult& result);
+ExportedFiles exportEvimo2(const NamedResult& result);
+ExportedFiles exportTumVie(const NamedResult& result);
+ExportedFiles exportNumpy(const NamedResult& result);
 
 }  // namespace evical

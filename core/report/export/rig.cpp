@@ -55,6 +55,7 @@ RigCamera cameraOf(const NamedResult& result, std::size_t i, std::set<std::strin
   return {name,
           fileName(name, taken),
           result.cameras[i].stream,
+          result.cameras[i].kind,
           *intrinsics,
           state.reference_from_camera,
           state.time_offset_s,

@@ -14,6 +14,7 @@ namespace evical {
 struct RigCamera {
   std::string name, file_name;  // file_name: the name with nothing but letters, digits and -_.
   std::string stream;
+  CameraKind kind = CameraKind::Events;
   CameraIntrinsics intrinsics;
   RigidTransform reference_from_camera;
   double time_offset_s = 0.0;  // imu_time = camera_time + time_offset_s

@@ -30,6 +30,13 @@ Eigen::Matrix3d cameraMatrix(const CameraIntrinsics& camera) {
   return k;
 }
 
+Eigen::Vector3d rollPitchYaw(const Eigen::Matrix3d& r) {
+  const double cosine = std::hypot(r(0, 0), r(1, 0));
+  const double pitch = std::atan2(-r(2, 0), cosine);
+  if (cosine < 1e-12) return {0.0, pitch, std::atan2(-r(0, 1), r(1, 1))};
+  return {std::atan2(r(2, 1), r(2, 2)), pitch, std::atan2(r(1, 0), r(0, 0))};
+}
+
 namespace {
 
 // A placed sensor: `child` in the frame `parent`.
@@ -53,15 +60,6 @@ std::vector<Joint> jointsOf(const Rig& rig) {
   for (std::size_t i = 1; i < rig.imus.size(); ++i)
     joints.push_back({base, rig.imus[i].file_name, rig.imus[i].state.reference_from_imu});
   return joints;
-}
-
-// R = Rz(yaw) Ry(pitch) Rx(roll), URDF's fixed axes. Upright (pitch +-90 degrees) roll and yaw turn the same
-// axis: roll is 0 then.
-Eigen::Vector3d rollPitchYaw(const Eigen::Matrix3d& r) {
-  const double cosine = std::hypot(r(0, 0), r(1, 0));
-  const double pitch = std::atan2(-r(2, 0), cosine);
-  if (cosine < 1e-12) return {0.0, pitch, std::atan2(-r(0, 1), r(1, 1))};
-  return {std::atan2(r(2, 1), r(2, 2)), pitch, std::atan2(r(1, 0), r(0, 0))};
 }
 
 std::string offsetsComment(const Rig& rig) {

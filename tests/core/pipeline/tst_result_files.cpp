@@ -224,6 +224,17 @@ class TestResultFiles : public QObject {
     QVERIFY(readFile(folder.filePath("result.yaml")).contains("intrinsics_std:"));
   }
 
+  // Data sets' layouts have places of their own for either.
+  void frameCamera_isNamedAsOne() {
+    QVERIFY(!readFile(path("result.yaml")).contains("kind:"));
+    CalibrationRun run = run_;
+    run.pass.cameras[0].kind = CameraKind::Frames;
+    QTemporaryDir folder;
+    writeResultFiles(folder.path().toStdString(), simulated_.session, shared(run), "test", "log");
+    const NamedResult read = readResultYaml(folder.filePath("result.yaml").toStdString());
+    QVERIFY(read.cameras[0].kind == CameraKind::Frames);
+  }
+
   void failedCalibration_hasItsReasonAndItsDetections() {
     QTemporaryDir folder;
     RecordingPass pass = simulated_.pass;

@@ -61,14 +61,18 @@ NamedResult rig(const RigKind& kind) {
   named.reference = kind.inertial ? "left imu" : "left";
   named.version = "0.1.0";
   const char* const names[] = {"left", "right", "third"};
-  for (int i = 0; i < kind.cameras; ++i) {
-    named.cameras.push_back({names[i], std::string("/") + names[i] + "/events"});
+  for (int i = 0; i < kind.cameras + kind.frames; ++i) {
+    const bool events = i < kind.cameras;
+    const std::string name = events ? names[i] : numbered("frame", i - kind.cameras);
+    named.cameras.push_back({name, "/" + name + (events ? "/events" : "/image")});
+    if (!events) named.cameras.back().kind = CameraKind::Frames;
     CameraState camera;
     camera.lens = givenLens(intrinsics(kind, i));
     camera.reference_from_camera = {quaternionExp({1.1 + 0.01 * i, -0.7 + 0.02 * i, 0.6}),
                                     {0.03, -0.01, 0.02}};
     camera.reference_from_camera.translation_m +=
         camera.reference_from_camera.rotation * Eigen::Vector3d(0.1 * i, 0.002 * i, 0.0);
+    if (!events) camera.reference_from_camera.translation_m.z() += 0.013;
     camera.time_offset_s = i == 0 ? 0.007301 : -0.0021;
     result.state.cameras.push_back(camera);
     CameraFit fit;

@@ -15,6 +15,7 @@ namespace evical::test {
 struct RigKind {
   bool fisheye = false, third_radial = false, mapped = true, inertial = true;
   int cameras = 2;
+  int frames = 0;  // frame cameras, behind the others, as far from each other
 };
 // Offsets are whole microseconds, for formats that hold no more.
 NamedResult rig(const RigKind& kind);

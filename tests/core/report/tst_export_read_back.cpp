@@ -260,6 +260,24 @@ class TestExportReadBack : public QObject {
     row("ros", "static_transforms.launch.py", "'--qw', ", "", "is no option of it");
     row("ros", "rig.urdf", "</robot>", "", "is no XML");
     row("ros", "rig.urdf", "link=\"left_imu\"", "link=\"imu\"", "there is no link imu");
+    row("dsec", "cam_to_cam.yaml", "R_rect3:", "R_3:", "extrinsics.R_rect3");
+    row("dsec", "cam_to_cam.yaml", "T_32:", "T_31:", "extrinsics.T_32");
+    row("dsec", "cam_to_cam.yaml", "camera_type: event", "camera_type: frame", "cam0.camera_type");
+    row("dsec", "cam_to_cam.yaml", "- [0.0, 1.0, 0.0, -", "- [0.0, 1.0, 0.0, ",
+        "cams_03 (line");  // the principal point's sign
+    row("dsec", "cam_to_cam.yaml", "resolution: [346, 260]", "resolution: [346, 260.0]", "cam0.resolution");
+    row("m3ed", "calibration.h5", "radtan", "radtam",
+        "/prophesee/left/calib/distortion_model: must be radtan");
+    row("m3ed", "calibration.h5", "SNOD", "SNOT", "/prophesee/left/calib");
+    row("evimo2", "left/params.txt", "res_x: 260", "res_x: 346", "the resolution is 346 x 346");
+    row("evimo2", "left/params.txt", "radtan", "none", "dist_model must be radtan or equidistant");
+    row("evimo2", "right/extrinsics.txt", "0.0021", "-0.0021", "right: the time offset is off by 4.2 ms");
+    row("evimo2", "right/extrinsics.txt", "\n0.0\n", "\n", "must have lines of 6, 7, 1 and 1 numbers");
+    row("tum-vie", "camera-calibrationA.json", "kb4", "ds", "value0.intrinsics[0].intrinsics.xi");
+    row("tum-vie", "camera-calibrationA.json", "[\"left\", \"right\", \"left\", \"right\"]",
+        "[\"right\", \"right\", \"left\", \"right\"]", "right: the pose is off");
+    row("numpy", "calibration.npz", "<f8", "<f4", "its check sum is another");
+    row("numpy", "calibration.npz", "PK\x05\x06", "PK\x05\x05", "is no .npz file, or is cut off");
   }
   void damageOfNewerTargets_isFoundAndNamed_data() {
     QTest::addColumn<QString>("target");
@@ -320,6 +338,30 @@ class TestExportReadBack : public QObject {
         "holds no rotation");
   }
   void damageOfNewerTargets_isFoundAndNamed() { damage_isFoundAndNamed(); }
+  // Layouts of data sets put cameras to places of their own.
+  void eventsAndFrames_readBack_data() {
+    QTest::addColumn<QString>("target");
+    for (const char* const target : {"dsec", "m3ed", "evimo2", "tum-vie", "numpy"})
+      QTest::newRow(target) << target;
+  }
+  void eventsAndFrames_readBack() {
+    QFETCH(QString, target);
+    RigKind kind;
+    kind.frames = 2;
+    kind.fisheye = target == "tum-vie";
+    NamedResult result = rig(kind);
+    std::swap(result.cameras[0], result.cameras[3]);
+    std::swap(ownResult(result).state.cameras[0], ownResult(result).state.cameras[3]);
+    QTemporaryDir folder;
+    const ExportTarget& row = exportTarget(target.toStdString(), "test");
+    QVERIFY(exportInto(folder, result, row.name));
+    const ReadBackDifference difference =
+        differenceOf(result, row.read((folder.path() + "/" + target).toStdString()));
+    QVERIFY2(difference.problems.empty(), difference.problems.empty() ? "" : difference.problems[0].c_str());
+    QCOMPARE(difference.cameras, 4U);
+    QVERIFY(difference.lens_px.value_or(1.0) < kSame_px && difference.rotation_deg.value_or(1.0) < kSame_deg);
+  }
+
   void damage_isFoundAndNamed() {
     QFETCH(QString, target);
     QFETCH(QString, file);
@@ -385,7 +427,8 @@ class TestExportReadBack : public QObject {
       found += checkExport(result, row, path).same ? 0 : 1;
       overwrite(folder, file);
     }
-    QVERIFY(found > kTimes / 6 && checkExport(result, row, path).same);
+    // README.txt is not read, and HDF5 pads its files.
+    QVERIFY(found > kTimes / (target == "m3ed" ? 20 : 6) && checkExport(result, row, path).same);
   }
 };
 

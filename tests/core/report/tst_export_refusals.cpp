@@ -88,7 +88,7 @@ class TestExportRefusals : public QObject {
   void camerasOnly_isRefusedWhereAnImuIsNeeded_data() {
     QTest::addColumn<QString>("target");
     for (const char* target :
-         {"openvins", "vins-fusion", "basalt", "svo", "ultimate-slam", "esvo2", "kimera"})
+         {"openvins", "vins-fusion", "basalt", "svo", "ultimate-slam", "esvo2", "kimera", "tum-vie"})
       QTest::newRow(target) << target;
   }
   void camerasOnly_isRefusedWhereAnImuIsNeeded() {

@@ -20,6 +20,7 @@ NamedResult sample() {
   NamedResult named;
   named.reference = "left_imu";
   named.cameras = {{"left", "/left/events"}, {"1 odd: name"}};
+  named.cameras[1].kind = CameraKind::Frames;
   named.imus = {{"left_imu", "/left/imu", {1.0 / 3000.0, 2e-3, 1e-5, 1e-4}, 997.25},
                 {"far_imu", "/far imu: odd"}};
   named.version = "0.1.0";
@@ -123,7 +124,7 @@ class TestResultYaml : public QObject {
 
   void estimates_readBackToTheLastBit() {
     const NamedResult written = sample(), read = readBack(resultYaml(written));
-    QVERIFY(read.cameras == written.cameras);
+    QVERIFY(read.cameras == written.cameras && read.cameras[1].kind == CameraKind::Frames);
     QVERIFY(read.imus == written.imus);
     QVERIFY(read.imus[0].stream == "/left/imu" && read.imus[1].stream == "/far imu: odd");
     QVERIFY(read.imus[0].noise.gyroscope_density == 1.0 / 3000.0 &&

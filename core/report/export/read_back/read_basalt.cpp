@@ -9,6 +9,7 @@
 #include <Eigen/LU>
 
 #include <cmath>
+#include <set>
 
 namespace evical {
 namespace {
@@ -67,12 +68,8 @@ ReadImu imuOf(const JsonNode& value) {
   return imu;
 }
 
-}  // namespace
-
-ReadBack readBasalt(const std::filesystem::path& folder) {
-  ReadBack read;
-  read.most_imus = 1;
-  ReadFile file{folder / "calibration.json"};
+ReadFile basaltFile(const std::filesystem::path& path) {
+  ReadFile file{path};
   const JsonNode value = JsonNode::load(file.path)["value0"];
   const std::vector<JsonNode> poses = value["T_imu_cam"].items(), lenses = value["intrinsics"].items(),
                               sizes = value["resolution"].items();
@@ -88,6 +85,37 @@ ReadBack readBasalt(const std::filesystem::path& folder) {
   file.time_step_s = 1e-9;
   file.imus = {imuOf(value)};
   value["vignette"].items();
+  return file;
+}
+
+}  // namespace
+
+ReadBack readBasalt(const std::filesystem::path& folder) {
+  ReadBack read;
+  read.most_imus = 1;
+  read.files = {basaltFile(folder / "calibration.json")};
+  return read;
+}
+
+// TUM-VIE's own program is Basalt; what others ask of its file is after get_camera_calib_json of tub-rip/ES-PTAM
+// (mapper_emvs_stereo/src/calib.cpp, at 79ef978): kb4, and event cameras at 2 and 3. The names are Evical's addition.
+ReadBack readTumVie(const std::filesystem::path& folder) {
+  constexpr std::size_t kCameras = 4;
+  ReadBack read;
+  read.most_imus = 1;
+  ReadFile file = basaltFile(folder / "camera-calibrationA.json");
+  const JsonNode value = JsonNode::load(file.path)["value0"];
+  const std::vector<JsonNode> names = value["camera_names"].items();
+  if (file.cameras.size() != kCameras || names.size() != kCameras)
+    value["T_imu_cam"].fail("must be of four cameras");
+  std::set<std::string> different;
+  for (std::size_t i = 0; i < kCameras; ++i) {
+    file.cameras[i].name = names[i].text();
+    different.insert(file.cameras[i].name);
+    if (file.cameras[i].lens->model != CameraModel::PinholeEquidistant)
+      value["intrinsics"].items()[i]["camera_type"].fail("must be kb4");
+  }
+  read.most_cameras = different.size();
   read.files = {file};
   return read;
 }

@@ -24,5 +24,10 @@ ReadBack readDmVio(const std::filesystem::path& folder);
 ReadBack readRtabmap(const std::filesystem::path& folder);
 ReadBack readOpenCv(const std::filesystem::path& folder);
 ReadBack readMatlab(const std::filesystem::path& folder);
+ReadBack readDsec(const std::filesystem::path& folder);
+ReadBack readM3ed(const std::filesystem::path& folder);
+ReadBack readEvimo2(const std::filesystem::path& folder);
+ReadBack readTumVie(const std::filesystem::path& folder);
+ReadBack readNumpy(const std::filesystem::path& folder);
 
 }  // namespace evical
