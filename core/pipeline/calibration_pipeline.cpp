@@ -401,7 +401,7 @@ class Calibration {
     result.iterations = std::move(solution.iterations);
     result.circle_residuals = std::move(solution.circle_residuals);
     notes_ = std::move(solution.notes);
-    const std::vector<std::string> slow = notesOnSlowPixels(input_, options);
+    std::vector<std::string> slow = notesOnSlowPixels(input_, options);
     for (const auto* more : {&uncertainty.notes, &priors.notes, &slow})
       notes_.insert(notes_.end(), more->begin(), more->end());
   }
