@@ -67,7 +67,8 @@ WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& scene
   const int count = scene.board.pointCount();
   if (best->measured < count) {
     const std::vector<PlacementScore> rivals =
-        rivalPlacements(best->motion, window, scene, search.half_window_s, options);
+        rivalPlacements(best->motion, latticeShifts(scene.board, options.grid.least_rival_overlap), window,
+                        scene, search.half_window_s, options.tracking);
     const PlacementScore& first = rivals.front();
     best = Judged{shifted(best->motion, first.shift), first.measured, first.missing};
     if (best->measured < count && rivals.size() > 1 &&

@@ -30,7 +30,8 @@ BoardTracker::BoardTracker(const Board& board, Resolution resolution_px,
       last_burst_ns_(kLongAgo),
       last_search_ns_(kLongAgo),
       search_interval_s_(options.detection.search_interval_s),
-      tracked_until_ns_(kLongAgo) {}
+      tracked_until_ns_(kLongAgo),
+      placement_watch_(board, options.grid) {}
 
 void BoardTracker::add(EventSpan events) {
   if (events.empty()) return;
@@ -64,6 +65,7 @@ BoardObservations BoardTracker::finish() {
     processSlot(slot);
     next_begin_ns_ = slot.end_ns;
   }
+  endTrack();
   if (extractor_) observations_.events = extractor_->eventCount();
   const auto earlier = [](const auto& a, const auto& b) { return a.time_s < b.time_s; };
   std::sort(observations_.views.begin(), observations_.views.end(), earlier);
@@ -109,14 +111,16 @@ void BoardTracker::processSlot(const WindowSlot& slot) {
   if (motion_) {
     WindowTrace trace = track(slot, *motion_);
     if (trace.held()) {
-      if (held_windows_ % options_.grid.look_every_windows == 0) reconsiderPlacement(slot, trace);
+      reconsiderPlacement(slot, trace);
       motion_ = trace.motion;
       tracked_until_ns_ = slot.end_ns;
       keep(trace);
       return;
     }
-    if (static_cast<double>(middle_ns - motion_->time_ns) * 1e-9 > options_.tracking.longest_gap_s)
+    if (static_cast<double>(middle_ns - motion_->time_ns) * 1e-9 > options_.tracking.longest_gap_s) {
       motion_.reset();
+      endTrack();
+    }
   }
   if (middle_ns - last_search_ns_ < nanosecondsFrom(search_interval_s_)) {
     miss(slot, nullptr);
@@ -143,8 +147,7 @@ void BoardTracker::acquire(const WindowSlot& slot, const BoardMotion& motion) {
   }
   trace.report.tracked = false;
   motion_ = trace.motion;
-  placement_watch_.reset();
-  track_begin_ = observations_.views.size();
+  endTrack();
   trackBackwards(slot, *trace.motion);
   tracked_until_ns_ = slot.end_ns;
   keep(trace);
@@ -179,7 +182,13 @@ WindowTrace BoardTracker::track(const WindowSlot& slot, const BoardMotion& last)
 }
 
 void BoardTracker::reconsiderPlacement(const WindowSlot& slot, WindowTrace& trace) {
-  const std::optional<Eigen::Matrix3d> shift = placement_watch_.look(window_, trace, scene_, options_);
+  if (!placement_watch_.isDue()) {
+    placement_watch_.pass();
+    return;
+  }
+  const std::optional<Eigen::Matrix3d> shift =
+      placement_watch_.look(window_, trace, scene_, options_.tracking);
+  if (placement_watch_.isSettled()) open_begin_ = observations_.views.size();
   if (!shift) return;
   WindowTrace anew =
       trackWindow({history_, scene_, options_, start_ns_}, slot, shifted(*trace.motion, *shift), window_);
@@ -189,27 +198,44 @@ void BoardTracker::reconsiderPlacement(const WindowSlot& slot, WindowTrace& trac
   trace = std::move(anew);
 }
 
-// Circles that were seen since the board was found, by the names that they have now.
+// Circles that were seen since it was last sure how the board lies, by the names that they have now.
 void BoardTracker::renumberTrack(const Eigen::Matrix3d& shift) {
   const std::vector<int> now = renumbering(scene_.board, shift);
-  const auto begin = observations_.views.begin() + static_cast<std::ptrdiff_t>(track_begin_);
+  const auto begin = observations_.views.begin() + static_cast<std::ptrdiff_t>(open_begin_);
   for (auto view = begin; view != observations_.views.end(); ++view) {
     for (CircleObservation& circle : view->circles)
       circle.circle = now[static_cast<std::size_t>(circle.circle)];
     std::erase_if(view->circles, [](const CircleObservation& circle) { return circle.circle < 0; });
     std::sort(view->circles.begin(), view->circles.end(),
               [](const auto& a, const auto& b) { return a.circle < b.circle; });
-    const auto report = std::find_if(observations_.windows.begin(), observations_.windows.end(),
-                                     [&](const auto& window) { return window.time_s == view->time_s; });
-    assert(report != observations_.windows.end());
-    report->circles = static_cast<int>(view->circles.size());
-    report->outcome = outcomeOf(report->circles, scene_, options_.grid);
-    view->kind = report->outcome == WindowOutcome::Complete ? ViewKind::Complete : ViewKind::Partial;
-    if (report->outcome == WindowOutcome::TooFewInGrid) view->circles.clear();
+    WindowReport& report = reportOf(*view);
+    report.circles = static_cast<int>(view->circles.size());
+    report.outcome = outcomeOf(report.circles, scene_, options_.grid);
+    view->kind = report.outcome == WindowOutcome::Complete ? ViewKind::Complete : ViewKind::Partial;
+    if (report.outcome == WindowOutcome::TooFewInGrid) view->circles.clear();
   }
   observations_.views.erase(
       std::remove_if(begin, observations_.views.end(), [](const auto& view) { return view.circles.empty(); }),
       observations_.views.end());
+}
+
+// Views of a board that no window told from its rivals are none.
+void BoardTracker::endTrack() {
+  std::vector<BoardView>& views = observations_.views;
+  if (!placement_watch_.isTold() && open_begin_ < views.size()) {
+    for (std::size_t k = open_begin_; k < views.size(); ++k)
+      reportOf(views[k]).outcome = WindowOutcome::Ambiguous;
+    views.resize(open_begin_);
+  }
+  open_begin_ = views.size();
+  placement_watch_.begin();
+}
+
+WindowReport& BoardTracker::reportOf(const BoardView& view) {
+  const auto report = std::find_if(observations_.windows.rbegin(), observations_.windows.rend(),
+                                   [&](const auto& window) { return window.time_s == view.time_s; });
+  assert(report != observations_.windows.rend());
+  return *report;
 }
 
 void BoardTracker::keep(WindowTrace& trace) {

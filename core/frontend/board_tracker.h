@@ -53,6 +53,8 @@ class BoardTracker {
   WindowTrace track(const WindowSlot& slot, const BoardMotion& last);
   void reconsiderPlacement(const WindowSlot& slot, WindowTrace& trace);
   void renumberTrack(const Eigen::Matrix3d& shift);
+  void endTrack();
+  WindowReport& reportOf(const BoardView& view);
   void keep(WindowTrace& trace);
   void miss(const WindowSlot& slot, const BoardSearch* search);
   std::int64_t slotLength_ns(const BoardMotion* motion) const;
@@ -77,7 +79,7 @@ class BoardTracker {
   int held_windows_ = 0;
   PlacementWatch placement_watch_;
   PolarityDelayFit polarity_delay_;
-  std::size_t track_begin_ = 0;  // its first view: since the board was found last
+  std::size_t open_begin_ = 0;  // first view since the board was found, or since circles told how it lies
   BoardObservations observations_;
 };
 

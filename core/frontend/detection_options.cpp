@@ -100,9 +100,10 @@ constexpr std::tuple kGridFields{
     Field{"most_missing", &GridOptions::most_missing, 0.2, within(0.0, 1.0), "",
           "Circles that should be seen and are not, as part of those that are, for a board to be believed."},
     Field{"look_every_windows", &GridOptions::look_every_windows, 10, within(1, 10000), "",
-          "One in so many tracked windows is asked whether the board is laid rightly."},
+          "Once circles have told how the board lies, one in so many tracked windows is asked again; every "
+          "one before that."},
     Field{"contradicting_looks", &GridOptions::contradicting_looks, 2, within(1, 1000), "",
-          "A board is laid anew where so many of those windows in a row show it laid another way."}};
+          "A board is laid anew where so many looks in a row show it laid another way."}};
 constexpr auto kGridDefaults = defaultsOf<GridOptions, kGridFields>();
 
 constexpr std::tuple kTrackingFields{

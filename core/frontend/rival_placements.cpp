@@ -86,12 +86,12 @@ class LatticeAround {
 
 }  // namespace
 
-std::vector<PlacementScore> rivalPlacements(const BoardMotion& laid, const BurstWindow& window,
-                                            const BoardScene& scene, double half_window_s,
-                                            const FrontEndOptions& options) {
-  const std::vector<Eigen::Matrix3d> shifts = latticeShifts(scene.board, options.grid.least_rival_overlap);
+std::vector<PlacementScore> rivalPlacements(const BoardMotion& laid,
+                                            const std::vector<Eigen::Matrix3d>& shifts,
+                                            const BurstWindow& window, const BoardScene& scene,
+                                            double half_window_s, const TrackingOptions& options) {
   LatticeAround lattice(laid, shifts, scene);
-  lattice.look(window, half_window_s, options.tracking);
+  lattice.look(window, half_window_s, options);
   std::vector<PlacementScore> rivals;
   for (const Eigen::Matrix3d& shift : shifts)
     rivals.push_back(lattice.score(shift, scene.board.pointCount()));
@@ -120,26 +120,60 @@ std::vector<int> renumbering(const Board& board, const Eigen::Matrix3d& shift) {
   return rival_of;
 }
 
+PlacementWatch::PlacementWatch(const Board& board, const GridOptions& options)
+    : options_(options), shifts_(latticeShifts(board, options.least_rival_overlap)) {}
+
+void PlacementWatch::begin() {
+  contradicting_ = agreeing_ = wait_ = 0;
+  told_.reset();
+}
+
 std::optional<Eigen::Matrix3d> PlacementWatch::look(const BurstWindow& window, const WindowTrace& trace,
-                                                    const BoardScene& scene, const FrontEndOptions& options) {
-  if (trace.report.circles + options.grid.ambiguity_margin >= scene.board.pointCount()) {
-    reset();  // no rival explains more
+                                                    const BoardScene& scene, const TrackingOptions& options) {
+  if (trace.report.circles + options_.ambiguity_margin >= scene.board.pointCount()) {
+    agreed(options_.contradicting_looks);  // at once: no rival explains more
     return std::nullopt;
   }
   const std::vector<PlacementScore> rivals =
-      rivalPlacements(*trace.motion, window, scene, trace.report.half_width_s, options);
-  const auto laid = std::find_if(rivals.begin(), rivals.end(),
-                                 [](const PlacementScore& rival) { return rival.shift.isIdentity(0.0); });
-  const PlacementScore& best = rivals.front();
-  if (best.value() <= laid->value() + options.grid.ambiguity_margin) {
-    reset();
-    return std::nullopt;
-  }
-  looks_ = looks_ > 0 && best.shift == favourite_ ? looks_ + 1 : 1;
-  favourite_ = best.shift;
-  if (looks_ < options.grid.contradicting_looks) return std::nullopt;
-  reset();
+      rivalPlacements(*trace.motion, shifts_, window, scene, trace.report.half_width_s, options);
+  const auto isLaid = [](const PlacementScore& rival) { return rival.shift.isIdentity(0.0); };
+  const PlacementScore laid = *std::find_if(rivals.begin(), rivals.end(), isLaid);
+  // Sorted by value. One that is ahead only because it misses less may be so because some of the board is covered.
+  const auto best = std::find_if(rivals.begin(), rivals.end(),
+                                 [&](const PlacementScore& rival) { return rival.measured > laid.measured; });
+  if (best != rivals.end() && best->value() > laid.value() + options_.ambiguity_margin)
+    return contradicted(best->shift);
+  const auto all = [&](auto&& behind) {
+    return std::all_of(rivals.begin(), rivals.end(),
+                       [&](const PlacementScore& rival) { return isLaid(rival) || behind(rival); });
+  };
+  told_ = told_.value_or(false) || all([&](const PlacementScore& rival) {
+            return rival.value() + options_.ambiguity_margin <= laid.value();
+          });
+  // What is covered or still is missing without being elsewhere: only circles that are seen tell for good.
+  const bool surely = all([&](const PlacementScore& rival) {
+    return rival.measured + options_.ambiguity_margin < laid.measured;
+  });
+  agreed(surely ? agreeing_ + 1 : 0);
+  return std::nullopt;
+}
+
+std::optional<Eigen::Matrix3d> PlacementWatch::contradicted(const Eigen::Matrix3d& shift) {
+  contradicting_ = contradicting_ > 0 && shift == favourite_ ? contradicting_ + 1 : 1;
+  favourite_ = shift;
+  agreeing_ = 0;
+  told_ = false;
+  wait_ = 1;
+  if (contradicting_ < options_.contradicting_looks) return std::nullopt;
+  contradicting_ = 0;
   return favourite_;
+}
+
+void PlacementWatch::agreed(int in_a_row) {
+  contradicting_ = 0;
+  agreeing_ = in_a_row;
+  told_ = told_.value_or(false) || isSettled();
+  wait_ = isSettled() ? options_.look_every_windows : 1;
 }
 
 }  // namespace evical

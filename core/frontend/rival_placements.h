@@ -21,10 +21,11 @@ struct PlacementScore {
   int value() const { return measured - missing; }
 };
 
-// The board as it is laid, and every other way to lay it on the same lattice (latticeShifts): best first.
-std::vector<PlacementScore> rivalPlacements(const BoardMotion& laid, const BurstWindow& window,
-                                            const BoardScene& scene, double half_window_s,
-                                            const FrontEndOptions& options);
+// The board as it is laid, and every other way to lay it on the same lattice (`shifts` as of latticeShifts): best first.
+std::vector<PlacementScore> rivalPlacements(const BoardMotion& laid,
+                                            const std::vector<Eigen::Matrix3d>& shifts,
+                                            const BurstWindow& window, const BoardScene& scene,
+                                            double half_window_s, const TrackingOptions& options);
 
 // The same board laid like a rival.
 BoardMotion shifted(const BoardMotion& motion, const Eigen::Matrix3d& shift);
@@ -32,18 +33,37 @@ BoardMotion shifted(const BoardMotion& motion, const Eigen::Matrix3d& shift);
 // Board circle of the rival for each circle of the board as it was laid; -1 where the rival has none.
 std::vector<int> renumbering(const Board& board, const Eigen::Matrix3d& shift);
 
-// Holds a tracked board against its rivals.
+// Holds a tracked board against its rivals: at every window while one of them is open, which is one that explains about as
+// many circles, now and then once the circles seen have told them all apart.
 class PlacementWatch {
  public:
+  PlacementWatch(const Board& board, const GridOptions& options);
+
+  void begin();  // a board that was found anew: all is open
+  bool isDue() const { return wait_ <= 1; }
+  void pass() { --wait_; }  // a window goes by without a look
+
   // Looks at one tracked window. The shift to the rival that has explained enough of them in a row better; nothing while
   // there is none.
   std::optional<Eigen::Matrix3d> look(const BurstWindow& window, const WindowTrace& trace,
-                                      const BoardScene& scene, const FrontEndOptions& options);
-  void reset() { looks_ = 0; }
+                                      const BoardScene& scene, const TrackingOptions& options);
+
+  // By the last looks the circles seen leave no other way to lay the board.
+  bool isSettled() const { return agreeing_ >= options_.contradicting_looks; }
+  // Some look since begin(), or since the last one that contradicted, put the board ahead of all rivals, as a search has
+  // to before it is believed; or there was no look.
+  bool isTold() const { return told_.value_or(true); }
 
  private:
+  std::optional<Eigen::Matrix3d> contradicted(const Eigen::Matrix3d& shift);
+  void agreed(int in_a_row);
+
+  GridOptions options_;
+  std::vector<Eigen::Matrix3d> shifts_;
   Eigen::Matrix3d favourite_ = Eigen::Matrix3d::Identity();
-  int looks_ = 0;  // in a row
+  int contradicting_ = 0, agreeing_ = 0;  // looks in a row; only those agree that leave no rival open
+  int wait_ = 0;                          // windows until the next look
+  std::optional<bool> told_;              // none: no look yet
 };
 
 }  // namespace evical
