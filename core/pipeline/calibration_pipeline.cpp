@@ -96,7 +96,7 @@ CalibrationInput inputFrom(const Session& session, const CalibrationRun& run) {
   input.start_ns = run.pass.start_ns;
   input.board_name = session.board_name;
   input.board = session.board;
-  input.further_boards = session.further_boards;
+  input.further_boards.assign(session.further_boards.begin(), session.further_boards.end());
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
     const SessionCamera& camera = session.cameras[k];
     input.cameras.push_back(

@@ -3,6 +3,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/nearest_name.h"
 #include "core/data/intrinsics_yaml.h"
+#include "core/pipeline/session_boards.h"
 #include "core/pipeline/session_priors.h"
 
 #include <fmt/format.h>
@@ -70,67 +71,6 @@ void checkSharedSensor(const Session& session, const SessionCamera& camera, cons
                    fmt::format("Make '{}' the reference", camera.same_sensor_as));
 }
 
-bool hasNamedBoards(const Session& session) {
-  return !session.further_boards.empty() || session.board_name != Session().board_name;
-}
-
-bool isSensor(const Session& session, const std::string& name) {
-  const auto named = [&](const auto& sensor) { return sensor.name == name; };
-  return std::any_of(session.cameras.begin(), session.cameras.end(), named) ||
-         std::any_of(session.imus.begin(), session.imus.end(), named);
-}
-
-// Of several, each camera sees one, each is seen, and the first is the world.
-void checkBoards(const Session& session, const std::string& place) {
-  std::vector<std::string> names = {session.board_name};
-  for (const FurtherBoard& further : session.further_boards) names.push_back(further.name);
-  std::vector<bool> seen(names.size());
-  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
-    const std::string& name = session.cameras[k].board;
-    const std::string key = fmt::format("{}: cameras.{}.board", place, session.cameras[k].name);
-    if (name.empty() && names.size() > 1)
-      throw badInput(key, "is missing: there are several boards", "Say which one this camera sees");
-    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
-      throw badInput(key, fmt::format("there is no board '{}'", name), nameAdvice(name, names));
-    seen[session.boardIndexOf(k)] = true;
-  }
-  // Both are the beginnings of quantities' names.
-  for (const std::string& name : hasNamedBoards(session) ? names : std::vector<std::string>())
-    if (isSensor(session, name))
-      throw badInput(fmt::format("{}: boards.{}", place, name), "is also a sensor's name",
-                     "Call one of them otherwise");
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (!seen[i])
-      throw badInput(fmt::format("{}: boards.{}", place, names[i]), "no camera sees it",
-                     "Remove it, or say so at the camera that does: board: " + names[i]);
-  if (session.boardIndexOf(session.worldCamera()) != 0)
-    throw badInput(place + ": boards",
-                   fmt::format("the first one's frame is the world, so '{}' must see it",
-                               session.cameras[session.worldCamera()].name),
-                   "Put the board first that it sees");
-  if (names.size() > 1 && session.board_blinks)
-    throw badInput(place + ": boards", "a board that blinks stands alone",
-                   "Calibrate each camera's intrinsics with a session of its own");
-}
-
-void checkBoard(const Session& session, const Board& board, const std::string& key) {
-  if (session.imus.empty() || session.board_blinks || !board.hasHalfTurnAmbiguity()) return;
-  const BoardType type = board.type;
-  throw badInput(
-      key + (type == BoardType::SymmetricCircles ? ".type" : ".rows"),
-      fmt::format(
-          "{} looks the same when turned by 180 degrees, so the camera's pose would jump and no IMU can "
-          "be calibrated with it",
-          type == BoardType::SymmetricCircles ? "a symmetric board"
-          : type == BoardType::Checkerboard
-              ? "a checkerboard whose rows and columns of inner corners are both even or both odd"
-              : "an asymmetric board with an even number of rows"),
-      type == BoardType::Checkerboard
-          ? "Use one with an even and an odd number, or leave out the IMUs to calibrate intrinsics"
-          : "Use an asymmetric board with an odd number of rows, or leave out the IMUs to calibrate "
-            "intrinsics");
-}
-
 void checkRecordings(const Session& session, const std::string& place) {
   if (session.more_recordings.empty()) return;
   if (!session.board_blinks)
@@ -156,66 +96,6 @@ void checkPriors(const Session& session, const std::string& place) {
   for (const SessionImu& imu : session.imus) check("imus", imu.name, imu.prior);
   if (!session.imus.empty()) return;
   for (const SessionCamera& camera : session.cameras) check("cameras", camera.name, camera.prior);
-}
-
-// Whether it still tells what it once did: either may have been changed since.
-bool tellsSpacing(const std::optional<MeasuredLength>& measured, const Board& board) {
-  return measured && measured->spacing_m() == board.spacing_m;
-}
-bool tellsSigma(const std::optional<MeasuredLength>& measured, const OptimisationOptions& options) {
-  if (!measured) return false;
-  return measured->std_m > 0.0
-             ? options.board_spacing_sigma == measured->relativeStd() && options.free_board_size
-             : !options.free_board_size;
-}
-
-void forgetSigma(OptimisationOptions& options) {
-  const OptimisationOptions defaults;
-  options.board_spacing_sigma = defaults.board_spacing_sigma;
-  options.free_board_size = defaults.free_board_size;
-}
-
-// The keys of one, on lines of their own.
-std::vector<std::string> boardLines(const Board& board, const std::optional<MeasuredLength>& measured) {
-  std::vector<std::string> lines = {fmt::format("type: {}", boardTypeName(board.type)),
-                                    fmt::format("rows: {}", board.rows), fmt::format("cols: {}", board.cols),
-                                    tellsSpacing(measured, board)
-                                        ? fmt::format("measured: {{spacings: {}, length_m: {}, std_m: {}}}",
-                                                      measured->spacings, measured->length_m, measured->std_m)
-                                        : fmt::format("spacing_m: {}", board.spacing_m)};
-  if (board.hasCircles()) {
-    lines.push_back(fmt::format("radius_m: {}", board.radius_m));
-    lines.push_back(fmt::format("circles: {}", board.circles == CircleShade::Dark ? "dark" : "bright"));
-  }
-  if (board.tag_size_m > 0.0) lines.push_back(fmt::format("tag_size_m: {}", board.tag_size_m));
-  return lines;
-}
-
-std::string indented(const std::vector<std::string>& lines, std::size_t indent) {
-  std::string text;
-  for (const std::string& line : lines) text += std::string(indent, ' ') + line + "\n";
-  return text;
-}
-
-std::string boardYaml(const Session& session) {
-  std::vector<std::string> first = boardLines(session.board, session.measured);
-  if (session.board_blinks) first.emplace_back("blinking: true");
-  if (!hasNamedBoards(session)) return "board:\n" + indented(first, 2);
-  std::string text = fmt::format("boards:\n  {}:\n", yamlText(session.board_name)) + indented(first, 4);
-  for (const FurtherBoard& further : session.further_boards) {
-    std::vector<std::string> lines = boardLines(further.board, {});
-    if (further.spacing_std) lines.push_back(fmt::format("spacing_std: {}", *further.spacing_std));
-    text += fmt::format("  {}:\n", yamlText(further.name)) + indented(lines, 4);
-  }
-  return text;
-}
-
-// What the board's measure says of it is no option in a file.
-CalibrationOptions writtenOptions(const Session& session) {
-  CalibrationOptions options = session.options;
-  if (tellsSpacing(session.measured, session.board) && tellsSigma(session.measured, options.optimisation))
-    forgetSigma(options.optimisation);
-  return options;
 }
 
 std::string recordingText(const std::filesystem::path& file, const std::filesystem::path& folder) {
@@ -302,16 +182,6 @@ std::string remarksYaml(const SessionRemarks& remarks, const std::string& sensor
 
 }  // namespace
 
-void setMeasuredLength(const std::optional<MeasuredLength>& measured, Session& session) {
-  OptimisationOptions& options = session.options.optimisation;
-  if (tellsSigma(session.measured, options)) forgetSigma(options);
-  session.measured = measured;
-  if (!measured) return;
-  session.board.spacing_m = measured->spacing_m();
-  options.free_board_size = measured->std_m > 0.0;
-  if (options.free_board_size) options.board_spacing_sigma = measured->relativeStd();
-}
-
 std::vector<CameraLens> givenLenses(const Session& session) {
   std::vector<CameraLens> lenses;
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
@@ -326,18 +196,6 @@ std::size_t Session::sensorOf(std::size_t camera) const {
   const auto found = std::find_if(cameras.begin(), cameras.end(),
                                   [&](const SessionCamera& each) { return each.name == name; });
   return name.empty() || found == cameras.end() ? camera : static_cast<std::size_t>(found - cameras.begin());
-}
-
-std::size_t Session::boardIndexOf(std::size_t camera) const {
-  const std::string& name = cameras[camera].board;
-  const auto found = std::find_if(further_boards.begin(), further_boards.end(),
-                                  [&](const FurtherBoard& each) { return each.name == name; });
-  return found == further_boards.end() ? 0 : static_cast<std::size_t>(found - further_boards.begin()) + 1;
-}
-
-const Board& Session::boardOf(std::size_t camera) const {
-  const std::size_t index = boardIndexOf(camera);
-  return index == 0 ? board : further_boards[index - 1].board;
 }
 
 std::size_t Session::referenceImu() const {
@@ -359,11 +217,7 @@ void validate(const Session& session, const std::string& place) {
                                            : "Describe at least one camera");
   checkDifferent(session, place);
   checkReference(session, place);
-  checkBoards(session, place);
-  checkBoard(session, session.board,
-             place + (hasNamedBoards(session) ? ": boards." + session.board_name : ": board"));
-  for (const FurtherBoard& further : session.further_boards)
-    checkBoard(session, further.board, place + ": boards." + further.name);
+  validateBoards(session, place);
   checkRecordings(session, place);
   checkPriors(session, place);
   for (const SessionCamera& camera : session.cameras)
@@ -376,7 +230,7 @@ std::string sessionYaml(const Session& session, const std::filesystem::path& fol
   std::string text = fmt::format("evical_session: 1\nrecording: {}\n", recordingsText(session, folder));
   if (session.time_range_s)
     text += fmt::format("time_range_s: [{}, {}]\n", (*session.time_range_s)[0], (*session.time_range_s)[1]);
-  const std::string board = boardYaml(session);
+  const std::string board = boardsYaml(session);
   text += remarks.board.empty() ? board : commented(remarks.board) + commented(board);
   text += "cameras:\n";
   for (const SessionCamera& camera : session.cameras)
@@ -386,7 +240,7 @@ std::string sessionYaml(const Session& session, const std::filesystem::path& fol
   text += fmt::format("reference: {}\n", yamlText(session.reference));
   if (const std::string priors = sensorPriorsYaml(session); !priors.empty()) text += "prior:\n" + priors;
   if (!session.exports.empty()) text += fmt::format("export: [{}]\n", joined(session.exports));
-  const std::vector<OptionRow> rows = differingOptions(writtenOptions(session));
+  const std::vector<OptionRow> rows = differingOptions(optionsBesideBoards(session));
   text += rows.empty() ? "options: {}\n" : "options:\n";
   for (const OptionRow& row : rows) text += fmt::format("  {}: {}\n", row.name, row.value);
   return text;

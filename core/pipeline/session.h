@@ -41,6 +41,11 @@ struct SessionImu {
   ImuPrior prior = {};              // the file's prior.imus.<name>
 };
 
+// With what tells its spacing and spacing_std, where it was measured so.
+struct SessionBoard : FurtherBoard {
+  std::optional<MeasuredLength> measured = {};
+};
+
 struct Session {
   std::filesystem::path source;                             // the file it was read from
   std::filesystem::path recording;                          // absolute, or relative to the working directory
@@ -48,7 +53,7 @@ struct Session {
   std::optional<std::array<double, 2>> time_range_s;        // since the recording's start
   std::string board_name = "board";
   Board board;  // of several the one whose frame is the world: that of the camera worldCamera()
-  std::vector<FurtherBoard> further_boards = {};
+  std::vector<SessionBoard> further_boards = {};
   // It is on a screen, or of lamps, that flash: for intrinsics alone, from events of a camera that stands still.
   bool board_blinks = false;
   std::optional<MeasuredLength> measured;  // what tells the board's spacing and, as an option, its sigma

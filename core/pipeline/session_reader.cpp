@@ -1,7 +1,7 @@
 #include "core/base/nearest_name.h"
 #include "core/data/intrinsics_yaml.h"
 #include "core/numerics/normal_gravity.h"
-#include "core/pipeline/session.h"
+#include "core/pipeline/session_boards.h"
 #include "core/pipeline/session_keys.h"
 #include "core/pipeline/session_priors.h"
 #include "core/report/export/export_target.h"
@@ -252,15 +252,13 @@ void readFirstBoard(const YamlNode& map, Session& session) {
   readSpacingStd(map, session.options);
 }
 
-FurtherBoard readFurtherBoard(const YamlNode& map, const std::string& board_name) {
+SessionBoard readFurtherBoard(const YamlNode& map, const std::string& board_name) {
   if (const auto node = map.find("blinking"))
     throw node->error("a board that blinks stands alone", "Remove it, or the other boards");
   const std::optional<MeasuredLength> measured = readMeasured(map);
-  constexpr double kExactly = 1e-7;
-  FurtherBoard further{board_name, readBoard(map, measured)};
-  if (measured && measured->std_m > 0.0) further.spacing_std = measured->relativeStd();
+  SessionBoard further{{board_name, readBoard(map, measured), spacingStd(measured)}, measured};
   if (const auto node = map.find("spacing_std"))
-    further.spacing_std = std::max(kExactly, node->real(0.0, 1.0, ""));
+    further.spacing_std = std::max(kExactSpacing, node->real(0.0, 1.0, ""));
   return further;
 }
 

@@ -41,7 +41,7 @@ Session sessionFor(const Scenario& truth) {
   session.source = scenario.name;
   session.board = scenario.board;
   for (const SimulatedBoard& further : scenario.further_boards)
-    session.further_boards.push_back({further.name, further.board});
+    session.further_boards.push_back({{further.name, further.board}});
   for (const SimulatedCamera& camera : scenario.cameras) {
     session.cameras.push_back(
         {camera.name, camera.stream, camera.intrinsics.resolution_px, camera.intrinsics});

@@ -209,7 +209,7 @@ class TestCalibrationDocument : public QObject {
     QTest::newRow("no intrinsics") << 5 << "";  // calibrated first
     QTest::newRow("no focal length") << 8 << "cameras.left.intrinsics";
     QTest::newRow("circles touch") << 6 << "board";
-    QTest::newRow("wrong reference") << 7 << "session";
+    QTest::newRow("wrong reference") << 7 << "reference";
   }
   void problems_nameTheField() {
     QFETCH(int, fault);

@@ -149,16 +149,16 @@ class TestRecordingScreen : public QObject {
     Fixture test;
     auto* const form = test.screen.findChild<BoardForm*>();
     QComboBox* const type = form->findChildren<QComboBox*>().at(0);
-    NumberField *const radius = form->findChildren<NumberField*>().at(1),
+    NumberField *const radius = form->findChildren<NumberField*>().at(3),
                        *const tag = form->findChildren<NumberField*>().at(4);
-    QVERIFY(radius->isEnabled() && !tag->isEnabled());
+    QVERIFY(radius->isVisible() && !tag->isVisible());
     const auto choose = [&](const QString& name) {
       type->setCurrentText(name);
       emit type->activated(type->currentIndex());
     };
     choose("AprilGrid");
     QVERIFY(test.session.board.type == BoardType::AprilGrid && test.session.board.radius_m == 0.0);
-    QVERIFY(!radius->isEnabled() && tag->isEnabled());
+    QVERIFY(!radius->isVisible() && tag->isVisible());
     validate(test.session.board);
     Fixture::type(tag, "30");
     QCOMPARE(test.session.board.tag_size_m, 0.03);
@@ -189,13 +189,13 @@ class TestRecordingScreen : public QObject {
     auto* const form = test.screen.findChild<BoardForm*>();
     auto* const measured = form->findChild<QCheckBox*>();
     NumberField* const spacing = form->findChildren<NumberField*>().at(0);
-    NumberField *const length = form->findChildren<NumberField*>().at(2),
-                       *const sigma = form->findChildren<NumberField*>().at(3);
+    NumberField *const length = form->findChildren<NumberField*>().at(1),
+                       *const sigma = form->findChildren<NumberField*>().at(2);
     QSpinBox* const spacings = form->findChildren<QSpinBox*>().at(2);
-    QVERIFY(!measured->isChecked() && spacing->isEnabled() && !length->isEnabled());
+    QVERIFY(!measured->isChecked() && spacing->isEnabled() && !length->isVisible());
     measured->click();
     QVERIFY(test.session.measured == (MeasuredLength{10, 10 * test.session.board.spacing_m, 0.0005}));
-    QVERIFY(!spacing->isEnabled() && length->isEnabled());
+    QVERIFY(!spacing->isEnabled() && length->isVisible());
     Fixture::type(length, "352");
     QCOMPARE(test.session.board.spacing_m, 0.352 / 10);
     QCOMPARE(spacing->text(), QString("35.2"));

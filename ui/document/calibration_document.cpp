@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/geometry/camera_model.h"
+#include "core/pipeline/session_boards.h"
 
 #include <QFileInfo>
 #include <QUndoCommand>
@@ -14,6 +15,12 @@ namespace {
 
 std::filesystem::path pathOf(const QString& file) {
   return std::filesystem::path(file.toStdString());
+}
+
+// Of a place in a session: "cameras.left.board" of "session: cameras.left.board".
+QString keyIn(const std::string& place) {
+  const std::size_t end = place.find(": ");
+  return QString::fromStdString(end == std::string::npos ? place : place.substr(end + 2));
 }
 
 }  // namespace
@@ -156,20 +163,22 @@ std::vector<SessionProblem> sessionProblems(const Session& session) {
       checked();
     } catch (const CalibrationError& error) {
       problems.push_back(
-          {field, QString::fromStdString(error.advice().empty() ? error.problem()
-                                                                : error.problem() + ". " + error.advice())});
+          {field.isEmpty() ? keyIn(error.place()) : field,
+           QString::fromStdString(error.advice().empty() ? error.problem()
+                                                         : error.problem() + ". " + error.advice())});
     }
   };
-  check("board", [&] {
-    validate(session.board);
-    if (session.measured) validate(*session.measured, session.board);
-  });
+  for (std::size_t i = 0; i <= session.further_boards.size(); ++i)
+    check(QString::fromStdString(boardKey(session, i)), [&] {
+      validate(boardAt(session, i));
+      if (const auto& measured = measuredAt(session, i)) validate(*measured, boardAt(session, i));
+    });
   for (const SessionCamera& camera : session.cameras) {
     if (!camera.intrinsics || !camera.intrinsics->resolution_px.known()) continue;
     check(QString::fromStdString("cameras." + camera.name + ".intrinsics"),
           [&] { validate(*camera.intrinsics, camera.name); });
   }
-  if (problems.empty()) check("session", [&] { validate(session, "session"); });
+  if (problems.empty()) check({}, [&] { validate(session, "session"); });
   return problems;
 }
 

@@ -46,6 +46,14 @@ void paintLegend(QPainter& painter, const std::vector<LegendEntry>& legend) {
   }
 }
 
+// Bottom left; cameras and their axes go by behind it.
+void paintHint(QPainter& painter, const TrajectoryOverlay& overlay) {
+  const QFontMetricsF metrics(painter.font());
+  const QPointF centre(kMargin_px + 0.5 * metrics.horizontalAdvance(overlay.hint),
+                       overlay.screen.height() - kMargin_px - 0.5 * metrics.height());
+  paintLabel(painter, centre, overlay.hint, theme().faint_text);
+}
+
 void paintMessage(QPainter& painter, const TrajectoryOverlay& overlay) {
   const QFontMetricsF metrics(painter.font());
   QRectF box = metrics.boundingRect(QRectF(0.0, 0.0, 0.8 * overlay.screen.width(), overlay.screen.height()),
@@ -80,10 +88,7 @@ void paintOverlay(QPainter& painter, const TrajectoryOverlay& overlay) {
         *overlay.scale);
   }
   paintLegend(painter, overlay.legend);
-  const QRectF all(QPointF(), overlay.screen);
-  painter.setPen(theme().faint_text);
-  painter.drawText(all.adjusted(kMargin_px, kMargin_px, -kMargin_px, -kMargin_px),
-                   Qt::AlignLeft | Qt::AlignBottom, overlay.hint);
+  paintHint(painter, overlay);
   if (!overlay.message.isEmpty()) paintMessage(painter, overlay);
 }
 

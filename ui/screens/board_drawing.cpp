@@ -105,7 +105,7 @@ void BoardDrawing::paintMeasures(QPainter& painter, double px_per_m, QPointF ori
   painter.setPen(theme().faint_text);
   const double below_px = origin.y() + px_per_m * last_m.y() + edge_px + 4.0;
   painter.drawText(
-      QRectF(0.0, below_px, width(), kMargin_px), Qt::AlignHCenter | Qt::AlignTop,
+      QRectF(0.0, below_px, width(), kMargin_px), Qt::AlignHCenter | Qt::AlignTop | Qt::TextWordWrap,
       board_.hasCircles()
           ? tr("%1 circles, diameter %2").arg(board_.pointCount()).arg(millimetres(2.0 * board_.radius_m))
       : board_.type == BoardType::AprilGrid

@@ -19,7 +19,7 @@ class BoardDrawing : public QWidget {
   explicit BoardDrawing(QWidget* parent = nullptr);
 
   void setBoard(const Board& board);
-  QSize minimumSizeHint() const override { return {180, 160}; }
+  QSize minimumSizeHint() const override { return {140, 120}; }
 
  protected:
   void paintEvent(QPaintEvent* event) override;

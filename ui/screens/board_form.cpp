@@ -9,8 +9,12 @@
 #include <QFormLayout>
 #include <QHBoxLayout>
 #include <QLabel>
+#include <QLineEdit>
+#include <QScrollArea>
+#include <QScrollBar>
 #include <QSignalBlocker>
 #include <QSpinBox>
+#include <QVBoxLayout>
 
 namespace evical::ui {
 namespace {
@@ -25,6 +29,36 @@ QSpinBox* countBox(int least, const QString& tip, QWidget* parent) {
   box->setFocusPolicy(Qt::StrongFocus);
   return box;
 }
+
+QLabel* problemLabel(QWidget* parent) {
+  auto* const label = new QLabel(parent);
+  label->setProperty("role", "problem");
+  label->setWordWrap(true);
+  return label;
+}
+
+// As wide as its fields; where there is no height for all of them it scrolls.
+class FieldsArea final : public QScrollArea {
+ public:
+  FieldsArea(QFormLayout* form, QWidget* parent) : QScrollArea(parent) {
+    auto* const fields = new QWidget;
+    fields->setLayout(form);
+    setWidget(fields);
+    setWidgetResizable(true);
+    setFrameShape(QFrame::NoFrame);
+    setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    setSizePolicy(QSizePolicy::Fixed, QSizePolicy::Expanding);
+    viewport()->setAutoFillBackground(false);
+    fields->setAutoFillBackground(false);
+  }
+  QSize sizeHint() const override { return {width_px(), QScrollArea::sizeHint().height()}; }
+  QSize minimumSizeHint() const override { return {width_px(), QScrollArea::minimumSizeHint().height()}; }
+
+ private:
+  int width_px() const {
+    return widget()->minimumSizeHint().width() + verticalScrollBar()->sizeHint().width();
+  }
+};
 
 // To start from: as long as the board is said to be.
 MeasuredLength overWholeBoard(const Board& board) {
@@ -48,6 +82,7 @@ void setSizes(Board& board) {
 BoardForm::BoardForm(QWidget* parent)
     : QWidget(parent),
       form_(new QFormLayout),
+      name_(new QLineEdit(this)),
       type_(new QComboBox(this)),
       rows_(countBox(1,
                      tr("Staggered lines of circles (odd, so that the board has an up and a down); a "
@@ -66,8 +101,9 @@ BoardForm::BoardForm(QWidget* parent)
       length_std_mm_(new NumberField(0.0, 1'000.0, this)),
       tag_mm_(new NumberField(0.1, 10'000.0, this)),
       circles_(new QComboBox(this)),
-      further_(new QLabel(this)),
-      problem_(new QLabel(this)),
+      seen_by_(new QLabel(this)),
+      name_problem_(problemLabel(this)),
+      problem_(problemLabel(this)),
       drawing_(new BoardDrawing(this)) {
   type_->addItems(
       {tr("Asymmetric (staggered)"), tr("Symmetric"), tr("Checkerboard"), tr("AprilGrid"), tr("ChArUco")});
@@ -81,8 +117,7 @@ BoardForm::BoardForm(QWidget* parent)
   tag_mm_->setToolTip(tr("Edge of a tag's black square"));
   radius_mm_->setToolTip(tr("Of a circle, as printed"));
   circles_->setToolTip(tr("Which way the printed circles differ from their background"));
-  problem_->setProperty("role", "problem");
-  problem_->setWordWrap(true);
+  addName();
   form_->addRow(tr("Type"), type_);
   form_->addRow(tr("Rows"), rows_);
   form_->addRow(tr("Columns"), cols_);
@@ -91,12 +126,14 @@ BoardForm::BoardForm(QWidget* parent)
   form_->addRow(tr("Radius [mm]"), radius_mm_);
   form_->addRow(tr("Tag [mm]"), tag_mm_);
   form_->addRow(tr("Circles"), circles_);
-  form_->addRow(tr("Beside it"), further_);
-  form_->addRow(problem_);
-  auto* const layout = new QHBoxLayout(this);
+  form_->setContentsMargins(0, 0, 4, 0);
+  auto* const row = new QHBoxLayout;
+  row->addWidget(new FieldsArea(form_, this));
+  row->addWidget(drawing_, 1);
+  auto* const layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
-  layout->addLayout(form_);
-  layout->addWidget(drawing_, 1);
+  layout->addWidget(problem_);
+  layout->addLayout(row, 1);
 
   connect(type_, &QComboBox::activated, this, [this] { say("type"); });
   connect(circles_, &QComboBox::activated, this, [this] { say("circles"); });
@@ -105,24 +142,41 @@ BoardForm::BoardForm(QWidget* parent)
   connect(spacing_mm_, &NumberField::valueEdited, this, [this] { say("spacing_m"); });
   connect(radius_mm_, &NumberField::valueEdited, this, [this] { say("radius_m"); });
   connect(tag_mm_, &NumberField::valueEdited, this, [this] { say("tag_size_m"); });
-  further_->setObjectName("further_boards");
   setBoard({}, {});
-  setFurtherBoards({}, {});
+  setName({}, {});
   setProblem({});
 }
 
-void BoardForm::setFurtherBoards(const std::string& name, const std::vector<FurtherBoard>& further) {
-  QStringList others;
-  for (const FurtherBoard& each : further)
-    others << tr("%1 (%2, %3 x %4)")
-                  .arg(QString::fromStdString(each.name), boardTypeName(each.board.type))
-                  .arg(each.board.rows)
-                  .arg(each.board.cols);
-  further_->setText(others.join(", "));
-  further_->setToolTip(
-      tr("The form is of '%1', whose frame is the world; the others are in the session's file")
-          .arg(QString::fromStdString(name)));
-  form_->setRowVisible(further_, !further.empty());
+void BoardForm::addName() {
+  name_->setObjectName("board_name");
+  seen_by_->setObjectName("seen_by");
+  name_problem_->setObjectName("name_problem");
+  seen_by_->setWordWrap(true);
+  name_->setToolTip(tr("What the board is called in the session and in the cameras' forms"));
+  seen_by_->setToolTip(tr("Each camera's form says which board it sees"));
+  form_->addRow(tr("Name"), name_);
+  form_->addRow(name_problem_);
+  form_->addRow(tr("Seen by"), seen_by_);
+  connect(name_, &QLineEdit::editingFinished, this, [this] {
+    const QString typed = name_->text().trimmed();
+    setNameProblem({});
+    if (typed != named_) emit renamed(typed);
+  });
+}
+
+void BoardForm::setName(const QString& name, const QString& seen_by) {
+  named_ = name;
+  name_->setText(name);
+  seen_by_->setText(seen_by);
+  setNameProblem({});
+  form_->setRowVisible(name_, !name.isEmpty());
+  form_->setRowVisible(seen_by_, !name.isEmpty());
+}
+
+// The field keeps what was typed, so that it can be mended.
+void BoardForm::setNameProblem(const QString& text) {
+  name_problem_->setText(text);
+  form_->setRowVisible(name_problem_, !text.isEmpty());
 }
 
 void BoardForm::addMeasure(QFormLayout& form) {
@@ -149,9 +203,6 @@ void BoardForm::setBoard(const Board& board, const std::optional<MeasuredLength>
   length_mm_->setValue(kMmPerM * length.length_m);
   spacings_->setValue(length.spacings);
   length_std_mm_->setValue(kMmPerM * length.std_m);
-  for (QWidget* const field : {static_cast<QWidget*>(length_mm_), static_cast<QWidget*>(spacings_),
-                               static_cast<QWidget*>(length_std_mm_)})
-    field->setEnabled(measured.has_value());
   spacing_mm_->setEnabled(!measured);
   type_->setCurrentIndex(static_cast<int>(board.type));
   rows_->setValue(board.rows);
@@ -160,10 +211,18 @@ void BoardForm::setBoard(const Board& board, const std::optional<MeasuredLength>
   radius_mm_->setValue(kMmPerM * board.radius_m);
   tag_mm_->setValue(kMmPerM * board.tag_size_m);
   circles_->setCurrentIndex(static_cast<int>(board.circles));
-  radius_mm_->setEnabled(board.hasCircles());
-  circles_->setEnabled(board.hasCircles());
-  tag_mm_->setEnabled(board.hasTags());
+  showRows();
   drawing_->setBoard(board);
+}
+
+// What such a board does not have needs no room.
+void BoardForm::showRows() {
+  for (QWidget* const field : {static_cast<QWidget*>(length_mm_), static_cast<QWidget*>(spacings_),
+                               static_cast<QWidget*>(length_std_mm_)})
+    form_->setRowVisible(field, measured_.has_value());
+  form_->setRowVisible(radius_mm_, board_.hasCircles());
+  form_->setRowVisible(circles_, board_.hasCircles());
+  form_->setRowVisible(tag_mm_, board_.hasTags());
 }
 
 void BoardForm::say(const QString& field) {
@@ -177,7 +236,7 @@ void BoardForm::say(const QString& field) {
   if (field == "tag_size_m") board.tag_size_m = tag_mm_->value() / kMmPerM;
   board.circles = static_cast<CircleShade>(circles_->currentIndex());
   if (board == board_) return;
-  emit edited(board, "board." + field);
+  emit edited(board, field);
 }
 
 void BoardForm::sayMeasured(const QString& field) {
@@ -189,7 +248,7 @@ void BoardForm::sayMeasured(const QString& field) {
     changed->spacings = spacings_->value();
   }
   if (changed == measured_) return;
-  emit measured(changed, "board." + field);
+  emit measured(changed, field);
 }
 
 void BoardForm::setProblem(const QString& text) {

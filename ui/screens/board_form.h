@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The printed board: its numbers, and a drawing that follows them.
+// One printed board: its numbers, and a drawing that follows them; of several its name and who sees it, too.
 #pragma once
 
-#include "core/data/calibration_setup.h"
 #include "core/geometry/board.h"
 #include "core/geometry/measured_length.h"
 
@@ -14,6 +13,7 @@ class QCheckBox;
 class QComboBox;
 class QFormLayout;
 class QLabel;
+class QLineEdit;
 class QSpinBox;
 
 namespace evical::ui {
@@ -28,23 +28,29 @@ class BoardForm : public QWidget {
   explicit BoardForm(QWidget* parent = nullptr);
 
   void setBoard(const Board& board, const std::optional<MeasuredLength>& measured);
-  // What a session has beside the board that the form shows; its name where there are any.
-  void setFurtherBoards(const std::string& name, const std::vector<FurtherBoard>& further);
+  // Empty: the only one, which needs none.
+  void setName(const QString& name, const QString& seen_by);
+  void setNameProblem(const QString& text);
   void setProblem(const QString& text);
 
  signals:
+  void renamed(const QString& name);  // to whatever was typed
   void edited(const evical::Board& board, const QString& field);
   // The length that tells the spacing; nothing where the spacing is given as it is.
   void measured(const std::optional<evical::MeasuredLength>& measured, const QString& field);
 
  private:
+  void addName();
   void addMeasure(QFormLayout& form);
+  void showRows();
   void say(const QString& field);
   void sayMeasured(const QString& field);
 
   Board board_;
   std::optional<MeasuredLength> measured_;
   QFormLayout* form_;
+  QString named_;
+  QLineEdit* name_;
   QComboBox* type_;
   QSpinBox* rows_;
   QSpinBox* cols_;
@@ -56,7 +62,7 @@ class BoardForm : public QWidget {
   NumberField* length_std_mm_;
   NumberField* tag_mm_;
   QComboBox* circles_;
-  QLabel *further_, *problem_;
+  QLabel *seen_by_, *name_problem_, *problem_;
   BoardDrawing* drawing_;
 };
 

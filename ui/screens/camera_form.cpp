@@ -102,6 +102,12 @@ CameraForm::CameraForm(QWidget* parent)
     row->addWidget(field);
   }
   form_->setContentsMargins(8, 8, 8, 8);
+  form_->setRowWrapPolicy(QFormLayout::WrapLongRows);
+  for (QComboBox* const box : {model_, shutter_, sensor_, board_}) {
+    constexpr int kLeastCharacters = 12;  // what does not fit is in the list that opens
+    box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    box->setMinimumContentsLength(kLeastCharacters);
+  }
   form_->addRow(tr("Name"), name_);
   form_->addRow(tr("Resolution [px]"), pairOf(width_px_, height_px_));
   form_->addRow(tr("Shutter"), shutter_);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/recording_screen.h"
 
+#include "core/pipeline/session_boards.h"
 #include "core/pipeline/session_guess.h"
-#include "ui/screens/board_form.h"
+#include "ui/screens/boards_form.h"
 #include "ui/screens/camera_form.h"
 #include "ui/screens/imu_form.h"
 #include "ui/screens/stream_table.h"
@@ -35,12 +36,16 @@ QLabel* label(const QString& text, const char* role, QWidget* parent) {
   return made;
 }
 
-QFrame* card(const QString& heading, QWidget* content, QWidget* parent) {
+// `beside`: on the heading's line.
+QFrame* card(const QString& heading, QWidget* content, QWidget* parent, QWidget* beside = nullptr) {
   auto* const frame = new QFrame(parent);
   frame->setProperty("card", "true");
   auto* const layout = new QVBoxLayout(frame);
   layout->setContentsMargins(14, 10, 14, 12);
-  layout->addWidget(label(heading, "heading", frame));
+  auto* const line = new QHBoxLayout;
+  line->addWidget(label(heading, "heading", frame), beside == nullptr ? 1 : 0);
+  if (beside != nullptr) line->addWidget(beside, 1);
+  layout->addLayout(line);
   layout->addWidget(content, 1);
   return frame;
 }
@@ -89,7 +94,7 @@ RecordingScreen::RecordingScreen(QWidget* parent)
       looking_(new QProgressBar(this)),
       streams_(new StreamTable(this)),
       time_range_(new TimeRangeForm(this)),
-      board_(new BoardForm(this)),
+      boards_(new BoardsForm(this)),
       sensors_(new QTabWidget(this)),
       reference_(new QComboBox(this)) {
   stack_->addWidget(makeEmpty());
@@ -97,17 +102,7 @@ RecordingScreen::RecordingScreen(QWidget* parent)
   auto* const layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(stack_);
-  connect(board_, &BoardForm::edited, this, [this](const Board& board, const QString& field) {
-    Session changed = session_;
-    changed.board = board;
-    emit sessionEdited(changed, tr("Change the board"), field);
-  });
-  connect(board_, &BoardForm::measured, this,
-          [this](const std::optional<MeasuredLength>& measured, const QString& field) {
-            Session changed = session_;
-            setMeasuredLength(measured, changed);
-            emit sessionEdited(changed, tr("Measure the board"), field);
-          });
+  connect(boards_, &BoardsForm::sessionEdited, this, &RecordingScreen::sessionEdited);
   connect(time_range_, &TimeRangeForm::edited, this, [this](const TimeRangeForm::Range& range_s) {
     Session changed = session_;
     changed.time_range_s = range_s;
@@ -118,6 +113,7 @@ RecordingScreen::RecordingScreen(QWidget* parent)
   connect(reference_, &QComboBox::textActivated, this, [this](const QString& name) {
     Session changed = session_;
     changed.reference = name.toStdString();
+    settleBoards(changed);
     emit sessionEdited(changed, tr("Change the reference"), {});
   });
 }
@@ -201,7 +197,7 @@ QWidget* RecordingScreen::makeForms() {
   auto* const row = new QHBoxLayout(forms);
   row->setContentsMargins(0, 0, 0, 0);
   row->setSpacing(10);
-  row->addWidget(card(tr("Board"), board_, forms), 1);
+  row->addWidget(card(tr("Board"), boards_, forms, boards_->chooser()), 1);
   row->addWidget(card(tr("Sensors"), sensors, forms), 1);
   return forms;
 }
@@ -212,8 +208,7 @@ void RecordingScreen::setSession(const Session& session) {
   stack_->setCurrentIndex(session.recording.empty() ? 0 : 1);
   title_->setText(QString::fromStdString(session.recording.filename().string()));
   path_->setText(QString::fromStdString(session.recording.parent_path().string()));
-  board_->setBoard(session.board, session.measured);
-  board_->setFurtherBoards(session.board_name, session.further_boards);
+  boards_->setSession(session);
   other_recording ? listStreams() : streams_->setSession(session);
   time_range_->setRange(session.time_range_s);
   showSensors();
@@ -230,11 +225,8 @@ std::vector<std::string> RecordingScreen::possibleSensors(std::size_t camera) co
 }
 
 // None where there is but one.
-std::vector<std::string> RecordingScreen::boardNames() const {
-  if (session_.further_boards.empty()) return {};
-  std::vector<std::string> names = {session_.board_name};
-  for (const FurtherBoard& further : session_.further_boards) names.push_back(further.name);
-  return names;
+std::vector<std::string> RecordingScreen::possibleBoards() const {
+  return session_.further_boards.empty() ? std::vector<std::string>() : boardNames(session_);
 }
 
 // Forms stay while the number of sensors does: an edit must not take the focus away.
@@ -260,7 +252,7 @@ void RecordingScreen::showSensors() {
   reference_->clear();
   for (std::size_t i = 0; i < cameras_.size(); ++i, ++tab) {
     cameras_[i]->setFound(foundIntrinsics(i));
-    cameras_[i]->setCamera(session_.cameras[i], possibleSensors(i), boardNames());
+    cameras_[i]->setCamera(session_.cameras[i], possibleSensors(i), possibleBoards());
     sensors_->setTabText(tab, QString::fromStdString(session_.cameras[i].name));
     if (imus_.empty()) reference_->addItem(sensors_->tabText(tab));
   }
@@ -283,7 +275,6 @@ std::optional<CameraIntrinsics> RecordingScreen::foundIntrinsics(std::size_t cam
 
 void RecordingScreen::setProblems(const std::vector<std::pair<QString, QString>>& field_and_text) {
   QStringList at_streams;
-  QString at_board;
   std::vector<QString> at_cameras(cameras_.size());
   for (const auto& [field, text] : field_and_text) {
     bool placed = false;
@@ -292,11 +283,10 @@ void RecordingScreen::setProblems(const std::vector<std::pair<QString, QString>>
       at_cameras[i] = text;
       placed = true;
     }
-    if (field == "board") at_board = text;
-    if (!placed && field != "board") at_streams << text;
+    if (!placed && !BoardsForm::isOfBoards(field)) at_streams << text;
   }
   for (std::size_t i = 0; i < cameras_.size(); ++i) cameras_[i]->setProblem(at_cameras[i]);
-  board_->setProblem(at_board);
+  boards_->setProblems(field_and_text);
   showText(stream_problem_, at_streams.join('\n'));
   verdict_->setText(field_and_text.empty()       ? tr("Ready to calibrate")
                     : field_and_text.size() == 1 ? tr("One thing is missing")
@@ -377,6 +367,7 @@ void RecordingScreen::chooseRole(int row, int role) {
   if (static_cast<StreamRole>(role) == StreamRole::Imu)
     changed.imus.push_back(guessedImu(summary, changed, own_recording));
   keepReference(changed);
+  settleBoards(changed);
   emit sessionEdited(changed, tr("Change the role of %1").arg(QString::fromStdString(summary.info.name)), {});
 }
 
@@ -391,6 +382,7 @@ void RecordingScreen::editCamera(std::size_t index, const SessionCamera& camera,
   Session changed = session_;
   renameReference(changed.cameras.at(index).name, camera.name, changed);
   changed.cameras.at(index) = camera;
+  settleBoards(changed);
   const QString name = QString::fromStdString(camera.name);
   emit sessionEdited(changed, tr("Change %1").arg(name), "cameras." + name + "." + field);
 }

@@ -19,7 +19,7 @@ class QTabWidget;
 
 namespace evical::ui {
 
-class BoardForm;
+class BoardsForm;
 class CameraForm;
 class ImuForm;
 class StreamTable;
@@ -65,7 +65,7 @@ class RecordingScreen : public QWidget {
   QWidget* makeRangeAndFiles(QWidget* parent);
   std::optional<CameraIntrinsics> foundIntrinsics(std::size_t camera) const;
   std::vector<std::string> possibleSensors(std::size_t camera) const;
-  std::vector<std::string> boardNames() const;
+  std::vector<std::string> possibleBoards() const;
   void renameReference(const std::string& from, const std::string& to, Session& session) const;
   void editCamera(std::size_t index, const SessionCamera& camera, const QString& field);
   void editImu(std::size_t index, const SessionImu& imu, const QString& field);
@@ -80,7 +80,7 @@ class RecordingScreen : public QWidget {
   QProgressBar* looking_;
   StreamTable* streams_;
   TimeRangeForm* time_range_;
-  BoardForm* board_;
+  BoardsForm* boards_;
   QTabWidget* sensors_;
   QComboBox* reference_;
   std::vector<CameraForm*> cameras_;

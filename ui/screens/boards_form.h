@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The session's boards: one form, of the one that is chosen, and who sees it.
+#pragma once
+
+#include "core/pipeline/session.h"
+
+#include <QWidget>
+
+#include <utility>
+#include <vector>
+
+namespace evical::ui {
+
+class BoardChooser;
+class BoardForm;
+
+class BoardsForm : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit BoardsForm(QWidget* parent = nullptr);
+
+  void setSession(const Session& session);
+  // By field: "board", "boards.tags", "boards.tags.rows"; says which of them are of boards.
+  static bool isOfBoards(const QString& field) { return field.startsWith("board"); }
+  void setProblems(const std::vector<std::pair<QString, QString>>& field_and_text);
+  // For the place beside the heading.
+  QWidget* chooser() const;
+
+ signals:
+  void sessionEdited(const evical::Session& session, const QString& what, const QString& merge_key);
+
+ private:
+  void showChosen();
+  void choose(std::size_t index);
+  void add();
+  void remove();
+  void rename(const QString& name);
+  QString what(const QString& of_one, const QString& of_several) const;
+  QString seenBy() const;
+  QString mergeKey(const QString& field) const;
+
+  Session session_;
+  std::size_t chosen_ = 0;
+  BoardChooser* chooser_;
+  BoardForm* form_;
+};
+
+}  // namespace evical::ui
