@@ -184,6 +184,21 @@ class TestRecordingScreen : public QObject {
     QVERIFY(!inkOf(25));  // 625
   }
 
+  // The sheet's rim grows with the drawing; its measure above keeps its place.
+  void largeDrawing_hasItsMeasureInIt() {
+    BoardDrawing drawing;
+    drawing.resize(1000, 1200);
+    drawing.setBoard({});
+    const QImage picture = drawing.grab().toImage();
+    int of_measure = 0;
+    for (int y = 0; y < picture.height(); ++y)
+      for (int x = 0; x < picture.width(); ++x) {
+        const QColor blue = picture.pixelColor(x, y);  // as nothing else in it
+        of_measure += blue.blue() > blue.red() + 60 ? 1 : 0;
+      }
+    QVERIFY2(of_measure > 100, qPrintable(QString::number(of_measure)));  // a line as long as two spacings
+  }
+
   void boardMeasuredOverManySpacings_tellsSpacingAndSigma() {
     Fixture test;
     auto* const form = test.screen.findChild<BoardForm*>();

@@ -19,6 +19,12 @@ QColor paperOf(const Board& board) {
   return board.hasCircles() && board.circles == CircleShade::Bright ? kInk : QColor(Qt::white);
 }
 
+// From the outermost points to the sheet's edge.
+double sheetBeyond_m(const Board& board) {
+  constexpr double kRim = 0.3;  // of the spacing
+  return board.printBeyond_m() + kRim * board.spacing_m;
+}
+
 QString millimetres(double length_m) {
   return QObject::tr("%1 mm").arg(1e3 * length_m, 0, 'g', 4);
 }
@@ -54,13 +60,13 @@ void BoardDrawing::paintEvent(QPaintEvent*) {
   }
   // The board's long side lies along the drawing's: x of the board points down then, as on a turned sheet.
   const Eigen::Vector2d extent_m = board_.extent_m();
-  const double around_m = board_.printBeyond_m();
+  const double around_m = sheetBeyond_m(board_);
   const double width_m = extent_m.x() + 2.0 * around_m, height_m = extent_m.y() + 2.0 * around_m;
   const double px_per_m =
       std::min((width() - 2.0 * kMargin_px) / width_m, (height() - 2.0 * kMargin_px) / height_m);
   const QPointF origin(0.5 * (width() - width_m * px_per_m) + around_m * px_per_m,
                        0.5 * (height() - height_m * px_per_m) + around_m * px_per_m);
-  const double edge_px = (around_m + 0.3 * board_.spacing_m) * px_per_m;
+  const double edge_px = around_m * px_per_m;
   painter.setPen(QPen(theme().grid_line, 1.0));
   painter.setBrush(paperOf(board_));
   const QSizeF sheet(extent_m.x() * px_per_m, extent_m.y() * px_per_m);
@@ -94,7 +100,7 @@ void BoardDrawing::paintMeasures(QPainter& painter, double px_per_m, QPointF ori
 
   const Eigen::Vector2d last_m = board_.extent_m();
   const Eigen::Vector2d neighbour_m = board_.point_m(0, 1);
-  const double edge_px = (board_.printBeyond_m() + 0.3 * board_.spacing_m) * px_per_m;
+  const double edge_px = sheetBeyond_m(board_) * px_per_m;
   painter.setPen(QPen(theme().accent, 1.5));
   const double above_px = origin.y() - edge_px - 6.0;
   const QPointF begin(origin.x(), above_px), end(origin.x() + px_per_m * neighbour_m.x(), above_px);
