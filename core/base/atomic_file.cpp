@@ -88,7 +88,9 @@ class Moves {
   }
 
   void move(const std::filesystem::path& from, const std::filesystem::path& to) {
-    if (const int error = whyNoPlace(to)) throw writeError(to, error);
+    const int error = whyNoPlace(to);
+    const bool folders = error == EISDIR && std::filesystem::is_directory(from);
+    if (error != 0 && !folders) throw writeError(to, error);
     if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0) {
       done_.push_back({from, to, Kind::Exchanged});
       return;
@@ -99,8 +101,10 @@ class Moves {
   }
 
   void keep() {
+    std::error_code ignored;
     for (const Done& each : done_)
-      if (each.kind == Kind::Exchanged || each.kind == Kind::Hidden) ::unlink(each.from.c_str());
+      if (each.kind == Kind::Exchanged || each.kind == Kind::Hidden)
+        std::filesystem::remove_all(each.from, ignored);
     done_.clear();
   }
 

@@ -23,8 +23,8 @@ struct FileContent {
 // first and comes last, so that a run that is killed between leaves no mark rather than parts of two runs.
 void writeFilesWhole(std::span<const FileContent> files);
 
-// The same with files that are written already, elsewhere in the file system of their places. Where it
-// throws, they are where they were.
+// The same with files and folders that are written already, elsewhere in the file system of their places; a folder takes
+// the place of an older one as a whole. Where it throws, they are where they were.
 struct FileMove {
   std::filesystem::path from, to;
 };

@@ -128,6 +128,25 @@ class TestAtomicFile : public QObject {
       std::filesystem::remove_all(entry.path());
   }
 
+  void moveOfAFolder_replacesTheOlderOneAsAWhole() {
+    const auto from = folder() / "from", to = folder() / "to";
+    for (const auto& each : {from / "frames", to / "frames"}) std::filesystem::create_directories(each);
+    writeFileWhole(from / "frames" / "1.png", "after");
+    writeFileWhole(to / "frames" / "1.png", "before");
+    writeFileWhole(to / "frames" / "2.png", "before");
+    const std::vector<FileMove> moves = {{from / "frames", to / "frames"}, {from / "mark", to / "mark"}};
+    QVERIFY_EXCEPTION_THROWN(moveFilesWhole(moves), CalibrationError);  // there is no mark
+    QCOMPARE(contentOf(to / "frames" / "1.png"), std::string("before"));
+    QCOMPARE(entriesIn(to / "frames"), std::ptrdiff_t(2));
+    writeFileWhole(from / "mark", "after");
+    moveFilesWhole(moves);
+    QCOMPARE(contentOf(to / "frames" / "1.png"), std::string("after"));
+    QCOMPARE(entriesIn(to / "frames"), std::ptrdiff_t(1));
+    QCOMPARE(entriesIn(from), std::ptrdiff_t(0));
+    for (const auto& entry : std::filesystem::directory_iterator(folder()))
+      std::filesystem::remove_all(entry.path());
+  }
+
   // Run by run in another process that is killed at any moment: a mark means that all are of its run.
   void killedRun_leavesNoPartsOfTwo() {
     constexpr int kFiles = 20, kKills = 60;
