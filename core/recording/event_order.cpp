@@ -28,6 +28,12 @@ std::size_t EventOrder::arrange(std::span<Event> events) {
   return end;
 }
 
+void EventOrder::split(std::vector<Event>& events, std::vector<Event>& rest) {
+  const auto step = events.begin() + static_cast<std::ptrdiff_t>(arrange(events));
+  rest.assign(step, events.end());
+  events.erase(step, events.end());
+}
+
 std::string EventOrder::text() const {
   return fmt::format("Time runs backwards {} times within packets, by {:.3f} ms at most; sorted.",
                      disordered_, 1e-6 * static_cast<double>(largest_ns_));

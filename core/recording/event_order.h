@@ -7,19 +7,22 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace evical {
 
 class EventOrder {
  public:
-  // How many of the first events make a packet: they are sorted where time steps back a little; before a
-  // large step back the packet ends, since sorting would only hide it.
-  std::size_t arrange(std::span<Event> events);
+  // Leaves in `events` those that make a packet: they are sorted where time steps back a little; before a large step back
+  // the packet ends, since sorting would only hide it, and what is behind replaces `rest`.
+  void split(std::vector<Event>& events, std::vector<Event>& rest);
 
   bool changedAnything() const { return disordered_ > 0; }
   std::string text() const;  // one sentence for people
 
  private:
+  std::size_t arrange(std::span<Event> events);  // how many of the first make a packet
+
   std::uint64_t disordered_ = 0;
   std::int64_t largest_ns_ = 0;
 };

@@ -232,11 +232,8 @@ void Aedat3Reader::countSpecial(std::size_t stream, const PacketHeader& header, 
 
 void Aedat3Reader::putInOrder(std::size_t stream, std::vector<Event>& events) {
   EventOrder& order = states_[stream].order;
-  const std::size_t count = order.arrange(events);
-  const auto step = events.begin() + static_cast<std::ptrdiff_t>(count);
-  rest_.assign(step, events.end());
+  order.split(events, rest_);
   rest_stream_ = stream;
-  events.erase(step, events.end());
   if (!order.changedAnything()) return;
   const std::string& name = streams_[stream].name;
   addFault(name, FaultKind::Unsorted, "");

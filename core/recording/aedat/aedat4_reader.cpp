@@ -306,11 +306,8 @@ bool Aedat4Reader::decodeFrame(std::size_t stream, std::string_view content, std
 
 void Aedat4Reader::finishEvents(std::size_t stream, Packet& packet) {
   EventOrder& order = states_[stream].order;
-  const std::size_t count = order.arrange(packet.events);
-  const auto step = packet.events.begin() + static_cast<std::ptrdiff_t>(count);
-  rest_.assign(step, packet.events.end());
+  order.split(packet.events, rest_);
   rest_stream_ = stream;
-  packet.events.erase(step, packet.events.end());
   if (!order.changedAnything()) return;
   const std::string& name = streams_[stream].name;
   const auto known = std::find_if(faults_.begin(), faults_.end(), [&](const RecordingFault& fault) {

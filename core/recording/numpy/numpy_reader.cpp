@@ -187,10 +187,7 @@ bool NumpyReader::fill(Source& source, std::vector<Event>& events) {
     return false;
   }
   if (events.empty()) return false;
-  const std::size_t count = source.order.arrange(events);
-  const auto step = events.begin() + static_cast<std::ptrdiff_t>(count);
-  source.rest.assign(step, events.end());
-  events.erase(step, events.end());
+  source.order.split(events, source.rest);
   source.last_ns = events.back().time_ns;
   return true;
 }
