@@ -133,6 +133,15 @@ double worstDifference_px(const NamedResult& result, std::size_t camera, const R
   return worst_px;
 }
 
+ExportedFiles exportTo(const NamedResult& result, const std::string& target) {
+  return exportResult(result, std::vector<std::string>{target});
+}
+
+bool hasNote(const ExportedFiles& exported, const char* part) {
+  return std::any_of(exported.notes.begin(), exported.notes.end(),
+                     [&](const std::string& note) { return note.find(part) != note.npos; });
+}
+
 std::string contentOf(const ExportedFiles& exported, const std::string& path) {
   for (const FileContent& file : exported.files)
     if (file.path == path) return file.content;

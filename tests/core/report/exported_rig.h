@@ -38,6 +38,9 @@ struct ReadCamera {
 // a swinging IMU.
 double worstDifference_px(const NamedResult& result, std::size_t camera, const ReadCamera& theirs);
 
+ExportedFiles exportTo(const NamedResult& result, const std::string& target);
+bool hasNote(const ExportedFiles& exported, const char* part);  // that has these words in it
+
 // Content of an exported file.
 std::string contentOf(const ExportedFiles& exported, const std::string& path);
 // Parsed, without OpenCV's %YAML:1.0 line.

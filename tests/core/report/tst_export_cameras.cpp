@@ -21,10 +21,6 @@ namespace {
 
 constexpr double kSame_px = 1e-9;
 
-ExportedFiles exportTo(const NamedResult& result, const std::string& target) {
-  return exportResult(result, std::vector<std::string>{target});
-}
-
 std::vector<double> fromMatrix(const std::vector<double>& k) {
   return {k[0], k[4], k[2], k[5]};
 }

@@ -20,10 +20,6 @@ namespace {
 
 constexpr double kSame_px = 1e-9;
 
-ExportedFiles exportTo(const NamedResult& result, const std::string& target) {
-  return exportResult(result, std::vector<std::string>{target});
-}
-
 Eigen::Matrix4d poseOf(const RigidTransform& pose) {
   Eigen::Isometry3d full = Eigen::Isometry3d::Identity();
   full.linear() = pose.rotation.toRotationMatrix();

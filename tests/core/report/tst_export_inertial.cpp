@@ -19,10 +19,6 @@ namespace {
 constexpr double kSame_px = 1e-9;
 constexpr double kSame = 1e-12;  // of measured rad/s and m/s^2
 
-ExportedFiles exportTo(const NamedResult& result, const std::string& target) {
-  return exportResult(result, std::vector<std::string>{target});
-}
-
 Lens kalibrLens(const YAML::Node& camera) {
   const auto intrinsics = numbers(camera["intrinsics"]), distortion = numbers(camera["distortion_coeffs"]);
   return camera["distortion_model"].as<std::string>() == "radtan" ? radtanLens(intrinsics, distortion)

@@ -24,15 +24,6 @@ using namespace evical::test;
 
 constexpr double kSame_px = 1e-9;
 
-ExportedFiles exportTo(const NamedResult& result, const std::string& target) {
-  return exportResult(result, std::vector<std::string>{target});
-}
-
-bool hasNote(const ExportedFiles& exported, const char* part) {
-  return std::any_of(exported.notes.begin(), exported.notes.end(),
-                     [&](const std::string& note) { return note.find(part) != note.npos; });
-}
-
 cv::FileStorage openCvFile(const ExportedFiles& exported, const std::string& path) {
   return {contentOf(exported, "opencv/" + path), cv::FileStorage::READ | cv::FileStorage::MEMORY};
 }

@@ -10,13 +10,7 @@
 using namespace evical;
 using namespace evical::test;
 
-namespace {
-
-ExportedFiles exportTo(const NamedResult& result, const std::string& target) {
-  return exportResult(result, std::vector<std::string>{target});
-}
-
-}  // namespace
+namespace {}  // namespace
 
 class TestExportRefusals : public QObject {
   Q_OBJECT

@@ -21,15 +21,6 @@ using namespace evical::test;
 
 constexpr double kSame_px = 1e-9;
 
-ExportedFiles exportTo(const NamedResult& result, const std::string& target) {
-  return exportResult(result, std::vector<std::string>{target});
-}
-
-bool hasNote(const ExportedFiles& exported, const char* part) {
-  return std::any_of(exported.notes.begin(), exported.notes.end(),
-                     [&](const std::string& note) { return note.find(part) != note.npos; });
-}
-
 // MIT-SPARK/Kimera-VIO, include/kimera-vio/utils/YamlParser.h at decef91: a key that is not there ends the program, and so
 // does a nested one of what is no map; values go by OpenCV's >>, which leaves what is of another kind as it was.
 class KimeraFile {

@@ -29,10 +29,6 @@ CameraIntrinsics wideCamera(CameraModel model) {
   return camera;
 }
 
-ExportedFiles exportTo(const NamedResult& result, const std::string& target) {
-  return exportResult(result, std::vector<std::string>{target});
-}
-
 NamedResult wideRig(CameraModel model) {
   NamedResult result = rig({});
   for (CameraState& camera : ownResult(result).state.cameras) camera.lens = givenLens(wideCamera(model));

@@ -62,6 +62,12 @@ Eigen::MatrixXd rowsOf(const YamlNode& node, std::size_t rows, std::size_t cols)
   return matrixFrom(all, static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(cols));
 }
 
+Eigen::MatrixXd matrixOf(const YamlNode& node, int rows, int cols) {
+  node["rows"].integer(rows, rows);
+  node["cols"].integer(cols, cols);
+  return matrixFrom(node["data"].reals(static_cast<std::size_t>(rows * cols)), rows, cols);
+}
+
 CameraIntrinsics lensFrom(CameraModel model, const std::vector<double>& fx_fy_cx_cy,
                           const std::vector<double>& distortion, Resolution resolution_px) {
   CameraIntrinsics lens{

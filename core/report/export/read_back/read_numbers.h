@@ -29,6 +29,9 @@ Eigen::MatrixXd matrixFrom(const std::vector<double>& row_major, Eigen::Index ro
 // A list of rows; throws where there are not as many, or one has not as many numbers.
 Eigen::MatrixXd rowsOf(const YamlNode& node, std::size_t rows, std::size_t cols);
 
+// A map of rows, cols and data, as ROS and SVO have them; throws where it has another shape.
+Eigen::MatrixXd matrixOf(const YamlNode& node, int rows, int cols);
+
 // fx fy cx cy, and distortion in the order of CameraIntrinsics.
 CameraIntrinsics lensFrom(CameraModel model, const std::vector<double>& fx_fy_cx_cy,
                           const std::vector<double>& distortion, Resolution resolution_px);

@@ -19,12 +19,6 @@
 namespace evical {
 namespace {
 
-Eigen::MatrixXd matrixOf(const YamlNode& node, int rows, int cols) {
-  node["rows"].integer(rows, rows);
-  node["cols"].integer(cols, cols);
-  return matrixFrom(node["data"].reals(static_cast<std::size_t>(rows * cols)), rows, cols);
-}
-
 ReadFile readCameraInfo(const std::filesystem::path& path) {
   const YamlNode root = YamlNode::load(path);
   constexpr int kLargest_px = 100000;

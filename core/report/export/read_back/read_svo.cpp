@@ -15,12 +15,6 @@
 namespace evical {
 namespace {
 
-Eigen::MatrixXd matrixOf(const YamlNode& node, int rows, int cols) {
-  node["rows"].integer(rows, rows);
-  node["cols"].integer(cols, cols);
-  return matrixFrom(node["data"].reals(static_cast<std::size_t>(rows * cols)), rows, cols);
-}
-
 std::vector<double> columnOf(const YamlNode& node) {
   const Eigen::MatrixXd column = matrixOf(node, 4, 1);
   return {column.data(), column.data() + 4};
