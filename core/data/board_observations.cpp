@@ -12,7 +12,8 @@ const char* windowOutcomeName(WindowOutcome outcome) {
                                                                           "ambiguous placement",
                                                                           "circles lost in refinement",
                                                                           "too blurred",
-                                                                          "unreadable"};
+                                                                          "unreadable",
+                                                                          "rejected by hand"};
   return kNames[static_cast<std::size_t>(outcome)];
 }
 

@@ -54,8 +54,9 @@ enum class WindowOutcome {
   RefinementFailed,  // circles lost when all were fitted together
   Blurred,           // of a frame: the board moved too far while it was exposed
   Unreadable,        // of a frame: its picture is damaged
+  RejectedByHand,    // the board was found; a person left it out after a look at its residuals
 };
-inline constexpr std::size_t kWindowOutcomeCount = 10;
+inline constexpr std::size_t kWindowOutcomeCount = 11;
 const char* windowOutcomeName(WindowOutcome outcome);  // in plain words, for tables and logs
 
 struct WindowReport {

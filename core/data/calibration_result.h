@@ -92,6 +92,7 @@ struct CameraFit {
   double reprojection_rms_px = 0.0;
   double normalised_rms = 0.0;  // of residuals divided by their sigma, as weighted
   int windows_total = 0, windows_complete = 0, windows_partial = 0, windows_used = 0;
+  int windows_rejected = 0;  // by hand
   int circles_used = 0, circles_rejected = 0;
 };
 
@@ -113,6 +114,14 @@ struct CircleResidual {
   double time_s = 0.0;
   Eigen::Vector2d centre_px, residual_px, sigma_px;
   bool used = true;
+};
+
+// A window with the board that a person left out.
+struct RejectedWindow {
+  std::size_t camera = 0;
+  double time_s = 0.0;  // its middle, on the camera's clock since the recording's start
+
+  bool operator==(const RejectedWindow&) const = default;
 };
 
 // One number of a quantity as one estimate has it, less what another says: half of a recording against the
@@ -146,6 +155,7 @@ struct CalibrationResult {
   std::vector<ImuFit> imus;
   std::vector<IterationRecord> iterations;
   std::vector<CircleResidual> circle_residuals;
+  std::vector<RejectedWindow> rejected_windows;     // by hand: camera by camera, in time order
   std::optional<CrossValidation> cross_validation;  // absent where it was not asked for
   std::vector<std::string> notes;                   // what initialisation and data checks had to say
   Timing timing;

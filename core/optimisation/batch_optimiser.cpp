@@ -274,6 +274,8 @@ void Batch::reportFits() {
     for (const BoardView& view : camera.observations.views) {
       ++(view.kind == ViewKind::Complete ? fit.windows_complete : fit.windows_partial);
     }
+    for (const WindowReport& window : camera.observations.windows)
+      fit.windows_rejected += window.outcome == WindowOutcome::RejectedByHand ? 1 : 0;
   }
   std::vector<std::vector<std::uint8_t>> view_used;
   for (const CameraData& camera : input_.cameras) view_used.emplace_back(camera.observations.views.size());

@@ -23,6 +23,7 @@
 #include "core/pipeline/misfit.h"
 #include "core/pipeline/session_keys.h"
 #include "core/pipeline/session_recording.h"
+#include "core/pipeline/view_rejection.h"
 #include "core/recording/inspection.h"
 
 #include <fmt/format.h>
@@ -145,6 +146,8 @@ void logDetections(const RecordingPass& pass, const RunContext& context) {
                          fmt::format("{}: {} {}, board in {} of {} {} ({})", camera.camera, camera.events,
                                      measurementsOf(camera.kind), camera.views.size(), camera.windows.size(),
                                      windows ? "windows" : "frames", outcomes(camera)));
+    if (const std::string rejected = rejectedSentence(camera); !rejected.empty())
+      context.progress.log(LogLevel::Info, rejected);
   }
 }
 
@@ -272,11 +275,8 @@ class Calibration {
   CalibrationOutcome fromRecording() {
     return outcomeOf([this] {
       checkSession(session_);
-      const Stopwatch stopwatch;
       lenses_ = findLenses(session_, context_, run_);
-      const double intrinsics_s = stopwatch.elapsed_s();
       runFrom(CalibrationStage::Detect);
-      run_.result.timing.total_s += intrinsics_s;
     });
   }
 
@@ -284,6 +284,7 @@ class Calibration {
                                     std::vector<std::optional<IntrinsicsResult>> intrinsics) {
     run_.pass = std::move(pass);
     run_.intrinsics = std::move(intrinsics);
+    before_s_ = std::max(run_.pass.read_s, run_.pass.detect_s);
     return outcomeOf([this] {
       checkSession(session_);
       prepareInput();
@@ -457,9 +458,19 @@ class Calibration {
     if (run_.result.status == CalibrationStatus::Ok) addDoubt(doubt, run_.result);
   }
 
+  void tellRejected() {
+    for (std::size_t k = 0; k < run_.pass.cameras.size(); ++k) {
+      for (const double time_s : rejectedTimes_s(run_.pass.cameras[k]))
+        run_.result.rejected_windows.push_back({k, time_s});
+      if (std::string rejected = rejectedSentence(run_.pass.cameras[k]); !rejected.empty())
+        run_.result.notes.push_back(std::move(rejected));
+    }
+  }
+
   void conclude() {
     CalibrationResult& result = run_.result;
     result.start_ns = run_.pass.start_ns;
+    tellRejected();
     for (const RecordingFault& fault : run_.pass.faults) result.notes.push_back(fault.text);
     for (const InitialisationStep& step : initial_.steps)
       result.notes.push_back(step.name + ": " + step.result);
@@ -468,8 +479,7 @@ class Calibration {
     Timing& timing = result.timing;
     timing.read_s = run_.pass.read_s;  // of the threads, which overlap; also where the pass came from before
     timing.detect_s = run_.pass.detect_s;
-    timing.total_s = std::max(timing.read_s, timing.detect_s) + timing.initialise_s + timing.optimise_s +
-                     timing.cross_validate_s;
+    timing.total_s = before_s_ + stopwatch_.elapsed_s();
     result.memory_peak_mb = peakMemory_mb();
     tellIntrinsics(session_, run_);
   }
@@ -480,6 +490,8 @@ class Calibration {
   CalibrationRun run_;
   CalibrationInput input_;
   Initialisation initial_;
+  const Stopwatch stopwatch_;
+  double before_s_ = 0.0;           // that a pass took that comes from before
   std::string clock_doubt_;         // that clocks step
   std::vector<std::string> notes_;  // of the batch
 };

@@ -123,6 +123,7 @@ SensorDescription readCamera(const YamlNode& map, const std::string& name, Calib
     get(*windows, "complete", fit.windows_complete);
     get(*windows, "partial", fit.windows_partial);
     get(*windows, "used", fit.windows_used);
+    get(*windows, "rejected_by_hand", fit.windows_rejected);
   }
   if (const auto circles = map.find("circles")) {
     get(*circles, "used", fit.circles_used);
@@ -139,16 +140,20 @@ SensorDescription readCamera(const YamlNode& map, const std::string& name, Calib
   return known;
 }
 
+std::size_t cameraOf(const YamlNode& name, const NamedResult& named) {
+  const auto found = std::find_if(named.cameras.begin(), named.cameras.end(),
+                                  [&](const auto& each) { return each.name == name.text(); });
+  if (found == named.cameras.end()) throw name.error("is none of the cameras");
+  return static_cast<std::size_t>(found - named.cameras.begin());
+}
+
 void readLatencies(const YamlNode& cameras, const NamedResult& named, CalibrationResult& result) {
   for (std::size_t i = 0; i < named.cameras.size(); ++i) {
     const YamlNode camera = cameras[named.cameras[i].name];
     const auto against = camera.find("latency_against");
     if (!against) continue;
     SensorLatency latency{i};
-    const auto other = std::find_if(named.cameras.begin(), named.cameras.end(),
-                                    [&](const auto& each) { return each.name == against->text(); });
-    if (other == named.cameras.end()) throw against->error("is none of the cameras");
-    latency.against = static_cast<std::size_t>(other - named.cameras.begin());
+    latency.against = cameraOf(*against, named);
     get(camera, "latency_s", latency.latency_s);
     get(camera, "latency_std_s", latency.std_s);
     result.latencies.push_back(latency);
@@ -290,6 +295,9 @@ NamedResult readResultYaml(const std::filesystem::path& file) {
     for (const std::string& key : imus->keys()) named.imus.push_back(readImu((*imus)[key], key, result));
   readBoards(root, named, result);
   if (const auto cameras = root.find("cameras")) readLatencies(*cameras, named, result);
+  if (const auto rejected = root.find("rejected_windows"))
+    for (const YamlNode& window : rejected->items())
+      result.rejected_windows.push_back({cameraOf(window["camera"], named), window["time_s"].real()});
   get(root, "gravity_m_s2", result.state.gravity_in_world_m_s2);
   readUncertainty(root, result.uncertainty);
   if (const auto validation = root.find("cross_validation"))

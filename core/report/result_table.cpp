@@ -67,9 +67,11 @@ std::string cameraTable(const NamedResult& named, std::size_t i) {
   text += fmt::format("    {:<26}{:>12.4f} px RMS, {:.2f} of what its sigmas say\n", "reprojection",
                       fit.reprojection_rms_px, fit.normalised_rms);
   const int found = fit.windows_complete + fit.windows_partial;
-  return text + fmt::format("    {:<26}{:>12} of {} with the board ({} complete, {} partial), {} used\n",
-                            "windows", found, fit.windows_total, fit.windows_complete, fit.windows_partial,
-                            fit.windows_used);
+  return text +
+         fmt::format(
+             "    {:<26}{:>12} of {} with the board ({} complete, {} partial), {} used{}\n", "windows", found,
+             fit.windows_total, fit.windows_complete, fit.windows_partial, fit.windows_used,
+             fit.windows_rejected > 0 ? fmt::format(", {} rejected by hand", fit.windows_rejected) : "");
 }
 
 std::string imuTable(const NamedResult& named, std::size_t i) {

@@ -110,10 +110,11 @@ std::string cameraYaml(const NamedResult& named, std::size_t i) {
   text += fmt::format("    reprojection_rms_px: {}\n    normalised_rms: {}\n",
                       roundedYaml(fit.reprojection_rms_px), roundedYaml(fit.normalised_rms));
   text += fmt::format(
-      "    windows: {{total: {}, complete: {}, partial: {}, used: {}}}\n    circles: {{used: {}, rejected: "
+      "    windows: {{total: {}, complete: {}, partial: {}, used: {}{}}}\n    circles: {{used: {}, rejected: "
       "{}}}\n",
-      fit.windows_total, fit.windows_complete, fit.windows_partial, fit.windows_used, fit.circles_used,
-      fit.circles_rejected);
+      fit.windows_total, fit.windows_complete, fit.windows_partial, fit.windows_used,
+      fit.windows_rejected > 0 ? fmt::format(", rejected_by_hand: {}", fit.windows_rejected) : "",
+      fit.circles_used, fit.circles_rejected);
   return text;
 }
 
@@ -205,8 +206,18 @@ std::string crossValidationYaml(const CrossValidation& validation) {
   return text;
 }
 
+// Which windows a person left out.
+std::string rejectedYaml(const NamedResult& named) {
+  std::string text;
+  for (const RejectedWindow& window : named.result->rejected_windows)
+    text += fmt::format("  - {{camera: {}, time_s: {}}}\n", yamlText(named.cameras.at(window.camera).name),
+                        exactYaml(window.time_s));
+  return text.empty() ? text : "rejected_windows:\n" + text;
+}
+
 std::string runYaml(const NamedResult& named) {
-  std::string text = named.result->notes.empty() ? "notes: []\n" : "notes:\n";
+  std::string text = rejectedYaml(named);
+  text += named.result->notes.empty() ? "notes: []\n" : "notes:\n";
   for (const std::string& note : named.result->notes) text += fmt::format("  - {}\n", yamlText(note));
   std::string timing;
   forEachTiming(named.result->timing, [&](const char* key, double duration_s) {

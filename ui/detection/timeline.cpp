@@ -46,6 +46,7 @@ double endOfWindow(const WindowReport& window) {
 
 WindowClass windowClass(WindowOutcome outcome) {
   if (outcome == WindowOutcome::Complete) return WindowClass::Complete;
+  if (outcome == WindowOutcome::RejectedByHand) return WindowClass::Rejected;
   return outcome == WindowOutcome::Partial ? WindowClass::Partial : WindowClass::Missed;
 }
 

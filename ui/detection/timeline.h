@@ -19,7 +19,8 @@ class QPainter;
 
 namespace evical::ui {
 
-enum class WindowClass { Complete, Partial, Missed };
+enum class WindowClass { Complete, Partial, Rejected, Missed };
+inline constexpr std::size_t kWindowClassCount = 4;
 WindowClass windowClass(WindowOutcome outcome);
 QColor windowColour(WindowClass window_class);  // of the theme
 double endOfWindow(const WindowReport& window);
@@ -74,7 +75,7 @@ class Timeline : public QWidget {
   void keyPressEvent(QKeyEvent*) override;
 
  private:
-  using ColumnCounts = std::array<int, 3>;  // by WindowClass
+  using ColumnCounts = std::array<int, kWindowClassCount>;  // by WindowClass
 
   void select(double time_s);
   void scrollBy(double shift_s);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace evical::ui {
@@ -53,6 +54,8 @@ QColor windowColour(WindowClass window_class) {
       return theme().good;
     case WindowClass::Partial:
       return theme().warning;
+    case WindowClass::Rejected:
+      return theme().text;
     case WindowClass::Missed:
       break;
   }
@@ -118,12 +121,17 @@ void Timeline::paintHeader(QPainter& painter) const {
   if (windows_.empty()) return;
   ColumnCounts counts{};
   for (const WindowReport& window : windows_) ++counts[static_cast<std::size_t>(windowClass(window.outcome))];
-  const std::array<QString, 3> words = {tr("complete %1").arg(counts[0]), tr("partial %1").arg(counts[1]),
-                                        tr("missed %1").arg(counts[2])};
+  std::array<QString, kWindowClassCount> words = {
+      tr("complete %1").arg(counts[0]), tr("partial %1").arg(counts[1]), tr("rejected %1").arg(counts[2]),
+      tr("missed %1").arg(counts[3])};
+  if (counts[static_cast<std::size_t>(WindowClass::Rejected)] == 0)
+    words[static_cast<std::size_t>(WindowClass::Rejected)].clear();
   double needed = -18.0;
-  for (const QString& text : words) needed += 33.0 + metrics.horizontalAdvance(text);
+  for (const QString& text : words)
+    if (!text.isEmpty()) needed += 33.0 + metrics.horizontalAdvance(text);
   x = std::max(x, curveArea().right() - needed);
-  for (std::size_t k = 0; k < words.size(); ++k) word(windowColour(static_cast<WindowClass>(k)), words[k]);
+  for (std::size_t k = 0; k < words.size(); ++k)
+    if (!words[k].isEmpty()) word(windowColour(static_cast<WindowClass>(k)), words[k]);
 }
 
 void Timeline::paintAxis(QPainter& painter) const {
@@ -214,10 +222,10 @@ void Timeline::paintTicks(QPainter& painter) const {
   const QRectF area = tickArea();
   const std::vector<ColumnCounts> columns = countColumns();
   for (std::size_t column = 0; column < columns.size(); ++column) {
-    const int sum = columns[column][0] + columns[column][1] + columns[column][2];
+    const int sum = std::accumulate(columns[column].begin(), columns[column].end(), 0);
     if (sum == 0) continue;
     double bottom = area.bottom();
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < kWindowClassCount; ++k) {
       const double height = area.height() * columns[column][k] / sum;
       painter.fillRect(QRectF(area.left() + static_cast<double>(column), bottom - height, 1.0, height),
                        windowColour(static_cast<WindowClass>(k)));

@@ -48,7 +48,7 @@ void adviseDetection(const std::string& name, const CameraMeasures& camera, std:
   if (camera.windows == 0) return;
   if (camera.detectionRate() < kGoodRate) {
     std::size_t worst = static_cast<std::size_t>(WindowOutcome::TooFewEvents);
-    for (std::size_t k = worst; k < kWindowOutcomeCount; ++k)
+    for (std::size_t k = worst; k < static_cast<std::size_t>(WindowOutcome::RejectedByHand); ++k)
       if (camera.outcomes[k] > camera.outcomes[worst]) worst = k;
     const auto outcome = static_cast<WindowOutcome>(worst);
     if (camera.outcomes[worst] > kWorthNaming * camera.windows)

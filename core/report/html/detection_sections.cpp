@@ -12,8 +12,8 @@
 namespace evical::html {
 namespace {
 
-constexpr std::array<const char*, kWindowOutcomeCount> kOutcomeClasses = {"o0", "o1", "o2", "o3", "o4",
-                                                                          "o5", "o6", "o7", "o8", "o9"};
+constexpr std::array<const char*, kWindowOutcomeCount> kOutcomeClasses = {"o0", "o1", "o2", "o3", "o4", "o5",
+                                                                          "o6", "o7", "o8", "o9", "o10"};
 
 // Runs of windows with one outcome.
 PlotTable timelineTable(const BoardObservations& camera, std::size_t index) {
@@ -79,7 +79,8 @@ std::string outcomeTable(const CameraMeasures& camera) {
       "several ways to lay the board on what was seen",
       "circles lost when all were fitted together: blur or clutter",
       "the board moved too far while the frame was exposed",
-      "a damaged picture"};
+      "a damaged picture",
+      "the board was found, and a person left the window out after a look at its residuals"};
   std::vector<std::vector<std::string>> rows;
   for (std::size_t k = 0; k < kWindowOutcomeCount; ++k) {
     if (camera.outcomes[k] == 0) continue;

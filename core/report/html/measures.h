@@ -36,7 +36,9 @@ struct CameraMeasures {
   std::vector<SensorCell> cells;            // row by row; empty where the resolution is unknown
   std::vector<BoardPose> poses;             // empty without a trajectory
 
-  double detectionRate() const { return windows > 0 ? static_cast<double>(views) / windows : 0.0; }
+  // It was found in those that a person rejected, too.
+  int found() const { return views + outcomes[static_cast<std::size_t>(WindowOutcome::RejectedByHand)]; }
+  double detectionRate() const { return windows > 0 ? static_cast<double>(found()) / windows : 0.0; }
   double coveredShare() const;  // of the cells: those with at least one circle
 };
 
