@@ -32,15 +32,18 @@ class CalibrationDocument::EditCommand final : public QUndoCommand {
         document_(document),
         before_(document.session_),
         after_(std::move(after)),
-        merge_key_(std::move(merge_key)) {}
+        merge_key_(std::move(merge_key)),
+        edition_before_(document.edition_),
+        edition_after_(++document.newest_edition_) {}
 
-  void undo() override { document_.set(before_); }
-  void redo() override { document_.set(after_); }
+  void undo() override { document_.set(before_, edition_before_); }
+  void redo() override { document_.set(after_, edition_after_); }
   int id() const override { return merge_key_.isEmpty() ? -1 : 1; }
   bool mergeWith(const QUndoCommand* other) override {
     const auto* const next = dynamic_cast<const EditCommand*>(other);
     if (next == nullptr || next->merge_key_ != merge_key_) return false;
     after_ = next->after_;
+    edition_after_ = next->edition_after_;
     return true;
   }
 
@@ -48,6 +51,26 @@ class CalibrationDocument::EditCommand final : public QUndoCommand {
   CalibrationDocument& document_;
   Session before_, after_;
   QString merge_key_;
+  int edition_before_, edition_after_;
+};
+
+class CalibrationDocument::RunCommand final : public QUndoCommand {
+ public:
+  RunCommand(CalibrationDocument& document, RunRecord record, const QString& what)
+      : QUndoCommand(what),
+        document_(document),
+        before_{document.last_, document.previous_},
+        after_{std::move(record), document.last_} {
+    document_.run_commands_.push_back(this);
+  }
+  ~RunCommand() override { std::erase(document_.run_commands_, this); }
+
+  void undo() override { document_.set(before_); }
+  void redo() override { document_.set(after_); }
+
+ private:
+  CalibrationDocument& document_;
+  Runs before_, after_;
 };
 
 CalibrationDocument::CalibrationDocument(QObject* parent) : QObject(parent) {
@@ -57,6 +80,7 @@ CalibrationDocument::CalibrationDocument(QObject* parent) : QObject(parent) {
 // The stack speaks at its end, when those who listen may be gone.
 CalibrationDocument::~CalibrationDocument() {
   undo_stack_.blockSignals(true);
+  undo_stack_.clear();
 }
 
 QString CalibrationDocument::title() const {
@@ -73,12 +97,23 @@ void CalibrationDocument::startSession(const Session& session) {
   replace(session, {}, true);
 }
 
-void CalibrationDocument::replace(Session session, const QString& session_file, bool unsaved) {
+void CalibrationDocument::openRun(RunRecord record) {
+  Session session = record.session;
+  replace(std::move(session), {}, false, std::move(record));
+}
+
+void CalibrationDocument::openRun(RunRecord record, const QString& session_file) {
+  replace(readSession(pathOf(session_file)), session_file, false, std::move(record));
+}
+
+void CalibrationDocument::replace(Session session, const QString& session_file, bool unsaved, RunRecord run) {
   session_ = std::move(session);
   file_ = session_file;
   has_unsaved_recording_ = unsaved;
   undo_stack_.clear();
-  last_ = previous_ = {};
+  saved_edition_ = edition_;
+  last_ = std::move(run);
+  previous_ = {};
   reference_.reset();
   emit sessionReplaced();
   emit sessionChanged();
@@ -94,13 +129,42 @@ void CalibrationDocument::save(const QString& session_file) {
   file_ = session_file;
   session_.source = pathOf(session_file);
   has_unsaved_recording_ = false;
+  saved_edition_ = edition_;
   undo_stack_.setClean();
   emit fileChanged();
 }
 
 void CalibrationDocument::loadReference(const QString& result_or_truth_file) {
-  reference_ = ReferenceResult{readResultYaml(pathOf(result_or_truth_file)), result_or_truth_file};
+  setReference({readResultYaml(pathOf(result_or_truth_file)), QFileInfo(result_or_truth_file).fileName()});
+}
+
+void CalibrationDocument::setReference(ReferenceResult reference) {
+  reference_ = std::move(reference);
   emit referenceChanged();
+}
+
+void CalibrationDocument::moveRecording(const std::filesystem::path& from, const std::filesystem::path& to) {
+  const auto place = std::filesystem::weakly_canonical(from);
+  const auto moved = [&](Session session) {
+    const auto move = [&](std::filesystem::path& path) {
+      if (!path.empty() && std::filesystem::weakly_canonical(path) == place) path = to;
+    };
+    move(session.recording);
+    for (std::filesystem::path& more : session.more_recordings) move(more);
+    for (SessionCamera& camera : session.cameras) move(camera.recording);
+    for (SessionImu& imu : session.imus) move(imu.recording);
+    return session;
+  };
+  last_.session = moved(last_.session);
+  previous_.session = moved(previous_.session);
+  const bool has_file = !file_.isEmpty();
+  const Session session = moved(session_);
+  if (has_file) {
+    edit(session, tr("Look for the recording"));
+  } else {
+    set(session, edition_);
+  }
+  emit runsChanged();
 }
 
 void CalibrationDocument::forgetReference() {
@@ -128,15 +192,28 @@ void CalibrationDocument::resetOptions() {
   edit(changed, tr("Reset all parameters"));
 }
 
-void CalibrationDocument::set(const Session& session) {
+void CalibrationDocument::set(const Session& session, int edition) {
   session_ = session;
   session_.source = pathOf(file_);
+  edition_ = edition;
   emit sessionChanged();
 }
 
+void CalibrationDocument::set(const Runs& runs) {
+  last_ = runs.last;
+  previous_ = runs.previous;
+  emit runsChanged();
+}
+
+// Beside steps that bring back runs it is a step as well: else undoing them would lose it.
 void CalibrationDocument::addRun(RunRecord record) {
+  if (!run_commands_.empty()) return addUndoableRun(std::move(record), tr("Calibrate"));
   previous_ = std::exchange(last_, std::move(record));
   emit runsChanged();
+}
+
+void CalibrationDocument::addUndoableRun(RunRecord record, const QString& what) {
+  undo_stack_.push(new RunCommand(*this, std::move(record), what));
 }
 
 bool CalibrationDocument::runIsOutdated() const {

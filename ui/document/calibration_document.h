@@ -13,6 +13,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace evical::ui {
 
@@ -26,7 +27,7 @@ struct RunRecord {
 // What runs are compared with: a truth, or a result of another time.
 struct ReferenceResult {
   NamedResult named;
-  QString file;
+  QString title;  // its file's name, or the run's
 };
 
 class CalibrationDocument : public QObject {
@@ -40,7 +41,8 @@ class CalibrationDocument : public QObject {
   bool hasSession() const { return !session_.recording.empty(); }
   QString file() const { return file_; }  // empty: never saved
   QString title() const;                  // the file's name, or the recording's
-  bool modified() const { return has_unsaved_recording_ || !undo_stack_.isClean(); }
+  // Runs are undone with the same keys, but are nothing to be saved with the session.
+  bool modified() const { return has_unsaved_recording_ || edition_ != saved_edition_; }
   QUndoStack& undoStack() { return undo_stack_; }
 
   // These throw CalibrationError and leave everything as it was.
@@ -49,7 +51,14 @@ class CalibrationDocument : public QObject {
   void loadReference(const QString& result_or_truth_file);
 
   void startSession(const Session& session);  // new, of no file: unsaved
+  // A run of another time, with the session that it was made from; of no file, but nothing is unsaved.
+  void openRun(RunRecord record);
+  // The same beside its session's file; throws CalibrationError as open() does.
+  void openRun(RunRecord record, const QString& session_file);
+  void setReference(ReferenceResult reference);
   void forgetReference();
+  // The recording is elsewhere: session and runs name that place.
+  void moveRecording(const std::filesystem::path& from, const std::filesystem::path& to);
 
   // One step for undo; steps in a row with the same non-empty `merge_key` become one.
   void edit(const Session& session, const QString& what, const QString& merge_key = {});
@@ -62,6 +71,8 @@ class CalibrationDocument : public QObject {
   const RunRecord& last() const { return last_; }
   const RunRecord& previous() const { return previous_; }
   void addRun(RunRecord record);
+  // The same as a step for undo, which brings the runs back that were here before. What follows it is one, too.
+  void addUndoableRun(RunRecord record, const QString& what);
   // The session is not as it was when the last run was made.
   bool runIsOutdated() const;
 
@@ -76,15 +87,22 @@ class CalibrationDocument : public QObject {
 
  private:
   class EditCommand;
+  class RunCommand;
+  struct Runs {
+    RunRecord last, previous;
+  };
 
-  void replace(Session session, const QString& session_file, bool unsaved);
-  void set(const Session& session);
+  void replace(Session session, const QString& session_file, bool unsaved, RunRecord run = {});
+  void set(const Session& session, int edition);
+  void set(const Runs& runs);
 
   Session session_;
   QString file_;
   bool has_unsaved_recording_ = false;
   QUndoStack undo_stack_;
+  int edition_ = 0, saved_edition_ = 0, newest_edition_ = 0;  // each edit makes one of its own
   RunRecord last_, previous_;
+  std::vector<const RunCommand*> run_commands_;  // on the stack
   std::optional<ReferenceResult> reference_;
 };
 

@@ -105,6 +105,7 @@ bool CalibrationJob::run(const Session& session, RunStart start, std::shared_ptr
                          Work work) {
   if (runner_.running()) return false;
   session_ = session;
+  started_from_ = start;
   live_ = std::make_shared<LiveView>(session.cameras.size(), std::move(windows));
   const auto job = [work = std::move(work), live = live_](const RunContext& context) {
     live->run =

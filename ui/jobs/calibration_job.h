@@ -42,6 +42,8 @@ class CalibrationJob : public QObject {
   bool startAgain(const Session& session, RecordingPass pass,
                   std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
   bool running() const { return live_ != nullptr; }
+  // What the latest one started from.
+  RunStart startedFrom() const { return started_from_; }
 
  signals:
   void started();
@@ -68,6 +70,7 @@ class CalibrationJob : public QObject {
   ObserverMaker make_observer_;
   std::shared_ptr<LiveView> live_;
   Session session_;
+  RunStart started_from_ = RunStart::KnownIntrinsics;
 };
 
 }  // namespace evical::ui
