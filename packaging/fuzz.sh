@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 
 seconds=${1:-60}
 targets=("${@:2}")
-[ "${#targets[@]}" -gt 0 ] || targets=(bag mcap db3 packed aedat2 aedat3 aedat4 hdf5 npy npz raw es text pictures payload detections yaml calibrate)
+[ "${#targets[@]}" -gt 0 ] || targets=(bag mcap db3 packed aedat2 aedat3 aedat4 hdf5 npy npz raw es text pictures payload detections run_data yaml calibrate)
 
 packaging/install-dependencies.sh --fuzz
 build=build/fuzz
@@ -25,7 +25,7 @@ mkdir -p "$seeds/yaml" "$seeds/calibrate"
 for kind in $(seq 0 11); do  # a lie of each kind, of a second's size in the middle
   printf "\\x$(printf %02x "$kind")\\x60\\xa0\\x06\\x01\\x02" >"$seeds/calibrate/$kind"
 done
-cp -r tests/fuzz/seeds/detections "$seeds"
+cp -r tests/fuzz/seeds/detections tests/fuzz/seeds/run_data "$seeds"
 cp tests/fuzz/seeds/yaml/*.yaml config/*.yaml config/scenarios/*.yaml "$seeds/yaml"
 while IFS= read -r -d '' file; do
   case "$(head -c 8 "$file" | tr -d '\0')" in

@@ -3,14 +3,17 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/pipeline/saved_detections.h"
+#include "core/pipeline/saved_run.h"
 #include "core/report/bias_csv.h"
 #include "core/report/csv.h"
 #include "core/report/export/export_target.h"
 #include "core/report/html/html_report.h"
+#include "core/report/residuals_csv.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <iterator>
 #include <optional>
 #include <set>
@@ -75,6 +78,16 @@ NamedResult namedResult(const Session& session, std::shared_ptr<const Calibratio
   return named;
 }
 
+NamedResult namedRun(const Session& session, const std::shared_ptr<const CalibrationRun>& run,
+                     const std::string& version) {
+  NamedResult named = namedResult(session, resultOf(run), version);
+  for (std::size_t i = 0; i < named.imus.size() && i < run->pass.imus.size(); ++i)
+    named.imus[i].rate_hz = run->pass.imus[i].rate_hz();
+  for (std::size_t i = 0; i < named.cameras.size() && i < run->pass.cameras.size(); ++i)
+    named.cameras[i].kind = run->pass.cameras[i].kind;
+  return named;
+}
+
 std::shared_ptr<const CalibrationResult> resultOf(const std::shared_ptr<const CalibrationRun>& run) {
   return {run, &run->result};
 }
@@ -83,11 +96,7 @@ ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Sessio
                                const std::shared_ptr<const CalibrationRun>& shared_run,
                                const std::string& version, const std::string& log) {
   const CalibrationRun& run = *shared_run;
-  NamedResult named = namedResult(session, resultOf(shared_run), version);
-  for (std::size_t i = 0; i < named.imus.size() && i < run.pass.imus.size(); ++i)
-    named.imus[i].rate_hz = run.pass.imus[i].rate_hz();
-  for (std::size_t i = 0; i < named.cameras.size() && i < run.pass.cameras.size(); ++i)
-    named.cameras[i].kind = run.pass.cameras[i].kind;
+  const NamedResult named = namedRun(session, shared_run, version);
   std::vector<FileContent> files = detectionFiles(session, run.pass, run.intrinsics);
   files.push_back({"trajectory.csv", trajectoryCsv(run.result.state)});
   const std::string biases = biasesCsv(named);
@@ -98,6 +107,10 @@ ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Sessio
   for (const auto& texts : {remarks.notes, remarks.refused})
     for (const std::string& text : texts) full_log += text + "\n";
   files.push_back({"log.txt", full_log});
+  files.push_back({"residuals.csv", residualsCsv(named, run.result.circle_residuals)});
+  const auto now_s =
+      std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch());
+  for (FileContent& file : runFiles(folder, session, run, now_s.count())) files.push_back(std::move(file));
   files.push_back({"result.yaml", resultYaml(named)});  // the last tells that all are there
   writeExportedFiles(folder, files);
   return remarks;

@@ -15,6 +15,10 @@ namespace evical {
 NamedResult namedResult(const Session& session, std::shared_ptr<const CalibrationResult> result,
                         const std::string& version);
 
+// The same of a run, with what its recording says of the sensors.
+NamedResult namedRun(const Session& session, const std::shared_ptr<const CalibrationRun>& run,
+                     const std::string& version);
+
 // Keeps the run alive.
 std::shared_ptr<const CalibrationResult> resultOf(const std::shared_ptr<const CalibrationRun>& run);
 
@@ -23,7 +27,8 @@ struct ExportRemarks {
   std::vector<std::string> notes, refused;
 };
 
-// report.html with its plots/*.csv, result.yaml, trajectory.csv, the files of saved_detections.h, log.txt, and a
+// report.html with its plots/*.csv, result.yaml, trajectory.csv, residuals.csv, the files of saved_detections.h and
+// saved_run.h, log.txt, and a
 // folder a target: kalibr and what the session asks for. The remarks are in log.txt too.
 ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Session& session,
                                const std::shared_ptr<const CalibrationRun>& run, const std::string& version,
