@@ -34,12 +34,13 @@ int complain(const QString& text) {
   return kBadUse;
 }
 
-// Calibrates the session, lets the screen draw what it got, and saves its picture.
+// Calibrates the session, or opens the saved run, lets the screen draw what it got, and saves its picture.
 class Photographer : public QObject {
  public:
   Photographer(MainWindow& window, QString screen, QString file)
       : window_(window), screen_(std::move(screen)), file_(std::move(file)) {
     connect(&window.files(), &SessionFiles::opened, this, [this] {
+      if (window_.workbench().document.last().run) return waitAndSave();
       window_.calibrate();
       if (!window_.workbench().runner.running())
         giveUp("calibrate", {true, {}, "the session is incomplete", {}});
@@ -85,9 +86,10 @@ Arguments parse(const QApplication& application) {
   parser.setApplicationDescription("Calibrates event cameras with IMUs from one recording of a circle grid.");
   parser.addHelpOption();
   parser.addVersionOption();
-  parser.addPositionalArgument("file", "A session file or a recording to open", "[SESSION|RECORDING]");
-  const QCommandLineOption screen("screenshot", "Calibrate SESSION, save a picture of this screen, and leave",
-                                  "SCREEN");
+  parser.addPositionalArgument("file", "A session file, a recording, or a result's folder to open",
+                               "[SESSION|RECORDING|RESULT]");
+  const QCommandLineOption screen(
+      "screenshot", "Calibrate SESSION or open RESULT, save a picture of this screen, and leave", "SCREEN");
   const QCommandLineOption output("o", "The picture's file", "x.png");
   const QCommandLineOption size("size", "The window's size, for pictures", "WIDTHxHEIGHT", "1280x800");
   const QCommandLineOption appearance("appearance", "system, light or dark", "WORD");

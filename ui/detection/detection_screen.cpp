@@ -13,8 +13,10 @@
 #include <QKeyEvent>
 #include <QLabel>
 #include <QPainter>
+#include <QPushButton>
 #include <QSignalBlocker>
 #include <QToolButton>
+#include <QVBoxLayout>
 
 #include <algorithm>
 #include <cmath>
@@ -57,6 +59,15 @@ void DetectionScreen::connectEngine() {
   connect(engine_.get(), &DetectionEngine::frameReady, this, &DetectionScreen::takeFrame);
   connect(engine_.get(), &DetectionEngine::analysisReady, this, &DetectionScreen::takeAnalysis);
   connectPictures();
+  look_for_ = new QPushButton(icon("search"), tr("Look for the recording..."), view_);
+  look_for_->setAccessibleName(tr("Look for the recording"));
+  look_for_->setToolTip(tr("Choose where the recording is now; what the run found stays"));
+  look_for_->hide();
+  auto* const over_view = new QVBoxLayout(view_);
+  over_view->addStretch(3);
+  over_view->addWidget(look_for_, 0, Qt::AlignHCenter);
+  over_view->addStretch(1);
+  connect(look_for_, &QPushButton::clicked, this, [this] { emit recordingWanted(missingRecording()); });
   connect(live_detection_, &LiveDetection::windowReady, this,
           [this] { showLiveFrame(live_detection_->take()); });
   connect(timeline_, &Timeline::timeSelected, this, [this](double time_s) {
@@ -92,6 +103,7 @@ void DetectionScreen::setSession(const Session& session) {
 
 void DetectionScreen::chooseCamera(std::size_t camera) {
   camera_ = camera;
+  look_for_->hide();
   analysis_.reset();
   companion_.reset();
   adaptTo(CameraKind::Events);
@@ -132,8 +144,10 @@ void DetectionScreen::showRun() {
   layer_boxes_[static_cast<std::size_t>(Layer::Reprojection)]->setEnabled(seen != nullptr);
   timeline_->setWindows(seen ? seen->windows : std::vector<WindowReport>{});
   engine_->setObservations(seen ? std::shared_ptr<const BoardObservations>(run_, seen) : nullptr);
-  engine_->setResult(seen ? std::shared_ptr<const CalibrationState>(run_, &run_->result.state) : nullptr);
+  const bool moves = seen && !run_->result.state.world_from_imu_rotation.control_points.empty();
+  engine_->setResult(moves ? std::shared_ptr<const CalibrationState>(run_, &run_->result.state) : nullptr);
   engine_->setSight(sight());
+  showMarksAlone();
   offerPictures();
   request();
 }
@@ -247,10 +261,31 @@ void DetectionScreen::request() {
   engine_->show(wish);
 }
 
+QString DetectionScreen::missingRecording() const {
+  if (!session_ || camera_ >= session_->cameras.size()) return {};
+  const std::filesystem::path& own = session_->cameras[camera_].recording;
+  const std::filesystem::path& path = own.empty() ? session_->recording : own;
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored) ? QString() : QString::fromStdString(path.string());
+}
+
+void DetectionScreen::showMarksAlone() {
+  const CalibrationRun* const run = runInView();
+  if (run == nullptr || engine_->overview().error.empty() || engine_->overview().started) return;
+  const std::vector<WindowReport>& windows = run->pass.cameras[camera_].windows;
+  if (!windows.empty()) timeline_->setRange(0.0, windows.back().time_s);
+}
+
 void DetectionScreen::takeOverview() {
   const RecordingOverview overview = engine_->overview();
+  const QString missing = overview.error.empty() ? QString() : missingRecording();
+  look_for_->setVisible(!missing.isEmpty());
+  showMarksAlone();
   if (!overview.error.empty()) {
-    view_->setMessage(tr("The recording cannot be read.\n%1").arg(QString::fromStdString(overview.error)));
+    view_->setMessage(
+        missing.isEmpty()
+            ? tr("The recording cannot be read.\n%1").arg(QString::fromStdString(overview.error))
+            : tr("The recording is not there any more:\n%1").arg(missing));
     status_->setText(tr("not readable to its end"));
     status_->setToolTip(QString::fromStdString(overview.error));
     if (!overview.started) return;

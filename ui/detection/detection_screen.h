@@ -22,6 +22,7 @@ class QDoubleSpinBox;
 class QGridLayout;
 class QHBoxLayout;
 class QLabel;
+class QPushButton;
 class QToolButton;
 
 namespace evical::ui {
@@ -74,7 +75,8 @@ class DetectionScreen : public QWidget {
   void step(int direction);  // to the next window or frame (+1) or the one before (-1)
 
  signals:
-  void timeSelected(double time_s);  // by the user, or by playing
+  void timeSelected(double time_s);              // by the user, or by playing
+  void recordingWanted(const QString& missing);  // a recording's path: the user wants to look for it
 
  protected:
   void keyPressEvent(QKeyEvent*) override;
@@ -96,6 +98,8 @@ class DetectionScreen : public QWidget {
   void advance();
   void request();  // of the engine: what the cursor, the mode and the layers ask for
   void takeOverview();
+  QString missingRecording() const;  // the path of the camera's, where it is not there any more
+  void showMarksAlone();             // of a run whose recording is missing
   void takeFrame();
   void takeAnalysis();
   void takeCompanion();
@@ -133,6 +137,7 @@ class DetectionScreen : public QWidget {
   QComboBox *mode_box_ = nullptr, *speed_box_ = nullptr, *camera_box_ = nullptr, *picture_box_ = nullptr;
   QDoubleSpinBox *fade_box_ = nullptr, *time_box_ = nullptr;
   QToolButton *play_button_ = nullptr, *follow_button_ = nullptr;
+  QPushButton* look_for_ = nullptr;
   QLabel *status_ = nullptr, *fade_label_ = nullptr, *verdict_title_ = nullptr;
   QGridLayout* layer_grid_ = nullptr;
   std::vector<QCheckBox*> layer_boxes_;

@@ -62,6 +62,8 @@ QString fitText(const NamedResult& named) {
                  .arg(fit.reprojection_rms_px, 0, 'g', 3)
                  .arg(fit.windows_used)
                  .arg(fit.windows_total);
+    if (fit.windows_rejected > 0)
+      parts.back() += QObject::tr(", %1 rejected by hand").arg(fit.windows_rejected);
   }
   parts << QObject::tr("took %1 s").arg(named.result->timing.total_s, 0, 'f', 1);
   return parts.join("; ") + ".";
@@ -152,7 +154,13 @@ ResultScreen::ResultScreen(QWidget* parent)
   auto* const layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(stack_);
-  connect(against_, &QComboBox::activated, this, &ResultScreen::showParameters);
+  against_->setAccessibleName(tr("Compare with"));
+  against_->setToolTip(tr("Another run of this session, or what was loaded, beside this result"));
+  connect(against_, &QComboBox::activated, this, [this] {
+    const QVariant chosen = against_->currentData();
+    if (chosen.typeId() == QMetaType::QString) return emit keptRunRequested(chosen.toString());
+    showParameters();
+  });
 }
 
 QWidget* ResultScreen::makeEmpty() {
@@ -272,12 +280,19 @@ void ResultScreen::setRuns(std::optional<NamedResult> previous, std::optional<Na
 }
 
 void ResultScreen::setReference(std::optional<NamedResult> reference, const QString& title) {
-  const bool is_new = reference && (!reference_ || title != reference_title_);
+  const bool asked_for = against_->currentData().typeId() == QMetaType::QString;
+  const bool is_new = reference && (!reference_ || title != reference_title_ || asked_for);
   reference_ = std::move(reference);
   reference_title_ = title;
   offerComparisons();
   if (is_new) against_->setCurrentIndex(against_->findData(static_cast<int>(Against::Reference)));
   showParameters();
+}
+
+void ResultScreen::setKeptRuns(const std::vector<std::pair<QString, QString>>& runs) {
+  if (runs == kept_runs_) return;
+  kept_runs_ = runs;
+  offerComparisons();
 }
 
 void ResultScreen::setOutdated(bool outdated) {
@@ -290,6 +305,8 @@ void ResultScreen::offerComparisons() {
   against_->addItem(tr("nothing"), static_cast<int>(Against::Nothing));
   if (previous_) against_->addItem(tr("the previous run"), static_cast<int>(Against::Previous));
   if (reference_) against_->addItem(reference_title_, static_cast<int>(Against::Reference));
+  for (const auto& [title, folder] : kept_runs_)
+    if (!reference_ || title != reference_title_) against_->addItem(title, folder);
   against_->setCurrentIndex(std::max(0, against_->findData(chosen)));
 }
 

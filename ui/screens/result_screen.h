@@ -7,6 +7,8 @@
 #include <QWidget>
 
 #include <optional>
+#include <utility>
+#include <vector>
 
 class QComboBox;
 
@@ -33,12 +35,15 @@ class ResultScreen : public QWidget {
   void setRuns(std::optional<NamedResult> previous, std::optional<NamedResult> result);
   void setPrevious(std::optional<NamedResult> previous);
   void setReference(std::optional<NamedResult> reference, const QString& title);
+  // The session's other runs, to be compared with: title and folder.
+  void setKeptRuns(const std::vector<std::pair<QString, QString>>& runs);
   void setOutdated(bool outdated);  // the session is not as it was for this result
 
  signals:
   void exportRequested();
   void reportRequested();
   void referenceRequested();
+  void keptRunRequested(const QString& folder);  // as what the result is to be compared with
   void calibrateRequested();
   void repairRequested(const evical::Repair& repair);
 
@@ -60,6 +65,7 @@ class ResultScreen : public QWidget {
 
   std::optional<NamedResult> result_, previous_, reference_;
   QString reference_title_;
+  std::vector<std::pair<QString, QString>> kept_runs_;
   QStackedWidget* stack_;
   QLabel *icon_, *verdict_, *reason_, *fit_, *outdated_, *comparison_, *observed_, *pairs_;
   RepairButton* repair_;

@@ -13,10 +13,15 @@
 namespace evical::ui {
 namespace {
 
-template <class Screen>
-void showRuns(Screen& screen, const CalibrationDocument& document) {
-  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen,
-                   [&screen, &document] { screen.setRun(document.last().run, document.last().session); });
+// Of a run from a damaged folder pages show what there is: null where their part is missing.
+std::shared_ptr<const CalibrationRun> withTrajectory(const std::shared_ptr<const CalibrationRun>& run) {
+  return run && !run->result.state.world_from_imu_rotation.control_points.empty() ? run : nullptr;
+}
+std::shared_ptr<const CalibrationRun> withResiduals(const std::shared_ptr<const CalibrationRun>& run) {
+  return run && !run->result.circle_residuals.empty() ? run : nullptr;
+}
+std::shared_ptr<const CalibrationRun> withSamples(const std::shared_ptr<const CalibrationRun>& run) {
+  return run && run->pass.imus.size() == run->result.state.imus.size() ? withTrajectory(run) : nullptr;
 }
 
 void wireDetection(DetectionScreen& screen, Workbench& workbench) {
@@ -25,7 +30,8 @@ void wireDetection(DetectionScreen& screen, Workbench& workbench) {
   QObject::connect(&document, &CalibrationDocument::sessionChanged, &screen, [&screen, &document] {
     if (document.hasSession()) screen.setSession(document.session());
   });
-  showRuns(screen, document);
+  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen,
+                   [&screen, &document] { screen.setRun(document.last().run, document.last().session); });
   job.observeWith([&screen] { return screen.liveObserver(); });
   QObject::connect(&job, &CalibrationJob::detecting, &screen, [&screen] { screen.setLive(true); });
   QObject::connect(&job, &CalibrationJob::detectionDone, &screen, [&screen] { screen.setLive(false); });
@@ -46,7 +52,8 @@ void wireTrajectory(TrajectoryScreen& screen, Workbench& workbench) {
     screen.setIntrinsics(intrinsicsOf(document.session()));
   };
   QObject::connect(&document, &CalibrationDocument::runsChanged, &screen, [&screen, &document, show_session] {
-    if (document.last().run) return screen.setRun(document.last().run, document.last().session);
+    if (const auto run = withTrajectory(document.last().run))
+      return screen.setRun(run, document.last().session);
     screen.clear();
     show_session();
   });
@@ -88,7 +95,7 @@ void wireConvergence(ConvergenceScreen& screen, Workbench& workbench) {
 void wireResiduals(ResidualsScreen& screen, Workbench& workbench) {
   const CalibrationDocument& document = workbench.document;
   QObject::connect(&document, &CalibrationDocument::runsChanged, &screen,
-                   [&screen, &document] { screen.setRun(document.last().run); });
+                   [&screen, &document] { screen.setRun(withResiduals(document.last().run)); });
   QObject::connect(&screen, &ResidualsScreen::recalibrateWithout, &screen,
                    [&screen, &workbench](const std::vector<int>& views) {
                      const RunRecord& last = workbench.document.last();
@@ -112,7 +119,10 @@ void wireLinkedPages(const Pages& pages, Workbench& workbench) {
   wireTrajectory(*pages.trajectory, workbench);
   wireConvergence(*pages.convergence, workbench);
   wireResiduals(*pages.residuals, workbench);
-  showRuns(*pages.signal_curves, workbench.document);
+  const CalibrationDocument& document = workbench.document;
+  QObject::connect(&document, &CalibrationDocument::runsChanged, pages.signal_curves, [pages, &document] {
+    pages.signal_curves->setRun(withSamples(document.last().run), document.last().session);
+  });
   // While it ran, the detection screen may have followed it.
   QObject::connect(&workbench.calibration, &CalibrationJob::ended, pages.trajectory, [pages] {
     const double time_s = pages.detection->time_s();

@@ -4,10 +4,12 @@
 #include "core/base/error.h"
 #include "ui/forms/option_form.h"
 #include "ui/screens/result_screen.h"
+#include "ui/screens/runs_panel.h"
 #include "ui/theme/theme.h"
 #include "ui/window/after_turns.h"
 #include "ui/window/error_panel.h"
 #include "ui/window/job_status.h"
+#include "ui/window/kept_runs.h"
 #include "ui/window/log_panel.h"
 #include "ui/window/session_files.h"
 #include "ui/window/steps_panel.h"
@@ -31,7 +33,7 @@ namespace {
 constexpr int kSideBar_px = 236;
 constexpr int kLaidOut_turns = 3;  // after which pages are filled and laid out
 // Bumped when docks or tool bars change, so that an older layout isn't forced on them.
-constexpr int kLayoutVersion = 1;
+constexpr int kLayoutVersion = 2;
 
 }  // namespace
 
@@ -43,6 +45,9 @@ MainWindow::MainWindow(const QString& version)
   makeActions();
   statusBar()->addWidget(new JobStatus(workbench_.runner, this), 1);
   wirePages(pages_, workbench_, *files_);
+  wireRuns(*runs_, *pages_.result, workbench_);
+  connect(runs_, &RunsPanel::comparisonRequested, this, [this] { showScreen("result"); });
+  connect(&workbench_.history, &RunHistory::failed, this, &MainWindow::showProblem);
   wireDocument();
   wireParameters();
   wireJobs();
@@ -105,6 +110,10 @@ void MainWindow::makeDocks() {
   log_ = new LogPanel(this);
   log_dock_ = addDock("log", tr("Log"), log_, Qt::BottomDockWidgetArea);
   log_dock_->hide();
+  runs_ = new RunsPanel(this);
+  runs_dock_ = addDock("runs", tr("Runs"), runs_, Qt::BottomDockWidgetArea);
+  tabifyDockWidget(log_dock_, runs_dock_);
+  runs_dock_->hide();
   parameters_ = new OptionForm(this);
   parameters_dock_ = addDock("parameters", tr("Parameters"), parameters_, Qt::RightDockWidgetArea);
   parameters_dock_->hide();
@@ -158,7 +167,10 @@ void MainWindow::wireDocument() {
   connect(files_, &SessionFiles::failed, this, &MainWindow::showProblem);
   connect(files_, &SessionFiles::opened, this, [this] {
     error_->dismiss();
-    if (stack_->currentIndex() == 0) showScreen("recording");
+    if (workbench_.document.last().run)
+      showScreen("result");
+    else if (stack_->currentIndex() == 0)
+      showScreen("recording");
   });
   connect(files_, &SessionFiles::exported, this, [this](const QString& folder) {
     log_->add({LogLevel::Info, 0.0, tr("The result was exported to %1").arg(folder)});
@@ -198,7 +210,11 @@ void MainWindow::wireJobs() {
   connect(&workbench_.calibration, &CalibrationJob::calibrated, this,
           [this](std::shared_ptr<const CalibrationRun> run, const Session& session, const QString& log) {
             paintPagesLater();
-            workbench_.document.addRun({std::move(run), session, log});
+            RunRecord record{std::move(run), session, log};
+            if (workbench_.calibration.startedFrom() == RunStart::Detections)
+              workbench_.document.addUndoableRun(std::move(record), tr("Reject windows"));
+            else
+              workbench_.document.addRun(std::move(record));
             result_is_due_ = stack_->currentIndex() <= 1;
             afterTurns(kLaidOut_turns, this, [this] { bringUpResult(); });
           });
@@ -227,8 +243,9 @@ void MainWindow::wireSteps() {
   connect(&job, &CalibrationJob::iterationsChanged, steps_,
           [this](const std::shared_ptr<const LiveIterations>& live) { steps_->setIterations(*live); });
   connect(&runner, &JobRunner::finished, steps_, &StepsPanel::finish);
-  connect(&job, &CalibrationJob::calibrated, steps_,
-          [this](const std::shared_ptr<const CalibrationRun>& run) { steps_->setRun(*run); });
+  connect(&workbench_.document, &CalibrationDocument::runsChanged, steps_, [this] {
+    if (const auto run = workbench_.document.last().run) steps_->setRun(*run);
+  });
 }
 
 void MainWindow::calibrate() {

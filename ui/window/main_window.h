@@ -18,6 +18,7 @@ namespace evical::ui {
 class ErrorPanel;
 class LogPanel;
 class OptionForm;
+class RunsPanel;
 class SessionFiles;
 class StepsPanel;
 
@@ -77,7 +78,8 @@ class MainWindow : public QMainWindow {
   ErrorPanel* error_ = nullptr;
   LogPanel* log_ = nullptr;
   OptionForm* parameters_ = nullptr;
-  QDockWidget *log_dock_ = nullptr, *parameters_dock_ = nullptr;
+  RunsPanel* runs_ = nullptr;
+  QDockWidget *log_dock_ = nullptr, *parameters_dock_ = nullptr, *runs_dock_ = nullptr;
   struct Actions {
     QAction *open_session, *open_recording, *save, *save_as, *export_result, *export_every, *report, *quit;
     QAction *undo, *redo;

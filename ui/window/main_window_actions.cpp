@@ -119,6 +119,11 @@ void MainWindow::makeViewMenu() {
   log->setIcon(icon("log"));
   log->setShortcut(QKeySequence("Ctrl+L"));
   menu->addAction(log);
+  QAction* const runs = runs_dock_->toggleViewAction();
+  runs->setIcon(icon("recent"));
+  runs->setShortcut(QKeySequence("Ctrl+H"));
+  runs->setToolTip(tr("Runs of this session: open, compare, name and delete them (Ctrl+H)"));
+  menu->addAction(runs);
   menu->addSeparator();
   QMenu* const appearance = menu->addMenu(icon("theme"), tr("&Appearance"));
   auto* const group = new QActionGroup(this);
@@ -168,6 +173,7 @@ void MainWindow::makeToolBar() {
   bar->addWidget(space);
   bar->addAction(parameters_dock_->toggleViewAction());
   bar->addAction(log_dock_->toggleViewAction());
+  bar->addAction(runs_dock_->toggleViewAction());
   bar->addAction(actions_.guide);
 }
 

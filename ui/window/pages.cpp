@@ -15,8 +15,6 @@
 #include "ui/window/session_files.h"
 #include "ui/window/workbench.h"
 
-#include <QFileInfo>
-
 namespace evical::ui {
 namespace {
 
@@ -61,7 +59,7 @@ void wireRecording(RecordingScreen& screen, Workbench& workbench, SessionFiles& 
       [&screen](const QString&, const JobError& error) { screen.setInspectionFailed(error.text()); });
 }
 
-std::optional<NamedResult> namedRun(const RunRecord& record, const QString& version) {
+std::optional<NamedResult> namedRecord(const RunRecord& record, const QString& version) {
   if (!record.run) return std::nullopt;
   return namedResult(record.session, resultOf(record.run), version.toStdString());
 }
@@ -72,8 +70,8 @@ void wireResult(ResultScreen& screen, Workbench& workbench, SessionFiles& files)
   QObject::connect(&screen, &ResultScreen::reportRequested, &files, &SessionFiles::openReport);
   QObject::connect(&screen, &ResultScreen::referenceRequested, &files, &SessionFiles::chooseReference);
   const auto fill = [&screen, &workbench] {
-    screen.setRuns(namedRun(workbench.document.previous(), workbench.version),
-                   namedRun(workbench.document.last(), workbench.version));
+    screen.setRuns(namedRecord(workbench.document.previous(), workbench.version),
+                   namedRecord(workbench.document.last(), workbench.version));
     screen.setOutdated(workbench.document.runIsOutdated());
   };
   // It takes as long as everything else that a calibration's end brings.
@@ -83,7 +81,7 @@ void wireResult(ResultScreen& screen, Workbench& workbench, SessionFiles& files)
                    [&screen, &document] { screen.setOutdated(document.runIsOutdated()); });
   QObject::connect(&document, &CalibrationDocument::referenceChanged, &screen, [&screen, &document] {
     if (!document.reference()) return screen.setReference(std::nullopt, {});
-    screen.setReference(document.reference()->named, QFileInfo(document.reference()->file).fileName());
+    screen.setReference(document.reference()->named, document.reference()->title);
   });
 }
 
@@ -113,6 +111,8 @@ void wirePages(const Pages& pages, Workbench& workbench, SessionFiles& files) {
   wireStart(*pages.start, workbench, files);
   wireRecording(*pages.recording, workbench, files);
   wireResult(*pages.result, workbench, files);
+  QObject::connect(pages.detection, &DetectionScreen::recordingWanted, &files,
+                   &SessionFiles::lookForRecording);
   wireLinkedPages(pages, workbench);
 }
 

@@ -4,6 +4,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/pipeline/result_files.h"
+#include "core/pipeline/saved_run.h"
 #include "core/pipeline/session_guess.h"
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
@@ -54,6 +55,17 @@ bool isSessionFile(const QString& path) {
   return suffix == "yaml" || suffix == "yml";
 }
 
+// Of a run that is kept beside a session's file; empty where there is none.
+QString sessionOfRun(const QString& folder) {
+  const QFileInfo place(QFileInfo(folder).absolutePath());
+  if (place.suffix() != "runs") return {};
+  for (const char* const suffix : {".yaml", ".yml"}) {
+    const QString file = place.dir().filePath(place.completeBaseName() + suffix);
+    if (QFile::exists(file)) return file;
+  }
+  return {};
+}
+
 // Scenarios name each other by file, so those that are embedded become files for a moment.
 Scenario demoScenario() {
   const QTemporaryDir folder;
@@ -97,6 +109,7 @@ void SessionFiles::open(const QString& path) {
   }
   const QString session_inside = QDir(path).filePath("session.yaml");
   if (QFileInfo(path).isDir() && QFile::exists(session_inside)) return openSession(session_inside);
+  if (isSavedRun(path.toStdString())) return openRun(path);
   isSessionFile(path) ? openSession(path) : openRecording(path);
 }
 
@@ -117,6 +130,48 @@ void SessionFiles::openSession(const QString& file) {
     emit failed(tr("The truth beside the session cannot be read"), errorOf(error));
   }
   emit opened();
+}
+
+void SessionFiles::openRun(const QString& path) {
+  if (!mayDiscard()) return;
+  workbench_.history.open(path.toStdString(), [this](const SavedRun& saved) { runOpened(saved); });
+}
+
+void SessionFiles::runOpened(const SavedRun& saved) {
+  const QString folder = QString::fromStdString(saved.summary.folder.string());
+  if (workbench_.runner.running()) {
+    emit failed(tr("%1 was not opened").arg(folder),
+                {true, workbench_.runner.title(), tr("was started meanwhile"), tr("Cancel it, or wait")});
+    return;
+  }
+  RunRecord record{saved.run, saved.session, QString::fromStdString(saved.log)};
+  const QString session_file = sessionOfRun(folder);
+  try {
+    if (session_file.isEmpty())
+      workbench_.document.openRun(std::move(record));
+    else
+      workbench_.document.openRun(std::move(record), session_file);
+  } catch (const CalibrationError& error) {
+    emit failed(tr("The session of %1 cannot be opened").arg(folder), errorOf(error));
+    return;
+  }
+  remember(QDir(folder).filePath("result.yaml"));
+  inspectSession();
+  emit opened();
+  QStringList missing;
+  for (const std::string& text : saved.missing) missing << QString::fromStdString(text);
+  if (!missing.isEmpty())
+    emit failed(
+        tr("Not everything of this run is there"),
+        {true, folder, missing.join('\n'), tr("The pages show what is there; calibrate again for the rest")});
+}
+
+void SessionFiles::lookForRecording(const QString& missing) {
+  const QString name = QFileInfo(missing).fileName();
+  const QString file = askForRecording(tr("Where is %1?").arg(name));
+  if (file.isEmpty()) return;
+  workbench_.document.moveRecording(missing.toStdString(), QFileInfo(file).absoluteFilePath().toStdString());
+  inspectSession();
 }
 
 void SessionFiles::openRecording(const QString& path) {
@@ -172,8 +227,8 @@ void SessionFiles::furtherRecordingInspected(const QString& recording, const Ins
 }
 
 void SessionFiles::chooseSession() {
-  const QString file = QFileDialog::getOpenFileName(window_, tr("Open a session"), lastFolder(),
-                                                    tr("Sessions (*.yaml *.yml);;All files (*)"));
+  const QString file = QFileDialog::getOpenFileName(window_, tr("Open a session or a result"), lastFolder(),
+                                                    tr("Sessions and results (*.yaml *.yml);;All files (*)"));
   if (!file.isEmpty()) open(file);
 }
 

@@ -19,7 +19,8 @@ class QWidget;
 
 namespace evical {
 struct ExportRemarks;
-}
+struct SavedRun;
+}  // namespace evical
 
 namespace evical::ui {
 
@@ -29,12 +30,14 @@ class SessionFiles : public QObject {
  public:
   SessionFiles(Workbench& workbench, QWidget* window);
 
-  void open(const QString& path);  // a session file, a recording, or a folder with either
+  void open(const QString& path);  // a session file, a recording, a saved run, or a folder with one of them
   void chooseSession();
   void chooseRecording();
   // A recording beside the session's, for sensors that it lacks.
   void chooseFurtherRecording();
   void addRecording(const QString& path);
+  // Asks where a recording is that is not at its place any more.
+  void lookForRecording(const QString& missing);
   bool save();
   bool saveAs();
   void openDemo();  // simulates it the first time
@@ -61,6 +64,8 @@ class SessionFiles : public QObject {
  private:
   void openSession(const QString& file);
   void openRecording(const QString& path);
+  void openRun(const QString& path);
+  void runOpened(const SavedRun& saved);
   bool saveTo(const QString& file);
   void remember(const QString& file);
   void recordingInspected(const QString& recording, const Inspection& inspection);

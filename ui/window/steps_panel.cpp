@@ -185,8 +185,13 @@ void StepsPanel::dropUnusedSteps() {
 void StepsPanel::setRun(const CalibrationRun& run) {
   dropUnusedSteps();
   const CalibrationResult& result = run.result;
-  for (const StageRow& stage : kCalibrationStages)
-    if (stage.duration_s != nullptr) row(stage.stage)->setTime(result.timing.*stage.duration_s);
+  for (const StageRow& stage : kCalibrationStages) {
+    if (stage.duration_s == nullptr) continue;
+    row(stage.stage)->setTime(result.timing.*stage.duration_s);
+    // Also of a run of another time.
+    if (stage.stage != CalibrationStage::CrossValidate || result.cross_validation)
+      row(stage.stage)->setState(StepState::Done);
+  }
   StepRow* const detect = row(CalibrationStage::Detect);
   detect->setKeyNumber(windowCounts(run.pass.cameras));
   detect->setTime(std::max(result.timing.read_s, result.timing.detect_s));

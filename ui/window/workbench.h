@@ -6,6 +6,7 @@
 #include "ui/jobs/calibration_job.h"
 #include "ui/jobs/inspection_job.h"
 #include "ui/jobs/job_runner.h"
+#include "ui/jobs/run_history.h"
 
 #include <QString>
 
@@ -18,6 +19,7 @@ struct Workbench {
   CalibrationDocument document;
   JobRunner runner;
   CalibrationJob calibration{runner};
+  RunHistory history;        // has a thread of its own, too
   InspectionJob inspection;  // has a runner of its own: it may go on beside a calibration
 };
 

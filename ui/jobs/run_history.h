@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The runs of a session, kept as folders: beside its file in NAME.runs, or with the user's data while it has none. Reads
+// and writes in a thread of its own, one after the other; GUI thread only.
+#pragma once
+
+#include "core/pipeline/saved_run.h"
+#include "core/report/result_yaml.h"
+#include "ui/jobs/job_runner.h"
+
+#include <QObject>
+#include <QString>
+#include <QThreadPool>
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace evical::ui {
+
+class RunHistory : public QObject {
+  Q_OBJECT
+
+ public:
+  // What is kept of one session; and of all sessions together that have no file.
+  static constexpr std::size_t kMostRuns = 20, kMostRunsWithoutFile = 60;
+  static constexpr std::uintmax_t kMostBytes = 500'000'000, kMostBytesWithoutFile = 1'000'000'000;
+
+  explicit RunHistory(QObject* parent = nullptr);
+  ~RunHistory() override;  // what is to be written is written first
+
+  // Lists the runs of another session. No file: it goes by its recording; neither: there are none.
+  void setSession(const QString& session_file, const std::filesystem::path& recording);
+  // The session that had no file has one now: its runs go there.
+  void moveTo(const QString& session_file);
+  const std::filesystem::path& place() const { return place_; }
+
+  void keep(std::shared_ptr<const CalibrationRun> run, const Session& session, const QString& version,
+            const QString& log);
+  void rename(const std::filesystem::path& folder, const QString& name);
+  void remove(const std::vector<std::filesystem::path>& folders);
+
+  // The oldest first.
+  const std::vector<RunSummary>& runs() const { return runs_; }
+  // Where a run is kept, or was opened from; empty: nowhere yet.
+  std::filesystem::path folderOf(const std::shared_ptr<const CalibrationRun>& run) const;
+
+  // A saved run, and the numbers of one; `done` is told in the GUI thread, unless it `failed`.
+  void open(const std::filesystem::path& path, const std::function<void(const SavedRun&)>& done);
+  void openNumbers(const std::filesystem::path& folder, const std::function<void(const NamedResult&)>& done);
+
+ signals:
+  void changed();  // runs()
+  void failed(const QString& what_was_tried, const evical::ui::JobError& error);
+
+ private:
+  using Done = std::function<void()>;
+  void work(const QString& what, std::function<Done()> piece);
+  void listAnew();
+
+  QThreadPool pool_;
+  std::filesystem::path place_;
+  bool has_file_ = false;
+  std::vector<RunSummary> runs_;
+  std::vector<std::pair<std::weak_ptr<const CalibrationRun>, std::filesystem::path>> folders_;
+};
+
+}  // namespace evical::ui
