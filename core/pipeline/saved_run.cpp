@@ -4,6 +4,7 @@
 #include "core/pipeline/detections_check.h"
 #include "core/pipeline/result_files.h"
 #include "core/pipeline/run_data.h"
+#include "core/pipeline/session_keys.h"
 #include "core/report/detections_csv.h"
 
 #include <fmt/format.h>
@@ -210,7 +211,7 @@ class FolderReader {
     try {
       if (!isThere(folder_ / kSession))
         throw badInput(kSession, "is not there", "An earlier version wrote none: choose the recording again");
-      saved_.session = evical::readSession(folder_ / kSession);
+      saved_.session = readSessionOfRun(folder_ / kSession);
       return;
     } catch (const CalibrationError& error) {
       if (!named_) throw;

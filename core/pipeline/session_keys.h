@@ -9,6 +9,9 @@
 
 namespace evical {
 
+// As readSession; but the recordings of a run may be gone since.
+Session readSessionOfRun(const std::filesystem::path& file);
+
 // Seconds since the recording's start, [begin, end]. Throws CalibrationError (BadInput).
 std::array<double, 2> timeRangeFrom(const YamlNode& node);
 

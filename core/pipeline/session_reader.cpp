@@ -20,6 +20,11 @@ std::string name(const YamlNode& node) {
   return text;
 }
 
+struct SessionFolder {
+  std::filesystem::path path;
+  bool recordings_may_be_gone = false;
+};
+
 std::filesystem::path besideSession(const YamlNode& node, const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / name(node);
   std::error_code ignored;
@@ -27,6 +32,10 @@ std::filesystem::path besideSession(const YamlNode& node, const std::filesystem:
     throw node.error(fmt::format("'{}' does not exist", path.string()),
                      "Paths are relative to the session file");
   return path;
+}
+
+std::filesystem::path recordingBeside(const YamlNode& node, const SessionFolder& folder) {
+  return folder.recordings_may_be_gone ? folder.path / name(node) : besideSession(node, folder.path);
 }
 
 // A length over many spacings, in the place of spacing_m: beside it, it must say the same.
@@ -107,18 +116,17 @@ constexpr double kLargestOffset_s = 1e10;
 
 // Which stream of which file, in which clock.
 template <class Sensor>
-Sensor readSource(const YamlNode& map, const std::string& sensor_name, const std::filesystem::path& folder) {
+Sensor readSource(const YamlNode& map, const std::string& sensor_name, const SessionFolder& folder) {
   Sensor sensor;
   sensor.name = sensor_name;
   sensor.stream = name(map["stream"]);
-  if (const auto node = map.find("recording")) sensor.recording = besideSession(*node, folder);
+  if (const auto node = map.find("recording")) sensor.recording = recordingBeside(*node, folder);
   if (const auto node = map.find("clock_offset_s"))
     sensor.clock_offset_s = node->real(-kLargestOffset_s, kLargestOffset_s, "s");
   return sensor;
 }
 
-SessionCamera readCamera(const YamlNode& map, const std::string& camera_name,
-                         const std::filesystem::path& folder) {
+SessionCamera readCamera(const YamlNode& map, const std::string& camera_name, const SessionFolder& folder) {
   map.allowOnly({"recording", "stream", "clock_offset_s", "resolution_px", "shutter", "same_sensor_as",
                  "board", "intrinsics", "intrinsics_std", "intrinsics_correlation"});
   SessionCamera camera = readSource<SessionCamera>(map, camera_name, folder);
@@ -132,7 +140,7 @@ SessionCamera readCamera(const YamlNode& map, const std::string& camera_name,
     throw sigmas->error("is of intrinsics that are not given", "Give intrinsics, too");
   if (!intrinsics) return camera;
   KnownIntrinsics known = intrinsics->isMap() ? KnownIntrinsics{readIntrinsics(*intrinsics), {}}
-                                              : readKnownIntrinsics(besideSession(*intrinsics, folder),
+                                              : readKnownIntrinsics(besideSession(*intrinsics, folder.path),
                                                                     camera.name, camera.stream);
   if (sigmas)
     known.uncertainty = readLensUncertainty(*sigmas, map.find("intrinsics_correlation"), known.camera);
@@ -157,7 +165,7 @@ void setFromNode(const YamlNode& node, const std::string& key, SessionImu& imu) 
   }
 }
 
-SessionImu readImu(const YamlNode& map, const std::string& imu_name, const std::filesystem::path& folder) {
+SessionImu readImu(const YamlNode& map, const std::string& imu_name, const SessionFolder& folder) {
   map.allowOnly({"recording", "stream", "clock_offset_s", "accelerometer_noise_density",
                  "gyroscope_noise_density", "accelerometer_random_walk", "gyroscope_random_walk",
                  "acceleration_unit", "angular_rate_unit", "gyroscope_axes", "accelerometer_axes"});
@@ -222,7 +230,7 @@ void readOptions(const YamlNode& map, CalibrationOptions& options) {
   }
 }
 
-void readSensors(const YamlNode& root, const std::filesystem::path& folder, Session& session) {
+void readSensors(const YamlNode& root, const SessionFolder& folder, Session& session) {
   const YamlNode cameras = root["cameras"];
   for (const std::string& key : cameras.keys())
     session.cameras.push_back(readCamera(cameras[key], key, folder));
@@ -303,21 +311,19 @@ void readPriors(const YamlNode& map, Session& session) {
 }
 
 // One, or of a blinking board several.
-void readRecordings(const YamlNode& node, const std::filesystem::path& folder, Session& session) {
+void readRecordings(const YamlNode& node, const SessionFolder& folder, Session& session) {
   if (!node.isSequence()) {
-    session.recording = besideSession(node, folder);
+    session.recording = recordingBeside(node, folder);
     return;
   }
   const std::vector<YamlNode> items = node.items();
   if (items.empty()) throw node.error("is empty", "Name a recording");
-  session.recording = besideSession(items.front(), folder);
+  session.recording = recordingBeside(items.front(), folder);
   for (std::size_t k = 1; k < items.size(); ++k)
-    session.more_recordings.push_back(besideSession(items[k], folder));
+    session.more_recordings.push_back(recordingBeside(items[k], folder));
 }
 
-}  // namespace
-
-Session readSession(const std::filesystem::path& file) {
+Session readSessionIn(const SessionFolder& folder, const std::filesystem::path& file) {
   const YamlNode root = YamlNode::load(file);
   if (!root.isMap() || !root.has("evical_session"))
     throw root.error("is no session file: the key evical_session is missing",
@@ -325,7 +331,6 @@ Session readSession(const std::filesystem::path& file) {
   root.allowOnly({"evical_session", "recording", "time_range_s", "board", "boards", "gravity", "cameras",
                   "imus", "reference", "prior", "options", "export"});
   root["evical_session"].integer(1, 1);
-  const std::filesystem::path folder = file.parent_path();
   Session session;
   session.source = file;
   readRecordings(root["recording"], folder, session);
@@ -340,6 +345,16 @@ Session readSession(const std::filesystem::path& file) {
       session.exports.emplace_back(exportTarget(item.text(), item.place()).name);
   validate(session, file.string());
   return session;
+}
+
+}  // namespace
+
+Session readSession(const std::filesystem::path& file) {
+  return readSessionIn({file.parent_path()}, file);
+}
+
+Session readSessionOfRun(const std::filesystem::path& file) {
+  return readSessionIn({file.parent_path(), true}, file);
 }
 
 }  // namespace evical

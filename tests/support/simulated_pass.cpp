@@ -14,13 +14,6 @@ BoardObservations observationsOf(const Scenario& scenario, std::size_t camera) {
   BoardObservations observations = simulateObservations(scenario, camera, kNoise_px, kWindow_s);
   observations.camera = scenario.cameras[camera].name;
   if (scenario.cameras[camera].frames) observations.kind = CameraKind::Frames;
-  for (const BoardView& view : observations.views) {
-    WindowReport& window = observations.windows.emplace_back();
-    window.time_s = view.time_s;
-    window.half_width_s = 0.5 * kWindow_s;
-    window.outcome = view.kind == ViewKind::Complete ? WindowOutcome::Complete : WindowOutcome::Partial;
-    window.circles = static_cast<int>(view.circles.size());
-  }
   return observations;
 }
 

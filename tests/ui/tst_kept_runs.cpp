@@ -204,7 +204,11 @@ class TestKeptRuns : public QObject {
     const QString recording = scratch_.filePath("recording.bag"), moved = scratch_.filePath("moved.bag");
     QVERIFY(QFile::rename(recording, moved));
     WindowFixture test;
-    waitForResiduals(test, [&] { test.window.files().open(folder); });
+    waitForResiduals(test, [&] {
+      test.window.files().open(folder);
+      QTRY_VERIFY2_WITH_TIMEOUT(test.document().hasSession(), qPrintable(test.child<ErrorPanel>()->text()),
+                                kPatience_ms);
+    });
     QCOMPARE(test.screen(), QString("result"));
     QVERIFY(!shownNumbers(test).isEmpty());
     test.window.showScreen("detection");
@@ -271,7 +275,9 @@ class TestKeptRuns : public QObject {
   static void drop(WindowFixture& test, const QString& path) {
     QMimeData data;
     data.setUrls({QUrl::fromLocalFile(path)});
-    QDropEvent event(QPointF(10, 10), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    QDragEnterEvent enter(QPoint(200, 200), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+    QCoreApplication::sendEvent(&test.window, &enter);
+    QDropEvent event(QPointF(200, 200), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
     QCoreApplication::sendEvent(&test.window, &event);
   }
 };

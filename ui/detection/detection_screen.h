@@ -29,6 +29,7 @@ namespace evical::ui {
 
 class DetectionEngine;
 enum class PictureChoice;
+struct RecordingOverview;
 struct Sight;
 class EventView;
 class Timeline;
@@ -79,7 +80,6 @@ class DetectionScreen : public QWidget {
   void recordingWanted(const QString& missing);  // a recording's path: the user wants to look for it
 
  protected:
-  void keyPressEvent(QKeyEvent*) override;
   void changeEvent(QEvent*) override;
 
  private:
@@ -89,6 +89,7 @@ class DetectionScreen : public QWidget {
   QToolButton* addButton(QHBoxLayout* row, const QString& icon_name, const QString& help);
   void applyColours();
   void connectEngine();
+  void addKeys();
 
   void chooseCamera(std::size_t camera);
   const CalibrationRun* runInView() const;  // null: there is none of this recording
@@ -100,6 +101,7 @@ class DetectionScreen : public QWidget {
   void takeOverview();
   QString missingRecording() const;  // the path of the camera's, where it is not there any more
   void showMarksAlone();             // of a run whose recording is missing
+  void keepCursorInside(const RecordingOverview& overview);
   void takeFrame();
   void takeAnalysis();
   void takeCompanion();

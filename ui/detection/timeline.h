@@ -7,6 +7,7 @@
 #include "core/data/board_observations.h"
 #include "ui/detection/rate_curve.h"
 
+#include <QBrush>
 #include <QColor>
 #include <QRectF>
 #include <QWidget>
@@ -23,6 +24,7 @@ enum class WindowClass { Complete, Partial, Rejected, Missed };
 inline constexpr std::size_t kWindowClassCount = 4;
 WindowClass windowClass(WindowOutcome outcome);
 QColor windowColour(WindowClass window_class);  // of the theme
+QBrush windowBrush(WindowClass window_class);   // partial ones are dotted
 double endOfWindow(const WindowReport& window);
 
 class Timeline : public QWidget {

@@ -4,6 +4,7 @@
 #include "core/base/error.h"
 #include "core/geometry/camera_model.h"
 #include "core/pipeline/session_boards.h"
+#include "core/pipeline/session_keys.h"
 
 #include <QFileInfo>
 #include <QUndoCommand>
@@ -103,7 +104,7 @@ void CalibrationDocument::openRun(RunRecord record) {
 }
 
 void CalibrationDocument::openRun(RunRecord record, const QString& session_file) {
-  replace(readSession(pathOf(session_file)), session_file, false, std::move(record));
+  replace(readSessionOfRun(pathOf(session_file)), session_file, false, std::move(record));
 }
 
 void CalibrationDocument::replace(Session session, const QString& session_file, bool unsaved, RunRecord run) {

@@ -14,6 +14,7 @@ class QComboBox;
 
 class QLabel;
 class QListWidget;
+class QPushButton;
 
 class QStackedWidget;
 class QTreeWidget;
@@ -37,7 +38,8 @@ class ResultScreen : public QWidget {
   void setReference(std::optional<NamedResult> reference, const QString& title);
   // The session's other runs, to be compared with: title and folder.
   void setKeptRuns(const std::vector<std::pair<QString, QString>>& runs);
-  void setOutdated(bool outdated);  // the session is not as it was for this result
+  void setCalibrating(bool calibrating);  // the first one is being made
+  void setOutdated(bool outdated);        // the session is not as it was for this result
 
  signals:
   void exportRequested();
@@ -67,6 +69,8 @@ class ResultScreen : public QWidget {
   QString reference_title_;
   std::vector<std::pair<QString, QString>> kept_runs_;
   QStackedWidget* stack_;
+  QLabel* none_yet_;
+  QPushButton* calibrate_;
   QLabel *icon_, *verdict_, *reason_, *fit_, *outdated_, *comparison_, *observed_, *pairs_;
   RepairButton* repair_;
   QComboBox* against_;

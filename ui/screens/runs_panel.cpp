@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/runs_panel.h"
 
+#include "ui/screens/verdict_icon.h"
 #include "ui/theme/theme.h"
 
 #include <QDateTime>
@@ -41,12 +42,6 @@ QString verdictText(CalibrationStatus status) {
       break;
   }
   return QObject::tr("failed");
-}
-
-QIcon verdictIcon(CalibrationStatus status) {
-  if (status == CalibrationStatus::Ok) return icon("done", theme().good);
-  return status == CalibrationStatus::Doubtful ? icon("warning", theme().warning)
-                                               : icon("error", theme().bad);
 }
 
 QString differencesText(const RunSummary* before, const RunSummary& run) {

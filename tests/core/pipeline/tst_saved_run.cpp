@@ -224,6 +224,19 @@ class TestSavedRun : public QObject {
     QVERIFY(std::filesystem::equivalent(saved.session.recording, after / "recording.bag"));
   }
 
+  void recordingThatIsGone_leavesTheRest() {
+    const std::filesystem::path folder = scratch() / "gone";
+    write(scratch() / "short_lived.bag", "a recording");
+    Session session = simulated_.session;
+    session.recording = scratch() / "short_lived.bag";
+    keepRun(folder, session, run_, "test", "", 100);
+    std::filesystem::remove(session.recording);
+    const SavedRun saved = readSavedRun(folder);
+    QVERIFY2(saved.missing.empty(), qPrintable(missingIn(saved)));
+    QCOMPARE(saved.session.recording, session.recording);
+    QVERIFY(runData(*saved.run) == runData(*run_));
+  }
+
   void list_isNamedComparedAndBounded() {
     const std::filesystem::path place = scratch() / "list";
     Session session = simulated_.session;
