@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs that last: undone, kept, opened again, compared; with a recording that is gone, and from a damaged folder.
+#include "core/pipeline/run_data.h"
 #include "core/pipeline/saved_run.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/window_fixture.h"
 #include "ui/detection/detection_screen.h"
 #include "ui/detection/timeline.h"
+#include "ui/jobs/run_history.h"
 #include "ui/plots/plot_panel.h"
 #include "ui/plots/residuals_screen.h"
 #include "ui/screens/result_screen.h"
@@ -160,6 +162,24 @@ class TestKeptRuns : public QObject {
     QTRY_VERIFY_WITH_TIMEOUT(test.child<DetectionScreen>()->timeline().windowAt(2.0).has_value(),
                              kPatience_ms);
     QVERIFY(test.window.close());
+  }
+
+  void sessionWithoutFile_keepsItsRuns_andTakesThemAlong() {
+    const SavedRun saved = readSavedRun(QDir(runs()).filePath(folders().at(0)).toStdString());
+    const QString file = scratch_.filePath("later/named.yaml");
+    QVERIFY(QDir().mkpath(scratch_.filePath("later")));
+    RunHistory history;
+    history.setSession({}, saved.session.recording);
+    QVERIFY(!QString::fromStdString(history.place().string()).startsWith(scratch_.path()));
+    for (int k = 0; k < 2; ++k) history.keep(saved.run, saved.session, "0.0.0", {});  // of the same second
+    QTRY_COMPARE_WITH_TIMEOUT(history.runs().size(), std::size_t{2}, kPatience_ms);
+    const std::filesystem::path before = history.runs().front().folder;
+    history.moveTo(file);
+    const QDir beside(scratch_.filePath("later/named.runs"));
+    QTRY_COMPARE_WITH_TIMEOUT(beside.entryList(QDir::Dirs | QDir::NoDotAndDotDot).size(), 2, kPatience_ms);
+    QTRY_VERIFY(history.runs().size() == 2 && history.runs().front().folder != before);
+    QVERIFY(!std::filesystem::exists(before));
+    QVERIFY(runData(*readSavedRun(history.runs().front().folder).run) == runData(*saved.run));
   }
 
   void history_opensComparesNamesAndDeletes() {

@@ -286,7 +286,7 @@ void DetectionScreen::takeOverview() {
         missing.isEmpty()
             ? tr("The recording cannot be read.\n%1").arg(QString::fromStdString(overview.error))
             : tr("The recording is not there any more:\n%1").arg(missing));
-    status_->setText(tr("not readable to its end"));
+    status_->setText(missing.isEmpty() ? tr("not readable to its end") : tr("recording missing"));
     status_->setToolTip(QString::fromStdString(overview.error));
     if (!overview.started) return;
   } else {
