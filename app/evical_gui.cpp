@@ -40,6 +40,8 @@ class Photographer : public QObject {
   Photographer(MainWindow& window, QString screen, QString file)
       : window_(window), screen_(std::move(screen)), file_(std::move(file)) {
     connect(&window.files(), &SessionFiles::opened, this, [this] {
+      LensDocument& lens = window_.workbench().lens;
+      if (lens.offersCameraOnly()) lens.setAim(CalibrationAim::Camera);
       window_.calibrate();
       if (!window_.workbench().runner.running())
         giveUp("calibrate", {true, {}, "the session is incomplete", {}});

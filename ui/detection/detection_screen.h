@@ -26,6 +26,11 @@ class QToolButton;
 
 namespace evical::ui {
 
+// A run of one camera's lens alone has none.
+inline bool hasPoses(const CalibrationRun& run) {
+  return !run.result.state.cameras.empty();
+}
+
 class DetectionEngine;
 enum class PictureChoice;
 struct Sight;

@@ -3,11 +3,14 @@
 
 #include "core/base/error.h"
 #include "ui/forms/option_form.h"
+#include "ui/screens/lens_screen.h"
+#include "ui/screens/recording_screen.h"
 #include "ui/screens/result_screen.h"
 #include "ui/theme/theme.h"
 #include "ui/window/after_turns.h"
 #include "ui/window/error_panel.h"
 #include "ui/window/job_status.h"
+#include "ui/window/lens_files.h"
 #include "ui/window/log_panel.h"
 #include "ui/window/session_files.h"
 #include "ui/window/steps_panel.h"
@@ -36,17 +39,20 @@ constexpr int kLayoutVersion = 1;
 }  // namespace
 
 MainWindow::MainWindow(const QString& version)
-    : workbench_(version), files_(new SessionFiles(workbench_, this)) {
+    : workbench_(version),
+      files_(new SessionFiles(workbench_, this)),
+      lens_files_(new LensFiles(workbench_, this)) {
   setAcceptDrops(true);
   makeCentre();
   makeDocks();
   makeActions();
   statusBar()->addWidget(new JobStatus(workbench_.runner, this), 1);
-  wirePages(pages_, workbench_, *files_);
+  wirePages(pages_, workbench_, *files_, *lens_files_);
   wireDocument();
   wireParameters();
   wireJobs();
   wireSteps();
+  wireLens();
   restoreLayout();
   navigation_->setCurrentRow(0);
   showState();
@@ -213,7 +219,7 @@ void MainWindow::wireSteps() {
   CalibrationJob& job = workbench_.calibration;
   const auto whileCalibrating = [this](auto&& act) {
     return [this, act](const auto&... given) {
-      if (workbench_.calibration.running()) act(given...);
+      if (workbench_.calibration.running() || workbench_.intrinsics.running()) act(given...);
     };
   };
   connect(&runner, &JobRunner::started, this, whileCalibrating([this](const QString&) { steps_->reset(); }));
@@ -231,14 +237,54 @@ void MainWindow::wireSteps() {
           [this](const std::shared_ptr<const CalibrationRun>& run) { steps_->setRun(*run); });
 }
 
+void MainWindow::wireLens() {
+  LensDocument& lens = workbench_.lens;
+  IntrinsicsJob& job = workbench_.intrinsics;
+  connect(&lens, &LensDocument::aimChanged, this, [this] {
+    steps_->setAim(workbench_.lens.aim());
+    showState();
+  });
+  connect(&lens, &LensDocument::runChanged, this, &MainWindow::showState);
+  connect(lens_files_, &LensFiles::failed, this, &MainWindow::showProblem);
+  connect(lens_files_, &LensFiles::saved, this, [this](const QString& path) {
+    log_->add({LogLevel::Info, 0.0, tr("The lens was saved to %1").arg(path)});
+  });
+  connect(pages_.lens, &LensScreen::calibrateRequested, this, &MainWindow::calibrate);
+  connect(pages_.recording, &RecordingScreen::cameraOnlyRequested, this, [this] {
+    if (workbench_.runner.running()) return;
+    workbench_.lens.setAim(CalibrationAim::Camera);
+    calibrate();
+  });
+  connect(&job, &IntrinsicsJob::detectionsChanged, steps_,
+          [this](const std::shared_ptr<const LiveDetections>& live) { steps_->setDetections(*live); });
+  connect(&job, &IntrinsicsJob::passDone, steps_, &StepsPanel::setPass);
+  connect(&job, &IntrinsicsJob::calibrated, this,
+          [this](const FoundLens& found, const Session& session, std::size_t camera, const QString& log) {
+            paintPagesLater();
+            workbench_.lens.addRun({found.run, found.seen, session, camera, log});
+            result_is_due_ = stack_->currentIndex() <= 1;
+            afterTurns(kLaidOut_turns, this, [this] { bringUpResult(); });
+          });
+}
+
+// All there is of it, to a folder.
+void MainWindow::exportResult() {
+  if (workbench_.lens.aim() == CalibrationAim::Camera) return lens_files_->chooseFolder();
+  files_->chooseExportFolder();
+}
+
 void MainWindow::calibrate() {
-  const std::vector<SessionProblem> problems = sessionProblems(workbench_.document.session());
+  const std::vector<SessionProblem> problems = workbench_.lens.problems();
   if (!problems.empty()) {
     showScreen(workbench_.document.hasSession() ? "recording" : "start");
     showProblem(tr("This cannot be calibrated yet"), {true, {}, problems.front().text, {}});
     return;
   }
-  workbench_.calibration.start(workbench_.document.session());
+  const Session& session = workbench_.document.session();
+  if (workbench_.lens.aim() == CalibrationAim::Camera)
+    workbench_.intrinsics.start(session, workbench_.lens.camera());
+  else
+    workbench_.calibration.start(session);
 }
 
 void MainWindow::repair(const Repair& repair) {
@@ -280,11 +326,13 @@ void MainWindow::showState() {
   for (QAction* const action : {actions_.open_session, actions_.open_recording}) action->setEnabled(!running);
   actions_.save->setEnabled(document.modified());
   actions_.save_as->setEnabled(document.hasSession());
-  const bool has_result = document.last().run != nullptr;
+  const bool of_camera = workbench_.lens.aim() == CalibrationAim::Camera;
+  const bool has_result = of_camera ? workbench_.lens.last().run != nullptr : document.last().run != nullptr;
   actions_.export_result->setEnabled(!running && has_result);
-  actions_.report->setEnabled(!running && has_result);
-  actions_.report->setToolTip(has_result ? tr("Open the result's report in the browser (Ctrl+R)")
-                                         : tr("There is no result yet, so no report: press Calibrate"));
+  actions_.report->setEnabled(!running && has_result && !of_camera);
+  actions_.report->setToolTip(of_camera    ? tr("Reports are of rigs: a camera alone has the Result page")
+                              : has_result ? tr("Open the result's report in the browser (Ctrl+R)")
+                                           : tr("There is no result yet, so no report: press Calibrate"));
 }
 
 void MainWindow::restoreLayout() {

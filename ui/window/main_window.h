@@ -16,6 +16,7 @@ class QStackedWidget;
 namespace evical::ui {
 
 class ErrorPanel;
+class LensFiles;
 class LogPanel;
 class OptionForm;
 class SessionFiles;
@@ -30,6 +31,7 @@ class MainWindow : public QMainWindow {
 
   Workbench& workbench() { return workbench_; }
   SessionFiles& files() { return *files_; }
+  LensFiles& lensFiles() { return *lens_files_; }
   QStringList screenNames() const;
   bool showScreen(const QString& name);  // false: there is none of this name
 
@@ -61,6 +63,8 @@ class MainWindow : public QMainWindow {
   void paintPagesLater();
   void turnTo(int page);
   void bringUpResult();
+  void wireLens();
+  void exportResult();
   void wireSteps();
   void showState();
   void showProblem(const QString& what_was_tried, const JobError& error);
@@ -69,6 +73,7 @@ class MainWindow : public QMainWindow {
 
   Workbench workbench_;
   SessionFiles* files_;
+  LensFiles* lens_files_;
   Pages pages_;
   std::vector<PageEntry> entries_;
   QListWidget* navigation_ = nullptr;

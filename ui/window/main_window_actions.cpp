@@ -57,7 +57,7 @@ void MainWindow::makeFileMenu() {
   connect(actions_.open_recording, &QAction::triggered, files_, &SessionFiles::chooseRecording);
   connect(actions_.save, &QAction::triggered, files_, &SessionFiles::save);
   connect(actions_.save_as, &QAction::triggered, files_, &SessionFiles::saveAs);
-  connect(actions_.export_result, &QAction::triggered, files_, &SessionFiles::chooseExportFolder);
+  connect(actions_.export_result, &QAction::triggered, this, &MainWindow::exportResult);
   connect(actions_.export_every, &QAction::triggered, files_, &SessionFiles::exportEveryResult);
   connect(actions_.report, &QAction::triggered, files_, &SessionFiles::openReport);
   connect(files_, &SessionFiles::exportsEveryResult, actions_.export_every, &QAction::setChecked);

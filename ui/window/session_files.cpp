@@ -32,11 +32,6 @@ const char* const kRecentKey = "recent_files";
 const char* const kFolderKey = "last_folder";
 const char* const kReport = "report.html";
 
-JobError errorOf(const CalibrationError& error) {
-  return {error.kind() == ErrorKind::BadInput, QString::fromStdString(error.place()),
-          QString::fromStdString(error.problem()), QString::fromStdString(error.advice())};
-}
-
 // The session's own first.
 QStringList recordingsOf(const Session& session) {
   QStringList recordings = {QString::fromStdString(session.recording.string())};
