@@ -117,6 +117,7 @@ class TestCameraAlone : public QObject {
     QTRY_COMPARE(test.screen(), QString("result"));
     auto* const screen = test.child<LensScreen>();
     QVERIFY(screen->isVisible() && !test.child<ResultScreen>()->isVisible());
+    QCOMPARE(test.child<QListWidget>("navigation")->item(7)->text(), QString("Result: ok"));
     const auto run = test.window.workbench().lens.last().run;
     QVERIFY(run);
     const CameraIntrinsics& truth = scenario_.cameras.front().intrinsics;

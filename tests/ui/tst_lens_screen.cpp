@@ -12,6 +12,7 @@
 #include "ui/theme/theme.h"
 
 #include <QComboBox>
+#include <QDir>
 #include <QLabel>
 #include <QListWidget>
 #include <QMenu>
@@ -199,6 +200,12 @@ class TestLensScreen : public QObject {
     auto* const views = screen.findChild<ViewsChart*>();
     tabs->setCurrentIndex(2);
     QVERIFY(views->textAt(views->placeOf(1).toPoint()).contains("1.20 m away, tilted by 31 deg"));
+    screen.setOthers({{"factory.yaml", otherLens()}});
+    for (int tab = 0; tab < tabs->count(); ++tab) {
+      tabs->setCurrentIndex(tab);
+      QDir().mkpath(EVICAL_SCREENSHOTS);
+      QVERIFY(screen.grab().save(QString(EVICAL_SCREENSHOTS "/lens_%1.png").arg(tab)));
+    }
   }
 
   void whatIsAskedFor_isSaid() {

@@ -33,6 +33,7 @@ inline bool hasPoses(const CalibrationRun& run) {
 
 class DetectionEngine;
 enum class PictureChoice;
+struct RecordingOverview;
 struct Sight;
 class EventView;
 class Timeline;
@@ -82,7 +83,6 @@ class DetectionScreen : public QWidget {
   void timeSelected(double time_s);  // by the user, or by playing
 
  protected:
-  void keyPressEvent(QKeyEvent*) override;
   void changeEvent(QEvent*) override;
 
  private:
@@ -92,6 +92,7 @@ class DetectionScreen : public QWidget {
   QToolButton* addButton(QHBoxLayout* row, const QString& icon_name, const QString& help);
   void applyColours();
   void connectEngine();
+  void addKeys();
 
   void chooseCamera(std::size_t camera);
   const CalibrationRun* runInView() const;  // null: there is none of this recording
@@ -101,6 +102,7 @@ class DetectionScreen : public QWidget {
   void advance();
   void request();  // of the engine: what the cursor, the mode and the layers ask for
   void takeOverview();
+  void keepCursorInside(const RecordingOverview& overview);
   void takeFrame();
   void takeAnalysis();
   void takeCompanion();

@@ -5,6 +5,7 @@
 #include "ui/screens/image_map_view.h"
 #include "ui/screens/lens_file.h"
 #include "ui/screens/lens_parameters.h"
+#include "ui/screens/verdict_icon.h"
 #include "ui/screens/views_chart.h"
 #include "ui/theme/theme.h"
 
@@ -241,6 +242,8 @@ QWidget* LensScreen::makeContent() {
   split->addWidget(left);
   split->addWidget(makeSides());
   split->setSizes({600, 420});
+  split->setStretchFactor(0, 1);
+  split->setStretchFactor(1, 2);
   auto* const layout = new QVBoxLayout(content);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(makeHeader());
@@ -316,15 +319,7 @@ void LensScreen::compare() {
 void LensScreen::showVerdict() {
   const IntrinsicsResult& result = lens_->result;
   const bool ok = result.status == CalibrationStatus::Ok;
-  const bool doubtful = result.status == CalibrationStatus::Doubtful;
-  const Theme& t = theme();
-  icon_->setPixmap(icon(ok         ? "done"
-                        : doubtful ? "warning"
-                                   : "error",
-                        ok         ? t.good
-                        : doubtful ? t.warning
-                                   : t.bad)
-                       .pixmap(QSize(34, 34), devicePixelRatioF()));
+  icon_->setPixmap(verdictIcon(result.status).pixmap(QSize(34, 34), devicePixelRatioF()));
   verdict_->setText(verdictWords(result.status));
   reason_->setText(ok ? tr("The views determine the lens as well as needed.")
                       : sentence(QString::fromStdString(result.reason)));

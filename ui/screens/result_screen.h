@@ -12,6 +12,7 @@ class QComboBox;
 
 class QLabel;
 class QListWidget;
+class QPushButton;
 
 class QStackedWidget;
 class QTreeWidget;
@@ -33,7 +34,8 @@ class ResultScreen : public QWidget {
   void setRuns(std::optional<NamedResult> previous, std::optional<NamedResult> result);
   void setPrevious(std::optional<NamedResult> previous);
   void setReference(std::optional<NamedResult> reference, const QString& title);
-  void setOutdated(bool outdated);  // the session is not as it was for this result
+  void setCalibrating(bool calibrating);  // the first one is being made
+  void setOutdated(bool outdated);        // the session is not as it was for this result
 
  signals:
   void exportRequested();
@@ -61,6 +63,8 @@ class ResultScreen : public QWidget {
   std::optional<NamedResult> result_, previous_, reference_;
   QString reference_title_;
   QStackedWidget* stack_;
+  QLabel* none_yet_;
+  QPushButton* calibrate_;
   QLabel *icon_, *verdict_, *reason_, *fit_, *outdated_, *comparison_, *observed_, *pairs_;
   RepairButton* repair_;
   QComboBox* against_;

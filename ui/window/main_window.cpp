@@ -3,9 +3,9 @@
 
 #include "core/base/error.h"
 #include "ui/forms/option_form.h"
-#include "ui/screens/lens_screen.h"
-#include "ui/screens/recording_screen.h"
+#include "ui/forms/session_undo_keys.h"
 #include "ui/screens/result_screen.h"
+#include "ui/screens/verdict_icon.h"
 #include "ui/theme/theme.h"
 #include "ui/window/after_turns.h"
 #include "ui/window/error_panel.h"
@@ -16,6 +16,7 @@
 #include "ui/window/steps_panel.h"
 
 #include <QAction>
+#include <QApplication>
 #include <QCloseEvent>
 #include <QDockWidget>
 #include <QDropEvent>
@@ -43,6 +44,7 @@ MainWindow::MainWindow(const QString& version)
       files_(new SessionFiles(workbench_, this)),
       lens_files_(new LensFiles(workbench_, this)) {
   setAcceptDrops(true);
+  qApp->installEventFilter(new SessionUndoKeys(this));
   makeCentre();
   makeDocks();
   makeActions();
@@ -94,6 +96,8 @@ QWidget* MainWindow::makeSideBar() {
   }
   navigation_->setFixedHeight(static_cast<int>(entries_.size()) * (kEntry_px + 2) + 16);
   connect(navigation_, &QListWidget::currentRowChanged, this, &MainWindow::turnTo);
+  // By the mouse, not by the list's arrow keys, which go on to the next.
+  connect(navigation_, &QListWidget::clicked, this, [this] { stack_->currentWidget()->setFocus(); });
   steps_ = new StepsPanel(this);
   auto* const bar = new QFrame(this);
   bar->setObjectName("sidebar");
@@ -197,7 +201,9 @@ void MainWindow::wireJobs() {
   connect(&runner, &JobRunner::failed, this, [this](const JobError& error) {
     showProblem(tr("%1 failed").arg(workbench_.runner.title()), error);
   });
-  connect(&runner, &JobRunner::finished, this, [this] {
+  connect(&runner, &JobRunner::finished, this, [this](JobOutcome outcome) {
+    if (outcome == JobOutcome::Cancelled)
+      log_->add({LogLevel::Warning, 0.0, tr("%1: cancelled").arg(workbench_.runner.title())});
     showState();
     if (close_when_idle_) close();
   });
@@ -205,13 +211,16 @@ void MainWindow::wireJobs() {
           [this](std::shared_ptr<const CalibrationRun> run, const Session& session, const QString& log) {
             paintPagesLater();
             workbench_.document.addRun({std::move(run), session, log});
-            result_is_due_ = stack_->currentIndex() <= 1;
-            afterTurns(kLaidOut_turns, this, [this] { bringUpResult(); });
+            showResultSoon();
           });
 }
 
-void MainWindow::bringUpResult() {
-  if (result_is_due_) showScreen("result");
+// Once the pages are filled: to who still looks at the first two.
+void MainWindow::showResultSoon() {
+  result_is_due_ = stack_->currentIndex() <= 1;
+  afterTurns(kLaidOut_turns, this, [this] {
+    if (result_is_due_) showScreen("result");
+  });
 }
 
 void MainWindow::wireSteps() {
@@ -235,42 +244,6 @@ void MainWindow::wireSteps() {
   connect(&runner, &JobRunner::finished, steps_, &StepsPanel::finish);
   connect(&job, &CalibrationJob::calibrated, steps_,
           [this](const std::shared_ptr<const CalibrationRun>& run) { steps_->setRun(*run); });
-}
-
-void MainWindow::wireLens() {
-  LensDocument& lens = workbench_.lens;
-  IntrinsicsJob& job = workbench_.intrinsics;
-  connect(&lens, &LensDocument::aimChanged, this, [this] {
-    steps_->setAim(workbench_.lens.aim());
-    showState();
-  });
-  connect(&lens, &LensDocument::runChanged, this, &MainWindow::showState);
-  connect(lens_files_, &LensFiles::failed, this, &MainWindow::showProblem);
-  connect(lens_files_, &LensFiles::saved, this, [this](const QString& path) {
-    log_->add({LogLevel::Info, 0.0, tr("The lens was saved to %1").arg(path)});
-  });
-  connect(pages_.lens, &LensScreen::calibrateRequested, this, &MainWindow::calibrate);
-  connect(pages_.recording, &RecordingScreen::cameraOnlyRequested, this, [this] {
-    if (workbench_.runner.running()) return;
-    workbench_.lens.setAim(CalibrationAim::Camera);
-    calibrate();
-  });
-  connect(&job, &IntrinsicsJob::detectionsChanged, steps_,
-          [this](const std::shared_ptr<const LiveDetections>& live) { steps_->setDetections(*live); });
-  connect(&job, &IntrinsicsJob::passDone, steps_, &StepsPanel::setPass);
-  connect(&job, &IntrinsicsJob::calibrated, this,
-          [this](const FoundLens& found, const Session& session, std::size_t camera, const QString& log) {
-            paintPagesLater();
-            workbench_.lens.addRun({found.run, found.seen, session, camera, log});
-            result_is_due_ = stack_->currentIndex() <= 1;
-            afterTurns(kLaidOut_turns, this, [this] { bringUpResult(); });
-          });
-}
-
-// All there is of it, to a folder.
-void MainWindow::exportResult() {
-  if (workbench_.lens.aim() == CalibrationAim::Camera) return lens_files_->chooseFolder();
-  files_->chooseExportFolder();
 }
 
 void MainWindow::calibrate() {
@@ -324,6 +297,7 @@ void MainWindow::showState() {
   actions_.cancel->setVisible(running);
   actions_.cancel->setEnabled(running && !workbench_.runner.cancelling());
   for (QAction* const action : {actions_.open_session, actions_.open_recording}) action->setEnabled(!running);
+  showVerdictBadge();
   actions_.save->setEnabled(document.modified());
   actions_.save_as->setEnabled(document.hasSession());
   const bool of_camera = workbench_.lens.aim() == CalibrationAim::Camera;
@@ -333,6 +307,16 @@ void MainWindow::showState() {
   actions_.report->setToolTip(of_camera    ? tr("Reports are of rigs: a camera alone has the Result page")
                               : has_result ? tr("Open the result's report in the browser (Ctrl+R)")
                                            : tr("There is no result yet, so no report: press Calibrate"));
+}
+
+// Beside the Result page's name, by colour and shape: whoever watches another page sees how it ended.
+void MainWindow::showVerdictBadge() {
+  const qsizetype row = screenNames().indexOf("result");
+  QListWidgetItem& item = *navigation_->item(static_cast<int>(row));
+  const QString& title = entries_[static_cast<std::size_t>(row)].title;
+  const std::optional<CalibrationStatus> status = lastStatus();
+  item.setIcon(status ? verdictIcon(*status) : icon(entries_[static_cast<std::size_t>(row)].icon_name));
+  item.setText(status ? tr("%1: %2").arg(title, QString::fromLatin1(statusName(*status))) : title);
 }
 
 void MainWindow::restoreLayout() {

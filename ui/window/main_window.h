@@ -8,6 +8,8 @@
 #include <QMainWindow>
 #include <QStringList>
 
+#include <optional>
+
 class QAction;
 class QDockWidget;
 class QListWidget;
@@ -62,11 +64,13 @@ class MainWindow : public QMainWindow {
   void wireJobs();
   void paintPagesLater();
   void turnTo(int page);
-  void bringUpResult();
   void wireLens();
   void exportResult();
+  void showResultSoon();
+  std::optional<CalibrationStatus> lastStatus() const;
   void wireSteps();
   void showState();
+  void showVerdictBadge();
   void showProblem(const QString& what_was_tried, const JobError& error);
   void restoreLayout();
   void saveLayout();
@@ -87,7 +91,7 @@ class MainWindow : public QMainWindow {
     QAction *open_session, *open_recording, *save, *save_as, *export_result, *export_every, *report, *quit;
     QAction *undo, *redo;
     QAction *calibrate, *cancel;
-    QAction *guide, *about;
+    QAction *guide, *keys, *about;
   } actions_{};
   bool close_when_idle_ = false;
   bool result_is_due_ = false;  // unless another screen is chosen
