@@ -2,6 +2,7 @@
 #include "ui/window/main_window.h"
 
 #include "core/base/error.h"
+#include "core/pipeline/idle_options.h"
 #include "ui/forms/option_form.h"
 #include "ui/forms/session_undo_keys.h"
 #include "ui/screens/result_screen.h"
@@ -173,7 +174,16 @@ void MainWindow::wireDocument() {
 
 void MainWindow::wireParameters() {
   CalibrationDocument& document = workbench_.document;
-  const auto show = [this] { parameters_->setRows(optionRows(workbench_.document.session().options)); };
+  const auto show = [this] {
+    const Session& session = workbench_.document.session();
+    const std::vector<OptionRow> rows = optionRows(session.options);
+    std::map<QString, QString> idle;
+    for (const OptionRow& row : rows)
+      if (const std::string why = whyIdle(session, row.name); !why.empty())
+        idle[QString::fromStdString(row.name)] = QString::fromStdString(why);
+    parameters_->setRows(rows);
+    parameters_->setIdle(workbench_.document.hasSession() ? idle : std::map<QString, QString>());
+  };
   connect(&document, &CalibrationDocument::sessionChanged, parameters_, show);
   connect(parameters_, &OptionForm::resetAllRequested, &document, &CalibrationDocument::resetOptions);
   connect(parameters_, &OptionForm::edited, this, [this](const QString& name, const QString& value) {
