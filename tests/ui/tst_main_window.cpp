@@ -292,6 +292,12 @@ class TestMainWindow : public QObject {
     QVERIFY(drop.isAccepted());
   }
 
+  // A title bar has room, too.
+  void firstStart_fitsTheScreen() {
+    WindowFixture test;
+    QVERIFY(test.window.height() < test.window.screen()->availableGeometry().height() - 30);
+  }
+
   void layout_isRemembered() {
     {
       WindowFixture test;

@@ -22,6 +22,7 @@
 #include <QDropEvent>
 #include <QListWidget>
 #include <QMimeData>
+#include <QScreen>
 #include <QSettings>
 #include <QSplitter>
 #include <QStackedWidget>
@@ -320,7 +321,9 @@ void MainWindow::showVerdictBadge() {
 void MainWindow::restoreLayout() {
   constexpr int kWidth_px = 1280, kHeight_px = 800;
   const QSettings settings;
-  resize(kWidth_px, kHeight_px);
+  constexpr int kFrame_px = 48;  // a title bar that isn't drawn yet
+  const QSize free = screen()->availableGeometry().size() - QSize(0, kFrame_px);
+  resize(QSize(kWidth_px, kHeight_px).boundedTo(free));
   constexpr int kLog_px = 190, kParameters_px = 320;
   resizeDocks({log_dock_}, {kLog_px}, Qt::Vertical);
   resizeDocks({parameters_dock_}, {kParameters_px}, Qt::Horizontal);
