@@ -4,6 +4,7 @@
 #include "core/initialisation/rotation_rates.h"
 #include "core/report/signal_prediction.h"
 #include "ui/jobs/latest_job.h"
+#include "ui/plots/chart_saving.h"
 #include "ui/plots/empty_note.h"
 #include "ui/plots/plot_panel.h"
 
@@ -160,6 +161,7 @@ QWidget* SignalsScreen::makeBar() {
   camera_ =
       addBox(*layout, camera_label_, tr("Ca&mera"), tr("Whose clock is shown, and whose rotation rate"));
   imu_ = addBox(*layout, imu_label_, tr("&IMU"), tr("Whose signals are shown"));
+  layout->addWidget(makeSaveButton(*this, "signals"));
   for (QComboBox* box : {camera_, imu_}) connect(box, &QComboBox::activated, this, [this] { compute(); });
   return bar;
 }
