@@ -21,6 +21,7 @@
 #include "ui/window/steps_panel.h"
 
 #include <QDesktopServices>
+#include <QLabel>
 #include <QLineEdit>
 #include <QMimeData>
 #include <QPushButton>
@@ -45,6 +46,14 @@ QAction* actionOf(const MainWindow& window, const QString& text) {
   for (QAction* const action : window.findChildren<QAction*>())
     if (action->text() == text) return action;
   return nullptr;
+}
+
+// Of labels and buttons that are not hidden, though their page may not be in front.
+QString visibleTexts(const QWidget& page) {
+  QString all;
+  for (const QLabel* const label : page.findChildren<QLabel*>())
+    if (!label->isHidden()) all += label->text() + '\n';
+  return all;
 }
 
 class ReportReader : public QObject {
@@ -89,6 +98,8 @@ class TestMainWindow : public QObject {
     QSignalSpy stages(&test.runner(), &JobRunner::stageStarted);
     test.click("calibrate");
     QVERIFY(stages.wait(kPatience_ms));
+    QVERIFY(visibleTexts(*test.child<ResultScreen>()).contains("Calibrating: the result is shown here"));
+    QVERIFY(visibleTexts(*test.child<ResidualsScreen>()).contains("Calibrating: this page"));
     test.click("cancel");
     QElapsedTimer since_cancel;
     since_cancel.start();
@@ -96,12 +107,18 @@ class TestMainWindow : public QObject {
     QVERIFY(since_cancel.elapsed() < 500 * kSlowdown);
     QVERIFY(!test.document().last().run);
     QVERIFY(test.child<StepsPanel>()->textOf("detect").contains("cancelled"));
+    QVERIFY(test.child<LogPanel>()->shownText().contains("Calibrate: cancelled"));
+    QVERIFY(visibleTexts(*test.child<ResultScreen>()).contains("No calibration yet: press Calibrate"));
+    auto* const pages = test.child<QListWidget>("navigation");
+    QVERIFY(pages->findItems("Result: ", Qt::MatchStartsWith).isEmpty());
 
     test.press(Qt::Key_F5);
     QVERIFY2(test.runner().running(), qPrintable(test.child<ErrorPanel>()->text()));
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
     QVERIFY(test.document().last().run);
     QTRY_COMPARE(test.screen(), QString("result"));
+    const QString verdict = statusName(test.document().last().run->result.status);
+    QCOMPARE(pages->findItems("Result: " + verdict, Qt::MatchExactly).size(), 1);
     QVERIFY(test.child<StepsPanel>()->textOf("optimise").contains("done"));
     QVERIFY(test.child<StepsPanel>()->textOf("time offset").contains("correlation"));
     QVERIFY(test.child<LogPanel>()->shownText().contains("board in"));

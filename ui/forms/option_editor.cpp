@@ -128,18 +128,17 @@ QWidget* OptionEditor::makeInput() {
   return number_;
 }
 
-bool OptionEditor::somethingElseIsTyped() const {
-  return number_ != nullptr && number_->text().trimmed() != text(row_.value);
+void OptionEditor::setRow(const OptionRow& row) {
+  row_ = row;
+  showValue();
+  showProblem({});
+  showChanged();
 }
 
-void OptionEditor::setRow(const OptionRow& row) {
-  const bool same = row.value == row_.value && !problem_->text().isEmpty() && somethingElseIsTyped();
-  row_ = row;
-  if (toggle_ != nullptr) toggle_->setChecked(row.value == "true");
-  if (choice_ != nullptr) choice_->setCurrentText(text(row.value));
-  if (number_ != nullptr && !same) number_->setText(text(row.value));
-  if (!same) showProblem({});
-  showChanged();
+void OptionEditor::showValue() {
+  if (toggle_ != nullptr) toggle_->setChecked(row_.value == "true");
+  if (choice_ != nullptr) choice_->setCurrentText(text(row_.value));
+  if (number_ != nullptr) number_->setText(text(row_.value));
 }
 
 void OptionEditor::showProblem(const QString& problem) {
@@ -147,8 +146,9 @@ void OptionEditor::showProblem(const QString& problem) {
   problem_->setVisible(!problem.isEmpty());
 }
 
-void OptionEditor::forgetProblem() {
-  if (!somethingElseIsTyped()) showProblem({});
+void OptionEditor::refuse(const QString& why) {
+  showValue();
+  showProblem(why);
 }
 
 void OptionEditor::showChanged() {

@@ -25,8 +25,8 @@ class OptionEditor : public QWidget {
   bool isChanged() const { return row_.value != row_.default_value; }
   bool matches(const QString& search) const;  // in name or help
   void setRow(const OptionRow& row);          // the value that holds
-  void showProblem(const QString& text);      // why what was typed does not hold; empty: it does
-  void forgetProblem();                       // unless something that was typed does not hold
+  void refuse(const QString& why);        // the value that holds is shown again, and why the other one is not
+  void showProblem(const QString& text);  // empty: there is none
 
   // "normal_flow.plane_radius_px" in px gives "plane radius".
   static QString shownName(const OptionRow& row);
@@ -41,7 +41,7 @@ class OptionEditor : public QWidget {
 
  private:
   QWidget* makeInput();
-  bool somethingElseIsTyped() const;
+  void showValue();
   void showChanged();
 
   OptionRow row_;

@@ -41,7 +41,7 @@ ConvergenceScreen::ConvergenceScreen(QWidget* parent) : QWidget(parent), redraw_
   redraw_->setSingleShot(true);
   redraw_->setInterval(0);
   connect(redraw_, &QTimer::timeout, this, &ConvergenceScreen::draw);
-  stack_ = stackWithNote(*this, makeContent(), tr("No calibration yet: press Calibrate."));
+  stack_ = stackWithNote(*this, makeContent(), noRunNote(false));
 }
 
 QWidget* ConvergenceScreen::makeBar() {

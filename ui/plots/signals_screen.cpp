@@ -92,7 +92,7 @@ SignalsScreen::SignalsScreen(QWidget* parent)
   PlotPanel::linkX(panels_);
   gyroscope_.signal->setObjectName("gyroscope");
   accelerometer_.signal->setObjectName("accelerometer");
-  stack_ = stackWithNote(*this, content, tr("No calibration yet: press Calibrate."));
+  stack_ = stackWithNote(*this, content, noRunNote(false));
   connect(job_, &LatestJob::failed, this, [this](const QString& reason) {
     setNote(*stack_, tr("The signals cannot be shown: %1").arg(reason));
     showPage(*stack_, StackPage::Note);
@@ -181,11 +181,20 @@ void SignalsScreen::setRun(std::shared_ptr<const CalibrationRun> run, const Sess
     box->setVisible(box->count() > 1);
     label->setVisible(box->count() > 1);
   }
-  setNote(*stack_, !run_                ? tr("No calibration yet: press Calibrate.")
-                   : imu_->count() == 0 ? tr("There is no IMU whose signals could be compared.")
-                                        : tr("Computing the signals ..."));
+  showNote();
   showPage(*stack_, StackPage::Note);
   compute();
+}
+
+void SignalsScreen::showNote() {
+  setNote(*stack_, !run_                ? noRunNote(calibrating_)
+                   : imu_->count() == 0 ? tr("There is no IMU whose signals could be compared.")
+                                        : tr("Computing the signals ..."));
+}
+
+void SignalsScreen::setCalibrating(bool calibrating) {
+  calibrating_ = calibrating;
+  showNote();
 }
 
 void SignalsScreen::compute() {

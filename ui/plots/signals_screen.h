@@ -30,6 +30,7 @@ class SignalsScreen : public QWidget {
 
   // Null: empty again. What is drawn is computed in a thread and appears when it is ready.
   void setRun(std::shared_ptr<const CalibrationRun> run, const Session& session);
+  void setCalibrating(bool calibrating);  // one is being made
 
  public slots:
   void setTime(double time_s);  // seconds since the recording's start, camera clock
@@ -39,6 +40,7 @@ class SignalsScreen : public QWidget {
   void ready();  // all charts show the run that was set last
 
  private:
+  void showNote();
   struct Drawing;
   // A sensor's signal and residual: measured and predicted by axis.
   struct SignalTab {
@@ -54,6 +56,7 @@ class SignalsScreen : public QWidget {
   void draw(const Drawing& drawing);
 
   std::shared_ptr<const CalibrationRun> run_;
+  bool calibrating_ = false;
   Session session_;
   LatestJob* job_;
   std::vector<PlotPanel*> panels_;

@@ -8,6 +8,7 @@
 #include "ui/screens/pose_panel.h"
 #include "ui/screens/quantity_table.h"
 #include "ui/screens/result_parameters.h"
+#include "ui/screens/verdict_icon.h"
 #include "ui/theme/theme.h"
 
 #include <QComboBox>
@@ -78,6 +79,8 @@ QWidget* explained(QLabel* text, QWidget* picture, QWidget* parent) {
 ResultScreen::ResultScreen(QWidget* parent)
     : QWidget(parent),
       stack_(new QStackedWidget(this)),
+      none_yet_(label("heading", this)),
+      calibrate_(new QPushButton(icon("calibrate"), tr("Calibrate"), this)),
       icon_(new QLabel(this)),
       verdict_(label("title", this)),
       reason_(label("", this)),
@@ -104,16 +107,20 @@ ResultScreen::ResultScreen(QWidget* parent)
 QWidget* ResultScreen::makeEmpty() {
   auto* const empty = new QWidget(this);
   auto* const layout = new QVBoxLayout(empty);
-  auto* const text = label("heading", empty);
-  text->setText(tr("No calibration yet: press Calibrate."));
-  text->setAlignment(Qt::AlignCenter);
-  auto* const start = new QPushButton(icon("calibrate"), tr("Calibrate"), empty);
-  connect(start, &QPushButton::clicked, this, &ResultScreen::calibrateRequested);
+  none_yet_->setAlignment(Qt::AlignCenter);
+  connect(calibrate_, &QPushButton::clicked, this, &ResultScreen::calibrateRequested);
   layout->addStretch();
-  layout->addWidget(text);
-  layout->addWidget(start, 0, Qt::AlignHCenter);
+  layout->addWidget(none_yet_);
+  layout->addWidget(calibrate_, 0, Qt::AlignHCenter);
   layout->addStretch();
+  setCalibrating(false);
   return empty;
+}
+
+void ResultScreen::setCalibrating(bool calibrating) {
+  none_yet_->setText(calibrating ? tr("Calibrating: the result is shown here when the run is done.")
+                                 : tr("No calibration yet: press Calibrate."));
+  calibrate_->setVisible(!calibrating);
 }
 
 QWidget* ResultScreen::makeHeader() {
@@ -251,10 +258,7 @@ const NamedResult* ResultScreen::compared() const {
 void ResultScreen::showVerdict() {
   const CalibrationResult& result = *result_->result;
   const bool ok = result.status == CalibrationStatus::Ok;
-  const Theme& t = theme();
-  const QColor colour = ok ? t.good : result.status == CalibrationStatus::Doubtful ? t.warning : t.bad;
-  const QString name = ok ? "done" : result.status == CalibrationStatus::Doubtful ? "warning" : "error";
-  icon_->setPixmap(icon(name, colour).pixmap(QSize(34, 34), devicePixelRatioF()));
+  icon_->setPixmap(verdictIcon(result.status).pixmap(QSize(34, 34), devicePixelRatioF()));
   verdict_->setText(verdictWords(result.status));
   reason_->setText(ok ? tr("The recording determines every quantity as well as needed.")
                       : sentence(QString::fromStdString(result.reason)));

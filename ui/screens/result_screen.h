@@ -12,6 +12,7 @@ class QComboBox;
 
 class QLabel;
 class QListWidget;
+class QPushButton;
 
 class QMenu;
 class QStackedWidget;
@@ -35,8 +36,9 @@ class ResultScreen : public QWidget {
   void setRuns(std::optional<NamedResult> previous, std::optional<NamedResult> result);
   void setPrevious(std::optional<NamedResult> previous);
   void setReference(std::optional<NamedResult> reference, const QString& title);
-  void setOutdated(bool outdated);  // the session is not as it was for this result
-  QMenu* copyMenu() const;          // copies poses; the window's menus show it too
+  void setCalibrating(bool calibrating);  // the first one is being made
+  void setOutdated(bool outdated);        // the session is not as it was for this result
+  QMenu* copyMenu() const;                // copies poses; the window's menus show it too
 
  signals:
   void exportRequested();
@@ -64,6 +66,8 @@ class ResultScreen : public QWidget {
   std::optional<NamedResult> result_, previous_, reference_;
   QString reference_title_;
   QStackedWidget* stack_;
+  QLabel* none_yet_;
+  QPushButton* calibrate_;
   QLabel *icon_, *verdict_, *reason_, *fit_, *outdated_, *comparison_, *observed_, *pairs_;
   RepairButton* repair_;
   QComboBox* against_;

@@ -3,7 +3,9 @@
 
 #include "core/base/error.h"
 #include "ui/forms/option_form.h"
+#include "ui/forms/session_undo_keys.h"
 #include "ui/screens/result_screen.h"
+#include "ui/screens/verdict_icon.h"
 #include "ui/theme/theme.h"
 #include "ui/window/after_turns.h"
 #include "ui/window/error_panel.h"
@@ -14,6 +16,7 @@
 #include "ui/window/steps_panel.h"
 
 #include <QAction>
+#include <QApplication>
 #include <QCloseEvent>
 #include <QDockWidget>
 #include <QDropEvent>
@@ -39,6 +42,7 @@ constexpr int kLayoutVersion = 1;
 MainWindow::MainWindow(const QString& version)
     : workbench_(version), files_(new SessionFiles(workbench_, this)) {
   setAcceptDrops(true);
+  qApp->installEventFilter(new SessionUndoKeys(this));
   makeCentre();
   makeDocks();
   makeActions();
@@ -91,6 +95,8 @@ QWidget* MainWindow::makeSideBar() {
   }
   navigation_->setFixedHeight(static_cast<int>(entries_.size()) * (kEntry_px + 2) + 16);
   connect(navigation_, &QListWidget::currentRowChanged, this, &MainWindow::turnTo);
+  // By the mouse, not by the list's arrow keys, which go on to the next.
+  connect(navigation_, &QListWidget::clicked, this, [this] { stack_->currentWidget()->setFocus(); });
   steps_ = new StepsPanel(this);
   auto* const bar = new QFrame(this);
   bar->setObjectName("sidebar");
@@ -197,7 +203,9 @@ void MainWindow::wireJobs() {
   connect(&runner, &JobRunner::failed, this, [this](const JobError& error) {
     showProblem(tr("%1 failed").arg(workbench_.runner.title()), error);
   });
-  connect(&runner, &JobRunner::finished, this, [this] {
+  connect(&runner, &JobRunner::finished, this, [this](JobOutcome outcome) {
+    if (outcome == JobOutcome::Cancelled)
+      log_->add({LogLevel::Warning, 0.0, tr("%1: cancelled").arg(workbench_.runner.title())});
     showState();
     if (close_when_idle_) close();
   });
@@ -284,6 +292,7 @@ void MainWindow::showState() {
   actions_.cancel->setVisible(running);
   actions_.cancel->setEnabled(running && !workbench_.runner.cancelling());
   for (QAction* const action : {actions_.open_session, actions_.open_recording}) action->setEnabled(!running);
+  showVerdictBadge();
   actions_.save->setEnabled(document.modified());
   actions_.save_as->setEnabled(document.hasSession());
   const bool has_result = document.last().run != nullptr;
@@ -291,6 +300,17 @@ void MainWindow::showState() {
   actions_.report->setEnabled(!running && has_result);
   actions_.report->setToolTip(has_result ? tr("Open the result's report in the browser (Ctrl+R)")
                                          : tr("There is no result yet, so no report: press Calibrate"));
+}
+
+// Beside the Result page's name, by colour and shape: whoever watches another page sees how it ended.
+void MainWindow::showVerdictBadge() {
+  const qsizetype row = screenNames().indexOf("result");
+  QListWidgetItem& item = *navigation_->item(static_cast<int>(row));
+  const QString& title = entries_[static_cast<std::size_t>(row)].title;
+  const std::shared_ptr<const CalibrationRun>& run = workbench_.document.last().run;
+  item.setIcon(run ? verdictIcon(run->result.status)
+                   : icon(entries_[static_cast<std::size_t>(row)].icon_name));
+  item.setText(run ? tr("%1: %2").arg(title, QString::fromLatin1(statusName(run->result.status))) : title);
 }
 
 void MainWindow::restoreLayout() {

@@ -64,6 +64,7 @@ class MainWindow : public QMainWindow {
   void bringUpResult();
   void wireSteps();
   void showState();
+  void showVerdictBadge();
   void showProblem(const QString& what_was_tried, const JobError& error);
   void restoreLayout();
   void saveLayout();
@@ -84,7 +85,7 @@ class MainWindow : public QMainWindow {
     QAction *open_session, *open_recording, *save, *save_as, *export_result, *export_every, *report, *quit;
     QAction *undo, *redo;
     QAction *calibrate, *cancel;
-    QAction *guide, *about;
+    QAction *guide, *keys, *about;
   } actions_{};
   bool close_when_idle_ = false;
   bool result_is_due_ = false;  // unless another screen is chosen

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/result_screen.h"
 #include "ui/theme/theme.h"
+#include "ui/window/about.h"
 #include "ui/window/main_window.h"
 #include "ui/window/session_files.h"
 #include "ui/window/user_guide.h"
@@ -112,7 +113,10 @@ void MainWindow::makeViewMenu() {
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     QAction* const action = menu->addAction(icon(entries_[i].icon_name), entries_[i].title);
     action->setShortcut(QKeySequence(QString("Ctrl+%1").arg(i + 1)));
-    connect(action, &QAction::triggered, this, [this, name = entries_[i].name] { showScreen(name); });
+    connect(action, &QAction::triggered, this, [this, name = entries_[i].name] {
+      showScreen(name);
+      stack_->currentWidget()->setFocus();
+    });
   }
   menu->addSeparator();
   QAction* const parameters = parameters_dock_->toggleViewAction();
@@ -143,10 +147,12 @@ void MainWindow::makeViewMenu() {
 
 void MainWindow::makeHelpMenu() {
   actions_.guide = makeAction(this, "book", tr("&User guide"), tr("User guide"), QKeySequence::HelpContents);
+  actions_.keys = makeAction(this, "keyboard", tr("&Keyboard"), tr("All keys"), QKeySequence("?"));
+  connect(actions_.keys, &QAction::triggered, this, [this] { showKeys(this); });
   actions_.about = makeAction(this, "info", tr("&About Evical"), tr("About Evical"), {});
   connect(actions_.guide, &QAction::triggered, this, [this] { showUserGuide(this); });
   connect(actions_.about, &QAction::triggered, this, [this] { showAbout(this, workbench_.version); });
-  menuBar()->addMenu(tr("&Help"))->addActions({actions_.guide, actions_.about});
+  menuBar()->addMenu(tr("&Help"))->addActions({actions_.guide, actions_.keys, actions_.about});
 }
 
 void MainWindow::makeToolBar() {
