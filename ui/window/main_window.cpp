@@ -10,6 +10,7 @@
 #include "ui/theme/theme.h"
 #include "ui/window/after_turns.h"
 #include "ui/window/error_panel.h"
+#include "ui/window/export_notice.h"
 #include "ui/window/job_status.h"
 #include "ui/window/log_panel.h"
 #include "ui/window/session_files.h"
@@ -66,10 +67,12 @@ void MainWindow::makeCentre() {
   entries_ = buildPages(pages_, stack_);
   for (const PageEntry& entry : entries_) stack_->addWidget(entry.widget);
   error_ = new ErrorPanel(this);
+  exported_ = new ExportNotice(this);
   auto* const pages = new QWidget(this);
   auto* const column = new QVBoxLayout(pages);
   column->setContentsMargins(8, 8, 8, 8);
   column->addWidget(error_);
+  column->addWidget(exported_);
   column->addWidget(stack_, 1);
   auto* const row = new QWidget(this);
   auto* const layout = new QHBoxLayout(row);
@@ -159,6 +162,7 @@ void MainWindow::wireDocument() {
   connect(&workbench_.document, &CalibrationDocument::sessionReplaced, this, [this] {
     steps_->reset();
     error_->dismiss();
+    exported_->hide();
   });
   connect(pages_.result, &ResultScreen::calibrateRequested, this, &MainWindow::calibrate);
   connect(pages_.result, &ResultScreen::repairRequested, this, &MainWindow::repair);
@@ -168,8 +172,9 @@ void MainWindow::wireDocument() {
     error_->dismiss();
     if (stack_->currentIndex() == 0) showScreen("recording");
   });
-  connect(files_, &SessionFiles::exported, this, [this](const QString& folder) {
-    log_->add({LogLevel::Info, 0.0, tr("The result was exported to %1").arg(folder)});
+  connect(files_, &SessionFiles::exported, this, [this](const ExportOutcome& outcome) {
+    exported_->showOutcome(outcome);
+    log_->add({LogLevel::Info, 0.0, tr("The result was exported to %1").arg(outcome.folder)});
   });
 }
 
@@ -201,6 +206,7 @@ void MainWindow::wireJobs() {
   JobRunner& runner = workbench_.runner;
   connect(&runner, &JobRunner::started, this, [this](const QString& title) {
     error_->dismiss();
+    exported_->hide();
     log_->addHeading(title);
     showState();
   });
