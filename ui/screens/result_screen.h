@@ -14,13 +14,15 @@ class QLabel;
 class QListWidget;
 class QPushButton;
 
+class QMenu;
 class QStackedWidget;
-class QTreeWidget;
 
 namespace evical::ui {
 
 class CorrelationView;
 class ObservabilityView;
+class PosePanel;
+class QuantityTable;
 class RepairButton;
 
 class ResultScreen : public QWidget {
@@ -36,6 +38,7 @@ class ResultScreen : public QWidget {
   void setReference(std::optional<NamedResult> reference, const QString& title);
   void setCalibrating(bool calibrating);  // the first one is being made
   void setOutdated(bool outdated);        // the session is not as it was for this result
+  QMenu* copyMenu() const;                // copies poses; the window's menus show it too
 
  signals:
   void exportRequested();
@@ -68,7 +71,8 @@ class ResultScreen : public QWidget {
   QLabel *icon_, *verdict_, *reason_, *fit_, *outdated_, *comparison_, *observed_, *pairs_;
   RepairButton* repair_;
   QComboBox* against_;
-  QTreeWidget* parameters_;
+  QuantityTable* parameters_;
+  PosePanel* pose_;
   ObservabilityView* observability_;
   CorrelationView* correlation_;
   QListWidget* notes_;

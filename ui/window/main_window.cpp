@@ -2,6 +2,7 @@
 #include "ui/window/main_window.h"
 
 #include "core/base/error.h"
+#include "core/pipeline/idle_options.h"
 #include "ui/forms/option_form.h"
 #include "ui/forms/session_undo_keys.h"
 #include "ui/screens/result_screen.h"
@@ -9,6 +10,7 @@
 #include "ui/theme/theme.h"
 #include "ui/window/after_turns.h"
 #include "ui/window/error_panel.h"
+#include "ui/window/export_notice.h"
 #include "ui/window/job_status.h"
 #include "ui/window/lens_files.h"
 #include "ui/window/log_panel.h"
@@ -22,6 +24,7 @@
 #include <QDropEvent>
 #include <QListWidget>
 #include <QMimeData>
+#include <QScreen>
 #include <QSettings>
 #include <QSplitter>
 #include <QStackedWidget>
@@ -68,10 +71,12 @@ void MainWindow::makeCentre() {
   entries_ = buildPages(pages_, stack_);
   for (const PageEntry& entry : entries_) stack_->addWidget(entry.widget);
   error_ = new ErrorPanel(this);
+  exported_ = new ExportNotice(this);
   auto* const pages = new QWidget(this);
   auto* const column = new QVBoxLayout(pages);
   column->setContentsMargins(8, 8, 8, 8);
   column->addWidget(error_);
+  column->addWidget(exported_);
   column->addWidget(stack_, 1);
   auto* const row = new QWidget(this);
   auto* const layout = new QHBoxLayout(row);
@@ -161,6 +166,7 @@ void MainWindow::wireDocument() {
   connect(&workbench_.document, &CalibrationDocument::sessionReplaced, this, [this] {
     steps_->reset();
     error_->dismiss();
+    exported_->hide();
   });
   connect(pages_.result, &ResultScreen::calibrateRequested, this, &MainWindow::calibrate);
   connect(pages_.result, &ResultScreen::repairRequested, this, &MainWindow::repair);
@@ -170,14 +176,24 @@ void MainWindow::wireDocument() {
     error_->dismiss();
     if (stack_->currentIndex() == 0) showScreen("recording");
   });
-  connect(files_, &SessionFiles::exported, this, [this](const QString& folder) {
-    log_->add({LogLevel::Info, 0.0, tr("The result was exported to %1").arg(folder)});
+  connect(files_, &SessionFiles::exported, this, [this](const ExportOutcome& outcome) {
+    exported_->showOutcome(outcome);
+    log_->add({LogLevel::Info, 0.0, tr("The result was exported to %1").arg(outcome.folder)});
   });
 }
 
 void MainWindow::wireParameters() {
   CalibrationDocument& document = workbench_.document;
-  const auto show = [this] { parameters_->setRows(optionRows(workbench_.document.session().options)); };
+  const auto show = [this] {
+    const Session& session = workbench_.document.session();
+    const std::vector<OptionRow> rows = optionRows(session.options);
+    std::map<QString, QString> idle;
+    for (const OptionRow& row : rows)
+      if (const std::string why = whyIdle(session, row.name); !why.empty())
+        idle[QString::fromStdString(row.name)] = QString::fromStdString(why);
+    parameters_->setRows(rows);
+    parameters_->setIdle(workbench_.document.hasSession() ? idle : std::map<QString, QString>());
+  };
   connect(&document, &CalibrationDocument::sessionChanged, parameters_, show);
   connect(parameters_, &OptionForm::resetAllRequested, &document, &CalibrationDocument::resetOptions);
   connect(parameters_, &OptionForm::edited, this, [this](const QString& name, const QString& value) {
@@ -194,6 +210,7 @@ void MainWindow::wireJobs() {
   JobRunner& runner = workbench_.runner;
   connect(&runner, &JobRunner::started, this, [this](const QString& title) {
     error_->dismiss();
+    exported_->hide();
     log_->addHeading(title);
     showState();
   });
@@ -322,7 +339,9 @@ void MainWindow::showVerdictBadge() {
 void MainWindow::restoreLayout() {
   constexpr int kWidth_px = 1280, kHeight_px = 800;
   const QSettings settings;
-  resize(kWidth_px, kHeight_px);
+  constexpr int kFrame_px = 48;  // a title bar that isn't drawn yet
+  const QSize free = screen()->availableGeometry().size() - QSize(0, kFrame_px);
+  resize(QSize(kWidth_px, kHeight_px).boundedTo(free));
   constexpr int kLog_px = 190, kParameters_px = 320;
   resizeDocks({log_dock_}, {kLog_px}, Qt::Vertical);
   resizeDocks({parameters_dock_}, {kParameters_px}, Qt::Horizontal);

@@ -18,6 +18,7 @@ class QStackedWidget;
 namespace evical::ui {
 
 class ErrorPanel;
+class ExportNotice;
 class LensFiles;
 class LogPanel;
 class OptionForm;
@@ -84,6 +85,7 @@ class MainWindow : public QMainWindow {
   QStackedWidget* stack_ = nullptr;
   StepsPanel* steps_ = nullptr;
   ErrorPanel* error_ = nullptr;
+  ExportNotice* exported_ = nullptr;
   LogPanel* log_ = nullptr;
   OptionForm* parameters_ = nullptr;
   QDockWidget *log_dock_ = nullptr, *parameters_dock_ = nullptr;

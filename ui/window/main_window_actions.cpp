@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/result_screen.h"
 #include "ui/theme/theme.h"
 #include "ui/window/about.h"
 #include "ui/window/main_window.h"
@@ -89,7 +90,10 @@ void MainWindow::makeEditMenu() {
   actions_.redo = stack.createRedoAction(this, tr("&Redo"));
   actions_.redo->setIcon(icon("redo"));
   actions_.redo->setShortcuts({QKeySequence("Ctrl+Shift+Z"), QKeySequence("Ctrl+Y")});
-  menuBar()->addMenu(tr("&Edit"))->addActions({actions_.undo, actions_.redo});
+  QMenu* const menu = menuBar()->addMenu(tr("&Edit"));
+  menu->addActions({actions_.undo, actions_.redo});
+  menu->addSeparator();
+  menu->addAction(pages_.result->copyMenu()->menuAction());
 }
 
 void MainWindow::makeCalibrateMenu() {
