@@ -41,6 +41,8 @@ class Photographer : public QObject {
       : window_(window), screen_(std::move(screen)), file_(std::move(file)) {
     connect(&window.files(), &SessionFiles::opened, this, [this] {
       if (window_.workbench().document.last().run) return waitAndSave();
+      LensDocument& lens = window_.workbench().lens;
+      if (lens.offersCameraOnly()) lens.setAim(CalibrationAim::Camera);
       window_.calibrate();
       if (!window_.workbench().runner.running())
         giveUp("calibrate", {true, {}, "the session is incomplete", {}});

@@ -7,8 +7,8 @@
 #include "core/base/error.h"
 #include "core/base/new_folder.h"
 #include "core/pipeline/intrinsics_calibration.h"
+#include "core/pipeline/intrinsics_files.h"
 #include "core/pipeline/session_recording.h"
-#include "core/report/detections_csv.h"
 #include "core/report/intrinsics_report.h"
 
 #include <fmt/format.h>
@@ -45,14 +45,6 @@ void checkStreams(Session session) {
   SessionRecording{session};
 }
 
-std::vector<FileContent> filesOf(const std::filesystem::path& folder, const NamedIntrinsics& named) {
-  const CameraIntrinsics& camera = named.result.intrinsics;
-  return {{folder / "intrinsics.yaml", intrinsicsResultYaml(named)},
-          {folder / "camera_info.yaml", cameraInfoYaml(named.camera, camera)},
-          {folder / "camchain.yaml", camchainYaml(named.stream, camera)},
-          {folder / "projection_std.csv", imageMapCsv(named.result.image)}};
-}
-
 struct Found {
   std::vector<FileContent> files;
   std::string tables, names;
@@ -61,11 +53,11 @@ struct Found {
 void addCamera(const IntrinsicsArguments& arguments, const SessionCamera& camera, bool alone,
                const IntrinsicsRun& run, const RunContext& context, Found& found) {
   for (const RecordingFault& fault : run.pass.faults) context.progress.log(LogLevel::Warning, fault.text);
-  const NamedIntrinsics named{camera.name, camera.stream, kVersion, run.result};
+  const NamedIntrinsics named{camera.name, camera.stream, kVersion, run.result, run.story};
   std::filesystem::path folder = arguments.output;
   if (!alone) makeOutputFolder(folder /= camera.name);
-  for (FileContent& file : filesOf(folder, named)) found.files.push_back(std::move(file));
-  found.files.push_back({folder / "detections.csv", detectionsCsv(run.pass.cameras)});
+  for (FileContent& file : intrinsicsFiles(folder, named, run.pass.cameras))
+    found.files.push_back(std::move(file));
   found.tables += intrinsicsTable(named);
   found.names += (found.names.empty() ? "" : ", ") + camera.name;
 }

@@ -22,7 +22,7 @@ set(may_include_ui_forms "theme;forms")
 foreach(part detection scene plots)
   set(may_include_ui_${part} "theme;jobs;forms;${part}")
 endforeach()
-set(may_include_ui_screens "theme;document;forms;screens")
+set(may_include_ui_screens "theme;document;jobs;forms;screens")
 set(may_include_ui_window "theme;document;jobs;forms;screens;detection;scene;plots;window")
 
 set(gui_library "^(Q[A-Z]|Qt|vtk)")

@@ -10,6 +10,7 @@ namespace evical {
 struct BoardObservations;
 struct CalibrationInput;
 struct CalibrationState;
+struct IntrinsicsResult;
 struct IterationRecord;
 
 // core/frontend/board_tracker.h; from here they are only handed on.
@@ -28,6 +29,8 @@ class CalibrationObserver {
   virtual void windowsDetected(std::size_t /*camera*/, const BoardObservations& /*so_far*/) {}
   // The whole recording has been read.
   virtual void detectionDone(const CalibrationInput& /*input*/) {}
+  // Of a camera's intrinsics alone: a pass over the recording, from 1, and the lens that it left.
+  virtual void intrinsicsPassDone(int /*pass*/, const IntrinsicsResult& /*so_far*/) {}
   // "time offset", its key number in words, and how long it took.
   virtual void initialisationStepDone(std::string_view /*step*/, std::string_view /*result*/,
                                       double /*duration_s*/) {}

@@ -58,36 +58,62 @@ ProjectionChange::ProjectionChange(const CameraIntrinsics& camera, int columns, 
     if (places_[i].by_intrinsics) *places_[i].by_intrinsics -= rays[i]->by_turn * turn;
 }
 
-ProjectionDifference projectionDifference(const CameraIntrinsics& camera, const CameraIntrinsics& other,
-                                          double radius_share) {
-  constexpr int kColumns = 32, kRows = 24, kIterations = 5;
-  const Eigen::Vector2d size(camera.resolution_px.width_px, camera.resolution_px.height_px);
-  const Eigen::Vector2d furthest = camera.principal_point_px.cwiseMax(size - camera.principal_point_px);
-  std::vector<RayPixel> rays;
-  for (const Eigen::Vector2d& pixel : cellMiddles(camera.resolution_px, kColumns, kRows)) {
-    if ((pixel - camera.principal_point_px).norm() > radius_share * furthest.norm()) continue;
-    if (const auto ray = rayPixel(camera, pixel)) rays.push_back(*ray);
-  }
+namespace {
+
+// Errors of `other` along the rays, with the turn taken out that fits them best.
+std::vector<std::optional<Eigen::Vector2d>> turnedErrors(const std::vector<std::optional<RayPixel>>& rays,
+                                                         const CameraIntrinsics& other) {
+  constexpr int kIterations = 5, kLeastRays = 3;
+  std::vector<std::optional<Eigen::Vector2d>> errors;
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  ProjectionDifference difference;
   for (int iteration = 0; iteration <= kIterations; ++iteration) {
     Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
     Eigen::Vector3d vector = Eigen::Vector3d::Zero();
-    difference = {};
-    for (const RayPixel& ray : rays) {
-      const auto projected = project(other, turn * ray.ray);
+    errors.assign(rays.size(), std::nullopt);
+    int seen = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const auto projected = rays[i] ? project(other, turn * rays[i]->ray) : std::nullopt;
       if (!projected) continue;
-      const Eigen::Vector2d error = *projected - ray.pixel;
-      matrix += ray.by_turn.transpose() * ray.by_turn;
-      vector -= ray.by_turn.transpose() * error;
-      difference.rms_px += error.squaredNorm();
-      difference.max_px = std::max(difference.max_px, error.norm());
-      ++difference.places;
+      errors[i] = *projected - rays[i]->pixel;
+      matrix += rays[i]->by_turn.transpose() * rays[i]->by_turn;
+      vector -= rays[i]->by_turn.transpose() * *errors[i];
+      ++seen;
     }
-    if (difference.places < 3) return difference;
-    difference.rms_px = std::sqrt(difference.rms_px / difference.places);
+    if (seen < kLeastRays) return errors;
     if (iteration < kIterations) turn = so3Exp(matrix.ldlt().solve(vector)) * turn;
   }
+  return errors;
+}
+
+}  // namespace
+
+std::vector<std::optional<Eigen::Vector2d>> projectionDifferences(const CameraIntrinsics& camera,
+                                                                  const CameraIntrinsics& other, int columns,
+                                                                  int rows) {
+  std::vector<std::optional<RayPixel>> rays;
+  for (const Eigen::Vector2d& pixel : cellMiddles(camera.resolution_px, columns, rows))
+    rays.push_back(rayPixel(camera, pixel));
+  return turnedErrors(rays, other);
+}
+
+ProjectionDifference projectionDifference(const CameraIntrinsics& camera, const CameraIntrinsics& other,
+                                          double radius_share) {
+  constexpr int kColumns = 32, kRows = 24;
+  const Eigen::Vector2d size(camera.resolution_px.width_px, camera.resolution_px.height_px);
+  const Eigen::Vector2d furthest = camera.principal_point_px.cwiseMax(size - camera.principal_point_px);
+  std::vector<std::optional<RayPixel>> rays;
+  for (const Eigen::Vector2d& pixel : cellMiddles(camera.resolution_px, kColumns, kRows)) {
+    if ((pixel - camera.principal_point_px).norm() > radius_share * furthest.norm()) continue;
+    rays.push_back(rayPixel(camera, pixel));
+  }
+  ProjectionDifference difference;
+  for (const std::optional<Eigen::Vector2d>& error_px : turnedErrors(rays, other)) {
+    if (!error_px) continue;
+    difference.rms_px += error_px->squaredNorm();
+    difference.max_px = std::max(difference.max_px, error_px->norm());
+    ++difference.places;
+  }
+  if (difference.places > 0) difference.rms_px = std::sqrt(difference.rms_px / difference.places);
   return difference;
 }
 

@@ -33,6 +33,12 @@ struct ProjectionDifference {
   int places = 0;  // compared
 };
 
+// Of `other` against `camera` at the middles of columns x rows cells, row by row: where the same rays are seen. Nothing
+// where there is no ray, or `other` does not see it. The image's size is that of `camera`.
+std::vector<std::optional<Eigen::Vector2d>> projectionDifferences(const CameraIntrinsics& camera,
+                                                                  const CameraIntrinsics& other, int columns,
+                                                                  int rows);
+
 // Of `other` against `camera`, over the part of the image (which both must have the size of) that lies within
 // `radius_share` of the way from the principal point to the furthest corner.
 ProjectionDifference projectionDifference(const CameraIntrinsics& camera, const CameraIntrinsics& other,

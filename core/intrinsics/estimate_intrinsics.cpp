@@ -95,21 +95,33 @@ double misfit(const Bundle& bundle) {
   return bundle.scale * circlesOf(bundle) / std::max(1, bundle.circlesUsed());
 }
 
+struct Solution {
+  Bundle bundle;
+  std::vector<TriedModel> tried;
+};
+
 // Equidistant only where radial-tangential does not do, double sphere only where neither does.
-Bundle solve(const std::vector<SensorView>& views, const Estimation& given) {
+Solution solve(const std::vector<SensorView>& views, const Estimation& given) {
+  std::vector<TriedModel> tried;
   const auto with = [&](CameraModel model) {
-    return bestOf(intrinsicsStarts(views, given.board, model, given.resolution_px, given.guess), views,
-                  given);
+    Bundle bundle =
+        bestOf(intrinsicsStarts(views, given.board, model, given.resolution_px, given.guess), views, given);
+    tried.push_back({model, bundle.scale, bundle.circlesUsed(), circlesOf(bundle)});
+    return bundle;
   };
   const IntrinsicsModel wanted = given.options.model;
-  if (wanted != IntrinsicsModel::Automatic) return with(modelOf(wanted));
+  if (wanted != IntrinsicsModel::Automatic) {
+    Bundle bundle = with(modelOf(wanted));
+    return {std::move(bundle), std::move(tried)};
+  }
   Bundle radtan = with(CameraModel::PinholeRadtan);
   Bundle equidistant = with(CameraModel::PinholeEquidistant);
   Bundle pinhole = equidistant.scale < given.options.equidistant_gain * radtan.scale ? std::move(equidistant)
                                                                                      : std::move(radtan);
-  if (!given.wide_too || fits(pinhole)) return pinhole;
+  if (!given.wide_too || fits(pinhole)) return {std::move(pinhole), std::move(tried)};
   Bundle sphere = with(CameraModel::DoubleSphere);
-  return misfit(sphere) < given.options.double_sphere_gain * misfit(pinhole) ? sphere : pinhole;
+  const bool wide = misfit(sphere) < given.options.double_sphere_gain * misfit(pinhole);
+  return {wide ? std::move(sphere) : std::move(pinhole), std::move(tried)};
 }
 
 void addFit(const Bundle& bundle, IntrinsicsResult& result) {
@@ -138,7 +150,7 @@ bool hasLead(const Bundle& bundle) {
 }  // namespace
 
 IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const IntrinsicsOptions& options,
-                                    const RunContext& context) {
+                                    const RunContext& context, IntrinsicsStory* story) {
   const std::vector<SensorView> all = sensorViews(input.observations, input.board, input.seen_with, options);
   checkCount(all, all.size(), "views", input, options);
   const CameraIntrinsics rough =
@@ -146,7 +158,8 @@ IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const Intrinsi
   const std::vector<SensorView> views = selectViews(all, input.board, rough, options);
   checkCount(views, views.size(), "views, far enough from each other in time,", input, options);
   const Estimation given{input.board, input.resolution_px, input.seen_with, options, context};
-  const Bundle bundle = input.start ? bestOf({*input.start}, views, given) : solve(views, given);
+  Solution solution = input.start ? Solution{bestOf({*input.start}, views, given), {}} : solve(views, given);
+  const Bundle& bundle = solution.bundle;
 
   IntrinsicsResult result;
   result.intrinsics = bundle.intrinsics;
@@ -164,6 +177,7 @@ IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const Intrinsi
   result.image = imageMap(bundle, result.covariance);
   result.advice = coverageAdvice(bundle, result.image);
   judge(bundle.converged, options, result);
+  if (story != nullptr) *story = {std::move(solution.tried), viewsOf(bundle, input.board)};
   return result;
 }
 
@@ -180,7 +194,7 @@ std::optional<RoughCamera> roughCamera(const std::vector<SensorView>& all, const
   for (std::size_t k = 0; k < all.size(); k += every) views.push_back(all[k]);
   IntrinsicsOptions rough = options;
   rough.max_iterations = std::min(options.max_iterations, kMostIterations);
-  const Bundle bundle = solve(views, {board, guess.resolution_px, guess, rough, context, kWideToo});
+  const Bundle bundle = solve(views, {board, guess.resolution_px, guess, rough, context, kWideToo}).bundle;
   const CameraIntrinsics& camera = bundle.intrinsics;
   const bool sane =
       camera.focal_length_px.allFinite() && camera.focal_length_px.minCoeff() > 1.0 &&

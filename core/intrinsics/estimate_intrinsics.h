@@ -9,6 +9,7 @@
 #include "core/base/progress.h"
 #include "core/data/board_observations.h"
 #include "core/data/intrinsics_result.h"
+#include "core/data/intrinsics_story.h"
 #include "core/geometry/board.h"
 #include "core/intrinsics/intrinsics_options.h"
 #include "core/intrinsics/sensor_views.h"
@@ -23,13 +24,14 @@ struct IntrinsicsInput {
   Resolution resolution_px;
   const BoardObservations& observations;
   std::optional<CameraIntrinsics> seen_with;  // none: the observations are in the sensor's own pixels
-  std::optional<CameraIntrinsics> start;      // of an estimate before; none: a start is found
+  // Of an estimate before, whose model is kept; none: a start is found, and models are tried.
+  std::optional<CameraIntrinsics> start;
 };
 
 // The order of board.index is that of the views; of boards that look the same upside down either will do.
-// Throws CalibrationFailed, with what to do, where the views make no camera.
+// Throws CalibrationFailed, with what to do, where the views make no camera. `story`: where it is wanted.
 IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const IntrinsicsOptions& options,
-                                    const RunContext& context);
+                                    const RunContext& context, IntrinsicsStory* story = nullptr);
 
 // A camera that is good enough to see the board with.
 struct RoughCamera {

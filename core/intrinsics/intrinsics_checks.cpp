@@ -14,13 +14,22 @@
 namespace evical {
 namespace {
 
-// The board's normals, into the board, in the camera; of the views used.
+// The board's normal in a view, into the board, in the camera.
+Eigen::Vector3d normal(const RigidTransform& camera_from_board) {
+  return camera_from_board.rotation * Eigen::Vector3d::UnitZ();
+}
+
+double tilt_deg(const Eigen::Vector3d& normal) {
+  return kDegPerRad * std::acos(std::clamp(normal.z(), -1.0, 1.0));
+}
+
+// Of the views used.
 std::vector<Eigen::Vector3d> normals(const Bundle& bundle) {
   std::vector<Eigen::Vector3d> all;
   for (std::size_t v = 0; v < bundle.views.size(); ++v) {
     const auto& circles = bundle.views[v].circles;
     if (std::any_of(circles.begin(), circles.end(), [](const SensorCircle& c) { return c.used; }))
-      all.push_back(bundle.poses[v].rotation * Eigen::Vector3d::UnitZ());
+      all.push_back(normal(bundle.poses[v]));
   }
   return all;
 }
@@ -110,22 +119,45 @@ double focalLengthRelativeStd(const CameraIntrinsics& camera, const IntrinsicsMa
 
 double largestTilt_deg(const Bundle& bundle) {
   std::vector<double> tilts_deg;
-  for (const Eigen::Vector3d& normal : normals(bundle))
-    tilts_deg.push_back(kDegPerRad * std::acos(std::clamp(normal.z(), -1.0, 1.0)));
+  for (const Eigen::Vector3d& normal : normals(bundle)) tilts_deg.push_back(tilt_deg(normal));
   if (tilts_deg.empty()) return 0.0;
   std::sort(tilts_deg.begin(), tilts_deg.end());
   return tilts_deg[(tilts_deg.size() - 1) * 19 / 20];
 }
 
+std::vector<IntrinsicsView> viewsOf(const Bundle& bundle, const Board& board) {
+  Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();
+  const std::vector<Eigen::Vector2d> points_m = boardPoints_m(board);
+  for (const Eigen::Vector2d& point_m : points_m)
+    middle_m.head<2>() += point_m / static_cast<double>(points_m.size());
+  std::vector<IntrinsicsView> views;
+  for (std::size_t v = 0; v < bundle.views.size(); ++v) {
+    IntrinsicsView view;
+    double squares = 0.0;
+    for (const SensorCircle& circle : bundle.views[v].circles) {
+      if (!circle.used) continue;
+      ++view.circles;
+      squares += bundle.error_px(v, circle).squaredNorm();
+    }
+    if (view.circles == 0) continue;
+    view.time_s = bundle.views[v].time_s;
+    view.distance_m = (bundle.poses[v] * middle_m).norm();
+    view.tilt_deg = tilt_deg(normal(bundle.poses[v]));
+    view.reprojection_rms_px = std::sqrt(squares / view.circles);
+    views.push_back(view);
+  }
+  return views;
+}
+
 void checkTilts(const Bundle& bundle, double focal_length_relative_std, const IntrinsicsOptions& options) {
   constexpr double kUseless = 0.05;
-  const double tilt_deg = largestTilt_deg(bundle);
-  if (tilt_deg >= options.least_tilt_deg && focal_length_relative_std < kUseless) return;
+  const double largest_deg = largestTilt_deg(bundle);
+  if (largest_deg >= options.least_tilt_deg && focal_length_relative_std < kUseless) return;
   throw calibrationFailed(
       "intrinsics",
       fmt::format("the focal length is not observable: it is known to {:.1f} % only, and the board is "
                   "tilted by at most {:.0f} deg against the image",
-                  100.0 * focal_length_relative_std, tilt_deg),
+                  100.0 * focal_length_relative_std, largest_deg),
       "Tilt the board by 20 to 40 deg to all four sides");
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/data/intrinsics_result.h"
+#include "core/data/intrinsics_story.h"
 #include "core/intrinsics/bundle.h"
 
 namespace evical {
@@ -15,6 +16,9 @@ void checkTilts(const Bundle& bundle, double focal_length_relative_std, const In
 
 // Largest angle between board and image; of the views used, the most tilted twentieth left out.
 double largestTilt_deg(const Bundle& bundle);
+
+// Where the board was in each view that is used.
+std::vector<IntrinsicsView> viewsOf(const Bundle& bundle, const Board& board);
 
 // Where in the image views are missing, and which way the board was never tilted.
 std::vector<std::string> coverageAdvice(const Bundle& bundle, const ImageMap& image);

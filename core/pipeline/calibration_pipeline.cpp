@@ -173,7 +173,7 @@ std::vector<CameraLens> findLenses(const Session& session, const RunContext& con
   run.intrinsics.resize(lenses.size());
   for (std::size_t k = 0; k < lenses.size(); ++k) {
     if (lenses[k].given || session.sensorOf(k) != k) continue;
-    run.intrinsics[k] = calibrateIntrinsics(session, k, context).result;
+    run.intrinsics[k] = calibrateIntrinsics(session, k, context.unobserved()).result;
     lenses[k].seen_with = run.intrinsics[k]->intrinsics;
   }
   for (std::size_t k = 0; k < lenses.size(); ++k) lenses[k] = lenses[session.sensorOf(k)];

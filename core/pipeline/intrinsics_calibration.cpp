@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/stopwatch.h"
 #include "core/base/time.h"
+#include "core/data/calibration_observer.h"
 #include "core/data/calibration_stage.h"
 #include "core/geometry/projection_difference.h"
 #include "core/intrinsics/estimate_intrinsics.h"
@@ -45,12 +46,13 @@ Session cameraAlone(const Session& session, std::size_t camera) {
 
 // A board of another size than the session says may fail in any way: that is told first.
 IntrinsicsResult estimate(const Session& alone, const RecordingPass& pass,
-                          const std::optional<CameraIntrinsics>& start, const RunContext& context) {
+                          const std::optional<CameraIntrinsics>& start, const RunContext& context,
+                          IntrinsicsStory& story) {
   const BoardObservations& observations = pass.cameras.front();
   try {
     return estimateIntrinsics(
         {alone.board, pass.resolutions_px.front(), observations, pass.lenses.front().seen_with, start},
-        alone.options.intrinsics, context);
+        alone.options.intrinsics, context, &story);
   } catch (const CalibrationError&) {
     checkBoardSize(observations, alone.board, alone.options.front_end.extent);
     throw;
@@ -86,7 +88,7 @@ RecordingPass passOver(const Session& alone, const RunContext& context) {
     one.recording = recording;
     one.more_recordings.clear();
     try {
-      RecordingPass pass = readAndDetect(one, {CameraLens{}}, context.unobserved());
+      RecordingPass pass = readAndDetect(one, {CameraLens{}}, context);
       if (all)
         append(std::move(pass), *all);
       else
@@ -102,6 +104,10 @@ RecordingPass passOver(const Session& alone, const RunContext& context) {
   return std::move(*all);
 }
 
+void tellPass(const IntrinsicsRun& run, const RunContext& context) {
+  if (context.observer != nullptr) context.observer->intrinsicsPassDone(run.result.passes, run.result);
+}
+
 // Frames, points and flashes are measured on the sensor, whatever the lens: once is enough.
 IntrinsicsRun fromSensorPixels(const Session& alone, const RunContext& context) {
   context.progress.stageStarted(nameOf(CalibrationStage::Intrinsics));
@@ -110,8 +116,9 @@ IntrinsicsRun fromSensorPixels(const Session& alone, const RunContext& context) 
   if (alone.board_blinks && run.pass.cameras.front().kind == CameraKind::Events)
     checkBlinkingBoardSeen(run.pass.cameras.front(), alone.board);
   checkBoardSeen(run.pass.cameras.front(), alone.board);
-  run.result = estimate(alone, run.pass, {}, context);
+  run.result = estimate(alone, run.pass, {}, context, run.story);
   run.result.passes = 1;
+  tellPass(run, context);
   return run;
 }
 
@@ -123,19 +130,22 @@ IntrinsicsRun fromEvents(const Session& alone, const RunContext& context) {
   std::optional<CameraIntrinsics> start;
   for (int pass = 1; pass <= alone.options.intrinsics.most_passes; ++pass) {
     context.progress.stageStarted(nameOf(CalibrationStage::Intrinsics));
-    run.pass = readAndDetect(alone, {lens}, context.unobserved());
+    run.pass = readAndDetect(alone, {lens}, context);
     if (run.pass.cameras.front().views.empty())
       if (const std::optional<CalibrationError> blink = unexpectedBlink(alone, 0))
         throw CalibrationError(*blink);
     checkBoardSeen(run.pass.cameras.front(), alone.board);
-    run.result = estimate(alone, run.pass, start, context);
+    std::vector<TriedModel> tried = std::move(run.story.tried);
+    run.result = estimate(alone, run.pass, start, context, run.story);
+    if (start) run.story.tried = std::move(tried);
     run.result.passes = pass;
     const CameraIntrinsics found = run.result.intrinsics;
     const auto moved =
         lens.seen_with ? std::optional(projectionDifference(found, *lens.seen_with)) : std::nullopt;
     lens.seen_with = start = found;
+    if (moved) run.result.moved_px = moved->rms_px;
+    tellPass(run, context);
     if (!moved) continue;
-    run.result.moved_px = moved->rms_px;
     context.progress.log(LogLevel::Debug, fmt::format("pass {}: {} views, moved by {:.4f} px", pass,
                                                       run.result.views_found, moved->rms_px));
     if (kRefitShare * moved->rms_px < alone.options.intrinsics.settled_px) break;

@@ -4,6 +4,7 @@
 
 #include "core/base/progress.h"
 #include "core/data/intrinsics_result.h"
+#include "core/data/intrinsics_story.h"
 #include "core/pipeline/recording_pass.h"
 #include "core/pipeline/session.h"
 
@@ -13,11 +14,13 @@ namespace evical {
 
 struct IntrinsicsRun {
   IntrinsicsResult result;
-  RecordingPass pass;  // the last one, of this camera alone
+  IntrinsicsStory story;  // models as the first pass tried them, views as the last one used them
+  RecordingPass pass;     // the last one, of this camera alone
 };
 
 // What the session says of the camera's intrinsics, and its IMUs, are left aside. Progress goes by the stages
-// "first look" and "intrinsics". Throws CalibrationError, and Cancelled when asked to stop.
+// "first look" and, once a pass, "intrinsics"; who watches sees the windows of a camera 0, in time from the
+// camera's own start. Throws CalibrationError, and Cancelled when asked to stop.
 IntrinsicsRun calibrateIntrinsics(const Session& session, std::size_t camera, const RunContext& context);
 
 }  // namespace evical

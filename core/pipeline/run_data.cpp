@@ -50,7 +50,7 @@ inline constexpr int kMembers<ImuUncertainty> = 12;
 template <>
 inline constexpr int kMembers<BoardUncertainty> = 7;
 template <>
-inline constexpr int kMembers<UncertaintyReport> = 12;
+inline constexpr int kMembers<UncertaintyReport> = 13;
 template <>
 inline constexpr int kMembers<SensorLatency> = 4;
 template <>
@@ -211,6 +211,8 @@ bool isWhole(const CalibrationResult& result) {
   const auto names = static_cast<Eigen::Index>(uncertainty.names.size());
   return result.cameras.size() == cameras && uncertainty.cameras.size() == cameras &&
          result.imus.size() == state.imus.size() && uncertainty.imus.size() == state.imus.size() &&
+         (uncertainty.directions.empty() ||
+          uncertainty.directions.size() == uncertainty.observability.size()) &&
          uncertainty.further_boards.size() == state.further_boards.size() &&
          uncertainty.standard_deviations.size() == names && uncertainty.correlation.rows() == names &&
          uncertainty.correlation.cols() == names && isWhole(state.world_from_imu_rotation) &&

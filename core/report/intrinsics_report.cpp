@@ -117,6 +117,10 @@ std::string intrinsicsResultYaml(const NamedIntrinsics& named) {
   text += fmt::format(
       "views: {{found: {}, used: {}}}\ncircles: {{used: {}, rejected: {}}}\nlargest_tilt_deg: {:.1f}\n",
       r.views_found, r.views_used, r.circles_used, r.circles_rejected, r.largest_tilt_deg);
+  text += named.story.tried.empty() ? "" : "models_tried:  # errors: their median spread, in sigmas\n";
+  for (const TriedModel& tried : named.story.tried)
+    text += fmt::format("  - {{model: {}, errors: {:.4g}, circles: {{used: {}, of: {}}}}}\n",
+                        cameraModelName(tried.model), tried.spread_sigma, tried.circles_used, tried.circles);
   text += fmt::format("passes: {}\nmoved_px: {:.6g}\n", r.passes, r.moved_px);
   text += r.advice.empty() ? "advice: []\n" : "advice:\n";
   for (const std::string& advice : r.advice) text += fmt::format("  - {}\n", yamlText(advice));
@@ -184,6 +188,11 @@ std::string intrinsicsTable(const NamedIntrinsics& named) {
         fmt::format("    {:<26}{:>12.4f} +- {:.4f} px\n", "edge lead", r.edge_lead_px, r.edge_lead_std_px);
   text += fmt::format("    {:<26}{:>12} of {}, {} circles, {} dropped; tilted by up to {:.0f} deg\n", "views",
                       r.views_used, r.views_found, r.circles_used, r.circles_rejected, r.largest_tilt_deg);
+  if (named.story.tried.size() > 1)
+    for (const TriedModel& tried : named.story.tried)
+      text += fmt::format("    {:<26}{:>12.2f} of their sigmas, {} of {} circles\n",
+                          fmt::format("errors, {}", cameraModelName(tried.model)), tried.spread_sigma,
+                          tried.circles_used, tried.circles);
   text += "Where circles were seen (. none, - few, + some, # many):\n" + coveragePicture(r.image);
   for (const std::string& advice : r.advice) text += fmt::format("Advice: {}\n", advice);
   text +=

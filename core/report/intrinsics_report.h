@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/data/intrinsics_result.h"
+#include "core/data/intrinsics_story.h"
 
 #include <array>
 #include <string>
@@ -12,6 +13,7 @@ struct NamedIntrinsics {
   std::string camera, stream;
   std::string version;
   IntrinsicsResult result;
+  IntrinsicsStory story = {};
 };
 
 // Reads back as intrinsics of a session (core/data/intrinsics_yaml.h).

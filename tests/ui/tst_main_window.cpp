@@ -15,6 +15,7 @@
 #include "ui/screens/start_screen.h"
 #include "ui/screens/stream_table.h"
 #include "ui/window/error_panel.h"
+#include "ui/window/export_notice.h"
 #include "ui/window/log_panel.h"
 #include "ui/window/session_files.h"
 #include "ui/window/steps_panel.h"
@@ -292,6 +293,12 @@ class TestMainWindow : public QObject {
     QVERIFY(drop.isAccepted());
   }
 
+  // A title bar has room, too.
+  void firstStart_fitsTheScreen() {
+    WindowFixture test;
+    QVERIFY(test.window.height() < test.window.screen()->availableGeometry().height() - 30);
+  }
+
   void layout_isRemembered() {
     {
       WindowFixture test;
@@ -388,9 +395,7 @@ class TestMainWindow : public QObject {
 
   void exportTheResult(WindowFixture& test) {
     const QString folder = scratch_.filePath("exported");
-    QVERIFY(QDir().mkpath(folder));
-    answerExportDialog({"openvins", "esvo"});
-    answerFileDialog(folder);
+    answerExportDialog({"openvins", "esvo"}, folder);
     QTest::mouseClick(test.child<QPushButton>("export"), Qt::LeftButton);
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
     for (const char* const file :
@@ -402,7 +407,16 @@ class TestMainWindow : public QObject {
     QCOMPARE(read.result->state.cameras.at(0).time_offset_s,
              test.document().last().run->result.state.cameras.at(0).time_offset_s);
     QVERIFY(test.child<LogPanel>()->shownText().contains("random walks are not measured"));
-    QVERIFY(test.child<ErrorPanel>()->text().contains("not exported: result: has one camera"));
+    auto* const notice = test.child<ExportNotice>();
+    QVERIFY(notice->isVisible());
+    QVERIFY2(notice->text().contains("esvo: not exported: result: has one camera") &&
+                 notice->text().contains("Kalibr, OpenVINS") && notice->text().contains(folder),
+             qPrintable(notice->text()));
+    ReportReader reader;
+    QDesktopServices::setUrlHandler("file", &reader, "open");
+    const auto restored = qScopeGuard([] { QDesktopServices::unsetUrlHandler("file"); });
+    QTest::mouseClick(test.child<QPushButton>("open_folder"), Qt::LeftButton);
+    QCOMPARE(reader.file, QFileInfo(folder).absoluteFilePath());
   }
 
   // The browser's part is ours for a moment.

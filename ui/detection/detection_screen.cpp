@@ -141,11 +141,11 @@ Sight DetectionScreen::sight() const {
 
 void DetectionScreen::showRun() {
   const BoardObservations* const seen = runInView() ? &run_->pass.cameras[camera_] : nullptr;
-  layer_boxes_[static_cast<std::size_t>(Layer::Reprojection)]->setEnabled(seen != nullptr);
+  const bool posed = seen && hasPoses(*run_);
+  layer_boxes_[static_cast<std::size_t>(Layer::Reprojection)]->setEnabled(posed);
   timeline_->setWindows(seen ? seen->windows : std::vector<WindowReport>{});
   engine_->setObservations(seen ? std::shared_ptr<const BoardObservations>(run_, seen) : nullptr);
-  const bool moves = seen && !run_->result.state.world_from_imu_rotation.control_points.empty();
-  engine_->setResult(moves ? std::shared_ptr<const CalibrationState>(run_, &run_->result.state) : nullptr);
+  engine_->setResult(posed ? std::shared_ptr<const CalibrationState>(run_, &run_->result.state) : nullptr);
   engine_->setSight(sight());
   showMarksAlone();
   offerPictures();

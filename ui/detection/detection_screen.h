@@ -27,6 +27,12 @@ class QToolButton;
 
 namespace evical::ui {
 
+// A run of one camera's lens alone has none, nor has one whose folder lost them.
+inline bool hasPoses(const CalibrationRun& run) {
+  return !run.result.state.cameras.empty() &&
+         !run.result.state.world_from_imu_rotation.control_points.empty();
+}
+
 class DetectionEngine;
 enum class PictureChoice;
 struct RecordingOverview;

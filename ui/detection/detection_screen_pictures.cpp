@@ -104,7 +104,7 @@ QString DetectionScreen::captionOf(const SurfaceFrame& frame) {
 
 std::vector<QPolygonF> DetectionScreen::reprojectionInto(std::size_t camera, double time_s) const {
   const CalibrationRun* const run = runInView();
-  if (!run || !shown(Layer::Reprojection)) return {};
+  if (!run || !hasPoses(*run) || !shown(Layer::Reprojection)) return {};
   return reprojectBoard(run->result.state, camera, run_session_.seenBoard(camera), time_s,
                         viewAt(run->pass.cameras, camera, time_s),
                         run_session_.options.optimisation.slow_edge_speed_px_s);

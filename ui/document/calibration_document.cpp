@@ -223,7 +223,7 @@ bool CalibrationDocument::runIsOutdated() const {
   return sessionYaml(last_.session, folder) != sessionYaml(session_, folder);
 }
 
-std::vector<SessionProblem> sessionProblems(const Session& session) {
+std::vector<SessionProblem> sessionProblems(const Session& session, CalibrationAim aim) {
   std::vector<SessionProblem> problems;
   if (session.recording.empty()) return {{"recording", QObject::tr("Open a recording first")}};
   std::error_code ignored;
@@ -234,8 +234,14 @@ std::vector<SessionProblem> sessionProblems(const Session& session) {
   }
   if (session.cameras.empty())
     problems.push_back({"cameras", QObject::tr("Choose at least one event stream as camera")});
-  if (session.imus.empty() && session.cameras.size() < 2)
-    problems.push_back({"imus", QObject::tr("Choose one stream as IMU, or a second one as camera")});
+  if (aim == CalibrationAim::Rig && session.imus.empty() && session.cameras.size() < 2)
+    problems.push_back(
+        {"imus",
+         QObject::tr("Choose one stream as IMU, or a second one as camera; or calibrate the camera alone")});
+  if (aim == CalibrationAim::Rig && session.board_blinks)
+    problems.push_back(
+        {"board",
+         QObject::tr("A board that flashes tells of one camera's lens: calibrate the camera alone")});
   const auto check = [&](const QString& field, auto&& checked) {
     try {
       checked();

@@ -6,6 +6,7 @@
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/session.h"
 #include "core/report/result_yaml.h"
+#include "ui/document/calibration_aim.h"
 
 #include <QObject>
 #include <QString>
@@ -110,6 +111,6 @@ class CalibrationDocument : public QObject {
 struct SessionProblem {
   QString field, text;
 };
-std::vector<SessionProblem> sessionProblems(const Session& session);
+std::vector<SessionProblem> sessionProblems(const Session& session, CalibrationAim aim = CalibrationAim::Rig);
 
 }  // namespace evical::ui

@@ -123,6 +123,13 @@ void OptionForm::setRows(const std::vector<OptionRow>& rows) {
   filter();
 }
 
+void OptionForm::setIdle(const std::map<QString, QString>& reasons) {
+  for (const auto& [name, option] : editors_) {
+    const auto found = reasons.find(name);
+    option->showIdle(found == reasons.end() ? QString() : found->second);
+  }
+}
+
 void OptionForm::showRefusal(const QString& name, const CalibrationError& error) {
   QStringList places = {name};
   QString text = QString::fromStdString(error.problem());

@@ -4,6 +4,7 @@
 #include "core/base/error.h"
 #include "core/base/modest_thread.h"
 #include "core/base/stopwatch.h"
+#include "ui/jobs/window_words.h"
 
 #include <QMetaObject>
 
@@ -41,8 +42,7 @@ Ending runToEnd(const JobRunner::Work& work, const RunContext& context) {
   } catch (const Cancelled&) {
     return {JobOutcome::Cancelled, {}};
   } catch (const CalibrationError& error) {
-    return {JobOutcome::Failed, JobError{error.kind() == ErrorKind::BadInput, textOf(error.place()),
-                                         textOf(error.problem()), textOf(error.advice()), error.repair()}};
+    return {JobOutcome::Failed, errorOf(error)};
   } catch (const std::bad_alloc&) {
     return {JobOutcome::Failed,
             JobError{false, QObject::tr("memory"), QObject::tr("there is not enough of it"),
@@ -55,6 +55,11 @@ Ending runToEnd(const JobRunner::Work& work, const RunContext& context) {
 }
 
 }  // namespace
+
+JobError errorOf(const CalibrationError& error) {
+  return {error.kind() == ErrorKind::BadInput, textOf(error.place()), inWindowWords(textOf(error.problem())),
+          inWindowWords(textOf(error.advice())), error.repair()};
+}
 
 QString JobError::text() const {
   QString text = place.isEmpty() ? problem : place + ": " + problem;

@@ -3,6 +3,7 @@
 // says of its progress reaches the GUI thread a few times a second, its outcome always, exactly once.
 #pragma once
 
+#include "core/base/error.h"
 #include "core/base/progress.h"
 #include "core/base/repair.h"
 
@@ -27,6 +28,8 @@ struct JobError {
 
   QString text() const;
 };
+
+JobError errorOf(const CalibrationError& error);
 
 enum class JobOutcome { Done, Cancelled, Failed };
 

@@ -3,6 +3,7 @@
 
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
+#include "ui/plots/chart_saving.h"
 #include "ui/plots/empty_note.h"
 #include "ui/plots/plot_panel.h"
 
@@ -69,6 +70,7 @@ QWidget* ConvergenceScreen::makeBar() {
     layout->addWidget(widget);
   layout->addStretch(1);
   layout->addWidget(summary_);
+  layout->addWidget(makeSaveButton(*this, "convergence"));
   for (QComboBox* box : {camera_, relative_, shown_})
     connect(box, &QComboBox::activated, this, [this] { drawSoon(); });
   return bar;

@@ -4,6 +4,7 @@
 #include "core/numerics/robust.h"
 #include "core/report/residual_statistics.h"
 #include "ui/jobs/latest_job.h"
+#include "ui/plots/chart_saving.h"
 #include "ui/plots/empty_note.h"
 #include "ui/plots/plot_panel.h"
 
@@ -127,6 +128,7 @@ QWidget* ResidualsScreen::makeBar() {
        std::initializer_list<QWidget*>{camera_label_, camera_, threshold_label, threshold_, count_})
     layout->addWidget(widget);
   layout->addStretch(1);
+  layout->addWidget(makeSaveButton(*this, "residuals"));
   layout->addWidget(recalibrate_);
   connect(camera_, &QComboBox::activated, this, [this] { compute(); });
   connect(threshold_, &QDoubleSpinBox::valueChanged, this, &ResidualsScreen::setThreshold);

@@ -4,6 +4,7 @@
 #include "core/initialisation/rotation_rates.h"
 #include "core/report/signal_prediction.h"
 #include "ui/jobs/latest_job.h"
+#include "ui/plots/chart_saving.h"
 #include "ui/plots/empty_note.h"
 #include "ui/plots/plot_panel.h"
 #include "ui/plots/signal_lines.h"
@@ -119,6 +120,7 @@ QWidget* SignalsScreen::makeBar() {
   connect(below_, &QComboBox::currentIndexChanged, this, [this](int look) {
     for (SignalTab* const tab : {gyroscope_, accelerometer_}) tab->lookAt(look);
   });
+  layout->addWidget(makeSaveButton(*this, "signals"));
   for (QComboBox* box : {camera_, imu_}) connect(box, &QComboBox::activated, this, [this] { compute(); });
   return bar;
 }

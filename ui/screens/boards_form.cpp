@@ -6,6 +6,7 @@
 #include "ui/screens/board_chooser.h"
 #include "ui/screens/board_form.h"
 
+#include <QCheckBox>
 #include <QVBoxLayout>
 
 #include <algorithm>
@@ -36,10 +37,20 @@ std::size_t chosenAfter(const std::vector<std::string>& before, const std::vecto
 }  // namespace
 
 BoardsForm::BoardsForm(QWidget* parent)
-    : QWidget(parent), chooser_(new BoardChooser(this)), form_(new BoardForm(this)) {
+    : QWidget(parent),
+      chooser_(new BoardChooser(this)),
+      form_(new BoardForm(this)),
+      blinks_(new QCheckBox(tr("It flashes, on a screen or with lamps"), this)) {
   auto* const layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
-  layout->addWidget(form_);
+  layout->addWidget(form_, 1);
+  layout->addWidget(blinks_);
+  blinks_->setObjectName("blinks");
+  blinks_->setToolTip(
+      tr("Before an event camera that stands still, any kind of board will do if it flashes: for the lens of "
+         "one "
+         "camera alone"));
+  connect(blinks_, &QCheckBox::clicked, this, &BoardsForm::setBlinking);
   connect(chooser_, &BoardChooser::chosen, this, &BoardsForm::choose);
   connect(chooser_, &BoardChooser::addRequested, this, &BoardsForm::add);
   connect(chooser_, &BoardChooser::removeRequested, this, &BoardsForm::remove);
@@ -79,6 +90,8 @@ void BoardsForm::showChosen() {
                     : static_cast<std::size_t>(names.size()) >= session_.cameras.size()
                         ? tr("A camera sees one board, so there cannot be more boards than cameras")
                         : QString());
+  blinks_->setVisible(session_.further_boards.empty());
+  blinks_->setChecked(session_.board_blinks);
   form_->setBoard(boardAt(session_, chosen_), measuredAt(session_, chosen_));
   form_->setName(names.size() > 1 ? names[chosen] : QString(), seenBy());
 }
@@ -106,6 +119,14 @@ void BoardsForm::setProblems(const std::vector<std::pair<QString, QString>>& fie
   }
   chooser_->setWrong(wrong);
   form_->setProblem(texts.join('\n'));
+}
+
+// Only of a board that blinks there may be several recordings, one for each of its places.
+void BoardsForm::setBlinking(bool blinking) {
+  Session changed = session_;
+  changed.board_blinks = blinking;
+  if (!blinking) changed.more_recordings.clear();
+  emit sessionEdited(changed, blinking ? tr("Let the board flash") : tr("Let the board stand still"), {});
 }
 
 void BoardsForm::choose(std::size_t index) {

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+class QCheckBox;
+
 namespace evical::ui {
 
 class BoardChooser;
@@ -32,6 +34,7 @@ class BoardsForm : public QWidget {
 
  private:
   void showChosen();
+  void setBlinking(bool blinking);
   void choose(std::size_t index);
   void add();
   void remove();
@@ -44,6 +47,7 @@ class BoardsForm : public QWidget {
   std::size_t chosen_ = 0;
   BoardChooser* chooser_;
   BoardForm* form_;
+  QCheckBox* blinks_;
 };
 
 }  // namespace evical::ui

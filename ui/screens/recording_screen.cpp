@@ -3,6 +3,7 @@
 
 #include "core/pipeline/session_boards.h"
 #include "core/pipeline/session_guess.h"
+#include "ui/screens/aim_chooser.h"
 #include "ui/screens/boards_form.h"
 #include "ui/screens/camera_form.h"
 #include "ui/screens/imu_form.h"
@@ -96,7 +97,9 @@ RecordingScreen::RecordingScreen(QWidget* parent)
       time_range_(new TimeRangeForm(this)),
       boards_(new BoardsForm(this)),
       sensors_(new QTabWidget(this)),
-      reference_(new QComboBox(this)) {
+      reference_(new QComboBox(this)),
+      aim_(new AimChooser(this)),
+      camera_only_(new QPushButton(icon("calibrate"), tr("Calibrate the camera"), this)) {
   stack_->addWidget(makeEmpty());
   stack_->addWidget(makeContent());
   auto* const layout = new QVBoxLayout(this);
@@ -141,8 +144,16 @@ QWidget* RecordingScreen::makeHeader() {
   line->addWidget(title_, 1);
   verdict_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   line->addWidget(verdict_, 1);
+  camera_only_->setObjectName("camera_only");
+  camera_only_->setToolTip(tr("Its lens alone: that is all that one camera without an IMU can tell"));
+  camera_only_->hide();
+  connect(camera_only_, &QPushButton::clicked, this, &RecordingScreen::cameraOnlyRequested);
+  line->addWidget(camera_only_);
   layout->addLayout(line);
-  layout->addWidget(path_);
+  auto* const below = new QHBoxLayout;
+  below->addWidget(path_, 1);
+  below->addWidget(aim_);
+  layout->addLayout(below);
   return header;
 }
 
@@ -288,11 +299,22 @@ void RecordingScreen::setProblems(const std::vector<std::pair<QString, QString>>
   for (std::size_t i = 0; i < cameras_.size(); ++i) cameras_[i]->setProblem(at_cameras[i]);
   boards_->setProblems(field_and_text);
   showText(stream_problem_, at_streams.join('\n'));
-  verdict_->setText(field_and_text.empty()       ? tr("Ready to calibrate")
-                    : field_and_text.size() == 1 ? tr("One thing is missing")
-                                                 : tr("%1 things are missing").arg(field_and_text.size()));
-  verdict_->setStyleSheet(
-      QString("color: %1").arg((field_and_text.empty() ? theme().good : theme().bad).name()));
+  problems_ = field_and_text.size();
+  showVerdict();
+}
+
+void RecordingScreen::offerCameraOnly(bool offered) {
+  camera_only_->setVisible(offered);
+  showVerdict();
+}
+
+void RecordingScreen::showVerdict() {
+  const bool camera_only = !camera_only_->isHidden();
+  verdict_->setText(problems_ == 1  ? tr("One thing is missing")
+                    : problems_ > 1 ? tr("%1 things are missing").arg(problems_)
+                    : camera_only   ? tr("Nothing to calibrate but the lens:")
+                                    : tr("Ready to calibrate"));
+  verdict_->setStyleSheet(QString("color: %1").arg((problems_ == 0 ? theme().good : theme().bad).name()));
 }
 
 void RecordingScreen::clearInspections() {

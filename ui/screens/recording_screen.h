@@ -14,11 +14,13 @@
 class QComboBox;
 class QLabel;
 class QProgressBar;
+class QPushButton;
 class QStackedWidget;
 class QTabWidget;
 
 namespace evical::ui {
 
+class AimChooser;
 class BoardsForm;
 class CameraForm;
 class ImuForm;
@@ -36,6 +38,9 @@ class RecordingScreen : public QWidget {
   // By camera; what the last run found where the session gave none.
   void setFoundIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& found);
   void setProblems(const std::vector<std::pair<QString, QString>>& field_and_text);
+  // A rig was asked for, and one camera without an IMU is there.
+  void offerCameraOnly(bool offered);
+  AimChooser& aim() const { return *aim_; }  // what is calibrated
 
   void clearInspections();
   void setInspecting(const QString& recording);
@@ -49,6 +54,7 @@ class RecordingScreen : public QWidget {
   void sessionEdited(const evical::Session& session, const QString& what, const QString& merge_key);
   void openRecordingRequested();
   void addRecordingRequested();
+  void cameraOnlyRequested();  // its calibration
 
  private:
   struct Inspected {
@@ -72,6 +78,7 @@ class RecordingScreen : public QWidget {
   void listStreams();
   std::filesystem::path ownRecording(const Inspected& one) const;  // empty: the session's
   void showFileFaults();
+  void showVerdict();
 
   Session session_;
   std::vector<Inspected> inspected_;  // their streams are the table's rows
@@ -83,6 +90,9 @@ class RecordingScreen : public QWidget {
   BoardsForm* boards_;
   QTabWidget* sensors_;
   QComboBox* reference_;
+  AimChooser* aim_;
+  QPushButton* camera_only_;
+  std::size_t problems_ = 0;
   std::vector<CameraForm*> cameras_;
   std::vector<std::optional<CameraIntrinsics>> found_intrinsics_;
   std::vector<ImuForm*> imus_;

@@ -16,13 +16,15 @@ class QLabel;
 class QListWidget;
 class QPushButton;
 
+class QMenu;
 class QStackedWidget;
-class QTreeWidget;
 
 namespace evical::ui {
 
 class CorrelationView;
 class ObservabilityView;
+class PosePanel;
+class QuantityTable;
 class RepairButton;
 
 class ResultScreen : public QWidget {
@@ -40,6 +42,7 @@ class ResultScreen : public QWidget {
   void setKeptRuns(const std::vector<std::pair<QString, QString>>& runs);
   void setCalibrating(bool calibrating);  // the first one is being made
   void setOutdated(bool outdated);        // the session is not as it was for this result
+  QMenu* copyMenu() const;                // copies poses; the window's menus show it too
 
  signals:
   void exportRequested();
@@ -74,7 +77,8 @@ class ResultScreen : public QWidget {
   QLabel *icon_, *verdict_, *reason_, *fit_, *outdated_, *comparison_, *observed_, *pairs_;
   RepairButton* repair_;
   QComboBox* against_;
-  QTreeWidget* parameters_;
+  QuantityTable* parameters_;
+  PosePanel* pose_;
   ObservabilityView* observability_;
   CorrelationView* correlation_;
   QListWidget* notes_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/start_screen.h"
 
+#include "ui/screens/aim_chooser.h"
 #include "ui/theme/theme.h"
 
 #include <QDir>
@@ -40,7 +41,8 @@ StartScreen::StartScreen(QWidget* parent)
       recent_(new QListWidget(this)),
       no_recent_(label(tr("Nothing yet. What you open is listed here."), "hint", this)),
       demo_(choice(tr("Try the demo recording"), "demo", this)),
-      demo_progress_(new QProgressBar(this)) {
+      demo_progress_(new QProgressBar(this)),
+      aim_(new AimChooser(this)) {
   auto* const columns = new QHBoxLayout;
   columns->setSpacing(48);
   columns->addStretch();
@@ -63,9 +65,11 @@ QWidget* StartScreen::makeChoices() {
   layout->addWidget(label(tr("Evical"), "title", column));
   layout->addWidget(
       label(tr("Calibrates event cameras with IMUs: rotation, translation and time offset, each "
-               "with how sure it is, from one recording of a printed circle grid."),
+               "with how sure it is, from one recording of a printed circle grid. Or a camera alone."),
             "hint", column));
-  layout->addSpacing(12);
+  layout->addSpacing(6);
+  layout->addWidget(aim_, 0, Qt::AlignLeft);
+  layout->addSpacing(6);
   auto* const recording = choice(tr("Open a recording..."), "recording", column);
   recording->setToolTip(tr("A ROS bag, or a folder with events.txt and imu.txt"));
   auto* const session = choice(tr("Open a session..."), "open", column);

@@ -12,6 +12,8 @@ class QPushButton;
 
 namespace evical::ui {
 
+class AimChooser;
+
 class StartScreen : public QWidget {
   Q_OBJECT
 
@@ -21,6 +23,7 @@ class StartScreen : public QWidget {
   void setRecentFiles(const QStringList& files);  // newest first
   void setDemoProgress(double fraction);          // while it is simulated
   void setDemoRunning(bool running);
+  AimChooser& aim() const { return *aim_; }  // what is calibrated
 
  signals:
   void openRecordingRequested();
@@ -36,6 +39,7 @@ class StartScreen : public QWidget {
   QLabel* no_recent_;
   QPushButton* demo_;
   QProgressBar* demo_progress_;
+  AimChooser* aim_;
 };
 
 }  // namespace evical::ui

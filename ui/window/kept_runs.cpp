@@ -51,6 +51,7 @@ void showList(RunsPanel& panel, ResultScreen& result, const Workbench& workbench
 void open(Workbench& workbench, const QString& folder) {
   workbench.history.open(pathOf(folder), [&workbench, folder](const SavedRun& saved) {
     if (workbench.runner.running()) return;  // what comes of it is shown then
+    workbench.lens.setAim(CalibrationAim::Rig);
     workbench.document.addUndoableRun({saved.run, saved.session, QString::fromStdString(saved.log)},
                                       QObject::tr("Show %1").arg(titleIn(workbench.history, folder)));
   });

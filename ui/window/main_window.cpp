@@ -2,6 +2,7 @@
 #include "ui/window/main_window.h"
 
 #include "core/base/error.h"
+#include "core/pipeline/idle_options.h"
 #include "ui/forms/option_form.h"
 #include "ui/forms/session_undo_keys.h"
 #include "ui/screens/result_screen.h"
@@ -10,8 +11,10 @@
 #include "ui/theme/theme.h"
 #include "ui/window/after_turns.h"
 #include "ui/window/error_panel.h"
+#include "ui/window/export_notice.h"
 #include "ui/window/job_status.h"
 #include "ui/window/kept_runs.h"
+#include "ui/window/lens_files.h"
 #include "ui/window/log_panel.h"
 #include "ui/window/session_files.h"
 #include "ui/window/steps_panel.h"
@@ -23,6 +26,7 @@
 #include <QDropEvent>
 #include <QListWidget>
 #include <QMimeData>
+#include <QScreen>
 #include <QSettings>
 #include <QSplitter>
 #include <QStackedWidget>
@@ -41,14 +45,16 @@ constexpr int kLayoutVersion = 2;
 }  // namespace
 
 MainWindow::MainWindow(const QString& version)
-    : workbench_(version), files_(new SessionFiles(workbench_, this)) {
+    : workbench_(version),
+      files_(new SessionFiles(workbench_, this)),
+      lens_files_(new LensFiles(workbench_, this)) {
   setAcceptDrops(true);
   qApp->installEventFilter(new SessionUndoKeys(this));
   makeCentre();
   makeDocks();
   makeActions();
   statusBar()->addWidget(new JobStatus(workbench_.runner, this), 1);
-  wirePages(pages_, workbench_, *files_);
+  wirePages(pages_, workbench_, *files_, *lens_files_);
   wireRuns(*runs_, *pages_.result, workbench_);
   connect(runs_, &RunsPanel::comparisonRequested, this, [this] { showScreen("result"); });
   connect(&workbench_.history, &RunHistory::failed, this, &MainWindow::showProblem);
@@ -56,6 +62,7 @@ MainWindow::MainWindow(const QString& version)
   wireParameters();
   wireJobs();
   wireSteps();
+  wireLens();
   restoreLayout();
   navigation_->setCurrentRow(0);
   showState();
@@ -69,10 +76,12 @@ void MainWindow::makeCentre() {
   entries_ = buildPages(pages_, stack_);
   for (const PageEntry& entry : entries_) stack_->addWidget(entry.widget);
   error_ = new ErrorPanel(this);
+  exported_ = new ExportNotice(this);
   auto* const pages = new QWidget(this);
   auto* const column = new QVBoxLayout(pages);
   column->setContentsMargins(8, 8, 8, 8);
   column->addWidget(error_);
+  column->addWidget(exported_);
   column->addWidget(stack_, 1);
   auto* const row = new QWidget(this);
   auto* const layout = new QHBoxLayout(row);
@@ -166,6 +175,7 @@ void MainWindow::wireDocument() {
   connect(&workbench_.document, &CalibrationDocument::sessionReplaced, this, [this] {
     steps_->reset();
     error_->dismiss();
+    exported_->hide();
   });
   connect(pages_.result, &ResultScreen::calibrateRequested, this, &MainWindow::calibrate);
   connect(pages_.result, &ResultScreen::repairRequested, this, &MainWindow::repair);
@@ -178,14 +188,24 @@ void MainWindow::wireDocument() {
     else if (stack_->currentIndex() == 0)
       showScreen("recording");
   });
-  connect(files_, &SessionFiles::exported, this, [this](const QString& folder) {
-    log_->add({LogLevel::Info, 0.0, tr("The result was exported to %1").arg(folder)});
+  connect(files_, &SessionFiles::exported, this, [this](const ExportOutcome& outcome) {
+    exported_->showOutcome(outcome);
+    log_->add({LogLevel::Info, 0.0, tr("The result was exported to %1").arg(outcome.folder)});
   });
 }
 
 void MainWindow::wireParameters() {
   CalibrationDocument& document = workbench_.document;
-  const auto show = [this] { parameters_->setRows(optionRows(workbench_.document.session().options)); };
+  const auto show = [this] {
+    const Session& session = workbench_.document.session();
+    const std::vector<OptionRow> rows = optionRows(session.options);
+    std::map<QString, QString> idle;
+    for (const OptionRow& row : rows)
+      if (const std::string why = whyIdle(session, row.name); !why.empty())
+        idle[QString::fromStdString(row.name)] = QString::fromStdString(why);
+    parameters_->setRows(rows);
+    parameters_->setIdle(workbench_.document.hasSession() ? idle : std::map<QString, QString>());
+  };
   connect(&document, &CalibrationDocument::sessionChanged, parameters_, show);
   connect(parameters_, &OptionForm::resetAllRequested, &document, &CalibrationDocument::resetOptions);
   connect(parameters_, &OptionForm::edited, this, [this](const QString& name, const QString& value) {
@@ -202,6 +222,7 @@ void MainWindow::wireJobs() {
   JobRunner& runner = workbench_.runner;
   connect(&runner, &JobRunner::started, this, [this](const QString& title) {
     error_->dismiss();
+    exported_->hide();
     log_->addHeading(title);
     showState();
   });
@@ -223,13 +244,16 @@ void MainWindow::wireJobs() {
               workbench_.document.addUndoableRun(std::move(record), tr("Reject windows"));
             else
               workbench_.document.addRun(std::move(record));
-            result_is_due_ = stack_->currentIndex() <= 1;
-            afterTurns(kLaidOut_turns, this, [this] { bringUpResult(); });
+            showResultSoon();
           });
 }
 
-void MainWindow::bringUpResult() {
-  if (result_is_due_) showScreen("result");
+// Once the pages are filled: to who still looks at the first two.
+void MainWindow::showResultSoon() {
+  result_is_due_ = stack_->currentIndex() <= 1;
+  afterTurns(kLaidOut_turns, this, [this] {
+    if (result_is_due_) showScreen("result");
+  });
 }
 
 void MainWindow::wireSteps() {
@@ -237,7 +261,7 @@ void MainWindow::wireSteps() {
   CalibrationJob& job = workbench_.calibration;
   const auto whileCalibrating = [this](auto&& act) {
     return [this, act](const auto&... given) {
-      if (workbench_.calibration.running()) act(given...);
+      if (workbench_.calibration.running() || workbench_.intrinsics.running()) act(given...);
     };
   };
   connect(&runner, &JobRunner::started, this, whileCalibrating([this](const QString&) { steps_->reset(); }));
@@ -252,18 +276,24 @@ void MainWindow::wireSteps() {
           [this](const std::shared_ptr<const LiveIterations>& live) { steps_->setIterations(*live); });
   connect(&runner, &JobRunner::finished, steps_, &StepsPanel::finish);
   connect(&workbench_.document, &CalibrationDocument::runsChanged, steps_, [this] {
-    if (const auto run = workbench_.document.last().run) steps_->setRun(*run);
+    const bool of_rig = workbench_.lens.aim() == CalibrationAim::Rig;
+    const bool busy = workbench_.calibration.running();
+    if (const auto run = workbench_.document.last().run; run && of_rig && !busy) steps_->setRun(*run);
   });
 }
 
 void MainWindow::calibrate() {
-  const std::vector<SessionProblem> problems = sessionProblems(workbench_.document.session());
+  const std::vector<SessionProblem> problems = workbench_.lens.problems();
   if (!problems.empty()) {
     showScreen(workbench_.document.hasSession() ? "recording" : "start");
     showProblem(tr("This cannot be calibrated yet"), {true, {}, problems.front().text, {}});
     return;
   }
-  workbench_.calibration.start(workbench_.document.session());
+  const Session& session = workbench_.document.session();
+  if (workbench_.lens.aim() == CalibrationAim::Camera)
+    workbench_.intrinsics.start(session, workbench_.lens.camera());
+  else
+    workbench_.calibration.start(session);
 }
 
 void MainWindow::repair(const Repair& repair) {
@@ -306,11 +336,13 @@ void MainWindow::showState() {
   showVerdictBadge();
   actions_.save->setEnabled(document.modified());
   actions_.save_as->setEnabled(document.hasSession());
-  const bool has_result = document.last().run != nullptr;
+  const bool of_camera = workbench_.lens.aim() == CalibrationAim::Camera;
+  const bool has_result = of_camera ? workbench_.lens.last().run != nullptr : document.last().run != nullptr;
   actions_.export_result->setEnabled(!running && has_result);
-  actions_.report->setEnabled(!running && has_result);
-  actions_.report->setToolTip(has_result ? tr("Open the result's report in the browser (Ctrl+R)")
-                                         : tr("There is no result yet, so no report: press Calibrate"));
+  actions_.report->setEnabled(!running && has_result && !of_camera);
+  actions_.report->setToolTip(of_camera    ? tr("Reports are of rigs: a camera alone has the Result page")
+                              : has_result ? tr("Open the result's report in the browser (Ctrl+R)")
+                                           : tr("There is no result yet, so no report: press Calibrate"));
 }
 
 // Beside the Result page's name, by colour and shape: whoever watches another page sees how it ended.
@@ -318,16 +350,17 @@ void MainWindow::showVerdictBadge() {
   const qsizetype row = screenNames().indexOf("result");
   QListWidgetItem& item = *navigation_->item(static_cast<int>(row));
   const QString& title = entries_[static_cast<std::size_t>(row)].title;
-  const std::shared_ptr<const CalibrationRun>& run = workbench_.document.last().run;
-  item.setIcon(run ? verdictIcon(run->result.status)
-                   : icon(entries_[static_cast<std::size_t>(row)].icon_name));
-  item.setText(run ? tr("%1: %2").arg(title, QString::fromLatin1(statusName(run->result.status))) : title);
+  const std::optional<CalibrationStatus> status = lastStatus();
+  item.setIcon(status ? verdictIcon(*status) : icon(entries_[static_cast<std::size_t>(row)].icon_name));
+  item.setText(status ? tr("%1: %2").arg(title, QString::fromLatin1(statusName(*status))) : title);
 }
 
 void MainWindow::restoreLayout() {
   constexpr int kWidth_px = 1280, kHeight_px = 800;
   const QSettings settings;
-  resize(kWidth_px, kHeight_px);
+  constexpr int kFrame_px = 48;  // a title bar that isn't drawn yet
+  const QSize free = screen()->availableGeometry().size() - QSize(0, kFrame_px);
+  resize(QSize(kWidth_px, kHeight_px).boundedTo(free));
   constexpr int kLog_px = 190, kParameters_px = 320;
   resizeDocks({log_dock_}, {kLog_px}, Qt::Vertical);
   resizeDocks({parameters_dock_}, {kParameters_px}, Qt::Horizontal);

@@ -8,6 +8,8 @@
 #include <QMainWindow>
 #include <QStringList>
 
+#include <optional>
+
 class QAction;
 class QDockWidget;
 class QListWidget;
@@ -16,6 +18,8 @@ class QStackedWidget;
 namespace evical::ui {
 
 class ErrorPanel;
+class ExportNotice;
+class LensFiles;
 class LogPanel;
 class OptionForm;
 class RunsPanel;
@@ -31,6 +35,7 @@ class MainWindow : public QMainWindow {
 
   Workbench& workbench() { return workbench_; }
   SessionFiles& files() { return *files_; }
+  LensFiles& lensFiles() { return *lens_files_; }
   QStringList screenNames() const;
   bool showScreen(const QString& name);  // false: there is none of this name
 
@@ -61,7 +66,10 @@ class MainWindow : public QMainWindow {
   void wireJobs();
   void paintPagesLater();
   void turnTo(int page);
-  void bringUpResult();
+  void wireLens();
+  void exportResult();
+  void showResultSoon();
+  std::optional<CalibrationStatus> lastStatus() const;
   void wireSteps();
   void showState();
   void showVerdictBadge();
@@ -71,12 +79,14 @@ class MainWindow : public QMainWindow {
 
   Workbench workbench_;
   SessionFiles* files_;
+  LensFiles* lens_files_;
   Pages pages_;
   std::vector<PageEntry> entries_;
   QListWidget* navigation_ = nullptr;
   QStackedWidget* stack_ = nullptr;
   StepsPanel* steps_ = nullptr;
   ErrorPanel* error_ = nullptr;
+  ExportNotice* exported_ = nullptr;
   LogPanel* log_ = nullptr;
   OptionForm* parameters_ = nullptr;
   RunsPanel* runs_ = nullptr;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/result_screen.h"
 #include "ui/theme/theme.h"
 #include "ui/window/about.h"
 #include "ui/window/main_window.h"
@@ -58,7 +59,7 @@ void MainWindow::makeFileMenu() {
   connect(actions_.open_recording, &QAction::triggered, files_, &SessionFiles::chooseRecording);
   connect(actions_.save, &QAction::triggered, files_, &SessionFiles::save);
   connect(actions_.save_as, &QAction::triggered, files_, &SessionFiles::saveAs);
-  connect(actions_.export_result, &QAction::triggered, files_, &SessionFiles::chooseExportFolder);
+  connect(actions_.export_result, &QAction::triggered, this, &MainWindow::exportResult);
   connect(actions_.export_every, &QAction::triggered, files_, &SessionFiles::exportEveryResult);
   connect(actions_.report, &QAction::triggered, files_, &SessionFiles::openReport);
   connect(files_, &SessionFiles::exportsEveryResult, actions_.export_every, &QAction::setChecked);
@@ -89,7 +90,10 @@ void MainWindow::makeEditMenu() {
   actions_.redo = stack.createRedoAction(this, tr("&Redo"));
   actions_.redo->setIcon(icon("redo"));
   actions_.redo->setShortcuts({QKeySequence("Ctrl+Shift+Z"), QKeySequence("Ctrl+Y")});
-  menuBar()->addMenu(tr("&Edit"))->addActions({actions_.undo, actions_.redo});
+  QMenu* const menu = menuBar()->addMenu(tr("&Edit"));
+  menu->addActions({actions_.undo, actions_.redo});
+  menu->addSeparator();
+  menu->addAction(pages_.result->copyMenu()->menuAction());
 }
 
 void MainWindow::makeCalibrateMenu() {

@@ -7,13 +7,18 @@
 #include "ui/plots/residuals_screen.h"
 #include "ui/plots/signals_screen.h"
 #include "ui/scene/trajectory_screen.h"
+#include "ui/screens/lens_screen.h"
 #include "ui/screens/recording_screen.h"
 #include "ui/screens/result_screen.h"
 #include "ui/screens/start_screen.h"
 #include "ui/window/after_turns.h"
+#include "ui/window/lens_pages.h"
 #include "ui/window/linked_pages.h"
+#include "ui/window/rig_page.h"
 #include "ui/window/session_files.h"
 #include "ui/window/workbench.h"
+
+#include <QStackedWidget>
 
 namespace evical::ui {
 namespace {
@@ -22,7 +27,11 @@ void wireStart(StartScreen& start, Workbench& workbench, SessionFiles& files) {
   start.setRecentFiles(files.recentFiles());
   QObject::connect(&start, &StartScreen::openRecordingRequested, &files, &SessionFiles::chooseRecording);
   QObject::connect(&start, &StartScreen::openSessionRequested, &files, &SessionFiles::chooseSession);
-  QObject::connect(&start, &StartScreen::demoRequested, &files, &SessionFiles::openDemo);
+  QObject::connect(&start, &StartScreen::demoRequested, &files, [&workbench, &files] {
+    if (workbench.runner.running()) return;
+    workbench.lens.setAim(CalibrationAim::Rig);  // which the demo is made for
+    files.openDemo();
+  });
   QObject::connect(&start, &StartScreen::fileChosen, &files, &SessionFiles::open);
   QObject::connect(&files, &SessionFiles::recentFilesChanged, &start, &StartScreen::setRecentFiles);
   QObject::connect(&files, &SessionFiles::demoRunning, &start, &StartScreen::setDemoRunning);
@@ -34,13 +43,21 @@ void wireRecording(RecordingScreen& screen, Workbench& workbench, SessionFiles& 
   CalibrationDocument& document = workbench.document;
   QObject::connect(&screen, &RecordingScreen::openRecordingRequested, &files, &SessionFiles::chooseRecording);
   QObject::connect(&screen, &RecordingScreen::sessionEdited, &document, &CalibrationDocument::edit);
-  QObject::connect(&document, &CalibrationDocument::sessionChanged, &screen, [&screen, &document] {
-    screen.setSession(document.session());
+  const LensDocument& lens = workbench.lens;
+  const auto show_problems = [&screen, &lens] {
+    const bool camera_only = lens.offersCameraOnly();
     std::vector<std::pair<QString, QString>> problems;
-    for (const SessionProblem& problem : sessionProblems(document.session()))
+    for (const SessionProblem& problem : camera_only ? lens.problemsOfCamera() : lens.problems())
       problems.emplace_back(problem.field, problem.text);
     screen.setProblems(problems);
-  });
+    screen.offerCameraOnly(camera_only);
+  };
+  QObject::connect(&document, &CalibrationDocument::sessionChanged, &screen,
+                   [&screen, &document, show_problems] {
+                     screen.setSession(document.session());
+                     show_problems();
+                   });
+  QObject::connect(&lens, &LensDocument::aimChanged, &screen, show_problems);
   QObject::connect(&document, &CalibrationDocument::runsChanged, &screen, [&screen, &document] {
     std::vector<std::optional<CameraIntrinsics>> found;
     if (const auto run = document.last().run)
@@ -97,23 +114,36 @@ std::vector<PageEntry> buildPages(Pages& pages, QWidget* parent) {
   pages.signal_curves = new SignalsScreen(parent);
   pages.residuals = new ResidualsScreen(parent);
   pages.result = new ResultScreen(parent);
+  pages.lens = new LensScreen(parent);
+  pages.results = new QStackedWidget(parent);
+  pages.results->addWidget(pages.result);
+  pages.results->addWidget(pages.lens);
+  const auto of_rig = [&](QWidget* page, const QString& what) {
+    pages.of_rigs.push_back(new RigPage(page, what, parent));
+    return pages.of_rigs.back();
+  };
   return {{"start", QObject::tr("Start"), "home", pages.start},
           {"recording", QObject::tr("Recording"), "recording", pages.recording},
           {"detection", QObject::tr("Detection"), "detection", pages.detection},
-          {"trajectory", QObject::tr("Trajectory"), "trajectory", pages.trajectory},
-          {"convergence", QObject::tr("Convergence"), "convergence", pages.convergence},
-          {"signals", QObject::tr("Signals"), "signals", pages.signal_curves},
-          {"residuals", QObject::tr("Residuals"), "residuals", pages.residuals},
-          {"result", QObject::tr("Result"), "result", pages.result}};
+          {"trajectory", QObject::tr("Trajectory"), "trajectory",
+           of_rig(pages.trajectory, QObject::tr("Trajectories belong"))},
+          {"convergence", QObject::tr("Convergence"), "convergence",
+           of_rig(pages.convergence, QObject::tr("Convergence belongs"))},
+          {"signals", QObject::tr("Signals"), "signals",
+           of_rig(pages.signal_curves, QObject::tr("Signals belong"))},
+          {"residuals", QObject::tr("Residuals"), "residuals",
+           of_rig(pages.residuals, QObject::tr("Residuals belong"))},
+          {"result", QObject::tr("Result"), "result", pages.results}};
 }
 
-void wirePages(const Pages& pages, Workbench& workbench, SessionFiles& files) {
+void wirePages(const Pages& pages, Workbench& workbench, SessionFiles& files, LensFiles& lens_files) {
   wireStart(*pages.start, workbench, files);
   wireRecording(*pages.recording, workbench, files);
   wireResult(*pages.result, workbench, files);
   QObject::connect(pages.detection, &DetectionScreen::recordingWanted, &files,
                    &SessionFiles::lookForRecording);
   wireLinkedPages(pages, workbench);
+  wireLensPages(pages, workbench, lens_files);
 }
 
 }  // namespace evical::ui

@@ -8,14 +8,19 @@
 
 #include <vector>
 
+class QStackedWidget;
+
 namespace evical::ui {
 
 struct Workbench;
 class ConvergenceScreen;
 class DetectionScreen;
+class LensFiles;
+class LensScreen;
 class RecordingScreen;
 class ResidualsScreen;
 class ResultScreen;
+class RigPage;
 class SessionFiles;
 class SignalsScreen;
 class StartScreen;
@@ -30,6 +35,9 @@ struct Pages {
   SignalsScreen* signal_curves = nullptr;
   ResidualsScreen* residuals = nullptr;
   ResultScreen* result = nullptr;
+  LensScreen* lens = nullptr;
+  QStackedWidget* results = nullptr;  // the last two: of a rig, of a camera alone
+  std::vector<RigPage*> of_rigs;      // around those that show nothing of a camera alone
 };
 
 // A page as the navigation lists it.
@@ -41,6 +49,6 @@ struct PageEntry {
 
 std::vector<PageEntry> buildPages(Pages& pages, QWidget* parent);
 
-void wirePages(const Pages& pages, Workbench& workbench, SessionFiles& files);
+void wirePages(const Pages& pages, Workbench& workbench, SessionFiles& files, LensFiles& lens_files);
 
 }  // namespace evical::ui

@@ -34,6 +34,11 @@ QString windowCounts(const std::vector<BoardObservations>& cameras) {
   return QObject::tr("board in %1 of %2 windows").arg(views).arg(windows);
 }
 
+// "pass 2" gives "Pass 2: detect, fit the lens".
+QString passTitle(const QString& stage) {
+  return QObject::tr("%1: detect, fit").arg(capitalised(stage));
+}
+
 // "left: 0.0060 s" gives "0.0060 s": room is scarce, and the tool tip says all of it.
 QString withoutSensor(const QString& text) {
   const qsizetype colon = text.indexOf(": ");
@@ -71,6 +76,21 @@ void StepsPanel::reset() {
   rows_.clear();
   stage_.clear();
   stage_begin_s_ = elapsed_s_ = 0.0;
+  addStages();
+}
+
+void StepsPanel::setAim(CalibrationAim aim) {
+  if (aim == aim_) return;
+  aim_ = aim;
+  reset();
+}
+
+void StepsPanel::addStages() {
+  if (aim_ == CalibrationAim::Camera) {
+    addRow(nameOf(CalibrationStage::FirstLook), tr(rowOf(CalibrationStage::FirstLook).title), false);
+    addRow(IntrinsicsJob::passName(1), passTitle(IntrinsicsJob::passName(1)), false);
+    return;
+  }
   for (const StageRow& stage : kCalibrationStages) {
     if (!isInEveryRun(stage)) continue;
     addRow(stage.name, tr(stage.title), false);
@@ -109,8 +129,22 @@ StepRow* StepsPanel::row(const QString& key) {
   return found == rows_.end() ? nullptr : found->second;
 }
 
+// Passes have their row when they start: nobody knows how many it takes. Frames need no first look.
+void StepsPanel::startPass(const QString& stage) {
+  for (const auto& [key, step] : rows_)
+    if (step->state() == StepState::Running) step->setState(StepState::Done);
+  StepRow* const first_look = row(CalibrationStage::FirstLook);
+  if (stage == IntrinsicsJob::passName(1) && first_look && first_look->state() == StepState::Pending) {
+    delete first_look;
+    rows_.erase(nameOf(CalibrationStage::FirstLook));
+  }
+  if (row(stage) == nullptr) addRow(stage, passTitle(stage), false);
+}
+
 void StepsPanel::startStage(const QString& stage) {
+  if (aim_ == CalibrationAim::Camera) startPass(stage);
   for (const StageRow& known : kCalibrationStages) {
+    if (aim_ == CalibrationAim::Camera) break;
     if (stage == known.name) {
       if (row(stage) == nullptr) addRow(stage, tr(known.title), false);
       break;
@@ -136,7 +170,8 @@ void StepsPanel::setProgress(const JobProgress& progress) {
 }
 
 void StepsPanel::setDetections(const LiveDetections& detections) {
-  row(CalibrationStage::Detect)->setKeyNumber(windowCounts(detections));
+  StepRow* const step = aim_ == CalibrationAim::Camera ? row(stage_) : row(CalibrationStage::Detect);
+  if (step != nullptr) step->setKeyNumber(windowCounts(detections));
 }
 
 void StepsPanel::addInitialisationNote(const InitialisationNote& note) {
@@ -161,6 +196,19 @@ void StepsPanel::setIterations(const LiveIterations& iterations) {
     step->setState(stage == stages.rbegin()->first ? StepState::Running : StepState::Done);
     step->setKeyNumber(costText(numbers.first, numbers.second));
   }
+}
+
+void StepsPanel::setPass(const LensPass& pass) {
+  StepRow* const step = row(IntrinsicsJob::passName(pass.number));
+  if (step == nullptr) return;
+  step->setState(StepState::Done);
+  step->setKeyNumber(pass.moved_px > 0.0
+                         ? tr("%1 views, moved %2 px").arg(pass.views).arg(pass.moved_px, 0, 'g', 2)
+                         : tr("%1 views").arg(pass.views),
+                     tr("%1 views, points fit to %2 px RMS, the lens moved pixels by %3 px")
+                         .arg(pass.views)
+                         .arg(pass.reprojection_rms_px, 0, 'g', 2)
+                         .arg(pass.moved_px, 0, 'g', 2));
 }
 
 void StepsPanel::finish(JobOutcome outcome) {

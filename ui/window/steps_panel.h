@@ -3,7 +3,9 @@
 #pragma once
 
 #include "core/data/calibration_stage.h"
+#include "ui/document/calibration_aim.h"
 #include "ui/jobs/calibration_job.h"
+#include "ui/jobs/intrinsics_job.h"
 #include "ui/jobs/job_runner.h"
 
 #include <QWidget>
@@ -23,11 +25,13 @@ class StepsPanel : public QWidget {
   explicit StepsPanel(QWidget* parent = nullptr);
 
   void reset();
+  void setAim(CalibrationAim aim);        // whose steps they are; a run's end leaves them
   void startStage(const QString& stage);  // by name (core/data/calibration_stage.h)
   void setProgress(const JobProgress& progress);
   void setDetections(const LiveDetections& detections);
   void addInitialisationNote(const InitialisationNote& note);
   void setIterations(const LiveIterations& iterations);
+  void setPass(const LensPass& pass);  // of a camera alone
   void finish(JobOutcome outcome);
   void setRun(const CalibrationRun& run);  // the final numbers
 
@@ -36,6 +40,8 @@ class StepsPanel : public QWidget {
 
  private:
   void dropUnusedSteps();
+  void addStages();
+  void startPass(const QString& stage);
   StepRow* addRow(const QString& key, const QString& title, bool sub_step);
   StepRow* rowAfter(const QString& key, bool sub_step);  // null: none comes after it
   StepRow* row(const QString& key);
@@ -43,6 +49,7 @@ class StepsPanel : public QWidget {
 
   QVBoxLayout* layout_;
   std::map<QString, StepRow*> rows_;
+  CalibrationAim aim_ = CalibrationAim::Rig;
   QString stage_;
   double stage_begin_s_ = 0.0, elapsed_s_ = 0.0;
 };

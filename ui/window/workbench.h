@@ -3,8 +3,10 @@
 #pragma once
 
 #include "ui/document/calibration_document.h"
+#include "ui/document/lens_document.h"
 #include "ui/jobs/calibration_job.h"
 #include "ui/jobs/inspection_job.h"
+#include "ui/jobs/intrinsics_job.h"
 #include "ui/jobs/job_runner.h"
 #include "ui/jobs/run_history.h"
 
@@ -19,8 +21,10 @@ struct Workbench {
   CalibrationDocument document;
   JobRunner runner;
   CalibrationJob calibration{runner};
-  RunHistory history;        // has a thread of its own, too
-  InspectionJob inspection;  // has a runner of its own: it may go on beside a calibration
+  RunHistory history;  // has a thread of its own
+  LensDocument lens{document};
+  IntrinsicsJob intrinsics{runner};  // of one camera's lens alone
+  InspectionJob inspection;          // has a runner of its own: it may go on beside a calibration
 };
 
 }  // namespace evical::ui

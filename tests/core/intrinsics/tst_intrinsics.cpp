@@ -183,6 +183,40 @@ class TestIntrinsics : public QObject {
     QVERIFY2(rms > 0.7 && rms < 1.4, qPrintable(QString::number(rms)));
   }
 
+  // The scenario's board is 0.7 m away, give or take 0.14 m and what it is beside the axis, and tilted by up to 32 deg
+  // to each side.
+  void story_tellsOfModelsAndViews() {
+    const Scenario scenario = scenarioOf("intrinsics_davis346");
+    IntrinsicsStory story;
+    const IntrinsicsResult result = estimateIntrinsics({scenario.board,
+                                                        scenario.cameras.front().intrinsics.resolution_px,
+                                                        sensorObservations(scenario),
+                                                        {},
+                                                        {}},
+                                                       {}, {}, &story);
+    const auto taken = std::find_if(story.tried.begin(), story.tried.end(), [&](const TriedModel& tried) {
+      return tried.model == result.intrinsics.model;
+    });
+    QVERIFY(story.tried.size() >= 2);
+    QVERIFY(taken != story.tried.end());
+    QVERIFY(taken->circles_used > 0 && taken->circles_used <= taken->circles);
+    for (const TriedModel& tried : story.tried)
+      QVERIFY(tried.spread_sigma > IntrinsicsOptions{}.equidistant_gain * taken->spread_sigma);
+    QCOMPARE(static_cast<int>(story.views.size()), result.views_used);
+    int circles = 0;
+    double previous_s = -1.0, most_deg = 0.0;
+    for (const IntrinsicsView& view : story.views) {
+      QVERIFY(view.time_s > previous_s);
+      QVERIFY2(view.distance_m > 0.4 && view.distance_m < 1.2, qPrintable(QString::number(view.distance_m)));
+      QVERIFY(view.reprojection_rms_px > 0.3 * kNoise_px && view.reprojection_rms_px < 4.0 * kNoise_px);
+      previous_s = view.time_s;
+      most_deg = std::max(most_deg, view.tilt_deg);
+      circles += view.circles;
+    }
+    QCOMPARE(circles, result.circles_used);
+    QVERIFY(most_deg >= result.largest_tilt_deg);
+  }
+
   void edgeLead_isFoundAndDoesNoHarm() {
     const Scenario truth = scenarioOf("intrinsics_davis346");
     const IntrinsicsResult result = estimate(truth, sensorObservations(truth, 0.3));

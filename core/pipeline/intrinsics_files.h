@@ -1,0 +1,21 @@
+// What a calibration of a camera alone leaves: files of its lens, and the lens as a result for other programs' formats.
+#pragma once
+
+#include "core/base/atomic_file.h"
+#include "core/data/board_observations.h"
+#include "core/report/intrinsics_report.h"
+#include "core/report/result_yaml.h"
+
+#include <filesystem>
+#include <vector>
+
+namespace evical {
+
+// intrinsics.yaml, camera_info.yaml, camchain.yaml, projection_std.csv and detections.csv.
+std::vector<FileContent> intrinsicsFiles(const std::filesystem::path& folder, const NamedIntrinsics& named,
+                                         const std::vector<BoardObservations>& seen);
+
+// A rig of this one camera: for exporters (core/report/export), most of which take a lens alone.
+NamedResult lensAsResult(const NamedIntrinsics& named, CameraKind kind);
+
+}  // namespace evical

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/document/lens_document.h"
+
+#include "core/pipeline/lens_comparison.h"
+
+#include <QFileInfo>
+
+#include <algorithm>
+#include <utility>
+
+namespace evical::ui {
+
+LensDocument::LensDocument(CalibrationDocument& document, QObject* parent)
+    : QObject(parent), document_(document) {
+  connect(&document_, &CalibrationDocument::sessionReplaced, this, [this] {
+    last_ = {};
+    file_.reset();
+    emit runChanged();
+    emit othersChanged();
+  });
+  connect(&document_, &CalibrationDocument::sessionChanged, this, &LensDocument::othersChanged);
+}
+
+void LensDocument::setAim(CalibrationAim aim) {
+  if (aim == aim_) return;
+  aim_ = aim;
+  emit aimChanged();
+}
+
+std::size_t LensDocument::camera() const {
+  const std::vector<SessionCamera>& cameras = document_.session().cameras;
+  const auto found = std::find_if(cameras.begin(), cameras.end(), [this](const SessionCamera& camera) {
+    return QString::fromStdString(camera.name) == camera_;
+  });
+  return found == cameras.end() ? 0 : static_cast<std::size_t>(found - cameras.begin());
+}
+
+void LensDocument::setCamera(const QString& name) {
+  if (name == camera_) return;
+  camera_ = name;
+  emit aimChanged();
+}
+
+bool LensDocument::offersCameraOnly() const {
+  const Session& session = document_.session();
+  return aim_ == CalibrationAim::Rig && session.cameras.size() == 1 && session.imus.empty();
+}
+
+std::vector<SessionProblem> LensDocument::problems() const {
+  return sessionProblems(document_.session(), aim_);
+}
+
+std::vector<SessionProblem> LensDocument::problemsOfCamera() const {
+  return sessionProblems(document_.session(), CalibrationAim::Camera);
+}
+
+void LensDocument::addRun(LensRecord record) {
+  last_ = std::move(record);
+  emit runChanged();
+}
+
+bool LensDocument::runIsOutdated() const {
+  if (!last_.run) return false;
+  // A lens that is put into the session changes nothing of how it was found.
+  const auto without_lens = [this](Session session) {
+    if (last_.camera < session.cameras.size()) {
+      SessionCamera& camera = session.cameras[last_.camera];
+      camera.intrinsics.reset();
+      camera.intrinsics_uncertainty.reset();
+      camera.resolution_px = {};
+    }
+    return sessionYaml(session, "/");
+  };
+  return without_lens(last_.session) != without_lens(document_.session());
+}
+
+std::vector<OtherLens> LensDocument::others() const {
+  std::vector<OtherLens> others;
+  if (last_.run && last_.camera < last_.session.cameras.size()) {
+    const SessionCamera& camera = last_.session.sensor(last_.camera);
+    if (camera.intrinsics)
+      others.push_back(
+          {tr("the session's lens, as it was"), {*camera.intrinsics, camera.intrinsics_uncertainty}});
+  }
+  if (file_) others.push_back(*file_);
+  return others;
+}
+
+void LensDocument::loadOther(const QString& file) {
+  if (!last_.run) return;
+  const SessionCamera& camera = last_.session.cameras.at(last_.camera);
+  OtherLens read{QFileInfo(file).fileName(),
+                 readKnownIntrinsics(file.toStdString(), camera.name, camera.stream)};
+  compareLenses(last_.run->result, read.lens);
+  file_ = std::move(read);
+  emit othersChanged();
+}
+
+void LensDocument::useInSession() {
+  if (!last_.run) return;
+  Session changed = document_.session();
+  const std::string& name = last_.session.cameras.at(last_.camera).name;
+  const auto found = std::find_if(changed.cameras.begin(), changed.cameras.end(),
+                                  [&](const SessionCamera& camera) { return camera.name == name; });
+  if (found == changed.cameras.end()) return;
+  // Another camera's sensor has that camera's lens.
+  const auto index = static_cast<std::size_t>(found - changed.cameras.begin());
+  SessionCamera& camera = changed.cameras[changed.sensorOf(index)];
+  camera.intrinsics = last_.run->result.intrinsics;
+  camera.intrinsics_uncertainty.reset();
+  camera.resolution_px = last_.run->result.intrinsics.resolution_px;
+  document_.edit(changed, tr("Use the lens of %1").arg(QString::fromStdString(name)));
+}
+
+}  // namespace evical::ui

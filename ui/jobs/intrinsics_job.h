@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The calibration of one camera's lens as a job: the front end is seen at work, and each pass tells what it left.
+#pragma once
+
+#include "core/pipeline/intrinsics_calibration.h"
+#include "ui/jobs/calibration_job.h"
+#include "ui/jobs/job_runner.h"
+
+#include <QObject>
+
+#include <memory>
+#include <vector>
+
+namespace evical::ui {
+
+// A pass over the recording, and the lens that it left.
+struct LensPass {
+  int number = 0;
+  int views = 0;
+  double reprojection_rms_px = 0.0, moved_px = 0.0;
+};
+
+// What a run found: the lens; and where the board was seen, in the session's time, with an entry for each of its
+// cameras, for screens that show runs.
+struct FoundLens {
+  std::shared_ptr<const IntrinsicsRun> run;
+  std::shared_ptr<const CalibrationRun> seen;
+};
+
+class IntrinsicsJob : public QObject {
+  Q_OBJECT
+
+ public:
+  explicit IntrinsicsJob(JobRunner& runner, QObject* parent = nullptr);
+
+  // As CalibrationJob's.
+  void observeWith(CalibrationJob::ObserverMaker maker) { make_observer_ = std::move(maker); }
+
+  // Works on a copy. False while the runner is busy.
+  bool start(const Session& session, std::size_t camera);
+  bool running() const { return live_ != nullptr; }
+
+  // Stages, as the runner tells them: "first look", then "pass 1", "pass 2", ...
+  static QString passName(int number) { return QString("pass %1").arg(number); }
+
+ signals:
+  void started();
+  void ended();  // in whatever way
+  void detectionsChanged(std::shared_ptr<const evical::ui::LiveDetections> detections);
+  void passDone(const evical::ui::LensPass& pass);
+  void calibrated(const evical::ui::FoundLens& found, const evical::Session& session, std::size_t camera,
+                  const QString& log);
+
+ private:
+  class LiveView;
+
+  void deliver();
+  void finish(JobOutcome outcome);
+
+  JobRunner& runner_;
+  CalibrationJob::ObserverMaker make_observer_;
+  std::shared_ptr<LiveView> live_;
+  Session session_;
+  std::size_t camera_ = 0;
+};
+
+}  // namespace evical::ui

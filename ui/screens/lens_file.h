@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The files that a lens can be saved as, one by one.
+#pragma once
+
+#include <QtGlobal>
+
+#include <array>
+
+namespace evical::ui {
+
+struct LensFile {
+  const char* title;  // for people
+  const char* name;   // as core names it (pipeline/intrinsics_files.h)
+};
+
+inline constexpr std::array kLensFiles = {
+    LensFile{QT_TRANSLATE_NOOP("LensFile", "Evical: lens with sigmas and correlations"), "intrinsics.yaml"},
+    LensFile{QT_TRANSLATE_NOOP("LensFile", "ROS camera_info"), "camera_info.yaml"},
+    LensFile{QT_TRANSLATE_NOOP("LensFile", "Kalibr camchain"), "camchain.yaml"},
+    LensFile{QT_TRANSLATE_NOOP("LensFile", "Projection uncertainty over the image, table"),
+             "projection_std.csv"},
+    LensFile{QT_TRANSLATE_NOOP("LensFile", "Detections of the board, table"), "detections.csv"}};
+
+}  // namespace evical::ui

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A camera calibrated alone: every number and how sure it is, where in the image it is known how well, what the views
+// were, and how far it is from another lens of this camera.
+#pragma once
+
+#include "core/data/intrinsics_yaml.h"
+#include "core/pipeline/lens_comparison.h"
+#include "core/report/intrinsics_report.h"
+
+#include <QWidget>
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+class QComboBox;
+class QLabel;
+class QListWidget;
+class QMenu;
+class QPushButton;
+class QStackedWidget;
+class QTabWidget;
+class QTreeWidget;
+
+namespace evical::ui {
+
+class ImageMapView;
+class ViewsChart;
+
+class LensScreen : public QWidget {
+  Q_OBJECT
+
+ public:
+  // By its title in lists.
+  using Other = std::pair<QString, KnownIntrinsics>;
+
+  explicit LensScreen(QWidget* parent = nullptr);
+
+  void setLens(std::optional<NamedIntrinsics> found);
+  // Lenses to compare with; one that was not there before is compared with at once.
+  void setOthers(std::vector<Other> others);
+  void setOutdated(bool outdated);  // the session is not as it was for this lens
+  // Formats of other programs that take a lens alone: name and description, below the files of one's own.
+  void setPrograms(const std::vector<std::pair<QString, QString>>& programs);
+
+ signals:
+  void calibrateRequested();
+  void useRequested();           // in the session
+  void otherRequested();         // a file to compare with
+  void saveRequested(int file);  // one of the files, by LensFile
+  void saveAllRequested();       // all of them, into a folder
+  void exportRequested(const QString& program);
+
+ protected:
+  void changeEvent(QEvent* event) override;
+
+ private:
+  QWidget* makeEmpty();
+  QWidget* makeContent();
+  QWidget* makeHeader();
+  QWidget* makeComparisons();
+  QWidget* makeSides();
+  QPushButton* makeSave();
+  QWidget* addTab(const QString& title, QWidget* picture, QLabel* text);
+  void compare();
+  void showVerdict();
+  void showParameters();
+  void showMaps();
+  void showDifference();
+  const Other* other() const;
+
+  std::optional<NamedIntrinsics> lens_;
+  std::optional<LensComparison> comparison_;
+  std::vector<Other> others_;
+  QStackedWidget* stack_;
+  QLabel *icon_, *verdict_, *reason_, *fit_, *outdated_, *remark_;
+  QLabel *uncertainty_text_, *coverage_text_, *difference_text_, *views_text_;
+  QComboBox* against_;
+  QTreeWidget* parameters_;
+  QTabWidget* sides_;
+  ImageMapView *uncertainty_, *coverage_, *difference_;
+  ViewsChart* views_;
+  QListWidget* notes_;
+  QMenu* programs_;
+};
+
+}  // namespace evical::ui

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The views that a lens rests on: how far the board was, and how it was tilted. A dot each, larger for more points.
+#pragma once
+
+#include "core/data/intrinsics_story.h"
+
+#include <QWidget>
+
+#include <vector>
+
+namespace evical::ui {
+
+class ViewsChart : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit ViewsChart(QWidget* parent = nullptr);
+
+  void setViews(std::vector<IntrinsicsView> views);
+  std::size_t count() const { return views_.size(); }
+  QPointF placeOf(std::size_t view) const;
+  QString textAt(const QPoint& position) const;  // of the view there, empty where there is none
+  QSize minimumSizeHint() const override { return {220, 180}; }
+
+ protected:
+  void paintEvent(QPaintEvent*) override;
+  bool event(QEvent* event) override;
+
+ private:
+  QRectF plotRect() const;
+  double radius_px(std::size_t view) const;
+  void paintAxes(QPainter& painter) const;
+
+  std::vector<IntrinsicsView> views_;
+  double most_m_ = 1.0, most_deg_ = 90.0;  // ends of the axes
+  int most_circles_ = 1;
+};
+
+}  // namespace evical::ui

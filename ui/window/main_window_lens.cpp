@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the window does while a camera alone is calibrated.
+#include "ui/screens/lens_screen.h"
+#include "ui/screens/recording_screen.h"
+#include "ui/window/lens_files.h"
+#include "ui/window/log_panel.h"
+#include "ui/window/main_window.h"
+#include "ui/window/session_files.h"
+#include "ui/window/steps_panel.h"
+
+namespace evical::ui {
+
+void MainWindow::wireLens() {
+  LensDocument& lens = workbench_.lens;
+  IntrinsicsJob& job = workbench_.intrinsics;
+  connect(&lens, &LensDocument::aimChanged, this, [this] {
+    steps_->setAim(workbench_.lens.aim());
+    showState();
+  });
+  connect(&lens, &LensDocument::runChanged, this, &MainWindow::showState);
+  connect(lens_files_, &LensFiles::failed, this, &MainWindow::showProblem);
+  connect(lens_files_, &LensFiles::saved, this, [this](const QString& path) {
+    log_->add({LogLevel::Info, 0.0, tr("The lens was saved to %1").arg(path)});
+  });
+  connect(pages_.lens, &LensScreen::calibrateRequested, this, &MainWindow::calibrate);
+  connect(pages_.recording, &RecordingScreen::cameraOnlyRequested, this, [this] {
+    if (workbench_.runner.running()) return;
+    workbench_.lens.setAim(CalibrationAim::Camera);
+    calibrate();
+  });
+  connect(&job, &IntrinsicsJob::detectionsChanged, steps_,
+          [this](const std::shared_ptr<const LiveDetections>& live) { steps_->setDetections(*live); });
+  connect(&job, &IntrinsicsJob::passDone, steps_, &StepsPanel::setPass);
+  connect(&job, &IntrinsicsJob::calibrated, this,
+          [this](const FoundLens& found, const Session& session, std::size_t camera, const QString& log) {
+            paintPagesLater();
+            workbench_.lens.addRun({found.run, found.seen, session, camera, log});
+            showResultSoon();
+          });
+}
+
+// All there is of it, to a folder.
+void MainWindow::exportResult() {
+  if (workbench_.lens.aim() == CalibrationAim::Camera) return lens_files_->chooseFolder();
+  files_->chooseExportFolder();
+}
+
+// Of what is calibrated; nothing before the first run.
+std::optional<CalibrationStatus> MainWindow::lastStatus() const {
+  if (workbench_.lens.aim() == CalibrationAim::Camera) {
+    const auto& run = workbench_.lens.last().run;
+    return run ? std::optional(run->result.status) : std::nullopt;
+  }
+  const auto& run = workbench_.document.last().run;
+  return run ? std::optional(run->result.status) : std::nullopt;
+}
+
+}  // namespace evical::ui
