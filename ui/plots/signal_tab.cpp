@@ -16,7 +16,7 @@ using Kind = PlotPanel::SeriesKind;
 constexpr PlotColour kAxisColours[] = {PlotColour::X, PlotColour::Y, PlotColour::Z};
 const QString kAxisNames[] = {"x", "y", "z"};
 constexpr double kMillisecondsPerSecond = 1e3;
-constexpr double k95Percent_sigmas = 1.96;
+constexpr double kNineteenOfTwenty_sigmas = 1.96;
 
 // After a panel's own series: what the noise as given would leave.
 void addBounds(PlotPanel& panel) {
@@ -144,7 +144,7 @@ void SignalTab::showStatistics(const SignalLines& lines) {
                          ? tr("too few samples for a spectrum")
                          : tr("of measured - predicted; dashed: noise density as given"));
   const double bound =
-      lines.samples > 0 ? k95Percent_sigmas / std::sqrt(static_cast<double>(lines.samples)) : 0.0;
+      lines.samples > 0 ? kNineteenOfTwenty_sigmas / std::sqrt(static_cast<double>(lines.samples)) : 0.0;
   const std::vector<double> ends_ms = {apart_ms.front(), apart_ms.back()};
   correlation_->setData(3, ends_ms, {-bound, -bound});
   correlation_->setData(4, ends_ms, {bound, bound});
