@@ -58,6 +58,10 @@ class CalibrationDocument : public QObject {
   void setOption(const QString& name, const QString& value);
   void resetOptions();
 
+  // Whether a person has said that the board is this one: a guessed one nobody has looked at.
+  bool boardConfirmed() const { return board_confirmed_; }
+  void confirmBoard();
+
   // The latest one; null before the first, and when another session comes.
   const RunRecord& last() const { return last_; }
   const RunRecord& previous() const { return previous_; }
@@ -71,6 +75,7 @@ class CalibrationDocument : public QObject {
   void sessionReplaced();  // another one: open, new
   void sessionChanged();   // in anything, also by undo
   void fileChanged();      // name or modified flag
+  void boardConfirmationChanged();
   void runsChanged();
   void referenceChanged();
 
@@ -83,6 +88,7 @@ class CalibrationDocument : public QObject {
   Session session_;
   QString file_;
   bool has_unsaved_recording_ = false;
+  bool board_confirmed_ = false;
   QUndoStack undo_stack_;
   RunRecord last_, previous_;
   std::optional<ReferenceResult> reference_;

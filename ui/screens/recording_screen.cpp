@@ -5,6 +5,7 @@
 #include "core/pipeline/session_guess.h"
 #include "ui/screens/boards_form.h"
 #include "ui/screens/camera_form.h"
+#include "ui/screens/check_card.h"
 #include "ui/screens/imu_form.h"
 #include "ui/screens/stream_table.h"
 #include "ui/screens/time_range_form.h"
@@ -95,6 +96,7 @@ RecordingScreen::RecordingScreen(QWidget* parent)
       streams_(new StreamTable(this)),
       time_range_(new TimeRangeForm(this)),
       boards_(new BoardsForm(this)),
+      check_(new CheckCard(this)),
       sensors_(new QTabWidget(this)),
       reference_(new QComboBox(this)) {
   stack_->addWidget(makeEmpty());
@@ -161,7 +163,13 @@ QWidget* RecordingScreen::makeContent() {
   layout->setSpacing(10);
   layout->addWidget(makeHeader());
   layout->addWidget(card(tr("Streams"), streams, content));
-  layout->addWidget(makeForms(), 1);
+  layout->addWidget(check_);
+  QWidget* const forms = makeForms();
+  layout->addWidget(forms, 1);
+  connect(check_, &CheckCard::detailsShown, forms, [this, forms, layout](bool shown) {
+    forms->setVisible(!shown);
+    layout->setStretchFactor(check_, shown ? 1 : 0);
+  });
   for (QLabel* const hidden : {file_faults_, stream_problem_, looking_text_}) hidden->hide();
   looking_->hide();
   return content;
@@ -288,11 +296,29 @@ void RecordingScreen::setProblems(const std::vector<std::pair<QString, QString>>
   for (std::size_t i = 0; i < cameras_.size(); ++i) cameras_[i]->setProblem(at_cameras[i]);
   boards_->setProblems(field_and_text);
   showText(stream_problem_, at_streams.join('\n'));
-  verdict_->setText(field_and_text.empty()       ? tr("Ready to calibrate")
-                    : field_and_text.size() == 1 ? tr("One thing is missing")
-                                                 : tr("%1 things are missing").arg(field_and_text.size()));
-  verdict_->setStyleSheet(
-      QString("color: %1").arg((field_and_text.empty() ? theme().good : theme().bad).name()));
+  problem_count_ = static_cast<qsizetype>(field_and_text.size());
+  showVerdict();
+}
+
+void RecordingScreen::setReservation(const QString& text, Light light) {
+  reservation_ = text;
+  reservation_light_ = light;
+  showVerdict();
+}
+
+void RecordingScreen::showVerdict() {
+  const bool reserved = !reservation_.isEmpty();
+  verdict_->setText(problem_count_ == 1  ? tr("One thing is missing")
+                    : problem_count_ > 1 ? tr("%1 things are missing").arg(problem_count_)
+                    : reserved           ? reservation_
+                                         : tr("Ready to calibrate"));
+  const bool bad = problem_count_ > 0 || (reserved && reservation_light_ == Light::Poor);
+  const bool undecided = reserved && reservation_light_ == Light::Good;
+  const QColor colour = bad         ? theme().bad
+                        : undecided ? theme().faint_text
+                        : reserved  ? theme().warning
+                                    : theme().good;
+  verdict_->setStyleSheet(QString("color: %1").arg(colour.name()));
 }
 
 void RecordingScreen::clearInspections() {
@@ -363,7 +389,7 @@ void RecordingScreen::chooseRole(int row, int role) {
   std::erase_if(changed.cameras, isThis);
   std::erase_if(changed.imus, isThis);
   if (static_cast<StreamRole>(role) == StreamRole::Camera)
-    changed.cameras.push_back(guessedCamera(summary, changed, own_recording));
+    changed.cameras.push_back(withSeenResolution(guessedCamera(summary, changed, own_recording), summary));
   if (static_cast<StreamRole>(role) == StreamRole::Imu)
     changed.imus.push_back(guessedImu(summary, changed, own_recording));
   keepReference(changed);

@@ -2,6 +2,7 @@
 // What is in the recording, and what must be known of it: streams and their roles, the board, the sensors.
 #pragma once
 
+#include "core/pipeline/recording_assessment.h"
 #include "core/pipeline/session.h"
 #include "core/recording/inspection.h"
 
@@ -20,6 +21,7 @@ class QTabWidget;
 namespace evical::ui {
 
 class BoardsForm;
+class CheckCard;
 class CameraForm;
 class ImuForm;
 class StreamTable;
@@ -36,6 +38,10 @@ class RecordingScreen : public QWidget {
   // By camera; what the last run found where the session gave none.
   void setFoundIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& found);
   void setProblems(const std::vector<std::pair<QString, QString>>& field_and_text);
+
+  // What there is to say against "ready to calibrate" where no problem is; empty: nothing. With a good light nothing is wrong yet.
+  void setReservation(const QString& text, Light light);
+  CheckCard* checkCard() const { return check_; }
 
   void clearInspections();
   void setInspecting(const QString& recording);
@@ -60,6 +66,7 @@ class RecordingScreen : public QWidget {
   QWidget* makeForms();
   QWidget* makeEmpty();
   QWidget* makeContent();
+  void showVerdict();
   void showSensors();
   void chooseRole(int row, int role);
   QWidget* makeRangeAndFiles(QWidget* parent);
@@ -81,6 +88,10 @@ class RecordingScreen : public QWidget {
   StreamTable* streams_;
   TimeRangeForm* time_range_;
   BoardsForm* boards_;
+  CheckCard* check_;
+  qsizetype problem_count_ = 0;
+  QString reservation_;
+  Light reservation_light_ = Light::Good;
   QTabWidget* sensors_;
   QComboBox* reference_;
   std::vector<CameraForm*> cameras_;
