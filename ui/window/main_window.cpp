@@ -238,7 +238,11 @@ void MainWindow::calibrate() {
     showProblem(tr("This cannot be calibrated yet"), {true, {}, problems.front().text, {}});
     return;
   }
-  workbench_.calibration.start(workbench_.document.session());
+  const Session& session = workbench_.document.session();
+  if (auto detected = workbench_.check.detectedFor(session))
+    workbench_.calibration.startAgain(session, std::move(detected->pass), std::move(detected->intrinsics));
+  else
+    workbench_.calibration.start(session);
 }
 
 void MainWindow::repair(const Repair& repair) {

@@ -12,6 +12,8 @@
 #include "ui/screens/start_screen.h"
 #include "ui/window/after_turns.h"
 #include "ui/window/linked_pages.h"
+#include "ui/window/print_board.h"
+#include "ui/window/recording_check.h"
 #include "ui/window/session_files.h"
 #include "ui/window/workbench.h"
 
@@ -24,6 +26,10 @@ void wireStart(StartScreen& start, Workbench& workbench, SessionFiles& files) {
   start.setRecentFiles(files.recentFiles());
   QObject::connect(&start, &StartScreen::openRecordingRequested, &files, &SessionFiles::chooseRecording);
   QObject::connect(&start, &StartScreen::openSessionRequested, &files, &SessionFiles::chooseSession);
+  QObject::connect(&start, &StartScreen::printBoardRequested, &start,
+                   [&start, &workbench] { showPrintBoard(start.window(), workbench); });
+  QObject::connect(&start, &StartScreen::howToRecordRequested, &start,
+                   [&start] { showHowToRecord(start.window()); });
   QObject::connect(&start, &StartScreen::demoRequested, &files, &SessionFiles::openDemo);
   QObject::connect(&start, &StartScreen::fileChosen, &files, &SessionFiles::open);
   QObject::connect(&files, &SessionFiles::recentFilesChanged, &start, &StartScreen::setRecentFiles);
@@ -112,6 +118,7 @@ std::vector<PageEntry> buildPages(Pages& pages, QWidget* parent) {
 void wirePages(const Pages& pages, Workbench& workbench, SessionFiles& files) {
   wireStart(*pages.start, workbench, files);
   wireRecording(*pages.recording, workbench, files);
+  wireRecordingCheck(*pages.recording, workbench);
   wireResult(*pages.result, workbench, files);
   wireLinkedPages(pages, workbench);
 }

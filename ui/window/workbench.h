@@ -6,6 +6,7 @@
 #include "ui/jobs/calibration_job.h"
 #include "ui/jobs/inspection_job.h"
 #include "ui/jobs/job_runner.h"
+#include "ui/jobs/recording_check_job.h"
 
 #include <QString>
 
@@ -19,6 +20,7 @@ struct Workbench {
   JobRunner runner;
   CalibrationJob calibration{runner};
   InspectionJob inspection;  // has a runner of its own: it may go on beside a calibration
+  RecordingCheckJob check;   // so has this one, which gives way to all others
 };
 
 }  // namespace evical::ui
