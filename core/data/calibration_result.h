@@ -72,7 +72,8 @@ struct UncertaintyReport {
   // Eigenvalues of the information matrix in units of what a user needs (0.1 deg, 1 mm, 0.1 ms), with the board and
   // gravity known: below 1, the need is not met in that direction. Ascending.
   std::vector<double> observability;
-  std::string weakest;  // in plain words: "translation along the camera's z axis"
+  std::string weakest;                  // in plain words: "translation along the camera's z axis"
+  std::vector<std::string> directions;  // each of `observability` in such words; older files have none
 
   // 0: the world's.
   BoardUncertainty& boardAt(std::size_t index) { return index == 0 ? board : further_boards.at(index - 1); }

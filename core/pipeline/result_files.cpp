@@ -2,6 +2,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/progress.h"
 #include "core/pipeline/saved_detections.h"
 #include "core/report/bias_csv.h"
 #include "core/report/csv.h"
@@ -51,11 +52,11 @@ ExportRemarks addExports(const NamedResult& named, const Session& session, std::
   targets.insert("kalibr");
   const std::vector<std::string> names(targets.begin(), targets.end());
   try {
-    ExportedFiles exported = exportResult(named, names);
+    ExportedFiles exported = exportWhatCanBe(named, names);
     std::move(exported.files.begin(), exported.files.end(), std::back_inserter(files));
-    return {std::move(exported.notes), std::move(exported.refused)};
+    return {std::move(exported.notes), std::move(exported.refused), std::move(exported.targets)};
   } catch (const CalibrationError& refusal) {
-    return {{}, {fmt::format("not exported: {}", refusal.what())}};
+    return {{}, {fmt::format("{}: not exported: {}", fmt::join(names, ", "), refusal.what())}, {}};
   }
 }
 
@@ -101,6 +102,17 @@ ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Sessio
   files.push_back({"result.yaml", resultYaml(named)});  // the last tells that all are there
   writeExportedFiles(folder, files);
   return remarks;
+}
+
+std::vector<ExportCheck> checkExports(const std::filesystem::path& folder,
+                                      std::span<const std::string> targets, const std::stop_token& stop) {
+  const NamedResult written = readResultYaml(folder / "result.yaml");
+  std::vector<ExportCheck> checks;
+  for (const std::string& target : targets) {
+    if (stop.stop_requested()) throw Cancelled{};
+    checks.push_back(checkExport(written, exportTarget(target, "exports"), folder));
+  }
+  return checks;
 }
 
 void writeDetectionFiles(const std::filesystem::path& folder, const Session& session,

@@ -2,10 +2,13 @@
 #pragma once
 
 #include "core/pipeline/calibration_pipeline.h"
+#include "core/report/export/read_back.h"
 #include "core/report/result_yaml.h"
 
 #include <filesystem>
 #include <memory>
+#include <span>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -21,6 +24,7 @@ std::shared_ptr<const CalibrationResult> resultOf(const std::shared_ptr<const Ca
 // What to know of files for other programs, and the targets that got none, each with the reason.
 struct ExportRemarks {
   std::vector<std::string> notes, refused;
+  std::vector<std::string> targets = {};  // those that have files
 };
 
 // report.html with its plots/*.csv, result.yaml, trajectory.csv, the files of saved_detections.h, log.txt, and a
@@ -28,6 +32,11 @@ struct ExportRemarks {
 ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Session& session,
                                const std::shared_ptr<const CalibrationRun>& run, const std::string& version,
                                const std::string& log);
+
+// What writeResultFiles has written for these targets, read as the targets' programs do, and held against result.yaml
+// beside it. Throws CalibrationError where there is no such result, and Cancelled.
+std::vector<ExportCheck> checkExports(const std::filesystem::path& folder,
+                                      std::span<const std::string> targets, const std::stop_token& stop);
 
 // The files of saved_detections.h, and log.txt.
 void writeDetectionFiles(const std::filesystem::path& folder, const Session& session,

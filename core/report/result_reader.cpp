@@ -191,6 +191,7 @@ void readUncertainty(const YamlNode& root, UncertaintyReport& uncertainty) {
   get(root, "given", uncertainty.given);
   if (const auto map = root.find("observability")) {
     get(*map, "weakest", uncertainty.weakest);
+    get(*map, "directions", uncertainty.directions);
     if (const auto values = map->find("values"))
       for (const YamlNode& value : values->items()) uncertainty.observability.push_back(number(value));
   }

@@ -3,6 +3,7 @@
 #include "core/base/element.h"
 #include "core/numerics/angles.h"
 #include "core/report/intrinsics_report.h"
+#include "core/report/sensor_pose.h"
 #include "core/report/shown_quantity.h"
 #include "core/report/table_row.h"
 
@@ -16,8 +17,9 @@ namespace {
 
 std::string anglesRow(const Eigen::Quaterniond& rotation) {
   const Eigen::Vector3d angles = rollPitchYaw_deg(rotation);
-  return fmt::format("    {:<26}{:>12.3f}, {:.3f}, {:.3f} deg\n", "(roll, pitch, yaw)", angles.x(),
-                     angles.y(), angles.z());
+  const std::string warning = anglesWarning(angles);
+  return fmt::format("    {:<26}{:>12.3f}, {:.3f}, {:.3f} deg{}\n", "(roll, pitch, yaw)", angles.x(),
+                     angles.y(), angles.z(), warning.empty() ? "" : " (" + warning + ")");
 }
 
 // Of a matrix the scales: misalignments are in result.yaml.

@@ -177,6 +177,8 @@ std::string uncertaintyYaml(const UncertaintyReport& uncertainty) {
       fmt::format("gravity_direction_std_deg: {}\nobservability:\n  weakest: {}\n  values: {}\n",
                   roundedYaml(kDegPerRad * uncertainty.gravity_direction_std_rad),
                   yamlText(uncertainty.weakest), list(uncertainty.observability, roundedYaml));
+  if (!uncertainty.directions.empty()) text += "  directions:\n";
+  for (const std::string& words : uncertainty.directions) text += fmt::format("    - {}\n", yamlText(words));
   if (uncertainty.gravity_norm_std_m_s2 > 0.0)
     text += fmt::format("gravity_norm_std_m_s2: {}\n", roundedYaml(uncertainty.gravity_norm_std_m_s2));
   if (!uncertainty.given.empty()) {

@@ -19,18 +19,21 @@ namespace evical {
 struct ScenarioArguments {
   std::vector<std::string> files;
   int seeds = 1;
+  int skipped = 0;
   std::optional<double> duration_s;
 
   void addTo(CLI::App& app) {
     app.add_option("SCENARIO", files, "Scenario files")->required();
     app.add_option("--seeds", seeds, "Each scenario with this many seeds")->check(CLI::Range(1, 1000));
+    app.add_option("--skip", skipped, "So many seeds, which another run has done")
+        ->check(CLI::Range(0, 1000));
     app.add_option("--duration", duration_s, "Seconds, instead of the scenario's")
         ->check(CLI::Range(2.0, 3600.0));
   }
   Scenario read(const std::string& file, int k) const {
     Scenario scenario = readScenario(file);
     if (duration_s) scenario.duration_s = *duration_s;
-    scenario.seed += static_cast<std::uint64_t>(k);
+    scenario.seed += static_cast<std::uint64_t>(skipped + k);
     return scenario;
   }
 };

@@ -4,13 +4,16 @@
 #include "tests/ui/recorded_windows.h"
 #include "ui/detection/burst_band.h"
 #include "ui/detection/event_window_reader.h"
+#include "ui/detection/layers.h"
 #include "ui/detection/window_analysis.h"
 #include "ui/detection/window_panel.h"
 #include "ui/theme/theme.h"
 
 #include <QDir>
+#include <QPainter>
 #include <QSignalSpy>
 
+#include <algorithm>
 #include <atomic>
 #include <ctime>
 #include <thread>
@@ -206,6 +209,54 @@ class TestDetectionScreen : public QObject {
     QVERIFY2(text.find("(too few bursts)") != std::string::npos, text.c_str());
   }
 
+  // Tracked, but with too few circles: not in the colour of success, nor in two minds about why.
+  void missedWindow_isDrawnAsMissed_forOneReason() {
+    Asked asked(*recorded_);
+    asked.question.observations = recorded_->observations();
+    std::vector<int> bursts;
+    for (const CircleObservation& circle : asked.at(recorded_->goodWindow()).trace().circles)
+      bursts.push_back(circle.events);
+    std::nth_element(bursts.begin(), bursts.begin() + 2, bursts.end());
+    asked.question.options.tracking.least_circle_bursts = bursts.at(2) + 1;
+    asked.question.options.grid.least_partial = 1.0;
+    const WindowAnalysis analysis = asked.again();
+    QCOMPARE(analysis.outcome, WindowOutcome::TooFewInGrid);
+    QVERIFY(analysis.trace().motion);
+    const QString last = QString::fromStdString(analysis.stages.back().text);
+    QVERIFY2(last.contains(QString("(at least %1 needed)").arg(bursts.size())), qPrintable(last));
+
+    WindowPanel panel;
+    WindowReport report = recorded_->goodWindow();
+    report.outcome = WindowOutcome::NoLattice;
+    panel.show(&analysis, report, false);
+    QVERIFY2(panel.text().contains("Missed in the last run, too"), qPrintable(panel.text()));
+    QVERIFY(!panel.text().contains("no lattice"));
+
+    const Resolution size = asked.question.scene->resolution_px;
+    QImage picture(size.width_px, size.height_px, QImage::Format_RGB32);
+    const auto inkOf = [&](const WindowAnalysis& drawn, const QColor& colour) {
+      picture.fill(Qt::black);
+      QPainter painter(&picture);
+      paintLayers(painter, 1.0, LayerSet().set(static_cast<std::size_t>(Layer::Ellipses)), &drawn, {});
+      painter.end();
+      return pixelsOf(picture, colour);
+    };
+    QVERIFY(inkOf(analysis, theme().bad) > 100);
+    QCOMPARE(inkOf(analysis, theme().good), 0);
+    asked.question.options = {};
+    QVERIFY(inkOf(asked.again(), theme().good) > 100);
+  }
+
+  void cursorOfAShortRecording_isInsideIt() {
+    const Recorded brief("davis346", 0.06);
+    DetectionScreen screen;
+    screen.resize(1000, 650);
+    screen.show();
+    screen.setSession(brief.session);
+    QTRY_VERIFY_WITH_TIMEOUT(screen.timeline().end_s() > 0.05 && screen.time_s() < screen.timeline().end_s(),
+                             20000 * kSlowdown);
+  }
+
   void screen_withoutRecordingSaysSo() {
     DetectionScreen screen;
     screen.resize(1000, 650);
@@ -260,6 +311,7 @@ class TestDetectionScreen : public QObject {
     const WindowReport window = recorded_->goodWindow();
     screen.setTime(window.time_s);
     settle(screen);
+    QVERIFY(QTest::qWaitForWindowActive(&screen));  // its keys are shortcuts
     QSignalSpy selected(&screen, &DetectionScreen::timeSelected);
     QTest::keyClick(&screen.view(), Qt::Key_Right);
     QVERIFY(screen.time_s() > window.time_s);

@@ -15,11 +15,13 @@
 #include "ui/screens/start_screen.h"
 #include "ui/screens/stream_table.h"
 #include "ui/window/error_panel.h"
+#include "ui/window/export_notice.h"
 #include "ui/window/log_panel.h"
 #include "ui/window/session_files.h"
 #include "ui/window/steps_panel.h"
 
 #include <QDesktopServices>
+#include <QLabel>
 #include <QLineEdit>
 #include <QMimeData>
 #include <QPushButton>
@@ -44,6 +46,14 @@ QAction* actionOf(const MainWindow& window, const QString& text) {
   for (QAction* const action : window.findChildren<QAction*>())
     if (action->text() == text) return action;
   return nullptr;
+}
+
+// Of labels and buttons that are not hidden, though their page may not be in front.
+QString visibleTexts(const QWidget& page) {
+  QString all;
+  for (const QLabel* const label : page.findChildren<QLabel*>())
+    if (!label->isHidden()) all += label->text() + '\n';
+  return all;
 }
 
 class ReportReader : public QObject {
@@ -88,6 +98,8 @@ class TestMainWindow : public QObject {
     QSignalSpy stages(&test.runner(), &JobRunner::stageStarted);
     test.click("calibrate");
     QVERIFY(stages.wait(kPatience_ms));
+    QVERIFY(visibleTexts(*test.child<ResultScreen>()).contains("Calibrating: the result is shown here"));
+    QVERIFY(visibleTexts(*test.child<ResidualsScreen>()).contains("Calibrating: this page"));
     test.click("cancel");
     QElapsedTimer since_cancel;
     since_cancel.start();
@@ -95,12 +107,18 @@ class TestMainWindow : public QObject {
     QVERIFY(since_cancel.elapsed() < 500 * kSlowdown);
     QVERIFY(!test.document().last().run);
     QVERIFY(test.child<StepsPanel>()->textOf("detect").contains("cancelled"));
+    QVERIFY(test.child<LogPanel>()->shownText().contains("Calibrate: cancelled"));
+    QVERIFY(visibleTexts(*test.child<ResultScreen>()).contains("No calibration yet: press Calibrate"));
+    auto* const pages = test.child<QListWidget>("navigation");
+    QVERIFY(pages->findItems("Result: ", Qt::MatchStartsWith).isEmpty());
 
     test.press(Qt::Key_F5);
     QVERIFY2(test.runner().running(), qPrintable(test.child<ErrorPanel>()->text()));
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
     QVERIFY(test.document().last().run);
     QTRY_COMPARE(test.screen(), QString("result"));
+    const QString verdict = statusName(test.document().last().run->result.status);
+    QCOMPARE(pages->findItems("Result: " + verdict, Qt::MatchExactly).size(), 1);
     QVERIFY(test.child<StepsPanel>()->textOf("optimise").contains("done"));
     QVERIFY(test.child<StepsPanel>()->textOf("time offset").contains("correlation"));
     QVERIFY(test.child<LogPanel>()->shownText().contains("board in"));
@@ -275,6 +293,12 @@ class TestMainWindow : public QObject {
     QVERIFY(drop.isAccepted());
   }
 
+  // A title bar has room, too.
+  void firstStart_fitsTheScreen() {
+    WindowFixture test;
+    QVERIFY(test.window.height() < test.window.screen()->availableGeometry().height() - 30);
+  }
+
   void layout_isRemembered() {
     {
       WindowFixture test;
@@ -371,9 +395,7 @@ class TestMainWindow : public QObject {
 
   void exportTheResult(WindowFixture& test) {
     const QString folder = scratch_.filePath("exported");
-    QVERIFY(QDir().mkpath(folder));
-    answerExportDialog({"openvins", "esvo"});
-    answerFileDialog(folder);
+    answerExportDialog({"openvins", "esvo"}, folder);
     QTest::mouseClick(test.child<QPushButton>("export"), Qt::LeftButton);
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
     for (const char* const file :
@@ -385,7 +407,16 @@ class TestMainWindow : public QObject {
     QCOMPARE(read.result->state.cameras.at(0).time_offset_s,
              test.document().last().run->result.state.cameras.at(0).time_offset_s);
     QVERIFY(test.child<LogPanel>()->shownText().contains("random walks are not measured"));
-    QVERIFY(test.child<ErrorPanel>()->text().contains("not exported: result: has one camera"));
+    auto* const notice = test.child<ExportNotice>();
+    QVERIFY(notice->isVisible());
+    QVERIFY2(notice->text().contains("esvo: not exported: result: has one camera") &&
+                 notice->text().contains("Kalibr, OpenVINS") && notice->text().contains(folder),
+             qPrintable(notice->text()));
+    ReportReader reader;
+    QDesktopServices::setUrlHandler("file", &reader, "open");
+    const auto restored = qScopeGuard([] { QDesktopServices::unsetUrlHandler("file"); });
+    QTest::mouseClick(test.child<QPushButton>("open_folder"), Qt::LeftButton);
+    QCOMPARE(reader.file, QFileInfo(folder).absoluteFilePath());
   }
 
   // The browser's part is ours for a moment.

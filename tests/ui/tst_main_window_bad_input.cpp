@@ -67,8 +67,7 @@ class TestMainWindowBadInput : public QObject {
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
     {
       const FullDisk disk;
-      answerExportDialog({});
-      answerFileDialog(disk.path());
+      answerExportDialog({}, disk.path());
       test.press(Qt::Key_E, Qt::ControlModifier);
       QCOMPARE(test.waitForJob(), JobOutcome::Failed);
       auto* const panel = test.child<ErrorPanel>();
@@ -79,9 +78,7 @@ class TestMainWindowBadInput : public QObject {
     }
     QVERIFY(test.document().last().run);
     const QString folder = scratch_.filePath("elsewhere");
-    QVERIFY(QDir().mkpath(folder));
-    answerExportDialog({});
-    answerFileDialog(folder);
+    answerExportDialog({}, folder);
     test.press(Qt::Key_E, Qt::ControlModifier);
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
     QVERIFY(QFile::exists(folder + "/result.yaml"));

@@ -32,7 +32,6 @@ class TestPlots : public QObject {
   void threshold_isDragged();
   void legend_hidesASeries();
   void csv_listsEveryPointOfNamedSeries();
-  void files_areWrittenOrSaidNotToBe();
 };
 
 void TestPlots::fit_showsAllDataAndTimeWithoutMargin() {
@@ -185,22 +184,6 @@ void TestPlots::csv_listsEveryPointOfNamedSeries() {
   panel.setBand(panel.addSeries(Kind::Band, {.name = "sigma"}), {0.0}, {-1.0}, {1.0});
   QCOMPARE(panel.csv(), QString("series,time (s),rad/s\n\"a, measured\",0,1\n\"a, measured\",0.5,-2\n"
                                 "sigma (low),0,-1\nsigma (high),0,1\n"));
-}
-
-void TestPlots::files_areWrittenOrSaidNotToBe() {
-  QTemporaryDir folder;
-  PlotPanel panel(kTime);
-  fillWithLine(panel);
-  QVERIFY(panel.savePicture(folder.filePath("x.png")));
-  QCOMPARE(QImage(folder.filePath("x.png")).width(), 2 * panel.findChild<QWidget*>()->width());
-  QVERIFY(panel.savePicture(folder.filePath("x.pdf")));
-  QVERIFY(QFileInfo(folder.filePath("x.pdf")).size() > 1000);
-  QVERIFY(panel.saveCsv(folder.filePath("x.csv")));
-  QFile file(folder.filePath("x.csv"));
-  QVERIFY(file.open(QIODevice::ReadOnly));
-  QCOMPARE(QString(file.readAll()), panel.csv());
-  QVERIFY(!panel.saveCsv(folder.filePath("no/such/folder.csv")));
-  QVERIFY(!panel.savePicture(folder.filePath("no/such/folder.png")));
 }
 
 EVICAL_TEST(TestPlots)

@@ -313,14 +313,15 @@ class TestRecordingScreen : public QObject {
     QCOMPARE(test.session.imus[0].noise.gyroscope_random_walk, 2e-5);
   }
 
-  void numberThatIsNone_isMarked_andChangesNothing() {
+  void numberThatIsNone_isMarked_andGivesWayToTheOneThatHolds() {
     Fixture test;
     auto* const density = test.screen.findChild<ImuForm*>()->findChildren<NumberField*>().at(0);
     Fixture::type(density, "much");
-    QVERIFY(density->isWrong());
+    QVERIFY(density->hasRefused());
     QVERIFY(test.edits.isEmpty());
+    QCOMPARE(density->text().toDouble(), test.session.imus[0].noise.gyroscope_density);
     Fixture::type(density, "2e-4");
-    QVERIFY(!density->isWrong());
+    QVERIFY(!density->hasRefused());
     QCOMPARE(test.session.imus[0].noise.gyroscope_density, 2e-4);
   }
 

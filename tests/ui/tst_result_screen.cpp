@@ -157,7 +157,7 @@ class TestResultScreen : public QObject {
     auto* const table = screen.findChild<QTreeWidget*>();
     QVERIFY(table->isColumnHidden(4));
     screen.setReference(truth_, "truth.yaml");
-    QCOMPARE(screen.findChild<QComboBox*>()->currentText(), QString("truth.yaml"));
+    QCOMPARE(screen.findChild<QComboBox*>("against")->currentText(), QString("truth.yaml"));
     QVERIFY(!table->isColumnHidden(4));
     NamedResult other = truth_;
     other.cameras = {{"right"}};
@@ -176,7 +176,7 @@ class TestResultScreen : public QObject {
     QCOMPARE(view.strongestPairs(1), QStringList{"a and c: -0.90"});
     const QImage picture = view.grab().toImage();
     // Bottom left cell: a with c, blue; the diagonal red.
-    const QPoint blue(220, 270), red(220, 60);
+    const QPoint blue = view.cellMiddle(2, 0), red = view.cellMiddle(0, 0);
     QVERIFY(picture.pixelColor(blue).blue() > picture.pixelColor(blue).red() + 60);
     QVERIFY(picture.pixelColor(red).red() > picture.pixelColor(red).blue() + 60);
     QCOMPARE(view.textAt(blue), QString("c and a: -0.900"));
@@ -186,11 +186,11 @@ class TestResultScreen : public QObject {
   void observability_isSaidInWords() {
     ObservabilityView view;
     QVERIFY(view.text().contains("No calibration"));
-    view.setObservability({0.25, 4.0, 100.0}, "translation along the camera's z axis");
+    view.setObservability({0.25, 4.0, 100.0}, {"translation along the camera's z axis"});
     QVERIFY(view.text().contains("camera's z axis"));
     QVERIFY(view.text().contains("0.5 times"));
     QVERIFY(view.text().contains("1 of 3"));
-    view.setObservability({4.0}, "rotation");
+    view.setObservability({4.0}, {"rotation"});
     QVERIFY(view.text().contains("well enough"));
     view.setObservability({}, {});
     QVERIFY(view.text().contains("were all given"));

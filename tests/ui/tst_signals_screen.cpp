@@ -6,6 +6,7 @@
 #include "ui/plots/plot_panel.h"
 #include "ui/plots/signals_screen.h"
 
+#include <QComboBox>
 #include <QTabWidget>
 
 #include <algorithm>
@@ -87,6 +88,38 @@ class TestSignalsScreen : public QObject {
     QVERIFY(std::abs(sample->angular_rate_rad_s.x() - first[2].toDouble()) < 1e-6);
   }
 
+  // Over each other the last one would hide the others.
+  void residuals_haveARowEach_andTheirNoiseIsNamed() {
+    SignalsScreen screen;
+    screen.resize(1000, 650);
+    screen.show();
+    fill(screen);
+    settle();
+    int rows = 0;
+    for (const PlotPanel* const panel : screen.findChildren<PlotPanel*>())
+      rows += panel->isVisible() && panel->csv().section('\n', 1, 1).count(',') == 2 &&
+              panel->objectName() != "gyroscope";
+    QCOMPARE(rows, 3);
+  }
+
+  void spectrum_isOfTheNoiseThatWasSimulated() {
+    SignalsScreen screen;
+    fill(screen);
+    screen.findChild<QComboBox*>("below")->setCurrentIndex(1);
+    const QStringList lines =
+        screen.findChild<QWidget*>("gyroscope_tab")->findChild<PlotPanel*>("spectrum")->csv().split('\n');
+    const double given = run_->pass.imus[0].noise.gyroscope_density;
+    int points = 0, near = 0;
+    for (const QString& line : lines.mid(1)) {
+      const QStringList values = line.split(',');
+      if (values.size() != 3 || values[1].toDouble() < 20.0) continue;
+      ++points;
+      near += std::abs(std::log(values[2].toDouble() / given)) < std::log(1.7);
+    }
+    QVERIFY(points > 100);
+    QVERIFY2(near > 0.9 * points, qPrintable(QString("%1 of %2").arg(near).arg(points)));
+  }
+
   void click_selectsTheTimeForAll() {
     SignalsScreen screen;
     screen.resize(1000, 650);
@@ -124,6 +157,11 @@ class TestSignalsScreen : public QObject {
       tabs->setCurrentIndex(tab);
       test::takePictures(screen, names[tab], settle);
     }
+    tabs->setCurrentIndex(0);
+    screen.findChild<QComboBox*>("below")->setCurrentIndex(1);
+    test::takePictures(screen, "signals_spectrum", settle);
+    screen.findChild<QComboBox*>("below")->setCurrentIndex(2);
+    test::takePictures(screen, "signals_autocorrelation", settle);
   }
 };
 

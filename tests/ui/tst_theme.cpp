@@ -9,6 +9,7 @@
 #include <QSpinBox>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 using namespace evical::ui;
@@ -24,6 +25,43 @@ double luminance(const QColor& colour) {
 double contrast(const QColor& a, const QColor& b) {
   const double brighter = std::max(luminance(a), luminance(b)), darker = std::min(luminance(a), luminance(b));
   return (brighter + 0.05) / (darker + 0.05);
+}
+
+double toLinear(double c) {
+  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
+
+// As people see colours who lack one kind of cones: G. Machado, M. Oliveira, L. Fernandes, A Physiologically-based Model
+// for Simulation of Color Vision Deficiency, 2009, severity 1, of linear RGB.
+using Vision = std::array<std::array<double, 3>, 3>;
+constexpr Vision kDeuteranopia = {
+    {{0.367322, 0.860646, -0.227968}, {0.280085, 0.672501, 0.047413}, {-0.011820, 0.042940, 0.968881}}};
+constexpr Vision kProtanopia = {
+    {{0.152286, 1.052583, -0.204868}, {0.114503, 0.786281, 0.099216}, {-0.003882, -0.048116, 1.051998}}};
+
+std::array<double, 3> times(const Vision& matrix, const std::array<double, 3>& v) {
+  std::array<double, 3> product{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 3; ++k) product[i] += matrix[i][k] * v[k];
+  return product;
+}
+
+// CIE L*a*b*, D65, of what is seen.
+std::array<double, 3> labOf(const QColor& colour, const Vision& vision) {
+  std::array<double, 3> seen =
+      times(vision, {toLinear(colour.redF()), toLinear(colour.greenF()), toLinear(colour.blueF())});
+  for (double& c : seen) c = std::clamp(c, 0.0, 1.0);
+  constexpr Vision kXyz = {{{0.4124564 / 0.95047, 0.3575761 / 0.95047, 0.1804375 / 0.95047},
+                            {0.2126729, 0.7151522, 0.0721750},
+                            {0.0193339 / 1.08883, 0.1191920 / 1.08883, 0.9503041 / 1.08883}}};
+  std::array<double, 3> f = times(kXyz, seen);
+  for (double& x : f) x = x > 0.008856 ? std::cbrt(x) : 7.787 * x + 16.0 / 116.0;
+  return {116.0 * f[1] - 16.0, 500.0 * (f[0] - f[1]), 200.0 * (f[1] - f[2])};
+}
+
+double difference(const QColor& a, const QColor& b, const Vision& vision) {
+  const std::array<double, 3> x = labOf(a, vision), y = labOf(b, vision);
+  return std::hypot(x[0] - y[0], x[1] - y[1], x[2] - y[2]);
 }
 
 // Mean colour of the pixels that are drawn, and how much of the picture they are.
@@ -56,6 +94,23 @@ class TestTheme : public QObject {
   Q_OBJECT
 
  private slots:
+  // 2.3 is just noticed where two colours touch; thin lines apart from each other need far more.
+  void states_andAxes_areToldApart_byWhoSeesNoRedOrNoGreen() {
+    constexpr double kWellApart = 20.0, kLeastContrast = 3.0;
+    for (const Appearance appearance : {Appearance::Light, Appearance::Dark}) {
+      applyTheme(*qApp, appearance);
+      const Theme& t = theme();
+      for (const std::array<QColor, 3>& three : {std::array{t.good, t.warning, t.bad}, t.axes}) {
+        for (std::size_t i = 0; i < 3; ++i) {
+          QVERIFY2(contrast(three[i], t.panel) > kLeastContrast, qPrintable(three[i].name()));
+          for (const Vision& vision : {kDeuteranopia, kProtanopia})
+            QVERIFY2(difference(three[i], three[(i + 1) % 3], vision) > kWellApart,
+                     qPrintable(three[i].name() + three[(i + 1) % 3].name()));
+        }
+      }
+    }
+  }
+
   void appearance_setsPaletteAndColours() {
     applyTheme(*qApp, Appearance::Dark);
     QVERIFY(theme().dark);

@@ -130,15 +130,25 @@ class TestTimeline : public QObject {
     QVERIFY(!timeline.windowAt(-0.2).has_value());
   }
 
-  void ticks_areColouredByOutcome() {
+  void ticks_areToldApart_byColourAndByShape() {
     Timeline timeline;
     fill(timeline);
     const QImage image = timeline.grab().toImage();
-    const int y = timeline.height() - 25;
-    const auto colourAt = [&](double time_s) { return image.pixelColor(at(timeline, time_s).x(), y); };
-    QCOMPARE(colourAt(2.54), theme().good);
-    QCOMPARE(colourAt(7.04), theme().warning);
-    QCOMPARE(colourAt(9.54), theme().bad);
+    const int low = timeline.height() - 25, high = timeline.height() - 32;
+    // Of two columns, as dots are in every second one.
+    const auto inkAt = [&](double time_s, int top, const QColor& colour) {
+      int count = 0;
+      const int x = at(timeline, time_s).x();
+      for (int y = top; y < top + 4; ++y)
+        count += (image.pixelColor(x, y) == colour) + (image.pixelColor(x + 1, y) == colour);
+      return count;
+    };
+    QCOMPARE(inkAt(2.54, low, theme().good), 8);
+    QCOMPARE(inkAt(2.54, high, theme().good), 0);
+    const int dots = inkAt(7.04, low, theme().warning);
+    QVERIFY2(dots >= 2 && dots <= 6, qPrintable(QString::number(dots)));
+    QCOMPARE(inkAt(9.54, low, theme().bad), 8);
+    QVERIFY(inkAt(9.54, high, theme().bad) >= 4);  // it sticks out
   }
 
   void unusedParts_areFaded() {

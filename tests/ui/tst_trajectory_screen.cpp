@@ -34,6 +34,7 @@ class TestTrajectoryScreen : public QObject {
   void throughTheCamera_showsWhatItSees();
   void kindsOfCameras_haveColoursAndALegend();
   void theme_changesThePicture();
+  void picture_isTakenAtTwiceTheSize_andTheScreenStaysAsItWas();
   void screenshots();
 
  private:
@@ -202,6 +203,23 @@ void TestTrajectoryScreen::theme_changesThePicture() {
   QCoreApplication::processEvents();
   QVERIFY(theme().dark);
   QVERIFY(distance(picture(screen->view()).pixelColor(2, 2), theme().panel) < 2.0);
+}
+
+void TestTrajectoryScreen::picture_isTakenAtTwiceTheSize_andTheScreenStaysAsItWas() {
+  if (!has_opengl_) QSKIP("no OpenGL here");
+  const auto screen = makeScreen(example_);
+  QVERIFY(screen);
+  const QImage before = picture(screen->view());
+  const QImage once = screen->view()->picture(1.0), twice = screen->view()->picture(2.0);
+  QCOMPARE(once.size(), screen->view()->size());
+  QCOMPARE(twice.size(), 2 * once.size());
+  QCOMPARE(picture(screen->view()), before);
+  const QImage shrunk = twice.scaled(once.size(), Qt::IgnoreAspectRatio, Qt::SmoothTransformation);
+  int different = 0;
+  for (int y = 0; y < once.height(); ++y)
+    for (int x = 0; x < once.width(); ++x)
+      different += distance(shrunk.pixelColor(x, y), once.pixelColor(x, y)) > 120.0 ? 1 : 0;
+  QVERIFY2(different < once.width() * once.height() / 20, qPrintable(QString::number(different)));
 }
 
 void TestTrajectoryScreen::screenshots() {

@@ -12,7 +12,6 @@
 #include <QEventLoop>
 #include <QFileDialog>
 #include <QLineEdit>
-#include <QListWidget>
 #include <QMessageBox>
 #include <QSettings>
 #include <QSignalSpy>
@@ -21,6 +20,7 @@
 #include <QTemporaryDir>
 #include <QTimer>
 #include <QToolButton>
+#include <QTreeWidget>
 #include <QtTest>
 
 namespace evical::ui::test {
@@ -58,15 +58,17 @@ inline void answerFileDialog(const QString& path) {
   });
 }
 
-// Checks more targets and goes on to the folder.
-inline void answerExportDialog(const QStringList& targets) {
-  QTimer::singleShot(200, qApp, [targets] {
+// Types the folder, checks more targets, and exports.
+inline void answerExportDialog(const QStringList& targets, const QString& folder) {
+  QTimer::singleShot(200, qApp, [targets, folder] {
     auto* const dialog = qobject_cast<ExportDialog*>(QApplication::activeModalWidget());
-    if (dialog == nullptr) return answerExportDialog(targets);
-    auto* const list = dialog->findChild<QListWidget*>("targets");
-    for (int row = 0; row < list->count(); ++row)
-      if (targets.contains(list->item(row)->data(Qt::UserRole).toString()))
-        list->item(row)->setCheckState(Qt::Checked);
+    if (dialog == nullptr) return answerExportDialog(targets, folder);
+    dialog->findChild<QLineEdit*>("folder")->setText(folder);
+    const auto* const list = dialog->findChild<QTreeWidget*>("targets");
+    for (int row = 0; row < list->topLevelItemCount(); ++row) {
+      QTreeWidgetItem* const item = list->topLevelItem(row);
+      if (targets.contains(item->data(0, Qt::UserRole).toString())) item->setCheckState(0, Qt::Checked);
+    }
     dialog->accept();
   });
 }

@@ -5,12 +5,12 @@
 #include "ui/detection/event_view.h"
 #include "ui/detection/timeline.h"
 #include "ui/detection/window_panel.h"
+#include "ui/forms/page_keys.h"
 #include "ui/theme/theme.h"
 
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDoubleSpinBox>
-#include <QKeyEvent>
 #include <QLabel>
 #include <QPainter>
 #include <QSignalBlocker>
@@ -266,8 +266,14 @@ void DetectionScreen::takeOverview() {
   timeline_->setRange(0.0, std::max(overview.read_until_s, timeline_->end_s()));
   timeline_->setEventRate(overview.event_rate);
   timeline_->setRotationRate(overview.rotation_rate);
+  keepCursorInside(overview);
   timeline_->setTime(time_s_);
   request();
+}
+
+// The first one is at a fixed time, before it is known how long the recording is.
+void DetectionScreen::keepCursorInside(const RecordingOverview& overview) {
+  if (overview.finished && time_s_ > timeline_->end_s()) select(0.5 * timeline_->end_s());
 }
 
 void DetectionScreen::takeFrame() {
@@ -315,26 +321,17 @@ void DetectionScreen::refreshPanel(bool here) {
   panel_->show(here ? analysis_.get() : nullptr, timeline_->windowAt(time_s), searching);
 }
 
-void DetectionScreen::keyPressEvent(QKeyEvent* event) {
-  switch (event->key()) {
-    case Qt::Key_Space:
-      setPlaying(!isPlaying());
-      return;
-    case Qt::Key_Left:
-      step(-1);
-      return;
-    case Qt::Key_Right:
-      step(+1);
-      return;
-    case Qt::Key_Home:
-      select(timeline_->begin_s());
-      return;
-    case Qt::Key_End:
-      select(timeline_->end_s());
-      return;
-    default:
-      QWidget::keyPressEvent(event);
-  }
+void DetectionScreen::addKeys() {
+  addPageKey(this, Qt::Key_Space, [this] { setPlaying(!isPlaying()); });
+  addPageKey(this, Qt::Key_Left, [this] { step(-1); });
+  addPageKey(this, Qt::Key_Right, [this] { step(+1); });
+  addPageKey(this, Qt::Key_Home, [this] { select(timeline_->begin_s()); });
+  addPageKey(this, Qt::Key_End, [this] { select(timeline_->end_s()); });
+  addPageKey(this, Qt::Key_F, [this] {
+    view_->fit();
+    companion_view_->fit();
+  });
+  leaveFocusToKeys(this);
 }
 
 void DetectionScreen::changeEvent(QEvent* event) {

@@ -28,6 +28,7 @@ namespace evical::ui {
 
 class DetectionEngine;
 enum class PictureChoice;
+struct RecordingOverview;
 struct Sight;
 class EventView;
 class Timeline;
@@ -77,7 +78,6 @@ class DetectionScreen : public QWidget {
   void timeSelected(double time_s);  // by the user, or by playing
 
  protected:
-  void keyPressEvent(QKeyEvent*) override;
   void changeEvent(QEvent*) override;
 
  private:
@@ -87,6 +87,7 @@ class DetectionScreen : public QWidget {
   QToolButton* addButton(QHBoxLayout* row, const QString& icon_name, const QString& help);
   void applyColours();
   void connectEngine();
+  void addKeys();
 
   void chooseCamera(std::size_t camera);
   const CalibrationRun* runInView() const;  // null: there is none of this recording
@@ -96,6 +97,7 @@ class DetectionScreen : public QWidget {
   void advance();
   void request();  // of the engine: what the cursor, the mode and the layers ask for
   void takeOverview();
+  void keepCursorInside(const RecordingOverview& overview);
   void takeFrame();
   void takeAnalysis();
   void takeCompanion();

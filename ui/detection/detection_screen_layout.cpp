@@ -79,6 +79,7 @@ DetectionScreen::DetectionScreen(QWidget* parent) : QWidget(parent) {
   applyColours();
   chooseCamera(0);
   setFocusProxy(view_);
+  addKeys();
 }
 
 QToolButton* DetectionScreen::addButton(QHBoxLayout* row, const QString& icon_name, const QString& help) {

@@ -3,6 +3,7 @@
 
 #include "core/numerics/robust.h"
 #include "core/optimisation/edge_lead.h"
+#include "ui/detection/timeline.h"
 #include "ui/detection/trajectory_pose.h"
 #include "ui/detection/window_analysis.h"
 #include "ui/theme/theme.h"
@@ -20,6 +21,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 namespace evical::ui {
 namespace {
@@ -146,9 +148,11 @@ void paintSearch(QPainter& painter, const BoardSearch& search) {
   }
 }
 
+// A fit that did not hold is told from one that did: by colour, and by its broken line.
 void paintEllipses(QPainter& painter, const WindowAnalysis& analysis) {
-  QColor colour = layerColour(Layer::Ellipses);
-  usePen(painter, colour, 2.0);
+  const bool missed = windowClass(analysis.outcome) == WindowClass::Missed;
+  QColor colour = missed ? theme().bad : layerColour(Layer::Ellipses);
+  usePen(painter, colour, 2.0, missed ? Qt::DashLine : Qt::SolidLine);
   painter.setBrush(Qt::NoBrush);
   paintBoard(painter, *analysis.trace().motion, *analysis.scene);
   colour.setAlphaF(0.55f);
@@ -186,12 +190,14 @@ double usualGap(const QPolygonF& points) {
 }
 
 // Along the rows from the first point to the last, as calibrators are used to, and each one's number where there is
-// room.
+// room. Only points that follow each other are joined, and none in a window in which the board was not found.
 void paintGrid(QPainter& painter, double scale, const WindowAnalysis& analysis) {
   const Board& board = analysis.scene->board;
+  const bool missed = windowClass(analysis.outcome) == WindowClass::Missed;
   QPolygonF chain;
+  int before = -2;
   for (const CircleObservation& circle : analysis.points()) {
-    const bool follows = !chain.isEmpty();
+    const bool follows = !missed && circle.circle == std::exchange(before, circle.circle) + 1;
     const QPointF at = toSensor(circle.centre_px, *analysis.scene);
     const int last = std::max(1, board.pointCount() - 1);
     usePen(painter, gridColour(static_cast<double>(circle.circle) / last), 1.2);

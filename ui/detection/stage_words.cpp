@@ -3,6 +3,7 @@
 
 #include "core/numerics/robust.h"
 #include "ui/detection/print.h"
+#include "ui/detection/timeline.h"
 
 #include <cmath>
 
@@ -121,7 +122,15 @@ std::string missingText(const WindowTrace& trace, int count) {
   return text;
 }
 
-void addCentres(const WindowAnalysis& analysis, std::vector<StageReport>& stages) {
+// So many make a view.
+int leastCircles(const WindowAnalysis& analysis, const GridOptions& options) {
+  int least = 0;
+  while (outcomeOf(least, *analysis.scene, options) == WindowOutcome::TooFewInGrid) ++least;
+  return least;
+}
+
+void addCentres(const WindowAnalysis& analysis, const GridOptions& options,
+                std::vector<StageReport>& stages) {
   const int count = analysis.scene->board.pointCount();
   const WindowTrace& trace = analysis.trace();
   if (!trace.motion) {
@@ -133,8 +142,10 @@ void addCentres(const WindowAnalysis& analysis, std::vector<StageReport>& stages
     sigmas.push_back(std::sqrt(0.5 * circle.covariance_px2.trace()));
   std::string text = print("%zu of %d circles measured", trace.circles.size(), count);
   if (!sigmas.empty()) text += print(", sigma %.3f px", medianOf(std::move(sigmas)));
+  const bool good = windowClass(analysis.outcome) != WindowClass::Missed;
+  if (analysis.outcome == WindowOutcome::TooFewInGrid)
+    text += print(" (at least %d needed)", leastCircles(analysis, options));
   text += missingText(trace, count);
-  const bool good = analysis.outcome == WindowOutcome::Complete || analysis.outcome == WindowOutcome::Partial;
   stages.push_back({"centres", good ? StageVerdict::Passed : StageVerdict::Failed, text});
 }
 
@@ -150,7 +161,7 @@ std::vector<StageReport> describeStages(const WindowAnalysis& analysis, const Fr
     stages.push_back({sourceName(search.source), StageVerdict::Note,
                       std::string("tried too: ") + windowOutcomeName(search.outcome)});
   }
-  addCentres(analysis, stages);
+  addCentres(analysis, options.grid, stages);
   return stages;
 }
 

@@ -7,6 +7,7 @@
 #include "core/data/board_observations.h"
 #include "ui/detection/rate_curve.h"
 
+#include <QBrush>
 #include <QColor>
 #include <QRectF>
 #include <QWidget>
@@ -22,6 +23,7 @@ namespace evical::ui {
 enum class WindowClass { Complete, Partial, Missed };
 WindowClass windowClass(WindowOutcome outcome);
 QColor windowColour(WindowClass window_class);  // of the theme
+QBrush windowBrush(WindowClass window_class);   // partial ones are dotted
 double endOfWindow(const WindowReport& window);
 
 class Timeline : public QWidget {

@@ -13,6 +13,7 @@ namespace evical::ui {
 namespace {
 
 constexpr double kHeader_px = 25.0, kFooter_px = 18.0, kTicks_px = 14.0, kSide_px = 62.0;
+constexpr double kFoundHeight = 0.7;  // of the row
 
 QString rateText(double events_s) {
   if (events_s >= 1e6) return QStringLiteral("%1 Mev/s").arg(1e-6 * events_s, 0, 'g', 3);
@@ -59,6 +60,11 @@ QColor windowColour(WindowClass window_class) {
   return theme().bad;
 }
 
+QBrush windowBrush(WindowClass window_class) {
+  return {windowColour(window_class),
+          window_class == WindowClass::Partial ? Qt::Dense4Pattern : Qt::SolidPattern};
+}
+
 QRectF Timeline::curveArea() const {
   return {kSide_px, kHeader_px, std::max(1.0, width() - 2.0 * kSide_px),
           std::max(1.0, height() - kHeader_px - kFooter_px - kTicks_px - 3.0)};
@@ -100,8 +106,8 @@ void Timeline::paintEvent(QPaintEvent*) {
 void Timeline::paintHeader(QPainter& painter) const {
   const QFontMetrics metrics = painter.fontMetrics();
   double x = curveArea().left();
-  const auto word = [&](const QColor& colour, const QString& text) {
-    painter.fillRect(QRectF(x, 7.0, 10.0, 8.0), colour);
+  const auto word = [&](const QBrush& brush, const QString& text) {
+    painter.fillRect(QRectF(x, 7.0, 10.0, 8.0), brush);
     painter.setPen(theme().text);
     painter.drawText(QPointF(x + 15.0, kHeader_px - 10.0), text);
     x += 15.0 + metrics.horizontalAdvance(text) + 18.0;
@@ -123,7 +129,7 @@ void Timeline::paintHeader(QPainter& painter) const {
   double needed = -18.0;
   for (const QString& text : words) needed += 33.0 + metrics.horizontalAdvance(text);
   x = std::max(x, curveArea().right() - needed);
-  for (std::size_t k = 0; k < words.size(); ++k) word(windowColour(static_cast<WindowClass>(k)), words[k]);
+  for (std::size_t k = 0; k < words.size(); ++k) word(windowBrush(static_cast<WindowClass>(k)), words[k]);
 }
 
 void Timeline::paintAxis(QPainter& painter) const {
@@ -209,7 +215,8 @@ std::vector<Timeline::ColumnCounts> Timeline::countColumns() const {
   return columns;
 }
 
-// A column that several windows share is divided among them, missed ones on top.
+// A column that several windows share is divided among them, missed ones on top. Those stick out, for those who see one
+// colour in good and bad.
 void Timeline::paintTicks(QPainter& painter) const {
   const QRectF area = tickArea();
   const std::vector<ColumnCounts> columns = countColumns();
@@ -217,10 +224,11 @@ void Timeline::paintTicks(QPainter& painter) const {
     const int sum = columns[column][0] + columns[column][1] + columns[column][2];
     if (sum == 0) continue;
     double bottom = area.bottom();
+    const double whole = area.height() * (columns[column][2] > 0 ? 1.0 : kFoundHeight);
     for (std::size_t k = 0; k < 3; ++k) {
-      const double height = area.height() * columns[column][k] / sum;
+      const double height = whole * columns[column][k] / sum;
       painter.fillRect(QRectF(area.left() + static_cast<double>(column), bottom - height, 1.0, height),
-                       windowColour(static_cast<WindowClass>(k)));
+                       windowBrush(static_cast<WindowClass>(k)));
       bottom -= height;
     }
   }

@@ -30,6 +30,21 @@ QColor colourOf(StageVerdict verdict) {
   return theme().faint_text;
 }
 
+// For those who see no difference between the colours.
+QString markOf(StageVerdict verdict) {
+  switch (verdict) {
+    case StageVerdict::Passed:
+      return QStringLiteral("\u2713");
+    case StageVerdict::Failed:
+      return QStringLiteral("\u2717");
+    case StageVerdict::NotReached:
+      return QStringLiteral("\u25cb");
+    case StageVerdict::Note:
+      break;
+  }
+  return QStringLiteral("\u2022");
+}
+
 QString capital(const char* text) {
   QString word = QString::fromUtf8(text);
   if (!word.isEmpty()) word[0] = word[0].toUpper();
@@ -78,11 +93,15 @@ QString stageRow(const StageReport& stage) {
   return QStringLiteral(
              "<tr><td style='padding-right:6px'>%1</td><td "
              "style='padding-bottom:5px'><b>%2</b><br>%3</td></tr>")
-      .arg(coloured(colourOf(stage.verdict), QStringLiteral("●")),
+      .arg(coloured(colourOf(stage.verdict), markOf(stage.verdict)),
            capital(stage.stage.c_str()).toHtmlEscaped(), faint ? coloured(theme().faint_text, text) : text);
 }
 
-QString passLine(const WindowReport& report, bool of_frame) {
+// A window that was missed then and is now has one reason, that of now: what is looked at is one window with today's
+// options, a run has lenses and views before that this one may lack.
+QString passLine(const WindowReport& report, bool of_frame, bool missed_now) {
+  if (missed_now && windowClass(report.outcome) == WindowClass::Missed)
+    return WindowPanel::tr("Missed in the last run, too");
   const QString found = of_frame ? WindowPanel::tr(", %1 points%2") : WindowPanel::tr(", %1 circles%2");
   const QString how =
       report.circles > 0
@@ -109,9 +128,10 @@ void WindowPanel::show(const WindowAnalysis* analysis, const std::optional<Windo
   QString html;
   if (analysis) {
     html = headline(*analysis, searching);
+    const bool missed = !searching && windowClass(analysis->outcome) == WindowClass::Missed;
     if (report)
       html += QStringLiteral("<p style='margin:0'>%1</p>")
-                  .arg(coloured(theme().faint_text, passLine(*report, analysis->frame.has_value())));
+                  .arg(coloured(theme().faint_text, passLine(*report, analysis->frame.has_value(), missed)));
     if (!searching) html += lostLine(*analysis);
     html += QStringLiteral("<table style='margin-top:8px'>");
     for (const StageReport& stage : analysis->stages) html += stageRow(stage);

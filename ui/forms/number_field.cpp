@@ -3,7 +3,9 @@
 
 #include "ui/theme/theme.h"
 
+#include <QAction>
 #include <QLocale>
+#include <QToolTip>
 
 namespace evical::ui {
 namespace {
@@ -16,37 +18,44 @@ QString numberText(double value) {
 }  // namespace
 
 NumberField::NumberField(double minimum, double maximum, QWidget* parent)
-    : QLineEdit(parent), minimum_(minimum), maximum_(maximum) {
+    : QLineEdit(parent),
+      minimum_(minimum),
+      maximum_(maximum),
+      refused_(addAction(icon("warning", theme().warning), QLineEdit::LeadingPosition)) {
   setAlignment(Qt::AlignRight);
+  refused_->setVisible(false);
   connect(this, &QLineEdit::editingFinished, this, &NumberField::take);
+}
+
+bool NumberField::hasRefused() const {
+  return refused_->isVisible();
 }
 
 void NumberField::setValue(double value) {
   value_ = value;
   setText(numberText(value));
-  showWrong({});
+  refused_->setVisible(false);
 }
 
 void NumberField::take() {
+  if (!isModified()) return;
   bool is_number = false;
   const double typed = QLocale::c().toDouble(text().trimmed().replace(',', '.'), &is_number);
-  if (!is_number) return showWrong(tr("This is not a number"));
+  if (!is_number) return refuse(tr("%1 is not a number").arg(text()));
   if (typed < minimum_ || typed > maximum_) {
-    return showWrong(tr("Give a number from %1 to %2").arg(numberText(minimum_), numberText(maximum_)));
+    return refuse(tr("%1 is not from %2 to %3").arg(text(), numberText(minimum_), numberText(maximum_)));
   }
-  showWrong({});
-  if (typed == value_) return;
-  value_ = typed;
-  emit valueEdited(typed);
+  const bool other = typed != value_;
+  setValue(typed);
+  if (other) emit valueEdited(typed);
 }
 
-void NumberField::showWrong(const QString& why) {
-  if (!wrong_) help_ = toolTip();
-  wrong_ = !why.isEmpty();
-  setToolTip(wrong_ ? why : help_);
-  QPalette colours;
-  if (wrong_) colours.setColor(QPalette::Text, theme().bad);
-  setPalette(colours);
+void NumberField::refuse(const QString& why) {
+  const QString text = tr("%1: it stays %2").arg(why, numberText(value_));
+  setText(numberText(value_));
+  refused_->setToolTip(text);
+  refused_->setVisible(true);
+  QToolTip::showText(mapToGlobal(rect().bottomLeft()), text, this);
 }
 
 }  // namespace evical::ui

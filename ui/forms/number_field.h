@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A line for one number, in plain or scientific notation; says what is wrong with what was typed.
+// A line for one number, in plain or scientific notation. What is none, or out of range, gives way to the value that
+// holds, with a mark that says why.
 #pragma once
 
 #include <QLineEdit>
@@ -14,18 +15,17 @@ class NumberField : public QLineEdit {
 
   void setValue(double value);  // does not signal
   double value() const { return value_; }
-  bool isWrong() const { return wrong_; }
+  bool hasRefused() const;  // what was typed last
 
  signals:
   void valueEdited(double value);  // by hand, within the range, and different
 
  private:
   void take();
-  void showWrong(const QString& why);
+  void refuse(const QString& why);
 
   double minimum_, maximum_, value_ = 0.0;
-  bool wrong_ = false;
-  QString help_;  // the tip while nothing is wrong
+  QAction* refused_;  // the mark
 };
 
 }  // namespace evical::ui

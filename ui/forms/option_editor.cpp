@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/forms/option_editor.h"
 
+#include "ui/forms/option_slider.h"
 #include "ui/theme/theme.h"
 
 #include <QCheckBox>
@@ -13,10 +14,12 @@
 #include <QPixmap>
 #include <QToolButton>
 
+#include <algorithm>
+
 namespace evical::ui {
 namespace {
 
-constexpr int kDot_px = 8, kInput_px = 92;
+constexpr int kDot_px = 8, kInput_px = 92, kUnit_px = 30;
 
 QString text(const std::string& utf8) {
   return QString::fromStdString(utf8);
@@ -44,6 +47,19 @@ QLabel* smallText(const QString& content, const char* role, QWidget* parent) {
   return label;
 }
 
+// Rich text in which what was searched for stands out.
+QString marked(const QString& plain, const QString& search, const QColor& colour) {
+  const qsizetype at = search.isEmpty() ? -1 : plain.indexOf(search, 0, Qt::CaseInsensitive);
+  if (at < 0) return plain.toHtmlEscaped();
+  constexpr double kPale = 0.3;
+  const QString background =
+      QStringLiteral("rgba(%1,%2,%3,%4)").arg(colour.red()).arg(colour.green()).arg(colour.blue()).arg(kPale);
+  return plain.left(at).toHtmlEscaped() +
+         QStringLiteral("<span style='background-color:%1'>%2</span>")
+             .arg(background, plain.mid(at, search.size()).toHtmlEscaped()) +
+         marked(plain.mid(at + search.size()), search, colour);
+}
+
 }  // namespace
 
 QString OptionEditor::shownName(const OptionRow& row) {
@@ -63,13 +79,14 @@ OptionEditor::OptionEditor(const OptionRow& row, QWidget* parent)
     : QWidget(parent),
       row_(row),
       dot_(new QLabel(this)),
+      name_(new QLabel(shownName(row), this)),
+      help_(smallText({}, "hint", this)),
+      idle_(smallText({}, "hint", this)),
       problem_(smallText({}, "problem", this)),
       reset_(new QToolButton(this)) {
   QWidget* const input = makeInput();
-  auto* const name = new QLabel(shownName(row), this);
-  name->setWordWrap(true);
-  name->setBuddy(input);
-  const QString range = rangeText(row);
+  name_->setWordWrap(true);
+  name_->setBuddy(input);
   const QString tip =
       QString("<b>%1</b><br>%2<br>%3")
           .arg(text(row.name), text(row.help), tr("Default: %1").arg(text(row.default_value)));
@@ -88,15 +105,46 @@ OptionEditor::OptionEditor(const OptionRow& row, QWidget* parent)
   grid->setVerticalSpacing(2);
   grid->setColumnStretch(1, 1);
   grid->addWidget(dot_, 0, 0);
-  grid->addWidget(name, 0, 1);
-  grid->addWidget(input, 0, 2);
-  grid->addWidget(new QLabel(text(row.unit), this), 0, 3);
+  grid->addWidget(name_, 0, 1);
+  grid->addWidget(input, 0, 2, Qt::AlignRight);
+  auto* const unit = new QLabel(text(row.unit), this);
+  unit->setFixedWidth(std::max(kUnit_px, unit->sizeHint().width()));  // most fields are in one column
+  grid->addWidget(unit, 0, 3);
   grid->addWidget(reset_, 0, 4);
-  const QString help = text(row.help) + (range.isEmpty() ? "" : " " + tr("From %1.").arg(range));
-  grid->addWidget(smallText(help, "hint", this), 1, 1, 1, 4);
-  grid->addWidget(problem_, 2, 1, 1, 4);
+  if (OptionSlider::fits(row)) makeSlider(*grid, 1);
+  for (QLabel* const line : {help_, idle_, problem_}) grid->addWidget(line, grid->rowCount(), 1, 1, 4);
+  idle_->hide();
   problem_->hide();
+  highlight({});
   setRow(row);
+}
+
+void OptionEditor::makeSlider(QGridLayout& grid, int row) {
+  slider_ = new OptionSlider(row_, this);
+  slider_->setAccessibleName(tr("%1, slider").arg(shownName(row_)));
+  slider_->setToolTip(rangeText(row_));
+  connect(slider_, &OptionSlider::turning, number_, &QLineEdit::setText);
+  connect(slider_, &OptionSlider::turned, this, [this](const QString& number) {
+    if (number != text(row_.value)) emit edited(text(row_.name), number);
+  });
+  grid.addWidget(slider_, row, 1, 1, 4);
+}
+
+QString OptionEditor::helpText() const {
+  const QString range = rangeText(row_);
+  return text(row_.help) + (range.isEmpty() ? "" : " " + tr("From %1.").arg(range));
+}
+
+void OptionEditor::highlight(const QString& search) {
+  const QColor mark = theme().accent;
+  name_->setText(marked(shownName(row_), search, mark));
+  help_->setText(marked(helpText(), search, mark));
+}
+
+void OptionEditor::showIdle(const QString& why) {
+  idle_->setText(why.isEmpty() ? QString()
+                               : "<i>" + tr("No effect here: %1.").arg(why).toHtmlEscaped() + "</i>");
+  idle_->setVisible(!why.isEmpty());
 }
 
 QWidget* OptionEditor::makeInput() {
@@ -128,18 +176,18 @@ QWidget* OptionEditor::makeInput() {
   return number_;
 }
 
-bool OptionEditor::somethingElseIsTyped() const {
-  return number_ != nullptr && number_->text().trimmed() != text(row_.value);
+void OptionEditor::setRow(const OptionRow& row) {
+  row_ = row;
+  showValue();
+  showProblem({});
+  showChanged();
 }
 
-void OptionEditor::setRow(const OptionRow& row) {
-  const bool same = row.value == row_.value && !problem_->text().isEmpty() && somethingElseIsTyped();
-  row_ = row;
-  if (toggle_ != nullptr) toggle_->setChecked(row.value == "true");
-  if (choice_ != nullptr) choice_->setCurrentText(text(row.value));
-  if (number_ != nullptr && !same) number_->setText(text(row.value));
-  if (!same) showProblem({});
-  showChanged();
+void OptionEditor::showValue() {
+  if (toggle_ != nullptr) toggle_->setChecked(row_.value == "true");
+  if (choice_ != nullptr) choice_->setCurrentText(text(row_.value));
+  if (number_ != nullptr) number_->setText(text(row_.value));
+  if (slider_ != nullptr) slider_->setShown(text(row_.value));
 }
 
 void OptionEditor::showProblem(const QString& problem) {
@@ -147,8 +195,9 @@ void OptionEditor::showProblem(const QString& problem) {
   problem_->setVisible(!problem.isEmpty());
 }
 
-void OptionEditor::forgetProblem() {
-  if (!somethingElseIsTyped()) showProblem({});
+void OptionEditor::refuse(const QString& why) {
+  showValue();
+  showProblem(why);
 }
 
 void OptionEditor::showChanged() {

@@ -15,6 +15,8 @@ class QToolButton;
 
 namespace evical::ui {
 
+class OptionSlider;
+
 class OptionEditor : public QWidget {
   Q_OBJECT
 
@@ -24,9 +26,11 @@ class OptionEditor : public QWidget {
   const OptionRow& row() const { return row_; }
   bool isChanged() const { return row_.value != row_.default_value; }
   bool matches(const QString& search) const;  // in name or help
+  void highlight(const QString& search);      // where it occurs
+  void showIdle(const QString& why);          // it has no effect here; empty: it has
   void setRow(const OptionRow& row);          // the value that holds
-  void showProblem(const QString& text);      // why what was typed does not hold; empty: it does
-  void forgetProblem();                       // unless something that was typed does not hold
+  void refuse(const QString& why);        // the value that holds is shown again, and why the other one is not
+  void showProblem(const QString& text);  // empty: there is none
 
   // "normal_flow.plane_radius_px" in px gives "plane radius".
   static QString shownName(const OptionRow& row);
@@ -41,15 +45,17 @@ class OptionEditor : public QWidget {
 
  private:
   QWidget* makeInput();
-  bool somethingElseIsTyped() const;
+  void makeSlider(QGridLayout& grid, int row);
+  QString helpText() const;
+  void showValue();
   void showChanged();
 
   OptionRow row_;
   QLineEdit* number_ = nullptr;  // one of these three
   QCheckBox* toggle_ = nullptr;
   QComboBox* choice_ = nullptr;
-  QLabel* dot_;
-  QLabel* problem_;
+  OptionSlider* slider_ = nullptr;  // of numbers
+  QLabel *dot_, *name_, *help_, *idle_, *problem_;
   QToolButton* reset_;
 };
 

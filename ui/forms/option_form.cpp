@@ -24,6 +24,10 @@ QString groupTitle(const std::string& option_name) {
   return title;
 }
 
+QString valueOf(const OptionEditor& editor) {
+  return QString::fromStdString(editor.row().value + " " + editor.row().unit).trimmed();
+}
+
 }  // namespace
 
 OptionForm::OptionForm(QWidget* parent)
@@ -119,20 +123,30 @@ void OptionForm::setRows(const std::vector<OptionRow>& rows) {
   filter();
 }
 
+void OptionForm::setIdle(const std::map<QString, QString>& reasons) {
+  for (const auto& [name, option] : editors_) {
+    const auto found = reasons.find(name);
+    option->showIdle(found == reasons.end() ? QString() : found->second);
+  }
+}
+
 void OptionForm::showRefusal(const QString& name, const CalibrationError& error) {
   QStringList places = {name};
   QString text = QString::fromStdString(error.problem());
   if (const auto* const conflict = dynamic_cast<const OptionConflict*>(&error)) {
     places = {QString::fromStdString(conflict->lower()), QString::fromStdString(conflict->upper())};
-    text += ". " + QString::fromStdString(error.advice()) + '.';
+    text += ". " + QString::fromStdString(error.advice());
   }
-  for (const QString& place : places)
-    if (OptionEditor* const found = editor(place)) found->showProblem(text);
+  for (const QString& place : places) {
+    OptionEditor* const found = editor(place);
+    if (found && place == name) found->refuse(tr("%1. It stays at %2.").arg(text, valueOf(*found)));
+    if (found && place != name) found->showProblem(text);
+  }
 }
 
-// What a conflict said at an option beside the one that was typed at goes with the next attempt.
+// They go with the next attempt, wherever it is.
 void OptionForm::forgetProblems() {
-  for (const auto& [name, option] : editors_) option->forgetProblem();
+  for (const auto& [name, option] : editors_) option->showProblem({});
 }
 
 void OptionForm::showExpert(bool shown) {

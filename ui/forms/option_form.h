@@ -31,6 +31,8 @@ class OptionForm : public QWidget {
 
   void setRows(const std::vector<OptionRow>& rows);
   // Next to the field: why what was typed there was refused; where another option excludes it, there, too.
+  // Options that have no effect here, by name, and why; the others have.
+  void setIdle(const std::map<QString, QString>& reasons);
   void showRefusal(const QString& name, const CalibrationError& error);
 
   OptionEditor* editor(const QString& name) const;  // null: no such option

@@ -51,6 +51,7 @@ void OptionGroup::filter(const QString& search, bool only_changed, bool with_exp
     const bool folded = editor->row().expert && !with_expert && !searching_ && !editor->isChanged();
     const bool shown = !folded && editor->matches(search) && (!only_changed || editor->isChanged());
     editor->setVisible(shown);
+    editor->highlight(search);
     any_shown_ = any_shown_ || shown;
   }
   setVisible(any_shown_);

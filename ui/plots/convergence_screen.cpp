@@ -3,6 +3,7 @@
 
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
+#include "ui/plots/chart_saving.h"
 #include "ui/plots/empty_note.h"
 #include "ui/plots/plot_panel.h"
 
@@ -40,7 +41,7 @@ ConvergenceScreen::ConvergenceScreen(QWidget* parent) : QWidget(parent), redraw_
   redraw_->setSingleShot(true);
   redraw_->setInterval(0);
   connect(redraw_, &QTimer::timeout, this, &ConvergenceScreen::draw);
-  stack_ = stackWithNote(*this, makeContent(), tr("No calibration yet: press Calibrate."));
+  stack_ = stackWithNote(*this, makeContent(), noRunNote(false));
 }
 
 QWidget* ConvergenceScreen::makeBar() {
@@ -69,6 +70,7 @@ QWidget* ConvergenceScreen::makeBar() {
     layout->addWidget(widget);
   layout->addStretch(1);
   layout->addWidget(summary_);
+  layout->addWidget(makeSaveButton(*this, "convergence"));
   for (QComboBox* box : {camera_, relative_, shown_})
     connect(box, &QComboBox::activated, this, [this] { drawSoon(); });
   return bar;
@@ -236,7 +238,6 @@ void ConvergenceScreen::drawParameters() {
   for (std::size_t k = 0; k < x.size(); ++k) x[k] = static_cast<double>(k);
   for (const Panel panel : {Rotation, Translation, TimeOffset}) {
     for (std::size_t axis = 0; axis < series_[panel].lines.size(); ++axis) {
-      if (panel != TimeOffset) panels_[panel]->setLegendText(series_[panel].lines[axis], kAxisNames[axis]);
       const std::vector<double> y = differences(panel, static_cast<int>(axis), camera);
       panels_[panel]->setData(series_[panel].lines[axis], x, y);
       panels_[panel]->setData(series_[panel].points[axis], x, y);
@@ -248,18 +249,17 @@ void ConvergenceScreen::drawParameters() {
 void ConvergenceScreen::drawBands(std::size_t camera) {
   const auto begin = static_cast<double>(lastStageBegin(iterations_)) - 0.5;
   const auto end = static_cast<double>(iterations_.size() - 1) + 0.5;
+  const QString units[] = {"deg", "mm", "ms"};
   for (const Panel panel : {Rotation, Translation, TimeOffset}) {
+    QStringList sigmas;
     for (std::size_t axis = 0; axis < series_[panel].bands.size(); ++axis) {
       const double final_value = differences(panel, static_cast<int>(axis), camera).back();
       const double std = sigma(panel, static_cast<int>(axis), camera);
       panels_[panel]->setBand(series_[panel].bands[axis], {begin, end},
                               {final_value - std, final_value - std}, {final_value + std, final_value + std});
-      const QString plus_minus = QStringLiteral("\u00b1 %1").arg(std, 0, 'g', 2);
-      if (panel == TimeOffset)
-        panels_[panel]->setNote(plus_minus + " ms");
-      else
-        panels_[panel]->setLegendText(series_[panel].lines[axis], kAxisNames[axis] + (" " + plus_minus));
+      sigmas << QString::number(std, 'g', 2);
     }
+    panels_[panel]->setNote(QStringLiteral("\u00b1 %1 %2").arg(sigmas.join(", "), units[panel - Rotation]));
   }
 }
 

@@ -20,6 +20,11 @@ QStackedLayout* stackWithNote(QWidget& screen, QWidget* content, const QString& 
   return stack;
 }
 
+QString noRunNote(bool calibrating) {
+  return calibrating ? QObject::tr("Calibrating: this page is filled when the run is done.")
+                     : QObject::tr("No calibration yet: press Calibrate.");
+}
+
 void setNote(QStackedLayout& stack, const QString& note) {
   qobject_cast<QLabel*>(stack.widget(static_cast<int>(StackPage::Note)))->setText(note);
 }

@@ -9,6 +9,9 @@ class QWidget;
 
 namespace evical::ui {
 
+// Of a page that shows runs: there is none, or one is being made.
+QString noRunNote(bool calibrating);
+
 // Stacks the note (index 0) and the content (index 1) in `screen`; the note is in front.
 enum class StackPage { Note = 0, Content = 1 };
 QStackedLayout* stackWithNote(QWidget& screen, QWidget* content, const QString& note);

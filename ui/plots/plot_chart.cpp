@@ -64,6 +64,21 @@ class PointGraph : public QCPGraph {
   }
 };
 
+// Gives way to title and legend where there is no room for all three.
+class NoteElement : public QCPTextElement {
+ public:
+  using QCPTextElement::QCPTextElement;
+
+ protected:
+  QSize minimumOuterSizeHint() const override { return {0, QCPTextElement::minimumOuterSizeHint().height()}; }
+  void draw(QCPPainter* painter) override {
+    painter->setFont(mainFont());
+    painter->setPen(mainTextColor());
+    painter->drawText(mRect, mTextFlags,
+                      painter->fontMetrics().elidedText(text(), Qt::ElideRight, mRect.width()));
+  }
+};
+
 }  // namespace
 
 QColor colourOf(PlotColour colour) {
@@ -113,6 +128,8 @@ PlotChart::PlotChart(const PlotAxes& axes, QWidget* parent) : QCustomPlot(parent
   setInteractions(QCP::iRangeDrag | QCP::iRangeZoom);
   axisRect()->setRangeDrag(Qt::Horizontal | Qt::Vertical);
   constexpr int kLeftMargin_px = 62;  // so that charts of time below each other are in line
+  constexpr int kLeastWidth_px = 50, kLeastHeight_px = 16;  // charts in rows are low
+  axisRect()->setMinimumSize(kLeastWidth_px, kLeastHeight_px);
   if (axes.time) axisRect()->setMinimumMargins({kLeftMargin_px, 15, 15, 15});
   setNoAntialiasingOnDrag(true);
   setMouseTracking(true);
@@ -128,6 +145,13 @@ PlotChart::PlotChart(const PlotAxes& axes, QWidget* parent) : QCustomPlot(parent
   connect(this, &QCustomPlot::afterLayout, this, [this] { keepScale(); });
 }
 
+// No more labels than have room above each other.
+void PlotChart::resizeEvent(QResizeEvent* event) {
+  constexpr int kAround_px = 56, kLabel_px = 20, kMost = 5;
+  yAxis->ticker()->setTickCount(std::clamp((height() - kAround_px) / kLabel_px, 1, kMost));
+  QCustomPlot::resizeEvent(event);
+}
+
 void PlotChart::addHeading() {
   auto* const heading = new QCPLayoutGrid;
   plotLayout()->insertRow(0);
@@ -135,7 +159,7 @@ void PlotChart::addHeading() {
   plotLayout()->setRowStretchFactor(0, 0.001);
   plotLayout()->setRowSpacing(2);
   title_ = new QCPTextElement(this, axes_.title);
-  note_ = new QCPTextElement(this);
+  note_ = new NoteElement(this);
   title_->setTextFlags(Qt::AlignLeft | Qt::AlignVCenter);
   note_->setTextFlags(Qt::AlignLeft | Qt::AlignVCenter);
   axisRect()->insetLayout()->take(legend);

@@ -1,23 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/plots/plot_panel.h"
 
+#include "ui/plots/chart_saving.h"
 #include "ui/plots/plot_chart.h"
 #include "ui/theme/theme.h"
 
 #include <QContextMenuEvent>
-#include <QFileDialog>
 #include <QKeyEvent>
 #include <QMenu>
-#include <QMessageBox>
 #include <QPainter>
-#include <QSaveFile>
 #include <QVBoxLayout>
 
 namespace evical::ui {
 namespace {
 
 constexpr double kPan = 0.15, kZoom = 0.8;  // of the range, by one key press
-constexpr double kPictureScale = 2.0;       // pixels of a saved picture to those of the screen
 
 QVector<double> toQVector(const std::vector<double>& values) {
   return QVector<double>(values.begin(), values.end());
@@ -36,7 +33,7 @@ std::shared_ptr<PlotLineData> makePlotLine(const std::vector<double>& x, const s
 }
 
 PlotPanel::PlotPanel(const PlotAxes& axes, QWidget* parent)
-    : QWidget(parent), chart_(new PlotChart(axes, this)) {
+    : QWidget(parent), chart_(new PlotChart(axes, this)), saver_(new FileSaver(this)) {
   auto* const layout = new QVBoxLayout(this);
   layout->setContentsMargins(5, 5, 5, 5);
   layout->addWidget(chart_);
@@ -231,62 +228,12 @@ void PlotPanel::redraw() {
   chart_->replot(QCustomPlot::rpImmediateRefresh);
 }
 
-QString PlotPanel::csv() const {
-  QString text = QStringLiteral("series,%1,%2\n").arg(chart_->xAxis->label(), chart_->yAxis->label());
-  const auto quoted = [](const QString& name) {
-    return name.contains(',') || name.contains('"') ? '"' + QString(name).replace('"', "\"\"") + '"' : name;
-  };
-  const auto append = [&](const QString& name, QCPAbstractPlottable* plottable) {
-    const QCPPlottableInterface1D* points = plottable->interface1D();
-    for (int k = 0; k < points->dataCount(); ++k) {
-      text += quoted(name) + ',' + QString::number(points->dataMainKey(k), 'g', 12) + ',' +
-              QString::number(points->dataMainValue(k), 'g', 9) + '\n';
-    }
-  };
-  for (const PlotChart::SeriesItems& items : chart_->series) {
-    if (items.style.name.isEmpty()) continue;
-    if (items.low) append(items.style.name + " (low)", items.low);
-    append(items.low ? items.style.name + " (high)" : items.style.name, items.plottable);
-  }
-  return text;
-}
-
-bool PlotPanel::savePicture(const QString& path) {
-  if (path.endsWith(".pdf", Qt::CaseInsensitive))
-    return chart_->savePdf(path, chart_->width(), chart_->height());
-  return chart_->toPixmap(chart_->width(), chart_->height(), kPictureScale).save(path);
-}
-
-bool PlotPanel::saveCsv(const QString& path) const {
-  QSaveFile file(path);
-  return file.open(QIODevice::WriteOnly) && file.write(csv().toUtf8()) >= 0 && file.commit();
-}
-
-void PlotPanel::askAndSave(SavedAs saved_as) {
-  const bool picture = saved_as == SavedAs::Picture;
-  QString path =
-      QFileDialog::getSaveFileName(this, picture ? tr("Save picture") : tr("Save data"), {},
-                                   picture ? tr("Picture (*.png);;Document (*.pdf)") : tr("Table (*.csv)"));
-  if (path.isEmpty()) return;
-  if (QFileInfo(path).suffix().isEmpty()) path += picture ? ".png" : ".csv";
-  if (picture ? savePicture(path) : saveCsv(path)) return;
-  auto* const message =
-      new QMessageBox(QMessageBox::Warning, tr("Not saved"),
-                      tr("%1 could not be written. Check that the folder exists, that you may "
-                         "write there and that the disk is not full.")
-                          .arg(path),
-                      QMessageBox::Ok, this);
-  message->setAttribute(Qt::WA_DeleteOnClose);
-  message->open();
-}
-
 void PlotPanel::contextMenuEvent(QContextMenuEvent* event) {
   auto* const menu = new QMenu(this);
   menu->setAttribute(Qt::WA_DeleteOnClose);
   menu->addAction(tr("&Fit to data"), this, &PlotPanel::fit);
   menu->addSeparator();
-  menu->addAction(tr("Save &picture..."), this, [this] { askAndSave(SavedAs::Picture); });
-  menu->addAction(tr("Save &data (CSV)..."), this, [this] { askAndSave(SavedAs::Table); });
+  addSaveActions(*menu, *this, *saver_);
   menu->popup(event->globalPos());
 }
 

@@ -6,6 +6,8 @@
 // pixel column are drawn.
 #pragma once
 
+#include "ui/jobs/file_saver.h"
+
 #include <QPointF>
 #include <QRectF>
 #include <QString>
@@ -98,9 +100,11 @@ class PlotPanel : public QWidget {
   std::optional<double> threshold() const;
 
   QPointF pixelAt(double x, double y) const;  // in this widget
-  QString csv() const;                        // series, x, y: one line a point
-  bool savePicture(const QString& path);      // .png, or .pdf
-  bool saveCsv(const QString& path) const;
+  // As files: pictures, and the points as a table. A picture of several has them as they lie on `page`.
+  std::vector<SavedForm> savedForms();
+  static std::vector<SavedForm> pictureForms(const std::vector<PlotPanel*>& panels, const QWidget& page);
+  QString csv() const;  // series, x, y: one line a point; cells and arrows where there are any
+  QString title() const;
   void redraw();  // at once; changes are drawn by themselves soon
 
  signals:
@@ -114,10 +118,12 @@ class PlotPanel : public QWidget {
   void contextMenuEvent(QContextMenuEvent* event) override;
 
  private:
-  enum class SavedAs { Picture, Table };
-  void askAndSave(SavedAs saved_as);
+  struct Table;
+  Table table() const;
+  static QString textOf(const Table& table);
 
   PlotChart* chart_;
+  FileSaver* saver_;
 };
 
 }  // namespace evical::ui

@@ -4,6 +4,7 @@
 #include "core/numerics/robust.h"
 #include "core/report/residual_statistics.h"
 #include "ui/jobs/latest_job.h"
+#include "ui/plots/chart_saving.h"
 #include "ui/plots/empty_note.h"
 #include "ui/plots/plot_panel.h"
 
@@ -62,7 +63,7 @@ ResidualsScreen::ResidualsScreen(QWidget* parent)
   mark_soon_->setSingleShot(true);
   mark_soon_->setInterval(kFrame_ms);
   connect(mark_soon_, &QTimer::timeout, this, &ResidualsScreen::markRejected);
-  stack_ = stackWithNote(*this, makeContent(), tr("No calibration yet: press Calibrate."));
+  stack_ = stackWithNote(*this, makeContent(), noRunNote(false));
   connect(job_, &LatestJob::failed, this, [this](const QString& reason) {
     setNote(*stack_, tr("The residuals cannot be shown: %1").arg(reason));
     showPage(*stack_, StackPage::Note);
@@ -127,6 +128,7 @@ QWidget* ResidualsScreen::makeBar() {
        std::initializer_list<QWidget*>{camera_label_, camera_, threshold_label, threshold_, count_})
     layout->addWidget(widget);
   layout->addStretch(1);
+  layout->addWidget(makeSaveButton(*this, "residuals"));
   layout->addWidget(recalibrate_);
   connect(camera_, &QComboBox::activated, this, [this] { compute(); });
   connect(threshold_, &QDoubleSpinBox::valueChanged, this, &ResidualsScreen::setThreshold);
@@ -181,9 +183,18 @@ void ResidualsScreen::setRun(std::shared_ptr<const CalibrationRun> run) {
   }
   camera_->setVisible(camera_->count() > 1);
   camera_label_->setVisible(camera_->count() > 1);
-  setNote(*stack_, run_ ? tr("Sorting the residuals ...") : tr("No calibration yet: press Calibrate."));
+  showNote();
   showPage(*stack_, StackPage::Note);
   compute();
+}
+
+void ResidualsScreen::showNote() {
+  setNote(*stack_, run_ ? tr("Sorting the residuals ...") : noRunNote(calibrating_));
+}
+
+void ResidualsScreen::setCalibrating(bool calibrating) {
+  calibrating_ = calibrating;
+  showNote();
 }
 
 int ResidualsScreen::camera() const {

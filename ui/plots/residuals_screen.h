@@ -37,6 +37,7 @@ class ResidualsScreen : public QWidget {
 
   // Null: empty again. What is drawn is computed in a thread and appears when it is ready.
   void setRun(std::shared_ptr<const CalibrationRun> run);
+  void setCalibrating(bool calibrating);  // one is being made
 
   int camera() const;                        // whose residuals are shown
   std::vector<int> rejectedWindows() const;  // views of that camera above the threshold, ascending
@@ -53,6 +54,7 @@ class ResidualsScreen : public QWidget {
   void ready();                                            // all charts show the run that was set last
 
  private:
+  void showNote();
   QWidget* makeContent();
   QWidget* makeBar();
   void makeScatter();
@@ -68,6 +70,7 @@ class ResidualsScreen : public QWidget {
   void selectNearest(double x_px, double y_px);
 
   std::shared_ptr<const CalibrationRun> run_;
+  bool calibrating_ = false;
   std::shared_ptr<const ResidualStatistics> statistics_;
   LatestJob* job_;
   QTimer* mark_soon_;

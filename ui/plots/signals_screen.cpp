@@ -4,8 +4,11 @@
 #include "core/initialisation/rotation_rates.h"
 #include "core/report/signal_prediction.h"
 #include "ui/jobs/latest_job.h"
+#include "ui/plots/chart_saving.h"
 #include "ui/plots/empty_note.h"
 #include "ui/plots/plot_panel.h"
+#include "ui/plots/signal_lines.h"
+#include "ui/plots/signal_tab.h"
 
 #include <QComboBox>
 #include <QHBoxLayout>
@@ -15,47 +18,12 @@
 #include <QTabWidget>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace evical::ui {
 namespace {
 
 using Kind = PlotPanel::SeriesKind;
-using Line = std::shared_ptr<PlotLineData>;
-
-constexpr PlotColour kAxisColours[] = {PlotColour::X, PlotColour::Y, PlotColour::Z};
-const QString kAxisNames[] = {"x", "y", "z"};
-
-struct SignalLines {
-  std::array<Line, 3> measured, predicted, residual;
-  double rms = 0.0, noise = 0.0;  // noise: sigma of a sample as given
-};
-
-double component(const Eigen::Vector3d& v, std::size_t axis) {
-  return v[static_cast<Eigen::Index>(axis)];
-}
-
-SignalLines makeLines(const std::vector<double>& time_s, const std::vector<Eigen::Vector3d>& measured,
-                      const std::vector<Eigen::Vector3d>& predicted, double noise) {
-  SignalLines lines;
-  lines.noise = noise;
-  std::vector<double> a(time_s.size()), b(time_s.size()), difference(time_s.size());
-  double sum = 0.0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t k = 0; k < time_s.size(); ++k) {
-      a[k] = component(measured[k], axis);
-      b[k] = component(predicted[k], axis);
-      difference[k] = a[k] - b[k];
-      sum += difference[k] * difference[k];
-    }
-    lines.measured[axis] = makePlotLine(time_s, a);
-    lines.predicted[axis] = makePlotLine(time_s, b);
-    lines.residual[axis] = makePlotLine(time_s, difference);
-  }
-  if (!time_s.empty()) lines.rms = std::sqrt(sum / (3.0 * static_cast<double>(time_s.size())));
-  return lines;
-}
 
 QComboBox* addBox(QHBoxLayout& layout, QLabel*& label, const QString& name, const QString& tip) {
   auto* const box = new QComboBox;
@@ -72,7 +40,6 @@ QComboBox* addBox(QHBoxLayout& layout, QLabel*& label, const QString& name, cons
 struct SignalsScreen::Drawing {
   SignalLines gyroscope, accelerometer;
   RotationRates rates;
-  double begin_s = 0.0, end_s = 0.0;
 };
 
 SignalsScreen::SignalsScreen(QWidget* parent)
@@ -83,56 +50,42 @@ SignalsScreen::SignalsScreen(QWidget* parent)
   tabs_ = new QTabWidget;
   tabs_->setDocumentMode(true);
   tabs_->tabBar()->setDrawBase(false);
-  tabs_->addTab(makeSignalTab(gyroscope_, tr("Angular rate"), "rad/s"), tr("&Gyroscope"));
-  tabs_->addTab(makeSignalTab(accelerometer_, tr("Specific force"), "m/s\u00b2"), tr("&Accelerometer"));
+  gyroscope_ = addSignalTab(tr("&Gyroscope"), new SignalTab(tr("Angular rate"), "rad/s"));
+  accelerometer_ = addSignalTab(tr("&Accelerometer"), new SignalTab(tr("Specific force"), "m/s\u00b2"));
   tabs_->addTab(makeRatesTab(), tr("&Camera against IMU"));
   tabs_->setCornerWidget(makeBar());
   layout->addWidget(tabs_);
   PlotPanel::linkX(panels_);
-  gyroscope_.signal->setObjectName("gyroscope");
-  accelerometer_.signal->setObjectName("accelerometer");
-  stack_ = stackWithNote(*this, content, tr("No calibration yet: press Calibrate."));
+  gyroscope_->setObjectName("gyroscope_tab");
+  gyroscope_->signal()->setObjectName("gyroscope");
+  accelerometer_->signal()->setObjectName("accelerometer");
+  stack_ = stackWithNote(*this, content, noRunNote(false));
   connect(job_, &LatestJob::failed, this, [this](const QString& reason) {
     setNote(*stack_, tr("The signals cannot be shown: %1").arg(reason));
     showPage(*stack_, StackPage::Note);
   });
 }
 
+SignalTab* SignalsScreen::addSignalTab(const QString& title, SignalTab* tab) {
+  tabs_->addTab(tab, title);
+  for (PlotPanel* const panel : tab->overTime()) addToTime(panel);
+  return tab;
+}
+
 PlotPanel* SignalsScreen::addPanel(const QString& title, const QString& unit) {
   auto* const panel =
       new PlotPanel({.title = title, .x_label = tr("time (s)"), .y_label = unit, .time = true});
+  addToTime(panel);
+  return panel;
+}
+
+// One cursor and one range for all.
+void SignalsScreen::addToTime(PlotPanel* panel) {
   connect(panel, &PlotPanel::clicked, this, [this](double time_s) {
     setTime(time_s);
     emit timeSelected(time_s);
   });
   panels_.push_back(panel);
-  return panel;
-}
-
-QWidget* SignalsScreen::makeSignalTab(SignalTab& tab, const QString& name, const QString& unit) {
-  tab.signal = addPanel(name, unit);
-  tab.residual = addPanel(tr("Measured - predicted"), unit);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    tab.measured.push_back(tab.signal->addSeries(Kind::Line, {.name = kAxisNames[axis] + tr(" measured"),
-                                                              .colour = kAxisColours[axis],
-                                                              .opacity = 0.4,
-                                                              .in_legend = false}));
-  }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    tab.predicted.push_back(tab.signal->addSeries(
-        Kind::Line, {.name = kAxisNames[axis] + tr(" predicted"), .colour = kAxisColours[axis]}));
-    tab.signal->setLegendText(tab.predicted.back(), kAxisNames[axis]);
-    tab.residuals.push_back(tab.residual->addSeries(
-        Kind::Line, {.name = kAxisNames[axis], .colour = kAxisColours[axis], .opacity = 0.75}));
-  }
-  for (std::size_t& edge : tab.noise)
-    edge = tab.residual->addSeries(Kind::Line, {.colour = PlotColour::Text, .width_px = 1.4, .dashed = true});
-  auto* const page = new QWidget;
-  auto* const layout = new QVBoxLayout(page);
-  layout->setContentsMargins(0, 8, 0, 0);
-  layout->addWidget(tab.signal, 3);
-  layout->addWidget(tab.residual, 2);
-  return page;
 }
 
 QWidget* SignalsScreen::makeRatesTab() {
@@ -160,6 +113,14 @@ QWidget* SignalsScreen::makeBar() {
   camera_ =
       addBox(*layout, camera_label_, tr("Ca&mera"), tr("Whose clock is shown, and whose rotation rate"));
   imu_ = addBox(*layout, imu_label_, tr("&IMU"), tr("Whose signals are shown"));
+  QLabel* below_label = nullptr;
+  below_ = addBox(*layout, below_label, tr("&Below"), tr("What is shown of measured - predicted"));
+  below_->setObjectName("below");
+  below_->addItems(SignalTab::looks());
+  connect(below_, &QComboBox::currentIndexChanged, this, [this](int look) {
+    for (SignalTab* const tab : {gyroscope_, accelerometer_}) tab->lookAt(look);
+  });
+  layout->addWidget(makeSaveButton(*this, "signals"));
   for (QComboBox* box : {camera_, imu_}) connect(box, &QComboBox::activated, this, [this] { compute(); });
   return bar;
 }
@@ -179,11 +140,20 @@ void SignalsScreen::setRun(std::shared_ptr<const CalibrationRun> run, const Sess
     box->setVisible(box->count() > 1);
     label->setVisible(box->count() > 1);
   }
-  setNote(*stack_, !run_                ? tr("No calibration yet: press Calibrate.")
-                   : imu_->count() == 0 ? tr("There is no IMU whose signals could be compared.")
-                                        : tr("Computing the signals ..."));
+  showNote();
   showPage(*stack_, StackPage::Note);
   compute();
+}
+
+void SignalsScreen::showNote() {
+  setNote(*stack_, !run_                ? noRunNote(calibrating_)
+                   : imu_->count() == 0 ? tr("There is no IMU whose signals could be compared.")
+                                        : tr("Computing the signals ..."));
+}
+
+void SignalsScreen::setCalibrating(bool calibrating) {
+  calibrating_ = calibrating;
+  showNote();
 }
 
 void SignalsScreen::compute() {
@@ -197,18 +167,13 @@ void SignalsScreen::compute() {
     SignalPrediction prediction = predictSignals(samples, run->pass.start_ns, state, imu, context);
     for (double& time_s : prediction.time_s)
       time_s = sensorTime_s(state.cameras[camera], referenceTime_s(state.imus[imu], time_s));
-    const double root_rate = std::sqrt(samples.rate_hz());
     const auto drawing = std::make_shared<Drawing>();
     drawing->gyroscope =
-        makeLines(prediction.time_s, prediction.measured_rate_rad_s, prediction.predicted_rate_rad_s,
-                  samples.noise.gyroscope_density * root_rate);
+        makeSignalLines(prediction.time_s, prediction.measured_rate_rad_s, prediction.predicted_rate_rad_s,
+                        samples.rate_hz(), samples.noise.gyroscope_density);
     drawing->accelerometer =
-        makeLines(prediction.time_s, prediction.measured_force_m_s2, prediction.predicted_force_m_s2,
-                  samples.noise.accelerometer_density * root_rate);
-    if (!prediction.time_s.empty()) {
-      drawing->begin_s = prediction.time_s.front();
-      drawing->end_s = prediction.time_s.back();
-    }
+        makeSignalLines(prediction.time_s, prediction.measured_force_m_s2, prediction.predicted_force_m_s2,
+                        samples.rate_hz(), samples.noise.accelerometer_density);
     const CameraLens& lens = run->pass.lenses.at(camera);
     if (lens.seen_with) {
       drawing->rates = rotationRates({session.cameras[camera].name, lens, run->pass.cameras[camera]},
@@ -220,23 +185,8 @@ void SignalsScreen::compute() {
 }
 
 void SignalsScreen::draw(const Drawing& drawing) {
-  const auto drawSignal = [&](const SignalTab& tab, const SignalLines& lines, const QString& unit) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      tab.signal->setLine(tab.measured[axis], lines.measured[axis]);
-      tab.signal->setLine(tab.predicted[axis], lines.predicted[axis]);
-      tab.residual->setLine(tab.residuals[axis], lines.residual[axis]);
-    }
-    const std::vector<double> span_s = {drawing.begin_s, drawing.end_s};
-    tab.residual->setData(tab.noise[0], span_s, {-lines.noise, -lines.noise});
-    tab.residual->setData(tab.noise[1], span_s, {lines.noise, lines.noise});
-    tab.signal->setNote(tr("pale: measured, full: predicted by the trajectory"));
-    tab.residual->setNote(tr("RMS %1 %3, noise as given %2 %3 (dashed)")
-                              .arg(lines.rms, 0, 'g', 3)
-                              .arg(lines.noise, 0, 'g', 3)
-                              .arg(unit));
-  };
-  drawSignal(gyroscope_, drawing.gyroscope, "rad/s");
-  drawSignal(accelerometer_, drawing.accelerometer, "m/s\u00b2");
+  gyroscope_->setLines(drawing.gyroscope);
+  accelerometer_->setLines(drawing.accelerometer);
 
   const RotationRates& rates = drawing.rates;
   const auto camera_line = makePlotLine(rates.time_s, rates.camera_rad_s);
@@ -255,7 +205,7 @@ void SignalsScreen::draw(const Drawing& drawing) {
                            .arg(rates.rmsDifferenceBefore_rad_s(), 0, 'g', 3)
                            .arg(rates.rmsDifferenceAfter_rad_s(), 0, 'g', 3));
   showPage(*stack_, StackPage::Content);
-  for (PlotPanel* panel : panels_) panel->fitWithin(drawing.begin_s, drawing.end_s);
+  for (PlotPanel* panel : panels_) panel->fitWithin(drawing.gyroscope.begin_s, drawing.gyroscope.end_s);
   emit ready();
 }
 

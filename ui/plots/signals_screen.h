@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the IMU measured against what the calibrated trajectory says it should have, with the
-// residuals below; and the camera's rotation rate against the IMU's, before and after the time
+// residuals below, by axis, as spectrum or as autocorrelation; and the camera's rotation rate against the IMU's, before and after the time
 // offset. All on the camera's clock.
 #pragma once
 
@@ -21,6 +21,7 @@ namespace evical::ui {
 
 class LatestJob;
 class PlotPanel;
+class SignalTab;
 
 class SignalsScreen : public QWidget {
   Q_OBJECT
@@ -30,6 +31,7 @@ class SignalsScreen : public QWidget {
 
   // Null: empty again. What is drawn is computed in a thread and appears when it is ready.
   void setRun(std::shared_ptr<const CalibrationRun> run, const Session& session);
+  void setCalibrating(bool calibrating);  // one is being made
 
  public slots:
   void setTime(double time_s);  // seconds since the recording's start, camera clock
@@ -39,29 +41,26 @@ class SignalsScreen : public QWidget {
   void ready();  // all charts show the run that was set last
 
  private:
+  void showNote();
   struct Drawing;
-  // A sensor's signal and residual: measured and predicted by axis.
-  struct SignalTab {
-    PlotPanel *signal = nullptr, *residual = nullptr;
-    std::vector<std::size_t> measured, predicted, residuals;
-    std::array<std::size_t, 2> noise = {};  // lines at minus and plus one sigma
-  };
-  QWidget* makeSignalTab(SignalTab& tab, const QString& name, const QString& unit);
+  SignalTab* addSignalTab(const QString& title, SignalTab* tab);
   QWidget* makeRatesTab();
   QWidget* makeBar();
   PlotPanel* addPanel(const QString& title, const QString& unit);
+  void addToTime(PlotPanel* panel);
   void compute();
   void draw(const Drawing& drawing);
 
   std::shared_ptr<const CalibrationRun> run_;
+  bool calibrating_ = false;
   Session session_;
   LatestJob* job_;
   std::vector<PlotPanel*> panels_;
-  SignalTab gyroscope_, accelerometer_;
+  SignalTab *gyroscope_ = nullptr, *accelerometer_ = nullptr;
   PlotPanel *before_ = nullptr, *after_ = nullptr, *difference_ = nullptr;
   QStackedLayout* stack_ = nullptr;
   QTabWidget* tabs_ = nullptr;
-  QComboBox *camera_ = nullptr, *imu_ = nullptr;
+  QComboBox *camera_ = nullptr, *imu_ = nullptr, *below_ = nullptr;
   QLabel *camera_label_ = nullptr, *imu_label_ = nullptr;
 };
 

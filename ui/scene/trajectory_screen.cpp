@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/scene/trajectory_screen.h"
 
+#include "ui/jobs/file_saver.h"
 #include "ui/jobs/latest_job.h"
 #include "ui/scene/camera_shape.h"
 #include "ui/scene/pose_readout.h"
@@ -12,6 +13,7 @@
 #include "ui/theme/theme.h"
 
 #include <QEvent>
+#include <QMenu>
 #include <QVBoxLayout>
 
 #include <algorithm>
@@ -74,12 +76,14 @@ struct TrajectoryScreen::Private {
         view(view_3d),
         tools(new TrajectoryTools(screen)),
         readout(new PoseReadout(screen)),
+        saver(new FileSaver(screen)),
         scene(view_3d->renderer()) {}
 
   TrajectoryScreen* q;
   View3D* view;
   TrajectoryTools* tools;
   PoseReadout* readout;
+  FileSaver* saver;
   TrajectoryScene scene;
 
   std::optional<Board> board;          // whose frame is the world
@@ -117,6 +121,8 @@ struct TrajectoryScreen::Private {
   std::optional<double> timeUnderMouse(const QPointF& position) const;
   void paint(QPainter& painter) const;
   QString message() const;
+  void savePicture(double scale);
+  void saveTable();
 };
 
 TrajectoryScreen::TrajectoryScreen(QWidget* parent)
@@ -148,6 +154,10 @@ void TrajectoryScreen::Private::connectTools() {
     if (!tools->throughCamera()) view->lookThrough(std::nullopt);
     moveView();
   });
+  connect(tools, &TrajectoryTools::pictureWanted, q, [this](double scale) { savePicture(scale); });
+  connect(tools, &TrajectoryTools::tableWanted, q, [this] { saveTable(); });
+  connect(view, &View3D::menuRequested, tools->saveMenu(),
+          [this](const QPoint& position) { tools->saveMenu()->popup(position); });
   connect(view, &View3D::turned, q, [this] { tools->leaveCamera(); });
   connect(view, &View3D::pixelRatioChanged, q, [this](double ratio) { scene.setPixelRatio(ratio); });
   connect(view, &View3D::hovered, q, [this](const QPointF& position) {
@@ -286,6 +296,7 @@ void TrajectoryScreen::Private::showTrack(Track new_track) {
   placeFurtherBoards();
   scene.setTrack(track);
   tools->offerResiduals(track->hasResiduals());
+  tools->offerTable(!track->empty());
   if (!track->hasResiduals()) q->setTrajectoryColour(TrajectoryColour::Speed);
   showRawPoses();
   showInstant();
@@ -386,6 +397,21 @@ std::vector<TimedPoint> TrajectoryScreen::Private::pickable() const {
 
 std::optional<double> TrajectoryScreen::Private::timeUnderMouse(const QPointF& position) const {
   return timeUnder(position, pickable(), view->viewPose(), view->size());
+}
+
+void TrajectoryScreen::Private::savePicture(double scale) {
+  const double ratio = scale * view->devicePixelRatioF();
+  const auto prepare = [this, ratio]() -> SavedForm::Content {
+    return [image = view->picture(ratio)] { return pngOf(image); };
+  };
+  saver->askAndSave(tr("Save the view"), "trajectory", {{tr("Picture"), "png", prepare}});
+}
+
+void TrajectoryScreen::Private::saveTable() {
+  const auto prepare = [this]() -> SavedForm::Content {
+    return [shown = track] { return QByteArray::fromStdString(trackCsv(*shown)); };
+  };
+  saver->askAndSave(tr("Save the trajectory"), "trajectory", {{tr("Table"), "csv", prepare}});
 }
 
 QString TrajectoryScreen::Private::message() const {

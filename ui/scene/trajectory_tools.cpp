@@ -22,6 +22,8 @@ TrajectoryTools::TrajectoryTools(QWidget* parent) : QToolBar(parent) {
   addViews();
   addSeparator();
   addFollowing();
+  addSeparator();
+  addSaving();
 }
 
 void TrajectoryTools::addColours() {
@@ -105,6 +107,31 @@ void TrajectoryTools::addFollowing() {
       emit followingChanged();
     });
   }
+}
+
+void TrajectoryTools::addSaving() {
+  constexpr double kOnce = 1.0, kTwice = 2.0;
+  auto* const button = new QToolButton(this);
+  button->setObjectName("save_view");
+  button->setText(tr("Save"));
+  button->setIcon(icon("save"));
+  button->setToolButtonStyle(toolButtonStyle());
+  button->setPopupMode(QToolButton::InstantPopup);
+  button->setFocusPolicy(Qt::StrongFocus);
+  button->setAccessibleName(tr("Save the view"));
+  button->setToolTip(tr("Save what is seen as a picture, or the trajectory as a table"));
+  save_ = new QMenu(button);
+  save_->addAction(tr("Save &picture (PNG)..."), this, [this] { emit pictureWanted(kOnce); });
+  save_->addAction(tr("Save picture at &twice the size (PNG)..."), this,
+                   [this] { emit pictureWanted(kTwice); });
+  table_ = save_->addAction(tr("Save &trajectory (CSV)..."), this, [this] { emit tableWanted(); });
+  button->setMenu(save_);
+  addWidget(button);
+  offerTable(false);
+}
+
+void TrajectoryTools::offerTable(bool available) {
+  table_->setEnabled(available);
 }
 
 bool TrajectoryTools::following() const {

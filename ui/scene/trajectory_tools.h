@@ -10,6 +10,7 @@
 #include <array>
 
 class QComboBox;
+class QMenu;
 
 namespace evical::ui {
 
@@ -26,20 +27,27 @@ class TrajectoryTools : public QToolBar {
   void showColour(TrajectoryColour colour);
   void showLayer(SceneLayer layer, bool visible);
   void offerResiduals(bool available);
+  void offerTable(bool available);
+  QMenu* saveMenu() const { return save_; }
 
  signals:
   void colourChosen(evical::ui::TrajectoryColour colour);
   void layerToggled(evical::ui::SceneLayer layer, bool visible);
   void viewChosen(evical::ui::StandardView view);
   void followingChanged();
+  void pictureWanted(double scale);  // pixels of it to one of the screen's
+  void tableWanted();
 
  private:
   void addColours();
   void addLayers();
   void addViews();
   void addFollowing();
+  void addSaving();
 
   QComboBox* colours_ = nullptr;
+  QMenu* save_ = nullptr;
+  QAction* table_ = nullptr;
   std::array<QAction*, kSceneLayerCount> layers_{};
   QAction *follow_ = nullptr, *through_ = nullptr;
 };

@@ -2,6 +2,8 @@
 #include "ui/scene/trajectory_track.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -125,6 +127,25 @@ double roundedUp(double value) {
     if (value <= digit * power * (1.0 + 1e-9)) return digit * power;
   }
   return 10.0 * power;
+}
+
+std::string trackCsv(const TrajectoryTrack& track) {
+  const bool residuals = track.hasResiduals();
+  std::string text = "time_s,x_m,y_m,z_m,speed_m_s";
+  text += residuals ? ",residual_px\n" : "\n";
+  const auto add = [&text](double value, char end) {
+    std::array<char, 32> digits{};
+    const auto written = std::to_chars(digits.begin(), digits.end(), value);
+    if (std::isfinite(value)) text.append(digits.begin(), written.ptr);
+    text += end;
+  };
+  for (std::size_t k = 0; k < track.times_s.size(); ++k) {
+    add(track.times_s[k], ',');
+    for (const double coordinate : track.positions_m[k]) add(coordinate, ',');
+    add(track.speeds_m_s[k], residuals ? ',' : '\n');
+    if (residuals) add(track.residuals_px[k], '\n');
+  }
+  return text;
 }
 
 }  // namespace evical::ui

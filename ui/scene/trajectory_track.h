@@ -9,6 +9,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace evical::ui {
@@ -33,6 +34,9 @@ struct TrajectoryTrack {
 
 // Nothing in it where the state has no splines yet.
 TrajectoryTrack sampleTrajectory(const CalibrationState& state, std::span<const CircleResidual> residuals);
+
+// A line a sample: time, position, speed and, where there are any, residuals.
+std::string trackCsv(const TrajectoryTrack& track);
 
 // The first camera's time of a time of the splines.
 double firstCameraTime_s(const CalibrationState& state, double time_s);

@@ -7,6 +7,7 @@
 #include "ui/theme/theme.h"
 
 #include <QApplication>
+#include <QContextMenuEvent>
 #include <QMouseEvent>
 #include <QPainter>
 
@@ -163,10 +164,8 @@ void View3D::fitWorld() {
   d_->fitted = true;
 }
 
-void View3D::drawFrame() {
-  const double ratio = devicePixelRatioF();
+QImage View3D::drawFrame(double ratio) {
   const QSize size_px = (QSizeF(size()) * ratio).toSize();
-  if (!d_->dirty && d_->frame.size() == size_px) return;
   if (ratio != d_->pixel_ratio) {
     d_->pixel_ratio = ratio;
     emit pixelRatioChanged(ratio);
@@ -179,10 +178,30 @@ void View3D::drawFrame() {
   camera->SetViewUp(pose.up.data());
   camera->SetViewAngle(kDegPerRad * pose.vertical_view_rad);
   d_->renderer->ResetCameraClippingRange();
-  d_->frame = d_->window->drawImage(size_px);
-  d_->frame.setDevicePixelRatio(ratio);
+  QImage frame = d_->window->drawImage(size_px);
+  frame.setDevicePixelRatio(ratio);
+  return frame;
+}
+
+void View3D::refreshFrame() {
+  const double ratio = devicePixelRatioF();
+  if (!d_->dirty && d_->frame.size() == (QSizeF(size()) * ratio).toSize()) return;
+  d_->frame = drawFrame(ratio);
   d_->dirty = false;
   if (d_->frame.isNull()) d_->problem = "the graphics driver gave up its OpenGL context";
+}
+
+QImage View3D::picture(double scale) {
+  if (starting() || !d_->started || !d_->problem.empty()) return {};
+  QImage image = drawFrame(scale);
+  d_->dirty = true;  // lines have the picture's widths now
+  update();
+  if (image.isNull()) return image;
+  QPainter painter(&image);
+  painter.setFont(font());
+  painter.setRenderHint(QPainter::Antialiasing);
+  if (d_->overlay) d_->overlay(painter);
+  return image;
 }
 
 void View3D::drawText(QPainter& painter, const QString& text) const {
@@ -199,7 +218,7 @@ void View3D::paintEvent(QPaintEvent*) {
     drawText(painter, tr("The 3D view starts ..."));
     return;
   }
-  if (d_->problem.empty()) drawFrame();
+  if (d_->problem.empty()) refreshFrame();
   painter.begin(this);
   if (!d_->problem.empty()) {
     drawText(painter, tr("The 3D view needs OpenGL 3.2, but %1.\nEverything else works without it.\n"
@@ -238,6 +257,8 @@ void View3D::mouseMoveEvent(QMouseEvent* event) {
 
 void View3D::mouseReleaseEvent(QMouseEvent* event) {
   if (event->button() == Qt::LeftButton && !d_->dragging) emit clicked(event->position());
+  if (event->button() == Qt::RightButton && !d_->dragging)
+    emit menuRequested(event->globalPosition().toPoint());
   d_->dragging = false;
 }
 
@@ -249,6 +270,11 @@ void View3D::wheelEvent(QWheelEvent* event) {
 
 void View3D::keyPressEvent(QKeyEvent* event) {
   if (!turnByKey(event->key(), event->modifiers())) QWidget::keyPressEvent(event);
+}
+
+// Of the mouse it comes with the press already, when nobody knows yet whether a drag follows.
+void View3D::contextMenuEvent(QContextMenuEvent* event) {
+  if (event->reason() == QContextMenuEvent::Keyboard) emit menuRequested(mapToGlobal(rect().center()));
 }
 
 bool View3D::turnByKey(int key, Qt::KeyboardModifiers modifiers) {

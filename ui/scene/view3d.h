@@ -9,6 +9,7 @@
 #include "ui/scene/turntable_camera.h"
 
 #include <QColor>
+#include <QImage>
 #include <QWidget>
 
 #include <functional>
@@ -53,6 +54,9 @@ class View3D : public QWidget {
   ViewPose viewPose() const;
   std::optional<QPointF> project(const Eigen::Vector3d& point_m) const;
 
+  // What is seen now, overlay and all, with `scale` pixels to one of the screen's. Null where there is no picture.
+  QImage picture(double scale);
+
   // Why there is no picture; empty where there is one. Known after the first painting.
   QString problem() const;
 
@@ -66,6 +70,8 @@ class View3D : public QWidget {
   void hovered(const QPointF& position);  // no button pressed
   void turned();                          // by the user, with mouse or keyboard
   void pixelRatioChanged(double ratio);   // before the frame that needs it
+  void menuRequested(
+      const QPoint& position);  // on the screen: by the menu key, or the right button without a drag
 
  protected:
   void paintEvent(QPaintEvent* event) override;
@@ -74,9 +80,11 @@ class View3D : public QWidget {
   void mouseReleaseEvent(QMouseEvent* event) override;
   void wheelEvent(QWheelEvent* event) override;
   void keyPressEvent(QKeyEvent* event) override;
+  void contextMenuEvent(QContextMenuEvent* event) override;
 
  private:
-  void drawFrame();
+  QImage drawFrame(double ratio);
+  void refreshFrame();
   void drawText(QPainter& painter, const QString& text) const;
   void finishStart();
   bool turnByKey(int key, Qt::KeyboardModifiers modifiers);

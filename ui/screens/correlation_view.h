@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which quantities can only be told apart badly: the correlation matrix as a heat map.
+// Which quantities can only be told apart badly: the correlation matrix as a heat map. Rows and columns are named in
+// words, a name for all parts of a quantity.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,8 +10,11 @@
 
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace evical::ui {
+
+class FileSaver;
 
 class CorrelationView : public QWidget {
   Q_OBJECT
@@ -18,10 +22,14 @@ class CorrelationView : public QWidget {
  public:
   explicit CorrelationView(QWidget* parent = nullptr);
 
+  // Names as in UncertaintyReport.
   void setCorrelation(const QStringList& names, const Eigen::MatrixXd& correlation);
-  // "a and b: 0.94" of the largest, without those of one with itself.
+  QStringList axisLabels() const;
+  QString csv() const;
+  // "left: translation x and left: time offset: 0.94" of the largest, without those of one with itself.
   QStringList strongestPairs(int count) const;
   QString textAt(const QPoint& position) const;
+  QPoint cellMiddle(Eigen::Index row, Eigen::Index col) const;
   QSize minimumSizeHint() const override { return {260, 260}; }
 
  protected:
@@ -29,16 +37,28 @@ class CorrelationView : public QWidget {
   bool event(QEvent* event) override;
   void mouseMoveEvent(QMouseEvent* event) override;
   void leaveEvent(QEvent* event) override;
+  void contextMenuEvent(QContextMenuEvent* event) override;
 
  private:
   using Cell = std::pair<Eigen::Index, Eigen::Index>;
+  // Neighbours of one quantity: x, y and z.
+  struct Group {
+    QString label;
+    Eigen::Index begin = 0, count = 0;
+  };
   double cellSize_px() const;
-  int labelWidth_px() const;
+  double longestLabel_px() const;
   QPointF origin() const;
+  QFont labelFont() const;
   std::optional<Cell> cellAt(const QPointF& position) const;
+  void paintCells(QPainter& painter) const;
+  void paintLabels(QPainter& painter) const;
   void paintScale(QPainter& painter) const;
+  void save(bool table);
 
-  QStringList names_;
+  QStringList names_, words_;  // words: "left: rotation vector x"
+  std::vector<Group> groups_;
+  FileSaver* saver_;
   Eigen::MatrixXd correlation_;
   std::optional<Cell> hovered_;
 };

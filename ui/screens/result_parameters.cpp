@@ -4,6 +4,7 @@
 #include "core/base/element.h"
 #include "core/numerics/angles.h"
 #include "core/report/result_table.h"
+#include "core/report/sensor_pose.h"
 #include "core/report/shown_quantity.h"
 #include "core/report/truth_comparison.h"
 
@@ -30,10 +31,9 @@ QString shownUnit(const std::string& unit) {
   return QString::fromStdString(unit).replace("^2", QChar(0xb2));
 }
 
-// "Accelerometer delay against the gyroscope", "Gyroscope scale xx", "Focal length x".
+// "Accelerometer delay", "Gyroscope scale xx", "Focal length x".
 QString nameOf(const ShownQuantity& quantity, const ShownNumber& number) {
   QString name = QObject::tr(quantity.info->title);
-  if (const QString remark = QObject::tr(quantity.info->remark); !remark.isEmpty()) name += " " + remark;
   if (quantity.info->shape == QuantityShape::UpperTriangle)
     name += " " + (isScale(number) ? QObject::tr("scale") : QObject::tr("misalignment"));
   const QString part = QString::fromStdString(number.part);
@@ -54,13 +54,16 @@ void addQuantity(const ShownQuantity& quantity, const Eigen::Quaterniond& rotati
                           shownUnit(number.unit),
                           number.value,
                           number.sigma,
-                          {}});
+                          {},
+                          {},
+                          QObject::tr(quantity.info->remark)});
   }
   if (quantity.info->shape != QuantityShape::Rotation) return;
   const Eigen::Vector3d angles_deg = rollPitchYaw_deg(rotation);
+  const QString warning = QString::fromStdString(anglesWarning(angles_deg));
   const QString names[] = {QObject::tr("Roll"), QObject::tr("Pitch"), QObject::tr("Yaw")};
   for (int axis = 0; axis < 3; ++axis)
-    group.rows.push_back({{}, names[axis], "deg", angles_deg[axis], 0.0, {}});
+    group.rows.push_back({{}, names[axis], "deg", angles_deg[axis], 0.0, {}, warning});
 }
 
 ParameterGroup cameraGroup(const NamedResult& named, std::size_t i) {
@@ -143,6 +146,25 @@ std::vector<ParameterGroup> parameterGroups(const NamedResult& named) {
     if (ParameterGroup board = boardGroup(named, i); !board.rows.empty()) groups.push_back(std::move(board));
   if (!named.result->state.imus.empty()) groups.push_back(gravityGroup(named));
   return groups;
+}
+
+QString tabbedText(const std::vector<ParameterGroup>& groups) {
+  bool compared = false;
+  for (const ParameterGroup& group : groups)
+    for (const ParameterRow& row : group.rows) compared = compared || row.difference;
+  QStringList header = {QObject::tr("name"), QObject::tr("value"), QObject::tr("sigma"), QObject::tr("unit")};
+  if (compared) header << QObject::tr("difference") << QObject::tr("difference in sigmas");
+  QString text = header.join('\t') + '\n';
+  for (const ParameterGroup& group : groups) {
+    for (const ParameterRow& row : group.rows) {
+      const QString detail = row.detail.isEmpty() ? QString() : " " + row.detail;
+      QStringList cells = {group.title + ": " + row.name + detail, row.valueText(), row.sigmaText(),
+                           row.unit};
+      if (compared) cells << row.differenceText() << row.sigmasText();
+      text += cells.join('\t') + '\n';
+    }
+  }
+  return text;
 }
 
 void compare(std::vector<ParameterGroup>& groups, const NamedResult& named, const NamedResult& other) {

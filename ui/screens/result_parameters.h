@@ -18,6 +18,8 @@ struct ParameterRow {
   double value = 0.0;
   double sigma = 0.0;                // 0: not estimated
   std::optional<double> difference;  // this minus the other, same unit
+  QString remark = {};               // what to know before the value is used
+  QString detail = {};               // behind the unit: "against the gyroscope"
 
   // As many decimals as the sigma's second digit.
   QString valueText() const;
@@ -32,6 +34,10 @@ struct ParameterGroup {
 };
 
 std::vector<ParameterGroup> parameterGroups(const NamedResult& named);
+
+// With tabulators, for spreadsheets: a line a row below a header of name, value, sigma and unit, and the differences
+// where there are any. Names begin with their group's title.
+QString tabbedText(const std::vector<ParameterGroup>& groups);
 
 // Fills in the differences. Throws CalibrationError if the two don't name the same sensors.
 void compare(std::vector<ParameterGroup>& groups, const NamedResult& named, const NamedResult& other);

@@ -5,28 +5,26 @@
 #include "ui/forms/repair_button.h"
 #include "ui/screens/correlation_view.h"
 #include "ui/screens/observability_view.h"
+#include "ui/screens/pose_panel.h"
+#include "ui/screens/quantity_table.h"
 #include "ui/screens/result_parameters.h"
+#include "ui/screens/verdict_icon.h"
 #include "ui/theme/theme.h"
 
 #include <QComboBox>
 #include <QEvent>
 #include <QHBoxLayout>
-#include <QHeaderView>
 #include <QLabel>
 #include <QListWidget>
 #include <QPushButton>
+#include <QScrollArea>
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QTabWidget>
-#include <QTreeWidget>
 #include <QVBoxLayout>
-
-#include <array>
 
 namespace evical::ui {
 namespace {
-
-enum Column { kQuantity, kValue, kSigma, kUnit, kDifference, kSigmas, kColumns };
 
 QLabel* label(const char* role, QWidget* parent) {
   auto* const made = new QLabel(parent);
@@ -76,63 +74,13 @@ QWidget* explained(QLabel* text, QWidget* picture, QWidget* parent) {
   return page;
 }
 
-QTreeWidgetItem* treeItem(const ParameterRow& row) {
-  auto* const item = new QTreeWidgetItem(
-      {row.name, row.valueText(), row.sigmaText(), row.unit, row.differenceText(), row.sigmasText()});
-  for (const int column : {kValue, kSigma, kDifference, kSigmas})
-    item->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
-  constexpr double kFar = 3.0;
-  if (row.difference && row.sigma > 0.0 && std::abs(*row.difference) > kFar * row.sigma)
-    item->setForeground(kSigmas, theme().warning);
-  return item;
-}
-
-// By the texts: a header that resizes to contents asks the style for each item's size, at every layout.
-void fitColumns(QTreeWidget& tree, const std::vector<ParameterGroup>& groups) {
-  const QFontMetrics metrics(tree.font());
-  const int margin_px = 2 * metrics.horizontalAdvance('0');
-  std::array<int, kColumns> widths_px{};
-  const auto widen = [&](int column, const QString& text) {
-    int& width_px = widths_px[static_cast<std::size_t>(column)];
-    width_px = std::max(width_px, metrics.horizontalAdvance(text) + margin_px);
-  };
-  for (const ParameterGroup& group : groups) {
-    for (const ParameterRow& row : group.rows) {
-      widen(kValue, row.valueText());
-      widen(kSigma, row.sigmaText());
-      widen(kUnit, row.unit);
-      widen(kDifference, row.differenceText());
-      widen(kSigmas, row.sigmasText());
-    }
-  }
-  for (int column = kValue; column < kColumns; ++column) {
-    widen(column, tree.headerItem()->text(column));
-    tree.setColumnWidth(column, widths_px[static_cast<std::size_t>(column)]);
-  }
-}
-
-// All at once: a tree that grows item by item measures its columns each time.
-void fillTree(QTreeWidget& tree, const std::vector<ParameterGroup>& groups) {
-  QList<QTreeWidgetItem*> headings;
-  for (const ParameterGroup& group : groups) {
-    auto* const heading = new QTreeWidgetItem({group.title});
-    QFont bold = tree.font();
-    bold.setWeight(QFont::DemiBold);
-    heading->setFont(0, bold);
-    for (const ParameterRow& row : group.rows) heading->addChild(treeItem(row));
-    headings << heading;
-  }
-  tree.clear();
-  tree.addTopLevelItems(headings);
-  for (QTreeWidgetItem* const heading : headings) heading->setFirstColumnSpanned(true);
-  tree.expandAll();
-}
-
 }  // namespace
 
 ResultScreen::ResultScreen(QWidget* parent)
     : QWidget(parent),
       stack_(new QStackedWidget(this)),
+      none_yet_(label("heading", this)),
+      calibrate_(new QPushButton(icon("calibrate"), tr("Calibrate"), this)),
       icon_(new QLabel(this)),
       verdict_(label("title", this)),
       reason_(label("", this)),
@@ -143,7 +91,8 @@ ResultScreen::ResultScreen(QWidget* parent)
       pairs_(label("hint", this)),
       repair_(new RepairButton(this)),
       against_(new QComboBox(this)),
-      parameters_(new QTreeWidget(this)),
+      parameters_(new QuantityTable(this)),
+      pose_(new PosePanel(this)),
       observability_(new ObservabilityView(this)),
       correlation_(new CorrelationView(this)),
       notes_(new QListWidget(this)) {
@@ -158,16 +107,20 @@ ResultScreen::ResultScreen(QWidget* parent)
 QWidget* ResultScreen::makeEmpty() {
   auto* const empty = new QWidget(this);
   auto* const layout = new QVBoxLayout(empty);
-  auto* const text = label("heading", empty);
-  text->setText(tr("No calibration yet: press Calibrate."));
-  text->setAlignment(Qt::AlignCenter);
-  auto* const start = new QPushButton(icon("calibrate"), tr("Calibrate"), empty);
-  connect(start, &QPushButton::clicked, this, &ResultScreen::calibrateRequested);
+  none_yet_->setAlignment(Qt::AlignCenter);
+  connect(calibrate_, &QPushButton::clicked, this, &ResultScreen::calibrateRequested);
   layout->addStretch();
-  layout->addWidget(text);
-  layout->addWidget(start, 0, Qt::AlignHCenter);
+  layout->addWidget(none_yet_);
+  layout->addWidget(calibrate_, 0, Qt::AlignHCenter);
   layout->addStretch();
+  setCalibrating(false);
   return empty;
+}
+
+void ResultScreen::setCalibrating(bool calibrating) {
+  none_yet_->setText(calibrating ? tr("Calibrating: the result is shown here when the run is done.")
+                                 : tr("No calibration yet: press Calibrate."));
+  calibrate_->setVisible(!calibrating);
 }
 
 QWidget* ResultScreen::makeHeader() {
@@ -202,7 +155,12 @@ QWidget* ResultScreen::makeSides() {
   auto* const sides = new QTabWidget(this);
   sides->setDocumentMode(true);
   sides->tabBar()->setDrawBase(false);
-  sides->addTab(explained(observed_, observability_, sides), tr("Observability"));
+  sides->addTab(pose_, tr("Pose"));
+  auto* const bars = new QScrollArea(sides);
+  bars->setWidget(observability_);
+  bars->setWidgetResizable(true);
+  bars->setFrameShape(QFrame::NoFrame);
+  sides->addTab(explained(observed_, bars, sides), tr("Observability"));
   sides->addTab(explained(pairs_, correlation_, sides), tr("Correlation"));
   sides->addTab(notes_, tr("Notes"));
   notes_->setWordWrap(true);
@@ -214,26 +172,14 @@ QWidget* ResultScreen::makeContent() {
   auto* const content = new QWidget(this);
   auto* const left = new QWidget(content);
   auto* const bar = new QHBoxLayout;
+  against_->setObjectName("against");
   auto* const load = new QPushButton(icon("open"), tr("Load..."), left);
   load->setToolTip(tr("Compare with a result.yaml or truth.yaml"));
   connect(load, &QPushButton::clicked, this, &ResultScreen::referenceRequested);
   bar->addWidget(new QLabel(tr("Compare with"), left));
   bar->addWidget(against_, 1);
   bar->addWidget(load);
-  parameters_->setColumnCount(kColumns);
-  parameters_->setHeaderLabels({tr("Quantity"), tr("Value"), QString(QChar(0xb1)), tr("Unit"),
-                                tr("Difference"), tr("in %1").arg(QChar(0x3c3))});
-  parameters_->setSelectionMode(QAbstractItemView::ExtendedSelection);
-  parameters_->setUniformRowHeights(true);
-  parameters_->setIndentation(12);
-  parameters_->header()->setSectionResizeMode(QHeaderView::Interactive);
-  parameters_->header()->setStretchLastSection(false);
-  parameters_->header()->setSectionResizeMode(kQuantity, QHeaderView::Stretch);
-  for (const int column : {kValue, kSigma, kDifference, kSigmas})
-    parameters_->headerItem()->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
-  parameters_->headerItem()->setToolTip(kSigma, tr("Standard deviation"));
-  parameters_->headerItem()->setToolTip(kSigmas, tr("The difference against the standard deviation"));
-  parameters_->setAccessibleName(tr("Calibrated quantities"));
+  parameters_->addToContextMenu(pose_->copyMenu());
   auto* const column = new QVBoxLayout(left);
   column->setContentsMargins(0, 0, 0, 0);
   column->addLayout(bar);
@@ -242,7 +188,8 @@ QWidget* ResultScreen::makeContent() {
   auto* const split = new QSplitter(Qt::Horizontal, content);
   split->addWidget(left);
   split->addWidget(makeSides());
-  split->setSizes({600, 420});
+  split->setSizes({560, 480});
+  split->setChildrenCollapsible(false);
   auto* const layout = new QVBoxLayout(content);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(makeHeader());
@@ -284,6 +231,10 @@ void ResultScreen::setOutdated(bool outdated) {
   outdated_->setVisible(outdated);
 }
 
+QMenu* ResultScreen::copyMenu() const {
+  return pose_->copyMenu();
+}
+
 void ResultScreen::offerComparisons() {
   const QVariant chosen = against_->currentData();
   against_->clear();
@@ -307,10 +258,7 @@ const NamedResult* ResultScreen::compared() const {
 void ResultScreen::showVerdict() {
   const CalibrationResult& result = *result_->result;
   const bool ok = result.status == CalibrationStatus::Ok;
-  const Theme& t = theme();
-  const QColor colour = ok ? t.good : result.status == CalibrationStatus::Doubtful ? t.warning : t.bad;
-  const QString name = ok ? "done" : result.status == CalibrationStatus::Doubtful ? "warning" : "error";
-  icon_->setPixmap(icon(name, colour).pixmap(QSize(34, 34), devicePixelRatioF()));
+  icon_->setPixmap(verdictIcon(result.status).pixmap(QSize(34, 34), devicePixelRatioF()));
   verdict_->setText(verdictWords(result.status));
   reason_->setText(ok ? tr("The recording determines every quantity as well as needed.")
                       : sentence(QString::fromStdString(result.reason)));
@@ -332,16 +280,17 @@ void ResultScreen::showParameters() {
   }
   comparison_->setText(remark);
   comparison_->setVisible(!remark.isEmpty());
-  parameters_->setColumnHidden(kDifference, other == nullptr || !remark.isEmpty());
-  parameters_->setColumnHidden(kSigmas, other == nullptr || !remark.isEmpty());
-  fillTree(*parameters_, groups);
-  fitColumns(*parameters_, groups);
+  parameters_->setGroups(std::move(groups), other != nullptr && remark.isEmpty());
 }
 
 void ResultScreen::showDetails() {
   constexpr int kPairs = 3;
   const UncertaintyReport& report = result_->result->uncertainty;
-  observability_->setObservability(report.observability, QString::fromStdString(report.weakest));
+  pose_->setResult(*result_);
+  QStringList directions;
+  for (const std::string& words : report.directions) directions << QString::fromStdString(words);
+  if (directions.isEmpty()) directions << QString::fromStdString(report.weakest);
+  observability_->setObservability(report.observability, directions);
   observed_->setText(observability_->text());
   QStringList names;
   for (const std::string& name : report.names) names << QString::fromStdString(name);

@@ -12,14 +12,17 @@ class QComboBox;
 
 class QLabel;
 class QListWidget;
+class QPushButton;
 
+class QMenu;
 class QStackedWidget;
-class QTreeWidget;
 
 namespace evical::ui {
 
 class CorrelationView;
 class ObservabilityView;
+class PosePanel;
+class QuantityTable;
 class RepairButton;
 
 class ResultScreen : public QWidget {
@@ -33,7 +36,9 @@ class ResultScreen : public QWidget {
   void setRuns(std::optional<NamedResult> previous, std::optional<NamedResult> result);
   void setPrevious(std::optional<NamedResult> previous);
   void setReference(std::optional<NamedResult> reference, const QString& title);
-  void setOutdated(bool outdated);  // the session is not as it was for this result
+  void setCalibrating(bool calibrating);  // the first one is being made
+  void setOutdated(bool outdated);        // the session is not as it was for this result
+  QMenu* copyMenu() const;                // copies poses; the window's menus show it too
 
  signals:
   void exportRequested();
@@ -61,10 +66,13 @@ class ResultScreen : public QWidget {
   std::optional<NamedResult> result_, previous_, reference_;
   QString reference_title_;
   QStackedWidget* stack_;
+  QLabel* none_yet_;
+  QPushButton* calibrate_;
   QLabel *icon_, *verdict_, *reason_, *fit_, *outdated_, *comparison_, *observed_, *pairs_;
   RepairButton* repair_;
   QComboBox* against_;
-  QTreeWidget* parameters_;
+  QuantityTable* parameters_;
+  PosePanel* pose_;
   ObservabilityView* observability_;
   CorrelationView* correlation_;
   QListWidget* notes_;

@@ -2,51 +2,213 @@
 #include "ui/window/export_dialog.h"
 
 #include "core/report/export/export_target.h"
+#include "ui/theme/theme.h"
 
+#include <QCheckBox>
 #include <QDialogButtonBox>
+#include <QDir>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QHeaderView>
 #include <QLabel>
-#include <QListWidget>
+#include <QLineEdit>
 #include <QPushButton>
+#include <QSettings>
+#include <QTreeWidget>
 #include <QVBoxLayout>
 
 #include <algorithm>
 
 namespace evical::ui {
+namespace {
 
-ExportDialog::ExportDialog(const std::vector<std::string>& chosen, QWidget* parent)
-    : QDialog(parent), list_(new QListWidget(this)) {
-  setWindowTitle(tr("Export the result"));
-  list_->setObjectName("targets");
-  for (const ExportTarget& target : exportTargets()) {
-    const std::string name = target.name;
-    const bool always = name == "kalibr";
-    const QString text = QString::fromUtf8(target.description);
-    auto* const item = new QListWidgetItem(always ? tr("%1 (always)").arg(text) : text, list_);
-    item->setData(Qt::UserRole, QString::fromStdString(name));
-    const bool checked = always || std::find(chosen.begin(), chosen.end(), name) != chosen.end();
-    item->setFlags(always ? Qt::ItemIsUserCheckable : Qt::ItemIsEnabled | Qt::ItemIsUserCheckable);
-    item->setCheckState(checked ? Qt::Checked : Qt::Unchecked);
-  }
-  const int frame_px = 2 * list_->frameWidth();
-  constexpr int kMargins_px = 24;  // the style sheet's, which no hint counts
-  list_->setMinimumSize(list_->sizeHintForColumn(0) + frame_px + kMargins_px,
-                        list_->count() * list_->sizeHintForRow(0) + frame_px + kMargins_px);
-  auto* const buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel, this);
-  buttons->button(QDialogButtonBox::Ok)->setText(tr("&Choose a folder..."));
-  connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
-  connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
-  auto* const layout = new QVBoxLayout(this);
-  layout->addWidget(new QLabel(tr("Besides the result itself, write files for:"), this));
-  layout->addWidget(list_);
-  layout->addWidget(buttons);
+enum Column { kProgram, kUse, kFiles, kColumns };
+
+const char* const kTargetsKey = "export/targets";
+const char* const kCheckKey = "export/check";
+const char* const kAlways = "kalibr";
+
+QPushButton* button(const QString& object_name, const QString& text, const QString& tip, QWidget* parent) {
+  auto* const made = new QPushButton(text, parent);
+  made->setObjectName(object_name);
+  made->setToolTip(tip);
+  made->setAutoDefault(false);
+  return made;
 }
 
-std::vector<std::string> ExportDialog::chosen() const {
-  std::vector<std::string> names;
-  for (int row = 0; row < list_->count(); ++row)
-    if (list_->item(row)->checkState() == Qt::Checked)
-      names.push_back(list_->item(row)->data(Qt::UserRole).toString().toStdString());
-  return names;
+}  // namespace
+
+QString newExportFolder(const QString& recording) {
+  const QFileInfo info(recording);
+  const QString beside = info.absolutePath();
+  const QDir folder(QFileInfo(beside).isWritable() ? beside : QDir::homePath());
+  const QString stem = info.isDir() ? info.fileName() : info.completeBaseName();
+  const QString name = stem.isEmpty() ? QString("calibration") : stem + "_calibration";
+  QString free = name;
+  for (int number = 2; folder.exists(free); ++number) free = QString("%1_%2").arg(name).arg(number);
+  return folder.filePath(free);
+}
+
+ExportRequest proposedExport(const Session& session) {
+  const QSettings settings;
+  ExportRequest request;
+  request.folder = newExportFolder(QString::fromStdString(session.recording.string()));
+  request.targets = session.exports;
+  if (request.targets.empty())
+    for (const QString& name : settings.value(kTargetsKey).toStringList())
+      request.targets.push_back(name.toStdString());
+  request.check = settings.value(kCheckKey, false).toBool();
+  return request;
+}
+
+void rememberExport(const ExportRequest& request) {
+  QStringList names;
+  for (const std::string& name : request.targets) names << QString::fromStdString(name);
+  QSettings settings;
+  settings.setValue(kTargetsKey, names);
+  settings.setValue(kCheckKey, request.check);
+}
+
+ExportDialog::ExportDialog(const ExportRequest& proposal, QWidget* parent)
+    : QDialog(parent),
+      folder_(new QLineEdit(QDir::toNativeSeparators(proposal.folder), this)),
+      hint_(new QLabel(this)),
+      targets_(new QTreeWidget(this)),
+      check_(new QCheckBox(tr("&Read the files back as those programs do, and compare them with the result"),
+                           this)) {
+  setWindowTitle(tr("Export the result"));
+  check_->setObjectName("check");
+  check_->setChecked(proposal.check);
+  check_->setToolTip(
+      tr("Finds out whether each program would take its files, and take the same numbers from them"));
+  auto* const buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel, this);
+  ok_ = buttons->button(QDialogButtonBox::Ok);
+  ok_->setText(tr("&Export"));
+  ok_->setToolTip(tr("Write all files to the folder"));
+  buttons->button(QDialogButtonBox::Cancel)->setToolTip(tr("Write nothing"));
+  connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
+  connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+  fillTargets(proposal.targets);
+  auto* const what =
+      new QLabel(tr("The result, its report and tables are always written. Besides them, files for:"), this);
+  auto* const layout = new QVBoxLayout(this);
+  layout->addWidget(makeFolderRow());
+  layout->addWidget(hint_);
+  layout->addSpacing(6);
+  layout->addWidget(what);
+  layout->addWidget(targets_, 1);
+  layout->addWidget(makeSelectionRow());
+  layout->addWidget(check_);
+  layout->addWidget(buttons);
+  constexpr int kWidth_px = 860, kHeight_px = 600;
+  resize(kWidth_px, kHeight_px);
+  judgeFolder();
+}
+
+QWidget* ExportDialog::makeFolderRow() {
+  auto* const row = new QWidget(this);
+  auto* const layout = new QHBoxLayout(row);
+  layout->setContentsMargins(0, 0, 0, 0);
+  auto* const label = new QLabel(tr("&To the folder"), row);
+  label->setBuddy(folder_);
+  folder_->setObjectName("folder");
+  folder_->setAccessibleName(tr("Folder to export to"));
+  folder_->setToolTip(tr("Where the files go; the folder is made where it is not there yet"));
+  hint_->setObjectName("folder_hint");
+  hint_->setProperty("role", "hint");
+  QPushButton* const choose =
+      button("choose_folder", tr("&Choose..."), tr("Choose a folder that is there already"), row);
+  connect(choose, &QPushButton::clicked, this, &ExportDialog::chooseFolder);
+  connect(folder_, &QLineEdit::textChanged, this, &ExportDialog::judgeFolder);
+  layout->addWidget(label);
+  layout->addWidget(folder_, 1);
+  layout->addWidget(choose);
+  return row;
+}
+
+QWidget* ExportDialog::makeSelectionRow() {
+  auto* const row = new QWidget(this);
+  auto* const layout = new QHBoxLayout(row);
+  layout->setContentsMargins(0, 0, 0, 0);
+  const auto add = [&](const char* name, const QString& text, const QString& tip, Selection selection) {
+    QPushButton* const made = button(name, text, tip, row);
+    connect(made, &QPushButton::clicked, this, [this, selection] { select(selection); });
+    layout->addWidget(made);
+  };
+  add("select_all", tr("Select &all"), tr("Files for every program; those that cannot hold this rig say so"),
+      Selection::All);
+  add("select_odometry", tr("What &VIO needs"),
+      tr("Files for programs that estimate motion from cameras and an IMU"), Selection::Odometry);
+  add("select_none", tr("&None"), tr("Only what is always written"), Selection::None);
+  layout->addStretch();
+  return row;
+}
+
+void ExportDialog::fillTargets(const std::vector<std::string>& chosen) {
+  targets_->setObjectName("targets");
+  targets_->setAccessibleName(tr("Programs to write files for"));
+  targets_->setColumnCount(kColumns);
+  targets_->setHeaderLabels({tr("Program"), tr("For"), tr("Files")});
+  targets_->setRootIsDecorated(false);
+  targets_->setUniformRowHeights(true);
+  for (const ExportTarget& target : exportTargets()) {
+    const std::string name = target.name;
+    const bool always = name == kAlways;
+    const QString description = QString::fromUtf8(target.description);
+    const QString program = description.section(": ", 0, 0), files = description.section(": ", 1);
+    const QString use = target.inertial_odometry ? tr("VIO - %1").arg(tr(target.use)) : tr(target.use);
+    auto* const item =
+        new QTreeWidgetItem(targets_, {always ? tr("%1 (always)").arg(program) : program, use, files});
+    item->setData(kProgram, Qt::UserRole, QString::fromStdString(name));
+    item->setData(kUse, Qt::UserRole, target.inertial_odometry);
+    if (target.inertial_odometry) item->setForeground(kUse, theme().accent);
+    for (int column = 0; column < kColumns; ++column) item->setToolTip(column, tr(target.use) + "\n" + files);
+    const bool checked = always || std::find(chosen.begin(), chosen.end(), name) != chosen.end();
+    item->setFlags(always ? Qt::ItemIsEnabled | Qt::ItemIsSelectable
+                          : Qt::ItemIsEnabled | Qt::ItemIsSelectable | Qt::ItemIsUserCheckable);
+    item->setCheckState(kProgram, checked ? Qt::Checked : Qt::Unchecked);
+  }
+  for (const int column : {kProgram, kUse}) targets_->resizeColumnToContents(column);
+}
+
+void ExportDialog::select(Selection selection) {
+  for (int row = 0; row < targets_->topLevelItemCount(); ++row) {
+    QTreeWidgetItem* const item = targets_->topLevelItem(row);
+    const bool wanted = selection == Selection::All ||
+                        (selection == Selection::Odometry && item->data(kUse, Qt::UserRole).toBool()) ||
+                        item->data(kProgram, Qt::UserRole).toString() == kAlways;
+    item->setCheckState(kProgram, wanted ? Qt::Checked : Qt::Unchecked);
+  }
+}
+
+void ExportDialog::chooseFolder() {
+  const QString start = QFileInfo(folder_->text()).absolutePath();
+  const QString folder = QFileDialog::getExistingDirectory(this, tr("Export the result to a folder"), start);
+  if (!folder.isEmpty()) folder_->setText(QDir::toNativeSeparators(folder));
+}
+
+void ExportDialog::judgeFolder() {
+  const QString text = folder_->text().trimmed();
+  const QFileInfo info(text);
+  const bool usable = !text.isEmpty() && info.isAbsolute() && (!info.exists() || info.isDir());
+  ok_->setEnabled(usable);
+  if (text.isEmpty()) return hint_->setText(tr("Give a folder."));
+  if (!info.isAbsolute()) return hint_->setText(tr("Give the folder's whole path, or choose it."));
+  if (info.exists() && !info.isDir()) return hint_->setText(tr("This is a file: give a folder."));
+  const bool has_files = info.exists() && !QDir(text).isEmpty();
+  hint_->setText(has_files       ? tr("There are files in this folder: those of the same names are replaced.")
+                 : info.exists() ? tr("This folder is there, and empty.")
+                                 : tr("This folder is new: it is made."));
+}
+
+ExportRequest ExportDialog::request() const {
+  ExportRequest request{QDir::fromNativeSeparators(folder_->text().trimmed()), {}, check_->isChecked()};
+  for (int row = 0; row < targets_->topLevelItemCount(); ++row) {
+    const QTreeWidgetItem* const item = targets_->topLevelItem(row);
+    if (item->checkState(kProgram) == Qt::Checked)
+      request.targets.push_back(item->data(kProgram, Qt::UserRole).toString().toStdString());
+  }
+  return request;
 }
 
 }  // namespace evical::ui

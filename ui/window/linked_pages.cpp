@@ -7,6 +7,7 @@
 #include "ui/plots/residuals_screen.h"
 #include "ui/plots/signals_screen.h"
 #include "ui/scene/trajectory_screen.h"
+#include "ui/screens/result_screen.h"
 #include "ui/window/pages.h"
 #include "ui/window/workbench.h"
 
@@ -99,6 +100,13 @@ void wireResiduals(ResidualsScreen& screen, Workbench& workbench) {
                    });
 }
 
+// What says "press Calibrate" says so only while one can.
+template <class... Screen>
+void tellOfRuns(const CalibrationJob& job, Screen*... screen) {
+  (QObject::connect(&job, &CalibrationJob::started, screen, [screen] { screen->setCalibrating(true); }), ...);
+  (QObject::connect(&job, &CalibrationJob::ended, screen, [screen] { screen->setCalibrating(false); }), ...);
+}
+
 // One cursor: a time that is chosen on one screen is shown on the others.
 template <class From, class... To>
 void linkTime(From* from, To*... to) {
@@ -113,6 +121,7 @@ void wireLinkedPages(const Pages& pages, Workbench& workbench) {
   wireConvergence(*pages.convergence, workbench);
   wireResiduals(*pages.residuals, workbench);
   showRuns(*pages.signal_curves, workbench.document);
+  tellOfRuns(workbench.calibration, pages.result, pages.signal_curves, pages.residuals);
   // While it ran, the detection screen may have followed it.
   QObject::connect(&workbench.calibration, &CalibrationJob::ended, pages.trajectory, [pages] {
     const double time_s = pages.detection->time_s();

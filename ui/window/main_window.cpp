@@ -2,22 +2,28 @@
 #include "ui/window/main_window.h"
 
 #include "core/base/error.h"
+#include "core/pipeline/idle_options.h"
 #include "ui/forms/option_form.h"
+#include "ui/forms/session_undo_keys.h"
 #include "ui/screens/result_screen.h"
+#include "ui/screens/verdict_icon.h"
 #include "ui/theme/theme.h"
 #include "ui/window/after_turns.h"
 #include "ui/window/error_panel.h"
+#include "ui/window/export_notice.h"
 #include "ui/window/job_status.h"
 #include "ui/window/log_panel.h"
 #include "ui/window/session_files.h"
 #include "ui/window/steps_panel.h"
 
 #include <QAction>
+#include <QApplication>
 #include <QCloseEvent>
 #include <QDockWidget>
 #include <QDropEvent>
 #include <QListWidget>
 #include <QMimeData>
+#include <QScreen>
 #include <QSettings>
 #include <QSplitter>
 #include <QStackedWidget>
@@ -38,6 +44,7 @@ constexpr int kLayoutVersion = 1;
 MainWindow::MainWindow(const QString& version)
     : workbench_(version), files_(new SessionFiles(workbench_, this)) {
   setAcceptDrops(true);
+  qApp->installEventFilter(new SessionUndoKeys(this));
   makeCentre();
   makeDocks();
   makeActions();
@@ -60,10 +67,12 @@ void MainWindow::makeCentre() {
   entries_ = buildPages(pages_, stack_);
   for (const PageEntry& entry : entries_) stack_->addWidget(entry.widget);
   error_ = new ErrorPanel(this);
+  exported_ = new ExportNotice(this);
   auto* const pages = new QWidget(this);
   auto* const column = new QVBoxLayout(pages);
   column->setContentsMargins(8, 8, 8, 8);
   column->addWidget(error_);
+  column->addWidget(exported_);
   column->addWidget(stack_, 1);
   auto* const row = new QWidget(this);
   auto* const layout = new QHBoxLayout(row);
@@ -88,6 +97,8 @@ QWidget* MainWindow::makeSideBar() {
   }
   navigation_->setFixedHeight(static_cast<int>(entries_.size()) * (kEntry_px + 2) + 16);
   connect(navigation_, &QListWidget::currentRowChanged, this, &MainWindow::turnTo);
+  // By the mouse, not by the list's arrow keys, which go on to the next.
+  connect(navigation_, &QListWidget::clicked, this, [this] { stack_->currentWidget()->setFocus(); });
   steps_ = new StepsPanel(this);
   auto* const bar = new QFrame(this);
   bar->setObjectName("sidebar");
@@ -151,6 +162,7 @@ void MainWindow::wireDocument() {
   connect(&workbench_.document, &CalibrationDocument::sessionReplaced, this, [this] {
     steps_->reset();
     error_->dismiss();
+    exported_->hide();
   });
   connect(pages_.result, &ResultScreen::calibrateRequested, this, &MainWindow::calibrate);
   connect(pages_.result, &ResultScreen::repairRequested, this, &MainWindow::repair);
@@ -160,14 +172,24 @@ void MainWindow::wireDocument() {
     error_->dismiss();
     if (stack_->currentIndex() == 0) showScreen("recording");
   });
-  connect(files_, &SessionFiles::exported, this, [this](const QString& folder) {
-    log_->add({LogLevel::Info, 0.0, tr("The result was exported to %1").arg(folder)});
+  connect(files_, &SessionFiles::exported, this, [this](const ExportOutcome& outcome) {
+    exported_->showOutcome(outcome);
+    log_->add({LogLevel::Info, 0.0, tr("The result was exported to %1").arg(outcome.folder)});
   });
 }
 
 void MainWindow::wireParameters() {
   CalibrationDocument& document = workbench_.document;
-  const auto show = [this] { parameters_->setRows(optionRows(workbench_.document.session().options)); };
+  const auto show = [this] {
+    const Session& session = workbench_.document.session();
+    const std::vector<OptionRow> rows = optionRows(session.options);
+    std::map<QString, QString> idle;
+    for (const OptionRow& row : rows)
+      if (const std::string why = whyIdle(session, row.name); !why.empty())
+        idle[QString::fromStdString(row.name)] = QString::fromStdString(why);
+    parameters_->setRows(rows);
+    parameters_->setIdle(workbench_.document.hasSession() ? idle : std::map<QString, QString>());
+  };
   connect(&document, &CalibrationDocument::sessionChanged, parameters_, show);
   connect(parameters_, &OptionForm::resetAllRequested, &document, &CalibrationDocument::resetOptions);
   connect(parameters_, &OptionForm::edited, this, [this](const QString& name, const QString& value) {
@@ -184,6 +206,7 @@ void MainWindow::wireJobs() {
   JobRunner& runner = workbench_.runner;
   connect(&runner, &JobRunner::started, this, [this](const QString& title) {
     error_->dismiss();
+    exported_->hide();
     log_->addHeading(title);
     showState();
   });
@@ -191,7 +214,9 @@ void MainWindow::wireJobs() {
   connect(&runner, &JobRunner::failed, this, [this](const JobError& error) {
     showProblem(tr("%1 failed").arg(workbench_.runner.title()), error);
   });
-  connect(&runner, &JobRunner::finished, this, [this] {
+  connect(&runner, &JobRunner::finished, this, [this](JobOutcome outcome) {
+    if (outcome == JobOutcome::Cancelled)
+      log_->add({LogLevel::Warning, 0.0, tr("%1: cancelled").arg(workbench_.runner.title())});
     showState();
     if (close_when_idle_) close();
   });
@@ -282,6 +307,7 @@ void MainWindow::showState() {
   actions_.cancel->setVisible(running);
   actions_.cancel->setEnabled(running && !workbench_.runner.cancelling());
   for (QAction* const action : {actions_.open_session, actions_.open_recording}) action->setEnabled(!running);
+  showVerdictBadge();
   actions_.save->setEnabled(document.modified());
   actions_.save_as->setEnabled(document.hasSession());
   const bool has_result = document.last().run != nullptr;
@@ -291,10 +317,23 @@ void MainWindow::showState() {
                                          : tr("There is no result yet, so no report: press Calibrate"));
 }
 
+// Beside the Result page's name, by colour and shape: whoever watches another page sees how it ended.
+void MainWindow::showVerdictBadge() {
+  const qsizetype row = screenNames().indexOf("result");
+  QListWidgetItem& item = *navigation_->item(static_cast<int>(row));
+  const QString& title = entries_[static_cast<std::size_t>(row)].title;
+  const std::shared_ptr<const CalibrationRun>& run = workbench_.document.last().run;
+  item.setIcon(run ? verdictIcon(run->result.status)
+                   : icon(entries_[static_cast<std::size_t>(row)].icon_name));
+  item.setText(run ? tr("%1: %2").arg(title, QString::fromLatin1(statusName(run->result.status))) : title);
+}
+
 void MainWindow::restoreLayout() {
   constexpr int kWidth_px = 1280, kHeight_px = 800;
   const QSettings settings;
-  resize(kWidth_px, kHeight_px);
+  constexpr int kFrame_px = 48;  // a title bar that isn't drawn yet
+  const QSize free = screen()->availableGeometry().size() - QSize(0, kFrame_px);
+  resize(QSize(kWidth_px, kHeight_px).boundedTo(free));
   constexpr int kLog_px = 190, kParameters_px = 320;
   resizeDocks({log_dock_}, {kLog_px}, Qt::Vertical);
   resizeDocks({parameters_dock_}, {kParameters_px}, Qt::Horizontal);

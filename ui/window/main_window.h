@@ -16,6 +16,7 @@ class QStackedWidget;
 namespace evical::ui {
 
 class ErrorPanel;
+class ExportNotice;
 class LogPanel;
 class OptionForm;
 class SessionFiles;
@@ -63,6 +64,7 @@ class MainWindow : public QMainWindow {
   void bringUpResult();
   void wireSteps();
   void showState();
+  void showVerdictBadge();
   void showProblem(const QString& what_was_tried, const JobError& error);
   void restoreLayout();
   void saveLayout();
@@ -75,6 +77,7 @@ class MainWindow : public QMainWindow {
   QStackedWidget* stack_ = nullptr;
   StepsPanel* steps_ = nullptr;
   ErrorPanel* error_ = nullptr;
+  ExportNotice* exported_ = nullptr;
   LogPanel* log_ = nullptr;
   OptionForm* parameters_ = nullptr;
   QDockWidget *log_dock_ = nullptr, *parameters_dock_ = nullptr;
@@ -82,7 +85,7 @@ class MainWindow : public QMainWindow {
     QAction *open_session, *open_recording, *save, *save_as, *export_result, *export_every, *report, *quit;
     QAction *undo, *redo;
     QAction *calibrate, *cancel;
-    QAction *guide, *about;
+    QAction *guide, *keys, *about;
   } actions_{};
   bool close_when_idle_ = false;
   bool result_is_due_ = false;  // unless another screen is chosen

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/result_screen.h"
 #include "ui/theme/theme.h"
+#include "ui/window/about.h"
 #include "ui/window/main_window.h"
 #include "ui/window/print_board.h"
 #include "ui/window/recording_check.h"
@@ -96,7 +98,10 @@ void MainWindow::makeEditMenu() {
   actions_.redo = stack.createRedoAction(this, tr("&Redo"));
   actions_.redo->setIcon(icon("redo"));
   actions_.redo->setShortcuts({QKeySequence("Ctrl+Shift+Z"), QKeySequence("Ctrl+Y")});
-  menuBar()->addMenu(tr("&Edit"))->addActions({actions_.undo, actions_.redo});
+  QMenu* const menu = menuBar()->addMenu(tr("&Edit"));
+  menu->addActions({actions_.undo, actions_.redo});
+  menu->addSeparator();
+  menu->addAction(pages_.result->copyMenu()->menuAction());
 }
 
 void MainWindow::makeCalibrateMenu() {
@@ -118,7 +123,10 @@ void MainWindow::makeViewMenu() {
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     QAction* const action = menu->addAction(icon(entries_[i].icon_name), entries_[i].title);
     action->setShortcut(QKeySequence(QString("Ctrl+%1").arg(i + 1)));
-    connect(action, &QAction::triggered, this, [this, name = entries_[i].name] { showScreen(name); });
+    connect(action, &QAction::triggered, this, [this, name = entries_[i].name] {
+      showScreen(name);
+      stack_->currentWidget()->setFocus();
+    });
   }
   menu->addSeparator();
   QAction* const parameters = parameters_dock_->toggleViewAction();
@@ -149,13 +157,15 @@ void MainWindow::makeViewMenu() {
 
 void MainWindow::makeHelpMenu() {
   actions_.guide = makeAction(this, "book", tr("&User guide"), tr("User guide"), QKeySequence::HelpContents);
+  actions_.keys = makeAction(this, "keyboard", tr("&Keyboard"), tr("All keys"), QKeySequence("?"));
+  connect(actions_.keys, &QAction::triggered, this, [this] { showKeys(this); });
   actions_.about = makeAction(this, "info", tr("&About Evical"), tr("About Evical"), {});
   connect(actions_.guide, &QAction::triggered, this, [this] { showUserGuide(this); });
   connect(actions_.about, &QAction::triggered, this, [this] { showAbout(this, workbench_.version); });
   QAction* const how =
       makeAction(this, "play", tr("How to &record..."), tr("The motions that a recording needs"), {});
   connect(how, &QAction::triggered, this, [this] { showHowToRecord(this); });
-  menuBar()->addMenu(tr("&Help"))->addActions({actions_.guide, how, actions_.about});
+  menuBar()->addMenu(tr("&Help"))->addActions({actions_.guide, actions_.keys, how, actions_.about});
 }
 
 void MainWindow::makeToolBar() {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/session_files.h"
 
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/new_folder.h"
 #include "core/pipeline/result_files.h"
 #include "core/pipeline/session_guess.h"
 #include "core/pipeline/simulation.h"
+#include "core/report/export/export_target.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "ui/document/printed_board.h"
-#include "ui/window/export_dialog.h"
 
 #include <QDesktopServices>
 #include <QDir>
@@ -61,6 +61,33 @@ Scenario demoScenario() {
   for (const char* const name : {"davis346.yaml", "davis346_10s.yaml"})
     QFile::copy(QString(":/demo/") + name, folder.filePath(name));
   return readScenario(folder.filePath("davis346_10s.yaml").toStdString());
+}
+
+// "Kalibr", as the list of targets has it.
+QString programOf(const std::string& target) {
+  return QString::fromUtf8(exportTarget(target, {}).description).section(": ", 0, 0);
+}
+
+// The job's part. A folder that was made for it goes away again where nothing came of it.
+ExportOutcome exportRun(const RunRecord& record, const ExportRequest& request, const QString& version,
+                        const RunContext& context) {
+  const std::filesystem::path folder = request.folder.toStdString();
+  const NewFolder made(folder);
+  const ExportRemarks remarks =
+      writeResultFiles(folder, record.session, record.run, version.toStdString(), record.log.toStdString());
+  for (const std::string& note : remarks.notes) context.progress.log(LogLevel::Info, note);
+  ExportOutcome outcome{request.folder, {}, {}, request.check, {}};
+  for (const std::string& target : remarks.targets) outcome.programs << programOf(target);
+  for (const std::string& text : remarks.refused) {
+    context.progress.log(LogLevel::Warning, text);
+    outcome.refused << QString::fromStdString(text);
+  }
+  if (!request.check) return outcome;
+  for (const ExportCheck& check : checkExports(folder, remarks.targets, context.stop)) {
+    context.progress.log(check.same ? LogLevel::Info : LogLevel::Warning, check.text);
+    if (!check.same) outcome.differing << QString::fromStdString(check.text);
+  }
+  return outcome;
 }
 
 }  // namespace
@@ -281,42 +308,34 @@ void SessionFiles::chooseReference() {
 }
 
 void SessionFiles::chooseExportFolder() {
-  if (!workbench_.document.last().run) return;
-  ExportDialog dialog(export_targets_.value_or(workbench_.document.last().session.exports), window_);
+  const RunRecord& last = workbench_.document.last();
+  if (!last.run) return;
+  ExportRequest proposal = proposedExport(last.session);
+  if (export_targets_) proposal.targets = *export_targets_;
+  ExportDialog dialog(proposal, window_);
   if (dialog.exec() != QDialog::Accepted) return;
-  export_targets_ = dialog.chosen();
-  const QString folder =
-      QFileDialog::getExistingDirectory(window_, tr("Export the result to a folder"), lastFolder());
-  if (!folder.isEmpty()) exportTo(folder);
+  export_targets_ = dialog.request().targets;
+  rememberExport(dialog.request());
+  startExport(dialog.request());
 }
 
 void SessionFiles::exportTo(const QString& folder) {
-  writeResult(tr("Export"), folder, export_targets_.value_or(workbench_.document.last().session.exports),
-              [this, folder](const ExportRemarks& remarks) {
-                QSettings().setValue(kFolderKey, folder);
-                emit exported(folder);
-                QStringList refused;
-                for (const std::string& text : remarks.refused) refused << QString::fromStdString(text);
-                if (!refused.isEmpty())
-                  emit failed(
-                      tr("Not everything was exported"),
-                      {true, {}, refused.join('\n'), tr("Leave these out next time; all else is there")});
-              });
+  startExport({folder, export_targets_.value_or(workbench_.document.last().session.exports)});
 }
 
-void SessionFiles::writeResult(const QString& title, const QString& folder, std::vector<std::string> targets,
-                               const std::function<void(const ExportRemarks&)>& written) {
+void SessionFiles::startExport(const ExportRequest& request) {
+  writeResult(tr("Export"), request, [this](const ExportOutcome& outcome) { emit exported(outcome); });
+}
+
+void SessionFiles::writeResult(const QString& title, const ExportRequest& request,
+                               const std::function<void(const ExportOutcome&)>& written) {
   RunRecord record = workbench_.document.last();
   if (!record.run) return;
-  record.session.exports = std::move(targets);
-  const auto remarks = std::make_shared<ExportRemarks>();  // read here once the job has ended
+  record.session.exports = request.targets;
+  const auto outcome = std::make_shared<ExportOutcome>();  // read here once the job has ended
   const bool begun = workbench_.runner.start(
-      title, {}, [record, folder, remarks, version = workbench_.version](const RunContext& context) {
-        makeOutputFolder(folder.toStdString());
-        *remarks = writeResultFiles(folder.toStdString(), record.session, record.run, version.toStdString(),
-                                    record.log.toStdString());
-        for (const std::string& note : remarks->notes) context.progress.log(LogLevel::Info, note);
-        for (const std::string& text : remarks->refused) context.progress.log(LogLevel::Warning, text);
+      title, {}, [record, request, outcome, version = workbench_.version](const RunContext& context) {
+        *outcome = exportRun(record, request, version, context);
       });
   if (!begun) {
     emit failed(tr("Nothing was written"),
@@ -325,11 +344,11 @@ void SessionFiles::writeResult(const QString& title, const QString& folder, std:
   }
   connect(
       &workbench_.runner, &JobRunner::finished, this,
-      [this, run = record.run, folder, remarks, written](JobOutcome outcome) {
-        if (outcome != JobOutcome::Done) return;
+      [this, run = record.run, folder = request.folder, outcome, written](JobOutcome ended) {
+        if (ended != JobOutcome::Done) return;
         reported_run_ = run;
         report_folder_ = folder;
-        written(*remarks);
+        written(*outcome);
       },
       Qt::SingleShotConnection);
 }
@@ -339,7 +358,7 @@ void SessionFiles::openReport() {
   if (!record.run) return;
   if (reported_run_ == record.run && QFile::exists(QDir(report_folder_).filePath(kReport)))
     return showReport();
-  writeResult(tr("Report"), momentary_.path(), {}, [this](const ExportRemarks&) { showReport(); });
+  writeResult(tr("Report"), {momentary_.path(), {}}, [this](const ExportOutcome&) { showReport(); });
 }
 
 void SessionFiles::showReport() {

@@ -3,6 +3,8 @@
 // unsaved changes, remembers recent files.
 #pragma once
 
+#include "ui/window/export_dialog.h"
+#include "ui/window/export_notice.h"
 #include "ui/window/workbench.h"
 
 #include <QObject>
@@ -16,10 +18,6 @@
 #include <vector>
 
 class QWidget;
-
-namespace evical {
-struct ExportRemarks;
-}
 
 namespace evical::ui {
 
@@ -54,7 +52,7 @@ class SessionFiles : public QObject {
   void opened();
   void recentFilesChanged(const QStringList& files);
   void demoRunning(bool running);
-  void exported(const QString& folder);
+  void exported(const evical::ui::ExportOutcome& outcome);
   void exportsEveryResult(bool does);
   void failed(const QString& what_was_tried, const evical::ui::JobError& error);
 
@@ -70,8 +68,9 @@ class SessionFiles : public QObject {
   QString askForRecording(const QString& title);
   void inspectSession();
   QString lastFolder() const;
-  void writeResult(const QString& title, const QString& folder, std::vector<std::string> targets,
-                   const std::function<void(const ExportRemarks&)>& written);
+  void startExport(const ExportRequest& request);
+  void writeResult(const QString& title, const ExportRequest& request,
+                   const std::function<void(const ExportOutcome&)>& written);
   void showReport();
 
   Workbench& workbench_;

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/user_guide.h"
 
-#include "ui/theme/theme.h"
+#include "ui/window/reading_dialog.h"
 
+#include <QAbstractTextDocumentLayout>
 #include <QDialog>
-#include <QDialogButtonBox>
-#include <QLabel>
+#include <QFile>
+#include <QListWidget>
+#include <QScrollBar>
+#include <QSplitter>
+#include <QTextBlock>
 #include <QTextBrowser>
 #include <QUrl>
 #include <QVBoxLayout>
@@ -13,63 +17,76 @@
 namespace evical::ui {
 namespace {
 
-// Not modal: the guide is read beside the work, and nothing stands in front of a running job.
-QDialog* makeDialog(QWidget* window, const QString& name, const QString& title) {
-  auto* const dialog = new QDialog(window);
-  dialog->setObjectName(name);
-  dialog->setWindowTitle(title);
-  dialog->setAttribute(Qt::WA_DeleteOnClose);
-  new QVBoxLayout(dialog);
-  return dialog;
+constexpr double kMargin_px = 18.0;
+
+QTextBrowser* makeBrowser(const QString& name, QWidget* parent) {
+  auto* const browser = new QTextBrowser(parent);
+  browser->setObjectName(name);
+  browser->setOpenExternalLinks(true);
+  browser->document()->setDocumentMargin(kMargin_px);
+  return browser;
 }
 
-QDialog* opened(QWidget* window, const QString& name) {
-  auto* const dialog = window->findChild<QDialog*>(name);
-  if (dialog == nullptr) return nullptr;
-  dialog->raise();
-  dialog->activateWindow();
-  return dialog;
+void scrollTo(QTextBrowser& browser, int block) {
+  const QTextBlock heading = browser.document()->findBlockByNumber(block);
+  const double top_px = browser.document()->documentLayout()->blockBoundingRect(heading).top();
+  browser.verticalScrollBar()->setValue(static_cast<int>(top_px));
 }
 
-void addCloseButton(QDialog* dialog) {
-  auto* const buttons = new QDialogButtonBox(QDialogButtonBox::Close, dialog);
-  QObject::connect(buttons, &QDialogButtonBox::rejected, dialog, &QDialog::close);
-  dialog->layout()->addWidget(buttons);
+// The guide's parts; a click goes there.
+QListWidget* makeContents(QTextBrowser* browser, QWidget* parent) {
+  auto* const contents = new QListWidget(parent);
+  contents->setObjectName("contents");
+  contents->setAccessibleName(QObject::tr("Contents"));
+  for (QTextBlock block = browser->document()->begin(); block.isValid(); block = block.next()) {
+    const int level = block.blockFormat().headingLevel();
+    if (level < 2) continue;
+    auto* const entry = new QListWidgetItem(block.text(), contents);
+    entry->setData(Qt::UserRole, block.blockNumber());
+  }
+  QObject::connect(contents, &QListWidget::currentItemChanged, browser, [browser](QListWidgetItem* entry) {
+    if (entry != nullptr) scrollTo(*browser, entry->data(Qt::UserRole).toInt());
+  });
+  return contents;
+}
+
+// The part under this heading, up to the next one.
+QString partOfGuide(const QString& heading) {
+  QFile file(":/user_guide.md");
+  if (!file.open(QIODevice::ReadOnly)) return {};
+  const QString all = QString::fromUtf8(file.readAll());
+  const qsizetype begin = all.indexOf("\n## " + heading + '\n');
+  return begin < 0 ? QString() : all.mid(begin, all.indexOf("\n## ", begin + 1) - begin);
 }
 
 }  // namespace
 
 void showUserGuide(QWidget* window) {
-  constexpr int kWidth_px = 760, kHeight_px = 720;
-  if (opened(window, "user_guide") != nullptr) return;
-  QDialog* const dialog = makeDialog(window, "user_guide", QObject::tr("User guide"));
-  auto* const browser = new QTextBrowser(dialog);
-  browser->setOpenExternalLinks(true);
+  constexpr int kWidth_px = 920, kHeight_px = 720, kContents_px = 200;
+  if (raiseOpened(window, "user_guide")) return;
+  QDialog* const dialog = makeReadingDialog(window, "user_guide", QObject::tr("User guide"));
+  auto* const parts = new QSplitter(dialog);
+  QTextBrowser* const browser = makeBrowser("guide", parts);
   browser->setSource(QUrl("qrc:/user_guide.md"), QTextDocument::MarkdownResource);
-  browser->document()->setDocumentMargin(18.0);
-  dialog->layout()->addWidget(browser);
+  parts->insertWidget(0, makeContents(browser, parts));
+  parts->setSizes({kContents_px, kWidth_px - kContents_px});
+  parts->setStretchFactor(1, 1);
+  parts->setChildrenCollapsible(false);
+  dialog->layout()->addWidget(parts);
   addCloseButton(dialog);
   dialog->resize(kWidth_px, kHeight_px);
   dialog->show();
 }
 
-void showAbout(QWidget* window, const QString& version) {
-  if (opened(window, "about") != nullptr) return;
-  QDialog* const dialog = makeDialog(window, "about", QObject::tr("About Evical"));
-  auto* const title = new QLabel("Evical " + version, dialog);
-  title->setProperty("role", "title");
-  auto* const text = new QLabel(
-      QObject::tr("<p>Calibrates event cameras with IMUs from one recording of a printed circle grid.</p>"
-                  "<p>This window is free software under the GNU General Public License, version 3 or later. "
-                  "The calibration itself and the command line are under the BSD 3-Clause License.</p>"
-                  "<p>With Qt %1, Ceres, OpenCV, Eigen, VTK and QCustomPlot.</p>")
-          .arg(qVersion()),
-      dialog);
-  text->setWordWrap(true);
-  text->setMinimumWidth(420);
-  dialog->layout()->addWidget(title);
-  dialog->layout()->addWidget(text);
+void showKeys(QWidget* window) {
+  constexpr int kWidth_px = 620, kHeight_px = 640;
+  if (raiseOpened(window, "keys")) return;
+  QDialog* const dialog = makeReadingDialog(window, "keys", QObject::tr("Keyboard"));
+  QTextBrowser* const browser = makeBrowser("guide", dialog);
+  browser->document()->setMarkdown(partOfGuide("Keys"));
+  dialog->layout()->addWidget(browser);
   addCloseButton(dialog);
+  dialog->resize(kWidth_px, kHeight_px);
   dialog->show();
 }
 

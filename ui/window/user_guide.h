@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// F1: the guide that is embedded in the program, in a window of its own; and About.
+// F1: the guide that is embedded in the program, with its contents beside it, in a window of its own. Its last part, the
+// keys, alone on "?".
 #pragma once
-
-#include <QString>
 
 class QWidget;
 
 namespace evical::ui {
 
-void showUserGuide(QWidget* window);  // brings it to the front if it is open
-void showAbout(QWidget* window, const QString& version);
+// They come to the front if they are open.
+void showUserGuide(QWidget* window);
+void showKeys(QWidget* window);
 
 }  // namespace evical::ui

@@ -56,7 +56,8 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   const Observability observability =
       judgeObservability(input, solution.state, covariance, withScaleKnown(covariance), options);
   estimate.report.observability = observability.eigenvalues;
-  estimate.report.weakest = observability.weakest;
+  if (!observability.directions.empty()) estimate.report.weakest = observability.directions.front();
+  estimate.report.directions = observability.directions;
   estimate.status = observability.status;
   estimate.reason = observability.reason;
   return estimate;

@@ -71,7 +71,7 @@ class Judge {
   // A direction in the reference IMU's frame, said in the sensor's own: its axis, or the components.
   std::string axisWords(const Quantity& quantity, const Eigen::Vector3d& in_reference) const;
   std::string partWords(const Quantity& quantity, QuantityNeed need, const Eigen::VectorXd& direction) const;
-  std::string weakestWords(const std::vector<Part>& parts, const Eigen::VectorXd& direction) const;
+  std::string directionWords(const std::vector<Part>& parts, const Eigen::VectorXd& direction) const;
   std::string unmetNeed(const Part& part) const;
 
   const CalibrationInput& input_;
@@ -109,7 +109,7 @@ std::string Judge::partWords(const Quantity& quantity, QuantityNeed need,
   }
 }
 
-std::string Judge::weakestWords(const std::vector<Part>& parts, const Eigen::VectorXd& direction) const {
+std::string Judge::directionWords(const std::vector<Part>& parts, const Eigen::VectorXd& direction) const {
   std::vector<std::pair<double, std::string>> words;
   for (const Part& part : parts) {
     const Eigen::VectorXd own = direction.segment(part.at, part.size);
@@ -180,8 +180,8 @@ Observability Judge::judge() const {
   const SymmetricEigen eigen = symmetricEigen(in_needs);
   for (Eigen::Index i = count - 1; i >= 0; --i) {
     result.eigenvalues.push_back(1.0 / std::max(eigen.values[i], 1e-12));
+    result.directions.push_back(directionWords(parts, eigen.vectors.col(i)));
   }
-  result.weakest = weakestWords(parts, eigen.vectors.col(count - 1));
   for (const Part& part : parts) {
     const std::string unmet = unmetNeed(part);
     if (unmet.empty()) continue;

@@ -13,8 +13,8 @@
 namespace evical {
 
 struct Observability {
-  std::vector<double> eigenvalues;  // as UncertaintyReport::observability, with the scale known
-  std::string weakest;
+  std::vector<double> eigenvalues;      // as UncertaintyReport::observability, with the scale known
+  std::vector<std::string> directions;  // of each eigenvalue, in words
   CalibrationStatus status = CalibrationStatus::Ok;
   std::string reason;
 };

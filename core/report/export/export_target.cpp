@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <set>
 #include <system_error>
 
@@ -17,36 +18,53 @@ namespace evical {
 namespace {
 
 constexpr std::array kTargets{
-    ExportTarget{"kalibr", "Kalibr: camchain-imucam.yaml, camchain.yaml, imu.yaml", exportKalibr, readKalibr},
-    ExportTarget{"openvins", "OpenVINS: kalibr_imucam_chain.yaml, kalibr_imu_chain.yaml", exportOpenVins,
-                 readOpenVins},
-    ExportTarget{"vins-fusion", "VINS-Fusion, ESVIO: vins.yaml and a camera file each", exportVinsFusion,
+    ExportTarget{"kalibr", "Kalibr: camchain-imucam.yaml, camchain.yaml, imu.yaml",
+                 "What most visual-inertial programs read, or convert from", true, exportKalibr, readKalibr},
+    ExportTarget{"openvins", "OpenVINS: kalibr_imucam_chain.yaml, kalibr_imu_chain.yaml",
+                 "Visual-inertial odometry; several cameras", true, exportOpenVins, readOpenVins},
+    ExportTarget{"vins-fusion", "VINS-Fusion, ESVIO: vins.yaml and a camera file each",
+                 "Visual-inertial odometry with one or two cameras; ESVIO for events", true, exportVinsFusion,
                  readVinsFusion},
-    ExportTarget{"orb-slam3", "ORB-SLAM3: the calibration part of a settings file", exportOrbSlam3,
-                 readOrbSlam3},
-    ExportTarget{"basalt", "Basalt: calibration.json", exportBasalt, readBasalt},
-    ExportTarget{"ros", "ROS: camera_info, static transforms (tf2, launch), URDF", exportRos, readRos},
-    ExportTarget{"svo", "SVO, EVO: camera rig and IMU files", exportSvo, readSvo},
-    ExportTarget{"ultimate-slam", "Ultimate SLAM: camera rig, imu.yaml, time shift flag", exportUltimateSlam,
-                 readUltimateSlam},
-    ExportTarget{"esvo", "ESVO: left.yaml, right.yaml", exportEsvo, readEsvo},
-    ExportTarget{"esvo2", "ESVO2: left.yaml, right.yaml with T_b_c", exportEsvo2, readEsvo2},
-    ExportTarget{"dv-processing", "DV, dv-processing: calibration.json", exportDvProcessing,
-                 readDvProcessing},
-    ExportTarget{"metavision", "Metavision up to SDK 4: intrinsics.json", exportMetavision, readMetavision},
-    ExportTarget{"ekalibr", "eKalibr: parameters and camera intrinsics", exportEkalibr, readEkalibr},
-    ExportTarget{"kimera", "Kimera-VIO: camera and IMU parameters", exportKimera, readKimera},
-    ExportTarget{"dm-vio", "DM-VIO, DSO: camera.txt, camchain.yaml, noise", exportDmVio, readDmVio},
-    ExportTarget{"rtabmap", "RTAB-Map: cameras, stereo pair, IMU's local transform", exportRtabmap,
-                 readRtabmap},
-    ExportTarget{"opencv", "OpenCV: cameras and stereo pair (FileStorage)", exportOpenCv, readOpenCv},
-    ExportTarget{"matlab", "MATLAB, Octave: a function that makes all of it", exportMatlab, readMatlab},
-    ExportTarget{"dsec", "DSEC: cam_to_cam.yaml", exportDsec, readDsec},
-    ExportTarget{"m3ed", "M3ED: calibration.h5", exportM3ed, readM3ed},
+    ExportTarget{"orb-slam3", "ORB-SLAM3: the calibration part of a settings file", "Visual-inertial SLAM",
+                 true, exportOrbSlam3, readOrbSlam3},
+    ExportTarget{"basalt", "Basalt: calibration.json", "Visual-inertial odometry and mapping", true,
+                 exportBasalt, readBasalt},
+    ExportTarget{"ros", "ROS: camera_info, static transforms (tf2, launch), URDF",
+                 "For any robot: drivers, image pipelines, transforms", false, exportRos, readRos},
+    ExportTarget{"svo", "SVO, EVO: camera rig and IMU files", "Visual-inertial odometry; EVO for events",
+                 true, exportSvo, readSvo},
+    ExportTarget{"ultimate-slam", "Ultimate SLAM: camera rig, imu.yaml, time shift flag",
+                 "Odometry from events, frames and IMU", true, exportUltimateSlam, readUltimateSlam},
+    ExportTarget{"esvo", "ESVO: left.yaml, right.yaml", "Odometry from two event cameras; no IMU", false,
+                 exportEsvo, readEsvo},
+    ExportTarget{"esvo2", "ESVO2: left.yaml, right.yaml with T_b_c",
+                 "Odometry from two event cameras and an IMU", true, exportEsvo2, readEsvo2},
+    ExportTarget{"dv-processing", "DV, dv-processing: calibration.json", "iniVation's programs and library",
+                 false, exportDvProcessing, readDvProcessing},
+    ExportTarget{"metavision", "Metavision up to SDK 4: intrinsics.json", "Prophesee's programs; lenses only",
+                 false, exportMetavision, readMetavision},
+    ExportTarget{"ekalibr", "eKalibr: parameters and camera intrinsics",
+                 "Another calibrator of event cameras and IMUs", false, exportEkalibr, readEkalibr},
+    ExportTarget{"kimera", "Kimera-VIO: camera and IMU parameters",
+                 "Visual-inertial odometry and meshing; two cameras", true, exportKimera, readKimera},
+    ExportTarget{"dm-vio", "DM-VIO, DSO: camera.txt, camchain.yaml, noise",
+                 "Visual-inertial odometry with one camera", true, exportDmVio, readDmVio},
+    ExportTarget{"rtabmap", "RTAB-Map: cameras, stereo pair, IMU's local transform", "SLAM with two cameras",
+                 false, exportRtabmap, readRtabmap},
+    ExportTarget{"opencv", "OpenCV: cameras and stereo pair (FileStorage)",
+                 "Your own programs in C++ or Python", false, exportOpenCv, readOpenCv},
+    ExportTarget{"matlab", "MATLAB, Octave: a function that makes all of it",
+                 "Your own programs in MATLAB or Octave", false, exportMatlab, readMatlab},
+    ExportTarget{"dsec", "DSEC: cam_to_cam.yaml", "Programs made for that data set; two cameras", false,
+                 exportDsec, readDsec},
+    ExportTarget{"m3ed", "M3ED: calibration.h5", "Programs made for that data set", false, exportM3ed,
+                 readM3ed},
     ExportTarget{"evimo2", "EVIMO, EVIMO2: params.txt, calib.txt, extrinsics.txt of each camera",
-                 exportEvimo2, readEvimo2},
-    ExportTarget{"tum-vie", "TUM-VIE: camera-calibrationA.json", exportTumVie, readTumVie},
-    ExportTarget{"numpy", "NumPy: calibration.npz", exportNumpy, readNumpy},
+                 "Programs made for those data sets", false, exportEvimo2, readEvimo2},
+    ExportTarget{"tum-vie", "TUM-VIE: camera-calibrationA.json", "Programs made for that data set", false,
+                 exportTumVie, readTumVie},
+    ExportTarget{"numpy", "NumPy: calibration.npz", "Your own programs in Python", false, exportNumpy,
+                 readNumpy},
 };
 
 void checkResult(const NamedResult& result) {
@@ -70,31 +88,48 @@ const ExportTarget& exportTarget(std::string_view name, const std::string& place
   throw badInput(place, fmt::format("nothing can be exported to '{}'", name), nameAdvice(name, names));
 }
 
-ExportedFiles exportResult(const NamedResult& result, std::span<const std::string> targets) {
+namespace {
+
+struct Attempt {
+  ExportedFiles files;
+  std::optional<CalibrationError> last_refusal;
+};
+
+Attempt attempt(const NamedResult& result, std::span<const std::string> targets) {
   checkResult(result);
-  ExportedFiles all;
-  const std::size_t different = std::set<std::string>(targets.begin(), targets.end()).size();
-  std::size_t refusals = 0;
-  for (std::size_t i = 0; i < targets.size(); ++i) {
-    if (std::find(targets.begin(), targets.begin() + static_cast<std::ptrdiff_t>(i), targets[i]) !=
-        targets.begin() + static_cast<std::ptrdiff_t>(i))
-      continue;
-    const ExportTarget& target = exportTarget(targets[i], "--to");
+  Attempt all;
+  std::set<std::string> done;
+  for (const std::string& name : targets) {
+    if (!done.insert(name).second) continue;
+    const ExportTarget& target = exportTarget(name, "--to");
     ExportedFiles one;
     try {
       one = target.write(result);
     } catch (const CalibrationError& refusal) {
-      if (++refusals == different) throw;
-      all.refused.push_back(fmt::format("{}: not exported: {}", target.name, refusal.what()));
+      all.last_refusal = refusal;
+      all.files.refused.push_back(fmt::format("{}: not exported: {}", target.name, refusal.what()));
       continue;
     }
-    all.targets.emplace_back(target.name);
+    all.files.targets.emplace_back(target.name);
     for (FileContent& file : one.files)
-      all.files.push_back({std::filesystem::path(target.name) / file.path, std::move(file.content)});
-    for (const std::string& note : one.notes) all.notes.push_back(fmt::format("{}: {}", target.name, note));
+      all.files.files.push_back({std::filesystem::path(target.name) / file.path, std::move(file.content)});
+    for (const std::string& note : one.notes)
+      all.files.notes.push_back(fmt::format("{}: {}", target.name, note));
   }
-  for (std::string& remark : timingRemarks(result)) all.notes.push_back(std::move(remark));
+  for (std::string& remark : timingRemarks(result)) all.files.notes.push_back(std::move(remark));
   return all;
+}
+
+}  // namespace
+
+ExportedFiles exportResult(const NamedResult& result, std::span<const std::string> targets) {
+  Attempt all = attempt(result, targets);
+  if (all.files.targets.empty() && all.last_refusal) throw CalibrationError(*all.last_refusal);
+  return std::move(all.files);
+}
+
+ExportedFiles exportWhatCanBe(const NamedResult& result, std::span<const std::string> targets) {
+  return attempt(result, targets).files;
 }
 
 void writeExportedFiles(const std::filesystem::path& folder, std::span<const FileContent> files) {

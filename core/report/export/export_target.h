@@ -27,6 +27,8 @@ struct ReadBack;
 struct ExportTarget {
   const char* name;
   const char* description;
+  const char* use;         // who reads it, in a line
+  bool inertial_odometry;  // programs that estimate motion from camera and IMU start from it
   ExportedFiles (*write)(const NamedResult& result);  // paths relative to the target's folder
   // The written files as the program takes them (read_back.h).
   ReadBack (*read)(const std::filesystem::path& folder);
@@ -41,6 +43,9 @@ const ExportTarget& exportTarget(std::string_view name, const std::string& place
 // CalibrationError (BadInput) for the result of a failed calibration, for names that nobody knows, and where no
 // target can hold it.
 ExportedFiles exportResult(const NamedResult& result, std::span<const std::string> targets);
+
+// The same where nothing is wrong with request and result; that no target can hold it is said in `refused` only.
+ExportedFiles exportWhatCanBe(const NamedResult& result, std::span<const std::string> targets);
 
 // Writes all or none, and the folders that they need.
 void writeExportedFiles(const std::filesystem::path& folder, std::span<const FileContent> files);

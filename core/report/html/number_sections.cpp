@@ -7,6 +7,7 @@
 #include "core/report/html/report_page.h"
 #include "core/report/html/svg_plot.h"
 #include "core/report/result_table.h"
+#include "core/report/sensor_pose.h"
 #include "core/report/shown_quantity.h"
 
 #include <fmt/format.h>
@@ -45,8 +46,9 @@ std::vector<std::string> vectorRow(const std::string& name, const ShownQuantity&
 
 void addAngles(Rows& rows, const Eigen::Quaterniond& rotation) {
   const Eigen::Vector3d angles = rollPitchYaw_deg(rotation);
-  rows.push_back(
-      {"roll, pitch, yaw", number(angles.x(), 3), number(angles.y(), 3), number(angles.z(), 3), "deg"});
+  const std::string warning = anglesWarning(angles);
+  rows.push_back({"roll, pitch, yaw", number(angles.x(), 3), number(angles.y(), 3), number(angles.z(), 3),
+                  warning.empty() ? "deg" : "deg (" + warning + ")"});
 }
 
 // One row of three numbers, two of a matrix, with angles below the rotation that leads to the reference.

@@ -156,6 +156,8 @@ class TestCovariance : public QObject {
     QCOMPARE(report.observability.size(), std::size_t{14});
     QVERIFY(std::is_sorted(report.observability.begin(), report.observability.end()));
     QVERIFY(!report.weakest.empty());
+    QCOMPARE(report.directions.size(), report.observability.size());
+    QCOMPARE(report.directions.front(), report.weakest);
   }
 
   // The claim of docs/maths.md, 10.1. 41 quantities over 20 seeds: their common RMS is known to about 5 %,

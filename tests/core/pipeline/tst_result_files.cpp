@@ -176,6 +176,31 @@ class TestResultFiles : public QObject {
     QVERIFY(log.contains("random walks are not measured"));
   }
 
+  void onlyTarget_thatIsRefused_isNamed() {
+    CalibrationRun run = run_;
+    run.result.state.cameras[0].time_offset_s = std::numeric_limits<double>::quiet_NaN();
+    QTemporaryDir folder;
+    const ExportRemarks remarks =
+        writeResultFiles(folder.path().toStdString(), simulated_.session, shared(run), "test", "log");
+    QCOMPARE(remarks.refused.size(), std::size_t{1});
+    QVERIFY2(remarks.refused[0].starts_with("kalibr: not exported: "), remarks.refused[0].c_str());
+    QVERIFY(remarks.targets.empty());
+  }
+
+  void exports_areReadBackBesideTheResult() {
+    Session session = simulated_.session;
+    session.exports = {"ros"};
+    QTemporaryDir folder;
+    const std::filesystem::path place = folder.path().toStdString();
+    const ExportRemarks remarks = writeResultFiles(place, session, shared(run_), "test", "log");
+    for (const ExportCheck& check : checkExports(place, remarks.targets, {}))
+      QVERIFY2(check.same, check.text.c_str());
+    QVERIFY(QFile::remove(folder.filePath("kalibr/imu.yaml")));
+    const std::vector<ExportCheck> checks = checkExports(place, remarks.targets, {});
+    QCOMPARE(checks.size(), std::size_t{2});
+    QVERIFY(!checks[0].same && checks[1].same);  // kalibr, ros
+  }
+
   void numbersThatAreNone_areNotShown() {
     CalibrationRun run = run_;
     const double nan = std::numeric_limits<double>::quiet_NaN(),

@@ -113,6 +113,26 @@ class TestExportRefusals : public QObject {
             exported.refused[0].find("has no IMU") != std::string::npos);
   }
 
+  // A request fails where nothing comes of it; what is written beside a result only says so.
+  void whereNobodyTakesIt_eachRefusalNamesItsTarget() {
+    NamedResult broken = rig({});
+    test::ownResult(broken).state.cameras[0].time_offset_s = std::numeric_limits<double>::quiet_NaN();
+    const std::vector<std::string> targets{"kalibr", "ros"};
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, exportResult(broken, targets));
+    const ExportedFiles exported = exportWhatCanBe(broken, targets);
+    QVERIFY(exported.files.empty() && exported.targets.empty());
+    QCOMPARE(exported.refused.size(), 2U);
+    QVERIFY(exported.refused[0].starts_with("kalibr: not exported: "));
+    QVERIFY(exported.refused[1].starts_with("ros: not exported: "));
+  }
+
+  void everyTarget_saysWhoReadsIt() {
+    for (const ExportTarget& target : exportTargets())
+      QVERIFY2(std::string(target.use).size() > 10 && target.use != std::string(target.description),
+               target.name);
+    QVERIFY(exportTarget("openvins", "").inertial_odometry && !exportTarget("numpy", "").inertial_odometry);
+  }
+
   void badRequests_areRefused() {
     NamedResult failed = rig({});
     test::ownResult(failed).status = CalibrationStatus::Failed;

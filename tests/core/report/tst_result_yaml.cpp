@@ -79,6 +79,7 @@ NamedResult sample() {
   result.uncertainty.given = {"left.time_offset", "1 odd: name.rotation"};
   result.uncertainty.weakest = "translation along the camera's z axis";
   result.uncertainty.observability = {0.5, 12.0};
+  result.uncertainty.directions = {"translation along the camera's z axis", "time offset of 1 odd: name"};
   result.uncertainty.names = {"left.rotation.x [rad]", "left.rotation.y [rad]"};
   result.uncertainty.standard_deviations = Eigen::Vector2d(1e-4, 2e-4);
   CrossValidation validation;

@@ -1,0 +1,23 @@
+// What a signal's noise is like over frequency and over time: P. Welch, The use of fast Fourier transform for the
+// estimation of power spectra, 1967. Samples count as even in time.
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace evical {
+
+// As IMUs' noise densities are given: white noise of sigma s, sampled at r Hz, has s / sqrt(r) at every frequency.
+struct NoiseSpectrum {
+  std::vector<double> frequency_hz;  // from the first above zero up to half the rate
+  std::vector<double> density;       // the samples' unit per sqrt(Hz)
+};
+
+// Mean over segments that overlap by half, each without its mean and tapered by Hann's window. Empty of fewer than
+// `segment` samples; `segment` is even.
+NoiseSpectrum noiseSpectrum(std::span<const double> samples, double rate_hz, int segment);
+
+// Of lags 0, 1, ... `lags`, without the mean; 1 at lag 0. Zeros of samples that are all the same.
+std::vector<double> autocorrelation(std::span<const double> samples, int lags);
+
+}  // namespace evical

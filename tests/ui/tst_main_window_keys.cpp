@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Keys work wherever the focus is after what people do with the mouse.
+#include "tests/support/test_program.h"
+#include "tests/ui/simulated_session.h"
+#include "tests/ui/window_fixture.h"
+#include "ui/detection/detection_screen.h"
+#include "ui/detection/timeline.h"
+#include "ui/forms/option_editor.h"
+#include "ui/forms/option_form.h"
+#include "ui/window/session_files.h"
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDialog>
+#include <QTextBlock>
+#include <QTextBrowser>
+
+#include <cmath>
+
+using namespace evical;
+using namespace evical::ui;
+using namespace evical::ui::test;
+
+namespace {
+
+// As the keyboard does: to whatever has the focus.
+void pressKey(Qt::Key key, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
+  QVERIFY(QApplication::focusWidget() != nullptr);
+  QTest::keyClick(QApplication::focusWidget(), key, modifiers);
+}
+
+// A test of Detection's keys after somebody has done something else.
+struct Opened : WindowFixture {
+  explicit Opened(const QString& session) { window.files().open(session); }
+  DetectionScreen& detection() { return *child<DetectionScreen>(); }
+  void choosePage(int row) {
+    auto* const list = child<QListWidget>("navigation");
+    QTest::mouseClick(list->viewport(), Qt::LeftButton, {}, list->visualItemRect(list->item(row)).center());
+  }
+  void keysOfDetectionWork() {
+    DetectionScreen& screen = detection();
+    QTRY_VERIFY_WITH_TIMEOUT(screen.timeline().end_s() > 3.0, kPatience_ms);
+    screen.setTime(1.0);
+    pressKey(Qt::Key_Right);
+    const double after_s = screen.time_s();
+    QVERIFY(after_s > 1.0);
+    pressKey(Qt::Key_Left);
+    QVERIFY(screen.time_s() < after_s);
+    pressKey(Qt::Key_End);
+    QCOMPARE(screen.time_s(), screen.timeline().end_s());
+    pressKey(Qt::Key_Home);
+    QCOMPARE(screen.time_s(), screen.timeline().begin_s());
+    pressKey(Qt::Key_Space);
+    QVERIFY(screen.isPlaying());
+    pressKey(Qt::Key_Space);
+    QVERIFY(!screen.isPlaying());
+  }
+};
+
+}  // namespace
+
+class TestMainWindowKeys : public QObject {
+  Q_OBJECT
+
+  QTemporaryDir scratch_;
+
+ private slots:
+  void initTestCase() { usePrivateFolders(scratch_); }
+  void init() { QSettings().clear(); }
+
+  void detection_hasItsKeys_afterThePageWasChosenByMouse_orALayerClicked() {
+    Opened test(copyOfSimulatedSession(scratch_.path()));
+    test.choosePage(static_cast<int>(test.window.screenNames().indexOf("detection")));
+    QCOMPARE(test.screen(), QString("detection"));
+    test.keysOfDetectionWork();
+    auto* const layer = test.detection().findChild<QCheckBox*>();
+    const bool shown = layer->isChecked();
+    QTest::mouseClick(layer, Qt::LeftButton, {}, QPoint(8, layer->height() / 2));
+    QCOMPARE(layer->isChecked(), !shown);
+    test.keysOfDetectionWork();
+    QCOMPARE(layer->isChecked(), !shown);
+  }
+
+  void detection_hasItsKeys_whileTheListOfPagesHasTheFocus() {
+    Opened test(copyOfSimulatedSession(scratch_.path()));
+    test.window.showScreen("detection");
+    test.child<QListWidget>("navigation")->setFocus();
+    test.keysOfDetectionWork();
+  }
+
+  void space_pressesTheButtonThatWasReachedByTab() {
+    Opened test(copyOfSimulatedSession(scratch_.path()));
+    test.window.showScreen("detection");
+    auto* const layer = test.detection().findChild<QCheckBox*>();
+    const bool shown = layer->isChecked();
+    layer->setFocus(Qt::TabFocusReason);
+    pressKey(Qt::Key_Space);
+    QCOMPARE(layer->isChecked(), !shown);
+    QVERIFY(!test.detection().isPlaying());
+  }
+
+  void undo_takesAnOptionBack_whileItsFieldHasTheFocus() {
+    Opened test(copyOfSimulatedSession(scratch_.path()));
+    test.press(Qt::Key_P, Qt::ControlModifier);
+    auto* const field =
+        test.child<OptionForm>()->editor("detection.longest_window_s")->findChild<QLineEdit*>();
+    const QString before = field->text();
+    field->setFocus();
+    field->selectAll();
+    QTest::keyClicks(field, "0.07");
+    pressKey(Qt::Key_Z, Qt::ControlModifier);  // what is being typed
+    QCOMPARE(field->text(), before);
+    QVERIFY(!test.document().undoStack().canUndo());
+    field->selectAll();
+    QTest::keyClicks(field, "0.07");
+    QTest::keyClick(field, Qt::Key_Return);
+    QCOMPARE(test.document().session().options.front_end.detection.longest_window_s, 0.07);
+    QVERIFY(field->hasFocus());
+    pressKey(Qt::Key_Z, Qt::ControlModifier);
+    QCOMPARE(field->text(), before);
+    QVERIFY(!test.document().undoStack().canUndo());
+    pressKey(Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
+    QCOMPARE(test.document().session().options.front_end.detection.longest_window_s, 0.07);
+    QCOMPARE(field->text(), QString("0.07"));
+  }
+
+  // The page of keys is a part of the guide, which is written by hand.
+  void everyShortcut_isOnThePageOfKeys() {
+    WindowFixture test;
+    pressKey(Qt::Key_Question);
+    auto* const page = test.child<QDialog>("keys");
+    QVERIFY(page && page->isVisible());
+    const QString text = page->findChild<QTextBrowser*>()->toPlainText();
+    int shortcuts = 0;
+    for (const QAction* const action : test.window.findChildren<QAction*>()) {
+      if (action->shortcut().isEmpty() || action->text().isEmpty()) continue;
+      const QString key = action->shortcut().toString();
+      const bool screen = key.size() == 6 && key.startsWith("Ctrl+") && key[5].isDigit();
+      QVERIFY2(text.contains(screen ? QString("Ctrl+1 ... Ctrl+8") : key), qPrintable(action->text() + key));
+      ++shortcuts;
+    }
+    QVERIFY(shortcuts > 15);
+  }
+
+  void guide_hasContents_thatLeadToItsParts() {
+    WindowFixture test;
+    test.press(Qt::Key_F1);
+    auto* const guide = test.child<QDialog>("user_guide");
+    QVERIFY(guide && guide->isVisible());
+    auto* const contents = guide->findChild<QListWidget*>("contents");
+    auto* const browser = guide->findChild<QTextBrowser*>();
+    QVERIFY(contents->count() >= 6);
+    contents->setCurrentRow(3);
+    const QString top = browser->cursorForPosition({30, 24}).block().text();
+    QCOMPARE(top, contents->item(3)->text());
+  }
+};
+
+EVICAL_TEST(TestMainWindowKeys)
+#include "tst_main_window_keys.moc"

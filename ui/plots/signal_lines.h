@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An IMU's signal as measured and as a trajectory predicts it, and what is left: made ready for drawing in any thread.
+#pragma once
+
+#include "core/numerics/spectrum.h"
+#include "ui/plots/plot_panel.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace evical::ui {
+
+inline constexpr int kShownLags = 100;  // samples, of autocorrelations
+
+// Of one axis: how white what is left of it is.
+struct AxisStatistics {
+  NoiseSpectrum spectrum;
+  std::vector<double> correlation;
+  double rms = 0.0;
+};
+
+struct SignalLines {
+  std::array<std::shared_ptr<PlotLineData>, 3> measured, predicted, residual;  // x, y, z
+  std::array<AxisStatistics, 3> statistics;
+  std::size_t samples = 0;
+  double begin_s = 0.0, end_s = 0.0;
+  double rate_hz = 0.0, density = 0.0;  // of the noise as given, unit per sqrt(Hz)
+};
+
+SignalLines makeSignalLines(const std::vector<double>& time_s, const std::vector<Eigen::Vector3d>& measured,
+                            const std::vector<Eigen::Vector3d>& predicted, double rate_hz, double density);
+
+}  // namespace evical::ui

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/plots/signal_tab.h"
+
+#include "ui/plots/signal_lines.h"
+
+#include <QStackedWidget>
+#include <QVBoxLayout>
+
+#include <cmath>
+
+namespace evical::ui {
+namespace {
+
+using Kind = PlotPanel::SeriesKind;
+
+constexpr PlotColour kAxisColours[] = {PlotColour::X, PlotColour::Y, PlotColour::Z};
+const QString kAxisNames[] = {"x", "y", "z"};
+constexpr double kMillisecondsPerSecond = 1e3;
+constexpr double k95Percent_sigmas = 1.96;
+
+// After a panel's own series: what the noise as given would leave.
+void addBounds(PlotPanel& panel) {
+  for (int edge = 0; edge < 2; ++edge)
+    panel.addSeries(Kind::Line, {.colour = PlotColour::Text, .width_px = 1.4, .dashed = true});
+}
+
+void addAxes(PlotPanel& panel) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    panel.addSeries(Kind::Line, {.name = kAxisNames[axis], .colour = kAxisColours[axis], .width_px = 1.4});
+  addBounds(panel);
+}
+
+// Of panels below each other, whose times are the same, the last has the label.
+PlotPanel* timePanel(const QString& title, const QString& unit, bool last) {
+  return new PlotPanel(
+      {.title = title, .x_label = last ? SignalTab::tr("time (s)") : "", .y_label = unit, .time = true});
+}
+
+}  // namespace
+
+SignalTab::SignalTab(const QString& name, const QString& unit) : unit_(unit), below_(new QStackedWidget) {
+  makeSignal(name);
+  for (QWidget* const look : {makeResiduals(), makeSpectrum(), makeCorrelation()}) below_->addWidget(look);
+  auto* const layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 8, 0, 0);
+  layout->addWidget(signal_, 3);
+  layout->addWidget(below_, 5);
+}
+
+QStringList SignalTab::looks() {
+  return {tr("each axis over time"), tr("spectrum"), tr("autocorrelation")};
+}
+
+void SignalTab::lookAt(int look) {
+  below_->setCurrentIndex(look);
+}
+
+// Measured ones are broad and pale, so that they are seen under the predicted ones that they agree with.
+void SignalTab::makeSignal(const QString& name) {
+  signal_ = timePanel(name, unit_, false);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    signal_->addSeries(Kind::Line, {.name = kAxisNames[axis] + tr(" measured"),
+                                    .colour = kAxisColours[axis],
+                                    .width_px = 5.0,
+                                    .opacity = 0.3,
+                                    .in_legend = false});
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const PlotPanel::Series predicted = signal_->addSeries(
+        Kind::Line,
+        {.name = kAxisNames[axis] + tr(" predicted"), .colour = kAxisColours[axis], .width_px = 1.2});
+    signal_->setLegendText(predicted, kAxisNames[axis]);
+  }
+  signal_->setNote(tr("broad: measured, thin: predicted by the trajectory"));
+}
+
+// Each axis in a row of its own: over each other only the last one would be seen.
+QWidget* SignalTab::makeResiduals() {
+  auto* const rows = new QWidget;
+  auto* const layout = new QVBoxLayout(rows);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(4);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    PlotPanel* const row = timePanel(tr("Measured - predicted, %1").arg(kAxisNames[axis]), unit_, axis == 2);
+    row->addSeries(Kind::Line, {.name = kAxisNames[axis], .colour = kAxisColours[axis], .in_legend = false});
+    addBounds(*row);
+    layout->addWidget(row, axis == 2 ? 6 : 5);
+    residuals_[axis] = row;
+  }
+  return rows;
+}
+
+QWidget* SignalTab::makeSpectrum() {
+  spectrum_ = new PlotPanel({.title = tr("Spectrum"),
+                             .x_label = tr("frequency (Hz)"),
+                             .y_label = unit_ + "/\u221aHz",
+                             .logarithmic_y = true});
+  spectrum_->setObjectName("spectrum");
+  addAxes(*spectrum_);
+  return spectrum_;
+}
+
+QWidget* SignalTab::makeCorrelation() {
+  correlation_ = new PlotPanel(
+      {.title = tr("Autocorrelation"), .x_label = tr("time apart (ms)"), .y_label = tr("correlation")});
+  correlation_->setObjectName("autocorrelation");
+  addAxes(*correlation_);
+  return correlation_;
+}
+
+std::vector<PlotPanel*> SignalTab::overTime() const {
+  return {signal_, residuals_[0], residuals_[1], residuals_[2]};
+}
+
+void SignalTab::setLines(const SignalLines& lines) {
+  const std::vector<double> span_s = {lines.begin_s, lines.end_s};
+  const double sigma = lines.density * std::sqrt(lines.rate_hz);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    signal_->setLine(axis, lines.measured[axis]);
+    signal_->setLine(3 + axis, lines.predicted[axis]);
+    PlotPanel& row = *residuals_[axis];
+    row.setLine(0, lines.residual[axis]);
+    row.setData(1, span_s, {-sigma, -sigma});
+    row.setData(2, span_s, {sigma, sigma});
+    row.setNote(tr("RMS %1 %3, noise as given %2 %3 (dashed)")
+                    .arg(lines.statistics[axis].rms, 0, 'g', 3)
+                    .arg(sigma, 0, 'g', 3)
+                    .arg(unit_));
+  }
+  showStatistics(lines);
+}
+
+void SignalTab::showStatistics(const SignalLines& lines) {
+  std::vector<double> apart_ms;
+  for (int lag = 0; lag <= kShownLags; ++lag)
+    apart_ms.push_back(lines.rate_hz > 0.0 ? kMillisecondsPerSecond * lag / lines.rate_hz : 0.0);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const AxisStatistics& own = lines.statistics[axis];
+    spectrum_->setData(axis, own.spectrum.frequency_hz, own.spectrum.density);
+    correlation_->setData(axis, apart_ms, own.correlation);
+  }
+  spectrum_->setData(3, {0.0, 0.5 * lines.rate_hz}, {lines.density, lines.density});
+  spectrum_->setNote(lines.statistics[0].spectrum.density.empty()
+                         ? tr("too few samples for a spectrum")
+                         : tr("of measured - predicted; dashed: noise density as given"));
+  const double bound =
+      lines.samples > 0 ? k95Percent_sigmas / std::sqrt(static_cast<double>(lines.samples)) : 0.0;
+  const std::vector<double> ends_ms = {apart_ms.front(), apart_ms.back()};
+  correlation_->setData(3, ends_ms, {-bound, -bound});
+  correlation_->setData(4, ends_ms, {bound, bound});
+  correlation_->setNote(tr("of measured - predicted; dashed: 95 % of white noise's are within"));
+  for (PlotPanel* const panel : {spectrum_, correlation_}) panel->fit();
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The rig as it was calibrated, drawn to scale: each sensor's axes with their letters, cameras with their view, how far
+// sensors are from the reference. Drag or arrow keys turn it, 1, 2 and 3 look from the front, the side and above, Home
+// goes back.
+#pragma once
+
+#include "core/report/result_yaml.h"
+
+#include <QString>
+#include <QWidget>
+
+#include <vector>
+
+namespace evical::ui {
+
+class FileSaver;
+
+class RigDrawing : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit RigDrawing(QWidget* parent = nullptr);
+
+  void setResult(const NamedResult& named);
+  QString text() const;  // in words: who is how far from whom
+  void save();           // asks where
+  QSize minimumSizeHint() const override { return {220, 150}; }
+  QSize sizeHint() const override { return {320, 190}; }
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+  void mousePressEvent(QMouseEvent* event) override;
+  void mouseMoveEvent(QMouseEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
+  void contextMenuEvent(QContextMenuEvent* event) override;
+
+ private:
+  struct Sensor {
+    QString name;
+    RigidTransform reference_from_sensor;
+    bool reference = false;
+    std::vector<Eigen::Vector3d> outline_m;  // pairs of ends, in the sensor's frame
+  };
+  struct View;
+
+  void look(double azimuth_rad, double elevation_rad);
+  double axisLength_m() const;
+  View view(const QSizeF& size) const;
+  void paint(QPainter& painter, const QSizeF& size) const;
+  void paintSensor(QPainter& painter, const View& view, const Sensor& sensor) const;
+  void paintDistances(QPainter& painter, const View& view) const;
+  void paintScale(QPainter& painter, const View& view, const QSizeF& size) const;
+
+  std::vector<Sensor> sensors_;
+  // What is upright and in front at first: the first camera's picture.
+  Eigen::Matrix3d reference_from_world_ = Eigen::Matrix3d::Identity();
+  double azimuth_rad_, elevation_rad_;
+  QPointF last_at_;
+  FileSaver* saver_;
+};
+
+}  // namespace evical::ui

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A verdict as a small picture: by colour and by shape.
+#pragma once
+
+#include "core/data/calibration_status.h"
+
+#include <QIcon>
+
+namespace evical::ui {
+
+QIcon verdictIcon(CalibrationStatus status);
+
+}  // namespace evical::ui
