@@ -7,11 +7,24 @@
 
 namespace evical {
 
-void makeThreadModest() {
+namespace {
+
+void beNice([[maybe_unused]] int niceness) {
 #ifdef __linux__
-  constexpr int kNiceness = 5;
-  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), niceness);
 #endif
+}
+
+}  // namespace
+
+void makeThreadModest() {
+  constexpr int kBesideAWindow = 5;
+  beNice(kBesideAWindow);
+}
+
+void makeThreadLast() {
+  constexpr int kBehindAll = 10;
+  beNice(kBehindAll);
 }
 
 }  // namespace evical

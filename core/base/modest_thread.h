@@ -7,4 +7,7 @@ namespace evical {
 // has no priorities of threads (other systems than Linux).
 void makeThreadModest();
 
+// The same for work that nobody waits for: it goes after all other work.
+void makeThreadLast();
+
 }  // namespace evical

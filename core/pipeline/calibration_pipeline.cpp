@@ -18,11 +18,10 @@
 #include "core/pipeline/board_size_check.h"
 #include "core/pipeline/causes.h"
 #include "core/pipeline/cross_validation.h"
-#include "core/pipeline/intrinsics_calibration.h"
+#include "core/pipeline/detected_recording.h"
 #include "core/pipeline/joint_intrinsics.h"
 #include "core/pipeline/misfit.h"
 #include "core/pipeline/session_keys.h"
-#include "core/pipeline/session_recording.h"
 #include "core/pipeline/view_rejection.h"
 #include "core/recording/inspection.h"
 
@@ -164,22 +163,6 @@ void validateByHalves(const Session& session, const CalibrationInput& input, con
           : "halves of the recording: " + validation.failure);
 }
 
-// With those calibrated that the session leaves out; how, is kept in the run.
-std::vector<CameraLens> findLenses(const Session& session, const RunContext& context, CalibrationRun& run) {
-  std::vector<CameraLens> lenses = givenLenses(session);
-  const auto missing = [](const CameraLens& lens) { return !lens.given; };
-  if (std::none_of(lenses.begin(), lenses.end(), missing)) return lenses;
-  SessionRecording{session};  // streams that are missing are missed now, not after minutes
-  run.intrinsics.resize(lenses.size());
-  for (std::size_t k = 0; k < lenses.size(); ++k) {
-    if (lenses[k].given || session.sensorOf(k) != k) continue;
-    run.intrinsics[k] = calibrateIntrinsics(session, k, context.unobserved()).result;
-    lenses[k].seen_with = run.intrinsics[k]->intrinsics;
-  }
-  for (std::size_t k = 0; k < lenses.size(); ++k) lenses[k] = lenses[session.sensorOf(k)];
-  return lenses;
-}
-
 // Of a lens that the batch did not solve for again.
 void keepSigmas(const IntrinsicsResult& found, CameraUncertainty& uncertainty) {
   const IntrinsicsVector sigmas = found.standardDeviations();
@@ -275,7 +258,9 @@ class Calibration {
   CalibrationOutcome fromRecording() {
     return outcomeOf([this] {
       checkSession(session_);
-      lenses_ = findLenses(session_, context_, run_);
+      FoundLenses found = findLenses(session_, context_);
+      lenses_ = std::move(found.lenses);
+      run_.intrinsics = std::move(found.intrinsics);
       runFrom(CalibrationStage::Detect);
     });
   }
@@ -290,6 +275,16 @@ class Calibration {
       prepareInput();
       runFrom(CalibrationStage::Initialise);
     });
+  }
+
+  CalibrationStart toInitialState(RecordingPass pass,
+                                  std::vector<std::optional<IntrinsicsResult>> intrinsics) {
+    run_.pass = std::move(pass);
+    run_.intrinsics = std::move(intrinsics);
+    checkSession(session_);
+    prepareInput();
+    initialiseState();
+    return {std::move(input_), std::move(initial_)};
   }
 
  private:
@@ -517,6 +512,11 @@ CalibrationOutcome runCalibration(const Session& session, const RunContext& cont
 CalibrationOutcome runCalibration(const Session& session, RecordingPass pass, const RunContext& context,
                                   std::vector<std::optional<IntrinsicsResult>> intrinsics) {
   return Calibration(session, context).fromDetections(std::move(pass), std::move(intrinsics));
+}
+
+CalibrationStart startCalibration(const Session& session, RecordingPass pass, const RunContext& context,
+                                  std::vector<std::optional<IntrinsicsResult>> intrinsics) {
+  return Calibration(session, context).toInitialState(std::move(pass), std::move(intrinsics));
 }
 
 CalibrationRun calibrate(const Session& session, const RunContext& context) {

@@ -5,7 +5,9 @@
 #include "core/base/error.h"
 #include "core/base/progress.h"
 #include "core/data/calibration_result.h"
+#include "core/data/calibration_setup.h"
 #include "core/data/intrinsics_result.h"
+#include "core/initialisation/initialise.h"
 #include "core/pipeline/recording_pass.h"
 #include "core/pipeline/session.h"
 
@@ -49,6 +51,17 @@ CalibrationOutcome runCalibration(const Session& session, RecordingPass pass, co
 CalibrationRun calibrate(const Session& session, const RunContext& context);
 CalibrationRun calibrate(const Session& session, RecordingPass pass, const RunContext& context,
                          std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
+
+// What a calibration has before its batch.
+struct CalibrationStart {
+  CalibrationInput input;
+  Initialisation initial;
+};
+
+// Goes that far and no further, with all that is checked on the way. Throws CalibrationError, and Cancelled when asked
+// to stop.
+CalibrationStart startCalibration(const Session& session, RecordingPass pass, const RunContext& context,
+                                  std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
 
 // How much of the process's memory was in use at most, in MB (10^6 bytes); 0 where the system does not say.
 double peakMemory_mb();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <string>
 
@@ -69,6 +70,33 @@ SessionImu guessedImu(const StreamSummary& stream, const Session& session,
   if (stream.acceleration_unit == "g" && stream.info.acceleration_unit != AccelerationUnit::Gravity)
     imu.acceleration_unit = AccelerationUnit::Gravity;
   return imu;
+}
+
+SessionCamera withSeenResolution(SessionCamera camera, const StreamSummary& stream) {
+  const bool known = camera.resolution_px.known() || stream.info.resolution_px.known() ||
+                     (camera.intrinsics && camera.intrinsics->resolution_px.known());
+  if (known || stream.info.type != StreamType::Events) return camera;
+  static constexpr std::array<Resolution, 8> kUsual = {
+      {{128, 128}, {240, 180}, {304, 240}, {320, 240}, {346, 260}, {640, 480}, {1280, 720}, {320, 320}}};
+  constexpr int kUnlit_px = 3;  // at the rim, where nothing moved
+  camera.resolution_px = stream.seen_px;
+  for (const Resolution& usual : kUsual) {
+    const int right_px = usual.width_px - stream.seen_px.width_px,
+              below_px = usual.height_px - stream.seen_px.height_px;
+    if (right_px >= 0 && right_px <= kUnlit_px && below_px >= 0 && below_px <= kUnlit_px)
+      camera.resolution_px = usual;
+  }
+  return camera;
+}
+
+Session withSeenResolutions(Session session, const std::filesystem::path& recording,
+                            const Inspection& inspection) {
+  for (SessionCamera& camera : session.cameras) {
+    if ((camera.recording.empty() ? session.recording : camera.recording) != recording) continue;
+    for (const StreamSummary& stream : inspection.streams)
+      if (stream.info.name == camera.stream) camera = withSeenResolution(std::move(camera), stream);
+  }
+  return session;
 }
 
 void keepReference(Session& session) {

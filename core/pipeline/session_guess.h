@@ -22,6 +22,13 @@ SessionCamera guessedCamera(const StreamSummary& stream, const Session& session,
 SessionImu guessedImu(const StreamSummary& stream, const Session& session,
                       const std::filesystem::path& own_recording = {});
 
+// Where neither the recording nor a lens says how large the sensor is: as large as its events reach, or the usual sensor
+// that they all but fill.
+SessionCamera withSeenResolution(SessionCamera camera, const StreamSummary& stream);
+// The same for the cameras of a session whose streams are in this file.
+Session withSeenResolutions(Session session, const std::filesystem::path& recording,
+                            const Inspection& inspection);
+
 // Where the reference is no longer there, the first that could be it; cameras whose sensor's is gone have their own.
 void keepReference(Session& session);
 

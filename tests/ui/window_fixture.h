@@ -85,7 +85,9 @@ struct WindowFixture {
   MainWindow window{"0.0.0"};
   QSignalSpy finished{&window.workbench().runner, &JobRunner::finished};
 
+  // Recordings are not looked through by themselves: tests of that turn it on.
   WindowFixture() {
+    window.workbench().check.setAutomatic(false);
     window.show();
     QVERIFY(QTest::qWaitForWindowExposed(&window));
     window.activateWindow();

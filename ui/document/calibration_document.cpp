@@ -111,6 +111,7 @@ void CalibrationDocument::replace(Session session, const QString& session_file, 
   session_ = std::move(session);
   file_ = session_file;
   has_unsaved_recording_ = unsaved;
+  board_confirmed_ = !session_file.isEmpty();  // who saved it knew it
   undo_stack_.clear();
   saved_edition_ = edition_;
   last_ = std::move(run);
@@ -174,7 +175,13 @@ void CalibrationDocument::forgetReference() {
   emit referenceChanged();
 }
 
+void CalibrationDocument::confirmBoard() {
+  if (std::exchange(board_confirmed_, true)) return;
+  emit boardConfirmationChanged();
+}
+
 void CalibrationDocument::edit(const Session& session, const QString& what, const QString& merge_key) {
+  if (boardsYaml(session) != boardsYaml(session_)) confirmBoard();
   undo_stack_.push(new EditCommand(*this, session, what, merge_key));
 }
 

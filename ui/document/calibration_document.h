@@ -68,6 +68,10 @@ class CalibrationDocument : public QObject {
   void setOption(const QString& name, const QString& value);
   void resetOptions();
 
+  // Whether a person has said that the board is this one: a guessed one nobody has looked at.
+  bool boardConfirmed() const { return board_confirmed_; }
+  void confirmBoard();
+
   // The latest one; null before the first, and when another session comes.
   const RunRecord& last() const { return last_; }
   const RunRecord& previous() const { return previous_; }
@@ -83,6 +87,7 @@ class CalibrationDocument : public QObject {
   void sessionReplaced();  // another one: open, new
   void sessionChanged();   // in anything, also by undo
   void fileChanged();      // name or modified flag
+  void boardConfirmationChanged();
   void runsChanged();
   void referenceChanged();
 
@@ -100,6 +105,7 @@ class CalibrationDocument : public QObject {
   Session session_;
   QString file_;
   bool has_unsaved_recording_ = false;
+  bool board_confirmed_ = false;
   QUndoStack undo_stack_;
   int edition_ = 0, saved_edition_ = 0, newest_edition_ = 0;  // each edit makes one of its own
   RunRecord last_, previous_;

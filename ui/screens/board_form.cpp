@@ -251,6 +251,14 @@ void BoardForm::sayMeasured(const QString& field) {
   emit measured(changed, field);
 }
 
+void BoardForm::showNumbersOnly() {
+  form_->setRowVisible(is_measured_, false);
+  drawing_->hide();
+  // All rows at once: who holds the form scrolls.
+  if (auto* const fields = findChild<QScrollArea*>())
+    fields->setVerticalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+}
+
 void BoardForm::setProblem(const QString& text) {
   problem_->setText(text);
   problem_->setVisible(!text.isEmpty());

@@ -28,6 +28,8 @@ class BoardForm : public QWidget {
   explicit BoardForm(QWidget* parent = nullptr);
 
   void setBoard(const Board& board, const std::optional<MeasuredLength>& measured);
+  // For a board that is still to be printed: nothing was measured, and others draw it.
+  void showNumbersOnly();
   // Empty: the only one, which needs none.
   void setName(const QString& name, const QString& seen_by);
   void setNameProblem(const QString& text);

@@ -6,6 +6,7 @@
 #include "ui/screens/aim_chooser.h"
 #include "ui/screens/boards_form.h"
 #include "ui/screens/camera_form.h"
+#include "ui/screens/check_card.h"
 #include "ui/screens/imu_form.h"
 #include "ui/screens/stream_table.h"
 #include "ui/screens/time_range_form.h"
@@ -96,6 +97,7 @@ RecordingScreen::RecordingScreen(QWidget* parent)
       streams_(new StreamTable(this)),
       time_range_(new TimeRangeForm(this)),
       boards_(new BoardsForm(this)),
+      check_(new CheckCard(this)),
       sensors_(new QTabWidget(this)),
       reference_(new QComboBox(this)),
       aim_(new AimChooser(this)),
@@ -172,7 +174,13 @@ QWidget* RecordingScreen::makeContent() {
   layout->setSpacing(10);
   layout->addWidget(makeHeader());
   layout->addWidget(card(tr("Streams"), streams, content));
-  layout->addWidget(makeForms(), 1);
+  layout->addWidget(check_);
+  QWidget* const forms = makeForms();
+  layout->addWidget(forms, 1);
+  connect(check_, &CheckCard::detailsShown, forms, [this, forms, layout](bool shown) {
+    forms->setVisible(!shown);
+    layout->setStretchFactor(check_, shown ? 1 : 0);
+  });
   for (QLabel* const hidden : {file_faults_, stream_problem_, looking_text_}) hidden->hide();
   looking_->hide();
   return content;
@@ -308,13 +316,27 @@ void RecordingScreen::offerCameraOnly(bool offered) {
   showVerdict();
 }
 
+void RecordingScreen::setReservation(const QString& text, Light light) {
+  reservation_ = text;
+  reservation_light_ = light;
+  showVerdict();
+}
+
 void RecordingScreen::showVerdict() {
   const bool camera_only = !camera_only_->isHidden();
+  const bool reserved = !camera_only && !reservation_.isEmpty();
   verdict_->setText(problems_ == 1  ? tr("One thing is missing")
                     : problems_ > 1 ? tr("%1 things are missing").arg(problems_)
                     : camera_only   ? tr("Nothing to calibrate but the lens:")
+                    : reserved      ? reservation_
                                     : tr("Ready to calibrate"));
-  verdict_->setStyleSheet(QString("color: %1").arg((problems_ == 0 ? theme().good : theme().bad).name()));
+  const bool bad = problems_ > 0 || (reserved && reservation_light_ == Light::Poor);
+  const bool undecided = reserved && reservation_light_ == Light::Good;
+  const QColor colour = bad         ? theme().bad
+                        : undecided ? theme().faint_text
+                        : reserved  ? theme().warning
+                                    : theme().good;
+  verdict_->setStyleSheet(QString("color: %1").arg(colour.name()));
 }
 
 void RecordingScreen::clearInspections() {
@@ -385,7 +407,7 @@ void RecordingScreen::chooseRole(int row, int role) {
   std::erase_if(changed.cameras, isThis);
   std::erase_if(changed.imus, isThis);
   if (static_cast<StreamRole>(role) == StreamRole::Camera)
-    changed.cameras.push_back(guessedCamera(summary, changed, own_recording));
+    changed.cameras.push_back(withSeenResolution(guessedCamera(summary, changed, own_recording), summary));
   if (static_cast<StreamRole>(role) == StreamRole::Imu)
     changed.imus.push_back(guessedImu(summary, changed, own_recording));
   keepReference(changed);

@@ -2,6 +2,7 @@
 // What is in the recording, and what must be known of it: streams and their roles, the board, the sensors.
 #pragma once
 
+#include "core/pipeline/recording_assessment.h"
 #include "core/pipeline/session.h"
 #include "core/recording/inspection.h"
 
@@ -22,6 +23,7 @@ namespace evical::ui {
 
 class AimChooser;
 class BoardsForm;
+class CheckCard;
 class CameraForm;
 class ImuForm;
 class StreamTable;
@@ -41,6 +43,10 @@ class RecordingScreen : public QWidget {
   // A rig was asked for, and one camera without an IMU is there.
   void offerCameraOnly(bool offered);
   AimChooser& aim() const { return *aim_; }  // what is calibrated
+
+  // What there is to say against "ready to calibrate" where no problem is; empty: nothing. With a good light nothing is wrong yet.
+  void setReservation(const QString& text, Light light);
+  CheckCard* checkCard() const { return check_; }
 
   void clearInspections();
   void setInspecting(const QString& recording);
@@ -66,6 +72,7 @@ class RecordingScreen : public QWidget {
   QWidget* makeForms();
   QWidget* makeEmpty();
   QWidget* makeContent();
+  void showVerdict();
   void showSensors();
   void chooseRole(int row, int role);
   QWidget* makeRangeAndFiles(QWidget* parent);
@@ -78,7 +85,6 @@ class RecordingScreen : public QWidget {
   void listStreams();
   std::filesystem::path ownRecording(const Inspected& one) const;  // empty: the session's
   void showFileFaults();
-  void showVerdict();
 
   Session session_;
   std::vector<Inspected> inspected_;  // their streams are the table's rows
@@ -88,6 +94,9 @@ class RecordingScreen : public QWidget {
   StreamTable* streams_;
   TimeRangeForm* time_range_;
   BoardsForm* boards_;
+  CheckCard* check_;
+  QString reservation_;
+  Light reservation_light_ = Light::Good;
   QTabWidget* sensors_;
   QComboBox* reference_;
   AimChooser* aim_;

@@ -75,6 +75,16 @@ QWidget* StartScreen::makeChoices() {
   auto* const session = choice(tr("Open a session..."), "open", column);
   session->setToolTip(tr("A session file that names recording, board and sensors"));
   demo_->setToolTip(tr("Simulates ten seconds of a recording with a known truth, and opens it"));
+  auto* const print_board = choice(tr("Print a board..."), "board", column);
+  print_board->setObjectName("print_board_button");
+  print_board->setToolTip(
+      tr("A target of circles, squares or tags, true to scale, for a printer or a screen"));
+  auto* const how = choice(tr("How to record..."), "play", column);
+  how->setToolTip(tr("Moving pictures of the motions that a calibration needs"));
+  auto* const before = new QHBoxLayout;
+  before->addWidget(print_board);
+  before->addWidget(how);
+  layout->addLayout(before);
   for (QPushButton* const button : {recording, session, demo_}) layout->addWidget(button);
   demo_progress_->setRange(0, 1000);
   demo_progress_->setTextVisible(false);
@@ -85,6 +95,8 @@ QWidget* StartScreen::makeChoices() {
   connect(recording, &QPushButton::clicked, this, &StartScreen::openRecordingRequested);
   connect(session, &QPushButton::clicked, this, &StartScreen::openSessionRequested);
   connect(demo_, &QPushButton::clicked, this, &StartScreen::demoRequested);
+  connect(print_board, &QPushButton::clicked, this, &StartScreen::printBoardRequested);
+  connect(how, &QPushButton::clicked, this, &StartScreen::howToRecordRequested);
   return column;
 }
 

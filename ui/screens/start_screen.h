@@ -29,6 +29,8 @@ class StartScreen : public QWidget {
   void openRecordingRequested();
   void openSessionRequested();
   void demoRequested();
+  void printBoardRequested();
+  void howToRecordRequested();
   void fileChosen(const QString& file);  // one of the recent
 
  private:

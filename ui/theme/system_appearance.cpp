@@ -14,12 +14,24 @@ const char* const kPath = "/org/freedesktop/portal/desktop";
 const char* const kInterface = "org.freedesktop.portal.Settings";
 const char* const kGroup = "org.freedesktop.appearance";
 const char* const kKey = "color-scheme";
+const char* const kDesktopGroup = "org.gnome.desktop.interface";
+const char* const kAnimationsKey = "enable-animations";
 constexpr uint kPrefersDark = 1;
 
 // Portals wrap the value in a variant, some of them twice.
-uint unwrapped(QVariant value) {
+QVariant unwrapped(QVariant value) {
   while (value.canConvert<QDBusVariant>()) value = value.value<QDBusVariant>().variant();
-  return value.toUInt();
+  return value;
+}
+
+// Invalid where nobody answers.
+QVariant setting(const QDBusConnection& bus, const char* group, const char* key) {
+  constexpr int kPatience_ms = 200;
+  QDBusMessage question = QDBusMessage::createMethodCall(kService, kPath, kInterface, "Read");
+  question << group << key;
+  const QDBusMessage answer = bus.call(question, QDBus::Block, kPatience_ms);
+  if (answer.type() != QDBusMessage::ReplyMessage || answer.arguments().isEmpty()) return {};
+  return unwrapped(answer.arguments().constFirst());
 }
 
 }  // namespace
@@ -36,20 +48,20 @@ SystemAppearance::SystemAppearance() {
 }
 
 void SystemAppearance::askPortal() {
-  constexpr int kPatience_ms = 200;
   QDBusConnection bus = QDBusConnection::sessionBus();
-  QDBusMessage question = QDBusMessage::createMethodCall(kService, kPath, kInterface, "Read");
-  question << kGroup << kKey;
-  const QDBusMessage answer = bus.call(question, QDBus::Block, kPatience_ms);
-  if (answer.type() != QDBusMessage::ReplyMessage || answer.arguments().isEmpty()) return;
-  dark_ = unwrapped(answer.arguments().constFirst()) == kPrefersDark;
+  const QVariant scheme = setting(bus, kGroup, kKey);
+  if (!scheme.isValid()) return;
+  dark_ = scheme.toUInt() == kPrefersDark;
+  if (const QVariant animations = setting(bus, kDesktopGroup, kAnimationsKey); animations.isValid())
+    animated_ = animations.toBool();
   bus.connect(kService, kPath, kInterface, "SettingChanged", this,
               SLOT(settingChanged(QString, QString, QDBusVariant)));
 }
 
 void SystemAppearance::settingChanged(const QString& group, const QString& key, const QDBusVariant& value) {
+  if (group == kDesktopGroup && key == kAnimationsKey) animated_ = unwrapped(value.variant()).toBool();
   if (group != kGroup || key != kKey) return;
-  const bool dark = unwrapped(value.variant()) == kPrefersDark;
+  const bool dark = unwrapped(value.variant()).toUInt() == kPrefersDark;
   if (dark == dark_) return;
   dark_ = dark;
   emit changed(dark_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether the desktop wants dark windows: asked from its portal, told when it changes. (Qt
+// Whether the desktop wants dark windows, and whether it wants things to move: asked from its portal, told when it changes. (Qt
 // has this from 6.5 on.)
 #pragma once
 
@@ -16,6 +16,8 @@ class SystemAppearance : public QObject {
 
   // Without a portal: what the platform's own palette says, as it was before the first theme was applied.
   bool dark() const { return dark_; }
+  // People who get dizzy turn animations off.
+  bool animated() const { return animated_; }
 
  signals:
   void changed(bool dark);
@@ -27,7 +29,7 @@ class SystemAppearance : public QObject {
   SystemAppearance();
   void askPortal();
 
-  bool dark_ = false;
+  bool dark_ = false, animated_ = true;
 };
 
 }  // namespace evical::ui

@@ -92,4 +92,8 @@ void applyTheme(QApplication& application, Appearance appearance) {
   setColours(application, appearance == Appearance::System ? system.dark() : appearance == Appearance::Dark);
 }
 
+bool desktopAnimates() {
+  return SystemAppearance::instance().animated();
+}
+
 }  // namespace evical::ui

@@ -30,6 +30,9 @@ const Theme& theme();  // of the palette that is set; GUI thread only
 // Fusion style, palette, style sheet and font. May be called again to switch.
 void applyTheme(QApplication& application, Appearance appearance);
 
+// Whether the desktop wants things to move: people who get dizzy turn animations off.
+bool desktopAnimates();
+
 // One of the icons in resources/icons (SVG, by file name without ending), tinted
 // with the palette's text colour.
 QIcon icon(const QString& name);

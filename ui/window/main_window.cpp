@@ -292,6 +292,8 @@ void MainWindow::calibrate() {
   const Session& session = workbench_.document.session();
   if (workbench_.lens.aim() == CalibrationAim::Camera)
     workbench_.intrinsics.start(session, workbench_.lens.camera());
+  else if (auto detected = workbench_.check.detectedFor(session))
+    workbench_.calibration.startAgain(session, std::move(detected->pass), std::move(detected->intrinsics));
   else
     workbench_.calibration.start(session);
 }

@@ -3,6 +3,8 @@
 #include "ui/theme/theme.h"
 #include "ui/window/about.h"
 #include "ui/window/main_window.h"
+#include "ui/window/print_board.h"
+#include "ui/window/recording_check.h"
 #include "ui/window/session_files.h"
 #include "ui/window/user_guide.h"
 
@@ -75,6 +77,12 @@ void MainWindow::makeFileMenu() {
     recent->setEnabled(!recent->isEmpty());
   });
   menu->addSeparator();
+  QAction* const print_board = makeAction(this, "board", tr("Print a &board..."),
+                                          tr("A target for the camera, true to scale"), QKeySequence());
+  print_board->setObjectName("print_board_action");
+  connect(print_board, &QAction::triggered, this, [this] { showPrintBoard(this, workbench_); });
+  menu->addAction(print_board);
+  menu->addSeparator();
   menu->addActions({actions_.save, actions_.save_as});
   menu->addSeparator();
   menu->addActions({actions_.export_result, actions_.export_every, actions_.report});
@@ -105,7 +113,9 @@ void MainWindow::makeCalibrateMenu() {
   actions_.calibrate->setIconVisibleInMenu(false);  // it is tinted for the button's background
   connect(actions_.calibrate, &QAction::triggered, this, &MainWindow::calibrate);
   connect(actions_.cancel, &QAction::triggered, this, &MainWindow::cancel);
-  menuBar()->addMenu(tr("&Calibrate"))->addActions({actions_.calibrate, actions_.cancel});
+  menuBar()
+      ->addMenu(tr("&Calibrate"))
+      ->addActions({actions_.calibrate, actions_.cancel, makeCheckAction(workbench_, this)});
 }
 
 void MainWindow::makeViewMenu() {
@@ -157,7 +167,10 @@ void MainWindow::makeHelpMenu() {
   actions_.about = makeAction(this, "info", tr("&About Evical"), tr("About Evical"), {});
   connect(actions_.guide, &QAction::triggered, this, [this] { showUserGuide(this); });
   connect(actions_.about, &QAction::triggered, this, [this] { showAbout(this, workbench_.version); });
-  menuBar()->addMenu(tr("&Help"))->addActions({actions_.guide, actions_.keys, actions_.about});
+  QAction* const how =
+      makeAction(this, "play", tr("How to &record..."), tr("The motions that a recording needs"), {});
+  connect(how, &QAction::triggered, this, [this] { showHowToRecord(this); });
+  menuBar()->addMenu(tr("&Help"))->addActions({actions_.guide, actions_.keys, how, actions_.about});
 }
 
 void MainWindow::makeToolBar() {

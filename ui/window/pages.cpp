@@ -14,6 +14,8 @@
 #include "ui/window/after_turns.h"
 #include "ui/window/lens_pages.h"
 #include "ui/window/linked_pages.h"
+#include "ui/window/print_board.h"
+#include "ui/window/recording_check.h"
 #include "ui/window/rig_page.h"
 #include "ui/window/session_files.h"
 #include "ui/window/workbench.h"
@@ -27,6 +29,10 @@ void wireStart(StartScreen& start, Workbench& workbench, SessionFiles& files) {
   start.setRecentFiles(files.recentFiles());
   QObject::connect(&start, &StartScreen::openRecordingRequested, &files, &SessionFiles::chooseRecording);
   QObject::connect(&start, &StartScreen::openSessionRequested, &files, &SessionFiles::chooseSession);
+  QObject::connect(&start, &StartScreen::printBoardRequested, &start,
+                   [&start, &workbench] { showPrintBoard(start.window(), workbench); });
+  QObject::connect(&start, &StartScreen::howToRecordRequested, &start,
+                   [&start] { showHowToRecord(start.window()); });
   QObject::connect(&start, &StartScreen::demoRequested, &files, [&workbench, &files] {
     if (workbench.runner.running()) return;
     workbench.lens.setAim(CalibrationAim::Rig);  // which the demo is made for
@@ -139,6 +145,7 @@ std::vector<PageEntry> buildPages(Pages& pages, QWidget* parent) {
 void wirePages(const Pages& pages, Workbench& workbench, SessionFiles& files, LensFiles& lens_files) {
   wireStart(*pages.start, workbench, files);
   wireRecording(*pages.recording, workbench, files);
+  wireRecordingCheck(*pages.recording, workbench);
   wireResult(*pages.result, workbench, files);
   QObject::connect(pages.detection, &DetectionScreen::recordingWanted, &files,
                    &SessionFiles::lookForRecording);

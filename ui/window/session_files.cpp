@@ -9,6 +9,7 @@
 #include "core/pipeline/simulation.h"
 #include "core/report/export/export_target.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "ui/document/printed_board.h"
 
 #include <QDesktopServices>
 #include <QDir>
@@ -104,6 +105,7 @@ SessionFiles::SessionFiles(Workbench& workbench, QWidget* window)
           [this](const QString& recording, const std::shared_ptr<const Inspection>& inspection) {
             recordingInspected(recording, *inspection);
             furtherRecordingInspected(recording, *inspection);
+            takeResolutions(recording, *inspection);
           });
   connect(&workbench_.inspection, &InspectionJob::failed, this,
           [this](const QString& recording, const JobError& error) {
@@ -222,7 +224,10 @@ void SessionFiles::recordingInspected(const QString& recording, const Inspection
   if (recording != awaited_recording_) return;
   awaited_recording_.clear();
   if (refuseUseless(recording, inspection)) return inspectSession();
-  workbench_.document.startSession(guessedSession(recording.toStdString(), inspection));
+  Session session = withSeenResolutions(guessedSession(recording.toStdString(), inspection),
+                                        recording.toStdString(), inspection);
+  if (const auto printed = lastPrintedBoard()) setPrintedBoard(*printed, session);
+  workbench_.document.startSession(session);
   remember(recording);
   emit opened();
 }
@@ -247,6 +252,18 @@ void SessionFiles::furtherRecordingInspected(const QString& recording, const Ins
   const bool more = found.cameras.size() + found.imus.size() >
                     document.session().cameras.size() + document.session().imus.size();
   if (more) document.edit(found, tr("Add sensors of %1").arg(QFileInfo(recording).fileName()), {});
+}
+
+// Of sessions that leave out what their recordings do not say either.
+void SessionFiles::takeResolutions(const QString& recording, const Inspection& inspection) {
+  CalibrationDocument& document = workbench_.document;
+  const Session found = withSeenResolutions(document.session(), recording.toStdString(), inspection);
+  const auto same = [](const SessionCamera& a, const SessionCamera& b) {
+    return a.resolution_px == b.resolution_px;
+  };
+  const std::vector<SessionCamera>& before = document.session().cameras;
+  if (!std::equal(found.cameras.begin(), found.cameras.end(), before.begin(), before.end(), same))
+    document.edit(found, tr("Take the resolution from the recording"), {});
 }
 
 void SessionFiles::chooseSession() {

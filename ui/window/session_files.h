@@ -71,6 +71,7 @@ class SessionFiles : public QObject {
   void remember(const QString& file);
   void recordingInspected(const QString& recording, const Inspection& inspection);
   void furtherRecordingInspected(const QString& recording, const Inspection& inspection);
+  void takeResolutions(const QString& recording, const Inspection& inspection);
   bool refuseUseless(const QString& recording, const Inspection& inspection);  // false for what is useful
   QString askForRecording(const QString& title);
   void inspectSession();

@@ -8,6 +8,7 @@
 #include "ui/jobs/inspection_job.h"
 #include "ui/jobs/intrinsics_job.h"
 #include "ui/jobs/job_runner.h"
+#include "ui/jobs/recording_check_job.h"
 #include "ui/jobs/run_history.h"
 
 #include <QString>
@@ -25,6 +26,7 @@ struct Workbench {
   LensDocument lens{document};
   IntrinsicsJob intrinsics{runner};  // of one camera's lens alone
   InspectionJob inspection;          // has a runner of its own: it may go on beside a calibration
+  RecordingCheckJob check;           // so has this one, which gives way to all others
 };
 
 }  // namespace evical::ui

@@ -43,44 +43,29 @@ const char* remedy(WindowOutcome outcome) {
   }
 }
 
+WindowOutcome mostFrequentLoss(const CameraMeasures& camera) {
+  std::size_t worst = static_cast<std::size_t>(WindowOutcome::TooFewEvents);
+  for (std::size_t k = worst; k < static_cast<std::size_t>(WindowOutcome::RejectedByHand); ++k)
+    if (camera.outcomes[k] > camera.outcomes[worst]) worst = k;
+  return static_cast<WindowOutcome>(worst);
+}
+
 void adviseDetection(const std::string& name, const CameraMeasures& camera, std::vector<Advice>& all) {
   constexpr double kGoodRate = 0.9, kManyPartial = 0.7, kWorthNaming = 0.05;
   if (camera.windows == 0) return;
   if (camera.detectionRate() < kGoodRate) {
-    std::size_t worst = static_cast<std::size_t>(WindowOutcome::TooFewEvents);
-    for (std::size_t k = worst; k < static_cast<std::size_t>(WindowOutcome::RejectedByHand); ++k)
-      if (camera.outcomes[k] > camera.outcomes[worst]) worst = k;
-    const auto outcome = static_cast<WindowOutcome>(worst);
-    if (camera.outcomes[worst] > kWorthNaming * camera.windows)
-      all.push_back(
-          {remedy(outcome),
-           fmt::format("{}: the board was found in {} of the windows; most others: {} ({}).", name,
-                       percent(camera.detectionRate()), windowOutcomeName(outcome), camera.outcomes[worst])});
+    const WindowOutcome worst = mostFrequentLoss(camera);
+    const int lost = camera.outcomes[static_cast<std::size_t>(worst)];
+    if (lost > kWorthNaming * camera.windows)
+      all.push_back({remedy(worst),
+                     fmt::format("{}: the board was found in {} of the windows; most others: {} ({}).", name,
+                                 percent(camera.detectionRate()), windowOutcomeName(worst), lost)});
   }
   if (camera.views > 0 && camera.partial > kManyPartial * camera.views)
     all.push_back(
         {"Let the whole board be in the image more of the time: step back a little, or use a smaller board.",
          fmt::format("{}: {} of the views show only a part of it.", name,
                      percent(static_cast<double>(camera.partial) / camera.views))});
-}
-
-// Thirds of the image without a circle, in words.
-std::string emptyRegions(const CameraMeasures& camera) {
-  static constexpr std::array<const char*, 3> kRows = {"top", "middle", "bottom"},
-                                              kCols = {"left", "centre", "right"};
-  std::array<std::array<std::array<int, 2>, 3>, 3> cells = {};  // seen, all
-  for (std::size_t i = 0; i < camera.cells.size(); ++i) {
-    const std::size_t row = i / CameraMeasures::kCols, col = i % CameraMeasures::kCols;
-    auto& region = cells[row * 3 / CameraMeasures::kRows][col * 3 / CameraMeasures::kCols];
-    region[0] += camera.cells[i].circles > 0 ? 1 : 0;
-    ++region[1];
-  }
-  std::string text;
-  for (std::size_t row = 0; row < 3; ++row)
-    for (std::size_t col = 0; col < 3; ++col)
-      if (2 * cells[row][col][0] < cells[row][col][1])
-        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", kRows[row], kCols[col]);
-  return text;
 }
 
 void adviseCoverage(const std::string& name, const CameraMeasures& camera, std::vector<Advice>& all) {
@@ -223,6 +208,28 @@ void adviseHalves(const ReportData& data, std::vector<Advice>& all) {
 }
 
 }  // namespace
+
+std::string emptyRegions(const CameraMeasures& camera) {
+  static constexpr std::array<const char*, 3> kRows = {"top", "middle", "bottom"},
+                                              kCols = {"left", "centre", "right"};
+  std::array<std::array<std::array<int, 2>, 3>, 3> cells = {};  // seen, all
+  for (std::size_t i = 0; i < camera.cells.size(); ++i) {
+    const std::size_t row = i / CameraMeasures::kCols, col = i % CameraMeasures::kCols;
+    auto& region = cells[row * 3 / CameraMeasures::kRows][col * 3 / CameraMeasures::kCols];
+    region[0] += camera.cells[i].circles > 0 ? 1 : 0;
+    ++region[1];
+  }
+  std::string text;
+  for (std::size_t row = 0; row < 3; ++row)
+    for (std::size_t col = 0; col < 3; ++col)
+      if (2 * cells[row][col][0] < cells[row][col][1])
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", kRows[row], kCols[col]);
+  return text;
+}
+
+std::string remedyForMissed(const CameraMeasures& camera) {
+  return camera.views < camera.windows ? remedy(mostFrequentLoss(camera)) : std::string();
+}
 
 std::vector<Advice> adviceFor(const ReportData& data, const Measures& measures) {
   std::vector<Advice> all;

@@ -14,6 +14,11 @@ struct Advice {
   std::string evidence;  // what was measured
 };
 
+// Thirds of the image where hardly any circle was, in words: "top left, centre"; empty where there is none.
+std::string emptyRegions(const CameraMeasures& camera);
+// What mends most of the windows without the board; empty where there is none.
+std::string remedyForMissed(const CameraMeasures& camera);
+
 std::vector<Advice> adviceFor(const ReportData& data, const Measures& measures);
 
 }  // namespace evical::html

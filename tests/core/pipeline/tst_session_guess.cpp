@@ -151,6 +151,34 @@ class TestSessionGuess : public QObject {
   }
 
   // Beside events they are for who asks for them.
+  void resolution_thatNobodySaysIsThatOfTheEvents_data() {
+    QTest::addColumn<int>("seen_width_px");
+    QTest::addColumn<int>("seen_height_px");
+    QTest::addColumn<int>("width_px");
+    QTest::addColumn<int>("height_px");
+    QTest::newRow("all of a usual sensor") << 320 << 240 << 320 << 240;
+    QTest::newRow("all but its rim") << 345 << 258 << 346 << 260;
+    QTest::newRow("no usual sensor") << 500 << 400 << 500 << 400;
+  }
+  void resolution_thatNobodySaysIsThatOfTheEvents() {
+    QFETCH(int, seen_width_px);
+    QFETCH(int, seen_height_px);
+    QFETCH(int, width_px);
+    QFETCH(int, height_px);
+    StreamSummary stream = eventStream("/events", {});
+    stream.seen_px = {seen_width_px, seen_height_px};
+    const Inspection inspection = holding({stream, imuStream("/imu")});
+    Session session = guessedSession("a.bag", inspection);
+    QVERIFY(!session.cameras[0].resolution_px.known());
+    QVERIFY((withSeenResolutions(session, "a.bag", inspection).cameras[0].resolution_px ==
+             Resolution{width_px, height_px}));
+    // Not by another file's stream of this name, and not where somebody has said it.
+    QVERIFY(!withSeenResolutions(session, "b.bag", inspection).cameras[0].resolution_px.known());
+    session.cameras[0].resolution_px = {640, 480};
+    QVERIFY(
+        (withSeenResolutions(session, "a.bag", inspection).cameras[0].resolution_px == Resolution{640, 480}));
+  }
+
   void frames_areCamerasWhereNothingElseSees() {
     StreamSummary frames = eventStream("/cam0/image");
     frames.info.type = StreamType::Frames;

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What comes before a recording: a board that is printed and measured, and how to move before it.
+#include "core/pipeline/session.h"
+#include "core/report/blink_page.h"
+#include "core/report/board_drawing.h"
+#include "tests/support/test_program.h"
+#include "tests/ui/simulated_session.h"
+#include "tests/ui/window_fixture.h"
+#include "ui/document/printed_board.h"
+#include "ui/forms/number_field.h"
+#include "ui/screens/board_form.h"
+#include "ui/screens/how_to_record_dialog.h"
+#include "ui/screens/motion_picture.h"
+#include "ui/screens/print_board_dialog.h"
+#include "ui/window/print_board.h"
+#include "ui/window/session_files.h"
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QFile>
+#include <QLabel>
+#include <QListWidget>
+#include <QPushButton>
+#include <QSpinBox>
+#include <QToolButton>
+
+using namespace evical;
+using namespace evical::ui;
+using namespace evical::ui::test;
+
+namespace {
+
+std::string contentOf(const QString& path) {
+  QFile file(path);
+  return file.open(QIODevice::ReadOnly) ? file.readAll().toStdString() : std::string();
+}
+
+void type(QLineEdit* field, const QString& text) {
+  field->setFocus();
+  field->selectAll();
+  QTest::keyClicks(field, text);
+  QTest::keyClick(field, Qt::Key_Return);
+}
+
+QString saidBy(const QWidget& dialog) {
+  QString all;
+  for (const QLabel* const label : dialog.findChildren<QLabel*>())
+    if (label->isVisibleTo(&dialog)) all += label->text() + '\n';
+  return all;
+}
+
+}  // namespace
+
+class TestBeforeRecording : public QObject {
+  Q_OBJECT
+
+  QTemporaryDir scratch_;
+
+ private slots:
+  void initTestCase() {
+    usePrivateFolders(scratch_);
+    simulatedSession();
+  }
+  void init() { QSettings().clear(); }
+
+  void board_isWrittenAsCoreDrawsIt_data() {
+    QTest::addColumn<int>("type");
+    QTest::addColumn<QString>("ending");
+    for (int type = 0; type < static_cast<int>(kBoardTypeNames.size()); ++type)
+      QTest::addRow("%s as PDF", kBoardTypeNames[static_cast<std::size_t>(type)]) << type << "pdf";
+    QTest::newRow("SVG") << 0 << "svg";
+    QTest::newRow("PNG") << 0 << "png";
+    QTest::newRow("page that blinks") << 0 << "html";
+  }
+  void board_isWrittenAsCoreDrawsIt() {
+    QFETCH(int, type);
+    QFETCH(QString, ending);
+    WindowFixture test;
+    showPrintBoard(&test.window, test.window.workbench());
+    auto* const dialog = test.child<PrintBoardDialog>();
+    auto* const types = dialog->findChild<BoardForm*>()->findChild<QComboBox*>();
+    types->setCurrentIndex(type);
+    emit types->activated(type);
+    dialog->findChild<QComboBox*>("paper")->setCurrentText("A2");
+    const Board board = dialog->board();
+    QCOMPARE(static_cast<int>(board.type), type);
+    const SheetOptions options = dialog->sheetOptions();
+    QCOMPARE(options.paper->name, std::string("A2"));
+    const QString file = scratch_.filePath("board." + ending);
+    QFile::remove(file);
+    dialog->saveTo(file);
+    QTRY_VERIFY_WITH_TIMEOUT(dialog->findChild<QPushButton*>("open_board")->isVisible(), kPatience_ms);
+    const std::string expected = ending == "pdf"   ? boardPdf(board, options, dialog->tagPrint())
+                                 : ending == "svg" ? boardSvg(board, options, dialog->tagPrint())
+                                 : ending == "png" ? boardPng(board, 300.0, options, dialog->tagPrint())
+                                                   : blinkPage(board, options.margin_m, dialog->tagPrint());
+    QVERIFY(contentOf(file) == expected);
+    QVERIFY(saidBy(*dialog).contains(file));
+  }
+
+  void measuredLength_arrivesInTheSession() {
+    WindowFixture test;
+    test.document().startSession(readSession(simulatedSession().toStdString()));
+    QVERIFY(!test.document().boardConfirmed());
+    showPrintBoard(&test.window, test.window.workbench());
+    auto* const dialog = test.child<PrintBoardDialog>();
+    dialog->findChild<QCheckBox*>("is_measured")->click();
+    QCOMPARE(dialog->findChild<QSpinBox*>("measured_circles")->value(), 6);  // of 11 staggered rows
+    type(dialog->findChild<QLineEdit*>("measured_length"), "502.5");
+    QTest::mouseClick(dialog->findChild<QPushButton*>("take_board"), Qt::LeftButton);
+    const Session& session = test.document().session();
+    QVERIFY(session.measured.has_value());
+    QCOMPARE(session.measured->spacings, 10);
+    QCOMPARE(session.measured->length_m, 0.5025);
+    QVERIFY(std::abs(session.board.spacing_m - 0.05025) < 1e-12);
+    QVERIFY(test.document().boardConfirmed());
+    test.document().undoStack().undo();
+    QVERIFY(!test.document().session().measured);
+    test.document().undoStack().redo();
+    answerQuestion(QMessageBox::Discard);
+    QVERIFY(test.window.close());
+  }
+
+  void boardWithoutASession_isThatOfTheNextRecording() {
+    WindowFixture test;
+    QVERIFY(!lastPrintedBoard());
+    QTest::mouseClick(test.child<QPushButton>("print_board_button"), Qt::LeftButton);
+    auto* const dialog = test.child<PrintBoardDialog>();
+    QVERIFY(dialog != nullptr && dialog->isVisible());
+    dialog->findChild<BoardForm*>()->findChildren<QSpinBox*>().at(0)->setValue(9);
+    dialog->findChild<QCheckBox*>("is_measured")->click();
+    type(dialog->findChild<QLineEdit*>("measured_length"), "161");
+    QTest::mouseClick(dialog->findChild<QPushButton*>("take_board"), Qt::LeftButton);
+    const Session recorded = readSession(simulatedSession().toStdString());
+    test.window.files().open(QString::fromStdString(recorded.recording.string()));
+    QTRY_VERIFY_WITH_TIMEOUT(test.document().hasSession(), kPatience_ms);
+    QCOMPARE(test.document().session().board.rows, 9);
+    QCOMPARE(test.document().session().measured->length_m, 0.161);
+    answerQuestion(QMessageBox::Discard);
+    QVERIFY(test.window.close());
+  }
+
+  void paperThatIsTooSmall_isSaid_andNothingIsOffered() {
+    PrintBoardDialog dialog(Board{}, nullptr);
+    dialog.show();
+    dialog.findChild<QComboBox*>("paper")->setCurrentText("A4");
+    QVERIFY2(saidBy(dialog).contains("A4") && saidBy(dialog).contains("larger paper"),
+             qPrintable(saidBy(dialog)));
+    QVERIFY(!dialog.findChild<QPushButton*>("save_board")->isEnabled());
+    dialog.findChild<QComboBox*>("paper")->setCurrentText("A0");
+    QVERIFY(dialog.findChild<QPushButton*>("save_board")->isEnabled());
+  }
+
+  void folderThatIsNotThere_isSaid() {
+    WindowFixture test;
+    showPrintBoard(&test.window, test.window.workbench());
+    auto* const dialog = test.child<PrintBoardDialog>();
+    dialog->saveTo(scratch_.filePath("nowhere/board.pdf"));
+    QTRY_VERIFY_WITH_TIMEOUT(saidBy(*dialog).contains("nowhere"), kPatience_ms);
+    QTRY_VERIFY_WITH_TIMEOUT(!saidBy(*dialog).contains("Writing"), kPatience_ms);
+    QVERIFY(!dialog->findChild<QPushButton*>("open_board")->isVisible());
+  }
+
+  void motions_move_andCanBeHeld() {
+    HowToRecordDialog dialog(Motion::Moving, nullptr);
+    dialog.resize(900, 560);
+    dialog.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&dialog));
+    auto* const picture = dialog.findChild<MotionPicture*>();
+    QTRY_VERIFY(picture->share() > 0.0);
+    const QImage before = picture->grab().toImage();
+    QTRY_VERIFY(picture->grab().toImage() != before);
+    dialog.activateWindow();
+    QVERIFY(QTest::qWaitForWindowActive(&dialog));
+    QTest::keyClick(QApplication::focusWidget(), Qt::Key_Space);
+    QTRY_VERIFY(!picture->playing());  // a button is pressed for a moment
+    const double held = picture->share();
+    spin(200);
+    QCOMPARE(picture->share(), held);
+  }
+
+  void motions_areStillsWherePeopleWantThat_andEachIsAnother() {
+    HowToRecordDialog dialog(Motion::Reduced, nullptr);
+    dialog.resize(900, 560);
+    dialog.show();
+    QVERIFY(QTest::qWaitForWindowExposed(&dialog));
+    auto* const picture = dialog.findChild<MotionPicture*>();
+    QVERIFY(!picture->playing());
+    std::vector<QImage> seen;
+    for (const ShownMotion& motion : shownMotions()) {
+      dialog.showMotion(motion.name);
+      QCOMPARE(picture->accessibleName(), motion.title);
+      QVERIFY(saidBy(dialog).contains(motion.words));
+      const QImage now = picture->grab().toImage();
+      for (const QImage& other : seen) QVERIFY2(now != other, qPrintable(motion.name));
+      seen.push_back(now);
+    }
+  }
+
+  // What is shown must itself be good advice.
+  void motions_turnAndShiftAsTheyAreCalled() {
+    const auto spreadOf = [](const ShownMotion& motion) {
+      Eigen::Matrix<double, 6, 1> largest = Eigen::Matrix<double, 6, 1>::Zero();
+      for (int i = 0; i < 100; ++i) {
+        const RigidTransform pose = motion.world_from_camera(0.01 * i);
+        const Eigen::AngleAxisd turn(pose.rotation);
+        largest.head<3>() = largest.head<3>().cwiseMax((turn.angle() * turn.axis()).cwiseAbs());
+        largest.tail<3>() = largest.tail<3>().cwiseMax(pose.translation_m.cwiseAbs());
+      }
+      return largest;
+    };
+    const std::vector<std::pair<QString, int>> along = {{"left_right", 1}, {"up_down", 0}, {"about_lens", 2},
+                                                        {"sideways", 3},   {"upwards", 4}, {"nearer", 5}};
+    for (const auto& [name, axis] : along)
+      for (const ShownMotion& motion : shownMotions()) {
+        if (motion.name != name) continue;
+        Eigen::Index most = 0;
+        spreadOf(motion).maxCoeff(&most);
+        QCOMPARE(static_cast<int>(most), axis);
+      }
+    QVERIFY((spreadOf(shownMotions().back()).array() > 0.03).all());
+  }
+};
+
+EVICAL_TEST(TestBeforeRecording)
+#include "tst_before_recording.moc"

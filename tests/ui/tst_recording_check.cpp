@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The recording is looked through by itself after it is opened: what the page says then, and that nothing waits for it.
+#include "tests/support/test_program.h"
+#include "tests/ui/simulated_session.h"
+#include "tests/ui/window_fixture.h"
+#include "ui/screens/check_card.h"
+#include "ui/screens/light_mark.h"
+#include "ui/screens/recording_screen.h"
+#include "ui/window/session_files.h"
+
+#include <QElapsedTimer>
+#include <QLabel>
+#include <QPushButton>
+#include <QToolButton>
+
+using namespace evical;
+using namespace evical::ui;
+using namespace evical::ui::test;
+
+namespace {
+
+struct CheckFixture : WindowFixture {
+  RecordingCheckJob& check = window.workbench().check;
+  QSignalSpy started{&check, &RecordingCheckJob::started}, checked{&check, &RecordingCheckJob::checkedAnew},
+      interrupted{&check, &RecordingCheckJob::interrupted};
+
+  CheckFixture() { check.setAutomatic(true); }
+  CheckCard* card() { return child<RecordingScreen>()->checkCard(); }
+  QString pageText() {
+    QString all;
+    for (const QLabel* const label : child<RecordingScreen>()->findChildren<QLabel*>())
+      if (label->isVisibleTo(child<RecordingScreen>())) all += label->text() + '\n';
+    return all;
+  }
+};
+
+}  // namespace
+
+class TestRecordingCheck : public QObject {
+  Q_OBJECT
+
+  QTemporaryDir scratch_;
+
+ private slots:
+  void initTestCase() {
+    usePrivateFolders(scratch_);
+    simulatedSession();
+  }
+  void init() { QSettings().clear(); }
+
+  void card_appearsByItself_andCalibrateStartsFromWhatWasDetected() {
+    CheckFixture test;
+    test.window.files().open(copyOfSimulatedSession(scratch_.path()));
+    QVERIFY(!test.card()->isVisibleTo(test.child<RecordingScreen>()));
+    QTRY_COMPARE_WITH_TIMEOUT(test.checked.size(), 1, kPatience_ms);
+    const QString text = test.card()->text();
+    QVERIFY2(test.card()->isVisible() && text.contains("Record 20 to 30 s"), qPrintable(text));
+    QVERIFY(!test.runner().running());
+    QTest::mouseClick(test.child<QToolButton>("check_details"), Qt::LeftButton);
+    const QString details = test.card()->text();
+    for (const char* const said :
+         {"Duration", "Board in view", "Coverage", "Turns", "Accelerations", "Expected translation", "px/s"})
+      QVERIFY2(details.contains(said), qPrintable(details));
+    QVERIFY(test.card()->findChildren<LightMark*>().size() > 8);
+    QVERIFY2(test.pageText().contains("Ready to calibrate"), qPrintable(test.pageText()));
+
+    QSignalSpy detecting(&test.window.workbench().calibration, &CalibrationJob::detecting);
+    QSignalSpy stages(&test.runner(), &JobRunner::stageStarted);
+    test.press(Qt::Key_F5);
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    QCOMPARE(detecting.size(), 0);
+    for (const QList<QVariant>& stage : stages) QVERIFY(stage.at(0).toString() != "detect");
+    const auto run = test.document().last().run;
+    QVERIFY(run && run->pass.detect_s > 0.0);
+    QCOMPARE(run->pass.detect_s, test.check.checked()->detected->pass.detect_s);
+    QCOMPARE(test.started.size(), 1);
+    QVERIFY(test.window.close());
+  }
+
+  void whatIsExpected_isWhatTheCalibrationFinds() {
+    CheckFixture test;
+    test.window.files().open(copyOfSimulatedSession(scratch_.path()));
+    QTRY_COMPARE_WITH_TIMEOUT(test.checked.size(), 1, kPatience_ms);
+    const ExpectedSigmas expected = test.check.checked()->assessment.sigmas.at(0);
+    test.press(Qt::Key_F5);
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    const double found_mm =
+        1e3 * test.document().last().run->result.uncertainty.cameras.at(0).translation_std_m.maxCoeff();
+    QVERIFY(expected.translation_mm < 1.5 * found_mm && found_mm < 1.5 * expected.translation_mm);
+    QVERIFY(test.window.close());
+  }
+
+  void calibrate_doesNotWaitForTheCheck() {
+    CheckFixture test;
+    test.window.files().open(copyOfSimulatedSession(scratch_.path()));
+    QTRY_VERIFY_WITH_TIMEOUT(test.check.running(), kPatience_ms);
+    QElapsedTimer since;
+    since.start();
+    test.press(Qt::Key_F5);
+    QVERIFY(test.runner().running());
+    QCOMPARE(test.interrupted.size(), 1);
+    QTRY_VERIFY_WITH_TIMEOUT(!test.check.running(), 5000 * kSlowdown);
+    QVERIFY(since.elapsed() < 1000 * kSlowdown);
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    spin(2000);  // the result says more: nothing starts anew
+    QVERIFY(!test.check.running());
+    QCOMPARE(test.checked.size(), 0);
+    QVERIFY(test.window.close());
+  }
+
+  void anotherSession_endsTheCheckOfTheOldOne() {
+    CheckFixture test;
+    test.window.files().open(copyOfSimulatedSession(scratch_.path()));
+    QTRY_VERIFY_WITH_TIMEOUT(test.check.running(), kPatience_ms);
+    Session other = test.document().session();
+    other.time_range_s = {{0.0, 0.5}};
+    test.document().edit(other, "Cut");
+    QTRY_COMPARE_WITH_TIMEOUT(test.checked.size(), 1, kPatience_ms);
+    const RecordingAssessment& assessment = test.check.checked()->assessment;
+    QVERIFY(!assessment.can_be_calibrated);
+    QVERIFY2(test.pageText().contains("Not ready"), qPrintable(test.pageText()));
+    QVERIFY2(test.card()->text().contains("Record 20 to 30 s"), qPrintable(test.card()->text()));
+    QVERIFY(!test.pageText().contains("Ready to calibrate"));
+    answerQuestion(QMessageBox::Discard);
+    QVERIFY(test.window.close());
+  }
+
+  void laterStages_areNoReasonToDetectAgain() {
+    CheckFixture test;
+    test.window.files().open(copyOfSimulatedSession(scratch_.path()));
+    QTRY_COMPARE_WITH_TIMEOUT(test.checked.size(), 1, kPatience_ms);
+    const double detect_s = test.check.checked()->detected->pass.detect_s;
+    Session stricter = test.document().session();
+    stricter.options.optimisation.needed_translation_mm = 0.01;
+    test.document().edit(stricter, "Need more");
+    QTRY_COMPARE_WITH_TIMEOUT(test.checked.size(), 2, kPatience_ms);
+    QCOMPARE(test.check.checked()->detected->pass.detect_s, detect_s);
+    QCOMPARE(test.check.checked()->assessment.light, Light::Poor);
+    QVERIFY2(test.card()->text().contains("not good enough"), qPrintable(test.card()->text()));
+    answerQuestion(QMessageBox::Discard);
+    QVERIFY(test.window.close());
+  }
+
+  void guessedBoard_isNotReadyUntilSomebodyConfirmsIt() {
+    CheckFixture test;
+    test.check.setAutomatic(false);
+    const Session recorded = readSession(simulatedSession().toStdString());
+    test.window.files().open(QString::fromStdString(recorded.recording.string()));
+    QTRY_VERIFY_WITH_TIMEOUT(test.document().hasSession(), kPatience_ms);
+    QVERIFY2(test.pageText().contains("11 x 4, 50 mm: not confirmed"), qPrintable(test.pageText()));
+    QVERIFY(!test.pageText().contains("Ready to calibrate"));
+    auto* const confirm = test.child<QPushButton>("confirm_board");
+    QVERIFY(confirm->isVisible());
+    QTest::mouseClick(confirm, Qt::LeftButton);
+    QVERIFY2(test.pageText().contains("Ready to calibrate"), qPrintable(test.pageText()));
+    QVERIFY(!confirm->isVisible());
+    answerQuestion(QMessageBox::Discard);
+    QVERIFY(test.window.close());
+  }
+
+  void lights_areToldByShapeToo() {
+    std::vector<QImage> shapes;
+    for (const Light light : {Light::Good, Light::Fair, Light::Poor}) {
+      LightMark mark;
+      mark.setLight(light);
+      // Where something is painted, whatever the colour.
+      QImage shape = mark.grab().toImage().convertToFormat(QImage::Format_RGB32);
+      const QRgb ground = shape.pixel(0, 0);
+      for (int y = 0; y < shape.height(); ++y)
+        for (int x = 0; x < shape.width(); ++x)
+          shape.setPixel(x, y, shape.pixel(x, y) == ground ? 0xffffffff : 0xff000000);
+      for (const QImage& other : shapes) QVERIFY(shape != other);
+      shapes.push_back(shape);
+      QVERIFY(!mark.accessibleName().isEmpty());
+    }
+  }
+};
+
+EVICAL_TEST(TestRecordingCheck)
+#include "tst_recording_check.moc"

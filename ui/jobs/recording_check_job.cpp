@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/jobs/recording_check_job.h"
+
+#include "core/base/modest_thread.h"
+#include "core/data/calibration_stage.h"
+
+#include <utility>
+
+namespace evical::ui {
+namespace {
+
+constexpr int kPause_ms = 800;  // between two key strokes it is not worth while
+
+bool isSame(const Session& one, const Session& other) {
+  const std::filesystem::path folder = "/";
+  return sessionYaml(one, folder) == sessionYaml(other, folder);
+}
+
+// By core's names; shares are those of an everyday recording.
+std::vector<JobStage> checkStages() {
+  return {{nameOf(CalibrationStage::FirstLook), 0.05},
+          {nameOf(CalibrationStage::Intrinsics), 0.25},
+          {nameOf(CalibrationStage::Detect), 0.5},
+          {"assess", 0.2}};
+}
+
+}  // namespace
+
+RecordingCheckJob::RecordingCheckJob(QObject* parent) : QObject(parent) {
+  qRegisterMetaType<std::shared_ptr<const CheckedRecording>>();
+  pause_.setSingleShot(true);
+  pause_.setInterval(kPause_ms);
+  connect(&pause_, &QTimer::timeout, this, &RecordingCheckJob::start);
+  connect(&runner_, &JobRunner::progressed, this, [this](const JobProgress& progress) {
+    if (!due_) emit progressed(progress.fraction);
+  });
+  connect(&runner_, &JobRunner::failed, this, [this](const JobError& error) {
+    if (!due_) emit failed(error);
+  });
+  connect(&runner_, &JobRunner::finished, this, &RecordingCheckJob::finish);
+}
+
+void RecordingCheckJob::setAutomatic(bool automatic) {
+  if (automatic == automatic_) return;
+  automatic_ = automatic;
+  if (!automatic) {
+    pause_.stop();
+    due_ = due_ || runner_.running();
+    runner_.cancel();
+    return;
+  }
+  due_ = due_ || checked_ == nullptr;
+  startSoon();
+}
+
+void RecordingCheckJob::setSession(std::optional<Session> session) {
+  if (session.has_value() == session_.has_value() && (!session || isSame(*session, *session_))) return;
+  session_ = std::move(session);
+  if (!session_) detected_.reset();
+  checked_.reset();
+  due_ = session_.has_value();
+  runner_.cancel();
+  emit outdated();
+  startSoon();
+}
+
+void RecordingCheckJob::giveWay(bool busy) {
+  if (busy == busy_) return;
+  busy_ = busy;
+  if (!busy) return startSoon();
+  pause_.stop();
+  if (!runner_.running()) return;
+  due_ = session_.has_value();
+  runner_.cancel();
+  emit interrupted();
+}
+
+void RecordingCheckJob::startSoon() {
+  if (due_ && automatic_ && !busy_) pause_.start();
+}
+
+void RecordingCheckJob::start() {
+  if (!due_ || busy_ || !automatic_ || !session_ || runner_.running()) return;
+  due_ = false;
+  found_ = std::make_shared<CheckedRecording>();
+  found_for_ = *session_;
+  const auto kept = detected_ && detectsTheSame(detected_for_, found_for_) ? detected_ : nullptr;
+  const auto work = [session = found_for_, found = found_, kept](const RunContext& context) {
+    makeThreadLast();
+    if (!kept) {
+      *found = checkRecording(session, context);
+      return;
+    }
+    found->detected = forSession(*kept->detected, session);
+    found->assessment = assessRecording(session, *found->detected, context);
+  };
+  runner_.start(tr("Check the recording"), checkStages(), work);
+  emit started();
+}
+
+void RecordingCheckJob::finish(JobOutcome outcome) {
+  const auto found = std::exchange(found_, nullptr);
+  if (outcome == JobOutcome::Done && found && found->detected && session_) {
+    detected_ = found;
+    detected_for_ = found_for_;
+  }
+  if (outcome == JobOutcome::Done && !due_ && found) {
+    checked_ = found;
+    emit checkedAnew(checked_);
+  }
+  startSoon();
+}
+
+std::optional<DetectedRecording> RecordingCheckJob::detectedFor(const Session& session) const {
+  if (!detected_ || !detectsTheSame(detected_for_, session)) return std::nullopt;
+  return forSession(*detected_->detected, session);
+}
+
+}  // namespace evical::ui

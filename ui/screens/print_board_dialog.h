@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A board to print: its numbers, the paper, a preview; to a file, to a printer, or as a page that blinks. Afterwards what
+// a ruler says of the print, for the session.
+#pragma once
+
+#include "core/geometry/board.h"
+#include "core/geometry/measured_length.h"
+#include "core/report/board_sheet.h"
+
+#include <QDialog>
+
+#include <optional>
+
+class QComboBox;
+class QDialogButtonBox;
+class QFormLayout;
+class QLabel;
+class QPushButton;
+class QSpinBox;
+
+namespace evical::ui {
+
+class BoardForm;
+class MeasuredForm;
+class NumberField;
+class SheetPreview;
+
+// A file that is wanted: .pdf, .svg, .png, or .html, which blinks.
+struct BoardFile {
+  QString path;
+  Board board;
+  SheetOptions options;
+  TagPrint print;
+  double resolution_dpi = 300.0;  // of a .png
+};
+// Long for a large .png. Throws CalibrationError.
+void writeBoardFile(const BoardFile& file);
+
+class PrintBoardDialog : public QDialog {
+  Q_OBJECT
+
+ public:
+  PrintBoardDialog(const Board& board, QWidget* parent);
+
+  const Board& board() const { return board_; }
+  SheetOptions sheetOptions() const;
+  TagPrint tagPrint() const;
+
+  void saveTo(const QString& file);  // asks for it, by the file's ending
+  void setWritten(const QString& file);
+  void setNotWritten(const QString& why);
+
+ signals:
+  void fileRequested(const evical::ui::BoardFile& file);
+  // The board is the session's from now on, with what was measured of it.
+  void boardTaken(const evical::Board& board, const std::optional<evical::MeasuredLength>& measured);
+
+ private:
+  QWidget* makeFields();
+  QWidget* makePaper();
+  QWidget* makeMeasure();
+  void makeButtons();
+  void chooseFile();
+  void chooseBlinkFile();
+  void print();
+  void showBoard();
+  void say(const QString& text, bool problem);
+
+  Board board_;
+  std::optional<BoardSheet> sheet_;
+  BoardForm* form_;
+  QFormLayout* paper_form_;
+  QComboBox *paper_, *markers_, *border_bits_;
+  NumberField* margin_mm_;
+  QSpinBox* resolution_dpi_;
+  SheetPreview* preview_;
+  QLabel *message_, *half_turn_;
+  MeasuredForm* measured_;
+  QPushButton *save_, *blink_, *print_, *open_, *take_;
+  QString written_file_;
+};
+
+}  // namespace evical::ui

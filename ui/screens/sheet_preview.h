@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A printed sheet as core lays it out, on the screen and on a printer.
+#pragma once
+
+#include "core/report/board_sheet.h"
+
+#include <QWidget>
+
+#include <optional>
+
+class QPainter;
+
+namespace evical::ui {
+
+// In millimetres of the sheet, whatever the painter makes of them.
+void paintSheet(QPainter& painter, const BoardSheet& sheet);
+
+class SheetPreview : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit SheetPreview(QWidget* parent = nullptr);
+
+  void setSheet(std::optional<BoardSheet> sheet);  // nothing: there is none to be shown
+  QSize sizeHint() const override { return {420, 420}; }
+  QSize minimumSizeHint() const override { return {220, 220}; }
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  std::optional<BoardSheet> sheet_;
+};
+
+}  // namespace evical::ui

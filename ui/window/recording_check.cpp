@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/window/recording_check.h"
+
+#include "ui/screens/check_card.h"
+#include "ui/screens/recording_screen.h"
+#include "ui/window/print_board.h"
+#include "ui/window/workbench.h"
+
+#include <QAction>
+#include <QSettings>
+
+#include <memory>
+
+namespace evical::ui {
+namespace {
+
+const char* const kKey = "check_recordings";
+
+QString boardText(const Session& session) {
+  if (!session.further_boards.empty()) return QObject::tr("%1 boards").arg(session.further_boards.size() + 1);
+  return QObject::tr("%1 x %2, %3 mm")
+      .arg(session.board.rows)
+      .arg(session.board.cols)
+      .arg(1e3 * session.board.spacing_m);
+}
+
+// What stands between a session without problems and "ready".
+void showReadiness(RecordingScreen& screen, const Workbench& workbench, bool failed) {
+  const CalibrationDocument& document = workbench.document;
+  const bool unconfirmed = document.hasSession() && !document.boardConfirmed();
+  screen.checkCard()->setUnconfirmedBoard(unconfirmed ? boardText(document.session()) : QString());
+  const auto& checked = workbench.check.checked();
+  if (failed || (checked && !checked->assessment.can_be_calibrated))
+    return screen.setReservation(QObject::tr("Not ready: see below"), Light::Poor);
+  if (workbench.check.awaited())
+    return screen.setReservation(QObject::tr("Being looked through"), Light::Good);
+  if (unconfirmed) return screen.setReservation(QObject::tr("The board is not confirmed"), Light::Fair);
+  if (checked && checked->assessment.light == Light::Poor)
+    return screen.setReservation(QObject::tr("Not good enough: see below"), Light::Fair);
+  screen.setReservation({}, Light::Good);
+}
+
+// A session that has all it needs, and whose recording has been looked through.
+void choose(Workbench& workbench) {
+  const Session& session = workbench.document.session();
+  const bool complete = workbench.document.hasSession() && !workbench.inspection.running() &&
+                        !session.board_blinks && sessionProblems(session).empty();
+  if (!complete) return workbench.check.setSession(std::nullopt);
+  // A result says more.
+  const bool calibrated = workbench.document.last().run && !workbench.document.runIsOutdated();
+  if (calibrated && !workbench.check.checked()) return workbench.check.setSession(std::nullopt);
+  workbench.check.setSession(session);
+}
+
+void wireCard(CheckCard& card, RecordingScreen& screen, Workbench& workbench) {
+  const RecordingCheckJob& check = workbench.check;
+  const auto ready = [&screen, &workbench] { showReadiness(screen, workbench, false); };
+  QObject::connect(&check, &RecordingCheckJob::outdated, &card, [&card, ready] {
+    card.clear();
+    ready();
+  });
+  QObject::connect(&check, &RecordingCheckJob::started, &card, [&card, ready] {
+    card.setChecking(0.0);
+    ready();
+  });
+  QObject::connect(&check, &RecordingCheckJob::progressed, &card, &CheckCard::setChecking);
+  QObject::connect(&check, &RecordingCheckJob::interrupted, &card, &CheckCard::setWaiting);
+  QObject::connect(&check, &RecordingCheckJob::checkedAnew, &card,
+                   [&card, ready](const std::shared_ptr<const CheckedRecording>& checked) {
+                     card.setAssessment(checked->assessment);
+                     ready();
+                   });
+  QObject::connect(&check, &RecordingCheckJob::failed, &card,
+                   [&card, &screen, &workbench](const JobError& error) {
+                     card.setFailed(error.text());
+                     showReadiness(screen, workbench, true);
+                   });
+  QObject::connect(&card, &CheckCard::boardConfirmed, &workbench.document,
+                   &CalibrationDocument::confirmBoard);
+  QObject::connect(&card, &CheckCard::howToRecordRequested, &screen,
+                   [&screen] { showHowToRecord(screen.window()); });
+  QObject::connect(&workbench.document, &CalibrationDocument::boardConfirmationChanged, &card, ready);
+}
+
+}  // namespace
+
+void wireRecordingCheck(RecordingScreen& screen, Workbench& workbench) {
+  wireCard(*screen.checkCard(), screen, workbench);
+  CalibrationDocument& document = workbench.document;
+  RecordingCheckJob& check = workbench.check;
+  check.setAutomatic(QSettings().value(kKey, true).toBool());
+  const auto anew = [&screen, &workbench] {
+    choose(workbench);
+    showReadiness(screen, workbench, false);
+  };
+  QObject::connect(&document, &CalibrationDocument::sessionChanged, &check, anew);
+  QObject::connect(&workbench.inspection, &InspectionJob::inspected, &check, anew);
+  QObject::connect(&workbench.inspection, &InspectionJob::started, &check, anew);
+  QObject::connect(&workbench.runner, &JobRunner::started, &check, [&check] { check.giveWay(true); });
+  QObject::connect(&workbench.runner, &JobRunner::finished, &check, [&check, &workbench] {
+    choose(workbench);
+    check.giveWay(false);
+  });
+}
+
+QAction* makeCheckAction(Workbench& workbench, QObject* parent) {
+  auto* const action = new QAction(QObject::tr("Check recordings by &itself"), parent);
+  action->setObjectName("check_recordings");
+  action->setCheckable(true);
+  action->setChecked(workbench.check.automatic());
+  action->setToolTip(QObject::tr("Looks whether a recording is good enough as soon as it is opened"));
+  QObject::connect(action, &QAction::toggled, &workbench.check, [&workbench](bool on) {
+    QSettings().setValue(kKey, on);
+    workbench.check.setAutomatic(on);
+  });
+  return action;
+}
+
+}  // namespace evical::ui
