@@ -64,7 +64,7 @@ CameraForm::CameraForm(QWidget* parent)
     model_->addItem(QString::fromUtf8(cameraModelTitle(static_cast<CameraModel>(model))));
   model_->addItem(tr("Not known: from this recording"));
   shutter_->setObjectName("shutter");
-  shutter_->addItems({tr("Global: all rows at once"), tr("Rolling: row after row")});  // in Shutter's order
+  shutter_->addItems({tr("Global"), tr("Rolling")});  // in Shutter's order
   shutter_->setToolTip(
       tr("Of frame cameras; event cameras have none. A rolling one gets its line delay estimated."));
   sensor_->setObjectName("same_sensor_as");
@@ -102,7 +102,7 @@ CameraForm::CameraForm(QWidget* parent)
     row->addWidget(field);
   }
   form_->setContentsMargins(8, 8, 8, 8);
-  form_->setRowWrapPolicy(QFormLayout::WrapLongRows);
+  form_->setRowWrapPolicy(QFormLayout::DontWrapRows);  // wrapped fields vanish before rows that are hidden
   for (QComboBox* const box : {model_, shutter_, sensor_, board_}) {
     constexpr int kLeastCharacters = 12;  // what does not fit is in the list that opens
     box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
@@ -116,11 +116,11 @@ CameraForm::CameraForm(QWidget* parent)
   form_->addRow(file);
   form_->addRow(file_problem_);
   form_->addRow(problem_);
-  form_->addRow(tr("Model"), model_);
+  addUnderLabel(tr("Model"), model_);
   form_->addRow(tr("Focal length [px]"), pairOf(focal_x_px_, focal_y_px_));
   form_->addRow(tr("Principal point [px]"), pairOf(centre_x_px_, centre_y_px_));
-  form_->addRow(tr("Distortion"), coefficients);
-  form_->addRow(QString(), coefficient_names_);
+  addUnderLabel(tr("Distortion"), coefficients);
+  form_->addRow(coefficient_names_);
   form_->addRow(take_over_);
   form_->addRow(tr("Clock offset [s]"), clock_offset_s_);
 
@@ -140,6 +140,14 @@ std::vector<NumberField*> CameraForm::intrinsicsFields() const {
   std::vector<NumberField*> fields = {focal_x_px_, focal_y_px_, centre_x_px_, centre_y_px_};
   fields.insert(fields.end(), distortion_.begin(), distortion_.end());
   return fields;
+}
+
+// For fields that are too wide to stand beside their label.
+void CameraForm::addUnderLabel(const QString& text, QWidget* field) {
+  auto* const label = new QLabel(text, this);
+  label->setBuddy(field);
+  form_->addRow(label);
+  form_->addRow(field);
 }
 
 QWidget* CameraForm::pairOf(NumberField* first, NumberField* second) {

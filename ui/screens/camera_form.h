@@ -49,6 +49,7 @@ class CameraForm : public QWidget {
   void showBoard();
   void showTakeOver();
   void showCoefficients(const CameraIntrinsics& shown);
+  void addUnderLabel(const QString& text, QWidget* field);
   QWidget* pairOf(NumberField* first, NumberField* second);
   std::vector<NumberField*> intrinsicsFields() const;
 

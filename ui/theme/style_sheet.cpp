@@ -41,7 +41,7 @@ QListView#navigation::item:hover { background: @hover; }
 QListView#navigation::item:selected { background: @selected; color: @text; }
 QDockWidget::title { background: @window; border-bottom: 1px solid @line; padding: 7px 8px; }
 QMainWindow::separator { background: @line; width: 1px; height: 1px; margin: 2px; }
-QTabBar::tab { border: none; border-bottom: 2px solid transparent; padding: 7px 12px; color: @faint; }
+QTabBar::tab { border: none; border-bottom: 2px solid transparent; padding: 8px 12px; color: @faint; }
 QTabBar::tab:selected { color: @text; border-bottom-color: @accent; }
 QTabWidget::pane { border: none; border-top: 1px solid @line; }
 QGroupBox { font-weight: 600; border: none; margin-top: 22px; }

@@ -78,6 +78,7 @@ StepRow::StepRow(const QString& title, bool sub_step, QWidget* parent)
   bar_->setRange(0, 1000);
   bar_->setTextVisible(false);
   bar_->setFixedHeight(kBar_px);
+  key_->setWordWrap(true);
   key_->hide();
   showState();
 }
@@ -104,17 +105,10 @@ void StepRow::setTime(double time_s) {
 }
 
 void StepRow::setKeyNumber(const QString& text, const QString& in_full) {
-  key_text_ = text;
   key_in_full_ = in_full.isEmpty() ? text : in_full;
   key_->setVisible(!text.isEmpty());
-  elideKeyNumber();
+  key_->setText(text);
   showState();
-}
-
-void StepRow::elideKeyNumber() {
-  key_->setMinimumWidth(1);
-  const int room_px = width() - layout()->contentsMargins().left() - (sub_step_ ? 19 : 23);
-  key_->setText(key_->fontMetrics().elidedText(key_text_, Qt::ElideRight, room_px));
 }
 
 QString StepRow::text() const {
@@ -127,11 +121,6 @@ QString StepRow::text() const {
 void StepRow::changeEvent(QEvent* event) {
   if (event->type() == QEvent::PaletteChange) showState();
   QWidget::changeEvent(event);
-}
-
-void StepRow::resizeEvent(QResizeEvent* event) {
-  QWidget::resizeEvent(event);
-  elideKeyNumber();
 }
 
 }  // namespace evical::ui

@@ -26,11 +26,9 @@ class StepRow : public QWidget {
 
  protected:
   void changeEvent(QEvent* event) override;
-  void resizeEvent(QResizeEvent* event) override;
 
  private:
   void showState();
-  void elideKeyNumber();
 
   StepState state_ = StepState::Pending;
   bool sub_step_;
@@ -39,7 +37,7 @@ class StepRow : public QWidget {
   QLabel* time_;
   QLabel* key_;
   QProgressBar* bar_;
-  QString key_text_, key_in_full_;
+  QString key_in_full_;
 };
 
 }  // namespace evical::ui
