@@ -35,7 +35,7 @@ struct Story : WindowFixture {
     window.showScreen("detection");
     if (!list().isVisible()) press(Qt::Key_W);
     QVERIFY(list().isVisible());
-    QTRY_VERIFY_WITH_TIMEOUT(list().shownCount() > 0, kPatience_ms);
+    QTRY_VERIFY_WITH_TIMEOUT(list().model().rowCount() > 0, kPatience_ms);
   }
   DetectionScreen& detection() { return *child<DetectionScreen>(); }
   WindowList& list() { return detection().windowList(); }
@@ -71,7 +71,7 @@ struct Story : WindowFixture {
     QCOMPARE(waitForJob(), JobOutcome::Done);
     QVERIFY(document().last().run != before);
     window.showScreen("detection");
-    QTRY_VERIFY_WITH_TIMEOUT(list().shownCount() > 0, kPatience_ms);
+    QTRY_VERIFY_WITH_TIMEOUT(list().model().rowCount() > 0, kPatience_ms);
   }
 };
 
