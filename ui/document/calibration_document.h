@@ -44,7 +44,7 @@ class CalibrationDocument : public QObject {
   QString file() const { return file_; }  // empty: never saved
   QString title() const;                  // the file's name, or the recording's
   // Runs are undone with the same keys, but are nothing to be saved with the session.
-  bool modified() const { return has_unsaved_recording_ || edition_ != saved_edition_; }
+  bool modified() const { return edition_ != saved_edition_; }
   QUndoStack& undoStack() { return undo_stack_; }
 
   // These throw CalibrationError and leave everything as it was.
@@ -108,14 +108,13 @@ class CalibrationDocument : public QObject {
     RejectedTimes rejections;
   };
 
-  void replace(Session session, const QString& session_file, bool unsaved, RunRecord run = {});
+  void replace(Session session, const QString& session_file, RunRecord run = {});
   void set(const Session& session, int edition);
   void set(const Runs& runs);
   void set(const RejectedTimes& rejections);
 
   Session session_;
   QString file_;
-  bool has_unsaved_recording_ = false;
   bool board_confirmed_ = false;
   QUndoStack undo_stack_;
   int edition_ = 0, saved_edition_ = 0, newest_edition_ = 0;  // each edit makes one of its own
