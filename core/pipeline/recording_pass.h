@@ -23,6 +23,8 @@ struct RecordingPass {
   std::vector<Resolution> resolutions_px;
   std::vector<RecordingFault> faults;
   double read_s = 0.0, detect_s = 0.0;  // the threads' own times, which overlap
+  // By camera, in time order: what a person left out and may take back. Empty where nobody did.
+  std::vector<std::vector<BoardView>> rejected_views = {};
 };
 
 // Reads and finds bursts in one thread, searches windows in another; memory does not grow with the number of

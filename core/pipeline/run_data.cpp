@@ -102,7 +102,7 @@ inline constexpr int kMembers<ImuData> = 4;
 template <>
 inline constexpr int kMembers<RecordingFault> = 4;
 template <>
-inline constexpr int kMembers<RecordingPass> = 8;
+inline constexpr int kMembers<RecordingPass> = 9;
 
 template <>
 inline constexpr auto kLast<CalibrationStatus> = CalibrationStatus::Failed;
@@ -237,21 +237,30 @@ bool isWhole(const ImuData& imu) {
          isTime(imu.samples.front().time_ns) && isTime(imu.samples.back().time_ns);
 }
 
-bool isWhole(const BoardObservations& camera) {
-  const auto earlier = [](const auto& a, const auto& b) { return a.time_s < b.time_s; };
+bool isEarlier(const BoardView& a, const BoardView& b) {
+  return a.time_s < b.time_s;
+}
+
+bool isWhole(const std::vector<BoardView>& views) {
   const auto in_view = [](const BoardView& view) {
     return std::all_of(view.circles.begin(), view.circles.end(),
                        [](const CircleObservation& circle) { return circle.circle >= 0; });
   };
-  return std::is_sorted(camera.views.begin(), camera.views.end(), earlier) &&
-         std::is_sorted(camera.windows.begin(), camera.windows.end(), earlier) &&
-         std::all_of(camera.views.begin(), camera.views.end(), in_view);
+  return std::is_sorted(views.begin(), views.end(), isEarlier) &&
+         std::all_of(views.begin(), views.end(), in_view);
+}
+
+bool isWhole(const BoardObservations& camera) {
+  const auto earlier = [](const auto& a, const auto& b) { return a.time_s < b.time_s; };
+  return isWhole(camera.views) && std::is_sorted(camera.windows.begin(), camera.windows.end(), earlier);
 }
 
 bool isWhole(const RecordingPass& pass) {
   const auto whole = [](const auto& each) { return isWhole(each); };
   return isTime(pass.start_ns) && pass.lenses.size() == pass.cameras.size() &&
          pass.resolutions_px.size() == pass.cameras.size() &&
+         (pass.rejected_views.empty() || pass.rejected_views.size() == pass.cameras.size()) &&
+         std::all_of(pass.rejected_views.begin(), pass.rejected_views.end(), whole) &&
          std::all_of(pass.cameras.begin(), pass.cameras.end(), whole) &&
          std::all_of(pass.imus.begin(), pass.imus.end(), whole);
 }

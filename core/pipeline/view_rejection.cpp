@@ -4,46 +4,68 @@
 
 #include <algorithm>
 #include <cassert>
+#include <iterator>
 #include <utility>
 #include <vector>
 
 namespace evical {
 namespace {
 
+bool earlier(const BoardView& a, const BoardView& b) {
+  return a.time_s < b.time_s;
+}
+
 // Each view is of one window: of the same middle.
-void markWindows(const std::vector<BoardView>& views, const std::vector<bool>& rejected,
-                 std::vector<WindowReport>& windows) {
-  auto window = windows.begin();
-  for (std::size_t view = 0; view < views.size(); ++view) {
-    if (!rejected[view]) continue;
-    const auto before = [](const WindowReport& each, double time_s) { return each.time_s < time_s; };
-    window = std::lower_bound(window, windows.end(), views[view].time_s, before);
-    if (window != windows.end() && window->time_s == views[view].time_s)
-      window->outcome = WindowOutcome::RejectedByHand;
+void reportAs(WindowOutcome outcome, double time_s, std::vector<WindowReport>& windows) {
+  const auto window =
+      std::lower_bound(windows.begin(), windows.end(), time_s,
+                       [](const WindowReport& each, double at_s) { return each.time_s < at_s; });
+  if (window != windows.end() && window->time_s == time_s) window->outcome = outcome;
+}
+
+void divide(const std::vector<double>& rejected_s, BoardObservations& camera,
+            std::vector<BoardView>& rejected_views) {
+  std::vector<BoardView> all;
+  std::merge(std::move_iterator(camera.views.begin()), std::move_iterator(camera.views.end()),
+             std::move_iterator(rejected_views.begin()), std::move_iterator(rejected_views.end()),
+             std::back_inserter(all), earlier);
+  camera.views.clear();
+  rejected_views.clear();
+  for (BoardView& view : all) {
+    const bool rejected = std::binary_search(rejected_s.begin(), rejected_s.end(), view.time_s);
+    const WindowOutcome found =
+        view.kind == ViewKind::Complete ? WindowOutcome::Complete : WindowOutcome::Partial;
+    reportAs(rejected ? WindowOutcome::RejectedByHand : found, view.time_s, camera.windows);
+    (rejected ? rejected_views : camera.views).push_back(std::move(view));
   }
 }
 
 }  // namespace
 
+RecordingPass withRejected(const RecordingPass& pass, const RejectedTimes& rejected_s) {
+  assert(rejected_s.size() == pass.cameras.size());
+  RecordingPass divided = pass;
+  divided.rejected_views.resize(pass.cameras.size());
+  for (std::size_t k = 0; k < rejected_s.size(); ++k)
+    divide(rejected_s[k], divided.cameras[k], divided.rejected_views[k]);
+  divided.read_s = divided.detect_s = 0.0;
+  return divided;
+}
+
 RecordingPass withoutViews(const RecordingPass& pass, std::size_t camera, std::span<const int> views) {
   assert(camera < pass.cameras.size());
-  RecordingPass kept = pass;
-  std::vector<BoardView>& all = kept.cameras[camera].views;
-  std::vector<bool> rejected(all.size(), false);
-  for (const int view : views) {
-    assert(view >= 0 && static_cast<std::size_t>(view) < all.size());
-    rejected[static_cast<std::size_t>(view)] = true;
-  }
-  markWindows(all, rejected, kept.cameras[camera].windows);
-  kept.read_s = kept.detect_s = 0.0;
-  std::size_t count = 0;
-  for (std::size_t view = 0; view < all.size(); ++view) {
-    if (rejected[view]) continue;
-    if (count != view) all[count] = std::move(all[view]);
-    ++count;
-  }
-  all.resize(count);
-  return kept;
+  RejectedTimes rejected_s = rejectedTimes_s(pass);
+  std::vector<double>& times_s = rejected_s[camera];
+  for (const int view : views)
+    times_s.push_back(pass.cameras[camera].views.at(static_cast<std::size_t>(view)).time_s);
+  std::sort(times_s.begin(), times_s.end());
+  return withRejected(pass, rejected_s);
+}
+
+RejectedTimes rejectedTimes_s(const RecordingPass& pass) {
+  RejectedTimes times_s;
+  for (const BoardObservations& camera : pass.cameras) times_s.push_back(rejectedTimes_s(camera));
+  return times_s;
 }
 
 std::vector<double> rejectedTimes_s(const BoardObservations& camera) {

@@ -22,6 +22,11 @@ std::filesystem::path cacheFolder() {
       .toStdString();
 }
 
+std::size_t eventsOfWindow(const EventCache& cache, std::int64_t start_ns, const DetectionWish& wish) {
+  return cache.count(start_ns + nanosecondsFrom(wish.time_s - wish.half_width_s),
+                     start_ns + nanosecondsFrom(wish.time_s + wish.half_width_s));
+}
+
 void gather(const EventCache& cache, std::int64_t start_ns, double begin_s, double end_s,
             std::vector<Event>& events) {
   cache.gather(start_ns + nanosecondsFrom(begin_s), start_ns + nanosecondsFrom(end_s), events);
@@ -113,6 +118,7 @@ class DetectionEngine::Analyst {
         renderFlow(events, analysis.flow.arcs.flow, task.source.start_ns + nanosecondsFrom(analysis.time_s),
                    task.source.resolution_px, task.wish.style);
     frame.time_s = analysis.time_s;
+    frame.window_events = eventsOfWindow(*task.source.cache, task.source.start_ns, task.wish);
     engine_.put(std::move(frame), task.source.opening);
   }
 
@@ -164,6 +170,14 @@ void DetectionEngine::setObservations(std::shared_ptr<const BoardObservations> o
 
 RecordingOverview DetectionEngine::overview() const {
   return reader_ ? reader_->overview() : RecordingOverview{};
+}
+
+PictureSource DetectionEngine::pictureSource() const {
+  if (!reader_) return {};
+  const RecordingOverview overview = reader_->overview();
+  const RecordingCaches caches = reader_->caches();
+  if (!overview.started) return {};
+  return {overview.kind, caches.events, caches.frames, overview.start_ns, overview.resolution_px};
 }
 
 void DetectionEngine::show(const DetectionWish& wish) {
@@ -318,6 +332,7 @@ void DetectionEngine::renderSurface(const RenderTask& task) {
              wish.time_s + wish.half_width_s, events);
       frame = renderEvents(events, time_ns, task.source.resolution_px, style);
     }
+    frame.window_events = eventsOfWindow(*task.source.cache, task.source.start_ns, wish);
   } catch (const CalibrationError&) {
     // The file is gone; what the reader says tells more than an old picture.
     frame = renderEvents({}, time_ns, task.source.resolution_px, style);

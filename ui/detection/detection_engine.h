@@ -11,6 +11,7 @@
 #include "ui/detection/live_detection.h"
 #include "ui/detection/surface_frame.h"
 #include "ui/detection/window_analysis.h"
+#include "ui/detection/window_pictures.h"
 #include "ui/jobs/latest_job.h"
 #include "ui/jobs/mailbox.h"
 
@@ -61,6 +62,7 @@ class DetectionEngine : public QObject {
 
   bool isOpen() const { return reader_ != nullptr; }
   RecordingOverview overview() const;
+  PictureSource pictureSource() const;  // as far as it has been read
   // Of the frame after the nearest (+1) or before it (-1); nothing where there is none.
   std::optional<double> timeOfFrameBeside_s(double time_s, int direction) const;
   std::shared_ptr<const SurfaceFrame> takeFrame() { return frames_.take(); }

@@ -4,6 +4,7 @@
 #include "ui/detection/detection_engine.h"
 #include "ui/detection/event_view.h"
 #include "ui/detection/timeline.h"
+#include "ui/detection/window_list.h"
 #include "ui/detection/window_panel.h"
 #include "ui/forms/page_keys.h"
 #include "ui/theme/theme.h"
@@ -148,6 +149,7 @@ void DetectionScreen::showRun() {
   engine_->setObservations(seen ? std::shared_ptr<const BoardObservations>(run_, seen) : nullptr);
   engine_->setResult(posed ? std::shared_ptr<const CalibrationState>(run_, &run_->result.state) : nullptr);
   engine_->setSight(sight());
+  listWindows();
   showMarksAlone();
   offerPictures();
   request();
@@ -163,6 +165,7 @@ void DetectionScreen::setLive(bool live) {
   setPlaying(false);
   follow_button_->setVisible(live);
   follow_button_->setChecked(live);
+  listWindows();
   if (live) {
     timeline_->setWindows({});
   } else {
@@ -302,6 +305,7 @@ void DetectionScreen::takeOverview() {
   timeline_->setRange(0.0, std::max(overview.read_until_s, timeline_->end_s()));
   timeline_->setEventRate(overview.event_rate);
   timeline_->setRotationRate(overview.rotation_rate);
+  showPictures();
   keepCursorInside(overview);
   timeline_->setTime(time_s_);
   request();
@@ -335,6 +339,7 @@ void DetectionScreen::refresh() {
   const bool here =
       analysis_ && frame && std::abs(analysis_->time_s - frame->time_s) <= analysis_->half_width_s;
   refreshPanel(here);
+  list_->setTime(time_s_);
   if (frame) view_->setCaption((following() ? tr("live  ") : QString()) + captionOf(*frame));
   {
     const QSignalBlocker quiet(time_box_);
@@ -363,6 +368,9 @@ void DetectionScreen::addKeys() {
   addPageKey(this, Qt::Key_Right, [this] { step(+1); });
   addPageKey(this, Qt::Key_Home, [this] { select(timeline_->begin_s()); });
   addPageKey(this, Qt::Key_End, [this] { select(timeline_->end_s()); });
+  addPageKey(this, Qt::Key_M, [this] { stepToMissed(+1); });
+  addPageKey(this, Qt::SHIFT | Qt::Key_M, [this] { stepToMissed(-1); });
+  addPageKey(this, Qt::Key_W, [this] { list_button_->click(); });
   addPageKey(this, Qt::Key_F, [this] {
     view_->fit();
     companion_view_->fit();

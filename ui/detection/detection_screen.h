@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/view_rejection.h"
 #include "ui/detection/layers.h"
 #include "ui/detection/live_detection.h"
 #include "ui/detection/surface_frame.h"
@@ -39,6 +40,7 @@ struct RecordingOverview;
 struct Sight;
 class EventView;
 class Timeline;
+class WindowList;
 class WindowPanel;
 
 class DetectionScreen : public QWidget {
@@ -55,6 +57,10 @@ class DetectionScreen : public QWidget {
   // is what it was made from. Shown wherever the recording in view is its own. Null forgets.
   void setRun(std::shared_ptr<const CalibrationRun> run, const Session& session);
 
+  // What the next calibration from the run's detections is to leave out, by camera; nothing where none can be asked for.
+  void setRejections(const std::optional<RejectedTimes>& rejections);
+  void setBusy(bool busy);  // a job runs: no calibration can be started
+
   // While a job runs: give these to it, and the screen shows the windows as they are found.
   std::shared_ptr<CalibrationObserver> liveObserver();
   void setLive(bool live);
@@ -69,6 +75,7 @@ class DetectionScreen : public QWidget {
   EventView& companionView() { return *companion_view_; }  // beside it, where both are chosen
   Timeline& timeline() { return *timeline_; }
   WindowPanel& panel() { return *panel_; }
+  WindowList& windowList() { return *list_; }
   const std::shared_ptr<const WindowAnalysis>& analysis() const { return analysis_; }
 
  public slots:
@@ -80,19 +87,32 @@ class DetectionScreen : public QWidget {
   void setLayerVisible(evical::ui::Layer layer, bool visible);
   void setPlaying(bool playing);
   void step(int direction);  // to the next window or frame (+1) or the one before (-1)
+  void stepToMissed(int direction);
+  void setWindowsListed(
+      bool listed);  // the list of windows, in place of layers and verdict where it is narrow
 
  signals:
-  void timeSelected(double time_s);              // by the user, or by playing
+  void timeSelected(double time_s);  // by the user, or by playing
+  void rejectionsWanted(const evical::RejectedTimes& rejections, const QString& what);
+  void recalibrationWanted();
   void recordingWanted(const QString& missing);  // a recording's path: the user wants to look for it
 
  protected:
   void changeEvent(QEvent*) override;
+  void resizeEvent(QResizeEvent*) override;
 
  private:
   QWidget* makeToolBar();
   QWidget* makeSidePanel();
   QWidget* makeTransport();
   QToolButton* addButton(QHBoxLayout* row, const QString& icon_name, const QString& help);
+  void makeWindowList();
+  void addListButton(QHBoxLayout* row);
+  void addMissedButtons(QHBoxLayout* row);
+  void layOutSides();
+  void listWindows();
+  void showRejections();
+  void showPictures();
   void applyColours();
   void connectEngine();
   void addKeys();
@@ -142,9 +162,13 @@ class DetectionScreen : public QWidget {
   EventView *view_ = nullptr, *companion_view_ = nullptr;
   Timeline* timeline_ = nullptr;
   WindowPanel* panel_ = nullptr;
+  WindowList* list_ = nullptr;
+  QWidget* side_ = nullptr;
+  std::optional<RejectedTimes> rejections_;
+  std::optional<bool> list_wanted_;  // nothing: as there is room
   QComboBox *mode_box_ = nullptr, *speed_box_ = nullptr, *camera_box_ = nullptr, *picture_box_ = nullptr;
   QDoubleSpinBox *fade_box_ = nullptr, *time_box_ = nullptr;
-  QToolButton *play_button_ = nullptr, *follow_button_ = nullptr;
+  QToolButton *play_button_ = nullptr, *follow_button_ = nullptr, *list_button_ = nullptr;
   QPushButton* look_for_ = nullptr;
   QLabel *status_ = nullptr, *fade_label_ = nullptr, *verdict_title_ = nullptr;
   QGridLayout* layer_grid_ = nullptr;

@@ -3,6 +3,7 @@
 #include "ui/detection/detection_screen.h"
 #include "ui/detection/event_view.h"
 #include "ui/detection/timeline.h"
+#include "ui/detection/window_list.h"
 #include "ui/detection/window_panel.h"
 #include "ui/theme/theme.h"
 
@@ -66,7 +67,10 @@ DetectionScreen::DetectionScreen(QWidget* parent) : QWidget(parent) {
   companion_view_->hide();
   middle->addWidget(view_, 1);
   middle->addWidget(companion_view_, 1);
-  middle->addWidget(makeSidePanel());
+  makeWindowList();
+  middle->addWidget(list_);
+  side_ = makeSidePanel();
+  middle->addWidget(side_);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(8, 6, 8, 4);
   layout->setSpacing(4);
@@ -79,6 +83,7 @@ DetectionScreen::DetectionScreen(QWidget* parent) : QWidget(parent) {
   applyColours();
   chooseCamera(0);
   setFocusProxy(view_);
+  layOutSides();
   addKeys();
 }
 
@@ -120,6 +125,7 @@ QWidget* DetectionScreen::makeToolBar() {
   row->addWidget(fade_label_);
   row->addWidget(fade_box_);
   row->addStretch(1);
+  addListButton(row);
   status_ = new QLabel;
   row->addWidget(status_);
   connect(addButton(row, "zoom-out", tr("Zoom out (-)")), &QToolButton::clicked, this,
@@ -202,6 +208,8 @@ QWidget* DetectionScreen::makeTransport() {
   time_box_->setToolTip(tr("Cursor, since the recording's start"));
   connect(time_box_, &QDoubleSpinBox::valueChanged, this, [this](double time_s) { select(time_s); });
   row->addWidget(time_box_);
+  row->addSpacing(8);
+  addMissedButtons(row);
   row->addStretch(1);
   follow_button_ = addButton(row, "follow", tr("Show the windows as they are found"));
   follow_button_->setText(tr("Follow the run"));
@@ -240,6 +248,7 @@ void DetectionScreen::applyColours() {
   if (isPlaying()) play_button_->setIcon(icon("pause"));
   for (std::size_t k = 0; k < layer_boxes_.size(); ++k)
     layer_boxes_[k]->setIcon(swatch(layerColours(static_cast<Layer>(k)), devicePixelRatioF()));
+  showPictures();
   request();
   refresh();
 }

@@ -97,8 +97,15 @@ QString DetectionScreen::captionOf(const SurfaceFrame& frame) {
     text += tr("    frame %L1 of %L2")
                 .arg(static_cast<qulonglong>(label->number))
                 .arg(static_cast<qulonglong>(label->count));
-  if (!frame.photograph || frame.events > 0)
-    text += tr("    %L1 events").arg(static_cast<qulonglong>(frame.events));
+  const auto drawn = static_cast<qulonglong>(frame.events);
+  if (frame.window_events && *frame.window_events != frame.events)
+    text += tr("    %L1 events in the window, %L2 drawn")
+                .arg(static_cast<qulonglong>(*frame.window_events))
+                .arg(drawn);
+  else if (frame.window_events)
+    text += tr("    %L1 events in the window").arg(drawn);
+  else if (!frame.photograph || frame.events > 0)
+    text += tr("    %L1 events").arg(drawn);
   return text;
 }
 

@@ -49,8 +49,9 @@ struct SurfaceFrame {
   QImage image;         // RGB32
   std::vector<std::int32_t>
       newest;  // by pixel: 2 * microseconds since the cursor, + 1 if brighter; or kNoEvent; empty of frames
-  std::size_t events = 0;
-  std::optional<FrameLabel> photograph;  // where this is a frame
+  std::size_t events = 0;                    // that are drawn
+  std::optional<std::size_t> window_events;  // that the window at the cursor has
+  std::optional<FrameLabel> photograph;      // where this is a frame
 
   Resolution resolution_px() const { return {image.width(), image.height()}; }
 

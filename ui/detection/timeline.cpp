@@ -113,6 +113,20 @@ double Timeline::stepFrom(double time_s, int direction) const {
   return next == windows_.begin() ? time_s : std::prev(next)->time_s;
 }
 
+std::optional<double> Timeline::missedFrom(double time_s, int direction) const {
+  constexpr double kSame_s = 1e-6;
+  const auto missed = [&](const WindowReport& window) {
+    return windowClass(window.outcome) == WindowClass::Missed &&
+           direction * (window.time_s - time_s) > kSame_s;
+  };
+  if (direction > 0) {
+    const auto next = std::find_if(windows_.begin(), windows_.end(), missed);
+    return next == windows_.end() ? std::nullopt : std::optional(next->time_s);
+  }
+  const auto before = std::find_if(windows_.rbegin(), windows_.rend(), missed);
+  return before == windows_.rend() ? std::nullopt : std::optional(before->time_s);
+}
+
 void Timeline::setTime(double time_s) {
   time_s_ = time_s;
   if (time_s < visible_begin_s_ || time_s > visible_end_s_) {

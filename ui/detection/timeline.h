@@ -49,6 +49,8 @@ class Timeline : public QWidget {
   std::optional<WindowReport> windowAt(double time_s) const;
   // Middle of the next window (+1) or the one before (-1); where none are known, 10 ms on.
   double stepFrom(double time_s, int direction) const;
+  // Middle of the next missed window or the one before; nothing where there is none.
+  std::optional<double> missedFrom(double time_s, int direction) const;
 
   void showAll();
   void zoomBy(double factor, double about_s);

@@ -3,6 +3,7 @@
 
 #include "ui/detection/timeline.h"
 #include "ui/detection/window_analysis.h"
+#include "ui/detection/window_list_model.h"
 #include "ui/theme/theme.h"
 
 #include <QScrollBar>
@@ -45,17 +46,9 @@ QString markOf(StageVerdict verdict) {
   return QStringLiteral("\u2022");
 }
 
-QString capital(const char* text) {
-  QString word = QString::fromUtf8(text);
+QString capital(QString word) {
   if (!word.isEmpty()) word[0] = word[0].toUpper();
   return word;
-}
-
-// Outcomes are named as windows of events have them.
-const char* outcomeWords(WindowOutcome outcome, bool of_frame) {
-  if (of_frame && outcome == WindowOutcome::NoLattice) return "no board found";
-  if (of_frame && outcome == WindowOutcome::TooFewInGrid) return "too few points";
-  return windowOutcomeName(outcome);
 }
 
 QString timeText(const WindowAnalysis& analysis) {
@@ -67,7 +60,7 @@ QString timeText(const WindowAnalysis& analysis) {
 QString headline(const WindowAnalysis& analysis, bool searching) {
   const QString words = searching && !analysis.held()
                             ? WindowPanel::tr("Searching ...")
-                            : capital(outcomeWords(analysis.outcome, analysis.frame.has_value()));
+                            : capital(windowOutcomeWords(analysis.outcome, analysis.frame.has_value()));
   const QColor colour =
       searching && !analysis.held() ? theme().faint_text : windowColour(windowClass(analysis.outcome));
   return QStringLiteral("<p style='margin:0; font-size:large'><b>%1</b></p><p style='margin:0'>%2</p>")
@@ -94,7 +87,8 @@ QString stageRow(const StageReport& stage) {
              "<tr><td style='padding-right:6px'>%1</td><td "
              "style='padding-bottom:5px'><b>%2</b><br>%3</td></tr>")
       .arg(coloured(colourOf(stage.verdict), markOf(stage.verdict)),
-           capital(stage.stage.c_str()).toHtmlEscaped(), faint ? coloured(theme().faint_text, text) : text);
+           capital(QString::fromStdString(stage.stage)).toHtmlEscaped(),
+           faint ? coloured(theme().faint_text, text) : text);
 }
 
 // A window that was missed then and is now has one reason, that of now: what is looked at is one window with today's
@@ -107,7 +101,7 @@ QString passLine(const WindowReport& report, bool of_frame, bool missed_now) {
       report.circles > 0
           ? found.arg(report.circles).arg(report.tracked ? WindowPanel::tr(", tracked") : QString())
           : QString();
-  return WindowPanel::tr("In the last run: %1%2").arg(outcomeWords(report.outcome, of_frame), how);
+  return WindowPanel::tr("In the last run: %1%2").arg(windowOutcomeWords(report.outcome, of_frame), how);
 }
 
 }  // namespace

@@ -18,6 +18,10 @@ std::filesystem::path pathOf(const QString& file) {
   return std::filesystem::path(file.toStdString());
 }
 
+RejectedTimes rejectionsOf(const RunRecord& record) {
+  return record.run ? rejectedTimes_s(record.run->pass) : RejectedTimes{};
+}
+
 // Of a place in a session: "cameras.left.board" of "session: cameras.left.board".
 QString keyIn(const std::string& place) {
   const std::size_t end = place.find(": ");
@@ -57,11 +61,11 @@ class CalibrationDocument::EditCommand final : public QUndoCommand {
 
 class CalibrationDocument::RunCommand final : public QUndoCommand {
  public:
-  RunCommand(CalibrationDocument& document, RunRecord record, const QString& what)
+  RunCommand(CalibrationDocument& document, const RunRecord& record, const QString& what)
       : QUndoCommand(what),
         document_(document),
-        before_{document.last_, document.previous_},
-        after_{std::move(record), document.last_} {
+        before_{document.last_, document.previous_, document.rejections_},
+        after_{record, document.last_, rejectionsOf(record)} {
     document_.run_commands_.push_back(this);
   }
   ~RunCommand() override { std::erase(document_.run_commands_, this); }
@@ -72,6 +76,22 @@ class CalibrationDocument::RunCommand final : public QUndoCommand {
  private:
   CalibrationDocument& document_;
   Runs before_, after_;
+};
+
+class CalibrationDocument::RejectionCommand final : public QUndoCommand {
+ public:
+  RejectionCommand(CalibrationDocument& document, RejectedTimes after, const QString& what)
+      : QUndoCommand(what), document_(document), before_(document.rejections_), after_(std::move(after)) {
+    document_.run_commands_.push_back(this);
+  }
+  ~RejectionCommand() override { std::erase(document_.run_commands_, this); }
+
+  void undo() override { document_.set(before_); }
+  void redo() override { document_.set(after_); }
+
+ private:
+  CalibrationDocument& document_;
+  RejectedTimes before_, after_;
 };
 
 CalibrationDocument::CalibrationDocument(QObject* parent) : QObject(parent) {
@@ -115,11 +135,13 @@ void CalibrationDocument::replace(Session session, const QString& session_file, 
   saved_edition_ = edition_;
   last_ = std::move(run);
   previous_ = {};
+  rejections_ = rejectionsOf(last_);
   reference_.reset();
   emit sessionReplaced();
   emit sessionChanged();
   emit fileChanged();
   emit runsChanged();
+  emit rejectionsChanged();
   emit referenceChanged();
 }
 
@@ -208,18 +230,34 @@ void CalibrationDocument::set(const Session& session, int edition) {
 void CalibrationDocument::set(const Runs& runs) {
   last_ = runs.last;
   previous_ = runs.previous;
+  rejections_ = runs.rejections;
   emit runsChanged();
+  emit rejectionsChanged();
+}
+
+void CalibrationDocument::set(const RejectedTimes& rejections) {
+  rejections_ = rejections;
+  emit rejectionsChanged();
+}
+
+bool CalibrationDocument::rejectionsArePending() const {
+  return rejections_ != rejectionsOf(last_);
+}
+
+void CalibrationDocument::setRejections(RejectedTimes rejected_s, const QString& what) {
+  if (rejected_s == rejections_) return;
+  undo_stack_.push(new RejectionCommand(*this, std::move(rejected_s), what));
 }
 
 // Beside steps that bring back runs it is a step as well: else undoing them would lose it.
 void CalibrationDocument::addRun(RunRecord record) {
-  if (!run_commands_.empty()) return addUndoableRun(std::move(record), tr("Calibrate"));
-  previous_ = std::exchange(last_, std::move(record));
-  emit runsChanged();
+  if (!run_commands_.empty()) return addUndoableRun(record, tr("Calibrate"));
+  RejectedTimes rejections = rejectionsOf(record);
+  set(Runs{std::move(record), last_, std::move(rejections)});
 }
 
-void CalibrationDocument::addUndoableRun(RunRecord record, const QString& what) {
-  undo_stack_.push(new RunCommand(*this, std::move(record), what));
+void CalibrationDocument::addUndoableRun(const RunRecord& record, const QString& what) {
+  undo_stack_.push(new RunCommand(*this, record, what));
 }
 
 bool CalibrationDocument::runIsOutdated() const {

@@ -5,6 +5,7 @@
 
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/session.h"
+#include "core/pipeline/view_rejection.h"
 #include "core/report/result_yaml.h"
 #include "ui/document/calibration_aim.h"
 
@@ -77,9 +78,15 @@ class CalibrationDocument : public QObject {
   const RunRecord& previous() const { return previous_; }
   void addRun(RunRecord record);
   // The same as a step for undo, which brings the runs back that were here before. What follows it is one, too.
-  void addUndoableRun(RunRecord record, const QString& what);
+  void addUndoableRun(const RunRecord& record, const QString& what);
   // The session is not as it was when the last run was made.
   bool runIsOutdated() const;
+
+  // What the next calibration from the last run's detections is to leave out: at first what that run left out.
+  const RejectedTimes& rejections() const { return rejections_; }
+  bool rejectionsArePending() const;  // they are not the last run's
+  // One step for undo.
+  void setRejections(RejectedTimes rejected_s, const QString& what);
 
   const std::optional<ReferenceResult>& reference() const { return reference_; }
 
@@ -89,18 +96,22 @@ class CalibrationDocument : public QObject {
   void fileChanged();      // name or modified flag
   void boardConfirmationChanged();
   void runsChanged();
+  void rejectionsChanged();  // also with the runs
   void referenceChanged();
 
  private:
   class EditCommand;
   class RunCommand;
+  class RejectionCommand;
   struct Runs {
     RunRecord last, previous;
+    RejectedTimes rejections;
   };
 
   void replace(Session session, const QString& session_file, RunRecord run = {});
   void set(const Session& session, int edition);
   void set(const Runs& runs);
+  void set(const RejectedTimes& rejections);
 
   Session session_;
   QString file_;
@@ -108,7 +119,8 @@ class CalibrationDocument : public QObject {
   QUndoStack undo_stack_;
   int edition_ = 0, saved_edition_ = 0, newest_edition_ = 0;  // each edit makes one of its own
   RunRecord last_, previous_;
-  std::vector<const RunCommand*> run_commands_;  // on the stack
+  RejectedTimes rejections_;
+  std::vector<const QUndoCommand*> run_commands_;  // on the stack: of runs, and of what they leave out
   std::optional<ReferenceResult> reference_;
 };
 

@@ -16,6 +16,7 @@
 #include <QSignalBlocker>
 #include <QStackedLayout>
 #include <QTimer>
+#include <QToolButton>
 
 #include <algorithm>
 #include <cmath>
@@ -54,6 +55,12 @@ double windowSpacing(const std::vector<WindowResidual>& windows) {
   for (std::size_t k = 1; k < windows.size(); ++k) gaps.push_back(windows[k].time_s - windows[k - 1].time_s);
   constexpr double kUsual_s = 0.02;
   return medianOf(std::move(gaps), kUsual_s);
+}
+
+const WindowResidual& nearestWindow(const std::vector<WindowResidual>& windows, double time_s) {
+  return *std::min_element(windows.begin(), windows.end(), [time_s](const auto& a, const auto& b) {
+    return std::abs(a.time_s - time_s) < std::abs(b.time_s - time_s);
+  });
 }
 
 }  // namespace
@@ -128,10 +135,20 @@ QWidget* ResidualsScreen::makeBar() {
        std::initializer_list<QWidget*>{camera_label_, camera_, threshold_label, threshold_, count_})
     layout->addWidget(widget);
   layout->addStretch(1);
+  show_window_ = new QToolButton;
+  show_window_->setText(tr("Show window"));
+  show_window_->setToolTip(tr(
+      "What the camera saw in the window at the cursor, on Detection; click a point or a bar to choose one"));
+  show_window_->setEnabled(false);
+  layout->addWidget(show_window_);
   layout->addWidget(makeSaveButton(*this, "residuals"));
   layout->addWidget(recalibrate_);
   connect(camera_, &QComboBox::activated, this, [this] { compute(); });
   connect(threshold_, &QDoubleSpinBox::valueChanged, this, &ResidualsScreen::setThreshold);
+  connect(show_window_, &QToolButton::clicked, this, [this] {
+    if (const WindowResidual* const window = windowAtCursor())
+      emit windowWanted(camera(), viewTime_s(window->view));
+  });
   connect(recalibrate_, &QPushButton::clicked, this, [this] { emit recalibrateWithout(rejectedWindows()); });
   return bar;
 }
@@ -168,8 +185,8 @@ void ResidualsScreen::makeWindows() {
       windows_->addSeries(Kind::Bars, {.name = tr("marked"), .colour = PlotColour::Bad});
   connect(windows_, &PlotPanel::thresholdDragged, this, &ResidualsScreen::setThreshold);
   connect(windows_, &PlotPanel::clicked, this, [this](double time_s) {
-    setTime(time_s);
-    emit timeSelected(time_s);
+    if (!statistics_ || statistics_->windows.empty()) return;
+    selectView(nearestWindow(statistics_->windows, time_s).view);
   });
 }
 
@@ -366,16 +383,37 @@ void ResidualsScreen::setTime(double time_s) {
   markTime();
 }
 
-void ResidualsScreen::markTime() {
-  if (!statistics_ || statistics_->windows.empty() || time_s_ < 0.0) return;
+const WindowResidual* ResidualsScreen::windowAtCursor() const {
+  if (!statistics_ || statistics_->windows.empty() || time_s_ < 0.0) return nullptr;
+  const auto away_s = [this](const WindowResidual& window) {
+    return std::abs(viewTime_s(window.view) - time_s_);
+  };
   const auto& windows = statistics_->windows;
-  const auto nearest = std::min_element(windows.begin(), windows.end(), [&](const auto& a, const auto& b) {
-    return std::abs(a.time_s - time_s_) < std::abs(b.time_s - time_s_);
-  });
-  const bool here = std::abs(nearest->time_s - time_s_) <= windowSpacing(windows);
-  scatter_->setLine(scatter_series_.now, points(statistics_->used, [&](const CircleResidual& residual) {
-                      return here && residual.view == nearest->view;
+  const auto nearest = std::min_element(windows.begin(), windows.end(),
+                                        [&](const auto& a, const auto& b) { return away_s(a) < away_s(b); });
+  return away_s(*nearest) <= windowSpacing(windows) ? &*nearest : nullptr;
+}
+
+void ResidualsScreen::markTime() {
+  const WindowResidual* const window = windowAtCursor();
+  show_window_->setEnabled(window != nullptr);
+  if (!statistics_ || statistics_->windows.empty() || time_s_ < 0.0) return;
+  scatter_->setLine(scatter_series_.now, points(statistics_->used, [window](const CircleResidual& residual) {
+                      return window != nullptr && residual.view == window->view;
                     }));
+}
+
+// Its circles have times of their own, which may lie in another window.
+double ResidualsScreen::viewTime_s(int view) const {
+  return run_->pass.cameras.at(static_cast<std::size_t>(camera()))
+      .views.at(static_cast<std::size_t>(view))
+      .time_s;
+}
+
+void ResidualsScreen::selectView(int view) {
+  const double time_s = viewTime_s(view);
+  setTime(time_s);
+  emit timeSelected(time_s);
 }
 
 void ResidualsScreen::selectNearest(double x_px, double y_px) {
@@ -386,8 +424,7 @@ void ResidualsScreen::selectNearest(double x_px, double y_px) {
                        [&](const CircleResidual& a, const CircleResidual& b) {
                          return (a.residual_px - at).squaredNorm() < (b.residual_px - at).squaredNorm();
                        });
-  setTime(nearest->time_s);
-  emit timeSelected(nearest->time_s);
+  selectView(nearest->view);
 }
 
 }  // namespace evical::ui

@@ -18,10 +18,12 @@ class QLabel;
 class QPushButton;
 class QStackedLayout;
 class QTimer;
+class QToolButton;
 
 namespace evical {
 struct ResidualStatistics;
-}
+struct WindowResidual;
+}  // namespace evical
 
 namespace evical::ui {
 
@@ -48,7 +50,8 @@ class ResidualsScreen : public QWidget {
   void setTime(double time_s);  // seconds since the recording's start, camera clock
 
  signals:
-  void timeSelected(double time_s);
+  void timeSelected(double time_s);              // the middle of a window
+  void windowWanted(int camera, double time_s);  // to be looked at
   void thresholdChanged(double rms_px);
   void recalibrateWithout(const std::vector<int>& views);  // of camera(); see core/pipeline/view_rejection.h
   void ready();                                            // all charts show the run that was set last
@@ -68,6 +71,9 @@ class ResidualsScreen : public QWidget {
   void markRejected();
   void markTime();
   void selectNearest(double x_px, double y_px);
+  void selectView(int view);
+  double viewTime_s(int view) const;
+  const WindowResidual* windowAtCursor() const;  // null: there is none
 
   std::shared_ptr<const CalibrationRun> run_;
   bool calibrating_ = false;
@@ -86,6 +92,7 @@ class ResidualsScreen : public QWidget {
   QComboBox* camera_ = nullptr;
   QDoubleSpinBox* threshold_ = nullptr;
   QLabel *camera_label_ = nullptr, *count_ = nullptr;
+  QToolButton* show_window_ = nullptr;
   QPushButton* recalibrate_ = nullptr;
 };
 

@@ -11,6 +11,8 @@
 #include "ui/window/pages.h"
 #include "ui/window/workbench.h"
 
+#include <algorithm>
+
 namespace evical::ui {
 namespace {
 
@@ -25,9 +27,35 @@ std::shared_ptr<const CalibrationRun> withSamples(const std::shared_ptr<const Ca
   return run && run->pass.imus.size() == run->result.state.imus.size() ? withTrajectory(run) : nullptr;
 }
 
+// From the detections that the last run had.
+void calibrateWithout(Workbench& workbench, const RejectedTimes& rejections) {
+  const RunRecord& last = workbench.document.last();
+  if (!last.run || rejections.size() != last.run->pass.cameras.size()) return;
+  workbench.calibration.startAgain(last.session, withRejected(last.run->pass, rejections),
+                                   last.run->intrinsics);
+}
+
+void wireRejections(DetectionScreen& screen, Workbench& workbench) {
+  CalibrationDocument& document = workbench.document;
+  const LensDocument& lens = workbench.lens;
+  const auto show = [&screen, &document, &lens] {
+    const bool of_rig = lens.aim() == CalibrationAim::Rig && document.last().run;
+    screen.setRejections(of_rig ? std::optional(document.rejections()) : std::nullopt);
+  };
+  QObject::connect(&document, &CalibrationDocument::rejectionsChanged, &screen, show);
+  QObject::connect(&lens, &LensDocument::aimChanged, &screen, show);
+  QObject::connect(&screen, &DetectionScreen::rejectionsWanted, &document,
+                   &CalibrationDocument::setRejections);
+  QObject::connect(&screen, &DetectionScreen::recalibrationWanted, &screen,
+                   [&workbench] { calibrateWithout(workbench, workbench.document.rejections()); });
+  QObject::connect(&workbench.runner, &JobRunner::started, &screen, [&screen] { screen.setBusy(true); });
+  QObject::connect(&workbench.runner, &JobRunner::finished, &screen, [&screen] { screen.setBusy(false); });
+}
+
 void wireDetection(DetectionScreen& screen, Workbench& workbench) {
   CalibrationDocument& document = workbench.document;
   CalibrationJob& job = workbench.calibration;
+  wireRejections(screen, workbench);
   QObject::connect(&document, &CalibrationDocument::sessionChanged, &screen, [&screen, &document] {
     if (document.hasSession()) screen.setSession(document.session());
   });
@@ -97,14 +125,19 @@ void wireResiduals(ResidualsScreen& screen, Workbench& workbench) {
   const CalibrationDocument& document = workbench.document;
   QObject::connect(&document, &CalibrationDocument::runsChanged, &screen,
                    [&screen, &document] { screen.setRun(withResiduals(document.last().run)); });
-  QObject::connect(&screen, &ResidualsScreen::recalibrateWithout, &screen,
-                   [&screen, &workbench](const std::vector<int>& views) {
-                     const RunRecord& last = workbench.document.last();
-                     if (!last.run) return;
-                     const auto camera = static_cast<std::size_t>(screen.camera());
-                     workbench.calibration.startAgain(
-                         last.session, withoutViews(last.run->pass, camera, views), last.run->intrinsics);
-                   });
+  QObject::connect(
+      &screen, &ResidualsScreen::recalibrateWithout, &screen,
+      [&screen, &workbench](const std::vector<int>& views) {
+        const auto run = workbench.document.last().run;
+        if (!run) return;
+        const auto camera = static_cast<std::size_t>(screen.camera());
+        RejectedTimes rejections = workbench.document.rejections();
+        std::vector<double>& times_s = rejections.at(camera);
+        for (const int view : views)
+          times_s.push_back(run->pass.cameras[camera].views.at(static_cast<std::size_t>(view)).time_s);
+        std::sort(times_s.begin(), times_s.end());
+        calibrateWithout(workbench, rejections);
+      });
 }
 
 // What says "press Calibrate" says so only while one can.

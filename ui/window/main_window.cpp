@@ -3,8 +3,10 @@
 
 #include "core/base/error.h"
 #include "core/pipeline/idle_options.h"
+#include "ui/detection/detection_screen.h"
 #include "ui/forms/option_form.h"
 #include "ui/forms/session_undo_keys.h"
+#include "ui/plots/residuals_screen.h"
 #include "ui/screens/result_screen.h"
 #include "ui/screens/runs_panel.h"
 #include "ui/screens/verdict_icon.h"
@@ -41,6 +43,11 @@ constexpr int kSideBar_px = 236;
 constexpr int kLaidOut_turns = 3;  // after which pages are filled and laid out
 // Bumped when docks or tool bars change, so that an older layout isn't forced on them.
 constexpr int kLayoutVersion = 2;
+
+// Undone with the key: what was calibrated from the same detections without other windows.
+bool leavesOutOthers(const RunRecord& record, const RunRecord& last) {
+  return last.run && rejectedTimes_s(record.run->pass) != rejectedTimes_s(last.run->pass);
+}
 
 }  // namespace
 
@@ -177,6 +184,11 @@ void MainWindow::wireDocument() {
     error_->dismiss();
     exported_->hide();
   });
+  connect(pages_.residuals, &ResidualsScreen::windowWanted, this, [this](int camera, double time_s) {
+    pages_.detection->setCamera(static_cast<std::size_t>(camera));
+    pages_.detection->setTime(time_s);
+    showScreen("detection");
+  });
   connect(pages_.result, &ResultScreen::calibrateRequested, this, &MainWindow::calibrate);
   connect(pages_.result, &ResultScreen::repairRequested, this, &MainWindow::repair);
   connect(error_, &ErrorPanel::repairRequested, this, &MainWindow::repair);
@@ -240,8 +252,9 @@ void MainWindow::wireJobs() {
           [this](std::shared_ptr<const CalibrationRun> run, const Session& session, const QString& log) {
             paintPagesLater();
             RunRecord record{std::move(run), session, log};
-            if (workbench_.calibration.startedFrom() == RunStart::Detections)
-              workbench_.document.addUndoableRun(std::move(record), tr("Reject windows"));
+            const bool same_detections = workbench_.calibration.startedFrom() == RunStart::Detections;
+            if (same_detections && leavesOutOthers(record, workbench_.document.last()))
+              workbench_.document.addUndoableRun(record, tr("Reject windows"));
             else
               workbench_.document.addRun(std::move(record));
             showResultSoon();

@@ -36,6 +36,25 @@ class TestViewRejection : public QObject {
     QCOMPARE(kept.cameras[0].views.size(), simulated_.pass.cameras[0].views.size());
   }
 
+  void rejectedViews_comeBackAsTheyWere() {
+    const std::vector<BoardView>& before = simulated_.pass.cameras[0].views;
+    const RecordingPass without = withoutViews(simulated_.pass, 0, std::vector{5, 2, 9});
+    QCOMPARE(rejectedTimes_s(without)[0],
+             (std::vector{before[2].time_s, before[5].time_s, before[9].time_s}));
+    // One of them back, and another one left out.
+    const RecordingPass changed =
+        withRejected(without, {{before[2].time_s, before[3].time_s, before[9].time_s}});
+    QCOMPARE(rejectedTimes_s(changed)[0],
+             (std::vector{before[2].time_s, before[3].time_s, before[9].time_s}));
+    QCOMPARE(changed.cameras[0].views.size(), before.size() - 3);
+    QCOMPARE(changed.cameras[0].views[3].time_s, before[5].time_s);
+    QCOMPARE(changed.cameras[0].views[3].circles.size(), before[5].circles.size());
+    const RecordingPass all = withRejected(changed, {{}});
+    QCOMPARE(all.cameras[0].views.size(), before.size());
+    for (std::size_t k = 0; k < all.cameras[0].windows.size(); ++k)
+      QCOMPARE(all.cameras[0].windows[k].outcome, simulated_.pass.cameras[0].windows[k].outcome);
+  }
+
   void badViews_leftOutCalibrateAsIfTheyHadNeverBeen() {
     // Shifted as a whole by a fraction of a pixel: too little for the optimiser's own outlier
     // test to drop the window.

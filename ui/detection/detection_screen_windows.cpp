@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The list of windows beside the picture.
+#include "ui/detection/detection_engine.h"
+#include "ui/detection/detection_screen.h"
+#include "ui/detection/timeline.h"
+#include "ui/detection/window_list.h"
+
+#include <QHBoxLayout>
+#include <QResizeEvent>
+#include <QSignalBlocker>
+#include <QToolButton>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace evical::ui {
+namespace {
+
+constexpr int kRoomForBoth_px = 1350;  // list, layers and a picture between them
+constexpr double kListShare = 0.455;   // of the page
+constexpr int kListLeast_px = 330, kListMost_px = 470;
+
+int countOnlyIn(const std::vector<double>& these, const std::vector<double>& others) {
+  std::vector<double> only;
+  std::set_difference(these.begin(), these.end(), others.begin(), others.end(), std::back_inserter(only));
+  return static_cast<int>(only.size());
+}
+
+}  // namespace
+
+void DetectionScreen::makeWindowList() {
+  list_ = new WindowList;
+  connect(list_, &WindowList::windowChosen, this, [this](double time_s) {
+    setPlaying(false);
+    following_ = false;
+    follow_button_->setChecked(false);
+    select(time_s);
+  });
+  connect(list_, &WindowList::rejectionWanted, this,
+          [this](const std::vector<double>& times_s, const QString& what) {
+            if (!rejections_ || camera_ >= rejections_->size()) return;
+            RejectedTimes wanted = *rejections_;
+            wanted[camera_] = times_s;
+            emit rejectionsWanted(wanted, what);
+          });
+  connect(list_, &WindowList::recalibrationWanted, this, &DetectionScreen::recalibrationWanted);
+}
+
+void DetectionScreen::addListButton(QHBoxLayout* row) {
+  list_button_ = addButton(row, "report", tr("List of windows (W)"));
+  list_button_->setText(tr("Windows"));
+  list_button_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+  list_button_->setCheckable(true);
+  connect(list_button_, &QToolButton::clicked, this, &DetectionScreen::setWindowsListed);
+}
+
+void DetectionScreen::addMissedButtons(QHBoxLayout* row) {
+  connect(addButton(row, "missed-before", tr("Missed window before (Shift+M)")), &QToolButton::clicked, this,
+          [this] { stepToMissed(-1); });
+  connect(addButton(row, "missed-next", tr("Next missed window (M)")), &QToolButton::clicked, this,
+          [this] { stepToMissed(+1); });
+}
+
+void DetectionScreen::setWindowsListed(bool listed) {
+  list_wanted_ = listed;
+  layOutSides();
+}
+
+void DetectionScreen::layOutSides() {
+  const bool room = width() >= kRoomForBoth_px;
+  const bool listed = list_wanted_.value_or(room);
+  list_->setFixedWidth(std::clamp(static_cast<int>(kListShare * width()), kListLeast_px, kListMost_px));
+  list_->setVisible(listed);
+  side_->setVisible(room || !listed);
+  const QSignalBlocker quiet(list_button_);
+  list_button_->setChecked(listed);
+}
+
+void DetectionScreen::resizeEvent(QResizeEvent* event) {
+  QWidget::resizeEvent(event);
+  layOutSides();
+}
+
+void DetectionScreen::listWindows() {
+  const CalibrationRun* const run = live_ ? nullptr : runInView();
+  list_->setRun(run != nullptr ? run_ : nullptr, camera_,
+                live_ ? tr("Windows are listed when all have been found.")
+                      : tr("Calibrate (F5): then each window is listed here, with its picture, what became "
+                           "of it and how well it fits."));
+  showRejections();
+  showPictures();
+}
+
+void DetectionScreen::showPictures() {
+  if (engine_) list_->setSource(engine_->pictureSource(), style());
+}
+
+void DetectionScreen::setRejections(const std::optional<RejectedTimes>& rejections) {
+  rejections_ = rejections;
+  showRejections();
+}
+
+void DetectionScreen::showRejections() {
+  const CalibrationRun* const run = runInView();
+  const bool possible = run != nullptr && rejections_ && rejections_->size() == run->pass.cameras.size();
+  list_->setRejectable(possible);
+  if (!possible) {
+    list_->setRejected({});
+    return list_->setPending(0, 0);
+  }
+  list_->setRejected(rejections_->at(camera_));
+  int to_reject = 0, to_keep = 0;
+  for (std::size_t k = 0; k < rejections_->size(); ++k) {
+    const std::vector<double> left_out = rejectedTimes_s(run->pass.cameras[k]);
+    to_reject += countOnlyIn((*rejections_)[k], left_out);
+    to_keep += countOnlyIn(left_out, (*rejections_)[k]);
+  }
+  list_->setPending(to_reject, to_keep);
+}
+
+void DetectionScreen::setBusy(bool busy) {
+  list_->setBusy(busy);
+}
+
+void DetectionScreen::stepToMissed(int direction) {
+  setPlaying(false);
+  following_ = false;
+  follow_button_->setChecked(false);
+  const auto missed_s = timeline_->missedFrom(time_s_, direction);
+  if (missed_s) select(*missed_s);
+}
+
+}  // namespace evical::ui

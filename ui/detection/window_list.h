@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// All windows of a camera with a picture of each: sorted, filtered, chosen, and rejected or kept for the next
+// calibration. What is rejected is said by a signal, and comes back by setRejected().
+#pragma once
+
+#include "ui/detection/window_list_model.h"
+#include "ui/detection/window_pictures.h"
+#include "ui/jobs/latest_job.h"
+
+#include <QTimer>
+#include <QWidget>
+
+#include <memory>
+
+class QComboBox;
+class QHBoxLayout;
+class QLabel;
+class QMenu;
+class QPushButton;
+class QStackedLayout;
+class QTreeView;
+
+namespace evical::ui {
+
+class WindowList : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit WindowList(QWidget* parent = nullptr);
+
+  // Null: none, and `note` says why. The list is filled when it has been made in a thread.
+  void setRun(std::shared_ptr<const CalibrationRun> run, std::size_t camera, const QString& note);
+  // Whether windows can be rejected, and what is to be left out of this camera's.
+  void setRejectable(bool rejectable);
+  void setRejected(std::vector<double> times_s);
+  // Of all cameras, against the last run.
+  void setPending(int to_reject, int to_keep);
+  void setBusy(bool busy);  // something runs: no calibration can be started
+  void setSource(const PictureSource& source, const SurfaceStyle& style);
+
+  const WindowListModel& model() const { return *model_; }
+  const WindowPictures& pictures() const { return *pictures_; }
+  int shownCount() const { return filter_->rowCount(); }
+  WindowFilter filter() const { return filter_->filter(); }
+  std::vector<int> selectedWindows() const;  // rows of the model, ascending
+
+ public slots:
+  void setTime(double time_s);  // the row follows, and nothing is said
+  void setFilter(evical::ui::WindowFilter filter);
+  void wantPictures();  // of the rows in view, soon
+  void rejectSelected() { changeSelected(true); }
+  void keepSelected() { changeSelected(false); }
+
+ signals:
+  void windowChosen(double time_s);                                               // its middle
+  void rejectionWanted(const std::vector<double>& times_s, const QString& what);  // of this camera, all
+  void recalibrationWanted();
+  void filled();
+
+ protected:
+  void resizeEvent(QResizeEvent*) override;
+  void showEvent(QShowEvent*) override;
+
+ private:
+  QWidget* makeFilterBar();
+  void makeTable();
+  QWidget* makeActions();
+  QPushButton* addAction(QHBoxLayout* row, const QString& icon_name, const QString& text,
+                         const QString& help);
+  void showMenu(const QPoint& at);
+  void changeSelected(bool reject);
+  bool canChange(bool reject) const;
+  void askForPictures();
+  void followTime();
+  void fitColumns();
+  void refresh();
+
+  WindowPictures* pictures_;
+  WindowListModel* model_;
+  WindowListFilter* filter_;
+  std::vector<double> rejected_s_;
+  double time_s_ = 0.0;
+  bool rejectable_ = false, busy_ = false, following_ = false;
+  int to_reject_ = 0, to_keep_ = 0;
+  QTimer soon_;
+  QStackedLayout* stack_ = nullptr;
+  QTreeView* table_ = nullptr;
+  QComboBox* filter_box_ = nullptr;
+  QLabel *note_ = nullptr, *count_ = nullptr, *pending_ = nullptr;
+  QPushButton *reject_ = nullptr, *keep_ = nullptr, *recalibrate_ = nullptr;
+  LatestJob job_{OutdatedWork::Dropped};
+};
+
+}  // namespace evical::ui

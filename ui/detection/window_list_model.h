@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The windows of a camera as a table, and those of them that are asked for in the order that is asked for.
+#pragma once
+
+#include "ui/detection/timeline.h"
+#include "ui/detection/window_rows.h"
+
+#include <QAbstractTableModel>
+#include <QSortFilterProxyModel>
+
+#include <optional>
+#include <vector>
+
+namespace evical::ui {
+
+class WindowPictures;
+
+class WindowListModel : public QAbstractTableModel {
+  Q_OBJECT
+
+ public:
+  enum Column { Picture, Time, State, Circles, Rms, Speed, ColumnCount };
+  static constexpr int kSortRole = Qt::UserRole;
+  static constexpr int kSecondLineRole = Qt::UserRole + 1;  // why, below the state
+
+  explicit WindowListModel(const WindowPictures& pictures, QObject* parent = nullptr);
+
+  void setWindows(std::vector<WindowRow> rows, CameraKind kind);  // in time order
+  void setRejected(std::vector<double> times_s);  // what is to be left out: middles, ascending
+  void pictureWasMade(int row);
+
+  const std::vector<WindowRow>& windows() const { return rows_; }
+  const WindowRow& window(int row) const { return rows_.at(static_cast<std::size_t>(row)); }
+  bool isRejected(int row) const;
+  bool isPending(int row) const;  // the run did otherwise
+  WindowClass classOf(int row) const;
+  QString secondLine(int row) const;
+  double worstFrom_px() const { return worst_from_px_; }  // the tenth of the windows with the largest RMS
+  std::optional<int> rowAt(double time_s) const;          // of those that hold the time, the nearest
+
+  int rowCount(const QModelIndex& parent = {}) const override;
+  int columnCount(const QModelIndex& parent = {}) const override;
+  QVariant data(const QModelIndex& index, int role) const override;
+  QVariant headerData(int section, Qt::Orientation orientation, int role) const override;
+
+ private:
+  QString textOf(int row, int column) const;
+  QVariant sortKeyOf(int row, int column) const;
+  QString helpOf(int row) const;
+
+  const WindowPictures& pictures_;
+  std::vector<WindowRow> rows_;
+  std::vector<double> rejected_s_;
+  CameraKind kind_ = CameraKind::Events;
+  double worst_from_px_ = 0.0;
+};
+
+enum class WindowFilter { All, Missed, Partial, Rejected, Worst };
+
+class WindowListFilter : public QSortFilterProxyModel {
+  Q_OBJECT
+
+ public:
+  explicit WindowListFilter(WindowListModel& model, QObject* parent = nullptr);
+
+  void setFilter(WindowFilter filter);
+  WindowFilter filter() const { return filter_; }
+
+ protected:
+  bool filterAcceptsRow(int row, const QModelIndex& parent) const override;
+
+ private:
+  const WindowListModel& model_;
+  WindowFilter filter_ = WindowFilter::All;
+};
+
+QString windowClassName(WindowClass window_class);
+// Outcomes are named as windows of events have them.
+QString windowOutcomeWords(WindowOutcome outcome, bool of_frame);
+
+}  // namespace evical::ui

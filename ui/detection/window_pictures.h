@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Small pictures of windows for a list: made in a thread, for the rows that are asked for last, from what Detection
+// has of the recording. Only so many are kept.
+#pragma once
+
+#include "core/data/board_observations.h"
+#include "core/geometry/resolution.h"
+#include "ui/detection/event_cache.h"
+#include "ui/detection/frame_cache.h"
+#include "ui/detection/surface_frame.h"
+#include "ui/jobs/latest_job.h"
+
+#include <QCache>
+#include <QImage>
+#include <QObject>
+#include <QPixmap>
+#include <QSize>
+
+#include <memory>
+#include <vector>
+
+namespace evical::ui {
+
+// A camera's events or frames, as far as they have been read.
+struct PictureSource {
+  CameraKind kind = CameraKind::Events;
+  std::shared_ptr<const EventCache> events;
+  std::shared_ptr<const FrameCache> frames;
+  std::int64_t start_ns = 0;
+  Resolution resolution_px;
+
+  bool operator==(const PictureSource&) const = default;
+};
+
+struct PictureWish {
+  int row = 0;
+  double time_s = 0.0, half_width_s = 0.0;  // of the window
+};
+
+// Its events by number and polarity, or the frame that is nearest; null while they have not been read yet. Throws
+// CalibrationError where they cannot be read.
+QImage pictureOfWindow(const PictureSource& source, const PictureWish& wish, const SurfaceStyle& style,
+                       const QSize& most_px);
+
+class WindowPictures : public QObject {
+  Q_OBJECT
+
+ public:
+  static constexpr int kMostKept = 200;
+
+  explicit WindowPictures(QObject* parent = nullptr);
+
+  // Another one forgets all that were made; `size_px` in the screen's own pixels.
+  void setSource(const PictureSource& source, const SurfaceStyle& style, const QSize& size_px,
+                 double pixel_ratio);
+  void forget();  // rows are others
+  // Of the rows in view, the first ones first; what was asked for before and is not made yet is dropped.
+  void want(std::vector<PictureWish> wishes);
+
+  const QPixmap* of(int row) const { return made_.object(row); }  // null: not made
+  int count() const { return static_cast<int>(made_.count()); }
+
+ signals:
+  void made(int row);
+
+ private:
+  struct Made {
+    int row;
+    QImage image;
+  };
+  void makeNext();
+  void take(const std::vector<Made>& made);
+
+  PictureSource source_;
+  SurfaceStyle style_;
+  QSize size_px_;
+  double pixel_ratio_ = 1.0;
+  std::vector<PictureWish> wishes_;
+  QCache<int, QPixmap> made_{kMostKept};
+  LatestJob job_{OutdatedWork::Dropped};  // last: its thread uses nothing of this object
+};
+
+}  // namespace evical::ui
