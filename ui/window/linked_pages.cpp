@@ -2,6 +2,7 @@
 #include "ui/window/linked_pages.h"
 
 #include "core/pipeline/view_rejection.h"
+#include "ui/detection/detection_engine.h"
 #include "ui/detection/detection_screen.h"
 #include "ui/plots/convergence_screen.h"
 #include "ui/plots/residuals_screen.h"
@@ -114,6 +115,14 @@ void tellOfRuns(const CalibrationJob& job, Screen*... screen) {
   (QObject::connect(&job, &CalibrationJob::ended, screen, [screen] { screen->setCalibrating(false); }), ...);
 }
 
+// Detection has read the recording already.
+EventLookup eventsOf(const DetectionScreen& detection) {
+  const std::optional<KeptEvents> kept = detection.keptEvents();
+  if (!kept) return {};
+  return {kept->camera,
+          [events = *kept](double begin_s, double end_s) { return events.between(begin_s, end_s); }};
+}
+
 // One cursor: a time that is chosen on one screen is shown on the others.
 template <class From, class... To>
 void linkTime(From* from, To*... to) {
@@ -125,6 +134,7 @@ void linkTime(From* from, To*... to) {
 void wireLinkedPages(const Pages& pages, Workbench& workbench) {
   wireDetection(*pages.detection, workbench);
   wireTrajectory(*pages.trajectory, workbench);
+  pages.trajectory->setEventSource([pages] { return eventsOf(*pages.detection); });
   wireConvergence(*pages.convergence, workbench);
   wireResiduals(*pages.residuals, workbench);
   const CalibrationDocument& document = workbench.document;
