@@ -76,13 +76,19 @@ void wireTrajectory(TrajectoryScreen& screen, Workbench& workbench) {
                    });
 }
 
+NeededAccuracy neededBy(const Session& session) {
+  const OptimisationOptions& options = session.options.optimisation;
+  return {options.needed_rotation_deg, options.needed_translation_mm, options.needed_time_offset_ms};
+}
+
 void wireConvergence(ConvergenceScreen& screen, Workbench& workbench) {
   const CalibrationDocument& document = workbench.document;
   const CalibrationJob& job = workbench.calibration;
   const auto shown = std::make_shared<std::size_t>(0);
-  const auto start_anew = [&screen, shown] {
+  const auto start_anew = [&screen, &document, shown] {
     *shown = 0;
     screen.clear();
+    screen.setNeeded(neededBy(document.session()));
   };
   QObject::connect(&job, &CalibrationJob::started, &screen, start_anew);
   QObject::connect(&job, &CalibrationJob::iterationsChanged, &screen,
@@ -90,8 +96,10 @@ void wireConvergence(ConvergenceScreen& screen, Workbench& workbench) {
                      for (; *shown < iterations->records.size(); ++*shown)
                        screen.appendIteration(iterations->records[*shown]);
                    });
-  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen,
-                   [&screen, &document] { screen.setRun(document.last().run); });
+  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen, [&screen, &document] {
+    screen.setRun(document.last().run);
+    if (document.last().run) screen.setNeeded(neededBy(document.last().session));
+  });
 }
 
 void wireResiduals(ResidualsScreen& screen, Workbench& workbench) {
