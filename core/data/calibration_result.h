@@ -107,6 +107,8 @@ struct IterationRecord {
   int stage = 0, iteration = 0;
   double cost = 0.0, gradient = 0.0, step = 0.0;
   std::vector<CameraState> cameras;
+  std::vector<std::string> released =
+      {};  // of a stage's first: what it solves for and the one before did not
 };
 
 // One residual of one circle, for plots and CSV.

@@ -7,6 +7,7 @@
 #include "core/numerics/solver_stop.h"
 #include "core/optimisation/calibration_problem.h"
 #include "core/optimisation/circle_errors.h"
+#include "core/optimisation/release_words.h"
 #include "core/optimisation/sample_errors.h"
 #include "core/optimisation/trajectory_smoothness.h"
 
@@ -18,6 +19,7 @@
 #include <cassert>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 namespace evical {
 namespace {
@@ -39,6 +41,9 @@ class IterationReporter final : public ceres::IterationCallback {
         furthest_(furthest),
         records_(records) {}
 
+  // Goes with the next iteration.
+  void tellReleased(std::vector<std::string> words) { released_ = std::move(words); }
+
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     constexpr double kTypicalIterations = 8.0;
     const double share = std::min(1.0, (iterations_++ + 1.0) / kTypicalIterations);
@@ -46,7 +51,8 @@ class IterationReporter final : public ceres::IterationCallback {
     context_.progress.stageProgress(furthest_);
     const CalibrationState state = problem_.state();
     records_.push_back({stage_ + 1, static_cast<int>(records_.size()), summary.cost,
-                        summary.gradient_max_norm, summary.step_norm, state.cameras});
+                        summary.gradient_max_norm, summary.step_norm, state.cameras,
+                        std::exchange(released_, {})});
     if (context_.observer != nullptr) context_.observer->iterationDone(records_.back(), state);
     return problem_.segmentDrift_knots() > kFurthestDrift_knots ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
                                                                 : ceres::SOLVER_CONTINUE;
@@ -58,6 +64,7 @@ class IterationReporter final : public ceres::IterationCallback {
   int stage_, stage_count_, iterations_ = 0;
   double& furthest_;  // of the whole batch, 0..1
   std::vector<IterationRecord>& records_;
+  std::vector<std::string> released_;
 };
 
 ceres::Solver::Options solverOptions(const OptimisationOptions& options, double tolerance) {
@@ -96,6 +103,7 @@ class Batch {
  private:
   std::vector<ReleaseStages> stages() const;
   void solveStage(ReleaseStages stage, int index, double tolerance);
+  void tellReleased(IterationReporter& reporter);
   void solveLastStage();
   void holdStillAxes();
   bool updateWeights();
@@ -118,6 +126,7 @@ class Batch {
   const std::vector<SampleSelection> fit_samples_;  // by IMU
   BatchSolution solution_;
   double progress_ = 0.0;
+  std::vector<std::string> free_;  // solved for so far, in words
 };
 
 std::vector<ReleaseStages> Batch::stages() const {
@@ -139,6 +148,7 @@ void Batch::solveStage(ReleaseStages stage, int index, double tolerance) {
   for (int round = 0; round < options_.max_rounds; ++round) {
     context_.throwIfStopped();
     problem_.build(stage, weights_);
+    tellReleased(reporter);
     ceres::Solver::Summary summary;
     const LibraryThreads threads(options_.threads);
     ceres::Solve(solver, &problem_.problem(), &summary);
@@ -154,6 +164,14 @@ void Batch::solveStage(ReleaseStages stage, int index, double tolerance) {
       return;
     }
   }
+}
+
+// What is held again later (an axis that stood still) was free all the same.
+void Batch::tellReleased(IterationReporter& reporter) {
+  std::vector<std::string> released = releasedWords(quantityWords(problem_.quantities()), free_);
+  if (released.empty()) return;
+  free_.insert(free_.end(), released.begin(), released.end());
+  reporter.tellReleased(std::move(released));
 }
 
 // Noise scales and outliers, both from all circles and samples; true if anything

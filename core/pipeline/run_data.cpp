@@ -58,7 +58,7 @@ inline constexpr int kMembers<CameraFit> = 9;
 template <>
 inline constexpr int kMembers<ImuFit> = 2;
 template <>
-inline constexpr int kMembers<IterationRecord> = 6;
+inline constexpr int kMembers<IterationRecord> = 7;
 template <>
 inline constexpr int kMembers<CircleResidual> = 8;
 template <>

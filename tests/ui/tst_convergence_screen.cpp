@@ -104,6 +104,42 @@ class TestConvergenceScreen : public QObject {
             1e3 * run_->result.uncertainty.cameras[0].translation_std_m.maxCoeff());  // the band
   }
 
+  void stages_sayWhatTheyFree() {
+    ConvergenceScreen screen;
+    screen.resize(1100, 650);
+    screen.show();
+    screen.setRun(run_);
+    settle();
+    const QStringList lines = screen.findChild<QLabel*>("stages")->text().split('\n');
+    QCOMPARE(lines.size(), run_->result.iterations.back().stage);
+    QVERIFY2(lines[0].contains("trajectory") && lines[0].contains("time offset") &&
+                 lines[0].contains("gravity") && lines[0].contains("gyroscope bias"),
+             qPrintable(lines[0]));
+    QVERIFY2(lines[1].contains("+ ") && lines[1].contains("gyroscope scale and misalignment"),
+             qPrintable(lines[1]));
+    QVERIFY2(!lines[1].contains("bias"), qPrintable(lines[1]));
+    QVERIFY2(lines.back().contains("noise that was found"), qPrintable(lines.back()));
+    QVERIFY(panel(screen, kCost).toolTip().contains("jumps"));
+  }
+
+  void need_isDrawnAboutTheFinalValue() {
+    ConvergenceScreen screen;
+    screen.setRun(run_);
+    settle();
+    QVERIFY(panel(screen, kRotation).levels().empty());
+    screen.setNeeded(NeededAccuracy{0.1, 1.5, 0.2});
+    settle();
+    QCOMPARE(panel(screen, kRotation).levels(), (std::vector<double>{-0.1, 0.1}));
+    QCOMPARE(panel(screen, kTranslation).levels(), (std::vector<double>{-1.5, 1.5}));
+    QCOMPARE(panel(screen, kTimeOffset).levels(), (std::vector<double>{-0.2, 0.2}));
+    QVERIFY(panel(screen, kCost).levels().empty());
+    QComboBox& relative = *screen.findChildren<QComboBox*>()[1];
+    relative.setCurrentIndex(1);
+    emit relative.activated(1);
+    settle();
+    QVERIFY(panel(screen, kRotation).levels().empty());
+  }
+
   void liveIterations_appearAsTheyCome() {
     ConvergenceScreen screen;
     screen.setRun(run_);
@@ -124,6 +160,7 @@ class TestConvergenceScreen : public QObject {
   void pictures() {
     ConvergenceScreen screen;
     screen.setRun(run_);
+    screen.setNeeded(NeededAccuracy{0.1, 1.0, 0.1});
     screen.show();
     test::takePictures(screen, "convergence", settle);
   }

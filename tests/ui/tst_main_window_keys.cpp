@@ -12,6 +12,7 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDialog>
+#include <QShortcut>
 #include <QTextBlock>
 #include <QTextBrowser>
 
@@ -140,6 +141,13 @@ class TestMainWindowKeys : public QObject {
       ++shortcuts;
     }
     QVERIFY(shortcuts > 15);
+    int of_pages = 0;
+    for (const QShortcut* const shortcut : test.window.findChildren<QShortcut*>()) {
+      const QString key = shortcut->key().toString();
+      QVERIFY2(text.contains(key), qPrintable(key));
+      ++of_pages;
+    }
+    QVERIFY(of_pages >= 11);
   }
 
   void guide_hasContents_thatLeadToItsParts() {

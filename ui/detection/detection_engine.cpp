@@ -201,6 +201,21 @@ void DetectionEngine::show(const DetectionWish& wish) {
   start(AnalysisTask{source, sight_, wish, options_, frame_options_, camera_name_, observations_});
 }
 
+std::vector<Event> KeptEvents::between(double begin_s, double end_s) const {
+  std::vector<Event> events;
+  gather(*cache, start_ns, begin_s, end_s, events);
+  return events;
+}
+
+std::optional<KeptEvents> DetectionEngine::keptEvents() const {
+  if (!reader_) return std::nullopt;
+  const RecordingOverview overview = reader_->overview();
+  const RecordingCaches caches = reader_->caches();
+  if (!overview.started || !caches.events) return std::nullopt;
+  const bool own = overview.kind == CameraKind::Events;
+  return KeptEvents{own ? camera_ : overview.companion.value_or(camera_), overview.start_ns, caches.events};
+}
+
 std::optional<double> DetectionEngine::timeOfFrameBeside_s(double time_s, int direction) const {
   if (!reader_) return std::nullopt;
   const RecordingOverview overview = reader_->overview();

@@ -41,6 +41,15 @@ struct Sight {
   bool operator==(const Sight&) const = default;
 };
 
+// Events that can be looked up from any thread.
+struct KeptEvents {
+  std::size_t camera = 0;
+  std::int64_t start_ns = 0;
+  std::shared_ptr<const EventCache> cache;
+
+  std::vector<Event> between(double begin_s, double end_s) const;
+};
+
 class DetectionEngine : public QObject {
   Q_OBJECT
 
@@ -63,6 +72,8 @@ class DetectionEngine : public QObject {
   bool isOpen() const { return reader_ != nullptr; }
   RecordingOverview overview() const;
   PictureSource pictureSource() const;  // as far as it has been read
+  // Of the camera in view, or of its companion; none where neither has events.
+  std::optional<KeptEvents> keptEvents() const;
   // Of the frame after the nearest (+1) or before it (-1); nothing where there is none.
   std::optional<double> timeOfFrameBeside_s(double time_s, int direction) const;
   std::shared_ptr<const SurfaceFrame> takeFrame() { return frames_.take(); }

@@ -103,6 +103,10 @@ void DetectionScreen::setSession(const Session& session) {
   chooseCamera(0);
 }
 
+void DetectionScreen::readAgain() {
+  if (session_) chooseCamera(camera_);
+}
+
 void DetectionScreen::chooseCamera(std::size_t camera) {
   camera_ = camera;
   look_for_->hide();
@@ -185,6 +189,10 @@ void DetectionScreen::showLiveFrame(std::shared_ptr<const LiveWindow> window) {
   }
   engine_->showLive(std::move(window), style());
   refresh();
+}
+
+std::optional<KeptEvents> DetectionScreen::keptEvents() const {
+  return engine_->keptEvents();
 }
 
 void DetectionScreen::setTime(double time_s) {

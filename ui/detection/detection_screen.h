@@ -35,6 +35,7 @@ inline bool hasPoses(const CalibrationRun& run) {
 }
 
 class DetectionEngine;
+struct KeptEvents;
 enum class PictureChoice;
 struct RecordingOverview;
 struct Sight;
@@ -72,6 +73,8 @@ class DetectionScreen : public QWidget {
   double time_s() const { return time_s_; }
   bool isPlaying() const { return timer_.isActive(); }
   EventView& view() { return *view_; }
+  void readAgain();                                        // the recording is not what it was
+  std::optional<KeptEvents> keptEvents() const;            // of the recording, as far as it has been read
   EventView& companionView() { return *companion_view_; }  // beside it, where both are chosen
   Timeline& timeline() { return *timeline_; }
   WindowPanel& panel() { return *panel_; }

@@ -56,12 +56,21 @@ void RecordingCheckJob::setAutomatic(bool automatic) {
 void RecordingCheckJob::setSession(std::optional<Session> session) {
   if (session.has_value() == session_.has_value() && (!session || isSame(*session, *session_))) return;
   session_ = std::move(session);
+  asked_ = false;
   if (!session_) detected_.reset();
   checked_.reset();
   due_ = session_.has_value();
   runner_.cancel();
   emit outdated();
   startSoon();
+}
+
+void RecordingCheckJob::lookAgain() {
+  if (!session_ || runner_.running()) return;
+  asked_ = true;
+  due_ = true;
+  detected_.reset();
+  start();
 }
 
 void RecordingCheckJob::giveWay(bool busy) {
@@ -76,11 +85,11 @@ void RecordingCheckJob::giveWay(bool busy) {
 }
 
 void RecordingCheckJob::startSoon() {
-  if (due_ && automatic_ && !busy_) pause_.start();
+  if (due_ && mayStart() && !busy_) pause_.start();
 }
 
 void RecordingCheckJob::start() {
-  if (!due_ || busy_ || !automatic_ || !session_ || runner_.running()) return;
+  if (!due_ || busy_ || !mayStart() || !session_ || runner_.running()) return;
   due_ = false;
   found_ = std::make_shared<CheckedRecording>();
   found_for_ = *session_;

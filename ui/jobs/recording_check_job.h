@@ -26,12 +26,14 @@ class RecordingCheckJob : public QObject {
 
   // What is to be checked from now on, once it has not changed for a moment; nothing: there is nothing that could be.
   void setSession(std::optional<Session> session);
+  // The recording has grown: once more, all of it, also where nothing starts by itself. What was found stays until then.
+  void lookAgain();
   // Somebody waits for other work.
   void giveWay(bool busy);
 
   bool running() const { return runner_.running(); }
   // It runs, or will; somebody who waits for it will hear.
-  bool awaited() const { return automatic_ && session_ && (due_ || (runner_.running() && !checked_)); }
+  bool awaited() const { return mayStart() && session_ && (due_ || (runner_.running() && !checked_)); }
   // Of the session as it was set last; null while it is not known.
   const std::shared_ptr<const CheckedRecording>& checked() const { return checked_; }
   // What a calibration of this session may start from.
@@ -46,6 +48,7 @@ class RecordingCheckJob : public QObject {
   void failed(const evical::ui::JobError& error);
 
  private:
+  bool mayStart() const { return automatic_ || asked_; }
   void startSoon();
   void start();
   void finish(JobOutcome outcome);
@@ -53,6 +56,7 @@ class RecordingCheckJob : public QObject {
   JobRunner runner_;
   QTimer pause_;
   bool automatic_ = true, busy_ = false;
+  bool asked_ = false;              // for a look at this session
   std::optional<Session> session_;  // to be checked
   bool due_ = false;                // it has changed since what runs began, or nothing has run
   // What was found, and for which session; written by the work, read once it has ended.

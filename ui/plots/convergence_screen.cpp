@@ -6,6 +6,7 @@
 #include "ui/plots/chart_saving.h"
 #include "ui/plots/empty_note.h"
 #include "ui/plots/plot_panel.h"
+#include "ui/plots/stage_words.h"
 
 #include <QComboBox>
 #include <QGridLayout>
@@ -23,6 +24,7 @@ constexpr double kMillimetresPerMetre = 1e3, kMillisecondsPerSecond = 1e3;
 constexpr PlotColour kAxisColours[] = {PlotColour::X, PlotColour::Y, PlotColour::Z};
 const QString kAxisNames[] = {"x", "y", "z"};
 constexpr double kDot_px = 5.0;
+const char* const kUnits[] = {"deg", "mm", "ms"};
 
 // Only what a logarithm can take; the rest is a gap.
 double positive(double value) {
@@ -82,6 +84,12 @@ QWidget* ConvergenceScreen::makeContent() {
   grid->setContentsMargins(8, 8, 8, 8);
   grid->setSpacing(8);
   grid->addWidget(makeBar(), 0, 0, 1, 3);
+  stages_ = new QLabel;
+  stages_->setObjectName("stages");
+  stages_->setWordWrap(true);
+  stages_->setTextFormat(Qt::PlainText);
+  stages_->setToolTip(stagesHelp());
+  grid->addWidget(stages_, 1, 0, 1, 3);
   const QString iteration = tr("iteration");
   const PlotAxes axes[kPanels] = {
       {.title = tr("Cost"), .x_label = iteration, .logarithmic_y = true, .whole_x = true},
@@ -92,9 +100,10 @@ QWidget* ConvergenceScreen::makeContent() {
       {.title = tr("Time offset"), .x_label = iteration, .y_label = tr("difference (ms)"), .whole_x = true}};
   for (int k = 0; k < kPanels; ++k) {
     panels_.push_back(new PlotPanel(axes[k]));
-    grid->addWidget(panels_.back(), 1 + k / 3, k % 3);
+    panels_.back()->setToolTip(k < Rotation ? stagesHelp() : neededHelp());
+    grid->addWidget(panels_.back(), 2 + k / 3, k % 3);
     grid->setColumnStretch(k % 3, 1);
-    grid->setRowStretch(1 + k / 3, 1);
+    grid->setRowStretch(2 + k / 3, 1);
   }
   addParameterSeries(Cost, {tr("cost")});
   addParameterSeries(Gradient, {tr("gradient")});
@@ -126,6 +135,11 @@ void ConvergenceScreen::setRun(std::shared_ptr<const CalibrationRun> run) {
   drawSoon();
 }
 
+void ConvergenceScreen::setNeeded(const std::optional<NeededAccuracy>& needed) {
+  needed_ = needed;
+  drawSoon();
+}
+
 void ConvergenceScreen::appendIteration(const IterationRecord& record) {
   if (run_) clear();  // the first of a new run
   iterations_.push_back(record);
@@ -150,11 +164,13 @@ void ConvergenceScreen::draw() {
   std::vector<PlotMark> marks;
   for (std::size_t k = 0; k < iterations_.size(); ++k) {
     if (k > 0 && iterations_[k].stage == iterations_[k - 1].stage) continue;
-    marks.push_back({static_cast<double>(k) - 0.5, tr("stage %1").arg(iterations_[k].stage)});
+    marks.push_back({static_cast<double>(k) - 0.5, QString::number(iterations_[k].stage)});
   }
   for (PlotPanel* panel : panels_) panel->setMarks(marks);
+  stages_->setText(stageLines(iterations_).join('\n'));
   drawProgress();
   drawParameters();
+  drawNeeds();
   fitAll();
   summary_->setText(run_
                         ? tr("%1 iterations in %2 stages, %3 s")
@@ -249,7 +265,6 @@ void ConvergenceScreen::drawParameters() {
 void ConvergenceScreen::drawBands(std::size_t camera) {
   const auto begin = static_cast<double>(lastStageBegin(iterations_)) - 0.5;
   const auto end = static_cast<double>(iterations_.size() - 1) + 0.5;
-  const QString units[] = {"deg", "mm", "ms"};
   for (const Panel panel : {Rotation, Translation, TimeOffset}) {
     QStringList sigmas;
     for (std::size_t axis = 0; axis < series_[panel].bands.size(); ++axis) {
@@ -259,7 +274,17 @@ void ConvergenceScreen::drawBands(std::size_t camera) {
                               {final_value - std, final_value - std}, {final_value + std, final_value + std});
       sigmas << QString::number(std, 'g', 2);
     }
-    panels_[panel]->setNote(QStringLiteral("\u00b1 %1 %2").arg(sigmas.join(", "), units[panel - Rotation]));
+    panels_[panel]->setNote(QStringLiteral("\u00b1 %1 %2").arg(sigmas.join(", "), kUnits[panel - Rotation]));
+  }
+}
+
+// About the final value; against the first one each axis would have lines of its own.
+void ConvergenceScreen::drawNeeds() {
+  if (!needed_ || relative_->currentIndex() != static_cast<int>(Relative::ToFinal)) return;
+  const double needs[] = {needed_->rotation_deg, needed_->translation_mm, needed_->time_offset_ms};
+  for (const Panel panel : {Rotation, Translation, TimeOffset}) {
+    const double need = needs[panel - Rotation];
+    panels_[panel]->setLevels({-need, need});
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How the optimiser came to its result: cost, gradient, step and each camera's parameters against the
-// iteration, with the stages' boundaries and, when the run is done, the band of plus and minus one sigma.
+// iteration, with the stages' boundaries, what each of them frees, what accuracy is needed and, when the run is done, the
+// band of plus and minus one sigma.
 #pragma once
 
 #include "core/pipeline/calibration_pipeline.h"
@@ -8,6 +9,7 @@
 #include <QWidget>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 class QComboBox;
@@ -19,6 +21,11 @@ namespace evical::ui {
 
 class PlotPanel;
 
+// Within which the verdict asks parameters to be known.
+struct NeededAccuracy {
+  double rotation_deg = 0.0, translation_mm = 0.0, time_offset_ms = 0.0;
+};
+
 class ConvergenceScreen : public QWidget {
   Q_OBJECT
 
@@ -26,7 +33,8 @@ class ConvergenceScreen : public QWidget {
   explicit ConvergenceScreen(QWidget* parent = nullptr);
 
   void setRun(std::shared_ptr<const CalibrationRun> run);  // null: as clear()
-  void appendIteration(const IterationRecord& record);     // of a run that goes on; drawn soon
+  void setNeeded(const std::optional<NeededAccuracy>& needed);
+  void appendIteration(const IterationRecord& record);  // of a run that goes on; drawn soon
   void clear();
 
  private:
@@ -46,17 +54,19 @@ class ConvergenceScreen : public QWidget {
   void drawProgress();
   void drawParameters();
   void drawBands(std::size_t camera);
+  void drawNeeds();
   void fitAll();
   std::vector<double> differences(Panel panel, int axis, std::size_t camera) const;
   double sigma(Panel panel, int axis, std::size_t camera) const;
 
   std::shared_ptr<const CalibrationRun> run_;
   std::vector<IterationRecord> iterations_;
+  std::optional<NeededAccuracy> needed_;
   std::vector<PlotPanel*> panels_;
   ParameterPanel series_[kPanels];
   QStackedLayout* stack_ = nullptr;
   QComboBox *camera_ = nullptr, *relative_ = nullptr, *shown_ = nullptr;
-  QLabel *camera_label_ = nullptr, *summary_ = nullptr;
+  QLabel *camera_label_ = nullptr, *summary_ = nullptr, *stages_ = nullptr;
   QTimer* redraw_ = nullptr;
 };
 

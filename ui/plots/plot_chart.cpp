@@ -27,7 +27,7 @@ QColor faded(QColor colour, double opacity) {
   return colour;
 }
 
-constexpr double kMargin = 0.06, kLabelMargin = 0.14;  // of what is shown; above, where marks have labels
+constexpr double kMargin = 0.06, kLabelMargin = 0.26;  // of what is shown; above, where marks have labels
 
 QCPRange withMargin(const QCPRange& range, bool logarithmic, double above = kMargin) {
   if (logarithmic) {
@@ -259,6 +259,25 @@ void PlotChart::setMarks(std::span<const PlotMark> marks) {
   styleOverlay(font());
 }
 
+void PlotChart::setLevels(const std::vector<double>& y) {
+  for (QCPItemStraightLine* const level : levels_) removeItem(level);
+  levels_.clear();
+  for (const double at : y) {
+    QCPItemStraightLine* const level = addLine(false);
+    level->setLayer("grid");
+    level->point1->setCoords(0.0, at);
+    level->point2->setCoords(1.0, at);
+    levels_.push_back(level);
+  }
+  styleOverlay(font());
+}
+
+std::vector<double> PlotChart::levels() const {
+  std::vector<double> y;
+  for (const QCPItemStraightLine* const level : levels_) y.push_back(level->point1->coords().y());
+  return y;
+}
+
 void PlotChart::setCursorLine(std::optional<double> x) {
   cursor_->setVisible(x.has_value());
   if (x) {
@@ -416,6 +435,7 @@ void PlotChart::styleOverlay(const QFont& font) {
   readout_->setColor(t.text);
   readout_->setBrush(faded(t.window, 0.92));
   readout_->setPen(QPen(t.grid_line));
+  for (QCPItemStraightLine* const level : levels_) level->setPen(QPen(t.warning, 1.6, Qt::DashDotLine));
   for (const Mark& mark : marks_) {
     mark.line->setPen(QPen(t.faint_text, 1.0, Qt::DashLine));
     mark.label->setFont(scaled(font, kSmallFont));

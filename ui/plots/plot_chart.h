@@ -41,6 +41,8 @@ class PlotChart : public QCustomPlot {
 
   std::size_t addSeries(PlotPanel::SeriesKind kind, const SeriesStyle& style);
   void setMarks(std::span<const PlotMark> marks);
+  void setLevels(const std::vector<double>& y);
+  std::vector<double> levels() const;
   void setCursorLine(std::optional<double> x);
   void setThreshold(std::optional<double> y);
   std::optional<double> threshold() const;
@@ -86,6 +88,7 @@ class PlotChart : public QCustomPlot {
   QCPColorMap* cells_ = nullptr;
   std::vector<QCPItemLine*> arrows_;
   std::vector<Mark> marks_;
+  std::vector<QCPItemStraightLine*> levels_;
   QCPItemStraightLine* cursor_ = nullptr;
   QCPItemStraightLine* hover_ = nullptr;
   QCPItemStraightLine* threshold_ = nullptr;

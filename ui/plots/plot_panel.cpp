@@ -136,6 +136,15 @@ void PlotPanel::setMarks(std::span<const PlotMark> marks) {
   chart_->replot(QCustomPlot::rpQueuedReplot);
 }
 
+void PlotPanel::setLevels(const std::vector<double>& y) {
+  chart_->setLevels(y);
+  chart_->replot(QCustomPlot::rpQueuedReplot);
+}
+
+std::vector<double> PlotPanel::levels() const {
+  return chart_->levels();
+}
+
 void PlotPanel::clear() {
   for (Series k = 0; k < chart_->series.size(); ++k) {
     if (chart_->series[k].kind == SeriesKind::Band)
@@ -146,6 +155,7 @@ void PlotPanel::clear() {
   chart_->cells()->setVisible(false);
   setArrows({}, chart_->arrow_colour);
   setMarks({});
+  setLevels({});
   setNote({});
 }
 

@@ -81,7 +81,10 @@ class PlotPanel : public QWidget {
   void setCells(const PlotCells& cells, PlotColour colour);
   void setArrows(std::span<const PlotArrow> arrows, PlotColour colour);
   void setMarks(std::span<const PlotMark> marks);  // vertical lines with a label
-  void clear();                                    // data, cells, arrows and marks; series stay
+  // Horizontal lines to compare with; they may lie beyond what is shown.
+  void setLevels(const std::vector<double>& y);
+  std::vector<double> levels() const;
+  void clear();  // data, cells, arrows, marks and levels; series stay
   void setTitle(const QString& title);
   void setLegendText(Series series, const QString& text);  // the name stays what it is elsewhere
   void setYLabel(const QString& label);

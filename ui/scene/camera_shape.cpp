@@ -7,12 +7,11 @@
 #include <cmath>
 
 namespace evical::ui {
-namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-Vector3d cornerRay(const CameraIntrinsics& camera, const Vector2d& pixel) {
+Vector3d rayAtUnitDepth(const CameraIntrinsics& camera, const Vector2d& pixel) {
   const Vector2d straight = (pixel - camera.principal_point_px).cwiseQuotient(camera.focal_length_px);
   const auto ray = unprojectRay(camera, pixel);
   if (!ray) return {straight.x(), straight.y(), 1.0};
@@ -23,15 +22,13 @@ Vector3d cornerRay(const CameraIntrinsics& camera, const Vector2d& pixel) {
   return {shown.x(), shown.y(), 1.0};
 }
 
-}  // namespace
-
 CameraShape cameraShape(const std::optional<CameraIntrinsics>& intrinsics) {
   CameraIntrinsics camera{CameraModel::PinholeRadtan, {640, 480}, {550.0, 550.0}, {319.5, 239.5}, {}};
   if (intrinsics && intrinsics->resolution_px.known()) camera = *intrinsics;
   const double right = camera.resolution_px.width_px - 0.5, bottom = camera.resolution_px.height_px - 0.5;
   CameraShape shape;
-  shape.corners = {cornerRay(camera, {-0.5, -0.5}), cornerRay(camera, {right, -0.5}),
-                   cornerRay(camera, {right, bottom}), cornerRay(camera, {-0.5, bottom})};
+  shape.corners = {rayAtUnitDepth(camera, {-0.5, -0.5}), rayAtUnitDepth(camera, {right, -0.5}),
+                   rayAtUnitDepth(camera, {right, bottom}), rayAtUnitDepth(camera, {-0.5, bottom})};
   shape.vertical_view_rad = 2.0 * std::atan(0.5 * (shape.corners[2].y() - shape.corners[0].y()));
   return shape;
 }

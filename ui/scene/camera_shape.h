@@ -17,6 +17,9 @@ struct CameraShape {
   double vertical_view_rad = 0.0;
 };
 
+// Where a pixel's ray is at z = 1; of lenses that see very far aside, no further than can be drawn.
+Eigen::Vector3d rayAtUnitDepth(const CameraIntrinsics& camera, const Eigen::Vector2d& pixel);
+
 // Without intrinsics, a camera like any other.
 CameraShape cameraShape(const std::optional<CameraIntrinsics>& intrinsics);
 

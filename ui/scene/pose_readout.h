@@ -14,7 +14,6 @@ class QLabel;
 namespace evical::ui {
 
 struct PoseNumbers {
-  double time_s = 0.0;
   bool of_camera = false;  // else of the IMU
   std::optional<Eigen::Vector3d> position_m;
   std::optional<double> speed_m_s, rotation_rate_rad_s, residual_px;
@@ -28,7 +27,7 @@ class PoseReadout : public QWidget {
   void setNumbers(const PoseNumbers& numbers);
 
  private:
-  std::array<QLabel*, 5> captions_{}, values_{};
+  std::array<QLabel*, 4> captions_{}, values_{};
 };
 
 }  // namespace evical::ui

@@ -111,7 +111,8 @@ struct TrajectoryScene::Private {
         raw_poses(r, 1.3),
         gravity(r, 3.0),
         axes(r, 3.0),
-        image_plane(r, 1.0) {
+        image_plane(r, 1.0),
+        events(r, 1.0) {
     image_plane.setOpacity(kImagePlaneOpacity);
     visible.fill(true);
   }
@@ -123,15 +124,17 @@ struct TrajectoryScene::Private {
   std::shared_ptr<const TrajectoryTrack> track_data = std::make_shared<TrajectoryTrack>();
   std::optional<Vector3d> gravity_m_s2;
   std::vector<RigidTransform> raw, current_cameras, current_imus;
+  FrustumEvents events_data;
   TrajectoryColour colour = TrajectoryColour::Speed;
   std::array<bool, kSceneLayerCount> visible;
 
   // Drawn in this order.
-  Part ground, board, board_edge, track, stations, current, imu_axes, raw_poses, gravity, axes, image_plane;
+  Part ground, board, board_edge, track, stations, current, imu_axes, raw_poses, gravity, axes, image_plane,
+      events;
 
-  std::array<Part*, 11> parts() {
+  std::array<Part*, 12> parts() {
     return {&ground,      &board,    &board_edge, &track,   &stations, &current,
-            &image_plane, &imu_axes, &raw_poses,  &gravity, &axes};
+            &image_plane, &imu_axes, &raw_poses,  &gravity, &axes,     &events};
   }
   std::vector<Part*> partsOf(SceneLayer layer) {
     switch (layer) {
@@ -153,6 +156,8 @@ struct TrajectoryScene::Private {
         return {&ground};
       case SceneLayer::Axes:
         return {&axes};
+      case SceneLayer::Events:
+        return {&events};
     }
     return {};
   }
@@ -266,6 +271,11 @@ void TrajectoryScene::setInstant(const std::vector<RigidTransform>& world_from_c
   d_->current_cameras = world_from_cameras;
   d_->current_imus = world_from_imus;
   buildInstant();
+}
+
+void TrajectoryScene::setEvents(FrustumEvents events) {
+  d_->events_data = std::move(events);
+  buildEvents();
 }
 
 void TrajectoryScene::setTrajectoryColour(TrajectoryColour colour) {
@@ -416,6 +426,20 @@ void TrajectoryScene::buildInstant() {
   d_->current.show(frusta);
   d_->image_plane.show(planes);
   d_->imu_axes.show(axes);
+  buildEvents();
+}
+
+void TrajectoryScene::buildEvents() {
+  ShapeBuilder shapes;
+  const std::size_t camera = d_->events_data.camera;
+  if (camera < d_->current_cameras.size()) {
+    const double depth_m = lengthOf(d_->kind(camera)) * kCurrentDepth * d_->unit_m();
+    for (const FrustumEvent& event : d_->events_data.events) {
+      shapes.setColour(event.brighter ? theme().brighter : theme().darker);
+      shapes.point(d_->current_cameras[camera] * (depth_m * event.at));
+    }
+  }
+  d_->events.show(shapes);
 }
 
 void TrajectoryScene::buildSurroundings() {

@@ -6,6 +6,7 @@
 #include "core/geometry/board.h"
 #include "core/geometry/camera_intrinsics.h"
 #include "ui/scene/colour_scale.h"
+#include "ui/scene/frustum_events.h"
 #include "ui/scene/placed_board.h"
 #include "ui/scene/trajectory_track.h"
 
@@ -20,8 +21,19 @@ class vtkRenderer;
 
 namespace evical::ui {
 
-enum class SceneLayer { Board, Trajectory, Cameras, CurrentCamera, ImuAxes, RawPoses, Gravity, Ground, Axes };
-inline constexpr int kSceneLayerCount = 9;
+enum class SceneLayer {
+  Board,
+  Trajectory,
+  Cameras,
+  CurrentCamera,
+  ImuAxes,
+  RawPoses,
+  Gravity,
+  Ground,
+  Axes,
+  Events
+};
+inline constexpr int kSceneLayerCount = 10;
 
 enum class TrajectoryColour { Speed, Residual };
 
@@ -61,6 +73,9 @@ class TrajectoryScene {
   void setInstant(const std::vector<RigidTransform>& world_from_cameras,
                   const std::vector<RigidTransform>& world_from_imus);
 
+  // They go with their camera.
+  void setEvents(FrustumEvents events);
+
   void setTrajectoryColour(TrajectoryColour colour);
   void setVisible(SceneLayer layer, bool visible);
   bool isVisible(SceneLayer layer) const;
@@ -81,6 +96,7 @@ class TrajectoryScene {
   void buildStations();
   void buildRawPoses();
   void buildInstant();
+  void buildEvents();
   void buildSurroundings();  // all that depends on how large the rest is
 
   struct Private;

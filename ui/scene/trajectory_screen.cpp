@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/scene/trajectory_screen.h"
 
+#include "core/base/modest_thread.h"
+#include "ui/forms/page_keys.h"
 #include "ui/jobs/file_saver.h"
 #include "ui/jobs/latest_job.h"
 #include "ui/scene/camera_shape.h"
 #include "ui/scene/pose_readout.h"
 #include "ui/scene/sample_scene.h"
+#include "ui/scene/time_bar.h"
 #include "ui/scene/trajectory_overlay.h"
 #include "ui/scene/trajectory_tools.h"
 #include "ui/scene/view3d.h"
@@ -28,6 +31,7 @@ using Eigen::Vector3d;
 constexpr double kPick_px = 12.0;
 constexpr double kSameDistance_px = 2.0;  // then the nearer to the eye is meant
 constexpr double kNearestRawPose_s = 0.1;
+constexpr double kEventsAround_s = 0.005;
 constexpr double kCameraViewMargin = 1.2;  // of its image, so that the frustum frames it
 
 struct Track {
@@ -75,6 +79,7 @@ struct TrajectoryScreen::Private {
       : q(screen),
         view(view_3d),
         tools(new TrajectoryTools(screen)),
+        time_bar(new TimeBar(screen)),
         readout(new PoseReadout(screen)),
         saver(new FileSaver(screen)),
         scene(view_3d->renderer()) {}
@@ -82,6 +87,7 @@ struct TrajectoryScreen::Private {
   TrajectoryScreen* q;
   View3D* view;
   TrajectoryTools* tools;
+  TimeBar* time_bar;
   PoseReadout* readout;
   FileSaver* saver;
   TrajectoryScene scene;
@@ -90,6 +96,8 @@ struct TrajectoryScreen::Private {
   std::vector<Board> further_boards;   // where they are, the state tells
   std::vector<SeenBoard> seen_boards;  // by camera
   std::vector<CameraShape> cameras;
+  std::vector<std::optional<CameraIntrinsics>> lenses;  // by camera
+  std::function<EventLookup()> event_source;
   std::shared_ptr<const CalibrationState> state;  // that is drawn
   std::shared_ptr<const TrajectoryTrack> track = std::make_shared<TrajectoryTrack>();
   std::vector<ViewPoseInput> pose_inputs;  // by camera
@@ -101,8 +109,13 @@ struct TrajectoryScreen::Private {
 
   LatestJob track_job{OutdatedWork::Delivered};
   LatestJob poses_job{OutdatedWork::Delivered};
+  LatestJob events_job{OutdatedWork::Delivered};
 
   void buildLayout();
+  void addKeys();
+  void offerTimes();
+  void lookUpEvents();
+  void select(double new_time_s);
   void connectTools();
   void setBoards(const Session& session);
   void placeFurtherBoards();
@@ -141,12 +154,28 @@ void TrajectoryScreen::Private::buildLayout() {
   column->setSpacing(0);
   column->addWidget(tools);
   column->addWidget(view, 1);
+  column->addWidget(time_bar);
   column->addWidget(readout);
   q->setFocusProxy(view);
+  addKeys();
   view->setOverlay([this](QPainter& painter) { paint(painter); });
 }
 
+void TrajectoryScreen::Private::addKeys() {
+  addPageKey(q, Qt::Key_Space, [this] { time_bar->togglePlaying(); });
+  addPageKey(q, Qt::Key_Left, [this] { time_bar->step(-1); });
+  addPageKey(q, Qt::Key_Right, [this] { time_bar->step(+1); });
+  addPageKey(q, Qt::Key_Home, [this] { time_bar->toStart(); });
+  addPageKey(q, Qt::Key_End, [this] { time_bar->toEnd(); });
+  leaveFocusToKeys(q);
+}
+
 void TrajectoryScreen::Private::connectTools() {
+  connect(time_bar, &TimeBar::timeSelected, q, [this](double picked_s) { select(picked_s); });
+  // The other pages, none of which is in view, need not follow every frame.
+  connect(time_bar, &TimeBar::playingChanged, q, [this](bool playing) {
+    if (!playing) emit q->timeSelected(time_s);
+  });
   connect(tools, &TrajectoryTools::colourChosen, q, &TrajectoryScreen::setTrajectoryColour);
   connect(tools, &TrajectoryTools::layerToggled, q, &TrajectoryScreen::setLayerVisible);
   connect(tools, &TrajectoryTools::viewChosen, view, &View3D::look);
@@ -165,9 +194,7 @@ void TrajectoryScreen::Private::connectTools() {
   });
   connect(view, &View3D::clicked, q, [this](const QPointF& position) {
     const auto picked_s = timeUnderMouse(position);
-    if (!picked_s) return;
-    q->setTime(*picked_s);
-    emit q->timeSelected(*picked_s);
+    if (picked_s) select(*picked_s);
   });
 }
 
@@ -178,6 +205,8 @@ void TrajectoryScreen::startInBackground() {
 void TrajectoryScreen::clear() {
   d_->track_job.discard();
   d_->poses_job.discard();
+  d_->events_job.discard();
+  d_->scene.setEvents({});
   d_->board.reset();
   d_->further_boards.clear();
   d_->seen_boards.clear();
@@ -225,7 +254,9 @@ std::optional<RigidTransform> TrajectoryScreen::Private::worldFromBoardOf(std::s
 void TrajectoryScreen::setIntrinsics(const std::vector<std::optional<CameraIntrinsics>>& cameras) {
   d_->cameras.clear();
   for (const auto& intrinsics : cameras) d_->cameras.push_back(cameraShape(intrinsics));
+  d_->lenses = cameras;
   d_->scene.setIntrinsics(cameras);
+  d_->lookUpEvents();
   d_->view->redraw();
 }
 
@@ -297,6 +328,7 @@ void TrajectoryScreen::Private::showTrack(Track new_track) {
   scene.setTrack(track);
   tools->offerResiduals(track->hasResiduals());
   tools->offerTable(!track->empty());
+  offerTimes();
   if (!track->hasResiduals()) q->setTrajectoryColour(TrajectoryColour::Speed);
   showRawPoses();
   showInstant();
@@ -305,9 +337,46 @@ void TrajectoryScreen::Private::showTrack(Track new_track) {
 
 void TrajectoryScreen::Private::showViewPoses(std::vector<ViewPoses> poses) {
   view_poses = std::move(poses);
+  offerTimes();
   showRawPoses();
   showInstant();
   placeWorld();
+}
+
+// From the trajectory's start to its end, with a stop at each view of the first camera; before there is a trajectory,
+// as far as there are views.
+void TrajectoryScreen::Private::offerTimes() {
+  std::vector<double> stops_s;
+  if (!view_poses.empty())
+    for (const CameraPose& pose : view_poses.front().poses) stops_s.push_back(pose.time_s);
+  std::sort(stops_s.begin(), stops_s.end());
+  if (!track->empty()) return time_bar->setTimes(track->times_s.front(), track->times_s.back(), stops_s);
+  if (stops_s.empty()) return time_bar->setNoTimes();
+  time_bar->setTimes(stops_s.front(), stops_s.back(), stops_s);
+}
+
+void TrajectoryScreen::Private::select(double new_time_s) {
+  q->setTime(new_time_s);
+  if (!time_bar->isPlaying()) emit q->timeSelected(new_time_s);
+}
+
+void TrajectoryScreen::Private::lookUpEvents() {
+  if (!q->isVisible() || !event_source || !scene.isVisible(SceneLayer::Events)) return;
+  const EventLookup lookup = event_source();
+  if (!lookup.between || lookup.camera >= lenses.size() || !lenses[lookup.camera]) {
+    events_job.discard();
+    scene.setEvents({});
+    return;
+  }
+  events_job.start([this, lookup, lens = lenses[lookup.camera], at_s = time_s](const std::stop_token&) {
+    makeThreadModest();
+    const FrustumEvents found{
+        lookup.camera, onImagePlane(lookup.between(at_s - kEventsAround_s, at_s + kEventsAround_s), lens)};
+    return [this, found] {
+      scene.setEvents(found);
+      view->redraw();
+    };
+  });
 }
 
 // Those of the IMU, so that they ought to lie on the trajectory; of the cameras until their place is known.
@@ -352,7 +421,6 @@ void TrajectoryScreen::Private::showInstant() {
 
 void TrajectoryScreen::Private::showNumbers() {
   PoseNumbers numbers;
-  numbers.time_s = time_s;
   if (instant) {
     numbers.of_camera = state->imus.empty();  // the body is the reference camera then
     numbers.position_m = instant->imu.world_from_imu.translation_m;
@@ -443,7 +511,7 @@ double TrajectoryScreen::time_s() const {
 }
 
 bool TrajectoryScreen::busy() const {
-  return d_->track_job.busy() || d_->poses_job.busy();
+  return d_->track_job.busy() || d_->poses_job.busy() || d_->events_job.busy();
 }
 
 View3D* TrajectoryScreen::view() const {
@@ -459,13 +527,39 @@ void TrajectoryScreen::setTrajectoryColour(TrajectoryColour colour) {
 void TrajectoryScreen::setLayerVisible(SceneLayer layer, bool visible) {
   d_->scene.setVisible(layer, visible);
   d_->tools->showLayer(layer, visible);
+  d_->lookUpEvents();
   d_->view->redraw();
 }
 
 void TrajectoryScreen::setTime(double time_s) {
   if (time_s == d_->time_s) return;
   d_->time_s = time_s;
+  d_->time_bar->setTime(time_s);
   d_->showInstant();
+  d_->lookUpEvents();
+}
+
+void TrajectoryScreen::setPlaying(bool playing) {
+  d_->time_bar->setPlaying(playing);
+}
+
+bool TrajectoryScreen::isPlaying() const {
+  return d_->time_bar->isPlaying();
+}
+
+void TrajectoryScreen::setEventSource(std::function<EventLookup()> source) {
+  d_->event_source = std::move(source);
+  d_->lookUpEvents();
+}
+
+void TrajectoryScreen::showEvent(QShowEvent* event) {
+  QWidget::showEvent(event);
+  d_->lookUpEvents();
+}
+
+void TrajectoryScreen::hideEvent(QHideEvent* event) {
+  setPlaying(false);
+  QWidget::hideEvent(event);
 }
 
 void TrajectoryScreen::changeEvent(QEvent* event) {

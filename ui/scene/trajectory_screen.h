@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The calibrated motion in front of the board, in 3D. Knows no document: data come by setters, also while a
-// calibration runs; clicks on the trajectory go out as times. Times are seconds since the recording's start
+// calibration runs; clicks on the trajectory and what is played go out as times. Times are seconds since the recording's start
 // on the first camera's clock.
 #pragma once
 
 #include "core/data/board_observations.h"
 #include "core/data/calibration_state.h"
 #include "core/pipeline/calibration_pipeline.h"
+#include "ui/scene/frustum_events.h"
 #include "ui/scene/trajectory_scene.h"
 
 #include <QWidget>
 
+#include <functional>
 #include <memory>
 
 namespace evical::ui {
@@ -41,7 +43,11 @@ class TrajectoryScreen : public QWidget {
   void setDetections(std::shared_ptr<const BoardObservations> observations,
                      const CameraIntrinsics& intrinsics, std::size_t camera = 0);
 
+  // Asked in the GUI thread for what can be looked up now, whenever the cursor moves while the page is in view.
+  void setEventSource(std::function<EventLookup()> source);
+
   double time_s() const;
+  bool isPlaying() const;
   // Work in the background is under way.
   bool busy() const;
 
@@ -53,12 +59,15 @@ class TrajectoryScreen : public QWidget {
 
  public slots:
   void setTime(double time_s);
+  void setPlaying(bool playing);
 
  signals:
   void timeSelected(double time_s);
 
  protected:
   void changeEvent(QEvent* event) override;
+  void showEvent(QShowEvent* event) override;
+  void hideEvent(QHideEvent* event) override;
 
  private:
   struct Private;

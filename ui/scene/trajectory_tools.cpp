@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/scene/trajectory_tools.h"
 
+#include "ui/forms/flow_layout.h"
 #include "ui/theme/theme.h"
 
 #include <QAction>
 #include <QComboBox>
+#include <QEvent>
+#include <QHBoxLayout>
 #include <QLabel>
 #include <QMenu>
 #include <QStandardItemModel>
@@ -12,30 +15,56 @@
 
 namespace evical::ui {
 
-TrajectoryTools::TrajectoryTools(QWidget* parent) : QToolBar(parent) {
-  setMovable(false);
-  setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+TrajectoryTools::TrajectoryTools(QWidget* parent) : QWidget(parent) {
+  auto* const row = new FlowLayout(this);
+  row->setContentsMargins(6, 4, 6, 4);
+  row->setSpacing(4);
   addColours();
-  addSeparator();
   addLayers();
-  addSeparator();
   addViews();
-  addSeparator();
   addFollowing();
-  addSeparator();
   addSaving();
+  applyIcons();
+}
+
+QToolButton* TrajectoryTools::addButton(const QString& text, const QString& icon_name, const QString& help) {
+  auto* const button = new QToolButton(this);
+  button->setText(text);
+  button->setToolTip(help);
+  button->setAccessibleName(text);
+  button->setAutoRaise(true);
+  button->setToolButtonStyle(icon_name.isEmpty() ? Qt::ToolButtonTextOnly : Qt::ToolButtonTextBesideIcon);
+  if (!icon_name.isEmpty()) icons_.emplace_back(button, icon_name);
+  layout()->addWidget(button);
+  return button;
+}
+
+void TrajectoryTools::applyIcons() {
+  for (const auto& [button, name] : icons_) button->setIcon(icon(name));
+}
+
+void TrajectoryTools::changeEvent(QEvent* event) {
+  if (event->type() == QEvent::PaletteChange) applyIcons();
+  QWidget::changeEvent(event);
 }
 
 void TrajectoryTools::addColours() {
-  addWidget(new QLabel(" " + tr("Colour by") + " ", this));
-  colours_ = new QComboBox(this);
+  auto* const pair = new QWidget(this);  // stays together
+  auto* const row = new QHBoxLayout(pair);
+  row->setContentsMargins(2, 0, 2, 0);
+  auto* const label = new QLabel(tr("&Colour by"), pair);
+  colours_ = new QComboBox(pair);
+  label->setBuddy(colours_);
+  colours_->setAccessibleName(tr("Colour by"));
   colours_->addItems({tr("Speed"), tr("Residual")});
   colours_->setToolTip(
       tr("What the trajectory's colour says: the IMU's speed, or how far the board's circles lie from\n"
          "where the calibration expects them (of the nearest view; known after a calibration)"));
   connect(colours_, &QComboBox::activated, this,
           [this](int index) { emit colourChosen(static_cast<TrajectoryColour>(index)); });
-  addWidget(colours_);
+  row->addWidget(label);
+  row->addWidget(colours_);
+  layout()->addWidget(pair);
   offerResiduals(false);
 }
 
@@ -51,11 +80,9 @@ void TrajectoryTools::addLayers() {
       {tr("Gravity"), tr("Its direction as estimated")},
       {tr("Ground"), tr("A level grid below everything")},
       {tr("Board axes"), tr("x, y and z of the board's frame, which is the world")},
+      {tr("Events now"), tr("The camera's events at the cursor's time, on the image plane of its frustum")},
   }};
-  auto* const button = new QToolButton(this);
-  button->setText(tr("Layers"));
-  button->setIcon(icon("layers"));
-  button->setToolButtonStyle(toolButtonStyle());
+  QToolButton* const button = addButton(tr("Layers"), "layers", tr("What is drawn"));
   button->setPopupMode(QToolButton::InstantPopup);
   auto* const menu = new QMenu(button);
   menu->setToolTipsVisible(true);
@@ -68,32 +95,28 @@ void TrajectoryTools::addLayers() {
             [this, k](bool checked) { emit layerToggled(static_cast<SceneLayer>(k), checked); });
   }
   button->setMenu(menu);
-  button->setToolTip(tr("What is drawn"));
-  addWidget(button);
 }
 
 void TrajectoryTools::addViews() {
   const std::array<std::pair<QString, QString>, 4> texts = {
-      {{tr("Home"), tr("Everything, from the side above (Home)")},
+      {{tr("Home"), tr("Everything, from the side above (0)")},
        {tr("Front"), tr("Facing the board (1)")},
        {tr("Side"), tr("From the board's side (2)")},
        {tr("Top"), tr("From above (3)")}}};
   for (std::size_t k = 0; k < texts.size(); ++k) {
-    QAction* const action = addAction(texts[k].first);
-    action->setToolTip(texts[k].second);
-    connect(action, &QAction::triggered, this, [this, k] {
+    QToolButton* const button = addButton(texts[k].first, k == 0 ? "home" : QString(), texts[k].second);
+    connect(button, &QToolButton::clicked, this, [this, k] {
       leaveCamera();
       emit viewChosen(static_cast<StandardView>(k));
     });
   }
-  actions().at(actions().size() - 4)->setIcon(icon("home"));
 }
 
 void TrajectoryTools::addFollowing() {
-  follow_ = addAction(icon("follow"), tr("Follow camera"));
+  follow_ = new QAction(tr("Follow camera"), this);
   follow_->setObjectName("follow");
   follow_->setToolTip(tr("Keep the camera in the middle as time goes on (F)"));
-  through_ = addAction(icon("camera"), tr("Through camera"));
+  through_ = new QAction(tr("Through camera"), this);
   through_->setObjectName("through_camera");
   through_->setToolTip(tr("See the board as the camera does; drag to leave (C)"));
   follow_->setShortcut(QKeySequence("F"));
@@ -102,6 +125,12 @@ void TrajectoryTools::addFollowing() {
     action->setShortcutContext(Qt::WidgetWithChildrenShortcut);
     parentWidget()->addAction(action);  // works wherever the focus is on the screen
     action->setCheckable(true);
+    QToolButton* const button =
+        addButton(action->text(), action == follow_ ? "follow" : "camera", action->toolTip());
+    button->setObjectName(action->objectName() + "_button");
+    button->setCheckable(true);
+    connect(button, &QToolButton::clicked, action, &QAction::trigger);
+    connect(action, &QAction::toggled, button, &QToolButton::setChecked);
     connect(action, &QAction::triggered, this, [this, action](bool checked) {
       if (checked) (action == follow_ ? through_ : follow_)->setChecked(false);
       emit followingChanged();
@@ -111,22 +140,18 @@ void TrajectoryTools::addFollowing() {
 
 void TrajectoryTools::addSaving() {
   constexpr double kOnce = 1.0, kTwice = 2.0;
-  auto* const button = new QToolButton(this);
+  QToolButton* const button =
+      addButton(tr("Save"), "save", tr("Save what is seen as a picture, or the trajectory as a table"));
   button->setObjectName("save_view");
-  button->setText(tr("Save"));
-  button->setIcon(icon("save"));
-  button->setToolButtonStyle(toolButtonStyle());
   button->setPopupMode(QToolButton::InstantPopup);
   button->setFocusPolicy(Qt::StrongFocus);
   button->setAccessibleName(tr("Save the view"));
-  button->setToolTip(tr("Save what is seen as a picture, or the trajectory as a table"));
   save_ = new QMenu(button);
   save_->addAction(tr("Save &picture (PNG)..."), this, [this] { emit pictureWanted(kOnce); });
   save_->addAction(tr("Save picture at &twice the size (PNG)..."), this,
                    [this] { emit pictureWanted(kTwice); });
   table_ = save_->addAction(tr("Save &trajectory (CSV)..."), this, [this] { emit tableWanted(); });
   button->setMenu(save_);
-  addWidget(button);
   offerTable(false);
 }
 

@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tool bar of the trajectory screen: colour, layers, views, following the camera.
+// The tool bar of the trajectory screen: colour, layers, views, following the camera. Where it has no room in one row it
+// takes another.
 #pragma once
 
 #include "ui/scene/trajectory_scene.h"
 #include "ui/scene/turntable_camera.h"
 
-#include <QToolBar>
+#include <QWidget>
 
 #include <array>
+#include <utility>
+#include <vector>
 
 class QComboBox;
 class QMenu;
+class QToolButton;
 
 namespace evical::ui {
 
-class TrajectoryTools : public QToolBar {
+class TrajectoryTools : public QWidget {
   Q_OBJECT
 
  public:
@@ -38,13 +42,19 @@ class TrajectoryTools : public QToolBar {
   void pictureWanted(double scale);  // pixels of it to one of the screen's
   void tableWanted();
 
+ protected:
+  void changeEvent(QEvent* event) override;
+
  private:
   void addColours();
   void addLayers();
   void addViews();
   void addFollowing();
   void addSaving();
+  QToolButton* addButton(const QString& text, const QString& icon_name, const QString& help);
+  void applyIcons();
 
+  std::vector<std::pair<QToolButton*, QString>> icons_;
   QComboBox* colours_ = nullptr;
   QMenu* save_ = nullptr;
   QAction* table_ = nullptr;

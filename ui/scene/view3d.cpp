@@ -288,7 +288,7 @@ bool View3D::turnByKey(int key, Qt::KeyboardModifiers modifiers) {
     case Qt::Key_3:
       look(StandardView::Top);
       break;
-    case Qt::Key_Home:
+    case Qt::Key_0:
       look(StandardView::Home);
       break;
     case Qt::Key_Plus:

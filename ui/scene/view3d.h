@@ -3,7 +3,7 @@
 // no OpenGL at all it says so in place of the picture.
 //
 // Mouse: left orbits, right or middle (or shift and left) pans, the wheel zooms. Keys: arrows orbit, with
-// shift they pan, + and - zoom, 1 front, 2 side, 3 top, Home everything.
+// shift they pan, + and - zoom, 1 front, 2 side, 3 top, 0 everything.
 #pragma once
 
 #include "ui/scene/turntable_camera.h"

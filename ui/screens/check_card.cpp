@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/check_card.h"
 
+#include "ui/screens/check_words.h"
 #include "ui/screens/light_mark.h"
 #include "ui/theme/theme.h"
 
+#include <QCheckBox>
 #include <QGridLayout>
 #include <QHBoxLayout>
 #include <QLabel>
@@ -26,49 +28,6 @@ QLabel* label(const QString& text, const char* role, QWidget* parent) {
   return made;
 }
 
-QString titleOf(AssessedThing thing) {
-  switch (thing) {
-    case AssessedThing::Duration:
-      return QObject::tr("Duration");
-    case AssessedThing::Board:
-      return QObject::tr("Board in view");
-    case AssessedThing::Coverage:
-      return QObject::tr("Coverage");
-    case AssessedThing::Speed:
-      return QObject::tr("Speed");
-    case AssessedThing::Lens:
-      return QObject::tr("Lens");
-    case AssessedThing::Turns:
-      return QObject::tr("Turns (x, y, z)");
-    case AssessedThing::Accelerations:
-      return QObject::tr("Accelerations (x, y, z)");
-    case AssessedThing::Rotation:
-      return QObject::tr("Expected rotation");
-    case AssessedThing::Translation:
-      return QObject::tr("Expected translation");
-    case AssessedThing::TimeOffset:
-      return QObject::tr("Expected time offset");
-    case AssessedThing::Obstacle:
-      return QObject::tr("In the way");
-  }
-  return {};
-}
-
-QString sentence(QString text) {
-  if (!text.isEmpty()) text[0] = text[0].toUpper();
-  if (!text.isEmpty() && !text.endsWith('.')) text += '.';
-  return text;
-}
-
-// What is worst first; of two alike what comes first.
-std::vector<const Assessed*> worstFirst(const RecordingAssessment& assessment) {
-  std::vector<const Assessed*> sorted;
-  for (const Assessed& one : assessment.all) sorted.push_back(&one);
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const Assessed* a, const Assessed* b) { return a->light > b->light; });
-  return sorted;
-}
-
 // Of a rig with one camera and one IMU nobody needs the names.
 bool hasSeveralSensors(const RecordingAssessment& assessment) {
   const auto count = [&](AssessedThing thing) {
@@ -76,20 +35,6 @@ bool hasSeveralSensors(const RecordingAssessment& assessment) {
                          [&](const Assessed& one) { return one.thing == thing; });
   };
   return count(AssessedThing::Board) > 1 || count(AssessedThing::Turns) > 1;
-}
-
-QString summaryOf(const RecordingAssessment& assessment) {
-  if (!assessment.board_seen) return QObject::tr("The board was never seen");
-  if (!assessment.can_be_calibrated) return QObject::tr("This recording cannot be calibrated");
-  switch (assessment.light) {
-    case Light::Good:
-      return QObject::tr("This recording is good enough");
-    case Light::Fair:
-      return QObject::tr("This recording will do, but could be better");
-    case Light::Poor:
-      return QObject::tr("This recording is not good enough");
-  }
-  return {};
 }
 
 }  // namespace
@@ -109,6 +54,7 @@ CheckCard::CheckCard(QWidget* parent)
   summary_->setObjectName("check_summary");
   advice_->setObjectName("check_advice");
   board_line_ = makeBoardLine();
+  follow_line_ = makeFollowLine();
   more_->setCheckable(true);
   more_->setObjectName("check_details");
   connect(more_, &QToolButton::toggled, this, &CheckCard::showDetails);
@@ -144,6 +90,7 @@ CheckCard::CheckCard(QWidget* parent)
   layout->addLayout(line);
   layout->addWidget(advice_);
   layout->addWidget(board_line_);
+  layout->addWidget(follow_line_);
   layout->addWidget(details_, 1);
   grid_->setContentsMargins(0, 4, 0, 2);
   setUnconfirmedBoard({});
@@ -164,8 +111,37 @@ QWidget* CheckCard::makeBoardLine() {
   return line;
 }
 
+QWidget* CheckCard::makeFollowLine() {
+  auto* const line = new QWidget(this);
+  follow_ = new QCheckBox(tr("&Follow while it is being written"), line);
+  follow_->setObjectName("follow_recording");
+  follow_->setToolTip(tr(
+      "Another program is writing this recording: it is looked through again and again, and what is still\n"
+      "missing is said here, until nothing more comes for five seconds"));
+  connect(follow_, &QCheckBox::toggled, this, &CheckCard::followingWanted);
+  auto* const layout = new QHBoxLayout(line);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(label(tr("The recording is growing."), "hint", line));
+  layout->addWidget(follow_);
+  layout->addStretch(1);
+  line->hide();
+  return line;
+}
+
+void CheckCard::offerFollowing(bool offered) {
+  follow_line_->setVisible(offered);
+  if (offered) setVisible(true);
+}
+
+void CheckCard::setFollowing(bool following) {
+  following_ = following;
+  const QSignalBlocker quiet(follow_);
+  follow_->setChecked(following);
+}
+
 void CheckCard::showState(const QString& summary, std::optional<Light> light) {
   idle_ = false;
+  assessed_ = false;
   summary_->setText(summary);
   mark_->setVisible(light.has_value());
   if (light) mark_->setLight(*light);
@@ -179,11 +155,14 @@ void CheckCard::showState(const QString& summary, std::optional<Light> light) {
 void CheckCard::clear() {
   showState(tr("Before you calibrate"), std::nullopt);
   idle_ = true;
-  setVisible(board_line_->isVisibleTo(this));  // that is to be said whatever else is known
+  // Those are to be said whatever else is known.
+  setVisible(board_line_->isVisibleTo(this) || follow_line_->isVisibleTo(this));
 }
 
 void CheckCard::setChecking(double fraction) {
-  if (!progress_->isVisibleTo(this)) showState(tr("Looking whether the recording is good enough..."), {});
+  const bool keep = following_ && assessed_;
+  if (!progress_->isVisibleTo(this) && !keep)
+    showState(tr("Looking whether the recording is good enough..."), {});
   progress_->show();
   progress_->setValue(static_cast<int>(1000.0 * fraction));
   setVisible(true);
@@ -195,6 +174,13 @@ void CheckCard::setWaiting() {
 }
 
 void CheckCard::setFailed(const QString& why) {
+  if (following_) {
+    showState(tr("Nothing can be said yet"), {});
+    advice_->setText(tr("It is looked through again when there is more of it."));
+    advice_->setToolTip(why);
+    advice_->show();
+    return setVisible(true);
+  }
   showState(tr("This recording cannot be calibrated"), Light::Poor);
   advice_->setText(sentence(why));
   advice_->show();
@@ -202,21 +188,31 @@ void CheckCard::setFailed(const QString& why) {
 }
 
 void CheckCard::setAssessment(const RecordingAssessment& assessment) {
-  showState(summaryOf(assessment), assessment.light);
-  const std::vector<const Assessed*> sorted = worstFirst(assessment);
-  const auto first =
-      std::find_if(sorted.begin(), sorted.end(), [](const Assessed* one) { return !one->advice.empty(); });
-  if (first != sorted.end()) {
-    const QString advice = sentence(QString::fromStdString((*first)->advice));
-    advice_->setText((*first)->thing == AssessedThing::Obstacle
-                         ? sentence(QString::fromStdString((*first)->measured)) + ' ' + advice
-                         : advice);
-    advice_->show();
-  }
+  showState(following_ ? summaryWhileWritten(assessment) : summaryOf(assessment), assessment.light);
+  assessed_ = true;
+  showAdvice(assessment);
   showLights(assessment);
   more_->setVisible(true);
   showDetails(more_->isChecked());
   setVisible(true);
+}
+
+void CheckCard::showAdvice(const RecordingAssessment& assessment) {
+  advice_->setToolTip({});
+  if (following_) {
+    const QString missing = stillMissing(assessment);
+    advice_->setText(missing);
+    return advice_->setVisible(!missing.isEmpty());
+  }
+  const std::vector<const Assessed*> sorted = worstFirst(assessment);
+  const auto first =
+      std::find_if(sorted.begin(), sorted.end(), [](const Assessed* one) { return !one->advice.empty(); });
+  if (first == sorted.end()) return;
+  const QString advice = sentence(QString::fromStdString((*first)->advice));
+  advice_->setText((*first)->thing == AssessedThing::Obstacle
+                       ? sentence(QString::fromStdString((*first)->measured)) + ' ' + advice
+                       : advice);
+  advice_->show();
 }
 
 void CheckCard::showLights(const RecordingAssessment& assessment) {

@@ -9,6 +9,7 @@
 
 #include <optional>
 
+class QCheckBox;
 class QGridLayout;
 class QLabel;
 class QProgressBar;
@@ -31,6 +32,10 @@ class CheckCard : public QFrame {
   void setWaiting();                  // for other work
   void setAssessment(const RecordingAssessment& assessment);
   void setFailed(const QString& why);
+  // The recording is still being written: offers to follow it. Off: nothing of that.
+  void offerFollowing(bool offered);
+  // It is followed: what is said is of a part of it, which is no reason for alarm, and stays until more is known.
+  void setFollowing(bool following);
   // The board is a guess that nobody has looked at: "11 x 4, 50 mm". Empty: somebody has.
   void setUnconfirmedBoard(const QString& board);
 
@@ -38,11 +43,14 @@ class CheckCard : public QFrame {
 
  signals:
   void boardConfirmed();
+  void followingWanted(bool following);
   void howToRecordRequested();
   void detailsShown(bool shown);  // they need the room of what is below
 
  private:
   QWidget* makeBoardLine();
+  QWidget* makeFollowLine();
+  void showAdvice(const RecordingAssessment& assessment);
   void showState(const QString& summary, std::optional<Light> light);
   void showLights(const RecordingAssessment& assessment);
   void showDetails(bool shown);
@@ -52,9 +60,11 @@ class CheckCard : public QFrame {
   QProgressBar* progress_;
   QToolButton* more_;
   QScrollArea* details_;
-  QWidget* board_line_;
+  QWidget *board_line_, *follow_line_;
+  QCheckBox* follow_;
   QGridLayout* grid_;
   bool idle_ = true;  // nothing is known of the recording
+  bool following_ = false, assessed_ = false;
 };
 
 }  // namespace evical::ui

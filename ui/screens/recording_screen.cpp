@@ -31,6 +31,10 @@
 namespace evical::ui {
 namespace {
 
+bool isOfUnfinishedFile(FaultKind kind) {
+  return kind == FaultKind::Truncated || kind == FaultKind::NoIndex;
+}
+
 QLabel* label(const QString& text, const char* role, QWidget* parent) {
   auto* const made = new QLabel(text, parent);
   made->setProperty("role", role);
@@ -377,12 +381,19 @@ void RecordingScreen::listStreams() {
   streams_->setSession(session_);
 }
 
+void RecordingScreen::setBeingWritten(bool being_written) {
+  if (being_written == being_written_) return;
+  being_written_ = being_written;
+  showFileFaults();
+}
+
 // Faults that belong to no stream: truncated or corrupt files.
 void RecordingScreen::showFileFaults() {
   QStringList faults;
   for (const Inspected& one : inspected_)
     for (const RecordingFault& fault : one.inspection->faults)
-      if (fault.stream.empty()) faults << QString::fromStdString(fault.text);
+      if (fault.stream.empty() && !(being_written_ && isOfUnfinishedFile(fault.kind)))
+        faults << QString::fromStdString(fault.text);
   showText(file_faults_, faults.join('\n'));
 }
 

@@ -52,6 +52,8 @@ class RecordingScreen : public QWidget {
   void setInspecting(const QString& recording);
   void setInspectionProgress(double fraction);
   // Of the session's recording, or of another one that has sensors too.
+  // That it ends in the middle of something is no fault then.
+  void setBeingWritten(bool being_written);
   void addInspection(const QString& recording, std::shared_ptr<const Inspection> inspection);
   void setInspectionFailed(const QString& why);
 
@@ -86,6 +88,7 @@ class RecordingScreen : public QWidget {
   std::filesystem::path ownRecording(const Inspected& one) const;  // empty: the session's
   void showFileFaults();
 
+  bool being_written_ = false;
   Session session_;
   std::vector<Inspected> inspected_;  // their streams are the table's rows
   QStackedWidget* stack_;

@@ -2,6 +2,7 @@
 #include "ui/window/linked_pages.h"
 
 #include "core/pipeline/view_rejection.h"
+#include "ui/detection/detection_engine.h"
 #include "ui/detection/detection_screen.h"
 #include "ui/plots/convergence_screen.h"
 #include "ui/plots/residuals_screen.h"
@@ -103,13 +104,19 @@ void wireTrajectory(TrajectoryScreen& screen, Workbench& workbench) {
                    });
 }
 
+NeededAccuracy neededBy(const Session& session) {
+  const OptimisationOptions& options = session.options.optimisation;
+  return {options.needed_rotation_deg, options.needed_translation_mm, options.needed_time_offset_ms};
+}
+
 void wireConvergence(ConvergenceScreen& screen, Workbench& workbench) {
   const CalibrationDocument& document = workbench.document;
   const CalibrationJob& job = workbench.calibration;
   const auto shown = std::make_shared<std::size_t>(0);
-  const auto start_anew = [&screen, shown] {
+  const auto start_anew = [&screen, &document, shown] {
     *shown = 0;
     screen.clear();
+    screen.setNeeded(neededBy(document.session()));
   };
   QObject::connect(&job, &CalibrationJob::started, &screen, start_anew);
   QObject::connect(&job, &CalibrationJob::iterationsChanged, &screen,
@@ -117,8 +124,10 @@ void wireConvergence(ConvergenceScreen& screen, Workbench& workbench) {
                      for (; *shown < iterations->records.size(); ++*shown)
                        screen.appendIteration(iterations->records[*shown]);
                    });
-  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen,
-                   [&screen, &document] { screen.setRun(document.last().run); });
+  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen, [&screen, &document] {
+    screen.setRun(document.last().run);
+    if (document.last().run) screen.setNeeded(neededBy(document.last().session));
+  });
 }
 
 void wireResiduals(ResidualsScreen& screen, Workbench& workbench) {
@@ -147,6 +156,14 @@ void tellOfRuns(const CalibrationJob& job, Screen*... screen) {
   (QObject::connect(&job, &CalibrationJob::ended, screen, [screen] { screen->setCalibrating(false); }), ...);
 }
 
+// Detection has read the recording already.
+EventLookup eventsOf(const DetectionScreen& detection) {
+  const std::optional<KeptEvents> kept = detection.keptEvents();
+  if (!kept) return {};
+  return {kept->camera,
+          [events = *kept](double begin_s, double end_s) { return events.between(begin_s, end_s); }};
+}
+
 // One cursor: a time that is chosen on one screen is shown on the others.
 template <class From, class... To>
 void linkTime(From* from, To*... to) {
@@ -158,6 +175,7 @@ void linkTime(From* from, To*... to) {
 void wireLinkedPages(const Pages& pages, Workbench& workbench) {
   wireDetection(*pages.detection, workbench);
   wireTrajectory(*pages.trajectory, workbench);
+  pages.trajectory->setEventSource([pages] { return eventsOf(*pages.detection); });
   wireConvergence(*pages.convergence, workbench);
   wireResiduals(*pages.residuals, workbench);
   const CalibrationDocument& document = workbench.document;

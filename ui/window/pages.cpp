@@ -12,6 +12,7 @@
 #include "ui/screens/result_screen.h"
 #include "ui/screens/start_screen.h"
 #include "ui/window/after_turns.h"
+#include "ui/window/follow_recording.h"
 #include "ui/window/lens_pages.h"
 #include "ui/window/linked_pages.h"
 #include "ui/window/print_board.h"
@@ -146,6 +147,7 @@ void wirePages(const Pages& pages, Workbench& workbench, SessionFiles& files, Le
   wireStart(*pages.start, workbench, files);
   wireRecording(*pages.recording, workbench, files);
   wireRecordingCheck(*pages.recording, workbench);
+  wireFollowing(pages, workbench);
   wireResult(*pages.result, workbench, files);
   QObject::connect(pages.detection, &DetectionScreen::recordingWanted, &files,
                    &SessionFiles::lookForRecording);

@@ -30,6 +30,7 @@ void showReadiness(RecordingScreen& screen, const Workbench& workbench, bool fai
   const bool unconfirmed = document.hasSession() && !document.boardConfirmed();
   screen.checkCard()->setUnconfirmedBoard(unconfirmed ? boardText(document.session()) : QString());
   const auto& checked = workbench.check.checked();
+  if (workbench.growing.following()) return screen.setReservation(QObject::tr("Being recorded"), Light::Fair);
   if (failed || (checked && !checked->assessment.can_be_calibrated))
     return screen.setReservation(QObject::tr("Not ready: see below"), Light::Poor);
   if (workbench.check.awaited())
@@ -43,8 +44,12 @@ void showReadiness(RecordingScreen& screen, const Workbench& workbench, bool fai
 // A session that has all it needs, and whose recording has been looked through.
 void choose(Workbench& workbench) {
   const Session& session = workbench.document.session();
-  const bool complete = workbench.document.hasSession() && !workbench.inspection.running() &&
-                        !session.board_blinks && sessionProblems(session).empty();
+  // At the end of a recording that was followed it is inspected once more, which changes nothing here.
+  const bool inspected = !workbench.inspection.running() || workbench.growing.followedToEnd();
+  const bool camera_alone = session.cameras.size() == 1 && session.imus.empty();
+  const bool calibrates =
+      sessionProblems(session, camera_alone ? CalibrationAim::Camera : CalibrationAim::Rig).empty();
+  const bool complete = workbench.document.hasSession() && inspected && !session.board_blinks && calibrates;
   if (!complete) return workbench.check.setSession(std::nullopt);
   // A result says more.
   const bool calibrated = workbench.document.last().run && !workbench.document.runIsOutdated();
@@ -94,6 +99,8 @@ void wireRecordingCheck(RecordingScreen& screen, Workbench& workbench) {
     showReadiness(screen, workbench, false);
   };
   QObject::connect(&document, &CalibrationDocument::sessionChanged, &check, anew);
+  QObject::connect(&workbench.growing, &GrowingRecording::followingChanged, &screen,
+                   [&screen, &workbench] { showReadiness(screen, workbench, false); });
   QObject::connect(&workbench.inspection, &InspectionJob::inspected, &check, anew);
   QObject::connect(&workbench.inspection, &InspectionJob::started, &check, anew);
   QObject::connect(&workbench.runner, &JobRunner::started, &check, [&check] { check.giveWay(true); });

@@ -275,7 +275,7 @@ void SessionFiles::chooseSession() {
 QString SessionFiles::askForRecording(const QString& title) {
   return QFileDialog::getOpenFileName(
       window_, title, lastFolder(),
-      tr("Recordings (*.bag *.mcap *.db3 *.zstd *.aedat4 *.aedat *.raw *.dat *.h5 *.npz *.npy "
+      tr("Recordings (*.bag *.bag.active *.mcap *.db3 *.zstd *.aedat4 *.aedat *.raw *.dat *.h5 *.npz *.npy "
          "*.hdf5 *.es *.txt *.csv);;All files (*)"));
 }
 

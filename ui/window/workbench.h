@@ -5,6 +5,7 @@
 #include "ui/document/calibration_document.h"
 #include "ui/document/lens_document.h"
 #include "ui/jobs/calibration_job.h"
+#include "ui/jobs/growing_recording.h"
 #include "ui/jobs/inspection_job.h"
 #include "ui/jobs/intrinsics_job.h"
 #include "ui/jobs/job_runner.h"
@@ -27,6 +28,7 @@ struct Workbench {
   IntrinsicsJob intrinsics{runner};  // of one camera's lens alone
   InspectionJob inspection;          // has a runner of its own: it may go on beside a calibration
   RecordingCheckJob check;           // so has this one, which gives way to all others
+  GrowingRecording growing;          // the session's files, where somebody still writes them
 };
 
 }  // namespace evical::ui

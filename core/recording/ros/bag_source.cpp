@@ -185,6 +185,7 @@ bool BagSource::loadChunk(std::uint64_t position, const FileRecord& record) {
     chunk_ = is_plain ? bytes : std::string_view(unpacked_);
   }
   chunk_size_ = chunk_.size();
+  chunk_is_cut_ = result == Unpacked::Cut;
   if (result == Unpacked::Damaged) {
     sink_(FaultKind::Corrupt,
           fmt::format("The chunk at byte {} cannot be unpacked; it is left out.", position));
@@ -352,9 +353,10 @@ bool BagSource::nextOfChunk(SourceMessage& message) {
   while (!chunk_.empty()) {
     const std::size_t at = chunk_size_ - chunk_.size();
     if (!takeRecord(chunk_, record)) {
-      sink_(FaultKind::Corrupt,
-            fmt::format("The chunk at byte {} is damaged from its byte {} on; the rest is left out.",
-                        chunk_position_, at));
+      if (!chunk_is_cut_)
+        sink_(FaultKind::Corrupt,
+              fmt::format("The chunk at byte {} is damaged from its byte {} on; the rest is left out.",
+                          chunk_position_, at));
       chunk_ = {};
       return false;
     }

@@ -78,6 +78,7 @@ class BagSource : public MessageSource {
   std::uint64_t chunk_position_ = 0;  // in the file
   std::string_view chunk_;            // the rest of the records in the chunk being read
   std::size_t chunk_size_ = 0;        // of all of them
+  bool chunk_is_cut_ = false;         // and so its last record, which was said
 };
 
 }  // namespace evical::ros

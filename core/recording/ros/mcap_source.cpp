@@ -231,9 +231,10 @@ bool McapSource::nextOfChunk(SourceMessage& message) {
   ChunkRecord record;
   const std::size_t at = chunk_size_ - chunk_.size();
   if (!takeRecord(chunk_, record)) {
-    sink_(FaultKind::Corrupt,
-          fmt::format("The chunk at byte {} is damaged from its byte {} on; the rest is left out.",
-                      record_position_, at));
+    if (!chunk_is_cut_)
+      sink_(FaultKind::Corrupt,
+            fmt::format("The chunk at byte {} is damaged from its byte {} on; the rest is left out.",
+                        record_position_, at));
     chunk_ = {};
     return false;
   }
@@ -318,6 +319,7 @@ bool McapSource::loadChunk(const Record& record) {
     }
   }
   chunk_size_ = chunk_.size();
+  chunk_is_cut_ = result == Unpacked::Cut;
   reportChunk(result, record, head.uncompressed_bytes);
   if (result == Unpacked::Whole) checkSum(head, record);
   return !chunk_.empty();

@@ -126,6 +126,7 @@ void TestRosbagDamage::truncationWithinAPlainChunk_keepsTheMessagesBefore() {
   QVERIFY(contents.eventCount() > 4 * kEventsEach);
   QVERIFY(contents.eventCount() < 8 * kEventsEach);
   QVERIFY(contents.hasFault(FaultKind::Truncated));
+  QVERIFY(!contents.hasFault(FaultKind::Corrupt));  // a recorder may still be writing it
   QVERIFY(isTrue(contents));
 }
 
