@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -84,12 +86,20 @@ std::string quantityRow(const CheckedQuantity& quantity) {
                                              : "  too little");
 }
 
+// "1.5369 +- 0.0071": to the sigma's second digit.
+std::string plusMinus(double value, double sigma) {
+  constexpr int kMostDecimals = 6;
+  if (!(sigma > 0.0) || !std::isfinite(sigma)) return fmt::format("{:.6g}", value);
+  const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(sigma))), 0, kMostDecimals);
+  return fmt::format("{:.{}f} +- {:.{}f}", value, decimals, sigma, decimals);
+}
+
 std::string numberRow(const std::string& sensor, const CheckedNumber& number) {
   const std::string name = number.unit.empty() ? sensor + "." + number.name
                                                : fmt::format("{}.{} [{}]", sensor, number.name, number.unit);
-  return fmt::format("{:<44}{:>26}{:>26}{:>26}\n", name, html::withSigma(number.before, number.before_sigma),
-                     html::withSigma(number.now, number.now_sigma),
-                     html::withSigma(number.together, number.together_sigma));
+  return fmt::format("{:<44}{:>26}{:>26}{:>26}\n", name, plusMinus(number.before, number.before_sigma),
+                     plusMinus(number.now, number.now_sigma),
+                     plusMinus(number.together, number.together_sigma));
 }
 
 }  // namespace

@@ -46,6 +46,10 @@ class TestCheckCommand : public QObject {
         runProgram(QStringList{"check", result(), recording(), "-o", path("good")} + kCoarse);
     VERIFY_OUTCOME(outcome, 0);
     QVERIFY2(outcome.output.contains("still good"), qPrintable(outcome.output));
+    QVERIFY2(outcome.output.contains(
+                 QRegularExpression("left.translation.x \\[mm\\] +[0-9.]+ \\+- [0-9.]+ +[0-9.]+ \\+-")),
+             qPrintable(outcome.output));
+    QVERIFY(!outcome.output.contains('<'));
     QCOMPARE(filesIn(path("good")), (QStringList{"check.yaml", "log.txt", "plots", "report.html"}));
     QVERIFY(readFile(path("good") + "/check.yaml").startsWith("evical_check: 1\nstatus: still_good\n"));
   }

@@ -41,11 +41,8 @@ void writeChanges(const CalibrationCheck& check, ReportPage& page) {
                     withUnit(significant(quantity.would_notice, 2), quantity.unit),
                     quantity.matters > 0.0 ? withUnit(plain(quantity.matters), quantity.unit) : "",
                     outcomeOf(quantity)});
-  page.text(
-      "<div class=\"wide\">" +
-      table({"", "change", "in sigmas", "at the image's edge", "would have been noticed", "matters", ""},
-            rows) +
-      "</div>\n");
+  page.text(table(
+      {"", "change", "in sigmas", "at the image's edge", "would have been noticed", "matters", ""}, rows));
   page.text(paragraph(
       "small",
       fmt::format(
@@ -63,8 +60,7 @@ void writeNumbersOf(const CalibrationCheck& check, ReportPage& page) {
       rows.push_back({escaped(quantity.sensor + "." + number.name),
                       withSigma(number.before, number.before_sigma), withSigma(number.now, number.now_sigma),
                       withSigma(number.together, number.together_sigma), escaped(number.unit)});
-  page.text("<div class=\"wide\">" + table({"", "before", "now, alone", "both together", "unit"}, rows) +
-            "</div>\n");
+  page.text(table({"", "before", "now, alone", "both together", "unit"}, rows));
 }
 
 void writeList(const char* title, const std::vector<std::string>& texts, ReportPage& page) {
