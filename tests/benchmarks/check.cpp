@@ -85,6 +85,7 @@ void makePoor(int kind, Scenario& scenario) {
     scenario.motion.distance_amplitude_m *= 0.05;
     scenario.motion.angle_amplitude_rad *= 0.05;
     scenario.motion.target_amplitude_m *= 0.05;
+    scenario.motion.image_speed_px_s *= 0.05;  // else it trembles, which tells much
   }
 }
 
