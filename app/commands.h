@@ -10,11 +10,14 @@ class App;
 namespace evical {
 
 inline constexpr int kDone = 0;
-inline constexpr int kFailed = 1;    // failed or cancelled
-inline constexpr int kBadInput = 2;  // usage, session or recording; nothing was written
+inline constexpr int kFailed = 1;      // failed or cancelled
+inline constexpr int kBadInput = 2;    // usage, session or recording; nothing was written
+inline constexpr int kChanged = 3;     // of a check: the old result does not hold
+inline constexpr int kCannotTell = 4;  // of a check: this recording does not say
 
 void addBoardCommand(CLI::App& app, int& exit_code);
 void addCalibrateCommand(CLI::App& app, int& exit_code);
+void addCheckCommand(CLI::App& app, int& exit_code);
 void addCompareCommand(CLI::App& app, int& exit_code);
 void addConvertCommand(CLI::App& app, int& exit_code);
 void addDetectCommand(CLI::App& app, int& exit_code);

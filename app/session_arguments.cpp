@@ -22,9 +22,8 @@ void addSessionArguments(CLI::App& command, SessionArguments& arguments) {
   command.add_flag("--quiet", arguments.quiet, "Only the result and errors");
 }
 
-Session sessionFrom(const SessionArguments& arguments) {
-  Session session = readSession(arguments.session);
-  for (const std::string& setting : arguments.settings) {
+void applySettings(const std::vector<std::string>& settings, Session& session) {
+  for (const std::string& setting : settings) {
     const std::size_t equals = setting.find('=');
     if (equals == std::string::npos) {
       throw badInput("--set " + setting, "has no '='", "Write --set group.option=value");
@@ -32,6 +31,11 @@ Session sessionFrom(const SessionArguments& arguments) {
     setInSession(session, setting.substr(0, equals), setting.substr(equals + 1));
   }
   validate(session.options);
+}
+
+Session sessionFrom(const SessionArguments& arguments) {
+  Session session = readSession(arguments.session);
+  applySettings(arguments.settings, session);
   if (arguments.threads > 0) session.options.optimisation.threads = arguments.threads;
   return session;
 }

@@ -24,6 +24,9 @@ struct SessionArguments {
 
 void addSessionArguments(CLI::App& command, SessionArguments& arguments);
 
+// Each group.option=value into the session.
+void applySettings(const std::vector<std::string>& settings, Session& session);
+
 // The session with the settings applied.
 Session sessionFrom(const SessionArguments& arguments);
 

@@ -72,6 +72,10 @@ constexpr std::tuple kVerdictFields{
           "A camera that seems to have moved on its mount, or a clock or biases that seem to step, by more "
           "than this and "
           "what is needed make the result doubtful."},
+    Switch{"judge_sigmas", &VerdictOptions::judge_sigmas, true,
+           "A result that is less certain than what is needed is doubtful for that; false: only for what is "
+           "wrong with "
+           "the data."},
     Field{"needed_rotation_deg", &VerdictOptions::needed_rotation_deg, 0.1, within(1e-4, 90.0), "deg",
           "Rotations less certain than this make the result doubtful.", Level::Common},
     Field{"needed_translation_mm", &VerdictOptions::needed_translation_mm, 1.0, within(1e-3, 1e4), "mm",

@@ -30,6 +30,7 @@ struct VerdictOptions {
   double saturated_share;
   double doubtful_halves_sigmas;
   double changed_sigmas;
+  bool judge_sigmas;
   double needed_rotation_deg;
   double needed_translation_mm;
   double needed_scale_mm;

@@ -40,6 +40,7 @@ void forEachGroup(Options& all, Visitor&& visit) {
   visit("optimisation.verdict", "Uncertainty, and what makes a result doubtful",
         partOf<VerdictOptions>(all.optimisation));
   visit("report", "What is worked out for the report only", all.report);
+  visit("check", "Whether an old calibration still holds", all.check);
 }
 
 template <class Options>

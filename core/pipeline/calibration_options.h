@@ -8,6 +8,7 @@
 #include "core/initialisation/initialisation_options.h"
 #include "core/intrinsics/intrinsics_options.h"
 #include "core/optimisation/optimisation_options.h"
+#include "core/pipeline/check_options.h"
 #include "core/report/report_options.h"
 
 #include <string>
@@ -24,6 +25,7 @@ struct CalibrationOptions {
   InitialisationOptions initialisation;
   OptimisationOptions optimisation;
   ReportOptions report;
+  CheckOptions check;
   bool operator==(const CalibrationOptions&) const = default;
 };
 

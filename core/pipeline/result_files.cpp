@@ -30,9 +30,11 @@ std::vector<SeenBoard> seenBoards(const Session& session) {
   return boards;
 }
 
-void addReport(const Session& session, const NamedResult& named, const RecordingPass& pass,
-               std::vector<FileContent>& files,
-               std::span<const std::optional<IntrinsicsResult>> intrinsics = {}) {
+}  // namespace
+
+std::vector<FileContent> reportOf(const Session& session, const NamedResult& named, const RecordingPass& pass,
+                                  std::span<const std::optional<IntrinsicsResult>> intrinsics,
+                                  const CalibrationCheck* check) {
   const OptimisationOptions& options = session.options.optimisation;
   const ReportData data{
       named,
@@ -45,8 +47,19 @@ void addReport(const Session& session, const NamedResult& named, const Recording
       pass.resolutions_px,
       pass.faults,
       {options.needed_rotation_deg, options.needed_translation_mm, options.needed_time_offset_ms},
-      intrinsics};
+      intrinsics,
+      check};
+  std::vector<FileContent> files;
   for (ReportFile& file : reportFiles(data)) files.push_back({file.name, std::move(file.content)});
+  return files;
+}
+
+namespace {
+
+void addReport(const Session& session, const NamedResult& named, const RecordingPass& pass,
+               std::vector<FileContent>& files,
+               std::span<const std::optional<IntrinsicsResult>> intrinsics = {}) {
+  for (FileContent& file : reportOf(session, named, pass, intrinsics)) files.push_back(std::move(file));
 }
 
 // What cannot be exported is said, and costs nobody the result.

@@ -1,6 +1,8 @@
 // What a run leaves in its folder. All files appear together, or none of them.
 #pragma once
 
+#include "core/base/atomic_file.h"
+#include "core/data/calibration_check.h"
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/report/export/read_back.h"
 #include "core/report/result_yaml.h"
@@ -24,6 +26,11 @@ NamedResult namedRun(const Session& session, const std::shared_ptr<const Calibra
 
 // Keeps the run alive.
 std::shared_ptr<const CalibrationResult> resultOf(const std::shared_ptr<const CalibrationRun>& run);
+
+// report.html with its plots/*.csv. `check`: of an older result by this recording.
+std::vector<FileContent> reportOf(const Session& session, const NamedResult& named, const RecordingPass& pass,
+                                  std::span<const std::optional<IntrinsicsResult>> intrinsics,
+                                  const CalibrationCheck* check = nullptr);
 
 // What to know of files for other programs, and the targets that got none, each with the reason.
 struct ExportRemarks {

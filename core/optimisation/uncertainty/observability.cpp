@@ -182,6 +182,7 @@ Observability Judge::judge() const {
     result.eigenvalues.push_back(1.0 / std::max(eigen.values[i], 1e-12));
     result.directions.push_back(directionWords(parts, eigen.vectors.col(i)));
   }
+  if (!options_.judge_sigmas) return result;
   for (const Part& part : parts) {
     const std::string unmet = unmetNeed(part);
     if (unmet.empty()) continue;
@@ -203,7 +204,7 @@ Observability judgeObservability(const CalibrationInput& input, const Calibratio
   Observability result = Judge(input, state, scale_known, options).judge();
   for (std::size_t i = 0; i < covariance.quantities.size(); ++i) {
     const QuantityInfo& info = *covariance.quantities[i].info;
-    if (info.need != QuantityNeed::Translation) continue;
+    if (info.need != QuantityNeed::Translation || !options.judge_sigmas) continue;
     const double whole_mm = 1e3 * worstOf(covariance, i).sigma, own_mm = 1e3 * worstOf(scale_known, i).sigma;
     if (whole_mm < options.needed_scale_mm || own_mm > options.needed_translation_mm) continue;
     addDoubt(fmt::format("the board's measure leaves the translation of {} open by {:.2g} mm (needed: "

@@ -18,8 +18,8 @@ std::string startText(const NamedResult& named) {
 }
 
 std::string wholePage(const ReportData& data, const html::ReportPage& verdict, const html::ReportPage& page) {
-  const std::string title =
-      "Calibration of " + escaped(data.recording.empty() ? "a recording" : data.recording);
+  const std::string title = (data.check == nullptr ? "Calibration of " : "Check of a calibration by ") +
+                            escaped(data.recording.empty() ? "a recording" : data.recording);
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta "
       "charset=\"utf-8\"/>\n"
@@ -37,7 +37,9 @@ std::string wholePage(const ReportData& data, const html::ReportPage& verdict, c
 std::vector<ReportFile> reportFiles(const ReportData& data) {
   const html::Measures measures = html::measure(data);
   html::ReportPage verdict, page;
-  html::writeVerdict(data, measures, verdict);
+  html::writeCheckVerdict(data, verdict);
+  if (data.check == nullptr) html::writeVerdict(data, measures, verdict);
+  html::writeCheck(data, page);
   html::writeAdvice(data, measures, page);
   html::writeNumbers(data, page);
   html::writeSensors(data, page);

@@ -2,6 +2,7 @@
 // the numbers behind its plots as CSV. Also of a failed calibration: the reason, and what there is.
 #pragma once
 
+#include "core/data/calibration_check.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/intrinsics_result.h"
 #include "core/data/recording.h"
@@ -33,6 +34,8 @@ struct ReportData {
   ReportNeeds needs = {};
   // By camera: as calibrated first; empty where all were given.
   std::span<const std::optional<IntrinsicsResult>> intrinsics = {};
+  const CalibrationCheck* check =
+      nullptr;  // of an older result by this recording, where it was made for that
 };
 
 struct ReportFile {

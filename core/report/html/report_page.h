@@ -39,6 +39,8 @@ std::string imuName(const ReportData& data, std::size_t index);
 
 // The sections, in the page's order. Each leaves itself out where there is nothing to show.
 void writeVerdict(const ReportData& data, const Measures& measures, ReportPage& page);
+void writeCheckVerdict(const ReportData& data, ReportPage& page);
+void writeCheck(const ReportData& data, ReportPage& page);
 void writeAdvice(const ReportData& data, const Measures& measures, ReportPage& page);
 void writeNumbers(const ReportData& data, ReportPage& page);
 void writeSensors(const ReportData& data, ReportPage& page);

@@ -1,0 +1,43 @@
+#include "core/pipeline/check_options.h"
+
+#include "core/base/option_table.h"
+
+namespace evical {
+namespace {
+
+constexpr std::tuple kCheckFields{
+    Field{"stability_rotation_deg", &CheckOptions::stability_rotation_deg, 0.02, within(0.0, 90.0), "deg",
+          "Rotations may change by this without anything having changed."},
+    Field{"stability_translation_mm", &CheckOptions::stability_translation_mm, 0.3, within(0.0, 1e4), "mm",
+          "The same of translations."},
+    Field{"stability_time_offset_ms", &CheckOptions::stability_time_offset_ms, 0.05, within(0.0, 1e4), "ms",
+          "The same of time offsets, and of accelerometers' delays; what other light does to pixels' delays "
+          "is part of it."},
+    Field{"stability_lens_px", &CheckOptions::stability_lens_px, 0.1, within(0.0, 1000.0), "px",
+          "The same of lenses: RMS over the image."},
+    Field{"stability_imu_scale", &CheckOptions::stability_imu_scale, 0.001, within(0.0, 1.0), "",
+          "The same of IMUs' scale factors and misalignments, which change with temperature."},
+    Field{"matters_rotation_deg", &CheckOptions::matters_rotation_deg, 0.25, within(1e-4, 90.0), "deg",
+          "A calibration is called still good only by a recording that would have shown a change of this "
+          "size."},
+    Field{"matters_translation_mm", &CheckOptions::matters_translation_mm, 6.0, within(1e-3, 1e4), "mm",
+          "The same of translations."},
+    Field{"matters_time_offset_ms", &CheckOptions::matters_time_offset_ms, 0.5, within(1e-4, 1e4), "ms",
+          "The same of time offsets."},
+    Field{"matters_lens_px", &CheckOptions::matters_lens_px, 1.0, within(1e-3, 1000.0), "px",
+          "The same of lenses: RMS over the image."},
+    Field{
+        "false_alarms", &CheckOptions::false_alarms, 0.01, within(1e-9, 0.5), "",
+        "How often a calibration that has not changed may be called changed, over all quantities together."}};
+constexpr auto kCheckDefaults = defaultsOf<CheckOptions, kCheckFields>();
+
+}  // namespace
+
+CheckOptions::CheckOptions() : CheckOptions(kCheckDefaults) {}
+
+const OptionTable<CheckOptions>& CheckOptions::table() {
+  static const OptionTable<CheckOptions> table(kCheckFields);
+  return table;
+}
+
+}  // namespace evical

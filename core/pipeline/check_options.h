@@ -1,0 +1,26 @@
+// When an old calibration counts as changed.
+#pragma once
+
+#include "core/base/option_struct.h"
+
+namespace evical {
+
+struct CheckOptions {
+  double stability_rotation_deg;
+  double stability_translation_mm;
+  double stability_time_offset_ms;
+  double stability_lens_px;
+  double stability_imu_scale;
+  double matters_rotation_deg;
+  double matters_translation_mm;
+  double matters_time_offset_ms;
+  double matters_lens_px;
+  double false_alarms;
+
+  CheckOptions();  // the defaults
+  constexpr explicit CheckOptions(NoDefaults) {}
+  bool operator==(const CheckOptions&) const = default;
+  static const OptionTable<CheckOptions>& table();
+};
+
+}  // namespace evical

@@ -1,0 +1,50 @@
+// Which of several groups of numbers has changed between two estimates, if only few have: each is tested against the
+// rest as it was (data snooping: W. Baarda, "A testing procedure for use in geodetic networks", 1968;
+// docs/maths.md, 13).
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace evical {
+
+// A group of neighbouring numbers. Sizes are of its change in a unit that suits it: |to_size * change|.
+struct ChangeGroup {
+  Eigen::Index first = 0, size = 0;
+  Eigen::MatrixXd to_size;            // square, regular
+  double stability = 0.0;             // a size that is no change
+  Eigen::MatrixXd stable_covariance;  // of how far it moves by itself while another one is tested
+  bool tested = true;                 // else it only has its say on the others
+};
+
+// Both with everything that is estimated of the groups, in one order.
+struct EstimatedChange {
+  Eigen::VectorXd difference;  // now - before
+  Eigen::MatrixXd covariance;  // of both estimates together
+};
+
+struct ChangeTest {
+  bool tested = false;
+  Eigen::VectorXd change;      // of the group, had nothing else changed
+  Eigen::MatrixXd covariance;  // of that
+  double sigmas = 0.0;         // by the covariance
+  double beyond = 0.0;         // the same, of what goes beyond the stability
+  double limit = 0.0;          // that chance does not reach
+  double would_notice = 0.0;   // the size that is found with a probability of 95 %, in whatever direction
+  bool changed = false;
+};
+
+struct ChangeTests {
+  std::vector<ChangeTest> groups;
+  // Those that explain the recording as well as the first of those that have changed.
+  std::vector<std::size_t> or_else;
+};
+
+// `false_alarms`: how often any group is called changed where none is.
+ChangeTests testSingleChanges(const EstimatedChange& estimated, std::span<const ChangeGroup> groups,
+                              double false_alarms);
+
+}  // namespace evical

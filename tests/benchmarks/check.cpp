@@ -1,0 +1,249 @@
+// `evical check` on pairs of simulated recordings of one rig, as a table: unchanged, with one thing changed, and too poor to
+// tell. `evical_check_accuracy [--pairs N] [--before S] [--after S] [--events] SCENARIO`. Of five pairs three are unchanged, one
+// is changed, one poor; each five share their first recording. Without --events circles are as a good front end sees them.
+// Fails where more than 3 % of all are false alarms, or a change is missed that would have been noticed.
+#include "core/base/error.h"
+#include "core/frontend/board_tracker.h"
+#include "core/geometry/so3.h"
+#include "core/numerics/angles.h"
+#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/check_calibration.h"
+#include "core/pipeline/result_files.h"
+#include "core/report/check_report.h"
+#include "core/synthetic/event_simulator.h"
+#include "core/synthetic/scenario_yaml.h"
+#include "tests/benchmarks/benchmark_program.h"
+#include "tests/support/scenario_session.h"
+#include "tests/support/seen_through.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace evical {
+namespace {
+
+constexpr double kNoise_px = 0.05, kWindow_s = 0.02;
+constexpr std::array<const char*, 4> kQuantities = {"rotation", "translation", "time_offset", "intrinsics"};
+constexpr std::array<const char*, 3> kPoor = {"3 s", "hardly moved", "board half out of view"};
+
+struct Change {
+  std::string quantity;  // empty: none
+  double size = 0.0;     // deg, mm, ms, px RMS
+};
+
+Eigen::Vector3d directionOf(int k) {
+  return Eigen::Vector3d(1.0 + k % 3, -1.0 + 0.7 * (k % 5), 0.5 * (k % 4) - 1.0).normalized();
+}
+
+Change apply(int k, double factor, SimulatedCamera& camera) {
+  constexpr std::array<double, 4> kSizes = {0.05, 1.0, 0.1, 0.2};
+  const auto kind = static_cast<std::size_t>(k) % kSizes.size();
+  const Change change{kQuantities[kind], factor * kSizes[kind]};
+  RigidTransform& pose = camera.imu_from_camera;
+  if (kind == 0)
+    pose.rotation = Eigen::Quaterniond(so3Exp(Eigen::Vector3d(kRadPerDeg * change.size * directionOf(k)))) *
+                    pose.rotation;
+  if (kind == 1) pose.translation_m += 1e-3 * change.size * directionOf(k);
+  if (kind == 2) camera.time_offset_s += 1e-3 * change.size;
+  if (kind == 3) {
+    // Of a longer focal length, which moves the image by its share of the distance from the middle.
+    const Eigen::Vector2d size(camera.intrinsics.resolution_px.width_px,
+                               camera.intrinsics.resolution_px.height_px);
+    const double mean_px = size.norm() / std::sqrt(12.0);
+    camera.intrinsics.focal_length_px *= 1.0 + change.size / mean_px;
+  }
+  return change;
+}
+
+// As the old result's lens sees it.
+RecordingPass passOf(const Scenario& scenario, const CameraIntrinsics& lens, bool from_events) {
+  RecordingPass pass = test::perfectPass(scenario, kNoise_px, kWindow_s);
+  if (from_events) {
+    BoardTracker tracker(scenario.board, lens.resolution_px, lens, {}, scenario.start_ns);
+    simulateEvents(scenario, 0, [&](EventSpan events) { tracker.add(events); });
+    pass.cameras.front() = tracker.finish();
+    pass.cameras.front().camera = scenario.cameras.front().name;
+  } else {
+    test::seeThrough(scenario.cameras.front().intrinsics, lens, pass.cameras.front());
+  }
+  pass.lenses.front() = givenLens(lens);
+  return pass;
+}
+
+void makePoor(int kind, Scenario& scenario) {
+  if (kind == 0) scenario.duration_s = 3.0;
+  if (kind == 1) {
+    scenario.motion.distance_amplitude_m *= 0.05;
+    scenario.motion.angle_amplitude_rad *= 0.05;
+    scenario.motion.target_amplitude_m *= 0.05;
+    scenario.motion.image_speed_px_s *= 0.05;  // else it trembles, which tells much
+  }
+}
+
+// The half of the board, and that for a part of the time only.
+void hideHalf(const Board& board, RecordingPass& pass) {
+  for (BoardView& view : pass.cameras.front().views)
+    std::erase_if(view.circles,
+                  [&](const CircleObservation& circle) { return 2 * circle.circle < board.pointCount(); });
+  std::erase_if(pass.cameras.front().views, [](const BoardView& view) { return view.time_s > 4.0; });
+}
+
+struct Row {
+  int pair = 0;
+  std::string kind;
+  Change change;
+  CalibrationCheck check;
+};
+
+struct Tally {
+  int unchanged = 0, good = 0, false_alarms = 0, cannot_tell = 0;
+  int changed = 0, found = 0, missed = 0, open = 0;  // missed: that would have been noticed
+  int poor = 0, poor_open = 0, poor_good = 0, poor_alarms = 0;
+
+  void add(const Row& row) {
+    const CheckVerdict verdict = row.check.verdict;
+    if (row.kind == "unchanged") {
+      ++unchanged;
+      good += verdict == CheckVerdict::StillGood;
+      false_alarms += verdict == CheckVerdict::Changed;
+      cannot_tell += verdict == CheckVerdict::CannotTell;
+    } else if (row.kind == "changed") {
+      ++changed;
+      found += verdict == CheckVerdict::Changed;
+      open += verdict == CheckVerdict::CannotTell;
+      missed += verdict != CheckVerdict::Changed && claimed(row);
+    } else {
+      ++poor;
+      poor_open += verdict == CheckVerdict::CannotTell;
+      poor_good += verdict == CheckVerdict::StillGood;
+      poor_alarms += verdict == CheckVerdict::Changed;
+    }
+  }
+  static bool claimed(const Row& row) {
+    return std::any_of(row.check.quantities.begin(), row.check.quantities.end(),
+                       [&](const CheckedQuantity& q) {
+                         return q.name == row.change.quantity && q.would_notice <= row.change.size;
+                       });
+  }
+  int all() const { return unchanged + changed + poor; }
+  void print() const {
+    fmt::print(
+        "\nunchanged: {} still good, {} cannot tell, {} false alarms of {}\nchanged: {} found, {} cannot "
+        "tell, {} "
+        "missed that would have been noticed, of {}\npoor: {} cannot tell, {} still good, {} false alarms of "
+        "{}\n",
+        good, cannot_tell, false_alarms, unchanged, found, open, missed, changed, poor_open, poor_good,
+        poor_alarms, poor);
+  }
+  bool isGood() const { return 100 * (false_alarms + poor_alarms) <= 3 * std::max(all(), 34) && missed == 0; }
+};
+
+std::string noticeText(const CalibrationCheck& check, const char* quantity) {
+  for (const CheckedQuantity& each : check.quantities)
+    if (each.name == quantity) return fmt::format("{:.3g} ({:.3g})", each.would_notice, each.change);
+  return "";
+}
+
+void print(const Row& row) {
+  fmt::print(
+      "| {} | {} | {} |", row.pair,
+      row.change.quantity.empty() ? row.kind : fmt::format("{} {:.3g}", row.change.quantity, row.change.size),
+      verdictWords(row.check.verdict));
+  for (const char* quantity : kQuantities) fmt::print(" {} |", noticeText(row.check, quantity));
+  fmt::print(" {} |\n", row.check.reason);
+  std::fflush(stdout);
+}
+
+struct Arguments {
+  std::string scenario;
+  int pairs = 100, first = 0;
+  double before_s = 30.0, after_s = 9.0, factor = 1.0;
+  bool events = false;
+  std::vector<std::string> settings;
+
+  void addTo(CLI::App& app) {
+    app.add_option("SCENARIO", scenario, "Scenario file")->required();
+    app.add_option("--pairs", pairs, "So many pairs");
+    app.add_option("--first", first, "The first of them");
+    app.add_option("--before", before_s, "Seconds of the first recording of a pair");
+    app.add_option("--after", after_s, "Seconds of the second one");
+    app.add_option("--factor", factor, "Changes are so many times 0.05 deg, 1 mm, 0.1 ms, 0.2 px");
+    app.add_flag("--events", events, "Simulate events, too, instead of circles only");
+    app.add_option("--set", settings, "group.option=value");
+  }
+};
+
+NamedResult resultBefore(const Arguments& arguments, int five) {
+  Scenario scenario = readScenario(arguments.scenario);
+  scenario.duration_s = arguments.before_s;
+  scenario.seed += static_cast<std::uint64_t>(five);
+  Session session = test::sessionFor(scenario);
+  session.options.report.cross_validation = false;
+  RecordingPass pass = passOf(scenario, scenario.cameras.front().intrinsics, arguments.events);
+  const CalibrationRun run = calibrate(session, std::move(pass), {});
+  return namedResult(session, std::make_shared<const CalibrationResult>(run.result), "benchmark");
+}
+
+Row checkPair(const Arguments& arguments, int pair, const NamedResult& before) {
+  constexpr int kApart = 1000, kGroup = 5;
+  Scenario scenario = readScenario(arguments.scenario);
+  scenario.duration_s = arguments.after_s;
+  scenario.seed += static_cast<std::uint64_t>(kApart + pair);
+  Row row{pair, "unchanged", {}, {}};
+  const int of_five = pair % kGroup, five = pair / kGroup, poor = five % static_cast<int>(kPoor.size());
+  Session session = test::sessionFor(scenario);
+  if (of_five == 3) {
+    row.kind = "changed";
+    row.change = apply(five, arguments.factor, scenario.cameras.front());
+  }
+  if (of_five == 4) {
+    row.kind = kPoor[static_cast<std::size_t>(poor)];
+    makePoor(poor, scenario);
+  }
+  for (const std::string& setting : arguments.settings) {
+    const std::size_t equals = setting.find('=');
+    setOption(session.options, setting.substr(0, equals), setting.substr(equals + 1));
+  }
+  const CheckInput input = checkInputOf(before, session);
+  RecordingPass pass = passOf(scenario, *input.session.cameras.front().intrinsics, arguments.events);
+  if (of_five == 4 && poor == 2) hideHalf(scenario.board, pass);
+  row.check = checkCalibration(input, std::move(pass), {}).check;
+  return row;
+}
+
+int main(int argc, char** argv) {
+  CLI::App app("evical check on simulated pairs of recordings");
+  Arguments arguments;
+  arguments.addTo(app);
+  CLI11_PARSE(app, argc, argv);
+  fmt::print(
+      "would be noticed (change found):\n| pair | truth | verdict | rotation, deg | translation, mm | time "
+      "offset, ms | "
+      "lens, px | reason |\n|---|---|---|---|---|---|---|---|\n");
+  Tally tally;
+  std::map<int, NamedResult> before;
+  for (int pair = arguments.first; pair < arguments.first + arguments.pairs; ++pair) {
+    if (!before.contains(pair / 5)) before = {{pair / 5, resultBefore(arguments, pair / 5)}};
+    const Row row = checkPair(arguments, pair, before.at(pair / 5));
+    print(row);
+    tally.add(row);
+  }
+  tally.print();
+  return tally.isGood() ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace evical
+
+int main(int argc, char** argv) {
+  return evical::guarded(evical::main, argc, argv);
+}
