@@ -7,6 +7,7 @@
 #include <QComboBox>
 #include <QHeaderView>
 #include <QLabel>
+#include <QLineEdit>
 #include <QTableView>
 #include <QToolButton>
 #include <QTreeView>
@@ -30,13 +31,19 @@ inline QString placeOf(const QWidget& widget, const QString& text, QSize needed)
       .arg(needed.height());
 }
 
-// What is seen of a widget before its parents cut it off. A scroll area brings the rest into view.
+// What is seen of a widget before its parents cut it off. A scroll area brings the rest into view, as far as it scrolls.
 inline QSize roomOf(const QWidget& widget) {
+  constexpr int kFar_px = 1 << 20;
   QRect room = widget.rect();
   for (const QWidget* at = &widget; at->parentWidget() && !at->isWindow(); at = at->parentWidget()) {
-    const auto* const area = qobject_cast<const QAbstractScrollArea*>(at->parentWidget()->parentWidget());
-    if (area && area->viewport() == at->parentWidget()) break;
-    room = room.translated(at->pos()).intersected(at->parentWidget()->rect());
+    const QWidget* const parent = at->parentWidget();
+    QRect seen = parent->rect();
+    const auto* const area = qobject_cast<const QAbstractScrollArea*>(parent->parentWidget());
+    const bool scrolls = area && area->viewport() == parent;
+    if (scrolls && area->horizontalScrollBarPolicy() != Qt::ScrollBarAlwaysOff) break;
+    if (scrolls) seen.adjust(0, -kFar_px, 0, kFar_px);
+    room = room.translated(at->pos()).intersected(seen);
+    if (scrolls) break;
   }
   return room.size();
 }
@@ -108,6 +115,8 @@ inline QStringList clippedTexts(const QWidget& root) {
       const int needed_px = box->fontMetrics().horizontalAdvance(box->currentText());
       if (tooSmall(roomOf(*box), {needed_px, 0})) found << placeOf(*box, box->currentText(), {needed_px, 0});
     }
+    if (const auto* const field = qobject_cast<QLineEdit*>(widget))
+      if (tooSmall(roomOf(*field), field->size())) found << placeOf(*field, field->text(), field->size());
     if (const auto* const table = qobject_cast<QTableView*>(widget))
       findCutCells(*table, *table->horizontalHeader(), found);
     if (const auto* const tree = qobject_cast<QTreeView*>(widget))

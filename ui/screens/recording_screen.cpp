@@ -20,6 +20,7 @@
 #include <QProgressBar>
 #include <QPushButton>
 #include <QScrollArea>
+#include <QScrollBar>
 #include <QStackedWidget>
 #include <QTabWidget>
 #include <QVBoxLayout>
@@ -56,6 +57,7 @@ QFrame* card(const QString& heading, QWidget* content, QWidget* parent, QWidget*
   return frame;
 }
 
+// Up and down only: never narrower than what it shows.
 QScrollArea* scrolling(QWidget* content) {
   auto* const area = new QScrollArea;
   area->setWidget(content);
@@ -64,6 +66,7 @@ QScrollArea* scrolling(QWidget* content) {
   area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   area->viewport()->setAutoFillBackground(false);
   content->setAutoFillBackground(false);
+  area->setMinimumWidth(content->minimumSizeHint().width() + area->verticalScrollBar()->sizeHint().width());
   return area;
 }
 
