@@ -17,9 +17,10 @@ using namespace evical::test;
 
 namespace {
 
-const QStringList kResultFiles = {"detections.csv", "detections.yaml", "kalibr",
-                                  "log.txt",        "plots",           "report.html",
-                                  "result.yaml",    "trajectory.csv",  "windows.csv"};
+const QStringList kResultFiles = {"detections.csv", "detections.yaml", "kalibr",           "log.txt",
+                                  "plots",          "report.html",     "residuals.csv",    "result.yaml",
+                                  "run.data",       "run.yaml",        "run_session.yaml", "trajectory.csv",
+                                  "windows.csv"};
 // With an input file for the IMU of this name.
 QStringList kalibrFiles(const QString& imu) {
   return {"camchain-imucam.yaml", "camchain.yaml", "imu.yaml", "input-" + imu + ".yaml"};

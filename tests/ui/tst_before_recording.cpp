@@ -136,7 +136,6 @@ class TestBeforeRecording : public QObject {
     QTRY_VERIFY_WITH_TIMEOUT(test.document().hasSession(), kPatience_ms);
     QCOMPARE(test.document().session().board.rows, 9);
     QCOMPARE(test.document().session().measured->length_m, 0.161);
-    answerQuestion(QMessageBox::Discard);
     QVERIFY(test.window.close());
   }
 

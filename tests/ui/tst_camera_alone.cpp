@@ -82,6 +82,7 @@ class TestCameraAlone : public QObject {
     Session session = test.document().session();
     session.board = scenario_.board;
     test.document().edit(session, "The board");
+    test.document().confirmBoard();
   }
   void chooseCamera(WindowFixture& test) {
     auto* const button = test.child<RecordingScreen>()->findChild<QPushButton*>("aim_camera");

@@ -191,7 +191,6 @@ class TestMainWindow : public QObject {
     QCOMPARE(test.screen(), QString("recording"));
     const QString problem = test.child<ErrorPanel>()->text();
     QVERIFY2(problem.contains("ocal_length_px"), qPrintable(problem));
-    answerQuestion(QMessageBox::Discard);
     QVERIFY(test.window.close());
   }
 
@@ -231,7 +230,6 @@ class TestMainWindow : public QObject {
     QVERIFY(!take_over->isVisible());
     test.document().undoStack().undo();
     QVERIFY(!test.document().session().cameras[0].intrinsics);
-    answerQuestion(QMessageBox::Discard);
     QVERIFY(test.window.close());
   }
 
@@ -258,6 +256,20 @@ class TestMainWindow : public QObject {
     QVERIFY(!test.window.close());
     QVERIFY(test.window.isVisible());
     answerQuestion(QMessageBox::Discard);
+    QVERIFY(test.window.close());
+  }
+
+  // It would read as if the recording were to be written; and there is nothing to be lost.
+  void recordingThatNobodyTouched_isLeftWithoutAQuestion() {
+    WindowFixture test;
+    QSignalSpy opened(&test.window.files(), &SessionFiles::opened);
+    const Session session = readSession(simulatedSession().toStdString());
+    test.window.files().open(QString::fromStdString(session.recording.string()));
+    QVERIFY(opened.wait(kPatience_ms));
+    QVERIFY(test.document().file().isEmpty());
+    QVERIFY(!test.window.isWindowModified());
+    auto* const save = test.child<QAction>("save");
+    QVERIFY(save->isEnabled());  // it may be kept as a session all the same
     QVERIFY(test.window.close());
   }
 

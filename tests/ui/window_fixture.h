@@ -73,12 +73,24 @@ inline void answerExportDialog(const QStringList& targets, const QString& folder
   });
 }
 
+// A question that is not asked would have its answer given to a later one.
+inline QList<QTimer*>& awaitedQuestions() {
+  static QList<QTimer*> awaited;
+  return awaited;
+}
+
 inline void answerQuestion(QMessageBox::StandardButton button) {
-  QTimer::singleShot(200, qApp, [button] {
+  auto* const timer = new QTimer(qApp);
+  awaitedQuestions() << timer;
+  QObject::connect(timer, &QTimer::timeout, timer, [timer, button] {
     auto* const box = qobject_cast<QMessageBox*>(QApplication::activeModalWidget());
-    if (box == nullptr) return answerQuestion(button);
+    if (box == nullptr) return;
+    awaitedQuestions().removeOne(timer);
+    timer->deleteLater();
+    timer->stop();
     QTest::mouseClick(box->button(button), Qt::LeftButton);
   });
+  timer->start(200);
 }
 
 struct WindowFixture {
@@ -92,6 +104,12 @@ struct WindowFixture {
     QVERIFY(QTest::qWaitForWindowExposed(&window));
     window.activateWindow();
     QVERIFY(QTest::qWaitForWindowActive(&window));
+  }
+  ~WindowFixture() {
+    if (!awaitedQuestions().isEmpty())
+      QTest::qFail("a question was awaited that nobody asked", __FILE__, __LINE__);
+    qDeleteAll(awaitedQuestions());
+    awaitedQuestions().clear();
   }
   template <class Widget>
   Widget* child(const QString& name = {}) {

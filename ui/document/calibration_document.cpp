@@ -91,26 +91,25 @@ QString CalibrationDocument::title() const {
 }
 
 void CalibrationDocument::open(const QString& session_file) {
-  replace(readSession(pathOf(session_file)), session_file, false);
+  replace(readSession(pathOf(session_file)), session_file);
 }
 
 void CalibrationDocument::startSession(const Session& session) {
-  replace(session, {}, true);
+  replace(session, {});
 }
 
 void CalibrationDocument::openRun(RunRecord record) {
   Session session = record.session;
-  replace(std::move(session), {}, false, std::move(record));
+  replace(std::move(session), {}, std::move(record));
 }
 
 void CalibrationDocument::openRun(RunRecord record, const QString& session_file) {
-  replace(readSessionOfRun(pathOf(session_file)), session_file, false, std::move(record));
+  replace(readSessionOfRun(pathOf(session_file)), session_file, std::move(record));
 }
 
-void CalibrationDocument::replace(Session session, const QString& session_file, bool unsaved, RunRecord run) {
+void CalibrationDocument::replace(Session session, const QString& session_file, RunRecord run) {
   session_ = std::move(session);
   file_ = session_file;
-  has_unsaved_recording_ = unsaved;
   board_confirmed_ = !session_file.isEmpty();  // who saved it knew it
   undo_stack_.clear();
   saved_edition_ = edition_;
@@ -130,7 +129,6 @@ void CalibrationDocument::save(const QString& session_file) {
   writeSession(to_write, pathOf(session_file));
   file_ = session_file;
   session_.source = pathOf(session_file);
-  has_unsaved_recording_ = false;
   saved_edition_ = edition_;
   undo_stack_.setClean();
   emit fileChanged();

@@ -43,7 +43,7 @@ class CalibrationDocument : public QObject {
   QString file() const { return file_; }  // empty: never saved
   QString title() const;                  // the file's name, or the recording's
   // Runs are undone with the same keys, but are nothing to be saved with the session.
-  bool modified() const { return has_unsaved_recording_ || edition_ != saved_edition_; }
+  bool modified() const { return edition_ != saved_edition_; }
   QUndoStack& undoStack() { return undo_stack_; }
 
   // These throw CalibrationError and leave everything as it was.
@@ -98,13 +98,12 @@ class CalibrationDocument : public QObject {
     RunRecord last, previous;
   };
 
-  void replace(Session session, const QString& session_file, bool unsaved, RunRecord run = {});
+  void replace(Session session, const QString& session_file, RunRecord run = {});
   void set(const Session& session, int edition);
   void set(const Runs& runs);
 
   Session session_;
   QString file_;
-  bool has_unsaved_recording_ = false;
   bool board_confirmed_ = false;
   QUndoStack undo_stack_;
   int edition_ = 0, saved_edition_ = 0, newest_edition_ = 0;  // each edit makes one of its own

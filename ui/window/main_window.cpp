@@ -336,7 +336,7 @@ void MainWindow::showState() {
   actions_.cancel->setEnabled(running && !workbench_.runner.cancelling());
   for (QAction* const action : {actions_.open_session, actions_.open_recording}) action->setEnabled(!running);
   showVerdictBadge();
-  actions_.save->setEnabled(document.modified());
+  actions_.save->setEnabled(document.modified() || (document.hasSession() && document.file().isEmpty()));
   actions_.save_as->setEnabled(document.hasSession());
   const bool of_camera = workbench_.lens.aim() == CalibrationAim::Camera;
   const bool has_result = of_camera ? workbench_.lens.last().run != nullptr : document.last().run != nullptr;

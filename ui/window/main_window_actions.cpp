@@ -47,6 +47,7 @@ void MainWindow::makeFileMenu() {
   actions_.open_recording = makeAction(this, "recording", tr("Open &recording..."),
                                        tr("Open a recording and describe it"), QKeySequence("Ctrl+Shift+O"));
   actions_.save = makeAction(this, "save", tr("&Save"), tr("Save the session"), QKeySequence::Save);
+  actions_.save->setObjectName("save");
   actions_.save_as = makeAction(this, "save", tr("Save &as..."), tr("Save the session to another file"),
                                 QKeySequence("Ctrl+Shift+S"));
   actions_.export_result = makeAction(this, "export", tr("&Export result..."),

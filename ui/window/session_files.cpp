@@ -317,9 +317,12 @@ bool SessionFiles::saveTo(const QString& file) {
 bool SessionFiles::mayDiscard() {
   if (!workbench_.document.modified()) return true;
   QMessageBox question(QMessageBox::Question, tr("Unsaved changes"),
-                       tr("Save the changes to %1?").arg(workbench_.document.title()),
+                       workbench_.document.file().isEmpty()
+                           ? tr("Save what was set for %1 as a session?").arg(workbench_.document.title())
+                           : tr("Save the changes to %1?").arg(workbench_.document.title()),
                        QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, window_);
-  question.setInformativeText(tr("Board, sensors and parameters are kept in the session file."));
+  question.setInformativeText(
+      tr("Board, sensors and parameters are kept in the session file; the recording stays as it is."));
   question.setDefaultButton(QMessageBox::Save);
   const int answer = question.exec();
   if (answer == QMessageBox::Save) return save();
