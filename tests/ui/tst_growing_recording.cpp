@@ -112,7 +112,7 @@ class TestGrowingRecording : public QObject {
     session.recording = folder / "whole.raw";
     session.imus.clear();
     session.cameras[0].stream = "events";
-    session.reference.clear();
+    session.reference = session.cameras[0].name;
     std::vector<Event> events;
     simulateEvents(scenario(), 0,
                    [&](EventSpan packet) { events.insert(events.end(), packet.begin(), packet.end()); });
@@ -146,6 +146,8 @@ class TestGrowingRecording : public QObject {
     recorder.write(0.3);
     session.recording = path.toStdString();
     writeSession(session, scratch_.filePath("session.yaml").toStdString());
+
+    readSession(scratch_.filePath("session.yaml").toStdString());  // it is one
 
     GrowingFixture test;
     test.window.files().open(scratch_.filePath("session.yaml"));
