@@ -104,7 +104,7 @@ CameraForm::CameraForm(QWidget* parent)
   form_->setContentsMargins(8, 8, 8, 8);
   form_->setRowWrapPolicy(QFormLayout::DontWrapRows);  // wrapped fields vanish before rows that are hidden
   for (QComboBox* const box : {model_, shutter_, sensor_, board_}) {
-    constexpr int kLeastCharacters = 12;  // what does not fit is in the list that opens
+    constexpr int kLeastCharacters = 8;  // what does not fit is in the list that opens
     box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     box->setMinimumContentsLength(kLeastCharacters);
   }
@@ -155,8 +155,11 @@ QWidget* CameraForm::pairOf(NumberField* first, NumberField* second) {
   auto* const layout = new QHBoxLayout(pair);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(6);
-  layout->addWidget(first);
-  layout->addWidget(second);
+  constexpr int kLeast_px = 48;  // "1234.5"
+  for (NumberField* const field : {first, second}) {
+    field->setMinimumWidth(kLeast_px);
+    layout->addWidget(field);
+  }
   return pair;
 }
 

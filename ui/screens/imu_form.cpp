@@ -95,6 +95,14 @@ ImuForm::ImuForm(QWidget* parent)
          "wrongly; "
          "-g for drivers that report gravity"));
   form_->setContentsMargins(8, 8, 8, 8);
+  constexpr int kLeast_px = 70;  // "0.00187"
+  for (NumberField* const field : {gyroscope_, accelerometer_}) field->setMinimumWidth(kLeast_px);
+  for (QComboBox* const box : {preset_, angular_rate_unit_, acceleration_unit_}) {
+    constexpr int kLeastCharacters = 12;  // what does not fit is in the list that opens
+    box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    box->setMinimumContentsLength(kLeastCharacters);
+  }
+  form_->setRowWrapPolicy(QFormLayout::WrapLongRows);
   form_->addRow(tr("Name"), name_);
   form_->addRow(tr("Noise preset"), preset_);
   form_->addRow(QString("Gyroscope [rad/s/%1Hz]").arg(QChar(0x221a)), gyroscope_);

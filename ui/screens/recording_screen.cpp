@@ -20,7 +20,6 @@
 #include <QProgressBar>
 #include <QPushButton>
 #include <QScrollArea>
-#include <QScrollBar>
 #include <QStackedWidget>
 #include <QTabWidget>
 #include <QVBoxLayout>
@@ -57,16 +56,13 @@ QFrame* card(const QString& heading, QWidget* content, QWidget* parent, QWidget*
   return frame;
 }
 
-// Up and down only: never narrower than what it shows.
 QScrollArea* scrolling(QWidget* content) {
   auto* const area = new QScrollArea;
   area->setWidget(content);
   area->setWidgetResizable(true);
   area->setFrameShape(QFrame::NoFrame);
-  area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   area->viewport()->setAutoFillBackground(false);
   content->setAutoFillBackground(false);
-  area->setMinimumWidth(content->minimumSizeHint().width() + area->verticalScrollBar()->sizeHint().width());
   return area;
 }
 
