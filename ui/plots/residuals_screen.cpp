@@ -125,7 +125,7 @@ QWidget* ResidualsScreen::makeBar() {
   threshold_->setToolTip(
       tr("Windows whose circles have a larger RMS are marked. The line in the chart of windows "
          "can be dragged, too."));
-  auto* const threshold_label = new QLabel(tr("Reject windows &above"));
+  auto* const threshold_label = new QLabel(tr("Reject &above"));
   threshold_label->setBuddy(threshold_);
   count_ = new QLabel;
   count_->setForegroundRole(QPalette::PlaceholderText);
