@@ -13,6 +13,7 @@
 #include <QLabel>
 #include <QStackedLayout>
 #include <QTimer>
+#include <QToolButton>
 
 #include <algorithm>
 #include <limits>
