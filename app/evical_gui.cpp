@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The desktop program: builds the window, opens what it was given, runs.
+#include "app/photographer.h"
 #include "app/version.h"
 #include "ui/theme/theme.h"
 #include "ui/window/main_window.h"
@@ -9,7 +10,6 @@
 #include <QCommandLineParser>
 #include <QSettings>
 #include <QTextStream>
-#include <QTimer>
 
 #include <algorithm>
 
@@ -17,7 +17,7 @@ namespace {
 
 using namespace evical::ui;
 
-constexpr int kDone = 0, kFailed = 1, kBadUse = 2;
+constexpr int kBadUse = 2;
 
 // Pictures, help and the version need no display, but Qt ends a program that finds none.
 bool doWithoutDisplay(int argc, char** argv) {
@@ -33,48 +33,6 @@ int complain(const QString& text) {
   QTextStream(stderr) << text << '\n';
   return kBadUse;
 }
-
-// Calibrates the session, or opens the saved run, lets the screen draw what it got, and saves its picture.
-class Photographer : public QObject {
- public:
-  Photographer(MainWindow& window, QString screen, QString file)
-      : window_(window), screen_(std::move(screen)), file_(std::move(file)) {
-    connect(&window.files(), &SessionFiles::opened, this, [this] {
-      if (window_.workbench().document.last().run) return waitAndSave();
-      LensDocument& lens = window_.workbench().lens;
-      if (lens.offersCameraOnly()) lens.setAim(CalibrationAim::Camera);
-      window_.calibrate();
-      if (!window_.workbench().runner.running())
-        giveUp("calibrate", {true, {}, "the session is incomplete", {}});
-    });
-    connect(&window.files(), &SessionFiles::failed, this,
-            [](const QString& what, const JobError& error) { giveUp(what, error); });
-    connect(&window.workbench().runner, &JobRunner::failed, this,
-            [](const JobError& error) { giveUp("calibrate", error); });
-    connect(&window.workbench().runner, &JobRunner::finished, this, [this](JobOutcome outcome) {
-      if (outcome == JobOutcome::Done) waitAndSave();
-    });
-  }
-
- private:
-  static void giveUp(const QString& what, const JobError& error) {
-    complain(what + ": " + error.text());
-    QTimer::singleShot(0, qApp, [] { QCoreApplication::exit(kFailed); });  // exec() may not have begun
-  }
-  // Screens prepare what they show in threads of their own.
-  void waitAndSave() {
-    constexpr int kSettle_ms = 2500;
-    window_.showScreen(screen_);
-    QTimer::singleShot(kSettle_ms, this, [this] {
-      const bool saved = window_.grab().save(file_);
-      if (!saved) complain(file_ + ": cannot be written");
-      QCoreApplication::exit(saved ? kDone : kFailed);
-    });
-  }
-
-  MainWindow& window_;
-  QString screen_, file_;
-};
 
 struct Arguments {
   QString path, screen, picture;
@@ -111,9 +69,9 @@ Arguments parse(const QApplication& application) {
 }
 
 int takePicture(const Arguments& arguments, MainWindow& window) {
-  if (!window.screenNames().contains(arguments.screen))
-    return complain("There is no screen " + arguments.screen + ". Give one of " +
-                    window.screenNames().join(", "));
+  const QStringList screens = Photographer::screensOf(window);
+  if (!screens.contains(arguments.screen))
+    return complain("There is no screen " + arguments.screen + ". Give one of " + screens.join(", "));
   if (arguments.path.isEmpty() || arguments.picture.isEmpty() || !arguments.size.isValid())
     return complain("Give a session, and the picture's file: --screenshot SCREEN -o x.png SESSION");
   const Photographer photographer(window, arguments.screen, arguments.picture);

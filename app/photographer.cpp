@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/photographer.h"
+
+#include "ui/window/main_window.h"
+#include "ui/window/print_board.h"
+#include "ui/window/session_files.h"
+
+#include <QApplication>
+#include <QDialog>
+#include <QTextStream>
+#include <QTimer>
+
+using namespace evical::ui;
+
+namespace {
+
+constexpr int kDone = 0, kFailed = 1;
+constexpr int kSettle_ms = 2500;  // screens prepare what they show in threads of their own
+const char* const kCheck = "check";
+const char* const kPrintBoard = "print-board";
+const char* const kHowToRecord = "how-to-record";
+const char* const kExport = "export";
+
+void complain(const QString& text) {
+  QTextStream(stderr) << text << '\n';
+}
+
+// The dialog that is open, else the window.
+QWidget* shownOf(MainWindow& window) {
+  for (QWidget* const widget : QApplication::topLevelWidgets())
+    if (qobject_cast<QDialog*>(widget) && widget->isVisible()) return widget;
+  return &window;
+}
+
+}  // namespace
+
+Photographer::Photographer(MainWindow& window, QString screen, QString file)
+    : window_(window), screen_(std::move(screen)), file_(std::move(file)) {
+  Workbench& workbench = window.workbench();
+  connect(&window.files(), &SessionFiles::opened, this, &Photographer::opened);
+  connect(&window.files(), &SessionFiles::failed, this, &Photographer::giveUp);
+  connect(&workbench.runner, &JobRunner::failed, this,
+          [](const JobError& error) { giveUp("calibrate", error); });
+  connect(&workbench.runner, &JobRunner::finished, this, [this](JobOutcome outcome) {
+    if (outcome == JobOutcome::Done) waitAndSave();
+  });
+  if (screen_ != kCheck) return;
+  connect(&workbench.check, &RecordingCheckJob::checkedAnew, this, &Photographer::waitAndSave);
+  connect(&workbench.check, &RecordingCheckJob::failed, this,
+          [](const JobError& error) { giveUp("check", error); });
+}
+
+QStringList Photographer::screensOf(const MainWindow& window) {
+  return window.screenNames() + QStringList{kCheck, kPrintBoard, kHowToRecord, kExport};
+}
+
+void Photographer::giveUp(const QString& what, const JobError& error) {
+  complain(what + ": " + error.text());
+  QTimer::singleShot(0, qApp, [] { QCoreApplication::exit(kFailed); });  // exec() may not have begun
+}
+
+void Photographer::opened() {
+  if (screen_ == kCheck) return window_.workbench().check.setAutomatic(true);
+  const bool needs_a_run = screen_ != kPrintBoard && screen_ != kHowToRecord && screen_ != "start";
+  if (!needs_a_run || window_.workbench().document.last().run) return waitAndSave();
+  calibrate();
+}
+
+void Photographer::calibrate() {
+  LensDocument& lens = window_.workbench().lens;
+  if (lens.offersCameraOnly()) lens.setAim(CalibrationAim::Camera);
+  window_.calibrate();
+  if (!window_.workbench().runner.running()) giveUp("calibrate", {true, {}, "the session is incomplete", {}});
+}
+
+void Photographer::openDialog() {
+  if (screen_ == kPrintBoard) showPrintBoard(&window_, window_.workbench());
+  if (screen_ == kHowToRecord) showHowToRecord(&window_);
+  if (screen_ == kExport)  // it waits for its answer
+    QTimer::singleShot(0, &window_, [this] { window_.files().chooseExportFolder(); });
+}
+
+void Photographer::waitAndSave() {
+  if (window_.screenNames().contains(screen_)) window_.showScreen(screen_);
+  if (screen_ == kCheck) window_.showScreen("recording");
+  openDialog();
+  QTimer::singleShot(kSettle_ms, this, [this] {
+    const bool saved = shownOf(window_)->grab().save(file_);
+    if (!saved) complain(file_ + ": cannot be written");
+    QCoreApplication::exit(saved ? kDone : kFailed);
+  });
+}
