@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The desktop program: builds the window, opens what it was given, runs.
-#include "app/photographer.h"
 #include "app/version.h"
 #include "ui/theme/theme.h"
 #include "ui/window/main_window.h"
+#include "ui/window/photographer.h"
 #include "ui/window/session_files.h"
 
 #include <QApplication>

@@ -6,26 +6,28 @@
 #include <QStringList>
 
 namespace evical::ui {
+
 class MainWindow;
 struct JobError;
-}  // namespace evical::ui
 
 // Calibrates the session, or opens the saved run, lets the screen draw what it got, saves its picture, and ends the
 // program: with 0, or with 1 where something failed.
 class Photographer : public QObject {
  public:
-  Photographer(evical::ui::MainWindow& window, QString screen, QString file);
+  Photographer(MainWindow& window, QString screen, QString file);
 
   // Pages, and what else there are pictures of.
-  static QStringList screensOf(const evical::ui::MainWindow& window);
+  static QStringList screensOf(const MainWindow& window);
 
  private:
-  static void giveUp(const QString& what, const evical::ui::JobError& error);
+  static void giveUp(const QString& what, const JobError& error);
   void opened();
   void calibrate();
   void waitAndSave();
   void openDialog();
 
-  evical::ui::MainWindow& window_;
+  MainWindow& window_;
   QString screen_, file_;
 };
+
+}  // namespace evical::ui

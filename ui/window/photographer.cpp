@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/photographer.h"
+#include "ui/window/photographer.h"
 
 #include "ui/window/main_window.h"
 #include "ui/window/print_board.h"
@@ -10,8 +10,7 @@
 #include <QTextStream>
 #include <QTimer>
 
-using namespace evical::ui;
-
+namespace evical::ui {
 namespace {
 
 constexpr int kDone = 0, kFailed = 1;
@@ -90,3 +89,5 @@ void Photographer::waitAndSave() {
     QCoreApplication::exit(saved ? kDone : kFailed);
   });
 }
+
+}  // namespace evical::ui
