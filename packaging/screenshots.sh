@@ -1,19 +1,30 @@
 #!/usr/bin/env bash
-# Makes the README's pictures: every screen of the program after it has calibrated the demo recording, light and dark.
-# Without a display. With a folder as argument the pictures go there.
+# Makes the pictures of README, guide and tour, of the demo recording. Without a display. With a folder as argument:
+# every screen, light and dark, there.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-pictures=${1:-docs/pictures}
-program=build/release/evical-gui
-demo=build/screenshots/demo
+build=${EVICAL_BUILD:-build/release}
+demo=${TMPDIR:-/tmp}/evical/demo # it is seen in pictures
 
-[ -x "$program" ] || { echo "Build it first: packaging/run.sh" >&2; exit 1; }
-[ -f "$demo/truth.yaml" ] || build/release/evical simulate config/scenarios/davis346_10s.yaml -o "$demo" --quiet
+[ -x "$build/evical-gui" ] || { echo "Build it first: packaging/run.sh" >&2; exit 1; }
+[ -f "$demo/truth.yaml" ] || "$build/evical" simulate config/scenarios/davis346_10s.yaml -o "$demo" --quiet
+shown="print-board-light how-to-record-light check-light detection-dark trajectory-light convergence-light
+       residuals-light result-light export-light"
+pictures=docs/pictures
+if [ $# -gt 0 ]; then
+  pictures=$1 shown=
+  for screen in start print-board how-to-record check recording detection trajectory convergence signals residuals result export; do
+    shown+=" $screen-light $screen-dark"
+  done
+fi
 mkdir -p "$pictures"
 export QT_QPA_PLATFORM=offscreen # also where there is a display: the same pictures everywhere
-for screen in recording detection trajectory convergence signals residuals result; do
-  for appearance in light dark; do
-    "$program" --screenshot "$screen" -o "$pictures/$screen-$appearance.png" --appearance "$appearance" "$demo/session.yaml"
-  done
+# Runs and settings of the person at this machine have no place in them.
+XDG_CONFIG_HOME=$(mktemp -d)
+XDG_DATA_HOME=$XDG_CONFIG_HOME
+export XDG_CONFIG_HOME XDG_DATA_HOME
+trap 'rm -rf "$XDG_CONFIG_HOME"' EXIT
+for picture in $shown; do
+  "$build/evical-gui" --screenshot "${picture%-*}" -o "$pictures/$picture.png" --appearance "${picture##*-}" "$demo/session.yaml"
 done
 echo "Pictures are in $pictures"
