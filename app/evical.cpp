@@ -38,6 +38,7 @@ void addCommands(CLI::App& app, int& exit_code) {
   addExportCommand(app, exit_code);
   addImportCommand(app, exit_code);
   addOptionsCommand(app, exit_code);
+  addManualCommand(app, exit_code);
 }
 
 int run(int argc, char** argv) {
@@ -46,6 +47,11 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   int exit_code = kDone;
   addCommands(app, exit_code);
+  // Later than the commands, which would inherit it.
+  app.footer(
+      "Exit codes: 0 done; 1 failed or cancelled, the last line says why; 2 bad usage, session or recording, "
+      "nothing "
+      "was written. Further ones are told by a command's own help: evical COMMAND --help");
   try {
     app.parse(argc, argv);
     return exit_code;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The desktop program: builds the window, opens what it was given, runs.
+#include "app/manual_page.h"
 #include "app/version.h"
 #include "ui/theme/theme.h"
 #include "ui/window/main_window.h"
@@ -12,6 +13,8 @@
 #include <QTextStream>
 
 #include <algorithm>
+#include <cstdlib>
+#include <string>
 
 namespace {
 
@@ -40,12 +43,29 @@ struct Arguments {
   Appearance appearance = Appearance::System;
 };
 
+// The page of man for what the parser knows.
+std::string manualOf(const QCommandLineParser& parser, const QList<QCommandLineOption>& options) {
+  const std::string file = "[SESSION|RECORDING|RESULT]";
+  evical::ManualSection section{"Options", "", {}};
+  for (const QCommandLineOption& option : options) {
+    QStringList names;
+    for (const QString& name : option.names()) names << (name.size() > 1 ? "--" : "-") + name;
+    section.entries.push_back({names.join(',').toStdString(), option.valueName().toStdString(),
+                               evical::sentence(option.description().toStdString())});
+  }
+  return evical::manualPage({"evical-gui",
+                             parser.applicationDescription().toStdString(),
+                             "evical-gui [OPTIONS] " + file,
+                             {section},
+                             {"evical"}},
+                            evical::kVersion);
+}
+
 // Exits by itself on --help, --version and unknown options.
 Arguments parse(const QApplication& application) {
   QCommandLineParser parser;
   parser.setApplicationDescription("Calibrates event cameras with IMUs from one recording of a circle grid.");
-  parser.addHelpOption();
-  parser.addVersionOption();
+  const QCommandLineOption help = parser.addHelpOption(), version = parser.addVersionOption();
   parser.addPositionalArgument("file", "A session file, a recording, or a result's folder to open",
                                "[SESSION|RECORDING|RESULT]");
   const QCommandLineOption screen(
@@ -53,8 +73,16 @@ Arguments parse(const QApplication& application) {
   const QCommandLineOption output("o", "The picture's file", "x.png");
   const QCommandLineOption size("size", "The window's size, for pictures", "WIDTHxHEIGHT", "1280x800");
   const QCommandLineOption appearance("appearance", "system, light or dark", "WORD");
-  parser.addOptions({screen, output, size, appearance});
+  // The build asks for it.
+  QCommandLineOption manual("manual");
+  manual.setFlags(QCommandLineOption::HiddenFromHelp);
+  const QList<QCommandLineOption> shown{help, version, screen, output, size, appearance};
+  parser.addOptions({screen, output, size, appearance, manual});
   parser.process(application);
+  if (parser.isSet(manual)) {
+    QTextStream(stdout) << QString::fromStdString(manualOf(parser, shown));
+    std::exit(0);
+  }
   Arguments arguments;
   arguments.path = parser.positionalArguments().value(0);
   arguments.screen = parser.value(screen);

@@ -33,4 +33,4 @@ install(CODE "include(\"${CMAKE_SOURCE_DIR}/cmake/public_headers.cmake\")
          DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/evical/\${folder}\" TYPE FILE)
   endforeach()" COMPONENT development)
 
-install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT licence)  # packages: cmake/evical_packages.cmake

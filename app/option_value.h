@@ -1,0 +1,20 @@
+// What an option of the command line takes, as people read it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace CLI {
+class Option;
+}
+
+namespace evical {
+
+struct OptionValue {
+  std::string word;   // "INT", "TEXT", "dark|bright"
+  std::string range;  // "1 to 256"; empty where it has none
+  std::vector<std::string> choices;
+};
+OptionValue valueOf(const CLI::Option& option);
+
+}  // namespace evical

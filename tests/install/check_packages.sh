@@ -1,0 +1,70 @@
+#!/usr/bin/env bash
+# The packages that this build gives: twice the same bytes, what is in them, no complaints of lintian and AppStream, and a command line that
+# calibrates from where it was unpacked to. The bare machine is packaging/test-packages.sh.
+#   check_packages.sh BUILD SCRATCH RECORDING GUI
+set -euo pipefail
+build=$1 scratch=$2 recording=$3 gui=$4
+export LC_ALL=C.UTF-8
+
+fail() {
+  echo "FAILED: $*" >&2
+  exit 1
+}
+pack() { # FOLDER
+  rm -rf "${1:?}"
+  mkdir -p "$1"
+  (cd "$1" && cpack --config "$build/CPackConfig.cmake" -B "$1") >"$1.log" 2>&1
+}
+umask 022
+rm -rf "${scratch:?}"
+mkdir -p "$scratch"
+pack "$scratch/first" || { cat "$scratch/first.log"; fail "cpack"; }
+# Times are the changelog's, not the clock's.
+pack "$scratch/second" || { cat "$scratch/second.log"; fail "cpack, again"; }
+
+names="evical libevical-dev"
+[ "$gui" = OFF ] || names+=" evical-gui"
+for name in $names; do
+  package=$(echo "$scratch/first/${name}"_*.deb)
+  cmp "$package" "$scratch/second/$(basename "$package")" || fail "two times cpack gave two different $name"
+  dpkg-deb -x "$package" "$scratch/root"
+done
+lintian --allow-root --fail-on error,warning "$scratch"/first/*.deb || fail "lintian"
+
+contents="bin/evical share/bash-completion/completions/evical share/man/man1/evical.1.gz share/man/man1/evical-calibrate.1.gz
+  share/evical/scenarios/davis346.yaml share/evical/default.yaml include/evical/core/pipeline/session.h"
+[ "$gui" = OFF ] || contents+=" bin/evical-gui share/man/man1/evical-gui.1.gz share/applications/evical.desktop
+  share/metainfo/org.evical.evical.metainfo.xml share/mime/packages/evical.xml share/icons/hicolor/scalable/apps/evical.svg"
+for file in $contents; do
+  [ -s "$scratch/root/usr/$file" ] || fail "no /usr/$file in any package"
+done
+[ -n "$(find "$scratch/root" -name EvicalConfig.cmake)" ] || fail "libevical-dev has no EvicalConfig.cmake"
+grep -q "libcholmod: .*GPL-2+" "$scratch/root/usr/share/doc/evical/copyright" || fail "copyright does not tell of CHOLMOD's GPL parts"
+dpkg-deb -f "$scratch"/first/evical_*.deb Depends | grep -q libcholmod3 || fail "evical does not depend on what it links"
+! dpkg-deb -f "$scratch"/first/evical_*.deb Depends | grep -qi "qt\|vtk" || fail "the command line depends on Qt or VTK"
+
+if [ "$gui" != OFF ]; then
+  appstreamcli validate --no-net "$scratch/root/usr/share/metainfo/org.evical.evical.metainfo.xml" || fail "appstreamcli"
+  desktop-file-validate "$scratch/root/usr/share/applications/evical.desktop" || fail "desktop-file-validate"
+  version=$(dpkg-deb -f "$scratch"/first/evical_*.deb Version)
+  grep -q "<release version=\"${version%-*}\"" "$scratch"/root/usr/share/metainfo/*.xml || fail "AppStream data know no version ${version%-*}"
+  # Every type that the desktop entry opens is one that we declare, and the other way round.
+  declared=$(grep -o 'mime-type type="[^"]*' "$scratch/root/usr/share/mime/packages/evical.xml" | cut -d'"' -f2 | sort)
+  opened=$(sed -n 's/^MimeType=//p' "$scratch/root/usr/share/applications/evical.desktop" | tr ';' '\n' | sed '/^$/d' | sort)
+  provided=$(sed -n 's:.*<mediatype>\(.*\)</mediatype>.*:\1:p' "$scratch"/root/usr/share/metainfo/*.xml | sort)
+  [ "$declared $declared" = "$opened $provided" ] || fail "types differ: declared $declared; opened $opened; provided $provided"
+fi
+
+"$scratch/root/usr/bin/evical" calibrate "$recording/session.yaml" -o "$scratch/result" --quiet >/dev/null || fail "calibrate"
+[ -s "$scratch/result/result.yaml" ] || fail "no result"
+
+# Where a tool is missing, it says what to install. All tools but one:
+mkdir "$scratch/tools"
+ln -s "$(command -v cpack)" "$(command -v sh)" "$(command -v cmake)" "$(command -v file)" "$(command -v readelf)" "$(command -v gzip)" \
+  "$(command -v touch)" "$scratch/tools"
+! said=$(PATH="$scratch/tools" cpack --config "$build/CPackConfig.cmake" -B "$scratch/none" 2>&1) || fail "cpack went on without dpkg-dev"
+[[ $said == *"dpkg-shlibdeps is missing"* && $said == *dpkg-dev* ]] || fail "no word of dpkg-dev: $said"
+[ -z "$(find "$scratch/none" -name '*.deb' 2>/dev/null)" ] || fail "a package came without dpkg-dev"
+! said=$(umask 077 && cpack --config "$build/CPackConfig.cmake" -B "$scratch/none" 2>&1) || fail "cpack went on with umask 077"
+[[ $said == *"umask 022"* ]] || fail "no word of the umask: $said"
+echo "Packages: $names"
