@@ -1,11 +1,12 @@
 # Each command and option that --help tells of is in the manual pages, as man shows them, and in what bash completes:
-#   check_manual.py EVICAL FOLDER
+#   check_manual.py EVICAL FOLDER [EVICAL-GUI]
 import os
 import re
 import subprocess
 import sys
 
 program, folder = sys.argv[1:3]
+desktop_program = sys.argv[3] if len(sys.argv) > 3 else None
 faults = []
 
 
@@ -17,7 +18,7 @@ def words(text):
     return re.sub(r"\s+", " ", text)
 
 
-def page(name):
+def page(name, folder=folder):
     shown = output("man", "--warnings", "-l", f"{folder}/man1/{name}.1",
                    env={**os.environ, "LC_ALL": "C.UTF-8", "MANWIDTH": "1000", "MANROFFOPT": "", "MANPAGER": "cat", "PAGER": "cat"})
     if shown.stderr:
@@ -71,6 +72,15 @@ for setting in settings:
     expect(setting + "=" in offered, f"--set {setting} is not completed")
     expect(setting in manual, f"evical-options.1 has no {setting}")
 expect(len(settings) > 50, "evical options shows none")
+
+if desktop_program:
+    help_text = output(desktop_program, "--help", env={**os.environ, "QT_QPA_PLATFORM": "offscreen"}).stdout
+    manual = page("evical-gui", f"{folder}/desktop")
+    options = re.findall(r"^  (-\S+(?:, -\S+)?) ", help_text, re.MULTILINE)
+    expect(len(options) > 4, f"evical-gui --help shows only {options}")
+    for names in options:
+        if "help-all" not in names:  # Qt's own
+            expect(names in manual, f"evical-gui.1 has no {names}")
 
 print("\n".join(faults) or f"{len(commands)} commands, {count} options, {len(settings)} settings")
 sys.exit(bool(faults))
