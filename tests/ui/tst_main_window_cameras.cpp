@@ -21,6 +21,7 @@
 #include "ui/window/steps_panel.h"
 
 #include <QComboBox>
+#include <QDir>
 #include <QElapsedTimer>
 #include <QLabel>
 #include <QSet>
@@ -158,6 +159,7 @@ class TestMainWindowCameras : public QObject {
     QVERIFY(screen->companionView().legend() == ColourLegend::Polarity);
     QTRY_VERIFY_WITH_TIMEOUT(beside()->events > 100, kPatience_ms);
     QTest::qWait(500);  // until all of its recording has been read
+    QDir().mkpath(EVICAL_SCREENSHOTS);
     QVERIFY(test_->window.grab().save(QStringLiteral(EVICAL_SCREENSHOTS "/detection_both_cameras.png")));
     const auto other = beside();
     screen->setPicture(PictureChoice::Alone);
