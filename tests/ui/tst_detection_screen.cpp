@@ -172,6 +172,7 @@ class TestDetectionScreen : public QObject {
     screen.setSession(recorded_->session);
     screen.setTime(recorded_->goodWindow().time_s);
     settle(screen);
+    QVERIFY(screen.view().legend() == ColourLegend::Polarity);
     screen.setMode(SurfaceMode::NormalFlow);
     const auto coloured = [&] {
       const NormalFlow& flow = screen.analysis()->flow.arcs.flow.front();
@@ -180,6 +181,7 @@ class TestDetectionScreen : public QObject {
                         static_cast<double>(flow.velocity_px_s.y()));
     };
     QTRY_VERIFY_WITH_TIMEOUT(coloured(), 20000 * kSlowdown);
+    QVERIFY(screen.view().legend() == ColourLegend::Direction);
   }
 
   void analysis_saysWhereItWasLost() {

@@ -4,12 +4,14 @@
 #include "tests/ui/slowdown.h"
 #include "ui/detection/event_view.h"
 #include "ui/detection/surface_frame.h"
+#include "ui/theme/theme.h"
 
 #include <QPainter>
 #include <QTest>
 #include <QWheelEvent>
 
 #include <ctime>
+#include <numeric>
 #include <random>
 
 using namespace evical;
@@ -31,6 +33,20 @@ Event eventAt(std::uint16_t x, std::uint16_t y, double before_s, bool brighter) 
 std::shared_ptr<const SurfaceFrame> smallFrame() {
   const std::vector<Event> events = {eventAt(10, 12, 0.001, true), eventAt(20, 30, 0.002, false)};
   return std::make_shared<SurfaceFrame>(renderEvents(events, kNow_ns, kSmall_px, style()));
+}
+
+QList<QPointF> placesOf(const QImage& image, QRgb colour, int tolerance = 0) {
+  QList<QPointF> places;
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) {
+      const QRgb pixel = image.pixel(x, y);
+      const int off =
+          std::max({std::abs(qRed(pixel) - qRed(colour)), std::abs(qGreen(pixel) - qGreen(colour)),
+                    std::abs(qBlue(pixel) - qBlue(colour))});
+      if (off <= tolerance) places << QPointF(x, y);
+    }
+  }
+  return places;
 }
 
 void wheel(EventView& view, const QPointF& at, int steps) {
@@ -64,6 +80,36 @@ class TestEventView : public QObject {
     QVERIFY(std::abs(qRed(frame.image.pixel(2, 1)) - 94) <= 2);  // 255 / e
     QCOMPARE(frame.image.pixel(3, 1), qRgb(0, 0, 0));
     QCOMPARE(frame.image.pixel(4, 1), qRgb(0, 0, 255));
+  }
+
+  void legend_namesPolarities_whereThereIsRoom() {
+    EventView view;
+    view.setFrame(smallFrame());
+    view.resize(640, 480);
+    const QImage without = view.grab().toImage();
+    view.setLegend(ColourLegend::Polarity);
+    const QImage with = view.grab().toImage();
+    QCOMPARE(placesOf(without, theme().brighter.rgb()).size(), 0);
+    for (const QColor& colour : {theme().brighter, theme().darker})
+      QVERIFY(placesOf(with, colour.rgb()).size() > 50);
+    view.resize(200, 150);
+    QCOMPARE(placesOf(view.grab().toImage(), theme().brighter.rgb()).size(), 0);
+  }
+
+  // Each colour of the wheel lies where an edge of that colour moves to.
+  void legend_turnsAsTheFlowDoes() {
+    EventView view;
+    view.setFrame(smallFrame());
+    view.resize(640, 480);
+    view.setLegend(ColourLegend::Direction);
+    const QImage with = view.grab().toImage();
+    const auto middle = [&](double x, double y) {
+      const QList<QPointF> places = placesOf(with, flowColour(x, y), 12);
+      return std::accumulate(places.begin(), places.end(), QPointF()) / std::max(1.0, double(places.size()));
+    };
+    const QPointF right = middle(1, 0), left = middle(-1, 0), down = middle(0, 1), up = middle(0, -1);
+    QVERIFY(right.x() > left.x() + 15.0 && down.y() > up.y() + 15.0);
+    QVERIFY(std::abs(right.y() - left.y()) < 3.0 && std::abs(down.x() - up.x()) < 3.0);
   }
 
   void decayed_newestCountsWhateverTheOrder() {

@@ -5,6 +5,7 @@
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/window_fixture.h"
+#include "ui/detection/detection_engine.h"
 #include "ui/detection/detection_screen.h"
 #include "ui/detection/event_view.h"
 #include "ui/detection/timeline.h"
@@ -20,7 +21,10 @@
 #include "ui/window/steps_panel.h"
 
 #include <QComboBox>
+#include <QDir>
+#include <QElapsedTimer>
 #include <QLabel>
+#include <QSet>
 #include <QTabWidget>
 #include <QTemporaryDir>
 #include <QTreeWidget>
@@ -138,6 +142,56 @@ class TestMainWindowCameras : public QObject {
     QCOMPARE(test_->waitForJob(), JobOutcome::Done);
     QCOMPARE(cameraBox(screen)->currentIndex(), 1);
     choose(cameraBox(screen), 0);
+  }
+
+  // The other one's picture is what it shows when it is chosen.
+  void detection_showsBothCamerasSideBySide() {
+    test_->window.showScreen("detection");
+    auto* const screen = test_->child<DetectionScreen>();
+    const double time_s = commonWindow_s();
+    boardAt(*screen, time_s, 0);
+    QVERIFY(!screen->companionView().isVisible());
+    screen->setPicture(PictureChoice::SideBySide);
+    const auto beside = [&] { return screen->companionView().frame(); };
+    QTRY_VERIFY_WITH_TIMEOUT(
+        screen->companionView().isVisible() && beside() && std::abs(beside()->time_s - time_s) < 0.01,
+        kPatience_ms);
+    QVERIFY(screen->companionView().legend() == ColourLegend::Polarity);
+    QTRY_VERIFY_WITH_TIMEOUT(beside()->events > 100, kPatience_ms);
+    QTest::qWait(500);  // until all of its recording has been read
+    QDir().mkpath(EVICAL_SCREENSHOTS);
+    QVERIFY(test_->window.grab().save(QStringLiteral(EVICAL_SCREENSHOTS "/detection_both_cameras.png")));
+    const auto other = beside();
+    screen->setPicture(PictureChoice::Alone);
+    QVERIFY(!screen->companionView().isVisible());
+    choose(cameraBox(screen), 1);
+    const auto shown = [&] {
+      screen->setTime(other->time_s);
+      const auto frame = screen->view().frame();
+      return frame && frame->time_s == other->time_s && frame->image == other->image;
+    };
+    QTRY_VERIFY_WITH_TIMEOUT(shown(), kPatience_ms);
+    choose(cameraBox(screen), 0);
+  }
+
+  void live_showsBothCamerasSideBySide() {
+    auto* const screen = test_->child<DetectionScreen>();
+    screen->setPicture(PictureChoice::SideBySide);
+    test_->press(Qt::Key_F5);
+    QSet<const void*> here, beside;
+    QElapsedTimer since;
+    since.start();
+    while (since.elapsed() < kPatience_ms && (here.size() < 3 || beside.size() < 3) &&
+           test_->runner().running()) {
+      spin(10);
+      if (!screen->isLive()) continue;
+      here.insert(screen->view().frame().get());
+      beside.insert(screen->companionView().frame().get());
+    }
+    QVERIFY2(here.size() >= 3 && beside.size() >= 3,
+             qPrintable(QString("%1 and %2 pictures").arg(here.size()).arg(beside.size())));
+    QCOMPARE(test_->waitForJob(), JobOutcome::Done);
+    screen->setPicture(PictureChoice::Alone);
   }
 
   void residuals_areTheChosenCamerasOwn() {

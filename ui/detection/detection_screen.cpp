@@ -3,6 +3,7 @@
 
 #include "ui/detection/detection_engine.h"
 #include "ui/detection/event_view.h"
+#include "ui/detection/second_camera.h"
 #include "ui/detection/timeline.h"
 #include "ui/detection/window_list.h"
 #include "ui/detection/window_panel.h"
@@ -90,7 +91,7 @@ void DetectionScreen::setSession(const Session& session) {
   engine_->setOptions(options_, session.options.frames);
   timeline_->setUsedRange(session.time_range_s);
   if (same) {
-    engine_->setSight(sight());
+    engine_->setSight(sightOf(camera_));
     request();
     return;
   }
@@ -112,6 +113,8 @@ void DetectionScreen::chooseCamera(std::size_t camera) {
   look_for_->hide();
   analysis_.reset();
   companion_.reset();
+  second_.reset();
+  second_camera_->close();
   adaptTo(CameraKind::Events);
   offerPictures();
   view_->setFrame(nullptr);
@@ -138,11 +141,11 @@ const CalibrationRun* DetectionScreen::runInView() const {
 }
 
 // Of a run, its own: what it saw fits no other board and no other lens.
-Sight DetectionScreen::sight() const {
+Sight DetectionScreen::sightOf(std::size_t camera) const {
   if (const CalibrationRun* const run = runInView())
-    return {run_session_.boardOf(camera_), run->pass.lenses.at(camera_).seen_with};
-  if (!session_ || camera_ >= session_->cameras.size()) return {};
-  return {session_->boardOf(camera_), session_->sensor(camera_).intrinsics};
+    return {run_session_.boardOf(camera), run->pass.lenses.at(camera).seen_with};
+  if (!session_ || camera >= session_->cameras.size()) return {};
+  return {session_->boardOf(camera), session_->sensor(camera).intrinsics};
 }
 
 void DetectionScreen::showRun() {
@@ -150,9 +153,9 @@ void DetectionScreen::showRun() {
   const bool posed = seen && hasPoses(*run_);
   layer_boxes_[static_cast<std::size_t>(Layer::Reprojection)]->setEnabled(posed);
   timeline_->setWindows(seen ? seen->windows : std::vector<WindowReport>{});
-  engine_->setObservations(seen ? std::shared_ptr<const BoardObservations>(run_, seen) : nullptr);
+  engine_->setObservations(seenBy(camera_));
   engine_->setResult(posed ? std::shared_ptr<const CalibrationState>(run_, &run_->result.state) : nullptr);
-  engine_->setSight(sight());
+  engine_->setSight(sightOf(camera_));
   listWindows();
   showMarksAlone();
   offerPictures();
@@ -179,7 +182,9 @@ void DetectionScreen::setLive(bool live) {
 }
 
 void DetectionScreen::showLiveFrame(std::shared_ptr<const LiveWindow> window) {
-  if (!live_ || !window || window->camera != camera_ || framesInView()) return;
+  if (!live_ || !window || framesInView()) return;
+  if (following_ && second_camera_->isOf(window->camera)) return second_camera_->showLive(window, style());
+  if (window->camera != camera_) return;
   if (window->windows) timeline_->setWindows(*window->windows);
   if (!following_) return;
   analysis_ = window->analysis;
@@ -258,6 +263,7 @@ void DetectionScreen::step(int direction) {
 }
 
 void DetectionScreen::request() {
+  keepSecondOpen();
   if (following()) return;
   const bool playing = timer_.isActive();
   const DetectionOptions& detection = options_.detection;
@@ -271,6 +277,7 @@ void DetectionScreen::request() {
   wish.search = !playing || shown(Layer::Circles);
   wish.flow = !playing || shown(Layer::Flow) || shown(Layer::Clusters) || shown(Layer::Pairs);
   engine_->show(wish);
+  showSecond(wish);
 }
 
 QString DetectionScreen::missingRecording() const {
@@ -309,6 +316,8 @@ void DetectionScreen::takeOverview() {
   if (!overview.started) return;
   adaptTo(overview.kind);
   companion_ = overview.companion;
+  const std::size_t cameras = session_->cameras.size();
+  if (!companion_ && cameras > 1) second_ = (camera_ + 1) % cameras;
   offerPictures();
   timeline_->setRange(0.0, std::max(overview.read_until_s, timeline_->end_s()));
   timeline_->setEventRate(overview.event_rate);
@@ -349,6 +358,7 @@ void DetectionScreen::refresh() {
   refreshPanel(here);
   list_->setTime(time_s_);
   if (frame) view_->setCaption((following() ? tr("live  ") : QString()) + captionOf(*frame));
+  if (frame) view_->setLegend(legendOf(*frame, following() ? SurfaceMode::Accumulated : style().mode));
   {
     const QSignalBlocker quiet(time_box_);
     time_box_->setMaximum(std::max(timeline_->end_s(), time_s_));

@@ -5,6 +5,7 @@
 
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/view_rejection.h"
+#include "ui/detection/colour_legend.h"
 #include "ui/detection/layers.h"
 #include "ui/detection/live_detection.h"
 #include "ui/detection/surface_frame.h"
@@ -36,10 +37,12 @@ inline bool hasPoses(const CalibrationRun& run) {
 
 class DetectionEngine;
 struct KeptEvents;
+struct DetectionWish;
 enum class PictureChoice;
 struct RecordingOverview;
 struct Sight;
 class EventView;
+class SecondCamera;
 class Timeline;
 class WindowList;
 class WindowPanel;
@@ -122,7 +125,7 @@ class DetectionScreen : public QWidget {
 
   void chooseCamera(std::size_t camera);
   const CalibrationRun* runInView() const;  // null: there is none of this recording
-  Sight sight() const;
+  Sight sightOf(std::size_t camera) const;
   void showRun();
   void select(double time_s);
   void advance();
@@ -137,11 +140,15 @@ class DetectionScreen : public QWidget {
   void refresh();  // caption, panel, overlay
   void refreshPanel(bool here);
   static QString captionOf(const SurfaceFrame& frame);
+  static ColourLegend legendOf(const SurfaceFrame& frame, SurfaceMode mode);
   void adaptTo(CameraKind kind);  // controls that say nothing of this kind go
   void connectPictures();
   PictureChoice picture() const;
   void offerPictures();  // those that there are of this camera
   void refreshCompanion();
+  void keepSecondOpen();
+  void showSecond(const DetectionWish& wish);
+  std::shared_ptr<const BoardObservations> seenBy(std::size_t camera) const;
   std::vector<QPolygonF> reprojectionInto(std::size_t camera, double time_s) const;
   bool following() const { return live_ && following_ && !framesInView(); }
   double endOfPlay_s() const;
@@ -162,6 +169,7 @@ class DetectionScreen : public QWidget {
   QTimer timer_;
   QElapsedTimer since_frame_;
   std::optional<std::size_t> companion_;  // the camera of the other kind
+  std::optional<std::size_t> second_;     // where there is none: another of the same kind
   EventView *view_ = nullptr, *companion_view_ = nullptr;
   Timeline* timeline_ = nullptr;
   WindowPanel* panel_ = nullptr;
@@ -179,6 +187,7 @@ class DetectionScreen : public QWidget {
   std::vector<std::pair<QToolButton*, QString>> icons_;
   LiveDetection* live_detection_ = nullptr;
   std::unique_ptr<DetectionEngine> engine_;
+  SecondCamera* second_camera_ = nullptr;
 };
 
 }  // namespace evical::ui

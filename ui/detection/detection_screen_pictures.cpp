@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The two cameras of a rig with events and frames in one sight.
+// Two cameras of a rig in one sight: of the two kinds, or of the same.
 #include "ui/detection/detection_engine.h"
 #include "ui/detection/detection_screen.h"
 #include "ui/detection/event_view.h"
+#include "ui/detection/second_camera.h"
+#include "ui/detection/trajectory_pose.h"
 
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QLabel>
+#include <QListView>
 #include <QSignalBlocker>
 #include <QStandardItemModel>
 
+#include <algorithm>
 #include <cmath>
 
 namespace evical::ui {
@@ -33,6 +37,10 @@ BoardView viewAt(const std::vector<BoardObservations>& cameras, std::size_t came
 
 void DetectionScreen::connectPictures() {
   connect(engine_.get(), &DetectionEngine::companionReady, this, &DetectionScreen::takeCompanion);
+  second_camera_ = new SecondCamera(
+      *companion_view_,
+      [this](std::size_t camera, double time_s) { return reprojectionInto(camera, time_s); }, this);
+  connect(second_camera_, &SecondCamera::frameReady, this, &DetectionScreen::refreshCompanion);
   connect(picture_box_, &QComboBox::currentIndexChanged, this, [this] {
     offerPictures();
     request();
@@ -46,7 +54,8 @@ void DetectionScreen::setPicture(PictureChoice picture) {
 
 PictureChoice DetectionScreen::picture() const {
   const auto chosen = static_cast<PictureChoice>(picture_box_->currentIndex());
-  const bool possible = companion_ && (chosen != PictureChoice::Overlaid || whyNoOverlay().isEmpty());
+  const bool possible =
+      chosen == PictureChoice::Overlaid ? companion_ && whyNoOverlay().isEmpty() : companion_ || second_;
   return possible ? chosen : PictureChoice::Alone;
 }
 
@@ -66,19 +75,23 @@ void DetectionScreen::offerPictures() {
   const QString why_not = whyNoOverlay();
   const QSignalBlocker quiet(picture_box_);
   const auto overlaid = static_cast<int>(PictureChoice::Overlaid);
-  if (companion_ && !why_not.isEmpty() && picture_box_->currentIndex() == overlaid)
+  if ((companion_ || second_) && !why_not.isEmpty() && picture_box_->currentIndex() == overlaid)
     picture_box_->setCurrentIndex(static_cast<int>(PictureChoice::Alone));
-  picture_box_->setVisible(companion_.has_value());
-  picture_box_->setItemText(static_cast<int>(PictureChoice::Alone),
-                            framesInView() ? tr("Frame") : tr("Events"));
+  picture_box_->setVisible(companion_ || second_);
+  picture_box_->setItemText(static_cast<int>(PictureChoice::Alone), second_          ? tr("This camera")
+                                                                    : framesInView() ? tr("Frame")
+                                                                                     : tr("Events"));
+  picture_box_->setItemText(static_cast<int>(PictureChoice::SideBySide),
+                            second_ ? tr("Both cameras") : tr("Side by side"));
+  qobject_cast<QListView*>(picture_box_->view())->setRowHidden(overlaid, second_.has_value());
   auto* const item = qobject_cast<QStandardItemModel*>(picture_box_->model())->item(overlaid);
   item->setEnabled(why_not.isEmpty());
   const QString help =
       tr("Each event where the frame camera sees it at the frame's time: from its pixel to the board's "
          "plane and\ninto the frame, through the lenses, poses and time offsets of the last run");
   item->setToolTip(why_not.isEmpty() ? help : why_not);
-  picture_box_->setToolTip(why_not.isEmpty() ? tr("This camera's picture, or both cameras'")
-                                             : tr("No events over the frame: %1").arg(why_not));
+  picture_box_->setToolTip(why_not.isEmpty() || second_ ? tr("This camera's picture, or both cameras'")
+                                                        : tr("No events over the frame: %1").arg(why_not));
   const bool beside = picture() == PictureChoice::SideBySide;
   companion_view_->setVisible(beside);
   const bool fades = !framesInView() || picture() != PictureChoice::Alone;
@@ -109,6 +122,11 @@ QString DetectionScreen::captionOf(const SurfaceFrame& frame) {
   return text;
 }
 
+ColourLegend DetectionScreen::legendOf(const SurfaceFrame& frame, SurfaceMode mode) {
+  if (frame.photograph) return frame.events > 0 ? ColourLegend::Polarity : ColourLegend::None;
+  return mode == SurfaceMode::NormalFlow ? ColourLegend::Direction : ColourLegend::Polarity;
+}
+
 std::vector<QPolygonF> DetectionScreen::reprojectionInto(std::size_t camera, double time_s) const {
   const CalibrationRun* const run = runInView();
   if (!run || !hasPoses(*run) || !shown(Layer::Reprojection)) return {};
@@ -117,11 +135,37 @@ std::vector<QPolygonF> DetectionScreen::reprojectionInto(std::size_t camera, dou
                         run_session_.options.optimisation.slow_edge_speed_px_s);
 }
 
+std::shared_ptr<const BoardObservations> DetectionScreen::seenBy(std::size_t camera) const {
+  if (runInView() == nullptr) return nullptr;
+  return {run_, &run_->pass.cameras.at(camera)};
+}
+
+void DetectionScreen::keepSecondOpen() {
+  if (!second_ || picture() != PictureChoice::SideBySide) return second_camera_->close();
+  if (!second_camera_->isOf(*second_)) second_camera_->open(*session_, *second_);
+}
+
+// At the same moment, as far as a result tells how far the clocks are apart.
+void DetectionScreen::showSecond(const DetectionWish& wish) {
+  if (!second_ || !second_camera_->isOf(*second_)) return;
+  second_camera_->know(*session_, sightOf(*second_), seenBy(*second_));
+  DetectionWish there = wish;
+  const CalibrationRun* const run = runInView();
+  if (run && std::max(camera_, *second_) < run->result.state.cameras.size())
+    there.time_s =
+        timeOnClockOf_s(run->result.state.cameras[*second_], run->result.state.cameras[camera_], wish.time_s);
+  there.picture = PictureChoice::Alone;
+  second_camera_->show(there, layers_);
+}
+
 void DetectionScreen::refreshCompanion() {
   const auto& frame = companion_view_->frame();
-  if (!frame || !companion_ || picture() != PictureChoice::SideBySide) return;
-  companion_view_->setCaption(QString::fromStdString(session_->cameras[*companion_].name) + tr("    ") +
+  const auto shown = companion_ ? companion_ : second_;
+  if (!frame || !shown || picture() != PictureChoice::SideBySide) return;
+  companion_view_->setCaption(QString::fromStdString(session_->cameras[*shown].name) + tr("    ") +
                               captionOf(*frame));
+  companion_view_->setLegend(legendOf(*frame, companion_ ? SurfaceMode::Decayed : style().mode));
+  if (!companion_) return;  // the second camera has layers of its own
   companion_view_->setOverlay(
       [reprojection = reprojectionInto(*companion_, frame->time_s)](QPainter& painter, double scale) {
         LayerSet layers;

@@ -47,6 +47,12 @@ void EventView::setCaption(const QString& caption) {
   update();
 }
 
+void EventView::setLegend(ColourLegend legend) {
+  if (legend == legend_) return;
+  legend_ = legend;
+  update();
+}
+
 void EventView::setMessage(const QString& message) {
   if (message == message_) return;
   message_ = message;
@@ -143,13 +149,16 @@ void EventView::paintPicture(QPainter& painter) {
   painter.drawRect(QRectF(origin_, scale_ * QSizeF(size_px.width_px, size_px.height_px)));
 }
 
+QRect EventView::pictureInSight() const {
+  const Resolution size_px = frame_->resolution_px();
+  const QRectF picture(origin_, scale_ * QSizeF(size_px.width_px, size_px.height_px));
+  return picture.intersected(rect()).toAlignedRect();
+}
+
 // In the picture's corner, as far as that is in sight.
 QRect EventView::noteBox(const QSize& size, bool below) const {
   constexpr int kInside_px = 6;
-  const Resolution size_px = frame_->resolution_px();
-  const QRectF picture(origin_, scale_ * QSizeF(size_px.width_px, size_px.height_px));
-  const QRect seen =
-      picture.intersected(rect()).toAlignedRect().adjusted(kInside_px, kInside_px, -kInside_px, -kInside_px);
+  const QRect seen = pictureInSight().adjusted(kInside_px, kInside_px, -kInside_px, -kInside_px);
   const int left = std::max(0, std::min(seen.left(), width() - size.width() - kInside_px));
   return {QPoint(left, below ? seen.bottom() - size.height() : seen.top()), size};
 }
@@ -186,6 +195,7 @@ void EventView::paintEvent(QPaintEvent*) {
     overlay_(painter, scale_);
     painter.restore();
   }
+  paintLegend(painter, pictureInSight(), legend_);
   paintNote(painter, caption_, false);
   paintNote(painter, readout(), true);
 }

@@ -3,6 +3,7 @@
 // the pixel under the mouse last saw. Draws what it is given; computes nothing.
 #pragma once
 
+#include "ui/detection/colour_legend.h"
 #include "ui/detection/surface_frame.h"
 
 #include <QPointF>
@@ -32,6 +33,8 @@ class EventView : public QWidget {
   const std::shared_ptr<const SurfaceFrame>& frame() const { return frame_; }
   void setOverlay(Overlay overlay);
   void setCaption(const QString& caption);  // top left, over the picture
+  void setLegend(ColourLegend legend);      // of the picture's colours
+  ColourLegend legend() const { return legend_; }
   const QString& message() const { return message_; }
   void setMessage(const QString& message);  // in the middle, where there is no picture
 
@@ -60,12 +63,14 @@ class EventView : public QWidget {
   void keepInSight();
   double fitScale() const;
   void paintPicture(QPainter& painter);
+  QRect pictureInSight() const;
   QRect noteBox(const QSize& size, bool below) const;
   void paintNote(QPainter& painter, const QString& text, bool below) const;
 
   std::shared_ptr<const SurfaceFrame> frame_;
   Overlay overlay_;
   QString caption_, message_;
+  ColourLegend legend_ = ColourLegend::None;
   bool fitted_ = true;
   double scale_ = 1.0;
   QPointF origin_;  // widget position of the top left pixel's outer corner

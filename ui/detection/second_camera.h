@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Another camera of the same kind beside the one that is looked at, at the same moment and with the same layers. It
+// reads the recording for itself, and only once it is asked for.
+#pragma once
+
+#include "ui/detection/detection_engine.h"
+#include "ui/detection/layers.h"
+
+#include <QObject>
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+namespace evical::ui {
+
+class EventView;
+
+class SecondCamera : public QObject {
+  Q_OBJECT
+
+ public:
+  // Outlines of the board by a result, at a time of that camera's clock.
+  using Reprojection = std::function<std::vector<QPolygonF>(std::size_t camera, double time_s)>;
+
+  SecondCamera(EventView& view, Reprojection reprojection, QObject* parent = nullptr);
+  ~SecondCamera() override;
+
+  bool isOf(std::size_t camera) const { return engine_ && camera_ == camera; }
+  void open(const Session& session, std::size_t camera);  // what was open is forgotten
+  void close();
+  // What the next wishes are answered with; nothing happens where none is open.
+  void know(const Session& session, const Sight& sight, std::shared_ptr<const BoardObservations> seen);
+  void show(const DetectionWish& wish, const LayerSet& layers);
+  void showLive(std::shared_ptr<const LiveWindow> window, const SurfaceStyle& style);
+
+ signals:
+  void frameReady();  // is in the view, with its layers
+
+ private:
+  void refresh();
+  void takeOverview();
+
+  EventView& view_;
+  Reprojection reprojection_;
+  std::size_t camera_ = 0;
+  std::optional<DetectionWish> wish_;  // the last one, before the recording was open perhaps
+  LayerSet layers_;
+  std::shared_ptr<const WindowAnalysis> analysis_;
+  std::unique_ptr<DetectionEngine> engine_;
+};
+
+}  // namespace evical::ui
