@@ -17,9 +17,9 @@
 namespace evical::ui {
 namespace {
 
-constexpr int kRoomForBoth_px = 1350;  // list, layers and a picture between them
-constexpr double kListShare = 0.455;   // of the page
-constexpr int kListLeast_px = 330, kListMost_px = 470;
+constexpr int kRoomForBoth_px = 1350;                   // list, layers and a picture between them
+constexpr double kListShare = 0.455;                    // of the page
+constexpr int kListLeast_px = 330, kListMost_px = 360;  // a picture of 1000 px stays at 1920
 
 int countOnlyIn(const std::vector<double>& these, const std::vector<double>& others) {
   std::vector<double> only;
