@@ -9,12 +9,12 @@
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/result_files.h"
 #include "core/pipeline/saved_detections.h"
+#include "core/pipeline/unfinished_run.h"
 #include "core/report/result_table.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
@@ -23,24 +23,10 @@
 namespace evical {
 namespace {
 
-// What was there before is overwritten only by a result, or by the reason why there is none.
-void tellFailure(const SessionArguments& arguments, const Session& session, const std::string& reason,
-                 const Console& console, const RecordingPass& pass) {
-  std::error_code ignored;
-  if (!std::filesystem::is_directory(arguments.output, ignored)) return;
-  // A failed run keeps an earlier result of the same folder: it is still true of its own recording.
-  if (std::filesystem::exists(std::filesystem::path(arguments.output) / "trajectory.csv", ignored)) return;
-  writeFailure(arguments.output, session, reason, kVersion, console.logText(), pass);
-}
-
-// A run that was cancelled leaves nothing in a folder of its own, one with bad input nowhere.
 void tellEnd(const SessionArguments& arguments, const Session& session, const CalibrationOutcome& outcome,
              const Console& console, const NewFolder& folder) {
-  if (outcome.error && outcome.error->kind() == ErrorKind::CalibrationFailed)
-    tellFailure(arguments, session, outcome.error->what(), console, outcome.pass);
+  writeUnfinishedRun(arguments.output, folder.wasThere(), session, outcome, kVersion, console.logText());
   if (outcome.error && outcome.error->repair()) printError(tryText(arguments, *outcome.error->repair()));
-  if (outcome.status == RunStatus::Cancelled && folder.wasThere())
-    tellFailure(arguments, session, "cancelled", console, outcome.pass);
 }
 
 void tellResult(const SessionArguments& arguments, const Session& session,

@@ -44,6 +44,15 @@ function(evical_use_precompiled target name)
   endif()
 endfunction()
 
+# evical_make_shareable(TARGET): its code goes into the Python module, too, which is a shared object. Without interposition that costs
+# nothing elsewhere.
+function(evical_make_shareable target)
+  if(EVICAL_PYTHON)
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_compile_options(${target} PRIVATE -fno-semantic-interposition)
+  endif()
+endfunction()
+
 find_package(Ceres 2.1 REQUIRED)
 find_package(fmt 9 REQUIRED)
 evical_precompile(evical_headers)
@@ -51,6 +60,9 @@ evical_precompile(evical_headers_fmt HEADERS <fmt/format.h> LIBS fmt::fmt)
 evical_precompile(evical_headers_ceres HEADERS <fmt/format.h> <Eigen/Cholesky> <Eigen/Eigenvalues> <ceres/manifold.h>
                   <ceres/problem.h> <ceres/sized_cost_function.h> <ceres/solver.h> <ceres/sphere_manifold.h>
                   LIBS Ceres::ceres fmt::fmt)
+foreach(headers evical_headers evical_headers_fmt evical_headers_ceres)
+  evical_make_shareable(${headers})
+endforeach()
 
 # evical_add_layer(NAME SOURCES... [PUBLIC libs...] [PRIVATE libs...] [HEADERS precompiled]): one library a folder of core.
 function(evical_add_layer name)
@@ -63,6 +75,9 @@ function(evical_add_layer name)
                                                    "$<INSTALL_INTERFACE:include/evical>")
   target_link_libraries(evical_${name} PUBLIC Eigen3::Eigen Threads::Threads ${ARG_PUBLIC}
                                        PRIVATE $<BUILD_INTERFACE:evical_warnings> ${ARG_PRIVATE})
+  if(NOT ARG_HEADERS STREQUAL "evical_headers_ui")
+    evical_make_shareable(evical_${name})
+  endif()
   if(NOT ARG_HEADERS AND "Ceres::ceres" IN_LIST ARG_PRIVATE)
     set(ARG_HEADERS evical_headers_ceres)
   elseif(NOT ARG_HEADERS AND "fmt::fmt" IN_LIST ARG_PRIVATE)

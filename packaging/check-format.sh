@@ -5,7 +5,7 @@ cd "$(dirname "$0")/.."
 
 problems=$(mktemp)
 trap 'rm -f "$problems"' EXIT
-mapfile -t sources < <(find app core examples $([ -d ui ] && echo ui) tests -name '*.h' -o -name '*.cpp' 2>/dev/null | sort)
+mapfile -t sources < <(find app core examples python $([ -d ui ] && echo ui) tests -name '*.h' -o -name '*.cpp' 2>/dev/null | sort)
 if [ "${1:-}" = "--fix" ]; then
   clang-format -i "${sources[@]}"
   exit 0

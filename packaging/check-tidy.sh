@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fails, and names the places, where clang-tidy finds something in core, app or ui: packaging/check-tidy.sh [SOURCE...]. Needs a
+# Fails, and names the places, where clang-tidy finds something in core, app, ui or python: packaging/check-tidy.sh [SOURCE...]. Needs a
 # configured build/ci. EVICAL_TIDY_TIMES=1 shows what it spends its time on.
 set -euo pipefail
 cd "$(dirname "$0")/.."

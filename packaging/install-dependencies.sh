@@ -14,6 +14,8 @@ packages=(
   libbz2-dev liblz4-dev libzstd-dev zlib1g-dev libsqlite3-dev libhdf5-dev libblosc-dev liblzf-dev
   # command line
   libcli11-dev nlohmann-json3-dev
+  # Python module, its tests and its notebooks
+  pybind11-dev python3-dev python3-numpy python3-pytest mypy python3-nbformat python3-nbconvert python3-ipykernel python3-matplotlib
   # desktop program
   qt6-base-dev qt6-svg-dev libvtk9-dev libegl-dev libgl1-mesa-dri libglew-dev libqcustomplot-dev fonts-inter
   # tests

@@ -1,4 +1,4 @@
-"""Runs clang-tidy over core, app and ui: python3 packaging/tidy_groups.py BUILD [SOURCE...].
+"""Runs clang-tidy over core, app, ui and python: python3 packaging/tidy_groups.py BUILD [SOURCE...].
 
 Most of what clang-tidy costs is reading the headers of Eigen, Ceres, Qt and VTK, again for every source. So sources whose private
 names don't collide are checked as one unit that includes them. A source that does not compile in its unit is checked alone.
@@ -16,7 +16,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-CHECKED = tuple(f"{ROOT / folder}{os.sep}" for folder in ("core", "app", "ui"))
+CHECKED = tuple(f"{ROOT / folder}{os.sep}" for folder in ("core", "app", "ui", "python"))
 MOST_SOURCES = 12  # in a unit: with more, one core idles at the end while the other is busy with the last
 ORDER_MATTERS = re.compile(r"^#include <(?:GL|EGL)/", re.M)  # sources with these are checked alone
 AT_ONCE = int(os.environ.get("EVICAL_TIDY_JOBS", 2))

@@ -25,7 +25,7 @@ foreach(heading IN LISTS headings)
 endforeach()
 
 set(globs "")
-foreach(folder core ui app tests examples)
+foreach(folder core ui app python tests examples)
   list(APPEND globs "${ROOT}/${folder}/*.h" "${ROOT}/${folder}/*.cpp")
 endforeach()
 file(GLOB_RECURSE sources RELATIVE "${ROOT}" ${globs})

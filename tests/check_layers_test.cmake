@@ -39,6 +39,12 @@ check(qt_in_core "core has neither Qt nor VTK" core/report/a.cpp "#include <QStr
 check(qt_module_in_core "core has neither Qt nor VTK" core/report/a.cpp "#  include <QtCore/QString>")
 check(vtk_in_core "core has neither Qt nor VTK" core/geometry/a.cpp "#include <vtkActor.h>")
 check(qt_in_command_line "the command line has neither" app/evical.cpp "#include <QCoreApplication>")
+check(python_clean "" python/a.cpp "#include \"core/data/event.h\"" python/b.cpp "#include \"python/a.h\"" python/a.h
+      "#include <pybind11/pybind11.h>")
+check(python_to_app "the Python module has core only" python/a.cpp "#include \"app/b.h\"")
+check(python_to_qt "the Python module has core only" python/a.cpp "#include <QString>")
+check(core_to_python "core knows nothing of python" core/report/a.cpp "#include \"python/b.h\"")
+check(app_to_python "app knows nothing of python" app/evical.cpp "#include \"python/b.h\"")
 check(qt_linked "links Qt or VTK" core/report/CMakeLists.txt "target_link_libraries(x Qt6::Core)")
 check(unknown_layer "is no layer" core/helpers/a.cpp "#include <string>")
 check(library_in_header "shows ceres/ceres.h" core/optimisation/a.h "#include <ceres/ceres.h>"

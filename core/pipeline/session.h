@@ -94,6 +94,10 @@ Session readSession(const std::filesystem::path& file);
 // What a session must fulfil whoever made it (reader, importer, forms); `place` precedes the key in messages.
 void validate(const Session& session, const std::string& place);
 
+// The same with each member's range, as a file is checked: for sessions whose members people set one by one. Lines are
+// those of sessionYaml. Recordings may be missing. Throws CalibrationError (BadInput).
+void validateMembers(const Session& session);
+
 // What the file says beside its keys, for who fills it in.
 struct SessionRemarks {
   std::string board;  // the board's keys become comments below this one; empty: they are keys

@@ -323,8 +323,7 @@ void readRecordings(const YamlNode& node, const SessionFolder& folder, Session& 
     session.more_recordings.push_back(recordingBeside(items[k], folder));
 }
 
-Session readSessionIn(const SessionFolder& folder, const std::filesystem::path& file) {
-  const YamlNode root = YamlNode::load(file);
+Session sessionFrom(const YamlNode& root, const SessionFolder& folder, const std::filesystem::path& file) {
   if (!root.isMap() || !root.has("evical_session"))
     throw root.error("is no session file: the key evical_session is missing",
                      "Make one with `evical init RECORDING`, `evical simulate` or `evical import`");
@@ -350,11 +349,17 @@ Session readSessionIn(const SessionFolder& folder, const std::filesystem::path& 
 }  // namespace
 
 Session readSession(const std::filesystem::path& file) {
-  return readSessionIn({file.parent_path()}, file);
+  return sessionFrom(YamlNode::load(file), {file.parent_path()}, file);
 }
 
 Session readSessionOfRun(const std::filesystem::path& file) {
-  return readSessionIn({file.parent_path(), true}, file);
+  return sessionFrom(YamlNode::load(file), {file.parent_path(), true}, file);
+}
+
+// What a file may not say must not be in what would be written as one.
+void validateMembers(const Session& session) {
+  const std::string place = session.source.empty() ? "session" : session.source.string();
+  static_cast<void>(sessionFrom(YamlNode::parse(sessionYaml(session, "."), place), {".", true}, place));
 }
 
 }  // namespace evical

@@ -1,0 +1,33 @@
+// NumPy's arrays: of what an object of ours keeps, without a copy, and points in and out.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <pybind11/numpy.h>
+
+#include <vector>
+
+namespace evical::python {
+
+using Numbers = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
+
+// Points along the last axis, of any leading shape: (..., columns). Raises ValueError for another size; `what` names
+// the argument.
+Numbers pointsFrom(const pybind11::object& values, pybind11::ssize_t columns, const char* what);
+
+// The leading shape of `values` with `last` in the place of `dropped` trailing axes.
+std::vector<pybind11::ssize_t> shapeLike(const Numbers& values, int dropped,
+                                         const std::vector<pybind11::ssize_t>& last);
+
+pybind11::array_t<double> arrayOf(const Eigen::VectorXd& vector);
+pybind11::array_t<double> arrayOf(const Eigen::Vector3d& vector);
+pybind11::array_t<double> arrayOf(const Eigen::MatrixXd& matrix);
+
+struct FieldOfRecord {
+  const char *name, *format;
+  std::size_t offset;
+};
+pybind11::dtype recordType(const std::vector<FieldOfRecord>& fields, std::size_t size);
+
+}  // namespace evical::python

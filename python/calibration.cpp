@@ -1,0 +1,107 @@
+// evical.calibrate and evical.intrinsics.
+#include "core/base/error.h"
+#include "core/base/new_folder.h"
+#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/intrinsics_calibration.h"
+#include "core/pipeline/result_files.h"
+#include "core/pipeline/unfinished_run.h"
+#include "core/report/result_yaml.h"
+#include "python/arrays.h"
+#include "python/bindings.h"
+#include "python/interruptible.h"
+#include "python/result.h"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <optional>
+#include <utility>
+
+namespace evical::python {
+namespace {
+
+namespace py = pybind11;
+
+// What the command line does, from the session to the folder.
+std::shared_ptr<const Result> calibrated(const Session& session,
+                                         const std::optional<std::filesystem::path>& output, RunLog& log,
+                                         const RunContext& context) {
+  validateMembers(session);
+  std::optional<NewFolder> folder;
+  if (output) folder.emplace(*output);
+  CalibrationOutcome outcome = runCalibration(session, context);
+  if (outcome.status != RunStatus::Done && folder)
+    writeUnfinishedRun(*output, folder->wasThere(), session, outcome, EVICAL_VERSION, log.text());
+  const auto run = std::make_shared<const CalibrationRun>(std::move(outcome).runOrThrow());
+  if (output) {
+    const ExportRemarks remarks = writeResultFiles(*output, session, run, EVICAL_VERSION, log.text());
+    for (const std::string& refusal : remarks.refused) log.log(LogLevel::Warning, refusal);
+  }
+  return resultOf(session, *run);
+}
+
+std::shared_ptr<Result> calibrate(const Session& given, const std::optional<std::filesystem::path>& output,
+                                  const py::object& progress) {
+  const Session session = given;  // nobody changes this one meanwhile
+  std::shared_ptr<const Result> result;
+  RunLog log;
+  runInterruptibly(progress, log,
+                   [&](const RunContext& context) { result = calibrated(session, output, log, context); });
+  return std::const_pointer_cast<Result>(result);
+}
+
+std::size_t cameraOf(const Session& session, const std::optional<std::string>& name) {
+  std::string known;
+  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
+    if (name && session.cameras[k].name == *name) return k;
+    known += (known.empty() ? "" : ", ") + session.cameras[k].name;
+  }
+  if (name) throw badInput(*name, "is no camera of the session", "There are: " + known);
+  if (session.cameras.size() != 1)
+    throw badInput("camera", "the session has not one camera", "Name one of: " + known);
+  return 0;
+}
+
+IntrinsicsResult findIntrinsics(const Session& given, const std::optional<std::string>& camera,
+                                const py::object& progress) {
+  const Session session = given;
+  IntrinsicsResult found;
+  RunLog log;
+  runInterruptibly(progress, log, [&](const RunContext& context) {
+    validateMembers(session);
+    found = calibrateIntrinsics(session, cameraOf(session, camera), context).result;
+  });
+  return found;
+}
+
+void bindIntrinsics(py::module_& module) {
+  py::class_<IntrinsicsResult>(module, "IntrinsicsResult", "A lens as it was calibrated alone.")
+      .def_property_readonly(
+          "status", [](const IntrinsicsResult& r) { return statusName(r.status); }, "ok or doubtful.")
+      .def_readonly("reason", &IntrinsicsResult::reason, "Why it is not ok, in plain words.")
+      .def_readonly("advice", &IntrinsicsResult::advice, "What more views would improve.")
+      .def_readonly("intrinsics", &IntrinsicsResult::intrinsics, "A Camera.")
+      .def_property_readonly(
+          "covariance", [](const IntrinsicsResult& r) { return arrayOf(Eigen::MatrixXd(r.covariance)); },
+          "(9, 9) of fx, fy, cx, cy [px] and five coefficients; 0 where one is held.")
+      .def_property_readonly(
+          "std", [](const IntrinsicsResult& r) { return arrayOf(Eigen::VectorXd(r.standardDeviations())); },
+          "(9,): sigmas of the same.")
+      .def_readonly("reprojection_rms_px", &IntrinsicsResult::reprojection_rms_px)
+      .def_readonly("views_used", &IntrinsicsResult::views_used)
+      .def("__repr__", [](const IntrinsicsResult& r) {
+        return fmt::format("<evical.IntrinsicsResult {}: {:.3f} px RMS>", statusName(r.status),
+                           r.reprojection_rms_px);
+      });
+}
+
+}  // namespace
+
+void bindCalibration(py::module_& module) {
+  bindIntrinsics(module);
+  module.def("_calibrate", calibrate, py::arg("session"), py::arg("output"), py::arg("progress"));
+  module.def("_intrinsics", findIntrinsics, py::arg("session"), py::arg("camera"), py::arg("progress"));
+}
+
+}  // namespace evical::python

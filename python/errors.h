@@ -1,0 +1,13 @@
+// Errors of core as Python's: evical.errors, in the same words.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <string>
+
+namespace evical::python {
+
+// Sets Python's error and throws.
+[[noreturn]] void throwClosed(const std::string& path);
+
+}  // namespace evical::python

@@ -1,0 +1,219 @@
+// evical.Camera: a lens, from its numbers to points, rays and undistorted events.
+#include "core/base/error.h"
+#include "core/data/intrinsics_yaml.h"
+#include "core/geometry/camera_model.h"
+#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/undistortion_table.h"
+#include "python/arrays.h"
+#include "python/bindings.h"
+
+#include <fmt/format.h>
+#include <pybind11/operators.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <limits>
+#include <optional>
+
+namespace evical::python {
+namespace {
+
+namespace py = pybind11;
+
+constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+
+// One of undistort_events.
+struct UndistortedEvent {
+  std::int64_t time_ns;
+  float x_px, y_px;
+  bool brighter;
+};
+using WholeNumbers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+
+CameraIntrinsics checked(const CameraIntrinsics& camera) {
+  validate(camera, "intrinsics");
+  return camera;
+}
+
+// JSON is YAML, so that a map means the same here and in a session.
+CameraIntrinsics fromMap(const py::dict& map) {
+  const auto text = py::module_::import("json").attr("dumps")(map).cast<std::string>();
+  return checked(readIntrinsics(YamlNode::parse(text, "intrinsics")));
+}
+
+py::dict toMap(const CameraIntrinsics& camera) {
+  py::dict map;
+  map["model"] = cameraModelName(camera.model);
+  map["resolution_px"] = std::vector<int>{camera.resolution_px.width_px, camera.resolution_px.height_px};
+  map["focal_length_px"] = std::vector<double>{camera.focal_length_px.x(), camera.focal_length_px.y()};
+  map["principal_point_px"] =
+      std::vector<double>{camera.principal_point_px.x(), camera.principal_point_px.y()};
+  map["distortion"] = std::vector<double>(camera.distortion.begin(),
+                                          camera.distortion.begin() + coefficientCount(camera.model));
+  return map;
+}
+
+// `apply(in, out)` for each point along the last axis.
+template <class Apply>
+Numbers forEachPoint(const Numbers& points, py::ssize_t columns_out, const Apply& apply) {
+  Numbers out(shapeLike(points, 1, {columns_out}));
+  const py::ssize_t columns_in = points.shape(points.ndim() - 1);
+  const py::ssize_t count = columns_in == 0 ? 0 : points.size() / columns_in;
+  const double* from = points.data();
+  double* to = out.mutable_data();
+  const py::gil_scoped_release others_work;
+  for (py::ssize_t i = 0; i < count; ++i) apply(from + i * columns_in, to + i * columns_out);
+  return out;
+}
+
+template <int Size>
+void write(const std::optional<Eigen::Matrix<double, Size, 1>>& point, double* to) {
+  for (int i = 0; i < Size; ++i) to[i] = point ? (*point)[i] : kNowhere;
+}
+
+Numbers projectPoints(const CameraIntrinsics& camera, const py::object& points_in_camera) {
+  return forEachPoint(pointsFrom(points_in_camera, 3, "points"), 2, [&](const double* from, double* to) {
+    write(project(camera, Eigen::Vector3d(from[0], from[1], from[2])), to);
+  });
+}
+
+Numbers unprojectPixels(const CameraIntrinsics& camera, const py::object& pixels) {
+  return forEachPoint(pointsFrom(pixels, 2, "pixels"), 3, [&](const double* from, double* to) {
+    write(unprojectRay(camera, Eigen::Vector2d(from[0], from[1])), to);
+  });
+}
+
+Numbers idealPixels(const CameraIntrinsics& camera, const py::object& pixels) {
+  return forEachPoint(pointsFrom(pixels, 2, "pixels"), 2, [&](const double* from, double* to) {
+    write(idealPixel(camera, Eigen::Vector2d(from[0], from[1])), to);
+  });
+}
+
+WholeNumbers fieldOf(const py::array& events, const char* name) {
+  const py::object names = events.dtype().attr("names");
+  if (names.is_none() || !names.contains(name))
+    throw py::type_error(
+        fmt::format("events must be an array of records with the fields t, x, y, p; {} is missing", name));
+  const py::array values = events.attr("__getitem__")(name);
+  const char kind = values.dtype().kind();
+  if (kind != 'i' && kind != 'u' && kind != 'b')
+    throw py::type_error(fmt::format("the events' field {} must be of whole numbers", name));
+  return WholeNumbers(values);
+}
+
+py::dtype undistortedType() {
+  return recordType({{"t", "<i8", offsetof(UndistortedEvent, time_ns)},
+                     {"x", "<f4", offsetof(UndistortedEvent, x_px)},
+                     {"y", "<f4", offsetof(UndistortedEvent, y_px)},
+                     {"p", "?", offsetof(UndistortedEvent, brighter)}},
+                    sizeof(UndistortedEvent));
+}
+
+py::array undistortEvents(const CameraIntrinsics& camera, const py::array& events) {
+  const WholeNumbers t = fieldOf(events, "t"), x = fieldOf(events, "x"), y = fieldOf(events, "y"),
+                     p = fieldOf(events, "p");
+  py::array undistorted(undistortedType(), std::vector<py::ssize_t>{t.size()});
+  auto* out = static_cast<UndistortedEvent*>(undistorted.mutable_data());
+  const Resolution size_px = camera.resolution_px;
+  const py::gil_scoped_release others_work;
+  const UndistortionTable table(camera);
+  for (py::ssize_t i = 0; i < t.size(); ++i) {
+    const std::int64_t x_px = x.data()[i], y_px = y.data()[i];
+    if (x_px < 0 || y_px < 0 || x_px >= size_px.width_px || y_px >= size_px.height_px)
+      throw badInput(fmt::format("event {}", i),
+                     fmt::format("({}, {}) is outside of the camera's {} x {} pixels", x_px, y_px,
+                                 size_px.width_px, size_px.height_px),
+                     "Give the events of this camera");
+    const Eigen::Vector2f& ideal = table(static_cast<int>(x_px), static_cast<int>(y_px));
+    out[i] = {t.data()[i], ideal.x(), ideal.y(), p.data()[i] > 0};
+  }
+  return undistorted;
+}
+
+void bindNumbers(py::class_<CameraIntrinsics>& camera) {
+  camera.def_property_readonly("model", [](const CameraIntrinsics& c) { return cameraModelName(c.model); })
+      .def_property_readonly(
+          "resolution_px",
+          [](const CameraIntrinsics& c) {
+            return py::make_tuple(c.resolution_px.width_px, c.resolution_px.height_px);
+          },
+          "(width, height).")
+      .def_property_readonly(
+          "focal_length_px",
+          [](const CameraIntrinsics& c) { return arrayOf(Eigen::VectorXd(c.focal_length_px)); },
+          "(2,): fx, fy.")
+      .def_property_readonly(
+          "principal_point_px",
+          [](const CameraIntrinsics& c) { return arrayOf(Eigen::VectorXd(c.principal_point_px)); },
+          "(2,): cx, cy; the middle of the top left pixel is (0, 0).")
+      .def_property_readonly(
+          "distortion",
+          [](const CameraIntrinsics& c) {
+            return arrayOf(Eigen::VectorXd(
+                Eigen::Map<const Eigen::VectorXd>(c.distortion.data(), coefficientCount(c.model))));
+          },
+          "Coefficients in the order of `coefficients`, which is OpenCV's where it has the model.")
+      .def_property_readonly(
+          "coefficients",
+          [](const CameraIntrinsics& c) {
+            const auto names = distortionNames(c.model);
+            return std::vector<std::string>(names.begin(), names.begin() + coefficientCount(c.model));
+          },
+          "What the coefficients are called.")
+      .def_property_readonly(
+          "matrix",
+          [](const CameraIntrinsics& c) {
+            Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
+            matrix.diagonal().head<2>() = idealFocalLength_px(c);
+            matrix.col(2).head<2>() = c.principal_point_px;
+            return arrayOf(Eigen::MatrixXd(matrix));
+          },
+          "(3, 3): of undistorted pixels, as undistort and undistort_events give them.")
+      .def("to_dict", toMap, "The map of a session or a result.");
+}
+
+}  // namespace
+
+void bindLens(py::module_& module) {
+  py::class_<CameraIntrinsics> camera(module, "Camera",
+                                      "A lens. Camera frame: x right, y down, z forward; pixels with the "
+                                      "middle of the top left one at (0, 0).");
+  camera
+      .def(py::init(&fromMap), py::arg("intrinsics"),
+           "From a session's map: model, resolution_px, focal_length_px, principal_point_px, distortion. "
+           "Raises "
+           "InputError.")
+      .def_static(
+          "load",
+          [](const std::filesystem::path& path, const std::string& name) {
+            return checked(readIntrinsicsFile(path, name, ""));
+          },
+          py::arg("path"), py::arg("name") = "",
+          "From a file: such a map, a result, a Kalibr camchain or a ROS camera_info; `name` of one of "
+          "several "
+          "cameras. Raises InputError.");
+  bindNumbers(camera);
+  camera
+      .def("project", projectPoints, py::arg("points"),
+           "Pixels (..., 2) of points (..., 3) [m, or any unit] in the camera's frame; NaN where it does not "
+           "see "
+           "them. Points outside of the image have pixels outside of it.")
+      .def("unproject", unprojectPixels, py::arg("pixels"),
+           "Unit vectors (..., 3) in the camera's frame of the rays through pixels (..., 2); NaN where there "
+           "is none.")
+      .def("undistort", idealPixels, py::arg("pixels"),
+           "Pixels (..., 2) as the lens without distortion (`matrix`) would have them; NaN beyond 85 degrees "
+           "off "
+           "the axis.")
+      .def("undistort_events", undistortEvents, py::arg("events"),
+           "(N,) records t [as given], x, y [undistorted px, float32, see `undistort`], p [bool] of (N,) "
+           "records t, "
+           "x, y, p of whole numbers. Raises InputError for events outside of the image.")
+      .def(py::self == py::self)
+      .def("__repr__", [](const CameraIntrinsics& c) {
+        return fmt::format("<evical.Camera {}, {} x {} px>", cameraModelName(c.model),
+                           c.resolution_px.width_px, c.resolution_px.height_px);
+      });
+}
+
+}  // namespace evical::python

@@ -1,0 +1,17 @@
+// The Python module evical._evical; the package evical beside it is what people import.
+#include "python/bindings.h"
+
+namespace py = pybind11;
+
+PYBIND11_MODULE(_evical, module) {
+  using namespace evical::python;
+  module.doc() = "Compiled part of evical.";
+  module.attr("__version__") = EVICAL_VERSION;
+  bindErrors();
+  bindRecording(module);
+  bindLens(module);
+  bindSession(module);
+  bindTrajectory(module);
+  bindResult(module);
+  bindCalibration(module);
+}

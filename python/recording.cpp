@@ -1,0 +1,315 @@
+// evical.open, evical.inspect: recordings as NumPy's arrays.
+#include "core/base/error.h"
+#include "core/frames/gray_image.h"
+#include "core/recording/inspection.h"
+#include "core/recording/inspection_json.h"
+#include "python/arrays.h"
+#include "python/bindings.h"
+#include "python/errors.h"
+#include "python/interruptible.h"
+#include "python/open_recording.h"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <map>
+#include <utility>
+
+namespace evical::python {
+namespace {
+
+namespace py = pybind11;
+
+struct Stream {
+  StreamInfo info;
+};
+
+// One packet with what its numbers mean; arrays of it keep it.
+struct PacketOfStream {
+  std::shared_ptr<Packet> packet;
+  StreamInfo info;
+  std::string path;
+};
+
+struct FrameOfPacket {
+  std::shared_ptr<Packet> packet;
+  std::size_t index = 0;
+  std::string place;
+
+  const Frame& frame() const { return packet->frames[index]; }
+};
+
+py::dtype eventType() {
+  static_assert(sizeof(bool) == 1);
+  return recordType({{"t", "<i8", offsetof(Event, time_ns)},
+                     {"x", "<u2", offsetof(Event, x_px)},
+                     {"y", "<u2", offsetof(Event, y_px)},
+                     {"p", "?", offsetof(Event, brighter)}},
+                    sizeof(Event));
+}
+
+// Three doubles stand at the beginning of Eigen's vector, which is all of it.
+py::dtype imuType() {
+  static_assert(sizeof(RawImuSample) == sizeof(std::int64_t) + 6 * sizeof(double));
+  return recordType({{"t", "<i8", 0},
+                     {"angular_rate", "(3,)<f8", sizeof(std::int64_t)},
+                     {"acceleration", "(3,)<f8", sizeof(std::int64_t) + 3 * sizeof(double)}},
+                    sizeof(RawImuSample));
+}
+
+py::dtype pointType() {
+  return recordType({{"t", "<i8", offsetof(MeasuredPoint, time_ns)},
+                     {"point", "<i4", offsetof(MeasuredPoint, point)},
+                     {"x", "<f4", offsetof(MeasuredPoint, x_px)},
+                     {"y", "<f4", offsetof(MeasuredPoint, y_px)},
+                     {"sigma", "<f4", offsetof(MeasuredPoint, sigma_px)}},
+                    sizeof(MeasuredPoint));
+}
+
+// The packet's own memory, kept by `owner`.
+template <class Record>
+py::array recordsOf(const std::vector<Record>& records, const py::dtype& type, const py::object& owner) {
+  return {type, {static_cast<py::ssize_t>(records.size())}, {}, records.data(), owner};
+}
+
+py::list framesOf(const PacketOfStream& packet) {
+  py::list frames;
+  for (std::size_t i = 0; i < packet.packet->frames.size(); ++i)
+    frames.append(FrameOfPacket{packet.packet, i, packet.path + ": " + packet.info.name});
+  return frames;
+}
+
+struct PixelLayout {
+  const char *name, *type;
+  py::ssize_t channels, bytes;
+};
+PixelLayout layoutOf(const Frame& frame) {
+  switch (frame.format) {
+    case FrameFormat::Gray8:
+      return {"gray8", "u1", 1, 1};
+    case FrameFormat::Gray16:
+      return {"gray16", frame.big_endian ? ">u2" : "<u2", 1, 2};
+    case FrameFormat::Rgb8:
+      return {"rgb8", "u1", 3, 1};
+    case FrameFormat::Bgr8:
+      return {"bgr8", "u1", 3, 1};
+    case FrameFormat::Rgba8:
+      return {"rgba8", "u1", 4, 1};
+    case FrameFormat::Bgra8:
+      return {"bgra8", "u1", 4, 1};
+    case FrameFormat::BayerRggb8:
+      return {"bayer_rggb8", "u1", 1, 1};
+    case FrameFormat::BayerBggr8:
+      return {"bayer_bggr8", "u1", 1, 1};
+    case FrameFormat::BayerGbrg8:
+      return {"bayer_gbrg8", "u1", 1, 1};
+    case FrameFormat::BayerGrbg8:
+      return {"bayer_grbg8", "u1", 1, 1};
+    case FrameFormat::Encoded:
+      break;
+  }
+  return {"encoded", "u1", 1, 1};
+}
+
+py::array brightnessOf(const FrameOfPacket& frame) {
+  GrayImage image;
+  {
+    const py::gil_scoped_release others_work;
+    image = decodeFrame(frame.frame(), frame.place);
+  }
+  return py::array_t<std::uint8_t>({image.size_px.height_px, image.size_px.width_px}, image.pixels.data());
+}
+
+py::array pixelsOf(const py::object& self) {
+  const auto& owner = self.cast<const FrameOfPacket&>();
+  const Frame& frame = owner.frame();
+  if (frame.format == FrameFormat::Encoded) return brightnessOf(owner);
+  const PixelLayout layout = layoutOf(frame);
+  const py::ssize_t height = frame.size_px.height_px, width = frame.size_px.width_px,
+                    pixel_bytes = layout.channels * layout.bytes;
+  const auto row_bytes = static_cast<py::ssize_t>(frame.row_bytes);
+  if (height <= 0 || width <= 0 || row_bytes < width * pixel_bytes ||
+      static_cast<py::ssize_t>(frame.bytes.size()) < (height - 1) * row_bytes + width * pixel_bytes)
+    throw badInput(owner.place, "a frame has fewer bytes than its size needs", "Record again");
+  std::vector<py::ssize_t> shape = {height, width}, strides = {row_bytes, pixel_bytes};
+  if (layout.channels > 1) {
+    shape.push_back(layout.channels);
+    strides.push_back(layout.bytes);
+  }
+  return {py::dtype(layout.type), shape, strides, frame.bytes.data(), self};
+}
+
+py::object resolutionOf(const Resolution& size_px) {
+  return size_px.known() ? py::object(py::make_tuple(size_px.width_px, size_px.height_px)) : py::none();
+}
+
+py::object nextPacket(const std::shared_ptr<OpenRecording>& recording) {
+  std::shared_ptr<Packet> packet;
+  try {
+    const py::gil_scoped_release others_read;
+    packet = recording->read();
+  } catch (const OpenRecording::Closed&) {
+    throwClosed(recording->path());
+  }
+  // A loop over packets is left by Ctrl-C between two of them.
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  if (!packet) return py::none();
+  StreamInfo info = recording->stream(packet->stream);
+  return py::cast(PacketOfStream{std::move(packet), std::move(info), recording->path()});
+}
+
+std::shared_ptr<OpenRecording> openForPython(const std::filesystem::path& path,
+                                             const std::vector<std::string>& streams) {
+  const py::gil_scoped_release others_work;
+  return std::make_shared<OpenRecording>(path, streams);
+}
+
+py::object inspect(const std::filesystem::path& path, const py::object& progress) {
+  std::string json;
+  RunLog log;
+  runInterruptibly(progress, log, [&](const RunContext& context) {
+    const std::unique_ptr<RecordingReader> reader = openRecording(path);
+    constexpr bool kWithChecksums = true;
+    json = inspectionJson(inspectRecording(*reader, {}, context), kWithChecksums);
+  });
+  return py::module_::import("json").attr("loads")(json);
+}
+
+void bindParts(py::module_& module) {
+  py::class_<Stream>(module, "Stream", "One stream of a recording.")
+      .def_property_readonly("name", [](const Stream& s) { return s.info.name; })
+      .def_property_readonly(
+          "type", [](const Stream& s) { return streamTypeName(s.info.type); },
+          "events, imu, frames, points, triggers or other.")
+      .def_property_readonly(
+          "message", [](const Stream& s) { return s.info.message; }, "What the file calls its content.")
+      .def_property_readonly(
+          "resolution_px", [](const Stream& s) { return resolutionOf(s.info.resolution_px); },
+          "(width, height), or None where the file does not say it.")
+      .def_property_readonly(
+          "readable", [](const Stream& s) { return s.info.readable; }, "False: it is only listed.")
+      .def_property_readonly(
+          "acceleration_to_m_s2", [](const Stream& s) { return metresPerSecond2(s.info.acceleration_unit); },
+          "What an IMU's `acceleration` is multiplied by to be in m/s^2, as the format says.")
+      .def_property_readonly(
+          "angular_rate_to_rad_s", [](const Stream& s) { return radiansPerSecond(s.info.angular_rate_unit); },
+          "What an IMU's `angular_rate` is multiplied by to be in rad/s, as the format says.")
+      .def("__repr__", [](const Stream& s) {
+        return fmt::format("<evical.Stream '{}': {}>", s.info.name, streamTypeName(s.info.type));
+      });
+  py::class_<RecordingFault>(module, "Fault", "What is damaged or odd about a recording.")
+      .def_readonly("stream", &RecordingFault::stream, "Empty: the file as a whole.")
+      .def_property_readonly("kind", [](const RecordingFault& f) { return nameOf(f.kind); })
+      .def_readonly("at_s", &RecordingFault::at_s, "Since the stream's first time; 0 where it has no place.")
+      .def_readonly("text", &RecordingFault::text, "One sentence for people.")
+      .def("__repr__", [](const RecordingFault& f) {
+        return fmt::format("<evical.Fault {}: {}>", nameOf(f.kind), f.text);
+      });
+  py::class_<FrameOfPacket>(module, "Frame", "A frame camera's picture.")
+      .def_property_readonly(
+          "t", [](const FrameOfPacket& f) { return f.frame().time_ns; }, "Its stamp, ns.")
+      .def_property_readonly(
+          "exposure_s", [](const FrameOfPacket& f) { return f.frame().exposure_s; }, "0: not known.")
+      .def_property_readonly(
+          "format", [](const FrameOfPacket& f) { return layoutOf(f.frame()).name; },
+          "gray8, gray16, rgb8, bgr8, rgba8, bgra8, bayer_rggb8 and the like, or encoded.")
+      .def_property_readonly(
+          "image", pixelsOf,
+          "Pixels as they are stored, (height, width) or (height, width, channels), uint8 or "
+          "uint16, without a copy; of encoded pictures their brightness, uint8.")
+      .def_property_readonly("brightness", brightnessOf,
+                             "(height, width), uint8: as the board is looked for in it.");
+}
+
+void bindPacket(py::module_& module) {
+  py::class_<PacketOfStream>(module, "Packet", "Some events, IMU samples, frames or points of one stream.")
+      .def_property_readonly("stream", [](const PacketOfStream& p) { return Stream{p.info}; })
+      .def_property_readonly(
+          "events",
+          [](const py::object& self) {
+            return recordsOf(self.cast<const PacketOfStream&>().packet->events, eventType(), self);
+          },
+          "(N,) records t [ns, int64], x, y [px, uint16; (0, 0) is top left], p [bool, True: brighter], in "
+          "order "
+          "of t. The packet's own memory.")
+      .def_property_readonly(
+          "imu",
+          [](const py::object& self) {
+            return recordsOf(self.cast<const PacketOfStream&>().packet->imu_samples, imuType(), self);
+          },
+          "(N,) records t [ns, int64], angular_rate (3,), acceleration (3,) in the recording's own units "
+          "(Stream.angular_rate_to_rad_s, Stream.acceleration_to_m_s2) and the IMU's frame; at rest the "
+          "acceleration is +g upwards.")
+      .def_property_readonly(
+          "points",
+          [](const py::object& self) {
+            return recordsOf(self.cast<const PacketOfStream&>().packet->points, pointType(), self);
+          },
+          "(N,) records t [ns, int64], point [index], x, y, sigma [px, float32; 0: not said].")
+      .def_property_readonly("frames", framesOf, "A list of Frame.")
+      .def("__len__",
+           [](const PacketOfStream& p) {
+             return p.packet->events.size() + p.packet->imu_samples.size() + p.packet->points.size() +
+                    p.packet->frames.size();
+           })
+      .def("__repr__", [](const PacketOfStream& p) {
+        return fmt::format("<evical.Packet of '{}', {}>", p.info.name, streamTypeName(p.info.type));
+      });
+}
+
+}  // namespace
+
+void bindRecording(py::module_& module) {
+  bindParts(module);
+  bindPacket(module);
+  py::class_<OpenRecording, std::shared_ptr<OpenRecording>>(
+      module, "Recording",
+      "A recording that is open: iterate over it once, and close it, or use `with`. Memory is that of a "
+      "packet. "
+      "Threads may share it; each packet goes to one of them.")
+      .def("__enter__",
+           [](const std::shared_ptr<OpenRecording>& r) {
+             if (r->closed()) throwClosed(r->path());
+             return r;
+           })
+      .def(
+          "__exit__", [](OpenRecording& r, const py::args&) { r.close(); },
+          py::call_guard<py::gil_scoped_release>())
+      .def("close", &OpenRecording::close, py::call_guard<py::gil_scoped_release>(),
+           "Lets go of the file; arrays that were handed out stay. Closing twice is no error.")
+      .def_property_readonly("closed", &OpenRecording::closed)
+      .def("__iter__",
+           [](const std::shared_ptr<OpenRecording>& r) {
+             if (r->closed()) throwClosed(r->path());
+             return r;
+           })
+      .def("__next__",
+           [](const std::shared_ptr<OpenRecording>& r) {
+             py::object packet = nextPacket(r);
+             if (packet.is_none()) throw py::stop_iteration();
+             return packet;
+           })
+      .def_property_readonly("format", &OpenRecording::format)
+      .def_property_readonly(
+          "streams",
+          [](const OpenRecording& r) {
+            std::vector<Stream> streams;
+            for (StreamInfo& info : r.streams()) streams.push_back({std::move(info)});
+            return streams;
+          },
+          "All that the file holds, also what is not read.")
+      .def_property_readonly("faults", &OpenRecording::faults,
+                             "Found so far; complete after the last packet.")
+      .def_property_readonly("fraction_read", &OpenRecording::fractionRead, "Of the file's bytes, 0..1.")
+      .def("__repr__", [](const OpenRecording& r) {
+        return fmt::format("<evical.Recording '{}', {}{}>", r.path(), r.format(),
+                           r.closed() ? ", closed" : "");
+      });
+  module.def("_open", openForPython, py::arg("path"), py::arg("streams"));
+  module.def("inspect", inspect, py::arg("path"), py::arg("progress") = py::none(),
+             "What a recording holds and what is wrong with it: the dictionary of `evical inspect --json "
+             "--checksum`. Reads to the end.");
+}
+
+}  // namespace evical::python

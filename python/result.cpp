@@ -1,0 +1,66 @@
+#include "python/result.h"
+
+#include "core/base/error.h"
+#include "core/pipeline/result_files.h"
+#include "core/pipeline/run_data.h"
+
+#include <fmt/format.h>
+
+#include <system_error>
+#include <utility>
+
+namespace evical::python {
+namespace {
+
+// What run.data knows and result.yaml does not; it must be of the same sensors.
+void addRunData(const std::filesystem::path& file, Result& result) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) {
+    result.missing.push_back("the trajectory: there is no run.data beside result.yaml");
+    return;
+  }
+  ReadRunData data = readRunData(file);
+  result.missing = std::move(data.missing);
+  if (!data.has_result) return;
+  const CalibrationState& known = result.numbers().state;
+  const CalibrationState& kept = data.run.result.state;
+  if (kept.cameras.size() != known.cameras.size() || kept.imus.size() != known.imus.size()) {
+    result.missing.push_back("the trajectory: run.data is of another run than result.yaml");
+    return;
+  }
+  result.named.result = std::make_shared<const CalibrationResult>(std::move(data.run.result));
+}
+
+}  // namespace
+
+std::shared_ptr<const Result> resultOf(const Session& session, const CalibrationRun& run) {
+  const std::shared_ptr<const CalibrationRun> not_owned(std::shared_ptr<void>(), &run);
+  auto result = std::make_shared<Result>();
+  result->named = namedRun(session, not_owned, EVICAL_VERSION);
+  result->named.result = std::make_shared<const CalibrationResult>(run.result);
+  return result;
+}
+
+std::shared_ptr<const Result> loadResult(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const bool folder = std::filesystem::is_directory(path, ignored);
+  const std::filesystem::path file = folder ? path / "result.yaml" : path;
+  auto result = std::make_shared<Result>();
+  result->named = readResultYaml(file);
+  // A file under another name was copied away from what stood beside it.
+  if (file.filename() == "result.yaml")
+    addRunData(file.parent_path() / "run.data", *result);
+  else
+    result->missing.push_back("the trajectory: only result.yaml in its folder has run.data beside it");
+  return result;
+}
+
+Trajectory trajectoryOf(const std::shared_ptr<const Result>& result) {
+  if (result->hasTrajectory()) return {result};
+  std::string why;
+  for (const std::string& each : result->missing) why += (why.empty() ? "" : "; ") + each;
+  throw badInput("trajectory", why.empty() ? "the result has none" : "the result has none (" + why + ")",
+                 "Load the folder that a calibration wrote, or calibrate again");
+}
+
+}  // namespace evical::python

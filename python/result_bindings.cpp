@@ -1,0 +1,242 @@
+// evical.Result and its sensors.
+#include "core/data/calibration_stage.h"
+#include "core/numerics/angles.h"
+#include "python/arrays.h"
+#include "python/bindings.h"
+#include "python/result.h"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <utility>
+
+namespace evical::python {
+namespace {
+
+namespace py = pybind11;
+
+// A sensor of a result, which it keeps.
+struct CameraOfResult {
+  std::shared_ptr<const Result> result;
+  std::size_t index;
+
+  const CameraState& state() const { return result->numbers().state.cameras.at(index); }
+  const CameraUncertainty& sigma() const { return result->numbers().uncertainty.cameras.at(index); }
+  const CameraFit& fit() const { return result->numbers().cameras.at(index); }
+  const SensorDescription& known() const { return result->named.cameras.at(index); }
+};
+struct ImuOfResult {
+  std::shared_ptr<const Result> result;
+  std::size_t index;
+
+  const ImuState& state() const { return result->numbers().state.imus.at(index); }
+  const ImuUncertainty& sigma() const { return result->numbers().uncertainty.imus.at(index); }
+  const ImuFit& fit() const { return result->numbers().imus.at(index); }
+  const SensorDescription& known() const { return result->named.imus.at(index); }
+};
+
+py::array_t<double> matrixOf(const RigidTransform& pose) {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(4, 4);
+  matrix.topLeftCorner<3, 3>() = pose.rotation.toRotationMatrix();
+  matrix.topRightCorner<3, 1>() = pose.translation_m;
+  return arrayOf(matrix);
+}
+
+Eigen::Vector3d inDegrees(const Eigen::Vector3d& angles_rad) {
+  return kDegPerRad * angles_rad;
+}
+
+py::dict windowsOf(const CameraFit& fit) {
+  py::dict windows;
+  windows["total"] = fit.windows_total;
+  windows["complete"] = fit.windows_complete;
+  windows["partial"] = fit.windows_partial;
+  windows["used"] = fit.windows_used;
+  return windows;
+}
+
+// What cameras and IMUs have alike.
+template <class Sensor>
+void bindSensor(py::class_<Sensor>& sensor) {
+  sensor.def_property_readonly("name", [](const Sensor& s) { return s.known().name; })
+      .def_property_readonly("stream", [](const Sensor& s) { return s.known().stream; })
+      .def_property_readonly(
+          "rotation_std_deg", [](const Sensor& s) { return arrayOf(inDegrees(s.sigma().rotation_std_rad)); },
+          "(3,), deg, about the reference's axes.")
+      .def_property_readonly(
+          "translation_std_m", [](const Sensor& s) { return arrayOf(s.sigma().translation_std_m); },
+          "(3,), m, in the reference's frame.")
+      .def_property_readonly(
+          "time_offset_s", [](const Sensor& s) { return s.state().time_offset_s; },
+          "time on the reference's clock = time on the sensor's + time_offset_s.")
+      .def_property_readonly("time_offset_std_s", [](const Sensor& s) { return s.sigma().time_offset_std_s; })
+      .def_property_readonly(
+          "clock_drift_ppm", [](const Sensor& s) { return s.state().time_offset_drift_ppm; },
+          "What the offset grows by, us per s; time_offset_s holds at clock_drift_at_s.")
+      .def_property_readonly("clock_drift_std_ppm",
+                             [](const Sensor& s) { return s.sigma().time_offset_drift_std_ppm; })
+      .def_property_readonly("clock_drift_at_s", [](const Sensor& s) { return s.state().time_offset_at_s; });
+}
+
+void bindCamera(py::module_& module) {
+  py::class_<CameraOfResult> camera(module, "CameraResult", "A camera of a result.");
+  bindSensor(camera);
+  camera
+      .def_property_readonly(
+          "reference_from_camera",
+          [](const CameraOfResult& c) { return matrixOf(c.state().reference_from_camera); },
+          "(4, 4) [m]: p_reference = reference_from_camera @ p_camera, homogeneous.")
+      .def_property_readonly(
+          "intrinsics", [](const CameraOfResult& c) { return c.state().lens.inUse(); },
+          "A Camera: the lens as it was solved for, else as it was given; None where the file has none.")
+      .def_property_readonly(
+          "intrinsics_std",
+          [](const CameraOfResult& c) -> py::object {
+            const auto& sigmas = c.sigma().intrinsics_std;
+            if (!sigmas) return py::none();
+            return arrayOf(Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(sigmas->data(), 9)));
+          },
+          "(9,): sigmas of fx, fy, cx, cy [px] and up to five coefficients; None where the lens was given.")
+      .def_property_readonly(
+          "line_delay_us", [](const CameraOfResult& c) { return c.state().line_delay_us; },
+          "Of frames: from one row's exposure to the next one's.")
+      .def_property_readonly("reprojection_rms_px",
+                             [](const CameraOfResult& c) { return c.fit().reprojection_rms_px; })
+      .def_property_readonly(
+          "windows", [](const CameraOfResult& c) { return windowsOf(c.fit()); },
+          "How many windows there were: total, complete, partial, used.")
+      .def("__repr__",
+           [](const CameraOfResult& c) { return fmt::format("<evical.CameraResult '{}'>", c.known().name); });
+}
+
+void bindImu(py::module_& module) {
+  py::class_<ImuOfResult> imu(module, "ImuResult", "An IMU of a result. measured = mapping @ true + bias.");
+  bindSensor(imu);
+  imu.def_property_readonly(
+         "reference_from_imu", [](const ImuOfResult& i) { return matrixOf(i.state().reference_from_imu); },
+         "(4, 4) [m]; the identity for the reference.")
+      .def_property_readonly(
+          "gyroscope_bias_rad_s",
+          [](const ImuOfResult& i) { return arrayOf(i.state().gyroscope_bias_rad_s); },
+          "(3,); where it drifts, its mean.")
+      .def_property_readonly("gyroscope_bias_std_rad_s",
+                             [](const ImuOfResult& i) { return arrayOf(i.sigma().gyroscope_bias_std_rad_s); })
+      .def_property_readonly(
+          "gyroscope_mapping",
+          [](const ImuOfResult& i) { return arrayOf(Eigen::MatrixXd(i.state().gyroscopeMatrix())); },
+          "(3, 3), from true rates in the IMU's frame.")
+      .def_property_readonly("gyroscope_rms_rad_s",
+                             [](const ImuOfResult& i) { return i.fit().gyroscope_rms_rad_s; })
+      .def_property_readonly(
+          "accelerometer_bias_m_s2",
+          [](const ImuOfResult& i) { return arrayOf(i.state().accelerometer_bias_m_s2); },
+          "(3,); where it drifts, its mean.")
+      .def_property_readonly(
+          "accelerometer_bias_std_m_s2",
+          [](const ImuOfResult& i) { return arrayOf(i.sigma().accelerometer_bias_std_m_s2); })
+      .def_property_readonly(
+          "accelerometer_mapping",
+          [](const ImuOfResult& i) { return arrayOf(Eigen::MatrixXd(i.state().accelerometer_mapping)); },
+          "(3, 3), upper triangular.")
+      .def_property_readonly(
+          "accelerometer_delay_s", [](const ImuOfResult& i) { return i.state().accelerometer_delay_s; },
+          "Against the gyroscope, whose clock is the IMU's.")
+      .def_property_readonly("accelerometer_rms_m_s2",
+                             [](const ImuOfResult& i) { return i.fit().accelerometer_rms_m_s2; })
+      .def("__repr__",
+           [](const ImuOfResult& i) { return fmt::format("<evical.ImuResult '{}'>", i.known().name); });
+}
+
+template <class Sensor>
+py::dict byName(const std::shared_ptr<const Result>& result, const std::vector<SensorDescription>& known) {
+  py::dict sensors;
+  for (std::size_t i = 0; i < known.size(); ++i) sensors[py::str(known[i].name)] = Sensor{result, i};
+  return sensors;
+}
+
+py::object covarianceOf(const Result& result) {
+  const UncertaintyReport& report = result.numbers().uncertainty;
+  const Eigen::VectorXd& sigmas = report.standard_deviations;
+  const Eigen::MatrixXd covariance = sigmas.asDiagonal() * report.correlation * sigmas.asDiagonal();
+  return py::module_::import("evical.covariance").attr("Covariance")(report.names, arrayOf(covariance));
+}
+
+py::dict timingOf(const Result& result) {
+  py::dict timing;
+  forEachTiming(result.numbers().timing, [&](const char* key, double seconds) { timing[key] = seconds; });
+  return timing;
+}
+
+using Shared = std::shared_ptr<Result>;
+
+void bindVerdict(py::class_<Result, Shared>& result) {
+  result
+      .def_property_readonly(
+          "status", [](const Result& r) { return statusName(r.numbers().status); }, "ok, doubtful or failed.")
+      .def_property_readonly(
+          "reason", [](const Result& r) { return r.numbers().reason; }, "Why it is not ok, in plain words.")
+      .def_property_readonly(
+          "repair",
+          [](const Result& r) -> py::object {
+            const auto& repair = r.numbers().repair;
+            if (!repair) return py::none();
+            return py::make_tuple(repair->key, repair->value);
+          },
+          "(key, value) for Session.set, where that would mend the reason; else None.")
+      .def_property_readonly(
+          "weakest", [](const Result& r) { return r.numbers().uncertainty.weakest; },
+          "What this recording tells least of, in plain words.")
+      .def_property_readonly("notes", [](const Result& r) { return r.numbers().notes; })
+      .def_property_readonly(
+          "version", [](const Result& r) { return r.named.version; }, "Of the program that made it.")
+      .def_readonly("missing", &Result::missing,
+                    "What the folder of an older program, or a damaged one, lacks, and why; empty: nothing.")
+      .def_property_readonly("timing_s", timingOf);
+}
+
+}  // namespace
+
+void bindResult(py::module_& module) {
+  bindCamera(module);
+  bindImu(module);
+  py::class_<Result, Shared> result(module, "Result",
+                                    "What a calibration says. Nothing of it can be changed.");
+  result.def_static(
+      "load",
+      [](const std::filesystem::path& path) {
+        const py::gil_scoped_release others_work;
+        return std::const_pointer_cast<Result>(loadResult(path));
+      },
+      py::arg("path"),
+      "From the folder that a calibration wrote, or its result.yaml; also truth.yaml of a simulation. Older "
+      "folders "
+      "may lack something (`missing`). Raises InputError.");
+  bindVerdict(result);
+  result
+      .def_property_readonly(
+          "reference", [](const Result& r) { return r.named.reference; }, "A sensor's name.")
+      .def_property_readonly(
+          "cameras", [](const Shared& r) { return byName<CameraOfResult>(r, r->named.cameras); },
+          "CameraResult by name.")
+      .def_property_readonly(
+          "imus", [](const Shared& r) { return byName<ImuOfResult>(r, r->named.imus); }, "ImuResult by name.")
+      .def_property_readonly(
+          "gravity_m_s2", [](const Result& r) { return arrayOf(r.numbers().state.gravity_in_world_m_s2); },
+          "(3,), in the board's frame, pointing down.")
+      .def_property_readonly(
+          "start_ns", [](const Result& r) { return r.numbers().start_ns; },
+          "Where times in seconds begin, on the recording's clock; None where it is not known.")
+      .def_property_readonly("covariance", covarianceOf, "A Covariance of all that was estimated.")
+      .def_property_readonly(
+          "trajectory", [](const Shared& r) { return trajectoryOf(r); },
+          "A Trajectory. Raises InputError where the folder has none.")
+      .def(
+          "to_yaml", [](const Result& r) { return resultYaml(r.named); }, "The content of result.yaml.")
+      .def("__repr__", [](const Result& r) {
+        return fmt::format("<evical.Result {}: {} cameras, {} IMUs>", statusName(r.numbers().status),
+                           r.named.cameras.size(), r.named.imus.size());
+      });
+}
+
+}  // namespace evical::python

@@ -1,0 +1,207 @@
+// evical.Session: what is to be calibrated, of which recording.
+#include "core/pipeline/session.h"
+
+#include "core/base/error.h"
+#include "core/pipeline/session_guess.h"
+#include "core/recording/recording_reader.h"
+#include "python/arrays.h"
+#include "python/bindings.h"
+#include "python/interruptible.h"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+namespace evical::python {
+namespace {
+
+namespace py = pybind11;
+
+// An option's text as what it is.
+py::object valueOf(const OptionRow& row) {
+  if (row.choices == std::vector<std::string>{"false", "true"}) return py::bool_(row.value == "true");
+  if (!row.choices.empty()) return py::str(row.value);
+  const py::object text = py::str(row.value);
+  const bool whole = row.value.find_first_not_of("-0123456789") == std::string::npos;
+  return whole ? py::object(py::int_(text)) : py::object(py::float_(text));
+}
+
+py::dict optionsOf(const Session& session) {
+  py::dict options;
+  for (const OptionRow& row : optionRows(session.options)) options[py::str(row.name)] = valueOf(row);
+  return options;
+}
+
+// All or nothing: a value that is refused changes nothing.
+void setKey(Session& session, const std::string& key, const py::object& value) {
+  const std::string text = py::isinstance<py::bool_>(value) ? (value.cast<bool>() ? "true" : "false")
+                                                            : py::str(value).cast<std::string>();
+  Session changed = session;
+  setInSession(changed, key, text);
+  validate(changed.options);
+  session = std::move(changed);
+}
+
+Session guess(const py::args& given, const py::object& progress) {
+  if (given.empty()) throw badInput("recordings", "none is given", "Give the paths of one or several");
+  std::vector<std::filesystem::path> recordings;
+  for (const py::handle& path : given) recordings.push_back(path.cast<std::filesystem::path>());
+  SessionDraft draft;
+  RunLog log;
+  runInterruptibly(progress, log, [&](const RunContext& context) {
+    std::vector<InspectedRecording> inspected;
+    for (const std::filesystem::path& recording : recordings) {
+      context.progress.stageStarted("inspect " + recording.filename().string());
+      const std::unique_ptr<RecordingReader> reader = openRecording(recording);
+      inspected.push_back({recording, inspectRecording(*reader, {}, context)});
+      for (const RecordingFault& fault : inspected.back().inspection.faults)
+        context.progress.log(LogLevel::Warning, fault.text);
+    }
+    draft = draftSession(inspected, ".");
+    for (const std::string& note : draft.notes) context.progress.log(LogLevel::Info, note);
+  });
+  return draft.session;
+}
+
+// Sensors by name, as parts of the session, which they keep.
+template <class Sensor>
+py::dict byName(std::vector<Sensor>& sensors, const py::object& session) {
+  py::dict found;
+  for (Sensor& sensor : sensors)
+    found[py::str(sensor.name)] = py::cast(&sensor, py::return_value_policy::reference_internal, session);
+  return found;
+}
+
+template <std::size_t Count>
+std::size_t indexOf(const std::array<const char*, Count>& words, const std::string& word, const char* place) {
+  std::string known;
+  for (std::size_t i = 0; i < Count; ++i) {
+    if (word == words[i]) return i;
+    known += (known.empty() ? "" : ", ") + std::string(words[i]);
+  }
+  throw badInput(place, fmt::format("'{}' is not known", word), "Give one of: " + known);
+}
+
+constexpr std::array kShades{"dark", "bright"};
+
+void bindBoard(py::module_& module) {
+  py::class_<Board>(module, "Board",
+                    "The printed target. Its frame: x along a row, y down the columns, z into the board; m.")
+      .def(py::init<>())
+      .def_property(
+          "type", [](const Board& b) { return boardTypeName(b.type); },
+          [](Board& b, const std::string& type) {
+            b.type = static_cast<BoardType>(indexOf(kBoardTypeNames, type, "board.type"));
+          },
+          "asymmetric_circles, symmetric_circles, checkerboard, aprilgrid or charuco.")
+      .def_readwrite("rows", &Board::rows, "Of circles, inner corners, tags or squares.")
+      .def_readwrite("cols", &Board::cols)
+      .def_readwrite("spacing_m", &Board::spacing_m,
+                     "Between two rows of circles; a square's edge; from one tag to the next.")
+      .def_readwrite("radius_m", &Board::radius_m, "Of circles.")
+      .def_readwrite("tag_size_m", &Board::tag_size_m, "Edge of a tag's black square.")
+      .def_property(
+          "circles", [](const Board& b) { return kShades[static_cast<std::size_t>(b.circles)]; },
+          [](Board& b, const std::string& shade) {
+            b.circles = static_cast<CircleShade>(indexOf(kShades, shade, "board.circles"));
+          },
+          "dark or bright.")
+      .def_property_readonly(
+          "points_m",
+          [](const Board& b) {
+            validate(b);
+            const std::vector<Eigen::Vector2d> points = boardPoints_m(b);
+            Eigen::MatrixXd all = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(points.size()), 3);
+            for (std::size_t i = 0; i < points.size(); ++i)
+              all.row(static_cast<Eigen::Index>(i)).head<2>() = points[i].transpose();
+            return arrayOf(all);
+          },
+          "(N, 3): centres of circles or corners by index, in the board's frame. Raises InputError where the "
+          "numbers "
+          "make no board.");
+}
+
+void setResolution(SessionCamera& camera, const std::optional<std::array<int, 2>>& size_px) {
+  // Unknown is 0 here, and left out of files: what would be taken for that is refused at once.
+  if (size_px && ((*size_px)[0] <= 0 || (*size_px)[1] <= 0))
+    throw badInput(fmt::format("cameras.{}.resolution_px", camera.name), "must be two numbers above 0");
+  camera.resolution_px = size_px ? Resolution{(*size_px)[0], (*size_px)[1]} : Resolution{};
+}
+
+void bindSensors(py::module_& module) {
+  py::class_<SessionCamera>(module, "SessionCamera", "A camera of a session.")
+      .def_readonly("name", &SessionCamera::name)
+      .def_readwrite("stream", &SessionCamera::stream, "Topic, or the stream's name in the file.")
+      .def_readwrite(
+          "intrinsics", &SessionCamera::intrinsics,
+          "A Camera; None: calibrated first, from the same events. A copy: assign it to change it.")
+      .def_property(
+          "resolution_px",
+          [](const SessionCamera& c) -> std::optional<std::array<int, 2>> {
+            if (!c.resolution_px.known()) return std::nullopt;
+            return std::array<int, 2>{c.resolution_px.width_px, c.resolution_px.height_px};
+          },
+          setResolution, "[width, height]; None: the recording says it.")
+      .def_readwrite("recording", &SessionCamera::recording, "Its own; empty: the session's.")
+      .def_readwrite("clock_offset_s", &SessionCamera::clock_offset_s, "Known: added to the stream's times.");
+  py::class_<SessionImu>(module, "SessionImu", "An IMU of a session.")
+      .def_readonly("name", &SessionImu::name)
+      .def_readwrite("stream", &SessionImu::stream)
+      .def_property(
+          "gyroscope_noise_density", [](const SessionImu& i) { return i.noise.gyroscope_density; },
+          [](SessionImu& i, double density) { i.noise.gyroscope_density = density; }, "rad/s/sqrt(Hz).")
+      .def_property(
+          "accelerometer_noise_density", [](const SessionImu& i) { return i.noise.accelerometer_density; },
+          [](SessionImu& i, double density) { i.noise.accelerometer_density = density; }, "m/s^2/sqrt(Hz).")
+      .def_readwrite("recording", &SessionImu::recording, "Its own; empty: the session's.")
+      .def_readwrite("clock_offset_s", &SessionImu::clock_offset_s, "Known: added to the stream's times.");
+}
+
+}  // namespace
+
+void bindSession(py::module_& module) {
+  bindBoard(module);
+  bindSensors(module);
+  py::class_<Session>(module, "Session",
+                      "Which recording, which board, which sensors, and what is known of them.")
+      .def_static("load", &readSession, py::arg("path"), py::call_guard<py::gil_scoped_release>(),
+                  "From a session file. Raises InputError with file, key and line.")
+      .def_static(
+          "guess", &guess, py::arg("progress") = py::none(),
+          "guess(*recordings, progress=None): what recordings suggest, their event streams as cameras, their "
+          "IMUs; board and noise are to be filled in, and the logger \"evical\" says what. Reads to the end. "
+          "Raises InputError where they make no session.")
+      .def("save", &writeSession, py::arg("path"), "The file appears whole or not at all.")
+      .def(
+          "to_yaml",
+          [](const Session& s, const std::filesystem::path& folder) { return sessionYaml(s, folder); },
+          py::arg("folder") = ".", "What save would write; paths as seen from `folder`.")
+      .def("set", &setKey, py::arg("key"), py::arg("value"),
+           "What `--set` of the command line sets: an option (\"group.option\"), \"imus.NAME.KEY\" of units "
+           "and axes, "
+           "or \"time_range_s\". Raises InputError, and then changes nothing.")
+      .def_property_readonly("options", &optionsOf,
+                             "All options by name, with their values; a copy: `set` changes them.")
+      .def_readonly("source", &Session::source, "The file it was read from.")
+      .def_readwrite("recording", &Session::recording)
+      .def_readwrite("time_range_s", &Session::time_range_s,
+                     "[begin, end] since the recording's start; None: all of it.")
+      .def_readwrite("board", &Session::board)
+      .def_readwrite("reference", &Session::reference,
+                     "The name of an IMU; of a camera where there is no IMU.")
+      .def_property_readonly(
+          "cameras", [](const py::object& self) { return byName(self.cast<Session&>().cameras, self); },
+          "SessionCamera by name.")
+      .def_property_readonly(
+          "imus", [](const py::object& self) { return byName(self.cast<Session&>().imus, self); },
+          "SessionImu by name.")
+      .def("copy", [](const Session& s) { return s; })
+      .def("__copy__", [](const Session& s) { return s; })
+      .def("__deepcopy__", [](const Session& s, const py::dict&) { return s; })
+      .def("__repr__", [](const Session& s) {
+        return fmt::format("<evical.Session of '{}': {} cameras, {} IMUs>", s.recording.string(),
+                           s.cameras.size(), s.imus.size());
+      });
+}
+
+}  // namespace evical::python

@@ -1,0 +1,50 @@
+"""What the tests share: simulated recordings, and one calibration of them."""
+
+import os
+import pathlib
+import shutil
+
+import pytest
+
+import evical
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+SIMULATED = pathlib.Path(os.environ["EVICAL_SIMULATED"])
+
+
+@pytest.fixture(scope="session")
+def source():
+    return SOURCE
+
+
+@pytest.fixture(scope="session")
+def simulated():
+    """Folder of the recordings that tests/system simulates."""
+    return SIMULATED
+
+
+@pytest.fixture(scope="session")
+def bag():
+    return SIMULATED / "short_bag" / "recording.bag"
+
+
+@pytest.fixture
+def session():
+    session = evical.Session.load(SIMULATED / "short_bag" / "session.yaml")
+    session.set("report.cross_validation", False)
+    return session
+
+
+@pytest.fixture(scope="session")
+def calibrated(tmp_path_factory):
+    """The result of the short recording, and the folder that it was written into."""
+    folder = tmp_path_factory.mktemp("calibrated") / "result"
+    session = evical.Session.load(SIMULATED / "short_bag" / "session.yaml")
+    session.set("report.cross_validation", False)
+    return evical.calibrate(session, output=folder), folder
+
+
+@pytest.fixture
+def result_folder(calibrated, tmp_path):
+    """A copy that may be spoiled."""
+    return pathlib.Path(shutil.copytree(calibrated[1], tmp_path / "result"))

@@ -1,0 +1,152 @@
+"""evical.Result: from a run, from its folder, from older and damaged ones."""
+
+import re
+
+import numpy as np
+import pytest
+
+import evical
+
+
+def test_a_folder_gives_the_run_again(calibrated):
+    result, folder = calibrated
+    for path in (folder, folder / "result.yaml", str(folder)):
+        loaded = evical.Result.load(path)
+        assert loaded.missing == [] and loaded.status == result.status and loaded.start_ns == result.start_ns
+        np.testing.assert_array_equal(loaded.covariance.matrix, result.covariance.matrix)
+        times = np.linspace(0.5, 5, 20)
+        np.testing.assert_array_equal(loaded.trajectory.at(times), result.trajectory.at(times))
+        assert loaded.to_yaml() == (folder / "result.yaml").read_text()
+
+
+def test_members_have_the_shapes_that_are_promised(calibrated):
+    result, _ = calibrated
+    left, imu = result.cameras["left"], result.imus["left_imu"]
+    assert left.reference_from_camera.shape == (4, 4) and left.rotation_std_deg.shape == (3,)
+    np.testing.assert_allclose(left.reference_from_camera[:3, :3] @ left.reference_from_camera[:3, :3].T, np.eye(3), atol=1e-12)
+    np.testing.assert_array_equal(imu.reference_from_imu, np.eye(4))
+    assert imu.gyroscope_mapping.shape == (3, 3) and imu.accelerometer_bias_m_s2.shape == (3,)
+    assert np.linalg.norm(result.gravity_m_s2) == pytest.approx(9.81, abs=0.1)
+    assert result.reference == "left_imu" and result.version == evical.__version__
+    assert left.windows["used"] > 100 and result.timing_s["total"] > 0
+
+
+def test_covariances_go_by_name(calibrated):
+    result, _ = calibrated
+    left, covariance = result.cameras["left"], result.covariance
+    assert covariance["left.time_offset"] ** 0.5 == pytest.approx(left.time_offset_std_s)
+    sigmas = [covariance[f"left.translation.{axis} [m]"] ** 0.5 for axis in "xyz"]
+    np.testing.assert_allclose(sigmas, left.translation_std_m)
+    names = ["left.rotation.x", "left.time_offset"]
+    np.testing.assert_array_equal(covariance.of(names)[0, 1], covariance["left.rotation.x", "left.time_offset"])
+    np.testing.assert_allclose(np.diagonal(covariance.correlation)[covariance.std > 0], 1.0)
+    assert len(covariance) == len(covariance.names) == len(covariance.std)
+    with pytest.raises(evical.InputError, match="was not estimated. There are: left.rotation.x"):
+        covariance["left.rotation.w"]
+
+
+def test_trajectory_agrees_with_its_file(calibrated):
+    result, folder = calibrated
+    rows = np.genfromtxt(folder / "trajectory.csv", delimiter=",", skip_header=1)
+    poses = result.trajectory.at(rows[:, 0])
+    inside = np.isfinite(poses[:, 0, 0])
+    assert inside.sum() > 0.99 * len(rows)
+    np.testing.assert_allclose(poses[inside, :3, 3], rows[inside, 1:4], atol=1e-6)
+    x, y, z, w = rows[inside, 4:8].T
+    np.testing.assert_allclose(poses[inside, 0, 1], 2 * (x * y - z * w), atol=1e-6)
+
+
+def test_a_camera_is_where_its_clock_and_pose_say(calibrated):
+    result, _ = calibrated
+    left = result.cameras["left"]
+    pose = result.trajectory.camera_at("left", 2.0)
+    offset_s = left.time_offset_s + 1e-6 * left.clock_drift_ppm * (2.0 - left.clock_drift_at_s)
+    np.testing.assert_allclose(pose, result.trajectory.at(2.0 + offset_s) @ left.reference_from_camera, atol=1e-12)
+    with pytest.raises(evical.InputError, match="There are: left"):
+        result.trajectory.camera_at("right", 2.0)
+
+
+def test_times_have_any_shape_and_are_nan_outside(calibrated):
+    trajectory = calibrated[0].trajectory
+    assert trajectory.at(1).shape == (4, 4)
+    assert trajectory.at([[1, 2, 3], [1, 2, 3]]).shape == (2, 3, 4, 4)
+    assert trajectory.at([]).shape == (0, 4, 4)
+    outside = trajectory.at([trajectory.begin_s - 0.01, trajectory.end_s + 0.01, np.nan])
+    assert np.isnan(outside).all()
+    assert np.isfinite(trajectory.at([trajectory.begin_s, trajectory.end_s])).all()
+    for wrong in ("soon", None, [[1, 2], [3]]):
+        with pytest.raises((TypeError, ValueError)):
+            trajectory.at(wrong)
+
+
+def test_parts_keep_their_result(calibrated):
+    left = evical.Result.load(calibrated[1]).cameras["left"]
+    trajectory = evical.Result.load(calibrated[1]).trajectory
+    assert left.time_offset_s == calibrated[0].cameras["left"].time_offset_s and np.isfinite(trajectory.at(1.0)).all()
+
+
+def test_nothing_of_a_result_can_be_changed(calibrated):
+    with pytest.raises(AttributeError):
+        calibrated[0].status = "ok"
+    before = calibrated[0].gravity_m_s2
+    before[:] = 0
+    assert np.linalg.norm(calibrated[0].gravity_m_s2) > 9
+
+
+def test_a_result_of_an_older_program_has_what_it_has(result_folder):
+    """run.data of another version, and a result.yaml without what came later."""
+    file = result_folder / "run.data"
+    data = bytearray(file.read_bytes())
+    data[len(data) // 2:] = b""
+    file.write_bytes(data)
+    text = (result_folder / "result.yaml").read_text()
+    text = text[:text.index("uncertainty:")] + text[text.index("notes:"):] if "notes:" in text[text.index("uncertainty:"):] else \
+        text[:text.index("uncertainty:")]
+    text = re.sub(r"^ *clock_drift\w*:.*\n", "", text, flags=re.MULTILINE)
+    (result_folder / "result.yaml").write_text(text)
+    old = evical.Result.load(result_folder)
+    assert old.missing and all(isinstance(each, str) for each in old.missing)
+    assert old.cameras["left"].time_offset_s == pytest.approx(0.007, abs=0.001)
+
+
+def test_without_run_data_there_is_no_trajectory_and_it_says_why(result_folder):
+    (result_folder / "run.data").unlink()
+    old = evical.Result.load(result_folder)
+    assert old.missing == ["the trajectory: there is no run.data beside result.yaml"]
+    assert np.isfinite(old.cameras["left"].reference_from_camera).all() and len(old.covariance) > 10
+    with pytest.raises(evical.InputError, match="trajectory: the result has none .*no run.data.*calibrate again"):
+        old.trajectory
+
+
+def test_a_file_by_itself_is_a_result(result_folder, tmp_path):
+    alone = tmp_path / "my_rig.yaml"
+    alone.write_text((result_folder / "result.yaml").read_text())
+    assert list(evical.Result.load(alone).cameras) == ["left"]
+
+
+def test_a_result_of_a_newer_program_is_refused(result_folder):
+    file = result_folder / "result.yaml"
+    file.write_text(file.read_text().replace("evical_result: 1", "evical_result: 2"))
+    with pytest.raises(evical.InputError, match="result.yaml: evical_result"):
+        evical.Result.load(result_folder)
+
+
+def test_run_data_of_another_run_is_not_mixed_in(result_folder):
+    file = result_folder / "result.yaml"
+    text = file.read_text()
+    imus = text.index("imus:\n")
+    file.write_text(text[:imus] + text[text.index("\n", text.index("gravity_m_s2") - 2) + 1:])
+    other = evical.Result.load(result_folder)
+    assert any("another run" in each for each in other.missing)
+
+
+@pytest.mark.parametrize("content", [b"", b"evical_session: 1\n", b"\0\1\2", b"evical_result: 1\ncameras: 3\n"])
+def test_what_is_no_result_is_refused(tmp_path, content):
+    file = tmp_path / "result.yaml"
+    file.write_bytes(content)
+    with pytest.raises(evical.InputError, match="result.yaml"):
+        evical.Result.load(file)
+    with pytest.raises(evical.InputError):
+        evical.Result.load(tmp_path / "nothing")
+    with pytest.raises(TypeError):
+        evical.Result.load(3)

@@ -1,0 +1,100 @@
+"""evical.Session: files, guesses, attributes."""
+
+import copy
+import logging
+import pathlib
+
+import pytest
+
+import evical
+
+
+def test_a_session_saved_is_the_session_loaded(session, tmp_path):
+    file = tmp_path / "session.yaml"
+    session.board.spacing_m = 0.06
+    session.imus["left_imu"].gyroscope_noise_density = 2e-3
+    session.cameras["left"].resolution_px = [346, 260]
+    session.time_range_s = (0.5, 5)
+    session.set("grid.least_circles", 9)
+    session.save(file)
+    loaded = evical.Session.load(file)
+    assert loaded.to_yaml(tmp_path) == session.to_yaml(tmp_path)
+    assert loaded.board.spacing_m == 0.06
+    assert loaded.imus["left_imu"].gyroscope_noise_density == 2e-3
+    assert list(loaded.time_range_s) == [0.5, 5]
+    assert loaded.options["grid.least_circles"] == 9
+    assert loaded.options["report.cross_validation"] is False
+    assert pathlib.Path(loaded.source) == file
+
+
+def test_intrinsics_are_taken_and_taken_away(session):
+    lens = session.cameras["left"].intrinsics
+    session.cameras["left"].intrinsics = None
+    assert session.cameras["left"].intrinsics is None
+    session.cameras["left"].intrinsics = lens
+    assert session.cameras["left"].intrinsics == lens
+
+
+def test_a_guess_names_what_the_recording_holds(bag, caplog):
+    caplog.set_level(logging.INFO, logger="evical")
+    guessed = evical.Session.guess(bag)
+    assert list(guessed.cameras) and list(guessed.imus)
+    assert any("board" in record.getMessage() for record in caplog.records)  # what is to be filled in
+
+
+def test_guesses_of_nothing_are_refused(tmp_path):
+    with pytest.raises(evical.InputError, match="none is given"):
+        evical.Session.guess()
+    with pytest.raises(evical.InputError, match="there is no such file"):
+        evical.Session.guess(tmp_path / "none.bag")
+    with pytest.raises((TypeError, RuntimeError)):
+        evical.Session.guess(3)
+
+
+def test_a_refused_option_changes_nothing_and_is_named(session):
+    before = session.to_yaml()
+    with pytest.raises(evical.InputError, match="grid.least_circles"):
+        session.set("grid.least_circles", -1)
+    with pytest.raises(evical.InputError, match="no such option"):
+        session.set("grid.least_circle", 9)
+    assert session.to_yaml() == before
+
+
+def test_a_faulty_file_is_named_with_its_line(tmp_path):
+    file = tmp_path / "session.yaml"
+    file.write_text("evical_session: 1\nbord: 3\n")
+    with pytest.raises(evical.InputError, match=r"session.yaml: .*line 2"):
+        evical.Session.load(file)
+
+
+def test_copies_are_their_own(session):
+    for other in (session.copy(), copy.copy(session), copy.deepcopy(session)):
+        other.board.rows = 33
+        other.cameras["left"].stream = "/elsewhere"
+    assert session.board.rows != 33 and session.cameras["left"].stream != "/elsewhere"
+
+
+def test_a_sensor_keeps_its_session(bag):
+    camera = evical.Session.load(bag.parent / "session.yaml").cameras["left"]
+    assert camera.name == "left" and camera.intrinsics.resolution_px == (346, 260)
+
+
+def test_wrong_types_are_type_errors(session):
+    for wrong in ("many", None, [1]):
+        with pytest.raises(TypeError):
+            session.board.rows = wrong
+    with pytest.raises(TypeError):
+        session.cameras["left"].intrinsics = {"model": "pinhole_radtan"}
+    with pytest.raises(AttributeError):
+        session.cameras["left"].name = "right"
+    with pytest.raises(evical.InputError, match="Give one of: asymmetric_circles"):
+        session.board.type = "circles"
+
+
+def test_the_boards_points_are_in_metres(session):
+    points = session.board.points_m
+    assert points.shape == (session.board.rows * session.board.cols, 3)
+    assert points[:, 1].max() == pytest.approx((session.board.rows - 1) * session.board.spacing_m)
+    session.board.rows = -1
+    with pytest.raises(evical.InputError):
+        session.board.points_m
