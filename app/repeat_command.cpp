@@ -54,12 +54,14 @@ int run(const RepeatArguments& arguments) {
   checkRepeatFolder(arguments.output);
   Console console(arguments.quiet || arguments.json);
   const NewFolder folder(arguments.output);
+  std::size_t logged = 0;  // of the recordings before
   // Whole folders, so that a repeat that is stopped keeps what was done until then.
   const auto keep = [&](std::size_t k, const Session& session,
                         const std::shared_ptr<const CalibrationRun>& one) {
     const std::filesystem::path of_one = folderOf(arguments.output, input, k);
     makeOutputFolder(of_one);
-    writeResultFiles(of_one, session, one, kVersion, "");
+    writeResultFiles(of_one, session, one, kVersion, console.logText().substr(logged));
+    logged = console.logText().size();
   };
   RepeatRun repeat = repeatCalibration(input, keep, RunContext{console, stopOnSignals()});
   repeat.repeatability.version = kVersion;

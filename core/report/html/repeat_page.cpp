@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -17,6 +18,8 @@ namespace html {
 namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
+
+constexpr std::array<const char*, 6> kColours = {"c0", "c1", "c2", "o3", "o6", "o8"};
 
 const char* cssClass(RepeatVerdict verdict) {
   switch (verdict) {
@@ -77,7 +80,7 @@ void drawDistances(const Repeatability& repeat, ReportPage& page) {
   page.figure(
       plot.svg(),
       "Each bar is one recording against all others that fit; above the dark line it does not fit them. "
-      "The light line is what chance makes on average.",
+      "The light line is what chance makes on average of a rig that moves as far as it may by itself.",
       &table);
   page.keep(table);
 }
@@ -189,7 +192,7 @@ void drawPanel(const Panel& panel, const std::vector<std::string>& columns, cons
   std::vector<LegendEntry> legend;
   const auto count = static_cast<double>(panel.numbers.size());
   for (std::size_t n = 0; n < panel.numbers.size(); ++n) {
-    const std::string colour = fmt::format("o{}", n % 11);
+    const std::string colour = kColours[n % kColours.size()];
     legend.push_back({colour, panel.numbers[n]->name});
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const double x = static_cast<double>(k) + 0.2 + 0.6 * (static_cast<double>(n) + 0.5) / count;
