@@ -10,9 +10,10 @@ class App;
 namespace evical {
 
 inline constexpr int kDone = 0;
-inline constexpr int kFailed = 1;      // failed or cancelled
-inline constexpr int kBadInput = 2;    // usage, session or recording; nothing was written
-inline constexpr int kChanged = 3;     // of a check: the old result does not hold
+inline constexpr int kFailed = 1;    // failed or cancelled
+inline constexpr int kBadInput = 2;  // usage, session or recording; nothing was written
+inline constexpr int kChanged =
+    3;  // of a check: the old result does not hold; of a repeat: recordings differ
 inline constexpr int kCannotTell = 4;  // of a check: this recording does not say
 
 void addBoardCommand(CLI::App& app, int& exit_code);
@@ -27,6 +28,7 @@ void addInitCommand(CLI::App& app, int& exit_code);
 void addIntrinsicsCommand(CLI::App& app, int& exit_code);
 void addManualCommand(CLI::App& app, int& exit_code);
 void addOptionsCommand(CLI::App& app, int& exit_code);
+void addRepeatCommand(CLI::App& app, int& exit_code);
 void addSimulateCommand(CLI::App& app, int& exit_code);
 
 }  // namespace evical

@@ -28,6 +28,7 @@ void addCommands(CLI::App& app, int& exit_code) {
   addInitCommand(app, exit_code);
   addCalibrateCommand(app, exit_code);
   addCheckCommand(app, exit_code);
+  addRepeatCommand(app, exit_code);
   addIntrinsicsCommand(app, exit_code);
   addDetectCommand(app, exit_code);
   addInspectCommand(app, exit_code);

@@ -2,7 +2,7 @@
 
 #include "core/data/calibration_state.h"
 #include "core/data/intrinsics_result.h"
-#include "core/geometry/sphere_lens.h"
+#include "core/optimisation/lens_prior.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/optimisation/prior_cost.h"
 
@@ -21,36 +21,6 @@ const CameraIntrinsics& normalisedCamera() {
   static const CameraIntrinsics camera{
       CameraModel::PinholeRadtan, {1, 1}, Eigen::Vector2d::Ones(), Eigen::Vector2d::Zero(), {}};
   return camera;
-}
-
-// With spheres apart, a focal length alone says little: it is f / (1 + xi) that is known so well, whatever xi is.
-void holdScaleRatherThanLength(const CameraIntrinsics& camera, IntrinsicsMatrix& covariance) {
-  constexpr int kXi = 4;
-  if (!hasCentresApart(camera.model)) return;
-  const Eigen::Vector2d by_xi = idealFocalLength_px(camera);
-  covariance.topLeftCorner<2, 2>() += covariance(kXi, kXi) * by_xi * by_xi.transpose();
-  covariance.block<2, 1>(0, kXi) = covariance(kXi, kXi) * by_xi;
-  covariance.block<1, 2>(kXi, 0) = covariance.block<2, 1>(0, kXi).transpose();
-}
-
-IntrinsicsMatrix priorCovariance(const CameraLens& lens, const OptimisationOptions& options) {
-  IntrinsicsVector weak = IntrinsicsVector::Constant(options.camera_distortion_sigma);
-  weak.head<2>() = options.camera_focal_length_sigma * lens.seen_with->focal_length_px;
-  weak.segment<2>(2).setConstant(options.camera_principal_point_sigma_px);
-  IntrinsicsMatrix covariance = weak.cwiseAbs2().asDiagonal();
-  if (!lens.given_with) {
-    holdScaleRatherThanLength(*lens.seen_with, covariance);
-    return covariance;
-  }
-  const IntrinsicsMatrix given = lens.given_with->covariance();
-  // Rounded correlations may leave no proper matrix: this is far less than their rounding.
-  constexpr double kRounded = 1e-3;
-  for (int i = 0; i < kIntrinsicsCount; ++i) {
-    if (given(i, i) <= 0.0) continue;
-    for (int j = 0; j < kIntrinsicsCount; ++j)
-      if (given(j, j) > 0.0) covariance(i, j) = given(i, j) * (i == j ? 1.0 + kRounded : 1.0);
-  }
-  return covariance;
 }
 
 }  // namespace
@@ -81,7 +51,7 @@ IntrinsicsBlock::IntrinsicsBlock(const CameraLens& lens, const CameraState& stat
     : seen_with_(*lens.seen_with) {
   writeIntrinsics(state.lens.solved.value_or(seen_with_), parameters_.data());
   writeIntrinsics(seen_with_, prior_mean_.data());
-  const IntrinsicsMatrix covariance = priorCovariance(lens, options);
+  const IntrinsicsMatrix covariance = lensPriorCovariance(lens, options);
   prior_weight_ = covariance.llt().matrixL().solve(IntrinsicsMatrix::Identity());
   std::vector<int> unused;
   for (int i = 4 + distortionCount(seen_with_); i < kIntrinsicsCount; ++i) unused.push_back(i);

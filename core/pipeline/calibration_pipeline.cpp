@@ -391,6 +391,7 @@ class Calibration {
     if (result.status == CalibrationStatus::Doubtful) addDoubt(saturationIn(input_, options), result);
     result.state = std::move(solution.state);
     result.uncertainty = std::move(uncertainty.report);
+    run_.as_weighed = std::move(uncertainty.as_weighed);
     result.latencies = sensorLatencies(input_, result.state, result.uncertainty);
     result.cameras = std::move(solution.cameras);
     result.imus = std::move(solution.imus);

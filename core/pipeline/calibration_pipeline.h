@@ -22,6 +22,9 @@ struct CalibrationRun {
   // By camera: how the lens was calibrated first, where the session gave none. Empty: it gave all. The lens
   // in use is in the result's state.
   std::vector<std::optional<IntrinsicsResult>> intrinsics;
+  // Inverse of the normal equations, in the order of the result's uncertainty: what its data weigh beside others'.
+  // Empty in a run that was read back.
+  Eigen::MatrixXd as_weighed = {};
 };
 
 enum class RunStatus { Done, Cancelled, Failed };

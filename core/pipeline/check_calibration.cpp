@@ -44,27 +44,6 @@ void addTogether(const NamedResult& together, const CheckInput& input,
     }
 }
 
-double sizeAlong(const ChangeTest& test, const ChangeGroup& group) {
-  const Eigen::VectorXd change = group.to_size * test.change;
-  const Eigen::MatrixXd covariance = group.to_size * test.covariance * group.to_size.transpose();
-  if (!(change.norm() > 0.0)) return std::sqrt(std::max(0.0, covariance.diagonal().maxCoeff()));
-  const Eigen::VectorXd direction = change.normalized();
-  return std::sqrt(std::max(0.0, direction.dot(covariance * direction)));
-}
-
-void fill(const ChangeTest& test, const ChangeGroup& group, const ComparedQuantity& compared,
-          CheckedQuantity& quantity) {
-  quantity = compared.shown;
-  quantity.change = (group.to_size * test.change).norm();
-  quantity.change_sigma = sizeAlong(test, group);
-  quantity.sigmas = test.sigmas;
-  quantity.limit_sigmas = test.limit;
-  quantity.would_notice = test.would_notice;
-  quantity.changed = test.changed;
-  for (const Eigen::MatrixXd& place : compared.at_edge)
-    quantity.edge_px = std::max(quantity.edge_px, (place * test.change).norm());
-}
-
 class Check {
  public:
   Check(const CheckInput& input, const RunContext& context) : input_(input), context_(context) {
@@ -108,7 +87,7 @@ class Check {
     for (std::size_t g = 0; g < compared.groups.size(); ++g) {
       if (!compared.groups[g].tested) continue;
       const ComparedQuantity& quantity = compared.quantities[shown++];
-      fill(tests.groups[g], compared.groups[g], quantity, out_.check.quantities.emplace_back());
+      out_.check.quantities.push_back(testedQuantity(quantity, tests.groups[g], compared.groups[g]));
       names[g] = wordsOf(quantity.shown);
     }
     for (const std::size_t g : tests.or_else) out_.check.or_else.push_back(names[g]);

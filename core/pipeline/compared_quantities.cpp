@@ -181,7 +181,6 @@ class Comparison {
 
   // A sheet keeps its size to within what damp paper does.
   void addBoard() {
-    constexpr double kStability = 2e-4;
     const auto& scale = quantityInfo(kBoardQuantities, &BoardState::scale);
     const auto& stretch = quantityInfo(kBoardQuantities, &BoardState::stretch);
     const Pair<BoardState, BoardUncertainty> pair{now_.board_names[0],       true,
@@ -189,7 +188,7 @@ class Comparison {
                                                   before_.uncertainty.board, now_.uncertainty.board};
     forEachSheetQuantity([&](const auto& row) {
       if (&row.info == &scale || &row.info == &stretch)
-        addNumbers(row, pair, Judged{"", 1.0, kStability, 0.0}, false);
+        addNumbers(row, pair, Judged{"", 1.0, kStableSheet, 0.0}, false);
     });
   }
 
@@ -312,7 +311,29 @@ class Comparison {
   std::vector<bool> offset_;
 };
 
+double sizeAlong(const ChangeTest& test, const ChangeGroup& group) {
+  const Eigen::VectorXd change = group.to_size * test.change;
+  const Eigen::MatrixXd covariance = group.to_size * test.covariance * group.to_size.transpose();
+  if (!(change.norm() > 0.0)) return std::sqrt(std::max(0.0, covariance.diagonal().maxCoeff()));
+  const Eigen::VectorXd direction = change.normalized();
+  return std::sqrt(std::max(0.0, direction.dot(covariance * direction)));
+}
+
 }  // namespace
+
+CheckedQuantity testedQuantity(const ComparedQuantity& compared, const ChangeTest& test,
+                               const ChangeGroup& group) {
+  CheckedQuantity quantity = compared.shown;
+  quantity.change = (group.to_size * test.change).norm();
+  quantity.change_sigma = sizeAlong(test, group);
+  quantity.sigmas = test.sigmas;
+  quantity.limit_sigmas = test.limit;
+  quantity.would_notice = test.would_notice;
+  quantity.changed = test.changed;
+  for (const Eigen::MatrixXd& place : compared.at_edge)
+    quantity.edge_px = std::max(quantity.edge_px, (place * test.change).norm());
+  return quantity;
+}
 
 Eigen::MatrixXd lensCovariance(const CameraIntrinsics& camera, Eigen::Index count, double rms_px) {
   const Eigen::MatrixXd from_size = inverseOf(lensToSize(camera, count));

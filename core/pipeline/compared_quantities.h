@@ -13,6 +13,9 @@
 
 namespace evical {
 
+// What damp paper does to a sheet, relative.
+inline constexpr double kStableSheet = 2e-4;
+
 struct ComparedQuantity {
   CheckedQuantity shown;  // but for what the tests say
   // Of the camera whose pixels its numbers move, at the image's border: pixels by numbers in SI units.
@@ -37,5 +40,9 @@ Eigen::MatrixXd lensCovariance(const CameraIntrinsics& camera, Eigen::Index coun
 
 // Sensors of both, by name; of `now` all are in `before`.
 ComparedQuantities compareQuantities(const ComparedResults& results, const CheckOptions& options);
+
+// With what the test of its group says.
+CheckedQuantity testedQuantity(const ComparedQuantity& compared, const ChangeTest& test,
+                               const ChangeGroup& group);
 
 }  // namespace evical

@@ -6,11 +6,15 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 namespace evical {
 
 // As readSession; but the recordings of a run may be gone since.
 Session readSessionOfRun(const std::filesystem::path& file);
+
+// Of a file that lists `recordings`, a session for each; of any other the one that it is. Throws as readSession.
+std::vector<Session> readRepeatedSessions(const std::filesystem::path& file);
 
 // Seconds since the recording's start, [begin, end]. Throws CalibrationError (BadInput).
 std::array<double, 2> timeRangeFrom(const YamlNode& node);

@@ -323,16 +323,22 @@ void readRecordings(const YamlNode& node, const SessionFolder& folder, Session& 
     session.more_recordings.push_back(recordingBeside(items[k], folder));
 }
 
-Session sessionFrom(const YamlNode& root, const SessionFolder& folder, const std::filesystem::path& file) {
+void checkSessionRoot(const YamlNode& root) {
   if (!root.isMap() || !root.has("evical_session"))
     throw root.error("is no session file: the key evical_session is missing",
                      "Make one with `evical init RECORDING`, `evical simulate` or `evical import`");
-  root.allowOnly({"evical_session", "recording", "time_range_s", "board", "boards", "gravity", "cameras",
-                  "imus", "reference", "prior", "options", "export"});
+  root.allowOnly({"evical_session", "recording", "recordings", "time_range_s", "board", "boards", "gravity",
+                  "cameras", "imus", "reference", "prior", "options", "export"});
   root["evical_session"].integer(1, 1);
+}
+
+// All but its recording, which `read_recording` fills in.
+template <class ReadRecording>
+Session sessionFrom(const YamlNode& root, const SessionFolder& folder, const std::filesystem::path& file,
+                    const ReadRecording& read_recording) {
   Session session;
   session.source = file;
-  readRecordings(root["recording"], folder, session);
+  read_recording(session);
   if (const auto node = root.find("time_range_s")) session.time_range_s = timeRangeFrom(*node);
   if (const auto node = root.find("gravity"); node && !node->isNull()) readGravity(*node, session.options);
   readSensors(root, folder, session);
@@ -346,20 +352,52 @@ Session sessionFrom(const YamlNode& root, const SessionFolder& folder, const std
   return session;
 }
 
+Session oneSessionFrom(const YamlNode& root, const SessionFolder& folder, const std::filesystem::path& file) {
+  checkSessionRoot(root);
+  if (const auto several = root.find("recordings"))
+    throw several->error("lists recordings that are calibrated one by one",
+                         "Give it to 'evical repeat', or name one as recording");
+  return sessionFrom(root, folder, file,
+                     [&](Session& session) { readRecordings(root["recording"], folder, session); });
+}
+
 }  // namespace
 
 Session readSession(const std::filesystem::path& file) {
-  return sessionFrom(YamlNode::load(file), {file.parent_path()}, file);
+  return oneSessionFrom(YamlNode::load(file), {file.parent_path()}, file);
+}
+
+std::vector<Session> readRepeatedSessions(const std::filesystem::path& file) {
+  const YamlNode root = YamlNode::load(file);
+  checkSessionRoot(root);
+  const auto several = root.find("recordings");
+  if (!several) return {readSession(file)};
+  if (root.has("recording"))
+    throw several->error("is there beside recording", "Keep one of the two: recordings lists them all");
+  const SessionFolder folder{file.parent_path()};
+  std::vector<Session> sessions;
+  for (const YamlNode& item : several->items())
+    sessions.push_back(sessionFrom(
+        root, folder, file, [&](Session& session) { session.recording = recordingBeside(item, folder); }));
+  if (sessions.empty()) throw several->error("is empty", "Name two recordings or more");
+  for (const Session& session : sessions) {
+    const auto hasOwn = [](const auto& sensor) { return !sensor.recording.empty(); };
+    if (std::any_of(session.cameras.begin(), session.cameras.end(), hasOwn) ||
+        std::any_of(session.imus.begin(), session.imus.end(), hasOwn))
+      throw several->error("lists recordings, but a sensor has one of its own",
+                           "Write a session for each, and give 'evical repeat' all of them");
+  }
+  return sessions;
 }
 
 Session readSessionOfRun(const std::filesystem::path& file) {
-  return sessionFrom(YamlNode::load(file), {file.parent_path(), true}, file);
+  return oneSessionFrom(YamlNode::load(file), {file.parent_path(), true}, file);
 }
 
 // What a file may not say must not be in what would be written as one.
 void validateMembers(const Session& session) {
   const std::string place = session.source.empty() ? "session" : session.source.string();
-  static_cast<void>(sessionFrom(YamlNode::parse(sessionYaml(session, "."), place), {".", true}, place));
+  static_cast<void>(oneSessionFrom(YamlNode::parse(sessionYaml(session, "."), place), {".", true}, place));
 }
 
 }  // namespace evical

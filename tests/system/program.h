@@ -29,7 +29,7 @@ Outcome runProgramWithFileLimit(const QStringList& arguments, int blocks_of_1024
 Outcome interruptProgram(const QStringList& arguments, int signal,
                          const std::function<bool(const QString&)>& ready, int patience_s = 60);
 
-// Folders of the simulated recordings: "blinking", "intrinsics", "short" (text), "short_bag", "still".
+// Folders of the simulated recordings: "blinking", "intrinsics", "second" (the short one's rig), "short" (text), "short_bag", "still".
 QString simulated(const QString& name);
 
 QByteArray readFile(const QString& path);

@@ -43,6 +43,7 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   const QuantityCovariance covariance =
       withPixelDelay(input, options, quantityCovariance(information, report_from_tangent));
   estimate.report = makeReport(input, covariance);
+  estimate.as_weighed = covariance.as_weighed;
   reportSharedSensors(input, options, estimate.report);
   estimate.report.given = givenQuantities(input, options);
   const Eigen::MatrixXd tangent_from_report = inverseOf(report_from_tangent);

@@ -22,6 +22,7 @@ struct RunContext;
 
 struct UncertaintyEstimate {
   UncertaintyReport report;
+  Eigen::MatrixXd as_weighed;  // QuantityCovariance::as_weighed, in the report's order
   CalibrationStatus status = CalibrationStatus::Ok;
   std::string reason;  // why not Ok, and what to do; empty if it is
   // What is doubtful of gyroscopes that seem turned: much else that is not modelled looks like it, so that it is

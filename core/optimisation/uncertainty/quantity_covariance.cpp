@@ -125,15 +125,6 @@ double delayVariance_s2(const BoardObservations& seen, const OptimisationOptions
 
 }  // namespace
 
-Eigen::Matrix<double, 3, 2> gravityTilts(const Eigen::Vector3d& gravity) {
-  const Eigen::Vector3d down = gravity.normalized();
-  const Eigen::Vector3d seed = std::abs(down.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
-  Eigen::Matrix<double, 3, 2> tilts;
-  tilts.col(0) = (seed - seed.dot(down) * down).normalized();
-  tilts.col(1) = down.cross(tilts.col(0));
-  return tilts;
-}
-
 Eigen::MatrixXd reportFromTangent(const ProjectedInformation& information, const CalibrationState& state,
                                   ceres::Problem& problem) {
   const Eigen::Index size = information.total.rows();
@@ -167,7 +158,8 @@ QuantityCovariance quantityCovariance(const ProjectedInformation& information,
   Eigen::MatrixXd covariance = congruence(inverse, measured + given);
   const Eigen::VectorXd growth = growthOf(information, covariance, safe, given, report_from_tangent);
   covariance = (growth.asDiagonal() * covariance * growth.asDiagonal()).eval();
-  return {information.quantities, information.first_column, covariance};
+  return {information.quantities, information.first_column, covariance,
+          congruence(report_from_tangent, safe.inverse)};
 }
 
 QuantityCovariance withPixelDelay(const CalibrationInput& input, const OptimisationOptions& options,

@@ -2,6 +2,7 @@
 // by its two tilts.
 #pragma once
 
+#include "core/geometry/gravity_tilts.h"
 #include "core/optimisation/parameter_blocks.h"
 
 #include <Eigen/Core>
@@ -20,10 +21,9 @@ struct QuantityCovariance {
   std::vector<Quantity> quantities;
   std::vector<Eigen::Index> first_column;  // of each quantity; one more for the end
   Eigen::MatrixXd covariance;
+  Eigen::MatrixXd as_weighed =
+      {};  // had all errors the size that they are weighed with, and none hung together
 };
-
-// The two directions, in the world, in which the report gives gravity's tilt ("gravity.direction.1", ".2").
-Eigen::Matrix<double, 3, 2> gravityTilts(const Eigen::Vector3d& gravity_in_world);
 
 // From tangent space as Ceres has it to the report's coordinates.
 Eigen::MatrixXd reportFromTangent(const ProjectedInformation& information, const CalibrationState& state,

@@ -1,6 +1,7 @@
 #include "core/report/html/report_page.h"
 
 #include "core/report/html/html_text.h"
+#include "core/report/html/report_style.h"
 
 #include <fmt/format.h>
 
@@ -20,6 +21,19 @@ void ReportPage::figure(const std::string& svg, std::string_view caption, const 
   if (table != nullptr) source = fmt::format(" <a class=\"csv\" href=\"{0}\">{0}</a>", escaped(table->file));
   body_ += fmt::format("<figure>\n<div class=\"wide\">{}</div>\n<figcaption>{}{}</figcaption>\n</figure>\n",
                        svg, caption, source);
+}
+
+std::string document(const PageHead& head, const ReportPage& verdict, const ReportPage& page) {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta "
+      "charset=\"utf-8\"/>\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
+      "<meta name=\"generator\" content=\"evical {0}\"/>\n<title>{1}</title>\n<style>\n{2}</style>\n</head>\n"
+      "<body>\n<main>\n<header><h1>{1}</h1><p "
+      "class=\"small\">{3}{4}</p></header>\n{5}<nav>{6}</nav>\n{7}</main>\n"
+      "</body>\n</html>\n",
+      escaped(head.version), escaped(head.title), kReportStyle, "evical " + escaped(head.version),
+      head.remark, verdict.body(), page.contents(), page.body());
 }
 
 std::string cameraName(const ReportData& data, std::size_t index) {

@@ -34,6 +34,13 @@ class ReportPage {
   std::vector<PlotTable> tables_;
 };
 
+// What stands above a page.
+struct PageHead {
+  std::string title, version, remark;  // the remark follows the version
+};
+// The whole file: verdict, links to sections, sections.
+std::string document(const PageHead& head, const ReportPage& verdict, const ReportPage& page);
+
 std::string cameraName(const ReportData& data, std::size_t index);
 std::string imuName(const ReportData& data, std::size_t index);
 

@@ -1,0 +1,107 @@
+#include "app/commands.h"
+#include "app/console.h"
+#include "app/output.h"
+#include "app/session_arguments.h"
+#include "app/version.h"
+#include "core/base/error.h"
+#include "core/base/new_folder.h"
+#include "core/pipeline/repeat_files.h"
+#include "core/pipeline/result_files.h"
+#include "core/report/repeat_report.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace evical {
+namespace {
+
+struct RepeatArguments {
+  std::vector<std::string> sessions, settings;
+  std::string output;
+  int threads = 0;
+  bool json = false, quiet = false;
+};
+
+RepeatInput inputFrom(const RepeatArguments& arguments) {
+  const std::vector<std::filesystem::path> files(arguments.sessions.begin(), arguments.sessions.end());
+  RepeatInput input = readRepeat(files);
+  for (Session& session : input.sessions) {
+    applySettings(arguments.settings, session);
+    if (arguments.threads > 0) session.options.optimisation.threads = arguments.threads;
+  }
+  return input;
+}
+
+int exitCodeOf(RepeatVerdict verdict) {
+  switch (verdict) {
+    case RepeatVerdict::Agree:
+      return kDone;
+    case RepeatVerdict::Disagree:
+      return kChanged;
+    case RepeatVerdict::Failed:
+      break;
+  }
+  return kFailed;
+}
+
+int run(const RepeatArguments& arguments) {
+  const RepeatInput input = inputFrom(arguments);
+  checkRepeatFolder(arguments.output);
+  Console console(arguments.quiet || arguments.json);
+  const NewFolder folder(arguments.output);
+  std::size_t logged = 0;  // of the recordings before
+  // Whole folders, so that a repeat that is stopped keeps what was done until then.
+  const auto keep = [&](std::size_t k, const Session& session,
+                        const std::shared_ptr<const CalibrationRun>& one) {
+    const std::filesystem::path of_one = folderOf(arguments.output, input, k);
+    makeOutputFolder(of_one);
+    writeResultFiles(of_one, session, one, kVersion, console.logText().substr(logged));
+    logged = console.logText().size();
+  };
+  RepeatRun repeat = repeatCalibration(input, keep, RunContext{console, stopOnSignals()});
+  repeat.repeatability.version = kVersion;
+  if (repeat.joint) repeat.joint->version = kVersion;
+  writeRepeatFiles(arguments.output, input, repeat, console.logText());
+  console.stageStarted("done");
+  print("{}", arguments.json ? repeatJson(repeat.repeatability) : repeatTable(repeat.repeatability));
+  if (!arguments.quiet && !arguments.json) print("Files are in {}\n", arguments.output);
+  if (repeat.repeatability.verdict == RepeatVerdict::Failed)
+    throw calibrationFailed("repeat", repeat.repeatability.reason, "See the reasons, and record again");
+  return exitCodeOf(repeat.repeatability.verdict);
+}
+
+}  // namespace
+
+void addRepeatCommand(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<RepeatArguments>();
+  CLI::App* const command =
+      app.add_subcommand("repeat", "Several recordings of one rig: each alone, then all together");
+  command
+      ->add_option("SESSION", arguments->sessions,
+                   "Sessions of the same sensors and board, or one that lists recordings")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "Folder for the results")->required();
+  command
+      ->add_option(
+          "--set", arguments->settings,
+          "group.option=value of all sessions, see 'evical options'; the groups are those of calibrate, "
+          "and check")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option("--threads", arguments->threads, "Threads of the optimisation")
+      ->check(CLI::Range(1, 256));
+  command->add_flag("--json", arguments->json, "Print JSON instead of tables, and nothing else");
+  command->add_flag("--quiet", arguments->quiet, "Only the tables and errors");
+  command->footer(
+      "Exit codes: 0 they agree; 3 they do not, the last line says which; 1 cancelled, or fewer than two "
+      "could be "
+      "calibrated; 2 bad usage, session or recording.");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace evical

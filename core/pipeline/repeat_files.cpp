@@ -1,0 +1,54 @@
+#include "core/pipeline/repeat_files.h"
+
+#include "core/base/atomic_file.h"
+#include "core/base/error.h"
+#include "core/pipeline/result_files.h"
+#include "core/report/html/repeat_page.h"
+#include "core/report/repeat_report.h"
+
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace evical {
+namespace {
+
+constexpr const char *kResult = "result.yaml", *kRepeat = "repeat.yaml", *kSession = "run_session.yaml";
+
+bool isThere(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored);
+}
+
+}  // namespace
+
+void checkRepeatFolder(const std::filesystem::path& folder) {
+  if (isThere(folder / kResult) && !isThere(folder / kRepeat))
+    throw badInput(folder.string(),
+                   "holds the result of a calibration, which a repeat would take the place of",
+                   "Name another folder");
+}
+
+std::filesystem::path folderOf(const std::filesystem::path& folder, const RepeatInput& input,
+                               std::size_t recording) {
+  return folder / "recordings" / input.names.at(recording);
+}
+
+void writeRepeatFiles(const std::filesystem::path& folder, const RepeatInput& input, const RepeatRun& repeat,
+                      const std::string& log) {
+  std::vector<FileContent> files = {{"log.txt", log}, {"repeat.csv", repeatCsv(repeat.repeatability)}};
+  for (ReportFile& file : repeatReportFiles(repeat.repeatability))
+    files.push_back({file.name, std::move(file.content)});
+  if (repeat.joint) {
+    const Session session = sessionOfRepeat(input.sessions.at(repeat.own_values_of));
+    files.push_back({kSession, sessionYaml(session, folder)});
+    files.push_back({kResult, resultYaml(*repeat.joint)});
+  } else {
+    std::error_code ignored;
+    std::filesystem::remove(folder / kResult, ignored);
+  }
+  files.push_back({kRepeat, repeatYaml(repeat.repeatability)});  // the last tells that all are there
+  writeExportedFiles(folder, files);
+}
+
+}  // namespace evical
