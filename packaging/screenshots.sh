@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes the pictures of README, guide and tour, of the demo recording. Without a display. With a folder as argument:
-# every screen, light and dark, there.
+# Makes the pictures of README, tour and documentation site, of the demo recording. Without a display. With a folder as
+# argument: every screen, light and dark, there.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=${EVICAL_BUILD:-build/release}
@@ -8,12 +8,12 @@ demo=${TMPDIR:-/tmp}/evical/demo # it is seen in pictures
 
 [ -x "$build/evical-gui" ] || { echo "Build it first: packaging/run.sh" >&2; exit 1; }
 [ -f "$demo/truth.yaml" ] || "$build/evical" simulate config/scenarios/davis346_10s.yaml -o "$demo" --quiet
-shown="print-board-light how-to-record-light check-light detection-dark trajectory-light convergence-light
-       residuals-light result-light export-light"
+shown="start-light print-board-light how-to-record-light check-light recording-light detection-dark trajectory-light
+       convergence-light signals-light residuals-light result-light export-light lens-light"
 pictures=docs/pictures
 if [ $# -gt 0 ]; then
   pictures=$1 shown=
-  for screen in start print-board how-to-record check recording detection trajectory convergence signals residuals result export; do
+  for screen in start print-board how-to-record check recording detection trajectory convergence signals residuals result export lens; do
     shown+=" $screen-light $screen-dark"
   done
 fi
@@ -24,7 +24,14 @@ XDG_CONFIG_HOME=$(mktemp -d)
 XDG_DATA_HOME=$XDG_CONFIG_HOME
 export XDG_CONFIG_HOME XDG_DATA_HOME
 trap 'rm -rf "$XDG_CONFIG_HOME"' EXIT
+# The camera alone, for the result of a lens.
+sed -e '/^imus:/,$d' -e '/^    intrinsics:/,$d' "$demo/session.yaml" > "$demo/camera.yaml"
 for picture in $shown; do
-  "$build/evical-gui" --screenshot "${picture%-*}" -o "$pictures/$picture.png" --appearance "${picture##*-}" "$demo/session.yaml"
+  screen=${picture%-*} session=$demo/session.yaml
+  [ "$screen" != lens ] || { screen=result session=$demo/camera.yaml; }
+  "$build/evical-gui" --screenshot "$screen" -o "$pictures/$picture.png" --appearance "${picture##*-}" "$session"
+  # A palette makes them a third of their size, and people see no difference.
+  convert "$pictures/$picture.png" +dither -colors 256 -strip -define png:compression-level=9 "PNG8:$pictures/$picture.small.png"
+  mv "$pictures/$picture.small.png" "$pictures/$picture.png"
 done
 echo "Pictures are in $pictures"
