@@ -13,3 +13,15 @@ else()
   add_custom_target(docs COMMAND "${CMAKE_COMMAND}" -E echo "Doxygen is missing: apt-get install doxygen, then configure again"
                          COMMAND "${CMAKE_COMMAND}" -E false VERBATIM)
 endif()
+
+# Target docs_site: docs/ as a site, by MkDocs, in <build>/docs/site. Not part of all.
+find_program(EVICAL_MKDOCS mkdocs)
+if(EVICAL_MKDOCS)
+  set(evical_site "${CMAKE_BINARY_DIR}/docs/site")
+  add_custom_target(docs_site COMMAND "${CMAKE_COMMAND}" -E env PYTHONDONTWRITEBYTECODE=1 "${EVICAL_MKDOCS}" build --strict
+                                      --config-file "${CMAKE_SOURCE_DIR}/mkdocs.yml" --site-dir "${evical_site}"
+                              COMMAND "${CMAKE_COMMAND}" -E echo "Pages are in ${evical_site}/index.html" VERBATIM)
+else()
+  add_custom_target(docs_site COMMAND "${CMAKE_COMMAND}" -E echo "MkDocs is missing: apt-get install mkdocs, then configure again"
+                              COMMAND "${CMAKE_COMMAND}" -E false VERBATIM)
+endif()

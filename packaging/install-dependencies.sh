@@ -20,6 +20,8 @@ packages=(
   qt6-base-dev qt6-svg-dev libvtk9-dev libegl-dev libgl1-mesa-dri libglew-dev libqcustomplot-dev fonts-inter
   # tests
   clang-format clang-tidy python3 xvfb xauth xdotool imagemagick python3-h5py python3-rosbag
+  # documentation site
+  mkdocs
   # packages, and what looks at them
   dpkg-dev file lintian appstream desktop-file-utils man-db
   # other programs' loaders of what Evical exports, and libraries that they read with

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Links of the repository's own documents lead to files and headings that are there, as GitHub shows them; the guide's page has every
+part of the guide: check_documents.py SOURCE"""
+import os
+import re
+import sys
+
+root = sys.argv[1]
+CODE = re.compile(r"^```.*?^```|^ {4}[^\n]*|``[^\n]+?``|`[^`\n]*`", re.MULTILINE | re.DOTALL)
+LINK = re.compile(r"\[[^\[\]]*\]\(([^()\s]+)\)")
+
+
+def read(path):
+    with open(path, encoding="utf-8") as file:
+        return file.read()
+
+
+def anchors(text):
+    """As GitHub makes them: the second of a name has -1."""
+    found = {}
+    for heading in re.findall(r"^#+ (.+)$", re.sub(r"^```.*?^```", "", text, flags=re.MULTILINE | re.DOTALL), re.MULTILINE):
+        name = re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
+        found[name] = found.get(name, -1) + 1
+    return {name if number == 0 else f"{name}-{number}" for name, most in found.items() for number in range(most + 1)}
+
+
+faults, count = [], 0
+documents = [f"{root}/{name}" for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
+for top in ("docs", "resources"):
+    documents += [os.path.join(folder, name) for folder, _, names in os.walk(f"{root}/{top}") for name in names if name.endswith(".md")]
+for document in documents:
+    for link in LINK.findall(CODE.sub("", read(document))):
+        if re.match(r"[a-z]+:", link):
+            continue
+        count += 1
+        path, _, anchor = link.partition("#")
+        target = os.path.normpath(os.path.join(os.path.dirname(document), path)) if path else document
+        name = os.path.relpath(document, root)
+        if not os.path.exists(target):
+            faults.append(f"{name}: {link} is not there")
+        elif anchor and anchor not in anchors(read(target)):
+            faults.append(f"{name}: {link} has no such heading")
+if count < 50:
+    faults.append(f"only {count} links were found")
+
+guide = read(f"{root}/resources/user_guide.md")
+page = read(f"{root}/docs/guide.md")
+parts = re.findall(r"^## (.+)$", guide, re.MULTILINE)
+for part in parts:
+    anchor = re.sub(r"[^\w\- ]", "", part.lower()).replace(" ", "-")
+    if f"(../resources/user_guide.md#{anchor}) <!-- include -->" not in page or f"\n## {part}\n" not in page:
+        faults.append(f"docs/guide.md lacks the guide's part: {part}")
+print("\n".join(faults) or f"{len(documents)} documents, {count} links, {len(parts)} parts of the guide")
+sys.exit(bool(faults))
