@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Links of the repository's own documents lead to files and headings that are there, as GitHub shows them; the guide's page has every
-part of the guide: check_documents.py SOURCE"""
+part of the guide, and pictures are those that packaging/screenshots.sh makes: check_documents.py SOURCE"""
 import os
 import re
 import sys
@@ -24,7 +24,7 @@ def anchors(text):
     return {name if number == 0 else f"{name}-{number}" for name, most in found.items() for number in range(most + 1)}
 
 
-faults, count = [], 0
+faults, count, pictures = [], 0, set()
 documents = [f"{root}/{name}" for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
 for top in ("docs", "resources"):
     documents += [os.path.join(folder, name) for folder, _, names in os.walk(f"{root}/{top}") for name in names if name.endswith(".md")]
@@ -36,6 +36,8 @@ for document in documents:
         path, _, anchor = link.partition("#")
         target = os.path.normpath(os.path.join(os.path.dirname(document), path)) if path else document
         name = os.path.relpath(document, root)
+        if os.path.dirname(target) == os.path.normpath(f"{root}/docs/pictures"):
+            pictures.add(os.path.basename(target))
         if not os.path.exists(target):
             faults.append(f"{name}: {link} is not there")
         elif anchor and anchor not in anchors(read(target)):
@@ -50,5 +52,9 @@ for part in parts:
     anchor = re.sub(r"[^\w\- ]", "", part.lower()).replace(" ", "-")
     if f"(../resources/user_guide.md#{anchor}) <!-- include -->" not in page or f"\n## {part}\n" not in page:
         faults.append(f"docs/guide.md lacks the guide's part: {part}")
+
+made = {f"{name}.png" for name in re.search(r'shown="([^"]*)"', read(f"{root}/packaging/screenshots.sh")).group(1).split()}
+for what, names in (("is made", made), ("is shown", pictures)):
+    faults += [f"docs/pictures/{name}: either it is there, or it {what}, not both" for name in sorted(set(os.listdir(f"{root}/docs/pictures")) ^ names)]
 print("\n".join(faults) or f"{len(documents)} documents, {count} links, {len(parts)} parts of the guide")
 sys.exit(bool(faults))
