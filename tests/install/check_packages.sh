@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # The packages that this build gives: twice the same bytes, what is in them, no complaints of lintian and AppStream, and a command line that
 # calibrates from where it was unpacked to. The bare machine is packaging/test-packages.sh.
-#   check_packages.sh BUILD SCRATCH RECORDING GUI
+#   check_packages.sh BUILD SCRATCH RECORDING GUI PYTHON
 set -euo pipefail
-build=$1 scratch=$2 recording=$3 gui=$4
+build=$1 scratch=$2 recording=$3 gui=$4 python=$5
 export LC_ALL=C.UTF-8
 
 fail() {
@@ -24,6 +24,7 @@ pack "$scratch/second" || { cat "$scratch/second.log"; fail "cpack, again"; }
 
 names="evical libevical-dev"
 [ "$gui" = OFF ] || names+=" evical-gui"
+[ "$python" = OFF ] || names+=" python3-evical"
 for name in $names; do
   package=$(echo "$scratch/first/${name}"_*.deb)
   cmp "$package" "$scratch/second/$(basename "$package")" || fail "two times cpack gave two different $name"
@@ -57,6 +58,12 @@ fi
 
 "$scratch/root/usr/bin/evical" calibrate "$recording/session.yaml" -o "$scratch/result" --quiet >/dev/null || fail "calibrate"
 [ -s "$scratch/result/result.yaml" ] || fail "no result"
+if [ "$python" != OFF ]; then
+  PYTHONPATH=$(dirname "$(find "$scratch/root" -path '*/evical/__init__.py' -printf '%h')") /usr/bin/python3 -c '
+import sys, evical
+assert evical.__file__.startswith(sys.argv[1]), evical.__file__
+print(evical.Result.load(sys.argv[2]).cameras)' "$scratch/root" "$scratch/result" || fail "the Python module of the package"
+fi
 
 # Where a tool is missing, it says what to install. All tools but one:
 mkdir "$scratch/tools"
