@@ -97,6 +97,29 @@ class TestEventView : public QObject {
   }
 
   // Each colour of the wheel lies where an edge of that colour moves to.
+  void caption_isWhole_whereItIsWiderThanTheView() {
+    const auto rowsUnderCaption = [](int width_px) {
+      EventView view;
+      view.resize(width_px, 400);
+      view.setFrame(smallFrame());
+      const QImage bare = view.grab().toImage();
+      view.setCaption("left, 12.345 s to 12.360 s, 12 345 events, complete");
+      const QImage image = view.grab().toImage();
+      int rows = 0;
+      bool at_the_edge = false;
+      for (int y = 0; y < image.height(); ++y) {
+        bool differs = false;
+        for (int x = 0; x < image.width(); ++x) differs |= image.pixel(x, y) != bare.pixel(x, y);
+        rows += differs;
+        at_the_edge |= image.pixel(width_px - 1, y) != bare.pixel(width_px - 1, y);
+      }
+      return at_the_edge ? -1 : rows;
+    };
+    const int one_line_px = rowsUnderCaption(600);
+    QVERIFY(one_line_px > 10);
+    QVERIFY(rowsUnderCaption(250) > one_line_px + 10);
+  }
+
   void legend_turnsAsTheFlowDoes() {
     EventView view;
     view.setFrame(smallFrame());

@@ -19,6 +19,7 @@ constexpr double kLargestScale = 64.0;
 constexpr double kZoomStep = 1.25;
 constexpr double kGridScale = 14.0;  // from here on single pixels are outlined
 constexpr int kMargin_px = 6;
+constexpr int kWrapped = Qt::AlignLeft | Qt::AlignVCenter | Qt::TextWordWrap;
 
 }  // namespace
 
@@ -165,8 +166,11 @@ QRect EventView::noteBox(const QSize& size, bool below) const {
 
 void EventView::paintNote(QPainter& painter, const QString& text, bool below) const {
   if (text.isEmpty()) return;
-  const QSize size = painter.fontMetrics().size(Qt::TextSingleLine, text) + QSize(16, 8);
-  const QRect box = noteBox(size, below);
+  constexpr QSize kPadding_px(16, 8);
+  constexpr int kOutside_px = 12;
+  const QSize room = size() - kPadding_px - QSize(kOutside_px, 0);
+  const QRect lines = painter.fontMetrics().boundingRect({QPoint(), room}, kWrapped, text);
+  const QRect box = noteBox(lines.size() + kPadding_px, below);
   QColor background = theme().window;
   background.setAlphaF(0.85f);
   painter.setRenderHint(QPainter::Antialiasing);
@@ -174,7 +178,7 @@ void EventView::paintNote(QPainter& painter, const QString& text, bool below) co
   painter.setBrush(background);
   painter.drawRoundedRect(box, 4, 4);
   painter.setPen(theme().text);
-  painter.drawText(box, Qt::AlignCenter, text);
+  painter.drawText(box.marginsRemoved({8, 4, 8, 4}), kWrapped, text);
 }
 
 void EventView::paintEvent(QPaintEvent*) {
