@@ -16,6 +16,7 @@ inline constexpr int kChanged =
     3;  // of a check: the old result does not hold; of a repeat: recordings differ
 inline constexpr int kCannotTell = 4;  // of a check: this recording does not say
 
+void addBatchCommand(CLI::App& app, int& exit_code);
 void addBoardCommand(CLI::App& app, int& exit_code);
 void addCalibrateCommand(CLI::App& app, int& exit_code);
 void addCheckCommand(CLI::App& app, int& exit_code);

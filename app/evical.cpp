@@ -29,6 +29,7 @@ void addCommands(CLI::App& app, int& exit_code) {
   addCalibrateCommand(app, exit_code);
   addCheckCommand(app, exit_code);
   addRepeatCommand(app, exit_code);
+  addBatchCommand(app, exit_code);
   addIntrinsicsCommand(app, exit_code);
   addDetectCommand(app, exit_code);
   addInspectCommand(app, exit_code);

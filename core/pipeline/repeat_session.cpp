@@ -1,12 +1,12 @@
 #include "core/pipeline/repeat_session.h"
 
+#include "core/base/distinct_names.h"
 #include "core/base/error.h"
 #include "core/pipeline/session_keys.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <optional>
 #include <set>
 #include <system_error>
@@ -136,34 +136,10 @@ void checkApart(const std::vector<Session>& sessions) {
     }
 }
 
-std::string fitForFolders(std::string name) {
-  for (char& letter : name)
-    if (std::isalnum(static_cast<unsigned char>(letter)) == 0 && letter != '-' && letter != '_' &&
-        letter != '.')
-      letter = '_';
-  return name.empty() || name.find_first_not_of('.') == std::string::npos ? "recording" : name;
-}
-
-// Of a recording "left/recording.bag" beside "right/recording.bag" the folder says more.
 std::vector<std::string> namesFor(const std::vector<Session>& sessions) {
-  std::vector<std::string> by_file, by_folder;
-  for (const Session& session : sessions) {
-    std::error_code error;
-    std::filesystem::path path = std::filesystem::weakly_canonical(session.recording, error);
-    if (error || path.empty()) path = session.recording;
-    by_file.push_back(fitForFolders(path.stem().string()));
-    by_folder.push_back(fitForFolders(path.parent_path().filename().string()));
-  }
-  const auto differ = [](const std::vector<std::string>& names) {
-    return std::set<std::string>(names.begin(), names.end()).size() == names.size();
-  };
-  std::vector<std::string> names = differ(by_file) || !differ(by_folder) ? by_file : by_folder;
-  std::set<std::string> taken;
-  for (std::string& name : names) {
-    const std::string stem = name;
-    for (int k = 2; !taken.insert(name).second; ++k) name = fmt::format("{}_{}", stem, k);
-  }
-  return names;
+  std::vector<std::filesystem::path> recordings;
+  for (const Session& session : sessions) recordings.push_back(session.recording);
+  return distinctNames(recordings);
 }
 
 }  // namespace

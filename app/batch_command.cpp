@@ -1,0 +1,131 @@
+#include "app/batch_lines.h"
+#include "app/commands.h"
+#include "app/console.h"
+#include "app/output.h"
+#include "app/slurm.h"
+#include "app/version.h"
+#include "core/base/error.h"
+#include "core/base/nearest_name.h"
+#include "core/pipeline/batch_run.h"
+#include "core/pipeline/batch_table.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace evical {
+namespace {
+
+struct BatchArguments {
+  std::string jobs, output, job, slurm_options;
+  int at_once = 0, memory_limit_mb = 0;  // 0: as the file says
+  bool slurm = false, collect = false, quiet = false;
+};
+
+Batch batchFrom(const BatchArguments& arguments) {
+  Batch batch = readBatch(arguments.jobs);
+  if (arguments.at_once > 0) batch.at_once = arguments.at_once;
+  if (arguments.memory_limit_mb > 0) batch.memory_limit_mb = arguments.memory_limit_mb;
+  if (arguments.job.empty()) return batch;
+  std::vector<std::string> names;
+  for (const BatchJob& job : batch.jobs) names.push_back(job.name);
+  const auto found = std::find(names.begin(), names.end(), arguments.job);
+  if (found == names.end())
+    throw badInput(arguments.jobs, "has no job '" + arguments.job + "'", nameAdvice(arguments.job, names));
+  batch.jobs = {batch.jobs[static_cast<std::size_t>(found - names.begin())]};
+  return batch;
+}
+
+std::filesystem::path thisProgram() {
+  return std::filesystem::read_symlink("/proc/self/exe");
+}
+
+int tellTable(const BatchArguments& arguments, const Batch& batch, std::vector<JobOutcome> outcomes) {
+  const std::vector<BatchRow> rows = batchRows(batch, std::move(outcomes), arguments.output);
+  writeBatchFiles(arguments.output, rows, kVersion);
+  print("{}", batchText(rows));
+  if (!arguments.quiet) print("Files are in {}\n", arguments.output);
+  return allDone(rows) ? kDone : kFailed;
+}
+
+// One of an array's tasks: the table is for who collects.
+int runOne(const Batch& batch, const BatchPlace& place, BatchWatcher& watcher) {
+  const JobOutcome outcome = runBatch(batch, place, watcher, stopOnSignals()).front();
+  if (outcome.end == JobEnd::Done) return kDone;
+  throw CalibrationError(outcome.end == JobEnd::BadInput ? ErrorKind::BadInput : ErrorKind::CalibrationFailed,
+                         batch.jobs.front().name, outcome.reason.empty() ? "cancelled" : outcome.reason);
+}
+
+int run(const BatchArguments& arguments) {
+  const Batch batch = batchFrom(arguments);
+  std::error_code ignored;
+  const std::filesystem::path folder =
+      std::filesystem::absolute(arguments.output, ignored).lexically_normal();
+  if (arguments.collect) {
+    if (!std::filesystem::is_directory(folder / "jobs", ignored))
+      throw badInput(arguments.output, "holds no batch", "Name the folder that 'evical batch -o' was given");
+    std::vector<JobOutcome> outcomes = collectBatch(batch, folder);
+    addQueueStates(batch, folder, outcomes);
+    return tellTable(arguments, batch, std::move(outcomes));
+  }
+  makeBatchFolder(folder);
+  if (arguments.slurm) {
+    print("{}\n", submitToSlurm(batch, {thisProgram(), folder, arguments.slurm_options}));
+    return kDone;
+  }
+  BatchLines lines(batch.jobs.size(), arguments.quiet);
+  const BatchPlace place{folder, thisProgram(), !arguments.job.empty()};
+  if (!arguments.job.empty()) return runOne(batch, place, lines);
+  const std::stop_token stop = stopOnSignals();
+  std::vector<JobOutcome> outcomes = runBatch(batch, place, lines, stop);
+  const int exit_code = tellTable(arguments, batch, std::move(outcomes));
+  if (stop.stop_requested()) throw Cancelled{};
+  return exit_code;
+}
+
+void addPlaces(CLI::App& command, BatchArguments& arguments) {
+  command.add_option("JOBS", arguments.jobs, "File that lists the jobs (docs/clusters.md)")->required();
+  command.add_option("-o,--output", arguments.output, "Folder for the results, one in it for each job")
+      ->required();
+  command
+      .add_option("--at-once", arguments.at_once, "Jobs that run at the same time; default: at_once of JOBS")
+      ->check(CLI::Range(1, 1024));
+  command
+      .add_option("--memory-limit", arguments.memory_limit_mb,
+                  "MB that a job may use; default: memory_limit_mb of JOBS")
+      ->check(CLI::Range(1, 1 << 24));
+  command.add_flag("--quiet", arguments.quiet, "Only the table and errors");
+}
+
+}  // namespace
+
+void addBatchCommand(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<BatchArguments>();
+  CLI::App* const command = app.add_subcommand(
+      "batch", "Many recordings, each calibrated alone, over the cores of one machine or a cluster");
+  addPlaces(*command, *arguments);
+  CLI::Option* const job =
+      command->add_option("--job", arguments->job, "Only the job of this name, as an array's task does");
+  CLI::Option* const slurm = command->add_flag("--slurm", arguments->slurm,
+                                               "Write FOLDER/slurm.sh and submit it: a task for each job");
+  command
+      ->add_option("--slurm-options", arguments->slurm_options,
+                   "More options of sbatch, in one string: \"--partition=short --time=30\"")
+      ->needs(slurm);
+  CLI::Option* const collect =
+      command->add_flag("--collect", arguments->collect, "Only the table of what has ended so far");
+  slurm->excludes(job)->excludes(collect);
+  collect->excludes(job);
+  command->footer(
+      "Run again, it goes on where it was stopped. Exit codes: 0 all have a result; 1 some have not, the "
+      "table "
+      "says why, or cancelled; 2 bad usage or file of jobs.");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace evical

@@ -1,0 +1,131 @@
+#include "app/slurm.h"
+
+#include "core/base/atomic_file.h"
+#include "core/base/child_process.h"
+#include "core/base/error.h"
+#include "core/base/shell_word.h"
+#include "core/base/yaml_node.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+namespace evical {
+namespace {
+
+std::filesystem::path scriptOf(const std::filesystem::path& folder) {
+  return folder / "slurm.sh";
+}
+std::filesystem::path submittedOf(const std::filesystem::path& folder) {
+  return folder / "jobs" / "slurm.yaml";
+}
+
+std::string scriptText(const Batch& batch, const SlurmRequest& request,
+                       const std::vector<std::string>& names) {
+  std::string text = "#!/bin/bash\n#SBATCH --job-name=evical\n";
+  text += fmt::format("#SBATCH --array=0-{}\n#SBATCH --cpus-per-task={}\n", names.size() - 1, batch.threads);
+  if (batch.memory_limit_mb > 0) text += fmt::format("#SBATCH --mem={}M\n", batch.memory_limit_mb);
+  // A node that is lost gives its tasks back; what they print goes on in the same file.
+  text += fmt::format("#SBATCH --requeue\n#SBATCH --open-mode=append\n#SBATCH --output={}\n",
+                      (request.folder / "jobs" / "slurm-%a.txt").string());
+  text += "jobs=(";
+  for (const std::string& name : names) text += (text.back() == '(' ? "" : " ") + name;
+  return text + fmt::format(")\nexec {} batch {} -o {} --job \"${{jobs[$SLURM_ARRAY_TASK_ID]}}\"\n",
+                            shellWord(request.program.string()), shellWord(batch.file.string()),
+                            shellWord(request.folder.string()));
+}
+
+std::string contentOf(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.pop_back();
+  return text;
+}
+
+// What a tool of Slurm's says, or nothing where it fails; then `said` has its words.
+std::optional<std::string> askSlurm(std::vector<std::string> command, const std::filesystem::path& folder,
+                                    std::string* said = nullptr) {
+  const std::filesystem::path file = folder / "jobs" / (command.front() + ".txt");
+  ChildProcess process({std::move(command), file, 0, -1});
+  const ProcessEnd end = process.wait();
+  std::string text = contentOf(file);
+  if (said != nullptr) *said = text;
+  return end.exit_code == 0 ? std::optional(std::move(text)) : std::nullopt;
+}
+
+std::vector<std::string> unsettledJobs(const Batch& batch, const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  for (const BatchJob& job : batch.jobs)
+    if (const std::optional<JobOutcome> outcome = readOutcome(folder, job);
+        !outcome || !isSettled(folder, job, *outcome))
+      names.push_back(job.name);
+  return names;
+}
+
+// The id is the last number: sites greet above it, and federations add ";cluster".
+std::string idFrom(const std::string& answer) {
+  const std::string line = answer.substr(answer.rfind('\n') + 1);
+  return line.substr(0, line.find(';'));
+}
+
+std::map<std::string, std::string> queueStates(const std::filesystem::path& folder) {
+  std::map<std::string, std::string> states;
+  const YamlNode submitted = YamlNode::load(submittedOf(folder));
+  const std::vector<YamlNode> names = submitted["jobs"].items();
+  const std::optional<std::string> answer = askSlurm(
+      {"squeue", "--noheader", "--array", "--jobs=" + submitted["id"].text(), "--format=%K %T"}, folder);
+  std::istringstream lines(answer.value_or(""));
+  std::size_t index = 0;
+  for (std::string state; lines >> index >> state;)
+    if (index < names.size()) states[names[index].text()] = state;
+  return states;
+}
+
+}  // namespace
+
+std::string submitToSlurm(const Batch& batch, const SlurmRequest& request) {
+  const std::vector<std::string> names = unsettledJobs(batch, request.folder);
+  if (names.empty()) return "All jobs have ended: nothing was submitted";
+  const std::filesystem::path script = scriptOf(request.folder);
+  writeFileWhole(script, scriptText(batch, request, names));
+  std::vector<std::string> command = {"sbatch", "--parsable"};
+  std::istringstream options(request.options);
+  for (std::string word; options >> word;) command.push_back(word);
+  command.push_back(script.string());
+  std::string said;
+  const std::optional<std::string> answer = askSlurm(std::move(command), request.folder, &said);
+  if (!answer)
+    throw calibrationFailed("sbatch", said.empty() ? "refused the job" : said,
+                            fmt::format("Mend --slurm-options, or {}", script.string()));
+  const std::string id = idFrom(*answer);
+  std::string yaml = fmt::format("evical_slurm: 1\nid: {}\njobs:\n", yamlText(id));
+  for (const std::string& name : names) yaml += fmt::format("  - {}\n", yamlText(name));
+  writeFileWhole(submittedOf(request.folder), yaml);
+  return fmt::format("Submitted {} jobs as Slurm's job {}", names.size(), id);
+}
+
+void addQueueStates(const Batch& batch, const std::filesystem::path& folder, std::span<JobOutcome> outcomes) {
+  std::map<std::string, std::string> states;
+  try {
+    states = queueStates(folder);
+  } catch (const CalibrationError&) {
+    return;  // not submitted, or not on a machine that knows
+  }
+  for (std::size_t k = 0; k < outcomes.size(); ++k) {
+    const auto state = states.find(batch.jobs[k].name);
+    if (state == states.end() || outcomes[k].end != JobEnd::NotRun) continue;
+    std::string word = state->second;
+    std::transform(word.begin(), word.end(), word.begin(),
+                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    outcomes[k].end = JobEnd::Elsewhere;
+    outcomes[k].reason = "is in Slurm's queue: " + word;
+  }
+}
+
+}  // namespace evical
