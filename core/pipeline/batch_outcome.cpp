@@ -3,11 +3,13 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/yaml_node.h"
+#include "core/pipeline/session.h"
+#include "core/pipeline/session_keys.h"
 
 #include <fmt/format.h>
 
 #include <array>
-#include <chrono>
+#include <span>
 #include <system_error>
 
 namespace evical {
@@ -26,6 +28,23 @@ std::string stampOf(const char* role, const std::filesystem::path& path) {
                      changed.time_since_epoch().count());
 }
 
+// Of a session that can't be read none but the job's own: its job will say so.
+std::vector<std::filesystem::path> recordingsOf(const BatchJob& job) {
+  std::vector<std::filesystem::path> recordings = {job.recording};
+  try {
+    const Session session = readSessionOfRun(job.session);
+    if (job.recording.empty()) {
+      recordings = {session.recording};
+      recordings.insert(recordings.end(), session.more_recordings.begin(), session.more_recordings.end());
+    }
+    for (const SessionCamera& camera : session.cameras) recordings.push_back(camera.recording);
+    for (const SessionImu& imu : session.imus) recordings.push_back(imu.recording);
+  } catch (const CalibrationError&) {
+  }
+  std::erase_if(recordings, [](const std::filesystem::path& path) { return path.empty(); });
+  return recordings;
+}
+
 }  // namespace
 
 const char* jobEndName(JobEnd end) {
@@ -34,7 +53,8 @@ const char* jobEndName(JobEnd end) {
 
 std::vector<std::string> inputsOf(const BatchJob& job) {
   std::vector<std::string> inputs = {stampOf("session", job.session)};
-  if (!job.recording.empty()) inputs.push_back(stampOf("recording", job.recording));
+  for (const std::filesystem::path& recording : recordingsOf(job))
+    inputs.push_back(stampOf("recording", recording));
   for (const std::string& setting : job.settings) inputs.push_back("set " + setting);
   return inputs;
 }
