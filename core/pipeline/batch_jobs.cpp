@@ -89,7 +89,7 @@ void nameJobs(const YamlNode& list, std::vector<BatchJob>& jobs) {
   std::size_t next = 0;
   for (BatchJob& job : jobs) {
     if (!job.name.empty()) continue;
-    const std::string stem = names.at(next++);
+    const std::string& stem = names.at(next++);
     job.name = stem;
     for (int k = 2; !taken.insert(job.name).second; ++k) job.name = fmt::format("{}_{}", stem, k);
   }

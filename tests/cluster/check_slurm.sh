@@ -121,7 +121,7 @@ head -c $(($(stat -c %s "$recording") * 7 / 10)) "$recording" >"$scratch/data/cu
 {
   echo "evical_batch: 1"
   echo "session: $simulated/short_bag/session.yaml"
-  echo "set: {time_range_s: '[0, 3.2]'}"
+  echo "set: {time_range_s: '[0, 5]'}"
   echo "jobs:"
   for k in $(seq -w 18); do
     ln -s "$recording" "$scratch/data/$k.bag"
@@ -146,7 +146,7 @@ kill_node n2
 
 queue_empty() { [ -z "$(squeue --noheader)" ]; }
 within 120 queue_empty || fail "the queue does not end: $(squeue 2>&1; sinfo 2>&1)"
-sinfo --noheader --Node --format='%n %T' | grep -q '^n2 down' || fail "n2 was not lost: $(sinfo --Node 2>&1)"
+sinfo --noheader --Node --format='%N %T' | grep -q '^n2 down' || fail "n2 was not lost: $(sinfo --Node 2>&1)"
 
 "$evical" batch "$scratch/jobs.yaml" -o "$cluster" --collect >"$scratch/log/collected" || true
 "$evical" batch "$scratch/jobs.yaml" -o "$machine" >"$scratch/log/machine" || true
