@@ -144,6 +144,9 @@ Protocol runRig(const std::filesystem::path& file, const Arguments& arguments) {
              repeat.columns.size(), cell(rotation, 1.0, 4), cell(translation, kCentimetres, 4),
              cell(offset, 1.0, 4), repeat.rms_ratio, joint, protocol.calibrating_s, repeat.reason);
   std::fflush(stdout);
+  for (const RepeatedRecording& recording : repeat.recordings)
+    if (recording.outcome != RepeatOutcome::Fits)
+      fmt::print(stderr, "{}: {}: {}\n", file.stem().string(), recording.name, recording.reason);
   return protocol;
 }
 
