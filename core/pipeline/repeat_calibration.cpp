@@ -49,10 +49,12 @@ struct One {
 
 // What a copy of a file under another name gives: the same to the last bit.
 bool sameData(const CalibrationResult& a, const CalibrationResult& b) {
-  return a.start_ns == b.start_ns &&
-         a.state.cameras.front().reference_from_camera.translation_m ==
-             b.state.cameras.front().reference_from_camera.translation_m &&
-         a.state.cameras.front().time_offset_s == b.state.cameras.front().time_offset_s;
+  // Of the reference, where it is a camera, all recordings say the same.
+  const auto same = [](const CameraState& left, const CameraState& right) {
+    return left.reference_from_camera.translation_m == right.reference_from_camera.translation_m &&
+           left.time_offset_s == right.time_offset_s;
+  };
+  return a.start_ns == b.start_ns && std::ranges::equal(a.state.cameras, b.state.cameras, same);
 }
 
 // Residuals and the like take most of a result's memory, and nothing of them is needed.
