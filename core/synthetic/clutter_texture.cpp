@@ -136,10 +136,23 @@ ClutterTexture::ClutterTexture(const ClutterTextureOptions& options) {
     flat.values[i] = static_cast<float>(std::clamp(std::exp(log_reflectance), kDarkest, kBrightest));
   }
   if (options.blur_texels > 0.05) blur(flat, options.blur_texels);
+  takeLog(flat.values);
+}
+
+ClutterTexture::ClutterTexture(const ClutterTexture& sharper, double blur_texels) {
+  Image image(kSize);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x)
+      image.at(x, y) = std::exp(sharper.texels_[static_cast<std::size_t>(y * kStride + x)]);
+  blur(image, blur_texels);
+  takeLog(image.values);
+}
+
+void ClutterTexture::takeLog(const std::vector<float>& reflectance) {
   texels_.reserve(static_cast<std::size_t>(kSize) * kStride);
-  for (int y = 0; y < kSize; ++y) {
-    for (int x = 0; x < kStride; ++x) texels_.push_back(std::log(flat.at(x, y)));
-  }
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kStride; ++x)
+      texels_.push_back(std::log(reflectance[static_cast<std::size_t>(y * kSize + (x & (kSize - 1)))]));
 }
 
 }  // namespace evical

@@ -17,6 +17,8 @@ struct ClutterTextureOptions {
 class ClutterTexture {
  public:
   explicit ClutterTexture(const ClutterTextureOptions& options);
+  // The same picture through further blur.
+  ClutterTexture(const ClutterTexture& sharper, double blur_texels);
 
   // Log reflectance, bilinear; finite coordinates within +-kReach texels, beyond them the border's.
   float operator()(float x_texels, float y_texels) const {
@@ -38,6 +40,8 @@ class ClutterTexture {
   static float clamped(float value, float reach) {
     return value < -reach ? -reach : (value < reach ? value : reach);  // NaN becomes reach
   }
+
+  void takeLog(const std::vector<float>& reflectance);
 
   std::vector<float> texels_;
 };

@@ -41,6 +41,7 @@ PixelArray::PixelArray(const Scenario& scenario, std::size_t camera)
     return std::max(1.0 + model_.threshold_mismatch * random.normal(), kLeastFactor);
   };
   findOwnLight();
+  if (scenario.room.isThere()) room_ = std::make_unique<RoomRenderer>(scenario, camera);
   for (Pixel& pixel : pixels_) {
     pixel.threshold_on = static_cast<float>(model_.threshold_on * factor());
     pixel.threshold_off = static_cast<float>(model_.threshold_off * factor());
@@ -67,8 +68,9 @@ void PixelArray::reset(const RigidTransform& world_from_camera) {
   Random random(scenario_.seed, kReferenceStream + camera_);
   if (scenario_.scene.blink_hz > 0.0)
     flashing_ = std::make_unique<FlashingBoard>(scenario_, camera_, world_from_camera);
-  const SceneRenderer::Instant instant = renderer_.at(world_from_camera, 0.0);
   Scratch scratch;
+  if (room_) return resetInRoom(world_from_camera, scratch);
+  const SceneRenderer::Instant instant = renderer_.at(world_from_camera, 0.0);
   for (int row = 0; row < renderer_.tileRows(); ++row) {
     for (int column = 0; column < renderer_.tileColumns(); ++column) {
       const SceneRenderer::Tile tile = renderer_.tile(column, row);
@@ -81,13 +83,17 @@ void PixelArray::reset(const RigidTransform& world_from_camera) {
         if (flashing_)
           pixel.level = pixel.input =
               std::log(flashing_->last(static_cast<std::size_t>(&pixel - pixels_.data())).shown);
-        const auto part = static_cast<float>(random.uniform());
-        pixel.reference =
-            pixel.level + part * (pixel.threshold_on + pixel.threshold_off) - pixel.threshold_on;
+        settle(pixel.input, static_cast<float>(random.uniform()), pixel);
       }
     }
   }
   std::fill(settled_.begin(), settled_.end(), kMoving);
+}
+
+// On what it sees, its reference at this part of the way between its thresholds.
+void PixelArray::settle(float input, float part, Pixel& pixel) const {
+  pixel.level = pixel.input = input;
+  pixel.reference = pixel.level + part * (pixel.threshold_on + pixel.threshold_off) - pixel.threshold_on;
 }
 
 PixelArray::Response PixelArray::responseWith(double constant_s, double length_s) const {
@@ -140,6 +146,7 @@ void PixelArray::begin(double begin_s, double end_s,
   begin_s_ = begin_s;
   end_s_ = end_s;
   if (flashing_) return flashing_->begin(world_from_camera_at(end_s));
+  if (room_) return beginInRoom(world_from_camera_at);
   const auto instantAt = [&](double time_s) { return renderer_.at(world_from_camera_at(time_s), time_s); };
   const SceneRenderer::Instant first = instantAt(begin_s), middle = instantAt(0.5 * (begin_s + end_s)),
                                last = instantAt(end_s);
@@ -185,6 +192,7 @@ void PixelArray::runFlashingRow(int tile_row, std::vector<Event>& events) {
 
 void PixelArray::runTileRow(int tile_row, Scratch& scratch, std::vector<Event>& events) {
   if (flashing_) return runFlashingRow(tile_row, events);
+  if (room_) return runRoomRow(tile_row, scratch, events);
   const int all = static_cast<int>(instants_.size()) - 1;
   const SceneRenderer::Instants ends = {&instants_.front(), &instants_[instants_.size() / 2],
                                         &instants_.back()};

@@ -3,6 +3,7 @@
 
 #include "core/data/event.h"
 #include "core/synthetic/flashing_board.h"
+#include "core/synthetic/room_renderer.h"
 #include "core/synthetic/scene_renderer.h"
 
 #include <cstdint>
@@ -33,6 +34,7 @@ class PixelArray {
   struct Scratch {
     SceneRenderer::TileView view;
     std::vector<float> input;
+    RoomRenderer::TileView room_view = {};
   };
   void runTileRow(int tile_row, Scratch& scratch, std::vector<Event>& events);
 
@@ -58,6 +60,10 @@ class PixelArray {
 
   void advance(const Step& step, float input, int x, int y, Pixel& pixel, std::vector<Event>& events) const;
   void runFlashingRow(int tile_row, std::vector<Event>& events);
+  void beginInRoom(const std::function<RigidTransform(double)>& world_from_camera_at);
+  void runRoomRow(int tile_row, Scratch& scratch, std::vector<Event>& events);
+  void resetInRoom(const RigidTransform& world_from_camera, Scratch& scratch);
+  void settle(float input, float part, Pixel& pixel) const;
   void emitCrossings(const Step& step, double before, double after, int x, int y, Pixel& pixel,
                      std::vector<Event>& events) const;
   void findOwnLight();
@@ -73,6 +79,7 @@ class PixelArray {
   const EventPixelModel& model_;
   SceneRenderer renderer_;
   std::unique_ptr<FlashingBoard> flashing_;  // where the board blinks, in the renderer's place
+  std::unique_ptr<RoomRenderer> room_;       // where there is a room, the same
   int width_px_;
   float step_travel_px_;
   // Whether pixels may be left alone where nothing moves, and whether the lamp alone makes them fire.
@@ -83,6 +90,7 @@ class PixelArray {
 
   double begin_s_ = 0.0, end_s_ = 0.0;
   std::vector<SceneRenderer::Instant> instants_;  // a power of two and one, evenly spaced from begin to end
+  std::vector<RoomRenderer::Instant> room_instants_;  // the same
 };
 
 }  // namespace evical

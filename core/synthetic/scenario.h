@@ -133,6 +133,9 @@ struct MotionModel {
   double turn_period_s = 4.0;
   double tilt_amplitude_rad = 0.0;  // and about its x axis
   double tilt_period_s = 7.0;
+  // Where it walks to and fro on top of all that, along the world's axes; at a third to three times the period.
+  Eigen::Vector3d walk_amplitude_m = Eigen::Vector3d::Zero();
+  double walk_period_s = 8.0;
   double lowest_frequency_hz = 0.3;  // before scaling to the speed
   double highest_frequency_hz = 1.2;
   int sinusoids = 3;
@@ -188,6 +191,19 @@ struct SceneModel {
   PeopleModel people = {};
 };
 
+// A room in the board's place: a box that is seen from inside, and boxes in it, all covered with the clutter's picture.
+// There is none while it has no size; then there is a board.
+struct RoomModel {
+  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();    // along the world's axes, of which y points down
+  Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();  // from the board's middle
+  int boxes = 10;
+  double smallest_box_m = 0.15, largest_box_m = 0.6;  // half sides
+  double free_radius_m = 1.0;                         // around the room's middle no box stands
+  double texel_m = 0.003;                             // of the picture, whose finest structure is twice that
+  double tone = 0.4;                                  // sigma of the sides' own log reflectance
+  bool isThere() const { return size_m.minCoeff() > 0.0; }
+};
+
 // What the session says wrongly, relative to the truth.
 struct SessionErrors {
   double spacing = 0.0, focal_length = 0.0;  // 0.01: 1 % too large
@@ -216,6 +232,7 @@ struct Scenario {
   SimulatedBow board_bow = {};
   std::vector<SimulatedBoard> further_boards = {};
   SceneModel scene;
+  RoomModel room = {};
   MotionModel motion;
   Eigen::Vector3d gravity_in_world_m_s2 = {0.0, 9.81, 0.0};  // the board hangs upright: y points down
   std::vector<SimulatedCamera> cameras;

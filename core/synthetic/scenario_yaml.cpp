@@ -5,6 +5,7 @@
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
+#include "core/synthetic/room_scene.h"
 #include "core/synthetic/scenario_boards.h"
 #include "core/synthetic/scenario_fields.h"
 #include "core/synthetic/visitors.h"
@@ -120,7 +121,7 @@ void readMotion(const YamlNode& map, MotionModel& motion) {
   map.allowOnly({"distance_m", "distance_amplitude_m", "angle_amplitude_deg", "target_amplitude_m",
                  "roll_deg", "lowest_frequency_hz", "highest_frequency_hz", "sinusoids", "image_speed_px_s",
                  "turn_deg", "turn_amplitude_deg", "turn_period_s", "tilt_amplitude_deg", "tilt_period_s",
-                 "hand"});
+                 "walk_amplitude_m", "walk_period_s", "hand"});
   double roll_deg = motion.roll_rad / kRadPerDeg, turn_deg = motion.turn_rad / kRadPerDeg,
          turn_amplitude_deg = motion.turn_amplitude_rad / kRadPerDeg,
          tilt_amplitude_deg = motion.tilt_amplitude_rad / kRadPerDeg;
@@ -138,6 +139,8 @@ void readMotion(const YamlNode& map, MotionModel& motion) {
   get(map, "turn_period_s", motion.turn_period_s, 0.01, 1000.0, "s");
   get(map, "tilt_amplitude_deg", tilt_amplitude_deg, 0.0, 180.0, "deg");
   get(map, "tilt_period_s", motion.tilt_period_s, 0.01, 1000.0, "s");
+  get(map, "walk_amplitude_m", motion.walk_amplitude_m, 0.0, 100.0);
+  get(map, "walk_period_s", motion.walk_period_s, 0.1, 1000.0, "s");
   if (const auto node = map.find("hand")) readHand(*node, motion.hand);
   motion.roll_rad = roll_deg * kRadPerDeg;
   motion.turn_rad = turn_deg * kRadPerDeg;
@@ -336,6 +339,7 @@ void shareSensors(const std::string& file, std::vector<SimulatedCamera>& cameras
 // What can be wrong only once a scenario and its bases are put together.
 void validateWhole(const Scenario& scenario, const std::string& file) {
   validateBoards(scenario, file);
+  validateRoom(scenario, file);
   for (std::size_t k = 0; k < scenario.cameras.size(); ++k) {
     const SimulatedCamera& camera = scenario.cameras[k];
     validate(camera.intrinsics, fmt::format("{}: intrinsics of {}", file, camera.name));
@@ -353,7 +357,7 @@ void validateWhole(const Scenario& scenario, const std::string& file) {
 Scenario readFrom(const std::filesystem::path& path, int depth) {
   const YamlNode root = YamlNode::load(path);
   root.allowOnly({"base", "description", "seed", "duration_s", "format", "gravity_m_s2", "gravity_norm_m_s2",
-                  "board", "further_boards", "scene", "motion", "camera", "cameras", "imu", "imus",
+                  "board", "further_boards", "scene", "room", "motion", "camera", "cameras", "imu", "imus",
                   "session"});
   Scenario scenario;
   scenario.cameras.resize(1);
@@ -374,6 +378,7 @@ Scenario readFrom(const std::filesystem::path& path, int depth) {
   if (const auto node = root.find("board")) readBoard(*node, scenario);
   if (const auto node = root.find("further_boards")) readFurtherBoards(*node, scenario);
   if (const auto node = root.find("scene")) readScene(*node, scenario.scene);
+  if (const auto node = root.find("room")) readRoom(*node, scenario.room);
   if (const auto node = root.find("motion")) readMotion(*node, scenario.motion);
   readSensors(root, "camera", "cameras", false, scenario.cameras, readCamera);
   readSensors(root, "imu", "imus", true, scenario.imus, readImu);

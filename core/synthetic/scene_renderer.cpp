@@ -26,7 +26,9 @@ double texelsPerPixel(const Scenario& scenario) {
 }
 
 ClutterTextureOptions textureOptions(const Scenario& scenario, std::size_t camera) {
-  return {scenario.seed, scenario.scene.clutter_contrast, scenario.scene.clutter_object_share,
+  // In a room this picture is not seen, and an even one costs nothing.
+  const double contrast = scenario.room.isThere() ? 0.0 : scenario.scene.clutter_contrast;
+  return {scenario.seed, contrast, scenario.scene.clutter_object_share,
           effectiveBlur_px(scenario.cameras[camera].pixel) * texelsPerPixel(scenario)};
 }
 

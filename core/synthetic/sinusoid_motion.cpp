@@ -13,6 +13,7 @@ namespace evical {
 namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr double kWalkSpread = 3.0;  // of its frequencies, about one in its period
 
 // Whatever the standard library: the same numbers from the same seed.
 double uniform(std::mt19937_64& generator) {
@@ -58,16 +59,19 @@ SinusoidMotion::SinusoidMotion(const Scenario& scenario)
       camera_from_imu_(inverse(scenario.cameras.front().imu_from_camera)) {
   const MotionModel& m = scenario.motion;
   std::mt19937_64 generator(scenario.seed * 7919 + 17);
-  const std::array<double, kQuantities> amplitudes = {m.angle_amplitude_rad.x(), m.angle_amplitude_rad.y(),
-                                                      m.angle_amplitude_rad.z(), m.target_amplitude_m.x(),
-                                                      m.target_amplitude_m.y(),  m.distance_amplitude_m};
+  const std::array<double, kQuantities> amplitudes = {
+      m.angle_amplitude_rad.x(), m.angle_amplitude_rad.y(), m.angle_amplitude_rad.z(),
+      m.target_amplitude_m.x(),  m.target_amplitude_m.y(),  m.distance_amplitude_m,
+      m.walk_amplitude_m.x(),    m.walk_amplitude_m.y(),    m.walk_amplitude_m.z()};
   for (std::size_t q = 0; q < kQuantities; ++q) {
     for (int k = 0; k < m.sinusoids; ++k) {
       // Frequencies spread evenly in the logarithm, each shifted at random, so that
       // no two axes move together.
       const double part = (k + uniform(generator)) / m.sinusoids;
-      const double frequency =
-          m.lowest_frequency_hz * std::pow(m.highest_frequency_hz / m.lowest_frequency_hz, part);
+      const bool walks = q >= WalkX;
+      const double lowest_hz = walks ? 1.0 / (kWalkSpread * m.walk_period_s) : m.lowest_frequency_hz,
+                   highest_hz = walks ? kWalkSpread / m.walk_period_s : m.highest_frequency_hz;
+      const double frequency = lowest_hz * std::pow(highest_hz / lowest_hz, part);
       const double share = std::sqrt(1.0 / m.sinusoids);
       sinusoids_[q].push_back({amplitudes[q] * share, kTwoPi * frequency, kTwoPi * uniform(generator)});
     }
@@ -159,6 +163,10 @@ MotionState SinusoidMotion::gazeAt(double time_s) const {
                                      rotation * (d.second * z + 2.0 * d.first * turned + distance * bent);
   state.angular_velocity_in_body_rad_s = w;
   state.angular_acceleration_in_body_rad_s2 = dw;
+  const Value walk_x = at(WalkX, time_s), walk_y = at(WalkY, time_s), walk_z = at(WalkZ, time_s);
+  state.world_from_body.translation_m += Eigen::Vector3d(walk_x.value, walk_y.value, walk_z.value);
+  state.velocity_in_world_m_s += Eigen::Vector3d(walk_x.first, walk_y.first, walk_z.first);
+  state.acceleration_in_world_m_s2 += Eigen::Vector3d(walk_x.second, walk_y.second, walk_z.second);
   return state;
 }
 

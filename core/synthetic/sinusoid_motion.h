@@ -41,7 +41,7 @@ class SinusoidMotion {
  private:
   using Sinusoid = MotionSinusoid;
   using Value = MotionValue;
-  enum Quantity { AngleX, AngleY, AngleZ, TargetX, TargetY, Distance, kQuantities };
+  enum Quantity { AngleX, AngleY, AngleZ, TargetX, TargetY, Distance, WalkX, WalkY, WalkZ, kQuantities };
 
   void addHand();
   Value at(Quantity quantity, double time_s) const;

@@ -1,0 +1,79 @@
+// Log intensity of a furnished room, as the blurred image has it: SceneRenderer's tiles with another scene. Along a ray
+// there is the picture on the nearest side; where sides meet, as much of each as the pixel sees of it.
+#pragma once
+
+#include "core/geometry/rigid_transform.h"
+#include "core/synthetic/clutter_texture.h"
+#include "core/synthetic/room_scene.h"
+#include "core/synthetic/scene_renderer.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace evical {
+
+class RoomRenderer {
+ public:
+  RoomRenderer(const Scenario& scenario, std::size_t camera);
+
+  // From rays (x/z, y/z) to metres on a side, of which the third coordinate is 1/z.
+  struct PlacedSide {
+    Eigen::Matrix3f side_from_ray;
+    bool faces = false;  // it is seen from its front
+  };
+  struct Instant {
+    RigidTransform camera_from_world;
+    std::array<PlacedSide, 6> walls;
+    std::vector<std::array<PlacedSide, 6>> boxes;
+    std::vector<Eigen::Vector3d> box_middles_m;  // in the camera
+  };
+  Instant at(const RigidTransform& world_from_camera) const;
+
+  using Tile = SceneRenderer::Tile;
+  using Instants = std::array<const Instant*, 3>;
+  struct TileView {
+    int wall = -1;           // the only one there; -1: several
+    std::vector<int> boxes;  // that may be seen there, the nearest first
+    float travel_px = 0.0f;  // how far the image moves there, at most
+  };
+  void look(const Tile& tile, const Instants& instants, TileView& view) const;
+  // Row by row.
+  void render(const Instant& instant, const Tile& tile, const TileView& view, float* log_intensity) const;
+
+ private:
+  struct Cone {
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+    double half_angle_rad = 0.0;
+  };
+  // A tile's picture on one side: the two blurs between which it is.
+  struct Sharpness {
+    std::size_t level = 0;
+    float part = 0.0f;
+  };
+
+  Cone coneOf(const Tile& tile) const;
+  int nearestWall(const Instant& instant, const Eigen::Vector2f& ray, float* inverse_depth) const;
+  float travel(std::size_t pixel, float inverse_depth_1_m, const Instants& instants) const;
+  Sharpness sharpnessOn(const PlacedSide& side, const Tile& tile) const;
+  float picture(const RoomSide& side, const Eigen::Vector2f& place_m, const Sharpness& sharpness) const;
+  float onWall(const Instant& instant, int wall, const Eigen::Vector2f& ray,
+               const Sharpness& sharpness) const;
+  float onWalls(const Instant& instant, std::size_t pixel, const std::array<Sharpness, 6>& sharpness) const;
+  float coverOf(const RoomSide& side, const PlacedSide& placed, std::size_t pixel,
+                Eigen::Vector2f& place_m) const;
+  float lightOfBox(const Instant& instant, int box, std::size_t pixel,
+                   const std::array<Sharpness, 6>& sharpness, float& covered) const;
+
+  RoomScene room_;
+  int width_px_;
+  float blur_px_, texels_per_m_, focal_px_;
+  std::vector<Eigen::Vector2f> rays_;        // per pixel; NaN where there is none
+  std::vector<Eigen::Matrix2f> ray_per_px_;  // d(ray)/d(pixel)
+  std::vector<ClutterTexture> pictures_;     // each twice as blurred as the one before
+  double sharpest_texels_;
+};
+
+}  // namespace evical
