@@ -1,0 +1,18 @@
+// How the time at which an edge passes changes over the image: the slope of that time is one over the edge's speed,
+// along its normal. docs/maths.md, 15.1.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstdint>
+
+namespace evical {
+
+struct EdgeSlope {
+  std::int64_t time_ns;  // when the edge passed this pixel
+  std::uint16_t x_px, y_px;
+  Eigen::Vector2f slope_s_px;  // d(time) / d(pixel)
+  Eigen::Matrix2f shape;       // its covariance, were the times of its neighbourhood known to 1 s
+};
+
+}  // namespace evical

@@ -1,0 +1,71 @@
+// The least squares of rotation_alignment.h; not for other folders.
+#pragma once
+
+#include "core/egomotion/rotation_alignment.h"
+#include "core/egomotion/summed_rates.h"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <vector>
+
+namespace evical {
+
+// Rotation about the IMU's axes, time offset, bias, scale.
+inline constexpr int kAlignmentNumbers = 8;
+using AlignmentVector = Eigen::Matrix<double, kAlignmentNumbers, 1>;
+using AlignmentMatrix = Eigen::Matrix<double, kAlignmentNumbers, kAlignmentNumbers>;
+
+struct AlignmentState {
+  Eigen::Matrix3d imu_from_camera = Eigen::Matrix3d::Identity();
+  double time_offset_s = 0.0;
+  Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
+  double scale = 1.0;
+};
+
+class AlignmentFit {
+ public:
+  // `windows`: those that are used.
+  AlignmentFit(std::vector<const WindowMotion*> windows, const SummedRates& rates,
+               const Eigen::Matrix3d& gyroscope_matrix);
+
+  // Mean rate of the IMU in the window, in its frame, weighed as the window's parts; what changes by a later time.
+  Eigen::Vector3d imuRate_rad_s(const WindowMotion& window, const AlignmentState& state,
+                                Eigen::Vector3d* by_time = nullptr) const;
+
+  // Gauss-Newton from `state`. False where the numbers do not tell it.
+  bool solve(AlignmentState& state);
+
+  // What the last solve() left of each window, in units of how much they scatter: squares of three numbers.
+  const std::vector<double>& squares() const { return squares_; }
+  double medianError_rad_s() const { return median_error_rad_s_; }
+
+  // Normal equations and gradients of parts of the windows at the last solution.
+  struct Part {
+    AlignmentMatrix normal = AlignmentMatrix::Zero();
+    AlignmentVector gradient = AlignmentVector::Zero();
+    std::size_t windows = 0;
+  };
+  Part partOf(const AlignmentState& state, std::size_t first, std::size_t end) const;
+  std::size_t windowCount() const { return windows_.size(); }
+  const WindowMotion& window(std::size_t k) const { return *windows_[k]; }
+
+ private:
+  struct Equation {
+    Eigen::Vector3d error;
+    Eigen::Matrix<double, 3, kAlignmentNumbers> jacobian;
+  };
+  Equation equationOf(std::size_t k, const AlignmentState& state) const;
+  Eigen::Matrix3d weightOf(std::size_t k, const Eigen::Vector3d& error, double* square = nullptr) const;
+  void findScales(const AlignmentState& state);
+
+  std::vector<const WindowMotion*> windows_;
+  const SummedRates& rates_;
+  Eigen::Matrix3d imu_from_measured_;
+  double floor_rad_s_ = 0.01,
+         scale_ = 1.0;  // least sigma of a window; how many times larger all are than said
+  double median_error_rad_s_ = 0.0;
+  std::vector<double> squares_;
+};
+
+}  // namespace evical

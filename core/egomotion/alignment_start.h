@@ -1,0 +1,16 @@
+// Where the alignment may begin: offsets at which camera and gyroscope turn equally fast, each with the rotation that
+// fits then. Not for other folders.
+#pragma once
+
+#include "core/egomotion/alignment_fit.h"
+
+#include <vector>
+
+namespace evical {
+
+// `start` first, the most alike of the others behind it.
+std::vector<AlignmentState> alignmentStarts(const std::vector<const WindowMotion*>& windows,
+                                            const AlignmentFit& fit, const SummedRates& rates,
+                                            const AlignmentState& start, double search_s);
+
+}  // namespace evical

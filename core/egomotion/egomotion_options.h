@@ -1,0 +1,30 @@
+// How a camera's own rotation is found without a board, and beside an IMU's. docs/maths.md, 15.
+#pragma once
+
+#include "core/base/option_struct.h"
+
+namespace evical {
+
+struct EgomotionOptions {
+  double window_s;
+  int least_slopes;
+  int most_slopes;
+  double time_noise_s;
+  double place_noise_px;
+  int depth_columns;
+  int depth_rows;
+  double depth_spread;
+  double least_inliers;
+  double least_speed_px_s;
+  double largest_sigma_rad_s;
+  double block_s;
+  int least_blocks;
+  double search_s;
+
+  EgomotionOptions();  // the defaults
+  constexpr explicit EgomotionOptions(NoDefaults) {}
+  bool operator==(const EgomotionOptions&) const = default;
+  static const OptionTable<EgomotionOptions>& table();
+};
+
+}  // namespace evical

@@ -1,0 +1,53 @@
+// How a camera is turned against an IMU, and how their clocks differ, from the rates at which both turn
+// (docs/maths.md, 15.3):
+//   scale * camera_from_imu * M^-1 (rate_measured(t + time_offset) - bias) = rate_of_camera(t).
+// The scale is that of the image's motion, which is none of what is asked for, and bears what would shrink all rates alike.
+#pragma once
+
+#include "core/data/calibration_state.h"
+#include "core/data/imu_sample.h"
+#include "core/egomotion/egomotion_options.h"
+#include "core/egomotion/window_motion.h"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace evical {
+
+struct GyroscopeRecord {
+  std::span<const ImuSample> samples;
+  std::int64_t start_ns = 0;  // of the recording
+  const ImuState& imu;        // its matrix is taken as it is, its bias as a start
+};
+
+struct AlignmentStart {
+  Eigen::Quaterniond imu_from_camera = Eigen::Quaterniond::Identity();
+  double time_offset_s = 0.0;  // imu_time = camera_time + time_offset_s
+};
+
+struct RotationAlignment {
+  std::string failure;  // why there is none; empty where there is one
+  Eigen::Quaterniond imu_from_camera = Eigen::Quaterniond::Identity();
+  double time_offset_s = 0.0;
+  Eigen::Vector3d gyroscope_bias_rad_s = Eigen::Vector3d::Zero();
+  double scale = 1.0;
+  // Of the rotation about the IMU's axes [rad], and of the time offset [s]: by the scatter of blocks of the recording.
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+  int blocks = 0;
+  double rate_rms_rad_s = 0.0, misfit_rms_rad_s = 0.0;  // of the camera's turning, and of what is left of it
+  Eigen::Vector3d weakest_in_camera =
+      Eigen::Vector3d::Zero();  // axis about which the rotation is known least
+
+  bool found() const { return failure.empty(); }
+};
+
+// Windows that the gyroscope does not cover, or that contradict the others, are marked.
+RotationAlignment alignRotation(std::vector<WindowMotion>& windows, const GyroscopeRecord& gyroscope,
+                                const AlignmentStart& start, const EgomotionOptions& options);
+
+}  // namespace evical

@@ -1,0 +1,66 @@
+// The camera's motion in a short window of time, from how fast edges move along their normals (docs/maths.md, 15.2). The
+// image of a point at (x, y) = (X/Z, Y/Z) moves by A(x, y) w + B(x, y) v / Z, and the time at which an edge passes has the
+// slope g with g . (A w + B v / Z) = 1: whatever the scene is, as long as it stands still.
+#pragma once
+
+#include "core/data/edge_slope.h"
+#include "core/egomotion/egomotion_options.h"
+#include "core/egomotion/lens_rays.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace evical {
+
+using ImageMotion = Eigen::Matrix<double, 2, 3>;  // d(image velocity) / d(angular or linear velocity)
+
+// Of a camera that turns with w and moves with v, both in its own frame: a point that stands still has the velocity
+// -v - w x P in it.
+ImageMotion rotationalMotion(const Eigen::Vector2d& place);
+ImageMotion translationalMotion(const Eigen::Vector2d& place);  // at depth 1
+
+// What became of a window. The rows of windowUseWords.
+enum class WindowUse {
+  Used,
+  FewEdges,      // too few with a speed
+  HardlyMoving,  // the image nearly stands still
+  NotExplained,  // most edges do not move as in a scene that stands still
+  Uncertain,     // the rotation is not told in any direction
+  NoGyroscope,   // the IMU has no samples at that time
+  OutOfLine,     // it contradicts the others: by more than they scatter
+};
+inline constexpr std::size_t kWindowUses = 7;
+const char* windowUseWords(WindowUse use);
+
+struct WindowMotion {
+  static constexpr std::size_t kParts = 8;
+
+  WindowUse use = WindowUse::FewEdges;
+  double begin_s = 0.0, end_s = 0.0;  // on the camera's clock since the recording's start
+  std::array<double, kParts> part_weights =
+      {};  // of equal parts of the window: how much each tells; their sum is 1
+  std::size_t slopes = 0;
+  double inliers = 0.0;                                  // share of them that the motion explains
+  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  // of the camera, in its frame
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d velocity_1_s = Eigen::Vector3d::Zero();  // by the mean depth
+  bool rotation_alone = false;  // which explains the edges as well as rotation and translation do
+
+  double middle_s() const { return 0.5 * (begin_s + end_s); }
+};
+
+struct WindowTime {
+  std::int64_t start_ns = 0;  // of the recording
+  std::int64_t begin_ns = 0;  // of the window
+};
+
+// `use` is Used, or says why not.
+WindowMotion estimateWindowMotion(std::span<const EdgeSlope> slopes, const LensRays& lens, WindowTime time,
+                                  const EgomotionOptions& options);
+
+}  // namespace evical
