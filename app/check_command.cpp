@@ -26,7 +26,7 @@ struct CheckArguments {
   std::vector<std::string> settings;
   std::array<std::string, 4> stabilities;  // as kStabilities
   int threads = 0;
-  bool json = false, quiet = false;
+  bool json = false, quiet = false, no_board = false;
 };
 
 struct StabilityFlag {
@@ -57,6 +57,7 @@ CheckInput inputFrom(const CheckArguments& arguments) {
     if (!arguments.stabilities[k].empty())
       setInSession(input.session, kStabilities[k].option, arguments.stabilities[k]);
   applySettings(arguments.settings, input.session);
+  if (arguments.no_board) input.session.options.check.no_board = true;
   if (arguments.threads > 0) input.session.options.optimisation.threads = arguments.threads;
   return input;
 }
@@ -79,8 +80,9 @@ int run(const CheckArguments& arguments) {
 
 void addCheckCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<CheckArguments>();
-  CLI::App* const command =
-      app.add_subcommand("check", "Is an old calibration still good? A few seconds before the board tell");
+  CLI::App* const command = app.add_subcommand(
+      "check",
+      "Is an old calibration still good? A few seconds before the board tell, or a walk without one");
   command->add_option("RESULT", arguments->result, "Folder of the old calibration, or its result.yaml")
       ->required();
   command->add_option("RECORDING", arguments->recording, "The new recording, or a session of it")->required();
@@ -97,6 +99,9 @@ void addCheckCommand(CLI::App& app, int& exit_code) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command->add_option("--threads", arguments->threads, "Threads of the optimisation")
       ->check(CLI::Range(1, 256));
+  command->add_flag(
+      "--no-board", arguments->no_board,
+      "The recording shows no board: check rotation and time offset by how camera and IMU turn");
   command->add_flag("--json", arguments->json, "Print JSON instead of tables, and nothing else");
   command->add_flag("--quiet", arguments->quiet, "Only the tables and errors");
   command->footer(

@@ -2,6 +2,7 @@
 // by how much it has changed, and how small a change the recording would have shown.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,18 @@ struct CheckedQuantity {
   bool toldEnough() const { return matters <= 0.0 || would_notice <= matters; }
 };
 
+// What became of the windows of a recording without a board.
+struct CheckedWindows {
+  struct LeftOut {
+    std::string key, words;
+    std::size_t windows = 0;
+  };
+  std::string sensor;
+  std::size_t all = 0, used = 0;
+  std::size_t turning_alone = 0;  // used ones in which translation explains no more
+  std::vector<LeftOut> left_out;  // for each reason
+};
+
 struct CalibrationCheck {
   CheckVerdict verdict = CheckVerdict::CannotTell;
   std::string reason;  // a sentence without its full stop
@@ -42,6 +55,8 @@ struct CalibrationCheck {
   std::vector<std::string> or_else;  // what explains the recording as well as what is said to have changed
   std::vector<std::string> advice;   // what to do, where nothing can be told
   std::vector<std::string> notes;
+  bool without_board = false;              // then `windows` says what it rests on
+  std::vector<CheckedWindows> windows;     // by event camera
   double false_alarms = 0.0;               // how often a calibration that has not changed is called changed
   std::string before, recording, version;  // result and recording as people know them
 };

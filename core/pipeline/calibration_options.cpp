@@ -41,6 +41,8 @@ void forEachGroup(Options& all, Visitor&& visit) {
         partOf<VerdictOptions>(all.optimisation));
   visit("report", "What is worked out for the report only", all.report);
   visit("check", "Whether an old calibration still holds", all.check);
+  visit("edge_slopes", "Without a board: how fast edges move, whatever they belong to", all.edge_slopes);
+  visit("egomotion", "Without a board: how the camera turns, beside the gyroscope", all.egomotion);
 }
 
 template <class Options>

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "core/base/option_row.h"
+#include "core/egomotion/egomotion_options.h"
 #include "core/frames/blink_options.h"
 #include "core/frames/frame_options.h"
+#include "core/frontend/edge_slopes.h"
 #include "core/frontend/front_end_options.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/intrinsics/intrinsics_options.h"
@@ -26,6 +28,8 @@ struct CalibrationOptions {
   OptimisationOptions optimisation;
   ReportOptions report;
   CheckOptions check;
+  EdgeSlopeOptions edge_slopes;
+  EgomotionOptions egomotion;
   bool operator==(const CalibrationOptions&) const = default;
 };
 

@@ -1,24 +1,19 @@
 #include "core/pipeline/check_calibration.h"
 
 #include "core/base/error.h"
-#include "core/base/nearest_name.h"
+#include "core/pipeline/check_verdict.h"
+#include "core/pipeline/check_without_board.h"
 #include "core/pipeline/compared_quantities.h"
 #include "core/pipeline/recording_assessment.h"
 #include "core/pipeline/result_files.h"
-#include "core/report/html/html_text.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace evical {
 namespace {
-
-std::string wordsOf(const CheckedQuantity& quantity) {
-  return fmt::format("the {} of {}", quantity.title, quantity.sensor);
-}
 
 // The session as a calibration takes it; that a short recording leaves sigmas large is judged here, not there.
 Session freeSession(const CheckInput& input) {
@@ -27,6 +22,24 @@ Session freeSession(const CheckInput& input) {
   session.options.optimisation.camera_intrinsics = CameraIntrinsicsChoice::Free;
   session.options.report.cross_validation = false;
   return session;
+}
+
+// In how many of the windows and frames of all cameras.
+struct BoardSeen {
+  std::size_t windows = 0, with_board = 0;
+
+  bool isRare(double least_share) const {
+    return windows > 0 && static_cast<double>(with_board) < least_share * static_cast<double>(windows);
+  }
+};
+
+BoardSeen boardSeen(const RecordingPass& pass) {
+  BoardSeen seen;
+  for (const BoardObservations& camera : pass.cameras) {
+    seen.windows += camera.windows.size();
+    seen.with_board += camera.views.size();
+  }
+  return seen;
 }
 
 // As far as numbers go by name: of a run with the same session.
@@ -62,8 +75,8 @@ class Check {
     if (outcome.error) {
       if (outcome.error->kind() == ErrorKind::BadInput) throw CalibrationError(*outcome.error);
       out_.pass = std::move(outcome.pass);
-      cannotTell(outcome.error->place() + ": " + outcome.error->problem());
-      addAdvice(outcome.error->advice());
+      setCannotTell(outcome.error->place() + ": " + outcome.error->problem(), out_.check);
+      addAdvice(outcome.error->advice(), out_.check);
       advise({out_.pass, {}});
       return std::move(out_);
     }
@@ -81,16 +94,7 @@ class Check {
     if (compared.quantities.empty())
       throw badInput(session.source.string(), "nothing that this recording tells is in the old result",
                      "Check with a recording of at least two of its sensors");
-    const ChangeTests tests = testSingleChanges(compared.change, compared.groups, options.false_alarms);
-    std::size_t shown = 0;
-    std::vector<std::string> names(compared.groups.size());
-    for (std::size_t g = 0; g < compared.groups.size(); ++g) {
-      if (!compared.groups[g].tested) continue;
-      const ComparedQuantity& quantity = compared.quantities[shown++];
-      out_.check.quantities.push_back(testedQuantity(quantity, tests.groups[g], compared.groups[g]));
-      names[g] = wordsOf(quantity.shown);
-    }
-    for (const std::size_t g : tests.or_else) out_.check.or_else.push_back(names[g]);
+    testQuantities(compared, options, out_.check);
     for (const std::string& one : compared.not_told)
       out_.check.notes.push_back(one + " is not checked: it is given, or the recording does not tell it");
     solveTogether(session);
@@ -117,53 +121,12 @@ class Check {
     const CalibrationResult& result = out_.run->result;
     // What is wrong with the data may look like a change, and may hide one.
     if (result.status != CalibrationStatus::Ok) {
-      cannotTell("the new recording is not to be relied on: " + result.reason);
-      addAdvice("Mend what is said of the recording, and record again");
+      setCannotTell("the new recording is not to be relied on: " + result.reason, out_.check);
+      addAdvice("Mend what is said of the recording, and record again", out_.check);
       return;
     }
-    std::vector<std::string> changed, open;
-    for (const CheckedQuantity& quantity : out_.check.quantities) {
-      if (quantity.changed) changed.push_back(changeText(quantity));
-      if (!quantity.toldEnough()) open.push_back(openText(quantity));
-    }
-    if (!changed.empty()) {
-      out_.check.verdict = CheckVerdict::Changed;
-      out_.check.reason = joined(changed) + " changed";
-      if (!out_.check.or_else.empty())
-        out_.check.reason +=
-            fmt::format(" (or {}: the recording does not tell which)", joined(out_.check.or_else));
-      addAdvice("Calibrate again, and look for what is loose");
-    } else if (open.empty()) {
-      out_.check.verdict = CheckVerdict::StillGood;
-      out_.check.reason = "nothing has changed, and a change that matters would have shown";
-    } else {
-      cannotTell("nothing is seen to have changed, but this recording would not have shown " + joined(open));
-      advise({out_.run->pass, out_.run->intrinsics});
-    }
-  }
-
-  static std::string changeText(const CheckedQuantity& quantity) {
-    std::string text = fmt::format("{} by {} {} ({:.1f} sigmas)", wordsOf(quantity),
-                                   html::significant(quantity.change, 2), quantity.unit, quantity.sigmas);
-    return text;
-  }
-
-  static std::string openText(const CheckedQuantity& quantity) {
-    return fmt::format("a change of {} below {} {} ({} matters)", wordsOf(quantity),
-                       html::significant(quantity.would_notice, 2), quantity.unit,
-                       html::plain(quantity.matters));
-  }
-
-  void cannotTell(const std::string& reason) {
-    out_.check.verdict = CheckVerdict::CannotTell;
-    out_.check.reason = reason;
-  }
-
-  void addAdvice(const std::string& advice) {
-    if (advice.empty()) return;
-    const std::string sentence = advice.ends_with('.') ? advice : advice + ".";
-    std::vector<std::string>& all = out_.check.advice;
-    if (std::find(all.begin(), all.end(), sentence) == all.end()) all.push_back(sentence);
+    judgeQuantities(out_.check);
+    if (out_.check.verdict == CheckVerdict::CannotTell) advise({out_.run->pass, out_.run->intrinsics});
   }
 
   // As a recording is assessed before it is calibrated.
@@ -171,12 +134,12 @@ class Check {
     if (detected.pass.cameras.empty()) return;
     try {
       for (const Assessed& one : assessRecording(input_.session, detected, context_.unobserved()).all)
-        addAdvice(one.advice);
+        addAdvice(one.advice, out_.check);
     } catch (const CalibrationError&) {
       // Which is said already.
     }
     if (out_.check.advice.empty())
-      addAdvice("Record for longer: twice the time makes sigmas 1.4 times smaller");
+      addAdvice("Record for longer: twice the time makes sigmas 1.4 times smaller", out_.check);
   }
 
   const CheckInput& input_;
@@ -187,7 +150,16 @@ class Check {
 }  // namespace
 
 CheckRun checkCalibration(const CheckInput& input, const RunContext& context) {
-  return Check(input, context).run([&](const Session& session) { return runCalibration(session, context); });
+  if (input.session.options.check.no_board) return checkWithoutBoard(input, context);
+  CheckRun checked =
+      Check(input, context).run([&](const Session& session) { return runCalibration(session, context); });
+  const BoardSeen seen = boardSeen(checked.run ? checked.run->pass : checked.pass);
+  if (input.session.board_blinks || !seen.isRare(input.session.options.check.least_board_share))
+    return checked;
+  CheckRun without = checkWithoutBoard(input, context);
+  without.check.notes.push_back(fmt::format(
+      "the board was found in {} of {} windows, so it is taken as not there", seen.with_board, seen.windows));
+  return without;
 }
 
 CheckRun checkCalibration(const CheckInput& input, RecordingPass pass, const RunContext& context) {

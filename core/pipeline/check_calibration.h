@@ -17,7 +17,8 @@ struct CheckRun {
   RecordingPass pass;                         // where there is none: what was read and detected until then
 };
 
-// A recording that tells nothing is a verdict, no error. Throws CalibrationError (BadInput) where it cannot be read as
+// Where the board is hardly ever seen, or is not to be looked for, that of check_without_board.h. A recording that tells
+// nothing is a verdict, no error. Throws CalibrationError (BadInput) where it cannot be read as
 // the session says, and Cancelled.
 CheckRun checkCalibration(const CheckInput& input, const RunContext& context);
 

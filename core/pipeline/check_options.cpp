@@ -28,7 +28,12 @@ constexpr std::tuple kCheckFields{
           "The same of lenses: RMS over the image."},
     Field{
         "false_alarms", &CheckOptions::false_alarms, 0.01, within(1e-9, 0.5), "",
-        "How often a calibration that has not changed may be called changed, over all quantities together."}};
+        "How often a calibration that has not changed may be called changed, over all quantities together."},
+    Switch{"no_board", &CheckOptions::no_board, false,
+           "The recording shows no board: it is not looked for, and rotations and time offsets alone are "
+           "checked."},
+    Field{"least_board_share", &CheckOptions::least_board_share, 0.02, within(0.0, 1.0), "",
+          "A recording in which fewer of the windows show the board is taken as one without a board."}};
 constexpr auto kCheckDefaults = defaultsOf<CheckOptions, kCheckFields>();
 
 }  // namespace

@@ -16,6 +16,8 @@ struct CheckOptions {
   double matters_time_offset_ms;
   double matters_lens_px;
   double false_alarms;
+  bool no_board;
+  double least_board_share;
 
   CheckOptions();  // the defaults
   constexpr explicit CheckOptions(NoDefaults) {}

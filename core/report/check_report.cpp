@@ -51,6 +51,25 @@ std::string quantityYaml(const CheckedQuantity& quantity) {
   return yaml;
 }
 
+std::string windowsYaml(const CheckedWindows& windows) {
+  std::string yaml =
+      fmt::format("  - sensor: {}\n    all: {}\n    used: {}\n    turning_alone: {}\n    left_out: {{",
+                  yamlText(windows.sensor), windows.all, windows.used, windows.turning_alone);
+  for (std::size_t k = 0; k < windows.left_out.size(); ++k)
+    yaml += fmt::format("{}{}: {}", k == 0 ? "" : ", ", windows.left_out[k].key, windows.left_out[k].windows);
+  return yaml + "}\n";
+}
+
+Json windowsJson(const CheckedWindows& windows) {
+  Json left_out = Json::object();
+  for (const CheckedWindows::LeftOut& one : windows.left_out) left_out[one.key] = one.windows;
+  return {{"sensor", windows.sensor},
+          {"all", windows.all},
+          {"used", windows.used},
+          {"turning_alone", windows.turning_alone},
+          {"left_out", left_out}};
+}
+
 Json numberJson(const CheckedNumber& number) {
   return {{"name", number.name},         {"unit", number.unit},
           {"before", number.before},     {"before_std", number.before_sigma},
@@ -104,6 +123,15 @@ std::string numberRow(const std::string& sensor, const CheckedNumber& number) {
 
 }  // namespace
 
+std::string windowsText(const CheckedWindows& windows) {
+  std::string text =
+      fmt::format("windows of {}: {} of {} used, in {} of them rotation alone explains what moves",
+                  windows.sensor, windows.used, windows.all, windows.turning_alone);
+  for (const CheckedWindows::LeftOut& one : windows.left_out)
+    text += fmt::format("; {} left out: {}", one.windows, one.words);
+  return text;
+}
+
 const char* verdictName(CheckVerdict verdict) {
   static constexpr std::array<const char*, 3> kNames = {"still_good", "changed", "cannot_tell"};
   return kNames.at(static_cast<std::size_t>(verdict));
@@ -121,6 +149,10 @@ std::string checkYaml(const CalibrationCheck& check) {
                   yamlText(check.recording), check.false_alarms);
   yaml += textsYaml("or_else", check.or_else) + textsYaml("advice", check.advice) +
           textsYaml("notes", check.notes);
+  if (check.without_board) {
+    yaml += fmt::format("without_board: true\n{}", check.windows.empty() ? "windows: []\n" : "windows:\n");
+    for (const CheckedWindows& windows : check.windows) yaml += windowsYaml(windows);
+  }
   yaml += check.quantities.empty() ? "quantities: []\n" : "quantities:\n";
   for (const CheckedQuantity& quantity : check.quantities) yaml += quantityYaml(quantity);
   return yaml + fmt::format("program: {{version: {}}}\n", yamlText(check.version));
@@ -135,8 +167,13 @@ std::string checkJson(const CalibrationCheck& check) {
                {"false_alarms", check.false_alarms},
                {"or_else", check.or_else},
                {"advice", check.advice},
-               {"notes", check.notes},
-               {"quantities", Json::array()}};
+               {"notes", check.notes}};
+  if (check.without_board) {
+    json["without_board"] = true;
+    json["windows"] = Json::array();
+    for (const CheckedWindows& windows : check.windows) json["windows"].push_back(windowsJson(windows));
+  }
+  json["quantities"] = Json::array();
   for (const CheckedQuantity& quantity : check.quantities)
     json["quantities"].push_back(quantityJson(quantity));
   json["program"] = {{"version", check.version}};
@@ -154,6 +191,7 @@ std::string checkTable(const CalibrationCheck& check) {
     for (const CheckedQuantity& quantity : check.quantities) text += quantityRow(quantity);
     text += "\n";
   }
+  for (const CheckedWindows& windows : check.windows) text += windowsText(windows) + "\n";
   for (const std::string& note : check.notes) text += fmt::format("note: {}\n", note);
   text += fmt::format("{}: {}\n", verdictWords(check.verdict), check.reason);
   for (const std::string& advice : check.advice) text += fmt::format("  {}\n", advice);

@@ -14,4 +14,7 @@ std::string checkYaml(const CalibrationCheck& check);
 std::string checkJson(const CalibrationCheck& check);
 std::string checkTable(const CalibrationCheck& check);
 
+// A sentence without its full stop.
+std::string windowsText(const CheckedWindows& windows);
+
 }  // namespace evical

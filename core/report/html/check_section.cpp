@@ -90,6 +90,8 @@ void writeCheck(const ReportData& data, ReportPage& page) {
     writeChanges(check, page);
     writeNumbersOf(check, page);
   }
+  for (const CheckedWindows& windows : check.windows)
+    page.text(paragraph("small", escaped(windowsText(windows)) + "."));
   writeList("To know", check.notes, page);
   page.endSection();
 }

@@ -1,0 +1,23 @@
+#include "core/pipeline/camera_motion.h"
+
+#include <span>
+#include <utility>
+
+namespace evical {
+
+CameraMotion::CameraMotion(const CameraIntrinsics& lens, const CalibrationOptions& options,
+                           std::int64_t start_ns)
+    : lens_(lens),
+      options_(options.egomotion),
+      start_ns_(start_ns),
+      slopes_(lens.resolution_px, options.edge_slopes, options.egomotion.window_s,
+              [this](std::int64_t begin_ns, std::span<const EdgeSlope> slopes) {
+                windows_.push_back(estimateWindowMotion(slopes, lens_, {start_ns_, begin_ns}, options_));
+              }) {}
+
+std::vector<WindowMotion> CameraMotion::finish() {
+  slopes_.finish();
+  return std::move(windows_);
+}
+
+}  // namespace evical
