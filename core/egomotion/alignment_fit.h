@@ -47,6 +47,7 @@ class AlignmentFit {
     std::size_t windows = 0;
   };
   Part partOf(const AlignmentState& state, std::size_t first, std::size_t end) const;
+  const Eigen::Matrix3d& imuFromMeasured() const { return imu_from_measured_; }
   std::size_t windowCount() const { return windows_.size(); }
   const WindowMotion& window(std::size_t k) const { return *windows_[k]; }
 

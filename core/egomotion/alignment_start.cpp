@@ -18,13 +18,15 @@ struct Correlation {
 
 // Of how fast both turn, over the windows that the gyroscope covers then.
 Correlation correlationAt(double offset_s, const std::vector<const WindowMotion*>& windows,
-                          const AlignmentFit& fit, const SummedRates& rates, AlignmentState state) {
+                          const SummedRates& rates, const AlignmentState& start,
+                          const Eigen::Matrix3d& imu_from_measured) {
   constexpr double kLeastShare = 0.5;
-  state.time_offset_s = offset_s;
   double n = 0.0, a = 0.0, b = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
   for (const WindowMotion* window : windows) {
     if (!rates.covers(window->begin_s + offset_s, window->end_s + offset_s)) continue;
-    const double camera = window->rate_rad_s.norm(), imu = fit.imuRate_rad_s(*window, state).norm();
+    const Eigen::Vector3d mean = rates.mean_rad_s(window->begin_s + offset_s, window->end_s + offset_s);
+    const double camera = window->rate_rad_s.norm(),
+                 imu = (imu_from_measured * (mean - start.bias_rad_s)).norm();
     n += 1.0;
     a += camera;
     b += imu;
@@ -62,7 +64,8 @@ std::vector<AlignmentState> alignmentStarts(const std::vector<const WindowMotion
   std::vector<Correlation> all, peaks;
   const int steps = static_cast<int>(std::floor(search_s / kStep_s));
   for (int k = -steps; k <= steps; ++k)
-    all.push_back(correlationAt(start.time_offset_s + k * kStep_s, windows, fit, rates, start));
+    all.push_back(
+        correlationAt(start.time_offset_s + k * kStep_s, windows, rates, start, fit.imuFromMeasured()));
   for (std::size_t k = 0; k < all.size(); ++k) {
     const bool above_left = k == 0 || all[k].value >= all[k - 1].value;
     const bool above_right = k + 1 == all.size() || all[k].value > all[k + 1].value;

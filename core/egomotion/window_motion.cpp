@@ -336,8 +336,8 @@ WindowMotion estimateWindowMotion(std::span<const EdgeSlope> slopes, const LensR
   if (!fit.start(true)) return out;
   fit.refine();
   // As well, up to what three numbers more explain by chance.
-  constexpr double kAsWell = 1.05;
-  out.rotation_alone = alone <= kAsWell * fit.medianSquare();
+  constexpr double kAsWell = 1.05, kNegligible = 0.01;  // squares of sigmas
+  out.rotation_alone = alone <= kAsWell * fit.medianSquare() + kNegligible;
   out.inliers = fit.inlierShare();
   out.rate_rad_s = fit.motion().twist.head<3>();
   out.velocity_1_s = fit.motion().twist.tail<3>();
