@@ -265,8 +265,8 @@ class TestResultFiles : public QObject {
     RecordingPass pass = simulated_.pass;
     pass.cameras[0].views.clear();
     for (WindowReport& window : pass.cameras[0].windows) window.outcome = WindowOutcome::NoLattice;
-    writeFailure(folder.path().toStdString(), simulated_.session, "the board was <never> found", "test",
-                 "log", pass);
+    writeFailure(folder.path().toStdString(), simulated_.session, Doubt{"the board was <never> found"},
+                 "test", "log", pass);
     const QString page = readFile(folder.filePath("report.html"));
     const QString text = checkedText(page);
     QVERIFY2(text.contains("the board was <never> found") && text.contains("failed"),
@@ -278,7 +278,7 @@ class TestResultFiles : public QObject {
 
   void failureBeforeAnythingWasRead_isAReportToo() {
     QTemporaryDir folder;
-    writeFailure(folder.path().toStdString(), simulated_.session, "nothing there", "test", "log");
+    writeFailure(folder.path().toStdString(), simulated_.session, Doubt{"nothing there"}, "test", "log");
     const QString text = checkedText(readFile(folder.filePath("report.html")));
     QVERIFY2(text.contains("nothing there"), qPrintable(text.left(300)));
     QVERIFY(QFile::exists(folder.filePath("result.yaml")) && QFile::exists(folder.filePath("log.txt")));
