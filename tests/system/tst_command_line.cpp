@@ -57,6 +57,7 @@ class TestCommandLine : public QObject {
   void export_goesOnWhereOneTargetRefuses();
   void export_check_tellsWhatItRead();
   void export_check_findsWhatIsInTheWay();
+  void export_check_ofEarlierFiles();
   void export_toAll_namesWhatRefuses();
   void import_writesASession();
   void init_writesTheSessionThatTheRecordingSuggests_data();
@@ -299,6 +300,30 @@ void TestCommandLine::export_check_findsWhatIsInTheWay() {
   QVERIFY2(outcome.reason().contains("ros: does not read back: ") && outcome.reason().contains("old.yaml"),
            qPrintable(outcome.errors));
   QVERIFY(outcome.output.contains("kalibr: reads back: "));
+}
+
+// `--check FOLDER` writes nothing, and takes what is there.
+void TestCommandLine::export_check_ofEarlierFiles() {
+  QTemporaryDir folder;
+  writeFile(folder.filePath("result.yaml"), kSmallResult);
+  const QString out = folder.filePath("out");
+  VERIFY_EXIT(runProgram({"export", folder.path(), "--to", "ros,kalibr", "-o", out}), 0);
+  const Outcome all = runProgram({"export", folder.path(), "--check", out});
+  VERIFY_EXIT(all, 0);
+  QVERIFY2(all.output.contains("kalibr: reads back: ") && all.output.contains("ros: reads back: "),
+           qPrintable(all.output));
+  const QString camchain = out + "/kalibr/" + filesIn(out + "/kalibr").filter("camchain").value(0);
+  writeFile(camchain, QByteArray(readFile(camchain)).replace("intrinsics", "intrinsic"));
+  const Outcome broken = runProgram({"export", folder.path(), "--check", out});
+  VERIFY_EXIT(broken, 1);
+  QVERIFY2(broken.reason().contains("kalibr: does not read back: "), qPrintable(broken.errors));
+  VERIFY_EXIT(runProgram({"export", folder.path(), "--to", "ros", "--check", out}), 0);
+  for (const QStringList& wrong : {QStringList{"--check", folder.filePath("nowhere")},
+                                   {"--check", folder.path()},
+                                   {"--check", out, "-o", out},
+                                   {"--check"},
+                                   {"--to", "ros"}})
+    VERIFY_EXIT(runProgram(QStringList{"export", folder.path()} + wrong), 2);
 }
 
 void TestCommandLine::export_toAll_namesWhatRefuses() {
