@@ -17,6 +17,9 @@ struct CheckRun {
   RecordingPass pass;                         // where there is none: what was read and detected until then
 };
 
+// Before the stages of the second run, which has the old result as prior (prefixedStage).
+inline constexpr const char* kTogetherPart = "with the old result";
+
 // A recording that tells nothing is a verdict, no error. Throws CalibrationError (BadInput) where it cannot be read as
 // the session says, and Cancelled.
 CheckRun checkCalibration(const CheckInput& input, const RunContext& context);

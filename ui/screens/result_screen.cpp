@@ -172,6 +172,7 @@ QWidget* ResultScreen::makeSides() {
   sides->addTab(explained(pairs_, correlation_, sides), tr("Correlation"));
   sides->addTab(notes_, tr("Notes"));
   notes_->setWordWrap(true);
+  notes_->setAccessibleName(tr("Notes"));
   notes_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   return sides;
 }

@@ -249,6 +249,17 @@ class TestResultFiles : public QObject {
     QVERIFY(readFile(folder.filePath("result.yaml")).contains("intrinsics_std:"));
   }
 
+  void repair_isSaidWithTheVerdict() {
+    QVERIFY(!page_.contains("class=\"repair\""));
+    CalibrationRun run = run_;
+    run.result.status = CalibrationStatus::Doubtful;
+    run.result.repair = Repair{"imus.imu.acceleration_unit", "<g> 1"};
+    QTemporaryDir folder;
+    writeResultFiles(folder.path().toStdString(), simulated_.session, shared(run), "test", "log");
+    const QString text = checkedText(readFile(folder.filePath("report.html")));
+    QVERIFY2(text.contains("--set 'imus.imu.acceleration_unit=<g> 1'"), qPrintable(text.left(600)));
+  }
+
   // Data sets' layouts have places of their own for either.
   void frameCamera_isNamedAsOne() {
     QVERIFY(!readFile(path("result.yaml")).contains("kind:"));
