@@ -6,6 +6,9 @@
 
 #include <QDir>
 #include <QElapsedTimer>
+#include <QJsonArray>
+#include <QJsonDocument>
+#include <QJsonObject>
 #include <QRegularExpression>
 #include <QTemporaryDir>
 
@@ -51,6 +54,7 @@ class TestCommandLine : public QObject {
   void simulate_isTheSameFromTheSameSeed();
   void calibrate_writesAResultNearTheTruth_data();
   void calibrate_writesAResultNearTheTruth();
+  void calibrate_profileTellsWhereItsTimeGoes();
   void export_writesTheFoldersOfTargets();
   void export_ofBadInputWritesNothing_data();
   void export_ofBadInputWritesNothing();
@@ -218,6 +222,16 @@ const QByteArray kSmallResult =
     "{rotation_xyzw: [0, 0, 0, 1], translation_m: [0, 0, 0]}\n";
 
 }  // namespace
+
+void TestCommandLine::calibrate_profileTellsWhereItsTimeGoes() {
+  const QTemporaryDir folder;
+  const QString trace = folder.filePath("trace.json");
+  VERIFY_EXIT(runProgram({"calibrate", session(), "-o", folder.filePath("result"), "--profile", trace}), 0);
+  QStringList stages;
+  for (const QJsonValue& event : QJsonDocument::fromJson(readFile(trace)).object()["traceEvents"].toArray())
+    if (event["ph"].toString() == "X" && event["tid"].toInt() == 0) stages.append(event["name"].toString());
+  QCOMPARE(stages, (QStringList{"detect", "initialise", "optimise", "cross_validate"}));
+}
 
 void TestCommandLine::export_writesTheFoldersOfTargets() {
   QTemporaryDir folder;
