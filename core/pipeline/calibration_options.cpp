@@ -41,6 +41,7 @@ void forEachGroup(Options& all, Visitor&& visit) {
         partOf<VerdictOptions>(all.optimisation));
   visit("report", "What is worked out for the report only", all.report);
   visit("check", "Whether an old calibration still holds", all.check);
+  visit("maintain", "Logs of IMUs over time: what has changed since the calibration", all.maintain);
 }
 
 template <class Options>

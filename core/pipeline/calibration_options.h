@@ -7,6 +7,7 @@
 #include "core/frontend/front_end_options.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/intrinsics/intrinsics_options.h"
+#include "core/maintenance/maintenance_options.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/check_options.h"
 #include "core/report/report_options.h"
@@ -26,6 +27,7 @@ struct CalibrationOptions {
   OptimisationOptions optimisation;
   ReportOptions report;
   CheckOptions check;
+  MaintenanceOptions maintain;
   bool operator==(const CalibrationOptions&) const = default;
 };
 
