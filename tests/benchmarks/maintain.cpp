@@ -88,15 +88,16 @@ void accelerometer(Bench& bench, const std::string& name, MaintenanceSource sour
 }
 
 void step(Bench& bench, const std::string& name, const std::string& quantity, int seeds) {
-  constexpr double kAt_s = 60.0;
   double latest = 0.0, furthest = 0.0;
   int named = 0;
   for (int seed = 1; seed <= seeds; ++seed) {
-    const Maintenance found = bench.run(bench.scenario(name, seed));
+    const DriveScenario scenario = bench.scenario(name, seed);
+    const double at_s = scenario.steps.front().at_s;
+    const Maintenance found = bench.run(scenario);
     if (found.steps.size() != 1 || found.steps.front().name != quantity) continue;
     ++named;
-    latest = std::max(latest, found.steps.front().noticed_s - kAt_s);
-    furthest = std::max(furthest, std::abs(found.steps.front().at_s - kAt_s));
+    latest = std::max(latest, found.steps.front().noticed_s - at_s);
+    furthest = std::max(furthest, std::abs(found.steps.front().at_s - at_s));
   }
   bench.row(name + ": named alone and rightly", fmt::format("{} of {}", named, seeds), "all", named == seeds);
   bench.row(name + ": noticed after, worst", fmt::format("{:.1f} s", latest), "10 s", latest <= 10.0);
