@@ -11,8 +11,7 @@ constexpr std::tuple kFields{
     Field{
         "gravity_m_s2", &Options::gravity_m_s2, 0.0, within(0.0, 100.0), "m/s^2",
         "Gravity's norm where the log was made; 0: as the old result has it. What it is wrong by is found in "
-        "the accelerometers' scales.",
-        Level::Common},
+        "the accelerometers' scales."},
     Field{"shortest_stop_s", &Options::shortest_stop_s, 1.5, within(0.5, 1000.0), "s",
           "Stops that are shorter are not used."},
     Field{"still_rate_deg_s", &Options::still_rate_deg_s, 0.5, within(0.01, 20.0), "deg/s",
@@ -31,8 +30,7 @@ constexpr std::tuple kFields{
     Field{"naming_s", &Options::naming_s, 8.0, within(1.0, 600.0), "s",
           "For so long after a change data are gathered before it is said what has changed."},
     Field{"false_alarms", &Options::false_alarms, 0.01, within(1e-9, 0.5), "",
-          "How often a log in which nothing has changed may have an alarm, over all tests together.",
-          Level::Common},
+          "How often a log in which nothing has changed may have an alarm, over all tests together."},
     Field{"stability_rotation_deg", &Options::stability_rotation_deg, 0.02, within(0.0, 90.0), "deg",
           "Rotations between IMUs may change by this (one sigma) without anything having changed."},
     Field{"stability_translation_mm", &Options::stability_translation_mm, 0.3, within(0.0, 1e4), "mm",
