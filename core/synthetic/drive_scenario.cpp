@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <set>
 
 namespace evical {
@@ -96,15 +95,7 @@ DriveScenario readFrom(const std::filesystem::path& path, int depth) {
   root.allowOnly(
       {"base", "description", "seed", "duration_s", "gravity_m_s2", "drive", "imus", "steps", "trajectory"});
   DriveScenario scenario;
-  if (const auto base = root.find("base")) {
-    constexpr int kDeepest = 8;
-    if (depth > kDeepest) throw base->error("scenarios rest on each other without an end");
-    scenario = readFrom(path.parent_path() / base->text(), depth + 1);
-  }
-  scenario.name = path.stem().string();
-  int seed = static_cast<int>(scenario.seed);
-  get(root, "seed", seed, 0, std::numeric_limits<int>::max());
-  scenario.seed = static_cast<std::uint64_t>(seed);
+  readBeginning(root, path, depth, readFrom, scenario);
   get(root, "duration_s", scenario.duration_s, 0.1, 20000.0, "s");
   get(root, "gravity_m_s2", scenario.gravity_m_s2, 0.1, 100.0, "m/s^2");
   if (const auto node = root.find("drive")) readDrive(*node, scenario.motion);

@@ -4,6 +4,7 @@
 #include "ui/screens/check_words.h"
 #include "ui/screens/path_row.h"
 #include "ui/screens/repeat_table.h"
+#include "ui/screens/selectable_label.h"
 #include "ui/screens/work_bar.h"
 #include "ui/theme/theme.h"
 
@@ -26,14 +27,6 @@ namespace evical::ui {
 namespace {
 
 constexpr int kFewest = 2;
-
-QLabel* label(const char* role, const QString& text, QWidget* parent) {
-  auto* const made = new QLabel(text, parent);
-  made->setProperty("role", role);
-  made->setWordWrap(true);
-  made->setTextInteractionFlags(Qt::TextSelectableByMouse);
-  return made;
-}
 
 QPushButton* button(const char* object_name, const char* icon_name, const QString& text, const QString& tip,
                     QWidget* parent) {
@@ -80,9 +73,9 @@ RepeatScreen::RepeatScreen(QWidget* parent)
                      tr("Take the chosen ones off the list; their files stay (Delete)"), this)),
       stack_(new QStackedWidget(this)),
       icon_(new QLabel(this)),
-      verdict_(label("title", {}, this)),
-      reason_(label("", {}, this)),
-      ratio_(label("hint", {}, this)),
+      verdict_(selectableLabel("title", {}, this)),
+      reason_(selectableLabel("", {}, this)),
+      ratio_(selectableLabel("hint", {}, this)),
       first_(makeChoice("first_of_pair", tr("Compare"), this)),
       second_(makeChoice("second_of_pair", tr("with"), this)),
       numbers_(new RepeatTable(this)),
@@ -155,7 +148,7 @@ QWidget* RepeatScreen::makeForm() {
   connect(place, &QPushButton::clicked, this, &RepeatScreen::openFolderRequested);
   auto* const layout = new QVBoxLayout(card);
   layout->setContentsMargins(14, 10, 14, 10);
-  layout->addWidget(label("heading", tr("Several recordings of one rig"), card));
+  layout->addWidget(selectableLabel("heading", tr("Several recordings of one rig"), card));
   layout->addWidget(makeFiles());
   layout->addLayout(grid);
   layout->addWidget(work_);
@@ -168,7 +161,7 @@ QWidget* RepeatScreen::makeForm() {
 QWidget* RepeatScreen::makeEmpty() {
   constexpr int kText_px = 560;
   auto* const empty = new QWidget(this);
-  auto* const text = label(
+  auto* const text = selectableLabel(
       "hint",
       tr("Each recording is calibrated alone, then all in one solution. How much the results spread, beside "
          "what their sigmas promise, tells how honest the sigmas are; a recording that does not fit the "

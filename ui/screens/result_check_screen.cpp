@@ -4,6 +4,7 @@
 #include "ui/screens/check_table.h"
 #include "ui/screens/check_words.h"
 #include "ui/screens/path_row.h"
+#include "ui/screens/selectable_label.h"
 #include "ui/screens/work_bar.h"
 #include "ui/theme/theme.h"
 
@@ -18,14 +19,6 @@
 
 namespace evical::ui {
 namespace {
-
-QLabel* label(const char* role, const QString& text, QWidget* parent) {
-  auto* const made = new QLabel(text, parent);
-  made->setProperty("role", role);
-  made->setWordWrap(true);
-  made->setTextInteractionFlags(Qt::TextSelectableByMouse);
-  return made;
-}
 
 QString titleOf(CheckVerdict verdict) {
   switch (verdict) {
@@ -51,8 +44,8 @@ ResultCheckScreen::ResultCheckScreen(QWidget* parent)
       results_(new QMenu(this)),
       stack_(new QStackedWidget(this)),
       icon_(new QLabel(this)),
-      verdict_(label("title", {}, this)),
-      reason_(label("", {}, this)),
+      verdict_(selectableLabel("title", {}, this)),
+      reason_(selectableLabel("", {}, this)),
       table_(new CheckTable(this)),
       notes_(new QListWidget(this)),
       save_(new QPushButton(icon("export"), tr("Save..."), this)) {
@@ -92,7 +85,7 @@ QWidget* ResultCheckScreen::makeForm() {
   work_->addButton(save_);
   auto* const layout = new QVBoxLayout(card);
   layout->setContentsMargins(14, 10, 14, 10);
-  layout->addWidget(label("heading", tr("Is an old calibration still good?"), card));
+  layout->addWidget(selectableLabel("heading", tr("Is an old calibration still good?"), card));
   layout->addLayout(grid);
   layout->addWidget(work_);
   connect(result_, &PathRow::changed, this, &ResultCheckScreen::offer);
@@ -105,12 +98,13 @@ QWidget* ResultCheckScreen::makeForm() {
 QWidget* ResultCheckScreen::makeEmpty() {
   constexpr int kText_px = 560;
   auto* const empty = new QWidget(this);
-  auto* const text = label("hint",
-                           tr("Move the rig before the board for some ten seconds, as for a calibration, and "
-                              "choose that recording above. It is calibrated anew and held against the old "
-                              "result: each quantity is called unchanged, changed, or not told, where the "
-                              "recording would not have shown a change that matters."),
-                           empty);
+  auto* const text =
+      selectableLabel("hint",
+                      tr("Move the rig before the board for some ten seconds, as for a calibration, and "
+                         "choose that recording above. It is calibrated anew and held against the old "
+                         "result: each quantity is called unchanged, changed, or not told, where the "
+                         "recording would not have shown a change that matters."),
+                      empty);
   text->setMaximumWidth(kText_px);
   auto* const row = new QHBoxLayout;
   row->addStretch();
