@@ -93,7 +93,8 @@ void addPlaces(CLI::App& command, BatchArguments& arguments) {
   command.add_option("-o,--output", arguments.output, "Folder for the results, one in it for each job")
       ->required();
   command
-      .add_option("--at-once", arguments.at_once, "Jobs that run at the same time; default: at_once of JOBS")
+      .add_option("--jobs,--at-once", arguments.at_once,
+                  "Jobs that run at the same time; default: at_once of JOBS")
       ->check(CLI::Range(1, 1024));
   command
       .add_option("--memory-limit", arguments.memory_limit_mb,

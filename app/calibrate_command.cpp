@@ -3,8 +3,10 @@
 #include "app/output.h"
 #include "app/session_arguments.h"
 #include "app/version.h"
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/new_folder.h"
+#include "core/base/run_trace.h"
 #include "core/data/calibration_stage.h"
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/result_files.h"
@@ -50,12 +52,21 @@ CalibrationOutcome calibrated(const SessionArguments& arguments, const Session& 
   return runCalibration(session, std::move(restored.pass), context, std::move(restored.intrinsics));
 }
 
+// Where its time goes is written however it ends.
+CalibrationOutcome calibrated(const SessionArguments& arguments, const Session& session, Console& console) {
+  const std::stop_token stop = stopOnSignals();  // before there are other threads
+  if (arguments.profile.empty()) return calibrated(arguments, session, RunContext{console, stop});
+  RunTrace trace(console);
+  CalibrationOutcome outcome = calibrated(arguments, session, RunContext{trace, stop});
+  writeFileWhole(arguments.profile, trace.json());
+  return outcome;
+}
+
 int run(const SessionArguments& arguments) {
   const Session session = sessionFrom(arguments);
   Console console(arguments.quiet);
   const NewFolder folder(arguments.output);
-  const RunContext context{console, stopOnSignals()};
-  CalibrationOutcome outcome = calibrated(arguments, session, context);
+  CalibrationOutcome outcome = calibrated(arguments, session, console);
   if (outcome.status != RunStatus::Done) tellEnd(arguments, session, outcome, console, folder);
   const auto run = std::make_shared<const CalibrationRun>(std::move(outcome).runOrThrow());
   tellResult(arguments, session, run, console);
@@ -72,6 +83,10 @@ void addCalibrateCommand(CLI::App& app, int& exit_code) {
       "--detections", arguments->detections,
       "Result folder of an earlier run of this session: what cameras saw is taken from it, only IMUs "
       "are read again");
+  command->add_option(
+      "--profile", arguments->profile,
+      "File for where the run's time goes: stages, threads, processors and memory, as a trace that "
+      "ui.perfetto.dev and chrome://tracing open");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

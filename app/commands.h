@@ -27,6 +27,7 @@ void addExportCommand(CLI::App& app, int& exit_code);
 void addImportCommand(CLI::App& app, int& exit_code);
 void addInitCommand(CLI::App& app, int& exit_code);
 void addIntrinsicsCommand(CLI::App& app, int& exit_code);
+void addMaintainCommand(CLI::App& app, int& exit_code);
 void addManualCommand(CLI::App& app, int& exit_code);
 void addOptionsCommand(CLI::App& app, int& exit_code);
 void addRepeatCommand(CLI::App& app, int& exit_code);

@@ -28,6 +28,7 @@ void addCommands(CLI::App& app, int& exit_code) {
   addInitCommand(app, exit_code);
   addCalibrateCommand(app, exit_code);
   addCheckCommand(app, exit_code);
+  addMaintainCommand(app, exit_code);
   addRepeatCommand(app, exit_code);
   addBatchCommand(app, exit_code);
   addIntrinsicsCommand(app, exit_code);

@@ -12,6 +12,10 @@
 #include <QSettings>
 #include <QTextStream>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include <algorithm>
 #include <cstdlib>
 #include <string>
@@ -39,6 +43,7 @@ int complain(const QString& text) {
 
 struct Arguments {
   QString path, screen, picture;
+  QStringList further;
   QSize size;
   Appearance appearance = Appearance::System;
 };
@@ -68,8 +73,10 @@ Arguments parse(const QApplication& application) {
   const QCommandLineOption help = parser.addHelpOption(), version = parser.addVersionOption();
   parser.addPositionalArgument("file", "A session file, a recording, or a result's folder to open",
                                "[SESSION|RECORDING|RESULT]");
-  const QCommandLineOption screen(
-      "screenshot", "Calibrate SESSION or open RESULT, save a picture of this screen, and leave", "SCREEN");
+  const QCommandLineOption screen("screenshot",
+                                  "Calibrate SESSION or open RESULT, save a picture of this screen, and "
+                                  "leave; pages that compare take further recordings behind it",
+                                  "SCREEN");
   const QCommandLineOption output("o", "The picture's file", "x.png");
   const QCommandLineOption size("size", "The window's size, for pictures", "WIDTHxHEIGHT", "1280x800");
   const QCommandLineOption appearance("appearance", "system, light or dark", "WORD");
@@ -85,6 +92,7 @@ Arguments parse(const QApplication& application) {
   }
   Arguments arguments;
   arguments.path = parser.positionalArguments().value(0);
+  arguments.further = parser.positionalArguments().mid(1);
   arguments.screen = parser.value(screen);
   arguments.picture = parser.value(output);
   const QStringList numbers = parser.value(size).split('x');
@@ -102,7 +110,7 @@ int takePicture(const Arguments& arguments, MainWindow& window) {
     return complain("There is no screen " + arguments.screen + ". Give one of " + screens.join(", "));
   if (arguments.path.isEmpty() || arguments.picture.isEmpty() || !arguments.size.isValid())
     return complain("Give a session, and the picture's file: --screenshot SCREEN -o x.png SESSION");
-  const Photographer photographer(window, arguments.screen, arguments.picture);
+  const Photographer photographer(window, arguments.screen, arguments.picture, arguments.further);
   window.resize(arguments.size);
   window.show();
   window.files().open(arguments.path);
@@ -112,6 +120,9 @@ int takePicture(const Arguments& arguments, MainWindow& window) {
 }  // namespace
 
 int main(int argc, char** argv) {
+#ifdef __GLIBC__
+  mallopt(M_ARENA_MAX, 2);  // else each thread's freed memory stays its own
+#endif
   const bool without_display = doWithoutDisplay(argc, argv);
   QApplication application(argc, argv);
   QApplication::setApplicationName("evical");

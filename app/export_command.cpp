@@ -19,7 +19,7 @@ namespace evical {
 namespace {
 
 struct Arguments {
-  std::filesystem::path result, output;
+  std::filesystem::path result, output, checked;  // checked: files of an earlier run
   std::vector<std::string> targets;
   bool check = false;
 };
@@ -63,14 +63,25 @@ bool checkAll(const NamedResult& result, const std::vector<std::string>& targets
   return same;
 }
 
-int run(const Arguments& arguments) {
-  const std::stop_token stop = stopOnSignals();  // files appear whole, or not at all
-  const std::vector<std::string> targets = namedTargets(arguments.targets);
+// Those that somebody has exported before; all that are there, where none are named.
+int checkEarlier(const Arguments& arguments, const NamedResult& result, const std::stop_token& stop) {
   std::error_code ignored;
-  const bool folder = std::filesystem::is_directory(arguments.result, ignored);
-  const std::filesystem::path file = folder ? arguments.result / "result.yaml" : arguments.result;
-  const NamedResult result = readResultYaml(file);
-  const ExportedFiles exported = exportResult(result, targets);
+  if (!std::filesystem::is_directory(arguments.checked, ignored))
+    throw badInput(arguments.checked.string(), "is no folder of exported files",
+                   "Name the folder that 'evical export -o' was given");
+  std::vector<std::string> targets = namedTargets(arguments.targets);
+  if (targets.empty() || wantsAll(arguments.targets))
+    for (targets.clear(); const ExportTarget& target : exportTargets())
+      if (std::filesystem::is_directory(arguments.checked / target.name, ignored))
+        targets.emplace_back(target.name);
+  if (targets.empty())
+    throw badInput(arguments.checked.string(), "holds no exported files",
+                   "Each target's files are in a folder of its name; write them with --to and -o");
+  return checkAll(result, targets, arguments.checked, stop) ? kDone : kFailed;
+}
+
+int writeAndCheck(const Arguments& arguments, const NamedResult& result, const std::stop_token& stop) {
+  const ExportedFiles exported = exportResult(result, namedTargets(arguments.targets));
   if (stop.stop_requested()) throw Cancelled{};
   writeExportedFiles(arguments.output, exported.files);
   for (const FileContent& written : exported.files) print("{}\n", (arguments.output / written.path).string());
@@ -86,21 +97,45 @@ int run(const Arguments& arguments) {
   return same && (expected || exported.refused.empty()) ? kDone : kFailed;
 }
 
+int run(const Arguments& arguments) {
+  const std::stop_token stop = stopOnSignals();  // files appear whole, or not at all
+  namedTargets(arguments.targets);
+  std::error_code ignored;
+  const bool folder = std::filesystem::is_directory(arguments.result, ignored);
+  const NamedResult result = readResultYaml(folder ? arguments.result / "result.yaml" : arguments.result);
+  return arguments.checked.empty() ? writeAndCheck(arguments, result, stop)
+                                   : checkEarlier(arguments, result, stop);
+}
+
+// What is written needs targets and a folder; what is only checked has its own.
+void checkTogether(const Arguments& arguments) {
+  if (!arguments.checked.empty()) {
+    if (!arguments.output.empty()) throw CLI::ExcludesError("--check FOLDER", "--output");
+    return;
+  }
+  if (arguments.targets.empty()) throw CLI::RequiredError("--to");
+  if (arguments.output.empty()) throw CLI::RequiredError("--output");
+}
+
 }  // namespace
 
 void addExportCommand(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* const command = app.add_subcommand("export", "A result in other programs' formats");
   command->add_option("RESULT", arguments->result, "result.yaml, or the folder that has it")->required();
-  command->add_option("--to", arguments->targets, "Targets, separated by commas, or all")
-      ->required()
-      ->delimiter(',');
-  command->add_option("-o,--output", arguments->output, "Folder for the targets' folders")->required();
-  command->add_flag(
-      "--check", arguments->check,
-      "Read the written files back as each target's program does, and tell how far they are from RESULT");
+  command->add_option("--to", arguments->targets, "Targets, separated by commas, or all")->delimiter(',');
+  command->add_option("-o,--output", arguments->output, "Folder for the targets' folders");
+  CLI::Option* const check =
+      command->add_option("--check", arguments->checked,
+                          "Read the written files back as each target's program does, and tell how far they "
+                          "are from RESULT; with a FOLDER in the place of -o, those written there before");
+  check->expected(0, 1)->type_name("[FOLDER]");
   command->footer(targetList());
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  command->callback([arguments, check, &exit_code] {
+    arguments->check = check->count() > 0;
+    checkTogether(*arguments);
+    exit_code = run(*arguments);
+  });
 }
 
 }  // namespace evical

@@ -4,9 +4,7 @@
 #include "app/session_arguments.h"
 #include "app/version.h"
 #include "core/base/error.h"
-#include "core/base/new_folder.h"
 #include "core/pipeline/repeat_files.h"
-#include "core/pipeline/result_files.h"
 #include "core/report/repeat_report.h"
 
 #include <fmt/format.h>
@@ -51,22 +49,10 @@ int exitCodeOf(RepeatVerdict verdict) {
 
 int run(const RepeatArguments& arguments) {
   const RepeatInput input = inputFrom(arguments);
-  checkRepeatFolder(arguments.output);
   Console console(arguments.quiet || arguments.json);
-  const NewFolder folder(arguments.output);
-  std::size_t logged = 0;  // of the recordings before
-  // Whole folders, so that a repeat that is stopped keeps what was done until then.
-  const auto keep = [&](std::size_t k, const Session& session,
-                        const std::shared_ptr<const CalibrationRun>& one) {
-    const std::filesystem::path of_one = folderOf(arguments.output, input, k);
-    makeOutputFolder(of_one);
-    writeResultFiles(of_one, session, one, kVersion, console.logText().substr(logged));
-    logged = console.logText().size();
-  };
-  RepeatRun repeat = repeatCalibration(input, keep, RunContext{console, stopOnSignals()});
-  repeat.repeatability.version = kVersion;
-  if (repeat.joint) repeat.joint->version = kVersion;
-  writeRepeatFiles(arguments.output, input, repeat, console.logText());
+  const RepeatRun repeat = repeatInto(
+      arguments.output, input, kVersion, [&] { return console.logText(); },
+      RunContext{console, stopOnSignals()});
   console.stageStarted("done");
   print("{}", arguments.json ? repeatJson(repeat.repeatability) : repeatTable(repeat.repeatability));
   if (!arguments.quiet && !arguments.json) print("Files are in {}\n", arguments.output);

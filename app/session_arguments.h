@@ -19,7 +19,8 @@ struct SessionArguments {
   int threads = 0;  // 0: as the options say
   bool quiet = false;
   std::string
-      detections;  // of calibrate: a folder of an earlier run to start from; empty: from the recording
+      detections;       // of calibrate: a folder of an earlier run to start from; empty: from the recording
+  std::string profile;  // of calibrate: a file for where its time goes; empty: none
 };
 
 void addSessionArguments(CLI::App& command, SessionArguments& arguments);

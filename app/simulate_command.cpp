@@ -1,8 +1,10 @@
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/output.h"
+#include "core/pipeline/drive_simulation.h"
 #include "core/pipeline/simulation.h"
 #include "core/recording/recording_writer.h"
+#include "core/synthetic/drive_scenario.h"
 #include "core/synthetic/scenario_yaml.h"
 
 #include <fmt/format.h>
@@ -34,10 +36,13 @@ void addSimulateCommand(CLI::App& app, int& exit_code) {
   command->add_option("--format", arguments->format, "By default the scenario's; one of " + formats);
   command->add_flag("--quiet", arguments->quiet, "No progress");
   command->callback([arguments, &exit_code] {
-    const Scenario scenario = readScenario(arguments->scenario);
+    const bool drive = isDriveScenario(arguments->scenario);
+    const Scenario scenario = drive ? Scenario{} : readScenario(arguments->scenario);
+    const DriveScenario imus = drive ? readDriveScenario(arguments->scenario) : DriveScenario{};
     Console console(arguments->quiet);
-    const SimulationSummary made =
-        simulate(scenario, arguments->folder, {console, stopOnSignals()}, arguments->format);
+    const RunContext context{console, stopOnSignals()};
+    const SimulationSummary made = drive ? simulateDrive(imus, arguments->folder, context, arguments->format)
+                                         : simulate(scenario, arguments->folder, context, arguments->format);
     console.stageStarted("done");
     print("{} events, {} frames, {} IMU samples\n{}\n{}\n{}\n", made.events, made.frames, made.imu_samples,
           made.recording.string(), made.session.string(), made.truth.string());

@@ -31,6 +31,15 @@ install(CODE "include(\"${CMAKE_SOURCE_DIR}/cmake/public_headers.cmake\")
     get_filename_component(folder \"\${header}\" DIRECTORY)
     file(INSTALL \"${CMAKE_SOURCE_DIR}/\${header}\"
          DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/evical/\${folder}\" TYPE FILE)
+    list(APPEND folders \"\${folder}\")
+  endforeach()
+  # <evical/base/error.h> is core/base/error.h.
+  list(REMOVE_DUPLICATES folders)
+  foreach(folder IN LISTS folders)
+    if(folder MATCHES \"^core/([a-z]+)\$\")
+      file(CREATE_LINK \"\${folder}\"
+           \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/evical/\${CMAKE_MATCH_1}\" SYMBOLIC)
+    endif()
   endforeach()" COMPONENT development)
 
 install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT licence)  # packages: cmake/evical_packages.cmake

@@ -72,7 +72,7 @@ function(evical_add_layer name)
   set_target_properties(evical_${name} PROPERTIES EXPORT_NAME ${name})
   set_property(GLOBAL APPEND PROPERTY EVICAL_LAYERS ${name})  # cmake/evical_install.cmake
   target_include_directories(evical_${name} PUBLIC "$<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}>"
-                                                   "$<INSTALL_INTERFACE:include/evical>")
+                                                   "$<INSTALL_INTERFACE:include>" "$<INSTALL_INTERFACE:include/evical>")
   target_link_libraries(evical_${name} PUBLIC Eigen3::Eigen Threads::Threads ${ARG_PUBLIC}
                                        PRIVATE $<BUILD_INTERFACE:evical_warnings> ${ARG_PRIVATE})
   if(NOT ARG_HEADERS STREQUAL "evical_headers_ui")

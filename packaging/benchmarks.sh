@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.." || exit 2
 packaging/install-dependencies.sh
 cmake --preset release -DEVICAL_TESTS=ON
 cmake --build --preset release --target evical_accuracy evical_intrinsics_accuracy evical_unknown_intrinsics evical_formats evical_speed \
-                                       evical_stress evical_centre_errors evical_board_starts evical_frame_cameras evical_protocol
+                                       evical_stress evical_centre_errors evical_board_starts evical_frame_cameras evical_protocol evical_maintain_accuracy evical_check_accuracy
 benchmarks=build/release/tests/benchmarks
 scenarios=config/scenarios
 failed=0
@@ -54,6 +54,12 @@ run evical_stress --perfect --seeds 5 --duration 30 "$scenarios/davis346_10s.yam
 
 # Five recordings before each of three boards, alone and together: half an hour.
 run evical_protocol --folder "$(mktemp -d)/recording" config/protocol
+
+# An old result beside a new recording, a hundred times.
+run evical_check_accuracy "$scenarios/davis346.yaml"
+
+# Logs of IMUs over time.
+run evical_maintain_accuracy --hour "$scenarios/maintain"
 
 run evical_speed "$scenarios/davis346.yaml"
 run evical_speed --duration 3 "$scenarios/hd.yaml"

@@ -19,7 +19,7 @@ packages=(
   # desktop program
   qt6-base-dev qt6-svg-dev libvtk9-dev libegl-dev libgl1-mesa-dri libglew-dev libqcustomplot-dev fonts-inter
   # tests
-  clang-format clang-tidy python3 xvfb xauth xdotool imagemagick python3-h5py python3-rosbag slurm-wlm munge
+  clang-format clang-tidy python3 xvfb xauth xdotool openbox imagemagick python3-h5py python3-rosbag slurm-wlm munge
   # documentation site
   mkdocs
   # packages, and what looks at them

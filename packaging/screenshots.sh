@@ -8,12 +8,19 @@ demo=${TMPDIR:-/tmp}/evical/demo # it is seen in pictures
 
 [ -x "$build/evical-gui" ] || { echo "Build it first: packaging/run.sh" >&2; exit 1; }
 [ -f "$demo/truth.yaml" ] || "$build/evical" simulate config/scenarios/davis346_10s.yaml -o "$demo" --quiet
+# Two more recordings of the same rig, for the pages that compare.
+for seed in 2 3; do
+  more=$demo/recording_$seed
+  [ ! -f "$more/truth.yaml" ] || continue
+  printf 'base: %s/config/scenarios/davis346_10s.yaml\nseed: %s\n' "$PWD" "$seed" > "$demo/recording_$seed.yaml"
+  "$build/evical" simulate "$demo/recording_$seed.yaml" -o "$more" --quiet
+done
 shown="start-light print-board-light how-to-record-light check-light recording-light detection-dark trajectory-light
        convergence-light signals-light residuals-light result-light export-light lens-light"
 pictures=docs/pictures
 if [ $# -gt 0 ]; then
   pictures=$1 shown=
-  for screen in start print-board how-to-record check recording detection trajectory convergence signals residuals result export lens; do
+  for screen in start print-board how-to-record check recording detection trajectory convergence signals residuals result export lens check-result repeat; do
     shown+=" $screen-light $screen-dark"
   done
 fi
@@ -28,8 +35,13 @@ trap 'rm -rf "$XDG_CONFIG_HOME"' EXIT
 sed -e '/^imus:/,$d' -e '/^    intrinsics:/,$d' "$demo/session.yaml" > "$demo/camera.yaml"
 for picture in $shown; do
   screen=${picture%-*} session=$demo/session.yaml
+  further=()
+  case $screen in
+    check-result) further=("$demo/recording_2/session.yaml") ;;
+    repeat) further=("$demo/recording_2/session.yaml" "$demo/recording_3/session.yaml") ;;
+  esac
   [ "$screen" != lens ] || { screen=result session=$demo/camera.yaml; }
-  "$build/evical-gui" --screenshot "$screen" -o "$pictures/$picture.png" --appearance "${picture##*-}" "$session"
+  "$build/evical-gui" --screenshot "$screen" -o "$pictures/$picture.png" --appearance "${picture##*-}" "$session" "${further[@]}"
   # A palette makes them a third of their size, and people see no difference.
   convert "$pictures/$picture.png" +dither -colors 256 -strip -define png:compression-level=9 "PNG8:$pictures/$picture.small.png"
   mv "$pictures/$picture.small.png" "$pictures/$picture.png"

@@ -4,6 +4,7 @@
 #include "core/base/repair.h"
 #include "core/data/calibration_state.h"
 #include "core/data/calibration_status.h"
+#include "core/data/doubt.h"
 
 #include <Eigen/Core>
 
@@ -150,6 +151,7 @@ struct CalibrationResult {
   CalibrationStatus status = CalibrationStatus::Ok;
   std::string reason;                    // why not ok, in plain words
   std::optional<Repair> repair;          // of the first of the reasons
+  std::vector<Doubt> causes;             // the reasons one by one, the likeliest first
   std::optional<std::int64_t> start_ns;  // of the recording: where times in seconds begin
   CalibrationState state;
   UncertaintyReport uncertainty;

@@ -12,6 +12,8 @@ namespace evical {
 struct Doubt {
   std::string text;  // empty: there is none
   std::optional<Repair> repair = {};
+  std::string name = "other";  // one word for programs: "lens", "board_size"
+  double explains = 0.0;       // the share of the misfit that is gone where this is let free; 0: not tried
 };
 
 // For what has a status and a reason. It comes first of the reasons: it is the one that people can mend; so is its
@@ -22,10 +24,11 @@ void addDoubt(const Doubt& doubt, Verdict& verdict) {
   verdict.status = CalibrationStatus::Doubtful;
   verdict.reason = verdict.reason.empty() ? doubt.text : doubt.text + "; " + verdict.reason;
   if constexpr (requires { verdict.repair; }) verdict.repair = doubt.repair;
+  if constexpr (requires { verdict.causes; }) verdict.causes.insert(verdict.causes.begin(), doubt);
 }
 template <class Verdict>
-void addDoubt(const std::string& doubt, Verdict& verdict) {
-  addDoubt(Doubt{doubt}, verdict);
+void addDoubt(const std::string& doubt, Verdict& verdict, const char* name = "other") {
+  addDoubt(Doubt{doubt, {}, name}, verdict);
 }
 
 }  // namespace evical

@@ -1,5 +1,5 @@
 // How the time at which an edge passes changes over the image: the slope of that time is one over the edge's speed,
-// along its normal. docs/maths.md, 15.1.
+// along its normal. docs/maths.md, 16.1.
 #pragma once
 
 #include <Eigen/Core>

@@ -83,6 +83,11 @@ struct QuantityInfo {
   const char* key = "";
   const char* std_key = "";
   double largest = 1e6;  // beyond it a prior is a slip
+
+  // A second name of a number, among the sensor's own keys, in another unit or out of its section.
+  const char* also_key = "";
+  const char* also_std_key = "";
+  double also_factor = 1.0;  // from the first one's unit
 };
 
 // A member of a member: the rotation of a pose.
@@ -203,7 +208,9 @@ constexpr QuantityInfo timeOffsetDriftInfo(QuantityOwner owner) {
           .relative = true,
           .of_sensor = true,
           .key = "time_offset_drift_ppm",
-          .std_key = "time_offset_drift_std_ppm"};
+          .std_key = "time_offset_drift_std_ppm",
+          .also_key = "clock_drift_ppm",
+          .also_std_key = "clock_drift_std_ppm"};
 }
 
 constexpr QuantityInfo mappingInfo(const char* name, const char* sensor) {
@@ -270,7 +277,10 @@ inline constexpr auto kCameraQuantities = std::tuple{
                              .presence = QuantityPresence::WhereNotZero,
                              .written = QuantityWriting::WherePresent,
                              .key = "line_delay_us",
-                             .std_key = "line_delay_std_us"},
+                             .std_key = "line_delay_std_us",
+                             .also_key = "line_delay_s",
+                             .also_std_key = "line_delay_std_s",
+                             .also_factor = 1e-6},
                 &CameraState::line_delay_us, &CameraUncertainty::line_delay_std_us, NoPrior{}},
     QuantityRow{QuantityInfo{.name = "exposure_share",
                              .title = "exposure's share",
@@ -375,7 +385,9 @@ inline constexpr auto kImuQuantities = std::tuple{
                              .section = "accelerometer",
                              .key = "delay_s",
                              .std_key = "delay_std_s",
-                             .largest = 0.1},
+                             .largest = 0.1,
+                             .also_key = "accelerometer_delay_s",
+                             .also_std_key = "accelerometer_delay_std_s"},
                 &ImuState::accelerometer_delay_s, &ImuUncertainty::accelerometer_delay_std_s,
                 &ImuPrior::accelerometer_delay},
     QuantityRow{QuantityInfo{.name = "gyroscope_rotation",

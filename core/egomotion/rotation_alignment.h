@@ -1,5 +1,5 @@
 // How a camera is turned against an IMU, and how their clocks differ, from the rates at which both turn
-// (docs/maths.md, 15.3):
+// (docs/maths.md, 16.3):
 //   scale * camera_from_imu * M^-1 (rate_measured(t + time_offset) - bias) = rate_of_camera(t).
 // The scale is that of the image's motion, which is none of what is asked for, and bears what would shrink all rates alike.
 #pragma once

@@ -1,4 +1,4 @@
-// The camera's motion in a short window of time, from how fast edges move along their normals (docs/maths.md, 15.2). The
+// The camera's motion in a short window of time, from how fast edges move along their normals (docs/maths.md, 16.2). The
 // image of a point at (x, y) = (X/Z, Y/Z) moves by A(x, y) w + B(x, y) v / Z, and the time at which an edge passes has the
 // slope g with g . (A w + B v / Z) = 1: whatever the scene is, as long as it stands still.
 #pragma once

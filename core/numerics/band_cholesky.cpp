@@ -1,6 +1,5 @@
 #include "core/numerics/band_cholesky.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace evical {
@@ -8,6 +7,11 @@ namespace {
 
 constexpr double kNothingLeft = 1e-13;  // of the diagonal before elimination: rounding, not information
 constexpr double kHugePivot = 1e100;    // makes the direction's solution 0
+
+double dotOf(const double* a, const double* b, Eigen::Index begin, Eigen::Index end) {
+  using Map = Eigen::Map<const Eigen::VectorXd>;
+  return Map(a + begin, end - begin).dot(Map(b + begin, end - begin));
+}
 
 }  // namespace
 
@@ -25,35 +29,51 @@ void BandCholesky::addOuter(Eigen::Index first, const Eigen::Ref<const Eigen::Ve
 
 bool BandCholesky::factorise() {
   bool positive = true;
-  for (Eigen::Index row = 0; row < size_; ++row) {
-    const Eigen::Index first = std::max<Eigen::Index>(0, row - half_bandwidth_);
-    const double* of_row = band_.data() + index(row, 0);
-    for (Eigen::Index col = first; col < row; ++col) {
-      const double* of_col = band_.data() + index(col, 0);
-      double sum = at(row, col);
-      for (Eigen::Index k = col - 1; k >= first; --k) sum -= of_row[k] * of_col[k];
-      at(row, col) = sum / at(col, col);
-    }
-    const double diagonal = at(row, row);
-    double pivot = diagonal;
-    for (Eigen::Index k = row - 1; k >= first; --k) pivot -= of_row[k] * of_row[k];
-    const bool known = pivot > kNothingLeft * diagonal;
-    at(row, row) = known ? std::sqrt(pivot) : kHugePivot;
-    positive = positive && known;
-  }
+  for (Eigen::Index row = 0; row < size_; ++row) positive = factoriseRow(row) && positive;
   return positive;
+}
+
+bool BandCholesky::factoriseRow(Eigen::Index row) {
+  return factoriseRow(row, 0.0, kNothingLeft);
+}
+
+bool BandCholesky::factoriseRow(Eigen::Index index, double added, double least_share) {
+  double* const of_row = row(index);
+  const Eigen::Index first = firstOf(index);
+  for (Eigen::Index col = first; col < index; ++col) {
+    const double* const of_col = row(col);
+    of_row[col] = (of_row[col] - dotOf(of_row, of_col, first, col)) / of_col[col];
+  }
+  const double diagonal = of_row[index] + added;
+  const double pivot = diagonal - dotOf(of_row, of_row, first, index);
+  const bool known = pivot > least_share * diagonal && std::isfinite(pivot);
+  of_row[index] = known ? std::sqrt(pivot) : kHugePivot;
+  return known;
 }
 
 void BandCholesky::solveInPlace(Eigen::Ref<Eigen::MatrixXd> right) const {
   for (Eigen::Index col = 0; col < right.cols(); ++col) {
     double* x = right.col(col).data();
-    for (Eigen::Index row = 0; row < size_; ++row) {
-      double sum = x[row];
-      for (Eigen::Index k = row - 1; k >= std::max<Eigen::Index>(0, row - half_bandwidth_); --k)
-        sum -= at(row, k) * x[k];
-      x[row] = sum / at(row, row);
+    for (Eigen::Index index = 0; index < size_; ++index) {
+      const double* const of_row = row(index);
+      x[index] = (x[index] - dotOf(of_row, x, firstOf(index), index)) / of_row[index];
     }
     solveTransposed(x);
+  }
+}
+
+void BandCholesky::solveInPlace(RowMajorMatrix& right) const {
+  for (Eigen::Index index = 0; index < size_; ++index) {
+    const double* const of_row = row(index);
+    auto to = right.row(index);
+    for (Eigen::Index col = firstOf(index); col < index; ++col) to -= of_row[col] * right.row(col);
+    to /= of_row[index];
+  }
+  for (Eigen::Index index = size_ - 1; index >= 0; --index) {
+    const double* const of_row = row(index);
+    right.row(index) /= of_row[index];
+    for (Eigen::Index col = firstOf(index); col < index; ++col)
+      right.row(col) -= of_row[col] * right.row(index);
   }
 }
 
@@ -62,11 +82,10 @@ void BandCholesky::correlateInPlace(Eigen::VectorXd& white) const {
 }
 
 void BandCholesky::solveTransposed(double* x) const {
-  for (Eigen::Index col = size_ - 1; col >= 0; --col) {
-    double sum = x[col];
-    const Eigen::Index end = std::min(size_, col + half_bandwidth_ + 1);
-    for (Eigen::Index row = col + 1; row < end; ++row) sum -= at(row, col) * x[row];
-    x[col] = sum / at(col, col);
+  for (Eigen::Index index = size_ - 1; index >= 0; --index) {
+    const double* const of_row = row(index);
+    x[index] /= of_row[index];
+    for (Eigen::Index col = firstOf(index); col < index; ++col) x[col] -= of_row[col] * x[index];
   }
 }
 

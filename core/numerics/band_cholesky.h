@@ -4,35 +4,49 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <vector>
 
 namespace evical {
 
 class BandCholesky {
  public:
+  using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
   // `half_bandwidth`: largest distance of an entry from the diagonal.
   BandCholesky(Eigen::Index size, Eigen::Index half_bandwidth);
 
   Eigen::Index size() const { return size_; }
-  void add(Eigen::Index row, Eigen::Index col, double value) { at(row, col) += value; }  // col <= row
+  Eigen::Index halfBandwidth() const { return half_bandwidth_; }
+  void setZero() { std::fill(band_.begin(), band_.end(), 0.0); }
+  // Its entry at `col` is [col], for firstOf(row) <= col <= row.
+  double* row(Eigen::Index row) { return band_.data() + offsetOf(row); }
+  const double* row(Eigen::Index row) const { return band_.data() + offsetOf(row); }
+  Eigen::Index firstOf(Eigen::Index row) const { return std::max<Eigen::Index>(0, row - half_bandwidth_); }
+  void add(Eigen::Index row, Eigen::Index col, double value) { this->row(row)[col] += value; }  // col <= row
   // Adds scale * weights weights^T at (first, first).
   void addOuter(Eigen::Index first, const Eigen::Ref<const Eigen::VectorXd>& weights, double scale);
 
   // In place; afterwards nothing may be added. False if directions have no information (pivots that cancel to
   // nothing): these get a solution of 0 instead of infinity.
   bool factorise();
+  // One row, those before it being factors already, with `added` to its diagonal. No information is less than
+  // `least_share` of the diagonal.
+  bool factoriseRow(Eigen::Index row, double added, double least_share);
+  bool factoriseRow(Eigen::Index row);
+
   // Overwrites `right` (size x any) with the solution.
   void solveInPlace(Eigen::Ref<Eigen::MatrixXd> right) const;
+  // The same of many columns, row by row.
+  void solveInPlace(RowMajorMatrix& right) const;
 
   // L^-T times `white`: with independent unit variances in, values with the inverse's covariance.
   void correlateInPlace(Eigen::VectorXd& white) const;
 
  private:
   void solveTransposed(double* x) const;
-  double& at(Eigen::Index row, Eigen::Index col) { return band_[index(row, col)]; }
-  double at(Eigen::Index row, Eigen::Index col) const { return band_[index(row, col)]; }
-  std::size_t index(Eigen::Index row, Eigen::Index col) const {
-    return static_cast<std::size_t>(row * (half_bandwidth_ + 1) + half_bandwidth_ + col - row);
+  Eigen::Index offsetOf(Eigen::Index row) const {
+    return row * (half_bandwidth_ + 1) + half_bandwidth_ - row;
   }
 
   Eigen::Index size_, half_bandwidth_;

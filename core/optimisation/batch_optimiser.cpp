@@ -3,22 +3,18 @@
 #include "core/base/error.h"
 #include "core/base/time.h"
 #include "core/data/calibration_observer.h"
-#include "core/numerics/library_threads.h"
-#include "core/numerics/solver_stop.h"
 #include "core/optimisation/calibration_problem.h"
 #include "core/optimisation/circle_errors.h"
+#include "core/optimisation/levenberg_marquardt.h"
 #include "core/optimisation/release_words.h"
 #include "core/optimisation/sample_errors.h"
 #include "core/optimisation/trajectory_smoothness.h"
 
-#include <ceres/iteration_callback.h>
-#include <ceres/solver.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <memory>
 #include <utility>
 
 namespace evical {
@@ -30,7 +26,7 @@ constexpr double kFurthestDrift_knots = 0.5;
 // Bounds of the noise scales: beyond them something else is wrong, and a sensor must not rule or vanish.
 constexpr double kLeastScale = 0.05, kLargestScale = 1000.0;
 
-class IterationReporter final : public ceres::IterationCallback {
+class IterationReporter {
  public:
   IterationReporter(const CalibrationProblem& problem, const RunContext& context, int stage, int stage_count,
                     double& furthest, std::vector<IterationRecord>& records)
@@ -44,18 +40,18 @@ class IterationReporter final : public ceres::IterationCallback {
   // Goes with the next iteration.
   void tellReleased(std::vector<std::string> words) { released_ = std::move(words); }
 
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+  // False where measurements must be assigned anew.
+  bool report(const SolverIteration& iteration) {
     constexpr double kTypicalIterations = 8.0;
     const double share = std::min(1.0, (iterations_++ + 1.0) / kTypicalIterations);
     furthest_ = std::max(furthest_, (stage_ + share) / stage_count_);  // a stage may be solved more than once
     context_.progress.stageProgress(furthest_);
     const CalibrationState state = problem_.state();
-    records_.push_back({stage_ + 1, static_cast<int>(records_.size()), summary.cost,
-                        summary.gradient_max_norm, summary.step_norm, state.cameras,
+    records_.push_back({stage_ + 1, static_cast<int>(records_.size()), iteration.cost,
+                        iteration.gradient_max_norm, iteration.step_norm, state.cameras,
                         std::exchange(released_, {})});
     if (context_.observer != nullptr) context_.observer->iterationDone(records_.back(), state);
-    return problem_.segmentDrift_knots() > kFurthestDrift_knots ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
-                                                                : ceres::SOLVER_CONTINUE;
+    return problem_.segmentDrift_knots() <= kFurthestDrift_knots;
   }
 
  private:
@@ -66,25 +62,6 @@ class IterationReporter final : public ceres::IterationCallback {
   std::vector<IterationRecord>& records_;
   std::vector<std::string> released_;
 };
-
-ceres::Solver::Options solverOptions(const OptimisationOptions& options, double tolerance) {
-  ceres::Solver::Options solver;
-  solver.minimizer_type = ceres::TRUST_REGION;
-  solver.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
-  solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
-  solver.num_threads = options.threads;
-  solver.max_num_iterations = options.max_iterations;
-  solver.function_tolerance = tolerance;
-  solver.gradient_tolerance = 1e-12;
-  solver.parameter_tolerance = 1e-12;
-  solver.max_num_consecutive_invalid_steps =
-      20;  // a motion that leaves directions open needs damping, found by trial
-  solver.initial_trust_region_radius = 1e12;  // weak directions (biases against gravity) need undamped steps
-  solver.logging_type = ceres::SILENT;
-  solver.update_state_every_iteration = true;  // the callback reads it
-  return solver;
-}
 
 class Batch {
  public:
@@ -115,8 +92,9 @@ class Batch {
     std::vector<ImuFit> fits;                        // RMS by IMU, in SI units, of the samples used
     std::vector<double> gyroscopes, accelerometers;  // the same in units of the given noise
   };
-  bool selectImuSamples();  // true if others take part than before
-  ImuFits imuFits() const;
+  std::vector<SampleErrors> imuErrors() const;                     // by IMU
+  bool selectImuSamples(const std::vector<SampleErrors>& errors);  // true if others take part than before
+  ImuFits imuFits(const std::vector<SampleErrors>& errors) const;
 
   const CalibrationInput& input_;
   const OptimisationOptions& options_;
@@ -141,26 +119,24 @@ std::vector<ReleaseStages> Batch::stages() const {
 void Batch::solveStage(ReleaseStages stage, int index, double tolerance) {
   const int stage_count = static_cast<int>(stages().size()) + 1;  // the last one twice
   IterationReporter reporter(problem_, context_, index, stage_count, progress_, solution_.iterations);
-  ceres::Solver::Options solver = solverOptions(options_, tolerance);
-  const std::unique_ptr<ceres::IterationCallback> stop = stopCallback(context_.stop);
-  solver.callbacks = {&reporter, stop.get()};
+  const SolverLimits limits{options_.max_iterations, tolerance, options_.threads};
   solution_.converged = false;
   for (int round = 0; round < options_.max_rounds; ++round) {
     context_.throwIfStopped();
     problem_.build(stage, weights_);
     tellReleased(reporter);
-    ceres::Solver::Summary summary;
-    const LibraryThreads threads(options_.threads);
-    ceres::Solve(solver, &problem_.problem(), &summary);
-    context_.throwIfStopped();
-    if (summary.termination_type == ceres::FAILURE) {
-      throw calibrationFailed("optimisation", "the batch could not be solved: " + summary.message,
+    const SolverEnd end =
+        solveNormalEquations(problem_, limits, context_.stop,
+                             [&](const SolverIteration& iteration) { return reporter.report(iteration); });
+    if (!end.failure.empty()) {
+      throw calibrationFailed("optimisation", "the batch could not be solved: " + end.failure,
                               "Check the noise densities, the board's size and the camera's intrinsics");
     }
     context_.progress.log(LogLevel::Debug,
-                          fmt::format("stage {} round {}: {}", index + 1, round + 1, summary.BriefReport()));
+                          fmt::format("stage {} round {}: {} iterations, cost {:.6e} to {:.6e}", index + 1,
+                                      round + 1, end.iterations, end.first_cost, end.last_cost));
     if (problem_.segmentDrift_knots() <= options_.segment_drift) {
-      solution_.converged = summary.termination_type == ceres::CONVERGENCE;
+      solution_.converged = end.converged;
       return;
     }
   }
@@ -180,8 +156,9 @@ bool Batch::updateWeights() {
   const std::vector<CircleError> errors = circleErrors(input_, problem_.state(), options_);
   std::vector<double> circles;
   for (std::size_t i = 0; i < input_.cameras.size(); ++i) circles.push_back(robustScale(errors, i));
-  bool changed = selectImuSamples();
-  const ImuFits imus = imuFits();
+  const std::vector<SampleErrors> imu_errors = imuErrors();
+  bool changed = selectImuSamples(imu_errors);
+  const ImuFits imus = imuFits(imu_errors);
   const auto update = [&](std::vector<double>& old, const std::vector<double>& fresh) {
     constexpr double kNoticeable = 0.05;
     for (std::size_t i = 0; i < old.size(); ++i) {
@@ -211,26 +188,29 @@ void Batch::updateSmoothness() {
   weights_.scales.smooth_position = scale(found.position_m_s2, options_.smooth_position_m_s2);
 }
 
-bool Batch::selectImuSamples() {
+std::vector<SampleErrors> Batch::imuErrors() const {
   const CalibrationState state = problem_.state();
+  std::vector<SampleErrors> errors;
+  for (std::size_t i = 0; i < input_.imus.size(); ++i) errors.push_back(sampleErrors(input_, state, i));
+  return errors;
+}
+
+bool Batch::selectImuSamples(const std::vector<SampleErrors>& errors) {
   std::vector<SampleSelection> selected;
   for (std::size_t i = 0; i < input_.imus.size(); ++i)
-    selected.push_back(
-        selectSamples(sampleErrors(input_, state, i), fit_samples_[i], options_.outlier_sigma));
+    selected.push_back(selectSamples(errors[i], fit_samples_[i], options_.outlier_sigma));
   const bool changed = selected != weights_.used_samples;
   weights_.used_samples = std::move(selected);
   return changed;
 }
 
-Batch::ImuFits Batch::imuFits() const {
-  const CalibrationState state = problem_.state();
+Batch::ImuFits Batch::imuFits(const std::vector<SampleErrors>& errors) const {
   ImuFits all;
   for (std::size_t i = 0; i < input_.imus.size(); ++i) {
     const ImuData& data = input_.imus[i];
-    const SampleErrors errors = sampleErrors(input_, state, i);
     const SampleSelection& used = weights_.used_samples[i];
-    const ImuFit fit{rmsPerAxis(errors.gyroscope_rad_s, used.gyroscope),
-                     rmsPerAxis(errors.accelerometer_m_s2, used.accelerometer)};
+    const ImuFit fit{rmsPerAxis(errors[i].gyroscope_rad_s, used.gyroscope),
+                     rmsPerAxis(errors[i].accelerometer_m_s2, used.accelerometer)};
     all.fits.push_back(fit);
     const double root_rate = std::sqrt(data.rate_hz());
     all.gyroscopes.push_back(fit.gyroscope_rms_rad_s / (data.noise.gyroscope_density * root_rate));
@@ -285,7 +265,7 @@ BatchSolution Batch::finish() {
 }
 
 void Batch::reportFits() {
-  solution_.imus = imuFits().fits;
+  solution_.imus = imuFits(imuErrors()).fits;
   for (const CameraData& camera : input_.cameras) {
     CameraFit& fit = solution_.cameras.emplace_back();
     fit.windows_total = static_cast<int>(camera.observations.windows.size());

@@ -49,16 +49,17 @@ std::size_t countOf(std::span<const BatchRow> rows, const std::string& status) {
       std::count_if(rows.begin(), rows.end(), [&](const BatchRow& row) { return row.status() == status; }));
 }
 
+std::size_t countWithoutResult(std::span<const BatchRow> rows) {
+  return static_cast<std::size_t>(std::count_if(
+      rows.begin(), rows.end(), [](const BatchRow& row) { return row.outcome.end != JobEnd::Done; }));
+}
+
 std::string failuresText(std::span<const BatchRow> rows) {
-  std::string text;
-  std::size_t count = 0;
-  for (const BatchRow& row : rows) {
-    if (row.outcome.end == JobEnd::Done) continue;
-    ++count;
-    text += fmt::format("  {}: {}\n", row.job->name, row.reason());
-  }
-  if (count == 0) return {};
-  return fmt::format("{} of {} have no result:\n{}", count, rows.size(), text);
+  if (allDone(rows)) return {};
+  std::string text = fmt::format("{} of {} have no result:\n", countWithoutResult(rows), rows.size());
+  for (const BatchRow& row : rows)
+    if (row.outcome.end != JobEnd::Done) text += fmt::format("  {}: {}\n", row.job->name, row.reason());
+  return text;
 }
 
 }  // namespace
@@ -142,9 +143,14 @@ std::string batchCsv(std::span<const BatchRow> rows) {
 }
 
 std::string batchYaml(std::span<const BatchRow> rows, const std::string& version) {
-  std::string yaml =
-      fmt::format("evical_batch_result: 1\nversion: {}\njobs: {}\nok: {}\ndoubtful: {}\nlist:\n",
-                  yamlText(version), rows.size(), countOf(rows, "ok"), countOf(rows, "doubtful"));
+  const bool done = allDone(rows);
+  const std::string reason =
+      done ? std::string()
+           : fmt::format("{} of {} jobs have no result", countWithoutResult(rows), rows.size());
+  std::string yaml = fmt::format(
+      "evical_batch: 1\nstatus: {}\nreason: {}\nversion: {}\njobs: {}\nok: {}\ndoubtful: {}\nlist:\n",
+      done ? "ok" : "failed", yamlText(reason), yamlText(version), rows.size(), countOf(rows, "ok"),
+      countOf(rows, "doubtful"));
   for (const BatchRow& row : rows) {
     yaml += fmt::format("  - name: {}\n    status: {}\n    reason: {}\n    session: {}\n",
                         yamlText(row.job->name), row.status(), yamlText(row.reason()),

@@ -43,6 +43,7 @@ void forEachGroup(Options& all, Visitor&& visit) {
   visit("check", "Whether an old calibration still holds", all.check);
   visit("edge_slopes", "Without a board: how fast edges move, whatever they belong to", all.edge_slopes);
   visit("egomotion", "Without a board: how the camera turns, beside the gyroscope", all.egomotion);
+  visit("maintain", "Logs of IMUs over time: what has changed since the calibration", all.maintain);
 }
 
 template <class Options>

@@ -9,6 +9,7 @@
 #include "core/frontend/front_end_options.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/intrinsics/intrinsics_options.h"
+#include "core/maintenance/maintenance_options.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/check_options.h"
 #include "core/report/report_options.h"
@@ -30,6 +31,7 @@ struct CalibrationOptions {
   CheckOptions check;
   EdgeSlopeOptions edge_slopes;
   EgomotionOptions egomotion;
+  MaintenanceOptions maintain;
   bool operator==(const CalibrationOptions&) const = default;
 };
 

@@ -195,7 +195,7 @@ void tellIntrinsics(const Session& session, CalibrationRun& run) {
                     projectionDifference(*lens.seen_with, *lens.solved).rms_px));
   }
   run.result.notes.insert(run.result.notes.begin(), notes.begin(), notes.end());
-  addDoubt(doubt, run.result);
+  addDoubt(doubt, run.result, "first_look_at_lens");
 }
 
 }  // namespace
@@ -373,22 +373,24 @@ class Calibration {
     PriorCheck priors = checkPriors(input_, solution, options, context_);
     result.status = uncertainty.status;
     result.reason = uncertainty.reason;
+    if (!result.reason.empty()) result.causes = {Doubt{result.reason, {}, "observability"}};
     if (!solution.converged && result.status == CalibrationStatus::Ok)
-      addDoubt(
-          Doubt{"the optimisation did not converge: raise optimisation.solver.max_iterations, "
-                "or see the residuals",
-                Repair{"optimisation.solver.max_iterations", std::to_string(2 * options.max_iterations)}},
-          result);
-    addDoubt(Doubt{uncertainty.other_sensors}, result);
-    addDoubt(Doubt{uncertainty.rolling_shutters}, result);
-    addDoubt(priors.doubt, result);
-    addDoubt(boardDoubt(uncertainty, solution.state), result);
-    addDoubt(uncertainty.stretch_doubt, result);
-    addDoubt(uncertainty.bow_doubt, result);
-    addDoubt(Doubt{uncertainty.wrong_lenses, kFreeLenses}, result);
-    addDoubt(clock_doubt_, result);
+      addDoubt(Doubt{"the optimisation did not converge: raise optimisation.solver.max_iterations, "
+                     "or see the residuals",
+                     Repair{"optimisation.solver.max_iterations", std::to_string(2 * options.max_iterations)},
+                     "not_converged"},
+               result);
+    addDoubt(uncertainty.other_sensors, result, "another_sensor");
+    addDoubt(uncertainty.rolling_shutters, result, "rolling_shutter");
+    addDoubt(priors.doubt, result, "prior");
+    addDoubt(boardDoubt(uncertainty, solution.state), result, "board_size");
+    addDoubt(uncertainty.stretch_doubt, result, "board_stretch");
+    addDoubt(uncertainty.bow_doubt, result, causeName(CauseKind::BentBoard));
+    addDoubt(Doubt{uncertainty.wrong_lenses, kFreeLenses, causeName(CauseKind::Lens)}, result);
+    addDoubt(clock_doubt_, result, "clock_step");
     judge(solution, heldDoubt(uncertainty, !priors.doubt.empty()), uncertainty.change);
-    if (result.status == CalibrationStatus::Doubtful) addDoubt(saturationIn(input_, options), result);
+    if (result.status == CalibrationStatus::Doubtful)
+      addDoubt(saturationIn(input_, options), result, "saturation");
     result.state = std::move(solution.state);
     result.uncertainty = std::move(uncertainty.report);
     run_.as_weighed = std::move(uncertainty.as_weighed);
@@ -422,10 +424,12 @@ class Calibration {
 
   // Of what is held. A prior that is far off looks like a turned gyroscope, too.
   static Doubt heldDoubt(const UncertaintyEstimate& uncertainty, bool prior_is_off) {
-    if (!uncertainty.bent_board.empty()) return {uncertainty.bent_board, kFreeBow};
+    if (!uncertainty.bent_board.empty())
+      return {uncertainty.bent_board, kFreeBow, causeName(CauseKind::BentBoard)};
     if (prior_is_off) return {};
-    if (!uncertainty.turned_gyroscopes.empty()) return {uncertainty.turned_gyroscopes, kFreeTurn};
-    return {uncertainty.wandering_imus};
+    if (!uncertainty.turned_gyroscopes.empty())
+      return {uncertainty.turned_gyroscopes, kFreeTurn, causeName(CauseKind::GyroscopeTurned)};
+    return {uncertainty.wandering_imus, {}, "wandering_imu"};
   }
 
   // What explains a misfit comes before the misfit; what moved within the recording comes first, and a gyroscope that seems turned only where nothing else does:
@@ -437,21 +441,21 @@ class Calibration {
     Doubt cause = change;
     if (cause.text.empty())
       if (const std::optional<Cause> found = findCause(input_, solution, options, context_))
-        cause = {found->text, found->repair};
+        cause = {found->text, found->repair, causeName(found->kind), found->explains};
     if (!misfit.failure.empty())
       throw calibrationFailed(session_.source.string(),
                               cause.text + (cause.text.empty() ? "" : "; ") + misfit.failure,
                               "Check the board, the lens and the streams in the session")
           .repairedBy(cause.repair);
     if (misfit.doubt.empty() && cause.text.empty()) addDoubt(held, run_.result);
-    addDoubt(misfit.doubt, run_.result);
+    addDoubt(misfit.doubt, run_.result, "misfit");
     addDoubt(cause, run_.result);
   }
 
   void compareHalves() {
     validateByHalves(session_, input_, context_, run_.result);
     const std::string doubt = doubtOfHalves(*run_.result.cross_validation, session_.options.optimisation);
-    if (run_.result.status == CalibrationStatus::Ok) addDoubt(doubt, run_.result);
+    if (run_.result.status == CalibrationStatus::Ok) addDoubt(doubt, run_.result, "halves");
   }
 
   void tellRejected() {

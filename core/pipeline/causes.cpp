@@ -99,6 +99,11 @@ const std::array<Trial, 3> kTrials = {
 
 }  // namespace
 
+const char* causeName(CauseKind kind) {
+  constexpr std::array kNames = {"gyroscope_turned", "lens", "board_bow"};  // in the enumeration's order
+  return kNames.at(static_cast<std::size_t>(kind));
+}
+
 std::optional<Cause> findCause(const CalibrationInput& input, const BatchSolution& solution,
                                const OptimisationOptions& options, const RunContext& context) {
   constexpr double kExplains = 0.7;         // at most this share of the misfit's logarithm may be left
@@ -120,7 +125,7 @@ std::optional<Cause> findCause(const CalibrationInput& input, const BatchSolutio
       best = Cause{trial.kind,
                    fmt::format("{} (residuals fall from {:.2g} to {:.2g} times what was given); {}",
                                trial.words(input, refit), std::exp(before), std::exp(after), trial.advice),
-                   trial.repair};
+                   trial.repair, 1.0 - after / before};
     } catch (const CalibrationError&) {
       continue;  // what cannot be solved explains nothing
     }

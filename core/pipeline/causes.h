@@ -18,7 +18,9 @@ struct Cause {
   CauseKind kind;
   std::string text;
   Repair repair;
+  double explains = 0.0;  // the share of the misfit's logarithm that is gone where it is let free
 };
+const char* causeName(CauseKind kind);
 // What sets free that is held otherwise.
 extern const Repair kFreeLenses, kFreeTurn, kFreeBow;
 

@@ -4,6 +4,7 @@
 #include "core/pipeline/check_verdict.h"
 #include "core/pipeline/check_without_board.h"
 #include "core/pipeline/compared_quantities.h"
+#include "core/pipeline/prefixed_progress.h"
 #include "core/pipeline/recording_assessment.h"
 #include "core/pipeline/result_files.h"
 
@@ -106,7 +107,9 @@ class Check {
     RecordingPass pass = out_.run->pass;
     for (std::size_t k = 0; k < pass.lenses.size(); ++k)
       pass.lenses[k] = givenLens(pass.lenses[k].seen_with, weighed.cameras[k].intrinsics_uncertainty);
-    const CalibrationOutcome outcome = runCalibration(weighed, std::move(pass), context_);
+    PrefixedProgress progress(context_.progress, kTogetherPart);
+    const CalibrationOutcome outcome =
+        runCalibration(weighed, std::move(pass), RunContext{progress, context_.stop, context_.observer});
     if (outcome.status == RunStatus::Cancelled) throw Cancelled{};
     if (!outcome.run) {
       out_.check.notes.push_back("with the old result as prior there is no solution: " +

@@ -17,6 +17,9 @@ struct CheckRun {
   RecordingPass pass;                         // where there is none: what was read and detected until then
 };
 
+// Before the stages of the second run, which has the old result as prior (prefixedStage).
+inline constexpr const char* kTogetherPart = "with the old result";
+
 // Where the board is hardly ever seen, or is not to be looked for, that of check_without_board.h. A recording that tells
 // nothing is a verdict, no error. Throws CalibrationError (BadInput) where it cannot be read as
 // the session says, and Cancelled.

@@ -6,6 +6,7 @@
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/pipeline/compared_quantities.h"
 #include "core/pipeline/session_keys.h"
+#include "core/pipeline/session_of_recording.h"
 
 #include <fmt/format.h>
 
@@ -26,10 +27,6 @@ bool isFolder(const std::filesystem::path& path) {
 bool isThere(const std::filesystem::path& path) {
   std::error_code ignored;
   return std::filesystem::exists(path, ignored);
-}
-
-bool isSession(const std::filesystem::path& path) {
-  return !isFolder(path) && (path.extension() == ".yaml" || path.extension() == ".yml");
 }
 
 NamedResult resultIn(const std::filesystem::path& path) {
@@ -105,19 +102,8 @@ void setLens(const CameraState& before, SessionCamera& camera, CheckInput& input
   camera.intrinsics_uncertainty.reset();
 }
 
-// All that ties a session to its recording.
-void setRecording(const std::filesystem::path& recording, Session& session) {
-  const auto hasOwn = [](const auto& sensor) { return !sensor.recording.empty(); };
-  if (std::any_of(session.cameras.begin(), session.cameras.end(), hasOwn) ||
-      std::any_of(session.imus.begin(), session.imus.end(), hasOwn) || !session.more_recordings.empty())
-    throw badInput(session.source.string(), "its sensors are in recordings of their own",
-                   "Write a session for the new recordings, and give that in the recording's place");
-  session.recording = recording;
-  session.time_range_s.reset();
-}
-
 Session sessionFor(const CheckPaths& paths) {
-  if (isSession(paths.recording)) return readSession(paths.recording);
+  if (isSessionFile(paths.recording)) return readSession(paths.recording);
   if (!isThere(paths.recording))
     throw badInput(paths.recording.string(), "is not there", "Give the new recording, or a session of it");
   Session session;
@@ -136,9 +122,8 @@ Session sessionFor(const CheckPaths& paths) {
   return session;
 }
 
-bool isSameBoard(const CheckPaths& paths, const Session& session) {
-  const std::filesystem::path kept =
-      (isFolder(paths.result) ? paths.result : paths.result.parent_path()) / kSession;
+bool isSameBoard(const std::filesystem::path& result, const Session& session) {
+  const std::filesystem::path kept = (isFolder(result) ? result : result.parent_path()) / kSession;
   if (!isThere(kept)) return false;
   try {
     return readSessionOfRun(kept).board == session.board;
@@ -226,12 +211,24 @@ CheckInput checkInputOf(NamedResult before, Session session) {
   return input;
 }
 
+namespace {
+
+CheckInput checkInputIn(const std::filesystem::path& result, NamedResult before, Session session) {
+  CheckInput input = checkInputOf(std::move(before), std::move(session));
+  input.same_board = isSameBoard(result, input.session);
+  input.before_name = result.string();
+  return input;
+}
+
+}  // namespace
+
 CheckInput readCheckInput(const CheckPaths& paths) {
   NamedResult before = resultIn(paths.result);
-  CheckInput input = checkInputOf(std::move(before), sessionFor(paths));
-  input.same_board = isSameBoard(paths, input.session);
-  input.before_name = paths.result.string();
-  return input;
+  return checkInputIn(paths.result, std::move(before), sessionFor(paths));
+}
+
+CheckInput readCheckInput(const std::filesystem::path& result, Session session) {
+  return checkInputIn(result, resultIn(result), std::move(session));
 }
 
 Session withPriorOf(const NamedResult& before, Session session) {

@@ -27,6 +27,9 @@ struct CheckInput {
 // Throws CalibrationError (BadInput): the result is none, failed, or of another rig; there is no session.
 CheckInput readCheckInput(const CheckPaths& paths);
 
+// The same of a session that is there already.
+CheckInput readCheckInput(const std::filesystem::path& result, Session session);
+
 // Of a session that is there already: what it has of lenses comes from the result. Throws as above.
 CheckInput checkInputOf(NamedResult before, Session session);
 

@@ -1,5 +1,5 @@
 // Whether an old calibration still holds where there is no board: rotation and time offset of event cameras against the
-// reference IMU, from how both turn (docs/maths.md, 15).
+// reference IMU, from how both turn (docs/maths.md, 16).
 #pragma once
 
 #include "core/base/progress.h"

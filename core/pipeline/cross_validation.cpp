@@ -1,6 +1,7 @@
 #include "core/pipeline/cross_validation.h"
 
 #include "core/base/error.h"
+#include "core/base/in_parallel.h"
 #include "core/base/time.h"
 #include "core/data/quantity_difference.h"
 #include "core/numerics/angles.h"
@@ -9,7 +10,9 @@
 #include "core/optimisation/uncertainty/covariance.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <string>
 
 namespace evical {
 namespace {
@@ -61,16 +64,20 @@ struct Half {
 
 Half estimateHalf(const CalibrationInput& input, const CalibrationState& solved,
                   const OptimisationOptions& options, const RunContext& context) {
+  for (const CameraData& camera : input.cameras)
+    if (camera.observations.views.empty())
+      throw calibrationFailed(camera.name, "one half of the recording does not show the board");
   Half half;
   half.solution = refineBatch(input, solved, options, context);
-  half.uncertainty = estimateUncertainty(input, half.solution, options, context).report;
+  half.uncertainty = estimateSigmas(input, half.solution, options, context);
   return half;
 }
 
 // Board and gravity are the same in both, and mostly by their priors: no difference would show their errors,
-// which are in the sigmas.
-OptimisationOptions withScaleHeld(OptimisationOptions options) {
+// which are in the sigmas. Threads are for both.
+OptimisationOptions ofHalves(OptimisationOptions options) {
   options.free_board_size = options.free_gravity_norm = false;
+  options.threads = std::max(1, options.threads / 2);
   return options;
 }
 
@@ -154,24 +161,25 @@ CrossValidation crossValidate(const CalibrationInput& input, const CalibrationSt
   CrossValidation validation;
   validation.block_s = Blocks(solved, block_s).length_s();
   const std::array<CalibrationInput, 2> inputs = splitIntoHalves(input, solved, block_s);
-  const OptimisationOptions of_halves = withScaleHeld(options);
+  const OptimisationOptions of_halves = ofHalves(options);
   for (std::size_t half = 0; half < 2; ++half)
     for (const CameraData& camera : inputs[half].cameras)
       validation.windows[half] += static_cast<int>(camera.observations.views.size());
   const RunContext quiet{silentProgress(), context.stop};
   std::array<Half, 2> halves;
-  try {
-    for (std::size_t half = 0; half < 2; ++half) {
-      for (const CameraData& camera : inputs[half].cameras)
-        if (camera.observations.views.empty())
-          throw calibrationFailed(camera.name, "one half of the recording does not show the board");
+  std::array<std::string, 2> failures;
+  std::atomic<int> done = 0;
+  inParallel(options.threads, 2, [&](std::size_t half) {
+    try {
       halves[half] = estimateHalf(inputs[half], solved, of_halves, quiet);
-      context.progress.stageProgress(0.5 * (static_cast<double>(half) + 1.0));
+    } catch (const CalibrationError& error) {
+      failures[half] = error.what();
     }
-  } catch (const CalibrationError& error) {
-    validation.failure = error.what();
-    return validation;
-  }
+    context.progress.stageProgress(0.5 * ++done);
+  });
+  for (const std::string& failure : failures)
+    if (validation.failure.empty()) validation.failure = failure;
+  if (!validation.failure.empty()) return validation;
   validation.quantities = differences(input, halves);
   validation.rms_sigmas = normalisedRms(validation.quantities);
   return validation;

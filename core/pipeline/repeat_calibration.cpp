@@ -6,6 +6,7 @@
 #include "core/numerics/angles.h"
 #include "core/numerics/chi_squared.h"
 #include "core/pipeline/compared_quantities.h"
+#include "core/pipeline/prefixed_progress.h"
 #include "core/pipeline/repeated_estimates.h"
 #include "core/pipeline/result_files.h"
 #include "core/report/html/html_text.h"
@@ -20,25 +21,6 @@ namespace evical {
 namespace {
 
 constexpr std::size_t kFewest = 2;
-
-// Which of the recordings is at work.
-class RecordingProgress final : public ProgressSink {
- public:
-  RecordingProgress(ProgressSink& progress, std::string recording)
-      : progress_(progress), recording_(std::move(recording)) {}
-
-  void stageStarted(std::string_view stage) override {
-    progress_.stageStarted(fmt::format("{}: {}", recording_, stage));
-  }
-  void stageProgress(double fraction_of_stage) override { progress_.stageProgress(fraction_of_stage); }
-  void log(LogLevel level, std::string_view text) override {
-    progress_.log(level, fmt::format("{}: {}", recording_, text));
-  }
-
- private:
-  ProgressSink& progress_;
-  std::string recording_;
-};
 
 struct One {
   std::size_t recording;
@@ -105,8 +87,7 @@ class Repeat {
 
   void calibrateOne(std::size_t k, const CalibrateOne& calibrate, const RecordingDone& done) {
     RepeatedRecording& recording = out().recordings[k];
-    RecordingProgress progress(context_.progress,
-                               fmt::format("{} ({} of {})", recording.name, k + 1, input_.sessions.size()));
+    PrefixedProgress progress(context_.progress, partOfRepeat(input_, k));
     const Session session = sessionOfRepeat(input_.sessions[k]);
     CalibrationOutcome outcome = calibrate(k, session, RunContext{progress, context_.stop});
     if (outcome.status == RunStatus::Cancelled) throw Cancelled{};
@@ -141,7 +122,7 @@ class Repeat {
   }
 
   void compare() {
-    context_.progress.stageStarted("compare");
+    context_.progress.stageStarted(kComparingStage);
     std::vector<RecordedEstimate> recorded;
     for (const One& one : ones_) {
       recorded.push_back({one.named.result, one.as_weighed});
@@ -337,6 +318,10 @@ class Repeat {
 };
 
 }  // namespace
+
+std::string partOfRepeat(const RepeatInput& input, std::size_t recording) {
+  return fmt::format("{} ({} of {})", input.names.at(recording), recording + 1, input.sessions.size());
+}
 
 Session sessionOfRepeat(Session session) {
   session.options.optimisation.judge_sigmas = false;

@@ -23,6 +23,11 @@ struct RepeatRun {
   std::size_t own_values_of = 0;  // the recording that the joint result has biases, gravity and offsets of
 };
 
+// Its stages, as progress tells them: those of a calibration behind the recording that is at work (prefixedStage), then
+// the comparison.
+std::string partOfRepeat(const RepeatInput& input, std::size_t recording);
+inline constexpr const char* kComparingStage = "compare";
+
 // The session as each recording is calibrated; that a short one leaves sigmas large is judged of all together.
 Session sessionOfRepeat(Session session);
 

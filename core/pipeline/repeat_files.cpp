@@ -2,6 +2,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/new_folder.h"
 #include "core/pipeline/result_files.h"
 #include "core/report/html/repeat_page.h"
 #include "core/report/repeat_report.h"
@@ -49,6 +50,27 @@ void writeRepeatFiles(const std::filesystem::path& folder, const RepeatInput& in
   }
   files.push_back({kRepeat, repeatYaml(repeat.repeatability)});  // the last tells that all are there
   writeExportedFiles(folder, files);
+}
+
+RepeatRun repeatInto(const std::filesystem::path& folder, const RepeatInput& input,
+                     const std::string& version, const std::function<std::string()>& log,
+                     const RunContext& context) {
+  checkRepeatFolder(folder);
+  const NewFolder made(folder);
+  std::size_t logged = 0;  // of the recordings before
+  const auto keep = [&](std::size_t k, const Session& session,
+                        const std::shared_ptr<const CalibrationRun>& one) {
+    const std::filesystem::path of_one = folderOf(folder, input, k);
+    makeOutputFolder(of_one);
+    const std::string all = log();
+    writeResultFiles(of_one, session, one, version, all.substr(logged));
+    logged = all.size();
+  };
+  RepeatRun repeat = repeatCalibration(input, keep, context);
+  repeat.repeatability.version = version;
+  if (repeat.joint) repeat.joint->version = version;
+  writeRepeatFiles(folder, input, repeat, log());
+  return repeat;
 }
 
 }  // namespace evical

@@ -3,10 +3,12 @@
 #include "core/base/distinct_names.h"
 #include "core/base/error.h"
 #include "core/pipeline/session_keys.h"
+#include "core/pipeline/session_of_recording.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <system_error>
@@ -164,6 +166,31 @@ RepeatInput readRepeat(std::span<const std::filesystem::path> files) {
   std::vector<Session> sessions;
   for (const std::filesystem::path& file : files)
     for (Session& session : readRepeatedSessions(file)) sessions.push_back(std::move(session));
+  return repeatOf(std::move(sessions));
+}
+
+RepeatInput readRepeat(std::span<const std::filesystem::path> files, const std::optional<Session>& like) {
+  std::vector<std::vector<Session>> of_files;
+  std::optional<Session> rig = like;
+  for (const std::filesystem::path& file : files) {
+    of_files.push_back(isSessionFile(file) ? readRepeatedSessions(file) : std::vector<Session>());
+    if (!rig && !of_files.back().empty()) rig = of_files.back().front();
+  }
+  std::vector<Session> sessions;
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    if (isSessionFile(files[k])) {
+      std::move(of_files[k].begin(), of_files[k].end(), std::back_inserter(sessions));
+      continue;
+    }
+    if (!rig)
+      throw badInput(files[k].string(),
+                     "is a recording: which sensors it is of, and which board, is not said",
+                     "Add a session of one of the recordings, or open one");
+    Session session = *rig;
+    setRecording(files[k], session);
+    session.source = files[k];
+    sessions.push_back(std::move(session));
+  }
   return repeatOf(std::move(sessions));
 }
 

@@ -4,6 +4,7 @@
 #include "core/pipeline/session.h"
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,6 +19,10 @@ struct RepeatInput {
 // Sessions, or one that lists `recordings`. Throws CalibrationError (BadInput): fewer than two recordings, one that is
 // missing or there twice, rigs or boards that are not the same.
 RepeatInput readRepeat(std::span<const std::filesystem::path> files);
+
+// The same of sessions and recordings. Of a recording the sensors and the board are those of `like`; where there is none,
+// of the first session among the files. Throws CalibrationError (BadInput) where no session says them.
+RepeatInput readRepeat(std::span<const std::filesystem::path> files, const std::optional<Session>& like);
 
 // The same of sessions that are there already.
 RepeatInput repeatOf(std::vector<Session> sessions);

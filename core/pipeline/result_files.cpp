@@ -149,11 +149,13 @@ void writeDetectionFiles(const std::filesystem::path& folder, const Session& ses
   writeFilesWhole(files);
 }
 
-void writeFailure(const std::filesystem::path& folder, const Session& session, const std::string& reason,
+void writeFailure(const std::filesystem::path& folder, const Session& session, const Doubt& cause,
                   const std::string& version, const std::string& log, const RecordingPass& pass) {
   const auto failed = std::make_shared<CalibrationResult>();
   failed->status = CalibrationStatus::Failed;
-  failed->reason = reason;
+  failed->reason = cause.text;
+  failed->repair = cause.repair;
+  failed->causes = {cause};
   if (!pass.cameras.empty() || !pass.imus.empty()) failed->start_ns = pass.start_ns;
   failed->timing.read_s = pass.read_s;
   failed->timing.detect_s = pass.detect_s;

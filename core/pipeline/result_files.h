@@ -56,7 +56,7 @@ void writeDetectionFiles(const std::filesystem::path& folder, const Session& ses
 
 // result.yaml with status failed and the reason, a report of what there is in `pass`, and log.txt; only where
 // the folder is there already.
-void writeFailure(const std::filesystem::path& folder, const Session& session, const std::string& reason,
+void writeFailure(const std::filesystem::path& folder, const Session& session, const Doubt& cause,
                   const std::string& version, const std::string& log, const RecordingPass& pass = {});
 
 }  // namespace evical

@@ -70,9 +70,11 @@ inline constexpr int kMembers<CrossValidation> = 5;
 template <>
 inline constexpr int kMembers<Repair> = 2;
 template <>
+inline constexpr int kMembers<Doubt> = 4;
+template <>
 inline constexpr int kMembers<Timing> = 6;
 template <>
-inline constexpr int kMembers<CalibrationResult> = 16;
+inline constexpr int kMembers<CalibrationResult> = 17;
 template <>
 inline constexpr int kMembers<ImageCell> = 3;
 template <>

@@ -102,11 +102,23 @@ void readSigma(const YamlNode& node, const QuantityInfo&, KnownMapping& known) {
   if (checkedStd(node, Numbers(upper.begin(), upper.end()))) setQuantityNumbers(upper, known.sigma.emplace());
 }
 
+struct PriorNodes {
+  std::optional<YamlNode> value, sigma;
+};
+
+// By the second name where the first is not there; of what has a prior both are in the same unit.
+PriorNodes priorNodes(const YamlNode& sensor, const QuantityInfo& info) {
+  PriorNodes nodes;
+  if (const auto section = quantitySection(sensor, info))
+    nodes = {section->find(info.key), stdNode(*section, info.std_key, info.key)};
+  if (!nodes.value && *info.also_key != '\0')
+    nodes = {sensor.find(info.also_key), stdNode(sensor, info.also_std_key, info.also_key)};
+  return nodes;
+}
+
 template <class Known>
 void readPrior(const YamlNode& sensor, const QuantityInfo& info, std::optional<Known>& prior) {
-  const auto section = quantitySection(sensor, info);
-  if (!section) return;
-  const auto sigma = stdNode(*section, info.std_key, info.key), value = section->find(info.key);
+  const auto [value, sigma] = priorNodes(sensor, info);
   if (!value) return;
   readValue(*value, info, prior.emplace());
   if (sigma) readSigma(*sigma, info, *prior);
@@ -129,11 +141,12 @@ void dropOwnPlace(const YamlNode& sensor, const Rows& rows, Prior& prior) {
     if (!row.info.relative || !row.prior(prior)) return;
     if (quantityNumbers(row.prior(prior)->value).norm() > kNothing) {
       const bool clock = row.info.section == std::string();
-      throw sensor[clock ? row.info.key : row.info.section].error(
-          clock ? "is that of the reference itself, whose clock is the one that counts"
-                : "is that of the reference itself",
-          clock ? "Remove it, or take another reference"
-                : "Remove it, or take another reference: transforms are relative to it");
+      throw sensor.find(clock ? row.info.key : row.info.section)
+          .value_or(sensor)
+          .error(clock ? "is that of the reference itself, whose clock is the one that counts"
+                       : "is that of the reference itself",
+                 clock ? "Remove it, or take another reference"
+                       : "Remove it, or take another reference: transforms are relative to it");
     }
     row.prior(prior).reset();
   });
@@ -170,7 +183,8 @@ void readCameraPrior(const YamlNode& map, const std::string& name, Session& sess
   SensorPrior& prior = sensorOf(map, name, session.cameras).prior;
   allowOnlyKeys(
       map, kCameraQuantities,
-      {"stream", "time_offset_at_s", "reprojection_rms_px", "normalised_rms", "windows", "circles"});
+      {"stream", "kind", "time_offset_at_s", "reprojection_rms_px", "normalised_rms", "windows", "circles",
+       "latency_s", "latency_std_s", "latency_against", "event_latency_s", "event_latency_std_s"});
   readPriors(map, kCameraQuantities, prior);
   if (name == session.reference && session.imus.empty()) dropOwnPlace(map, kCameraQuantities, prior);
 }

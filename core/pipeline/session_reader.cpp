@@ -114,6 +114,11 @@ Resolution readResolution(const YamlNode& node) {
 
 constexpr double kLargestOffset_s = 1e10;
 
+void readClockOffset(const YamlNode& map, double& offset_s) {
+  if (const auto node = map.find("clock_offset_s"))
+    offset_s = node->real(-kLargestOffset_s, kLargestOffset_s, "s");
+}
+
 // Which stream of which file, in which clock.
 template <class Sensor>
 Sensor readSource(const YamlNode& map, const std::string& sensor_name, const SessionFolder& folder) {
@@ -121,15 +126,31 @@ Sensor readSource(const YamlNode& map, const std::string& sensor_name, const Ses
   sensor.name = sensor_name;
   sensor.stream = name(map["stream"]);
   if (const auto node = map.find("recording")) sensor.recording = recordingBeside(*node, folder);
-  if (const auto node = map.find("clock_offset_s"))
-    sensor.clock_offset_s = node->real(-kLargestOffset_s, kLargestOffset_s, "s");
+  readClockOffset(map, sensor.clock_offset_s);
   return sensor;
 }
 
+// Points that another program has found are a table of their own, whose one stream has the file's name.
+SessionCamera readCameraSource(const YamlNode& map, const std::string& camera_name,
+                               const SessionFolder& folder) {
+  const auto points = map.find("points");
+  if (!points) return readSource<SessionCamera>(map, camera_name, folder);
+  for (const char* const other : {"stream", "recording"})
+    if (const auto node = map.find(other))
+      throw node->error("is there beside points, which name a file of their own", "Keep one of the two");
+  SessionCamera camera;
+  camera.name = camera_name;
+  camera.recording = recordingBeside(*points, folder);
+  camera.stream = camera.recording.filename().string();
+  readClockOffset(map, camera.clock_offset_s);
+  return camera;
+}
+
 SessionCamera readCamera(const YamlNode& map, const std::string& camera_name, const SessionFolder& folder) {
-  map.allowOnly({"recording", "stream", "clock_offset_s", "resolution_px", "shutter", "same_sensor_as",
-                 "board", "intrinsics", "intrinsics_std", "intrinsics_correlation"});
-  SessionCamera camera = readSource<SessionCamera>(map, camera_name, folder);
+  map.allowOnly({"recording", "stream", "points", "clock_offset_s", "resolution_px", "shutter",
+                 "same_sensor_as", "same_sensor_check", "board", "intrinsics", "intrinsics_std",
+                 "intrinsics_correlation"});
+  SessionCamera camera = readCameraSource(map, camera_name, folder);
   if (const auto node = map.find("resolution_px")) camera.resolution_px = readResolution(*node);
   if (const auto node = map.find("shutter"))
     camera.shutter = static_cast<Shutter>(node->choice({"global", "rolling"}));
@@ -243,6 +264,24 @@ void readSensors(const YamlNode& root, const SessionFolder& folder, Session& ses
     session.reference = session.imus.empty() ? session.cameras[0].name : session.imus[0].name;
 }
 
+// Cameras of one sensor share lens and pose, or, all of them, are compared.
+void readSharing(const YamlNode& cameras, Session& session) {
+  std::optional<bool> checked;
+  for (const SessionCamera& camera : session.cameras) {
+    const YamlNode map = cameras[camera.name];
+    const auto node = map.find("same_sensor_check");
+    if (node && camera.same_sensor_as.empty())
+      throw node->error("says nothing without same_sensor_as", "Name the other camera there, or remove this");
+    if (camera.same_sensor_as.empty()) continue;
+    const bool check = node && node->choice({"false", "true"}) == 1;
+    if (checked && *checked != check)
+      throw node.value_or(map).error("is not the same for all cameras that share a sensor",
+                                     "Check all of them, or none");
+    checked = check;
+  }
+  if (checked && *checked) session.options.optimisation.share_sensors = false;
+}
+
 // How well the board was measured, relative; 0: exactly.
 void readSpacingStd(const YamlNode& board, CalibrationOptions& options) {
   const auto node = board.find("spacing_std");
@@ -345,6 +384,7 @@ Session sessionFrom(const YamlNode& root, const SessionFolder& folder, const std
   readBoards(root, session);
   if (const auto node = root.find("prior"); node && !node->isNull()) readPriors(*node, session);
   if (const auto node = root.find("options")) readOptions(*node, session.options);
+  readSharing(root["cameras"], session);
   if (const auto node = root.find("export"); node && !node->isNull())
     for (const YamlNode& item : node->items())
       session.exports.emplace_back(exportTarget(item.text(), item.place()).name);

@@ -8,9 +8,10 @@
 namespace evical {
 namespace {
 
-std::optional<std::string> reasonToTell(const CalibrationOutcome& outcome, bool folder_was_there) {
-  if (outcome.error && outcome.error->kind() == ErrorKind::CalibrationFailed) return outcome.error->what();
-  if (outcome.status == RunStatus::Cancelled && folder_was_there) return "cancelled";
+std::optional<Doubt> causeToTell(const CalibrationOutcome& outcome, bool folder_was_there) {
+  if (outcome.error && outcome.error->kind() == ErrorKind::CalibrationFailed)
+    return Doubt{outcome.error->what(), outcome.error->repair(), "failure"};
+  if (outcome.status == RunStatus::Cancelled && folder_was_there) return Doubt{"cancelled", {}, "cancelled"};
   return std::nullopt;
 }
 
@@ -19,12 +20,12 @@ std::optional<std::string> reasonToTell(const CalibrationOutcome& outcome, bool 
 void writeUnfinishedRun(const std::filesystem::path& folder, bool folder_was_there, const Session& session,
                         const CalibrationOutcome& outcome, const std::string& version,
                         const std::string& log) {
-  const std::optional<std::string> reason = reasonToTell(outcome, folder_was_there);
+  const std::optional<Doubt> cause = causeToTell(outcome, folder_was_there);
   std::error_code ignored;
-  if (!reason || !std::filesystem::is_directory(folder, ignored)) return;
+  if (!cause || !std::filesystem::is_directory(folder, ignored)) return;
   // A failed run keeps an earlier result of the same folder: it is still true of its own recording.
   if (std::filesystem::exists(folder / "trajectory.csv", ignored)) return;
-  writeFailure(folder, session, *reason, version, log, outcome.pass);
+  writeFailure(folder, session, *cause, version, log, outcome.pass);
 }
 
 }  // namespace evical

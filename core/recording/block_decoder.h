@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/data/event.h"
+#include "core/data/frame.h"
 #include "core/data/imu_units.h"
 #include "core/geometry/resolution.h"
 
@@ -23,12 +24,13 @@ struct Occurrences {
 
 // What decoders leave out or count; the reader makes faults of it.
 struct BlockFindings {
-  Occurrences outside;   // events beyond the sensor
-  Occurrences untimed;   // events before the first complete time
-  Occurrences unknown;   // records of no known kind
-  Occurrences wraps;     // of the time, which goes on
-  Occurrences imu;       // IMU records without a known scale
-  Occurrences exposure;  // events that measure grey levels
+  Occurrences outside;               // events beyond the sensor
+  Occurrences untimed;               // events before the first complete time
+  Occurrences unknown;               // records of no known kind
+  Occurrences wraps;                 // of the time, which goes on
+  Occurrences imu;                   // IMU records without a known scale
+  Occurrences exposure;              // events that measure grey levels and belong to no frame
+  std::uint64_t rolling_frames = 0;  // whose pixels are exposed one column after the other
   std::uint64_t triggers = 0;
 };
 
@@ -44,6 +46,9 @@ class BlockDecoder {
 
   // What was between the events, since the vector was emptied last; of formats that have an IMU.
   std::vector<RawImuSample>& imuSamples() { return imu_samples_; }
+  // The same of frames.
+  virtual std::vector<Frame>* frames() { return nullptr; }
+  virtual void finish() {}  // the file ends here
 
  protected:
   std::vector<RawImuSample> imu_samples_;

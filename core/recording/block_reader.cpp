@@ -26,9 +26,15 @@ BlockReader::BlockReader(const std::filesystem::path& path, BlockFormat format,
   file_.seekg(static_cast<std::streamoff>(position_));
   faults_ = std::move(format_.notes);
   for (StreamInfo& stream : format_.streams) stream.readable = stream.type != StreamType::Triggers;
-  while (imu_stream_ < format_.streams.size() && format_.streams[imu_stream_].type != StreamType::Imu)
-    ++imu_stream_;
+  imu_stream_ = streamOf(StreamType::Imu);
+  frames_stream_ = streamOf(StreamType::Frames);
   imu_wanted_ = imu_stream_ < format_.streams.size();
+}
+
+std::size_t BlockReader::streamOf(StreamType type) const {
+  const auto found = std::find_if(format_.streams.begin(), format_.streams.end(),
+                                  [&](const StreamInfo& stream) { return stream.type == type; });
+  return static_cast<std::size_t>(found - format_.streams.begin());
 }
 
 void BlockReader::select(const std::vector<std::size_t>& streams) {
@@ -38,12 +44,13 @@ void BlockReader::select(const std::vector<std::size_t>& streams) {
   };
   events_wanted_ = wants(StreamType::Events);
   imu_wanted_ = wants(StreamType::Imu);
+  frames_wanted_ = wants(StreamType::Frames);
 }
 
 bool BlockReader::read(Packet& packet) {
   packet.clear();
-  if (!events_wanted_ && !imu_wanted_) return false;
-  while (!handOut(packet) && !handOutSamples(packet)) {
+  if (!events_wanted_ && !imu_wanted_ && !frames_wanted_) return false;
+  while (!handOut(packet) && !handOutSamples(packet) && !handOutFrames(packet)) {
     if (finished_ || !decodeBlock()) return false;
   }
   return true;
@@ -109,8 +116,20 @@ bool BlockReader::handOutSamples(Packet& packet) {
   return !packet.imu_samples.empty();
 }
 
+bool BlockReader::handOutFrames(Packet& packet) {
+  std::vector<Frame>* const frames = decoder_->frames();
+  if (frames == nullptr) return false;
+  if (frames_wanted_ && !frames->empty()) {
+    packet.stream = frames_stream_;
+    std::swap(packet.frames, *frames);
+  }
+  frames->clear();
+  return !packet.frames.empty();
+}
+
 void BlockReader::finish() {
   finished_ = true;
+  decoder_->finish();
   const BlockFindings& found = decoder_->findings();
   for (StreamInfo& stream : format_.streams)
     if (stream.type == StreamType::Triggers) stream.messages = found.triggers;
@@ -128,7 +147,14 @@ void BlockReader::finish() {
   report(FaultKind::Corrupt, found.unknown, "records are of no known kind and are left out");
   report(FaultKind::TimeWrap, found.wraps, "times the counter of the time began anew; times go on");
   report(FaultKind::ImuLeftOut, found.imu, "IMU records have no known scale and are left out");
-  report(FaultKind::ExposureLeftOut, found.exposure, "events measure grey levels and are left out");
+  report(FaultKind::ExposureLeftOut, found.exposure,
+         "events measure grey levels that make no whole frame; they are left out");
+  if (found.rolling_frames > 0)
+    faults_.push_back(
+        {format_.streams.at(frames_stream_).name, FaultKind::Metadata, 0.0,
+         fmt::format("{} frames are of a rolling shutter that goes from column to column; each is "
+                     "taken for the middle of its exposures.",
+                     found.rolling_frames)});
   if (disordered_ > 0) {
     addFault(FaultKind::Unsorted, fmt::format("Time runs backwards {} times by {:.3f} ms at most; sorted.",
                                               disordered_, 1e-6 * static_cast<double>(largest_disorder_ns_)));

@@ -1,5 +1,5 @@
 // Reads files that are a header and then events packed one behind the other, in blocks of a fixed size: one
-// stream of events, and one each of IMU samples and triggers where the format has them. What is odd is said in the faults, with
+// stream of events, and one each of IMU samples, frames and triggers where the format has them. What is odd is said in the faults, with
 // the byte at which it began.
 #pragma once
 
@@ -17,7 +17,7 @@ namespace evical {
 
 struct BlockFormat {
   std::string name;                   // of the family: "prophesee_raw"
-  std::vector<StreamInfo> streams;    // events first, if any; then IMU samples, triggers
+  std::vector<StreamInfo> streams;    // events first, if any; then IMU samples, frames, triggers
   std::uint64_t data_offset = 0;      // behind the header
   std::vector<RecordingFault> notes;  // what reading the header found
 };
@@ -37,6 +37,8 @@ class BlockReader : public RecordingReader {
   bool decodeBlock();
   bool handOut(Packet& packet);
   bool handOutSamples(Packet& packet);
+  bool handOutFrames(Packet& packet);
+  std::size_t streamOf(StreamType type) const;  // the number of streams if there is none
   void finish();
   void addFault(FaultKind kind, std::string text);
 
@@ -48,8 +50,9 @@ class BlockReader : public RecordingReader {
   std::vector<Event> decoded_;
   std::size_t handed_out_ = 0;  // of decoded_
   std::vector<RecordingFault> faults_;
-  std::size_t imu_stream_ = 0;  // the number of streams if there is none
+  std::size_t imu_stream_ = 0, frames_stream_ = 0;
   bool events_wanted_ = true, imu_wanted_ = true, finished_ = false;
+  bool frames_wanted_ = false;  // until they are selected
   std::uint64_t disordered_ = 0;
   std::int64_t largest_disorder_ns_ = 0;
 };

@@ -17,6 +17,7 @@
 #include "core/recording/ros/ros_files.h"
 #include "core/recording/ros/ros_reader.h"
 #include "core/recording/separate_reader.h"
+#include "core/recording/text/text_bytes.h"
 #include "core/recording/text/text_table_reader.h"
 
 #include <fmt/format.h>
@@ -48,7 +49,6 @@ constexpr OtherFormat kOtherFormats[] = {
      "Fetch it with `git lfs pull`"},
     {"PK\3\4"sv, "this is a ZIP archive", "Unpack it first"},
     {"7z\xBC\xAF"sv, "this is a 7z archive", "Unpack it first"},
-    {"\x1F\x8B"sv, "this is packed with gzip", "Unpack it first"},
     {"\x28\xB5\x2F\xFD"sv, "this is packed with zstd", "Unpack it first"},
     {"#ROSBAG"sv, "this is a bag of an old format", "Convert it with `rosbag fix`"},
     {"#!AER-DAT"sv, "this is an AEDAT file of an old version",
@@ -138,6 +138,11 @@ std::unique_ptr<RecordingReader> openPath(const std::filesystem::path& path) {
   if (start.starts_with(kAedat3Magic)) return std::make_unique<Aedat3Reader>(path);
   if (isNumpyFile(path, start)) return std::make_unique<NumpyReader>(path);
   if (isRos2File(path, start)) return std::make_unique<RosReader>(path);
+  if (isGzip(start)) {
+    if (textTableType(firstTextBytes(path, start.size())) != StreamType::Other)
+      return std::make_unique<TextTableReader>(path);
+    throw badInput(path.string(), "this is packed with gzip, and not a text", "Unpack it first");
+  }
   for (const OtherFormat& format : kOtherFormats) {
     if (start.starts_with(format.magic)) throw badInput(path.string(), format.problem, format.advice);
   }

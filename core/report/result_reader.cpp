@@ -272,6 +272,19 @@ void readRun(const YamlNode& root, NamedResult& named, CalibrationResult& result
     }
 }
 
+void readCauses(const YamlNode& root, std::vector<Doubt>& causes) {
+  const auto list = root.find("causes");
+  if (!list) return;
+  for (const YamlNode& item : list->items()) {
+    Doubt& cause = causes.emplace_back();
+    get(item, "name", cause.name);
+    get(item, "explains", cause.explains);
+    get(item, "text", cause.text);
+    if (const auto set = item.find("set"))
+      for (const std::string& key : set->keys()) cause.repair = Repair{key, (*set)[key].text()};
+  }
+}
+
 }  // namespace
 
 NamedResult readResultYaml(const std::filesystem::path& file) {
@@ -287,6 +300,7 @@ NamedResult readResultYaml(const std::filesystem::path& file) {
   get(root, "reason", result.reason);
   if (const auto repair = root.find("repair"))
     result.repair = Repair{(*repair)["set"].text(), (*repair)["to"].text()};
+  readCauses(root, result.causes);
   get(root, "reference", named.reference);
   if (const auto recording = root.find("recording")) result.start_ns = (*recording)["start_ns"].nanoseconds();
   if (const auto cameras = root.find("cameras"))

@@ -40,6 +40,15 @@ void addTimeOfOffset(const State& state, YamlSections& sections) {
     sections.add({}, "time_offset_at_s", quantityYaml(state.time_offset_at_s, exactYaml));
 }
 
+// Second names are of numbers alone.
+template <class Value, class Sigma>
+void addSecondName(const QuantityInfo&, const Value&, const Sigma&, YamlSections&) {}
+void addSecondName(const QuantityInfo& info, double value, double sigma, YamlSections& sections) {
+  if (*info.also_key == '\0') return;
+  sections.add({}, info.also_key, quantityYaml(info.also_factor * value, exactYaml));
+  sections.add({}, info.also_std_key, quantityYaml(info.also_factor * sigma, roundedYaml));
+}
+
 enum class Written { Values, Sigmas, Both };
 
 // The rows that `chosen` takes, but for intrinsics, which have a map of their own.
@@ -54,6 +63,7 @@ void addQuantities(const Rows& rows, const State& state, const Uncertainty& unce
       if (written != Written::Sigmas)
         sections.add(info.section, info.key, quantityYaml(row.value(state), exactYaml));
       if (written != Written::Values) addSigma(info, row.sigma(uncertainty), sections);
+      if (written == Written::Both) addSecondName(info, row.value(state), row.sigma(uncertainty), sections);
     }
   });
 }
@@ -91,6 +101,19 @@ std::string latencyYaml(const NamedResult& named, std::size_t camera) {
   return text;
 }
 
+// How much later its events are stamped than the frames of the same sensor.
+std::string eventLatencyYaml(const NamedResult& named, std::size_t camera) {
+  if (named.cameras.at(camera).kind != CameraKind::Events) return {};
+  for (const SensorLatency& latency : named.result->latencies) {
+    const bool first = latency.camera == camera;
+    const std::size_t other = first ? latency.against : latency.camera;
+    if ((!first && latency.against != camera) || named.cameras.at(other).kind != CameraKind::Frames) continue;
+    return fmt::format("    event_latency_s: {}\n    event_latency_std_s: {}\n",
+                       exactYaml(first ? latency.latency_s : -latency.latency_s), roundedYaml(latency.std_s));
+  }
+  return {};
+}
+
 std::string cameraYaml(const NamedResult& named, std::size_t i) {
   const CameraState& state = named.result->state.cameras[i];
   const CameraUncertainty sigma = elementOrNone(named.result->uncertainty.cameras, i);
@@ -101,7 +124,7 @@ std::string cameraYaml(const NamedResult& named, std::size_t i) {
   addPlace(kCameraQuantities, state, sigma, sections);
   addQuantities(kCameraQuantities, state, sigma, Written::Both, sections, besidesPose);
   addTimeOfOffset(state, sections);
-  text += sections.text(kSensorIndent) + latencyYaml(named, i);
+  text += sections.text(kSensorIndent) + latencyYaml(named, i) + eventLatencyYaml(named, i);
   if (const std::optional<CameraIntrinsics>& intrinsics = state.lens.inUse()) {
     text += "    intrinsics:\n" + intrinsicsYaml(*intrinsics, 6);
     if (sigma.intrinsics_std)
@@ -217,6 +240,20 @@ std::string rejectedYaml(const NamedResult& named) {
   return text.empty() ? text : "rejected_windows:\n" + text;
 }
 
+// What makes it doubtful, or fail, one by one.
+std::string causesYaml(const std::vector<Doubt>& causes) {
+  std::string text;
+  for (const Doubt& cause : causes) {
+    text += fmt::format("  - name: {}\n", yamlText(cause.name));
+    if (cause.explains > 0.0) text += fmt::format("    explains: {}\n", roundedYaml(cause.explains));
+    text += fmt::format("    text: {}\n", yamlText(cause.text));
+    if (cause.repair)
+      text +=
+          fmt::format("    set: {{{}: {}}}\n", yamlText(cause.repair->key), yamlText(cause.repair->value));
+  }
+  return text.empty() ? text : "causes:\n" + text;
+}
+
 std::string runYaml(const NamedResult& named) {
   std::string text = rejectedYaml(named);
   text += named.result->notes.empty() ? "notes: []\n" : "notes:\n";
@@ -247,6 +284,7 @@ std::string resultYaml(const NamedResult& named) {
                                  yamlText(named.reference));
   if (const std::optional<Repair>& repair = named.result->repair)
     text += fmt::format("repair: {{set: {}, to: {}}}\n", yamlText(repair->key), yamlText(repair->value));
+  text += causesYaml(named.result->causes);
   if (named.result->start_ns) text += fmt::format("recording:\n  start_ns: {}\n", *named.result->start_ns);
   text += state.cameras.empty() ? "cameras: {}\n" : "cameras:\n";
   for (std::size_t i = 0; i < state.cameras.size(); ++i) text += cameraYaml(named, i);

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <Eigen/Core>
 
+#include <cstdint>
+#include <filesystem>
 #include <initializer_list>
 #include <limits>
 #include <string>
@@ -47,6 +49,21 @@ inline void get(const YamlNode& map, const char* key, Eigen::Matrix<double, Size
                         fmt::format("Give numbers from {} to {}", minimum, maximum));
     value(i) = unit * number;
   }
+}
+
+// What every kind of scenario begins with: the scenario that it rests on, read by `read` (path, depth), its name, its seed.
+template <class AnyScenario, class Read>
+void readBeginning(const YamlNode& root, const std::filesystem::path& path, int depth, const Read& read,
+                   AnyScenario& scenario) {
+  if (const auto base = root.find("base")) {
+    constexpr int kDeepest = 8;
+    if (depth > kDeepest) throw base->error("scenarios rest on each other without an end");
+    scenario = read(path.parent_path() / base->text(), depth + 1);
+  }
+  scenario.name = path.stem().string();
+  int seed = static_cast<int>(scenario.seed);
+  get(root, "seed", seed, 0, std::numeric_limits<int>::max());
+  scenario.seed = static_cast<std::uint64_t>(seed);
 }
 
 inline void readTransform(const YamlNode& map, RigidTransform& transform) {

@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <span>
 #include <vector>
@@ -362,15 +361,7 @@ Scenario readFrom(const std::filesystem::path& path, int depth) {
   Scenario scenario;
   scenario.cameras.resize(1);
   scenario.imus.resize(1);
-  if (const auto base = root.find("base")) {
-    constexpr int kDeepest = 8;
-    if (depth > kDeepest) throw base->error("scenarios rest on each other without an end");
-    scenario = readFrom(path.parent_path() / base->text(), depth + 1);
-  }
-  scenario.name = path.stem().string();
-  int seed = static_cast<int>(scenario.seed);
-  get(root, "seed", seed, 0, std::numeric_limits<int>::max());
-  scenario.seed = static_cast<std::uint64_t>(seed);
+  readBeginning(root, path, depth, readFrom, scenario);
   get(root, "duration_s", scenario.duration_s, 0.1, 3600.0, "s");
   get(root, "format", scenario.format, {"bag", "text"});
   if (const auto node = root.find("session")) readSession(*node, scenario);

@@ -138,14 +138,14 @@ grep -q "Submitted 20 jobs" "$scratch/log/submitted" || fail "not all were submi
 # The second node goes down while it works, after it has done something.
 some_done() { [ "$(find "$cluster/jobs" -name 'r*.yaml' ! -name '*.session.yaml' | wc -l)" -ge 3 ]; }
 busy_on() { squeue --noheader --states=R --format=%N | grep -qx "$1"; }
-within 60 some_done || fail "nothing is done: $(squeue 2>&1)"
+within 240 some_done || fail "nothing is done: $(squeue 2>&1)"
 "$evical" batch "$scratch/jobs.yaml" -o "$cluster" --collect --quiet >"$scratch/log/early" && fail "a part was called the whole"
 grep -q "is in Slurm's queue: " "$scratch/log/early" || fail "nobody says what waits: $(cat "$scratch/log/early")"
-within 30 busy_on n2 || fail "the second node has no work: $(squeue 2>&1)"
+within 60 busy_on n2 || fail "the second node has no work: $(squeue 2>&1)"
 kill_node n2
 
 queue_empty() { [ -z "$(squeue --noheader)" ]; }
-within 120 queue_empty || fail "the queue does not end: $(squeue 2>&1; sinfo 2>&1)"
+within 600 queue_empty || fail "the queue does not end: $(squeue 2>&1; sinfo 2>&1)"
 sinfo --noheader --Node --format='%N %T' | grep -q '^n2 down' || fail "n2 was not lost: $(sinfo --Node 2>&1)"
 
 "$evical" batch "$scratch/jobs.yaml" -o "$cluster" --collect >"$scratch/log/collected" || true

@@ -58,3 +58,27 @@ run(output "${examples}/detect_board" "${RECORDING}/session.yaml")
 expect("${output}" "board in [1-9][0-9]+ of [0-9]+ windows" detect_board)
 run(output "${examples}/calibrate" "${RECORDING}/session.yaml")
 expect("${output}" "translation .* sigma .*time offset .* ms" calibrate)
+
+# Headers by the package's name alone, and the target spelt as the package is.
+set(prefixed "${SCRATCH}/prefixed")
+file(WRITE "${prefixed}/main.cpp" "#include <evical/base/error.h>
+#include <evical/pipeline/session.h>
+int main() {
+  try {
+    evical::readSession(\"nowhere.yaml\");
+  } catch (const evical::CalibrationError&) {
+    return 0;
+  }
+  return 1;
+}
+")
+file(WRITE "${prefixed}/CMakeLists.txt" "cmake_minimum_required(VERSION 3.25)
+project(prefixed LANGUAGES C CXX)
+find_package(Evical REQUIRED)
+add_executable(prefixed main.cpp)
+target_link_libraries(prefixed PRIVATE Evical::core)
+")
+run(ignored "${CMAKE_COMMAND}" -S "${prefixed}" -B "${prefixed}/build" -G "${GENERATOR}" "-DCMAKE_PREFIX_PATH=${prefix}"
+    "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_FLAGS=${FLAGS}")
+run(ignored "${CMAKE_COMMAND}" --build "${prefixed}/build")
+run(ignored "${prefixed}/build/prefixed")

@@ -22,7 +22,7 @@ def options_in(help_text):
     return set(re.findall(r"(?<![\w-])--?[A-Za-z][\w-]*", help_text))
 
 
-settings = set(re.findall(r"^([a-z_]+\.[a-z_.]+) ", output(program, "options", "--all"), re.MULTILINE))
+settings = set(re.findall(r"^([a-z_]+\.[a-z0-9_.]+) ", output(program, "options", "--all"), re.MULTILINE))
 groups = {setting.split(".")[0] for setting in settings}
 short_names = {".".join([parts[0], parts[2]]) for parts in (setting.split(".") for setting in settings) if len(parts) == 3}
 commands = re.findall(r"^  ([a-z]+) ", output(program, "--help").split("Subcommands:")[1], re.MULTILINE)

@@ -6,6 +6,9 @@
 
 #include <QDir>
 #include <QElapsedTimer>
+#include <QJsonArray>
+#include <QJsonDocument>
+#include <QJsonObject>
 #include <QRegularExpression>
 #include <QTemporaryDir>
 
@@ -51,12 +54,14 @@ class TestCommandLine : public QObject {
   void simulate_isTheSameFromTheSameSeed();
   void calibrate_writesAResultNearTheTruth_data();
   void calibrate_writesAResultNearTheTruth();
+  void calibrate_profileTellsWhereItsTimeGoes();
   void export_writesTheFoldersOfTargets();
   void export_ofBadInputWritesNothing_data();
   void export_ofBadInputWritesNothing();
   void export_goesOnWhereOneTargetRefuses();
   void export_check_tellsWhatItRead();
   void export_check_findsWhatIsInTheWay();
+  void export_check_ofEarlierFiles();
   void export_toAll_namesWhatRefuses();
   void import_writesASession();
   void init_writesTheSessionThatTheRecordingSuggests_data();
@@ -218,6 +223,16 @@ const QByteArray kSmallResult =
 
 }  // namespace
 
+void TestCommandLine::calibrate_profileTellsWhereItsTimeGoes() {
+  const QTemporaryDir folder;
+  const QString trace = folder.filePath("trace.json");
+  VERIFY_EXIT(runProgram({"calibrate", session(), "-o", folder.filePath("result"), "--profile", trace}), 0);
+  QStringList stages;
+  for (const QJsonValue& event : QJsonDocument::fromJson(readFile(trace)).object()["traceEvents"].toArray())
+    if (event["ph"].toString() == "X" && event["tid"].toInt() == 0) stages.append(event["name"].toString());
+  QCOMPARE(stages, (QStringList{"detect", "initialise", "optimise", "cross_validate"}));
+}
+
 void TestCommandLine::export_writesTheFoldersOfTargets() {
   QTemporaryDir folder;
   writeFile(folder.filePath("result.yaml"), kSmallResult);
@@ -299,6 +314,30 @@ void TestCommandLine::export_check_findsWhatIsInTheWay() {
   QVERIFY2(outcome.reason().contains("ros: does not read back: ") && outcome.reason().contains("old.yaml"),
            qPrintable(outcome.errors));
   QVERIFY(outcome.output.contains("kalibr: reads back: "));
+}
+
+// `--check FOLDER` writes nothing, and takes what is there.
+void TestCommandLine::export_check_ofEarlierFiles() {
+  QTemporaryDir folder;
+  writeFile(folder.filePath("result.yaml"), kSmallResult);
+  const QString out = folder.filePath("out");
+  VERIFY_EXIT(runProgram({"export", folder.path(), "--to", "ros,kalibr", "-o", out}), 0);
+  const Outcome all = runProgram({"export", folder.path(), "--check", out});
+  VERIFY_EXIT(all, 0);
+  QVERIFY2(all.output.contains("kalibr: reads back: ") && all.output.contains("ros: reads back: "),
+           qPrintable(all.output));
+  const QString camchain = out + "/kalibr/" + filesIn(out + "/kalibr").filter("camchain").value(0);
+  writeFile(camchain, QByteArray(readFile(camchain)).replace("intrinsics", "intrinsic"));
+  const Outcome broken = runProgram({"export", folder.path(), "--check", out});
+  VERIFY_EXIT(broken, 1);
+  QVERIFY2(broken.reason().contains("kalibr: does not read back: "), qPrintable(broken.errors));
+  VERIFY_EXIT(runProgram({"export", folder.path(), "--to", "ros", "--check", out}), 0);
+  for (const QStringList& wrong : {QStringList{"--check", folder.filePath("nowhere")},
+                                   {"--check", folder.path()},
+                                   {"--check", out, "-o", out},
+                                   {"--check"},
+                                   {"--to", "ros"}})
+    VERIFY_EXIT(runProgram(QStringList{"export", folder.path()} + wrong), 2);
 }
 
 void TestCommandLine::export_toAll_namesWhatRefuses() {

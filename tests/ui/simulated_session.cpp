@@ -2,6 +2,7 @@
 #include "tests/ui/simulated_session.h"
 
 #include "core/base/atomic_file.h"
+#include "core/numerics/angles.h"
 #include "core/pipeline/session.h"
 #include "core/pipeline/simulation.h"
 #include "core/recording/recording_writer.h"
@@ -13,6 +14,9 @@
 #include <QFile>
 #include <QLockFile>
 
+#include <Eigen/Geometry>
+
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
@@ -106,6 +110,19 @@ QString simulatedHdSession() {
 
 QString simulatedTwoCameraSession() {
   return simulateOnce("two_cameras", simulateTwoCameras);
+}
+
+QString simulatedFurtherSession(int number, double turned_deg) {
+  constexpr std::int64_t kHour_ns = 3'600'000'000'000;
+  const QString name = QString("further_%1_%2").arg(number).arg(turned_deg);
+  return simulateOnce(name, [number, turned_deg](const std::string& folder) {
+    Scenario rig = scenario("davis346", 6.0);
+    rig.seed += static_cast<std::uint64_t>(number);
+    rig.start_ns += number * kHour_ns;
+    RigidTransform& pose = rig.cameras.front().imu_from_camera;
+    pose.rotation = pose.rotation * Eigen::AngleAxisd(kRadPerDeg * turned_deg, Eigen::Vector3d::UnitY());
+    simulate(rig, folder, {});
+  });
 }
 
 QString copyOfSimulatedSession(const QString& folder) {

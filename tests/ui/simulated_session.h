@@ -12,6 +12,9 @@ QString simulatedHdSession();         // 3.5 s at 1280x720
 QString simulatedTwoCameraSession();  // 4 s of two cameras, "left" and "right", 0.1 m apart, an IMU, each
                                       // camera in a bag of its own
 
+// 6 s of the everyday rig at other moments and with other motions, by number; with the camera turned on its mount.
+QString simulatedFurtherSession(int number, double turned_deg = 0.0);
+
 // A copy of the first one's session file in `folder`, naming the shared recording.
 QString copyOfSimulatedSession(const QString& folder);
 // The same with a copy of the recording, for tests that spoil it.

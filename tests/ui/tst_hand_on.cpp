@@ -246,6 +246,29 @@ class TestHandOn : public QObject {
     QVERIFY(!svg.contains("<image"));
   }
 
+  // Names and lengths, in the least room that the drawing gets, from all sides.
+  void rig_hasNoTextOverAnother() {
+    RigDrawing drawing;
+    drawing.setResult(rig_);
+    for (const QSize size : {drawing.minimumSizeHint(), QSize(250, 160), QSize(420, 300)}) {
+      drawing.resize(size);
+      for (const Qt::Key from : {Qt::Key_Home, Qt::Key_1, Qt::Key_2, Qt::Key_3}) {
+        QTest::keyClick(&drawing, from);
+        const std::vector<RigDrawing::Label> labels = drawing.labels(drawing.size());
+        QVERIFY(labels.size() > 5);  // three names, two lengths, and letters
+        for (const RigDrawing::Label& one : labels) {
+          if (one.letter) continue;
+          const QString what =
+              QString("%1 at %2 x %3, key %4").arg(one.text).arg(size.width()).arg(size.height()).arg(from);
+          QVERIFY2(QRectF(drawing.rect()).contains(one.place), qPrintable(what));
+          for (const RigDrawing::Label& other : labels)
+            QVERIFY2(&one == &other || !one.place.intersects(other.place),
+                     qPrintable(what + " over " + other.text));
+        }
+      }
+    }
+  }
+
   void correlations_areNamedInWordsAndSaved() {
     CorrelationView view;
     view.resize(420, 420);

@@ -7,11 +7,14 @@
 #include "ui/detection/timeline.h"
 #include "ui/forms/option_editor.h"
 #include "ui/forms/option_form.h"
+#include "ui/screens/shown_motion.h"
+#include "ui/window/guide_pictures.h"
 #include "ui/window/session_files.h"
 
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDialog>
+#include <QSet>
 #include <QShortcut>
 #include <QTextBlock>
 #include <QTextBrowser>
@@ -137,7 +140,8 @@ class TestMainWindowKeys : public QObject {
       if (action->shortcut().isEmpty() || action->text().isEmpty()) continue;
       const QString key = action->shortcut().toString();
       const bool screen = key.size() == 6 && key.startsWith("Ctrl+") && key[5].isDigit();
-      QVERIFY2(text.contains(screen ? QString("Ctrl+1 ... Ctrl+8") : key), qPrintable(action->text() + key));
+      QVERIFY2(text.contains(screen ? QString("Ctrl+1 ... Ctrl+9, Ctrl+0") : key),
+               qPrintable(action->text() + key));
       ++shortcuts;
     }
     QVERIFY(shortcuts > 15);
@@ -148,6 +152,29 @@ class TestMainWindowKeys : public QObject {
       ++of_pages;
     }
     QVERIFY(of_pages >= 11);
+  }
+
+  // Of every page, and of every motion: each is there, and is shown in its part.
+  void guide_hasPictures() {
+    WindowFixture test;
+    test.press(Qt::Key_F1);
+    auto* const browser = test.child<QDialog>("user_guide")->findChild<QTextBrowser*>();
+    QStringList shown;
+    for (QTextBlock block = browser->document()->begin(); block.isValid(); block = block.next())
+      for (auto part = block.begin(); !part.atEnd(); ++part)
+        if (const QTextImageFormat image = part.fragment().charFormat().toImageFormat(); image.isValid())
+          shown << image.name();
+    QCOMPARE(shown.size(), guidePictures().size() + static_cast<qsizetype>(shownMotions().size()));
+    for (const QString& name : shown) {
+      const QImage image = browser->document()->resource(QTextDocument::ImageResource, name).value<QImage>();
+      QVERIFY2(image.width() > 300 && image.height() > 150, qPrintable(name));
+      QSet<QRgb> colours;
+      for (int y = 0; y < image.height(); y += 3)
+        for (int x = 0; x < image.width(); x += 3) colours << image.pixel(x, y);
+      QVERIFY2(colours.size() > 8, qPrintable(name));
+    }
+    for (const QString& page : test.window.screenNames().mid(0, 8))  // those that one recording fills
+      QVERIFY2(shown.filter(page == "result" ? "result-light" : page).size() >= 1, qPrintable(page));
   }
 
   void guide_hasContents_thatLeadToItsParts() {

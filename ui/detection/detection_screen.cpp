@@ -7,6 +7,7 @@
 #include "ui/detection/timeline.h"
 #include "ui/detection/window_list.h"
 #include "ui/detection/window_panel.h"
+#include "ui/detection/window_rows.h"
 #include "ui/forms/page_keys.h"
 #include "ui/theme/theme.h"
 
@@ -101,6 +102,7 @@ void DetectionScreen::setSession(const Session& session) {
     camera_box_->addItem(QString::fromStdString(camera.name));
   camera_box_->setVisible(session.cameras.size() > 1);
   time_s_ = 0.1;
+  time_is_chosen_ = false;
   chooseCamera(0);
 }
 
@@ -133,6 +135,16 @@ void DetectionScreen::setRun(std::shared_ptr<const CalibrationRun> run, const Se
   run_ = std::move(run);
   run_session_ = session;
   showRun();
+  if (runInView() != nullptr) goWhereSeen(run_->pass.cameras);
+}
+
+// Nobody has chosen a moment yet: one with the board is better than the recording's start or, after following, its end.
+void DetectionScreen::goWhereSeen(std::span<const BoardObservations> cameras) {
+  if (time_is_chosen_ || following() || camera_ >= cameras.size()) return;
+  const std::optional<double> seen_s = middleOfSeen_s(cameras[camera_].windows);
+  if (!seen_s) return;
+  moveTo(*seen_s);
+  emit timeSelected(time_s_);
 }
 
 const CalibrationRun* DetectionScreen::runInView() const {
@@ -190,6 +202,7 @@ void DetectionScreen::showLiveFrame(std::shared_ptr<const LiveWindow> window) {
   analysis_ = window->analysis;
   if (window->time_s) {
     time_s_ = *window->time_s;
+    time_is_chosen_ = false;
     timeline_->setTime(time_s_);
   }
   engine_->showLive(std::move(window), style());
@@ -202,6 +215,11 @@ std::optional<KeptEvents> DetectionScreen::keptEvents() const {
 
 void DetectionScreen::setTime(double time_s) {
   if (following()) return;
+  time_is_chosen_ = true;
+  moveTo(time_s);
+}
+
+void DetectionScreen::moveTo(double time_s) {
   if (time_s == time_s_) return;
   time_s_ = time_s;
   timeline_->setTime(time_s);
@@ -330,7 +348,9 @@ void DetectionScreen::takeOverview() {
 
 // The first one is at a fixed time, before it is known how long the recording is.
 void DetectionScreen::keepCursorInside(const RecordingOverview& overview) {
-  if (overview.finished && time_s_ > timeline_->end_s()) select(0.5 * timeline_->end_s());
+  if (!overview.finished || time_s_ <= timeline_->end_s()) return;
+  moveTo(0.5 * timeline_->end_s());
+  emit timeSelected(time_s_);
 }
 
 void DetectionScreen::takeFrame() {

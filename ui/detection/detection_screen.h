@@ -16,6 +16,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 class QCheckBox;
@@ -74,6 +75,8 @@ class DetectionScreen : public QWidget {
   std::size_t camera() const { return camera_; }
   bool framesInView() const { return kind_ == CameraKind::Frames; }  // of that camera
   double time_s() const { return time_s_; }
+  // Goes to a window in the middle that has the board; not where somebody has chosen a moment, or follows a run.
+  void goWhereSeen(std::span<const BoardObservations> cameras);
   bool isPlaying() const { return timer_.isActive(); }
   EventView& view() { return *view_; }
   void readAgain();                                        // the recording is not what it was
@@ -128,6 +131,7 @@ class DetectionScreen : public QWidget {
   Sight sightOf(std::size_t camera) const;
   void showRun();
   void select(double time_s);
+  void moveTo(double time_s);
   void advance();
   void request();  // of the engine: what the cursor, the mode and the layers ask for
   void takeOverview();
@@ -164,6 +168,7 @@ class DetectionScreen : public QWidget {
   std::shared_ptr<const WindowAnalysis> analysis_;
   LayerSet layers_ = defaultLayers();
   double time_s_ = 0.1;
+  bool time_is_chosen_ = false;  // by somebody, for the session that is open
   bool live_ = false, following_ = false;
 
   QTimer timer_;

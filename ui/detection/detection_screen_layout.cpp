@@ -114,8 +114,12 @@ QWidget* DetectionScreen::makeToolBar() {
   fade_box_->setToolTip(tr("An event has faded to a third after this time"));
   camera_box_ = new QComboBox;
   camera_box_->setToolTip(tr("Camera"));
+  camera_box_->setAccessibleName(tr("Camera"));
+  mode_box_->setAccessibleName(tr("How events are drawn"));
+  fade_box_->setAccessibleName(tr("After which time events have faded"));
   camera_box_->hide();
   picture_box_ = new QComboBox;
+  picture_box_->setAccessibleName(tr("Which pictures are shown"));
   picture_box_->addItems({{}, tr("Side by side"), tr("Events over frame")});
   picture_box_->hide();
   row->addWidget(camera_box_);
@@ -197,6 +201,7 @@ QWidget* DetectionScreen::makeTransport() {
     speed_box_->addItem(
         speed < 1.0 ? tr("1/%1 speed").arg(1.0 / speed, 0, 'f', 0) : tr("%1 x speed").arg(speed), speed);
   speed_box_->setCurrentIndex(3);
+  speed_box_->setAccessibleName(tr("Speed of playing"));
   speed_box_->setToolTip(tr("Speed of playing, against the recording's own"));
   row->addWidget(speed_box_);
   time_box_ = new QDoubleSpinBox;
@@ -206,6 +211,7 @@ QWidget* DetectionScreen::makeTransport() {
   time_box_->setSuffix(tr(" s"));
   time_box_->setKeyboardTracking(false);
   time_box_->setToolTip(tr("Cursor, since the recording's start"));
+  time_box_->setAccessibleName(tr("Cursor in seconds"));
   connect(time_box_, &QDoubleSpinBox::valueChanged, this, [this](double time_s) { select(time_s); });
   row->addWidget(time_box_);
   row->addSpacing(8);

@@ -62,4 +62,18 @@ std::vector<WindowRow> windowRows(const CalibrationRun& run, std::size_t camera)
   return rows;
 }
 
+std::optional<double> middleOfSeen_s(const std::vector<WindowReport>& windows) {
+  if (windows.empty()) return std::nullopt;
+  const double middle_s = 0.5 * (windows.front().time_s + windows.back().time_s);
+  for (const WindowOutcome wanted : {WindowOutcome::Complete, WindowOutcome::Partial}) {
+    std::optional<double> nearest_s;
+    for (const WindowReport& window : windows)
+      if (window.outcome == wanted &&
+          (!nearest_s || std::abs(window.time_s - middle_s) < std::abs(*nearest_s - middle_s)))
+        nearest_s = window.time_s;
+    if (nearest_s) return nearest_s;
+  }
+  return std::nullopt;
+}
+
 }  // namespace evical::ui

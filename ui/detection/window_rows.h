@@ -6,6 +6,7 @@
 #include "core/pipeline/calibration_pipeline.h"
 
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace evical::ui {
@@ -20,5 +21,8 @@ struct WindowRow {
 
 // In time order, one a window.
 std::vector<WindowRow> windowRows(const CalibrationRun& run, std::size_t camera);
+
+// Of the windows in which the whole board was found, else any of it, the one that is nearest to the middle of all.
+std::optional<double> middleOfSeen_s(const std::vector<WindowReport>& windows);
 
 }  // namespace evical::ui

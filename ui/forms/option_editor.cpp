@@ -94,6 +94,7 @@ OptionEditor::OptionEditor(const OptionRow& row, QWidget* parent)
   input->setAccessibleName(shownName(row));
   input->setAccessibleDescription(text(row.help));
   reset_->setIcon(icon("reset"));
+  reset_->setAccessibleName(tr("%1, back to its default").arg(shownName(row)));
   reset_->setToolTip(tr("Back to the default, %1").arg(text(row.default_value)));
   connect(reset_, &QToolButton::clicked, this,
           [this] { emit edited(text(row_.name), text(row_.default_value)); });

@@ -63,6 +63,9 @@ void OptionForm::fillBar(QHBoxLayout& bar) {
   search_->addAction(icon("search"), QLineEdit::LeadingPosition);
   only_changed_->setIcon(icon("filter"));
   only_changed_->setCheckable(true);
+  search_->setAccessibleName(tr("Search parameters"));
+  only_changed_->setAccessibleName(tr("Only what differs from its default"));
+  reset_all_->setAccessibleName(tr("All parameters back to their defaults"));
   only_changed_->setToolTip(tr("Show only what differs from its default"));
   reset_all_->setIcon(icon("reset"));
   reset_all_->setToolTip(tr("All parameters back to their defaults"));

@@ -7,6 +7,7 @@ namespace evical::ui {
 
 RepairButton::RepairButton(QWidget* parent) : QPushButton(evical::ui::icon("calibrate"), {}, parent) {
   setObjectName("repair");
+  setAccessibleName(tr("Set what may mend it, and calibrate again"));
   setRepair({});
   connect(this, &QPushButton::clicked, this, [this] {
     if (repair_) emit repairRequested(Repair(*repair_));

@@ -8,6 +8,10 @@
 
 #include <QMetaObject>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include <algorithm>
 #include <exception>
 #include <mutex>
@@ -28,6 +32,13 @@ QString textOf(std::string_view text) {
 JobError internalError(const QString& what) {
   return {false, QObject::tr("internal error"), what,
           QObject::tr("Please report this, with the log and the session file")};
+}
+
+// The C library keeps what a job has freed, which is more than all that stays, for the next one.
+void returnFreeMemory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 struct Ending {
@@ -156,6 +167,7 @@ bool JobRunner::start(const QString& title, std::vector<JobStage> stages, Work w
         makeThreadModest();
         Ending ending = runToEnd(job, RunContext{*reports, stop});
         job = nullptr;  // what it holds goes before anybody hears of its end
+        returnFreeMemory();
         {
           const std::lock_guard lock(reports->mutex);
           reports->ending = std::move(ending);

@@ -38,6 +38,7 @@ PlotPanel::PlotPanel(const PlotAxes& axes, QWidget* parent)
   layout->setContentsMargins(5, 5, 5, 5);
   layout->addWidget(chart_);
   setFocusPolicy(Qt::StrongFocus);
+  setAccessibleName(axes.title.isEmpty() ? tr("Chart of %1").arg(axes.y_label) : axes.title);
   setMinimumSize(180, 110);
   setToolTip(
       tr("Wheel: zoom (Ctrl: y only). Drag: pan. Shift and drag: zoom into a box. Double click or F: fit.\n"

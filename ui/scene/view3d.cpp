@@ -62,6 +62,7 @@ struct View3D::Private {
 
 View3D::View3D(QWidget* parent) : QWidget(parent), d_(std::make_unique<Private>()) {
   setFocusPolicy(Qt::StrongFocus);
+  setAccessibleName(tr("View of the trajectory and the board"));
   setMouseTracking(true);
   setMinimumSize(160, 120);
   setAttribute(Qt::WA_OpaquePaintEvent);

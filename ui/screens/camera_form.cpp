@@ -96,8 +96,17 @@ CameraForm::CameraForm(QWidget* parent)
   auto* const row = new QHBoxLayout(coefficients);
   row->setContentsMargins(0, 0, 0, 0);
   row->setSpacing(4);
+  const std::pair<NumberField*, QString> named[] = {{width_px_, tr("Width in pixels")},
+                                                    {height_px_, tr("Height in pixels")},
+                                                    {focal_x_px_, tr("Focal length, horizontal")},
+                                                    {focal_y_px_, tr("Focal length, vertical")},
+                                                    {centre_x_px_, tr("Principal point, horizontal")},
+                                                    {centre_y_px_, tr("Principal point, vertical")}};
+  for (const auto& [field, name] : named) field->setAccessibleName(name);
+  int coefficient = 0;
   for (NumberField*& field : distortion_) {
     field = new NumberField(-kMostDistortion, kMostDistortion, this);
+    field->setAccessibleName(tr("Distortion coefficient %1").arg(++coefficient));
     field->setMinimumWidth(44);
     row->addWidget(field);
   }

@@ -5,6 +5,7 @@
 #include "ui/screens/image_map_view.h"
 #include "ui/screens/lens_file.h"
 #include "ui/screens/lens_parameters.h"
+#include "ui/screens/selectable_label.h"
 #include "ui/screens/verdict_icon.h"
 #include "ui/screens/views_chart.h"
 #include "ui/theme/theme.h"
@@ -31,14 +32,6 @@ namespace evical::ui {
 namespace {
 
 enum Column { kName, kValue, kSigma, kUnit, kDifference, kSigmas, kColumns };
-
-QLabel* label(const char* role, QWidget* parent) {
-  auto* const made = new QLabel(parent);
-  made->setProperty("role", role);
-  made->setWordWrap(true);
-  made->setTextInteractionFlags(Qt::TextSelectableByMouse);
-  return made;
-}
 
 QString sentence(QString text) {
   if (!text.isEmpty()) text[0] = text[0].toUpper();
@@ -86,15 +79,15 @@ LensScreen::LensScreen(QWidget* parent)
     : QWidget(parent),
       stack_(new QStackedWidget(this)),
       icon_(new QLabel(this)),
-      verdict_(label("title", this)),
-      reason_(label("", this)),
-      fit_(label("hint", this)),
-      outdated_(label("problem", this)),
-      remark_(label("hint", this)),
-      uncertainty_text_(label("", this)),
-      coverage_text_(label("", this)),
-      difference_text_(label("", this)),
-      views_text_(label("", this)),
+      verdict_(selectableLabel("title", this)),
+      reason_(selectableLabel("", this)),
+      fit_(selectableLabel("hint", this)),
+      outdated_(selectableLabel("problem", this)),
+      remark_(selectableLabel("hint", this)),
+      uncertainty_text_(selectableLabel("", this)),
+      coverage_text_(selectableLabel("", this)),
+      difference_text_(selectableLabel("", this)),
+      views_text_(selectableLabel("", this)),
       against_(new QComboBox(this)),
       parameters_(new QTreeWidget(this)),
       sides_(new QTabWidget(this)),
@@ -115,7 +108,7 @@ LensScreen::LensScreen(QWidget* parent)
 QWidget* LensScreen::makeEmpty() {
   auto* const empty = new QWidget(this);
   auto* const layout = new QVBoxLayout(empty);
-  auto* const text = label("heading", empty);
+  auto* const text = selectableLabel("heading", empty);
   text->setText(tr("The camera is not calibrated yet."));
   text->setAlignment(Qt::AlignCenter);
   auto* const start = new QPushButton(icon("calibrate"), tr("Calibrate the camera"), empty);
@@ -209,7 +202,7 @@ QWidget* LensScreen::makeSides() {
   auto* const layout = new QVBoxLayout(right);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(sides_, 1);
-  auto* const heading = label("heading", right);
+  auto* const heading = selectableLabel("heading", right);
   heading->setText(tr("Notes and advice"));
   layout->addWidget(heading);
   notes_->setAccessibleName(heading->text());

@@ -81,6 +81,8 @@ PosePanel::PosePanel(QWidget* parent)
       quaternion_(numbers("quaternion", this)),
       matrix_(numbers("matrix", this)),
       time_(words("", this)) {
+  setAccessibleName(tr("Pose"));
+  drawing_->setAccessibleName(tr("Drawing of the rig"));
   direction_->setObjectName("direction");
   warning_->setObjectName("angles_warning");
   said_->setObjectName("copied");

@@ -8,6 +8,7 @@
 #include "ui/screens/pose_panel.h"
 #include "ui/screens/quantity_table.h"
 #include "ui/screens/result_parameters.h"
+#include "ui/screens/selectable_label.h"
 #include "ui/screens/verdict_icon.h"
 #include "ui/theme/theme.h"
 
@@ -25,14 +26,6 @@
 
 namespace evical::ui {
 namespace {
-
-QLabel* label(const char* role, QWidget* parent) {
-  auto* const made = new QLabel(parent);
-  made->setProperty("role", role);
-  made->setWordWrap(true);
-  made->setTextInteractionFlags(Qt::TextSelectableByMouse);
-  return made;
-}
 
 QString verdictWords(CalibrationStatus status) {
   switch (status) {
@@ -81,16 +74,16 @@ QWidget* explained(QLabel* text, QWidget* picture, QWidget* parent) {
 ResultScreen::ResultScreen(QWidget* parent)
     : QWidget(parent),
       stack_(new QStackedWidget(this)),
-      none_yet_(label("heading", this)),
+      none_yet_(selectableLabel("heading", this)),
       calibrate_(new QPushButton(icon("calibrate"), tr("Calibrate"), this)),
       icon_(new QLabel(this)),
-      verdict_(label("title", this)),
-      reason_(label("", this)),
-      fit_(label("hint", this)),
-      outdated_(label("problem", this)),
-      comparison_(label("hint", this)),
-      observed_(label("", this)),
-      pairs_(label("hint", this)),
+      verdict_(selectableLabel("title", this)),
+      reason_(selectableLabel("", this)),
+      fit_(selectableLabel("hint", this)),
+      outdated_(selectableLabel("problem", this)),
+      comparison_(selectableLabel("hint", this)),
+      observed_(selectableLabel("", this)),
+      pairs_(selectableLabel("hint", this)),
       repair_(new RepairButton(this)),
       against_(new QComboBox(this)),
       parameters_(new QuantityTable(this)),
@@ -172,6 +165,7 @@ QWidget* ResultScreen::makeSides() {
   sides->addTab(explained(pairs_, correlation_, sides), tr("Correlation"));
   sides->addTab(notes_, tr("Notes"));
   notes_->setWordWrap(true);
+  notes_->setAccessibleName(tr("Notes"));
   notes_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   return sides;
 }

@@ -2,6 +2,7 @@
 #include "ui/screens/rig_drawing.h"
 
 #include "ui/jobs/file_saver.h"
+#include "ui/screens/label_places.h"
 #include "ui/theme/theme.h"
 
 #include <QContextMenuEvent>
@@ -66,20 +67,37 @@ double roundedDown(double value) {
   return power * (first >= 5.0 ? 5.0 : first >= 2.0 ? 2.0 : 1.0);
 }
 
-// Where a name is out of the axes' way, above or below.
-QPointF awayFrom(const QPointF& direction) {
-  constexpr double kDistance_px = 17.0;
-  return {0.0, direction.y() > 0.0 ? -kDistance_px : kDistance_px};
+// Around a point: below or above first, as the axes point to the other side, then beside, then further away.
+std::vector<QPointF> around(const QPointF& point, const QSizeF& size, bool below) {
+  constexpr double kGap_px = 8.0;
+  const double side = below ? 1.0 : -1.0;
+  const double across = 0.5 * size.width() + kGap_px, along = 0.5 * size.height() + kGap_px;
+  std::vector<QPointF> all;
+  for (const double further : {1.0, 1.7, 2.6, 3.6})
+    for (const QPointF& direction :
+         {QPointF(0.0, side), QPointF(1.0, 0.0), QPointF(-1.0, 0.0), QPointF(0.0, -side), QPointF(0.8, side),
+          QPointF(-0.8, side), QPointF(0.8, -side), QPointF(-0.8, -side)})
+      all.push_back(point + further * QPointF(direction.x() * across, direction.y() * along));
+  return all;
 }
 
-// On the ground that it stands on, so that lines do not cross it.
-void paintLabel(QPainter& painter, const QPointF& middle, const QString& text, const QColor& colour) {
-  const QRectF box = painter.fontMetrics().boundingRect(text);
-  QRectF place(QPointF(), box.size() + QSizeF(6.0, 2.0));
-  place.moveCenter(middle);
-  painter.fillRect(place, theme().panel);
-  painter.setPen(colour);
-  painter.drawText(place, Qt::AlignCenter | Qt::TextDontClip, text);
+// Along the line, from its middle.
+std::vector<QPointF> along(const QPointF& from, const QPointF& to) {
+  std::vector<QPointF> all;
+  for (const double share : {0.5, 0.62, 0.38, 0.74, 0.26}) all.push_back(from + share * (to - from));
+  for (const double aside_px : {16.0, -16.0, 30.0, -30.0})
+    for (const double share : {0.5, 0.7, 0.3})
+      all.push_back(from + share * (to - from) + QPointF(0.0, aside_px));
+  return all;
+}
+
+QFont boldOf(QFont font) {
+  font.setWeight(QFont::DemiBold);
+  return font;
+}
+
+QSizeF sizeOf(const QString& text, const QFont& font) {
+  return QFontMetricsF(font).boundingRect(text).size() + QSizeF(6.0, 2.0);
 }
 
 }  // namespace
@@ -197,20 +215,76 @@ void RigDrawing::paint(QPainter& painter, const QSizeF& size) const {
             [&](const Sensor* a, const Sensor* b) { return depth(a) > depth(b); });
   for (const Sensor* const sensor : sensors) paintSensor(painter, from, *sensor);
   paintScale(painter, from, size);
+  for (const Label& label : labels(size)) {
+    if (!label.letter) painter.fillRect(label.place, theme().panel);  // lines do not cross it
+    painter.setFont(label.name ? boldOf(font()) : font());
+    painter.setPen(label.colour);
+    painter.drawText(label.place, Qt::AlignCenter | Qt::TextDontClip, label.text);
+  }
+  painter.setFont(font());
+}
+
+// Where axes are too short for it, letters of all would lie over each other.
+void RigDrawing::addLetters(const View& view, const Sensor& sensor, std::vector<Label>& labels) const {
+  constexpr double kLeastAxis_px = 12.0, kBeyond = 1.14, kBox_px = 14.0;
+  const double length_m = axisLength_m();
+  const QPointF origin = view(sensor.reference_from_sensor.translation_m);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto at = [&](double share) {
+      return view(sensor.reference_from_sensor * Vector3d(share * length_m * Vector3d::Unit(axis)));
+    };
+    if (QLineF(origin, at(1.0)).length() < kLeastAxis_px) continue;
+    QRectF place(0.0, 0.0, kBox_px, kBox_px);
+    place.moveCenter(at(kBeyond));
+    labels.push_back(
+        {QString(QChar("xyz"[axis])), place, false, true, theme().axes[static_cast<std::size_t>(axis)]});
+  }
+}
+
+std::vector<RigDrawing::Label> RigDrawing::labels(const QSizeF& size) const {
+  constexpr double kLeastLine_px = 24.0, kScale_px = 26.0;
+  const View from = view(size);
+  std::vector<Label> all;
+  for (const Sensor& sensor : sensors_) addLetters(from, sensor, all);
+  LabelPlaces places(QRectF(QPointF(), size).adjusted(2.0, 2.0, -2.0, -2.0));
+  places.occupy(QRectF(0.0, size.height() - kScale_px, 0.5 * size.width(), kScale_px));
+  for (const Label& letter : all) places.occupy(letter.place);
+  const double length_m = axisLength_m();
+  for (const Sensor& sensor : sensors_) {
+    const QPointF origin = from(sensor.reference_from_sensor.translation_m);
+    double tips = 0.0;  // how far down the axes point together
+    for (int axis = 0; axis < 3; ++axis)
+      tips += from(sensor.reference_from_sensor * Vector3d(length_m * Vector3d::Unit(axis))).y() - origin.y();
+    const QString name = sensor.reference ? tr("%1 (reference)").arg(sensor.name) : sensor.name;
+    const QSizeF needed = sizeOf(name, boldOf(font()));
+    all.push_back(
+        {name, places.place(needed, around(origin, needed, tips <= 0.0)), true, false, theme().text});
+  }
+  for (const Sensor& sensor : sensors_) {
+    if (sensor.reference) continue;
+    const QPointF origin = from(Vector3d::Zero()), end = from(sensor.reference_from_sensor.translation_m);
+    if (QLineF(origin, end).length() < kLeastLine_px) continue;
+    const QString text = millimetres(sensor.reference_from_sensor.translation_m.norm());
+    const QSizeF needed = sizeOf(text, font());
+    std::vector<QPointF> middles = along(origin, end);
+    for (const bool below : {true, false})
+      for (const QPointF& middle : around(0.5 * (origin + end), needed, below)) middles.push_back(middle);
+    all.push_back({text, places.place(needed, middles), false, false, theme().text});
+  }
+  // Where there is no room for both, the letter goes.
+  std::erase_if(all, [&](const Label& letter) {
+    return letter.letter && std::any_of(all.begin(), all.end(), [&](const Label& other) {
+             return !other.letter && other.place.intersects(letter.place);
+           });
+  });
+  return all;
 }
 
 void RigDrawing::paintDistances(QPainter& painter, const View& view) const {
-  constexpr double kLeastLine_px = 24.0;
-  const QPointF origin = view(Vector3d::Zero());
-  for (const Sensor& sensor : sensors_) {
-    if (sensor.reference) continue;
-    const QPointF end = view(sensor.reference_from_sensor.translation_m);
-    painter.setPen(QPen(theme().faint_text, 1.2, Qt::DashLine));
-    painter.drawLine(origin, end);
-    if (QLineF(origin, end).length() < kLeastLine_px) continue;
-    paintLabel(painter, 0.5 * (origin + end), millimetres(sensor.reference_from_sensor.translation_m.norm()),
-               theme().text);
-  }
+  painter.setPen(QPen(theme().faint_text, 1.2, Qt::DashLine));
+  for (const Sensor& sensor : sensors_)
+    if (!sensor.reference)
+      painter.drawLine(view(Vector3d::Zero()), view(sensor.reference_from_sensor.translation_m));
 }
 
 void RigDrawing::paintSensor(QPainter& painter, const View& view, const Sensor& sensor) const {
@@ -220,28 +294,14 @@ void RigDrawing::paintSensor(QPainter& painter, const View& view, const Sensor& 
   painter.setPen(QPen(theme().faint_text, 1.2));
   for (std::size_t k = 0; k + 1 < sensor.outline_m.size(); k += 2)
     painter.drawLine(at(sensor.outline_m[k]), at(sensor.outline_m[k + 1]));
-  const double length_m = axisLength_m();
   const QPointF origin = at(Vector3d::Zero());
-  QPointF tips;  // their sum
   for (int axis = 0; axis < 3; ++axis) {
-    tips += at(length_m * Vector3d::Unit(axis));
-    const QColor& colour = theme().axes[static_cast<std::size_t>(axis)];
-    painter.setPen(QPen(colour, 2.2, Qt::SolidLine, Qt::RoundCap));
-    painter.drawLine(origin, at(length_m * Vector3d::Unit(axis)));
-    const QPointF letter = at(1.14 * length_m * Vector3d::Unit(axis));
-    painter.drawText(QRectF(letter - QPointF(8.0, 8.0), QSizeF(16.0, 16.0)),
-                     Qt::AlignCenter | Qt::TextDontClip, QString(QChar("xyz"[axis])));
+    painter.setPen(QPen(theme().axes[static_cast<std::size_t>(axis)], 2.2, Qt::SolidLine, Qt::RoundCap));
+    painter.drawLine(origin, at(axisLength_m() * Vector3d::Unit(axis)));
   }
   painter.setPen(Qt::NoPen);
   painter.setBrush(theme().text);
   painter.drawEllipse(origin, 2.5, 2.5);
-  const QString name = sensor.reference ? tr("%1 (reference)").arg(sensor.name) : sensor.name;
-  const QFont plain = painter.font();
-  QFont bold = plain;
-  bold.setWeight(QFont::DemiBold);
-  painter.setFont(bold);
-  paintLabel(painter, origin + awayFrom(tips - 3.0 * origin), name, theme().text);
-  painter.setFont(plain);
 }
 
 void RigDrawing::paintScale(QPainter& painter, const View& view, const QSizeF& size) const {

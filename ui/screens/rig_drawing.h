@@ -6,6 +6,8 @@
 
 #include "core/report/result_yaml.h"
 
+#include <QColor>
+#include <QRectF>
 #include <QString>
 #include <QWidget>
 
@@ -24,6 +26,14 @@ class RigDrawing : public QWidget {
   void setResult(const NamedResult& named);
   QString text() const;  // in words: who is how far from whom
   void save();           // asks where
+  // Where names, lengths and the axes' letters stand in a drawing of this size.
+  struct Label {
+    QString text;
+    QRectF place;
+    bool name = false, letter = false;
+    QColor colour;
+  };
+  std::vector<Label> labels(const QSizeF& size) const;
   QSize minimumSizeHint() const override { return {220, 150}; }
   QSize sizeHint() const override { return {320, 190}; }
 
@@ -49,6 +59,7 @@ class RigDrawing : public QWidget {
   void paint(QPainter& painter, const QSizeF& size) const;
   void paintSensor(QPainter& painter, const View& view, const Sensor& sensor) const;
   void paintDistances(QPainter& painter, const View& view) const;
+  void addLetters(const View& view, const Sensor& sensor, std::vector<Label>& labels) const;
   void paintScale(QPainter& painter, const View& view, const QSizeF& size) const;
 
   std::vector<Sensor> sensors_;

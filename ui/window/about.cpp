@@ -48,6 +48,7 @@ QWidget* makeSummary(const QString& version, QWidget* parent) {
 
 QWidget* makeLicence(const QString& resource, QWidget* parent) {
   auto* const text = new QPlainTextEdit(textOf(resource), parent);
+  text->setAccessibleName(QObject::tr("Licence"));
   text->setReadOnly(true);
   return text;
 }

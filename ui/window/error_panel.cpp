@@ -37,10 +37,12 @@ ErrorPanel::ErrorPanel(QWidget* parent)
       advice_(wrappedLabel(this)),
       repair_(new RepairButton(this)) {
   setProperty("card", "bad");
+  setAccessibleName(tr("What went wrong"));
   title_->setProperty("role", "heading");
   auto* const close = new QToolButton(this);
   close->setIcon(icon("close"));
   close->setToolTip(tr("Dismiss (Esc)"));
+  close->setAccessibleName(tr("Dismiss"));
   connect(close, &QToolButton::clicked, this, &ErrorPanel::dismiss);
   auto* const grid = new QGridLayout(this);
   grid->setContentsMargins(14, 10, 8, 10);

@@ -38,15 +38,19 @@ QPushButton* button(const QString& object_name, const QString& text, const QStri
 
 }  // namespace
 
-QString newExportFolder(const QString& recording) {
+QString newResultFolder(const QString& recording, const QString& kind) {
   const QFileInfo info(recording);
   const QString beside = info.absolutePath();
   const QDir folder(QFileInfo(beside).isWritable() ? beside : QDir::homePath());
   const QString stem = info.isDir() ? info.fileName() : info.completeBaseName();
-  const QString name = stem.isEmpty() ? QString("calibration") : stem + "_calibration";
+  const QString name = stem.isEmpty() ? kind : stem + "_" + kind;
   QString free = name;
   for (int number = 2; folder.exists(free); ++number) free = QString("%1_%2").arg(name).arg(number);
   return folder.filePath(free);
+}
+
+QString newExportFolder(const QString& recording) {
+  return newResultFolder(recording, "calibration");
 }
 
 ExportRequest proposedExport(const Session& session) {

@@ -26,6 +26,7 @@ struct ExportRequest {
 // Beside the recording, or at home where nobody may write there: <recording>_calibration, with a number where that is
 // there already.
 QString newExportFolder(const QString& recording);
+QString newResultFolder(const QString& recording, const QString& kind);  // <recording>_<kind>
 
 // With the targets that the session asks for; where it asks for none, those of the last export.
 ExportRequest proposedExport(const Session& session);

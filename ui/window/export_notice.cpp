@@ -33,6 +33,7 @@ ExportNotice::ExportNotice(QWidget* parent)
       place_(wrappedLabel(this)),
       details_(wrappedLabel(this)) {
   setProperty("card", "true");
+  setAccessibleName(tr("Where files went"));
   title_->setProperty("role", "heading");
   auto* const open = new QPushButton(icon("folder"), tr("Open folder"), this);
   open->setObjectName("open_folder");
@@ -60,7 +61,8 @@ ExportNotice::ExportNotice(QWidget* parent)
 void ExportNotice::showOutcome(const ExportOutcome& outcome) {
   folder_ = outcome.folder;
   whole_ = outcome.refused.isEmpty() && outcome.differing.isEmpty();
-  title_->setText(outcome.refused.isEmpty()    ? tr("The result was exported")
+  title_->setText(!outcome.title.isEmpty()     ? outcome.title
+                  : outcome.refused.isEmpty()  ? tr("The result was exported")
                   : outcome.programs.isEmpty() ? tr("The result was written, but exported for no program")
                                                : tr("The result was exported, but not for all programs"));
   place_->setText(tr("The files are in %1").arg(QDir::toNativeSeparators(folder_)));

@@ -15,6 +15,7 @@ struct ExportOutcome {
   QStringList refused;    // each with the reason
   bool checked = false;   // the files were read back
   QStringList differing;  // those that do not say what the result says
+  QString title = {};     // of what was written, where it is no result
 };
 
 class ExportNotice : public QFrame {

@@ -182,6 +182,10 @@ void wireLinkedPages(const Pages& pages, Workbench& workbench) {
   QObject::connect(&document, &CalibrationDocument::runsChanged, pages.signal_curves, [pages, &document] {
     pages.signal_curves->setRun(withSamples(document.last().run), document.last().session);
   });
+  QObject::connect(&workbench.check, &RecordingCheckJob::checkedAnew, pages.detection,
+                   [pages](const std::shared_ptr<const CheckedRecording>& checked) {
+                     if (checked->detected) pages.detection->goWhereSeen(checked->detected->pass.cameras);
+                   });
   tellOfRuns(workbench.calibration, pages.result, pages.signal_curves, pages.residuals);
   // While it ran, the detection screen may have followed it.
   QObject::connect(&workbench.calibration, &CalibrationJob::ended, pages.trajectory, [pages] {

@@ -41,6 +41,9 @@ LogPanel::LogPanel(QWidget* parent)
   level_->addItem(tr("Info and warnings"), static_cast<int>(LogLevel::Info));
   level_->addItem(tr("Warnings"), static_cast<int>(LogLevel::Warning));
   level_->setCurrentIndex(1);
+  level_->setAccessibleName(tr("Which messages are shown"));
+  search_->setAccessibleName(tr("Filter of messages"));
+  text_->setAccessibleName(tr("Messages"));
   level_->setToolTip(tr("Show messages from this level on"));
   search_->setPlaceholderText(tr("Filter"));
   search_->setClearButtonEnabled(true);
@@ -50,6 +53,7 @@ LogPanel::LogPanel(QWidget* parent)
   text_->setPlaceholderText(tr("Messages of calibrations appear here"));
   auto* const copy = new QToolButton(this);
   copy->setIcon(icon("copy"));
+  copy->setAccessibleName(tr("Copy the messages"));
   copy->setToolTip(tr("Copy what is shown"));
   connect(copy, &QToolButton::clicked, this, [this] { QApplication::clipboard()->setText(shownText()); });
   connect(level_, &QComboBox::currentIndexChanged, this, &LogPanel::refill);

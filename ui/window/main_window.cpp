@@ -7,6 +7,7 @@
 #include "ui/forms/option_form.h"
 #include "ui/forms/session_undo_keys.h"
 #include "ui/plots/residuals_screen.h"
+#include "ui/scene/trajectory_screen.h"
 #include "ui/screens/result_screen.h"
 #include "ui/screens/runs_panel.h"
 #include "ui/screens/verdict_icon.h"
@@ -100,7 +101,7 @@ void MainWindow::makeCentre() {
 }
 
 QWidget* MainWindow::makeSideBar() {
-  constexpr int kIcon_px = 20, kEntry_px = 36;
+  constexpr int kIcon_px = 20, kEntry_px = 33;
   navigation_ = new QListWidget(this);
   navigation_->setObjectName("navigation");
   navigation_->setAccessibleName(tr("Screens"));
@@ -108,7 +109,7 @@ QWidget* MainWindow::makeSideBar() {
   navigation_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     auto* const item = new QListWidgetItem(icon(entries_[i].icon_name), entries_[i].title, navigation_);
-    item->setToolTip(tr("%1 (Ctrl+%2)").arg(entries_[i].title).arg(i + 1));
+    item->setToolTip(tr("%1 (%2)").arg(entries_[i].title, keyOfPage(i).toString(QKeySequence::NativeText)));
     item->setSizeHint(QSize(0, kEntry_px));
   }
   navigation_->setFixedHeight(static_cast<int>(entries_.size()) * (kEntry_px + 2) + 16);
@@ -171,6 +172,8 @@ void MainWindow::paintPagesLater() {
 }
 
 void MainWindow::turnTo(int page) {
+  // Its drawing library takes 80 MB: only where somebody looks.
+  if (screenNames().value(page) == "trajectory") pages_.trajectory->startInBackground();
   paintPagesLater();
   stack_->setCurrentIndex(page);
 }

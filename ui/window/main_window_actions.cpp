@@ -15,6 +15,7 @@
 #include <QMenu>
 #include <QMenuBar>
 #include <QSettings>
+#include <QStackedWidget>
 #include <QToolBar>
 #include <QToolButton>
 
@@ -123,7 +124,7 @@ void MainWindow::makeViewMenu() {
   QMenu* const menu = menuBar()->addMenu(tr("&View"));
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     QAction* const action = menu->addAction(icon(entries_[i].icon_name), entries_[i].title);
-    action->setShortcut(QKeySequence(QString("Ctrl+%1").arg(i + 1)));
+    action->setShortcut(keyOfPage(i));
     connect(action, &QAction::triggered, this, [this, name = entries_[i].name] {
       showScreen(name);
       stack_->currentWidget()->setFocus();

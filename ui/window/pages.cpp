@@ -9,6 +9,8 @@
 #include "ui/scene/trajectory_screen.h"
 #include "ui/screens/lens_screen.h"
 #include "ui/screens/recording_screen.h"
+#include "ui/screens/repeat_screen.h"
+#include "ui/screens/result_check_screen.h"
 #include "ui/screens/result_screen.h"
 #include "ui/screens/start_screen.h"
 #include "ui/window/after_turns.h"
@@ -17,6 +19,8 @@
 #include "ui/window/linked_pages.h"
 #include "ui/window/print_board.h"
 #include "ui/window/recording_check.h"
+#include "ui/window/repeat_page.h"
+#include "ui/window/result_check_page.h"
 #include "ui/window/rig_page.h"
 #include "ui/window/session_files.h"
 #include "ui/window/workbench.h"
@@ -111,17 +115,23 @@ void wireResult(ResultScreen& screen, Workbench& workbench, SessionFiles& files)
 
 }  // namespace
 
+QKeySequence keyOfPage(std::size_t index) {
+  constexpr std::size_t kDigits = 10;
+  return QKeySequence(QString("Ctrl+%1").arg((index + 1) % kDigits));
+}
+
 std::vector<PageEntry> buildPages(Pages& pages, QWidget* parent) {
   pages.start = new StartScreen(parent);
   pages.recording = new RecordingScreen(parent);
   pages.detection = new DetectionScreen(parent);
   pages.trajectory = new TrajectoryScreen(parent);
-  pages.trajectory->startInBackground();
   pages.convergence = new ConvergenceScreen(parent);
   pages.signal_curves = new SignalsScreen(parent);
   pages.residuals = new ResidualsScreen(parent);
   pages.result = new ResultScreen(parent);
   pages.lens = new LensScreen(parent);
+  pages.result_check = new ResultCheckScreen(parent);
+  pages.repeat = new RepeatScreen(parent);
   pages.results = new QStackedWidget(parent);
   pages.results->addWidget(pages.result);
   pages.results->addWidget(pages.lens);
@@ -140,7 +150,9 @@ std::vector<PageEntry> buildPages(Pages& pages, QWidget* parent) {
            of_rig(pages.signal_curves, QObject::tr("Signals belong"))},
           {"residuals", QObject::tr("Residuals"), "residuals",
            of_rig(pages.residuals, QObject::tr("Residuals belong"))},
-          {"result", QObject::tr("Result"), "result", pages.results}};
+          {"result", QObject::tr("Result"), "result", pages.results},
+          {"check-result", QObject::tr("Check a result"), "check", pages.result_check},
+          {"repeat", QObject::tr("Several recordings"), "compare", pages.repeat}};
 }
 
 void wirePages(const Pages& pages, Workbench& workbench, SessionFiles& files, LensFiles& lens_files) {
@@ -153,6 +165,8 @@ void wirePages(const Pages& pages, Workbench& workbench, SessionFiles& files, Le
                    &SessionFiles::lookForRecording);
   wireLinkedPages(pages, workbench);
   wireLensPages(pages, workbench, lens_files);
+  wireResultCheck(*pages.result_check, workbench, files);
+  wireRepeat(*pages.repeat, workbench, files);
 }
 
 }  // namespace evical::ui

@@ -3,9 +3,11 @@
 // workbench and with each other. Screens themselves know neither.
 #pragma once
 
+#include <QKeySequence>
 #include <QString>
 #include <QWidget>
 
+#include <cstddef>
 #include <vector>
 
 class QStackedWidget;
@@ -18,7 +20,9 @@ class DetectionScreen;
 class LensFiles;
 class LensScreen;
 class RecordingScreen;
+class RepeatScreen;
 class ResidualsScreen;
+class ResultCheckScreen;
 class ResultScreen;
 class RigPage;
 class SessionFiles;
@@ -37,7 +41,9 @@ struct Pages {
   ResultScreen* result = nullptr;
   LensScreen* lens = nullptr;
   QStackedWidget* results = nullptr;  // the last two: of a rig, of a camera alone
-  std::vector<RigPage*> of_rigs;      // around those that show nothing of a camera alone
+  ResultCheckScreen* result_check = nullptr;
+  RepeatScreen* repeat = nullptr;
+  std::vector<RigPage*> of_rigs;  // around those that show nothing of a camera alone
 };
 
 // A page as the navigation lists it.
@@ -46,6 +52,9 @@ struct PageEntry {
   QString title, icon_name;
   QWidget* widget = nullptr;
 };
+
+// Ctrl+1 to Ctrl+9, then Ctrl+0.
+QKeySequence keyOfPage(std::size_t index);
 
 std::vector<PageEntry> buildPages(Pages& pages, QWidget* parent);
 

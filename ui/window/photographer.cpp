@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/photographer.h"
 
+#include "ui/screens/path_row.h"
+#include "ui/screens/repeat_screen.h"
+#include "ui/screens/result_check_screen.h"
 #include "ui/window/main_window.h"
 #include "ui/window/print_board.h"
 #include "ui/window/session_files.h"
@@ -19,6 +22,8 @@ const char* const kCheck = "check";
 const char* const kPrintBoard = "print-board";
 const char* const kHowToRecord = "how-to-record";
 const char* const kExport = "export";
+// Pages whose own job needs further recordings.
+const char *const kCheckResult = "check-result", *const kRepeat = "repeat";
 
 void complain(const QString& text) {
   QTextStream(stderr) << text << '\n';
@@ -33,16 +38,18 @@ QWidget* shownOf(MainWindow& window) {
 
 }  // namespace
 
-Photographer::Photographer(MainWindow& window, QString screen, QString file)
-    : window_(window), screen_(std::move(screen)), file_(std::move(file)) {
+Photographer::Photographer(MainWindow& window, QString screen, QString file, QStringList further)
+    : window_(window), screen_(std::move(screen)), file_(std::move(file)), further_(std::move(further)) {
   Workbench& workbench = window.workbench();
   connect(&window.files(), &SessionFiles::opened, this, &Photographer::opened);
   connect(&window.files(), &SessionFiles::failed, this, &Photographer::giveUp);
   connect(&workbench.runner, &JobRunner::failed, this,
           [](const JobError& error) { giveUp("calibrate", error); });
   connect(&workbench.runner, &JobRunner::finished, this, [this](JobOutcome outcome) {
-    if (outcome == JobOutcome::Done) waitAndSave();
+    if (outcome == JobOutcome::Done) jobDone();
   });
+  if (screen_ == kCheckResult && !further_.isEmpty())
+    connect(&workbench.history, &RunHistory::changed, this, &Photographer::checkResult);
   if (screen_ != kCheck) return;
   connect(&workbench.check, &RecordingCheckJob::checkedAnew, this, &Photographer::waitAndSave);
   connect(&workbench.check, &RecordingCheckJob::failed, this,
@@ -60,6 +67,7 @@ void Photographer::giveUp(const QString& what, const JobError& error) {
 
 void Photographer::opened() {
   if (screen_ == kCheck) return window_.workbench().check.setAutomatic(true);
+  if (screen_ == kRepeat && !further_.isEmpty()) return repeat();
   const bool needs_a_run = screen_ != kPrintBoard && screen_ != kHowToRecord && screen_ != "start";
   if (!needs_a_run || window_.workbench().document.last().run) return waitAndSave();
   calibrate();
@@ -70,6 +78,30 @@ void Photographer::calibrate() {
   if (lens.offersCameraOnly()) lens.setAim(CalibrationAim::Camera);
   window_.calibrate();
   if (!window_.workbench().runner.running()) giveUp("calibrate", {true, {}, "the session is incomplete", {}});
+}
+
+// Once the run is kept: its folder is the old result.
+void Photographer::checkResult() {
+  Workbench& workbench = window_.workbench();
+  auto* const screen = window_.findChild<ResultCheckScreen*>();
+  if (workbench.runner.running() || workbench.history.folderOf(workbench.document.last().run).empty() ||
+      !screen->recording().path().isEmpty())
+    return;
+  screen->recording().setPath(further_.front());
+  emit screen->checkRequested();
+}
+
+void Photographer::repeat() {
+  auto* const screen = window_.findChild<RepeatScreen*>();
+  screen->addFiles(QStringList{window_.workbench().document.file()} + further_);
+  screen->folder().setPath(results_.filePath("together"));
+  emit screen->repeatRequested();
+}
+
+void Photographer::jobDone() {
+  const bool more = screen_ == kCheckResult && !further_.isEmpty() &&
+                    window_.findChild<ResultCheckScreen*>()->recording().path().isEmpty();
+  if (!more) waitAndSave();
 }
 
 void Photographer::openDialog() {

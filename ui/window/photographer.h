@@ -4,6 +4,7 @@
 
 #include <QObject>
 #include <QStringList>
+#include <QTemporaryDir>
 
 namespace evical::ui {
 
@@ -14,7 +15,8 @@ struct JobError;
 // program: with 0, or with 1 where something failed.
 class Photographer : public QObject {
  public:
-  Photographer(MainWindow& window, QString screen, QString file);
+  // `further`: recordings beside the one that is opened, for pages that compare several.
+  Photographer(MainWindow& window, QString screen, QString file, QStringList further = {});
 
   // Pages, and what else there are pictures of.
   static QStringList screensOf(const MainWindow& window);
@@ -25,9 +27,14 @@ class Photographer : public QObject {
   void calibrate();
   void waitAndSave();
   void openDialog();
+  void checkResult();
+  void repeat();
+  void jobDone();
 
   MainWindow& window_;
   QString screen_, file_;
+  QStringList further_;
+  QTemporaryDir results_;
 };
 
 }  // namespace evical::ui

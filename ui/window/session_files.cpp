@@ -10,6 +10,7 @@
 #include "core/report/export/export_target.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "ui/document/printed_board.h"
+#include "ui/window/page_work.h"
 
 #include <QDesktopServices>
 #include <QDir>
@@ -273,10 +274,7 @@ void SessionFiles::chooseSession() {
 }
 
 QString SessionFiles::askForRecording(const QString& title) {
-  return QFileDialog::getOpenFileName(
-      window_, title, lastFolder(),
-      tr("Recordings (*.bag *.bag.active *.mcap *.db3 *.zstd *.aedat4 *.aedat *.raw *.dat *.h5 *.npz *.npy "
-         "*.hdf5 *.es *.txt *.csv);;All files (*)"));
+  return QFileDialog::getOpenFileName(window_, title, lastFolder(), recordingsFilter(false));
 }
 
 void SessionFiles::chooseRecording() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/user_guide.h"
 
+#include "ui/window/guide_pictures.h"
 #include "ui/window/reading_dialog.h"
 
 #include <QAbstractTextDocumentLayout>
@@ -22,6 +23,7 @@ constexpr double kMargin_px = 18.0;
 QTextBrowser* makeBrowser(const QString& name, QWidget* parent) {
   auto* const browser = new QTextBrowser(parent);
   browser->setObjectName(name);
+  browser->setAccessibleName(QObject::tr("Text of the guide"));
   browser->setOpenExternalLinks(true);
   browser->document()->setDocumentMargin(kMargin_px);
   return browser;
@@ -50,11 +52,14 @@ QListWidget* makeContents(QTextBrowser* browser, QWidget* parent) {
   return contents;
 }
 
+QString wholeGuide() {
+  QFile file(":/user_guide.md");
+  return file.open(QIODevice::ReadOnly) ? QString::fromUtf8(file.readAll()) : QString();
+}
+
 // The part under this heading, up to the next one.
 QString partOfGuide(const QString& heading) {
-  QFile file(":/user_guide.md");
-  if (!file.open(QIODevice::ReadOnly)) return {};
-  const QString all = QString::fromUtf8(file.readAll());
+  const QString all = wholeGuide();
   const qsizetype begin = all.indexOf("\n## " + heading + '\n');
   return begin < 0 ? QString() : all.mid(begin, all.indexOf("\n## ", begin + 1) - begin);
 }
@@ -62,12 +67,14 @@ QString partOfGuide(const QString& heading) {
 }  // namespace
 
 void showUserGuide(QWidget* window) {
-  constexpr int kWidth_px = 920, kHeight_px = 720, kContents_px = 200;
+  constexpr int kWidth_px = 980, kHeight_px = 720, kContents_px = 220, kPicture_px = 660;
   if (raiseOpened(window, "user_guide")) return;
   QDialog* const dialog = makeReadingDialog(window, "user_guide", QObject::tr("User guide"));
   auto* const parts = new QSplitter(dialog);
   QTextBrowser* const browser = makeBrowser("guide", parts);
-  browser->setSource(QUrl("qrc:/user_guide.md"), QTextDocument::MarkdownResource);
+  browser->document()->setMarkdown(withPictures(wholeGuide()));  // which forgets pictures that were there
+  addGuidePictures(*browser->document(), kPicture_px, dialog->devicePixelRatioF());
+  browser->document()->markContentsDirty(0, browser->document()->characterCount());
   parts->insertWidget(0, makeContents(browser, parts));
   parts->setSizes({kContents_px, kWidth_px - kContents_px});
   parts->setStretchFactor(1, 1);

@@ -10,6 +10,8 @@
 #include "ui/jobs/intrinsics_job.h"
 #include "ui/jobs/job_runner.h"
 #include "ui/jobs/recording_check_job.h"
+#include "ui/jobs/repeat_job.h"
+#include "ui/jobs/result_check_job.h"
 #include "ui/jobs/run_history.h"
 
 #include <QString>
@@ -26,9 +28,11 @@ struct Workbench {
   RunHistory history;  // has a thread of its own
   LensDocument lens{document};
   IntrinsicsJob intrinsics{runner};  // of one camera's lens alone
-  InspectionJob inspection;          // has a runner of its own: it may go on beside a calibration
-  RecordingCheckJob check;           // so has this one, which gives way to all others
-  GrowingRecording growing;          // the session's files, where somebody still writes them
+  ResultCheckJob result_check{runner};
+  RepeatJob repeat{runner};
+  InspectionJob inspection;  // has a runner of its own: it may go on beside a calibration
+  RecordingCheckJob check;   // so has this one, which gives way to all others
+  GrowingRecording growing;  // the session's files, where somebody still writes them
 };
 
 }  // namespace evical::ui

@@ -15,15 +15,53 @@
 #include "core/optimisation/uncertainty/uncertainty_report.h"
 
 namespace evical {
+namespace {
+
+ProjectedInformation projected(CalibrationProblem& problem, const CalibrationInput& input,
+                               const BatchSolution& solution, const OptimisationOptions& options,
+                               const RunContext& context) {
+  context.throwIfStopped();
+  problem.build(lastStage(options), {solution.scales, solution.used_circles, solution.used_samples,
+                                     std::vector<StillAxes>(input.imus.size())});
+  return projectInformation(problem, options.correlation_time_s, options.threads, context);
+}
+
+// Of the information of all that is estimated, noise taken out of it.
+struct Sigmas {
+  QuantityCovariance covariance;
+  UncertaintyReport report;
+};
+Sigmas sigmasFrom(CalibrationProblem& problem, const ProjectedInformation& information,
+                  const CalibrationInput& input, const CalibrationState& state,
+                  const OptimisationOptions& options) {
+  const Eigen::MatrixXd report_from_tangent = reportFromTangent(information, state, problem.problem());
+  Sigmas sigmas{withPixelDelay(input, options, quantityCovariance(information, report_from_tangent)), {}};
+  sigmas.report = makeReport(input, sigmas.covariance);
+  reportSharedSensors(input, options, sigmas.report);
+  const Eigen::MatrixXd tangent_from_report = inverseOf(report_from_tangent);
+  reportDrift(information, problem.driftBlocks(),
+              congruence(tangent_from_report, sigmas.covariance.covariance), sigmas.report);
+  return sigmas;
+}
+
+}  // namespace
+
+UncertaintyReport estimateSigmas(const CalibrationInput& input, const BatchSolution& solution,
+                                 const OptimisationOptions& options, const RunContext& context) {
+  OptimisationOptions apart = options;
+  apart.share_sensors = false;  // until they are tied, as everywhere
+  CalibrationProblem problem(input, apart, solution.state);
+  ProjectedInformation information = projected(problem, input, solution, options, context);
+  information = withSharedSensors(input, options, std::move(information));
+  information = withoutNoise(std::move(information));
+  return sigmasFrom(problem, information, input, solution.state, options).report;
+}
 
 UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const BatchSolution& solution,
                                         const OptimisationOptions& options, const RunContext& context) {
-  context.throwIfStopped();
   const OptimisationOptions tested = freeToBeTested(options);
   CalibrationProblem problem(input, tested, solution.state);
-  problem.build(lastStage(options), {solution.scales, solution.used_circles, solution.used_samples,
-                                     std::vector<StillAxes>(input.imus.size())});
-  ProjectedInformation information = projectInformation(problem, options.correlation_time_s, context);
+  ProjectedInformation information = projected(problem, input, solution, options, context);
   context.throwIfStopped();
   UncertaintyEstimate estimate;
   HeldDoubts held = testHeldValues(input, solution.state, information, options);
@@ -38,17 +76,11 @@ UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const Bat
   ChangeDoubt change = doubtOfChanges(input, information, options);
   if (change.sigmas > held.gyroscope_sigmas) estimate.change = std::move(change.doubt);
   information = withoutNoise(std::move(information));
-  const Eigen::MatrixXd report_from_tangent =
-      reportFromTangent(information, solution.state, problem.problem());
-  const QuantityCovariance covariance =
-      withPixelDelay(input, options, quantityCovariance(information, report_from_tangent));
-  estimate.report = makeReport(input, covariance);
+  Sigmas sigmas = sigmasFrom(problem, information, input, solution.state, options);
+  const QuantityCovariance& covariance = sigmas.covariance;
+  estimate.report = std::move(sigmas.report);
   estimate.as_weighed = covariance.as_weighed;
-  reportSharedSensors(input, options, estimate.report);
   estimate.report.given = givenQuantities(input, options);
-  const Eigen::MatrixXd tangent_from_report = inverseOf(report_from_tangent);
-  reportDrift(information, problem.driftBlocks(), congruence(tangent_from_report, covariance.covariance),
-              estimate.report);
   ScaleCheck scale = checkScale(input, solution.state, covariance, options);
   estimate.scale_doubt = std::move(scale.size_doubt);
   estimate.stretch_doubt = std::move(scale.stretch_doubt);

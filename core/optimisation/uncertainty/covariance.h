@@ -41,6 +41,10 @@ struct UncertaintyEstimate {
   std::vector<std::string> notes;  // what is worth knowing of the sigmas
 };
 
+// The sigmas alone, without what they mean and without tests: `given`, eigenvalues and directions stay empty.
+UncertaintyReport estimateSigmas(const CalibrationInput& input, const BatchSolution& solution,
+                                 const OptimisationOptions& options, const RunContext& context);
+
 // Never fails for want of information: directions that the recording leaves open get
 // sigmas far beyond any need.
 UncertaintyEstimate estimateUncertainty(const CalibrationInput& input, const BatchSolution& solution,

@@ -224,7 +224,7 @@ PriorCheck checkPriors(const CalibrationInput& input, const BatchSolution& solut
   try {
     const CalibrationInput without = withoutPriors(input);
     const BatchSolution alone = refineBatch(without, solution.state, free, quiet);
-    const UncertaintyReport sigmas = estimateUncertainty(without, alone, free, quiet).report;
+    const UncertaintyReport sigmas = estimateSigmas(without, alone, free, quiet);
     check = Comparison(input, options, solution.state, alone.state, sigmas).run();
   } catch (const CalibrationError& error) {
     check.notes.push_back(std::string("the priors could not be held against the recording: ") + error.what());

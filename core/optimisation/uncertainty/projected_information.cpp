@@ -1,394 +1,302 @@
 #include "core/optimisation/uncertainty/projected_information.h"
 
-#include "core/numerics/band_cholesky.h"
+#include "core/base/in_parallel.h"
+#include "core/optimisation/block_jacobian.h"
 #include "core/optimisation/calibration_problem.h"
+#include "core/optimisation/normal_equations.h"
+#include "core/optimisation/uncertainty/local_sums.h"
+#include "core/optimisation/uncertainty/noise_information.h"
+#include "core/optimisation/uncertainty/spline_elimination.h"
+#include "core/optimisation/unknown_columns.h"
 
-#include <Eigen/Cholesky>
+#include <ceres/cost_function.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
-#include <limits>
 #include <map>
 #include <random>
-#include <unordered_map>
+#include <utility>
 
 namespace evical {
 namespace {
 
-using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using RowMajorMatrix = SplineElimination::RowMajorMatrix;
 
-// Where a block's tangent columns go.
-struct Columns {
-  bool spline = false;
-  Eigen::Index first = 0;
-  int size = 0;
+// Kinds of measurements without their sums, and of which kind each residual block is.
+struct Groups {
+  std::vector<MeasurementGroup> all;
+  std::vector<std::size_t> of_block;
 };
+Groups groupsOf(const std::vector<BlockInfo>& blocks) {
+  Groups groups;
+  for (const BlockInfo& info : blocks) {
+    const auto same = [&](const MeasurementGroup& g) {
+      return g.kind == info.kind && g.sensor == info.sensor;
+    };
+    const auto found = std::find_if(groups.all.begin(), groups.all.end(), same);
+    groups.of_block.push_back(static_cast<std::size_t>(found - groups.all.begin()));
+    if (found != groups.all.end()) continue;
+    MeasurementGroup& group = groups.all.emplace_back();
+    group.kind = info.kind;
+    group.sensor = info.sensor;
+  }
+  return groups;
+}
 
-// The dense Jacobian of one residual block, in tangent columns: those of splines first.
-struct BlockJacobian {
-  Eigen::VectorXd residuals;
-  RowMajorMatrix jacobian;
-  std::vector<Eigen::Index> spline_columns, quantity_columns;
-
-  auto bySpline() const { return jacobian.leftCols(static_cast<Eigen::Index>(spline_columns.size())); }
-  auto byQuantities() const { return jacobian.rightCols(static_cast<Eigen::Index>(quantity_columns.size())); }
-};
-
-class Layout {
+// By residual block, as many of them as it has residuals, always the same.
+class RandomSigns {
  public:
-  Layout(CalibrationProblem& problem, const RunContext& context) : problem_(problem), context_(context) {
-    for (double* block : problem.splineBlocks()) {
-      columns_[block] = {true, spline_size_, problem.problem().ParameterBlockTangentSize(block)};
-      spline_size_ += problem.problem().ParameterBlockTangentSize(block);
-    }
-    for (const Quantity& quantity : problem.quantities()) {
-      first_column_.push_back(quantity_size_);
-      columns_[quantity.block] = {false, quantity_size_,
-                                  problem.problem().ParameterBlockTangentSize(quantity.block)};
-      quantity_size_ += problem.problem().ParameterBlockTangentSize(quantity.block);
-    }
-    first_column_.push_back(quantity_size_);
-    for (const Quantity& knot : problem.driftBlocks()) {
-      const int size = problem.problem().ParameterBlockTangentSize(knot.block);
-      columns_[knot.block] = {false, quantity_size_ + drift_size_, size};
-      drift_size_ += size;
+  explicit RandomSigns(const UnknownColumns& columns) {
+    constexpr std::uint64_t kSeed = 20260101;  // any: the count is good to a fraction of a percent
+    std::mt19937_64 random(kSeed);
+    for (std::size_t block = 0; block < columns.blockCount(); ++block) {
+      first_.push_back(positive_.size());
+      for (int i = 0; i < columns.cost(block).num_residuals(); ++i)
+        positive_.push_back(static_cast<std::uint8_t>(random() & 1U));
     }
   }
-
-  Eigen::Index splineSize() const { return spline_size_; }
-  Eigen::Index quantitySize() const { return quantity_size_; }
-  Eigen::Index driftSize() const { return drift_size_; }  // columns after the quantities'
-  const std::vector<Eigen::Index>& firstColumn() const { return first_column_; }
-
-  Eigen::Index halfBandwidth() const {
-    Eigen::Index widest = 0;
-    for (const BlockInfo& info : problem_.blocks()) {
-      Eigen::Index low = std::numeric_limits<Eigen::Index>::max(), high = 0;
-      for (double* block : blocksOf(info)) {
-        const auto found = columns_.find(block);
-        if (found == columns_.end() || !found->second.spline) continue;
-        low = std::min(low, found->second.first);
-        high = std::max(high, found->second.first + found->second.size - 1);
-      }
-      if (low <= high) widest = std::max(widest, high - low);
-    }
-    return widest;
+  double of(std::size_t block, Eigen::Index residual) const {
+    return positive_[first_[block] + static_cast<std::size_t>(residual)] != 0 ? 1.0 : -1.0;
   }
-
-  void evaluate(const BlockInfo& info, BlockJacobian& out) const;
 
  private:
-  std::vector<double*> blocksOf(const BlockInfo& info) const {
-    std::vector<double*> blocks;
-    problem_.problem().GetParameterBlocksForResidualBlock(info.id, &blocks);
-    return blocks;
+  std::vector<std::size_t> first_;
+  std::vector<std::uint8_t> positive_;
+};
+
+// Sums over a stretch of time.
+struct StretchSums {
+  Eigen::MatrixXd information;
+  std::vector<Eigen::VectorXd> scores;  // by group
+
+  StretchSums(Eigen::Index quantities, std::size_t groups)
+      : information(Eigen::MatrixXd::Zero(quantities, quantities)),
+        scores(groups, Eigen::VectorXd::Zero(quantities)) {}
+};
+
+// What the blocks of one part sum up to (UnknownColumns::Part), and then the parts.
+struct Sums {
+  std::vector<MeasurementGroup> groups;
+  Eigen::VectorXd gradient;
+  std::map<std::int64_t, StretchSums> stretches;
+  std::vector<Eigen::VectorXd> pixel_errors;  // by camera; as many as have any
+  Eigen::Index first_row = 0;                 // of the band
+  RowMajorMatrix signed_rows;  // J_x^T times random signs: rows of the band from there on, by group
+
+  void add(Sums&& other);
+};
+
+void addTo(std::vector<Eigen::VectorXd>& sums, std::size_t index, const Eigen::VectorXd& change) {
+  if (change.size() == 0) return;
+  if (sums.size() <= index) sums.resize(index + 1, Eigen::VectorXd::Zero(change.size()));
+  sums[index] += change;
+}
+
+void Sums::add(Sums&& other) {
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    groups[g].information += other.groups[g].information;
+    groups[g].squared_residuals += other.groups[g].squared_residuals;
+    groups[g].residuals += other.groups[g].residuals;
   }
+  gradient += other.gradient;
+  stretches.merge(other.stretches);
+  for (const auto& [stretch, theirs] : other.stretches) {  // those that both have
+    StretchSums& ours = stretches.at(stretch);
+    ours.information += theirs.information;
+    for (std::size_t g = 0; g < groups.size(); ++g) ours.scores[g] += theirs.scores[g];
+  }
+  for (std::size_t i = 0; i < other.pixel_errors.size(); ++i) addTo(pixel_errors, i, other.pixel_errors[i]);
+  signed_rows.middleRows(other.first_row - first_row, other.signed_rows.rows()) += other.signed_rows;
+}
+
+// Of one group, not projected yet: all in one stretch of time.
+struct Pending {
+  std::int64_t stretch = 0;
+  LocalSums sums;
+};
+
+class Projection {
+ public:
+  Projection(CalibrationProblem& problem, double stretch_s, int threads, const RunContext& context)
+      : problem_(problem),
+        stretch_s_(stretch_s),
+        threads_(threads),
+        context_(context),
+        columns_(problem),
+        groups_(groupsOf(problem.blocks())),
+        signs_(columns_),
+        elimination_(columns_, equations()) {}
+
+  ProjectedInformation run();
+
+ private:
+  NormalEquations equations() const {
+    NormalEquations equations(columns_);
+    assemble(columns_, threads_, context_.stop, equations);
+    return equations;
+  }
+  Sums noSums(Eigen::Index first_row, Eigen::Index end_row) const;
+  Sums sumOf(const UnknownColumns::Part& part, const ManifoldDerivatives& manifolds) const;
+  Sums sumOfAll() const;
+  void addSigns(std::size_t index, const BlockJacobian& block, Sums& sums) const;
+  void add(std::size_t index, const BlockJacobian& block, Pending& pending, Sums& sums) const;
+  void project(std::size_t group, Pending& pending, Sums& sums) const;
+  void countAbsorbed(Sums& sums) const;
+  void reportStretches(Sums& sums, ProjectedInformation& result) const;
 
   CalibrationProblem& problem_;
+  double stretch_s_;
+  int threads_;
   const RunContext& context_;
-  std::unordered_map<double*, Columns> columns_;
-  std::vector<Eigen::Index> first_column_;
-  Eigen::Index spline_size_ = 0, quantity_size_ = 0, drift_size_ = 0;
+  UnknownColumns columns_;
+  Groups groups_;
+  RandomSigns signs_;
+  SplineElimination elimination_;
 };
 
-void Layout::evaluate(const BlockInfo& info, BlockJacobian& out) const {
-  context_.throwIfStopped();
-  const ceres::CostFunction& cost = *problem_.problem().GetCostFunctionForResidualBlock(info.id);
-  const std::vector<double*> blocks = blocksOf(info);
-  std::vector<RowMajorMatrix> ambient(blocks.size());
-  std::vector<double*> jacobians(blocks.size(), nullptr);
-  out.spline_columns.clear();
-  out.quantity_columns.clear();
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const auto found = columns_.find(blocks[i]);
-    if (found == columns_.end()) continue;  // held constant
-    ambient[i].resize(cost.num_residuals(), cost.parameter_block_sizes()[i]);
-    jacobians[i] = ambient[i].data();
-    auto& list = found->second.spline ? out.spline_columns : out.quantity_columns;
-    for (int k = 0; k < found->second.size; ++k) list.push_back(found->second.first + k);
-  }
-  out.residuals.resize(cost.num_residuals());
-  cost.Evaluate(blocks.data(), out.residuals.data(), jacobians.data());
-  out.jacobian.resize(cost.num_residuals(),
-                      static_cast<Eigen::Index>(out.spline_columns.size() + out.quantity_columns.size()));
-  Eigen::Index spline_at = 0, quantity_at = static_cast<Eigen::Index>(out.spline_columns.size());
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    if (!jacobians[i]) continue;
-    const Columns& columns = columns_.at(blocks[i]);
-    Eigen::Index& at = columns.spline ? spline_at : quantity_at;
-    const ceres::Manifold* manifold = problem_.problem().GetManifold(blocks[i]);
-    auto target = out.jacobian.middleCols(at, columns.size);
-    if (manifold) {
-      RowMajorMatrix plus(manifold->AmbientSize(), manifold->TangentSize());
-      manifold->PlusJacobian(blocks[i], plus.data());
-      target.noalias() = ambient[i] * plus;
-    } else {
-      target = ambient[i];
-    }
-    at += columns.size;
+Sums Projection::noSums(Eigen::Index first_row, Eigen::Index end_row) const {
+  const Eigen::Index quantities = columns_.quantitySize();
+  Sums sums;
+  sums.groups = groups_.all;
+  for (MeasurementGroup& group : sums.groups)
+    group.information = Eigen::MatrixXd::Zero(quantities, quantities);
+  sums.gradient = Eigen::VectorXd::Zero(quantities);
+  sums.first_row = first_row;
+  sums.signed_rows = RowMajorMatrix::Zero(end_row - first_row, static_cast<Eigen::Index>(groups_.all.size()));
+  return sums;
+}
+
+void Projection::addSigns(std::size_t index, const BlockJacobian& block, Sums& sums) const {
+  const auto group = static_cast<Eigen::Index>(groups_.of_block[index]);
+  for (Eigen::Index row = 0; row < block.rows(); ++row) {
+    const double sign = signs_.of(index, row);
+    const double* const by_splines = block.data() + row * block.stride();
+    for (std::size_t k = 0; k < block.splineColumns().size(); ++k)
+      sums.signed_rows(block.splineColumns()[k] - sums.first_row, group) += sign * by_splines[k];
   }
 }
 
-// Sums of the normal equations, splines and then the biases' knots eliminated.
-class Elimination {
- public:
-  Elimination(const CalibrationProblem& problem, const Layout& layout)
-      : problem_(problem),
-        layout_(layout),
-        splines_(layout.splineSize(), layout.halfBandwidth()),
-        eliminated_(Eigen::MatrixXd::Zero(layout.splineSize(), layout.quantitySize() + layout.driftSize())) {}
-
-  void eliminate() {
-    BlockJacobian block;
-    for (const BlockInfo& info : problem_.blocks()) {
-      layout_.evaluate(info, block);
-      const Eigen::MatrixXd splines = block.bySpline().transpose() * block.bySpline();
-      const Eigen::MatrixXd mixed = block.bySpline().transpose() * block.byQuantities();
-      for (std::size_t a = 0; a < block.spline_columns.size(); ++a) {
-        const Eigen::Index row = block.spline_columns[a];
-        for (std::size_t b = 0; b < block.spline_columns.size(); ++b) {
-          if (block.spline_columns[b] > row) continue;
-          splines_.add(row, block.spline_columns[b],
-                       splines(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)));
-        }
-        for (std::size_t q = 0; q < block.quantity_columns.size(); ++q) {
-          eliminated_(row, block.quantity_columns[q]) +=
-              mixed(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(q));
-        }
-      }
-    }
-    splines_.factorise();
-    splines_.solveInPlace(eliminated_);
-    if (layout_.driftSize() > 0) eliminateDrift();
-  }
-
-  // P of one block, all quantities.
-  Eigen::MatrixXd project(const BlockJacobian& block) const {
-    const Eigen::Index size = layout_.quantitySize();
-    Eigen::MatrixXd projected = Eigen::MatrixXd::Zero(block.residuals.size(), eliminated_.cols());
-    for (std::size_t q = 0; q < block.quantity_columns.size(); ++q) {
-      const Eigen::Index column = block.quantity_columns[q];
-      const auto by_column = block.byQuantities().col(static_cast<Eigen::Index>(q));
-      if (column < eliminated_.cols()) {
-        projected.col(column) = by_column;
-      } else {
-        projected.noalias() -= by_column * drift_by_quantities_.row(column - size);
-      }
-    }
-    Eigen::MatrixXd rows(static_cast<Eigen::Index>(block.spline_columns.size()), eliminated_.cols());
-    for (std::size_t a = 0; a < block.spline_columns.size(); ++a) {
-      rows.row(static_cast<Eigen::Index>(a)) = eliminated_.row(block.spline_columns[a]);
-    }
-    projected.noalias() -= block.bySpline() * rows;
-    return projected;
-  }
-
-  const BandCholesky& splines() const { return splines_; }
-  const Eigen::MatrixXd& driftByQuantities() const { return drift_by_quantities_; }
-  const Eigen::MatrixXd& driftCovariance() const { return drift_covariance_; }
-
- private:
-  // From rows of the knots' own Schur complement, since few blocks have knots.
-  void eliminateDrift() {
-    const Eigen::Index size = layout_.quantitySize(), knots = layout_.driftSize();
-    Eigen::MatrixXd schur = Eigen::MatrixXd::Zero(knots, size + knots);
-    BlockJacobian block;
-    for (const BlockInfo& info : problem_.blocks()) {
-      layout_.evaluate(info, block);
-      if (block.quantity_columns.empty() || block.quantity_columns.back() < size) continue;
-      const Eigen::MatrixXd projected = project(block);
-      for (std::size_t q = 0; q < block.quantity_columns.size(); ++q) {
-        const Eigen::Index knot = block.quantity_columns[q] - size;
-        if (knot < 0) continue;
-        schur.row(knot).noalias() +=
-            block.byQuantities().col(static_cast<Eigen::Index>(q)).transpose() * projected;
-      }
-    }
-    const Eigen::LDLT<Eigen::MatrixXd> solver(schur.rightCols(knots));
-    drift_covariance_ = solver.solve(Eigen::MatrixXd::Identity(knots, knots));
-    drift_by_quantities_ = solver.solve(schur.leftCols(size));
-    const Eigen::MatrixXd kept =
-        eliminated_.leftCols(size) - eliminated_.rightCols(knots) * drift_by_quantities_;
-    eliminated_ = kept;
-  }
-
-  const CalibrationProblem& problem_;
-  const Layout& layout_;
-  BandCholesky splines_;
-  Eigen::MatrixXd eliminated_;  // (J_x^T J_x)^-1 J_x^T J_q; until they are eliminated, knots' columns follow
-  Eigen::MatrixXd drift_by_quantities_, drift_covariance_;
-};
-
-std::size_t groupOf(std::vector<MeasurementGroup>& groups, const BlockInfo& info, Eigen::Index size) {
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    if (groups[i].kind == info.kind && groups[i].sensor == info.sensor) return i;
-  }
-  MeasurementGroup group;
-  group.kind = info.kind;
-  group.sensor = info.sensor;
-  group.information = Eigen::MatrixXd::Zero(size, size);
-  groups.push_back(std::move(group));
-  return groups.size() - 1;
-}
-
-// How many residuals of each group the splines absorb: trace of J_x (J_x^T J_x)^-1 J_x^T over the group's
-// rows, by random signs (Hutchinson 1990). The few quantities themselves don't matter.
-void countAbsorbed(const CalibrationProblem& problem, const Layout& layout, const Elimination& elimination,
-                   std::vector<MeasurementGroup>& groups) {
-  constexpr std::uint64_t kSeed = 20260101;  // any: the count is good to a fraction of a percent
-  std::mt19937_64 random(kSeed);
-  const auto group_count = static_cast<Eigen::Index>(groups.size());
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(layout.splineSize(), group_count);
-  BlockJacobian block;
-  for (const BlockInfo& info : problem.blocks()) {
-    layout.evaluate(info, block);
-    const auto group = static_cast<Eigen::Index>(groupOf(groups, info, layout.quantitySize()));
-    Eigen::VectorXd signs(block.residuals.size());
-    for (Eigen::Index i = 0; i < signs.size(); ++i) signs[i] = (random() & 1U) ? 1.0 : -1.0;
-    const Eigen::VectorXd sum = block.bySpline().transpose() * signs;
-    for (std::size_t a = 0; a < block.spline_columns.size(); ++a) {
-      sums(block.spline_columns[a], group) += sum[static_cast<Eigen::Index>(a)];
-    }
-  }
-  Eigen::MatrixXd solved = sums;
-  elimination.splines().solveInPlace(solved);
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    const auto col = static_cast<Eigen::Index>(g);
-    groups[g].absorbed = sums.col(col).dot(solved.col(col));
-  }
-}
-
-Eigen::MatrixXd totalInformation(const CalibrationProblem& problem, const Layout& layout) {
-  Elimination elimination(problem, layout);
-  elimination.eliminate();
-  Eigen::MatrixXd total = Eigen::MatrixXd::Zero(layout.quantitySize(), layout.quantitySize());
-  BlockJacobian block;
-  for (const BlockInfo& info : problem.blocks()) {
-    layout.evaluate(info, block);
-    const Eigen::MatrixXd projected = elimination.project(block);
-    total.noalias() += projected.transpose() * projected;
-  }
-  return total;
-}
-
-void addPixelErrors(const BlockInfo& info, const Eigen::MatrixXd& projected,
-                    std::vector<Eigen::VectorXd>& effects) {
+// What one sigma of the pixels' repeated errors changes in a block's residuals.
+Eigen::VectorXd pixelErrorsOf(const BlockInfo& info) {
+  if (info.circles == nullptr) return {};
   Eigen::VectorXd change(info.circles->num_residuals());
   Eigen::Index row = 0;
   for (const CircleMeasurement& circle : info.circles->circles()) {
     change.segment<2>(row) = circle.whitening_px * circle.pixel_error_px;
     row += 2;
   }
-  if (effects.size() <= info.sensor) effects.resize(info.sensor + 1, Eigen::VectorXd::Zero(projected.cols()));
-  effects[info.sensor] += projected.transpose() * change;
+  return change;
 }
 
-// The splines of a problem, for a while elsewhere.
-class SplineShift {
- public:
-  explicit SplineShift(CalibrationProblem& problem) : problem_(problem) {
-    for (double* block : problem.splineBlocks()) {
-      blocks_.push_back(block);
-      values_.insert(values_.end(), block, block + problem.problem().ParameterBlockSize(block));
-    }
-  }
-  SplineShift(const SplineShift&) = delete;
-  SplineShift& operator=(const SplineShift&) = delete;
-  ~SplineShift() {
-    const double* value = values_.data();
-    for (double* block : blocks_) {
-      std::copy_n(value, sizeOf(block), block);
-      value += sizeOf(block);
-    }
-  }
-
-  // From where they were, in tangent columns.
-  void moveBy(const Eigen::VectorXd& shift) {
-    const double *value = values_.data(), *step = shift.data();
-    for (double* block : blocks_) {
-      const ceres::Manifold* manifold = problem_.problem().GetManifold(block);
-      if (manifold) {
-        manifold->Plus(value, step, block);
-      } else {
-        std::transform(value, value + sizeOf(block), step, block, std::plus<>());
-      }
-      value += sizeOf(block);
-      step += problem_.problem().ParameterBlockTangentSize(block);
-    }
-  }
-
- private:
-  int sizeOf(const double* block) const { return problem_.problem().ParameterBlockSize(block); }
-
-  CalibrationProblem& problem_;
-  std::vector<double*> blocks_;
-  std::vector<double> values_;
-};
-
-// Simulation and extrapolation (J. Cook, L. Stefanski, JASA 1994): errors once more of the size
-// that the splines already have add once more what these have added. Either way, so that what
-// is linear in them cancels.
-Eigen::MatrixXd informationFromNoise(CalibrationProblem& problem, const Layout& layout,
-                                     const BandCholesky& splines, const Eigen::MatrixXd& total) {
-  constexpr std::uint64_t kSeed = 20260102;  // any
-  std::mt19937_64 random(kSeed);
-  std::normal_distribution<double> normal;
-  Eigen::VectorXd shift(layout.splineSize());
-  for (double& each : shift) each = normal(random);
-  splines.correlateInPlace(shift);
-  SplineShift moved(problem);
-  moved.moveBy(shift);
-  const Eigen::MatrixXd ahead = totalInformation(problem, layout);
-  moved.moveBy(-shift);
-  return 0.5 * (ahead + totalInformation(problem, layout)) - total;
+void Projection::add(std::size_t index, const BlockJacobian& block, Pending& pending, Sums& sums) const {
+  constexpr Eigen::Index kMostColumns = 160;  // products take the square of it
+  const std::size_t group = groups_.of_block[index];
+  const BlockInfo& info = problem_.blocks()[index];
+  const auto stretch = static_cast<std::int64_t>(std::floor(info.time_s / stretch_s_));
+  if (stretch != pending.stretch || pending.sums.columnCount() > kMostColumns) project(group, pending, sums);
+  pending.stretch = stretch;
+  pending.sums.add(block, pixelErrorsOf(info));
+  sums.groups[group].residuals += static_cast<double>(block.rows());
+  addSigns(index, block, sums);
 }
 
-// Sums over stretches of time.
-class Stretches {
- public:
-  Stretches(Eigen::Index size, double length_s) : size_(size), length_s_(length_s) {}
+void Projection::project(std::size_t group, Pending& pending, Sums& sums) const {
+  if (pending.sums.columnCount() == 0) return;
+  const ProjectedSums projected = pending.sums.projected(columns_, elimination_);
+  pending.sums = {};
+  MeasurementGroup& of_group = sums.groups[group];
+  of_group.information += projected.information;
+  of_group.squared_residuals += projected.squared_residuals;
+  sums.gradient += projected.score;
+  if (of_group.kind == SensorKind::Prior) return;
+  addTo(sums.pixel_errors, of_group.sensor, projected.pixel_errors);
+  StretchSums& at =
+      sums.stretches.try_emplace(pending.stretch, sums.gradient.size(), sums.groups.size()).first->second;
+  at.information += projected.information;
+  at.scores[group] += projected.score;
+}
 
-  void add(double time_s, std::size_t group, const Eigen::VectorXd& score, const Eigen::MatrixXd& share) {
-    Sums& sums = sums_[static_cast<std::int64_t>(std::floor(time_s / length_s_))];
-    if (sums.information.size() == 0) sums.information = Eigen::MatrixXd::Zero(size_, size_);
-    sums.information += share;
-    if (sums.scores.size() <= group) sums.scores.resize(group + 1, Eigen::VectorXd::Zero(size_));
-    sums.scores[group] += score;
+Sums Projection::sumOf(const UnknownColumns::Part& part, const ManifoldDerivatives& manifolds) const {
+  const Eigen::Index rows = columns_.splineSize();
+  const Eigen::Index end_row = std::min(rows, part.end_row + columns_.halfBandwidth() + 1);
+  Sums sums = noSums(std::min(part.first_row, end_row), end_row);
+  std::vector<Pending> pending(groups_.all.size());
+  BlockJacobian block(columns_);
+  for (std::size_t i = part.begin; i < part.end; ++i) {
+    context_.throwIfStopped();
+    const std::size_t index = columns_.order()[i];
+    block.evaluate(index, manifolds);
+    add(index, block, pending[groups_.of_block[index]], sums);
   }
+  for (std::size_t group = 0; group < pending.size(); ++group) project(group, pending[group], sums);
+  return sums;
+}
 
-  void moveInto(ProjectedInformation& result) {
-    if (sums_.empty()) return;
-    const std::int64_t first = sums_.begin()->first, last = sums_.rbegin()->first;
-    const auto count = static_cast<std::size_t>(last - first + 1);
-    result.stretch_s = length_s_;
-    result.first_stretch_s = static_cast<double>(first) * length_s_;
-    result.scores.assign(count, Eigen::VectorXd::Zero(size_));
-    result.information_by_stretch.assign(count, Eigen::MatrixXd::Zero(size_, size_));
-    for (auto& [stretch, sums] : sums_) {
-      const auto at = static_cast<std::size_t>(stretch - first);
-      result.information_by_stretch[at] = std::move(sums.information);
-      for (std::size_t g = 0; g < sums.scores.size(); ++g)
-        result.scores[at] += std::sqrt(unabsorbed(result.groups[g])) * sums.scores[g];
-    }
+Sums Projection::sumOfAll() const {
+  const ManifoldDerivatives manifolds(columns_);
+  std::vector<Sums> parts(columns_.parts().size());
+  inParallel(threads_, parts.size(),
+             [&](std::size_t p) { parts[p] = sumOf(columns_.parts()[p], manifolds); });
+  Sums all = noSums(0, columns_.splineSize());
+  for (Sums& part : parts) all.add(std::exchange(part, {}));
+  return all;
+}
+
+// How many residuals of each group the splines absorb: trace of J_x (J_x^T J_x)^-1 J_x^T over the group's
+// rows, by random signs (Hutchinson 1990). The few quantities themselves don't matter.
+void Projection::countAbsorbed(Sums& sums) const {
+  RowMajorMatrix solved = sums.signed_rows;
+  elimination_.splines().solveInPlace(solved);
+  for (std::size_t g = 0; g < sums.groups.size(); ++g) {
+    const auto col = static_cast<Eigen::Index>(g);
+    sums.groups[g].absorbed = sums.signed_rows.col(col).dot(solved.col(col));
   }
+}
 
- private:
-  struct Sums {
-    std::vector<Eigen::VectorXd> scores;  // by group
-    Eigen::MatrixXd information;
-  };
+// By how much squared residuals would be larger, had the unknowns not been fitted to them.
+double unabsorbed(const MeasurementGroup& group) {
+  return std::max(1.0, group.residuals / std::max(1.0, group.residuals - group.absorbed));
+}
 
-  // By how much squared residuals would be larger, had the unknowns not been fitted to them.
-  static double unabsorbed(const MeasurementGroup& group) {
-    return std::max(1.0, group.residuals / std::max(1.0, group.residuals - group.absorbed));
+void Projection::reportStretches(Sums& sums, ProjectedInformation& result) const {
+  if (sums.stretches.empty()) return;
+  const Eigen::Index size = columns_.quantitySize();
+  const std::int64_t first = sums.stretches.begin()->first, last = sums.stretches.rbegin()->first;
+  const auto count = static_cast<std::size_t>(last - first + 1);
+  result.stretch_s = stretch_s_;
+  result.first_stretch_s = static_cast<double>(first) * stretch_s_;
+  result.scores.assign(count, Eigen::VectorXd::Zero(size));
+  result.information_by_stretch.assign(count, Eigen::MatrixXd::Zero(size, size));
+  for (auto& [stretch, of_stretch] : sums.stretches) {
+    const auto at = static_cast<std::size_t>(stretch - first);
+    result.information_by_stretch[at] = std::move(of_stretch.information);
+    for (std::size_t g = 0; g < of_stretch.scores.size(); ++g)
+      result.scores[at] += std::sqrt(unabsorbed(result.groups[g])) * of_stretch.scores[g];
   }
+}
 
-  Eigen::Index size_;
-  double length_s_;
-  std::map<std::int64_t, Sums> sums_;
-};
+ProjectedInformation Projection::run() {
+  const Eigen::Index size = columns_.quantitySize();
+  ProjectedInformation result;
+  result.quantities = problem_.quantities();
+  result.first_column = columns_.firstColumn();
+  result.total = Eigen::MatrixXd::Zero(size, size);
+  result.drift_by_quantities = elimination_.driftByQuantities();
+  result.drift_covariance = elimination_.driftCovariance();
+  {
+    Sums sums = sumOfAll();
+    countAbsorbed(sums);
+    result.groups = std::move(sums.groups);
+    for (const MeasurementGroup& group : result.groups) result.total += group.information;
+    result.gradient = std::move(sums.gradient);
+    result.pixel_errors = std::move(sums.pixel_errors);
+    reportStretches(sums, result);
+  }
+  result.from_noise =
+      informationFromNoise(columns_, elimination_.splines(), result.total, threads_, context_);
+  return result;
+}
 
 }  // namespace
 
@@ -399,44 +307,9 @@ double MeasurementGroup::variance() const {
   return kind != SensorKind::Prior && free > kLeastFree * residuals ? squared_residuals / free : 1.0;
 }
 
-ProjectedInformation projectInformation(CalibrationProblem& problem, double stretch_s,
+ProjectedInformation projectInformation(CalibrationProblem& problem, double stretch_s, int threads,
                                         const RunContext& context) {
-  const Layout layout(problem, context);
-  Elimination elimination(problem, layout);
-  elimination.eliminate();
-
-  ProjectedInformation result;
-  result.quantities = problem.quantities();
-  result.first_column = layout.firstColumn();
-  const Eigen::Index size = layout.quantitySize();
-  result.total = Eigen::MatrixXd::Zero(size, size);
-  result.gradient = Eigen::VectorXd::Zero(size);
-  result.drift_by_quantities = elimination.driftByQuantities();
-  result.drift_covariance = elimination.driftCovariance();
-
-  Stretches stretches(size, stretch_s);
-  BlockJacobian block;
-  for (const BlockInfo& info : problem.blocks()) {
-    layout.evaluate(info, block);
-    const Eigen::MatrixXd projected = elimination.project(block);
-    const std::size_t g = groupOf(result.groups, info, size);
-    MeasurementGroup& group = result.groups[g];
-    const Eigen::MatrixXd share = projected.transpose() * projected;
-    group.information += share;
-    group.squared_residuals += block.residuals.squaredNorm();
-    group.residuals += static_cast<double>(block.residuals.size());
-    const Eigen::VectorXd score = projected.transpose() * block.residuals;
-    result.gradient += score;
-    if (info.kind == SensorKind::Prior) continue;
-    if (info.circles) addPixelErrors(info, projected, result.pixel_errors);
-    stretches.add(info.time_s, g, score, share);
-  }
-  for (const MeasurementGroup& group : result.groups) result.total += group.information;
-  countAbsorbed(problem, layout, elimination, result.groups);
-  result.from_noise = informationFromNoise(problem, layout, elimination.splines(), result.total);
-
-  stretches.moveInto(result);
-  return result;
+  return Projection(problem, stretch_s, threads, context).run();
 }
 
 }  // namespace evical

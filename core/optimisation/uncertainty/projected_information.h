@@ -53,9 +53,9 @@ struct ProjectedInformation {
   std::vector<Eigen::VectorXd> pixel_errors;
 };
 
-// `problem` must be built. Scores are collected over stretches of `stretch_s`. Throws
+// `problem` must be built. Scores are collected over stretches of `stretch_s`. The same for any number of threads. Throws
 // Cancelled when asked to stop.
-ProjectedInformation projectInformation(CalibrationProblem& problem, double stretch_s,
+ProjectedInformation projectInformation(CalibrationProblem& problem, double stretch_s, int threads = 1,
                                         const RunContext& context = {});
 
 }  // namespace evical

@@ -87,11 +87,29 @@ void Aedat2Decoder::addDavis(std::uint32_t address, std::int64_t time_ns, std::u
     addEvent(davisX(address), davisY(address), (address & 0x800) != 0, time_ns, byte, events);
   } else if (isDavisImuWord(address)) {
     addImuWord(address, time_ns, byte);
+  } else if (isApsSample(address)) {
+    addApsSample(address, time_ns, byte);
   } else if ((address & 0x8000'0000) != 0) {
     findings_.exposure.add(byte);
   } else {
     ++findings_.triggers;
   }
+}
+
+void Aedat2Decoder::addApsSample(std::uint32_t address, std::int64_t time_ns, std::uint64_t byte) {
+  if (aps_.left() == 0) frame_byte_ = byte;
+  addLostSamples(aps_.add(address, time_ns));
+  findings_.rolling_frames = aps_.rolling();
+}
+
+void Aedat2Decoder::addLostSamples(std::uint64_t count) {
+  if (count == 0) return;
+  findings_.exposure.add(frame_byte_);
+  findings_.exposure.count += count - 1;
+}
+
+void Aedat2Decoder::finish() {
+  addLostSamples(aps_.left());
 }
 
 void Aedat2Decoder::addEvent(unsigned x, unsigned y, bool brighter, std::int64_t time_ns, std::uint64_t byte,

@@ -1,6 +1,7 @@
 // The pairs of address and time that an AEDAT 2.0 file consists of behind its header.
 #pragma once
 
+#include "core/recording/aedat/aps_frames.h"
 #include "core/recording/block_decoder.h"
 
 #include <array>
@@ -12,11 +13,16 @@ enum class AddressLayout { Dvs128, Davis };
 
 class Aedat2Decoder : public BlockDecoder {
  public:
-  Aedat2Decoder(AddressLayout layout, const Resolution& size_px) : layout_(layout), size_px_(size_px) {}
+  Aedat2Decoder(AddressLayout layout, const Resolution& size_px)
+      : layout_(layout), size_px_(size_px), aps_(size_px) {}
 
   std::size_t decode(std::string_view bytes, std::uint64_t offset, std::vector<Event>& events) override;
+  std::vector<Frame>* frames() override { return &aps_.frames(); }
+  void finish() override;
 
  private:
+  void addApsSample(std::uint32_t address, std::int64_t time_ns, std::uint64_t byte);
+  void addLostSamples(std::uint64_t count);
   std::int64_t unwrapped_us(std::int32_t time_us, std::uint64_t byte);
   void addDvs128(std::uint32_t address, std::int64_t time_ns, std::uint64_t byte, EventAppender& events);
   void addDavis(std::uint32_t address, std::int64_t time_ns, std::uint64_t byte, EventAppender& events);
@@ -26,6 +32,8 @@ class Aedat2Decoder : public BlockDecoder {
 
   AddressLayout layout_;
   Resolution size_px_;
+  ApsFrames aps_;
+  std::uint64_t frame_byte_ = 0;  // where the frame begins that is not whole yet
   bool started_ = false;
   std::int32_t last_us_ = 0;
   std::int64_t wrapped_us_ = 0;  // what wraps have added

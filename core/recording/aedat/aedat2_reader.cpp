@@ -67,7 +67,7 @@ std::string bytesAt(std::ifstream& file, std::uint64_t offset, std::size_t most)
 
 struct Look {
   bool wide = false;  // most addresses have more bits than a DVS128's
-  bool imu = false;
+  bool imu = false, frames = false;
   Resolution reach_px;  // of a DAVIS's events
 };
 
@@ -79,6 +79,7 @@ Look lookAt(std::string_view bytes) {
     const std::uint32_t address = aedat::bigEndian32(bytes.data() + at);
     if (address >> 16 != 0) ++wide;
     look.imu = look.imu || aedat::isDavisImuWord(address);
+    look.frames = look.frames || aedat::isApsSample(address);
     if (!aedat::isDavisEvent(address)) continue;
     look.reach_px.width_px = std::max(look.reach_px.width_px, static_cast<int>(aedat::davisX(address)) + 1);
     look.reach_px.height_px = std::max(look.reach_px.height_px, static_cast<int>(aedat::davisY(address)) + 1);
@@ -142,6 +143,10 @@ std::unique_ptr<RecordingReader> openAedat2(const std::filesystem::path& path) {
         {"imu", FaultKind::Guess, 0.0,
          "The numbers are taken for those of the full scales 4 g and 500 deg/s, which jAER "
          "sets; at rest the norm of the acceleration must be 1 g."});
+  }
+  if (layout == AddressLayout::Davis && look.frames) {
+    format.streams.push_back(streamOf("frames", StreamType::Frames, chip));
+    format.streams.back().resolution_px = size_px;
   }
   format.streams.push_back(streamOf("triggers", StreamType::Triggers, chip));
   return std::make_unique<BlockReader>(path, std::move(format),

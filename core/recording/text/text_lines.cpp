@@ -1,6 +1,5 @@
 #include "core/recording/text/text_lines.h"
 
-#include "core/base/error.h"
 #include "core/base/time.h"
 
 #include <algorithm>
@@ -28,10 +27,7 @@ char lineEndOf(std::string_view first_bytes) {
   return !has_newline && first_bytes.find('\r') != std::string_view::npos ? '\r' : '\n';
 }
 
-TextLines::TextLines(const std::filesystem::path& path)
-    : file_(path, std::ios::binary), buffer_(kBufferBytes, '\0') {
-  if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions");
-  size_ = std::filesystem::file_size(path);
+TextLines::TextLines(const std::filesystem::path& path) : file_(path), buffer_(kBufferBytes, '\0') {
   refill();
   line_end_ = lineEndOf({buffer_.data(), end_});
 }
@@ -40,9 +36,10 @@ bool TextLines::refill() {
   std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
   end_ -= begin_;
   begin_ = 0;
-  file_.read(buffer_.data() + end_, static_cast<std::streamsize>(buffer_.size() - end_));
-  end_ += static_cast<std::size_t>(file_.gcount());
-  return file_.gcount() > 0;
+  const std::size_t wanted = buffer_.size() - end_, got = file_.read(buffer_.data() + end_, wanted);
+  end_ += got;
+  ended_ = got < wanted;
+  return got > 0;
 }
 
 bool TextLines::next(std::string_view& line) {
@@ -57,7 +54,6 @@ bool TextLines::next(std::string_view& line) {
   line = {start, length};
   const std::size_t taken = found ? length + 1 : length;
   begin_ += taken;
-  consumed_ += taken;
   ++number_;
   return true;
 }

@@ -1,9 +1,10 @@
 // A text file line by line through a buffer of fixed size, and the numbers in its lines.
 #pragma once
 
+#include "core/recording/text/text_bytes.h"
+
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
 
@@ -20,18 +21,21 @@ class TextLines {
   // buffer's size comes in pieces.
   bool next(std::string_view& line);
 
-  std::uint64_t number() const { return number_; }  // of the line handed out last, from 1
-  std::uint64_t bytesRead() const { return consumed_; }
-  std::uint64_t size() const { return size_; }
+  std::uint64_t number() const { return number_; }              // of the line handed out last, from 1
+  bool atEnd() const { return ended_ && begin_ == end_; }       // the line handed out last is the last one
+  bool isDamaged() const { return file_.isDamaged(); }          // a packed file that ends too soon
+  std::uint64_t bytesRead() const { return file_.position(); }  // of the file on the disk, ahead of the lines
+  std::uint64_t size() const { return file_.size(); }
 
  private:
   bool refill();
 
-  std::ifstream file_;
+  TextBytes file_;
   char line_end_ = '\n';
   std::string buffer_;
   std::size_t begin_ = 0, end_ = 0;  // what of the buffer is not handed out
-  std::uint64_t size_ = 0, consumed_ = 0, number_ = 0;
+  bool ended_ = false;
+  std::uint64_t number_ = 0;
 };
 
 // Takes columns off a line's front; they are separated by blanks, tabs or commas. Empty

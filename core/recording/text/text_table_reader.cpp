@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 #include <limits>
 
@@ -52,14 +51,6 @@ bool parseVector(const std::vector<std::string_view>& parts, std::size_t first, 
          parseNumber(parts[first + 2], vector.z());
 }
 
-std::string firstBytes(const std::filesystem::path& path) {
-  std::string bytes(kHead_bytes, '\0');
-  std::ifstream file(path, std::ios::binary);
-  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(file.gcount()));
-  return bytes;
-}
-
 const char* messageOf(StreamType type) {
   return type == StreamType::Events   ? "t x y p"
          : type == StreamType::Points ? "t point x y"
@@ -87,7 +78,7 @@ TextTableReader::TextTableReader(const std::filesystem::path& path) {
 }
 
 void TextTableReader::addSource(const std::filesystem::path& path) {
-  const std::string head = firstBytes(path);
+  const std::string head = firstTextBytes(path, kHead_bytes);
   TextColumns columns = findColumns(head, head.size() == kHead_bytes);
   const std::string name = path.filename().string();
   if (name == kFiles[0] && columns.header_line == 0) {
@@ -104,7 +95,7 @@ void TextTableReader::addSource(const std::filesystem::path& path) {
                    "the lines are neither events nor IMU samples, and no header names the columns",
                    "Put a line such as \"t_us,x,y,p\" or \"time_s,point,x_px,y_px\" on top");
   }
-  if (path.extension() == ".csv") format_ = "csv";
+  if (path.extension() == ".csv" || path.stem().extension() == ".csv") format_ = "csv";
   StreamInfo stream;
   stream.name = name;
   stream.type = columns.type;
@@ -168,17 +159,14 @@ void TextTableReader::fillEvents(Source& source, std::size_t stream, std::vector
     }
     events.push_back(event);
   }
-  source.finished = true;
+  finish(source, stream);
 }
 
 void TextTableReader::fillImu(Source& source, std::size_t stream, std::vector<RawImuSample>& samples) {
   std::string_view line;
   RawImuSample sample;
   while (samples.size() < kPacketSamples) {
-    if (!source.lines.next(line)) {
-      source.finished = true;
-      return;
-    }
+    if (!source.lines.next(line)) return finish(source, stream);
     if (parseImu(source, line, sample)) {
       samples.push_back(sample);
       source.last_ns = sample.time_ns;
@@ -206,7 +194,15 @@ void TextTableReader::fillPoints(Source& source, std::size_t stream, std::vector
     }
     points.push_back(point);
   }
+  finish(source, stream);
+}
+
+void TextTableReader::finish(Source& source, std::size_t stream) {
   source.finished = true;
+  if (!source.lines.isDamaged()) return;
+  faults_.push_back({streams_[stream].name, FaultKind::Truncated, 0.0,
+                     fmt::format("The packed file is damaged after line {}; what comes behind is lost.",
+                                 source.lines.number())});
 }
 
 bool TextTableReader::isNoRow(const Source& source, std::string_view line) {
@@ -255,7 +251,7 @@ void TextTableReader::addBadLine(const Source& source, std::size_t stream) {
     return fault.stream == name && fault.kind != FaultKind::Guess;
   };
   if (std::count_if(faults_.begin(), faults_.end(), alike) >= kMostBadLines) return;
-  const bool last = source.lines.bytesRead() == source.lines.size();
+  const bool last = source.lines.atEnd();
   faults_.push_back({name, last ? FaultKind::Truncated : FaultKind::Corrupt, 0.0,
                      fmt::format("Line {} is not \"{}\"; it is left out.", source.lines.number(),
                                  streams_[stream].message)});

@@ -2,7 +2,7 @@
 // columns a header line names, or which are guessed and then said (text_columns.h). A folder with "events.txt" and "imu.txt" as in the RPG event camera
 // data set, or "events.csv" and "imu.csv", or one such file alone. Times are read exactly to the ns. Lines
 // starting with '#' or
-// '%' are comments.
+// '%' are comments. Files may be packed with gzip.
 #pragma once
 
 #include "core/recording/recording_reader.h"
@@ -47,6 +47,7 @@ class TextTableReader : public RecordingReader {
   void fillEvents(Source& source, std::size_t stream, std::vector<Event>& events);
   void fillImu(Source& source, std::size_t stream, std::vector<RawImuSample>& samples);
   void fillPoints(Source& source, std::size_t stream, std::vector<MeasuredPoint>& points);
+  void finish(Source& source, std::size_t stream);
   bool parsePoint(const Source& source, std::string_view line, MeasuredPoint& point);
   bool parseEvent(const Source& source, std::string_view line, Event& event);
   bool parseImu(const Source& source, std::string_view line, RawImuSample& sample);

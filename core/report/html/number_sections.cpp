@@ -1,5 +1,6 @@
 // Verdict, results with their sigmas, how the sensors sit.
 #include "core/base/element.h"
+#include "core/base/shell_word.h"
 #include "core/data/intrinsics_result.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/numerics/angles.h"
@@ -14,6 +15,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace evical::html {
 namespace {
@@ -204,6 +206,14 @@ std::string sensorView(const std::vector<PlacedSensor>& sensors, int across, int
   return plot.svg();
 }
 
+// What the command line prints and the window has a button for.
+std::string repairText(const std::optional<Repair>& repair) {
+  if (!repair) return {};
+  return paragraph("repair", "What may mend it: calibrate again with " +
+                                 element("code", "", escaped("--set " + shellWord(repair->text()))) +
+                                 ", or by the button beside the result's verdict in the window.");
+}
+
 }  // namespace
 
 void writeVerdict(const ReportData& data, const Measures& measures, ReportPage& page) {
@@ -214,8 +224,9 @@ void writeVerdict(const ReportData& data, const Measures& measures, ReportPage& 
                               : result.status == CalibrationStatus::Doubtful
                                   ? "There are numbers, but do not rely on them before you have read why."
                                   : "There is no calibration.";
-  page.text(fmt::format("<div class=\"verdict {0}\"><b>{0}</b><div><p>{1}</p>{2}</div></div>\n", status,
-                        meaning, result.reason.empty() ? "" : paragraph("reason", escaped(result.reason))));
+  page.text(fmt::format("<div class=\"verdict {0}\"><b>{0}</b><div><p>{1}</p>{2}{3}</div></div>\n", status,
+                        meaning, result.reason.empty() ? "" : paragraph("reason", escaped(result.reason)),
+                        repairText(result.repair)));
   std::string tiles;
   for (std::size_t i = 0; i < result.state.cameras.size(); ++i) tiles += cameraTiles(data, measures, i);
   if (result.state.cameras.empty())

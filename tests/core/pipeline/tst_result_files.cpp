@@ -249,6 +249,17 @@ class TestResultFiles : public QObject {
     QVERIFY(readFile(folder.filePath("result.yaml")).contains("intrinsics_std:"));
   }
 
+  void repair_isSaidWithTheVerdict() {
+    QVERIFY(!page_.contains("class=\"repair\""));
+    CalibrationRun run = run_;
+    run.result.status = CalibrationStatus::Doubtful;
+    run.result.repair = Repair{"imus.imu.acceleration_unit", "<g> 1"};
+    QTemporaryDir folder;
+    writeResultFiles(folder.path().toStdString(), simulated_.session, shared(run), "test", "log");
+    const QString text = checkedText(readFile(folder.filePath("report.html")));
+    QVERIFY2(text.contains("--set 'imus.imu.acceleration_unit=<g> 1'"), qPrintable(text.left(600)));
+  }
+
   // Data sets' layouts have places of their own for either.
   void frameCamera_isNamedAsOne() {
     QVERIFY(!readFile(path("result.yaml")).contains("kind:"));
@@ -265,8 +276,8 @@ class TestResultFiles : public QObject {
     RecordingPass pass = simulated_.pass;
     pass.cameras[0].views.clear();
     for (WindowReport& window : pass.cameras[0].windows) window.outcome = WindowOutcome::NoLattice;
-    writeFailure(folder.path().toStdString(), simulated_.session, "the board was <never> found", "test",
-                 "log", pass);
+    writeFailure(folder.path().toStdString(), simulated_.session, Doubt{"the board was <never> found"},
+                 "test", "log", pass);
     const QString page = readFile(folder.filePath("report.html"));
     const QString text = checkedText(page);
     QVERIFY2(text.contains("the board was <never> found") && text.contains("failed"),
@@ -278,7 +289,7 @@ class TestResultFiles : public QObject {
 
   void failureBeforeAnythingWasRead_isAReportToo() {
     QTemporaryDir folder;
-    writeFailure(folder.path().toStdString(), simulated_.session, "nothing there", "test", "log");
+    writeFailure(folder.path().toStdString(), simulated_.session, Doubt{"nothing there"}, "test", "log");
     const QString text = checkedText(readFile(folder.filePath("report.html")));
     QVERIFY2(text.contains("nothing there"), qPrintable(text.left(300)));
     QVERIFY(QFile::exists(folder.filePath("result.yaml")) && QFile::exists(folder.filePath("log.txt")));

@@ -341,6 +341,29 @@ class TestSession : public QObject {
     QCOMPARE(again.noise.accelerometer_random_walk, 3e-4);
   }
 
+  void points_areAFileOfTheirOwn() {
+    write("left.csv.gz", "x");
+    const Session session =
+        sessionWith("    stream: /left/events\n", "    points: left.csv.gz\n    clock_offset_s: 0.5\n");
+    QVERIFY(std::filesystem::equivalent(session.cameras[0].recording, folder() / "left.csv.gz"));
+    QCOMPARE(session.cameras[0].stream, std::string("left.csv.gz"));
+    QCOMPARE(session.cameras[0].clock_offset_s, 0.5);
+    writeSession(session, folder() / "again.yaml");
+    const Session again = readSession(folder() / "again.yaml");
+    QVERIFY(std::filesystem::equivalent(again.cameras[0].recording, folder() / "left.csv.gz"));
+    QCOMPARE(again.cameras[0].stream, session.cameras[0].stream);
+  }
+
+  void camerasOfOneSensor_mayBeCompared() {
+    const QString camera = "  frames:\n    stream: /left/image_raw\n    same_sensor_as: left\n";
+    const auto sharing = [&](const QString& key) {
+      return sessionWith("imus:\n", camera + key + "imus:\n").options.optimisation.share_sensors;
+    };
+    QVERIFY(sharing(""));
+    QVERIFY(sharing("    same_sensor_check: false\n"));
+    QVERIFY(!sharing("    same_sensor_check: true\n"));
+  }
+
   void sensors_mayHaveTheirOwnRecordings() {
     write("imu.csv", "x");
     const Session session = sessionWith(
@@ -530,6 +553,12 @@ correlation:
       QTest::newRow(name) << QString(from) << QString(to) << said;
     };
     row("no session", "evical_session: 1", "nothing: 1", {"evical_session"});
+    row("points and a stream", "    stream: /left/events\n",
+        "    points: recording.bag\n    stream: /left/events\n", {"cameras.left.stream", "beside points"});
+    row("points that are not there", "    stream: /left/events\n", "    points: gone.csv\n",
+        {"cameras.left.points", "gone.csv' does not exist"});
+    row("check of no sensor", "    stream: /left/events\n",
+        "    stream: /left/events\n    same_sensor_check: true\n", {"same_sensor_check", "same_sensor_as"});
     row("newer session", "evical_session: 1", "evical_session: 2", {"evical_session (line 1)", "above"});
     row("unknown key", "time_range_s:", "time_rang_s:", {"time_rang_s (line 3)", "'time_range_s'"});
     row("unknown export", "reference: left_imu", "reference: left_imu\nexport: [opnvins]",

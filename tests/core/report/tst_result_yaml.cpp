@@ -33,6 +33,9 @@ NamedResult sample() {
   CalibrationResult& result = test::ownResult(named);
   result.status = CalibrationStatus::Doubtful;
   result.reason = "planar motion: \"z\" is a guess\nand more";
+  result.causes = {
+      Doubt{"the lens: \"z\" is off", Repair{"optimisation.model.camera_intrinsics", "free"}, "lens", 0.875},
+      Doubt{"planar motion", {}, "observability"}};
   result.start_ns = 1'700'000'000'123'456'789;
   result.notes = {"IMU gap of 0.2 s"};
   result.memory_peak_mb = 310.0;
@@ -156,6 +159,37 @@ class TestResultYaml : public QObject {
     QCOMPARE(read.result->cross_validation->quantities.size(), std::size_t{2});
     QCOMPARE(read.result->cross_validation->quantities[0].normalised(), -0.5);
     QCOMPARE(read.result->cross_validation->quantities[1].name, std::string("1 odd: name.time_offset"));
+  }
+
+  // Names that interfaces of other programs rest on stand beside ours, in their units.
+  void secondNames_sayTheSame() {
+    NamedResult named = sample();
+    CalibrationResult& result = test::ownResult(named);
+    result.state.cameras[1].line_delay_us = 31.25;
+    result.uncertainty.cameras[1].line_delay_std_us = 0.5;
+    result.state.cameras[1].time_offset_drift_ppm = -12.5;
+    result.uncertainty.cameras[1].time_offset_drift_std_ppm = 0.25;
+    result.uncertainty.imus[0].accelerometer_delay_std_s = 2e-4;
+    result.latencies = {{1, 0, 0.004, 5e-5}};  // frames against events
+    const QString text = QString::fromStdString(resultYaml(named));
+    for (const char* const line :
+         {"\n    line_delay_us: 31.25\n", "\n    line_delay_s: 3.125e-05\n    line_delay_std_s: 5e-07\n",
+          "\n    clock_drift_ppm: -12.5\n    clock_drift_std_ppm: 0.25\n",
+          "\n    accelerometer_delay_s: 0.0033333333333333335\n    accelerometer_delay_std_s: 0.0002\n",
+          "\n    event_latency_s: -0.004\n    event_latency_std_s: 5e-05\n"})
+      QVERIFY2(text.contains(line), qPrintable(QString(line) + " is not in\n" + text));
+    QCOMPARE(QString::fromStdString(resultYaml(readBack(text.toStdString()))), text);
+  }
+
+  void causes_areListedWithWhatMendsThem() {
+    const std::string text = resultYaml(sample());
+    const NamedResult read = readBack(text);
+    const std::vector<Doubt>& causes = read.result->causes;
+    QCOMPARE(causes.size(), std::size_t{2});
+    QVERIFY(causes[0].name == "lens" && causes[0].explains == 0.875 && causes[0].repair->value == "free");
+    QVERIFY(causes[1].name == "observability" && !causes[1].repair && causes[1].explains == 0.0);
+    QVERIFY(text.find("\ncauses:\n  - name: lens\n    explains: 0.875\n    text: ") != std::string::npos);
+    QVERIFY(text.find("    set: {optimisation.model.camera_intrinsics: free}\n") != std::string::npos);
   }
 
   void biasesCsv_hasALineForEveryKnot() {

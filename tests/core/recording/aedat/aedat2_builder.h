@@ -30,6 +30,13 @@ inline std::uint32_t dvs128Address(const Event& event) {
          static_cast<std::uint32_t>(127 - event.x_px) << 1 | (event.brighter ? 0U : 1U);
 }
 
+// One reading of a pixel's voltage, of 10 bits: after its reset, or after its exposure.
+inline std::uint32_t apsAddress(int x_px, int y_px, bool after_exposure, int value, int height) {
+  return 0x8000'0000U | static_cast<std::uint32_t>(height - 1 - y_px) << 22 |
+         static_cast<std::uint32_t>(x_px) << 12 | (after_exposure ? 0x400U : 0U) |
+         static_cast<std::uint32_t>(value);
+}
+
 // Acceleration, temperature, angular rate, as seven words.
 inline std::string aedat2Imu(const std::array<std::int16_t, 7>& values, std::int32_t time_us) {
   std::string bytes;

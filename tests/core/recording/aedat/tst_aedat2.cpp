@@ -19,6 +19,9 @@ class TestAedat2 : public QObject {
   void imuSamples_standBetweenTheEvents();
   void brokenImuSamples_areLeftOut();
   void pixelValuesAndEdges_areNoEvents();
+  void pixelValues_makeFrames();
+  void rollingShutter_isToldOf();
+  void partsOfFrames_areLeftOut();
   void time_goesOnWhereItsCounterWraps();
   void headerEndsAtItsMark_andAtBytesThatAreNoText();
   void otherChips_areRefusedByName();
@@ -138,10 +141,102 @@ void TestAedat2::pixelValuesAndEdges_areNoEvents() {
   const Contents contents = read(bytes);
   QVERIFY(sameEvents(contents.events.at(0), {event}));
   QVERIFY(contents.hasFault(FaultKind::ExposureLeftOut));
-  QCOMPARE(contents.streams[1].messages, std::uint64_t{1});
+  QCOMPARE(contents.streams.back().messages, std::uint64_t{1});
   const Contents edge = read(aedat2Header("DVS128") + aedat2Record(0x8000, 5000) + aedat2Record(0, 5000));
   QCOMPARE(edge.eventCount(), 1u);
   QCOMPARE(edge.streams[1].messages, std::uint64_t{1});
+}
+
+namespace {
+
+constexpr int kWidth = 208, kHeight = 192;  // of the smallest that has frames
+constexpr std::int32_t kReadOut_us = 1000, kExposure_us = 5000;
+
+int brightnessAt(int x_px, int y_px) {
+  return 3 * x_px + y_px;  // 812 at most
+}
+
+std::string column(int x_px, bool after_exposure, std::int32_t time_us) {
+  std::string bytes;
+  for (int y = 0; y < kHeight; ++y) {
+    const int value = 900 - (after_exposure ? brightnessAt(x_px, y) : 0);
+    bytes += aedat2Record(apsAddress(x_px, y, after_exposure, value, kHeight), time_us);
+  }
+  return bytes;
+}
+
+std::string readOut(bool after_exposure, std::int32_t begin_us) {
+  std::string bytes;
+  for (int x = kWidth - 1, k = 0; x >= 0; --x, ++k)
+    bytes += column(x, after_exposure, begin_us + kReadOut_us * k / (kWidth - 1));
+  return bytes;
+}
+
+std::string globalFrame(std::int32_t begin_us) {
+  return readOut(false, begin_us) + readOut(true, begin_us + kReadOut_us + kExposure_us);
+}
+
+std::vector<Frame> framesOf(RecordingReader& reader) {
+  reader.select({reader.streams().size() - 2});  // before the triggers
+  std::vector<Frame> frames;
+  for (Packet packet; reader.read(packet);)
+    frames.insert(frames.end(), packet.frames.begin(), packet.frames.end());
+  return frames;
+}
+
+}  // namespace
+
+void TestAedat2::pixelValues_makeFrames() {
+  const Event event{5'000'000, 3, 4, true};
+  const auto reader = openRecording(scratch_.write(
+      "frames.aedat", aedat2Header("DAVIS208") + globalFrame(5000) +
+                          aedat2Record(davisAddress(event, kWidth, kHeight), 15'000) + globalFrame(45'000)));
+  QCOMPARE(reader->streams().at(1).name, std::string("frames"));
+  QVERIFY(reader->streams().at(1).type == StreamType::Frames);
+  const std::vector<Frame> frames = framesOf(*reader);
+  QCOMPARE(frames.size(), std::size_t{2});
+  QVERIFY(reader->faults().empty());
+  QVERIFY(frames[0].format == FrameFormat::Gray16 && !frames[0].big_endian);
+  QCOMPARE(frames[0].row_bytes, std::size_t{2 * kWidth});
+  QCOMPARE(frames[0].time_ns, std::int64_t{1000} * (5000 + kReadOut_us + kExposure_us / 2));
+  QCOMPARE(frames[1].time_ns - frames[0].time_ns, std::int64_t{40'000'000});
+  QCOMPARE(frames[0].exposure_s, 1e-6 * kExposure_us);
+  for (const auto& [x, y] : {std::pair(0, 0), {kWidth - 1, 0}, {0, kHeight - 1}, {17, 101}}) {
+    const std::size_t at = std::size_t(y) * frames[0].row_bytes + 2 * std::size_t(x);
+    const int value = frames[0].bytes[at] + 256 * frames[0].bytes[at + 1];
+    QCOMPARE(value, 64 * brightnessAt(x, y));
+  }
+}
+
+// Each column is read for its exposure while later ones are still reset.
+void TestAedat2::rollingShutter_isToldOf() {
+  std::string bytes = aedat2Header("DAVIS208");
+  constexpr int kBehind = 100;
+  constexpr std::int32_t kColumn_us = 10;
+  for (int k = 0; k < kWidth + kBehind; ++k) {
+    if (k < kWidth) bytes += column(kWidth - 1 - k, false, kColumn_us * k);
+    if (k >= kBehind) bytes += column(kWidth - 1 - (k - kBehind), true, kColumn_us * k);
+  }
+  const auto reader = openRecording(scratch_.write("rolling.aedat", bytes));
+  const std::vector<Frame> frames = framesOf(*reader);
+  QCOMPARE(frames.size(), std::size_t{1});
+  QVERIFY(std::abs(frames[0].exposure_s - 1e-6 * kColumn_us * kBehind) < 1e-9);
+  const double middle_us = 0.5 * kColumn_us * (kWidth - 1 + kBehind);
+  QVERIFY(std::abs(1e-3 * static_cast<double>(frames[0].time_ns) - middle_us) < 1.0);
+  QCOMPARE(reader->faults().size(), std::size_t{1});
+  QVERIFY(reader->faults()[0].kind == FaultKind::Metadata && reader->faults()[0].stream == "frames");
+}
+
+// A recording begins and ends anywhere; what is lost between is lost alone.
+void TestAedat2::partsOfFrames_areLeftOut() {
+  const std::string frame = globalFrame(5000), header = aedat2Header("DAVIS208");
+  for (const std::string& bytes : {frame.substr(8000) + frame, frame.substr(0, frame.size() - 8) + frame,
+                                   frame + frame.substr(0, 8000)}) {
+    const auto reader = openRecording(scratch_.write("parts.aedat", header + bytes));
+    QCOMPARE(framesOf(*reader).size(), std::size_t{1});
+    QCOMPARE(reader->faults().size(), std::size_t{1});
+    QVERIFY(reader->faults()[0].kind == FaultKind::ExposureLeftOut);
+  }
 }
 
 void TestAedat2::time_goesOnWhereItsCounterWraps() {

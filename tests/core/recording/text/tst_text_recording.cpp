@@ -3,7 +3,11 @@
 #include "tests/core/recording/sample_recording.h"
 #include "tests/support/test_program.h"
 
+#include <QProcess>
 #include <QTemporaryDir>
+
+#include <algorithm>
+#include <cmath>
 
 using namespace evical;
 using namespace evical::test;
@@ -30,11 +34,78 @@ class TestTextRecording : public QObject {
   void imuWithoutHeader_isToldByGravity();
   void columnsThatMakeNoSense_areRefused();
   void points_areReadByTheirHeader();
+  void packedText_isReadAsItIs();
+  void packedText_thatIsCut_isToldOf();
+  void packedOthers_areRefused();
 
  private:
   std::filesystem::path path(const char* name) const { return folder_.filePath(name).toStdString(); }
+  // Packs what is written; returns the packed file's path.
+  std::filesystem::path pack(const char* name, const QByteArray& content) const {
+    QFile file(folder_.filePath(name));
+    if (!file.open(QIODevice::WriteOnly)) qFatal("%s cannot be written", name);
+    file.write(content);
+    file.close();
+    if (QProcess::execute("gzip", {"-f", file.fileName()}) != 0) qFatal("gzip does not run");
+    return path(name).string() + ".gz";
+  }
   QTemporaryDir folder_;
 };
+
+// More lines than a buffer holds, so that unpacking goes on between them.
+QByteArray manyEvents() {
+  QByteArray text;
+  for (int i = 0; i < 40'000; ++i)
+    text += QByteArray::number(1e-5 * i, 'f', 6) + ' ' + QByteArray::number(i % 97) + ' ' +
+            QByteArray::number(i * 7 % 89) + (i % 3 == 0 ? " 1\n" : " 0\n");
+  return text;
+}
+
+std::vector<Event> eventsOf(RecordingReader& reader) {
+  std::vector<Event> events;
+  for (Packet packet; reader.read(packet);)
+    events.insert(events.end(), packet.events.begin(), packet.events.end());
+  return events;
+}
+
+void TestTextRecording::packedText_isReadAsItIs() {
+  const QByteArray text = manyEvents();
+  const std::filesystem::path packed = pack("events.csv", "t,x,y,p\n" + text);
+  QFile plain(folder_.filePath("plain.csv"));
+  QVERIFY(plain.open(QIODevice::WriteOnly));
+  plain.write("t,x,y,p\n" + text);
+  plain.close();
+  const auto reader = openRecording(packed), other = openRecording(path("plain.csv"));
+  QCOMPARE(reader->streams().at(0).name, std::string("events.csv.gz"));
+  QCOMPARE(reader->format(), std::string("csv"));
+  const std::vector<Event> events = eventsOf(*reader);
+  QCOMPARE(events.size(), std::size_t{40'000});
+  QVERIFY(std::ranges::equal(events, eventsOf(*other), [](const Event& a, const Event& b) {
+    return a.time_ns == b.time_ns && a.x_px == b.x_px && a.y_px == b.y_px && a.brighter == b.brighter;
+  }));
+  QVERIFY(reader->faults().empty());
+  QVERIFY(std::abs(reader->fractionRead() - 1.0) < 1e-9);
+}
+
+void TestTextRecording::packedText_thatIsCut_isToldOf() {
+  const std::filesystem::path packed = pack("cut.csv", "t,x,y,p\n" + manyEvents());
+  std::filesystem::resize_file(packed, std::filesystem::file_size(packed) / 2);
+  const auto reader = openRecording(packed);
+  const std::size_t count = eventsOf(*reader).size();
+  QVERIFY2(count > 10'000 && count < 30'000, qPrintable(QString::number(count)));
+  QVERIFY(!reader->faults().empty() && reader->faults().back().kind == FaultKind::Truncated);
+  QVERIFY(reader->faults().back().text.find("damaged after line ") != std::string::npos);
+}
+
+void TestTextRecording::packedOthers_areRefused() {
+  const std::filesystem::path packed = pack("data.raw", QByteArray("% evt 3.0\n") + QByteArray(100, '\x01'));
+  try {
+    openRecording(packed);
+    QFAIL("it was opened");
+  } catch (const CalibrationError& error) {
+    QVERIFY2(std::string(error.what()).find("packed with gzip") != std::string::npos, error.what());
+  }
+}
 
 // A packet holds what was measured at one time.
 void TestTextRecording::points_areReadByTheirHeader() {

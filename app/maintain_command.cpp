@@ -1,0 +1,140 @@
+#include "app/commands.h"
+#include "app/console.h"
+#include "app/output.h"
+#include "app/version.h"
+#include "core/base/error.h"
+#include "core/base/new_folder.h"
+#include "core/pipeline/calibration_options.h"
+#include "core/pipeline/maintain_files.h"
+#include "core/pipeline/maintain_imus.h"
+#include "core/report/maintenance_report.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace evical {
+namespace {
+
+struct MaintainArguments {
+  std::vector<std::string> logs, imus, settings;
+  std::string result, output, trajectory, acceleration_unit, angular_rate_unit;
+  bool json = false, quiet = false;
+};
+
+int exitCodeOf(MaintenanceVerdict verdict) {
+  switch (verdict) {
+    case MaintenanceVerdict::Unchanged:
+      return kDone;
+    case MaintenanceVerdict::Changed:
+      return kChanged;
+    case MaintenanceVerdict::CannotTell:
+      break;
+  }
+  return kCannotTell;
+}
+
+std::pair<std::string, std::string> splitAtEquals(const std::string& flag, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    throw badInput(flag + " " + text, "is not NAME=VALUE", "Write " + flag + " NAME=VALUE");
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+template <class Unit, class Words>
+std::optional<Unit> unitFrom(const std::string& text, const Words& words) {
+  if (text.empty()) return std::nullopt;
+  const auto found = std::find(words.begin(), words.end(), text);
+  return static_cast<Unit>(found - words.begin());  // CLI11 has checked it
+}
+
+MaintainInput inputFrom(const MaintainArguments& arguments) {
+  CalibrationOptions options;
+  for (const std::string& setting : arguments.settings) {
+    const auto [name, value] = splitAtEquals("--set", setting);
+    setOption(options, name, value);
+  }
+  validate(options);
+  const std::vector<std::filesystem::path> logs(arguments.logs.begin(), arguments.logs.end());
+  MaintainInput input = readMaintainInput(logs, arguments.result);
+  input.options = options.maintain;
+  for (const std::string& imu : arguments.imus) input.settings.streams.insert(splitAtEquals("--imu", imu));
+  input.settings.acceleration_unit =
+      unitFrom<AccelerationUnit>(arguments.acceleration_unit, kAccelerationUnits);
+  input.settings.angular_rate_unit =
+      unitFrom<AngularRateUnit>(arguments.angular_rate_unit, kAngularRateUnits);
+  input.trajectory = arguments.trajectory;
+  return input;
+}
+
+int run(const MaintainArguments& arguments) {
+  const MaintainInput input = inputFrom(arguments);
+  Console console(arguments.quiet || arguments.json);
+  const NewFolder folder(arguments.output);
+  Maintenance maintenance = maintainImus(input, RunContext{console, stopOnSignals()});
+  maintenance.version = kVersion;
+  writeMaintenanceFiles(arguments.output, maintenance, console.logText());
+  console.stageStarted("done");
+  print("{}", arguments.json ? maintenanceJson(maintenance) : maintenanceTable(maintenance));
+  if (!arguments.quiet && !arguments.json) print("Files are in {}\n", arguments.output);
+  return exitCodeOf(maintenance.verdict);
+}
+
+void addUnits(CLI::App& command, MaintainArguments& arguments) {
+  command
+      .add_option("--acceleration-unit", arguments.acceleration_unit,
+                  "What specific forces are in, where logs do not say: m/s^2, g or -g")
+      ->check(CLI::IsMember(std::vector<std::string>(kAccelerationUnits.begin(), kAccelerationUnits.end())));
+  command
+      .add_option("--angular-rate-unit", arguments.angular_rate_unit,
+                  "What angular rates are in, where logs do not say: rad/s or deg/s")
+      ->check(CLI::IsMember(std::vector<std::string>(kAngularRateUnits.begin(), kAngularRateUnits.end())));
+}
+
+}  // namespace
+
+void addMaintainCommand(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<MaintainArguments>();
+  CLI::App* const command = app.add_subcommand(
+      "maintain",
+      "IMUs over time: have they changed since the calibration, what, and when? No board is needed");
+  command
+      ->add_option(
+          "LOG", arguments->logs,
+          "Logs or recordings with IMU samples, in any format: of several IMUs, or following each other")
+      ->required();
+  command->add_option("--result", arguments->result, "Folder of the old calibration, or its result.yaml")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "Folder for maintenance.yaml and report.html")
+      ->required();
+  command
+      ->add_option(
+          "--imu", arguments->imus,
+          "NAME=STREAM: which stream or log is of which IMU of the old result, where names do not tell")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option(
+      "--trajectory", arguments->trajectory,
+      "Poses of the reference IMU from elsewhere: trajectory.csv of a calibration, or TUM's format");
+  addUnits(*command, *arguments);
+  command
+      ->add_option("--set", arguments->settings,
+                   "group.option=value, see 'evical options': the group is maintain")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_flag("--json", arguments->json, "Print JSON instead of tables, and nothing else");
+  command->add_flag("--quiet", arguments->quiet, "Only the tables and errors");
+  command->footer(
+      "Exit codes: 0 nothing has changed; 3 something has; 4 cannot tell, the last lines say what to do; 1 "
+      "cancelled; 2 bad usage, result or log.");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace evical

@@ -1,0 +1,106 @@
+#include "core/maintenance/change_test.h"
+
+#include "core/numerics/chi_squared.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace evical {
+namespace {
+
+constexpr double kNoInformation = 1e-9;  // of what is known already
+constexpr double kFreed = 1e8;           // times as uncertain as before
+
+void setFree(const StateBlock& block, Eigen::MatrixXd& covariance) {
+  for (Eigen::Index i = block.first; i < block.first + block.size; ++i)
+    covariance(i, i) += kFreed * covariance(i, i);
+}
+
+}  // namespace
+
+// A step s that data have seen: v ~ N(H s, H + H P H), so that its weight is H (H + H P H)^-1 H, which is
+// P^-1 - P^-1 (P^-1 + H)^-1 P^-1 also where H is singular.
+ChangeTest::ChangeTest(const Eigen::MatrixXd& information, const Eigen::VectorXd& score,
+                       const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd scale = covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
+  const Eigen::MatrixXd h = scale.asDiagonal() * information * scale.asDiagonal();
+  const Eigen::MatrixXd p =
+      scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal();
+  const Eigen::VectorXd v = scale.cwiseProduct(score);
+  // (P^-1 + H)^-1 = P (I + H P)^-1
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(h.rows(), h.cols());
+  const Eigen::PartialPivLU<Eigen::MatrixXd> solver(identity + h * p);
+  Eigen::MatrixXd weight = solver.solve(h);
+  weight = (0.5 * (weight + weight.transpose())).eval();
+  const Eigen::VectorXd back = scale.cwiseInverse();
+  weight_ = back.asDiagonal() * weight * back.asDiagonal();
+  pull_ = back.cwiseProduct(solver.solve(v));
+}
+
+BlockChange ChangeTest::of(const StateBlock& block) const {
+  const Eigen::MatrixXd weight = weight_.block(block.first, block.first, block.size, block.size);
+  const Eigen::VectorXd pull = pull_.segment(block.first, block.size);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(weight);
+  const double least = std::max(kNoInformation * eigen.eigenvalues().maxCoeff(), 1e-300);
+  BlockChange change;
+  change.step = Eigen::VectorXd::Zero(block.size);
+  change.covariance = Eigen::MatrixXd::Zero(block.size, block.size);
+  for (Eigen::Index i = 0; i < block.size; ++i) {
+    const double value = eigen.eigenvalues()[i];
+    if (!(value > least)) continue;
+    const Eigen::VectorXd axis = eigen.eigenvectors().col(i);
+    const double along = axis.dot(pull);
+    change.step += axis * along / value;
+    change.covariance += axis * axis.transpose() / value;
+    change.chi_square += along * along / value;
+    ++change.rank;
+  }
+  return change;
+}
+
+double ChangeTest::worstSigma(const StateBlock& block) const {
+  const Eigen::MatrixXd weight = weight_.block(block.first, block.first, block.size, block.size);
+  const double least = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(weight).eigenvalues().minCoeff();
+  return least > 0.0 ? 1.0 / std::sqrt(least) : std::numeric_limits<double>::infinity();
+}
+
+std::vector<FoundChange> findChanges(const Eigen::MatrixXd& information, const Eigen::VectorXd& score,
+                                     const Eigen::MatrixXd& covariance, std::span<const StateBlock> blocks,
+                                     double false_alarm_probability) {
+  constexpr double kNearly = 9.0;  // three sigmas
+  std::vector<FoundChange> found;
+  std::vector<char> is_found(blocks.size(), 0);
+  Eigen::MatrixXd known = covariance;
+  while (found.size() < blocks.size()) {
+    const ChangeTest test(information, score, known);
+    std::vector<double> beyond(blocks.size(), -std::numeric_limits<double>::infinity());
+    std::vector<BlockChange> changes(blocks.size());
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      if (is_found[b] != 0) continue;
+      changes[b] = test.of(blocks[b]);
+      beyond[b] =
+          changes[b].chi_square - chiSquaredLimit(false_alarm_probability, static_cast<int>(blocks[b].size));
+    }
+    const auto best =
+        static_cast<std::size_t>(std::max_element(beyond.begin(), beyond.end()) - beyond.begin());
+    if (!(beyond[best] > 0.0)) break;
+    FoundChange each{best, changes[best], {}};
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+      if (b != best && beyond[b] > 0.0 && beyond[b] > beyond[best] - kNearly) each.or_else.push_back(b);
+    found.push_back(each);
+    is_found[best] = 1;
+    setFree(blocks[best], known);
+  }
+  return found;
+}
+
+double wouldNotice(double worst_sigma, double limit) {
+  constexpr double kNinetyFivePercent = 1.645;
+  return (std::sqrt(limit) + kNinetyFivePercent) * worst_sigma;
+}
+
+}  // namespace evical

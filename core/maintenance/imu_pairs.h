@@ -1,0 +1,75 @@
+// Two IMUs on one rigid body: what each window of time says of their rotation, lever arm, time offset and biases, as
+// normal equations, so that an hour is a few megabytes. docs/maths.md, 15.3.
+#pragma once
+
+#include "core/data/calibration_state.h"
+#include "core/data/imu_sample.h"
+#include "core/maintenance/gaussian_smoother.h"
+#include "core/maintenance/maintenance_options.h"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <vector>
+
+namespace evical {
+
+// Order: rotation (about the reference's axes) [rad], translation [m], time offset [s], gyroscope's bias [rad/s],
+// accelerometer's bias [m/s^2]; the biases in the IMU's own frame, as what it shows more than the reference's.
+inline constexpr Eigen::Index kPairNumbers = 13;
+using PairVector = Eigen::Matrix<double, kPairNumbers, 1>;
+using PairMatrix = Eigen::Matrix<double, kPairNumbers, kPairNumbers>;
+
+// Of one sensor, of unit weight: about the nominal pair.
+struct PairEquations {
+  PairMatrix information = PairMatrix::Zero();
+  PairVector score = PairVector::Zero();
+  double squares = 0.0;  // of residuals at the nominal pair
+  int count = 0;         // of numbers
+
+  void add(const Eigen::Matrix<double, 3, kPairNumbers>& jacobian, const Eigen::Vector3d& residual);
+};
+
+struct PairWindow {
+  double time_s = 0.0;  // its begin, on the reference's clock
+  PairEquations gyroscope, accelerometer;
+};
+
+// What the windows are taken about.
+struct PairNominal {
+  RigidTransform reference_from_imu;
+  double time_offset_s = 0.0, time_offset_drift_ppm = 0.0, time_offset_at_s = 0.0;
+};
+
+class ImuPairs {
+ public:
+  // The first IMU is the reference; intrinsics and biases are those of `imus`, poses and clocks those of `nominal`.
+  ImuPairs(std::vector<ImuState> imus, std::vector<PairNominal> nominal, double smoothing_s,
+           const MaintenanceOptions& options);
+
+  // On the IMU's own clock, in its order of time; IMUs alternately, as a log has them.
+  void add(std::size_t imu, double time_s, const ImuSample& sample);
+  void finish();
+
+  // By IMU; that of the reference is empty.
+  const std::vector<std::vector<PairWindow>>& windows() const { return windows_; }
+  double pointInterval_s() const { return interval_s_; }
+
+ private:
+  void advance(double until_s);
+  void compare(double time_s);
+  void addPoint(std::size_t imu, double time_s, const SmoothPoint& reference, const SmoothPoint& own);
+
+  std::vector<ImuState> imus_;
+  std::vector<PairNominal> nominal_;
+  double window_s_, interval_s_;
+  std::vector<GaussianSmoother> smoothers_;
+  std::vector<std::vector<PairWindow>> windows_;
+  double next_s_ = 0.0;
+  bool started_ = false;
+};
+
+// Gaussians of smoothing_s, or of two samples of the slowest IMU.
+double smoothingFor(double slowest_rate_hz, const MaintenanceOptions& options);
+
+}  // namespace evical

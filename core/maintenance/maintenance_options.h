@@ -1,0 +1,40 @@
+// How logs of IMUs are looked at, and when something counts as changed.
+#pragma once
+
+#include "core/base/option_struct.h"
+
+namespace evical {
+
+struct MaintenanceOptions {
+  double gravity_m_s2;
+  double shortest_stop_s;
+  double still_rate_deg_s;
+  double smoothing_s;
+  double window_s;
+  double lag_s;
+  double pose_interval_s;
+  double time_offset_search_s;
+  double naming_s;
+  double false_alarms;
+  double stability_rotation_deg;
+  double stability_translation_mm;
+  double stability_time_offset_ms;
+  double stability_accelerometer_bias_m_s2;
+  double stability_gyroscope_bias_rad_s;
+  double stability_imu_scale;
+  double accelerometer_walk;
+  double gyroscope_walk;
+  double matters_rotation_deg;
+  double matters_translation_mm;
+  double matters_time_offset_ms;
+  double matters_accelerometer_bias_m_s2;
+  double matters_gyroscope_bias_rad_s;
+  double matters_imu_scale;
+
+  MaintenanceOptions();  // the defaults
+  constexpr explicit MaintenanceOptions(NoDefaults) {}
+  bool operator==(const MaintenanceOptions&) const = default;
+  static const OptionTable<MaintenanceOptions>& table();
+};
+
+}  // namespace evical

@@ -1,0 +1,286 @@
+#include "core/maintenance/stop_calibration.h"
+
+#include "core/numerics/chi_squared.h"
+
+#include <fmt/format.h>
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace evical {
+namespace {
+
+// What nothing is known about: 0.1 g and 5 %.
+constexpr double kOpenBias_m_s2 = 1.0, kOpenScale = 0.05;
+// Sizes that make biases and scales comparable.
+constexpr double kBiasUnit_m_s2 = 1e-2, kScaleUnit = 1e-3;
+constexpr std::array<std::array<int, 2>, 6> kEntries = {{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
+constexpr std::array<const char*, kAccelerometerNumbers> kWords = {
+    "bias x",  "bias y",          "bias z",          "scale x",        "scale y",
+    "scale z", "misalignment xy", "misalignment xz", "misalignment yz"};
+
+struct StopNoise {
+  Eigen::Vector3d rate_variance = Eigen::Vector3d::Zero(),
+                  force_variance = Eigen::Vector3d::Zero();  // of a window
+};
+
+StopMean meanOf(std::span<const MeansWindow> windows, const StopRange& range) {
+  StopMean mean;
+  mean.from_s = windows[range.first].time_s;
+  mean.to_s = windows[range.last].time_s + WindowMeans::kLength_s;
+  mean.windows = static_cast<double>(range.count());
+  mean.rate_rad_s = mean.force_m_s2 = Eigen::Vector3d::Zero();
+  for (std::size_t i = range.first; i <= range.last; ++i) {
+    mean.rate_rad_s += windows[i].rate_rad_s / mean.windows;
+    mean.force_m_s2 += windows[i].force_m_s2 / mean.windows;
+  }
+  return mean;
+}
+
+// How windows scatter about their stop's mean, over all stops, and more where neighbours hang together: then the
+// variance of a mean falls more slowly.
+StopNoise noiseOf(std::span<const MeansWindow> windows, std::span<const StopRange> ranges,
+                  std::span<const StopMean> means) {
+  StopNoise noise;
+  Eigen::Vector3d rate_pairs = Eigen::Vector3d::Zero(), force_pairs = Eigen::Vector3d::Zero();
+  double freedom = 0.0, pairs = 0.0;
+  for (std::size_t s = 0; s < ranges.size(); ++s) {
+    for (std::size_t i = ranges[s].first; i <= ranges[s].last; ++i) {
+      const Eigen::Vector3d rate = windows[i].rate_rad_s - means[s].rate_rad_s,
+                            force = windows[i].force_m_s2 - means[s].force_m_s2;
+      noise.rate_variance += rate.cwiseAbs2();
+      noise.force_variance += force.cwiseAbs2();
+      if (i == ranges[s].first) continue;
+      rate_pairs += rate.cwiseProduct(windows[i - 1].rate_rad_s - means[s].rate_rad_s);
+      force_pairs += force.cwiseProduct(windows[i - 1].force_m_s2 - means[s].force_m_s2);
+      pairs += 1.0;
+    }
+    freedom += means[s].windows - 1.0;
+  }
+  freedom = std::max(freedom, 1.0);
+  noise.rate_variance /= freedom;
+  noise.force_variance /= freedom;
+  // Taking the mean off makes neighbours of white noise look opposed by 1 / windows.
+  const double bias = static_cast<double>(ranges.size()) / std::max(pairs, 1.0);
+  const auto inflate = [&](Eigen::Vector3d& variance, const Eigen::Vector3d& sum) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double alike = sum[axis] / std::max(pairs, 1.0) + bias * variance[axis];
+      // What one lag of a few hundred pairs shows by chance is not believed.
+      const double share = variance[axis] > 0.0 ? alike / variance[axis] : 0.0;
+      if (share > 3.0 / std::sqrt(std::max(pairs, 1.0)))
+        variance[axis] *= (1.0 + share) / (1.0 - std::min(share, 0.9));
+    }
+  };
+  inflate(noise.rate_variance, rate_pairs);
+  inflate(noise.force_variance, force_pairs);
+  return noise;
+}
+
+// Zero when |M^-1 (f - b)| is gravity's norm; its row by the nine numbers, its sigma.
+struct StopResidual {
+  double value = 0.0, sigma = 0.0;
+  AccelerometerVector row;
+};
+
+StopResidual residualOf(const StopMean& stop, const Eigen::Vector3d& window_variance,
+                        const AccelerometerVector& numbers, double gravity_m_s2) {
+  ImuState imu;
+  setAccelerometerNumbers(numbers, imu);
+  const Eigen::Matrix3d inverse = imu.accelerometer_mapping.inverse();
+  const Eigen::Vector3d force = inverse * (stop.force_m_s2 - imu.accelerometer_bias_m_s2);
+  const Eigen::Vector3d along = inverse.transpose() * force.normalized();
+  StopResidual residual;
+  residual.value = force.norm() - gravity_m_s2;
+  residual.sigma = std::sqrt(along.cwiseAbs2().dot(window_variance) / stop.windows);
+  residual.row.head<3>() = -along;
+  for (std::size_t e = 0; e < kEntries.size(); ++e)
+    residual.row[3 + static_cast<Eigen::Index>(e)] = -along[kEntries[e][0]] * force[kEntries[e][1]];
+  return residual;
+}
+
+AccelerometerVector openInformation() {
+  AccelerometerVector information;
+  information.head<3>().setConstant(1.0 / (kOpenBias_m_s2 * kOpenBias_m_s2));
+  information.tail<6>().setConstant(1.0 / (kOpenScale * kOpenScale));
+  return information;
+}
+
+struct NormalEquations {
+  AccelerometerMatrix information = AccelerometerMatrix::Zero();
+  AccelerometerVector score = AccelerometerVector::Zero();
+};
+
+NormalEquations equationsAt(const StopCalibration& found, const Eigen::Vector3d& variance,
+                            const AccelerometerVector& numbers, double gravity_m_s2) {
+  NormalEquations sum;
+  for (std::size_t s = 0; s < found.stops.size(); ++s) {
+    if (found.used[s] == 0) continue;
+    const StopResidual r = residualOf(found.stops[s], variance, numbers, gravity_m_s2);
+    const double weight = 1.0 / (r.sigma * r.sigma);
+    sum.information += weight * r.row * r.row.transpose();
+    sum.score -= weight * r.value * r.row;
+  }
+  return sum;
+}
+
+void solve(StopCalibration& found, const Eigen::Vector3d& variance, double gravity_m_s2) {
+  constexpr int kSteps = 10;
+  const AccelerometerVector open = openInformation();
+  found.now = found.before;
+  for (int step = 0; step < kSteps; ++step) {
+    const NormalEquations sum = equationsAt(found, variance, found.now, gravity_m_s2);
+    const AccelerometerMatrix whole = sum.information + AccelerometerMatrix(open.asDiagonal());
+    const Eigen::LDLT<AccelerometerMatrix> solver(whole);
+    found.covariance = solver.solve(AccelerometerMatrix::Identity());
+    const AccelerometerVector change = solver.solve(sum.score + open.cwiseProduct(found.before - found.now));
+    found.now += change;
+    if (change.cwiseAbs().maxCoeff() < 1e-10) break;
+  }
+  for (std::size_t s = 0; s < found.stops.size(); ++s) {
+    const StopResidual r = residualOf(found.stops[s], variance, found.now, gravity_m_s2);
+    found.residuals_m_s2[s] = r.value;
+    found.sigmas_m_s2[s] = r.sigma;
+  }
+}
+
+// How many of the numbers the stops determine, rather than what is held weakly.
+double determined(const StopCalibration& found) {
+  const AccelerometerMatrix held = found.covariance * openInformation().asDiagonal();
+  return static_cast<double>(kAccelerometerNumbers) - held.trace();
+}
+
+struct Misfit {
+  double rms = 0.0, inflation = 1.0;  // of variances
+};
+
+Misfit misfitOf(const StopCalibration& found) {
+  double sum = 0.0, count = 0.0;
+  for (std::size_t s = 0; s < found.stops.size(); ++s) {
+    if (found.used[s] == 0) continue;
+    sum += std::pow(found.residuals_m_s2[s] / found.sigmas_m_s2[s], 2);
+    count += 1.0;
+  }
+  const double freedom = count - determined(found);
+  if (freedom < 0.9) return {};
+  // Of a few stops the RMS scatters; only what is no chance widens sigmas.
+  constexpr double kByChance = 0.01;
+  const bool beyond = sum > chiSquaredLimit(kByChance, static_cast<int>(std::lround(freedom)));
+  return {std::sqrt(sum / freedom), beyond ? sum / freedom : 1.0};
+}
+
+// A ride at a steady pull looks like a stop. One that the others contradict goes, while most stay.
+void dropOutliers(StopCalibration& found, const Eigen::Vector3d& variance, double gravity_m_s2) {
+  constexpr double kFar = 6.0, kMostShare = 0.2;
+  const auto most = static_cast<int>(kMostShare * static_cast<double>(found.stops.size()));
+  for (int dropped = 0; dropped < most; ++dropped) {
+    std::size_t worst = found.stops.size();
+    double furthest = kFar;
+    for (std::size_t s = 0; s < found.stops.size(); ++s) {
+      const double far = std::abs(found.residuals_m_s2[s]) / found.sigmas_m_s2[s];
+      if (found.used[s] != 0 && far > furthest) {
+        furthest = far;
+        worst = s;
+      }
+    }
+    if (worst == found.stops.size()) return;
+    found.used[worst] = 0;
+    solve(found, variance, gravity_m_s2);
+  }
+}
+
+void nameWeakest(StopCalibration& found) {
+  AccelerometerVector unit;
+  unit.head<3>().setConstant(1.0 / kBiasUnit_m_s2);
+  unit.tail<6>().setConstant(1.0 / kScaleUnit);
+  const AccelerometerMatrix scaled = unit.asDiagonal() * found.covariance * unit.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<AccelerometerMatrix> eigen(scaled);
+  const AccelerometerVector axis = eigen.eigenvectors().col(kAccelerometerNumbers - 1);
+  found.weakest_sigma = std::sqrt(std::max(eigen.eigenvalues()[kAccelerometerNumbers - 1], 0.0));
+  std::vector<Eigen::Index> order;
+  for (Eigen::Index i = 0; i < kAccelerometerNumbers; ++i)
+    if (std::abs(axis[i]) > 0.4) order.push_back(i);
+  std::sort(order.begin(), order.end(),
+            [&](Eigen::Index a, Eigen::Index b) { return std::abs(axis[a]) > std::abs(axis[b]); });
+  for (const Eigen::Index i : order) {
+    const bool against = axis[i] * axis[order.front()] < 0.0;
+    found.weakest += fmt::format("{}{}{}", found.weakest.empty() ? "" : " with ", against ? "less " : "",
+                                 kWords[static_cast<std::size_t>(i)]);
+  }
+}
+
+// Stops are as different as the bias walks, whatever a single one's noise.
+void setGyroscopeBias(StopCalibration& found, const Eigen::Vector3d& window_variance) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = sum;
+  double windows = 0.0;
+  for (const StopMean& stop : found.stops) {
+    sum += stop.windows * stop.rate_rad_s;
+    windows += stop.windows;
+  }
+  found.gyroscope_bias_rad_s = sum / windows;
+  for (const StopMean& stop : found.stops)
+    squares += (stop.windows / windows) * (stop.rate_rad_s - found.gyroscope_bias_rad_s).cwiseAbs2();
+  const auto count = static_cast<double>(found.stops.size());
+  const Eigen::Vector3d by_noise = window_variance / windows,
+                        by_scatter = squares / std::max(count - 1.0, 1.0);
+  found.gyroscope_bias_sigma_rad_s = by_noise.cwiseMax(by_scatter).cwiseSqrt();
+}
+
+}  // namespace
+
+AccelerometerVector accelerometerNumbers(const ImuState& imu) {
+  AccelerometerVector numbers;
+  numbers.head<3>() = imu.accelerometer_bias_m_s2;
+  for (std::size_t e = 0; e < kEntries.size(); ++e)
+    numbers[3 + static_cast<Eigen::Index>(e)] = imu.accelerometer_mapping(kEntries[e][0], kEntries[e][1]);
+  return numbers;
+}
+
+void setAccelerometerNumbers(const AccelerometerVector& numbers, ImuState& imu) {
+  imu.accelerometer_bias_m_s2 = numbers.head<3>();
+  for (std::size_t e = 0; e < kEntries.size(); ++e)
+    imu.accelerometer_mapping(kEntries[e][0], kEntries[e][1]) = numbers[3 + static_cast<Eigen::Index>(e)];
+}
+
+AccelerometerVector accelerometerVariances(const ImuUncertainty& sigma, const MaintenanceOptions& options) {
+  const auto squared = [](double a) { return std::isfinite(a) ? a * a : 0.0; };
+  AccelerometerVector variances;
+  for (Eigen::Index axis = 0; axis < 3; ++axis)
+    variances[axis] =
+        squared(sigma.accelerometer_bias_std_m_s2[axis]) + squared(options.stability_accelerometer_bias_m_s2);
+  for (std::size_t e = 0; e < kEntries.size(); ++e)
+    variances[3 + static_cast<Eigen::Index>(e)] =
+        squared(sigma.accelerometer_mapping_std(kEntries[e][0], kEntries[e][1])) +
+        squared(options.stability_imu_scale);
+  return variances.cwiseMax(1e-12);
+}
+
+StopCalibration calibrateFromStops(std::span<const MeansWindow> windows, std::span<const StopRange> ranges,
+                                   const ImuState& before, double gravity_m_s2) {
+  StopCalibration found;
+  if (ranges.empty()) return found;
+  for (const StopRange& range : ranges) found.stops.push_back(meanOf(windows, range));
+  const StopNoise noise = noiseOf(windows, ranges, found.stops);
+  constexpr double kLeastVariance = 1e-12;
+  const Eigen::Vector3d variance = noise.force_variance.cwiseMax(kLeastVariance);
+  found.used.assign(found.stops.size(), 1);
+  found.residuals_m_s2.resize(found.stops.size());
+  found.sigmas_m_s2.resize(found.stops.size());
+  found.before = accelerometerNumbers(before);
+  solve(found, variance, gravity_m_s2);
+  dropOutliers(found, variance, gravity_m_s2);
+  const Misfit misfit = misfitOf(found);
+  found.misfit = misfit.rms;
+  const NormalEquations at_before = equationsAt(found, variance, found.before, gravity_m_s2);
+  // What the stops are further from each other than their noise lets them be is in all of them.
+  found.information = at_before.information / misfit.inflation;
+  found.score = at_before.score / misfit.inflation;
+  found.covariance *= misfit.inflation;
+  nameWeakest(found);
+  setGyroscopeBias(found, noise.rate_variance);
+  return found;
+}
+
+}  // namespace evical

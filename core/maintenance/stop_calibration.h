@@ -1,0 +1,57 @@
+// What stops say of an IMU: at rest |M^-1 (f - b)| is gravity's norm, whatever the attitude, and the gyroscope shows its
+// bias. docs/maths.md, 15.1.
+#pragma once
+
+#include "core/data/calibration_result.h"
+#include "core/data/calibration_state.h"
+#include "core/data/maintenance.h"
+#include "core/maintenance/change_test.h"
+#include "core/maintenance/maintenance_options.h"
+#include "core/maintenance/stop_detection.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace evical {
+
+// Order: bias x, y, z [m/s^2]; scale x, y, z; misalignment xy, xz, yz (entries of M above the diagonal).
+inline constexpr Eigen::Index kAccelerometerNumbers = 9;
+inline constexpr std::array<StateBlock, 3> kAccelerometerBlocks = {{{0, 3}, {3, 3}, {6, 3}}};
+using AccelerometerVector = Eigen::Matrix<double, kAccelerometerNumbers, 1>;
+using AccelerometerMatrix = Eigen::Matrix<double, kAccelerometerNumbers, kAccelerometerNumbers>;
+
+AccelerometerVector accelerometerNumbers(const ImuState& imu);
+void setAccelerometerNumbers(const AccelerometerVector& numbers, ImuState& imu);
+// Variances of what an old result says, with what may change by itself.
+AccelerometerVector accelerometerVariances(const ImuUncertainty& sigma, const MaintenanceOptions& options);
+
+struct StopMean {
+  double from_s = 0.0, to_s = 0.0;
+  Eigen::Vector3d rate_rad_s, force_m_s2;
+  double windows = 0.0;
+};
+
+struct StopCalibration {
+  std::vector<StopMean> stops;
+  std::vector<double> residuals_m_s2, sigmas_m_s2;  // of the stops, at `now`
+  std::vector<char> used;
+  AccelerometerVector before, now;
+  AccelerometerMatrix covariance;  // of `now`, from stops and hardly anything else
+  // At `before`, from stops alone.
+  AccelerometerMatrix information;
+  AccelerometerVector score;
+  double misfit = 0.0;         // RMS of residuals over their sigmas, by degrees of freedom; 0: none is left
+  std::string weakest;         // direction, in words
+  double weakest_sigma = 0.0;  // in units of 0.01 m/s^2 and 0.001
+  Eigen::Vector3d gyroscope_bias_rad_s, gyroscope_bias_sigma_rad_s;
+};
+
+// Nothing to calibrate without stops: then `stops` is empty and all else meaningless.
+StopCalibration calibrateFromStops(std::span<const MeansWindow> windows, std::span<const StopRange> ranges,
+                                   const ImuState& before, double gravity_m_s2);
+
+}  // namespace evical

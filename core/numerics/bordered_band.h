@@ -1,0 +1,47 @@
+// Symmetric matrices that are a band with a border, [ A  B ; B^T  C ]: the normal equations of a trajectory's control
+// points in order of time, A, and of the few dozen numbers, C, that all of them have to do with. Solved in linear time:
+// A's Cholesky factor L row by row, and C - (L^-1 B)^T L^-1 B along with it, without L^-1 B ever being kept.
+#pragma once
+
+#include "core/numerics/band_cholesky.h"
+
+#include <Eigen/Core>
+
+#include <optional>
+
+namespace evical {
+
+class BorderedBand {
+ public:
+  using RowMajorMatrix = BandCholesky::RowMajorMatrix;
+
+  // `half_bandwidth`: largest distance of A's entries from its diagonal.
+  BorderedBand(Eigen::Index size, Eigen::Index half_bandwidth, Eigen::Index border)
+      : band_(size, half_bandwidth),
+        mixed_(RowMajorMatrix::Zero(size, border)),
+        corner_(Eigen::MatrixXd::Zero(border, border)) {}
+
+  Eigen::Index borderSize() const { return mixed_.cols(); }
+  Eigen::Index size() const { return band_.size() + borderSize(); }
+  void setZero();
+
+  BandCholesky& band() { return band_; }  // A, not factored
+  const BandCholesky& band() const { return band_; }
+  RowMajorMatrix& mixed() { return mixed_; }     // B
+  Eigen::MatrixXd& corner() { return corner_; }  // C; the lower triangle counts
+
+  Eigen::VectorXd diagonal() const;
+
+  // x with (this + diag(added)) x = right; nothing where that matrix is not positive definite.
+  std::optional<Eigen::VectorXd> solve(const Eigen::VectorXd& added, const Eigen::VectorXd& right) const;
+
+  // C - B^T A^-1 B; directions without information in A take nothing.
+  Eigen::MatrixXd schurComplement() const;
+
+ private:
+  BandCholesky band_;
+  RowMajorMatrix mixed_;
+  Eigen::MatrixXd corner_;
+};
+
+}  // namespace evical

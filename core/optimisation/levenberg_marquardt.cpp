@@ -1,0 +1,213 @@
+#include "core/optimisation/levenberg_marquardt.h"
+
+#include "core/optimisation/normal_equations.h"
+#include "core/optimisation/unknown_columns.h"
+
+#include <ceres/manifold.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace evical {
+namespace {
+
+constexpr double kFirstRadius = 1e12;  // weak directions (biases against gravity) need undamped steps
+constexpr double kLargestRadius = 1e16, kLeastRadius = 1e-32;
+constexpr double kLeastDiagonal = 1e-6, kLargestDiagonal = 1e32;  // of scaled columns
+constexpr double kLeastGain = 1e-3;  // of what the model promised: less, and a step is taken back
+constexpr double kGradientTolerance = 1e-12, kParameterTolerance = 1e-12;
+// In a row: a motion that leaves directions open needs damping, found by trial.
+constexpr int kMostInvalidSteps = 20;
+constexpr double kHeld = 1e30;  // times the diagonal: no step
+
+// The unknowns' numbers, one after the other.
+class Numbers {
+ public:
+  explicit Numbers(const UnknownColumns& columns) : columns_(columns) {}
+
+  Eigen::VectorXd read() const {
+    std::vector<double> numbers;
+    for (const Unknown& each : columns_.unknowns())
+      if (each.columns > 0) numbers.insert(numbers.end(), each.values, each.values + each.size);
+    return Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+  }
+  void write(const Eigen::VectorXd& numbers) const {
+    const double* next = numbers.data();
+    for (const Unknown& each : columns_.unknowns()) {
+      if (each.columns == 0) continue;
+      std::copy_n(next, each.size, each.values);
+      next += each.size;
+    }
+  }
+  // From there by a step in the tangent space, within the bounds.
+  void writeMoved(const Eigen::VectorXd& numbers, const Eigen::VectorXd& step) const {
+    const double* from = numbers.data();
+    for (const Unknown& each : columns_.unknowns()) {
+      if (each.columns == 0) continue;
+      const double* const by = step.data() + columns_.firstOf(each);
+      if (each.manifold != nullptr) {
+        each.manifold->Plus(from, by, each.values);
+      } else {
+        for (int i = 0; i < each.size; ++i) each.values[i] = from[i] + by[i];
+      }
+      for (std::size_t i = 0; i < each.lower.size(); ++i)
+        each.values[i] = std::clamp(each.values[i], each.lower[i], each.upper[i]);
+      from += each.size;
+    }
+  }
+
+ private:
+  const UnknownColumns& columns_;
+};
+
+class Solver {
+ public:
+  Solver(CalibrationProblem& problem, const SolverLimits& limits, const std::stop_token& stop)
+      : limits_(limits), stop_(stop), columns_(problem), numbers_(columns_), equations_(columns_) {}
+
+  SolverEnd run(const std::function<bool(const SolverIteration&)>& after);
+
+ private:
+  enum class Outcome { Taken, Rejected, Invalid, Converged };
+
+  Outcome step(SolverIteration& iteration);
+  void assembleHere();
+  void scaleColumns();
+  Eigen::VectorXd damping() const;
+  void holdAtBounds(Eigen::VectorXd& added) const;
+  double gradientMaxNorm() const;
+
+  void taken(double quality) {
+    radius_ = std::min(kLargestRadius, radius_ / std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * quality - 1.0, 3)));
+    shrinkage_ = 2.0;
+  }
+  void rejected() {
+    radius_ /= shrinkage_;
+    shrinkage_ *= 2.0;
+  }
+
+  const SolverLimits& limits_;
+  const std::stop_token& stop_;
+  UnknownColumns columns_;
+  Numbers numbers_;
+  NormalEquations equations_;
+  Eigen::VectorXd at_;     // the numbers that the equations are of
+  Eigen::VectorXd scale_;  // of the columns, from where it began
+  double radius_ = kFirstRadius, shrinkage_ = 2.0;
+};
+
+void Solver::assembleHere() {
+  at_ = numbers_.read();
+  assemble(columns_, limits_.threads, stop_, equations_);
+}
+
+void Solver::scaleColumns() {
+  scale_ = (1.0 + equations_.matrix.diagonal().array().sqrt()).inverse();
+}
+
+// What is added to the diagonal.
+Eigen::VectorXd Solver::damping() const {
+  const Eigen::ArrayXd scale2 = scale_.array().square();
+  const Eigen::ArrayXd scaled = scale2 * equations_.matrix.diagonal().array();
+  Eigen::VectorXd added = scaled.max(kLeastDiagonal).min(kLargestDiagonal) / (radius_ * scale2);
+  holdAtBounds(added);
+  return added;
+}
+
+// Numbers at a bound that would leave it.
+void Solver::holdAtBounds(Eigen::VectorXd& added) const {
+  for (const Unknown& each : columns_.unknowns()) {
+    if (each.columns == 0 || each.lower.empty()) continue;
+    std::vector<double> derivatives(static_cast<std::size_t>(each.size * each.columns), 0.0);
+    if (each.manifold != nullptr) {
+      each.manifold->PlusJacobian(each.values, derivatives.data());
+    } else {
+      for (int i = 0; i < each.size; ++i) derivatives[static_cast<std::size_t>(i * each.columns + i)] = 1.0;
+    }
+    for (int i = 0; i < each.size; ++i) {
+      for (int k = 0; k < each.columns; ++k) {
+        const Eigen::Index column = columns_.firstOf(each) + k;
+        const double towards =
+            -equations_.gradient[column] * derivatives[static_cast<std::size_t>(i * each.columns + k)];
+        const auto bound = static_cast<std::size_t>(i);
+        if ((each.values[i] <= each.lower[bound] && towards < 0.0) ||
+            (each.values[i] >= each.upper[bound] && towards > 0.0))
+          added[column] = kHeld * std::max(1.0, added[column]);
+      }
+    }
+  }
+}
+
+// How far the numbers would move by a step of the gradient's length.
+double Solver::gradientMaxNorm() const {
+  numbers_.writeMoved(at_, -equations_.gradient);
+  const double norm = (numbers_.read() - at_).lpNorm<Eigen::Infinity>();
+  numbers_.write(at_);
+  return norm;
+}
+
+Solver::Outcome Solver::step(SolverIteration& iteration) {
+  const Eigen::VectorXd added = damping();
+  const std::optional<Eigen::VectorXd> found = equations_.matrix.solve(added, -equations_.gradient);
+  const double promised =
+      found ? 0.5 * (found->dot(added.cwiseProduct(*found)) - found->dot(equations_.gradient)) : 0.0;
+  if (!(promised > 0.0)) {
+    radius_ *= 0.5;
+    return Outcome::Invalid;
+  }
+  numbers_.writeMoved(at_, *found);
+  const Eigen::VectorXd moved = numbers_.read();
+  const double cost = costOf(columns_, limits_.threads, stop_), change = equations_.cost - cost;
+  iteration.step_norm = (moved - at_).norm();
+  const bool still = iteration.step_norm <= kParameterTolerance * (at_.norm() + kParameterTolerance);
+  if (still || std::abs(change) <= limits_.function_tolerance * equations_.cost) {
+    numbers_.write(at_);
+    return Outcome::Converged;
+  }
+  if (const double quality = change / promised; quality > kLeastGain) {
+    taken(quality);
+    assembleHere();
+    return Outcome::Taken;
+  }
+  numbers_.write(at_);
+  rejected();
+  return Outcome::Rejected;
+}
+
+SolverEnd Solver::run(const std::function<bool(const SolverIteration&)>& after) {
+  SolverEnd end;
+  assembleHere();
+  scaleColumns();
+  end.first_cost = equations_.cost;
+  SolverIteration iteration{equations_.cost, gradientMaxNorm(), 0.0};
+  int invalid_steps = 0;
+  while (true) {
+    end.last_cost = equations_.cost;
+    if (!std::isfinite(equations_.cost)) end.failure = "the cost is not a number";
+    if (invalid_steps > kMostInvalidSteps) end.failure = "no damping makes the normal equations solvable";
+    if (!end.failure.empty() || !after(iteration)) return end;
+    if (end.iterations >= limits_.most_iterations) return end;
+    end.converged = iteration.gradient_max_norm <= kGradientTolerance || radius_ <= kLeastRadius;
+    if (end.converged) return end;
+    ++end.iterations;
+    iteration.step_norm = 0.0;
+    const Outcome outcome = step(iteration);
+    end.converged = outcome == Outcome::Converged;
+    if (end.converged) return end;
+    invalid_steps = outcome == Outcome::Invalid ? invalid_steps + 1 : 0;
+    if (outcome == Outcome::Taken) iteration.gradient_max_norm = gradientMaxNorm();
+    iteration.cost = equations_.cost;
+  }
+}
+
+}  // namespace
+
+SolverEnd solveNormalEquations(CalibrationProblem& problem, const SolverLimits& limits,
+                               const std::stop_token& stop,
+                               const std::function<bool(const SolverIteration&)>& after) {
+  return Solver(problem, limits, stop).run(after);
+}
+
+}  // namespace evical

@@ -1,0 +1,47 @@
+// J^T J and J^T r of a few residual blocks near in time, in those columns only that they have to do with, until they are
+// projected: cheaper by far than projecting each of their rows.
+#pragma once
+
+#include "core/optimisation/block_jacobian.h"
+#include "core/optimisation/uncertainty/spline_elimination.h"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace evical {
+
+// [P r]^T [P r]: information, score and squared residuals.
+struct ProjectedSums {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd score;
+  double squared_residuals = 0.0;
+  Eigen::VectorXd pixel_errors;  // P^T d; empty without any
+};
+
+class LocalSums {
+ public:
+  // `pixel_errors`: d, by residual; empty where there is none.
+  void add(const BlockJacobian& block, const Eigen::VectorXd& pixel_errors);
+  Eigen::Index columnCount() const { return static_cast<Eigen::Index>(columns_.size()); }
+
+  ProjectedSums projected(const UnknownColumns& columns, const SplineElimination& elimination) const;
+
+ private:
+  struct Column {
+    bool spline;
+    Eigen::Index index;
+    bool operator==(const Column&) const = default;
+  };
+
+  Eigen::Index localOf(const Column& column);
+
+  std::vector<Column> columns_;
+  Eigen::MatrixXd products_;                // lower triangle; at least as large as there are columns
+  Eigen::VectorXd gradient_, with_errors_;  // J^T r, J^T d
+  double squared_residuals_ = 0.0;
+  bool has_errors_ = false;
+  std::vector<double> of_block_;
+};
+
+}  // namespace evical

@@ -1,0 +1,87 @@
+// Where the unknowns of a built problem stand in its normal equations: control points in order of time, which makes a
+// band of them (core/numerics/bordered_band.h), and for its border first the calibrated quantities, then the biases' knots.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace ceres {
+class CostFunction;
+class Manifold;
+}  // namespace ceres
+
+namespace evical {
+
+class CalibrationProblem;
+
+// One parameter block.
+struct Unknown {
+  double* values = nullptr;
+  int size = 0;
+  int columns = 0;                            // of its tangent space; 0: it is held
+  bool spline = false;                        // of the band, or else of the border
+  Eigen::Index first = 0;                     // column of either
+  const ceres::Manifold* manifold = nullptr;  // null where its numbers are its tangent space
+  bool leading = true;  // derivatives by the tangent are the first of those by the numbers
+  std::vector<double> lower = {}, upper = {};  // bounds of its numbers; empty without any
+};
+
+class UnknownColumns {
+ public:
+  // As the problem is built now.
+  explicit UnknownColumns(CalibrationProblem& problem);
+
+  Eigen::Index splineSize() const { return spline_size_; }
+  Eigen::Index quantitySize() const { return first_column_.back(); }
+  Eigen::Index driftSize() const { return drift_size_; }  // columns after the quantities'
+  Eigen::Index borderSize() const { return quantitySize() + drift_size_; }
+  Eigen::Index size() const { return splineSize() + borderSize(); }
+  Eigen::Index halfBandwidth() const { return half_bandwidth_; }
+  // Of each quantity within the border; one more for the end.
+  const std::vector<Eigen::Index>& firstColumn() const { return first_column_; }
+
+  const std::vector<Unknown>& unknowns() const { return unknowns_; }
+  // Of unknown k's tangent space, in all columns: the band's, then the border's.
+  Eigen::Index firstOf(const Unknown& unknown) const {
+    return unknown.spline ? unknown.first : spline_size_ + unknown.first;
+  }
+
+  // Residual blocks as in CalibrationProblem::blocks().
+  std::size_t blockCount() const { return blocks_.size(); }
+  const ceres::CostFunction& cost(std::size_t block) const { return *blocks_[block].cost; }
+  // Indices into unknowns(), in the order of the cost function's blocks.
+  std::span<const std::int32_t> unknownsOf(std::size_t block) const;
+
+  // Residual blocks in order of time, in parts that are the same for any number of threads: to rows of the band from
+  // first_row to end_row no other part's blocks add, save that those of parts before reach across its begin.
+  struct Part {
+    std::size_t begin, end;  // of order()
+    Eigen::Index first_row, end_row;
+  };
+  const std::vector<std::size_t>& order() const { return order_; }
+  const std::vector<Part>& parts() const { return parts_; }
+
+ private:
+  struct Block {
+    const ceres::CostFunction* cost;
+    std::size_t begin, end;                           // of unknown_indices_
+    Eigen::Index first_column = 0, last_column = -1;  // of the band
+  };
+
+  void addUnknowns(CalibrationProblem& problem);
+  void addBlocks(CalibrationProblem& problem);
+  void makeParts();
+
+  std::vector<Unknown> unknowns_;
+  std::vector<Block> blocks_;
+  std::vector<std::int32_t> unknown_indices_;
+  std::vector<Eigen::Index> first_column_;
+  Eigen::Index spline_size_ = 0, drift_size_ = 0, half_bandwidth_ = 0;
+  std::vector<std::size_t> order_;
+  std::vector<Part> parts_;
+};
+
+}  // namespace evical

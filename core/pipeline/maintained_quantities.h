@@ -1,0 +1,39 @@
+// What stops, other IMUs and trajectories say, as quantities and steps for people, and the verdict from them.
+#pragma once
+
+#include "core/data/maintenance.h"
+#include "core/maintenance/pair_tracking.h"
+#include "core/maintenance/stop_calibration.h"
+#include "core/maintenance/trajectory_lag.h"
+#include "core/report/result_yaml.h"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace evical {
+
+// `false_alarms`: of one test.
+void addStopQuantities(const StopCalibration& found, const NamedResult& before, std::size_t imu,
+                       const MaintenanceOptions& options, double false_alarms, Maintenance& maintenance);
+MaintainedImu maintainedImu(const StopCalibration& found);
+
+// From a trajectory, and how it went from piece to piece.
+void addTrajectoryQuantities(const std::vector<LagEstimate>& lags, const LagSum& sum,
+                             const NamedResult& before, std::size_t imu, const MaintenanceOptions& options,
+                             double false_alarms, Maintenance& maintenance);
+
+// Of an IMU against the reference, both of the old result; the track is about the nominal pair.
+struct TrackedPair {
+  std::size_t imu = 0, reference = 0;
+  PairNominal nominal, before;
+  PairTrack track;
+};
+void addPairQuantities(const TrackedPair& pair, const NamedResult& before, const MaintenanceOptions& options,
+                       double false_alarms, Maintenance& maintenance);
+
+// Which of the quantities must have been told for "nothing has changed": those between IMUs, of a single IMU those
+// of itself.
+void judge(Maintenance& maintenance);
+
+}  // namespace evical

@@ -1,0 +1,42 @@
+// The bytes of a text file from its beginning to its end, unpacked where it is packed with gzip.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+struct gzFile_s;
+
+namespace evical {
+
+bool isGzip(std::string_view first_bytes);
+
+// The first bytes, unpacked; fewer where the file is shorter or damaged.
+std::string firstTextBytes(const std::filesystem::path& path, std::size_t count);
+
+class TextBytes {
+ public:
+  // Throws CalibrationError (BadInput) if the file cannot be opened.
+  explicit TextBytes(const std::filesystem::path& path);
+
+  // How many were read; 0 at the end, and where a packed file cannot be unpacked any further.
+  std::size_t read(char* bytes, std::size_t count);
+  bool isDamaged() const { return damaged_; }  // the end came before that of what is packed
+
+  // Of the file as it is on the disk.
+  std::uint64_t size() const { return size_; }
+  std::uint64_t position() const;
+
+ private:
+  struct Closing {
+    void operator()(gzFile_s* file) const;
+  };
+  std::unique_ptr<gzFile_s, Closing> file_;
+  std::uint64_t size_ = 0;
+  bool damaged_ = false;
+};
+
+}  // namespace evical

@@ -1,0 +1,33 @@
+// The motion of a drive (DriveMotion), analytic to its second derivative.
+#pragma once
+
+#include "core/synthetic/drive_scenario.h"
+#include "core/synthetic/hand_motion.h"
+#include "core/synthetic/sinusoid_motion.h"
+
+#include <Eigen/Geometry>
+
+#include <array>
+#include <vector>
+
+namespace evical {
+
+class DriveMotionModel {
+ public:
+  explicit DriveMotionModel(const DriveScenario& scenario);
+
+  // Of the reference IMU, at seconds since the start on its clock. The world's z axis points up.
+  MotionState at(double time_s) const;
+
+  // 1 on the way, 0 in stops.
+  MotionValue moving(double time_s) const;
+
+ private:
+  Eigen::Quaterniond attitude(long stop) const;
+  MotionState turning(double time_s) const;  // from attitude to attitude
+
+  DriveMotion motion_;
+  std::array<std::vector<MotionSinusoid>, 3> wobble_, sway_;
+};
+
+}  // namespace evical

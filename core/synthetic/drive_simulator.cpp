@@ -1,0 +1,98 @@
+#include "core/synthetic/drive_simulator.h"
+
+#include "core/base/time.h"
+#include "core/geometry/so3.h"
+#include "core/synthetic/drive_motion.h"
+#include "core/synthetic/imu_faults.h"
+#include "core/synthetic/random.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+
+namespace evical {
+namespace {
+
+Eigen::Vector3d normalVector(Random& random) {
+  const double x = random.normal(), y = random.normal(), z = random.normal();
+  return {x, y, z};
+}
+
+struct Measured {
+  Eigen::Vector3d rate_rad_s, force_m_s2;
+};
+
+Measured measuredBy(const SimulatedImu& imu, const MotionState& body, const Eigen::Vector3d& gravity_m_s2) {
+  const MotionState state = motionOfFrame(body, imu.reference_from_imu);
+  return {imu.gyroscopeMatrix() * state.angular_velocity_in_body_rad_s,
+          imu.accelerometer_mapping * (state.world_from_body.rotation.conjugate() *
+                                       (state.acceleration_in_world_m_s2 - gravity_m_s2))};
+}
+
+// spoilSamples knows scenarios of cameras.
+void spoil(const DriveScenario& drive, std::size_t imu, std::vector<ImuSample>& samples) {
+  Scenario scenario;
+  scenario.seed = drive.seed;
+  scenario.duration_s = drive.duration_s;
+  scenario.imus = drive.imus;
+  spoilSamples(scenario, imu, samples);
+}
+
+}  // namespace
+
+std::vector<ImuSample> simulateDriveImu(const DriveScenario& scenario, std::size_t index) {
+  constexpr std::uint64_t kNoise = 0x330;
+  const DriveMotionModel motion(scenario);
+  Random random(scenario.seed, kNoise, index);
+  const Eigen::Vector3d gravity_m_s2(0.0, 0.0, -scenario.gravity_m_s2);
+  const double rate_hz = scenario.imus[index].rate_hz, root_rate = std::sqrt(rate_hz);
+  const auto count = static_cast<std::size_t>(scenario.duration_s * rate_hz);
+  std::vector<ImuSample> samples;
+  samples.reserve(count);
+  Eigen::Vector3d gyroscope_walked = Eigen::Vector3d::Zero(), accelerometer_walked = gyroscope_walked;
+  std::size_t steps_done = scenario.steps.size() + 1;
+  SimulatedImu imu;
+  for (std::size_t k = 0; k < count; ++k) {
+    // IMUs do not sample at one moment.
+    const double time_s = (static_cast<double>(k) + 0.3 * static_cast<double>(index)) / rate_hz;
+    std::size_t done = 0;
+    for (const ImuStep& step : scenario.steps) done += step.at_s <= time_s ? 1 : 0;
+    if (done != steps_done) imu = scenario.imuAt(index, time_s);
+    steps_done = done;
+    const Measured now = measuredBy(imu, motion.at(time_s), gravity_m_s2);
+    ImuSample sample;
+    sample.time_ns = scenario.start_ns + nanosecondsFrom(sensorTime_s(imu, time_s));
+    sample.angular_rate_rad_s = now.rate_rad_s + imu.gyroscope_bias_rad_s + gyroscope_walked +
+                                imu.gyroscope_density * root_rate * normalVector(random);
+    sample.specific_force_m_s2 = now.force_m_s2 + imu.accelerometer_bias_m_s2 + accelerometer_walked +
+                                 imu.accelerometer_density * root_rate * normalVector(random);
+    samples.push_back(sample);
+    gyroscope_walked += imu.gyroscope_walk / root_rate * normalVector(random);
+    accelerometer_walked += imu.accelerometer_walk / root_rate * normalVector(random);
+  }
+  spoil(scenario, index, samples);
+  return samples;
+}
+
+std::string driveTrajectoryCsv(const DriveScenario& scenario) {
+  constexpr std::uint64_t kNoise = 0x340;
+  if (scenario.trajectory_hz <= 0.0) return {};
+  const DriveMotionModel motion(scenario);
+  Random random(scenario.seed, kNoise);
+  std::string text = "time_s,x_m,y_m,z_m,qx,qy,qz,qw\n";
+  const auto count = static_cast<std::size_t>(scenario.duration_s * scenario.trajectory_hz);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double time_s = static_cast<double>(k) / scenario.trajectory_hz;
+    const MotionState state = motion.at(time_s);
+    const Eigen::Vector3d p =
+        state.world_from_body.translation_m + scenario.trajectory_noise_m * normalVector(random);
+    const Eigen::Quaterniond q =
+        state.world_from_body.rotation * quaternionExp(scenario.trajectory_noise_rad * normalVector(random));
+    fmt::format_to(std::back_inserter(text), "{:.6f},{:.7f},{:.7f},{:.7f},{:.9f},{:.9f},{:.9f},{:.9f}\n",
+                   time_s, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+  }
+  return text;
+}
+
+}  // namespace evical

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The story of who calibrated some time ago: a new recording is held against the old result.
+#include "core/report/check_report.h"
+#include "tests/support/test_program.h"
+#include "tests/ui/clipped_text.h"
+#include "tests/ui/other_load.h"
+#include "tests/ui/simulated_session.h"
+#include "tests/ui/slowdown.h"
+#include "tests/ui/unnamed_controls.h"
+#include "tests/ui/window_fixture.h"
+#include "ui/screens/check_table.h"
+#include "ui/screens/result_check_screen.h"
+#include "ui/window/error_panel.h"
+#include "ui/window/export_notice.h"
+#include "ui/window/session_files.h"
+
+#include <QLabel>
+#include <QListWidget>
+#include <QProgressBar>
+#include <QPushButton>
+
+using namespace evical;
+using namespace evical::ui;
+using namespace evical::ui::test;
+
+class TestResultCheckPage : public QObject {
+  Q_OBJECT
+
+  QTemporaryDir scratch_;
+  QString session_;
+
+  static QString field(WindowFixture& test, const char* name) {
+    return test.child<ResultCheckScreen>()->findChild<QLineEdit*>(name)->text();
+  }
+  static void type(WindowFixture& test, const char* name, const QString& text) {
+    auto* const edit = test.child<ResultCheckScreen>()->findChild<QLineEdit*>(name);
+    edit->setFocus();
+    edit->selectAll();
+    QTest::keyClicks(edit, text);
+  }
+  static QPushButton* button(WindowFixture& test, const char* name) {
+    return test.child<ResultCheckScreen>()->findChild<QPushButton*>(name);
+  }
+  // With a run to be checked, kept beside the session's file.
+  void calibrate(WindowFixture& test) {
+    test.window.files().open(session_);
+    QTRY_VERIFY(test.document().hasSession());
+    test.press(Qt::Key_F5);
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    QTRY_VERIFY_WITH_TIMEOUT(!test.window.workbench().history.runs().empty(), kPatience_ms);
+    test.press(Qt::Key_9, Qt::ControlModifier);
+    QCOMPARE(test.screen(), QString("check-result"));
+  }
+  // Presses the page's own button.
+  static void check(WindowFixture& test, const QString& recording) {
+    type(test, "new_recording", recording);
+    QPushButton* const start = button(test, "start_check_result");
+    QVERIFY2(start->isEnabled(), qPrintable(start->toolTip()));
+    QTest::mouseClick(start, Qt::LeftButton);
+    QVERIFY(test.runner().running());
+  }
+  static const QTreeWidgetItem* rowOf(WindowFixture& test, const QString& title) {
+    const auto* const table = test.child<CheckTable>();
+    for (int row = 0; row < table->topLevelItemCount(); ++row)
+      if (table->topLevelItem(row)->text(0).contains(title)) return table->topLevelItem(row);
+    return nullptr;
+  }
+  static void keepPictures(WindowFixture& test, const QString& name) {
+    QDir().mkpath(EVICAL_SCREENSHOTS);
+    for (const QSize size : {QSize(1024, 700), QSize(1280, 800), QSize(1920, 1080)}) {
+      test.window.resize(size);
+      spin(150);
+      const QStringList clipped = clippedTexts(test.window);
+      QVERIFY2(clipped.isEmpty(), qPrintable(clipped.join('\n')));
+      QVERIFY(
+          test.window.grab().save(QString("%1/%2_%3.png").arg(EVICAL_SCREENSHOTS, name).arg(size.width())));
+    }
+  }
+
+ private slots:
+  void initTestCase() {
+    usePrivateFolders(scratch_);
+    session_ = scratch_.filePath("session.yaml");
+    const Session session = readSession(simulatedFurtherSession(1).toStdString());
+    writeSession(session, session_.toStdString());
+  }
+  void init() { QSettings().clear(); }
+  void cleanup() { applyTheme(*qApp, Appearance::Light); }
+
+  void withoutAResult_itSaysWhatItNeeds() {
+    WindowFixture test;
+    test.window.showScreen("check-result");
+    QVERIFY(!button(test, "start_check_result")->isEnabled());
+    QCOMPARE(button(test, "start_check_result")->toolTip(), QString("Choose the old result"));
+    type(test, "old_result", "/no/such/result");
+    QCOMPARE(button(test, "start_check_result")->toolTip(), QString("Choose the new recording"));
+    check(test, simulatedFurtherSession(2));
+    QCOMPARE(test.waitForJob(), JobOutcome::Failed);
+    QVERIFY2(test.child<ErrorPanel>()->text().contains("/no/such/result"),
+             qPrintable(test.child<ErrorPanel>()->text()));
+    QVERIFY(button(test, "start_check_result")->isEnabled());
+  }
+
+  // What is open and has no result yet is the new recording.
+  void openRecording_isProposed() {
+    WindowFixture test;
+    test.window.files().open(session_);
+    QTRY_VERIFY(test.document().hasSession());
+    QCOMPARE(field(test, "new_recording"), session_);
+    QVERIFY(field(test, "old_result").isEmpty());
+  }
+
+  void story() {
+    WindowFixture test;
+    calibrate(test);
+    QTRY_VERIFY_WITH_TIMEOUT(!field(test, "old_result").isEmpty(), kPatience_ms);
+    QVERIFY(QFile::exists(field(test, "old_result") + "/result.yaml"));
+    QVERIFY(field(test, "new_recording").isEmpty());  // that of the result says nothing new
+    cancelled(test);
+
+    QSignalSpy checked(&test.window.workbench().result_check, &ResultCheckJob::checked);
+    check(test, simulatedFurtherSession(2));
+    QVERIFY(button(test, "cancel_check_result")->isVisible() &&
+            !button(test, "start_check_result")->isVisible());
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    QCOMPARE(checked.size(), 1);
+    const auto same = checked.takeLast().at(0).value<std::shared_ptr<const CheckedResult>>();
+    QVERIFY2(same->run.check.verdict != CheckVerdict::Changed, same->run.check.reason.c_str());
+    shows(test, same->run.check);
+    keepPictures(test, "check_result_same");
+    saved(test);
+
+    check(test, simulatedFurtherSession(3, 1.5));
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    const auto turned = checked.takeLast().at(0).value<std::shared_ptr<const CheckedResult>>();
+    QVERIFY2(turned->run.check.verdict == CheckVerdict::Changed, turned->run.check.reason.c_str());
+    shows(test, turned->run.check);
+    QCOMPARE(rowOf(test, "rotation")->text(CheckTable::kVerdict), QString("changed"));
+    QVERIFY(unnamedControls(*test.child<ResultCheckScreen>()).isEmpty());
+    applyTheme(*qApp, Appearance::Dark);
+    keepPictures(test, "check_result_changed");
+    QVERIFY(test.window.close());
+  }
+
+ private:
+  void cancelled(WindowFixture& test) {
+    check(test, simulatedFurtherSession(2));
+    spin(300);
+    const OtherLoad others;
+    QElapsedTimer since_cancel;
+    since_cancel.start();
+    QTest::mouseClick(button(test, "cancel_check_result"), Qt::LeftButton);
+    QCOMPARE(test.waitForJob(), JobOutcome::Cancelled);
+    const int most_ms = (others.quiet() ? 500 : 3000) * kSlowdown;
+    QVERIFY2(since_cancel.elapsed() < most_ms, qPrintable(QString::number(since_cancel.elapsed())));
+    QVERIFY(button(test, "start_check_result")->isVisible());
+  }
+  void shows(WindowFixture& test, const CalibrationCheck& check) {
+    auto* const screen = test.child<ResultCheckScreen>();
+    const QString verdict = screen->findChild<QLabel*>("check_verdict")->text();
+    QCOMPARE(verdict.toLower(), QString(verdictWords(check.verdict)));
+    const QString reason = QString::fromStdString(check.reason);
+    QVERIFY(screen->findChild<QLabel*>("check_reason")->text().contains(reason.mid(1)));
+    const auto* const table = test.child<CheckTable>();
+    QCOMPARE(table->topLevelItemCount(), static_cast<int>(check.quantities.size()));
+    for (std::size_t k = 0; k < check.quantities.size(); ++k) {
+      const QTreeWidgetItem& row = *table->topLevelItem(static_cast<int>(k));
+      QCOMPARE(row.childCount(), static_cast<int>(check.quantities[k].numbers.size()));
+      QVERIFY(std::abs(row.text(CheckTable::kSigmas).toDouble() - check.quantities[k].sigmas) < 0.06);
+      QVERIFY(!row.text(CheckTable::kNotice).isEmpty() && !row.text(CheckTable::kChange).isEmpty());
+    }
+    QVERIFY(table->allText().contains("Would notice"));
+    QVERIFY(screen->findChild<QListWidget*>("check_notes")->count() >=
+            static_cast<int>(check.advice.size() + check.notes.size()));
+  }
+  void saved(WindowFixture& test) {
+    const QString folder = scratch_.filePath("checked");
+    QDir().mkpath(folder);
+    answerFileDialog(folder);
+    QTest::mouseClick(button(test, "save_check"), Qt::LeftButton);
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    for (const char* const name : {"check.yaml", "report.html", "log.txt"})
+      QVERIFY2(QFileInfo(QDir(folder).filePath(name)).size() > 0, name);
+    QVERIFY(test.child<ExportNotice>()->text().contains("The check was saved"));
+  }
+};
+
+EVICAL_TEST(TestResultCheckPage)
+#include "tst_result_check_page.moc"

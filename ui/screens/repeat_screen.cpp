@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/repeat_screen.h"
+
+#include "ui/screens/check_words.h"
+#include "ui/screens/path_row.h"
+#include "ui/screens/repeat_table.h"
+#include "ui/screens/selectable_label.h"
+#include "ui/screens/work_bar.h"
+#include "ui/theme/theme.h"
+
+#include <QComboBox>
+#include <QDir>
+#include <QEvent>
+#include <QGridLayout>
+#include <QLabel>
+#include <QListWidget>
+#include <QPushButton>
+#include <QShortcut>
+#include <QStackedWidget>
+#include <QTabBar>
+#include <QTabWidget>
+#include <QVBoxLayout>
+
+#include <algorithm>
+
+namespace evical::ui {
+namespace {
+
+constexpr int kFewest = 2;
+
+QPushButton* button(const char* object_name, const char* icon_name, const QString& text, const QString& tip,
+                    QWidget* parent) {
+  auto* const made = new QPushButton(icon(icon_name), text, parent);
+  made->setObjectName(object_name);
+  made->setToolTip(tip);
+  return made;
+}
+
+QString titleOf(RepeatVerdict verdict) {
+  switch (verdict) {
+    case RepeatVerdict::Agree:
+      return QObject::tr("They agree");
+    case RepeatVerdict::Disagree:
+      return QObject::tr("They do not agree");
+    case RepeatVerdict::Failed:
+      break;
+  }
+  return QObject::tr("Nothing to compare");
+}
+
+QIcon iconOf(RepeatVerdict verdict) {
+  if (verdict == RepeatVerdict::Agree) return icon("done", theme().good);
+  return verdict == RepeatVerdict::Disagree ? icon("warning", theme().warning) : icon("error", theme().bad);
+}
+
+QComboBox* makeChoice(const char* object_name, const QString& name, QWidget* parent) {
+  auto* const choice = new QComboBox(parent);
+  choice->setObjectName(object_name);
+  choice->setAccessibleName(name);
+  choice->setToolTip(QObject::tr("A recording, or the solution of all together"));
+  choice->setSizeAdjustPolicy(QComboBox::AdjustToContents);
+  return choice;
+}
+
+}  // namespace
+
+RepeatScreen::RepeatScreen(QWidget* parent)
+    : QWidget(parent),
+      files_(new QListWidget(this)),
+      add_open_(
+          button("add_open", "add", tr("Add the open one"), tr("Add what is open in this window"), this)),
+      remove_(button("remove_recordings", "remove", tr("Remove"),
+                     tr("Take the chosen ones off the list; their files stay (Delete)"), this)),
+      stack_(new QStackedWidget(this)),
+      icon_(new QLabel(this)),
+      verdict_(selectableLabel("title", {}, this)),
+      reason_(selectableLabel("", {}, this)),
+      ratio_(selectableLabel("hint", {}, this)),
+      first_(makeChoice("first_of_pair", tr("Compare"), this)),
+      second_(makeChoice("second_of_pair", tr("with"), this)),
+      numbers_(new RepeatTable(this)),
+      recordings_(new RepeatedList(this)),
+      notes_(new QListWidget(this)),
+      open_result_(button("open_recording_result", "result", tr("Show on all pages"),
+                          tr("Open the chosen recording's result, or that of all together where none is"),
+                          this)) {
+  verdict_->setObjectName("repeat_verdict");
+  reason_->setObjectName("repeat_reason");
+  auto* const layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(10);
+  layout->addWidget(makeForm());
+  stack_->addWidget(makeEmpty());
+  stack_->addWidget(makeContent());
+  layout->addWidget(stack_, 1);
+  setRepeat({});
+  offer();
+}
+
+QWidget* RepeatScreen::makeFiles() {
+  constexpr int kList_px = 92;
+  auto* const row = new QWidget(this);
+  files_->setObjectName("repeated_files");
+  files_->setAccessibleName(tr("Recordings and sessions of one rig"));
+  files_->setSelectionMode(QAbstractItemView::ExtendedSelection);
+  files_->setTextElideMode(Qt::ElideMiddle);
+  files_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  files_->setFixedHeight(kList_px);
+  QPushButton* const add =
+      button("add_recordings", "open", tr("Add..."),
+             tr("Sessions or recordings of the same rig before the same board. Recordings have the\n"
+                "sensors and the board of the session that is open, else of the first in the list"),
+             row);
+  connect(add, &QPushButton::clicked, this, &RepeatScreen::addRequested);
+  connect(add_open_, &QPushButton::clicked, this, [this] { addFiles({open_file_}); });
+  connect(remove_, &QPushButton::clicked, this, &RepeatScreen::removeChosen);
+  connect(files_, &QListWidget::itemSelectionChanged, this, &RepeatScreen::offer);
+  auto* const remove_key = new QShortcut(QKeySequence::Delete, files_);
+  remove_key->setContext(Qt::WidgetShortcut);
+  connect(remove_key, &QShortcut::activated, this, &RepeatScreen::removeChosen);
+  auto* const buttons = new QVBoxLayout;
+  buttons->setSpacing(4);
+  for (QPushButton* const each : {add, add_open_, remove_}) buttons->addWidget(each);
+  buttons->addStretch();
+  auto* const layout = new QHBoxLayout(row);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(files_, 1);
+  layout->addLayout(buttons);
+  return row;
+}
+
+QWidget* RepeatScreen::makeForm() {
+  auto* const card = new QFrame(this);
+  card->setProperty("card", "true");
+  auto* const grid = new QGridLayout;
+  folder_ = new PathRow("repeat_folder", tr("&Results go to"),
+                        tr("A folder: the results of each recording and of all together, a report, tables"),
+                        *grid, card);
+  grid->setColumnStretch(1, 1);
+  work_ = new WorkBar("repeat", "calibrate", tr("Calibrate all"),
+                      tr("Calibrate each recording, then all together, and compare them"), card);
+  QPushButton* const report =
+      button("repeat_report", "report", tr("Open report"), tr("A page with plots, in the browser"), card);
+  QPushButton* const place = button("repeat_open_folder", "folder", tr("Open folder"),
+                                    tr("Show the files in the desktop's file manager"), card);
+  for (QPushButton* const each : {report, place}) work_->addButton(each);
+  connect(report, &QPushButton::clicked, this, &RepeatScreen::reportRequested);
+  connect(place, &QPushButton::clicked, this, &RepeatScreen::openFolderRequested);
+  auto* const layout = new QVBoxLayout(card);
+  layout->setContentsMargins(14, 10, 14, 10);
+  layout->addWidget(selectableLabel("heading", tr("Several recordings of one rig"), card));
+  layout->addWidget(makeFiles());
+  layout->addLayout(grid);
+  layout->addWidget(work_);
+  connect(folder_, &PathRow::changed, this, &RepeatScreen::offer);
+  connect(work_, &WorkBar::startRequested, this, &RepeatScreen::repeatRequested);
+  connect(work_, &WorkBar::cancelRequested, this, &RepeatScreen::cancelRequested);
+  return card;
+}
+
+QWidget* RepeatScreen::makeEmpty() {
+  constexpr int kText_px = 560;
+  auto* const empty = new QWidget(this);
+  auto* const text = selectableLabel(
+      "hint",
+      tr("Each recording is calibrated alone, then all in one solution. How much the results spread, beside "
+         "what their sigmas promise, tells how honest the sigmas are; a recording that does not fit the "
+         "others is named, with what is different in it."),
+      empty);
+  text->setMaximumWidth(kText_px);
+  auto* const row = new QHBoxLayout;
+  row->addStretch();
+  row->addWidget(text, 1);
+  row->addStretch();
+  auto* const layout = new QVBoxLayout(empty);
+  layout->addStretch(1);
+  layout->addLayout(row);
+  layout->addStretch(2);
+  return empty;
+}
+
+QWidget* RepeatScreen::makeNumbers() {
+  auto* const page = new QWidget(this);
+  auto* const what = new QLabel(tr("C&ompare"), page);
+  what->setBuddy(first_);
+  auto* const with = new QLabel(tr("&with"), page);
+  with->setBuddy(second_);
+  connect(first_, &QComboBox::activated, this, &RepeatScreen::comparePair);
+  connect(second_, &QComboBox::activated, this, &RepeatScreen::comparePair);
+  auto* const row = new QHBoxLayout;
+  for (QWidget* const widget : {static_cast<QWidget*>(what), static_cast<QWidget*>(first_),
+                                static_cast<QWidget*>(with), static_cast<QWidget*>(second_)})
+    row->addWidget(widget);
+  row->addStretch(1);
+  auto* const layout = new QVBoxLayout(page);
+  layout->setContentsMargins(0, 6, 0, 0);
+  layout->addLayout(row);
+  layout->addWidget(numbers_, 1);
+  return page;
+}
+
+QWidget* RepeatScreen::makeRecordings() {
+  auto* const page = new QWidget(this);
+  connect(open_result_, &QPushButton::clicked, this, [this] {
+    const auto chosen = recordings_->chosen();
+    emit openResultRequested(chosen ? static_cast<int>(*chosen) : -1);
+  });
+  connect(recordings_, &QTreeWidget::itemSelectionChanged, this, &RepeatScreen::offer);
+  auto* const row = new QHBoxLayout;
+  row->addWidget(open_result_);
+  row->addStretch();
+  auto* const layout = new QVBoxLayout(page);
+  layout->setContentsMargins(0, 6, 0, 0);
+  layout->addWidget(recordings_, 1);
+  layout->addLayout(row);
+  return page;
+}
+
+QWidget* RepeatScreen::makeContent() {
+  auto* const content = new QWidget(this);
+  auto* const words = new QVBoxLayout;
+  words->setSpacing(2);
+  for (QLabel* const line : {verdict_, reason_, ratio_}) words->addWidget(line);
+  auto* const header = new QHBoxLayout;
+  header->setSpacing(12);
+  header->addWidget(icon_, 0, Qt::AlignTop);
+  header->addLayout(words, 1);
+  notes_->setAccessibleName(tr("Notes"));
+  notes_->setWordWrap(true);
+  notes_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  auto* const tabs = new QTabWidget(content);
+  tabs->setObjectName("repeat_tabs");
+  tabs->setDocumentMode(true);
+  tabs->tabBar()->setDrawBase(false);
+  tabs->addTab(makeNumbers(), tr("Numbers"));
+  tabs->addTab(makeRecordings(), tr("Recordings"));
+  tabs->addTab(notes_, tr("Notes"));
+  auto* const layout = new QVBoxLayout(content);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addLayout(header);
+  layout->addWidget(tabs, 1);
+  return content;
+}
+
+QStringList RepeatScreen::files() const {
+  QStringList all;
+  for (int row = 0; row < files_->count(); ++row) all << files_->item(row)->data(Qt::UserRole).toString();
+  return all;
+}
+
+void RepeatScreen::addFiles(const QStringList& files) {
+  for (const QString& file : files) {
+    if (file.isEmpty() || this->files().contains(file)) continue;
+    const bool session = file.endsWith(".yaml") || file.endsWith(".yml");
+    auto* const item =
+        new QListWidgetItem(icon(session ? "open" : "recording"), QDir::toNativeSeparators(file), files_);
+    item->setData(Qt::UserRole, file);
+    item->setToolTip(item->text());
+  }
+  offer();
+  emit filesChanged();
+}
+
+void RepeatScreen::removeChosen() {
+  qDeleteAll(files_->selectedItems());
+  offer();
+  emit filesChanged();
+}
+
+void RepeatScreen::setOpenFile(const QString& file) {
+  open_file_ = file;
+  offer();
+}
+
+void RepeatScreen::offer() {
+  add_open_->setEnabled(!open_file_.isEmpty() && !files().contains(open_file_));
+  remove_->setEnabled(!files_->selectedItems().isEmpty());
+  // One session may list several recordings.
+  const QStringList all = files();
+  const bool enough =
+      all.size() >= kFewest || (all.size() == 1 && (all[0].endsWith(".yaml") || all[0].endsWith(".yml")));
+  work_->setHindrance(!enough                     ? tr("Add at least two recordings or sessions")
+                      : folder_->path().isEmpty() ? tr("Say where the results go")
+                                                  : QString());
+  const auto chosen = recordings_->chosen();
+  open_result_->setEnabled(repeat_ &&
+                           (chosen ? repeat_->recordings.at(*chosen).outcome != RepeatOutcome::Failed
+                                   : repeat_->verdict != RepeatVerdict::Failed));
+}
+
+void RepeatScreen::setRepeat(std::optional<Repeatability> repeat) {
+  repeat_ = std::move(repeat);
+  stack_->setCurrentIndex(repeat_ ? 1 : 0);
+  for (const char* const name : {"repeat_report", "repeat_open_folder"})
+    work_->findChild<QPushButton*>(name)->setVisible(repeat_.has_value());
+  if (!repeat_) return;
+  showVerdict();
+  numbers_->setRepeat(*repeat_);
+  recordings_->setRecordings(repeat_->recordings);
+  notes_->clear();
+  for (const std::string& note : repeat_->notes) notes_->addItem(sentence(QString::fromStdString(note)));
+  if (!repeat_->own_values_of.empty())
+    notes_->addItem(
+        tr("Biases, gravity and time offsets are each recording's own: the solution of all together has "
+           "those of %1.")
+            .arg(QString::fromStdString(repeat_->own_values_of)));
+  offerPairs();
+  offer();
+}
+
+void RepeatScreen::showVerdict() {
+  constexpr int kIcon_px = 34;
+  icon_->setPixmap(iconOf(repeat_->verdict).pixmap(QSize(kIcon_px, kIcon_px), devicePixelRatioF()));
+  verdict_->setText(titleOf(repeat_->verdict));
+  reason_->setText(sentence(QString::fromStdString(repeat_->reason)));
+  ratio_->setVisible(repeat_->rms_ratio > 0.0);
+  ratio_->setText(
+      tr("Spread against what the sigmas promise: %1 RMS over all numbers (near 1: the sigmas are "
+         "honest); took %2 s.")
+          .arg(repeat_->rms_ratio, 0, 'f', 2)
+          .arg(repeat_->took_s, 0, 'f', 1));
+}
+
+void RepeatScreen::offerPairs() {
+  for (QComboBox* const choice : {first_, second_}) {
+    choice->clear();
+    choice->addItem(tr("nothing"));
+    for (const std::string& column : repeat_->columns)
+      choice->addItem(QString::fromStdString(column), choice->count() - 1);
+    if (repeat_->verdict != RepeatVerdict::Failed) choice->addItem(tr("all together"), -1);
+  }
+  comparePair();
+}
+
+void RepeatScreen::comparePair() {
+  const QVariant first = first_->currentData(), second = second_->currentData();
+  if (!first.isValid() || !second.isValid() || first == second) return numbers_->comparePair({});
+  const auto column = [](const QVariant& chosen) {
+    return chosen.toInt() < 0 ? kAllTogether : static_cast<std::size_t>(chosen.toInt());
+  };
+  numbers_->comparePair(
+      RepeatTable::Pair{column(first), column(second), first_->currentText(), second_->currentText()});
+}
+
+void RepeatScreen::changeEvent(QEvent* event) {
+  if (event->type() == QEvent::PaletteChange && repeat_) showVerdict();
+  QWidget::changeEvent(event);
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Several recordings of one rig: each calibrated alone, then all together; how well they agree, which do not fit, and any
+// two beside each other.
+#pragma once
+
+#include "core/data/repeatability.h"
+
+#include <QStringList>
+#include <QWidget>
+
+#include <optional>
+
+class QComboBox;
+class QLabel;
+class QListWidget;
+class QPushButton;
+class QStackedWidget;
+
+namespace evical::ui {
+
+class PathRow;
+class RepeatedList;
+class RepeatTable;
+class WorkBar;
+
+class RepeatScreen : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit RepeatScreen(QWidget* parent = nullptr);
+
+  PathRow& folder() { return *folder_; }
+  WorkBar& work() { return *work_; }
+
+  QStringList files() const;
+  void addFiles(const QStringList& files);  // those that are not listed yet
+  void setOpenFile(const QString& file);    // what is open in the window; empty: nothing
+  void setRepeat(std::optional<Repeatability> repeat);
+
+ signals:
+  void filesChanged();
+  void addRequested();
+  void repeatRequested();
+  void cancelRequested();
+  void openFolderRequested();
+  void reportRequested();
+  void openResultRequested(int recording);  // -1: of all together
+
+ protected:
+  void changeEvent(QEvent* event) override;
+
+ private:
+  QWidget* makeForm();
+  QWidget* makeFiles();
+  QWidget* makeEmpty();
+  QWidget* makeContent();
+  QWidget* makeNumbers();
+  QWidget* makeRecordings();
+  void offer();
+  void removeChosen();
+  void showVerdict();
+  void offerPairs();
+  void comparePair();
+
+  QListWidget* files_;
+  QPushButton *add_open_, *remove_;
+  PathRow* folder_ = nullptr;
+  WorkBar* work_ = nullptr;
+  QStackedWidget* stack_;
+  QLabel *icon_, *verdict_, *reason_, *ratio_;
+  QComboBox *first_, *second_;
+  RepeatTable* numbers_;
+  RepeatedList* recordings_;
+  QListWidget* notes_;
+  QPushButton* open_result_;
+  QString open_file_;
+  std::optional<Repeatability> repeat_;
+};
+
+}  // namespace evical::ui

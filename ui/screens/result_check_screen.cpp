@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/result_check_screen.h"
+
+#include "ui/screens/check_table.h"
+#include "ui/screens/check_words.h"
+#include "ui/screens/path_row.h"
+#include "ui/screens/selectable_label.h"
+#include "ui/screens/work_bar.h"
+#include "ui/theme/theme.h"
+
+#include <QEvent>
+#include <QGridLayout>
+#include <QLabel>
+#include <QListWidget>
+#include <QMenu>
+#include <QPushButton>
+#include <QStackedWidget>
+#include <QVBoxLayout>
+
+namespace evical::ui {
+namespace {
+
+QString titleOf(CheckVerdict verdict) {
+  switch (verdict) {
+    case CheckVerdict::StillGood:
+      return QObject::tr("Still good");
+    case CheckVerdict::Changed:
+      return QObject::tr("Changed");
+    case CheckVerdict::CannotTell:
+      break;
+  }
+  return QObject::tr("Cannot tell");
+}
+
+QIcon iconOf(CheckVerdict verdict) {
+  if (verdict == CheckVerdict::StillGood) return icon("done", theme().good);
+  return verdict == CheckVerdict::Changed ? icon("error", theme().bad) : icon("warning", theme().warning);
+}
+
+}  // namespace
+
+ResultCheckScreen::ResultCheckScreen(QWidget* parent)
+    : QWidget(parent),
+      results_(new QMenu(this)),
+      stack_(new QStackedWidget(this)),
+      icon_(new QLabel(this)),
+      verdict_(selectableLabel("title", {}, this)),
+      reason_(selectableLabel("", {}, this)),
+      table_(new CheckTable(this)),
+      notes_(new QListWidget(this)),
+      save_(new QPushButton(icon("export"), tr("Save..."), this)) {
+  verdict_->setObjectName("check_verdict");
+  reason_->setObjectName("check_reason");
+  save_->setObjectName("save_check");
+  save_->setToolTip(tr("Write check.yaml and the report to a folder"));
+  auto* const layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(10);
+  layout->addWidget(makeForm());
+  stack_->addWidget(makeEmpty());
+  stack_->addWidget(makeContent());
+  layout->addWidget(stack_, 1);
+  connect(save_, &QPushButton::clicked, this, &ResultCheckScreen::saveRequested);
+  setKeptRuns({});
+  setCheck({});
+  offer();
+}
+
+QWidget* ResultCheckScreen::makeForm() {
+  auto* const card = new QFrame(this);
+  card->setProperty("card", "true");
+  auto* const grid = new QGridLayout;
+  result_ = new PathRow("old_result", tr("&Old result"),
+                        tr("A folder that a calibration or an export has written, or its result.yaml"), *grid,
+                        card);
+  recording_ =
+      new PathRow("new_recording", tr("&New recording"),
+                  tr("Some ten seconds before the same board, or a session of them. Board and sensors of a\n"
+                     "recording are those that are kept beside the old result."),
+                  *grid, card);
+  result_->setMenu(results_);
+  grid->setColumnStretch(1, 1);
+  work_ = new WorkBar("check_result", "check", tr("Check"),
+                      tr("Calibrate the new recording, and test each quantity's change"), card);
+  work_->addButton(save_);
+  auto* const layout = new QVBoxLayout(card);
+  layout->setContentsMargins(14, 10, 14, 10);
+  layout->addWidget(selectableLabel("heading", tr("Is an old calibration still good?"), card));
+  layout->addLayout(grid);
+  layout->addWidget(work_);
+  connect(result_, &PathRow::changed, this, &ResultCheckScreen::offer);
+  connect(recording_, &PathRow::changed, this, &ResultCheckScreen::offer);
+  connect(work_, &WorkBar::startRequested, this, &ResultCheckScreen::checkRequested);
+  connect(work_, &WorkBar::cancelRequested, this, &ResultCheckScreen::cancelRequested);
+  return card;
+}
+
+QWidget* ResultCheckScreen::makeEmpty() {
+  constexpr int kText_px = 560;
+  auto* const empty = new QWidget(this);
+  auto* const text =
+      selectableLabel("hint",
+                      tr("Move the rig before the board for some ten seconds, as for a calibration, and "
+                         "choose that recording above. It is calibrated anew and held against the old "
+                         "result: each quantity is called unchanged, changed, or not told, where the "
+                         "recording would not have shown a change that matters."),
+                      empty);
+  text->setMaximumWidth(kText_px);
+  auto* const row = new QHBoxLayout;
+  row->addStretch();
+  row->addWidget(text, 1);
+  row->addStretch();
+  auto* const layout = new QVBoxLayout(empty);
+  layout->addStretch(1);
+  layout->addLayout(row);
+  layout->addStretch(2);
+  return empty;
+}
+
+QWidget* ResultCheckScreen::makeContent() {
+  constexpr int kNotes_px = 110;
+  auto* const content = new QWidget(this);
+  auto* const words = new QVBoxLayout;
+  words->setSpacing(2);
+  words->addWidget(verdict_);
+  words->addWidget(reason_);
+  auto* const header = new QHBoxLayout;
+  header->setSpacing(12);
+  header->addWidget(icon_, 0, Qt::AlignTop);
+  header->addLayout(words, 1);
+  notes_->setObjectName("check_notes");
+  notes_->setAccessibleName(tr("What to do, and notes"));
+  notes_->setWordWrap(true);
+  notes_->setMaximumHeight(kNotes_px);
+  notes_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  auto* const layout = new QVBoxLayout(content);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addLayout(header);
+  layout->addWidget(table_, 1);
+  layout->addWidget(notes_);
+  return content;
+}
+
+void ResultCheckScreen::setKeptRuns(const std::vector<std::pair<QString, QString>>& runs) {
+  results_->clear();
+  results_->addAction(icon("folder"), tr("A result's &folder..."), this,
+                      &ResultCheckScreen::resultFolderRequested);
+  results_->addAction(icon("open"), tr("A &result.yaml..."), this, &ResultCheckScreen::resultFileRequested);
+  if (!runs.empty()) results_->addSection(tr("Runs of this session"));
+  for (const auto& [title, folder] : runs)
+    results_->addAction(title, this, [this, chosen = folder] { result_->setPath(chosen); });
+}
+
+void ResultCheckScreen::setCheck(std::optional<CalibrationCheck> check) {
+  check_ = std::move(check);
+  save_->setVisible(check_.has_value());
+  stack_->setCurrentIndex(check_ ? 1 : 0);
+  if (!check_) return;
+  showVerdict();
+  showNotes();
+  table_->setQuantities(check_->quantities);
+  table_->setVisible(!check_->quantities.empty());
+}
+
+void ResultCheckScreen::offer() {
+  work_->setHindrance(result_->path().isEmpty()      ? tr("Choose the old result")
+                      : recording_->path().isEmpty() ? tr("Choose the new recording")
+                                                     : QString());
+}
+
+void ResultCheckScreen::showVerdict() {
+  constexpr int kIcon_px = 34;
+  icon_->setPixmap(iconOf(check_->verdict).pixmap(QSize(kIcon_px, kIcon_px), devicePixelRatioF()));
+  verdict_->setText(titleOf(check_->verdict));
+  verdict_->setAccessibleName(verdict_->text());
+  reason_->setText(sentence(QString::fromStdString(check_->reason)));
+}
+
+void ResultCheckScreen::showNotes() {
+  notes_->clear();
+  for (const std::string& advice : check_->advice)
+    notes_->addItem(new QListWidgetItem(icon("right"), sentence(QString::fromStdString(advice))));
+  for (const std::string& note : check_->notes)
+    notes_->addItem(new QListWidgetItem(icon("info"), sentence(QString::fromStdString(note))));
+  notes_->addItem(new QListWidgetItem(
+      icon("info"), tr("A calibration that has not changed is called changed in %1 of 1000 checks.")
+                        .arg(1e3 * check_->false_alarms, 0, 'g', 2)));
+}
+
+void ResultCheckScreen::changeEvent(QEvent* event) {
+  if (event->type() == QEvent::PaletteChange && check_) {
+    showVerdict();
+    showNotes();
+  }
+  QWidget::changeEvent(event);
+}
+
+}  // namespace evical::ui

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A page's own job: the button that starts it, how far it is, the button that stops it.
+#pragma once
+
+#include <QWidget>
+
+class QHBoxLayout;
+class QLabel;
+class QProgressBar;
+class QPushButton;
+
+namespace evical::ui {
+
+class WorkBar : public QWidget {
+  Q_OBJECT
+
+ public:
+  WorkBar(const QString& name, const QString& icon_name, const QString& title, const QString& tip,
+          QWidget* parent);
+
+  void addButton(QPushButton* button);  // at the right end
+  // Empty: it can start; else why not, beside the button.
+  void setHindrance(const QString& why);
+  void setRunning(bool own, bool other);
+  void setProgress(const QString& stage, double fraction);
+
+ signals:
+  void startRequested();
+  void cancelRequested();
+
+ private:
+  void offer();
+
+  QPushButton *start_, *cancel_;
+  QProgressBar* bar_;
+  QLabel* words_;
+  QHBoxLayout* layout_;
+  QString tip_, hindrance_;
+  bool own_ = false, other_ = false;
+};
+
+}  // namespace evical::ui

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/window/page_work.h"
+
+#include "core/data/calibration_stage.h"
+#include "ui/document/calibration_document.h"
+#include "ui/jobs/job_runner.h"
+#include "ui/screens/work_bar.h"
+
+#include <QDir>
+#include <QSettings>
+
+#include <utility>
+
+namespace evical::ui {
+namespace {
+
+// "bag_2 (2 of 3): Read and detect".
+QString wordsOf(const QString& stage) {
+  const QString last = stage.section(": ", -1);
+  QString title = last;
+  for (const StageRow& row : kCalibrationStages)
+    if (last == row.name) title = QObject::tr(row.title);
+  return stage.left(stage.size() - last.size()) + title;
+}
+
+}  // namespace
+
+void wireWork(WorkBar& bar, JobRunner& runner, std::function<bool()> own) {
+  // Whose job it is its owner knows once it is told that it has begun, or has ended.
+  const auto show = [&bar, &runner, own] { bar.setRunning(own() && runner.running(), runner.running()); };
+  QObject::connect(&runner, &JobRunner::started, &bar, show);
+  QObject::connect(&runner, &JobRunner::finished, &bar, show);
+  QObject::connect(&runner, &JobRunner::progressed, &bar, [&bar](const JobProgress& progress) {
+    bar.setProgress(wordsOf(progress.stage), progress.fraction);
+  });
+}
+
+QString openFileOf(const CalibrationDocument& document) {
+  if (!document.hasSession()) return {};
+  return document.file().isEmpty() ? QString::fromStdString(document.session().recording.string())
+                                   : document.file();
+}
+
+QString lastUsedFolder() {
+  return QSettings().value("last_folder", QDir::homePath()).toString();
+}
+
+QString recordingsFilter(bool with_sessions) {
+  const QString recordings =
+      "*.bag *.bag.active *.mcap *.db3 *.zstd *.aedat4 *.aedat *.raw *.dat *.h5 *.npz *.npy *.hdf5 *.es "
+      "*.txt *.csv";
+  const QString all = QObject::tr("All files (*)");
+  if (with_sessions) return QObject::tr("Recordings and sessions (%1 *.yaml *.yml);;%2").arg(recordings, all);
+  return QObject::tr("Recordings (%1);;%2").arg(recordings, all);
+}
+
+}  // namespace evical::ui
