@@ -20,10 +20,11 @@ double effectiveBlur_px(const EventPixelModel& pixel) {
   return std::sqrt(pixel.blur_px * pixel.blur_px + 1.0 / 12.0);
 }
 
-// Of a step that a Gaussian blurs, nearly: a cubic of as much variance, 0 to 1 within 2.2 sigmas to either side.
+// Of a step that a Gaussian blurs, nearly: a cubic of as much variance, 0 to 1 within so many sigmas to either side.
+constexpr float kStepReach = 2.236f;
+
 float blurredStep(float sigmas) {
-  constexpr float kReach = 2.236f;
-  const float u = std::clamp(0.5f + 0.5f * sigmas / kReach, 0.0f, 1.0f);
+  const float u = std::clamp(0.5f + 0.5f * sigmas / kStepReach, 0.0f, 1.0f);
   return u * u * (3.0f - 2.0f * u);
 }
 
@@ -63,6 +64,7 @@ RoomRenderer::RoomRenderer(const Scenario& scenario, std::size_t index)
 
 RoomRenderer::Instant RoomRenderer::at(const RigidTransform& world_from_camera) const {
   Instant instant;
+  instant.world_from_camera = world_from_camera;
   instant.camera_from_world = inverse(world_from_camera);
   const auto place = [&](const RoomSide& side) {
     const bool faces = side.normal().dot(world_from_camera.translation_m - side.middle_m) > 0.0;
@@ -115,9 +117,8 @@ int RoomRenderer::nearestWall(const Instant& instant, const Eigen::Vector2f& ray
 float RoomRenderer::travel(std::size_t pixel, float inverse_depth_1_m, const Instants& instants) const {
   const Eigen::Vector2f& ray = rays_[pixel];
   if (!(inverse_depth_1_m > 0.0f)) return 0.0f;
-  const RigidTransform world_from_camera = inverse(instants[0]->camera_from_world);
-  const Eigen::Vector3d in_world =
-      world_from_camera * (ray.homogeneous().cast<double>() / static_cast<double>(inverse_depth_1_m));
+  const Eigen::Vector3d in_world = instants[0]->world_from_camera * (ray.homogeneous().cast<double>() /
+                                                                     static_cast<double>(inverse_depth_1_m));
   const Eigen::Matrix2f px_per_ray = ray_per_px_[pixel].inverse();
   Eigen::Vector2f before = ray;
   float path = 0.0f;
@@ -132,33 +133,99 @@ float RoomRenderer::travel(std::size_t pixel, float inverse_depth_1_m, const Ins
   return path;
 }
 
-void RoomRenderer::look(const Tile& tile, const Instants& instants, TileView& view) const {
+// Boxes whose spheres may be seen there, the nearest first.
+void RoomRenderer::findBoxes(const Tile& tile, const Instants& instants, TileView& view) const {
   view.boxes.clear();
-  view.travel_px = 0.0f;
-  view.wall = -2;  // not known yet
-  float nearest_1_m = 0.0f;
   const Cone cone = coneOf(tile);
   constexpr double kSlack_rad = 0.02;  // what moves between the three instants, and what blur adds
+  const auto distance = [&](int k) { return instants[1]->box_middles_m[static_cast<std::size_t>(k)].norm(); };
   for (std::size_t k = 0; k < room_.boxes.size(); ++k) {
-    const double radius = room_.boxes[k].radius_m;
-    bool seen = false;
-    for (const Instant* instant : instants) {
+    const auto seenAt = [&](const Instant* instant) {
       const Eigen::Vector3d& middle = instant->box_middles_m[k];
-      const double distance = middle.norm(),
-                   turn = std::acos(std::clamp(cone.axis.dot(middle) / distance, -1.0, 1.0));
-      const double reach = std::asin(std::min(radius / distance, 1.0)) + cone.half_angle_rad + kSlack_rad;
-      if (turn > reach) continue;
-      seen = true;
-      nearest_1_m = std::max(nearest_1_m, static_cast<float>(1.0 / std::max(distance - radius, 0.05)));
-    }
-    if (seen) view.boxes.push_back(static_cast<int>(k));
-  }
-  std::sort(view.boxes.begin(), view.boxes.end(), [&](int a, int b) {
-    const auto distance = [&](int k) {
-      return instants[1]->box_middles_m[static_cast<std::size_t>(k)].norm();
+      const double away_m = middle.norm(),
+                   turn_rad = std::acos(std::clamp(cone.axis.dot(middle) / away_m, -1.0, 1.0)),
+                   radius_rad = std::asin(std::min(room_.boxes[k].radius_m / away_m, 1.0));
+      return turn_rad < radius_rad + cone.half_angle_rad + kSlack_rad;
     };
-    return distance(a) < distance(b);
-  });
+    if (std::any_of(instants.begin(), instants.end(), seenAt)) view.boxes.push_back(static_cast<int>(k));
+  }
+  std::sort(view.boxes.begin(), view.boxes.end(), [&](int a, int b) { return distance(a) < distance(b); });
+}
+
+// Told by the tile's corners: a side's outline is straight, and so, nearly, is the tile's.
+RoomRenderer::Extent RoomRenderer::extentOf(std::size_t box, std::size_t side, const Tile& tile,
+                                            const Instants& instants) const {
+  constexpr float kSlack_px = 1.5f;  // lens distortion, and what moves between the instants
+  const float clear_px = kStepReach * blur_px_ + kSlack_px;
+  const Eigen::Array2f half_m = room_.boxes[box].sides[side].half_m.cast<float>().array();
+  bool all = true;
+  std::array<bool, 4> beyond = {true, true, true, true};  // this edge, all corners
+  bool faces = false, behind = true;
+  for (const Instant* instant : instants) {
+    const PlacedSide& placed = instant->boxes[box][side];
+    faces = faces || placed.faces;
+    all = all && placed.faces;
+    for (const int y : {tile.y_px, tile.y_px + tile.height_px - 1})
+      for (const int x : {tile.x_px, tile.x_px + tile.width_px - 1}) {
+        const auto pixel = static_cast<std::size_t>(y * width_px_ + x);
+        const Eigen::Matrix3f& h = placed.side_from_ray;
+        const Eigen::Vector3f at = h * rays_[pixel].homogeneous();
+        if (!(at.z() > 1e-3f)) {
+          all = false;
+          beyond.fill(false);
+          continue;
+        }
+        behind = false;
+        const Eigen::Vector2f place_m = at.hnormalized();
+        const Eigen::Matrix2f per_px =
+            (h.topLeftCorner<2, 2>() - place_m * h.block<1, 2>(2, 0)) / at.z() * ray_per_px_[pixel];
+        const Eigen::Array2f clear_m = clear_px * per_px.rowwise().norm().array();
+        all = all && (place_m.array().abs() < half_m - clear_m).all();
+        for (int k = 0; k < 2; ++k) {
+          beyond[static_cast<std::size_t>(k)] &= place_m[k] > half_m[k] + clear_m[k];
+          beyond[static_cast<std::size_t>(2 + k)] &= place_m[k] < -half_m[k] - clear_m[k];
+        }
+      }
+  }
+  if (all) return Extent::All;
+  const bool missed = behind || std::find(beyond.begin(), beyond.end(), true) != beyond.end();
+  return faces && !missed ? Extent::Part : Extent::Nothing;
+}
+
+// Boxes that miss the tile after all, and those behind a side that fills it.
+void RoomRenderer::dropHidden(const Tile& tile, const Instants& instants, TileView& view) const {
+  view.only_side = -1;
+  std::size_t kept = 0;
+  for (const int box : view.boxes) {
+    bool seen = false;
+    int filling = -1;
+    for (std::size_t side = 0; side < 6; ++side) {
+      const Extent extent = extentOf(static_cast<std::size_t>(box), side, tile, instants);
+      seen = seen || extent != Extent::Nothing;
+      if (extent == Extent::All) filling = static_cast<int>(side);
+    }
+    if (!seen) continue;
+    view.boxes[kept++] = box;
+    if (filling < 0) continue;
+    if (kept == 1) view.only_side = filling;
+    break;
+  }
+  view.boxes.resize(kept);
+}
+
+void RoomRenderer::look(const Tile& tile, const Instants& instants, TileView& view) const {
+  view.travel_px = 0.0f;
+  view.wall = -2;  // not known yet
+  findBoxes(tile, instants, view);
+  dropHidden(tile, instants, view);
+  float nearest_1_m = 0.0f;
+  for (const int box : view.boxes) {
+    const auto k = static_cast<std::size_t>(box);
+    for (const Instant* instant : instants) {
+      const double away_m = instant->box_middles_m[k].norm() - room_.boxes[k].radius_m;
+      nearest_1_m = std::max(nearest_1_m, static_cast<float>(1.0 / std::max(away_m, 0.05)));
+    }
+  }
   for (const int y : {tile.y_px, tile.y_px + tile.height_px - 1})
     for (const int x : {tile.x_px, tile.x_px + tile.width_px - 1}) {
       const auto pixel = static_cast<std::size_t>(y * width_px_ + x);
@@ -166,8 +233,8 @@ void RoomRenderer::look(const Tile& tile, const Instants& instants, TileView& vi
       for (const Instant* instant : instants) {
         const int wall = nearestWall(*instant, rays_[pixel], &wall_1_m);
         view.wall = view.wall == -2 || view.wall == wall ? wall : -1;
-        view.travel_px = std::max({view.travel_px, travel(pixel, wall_1_m, instants)});
       }
+      view.travel_px = std::max(view.travel_px, travel(pixel, wall_1_m, instants));
       if (!view.boxes.empty())
         view.travel_px = std::max(view.travel_px, travel(pixel, nearest_1_m, instants));
     }
@@ -273,8 +340,37 @@ float RoomRenderer::lightOfBox(const Instant& instant, int box, std::size_t pixe
   return light;
 }
 
+void RoomRenderer::renderSide(const RoomSide& side, const PlacedSide& placed, const Tile& tile,
+                              float* log_intensity) const {
+  const Sharpness sharpness = sharpnessOn(placed, tile);
+  const Eigen::Matrix3f& h = placed.side_from_ray;
+  const ClutterTexture& sharp = pictures_[sharpness.level];
+  const ClutterTexture& soft = pictures_[sharpness.level + 1];
+  const Eigen::Vector2f origin = texels_per_m_ * side.picture_m.cast<float>();
+  const auto tone = static_cast<float>(side.log_tone);
+  for (int y = tile.y_px; y < tile.y_px + tile.height_px; ++y) {
+    const Eigen::Vector2f* ray = &rays_[static_cast<std::size_t>(y * width_px_ + tile.x_px)];
+    for (int x = 0; x < tile.width_px; ++x, ++ray) {
+      const float scale = texels_per_m_ / (h(2, 0) * ray->x() + h(2, 1) * ray->y() + h(2, 2));
+      const float u = scale * (h(0, 0) * ray->x() + h(0, 1) * ray->y() + h(0, 2)) + origin.x(),
+                  v = scale * (h(1, 0) * ray->x() + h(1, 1) * ray->y() + h(1, 2)) + origin.y();
+      const float light = sharp(u, v);
+      *log_intensity++ = tone + light + sharpness.part * (soft(u, v) - light);
+    }
+  }
+}
+
 void RoomRenderer::render(const Instant& instant, const Tile& tile, const TileView& view,
                           float* log_intensity) const {
+  if (view.only_side >= 0) {
+    const auto box = static_cast<std::size_t>(view.boxes.front()),
+               side = static_cast<std::size_t>(view.only_side);
+    return renderSide(room_.boxes[box].sides[side], instant.boxes[box][side], tile, log_intensity);
+  }
+  if (view.boxes.empty() && view.wall >= 0) {
+    const auto wall = static_cast<std::size_t>(view.wall);
+    return renderSide(room_.walls[wall], instant.walls[wall], tile, log_intensity);
+  }
   std::array<Sharpness, 6> sharpness;
   for (std::size_t k = 0; k < 6; ++k)
     if (view.wall < 0 || static_cast<std::size_t>(view.wall) == k)

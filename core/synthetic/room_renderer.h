@@ -25,7 +25,7 @@ class RoomRenderer {
     bool faces = false;  // it is seen from its front
   };
   struct Instant {
-    RigidTransform camera_from_world;
+    RigidTransform camera_from_world, world_from_camera;
     std::array<PlacedSide, 6> walls;
     std::vector<std::array<PlacedSide, 6>> boxes;
     std::vector<Eigen::Vector3d> box_middles_m;  // in the camera
@@ -37,6 +37,7 @@ class RoomRenderer {
   struct TileView {
     int wall = -1;           // the only one there; -1: several
     std::vector<int> boxes;  // that may be seen there, the nearest first
+    int only_side = -1;      // of the first box, where it hides all else
     float travel_px = 0.0f;  // how far the image moves there, at most
   };
   void look(const Tile& tile, const Instants& instants, TileView& view) const;
@@ -54,11 +55,19 @@ class RoomRenderer {
     float part = 0.0f;
   };
 
+  // What a tile sees of a box's side, from the first to the last instant.
+  enum class Extent { Nothing, Part, All };
+
   Cone coneOf(const Tile& tile) const;
+  Extent extentOf(std::size_t box, std::size_t side, const Tile& tile, const Instants& instants) const;
+  void findBoxes(const Tile& tile, const Instants& instants, TileView& view) const;
+  void dropHidden(const Tile& tile, const Instants& instants, TileView& view) const;
   int nearestWall(const Instant& instant, const Eigen::Vector2f& ray, float* inverse_depth) const;
   float travel(std::size_t pixel, float inverse_depth_1_m, const Instants& instants) const;
   Sharpness sharpnessOn(const PlacedSide& side, const Tile& tile) const;
   float picture(const RoomSide& side, const Eigen::Vector2f& place_m, const Sharpness& sharpness) const;
+  void renderSide(const RoomSide& side, const PlacedSide& placed, const Tile& tile,
+                  float* log_intensity) const;
   float onWall(const Instant& instant, int wall, const Eigen::Vector2f& ray,
                const Sharpness& sharpness) const;
   float onWalls(const Instant& instant, std::size_t pixel, const std::array<Sharpness, 6>& sharpness) const;
