@@ -14,9 +14,11 @@ struct EgomotionOptions {
   int depth_columns;
   int depth_rows;
   double depth_spread;
+  double depth_error;
   double least_inliers;
   double least_speed_px_s;
   double largest_sigma_rad_s;
+  double translation_left;
   double block_s;
   int least_blocks;
   double search_s;

@@ -3,6 +3,7 @@
 #include "core/egomotion/alignment_fit.h"
 #include "core/egomotion/alignment_start.h"
 #include "core/egomotion/summed_rates.h"
+#include "core/geometry/so3.h"
 #include "core/numerics/dense.h"
 
 #include <Eigen/Cholesky>
@@ -58,6 +59,22 @@ std::optional<AlignmentMatrix> blockCovariance(const AlignmentFit& fit, const Al
   const AlignmentMatrix covariance = student * (n - 1.0) / n * sum;
   if (!covariance.allFinite()) return std::nullopt;
   return covariance;
+}
+
+// The numbers where translation is not taken out, less those where it is.
+std::optional<Eigen::Vector4d> shiftByTranslation(const std::vector<WindowMotion>& windows,
+                                                  const SummedRates& rates,
+                                                  const Eigen::Matrix3d& gyroscope_matrix,
+                                                  const AlignmentState& state) {
+  std::vector<WindowMotion> alone = windows;
+  for (WindowMotion& window : alone) window.rate_rad_s = window.turning_alone_rad_s;
+  AlignmentFit fit(coveredWindows(alone, rates, state.time_offset_s), rates, gyroscope_matrix);
+  AlignmentState there = state;
+  if (!fit.solve(there)) return std::nullopt;
+  Eigen::Vector4d shift;
+  shift.head<3>() = so3Log(there.imu_from_camera * state.imu_from_camera.transpose());
+  shift[3] = there.time_offset_s - state.time_offset_s;
+  return shift;
 }
 
 void markOutOfLine(const AlignmentFit& fit, std::vector<WindowMotion>& windows) {
@@ -133,13 +150,17 @@ RotationAlignment alignRotation(std::vector<WindowMotion>& windows, const Gyrosc
     return failed("no rotation and no time offset makes the camera turn as the gyroscope does");
   RotationAlignment out;
   const std::optional<AlignmentMatrix> covariance = blockCovariance(fit, state, options, out.blocks);
+  const std::optional<Eigen::Vector4d> shift = shiftByTranslation(windows, rates, matrix, state);
   markOutOfLine(fit, windows);
   if (!covariance) return failed("too little of the recording tells how the camera turns");
+  if (!shift) return failed("what translation does to the image cannot be told from rotation");
+  out.turning_alone = *shift;
   out.imu_from_camera = Eigen::Quaterniond(state.imu_from_camera).normalized();
   out.time_offset_s = state.time_offset_s;
   out.gyroscope_bias_rad_s = state.bias_rad_s;
   out.scale = state.scale;
-  out.covariance = covariance->topLeftCorner<4, 4>();
+  const Eigen::Vector4d left = options.translation_left * out.turning_alone;
+  out.covariance = covariance->topLeftCorner<4, 4>() + left * left.transpose();
   describe(fit, state, out);
   const SymmetricEigen eigen = symmetricEigen(out.covariance.topLeftCorner<3, 3>());
   out.weakest_in_camera = state.imu_from_camera.transpose() * eigen.vectors.col(2);

@@ -36,9 +36,12 @@ struct RotationAlignment {
   double time_offset_s = 0.0;
   Eigen::Vector3d gyroscope_bias_rad_s = Eigen::Vector3d::Zero();
   double scale = 1.0;
-  // Of the rotation about the IMU's axes [rad], and of the time offset [s]: by the scatter of blocks of the recording.
+  // Of the rotation about the IMU's axes [rad], and of the time offset [s]: by the scatter of blocks of the recording, and by
+  // what translation may have left.
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
   int blocks = 0;
+  // What the same numbers would be further, were all that moves taken as turning: how much hangs on translation.
+  Eigen::Vector4d turning_alone = Eigen::Vector4d::Zero();
   double rate_rms_rad_s = 0.0, misfit_rms_rad_s = 0.0;  // of the camera's turning, and of what is left of it
   Eigen::Vector3d weakest_in_camera =
       Eigen::Vector3d::Zero();  // axis about which the rotation is known least

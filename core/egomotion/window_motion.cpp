@@ -24,6 +24,7 @@ struct Row {
   Eigen::Matrix2d variance;      // of the slope
   std::size_t patch = 0;
   double time_s = 0.0;
+  double depth_variance = 0.0;  // of g . u, from depths that differ within the patch
   ImageMotion by_rotation, by_translation;
 };
 
@@ -49,7 +50,7 @@ Residual residualOf(const Row& row, const Motion& motion) {
   const Eigen::Vector2d flow = row.by_rotation * motion.twist.head<3>() + out.translational;
   const Eigen::Vector2d noisy = row.variance * flow;
   constexpr double kLeastVariance = 1e-12;
-  const double sigma = std::sqrt(flow.dot(noisy) + kLeastVariance);
+  const double sigma = std::sqrt(flow.dot(noisy) + row.depth_variance + kLeastVariance);
   const double error = row.slope.dot(flow) - 1.0;
   out.error = error;
   out.value = error / sigma;
@@ -92,7 +93,7 @@ class WindowFit {
   // Gauss-Newton from there.
   void refine() {
     constexpr int kIterations = 8;
-    scale_ = robustScale();
+    rescale();
     double cost = costOf(motion_);
     for (int k = 0; k < kIterations; ++k) {
       build();
@@ -110,11 +111,11 @@ class WindowFit {
       }
       if (!better) break;
       if (k == 1 || k == 3) {
-        scale_ = robustScale();
+        rescale();
         cost = costOf(motion_);
       }
     }
-    scale_ = robustScale();
+    rescale();
     build();
   }
 
@@ -153,6 +154,16 @@ class WindowFit {
 
  private:
   static constexpr double kHeld = 1e9;
+
+  // How well translation is known of each edge, and how well motion explains them all.
+  void rescale() {
+    for (Row& row : rows_) {
+      const double by_translation = translates_ ? row.slope.dot(residualOf(row, motion_).translational) : 0.0;
+      const double size = options_.depth_error * by_translation;
+      row.depth_variance = size * size;
+    }
+    scale_ = robustScale();
+  }
 
   double robustScale() const {
     std::vector<double> sizes;
@@ -333,6 +344,7 @@ WindowMotion estimateWindowMotion(std::span<const EdgeSlope> slopes, const LensR
   if (!fit.start(false)) return out;
   fit.refine();
   const double alone = fit.medianSquare();
+  out.turning_alone_rad_s = fit.motion().twist.head<3>();
   if (!fit.start(true)) return out;
   fit.refine();
   // As well, up to what three numbers more explain by chance.

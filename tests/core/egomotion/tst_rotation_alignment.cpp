@@ -1,6 +1,7 @@
 // A camera beside a gyroscope, from windows that a known rotation makes: errors, and sigmas over seeds.
 #include "core/egomotion/rotation_alignment.h"
 
+#include "core/geometry/rigid_transform.h"
 #include "core/geometry/so3.h"
 #include "tests/support/test_program.h"
 
@@ -60,6 +61,7 @@ Record recordOf(unsigned seed, double duration_s, const Eigen::Vector3d& axes = 
     window.rate_rad_s =
         mounting().conjugate() * mean +
         kSigma_rad_s * Eigen::Vector3d(normal(generator), normal(generator), normal(generator));
+    window.turning_alone_rad_s = window.rate_rad_s;
     window.covariance = kSigma_rad_s * kSigma_rad_s * Eigen::Matrix3d::Identity();
   }
   return record;
@@ -122,6 +124,22 @@ class TestRotationAlignment : public QObject {
     const Eigen::Vector3d sigmas = found.covariance.diagonal().head<3>().cwiseSqrt();
     QVERIFY2(sigmas.z() > 10.0 * sigmas.x(), qPrintable(QString::number(sigmas.z())));
     QVERIFY(std::abs((mounting() * found.weakest_in_camera).z()) > 0.9);
+  }
+
+  // What translation turns the windows by is in the sigmas in its part, and never in the rotation.
+  void whatTranslationMayLeave_isInTheSigmas() {
+    Record record = recordOf(2, 30.0);
+    const RotationAlignment found = aligned(record, mounting(), kOffset_s);
+    const Eigen::Matrix3d turned = so3Exp(Eigen::Vector3d(0.0, 0.0, 0.1));
+    for (WindowMotion& window : record.windows) window.turning_alone_rad_s = turned * window.rate_rad_s;
+    const RotationAlignment doubted = aligned(record, mounting(), kOffset_s);
+    QVERIFY2(found.found() && doubted.found(), doubted.failure.c_str());
+    QVERIFY(rotationAngleBetween_rad(found.imu_from_camera, doubted.imu_from_camera) < 1e-9);
+    QVERIFY2(std::abs(doubted.turning_alone.head<3>().norm() - 0.1) < 0.01, "rad");
+    const double more =
+        doubted.covariance.topLeftCorner<3, 3>().trace() - found.covariance.topLeftCorner<3, 3>().trace();
+    const double left = EgomotionOptions{}.translation_left * 0.1;
+    QVERIFY2(std::abs(more - left * left) < 0.2 * left * left, qPrintable(QString::number(more)));
   }
 
   void gapInTheGyroscope_leavesItsWindowsOut() {
