@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::tuple kEgomotionFields{
     Field{"window_s", &EgomotionOptions::window_s, 0.04, within(0.005, 0.5), "s",
-          "Length of the windows in each of which the camera's motion is estimated.", Level::Common},
+          "Length of the windows in each of which the camera's motion is estimated."},
     Field{"least_slopes", &EgomotionOptions::least_slopes, 200, within(20, 1000000), "",
           "Edges with a speed that a window must have."},
     Field{"most_slopes", &EgomotionOptions::most_slopes, 2000, within(20, 1000000), "",
@@ -38,7 +38,7 @@ constexpr std::tuple kEgomotionFields{
     Field{"least_blocks", &EgomotionOptions::least_blocks, 6, within(3, 1000), "",
           "Blocks with windows, below which nothing is told."},
     Field{"search_s", &EgomotionOptions::search_s, 1.0, within(0.0, 60.0), "s",
-          "The time offset is looked for within this to either side of the old one.", Level::Common}};
+          "The time offset is looked for within this to either side of the old one."}};
 constexpr auto kEgomotionDefaults = defaultsOf<EgomotionOptions, kEgomotionFields>();
 
 }  // namespace

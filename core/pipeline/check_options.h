@@ -17,6 +17,8 @@ struct CheckOptions {
   double matters_lens_px;
   double false_alarms;
   bool no_board;
+  double without_board_rotation_deg;
+  double without_board_time_offset_ms;
   double least_board_share;
 
   CheckOptions();  // the defaults

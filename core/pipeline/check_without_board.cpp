@@ -189,7 +189,9 @@ class BoardlessCheck {
       OptionRow& delay = now_.options.emplace_back();
       delay.name = "optimisation.verdict.pixel_delay_ms";
       delay.value = "0";
-      const CheckOptions& options = input_.session.options.check;
+      CheckOptions options = input_.session.options.check;
+      options.matters_rotation_deg = options.without_board_rotation_deg;
+      options.matters_time_offset_ms = options.without_board_time_offset_ms;
       testQuantities(compareQuantities({input_.before, now_, false}, options), options, out_.check);
       for (CheckedQuantity& quantity : out_.check.quantities) addTogether(quantity);
       judgeQuantities(out_.check);
