@@ -119,6 +119,7 @@ QWidget* DetectionScreen::makeToolBar() {
   fade_box_->setAccessibleName(tr("After which time events have faded"));
   camera_box_->hide();
   picture_box_ = new QComboBox;
+  picture_box_->setObjectName("picture_choice");
   picture_box_->setAccessibleName(tr("Which pictures are shown"));
   picture_box_->addItems({{}, tr("Side by side"), tr("Events over frame")});
   picture_box_->hide();
