@@ -76,6 +76,7 @@ void StepsPanel::reset() {
   rows_.clear();
   stage_.clear();
   stage_begin_s_ = elapsed_s_ = 0.0;
+  counted_s_ = -1.0;
   addStages();
 }
 
@@ -170,6 +171,9 @@ void StepsPanel::setProgress(const JobProgress& progress) {
 }
 
 void StepsPanel::setDetections(const LiveDetections& detections) {
+  constexpr double kReadable_s = 0.25;  // wrapped words lay out the panel anew, and nobody reads faster
+  if (elapsed_s_ >= counted_s_ && elapsed_s_ < counted_s_ + kReadable_s) return;
+  counted_s_ = elapsed_s_;
   StepRow* const step = aim_ == CalibrationAim::Camera ? row(stage_) : row(CalibrationStage::Detect);
   if (step != nullptr) step->setKeyNumber(windowCounts(detections));
 }
