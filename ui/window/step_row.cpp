@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/step_row.h"
 
-#include "ui/theme/steady_label.h"
 #include "ui/theme/theme.h"
 
 #include <QEvent>
@@ -76,11 +75,6 @@ StepRow::StepRow(const QString& title, bool sub_step, QWidget* parent)
   grid->addWidget(key_, 1, 1, 1, 2);
   grid->addWidget(bar_, 2, 1, 1, 2);
   title_->setText(title);
-  // Of one size whatever they say: a text that changes many times a second must not lay out the window anew.
-  const int icon_px = iconSize_px();
-  icon_->setFixedSize(icon_px, icon_px);
-  keepSize(*time_, tr("%1 s").arg("8.88"));
-  time_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   bar_->setRange(0, 1000);
   bar_->setTextVisible(false);
   bar_->setFixedHeight(kBar_px);
@@ -89,17 +83,13 @@ StepRow::StepRow(const QString& title, bool sub_step, QWidget* parent)
   showState();
 }
 
-int StepRow::iconSize_px() const {
-  return sub_step_ ? 13 : 17;
-}
-
 void StepRow::setState(StepState state) {
   state_ = state;
   showState();
 }
 
 void StepRow::showState() {
-  const int size = iconSize_px();
+  const int size = sub_step_ ? 13 : 17;
   icon_->setPixmap(stateIcon(state_).pixmap(QSize(size, size), devicePixelRatioF()));
   bar_->setVisible(state_ == StepState::Running && !sub_step_);
   setAccessibleName(text());
@@ -111,10 +101,7 @@ void StepRow::setFraction(double fraction) {
 }
 
 void StepRow::setTime(double time_s) {
-  const int decimals = time_s < 10.0 ? 2 : time_s < 100.0 ? 1 : 0;
-  const QString text = time_s < 0.0 ? QString() : tr("%1 s").arg(time_s, 0, 'f', decimals);
-  if (time_->fontMetrics().horizontalAdvance(text) > time_->width()) keepSize(*time_, text);
-  time_->setText(text);
+  time_->setText(time_s < 0.0 ? QString() : tr("%1 s").arg(time_s, 0, 'f', time_s < 10.0 ? 2 : 1));
 }
 
 void StepRow::setKeyNumber(const QString& text, const QString& in_full) {

@@ -28,7 +28,6 @@ class StepRow : public QWidget {
   void changeEvent(QEvent* event) override;
 
  private:
-  int iconSize_px() const;
   void showState();
 
   StepState state_ = StepState::Pending;
