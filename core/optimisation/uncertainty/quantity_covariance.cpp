@@ -162,17 +162,19 @@ QuantityCovariance quantityCovariance(const ProjectedInformation& information,
           congruence(report_from_tangent, safe.inverse)};
 }
 
+bool holdsPixelDelay(std::span<const CameraKind> cameras, std::size_t camera, bool has_imus) {
+  const auto hasEvents = [](CameraKind kind) { return kind == CameraKind::Events; };
+  return hasEvents(cameras[camera]) && (has_imus || !std::all_of(cameras.begin(), cameras.end(), hasEvents));
+}
+
 QuantityCovariance withPixelDelay(const CalibrationInput& input, const OptimisationOptions& options,
                                   QuantityCovariance covariance) {
-  const auto hasEvents = [](const CameraData& camera) {
-    return camera.observations.kind == CameraKind::Events;
-  };
-  if (input.imus.empty() && std::all_of(input.cameras.begin(), input.cameras.end(), hasEvents))
-    return covariance;
+  std::vector<CameraKind> kinds;
+  for (const CameraData& camera : input.cameras) kinds.push_back(camera.observations.kind);
   const QuantityInfo* const offset = &quantityInfo(kCameraQuantities, &CameraState::time_offset_s);
   for (std::size_t i = 0; i < covariance.quantities.size(); ++i) {
     const Quantity& quantity = covariance.quantities[i];
-    if (quantity.info != offset || !hasEvents(input.cameras[quantity.sensor])) continue;
+    if (quantity.info != offset || !holdsPixelDelay(kinds, quantity.sensor, !input.imus.empty())) continue;
     const Eigen::Index column = covariance.first_column[i];
     covariance.covariance(column, column) +=
         delayVariance_s2(input.cameras[quantity.sensor].observations, options);
