@@ -1,11 +1,11 @@
 #include "core/pipeline/compared_quantities.h"
 
+#include "core/data/pixel_delay.h"
 #include "core/data/quantity.h"
 #include "core/data/quantity_difference.h"
 #include "core/geometry/camera_model.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/dense.h"
-#include "core/optimisation/uncertainty/quantity_covariance.h"
 #include "core/pipeline/calibration_options.h"
 #include "core/report/truth_comparison.h"
 

@@ -1,8 +1,8 @@
 #include "core/pipeline/repeated_estimates.h"
 
+#include "core/data/pixel_delay.h"
 #include "core/geometry/gravity_tilts.h"
 #include "core/numerics/dense.h"
-#include "core/optimisation/uncertainty/quantity_covariance.h"
 #include "core/pipeline/calibration_options.h"
 
 #include <algorithm>
