@@ -16,4 +16,11 @@ inline bool holdsPixelDelay(std::span<const CameraKind> cameras, std::size_t cam
   return hasEvents(cameras[camera]) && (has_imus || !std::all_of(cameras.begin(), cameras.end(), hasEvents));
 }
 
+// What is left of such an offset's variance without a delay that is the same every time; never less than a tenth of it,
+// for the delay is not known so well.
+inline double withoutPixelDelay_s2(double variance_s2, double delay_s) {
+  constexpr double kLeast = 0.1;
+  return std::max(variance_s2 - delay_s * delay_s, kLeast * variance_s2);
+}
+
 }  // namespace evical
