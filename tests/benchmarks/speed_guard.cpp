@@ -22,8 +22,9 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <QTemporaryDir>
+
 #include <algorithm>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -42,13 +43,6 @@ constexpr double kMayGrow = 0.3;    // where the baseline does not say
 constexpr double kMayDiffer = 1.0;  // from another processor's
 constexpr std::size_t kBatch = 50'000;
 
-// Of all threads: no other work goes on in this process.
-double cpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 // As Linux tells it of the first one: name and numbers of the model, caches; empty where nothing is told.
 std::string processor() {
   std::ifstream info("/proc/cpuinfo");
@@ -58,27 +52,6 @@ std::string processor() {
       if (line.starts_with(key)) text += (text.empty() ? "" : ", ") + line.substr(line.find(':') + 2);
   return text;
 }
-
-// A folder for a moment.
-class Folder {
- public:
-  Folder() : path_(std::filesystem::temp_directory_path() / "evical_speed_guard_XXXXXX") {
-    std::string name = path_.string();
-    if (mkdtemp(name.data()) == nullptr) throw badInput(name, "can not be made", "Set TMPDIR");
-    path_ = name;
-  }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 // What a tracker gets with each batch of events.
 struct BurstBatch {
@@ -94,7 +67,7 @@ class Stages {
         camera_(scenario.cameras.front().intrinsics),
         lens_(test::simulatePass(kBatch_s, "intrinsics_fisheye")) {
     scenario_.duration_s = kEvents_s;
-    recording_ = simulate(scenario_, folder_.path(), context_).recording;
+    recording_ = simulate(scenario_, folder_.path().toStdString(), context_).recording;
     test::SimulatedPass simulated = test::simulatePass(kBatch_s, scenario);
     session_ = simulated.session;
     // One thread: waiting for another is no work.
@@ -164,7 +137,7 @@ class Stages {
  private:
   const FrontEndOptions& options() const { return session_.options.front_end; }
 
-  Folder folder_;
+  QTemporaryDir folder_;
   Scenario scenario_;
   CameraIntrinsics camera_;
   RunContext context_;
@@ -255,9 +228,9 @@ class Guard {
 
  private:
   void measure(void (Stages::*work)(), double& least_s) {
-    const double begin_s = cpu_s();
+    const double begin_s = processCpu_s();
     (stages_of_.*work)();
-    least_s = std::min(least_s, cpu_s() - begin_s);
+    least_s = std::min(least_s, processCpu_s() - begin_s);
   }
 
   Stages stages_of_;

@@ -168,11 +168,7 @@ class TestDetectionScreen : public QObject {
 
   void flow_modeShowsFlow() {
     DetectionScreen screen;
-    screen.resize(1000, 650);
-    screen.show();
-    screen.setSession(recorded_->session);
-    screen.setTime(recorded_->goodWindow().time_s);
-    settle(screen);
+    showGoodWindow(screen, *recorded_);
     QVERIFY(screen.view().legend() == ColourLegend::Polarity);
     screen.setMode(SurfaceMode::NormalFlow);
     const auto coloured = [&] {
@@ -188,11 +184,7 @@ class TestDetectionScreen : public QObject {
   // Whatever is drawn of them.
   void caption_countsTheWindowsEvents_inEveryMode() {
     DetectionScreen screen;
-    screen.resize(1000, 650);
-    screen.show();
-    screen.setSession(recorded_->session);
-    screen.setTime(recorded_->goodWindow().time_s);
-    settle(screen);
+    showGoodWindow(screen, *recorded_);
     const QRegularExpression count("([\\d,. ]+) events in the window");
     QStringList counts;
     for (const SurfaceMode mode : {SurfaceMode::Accumulated, SurfaceMode::NormalFlow, SurfaceMode::Decayed}) {
@@ -308,11 +300,7 @@ class TestDetectionScreen : public QObject {
 
   void screen_optionChangesTheWindowInView() {
     DetectionScreen screen;
-    screen.resize(1000, 650);
-    screen.show();
-    screen.setSession(recorded_->session);
-    screen.setTime(recorded_->goodWindow().time_s);
-    settle(screen);
+    showGoodWindow(screen, *recorded_);
     QCOMPARE(screen.analysis()->outcome, WindowOutcome::Complete);
     Session changed = recorded_->session;
     changed.options.front_end.grid.least_circles = 500;
