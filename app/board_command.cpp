@@ -90,8 +90,8 @@ std::map<std::string, Paper> papersByName() {
 
 std::map<std::string, BoardType> typesByName() {
   std::map<std::string, BoardType> types;
-  for (std::size_t type = 0; type < kBoardTypeNames.size(); ++type)
-    types[kBoardTypeNames[type]] = static_cast<BoardType>(type);
+  for (std::size_t type = 0; type < kPatternNames.size(); ++type)
+    types[kPatternNames[type]] = static_cast<BoardType>(type);
   return types;
 }
 

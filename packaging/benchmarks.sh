@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.." || exit 2
 packaging/install-dependencies.sh
 cmake --preset release -DEVICAL_TESTS=ON
 cmake --build --preset release --target evical_accuracy evical_intrinsics_accuracy evical_unknown_intrinsics evical_formats evical_speed \
-                                       evical_stress evical_centre_errors evical_board_starts evical_frame_cameras evical_protocol evical_maintain_accuracy evical_check_accuracy
+                                       evical evical-gui evical_stress evical_centre_errors evical_board_starts evical_frame_cameras evical_protocol evical_maintain_accuracy evical_check_accuracy
 benchmarks=build/release/tests/benchmarks
 scenarios=config/scenarios
 failed=0
@@ -63,6 +63,13 @@ run evical_maintain_accuracy --hour "$scenarios/maintain"
 
 run evical_speed "$scenarios/davis346.yaml"
 run evical_speed --duration 3 "$scenarios/hd.yaml"
+
+# A run in the window beside one on the command line.
+window=$(mktemp -d)
+printf 'base: %s/config/scenarios/davis346.yaml\n' "$PWD" > "$window/scenario.yaml"
+build/release/evical simulate "$window/scenario.yaml" -o "$window/recording" --quiet
+tests/benchmarks/window_cost.sh build/release "$window/recording/session.yaml" || failed=1
+rm -rf "$window"
 
 # How fast files are decoded, per format; fails where a packed one is below 20 million events/s.
 run evical_formats "$scenarios/davis346.yaml"

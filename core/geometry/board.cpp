@@ -2,8 +2,14 @@
 
 #include "core/base/error.h"
 
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
 
 namespace evical {
 namespace {
@@ -35,6 +41,44 @@ void validateTags(const Board& board) {
                  "Measure the black edge of a tag on the print, in metres");
 }
 
+// To the nearest other one.
+double gap_m(const std::vector<Eigen::Vector2d>& points_m, std::size_t of) {
+  double least_m2 = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < points_m.size(); ++i)
+    if (i != of) least_m2 = std::min(least_m2, (points_m[i] - points_m[of]).squaredNorm());
+  return std::sqrt(least_m2);
+}
+
+// What they measure across their longest direction, one sigma over that along it.
+double roundness(const std::vector<Eigen::Vector2d>& points_m) {
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& each : points_m) mean += each / static_cast<double>(points_m.size());
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+  for (const Eigen::Vector2d& each : points_m) scatter += (each - mean) * (each - mean).transpose();
+  const Eigen::Vector2d squares = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(scatter).eigenvalues();
+  return std::sqrt(std::max(0.0, squares[0]) / squares[1]);
+}
+
+void validatePoints(const Board& board) {
+  constexpr std::size_t kLeast = 4;
+  constexpr double kNarrowest = 0.01;  // of a line no pose can be told
+  const std::vector<Eigen::Vector2d>& points_m = board.given_m;
+  if (points_m.size() < kLeast)
+    throw badInput("board.points_m", std::to_string(points_m.size()) + " points are too few for a pose",
+                   "Give at least four, better dozens");
+  for (std::size_t i = 0; i < points_m.size(); ++i) {
+    if (!points_m[i].allFinite())
+      throw badInput("board.points_m", "point " + std::to_string(i) + " has no place",
+                     "Give x and y of each point, in metres");
+    if (!(gap_m(points_m, i) > 0.0))
+      throw badInput("board.points_m", "point " + std::to_string(i) + " is where another one is",
+                     "Give each point's own place");
+  }
+  if (!(roundness(points_m) > kNarrowest))
+    throw badInput("board.points_m", "all points lie on one line, of which no pose can be told",
+                   "Give points beside it");
+}
+
 }  // namespace
 
 int Board::pointCount() const {
@@ -43,6 +87,8 @@ int Board::pointCount() const {
       return kTagCorners * rows * cols;
     case BoardType::Charuco:
       return (rows - 1) * (cols - 1);
+    case BoardType::Points:
+      return static_cast<int>(given_m.size());
     default:
       return rows * cols;
   }
@@ -55,7 +101,15 @@ Eigen::Vector2d Board::point_m(int row, int col) const {
 
 Eigen::Vector2d Board::point_m(int index) const {
   if (type == BoardType::AprilGrid) return tagCorner_m(*this, index);
+  if (type == BoardType::Points) return given_m.at(static_cast<std::size_t>(index));
   return point_m(index / pointsInRow(), index % pointsInRow());
+}
+
+Eigen::Vector2d Board::corner_m() const {
+  Eigen::Vector2d least = Eigen::Vector2d::Zero();
+  if (!given_m.empty()) least = given_m.front();
+  for (const Eigen::Vector2d& each : given_m) least = least.cwiseMin(each);
+  return least;
 }
 
 Eigen::Vector2d Board::extent_m() const {
@@ -64,6 +118,11 @@ Eigen::Vector2d Board::extent_m() const {
       return {(cols - 1) * spacing_m + tag_size_m, (rows - 1) * spacing_m + tag_size_m};
     case BoardType::Charuco:
       return {(cols - 2) * spacing_m, (rows - 2) * spacing_m};
+    case BoardType::Points: {
+      Eigen::Vector2d most = corner_m();
+      for (const Eigen::Vector2d& each : given_m) most = most.cwiseMax(each);
+      return most - corner_m();
+    }
     default:
       return point_m(rows - 1, cols - 1)
           .cwiseMax(point_m(rows - 2, cols - 1));  // of staggered rows one ends later
@@ -88,6 +147,21 @@ bool Board::hasHalfTurnAmbiguity() const {
   }
 }
 
+Board boardOfPoints(std::vector<Eigen::Vector2d> given_m) {
+  Board board;
+  board.type = BoardType::Points;
+  board.rows = static_cast<int>(given_m.size());
+  board.cols = 1;
+  board.radius_m = 0.0;
+  std::vector<double> gaps_m;
+  for (std::size_t i = 0; i < given_m.size(); ++i) gaps_m.push_back(gap_m(given_m, i));
+  const auto middle = gaps_m.begin() + static_cast<std::ptrdiff_t>(gaps_m.size() / 2);
+  std::nth_element(gaps_m.begin(), middle, gaps_m.end());
+  board.spacing_m = *middle;
+  board.given_m = std::move(given_m);
+  return board;
+}
+
 std::vector<Eigen::Vector2d> boardPoints_m(const Board& board) {
   std::vector<Eigen::Vector2d> points;
   points.reserve(static_cast<std::size_t>(board.pointCount()));
@@ -96,6 +170,7 @@ std::vector<Eigen::Vector2d> boardPoints_m(const Board& board) {
 }
 
 void validate(const Board& board) {
+  if (!board.hasPattern()) return validatePoints(board);
   constexpr int kMostRows = 100;
   const bool tags = board.type == BoardType::AprilGrid;
   const int least = tags ? 1 : board.type == BoardType::Charuco ? 3 : 2;

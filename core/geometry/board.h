@@ -1,22 +1,26 @@
-// The printed target: a grid of circles, a checkerboard, or a grid of tags. Its points are what cameras
-// measure: centres of circles, or corners, which are circles of radius 0. Board (= world) frame: x along a row,
+// The printed target: a grid of circles, a checkerboard, a grid of tags, or any points whose places are given.
+// Its points are what cameras measure: centres of circles, or corners, which are circles of radius 0. Board (= world) frame: x along a row,
 // y down the columns, z into the board; metres. Its origin is the first circle's centre, the checkerboard's
-// first inner corner, or the top left corner of the AprilGrid's top left tag.
+// first inner corner, the top left corner of the AprilGrid's top left tag, or that of the given places.
 #pragma once
 
 #include <Eigen/Core>
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace evical {
 
-enum class BoardType { AsymmetricCircles, SymmetricCircles, Checkerboard, AprilGrid, Charuco };
+enum class BoardType { AsymmetricCircles, SymmetricCircles, Checkerboard, AprilGrid, Charuco, Points };
 // As sessions write them, in the enumeration's order.
 inline constexpr std::array kBoardTypeNames = {"asymmetric_circles", "symmetric_circles", "checkerboard",
-                                               "aprilgrid", "charuco"};
-static_assert(kBoardTypeNames.size() == static_cast<std::size_t>(BoardType::Charuco) + 1);
+                                               "aprilgrid",          "charuco",           "points"};
+static_assert(kBoardTypeNames.size() == static_cast<std::size_t>(BoardType::Points) + 1);
+// All but the last have a pattern, which can be drawn, printed and found.
+inline constexpr std::span<const char* const> kPatternNames(kBoardTypeNames.data(),
+                                                            kBoardTypeNames.size() - 1);
 constexpr const char* boardTypeName(BoardType type) {
   return kBoardTypeNames[static_cast<std::size_t>(type)];
 }
@@ -25,15 +29,17 @@ enum class CircleShade { Dark, Bright };  // dark circles on a bright board, or 
 
 struct Board {
   BoardType type = BoardType::AsymmetricCircles;
-  // Of circles; of a checkerboard's inner corners; of an AprilGrid's tags; of a ChArUco board's squares.
+  // Of circles; of a checkerboard's inner corners; of an AprilGrid's tags; of a ChArUco board's squares. Of given
+  // points: as many rows as points, of one each.
   int rows = 11;
   int cols = 4;
   // Circles: between two rows (asymmetric: that is half the distance within a row); a square's edge; from one
-  // tag to the next.
+  // tag to the next. Of given points: what lies between neighbours, as a rule.
   double spacing_m = 0.05;
   double radius_m = 0.02;  // of circles; 0: the points are corners
   CircleShade circles = CircleShade::Dark;
-  double tag_size_m = 0.0;  // edge of a tag's black square: AprilGrid, ChArUco
+  double tag_size_m = 0.0;               // edge of a tag's black square: AprilGrid, ChArUco
+  std::vector<Eigen::Vector2d> given_m;  // of type Points, by index
 
   bool operator==(const Board&) const = default;
 
@@ -42,6 +48,10 @@ struct Board {
   }
 
   bool hasTags() const { return type == BoardType::AprilGrid || type == BoardType::Charuco; }
+
+  bool hasPattern() const { return type != BoardType::Points; }
+  // What a session says its size in.
+  const char* sizeKey() const { return hasPattern() ? "spacing_m" : "points_m"; }
 
   int pointCount() const;
   // Of circles and of corners between squares; tags' corners have no such place.
@@ -54,7 +64,8 @@ struct Board {
   // bottom left, corners from the bottom left against the clock.
   Eigen::Vector2d point_m(int index) const;
 
-  // Between the outermost points, and how far the print reaches beyond them.
+  // The corner with the least x and y; that of the outermost points from it; and how far the print reaches beyond them.
+  Eigen::Vector2d corner_m() const;
   Eigen::Vector2d extent_m() const;
   double printBeyond_m() const;
 
@@ -64,11 +75,15 @@ struct Board {
   bool hasHalfTurnAmbiguity() const;
 };
 
+// Of points that are given by their places, flat ones: at least one.
+Board boardOfPoints(std::vector<Eigen::Vector2d> given_m);
+
 // All points, by index.
 std::vector<Eigen::Vector2d> boardPoints_m(const Board& board);
 
 // Throws CalibrationError (BadInput, place "board") when the numbers make no board: fewer than 2 rows or
-// columns (of tags: than 1), more than 100 of either, no size, circles or tags that touch.
+// columns (of tags: than 1), more than 100 of either, no size, circles or tags that touch; given points that are
+// fewer than four, on a line, or two in one place.
 void validate(const Board& board);
 
 }  // namespace evical

@@ -35,9 +35,13 @@ class EventViews final : public CameraViews {
 std::unique_ptr<CameraViews> cameraViews(const CameraBatch& first, const ViewRequest& request) {
   const Session& session = request.session;
   if (first.kind == CameraKind::Points) return std::make_unique<PointViews>(first, request);
+  const Board& board = session.boardOf(first.camera);
+  if (!board.hasPattern())
+    throw badInput(session.cameras[first.camera].name,
+                   "its board is a table of points, which has no pattern that could be found",
+                   "Give the camera points that another program has found (points: FILE), or another board");
   if (first.kind == CameraKind::Frames) return std::make_unique<FrameViews>(first, request);
   if (session.board_blinks) return std::make_unique<BlinkViews>(first, request);
-  const Board& board = session.boardOf(first.camera);
   if (!board.hasCircles())
     throw badInput(
         session.cameras[first.camera].name,

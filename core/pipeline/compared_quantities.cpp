@@ -1,5 +1,6 @@
 #include "core/pipeline/compared_quantities.h"
 
+#include "core/data/pixel_delay.h"
 #include "core/data/quantity.h"
 #include "core/data/quantity_difference.h"
 #include "core/geometry/camera_model.h"
@@ -233,8 +234,8 @@ class Comparison {
     differences_.insert(differences_.end(), difference.begin(), difference.end());
     columns_before_.insert(columns_before_.end(), before.begin(), before.end());
     columns_now_.insert(columns_now_.end(), now.begin(), now.end());
-    offset_.insert(offset_.end(), now.size(),
-                   info.owner == QuantityOwner::Camera && info.need == QuantityNeed::TimeOffset);
+    const bool offset = &info == &quantityInfo(kCameraQuantities, &CameraState::time_offset_s);
+    offset_of_.insert(offset_of_.end(), now.size(), offset ? pair.sensor : std::string());
     if (tested) out_.quantities.push_back(shownQuantity(row, pair, judged, all));
     return true;
   }
@@ -287,17 +288,24 @@ class Comparison {
         const auto b = static_cast<std::size_t>(j);
         double before = covarianceOf(before_.uncertainty, columns_before_[a], columns_before_[b], i == j);
         double now = covarianceOf(now_.uncertainty, columns_now_[a], columns_now_[b], i == j);
-        if (i == j && offset_[a]) {
-          before = withoutDelay(before, results_.before);
-          now = withoutDelay(now, results_.now);
+        if (i == j && !offset_of_[a].empty()) {
+          before = withoutDelay(before, results_.before, offset_of_[a]);
+          now = withoutDelay(now, results_.now, offset_of_[a]);
         }
         out_.change.covariance(i, j) = before + now;
       }
     }
   }
 
-  static double withoutDelay(double variance_s2, const NamedResult& named) {
+  static double withoutDelay(double variance_s2, const NamedResult& named, const std::string& camera) {
     constexpr double kLeast = 0.1;  // of what it was
+    std::vector<CameraKind> kinds;
+    std::size_t which = 0;
+    for (const SensorDescription& each : named.cameras) {
+      if (each.name == camera) which = kinds.size();
+      kinds.push_back(each.kind);
+    }
+    if (!holdsPixelDelay(kinds, which, !named.imus.empty())) return variance_s2;
     return std::max(variance_s2 - pixelDelayVariance_s2(named), kLeast * variance_s2);
   }
 
@@ -308,7 +316,7 @@ class Comparison {
   Eigen::Index next_ = 0;
   std::vector<double> differences_;
   std::vector<Uncertain> columns_before_, columns_now_;
-  std::vector<bool> offset_;
+  std::vector<std::string> offset_of_;  // a camera, or empty: no time offset of one
 };
 
 double sizeAlong(const ChangeTest& test, const ChangeGroup& group) {

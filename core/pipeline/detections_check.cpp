@@ -3,6 +3,7 @@
 #include "core/base/time.h"
 #include "core/data/intrinsics_yaml.h"
 #include "core/geometry/projection_difference.h"
+#include "core/pipeline/given_points.h"
 
 #include <fmt/format.h>
 
@@ -46,6 +47,24 @@ void checkSizes(const YamlNode& map, const Board& board) {
   };
   check("radius_m", board.radius_m);
   check("tag_size_m", board.tag_size_m);
+}
+
+// Points that were measured once more are a little elsewhere.
+void checkPoints(const YamlNode& said, const Board& board) {
+  constexpr double kMeasuredAgain = 0.05;  // of what lies between neighbours
+  const YamlNode node = said["points_m"];
+  const std::vector<Eigen::Vector2d> then_m = pointsFrom(node);
+  if (then_m.size() != board.given_m.size())
+    throw node.error(fmt::format("the detections are of a board of {} points, the session's has {}",
+                                 then_m.size(), board.given_m.size()),
+                     kAnother);
+  for (std::size_t i = 0; i < then_m.size(); ++i)
+    if ((then_m[i] - board.given_m[i]).norm() > kMeasuredAgain * board.spacing_m)
+      throw node.error(
+          fmt::format("the detections are of a board whose point {} is at {}, {} m, in the session it "
+                      "is at {}, {} m",
+                      i, then_m[i].x(), then_m[i].y(), board.given_m[i].x(), board.given_m[i].y()),
+          kAnother);
 }
 
 void checkTimeRange(const YamlNode& root, const Session& session) {
@@ -104,6 +123,7 @@ YamlNode loadDetections(const std::filesystem::path& folder) {
 
 void checkBoard(const YamlNode& said, const Board& board) {
   checkSame(said, "type", boardTypeName(board.type), "a board of type");
+  if (!board.hasPattern()) return checkPoints(said, board);
   checkSame(said, "rows", std::to_string(board.rows), "a board whose rows are");
   checkSame(said, "cols", std::to_string(board.cols), "a board whose columns are");
   if (board.hasCircles())

@@ -46,8 +46,10 @@ void PointViews::checkShare() const {
         fmt::format("{} of {} points have indices that this board does not have: up to {}, but the "
                     "board's points are 0 to {}",
                     unknown_, seen_, largest_, board_.pointCount() - 1),
-        "Check type, rows and cols of the board; points are counted row by row, an AprilGrid's "
-        "four a tag from the bottom left one");
+        board_.hasPattern()
+            ? "Check type, rows and cols of the board; points are counted row by row, an "
+              "AprilGrid's four a tag from the bottom left one"
+            : "Give all of the board's points in board.points_m, counted as the cameras' are");
   if (kMostShare * outside_ > seen_)
     throw badInput(stream_,
                    fmt::format("{} of {} points lie outside {} x {} px", outside_, seen_,

@@ -48,6 +48,7 @@ void sortAs(const Sensors& first, const std::string& what, const Session& first_
 }
 
 std::string boardText(const Board& board) {
+  if (!board.hasPattern()) return fmt::format("{} points", board.pointCount());
   return fmt::format("{} {} x {}, {:.6g} m apart", kBoardTypeNames[static_cast<std::size_t>(board.type)],
                      board.rows, board.cols, board.spacing_m);
 }

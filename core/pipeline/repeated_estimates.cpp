@@ -1,5 +1,6 @@
 #include "core/pipeline/repeated_estimates.h"
 
+#include "core/data/pixel_delay.h"
 #include "core/geometry/gravity_tilts.h"
 #include "core/numerics/dense.h"
 #include "core/pipeline/calibration_options.h"
@@ -264,7 +265,12 @@ double RepeatedEstimates::varyingSigma(std::size_t recording, const RigQuantity&
   // What light does to pixels' delays is in the sigmas of time offsets, and the same every time.
   const UncertaintyReport& report = resultOf(recording).uncertainty;
   const double sigma = report.standard_deviations[*columnOf(quantity.names[part], report.names)];
-  if (quantity.info->owner != QuantityOwner::Camera) return sigma;
+  const auto named = [&](const SessionCamera& camera) { return camera.name == quantity.sensor; };
+  const auto camera = std::ranges::find_if(session_.cameras, named) - session_.cameras.begin();
+  if (quantity.info != &quantityInfo(kCameraQuantities, &CameraState::time_offset_s) ||
+      !holdsPixelDelay(recorded_[recording].cameras, static_cast<std::size_t>(camera),
+                       !session_.imus.empty()))
+    return sigma;
   constexpr double kLeast = 0.1;  // of what it was
   const double delay_s = 1e-3 * session_.options.optimisation.pixel_delay_ms;
   return std::sqrt(std::max(sigma * sigma - delay_s * delay_s, kLeast * sigma * sigma));

@@ -17,7 +17,8 @@ namespace evical {
 // One recording's.
 struct RecordedEstimate {
   std::shared_ptr<const CalibrationResult> result;
-  Eigen::MatrixXd as_weighed;  // CalibrationRun::as_weighed; empty: not known, its covariance is taken
+  Eigen::MatrixXd as_weighed;       // CalibrationRun::as_weighed; empty: not known, its covariance is taken
+  std::vector<CameraKind> cameras;  // as those of the state
 };
 
 class RepeatedEstimates {

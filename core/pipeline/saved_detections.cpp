@@ -6,6 +6,7 @@
 #include "core/data/quantity_yaml.h"
 #include "core/pipeline/detections_check.h"
 #include "core/pipeline/found_intrinsics_yaml.h"
+#include "core/pipeline/given_points.h"
 #include "core/report/detections_csv.h"
 
 #include <fmt/format.h>
@@ -20,6 +21,8 @@ namespace {
 constexpr std::array kKinds = {"events", "frames", "points"};  // in CameraKind's order
 
 std::string boardYaml(const Board& board) {
+  if (!board.hasPattern())
+    return fmt::format("{{type: {}, points_m: {}}}", boardTypeName(board.type), pointsYaml(board));
   return fmt::format(
       "{{type: {}, rows: {}, cols: {}, spacing_m: {}, radius_m: {}, circles: {}, tag_size_m: {}}}",
       boardTypeName(board.type), board.rows, board.cols, board.spacing_m, board.radius_m,

@@ -2,6 +2,7 @@
 
 #include "core/base/yaml_node.h"
 #include "core/pipeline/detections_check.h"
+#include "core/pipeline/given_points.h"
 #include "core/pipeline/result_files.h"
 #include "core/pipeline/run_data.h"
 #include "core/pipeline/session_keys.h"
@@ -143,13 +144,17 @@ void readBoard(const YamlNode& detections, Session& session) {
   constexpr int kMost = 1000;
   constexpr double kMost_m = 100.0;
   const YamlNode map = detections["board"];
+  session.recording = session.source.parent_path() / detections["recording"].text();
   session.board.type = static_cast<BoardType>(map["type"].choice(kBoardTypeNames));
+  if (!session.board.hasPattern()) {
+    session.board = boardOfPoints(pointsFrom(map["points_m"]));
+    return;
+  }
   session.board.rows = map["rows"].integer(1, kMost);
   session.board.cols = map["cols"].integer(1, kMost);
   session.board.spacing_m = map["spacing_m"].real(1e-6, kMost_m, "m");
   session.board.radius_m = map["radius_m"].real(0.0, kMost_m, "m");
   session.board.tag_size_m = map["tag_size_m"].real(0.0, kMost_m, "m");
-  session.recording = session.source.parent_path() / detections["recording"].text();
 }
 
 // Reads what is in a folder, piece by piece; what cannot be read is noted.

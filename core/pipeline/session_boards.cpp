@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
 #include "core/base/yaml_node.h"
+#include "core/pipeline/given_points.h"
 
 #include <fmt/format.h>
 
@@ -87,6 +88,9 @@ void forgetSigma(OptimisationOptions& options) {
 
 // The keys of one, on lines of their own.
 std::vector<std::string> boardLines(const Board& board, const std::optional<MeasuredLength>& measured) {
+  if (!board.hasPattern())
+    return {fmt::format("type: {}", boardTypeName(board.type)),
+            fmt::format("points_m: {}", pointsYaml(board))};
   std::vector<std::string> lines = {fmt::format("type: {}", boardTypeName(board.type)),
                                     fmt::format("rows: {}", board.rows), fmt::format("cols: {}", board.cols),
                                     tellsSpacing(measured, board)

@@ -80,4 +80,27 @@ Repair ofRawAxes(const Repair& repair, const Session& session) {
   return repair;
 }
 
+std::string nameFrom(const YamlNode& node) {
+  std::string text = node.text();
+  if (text.empty()) throw node.error("is empty", "Give a name");
+  return text;
+}
+
+std::filesystem::path besideSession(const YamlNode& node, const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / nameFrom(node);
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored))
+    throw node.error(fmt::format("'{}' does not exist", path.string()),
+                     "Paths are relative to the session file");
+  return path;
+}
+
+void setFromSession(const YamlNode& node, CalibrationOptions& options, const std::string& option) {
+  try {
+    setOption(options, option, node.text());
+  } catch (const CalibrationError& problem) {
+    throw node.error(problem.problem(), problem.advice());
+  }
+}
+
 }  // namespace evical

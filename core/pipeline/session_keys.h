@@ -5,6 +5,7 @@
 #include "core/pipeline/session.h"
 
 #include <array>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,14 @@ Session readSessionOfRun(const std::filesystem::path& file);
 
 // Of a file that lists `recordings`, a session for each; of any other the one that it is. Throws as readSession.
 std::vector<Session> readRepeatedSessions(const std::filesystem::path& file);
+
+// A text that is not empty. These three throw CalibrationError (BadInput) at the node.
+std::string nameFrom(const YamlNode& node);
+
+// A file that a session names, which must exist.
+std::filesystem::path besideSession(const YamlNode& node, const std::filesystem::path& folder);
+
+void setFromSession(const YamlNode& node, CalibrationOptions& options, const std::string& option);
 
 // Seconds since the recording's start, [begin, end]. Throws CalibrationError (BadInput).
 std::array<double, 2> timeRangeFrom(const YamlNode& node);

@@ -2,6 +2,7 @@
 #include "core/data/intrinsics_yaml.h"
 #include "core/numerics/normal_gravity.h"
 #include "core/pipeline/session_boards.h"
+#include "core/pipeline/session_boards_reader.h"
 #include "core/pipeline/session_keys.h"
 #include "core/pipeline/session_priors.h"
 #include "core/report/export/export_target.h"
@@ -14,96 +15,13 @@
 namespace evical {
 namespace {
 
-std::string name(const YamlNode& node) {
-  std::string text = node.text();
-  if (text.empty()) throw node.error("is empty", "Give a name");
-  return text;
-}
-
 struct SessionFolder {
   std::filesystem::path path;
   bool recordings_may_be_gone = false;
 };
 
-std::filesystem::path besideSession(const YamlNode& node, const std::filesystem::path& folder) {
-  const std::filesystem::path path = folder / name(node);
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored))
-    throw node.error(fmt::format("'{}' does not exist", path.string()),
-                     "Paths are relative to the session file");
-  return path;
-}
-
 std::filesystem::path recordingBeside(const YamlNode& node, const SessionFolder& folder) {
-  return folder.recordings_may_be_gone ? folder.path / name(node) : besideSession(node, folder.path);
-}
-
-// A length over many spacings, in the place of spacing_m: beside it, it must say the same.
-std::optional<MeasuredLength> readMeasured(const YamlNode& board) {
-  const auto map = board.find("measured");
-  if (!map) return std::nullopt;
-  map->allowOnly({"spacings", "length_m", "std_m"});
-  constexpr int kMost = 200;
-  constexpr double kLargest_m = 100.0;
-  MeasuredLength measured;
-  measured.spacings = (*map)["spacings"].integer(1, kMost);
-  measured.length_m = (*map)["length_m"].real(1e-4, kLargest_m, "m");
-  if (const auto node = map->find("std_m")) measured.std_m = node->real(0.0, kLargest_m, "m");
-  if (const auto node = board.find("spacing_std"))
-    throw node->error("is said twice: board.measured has a std_m", "Remove one of the two");
-  constexpr double kSigmas = 3.0, kRounded = 1e-6;
-  const auto spacing = board.find("spacing_m");
-  if (!spacing) return measured;
-  const double spacing_m = spacing->real(1e-4, 10.0, "m");
-  if (std::abs(spacing_m / measured.spacing_m() - 1.0) > kSigmas * measured.relativeStd() + kRounded)
-    throw spacing->error(
-        fmt::format("{} m contradicts board.measured: {} m over {} spacings are {:.6g} m each", spacing_m,
-                    measured.length_m, measured.spacings, measured.spacing_m()),
-        "Correct one of them, or remove spacing_m; between the first circle and the last there is one "
-        "spacing less than circles");
-  return measured;
-}
-
-// Of a check that says which of a map's keys is wrong: "board.radius_m".
-template <class Check>
-void checkedAt(const YamlNode& map, const Check& check) {
-  try {
-    check();
-  } catch (const CalibrationError& problem) {
-    const std::string key = problem.place().substr(problem.place().rfind('.') + 1);
-    throw map.find(key).value_or(map).error(problem.problem(), problem.advice());
-  }
-}
-
-// Of an AprilGrid also as Kalibr has it: the gap between two tags as a share of a tag's edge.
-double readSpacing_m(const YamlNode& map, double tag_size_m) {
-  const auto share = map.find("tag_spacing"), spacing = map.find("spacing_m");
-  if (share && spacing)
-    throw share->error("says the same as spacing_m, which is there as well",
-                       "Keep spacing_m, from one tag to the next, or tag_spacing, the gap between two tags "
-                       "as a share of tag_size_m");
-  return share ? (1.0 + share->real(1e-3, 100.0, "")) * tag_size_m : map["spacing_m"].real(1e-4, 10.0, "m");
-}
-
-Board readBoard(const YamlNode& map, const std::optional<MeasuredLength>& measured) {
-  Board board;
-  board.type = static_cast<BoardType>(map["type"].choice(kBoardTypeNames));
-  std::vector<std::string> keys = {"type",      "rows",        "cols",    "measured",
-                                   "spacing_m", "spacing_std", "blinking"};
-  if (board.hasCircles()) keys.insert(keys.end(), {"radius_m", "circles"});
-  if (board.hasTags()) keys.emplace_back("tag_size_m");
-  if (board.type == BoardType::AprilGrid) keys.emplace_back("tag_spacing");
-  map.allowOnly(keys);
-  board.rows = map["rows"].integer(1, 100);
-  board.cols = map["cols"].integer(1, 100);
-  if (board.hasTags()) board.tag_size_m = map["tag_size_m"].real(1e-4, 10.0, "m");
-  board.spacing_m = measured ? measured->spacing_m() : readSpacing_m(map, board.tag_size_m);
-  board.radius_m = board.hasCircles() ? map["radius_m"].real(1e-5, 10.0, "m") : 0.0;
-  if (const auto node = map.find("circles"))
-    board.circles = static_cast<CircleShade>(node->choice({"dark", "bright"}));
-  checkedAt(map, [&] { validate(board); });
-  if (measured) checkedAt(map["measured"], [&] { validate(*measured, board); });
-  return board;
+  return folder.recordings_may_be_gone ? folder.path / nameFrom(node) : besideSession(node, folder.path);
 }
 
 Resolution readResolution(const YamlNode& node) {
@@ -124,7 +42,7 @@ template <class Sensor>
 Sensor readSource(const YamlNode& map, const std::string& sensor_name, const SessionFolder& folder) {
   Sensor sensor;
   sensor.name = sensor_name;
-  sensor.stream = name(map["stream"]);
+  sensor.stream = nameFrom(map["stream"]);
   if (const auto node = map.find("recording")) sensor.recording = recordingBeside(*node, folder);
   readClockOffset(map, sensor.clock_offset_s);
   return sensor;
@@ -154,8 +72,8 @@ SessionCamera readCamera(const YamlNode& map, const std::string& camera_name, co
   if (const auto node = map.find("resolution_px")) camera.resolution_px = readResolution(*node);
   if (const auto node = map.find("shutter"))
     camera.shutter = static_cast<Shutter>(node->choice({"global", "rolling"}));
-  if (const auto node = map.find("same_sensor_as")) camera.same_sensor_as = name(*node);
-  if (const auto node = map.find("board")) camera.board = name(*node);
+  if (const auto node = map.find("same_sensor_as")) camera.same_sensor_as = nameFrom(*node);
+  if (const auto node = map.find("board")) camera.board = nameFrom(*node);
   const auto intrinsics = map.find("intrinsics"), sigmas = map.find("intrinsics_std");
   if (sigmas && !intrinsics)
     throw sigmas->error("is of intrinsics that are not given", "Give intrinsics, too");
@@ -201,14 +119,6 @@ SessionImu readImu(const YamlNode& map, const std::string& imu_name, const Sessi
        {"acceleration_unit", "angular_rate_unit", "gyroscope_axes", "accelerometer_axes"})
     if (const auto node = map.find(key)) setFromNode(*node, key, imu);
   return imu;
-}
-
-void setFromSession(const YamlNode& node, CalibrationOptions& options, const std::string& option) {
-  try {
-    setOption(options, option, node.text());
-  } catch (const CalibrationError& problem) {
-    throw node.error(problem.problem(), problem.advice());
-  }
 }
 
 // Groups, and what groups are parts of: "optimisation" of "optimisation.solver".
@@ -282,50 +192,6 @@ void readSharing(const YamlNode& cameras, Session& session) {
   if (checked && *checked) session.options.optimisation.share_sensors = false;
 }
 
-// How well the board was measured, relative; 0: exactly.
-void readSpacingStd(const YamlNode& board, CalibrationOptions& options) {
-  const auto node = board.find("spacing_std");
-  if (!node) return;
-  options.optimisation.free_board_size = node->real(0.0, 1.0, "") > 0.0;
-  if (options.optimisation.free_board_size)
-    setFromSession(*node, options, "optimisation.board_spacing_sigma");
-}
-
-void readFirstBoard(const YamlNode& map, Session& session) {
-  const std::optional<MeasuredLength> measured = readMeasured(map);
-  session.board = readBoard(map, measured);
-  if (const auto node = map.find("blinking")) session.board_blinks = node->choice({"false", "true"}) == 1;
-  setMeasuredLength(measured, session);
-  readSpacingStd(map, session.options);
-}
-
-SessionBoard readFurtherBoard(const YamlNode& map, const std::string& board_name) {
-  if (const auto node = map.find("blinking"))
-    throw node->error("a board that blinks stands alone", "Remove it, or the other boards");
-  const std::optional<MeasuredLength> measured = readMeasured(map);
-  SessionBoard further{{board_name, readBoard(map, measured), spacingStd(measured)}, measured};
-  if (const auto node = map.find("spacing_std"))
-    further.spacing_std = std::max(kExactSpacing, node->real(0.0, 1.0, ""));
-  return further;
-}
-
-// One, or several by name: the world's first, which is that of the reference.
-void readBoards(const YamlNode& root, Session& session) {
-  const auto several = root.find("boards");
-  if (!several) return readFirstBoard(root["board"], session);
-  if (root.has("board"))
-    throw several->error("is there beside board", "Keep one of the two: boards has them by name");
-  const std::vector<std::string> names = several->keys();
-  if (names.empty()) throw several->error("is empty", "Describe at least one board");
-  const std::string& seen = session.cameras[session.worldCamera()].board;
-  const bool known = std::find(names.begin(), names.end(), seen) != names.end();
-  session.board_name = known ? seen : names.front();
-  readFirstBoard((*several)[session.board_name], session);
-  for (const std::string& each : names)
-    if (each != session.board_name)
-      session.further_boards.push_back(readFurtherBoard((*several)[each], each));
-}
-
 // Where on earth it was recorded.
 void readGravity(const YamlNode& map, CalibrationOptions& options) {
   map.allowOnly({"latitude_deg", "height_m"});
@@ -381,7 +247,7 @@ Session sessionFrom(const YamlNode& root, const SessionFolder& folder, const std
   if (const auto node = root.find("time_range_s")) session.time_range_s = timeRangeFrom(*node);
   if (const auto node = root.find("gravity"); node && !node->isNull()) readGravity(*node, session.options);
   readSensors(root, folder, session);
-  readBoards(root, session);
+  readBoards(root, folder.path, session);
   if (const auto node = root.find("prior"); node && !node->isNull()) readPriors(*node, session);
   if (const auto node = root.find("options")) readOptions(*node, session.options);
   readSharing(root["cameras"], session);

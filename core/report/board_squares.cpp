@@ -84,6 +84,16 @@ Boxes charuco(const Board& board, const std::string& markers) {
   return boxes;
 }
 
+// Of points nothing but their places is known.
+std::vector<PaintedBox> dots(const Board& board) {
+  constexpr double kOfSpacing = 0.15;
+  std::vector<PaintedBox> boxes;
+  const double size_m = kOfSpacing * board.spacing_m;
+  for (const Eigen::Vector2d& point_m : board.given_m)
+    paintSquare(point_m - Eigen::Vector2d::Constant(0.5 * size_m), size_m, boxes);
+  return boxes;
+}
+
 }  // namespace
 
 std::vector<PaintedBox> boardSquares(const Board& board, const TagPrint& print) {
@@ -94,6 +104,8 @@ std::vector<PaintedBox> boardSquares(const Board& board, const TagPrint& print) 
       return tagGrid(board, print.border_bits);
     case BoardType::Charuco:
       return charuco(board, print.markers);
+    case BoardType::Points:
+      return dots(board);
     default:
       return {};
   }

@@ -12,7 +12,7 @@ namespace {
 constexpr double kLargestBow_m = 0.1;
 
 void readMeasures(const YamlNode& map, Board& board) {
-  if (const auto node = map.find("type")) board.type = static_cast<BoardType>(node->choice(kBoardTypeNames));
+  if (const auto node = map.find("type")) board.type = static_cast<BoardType>(node->choice(kPatternNames));
   get(map, "circles", board.circles, {"dark", "bright"});
   get(map, "rows", board.rows, 1, 100);
   get(map, "cols", board.cols, 1, 100);

@@ -122,6 +122,14 @@ double rmsOf(const std::vector<CentreError>& errors, const ErrorFit& fit) {
   return errors.empty() ? 0.0 : std::sqrt(squares / (2.0 * static_cast<double>(errors.size())));
 }
 
+// What q makes of centres in the recording, as it moves: of the RMS error beside it this is all that q can be.
+double accelerationPart_px(const std::vector<CentreError>& errors, double q_s2) {
+  double squares = 0.0;
+  for (const CentreError& error : errors) squares += error.acceleration_px_s2.squaredNorm();
+  return errors.empty() ? 0.0
+                        : std::abs(q_s2) * std::sqrt(squares / (2.0 * static_cast<double>(errors.size())));
+}
+
 // How far centres lie behind along their motion, by speed, apart where the image slows down and where it
 // speeds up.
 void printSpeeds(const std::vector<CentreError>& errors) {
@@ -173,9 +181,9 @@ FrontEndOptions optionsOf(const std::string& variant) {
 
 void printHeader() {
   fmt::print(
-      "| scenario | seed | options | windows | circles | delay, ms | lead, px | q, ms^2 | gain, 1e-3 | RMS, "
-      "px "
-      "| errors over sigmas | front end, s |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "| scenario | seed | options | windows | circles | delay, ms | lead, px | q, ms^2 | of it in px, RMS | "
+      "gain, 1e-3 | RMS, px | errors over sigmas | front end, s "
+      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
 }
 
 void runVariant(const Scenario& scenario, const std::vector<Event>& events, const std::string& variant,
@@ -193,11 +201,12 @@ void runVariant(const Scenario& scenario, const std::vector<Event>& events, cons
       fitErrors(errors, [](const CentreError& error) { return error.acceleration_px_s2; });
   const ErrorFit by_gain = fitErrors(errors, [](const CentreError& error) { return error.from_mean_px; });
   fmt::print(
-      "| {} | {} | {} | {} of {} | {} | {:.3f} | {:.3f} | {:.1f} | {:.2f} | {:.4f} | {:.2f} | {:.1f} |\n",
+      "| {} | {} | {} | {} of {} | {} | {:.3f} | {:.3f} | {:.1f} | {:.4f} | {:.2f} | {:.4f} | {:.2f} | "
+      "{:.1f} |\n",
       scenario.name, scenario.seed, variant.empty() ? "default" : variant, observations.views.size(),
       observations.windows.size(), errors.size(), 1e3 * by_acceleration.delay_s, by_acceleration.lead_px,
-      1e6 * by_acceleration.third, 1e3 * by_gain.third, rmsOf(errors, by_acceleration), by_acceleration.chi,
-      spent_s);
+      1e6 * by_acceleration.third, accelerationPart_px(errors, by_acceleration.third), 1e3 * by_gain.third,
+      rmsOf(errors, by_acceleration), by_acceleration.chi, spent_s);
   if (speeds) printSpeeds(errors);
   std::fflush(stdout);
 }

@@ -260,6 +260,31 @@ class TestBoardsForm : public QObject {
     QCOMPARE(again.cameras[1].board, std::string("left wall"));
     QCOMPARE(sessionYaml(again, "/"), sessionYaml(test.session(), "/"));
   }
+
+  // They are a file's: shown, but neither chosen nor counted here.
+  void givenPoints_areShown_andMayGiveWay() {
+    BoardForm form;
+    const auto isShown = [&](const QString& title) {
+      for (QLabel* const label : form.findChildren<QLabel*>())
+        if (label->text() == title) return !label->isHidden();
+      return false;
+    };
+    auto* const type = form.findChildren<QComboBox*>().at(0);
+    const auto canBeChosen = [&] {
+      const QModelIndex points = type->model()->index(static_cast<int>(BoardType::Points), 0);
+      return (type->model()->flags(points) & Qt::ItemIsEnabled) != 0;
+    };
+    form.setBoard({}, {});
+    QVERIFY(!canBeChosen() && isShown("Rows") && isShown("Spacing [mm]"));
+    form.setBoard(boardOfPoints({{-0.1, 0.0}, {0.1, 0.0}, {0.0, 0.1}, {0.1, 0.2}}), {});
+    QCOMPARE(type->currentText(), QString("Points of a table"));
+    QVERIFY(canBeChosen() && !isShown("Rows") && !isShown("Spacing [mm]") && !isShown("Tag [mm]"));
+    std::vector<Board> edited;
+    connect(&form, &BoardForm::edited, &form, [&](const Board& board) { edited.push_back(board); });
+    type->setCurrentIndex(0);
+    emit type->activated(0);
+    QVERIFY(edited == std::vector{Board()});
+  }
 };
 
 EVICAL_TEST(TestBoardsForm)

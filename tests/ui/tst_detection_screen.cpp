@@ -11,6 +11,7 @@
 
 #include <QDir>
 #include <QPainter>
+#include <QRegularExpression>
 #include <QSignalSpy>
 
 #include <algorithm>
@@ -182,6 +183,25 @@ class TestDetectionScreen : public QObject {
     };
     QTRY_VERIFY_WITH_TIMEOUT(coloured(), 20000 * kSlowdown);
     QVERIFY(screen.view().legend() == ColourLegend::Direction);
+  }
+
+  // Whatever is drawn of them.
+  void caption_countsTheWindowsEvents_inEveryMode() {
+    DetectionScreen screen;
+    screen.resize(1000, 650);
+    screen.show();
+    screen.setSession(recorded_->session);
+    screen.setTime(recorded_->goodWindow().time_s);
+    settle(screen);
+    const QRegularExpression count("([\\d,. ]+) events in the window");
+    QStringList counts;
+    for (const SurfaceMode mode : {SurfaceMode::Accumulated, SurfaceMode::NormalFlow, SurfaceMode::Decayed}) {
+      screen.setMode(mode);
+      QTest::qWait(300);
+      QTRY_VERIFY_WITH_TIMEOUT(count.match(screen.view().caption()).hasMatch(), 20000 * kSlowdown);
+      counts << count.match(screen.view().caption()).captured(1).trimmed();
+    }
+    QVERIFY2(!counts[0].isEmpty() && counts.count(counts[0]) == 3, qPrintable(counts.join(" / ")));
   }
 
   void analysis_saysWhereItWasLost() {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A whole story, from nothing to files that are handed on, by mouse and keyboard: of who has a DAVIS and a printer. A meter says how long the window ever stood still. Also run under Xvfb with a window manager.
+// A whole story, from nothing to files that are handed on, by mouse and keyboard: of who has a DAVIS and a printer, and of who has two
+// event cameras that each recorded a file. A meter says how long the window ever stood still. Also run under Xvfb with a window manager.
 #include "tests/support/test_program.h"
 #include "tests/ui/other_load.h"
 #include "tests/ui/simulated_session.h"
@@ -7,6 +8,7 @@
 #include "tests/ui/stall_meter.h"
 #include "tests/ui/window_fixture.h"
 #include "ui/detection/detection_screen.h"
+#include "ui/detection/event_view.h"
 #include "ui/detection/window_list.h"
 #include "ui/detection/window_list_model.h"
 #include "ui/document/printed_board.h"
@@ -14,11 +16,13 @@
 #include "ui/screens/print_board_dialog.h"
 #include "ui/screens/recording_screen.h"
 #include "ui/screens/result_screen.h"
+#include "ui/screens/stream_table.h"
 #include "ui/window/error_panel.h"
 #include "ui/window/export_notice.h"
 #include "ui/window/session_files.h"
 
 #include <QCheckBox>
+#include <QComboBox>
 #include <QLabel>
 #include <QPushButton>
 #include <QSpinBox>
@@ -62,6 +66,7 @@ class TestStories : public QObject {
   void initTestCase() {
     usePrivateFolders(scratch_);
     QVERIFY(QFile::exists(simulatedFurtherSession(1)));
+    QVERIFY(QFile::exists(simulatedTwoCameraSession()));
   }
   void init() { QSettings().clear(); }
 
@@ -91,7 +96,68 @@ class TestStories : public QObject {
     reopen("davis");
   }
 
+  void stereo_fromTwoFilesToExport() {
+    WindowFixture test;
+    StallMeter meter;
+    const OtherLoad others;
+    const Session known = readSession(simulatedTwoCameraSession().toStdString());
+    openRecording(test, QString::fromStdString(known.recording.string()));
+    QVERIFY(test.document().session().cameras.size() == 1);
+    addTheOtherCamera(test, QString::fromStdString(known.cameras[1].recording.string()));
+    Session session = test.document().session();
+    session.board = known.board;
+    test.document().edit(session, "The board");
+    test.document().confirmBoard();
+    describeSensors(test.document(), known);
+    looksThroughIt(test);
+    calibrate(test);
+    seesBothCameras(test);
+    comparesPoses(test, known);
+    exportAll(test, "stereo", {"openvins", "basalt"}, "OpenVINS");
+    save(test, "stereo.yaml");
+    stoodStill(meter, others);
+    QVERIFY(test.window.close());
+    reopen("stereo");
+  }
+
  private:
+  void addTheOtherCamera(WindowFixture& test, const QString& recording) {
+    answerFileDialog(recording);
+    press(test.child<QPushButton>("add_recording"));
+    auto* const streams = test.child<StreamTable>();
+    QTRY_COMPARE_WITH_TIMEOUT(streams->rowCount(), 3, kPatience_ms);  // events and IMU of the first, events
+    QComboBox* role = nullptr;
+    for (QComboBox* const box : streams->findChildren<QComboBox*>())
+      if (box->isVisible() && box->currentData().toInt() == static_cast<int>(StreamRole::Ignore)) role = box;
+    QVERIFY(role != nullptr);
+    role->setFocus();
+    QTest::keyClick(role, Qt::Key_Down);
+    emit role->activated(role->currentIndex());
+    QCOMPARE(test.document().session().cameras.size(), std::size_t{2});
+    QVERIFY(test.document().session().cameras[1].recording == recording.toStdString());
+  }
+  // One beside the other, at one moment.
+  void seesBothCameras(WindowFixture& test) {
+    test.window.showScreen("detection");
+    auto* const detection = test.child<DetectionScreen>();
+    auto* const pictures = detection->findChild<QComboBox*>("picture_choice");
+    QVERIFY(pictures != nullptr && pictures->isVisible());
+    pictures->setFocus();
+    while (pictures->currentIndex() + 1 < pictures->count() && !detection->companionView().isVisible())
+      QTest::keyClick(pictures, Qt::Key_Down);
+    QTRY_VERIFY_WITH_TIMEOUT(detection->companionView().isVisible() && detection->companionView().frame() &&
+                                 detection->companionView().frame()->events > 100,
+                             kPatience_ms);
+  }
+  // Both cameras, 0.1 m from each other, as they are mounted.
+  static void comparesPoses(WindowFixture& test, const Session& known) {
+    const auto& cameras = test.document().last().run->result.state.cameras;
+    QCOMPARE(cameras.size(), known.cameras.size());
+    const RigidTransform left_from_right =
+        inverse(cameras[0].reference_from_camera) * cameras[1].reference_from_camera;
+    QVERIFY((left_from_right.translation_m - Eigen::Vector3d(0.1, 0.0, 0.0)).norm() < 2e-3);
+    QVERIFY(left_from_right.rotation.angularDistance(Eigen::Quaterniond::Identity()) < 2e-3);
+  }
   void printBoard(WindowFixture& test, const Board& board) {
     QTest::mouseClick(test.child<QPushButton>("print_board_button"), Qt::LeftButton);
     auto* const dialog = test.child<PrintBoardDialog>();

@@ -81,6 +81,10 @@ void DetectionScreen::connectEngine() {
   });
   connect(&timer_, &QTimer::timeout, this, &DetectionScreen::advance);
   timer_.setTimerType(Qt::PreciseTimer);
+  constexpr int kReadable_ms = 400;
+  panel_timer_.setSingleShot(true);
+  panel_timer_.setInterval(kReadable_ms);
+  connect(&panel_timer_, &QTimer::timeout, this, &DetectionScreen::refreshPanel);
 }
 
 void DetectionScreen::setSession(const Session& session) {
@@ -373,9 +377,13 @@ SurfaceStyle DetectionScreen::style() const {
 
 void DetectionScreen::refresh() {
   const auto& frame = view_->frame();
-  const bool here =
-      analysis_ && frame && std::abs(analysis_->time_s - frame->time_s) <= analysis_->half_width_s;
-  refreshPanel(here);
+  const bool here = analysisIsHere();
+  // Words of a run's windows are laid out as often as they can be read, not as often as there are pictures.
+  if (!following()) panel_timer_.stop();
+  if (!panel_timer_.isActive()) {
+    refreshPanel();
+    if (following()) panel_timer_.start();
+  }
   list_->setTime(time_s_);
   if (frame) view_->setCaption((following() ? tr("live  ") : QString()) + captionOf(*frame));
   if (frame) view_->setLegend(legendOf(*frame, following() ? SurfaceMode::Accumulated : style().mode));
@@ -392,7 +400,13 @@ void DetectionScreen::refresh() {
   refreshCompanion();
 }
 
-void DetectionScreen::refreshPanel(bool here) {
+bool DetectionScreen::analysisIsHere() const {
+  const auto& frame = view_->frame();
+  return analysis_ && frame && std::abs(analysis_->time_s - frame->time_s) <= analysis_->half_width_s;
+}
+
+void DetectionScreen::refreshPanel() {
+  const bool here = analysisIsHere();
   if (framesInView() && analysis_ && !here) return;  // what is shown is of a frame that was just left
   const bool unsettled = here && (framesInView() ? !analysis_->frame->settled : analysis_->searches.empty());
   const bool searching = unsettled && !timer_.isActive() && !following();

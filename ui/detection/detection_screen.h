@@ -142,7 +142,8 @@ class DetectionScreen : public QWidget {
   void takeAnalysis();
   void takeCompanion();
   void refresh();  // caption, panel, overlay
-  void refreshPanel(bool here);
+  bool analysisIsHere() const;
+  void refreshPanel();
   static QString captionOf(const SurfaceFrame& frame);
   static ColourLegend legendOf(const SurfaceFrame& frame, SurfaceMode mode);
   void adaptTo(CameraKind kind);  // controls that say nothing of this kind go
@@ -171,7 +172,7 @@ class DetectionScreen : public QWidget {
   bool time_is_chosen_ = false;  // by somebody, for the session that is open
   bool live_ = false, following_ = false;
 
-  QTimer timer_;
+  QTimer timer_, panel_timer_;
   QElapsedTimer since_frame_;
   std::optional<std::size_t> companion_;  // the camera of the other kind
   std::optional<std::size_t> second_;     // where there is none: another of the same kind

@@ -5,6 +5,7 @@
 #include "ui/detection/timeline.h"
 #include "ui/detection/window_list.h"
 #include "ui/detection/window_panel.h"
+#include "ui/theme/steady_label.h"
 #include "ui/theme/theme.h"
 
 #include <QCheckBox>
@@ -119,6 +120,7 @@ QWidget* DetectionScreen::makeToolBar() {
   fade_box_->setAccessibleName(tr("After which time events have faded"));
   camera_box_->hide();
   picture_box_ = new QComboBox;
+  picture_box_->setObjectName("picture_choice");
   picture_box_->setAccessibleName(tr("Which pictures are shown"));
   picture_box_->addItems({{}, tr("Side by side"), tr("Events over frame")});
   picture_box_->hide();
@@ -131,6 +133,7 @@ QWidget* DetectionScreen::makeToolBar() {
   row->addStretch(1);
   addListButton(row);
   status_ = new QLabel;
+  keepSize(*status_, tr("not readable to its end"));
   row->addWidget(status_);
   connect(addButton(row, "zoom-out", tr("Zoom out (-)")), &QToolButton::clicked, this,
           [this] { view_->zoomBy(0.5, QRectF(view_->rect()).center()); });

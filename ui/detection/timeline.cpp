@@ -79,12 +79,14 @@ void Timeline::setWindows(std::vector<WindowReport> windows) {
 
 void Timeline::setEventRate(RateCurve events_s) {
   event_rate_ = std::move(events_s);
+  curves_ = {};
   event_top_ = topOf(event_rate_);
   update();
 }
 
 void Timeline::setRotationRate(RateCurve rad_s) {
   rotation_rate_ = std::move(rad_s);
+  curves_ = {};
   for (float& rate : rotation_rate_.values) rate *= static_cast<float>(kDegPerRad);
   rotation_top_ = topOf(rotation_rate_);
   update();

@@ -9,6 +9,7 @@
 
 #include <QBrush>
 #include <QColor>
+#include <QPixmap>
 #include <QRectF>
 #include <QWidget>
 
@@ -91,6 +92,7 @@ class Timeline : public QWidget {
   void paintAxis(QPainter& painter) const;
   void paintCurve(QPainter& painter, const RateCurve& curve, double top, const QColor& colour,
                   bool filled) const;
+  void paintCurves(QPainter& painter);
   void paintTicks(QPainter& painter) const;
   void paintUnused(QPainter& painter) const;
   void paintCursor(QPainter& painter) const;
@@ -102,6 +104,14 @@ class Timeline : public QWidget {
   std::vector<WindowReport> windows_;  // by time
   RateCurve event_rate_, rotation_rate_;
   double event_top_ = 1.0, rotation_top_ = 1.0;  // of the curves' axes
+  // As they were last drawn: a run moves the cursor and adds windows many times a second, the curves stay.
+  struct CurvePicture {
+    QPixmap picture;
+    QSize size;
+    double begin_s = 0.0, end_s = 0.0;
+    QRgb colour = 0;
+  };
+  CurvePicture curves_;
   std::optional<double> pan_from_x_;
   bool scrubbing_ = false;
 };

@@ -91,8 +91,7 @@ void Timeline::paintEvent(QPaintEvent*) {
   paintAxis(painter);
   painter.save();
   painter.setClipRect(QRectF(curveArea().topLeft(), tickArea().bottomRight()));
-  paintCurve(painter, event_rate_, event_top_, eventColour(), true);
-  paintCurve(painter, rotation_rate_, rotation_top_, rotationColour(), false);
+  paintCurves(painter);
   paintTicks(painter);
   paintUnused(painter);
   painter.restore();
@@ -203,6 +202,23 @@ void Timeline::paintCurve(QPainter& painter, const RateCurve& curve, double top,
   painter.setPen(QPen(colour, 1.2));
   painter.drawPolyline(line);
   painter.setRenderHint(QPainter::Antialiasing, false);
+}
+
+void Timeline::paintCurves(QPainter& painter) {
+  const QRgb colour = eventColour().rgba() ^ rotationColour().rgba();  // of the theme
+  const qreal ratio = devicePixelRatioF();
+  const bool drawn = !curves_.picture.isNull() && curves_.size == size() && curves_.colour == colour &&
+                     curves_.picture.devicePixelRatio() == ratio && curves_.begin_s == visible_begin_s_ &&
+                     curves_.end_s == visible_end_s_;
+  if (!drawn) {
+    curves_ = {QPixmap(size() * ratio), size(), visible_begin_s_, visible_end_s_, colour};
+    curves_.picture.setDevicePixelRatio(ratio);
+    curves_.picture.fill(Qt::transparent);
+    QPainter on_picture(&curves_.picture);
+    paintCurve(on_picture, event_rate_, event_top_, eventColour(), true);
+    paintCurve(on_picture, rotation_rate_, rotation_top_, rotationColour(), false);
+  }
+  painter.drawPixmap(0, 0, curves_.picture);
 }
 
 std::vector<Timeline::ColumnCounts> Timeline::countColumns() const {

@@ -36,10 +36,10 @@ std::optional<PrintedBoard> lastPrintedBoard() {
   QSettings settings;
   settings.beginGroup(kGroup);
   const std::string type = settings.value("type").toString().toStdString();
-  const auto known = std::find(kBoardTypeNames.begin(), kBoardTypeNames.end(), type);
-  if (known == kBoardTypeNames.end()) return std::nullopt;
+  const auto known = std::find(kPatternNames.begin(), kPatternNames.end(), type);
+  if (known == kPatternNames.end()) return std::nullopt;
   PrintedBoard printed;
-  printed.board.type = static_cast<BoardType>(known - kBoardTypeNames.begin());
+  printed.board.type = static_cast<BoardType>(known - kPatternNames.begin());
   printed.board.rows = settings.value("rows").toInt();
   printed.board.cols = settings.value("cols").toInt();
   printed.board.spacing_m = settings.value("spacing_m").toDouble();

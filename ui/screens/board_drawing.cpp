@@ -64,13 +64,14 @@ void BoardDrawing::paintEvent(QPaintEvent*) {
   const double width_m = extent_m.x() + 2.0 * around_m, height_m = extent_m.y() + 2.0 * around_m;
   const double px_per_m =
       std::min((width() - 2.0 * kMargin_px) / width_m, (height() - 2.0 * kMargin_px) / height_m);
-  const QPointF origin(0.5 * (width() - width_m * px_per_m) + around_m * px_per_m,
+  const QPointF corner(0.5 * (width() - width_m * px_per_m) + around_m * px_per_m,
                        0.5 * (height() - height_m * px_per_m) + around_m * px_per_m);
+  const QPointF origin = corner - px_per_m * QPointF(board_.corner_m().x(), board_.corner_m().y());
   const double edge_px = around_m * px_per_m;
   painter.setPen(QPen(theme().grid_line, 1.0));
   painter.setBrush(paperOf(board_));
   const QSizeF sheet(extent_m.x() * px_per_m, extent_m.y() * px_per_m);
-  painter.drawRoundedRect(QRectF(origin, sheet).adjusted(-edge_px, -edge_px, edge_px, edge_px), 4.0, 4.0);
+  painter.drawRoundedRect(QRectF(corner, sheet).adjusted(-edge_px, -edge_px, edge_px, edge_px), 4.0, 4.0);
   paintPattern(painter, px_per_m, origin);
   paintMeasures(painter, px_per_m, origin);
 }
@@ -98,12 +99,13 @@ void BoardDrawing::paintMeasures(QPainter& painter, double px_per_m, QPointF ori
   painter.setPen(QPen(theme().axes[1], 2.0));
   painter.drawLine(origin, origin + QPointF(0.0, kAxis_px));
 
-  const Eigen::Vector2d last_m = board_.extent_m();
+  const Eigen::Vector2d first_m = board_.corner_m(), last_m = first_m + board_.extent_m();
   const Eigen::Vector2d neighbour_m = board_.point_m(0, 1);
   const double edge_px = sheetBeyond_m(board_) * px_per_m;
   painter.setPen(QPen(theme().accent, 1.5));
-  const double above_px = origin.y() - edge_px - 6.0;
-  const QPointF begin(origin.x(), above_px), end(origin.x() + px_per_m * neighbour_m.x(), above_px);
+  const double above_px = origin.y() + px_per_m * first_m.y() - edge_px - 6.0;
+  const double begin_px = origin.x() + px_per_m * first_m.x();
+  const QPointF begin(begin_px, above_px), end(begin_px + px_per_m * neighbour_m.x(), above_px);
   painter.drawLine(begin, end);
   for (const QPointF& tick : {begin, end}) painter.drawLine(tick - QPointF(0, 3), tick + QPointF(0, 3));
   painter.drawText(QPointF(begin.x(), above_px - 7.0), millimetres(neighbour_m.x()));
@@ -116,7 +118,7 @@ void BoardDrawing::paintMeasures(QPainter& painter, double px_per_m, QPointF ori
           ? tr("%1 circles, diameter %2").arg(board_.pointCount()).arg(millimetres(2.0 * board_.radius_m))
       : board_.type == BoardType::AprilGrid
           ? tr("%1 tags of %2").arg(board_.rows * board_.cols).arg(millimetres(board_.tag_size_m))
-          : tr("%1 inner corners").arg(board_.pointCount()));
+          : tr(board_.hasPattern() ? "%1 inner corners" : "%1 points").arg(board_.pointCount()));
 }
 
 }  // namespace evical::ui

@@ -14,6 +14,7 @@
 #include <QScrollBar>
 #include <QSignalBlocker>
 #include <QSpinBox>
+#include <QStandardItemModel>
 #include <QVBoxLayout>
 
 namespace evical::ui {
@@ -105,8 +106,8 @@ BoardForm::BoardForm(QWidget* parent)
       name_problem_(problemLabel(this)),
       problem_(problemLabel(this)),
       drawing_(new BoardDrawing(this)) {
-  type_->addItems(
-      {tr("Asymmetric (staggered)"), tr("Symmetric"), tr("Checkerboard"), tr("AprilGrid"), tr("ChArUco")});
+  type_->addItems({tr("Asymmetric (staggered)"), tr("Symmetric"), tr("Checkerboard"), tr("AprilGrid"),
+                   tr("ChArUco"), tr("Points of a table")});
   circles_->addItems({tr("Dark on bright"), tr("Bright on dark")});
   type_->setToolTip(
       tr("Circles, every other line shifted by half a step or none; the others are for frame "
@@ -204,7 +205,7 @@ void BoardForm::setBoard(const Board& board, const std::optional<MeasuredLength>
   spacings_->setValue(length.spacings);
   length_std_mm_->setValue(kMmPerM * length.std_m);
   spacing_mm_->setEnabled(!measured);
-  type_->setCurrentIndex(static_cast<int>(board.type));
+  showType();
   rows_->setValue(board.rows);
   cols_->setValue(board.cols);
   spacing_mm_->setValue(kMmPerM * board.spacing_m);
@@ -215,20 +216,34 @@ void BoardForm::setBoard(const Board& board, const std::optional<MeasuredLength>
   drawing_->setBoard(board);
 }
 
+// Points come from a session's file: they are shown, and may give way to another type, but cannot be chosen.
+void BoardForm::showType() {
+  const int index = static_cast<int>(board_.type);
+  const int points = static_cast<int>(BoardType::Points);
+  qobject_cast<QStandardItemModel*>(type_->model())->item(points)->setEnabled(index == points);
+  type_->setCurrentIndex(index);
+}
+
 // What such a board does not have needs no room.
 void BoardForm::showRows() {
   for (QWidget* const field : {static_cast<QWidget*>(length_mm_), static_cast<QWidget*>(spacings_),
                                static_cast<QWidget*>(length_std_mm_)})
     form_->setRowVisible(field, measured_.has_value());
+  for (QWidget* const field : {static_cast<QWidget*>(rows_), static_cast<QWidget*>(cols_),
+                               static_cast<QWidget*>(spacing_mm_), static_cast<QWidget*>(is_measured_)})
+    form_->setRowVisible(field, board_.hasPattern() && !(numbers_only_ && field == is_measured_));
   form_->setRowVisible(radius_mm_, board_.hasCircles());
   form_->setRowVisible(circles_, board_.hasCircles());
   form_->setRowVisible(tag_mm_, board_.hasTags());
 }
 
 void BoardForm::say(const QString& field) {
-  Board board = board_;
-  board.type = static_cast<BoardType>(type_->currentIndex());
-  if (board.type != board_.type) setSizes(board);
+  const auto type = static_cast<BoardType>(type_->currentIndex());
+  if (type == BoardType::Points) return;
+  Board board = board_.hasPattern() ? board_ : Board();
+  board.type = type;
+  if (type != board_.type) setSizes(board);
+  if (!board_.hasPattern()) return emit edited(board, field);
   board.rows = rows_->value();
   board.cols = cols_->value();
   if (field == "spacing_m") board.spacing_m = spacing_mm_->value() / kMmPerM;
@@ -252,7 +267,8 @@ void BoardForm::sayMeasured(const QString& field) {
 }
 
 void BoardForm::showNumbersOnly() {
-  form_->setRowVisible(is_measured_, false);
+  numbers_only_ = true;
+  showRows();
   drawing_->hide();
   // All rows at once: who holds the form scrolls.
   if (auto* const fields = findChild<QScrollArea*>())

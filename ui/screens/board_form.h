@@ -44,11 +44,13 @@ class BoardForm : public QWidget {
  private:
   void addName();
   void addMeasure(QFormLayout& form);
+  void showType();
   void showRows();
   void say(const QString& field);
   void sayMeasured(const QString& field);
 
   Board board_;
+  bool numbers_only_ = false;
   std::optional<MeasuredLength> measured_;
   QFormLayout* form_;
   QString named_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/job_status.h"
 
+#include "ui/theme/steady_label.h"
+
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QProgressBar>
@@ -33,6 +35,8 @@ JobStatus::JobStatus(const JobRunner& runner, QWidget* parent)
   layout->addWidget(bar_);
   layout->addWidget(time_left_);
   layout->addStretch();
+  // Of one size whatever it says: it changes many times a second, and must not lay out the window anew.
+  keepSize(*time_left_, tr("%1 %, about %2 left").arg("888").arg(durationText(3599.0)));
   what_->setText(tr("Ready"));
   connect(&runner_, &JobRunner::started, this, &JobStatus::begin);
   connect(&runner_, &JobRunner::progressed, this, &JobStatus::setProgress);

@@ -19,6 +19,7 @@
 #include "ui/window/kept_runs.h"
 #include "ui/window/lens_files.h"
 #include "ui/window/log_panel.h"
+#include "ui/window/page_stack.h"
 #include "ui/window/session_files.h"
 #include "ui/window/steps_panel.h"
 
@@ -79,7 +80,7 @@ MainWindow::MainWindow(const QString& version)
 MainWindow::~MainWindow() = default;
 
 void MainWindow::makeCentre() {
-  stack_ = new QStackedWidget(this);
+  stack_ = new PageStack(this);
   stack_->setMinimumSize(700, 420);  // the largest screen would ask for more than small displays have
   entries_ = buildPages(pages_, stack_);
   for (const PageEntry& entry : entries_) stack_->addWidget(entry.widget);

@@ -18,6 +18,7 @@ const char* const kKey = "check_recordings";
 
 QString boardText(const Session& session) {
   if (!session.further_boards.empty()) return QObject::tr("%1 boards").arg(session.further_boards.size() + 1);
+  if (!session.board.hasPattern()) return QObject::tr("%1 points").arg(session.board.pointCount());
   return QObject::tr("%1 x %2, %3 mm")
       .arg(session.board.rows)
       .arg(session.board.cols)

@@ -105,7 +105,9 @@ void StepRow::setTime(double time_s) {
 }
 
 void StepRow::setKeyNumber(const QString& text, const QString& in_full) {
-  key_in_full_ = in_full.isEmpty() ? text : in_full;
+  const QString full = in_full.isEmpty() ? text : in_full;
+  if (text == key_->text() && full == key_in_full_) return;
+  key_in_full_ = full;
   key_->setVisible(!text.isEmpty());
   key_->setText(text);
   showState();

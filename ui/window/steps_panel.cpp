@@ -12,6 +12,9 @@
 namespace evical::ui {
 namespace {
 
+// Words that change lay out the panel anew, and nobody reads faster.
+constexpr double kReadable_s = 0.25;
+
 // As core names them (CalibrationObserver); others are added when they come.
 const QStringList kInitialisationSteps = {"camera poses", "planar poses", "time offset",
                                           "camera-IMU rotation", "gravity and translation"};
@@ -76,6 +79,7 @@ void StepsPanel::reset() {
   rows_.clear();
   stage_.clear();
   stage_begin_s_ = elapsed_s_ = 0.0;
+  counted_s_ = timed_s_ = -1.0;
   addStages();
 }
 
@@ -166,10 +170,14 @@ void StepsPanel::setProgress(const JobProgress& progress) {
   StepRow* const now = row(stage_);
   if (now == nullptr) return;
   now->setFraction(progress.stage_fraction);
+  if (elapsed_s_ >= timed_s_ && elapsed_s_ < timed_s_ + kReadable_s && progress.stage_fraction < 1.0) return;
+  timed_s_ = elapsed_s_;
   now->setTime(elapsed_s_ - stage_begin_s_);
 }
 
 void StepsPanel::setDetections(const LiveDetections& detections) {
+  if (elapsed_s_ >= counted_s_ && elapsed_s_ < counted_s_ + kReadable_s) return;
+  counted_s_ = elapsed_s_;
   StepRow* const step = aim_ == CalibrationAim::Camera ? row(stage_) : row(CalibrationStage::Detect);
   if (step != nullptr) step->setKeyNumber(windowCounts(detections));
 }

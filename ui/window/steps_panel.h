@@ -52,6 +52,7 @@ class StepsPanel : public QWidget {
   CalibrationAim aim_ = CalibrationAim::Rig;
   QString stage_;
   double stage_begin_s_ = 0.0, elapsed_s_ = 0.0;
+  double counted_s_ = -1.0, timed_s_ = -1.0;  // when windows and seconds were last told
 };
 
 }  // namespace evical::ui

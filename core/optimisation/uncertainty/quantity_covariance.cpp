@@ -1,5 +1,6 @@
 #include "core/optimisation/uncertainty/quantity_covariance.h"
 
+#include "core/data/pixel_delay.h"
 #include "core/numerics/dense.h"
 #include "core/numerics/scaled_inverse.h"
 #include "core/optimisation/uncertainty/projected_information.h"
@@ -164,15 +165,12 @@ QuantityCovariance quantityCovariance(const ProjectedInformation& information,
 
 QuantityCovariance withPixelDelay(const CalibrationInput& input, const OptimisationOptions& options,
                                   QuantityCovariance covariance) {
-  const auto hasEvents = [](const CameraData& camera) {
-    return camera.observations.kind == CameraKind::Events;
-  };
-  if (input.imus.empty() && std::all_of(input.cameras.begin(), input.cameras.end(), hasEvents))
-    return covariance;
+  std::vector<CameraKind> kinds;
+  for (const CameraData& camera : input.cameras) kinds.push_back(camera.observations.kind);
   const QuantityInfo* const offset = &quantityInfo(kCameraQuantities, &CameraState::time_offset_s);
   for (std::size_t i = 0; i < covariance.quantities.size(); ++i) {
     const Quantity& quantity = covariance.quantities[i];
-    if (quantity.info != offset || !hasEvents(input.cameras[quantity.sensor])) continue;
+    if (quantity.info != offset || !holdsPixelDelay(kinds, quantity.sensor, !input.imus.empty())) continue;
     const Eigen::Index column = covariance.first_column[i];
     covariance.covariance(column, column) +=
         delayVariance_s2(input.cameras[quantity.sensor].observations, options);

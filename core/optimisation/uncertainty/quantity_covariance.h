@@ -34,7 +34,7 @@ QuantityCovariance quantityCovariance(const ProjectedInformation& information,
 
 // Events are late by their pixels' delay, and so are all of an event camera's: its time offset is uncertain by as much
 // as that delay, and nothing in the recording tells; more so where the two polarities' delays differ. Not where all is
-// measured by such pixels.
+// measured by such pixels (holdsPixelDelay).
 QuantityCovariance withPixelDelay(const CalibrationInput& input, const OptimisationOptions& options,
                                   QuantityCovariance covariance);
 

@@ -77,7 +77,7 @@ struct SyntheticWindow {
   BurstWindow window;
 
   explicit SyntheticWindow(const std::vector<EdgeBurst>& bursts, CircleShade shade = CircleShade::Dark)
-      : window(BoardScene({.circles = shade}, kDavis_px, std::nullopt)) {
+      : window(BoardScene({.circles = shade, .given_m = {}}, kDavis_px, std::nullopt)) {
     window.assign(bursts, 0);
   }
   SyntheticWindow(const SyntheticWindow&) = delete;
@@ -85,7 +85,7 @@ struct SyntheticWindow {
 
 // A board in front of a pinhole camera (focal length 260 px) that moves with constant rates.
 struct MovingBoard {
-  Board board = {BoardType::AsymmetricCircles, 11, 4, 0.03, 0.012, CircleShade::Dark};
+  Board board = {BoardType::AsymmetricCircles, 11, 4, 0.03, 0.012, CircleShade::Dark, 0.0, {}};
   Eigen::Vector3d angles_rad = {0.2, -0.3, 0.1}, angular_rates_rad_s = {0.2, -0.1, 0.3};
   Eigen::Vector3d middle_m = {0.0, 0.0, 0.5}, velocity_m_s = {0.15, 0.08, 0.1};
 

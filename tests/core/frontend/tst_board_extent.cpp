@@ -97,7 +97,7 @@ void TestBoardExtent::lattice_isHeldAgainstTheClaim() {
 
 void TestBoardExtent::symmetricBoard_isJudgedAlike() {
   MovingBoard moving;
-  moving.board = {BoardType::SymmetricCircles, 6, 7, 0.03, 0.01, CircleShade::Dark};
+  moving.board = {BoardType::SymmetricCircles, 6, 7, 0.03, 0.01, CircleShade::Dark, 0.0, {}};
   QCOMPARE(describe(judge(moving, {6, 7}).rows), "beyond 0 of 1, missing 0 of 1");
   QCOMPARE(describe(judge(moving, {5, 7}).rows), "beyond 1 of 1, missing 0 of 1");
   QCOMPARE(describe(judge(moving, {6, 6, 0, 1}).cols), "beyond 1 of 1, missing 0 of 1");

@@ -15,7 +15,7 @@ using namespace evical;
 using namespace evical::test;
 
 Board asymmetric(int rows, int cols) {
-  return {BoardType::AsymmetricCircles, rows, cols, 0.03, 0.012, CircleShade::Dark};
+  return {BoardType::AsymmetricCircles, rows, cols, 0.03, 0.012, CircleShade::Dark, 0.0, {}};
 }
 
 // A board seen askew, circle by circle; true_index tells who is who (-1: an outlier).

@@ -19,7 +19,7 @@ Scenario davis346() {
   Scenario scenario;
   scenario.seed = 11;
   scenario.duration_s = 2.0;
-  scenario.board = {BoardType::AsymmetricCircles, 11, 4, 0.03, 0.012, CircleShade::Dark};
+  scenario.board = {BoardType::AsymmetricCircles, 11, 4, 0.03, 0.012, CircleShade::Dark, 0.0, {}};
   SimulatedCamera camera;
   camera.intrinsics.resolution_px = {346, 260};
   camera.intrinsics.focal_length_px = {260.0, 260.0};

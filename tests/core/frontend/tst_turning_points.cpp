@@ -18,7 +18,7 @@ Scenario smallMotion() {
   Scenario scenario;
   scenario.seed = 5;
   scenario.duration_s = 4.0;
-  scenario.board = {BoardType::AsymmetricCircles, 11, 4, 0.03, 0.012, CircleShade::Dark};
+  scenario.board = {BoardType::AsymmetricCircles, 11, 4, 0.03, 0.012, CircleShade::Dark, 0.0, {}};
   scenario.scene.clutter_contrast = 0.0;
   scenario.motion.distance_amplitude_m = 0.02;
   scenario.motion.angle_amplitude_rad = {0.1, 0.1, 0.1};

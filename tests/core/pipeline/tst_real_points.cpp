@@ -52,6 +52,21 @@ class TestRealPoints : public QObject {
     QVERIFY(run.result.status == CalibrationStatus::Doubtful);
   }
 
+  // The same points by their places alone.
+  void givenPoints_areAsTheGridThatTheyAre() {
+    const QTemporaryDir work;
+    Session session = test::eurocImuApril(folder_, QDir(work.path()));
+    session.time_range_s = {0.0, 20.0};
+    const CalibrationRun grid = calibrate(session, RunContext{});
+    session.board = boardOfPoints(boardPoints_m(session.board));
+    const CalibrationRun points = calibrate(session, RunContext{});
+    const RigidTransform &one = grid.result.state.cameras.front().reference_from_camera,
+                         &other = points.result.state.cameras.front().reference_from_camera;
+    QVERIFY((one.translation_m - other.translation_m).norm() < 1e-6);
+    QVERIFY(one.rotation.angularDistance(other.rotation) < 1e-6);
+    QVERIFY(grid.result.status == points.result.status);
+  }
+
   // Both cameras' clocks are stamped at other moments of a message than their authors took: 42 ms less half of 12 ms.
   void hybridRigWithoutImu_isAsPublished() {
     const QTemporaryDir work;

@@ -16,8 +16,8 @@ Session threeBoards() {
   Session session;
   session.board_name = "plate";
   session.further_boards = {SessionBoard{{"tags", {}, 0.004}}, SessionBoard{{"wall", {}, {}}}};
-  session.further_boards[0].board = {BoardType::AprilGrid, 6, 6, 0.1, 0.0, CircleShade::Dark, 0.08};
-  session.further_boards[1].board = {BoardType::Checkerboard, 6, 9, 0.04, 0.0, CircleShade::Dark, 0.0};
+  session.further_boards[0].board = {BoardType::AprilGrid, 6, 6, 0.1, 0.0, CircleShade::Dark, 0.08, {}};
+  session.further_boards[1].board = {BoardType::Checkerboard, 6, 9, 0.04, 0.0, CircleShade::Dark, 0.0, {}};
   const std::vector<std::string> names = boardNames(session);
   for (std::size_t k = 0; k < names.size(); ++k) {
     session.cameras.push_back({"camera" + std::to_string(k), "/stream" + std::to_string(k), {}, {}});
