@@ -34,6 +34,10 @@
 #include <optional>
 #include <utility>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace evical {
 namespace {
 
@@ -91,7 +95,15 @@ void holdTimeOffsets(CalibrationInput& input) {
     if (k != input.reference_imu) input.imus[k].prior.time_offset = heldTimeOffset(input.imus[k].prior);
 }
 
-CalibrationInput inputFrom(const Session& session, const CalibrationRun& run) {
+// What passes needed on their way; a long recording's board views lie between, so that little of it goes back by itself.
+void giveBackFreeMemory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
+
+// Takes what cameras and IMUs saw out of the run's pass: of long recordings that is most of the memory.
+CalibrationInput inputFrom(const Session& session, CalibrationRun& run) {
   CalibrationInput input;
   input.start_ns = run.pass.start_ns;
   input.board_name = session.board_name;
@@ -100,12 +112,12 @@ CalibrationInput inputFrom(const Session& session, const CalibrationRun& run) {
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
     const SessionCamera& camera = session.cameras[k];
     input.cameras.push_back(
-        {camera.name, run.pass.lenses.at(k), run.pass.cameras[k], camera.prior, camera.shutter});
+        {camera.name, run.pass.lenses.at(k), std::move(run.pass.cameras[k]), camera.prior, camera.shutter});
     if (const std::size_t sensor = session.sensorOf(k); sensor != k)
       input.cameras.back().same_sensor_as = sensor;
     input.cameras.back().board = session.boardIndexOf(k);
   }
-  input.imus = run.pass.imus;
+  input.imus = std::move(run.pass.imus);
   for (std::size_t k = 0; k < session.imus.size(); ++k) input.imus[k].prior = session.imus[k].prior;
   input.reference_imu = session.referenceImu();
   input.reference_camera = session.referenceCamera();
@@ -299,6 +311,7 @@ class Calibration {
     CalibrationOutcome outcome;
     try {
       work();
+      returnPass();
       outcome.run = std::move(run_);
       return outcome;
     } catch (const Cancelled&) {
@@ -309,6 +322,7 @@ class Calibration {
       if (error.repair())
         outcome.error = CalibrationError(error).repairedBy(ofRawAxes(*error.repair(), session_));
     }
+    returnPass();
     outcome.pass = std::move(run_.pass);
     return outcome;
   }
@@ -330,6 +344,7 @@ class Calibration {
 
   void detect() {
     run_.pass = readAndDetect(session_, lenses_, context_);
+    giveBackFreeMemory();
     prepareInput();
   }
 
@@ -337,6 +352,19 @@ class Calibration {
     checkPass(session_, context_, run_.pass);
     input_ = inputFrom(session_, run_);
     if (context_.observer != nullptr) context_.observer->detectionDone(input_);
+  }
+
+  // What the input took of it, and what was left out of that.
+  void returnPass() {
+    for (std::size_t k = 0; k < input_.cameras.size(); ++k) {
+      run_.pass.cameras[k] = std::move(input_.cameras[k].observations);
+      if (k < whole_views_.size() && whole_views_[k])
+        run_.pass.cameras[k].views = std::move(*whole_views_[k]);
+    }
+    if (input_.cameras.empty()) return;
+    run_.pass.imus = std::move(input_.imus);
+    for (ImuData& imu : run_.pass.imus) imu.prior = {};
+    input_ = {};
   }
 
   void initialiseState() {
@@ -353,7 +381,10 @@ class Calibration {
     for (std::size_t k = 0; k < initial_.agreements.size(); ++k) {
       const std::optional<ClockStep>& step = initial_.agreements[k].clock_step;
       if (!step) continue;
-      const double share = keepBeside(*step, input_.cameras[k].observations.views);
+      std::vector<BoardView>& views = input_.cameras[k].observations.views;
+      whole_views_.resize(input_.cameras.size());
+      whole_views_[k] = views;
+      const double share = keepBeside(*step, views);
       doubt += fmt::format(
           "{}{}: its clock and the IMU's step by {:.1f} ms against each other about {:.1f} s after the "
           "start: {:.0f} % of the views lie on the other side and are left out",
@@ -468,6 +499,7 @@ class Calibration {
   }
 
   void conclude() {
+    returnPass();
     CalibrationResult& result = run_.result;
     result.start_ns = run_.pass.start_ns;
     tellRejected();
@@ -491,9 +523,10 @@ class Calibration {
   CalibrationInput input_;
   Initialisation initial_;
   const Stopwatch stopwatch_;
-  double before_s_ = 0.0;           // that a pass took that comes from before
-  std::string clock_doubt_;         // that clocks step
-  std::vector<std::string> notes_;  // of the batch
+  double before_s_ = 0.0;                                           // that a pass took that comes from before
+  std::string clock_doubt_;                                         // that clocks step
+  std::vector<std::string> notes_;                                  // of the batch
+  std::vector<std::optional<std::vector<BoardView>>> whole_views_;  // by camera, where some were left out
 };
 
 const std::array<Calibration::StageWork, 4> Calibration::kWork = {

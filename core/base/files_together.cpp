@@ -1,0 +1,72 @@
+#include "core/base/files_together.h"
+
+#include "core/base/file_places.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <string>
+#include <system_error>
+
+namespace evical {
+namespace {
+
+// 0, or errno of what failed.
+int writeAndSync(int file, std::string_view content) {
+  while (!content.empty()) {
+    const ssize_t written = ::write(file, content.data(), content.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return errno;
+    content.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return ::fsync(file) == 0 ? 0 : errno;
+}
+
+// mkostemp makes files private; what we write should be as readable as any other file of this person.
+void giveUsualPermissions(int file) {
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  static_cast<void>(::fchmod(file, 0666 & ~mask));
+}
+
+}  // namespace
+
+FilesTogether::~FilesTogether() {
+  for (const FileMove& each : files_) ::unlink(each.from.c_str());
+  std::error_code ignored;
+  std::sort(made_.begin(), made_.end());
+  for (auto path = made_.rbegin(); path != made_.rend(); ++path) std::filesystem::remove(*path, ignored);
+}
+
+void FilesTogether::makeFolder(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  for (auto missing = folder; !missing.empty() && !std::filesystem::exists(missing, ignored);
+       missing = missing.parent_path())
+    made_.push_back(missing);
+  makeOutputFolder(folder);
+}
+
+void FilesTogether::write(const std::filesystem::path& path, std::string_view content) {
+  removeLitterOf(path);
+  if (const int error = whyNoPlace(path)) throw writeError(path, error);
+  std::string aside = path.string() + ".part.XXXXXX";
+  const int file = ::mkostemp(aside.data(), O_CLOEXEC);
+  if (file < 0) throw writeError(path, errno);
+  files_.push_back({aside, path});
+  giveUsualPermissions(file);
+  int error = writeAndSync(file, content);
+  if (::close(file) != 0 && error == 0) error = errno;
+  if (error != 0) throw writeError(path, error);
+}
+
+void FilesTogether::place() {
+  moveFilesWhole(files_);
+  files_.clear();
+  made_.clear();
+}
+
+}  // namespace evical
