@@ -112,14 +112,21 @@ std::filesystem::file_time_type lastChange(const std::filesystem::path& path) {
 
 void writeFileWhole(const std::filesystem::path& path, std::string_view content) {
   FilesTogether files;
-  files.write(path, content);
+  files.write({path, {}, [&](const TextSink& sink) { sink(content); }});
   files.place();
 }
 
 void writeFilesWhole(std::span<const FileContent> contents) {
   FilesTogether files;
-  for (const FileContent& file : contents) files.write(file.path, file.content);
+  for (const FileContent& file : contents) files.write(file);
   files.place();
+}
+
+std::string contentOf(const FileContent& file) {
+  if (!file.pieces) return file.content;
+  std::string content;
+  file.pieces([&](std::string_view piece) { content += piece; });
+  return content;
 }
 
 void moveFilesWhole(std::span<const FileMove> all) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,10 +14,16 @@ namespace evical {
 // and is no file (a device, a pipe) stays.
 void writeFileWhole(const std::filesystem::path& path, std::string_view content);
 
+// Takes a text piece by piece.
+using TextSink = std::function<void(std::string_view)>;
+
 struct FileContent {
   std::filesystem::path path;
   std::string content;
+  // Hands a large one on instead, so that it is never in memory as a whole. Refers to what it is made of.
+  std::function<void(const TextSink&)> pieces = {};
 };
+std::string contentOf(const FileContent& file);
 
 // The same for several files that belong together: all are written aside before the first takes its place,
 // and where one cannot, those before give theirs back. The last of them is the mark of the whole: it goes

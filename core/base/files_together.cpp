@@ -10,21 +10,47 @@
 #include <cerrno>
 #include <cstdlib>
 #include <string>
+#include <string_view>
 #include <system_error>
+#include <utility>
 
 namespace evical {
 namespace {
 
 // 0, or errno of what failed.
-int writeAndSync(int file, std::string_view content) {
+int writeAll(int file, std::string_view content) {
   while (!content.empty()) {
     const ssize_t written = ::write(file, content.data(), content.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) return errno;
     content.remove_prefix(static_cast<std::size_t>(written));
   }
-  return ::fsync(file) == 0 ? 0 : errno;
+  return 0;
 }
+
+// A file that is open.
+class OpenFile {
+ public:
+  OpenFile(int file, const std::filesystem::path& path) : file_(file), path_(path) {}
+  ~OpenFile() {
+    if (file_ >= 0) ::close(file_);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  void write(std::string_view content) {
+    if (const int error = writeAll(file_, content)) throw writeError(path_, error);
+  }
+  void close() {
+    int error = ::fsync(file_) == 0 ? 0 : errno;
+    if (::close(std::exchange(file_, -1)) != 0 && error == 0) error = errno;
+    if (error != 0) throw writeError(path_, error);
+  }
+
+ private:
+  int file_;
+  const std::filesystem::path& path_;  // that it is to have
+};
 
 // mkostemp makes files private; what we write should be as readable as any other file of this person.
 void giveUsualPermissions(int file) {
@@ -50,7 +76,8 @@ void FilesTogether::makeFolder(const std::filesystem::path& folder) {
   makeOutputFolder(folder);
 }
 
-void FilesTogether::write(const std::filesystem::path& path, std::string_view content) {
+void FilesTogether::write(const FileContent& content) {
+  const std::filesystem::path& path = content.path;
   removeLitterOf(path);
   if (const int error = whyNoPlace(path)) throw writeError(path, error);
   std::string aside = path.string() + ".part.XXXXXX";
@@ -58,9 +85,12 @@ void FilesTogether::write(const std::filesystem::path& path, std::string_view co
   if (file < 0) throw writeError(path, errno);
   files_.push_back({aside, path});
   giveUsualPermissions(file);
-  int error = writeAndSync(file, content);
-  if (::close(file) != 0 && error == 0) error = errno;
-  if (error != 0) throw writeError(path, error);
+  OpenFile open(file, path);
+  if (content.pieces)
+    content.pieces([&](std::string_view piece) { open.write(piece); });
+  else
+    open.write(content.content);
+  open.close();
 }
 
 void FilesTogether::place() {

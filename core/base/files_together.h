@@ -5,7 +5,6 @@
 #include "core/base/atomic_file.h"
 
 #include <filesystem>
-#include <string_view>
 #include <vector>
 
 namespace evical {
@@ -21,7 +20,7 @@ class FilesTogether {
   // Makes the folder and those above it, as makeOutputFolder.
   void makeFolder(const std::filesystem::path& folder);
   // Beside its place, synced; throws as writeFileWhole does.
-  void write(const std::filesystem::path& path, std::string_view content);
+  void write(const FileContent& file);
   // All take their places, as writeFilesWhole says: the one that was written last is the mark of the whole.
   void place();
 

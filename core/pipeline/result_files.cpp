@@ -114,9 +114,10 @@ ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Sessio
   const NamedResult named = namedRun(session, shared_run, version);
   // Tables of long recordings are large: each is written before the next is made.
   FilesTogether files;
-  const auto write = [&](const FileContent& file) {
-    files.makeFolder((folder / file.path).parent_path());
-    files.write(folder / file.path, file.content);
+  const auto write = [&](FileContent file) {
+    file.path = folder / file.path;
+    files.makeFolder(file.path.parent_path());
+    files.write(file);
   };
   const auto writeAll = [&](std::vector<FileContent> contents) {
     std::for_each(contents.begin(), contents.end(), write);
@@ -133,7 +134,9 @@ ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Sessio
   for (const auto& texts : {remarks.notes, remarks.refused})
     for (const std::string& text : texts) full_log += text + "\n";
   write({"log.txt", full_log});
-  write({"residuals.csv", residualsCsv(named, run.result.circle_residuals)});
+  write({"residuals.csv", {}, [&](const TextSink& sink) {
+           residualsCsv(named, run.result.circle_residuals, sink);
+         }});
   const auto now_s =
       std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch());
   writeAll(runFiles(folder, session, run, now_s.count()));

@@ -137,7 +137,7 @@ void writeExportedFiles(const std::filesystem::path& folder, std::span<const Fil
   FilesTogether together;
   for (const FileContent& file : files) {
     together.makeFolder((folder / file.path).parent_path());
-    together.write(folder / file.path, file.content);
+    together.write({folder / file.path, file.content, file.pieces});
   }
   together.place();
 }

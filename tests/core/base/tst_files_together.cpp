@@ -31,8 +31,8 @@ class TestFilesTogether : public QObject {
     const auto place = folder() / "result";
     FilesTogether files;
     files.makeFolder(place / "plots");
-    files.write(place / "plots" / "a.csv", "1");
-    files.write(place / "result.yaml", "2");
+    files.write({place / "plots" / "a.csv", "1"});
+    files.write({place / "result.yaml", "2"});
     QVERIFY(!std::filesystem::exists(place / "plots" / "a.csv"));
     QVERIFY(!std::filesystem::exists(place / "result.yaml"));
     files.place();
@@ -45,7 +45,7 @@ class TestFilesTogether : public QObject {
     {
       FilesTogether files;
       files.makeFolder(place / "plots");
-      files.write(place / "plots" / "a.csv", "1");
+      files.write({place / "plots" / "a.csv", "1"});
       QVERIFY(std::filesystem::exists(place / "plots"));
     }
     QVERIFY(!std::filesystem::exists(place));
@@ -58,10 +58,10 @@ class TestFilesTogether : public QObject {
     {
       FilesTogether files;
       files.makeFolder(place);
-      files.write(place / "kept.yaml", "new");
+      files.write({place / "kept.yaml", "new"});
       // A folder stands where a file is wanted: what was written before is not placed either.
       std::filesystem::create_directories(place / "folder");
-      QVERIFY_THROWS_EXCEPTION(CalibrationError, files.write(place / "folder", "x"));
+      QVERIFY_THROWS_EXCEPTION(CalibrationError, files.write({place / "folder", "x"}));
     }
     QCOMPARE(contentOf(place / "kept.yaml"), std::string("old"));
     const std::filesystem::directory_iterator entries(place);
