@@ -86,7 +86,8 @@ std::optional<std::array<BentLine, 2>> linesThrough(int point, const FoundPoints
   for (std::size_t k = 0; k < points.on_board_m.size(); ++k) {
     const double steps2 =
         (points.on_board_m[k] - middle_m).squaredNorm() / (board.spacing_m * board.spacing_m);
-    const double weight = 1.0 / ((0.3 + steps2) * (0.3 + steps2));  // the nearest, for a lens has higher orders
+    const double weight =
+        1.0 / ((0.3 + steps2) * (0.3 + steps2));  // the nearest, for a lens has higher orders
     const Eigen::Vector<double, kTerms> row =
         LocalMap::at((inPlane(points.on_board_m[k]) - middle) / step_px);
     squares += weight * row * row.transpose();
