@@ -46,8 +46,11 @@ constexpr std::tuple kIntrinsicsFields{
           "Added in squares to the covariance of each measured centre."},
     Field{"edge_lead_sigma_px", &IntrinsicsOptions::edge_lead_sigma_px, 0.5, within(1e-6, 10.0), "px",
           "Prior on the lead of measured centres along their image motion, around 0."},
-    Field{"correlation_time_s", &IntrinsicsOptions::correlation_time_s, 2.0, within(0.0, 10.0), "s",
+    Field{"correlation_time_s", &IntrinsicsOptions::correlation_time_s, 0.2, within(0.0, 10.0), "s",
           "Views nearer in time than this may have errors in common; the sigmas allow for it."},
+    Field{"place_error_px", &IntrinsicsOptions::place_error_px, 0.003, within(0.0, 1.0), "px",
+          "What all views may err alike at a place in the image, an eighth by a sixth of it; the sigmas "
+          "allow for it."},
     Field{"max_iterations", &IntrinsicsOptions::max_iterations, 60, within(1, 1000), "",
           "Iterations of one solve."},
     Field{"most_passes", &IntrinsicsOptions::most_passes, 4, within(1, 20), "",

@@ -20,11 +20,24 @@ using SharedMatrix = Eigen::Matrix<double, kShared, kShared>;
 using SharedVector = Eigen::Matrix<double, kShared, 1>;
 using PoseMatrix = Eigen::Matrix<double, 6, 6>;
 
+// Errors that all views have in common where in the image they see a circle.
+constexpr int kPlaceColumns = 8, kPlaceRows = 6, kPlaceErrors = 2 * kPlaceColumns * kPlaceRows;
+using PlaceMatrix = Eigen::Matrix<double, kShared, kPlaceErrors>;
+
+// Of the error along x; that along y is next to it.
+Eigen::Index placeOf(const Eigen::Vector2d& pixel, const Resolution& size_px) {
+  const int column =
+      std::clamp(static_cast<int>(pixel.x() * kPlaceColumns / size_px.width_px), 0, kPlaceColumns - 1);
+  const int row = std::clamp(static_cast<int>(pixel.y() * kPlaceRows / size_px.height_px), 0, kPlaceRows - 1);
+  return 2 * (row * kPlaceColumns + column);
+}
+
 // What one view says once its pose is eliminated.
 struct ViewInformation {
   double time_s = 0.0;
   SharedMatrix information = SharedMatrix::Zero();
   SharedVector score = SharedVector::Zero();
+  PlaceMatrix by_place = PlaceMatrix::Zero();  // of the score, by each place's error in px
   double squares = 0.0;
   int residuals = 0;
 };
@@ -39,6 +52,7 @@ ViewInformation viewInformation(const SensorView& view, const RigidTransform& po
   PoseMatrix a = PoseMatrix::Zero();
   Eigen::Matrix<double, kShared, 6> b = Eigen::Matrix<double, kShared, 6>::Zero();
   Eigen::Matrix<double, 6, 1> pose_score = Eigen::Matrix<double, 6, 1>::Zero();
+  Eigen::Matrix<double, 6, kPlaceErrors> pose_by_place = Eigen::Matrix<double, 6, kPlaceErrors>::Zero();
   ViewInformation out;
   out.time_s = view.time_s;
   for (const SensorCircle& circle : view.circles) {
@@ -59,6 +73,11 @@ ViewInformation viewInformation(const SensorView& view, const RigidTransform& po
     out.information += weight * by_shared.transpose() * by_shared;
     out.score += weight * by_shared.transpose() * residual;
     pose_score += weight * by_pose.transpose() * residual;
+    const Eigen::Matrix2d by_px =
+        circle.covariance_px2.llt().matrixL().solve(Eigen::Matrix2d::Identity()) / bundle.scale;
+    const Eigen::Index place = placeOf(circle.centre_px, bundle.intrinsics.resolution_px);
+    out.by_place.middleCols<2>(place) += weight * by_shared.transpose() * by_px;
+    pose_by_place.middleCols<2>(place) += weight * by_pose.transpose() * by_px;
     out.squares += weight * residual.squaredNorm();
     out.residuals += 2;
   }
@@ -66,6 +85,7 @@ ViewInformation viewInformation(const SensorView& view, const RigidTransform& po
   const Eigen::LDLT<PoseMatrix> solver(a);
   out.information -= b * solver.solve(b.transpose());
   out.score -= b * solver.solve(pose_score);
+  out.by_place -= b * solver.solve(pose_by_place);
   return out;
 }
 
@@ -108,10 +128,12 @@ BundleUncertainty bundleUncertainty(const Bundle& bundle, const Board& board,
   double squares = 0.0;
   int residuals = 0, unknowns = static_cast<int>(free.size());
   std::vector<ViewInformation> views;
+  PlaceMatrix by_place = PlaceMatrix::Zero();
   for (std::size_t v = 0; v < bundle.views.size(); ++v) {
     ViewInformation view = viewInformation(bundle.views[v], bundle.poses[v], bundle, board, options);
     if (view.residuals == 0) continue;
     information += view.information;
+    by_place += view.by_place;
     squares += view.squares;
     residuals += view.residuals;
     unknowns += 6;
@@ -131,6 +153,8 @@ BundleUncertainty bundleUncertainty(const Bundle& bundle, const Board& board,
   const SharedVector growth =
       (correlated.diagonal().array() / covariance.diagonal().array().max(1e-300)).max(1.0).sqrt().matrix();
   covariance = (growth.asDiagonal() * covariance * growth.asDiagonal()).eval();
+  const PlaceMatrix by_place_errors = options.place_error_px * inverse * by_place;
+  covariance += by_place_errors * by_place_errors.transpose();
   out.covariance = covariance.topLeftCorner<kIntrinsicsCount, kIntrinsicsCount>();
   out.edge_lead_std_px = std::sqrt(covariance(kIntrinsicsCount, kIntrinsicsCount));
   out.normalised_rms = bundle.scale * std::sqrt(variance);
