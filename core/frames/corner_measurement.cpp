@@ -174,9 +174,9 @@ namespace {
 // By what bent lines do to a corner's place.
 void unbend(const GrayImage& image, const Board& board, const std::vector<double>& half_widths_px,
             FoundPoints& found) {
-  const FoundPoints as_found = found;
+  const BentLines bent(found, board);
   for (std::size_t i = 0; i < found.size(); ++i)
-    if (const auto lines = linesThrough(found[i].point, as_found, board))
+    if (const auto lines = bent.through(i))
       found[i].at_px -= shiftByBending(image, found[i].at_px, half_widths_px[i], *lines);
 }
 

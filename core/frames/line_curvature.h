@@ -5,6 +5,7 @@
 #include "core/geometry/board.h"
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -16,8 +17,22 @@ struct BentLine {
   double curvature_1_px = 0.0;
 };
 
-// The lines through a point along the board's rows and columns: a quadratic map of the board's plane, fitted to the
-// points found around it. Nothing where they are too few.
-std::optional<std::array<BentLine, 2>> linesThrough(int point, const FoundPoints& found, const Board& board);
+class BentLines {
+ public:
+  BentLines(const FoundPoints& found, const Board& board);
+
+  // The lines along the board's rows and columns through the point that was found at this index: a quadratic map of
+  // the board's plane, fitted to the points around it. Nothing where they are too few.
+  std::optional<std::array<BentLine, 2>> through(std::size_t index) const;
+
+ private:
+  struct Neighbours {
+    std::vector<Eigen::Vector2d> on_board_m, in_picture_px;  // the nearest first: the point itself
+  };
+  Neighbours around(std::size_t index) const;
+
+  std::vector<Eigen::Vector2d> on_board_m_, in_picture_px_;
+  double step_m_;
+};
 
 }  // namespace evical

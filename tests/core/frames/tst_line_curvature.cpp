@@ -47,16 +47,6 @@ FoundPoints trueCorners(const Board& board, const RigidTransform& pose) {
   return points;
 }
 
-// Of boards that look the same upside down either end may be the first.
-FoundPoints asTrue(FoundPoints points, const FoundPoints& truth, const Board& board) {
-  if (points.empty() || !board.hasHalfTurnAmbiguity()) return points;
-  constexpr double kNear_px = 5.0;
-  const FoundPoint& first = points.front();
-  if ((truth[static_cast<std::size_t>(first.point)].at_px - first.at_px).norm() < kNear_px) return points;
-  for (FoundPoint& point : points) point.point = board.pointCount() - 1 - point.point;
-  return points;
-}
-
 // As three places very near to each other tell it.
 double curvatureOf(const RigidTransform& pose, const Eigen::Vector2d& at_m, const Eigen::Vector2d& along_m) {
   const auto place = [&](double part) {
@@ -81,9 +71,11 @@ void TestLineCurvature::curvature_isThatOfTheLens() {
   const Board board = tagGrid();
   const RigidTransform pose = beside(board);
   const FoundPoints points = trueCorners(board, pose);
+  const BentLines bent(points, board);
   double squares = 0.0, errors = 0.0;
-  for (const FoundPoint& point : points) {
-    const auto lines = linesThrough(point.point, points, board);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const FoundPoint& point = points[k];
+    const auto lines = bent.through(k);
     QVERIFY(lines.has_value());
     const Eigen::Vector2d at_m = board.point_m(point.point);
     const std::array truth = {curvatureOf(pose, at_m, {board.spacing_m, 0.0}),
@@ -107,11 +99,11 @@ void TestLineCurvature::fewPoints_tellNothing() {
     return board.point_m(point.point).y() > 1.01 * board.tag_size_m;
   });
   QCOMPARE(points.size(), static_cast<std::size_t>(4 * board.cols));
-  QVERIFY(!linesThrough(points[3].point, points, board));
+  QVERIFY(!BentLines(points, board).through(3));
   std::erase_if(points, [&](const FoundPoint& point) {
     return board.point_m(point.point).y() > 0.5 * board.tag_size_m;
   });
-  QVERIFY(!linesThrough(points[3].point, points, board));
+  QVERIFY(!BentLines(points, board).through(3));
 }
 
 // Of pictures without noise, with windows so large that bending counts.
@@ -131,12 +123,14 @@ void TestLineCurvature::bentCorner_isMeasuredWhereItIs() {
     const RigidTransform pose = lookAt(board, 0.28, {0.1, -0.2, 0.1}, beside_m);
     const GrayImage image = renderBoard({board, 2, 0, false}, wideLens(), pose, {40.0, 210.0, 0.8, 0.0, 1});
     const FoundPoints truth = trueCorners(board, pose);
+    const BentLines bent(truth, board);
     BoardFinder finder(board, options);
     const FoundPoints found = finder.find(image);
-    for (const FoundPoint& point : asTrue(found, truth, board)) {
-      const Eigen::Vector2d at_px = truth[static_cast<std::size_t>(point.point)].at_px;
+    for (const FoundPoint& point : asTrue(found, board, wideLens(), pose)) {
+      const auto index = static_cast<std::size_t>(point.point);
+      const Eigen::Vector2d at_px = truth[index].at_px;
       const auto corner = measureCorner(image, at_px, options.subpixel_window_px, 1.0);
-      const auto lines = linesThrough(point.point, truth, board);
+      const auto lines = bent.through(index);
       if (!corner || !lines) continue;
       const Eigen::Vector2d shift = shiftByBending(image, corner->at_px, options.subpixel_window_px, *lines);
       alone += (corner->at_px - at_px).squaredNorm();
