@@ -112,7 +112,7 @@ std::filesystem::file_time_type lastChange(const std::filesystem::path& path) {
 
 void writeFileWhole(const std::filesystem::path& path, std::string_view content) {
   FilesTogether files;
-  files.write({path, {}, [&](const TextSink& sink) { sink(content); }});
+  files.write(path, [&](const TextSink& sink) { sink(content); });
   files.place();
 }
 
@@ -123,10 +123,7 @@ void writeFilesWhole(std::span<const FileContent> contents) {
 }
 
 std::string contentOf(const FileContent& file) {
-  if (!file.pieces) return file.content;
-  std::string content;
-  file.pieces([&](std::string_view piece) { content += piece; });
-  return content;
+  return file.pieces ? wholeText(file.pieces) : file.content;
 }
 
 void moveFilesWhole(std::span<const FileMove> all) {

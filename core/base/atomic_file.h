@@ -1,8 +1,9 @@
 // Files that appear whole or not at all.
 #pragma once
 
+#include "core/base/text_sink.h"
+
 #include <filesystem>
-#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,14 +15,10 @@ namespace evical {
 // and is no file (a device, a pipe) stays.
 void writeFileWhole(const std::filesystem::path& path, std::string_view content);
 
-// Takes a text piece by piece.
-using TextSink = std::function<void(std::string_view)>;
-
 struct FileContent {
   std::filesystem::path path;
   std::string content;
-  // Hands a large one on instead, so that it is never in memory as a whole. Refers to what it is made of.
-  std::function<void(const TextSink&)> pieces = {};
+  TextSource pieces = {};  // of what is large, in the place of content; refers to what it is made of
 };
 std::string contentOf(const FileContent& file);
 

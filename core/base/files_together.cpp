@@ -76,8 +76,22 @@ void FilesTogether::makeFolder(const std::filesystem::path& folder) {
   makeOutputFolder(folder);
 }
 
-void FilesTogether::write(const FileContent& content) {
-  const std::filesystem::path& path = content.path;
+void FilesTogether::write(const FileContent& file) {
+  writeAt(file.path, file);
+}
+
+void FilesTogether::writeInto(const std::filesystem::path& folder, const FileContent& file) {
+  const std::filesystem::path path = folder / file.path;
+  makeFolder(path.parent_path());
+  writeAt(path, file);
+}
+
+void FilesTogether::writeAt(const std::filesystem::path& path, const FileContent& file) {
+  if (file.pieces) return write(path, file.pieces);
+  write(path, [&](const TextSink& sink) { sink(file.content); });
+}
+
+void FilesTogether::write(const std::filesystem::path& path, const TextSource& content) {
   removeLitterOf(path);
   if (const int error = whyNoPlace(path)) throw writeError(path, error);
   std::string aside = path.string() + ".part.XXXXXX";
@@ -86,10 +100,7 @@ void FilesTogether::write(const FileContent& content) {
   files_.push_back({aside, path});
   giveUsualPermissions(file);
   OpenFile open(file, path);
-  if (content.pieces)
-    content.pieces([&](std::string_view piece) { open.write(piece); });
-  else
-    open.write(content.content);
+  content([&](std::string_view piece) { open.write(piece); });
   open.close();
 }
 

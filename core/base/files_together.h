@@ -20,11 +20,16 @@ class FilesTogether {
   // Makes the folder and those above it, as makeOutputFolder.
   void makeFolder(const std::filesystem::path& folder);
   // Beside its place, synced; throws as writeFileWhole does.
+  void write(const std::filesystem::path& path, const TextSource& content);
   void write(const FileContent& file);
+  // At the file's path within a folder; makes those that are not there.
+  void writeInto(const std::filesystem::path& folder, const FileContent& file);
   // All take their places, as writeFilesWhole says: the one that was written last is the mark of the whole.
   void place();
 
  private:
+  void writeAt(const std::filesystem::path& path, const FileContent& file);
+
   std::vector<FileMove> files_;
   std::vector<std::filesystem::path> made_;
 };

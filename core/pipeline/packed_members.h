@@ -3,8 +3,8 @@
 // was written of other structs is not taken for these.
 #pragma once
 
-#include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/text_sink.h"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -60,13 +60,10 @@ inline constexpr bool kLeftOut = false;
 
 class Packing {
  public:
-  // Hands the bytes on, a piece at a time.
+  // Hands bytes on, a piece at a time; the last with flush.
   explicit Packing(const TextSink& sink) : sink_(sink) {}
-  ~Packing() = default;
-  Packing(const Packing&) = delete;
-  Packing& operator=(const Packing&) = delete;
 
-  void finish() {
+  void flush() {
     sink_(bytes_);
     bytes_.clear();
   }
@@ -114,7 +111,7 @@ class Packing {
   void append(const void* data, std::size_t size) {
     constexpr std::size_t kPiece_bytes = 1 << 16;
     bytes_.append(static_cast<const char*>(data), size);
-    if (bytes_.size() >= kPiece_bytes) finish();
+    if (bytes_.size() >= kPiece_bytes) flush();
   }
   void count(std::size_t number) { pack(static_cast<std::uint64_t>(number)); }
 

@@ -114,12 +114,8 @@ ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Sessio
   const NamedResult named = namedRun(session, shared_run, version);
   // Tables of long recordings are large: each is written before the next is made.
   FilesTogether files;
-  const auto write = [&](FileContent file) {
-    file.path = folder / file.path;
-    files.makeFolder(file.path.parent_path());
-    files.write(file);
-  };
-  const auto writeAll = [&](std::vector<FileContent> contents) {
+  const auto write = [&](const FileContent& file) { files.writeInto(folder, file); };
+  const auto writeAll = [&](const std::vector<FileContent>& contents) {
     std::for_each(contents.begin(), contents.end(), write);
   };
   writeAll(detectionFiles(session, run.pass, run.intrinsics));
@@ -129,7 +125,7 @@ ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Sessio
   writeAll(reportOf(session, named, run.pass, run.intrinsics));
   std::vector<FileContent> exported;
   ExportRemarks remarks = addExports(named, session, exported);
-  writeAll(std::move(exported));
+  writeAll(exported);
   std::string full_log = log;
   for (const auto& texts : {remarks.notes, remarks.refused})
     for (const std::string& text : texts) full_log += text + "\n";

@@ -144,14 +144,14 @@ void addPart(const std::string& name, const T& value, const TextSink& sink) {
   };
   packed::Packing measured(measure);
   measured.pack(value);
-  measured.finish();
+  measured.flush();
   packed::Packing part(sink);
   part.pack(name);
   part.pack(packed::description<T>());
   part.pack(sum);
   part.pack(length);
   part.pack(value);
-  part.finish();
+  part.flush();
 }
 
 struct Part {
@@ -320,7 +320,7 @@ void writeRunData(const CalibrationRun& run, const TextSink& sink) {
 }
 
 std::string runData(const CalibrationRun& run) {
-  return contentOf({{}, {}, [&](const TextSink& sink) { writeRunData(run, sink); }});
+  return wholeText([&](const TextSink& sink) { writeRunData(run, sink); });
 }
 
 ReadRunData readRunData(const std::filesystem::path& file) {

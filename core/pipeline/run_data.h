@@ -2,7 +2,7 @@
 // iterations, residuals, observations, the IMUs' samples. In parts, each with a check sum.
 #pragma once
 
-#include "core/base/atomic_file.h"
+#include "core/base/text_sink.h"
 #include "core/pipeline/calibration_pipeline.h"
 
 #include <filesystem>

@@ -127,7 +127,7 @@ void detectionsCsv(const std::vector<BoardObservations>& cameras, const TextSink
 }
 
 std::string detectionsCsv(const std::vector<BoardObservations>& cameras) {
-  return contentOf({{}, {}, [&](const TextSink& sink) { detectionsCsv(cameras, sink); }});
+  return wholeText([&](const TextSink& sink) { detectionsCsv(cameras, sink); });
 }
 
 std::string windowsCsv(const std::vector<BoardObservations>& cameras) {

@@ -1,7 +1,7 @@
 // What was found of the board as tables, with all digits: read back, they are the same observations.
 #pragma once
 
-#include "core/base/atomic_file.h"
+#include "core/base/text_sink.h"
 #include "core/data/board_observations.h"
 
 #include <filesystem>

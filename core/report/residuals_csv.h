@@ -1,7 +1,7 @@
 // The residuals of a result's circles as a table, with all digits.
 #pragma once
 
-#include "core/base/atomic_file.h"
+#include "core/base/text_sink.h"
 #include "core/report/result_yaml.h"
 
 #include <span>

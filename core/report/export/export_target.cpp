@@ -135,10 +135,7 @@ ExportedFiles exportWhatCanBe(const NamedResult& result, std::span<const std::st
 
 void writeExportedFiles(const std::filesystem::path& folder, std::span<const FileContent> files) {
   FilesTogether together;
-  for (const FileContent& file : files) {
-    together.makeFolder((folder / file.path).parent_path());
-    together.write({folder / file.path, file.content, file.pieces});
-  }
+  for (const FileContent& file : files) together.writeInto(folder, file);
   together.place();
 }
 
