@@ -20,17 +20,17 @@ using SharedMatrix = Eigen::Matrix<double, kShared, kShared>;
 using SharedVector = Eigen::Matrix<double, kShared, 1>;
 using PoseMatrix = Eigen::Matrix<double, 6, 6>;
 
-// Errors that all views have in common where in the image they see a circle.
+// Of an image in columns and rows of cells, the one that a pixel lies in, row by row.
+int cellAt(const Eigen::Vector2d& pixel, const Resolution& size_px, int columns, int rows) {
+  const int column = static_cast<int>(pixel.x() * columns / size_px.width_px);
+  const int row = static_cast<int>(pixel.y() * rows / size_px.height_px);
+  return std::clamp(row, 0, rows - 1) * columns + std::clamp(column, 0, columns - 1);
+}
+
+// Errors that all views have in common where in the image they see a circle: for each place that along x, then that
+// along y.
 constexpr int kPlaceColumns = 8, kPlaceRows = 6, kPlaceErrors = 2 * kPlaceColumns * kPlaceRows;
 using PlaceMatrix = Eigen::Matrix<double, kShared, kPlaceErrors>;
-
-// Of the error along x; that along y is next to it.
-Eigen::Index placeOf(const Eigen::Vector2d& pixel, const Resolution& size_px) {
-  const int column =
-      std::clamp(static_cast<int>(pixel.x() * kPlaceColumns / size_px.width_px), 0, kPlaceColumns - 1);
-  const int row = std::clamp(static_cast<int>(pixel.y() * kPlaceRows / size_px.height_px), 0, kPlaceRows - 1);
-  return 2 * (row * kPlaceColumns + column);
-}
 
 // What one view says once its pose is eliminated.
 struct ViewInformation {
@@ -61,8 +61,8 @@ ViewInformation viewInformation(const SensorView& view, const RigidTransform& po
     Eigen::Matrix<double, 2, kIntrinsicsCount, Eigen::RowMajor> by_intrinsics;
     Eigen::Matrix<double, 2, kPoseBlock, Eigen::RowMajor> by_block;
     std::array<double*, 3> jacobians = {by_intrinsics.data(), by_lead.data(), by_block.data()};
-    CircleCentreCost(bundle.intrinsics.model, circle, board.radius_m, bundle.scale)
-        .Evaluate(blocks.data(), residual.data(), jacobians.data());
+    const CircleCentreCost cost(bundle.intrinsics.model, circle, board.radius_m, bundle.scale);
+    cost.Evaluate(blocks.data(), residual.data(), jacobians.data());
     Eigen::Matrix<double, 2, kShared> by_shared;
     by_shared << by_intrinsics, by_lead;
     Eigen::Matrix<double, 2, 6> by_pose;
@@ -73,11 +73,10 @@ ViewInformation viewInformation(const SensorView& view, const RigidTransform& po
     out.information += weight * by_shared.transpose() * by_shared;
     out.score += weight * by_shared.transpose() * residual;
     pose_score += weight * by_pose.transpose() * residual;
-    const Eigen::Matrix2d by_px =
-        circle.covariance_px2.llt().matrixL().solve(Eigen::Matrix2d::Identity()) / bundle.scale;
-    const Eigen::Index place = placeOf(circle.centre_px, bundle.intrinsics.resolution_px);
-    out.by_place.middleCols<2>(place) += weight * by_shared.transpose() * by_px;
-    pose_by_place.middleCols<2>(place) += weight * by_pose.transpose() * by_px;
+    const int place =
+        2 * cellAt(circle.centre_px, bundle.intrinsics.resolution_px, kPlaceColumns, kPlaceRows);
+    out.by_place.middleCols<2>(place) += weight * by_shared.transpose() * cost.whitening_px();
+    pose_by_place.middleCols<2>(place) += weight * by_pose.transpose() * cost.whitening_px();
     out.squares += weight * residual.squaredNorm();
     out.residuals += 2;
   }
@@ -190,11 +189,7 @@ ImageMap imageMap(const Bundle& bundle, const IntrinsicsMatrix& covariance) {
   for (const SensorView& view : bundle.views) {
     for (const SensorCircle& circle : view.circles) {
       if (!circle.used) continue;
-      const int column = static_cast<int>(circle.centre_px.x() * map.columns / size.width_px);
-      const int row = static_cast<int>(circle.centre_px.y() * map.rows / size.height_px);
-      const int index =
-          std::clamp(row, 0, map.rows - 1) * map.columns + std::clamp(column, 0, map.columns - 1);
-      ++map.cells[static_cast<std::size_t>(index)].circles;
+      ++map.cells[static_cast<std::size_t>(cellAt(circle.centre_px, size, map.columns, map.rows))].circles;
     }
   }
   return map;
