@@ -95,7 +95,10 @@ class WindowWorker {
 class ReadingPass {
  public:
   ReadingPass(const Session& session, const RunContext& context, RecordingPass& result)
-      : session_(session), recording_(session, context.stop), result_(result) {
+      : session_(session),
+        recording_(session, context.stop),
+        result_(result),
+        behind_(session.cameras.size() + session.imus.size()) {
     result.imus.resize(session.imus.size());
     result.start_ns = recording_.start_ns();
     for (std::size_t camera = 0; camera < session.cameras.size(); ++camera) {
@@ -159,12 +162,11 @@ class ReadingPass {
   // True once all sensors have come well behind the time range; a stamp that is wrong is followed by right ones.
   bool isOver(const SensorPacket& packet) {
     if (!session_.time_range_s) return false;
-    constexpr double kMargin_s = 1.0;
+    constexpr double kMargin_s = 1.0;  // more than packets of a file are out of order
     const auto behind = [&](const auto& items) {
       return !items.empty() &&
              secondsSince(result_.start_ns, items.front().time_ns) > (*session_.time_range_s)[1] + kMargin_s;
     };
-    behind_.resize(intakes_.size() + session_.imus.size());
     behind_[packet.sensor] =
         behind(packet.events) || behind(packet.imu_samples) || behind(packet.frames) || behind(packet.points);
     return std::ranges::all_of(behind_, [](bool each) { return each; });
