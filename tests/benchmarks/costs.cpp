@@ -1,7 +1,8 @@
-// What whole calibrations cost against duration, events, cameras and IMUs, as a table: `evical_costs [--durations S...]
-// [--recording FOLDER] [--scratch FOLDER] SCENARIO...`. A scenario is simulated once into a file, for the longest
-// duration, and calibrated
-// over its first seconds, in a process of its own each time. Of several durations the growth's exponent is told.
+// What whole calibrations cost against duration, events, cameras and IMUs, as a table: `evical_costs [--recording FOLDER]
+// [--scratch FOLDER] [SCENARIO...] [--durations S...]`. A scenario is simulated once into a file, for the longest
+// duration, and calibrated over its first seconds, in a process of its own each time. Of several durations the growth's
+// exponent is told.
+#include "core/base/stopwatch.h"
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/simulation.h"
 #include "core/report/result_yaml.h"
@@ -19,9 +20,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -33,12 +32,6 @@ struct Cost {
   std::uint64_t events = 0;
   std::string verdict;
 };
-
-double wall_s() {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 // What the other process tells of itself.
 struct Told {
@@ -57,7 +50,7 @@ Told told(const Session& session) {
 Cost costOf(const Session& session) {
   int ends[2];
   if (::pipe(ends) != 0) throw badInput("pipe", "no process can be watched");
-  const double begin_s = wall_s();
+  const Stopwatch stopwatch;
   const pid_t child = ::fork();
   if (child < 0) throw badInput("fork", "no process can be made");
   if (child == 0) {
@@ -81,7 +74,7 @@ Cost costOf(const Session& session) {
     return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
   };
   constexpr double kMbPerKib = 1024.0 / 1e6;
-  Cost cost{wall_s() - begin_s, seconds(usage.ru_utime) + seconds(usage.ru_stime),
+  Cost cost{stopwatch.elapsed_s(), seconds(usage.ru_utime) + seconds(usage.ru_stime),
             kMbPerKib * static_cast<double>(usage.ru_maxrss), result.events, "failed"};
   if (whole) cost.verdict = statusName(result.status);
   return cost;
