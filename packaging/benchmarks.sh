@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.." || exit 2
 
 packaging/install-dependencies.sh
 cmake --preset release -DEVICAL_TESTS=ON
-cmake --build --preset release --target evical_accuracy evical_intrinsics_accuracy evical_unknown_intrinsics evical_formats evical_speed \
+cmake --build --preset release --target evical_accuracy evical_intrinsics_accuracy evical_unknown_intrinsics evical_formats evical_speed evical_costs \
                                        evical evical-gui evical_stress evical_centre_errors evical_board_starts evical_frame_cameras evical_protocol evical_maintain_accuracy evical_check_accuracy
 benchmarks=build/release/tests/benchmarks
 scenarios=config/scenarios
@@ -45,6 +45,7 @@ run evical_frame_cameras
 
 run evical_intrinsics_accuracy "$scenarios"/intrinsics_*.yaml
 run evical_intrinsics_accuracy --seeds 10 --duration 15 "$scenarios/intrinsics_davis346.yaml"
+run evical_intrinsics_accuracy --seeds 20 "$scenarios/wide_frame.yaml"
 run evical_unknown_intrinsics --seeds 6 --duration 10 "$scenarios/intrinsics_davis346.yaml"
 
 # One thing at a time that is not as the session says; fails where a wrong result is called ok.
@@ -62,6 +63,8 @@ run evical_check_accuracy "$scenarios/davis346.yaml"
 run evical_maintain_accuracy --hour "$scenarios/maintain"
 
 run evical_speed "$scenarios/davis346.yaml"
+run evical_costs "$scenarios"/{bare_7x3_fast,stereo_two_imus}.yaml --durations 20
+run evical_costs "$scenarios/davis346.yaml" --durations 10 30 60 120
 run evical_speed --duration 3 "$scenarios/hd.yaml"
 
 # A run in the window beside one on the command line.

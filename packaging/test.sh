@@ -28,3 +28,5 @@ step configure cmake --preset ci
 step build cmake --build --preset ci
 step clang-tidy packaging/check-tidy.sh
 step tests ctest --preset ci
+# What stages of a calibration cost against reading its events.
+cat build/ci/speed_guard.txt 2>/dev/null || true

@@ -93,9 +93,8 @@ void bindBoard(py::module_& module) {
           [](Board& b, const std::string& type) {
             b.type = static_cast<BoardType>(indexOf(kBoardTypeNames, type, "board.type"));
           },
-          "asymmetric_circles, symmetric_circles, checkerboard, aprilgrid, charuco, or points, which a "
-          "session "
-          "file gives.")
+          "asymmetric_circles, symmetric_circles, checkerboard, aprilgrid, charuco; of session files points, "
+          "too.")
       .def_readwrite("rows", &Board::rows, "Of circles, inner corners, tags or squares.")
       .def_readwrite("cols", &Board::cols)
       .def_readwrite("spacing_m", &Board::spacing_m,

@@ -1,6 +1,8 @@
 #include "core/base/atomic_file.h"
 
 #include "core/base/error.h"
+#include "core/base/file_places.h"
+#include "core/base/files_together.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -12,45 +14,12 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <string>
 #include <system_error>
 #include <vector>
 
 namespace evical {
 namespace {
-
-CalibrationError writeError(const std::filesystem::path& path, int error) {
-  return calibrationFailed(path.string(), fmt::format("cannot be written: {}", std::strerror(error)),
-                           error == ENOSPC ? "Free some space, or choose another folder"
-                                           : "Check that the folder exists and may be written to");
-}
-
-// 0, or errno of what failed.
-int writeAndSync(int file, std::string_view content) {
-  while (!content.empty()) {
-    const ssize_t written = ::write(file, content.data(), content.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return errno;
-    content.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return ::fsync(file) == 0 ? 0 : errno;
-}
-
-// mkostemp makes files private; what we write should be as readable as any other file of this person.
-void giveUsualPermissions(int file) {
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
-  static_cast<void>(::fchmod(file, 0666 & ~mask));
-}
-
-// Why nothing may be put there, as errno has it; 0 if it may. A rename would replace a device or a pipe.
-int whyNoPlace(const std::filesystem::path& path) {
-  std::error_code ignored;
-  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
-  if (std::filesystem::is_directory(status)) return EISDIR;
-  return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) ? EEXIST : 0;
-}
 
 // A name that nobody else has.
 std::string nameAside(const std::filesystem::path& path) {
@@ -125,38 +94,6 @@ class Moves {
   std::vector<Done> done_;
 };
 
-// Files written beside their targets; those that were not moved there go away again.
-class FilesAside {
- public:
-  FilesAside() = default;
-  FilesAside(const FilesAside&) = delete;
-  FilesAside& operator=(const FilesAside&) = delete;
-  ~FilesAside() {
-    for (const FileMove& each : files_) ::unlink(each.from.c_str());
-  }
-
-  void write(const std::filesystem::path& path, std::string_view content) {
-    removeLitterOf(path);
-    if (const int error = whyNoPlace(path)) throw writeError(path, error);
-    std::string aside = path.string() + ".part.XXXXXX";
-    const int file = ::mkostemp(aside.data(), O_CLOEXEC);
-    if (file < 0) throw writeError(path, errno);
-    files_.push_back({aside, path});
-    giveUsualPermissions(file);
-    int error = writeAndSync(file, content);
-    if (::close(file) != 0 && error == 0) error = errno;
-    if (error != 0) throw writeError(path, error);
-  }
-
-  void move() {
-    moveFilesWhole(files_);
-    files_.clear();
-  }
-
- private:
-  std::vector<FileMove> files_;
-};
-
 // The time of the last change in it.
 std::filesystem::file_time_type lastChange(const std::filesystem::path& path) {
   std::error_code ignored;
@@ -174,15 +111,19 @@ std::filesystem::file_time_type lastChange(const std::filesystem::path& path) {
 }  // namespace
 
 void writeFileWhole(const std::filesystem::path& path, std::string_view content) {
-  FilesAside aside;
-  aside.write(path, content);
-  aside.move();
+  FilesTogether files;
+  files.write(path, [&](const TextSink& sink) { sink(content); });
+  files.place();
 }
 
-void writeFilesWhole(std::span<const FileContent> files) {
-  FilesAside aside;
-  for (const FileContent& file : files) aside.write(file.path, file.content);
-  aside.move();
+void writeFilesWhole(std::span<const FileContent> contents) {
+  FilesTogether files;
+  for (const FileContent& file : contents) files.write(file);
+  files.place();
+}
+
+std::string contentOf(const FileContent& file) {
+  return file.pieces ? wholeText(file.pieces) : file.content;
 }
 
 void moveFilesWhole(std::span<const FileMove> all) {

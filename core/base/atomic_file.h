@@ -1,6 +1,8 @@
 // Files that appear whole or not at all.
 #pragma once
 
+#include "core/base/text_sink.h"
+
 #include <filesystem>
 #include <span>
 #include <string>
@@ -16,7 +18,9 @@ void writeFileWhole(const std::filesystem::path& path, std::string_view content)
 struct FileContent {
   std::filesystem::path path;
   std::string content;
+  TextSource pieces = {};  // of what is large, in the place of content; refers to what it is made of
 };
+std::string contentOf(const FileContent& file);
 
 // The same for several files that belong together: all are written aside before the first takes its place,
 // and where one cannot, those before give theirs back. The last of them is the mark of the whole: it goes

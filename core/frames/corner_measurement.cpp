@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace evical {
 namespace {
@@ -113,6 +114,22 @@ bool looksRight(const GrayImage& image, const Eigen::Vector2d& at_px, const Eige
   return (dark_ahead ? across.first - ahead.second : ahead.first - across.second) > least_contrast;
 }
 
+// What optics, print and sampling leave of errors, normal to each of the two edges. Small windows have fewer pixels of
+// them, and more of what is beside: of 33,000 corners of simulated grids, seen at up to 70 degrees, errors were 0.024 px
+// with half widths of 3 to 5 px, 0.033 with 2.5, 0.044 with 1.8, 0.063 with 1.5.
+Eigen::Matrix2d modelError_px2(const Eigen::Matrix2d& px_per_m, double half_width_px,
+                               const FrameOptions& options) {
+  constexpr double kPower = 1.5;
+  const double sigma_px =
+      options.smallest_sigma_px * std::pow(options.subpixel_window_px / half_width_px, kPower);
+  Eigen::Matrix2d told = Eigen::Matrix2d::Zero();
+  for (int edge = 0; edge < 2; ++edge) {
+    const Eigen::Vector2d normal = Eigen::Vector2d(-px_per_m(1, edge), px_per_m(0, edge)).normalized();
+    told += normal * normal.transpose();
+  }
+  return sigma_px * sigma_px * told.inverse();
+}
+
 double smallestScale(const Eigen::Matrix2d& scale) {
   const double a = scale.col(0).norm(), b = scale.col(1).norm();
   return std::abs(scale.determinant()) / std::max(a, b);  // the parallelogram's smaller height
@@ -136,13 +153,41 @@ std::optional<MeasuredCorner> measureCorner(const GrayImage& image, const Eigen:
   }
 }
 
+Eigen::Vector2d shiftByBending(const GrayImage& image, const Eigen::Vector2d& at_px, double half_width_px,
+                               const std::array<BentLine, 2>& lines) {
+  Eigen::Matrix2d gradients = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d products = Eigen::Vector2d::Zero();
+  const Window window(image, at_px, half_width_px);
+  window.forEach([&](int, int, const Eigen::Vector2d& from_centre, const Eigen::Vector2d& g, double weight) {
+    const std::array<double, 2> across = {g.dot(lines[0].normal), g.dot(lines[1].normal)};
+    const std::size_t edge = std::abs(across[0]) > std::abs(across[1]) ? 0 : 1;
+    const Eigen::Vector2d& normal = lines[edge].normal;
+    const double along_px = from_centre.x() * normal.y() - from_centre.y() * normal.x();
+    gradients += weight * g * g.transpose();
+    products -= weight * across[edge] * 0.5 * lines[edge].curvature_1_px * along_px * along_px * g;
+  });
+  return gradients.inverse() * products;
+}
+
+namespace {
+
+// By what bent lines do to a corner's place.
+void unbend(const GrayImage& image, const Board& board, const std::vector<double>& half_widths_px,
+            FoundPoints& found) {
+  const BentLines bent(found, board);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    if (const auto lines = bent.through(i))
+      found[i].at_px -= shiftByBending(image, found[i].at_px, half_widths_px[i], *lines);
+}
+
+}  // namespace
+
 FoundPoints measureCorners(const GrayImage& image, const Board& board, const CornerPattern& pattern,
                            const PlaneMap& map, double gate_px, const FrameOptions& options) {
   const double noise = noiseSigma(image);
   const double contrast = std::max(options.least_contrast, 2.0 * noise);
-  const Eigen::Matrix2d floor_px2 =
-      options.smallest_sigma_px * options.smallest_sigma_px * Eigen::Matrix2d::Identity();
   FoundPoints found;
+  std::vector<double> half_widths_px;
   for (int point = 0; point < board.pointCount(); ++point) {
     const auto [expected, scale] = map.placeOf(board.point_m(point));
     const double room_px = pattern.plain_m * smallestScale(scale) - 1.0;
@@ -156,8 +201,12 @@ FoundPoints measureCorners(const GrayImage& image, const Board& board, const Cor
     if (!looksRight(image, corner->at_px, field * scale, pattern.dark_ahead[static_cast<std::size_t>(point)],
                     contrast))
       continue;
-    found.push_back({point, corner->at_px, corner->covariance_px2 + floor_px2, Eigen::Matrix2d::Zero()});
+    found.push_back({point, corner->at_px,
+                     corner->covariance_px2 + modelError_px2(scale, half_width, options),
+                     Eigen::Matrix2d::Zero()});
+    half_widths_px.push_back(half_width);
   }
+  unbend(image, board, half_widths_px, found);
   return found;
 }
 

@@ -5,8 +5,10 @@
 #include "core/frames/found_point.h"
 #include "core/frames/frame_options.h"
 #include "core/frames/gray_image.h"
+#include "core/frames/line_curvature.h"
 #include "core/frames/plane_map.h"
 
+#include <array>
 #include <optional>
 
 namespace evical {
@@ -21,6 +23,11 @@ struct MeasuredCorner {
 // or the picture, or where there is one edge or none.
 std::optional<MeasuredCorner> measureCorner(const GrayImage& image, const Eigen::Vector2d& start_px,
                                             double half_width_px, double noise_sigma);
+
+// How far that place lies beside a corner of bent lines. At s along an edge p of normal n(s), n(s) . p(s) is not 0 but
+// -curvature s^2 / 2.
+Eigen::Vector2d shiftByBending(const GrayImage& image, const Eigen::Vector2d& at_px, double half_width_px,
+                               const std::array<BentLine, 2>& lines);
 
 // All corners that are seen within `gate_px` of where the map puts them, and that have dark and bright fields as
 // the pattern says.

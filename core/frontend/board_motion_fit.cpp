@@ -4,6 +4,7 @@
 // touched by it.
 #include "core/frontend/board_motion.h"
 
+#include "core/frontend/outline_sector.h"
 #include "core/numerics/robust.h"
 
 #include <Eigen/Cholesky>
@@ -17,8 +18,7 @@ namespace {
 
 constexpr int kFlowTerms = 8;
 constexpr int kUnknowns = 3 * kFlowTerms + 1;  // shift, velocity, acceleration, radius offset
-constexpr int kSectors = 16;
-constexpr double kSquare = 0.8;  // cosine
+constexpr double kSquare = 0.8;                // cosine
 using NormalMatrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 using NormalVector = Eigen::Matrix<double, kUnknowns, 1>;
 
@@ -78,13 +78,6 @@ struct CircleMotion {
         acceleration_gradient(motion.frame.gradient(motion.acceleration_px_s2, projected.centre_px)) {}
 };
 
-int sectorOf(const Eigen::Vector2d& n) {
-  constexpr double kTan22 = 0.41421356237309503;
-  const double ax = std::abs(n.x()), ay = std::abs(n.y());
-  const int part = ay < ax ? (ay < kTan22 * ax ? 0 : 1) : (ax < kTan22 * ay ? 3 : 2);
-  return part + (n.x() < 0.0 ? 4 : 0) + (n.y() < 0.0 ? 8 : 0);
-}
-
 // Bursts that may lie near the circle's edge at any time of the fit.
 void gatherPoints(const BurstWindow& window, const CircleMotion& moving, double half_window_s,
                   double slack_px, std::vector<FitPoint>& points) {
@@ -109,8 +102,8 @@ void gatherPoints(const BurstWindow& window, const CircleMotion& moving, double 
 }
 
 void sumSectors(const CircleMotion& moving, const std::vector<FitPoint>& points, const BoardMotion& motion,
-                double gate_px, const TrackingOptions& options, std::array<SectorSums, kSectors>& sectors,
-                NormalEquations& equations) {
+                double gate_px, const TrackingOptions& options,
+                std::array<SectorSums, kOutlineSectors>& sectors, NormalEquations& equations) {
   const double inverse_noise2 = 1.0 / (options.robust_scale_px * options.robust_scale_px);
   for (const FitPoint& point : points) {
     const Eigen::Vector2d pixel(point.x, point.y);
@@ -127,7 +120,7 @@ void sumSectors(const CircleMotion& moving, const std::vector<FitPoint>& points,
         crossingWeight(leads, point.events, motion.typical_events, options) / (1.0 + r * r * inverse_noise2);
     if (leads > kSquare) equations.square_events.push_back(point.events);
     if (w <= 0.0) continue;
-    SectorSums& sums = sectors[static_cast<std::size_t>(sectorOf(edge.normal))];
+    SectorSums& sums = sectors[outlineSector(edge.normal)];
     // Rows carry 1 / scale; it is folded into the normal.
     const Eigen::Vector2d n = edge.normal * point.inverse_scale;
     double wt = w;
@@ -195,7 +188,7 @@ std::optional<BoardMotion> fitBoardMotion(const BurstWindow& window, const Board
       const CircleMotion moving(circle, motion);
       std::vector<FitPoint>& near = points[static_cast<std::size_t>(circle.circle)];
       if (iteration == 0) gatherPoints(window, moving, half_window_s, 2.0 * first_gate_px, near);
-      std::array<SectorSums, kSectors> sectors;
+      std::array<SectorSums, kOutlineSectors> sectors;
       sumSectors(moving, near, motion, gate_px, options, sectors, equations);
       for (const SectorSums& sums : sectors) addSector(sums, motion.frame, equations);
     }

@@ -3,10 +3,13 @@
 #include "core/base/time.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace evical {
 namespace {
 
+// Bursts come in no order of place: their pixels are asked for so many bursts before their turn.
+constexpr std::size_t kFetchedAhead = 16;
 constexpr std::int64_t kSlice_ns = 5'000'000;  // storage only: results do not depend on it
 
 std::int64_t sliceOf(std::int64_t time_ns) {
@@ -20,15 +23,24 @@ BurstHistory::Slices::const_iterator BurstHistory::firstFrom(std::int64_t index)
                           [](const Slice& slice, std::int64_t wanted) { return slice.index < wanted; });
 }
 
+std::vector<EdgeBurst> BurstHistory::emptySlice() {
+  if (spare_.empty()) return {};
+  std::vector<EdgeBurst> slice = std::move(spare_.back());
+  spare_.pop_back();
+  slice.clear();
+  return slice;
+}
+
 std::vector<EdgeBurst>& BurstHistory::sliceAt(std::int64_t index) {
-  if (slices_.empty() || slices_.back().index < index) return slices_.emplace_back(Slice{index, {}}).bursts;
+  if (slices_.empty() || slices_.back().index < index)
+    return slices_.emplace_back(Slice{index, emptySlice()}).bursts;
   // Where no time is empty its place is known.
   const auto place = static_cast<std::size_t>(std::max<std::int64_t>(index - slices_.front().index, 0));
   if (place < slices_.size() && slices_[place].index == index) return slices_[place].bursts;
   const auto found = firstFrom(index);
   const auto at = slices_.begin() + (found - slices_.cbegin());
   return at != slices_.end() && at->index == index ? at->bursts
-                                                   : slices_.insert(at, Slice{index, {}})->bursts;
+                                                   : slices_.insert(at, Slice{index, emptySlice()})->bursts;
 }
 
 void BurstHistory::add(const std::vector<EdgeBurst>& bursts) {
@@ -37,7 +49,10 @@ void BurstHistory::add(const std::vector<EdgeBurst>& bursts) {
 
 void BurstHistory::dropBefore(std::int64_t time_ns) {
   const std::int64_t slice = sliceOf(time_ns);
-  while (!slices_.empty() && slices_.front().index < slice) slices_.pop_front();
+  while (!slices_.empty() && slices_.front().index < slice) {
+    spare_.push_back(std::move(slices_.front().bursts));
+    slices_.pop_front();
+  }
 }
 
 void BurstHistory::gather(std::int64_t begin_ns, std::int64_t end_ns, std::vector<EdgeBurst>& bursts) const {
@@ -97,7 +112,16 @@ void BurstWindow::assign(const std::vector<EdgeBurst>& bursts, std::int64_t midd
   for (std::size_t i = 2; i < cell_begin_.size(); ++i) cell_begin_[i] += cell_begin_[i - 1];
   bursts_.resize(bursts.size());
   const IdealPixels* const pixels = pixels_.get();
-  for (const EdgeBurst& burst : bursts) {
+  const auto indexOf = [&](const EdgeBurst& burst) {
+    return static_cast<std::size_t>(burst.y_px * resolution_px_.width_px + burst.x_px);
+  };
+  for (std::size_t k = 0; k < bursts.size(); ++k) {
+    const EdgeBurst& burst = bursts[k];
+    if (pixels && k + kFetchedAhead < bursts.size()) {
+      const EdgeBurst& later = bursts[k + kFetchedAhead];
+      __builtin_prefetch(&pixels->ideal(later.x_px, later.y_px));
+      __builtin_prefetch(pixels->stretch.data() + indexOf(later));
+    }
     WindowBurst& out = bursts_[cell_begin_[cellOf(burst) + 1]++];
     out.x_px = burst.x_px;
     out.y_px = burst.y_px;
@@ -108,8 +132,7 @@ void BurstWindow::assign(const std::vector<EdgeBurst>& bursts, std::int64_t midd
       const Eigen::Vector2f& ideal = pixels->ideal(burst.x_px, burst.y_px);
       out.ideal_x_px = ideal.x();
       out.ideal_y_px = ideal.y();
-      out.stretch =
-          pixels->stretch[static_cast<std::size_t>(burst.y_px * resolution_px_.width_px + burst.x_px)];
+      out.stretch = pixels->stretch[indexOf(burst)];
     }
     out.time_s = static_cast<float>(static_cast<double>(burst.time_ns - middle_ns) * 1e-9);
     out.events = burst.events;

@@ -36,9 +36,11 @@ class BurstHistory {
   using Slices = std::deque<Slice>;
 
   std::vector<EdgeBurst>& sliceAt(std::int64_t index);
+  std::vector<EdgeBurst> emptySlice();
   Slices::const_iterator firstFrom(std::int64_t index) const;
 
-  Slices slices_;  // ascending, none of them empty
+  Slices slices_;                              // ascending, none of them empty
+  std::vector<std::vector<EdgeBurst>> spare_;  // memory of slices that were dropped, for those to come
 };
 
 // Drops bursts that stand alone: fewer than `least_support` of their kind in

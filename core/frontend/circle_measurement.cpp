@@ -1,6 +1,7 @@
 #include "core/frontend/circle_measurement.h"
 
 #include "core/base/time.h"
+#include "core/frontend/outline_sector.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -13,7 +14,6 @@
 namespace evical {
 namespace {
 
-constexpr int kSectors = 16;
 constexpr int kMeasureIterations = 4;
 
 struct EdgePoint {
@@ -95,8 +95,7 @@ CentreFit fitCentre(CircleImage circle, const BoardMotion& motion, const Trackin
       fit.time_s += w * point.time_s;
       ++fit.points;
       fit.inliers += std::abs(r) < options.robust_scale_px;
-      const double angle = std::atan2(edge.normal.y(), edge.normal.x());
-      fit.sectors |= 1u << (static_cast<int>((angle / (2.0 * M_PI) + 1.0) * kSectors) % kSectors);
+      fit.sectors |= 1u << outlineSector(edge.normal);
     }
     if (fit.points < options.least_circle_bursts) return fit;
     const Eigen::LDLT<Eigen::Matrix3d> solver(matrix);
@@ -130,7 +129,7 @@ CircleVerdict judge(const CircleImage& circle, const CentreFit& fit, std::size_t
                     const TrackingOptions& options) {
   if (fit.points < options.least_circle_bursts) return CircleVerdict::TooFewBursts;
   if (fit.inliers < options.least_inliers * static_cast<double>(points)) return CircleVerdict::TooFewInliers;
-  if (std::popcount(fit.sectors) < options.least_arc * kSectors) return CircleVerdict::TooShortArc;
+  if (std::popcount(fit.sectors) < options.least_arc * kOutlineSectors) return CircleVerdict::TooShortArc;
   const double scale = circle.largest_radius_px / circle.sensor_radius_px;
   if (!(fit.shift.head<2>().norm() < options.largest_centre_shift_px * scale))
     return CircleVerdict::OffTheBoard;
@@ -203,6 +202,7 @@ std::vector<CircleObservation> measureCircles(const BurstWindow& window, const B
                                               const BoardScene& scene, const MeasuredSlot& slot,
                                               const TrackingOptions& options, MeasurementTrace* trace) {
   std::vector<CircleObservation> circles;
+  circles.reserve(static_cast<std::size_t>(scene.board.pointCount()));  // views are kept
   CircleMeter meter(window, motion, slot, options);
   if (trace)
     trace->verdicts.assign(static_cast<std::size_t>(scene.board.pointCount()), CircleVerdict::OutsideImage);

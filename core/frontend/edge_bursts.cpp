@@ -17,6 +17,10 @@ constexpr double kRestToHalfCrossing = 3.5;
 // Whatever the pause is compared with: who waits longer holds up the windows for the slowest pixel.
 constexpr double kLongestRest_s = 0.6;
 
+// Pixels come in no order, and a sensor's are more than a processor's fast memory holds: so many events before their
+// turn they are asked for.
+constexpr std::size_t kFetchedAhead = 16;
+
 // The edge was out of the pixel's reach.
 bool isRest(std::int64_t pause_ns, std::int64_t half_crossing_ns) {
   return pause_ns > nanosecondsFrom(kLongestRest_s) ||
@@ -41,96 +45,114 @@ BurstExtractor::BurstExtractor(Resolution resolution_px, const BurstOptions& opt
       gap_to_pace_(options.gap_to_pace),
       least_events_(options.least_events),
       pixels_(static_cast<std::size_t>(resolution_px.pixelCount())),
+      times_ns_(pixels_.size(), KeptTimes{}),
       complete_until_ns_(std::numeric_limits<std::int64_t>::min()) {}
 
-void BurstExtractor::start(Pixel& pixel, std::uint32_t index, const Event& event) {
+std::uint32_t BurstExtractor::indexOf(const Event& event) const {
+  return event.y_px * static_cast<std::uint32_t>(resolution_px_.width_px) + event.x_px;
+}
+
+void BurstExtractor::fetch(std::uint32_t index) const {
+  __builtin_prefetch(pixels_.data() + index, 1);
+  __builtin_prefetch(times_ns_.data() + index, 1);
+}
+
+void BurstExtractor::start(std::uint32_t index, const Event& event) {
+  Pixel& pixel = pixels_[index];
   // A pixel that has a burst under way already waits in the queue.
   if (pixel.events == 0) checks_.push_back({index, event.time_ns + check_interval_ns_});
-  pixel.first_ns = pixel.last_ns = event.time_ns;
+  pixel.first_ns = event.time_ns;
+  pixel.length_ns = 0;
   pixel.events = 1;
   pixel.kept = 1;
   pixel.stride_log2 = 0;
   pixel.brighter = event.brighter;
-  pixel.times_ns[0] = 0;
 }
 
-void BurstExtractor::extend(Pixel& pixel, const Event& event) {
+void BurstExtractor::extend(std::uint32_t index, const Event& event) {
+  Pixel& pixel = pixels_[index];
   const unsigned position = pixel.events;
-  pixel.last_ns = event.time_ns;
+  pixel.length_ns = static_cast<std::int32_t>(event.time_ns - pixel.first_ns);
   if (pixel.events < std::numeric_limits<std::uint16_t>::max()) ++pixel.events;
   if (position & ((1u << pixel.stride_log2) - 1u)) return;
+  KeptTimes& times_ns = times_ns_[index];
   if (pixel.kept == kKeptTimes) {
-    for (int i = 0; i < kKeptTimes / 2; ++i) pixel.times_ns[i] = pixel.times_ns[2 * i];
+    for (std::size_t i = 0; i < kKeptTimes / 2; ++i) times_ns[i] = times_ns[2 * i];
     pixel.kept = kKeptTimes / 2;
     ++pixel.stride_log2;
     if (position & ((1u << pixel.stride_log2) - 1u)) return;
   }
-  pixel.times_ns[pixel.kept++] = static_cast<std::int32_t>(event.time_ns - pixel.first_ns);
+  times_ns[pixel.kept++] = pixel.length_ns;
 }
 
 // A burst's first events may be noise from long before it: what pausedAt asks of
 // the next event, asked backwards.
-int BurstExtractor::ownBegin(const Pixel& pixel) const {
+int BurstExtractor::ownBegin(const Burst& burst) const {
   int begin = 0;
-  for (const int last = pixel.kept - 1; begin + 3 <= last; ++begin) {
-    const double gap_ns = pixel.times_ns[begin + 1] - pixel.times_ns[begin];
-    const double pace_ns =
-        static_cast<double>(pixel.times_ns[last] - pixel.times_ns[begin + 1]) / (last - begin - 1);
-    if (gap_ns <= static_cast<double>(shortest_gap_ns_) || gap_ns <= gap_to_pace_ * pace_ns) break;
+  for (const int last = burst.pixel.kept - 1; begin + 3 <= last; ++begin) {
+    const double gap_ns = burst.times_ns[begin + 1] - burst.times_ns[begin];
+    const double rest_ns = burst.times_ns[last] - burst.times_ns[begin + 1];
+    if (gap_ns <= static_cast<double>(shortest_gap_ns_) ||
+        gap_ns * (last - begin - 1) <= gap_to_pace_ * rest_ns)
+      break;
   }
   return begin;
 }
 
-std::int64_t BurstExtractor::Pixel::timeOf_ns(double kept_event) const {
-  const auto below = static_cast<std::size_t>(std::clamp(static_cast<int>(kept_event), 0, kept - 1));
-  const std::size_t above = std::min<std::size_t>(below + 1, kept - 1u);
+std::int64_t BurstExtractor::Burst::timeOf_ns(double kept_event) const {
+  const auto below = static_cast<std::size_t>(std::clamp(static_cast<int>(kept_event), 0, pixel.kept - 1));
+  const std::size_t above = std::min<std::size_t>(below + 1, pixel.kept - 1u);
   const double part = std::clamp(kept_event - static_cast<double>(below), 0.0, 1.0);
-  return first_ns + times_ns[below] + std::llround(part * (times_ns[above] - times_ns[below]));
+  // Events are in order, so this rounds to the nearest.
+  return pixel.first_ns + times_ns[below] +
+         static_cast<std::int64_t>(part * (times_ns[above] - times_ns[below]) + 0.5);
 }
 
-void BurstExtractor::end(Pixel& pixel, std::uint32_t index, std::int64_t now_ns,
-                         std::vector<EdgeBurst>& bursts) const {
+void BurstExtractor::end(std::uint32_t index, std::int64_t now_ns, std::vector<EdgeBurst>& bursts) {
+  Pixel& pixel = pixels_[index];
   if (pixel.events < least_events_) {
     if (!pausedAt(pixel, now_ns)) pixel.level.step(pixel.brighter, pixel.events);
     return;
   }
-  const int first = ownBegin(pixel), stride = 1 << pixel.stride_log2;
-  const std::int64_t begin_ns = pixel.first_ns + pixel.times_ns[static_cast<std::size_t>(first)];
-  const std::int64_t median_ns = pixel.timeOf_ns(0.5 * (first + pixel.kept - 1));
-  const std::int64_t before_ns = first > 0 ? pixel.timeOf_ns(first - 1) : pixel.quiet_since_ns;
-  const std::optional<PixelLevel::Middle> middle =
-      pixel.level.pass({pixel.brighter, pixel.events - first * stride, first > 0,
-                        isRest(begin_ns - before_ns, median_ns - begin_ns),
-                        isRest(now_ns - pixel.last_ns, pixel.last_ns - median_ns)});
-  pixel.quiet_since_ns = pixel.last_ns;
+  const Burst burst{pixel, times_ns_[index]};
+  const int first = ownBegin(burst), stride = 1 << pixel.stride_log2;
+  const std::int64_t begin_ns = pixel.first_ns + burst.times_ns[static_cast<std::size_t>(first)];
+  const std::int64_t last_ns = pixel.last_ns();
+  const std::int64_t median_ns = burst.timeOf_ns(0.5 * (first + pixel.kept - 1));
+  const std::int64_t before_ns = first > 0 ? burst.timeOf_ns(first - 1) : pixel.quiet_since_ns;
+  const std::optional<PixelLevel::Middle> middle = pixel.level.pass(
+      {pixel.brighter, pixel.events - first * stride, first > 0,
+       isRest(begin_ns - before_ns, median_ns - begin_ns), isRest(now_ns - last_ns, last_ns - median_ns)});
+  pixel.quiet_since_ns = last_ns;
   if (!middle) return;
   const auto width = static_cast<std::uint32_t>(resolution_px_.width_px);
-  bursts.push_back({pixel.timeOf_ns(first + middle->event / stride),
-                    static_cast<std::int32_t>(pixel.last_ns - pixel.first_ns),
+  bursts.push_back({burst.timeOf_ns(first + middle->event / stride), pixel.length_ns,
                     static_cast<std::uint16_t>(index % width), static_cast<std::uint16_t>(index / width),
                     static_cast<std::uint16_t>(middle->whole_events), pixel.brighter});
 }
 
 bool BurstExtractor::pausedAt(const Pixel& pixel, std::int64_t time_ns) const {
-  const std::int64_t gap_ns = time_ns - pixel.last_ns;
-  if (gap_ns > longest_gap_ns_ || time_ns - pixel.first_ns > longest_burst_ns_) return true;
+  const std::int64_t since_first_ns = time_ns - pixel.first_ns, gap_ns = since_first_ns - pixel.length_ns;
+  if (gap_ns > longest_gap_ns_ || since_first_ns > longest_burst_ns_) return true;
   if (gap_ns <= shortest_gap_ns_ || pixel.events < 3) return false;
-  const double pace_ns = static_cast<double>(pixel.last_ns - pixel.first_ns) / (pixel.events - 1);
-  return static_cast<double>(gap_ns) > gap_to_pace_ * pace_ns;
+  // Longer than so many mean intervals.
+  return static_cast<double>(gap_ns) * (pixel.events - 1) > gap_to_pace_ * pixel.length_ns;
 }
 
-bool BurstExtractor::restedAt(const Pixel& pixel, std::int64_t time_ns) const {
-  const std::int64_t median_ns = pixel.timeOf_ns(0.5 * (ownBegin(pixel) + pixel.kept - 1));
-  return isRest(time_ns - pixel.last_ns, pixel.last_ns - median_ns);
+bool BurstExtractor::restedAt(const Burst& burst, std::int64_t time_ns) const {
+  const std::int64_t median_ns = burst.timeOf_ns(0.5 * (ownBegin(burst) + burst.pixel.kept - 1));
+  const std::int64_t last_ns = burst.pixel.last_ns();
+  return isRest(time_ns - last_ns, last_ns - median_ns);
 }
 
 void BurstExtractor::endPaused(std::int64_t now_ns, std::vector<EdgeBurst>& bursts) {
   while (!checks_.empty() && checks_.front().at_ns <= now_ns) {
     const Check check = checks_.front();
     checks_.pop_front();
+    if (checks_.size() > kFetchedAhead) fetch(checks_[kFetchedAhead].pixel);
     Pixel& pixel = pixels_[check.pixel];
-    if (pausedAt(pixel, now_ns) && restedAt(pixel, now_ns)) {
-      end(pixel, check.pixel, now_ns, bursts);
+    if (pausedAt(pixel, now_ns) && restedAt({pixel, times_ns_[check.pixel]}, now_ns)) {
+      end(check.pixel, now_ns, bursts);
       pixel.events = 0;
     } else {
       checks_.push_back({check.pixel, now_ns + check_interval_ns_});
@@ -140,22 +162,23 @@ void BurstExtractor::endPaused(std::int64_t now_ns, std::vector<EdgeBurst>& burs
 
 void BurstExtractor::add(EventSpan events, std::vector<EdgeBurst>& bursts) {
   if (events.empty()) return;
-  const auto width = static_cast<std::uint32_t>(resolution_px_.width_px);
   std::int64_t next_check_ns =
       checks_.empty() ? events.front().time_ns + check_interval_ns_ : checks_.front().at_ns;
-  for (const Event& event : events) {
+  for (std::size_t k = 0; k < events.size(); ++k) {
+    const Event& event = events[k];
     if (event.time_ns >= next_check_ns) {
       endPaused(event.time_ns, bursts);
       next_check_ns = event.time_ns + check_interval_ns_ / 8;
     }
-    const std::uint32_t index = event.y_px * width + event.x_px;
-    Pixel& pixel = pixels_[index];
+    if (k + kFetchedAhead < events.size()) fetch(indexOf(events[k + kFetchedAhead]));
+    const std::uint32_t index = indexOf(event);
+    const Pixel& pixel = pixels_[index];
     if (pixel.events > 0 && pixel.brighter == event.brighter && !pausedAt(pixel, event.time_ns)) {
-      extend(pixel, event);
+      extend(index, event);
       continue;
     }
-    if (pixel.events > 0) end(pixel, index, event.time_ns, bursts);
-    start(pixel, index, event);
+    if (pixel.events > 0) end(index, event.time_ns, bursts);
+    start(index, event);
   }
   event_count_ += events.size();
   last_event_ns_ = events.back().time_ns;
@@ -163,7 +186,7 @@ void BurstExtractor::add(EventSpan events, std::vector<EdgeBurst>& bursts) {
 }
 
 void BurstExtractor::finish(std::vector<EdgeBurst>& bursts) {
-  for (const Check& check : checks_) end(pixels_[check.pixel], check.pixel, last_event_ns_, bursts);
+  for (const Check& check : checks_) end(check.pixel, last_event_ns_, bursts);
   for (const Check& check : checks_) pixels_[check.pixel].events = 0;
   checks_.clear();
   complete_until_ns_ = std::numeric_limits<std::int64_t>::max();

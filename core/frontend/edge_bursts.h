@@ -46,14 +46,25 @@ class BurstExtractor {
   static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min() / 2;
   static constexpr int kKeptTimes = 16;  // thinned by halves when a burst has more events
 
-  struct Pixel {
-    std::int64_t first_ns = 0, last_ns = 0;
-    std::uint16_t events = 0;  // 0: no burst under way
-    std::uint8_t kept = 0, stride_log2 = 0;
-    bool brighter = false;
-    std::array<std::int32_t, kKeptTimes> times_ns;  // since first_ns
-    std::int64_t quiet_since_ns = kNever;           // last event of the burst before
+  // Half a line of the processor's memory, its times a line of their own: an event touches these two.
+  struct alignas(32) Pixel {
+    std::int64_t first_ns = 0;
+    std::int32_t length_ns = 0;  // from the first event to the last
+    std::uint16_t events = 0;    // 0: no burst under way
+    std::uint8_t kept = 0;
+    std::uint8_t stride_log2 : 7 = 0;
+    bool brighter : 1 = false;
+    std::int64_t quiet_since_ns = kNever;  // last event of the burst before
     PixelLevel level;
+
+    std::int64_t last_ns() const { return first_ns + length_ns; }
+  };
+  static_assert(sizeof(Pixel) == 32);
+  struct alignas(64) KeptTimes : std::array<std::int32_t, kKeptTimes> {
+  };  // since the first event, which is at 0
+  struct Burst {
+    Pixel& pixel;
+    const KeptTimes& times_ns;
 
     std::int64_t timeOf_ns(double kept_event) const;  // between two kept ones, in proportion
   };
@@ -62,12 +73,14 @@ class BurstExtractor {
     std::int64_t at_ns;
   };
 
-  void start(Pixel& pixel, std::uint32_t index, const Event& event);
-  void extend(Pixel& pixel, const Event& event);
-  void end(Pixel& pixel, std::uint32_t index, std::int64_t now_ns, std::vector<EdgeBurst>& bursts) const;
-  int ownBegin(const Pixel& pixel) const;
+  std::uint32_t indexOf(const Event& event) const;
+  void fetch(std::uint32_t index) const;
+  void start(std::uint32_t index, const Event& event);
+  void extend(std::uint32_t index, const Event& event);
+  void end(std::uint32_t index, std::int64_t now_ns, std::vector<EdgeBurst>& bursts);
+  int ownBegin(const Burst& burst) const;
   bool pausedAt(const Pixel& pixel, std::int64_t time_ns) const;
-  bool restedAt(const Pixel& pixel, std::int64_t time_ns) const;
+  bool restedAt(const Burst& burst, std::int64_t time_ns) const;
   void endPaused(std::int64_t now_ns, std::vector<EdgeBurst>& bursts);
 
   Resolution resolution_px_;
@@ -75,6 +88,7 @@ class BurstExtractor {
   double gap_to_pace_;
   int least_events_;
   std::vector<Pixel> pixels_;
+  std::vector<KeptTimes> times_ns_;  // by pixel
   std::deque<Check> checks_;
   std::int64_t complete_until_ns_, last_event_ns_ = kNever;
   std::uint64_t event_count_ = 0;

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -66,11 +67,12 @@ void validatePoints(const Board& board) {
   if (points_m.size() < kLeast)
     throw badInput("board.points_m", std::to_string(points_m.size()) + " points are too few for a pose",
                    "Give at least four, better dozens");
+  std::set<std::pair<double, double>> taken;
   for (std::size_t i = 0; i < points_m.size(); ++i) {
     if (!points_m[i].allFinite())
       throw badInput("board.points_m", "point " + std::to_string(i) + " has no place",
                      "Give x and y of each point, in metres");
-    if (!(gap_m(points_m, i) > 0.0))
+    if (!taken.emplace(points_m[i].x(), points_m[i].y()).second)
       throw badInput("board.points_m", "point " + std::to_string(i) + " is where another one is",
                      "Give each point's own place");
   }
@@ -119,9 +121,10 @@ Eigen::Vector2d Board::extent_m() const {
     case BoardType::Charuco:
       return {(cols - 2) * spacing_m, (rows - 2) * spacing_m};
     case BoardType::Points: {
-      Eigen::Vector2d most = corner_m();
+      const Eigen::Vector2d least = corner_m();
+      Eigen::Vector2d most = least;
       for (const Eigen::Vector2d& each : given_m) most = most.cwiseMax(each);
-      return most - corner_m();
+      return most - least;
     }
     default:
       return point_m(rows - 1, cols - 1)

@@ -1,7 +1,8 @@
 // The printed target: a grid of circles, a checkerboard, a grid of tags, or any points whose places are given.
-// Its points are what cameras measure: centres of circles, or corners, which are circles of radius 0. Board (= world) frame: x along a row,
-// y down the columns, z into the board; metres. Its origin is the first circle's centre, the checkerboard's
-// first inner corner, the top left corner of the AprilGrid's top left tag, or that of the given places.
+// Its points are what cameras measure: centres of circles, or corners, which are circles of radius 0. Board
+// (= world) frame: x along a row, y down the columns, z into the board; metres. Its origin is the first circle's
+// centre, the checkerboard's first inner corner, the top left corner of the AprilGrid's top left tag, or that of
+// the given places.
 #pragma once
 
 #include <Eigen/Core>

@@ -30,6 +30,8 @@ class CircleCentreCost final : public ceres::SizedCostFunction<2, 9, 1, kPoseBlo
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
+  const Eigen::Matrix2d& whitening_px() const { return whitening_px_; }  // of errors in px to residuals
+
  private:
   std::optional<Eigen::Vector2d> predict(const CameraIntrinsics& camera,
                                          const RigidTransform& camera_from_board,

@@ -48,6 +48,9 @@ constexpr std::tuple kIntrinsicsFields{
           "Prior on the lead of measured centres along their image motion, around 0."},
     Field{"correlation_time_s", &IntrinsicsOptions::correlation_time_s, 0.2, within(0.0, 10.0), "s",
           "Views nearer in time than this may have errors in common; the sigmas allow for it."},
+    Field{"place_error_px", &IntrinsicsOptions::place_error_px, 0.003, within(0.0, 1.0), "px",
+          "What all views may err alike at a place in the image, an eighth by a sixth of it; the sigmas "
+          "allow for it."},
     Field{"max_iterations", &IntrinsicsOptions::max_iterations, 60, within(1, 1000), "",
           "Iterations of one solve."},
     Field{"most_passes", &IntrinsicsOptions::most_passes, 4, within(1, 20), "",

@@ -27,6 +27,7 @@ struct IntrinsicsOptions {
   double least_centre_sigma_px;
   double edge_lead_sigma_px;
   double correlation_time_s;
+  double place_error_px;
   int max_iterations;
   int most_passes;
   double settled_px;

@@ -20,11 +20,24 @@ using SharedMatrix = Eigen::Matrix<double, kShared, kShared>;
 using SharedVector = Eigen::Matrix<double, kShared, 1>;
 using PoseMatrix = Eigen::Matrix<double, 6, 6>;
 
+// Of an image in columns and rows of cells, the one that a pixel lies in, row by row.
+int cellAt(const Eigen::Vector2d& pixel, const Resolution& size_px, int columns, int rows) {
+  const int column = static_cast<int>(pixel.x() * columns / size_px.width_px);
+  const int row = static_cast<int>(pixel.y() * rows / size_px.height_px);
+  return std::clamp(row, 0, rows - 1) * columns + std::clamp(column, 0, columns - 1);
+}
+
+// Errors that all views have in common where in the image they see a circle: for each place that along x, then that
+// along y.
+constexpr int kPlaceColumns = 8, kPlaceRows = 6, kPlaceErrors = 2 * kPlaceColumns * kPlaceRows;
+using PlaceMatrix = Eigen::Matrix<double, kShared, kPlaceErrors>;
+
 // What one view says once its pose is eliminated.
 struct ViewInformation {
   double time_s = 0.0;
   SharedMatrix information = SharedMatrix::Zero();
   SharedVector score = SharedVector::Zero();
+  PlaceMatrix by_place = PlaceMatrix::Zero();  // of the score, by each place's error in px
   double squares = 0.0;
   int residuals = 0;
 };
@@ -39,6 +52,7 @@ ViewInformation viewInformation(const SensorView& view, const RigidTransform& po
   PoseMatrix a = PoseMatrix::Zero();
   Eigen::Matrix<double, kShared, 6> b = Eigen::Matrix<double, kShared, 6>::Zero();
   Eigen::Matrix<double, 6, 1> pose_score = Eigen::Matrix<double, 6, 1>::Zero();
+  Eigen::Matrix<double, 6, kPlaceErrors> pose_by_place = Eigen::Matrix<double, 6, kPlaceErrors>::Zero();
   ViewInformation out;
   out.time_s = view.time_s;
   for (const SensorCircle& circle : view.circles) {
@@ -47,8 +61,8 @@ ViewInformation viewInformation(const SensorView& view, const RigidTransform& po
     Eigen::Matrix<double, 2, kIntrinsicsCount, Eigen::RowMajor> by_intrinsics;
     Eigen::Matrix<double, 2, kPoseBlock, Eigen::RowMajor> by_block;
     std::array<double*, 3> jacobians = {by_intrinsics.data(), by_lead.data(), by_block.data()};
-    CircleCentreCost(bundle.intrinsics.model, circle, board.radius_m, bundle.scale)
-        .Evaluate(blocks.data(), residual.data(), jacobians.data());
+    const CircleCentreCost cost(bundle.intrinsics.model, circle, board.radius_m, bundle.scale);
+    cost.Evaluate(blocks.data(), residual.data(), jacobians.data());
     Eigen::Matrix<double, 2, kShared> by_shared;
     by_shared << by_intrinsics, by_lead;
     Eigen::Matrix<double, 2, 6> by_pose;
@@ -59,6 +73,10 @@ ViewInformation viewInformation(const SensorView& view, const RigidTransform& po
     out.information += weight * by_shared.transpose() * by_shared;
     out.score += weight * by_shared.transpose() * residual;
     pose_score += weight * by_pose.transpose() * residual;
+    const int place =
+        2 * cellAt(circle.centre_px, bundle.intrinsics.resolution_px, kPlaceColumns, kPlaceRows);
+    out.by_place.middleCols<2>(place) += weight * by_shared.transpose() * cost.whitening_px();
+    pose_by_place.middleCols<2>(place) += weight * by_pose.transpose() * cost.whitening_px();
     out.squares += weight * residual.squaredNorm();
     out.residuals += 2;
   }
@@ -66,6 +84,7 @@ ViewInformation viewInformation(const SensorView& view, const RigidTransform& po
   const Eigen::LDLT<PoseMatrix> solver(a);
   out.information -= b * solver.solve(b.transpose());
   out.score -= b * solver.solve(pose_score);
+  out.by_place -= b * solver.solve(pose_by_place);
   return out;
 }
 
@@ -108,10 +127,12 @@ BundleUncertainty bundleUncertainty(const Bundle& bundle, const Board& board,
   double squares = 0.0;
   int residuals = 0, unknowns = static_cast<int>(free.size());
   std::vector<ViewInformation> views;
+  PlaceMatrix by_place = PlaceMatrix::Zero();
   for (std::size_t v = 0; v < bundle.views.size(); ++v) {
     ViewInformation view = viewInformation(bundle.views[v], bundle.poses[v], bundle, board, options);
     if (view.residuals == 0) continue;
     information += view.information;
+    by_place += view.by_place;
     squares += view.squares;
     residuals += view.residuals;
     unknowns += 6;
@@ -131,6 +152,8 @@ BundleUncertainty bundleUncertainty(const Bundle& bundle, const Board& board,
   const SharedVector growth =
       (correlated.diagonal().array() / covariance.diagonal().array().max(1e-300)).max(1.0).sqrt().matrix();
   covariance = (growth.asDiagonal() * covariance * growth.asDiagonal()).eval();
+  const PlaceMatrix by_place_errors = options.place_error_px * inverse * by_place;
+  covariance += by_place_errors * by_place_errors.transpose();
   out.covariance = covariance.topLeftCorner<kIntrinsicsCount, kIntrinsicsCount>();
   out.edge_lead_std_px = std::sqrt(covariance(kIntrinsicsCount, kIntrinsicsCount));
   out.normalised_rms = bundle.scale * std::sqrt(variance);
@@ -166,11 +189,7 @@ ImageMap imageMap(const Bundle& bundle, const IntrinsicsMatrix& covariance) {
   for (const SensorView& view : bundle.views) {
     for (const SensorCircle& circle : view.circles) {
       if (!circle.used) continue;
-      const int column = static_cast<int>(circle.centre_px.x() * map.columns / size.width_px);
-      const int row = static_cast<int>(circle.centre_px.y() * map.rows / size.height_px);
-      const int index =
-          std::clamp(row, 0, map.rows - 1) * map.columns + std::clamp(column, 0, map.columns - 1);
-      ++map.cells[static_cast<std::size_t>(index)].circles;
+      ++map.cells[static_cast<std::size_t>(cellAt(circle.centre_px, size, map.columns, map.rows))].circles;
     }
   }
   return map;

@@ -279,14 +279,9 @@ void Batch::reportFits() {
   for (const CameraData& camera : input_.cameras) view_used.emplace_back(camera.observations.views.size());
   std::vector<double> normalised2(input_.cameras.size());
   for (const CircleError& error : circleErrors(input_, solution_.state, options_)) {
-    const CircleObservation& circle =
-        input_.cameras[error.camera].observations.views[error.view].circles[error.index];
     const bool used = solution_.used_circles[error.camera][error.view][error.index] != 0;
     CameraFit& fit = solution_.cameras[error.camera];
     ++(used ? fit.circles_used : fit.circles_rejected);
-    solution_.circle_residuals.push_back({static_cast<int>(error.camera), static_cast<int>(error.view),
-                                          circle.circle, circle.time_s, circle.centre_px, error.error_px,
-                                          circle.covariance_px2.diagonal().cwiseSqrt(), used});
     if (!used) continue;
     fit.reprojection_rms_px += error.error_px.squaredNorm();
     normalised2[error.camera] += error.normalised2;

@@ -20,7 +20,6 @@ struct BatchSolution {
   std::vector<CameraFit> cameras;  // normalised_rms: against the front end's own covariances
   std::vector<ImuFit> imus;
   std::vector<IterationRecord> iterations;
-  std::vector<CircleResidual> circle_residuals;  // all circles within the splines' range, also those not used
   std::vector<std::string> notes;
   bool converged = false;
   NoiseScales scales;

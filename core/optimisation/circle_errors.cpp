@@ -67,6 +67,22 @@ std::vector<CircleError> circleErrors(const CalibrationInput& input, const Calib
   return errors;
 }
 
+std::vector<CircleResidual> circleResiduals(const CalibrationInput& input, const CalibrationState& state,
+                                            const CircleSelection& used, const OptimisationOptions& options) {
+  const std::vector<CircleError> errors = circleErrors(input, state, options);
+  std::vector<CircleResidual> residuals;
+  residuals.reserve(errors.size());
+  for (const CircleError& error : errors) {
+    const CircleObservation& circle =
+        input.cameras[error.camera].observations.views[error.view].circles[error.index];
+    residuals.push_back({static_cast<int>(error.camera), static_cast<int>(error.view), circle.circle,
+                         circle.time_s, circle.centre_px, error.error_px,
+                         circle.covariance_px2.diagonal().cwiseSqrt(),
+                         used[error.camera][error.view][error.index] != 0});
+  }
+  return residuals;
+}
+
 double robustScale(const std::vector<CircleError>& errors, std::size_t camera) {
   std::vector<double> normalised2;
   for (const CircleError& error : errors) {

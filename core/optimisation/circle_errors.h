@@ -1,6 +1,7 @@
 // How far every measured circle lies from where the state puts it, and which of them to trust.
 #pragma once
 
+#include "core/data/calibration_result.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/calibration_state.h"
 #include "core/optimisation/optimisation_options.h"
@@ -25,6 +26,10 @@ struct CircleError {
 // All circles whose times lie in both splines' range, in order of camera, view and list.
 std::vector<CircleError> circleErrors(const CalibrationInput& input, const CalibrationState& state,
                                       const OptimisationOptions& options);
+
+// The same for people and programs, also of those that took no part.
+std::vector<CircleResidual> circleResiduals(const CalibrationInput& input, const CalibrationState& state,
+                                            const CircleSelection& used, const OptimisationOptions& options);
 
 // Spread of a camera's errors in units of their sigmas, from the median, so that outliers
 // don't matter; 1 without circles.

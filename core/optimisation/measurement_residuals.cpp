@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 namespace evical {
 namespace {
@@ -45,30 +46,28 @@ CircleMeasurement circleOf(const ProblemBuilder& builder, std::size_t camera, st
   return m;
 }
 
-double measuredAt_s(const CameraState& camera, const CircleMeasurement& circle) {
-  return referenceTime_s(camera, circle.time_s) + circle.by_line_s * camera.line_delay_us +
-         circle.by_exposure_s * camera.exposure_share;
-}
+// When it was measured, on the trajectory's clock.
+struct TimedCircle {
+  double time_s = 0.0;
+  std::uint32_t view = 0, circle = 0;
+};
 
-// Those that take part and lie within the splines, in order of time.
-std::vector<CircleMeasurement> circlesOf(const ProblemBuilder& builder, std::size_t camera,
-                                         const PixelErrors& pixel_errors) {
+// Those that take part and lie within the splines, in order of time: not yet as measurements, which are ten times as
+// large.
+std::vector<TimedCircle> circlesOf(const ProblemBuilder& builder, std::size_t camera) {
   const CalibrationState& state = builder.parameters.moved();
   const auto& views = builder.input.cameras[camera].observations.views;
-  std::vector<CircleMeasurement> measurements;
-  for (std::size_t view = 0; view < views.size(); ++view) {
-    for (std::size_t i = 0; i < views[view].circles.size(); ++i) {
+  std::vector<TimedCircle> circles;
+  for (std::uint32_t view = 0; view < views.size(); ++view) {
+    for (std::uint32_t i = 0; i < views[view].circles.size(); ++i) {
       if (!builder.weights.used_circles[camera][view][i]) continue;
       const double time_s = circleTime_s(state.cameras[camera], views[view].circles[i]);
       if (!state.world_from_imu_rotation.contains(time_s) || !state.imu_in_world_m.contains(time_s)) continue;
-      measurements.push_back(circleOf(builder, camera, view, i, pixel_errors));
+      circles.push_back({time_s, view, i});
     }
   }
-  std::stable_sort(measurements.begin(), measurements.end(),
-                   [&](const CircleMeasurement& a, const CircleMeasurement& b) {
-                     return measuredAt_s(state.cameras[camera], a) < measuredAt_s(state.cameras[camera], b);
-                   });
-  return measurements;
+  std::ranges::stable_sort(circles, {}, &TimedCircle::time_s);
+  return circles;
 }
 
 // Those that take part.
@@ -76,6 +75,7 @@ std::vector<InertialMeasurement> samplesOf(const ProblemBuilder& builder, const 
                                            Eigen::Vector3d ImuSample::*value,
                                            const std::vector<std::uint8_t>& used) {
   std::vector<InertialMeasurement> measurements;
+  measurements.reserve(run.end - run.begin);
   for (std::size_t i = run.begin; i < run.end; ++i) {
     if (!used[i]) continue;
     const ImuSample& sample = builder.input.imus[run.imu].samples[i];
@@ -149,17 +149,16 @@ void addCircles(ProblemBuilder& builder, std::size_t camera, const CircleModel& 
   CameraState& state = parameters.moved().cameras[camera];
   CameraState& sensor = parameters.moved().cameras[parameters.sensorOf(camera)];
   BoardState& board = parameters.moved().boardAt(builder.input.cameras[camera].board);
-  const std::vector<CircleMeasurement> measurements = circlesOf(builder, camera, pixel_errors);
-  for (std::size_t begin = 0, end = 0; begin < measurements.size(); begin = end) {
-    const double begin_s = measuredAt_s(state, measurements[begin]);
+  const std::vector<TimedCircle> circles = circlesOf(builder, camera);
+  for (std::size_t begin = 0, end = 0; begin < circles.size(); begin = end) {
+    const double begin_s = circles[begin].time_s;
     const SegmentTimes segment = parameters.segmentAt(begin_s);
-    while (end < measurements.size() &&
-           sameSegment(segment, parameters.segmentAt(measuredAt_s(state, measurements[end])))) {
-      ++end;
-    }
-    auto* cost = new CircleCost(model, segment,
-                                {measurements.begin() + static_cast<std::ptrdiff_t>(begin),
-                                 measurements.begin() + static_cast<std::ptrdiff_t>(end)});
+    while (end < circles.size() && sameSegment(segment, parameters.segmentAt(circles[end].time_s))) ++end;
+    std::vector<CircleMeasurement> measurements;
+    measurements.reserve(end - begin);
+    for (std::size_t i = begin; i < end; ++i)
+      measurements.push_back(circleOf(builder, camera, circles[i].view, circles[i].circle, pixel_errors));
+    auto* cost = new CircleCost(model, segment, std::move(measurements));
     std::vector<double*> blocks;
     parameters.appendRotation(segment, blocks);
     parameters.appendPosition(segment, blocks);

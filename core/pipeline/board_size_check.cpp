@@ -125,9 +125,9 @@ std::optional<RecordingFault> unseenCircles(const BoardObservations& observation
   if (never == 0) return std::nullopt;
   return RecordingFault{
       observations.camera, FaultKind::BoardSize, 0.0,
-      fmt::format("{}: {} of the board's {} points were seen in none of {} views: check {} in the session",
-                  observations.camera, never, board.pointCount(), observations.views.size(),
-                  board.hasPattern() ? "rows and cols" : "points_m")};
+      fmt::format("{}: {} of the board's {} {} were seen in none of {} views: check {} in the session",
+                  observations.camera, never, board.pointCount(), board.hasCircles() ? "circles" : "points",
+                  observations.views.size(), board.hasPattern() ? "rows and cols" : "points_m")};
 }
 
 const char* measurementsOf(CameraKind kind) {

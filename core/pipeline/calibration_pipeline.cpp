@@ -1,33 +1,30 @@
 #include "core/pipeline/calibration_pipeline.h"
 
 #include "core/base/error.h"
+#include "core/base/process_memory.h"
 #include "core/base/stopwatch.h"
-#include "core/base/time.h"
 #include "core/data/calibration_observer.h"
 #include "core/data/calibration_stage.h"
 #include "core/data/doubt.h"
 #include "core/geometry/projection_difference.h"
-#include "core/initialisation/agreement_check.h"
 #include "core/initialisation/initialise.h"
-#include "core/numerics/robust.h"
 #include "core/optimisation/batch_optimiser.h"
+#include "core/optimisation/circle_errors.h"
 #include "core/optimisation/uncertainty/covariance.h"
 #include "core/optimisation/uncertainty/prior_check.h"
 #include "core/optimisation/uncertainty/shared_sensors.h"
-#include "core/pipeline/blink_views.h"
 #include "core/pipeline/board_size_check.h"
+#include "core/pipeline/calibrated_lenses.h"
+#include "core/pipeline/calibration_checks.h"
 #include "core/pipeline/causes.h"
 #include "core/pipeline/cross_validation.h"
 #include "core/pipeline/detected_recording.h"
-#include "core/pipeline/joint_intrinsics.h"
 #include "core/pipeline/misfit.h"
+#include "core/pipeline/pass_input.h"
 #include "core/pipeline/session_keys.h"
 #include "core/pipeline/view_rejection.h"
-#include "core/recording/inspection.h"
 
 #include <fmt/format.h>
-
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
@@ -36,119 +33,6 @@
 
 namespace evical {
 namespace {
-
-// Median of |acceleration| tells the unit, wide enough for hands that shake at several g; a gyroscope's only
-// when it is absurd.
-void checkUnits(const ImuData& imu, const InitialisationOptions& options) {
-  std::vector<double> norms;
-  double rate2 = 0.0;
-  for (const ImuSample& sample : imu.samples) {
-    norms.push_back(sample.specific_force_m_s2.norm());
-    rate2 += sample.angular_rate_rad_s.squaredNorm();
-  }
-  const double norm = medianOf(std::move(norms));
-  constexpr std::array<double, 2> kLooksLikeG = {0.7, 1.3};
-  if (norm < options.least_acceleration_m_s2 || norm > options.largest_acceleration_m_s2) {
-    const bool g = norm > kLooksLikeG[0] && norm < kLooksLikeG[1];
-    throw badInput(
-        imu.name,
-        fmt::format("accelerations have a median norm of {:.3g} m/s^2, gravity has 9.81{}", norm,
-                    g ? ": they look like g" : ""),
-        g ? "Set acceleration_unit: g for this IMU" : "Check acceleration_unit (m/s^2, g, -g) of this IMU")
-        .repairedBy(g ? std::optional(Repair{"imus." + imu.name + ".acceleration_unit", "g"}) : std::nullopt);
-  }
-  const double rms = std::sqrt(rate2 / static_cast<double>(imu.samples.size()));
-  if (rms > options.largest_rotation_rate_rad_s) {
-    throw badInput(imu.name, fmt::format("angular rates of {:.0f} rad/s RMS look like deg/s", rms),
-                   "Set angular_rate_unit: deg/s for this IMU")
-        .repairedBy(Repair{"imus." + imu.name + ".angular_rate_unit", "deg/s"});
-  }
-}
-
-void checkDuration(const Session& session, const RecordingPass& pass) {
-  const double least_s = session.options.initialisation.least_overlap_s;
-  const auto check = [&](const std::string& sensor, double duration_s) {
-    if (duration_s >= least_s) return;
-    throw calibrationFailed(
-        sensor,
-        fmt::format("the recording is too short: {:.2f} s, at least {:.2f} s are needed{}", duration_s,
-                    least_s, session.time_range_s ? " in time_range_s" : ""),
-        "Record 20 s or more of varied motion");
-  };
-  for (const BoardObservations& camera : pass.cameras)
-    check(camera.camera,
-          camera.windows.empty() ? 0.0 : camera.windows.back().time_s - camera.windows.front().time_s);
-  for (const ImuData& imu : pass.imus)
-    check(imu.name, secondsSince(imu.samples.front().time_ns, imu.samples.back().time_ns));
-}
-
-// Initialisation must hold what the batch holds.
-void holdTimeOffsets(CalibrationInput& input) {
-  for (std::size_t k = 0; k < input.cameras.size(); ++k)
-    if (!input.isReferenceCamera(k))
-      input.cameras[k].prior.time_offset = heldTimeOffset(input.cameras[k].prior);
-  for (std::size_t k = 0; k < input.imus.size(); ++k)
-    if (k != input.reference_imu) input.imus[k].prior.time_offset = heldTimeOffset(input.imus[k].prior);
-}
-
-CalibrationInput inputFrom(const Session& session, const CalibrationRun& run) {
-  CalibrationInput input;
-  input.start_ns = run.pass.start_ns;
-  input.board_name = session.board_name;
-  input.board = session.board;
-  input.further_boards.assign(session.further_boards.begin(), session.further_boards.end());
-  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
-    const SessionCamera& camera = session.cameras[k];
-    input.cameras.push_back(
-        {camera.name, run.pass.lenses.at(k), run.pass.cameras[k], camera.prior, camera.shutter});
-    if (const std::size_t sensor = session.sensorOf(k); sensor != k)
-      input.cameras.back().same_sensor_as = sensor;
-    input.cameras.back().board = session.boardIndexOf(k);
-  }
-  input.imus = run.pass.imus;
-  for (std::size_t k = 0; k < session.imus.size(); ++k) input.imus[k].prior = session.imus[k].prior;
-  input.reference_imu = session.referenceImu();
-  input.reference_camera = session.referenceCamera();
-  input.gravity_norm_m_s2 = session.options.initialisation.gravity_m_s2;
-  if (!session.options.optimisation.free_time_offsets) holdTimeOffsets(input);
-  return input;
-}
-
-void checkSession(const Session& session) {
-  if (session.board_blinks)
-    throw badInput(
-        session.source.string() + ": board.blinking",
-        "a board that blinks tells no time offsets, for nobody knows when exactly the screen flashes on "
-        "the sensors' clocks, and the camera must all but stand still before it",
-        "Calibrate each camera's intrinsics with 'evical intrinsics', then move the sensors before a "
-        "printed board of circles");
-  if (session.imus.empty() && session.cameras.size() == 1) {
-    throw badInput(
-        session.source.string() + ": imus", "there is neither an IMU nor a second camera",
-        "Add one: a camera alone has nothing to be calibrated against; for its intrinsics there is "
-        "'evical intrinsics'");
-  }
-  for (std::size_t k = 0; session.cameras.size() > 1 && k < session.cameras.size(); ++k) {
-    if (!session.boardOf(k).hasHalfTurnAmbiguity()) continue;
-    throw badInput(session.source.string() + ": board",
-                   "the board looks the same when turned by 180 degrees, so cameras can not be calibrated "
-                   "against each other",
-                   "Use an asymmetric board with an odd number of rows; for each camera's intrinsics alone "
-                   "there is 'evical intrinsics'");
-  }
-}
-
-void logDetections(const RecordingPass& pass, const RunContext& context) {
-  for (const BoardObservations& camera : pass.cameras) {
-    const bool windows = camera.kind == CameraKind::Events;
-    context.progress.log(LogLevel::Info,
-                         fmt::format("{}: {} {}, board in {} of {} {} ({})", camera.camera, camera.events,
-                                     measurementsOf(camera.kind), camera.views.size(), camera.windows.size(),
-                                     windows ? "windows" : "frames", outcomes(camera)));
-    if (const std::string rejected = rejectedSentence(camera); !rejected.empty())
-      context.progress.log(LogLevel::Info, rejected);
-  }
-}
 
 // A verdict of its own it is not: halves know less than the whole, and their sigmas less well.
 void validateByHalves(const Session& session, const CalibrationInput& input, const RunContext& context,
@@ -161,83 +45,6 @@ void validateByHalves(const Session& session, const CalibrationInput& input, con
       validation.failure.empty()
           ? fmt::format("halves of the recording differ by {:.2f} sigmas (RMS)", validation.rms_sigmas)
           : "halves of the recording: " + validation.failure);
-}
-
-// Of a lens that the batch did not solve for again.
-void keepSigmas(const IntrinsicsResult& found, CameraUncertainty& uncertainty) {
-  const IntrinsicsVector sigmas = found.standardDeviations();
-  std::copy(sigmas.begin(), sigmas.end(), uncertainty.intrinsics_std.emplace().begin());
-}
-
-void tellIntrinsics(const Session& session, CalibrationRun& run) {
-  std::vector<std::string> notes;
-  std::string doubt;
-  for (std::size_t k = 0; k < session.cameras.size(); ++k) {
-    if (session.sensorOf(k) != k) continue;
-    const std::string name = "intrinsics of " + session.cameras[k].name;
-    const CameraLens& lens = run.result.state.cameras[k].lens;
-    if (k < run.intrinsics.size() && run.intrinsics[k]) {
-      const IntrinsicsResult found =
-          lens.solved ? jointIntrinsics(*run.intrinsics[k], session.cameras[k].name, *lens.solved,
-                                        run.result.uncertainty, session.options.intrinsics)
-                      : *run.intrinsics[k];
-      notes.push_back(fmt::format("{}: calibrated from {} views in {:.1f} s, projection known to {:.3f} px",
-                                  name, found.views_used, found.elapsed_s, found.image.rms_px));
-      for (const std::string& advice : found.advice) notes.push_back(fmt::format("{}: {}", name, advice));
-      if (!lens.solved) keepSigmas(found, run.result.uncertainty.cameras[k]);
-      if (found.status != CalibrationStatus::Ok && doubt.empty())
-        doubt = fmt::format("{}: {}", name, found.reason);
-    }
-    if (!lens.solved) continue;
-    if (lens.given_with) notes.push_back(name + ": weighed by the sigmas that they were given with");
-    notes.push_back(
-        fmt::format("{}: solved with everything else, which moved the projection by {:.3f} px RMS", name,
-                    projectionDifference(*lens.seen_with, *lens.solved).rms_px));
-  }
-  run.result.notes.insert(run.result.notes.begin(), notes.begin(), notes.end());
-  addDoubt(doubt, run.result, "first_look_at_lens");
-}
-
-}  // namespace
-
-double peakMemory_mb() {
-  rusage usage{};
-  if (getrusage(RUSAGE_SELF, &usage) != 0) return 0.0;
-  constexpr double kBytesPerUnit = 1024.0, kBytesPerMb = 1e6;  // Linux counts in KiB
-  return static_cast<double>(usage.ru_maxrss) * kBytesPerUnit / kBytesPerMb;
-}
-
-namespace {
-
-// Of a pass that comes from a run before, they may be known.
-void addFault(const RecordingFault& fault, std::vector<RecordingFault>& faults) {
-  const auto same = [&](const RecordingFault& known) { return known.text == fault.text; };
-  if (std::none_of(faults.begin(), faults.end(), same)) faults.push_back(fault);
-}
-
-// What the recording itself shows to be wrong goes before anything is estimated from it.
-void checkPass(const Session& session, const RunContext& context, RecordingPass& pass) {
-  for (const ImuData& imu : pass.imus) {
-    checkStampsApart(imu);
-    checkAxesAlive(imu);
-    checkUnits(imu, session.options.initialisation);
-    for (const RecordingFault& fault : checkImu(imu.name, imu.samples)) addFault(fault, pass.faults);
-  }
-  for (std::size_t k = 0; k < pass.cameras.size(); ++k) {
-    const std::optional<RecordingFault> unseen = unseenCircles(pass.cameras[k], session.boardOf(k));
-    if (unseen) addFault(*unseen, pass.faults);
-  }
-  for (const RecordingFault& fault : pass.faults) context.progress.log(LogLevel::Warning, fault.text);
-  logDetections(pass, context);
-  checkDuration(session, pass);
-  for (std::size_t k = 0; k < pass.cameras.size(); ++k) {
-    const BoardObservations& camera = pass.cameras[k];
-    if (camera.views.empty())
-      if (const std::optional<CalibrationError> blink = unexpectedBlink(session, k))
-        throw CalibrationError(*blink);
-    checkBoardSeen(camera, session.boardOf(k));
-    checkBoardSize(camera, session.boardOf(k), session.options.front_end.extent);
-  }
 }
 
 // Leaves the views out that lie on the smaller part's side of a step, and those near it. Returns their share.
@@ -299,6 +106,7 @@ class Calibration {
     CalibrationOutcome outcome;
     try {
       work();
+      returnPass();
       outcome.run = std::move(run_);
       return outcome;
     } catch (const Cancelled&) {
@@ -309,6 +117,7 @@ class Calibration {
       if (error.repair())
         outcome.error = CalibrationError(error).repairedBy(ofRawAxes(*error.repair(), session_));
     }
+    returnPass();
     outcome.pass = std::move(run_.pass);
     return outcome;
   }
@@ -322,6 +131,7 @@ class Calibration {
       context_.progress.stageStarted(row.name);
       const Stopwatch stopwatch;
       (this->*each.work)();
+      giveBackFreeMemory();
       context_.progress.stageProgress(1.0);
       run_.result.timing.*row.duration_s = stopwatch.elapsed_s();
     }
@@ -335,8 +145,16 @@ class Calibration {
 
   void prepareInput() {
     checkPass(session_, context_, run_.pass);
-    input_ = inputFrom(session_, run_);
+    input_ = takeInput(session_, run_.pass);
     if (context_.observer != nullptr) context_.observer->detectionDone(input_);
+  }
+
+  // What the input took of it, and what was left out of that.
+  void returnPass() {
+    returnInput(std::exchange(input_, {}), run_.pass);
+    for (std::size_t k = 0; k < whole_views_.size(); ++k)
+      if (std::optional<std::vector<BoardView>> whole = std::exchange(whole_views_[k], std::nullopt))
+        run_.pass.cameras[k].views = std::move(*whole);
   }
 
   void initialiseState() {
@@ -353,7 +171,10 @@ class Calibration {
     for (std::size_t k = 0; k < initial_.agreements.size(); ++k) {
       const std::optional<ClockStep>& step = initial_.agreements[k].clock_step;
       if (!step) continue;
-      const double share = keepBeside(*step, input_.cameras[k].observations.views);
+      std::vector<BoardView>& views = input_.cameras[k].observations.views;
+      whole_views_.resize(input_.cameras.size());
+      whole_views_[k] = views;
+      const double share = keepBeside(*step, views);
       doubt += fmt::format(
           "{}{}: its clock and the IMU's step by {:.1f} ms against each other about {:.1f} s after the "
           "start: {:.0f} % of the views lie on the other side and are left out",
@@ -369,6 +190,7 @@ class Calibration {
     const OptimisationOptions& options = session_.options.optimisation;
     CalibrationResult& result = run_.result;
     BatchSolution solution = optimiseBatch(input_, initial_.state, options, context_);
+    giveBackFreeMemory();
     UncertaintyEstimate uncertainty = estimateUncertainty(input_, solution, options, context_);
     PriorCheck priors = checkPriors(input_, solution, options, context_);
     result.status = uncertainty.status;
@@ -391,6 +213,7 @@ class Calibration {
     judge(solution, heldDoubt(uncertainty, !priors.doubt.empty()), uncertainty.change);
     if (result.status == CalibrationStatus::Doubtful)
       addDoubt(saturationIn(input_, options), result, "saturation");
+    result.circle_residuals = circleResiduals(input_, solution.state, solution.used_circles, options);
     result.state = std::move(solution.state);
     result.uncertainty = std::move(uncertainty.report);
     run_.as_weighed = std::move(uncertainty.as_weighed);
@@ -398,7 +221,6 @@ class Calibration {
     result.cameras = std::move(solution.cameras);
     result.imus = std::move(solution.imus);
     result.iterations = std::move(solution.iterations);
-    result.circle_residuals = std::move(solution.circle_residuals);
     notes_ = std::move(solution.notes);
     std::vector<std::string> slow = notesOnSlowPixels(input_, options);
     for (const auto* more : {&uncertainty.notes, &priors.notes, &slow})
@@ -468,6 +290,7 @@ class Calibration {
   }
 
   void conclude() {
+    returnPass();
     CalibrationResult& result = run_.result;
     result.start_ns = run_.pass.start_ns;
     tellRejected();
@@ -481,7 +304,7 @@ class Calibration {
     timing.detect_s = run_.pass.detect_s;
     timing.total_s = before_s_ + stopwatch_.elapsed_s();
     result.memory_peak_mb = peakMemory_mb();
-    tellIntrinsics(session_, run_);
+    tellLenses(session_, run_);
   }
 
   const Session& session_;
@@ -491,9 +314,10 @@ class Calibration {
   CalibrationInput input_;
   Initialisation initial_;
   const Stopwatch stopwatch_;
-  double before_s_ = 0.0;           // that a pass took that comes from before
-  std::string clock_doubt_;         // that clocks step
-  std::vector<std::string> notes_;  // of the batch
+  double before_s_ = 0.0;                                           // that a pass took that comes from before
+  std::string clock_doubt_;                                         // that clocks step
+  std::vector<std::string> notes_;                                  // of the batch
+  std::vector<std::optional<std::vector<BoardView>>> whole_views_;  // by camera, where some were left out
 };
 
 const std::array<Calibration::StageWork, 4> Calibration::kWork = {

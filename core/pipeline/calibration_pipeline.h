@@ -66,7 +66,4 @@ struct CalibrationStart {
 CalibrationStart startCalibration(const Session& session, RecordingPass pass, const RunContext& context,
                                   std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
 
-// How much of the process's memory was in use at most, in MB (10^6 bytes); 0 where the system does not say.
-double peakMemory_mb();
-
 }  // namespace evical

@@ -1,11 +1,11 @@
 #include "core/pipeline/compared_quantities.h"
 
+#include "core/data/pixel_delay.h"
 #include "core/data/quantity.h"
 #include "core/data/quantity_difference.h"
 #include "core/geometry/camera_model.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/dense.h"
-#include "core/optimisation/uncertainty/quantity_covariance.h"
 #include "core/pipeline/calibration_options.h"
 #include "core/report/truth_comparison.h"
 
@@ -70,11 +70,11 @@ double covarianceOf(const UncertaintyReport& report, const Uncertain& a, const U
 
 // What light does to pixels' delays is in the sigmas of time offsets; of one camera it is the same in both, to
 // within the stability.
-double pixelDelayVariance_s2(const NamedResult& named) {
+double pixelDelay_s(const NamedResult& named) {
   double delay_ms = CalibrationOptions().optimisation.pixel_delay_ms;
   for (const OptionRow& row : named.options)
     if (row.name == "optimisation.verdict.pixel_delay_ms") delay_ms = std::strtod(row.value.c_str(), nullptr);
-  return 1e-6 * delay_ms * delay_ms;
+  return 1e-3 * delay_ms;
 }
 
 std::vector<Eigen::Vector2d> placesInImage(Resolution size_px, bool border_only) {
@@ -298,15 +298,11 @@ class Comparison {
   }
 
   static double withoutDelay(double variance_s2, const NamedResult& named, const std::string& camera) {
-    constexpr double kLeast = 0.1;  // of what it was
-    std::vector<CameraKind> kinds;
-    std::size_t which = 0;
-    for (const SensorDescription& each : named.cameras) {
-      if (each.name == camera) which = kinds.size();
-      kinds.push_back(each.kind);
-    }
-    if (!holdsPixelDelay(kinds, which, !named.imus.empty())) return variance_s2;
-    return std::max(variance_s2 - pixelDelayVariance_s2(named), kLeast * variance_s2);
+    const auto isThis = [&](const SensorDescription& each) { return each.name == camera; };
+    const auto which = std::ranges::find_if(named.cameras, isThis) - named.cameras.begin();
+    return holdsPixelDelay(cameraKinds(named), static_cast<std::size_t>(which), !named.imus.empty())
+               ? withoutPixelDelay_s2(variance_s2, pixelDelay_s(named))
+               : variance_s2;
   }
 
   const ComparedResults& results_;

@@ -12,7 +12,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace evical {
 namespace {
@@ -44,21 +47,38 @@ class Blocks {
 
 constexpr double kMargin_knots = 0.5;  // for what moves with a time offset
 
-void splitViews(const BoardObservations& all, const CameraState& camera, const Blocks& blocks,
-                std::array<BoardObservations*, 2> halves) {
+std::vector<BoardView> viewsOfHalf(const BoardObservations& all, const CameraState& camera,
+                                   const Blocks& blocks, int half) {
+  std::vector<BoardView> views;
   for (const BoardView& view : all.views) {
-    for (std::size_t half = 0; half < 2; ++half) {
-      BoardView part = view;
-      std::erase_if(part.circles, [&](const CircleObservation& circle) {
-        return blocks.halfAt(circleTime_s(camera, circle), kMargin_knots) != static_cast<int>(half);
-      });
-      if (!part.circles.empty()) halves[half]->views.push_back(std::move(part));
-    }
+    BoardView part{view.time_s, view.kind, {}};
+    part.circles.reserve(view.circles.size());  // most are of one half
+    std::ranges::copy_if(view.circles, std::back_inserter(part.circles),
+                         [&](const CircleObservation& circle) {
+                           return blocks.halfAt(circleTime_s(camera, circle), kMargin_knots) == half;
+                         });
+    if (!part.circles.empty()) views.push_back(std::move(part));
   }
+  return views;
 }
 
+std::vector<ImuSample> samplesOfHalf(const CalibrationInput& input, std::size_t imu, const ImuState& state,
+                                     const Blocks& blocks, int half) {
+  const double margin_knots = imu == input.reference_imu ? 0.0 : kMargin_knots;
+  std::vector<ImuSample> samples;
+  samples.reserve(input.imus[imu].samples.size() / 2);
+  // A stamp's force may have been measured before a border, and its rate after it.
+  std::ranges::copy_if(input.imus[imu].samples, std::back_inserter(samples), [&](const ImuSample& sample) {
+    const double stamp_s = secondsSince(input.start_ns, sample.time_ns);
+    return blocks.halfAt(referenceTime_s(state, stamp_s), margin_knots) == half &&
+           blocks.halfAt(accelerometerTime_s(state, stamp_s), margin_knots) == half;
+  });
+  return samples;
+}
+
+// What is kept of one.
 struct Half {
-  BatchSolution solution;
+  CalibrationState state;
   UncertaintyReport uncertainty;
 };
 
@@ -68,21 +88,32 @@ Half estimateHalf(const CalibrationInput& input, const CalibrationState& solved,
     if (camera.observations.views.empty())
       throw calibrationFailed(camera.name, "one half of the recording does not show the board");
   Half half;
-  half.solution = refineBatch(input, solved, options, context);
-  half.uncertainty = estimateSigmas(input, half.solution, options, context);
+  BatchSolution solution = refineBatch(input, solved, options, context);
+  half.uncertainty = estimateSigmas(input, solution, options, context);
+  half.state = std::move(solution.state);
   return half;
 }
 
+// At the same time they need as much memory again as the whole: of long recordings, one after the other. Four minutes
+// of one camera at usual rates.
+bool atTheSameTime(const CalibrationInput& input) {
+  constexpr std::size_t kMany = 250'000;
+  std::size_t circles = 0;
+  for (const CameraData& camera : input.cameras)
+    for (const BoardView& view : camera.observations.views) circles += view.circles.size();
+  return circles < kMany;
+}
+
 // Board and gravity are the same in both, and mostly by their priors: no difference would show their errors,
-// which are in the sigmas. Threads are for both.
-OptimisationOptions ofHalves(OptimisationOptions options) {
+// which are in the sigmas. Threads are for those that run at the same time.
+OptimisationOptions ofHalves(OptimisationOptions options, bool both) {
   options.free_board_size = options.free_gravity_norm = false;
-  options.threads = std::max(1, options.threads / 2);
+  if (both) options.threads = std::max(1, options.threads / 2);
   return options;
 }
 
 Estimate estimateOf(const CalibrationInput& input, const Half& half) {
-  const CalibrationState& state = half.solution.state;
+  const CalibrationState& state = half.state;
   Estimate estimate;
   estimate.cameras = state.cameras;
   estimate.imus = state.imus;
@@ -117,61 +148,56 @@ std::vector<QuantityDifference> differences(const CalibrationInput& input,
 
 }  // namespace
 
-std::array<CalibrationInput, 2> splitIntoHalves(const CalibrationInput& input, const CalibrationState& state,
-                                                double block_s) {
+CalibrationInput halfOf(const CalibrationInput& input, const CalibrationState& state, double block_s,
+                        int half) {
   const Blocks blocks(state, block_s);
-  std::array<CalibrationInput, 2> halves;
-  for (CalibrationInput& half : halves) {
-    half.start_ns = input.start_ns;
-    half.board_name = input.board_name;
-    half.board = input.board;
-    half.further_boards = input.further_boards;
-    half.reference_imu = input.reference_imu;
-    half.reference_camera = input.reference_camera;
-    half.gravity_norm_m_s2 = input.gravity_norm_m_s2;
-  }
+  CalibrationInput part;
+  part.start_ns = input.start_ns;
+  part.board_name = input.board_name;
+  part.board = input.board;
+  part.further_boards = input.further_boards;
+  part.reference_imu = input.reference_imu;
+  part.reference_camera = input.reference_camera;
+  part.gravity_norm_m_s2 = input.gravity_norm_m_s2;
   for (std::size_t i = 0; i < input.cameras.size(); ++i) {
     const CameraData& camera = input.cameras[i];
-    for (CalibrationInput& half : halves) {
-      CameraData& part = half.cameras.emplace_back(CameraData{
-          camera.name, camera.lens, {}, camera.prior, camera.shutter, camera.same_sensor_as, camera.board});
-      part.observations.camera = camera.name;
-      part.observations.kind = camera.observations.kind;
-    }
-    splitViews(camera.observations, state.cameras[i], blocks,
-               {&halves[0].cameras[i].observations, &halves[1].cameras[i].observations});
+    BoardObservations& seen = part.cameras
+                                  .emplace_back(CameraData{camera.name,
+                                                           camera.lens,
+                                                           {},
+                                                           camera.prior,
+                                                           camera.shutter,
+                                                           camera.same_sensor_as,
+                                                           camera.board})
+                                  .observations;
+    seen.camera = camera.name;
+    seen.kind = camera.observations.kind;
+    seen.views = viewsOfHalf(camera.observations, state.cameras[i], blocks, half);
   }
   for (std::size_t i = 0; i < input.imus.size(); ++i) {
     const ImuData& imu = input.imus[i];
-    for (CalibrationInput& half : halves) half.imus.push_back({imu.name, imu.noise, {}, imu.prior});
-    const double margin_knots = i == input.reference_imu ? 0.0 : kMargin_knots;
-    for (const ImuSample& sample : imu.samples) {
-      const double stamp_s = secondsSince(input.start_ns, sample.time_ns);
-      // A stamp's force may have been measured before a border, and its rate after it.
-      const int half = blocks.halfAt(referenceTime_s(state.imus[i], stamp_s), margin_knots);
-      if (half >= 0 && half == blocks.halfAt(accelerometerTime_s(state.imus[i], stamp_s), margin_knots))
-        halves[static_cast<std::size_t>(half)].imus[i].samples.push_back(sample);
-    }
+    part.imus.push_back(
+        {imu.name, imu.noise, samplesOfHalf(input, i, state.imus[i], blocks, half), imu.prior});
   }
-  return halves;
+  return part;
 }
 
 CrossValidation crossValidate(const CalibrationInput& input, const CalibrationState& solved,
                               const OptimisationOptions& options, double block_s, const RunContext& context) {
   CrossValidation validation;
   validation.block_s = Blocks(solved, block_s).length_s();
-  const std::array<CalibrationInput, 2> inputs = splitIntoHalves(input, solved, block_s);
-  const OptimisationOptions of_halves = ofHalves(options);
-  for (std::size_t half = 0; half < 2; ++half)
-    for (const CameraData& camera : inputs[half].cameras)
-      validation.windows[half] += static_cast<int>(camera.observations.views.size());
+  const bool both = atTheSameTime(input);
+  const OptimisationOptions of_halves = ofHalves(options, both);
   const RunContext quiet{silentProgress(), context.stop};
   std::array<Half, 2> halves;
   std::array<std::string, 2> failures;
   std::atomic<int> done = 0;
-  inParallel(options.threads, 2, [&](std::size_t half) {
+  inParallel(both ? options.threads : 1, 2, [&](std::size_t half) {
     try {
-      halves[half] = estimateHalf(inputs[half], solved, of_halves, quiet);
+      const CalibrationInput part = halfOf(input, solved, block_s, static_cast<int>(half));
+      for (const CameraData& camera : part.cameras)
+        validation.windows[half] += static_cast<int>(camera.observations.views.size());
+      halves[half] = estimateHalf(part, solved, of_halves, quiet);
     } catch (const CalibrationError& error) {
       failures[half] = error.what();
     }

@@ -7,14 +7,12 @@
 #include "core/data/calibration_setup.h"
 #include "core/optimisation/optimisation_options.h"
 
-#include <array>
-
 namespace evical {
 
-// The parts of `input` in even blocks, and in odd ones. Borders lie on knots of the trajectory, and circles
+// The part of `input` in even blocks (half 0), or in odd ones (1). Borders lie on knots of the trajectory, and circles
 // close to one belong to neither half, so that no control point hangs on a few of them.
-std::array<CalibrationInput, 2> splitIntoHalves(const CalibrationInput& input, const CalibrationState& state,
-                                                double block_s);
+CalibrationInput halfOf(const CalibrationInput& input, const CalibrationState& state, double block_s,
+                        int half);
 
 // `solved` is the estimate from the whole. Never throws for a half that can't be estimated: the result says
 // so. Throws Cancelled when asked to stop.

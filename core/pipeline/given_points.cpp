@@ -1,6 +1,7 @@
 #include "core/pipeline/given_points.h"
 
 #include "core/base/error.h"
+#include "core/recording/text/text_columns.h"
 #include "core/recording/text/text_lines.h"
 
 #include <fmt/format.h>
@@ -38,13 +39,6 @@ struct PointTable {
   std::vector<std::optional<Eigen::Vector2d>> places_m;
   Flat flat;
 };
-
-std::vector<std::string_view> columnsOf(std::string_view line) {
-  std::vector<std::string_view> columns;
-  for (std::string_view column = takeColumn(line); !column.empty(); column = takeColumn(line))
-    columns.push_back(column);
-  return columns;
-}
 
 // Which column is what, by their names.
 void readNames(const std::vector<std::string_view>& names, const std::string& place, PointTable& table) {
@@ -106,9 +100,10 @@ std::vector<Eigen::Vector2d> loadPoints(const std::filesystem::path& file) {
   PointTable table;
   TextLines lines(file);
   bool begun = false;
+  std::vector<std::string_view> columns;
   for (std::string_view line; lines.next(line);) {
-    const std::vector<std::string_view> columns = columnsOf(line);
-    if (columns.empty() || columns.front().front() == '#') continue;
+    splitColumns(line, columns);
+    if (columns.empty() || columns.front().starts_with('#')) continue;
     const std::string place = fmt::format("{}: line {}", file.string(), lines.number());
     double number = 0.0;
     if (!begun && !parseNumber(columns.front(), number))

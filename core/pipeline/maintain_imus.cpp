@@ -1,6 +1,7 @@
 #include "core/pipeline/maintain_imus.h"
 
 #include "core/base/error.h"
+#include "core/base/process_memory.h"
 #include "core/base/stopwatch.h"
 #include "core/base/time.h"
 #include "core/geometry/so3.h"
@@ -8,7 +9,6 @@
 #include "core/maintenance/imu_pairs.h"
 #include "core/numerics/angles.h"
 #include "core/numerics/robust.h"
-#include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/maintained_quantities.h"
 #include "core/pipeline/maintained_trajectory.h"
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/base/error.h"
+#include "core/base/text_sink.h"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -59,11 +60,17 @@ inline constexpr bool kLeftOut = false;
 
 class Packing {
  public:
-  std::string take() && { return std::move(bytes_); }
+  // Hands bytes on, a piece at a time; the last with flush.
+  explicit Packing(const TextSink& sink) : sink_(sink) {}
+
+  void flush() {
+    sink_(bytes_);
+    bytes_.clear();
+  }
 
   void pack(const std::string& text) {
     count(text.size());
-    bytes_ += text;
+    append(text.data(), text.size());
   }
   template <class T>
   void pack(const std::vector<T>& values) {
@@ -91,7 +98,8 @@ class Packing {
     if constexpr (kLeftOut<T>) {
       static_cast<void>(value);
     } else if constexpr (std::is_enum_v<T>) {
-      bytes_ += static_cast<char>(value);
+      const auto byte = static_cast<char>(value);
+      append(&byte, 1);
     } else if constexpr (std::is_arithmetic_v<T>) {
       append(&value, sizeof value);
     } else {
@@ -100,10 +108,15 @@ class Packing {
   }
 
  private:
-  void append(const void* data, std::size_t size) { bytes_.append(static_cast<const char*>(data), size); }
+  void append(const void* data, std::size_t size) {
+    constexpr std::size_t kPiece_bytes = 1 << 16;
+    bytes_.append(static_cast<const char*>(data), size);
+    if (bytes_.size() >= kPiece_bytes) flush();
+  }
   void count(std::size_t number) { pack(static_cast<std::uint64_t>(number)); }
 
-  std::string bytes_;
+  const TextSink& sink_;
+  std::string bytes_;  // not handed on yet
 };
 
 // Throws CalibrationError (BadInput) where bytes end too early or are no value of their type.

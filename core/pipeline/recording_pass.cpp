@@ -95,7 +95,10 @@ class WindowWorker {
 class ReadingPass {
  public:
   ReadingPass(const Session& session, const RunContext& context, RecordingPass& result)
-      : session_(session), recording_(session, context.stop), result_(result) {
+      : session_(session),
+        recording_(session, context.stop),
+        result_(result),
+        behind_(session.cameras.size() + session.imus.size()) {
     result.imus.resize(session.imus.size());
     result.start_ns = recording_.start_ns();
     for (std::size_t camera = 0; camera < session.cameras.size(); ++camera) {
@@ -115,6 +118,7 @@ class ReadingPass {
     while (recording_.read(packet)) {
       context.throwIfStopped();
       context.progress.stageProgress(recording_.fractionRead());
+      if (isOver(packet)) break;
       const bool is_camera = packet.sensor < intakes_.size();
       if (!is_camera) addSamples(packet);
       if (is_camera && !addMeasured(packet, queue)) return;
@@ -153,6 +157,19 @@ class ReadingPass {
     if (!session_.time_range_s) return true;
     const double time_s = secondsSince(result_.start_ns, time_ns);
     return time_s >= (*session_.time_range_s)[0] && time_s <= (*session_.time_range_s)[1];
+  }
+
+  // True once all sensors have come well behind the time range; a stamp that is wrong is followed by right ones.
+  bool isOver(const SensorPacket& packet) {
+    if (!session_.time_range_s) return false;
+    constexpr double kMargin_s = 1.0;  // more than packets of a file are out of order
+    const auto behind = [&](const auto& items) {
+      return !items.empty() &&
+             secondsSince(result_.start_ns, items.front().time_ns) > (*session_.time_range_s)[1] + kMargin_s;
+    };
+    behind_[packet.sensor] =
+        behind(packet.events) || behind(packet.imu_samples) || behind(packet.frames) || behind(packet.points);
+    return std::ranges::all_of(behind_, [](bool each) { return each; });
   }
 
   void addSamples(const SensorPacket& packet) {
@@ -207,12 +224,14 @@ class ReadingPass {
     }
     const auto same = [](const ImuSample& a, const ImuSample& b) { return a.time_ns == b.time_ns; };
     imu.samples.erase(std::unique(imu.samples.begin(), imu.samples.end(), same), imu.samples.end());
+    imu.samples.shrink_to_fit();
   }
 
   const Session& session_;
   SessionRecording recording_;
   RecordingPass& result_;
   std::vector<Intake> intakes_;  // by camera
+  std::vector<bool> behind_;     // the time range, by sensor: cameras, then IMUs
 };
 
 void checkSamples(const Session& session, const RecordingPass& pass) {

@@ -125,9 +125,7 @@ class Repeat {
     context_.progress.stageStarted(kComparingStage);
     std::vector<RecordedEstimate> recorded;
     for (const One& one : ones_) {
-      std::vector<CameraKind> kinds;
-      for (const SensorDescription& camera : one.named.cameras) kinds.push_back(camera.kind);
-      recorded.push_back({one.named.result, one.as_weighed, std::move(kinds)});
+      recorded.push_back({one.named.result, one.as_weighed, cameraKinds(one.named)});
       out().columns.push_back(input_.names[one.recording]);
     }
     estimates_.emplace(ones_.front().session, std::move(recorded));

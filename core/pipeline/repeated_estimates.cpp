@@ -1,8 +1,8 @@
 #include "core/pipeline/repeated_estimates.h"
 
+#include "core/data/pixel_delay.h"
 #include "core/geometry/gravity_tilts.h"
 #include "core/numerics/dense.h"
-#include "core/optimisation/uncertainty/quantity_covariance.h"
 #include "core/pipeline/calibration_options.h"
 
 #include <algorithm>
@@ -271,9 +271,7 @@ double RepeatedEstimates::varyingSigma(std::size_t recording, const RigQuantity&
       !holdsPixelDelay(recorded_[recording].cameras, static_cast<std::size_t>(camera),
                        !session_.imus.empty()))
     return sigma;
-  constexpr double kLeast = 0.1;  // of what it was
-  const double delay_s = 1e-3 * session_.options.optimisation.pixel_delay_ms;
-  return std::sqrt(std::max(sigma * sigma - delay_s * delay_s, kLeast * sigma * sigma));
+  return std::sqrt(withoutPixelDelay_s2(sigma * sigma, 1e-3 * session_.options.optimisation.pixel_delay_ms));
 }
 
 void RepeatedEstimates::fillStatistics(std::span<const std::size_t> chosen, const CalibrationResult& joint,

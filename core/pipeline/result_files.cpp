@@ -2,6 +2,7 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/files_together.h"
 #include "core/base/progress.h"
 #include "core/pipeline/saved_detections.h"
 #include "core/pipeline/saved_run.h"
@@ -111,22 +112,32 @@ ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Sessio
                                const std::string& version, const std::string& log) {
   const CalibrationRun& run = *shared_run;
   const NamedResult named = namedRun(session, shared_run, version);
-  std::vector<FileContent> files = detectionFiles(session, run.pass, run.intrinsics);
-  files.push_back({"trajectory.csv", trajectoryCsv(run.result.state)});
+  // Tables of long recordings are large: each is written before the next is made.
+  FilesTogether files;
+  const auto write = [&](const FileContent& file) { files.writeInto(folder, file); };
+  const auto writeAll = [&](const std::vector<FileContent>& contents) {
+    std::for_each(contents.begin(), contents.end(), write);
+  };
+  writeAll(detectionFiles(session, run.pass, run.intrinsics));
+  write({"trajectory.csv", trajectoryCsv(run.result.state)});
   const std::string biases = biasesCsv(named);
-  if (!biases.empty()) files.push_back({"biases.csv", biases});
-  addReport(session, named, run.pass, files, run.intrinsics);
-  ExportRemarks remarks = addExports(named, session, files);
+  if (!biases.empty()) write({"biases.csv", biases});
+  writeAll(reportOf(session, named, run.pass, run.intrinsics));
+  std::vector<FileContent> exported;
+  ExportRemarks remarks = addExports(named, session, exported);
+  writeAll(exported);
   std::string full_log = log;
   for (const auto& texts : {remarks.notes, remarks.refused})
     for (const std::string& text : texts) full_log += text + "\n";
-  files.push_back({"log.txt", full_log});
-  files.push_back({"residuals.csv", residualsCsv(named, run.result.circle_residuals)});
+  write({"log.txt", full_log});
+  write({"residuals.csv", {}, [&](const TextSink& sink) {
+           residualsCsv(named, run.result.circle_residuals, sink);
+         }});
   const auto now_s =
       std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch());
-  for (FileContent& file : runFiles(folder, session, run, now_s.count())) files.push_back(std::move(file));
-  files.push_back({"result.yaml", resultYaml(named)});  // the last tells that all are there
-  writeExportedFiles(folder, files);
+  writeAll(runFiles(folder, session, run, now_s.count()));
+  write({"result.yaml", resultYaml(named)});  // the last tells that all are there
+  files.place();
   return remarks;
 }
 

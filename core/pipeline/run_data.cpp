@@ -128,20 +128,30 @@ namespace {
 
 constexpr std::string_view kMagic = "evical run 1\n";
 
-std::uint32_t sumOf(const std::string& bytes) {
-  return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+std::uint32_t sumOf(std::string_view bytes, std::uint32_t before = 0) {
+  return static_cast<std::uint32_t>(
+      crc32_z(before, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
 // Name, what types it is of, check sum, length, and the bytes themselves.
 template <class T>
-void addPart(const std::string& name, const T& value, packed::Packing& file) {
-  packed::Packing part;
+void addPart(const std::string& name, const T& value, const TextSink& sink) {
+  std::uint32_t sum = 0;
+  std::uint64_t length = 0;
+  const TextSink measure = [&](std::string_view bytes) {
+    sum = sumOf(bytes, sum);
+    length += bytes.size();
+  };
+  packed::Packing measured(measure);
+  measured.pack(value);
+  measured.flush();
+  packed::Packing part(sink);
+  part.pack(name);
+  part.pack(packed::description<T>());
+  part.pack(sum);
+  part.pack(length);
   part.pack(value);
-  const std::string bytes = std::move(part).take();
-  file.pack(name);
-  file.pack(packed::description<T>());
-  file.pack(sumOf(bytes));
-  file.pack(bytes);
+  part.flush();
 }
 
 struct Part {
@@ -302,12 +312,15 @@ bool readWhole(const std::map<std::string, Part>& parts, const std::string& name
 
 }  // namespace
 
+void writeRunData(const CalibrationRun& run, const TextSink& sink) {
+  sink(kMagic);
+  addPart("result", run.result, sink);
+  addPart("intrinsics", run.intrinsics, sink);
+  addPart("observations", run.pass, sink);
+}
+
 std::string runData(const CalibrationRun& run) {
-  packed::Packing file;
-  addPart("result", run.result, file);
-  addPart("intrinsics", run.intrinsics, file);
-  addPart("observations", run.pass, file);
-  return std::string(kMagic) + std::move(file).take();
+  return wholeText([&](const TextSink& sink) { writeRunData(run, sink); });
 }
 
 ReadRunData readRunData(const std::filesystem::path& file) {

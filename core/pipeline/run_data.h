@@ -2,6 +2,7 @@
 // iterations, residuals, observations, the IMUs' samples. In parts, each with a check sum.
 #pragma once
 
+#include "core/base/text_sink.h"
 #include "core/pipeline/calibration_pipeline.h"
 
 #include <filesystem>
@@ -11,6 +12,8 @@
 namespace evical {
 
 std::string runData(const CalibrationRun& run);
+// Piece by piece: never as a whole in memory.
+void writeRunData(const CalibrationRun& run, const TextSink& sink);
 
 struct ReadRunData {
   CalibrationRun run;  // parts that are missing are empty

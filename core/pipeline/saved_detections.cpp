@@ -176,7 +176,7 @@ void readSamples(const Session& session, const RunContext& context, RecordingPas
 
 std::vector<FileContent> detectionFiles(const Session& session, const RecordingPass& pass,
                                         std::span<const std::optional<IntrinsicsResult>> intrinsics) {
-  return {{"detections.csv", detectionsCsv(pass.cameras)},
+  return {{"detections.csv", {}, [&pass](const TextSink& sink) { detectionsCsv(pass.cameras, sink); }},
           {"windows.csv", windowsCsv(pass.cameras)},
           {"detections.yaml", detectionsYaml(session, pass, intrinsics)}};
 }

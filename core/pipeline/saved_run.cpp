@@ -308,7 +308,7 @@ std::vector<FileContent> runFiles(const std::filesystem::path& folder, const Ses
   RunSummary summary = summaryOf(session, run.result);
   summary.made_s = made_s;
   return {{kSession, sessionYaml(session, folder)},
-          {kData, runData(run)},
+          {kData, {}, [&run](const TextSink& sink) { writeRunData(run, sink); }},
           {kRun, summaryYaml(summary, placesYaml(folder, session))}};
 }
 

@@ -113,13 +113,21 @@ void addCircle(const CsvReader& line, int points_of_board, std::vector<BoardView
 
 }  // namespace
 
+void detectionsCsv(const std::vector<BoardObservations>& cameras, const TextSink& sink) {
+  sink(fmt::format("{}\n", fmt::join(kDetectionColumns, ",")));
+  std::string text;
+  for (const BoardObservations& camera : cameras) {
+    const std::string name = csvWord(camera.camera);
+    for (const BoardView& view : camera.views) {
+      text.clear();
+      for (const CircleObservation& circle : view.circles) writeCircle(name, view, circle, text);
+      sink(text);
+    }
+  }
+}
+
 std::string detectionsCsv(const std::vector<BoardObservations>& cameras) {
-  std::string text = fmt::format("{}\n", fmt::join(kDetectionColumns, ","));
-  for (const BoardObservations& camera : cameras)
-    for (const BoardView& view : camera.views)
-      for (const CircleObservation& circle : view.circles)
-        writeCircle(csvWord(camera.camera), view, circle, text);
-  return text;
+  return wholeText([&](const TextSink& sink) { detectionsCsv(cameras, sink); });
 }
 
 std::string windowsCsv(const std::vector<BoardObservations>& cameras) {

@@ -1,15 +1,15 @@
 // The residuals of a result's circles as a table, with all digits.
 #pragma once
 
+#include "core/base/text_sink.h"
 #include "core/report/result_yaml.h"
 
 #include <span>
-#include <string>
 
 namespace evical {
 
 // One line a circle: where it was measured, by how much the prediction lies beside it, how sure it was, and whether
 // the estimate rests on it.
-std::string residualsCsv(const NamedResult& named, std::span<const CircleResidual> residuals);
+void residualsCsv(const NamedResult& named, std::span<const CircleResidual> residuals, const TextSink& sink);
 
 }  // namespace evical

@@ -272,6 +272,12 @@ std::string runYaml(const NamedResult& named) {
 
 }  // namespace
 
+std::vector<CameraKind> cameraKinds(const NamedResult& named) {
+  std::vector<CameraKind> kinds;
+  for (const SensorDescription& camera : named.cameras) kinds.push_back(camera.kind);
+  return kinds;
+}
+
 const char* statusName(CalibrationStatus status) {
   if (status == CalibrationStatus::Ok) return "ok";
   return status == CalibrationStatus::Doubtful ? "doubtful" : "failed";

@@ -36,6 +36,9 @@ struct NamedResult {
   std::shared_ptr<const CalibrationResult> result = std::make_shared<const CalibrationResult>();
 };
 
+// As its cameras are listed.
+std::vector<CameraKind> cameraKinds(const NamedResult& named);
+
 const char* statusName(CalibrationStatus status);
 
 // A failed run without numbers is written too: status, reason, notes and whatever lists are filled.

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,13 @@ struct ScenarioArguments {
     return scenario;
   }
 };
+
+// Of all threads of this process.
+inline double processCpu_s() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 // Runs a program; an error is said, and makes its exit code.
 inline int guarded(int (*run)(int, char**), int argc, char** argv, int code_of_errors = 2) {

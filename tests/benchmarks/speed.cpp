@@ -1,6 +1,6 @@
 // Costs of the hot paths on a simulated recording, as a table: `evical_speed [--duration S]
 // SCENARIO`. CPU time of one thread, so that other work on the machine hardly counts; compare
-// ratios between builds, not machines.
+// ratios between builds, not machines. What whole runs cost: costs.cpp.
 #include "core/frontend/board_search.h"
 #include "core/frontend/board_tracker.h"
 #include "core/initialisation/initialise.h"
@@ -22,12 +22,6 @@ namespace {
 double threadCpu_s() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double processCpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
@@ -110,7 +104,7 @@ void optimise(const Scenario& scenario, BoardObservations observations) {
   fmt::print(
       "| batch | {:.0f} ms an iteration, {:.2f} s in all | {} iterations, {} circles, {} IMU samples |\n",
       1e3 * spent_s / static_cast<double>(solution.iterations.size()), spent_s, solution.iterations.size(),
-      solution.circle_residuals.size(), input.imus.front().samples.size());
+      solution.cameras.front().circles_used, input.imus.front().samples.size());
 }
 
 int main(int argc, char** argv) {

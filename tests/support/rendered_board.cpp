@@ -172,6 +172,15 @@ std::optional<Eigen::Vector2d> truePoint(const Board& board, int point, const Ca
   return pixelFromIdeal(camera, *ideal);
 }
 
+FoundPoints asTrue(FoundPoints points, const Board& board, const CameraIntrinsics& camera,
+                   const RigidTransform& camera_from_board) {
+  if (points.empty() || !board.hasHalfTurnAmbiguity()) return points;
+  const auto truth = truePoint(board, points.front().point, camera, camera_from_board);
+  if (truth && (*truth - points.front().at_px).norm() < 20.0) return points;
+  for (FoundPoint& point : points) point.point = board.pointCount() - 1 - point.point;
+  return points;
+}
+
 RigidTransform lookAt(const Board& board, double distance_m, const Eigen::Vector3d& turn_rad,
                       const Eigen::Vector2d& beside_m) {
   RigidTransform camera_from_board;

@@ -38,6 +38,10 @@ GrayImage renderBoard(const PrintedBoard& printed, const CameraIntrinsics& camer
 std::optional<Eigen::Vector2d> truePoint(const Board& board, int point, const CameraIntrinsics& camera,
                                          const RigidTransform& camera_from_board);
 
+// Of boards that look the same upside down either end may be the first: points by the numbers that they truly have.
+FoundPoints asTrue(FoundPoints points, const Board& board, const CameraIntrinsics& camera,
+                   const RigidTransform& camera_from_board);
+
 // The camera's view of the board's middle from a distance, turned by rotation vector about it.
 RigidTransform lookAt(const Board& board, double distance_m, const Eigen::Vector3d& turn_rad,
                       const Eigen::Vector2d& beside_m = Eigen::Vector2d::Zero());

@@ -62,6 +62,15 @@ inline void settle(DetectionScreen& screen) {
                            20000 * kSlowdown);
 }
 
+// A screen of usual size at the recording's good window.
+inline void showGoodWindow(DetectionScreen& screen, const Recorded& recorded) {
+  screen.resize(1000, 650);
+  screen.show();
+  screen.setSession(recorded.session);
+  screen.setTime(recorded.goodWindow().time_s);
+  settle(screen);
+}
+
 inline int pixelsOf(const QImage& image, const QColor& colour) {
   int count = 0;
   for (int y = 0; y < image.height(); ++y) {

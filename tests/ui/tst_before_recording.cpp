@@ -66,8 +66,8 @@ class TestBeforeRecording : public QObject {
   void board_isWrittenAsCoreDrawsIt_data() {
     QTest::addColumn<int>("type");
     QTest::addColumn<QString>("ending");
-    for (int type = 0; type < static_cast<int>(kBoardTypeNames.size()); ++type)
-      QTest::addRow("%s as PDF", kBoardTypeNames[static_cast<std::size_t>(type)]) << type << "pdf";
+    for (int type = 0; type < static_cast<int>(kPatternNames.size()); ++type)
+      QTest::addRow("%s as PDF", kPatternNames[static_cast<std::size_t>(type)]) << type << "pdf";
     QTest::newRow("SVG") << 0 << "svg";
     QTest::newRow("PNG") << 0 << "png";
     QTest::newRow("page that blinks") << 0 << "html";

@@ -261,6 +261,18 @@ class TestBoardsForm : public QObject {
     QCOMPARE(sessionYaml(again, "/"), sessionYaml(test.session(), "/"));
   }
 
+  // What has no pattern cannot be shown on a screen.
+  void givenPoints_doNotFlash() {
+    Fixture test;
+    Session session = test.session();
+    session.board = boardOfPoints({{-0.1, 0.0}, {0.1, 0.0}, {0.0, 0.1}, {0.1, 0.2}});
+    QVERIFY(test.find<QCheckBox>("blinks")->isVisible());
+    test.document.edit(session, "Points");
+    QVERIFY(!test.find<QCheckBox>("blinks")->isVisible());
+    test.document.undoStack().undo();
+    QVERIFY(test.find<QCheckBox>("blinks")->isVisible());
+  }
+
   // They are a file's: shown, but neither chosen nor counted here.
   void givenPoints_areShown_andMayGiveWay() {
     BoardForm form;

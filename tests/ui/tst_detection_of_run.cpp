@@ -96,11 +96,7 @@ class TestDetectionOfRun : public QObject {
 
   void withoutARun_theSessionsBoardIsLookedFor() {
     DetectionScreen screen;
-    screen.resize(1000, 650);
-    screen.show();
-    screen.setSession(recorded_->session);
-    screen.setTime(recorded_->goodWindow().time_s);
-    settle(screen);
+    showGoodWindow(screen, *recorded_);
     QCOMPARE(screen.analysis()->outcome, WindowOutcome::Complete);
     Session other = recorded_->session;
     other.board.rows += 4;

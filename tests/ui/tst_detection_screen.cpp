@@ -11,6 +11,7 @@
 
 #include <QDir>
 #include <QPainter>
+#include <QRegularExpression>
 #include <QSignalSpy>
 
 #include <algorithm>
@@ -167,11 +168,7 @@ class TestDetectionScreen : public QObject {
 
   void flow_modeShowsFlow() {
     DetectionScreen screen;
-    screen.resize(1000, 650);
-    screen.show();
-    screen.setSession(recorded_->session);
-    screen.setTime(recorded_->goodWindow().time_s);
-    settle(screen);
+    showGoodWindow(screen, *recorded_);
     QVERIFY(screen.view().legend() == ColourLegend::Polarity);
     screen.setMode(SurfaceMode::NormalFlow);
     const auto coloured = [&] {
@@ -182,6 +179,21 @@ class TestDetectionScreen : public QObject {
     };
     QTRY_VERIFY_WITH_TIMEOUT(coloured(), 20000 * kSlowdown);
     QVERIFY(screen.view().legend() == ColourLegend::Direction);
+  }
+
+  // Whatever is drawn of them.
+  void caption_countsTheWindowsEvents_inEveryMode() {
+    DetectionScreen screen;
+    showGoodWindow(screen, *recorded_);
+    const QRegularExpression count("([\\d,. ]+) events in the window");
+    QStringList counts;
+    for (const SurfaceMode mode : {SurfaceMode::Accumulated, SurfaceMode::NormalFlow, SurfaceMode::Decayed}) {
+      screen.setMode(mode);
+      QTest::qWait(300);
+      QTRY_VERIFY_WITH_TIMEOUT(count.match(screen.view().caption()).hasMatch(), 20000 * kSlowdown);
+      counts << count.match(screen.view().caption()).captured(1).trimmed();
+    }
+    QVERIFY2(!counts[0].isEmpty() && counts.count(counts[0]) == 3, qPrintable(counts.join(" / ")));
   }
 
   void analysis_saysWhereItWasLost() {
@@ -288,11 +300,7 @@ class TestDetectionScreen : public QObject {
 
   void screen_optionChangesTheWindowInView() {
     DetectionScreen screen;
-    screen.resize(1000, 650);
-    screen.show();
-    screen.setSession(recorded_->session);
-    screen.setTime(recorded_->goodWindow().time_s);
-    settle(screen);
+    showGoodWindow(screen, *recorded_);
     QCOMPARE(screen.analysis()->outcome, WindowOutcome::Complete);
     Session changed = recorded_->session;
     changed.options.front_end.grid.least_circles = 500;

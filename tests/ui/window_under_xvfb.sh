@@ -2,6 +2,7 @@
 # The window as people see it: shown under Xvfb, clicked with xdotool, looked at. Exit code 77 (skipped) without the tools.
 #   window_under_xvfb.sh PROGRAM SESSION PICTURE_FOLDER
 set -euo pipefail
+. "$(dirname "$0")/../support/xvfb.sh"
 program=$1 session=$2 pictures=$3
 for tool in Xvfb xdotool import; do
   command -v "$tool" >/dev/null || { echo "$tool is not installed" >&2; exit 77; }
@@ -9,16 +10,13 @@ done
 mkdir -p "$pictures"
 scratch=$(mktemp -d)
 finish() {
-  kill "${program_pid:-}" "${display_pid:-}" 2>/dev/null || true
-  wait 2>/dev/null || true
+  kill "${program_pid:-}" 2>/dev/null || true
+  stopDisplay
   rm -rf "$scratch"
 }
 trap finish EXIT
 
-Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp 3>"$scratch/display" 2>/dev/null &
-display_pid=$!
-for _ in $(seq 100); do [ -s "$scratch/display" ] && break; sleep 0.1; done
-export DISPLAY=":$(cat "$scratch/display")" QT_QPA_PLATFORM=xcb XDG_CONFIG_HOME="$scratch" XDG_DATA_HOME="$scratch"
+startDisplay 1280x800
 
 "$program" "$session" 2>"$scratch/errors" &
 program_pid=$!

@@ -33,7 +33,8 @@ class EventView : public QWidget {
   const std::shared_ptr<const SurfaceFrame>& frame() const { return frame_; }
   void setOverlay(Overlay overlay);
   void setCaption(const QString& caption);  // top left, over the picture
-  void setLegend(ColourLegend legend);      // of the picture's colours
+  const QString& caption() const { return caption_; }
+  void setLegend(ColourLegend legend);  // of the picture's colours
   ColourLegend legend() const { return legend_; }
   const QString& message() const { return message_; }
   void setMessage(const QString& message);  // in the middle, where there is no picture

@@ -17,7 +17,8 @@ namespace evical::ui {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr auto kLeastInterval = std::chrono::milliseconds(25);
+// What a person follows; pictures cost the run its time.
+constexpr auto kLeastInterval = std::chrono::milliseconds(60);
 constexpr auto kReportInterval = std::chrono::milliseconds(200);
 
 }  // namespace

@@ -109,7 +109,7 @@ class Timeline : public QWidget {
     QPixmap picture;
     QSize size;
     double begin_s = 0.0, end_s = 0.0;
-    QRgb colour = 0;
+    bool dark = false;
   };
   CurvePicture curves_;
   std::optional<double> pan_from_x_;

@@ -205,13 +205,12 @@ void Timeline::paintCurve(QPainter& painter, const RateCurve& curve, double top,
 }
 
 void Timeline::paintCurves(QPainter& painter) {
-  const QRgb colour = eventColour().rgba() ^ rotationColour().rgba();  // of the theme
   const qreal ratio = devicePixelRatioF();
-  const bool drawn = !curves_.picture.isNull() && curves_.size == size() && curves_.colour == colour &&
+  const bool drawn = !curves_.picture.isNull() && curves_.size == size() && curves_.dark == theme().dark &&
                      curves_.picture.devicePixelRatio() == ratio && curves_.begin_s == visible_begin_s_ &&
                      curves_.end_s == visible_end_s_;
   if (!drawn) {
-    curves_ = {QPixmap(size() * ratio), size(), visible_begin_s_, visible_end_s_, colour};
+    curves_ = {QPixmap(size() * ratio), size(), visible_begin_s_, visible_end_s_, theme().dark};
     curves_.picture.setDevicePixelRatio(ratio);
     curves_.picture.fill(Qt::transparent);
     QPainter on_picture(&curves_.picture);

@@ -101,11 +101,7 @@ void ShapeBuilder::writeTo(vtkPolyData* data) const {
 }
 
 std::array<Vector2d, 2> paperCorners_m(const Board& board) {
-  Vector2d least = board.point_m(0), most = least;
-  for (const Vector2d& centre : boardPoints_m(board)) {
-    least = least.cwiseMin(centre);
-    most = most.cwiseMax(centre);
-  }
+  const Vector2d least = board.corner_m(), most = least + board.extent_m();
   const Vector2d margin = Vector2d::Constant(board.printBeyond_m() + 0.5 * board.spacing_m);
   return {least - margin, most + margin};
 }

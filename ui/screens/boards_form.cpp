@@ -90,7 +90,7 @@ void BoardsForm::showChosen() {
                     : static_cast<std::size_t>(names.size()) >= session_.cameras.size()
                         ? tr("A camera sees one board, so there cannot be more boards than cameras")
                         : QString());
-  blinks_->setVisible(session_.further_boards.empty());
+  blinks_->setVisible(session_.further_boards.empty() && session_.board.hasPattern());
   blinks_->setChecked(session_.board_blinks);
   form_->setBoard(boardAt(session_, chosen_), measuredAt(session_, chosen_));
   form_->setName(names.size() > 1 ? names[chosen] : QString(), seenBy());

@@ -267,13 +267,15 @@ void Projection::reportStretches(Sums& sums, ProjectedInformation& result) const
   result.stretch_s = stretch_s_;
   result.first_stretch_s = static_cast<double>(first) * stretch_s_;
   result.scores.assign(count, Eigen::VectorXd::Zero(size));
-  result.information_by_stretch.assign(count, Eigen::MatrixXd::Zero(size, size));
+  result.information_by_stretch.resize(count);  // those of the sums, moved
   for (auto& [stretch, of_stretch] : sums.stretches) {
     const auto at = static_cast<std::size_t>(stretch - first);
     result.information_by_stretch[at] = std::move(of_stretch.information);
     for (std::size_t g = 0; g < of_stretch.scores.size(); ++g)
       result.scores[at] += std::sqrt(unabsorbed(result.groups[g])) * of_stretch.scores[g];
   }
+  for (Eigen::MatrixXd& information : result.information_by_stretch)
+    if (information.size() == 0) information = Eigen::MatrixXd::Zero(size, size);
 }
 
 ProjectedInformation Projection::run() {

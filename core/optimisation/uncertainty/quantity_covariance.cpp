@@ -1,5 +1,6 @@
 #include "core/optimisation/uncertainty/quantity_covariance.h"
 
+#include "core/data/pixel_delay.h"
 #include "core/numerics/dense.h"
 #include "core/numerics/scaled_inverse.h"
 #include "core/optimisation/uncertainty/projected_information.h"
@@ -160,11 +161,6 @@ QuantityCovariance quantityCovariance(const ProjectedInformation& information,
   covariance = (growth.asDiagonal() * covariance * growth.asDiagonal()).eval();
   return {information.quantities, information.first_column, covariance,
           congruence(report_from_tangent, safe.inverse)};
-}
-
-bool holdsPixelDelay(std::span<const CameraKind> cameras, std::size_t camera, bool has_imus) {
-  const auto hasEvents = [](CameraKind kind) { return kind == CameraKind::Events; };
-  return hasEvents(cameras[camera]) && (has_imus || !std::all_of(cameras.begin(), cameras.end(), hasEvents));
 }
 
 QuantityCovariance withPixelDelay(const CalibrationInput& input, const OptimisationOptions& options,

@@ -7,7 +7,6 @@
 
 #include <Eigen/Core>
 
-#include <span>
 #include <vector>
 
 namespace ceres {
@@ -35,8 +34,7 @@ QuantityCovariance quantityCovariance(const ProjectedInformation& information,
 
 // Events are late by their pixels' delay, and so are all of an event camera's: its time offset is uncertain by as much
 // as that delay, and nothing in the recording tells; more so where the two polarities' delays differ. Not where all is
-// measured by such pixels.
-bool holdsPixelDelay(std::span<const CameraKind> cameras, std::size_t camera, bool has_imus);
+// measured by such pixels (holdsPixelDelay).
 QuantityCovariance withPixelDelay(const CalibrationInput& input, const OptimisationOptions& options,
                                   QuantityCovariance covariance);
 

@@ -1,6 +1,7 @@
 #include "core/report/export/export_target.h"
 
 #include "core/base/error.h"
+#include "core/base/files_together.h"
 #include "core/base/nearest_name.h"
 #include "core/report/export/exporters.h"
 #include "core/report/export/read_back/readers.h"
@@ -133,24 +134,9 @@ ExportedFiles exportWhatCanBe(const NamedResult& result, std::span<const std::st
 }
 
 void writeExportedFiles(const std::filesystem::path& folder, std::span<const FileContent> files) {
-  std::vector<FileContent> placed;
-  std::vector<std::filesystem::path> made;
-  for (const FileContent& file : files) placed.push_back({folder / file.path, file.content});
-  std::error_code ignored;
-  try {
-    for (const FileContent& file : placed) {
-      const std::filesystem::path parent = file.path.parent_path();
-      for (auto missing = parent; !missing.empty() && !std::filesystem::exists(missing, ignored);
-           missing = missing.parent_path())
-        made.push_back(missing);
-      makeOutputFolder(parent);
-    }
-    writeFilesWhole(placed);
-  } catch (const CalibrationError&) {
-    std::sort(made.begin(), made.end());
-    for (auto path = made.rbegin(); path != made.rend(); ++path) std::filesystem::remove(*path, ignored);
-    throw;
-  }
+  FilesTogether together;
+  for (const FileContent& file : files) together.writeInto(folder, file);
+  together.place();
 }
 
 }  // namespace evical

@@ -78,16 +78,6 @@ struct Errors {
   double ratio() const { return std::sqrt(normalised / (2.0 * found)); }
 };
 
-// Of boards that look the same upside down either end may be the first.
-FoundPoints asTrue(FoundPoints points, const Board& board, const CameraIntrinsics& camera,
-                   const RigidTransform& pose) {
-  if (points.empty() || !board.hasHalfTurnAmbiguity()) return points;
-  const auto truth = truePoint(board, points.front().point, camera, pose);
-  if (truth && (*truth - points.front().at_px).norm() < 20.0) return points;
-  for (FoundPoint& point : points) point.point = board.pointCount() - 1 - point.point;
-  return points;
-}
-
 // A circle's place and covariance by what the lens makes of circles, a corner's as it was measured.
 std::optional<CircleObservation> undistorted(const FoundPoint& point, const CameraIntrinsics& camera) {
   const std::vector<ViewFromFrame> views = viewsFromFrames({{0.0, 0.0, {point}}}, 2);

@@ -130,7 +130,8 @@ void TestFrameTracker::fastBoard_isBlurred() {
   const PrintedBoard printed = printedOf(BoardType::AsymmetricCircles);
   FrameTracker tracker("left", printed.board, FrameOptions{});
   for (int k = 0; k < 3; ++k)  // 20 px a frame and 30 ms of exposure: 6 px
-    tracker.track(renderBoard(printed, aCamera(), lookAt(printed.board, 0.75, {}, {0.0326 * k, 0.0}), {}),
+    tracker.track(renderBoard(printed, aCamera(),
+                              lookAt(printed.board, 0.75, Eigen::Vector3d::Zero(), {0.0326 * k, 0.0}), {}),
                   {0.1 * k, 0.03});
   const BoardObservations seen = tracker.finish();
   QVERIFY(seen.views.empty());

@@ -77,7 +77,7 @@ struct SyntheticWindow {
   BurstWindow window;
 
   explicit SyntheticWindow(const std::vector<EdgeBurst>& bursts, CircleShade shade = CircleShade::Dark)
-      : window(BoardScene({.circles = shade}, kDavis_px, std::nullopt)) {
+      : window(BoardScene({.circles = shade, .given_m = {}}, kDavis_px, std::nullopt)) {
     window.assign(bursts, 0);
   }
   SyntheticWindow(const SyntheticWindow&) = delete;

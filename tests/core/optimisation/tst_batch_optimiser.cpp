@@ -1,4 +1,5 @@
 #include "core/optimisation/batch_optimiser.h"
+#include "core/optimisation/circle_errors.h"
 
 #include "core/base/error.h"
 #include "core/base/time.h"
@@ -140,7 +141,7 @@ class TestBatchOptimiser : public QObject {
     QCOMPARE(solution.cameras[0].windows_used,
              static_cast<int>(rig.input.cameras[0].observations.views.size()));
     QCOMPARE(
-        solution.circle_residuals.size(),
+        circleResiduals(rig.input, solution.state, solution.used_circles, OptimisationOptions{}).size(),
         static_cast<std::size_t>(solution.cameras[0].circles_used + solution.cameras[0].circles_rejected));
     QVERIFY(!solution.iterations.empty());
     QCOMPARE(solution.iterations.front().cameras.size(), std::size_t{1});

@@ -40,7 +40,8 @@ class TestCrossValidation : public QObject {
 
   void halves_shareNothing() {
     const CalibrationInput all = input();
-    const auto halves = splitIntoHalves(all, run_.result.state, 1.0);
+    const std::array halves = {halfOf(all, run_.result.state, 1.0, 0),
+                               halfOf(all, run_.result.state, 1.0, 1)};
     const std::size_t samples = all.imus[0].samples.size();
     // But for those at a border whose force belongs to one half and whose rate to the other.
     const std::size_t taken = halves[0].imus[0].samples.size() + halves[1].imus[0].samples.size();
@@ -61,7 +62,8 @@ class TestCrossValidation : public QObject {
 
   void circles_areWhereTheSamplesOfTheirHalfAre() {
     const CalibrationInput all = input();
-    const auto halves = splitIntoHalves(all, run_.result.state, 1.0);
+    const std::array halves = {halfOf(all, run_.result.state, 1.0, 0),
+                               halfOf(all, run_.result.state, 1.0, 1)};
     for (const CalibrationInput& half : halves) {
       for (const BoardView& view : half.cameras[0].observations.views) {
         for (const CircleObservation& circle : view.circles) {

@@ -1,6 +1,7 @@
 // Files that parse but lie: whatever times and values say, the whole way from file to verdict ends in a result or in
 // words, soon and in bounded memory. The fuzz target `calibrate` looks further.
 #include "core/base/error.h"
+#include "core/base/process_memory.h"
 #include "core/pipeline/calibration_pipeline.h"
 #include "tests/support/lying_recording.h"
 #include "tests/support/test_program.h"

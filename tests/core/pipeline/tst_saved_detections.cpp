@@ -113,7 +113,8 @@ class TestSavedDetections : public QObject {
     // And what it leaves is the same again.
     const std::vector<FileContent> files = detectionFiles(session_, pass, again.intrinsics);
     for (const FileContent& file : files)
-      QVERIFY2(fileText(result() / file.path) == QByteArray::fromStdString(file.content), file.path.c_str());
+      QVERIFY2(fileText(result() / file.path) == QByteArray::fromStdString(contentOf(file)),
+               file.path.c_str());
   }
 
   void shorterTimeRange_isAPartOfThem() {
@@ -145,7 +146,7 @@ class TestSavedDetections : public QObject {
     const Session session = readSession(path / "session.yaml");
     const RecordingPass pass = readAndDetect(session, RunContext{});
     for (const FileContent& file : detectionFiles(session, pass, {}))
-      writeFileWhole(path / file.path, file.content);
+      writeFileWhole(path / file.path, contentOf(file));
     const RestoredDetections restored = restoreDetections(path, session, RunContext{});
     QVERIFY(restored.pass.lenses == pass.lenses);
     QCOMPARE(restored.pass.cameras[1].views.size(), pass.cameras[1].views.size());

@@ -128,7 +128,7 @@ class TestSeveralBoards : public QObject {
     const std::filesystem::path saved = path() / "saved";
     std::filesystem::create_directories(saved);
     for (const FileContent& file : detectionFiles(simulated_.session, simulated_.pass, {}))
-      std::ofstream(saved / file.path) << file.content;
+      std::ofstream(saved / file.path) << contentOf(file);
     Session other = simulated_.session;
     other.further_boards[0].board.cols += 1;
     try {

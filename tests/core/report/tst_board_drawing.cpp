@@ -200,12 +200,12 @@ void TestBoardDrawing::papers_holdBoardsOfAllTypes_data() {
   QTest::addColumn<Board>("printed");
   QTest::addColumn<Paper>("paper");
   for (const Paper& paper : papers())
-    for (std::size_t type = 0; type < kBoardTypeNames.size(); ++type) {
+    for (std::size_t type = 0; type < kPatternNames.size(); ++type) {
       Board printed = boardOf(static_cast<BoardType>(type), 7, 4, 0.0);
       printed.spacing_m = 1e-3 * (paper.short_mm - 20.0) / 9.0;
       if (printed.hasTags()) printed.tag_size_m = 0.7 * printed.spacing_m;
       if (printed.hasCircles()) printed.radius_m = 0.4 * printed.spacing_m;
-      QTest::addRow("%s on %s", kBoardTypeNames[type], paper.name.c_str()) << printed << paper;
+      QTest::addRow("%s on %s", kPatternNames[type], paper.name.c_str()) << printed << paper;
     }
 }
 

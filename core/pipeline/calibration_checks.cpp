@@ -1,0 +1,139 @@
+#include "core/pipeline/calibration_checks.h"
+
+#include "core/base/error.h"
+#include "core/base/time.h"
+#include "core/initialisation/agreement_check.h"
+#include "core/numerics/robust.h"
+#include "core/pipeline/blink_views.h"
+#include "core/pipeline/board_size_check.h"
+#include "core/pipeline/detected_recording.h"
+#include "core/pipeline/view_rejection.h"
+#include "core/recording/inspection.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace evical {
+namespace {
+
+// Median of |acceleration| tells the unit, wide enough for hands that shake at several g; a gyroscope's only
+// when it is absurd.
+void checkUnits(const ImuData& imu, const InitialisationOptions& options) {
+  std::vector<double> norms;
+  double rate2 = 0.0;
+  for (const ImuSample& sample : imu.samples) {
+    norms.push_back(sample.specific_force_m_s2.norm());
+    rate2 += sample.angular_rate_rad_s.squaredNorm();
+  }
+  const double norm = medianOf(std::move(norms));
+  constexpr std::array<double, 2> kLooksLikeG = {0.7, 1.3};
+  if (norm < options.least_acceleration_m_s2 || norm > options.largest_acceleration_m_s2) {
+    const bool g = norm > kLooksLikeG[0] && norm < kLooksLikeG[1];
+    throw badInput(
+        imu.name,
+        fmt::format("accelerations have a median norm of {:.3g} m/s^2, gravity has 9.81{}", norm,
+                    g ? ": they look like g" : ""),
+        g ? "Set acceleration_unit: g for this IMU" : "Check acceleration_unit (m/s^2, g, -g) of this IMU")
+        .repairedBy(g ? std::optional(Repair{"imus." + imu.name + ".acceleration_unit", "g"}) : std::nullopt);
+  }
+  const double rms = std::sqrt(rate2 / static_cast<double>(imu.samples.size()));
+  if (rms > options.largest_rotation_rate_rad_s) {
+    throw badInput(imu.name, fmt::format("angular rates of {:.0f} rad/s RMS look like deg/s", rms),
+                   "Set angular_rate_unit: deg/s for this IMU")
+        .repairedBy(Repair{"imus." + imu.name + ".angular_rate_unit", "deg/s"});
+  }
+}
+
+void checkDuration(const Session& session, const RecordingPass& pass) {
+  const double least_s = session.options.initialisation.least_overlap_s;
+  const auto check = [&](const std::string& sensor, double duration_s) {
+    if (duration_s >= least_s) return;
+    throw calibrationFailed(
+        sensor,
+        fmt::format("the recording is too short: {:.2f} s, at least {:.2f} s are needed{}", duration_s,
+                    least_s, session.time_range_s ? " in time_range_s" : ""),
+        "Record 20 s or more of varied motion");
+  };
+  for (const BoardObservations& camera : pass.cameras)
+    check(camera.camera,
+          camera.windows.empty() ? 0.0 : camera.windows.back().time_s - camera.windows.front().time_s);
+  for (const ImuData& imu : pass.imus)
+    check(imu.name, secondsSince(imu.samples.front().time_ns, imu.samples.back().time_ns));
+}
+
+void logDetections(const RecordingPass& pass, const RunContext& context) {
+  for (const BoardObservations& camera : pass.cameras) {
+    const bool windows = camera.kind == CameraKind::Events;
+    context.progress.log(LogLevel::Info,
+                         fmt::format("{}: {} {}, board in {} of {} {} ({})", camera.camera, camera.events,
+                                     measurementsOf(camera.kind), camera.views.size(), camera.windows.size(),
+                                     windows ? "windows" : "frames", outcomes(camera)));
+    if (const std::string rejected = rejectedSentence(camera); !rejected.empty())
+      context.progress.log(LogLevel::Info, rejected);
+  }
+}
+
+// Of a pass that comes from a run before, they may be known.
+void addFault(const RecordingFault& fault, std::vector<RecordingFault>& faults) {
+  const auto same = [&](const RecordingFault& known) { return known.text == fault.text; };
+  if (std::none_of(faults.begin(), faults.end(), same)) faults.push_back(fault);
+}
+
+}  // namespace
+
+void checkSession(const Session& session) {
+  if (session.board_blinks)
+    throw badInput(
+        session.source.string() + ": board.blinking",
+        "a board that blinks tells no time offsets, for nobody knows when exactly the screen flashes on "
+        "the sensors' clocks, and the camera must all but stand still before it",
+        "Calibrate each camera's intrinsics with 'evical intrinsics', then move the sensors before a "
+        "printed board of circles");
+  if (session.imus.empty() && session.cameras.size() == 1) {
+    throw badInput(
+        session.source.string() + ": imus", "there is neither an IMU nor a second camera",
+        "Add one: a camera alone has nothing to be calibrated against; for its intrinsics there is "
+        "'evical intrinsics'");
+  }
+  for (std::size_t k = 0; session.cameras.size() > 1 && k < session.cameras.size(); ++k) {
+    if (!session.boardOf(k).hasHalfTurnAmbiguity()) continue;
+    throw badInput(session.source.string() + ": board",
+                   "the board looks the same when turned by 180 degrees, so cameras can not be calibrated "
+                   "against each other",
+                   "Use an asymmetric board with an odd number of rows; for each camera's intrinsics alone "
+                   "there is 'evical intrinsics'");
+  }
+}
+
+void checkPass(const Session& session, const RunContext& context, RecordingPass& pass) {
+  for (const ImuData& imu : pass.imus) {
+    checkStampsApart(imu);
+    checkAxesAlive(imu);
+    checkUnits(imu, session.options.initialisation);
+    for (const RecordingFault& fault : checkImu(imu.name, imu.samples)) addFault(fault, pass.faults);
+  }
+  for (std::size_t k = 0; k < pass.cameras.size(); ++k) {
+    const std::optional<RecordingFault> unseen = unseenCircles(pass.cameras[k], session.boardOf(k));
+    if (unseen) addFault(*unseen, pass.faults);
+  }
+  for (const RecordingFault& fault : pass.faults) context.progress.log(LogLevel::Warning, fault.text);
+  logDetections(pass, context);
+  checkDuration(session, pass);
+  for (std::size_t k = 0; k < pass.cameras.size(); ++k) {
+    const BoardObservations& camera = pass.cameras[k];
+    if (camera.views.empty())
+      if (const std::optional<CalibrationError> blink = unexpectedBlink(session, k))
+        throw CalibrationError(*blink);
+    checkBoardSeen(camera, session.boardOf(k));
+    checkBoardSize(camera, session.boardOf(k), session.options.front_end.extent);
+  }
+}
+
+}  // namespace evical

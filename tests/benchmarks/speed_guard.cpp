@@ -1,0 +1,282 @@
+// Guards against stages that become slower: `evical_speed_guard BASELINE [--renew]`. Each stage's CPU time is put over
+// the time that reading and copying the events of its recording takes in the same run, so that machines, and hours of a
+// busy one, compare; the least of several rounds counts. Fails where a ratio is above the baseline's by more than its
+// stage may grow. Processors differ in how they read and reckon: against the baseline of another model only stages that
+// take twice as long fail. `--renew` writes the ratios of this run as the new baseline, `--table FILE` what is printed.
+#include "core/base/atomic_file.h"
+#include "core/base/time.h"
+#include "core/base/yaml_node.h"
+#include "core/frontend/board_search.h"
+#include "core/frontend/board_tracker.h"
+#include "core/initialisation/initialise.h"
+#include "core/intrinsics/estimate_intrinsics.h"
+#include "core/optimisation/batch_optimiser.h"
+#include "core/optimisation/uncertainty/covariance.h"
+#include "core/pipeline/calibration_pipeline.h"
+#include "core/pipeline/cross_validation.h"
+#include "core/pipeline/simulation.h"
+#include "core/recording/recording_reader.h"
+#include "tests/benchmarks/benchmark_program.h"
+#include "tests/support/simulated_pass.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <QTemporaryDir>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace evical {
+namespace {
+
+constexpr double kEvents_s = 2.0;   // of recording with events
+constexpr double kBatch_s = 8.0;    // of recording for all that comes after detection
+constexpr std::size_t kReads = 3;   // a round: reading is soon done
+constexpr double kMayGrow = 0.3;    // where the baseline does not say
+constexpr double kMayDiffer = 1.0;  // from another processor's
+constexpr std::size_t kBatch = 50'000;
+
+// As Linux tells it of the first one: name and numbers of the model, caches; empty where nothing is told.
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  std::string text;
+  for (std::string line; std::getline(info, line) && !line.empty();)
+    for (const char* const key : {"model name", "cpu family", "model\t", "cache size"})
+      if (line.starts_with(key)) text += (text.empty() ? "" : ", ") + line.substr(line.find(':') + 2);
+  return text;
+}
+
+// What a tracker gets with each batch of events.
+struct BurstBatch {
+  std::vector<EdgeBurst> bursts;
+  std::int64_t first_event_ns, complete_until_ns;
+};
+
+// The stages, in the order in which each finds what those before it have left.
+class Stages {
+ public:
+  explicit Stages(const Scenario& scenario)
+      : scenario_(scenario),
+        camera_(scenario.cameras.front().intrinsics),
+        lens_(test::simulatePass(kBatch_s, "intrinsics_fisheye")) {
+    scenario_.duration_s = kEvents_s;
+    recording_ = simulate(scenario_, folder_.path().toStdString(), context_).recording;
+    test::SimulatedPass simulated = test::simulatePass(kBatch_s, scenario);
+    session_ = simulated.session;
+    // One thread: waiting for another is no work.
+    session_.options.optimisation.threads = 1;
+    start_ = startCalibration(session_, std::move(simulated.pass), context_);
+  }
+
+  void read() {
+    events_.clear();
+    const auto reader = openRecording(recording_);
+    const StreamType events = StreamType::Events;
+    reader->select({findStream(*reader, scenario_.cameras.front().stream, events)});
+    Packet packet;
+    while (reader->read(packet)) events_.insert(events_.end(), packet.events.begin(), packet.events.end());
+  }
+
+  void bursts() {
+    batches_.clear();
+    BurstExtractor extractor(camera_.resolution_px, options().bursts);
+    for (std::size_t k = 0; k < events_.size(); k += kBatch) {
+      const EventSpan batch(events_.data() + k, std::min(kBatch, events_.size() - k));
+      BurstBatch& out = batches_.emplace_back();
+      extractor.add(batch, out.bursts);
+      out.first_event_ns = batch.front().time_ns;
+      out.complete_until_ns = extractor.completeUntil_ns();
+    }
+    extractor.finish(batches_.emplace_back().bursts);
+    batches_.back().complete_until_ns = extractor.completeUntil_ns();
+  }
+
+  void windows() {
+    BoardTracker tracker(scenario_.board, camera_.resolution_px, camera_, options(), scenario_.start_ns);
+    for (std::size_t k = 0; k + 1 < batches_.size(); ++k)
+      tracker.addBursts(batches_[k].bursts, batches_[k].first_event_ns, batches_[k].complete_until_ns);
+    if (tracker.finish().views.empty())
+      throw calibrationFailed("windows", "show no board", "See the front end's tests");
+  }
+
+  void search() {
+    const BoardScene scene(scenario_.board, camera_.resolution_px, camera_);
+    BurstHistory history;
+    for (const BurstBatch& batch : batches_) history.add(batch.bursts);
+    for (const double part : {0.3, 0.5, 0.7})
+      searchBoard(history, events_.front().time_ns + nanosecondsFrom(part * kEvents_s), scene, options());
+  }
+
+  void initialisation() { initialise(start_.input, session_.options.initialisation, context_); }
+  void batch() {
+    solution_ = optimiseBatch(start_.input, start_.initial.state, session_.options.optimisation, context_);
+  }
+  void uncertainty() {
+    estimateUncertainty(start_.input, solution_, session_.options.optimisation, context_);
+  }
+  void halves() {
+    crossValidate(start_.input, solution_.state, session_.options.optimisation,
+                  session_.options.report.cross_validation_block_s, context_);
+  }
+  void lens() {
+    estimateIntrinsics({lens_.session.board,
+                        lens_.pass.resolutions_px.front(),
+                        lens_.pass.cameras.front(),
+                        lens_.truth.cameras.front().intrinsics,
+                        {}},
+                       lens_.session.options.intrinsics, context_);
+  }
+
+ private:
+  const FrontEndOptions& options() const { return session_.options.front_end; }
+
+  QTemporaryDir folder_;
+  Scenario scenario_;
+  CameraIntrinsics camera_;
+  RunContext context_;
+  std::filesystem::path recording_;
+  Session session_;
+  std::vector<Event> events_;
+  std::vector<BurstBatch> batches_;
+  CalibrationStart start_;
+  BatchSolution solution_;
+  test::SimulatedPass lens_;
+};
+
+struct Stage {
+  const char* name;
+  void (Stages::*work)();
+  double least_s = std::numeric_limits<double>::infinity();
+  double baseline = 0.0, may_grow = kMayGrow;
+  std::optional<double> allowed = {};  // instead, here
+
+  double ratio(double read_s) const { return least_s / read_s; }
+  double mayGrow() const { return allowed.value_or(may_grow); }
+  bool grown(double read_s) const { return baseline > 0.0 && ratio(read_s) > (1.0 + mayGrow()) * baseline; }
+};
+
+class Guard {
+ public:
+  explicit Guard(const std::string& scenario) : stages_of_(readScenario(scenario)) {}
+
+  void readBaseline(const std::string& file) {
+    const YamlNode root = YamlNode::load(file);
+    const YamlNode ratios = root["ratios"];
+    const bool same = root["processor"].text() == processor();
+    std::vector<std::string> known;
+    for (const Stage& stage : stages_) known.emplace_back(stage.name);
+    ratios.allowOnly(known);
+    for (Stage& stage : stages_) {
+      const YamlNode row = ratios[stage.name];
+      row.allowOnly({"ratio", "may_grow"});
+      stage.baseline = row["ratio"].real();
+      if (const auto may_grow = row.find("may_grow")) stage.may_grow = may_grow->real();
+      if (!same) stage.allowed = std::max(stage.may_grow, kMayDiffer);
+    }
+  }
+
+  void round() {
+    ++rounds_;
+    for (std::size_t k = 0; k < kReads; ++k) measure(&Stages::read, read_s_);
+    for (Stage& stage : stages_) measure(stage.work, stage.least_s);
+  }
+
+  bool anyGrown() const {
+    return std::any_of(stages_.begin(), stages_.end(),
+                       [&](const Stage& stage) { return stage.grown(read_s_); });
+  }
+
+  std::string table() const {
+    std::string text = fmt::format(
+        "CPU time over that to read and copy the same events ({:.1f} ms), the least of {} rounds\n\n",
+        1e3 * read_s_, rounds_);
+    text += "| stage | ms | ratio | baseline | change |\n|---|---|---|---|---|\n";
+    for (const Stage& stage : stages_)
+      text += fmt::format("| {} | {:.1f} | {:.2f} | {:.2f} | {:+.0f} %{} |\n", stage.name,
+                          1e3 * stage.least_s, stage.ratio(read_s_), stage.baseline,
+                          stage.baseline > 0.0 ? 100.0 * (stage.ratio(read_s_) / stage.baseline - 1.0) : 0.0,
+                          stage.grown(read_s_) ? fmt::format(", more than the {:.0f} % that it may grow",
+                                                             100.0 * stage.mayGrow())
+                                               : "");
+    return text;
+  }
+
+  std::string baseline() const {
+    std::string text =
+        "# CPU time of each stage over that to read and copy the same events: what evical_speed_guard holds "
+        "runs against.\n"
+        "# A stage may grow by 0.3, or by its may_grow, where its own scatter on a busy machine is wider. To "
+        "renew, on a\n"
+        "# quiet machine: build/ci/tests/benchmarks/evical_speed_guard tests/benchmarks/speed_baseline.yaml "
+        "--renew\n"
+        "processor: " +
+        yamlText(processor()) + "\nratios:\n";
+    for (const Stage& stage : stages_) {
+      text += fmt::format("  {}: {{ratio: {:.3g}", stage.name, stage.ratio(read_s_));
+      if (stage.may_grow != kMayGrow) text += fmt::format(", may_grow: {}", stage.may_grow);
+      text += "}\n";
+    }
+    return text;
+  }
+
+ private:
+  void measure(void (Stages::*work)(), double& least_s) {
+    const double begin_s = processCpu_s();
+    (stages_of_.*work)();
+    least_s = std::min(least_s, processCpu_s() - begin_s);
+  }
+
+  Stages stages_of_;
+  std::vector<Stage> stages_ = {{"bursts", &Stages::bursts}, {"windows", &Stages::windows},
+                                {"search", &Stages::search}, {"initialise", &Stages::initialisation},
+                                {"batch", &Stages::batch},   {"uncertainty", &Stages::uncertainty},
+                                {"halves", &Stages::halves}, {"lens", &Stages::lens}};
+  double read_s_ = std::numeric_limits<double>::infinity();
+  int rounds_ = 0;
+};
+
+int main(int argc, char** argv) {
+  CLI::App app("Guards against stages that become slower");
+  std::string baseline, table, scenario = EVICAL_SOURCE_DIR "/config/scenarios/davis346.yaml";
+  int rounds = 3, most_rounds = 9;
+  bool renew = false;
+  app.add_option("BASELINE", baseline, "File of ratios")->required();
+  app.add_flag("--renew", renew, "Writes the file anew");
+  app.add_option("--table", table, "A file for what is printed");
+  app.add_option("--scenario", scenario, "What to simulate");
+  app.add_option("--rounds", rounds, "At least")->check(CLI::Range(1, 100));
+  app.add_option("--most-rounds", most_rounds, "Where a stage seems slower: others may be in its way")
+      ->check(CLI::Range(1, 100));
+  CLI11_PARSE(app, argc, argv);
+  Guard guard(scenario);
+  if (std::filesystem::exists(baseline) || !renew) guard.readBaseline(baseline);
+  for (int k = 0; k < (renew ? most_rounds : rounds); ++k) guard.round();
+  for (int k = rounds; k < most_rounds && !renew && guard.anyGrown(); ++k) guard.round();
+  fmt::print("{}", guard.table());
+  if (!table.empty()) writeFileWhole(table, guard.table());
+  if (renew) {
+    writeFileWhole(baseline, guard.baseline());
+    return 0;
+  }
+  if (!guard.anyGrown()) return 0;
+  fmt::print(
+      "\nA stage has become slower. Profile it ('evical calibrate --profile', perf); where that is the price "
+      "of something "
+      "worth it, renew the baseline: '{} {} --renew'\n",
+      argv[0], baseline);
+  return 1;
+}
+
+}  // namespace
+}  // namespace evical
+
+int main(int argc, char** argv) {
+  return evical::guarded(evical::main, argc, argv);
+}

@@ -1,0 +1,73 @@
+#include "core/base/error.h"
+#include "core/base/files_together.h"
+#include "tests/support/test_program.h"
+
+#include <QTemporaryDir>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+using namespace evical;
+
+namespace {
+
+std::string contentOf(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+}  // namespace
+
+class TestFilesTogether : public QObject {
+  Q_OBJECT
+
+  QTemporaryDir scratch_;
+  std::filesystem::path folder() const { return scratch_.path().toStdString(); }
+
+ private slots:
+  void files_takeTheirPlacesTogether() {
+    const auto place = folder() / "result";
+    FilesTogether files;
+    files.makeFolder(place / "plots");
+    files.write({place / "plots" / "a.csv", "1"});
+    files.write({place / "result.yaml", "2"});
+    QVERIFY(!std::filesystem::exists(place / "plots" / "a.csv"));
+    QVERIFY(!std::filesystem::exists(place / "result.yaml"));
+    files.place();
+    QCOMPARE(contentOf(place / "plots" / "a.csv"), std::string("1"));
+    QCOMPARE(contentOf(place / "result.yaml"), std::string("2"));
+  }
+
+  void files_thatWereNotPlaced_leaveNeitherThemselvesNorFolders() {
+    const auto place = folder() / "unfinished";
+    {
+      FilesTogether files;
+      files.makeFolder(place / "plots");
+      files.write({place / "plots" / "a.csv", "1"});
+      QVERIFY(std::filesystem::exists(place / "plots"));
+    }
+    QVERIFY(!std::filesystem::exists(place));
+  }
+
+  void folders_thatWereThere_stayWithWhatIsInThem() {
+    const auto place = folder() / "old";
+    std::filesystem::create_directories(place);
+    writeFileWhole(place / "kept.yaml", "old");
+    {
+      FilesTogether files;
+      files.makeFolder(place);
+      files.write({place / "kept.yaml", "new"});
+      // A folder stands where a file is wanted: what was written before is not placed either.
+      std::filesystem::create_directories(place / "folder");
+      QVERIFY_THROWS_EXCEPTION(CalibrationError, files.write({place / "folder", "x"}));
+    }
+    QCOMPARE(contentOf(place / "kept.yaml"), std::string("old"));
+    const std::filesystem::directory_iterator entries(place);
+    QCOMPARE(std::distance(begin(entries), end(entries)), std::ptrdiff_t(2));
+  }
+};
+
+EVICAL_TEST(TestFilesTogether)
+#include "tst_files_together.moc"
