@@ -12,7 +12,14 @@ struct EdgeSlope {
   std::int64_t time_ns;  // when the edge passed this pixel
   std::uint16_t x_px, y_px;
   Eigen::Vector2f slope_s_px;  // d(time) / d(pixel)
-  Eigen::Matrix2f shape;       // its covariance, were the times of its neighbourhood known to 1 s
+  Eigen::Vector3f shape;  // xx, xy, yy of its covariance, were the times of its neighbourhood known to 1 s
+
+  Eigen::Matrix2d covarianceAt1s() const {
+    Eigen::Matrix2d covariance;
+    covariance << shape[0], shape[1], shape[1], shape[2];
+    return covariance;
+  }
 };
+static_assert(sizeof(EdgeSlope) == 32);
 
 }  // namespace evical

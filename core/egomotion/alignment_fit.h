@@ -21,6 +21,9 @@ struct AlignmentState {
   double time_offset_s = 0.0;
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
   double scale = 1.0;
+  // What is left of a lever arm l between camera and what it turns about, by the scene's depth, where v = w x l is not
+  // quite known: it turns what is seen by (l_x w_z - l_z w_x, l_y w_z - l_z w_y, 0). Only of joint_fit.h.
+  Eigen::Vector3d lever_left = Eigen::Vector3d::Zero();
 };
 
 class AlignmentFit {

@@ -18,6 +18,9 @@ struct EgomotionOptions {
   double least_inliers;
   double least_speed_px_s;
   double largest_sigma_rad_s;
+  int kept_windows;
+  int kept_slopes;
+  double depths_left;
   double translation_left;
   double block_s;
   int least_blocks;

@@ -2,6 +2,7 @@
 
 #include "core/egomotion/alignment_fit.h"
 #include "core/egomotion/alignment_start.h"
+#include "core/egomotion/joint_fit.h"
 #include "core/egomotion/summed_rates.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/dense.h"
@@ -12,10 +13,20 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
+#include <utility>
+#include <vector>
 
 namespace evical {
 namespace {
+
+constexpr const char* kNoSolution =
+    "no rotation and no time offset makes the camera turn as the gyroscope does";
+
+bool isUsed(const WindowMotion& window) {
+  return window.use == WindowUse::Used;
+}
 
 // Used windows whose time the gyroscope covers, with what the offset may yet move.
 std::vector<const WindowMotion*> coveredWindows(std::vector<WindowMotion>& windows, const SummedRates& rates,
@@ -23,7 +34,7 @@ std::vector<const WindowMotion*> coveredWindows(std::vector<WindowMotion>& windo
   constexpr double kMargin_s = 0.05;
   std::vector<const WindowMotion*> covered;
   for (WindowMotion& window : windows) {
-    if (window.use != WindowUse::Used) continue;
+    if (!isUsed(window)) continue;
     const double from_s = window.begin_s + offset_s, to_s = window.end_s + offset_s;
     if (rates.covers(from_s - kMargin_s, to_s + kMargin_s)) {
       covered.push_back(&window);
@@ -35,46 +46,46 @@ std::vector<const WindowMotion*> coveredWindows(std::vector<WindowMotion>& windo
 }
 
 // The delete-a-block jackknife, to first order: what each block moves the estimate by. With few blocks their scatter is
-// itself uncertain, as Student's distribution says.
-std::optional<AlignmentMatrix> blockCovariance(const AlignmentFit& fit, const AlignmentState& state,
-                                               const EgomotionOptions& options, int& blocks) {
-  const AlignmentFit::Part all = fit.partOf(state, 0, fit.windowCount());
-  std::vector<AlignmentVector> moves;
-  for (std::size_t first = 0; first < fit.windowCount();) {
-    const double block = std::floor(fit.window(first).middle_s() / options.block_s);
-    std::size_t end = first;
-    while (end < fit.windowCount() && std::floor(fit.window(end).middle_s() / options.block_s) == block)
-      ++end;
-    const AlignmentFit::Part part = fit.partOf(state, first, end);
-    moves.push_back((all.normal - part.normal).ldlt().solve(part.gradient));
-    first = end;
+// itself uncertain, as Student's distribution says. What the noise of edges makes of numbers that hardly count in any block
+// is beside it.
+std::optional<JointMatrix> blockCovariance(const JointFit& fit, const EgomotionOptions& options,
+                                           int& blocks) {
+  std::map<double, JointFit::Part> sums;
+  for (const JointFit::Part& part : fit.parts()) {
+    JointFit::Part& sum = sums[std::floor(part.middle_s / options.block_s)];
+    sum.normal += part.normal;
+    sum.right += part.right;
   }
-  blocks = static_cast<int>(moves.size());
+  blocks = static_cast<int>(sums.size());
   if (blocks < options.least_blocks) return std::nullopt;
-  AlignmentVector mean = AlignmentVector::Zero();
-  for (const AlignmentVector& move : moves) mean += move / static_cast<double>(blocks);
-  AlignmentMatrix sum = AlignmentMatrix::Zero();
-  for (const AlignmentVector& move : moves) sum += (move - mean) * (move - mean).transpose();
+  std::vector<JointVector> moves;
+  JointVector mean = JointVector::Zero();
+  for (const auto& [time, block] : sums) {
+    moves.push_back((fit.normal() - block.normal).ldlt().solve(block.right));
+    mean += moves.back() / static_cast<double>(blocks);
+  }
+  JointMatrix sum = JointMatrix::Zero();
+  for (const JointVector& move : moves) sum += (move - mean) * (move - mean).transpose();
   const double n = blocks, student = (n - 1.0) / (n - 3.0 + 0.5);
-  const AlignmentMatrix covariance = student * (n - 1.0) / n * sum;
-  if (!covariance.allFinite()) return std::nullopt;
+  const JointMatrix covariance = student * (n - 1.0) / n * sum + fit.normal().inverse();
+  if (!covariance.allFinite() || !(covariance.diagonal().array() > 0.0).all()) return std::nullopt;
   return covariance;
 }
 
-// The numbers where translation is not taken out, less those where it is.
-std::optional<Eigen::Vector4d> shiftByTranslation(const std::vector<WindowMotion>& windows,
-                                                  const SummedRates& rates,
-                                                  const Eigen::Matrix3d& gyroscope_matrix,
-                                                  const AlignmentState& state) {
-  std::vector<WindowMotion> alone = windows;
-  for (WindowMotion& window : alone) window.rate_rad_s = window.turning_alone_rad_s;
-  AlignmentFit fit(coveredWindows(alone, rates, state.time_offset_s), rates, gyroscope_matrix);
+// The numbers that another fit comes to, less those of `state`.
+std::optional<Eigen::Vector4d> shiftBy(JointFit fit, const AlignmentState& state) {
   AlignmentState there = state;
   if (!fit.solve(there)) return std::nullopt;
   Eigen::Vector4d shift;
   shift.head<3>() = so3Log(there.imu_from_camera * state.imu_from_camera.transpose());
   shift[3] = there.time_offset_s - state.time_offset_s;
   return shift;
+}
+
+EgomotionOptions withCoarserDepths(EgomotionOptions options) {
+  options.depth_columns = (options.depth_columns + 1) / 2;
+  options.depth_rows = (options.depth_rows + 1) / 2;
+  return options;
 }
 
 void markOutOfLine(const AlignmentFit& fit, std::vector<WindowMotion>& windows) {
@@ -113,55 +124,75 @@ void describe(const AlignmentFit& fit, const AlignmentState& state, RotationAlig
     const Eigen::Vector3d expected =
         state.scale * state.imu_from_camera.transpose() * fit.imuRate_rad_s(fit.window(k), state);
     rates += expected.squaredNorm();
-    if (fit.squares()[k] < 36.0) misfits += (expected - fit.window(k).rate_rad_s).squaredNorm();
+    misfits += (expected - fit.window(k).rate_rad_s).squaredNorm();
   }
   const double n = static_cast<double>(std::max<std::size_t>(1, fit.windowCount()));
   out.rate_rms_rad_s = std::sqrt(rates / n);
   out.misfit_rms_rad_s = std::sqrt(misfits / n);
 }
 
-}  // namespace
-
-RotationAlignment alignRotation(std::vector<WindowMotion>& windows, const GyroscopeRecord& gyroscope,
-                                const AlignmentStart& start, const EgomotionOptions& options) {
-  const SummedRates rates(gyroscope.samples, gyroscope.start_ns);
-  const Eigen::Matrix3d matrix = gyroscope.imu.gyroscopeMatrix();
-  AlignmentState state{start.imu_from_camera.toRotationMatrix(), start.time_offset_s,
-                       gyroscope.imu.gyroscope_bias_rad_s, 1.0};
-  std::vector<const WindowMotion*> used;
-  for (const WindowMotion& window : windows)
-    if (window.use == WindowUse::Used) used.push_back(&window);
-  if (used.size() < static_cast<std::size_t>(kAlignmentNumbers))
-    return failed("too few windows tell how the camera turns");
+// From the windows' own rates: where all edges start from, and which windows contradict the others.
+std::optional<AlignmentState> startingSolution(std::vector<WindowMotion>& windows, const SummedRates& rates,
+                                               const Eigen::Matrix3d& matrix, const AlignmentState& before,
+                                               double search_s, std::string& failure) {
   // Those at the ends are lost to whatever the offset may be; only then the solution asks for all.
   std::vector<WindowMotion> searched = windows;
-  std::vector<const WindowMotion*> inside = coveredWindows(searched, rates, start.time_offset_s);
+  std::vector<const WindowMotion*> inside = coveredWindows(searched, rates, before.time_offset_s);
   std::erase_if(inside, [&](const WindowMotion* window) {
-    return !rates.covers(window->begin_s + start.time_offset_s - options.search_s,
-                         window->end_s + start.time_offset_s + options.search_s);
+    return !rates.covers(window->begin_s + before.time_offset_s - search_s,
+                         window->end_s + before.time_offset_s + search_s);
   });
-  if (inside.size() < static_cast<std::size_t>(kAlignmentNumbers))
-    return failed("camera and gyroscope have too little time in common");
-  const std::optional<AlignmentState> found = bestSolution(inside, rates, matrix, state, options.search_s);
-  if (!found) return failed("no rotation and no time offset makes the camera turn as the gyroscope does");
-  state = *found;
-  AlignmentFit fit(coveredWindows(windows, rates, state.time_offset_s), rates, matrix);
-  if (!fit.solve(state))
-    return failed("no rotation and no time offset makes the camera turn as the gyroscope does");
+  if (inside.size() < static_cast<std::size_t>(kAlignmentNumbers)) {
+    failure = "camera and gyroscope have too little time in common";
+    return std::nullopt;
+  }
+  std::optional<AlignmentState> state = bestSolution(inside, rates, matrix, before, search_s);
+  if (state) {
+    AlignmentFit fit(coveredWindows(windows, rates, state->time_offset_s), rates, matrix);
+    if (fit.solve(*state)) {
+      markOutOfLine(fit, windows);
+      return state;
+    }
+  }
+  failure = kNoSolution;
+  return std::nullopt;
+}
+
+}  // namespace
+
+RotationAlignment alignRotation(CameraRecord& record, const LensRays& lens, const GyroscopeRecord& gyroscope,
+                                const AlignmentStart& start, const EgomotionOptions& options, int threads) {
+  const SummedRates rates(gyroscope.samples, gyroscope.start_ns);
+  const Eigen::Matrix3d matrix = gyroscope.imu.gyroscopeMatrix();
+  std::vector<WindowMotion>& windows = record.windows;
+  if (std::count_if(windows.begin(), windows.end(), isUsed) < kAlignmentNumbers)
+    return failed("too few windows tell how the camera turns");
+  const AlignmentState before{start.imu_from_camera.toRotationMatrix(), start.time_offset_s,
+                              gyroscope.imu.gyroscope_bias_rad_s};
   RotationAlignment out;
-  const std::optional<AlignmentMatrix> covariance = blockCovariance(fit, state, options, out.blocks);
-  const std::optional<Eigen::Vector4d> shift = shiftByTranslation(windows, rates, matrix, state);
-  markOutOfLine(fit, windows);
+  const std::optional<AlignmentState> rough =
+      startingSolution(windows, rates, matrix, before, options.search_s, out.failure);
+  if (!rough) return out;
+  AlignmentState state = *rough;
+  const JointInput input{record, lens, rates, matrix.inverse(), gyroscope.start_ns, threads};
+  JointFit fit(input, options);
+  if (!fit.solve(state)) return failed(kNoSolution);
+  const std::optional<JointMatrix> covariance = blockCovariance(fit, options, out.blocks);
   if (!covariance) return failed("too little of the recording tells how the camera turns");
-  if (!shift) return failed("what translation does to the image cannot be told from rotation");
-  out.turning_alone = *shift;
+  const std::optional<Eigen::Vector4d> coarser = shiftBy(JointFit(input, withCoarserDepths(options)), state);
+  const std::optional<Eigen::Vector4d> still = shiftBy(JointFit(input, options, true), state);
+  if (!coarser || !still) return failed("what translation does to the image cannot be told from rotation");
+  out.by_coarser_depths = *coarser;
+  out.by_turning_alone = *still;
   out.imu_from_camera = Eigen::Quaterniond(state.imu_from_camera).normalized();
   out.time_offset_s = state.time_offset_s;
   out.gyroscope_bias_rad_s = state.bias_rad_s;
   out.scale = state.scale;
-  const Eigen::Vector4d left = options.translation_left * out.turning_alone;
-  out.covariance = covariance->topLeftCorner<4, 4>() + left * left.transpose();
-  describe(fit, state, out);
+  const Eigen::Vector4d depths = options.depths_left * out.by_coarser_depths,
+                        translation = options.translation_left * out.by_turning_alone;
+  out.covariance =
+      covariance->topLeftCorner<4, 4>() + depths * depths.transpose() + translation * translation.transpose();
+  describe(AlignmentFit(coveredWindows(windows, rates, state.time_offset_s), rates, matrix), state, out);
   const SymmetricEigen eigen = symmetricEigen(out.covariance.topLeftCorner<3, 3>());
   out.weakest_in_camera = state.imu_from_camera.transpose() * eigen.vectors.col(2);
   return out;

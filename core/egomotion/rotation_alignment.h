@@ -1,13 +1,15 @@
 // How a camera is turned against an IMU, and how their clocks differ, from the rates at which both turn
-// (docs/maths.md, 16.3):
+// (docs/maths.md, 16.3 and 16.4):
 //   scale * camera_from_imu * M^-1 (rate_measured(t + time_offset) - bias) = rate_of_camera(t).
-// The scale is that of the image's motion, which is none of what is asked for, and bears what would shrink all rates alike.
+// First from the windows' own rates, then from all edges at once. The scale is that of the image's motion, which is none of
+// what is asked for, and bears what would shrink all rates alike.
 #pragma once
 
 #include "core/data/calibration_state.h"
 #include "core/data/imu_sample.h"
+#include "core/egomotion/camera_record.h"
 #include "core/egomotion/egomotion_options.h"
-#include "core/egomotion/window_motion.h"
+#include "core/egomotion/lens_rays.h"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -15,7 +17,6 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <vector>
 
 namespace evical {
 
@@ -37,11 +38,12 @@ struct RotationAlignment {
   Eigen::Vector3d gyroscope_bias_rad_s = Eigen::Vector3d::Zero();
   double scale = 1.0;
   // Of the rotation about the IMU's axes [rad], and of the time offset [s]: by the scatter of blocks of the recording, and by
-  // what translation may have left.
+  // what the depths may have left.
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
   int blocks = 0;
-  // What the same numbers would be further, were all that moves taken as turning: how much hangs on translation.
-  Eigen::Vector4d turning_alone = Eigen::Vector4d::Zero();
+  // What the same numbers would be further with half as many depths across and down, and were all that moves taken as turning:
+  // how much hangs on depths and on translation.
+  Eigen::Vector4d by_coarser_depths = Eigen::Vector4d::Zero(), by_turning_alone = Eigen::Vector4d::Zero();
   double rate_rms_rad_s = 0.0, misfit_rms_rad_s = 0.0;  // of the camera's turning, and of what is left of it
   Eigen::Vector3d weakest_in_camera =
       Eigen::Vector3d::Zero();  // axis about which the rotation is known least
@@ -50,7 +52,7 @@ struct RotationAlignment {
 };
 
 // Windows that the gyroscope does not cover, or that contradict the others, are marked.
-RotationAlignment alignRotation(std::vector<WindowMotion>& windows, const GyroscopeRecord& gyroscope,
-                                const AlignmentStart& start, const EgomotionOptions& options);
+RotationAlignment alignRotation(CameraRecord& record, const LensRays& lens, const GyroscopeRecord& gyroscope,
+                                const AlignmentStart& start, const EgomotionOptions& options, int threads);
 
 }  // namespace evical

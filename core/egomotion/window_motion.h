@@ -17,13 +17,6 @@
 
 namespace evical {
 
-using ImageMotion = Eigen::Matrix<double, 2, 3>;  // d(image velocity) / d(angular or linear velocity)
-
-// Of a camera that turns with w and moves with v, both in its own frame: a point that stands still has the velocity
-// -v - w x P in it.
-ImageMotion rotationalMotion(const Eigen::Vector2d& place);
-ImageMotion translationalMotion(const Eigen::Vector2d& place);  // at depth 1
-
 // What became of a window. The rows of windowUseWords.
 enum class WindowUse {
   Used,
@@ -48,8 +41,6 @@ struct WindowMotion {
   double inliers = 0.0;                                  // share of them that the motion explains
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  // of the camera, in its frame
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d turning_alone_rad_s = Eigen::Vector3d::Zero();  // the rate, were there no translation
-  Eigen::Vector3d velocity_1_s = Eigen::Vector3d::Zero();         // by the mean depth
   bool rotation_alone = false;  // which explains the edges as well as rotation and translation do
 
   double middle_s() const { return 0.5 * (begin_s + end_s); }

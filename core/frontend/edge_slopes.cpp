@@ -166,8 +166,7 @@ bool EdgeSlopeFinder::slopeAt(const EdgeBurst& burst, EdgeSlope& slope) {
   slope.x_px = burst.x_px;
   slope.y_px = burst.y_px;
   slope.slope_s_px = Eigen::Vector2d(plane.a, plane.b).cast<float>();
-  slope.shape << static_cast<float>(plane.xx), static_cast<float>(plane.xy), static_cast<float>(plane.xy),
-      static_cast<float>(plane.yy);
+  slope.shape = Eigen::Vector3d(plane.xx, plane.xy, plane.yy).cast<float>();
   return true;
 }
 

@@ -27,7 +27,7 @@ struct MotionIntake {
     if (const std::optional<CameraBatch> batch = events->take(measured))
       motion->add(batch->bursts, batch->complete_until_ns);
   }
-  std::vector<WindowMotion> finish() {
+  CameraRecord finish() {
     if (const std::optional<CameraBatch> batch = events->finish())
       motion->add(batch->bursts, batch->complete_until_ns);
     return motion->finish();

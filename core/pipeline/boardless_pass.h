@@ -4,7 +4,7 @@
 #include "core/base/progress.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/recording.h"
-#include "core/egomotion/window_motion.h"
+#include "core/egomotion/camera_record.h"
 #include "core/pipeline/session.h"
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 namespace evical {
 
 struct BoardlessPass {
-  std::int64_t start_ns = 0;                       // first event or sample of the session's streams
-  std::vector<std::vector<WindowMotion>> cameras;  // by camera of the session; empty of frames and points
+  std::int64_t start_ns = 0;          // first event or sample of the session's streams
+  std::vector<CameraRecord> cameras;  // by camera of the session; empty of frames and points
   std::vector<CameraKind> kinds;
   std::vector<ImuData> imus;  // SI units, in time order
   std::vector<RecordingFault> faults;

@@ -12,12 +12,15 @@ CameraMotion::CameraMotion(const CameraIntrinsics& lens, const CalibrationOption
       start_ns_(start_ns),
       slopes_(lens.resolution_px, options.edge_slopes, options.egomotion.window_s,
               [this](std::int64_t begin_ns, std::span<const EdgeSlope> slopes) {
-                windows_.push_back(estimateWindowMotion(slopes, lens_, {start_ns_, begin_ns}, options_));
+                std::vector<WindowMotion>& windows = record_.windows;
+                windows.push_back(estimateWindowMotion(slopes, lens_, {start_ns_, begin_ns}, options_));
+                if (windows.back().use == WindowUse::Used)
+                  record_.slopes.add(windows.size() - 1, begin_ns, slopes, options_);
               }) {}
 
-std::vector<WindowMotion> CameraMotion::finish() {
+CameraRecord CameraMotion::finish() {
   slopes_.finish();
-  return std::move(windows_);
+  return std::move(record_);
 }
 
 }  // namespace evical

@@ -1,7 +1,8 @@
 // How a camera turns over time, from its events: bursts, slopes of their times, and the motion in each window.
 #pragma once
 
-#include "core/egomotion/window_motion.h"
+#include "core/egomotion/camera_record.h"
+#include "core/egomotion/lens_rays.h"
 #include "core/frontend/edge_bursts.h"
 #include "core/frontend/edge_slopes.h"
 #include "core/pipeline/calibration_options.h"
@@ -21,13 +22,13 @@ class CameraMotion {
   void add(const std::vector<EdgeBurst>& bursts, std::int64_t complete_until_ns) {
     slopes_.add(bursts, complete_until_ns);
   }
-  std::vector<WindowMotion> finish();
+  CameraRecord finish();
 
  private:
   LensRays lens_;
   EgomotionOptions options_;
   std::int64_t start_ns_;
-  std::vector<WindowMotion> windows_;
+  CameraRecord record_;
   EdgeSlopeFinder slopes_;
 };
 

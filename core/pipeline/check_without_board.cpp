@@ -132,10 +132,12 @@ class BoardlessCheck {
                       imu_before = placeOf(input_.session.reference, input_.before.imus);
     const CameraState& before = input_.before.result->state.cameras.at(camera_before);
     const std::vector<ImuSample> samples = withoutRateSpikes(pass_.imus.at(imu).samples);
-    std::vector<WindowMotion>& windows = pass_.cameras[k];
+    const LensRays lens(*input_.session.sensor(k).intrinsics);
     const RotationAlignment alignment = alignRotation(
-        windows, {samples, pass_.start_ns, input_.before.result->state.imus.at(imu_before)},
-        {before.reference_from_camera.rotation, before.time_offset_s}, input_.session.options.egomotion);
+        pass_.cameras[k], lens, {samples, pass_.start_ns, input_.before.result->state.imus.at(imu_before)},
+        {before.reference_from_camera.rotation, before.time_offset_s}, input_.session.options.egomotion,
+        input_.session.options.optimisation.threads);
+    const std::vector<WindowMotion>& windows = pass_.cameras[k].windows;
     out_.check.windows.push_back(countedWindows(name, windows));
     if (!alignment.found()) return fail(name, alignment.failure, adviceFor(commonest(windows)));
     if (alignment.misfit_rms_rad_s > kMostMisfit * alignment.rate_rms_rad_s)

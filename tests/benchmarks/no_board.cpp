@@ -1,6 +1,8 @@
 // An old calibration, the truth, checked by rooms without a board: errors of rotation and time offset, their sigmas and the
 // verdicts, over seeds.
 #include "core/egomotion/window_motion.h"
+#include "core/geometry/so3.h"
+#include "core/numerics/angles.h"
 #include "core/pipeline/camera_motion.h"
 #include "core/pipeline/check_without_board.h"
 #include "core/report/check_report.h"
@@ -72,6 +74,24 @@ Seen see(const Scenario& scenario, const CalibrationOptions& options) {
   return seen;
 }
 
+// Rotations: about the IMU's axes, as sigmas are.
+void addErrors(const CheckedQuantity& quantity, Spread& turns, Spread& delays) {
+  const std::vector<CheckedNumber>& numbers = quantity.numbers;
+  if (quantity.name != "rotation") {
+    for (const CheckedNumber& number : numbers) delays.add(number.now - number.before, number.now_sigma);
+    return;
+  }
+  Eigen::Vector3d before_deg, now_deg;
+  for (int k = 0; k < 3; ++k) {
+    before_deg[k] = numbers.at(static_cast<std::size_t>(k)).before;
+    now_deg[k] = numbers.at(static_cast<std::size_t>(k)).now;
+  }
+  const Eigen::Vector3d error_rad =
+      so3Log(so3Exp(kRadPerDeg * now_deg) * so3Exp(kRadPerDeg * before_deg).transpose());
+  for (int k = 0; k < 3; ++k)
+    turns.add(error_rad[k] / kRadPerDeg, numbers.at(static_cast<std::size_t>(k)).now_sigma);
+}
+
 class Table {
  public:
   void run(const std::string& file, const ScenarioArguments& arguments) {
@@ -87,9 +107,7 @@ class Table {
       own_s += seen.own_s + processorTime_s() - before_s;
       duration_s += scenario.duration_s;
       ++verdicts.at(static_cast<std::size_t>(check.verdict));
-      for (const CheckedQuantity& quantity : check.quantities)
-        for (const CheckedNumber& number : quantity.numbers)
-          (quantity.name == "rotation" ? turns : delays).add(number.now - number.before, number.now_sigma);
+      for (const CheckedQuantity& quantity : check.quantities) addErrors(quantity, turns, delays);
       fmt::print("{} {:.0f} s, seed {}: {}\n{}", scenario.name, scenario.duration_s, scenario.seed,
                  check.windows.empty() ? "" : windowsText(check.windows.front()), checkTable(check));
       std::fflush(stdout);

@@ -61,7 +61,7 @@ class TestEdgeSlopes : public QObject {
     const Eigen::Vector2d expected = Eigen::Vector2d(std::cos(angle_rad), std::sin(angle_rad)) / speed_px_s;
     for (const EdgeSlope& slope : slopes) {
       QVERIFY((slope.slope_s_px.cast<double>() - expected).norm() < 1e-3 / speed_px_s);
-      QVERIFY(std::abs(slope.shape(0, 0) - 1.0f / 50.0f) < 1e-6f);
+      QVERIFY(std::abs(slope.shape[0] - 1.0f / 50.0f) < 1e-6f);
     }
   }
 

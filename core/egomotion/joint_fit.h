@@ -1,0 +1,63 @@
+// Rotation and time offset from all kept edges of all windows at once (docs/maths.md, 16.4): in each window the camera turns as
+// the gyroscope says, and only its velocity and the depths are free. Not for other folders.
+#pragma once
+
+#include "core/egomotion/alignment_fit.h"
+#include "core/egomotion/camera_record.h"
+#include "core/egomotion/lens_rays.h"
+#include "core/egomotion/summed_rates.h"
+#include "core/egomotion/turning_model.h"
+#include "core/egomotion/window_fit.h"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace evical {
+
+struct JointInput {
+  const CameraRecord& record;  // windows that are used, and that the gyroscope covers
+  const LensRays& lens;
+  const SummedRates& rates;
+  Eigen::Matrix3d imu_from_measured;
+  std::int64_t start_ns;  // of the recording
+  int threads;
+};
+
+class JointFit {
+ public:
+  // `still`: without translation, as if all that moves were turning.
+  JointFit(const JointInput& input, const EgomotionOptions& options, bool still = false);
+
+  // Gauss-Newton from `state`. False where it comes to no end.
+  bool solve(AlignmentState& state);
+
+  // A window's part in the normal equations at the last solution: velocity and depths are eliminated.
+  struct Part {
+    JointMatrix normal = JointMatrix::Zero();
+    JointVector right = JointVector::Zero();
+    double middle_s = 0.0;
+  };
+  const std::vector<Part>& parts() const { return parts_; }
+  const JointMatrix& normal() const { return normal_; }  // their sum, with what is known before
+
+ private:
+  void expectVelocities();
+  std::optional<WindowFit> fitWindow(std::size_t k, const TurningModel& model, const WindowRates& rates);
+  void findPart(std::size_t k, const AlignmentState& state);
+  JointVector sumParts(const AlignmentState& state);
+
+  const JointInput& input_;
+  EgomotionOptions options_;
+  bool still_;
+  double velocity_information_;
+  std::vector<const KeptSlopes::Window*> windows_;
+  std::vector<WindowState> states_;
+  std::vector<Part> parts_;
+  JointMatrix normal_ = JointMatrix::Zero();
+};
+
+}  // namespace evical
