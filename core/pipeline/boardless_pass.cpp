@@ -7,6 +7,7 @@
 #include "core/pipeline/event_intake.h"
 #include "core/pipeline/recording_pass.h"
 #include "core/pipeline/session_recording.h"
+#include "core/pipeline/time_range_end.h"
 
 #include <fmt/format.h>
 
@@ -68,8 +69,9 @@ BoardlessPass readWithoutBoard(const Session& session, const RunContext& context
       const double time_s = secondsSince(pass.start_ns, event.time_ns);
       return time_s < (*session.time_range_s)[0] || time_s > (*session.time_range_s)[1];
     };
+    TimeRangeEnd range_end(session, session.cameras.size() + session.imus.size(), pass.start_ns);
     SensorPacket packet;
-    while (recording.read(packet)) {
+    while (recording.read(packet) && !range_end.isReached(packet)) {
       context.throwIfStopped();
       context.progress.stageProgress(recording.fractionRead());
       if (packet.sensor >= intakes.size() || intakes[packet.sensor].kind != CameraKind::Events) continue;

@@ -9,6 +9,7 @@
 #include "core/pipeline/camera_views.h"
 #include "core/pipeline/event_intake.h"
 #include "core/pipeline/session_recording.h"
+#include "core/pipeline/time_range_end.h"
 
 #include <fmt/format.h>
 
@@ -98,7 +99,7 @@ class ReadingPass {
       : session_(session),
         recording_(session, context.stop),
         result_(result),
-        behind_(session.cameras.size() + session.imus.size()) {
+        range_end_(session, session.cameras.size() + session.imus.size(), recording_.start_ns()) {
     result.imus.resize(session.imus.size());
     result.start_ns = recording_.start_ns();
     for (std::size_t camera = 0; camera < session.cameras.size(); ++camera) {
@@ -118,7 +119,7 @@ class ReadingPass {
     while (recording_.read(packet)) {
       context.throwIfStopped();
       context.progress.stageProgress(recording_.fractionRead());
-      if (isOver(packet)) break;
+      if (range_end_.isReached(packet)) break;
       const bool is_camera = packet.sensor < intakes_.size();
       if (!is_camera) addSamples(packet);
       if (is_camera && !addMeasured(packet, queue)) return;
@@ -157,19 +158,6 @@ class ReadingPass {
     if (!session_.time_range_s) return true;
     const double time_s = secondsSince(result_.start_ns, time_ns);
     return time_s >= (*session_.time_range_s)[0] && time_s <= (*session_.time_range_s)[1];
-  }
-
-  // True once all sensors have come well behind the time range; a stamp that is wrong is followed by right ones.
-  bool isOver(const SensorPacket& packet) {
-    if (!session_.time_range_s) return false;
-    constexpr double kMargin_s = 1.0;  // more than packets of a file are out of order
-    const auto behind = [&](const auto& items) {
-      return !items.empty() &&
-             secondsSince(result_.start_ns, items.front().time_ns) > (*session_.time_range_s)[1] + kMargin_s;
-    };
-    behind_[packet.sensor] =
-        behind(packet.events) || behind(packet.imu_samples) || behind(packet.frames) || behind(packet.points);
-    return std::ranges::all_of(behind_, [](bool each) { return each; });
   }
 
   void addSamples(const SensorPacket& packet) {
@@ -231,7 +219,7 @@ class ReadingPass {
   SessionRecording recording_;
   RecordingPass& result_;
   std::vector<Intake> intakes_;  // by camera
-  std::vector<bool> behind_;     // the time range, by sensor: cameras, then IMUs
+  TimeRangeEnd range_end_;
 };
 
 void checkSamples(const Session& session, const RecordingPass& pass) {

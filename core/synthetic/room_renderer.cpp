@@ -153,38 +153,50 @@ void RoomRenderer::findBoxes(const Tile& tile, const Instants& instants, TileVie
 }
 
 // Told by the tile's corners: a side's outline is straight, and so, nearly, is the tile's.
-RoomRenderer::Extent RoomRenderer::extentOf(std::size_t box, std::size_t side, const Tile& tile,
-                                            const Instants& instants) const {
+// Where a tile's corner is on a side, over its edges: past which of them it is, and whether well within all.
+struct RoomRenderer::CornerPlace {
+  bool before = false;  // the side's plane is before the camera there
+  bool within = false;
+  std::array<bool, 4> beyond = {};  // +x, +y, -x, -y
+};
+
+RoomRenderer::CornerPlace RoomRenderer::cornerOn(const RoomSide& side, const PlacedSide& placed,
+                                                 std::size_t pixel) const {
   constexpr float kSlack_px = 1.5f;  // lens distortion, and what moves between the instants
   const float clear_px = kStepReach * blur_px_ + kSlack_px;
-  const Eigen::Array2f half_m = room_.boxes[box].sides[side].half_m.cast<float>().array();
-  bool all = true;
+  const Eigen::Array2f half_m = side.half_m.cast<float>().array();
+  const Eigen::Matrix3f& h = placed.side_from_ray;
+  const Eigen::Vector3f at = h * rays_[pixel].homogeneous();
+  CornerPlace corner;
+  if (!(at.z() > 1e-3f)) return corner;
+  corner.before = true;
+  const Eigen::Vector2f place_m = at.hnormalized();
+  const Eigen::Matrix2f per_px =
+      (h.topLeftCorner<2, 2>() - place_m * h.block<1, 2>(2, 0)) / at.z() * ray_per_px_[pixel];
+  const Eigen::Array2f clear_m = clear_px * per_px.rowwise().norm().array();
+  corner.within = (place_m.array().abs() < half_m - clear_m).all();
+  for (int k = 0; k < 2; ++k) {
+    corner.beyond[static_cast<std::size_t>(k)] = place_m[k] > half_m[k] + clear_m[k];
+    corner.beyond[static_cast<std::size_t>(2 + k)] = place_m[k] < -half_m[k] - clear_m[k];
+  }
+  return corner;
+}
+
+RoomRenderer::Extent RoomRenderer::extentOf(std::size_t box, std::size_t side, const Tile& tile,
+                                            const Instants& instants) const {
+  bool all = true, faces = false, behind = true;
   std::array<bool, 4> beyond = {true, true, true, true};  // this edge, all corners
-  bool faces = false, behind = true;
   for (const Instant* instant : instants) {
     const PlacedSide& placed = instant->boxes[box][side];
     faces = faces || placed.faces;
     all = all && placed.faces;
     for (const int y : {tile.y_px, tile.y_px + tile.height_px - 1})
       for (const int x : {tile.x_px, tile.x_px + tile.width_px - 1}) {
-        const auto pixel = static_cast<std::size_t>(y * width_px_ + x);
-        const Eigen::Matrix3f& h = placed.side_from_ray;
-        const Eigen::Vector3f at = h * rays_[pixel].homogeneous();
-        if (!(at.z() > 1e-3f)) {
-          all = false;
-          beyond.fill(false);
-          continue;
-        }
-        behind = false;
-        const Eigen::Vector2f place_m = at.hnormalized();
-        const Eigen::Matrix2f per_px =
-            (h.topLeftCorner<2, 2>() - place_m * h.block<1, 2>(2, 0)) / at.z() * ray_per_px_[pixel];
-        const Eigen::Array2f clear_m = clear_px * per_px.rowwise().norm().array();
-        all = all && (place_m.array().abs() < half_m - clear_m).all();
-        for (int k = 0; k < 2; ++k) {
-          beyond[static_cast<std::size_t>(k)] &= place_m[k] > half_m[k] + clear_m[k];
-          beyond[static_cast<std::size_t>(2 + k)] &= place_m[k] < -half_m[k] - clear_m[k];
-        }
+        const CornerPlace corner =
+            cornerOn(room_.boxes[box].sides[side], placed, static_cast<std::size_t>(y * width_px_ + x));
+        behind = behind && !corner.before;
+        all = all && corner.within;
+        for (std::size_t k = 0; k < 4; ++k) beyond[k] = beyond[k] && corner.beyond[k];
       }
   }
   if (all) return Extent::All;

@@ -57,8 +57,10 @@ class RoomRenderer {
 
   // What a tile sees of a box's side, from the first to the last instant.
   enum class Extent { Nothing, Part, All };
+  struct CornerPlace;
 
   Cone coneOf(const Tile& tile) const;
+  CornerPlace cornerOn(const RoomSide& side, const PlacedSide& placed, std::size_t pixel) const;
   Extent extentOf(std::size_t box, std::size_t side, const Tile& tile, const Instants& instants) const;
   void findBoxes(const Tile& tile, const Instants& instants, TileView& view) const;
   void dropHidden(const Tile& tile, const Instants& instants, TileView& view) const;
