@@ -1,8 +1,8 @@
 // When a recording is well behind the session's time range, so that no more of it need be read.
 #pragma once
 
-#include "core/data/recording.h"
 #include "core/pipeline/session.h"
+#include "core/pipeline/session_recording.h"
 
 #include <cstddef>
 #include <cstdint>
