@@ -102,6 +102,7 @@ void JointFit::expectVelocities() {
 JointVector JointFit::sumParts(const AlignmentState& state) {
   constexpr std::size_t kPartsATask = 8;
   inParallel(input_.threads, (windows_.size() + kPartsATask - 1) / kPartsATask, [&](std::size_t task) {
+    input_.context.throwIfStopped();
     const std::size_t end = std::min((task + 1) * kPartsATask, windows_.size());
     for (std::size_t k = task * kPartsATask; k < end; ++k) findPart(k, state);
   });
@@ -117,13 +118,14 @@ JointVector JointFit::sumParts(const AlignmentState& state) {
   return right;
 }
 
-bool JointFit::solve(AlignmentState& state) {
+bool JointFit::solve(AlignmentState& state, double from, double to) {
   constexpr int kIterations = 15;
   constexpr double kLargestTurn_rad = 0.2, kLargestDelay_s = 0.01;
   // Of sigmas that hold the noise of edges alone: of what is asked for, and of the others.
   constexpr double kDone = 0.1, kOthersDone = 1.0, kNearlyDone = 1.0;
   double last = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < kIterations; ++iteration) {
+    input_.context.progress.stageProgress(from + (to - from) * iteration / kIterations);
     const JointVector right = sumParts(state);
     expectVelocities();
     const JointMatrix covariance = normal_.inverse();

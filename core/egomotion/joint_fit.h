@@ -2,6 +2,7 @@
 // the gyroscope says, and only its velocity and the depths are free. Not for other folders.
 #pragma once
 
+#include "core/base/progress.h"
 #include "core/egomotion/alignment_fit.h"
 #include "core/egomotion/camera_record.h"
 #include "core/egomotion/lens_rays.h"
@@ -25,6 +26,7 @@ struct JointInput {
   Eigen::Matrix3d imu_from_measured;
   std::int64_t start_ns;  // of the recording
   int threads;
+  const RunContext& context;  // asked for stops, and told progress
 };
 
 class JointFit {
@@ -32,8 +34,8 @@ class JointFit {
   // `still`: without translation, as if all that moves were turning.
   JointFit(const JointInput& input, const EgomotionOptions& options, bool still = false);
 
-  // Gauss-Newton from `state`. False where it comes to no end.
-  bool solve(AlignmentState& state);
+  // Gauss-Newton from `state`. False where it comes to no end. Progress goes from `from` to `to`. Throws Cancelled.
+  bool solve(AlignmentState& state, double from, double to);
 
   // A window's part in the normal equations at the last solution: velocity and depths are eliminated.
   struct Part {

@@ -73,9 +73,9 @@ std::optional<JointMatrix> blockCovariance(const JointFit& fit, const EgomotionO
 }
 
 // The numbers that another fit comes to, less those of `state`.
-std::optional<Eigen::Vector4d> shiftBy(JointFit fit, const AlignmentState& state) {
+std::optional<Eigen::Vector4d> shiftBy(JointFit fit, const AlignmentState& state, double from, double to) {
   AlignmentState there = state;
-  if (!fit.solve(there)) return std::nullopt;
+  if (!fit.solve(there, from, to)) return std::nullopt;
   Eigen::Vector4d shift;
   shift.head<3>() = so3Log(there.imu_from_camera * state.imu_from_camera.transpose());
   shift[3] = there.time_offset_s - state.time_offset_s;
@@ -131,6 +131,20 @@ void describe(const AlignmentFit& fit, const AlignmentState& state, RotationAlig
   out.misfit_rms_rad_s = std::sqrt(misfits / n);
 }
 
+// The numbers, and their covariance: by blocks, and by what depths and translation may have left.
+void take(const AlignmentState& state, const Eigen::Matrix4d& by_blocks, const EgomotionOptions& options,
+          RotationAlignment& out) {
+  out.imu_from_camera = Eigen::Quaterniond(state.imu_from_camera).normalized();
+  out.time_offset_s = state.time_offset_s;
+  out.gyroscope_bias_rad_s = state.bias_rad_s;
+  out.scale = state.scale;
+  const Eigen::Vector4d depths = options.depths_left * out.by_coarser_depths,
+                        translation = options.translation_left * out.by_turning_alone;
+  out.covariance = by_blocks + depths * depths.transpose() + translation * translation.transpose();
+  const SymmetricEigen eigen = symmetricEigen(out.covariance.topLeftCorner<3, 3>());
+  out.weakest_in_camera = state.imu_from_camera.transpose() * eigen.vectors.col(2);
+}
+
 // From the windows' own rates: where all edges start from, and which windows contradict the others.
 std::optional<AlignmentState> startingSolution(std::vector<WindowMotion>& windows, const SummedRates& rates,
                                                const Eigen::Matrix3d& matrix, const AlignmentState& before,
@@ -161,7 +175,8 @@ std::optional<AlignmentState> startingSolution(std::vector<WindowMotion>& window
 }  // namespace
 
 RotationAlignment alignRotation(CameraRecord& record, const LensRays& lens, const GyroscopeRecord& gyroscope,
-                                const AlignmentStart& start, const EgomotionOptions& options, int threads) {
+                                const AlignmentStart& start, const EgomotionOptions& options, int threads,
+                                const RunContext& context) {
   const SummedRates rates(gyroscope.samples, gyroscope.start_ns);
   const Eigen::Matrix3d matrix = gyroscope.imu.gyroscopeMatrix();
   std::vector<WindowMotion>& windows = record.windows;
@@ -174,27 +189,19 @@ RotationAlignment alignRotation(CameraRecord& record, const LensRays& lens, cons
       startingSolution(windows, rates, matrix, before, options.search_s, out.failure);
   if (!rough) return out;
   AlignmentState state = *rough;
-  const JointInput input{record, lens, rates, matrix.inverse(), gyroscope.start_ns, threads};
+  const JointInput input{record, lens, rates, matrix.inverse(), gyroscope.start_ns, threads, context};
   JointFit fit(input, options);
-  if (!fit.solve(state)) return failed(kNoSolution);
+  if (!fit.solve(state, 0.0, 0.4)) return failed(kNoSolution);
   const std::optional<JointMatrix> covariance = blockCovariance(fit, options, out.blocks);
   if (!covariance) return failed("too little of the recording tells how the camera turns");
-  const std::optional<Eigen::Vector4d> coarser = shiftBy(JointFit(input, withCoarserDepths(options)), state);
-  const std::optional<Eigen::Vector4d> still = shiftBy(JointFit(input, options, true), state);
+  const std::optional<Eigen::Vector4d> coarser = shiftBy(JointFit(input, withCoarserDepths(options)), state,
+                                                         0.4, 0.7),
+                                       still = shiftBy(JointFit(input, options, true), state, 0.7, 1.0);
   if (!coarser || !still) return failed("what translation does to the image cannot be told from rotation");
   out.by_coarser_depths = *coarser;
   out.by_turning_alone = *still;
-  out.imu_from_camera = Eigen::Quaterniond(state.imu_from_camera).normalized();
-  out.time_offset_s = state.time_offset_s;
-  out.gyroscope_bias_rad_s = state.bias_rad_s;
-  out.scale = state.scale;
-  const Eigen::Vector4d depths = options.depths_left * out.by_coarser_depths,
-                        translation = options.translation_left * out.by_turning_alone;
-  out.covariance =
-      covariance->topLeftCorner<4, 4>() + depths * depths.transpose() + translation * translation.transpose();
+  take(state, covariance->topLeftCorner<4, 4>(), options, out);
   describe(AlignmentFit(coveredWindows(windows, rates, state.time_offset_s), rates, matrix), state, out);
-  const SymmetricEigen eigen = symmetricEigen(out.covariance.topLeftCorner<3, 3>());
-  out.weakest_in_camera = state.imu_from_camera.transpose() * eigen.vectors.col(2);
   return out;
 }
 

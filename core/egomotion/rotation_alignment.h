@@ -5,6 +5,7 @@
 // what is asked for, and bears what would shrink all rates alike.
 #pragma once
 
+#include "core/base/progress.h"
 #include "core/data/calibration_state.h"
 #include "core/data/imu_sample.h"
 #include "core/egomotion/camera_record.h"
@@ -51,8 +52,9 @@ struct RotationAlignment {
   bool found() const { return failure.empty(); }
 };
 
-// Windows that the gyroscope does not cover, or that contradict the others, are marked.
+// Windows that the gyroscope does not cover, or that contradict the others, are marked. Throws Cancelled.
 RotationAlignment alignRotation(CameraRecord& record, const LensRays& lens, const GyroscopeRecord& gyroscope,
-                                const AlignmentStart& start, const EgomotionOptions& options, int threads);
+                                const AlignmentStart& start, const EgomotionOptions& options, int threads,
+                                const RunContext& context = {});
 
 }  // namespace evical

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
+#include "core/data/calibration_stage.h"
 #include "core/data/quantity.h"
 #include "core/data/unfit_samples.h"
 #include "core/egomotion/rotation_alignment.h"
@@ -82,7 +83,8 @@ const char* nameOfAxis(const Eigen::Vector3d& direction) {
 
 class BoardlessCheck {
  public:
-  BoardlessCheck(const CheckInput& input, BoardlessPass pass) : input_(input), pass_(std::move(pass)) {
+  BoardlessCheck(const CheckInput& input, BoardlessPass pass, const RunContext& context)
+      : input_(input), pass_(std::move(pass)), context_(context) {
     CalibrationCheck& check = out_.check;
     check.notes = input.notes;
     check.false_alarms = input.session.options.check.false_alarms;
@@ -136,7 +138,7 @@ class BoardlessCheck {
     const RotationAlignment alignment = alignRotation(
         pass_.cameras[k], lens, {samples, pass_.start_ns, input_.before.result->state.imus.at(imu_before)},
         {before.reference_from_camera.rotation, before.time_offset_s}, input_.session.options.egomotion,
-        input_.session.options.optimisation.threads);
+        input_.session.options.optimisation.threads, context_);
     const std::vector<WindowMotion>& windows = pass_.cameras[k].windows;
     out_.check.windows.push_back(countedWindows(name, windows));
     if (!alignment.found()) return fail(name, alignment.failure, adviceFor(commonest(windows)));
@@ -230,6 +232,7 @@ class BoardlessCheck {
 
   const CheckInput& input_;
   BoardlessPass pass_;
+  const RunContext& context_;
   CheckRun out_;
   NamedResult now_;
   std::shared_ptr<CalibrationResult> result_;
@@ -240,11 +243,12 @@ class BoardlessCheck {
 }  // namespace
 
 CheckRun checkWithoutBoard(const CheckInput& input, const RunContext& context) {
-  return checkWithoutBoard(input, readWithoutBoard(input.session, context));
+  return checkWithoutBoard(input, readWithoutBoard(input.session, context), context);
 }
 
-CheckRun checkWithoutBoard(const CheckInput& input, BoardlessPass pass) {
-  return BoardlessCheck(input, std::move(pass)).run();
+CheckRun checkWithoutBoard(const CheckInput& input, BoardlessPass pass, const RunContext& context) {
+  context.progress.stageStarted(nameOf(CalibrationStage::Optimise));
+  return BoardlessCheck(input, std::move(pass), context).run();
 }
 
 }  // namespace evical

@@ -13,6 +13,6 @@ namespace evical {
 CheckRun checkWithoutBoard(const CheckInput& input, const RunContext& context);
 
 // The same from what was read.
-CheckRun checkWithoutBoard(const CheckInput& input, BoardlessPass pass);
+CheckRun checkWithoutBoard(const CheckInput& input, BoardlessPass pass, const RunContext& context = {});
 
 }  // namespace evical

@@ -1,6 +1,7 @@
 // A camera beside a gyroscope, from edges that a known motion makes: errors, and sigmas over seeds.
 #include "core/egomotion/rotation_alignment.h"
 
+#include "core/base/error.h"
 #include "core/geometry/rigid_transform.h"
 #include "core/geometry/so3.h"
 #include "tests/support/moving_camera.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stop_token>
 #include <vector>
 
 using namespace evical;
@@ -188,6 +190,17 @@ class TestRotationAlignment : public QObject {
         std::count_if(record.camera.windows.begin(), record.camera.windows.end(),
                       [](const WindowMotion& window) { return window.use == WindowUse::NoGyroscope; });
     QVERIFY2(left_out >= 24 && left_out < 30, qPrintable(QString::number(left_out)));
+  }
+
+  void stop_endsIt() {
+    Record record = recordOf(1, 24.0);
+    std::stop_source stop;
+    stop.request_stop();
+    const ImuState imu;
+    QVERIFY_THROWS_EXCEPTION(
+        Cancelled,
+        alignRotation(record.camera, LensRays(davisLens()), {record.samples, 0, imu}, {mounting(), kOffset_s},
+                      quickOptions(), 1, RunContext{silentProgress(), stop.get_token()}));
   }
 
   void shortRecording_isAReason() {
