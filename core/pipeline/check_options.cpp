@@ -32,7 +32,7 @@ constexpr std::tuple kCheckFields{
     Switch{"no_board", &CheckOptions::no_board, false,
            "The recording shows no board: it is not looked for, and rotations and time offsets alone are "
            "checked."},
-    Field{"without_board_rotation_deg", &CheckOptions::without_board_rotation_deg, 1.0, within(1e-4, 90.0),
+    Field{"without_board_rotation_deg", &CheckOptions::without_board_rotation_deg, 1.5, within(1e-4, 90.0),
           "deg", "Without a board: as matters_rotation_deg."},
     Field{"without_board_time_offset_ms", &CheckOptions::without_board_time_offset_ms, 3.0, within(1e-4, 1e4),
           "ms", "Without a board: as matters_time_offset_ms."},

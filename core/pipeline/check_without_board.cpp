@@ -194,6 +194,8 @@ class BoardlessCheck {
       delay.name = "optimisation.verdict.pixel_delay_ms";
       delay.value = "0";
       CheckOptions options = input_.session.options.check;
+      options.stability_rotation_deg = std::max(options.stability_rotation_deg, kLeastRotation_deg);
+      options.stability_time_offset_ms = std::max(options.stability_time_offset_ms, kLeastTimeOffset_ms);
       options.matters_rotation_deg = options.without_board_rotation_deg;
       options.matters_time_offset_ms = options.without_board_time_offset_ms;
       testQuantities(compareQuantities({input_.before, now_, false}, options), options, out_.check);
@@ -227,6 +229,8 @@ class BoardlessCheck {
     }
   }
 
+  // Scenes and walks may move the numbers by so much together, rarely and whatever the sigmas: a smaller change is none.
+  static constexpr double kLeastRotation_deg = 0.2, kLeastTimeOffset_ms = 0.5;
   static constexpr double kMostMisfit = 0.5;         // of the rates
   static constexpr double kLargestScaleError = 0.1;  // beyond, the lens is another one
 
