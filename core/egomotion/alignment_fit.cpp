@@ -80,17 +80,15 @@ void AlignmentFit::findScales(const AlignmentState& state) {
   for (double& square : squares_) square /= scale_ * scale_;
 }
 
-AlignmentFit::Part AlignmentFit::partOf(const AlignmentState& state, std::size_t first,
-                                        std::size_t end) const {
-  Part part;
-  for (std::size_t k = first; k < end; ++k) {
+AlignmentFit::NormalEquations AlignmentFit::normalEquations(const AlignmentState& state) const {
+  NormalEquations all;
+  for (std::size_t k = 0; k < windows_.size(); ++k) {
     const Equation equation = equationOf(k, state);
     const Eigen::Matrix3d weight = weightOf(k, equation.error);
-    part.normal += equation.jacobian.transpose() * weight * equation.jacobian;
-    part.gradient += equation.jacobian.transpose() * (weight * equation.error);
-    ++part.windows;
+    all.normal += equation.jacobian.transpose() * weight * equation.jacobian;
+    all.gradient += equation.jacobian.transpose() * (weight * equation.error);
   }
-  return part;
+  return all;
 }
 
 bool AlignmentFit::solve(AlignmentState& state) {
@@ -98,7 +96,7 @@ bool AlignmentFit::solve(AlignmentState& state) {
   constexpr double kLargestTurn_rad = 0.5, kLargestDelay_s = 0.02, kDone = 1e-9;
   for (int k = 0; k < kIterations; ++k) {
     findScales(state);
-    const Part all = partOf(state, 0, windows_.size());
+    const NormalEquations all = normalEquations(state);
     AlignmentVector step = -all.normal.ldlt().solve(all.gradient);
     if (!step.allFinite()) return false;
     const double turn_rad = step.head<3>().norm();

@@ -43,13 +43,6 @@ class AlignmentFit {
   const std::vector<double>& squares() const { return squares_; }
   double medianError_rad_s() const { return median_error_rad_s_; }
 
-  // Normal equations and gradients of parts of the windows at the last solution.
-  struct Part {
-    AlignmentMatrix normal = AlignmentMatrix::Zero();
-    AlignmentVector gradient = AlignmentVector::Zero();
-    std::size_t windows = 0;
-  };
-  Part partOf(const AlignmentState& state, std::size_t first, std::size_t end) const;
   const Eigen::Matrix3d& imuFromMeasured() const { return imu_from_measured_; }
   std::size_t windowCount() const { return windows_.size(); }
   const WindowMotion& window(std::size_t k) const { return *windows_[k]; }
@@ -59,7 +52,12 @@ class AlignmentFit {
     Eigen::Vector3d error;
     Eigen::Matrix<double, 3, kAlignmentNumbers> jacobian;
   };
+  struct NormalEquations {
+    AlignmentMatrix normal = AlignmentMatrix::Zero();
+    AlignmentVector gradient = AlignmentVector::Zero();
+  };
   Equation equationOf(std::size_t k, const AlignmentState& state) const;
+  NormalEquations normalEquations(const AlignmentState& state) const;
   Eigen::Matrix3d weightOf(std::size_t k, const Eigen::Vector3d& error, double* square = nullptr) const;
   void findScales(const AlignmentState& state);
 

@@ -39,7 +39,7 @@ struct RotationAlignment {
   Eigen::Vector3d gyroscope_bias_rad_s = Eigen::Vector3d::Zero();
   double scale = 1.0;
   // Of the rotation about the IMU's axes [rad], and of the time offset [s]: by the scatter of blocks of the recording, and by
-  // what the depths may have left.
+  // what depths and translation may have left.
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
   int blocks = 0;
   // What the same numbers would be further with half as many depths across and down, and were all that moves taken as turning:

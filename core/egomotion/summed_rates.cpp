@@ -25,9 +25,7 @@ SummedRates::SummedRates(std::span<const ImuSample> samples, std::int64_t start_
   constexpr double kGapSteps = 5.0, kLeastGap_s = 0.01;
   const double gap_s = std::max(kLeastGap_s, kGapSteps * medianOf(steps_s));
   for (std::size_t k = 1; k < times_s_.size(); ++k) {
-    const double step_s = times_s_[k] - times_s_[k - 1];
-    longest_step_s_ = std::max(longest_step_s_, step_s);
-    if (step_s > gap_s) gaps_s_.push_back(times_s_[k - 1]);
+    if (times_s_[k] - times_s_[k - 1] > gap_s) gaps_s_.push_back(times_s_[k - 1]);
   }
 }
 

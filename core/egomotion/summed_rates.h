@@ -23,7 +23,6 @@ class SummedRates {
   Eigen::Vector3d mean_rad_s(double from_s, double to_s) const {
     return (sumUntil(to_s) - sumUntil(from_s)) / (to_s - from_s);
   }
-  double longestStep_s() const { return longest_step_s_; }
 
  private:
   std::size_t after(double time_s) const;  // index of the first sample behind; 1 .. size - 1
@@ -31,7 +30,6 @@ class SummedRates {
 
   std::vector<double> times_s_, gaps_s_;  // gaps: begins of steps that are too long
   std::vector<Eigen::Vector3d> rates_rad_s_, sums_rad_;
-  double longest_step_s_ = 0.0;
 };
 
 }  // namespace evical

@@ -37,7 +37,6 @@ class WindowFit {
 
   const WindowState& state() const { return state_; }
   const std::vector<EdgeRow>& rows() const { return rows_; }
-  double depthSpread() const { return options_.depth_spread; }
 
   struct Seen {
     EdgeResidual residual;
