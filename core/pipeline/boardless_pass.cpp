@@ -1,13 +1,12 @@
 #include "core/pipeline/boardless_pass.h"
 
 #include "core/base/error.h"
-#include "core/base/time.h"
 #include "core/data/calibration_stage.h"
 #include "core/pipeline/camera_motion.h"
 #include "core/pipeline/event_intake.h"
 #include "core/pipeline/recording_pass.h"
 #include "core/pipeline/session_recording.h"
-#include "core/pipeline/time_range_end.h"
+#include "core/pipeline/session_time_range.h"
 
 #include <fmt/format.h>
 
@@ -35,15 +34,9 @@ struct MotionIntake {
   }
 };
 
-CameraKind kindOf(StreamType type) {
-  return type == StreamType::Frames   ? CameraKind::Frames
-         : type == StreamType::Points ? CameraKind::Points
-                                      : CameraKind::Events;
-}
-
 MotionIntake intakeOf(std::size_t camera, const Session& session, const SessionRecording& recording) {
   MotionIntake intake;
-  intake.kind = kindOf(recording.camera(camera).type);
+  intake.kind = recording.kind(camera);
   if (intake.kind != CameraKind::Events) return intake;
   const Resolution resolution_px = recording.resolution_px(camera);
   const CameraIntrinsics& lens = *session.sensor(camera).intrinsics;
@@ -64,18 +57,13 @@ BoardlessPass readWithoutBoard(const Session& session, const RunContext& context
     std::vector<MotionIntake> intakes;
     for (std::size_t camera = 0; camera < session.cameras.size(); ++camera)
       intakes.push_back(intakeOf(camera, session, recording));
-    const auto unwanted = [&](const Event& event) {
-      if (!session.time_range_s) return false;
-      const double time_s = secondsSince(pass.start_ns, event.time_ns);
-      return time_s < (*session.time_range_s)[0] || time_s > (*session.time_range_s)[1];
-    };
-    TimeRangeEnd range_end(session, session.cameras.size() + session.imus.size(), pass.start_ns);
+    SessionTimeRange range(session, session.cameras.size() + session.imus.size(), pass.start_ns);
     SensorPacket packet;
-    while (recording.read(packet) && !range_end.isReached(packet)) {
+    while (recording.read(packet) && !range.isOver(packet)) {
       context.throwIfStopped();
       context.progress.stageProgress(recording.fractionRead());
       if (packet.sensor >= intakes.size() || intakes[packet.sensor].kind != CameraKind::Events) continue;
-      std::erase_if(packet.events, unwanted);
+      std::erase_if(packet.events, [&](const Event& event) { return !range.holds(event.time_ns); });
       intakes[packet.sensor].take(packet.events);
     }
     context.throwIfStopped();

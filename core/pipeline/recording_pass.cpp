@@ -9,7 +9,7 @@
 #include "core/pipeline/camera_views.h"
 #include "core/pipeline/event_intake.h"
 #include "core/pipeline/session_recording.h"
-#include "core/pipeline/time_range_end.h"
+#include "core/pipeline/session_time_range.h"
 
 #include <fmt/format.h>
 
@@ -26,12 +26,6 @@ namespace {
 
 constexpr std::size_t kQueuedBatches = 16;
 constexpr std::size_t kBatchEvents = 50'000;
-
-CameraKind kindOf(StreamType type) {
-  return type == StreamType::Frames   ? CameraKind::Frames
-         : type == StreamType::Points ? CameraKind::Points
-                                      : CameraKind::Events;
-}
 
 // The window thread: what each camera saw of the board.
 class WindowWorker {
@@ -99,14 +93,14 @@ class ReadingPass {
       : session_(session),
         recording_(session, context.stop),
         result_(result),
-        range_end_(session, session.cameras.size() + session.imus.size(), recording_.start_ns()) {
+        range_(session, session.cameras.size() + session.imus.size(), recording_.start_ns()) {
     result.imus.resize(session.imus.size());
     result.start_ns = recording_.start_ns();
     for (std::size_t camera = 0; camera < session.cameras.size(); ++camera) {
       const Resolution resolution_px = recording_.resolution_px(camera);
       result.resolutions_px.push_back(resolution_px);
       Intake& intake = intakes_.emplace_back();
-      intake.kind = kindOf(recording_.camera(camera).type);
+      intake.kind = recording_.kind(camera);
       if (intake.kind == CameraKind::Events)
         intake.events.emplace(camera, session.cameras[camera], resolution_px,
                               session.options.front_end.bursts,
@@ -119,7 +113,7 @@ class ReadingPass {
     while (recording_.read(packet)) {
       context.throwIfStopped();
       context.progress.stageProgress(recording_.fractionRead());
-      if (range_end_.isReached(packet)) break;
+      if (range_.isOver(packet)) break;
       const bool is_camera = packet.sensor < intakes_.size();
       if (!is_camera) addSamples(packet);
       if (is_camera && !addMeasured(packet, queue)) return;
@@ -154,21 +148,15 @@ class ReadingPass {
     std::uint64_t count = 0;  // of all else
   };
 
-  bool wanted(std::int64_t time_ns) const {
-    if (!session_.time_range_s) return true;
-    const double time_s = secondsSince(result_.start_ns, time_ns);
-    return time_s >= (*session_.time_range_s)[0] && time_s <= (*session_.time_range_s)[1];
-  }
-
   void addSamples(const SensorPacket& packet) {
     std::vector<ImuSample>& samples = result_.imus[packet.sensor - intakes_.size()].samples;
     for (const ImuSample& sample : packet.imu_samples) {
-      if (wanted(sample.time_ns)) samples.push_back(sample);
+      if (range_.holds(sample.time_ns)) samples.push_back(sample);
     }
   }
 
   bool addMeasured(SensorPacket& packet, BoundedQueue<CameraBatch>& queue) {
-    const auto unwanted = [&](const auto& item) { return !wanted(item.time_ns); };
+    const auto unwanted = [&](const auto& item) { return !range_.holds(item.time_ns); };
     std::erase_if(packet.events, unwanted);
     std::erase_if(packet.points, unwanted);
     std::erase_if(packet.frames, unwanted);
@@ -219,7 +207,7 @@ class ReadingPass {
   SessionRecording recording_;
   RecordingPass& result_;
   std::vector<Intake> intakes_;  // by camera
-  TimeRangeEnd range_end_;
+  SessionTimeRange range_;
 };
 
 void checkSamples(const Session& session, const RecordingPass& pass) {

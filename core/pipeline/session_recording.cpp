@@ -126,6 +126,13 @@ const StreamInfo& SessionRecording::info(std::size_t sensor) const {
   return sources_[places_[sensor].source].reader->streams()[places_[sensor].stream];
 }
 
+CameraKind SessionRecording::kind(std::size_t camera) const {
+  const StreamType type = this->camera(camera).type;
+  return type == StreamType::Frames   ? CameraKind::Frames
+         : type == StreamType::Points ? CameraKind::Points
+                                      : CameraKind::Events;
+}
+
 Resolution SessionRecording::resolution_px(std::size_t camera) const {
   const SessionCamera& own = session_.cameras[camera];
   const std::optional<CameraIntrinsics>& lens = session_.sensor(camera).intrinsics;

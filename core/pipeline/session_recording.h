@@ -39,6 +39,7 @@ class SessionRecording {
   std::size_t imuSensor(std::size_t imu) const { return session_.cameras.size() + imu; }
 
   const StreamInfo& camera(std::size_t camera) const { return info(camera); }
+  CameraKind kind(std::size_t camera) const;
   // The session's, the recording's, or the intrinsics': whichever is known first. Throws where none is, but of
   // frames, which tell it themselves.
   Resolution resolution_px(std::size_t camera) const;

@@ -1,4 +1,4 @@
-// When a recording is well behind the session's time range, so that no more of it need be read.
+// The part of a recording that a session asks for, and when a recording is so far behind it that no more need be read.
 #pragma once
 
 #include "core/pipeline/session.h"
@@ -10,14 +10,17 @@
 
 namespace evical {
 
-class TimeRangeEnd {
+class SessionTimeRange {
  public:
   // `sensors`: that packets are numbered by.
-  TimeRangeEnd(const Session& session, std::size_t sensors, std::int64_t start_ns)
+  SessionTimeRange(const Session& session, std::size_t sensors, std::int64_t start_ns)
       : session_(session), start_ns_(start_ns), behind_(sensors) {}
 
+  // Everything where the session asks for no part.
+  bool holds(std::int64_t time_ns) const;
+
   // True once all sensors have come well behind; a stamp that is wrong is followed by right ones. All packets in turn.
-  bool isReached(const SensorPacket& packet);
+  bool isOver(const SensorPacket& packet);
 
  private:
   const Session& session_;

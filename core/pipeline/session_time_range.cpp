@@ -1,4 +1,4 @@
-#include "core/pipeline/time_range_end.h"
+#include "core/pipeline/session_time_range.h"
 
 #include "core/base/time.h"
 
@@ -6,7 +6,13 @@
 
 namespace evical {
 
-bool TimeRangeEnd::isReached(const SensorPacket& packet) {
+bool SessionTimeRange::holds(std::int64_t time_ns) const {
+  if (!session_.time_range_s) return true;
+  const double time_s = secondsSince(start_ns_, time_ns);
+  return time_s >= (*session_.time_range_s)[0] && time_s <= (*session_.time_range_s)[1];
+}
+
+bool SessionTimeRange::isOver(const SensorPacket& packet) {
   if (!session_.time_range_s) return false;
   constexpr double kMargin_s = 1.0;  // more than packets of a file are out of order
   const auto behind = [&](const auto& items) {
