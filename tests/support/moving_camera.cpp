@@ -17,6 +17,15 @@ CameraIntrinsics davisLens() {
   return lens;
 }
 
+EgomotionOptions quickEgomotion() {
+  EgomotionOptions options;
+  options.window_s = 0.08;
+  options.least_slopes = 60;
+  options.depth_columns = 3;
+  options.depth_rows = 2;
+  return options;
+}
+
 std::vector<EdgeSlope> edgeSlopes(const MovingCamera& camera, const LensRays& lens, double begin_s,
                                   double duration_s, std::mt19937& generator) {
   std::uniform_real_distribution<double> part(0.0, 1.0);

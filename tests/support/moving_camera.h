@@ -17,6 +17,8 @@
 namespace evical::test {
 
 CameraIntrinsics davisLens();
+// Long windows with few edges and few depths, so that tests are short.
+EgomotionOptions quickEgomotion();
 
 struct MovingCamera {
   std::function<Eigen::Vector3d(double time_s)> rate_rad_s, velocity_m_s;  // in the camera's frame

@@ -51,16 +51,6 @@ struct Rig {
   double noise = 0.05;
 };
 
-// Few edges and long windows, so that tests are short.
-EgomotionOptions quickOptions() {
-  EgomotionOptions options;
-  options.window_s = 0.08;
-  options.least_slopes = 60;
-  options.depth_columns = 3;
-  options.depth_rows = 2;
-  return options;
-}
-
 struct Record {
   std::vector<ImuSample> samples;
   CameraRecord camera;
@@ -83,14 +73,14 @@ Record recordOf(unsigned seed, double duration_s, const Rig& rig = {}) {
     return Eigen::Vector3d(rate(time_s).cross(rig.lever_m) +
                            (rig.walks ? walkAt(time_s) : Eigen::Vector3d::Zero()));
   };
-  record.camera = cameraRecord(camera, LensRays(davisLens()), 0.0, duration_s, quickOptions(), seed);
+  record.camera = cameraRecord(camera, LensRays(davisLens()), 0.0, duration_s, quickEgomotion(), seed);
   return record;
 }
 
 RotationAlignment aligned(Record& record, const Eigen::Quaterniond& start, double offset_s) {
   const ImuState imu;
   return alignRotation(record.camera, LensRays(davisLens()), {record.samples, 0, imu}, {start, offset_s},
-                       quickOptions(), 1);
+                       quickEgomotion(), 1);
 }
 
 double turnedBy_deg(const RotationAlignment& found) {
@@ -200,7 +190,7 @@ class TestRotationAlignment : public QObject {
     QVERIFY_THROWS_EXCEPTION(
         Cancelled,
         alignRotation(record.camera, LensRays(davisLens()), {record.samples, 0, imu}, {mounting(), kOffset_s},
-                      quickOptions(), 1, RunContext{silentProgress(), stop.get_token()}));
+                      quickEgomotion(), 1, RunContext{silentProgress(), stop.get_token()}));
   }
 
   void shortRecording_isAReason() {

@@ -21,16 +21,6 @@ using namespace evical::test;
 
 namespace {
 
-// Long windows with few edges, so that tests are short.
-EgomotionOptions quickOptions() {
-  EgomotionOptions options;
-  options.window_s = 0.08;
-  options.least_slopes = 60;
-  options.depth_columns = 3;
-  options.depth_rows = 2;
-  return options;
-}
-
 Scenario room(double duration_s) {
   Scenario scenario = readScenario(std::filesystem::path(EVICAL_SOURCE_DIR) / "config/scenarios/room.yaml");
   scenario.duration_s = duration_s;
@@ -92,7 +82,7 @@ CameraRecord turningCamera(const Scenario& scenario, const Seen& seen = {}) {
                            (state.world_from_body.rotation.conjugate() * state.velocity_in_world_m_s));
   };
   CameraRecord record = cameraRecord(camera, LensRays(scenario.cameras.front().intrinsics), start_s + 0.2,
-                                     start_s + scenario.duration_s - 0.3, quickOptions(), 7);
+                                     start_s + scenario.duration_s - 0.3, quickEgomotion(), 7);
   for (WindowMotion& window : record.windows) {
     window.begin_s -= start_s;
     window.end_s -= start_s;
@@ -103,7 +93,7 @@ CameraRecord turningCamera(const Scenario& scenario, const Seen& seen = {}) {
 // What a recording's events tell.
 CameraRecord seenCamera(const Scenario& scenario) {
   CalibrationOptions options;
-  options.egomotion = quickOptions();
+  options.egomotion = quickEgomotion();
   const SimulatedCamera& camera = scenario.cameras.front();
   CameraMotion motion(camera.intrinsics, options, scenario.start_ns);
   BurstExtractor bursts(camera.intrinsics.resolution_px, options.front_end.bursts);
@@ -125,7 +115,7 @@ CameraRecord seenCamera(const Scenario& scenario) {
 // `before`: the rig as the old result has it.
 CalibrationCheck checkOf(const Scenario& before, BoardlessPass pass) {
   CheckInput input = checkInputOf(truthOf(before), sessionFor(before));
-  input.session.options.egomotion = quickOptions();
+  input.session.options.egomotion = quickEgomotion();
   return checkWithoutBoard(input, std::move(pass)).check;
 }
 
