@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kMedianOfChi2With3 = 2.3659738843753377;
 constexpr double kCauchySquares = 9.0;  // three numbers of one sigma each are well within
-constexpr double kMadToSigma = 1.4826;
 
 }  // namespace
 

@@ -1,7 +1,6 @@
 #include "core/egomotion/alignment_start.h"
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
+#include "core/geometry/best_rotation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,8 +39,8 @@ Correlation correlationAt(double offset_s, const std::vector<const WindowMotion*
 }
 
 // W. Kabsch, "A solution for the best rotation to relate two sets of vectors", 1976.
-Eigen::Matrix3d bestRotation(const std::vector<const WindowMotion*>& windows, const AlignmentFit& fit,
-                             const SummedRates& rates, const AlignmentState& state) {
+Eigen::Matrix3d rotationOf(const std::vector<const WindowMotion*>& windows, const AlignmentFit& fit,
+                           const SummedRates& rates, const AlignmentState& state) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const WindowMotion* window : windows) {
     if (!rates.covers(window->begin_s + state.time_offset_s, window->end_s + state.time_offset_s)) continue;
@@ -49,10 +48,7 @@ Eigen::Matrix3d bestRotation(const std::vector<const WindowMotion*>& windows, co
     const double size = std::max(imu.norm() * window->rate_rad_s.norm(), 1e-6);
     sum += imu * window->rate_rad_s.transpose() / std::sqrt(size);
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d signs = Eigen::Vector3d::Ones();
-  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0) signs[2] = -1.0;
-  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  return bestRotation(sum).matrix;
 }
 
 }  // namespace
@@ -77,7 +73,7 @@ std::vector<AlignmentState> alignmentStarts(const std::vector<const WindowMotion
   for (const Correlation& peak : peaks) {
     AlignmentState state = start;
     state.time_offset_s = peak.offset_s;
-    state.imu_from_camera = bestRotation(windows, fit, rates, state);
+    state.imu_from_camera = rotationOf(windows, fit, rates, state);
     starts.push_back(state);
   }
   return starts;

@@ -12,7 +12,6 @@
 namespace evical {
 namespace {
 
-constexpr double kMadToSigma = 1.4826;
 constexpr double kCauchySigmas = 2.385;                    // 95 % of least squares' efficiency
 constexpr double kInlierSigmas = 3.0, kInlierError = 0.3;  // of the speed, or so many sigmas
 constexpr double kHeld = 1e9;

@@ -1,5 +1,7 @@
 #include "core/frames/brightness.h"
 
+#include "core/numerics/robust.h"
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -25,7 +27,6 @@ double brightnessAt(const GrayImage& image, const Eigen::Vector2d& at_px) {
 double noiseSigma(const GrayImage& image) {
   constexpr int kStep = 5;       // a part of all pixels is enough
   constexpr double kGain = 6.0;  // of the second difference below, on white noise
-  constexpr double kMedianToSigma = 1.4826;
   constexpr double kOfWholeNumbers = 0.29;
   const int width = image.size_px.width_px, height = image.size_px.height_px;
   std::vector<int> differences;
@@ -41,7 +42,7 @@ double noiseSigma(const GrayImage& image) {
   if (differences.empty()) return kOfWholeNumbers;
   const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
   std::nth_element(differences.begin(), middle, differences.end());
-  return std::max(kOfWholeNumbers, kMedianToSigma * *middle / kGain);
+  return std::max(kOfWholeNumbers, kMadToSigma * *middle / kGain);
 }
 
 }  // namespace evical

@@ -1,11 +1,10 @@
 #include "core/initialisation/camera_imu_rotation.h"
 
+#include "core/geometry/best_rotation.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/robust.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -30,13 +29,11 @@ void alignVectors(const std::vector<RotationPair>& pairs, const std::vector<Eige
       const double weight = round == 0 ? 1.0 : cauchyWeight(error * error);
       sums += weight * felt[k] * pairs[k].seen_rad.transpose();
     }
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sums, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Eigen::Matrix3d mirror = Eigen::Matrix3d::Identity();
-    mirror(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-    rotation = svd.matrixU() * mirror * svd.matrixV().transpose();
-    // Singular values are mean squares of rotation about each axis.
-    result.axis_ratio = std::sqrt(svd.singularValues()(1) / std::max(svd.singularValues()(0), 1e-12));
-    result.main_axis_in_imu = svd.matrixU().col(0);
+    const BestRotation best = bestRotation(sums);
+    rotation = best.matrix;
+    // Strengths are mean squares of rotation about each axis.
+    result.axis_ratio = std::sqrt(best.strengths[1] / std::max(best.strengths[0], 1e-12));
+    result.main_axis_in_imu = best.main_axis;
   }
   result.reference_from_sensor = Eigen::Quaterniond(rotation);
 }

@@ -1,9 +1,7 @@
 #include "core/initialisation/rotation_agreement.h"
 
+#include "core/geometry/best_rotation.h"
 #include "core/numerics/robust.h"
-
-#include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include <algorithm>
 
@@ -43,11 +41,7 @@ Eigen::Matrix3d bestOrthogonal(const std::vector<Turned>& pairs, const std::vect
   Eigen::Matrix3d sums = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < pairs.size(); ++k)
     sums += weights[k] * pairs[k].felt_rad * pairs[k].seen_rad.transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sums, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Matrix3d free = svd.matrixU() * svd.matrixV().transpose();
-  Eigen::Matrix3d sign = Eigen::Matrix3d::Identity();
-  sign(2, 2) = free.determinant() * determinant < 0.0 ? -1.0 : 1.0;
-  return svd.matrixU() * sign * svd.matrixV().transpose();
+  return bestRotation(sums, determinant).matrix;
 }
 
 struct LeftOver {

@@ -25,6 +25,9 @@ T medianOf(std::vector<T> values, T of_none = T{}) {
   return values.empty() ? of_none : medianOf(values.begin(), values.end());
 }
 
+// A normal number's sigma by the median of its errors' sizes.
+inline constexpr double kMadToSigma = 1.4826;
+
 // Cauchy's weight of an error whose square, in units of the scale, this is.
 inline double cauchyWeight(double squared_error) {
   return 1.0 / (1.0 + squared_error);
