@@ -33,6 +33,15 @@ constexpr std::tuple kEgomotionFields{
           "Windows whose edges the last fit asks again; of longer recordings every second, fourth ..."},
     Field{"kept_slopes", &EgomotionOptions::kept_slopes, 1000, within(20, 1000000), "",
           "Edges of each of them."},
+    Field{"velocity_weight", &EgomotionOptions::velocity_weight, 3.0, within(0.0, 1e4), "",
+          "Windows' velocities are expected to be as large as those of all, with so many times the weight of "
+          "one velocity."},
+    Field{"lever_sigma", &EgomotionOptions::lever_sigma, 0.1, within(1e-4, 10.0), "",
+          "Sigma of what is not known of the lever arm between camera and IMU, over the scene's depth."},
+    Field{"shared_slopes", &EgomotionOptions::shared_slopes, 12.0, within(1.0, 1000.0), "",
+          "Edges that have most of their neighbours in common: a window's sigmas are wider by its root."},
+    Field{"far_sigmas", &EgomotionOptions::far_sigmas, 6.0, within(2.0, 100.0), "",
+          "Windows whose turning is further from the IMU's are left out."},
     Field{"depths_left", &EgomotionOptions::depths_left, 1.0, within(0.0, 10.0), "",
           "Part of what half as many patches change that is added to the sigmas: depths are never known "
           "everywhere."},

@@ -20,6 +20,10 @@ struct EgomotionOptions {
   double largest_sigma_rad_s;
   int kept_windows;
   int kept_slopes;
+  double velocity_weight;
+  double lever_sigma;
+  double shared_slopes;
+  double far_sigmas;
   double depths_left;
   double translation_left;
   double block_s;

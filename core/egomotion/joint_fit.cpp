@@ -92,10 +92,9 @@ void JointFit::expectVelocities() {
   if (still_) return;
   double squares = 0.0;
   for (const WindowState& state : states_) squares += state.velocity_1_s.squaredNorm() / 3.0;
-  constexpr double kAlike = 3.0;  // windows that tell no more of this than one
   constexpr double kLeast = 1e-8;
   const auto windows = static_cast<double>(std::max<std::size_t>(1, states_.size()));
-  velocity_information_ = kAlike / (squares / windows + kLeast);
+  velocity_information_ = options_.velocity_weight / (squares / windows + kLeast);
 }
 
 // All windows' parts, and what is known before of lever_left: little.
@@ -106,15 +105,15 @@ JointVector JointFit::sumParts(const AlignmentState& state) {
     const std::size_t end = std::min((task + 1) * kPartsATask, windows_.size());
     for (std::size_t k = task * kPartsATask; k < end; ++k) findPart(k, state);
   });
-  constexpr double kLeverSigma = 0.1;
+  const double held = 1.0 / (options_.lever_sigma * options_.lever_sigma);
   JointVector right = JointVector::Zero();
   normal_.setZero();
   for (const Part& part : parts_) {
     normal_ += part.normal;
     right += part.right;
   }
-  normal_.diagonal().tail<3>().array() += 1.0 / (kLeverSigma * kLeverSigma);
-  right.tail<3>() -= state.lever_left / (kLeverSigma * kLeverSigma);
+  normal_.diagonal().tail<3>().array() += held;
+  right.tail<3>() -= held * state.lever_left;
   return right;
 }
 

@@ -88,10 +88,9 @@ EgomotionOptions withCoarserDepths(EgomotionOptions options) {
   return options;
 }
 
-void markOutOfLine(const AlignmentFit& fit, std::vector<WindowMotion>& windows) {
-  constexpr double kFar = 36.0;  // chance leaves one of some ten million windows above
+void markOutOfLine(const AlignmentFit& fit, double far_sigmas, std::vector<WindowMotion>& windows) {
   for (std::size_t k = 0; k < fit.windowCount(); ++k) {
-    if (fit.squares()[k] <= kFar) continue;
+    if (fit.squares()[k] <= far_sigmas * far_sigmas) continue;
     const auto place = static_cast<std::size_t>(&fit.window(k) - windows.data());
     windows[place].use = WindowUse::OutOfLine;
   }
@@ -148,23 +147,23 @@ void take(const AlignmentState& state, const Eigen::Matrix4d& by_blocks, const E
 // From the windows' own rates: where all edges start from, and which windows contradict the others.
 std::optional<AlignmentState> startingSolution(std::vector<WindowMotion>& windows, const SummedRates& rates,
                                                const Eigen::Matrix3d& matrix, const AlignmentState& before,
-                                               double search_s, std::string& failure) {
+                                               const EgomotionOptions& options, std::string& failure) {
   // Those at the ends are lost to whatever the offset may be; only then the solution asks for all.
   std::vector<WindowMotion> searched = windows;
   std::vector<const WindowMotion*> inside = coveredWindows(searched, rates, before.time_offset_s);
   std::erase_if(inside, [&](const WindowMotion* window) {
-    return !rates.covers(window->begin_s + before.time_offset_s - search_s,
-                         window->end_s + before.time_offset_s + search_s);
+    return !rates.covers(window->begin_s + before.time_offset_s - options.search_s,
+                         window->end_s + before.time_offset_s + options.search_s);
   });
   if (inside.size() < static_cast<std::size_t>(kAlignmentNumbers)) {
     failure = "camera and gyroscope have too little time in common";
     return std::nullopt;
   }
-  std::optional<AlignmentState> state = bestSolution(inside, rates, matrix, before, search_s);
+  std::optional<AlignmentState> state = bestSolution(inside, rates, matrix, before, options.search_s);
   if (state) {
     AlignmentFit fit(coveredWindows(windows, rates, state->time_offset_s), rates, matrix);
     if (fit.solve(*state)) {
-      markOutOfLine(fit, windows);
+      markOutOfLine(fit, options.far_sigmas, windows);
       return state;
     }
   }
@@ -186,7 +185,7 @@ RotationAlignment alignRotation(CameraRecord& record, const LensRays& lens, cons
                               gyroscope.imu.gyroscope_bias_rad_s};
   RotationAlignment out;
   const std::optional<AlignmentState> rough =
-      startingSolution(windows, rates, matrix, before, options.search_s, out.failure);
+      startingSolution(windows, rates, matrix, before, options, out.failure);
   if (!rough) return out;
   AlignmentState state = *rough;
   const JointInput input{record, lens, rates, matrix.inverse(), gyroscope.start_ns, threads, context};

@@ -66,8 +66,7 @@ WindowMotion estimateWindowMotion(std::span<const EdgeSlope> slopes, const LensR
   out.rotation_alone = alone <= kAsWell * fit.medianSquare() + kNegligible;
   out.inliers = fit.inlierShare();
   out.rate_rad_s = fit.state().rate_rad_s;
-  constexpr double kShared = 12.0;  // slopes that have most of their neighbours in common
-  out.covariance = fit.covariance(kShared).topLeftCorner<3, 3>();
+  out.covariance = fit.covariance(options.shared_slopes).topLeftCorner<3, 3>();
   weighParts(fit, options.window_s, out);
   const double least_sigma_rad_s = std::sqrt(std::max(0.0, out.covariance.diagonal().minCoeff()));
   if (medianSpeed_px_s(fit, lens.focalLength_px()) < options.least_speed_px_s) {

@@ -36,6 +36,17 @@ constexpr std::tuple kCheckFields{
           "deg", "Without a board: as matters_rotation_deg."},
     Field{"without_board_time_offset_ms", &CheckOptions::without_board_time_offset_ms, 3.0, within(1e-4, 1e4),
           "ms", "Without a board: as matters_time_offset_ms."},
+    Field{"without_board_least_rotation_deg", &CheckOptions::without_board_least_rotation_deg, 0.2,
+          within(0.0, 90.0), "deg",
+          "Without a board: a smaller change is none; scenes and walks move rotations by so much, rarely and "
+          "whatever their sigmas."},
+    Field{"without_board_least_time_offset_ms", &CheckOptions::without_board_least_time_offset_ms, 0.5,
+          within(0.0, 1e4), "ms", "The same of time offsets."},
+    Field{"without_board_misfit", &CheckOptions::without_board_misfit, 0.5, within(0.01, 10.0), "",
+          "Without a board: where more of the rates is left unexplained, camera and IMU are not on one rig."},
+    Field{"without_board_scale", &CheckOptions::without_board_scale, 0.1, within(0.001, 10.0), "",
+          "Without a board: where the camera turns by more than this too fast or too slowly, the lens is "
+          "another one."},
     Field{"least_board_share", &CheckOptions::least_board_share, 0.02, within(0.0, 1.0), "",
           "A recording in which fewer of the windows show the board is taken as one without a board."}};
 constexpr auto kCheckDefaults = defaultsOf<CheckOptions, kCheckFields>();

@@ -19,6 +19,10 @@ struct CheckOptions {
   bool no_board;
   double without_board_rotation_deg;
   double without_board_time_offset_ms;
+  double without_board_least_rotation_deg;
+  double without_board_least_time_offset_ms;
+  double without_board_misfit;
+  double without_board_scale;
   double least_board_share;
 
   CheckOptions();  // the defaults

@@ -139,15 +139,16 @@ class BoardlessCheck {
         pass_.cameras[k], lens, {samples, pass_.start_ns, input_.before.result->state.imus.at(imu_before)},
         {before.reference_from_camera.rotation, before.time_offset_s}, input_.session.options.egomotion,
         input_.session.options.optimisation.threads, context_);
+    const CheckOptions& limits = input_.session.options.check;
     const std::vector<WindowMotion>& windows = pass_.cameras[k].windows;
     out_.check.windows.push_back(countedWindows(name, windows));
     if (!alignment.found()) return fail(name, alignment.failure, adviceFor(commonest(windows)));
-    if (alignment.misfit_rms_rad_s > kMostMisfit * alignment.rate_rms_rad_s)
+    if (alignment.misfit_rms_rad_s > limits.without_board_misfit * alignment.rate_rms_rad_s)
       return fail(name,
                   fmt::format("the camera's turns are not the gyroscope's: {:.2g} of {:.2g} rad/s are left",
                               alignment.misfit_rms_rad_s, alignment.rate_rms_rad_s),
                   adviceFor(WindowUse::NotExplained));
-    if (std::abs(alignment.scale - 1.0) > kLargestScaleError)
+    if (std::abs(alignment.scale - 1.0) > limits.without_board_scale)
       return fail(name,
                   fmt::format("the image turns {:.3g} times as fast as the gyroscope says", alignment.scale),
                   "Check that the lens is this camera's, and calibrate again before the board");
@@ -194,8 +195,10 @@ class BoardlessCheck {
       delay.name = "optimisation.verdict.pixel_delay_ms";
       delay.value = "0";
       CheckOptions options = input_.session.options.check;
-      options.stability_rotation_deg = std::max(options.stability_rotation_deg, kLeastRotation_deg);
-      options.stability_time_offset_ms = std::max(options.stability_time_offset_ms, kLeastTimeOffset_ms);
+      options.stability_rotation_deg =
+          std::max(options.stability_rotation_deg, options.without_board_least_rotation_deg);
+      options.stability_time_offset_ms =
+          std::max(options.stability_time_offset_ms, options.without_board_least_time_offset_ms);
       options.matters_rotation_deg = options.without_board_rotation_deg;
       options.matters_time_offset_ms = options.without_board_time_offset_ms;
       testQuantities(compareQuantities({input_.before, now_, false}, options), options, out_.check);
@@ -228,11 +231,6 @@ class BoardlessCheck {
       number.together_sigma = std::sqrt(before * now / (before + now));
     }
   }
-
-  // Scenes and walks may move the numbers by so much together, rarely and whatever the sigmas: a smaller change is none.
-  static constexpr double kLeastRotation_deg = 0.2, kLeastTimeOffset_ms = 0.5;
-  static constexpr double kMostMisfit = 0.5;         // of the rates
-  static constexpr double kLargestScaleError = 0.1;  // beyond, the lens is another one
 
   const CheckInput& input_;
   BoardlessPass pass_;
