@@ -51,10 +51,17 @@ ImuStep readStep(const YamlNode& map, const DriveScenario& scenario) {
   return step;
 }
 
+void readShake(const YamlNode& map, MountShake& shake) {
+  map.allowOnly({"rate_rad_s", "force_m_s2", "correlation_s"});
+  get(map, "rate_rad_s", shake.rate_rad_s, 0.0, 10.0, "rad/s");
+  get(map, "force_m_s2", shake.force_m_s2, 0.0, 100.0, "m/s^2");
+  get(map, "correlation_s", shake.correlation_s, 1e-3, 1000.0, "s");
+}
+
 void readImu(const YamlNode& map, SimulatedImu& imu) {
   map.allowOnly({"name", "stream", "rate_hz", "gyroscope_noise_density", "accelerometer_noise_density",
                  "gyroscope_walk_density", "accelerometer_walk_density", "gyroscope_bias_rad_s",
-                 "accelerometer_bias_m_s2", "time_offset_s", "reference_from_imu", "lost_packets"});
+                 "accelerometer_bias_m_s2", "time_offset_s", "reference_from_imu", "lost_packets", "shake"});
   get(map, "name", imu.name);
   get(map, "stream", imu.stream);
   get(map, "rate_hz", imu.rate_hz, 1.0, 1e5, "Hz");
@@ -65,6 +72,7 @@ void readImu(const YamlNode& map, SimulatedImu& imu) {
   get(map, "gyroscope_bias_rad_s", imu.gyroscope_bias_rad_s, -10.0, 10.0);
   get(map, "accelerometer_bias_m_s2", imu.accelerometer_bias_m_s2, -50.0, 50.0);
   get(map, "time_offset_s", imu.time_offset_s, -60.0, 60.0, "s");
+  if (const auto node = map.find("shake")) readShake(*node, imu.shake);
   get(map, "lost_packets", imu.faults.lost_packets, 0, 100000);
   if (const auto node = map.find("reference_from_imu")) readTransform(*node, imu.reference_from_imu);
 }

@@ -23,6 +23,29 @@ struct Measured {
   Eigen::Vector3d rate_rad_s, force_m_s2;
 };
 
+// Of the first order: what is left from the last sample, and as much new as keeps its size.
+class ShakenMount {
+ public:
+  ShakenMount(const MountShake& shake, double rate_hz, Random random)
+      : shake_(shake), kept_(std::exp(-1.0 / (rate_hz * shake.correlation_s))), random_(random) {
+    next(1.0);
+  }
+
+  Measured now() const { return {shake_.rate_rad_s * rate_, shake_.force_m_s2 * force_}; }
+  void step() { next(std::sqrt(1.0 - kept_ * kept_)); }
+
+ private:
+  void next(double share) {
+    rate_ = kept_ * rate_ + share * normalVector(random_);
+    force_ = kept_ * force_ + share * normalVector(random_);
+  }
+
+  MountShake shake_;
+  double kept_;
+  Random random_;
+  Eigen::Vector3d rate_ = Eigen::Vector3d::Zero(), force_ = Eigen::Vector3d::Zero();  // of unit size
+};
+
 Measured measuredBy(const SimulatedImu& imu, const MotionState& body, const Eigen::Vector3d& gravity_m_s2) {
   const MotionState state = motionOfFrame(body, imu.reference_from_imu);
   return {imu.gyroscopeMatrix() * state.angular_velocity_in_body_rad_s,
@@ -42,7 +65,7 @@ void spoil(const DriveScenario& drive, std::size_t imu, std::vector<ImuSample>& 
 }  // namespace
 
 std::vector<ImuSample> simulateDriveImu(const DriveScenario& scenario, std::size_t index) {
-  constexpr std::uint64_t kNoise = 0x330;
+  constexpr std::uint64_t kNoise = 0x330, kShake = 0x335;
   const DriveMotionModel motion(scenario);
   Random random(scenario.seed, kNoise, index);
   const Eigen::Vector3d gravity_m_s2(0.0, 0.0, -scenario.gravity_m_s2);
@@ -53,6 +76,7 @@ std::vector<ImuSample> simulateDriveImu(const DriveScenario& scenario, std::size
   Eigen::Vector3d gyroscope_walked = Eigen::Vector3d::Zero(), accelerometer_walked = gyroscope_walked;
   std::size_t steps_done = scenario.steps.size() + 1;
   SimulatedImu imu;
+  ShakenMount mount(scenario.imus[index].shake, rate_hz, Random(scenario.seed, kShake, index));
   for (std::size_t k = 0; k < count; ++k) {
     // IMUs do not sample at one moment.
     const double time_s = (static_cast<double>(k) + 0.3 * static_cast<double>(index)) / rate_hz;
@@ -60,12 +84,14 @@ std::vector<ImuSample> simulateDriveImu(const DriveScenario& scenario, std::size
     for (const ImuStep& step : scenario.steps) done += step.at_s <= time_s ? 1 : 0;
     if (done != steps_done) imu = scenario.imuAt(index, time_s);
     steps_done = done;
-    const Measured now = measuredBy(imu, motion.at(time_s), gravity_m_s2);
+    const Measured now = measuredBy(imu, motion.at(time_s), gravity_m_s2), shaken = mount.now();
+    mount.step();
     ImuSample sample;
     sample.time_ns = scenario.start_ns + nanosecondsFrom(sensorTime_s(imu, time_s));
-    sample.angular_rate_rad_s = now.rate_rad_s + imu.gyroscope_bias_rad_s + gyroscope_walked +
-                                imu.gyroscope_density * root_rate * normalVector(random);
-    sample.specific_force_m_s2 = now.force_m_s2 + imu.accelerometer_bias_m_s2 + accelerometer_walked +
+    sample.angular_rate_rad_s = now.rate_rad_s + shaken.rate_rad_s + imu.gyroscope_bias_rad_s +
+                                gyroscope_walked + imu.gyroscope_density * root_rate * normalVector(random);
+    sample.specific_force_m_s2 = now.force_m_s2 + shaken.force_m_s2 + imu.accelerometer_bias_m_s2 +
+                                 accelerometer_walked +
                                  imu.accelerometer_density * root_rate * normalVector(random);
     samples.push_back(sample);
     gyroscope_walked += imu.gyroscope_walk / root_rate * normalVector(random);

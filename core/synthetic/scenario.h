@@ -97,6 +97,12 @@ struct ImuFaults {
 };
 
 // What is true of an IMU, and how it measures. Biases are those at the start where they walk.
+// A mount that gives: what an IMU measures beside the body's motion, on each axis for itself; noise that a low pass of
+// the first order lets through. Sigmas.
+struct MountShake {
+  double rate_rad_s = 0.0, force_m_s2 = 0.0, correlation_s = 0.3;
+};
+
 struct SimulatedImu : ImuState {
   std::string name = "imu";
   std::string stream = "/imu";
@@ -105,6 +111,7 @@ struct SimulatedImu : ImuState {
   double accelerometer_density = 1.86e-3;  // m/s^2/sqrt(Hz)
   double gyroscope_walk = 0.0;             // rad/s^2/sqrt(Hz)
   double accelerometer_walk = 0.0;         // m/s^3/sqrt(Hz)
+  MountShake shake;                        // in drives
   ImuFaults faults;
 };
 
