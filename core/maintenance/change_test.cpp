@@ -68,9 +68,16 @@ double ChangeTest::worstSigma(const StateBlock& block) const {
   return least > 0.0 ? 1.0 / std::sqrt(least) : std::numeric_limits<double>::infinity();
 }
 
+std::vector<double> limitsFor(std::span<const StateBlock> blocks, double false_alarm_probability) {
+  std::vector<double> limits;
+  for (const StateBlock& block : blocks)
+    limits.push_back(chiSquaredLimit(false_alarm_probability, static_cast<int>(block.size)));
+  return limits;
+}
+
 std::vector<FoundChange> findChanges(const Eigen::MatrixXd& information, const Eigen::VectorXd& score,
                                      const Eigen::MatrixXd& covariance, std::span<const StateBlock> blocks,
-                                     double false_alarm_probability) {
+                                     std::span<const double> limits) {
   constexpr double kNearly = 9.0;  // three sigmas
   std::vector<FoundChange> found;
   std::vector<char> is_found(blocks.size(), 0);
@@ -82,8 +89,7 @@ std::vector<FoundChange> findChanges(const Eigen::MatrixXd& information, const E
     for (std::size_t b = 0; b < blocks.size(); ++b) {
       if (is_found[b] != 0) continue;
       changes[b] = test.of(blocks[b]);
-      beyond[b] =
-          changes[b].chi_square - chiSquaredLimit(false_alarm_probability, static_cast<int>(blocks[b].size));
+      beyond[b] = changes[b].chi_square - limits[b];
     }
     const auto best =
         static_cast<std::size_t>(std::max_element(beyond.begin(), beyond.end()) - beyond.begin());

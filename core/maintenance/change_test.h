@@ -37,7 +37,7 @@ class ChangeTest {
   Eigen::VectorXd pull_;
 };
 
-// Those that have changed beyond their limits, the one that goes furthest beyond its own first; each is tested with
+// Those that have changed beyond their limits of chi squared, the one that goes furthest beyond its own first; each is tested with
 // those before left free.
 struct FoundChange {
   std::size_t block = 0;
@@ -46,7 +46,9 @@ struct FoundChange {
 };
 std::vector<FoundChange> findChanges(const Eigen::MatrixXd& information, const Eigen::VectorXd& score,
                                      const Eigen::MatrixXd& covariance, std::span<const StateBlock> blocks,
-                                     double false_alarm_probability);
+                                     std::span<const double> limits);
+// Of blocks alike.
+std::vector<double> limitsFor(std::span<const StateBlock> blocks, double false_alarm_probability);
 
 // The smallest change in the worst direction that is found with 95 %.
 double wouldNotice(double worst_sigma, double limit);

@@ -56,18 +56,18 @@ std::vector<double> RateNorms::filled() const {
   return values;
 }
 
-ClockAgreement clockAgreement(const RateNorms& reference, const RateNorms& own, double search_s) {
-  constexpr double kLeastMotion_rad_s = 0.02;
+ClockAgreement clockAgreement(const RateNorms& reference, const RateNorms& own,
+                              const MaintenanceOptions& options) {
   constexpr double kFewest = 300.0;  // bins
   ClockAgreement best;
   const std::vector<double> a = reference.filled(), b = own.filled();
   const long between = own.firstBin() - reference.firstBin();
-  const long reach = std::lround(std::ceil(search_s / RateNorms::kBin_s));
+  const long reach = std::lround(std::ceil(options.time_offset_search_s / RateNorms::kBin_s));
   std::vector<double> correlations;
   for (long lag = -reach; lag <= reach; ++lag) {
     const Moments sum = momentsAt(a, b, lag - between);
     const bool enough =
-        sum.count >= kFewest && std::sqrt(std::max(sum.varianceA(), 0.0)) > kLeastMotion_rad_s;
+        sum.count >= kFewest && std::sqrt(std::max(sum.varianceA(), 0.0)) > options.least_rate_rad_s;
     correlations.push_back(enough ? sum.correlation() : -1.0);
     if (!enough) continue;
     best.moved = true;

@@ -2,6 +2,8 @@
 // rotation between them is needed for that.
 #pragma once
 
+#include "core/maintenance/maintenance_options.h"
+
 #include <Eigen/Core>
 
 #include <cstddef>
@@ -34,6 +36,7 @@ struct ClockAgreement {
 };
 
 // Times of both on the reference's clock by the nominal offset.
-ClockAgreement clockAgreement(const RateNorms& reference, const RateNorms& own, double search_s);
+ClockAgreement clockAgreement(const RateNorms& reference, const RateNorms& own,
+                              const MaintenanceOptions& options);
 
 }  // namespace evical

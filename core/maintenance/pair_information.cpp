@@ -53,22 +53,20 @@ double typicalVariance(const std::vector<OwnFit>& fits) {
 }
 
 // A window that is much more restless than others (a blow, a spike) counts for less.
-double varianceOf(const OwnFit& fit, double typical) {
-  constexpr double kByChance = 1.6;
-  return fit.freedom > 0 && fit.variance() > kByChance * typical ? fit.variance() : typical;
+double varianceOf(const OwnFit& fit, double typical, double restless) {
+  return fit.freedom > 0 && fit.variance() > restless * typical ? fit.variance() : typical;
 }
 
 // Noise in the slope of the rate is in the lever's Jacobian and, times the lever, in the residual: its square looks
 // like information that the lever is none. Its expectation is taken off; where it is most of what there is, all.
 void takeNoiseOff(const PairModel& model, double rate_variance, double force_variance, const PairWindow& raw,
-                  PairEquations& gyroscope, PairEquations& accelerometer) {
-  constexpr double kMostlyNoise = 20.0;
+                  double mostly_noise, PairEquations& gyroscope, PairEquations& accelerometer) {
   const double by_slope = 0.5 / (model.smoothing_s * model.smoothing_s);
   const double slope_variance = 0.5 * rate_variance * by_slope;  // of one of the two IMUs
   const double jerk_variance = 0.5 * force_variance * by_slope;
   const double points = raw.accelerometer.count / 3.0;
   const double turning = raw.gyroscope.information(6, 6);  // sum of the slopes' squares
-  const bool tells = turning > kMostlyNoise * 3.0 * slope_variance * raw.gyroscope.count / 3.0;
+  const bool tells = turning > mostly_noise * 3.0 * slope_variance * raw.gyroscope.count / 3.0;
   if (tells) {
     accelerometer.information.block<3, 3>(3, 3) -=
         2.0 * points * slope_variance * Eigen::Matrix3d::Identity();
@@ -79,7 +77,7 @@ void takeNoiseOff(const PairModel& model, double rate_variance, double force_var
     accelerometer.score.segment<3>(3).setZero();
   }
   const auto withoutOffset = [&](PairEquations& equations, double noise) {
-    if (equations.information(6, 6) > kMostlyNoise * noise) {
+    if (equations.information(6, 6) > mostly_noise * noise) {
       equations.information(6, 6) -= noise;
       return;
     }
@@ -93,7 +91,8 @@ void takeNoiseOff(const PairModel& model, double rate_variance, double force_var
 
 }  // namespace
 
-WeighedWindows weighed(std::span<const PairWindow> windows, const PairModel& model) {
+WeighedWindows weighed(std::span<const PairWindow> windows, const PairModel& model,
+                       const MaintenanceOptions& options) {
   std::vector<OwnFit> rates, forces;
   for (const PairWindow& window : windows) {
     rates.push_back(ownFit(window.gyroscope));
@@ -107,9 +106,10 @@ WeighedWindows weighed(std::span<const PairWindow> windows, const PairModel& mod
   all.accelerometer_noise_m_s2 = std::sqrt(force_variance);
   for (std::size_t w = 0; w < windows.size(); ++w) {
     PairEquations gyroscope = windows[w].gyroscope, accelerometer = windows[w].accelerometer;
-    takeNoiseOff(model, rate_variance, force_variance, windows[w], gyroscope, accelerometer);
-    const double by_rate = 1.0 / (kShared * varianceOf(rates[w], rate_variance)),
-                 by_force = 1.0 / (kShared * varianceOf(forces[w], force_variance));
+    takeNoiseOff(model, rate_variance, force_variance, windows[w], options.mostly_noise, gyroscope,
+                 accelerometer);
+    const double by_rate = 1.0 / (kShared * varianceOf(rates[w], rate_variance, options.restless_window)),
+                 by_force = 1.0 / (kShared * varianceOf(forces[w], force_variance, options.restless_window));
     WeighedWindow& each = all.windows.emplace_back();
     each.time_s = windows[w].time_s;
     each.information.topLeftCorner<kPairNumbers, kPairNumbers>() =

@@ -25,6 +25,7 @@ struct WeighedWindows {
   double gyroscope_noise_rad_s = 0.0, accelerometer_noise_m_s2 = 0.0;  // of a point
 };
 
-WeighedWindows weighed(std::span<const PairWindow> windows, const PairModel& model);
+WeighedWindows weighed(std::span<const PairWindow> windows, const PairModel& model,
+                       const MaintenanceOptions& options);
 
 }  // namespace evical

@@ -1,9 +1,8 @@
 #include "core/maintenance/pair_tracking.h"
 
+#include "core/maintenance/noise_colour.h"
 #include "core/maintenance/pair_information.h"
 #include "core/numerics/angles.h"
-#include "core/numerics/chi_squared.h"
-#include "core/numerics/robust.h"
 
 #include <Eigen/LU>
 
@@ -17,21 +16,17 @@ namespace evical {
 namespace {
 
 constexpr std::array<std::size_t, 12> kLengths = {1, 2, 3, 4, 5, 6, 8, 10, 13, 16, 20, 25};  // windows
-constexpr std::size_t kReference = 4;  // of kLengths: what the noise's colour is told by
-constexpr std::size_t kSettled = 6;    // windows from a segment's start to the first test
 constexpr Eigen::Index kOffset = 6, kDrift = kPairNumbers;
-constexpr double kStart_s = 120.0;  // of the log that the old result is compared with
 
 struct Believed {
   PairStateVector mean = PairStateVector::Zero();
   PairStateMatrix covariance = PairStateMatrix::Zero();
 };
 
-PairStateVector openVariances() {
+PairStateVector openVariances(const MaintenanceOptions& options) {
   PairStateVector variance;
-  constexpr double kDrift_s_s = 1e-4;
   variance << Eigen::Vector3d::Constant(0.1), Eigen::Vector3d::Constant(0.3), 0.02,
-      Eigen::Vector3d::Constant(0.1), Eigen::Vector3d::Constant(1.0), kDrift_s_s;
+      Eigen::Vector3d::Constant(0.1), Eigen::Vector3d::Constant(1.0), 1e-6 * options.time_offset_drift_ppm;
   return variance.cwiseAbs2();
 }
 
@@ -41,27 +36,69 @@ PairStateMatrix transition(double step_s) {
   return f;
 }
 
+PairStateVector walkOf(const PairModel& model, const MaintenanceOptions& options) {
+  constexpr double kHour_s = 3600.0, kDriftWalk = 1e-9;
+  PairStateVector walk;
+  walk << pairStability(options) / kHour_s, kDriftWalk * kDriftWalk;
+  walk.segment<3>(7).setConstant(model.gyroscope_walk * model.gyroscope_walk);
+  walk.segment<3>(10).setConstant(model.accelerometer_walk * model.accelerometer_walk);
+  return walk;
+}
+
+using PairColours = std::array<NoiseColour, kPairBlocks.size()>;
+
+// Each few windows beside those just before them, which nothing but a change in their midst can part.
+PairColours coloursOf(std::span<const WeighedWindow> windows, const PairModel& model,
+                      const MaintenanceOptions& options) {
+  constexpr std::size_t kBefore = 16;
+  constexpr auto& kCompared = ColourStatistics::kLengths;
+  const std::size_t before = std::min(kBefore, windows.size() / 3);
+  const PairStateVector walk = walkOf(model, options);
+  const PairStateMatrix open = openVariances(options).cwiseInverse().asDiagonal();
+  std::vector<ColourStatistics> statistics;
+  for (const StateBlock& block : kPairBlocks) statistics.emplace_back(static_cast<int>(block.size), before);
+  for (std::size_t from = before; from < windows.size(); ++from) {
+    PairStateMatrix known = open, information = PairStateMatrix::Zero();
+    PairStateVector right = PairStateVector::Zero(), score = PairStateVector::Zero();
+    for (std::size_t w = from - before; w < from; ++w) {
+      known += windows[w].information;
+      right += windows[w].score;
+    }
+    const Eigen::PartialPivLU<PairStateMatrix> solver(known);
+    const PairStateVector mean = solver.solve(right);
+    PairStateMatrix covariance = solver.solve(PairStateMatrix::Identity());
+    covariance.diagonal() += static_cast<double>(before) * options.window_s * walk;
+    for (std::size_t k = 0, end = from; k < kCompared.size() && from + kCompared[k] <= windows.size(); ++k) {
+      for (; end < from + kCompared[k]; ++end) {
+        information += windows[end].information;
+        score += windows[end].score;
+      }
+      const ChangeTest test(information, score - information * mean, covariance);
+      for (std::size_t b = 0; b < kPairBlocks.size(); ++b)
+        statistics[b].add(k, test.of(kPairBlocks[b]).chi_square);
+    }
+  }
+  PairColours colours;
+  for (std::size_t b = 0; b < colours.size(); ++b) colours[b] = statistics[b].colour();
+  return colours;
+}
+
 class Tracker {
  public:
   Tracker(std::span<const WeighedWindow> windows, const PairModel& model, double alarm_probability,
-          double coloured, const MaintenanceOptions& options)
-      : windows_(windows), options_(options), coloured_(coloured) {
+          const PairColours& colours, const MaintenanceOptions& options)
+      : windows_(windows), options_(options), colours_(colours) {
     stability_ << pairStability(options), 0.0;
-    constexpr double kHour_s = 3600.0, kDriftWalk = 1e-9;
-    walk_ = stability_ / kHour_s;
-    walk_.segment<3>(7).setConstant(model.gyroscope_walk * model.gyroscope_walk);
-    walk_.segment<3>(10).setConstant(model.accelerometer_walk * model.accelerometer_walk);
-    walk_[kDrift] = kDriftWalk * kDriftWalk;
+    walk_ = walkOf(model, options);
+    settled_ = static_cast<std::size_t>(std::ceil(options.settled_s / options.window_s));
     const double tests =
         static_cast<double>(std::max<std::size_t>(windows.size(), 1) * kLengths.size() * kPairBlocks.size());
-    probability_ = alarm_probability / tests;
-    for (const StateBlock& block : kPairBlocks)
-      limits_.push_back(chiSquaredLimit(probability_, static_cast<int>(block.size)));
+    white_limits_ = limitsFor(kPairBlocks, alarm_probability / tests);
   }
 
   void run() {
     believed_.assign(windows_.size() + 1, {});
-    believed_[0].covariance = openVariances().asDiagonal();
+    believed_[0].covariance = openVariances(options_).asDiagonal();
     for (std::size_t end = 0; end < windows_.size(); ++end) {
       update(end);
       if (const auto alarm = alarmAt(end)) end = takeStep(end, *alarm);
@@ -71,17 +108,6 @@ class Tracker {
   const std::vector<PairStep>& steps() const { return steps_; }
   std::size_t firstChange() const { return first_change_; }
   const Believed& after(std::size_t window) const { return believed_[window + 1]; }
-  // How far statistics are above what chance makes of them, in the middle.
-  double colour() const {
-    double largest = 1.0;
-    for (std::size_t b = 0; b < kPairBlocks.size(); ++b) {
-      constexpr std::size_t kFewest = 20;
-      if (statistics_[b].size() < kFewest || kPairBlocks[b].size < 3) continue;
-      const double half = chiSquaredLimit(0.5, static_cast<int>(kPairBlocks[b].size));
-      largest = std::max(largest, medianOf(statistics_[b]) / half);
-    }
-    return largest;
-  }
 
  private:
   double stepOf(std::size_t window) const {
@@ -91,12 +117,12 @@ class Tracker {
   // believed_[w] is before window w's data, believed_[w + 1] after them and the way to the next.
   void update(std::size_t w) {
     const Believed& before = believed_[w];
-    const PairStateMatrix h = windows_[w].information / coloured_;
+    const PairStateMatrix h = windows_[w].information;
     const PairStateMatrix gain =
         (PairStateMatrix::Identity() + before.covariance * h).partialPivLu().solve(before.covariance);
     Believed after;
     after.covariance = 0.5 * (gain + gain.transpose());
-    after.mean = before.mean + after.covariance * (windows_[w].score / coloured_ - h * before.mean);
+    after.mean = before.mean + after.covariance * (windows_[w].score - h * before.mean);
     const double step_s = w + 1 < windows_.size() ? stepOf(w + 1) : options_.window_s;
     const PairStateMatrix f = transition(step_s);
     after.mean = f * after.mean;
@@ -117,8 +143,8 @@ class Tracker {
       const double since_s = windows_[w].time_s - windows_[from].time_s;
       PairStateVector expected = before.mean;
       expected[kOffset] += since_s * before.mean[kDrift];
-      sum.information += windows_[w].information / coloured_;
-      sum.score += (windows_[w].score - windows_[w].information * expected) / coloured_;
+      sum.information += windows_[w].information;
+      sum.score += windows_[w].score - windows_[w].information * expected;
     }
     const double length_s = windows_[end].time_s - windows_[from].time_s + options_.window_s;
     sum.covariance = before.covariance;
@@ -128,13 +154,11 @@ class Tracker {
     return sum;
   }
 
-  // Without what may change by itself, which would hide it.
-  void noteColour(const Evidence& data) {
-    PairStateMatrix covariance = data.covariance;
-    covariance.diagonal() -= stability_;
-    const ChangeTest test(data.information, data.score, covariance);
-    for (std::size_t b = 0; b < kPairBlocks.size(); ++b)
-      statistics_[b].push_back(test.of(kPairBlocks[b]).chi_square);
+  // Of data of so many windows.
+  std::vector<double> limitsOf(std::size_t length) const {
+    std::vector<double> limits = white_limits_;
+    for (std::size_t b = 0; b < limits.size(); ++b) limits[b] *= colours_[b].of(length);
+    return limits;
   }
 
   struct Alarm {
@@ -144,25 +168,20 @@ class Tracker {
   Alarm strongest(std::size_t from, std::size_t end) const {
     const Evidence data = evidence(from, end);
     const ChangeTest test(data.information, data.score, data.covariance);
+    const std::vector<double> limits = limitsOf(end + 1 - from);
     Alarm alarm{from, -std::numeric_limits<double>::infinity()};
     for (std::size_t b = 0; b < kPairBlocks.size(); ++b)
-      alarm.beyond = std::max(alarm.beyond, test.of(kPairBlocks[b]).chi_square - limits_[b]);
+      alarm.beyond = std::max(alarm.beyond, test.of(kPairBlocks[b]).chi_square - limits[b]);
     return alarm;
   }
 
   std::optional<Alarm> alarmAt(std::size_t end) {
     Alarm best;
-    for (std::size_t k = 0; k < kLengths.size(); ++k) {
-      const std::size_t length = kLengths[k];
-      if (end + 1 < segment_ + kSettled + length) break;
+    for (const std::size_t length : kLengths) {
+      if (end + 1 < segment_ + settled_ + length) break;
       const std::size_t from = end + 1 - length;
-      const Evidence data = evidence(from, end);
-      if (k == kReference) noteColour(data);
-      const ChangeTest test(data.information, data.score, data.covariance);
-      for (std::size_t b = 0; b < kPairBlocks.size(); ++b) {
-        const double statistic = test.of(kPairBlocks[b]).chi_square;
-        if (statistic - limits_[b] > best.beyond) best = {from, statistic - limits_[b]};
-      }
+      const Alarm here = strongest(from, end);
+      if (here.beyond > best.beyond) best = here;
     }
     if (best.beyond > 0.0) return best;
     return std::nullopt;
@@ -174,7 +193,7 @@ class Tracker {
     const std::size_t end = std::min(std::max(noticed, alarm.from + wait - 1), windows_.size() - 1);
     for (std::size_t w = noticed + 1; w <= end; ++w) update(w);
     const std::size_t longest = kLengths.back() + wait;
-    const std::size_t earliest = std::max(segment_ + kSettled, end > longest ? end - longest : 0);
+    const std::size_t earliest = std::max(segment_ + settled_, end > longest ? end - longest : 0);
     Alarm best;
     for (std::size_t from = earliest; from <= end; ++from) {
       const Alarm here = strongest(from, end);
@@ -182,10 +201,13 @@ class Tracker {
     }
     const std::size_t from = best.beyond > 0.0 ? best.from : alarm.from;
     const Evidence data = evidence(from, end);
-    const auto found = findChanges(data.information, data.score, data.covariance, kPairBlocks, probability_);
-    for (const FoundChange& each : found)
+    const std::vector<double> limits = limitsOf(end + 1 - from);
+    const auto found = findChanges(data.information, data.score, data.covariance, kPairBlocks, limits);
+    for (const FoundChange& each : found) {
       steps_.push_back({each.block, windows_[from].time_s, windows_[noticed].time_s + options_.window_s,
-                        each.change, limits_[each.block], each.or_else});
+                        each.change, limits[each.block], each.or_else});
+      steps_.back().change.covariance *= colours_[each.block].of(end + 1 - from);
+    }
     first_change_ = std::min(first_change_, from);
     beginSegment(from, found, end);
     return end;
@@ -193,7 +215,7 @@ class Tracker {
 
   // All that has changed is open again from there.
   void beginSegment(std::size_t from, const std::vector<FoundChange>& found, std::size_t end) {
-    const PairStateVector open = openVariances();
+    const PairStateVector open = openVariances(options_);
     for (const FoundChange& each : found) {
       const StateBlock& block = kPairBlocks[each.block];
       for (Eigen::Index i = block.first; i < block.first + block.size; ++i)
@@ -205,27 +227,35 @@ class Tracker {
 
   std::span<const WeighedWindow> windows_;
   const MaintenanceOptions& options_;
-  double coloured_, probability_ = 0.0;
+  PairColours colours_;
   PairStateVector stability_, walk_;
-  std::vector<double> limits_;
+  std::vector<double> white_limits_;
   std::vector<Believed> believed_;
-  std::array<std::vector<double>, kPairBlocks.size()> statistics_;
   std::vector<PairStep> steps_;
-  std::size_t segment_ = 0, first_change_ = std::numeric_limits<std::size_t>::max();
+  std::size_t settled_ = 0, segment_ = 0, first_change_ = std::numeric_limits<std::size_t>::max();
 };
 
-void setStart(std::span<const WeighedWindow> windows, std::size_t first_change, double coloured,
-              PairTrack& track) {
+PairVector widerSigmas(const PairColours& colours) {
+  PairVector factors;
+  for (std::size_t b = 0; b < colours.size(); ++b)
+    factors.segment(kPairBlocks[b].first, kPairBlocks[b].size)
+        .setConstant(std::sqrt(std::max(1.0, colours[b].settled)));
+  return factors;
+}
+
+void setStart(std::span<const WeighedWindow> windows, std::size_t first_change, const PairVector& wider,
+              const MaintenanceOptions& options, PairTrack& track) {
   for (std::size_t w = 0; w < windows.size() && w < first_change; ++w) {
-    if (windows[w].time_s > windows.front().time_s + kStart_s) break;
-    track.start_information += windows[w].information.topLeftCorner<kPairNumbers, kPairNumbers>() / coloured;
-    track.start_score += windows[w].score.head<kPairNumbers>() / coloured;
+    if (windows[w].time_s > windows.front().time_s + options.start_s) break;
+    track.start_information += windows[w].information.topLeftCorner<kPairNumbers, kPairNumbers>();
+    track.start_score += windows[w].score.head<kPairNumbers>();
   }
   PairMatrix whole = track.start_information;
-  whole.diagonal() += openVariances().head<kPairNumbers>().cwiseInverse();
+  whole.diagonal() += openVariances(options).head<kPairNumbers>().cwiseInverse();
   const Eigen::PartialPivLU<PairMatrix> solver(whole);
-  track.start_covariance = solver.solve(PairMatrix::Identity());
-  track.start = track.start_covariance * track.start_score;
+  const PairMatrix covariance = solver.solve(PairMatrix::Identity());
+  track.start = covariance * track.start_score;
+  track.start_covariance = wider.asDiagonal() * covariance * wider.asDiagonal();
 }
 
 }  // namespace
@@ -245,29 +275,23 @@ PairTrack trackPair(std::span<const PairWindow> windows, const PairModel& model,
                     const MaintenanceOptions& options) {
   PairTrack track;
   if (windows.empty()) return track;
-  const WeighedWindows all = weighed(windows, model);
+  const WeighedWindows all = weighed(windows, model, options);
   track.gyroscope_noise_rad_s = all.gyroscope_noise_rad_s;
   track.accelerometer_noise_m_s2 = all.accelerometer_noise_m_s2;
-  constexpr int kRounds = 3;
-  constexpr double kWhite = 1.8;  // of a minute, medians scatter
-  for (int round = 0; round < kRounds; ++round) {
-    Tracker tracker(all.windows, model, alarm_probability, track.coloured, options);
-    tracker.run();
-    const double colour = tracker.colour();
-    if (colour > kWhite && round + 1 < kRounds) {
-      track.coloured *= colour;
-      continue;
-    }
-    track.steps = tracker.steps();
-    for (std::size_t w = 0; w < all.windows.size(); ++w) {
-      const Believed& now = tracker.after(w);
-      track.times_s.push_back(all.windows[w].time_s + options.window_s);
-      track.values.push_back(now.mean.head<kPairNumbers>());
-      track.sigmas.push_back(now.covariance.diagonal().head<kPairNumbers>().cwiseMax(0.0).cwiseSqrt());
-    }
-    setStart(all.windows, tracker.firstChange(), track.coloured, track);
-    break;
+  const PairColours colours = coloursOf(all.windows, model, options);
+  const PairVector wider = widerSigmas(colours);
+  for (std::size_t b = 0; b < colours.size(); ++b) track.wider[b] = std::max(1.0, colours[b].settled);
+  Tracker tracker(all.windows, model, alarm_probability, colours, options);
+  tracker.run();
+  track.steps = tracker.steps();
+  for (std::size_t w = 0; w < all.windows.size(); ++w) {
+    const Believed& now = tracker.after(w);
+    track.times_s.push_back(all.windows[w].time_s + options.window_s);
+    track.values.push_back(now.mean.head<kPairNumbers>());
+    track.sigmas.push_back(
+        wider.cwiseProduct(now.covariance.diagonal().head<kPairNumbers>().cwiseMax(0.0).cwiseSqrt()));
   }
+  setStart(all.windows, tracker.firstChange(), wider, options, track);
   return track;
 }
 

@@ -39,7 +39,8 @@ struct PairTrack {
   PairVector start_score = PairVector::Zero();
   std::vector<PairStep> steps;
   double gyroscope_noise_rad_s = 0.0, accelerometer_noise_m_s2 = 0.0;  // of a point
-  double coloured = 1.0;  // by how much variances are larger than white noise makes them
+  // By how much variances are larger than white noise makes them, by block: sigmas above hold it, information does not.
+  std::array<double, kPairBlocks.size()> wider = {1.0, 1.0, 1.0, 1.0, 1.0};
 };
 
 // `alarm_probability`: that of a false alarm in all of this pair's tests together.

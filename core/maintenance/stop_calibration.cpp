@@ -172,12 +172,12 @@ Misfit misfitOf(const StopCalibration& found) {
 }
 
 // A ride at a steady pull looks like a stop. One that the others contradict goes, while most stay.
-void dropOutliers(StopCalibration& found, const Eigen::Vector3d& variance, double gravity_m_s2) {
-  constexpr double kFar = 6.0, kMostShare = 0.2;
-  const auto most = static_cast<int>(kMostShare * static_cast<double>(found.stops.size()));
+void dropOutliers(StopCalibration& found, const Eigen::Vector3d& variance, double gravity_m_s2,
+                  const MaintenanceOptions& options) {
+  const auto most = static_cast<int>(options.left_out_stops * static_cast<double>(found.stops.size()));
   for (int dropped = 0; dropped < most; ++dropped) {
     std::size_t worst = found.stops.size();
-    double furthest = kFar;
+    double furthest = options.far_stop_sigmas;
     for (std::size_t s = 0; s < found.stops.size(); ++s) {
       const double far = std::abs(found.residuals_m_s2[s]) / found.sigmas_m_s2[s];
       if (found.used[s] != 0 && far > furthest) {
@@ -258,7 +258,8 @@ AccelerometerVector accelerometerVariances(const ImuUncertainty& sigma, const Ma
 }
 
 StopCalibration calibrateFromStops(std::span<const MeansWindow> windows, std::span<const StopRange> ranges,
-                                   const ImuState& before, double gravity_m_s2) {
+                                   const ImuState& before, double gravity_m_s2,
+                                   const MaintenanceOptions& options) {
   StopCalibration found;
   if (ranges.empty()) return found;
   for (const StopRange& range : ranges) found.stops.push_back(meanOf(windows, range));
@@ -270,7 +271,7 @@ StopCalibration calibrateFromStops(std::span<const MeansWindow> windows, std::sp
   found.sigmas_m_s2.resize(found.stops.size());
   found.before = accelerometerNumbers(before);
   solve(found, variance, gravity_m_s2);
-  dropOutliers(found, variance, gravity_m_s2);
+  dropOutliers(found, variance, gravity_m_s2, options);
   const Misfit misfit = misfitOf(found);
   found.misfit = misfit.rms;
   const NormalEquations at_before = equationsAt(found, variance, found.before, gravity_m_s2);

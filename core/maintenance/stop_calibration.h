@@ -52,6 +52,7 @@ struct StopCalibration {
 
 // Nothing to calibrate without stops: then `stops` is empty and all else meaningless.
 StopCalibration calibrateFromStops(std::span<const MeansWindow> windows, std::span<const StopRange> ranges,
-                                   const ImuState& before, double gravity_m_s2);
+                                   const ImuState& before, double gravity_m_s2,
+                                   const MaintenanceOptions& options);
 
 }  // namespace evical

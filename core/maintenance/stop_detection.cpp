@@ -8,11 +8,7 @@
 namespace evical {
 namespace {
 
-constexpr double kGap_s = 0.1;                            // a window with one tells nothing
-constexpr int kFewest = 4;                                // samples in a window
-constexpr double kShakenRate = 0.05, kShakenForce = 0.5;  // rad/s, m/s^2: no stop is that restless
-constexpr double kAboveFloor = 4.0;                       // of variances
-constexpr double kForceStays_m_s2 = 0.05;                 // of a window's mean, beside five of its sigmas
+constexpr int kFewest = 4;  // samples in a window
 
 double lowQuantile(std::vector<double> values) {
   const auto place = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 10);
@@ -30,7 +26,7 @@ struct Stillness {
   }
 };
 
-Stillness stillnessOf(std::span<const MeansWindow> windows) {
+Stillness stillnessOf(std::span<const MeansWindow> windows, const MaintenanceOptions& options) {
   std::vector<double> rates, forces;
   for (const MeansWindow& window : windows) {
     if (window.samples < kFewest) continue;
@@ -40,8 +36,10 @@ Stillness stillnessOf(std::span<const MeansWindow> windows) {
   if (rates.empty()) return {};
   // Of quantised numbers a window may have no variance at all.
   constexpr double kLeast = 1e-10;
-  return {std::min(kAboveFloor * std::max(lowQuantile(rates), kLeast), kShakenRate * kShakenRate),
-          std::min(kAboveFloor * std::max(lowQuantile(forces), kLeast), kShakenForce * kShakenForce)};
+  const auto limit = [&](const std::vector<double>& variances, double most) {
+    return std::min(options.stop_above_quietest * std::max(lowQuantile(variances), kLeast), most * most);
+  };
+  return {limit(rates, options.stop_rate_rad_s), limit(forces, options.stop_force_m_s2)};
 }
 
 struct RunMeans {
@@ -53,12 +51,12 @@ struct RunMeans {
     force += (window.force_m_s2 - force) / (count + 1.0);
     count += 1.0;
   }
-  bool holds(const MeansWindow& window, double still_rate) const {
+  bool holds(const MeansWindow& window, double still_rate, double still_force) const {
     const double rate_sigma = std::sqrt(window.rate_variance / window.samples);
     const double force_sigma = std::sqrt(window.force_variance / window.samples);
     return count == 0.0 ||
            ((window.rate_rad_s - rate).cwiseAbs().maxCoeff() < still_rate + 5.0 * rate_sigma &&
-            (window.force_m_s2 - force).cwiseAbs().maxCoeff() < kForceStays_m_s2 + 5.0 * force_sigma);
+            (window.force_m_s2 - force).cwiseAbs().maxCoeff() < still_force + 5.0 * force_sigma);
   }
 };
 
@@ -116,15 +114,17 @@ void WindowMeans::finish() {
 }
 
 std::vector<StopRange> findStops(std::span<const MeansWindow> windows, const MaintenanceOptions& options) {
-  const Stillness still = stillnessOf(windows);
+  const Stillness still = stillnessOf(windows, options);
   const double still_rate = options.still_rate_deg_s * kRadPerDeg;
   std::vector<StopRange> stops;
   const auto fewest = static_cast<std::size_t>(std::ceil(options.shortest_stop_s / WindowMeans::kLength_s));
   for (std::size_t begin = 0; begin < windows.size();) {
     RunMeans means;
     std::size_t end = begin;
-    for (; end < windows.size() && still.of(windows[end]) && means.holds(windows[end], still_rate); ++end) {
-      if (end > begin && windows[end].time_s - windows[end - 1].time_s > WindowMeans::kLength_s + kGap_s)
+    for (; end < windows.size() && still.of(windows[end]); ++end) {
+      if (!means.holds(windows[end], still_rate, options.still_force_m_s2)) break;
+      if (end > begin &&
+          windows[end].time_s - windows[end - 1].time_s > WindowMeans::kLength_s + options.gap_s)
         break;
       means.add(windows[end]);
     }

@@ -1,11 +1,11 @@
 #include "core/maintenance/trajectory_lag.h"
 
+#include "core/geometry/best_rotation.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/band_cholesky.h"
 #include "core/numerics/chi_squared.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <array>
@@ -219,11 +219,11 @@ void TrajectoryLags::add(double time_s, const ImuSample& sample) {
 
 bool TrajectoryLags::isWhole() const {
   const TimedPose &from = poses_[from_], &to = poses_[to_];
-  constexpr double kLongest = 3.0, kGap = 0.3;  // of the interval of poses
+  constexpr double kGap = 0.3;  // of the interval of poses
   if (samples_.size() < 3 || times_s_.front() > from.time_s || times_s_.back() < to.time_s) return false;
   for (std::size_t k = 1; k < times_s_.size(); ++k)
     if (times_s_[k] - times_s_[k - 1] > kGap * options_.pose_interval_s) return false;
-  return to.time_s - from.time_s < kLongest * options_.pose_interval_s;
+  return to.time_s - from.time_s < options_.trajectory_gap * options_.pose_interval_s;
 }
 
 // At the samples between two poses, and at the poses' own times; turned from the first pose by the gyroscope.
@@ -371,10 +371,7 @@ TurnAgreement turnAgreement(const std::vector<Eigen::Vector3d>& of_body,
     body += of_body[k].squaredNorm();
     imu += of_imu[k].squaredNorm();
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(products, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d sign = Eigen::Matrix3d::Identity();
-  sign(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-  const Eigen::Matrix3d rotation = svd.matrixU() * sign * svd.matrixV().transpose();
+  const Eigen::Matrix3d rotation = bestRotation(products).matrix;
   TurnAgreement agreement;
   agreement.imu_from_body = Eigen::Quaterniond(rotation);
   const double scale = std::sqrt(body * imu);

@@ -76,8 +76,9 @@ void setChange(const BlockWords& words, const BlockChange& change, double limit,
 }
 
 // Of a block that was tested with others: as found where it has changed, else as it alone would have.
+// `wider`: by how much variances are larger than the test takes them.
 void setTested(const BlockWords& words, const StateBlock& block, const ChangeTest& test,
-               const std::vector<FoundChange>& changes, std::size_t which, double false_alarms,
+               const std::vector<FoundChange>& changes, std::size_t which, double limit, double wider,
                MaintainedQuantity& quantity) {
   BlockChange change = test.of(block);
   for (const FoundChange& each : changes) {
@@ -85,8 +86,10 @@ void setTested(const BlockWords& words, const StateBlock& block, const ChangeTes
     change = each.change;
     quantity.changed = true;
   }
-  setChange(words, change, chiSquaredLimit(false_alarms, static_cast<int>(block.size)),
-            test.worstSigma(block), quantity);
+  change.covariance *= wider;
+  setChange(words, change, limit, test.worstSigma(block), quantity);
+  quantity.would_notice =
+      words.factor * wouldNotice(std::sqrt(wider) * test.worstSigma(block), limit / wider);
 }
 
 double squared(double value) {
@@ -132,8 +135,8 @@ void addAccelerometer(const AccelerometerEvidence& evidence, const NamedResult& 
   const AccelerometerVector old_numbers = accelerometerNumbers(before.result->state.imus[imu]);
   const Eigen::MatrixXd known = accelerometerVariances(sigma, options).asDiagonal();
   const ChangeTest test(evidence.information, evidence.score, known);
-  const auto changes =
-      findChanges(evidence.information, evidence.score, known, kAccelerometerBlocks, false_alarms);
+  const std::vector<double> limits = limitsFor(kAccelerometerBlocks, false_alarms);
+  const auto changes = findChanges(evidence.information, evidence.score, known, kAccelerometerBlocks, limits);
   MaintenanceOptions exact = options;
   exact.stability_accelerometer_bias_m_s2 = exact.stability_imu_scale = 0.0;
   const AccelerometerVector sigma_before = accelerometerVariances(sigma, exact).cwiseSqrt();
@@ -146,7 +149,7 @@ void addAccelerometer(const AccelerometerEvidence& evidence, const NamedResult& 
                                   old_numbers[n], sigma_before[n], evidence.now[n],
                                   std::sqrt(std::max(evidence.covariance(n, n), 0.0))});
     }
-    setTested(kStopWords[b], block, test, changes, b, false_alarms, quantity);
+    setTested(kStopWords[b], block, test, changes, b, limits[b], 1.0, quantity);
     maintenance.quantities.push_back(quantity);
   }
 }
@@ -327,7 +330,9 @@ void addPairQuantities(const TrackedPair& pair, const NamedResult& before, const
   const Eigen::MatrixXd information = pair.track.start_information;
   const Eigen::VectorXd score = pair.track.start_score - pair.track.start_information * old_state;
   const ChangeTest test(information, score, covariance);
-  const auto changes = findChanges(information, score, covariance, kPairBlocks, false_alarms);
+  std::vector<double> limits = limitsFor(kPairBlocks, false_alarms);
+  for (std::size_t b = 0; b < limits.size(); ++b) limits[b] *= pair.track.wider[b];
+  const auto changes = findChanges(information, score, covariance, kPairBlocks, limits);
   const PairVector numbers_before = numbersOf(pair.before, PairVector::Zero()),
                    numbers_now = numbersOf(pair.nominal, pair.track.start);
   for (std::size_t b = 0; b < kPairBlocks.size(); ++b) {
@@ -343,7 +348,7 @@ void addPairQuantities(const TrackedPair& pair, const NamedResult& before, const
            kPairWords[b].factor * numbers_now[n],
            kPairWords[b].factor * std::sqrt(std::max(pair.track.start_covariance(n, n), 0.0))});
     }
-    setTested(kPairWords[b], block, test, changes, b, false_alarms, quantity);
+    setTested(kPairWords[b], block, test, changes, b, limits[b], pair.track.wider[b], quantity);
     maintenance.quantities.push_back(quantity);
   }
   addSteps(pair, before, maintenance);

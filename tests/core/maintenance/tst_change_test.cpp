@@ -71,7 +71,8 @@ class TestChangeTest : public QObject {
       const Eigen::MatrixXd j = rows(generator);
       const Eigen::Vector3d step =
           changed == 0 ? Eigen::Vector3d(4.0, 4.0, 0.0) : Eigen::Vector3d(0.0, 0.0, 4.0);
-      const auto found = findChanges(j.transpose() * j, j.transpose() * (j * step), known, kBlocks, 1e-4);
+      const auto found = findChanges(j.transpose() * j, j.transpose() * (j * step), known, kBlocks,
+                                     limitsFor(kBlocks, 1e-4));
       QCOMPARE(found.size(), std::size_t{1});
       QCOMPARE(found.front().block, changed);
     }
@@ -82,7 +83,7 @@ class TestChangeTest : public QObject {
     QCOMPARE(test.of(kBlocks[0]).chi_square, 0.0);
     QVERIFY(!std::isfinite(test.worstSigma(kBlocks[0])));
     QVERIFY(findChanges(Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity(),
-                        kBlocks, 0.01)
+                        kBlocks, limitsFor(kBlocks, 0.01))
                 .empty());
   }
 };

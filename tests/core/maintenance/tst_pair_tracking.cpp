@@ -85,6 +85,37 @@ class TestPairTracking : public QObject {
       QVERIFY(trackOf(driveScenario("none", seed), 0.01).steps.empty());
   }
 
+  // Of mounts that shake or bend for a tenth of a second or for several: no alarm above the stated rate, and sigmas that
+  // hold.
+  void shaking_isNoChange_data() {
+    QTest::addColumn<double>("rate_rad_s");
+    QTest::addColumn<double>("force_m_s2");
+    QTest::addColumn<double>("correlation_s");
+    QTest::newRow("a tenth of a second") << 0.005 << 0.1 << 0.1;
+    QTest::newRow("a third") << 0.005 << 0.1 << 0.3;
+    QTest::newRow("a second") << 0.003 << 0.05 << 1.0;
+    QTest::newRow("two seconds") << 0.002 << 0.03 << 2.0;
+    QTest::newRow("forces alone") << 0.0 << 0.1 << 0.3;
+  }
+  void shaking_isNoChange() {
+    QFETCH(const double, rate_rad_s);
+    QFETCH(const double, force_m_s2);
+    QFETCH(const double, correlation_s);
+    constexpr int kSeeds = 20;
+    PairVector squares = PairVector::Zero();
+    int alarms = 0;
+    for (int seed = 1; seed <= kSeeds; ++seed) {
+      DriveScenario scenario = driveScenario("none", static_cast<std::uint64_t>(200 + seed));
+      for (SimulatedImu& imu : scenario.imus) imu.shake = {rate_rad_s, force_m_s2, correlation_s};
+      const PairTrack track = trackOf(scenario, 0.005);
+      alarms += track.steps.empty() ? 0 : 1;
+      squares += (track.start.array().square() / track.start_covariance.diagonal().array()).matrix();
+    }
+    QVERIFY2(alarms == 0, qPrintable(QString::number(alarms)));
+    const double ratio = std::sqrt(squares.mean() / kSeeds);
+    QVERIFY2(ratio > 0.5 && ratio < 1.4, qPrintable(QString::number(ratio)));
+  }
+
   void standing_tellsNoLeverArm() {
     DriveScenario scenario = driveScenario("none");
     scenario.motion.stops = 1;
