@@ -36,7 +36,7 @@ struct MaintainedQuantity {
   bool told() const { return would_notice <= matters; }
 };
 
-// Something that changed on the way.
+// Something that changed on the way; `against` is empty where several IMUs tell that it was this one.
 struct MaintenanceStep {
   std::string sensor, against, name, title, unit;
   double at_s = 0.0, noticed_s = 0.0;  // since the log's start, on the reference IMU's clock
@@ -71,6 +71,12 @@ struct MaintenanceTrack {
   std::vector<double> times_s;
   std::vector<std::vector<double>> values, sigmas;  // by column
 };
+
+// Whether it shows there: of the pair itself, or of the IMU that the pair is held against.
+inline bool isIn(const MaintenanceStep& step, const MaintenanceTrack& track) {
+  return step.sensor == track.sensor ? step.against == track.against
+                                     : step.against.empty() && step.sensor == track.against;
+}
 
 struct Maintenance {
   MaintenanceVerdict verdict = MaintenanceVerdict::CannotTell;

@@ -48,7 +48,7 @@ constexpr std::array kRules = {
     Rule{"normal_flow.", [](const Session& s) { return detection(s).method == CandidateSource::RingVote; },
          "normal flow is used only where ring votes find no board"},
     Rule{"check.", [](const Session&) { return true; }, "only a check of an earlier result takes it"},
-    Rule{"maintain.", [](const Session&) { return true; }, "only `evical maintain` takes it"},
+    Rule{"maintain.", [](const Session&) { return true; }, "only a look at logs of IMUs takes it"},
     Rule{"intrinsics.", everyLensIsGiven, "every camera's lens is given"},
     Rule{"frames.tag_border", [](const Session& s) { return !hasBoard(s, BoardType::AprilGrid); },
          "no board is an AprilGrid"},

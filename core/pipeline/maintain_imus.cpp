@@ -8,7 +8,8 @@
 #include "core/maintenance/clock_agreement.h"
 #include "core/maintenance/imu_pairs.h"
 #include "core/numerics/angles.h"
-#include "core/numerics/robust.h"
+#include "core/pipeline/changed_reference.h"
+#include "core/pipeline/imu_unit_check.h"
 #include "core/pipeline/maintained_quantities.h"
 #include "core/pipeline/maintained_trajectory.h"
 
@@ -55,7 +56,7 @@ class Maintainer {
     look();
     readAll();
     describe();
-    checkUnits();
+    checkLogs();
     const double tests = 4.0 * static_cast<double>(imus_.size()) +
                          5.0 * static_cast<double>(imus_.size() - 1) +
                          (input_.trajectory.empty() ? 0.0 : 3.0);
@@ -64,6 +65,7 @@ class Maintainer {
     addTrajectory(one_test);
     addPairs(one_test);
     maintenance_.false_alarms = input_.options.false_alarms;
+    nameChangedReference(maintenance_);
     judge(maintenance_);
     advise();
     maintenance_.took_s = all.elapsed_s();
@@ -81,7 +83,7 @@ class Maintainer {
   // All of it, into means and pairs.
   void readAll();
   void describe();
-  void checkUnits() const;
+  void checkLogs() const;
   void addStops(double false_alarms);
   void addTrajectory(double false_alarms);
   void addPairs(double false_alarms);
@@ -101,6 +103,7 @@ class Maintainer {
   std::vector<ImuPass> passes_;
   std::vector<std::vector<PairWindow>> windows_;
   std::vector<std::string> disagreeing_;
+  std::string shaken_;  // a pair that noise with a memory parts
   std::vector<std::string> streams_;
 };
 
@@ -156,12 +159,11 @@ void Maintainer::look() {
 }
 
 void Maintainer::agreeClocks(const std::vector<RateNorms>& norms) {
-  constexpr double kNear_s = 0.004, kSameMotion = 0.7;
+  constexpr double kNear_s = 0.004;
   for (std::size_t k = 1; k < imus_.size(); ++k) {
-    const ClockAgreement clocks =
-        clockAgreement(norms.front(), norms[k], input_.options.time_offset_search_s);
+    const ClockAgreement clocks = clockAgreement(norms.front(), norms[k], input_.options);
     if (!clocks.moved) continue;
-    if (clocks.correlation < kSameMotion) {
+    if (clocks.correlation < input_.options.same_motion) {
       disagreeing_.push_back(name(imus_[k]));
       continue;
     }
@@ -209,7 +211,6 @@ void Maintainer::readAll() {
 }
 
 void Maintainer::describe() {
-  constexpr double kGap_s = 0.1;
   for (std::size_t k = 0; k < imus_.size(); ++k) {
     MaintainedImu& imu = maintenance_.imus.emplace_back();
     imu.name = name(imus_[k]);
@@ -218,7 +219,7 @@ void Maintainer::describe() {
     imu.to_s = passes_[k].last_s;
     imu.rate_hz = passes_[k].rate_hz();
     maintenance_.duration_s = std::max(maintenance_.duration_s, imu.to_s);
-    if (passes_[k].longest_gap_s > kGap_s)
+    if (passes_[k].longest_gap_s > input_.options.gap_s)
       maintenance_.notes.push_back(
           fmt::format("{}: samples are missing, for {:.2f} s at {:.2f} s and perhaps "
                       "elsewhere; windows with gaps are left out",
@@ -226,41 +227,12 @@ void Maintainer::describe() {
   }
 }
 
-// Rates and forces in other units than the log says look like wrecked sensors.
-void Maintainer::checkUnits() const {
-  constexpr std::size_t kFewest = 20;
+void Maintainer::checkLogs() const {
+  const auto means = [this](std::size_t k) { return ImuMeans{name(imus_[k]), passes_[k].means.windows()}; };
   for (std::size_t k = 0; k < imus_.size(); ++k) {
-    const std::vector<MeansWindow>& windows = passes_[k].means.windows();
-    if (windows.size() < kFewest) continue;
-    std::vector<double> norms;
-    for (const MeansWindow& window : windows) norms.push_back(window.force_m_s2.norm());
-    const double norm = medianOf(std::move(norms));
-    if (norm > 0.3 && norm < 3.0)
-      throw badInput(name(imus_[k]),
-                     fmt::format("its specific force is {:.2f} m/s^2 on average: the log is in g", norm),
-                     "Give --acceleration-unit g");
-    if (norm > 30.0)
-      throw badInput(
-          name(imus_[k]),
-          fmt::format("its specific force is {:.0f} m/s^2 on average: the log is in m/s^2 already, "
-                      "or in thousandths of g",
-                      norm),
-          "Give --acceleration-unit m/s^2, or convert the log");
-    const double scale = rateScale(windows);
-    if (scale > 0.01 && scale < 0.03)
-      throw badInput(
-          name(imus_[k]),
-          fmt::format("gravity turns {:.0f} times more slowly than its gyroscope says: the rates are in "
-                      "deg/s",
-                      1.0 / scale),
-          "Give --angular-rate-unit deg/s");
-    if (scale > 30.0 && scale < 100.0)
-      throw badInput(
-          name(imus_[k]),
-          fmt::format("gravity turns {:.0f} times faster than its gyroscope says: the rates are in "
-                      "rad/s",
-                      scale),
-          "Give --angular-rate-unit rad/s");
+    checkUnits(means(k));
+    if (k > 0)
+      checkDirection(means(k), means(0), nominal_[k].reference_from_imu.rotation, nominal_[k].time_offset_s);
   }
 }
 
@@ -268,7 +240,8 @@ void Maintainer::addStops(double false_alarms) {
   for (std::size_t k = 0; k < imus_.size(); ++k) {
     const std::vector<MeansWindow>& windows = passes_[k].means.windows();
     const std::vector<StopRange> stops = findStops(windows, input_.options);
-    const StopCalibration found = calibrateFromStops(windows, stops, state(imus_[k]), gravity_m_s2_);
+    const StopCalibration found =
+        calibrateFromStops(windows, stops, state(imus_[k]), gravity_m_s2_, input_.options);
     MaintainedImu& imu = maintenance_.imus[k];
     if (stops.empty()) {
       maintenance_.notes.push_back(
@@ -357,10 +330,12 @@ void Maintainer::addPairs(double false_alarms) {
     }
     addPairQuantities({imus_[k], imus_.front(), nominal_[k], nominal_before_[k], tracks[k]}, before(),
                       input_.options, false_alarms, maintenance_);
-    if (tracks[k].coloured > 1.5)
+    const double wider = *std::max_element(tracks[k].wider.begin(), tracks[k].wider.end());
+    if (wider > 4.0) shaken_ = pair;
+    if (wider > 1.5)
       maintenance_.notes.push_back(fmt::format(
-          "{}: what is left between the two is no white noise; its sigmas are {:.1f} times wider for that",
-          pair, std::sqrt(tracks[k].coloured)));
+          "{}: what is left between the two is no white noise; sigmas are up to {:.1f} times wider for that",
+          pair, std::sqrt(wider)));
   }
 }
 
@@ -388,6 +363,10 @@ void Maintainer::advise() {
       maintenance_.advice.push_back(
           fmt::format("Stand still in more attitudes: {} is told least of {}", imu.weakest, imu.name));
   }
+  if (!shaken_.empty())
+    maintenance_.advice.push_back(fmt::format(
+        "What is left between {} lasts: mount them more stiffly, or log them without what shakes them",
+        shaken_));
   if (imus_.size() > 1)
     maintenance_.advice.emplace_back("Turn the rig about all its axes, for a minute and briskly");
 }

@@ -234,4 +234,21 @@ std::string trackCsv(const MaintenanceTrack& track) {
   return text;
 }
 
+std::vector<TrackPart> partsOf(const MaintenanceTrack& track) {
+  std::vector<TrackPart> all;
+  for (std::size_t c = 0; c < track.columns.size(); ++c) {
+    const std::string& column = track.columns[c];
+    const std::string whole = column.substr(0, column.find(' '));
+    const std::size_t dot = whole.find('.'), bracket = column.find('[');
+    const std::string name = whole.substr(0, dot);
+    if (all.empty() || all.back().name != name) {
+      const std::string unit =
+          bracket == std::string::npos ? "" : column.substr(bracket + 1, column.find(']') - bracket - 1);
+      all.push_back({name, unit, {}, c});
+    }
+    all.back().parts.push_back(dot == std::string::npos ? "" : whole.substr(dot + 1));
+  }
+  return all;
+}
+
 }  // namespace evical

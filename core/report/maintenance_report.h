@@ -3,7 +3,9 @@
 
 #include "core/data/maintenance.h"
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
 namespace evical {
 
@@ -18,5 +20,13 @@ std::string maintenanceTable(const Maintenance& maintenance);
 // Stops of all IMUs, a line each; and a track over time, each number with its sigma.
 std::string stopsCsv(const Maintenance& maintenance);
 std::string trackCsv(const MaintenanceTrack& track);
+
+// Columns of a track that are one quantity: shown beside each other.
+struct TrackPart {
+  std::string name, unit;          // "rotation", "deg"
+  std::vector<std::string> parts;  // "x", "y", "z"; one empty one of a single number
+  std::size_t first = 0;           // of the columns
+};
+std::vector<TrackPart> partsOf(const MaintenanceTrack& track);
 
 }  // namespace evical

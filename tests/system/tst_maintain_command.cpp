@@ -120,6 +120,35 @@ class TestMaintainCommand : public QObject {
     QVERIFY(QFile::exists(path("out_step/track1.csv")));
   }
 
+  // All others see the same step at the same moment.
+  void stepOfTheReference_isItsOwn() {
+    writeFile(path("reference.yaml"), ("base: " + scenario("three_imus_hour") +
+                                       "\nduration_s: 120\nsteps:\n  - {imu: front, at_s: 55, "
+                                       "accelerometer_bias_m_s2: [0.15, -0.12, 0.1]}\n")
+                                          .toUtf8());
+    VERIFY_OUTCOME(runProgram({"simulate", path("reference.yaml"), "-o", path("reference"), "--quiet"}), 0);
+    QStringList arguments = maintain("reference", {}, "out_reference");
+    arguments.push_back("--json");
+    const Outcome outcome = runProgram(arguments);
+    VERIFY_OUTCOME(outcome, 3);
+    const QJsonArray steps =
+        QJsonDocument::fromJson(outcome.output.toUtf8()).object().value("steps").toArray();
+    QCOMPARE(steps.size(), 1);
+    const QJsonObject step = steps.first().toObject();
+    QCOMPARE(step.value("sensor").toString(), QString("front"));
+    QCOMPARE(step.value("against").toString(), QString());
+    QCOMPARE(step.value("quantity").toString(), QString("accelerometer_bias"));
+    QVERIFY(std::abs(step.value("at_s").toDouble() - 55.0) <= 2.0);
+    QVERIFY(std::abs(step.value("by").toDouble() - 0.2166) < 0.02);
+  }
+
+  void shakenMounts_areNoChange() {
+    simulate("shaken");
+    const Outcome outcome = runProgram(maintain("shaken", {}, "out_shaken"));
+    VERIFY_OUTCOME(outcome, 4);
+    QVERIFY2(outcome.output.contains("mount them more stiffly"), qPrintable(outcome.output));
+  }
+
   void nothing_isNoChange() { VERIFY_OUTCOME(runProgram(maintain("none", {}, "out_none")), 0); }
 
   void trajectory_saysTheSameAsStops() {
@@ -266,6 +295,22 @@ class TestMaintainCommand : public QObject {
                     "rear=" + path("other_seed") + "/recording.bag"});
     VERIFY_OUTCOME(outcome, 4);
     QVERIFY2(outcome.output.contains("does not turn as"), qPrintable(outcome.output));
+  }
+
+  // As a log in -g is, and a sensor that was mounted upside down.
+  void opposedForces_areSaid() {
+    writeFile(path("turned_over.yaml"),
+              ("base: " + scenario("none") +
+               "\nduration_s: 5\nimus:\n  - {}\n  - reference_from_imu: {rotation_xyzw: "
+               "[0.7233, 0.69, -0.015, -0.02], translation_m: [-0.35, 0.12, 0.08]}\n")
+                  .toUtf8());
+    VERIFY_OUTCOME(runProgram({"simulate", path("turned_over.yaml"), "-o", path("turned_over"), "--quiet"}),
+                   0);
+    const Outcome outcome =
+        runProgram(maintain("turned_over", path("none") + "/recording.bag", "out_turned_over"));
+    VERIFY_OUTCOME(outcome, 2);
+    VERIFY_SAYS(outcome, "rear: its specific force points against that of front");
+    QVERIFY(!QDir(path("out_turned_over")).exists());
   }
 
   void cancelled_leavesNothing() {

@@ -98,8 +98,9 @@ void writeSteps(const Maintenance& maintenance, ReportPage& page) {
 }
 
 // Numbers of one unit beside each other, with a band of one sigma as faint lines.
-void drawColumns(const MaintenanceTrack& track, std::size_t first, std::size_t count, const std::string& file,
-                 const Maintenance& maintenance, ReportPage& page) {
+void drawPart(const MaintenanceTrack& track, const TrackPart& part, const std::string& file,
+              const Maintenance& maintenance, ReportPage& page) {
+  const std::size_t first = part.first, count = part.parts.size();
   std::vector<std::string> names = {"time_s"};
   for (std::size_t c = first; c < first + count; ++c) {
     names.push_back(track.columns[c]);
@@ -119,12 +120,11 @@ void drawColumns(const MaintenanceTrack& track, std::size_t first, std::size_t c
   // The first moments, of which hardly anything is known, would squeeze all others.
   const std::size_t skipped = std::min<std::size_t>(plotted.rows() / 10, 10);
   PlotFrame frame;
-  const std::string& name = track.columns[first];
   frame.title =
-      fmt::format("{} of {}", name.substr(0, name.find_first_of(". ")),
+      fmt::format("{} of {}", part.name,
                   track.against.empty() ? track.sensor : track.sensor + " against " + track.against);
   frame.x_label = "s";
-  frame.y_label = name.substr(name.find('[') + 1, name.find(']') - name.find('[') - 1);
+  frame.y_label = part.unit;
   frame.x = rangeOf(plotted.values[0]);
   frame.y = rangeOf(std::span(plotted.values[1]).subspan(skipped));
   for (std::size_t c = 1; c < count; ++c)
@@ -132,8 +132,7 @@ void drawColumns(const MaintenanceTrack& track, std::size_t first, std::size_t c
   SvgPlot plot(frame);
   plot.segment(frame.x.low, 0.0, frame.x.high, 0.0, "muted");
   for (const MaintenanceStep& step : maintenance.steps)
-    if (step.sensor == track.sensor && step.against == track.against)
-      plot.segment(step.at_s, frame.y.low, step.at_s, frame.y.high, "ink");
+    if (isIn(step, track)) plot.segment(step.at_s, frame.y.low, step.at_s, frame.y.high, "ink");
   std::vector<LegendEntry> legend;
   for (std::size_t c = 0; c < count; ++c) {
     const char* const colour = kColours[c % kColours.size()];
@@ -162,14 +161,8 @@ void writeTracks(const Maintenance& maintenance, ReportPage& page) {
   page.beginSection("tracks", "Over time");
   int picture = 0;
   for (const MaintenanceTrack& track : maintenance.tracks)
-    for (std::size_t first = 0; first < track.columns.size();) {
-      const std::string stem = track.columns[first].substr(0, track.columns[first].find_first_of(". "));
-      std::size_t count = 1;
-      while (first + count < track.columns.size() && track.columns[first + count].starts_with(stem + "."))
-        ++count;
-      drawColumns(track, first, count, fmt::format("plots/track{}.csv", ++picture), maintenance, page);
-      first += count;
-    }
+    for (const TrackPart& part : partsOf(track))
+      drawPart(track, part, fmt::format("plots/track{}.csv", ++picture), maintenance, page);
   page.endSection();
 }
 
