@@ -8,6 +8,7 @@
 #include "tests/ui/slowdown.h"
 #include "tests/ui/unnamed_controls.h"
 #include "tests/ui/window_fixture.h"
+#include "ui/screens/file_list.h"
 #include "ui/screens/repeat_screen.h"
 #include "ui/screens/repeat_table.h"
 #include "ui/window/error_panel.h"
@@ -65,10 +66,10 @@ class TestRepeatPage : public QObject {
     auto* const screen = test.child<RepeatScreen>();
     QVERIFY(!button(test, "start_repeat")->isEnabled() && !button(test, "add_open")->isEnabled());
     QVERIFY(button(test, "start_repeat")->toolTip().contains("at least two"));
-    screen->addFiles({"/no/such/a.bag"});
+    screen->files().add({"/no/such/a.bag"});
     QVERIFY(button(test, "start_repeat")->toolTip().contains("at least two"));
-    screen->addFiles({"/no/such/b.bag", "/no/such/a.bag"});
-    QCOMPARE(screen->files().size(), 2);
+    screen->files().add({"/no/such/b.bag", "/no/such/a.bag"});
+    QCOMPARE(screen->files().files().size(), 2);
     QVERIFY(button(test, "start_repeat")->isEnabled());
     type(test, {});
     QTest::keyClick(screen->findChild<QLineEdit*>("repeat_folder"), Qt::Key_Delete);
@@ -78,11 +79,11 @@ class TestRepeatPage : public QObject {
     QVERIFY(!test.runner().running());
     QVERIFY2(test.child<ErrorPanel>()->text().contains("which board, is not said"),
              qPrintable(test.child<ErrorPanel>()->text()));
-    auto* const list = screen->findChild<QListWidget*>("repeated_files");
+    auto* const list = screen->findChild<QListWidget*>("list_recordings");
     list->setCurrentRow(0);
     list->setFocus();
     QTest::keyClick(list, Qt::Key_Delete);
-    QCOMPARE(screen->files(), QStringList{"/no/such/b.bag"});
+    QCOMPARE(screen->files().files(), QStringList{"/no/such/b.bag"});
   }
 
   void story() {
@@ -94,7 +95,7 @@ class TestRepeatPage : public QObject {
     QTest::mouseClick(button(test, "add_open"), Qt::LeftButton);
     // A session, and a recording that is taken as one of the rig that is open.
     const QString recording = QFileInfo(simulatedFurtherSession(2)).dir().filePath("recording.bag");
-    screen->addFiles({recording, simulatedFurtherSession(4), simulatedFurtherSession(3, 1.5)});
+    screen->files().add({recording, simulatedFurtherSession(4), simulatedFurtherSession(3, 1.5)});
     const QString folder = scratch_.filePath("together");
     type(test, folder);
     cancelled(test);
@@ -124,7 +125,7 @@ class TestRepeatPage : public QObject {
     test.window.files().open(copyOfSimulatedSession(scratch_.path()));
     QTRY_VERIFY(test.document().hasSession());
     test.document().setOption("grid.least_circles", "9");
-    test.child<RepeatScreen>()->addFiles({test.document().file(), simulatedFurtherSession(2)});
+    test.child<RepeatScreen>()->files().add({test.document().file(), simulatedFurtherSession(2)});
     test.window.showScreen("repeat");
     QTest::mouseClick(button(test, "start_repeat"), Qt::LeftButton);
     QVERIFY(!test.runner().running());

@@ -2,20 +2,19 @@
 #include "ui/screens/repeat_screen.h"
 
 #include "ui/screens/check_words.h"
+#include "ui/screens/file_list.h"
 #include "ui/screens/path_row.h"
 #include "ui/screens/repeat_table.h"
 #include "ui/screens/selectable_label.h"
+#include "ui/screens/verdict_line.h"
 #include "ui/screens/work_bar.h"
 #include "ui/theme/theme.h"
 
 #include <QComboBox>
-#include <QDir>
-#include <QEvent>
 #include <QGridLayout>
 #include <QLabel>
 #include <QListWidget>
 #include <QPushButton>
-#include <QShortcut>
 #include <QStackedWidget>
 #include <QTabBar>
 #include <QTabWidget>
@@ -48,9 +47,9 @@ QString titleOf(RepeatVerdict verdict) {
   return QObject::tr("Nothing to compare");
 }
 
-QIcon iconOf(RepeatVerdict verdict) {
-  if (verdict == RepeatVerdict::Agree) return icon("done", theme().good);
-  return verdict == RepeatVerdict::Disagree ? icon("warning", theme().warning) : icon("error", theme().bad);
+VerdictTone toneOf(RepeatVerdict verdict) {
+  if (verdict == RepeatVerdict::Agree) return VerdictTone::Good;
+  return verdict == RepeatVerdict::Disagree ? VerdictTone::Doubtful : VerdictTone::Bad;
 }
 
 QComboBox* makeChoice(const char* object_name, const QString& name, QWidget* parent) {
@@ -66,15 +65,15 @@ QComboBox* makeChoice(const char* object_name, const QString& name, QWidget* par
 
 RepeatScreen::RepeatScreen(QWidget* parent)
     : QWidget(parent),
-      files_(new QListWidget(this)),
+      files_(new FileList(
+          "recordings", tr("Recordings and sessions of one rig"),
+          tr("Sessions or recordings of the same rig before the same board. Recordings have the\n"
+             "sensors and the board of the session that is open, else of the first in the list"),
+          this)),
       add_open_(
           button("add_open", "add", tr("Add the open one"), tr("Add what is open in this window"), this)),
-      remove_(button("remove_recordings", "remove", tr("Remove"),
-                     tr("Take the chosen ones off the list; their files stay (Delete)"), this)),
       stack_(new QStackedWidget(this)),
-      icon_(new QLabel(this)),
-      verdict_(selectableLabel("title", {}, this)),
-      reason_(selectableLabel("", {}, this)),
+      verdict_(new VerdictLine("repeat", this)),
       ratio_(selectableLabel("hint", {}, this)),
       first_(makeChoice("first_of_pair", tr("Compare"), this)),
       second_(makeChoice("second_of_pair", tr("with"), this)),
@@ -84,8 +83,9 @@ RepeatScreen::RepeatScreen(QWidget* parent)
       open_result_(button("open_recording_result", "result", tr("Show on all pages"),
                           tr("Open the chosen recording's result, or that of all together where none is"),
                           this)) {
-  verdict_->setObjectName("repeat_verdict");
-  reason_->setObjectName("repeat_reason");
+  files_->insertButton(add_open_);
+  connect(add_open_, &QPushButton::clicked, this, [this] { files_->add({open_file_}); });
+  connect(files_, &FileList::changed, this, &RepeatScreen::offer);
   auto* const layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(10);
@@ -95,38 +95,6 @@ RepeatScreen::RepeatScreen(QWidget* parent)
   layout->addWidget(stack_, 1);
   setRepeat({});
   offer();
-}
-
-QWidget* RepeatScreen::makeFiles() {
-  constexpr int kList_px = 92;
-  auto* const row = new QWidget(this);
-  files_->setObjectName("repeated_files");
-  files_->setAccessibleName(tr("Recordings and sessions of one rig"));
-  files_->setSelectionMode(QAbstractItemView::ExtendedSelection);
-  files_->setTextElideMode(Qt::ElideMiddle);
-  files_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  files_->setFixedHeight(kList_px);
-  QPushButton* const add =
-      button("add_recordings", "open", tr("Add..."),
-             tr("Sessions or recordings of the same rig before the same board. Recordings have the\n"
-                "sensors and the board of the session that is open, else of the first in the list"),
-             row);
-  connect(add, &QPushButton::clicked, this, &RepeatScreen::addRequested);
-  connect(add_open_, &QPushButton::clicked, this, [this] { addFiles({open_file_}); });
-  connect(remove_, &QPushButton::clicked, this, &RepeatScreen::removeChosen);
-  connect(files_, &QListWidget::itemSelectionChanged, this, &RepeatScreen::offer);
-  auto* const remove_key = new QShortcut(QKeySequence::Delete, files_);
-  remove_key->setContext(Qt::WidgetShortcut);
-  connect(remove_key, &QShortcut::activated, this, &RepeatScreen::removeChosen);
-  auto* const buttons = new QVBoxLayout;
-  buttons->setSpacing(4);
-  for (QPushButton* const each : {add, add_open_, remove_}) buttons->addWidget(each);
-  buttons->addStretch();
-  auto* const layout = new QHBoxLayout(row);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->addWidget(files_, 1);
-  layout->addLayout(buttons);
-  return row;
 }
 
 QWidget* RepeatScreen::makeForm() {
@@ -149,7 +117,7 @@ QWidget* RepeatScreen::makeForm() {
   auto* const layout = new QVBoxLayout(card);
   layout->setContentsMargins(14, 10, 14, 10);
   layout->addWidget(selectableLabel("heading", tr("Several recordings of one rig"), card));
-  layout->addWidget(makeFiles());
+  layout->addWidget(files_);
   layout->addLayout(grid);
   layout->addWidget(work_);
   connect(folder_, &PathRow::changed, this, &RepeatScreen::offer);
@@ -218,13 +186,7 @@ QWidget* RepeatScreen::makeRecordings() {
 
 QWidget* RepeatScreen::makeContent() {
   auto* const content = new QWidget(this);
-  auto* const words = new QVBoxLayout;
-  words->setSpacing(2);
-  for (QLabel* const line : {verdict_, reason_, ratio_}) words->addWidget(line);
-  auto* const header = new QHBoxLayout;
-  header->setSpacing(12);
-  header->addWidget(icon_, 0, Qt::AlignTop);
-  header->addLayout(words, 1);
+  verdict_->addLine(ratio_);
   notes_->setAccessibleName(tr("Notes"));
   notes_->setWordWrap(true);
   notes_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
@@ -237,34 +199,9 @@ QWidget* RepeatScreen::makeContent() {
   tabs->addTab(notes_, tr("Notes"));
   auto* const layout = new QVBoxLayout(content);
   layout->setContentsMargins(0, 0, 0, 0);
-  layout->addLayout(header);
+  layout->addWidget(verdict_);
   layout->addWidget(tabs, 1);
   return content;
-}
-
-QStringList RepeatScreen::files() const {
-  QStringList all;
-  for (int row = 0; row < files_->count(); ++row) all << files_->item(row)->data(Qt::UserRole).toString();
-  return all;
-}
-
-void RepeatScreen::addFiles(const QStringList& files) {
-  for (const QString& file : files) {
-    if (file.isEmpty() || this->files().contains(file)) continue;
-    const bool session = file.endsWith(".yaml") || file.endsWith(".yml");
-    auto* const item =
-        new QListWidgetItem(icon(session ? "open" : "recording"), QDir::toNativeSeparators(file), files_);
-    item->setData(Qt::UserRole, file);
-    item->setToolTip(item->text());
-  }
-  offer();
-  emit filesChanged();
-}
-
-void RepeatScreen::removeChosen() {
-  qDeleteAll(files_->selectedItems());
-  offer();
-  emit filesChanged();
 }
 
 void RepeatScreen::setOpenFile(const QString& file) {
@@ -273,10 +210,9 @@ void RepeatScreen::setOpenFile(const QString& file) {
 }
 
 void RepeatScreen::offer() {
-  add_open_->setEnabled(!open_file_.isEmpty() && !files().contains(open_file_));
-  remove_->setEnabled(!files_->selectedItems().isEmpty());
+  const QStringList all = files_->files();
+  add_open_->setEnabled(!open_file_.isEmpty() && !all.contains(open_file_));
   // One session may list several recordings.
-  const QStringList all = files();
   const bool enough =
       all.size() >= kFewest || (all.size() == 1 && (all[0].endsWith(".yaml") || all[0].endsWith(".yml")));
   work_->setHindrance(!enough                     ? tr("Add at least two recordings or sessions")
@@ -309,10 +245,8 @@ void RepeatScreen::setRepeat(std::optional<Repeatability> repeat) {
 }
 
 void RepeatScreen::showVerdict() {
-  constexpr int kIcon_px = 34;
-  icon_->setPixmap(iconOf(repeat_->verdict).pixmap(QSize(kIcon_px, kIcon_px), devicePixelRatioF()));
-  verdict_->setText(titleOf(repeat_->verdict));
-  reason_->setText(sentence(QString::fromStdString(repeat_->reason)));
+  verdict_->setVerdict(toneOf(repeat_->verdict), titleOf(repeat_->verdict),
+                       sentence(QString::fromStdString(repeat_->reason)));
   ratio_->setVisible(repeat_->rms_ratio > 0.0);
   ratio_->setText(
       tr("Spread against what the sigmas promise: %1 RMS over all numbers (near 1: the sigmas are "
@@ -340,11 +274,6 @@ void RepeatScreen::comparePair() {
   };
   numbers_->comparePair(
       RepeatTable::Pair{column(first), column(second), first_->currentText(), second_->currentText()});
-}
-
-void RepeatScreen::changeEvent(QEvent* event) {
-  if (event->type() == QEvent::PaletteChange && repeat_) showVerdict();
-  QWidget::changeEvent(event);
 }
 
 }  // namespace evical::ui

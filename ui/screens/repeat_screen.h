@@ -5,7 +5,6 @@
 
 #include "core/data/repeatability.h"
 
-#include <QStringList>
 #include <QWidget>
 
 #include <optional>
@@ -18,9 +17,11 @@ class QStackedWidget;
 
 namespace evical::ui {
 
+class FileList;
 class PathRow;
 class RepeatedList;
 class RepeatTable;
+class VerdictLine;
 class WorkBar;
 
 class RepeatScreen : public QWidget {
@@ -32,42 +33,35 @@ class RepeatScreen : public QWidget {
   PathRow& folder() { return *folder_; }
   WorkBar& work() { return *work_; }
 
-  QStringList files() const;
-  void addFiles(const QStringList& files);  // those that are not listed yet
-  void setOpenFile(const QString& file);    // what is open in the window; empty: nothing
+  FileList& files() { return *files_; }
+  void setOpenFile(const QString& file);  // what is open in the window; empty: nothing
   void setRepeat(std::optional<Repeatability> repeat);
 
  signals:
-  void filesChanged();
-  void addRequested();
   void repeatRequested();
   void cancelRequested();
   void openFolderRequested();
   void reportRequested();
   void openResultRequested(int recording);  // -1: of all together
 
- protected:
-  void changeEvent(QEvent* event) override;
-
  private:
   QWidget* makeForm();
-  QWidget* makeFiles();
   QWidget* makeEmpty();
   QWidget* makeContent();
   QWidget* makeNumbers();
   QWidget* makeRecordings();
   void offer();
-  void removeChosen();
   void showVerdict();
   void offerPairs();
   void comparePair();
 
-  QListWidget* files_;
-  QPushButton *add_open_, *remove_;
+  FileList* files_;
+  QPushButton* add_open_;
   PathRow* folder_ = nullptr;
   WorkBar* work_ = nullptr;
   QStackedWidget* stack_;
-  QLabel *icon_, *verdict_, *reason_, *ratio_;
+  VerdictLine* verdict_;
+  QLabel* ratio_;
   QComboBox *first_, *second_;
   RepeatTable* numbers_;
   RepeatedList* recordings_;

@@ -3,16 +3,15 @@
 
 #include "ui/screens/check_table.h"
 #include "ui/screens/check_words.h"
-#include "ui/screens/path_row.h"
+#include "ui/screens/old_result_row.h"
 #include "ui/screens/selectable_label.h"
+#include "ui/screens/verdict_line.h"
 #include "ui/screens/work_bar.h"
 #include "ui/theme/theme.h"
 
 #include <QEvent>
 #include <QGridLayout>
-#include <QLabel>
 #include <QListWidget>
-#include <QMenu>
 #include <QPushButton>
 #include <QStackedWidget>
 #include <QVBoxLayout>
@@ -32,25 +31,20 @@ QString titleOf(CheckVerdict verdict) {
   return QObject::tr("Cannot tell");
 }
 
-QIcon iconOf(CheckVerdict verdict) {
-  if (verdict == CheckVerdict::StillGood) return icon("done", theme().good);
-  return verdict == CheckVerdict::Changed ? icon("error", theme().bad) : icon("warning", theme().warning);
+VerdictTone toneOf(CheckVerdict verdict) {
+  if (verdict == CheckVerdict::StillGood) return VerdictTone::Good;
+  return verdict == CheckVerdict::Changed ? VerdictTone::Bad : VerdictTone::Doubtful;
 }
 
 }  // namespace
 
 ResultCheckScreen::ResultCheckScreen(QWidget* parent)
     : QWidget(parent),
-      results_(new QMenu(this)),
       stack_(new QStackedWidget(this)),
-      icon_(new QLabel(this)),
-      verdict_(selectableLabel("title", {}, this)),
-      reason_(selectableLabel("", {}, this)),
+      verdict_(new VerdictLine("check", this)),
       table_(new CheckTable(this)),
       notes_(new QListWidget(this)),
       save_(new QPushButton(icon("export"), tr("Save..."), this)) {
-  verdict_->setObjectName("check_verdict");
-  reason_->setObjectName("check_reason");
   save_->setObjectName("save_check");
   save_->setToolTip(tr("Write check.yaml and the report to a folder"));
   auto* const layout = new QVBoxLayout(this);
@@ -61,7 +55,6 @@ ResultCheckScreen::ResultCheckScreen(QWidget* parent)
   stack_->addWidget(makeContent());
   layout->addWidget(stack_, 1);
   connect(save_, &QPushButton::clicked, this, &ResultCheckScreen::saveRequested);
-  setKeptRuns({});
   setCheck({});
   offer();
 }
@@ -70,15 +63,12 @@ QWidget* ResultCheckScreen::makeForm() {
   auto* const card = new QFrame(this);
   card->setProperty("card", "true");
   auto* const grid = new QGridLayout;
-  result_ = new PathRow("old_result", tr("&Old result"),
-                        tr("A folder that a calibration or an export has written, or its result.yaml"), *grid,
-                        card);
+  result_ = new OldResultRow("old_result", *grid, card);
   recording_ =
       new PathRow("new_recording", tr("&New recording"),
                   tr("Some ten seconds before the same board, or a session of them. Board and sensors of a\n"
                      "recording are those that are kept beside the old result."),
                   *grid, card);
-  result_->setMenu(results_);
   grid->setColumnStretch(1, 1);
   work_ = new WorkBar("check_result", "check", tr("Check"),
                       tr("Calibrate the new recording, and test each quantity's change"), card);
@@ -120,14 +110,6 @@ QWidget* ResultCheckScreen::makeEmpty() {
 QWidget* ResultCheckScreen::makeContent() {
   constexpr int kNotes_px = 110;
   auto* const content = new QWidget(this);
-  auto* const words = new QVBoxLayout;
-  words->setSpacing(2);
-  words->addWidget(verdict_);
-  words->addWidget(reason_);
-  auto* const header = new QHBoxLayout;
-  header->setSpacing(12);
-  header->addWidget(icon_, 0, Qt::AlignTop);
-  header->addLayout(words, 1);
   notes_->setObjectName("check_notes");
   notes_->setAccessibleName(tr("What to do, and notes"));
   notes_->setWordWrap(true);
@@ -135,20 +117,10 @@ QWidget* ResultCheckScreen::makeContent() {
   notes_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   auto* const layout = new QVBoxLayout(content);
   layout->setContentsMargins(0, 0, 0, 0);
-  layout->addLayout(header);
+  layout->addWidget(verdict_);
   layout->addWidget(table_, 1);
   layout->addWidget(notes_);
   return content;
-}
-
-void ResultCheckScreen::setKeptRuns(const std::vector<std::pair<QString, QString>>& runs) {
-  results_->clear();
-  results_->addAction(icon("folder"), tr("A result's &folder..."), this,
-                      &ResultCheckScreen::resultFolderRequested);
-  results_->addAction(icon("open"), tr("A &result.yaml..."), this, &ResultCheckScreen::resultFileRequested);
-  if (!runs.empty()) results_->addSection(tr("Runs of this session"));
-  for (const auto& [title, folder] : runs)
-    results_->addAction(title, this, [this, chosen = folder] { result_->setPath(chosen); });
 }
 
 void ResultCheckScreen::setCheck(std::optional<CalibrationCheck> check) {
@@ -156,7 +128,8 @@ void ResultCheckScreen::setCheck(std::optional<CalibrationCheck> check) {
   save_->setVisible(check_.has_value());
   stack_->setCurrentIndex(check_ ? 1 : 0);
   if (!check_) return;
-  showVerdict();
+  verdict_->setVerdict(toneOf(check_->verdict), titleOf(check_->verdict),
+                       sentence(QString::fromStdString(check_->reason)));
   showNotes();
   table_->setQuantities(check_->quantities);
   table_->setVisible(!check_->quantities.empty());
@@ -166,14 +139,6 @@ void ResultCheckScreen::offer() {
   work_->setHindrance(result_->path().isEmpty()      ? tr("Choose the old result")
                       : recording_->path().isEmpty() ? tr("Choose the new recording")
                                                      : QString());
-}
-
-void ResultCheckScreen::showVerdict() {
-  constexpr int kIcon_px = 34;
-  icon_->setPixmap(iconOf(check_->verdict).pixmap(QSize(kIcon_px, kIcon_px), devicePixelRatioF()));
-  verdict_->setText(titleOf(check_->verdict));
-  verdict_->setAccessibleName(verdict_->text());
-  reason_->setText(sentence(QString::fromStdString(check_->reason)));
 }
 
 void ResultCheckScreen::showNotes() {
@@ -188,10 +153,7 @@ void ResultCheckScreen::showNotes() {
 }
 
 void ResultCheckScreen::changeEvent(QEvent* event) {
-  if (event->type() == QEvent::PaletteChange && check_) {
-    showVerdict();
-    showNotes();
-  }
+  if (event->type() == QEvent::PaletteChange && check_) showNotes();
   QWidget::changeEvent(event);
 }
 

@@ -8,19 +8,17 @@
 #include <QWidget>
 
 #include <optional>
-#include <utility>
-#include <vector>
 
-class QLabel;
 class QListWidget;
-class QMenu;
 class QPushButton;
 class QStackedWidget;
 
 namespace evical::ui {
 
 class CheckTable;
+class OldResultRow;
 class PathRow;
+class VerdictLine;
 class WorkBar;
 
 class ResultCheckScreen : public QWidget {
@@ -29,16 +27,12 @@ class ResultCheckScreen : public QWidget {
  public:
   explicit ResultCheckScreen(QWidget* parent = nullptr);
 
-  PathRow& result() { return *result_; }
+  OldResultRow& result() { return *result_; }
   PathRow& recording() { return *recording_; }
   WorkBar& work() { return *work_; }
-  // By title and folder; beside the files that can be chosen.
-  void setKeptRuns(const std::vector<std::pair<QString, QString>>& runs);
   void setCheck(std::optional<CalibrationCheck> check);
 
  signals:
-  void resultFolderRequested();
-  void resultFileRequested();
   void checkRequested();
   void cancelRequested();
   void saveRequested();
@@ -51,14 +45,13 @@ class ResultCheckScreen : public QWidget {
   QWidget* makeEmpty();
   QWidget* makeContent();
   void offer();
-  void showVerdict();
   void showNotes();
 
-  PathRow *result_ = nullptr, *recording_ = nullptr;
+  OldResultRow* result_ = nullptr;
+  PathRow* recording_ = nullptr;
   WorkBar* work_ = nullptr;
-  QMenu* results_;
   QStackedWidget* stack_;
-  QLabel *icon_, *verdict_, *reason_;
+  VerdictLine* verdict_;
   CheckTable* table_;
   QListWidget* notes_;
   QPushButton* save_;

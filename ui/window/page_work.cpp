@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/page_work.h"
 
+#include "core/base/new_folder.h"
 #include "core/data/calibration_stage.h"
-#include "ui/document/calibration_document.h"
-#include "ui/jobs/job_runner.h"
+#include "core/pipeline/maintain_imus.h"
 #include "ui/screens/work_bar.h"
+#include "ui/window/session_files.h"
+#include "ui/window/workbench.h"
 
 #include <QDir>
+#include <QFileDialog>
 #include <QSettings>
 
 #include <utility>
@@ -15,12 +18,14 @@ namespace evical::ui {
 namespace {
 
 // "bag_2 (2 of 3): Read and detect".
-QString wordsOf(const QString& stage) {
-  const QString last = stage.section(": ", -1);
+QString wordsOf(const QString& name) {
+  const QString last = name.section(": ", -1);
   QString title = last;
   for (const StageRow& row : kCalibrationStages)
     if (last == row.name) title = QObject::tr(row.title);
-  return stage.left(stage.size() - last.size()) + title;
+  for (const MaintainStage& stage : kMaintainStages)
+    if (last == stage.name) title = QObject::tr(stage.title);
+  return name.left(name.size() - last.size()) + title;
 }
 
 }  // namespace
@@ -33,6 +38,27 @@ void wireWork(WorkBar& bar, JobRunner& runner, std::function<bool()> own) {
   QObject::connect(&runner, &JobRunner::progressed, &bar, [&bar](const JobProgress& progress) {
     bar.setProgress(wordsOf(progress.stage), progress.fraction);
   });
+}
+
+void saveToFolder(QWidget& page, const SavedWords& words,
+                  std::function<void(const std::filesystem::path&)> write, Workbench& workbench,
+                  SessionFiles& files) {
+  const QString folder = QFileDialog::getExistingDirectory(
+      &page, QObject::tr("%1 to a folder").arg(words.title), lastUsedFolder());
+  if (folder.isEmpty()) return;
+  const bool begun =
+      workbench.runner.start(words.title, {}, [folder, write = std::move(write)](const RunContext&) {
+        const NewFolder made(folder.toStdString());
+        write(folder.toStdString());
+      });
+  if (!begun) return;
+  QObject::connect(
+      &workbench.runner, &JobRunner::finished, &files,
+      [&files, folder, saved = words.saved](JobOutcome outcome) {
+        ExportOutcome written{folder, {}, {}, false, {}, saved};
+        if (outcome == JobOutcome::Done) emit files.exported(written);
+      },
+      Qt::SingleShotConnection);
 }
 
 QString openFileOf(const CalibrationDocument& document) {

@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/pipeline/repeat_files.h"
+#include "ui/screens/file_list.h"
 #include "ui/screens/path_row.h"
 #include "ui/screens/repeat_screen.h"
 #include "ui/screens/work_bar.h"
@@ -37,21 +38,21 @@ void start(RepeatScreen& screen, Workbench& workbench, SessionFiles& files) {
   const QString folder = screen.folder().path();
   try {
     checkRepeatFolder(folder.toStdString());
-    workbench.repeat.start(inputOf(screen.files(), workbench.document), folder, workbench.version);
+    workbench.repeat.start(inputOf(screen.files().files(), workbench.document), folder, workbench.version);
   } catch (const CalibrationError& error) {
     emit files.failed(QObject::tr("These recordings cannot be calibrated together"), errorOf(error));
   }
 }
 
 void propose(RepeatScreen& screen) {
-  const QStringList files = screen.files();
+  const QStringList files = screen.files().files();
   screen.folder().proposePath(files.isEmpty() ? QString() : newResultFolder(files.front(), "repeat"));
 }
 
 void chooseFiles(RepeatScreen& screen) {
-  QObject::connect(&screen, &RepeatScreen::addRequested, &screen, [&screen] {
-    screen.addFiles(QFileDialog::getOpenFileNames(&screen, QObject::tr("Recordings or sessions of one rig"),
-                                                  lastUsedFolder(), recordingsFilter(true)));
+  QObject::connect(&screen.files(), &FileList::addRequested, &screen, [&screen] {
+    screen.files().add(QFileDialog::getOpenFileNames(
+        &screen, QObject::tr("Recordings or sessions of one rig"), lastUsedFolder(), recordingsFilter(true)));
   });
   QObject::connect(&screen.folder(), &PathRow::chooseRequested, &screen, [&screen] {
     const QString folder =
@@ -75,7 +76,7 @@ void wireRepeat(RepeatScreen& screen, Workbench& workbench, SessionFiles& files)
   const auto show_open = [&screen, &workbench] { screen.setOpenFile(openFileOf(workbench.document)); };
   QObject::connect(&workbench.document, &CalibrationDocument::sessionReplaced, &screen, show_open);
   QObject::connect(&workbench.document, &CalibrationDocument::fileChanged, &screen, show_open);
-  QObject::connect(&screen, &RepeatScreen::filesChanged, &screen, [&screen] { propose(screen); });
+  QObject::connect(&screen.files(), &FileList::changed, &screen, [&screen] { propose(screen); });
   QObject::connect(&screen, &RepeatScreen::repeatRequested, &screen,
                    [&screen, &workbench, &files] { start(screen, workbench, files); });
   QObject::connect(&screen, &RepeatScreen::cancelRequested, &workbench.runner, &JobRunner::cancel);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/result_check_page.h"
 
-#include "core/base/new_folder.h"
 #include "core/pipeline/check_files.h"
-#include "ui/screens/path_row.h"
+#include "ui/screens/old_result_row.h"
 #include "ui/screens/result_check_screen.h"
-#include "ui/screens/runs_panel.h"
 #include "ui/screens/work_bar.h"
+#include "ui/window/old_result.h"
 #include "ui/window/page_work.h"
 #include "ui/window/session_files.h"
 #include "ui/window/workbench.h"
@@ -14,7 +13,6 @@
 #include <QFileDialog>
 #include <QFileInfo>
 
-#include <algorithm>
 #include <memory>
 
 namespace evical::ui {
@@ -39,72 +37,41 @@ void start(ResultCheckScreen& screen, Workbench& workbench) {
   workbench.result_check.start(std::move(read), workbench.version);
 }
 
-// The run that is shown is what a new recording is held against; a recording without one is itself the new one.
-void propose(ResultCheckScreen& screen, const Workbench& workbench) {
-  const CalibrationDocument& document = workbench.document;
-  const QString shown = QString::fromStdString(workbench.history.folderOf(document.last().run).string());
-  screen.result().proposePath(shown);
+// What is open and has no result yet is the new one.
+void propose(ResultCheckScreen& screen, const CalibrationDocument& document) {
   screen.recording().proposePath(document.hasSession() && !document.last().run ? openFileOf(document)
                                                                                : QString());
-  std::vector<std::pair<QString, QString>> runs;
-  for (const RunSummary& run : workbench.history.runs())
-    runs.emplace_back(titleOf(run), QString::fromStdString(run.folder.string()));
-  std::reverse(runs.begin(), runs.end());  // the newest first
-  screen.setKeptRuns(runs);
 }
 
-void chooseFiles(ResultCheckScreen& screen) {
-  QObject::connect(&screen, &ResultCheckScreen::resultFolderRequested, &screen, [&screen] {
-    const QString folder =
-        QFileDialog::getExistingDirectory(&screen, QObject::tr("The old result's folder"), lastUsedFolder());
-    if (!folder.isEmpty()) screen.result().setPath(folder);
-  });
-  QObject::connect(&screen, &ResultCheckScreen::resultFileRequested, &screen, [&screen] {
-    const QString file =
-        QFileDialog::getOpenFileName(&screen, QObject::tr("The old result"), lastUsedFolder(),
-                                     QObject::tr("Results (*.yaml *.yml);;All files (*)"));
-    if (!file.isEmpty()) screen.result().setPath(file);
-  });
-  QObject::connect(&screen.recording(), &PathRow::chooseRequested, &screen, [&screen] {
-    const QString file =
-        QFileDialog::getOpenFileName(&screen, QObject::tr("The new recording, or a session of it"),
-                                     lastUsedFolder(), recordingsFilter(true));
-    if (!file.isEmpty()) screen.recording().setPath(file);
-  });
+void chooseRecording(ResultCheckScreen& screen) {
+  const QString file =
+      QFileDialog::getOpenFileName(&screen, QObject::tr("The new recording, or a session of it"),
+                                   lastUsedFolder(), recordingsFilter(true));
+  if (!file.isEmpty()) screen.recording().setPath(file);
 }
 
 void save(ResultCheckScreen& screen, const std::shared_ptr<const CheckedResult>& checked,
           Workbench& workbench, SessionFiles& files) {
-  const QString folder =
-      QFileDialog::getExistingDirectory(&screen, QObject::tr("Save the check to a folder"), lastUsedFolder());
-  if (folder.isEmpty()) return;
-  const bool begun = workbench.runner.start(
-      QObject::tr("Save the check"), {}, [checked, folder, version = workbench.version](const RunContext&) {
-        const NewFolder made(folder.toStdString());
-        writeCheckFiles(folder.toStdString(), checked->input, checked->run, version.toStdString(),
-                        checked->log.toStdString());
-      });
-  if (!begun) return;
-  QObject::connect(
-      &workbench.runner, &JobRunner::finished, &files,
-      [&files, folder](JobOutcome outcome) {
-        ExportOutcome written{folder, {}, {}, false, {}, QObject::tr("The check was saved")};
-        if (outcome == JobOutcome::Done) emit files.exported(written);
-      },
-      Qt::SingleShotConnection);
+  const auto write = [checked, version = workbench.version](const std::filesystem::path& folder) {
+    writeCheckFiles(folder, checked->input, checked->run, version.toStdString(), checked->log.toStdString());
+  };
+  saveToFolder(screen, {QObject::tr("Save the check"), QObject::tr("The check was saved")}, write, workbench,
+               files);
 }
 
 }  // namespace
 
 void wireResultCheck(ResultCheckScreen& screen, Workbench& workbench, SessionFiles& files) {
   ResultCheckJob& job = workbench.result_check;
-  chooseFiles(screen);
+  wireOldResult(screen.result(), screen, workbench);
   wireWork(screen.work(), workbench.runner, [&job] { return job.running(); });
-  const auto suggest = [&screen, &workbench] { propose(screen, workbench); };
-  QObject::connect(&workbench.document, &CalibrationDocument::runsChanged, &screen, suggest);
-  QObject::connect(&workbench.document, &CalibrationDocument::sessionReplaced, &screen, suggest);
-  QObject::connect(&workbench.document, &CalibrationDocument::fileChanged, &screen, suggest);
-  QObject::connect(&workbench.history, &RunHistory::changed, &screen, suggest);
+  const CalibrationDocument& document = workbench.document;
+  const auto suggest = [&screen, &document] { propose(screen, document); };
+  QObject::connect(&document, &CalibrationDocument::runsChanged, &screen, suggest);
+  QObject::connect(&document, &CalibrationDocument::sessionReplaced, &screen, suggest);
+  QObject::connect(&document, &CalibrationDocument::fileChanged, &screen, suggest);
+  QObject::connect(&screen.recording(), &PathRow::chooseRequested, &screen,
+                   [&screen] { chooseRecording(screen); });
   QObject::connect(&screen, &ResultCheckScreen::checkRequested, &screen,
                    [&screen, &workbench] { start(screen, workbench); });
   QObject::connect(&screen, &ResultCheckScreen::cancelRequested, &workbench.runner, &JobRunner::cancel);

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A page's verdict: a mark by colour and shape, the verdict itself, and why.
+#pragma once
+
+#include <QWidget>
+
+class QLabel;
+class QVBoxLayout;
+
+namespace evical::ui {
+
+enum class VerdictTone { Good, Doubtful, Bad };
+
+class VerdictLine : public QWidget {
+  Q_OBJECT
+
+ public:
+  // The labels are called <name>_verdict and <name>_reason.
+  explicit VerdictLine(const QString& name, QWidget* parent = nullptr);
+
+  void addLine(QWidget* line);  // below
+  void setVerdict(VerdictTone tone, const QString& title, const QString& reason);
+
+ protected:
+  void changeEvent(QEvent* event) override;
+
+ private:
+  void paintMark();
+
+  VerdictTone tone_ = VerdictTone::Doubtful;
+  QLabel *mark_, *title_, *reason_;
+  QVBoxLayout* lines_;
+};
+
+}  // namespace evical::ui

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/window/old_result.h"
+
+#include "ui/screens/old_result_row.h"
+#include "ui/screens/runs_panel.h"
+#include "ui/window/page_work.h"
+#include "ui/window/workbench.h"
+
+#include <QFileDialog>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace evical::ui {
+namespace {
+
+void propose(OldResultRow& row, const Workbench& workbench) {
+  row.proposePath(QString::fromStdString(workbench.history.folderOf(workbench.document.last().run).string()));
+  std::vector<std::pair<QString, QString>> runs;
+  for (const RunSummary& run : workbench.history.runs())
+    runs.emplace_back(titleOf(run), QString::fromStdString(run.folder.string()));
+  std::reverse(runs.begin(), runs.end());  // the newest first
+  row.setKeptRuns(runs);
+}
+
+}  // namespace
+
+void wireOldResult(OldResultRow& row, QWidget& page, Workbench& workbench) {
+  QObject::connect(&row, &OldResultRow::folderRequested, &page, [&row, &page] {
+    const QString folder =
+        QFileDialog::getExistingDirectory(&page, QObject::tr("The old result's folder"), lastUsedFolder());
+    if (!folder.isEmpty()) row.setPath(folder);
+  });
+  QObject::connect(&row, &OldResultRow::fileRequested, &page, [&row, &page] {
+    const QString file = QFileDialog::getOpenFileName(&page, QObject::tr("The old result"), lastUsedFolder(),
+                                                      QObject::tr("Results (*.yaml *.yml);;All files (*)"));
+    if (!file.isEmpty()) row.setPath(file);
+  });
+  const auto suggest = [&row, &workbench] { propose(row, workbench); };
+  QObject::connect(&workbench.document, &CalibrationDocument::runsChanged, &row, suggest);
+  QObject::connect(&workbench.document, &CalibrationDocument::sessionReplaced, &row, suggest);
+  QObject::connect(&workbench.history, &RunHistory::changed, &row, suggest);
+}
+
+}  // namespace evical::ui
