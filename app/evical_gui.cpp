@@ -75,7 +75,8 @@ Arguments parse(const QApplication& application) {
                                "[SESSION|RECORDING|RESULT]");
   const QCommandLineOption screen("screenshot",
                                   "Calibrate SESSION or open RESULT, save a picture of this screen, and "
-                                  "leave; pages that compare take further recordings behind it",
+                                  "leave; pages that compare take further recordings behind it, that of "
+                                  "IMUs over time a log and the old result",
                                   "SCREEN");
   const QCommandLineOption output("o", "The picture's file", "x.png");
   const QCommandLineOption size("size", "The window's size, for pictures", "WIDTHxHEIGHT", "1280x800");

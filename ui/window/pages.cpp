@@ -4,10 +4,12 @@
 #include "core/pipeline/result_files.h"
 #include "ui/detection/detection_screen.h"
 #include "ui/plots/convergence_screen.h"
+#include "ui/plots/maintenance_charts.h"
 #include "ui/plots/residuals_screen.h"
 #include "ui/plots/signals_screen.h"
 #include "ui/scene/trajectory_screen.h"
 #include "ui/screens/lens_screen.h"
+#include "ui/screens/maintain_screen.h"
 #include "ui/screens/recording_screen.h"
 #include "ui/screens/repeat_screen.h"
 #include "ui/screens/result_check_screen.h"
@@ -17,6 +19,7 @@
 #include "ui/window/follow_recording.h"
 #include "ui/window/lens_pages.h"
 #include "ui/window/linked_pages.h"
+#include "ui/window/maintain_page.h"
 #include "ui/window/print_board.h"
 #include "ui/window/recording_check.h"
 #include "ui/window/repeat_page.h"
@@ -117,7 +120,8 @@ void wireResult(ResultScreen& screen, Workbench& workbench, SessionFiles& files)
 
 QKeySequence keyOfPage(std::size_t index) {
   constexpr std::size_t kDigits = 10;
-  return QKeySequence(QString("Ctrl+%1").arg((index + 1) % kDigits));
+  const QString keys = index < kDigits ? "Ctrl+%1" : "Ctrl+Shift+%1";
+  return QKeySequence(keys.arg((index + 1) % kDigits));
 }
 
 std::vector<PageEntry> buildPages(Pages& pages, QWidget* parent) {
@@ -132,6 +136,8 @@ std::vector<PageEntry> buildPages(Pages& pages, QWidget* parent) {
   pages.lens = new LensScreen(parent);
   pages.result_check = new ResultCheckScreen(parent);
   pages.repeat = new RepeatScreen(parent);
+  pages.maintenance_charts = new MaintenanceCharts(parent);
+  pages.maintain = new MaintainScreen(pages.maintenance_charts, parent);
   pages.results = new QStackedWidget(parent);
   pages.results->addWidget(pages.result);
   pages.results->addWidget(pages.lens);
@@ -152,7 +158,8 @@ std::vector<PageEntry> buildPages(Pages& pages, QWidget* parent) {
            of_rig(pages.residuals, QObject::tr("Residuals belong"))},
           {"result", QObject::tr("Result"), "result", pages.results},
           {"check-result", QObject::tr("Check a result"), "check", pages.result_check},
-          {"repeat", QObject::tr("Several recordings"), "compare", pages.repeat}};
+          {"repeat", QObject::tr("Several recordings"), "compare", pages.repeat},
+          {"maintain", QObject::tr("IMUs over time"), "imu", pages.maintain}};
 }
 
 void wirePages(const Pages& pages, Workbench& workbench, SessionFiles& files, LensFiles& lens_files) {
@@ -167,6 +174,7 @@ void wirePages(const Pages& pages, Workbench& workbench, SessionFiles& files, Le
   wireLensPages(pages, workbench, lens_files);
   wireResultCheck(*pages.result_check, workbench, files);
   wireRepeat(*pages.repeat, workbench, files);
+  wireMaintain(*pages.maintain, *pages.maintenance_charts, workbench, files);
 }
 
 }  // namespace evical::ui

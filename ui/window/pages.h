@@ -19,6 +19,8 @@ class ConvergenceScreen;
 class DetectionScreen;
 class LensFiles;
 class LensScreen;
+class MaintainScreen;
+class MaintenanceCharts;
 class RecordingScreen;
 class RepeatScreen;
 class ResidualsScreen;
@@ -43,7 +45,9 @@ struct Pages {
   QStackedWidget* results = nullptr;  // the last two: of a rig, of a camera alone
   ResultCheckScreen* result_check = nullptr;
   RepeatScreen* repeat = nullptr;
-  std::vector<RigPage*> of_rigs;  // around those that show nothing of a camera alone
+  MaintainScreen* maintain = nullptr;
+  MaintenanceCharts* maintenance_charts = nullptr;  // on it
+  std::vector<RigPage*> of_rigs;                    // around those that show nothing of a camera alone
 };
 
 // A page as the navigation lists it.
@@ -53,7 +57,7 @@ struct PageEntry {
   QWidget* widget = nullptr;
 };
 
-// Ctrl+1 to Ctrl+9, then Ctrl+0.
+// Ctrl+1 to Ctrl+9, Ctrl+0, then with Shift from 1 on.
 QKeySequence keyOfPage(std::size_t index);
 
 std::vector<PageEntry> buildPages(Pages& pages, QWidget* parent);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/photographer.h"
 
-#include "ui/screens/path_row.h"
+#include "ui/screens/file_list.h"
+#include "ui/screens/maintain_screen.h"
+#include "ui/screens/old_result_row.h"
 #include "ui/screens/repeat_screen.h"
 #include "ui/screens/result_check_screen.h"
 #include "ui/window/main_window.h"
@@ -10,6 +12,7 @@
 
 #include <QApplication>
 #include <QDialog>
+#include <QTabWidget>
 #include <QTextStream>
 #include <QTimer>
 
@@ -24,6 +27,8 @@ const char* const kHowToRecord = "how-to-record";
 const char* const kExport = "export";
 // Pages whose own job needs further recordings.
 const char *const kCheckResult = "check-result", *const kRepeat = "repeat";
+// A log is opened, and the old result is behind it; the page has a second tab.
+const char *const kMaintain = "maintain", *const kOverTime = "maintain-over-time";
 
 void complain(const QString& text) {
   QTextStream(stderr) << text << '\n';
@@ -57,7 +62,7 @@ Photographer::Photographer(MainWindow& window, QString screen, QString file, QSt
 }
 
 QStringList Photographer::screensOf(const MainWindow& window) {
-  return window.screenNames() + QStringList{kCheck, kPrintBoard, kHowToRecord, kExport};
+  return window.screenNames() + QStringList{kCheck, kPrintBoard, kHowToRecord, kExport, kOverTime};
 }
 
 void Photographer::giveUp(const QString& what, const JobError& error) {
@@ -68,6 +73,7 @@ void Photographer::giveUp(const QString& what, const JobError& error) {
 void Photographer::opened() {
   if (screen_ == kCheck) return window_.workbench().check.setAutomatic(true);
   if (screen_ == kRepeat && !further_.isEmpty()) return repeat();
+  if (screen_.startsWith(kMaintain)) return further_.isEmpty() ? waitAndSave() : maintain();
   const bool needs_a_run = screen_ != kPrintBoard && screen_ != kHowToRecord && screen_ != "start";
   if (!needs_a_run || window_.workbench().document.last().run) return waitAndSave();
   calibrate();
@@ -93,9 +99,16 @@ void Photographer::checkResult() {
 
 void Photographer::repeat() {
   auto* const screen = window_.findChild<RepeatScreen*>();
-  screen->addFiles(QStringList{window_.workbench().document.file()} + further_);
+  screen->files().add(QStringList{window_.workbench().document.file()} + further_);
   screen->folder().setPath(results_.filePath("together"));
   emit screen->repeatRequested();
+}
+
+void Photographer::maintain() {
+  auto* const screen = window_.findChild<MaintainScreen*>();
+  screen->logs().add({QString::fromStdString(window_.workbench().document.session().recording.string())});
+  screen->result().setPath(further_.front());
+  emit screen->maintainRequested();
 }
 
 void Photographer::jobDone() {
@@ -114,6 +127,8 @@ void Photographer::openDialog() {
 void Photographer::waitAndSave() {
   if (window_.screenNames().contains(screen_)) window_.showScreen(screen_);
   if (screen_ == kCheck) window_.showScreen("recording");
+  if (screen_ == kOverTime && window_.showScreen(kMaintain))
+    window_.findChild<QTabWidget*>("maintain_tabs")->setCurrentIndex(1);
   openDialog();
   QTimer::singleShot(kSettle_ms, this, [this] {
     const bool saved = shownOf(window_)->grab().save(file_);

@@ -29,6 +29,7 @@ class Photographer : public QObject {
   void openDialog();
   void checkResult();
   void repeat();
+  void maintain();
   void jobDone();
 
   MainWindow& window_;

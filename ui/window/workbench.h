@@ -9,6 +9,7 @@
 #include "ui/jobs/inspection_job.h"
 #include "ui/jobs/intrinsics_job.h"
 #include "ui/jobs/job_runner.h"
+#include "ui/jobs/maintain_job.h"
 #include "ui/jobs/recording_check_job.h"
 #include "ui/jobs/repeat_job.h"
 #include "ui/jobs/result_check_job.h"
@@ -30,6 +31,7 @@ struct Workbench {
   IntrinsicsJob intrinsics{runner};  // of one camera's lens alone
   ResultCheckJob result_check{runner};
   RepeatJob repeat{runner};
+  MaintainJob maintain{runner};
   InspectionJob inspection;  // has a runner of its own: it may go on beside a calibration
   RecordingCheckJob check;   // so has this one, which gives way to all others
   GrowingRecording growing;  // the session's files, where somebody still writes them

@@ -1,0 +1,242 @@
+// The story of who cannot go before a board again: logs of the IMUs are held against the old result.
+#include "core/pipeline/drive_simulation.h"
+#include "core/report/maintenance_report.h"
+#include "core/synthetic/drive_scenario.h"
+#include "tests/support/test_program.h"
+#include "tests/ui/clipped_text.h"
+#include "tests/ui/other_load.h"
+#include "tests/ui/slowdown.h"
+#include "tests/ui/unnamed_controls.h"
+#include "tests/ui/window_fixture.h"
+#include "ui/plots/maintenance_charts.h"
+#include "ui/plots/plot_panel.h"
+#include "ui/screens/file_list.h"
+#include "ui/screens/maintain_screen.h"
+#include "ui/screens/maintain_table.h"
+#include "ui/window/error_panel.h"
+#include "ui/window/export_notice.h"
+#include "ui/window/session_files.h"
+
+#include <QComboBox>
+#include <QLabel>
+#include <QListWidget>
+#include <QPushButton>
+#include <QTabWidget>
+
+using namespace evical;
+using namespace evical::ui;
+using namespace evical::ui::test;
+
+class TestMaintainPage : public QObject {
+  Q_OBJECT
+
+  QTemporaryDir scratch_;
+
+  QString simulated(const char* scenario) {
+    const QString folder = scratch_.filePath(scenario);
+    if (QFile::exists(folder + "/truth.yaml")) return folder;
+    DriveScenario drive =
+        readDriveScenario(std::filesystem::path(EVICAL_SCENARIOS) / (std::string(scenario) + ".yaml"));
+    drive.duration_s = std::min(drive.duration_s, 1500.0);
+    simulateDrive(drive, folder.toStdString(), RunContext{});
+    return folder;
+  }
+  static MaintainScreen& page(WindowFixture& test) {
+    test.window.showScreen("maintain");
+    return *test.child<MaintainScreen>();
+  }
+  static void type(WindowFixture& test, const char* name, const QString& text) {
+    auto* const edit = page(test).findChild<QLineEdit*>(name);
+    edit->setFocus();
+    edit->selectAll();
+    QTest::keyClicks(edit, text);
+  }
+  static QPushButton* button(WindowFixture& test, const char* name) {
+    return page(test).findChild<QPushButton*>(name);
+  }
+  // By the dialog, the field, and the page's own button.
+  static void look(WindowFixture& test, const QString& log, const QString& result) {
+    answerFileDialog(log);
+    QTest::mouseClick(button(test, "add_logs"), Qt::LeftButton);
+    QCOMPARE(page(test).logs().files(), QStringList{log});
+    type(test, "maintained_result", result);
+    QPushButton* const start = button(test, "start_maintain");
+    QVERIFY2(start->isEnabled(), qPrintable(start->toolTip()));
+    QTest::mouseClick(start, Qt::LeftButton);
+  }
+  static void keepPictures(WindowFixture& test, const QString& name) {
+    QDir().mkpath(EVICAL_SCREENSHOTS);
+    for (const QSize size : {QSize(1024, 700), QSize(1280, 800), QSize(1920, 1080)}) {
+      test.window.resize(size);
+      spin(200);
+      const QStringList clipped = clippedTexts(test.window);
+      QVERIFY2(clipped.isEmpty(), qPrintable(clipped.join('\n')));
+      QVERIFY(
+          test.window.grab().save(QString("%1/%2_%3.png").arg(EVICAL_SCREENSHOTS, name).arg(size.width())));
+    }
+  }
+
+ private slots:
+  void initTestCase() { usePrivateFolders(scratch_); }
+  void init() { QSettings().clear(); }
+  void cleanup() { applyTheme(*qApp, Appearance::Light); }
+
+  void key_opensIt() {
+    WindowFixture test;
+    test.press(Qt::Key_1, Qt::ControlModifier | Qt::ShiftModifier);
+    QCOMPARE(test.screen(), QString("maintain"));
+  }
+
+  void withoutLogs_itSaysWhatItNeeds() {
+    WindowFixture test;
+    QPushButton* const start = button(test, "start_maintain");
+    QVERIFY(!start->isEnabled());
+    QCOMPARE(start->toolTip(), QString("Add the logs of the IMUs"));
+    page(test).logs().add({"/no/such/log.bag"});
+    QCOMPARE(start->toolTip(), QString("Choose the old result"));
+    type(test, "maintained_result", "/no/such/result");
+    QTest::mouseClick(start, Qt::LeftButton);
+    QCOMPARE(test.waitForJob(), JobOutcome::Failed);
+    QVERIFY2(test.child<ErrorPanel>()->text().contains("/no/such/result"),
+             qPrintable(test.child<ErrorPanel>()->text()));
+    QVERIFY(start->isEnabled());
+    auto* const list = page(test).findChild<QListWidget*>("list_logs");
+    list->setCurrentRow(0);
+    QTest::keyClick(list, Qt::Key_Delete);
+    QVERIFY(page(test).logs().files().isEmpty() && !start->isEnabled());
+  }
+
+  void settings_areWhatTheFormSays() {
+    WindowFixture test;
+    MaintainScreen& screen = page(test);
+    QVERIFY(!screen.settings().acceleration_unit && !screen.settings().angular_rate_unit);
+    screen.findChild<QComboBox*>("acceleration_unit")->setCurrentText("-g");
+    screen.findChild<QComboBox*>("angular_rate_unit")->setCurrentText("deg/s");
+    type(test, "streams", "front=/a/imu, rear = b.csv");
+    const ImuLogSettings settings = screen.settings();
+    QVERIFY(settings.acceleration_unit == AccelerationUnit::MinusGravity);
+    QVERIFY(settings.angular_rate_unit == AngularRateUnit::DegreesPerSecond);
+    QCOMPARE(settings.streams.size(), std::size_t{2});
+    QCOMPARE(settings.streams.at("front"), std::string("/a/imu"));
+    QCOMPARE(settings.streams.at("rear"), std::string("b.csv"));
+  }
+
+  void streams_thatSayNothing_areRefused() {
+    WindowFixture test;
+    page(test).logs().add({"/no/such/log.bag"});
+    type(test, "maintained_result", "/no/such/result");
+    type(test, "streams", "front");
+    QTest::mouseClick(button(test, "start_maintain"), Qt::LeftButton);
+    QVERIFY(!test.runner().running());
+    const QString text = test.child<ErrorPanel>()->text();
+    QVERIFY2(text.contains("\"front\" is not NAME=STREAM"), qPrintable(text));
+  }
+
+  void story_somethingMoved() {
+    WindowFixture test;
+    QSignalSpy maintained(&test.window.workbench().maintain, &MaintainJob::maintained);
+    const QString folder = simulated("step_lever");
+    look(test, folder + "/recording.bag", folder + "/calibration");
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    QCOMPARE(maintained.size(), 1);
+    const auto found = maintained.takeLast().at(0).value<std::shared_ptr<const MaintainedLogs>>();
+    QVERIFY2(found->maintenance.verdict == MaintenanceVerdict::Changed, found->maintenance.reason.c_str());
+    shows(test, found->maintenance);
+    overTime(test, found->maintenance);
+    QVERIFY(unnamedControls(page(test)).isEmpty());
+    saved(test);
+    keepPictures(test, "maintain_over_time");
+    page(test).findChild<QTabWidget*>("maintain_tabs")->setCurrentIndex(0);
+    applyTheme(*qApp, Appearance::Dark);
+    keepPictures(test, "maintain_changed_dark");
+    QVERIFY(test.window.close());
+  }
+
+  void story_stops() {
+    WindowFixture test;
+    const QString folder = simulated("drive_stops");
+    look(test, folder + "/recording.bag", folder + "/calibration/result.yaml");
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    auto* const what = page(test).findChild<QComboBox*>("maintained_over_time");
+    QCOMPARE(what->count(), 1);
+    QVERIFY(what->currentText().startsWith("Stops of "));
+    QCOMPARE(test.child<MaintenanceCharts>()->panels().size(), std::size_t{1});
+    QVERIFY(test.child<MaintenanceCharts>()->panels().front()->csv().count('\n') > 12);
+    page(test).findChild<QTabWidget*>("maintain_tabs")->setCurrentIndex(1);
+    keepPictures(test, "maintain_stops");
+  }
+
+  void cancel_answersAtOnce() {
+    WindowFixture test;
+    const QString folder = simulated("three_imus_hour");
+    look(test, folder + "/recording.bag", folder + "/calibration");
+    spin(100);
+    QVERIFY(test.runner().running());
+    QVERIFY(button(test, "cancel_maintain")->isVisible() && !button(test, "start_maintain")->isVisible());
+    const OtherLoad others;
+    QElapsedTimer since_cancel;
+    since_cancel.start();
+    QTest::mouseClick(button(test, "cancel_maintain"), Qt::LeftButton);
+    QCOMPARE(test.waitForJob(), JobOutcome::Cancelled);
+    const int most_ms = (others.quiet() ? 500 : 3000) * kSlowdown;
+    QVERIFY2(since_cancel.elapsed() < most_ms, qPrintable(QString::number(since_cancel.elapsed())));
+    QVERIFY(button(test, "start_maintain")->isVisible());
+  }
+
+ private:
+  void shows(WindowFixture& test, const Maintenance& maintenance) {
+    MaintainScreen& screen = page(test);
+    const QString verdict = screen.findChild<QLabel*>("maintain_verdict")->text();
+    QCOMPARE(verdict.toLower(), QString(verdictWords(maintenance.verdict)));
+    const QString reason = QString::fromStdString(maintenance.reason);
+    QVERIFY(screen.findChild<QLabel*>("maintain_reason")->text().contains(reason.mid(1)));
+    const auto* const table = test.child<MaintainTable>();
+    QCOMPARE(table->topLevelItemCount(), static_cast<int>(maintenance.quantities.size()));
+    for (std::size_t k = 0; k < maintenance.quantities.size(); ++k) {
+      const QTreeWidgetItem& row = *table->topLevelItem(static_cast<int>(k));
+      const MaintainedQuantity& quantity = maintenance.quantities[k];
+      QCOMPARE(row.childCount(), static_cast<int>(quantity.numbers.size()));
+      QCOMPARE(row.text(MaintainTable::kVerdict), QString(quantity.changed  ? "changed"
+                                                          : quantity.told() ? "unchanged"
+                                                                            : "not told"));
+    }
+    const auto* const steps = test.child<StepTable>();
+    QVERIFY(steps->isVisible());
+    QCOMPARE(steps->topLevelItemCount(), 1);
+    QVERIFY(steps->topLevelItem(0)->text(StepTable::kWhat).contains("rear against front"));
+    QCOMPARE(steps->topLevelItem(0)->text(StepTable::kAt),
+             QString("%1 s").arg(maintenance.steps.front().at_s, 0, 'f', 1));
+    QVERIFY(screen.findChild<QListWidget*>("maintain_notes")->count() >=
+            static_cast<int>(maintenance.advice.size() + maintenance.notes.size()));
+  }
+  // Five quantities of the pair; the jump of the lever arm is in its chart.
+  void overTime(WindowFixture& test, const Maintenance& maintenance) {
+    page(test).findChild<QTabWidget*>("maintain_tabs")->setCurrentIndex(1);
+    auto* const charts = test.child<MaintenanceCharts>();
+    auto* const what = page(test).findChild<QComboBox*>("maintained_over_time");
+    QCOMPARE(what->itemText(0), QString("rear against front"));
+    QCOMPARE(charts->panels().size(), std::size_t{5});
+    const MaintenanceTrack& track = maintenance.tracks.front();
+    const auto lever = std::find_if(track.columns.begin(), track.columns.end(),
+                                    [](const std::string& name) { return name.starts_with("translation"); });
+    QVERIFY(lever != track.columns.end());
+    QVERIFY(charts->panels()[1]->csv().contains("x,"));
+    what->setCurrentIndex(1);
+    QVERIFY(what->currentText().startsWith("Stops of "));
+    QCOMPARE(charts->panels().size(), std::size_t{1});
+    what->setCurrentIndex(0);
+  }
+  void saved(WindowFixture& test) {
+    const QString folder = scratch_.filePath("maintained");
+    QDir().mkpath(folder);
+    answerFileDialog(folder);
+    QTest::mouseClick(button(test, "save_maintenance"), Qt::LeftButton);
+    QCOMPARE(test.waitForJob(), JobOutcome::Done);
+    for (const char* const name : {"maintenance.yaml", "report.html", "track1.csv", "stops.csv", "log.txt"})
+      QVERIFY2(QFileInfo(QDir(folder).filePath(name)).size() > 0, name);
+    QVERIFY(test.child<ExportNotice>()->text().contains("What was found of the IMUs was saved"));
+  }
+};
+
+EVICAL_TEST(TestMaintainPage)
+#include "tst_maintain_page.moc"

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How IMUs went over time: numbers of two of them, or of a trajectory's pieces, each with its sigma, and when something
+// changed; and what stops leave of gravity's norm.
+#pragma once
+
+#include "core/data/maintenance.h"
+
+#include <QWidget>
+
+#include <vector>
+
+class QComboBox;
+class QGridLayout;
+
+namespace evical::ui {
+
+class PlotPanel;
+
+class MaintenanceCharts : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit MaintenanceCharts(QWidget* parent = nullptr);
+
+  void setMaintenance(const Maintenance& maintenance);
+  const std::vector<PlotPanel*>& panels() const { return panels_; }  // of what is chosen
+
+ private:
+  void show(int choice);
+  void showTrack(const MaintenanceTrack& track);
+  void showStops(const MaintainedImu& imu);
+  PlotPanel* addPanel(const QString& title, const QString& unit);
+
+  QComboBox* what_;
+  QGridLayout* grid_;
+  std::vector<PlotPanel*> panels_;
+  std::vector<const MaintainedImu*> stopped_;  // of the maintenance, as the box lists them behind the tracks
+  Maintenance maintenance_;
+};
+
+}  // namespace evical::ui

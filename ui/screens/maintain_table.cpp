@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "ui/screens/maintain_table.h"
+
+#include "core/report/html/html_text.h"
+#include "ui/screens/number_words.h"
+#include "ui/theme/theme.h"
+
+#include <QEvent>
+#include <QHeaderView>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace evical::ui {
+namespace {
+
+QString text(const std::string& of_core) {
+  return QString::fromStdString(of_core);
+}
+
+QString unitOf(const std::string& unit) {
+  return unit.empty() || unit == "1" ? QString() : " " + text(unit);
+}
+
+QString size(double value, const std::string& unit) {
+  if (!std::isfinite(value)) return QChar(0x2013);
+  return text(html::significant(value, 2)) + unitOf(unit);
+}
+
+QString sizeWithSigma(double value, double sigma, const std::string& unit) {
+  if (!std::isfinite(sigma)) return QChar(0x2013);
+  return QString("%1 %2 %3").arg(text(html::significant(value, 2)), QChar(0xb1), size(sigma, unit));
+}
+
+QString sensorText(const std::string& sensor, const std::string& against) {
+  return against.empty() ? text(sensor) : QObject::tr("%1 against %2").arg(text(sensor), text(against));
+}
+
+QString verdictOf(const MaintainedQuantity& quantity) {
+  if (quantity.changed) return QObject::tr("changed");
+  return quantity.told() ? QObject::tr("unchanged") : QObject::tr("not told");
+}
+
+QIcon iconOf(const MaintainedQuantity& quantity) {
+  if (quantity.changed) return icon("error", theme().bad);
+  return quantity.told() ? icon("done", theme().good) : icon("warning", theme().warning);
+}
+
+QString sourceOf(MaintenanceSource source) {
+  switch (source) {
+    case MaintenanceSource::Stops:
+      return QObject::tr("stops");
+    case MaintenanceSource::Trajectory:
+      return QObject::tr("trajectory");
+    case MaintenanceSource::OtherImu:
+      break;
+  }
+  return QObject::tr("other IMU");
+}
+
+QString wordsOf(const MaintainedQuantity& quantity) {
+  if (quantity.changed)
+    return QObject::tr(
+               "It is further from the old value than chance explains (chi squared %1; %2 is allowed)")
+        .arg(quantity.chi_square, 0, 'f', 1)
+        .arg(quantity.limit, 0, 'f', 1);
+  if (quantity.told()) return QObject::tr("No change is seen, and one that matters would have been");
+  return QObject::tr("No change is seen, but this log would not have shown one that matters");
+}
+
+QTreeWidgetItem* itemOf(const MaintainedNumber& number) {
+  const QString unit = unitOf(number.unit).trimmed();
+  auto* const item = new QTreeWidgetItem(
+      {unit.isEmpty() ? text(number.name) : QString("%1 [%2]").arg(text(number.name), unit)});
+  item->setText(MaintainTable::kBefore, withSigma(number.before, number.before_sigma));
+  item->setText(MaintainTable::kNow, withSigma(number.now, number.now_sigma));
+  return item;
+}
+
+QTreeWidgetItem* itemOf(const MaintainedQuantity& quantity) {
+  auto* const item = new QTreeWidgetItem(
+      {QString("%1: %2").arg(sensorText(quantity.sensor, quantity.against), text(quantity.title))});
+  item->setIcon(MaintainTable::kVerdict, iconOf(quantity));
+  item->setText(MaintainTable::kVerdict, verdictOf(quantity));
+  item->setText(MaintainTable::kSource, sourceOf(quantity.source));
+  item->setText(MaintainTable::kChange, sizeWithSigma(quantity.change, quantity.change_sigma, quantity.unit));
+  item->setText(MaintainTable::kNotice, QString("%1 (%2)").arg(size(quantity.would_notice, quantity.unit),
+                                                               text(html::significant(quantity.matters, 2))));
+  for (int column = 0; column < MaintainTable::kColumns; ++column)
+    item->setToolTip(column, wordsOf(quantity));
+  for (const MaintainedNumber& number : quantity.numbers) item->addChild(itemOf(number));
+  return item;
+}
+
+void alignNumbers(QTreeWidgetItem& item, int first, int end) {
+  for (int column = first; column < end; ++column)
+    item.setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
+  for (int row = 0; row < item.childCount(); ++row) alignNumbers(*item.child(row), first, end);
+}
+
+}  // namespace
+
+MaintainTable::MaintainTable(QWidget* parent) : CopyTable(parent) {
+  setObjectName("maintain_table");
+  setAccessibleName(tr("What has changed since the calibration, quantity by quantity"));
+  setColumnCount(kColumns);
+  setHeaderLabels({tr("Quantity"), tr("Verdict"), tr("From"), tr("Change"), tr("Would notice (matters)"),
+                   tr("Before"), tr("Now")});
+  headerItem()->setToolTip(kSource, tr("What tells: stops, another IMU on the same body, or the trajectory"));
+  headerItem()->setToolTip(kNotice,
+                           tr("The smallest change that these logs show in 95 of 100 cases, and the\n"
+                              "smallest that the verdict asks about"));
+  headerItem()->setToolTip(kNow, tr("What the logs say by themselves"));
+  alignNumbers(*headerItem(), kChange, kColumns);
+}
+
+void MaintainTable::setQuantities(std::vector<MaintainedQuantity> quantities) {
+  quantities_ = std::move(quantities);
+  fill();
+}
+
+void MaintainTable::fill() {
+  QList<QTreeWidgetItem*> items;
+  for (const MaintainedQuantity& quantity : quantities_) {
+    items << itemOf(quantity);
+    alignNumbers(*items.back(), kChange, kColumns);
+  }
+  clear();
+  addTopLevelItems(items);
+  expandAll();
+  fitColumns();
+  // What is in order is a line; what has changed shows its numbers.
+  collapseAll();
+  for (int row = 0; row < items.size(); ++row)
+    items[row]->setExpanded(quantities_[static_cast<std::size_t>(row)].changed);
+}
+
+void MaintainTable::changeEvent(QEvent* event) {
+  if (event->type() == QEvent::PaletteChange) fill();
+  CopyTable::changeEvent(event);
+}
+
+StepTable::StepTable(QWidget* parent) : CopyTable(parent) {
+  setObjectName("step_table");
+  setAccessibleName(tr("What changed on the way"));
+  setRootIsDecorated(false);
+  setIndentation(0);
+  setColumnCount(kColumns);
+  setHeaderLabels({tr("Changed on the way"), tr("At"), tr("Noticed at"), tr("By"), tr("Or else")});
+  headerItem()->setToolTip(kAt, tr("Seconds since the logs' start"));
+  headerItem()->setToolTip(kNoticed, tr("From when on the logs tell it"));
+  headerItem()->setToolTip(kOrElse, tr("Quantities that explain it nearly as well"));
+  alignNumbers(*headerItem(), kAt, kOrElse);
+}
+
+void StepTable::setSteps(const std::vector<MaintenanceStep>& steps) {
+  constexpr int kMost_rows = 4;
+  clear();
+  for (const MaintenanceStep& step : steps) {
+    QStringList others;
+    for (const std::string& other : step.or_else) others << text(other);
+    auto* const item = new QTreeWidgetItem(
+        {QString("%1: %2").arg(sensorText(step.sensor, step.against), text(step.title)),
+         QString("%1 s").arg(step.at_s, 0, 'f', 1), QString("%1 s").arg(step.noticed_s, 0, 'f', 1),
+         sizeWithSigma(step.size, step.size_sigma, step.unit), others.join(", ")});
+    alignNumbers(*item, kAt, kOrElse);
+    for (const MaintainedNumber& number : step.numbers)
+      item->setToolTip(kBy, QString("%1\n%2: %3")
+                                .arg(item->toolTip(kBy), text(number.name),
+                                     withSigma(number.now, number.now_sigma) + unitOf(number.unit))
+                                .trimmed());
+    addTopLevelItem(item);
+  }
+  fitColumns();
+  const int rows = std::min(static_cast<int>(steps.size()), kMost_rows);
+  setFixedHeight(header()->sizeHint().height() + rows * std::max(sizeHintForRow(0), 1) + 2 * frameWidth() +
+                 2);
+  setVisible(!steps.empty());
+}
+
+}  // namespace evical::ui
