@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.." || exit 2
 packaging/install-dependencies.sh
 cmake --preset release -DEVICAL_TESTS=ON
 cmake --build --preset release --target evical_accuracy evical_intrinsics_accuracy evical_unknown_intrinsics evical_formats evical_speed evical_costs \
-                                       evical evical-gui evical_stress evical_centre_errors evical_board_starts evical_frame_cameras evical_protocol evical_maintain_accuracy evical_check_accuracy
+                                       evical evical-gui evical_stress evical_centre_errors evical_board_starts evical_frame_cameras evical_protocol evical_maintain_accuracy evical_no_board evical_check_accuracy
 benchmarks=build/release/tests/benchmarks
 scenarios=config/scenarios
 failed=0
@@ -59,8 +59,8 @@ run evical_protocol --folder "$(mktemp -d)/recording" config/protocol
 # An old result beside a new recording, a hundred times.
 run evical_check_accuracy "$scenarios/davis346.yaml"
 
-# Logs of IMUs over time.
-run evical_maintain_accuracy --hour "$scenarios/maintain"
+# Without a board: rooms, and logs of IMUs over time. Three hours.
+tests/benchmarks/without_board.sh build/release || failed=1
 
 run evical_speed "$scenarios/davis346.yaml"
 run evical_costs "$scenarios"/{bare_7x3_fast,stereo_two_imus}.yaml --durations 20

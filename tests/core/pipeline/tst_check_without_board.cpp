@@ -2,15 +2,14 @@
 // and of recordings that cannot tell.
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
-#include "core/pipeline/camera_motion.h"
 #include "core/pipeline/check_without_board.h"
 #include "core/report/check_report.h"
-#include "core/synthetic/event_simulator.h"
 #include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "core/synthetic/sinusoid_motion.h"
 #include "tests/support/moving_camera.h"
 #include "tests/support/scenario_session.h"
+#include "tests/support/simulated_record.h"
 #include "tests/support/test_program.h"
 
 #include <algorithm>
@@ -94,22 +93,7 @@ CameraRecord turningCamera(const Scenario& scenario, const Seen& seen = {}) {
 CameraRecord seenCamera(const Scenario& scenario) {
   CalibrationOptions options;
   options.egomotion = quickEgomotion();
-  const SimulatedCamera& camera = scenario.cameras.front();
-  CameraMotion motion(camera.intrinsics, options, scenario.start_ns);
-  BurstExtractor bursts(camera.intrinsics.resolution_px, options.front_end.bursts);
-  std::vector<EdgeBurst> found;
-  simulateEvents(
-      scenario, 0,
-      [&](EventSpan events) {
-        found.clear();
-        bursts.add(events, found);
-        motion.add(found, bursts.completeUntil_ns());
-      },
-      {}, 1);
-  found.clear();
-  bursts.finish(found);
-  motion.add(found, bursts.completeUntil_ns());
-  return motion.finish();
+  return simulatedRecord(scenario, options).record;
 }
 
 // `before`: the rig as the old result has it.

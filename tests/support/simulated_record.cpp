@@ -1,0 +1,45 @@
+#include "tests/support/simulated_record.h"
+
+#include "core/pipeline/camera_motion.h"
+#include "core/synthetic/event_simulator.h"
+
+#include <ctime>
+#include <vector>
+
+namespace evical::test {
+namespace {
+
+double processorTime_s() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+}  // namespace
+
+SimulatedRecord simulatedRecord(const Scenario& scenario, const CalibrationOptions& options) {
+  SimulatedRecord seen;
+  const SimulatedCamera& camera = scenario.cameras.front();
+  CameraMotion motion(camera.intrinsics, options, scenario.start_ns);
+  BurstExtractor bursts(camera.intrinsics.resolution_px, options.front_end.bursts);
+  std::vector<EdgeBurst> found;
+  simulateEvents(
+      scenario, 0,
+      [&](EventSpan events) {
+        const double before_s = processorTime_s();
+        found.clear();
+        bursts.add(events, found);
+        motion.add(found, bursts.completeUntil_ns());
+        seen.processor_s += processorTime_s() - before_s;
+      },
+      {}, 1);
+  const double before_s = processorTime_s();
+  found.clear();
+  bursts.finish(found);
+  motion.add(found, bursts.completeUntil_ns());
+  seen.record = motion.finish();
+  seen.processor_s += processorTime_s() - before_s;
+  return seen;
+}
+
+}  // namespace evical::test

@@ -1,0 +1,18 @@
+// What a check without a board keeps of a camera, from a scenario's simulated events.
+#pragma once
+
+#include "core/egomotion/camera_record.h"
+#include "core/pipeline/calibration_options.h"
+#include "core/synthetic/scenario.h"
+
+namespace evical::test {
+
+struct SimulatedRecord {
+  CameraRecord record;
+  double processor_s = 0.0;  // of this thread, that the simulation did not take
+};
+
+// Of its first camera.
+SimulatedRecord simulatedRecord(const Scenario& scenario, const CalibrationOptions& options);
+
+}  // namespace evical::test
