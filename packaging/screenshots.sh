@@ -15,12 +15,15 @@ for seed in 2 3; do
   printf 'base: %s/config/scenarios/davis346_10s.yaml\nseed: %s\n' "$PWD" "$seed" > "$demo/recording_$seed.yaml"
   "$build/evical" simulate "$demo/recording_$seed.yaml" -o "$more" --quiet
 done
+# A log of two IMUs, for the page that needs no board.
+moved=$demo/moved
+[ -f "$moved/truth.yaml" ] || "$build/evical" simulate config/scenarios/maintain/step_lever.yaml -o "$moved" --quiet
 shown="start-light print-board-light how-to-record-light check-light recording-light detection-dark trajectory-light
        convergence-light signals-light residuals-light result-light export-light lens-light"
 pictures=docs/pictures
 if [ $# -gt 0 ]; then
   pictures=$1 shown=
-  for screen in start print-board how-to-record check recording detection trajectory convergence signals residuals result export lens check-result repeat; do
+  for screen in start print-board how-to-record check recording detection trajectory convergence signals residuals result export lens check-result repeat maintain maintain-over-time; do
     shown+=" $screen-light $screen-dark"
   done
 fi
@@ -38,6 +41,7 @@ for picture in $shown; do
   further=()
   case $screen in
     check-result) further=("$demo/recording_2/session.yaml") ;;
+    maintain*) session=$moved/recording.bag further=("$moved/calibration") ;;
     repeat) further=("$demo/recording_2/session.yaml" "$demo/recording_3/session.yaml") ;;
   esac
   [ "$screen" != lens ] || { screen=result session=$demo/camera.yaml; }

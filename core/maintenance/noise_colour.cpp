@@ -20,9 +20,22 @@ double NoiseColour::of(std::size_t windows) const {
   return std::max(1.0, settled - lost / static_cast<double>(windows));
 }
 
+double NoiseColour::ofMany() const {
+  return std::max(1.0, settled);
+}
+
+// Chi squared over an estimated variance is Fisher's: its quantiles to first order of 1 / freedom.
+double NoiseColour::limit(double white, Eigen::Index numbers, double wider) const {
+  const double estimated = 1.0 - 1.0 / wider;
+  const double further = (white + 2.0 - static_cast<double>(numbers)) / (2.0 * freedom);
+  return wider * white * (1.0 + estimated * std::max(0.0, further));
+}
+
 // Least squares of the medians; of n windows there are a n-th as many that share none.
 NoiseColour ColourStatistics::colour() const {
   constexpr std::size_t kFewest = 12;
+  constexpr double kShare =
+      0.2;  // of the windows: that medians scatter and what is extrapolated leave as freedom
   const double by_chance = chiSquaredLimit(0.5, dimension_);
   double weights = 0.0, x = 0.0, xx = 0.0, y = 0.0, xy = 0.0;
   for (std::size_t k = 0; k < kLengths.size(); ++k) {
@@ -39,7 +52,7 @@ NoiseColour ColourStatistics::colour() const {
   const double spread = weights * xx - x * x;
   if (!(spread > 1e-9)) return {};
   const double slope = (weights * xy - x * y) / spread;
-  return {(y - slope * x) / weights, -slope};
+  return {(y - slope * x) / weights, -slope, kShare * static_cast<double>(values_.front().size())};
 }
 
 }  // namespace evical

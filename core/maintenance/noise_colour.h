@@ -2,6 +2,8 @@
 // docs/maths.md, 15.4.
 #pragma once
 
+#include <Eigen/Core>
+
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -11,8 +13,13 @@ namespace evical {
 // Of sums over n windows: settled - lost / n, which noise of a short memory follows from its memory on.
 struct NoiseColour {
   double settled = 1.0, lost = 0.0;
+  double freedom = 1e9;  // of the squares that it is made of
 
   double of(std::size_t windows) const;
+  double ofMany() const;
+  // What chi squared with so many numbers is above as rarely as white noise is above `white`: higher for the colour, and
+  // where there is one, for what is not known of it.
+  double limit(double white, Eigen::Index numbers, double wider) const;
 };
 
 // How far n windows are from the `before` windows in front of them, in units that make it chi squared with its dimension if

@@ -1,6 +1,5 @@
 #include "core/maintenance/pair_tracking.h"
 
-#include "core/maintenance/noise_colour.h"
 #include "core/maintenance/pair_information.h"
 #include "core/numerics/angles.h"
 
@@ -157,7 +156,8 @@ class Tracker {
   // Of data of so many windows.
   std::vector<double> limitsOf(std::size_t length) const {
     std::vector<double> limits = white_limits_;
-    for (std::size_t b = 0; b < limits.size(); ++b) limits[b] *= colours_[b].of(length);
+    for (std::size_t b = 0; b < limits.size(); ++b)
+      limits[b] = colours_[b].limit(limits[b], kPairBlocks[b].size, colours_[b].of(length));
     return limits;
   }
 
@@ -165,10 +165,9 @@ class Tracker {
     std::size_t from = 0;
     double beyond = -std::numeric_limits<double>::infinity();
   };
-  Alarm strongest(std::size_t from, std::size_t end) const {
+  Alarm strongest(std::size_t from, std::size_t end, const std::vector<double>& limits) const {
     const Evidence data = evidence(from, end);
     const ChangeTest test(data.information, data.score, data.covariance);
-    const std::vector<double> limits = limitsOf(end + 1 - from);
     Alarm alarm{from, -std::numeric_limits<double>::infinity()};
     for (std::size_t b = 0; b < kPairBlocks.size(); ++b)
       alarm.beyond = std::max(alarm.beyond, test.of(kPairBlocks[b]).chi_square - limits[b]);
@@ -180,7 +179,7 @@ class Tracker {
     for (const std::size_t length : kLengths) {
       if (end + 1 < segment_ + settled_ + length) break;
       const std::size_t from = end + 1 - length;
-      const Alarm here = strongest(from, end);
+      const Alarm here = strongest(from, end, limitsOf(length));
       if (here.beyond > best.beyond) best = here;
     }
     if (best.beyond > 0.0) return best;
@@ -194,9 +193,10 @@ class Tracker {
     for (std::size_t w = noticed + 1; w <= end; ++w) update(w);
     const std::size_t longest = kLengths.back() + wait;
     const std::size_t earliest = std::max(segment_ + settled_, end > longest ? end - longest : 0);
+    // Of two moments that explain as much, limits that grow with time would choose the later one.
     Alarm best;
     for (std::size_t from = earliest; from <= end; ++from) {
-      const Alarm here = strongest(from, end);
+      const Alarm here = strongest(from, end, white_limits_);
       if (here.beyond > best.beyond) best = here;
     }
     const std::size_t from = best.beyond > 0.0 ? best.from : alarm.from;
@@ -238,8 +238,7 @@ class Tracker {
 PairVector widerSigmas(const PairColours& colours) {
   PairVector factors;
   for (std::size_t b = 0; b < colours.size(); ++b)
-    factors.segment(kPairBlocks[b].first, kPairBlocks[b].size)
-        .setConstant(std::sqrt(std::max(1.0, colours[b].settled)));
+    factors.segment(kPairBlocks[b].first, kPairBlocks[b].size).setConstant(std::sqrt(colours[b].ofMany()));
   return factors;
 }
 
@@ -278,10 +277,9 @@ PairTrack trackPair(std::span<const PairWindow> windows, const PairModel& model,
   const WeighedWindows all = weighed(windows, model, options);
   track.gyroscope_noise_rad_s = all.gyroscope_noise_rad_s;
   track.accelerometer_noise_m_s2 = all.accelerometer_noise_m_s2;
-  const PairColours colours = coloursOf(all.windows, model, options);
-  const PairVector wider = widerSigmas(colours);
-  for (std::size_t b = 0; b < colours.size(); ++b) track.wider[b] = std::max(1.0, colours[b].settled);
-  Tracker tracker(all.windows, model, alarm_probability, colours, options);
+  track.colours = coloursOf(all.windows, model, options);
+  const PairVector wider = widerSigmas(track.colours);
+  Tracker tracker(all.windows, model, alarm_probability, track.colours, options);
   tracker.run();
   track.steps = tracker.steps();
   for (std::size_t w = 0; w < all.windows.size(); ++w) {

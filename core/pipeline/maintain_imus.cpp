@@ -44,6 +44,15 @@ struct ImuPass {
   }
 };
 
+// Of the log's beginning.
+struct Looked {
+  RateNorms norms;
+  std::uint64_t samples = 0;
+  double from_s = 0.0, to_s = 0.0;
+
+  double rate_hz() const { return to_s > from_s ? static_cast<double>(samples - 1) / (to_s - from_s) : 0.0; }
+};
+
 class Maintainer {
  public:
   Maintainer(const MaintainInput& input, const RunContext& context) : input_(input), context_(context) {}
@@ -90,7 +99,7 @@ class Maintainer {
   void advise();
 
   PairNominal nominalOf(std::size_t imu) const;
-  void agreeClocks(const std::vector<RateNorms>& norms);
+  void agreeClocks(const std::vector<Looked>& seen);
   bool isNearNominal(const PairTrack& track) const;
   PairTrack trackOf(std::size_t k, double false_alarms) const;
 
@@ -130,38 +139,34 @@ void Maintainer::look() {
   }
   nominal_before_ = nominal_;
   maintenance_.notes = logs.notes();
-  std::vector<RateNorms> norms(imus_.size());
-  std::vector<std::uint64_t> counts(imus_.size(), 0);
-  std::vector<double> from(imus_.size(), 0.0), to(imus_.size(), 0.0);
+  std::vector<Looked> seen(imus_.size());
   ImuLogPacket packet;
-  double until_s = kLook_s;
   while (logs.read(packet)) {
     context_.throwIfStopped();
     const auto k =
         static_cast<std::size_t>(std::find(imus_.begin(), imus_.end(), packet.imu) - imus_.begin());
     for (const ImuSample& sample : packet.samples) {
       const double time_s = secondsSince(logs.start_ns(), sample.time_ns);
-      if (counts[k]++ == 0) from[k] = time_s;
-      to[k] = time_s;
-      norms[k].add(time_s + nominal_[k].time_offset_s,
-                   sample.angular_rate_rad_s - state(packet.imu).gyroscope_bias_rad_s);
+      if (seen[k].samples++ == 0) seen[k].from_s = time_s;
+      seen[k].to_s = time_s;
+      seen[k].norms.add(time_s + nominal_[k].time_offset_s,
+                        sample.angular_rate_rad_s - state(packet.imu).gyroscope_bias_rad_s);
     }
-    if (*std::min_element(to.begin(), to.end()) > until_s) break;
+    if (std::all_of(seen.begin(), seen.end(), [](const Looked& imu) { return imu.to_s > kLook_s; })) break;
   }
   context_.throwIfStopped();
   double slowest_hz = 0.0;
-  for (std::size_t k = 0; k < imus_.size(); ++k) {
-    const double rate_hz = to[k] > from[k] ? static_cast<double>(counts[k] - 1) / (to[k] - from[k]) : 0.0;
-    if (rate_hz > 0.0 && (slowest_hz == 0.0 || rate_hz < slowest_hz)) slowest_hz = rate_hz;
-  }
+  for (const Looked& imu : seen)
+    if (const double rate_hz = imu.rate_hz(); rate_hz > 0.0 && (slowest_hz == 0.0 || rate_hz < slowest_hz))
+      slowest_hz = rate_hz;
   smoothing_s_ = smoothingFor(slowest_hz, input_.options);
-  agreeClocks(norms);
+  agreeClocks(seen);
 }
 
-void Maintainer::agreeClocks(const std::vector<RateNorms>& norms) {
+void Maintainer::agreeClocks(const std::vector<Looked>& seen) {
   constexpr double kNear_s = 0.004;
   for (std::size_t k = 1; k < imus_.size(); ++k) {
-    const ClockAgreement clocks = clockAgreement(norms.front(), norms[k], input_.options);
+    const ClockAgreement clocks = clockAgreement(seen.front().norms, seen[k].norms, input_.options);
     if (!clocks.moved) continue;
     if (clocks.correlation < input_.options.same_motion) {
       disagreeing_.push_back(name(imus_[k]));
@@ -330,7 +335,8 @@ void Maintainer::addPairs(double false_alarms) {
     }
     addPairQuantities({imus_[k], imus_.front(), nominal_[k], nominal_before_[k], tracks[k]}, before(),
                       input_.options, false_alarms, maintenance_);
-    const double wider = *std::max_element(tracks[k].wider.begin(), tracks[k].wider.end());
+    double wider = 1.0;
+    for (const NoiseColour& colour : tracks[k].colours) wider = std::max(wider, colour.ofMany());
     if (wider > 4.0) shaken_ = pair;
     if (wider > 1.5)
       maintenance_.notes.push_back(fmt::format(

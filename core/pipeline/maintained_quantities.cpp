@@ -331,7 +331,8 @@ void addPairQuantities(const TrackedPair& pair, const NamedResult& before, const
   const Eigen::VectorXd score = pair.track.start_score - pair.track.start_information * old_state;
   const ChangeTest test(information, score, covariance);
   std::vector<double> limits = limitsFor(kPairBlocks, false_alarms);
-  for (std::size_t b = 0; b < limits.size(); ++b) limits[b] *= pair.track.wider[b];
+  for (std::size_t b = 0; b < limits.size(); ++b)
+    limits[b] = pair.track.colours[b].limit(limits[b], kPairBlocks[b].size, pair.track.colours[b].ofMany());
   const auto changes = findChanges(information, score, covariance, kPairBlocks, limits);
   const PairVector numbers_before = numbersOf(pair.before, PairVector::Zero()),
                    numbers_now = numbersOf(pair.nominal, pair.track.start);
@@ -348,7 +349,7 @@ void addPairQuantities(const TrackedPair& pair, const NamedResult& before, const
            kPairWords[b].factor * numbers_now[n],
            kPairWords[b].factor * std::sqrt(std::max(pair.track.start_covariance(n, n), 0.0))});
     }
-    setTested(kPairWords[b], block, test, changes, b, limits[b], pair.track.wider[b], quantity);
+    setTested(kPairWords[b], block, test, changes, b, limits[b], pair.track.colours[b].ofMany(), quantity);
     maintenance.quantities.push_back(quantity);
   }
   addSteps(pair, before, maintenance);

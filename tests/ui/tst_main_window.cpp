@@ -326,7 +326,8 @@ class TestMainWindow : public QObject {
     WindowFixture test;
     const QStringList names = test.window.screenNames();
     for (qsizetype i = 0; i < names.size(); ++i) {
-      test.press(static_cast<Qt::Key>(Qt::Key_0 + (i + 1) % 10), Qt::ControlModifier);
+      test.press(static_cast<Qt::Key>(Qt::Key_0 + (i + 1) % 10),
+                 i < 10 ? Qt::ControlModifier : Qt::ControlModifier | Qt::ShiftModifier);
       QCOMPARE(test.screen(), names[i]);
     }
     test.press(Qt::Key_F1);
