@@ -26,7 +26,7 @@ struct NoiseColour {
 // noise is white and nothing changes.
 class ColourStatistics {
  public:
-  static constexpr std::array<std::size_t, 6> kLengths = {2, 3, 4, 6, 8, 10};  // n
+  static constexpr std::array<std::size_t, 7> kLengths = {1, 2, 3, 4, 6, 8, 10};  // n
 
   ColourStatistics(int dimension, std::size_t before) : dimension_(dimension), before_(before) {}
 

@@ -101,7 +101,8 @@ class TestMaintainPage : public QObject {
              qPrintable(test.child<ErrorPanel>()->text()));
     QVERIFY(start->isEnabled());
     auto* const list = page(test).findChild<QListWidget*>("list_logs");
-    list->setCurrentRow(0);
+    list->item(0)->setSelected(true);
+    list->setFocus();
     QTest::keyClick(list, Qt::Key_Delete);
     QVERIFY(page(test).logs().files().isEmpty() && !start->isEnabled());
   }

@@ -56,7 +56,7 @@ QString sourceOf(MaintenanceSource source) {
     case MaintenanceSource::OtherImu:
       break;
   }
-  return QObject::tr("other IMU");
+  return QObject::tr("pair");
 }
 
 QString wordsOf(const MaintainedQuantity& quantity) {
@@ -78,6 +78,13 @@ QTreeWidgetItem* itemOf(const MaintainedNumber& number) {
   return item;
 }
 
+QString noticeText(const MaintainedQuantity& quantity) {
+  if (!std::isfinite(quantity.would_notice)) return QChar(0x2013);
+  return QString("%1 (%2)%3")
+      .arg(text(html::significant(quantity.would_notice, 2)), text(html::significant(quantity.matters, 2)),
+           unitOf(quantity.unit));
+}
+
 QTreeWidgetItem* itemOf(const MaintainedQuantity& quantity) {
   auto* const item = new QTreeWidgetItem(
       {QString("%1: %2").arg(sensorText(quantity.sensor, quantity.against), text(quantity.title))});
@@ -85,8 +92,7 @@ QTreeWidgetItem* itemOf(const MaintainedQuantity& quantity) {
   item->setText(MaintainTable::kVerdict, verdictOf(quantity));
   item->setText(MaintainTable::kSource, sourceOf(quantity.source));
   item->setText(MaintainTable::kChange, sizeWithSigma(quantity.change, quantity.change_sigma, quantity.unit));
-  item->setText(MaintainTable::kNotice, QString("%1 (%2)").arg(size(quantity.would_notice, quantity.unit),
-                                                               text(html::significant(quantity.matters, 2))));
+  item->setText(MaintainTable::kNotice, noticeText(quantity));
   for (int column = 0; column < MaintainTable::kColumns; ++column)
     item->setToolTip(column, wordsOf(quantity));
   for (const MaintainedNumber& number : quantity.numbers) item->addChild(itemOf(number));
@@ -105,11 +111,11 @@ MaintainTable::MaintainTable(QWidget* parent) : CopyTable(parent) {
   setObjectName("maintain_table");
   setAccessibleName(tr("What has changed since the calibration, quantity by quantity"));
   setColumnCount(kColumns);
-  setHeaderLabels({tr("Quantity"), tr("Verdict"), tr("From"), tr("Change"), tr("Would notice (matters)"),
-                   tr("Before"), tr("Now")});
-  headerItem()->setToolTip(kSource, tr("What tells: stops, another IMU on the same body, or the trajectory"));
+  setHeaderLabels(
+      {tr("Quantity"), tr("Verdict"), tr("From"), tr("Change"), tr("Would notice"), tr("Before"), tr("Now")});
+  headerItem()->setToolTip(kSource, tr("What tells: stops, the pair of IMUs, or the trajectory"));
   headerItem()->setToolTip(kNotice,
-                           tr("The smallest change that these logs show in 95 of 100 cases, and the\n"
+                           tr("The smallest change that these logs show in 95 of 100 cases; in brackets the\n"
                               "smallest that the verdict asks about"));
   headerItem()->setToolTip(kNow, tr("What the logs say by themselves"));
   alignNumbers(*headerItem(), kChange, kColumns);

@@ -49,10 +49,11 @@ class TestNoiseColour : public QObject {
       QVERIFY2(colour.of(n) < 1.15, qPrintable(QString::number(colour.of(n))));
   }
 
-  // Of a memory of the first order, sums are (1 + p) / (1 - p) as wide in the end.
+  // Of a memory of the first order, sums are (1 + p) / (1 - p) as wide in the end; where it is longer than a window, as
+  // here, up to a quarter of that is missed.
   void memory_isFound() {
     const NoiseColour colour = colourOf(0.5, 4000);
-    QVERIFY2(std::abs(colour.settled - 3.0) < 0.5, qPrintable(QString::number(colour.settled)));
+    QVERIFY2(colour.settled > 2.2 && colour.settled < 3.4, qPrintable(QString::number(colour.settled)));
     QVERIFY(std::abs(colour.of(2) - 1.5) < 0.3);
     QVERIFY(colour.of(1) < colour.of(4) && colour.of(4) < colour.of(25));
   }
