@@ -8,5 +8,5 @@ failed=0
 "$build/tests/benchmarks/evical_no_board" --seeds "$seeds" "$scenarios/room.yaml" || failed=1
 "$build/tests/benchmarks/evical_no_board" --seeds 4 --duration 30 "$scenarios/room_near.yaml" || failed=1
 "$build/tests/benchmarks/evical_no_board" --seeds 4 --duration 20 "$scenarios/room_vga_wide.yaml" || failed=1
-"$build/tests/benchmarks/evical_maintain_accuracy" --seeds "$seeds" --hour "$scenarios/maintain" || failed=1
+"$build/tests/benchmarks/evical_maintain_accuracy" --seeds "$seeds" --runs 300 --hour "$scenarios/maintain" || failed=1
 exit "$failed"
