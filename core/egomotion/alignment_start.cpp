@@ -38,7 +38,6 @@ Correlation correlationAt(double offset_s, const std::vector<const WindowMotion*
   return {offset_s, variance > 0.0 ? (ab - a * b / n) / std::sqrt(variance) : -1.0};
 }
 
-// W. Kabsch, "A solution for the best rotation to relate two sets of vectors", 1976.
 Eigen::Matrix3d rotationOf(const std::vector<const WindowMotion*>& windows, const AlignmentFit& fit,
                            const SummedRates& rates, const AlignmentState& state) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();

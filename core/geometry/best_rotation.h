@@ -1,4 +1,5 @@
-// The rotation that turns directions into those that belong to them (W. Kabsch 1976).
+// The rotation that turns directions into those that belong to them: W. Kabsch, "A solution for the best rotation to relate
+// two sets of vectors", 1976.
 #pragma once
 
 #include <Eigen/Core>

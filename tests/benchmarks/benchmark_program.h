@@ -46,13 +46,6 @@ inline double processCpu_s() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-// Of this thread.
-inline double threadCpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 // Runs a program; an error is said, and makes its exit code.
 inline int guarded(int (*run)(int, char**), int argc, char** argv, int code_of_errors = 2) {
   try {

@@ -9,6 +9,7 @@
 #include "tests/benchmarks/benchmark_program.h"
 #include "tests/support/scenario_session.h"
 #include "tests/support/simulated_record.h"
+#include "tests/support/thread_time.h"
 
 #include <array>
 #include <cmath>
@@ -83,9 +84,9 @@ Outcome checked(const Scenario& scenario) {
   CheckInput input = checkInputOf(test::truthOf(scenario), test::sessionFor(scenario));
   input.session.options.optimisation.threads = 1;
   Seen seen = see(scenario, input.session.options);
-  const double before_s = threadCpu_s();
+  const double before_s = test::threadCpu_s();
   Outcome outcome{checkWithoutBoard(input, std::move(seen.pass)).check, 0.0, scenario.duration_s};
-  outcome.own_s = seen.own_s + threadCpu_s() - before_s;
+  outcome.own_s = seen.own_s + test::threadCpu_s() - before_s;
   return outcome;
 }
 

@@ -2,20 +2,11 @@
 
 #include "core/pipeline/camera_motion.h"
 #include "core/synthetic/event_simulator.h"
+#include "tests/support/thread_time.h"
 
-#include <ctime>
 #include <vector>
 
 namespace evical::test {
-namespace {
-
-double processorTime_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-}  // namespace
 
 SimulatedRecord simulatedRecord(const Scenario& scenario, const CalibrationOptions& options) {
   SimulatedRecord seen;
@@ -26,19 +17,19 @@ SimulatedRecord simulatedRecord(const Scenario& scenario, const CalibrationOptio
   simulateEvents(
       scenario, 0,
       [&](EventSpan events) {
-        const double before_s = processorTime_s();
+        const double before_s = threadCpu_s();
         found.clear();
         bursts.add(events, found);
         motion.add(found, bursts.completeUntil_ns());
-        seen.processor_s += processorTime_s() - before_s;
+        seen.processor_s += threadCpu_s() - before_s;
       },
       {}, 1);
-  const double before_s = processorTime_s();
+  const double before_s = threadCpu_s();
   found.clear();
   bursts.finish(found);
   motion.add(found, bursts.completeUntil_ns());
   seen.record = motion.finish();
-  seen.processor_s += processorTime_s() - before_s;
+  seen.processor_s += threadCpu_s() - before_s;
   return seen;
 }
 

@@ -79,8 +79,7 @@ CheckTable::CheckTable(QWidget* parent) : CopyTable(parent) {
   headerItem()->setToolTip(kNotice, tr("The smallest change that this recording shows in 95 of 100 cases"));
   headerItem()->setToolTip(kMatters, tr("The smallest change that the verdict asks about"));
   headerItem()->setToolTip(kNow, tr("What the new recording says by itself"));
-  for (int column = kChange; column < kColumns; ++column)
-    headerItem()->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
+  alignNumbers(*headerItem(), kChange, kColumns);
 }
 
 void CheckTable::setQuantities(std::vector<CheckedQuantity> quantities) {
@@ -91,12 +90,7 @@ void CheckTable::setQuantities(std::vector<CheckedQuantity> quantities) {
 void CheckTable::fill() {
   QList<QTreeWidgetItem*> items;
   for (const CheckedQuantity& quantity : quantities_) items << itemOf(quantity);
-  for (QTreeWidgetItem* const item : items)
-    for (int column = kChange; column < kColumns; ++column) {
-      item->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
-      for (int row = 0; row < item->childCount(); ++row)
-        item->child(row)->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
-    }
+  for (QTreeWidgetItem* const item : items) alignNumbers(*item, kChange, kColumns);
   clear();
   addTopLevelItems(items);
   expandAll();

@@ -30,6 +30,12 @@ void CopyTable::fitColumns() {
   widenFirst();
 }
 
+void CopyTable::alignNumbers(QTreeWidgetItem& item, int first, int end) {
+  for (int column = first; column < end; ++column)
+    item.setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
+  for (int row = 0; row < item.childCount(); ++row) alignNumbers(*item.child(row), first, end);
+}
+
 void CopyTable::widenFirst() {
   int others_px = 0;
   for (int column = 1; column < columnCount(); ++column)

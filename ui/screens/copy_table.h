@@ -18,6 +18,9 @@ class CopyTable : public QTreeWidget {
   // To what headers and cells need; the first column also has what the others leave.
   void fitColumns();
 
+  // Columns [first, end) of the row and of those below it to the right, as numbers are read.
+  static void alignNumbers(QTreeWidgetItem& item, int first, int end);
+
  protected:
   void contextMenuEvent(QContextMenuEvent* event) override;
   void keyPressEvent(QKeyEvent* event) override;

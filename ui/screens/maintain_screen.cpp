@@ -4,6 +4,7 @@
 #include "core/base/error.h"
 #include "core/report/maintenance_report.h"
 #include "ui/screens/check_words.h"
+#include "ui/screens/empty_hint.h"
 #include "ui/screens/file_list.h"
 #include "ui/screens/maintain_table.h"
 #include "ui/screens/old_result_row.h"
@@ -135,27 +136,14 @@ QWidget* MaintainScreen::makeForm() {
 }
 
 QWidget* MaintainScreen::makeEmpty() {
-  constexpr int kText_px = 560;
-  auto* const empty = new QWidget(this);
-  auto* const text = selectableLabel(
-      "hint",
+  return emptyHint(
       tr("No board is needed. Stops in several attitudes tell each accelerometer's biases and scales; "
          "several "
          "IMUs that turn together tell how they lie to each other, second by second, and when one has moved; "
          "a "
          "trajectory from elsewhere tells the accelerometer of the reference IMU without stops. How much it "
          "takes until something counts as changed stands under Parameters, Maintain."),
-      empty);
-  text->setMaximumWidth(kText_px);
-  auto* const row = new QHBoxLayout;
-  row->addStretch();
-  row->addWidget(text, 1);
-  row->addStretch();
-  auto* const layout = new QVBoxLayout(empty);
-  layout->addStretch(1);
-  layout->addLayout(row);
-  layout->addStretch(2);
-  return empty;
+      this);
 }
 
 QWidget* MaintainScreen::makeContent(QWidget* charts) {

@@ -99,12 +99,6 @@ QTreeWidgetItem* itemOf(const MaintainedQuantity& quantity) {
   return item;
 }
 
-void alignNumbers(QTreeWidgetItem& item, int first, int end) {
-  for (int column = first; column < end; ++column)
-    item.setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
-  for (int row = 0; row < item.childCount(); ++row) alignNumbers(*item.child(row), first, end);
-}
-
 }  // namespace
 
 MaintainTable::MaintainTable(QWidget* parent) : CopyTable(parent) {

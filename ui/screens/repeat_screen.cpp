@@ -2,6 +2,7 @@
 #include "ui/screens/repeat_screen.h"
 
 #include "ui/screens/check_words.h"
+#include "ui/screens/empty_hint.h"
 #include "ui/screens/file_list.h"
 #include "ui/screens/path_row.h"
 #include "ui/screens/repeat_table.h"
@@ -127,24 +128,11 @@ QWidget* RepeatScreen::makeForm() {
 }
 
 QWidget* RepeatScreen::makeEmpty() {
-  constexpr int kText_px = 560;
-  auto* const empty = new QWidget(this);
-  auto* const text = selectableLabel(
-      "hint",
+  return emptyHint(
       tr("Each recording is calibrated alone, then all in one solution. How much the results spread, beside "
          "what their sigmas promise, tells how honest the sigmas are; a recording that does not fit the "
          "others is named, with what is different in it."),
-      empty);
-  text->setMaximumWidth(kText_px);
-  auto* const row = new QHBoxLayout;
-  row->addStretch();
-  row->addWidget(text, 1);
-  row->addStretch();
-  auto* const layout = new QVBoxLayout(empty);
-  layout->addStretch(1);
-  layout->addLayout(row);
-  layout->addStretch(2);
-  return empty;
+      this);
 }
 
 QWidget* RepeatScreen::makeNumbers() {

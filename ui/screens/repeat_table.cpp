@@ -53,11 +53,6 @@ QString wordsOf(const RepeatedRecording& recording) {
   return parts.isEmpty() ? QObject::tr("nothing against it") : parts.join("; ");
 }
 
-void alignNumbers(QTreeWidgetItem& item, int first, int end) {
-  for (int column = first; column < end; ++column)
-    item.setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
-}
-
 }  // namespace
 
 RepeatTable::RepeatTable(QWidget* parent) : CopyTable(parent) {
@@ -158,7 +153,7 @@ RepeatedList::RepeatedList(QWidget* parent) : CopyTable(parent) {
   setHeaderLabels({tr("Recording"), tr("Verdict"), tr("Distance"), tr("What is said of it"), tr("File")});
   headerItem()->setToolTip(kDistance,
                            tr("From all others that fit (chi squared), and what chance explains at most"));
-  headerItem()->setTextAlignment(kDistance, Qt::AlignRight | Qt::AlignVCenter);
+  alignNumbers(*headerItem(), kDistance, kDistance + 1);
 }
 
 void RepeatedList::setRecordings(std::vector<RepeatedRecording> recordings) {

@@ -3,6 +3,7 @@
 
 #include "ui/screens/check_table.h"
 #include "ui/screens/check_words.h"
+#include "ui/screens/empty_hint.h"
 #include "ui/screens/old_result_row.h"
 #include "ui/screens/selectable_label.h"
 #include "ui/screens/verdict_line.h"
@@ -86,25 +87,11 @@ QWidget* ResultCheckScreen::makeForm() {
 }
 
 QWidget* ResultCheckScreen::makeEmpty() {
-  constexpr int kText_px = 560;
-  auto* const empty = new QWidget(this);
-  auto* const text =
-      selectableLabel("hint",
-                      tr("Move the rig before the board for some ten seconds, as for a calibration, and "
-                         "choose that recording above. It is calibrated anew and held against the old "
-                         "result: each quantity is called unchanged, changed, or not told, where the "
-                         "recording would not have shown a change that matters."),
-                      empty);
-  text->setMaximumWidth(kText_px);
-  auto* const row = new QHBoxLayout;
-  row->addStretch();
-  row->addWidget(text, 1);
-  row->addStretch();
-  auto* const layout = new QVBoxLayout(empty);
-  layout->addStretch(1);
-  layout->addLayout(row);
-  layout->addStretch(2);
-  return empty;
+  return emptyHint(tr("Move the rig before the board for some ten seconds, as for a calibration, and "
+                      "choose that recording above. It is calibrated anew and held against the old "
+                      "result: each quantity is called unchanged, changed, or not told, where the "
+                      "recording would not have shown a change that matters."),
+                   this);
 }
 
 QWidget* ResultCheckScreen::makeContent() {
