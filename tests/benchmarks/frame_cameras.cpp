@@ -14,6 +14,7 @@
 #include "tests/benchmarks/benchmark_program.h"
 #include "tests/benchmarks/scenario_run.h"
 #include "tests/support/real_recordings.h"
+#include "tests/support/test_folders.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -59,7 +60,7 @@ class Table {
 };
 
 Scenario scenarioOf(const std::string& name, std::optional<double> duration_s) {
-  Scenario scenario = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/" + name + ".yaml");
+  Scenario scenario = readScenario(test::scenarioPath(name));
   if (duration_s) scenario.duration_s = *duration_s;
   return scenario;
 }

@@ -18,6 +18,7 @@
 #include "core/recording/recording_reader.h"
 #include "tests/benchmarks/benchmark_program.h"
 #include "tests/support/simulated_pass.h"
+#include "tests/support/test_folders.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -244,7 +245,7 @@ class Guard {
 
 int main(int argc, char** argv) {
   CLI::App app("Guards against stages that become slower");
-  std::string baseline, table, scenario = EVICAL_SOURCE_DIR "/config/scenarios/davis346.yaml";
+  std::string baseline, table, scenario = test::scenarioPath("davis346");
   int rounds = 3, most_rounds = 9;
   bool renew = false;
   app.add_option("BASELINE", baseline, "File of ratios")->required();

@@ -4,6 +4,7 @@
 #include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/scenario_session.h"
+#include "tests/support/test_folders.h"
 
 namespace evical::test {
 namespace {
@@ -20,7 +21,7 @@ BoardObservations observationsOf(const Scenario& scenario, std::size_t camera) {
 }  // namespace
 
 SimulatedPass simulatePass(double duration_s, const std::string& scenario) {
-  return simulatePass(duration_s, readScenario(EVICAL_SOURCE_DIR "/config/scenarios/" + scenario + ".yaml"));
+  return simulatePass(duration_s, readScenario(scenarioPath(scenario)));
 }
 
 SimulatedPass simulatePass(double duration_s, const Scenario& scenario) {

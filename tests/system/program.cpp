@@ -1,5 +1,7 @@
 #include "tests/system/program.h"
 
+#include "tests/support/test_folders.h"
+
 #include <QDir>
 #include <QElapsedTimer>
 #include <QFile>
@@ -73,6 +75,10 @@ Outcome interruptProgram(const QStringList& arguments, int signal,
 
 QString simulated(const QString& name) {
   return QDir(QStringLiteral(EVICAL_SIMULATED)).filePath(name);
+}
+
+QString inSources(const QString& below) {
+  return QString::fromStdString(sourcePath(below.toStdString()));
 }
 
 QByteArray readFile(const QString& path) {

@@ -32,6 +32,9 @@ Outcome interruptProgram(const QStringList& arguments, int signal,
 // Folders of the simulated recordings: "blinking", "intrinsics", "second" (the short one's rig), "short" (text), "short_bag", "still".
 QString simulated(const QString& name);
 
+// The path of one of the project's own files, given as seen from its root.
+QString inSources(const QString& below);
+
 QByteArray readFile(const QString& path);
 void writeFile(const QString& path, const QByteArray& content);
 

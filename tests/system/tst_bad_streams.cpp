@@ -122,7 +122,7 @@ void TestBadStreams::folder_thatCannotBeReached_isBadInput() {
 void TestBadStreams::simulate_thatCannotFinish_leavesTheOldRecording() {
   QTemporaryDir folder;
   writeFile(folder.filePath("tiny.yaml"),
-            "base: " EVICAL_SOURCE_DIR "/tests/system/short_bag.yaml\nduration_s: 0.2\n");
+            "base: " + inSources("tests/system/short_bag.yaml").toUtf8() + "\nduration_s: 0.2\n");
   const QString made = folder.filePath("made");
   VERIFY_OUTCOME(runProgram({"simulate", folder.filePath("tiny.yaml"), "-o", made}), 0);
   const QByteArray recording = readFile(made + "/recording.bag"), truth = readFile(made + "/truth.yaml");

@@ -124,14 +124,14 @@ void TestCommandLine::usage_thatIsWrongEndsWith2() {
 void TestCommandLine::options_asMarkdownAreTheManual() {
   const Outcome outcome = runProgram({"options", "--markdown"});
   VERIFY_EXIT(outcome, 0);
-  QVERIFY2(outcome.output.toUtf8() == readFile(EVICAL_SOURCE_DIR "/docs/options.md"),
+  QVERIFY2(outcome.output.toUtf8() == readFile(inSources("docs/options.md")),
            "docs/options.md is old: evical options --markdown > docs/options.md");
 }
 
 void TestCommandLine::options_asYamlAreTheDefaultFile() {
   const Outcome outcome = runProgram({"options", "--yaml"});
   VERIFY_EXIT(outcome, 0);
-  QVERIFY2(outcome.output.toUtf8() == readFile(EVICAL_SOURCE_DIR "/config/default.yaml"),
+  QVERIFY2(outcome.output.toUtf8() == readFile(inSources("config/default.yaml")),
            "config/default.yaml is old: evical options --yaml > config/default.yaml");
 }
 
@@ -164,7 +164,7 @@ void TestCommandLine::board_isWrittenAsPdfSvgAndPng() {
 void TestCommandLine::simulate_isTheSameFromTheSameSeed() {
   QTemporaryDir folder;
   writeFile(folder.filePath("tiny.yaml"),
-            "base: " EVICAL_SOURCE_DIR "/tests/system/short.yaml\nduration_s: 0.2\nseed: 5\n");
+            "base: " + inSources("tests/system/short.yaml").toUtf8() + "\nduration_s: 0.2\nseed: 5\n");
   for (const QString name : {"a", "b"}) {
     const Outcome outcome =
         runProgram({"simulate", folder.filePath("tiny.yaml"), "-o", folder.filePath(name)});
@@ -498,8 +498,8 @@ void TestCommandLine::interruption_leavesNothingHalfWritten() {
 void TestCommandLine::interruption_ofASimulationLeavesNothing() {
   QTemporaryDir folder;
   const Outcome outcome = interruptProgram(
-      {"simulate", EVICAL_SOURCE_DIR "/config/scenarios/davis346.yaml", "-o", folder.filePath("demo")},
-      SIGINT, [](const QString& errors) { return errors.contains("simulate"); });
+      {"simulate", inSources("config/scenarios/davis346.yaml"), "-o", folder.filePath("demo")}, SIGINT,
+      [](const QString& errors) { return errors.contains("simulate"); });
   VERIFY_EXIT(outcome, 1);
   QCOMPARE(outcome.reason(), QStringLiteral("cancelled"));
   QVERIFY2(filesIn(folder.path()).isEmpty(), qPrintable(filesIn(folder.filePath("demo")).join(' ')));
@@ -509,9 +509,8 @@ void TestCommandLine::interruption_ofASimulationLeavesNothing() {
 void TestCommandLine::folder_thatCannotBeMadeIsRefused() {
   QTemporaryDir folder;
   writeFile(folder.filePath("file"), "not a folder");
-  for (const QStringList& arguments :
-       {QStringList{"calibrate", session()}, QStringList{"detect", session()},
-        QStringList{"simulate", EVICAL_SOURCE_DIR "/tests/system/short.yaml"}}) {
+  for (const QStringList& arguments : {QStringList{"calibrate", session()}, QStringList{"detect", session()},
+                                       QStringList{"simulate", inSources("tests/system/short.yaml")}}) {
     const Outcome outcome = runProgram(arguments + QStringList{"-o", folder.filePath("file/result")});
     VERIFY_EXIT(outcome, 2);
     QVERIFY2(outcome.reason().contains("file/result"), qPrintable(outcome.errors));
@@ -532,7 +531,7 @@ void TestCommandLine::diskFull_leavesTheOldResult() {
   QCOMPARE(filesIn(result), untouched);
 
   const Outcome simulation = runProgramWithFileLimit(
-      {"simulate", EVICAL_SOURCE_DIR "/tests/system/short.yaml", "-o", folder.filePath("demo")}, 100);
+      {"simulate", inSources("tests/system/short.yaml"), "-o", folder.filePath("demo")}, 100);
   VERIFY_EXIT(simulation, 1);
   QVERIFY(filesIn(folder.filePath("demo")).isEmpty());
 }

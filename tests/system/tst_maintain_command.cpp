@@ -34,7 +34,7 @@ class TestMaintainCommand : public QObject {
 
   QString path(const QString& name) const { return folder_.filePath(name); }
   QString scenario(const QString& name) const {
-    return QStringLiteral(EVICAL_SCENARIOS) + "/maintain/" + name + ".yaml";
+    return inSources("config/scenarios/maintain/" + name + ".yaml");
   }
   QStringList maintain(const QString& name, const QString& log = {}, const QString& out = "out") const {
     return {"maintain", log.isEmpty() ? path(name) + "/recording.bag" : log,

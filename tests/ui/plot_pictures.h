@@ -2,6 +2,8 @@
 // Pictures of a screen, light and dark, in the sizes it must look right in.
 #pragma once
 
+#include "tests/ui/screenshots.h"
+
 #include <QApplication>
 #include <QDir>
 #include <QPalette>
@@ -23,13 +25,12 @@ inline void setPalette(bool dark) {
 
 // `settle` is called after each change, and returns when the screen has drawn what it has to.
 inline void takePictures(QWidget& screen, const QString& name, const std::function<void()>& settle) {
-  QDir().mkpath(EVICAL_SCREENSHOTS);
   for (const bool dark : {false, true}) {
     setPalette(dark);
     for (const QSize size : {QSize(1000, 650), QSize(1640, 930)}) {
       screen.resize(size);
       settle();
-      screen.grab().save(QStringLiteral(EVICAL_SCREENSHOTS "/%1_%2_%3.png")
+      screen.grab().save(evical::ui::test::screenshotPath("%1_%2_%3.png")
                              .arg(name, dark ? "dark" : "light")
                              .arg(size.width()));
     }

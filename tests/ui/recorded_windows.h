@@ -6,6 +6,7 @@
 #include "core/pipeline/recording_pass.h"
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "tests/support/test_folders.h"
 #include "tests/ui/slowdown.h"
 #include "ui/detection/detection_screen.h"
 #include "ui/detection/event_view.h"
@@ -28,7 +29,7 @@ struct Recorded {
   RecordingPass pass;
 
   explicit Recorded(const std::string& name = "davis346", double duration_s = 2.0) {
-    Scenario scenario = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/" + name + ".yaml");
+    Scenario scenario = readScenario(evical::test::scenarioPath(name));
     scenario.duration_s = duration_s;
     const SimulationSummary files = simulate(scenario, folder.path().toStdString(), {});
     session = readSession(files.session);

@@ -38,7 +38,7 @@ QString simulateOnce(const QString& name, const std::function<void(const std::st
 }
 
 Scenario scenario(const char* name, double duration_s) {
-  Scenario read = readScenario(std::string(EVICAL_SCENARIOS) + '/' + name + ".yaml");
+  Scenario read = readScenario(evical::test::scenarioPath(name));
   read.duration_s = duration_s;
   return read;
 }

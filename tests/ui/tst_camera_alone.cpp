@@ -8,6 +8,7 @@
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/packed_events.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/slowdown.h"
@@ -41,7 +42,7 @@ using namespace evical::ui::test;
 namespace {
 
 Scenario scenario() {
-  Scenario read = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/intrinsics_davis346.yaml");
+  Scenario read = readScenario(evical::test::scenarioPath("intrinsics_davis346"));
   read.duration_s = 8.0;
   return read;
 }

@@ -4,6 +4,7 @@
 #include "core/frames/ideal_views.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/recorded_windows.h"
+#include "tests/ui/screenshots.h"
 #include "ui/detection/event_window_reader.h"
 #include "ui/detection/frame_analysis.h"
 #include "ui/detection/window_panel.h"
@@ -265,13 +266,11 @@ class TestDetectionFrames : public QObject {
   void screenshots() {
     QFETCH(bool, dark);
     applyTheme(*qApp, dark ? Appearance::Dark : Appearance::Light);
-    QDir().mkpath(EVICAL_SCREENSHOTS);
     DetectionScreen screen;
     open(screen);
     screen.setTime(foundAt_s());
     settleFrame(screen);
-    QVERIFY(screen.grab().save(
-        QString(EVICAL_SCREENSHOTS "/detection_frame_%1.png").arg(QTest::currentDataTag())));
+    QVERIFY(screen.grab().save(screenshotPath("detection_frame_%1.png").arg(QTest::currentDataTag())));
     applyTheme(*qApp, Appearance::Light);
   }
 

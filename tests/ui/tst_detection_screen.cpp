@@ -2,6 +2,7 @@
 #include "core/base/time.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/recorded_windows.h"
+#include "tests/ui/screenshots.h"
 #include "ui/detection/burst_band.h"
 #include "ui/detection/event_window_reader.h"
 #include "ui/detection/layers.h"
@@ -392,12 +393,11 @@ class TestDetectionScreen : public QObject {
     QFETCH(QSize, size);
     QFETCH(bool, dark);
     applyTheme(*qApp, dark ? Appearance::Dark : Appearance::Light);
-    QDir().mkpath(EVICAL_SCREENSHOTS);
     DetectionScreen screen;
     screen.resize(size);
     screen.show();
     const auto save = [&](const QString& name) {
-      return screen.grab().save(QString(EVICAL_SCREENSHOTS "/%1_%2.png").arg(name, QTest::currentDataTag()));
+      return screen.grab().save(screenshotPath("%1_%2.png").arg(name, QTest::currentDataTag()));
     };
     QVERIFY(save("detection_empty"));
     screen.setSession(recorded_->session);

@@ -4,6 +4,7 @@
 #include "core/geometry/camera_model.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/recorded_windows.h"
+#include "tests/ui/screenshots.h"
 #include "ui/detection/detection_engine.h"
 #include "ui/detection/events_over_frame.h"
 #include "ui/detection/frame_analysis.h"
@@ -217,7 +218,6 @@ class TestEventsOverFrame : public QObject {
     QFETCH(bool, dark);
     QFETCH(QSize, size);
     applyTheme(*qApp, dark ? Appearance::Dark : Appearance::Light);
-    QDir().mkpath(EVICAL_SCREENSHOTS);
     DetectionScreen screen;
     open(screen, run_);
     screen.resize(size);
@@ -227,7 +227,7 @@ class TestEventsOverFrame : public QObject {
     settle(screen);
     const auto save = [&](const QString& name) {
       QTest::qWait(500);
-      return screen.grab().save(QString(EVICAL_SCREENSHOTS "/%1_%2.png").arg(name, QTest::currentDataTag()));
+      return screen.grab().save(screenshotPath("%1_%2.png").arg(name, QTest::currentDataTag()));
     };
     screen.setPicture(PictureChoice::Overlaid);
     QVERIFY(save("detection_overlaid"));

@@ -4,6 +4,7 @@
 
 #include "core/report/export/export_target.h"
 #include "tests/support/test_program.h"
+#include "tests/ui/screenshots.h"
 #include "tests/ui/window_fixture.h"
 #include "ui/window/export_notice.h"
 
@@ -127,7 +128,6 @@ class TestExportDialog : public QObject {
   }
 
   void screenshots() {
-    QDir().mkpath(EVICAL_SCREENSHOTS);
     for (const Appearance appearance : {Appearance::Light, Appearance::Dark}) {
       applyTheme(*qApp, appearance);
       ExportDialog dialog({scratch_.filePath("drive_calibration"), {"openvins", "ros"}, true}, nullptr);
@@ -140,7 +140,7 @@ class TestExportDialog : public QObject {
                           {}});
       notice.resize(760, notice.heightForWidth(760));
       for (QWidget* const widget : std::initializer_list<QWidget*>{&dialog, &notice})
-        QVERIFY(widget->grab().save(QStringLiteral(EVICAL_SCREENSHOTS "/export_%1_%2.png")
+        QVERIFY(widget->grab().save(screenshotPath("export_%1_%2.png")
                                         .arg(widget == &dialog ? "dialog" : "notice")
                                         .arg(theme().dark ? "dark" : "light")));
     }

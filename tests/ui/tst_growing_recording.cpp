@@ -4,6 +4,7 @@
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/packed_events.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/window_fixture.h"
@@ -88,7 +89,7 @@ class TestGrowingRecording : public QObject {
   QTemporaryDir scratch_;
 
   Scenario scenario() const {
-    Scenario read = readScenario(std::string(EVICAL_SOURCE_DIR) + "/config/scenarios/davis346.yaml");
+    Scenario read = readScenario(evical::test::scenarioPath("davis346"));
     read.duration_s = 4.0;
     return read;
   }

@@ -5,6 +5,7 @@
 #include "tests/support/own_result.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/plot_hands.h"
+#include "tests/ui/screenshots.h"
 #include "ui/plots/chart_saving.h"
 #include "ui/scene/trajectory_track.h"
 #include "ui/screens/correlation_view.h"
@@ -356,7 +357,6 @@ class TestHandOn : public QObject {
 
   // As large as windows of 1024x700, 1280x800 and 1920x1080 leave it.
   void screenshots() {
-    QDir().mkpath(EVICAL_SCREENSHOTS);
     NamedResult full = rig_;
     nameEverything(evical::test::ownResult(full).uncertainty);
     for (const Appearance appearance : {Appearance::Light, Appearance::Dark}) {
@@ -370,7 +370,7 @@ class TestHandOn : public QObject {
         for (int tab = 0; tab < 3; ++tab) {
           tabs->setCurrentIndex(tab);
           QTest::qWait(50);
-          QVERIFY(screen.grab().save(QStringLiteral(EVICAL_SCREENSHOTS "/hand_on_%1_%2_%3.png")
+          QVERIFY(screen.grab().save(screenshotPath("hand_on_%1_%2_%3.png")
                                          .arg(tab)
                                          .arg(theme().dark ? "dark" : "light")
                                          .arg(size.width())));

@@ -3,6 +3,7 @@
 #include "core/pipeline/run_data.h"
 #include "core/pipeline/saved_run.h"
 #include "tests/support/test_program.h"
+#include "tests/ui/screenshots.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/window_fixture.h"
 #include "ui/detection/detection_screen.h"
@@ -278,16 +279,13 @@ class TestKeptRuns : public QObject {
  private:
   // To be looked at.
   static void takePictures(WindowFixture& test, const QString& name) {
-    QDir().mkpath(EVICAL_SCREENSHOTS);
     for (const bool dark : {false, true}) {
       applyTheme(*qApp, dark ? Appearance::Dark : Appearance::Light);
       for (const QSize& size : {QSize(1024, 700), QSize(1280, 800), QSize(1920, 1080)}) {
         test.window.resize(size);
         spin(200);
-        QVERIFY(test.window.grab().save(QString("%1/%2_%3_%4.png")
-                                            .arg(EVICAL_SCREENSHOTS, name)
-                                            .arg(size.width())
-                                            .arg(dark ? "dark" : "light")));
+        QVERIFY(test.window.grab().save(
+            screenshotPath("%1_%2_%3.png").arg(name).arg(size.width()).arg(dark ? "dark" : "light")));
       }
     }
     applyTheme(*qApp, Appearance::Light);

@@ -6,6 +6,7 @@
 #include "core/geometry/projection_difference.h"
 #include "core/intrinsics/intrinsics_uncertainty.h"
 #include "tests/support/test_program.h"
+#include "tests/ui/screenshots.h"
 #include "ui/screens/image_map_view.h"
 #include "ui/screens/lens_parameters.h"
 #include "ui/screens/views_chart.h"
@@ -203,8 +204,7 @@ class TestLensScreen : public QObject {
     screen.setOthers({{"factory.yaml", otherLens()}});
     for (int tab = 0; tab < tabs->count(); ++tab) {
       tabs->setCurrentIndex(tab);
-      QDir().mkpath(EVICAL_SCREENSHOTS);
-      QVERIFY(screen.grab().save(QString(EVICAL_SCREENSHOTS "/lens_%1.png").arg(tab)));
+      QVERIFY(screen.grab().save(ui::test::screenshotPath("lens_%1.png").arg(tab)));
     }
   }
 

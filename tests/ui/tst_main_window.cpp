@@ -4,6 +4,7 @@
 
 #include "tests/support/test_program.h"
 #include "tests/ui/other_load.h"
+#include "tests/ui/screenshots.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/slowdown.h"
 #include "tests/ui/stall_meter.h"
@@ -333,8 +334,7 @@ class TestMainWindow : public QObject {
     test.press(Qt::Key_F1);
     auto* const guide = test.window.findChild<QDialog*>("user_guide");
     QVERIFY(guide->isVisible());
-    QDir().mkpath(EVICAL_SCREENSHOTS);
-    QVERIFY(guide->grab().save(EVICAL_SCREENSHOTS "/user_guide.png"));
+    QVERIFY(guide->grab().save(screenshotPath("user_guide.png")));
     QVERIFY(guide->findChild<QTextBrowser*>()->toPlainText().contains("noise densities"));
   }
 
@@ -358,7 +358,6 @@ class TestMainWindow : public QObject {
   }
 
   void everyScreen_hasAPicture() {
-    QDir().mkpath(EVICAL_SCREENSHOTS);
     for (const bool dark : {false, true}) {
       applyTheme(*qApp, dark ? Appearance::Dark : Appearance::Light);
       WindowFixture test;
@@ -372,10 +371,8 @@ class TestMainWindow : public QObject {
           QTest::qWait(100);
           const QImage picture = test.window.grab().toImage();
           QCOMPARE(picture.size(), size);
-          QVERIFY(picture.save(QString("%1/%2_%3_%4.png")
-                                   .arg(EVICAL_SCREENSHOTS, name)
-                                   .arg(size.width())
-                                   .arg(dark ? "dark" : "light")));
+          QVERIFY(picture.save(
+              screenshotPath("%1_%2_%3.png").arg(name).arg(size.width()).arg(dark ? "dark" : "light")));
         }
       }
     }

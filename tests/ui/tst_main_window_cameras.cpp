@@ -3,6 +3,7 @@
 #include "ui/window/main_window.h"
 
 #include "tests/support/test_program.h"
+#include "tests/ui/screenshots.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/window_fixture.h"
 #include "ui/detection/detection_engine.h"
@@ -159,8 +160,7 @@ class TestMainWindowCameras : public QObject {
     QVERIFY(screen->companionView().legend() == ColourLegend::Polarity);
     QTRY_VERIFY_WITH_TIMEOUT(beside()->events > 100, kPatience_ms);
     QTest::qWait(500);  // until all of its recording has been read
-    QDir().mkpath(EVICAL_SCREENSHOTS);
-    QVERIFY(test_->window.grab().save(QStringLiteral(EVICAL_SCREENSHOTS "/detection_both_cameras.png")));
+    QVERIFY(test_->window.grab().save(screenshotPath("detection_both_cameras.png")));
     const auto other = beside();
     screen->setPicture(PictureChoice::Alone);
     QVERIFY(!screen->companionView().isVisible());

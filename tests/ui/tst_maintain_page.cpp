@@ -5,6 +5,7 @@
 #include "tests/support/test_program.h"
 #include "tests/ui/clipped_text.h"
 #include "tests/ui/other_load.h"
+#include "tests/ui/screenshots.h"
 #include "tests/ui/slowdown.h"
 #include "tests/ui/unnamed_controls.h"
 #include "tests/ui/window_fixture.h"
@@ -35,8 +36,7 @@ class TestMaintainPage : public QObject {
   QString simulated(const char* scenario) {
     const QString folder = scratch_.filePath(scenario);
     if (QFile::exists(folder + "/truth.yaml")) return folder;
-    DriveScenario drive =
-        readDriveScenario(std::filesystem::path(EVICAL_SCENARIOS) / (std::string(scenario) + ".yaml"));
+    DriveScenario drive = readDriveScenario(evical::test::scenarioPath(std::string("maintain/") + scenario));
     drive.duration_s = std::min(drive.duration_s, 1500.0);
     simulateDrive(drive, folder.toStdString(), RunContext{});
     return folder;
@@ -65,14 +65,12 @@ class TestMaintainPage : public QObject {
     QTest::mouseClick(start, Qt::LeftButton);
   }
   static void keepPictures(WindowFixture& test, const QString& name) {
-    QDir().mkpath(EVICAL_SCREENSHOTS);
     for (const QSize size : {QSize(1024, 700), QSize(1280, 800), QSize(1920, 1080)}) {
       test.window.resize(size);
       spin(200);
       const QStringList clipped = clippedTexts(test.window);
       QVERIFY2(clipped.isEmpty(), qPrintable(clipped.join('\n')));
-      QVERIFY(
-          test.window.grab().save(QString("%1/%2_%3.png").arg(EVICAL_SCREENSHOTS, name).arg(size.width())));
+      QVERIFY(test.window.grab().save(screenshotPath("%1_%2.png").arg(name).arg(size.width())));
     }
   }
 

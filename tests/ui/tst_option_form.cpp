@@ -4,6 +4,7 @@
 #include "core/base/error.h"
 #include "core/pipeline/calibration_options.h"
 #include "tests/support/test_program.h"
+#include "tests/ui/screenshots.h"
 #include "ui/forms/option_editor.h"
 #include "ui/forms/option_slider.h"
 #include "ui/theme/theme.h"
@@ -299,9 +300,8 @@ class TestOptionForm : public QObject {
     test.type("detection.shortest_window_s", "0.1");
     QTest::qWait(50);
     QVERIFY(test.form.minimumSizeHint().width() <= 340);
-    QDir().mkpath(EVICAL_SCREENSHOTS);
-    QVERIFY(test.form.grab().save(
-        QString(EVICAL_SCREENSHOTS "/option_form_%1.png").arg(QTest::currentDataTag())));
+    QVERIFY(
+        test.form.grab().save(ui::test::screenshotPath("option_form_%1.png").arg(QTest::currentDataTag())));
     applyTheme(*qApp, Appearance::Light);
   }
 
@@ -310,8 +310,7 @@ class TestOptionForm : public QObject {
     test.search()->setText("circle");
     QTest::qWait(50);
     QVERIFY(test.form.minimumSizeHint().width() <= 340);
-    QDir().mkpath(EVICAL_SCREENSHOTS);
-    QVERIFY(test.form.grab().save(EVICAL_SCREENSHOTS "/option_form.png"));
+    QVERIFY(test.form.grab().save(ui::test::screenshotPath("option_form.png")));
   }
 };
 

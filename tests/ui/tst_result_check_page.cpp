@@ -4,6 +4,7 @@
 #include "tests/support/test_program.h"
 #include "tests/ui/clipped_text.h"
 #include "tests/ui/other_load.h"
+#include "tests/ui/screenshots.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/slowdown.h"
 #include "tests/ui/unnamed_controls.h"
@@ -66,14 +67,12 @@ class TestResultCheckPage : public QObject {
     return nullptr;
   }
   static void keepPictures(WindowFixture& test, const QString& name) {
-    QDir().mkpath(EVICAL_SCREENSHOTS);
     for (const QSize size : {QSize(1024, 700), QSize(1280, 800), QSize(1920, 1080)}) {
       test.window.resize(size);
       spin(150);
       const QStringList clipped = clippedTexts(test.window);
       QVERIFY2(clipped.isEmpty(), qPrintable(clipped.join('\n')));
-      QVERIFY(
-          test.window.grab().save(QString("%1/%2_%3.png").arg(EVICAL_SCREENSHOTS, name).arg(size.width())));
+      QVERIFY(test.window.grab().save(screenshotPath("%1_%2.png").arg(name).arg(size.width())));
     }
   }
 

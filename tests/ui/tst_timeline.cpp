@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/support/test_program.h"
+#include "tests/ui/screenshots.h"
 #include "ui/detection/timeline.h"
 #include "ui/theme/theme.h"
 
@@ -195,9 +196,7 @@ class TestTimeline : public QObject {
     timeline.setEventRate(events);
     timeline.setRotationRate(rotation);
     timeline.setTime(3.21);
-    QDir().mkpath(EVICAL_SCREENSHOTS);
-    QVERIFY(
-        timeline.grab().save(QString(EVICAL_SCREENSHOTS "/timeline_%1.png").arg(dark ? "dark" : "light")));
+    QVERIFY(timeline.grab().save(ui::test::screenshotPath("timeline_%1.png").arg(dark ? "dark" : "light")));
     QApplication::setPalette(QPalette());
   }
 };

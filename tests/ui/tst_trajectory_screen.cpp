@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the 3D view shows of a run.
 #include "tests/support/test_program.h"
+#include "tests/ui/screenshots.h"
 #include "tests/ui/shown_trajectory.h"
 #include "ui/theme/theme.h"
 
@@ -187,8 +188,7 @@ void TestTrajectoryScreen::kindsOfCameras_haveColoursAndALegend() {
     const QRect legend(0, 0, 40, 80);
     scene[frames] = pixelsOf(image, image.rect(), theme().good) - pixelsOf(image, legend, theme().good);
     corner[frames] = std::min(pixelsOf(image, legend, theme().good), pixelsOf(image, legend, theme().accent));
-    QDir().mkpath(EVICAL_SCREENSHOTS);
-    QVERIFY(!frames || screen->grab().save(EVICAL_SCREENSHOTS "/trajectory_kinds.png"));
+    QVERIFY(!frames || screen->grab().save(screenshotPath("trajectory_kinds.png")));
   }
   QVERIFY2(scene[0] < 5 && scene[1] > 50, qPrintable(QString("%1 and %2").arg(scene[0]).arg(scene[1])));
   QVERIFY2(corner[0] == 0 && corner[1] > 50, qPrintable(QString("%1 and %2").arg(corner[0]).arg(corner[1])));
@@ -225,17 +225,14 @@ void TestTrajectoryScreen::picture_isTakenAtTwiceTheSize_andTheScreenStaysAsItWa
 
 void TestTrajectoryScreen::screenshots() {
   if (!has_opengl_) QSKIP("no OpenGL here");
-  QDir().mkpath(EVICAL_SCREENSHOTS);
   for (const bool dark : {false, true}) {
     setPalette(dark);
     applyTheme(*qApp, dark ? Appearance::Dark : Appearance::Light);
     for (const QSize size : {QSize(1000, 650), QSize(1640, 930)}) {
       const auto screen = makeScreen(example_, size);
       QVERIFY(screen);
-      const QString name = QString("%1/trajectory_%2_%3.png")
-                               .arg(EVICAL_SCREENSHOTS)
-                               .arg(size.width())
-                               .arg(dark ? "dark" : "light");
+      const QString name =
+          screenshotPath("trajectory_%1_%2.png").arg(size.width()).arg(dark ? "dark" : "light");
       QVERIFY(screen->grab().save(name));
     }
   }

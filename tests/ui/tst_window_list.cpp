@@ -4,6 +4,7 @@
 #include "core/base/time.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/recorded_windows.h"
+#include "tests/ui/screenshots.h"
 #include "ui/detection/window_list.h"
 #include "ui/detection/window_panel.h"
 #include "ui/detection/window_row_painter.h"
@@ -388,7 +389,6 @@ class TestWindowList : public QObject {
   }
 
   void pictures() {
-    QDir().mkpath(EVICAL_SCREENSHOTS);
     auto run = recorded_->run();
     for (std::size_t k = 0; k < run->pass.cameras[0].views.size(); ++k) {
       run->result.circle_residuals.push_back(
@@ -409,9 +409,8 @@ class TestWindowList : public QObject {
         settle(screen);
         QTRY_VERIFY_WITH_TIMEOUT(screen.windowList().pictures().count() > 5, 20'000 * kSlowdown);
         QTest::qWait(300);
-        QVERIFY(screen.grab().save(QString(EVICAL_SCREENSHOTS "/window_list_%1_%2.png")
-                                       .arg(dark ? "dark" : "light")
-                                       .arg(size.width())));
+        QVERIFY(screen.grab().save(
+            screenshotPath("window_list_%1_%2.png").arg(dark ? "dark" : "light").arg(size.width())));
       }
     }
     applyTheme(*qApp, Appearance::Light);

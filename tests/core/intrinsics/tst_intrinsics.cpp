@@ -8,6 +8,7 @@
 #include "core/synthetic/board_truth.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/numeric_jacobian.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <algorithm>
@@ -23,7 +24,7 @@ using namespace evical;
 constexpr double kNoise_px = 0.08;
 
 Scenario scenarioOf(const char* name, std::uint64_t seed = 0) {
-  Scenario scenario = readScenario(std::string(EVICAL_SOURCE_DIR "/config/scenarios/") + name + ".yaml");
+  Scenario scenario = readScenario(test::scenarioPath(name));
   scenario.duration_s = 20.0;
   if (seed != 0) scenario.seed = seed;
   return scenario;

@@ -2,14 +2,14 @@
 
 #include "core/base/time.h"
 #include "core/synthetic/drive_simulator.h"
+#include "tests/support/test_folders.h"
 
 #include <cmath>
 
 namespace evical::test {
 
 DriveScenario driveScenario(const std::string& name, std::uint64_t seed) {
-  DriveScenario scenario =
-      readDriveScenario(std::string(EVICAL_SOURCE_DIR) + "/config/scenarios/maintain/" + name + ".yaml");
+  DriveScenario scenario = readDriveScenario(scenarioPath("maintain/" + name));
   scenario.seed = seed;
   return scenario;
 }

@@ -8,6 +8,7 @@
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/real_recordings.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <QDir>
@@ -28,7 +29,7 @@ QByteArray text(double number) {
 
 // The scenario's camera in a quarter of its pixels, and faster: what takes minutes at its size.
 Scenario smallScenario() {
-  Scenario scenario = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/blinking.yaml");
+  Scenario scenario = readScenario(test::scenarioPath("blinking"));
   scenario.duration_s = 10.0;
   scenario.motion.image_speed_px_s = 12.0;
   CameraIntrinsics& camera = scenario.cameras.front().intrinsics;

@@ -3,6 +3,7 @@
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
@@ -53,7 +54,7 @@ class TestCalibrationObserver : public QObject {
 
  private slots:
   void observer_hearsOfEveryStageInOrder() {
-    Scenario scenario = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/davis346.yaml");
+    Scenario scenario = readScenario(test::scenarioPath("davis346"));
     scenario.duration_s = 4.0;
     const SimulationSummary simulated =
         simulate(scenario, scratch_.filePath("short").toStdString(), RunContext{});

@@ -5,6 +5,7 @@
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/scenario_session.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
@@ -114,7 +115,7 @@ QStringList stopEverywhere(const Work& work) {
 }
 
 Scenario everyday(double duration_s) {
-  Scenario scenario = readScenario(std::string(EVICAL_SOURCE_DIR) + "/config/scenarios/davis346.yaml");
+  Scenario scenario = readScenario(test::scenarioPath("davis346"));
   scenario.duration_s = duration_s;
   return scenario;
 }
@@ -139,8 +140,7 @@ class TestCancelling : public QObject {
 
   // Where rotation about one axis makes initialisation search for the turn about it.
   void initialising_stopsSoon() {
-    Scenario scenario =
-        readScenario(std::string(EVICAL_SOURCE_DIR) + "/config/scenarios/one_axis_rotation.yaml");
+    Scenario scenario = readScenario(test::scenarioPath("one_axis_rotation"));
     scenario.duration_s = 10.0;
     const Session session = test::sessionFor(scenario);
     const RecordingPass pass = test::perfectPass(scenario, 0.05, 0.02);

@@ -7,6 +7,7 @@
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/perturbations.h"
 #include "tests/support/scenario_session.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 namespace {
@@ -18,7 +19,7 @@ class TestCauses : public QObject {
 
  private slots:
   void initTestCase() {
-    base_.scenario = readScenario(std::string(EVICAL_SOURCE_DIR) + "/config/scenarios/davis346_10s.yaml");
+    base_.scenario = readScenario(test::scenarioPath("davis346_10s"));
     base_.session = test::sessionFor(base_.scenario);
     base_.session.options.report.cross_validation = false;  // half of the time, and no part of this
     base_.pass = test::perfectPass(base_.scenario, 0.05, 0.02);

@@ -10,6 +10,7 @@
 #include "tests/support/moving_camera.h"
 #include "tests/support/scenario_session.h"
 #include "tests/support/simulated_record.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <algorithm>
@@ -21,7 +22,7 @@ using namespace evical::test;
 namespace {
 
 Scenario room(double duration_s) {
-  Scenario scenario = readScenario(std::filesystem::path(EVICAL_SOURCE_DIR) / "config/scenarios/room.yaml");
+  Scenario scenario = readScenario(test::scenarioPath("room"));
   scenario.duration_s = duration_s;
   return scenario;
 }

@@ -5,6 +5,7 @@
 #include "core/report/truth_comparison.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/scenario_session.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <cmath>
@@ -34,8 +35,7 @@ class TestDegenerateRecordings : public QObject {
     QFETCH(QString, scenario);
     QFETCH(bool, events);
     QFETCH(QString, weakest);
-    Scenario simulated = readScenario(std::string(EVICAL_SOURCE_DIR) + "/config/scenarios/" +
-                                      scenario.toStdString() + ".yaml");
+    Scenario simulated = readScenario(test::scenarioPath(scenario.toStdString()));
     simulated.duration_s = 10.0;
     const Session session = test::sessionFor(simulated);
     const CalibrationRun run = calibrate(

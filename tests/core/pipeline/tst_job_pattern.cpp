@@ -7,6 +7,7 @@
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "tests/support/test_folders.h"
 
 #include <atomic>
 #include <chrono>
@@ -199,7 +200,7 @@ int main() {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() /
                                        ("evical_job_pattern_" + std::to_string(std::random_device{}()));
   try {
-    Scenario scenario = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/davis346.yaml");
+    Scenario scenario = readScenario(test::scenarioPath("davis346"));
     scenario.duration_s = kRecording_s;
     const Session session = readSession(simulate(scenario, folder, RunContext{}).session);
     runToTheEnd(session);

@@ -3,6 +3,7 @@
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/scenario_session.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <QElapsedTimer>
@@ -105,7 +106,7 @@ class TestLyingRecordings : public QObject {
 void TestLyingRecordings::everything_endsInAResultOrInWords() {
   constexpr unsigned kRecordings = 20;
   constexpr int kPatience_ms = 60'000;  // one takes a second
-  Scenario scenario = readScenario(std::string(EVICAL_SOURCE_DIR) + "/config/scenarios/davis346.yaml");
+  Scenario scenario = readScenario(test::scenarioPath("davis346"));
   scenario.duration_s = 5.0;
   Session session = test::sessionFor(scenario);
   const RecordingPass good = test::perfectPass(scenario, 0.05, 0.03);

@@ -9,6 +9,7 @@
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/scenario_session.h"
 #include "tests/support/simulated_pass.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
@@ -22,8 +23,7 @@ using namespace evical::test;
 namespace {
 
 Scenario scenario(const QString& name, double duration_s) {
-  Scenario read =
-      readScenario(std::string(EVICAL_SOURCE_DIR) + "/config/scenarios/" + name.toStdString() + ".yaml");
+  Scenario read = readScenario(test::scenarioPath(name.toStdString()));
   read.duration_s = duration_s;
   return read;
 }

@@ -7,6 +7,7 @@
 #include "core/pipeline/simulation.h"
 #include "core/report/truth_comparison.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
@@ -23,7 +24,7 @@ using Change = std::function<void(Session&)>;
 
 // Six seconds of an event camera and a small frame camera beside it.
 Scenario eventsAndFrames() {
-  Scenario scenario = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/hybrid_stereo.yaml");
+  Scenario scenario = readScenario(test::scenarioPath("hybrid_stereo"));
   scenario.duration_s = 6.0;
   for (SimulatedCamera& camera : scenario.cameras) {
     CameraIntrinsics& lens = camera.intrinsics;
@@ -140,7 +141,7 @@ class TestSavedDetections : public QObject {
   void camerasOfOneSensor_areRestored() {
     QTemporaryDir folder;
     const std::filesystem::path path = folder.path().toStdString();
-    Scenario scenario = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/davis346_frames.yaml");
+    Scenario scenario = readScenario(test::scenarioPath("davis346_frames"));
     scenario.duration_s = 3.0;
     simulate(scenario, path, RunContext{});
     const Session session = readSession(path / "session.yaml");

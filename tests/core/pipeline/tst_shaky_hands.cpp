@@ -4,6 +4,7 @@
 #include "core/report/truth_comparison.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/scenario_session.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <algorithm>
@@ -29,7 +30,7 @@ class TestShakyHands : public QObject {
     QFETCH(int, seed);
     QFETCH(double, rate_hz);
     QFETCH(double, largest_scale);
-    Scenario scenario = readScenario(std::string(EVICAL_SOURCE_DIR) + "/config/scenarios/shaky.yaml");
+    Scenario scenario = readScenario(test::scenarioPath("shaky"));
     scenario.seed = static_cast<std::uint64_t>(seed);
     scenario.imus.front().rate_hz = rate_hz;
     Session session = test::sessionFor(scenario);

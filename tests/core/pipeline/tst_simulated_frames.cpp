@@ -11,6 +11,7 @@
 #include "core/geometry/projection_difference.h"
 #include "core/geometry/so3.h"
 
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
@@ -28,7 +29,7 @@ constexpr double kSigmas = 4.0;
 
 // Ten frames a second before an AprilGrid, rows 30 us after each other.
 Scenario rollingShutter() {
-  Scenario scenario = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/rolling_shutter.yaml");
+  Scenario scenario = readScenario(test::scenarioPath("rolling_shutter"));
   scenario.duration_s = 8.0;
   scenario.cameras.front().frames->rate_hz = 10.0;
   return scenario;

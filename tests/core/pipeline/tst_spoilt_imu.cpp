@@ -4,6 +4,7 @@
 #include "core/report/truth_comparison.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/scenario_session.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <algorithm>
@@ -82,7 +83,7 @@ void TestSpoiltImu::spoiltSamples_areLeftOutAndNamed_data() {
 void TestSpoiltImu::spoiltSamples_areLeftOutAndNamed() {
   QFETCH(Spoil, spoil);
   QFETCH(QString, note);
-  Scenario scenario = readScenario(std::string(EVICAL_SOURCE_DIR) + "/config/scenarios/davis346.yaml");
+  Scenario scenario = readScenario(test::scenarioPath("davis346"));
   scenario.duration_s = 10.0;
   Session session = test::sessionFor(scenario);
   session.options.report.cross_validation = false;

@@ -2,6 +2,7 @@
 #include "core/pipeline/recording_pass.h"
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
@@ -17,7 +18,7 @@ class TestTimeRange : public QObject {
   // A file that is cut off far behind the range gives the same as the whole one, and nothing is said of where it ends.
   void behindTheRange_nothingIsRead() {
     QTemporaryDir folder;
-    Scenario scenario = readScenario(EVICAL_SOURCE_DIR "/config/scenarios/davis346_10s.yaml");
+    Scenario scenario = readScenario(test::scenarioPath("davis346_10s"));
     scenario.duration_s = 5.0;
     const SimulationSummary made = simulate(scenario, folder.path().toStdString(), {});
     Session session = readSession(made.session);

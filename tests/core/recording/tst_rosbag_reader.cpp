@@ -3,6 +3,7 @@
 #include "core/recording/recording_reader.h"
 #include "tests/core/recording/bag_builder.h"
 #include "tests/core/recording/recording_contents.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <QTest>
@@ -12,7 +13,7 @@ using namespace evical::test;
 
 namespace {
 
-const std::filesystem::path kData = std::filesystem::path(EVICAL_TEST_DATA) / "recordings";
+const std::filesystem::path kData = test::sourcePath("tests/data/recordings");
 constexpr Resolution kSize_px = {64, 48};
 constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
 

@@ -14,7 +14,7 @@ using namespace evical;
 
 namespace {
 
-const std::filesystem::path kScenarios = std::filesystem::path(EVICAL_SOURCE_DIR) / "config" / "scenarios";
+const std::filesystem::path kScenarios = test::sourcePath("config/scenarios");
 
 }  // namespace
 

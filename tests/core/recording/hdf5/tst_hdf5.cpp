@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/recording/recording_writer.h"
 #include "tests/core/recording/recording_contents.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <QProcess>
@@ -100,7 +101,7 @@ class TestHdf5 : public QObject {
 };
 
 void TestHdf5::evlibSample_matchesItsManifest() {
-  const Contents contents = readAll(EVICAL_TEST_DATA "/recordings/evlib_raw_events.hdf5");
+  const Contents contents = readAll(test::sourcePath("tests/data/recordings/evlib_raw_events.hdf5"));
   QCOMPARE(contents.streams.size(), 1u);
   QCOMPARE(contents.streams[0].name, std::string("raw_events"));
   QCOMPARE(contents.streams[0].time_unit_ns, std::int64_t{1});
@@ -114,7 +115,7 @@ void TestHdf5::evlibSample_matchesItsManifest() {
 }
 
 void TestHdf5::metavisionSample_matchesItsManifest() {
-  const Contents contents = readAll(EVICAL_TEST_DATA "/recordings/metavision_ecf.hdf5");
+  const Contents contents = readAll(test::sourcePath("tests/data/recordings/metavision_ecf.hdf5"));
   QCOMPARE(contents.streams.size(), 2u);
   QCOMPARE(contents.streams[0].resolution_px.width_px, 640);
   QVERIFY(contents.streams[1].type == StreamType::Triggers);
@@ -363,7 +364,7 @@ void TestHdf5::foundByTheFuzzer_isRefused() {
   QFETCH(QString, file);
   QFETCH(QString, problem);
   try {
-    readAll((EVICAL_SOURCE_DIR "/tests/fuzz/seeds/hdf5/" + file).toStdString());
+    readAll(test::sourcePath("tests/fuzz/seeds/hdf5/" + file.toStdString()));
     QFAIL("read");
   } catch (const CalibrationError& error) {
     QVERIFY(error.kind() == ErrorKind::BadInput);

@@ -3,6 +3,7 @@
 #include "core/recording/recording_writer.h"
 #include "tests/core/recording/recording_contents.h"
 #include "tests/core/recording/ros/ros2_builder.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <QProcess>
@@ -115,8 +116,9 @@ void TestMcap::otherProgram_followsEveryIndex() {
   const std::filesystem::path path = write(McapCompression::None, someEvents(200'000), someSamples(2000));
   QProcess python;
   python.setProcessChannelMode(QProcess::ForwardedErrorChannel);
-  python.start("/usr/bin/python3", {EVICAL_SOURCE_DIR "/tests/core/recording/ros/check_mcap.py",
-                                    QString::fromStdString(path.string())});
+  python.start("/usr/bin/python3",
+               {QString::fromStdString(test::sourcePath("tests/core/recording/ros/check_mcap.py")),
+                QString::fromStdString(path.string())});
   if (!python.waitForStarted()) QSKIP("python3 is not installed");
   python.waitForFinished(300'000);
   QCOMPARE(python.readAllStandardOutput().trimmed(), QByteArray("2200 4"));

@@ -1,5 +1,6 @@
 // Recordings of other people come out as an independent decoder found them.
 #include "core/recording/inspection.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <QTest>
@@ -11,7 +12,7 @@ using namespace evical;
 
 namespace {
 
-const std::filesystem::path kData = std::filesystem::path(EVICAL_TEST_DATA) / "recordings";
+const std::filesystem::path kData = test::sourcePath("tests/data/recordings");
 
 Inspection inspect(const char* name) {
   const std::unique_ptr<RecordingReader> reader = openRecording(kData / name);

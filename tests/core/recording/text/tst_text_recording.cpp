@@ -1,6 +1,7 @@
 #include "core/base/error.h"
 #include "core/recording/text/text_lines.h"
 #include "tests/core/recording/sample_recording.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <QProcess>
@@ -181,7 +182,7 @@ void TestTextRecording::roundTrip_isExact() {
 }
 
 void TestTextRecording::sampleOfOthers_matchesItsSums() {
-  const auto reader = openRecording(EVICAL_TEST_DATA "/recordings/evlib_event.txt");
+  const auto reader = openRecording(test::sourcePath("tests/data/recordings/evlib_event.txt"));
   const Recording read = readRecording(*reader);
   int sum_x = 0, sum_y = 0;
   std::int64_t sum_t = 0;
