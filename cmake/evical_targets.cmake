@@ -11,9 +11,9 @@ set(CMAKE_CXX_FLAGS_RELEASE "-O3 -fno-math-errno -fno-trapping-math")
 find_program(EVICAL_CCACHE ccache)
 if(EVICAL_CCACHE)
   # What ccache asks for to take precompiled headers into account; and paths as seen from the build folder, so that another
-  # checkout (a second work tree, CI) takes what this one has compiled.
+  # checkout (a second work tree, CI) takes what this one has compiled; and precompiled headers are read once, not for each source.
   set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros "CCACHE_BASEDIR=${CMAKE_SOURCE_DIR}"
-      CCACHE_NOHASHDIR=1 "${EVICAL_CCACHE}")
+      CCACHE_NOHASHDIR=1 CCACHE_INODECACHE=1 "${EVICAL_CCACHE}")
 endif()
 
 # moc reads every header that a source includes, for macros that none of ours defines: with nowhere to look for them it says the

@@ -9,7 +9,7 @@
 namespace evical {
 namespace {
 
-constexpr double kTogether_s = 3.0;
+constexpr double kTogether_s = 3.0;  // as exact as times of steps are known
 
 bool isAlike(const MaintenanceStep& a, const MaintenanceStep& b) {
   return a.name == b.name && a.against == b.against && std::abs(a.at_s - b.at_s) <= kTogether_s;

@@ -23,6 +23,10 @@
 namespace evical {
 namespace {
 
+// Variances that are so many times what white noise has: of which a note tells, and of which advice.
+constexpr double kWorthANote = 1.5;
+constexpr double kWorthAdvice = 4.0;
+
 // Of one IMU, over the whole log.
 struct ImuPass {
   WindowMeans means;
@@ -274,7 +278,7 @@ void Maintainer::addTrajectory(double false_alarms) {
     maintenance_.notes.push_back(
         fmt::format("the trajectory has no piece of {:g} s without gaps with samples of {}",
                     0.5 * input_.options.lag_s, name(imu)));
-  if (run.sum.inflation > 1.5)
+  if (run.sum.inflation > kWorthANote)
     maintenance_.notes.push_back(fmt::format(
         "pieces of the trajectory differ by more than their sigmas, which are {:.1f} times wider for that",
         std::sqrt(run.sum.inflation)));
@@ -337,8 +341,8 @@ void Maintainer::addPairs(double false_alarms) {
                       input_.options, false_alarms, maintenance_);
     double wider = 1.0;
     for (const NoiseColour& colour : tracks[k].colours) wider = std::max(wider, colour.ofMany());
-    if (wider > 4.0) shaken_ = pair;
-    if (wider > 1.5)
+    if (wider > kWorthAdvice) shaken_ = pair;
+    if (wider > kWorthANote)
       maintenance_.notes.push_back(fmt::format(
           "{}: what is left between the two is no white noise; sigmas are up to {:.1f} times wider for that",
           pair, std::sqrt(wider)));

@@ -5,7 +5,6 @@
 #include "tests/ui/screenshots.h"
 
 #include <QApplication>
-#include <QDir>
 #include <QPalette>
 #include <QStyleFactory>
 #include <QWidget>

@@ -9,6 +9,7 @@
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "tests/support/test_folders.h"
 
 #include <QDir>
 #include <QFile>

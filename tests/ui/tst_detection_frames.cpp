@@ -11,7 +11,6 @@
 #include "ui/theme/theme.h"
 
 #include <QComboBox>
-#include <QDir>
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/frontend/normal_flow.h"
 #include "tests/support/test_program.h"
-#include "tests/ui/slowdown.h"
+#include "tests/ui/other_load.h"
 #include "ui/detection/event_view.h"
 #include "ui/detection/surface_frame.h"
 #include "ui/theme/theme.h"
@@ -230,7 +230,7 @@ class TestEventView : public QObject {
     }
     const double frame_ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC / kFrames;
     qInfo("%.1f ms a frame", frame_ms);
-    QVERIFY(frame_ms < 33.0 * kSlowdown);
+    QVERIFY(frame_ms < 33.0 * test::slowness());
   }
 };
 

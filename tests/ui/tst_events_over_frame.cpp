@@ -11,8 +11,6 @@
 #include "ui/detection/trajectory_pose.h"
 #include "ui/theme/theme.h"
 
-#include <QDir>
-
 #include <algorithm>
 #include <cmath>
 

@@ -13,7 +13,6 @@
 #include "ui/theme/theme.h"
 
 #include <QComboBox>
-#include <QDir>
 #include <QLabel>
 #include <QListWidget>
 #include <QMenu>

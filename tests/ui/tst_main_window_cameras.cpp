@@ -22,7 +22,6 @@
 #include "ui/window/steps_panel.h"
 
 #include <QComboBox>
-#include <QDir>
 #include <QElapsedTimer>
 #include <QLabel>
 #include <QSet>

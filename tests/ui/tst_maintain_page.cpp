@@ -2,6 +2,7 @@
 #include "core/pipeline/drive_simulation.h"
 #include "core/report/maintenance_report.h"
 #include "core/synthetic/drive_scenario.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/clipped_text.h"
 #include "tests/ui/other_load.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a plot draws, and how fast.
 #include "tests/support/test_program.h"
+#include "tests/ui/other_load.h"
 #include "tests/ui/plot_hands.h"
 #include "tests/ui/plot_pictures.h"
-#include "tests/ui/slowdown.h"
 #include "ui/theme/theme.h"
 
 #include <algorithm>
@@ -73,7 +73,7 @@ void TestPlotDrawing::longLines_areDrawnFluently() {
     times_ms.push_back(cpuTime_ms() - before_ms);
   }
   const double least_ms = *std::min_element(times_ms.begin(), times_ms.end());
-  QVERIFY2(least_ms < 33.0 * kSlowdown,
+  QVERIFY2(least_ms < 33.0 * slowness(),
            qPrintable(QStringLiteral("%1 ms, 30 frames/s are fluid").arg(least_ms)));
 }
 
@@ -163,7 +163,7 @@ void TestPlotDrawing::manyPoints_areDrawnFluently() {
     least_ms = std::min(least_ms, cpuTime_ms() - before_ms);
   }
   qInfo("%.1f ms", least_ms);
-  QVERIFY2(least_ms < 33.0 * kSlowdown, qPrintable(QString::number(least_ms)));
+  QVERIFY2(least_ms < 33.0 * slowness(), qPrintable(QString::number(least_ms)));
 }
 
 void TestPlotDrawing::cells_differByTheirValues() {

@@ -4,7 +4,6 @@
 #include "ui/detection/timeline.h"
 #include "ui/theme/theme.h"
 
-#include <QDir>
 #include <QSignalSpy>
 #include <QTest>
 #include <QWheelEvent>

@@ -5,7 +5,6 @@
 #include "tests/ui/shown_trajectory.h"
 #include "ui/theme/theme.h"
 
-#include <QDir>
 #include <QElapsedTimer>
 #include <QSignalSpy>
 

@@ -23,8 +23,9 @@ QString text(const std::string& of_core) {
   return QString::fromStdString(of_core);
 }
 
-// "gyroscope_bias" gives "Gyroscope bias".
+// "gyroscope_bias" gives "Gyroscope bias"; between IMUs a translation is what the table calls a lever arm.
 QString titleOf(const std::string& name) {
+  if (name == "translation") return QObject::tr("Lever arm");
   QString title = text(name).replace('_', ' ');
   if (!title.isEmpty()) title[0] = title[0].toUpper();
   return title;

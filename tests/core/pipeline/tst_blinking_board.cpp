@@ -11,7 +11,6 @@
 #include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
-#include <QDir>
 #include <QTemporaryDir>
 
 #include <cmath>

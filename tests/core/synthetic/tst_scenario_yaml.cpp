@@ -3,6 +3,7 @@
 #include "core/data/intrinsics_yaml.h"
 #include "core/geometry/so3.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <QTemporaryDir>

@@ -41,7 +41,7 @@ UncertaintyEstimate estimateOf(const test::SimulatedRig& rig, const Optimisation
   return estimateUncertainty(rig.input, solution, options, RunContext{});
 }
 
-class TestChangeTest : public QObject {
+class TestChangeWithin : public QObject {
   Q_OBJECT
 
  private slots:
@@ -118,5 +118,5 @@ class TestChangeTest : public QObject {
 
 }  // namespace
 
-EVICAL_TEST(TestChangeTest)
-#include "tst_change_test.moc"
+EVICAL_TEST(TestChangeWithin)
+#include "tst_change_within.moc"
