@@ -46,8 +46,8 @@ class TestConvergenceScreen : public QObject {
 
  private slots:
   void initTestCase() {
-    test::setPalette(false);
-    const test::SimulatedPass simulated = test::simulatePass(4.0);
+    evical::test::setPalette(false);
+    const evical::test::SimulatedPass simulated = evical::test::simulatePass(4.0);
     run_ = std::make_shared<CalibrationRun>(calibrate(simulated.session, simulated.pass, {}));
     QVERIFY(run_->result.iterations.size() > 5);
   }
@@ -162,7 +162,7 @@ class TestConvergenceScreen : public QObject {
     screen.setRun(run_);
     screen.setNeeded(NeededAccuracy{0.1, 1.0, 0.1});
     screen.show();
-    test::takePictures(screen, "convergence", settle);
+    evical::test::takePictures(screen, "convergence", settle);
   }
 };
 

@@ -25,7 +25,7 @@ constexpr int kSpoiltView = 40;
 class TestResidualsScreen : public QObject {
   Q_OBJECT
 
-  test::SimulatedPass simulated_;
+  evical::test::SimulatedPass simulated_;
   std::shared_ptr<const CalibrationRun> run_;
 
   void fill(ResidualsScreen& screen) {
@@ -63,8 +63,8 @@ class TestResidualsScreen : public QObject {
 };
 
 void TestResidualsScreen::initTestCase() {
-  test::setPalette(false);
-  simulated_ = test::simulatePass(5.0);
+  evical::test::setPalette(false);
+  simulated_ = evical::test::simulatePass(5.0);
   for (CircleObservation& circle : simulated_.pass.cameras[0].views[kSpoiltView].circles)
     circle.centre_px += Eigen::Vector2d(0.1, circle.circle % 2 == 0 ? 0.12 : -0.12);
   run_ = std::make_shared<CalibrationRun>(calibrate(simulated_.session, simulated_.pass, {}));
@@ -149,7 +149,7 @@ void TestResidualsScreen::pictures() {
   screen.setThreshold(0.11);
   screen.setTime(2.0);
   QTest::qWait(100);
-  test::takePictures(screen, "residuals", settle);
+  evical::test::takePictures(screen, "residuals", settle);
 }
 
 EVICAL_TEST(TestResidualsScreen)

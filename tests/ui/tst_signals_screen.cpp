@@ -18,7 +18,7 @@ using namespace evical::ui;
 class TestSignalsScreen : public QObject {
   Q_OBJECT
 
-  test::SimulatedPass simulated_;
+  evical::test::SimulatedPass simulated_;
   std::shared_ptr<const CalibrationRun> run_;
 
   void fill(SignalsScreen& screen) {
@@ -32,8 +32,8 @@ class TestSignalsScreen : public QObject {
 
  private slots:
   void initTestCase() {
-    test::setPalette(false);
-    simulated_ = test::simulatePass(6.0);
+    evical::test::setPalette(false);
+    simulated_ = evical::test::simulatePass(6.0);
     run_ = std::make_shared<CalibrationRun>(calibrate(simulated_.session, simulated_.pass, {}));
   }
 
@@ -155,13 +155,13 @@ class TestSignalsScreen : public QObject {
     const char* const names[] = {"signals_gyroscope", "signals_accelerometer", "signals_rates"};
     for (int tab = 0; tab < 3; ++tab) {
       tabs->setCurrentIndex(tab);
-      test::takePictures(screen, names[tab], settle);
+      evical::test::takePictures(screen, names[tab], settle);
     }
     tabs->setCurrentIndex(0);
     screen.findChild<QComboBox*>("below")->setCurrentIndex(1);
-    test::takePictures(screen, "signals_spectrum", settle);
+    evical::test::takePictures(screen, "signals_spectrum", settle);
     screen.findChild<QComboBox*>("below")->setCurrentIndex(2);
-    test::takePictures(screen, "signals_autocorrelation", settle);
+    evical::test::takePictures(screen, "signals_autocorrelation", settle);
   }
 };
 
