@@ -18,8 +18,8 @@ endif()
 
 # moc reads every header that a source includes, for macros that none of ours defines: with nowhere to look for them it says the
 # same in a fortieth of the time.
-if(UNIX AND (EVICAL_TESTS OR EVICAL_GUI))
-  find_package(Qt6 REQUIRED COMPONENTS Core)
+find_package(Qt6 QUIET COMPONENTS Core)
+if(UNIX AND TARGET Qt6::moc)
   get_target_property(evical_moc Qt6::moc IMPORTED_LOCATION)
   configure_file(cmake/moc_alone.sh.in "${CMAKE_BINARY_DIR}/moc_alone.sh" @ONLY FILE_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
   set(CMAKE_AUTOMOC_EXECUTABLE "${CMAKE_BINARY_DIR}/moc_alone.sh")
