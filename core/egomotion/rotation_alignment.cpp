@@ -21,8 +21,21 @@
 namespace evical {
 namespace {
 
-constexpr const char* kNoSolution =
-    "no rotation and no time offset makes the camera turn as the gyroscope does";
+constexpr const char* kWalkLess =
+    "Stay further from walls and furniture, walk slower, and turn more: what is near moves in the image as "
+    "you walk";
+
+RotationAlignment failed(std::string reason, std::vector<std::string> advice = {}) {
+  RotationAlignment out;
+  out.failure = std::move(reason);
+  out.advice = std::move(advice);
+  return out;
+}
+
+RotationAlignment noSolution() {
+  return failed("no rotation and no time offset makes the camera turn as the gyroscope does",
+                {kWalkLess, "Check that camera, lens and IMU are those of one rig"});
+}
 
 bool isUsed(const WindowMotion& window) {
   return window.use == WindowUse::Used;
@@ -96,12 +109,6 @@ void markOutOfLine(const AlignmentFit& fit, double far_sigmas, std::vector<Windo
   }
 }
 
-RotationAlignment failed(std::string reason) {
-  RotationAlignment out;
-  out.failure = std::move(reason);
-  return out;
-}
-
 std::optional<AlignmentState> bestSolution(const std::vector<const WindowMotion*>& windows,
                                            const SummedRates& rates, const Eigen::Matrix3d& gyroscope_matrix,
                                            const AlignmentState& start, double search_s) {
@@ -147,7 +154,7 @@ void take(const AlignmentState& state, const Eigen::Matrix4d& by_blocks, const E
 // From the windows' own rates: where all edges start from, and which windows contradict the others.
 std::optional<AlignmentState> startingSolution(std::vector<WindowMotion>& windows, const SummedRates& rates,
                                                const Eigen::Matrix3d& matrix, const AlignmentState& before,
-                                               const EgomotionOptions& options, std::string& failure) {
+                                               const EgomotionOptions& options, RotationAlignment& out) {
   // Those at the ends are lost to whatever the offset may be; only then the solution asks for all.
   std::vector<WindowMotion> searched = windows;
   std::vector<const WindowMotion*> inside = coveredWindows(searched, rates, before.time_offset_s);
@@ -156,7 +163,7 @@ std::optional<AlignmentState> startingSolution(std::vector<WindowMotion>& window
                          window->end_s + before.time_offset_s + options.search_s);
   });
   if (inside.size() < static_cast<std::size_t>(kAlignmentNumbers)) {
-    failure = "camera and gyroscope have too little time in common";
+    out = failed("camera and gyroscope have too little time in common");
     return std::nullopt;
   }
   std::optional<AlignmentState> state = bestSolution(inside, rates, matrix, before, options.search_s);
@@ -167,7 +174,7 @@ std::optional<AlignmentState> startingSolution(std::vector<WindowMotion>& window
       return state;
     }
   }
-  failure = kNoSolution;
+  out = noSolution();
   return std::nullopt;
 }
 
@@ -184,19 +191,19 @@ RotationAlignment alignRotation(CameraRecord& record, const LensRays& lens, cons
   const AlignmentState before{start.imu_from_camera.toRotationMatrix(), start.time_offset_s,
                               gyroscope.imu.gyroscope_bias_rad_s};
   RotationAlignment out;
-  const std::optional<AlignmentState> rough =
-      startingSolution(windows, rates, matrix, before, options, out.failure);
+  const std::optional<AlignmentState> rough = startingSolution(windows, rates, matrix, before, options, out);
   if (!rough) return out;
   AlignmentState state = *rough;
   const JointInput input{record, lens, rates, matrix.inverse(), gyroscope.start_ns, threads, context};
   JointFit fit(input, options);
-  if (!fit.solve(state, 0.0, 0.4)) return failed(kNoSolution);
+  if (!fit.solve(state, 0.0, 0.4)) return noSolution();
   const std::optional<JointMatrix> covariance = blockCovariance(fit, options, out.blocks);
   if (!covariance) return failed("too little of the recording tells how the camera turns");
   const std::optional<Eigen::Vector4d> coarser = shiftBy(JointFit(input, withCoarserDepths(options)), state,
                                                          0.4, 0.7),
                                        still = shiftBy(JointFit(input, options, true), state, 0.7, 1.0);
-  if (!coarser || !still) return failed("what translation does to the image cannot be told from rotation");
+  if (!coarser || !still)
+    return failed("what translation does to the image cannot be told from rotation", {kWalkLess});
   out.by_coarser_depths = *coarser;
   out.by_turning_alone = *still;
   take(state, covariance->topLeftCorner<4, 4>(), options, out);

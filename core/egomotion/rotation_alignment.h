@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace evical {
 
@@ -34,6 +35,8 @@ struct AlignmentStart {
 
 struct RotationAlignment {
   std::string failure;  // why there is none; empty where there is one
+  std::vector<std::string>
+      advice;  // what to do about it; none where the windows tell, by why they are not used
   Eigen::Quaterniond imu_from_camera = Eigen::Quaterniond::Identity();
   double time_offset_s = 0.0;
   Eigen::Vector3d gyroscope_bias_rad_s = Eigen::Vector3d::Zero();

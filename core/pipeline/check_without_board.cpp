@@ -142,23 +142,26 @@ class BoardlessCheck {
     const CheckOptions& limits = input_.session.options.check;
     const std::vector<WindowMotion>& windows = pass_.cameras[k].windows;
     out_.check.windows.push_back(countedWindows(name, windows));
-    if (!alignment.found()) return fail(name, alignment.failure, adviceFor(commonest(windows)));
+    if (!alignment.found())
+      return fail(name, alignment.failure,
+                  alignment.advice.empty() ? std::vector<std::string>{adviceFor(commonest(windows))}
+                                           : alignment.advice);
     if (alignment.misfit_rms_rad_s > limits.without_board_misfit * alignment.rate_rms_rad_s)
       return fail(name,
                   fmt::format("the camera's turns are not the gyroscope's: {:.2g} of {:.2g} rad/s are left",
                               alignment.misfit_rms_rad_s, alignment.rate_rms_rad_s),
-                  adviceFor(WindowUse::NotExplained));
+                  {adviceFor(WindowUse::NotExplained), "Check that camera and IMU are those of one rig"});
     if (std::abs(alignment.scale - 1.0) > limits.without_board_scale)
       return fail(name,
                   fmt::format("the image turns {:.3g} times as fast as the gyroscope says", alignment.scale),
-                  "Check that the lens is this camera's, and calibrate again before the board");
+                  {"Check that the lens is this camera's, and calibrate again before the board"});
     weakest_ = nameOfAxis(alignment.weakest_in_camera);
     take(name, camera_before, alignment);
   }
 
-  void fail(const std::string& camera, const std::string& reason, const std::string& advice) {
+  void fail(const std::string& camera, const std::string& reason, const std::vector<std::string>& advice) {
     failures_.push_back(fmt::format("{}: {}", camera, reason));
-    addAdvice(advice, out_.check);
+    for (const std::string& one : advice) addAdvice(one, out_.check);
   }
 
   // Into the result of now, whose only uncertain numbers these are.

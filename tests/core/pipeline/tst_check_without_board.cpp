@@ -110,6 +110,11 @@ const CheckedQuantity* changedOne(const CalibrationCheck& check) {
   return found == check.quantities.end() ? nullptr : &*found;
 }
 
+bool says(const CalibrationCheck& check, const char* words) {
+  return std::any_of(check.advice.begin(), check.advice.end(),
+                     [&](const std::string& advice) { return advice.find(words) != std::string::npos; });
+}
+
 }  // namespace
 
 class TestCheckWithoutBoard : public QObject {
@@ -167,6 +172,16 @@ class TestCheckWithoutBoard : public QObject {
     QVERIFY2(check.verdict != CheckVerdict::Changed, check.reason.c_str());
   }
 
+  // Not the lens: what is near moves in the image by walking.
+  void walkingNearWalls_isAdvisedAgainst() {
+    const Scenario scenario = room(30.0);
+    for (const Seen& seen : {Seen{5.0, 1.0, 1.5, 1.0}, Seen{8.0, 1.0, 1.0, 1.0}}) {
+      const CalibrationCheck check = checkOf(scenario, passOf(scenario, turningCamera(scenario, seen)));
+      QVERIFY2(check.verdict == CheckVerdict::CannotTell, check.reason.c_str());
+      QVERIFY2(says(check, "walls"), check.advice.front().c_str());
+    }
+  }
+
   void withoutAnImu_cannotTell() {
     const Scenario scenario = room(30.0);
     BoardlessPass pass = passOf(scenario, turningCamera(scenario));
@@ -194,6 +209,7 @@ class TestCheckWithoutBoard : public QObject {
     pass.imus = passOf(other, {}).imus;
     const CalibrationCheck check = checkOf(scenario, std::move(pass));
     QVERIFY2(check.verdict == CheckVerdict::CannotTell, check.reason.c_str());
+    QVERIFY2(says(check, "one rig"), check.reason.c_str());
   }
 
   void bareWalls_cannotTell() {
