@@ -198,7 +198,9 @@ RotationAlignment alignRotation(CameraRecord& record, const LensRays& lens, cons
   JointFit fit(input, options);
   if (!fit.solve(state, 0.0, 0.4)) return noSolution();
   const std::optional<JointMatrix> covariance = blockCovariance(fit, options, out.blocks);
-  if (!covariance) return failed("too little of the recording tells how the camera turns");
+  if (!covariance)
+    return failed("too little of the recording tells how the camera turns",
+                  {"Record for a minute, and turn about all axes", kWalkLess});
   const std::optional<Eigen::Vector4d> coarser = shiftBy(JointFit(input, withCoarserDepths(options)), state,
                                                          0.4, 0.7),
                                        still = shiftBy(JointFit(input, options, true), state, 0.7, 1.0);
