@@ -4,9 +4,8 @@
 #include "core/synthetic/drive_scenario.h"
 #include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
-#include "tests/ui/clipped_text.h"
 #include "tests/ui/other_load.h"
-#include "tests/ui/screenshots.h"
+#include "tests/ui/page_pictures.h"
 #include "tests/ui/slowdown.h"
 #include "tests/ui/unnamed_controls.h"
 #include "tests/ui/window_fixture.h"
@@ -64,15 +63,6 @@ class TestMaintainPage : public QObject {
     QPushButton* const start = button(test, "start_maintain");
     QVERIFY2(start->isEnabled(), qPrintable(start->toolTip()));
     QTest::mouseClick(start, Qt::LeftButton);
-  }
-  static void keepPictures(WindowFixture& test, const QString& name) {
-    for (const QSize size : {QSize(1024, 700), QSize(1280, 800), QSize(1920, 1080)}) {
-      test.window.resize(size);
-      spin(200);
-      const QStringList clipped = clippedTexts(test.window);
-      QVERIFY2(clipped.isEmpty(), qPrintable(clipped.join('\n')));
-      QVERIFY(test.window.grab().save(screenshotPath("%1_%2.png").arg(name).arg(size.width())));
-    }
   }
 
  private slots:

@@ -2,9 +2,8 @@
 // The story of who has several recordings of one rig: all are calibrated, one does not fit, two are held side by side.
 #include "core/report/repeat_comparison.h"
 #include "tests/support/test_program.h"
-#include "tests/ui/clipped_text.h"
 #include "tests/ui/other_load.h"
-#include "tests/ui/screenshots.h"
+#include "tests/ui/page_pictures.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/slowdown.h"
 #include "tests/ui/unnamed_controls.h"
@@ -42,15 +41,6 @@ class TestRepeatPage : public QObject {
   static void choose(QComboBox* box, const QString& text) {
     box->setCurrentText(text);
     emit box->activated(box->currentIndex());
-  }
-  static void keepPictures(WindowFixture& test, const QString& name) {
-    for (const QSize size : {QSize(1024, 700), QSize(1280, 800), QSize(1920, 1080)}) {
-      test.window.resize(size);
-      spin(150);
-      const QStringList clipped = clippedTexts(test.window);
-      QVERIFY2(clipped.isEmpty(), qPrintable(clipped.join('\n')));
-      QVERIFY(test.window.grab().save(screenshotPath("%1_%2.png").arg(name).arg(size.width())));
-    }
   }
 
  private slots:

@@ -2,9 +2,8 @@
 // The story of who calibrated some time ago: a new recording is held against the old result.
 #include "core/report/check_report.h"
 #include "tests/support/test_program.h"
-#include "tests/ui/clipped_text.h"
 #include "tests/ui/other_load.h"
-#include "tests/ui/screenshots.h"
+#include "tests/ui/page_pictures.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/slowdown.h"
 #include "tests/ui/unnamed_controls.h"
@@ -65,15 +64,6 @@ class TestResultCheckPage : public QObject {
     for (int row = 0; row < table->topLevelItemCount(); ++row)
       if (table->topLevelItem(row)->text(0).contains(title)) return table->topLevelItem(row);
     return nullptr;
-  }
-  static void keepPictures(WindowFixture& test, const QString& name) {
-    for (const QSize size : {QSize(1024, 700), QSize(1280, 800), QSize(1920, 1080)}) {
-      test.window.resize(size);
-      spin(150);
-      const QStringList clipped = clippedTexts(test.window);
-      QVERIFY2(clipped.isEmpty(), qPrintable(clipped.join('\n')));
-      QVERIFY(test.window.grab().save(screenshotPath("%1_%2.png").arg(name).arg(size.width())));
-    }
   }
 
  private slots:
