@@ -74,7 +74,7 @@ Outcome interruptProgram(const QStringList& arguments, int signal,
 }
 
 QString simulated(const QString& name) {
-  return QDir(QStringLiteral(EVICAL_SIMULATED)).filePath(name);
+  return QString::fromStdString(buildPath("tests/system/simulated/")) + name;
 }
 
 QString inSources(const QString& below) {

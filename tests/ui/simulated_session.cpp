@@ -28,7 +28,7 @@ namespace {
 
 // `make` writes session.yaml last.
 QString simulateOnce(const QString& name, const std::function<void(const std::string& folder)>& make) {
-  const QString folder = QString(EVICAL_SIMULATED_FOLDER) + '/' + name;
+  const QString folder = QString::fromStdString(evical::test::buildPath("tests/ui/simulated/")) + name;
   QDir().mkpath(folder + "/recording");
   QLockFile lock(folder + "/lock");
   lock.setStaleLockTime(0);
