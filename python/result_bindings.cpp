@@ -36,7 +36,7 @@ struct ImuOfResult {
   const SensorDescription& known() const { return result->named.imus.at(index); }
 };
 
-py::array_t<double> matrixOf(const RigidTransform& pose) {
+py::array_t<double> poseMatrix(const RigidTransform& pose) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(4, 4);
   matrix.topLeftCorner<3, 3>() = pose.rotation.toRotationMatrix();
   matrix.topRightCorner<3, 1>() = pose.translation_m;
@@ -85,7 +85,7 @@ void bindCamera(py::module_& module) {
   camera
       .def_property_readonly(
           "reference_from_camera",
-          [](const CameraOfResult& c) { return matrixOf(c.state().reference_from_camera); },
+          [](const CameraOfResult& c) { return poseMatrix(c.state().reference_from_camera); },
           "(4, 4) [m]: p_reference = reference_from_camera @ p_camera, homogeneous.")
       .def_property_readonly(
           "intrinsics", [](const CameraOfResult& c) { return c.state().lens.inUse(); },
@@ -114,7 +114,7 @@ void bindImu(py::module_& module) {
   py::class_<ImuOfResult> imu(module, "ImuResult", "An IMU of a result. measured = mapping @ true + bias.");
   bindSensor(imu);
   imu.def_property_readonly(
-         "reference_from_imu", [](const ImuOfResult& i) { return matrixOf(i.state().reference_from_imu); },
+         "reference_from_imu", [](const ImuOfResult& i) { return poseMatrix(i.state().reference_from_imu); },
          "(4, 4) [m]; the identity for the reference.")
       .def_property_readonly(
           "gyroscope_bias_rad_s",

@@ -65,7 +65,7 @@ Session guess(const py::args& given, const py::object& progress) {
 
 // Sensors by name, as parts of the session, which they keep.
 template <class Sensor>
-py::dict byName(std::vector<Sensor>& sensors, const py::object& session) {
+py::dict sensorByName(std::vector<Sensor>& sensors, const py::object& session) {
   py::dict found;
   for (Sensor& sensor : sensors)
     found[py::str(sensor.name)] = py::cast(&sensor, py::return_value_policy::reference_internal, session);
@@ -191,10 +191,10 @@ void bindSession(py::module_& module) {
       .def_readwrite("reference", &Session::reference,
                      "The name of an IMU; of a camera where there is no IMU.")
       .def_property_readonly(
-          "cameras", [](const py::object& self) { return byName(self.cast<Session&>().cameras, self); },
+          "cameras", [](const py::object& self) { return sensorByName(self.cast<Session&>().cameras, self); },
           "SessionCamera by name.")
       .def_property_readonly(
-          "imus", [](const py::object& self) { return byName(self.cast<Session&>().imus, self); },
+          "imus", [](const py::object& self) { return sensorByName(self.cast<Session&>().imus, self); },
           "SessionImu by name.")
       .def("copy", [](const Session& s) { return s; })
       .def("__copy__", [](const Session& s) { return s; })

@@ -39,7 +39,7 @@ std::optional<RigidTransform> poseAt(const CalibrationState& state, double time_
 }
 
 // 4 x 4 row by row; NaN where there is no pose.
-void write(const std::optional<RigidTransform>& pose, double* to) {
+void writeTrajectory(const std::optional<RigidTransform>& pose, double* to) {
   Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> matrix(to);
   if (!pose) {
     matrix.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -58,7 +58,7 @@ Numbers posesAt(const py::object& times_s, const PoseAt& pose_at) {
   double* to = poses.mutable_data();
   const py::ssize_t count = times.size();
   const py::gil_scoped_release others_work;
-  for (py::ssize_t i = 0; i < count; ++i) write(pose_at(from[i]), to + 16 * i);
+  for (py::ssize_t i = 0; i < count; ++i) writeTrajectory(pose_at(from[i]), to + 16 * i);
   return poses;
 }
 

@@ -8,6 +8,7 @@
 namespace evical {
 
 inline constexpr double kNanosecondsPerSecond = 1e9;
+inline constexpr std::int64_t kMicrosecond_ns = 1000, kSecond_ns = 1'000'000'000;
 
 // Times of recordings lie within 146 years of their epoch's zero; others are damage, and readers hand none
 // out. So differences of two never overflow.

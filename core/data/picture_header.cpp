@@ -1,5 +1,7 @@
 #include "core/data/picture_header.h"
 
+#include "core/data/recording.h"
+
 #include <algorithm>
 #include <array>
 #include <cctype>

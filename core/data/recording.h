@@ -35,6 +35,9 @@ struct StreamInfo {
   std::string source = {};  // the device that gave it, where the file says so: "DAVIS346_00000002"
 };
 
+// Largest side in pixels that a file may claim for a sensor: coordinates have 16 bits.
+inline constexpr int kLargestSide_px = 65536;
+
 // What one call of RecordingReader::read hands out, all of one stream: some events, some samples in the stream's
 // units, a few frames, or the points of one time.
 struct Packet {

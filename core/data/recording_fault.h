@@ -63,6 +63,9 @@ constexpr const char* nameOf(FaultKind kind) {
   return kFaultKinds[static_cast<std::size_t>(kind)];
 }
 
+// Faults of one kind that a reader reports of one stream: a broken file has thousands.
+inline constexpr std::ptrdiff_t kMostAlikeFaults = 10;
+
 struct RecordingFault {
   std::string stream;  // empty: the file as a whole
   FaultKind kind = FaultKind::Corrupt;

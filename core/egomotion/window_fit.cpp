@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kCauchySigmas = 2.385;                    // 95 % of least squares' efficiency
 constexpr double kInlierSigmas = 3.0, kInlierError = 0.3;  // of the speed, or so many sigmas
-constexpr double kHeld = 1e9;
+constexpr double kHeldDepth = 1e9;
 
 }  // namespace
 
@@ -37,7 +37,7 @@ bool WindowFit::start(WindowUnknowns unknowns) {
       normal += weight * j * j.transpose();
       right += weight * wanted * j;
     }
-    normal.diagonal() += held(kHeld);
+    normal.diagonal() += held(kHeldDepth);
     twist = normal.ldlt().solve(right);
     if (!twist.allFinite()) return false;
   }
@@ -92,7 +92,7 @@ double WindowFit::curvatureOf(const EdgeResidual& residual) const {
 
 WindowFit::Matrix6d WindowFit::covariance(double shared) const {
   Matrix6d information = normal_.reduced().normal;
-  information.diagonal() += held(kHeld) + Vector6d::Constant(1e-9);
+  information.diagonal() += held(kHeldDepth) + Vector6d::Constant(1e-9);
   return shared * information.inverse();
 }
 
@@ -165,7 +165,7 @@ void WindowFit::build() {
 
 WindowState WindowFit::stepped(double damping) const {
   auto [normal, right] = normal_.reduced(damping);
-  normal.diagonal() += damping * normal_.diagonal() + held(kHeld) + Vector6d::Constant(1e-9);
+  normal.diagonal() += damping * normal_.diagonal() + held(kHeldDepth) + Vector6d::Constant(1e-9);
   const Vector6d step = normal.ldlt().solve(right);
   WindowState next = state_;
   next.rate_rad_s += step.head<3>();

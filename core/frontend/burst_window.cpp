@@ -9,7 +9,7 @@ namespace evical {
 namespace {
 
 // Bursts come in no order of place: their pixels are asked for so many bursts before their turn.
-constexpr std::size_t kFetchedAhead = 16;
+constexpr std::size_t kBurstsFetchedAhead = 16;
 constexpr std::int64_t kSlice_ns = 5'000'000;  // storage only: results do not depend on it
 
 std::int64_t sliceOf(std::int64_t time_ns) {
@@ -117,8 +117,8 @@ void BurstWindow::assign(const std::vector<EdgeBurst>& bursts, std::int64_t midd
   };
   for (std::size_t k = 0; k < bursts.size(); ++k) {
     const EdgeBurst& burst = bursts[k];
-    if (pixels && k + kFetchedAhead < bursts.size()) {
-      const EdgeBurst& later = bursts[k + kFetchedAhead];
+    if (pixels && k + kBurstsFetchedAhead < bursts.size()) {
+      const EdgeBurst& later = bursts[k + kBurstsFetchedAhead];
       __builtin_prefetch(&pixels->ideal(later.x_px, later.y_px));
       __builtin_prefetch(pixels->stretch.data() + indexOf(later));
     }

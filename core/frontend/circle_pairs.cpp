@@ -13,7 +13,7 @@
 namespace evical {
 namespace {
 
-constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
+constexpr std::size_t kNoPartner = static_cast<std::size_t>(-1);
 
 // Which kinds are paired in each round.
 bool pairedInRound(int round, const EventCluster& leading, const EventCluster& trailing) {
@@ -109,7 +109,7 @@ std::optional<CircleCandidate> circleOf(const EventCluster& leading, const Event
 
 // Best partner of each cluster among those still alone, and how far it is.
 struct Partner {
-  std::size_t cluster = kNobody;
+  std::size_t cluster = kNoPartner;
   double distance_px = std::numeric_limits<double>::infinity();
 
   void offer(std::size_t other, double distance) {
@@ -149,7 +149,7 @@ std::vector<ArcPair> pairClusters(const std::vector<EventCluster>& clusters, con
     }
     for (std::size_t a = 0; a < clusters.size(); ++a) {
       const std::size_t b = partners[a].cluster;
-      if (!clusters[a].leading || b == kNobody || partners[b].cluster != a) continue;
+      if (!clusters[a].leading || b == kNoPartner || partners[b].cluster != a) continue;
       paired[a] = paired[b] = true;
       if (const auto circle = circleOf(clusters[a], clusters[b], field, options)) {
         pairs.push_back({a, b, *circle});

@@ -7,7 +7,7 @@
 namespace evical {
 namespace {
 
-constexpr std::uint32_t kNobody = static_cast<std::uint32_t>(-1);
+constexpr std::uint32_t kNoCluster = static_cast<std::uint32_t>(-1);
 
 Eigen::Vector2d place(const NormalFlow& flow) {
   return {flow.x_px, flow.y_px};
@@ -23,7 +23,7 @@ class FlowImage {
   FlowImage(const NormalFlowField& field, Resolution resolution_px, int reach_px)
       : reach_px_(reach_px), stride_(resolution_px.width_px + 2 * reach_px) {
     const auto cells = static_cast<std::size_t>(stride_ * (resolution_px.height_px + 2 * reach_px));
-    for (std::vector<std::uint32_t>& plane : planes_) plane.assign(cells, kNobody);
+    for (std::vector<std::uint32_t>& plane : planes_) plane.assign(cells, kNoCluster);
     for (std::uint32_t i = 0; i < field.size(); ++i) planes_[field[i].leading][cellOf(field[i])] = i;
   }
 
@@ -32,9 +32,9 @@ class FlowImage {
     std::vector<std::uint32_t>& plane = planes_[field[first].leading];
     std::vector<std::uint32_t> flows;
     const auto take = [&](std::size_t cell) {
-      if (plane[cell] == kNobody) return;
+      if (plane[cell] == kNoCluster) return;
       flows.push_back(plane[cell]);
-      plane[cell] = kNobody;
+      plane[cell] = kNoCluster;
     };
     take(cellOf(field[first]));
     for (std::size_t next = 0; next < flows.size(); ++next) {

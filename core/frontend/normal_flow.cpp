@@ -5,7 +5,7 @@
 namespace evical {
 namespace {
 
-constexpr int kRefits = 2;
+constexpr int kPlaneRefits = 2;
 
 // t = a x + b y + c around a pixel.
 struct Plane {
@@ -63,7 +63,7 @@ bool fitPlane(const float* centre, int stride, int least_inliers, const NormalFl
   const int radius = options.plane_radius_px;
   visitNeighbours(centre, stride, radius, [&](int dx, int dy, double t) { sums.add(dx, dy, t); });
   if (sums.n < least_inliers || !sums.solve(plane)) return false;
-  for (int refit = 0; refit < kRefits; ++refit) {
+  for (int refit = 0; refit < kPlaneRefits; ++refit) {
     const double largest_error_s = options.largest_plane_error_px * plane.slope_s_px();
     const int before = sums.n;
     sums = PlaneSums{};

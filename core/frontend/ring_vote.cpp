@@ -19,14 +19,14 @@ struct RingPoint {
 };
 
 // Bursts of one pyramid level: one vote a cell and polarity.
-struct Level {
+struct PyramidLevel {
   int shift = 0, width = 0, height = 0;
   std::vector<std::uint32_t> cells;  // y * width + x
   std::vector<float> leads;
 };
 
-Level makeLevel(const BurstWindow& window, int shift) {
-  Level level;
+PyramidLevel makePyramidLevel(const BurstWindow& window, int shift) {
+  PyramidLevel level;
   level.shift = shift;
   level.width = (window.resolution_px().width_px >> shift) + 1;
   level.height = (window.resolution_px().height_px >> shift) + 1;
@@ -64,8 +64,8 @@ struct BestVotes {
   std::vector<Vote> direction;
 };
 
-void voteRadius(const Level& level, double radius, double half_width, int pad, std::vector<Vote>& votes,
-                BestVotes& best) {
+void voteRadius(const PyramidLevel& level, double radius, double half_width, int pad,
+                std::vector<Vote>& votes, BestVotes& best) {
   const int stride = level.width + 2 * pad;
   const std::vector<RingPoint> ring = makeRing(radius, half_width, stride);
   std::fill(votes.begin(), votes.end(), Vote{0.0f, 0.0f});
@@ -94,7 +94,7 @@ void voteRadius(const Level& level, double radius, double half_width, int pad, s
   }
 }
 
-void collectPeaks(const Level& level, const BestVotes& best, double least_score,
+void collectPeaks(const PyramidLevel& level, const BestVotes& best, double least_score,
                   std::vector<CircleCandidate>& candidates) {
   constexpr int kNeighbourhood = 2;
   const auto least = static_cast<float>(least_score * least_score);
@@ -139,7 +139,7 @@ std::vector<CircleCandidate> voteForCircles(const BurstWindow& window, const Rin
   for (int shift = 0; radius_px <= largest_px; ++shift) {
     const double size = 1 << shift;
     const double level_end_px = std::min(kLevelRadius_px * size, largest_px);
-    const Level level = makeLevel(window, shift);
+    const PyramidLevel level = makePyramidLevel(window, shift);
     const double half_width = std::max(options.ring_half_width_px, 0.07 * level_end_px / size);
     const int pad = static_cast<int>(std::ceil(level_end_px / size + half_width)) + 1;
     std::vector<Vote> votes(static_cast<std::size_t>((level.width + 2 * pad) * (level.height + 2 * pad)));

@@ -3,6 +3,7 @@
 #include "core/frontend/board_placement.h"
 #include "core/frontend/circle_measurement.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include <algorithm>

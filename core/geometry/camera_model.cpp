@@ -18,7 +18,7 @@ namespace evical {
 namespace {
 
 constexpr double kLargestAngle_rad = 85.0 * kRadPerDeg;
-constexpr double kSmallRadius = 1e-8;
+constexpr double kCentralAngle_rad = 1e-8;
 
 Eigen::Vector2d distortPinhole(const CameraIntrinsics& camera, const Eigen::Vector2d& n,
                                Eigen::Matrix2d* jacobian, DistortionJacobian* jacobian_distortion) {
@@ -60,7 +60,7 @@ std::optional<Eigen::Vector2d> unprojectPinhole(const CameraIntrinsics& camera,
   Eigen::Vector2d start = target;
   if (camera.model == CameraModel::PinholeEquidistant) {
     const double a = target.norm();
-    if (a > kSmallRadius) start = target * (std::tan(std::min(a, 0.95 * kLargestAngle_rad)) / a);
+    if (a > kCentralAngle_rad) start = target * (std::tan(std::min(a, 0.95 * kLargestAngle_rad)) / a);
   }
   return undistorted(target, start, [&](const Eigen::Vector2d& n, Eigen::Matrix2d* jacobian) {
     return distortPinhole(camera, n, jacobian, nullptr);

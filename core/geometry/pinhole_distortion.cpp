@@ -4,7 +4,7 @@
 
 namespace evical {
 
-constexpr double kSmallRadius = 1e-8;
+constexpr double kCentralRadius = 1e-8;
 
 Eigen::Vector2d distortRadtan(const std::array<double, 5>& d, const Eigen::Vector2d& n,
                               Eigen::Matrix2d* jacobian, DistortionJacobian* by_coefficients) {
@@ -30,7 +30,7 @@ Eigen::Vector2d distortRadtan(const std::array<double, 5>& d, const Eigen::Vecto
 Eigen::Vector2d distortEquidistant(const std::array<double, 5>& d, const Eigen::Vector2d& n,
                                    Eigen::Matrix2d* jacobian, DistortionJacobian* by_coefficients) {
   const double r = n.norm();
-  if (r < kSmallRadius) {
+  if (r < kCentralRadius) {
     if (jacobian) jacobian->setIdentity();
     if (by_coefficients) by_coefficients->setZero();
     return n;

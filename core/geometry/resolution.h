@@ -1,6 +1,8 @@
 // How many pixels an image or a sensor has.
 #pragma once
 
+#include <string>
+
 namespace evical {
 
 struct Resolution {
@@ -10,5 +12,9 @@ struct Resolution {
   bool known() const { return width_px > 0 && height_px > 0; }
   int pixelCount() const { return width_px * height_px; }
 };
+
+inline std::string sizeText(Resolution size_px) {
+  return std::to_string(size_px.width_px) + " x " + std::to_string(size_px.height_px) + " px";
+}
 
 }  // namespace evical

@@ -112,4 +112,8 @@ Eigen::Matrix3d so3RightJacobianInverse(const Eigen::Vector3d& rotation_vector_r
   return Eigen::Matrix3d::Identity() + 0.5 * k + c * k * k;
 }
 
+Eigen::Quaterniond rotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to);
+}
+
 }  // namespace evical

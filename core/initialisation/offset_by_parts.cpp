@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPart_s = 1.5;           // some turns of a hand
 constexpr std::size_t kPairsOfPart = 30;  // hardly more are independent
-constexpr double kGrid_s = 0.01, kReach_s = 0.3;
+constexpr double kPartGrid_s = 0.01, kReach_s = 0.3;
 
 class Part {
  public:
@@ -22,7 +22,7 @@ class Part {
 
   std::optional<OffsetPart> offset() const {
     double best_s = whole_.time_offset_s, least = std::numeric_limits<double>::infinity();
-    for (double shift_s = -kReach_s; shift_s <= kReach_s; shift_s += kGrid_s) {
+    for (double shift_s = -kReach_s; shift_s <= kReach_s; shift_s += kPartGrid_s) {
       const double cost = medianError_rad(whole_.time_offset_s + shift_s);
       if (cost >= least) continue;
       least = cost;
@@ -62,7 +62,7 @@ class Part {
       vector -= weight * slope.dot(error);
     }
     if (!(matrix > 0.0)) return false;
-    part.time_offset_s += std::clamp(vector / matrix, -kGrid_s, kGrid_s);
+    part.time_offset_s += std::clamp(vector / matrix, -kPartGrid_s, kPartGrid_s);
     part.time_offset_std_s = scale_rad / std::sqrt(matrix);
     return true;
   }
@@ -82,17 +82,17 @@ std::vector<RotationPair> thinned(const std::vector<RotationPair>& pairs) {
 
 // Weighted mean of parts, and what it leaves in units of their sigmas. Squares are capped, since a part may be
 // wrong by far.
-struct Level {
+struct PartLevel {
   double offset_s = 0.0, std_s = 0.0, chi2 = 0.0;
 };
 
-Level levelOf(const std::vector<OffsetPart>& parts, std::size_t begin, std::size_t end) {
+PartLevel levelOf(const std::vector<OffsetPart>& parts, std::size_t begin, std::size_t end) {
   constexpr double kLeastSigma_s = 2e-4, kMostSigmas = 6.0;
   std::vector<double> offsets;
   for (std::size_t k = begin; k < end; ++k) offsets.push_back(parts[k].time_offset_s);
   const double centre_s = medianOf(std::move(offsets));
   double weights = 0.0, sum = 0.0;
-  Level level;
+  PartLevel level;
   for (std::size_t k = begin; k < end; ++k) {
     const double sigma_s = std::max(parts[k].time_offset_std_s, kLeastSigma_s);
     const double off = (parts[k].time_offset_s - centre_s) / sigma_s;
@@ -127,8 +127,8 @@ std::vector<OffsetPart> offsetsByParts(const std::vector<CameraPose>& poses, con
                                        const RelativeRotation& whole, const InitialisationOptions& options) {
   std::vector<RotationPair> pairs = rotationPairs(poses, options.pair_gap_s, options.longest_pair_s);
   std::erase_if(pairs, [&](const RotationPair& pair) {
-    return !gyro.covers(pair.from_s + whole.time_offset_s - kReach_s - kGrid_s,
-                        pair.to_s + whole.time_offset_s + kReach_s + kGrid_s);
+    return !gyro.covers(pair.from_s + whole.time_offset_s - kReach_s - kPartGrid_s,
+                        pair.to_s + whole.time_offset_s + kReach_s + kPartGrid_s);
   });
   std::vector<OffsetPart> parts;
   constexpr std::size_t kLeastPairs = 8;
@@ -149,7 +149,7 @@ std::optional<ClockStep> findClockStep(const std::vector<OffsetPart>& parts) {
   std::optional<ClockStep> best;
   double least = one_level;
   for (std::size_t k = kLeastParts; k + kLeastParts <= parts.size(); ++k) {
-    const Level before = levelOf(parts, 0, k), after = levelOf(parts, k, parts.size());
+    const PartLevel before = levelOf(parts, 0, k), after = levelOf(parts, k, parts.size());
     if (before.chi2 + after.chi2 >= least) continue;
     least = before.chi2 + after.chi2;
     const double step_s = after.offset_s - before.offset_s;

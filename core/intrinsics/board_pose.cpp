@@ -21,12 +21,6 @@ struct Ray {
   Eigen::Vector2d on_board_m, normalised;
 };
 
-const CameraIntrinsics& normalisedCamera() {
-  static const CameraIntrinsics camera{
-      CameraModel::PinholeRadtan, {1, 1}, Eigen::Vector2d::Ones(), Eigen::Vector2d::Zero(), {}};
-  return camera;
-}
-
 // Gauss-Newton on the ellipses' centres; returns the sum of squares, infinite where it leads nowhere.
 double refine(const std::vector<Ray>& rays, double radius_m, RigidTransform& pose) {
   constexpr int kIterations = 6;
@@ -65,7 +59,7 @@ Eigen::Quaterniond turnTowards(const std::vector<Eigen::Vector3d>& directions) {
     least_z = std::min(least_z, direction.z());
   }
   if (least_z > kNear || sum.norm() < kNear) return Eigen::Quaterniond::Identity();
-  return Eigen::Quaterniond::FromTwoVectors(sum, Eigen::Vector3d::UnitZ());
+  return rotationBetween(sum, Eigen::Vector3d::UnitZ());
 }
 
 }  // namespace
@@ -117,6 +111,12 @@ std::optional<RigidTransform> boardPose(const SensorView& view, const Board& boa
     best->translation_m = turned_from_camera.conjugate() * best->translation_m;
   }
   return best;
+}
+
+const CameraIntrinsics& normalisedCamera() {
+  static const CameraIntrinsics camera{
+      CameraModel::PinholeRadtan, {1, 1}, Eigen::Vector2d::Ones(), Eigen::Vector2d::Zero(), {}};
+  return camera;
 }
 
 }  // namespace evical

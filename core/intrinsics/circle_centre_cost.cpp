@@ -2,6 +2,7 @@
 
 #include "core/geometry/circle_conic.h"
 #include "core/geometry/so3.h"
+#include "core/intrinsics/board_pose.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -12,13 +13,6 @@ namespace evical {
 namespace {
 
 constexpr double kNowhere_sigma = 1e3;  // so large that no step leads there
-
-// Ideal pixels of this camera are x/z, y/z.
-const CameraIntrinsics& normalisedCamera() {
-  static const CameraIntrinsics camera{
-      CameraModel::PinholeRadtan, {1, 1}, Eigen::Vector2d::Ones(), Eigen::Vector2d::Zero(), {}};
-  return camera;
-}
 
 }  // namespace
 

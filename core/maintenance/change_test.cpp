@@ -24,8 +24,8 @@ void setFree(const StateBlock& block, Eigen::MatrixXd& covariance) {
 
 // A step s that data have seen: v ~ N(H s, H + H P H), so that its weight is H (H + H P H)^-1 H, which is
 // P^-1 - P^-1 (P^-1 + H)^-1 P^-1 also where H is singular.
-ChangeTest::ChangeTest(const Eigen::MatrixXd& information, const Eigen::VectorXd& score,
-                       const Eigen::MatrixXd& covariance) {
+ChangeDetector::ChangeDetector(const Eigen::MatrixXd& information, const Eigen::VectorXd& score,
+                               const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd scale = covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
   const Eigen::MatrixXd h = scale.asDiagonal() * information * scale.asDiagonal();
   const Eigen::MatrixXd p =
@@ -41,7 +41,7 @@ ChangeTest::ChangeTest(const Eigen::MatrixXd& information, const Eigen::VectorXd
   pull_ = back.cwiseProduct(solver.solve(v));
 }
 
-BlockChange ChangeTest::of(const StateBlock& block) const {
+BlockChange ChangeDetector::of(const StateBlock& block) const {
   const Eigen::MatrixXd weight = weight_.block(block.first, block.first, block.size, block.size);
   const Eigen::VectorXd pull = pull_.segment(block.first, block.size);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(weight);
@@ -62,7 +62,7 @@ BlockChange ChangeTest::of(const StateBlock& block) const {
   return change;
 }
 
-double ChangeTest::worstSigma(const StateBlock& block) const {
+double ChangeDetector::worstSigma(const StateBlock& block) const {
   const Eigen::MatrixXd weight = weight_.block(block.first, block.first, block.size, block.size);
   const double least = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(weight).eigenvalues().minCoeff();
   return least > 0.0 ? 1.0 / std::sqrt(least) : std::numeric_limits<double>::infinity();
@@ -83,7 +83,7 @@ std::vector<FoundChange> findChanges(const Eigen::MatrixXd& information, const E
   std::vector<char> is_found(blocks.size(), 0);
   Eigen::MatrixXd known = covariance;
   while (found.size() < blocks.size()) {
-    const ChangeTest test(information, score, known);
+    const ChangeDetector test(information, score, known);
     std::vector<double> beyond(blocks.size(), -std::numeric_limits<double>::infinity());
     std::vector<BlockChange> changes(blocks.size());
     for (std::size_t b = 0; b < blocks.size(); ++b) {

@@ -23,10 +23,10 @@ struct BlockChange {
 
 // Data with information H and score v (of the log likelihood, at a state of 0) against a state that was 0 with
 // covariance P.
-class ChangeTest {
+class ChangeDetector {
  public:
-  ChangeTest(const Eigen::MatrixXd& information, const Eigen::VectorXd& score,
-             const Eigen::MatrixXd& covariance);
+  ChangeDetector(const Eigen::MatrixXd& information, const Eigen::VectorXd& score,
+                 const Eigen::MatrixXd& covariance);
 
   BlockChange of(const StateBlock& block) const;
   // Of data that cannot tell a direction at all: infinity.

@@ -72,7 +72,7 @@ PairColours coloursOf(std::span<const WeighedWindow> windows, const PairModel& m
         information += windows[end].information;
         score += windows[end].score;
       }
-      const ChangeTest test(information, score - information * mean, covariance);
+      const ChangeDetector test(information, score - information * mean, covariance);
       for (std::size_t b = 0; b < kPairBlocks.size(); ++b)
         statistics[b].add(k, test.of(kPairBlocks[b]).chi_square);
     }
@@ -167,7 +167,7 @@ class Tracker {
   };
   Alarm strongest(std::size_t from, std::size_t end, const std::vector<double>& limits) const {
     const Evidence data = evidence(from, end);
-    const ChangeTest test(data.information, data.score, data.covariance);
+    const ChangeDetector test(data.information, data.score, data.covariance);
     Alarm alarm{from, -std::numeric_limits<double>::infinity()};
     for (std::size_t b = 0; b < kPairBlocks.size(); ++b)
       alarm.beyond = std::max(alarm.beyond, test.of(kPairBlocks[b]).chi_square - limits[b]);

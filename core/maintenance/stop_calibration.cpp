@@ -17,7 +17,6 @@ namespace {
 constexpr double kOpenBias_m_s2 = 1.0, kOpenScale = 0.05;
 // Sizes that make biases and scales comparable.
 constexpr double kBiasUnit_m_s2 = 1e-2, kScaleUnit = 1e-3;
-constexpr std::array<std::array<int, 2>, 6> kEntries = {{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
 constexpr std::array<const char*, kAccelerometerNumbers> kWords = {
     "bias x",  "bias y",          "bias z",          "scale x",        "scale y",
     "scale z", "misalignment xy", "misalignment xz", "misalignment yz"};
@@ -96,8 +95,9 @@ StopResidual residualOf(const StopMean& stop, const Eigen::Vector3d& window_vari
   residual.value = force.norm() - gravity_m_s2;
   residual.sigma = std::sqrt(along.cwiseAbs2().dot(window_variance) / stop.windows);
   residual.row.head<3>() = -along;
-  for (std::size_t e = 0; e < kEntries.size(); ++e)
-    residual.row[3 + static_cast<Eigen::Index>(e)] = -along[kEntries[e][0]] * force[kEntries[e][1]];
+  for (std::size_t e = 0; e < kMappingEntries.size(); ++e)
+    residual.row[3 + static_cast<Eigen::Index>(e)] =
+        -along[kMappingEntries[e][0]] * force[kMappingEntries[e][1]];
   return residual;
 }
 
@@ -233,15 +233,17 @@ void setGyroscopeBias(StopCalibration& found, const Eigen::Vector3d& window_vari
 AccelerometerVector accelerometerNumbers(const ImuState& imu) {
   AccelerometerVector numbers;
   numbers.head<3>() = imu.accelerometer_bias_m_s2;
-  for (std::size_t e = 0; e < kEntries.size(); ++e)
-    numbers[3 + static_cast<Eigen::Index>(e)] = imu.accelerometer_mapping(kEntries[e][0], kEntries[e][1]);
+  for (std::size_t e = 0; e < kMappingEntries.size(); ++e)
+    numbers[3 + static_cast<Eigen::Index>(e)] =
+        imu.accelerometer_mapping(kMappingEntries[e][0], kMappingEntries[e][1]);
   return numbers;
 }
 
 void setAccelerometerNumbers(const AccelerometerVector& numbers, ImuState& imu) {
   imu.accelerometer_bias_m_s2 = numbers.head<3>();
-  for (std::size_t e = 0; e < kEntries.size(); ++e)
-    imu.accelerometer_mapping(kEntries[e][0], kEntries[e][1]) = numbers[3 + static_cast<Eigen::Index>(e)];
+  for (std::size_t e = 0; e < kMappingEntries.size(); ++e)
+    imu.accelerometer_mapping(kMappingEntries[e][0], kMappingEntries[e][1]) =
+        numbers[3 + static_cast<Eigen::Index>(e)];
 }
 
 AccelerometerVector accelerometerVariances(const ImuUncertainty& sigma, const MaintenanceOptions& options) {
@@ -250,9 +252,9 @@ AccelerometerVector accelerometerVariances(const ImuUncertainty& sigma, const Ma
   for (Eigen::Index axis = 0; axis < 3; ++axis)
     variances[axis] =
         squared(sigma.accelerometer_bias_std_m_s2[axis]) + squared(options.stability_accelerometer_bias_m_s2);
-  for (std::size_t e = 0; e < kEntries.size(); ++e)
+  for (std::size_t e = 0; e < kMappingEntries.size(); ++e)
     variances[3 + static_cast<Eigen::Index>(e)] =
-        squared(sigma.accelerometer_mapping_std(kEntries[e][0], kEntries[e][1])) +
+        squared(sigma.accelerometer_mapping_std(kMappingEntries[e][0], kMappingEntries[e][1])) +
         squared(options.stability_imu_scale);
   return variances.cwiseMax(1e-12);
 }

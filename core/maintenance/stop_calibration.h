@@ -22,6 +22,9 @@ namespace evical {
 inline constexpr Eigen::Index kAccelerometerNumbers = 9;
 inline constexpr std::array<StateBlock, 3> kAccelerometerBlocks = {{{0, 3}, {3, 3}, {6, 3}}};
 using AccelerometerVector = Eigen::Matrix<double, kAccelerometerNumbers, 1>;
+// Rows and columns of the six free entries of the accelerometer's mapping, in the order of the numbers behind the bias.
+inline constexpr std::array<std::array<int, 2>, 6> kMappingEntries = {
+    {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
 using AccelerometerMatrix = Eigen::Matrix<double, kAccelerometerNumbers, kAccelerometerNumbers>;
 
 AccelerometerVector accelerometerNumbers(const ImuState& imu);

@@ -48,11 +48,10 @@ namespace {
 
 constexpr Eigen::Index kUnknowns = kAccelerometerNumbers + 6;  // gravity and lever behind
 constexpr Eigen::Index kGravity = kAccelerometerNumbers, kLever = kAccelerometerNumbers + 3;
-constexpr std::array<std::array<int, 2>, 6> kEntries = {{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
 using UnknownsMatrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
-// What accelerations are linear in: force = A f - c, A = M^-1, c = A b. In the order of kEntries behind c.
+// What accelerations are linear in: force = A f - c, A = M^-1, c = A b. In the order of kMappingEntries behind c.
 AccelerometerVector linearFrom(const AccelerometerVector& numbers) {
   ImuState imu;
   setAccelerometerNumbers(numbers, imu);
@@ -84,8 +83,8 @@ Eigen::Matrix<double, 3, kAccelerometerNumbers> forceRow(const Eigen::Vector3d& 
   Eigen::Matrix<double, 3, kAccelerometerNumbers> row =
       Eigen::Matrix<double, 3, kAccelerometerNumbers>::Zero();
   row.leftCols<3>() = -Eigen::Matrix3d::Identity();
-  for (std::size_t e = 0; e < kEntries.size(); ++e)
-    row(kEntries[e][0], 3 + static_cast<Eigen::Index>(e)) = force[kEntries[e][1]];
+  for (std::size_t e = 0; e < kMappingEntries.size(); ++e)
+    row(kMappingEntries[e][0], 3 + static_cast<Eigen::Index>(e)) = force[kMappingEntries[e][1]];
   return row;
 }
 

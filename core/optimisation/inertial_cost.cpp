@@ -63,7 +63,7 @@ SpecificForce specificForce(const RotationSample& rotation, const VectorSample& 
 }
 
 enum AccelerometerBlock {
-  kPosition = 4,
+  kImuPosition = 4,
   kGravity = 8,
   kForceBias,
   kForceMapping,
@@ -138,8 +138,9 @@ void writeSplineRows(const Accelerometer& model, const MotionAtSample& motion, c
       }
       writeRotationRows<3>(jacobians, k, row, by_point);
     }
-    if (jacobians[kPosition + k]) {
-      jacobianRows<3, 3>(jacobians, kPosition + k, row) = motion.position.acceleration_weights[k] * by_world;
+    if (jacobians[kImuPosition + k]) {
+      jacobianRows<3, 3>(jacobians, kImuPosition + k, row) =
+          motion.position.acceleration_weights[k] * by_world;
     }
   }
 }
@@ -280,9 +281,9 @@ bool AccelerometerCost::Evaluate(double const* const* parameters, double* residu
   const auto moveTo = [&](double time_s, MotionAtSample& motion, bool with_jacobians) {
     rotation_segment.evaluate(segment_.rotationPlace(time_s), model.order(by_time), motion.rotation,
                               with_jacobians ? &motion.by_control_points : nullptr);
-    motion.position = positionAt(segment_, parameters + kPosition, time_s);
+    motion.position = positionAt(segment_, parameters + kImuPosition, time_s);
   };
-  const Vector3d jerk = jerkOf(segment_, parameters + kPosition);
+  const Vector3d jerk = jerkOf(segment_, parameters + kImuPosition);
   // The angular jerk isn't worth a formula: it acts through the lever arm of further IMUs only.
   const auto forceRate = [&](double time_s, const MotionAtSample& at,
                              const SpecificForce& force) -> Vector3d {

@@ -1,10 +1,12 @@
 #include "core/pipeline/check_session.h"
 
 #include "core/base/error.h"
+#include "core/base/file_places.h"
 #include "core/base/nearest_name.h"
 #include "core/data/quantity.h"
 #include "core/geometry/intrinsics_numbers.h"
 #include "core/pipeline/compared_quantities.h"
+#include "core/pipeline/saved_run.h"
 #include "core/pipeline/session_keys.h"
 #include "core/pipeline/session_of_recording.h"
 
@@ -18,19 +20,12 @@
 namespace evical {
 namespace {
 
-constexpr const char *kResult = "result.yaml", *kSession = "run_session.yaml";
-
 bool isFolder(const std::filesystem::path& path) {
   std::error_code ignored;
   return std::filesystem::is_directory(path, ignored);
 }
-bool isThere(const std::filesystem::path& path) {
-  std::error_code ignored;
-  return std::filesystem::exists(path, ignored);
-}
-
 NamedResult resultIn(const std::filesystem::path& path) {
-  const std::filesystem::path file = isFolder(path) ? path / kResult : path;
+  const std::filesystem::path file = isFolder(path) ? path / kResultFile : path;
   if (!isThere(file))
     throw badInput(file.string(), "is not there", "Give the folder of a calibration, or its result.yaml");
   NamedResult before = readResultYaml(file);
@@ -69,10 +64,6 @@ void checkSensors(const Sensors& sensors, const std::vector<SensorDescription>& 
           fmt::format("the {} '{}' of the old result is not in the session: it is not checked", what, name));
 }
 
-std::string sizeText(Resolution size_px) {
-  return fmt::format("{} x {}", size_px.width_px, size_px.height_px);
-}
-
 // What was weighed then would pull both results to one value, and hide a change; what is given stays given.
 template <class Rows, class Prior>
 void dropWeighed(const Rows& rows, Prior& prior) {
@@ -90,7 +81,7 @@ void setLens(const CameraState& before, SessionCamera& camera, CheckInput& input
                    "Calibrate again: the result is of an older version, or was shortened");
   if (camera.resolution_px.known() && camera.resolution_px != lens->resolution_px)
     throw badInput(input.session.source.string() + ": cameras." + camera.name,
-                   fmt::format("has an image of {} px, in the old result it has {} px",
+                   fmt::format("has an image of {}, in the old result it has {}",
                                sizeText(camera.resolution_px), sizeText(lens->resolution_px)),
                    "Check a camera in the mode that it was calibrated in");
   if (camera.intrinsics && camera.intrinsics->model != lens->model)
@@ -111,7 +102,7 @@ Session sessionFor(const CheckPaths& paths) {
     session = readSessionOfRun(paths.session);
   } else {
     const std::filesystem::path kept =
-        (isFolder(paths.result) ? paths.result : paths.result.parent_path()) / kSession;
+        (isFolder(paths.result) ? paths.result : paths.result.parent_path()) / kSessionFile;
     if (!isThere(kept))
       throw badInput(paths.result.string(),
                      "there is no run_session.yaml beside it, which says board and sensors",
@@ -123,7 +114,7 @@ Session sessionFor(const CheckPaths& paths) {
 }
 
 bool isSameBoard(const std::filesystem::path& result, const Session& session) {
-  const std::filesystem::path kept = (isFolder(result) ? result : result.parent_path()) / kSession;
+  const std::filesystem::path kept = (isFolder(result) ? result : result.parent_path()) / kSessionFile;
   if (!isThere(kept)) return false;
   try {
     return readSessionOfRun(kept).board == session.board;

@@ -31,7 +31,7 @@ std::string openText(const CheckedQuantity& quantity) {
 
 void testQuantities(const ComparedQuantities& compared, const CheckOptions& options,
                     CalibrationCheck& check) {
-  const ChangeTests tests = testSingleChanges(compared.change, compared.groups, options.false_alarms);
+  const GroupTestResults tests = testSingleChanges(compared.change, compared.groups, options.false_alarms);
   std::size_t shown = 0;
   std::vector<std::string> names(compared.groups.size());
   for (std::size_t g = 0; g < compared.groups.size(); ++g) {

@@ -315,7 +315,7 @@ class Comparison {
   std::vector<std::string> offset_of_;  // a camera, or empty: no time offset of one
 };
 
-double sizeAlong(const ChangeTest& test, const ChangeGroup& group) {
+double sizeAlong(const GroupTestResult& test, const ChangeGroup& group) {
   const Eigen::VectorXd change = group.to_size * test.change;
   const Eigen::MatrixXd covariance = group.to_size * test.covariance * group.to_size.transpose();
   if (!(change.norm() > 0.0)) return std::sqrt(std::max(0.0, covariance.diagonal().maxCoeff()));
@@ -325,7 +325,7 @@ double sizeAlong(const ChangeTest& test, const ChangeGroup& group) {
 
 }  // namespace
 
-CheckedQuantity testedQuantity(const ComparedQuantity& compared, const ChangeTest& test,
+CheckedQuantity testedQuantity(const ComparedQuantity& compared, const GroupTestResult& test,
                                const ChangeGroup& group) {
   CheckedQuantity quantity = compared.shown;
   quantity.change = (group.to_size * test.change).norm();

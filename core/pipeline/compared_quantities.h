@@ -42,7 +42,7 @@ Eigen::MatrixXd lensCovariance(const CameraIntrinsics& camera, Eigen::Index coun
 ComparedQuantities compareQuantities(const ComparedResults& results, const CheckOptions& options);
 
 // With what the test of its group says.
-CheckedQuantity testedQuantity(const ComparedQuantity& compared, const ChangeTest& test,
+CheckedQuantity testedQuantity(const ComparedQuantity& compared, const GroupTestResult& test,
                                const ChangeGroup& group);
 
 }  // namespace evical

@@ -98,10 +98,6 @@ void logOptions(const YamlNode& map, const Session& session, const RunContext& c
                          "The detections were made with other options, and stay as they are:" + differing);
 }
 
-std::string sizeText(const Resolution& size) {
-  return fmt::format("{} x {} px", size.width_px, size.height_px);
-}
-
 }  // namespace
 
 YamlNode loadDetections(const std::filesystem::path& folder) {

@@ -58,13 +58,13 @@ bool intrinsicsAlone(const std::vector<ImportSource>& sources) {
   });
 }
 
-struct NamedIntrinsics {
+struct ImportedIntrinsics {
   std::string name;
   CameraIntrinsics intrinsics;
 };
 
-std::vector<NamedIntrinsics> intrinsicsOf(const std::vector<ImportSource>& sources) {
-  std::vector<NamedIntrinsics> cameras;
+std::vector<ImportedIntrinsics> intrinsicsOf(const std::vector<ImportSource>& sources) {
+  std::vector<ImportedIntrinsics> cameras;
   for (const ImportSource& source : sources) {
     if (source.kind == ImportKind::Intrinsics) {
       const std::string name = source.path.stem().string();
@@ -91,9 +91,9 @@ void notePriors(const std::vector<ImportSource>& sources, std::vector<std::strin
 
 ImportedFiles importIntrinsics(const std::vector<ImportSource>& sources,
                                const std::filesystem::path& output) {
-  const std::vector<NamedIntrinsics> cameras = intrinsicsOf(sources);
+  const std::vector<ImportedIntrinsics> cameras = intrinsicsOf(sources);
   ImportedFiles imported;
-  for (const NamedIntrinsics& camera : cameras) {
+  for (const ImportedIntrinsics& camera : cameras) {
     std::filesystem::path path = output;
     if (cameras.size() > 1)
       path.replace_filename(

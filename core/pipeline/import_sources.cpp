@@ -12,12 +12,6 @@ bool isLens(const YamlNode& root) {
          root.has("focal_length_px");
 }
 
-bool isTaken(const std::string& name, const Session& session) {
-  const auto named = [&](const auto& sensor) { return sensor.name == name; };
-  return std::any_of(session.cameras.begin(), session.cameras.end(), named) ||
-         std::any_of(session.imus.begin(), session.imus.end(), named);
-}
-
 }  // namespace
 
 ImportSource recogniseSource(const std::filesystem::path& path) {
@@ -51,7 +45,7 @@ std::string sensorName(const std::string& topic, bool imu, const Session& sessio
   if (imu) name += "_imu";
   if (name.empty()) name = "camera";
   std::string unique = name;
-  for (int number = 2; isTaken(unique, session); ++number) unique = fmt::format("{}_{}", name, number);
+  for (int number = 2; isSensorName(session, unique); ++number) unique = fmt::format("{}_{}", name, number);
   return unique;
 }
 

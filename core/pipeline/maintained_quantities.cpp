@@ -77,7 +77,7 @@ void setChange(const BlockWords& words, const BlockChange& change, double limit,
 
 // Of a block that was tested with others: as found where it has changed, else as it alone would have.
 // `wider`: by how much variances are larger than the test takes them.
-void setTested(const BlockWords& words, const StateBlock& block, const ChangeTest& test,
+void setTested(const BlockWords& words, const StateBlock& block, const ChangeDetector& test,
                const std::vector<FoundChange>& changes, std::size_t which, double limit, double wider,
                MaintainedQuantity& quantity) {
   BlockChange change = test.of(block);
@@ -134,7 +134,7 @@ void addAccelerometer(const AccelerometerEvidence& evidence, const NamedResult& 
   const ImuUncertainty& sigma = before.result->uncertainty.imus[imu];
   const AccelerometerVector old_numbers = accelerometerNumbers(before.result->state.imus[imu]);
   const Eigen::MatrixXd known = accelerometerVariances(sigma, options).asDiagonal();
-  const ChangeTest test(evidence.information, evidence.score, known);
+  const ChangeDetector test(evidence.information, evidence.score, known);
   const std::vector<double> limits = limitsFor(kAccelerometerBlocks, false_alarms);
   const auto changes = findChanges(evidence.information, evidence.score, known, kAccelerometerBlocks, limits);
   MaintenanceOptions exact = options;
@@ -329,7 +329,7 @@ void addPairQuantities(const TrackedPair& pair, const NamedResult& before, const
   const Eigen::MatrixXd covariance = (sigma_before.cwiseAbs2() + pairStability(options)).asDiagonal();
   const Eigen::MatrixXd information = pair.track.start_information;
   const Eigen::VectorXd score = pair.track.start_score - pair.track.start_information * old_state;
-  const ChangeTest test(information, score, covariance);
+  const ChangeDetector test(information, score, covariance);
   std::vector<double> limits = limitsFor(kPairBlocks, false_alarms);
   for (std::size_t b = 0; b < limits.size(); ++b)
     limits[b] = pair.track.colours[b].limit(limits[b], kPairBlocks[b].size, pair.track.colours[b].ofMany());

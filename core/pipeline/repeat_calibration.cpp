@@ -51,7 +51,7 @@ std::string listed(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string changeText(const CheckedQuantity& quantity) {
+std::string changeOfSensorText(const CheckedQuantity& quantity) {
   return fmt::format("{} of {} by {} {} ({:.1f} sigmas)", quantity.title, quantity.sensor,
                      html::significant(quantity.change, 2), quantity.unit, quantity.sigmas);
 }
@@ -179,7 +179,7 @@ class Repeat {
     const NamedResult before = namedJoint(rest);
     ComparedQuantities compared = compareQuantities({before, ones_[k].named, true}, options());
     leaveOffsetsOut(compared);
-    const ChangeTests tests = testSingleChanges(compared.change, compared.groups, falseAlarms());
+    const GroupTestResults tests = testSingleChanges(compared.change, compared.groups, falseAlarms());
     std::vector<CheckedQuantity> all;
     for (std::size_t g = 0, shown = 0; g < compared.groups.size(); ++g)
       if (compared.groups[g].tested)
@@ -281,7 +281,7 @@ class Repeat {
       if (each.outcome == RepeatOutcome::DoesNotFit)
         far.push_back(each.differs.empty()
                           ? each.name
-                          : fmt::format("{}: {}", each.name, changeText(each.differs.front())));
+                          : fmt::format("{}: {}", each.name, changeOfSensorText(each.differs.front())));
     }
     out().verdict = far.empty() ? RepeatVerdict::Agree : RepeatVerdict::Disagree;
     if (far.empty())
@@ -305,7 +305,7 @@ class Repeat {
 
   std::string changeOfFirst() {
     const std::vector<CheckedQuantity>& differs = recordingOf(fitting_.front()).differs;
-    return differs.empty() ? "all of it" : changeText(differs.front());
+    return differs.empty() ? "all of it" : changeOfSensorText(differs.front());
   }
 
   const RepeatInput& input_;

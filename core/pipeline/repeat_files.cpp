@@ -2,8 +2,10 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/file_places.h"
 #include "core/base/new_folder.h"
 #include "core/pipeline/result_files.h"
+#include "core/pipeline/saved_run.h"
 #include "core/report/html/repeat_page.h"
 #include "core/report/repeat_report.h"
 
@@ -14,17 +16,12 @@
 namespace evical {
 namespace {
 
-constexpr const char *kResult = "result.yaml", *kRepeat = "repeat.yaml", *kSession = "run_session.yaml";
-
-bool isThere(const std::filesystem::path& path) {
-  std::error_code ignored;
-  return std::filesystem::exists(path, ignored);
-}
+constexpr const char* kRepeat = "repeat.yaml";
 
 }  // namespace
 
 void checkRepeatFolder(const std::filesystem::path& folder) {
-  if (isThere(folder / kResult) && !isThere(folder / kRepeat))
+  if (isThere(folder / kResultFile) && !isThere(folder / kRepeat))
     throw badInput(folder.string(),
                    "holds the result of a calibration, which a repeat would take the place of",
                    "Name another folder");
@@ -42,11 +39,11 @@ void writeRepeatFiles(const std::filesystem::path& folder, const RepeatInput& in
     files.push_back({file.name, std::move(file.content)});
   if (repeat.joint) {
     const Session session = sessionOfRepeat(input.sessions.at(repeat.own_values_of));
-    files.push_back({kSession, sessionYaml(session, folder)});
-    files.push_back({kResult, resultYaml(*repeat.joint)});
+    files.push_back({kSessionFile, sessionYaml(session, folder)});
+    files.push_back({kResultFile, resultYaml(*repeat.joint)});
   } else {
     std::error_code ignored;
-    std::filesystem::remove(folder / kResult, ignored);
+    std::filesystem::remove(folder / kResultFile, ignored);
   }
   files.push_back({kRepeat, repeatYaml(repeat.repeatability)});  // the last tells that all are there
   writeExportedFiles(folder, files);

@@ -53,10 +53,6 @@ std::string boardText(const Board& board) {
                      board.rows, board.cols, board.spacing_m);
 }
 
-std::string sizeText(Resolution size_px) {
-  return fmt::format("{} x {} px", size_px.width_px, size_px.height_px);
-}
-
 void checkCameras(const Session& first, const Session& session) {
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
     const SessionCamera &own = session.cameras[k], &other = first.cameras[k];

@@ -1,5 +1,6 @@
 #include "core/pipeline/saved_run.h"
 
+#include "core/base/file_places.h"
 #include "core/base/yaml_node.h"
 #include "core/pipeline/detections_check.h"
 #include "core/pipeline/given_points.h"
@@ -20,13 +21,7 @@
 namespace evical {
 namespace {
 
-constexpr const char *kResult = "result.yaml", *kRun = "run.yaml", *kSession = "run_session.yaml",
-                     *kData = "run.data", *kLog = "log.txt";
-
-bool isThere(const std::filesystem::path& path) {
-  std::error_code ignored;
-  return std::filesystem::exists(path, ignored);
-}
+constexpr const char *kRun = "run.yaml", *kData = "run.data", *kLog = "log.txt";
 
 std::string contentOf(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -119,7 +114,7 @@ void findRecordings(const YamlNode& places, const std::filesystem::path& folder,
 // A folder that an earlier version wrote names its sensors in result.yaml, and the board in detections.yaml.
 Session sessionFrom(const NamedResult& named, const std::filesystem::path& folder) {
   Session session;
-  session.source = folder / kResult;
+  session.source = folder / kResultFile;
   session.recording = folder / "recording";
   session.reference = named.reference;
   session.board_name = named.boards.front();
@@ -182,7 +177,7 @@ class FolderReader {
 
   void readResult() {
     try {
-      named_ = readResultYaml(folder_ / kResult);
+      named_ = readResultYaml(folder_ / kResultFile);
       run_.result = *named_->result;
     } catch (const CalibrationError& error) {
       result_error_ = error;
@@ -214,9 +209,10 @@ class FolderReader {
 
   void readSession() {
     try {
-      if (!isThere(folder_ / kSession))
-        throw badInput(kSession, "is not there", "An earlier version wrote none: choose the recording again");
-      saved_.session = readSessionOfRun(folder_ / kSession);
+      if (!isThere(folder_ / kSessionFile))
+        throw badInput(kSessionFile, "is not there",
+                       "An earlier version wrote none: choose the recording again");
+      saved_.session = readSessionOfRun(folder_ / kSessionFile);
       return;
     } catch (const CalibrationError& error) {
       if (!named_) throw;
@@ -265,7 +261,8 @@ class FolderReader {
           same = same && circle.circle < session.boardOf(k).pointCount();
     dropResidualsOfNoView();
     if (!same && run_.result.status != CalibrationStatus::Failed)
-      throw badInput((folder_ / kSession).string(), "it is the session of another run than what is beside it",
+      throw badInput((folder_ / kSessionFile).string(),
+                     "it is the session of another run than what is beside it",
                      "Export or calibrate again: the folder holds parts of two runs");
   }
 
@@ -307,7 +304,7 @@ std::vector<FileContent> runFiles(const std::filesystem::path& folder, const Ses
                                   const CalibrationRun& run, std::int64_t made_s) {
   RunSummary summary = summaryOf(session, run.result);
   summary.made_s = made_s;
-  return {{kSession, sessionYaml(session, folder)},
+  return {{kSessionFile, sessionYaml(session, folder)},
           {kData, {}, [&run](const TextSink& sink) { writeRunData(run, sink); }},
           {kRun, summaryYaml(summary, placesYaml(folder, session))}};
 }
@@ -319,15 +316,15 @@ void keepRun(const std::filesystem::path& folder, const Session& session,
   std::vector<FileContent> files = runFiles(folder, session, *run, made_s);
   files.push_back({kLog, log});
   files.push_back(
-      {kResult, resultYaml(namedRun(session, run, version))});  // the last tells that all are there
+      {kResultFile, resultYaml(namedRun(session, run, version))});  // the last tells that all are there
   for (FileContent& file : files) file.path = folder / file.path;
   writeFilesWhole(files);
 }
 
 bool isSavedRun(const std::filesystem::path& path) {
   const std::filesystem::path name = path.filename();
-  if (name == kResult || name == kRun) return isThere(path);
-  return isThere(path / kResult) || isThere(path / kRun);
+  if (name == kResultFile || name == kRun) return isThere(path);
+  return isThere(path / kResultFile) || isThere(path / kRun);
 }
 
 SavedRun readSavedRun(const std::filesystem::path& path) {

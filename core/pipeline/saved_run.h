@@ -18,6 +18,9 @@
 
 namespace evical {
 
+// Files of a result's folder.
+inline constexpr const char *kResultFile = "result.yaml", *kSessionFile = "run_session.yaml";
+
 // What run.yaml says.
 struct RunSummary {
   std::filesystem::path folder;

@@ -251,4 +251,10 @@ void writeSession(const Session& session, const std::filesystem::path& file) {
   writeFileWhole(file, sessionYaml(session, folder));
 }
 
+bool isSensorName(const Session& session, const std::string& name) {
+  const auto named = [&](const auto& sensor) { return sensor.name == name; };
+  return std::any_of(session.cameras.begin(), session.cameras.end(), named) ||
+         std::any_of(session.imus.begin(), session.imus.end(), named);
+}
+
 }  // namespace evical

@@ -13,12 +13,6 @@
 namespace evical {
 namespace {
 
-bool isSensor(const Session& session, const std::string& name) {
-  const auto named = [&](const auto& sensor) { return sensor.name == name; };
-  return std::any_of(session.cameras.begin(), session.cameras.end(), named) ||
-         std::any_of(session.imus.begin(), session.imus.end(), named);
-}
-
 // Of several, each camera sees one, each is seen, and the first is the world.
 void checkSeen(const Session& session, const std::string& place) {
   const std::vector<std::string> names = boardNames(session);
@@ -34,7 +28,7 @@ void checkSeen(const Session& session, const std::string& place) {
   }
   // Both are the beginnings of quantities' names.
   for (const std::string& name : hasNamedBoards(session) ? names : std::vector<std::string>())
-    if (isSensor(session, name))
+    if (isSensorName(session, name))
       throw badInput(fmt::format("{}: boards.{}", place, name), "is also a sensor's name",
                      "Call one of them otherwise");
   for (std::size_t i = 0; i < names.size(); ++i)
@@ -151,7 +145,8 @@ std::string freeName(const std::string& like, const Session& session) {
   std::string name;
   for (int i = 2;; ++i) {
     name = fmt::format("{}_{}", base, i);
-    if (std::find(names.begin(), names.end(), name) == names.end() && !isSensor(session, name)) return name;
+    if (std::find(names.begin(), names.end(), name) == names.end() && !isSensorName(session, name))
+      return name;
   }
 }
 
@@ -232,7 +227,7 @@ void renameBoard(std::size_t index, const std::string& name, Session& session) {
   if (std::find(names.begin(), names.end(), name) != names.end())
     throw badInput(boardKey(session, index), fmt::format("'{}' is another board's name", name),
                    "Call one of them otherwise");
-  if (isSensor(session, name))
+  if (isSensorName(session, name))
     throw badInput(boardKey(session, index), fmt::format("'{}' is also a sensor's name", name),
                    "Call one of them otherwise");
   (index == 0 ? session.board_name : session.further_boards.at(index - 1).name) = name;

@@ -10,12 +10,6 @@
 namespace evical {
 namespace {
 
-bool isTaken(const std::string& name, const Session& session) {
-  const auto same = [&](const auto& sensor) { return sensor.name == name; };
-  return std::any_of(session.cameras.begin(), session.cameras.end(), same) ||
-         std::any_of(session.imus.begin(), session.imus.end(), same);
-}
-
 // "/davis/left/events" gives "davis_left": all parts but the last, which says the kind.
 std::string nameFromStream(const std::string& stream, const std::string& kind) {
   const std::size_t end = stream.rfind('/');
@@ -29,7 +23,7 @@ std::string nameFromStream(const std::string& stream, const std::string& kind) {
 std::string freeName(const std::string& stream, const std::string& kind, const Session& session) {
   const std::string base = nameFromStream(stream, kind);
   std::string name = base;
-  for (int i = 2; isTaken(name, session); ++i) name = base + "_" + std::to_string(i);
+  for (int i = 2; isSensorName(session, name); ++i) name = base + "_" + std::to_string(i);
   return name;
 }
 

@@ -28,7 +28,7 @@ class SingleChanges {
   }
 
   // The group alone, against those of the others that are not set free.
-  ChangeTest test(std::size_t tested, const std::vector<bool>& free) const {
+  GroupTestResult test(std::size_t tested, const std::vector<bool>& free) const {
     const std::vector<Eigen::Index> kept = keptNumbers(tested, free);
     const auto count = static_cast<Eigen::Index>(kept.size());
     Eigen::VectorXd difference(count);
@@ -71,12 +71,12 @@ class SingleChanges {
   // the estimate from the truth, whose square is a sum of as many squares as the group has numbers. A truth
   // outside is further away than along the one direction that parts it from the ball, so that the power below
   // is the least there is.
-  ChangeTest judged(const ChangeGroup& group, const Eigen::VectorXd& change,
-                    const Eigen::MatrixXd& covariance) const {
+  GroupTestResult judged(const ChangeGroup& group, const Eigen::VectorXd& change,
+                         const Eigen::MatrixXd& covariance) const {
     const SymmetricEigen eigen = symmetricEigen(covariance);
     const Eigen::VectorXd variances = eigen.values.cwiseMax(1e-30);
     const Eigen::VectorXd along = eigen.vectors.transpose() * change;
-    ChangeTest test;
+    GroupTestResult test;
     test.tested = true;
     test.sigmas = std::sqrt((along.cwiseAbs2().cwiseQuotient(variances)).sum());
     test.beyond = distanceFromBall(along, variances, group.stability);
@@ -114,18 +114,18 @@ class SingleChanges {
   Eigen::VectorXd difference_;
 };
 
-double excess(const ChangeTest& test) {
+double excess(const GroupTestResult& test) {
   return test.beyond * test.beyond - test.limit * test.limit;
 }
 
 }  // namespace
 
-ChangeTests testSingleChanges(const EstimatedChange& estimated, std::span<const ChangeGroup> groups,
-                              double false_alarms) {
+GroupTestResults testSingleChanges(const EstimatedChange& estimated, std::span<const ChangeGroup> groups,
+                                   double false_alarms) {
   constexpr double kAsWell = 9.0;  // less than three sigmas between two explanations
   const SingleChanges changes(estimated, groups, false_alarms);
   std::vector<bool> free(groups.size(), false);
-  ChangeTests tests;
+  GroupTestResults tests;
   tests.groups.resize(groups.size());
   const auto testAll = [&] {
     for (std::size_t g = 0; g < groups.size(); ++g)
@@ -134,14 +134,14 @@ ChangeTests testSingleChanges(const EstimatedChange& estimated, std::span<const 
   const auto mostChanged = [&] {
     std::optional<std::size_t> most;
     for (std::size_t g = 0; g < groups.size(); ++g)
-      if (const ChangeTest& test = tests.groups[g]; !free[g] && test.tested && test.changed)
+      if (const GroupTestResult& test = tests.groups[g]; !free[g] && test.tested && test.changed)
         if (!most || excess(test) > excess(tests.groups[*most])) most = g;
     return most;
   };
   testAll();
   if (const auto first = mostChanged())
     for (std::size_t g = 0; g < groups.size(); ++g)
-      if (const ChangeTest& test = tests.groups[g]; g != *first && test.tested && test.changed)
+      if (const GroupTestResult& test = tests.groups[g]; g != *first && test.tested && test.changed)
         if (excess(tests.groups[*first]) - excess(test) < kAsWell) tests.or_else.push_back(g);
   while (const auto most = mostChanged()) {
     free[*most] = true;  // what has changed says nothing of the others

@@ -26,7 +26,7 @@ struct EstimatedChange {
   Eigen::MatrixXd covariance;  // of both estimates together
 };
 
-struct ChangeTest {
+struct GroupTestResult {
   bool tested = false;
   Eigen::VectorXd change;      // of the group, had nothing else changed
   Eigen::MatrixXd covariance;  // of that
@@ -37,14 +37,14 @@ struct ChangeTest {
   bool changed = false;
 };
 
-struct ChangeTests {
-  std::vector<ChangeTest> groups;
+struct GroupTestResults {
+  std::vector<GroupTestResult> groups;
   // Those that explain the recording as well as the first of those that have changed.
   std::vector<std::size_t> or_else;
 };
 
 // `false_alarms`: how often any group is called changed where none is.
-ChangeTests testSingleChanges(const EstimatedChange& estimated, std::span<const ChangeGroup> groups,
-                              double false_alarms);
+GroupTestResults testSingleChanges(const EstimatedChange& estimated, std::span<const ChangeGroup> groups,
+                                   double false_alarms);
 
 }  // namespace evical

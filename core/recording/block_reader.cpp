@@ -1,6 +1,7 @@
 #include "core/recording/block_reader.h"
 
 #include "core/base/error.h"
+#include "core/recording/event_order.h"
 
 #include <fmt/format.h>
 
@@ -10,8 +11,7 @@
 namespace evical {
 namespace {
 
-constexpr std::size_t kBlock_bytes = std::size_t{1} << 18;
-constexpr std::int64_t kLargestSorted_ns = 10'000'000;
+constexpr std::size_t kReadBlock_bytes = std::size_t{1} << 18;
 
 }  // namespace
 
@@ -59,8 +59,8 @@ bool BlockReader::read(Packet& packet) {
 // Undecoded bytes of the block before stand at the front of this one.
 bool BlockReader::decodeBlock() {
   const std::size_t left = bytes_.size();
-  bytes_.resize(left + kBlock_bytes);
-  file_.read(bytes_.data() + left, static_cast<std::streamsize>(kBlock_bytes));
+  bytes_.resize(left + kReadBlock_bytes);
+  file_.read(bytes_.data() + left, static_cast<std::streamsize>(kReadBlock_bytes));
   const auto got = static_cast<std::size_t>(file_.gcount());
   bytes_.resize(left + got);
   position_ += got;

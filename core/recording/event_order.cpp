@@ -5,11 +5,7 @@
 #include <algorithm>
 
 namespace evical {
-namespace {
-
-constexpr std::int64_t kLargestSorted_ns = 10'000'000;
-
-}  // namespace
+namespace {}  // namespace
 
 std::size_t EventOrder::arrange(std::span<Event> events) {
   const std::uint64_t before = disordered_;

@@ -11,6 +11,9 @@
 
 namespace evical {
 
+// Largest step back in time that readers sort away.
+inline constexpr std::int64_t kLargestSorted_ns = 10'000'000;
+
 class EventOrder {
  public:
   // Leaves in `events` those that make a packet: they are sorted where time steps back a little; before a large step back

@@ -12,19 +12,18 @@
 namespace evical {
 namespace {
 
-constexpr Resolution kLargest_px = {2048, 2048};  // where the file does not tell; no event sensor has more
-constexpr std::ptrdiff_t kMostAlikeFaults = 10;
+constexpr Resolution kLargestGuess_px = {2048,
+                                         2048};  // where the file does not tell; no event sensor has more
 constexpr std::size_t kMostNamedPixels = 8;
-constexpr std::int64_t kClockReset_ns = 1'000'000'000;
 
 }  // namespace
 
 EventStatistics::EventStatistics(const StreamInfo& info, const InspectionOptions& options)
     : options_(options) {
   numbers_.info = info;
-  counted_px_ = info.resolution_px.known() ? info.resolution_px : kLargest_px;
-  counted_px_.width_px = std::min(counted_px_.width_px, 2 * kLargest_px.width_px);
-  most_rows_ = std::min(counted_px_.height_px, 2 * kLargest_px.height_px);
+  counted_px_ = info.resolution_px.known() ? info.resolution_px : kLargestGuess_px;
+  counted_px_.width_px = std::min(counted_px_.width_px, 2 * kLargestGuess_px.width_px);
+  most_rows_ = std::min(counted_px_.height_px, 2 * kLargestGuess_px.height_px);
   counted_px_.height_px = 0;
 }
 

@@ -12,17 +12,14 @@
 namespace evical {
 namespace {
 
-constexpr std::size_t kMostAlikeFaults = 10;
-constexpr std::int64_t kClockReset_ns = 1'000'000'000;
-
 using Faults = std::vector<RecordingFault>;
 using Samples = std::vector<ImuSample>;
 
 // Lists the first few of many alike, and says how many there are.
 void appendFaults(Faults& faults, Faults alike, const char* many) {
-  if (alike.size() > kMostAlikeFaults) {
+  if (std::ssize(alike) > kMostAlikeFaults) {
     RecordingFault rest = alike[kMostAlikeFaults];
-    rest.text = fmt::format("{} more {}.", alike.size() - kMostAlikeFaults, many);
+    rest.text = fmt::format("{} more {}.", std::ssize(alike) - kMostAlikeFaults, many);
     alike.resize(kMostAlikeFaults);
     alike.push_back(rest);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/progress.h"
+#include "core/base/time.h"
 #include "core/data/recording.h"
 #include "core/recording/inspection_options.h"
 #include "core/recording/recording_reader.h"
@@ -13,6 +14,9 @@
 #include <vector>
 
 namespace evical {
+
+// A step back in time beyond this is a clock that was reset.
+inline constexpr std::int64_t kClockReset_ns = kSecond_ns;
 
 struct StreamSummary {
   StreamInfo info;

@@ -7,7 +7,7 @@
 namespace evical {
 namespace {
 
-constexpr std::uint64_t kBlock_bytes = 1 << 20;
+constexpr std::uint64_t kCachedBlock_bytes = 1 << 20;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ bool RandomAccessFile::read(std::uint64_t position, std::uint64_t count, std::st
   if (position > size_ || count > size_ - position) return false;
   const bool is_there = position >= block_position_ && position + count <= block_position_ + block_.size();
   if (!is_there) {
-    block_.resize(static_cast<std::size_t>(std::max(count, std::min(kBlock_bytes, size_ - position))));
+    block_.resize(static_cast<std::size_t>(std::max(count, std::min(kCachedBlock_bytes, size_ - position))));
     file_.clear();
     file_.seekg(static_cast<std::streamoff>(position));
     file_.read(block_.data(), static_cast<std::streamsize>(block_.size()));

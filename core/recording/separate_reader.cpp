@@ -26,12 +26,12 @@ enum class Answer : std::uint8_t { State, Packet, End, Error };
 enum class Question : std::uint8_t { Select, Read };
 
 template <class Number>
-void put(std::string& message, Number number) {
+void putInto(std::string& message, Number number) {
   static_assert(std::is_trivially_copyable_v<Number>);
   message.append(reinterpret_cast<const char*>(&number), sizeof(number));
 }
-void put(std::string& message, const std::string& text) {
-  put(message, static_cast<std::uint32_t>(text.size()));
+void putInto(std::string& message, const std::string& text) {
+  putInto(message, static_cast<std::uint32_t>(text.size()));
   message += text;
 }
 
@@ -58,7 +58,7 @@ bool receiveAll(int socket, char* bytes, std::size_t count) {
 
 bool sendMessage(int socket, const std::string& message) {
   std::string length;
-  put(length, static_cast<std::uint64_t>(message.size()));
+  putInto(length, static_cast<std::uint64_t>(message.size()));
   return sendAll(socket, length) && sendAll(socket, message);
 }
 
@@ -70,19 +70,19 @@ bool receiveMessage(int socket, std::string& message) {
 }
 
 void putStream(std::string& message, const StreamInfo& info) {
-  put(message, info.name);
-  put(message, info.type);
-  put(message, info.message);
-  put(message, info.resolution_px.width_px);
-  put(message, info.resolution_px.height_px);
-  put(message, info.messages);
-  put(message, info.time_unit_ns);
-  put(message, info.acceleration_unit);
-  put(message, info.angular_rate_unit);
-  put(message, static_cast<std::uint8_t>(info.host_clock_offset_s.has_value()));
-  put(message, info.host_clock_offset_s.value_or(0.0));
-  put(message, static_cast<std::uint8_t>(info.readable));
-  put(message, static_cast<std::uint8_t>(info.timed));
+  putInto(message, info.name);
+  putInto(message, info.type);
+  putInto(message, info.message);
+  putInto(message, info.resolution_px.width_px);
+  putInto(message, info.resolution_px.height_px);
+  putInto(message, info.messages);
+  putInto(message, info.time_unit_ns);
+  putInto(message, info.acceleration_unit);
+  putInto(message, info.angular_rate_unit);
+  putInto(message, static_cast<std::uint8_t>(info.host_clock_offset_s.has_value()));
+  putInto(message, info.host_clock_offset_s.value_or(0.0));
+  putInto(message, static_cast<std::uint8_t>(info.readable));
+  putInto(message, static_cast<std::uint8_t>(info.timed));
 }
 
 StreamInfo takeStream(ByteCursor& cursor) {
@@ -105,10 +105,10 @@ StreamInfo takeStream(ByteCursor& cursor) {
 }
 
 void putFault(std::string& message, const RecordingFault& fault) {
-  put(message, fault.stream);
-  put(message, fault.kind);
-  put(message, fault.at_s);
-  put(message, fault.text);
+  putInto(message, fault.stream);
+  putInto(message, fault.kind);
+  putInto(message, fault.at_s);
+  putInto(message, fault.text);
 }
 
 RecordingFault takeFault(ByteCursor& cursor) {
@@ -122,28 +122,28 @@ RecordingFault takeFault(ByteCursor& cursor) {
 
 std::string stateOf(const RecordingReader& reader) {
   std::string message;
-  put(message, reader.format());
-  put(message, reader.fractionRead());
-  put(message, static_cast<std::uint32_t>(reader.streams().size()));
+  putInto(message, reader.format());
+  putInto(message, reader.fractionRead());
+  putInto(message, static_cast<std::uint32_t>(reader.streams().size()));
   for (const StreamInfo& info : reader.streams()) putStream(message, info);
-  put(message, static_cast<std::uint32_t>(reader.faults().size()));
+  putInto(message, static_cast<std::uint32_t>(reader.faults().size()));
   for (const RecordingFault& fault : reader.faults()) putFault(message, fault);
   return message;
 }
 
 void putVector(std::string& message, const Eigen::Vector3d& vector) {
-  for (int i = 0; i < 3; ++i) put(message, vector[i]);
+  for (int i = 0; i < 3; ++i) putInto(message, vector[i]);
 }
 
 void putFrame(std::string& message, const Frame& frame) {
-  put(message, frame.time_ns);
-  put(message, frame.exposure_s);
-  put(message, frame.format);
-  put(message, static_cast<std::uint8_t>(frame.big_endian));
-  put(message, frame.size_px.width_px);
-  put(message, frame.size_px.height_px);
-  put(message, static_cast<std::uint64_t>(frame.row_bytes));
-  put(message, static_cast<std::uint64_t>(frame.bytes.size()));
+  putInto(message, frame.time_ns);
+  putInto(message, frame.exposure_s);
+  putInto(message, frame.format);
+  putInto(message, static_cast<std::uint8_t>(frame.big_endian));
+  putInto(message, frame.size_px.width_px);
+  putInto(message, frame.size_px.height_px);
+  putInto(message, static_cast<std::uint64_t>(frame.row_bytes));
+  putInto(message, static_cast<std::uint64_t>(frame.bytes.size()));
   message.append(reinterpret_cast<const char*>(frame.bytes.data()), frame.bytes.size());
 }
 
@@ -162,15 +162,15 @@ void takeFrame(ByteCursor& cursor, Frame& frame) {
 // Points come from text only, which is read without this.
 std::string messageOf(const Packet& packet, double fraction_read) {
   std::string message;
-  put(message, Answer::Packet);
-  put(message, fraction_read);
-  put(message, static_cast<std::uint64_t>(packet.stream));
-  put(message, static_cast<std::uint64_t>(packet.events.size()));
-  put(message, static_cast<std::uint64_t>(packet.imu_samples.size()));
-  put(message, static_cast<std::uint64_t>(packet.frames.size()));
+  putInto(message, Answer::Packet);
+  putInto(message, fraction_read);
+  putInto(message, static_cast<std::uint64_t>(packet.stream));
+  putInto(message, static_cast<std::uint64_t>(packet.events.size()));
+  putInto(message, static_cast<std::uint64_t>(packet.imu_samples.size()));
+  putInto(message, static_cast<std::uint64_t>(packet.frames.size()));
   message.append(reinterpret_cast<const char*>(packet.events.data()), packet.events.size() * sizeof(Event));
   for (const RawImuSample& sample : packet.imu_samples) {
-    put(message, sample.time_ns);
+    putInto(message, sample.time_ns);
     putVector(message, sample.angular_rate);
     putVector(message, sample.specific_force);
   }
@@ -181,9 +181,9 @@ std::string messageOf(const Packet& packet, double fraction_read) {
 std::string messageOf(ErrorKind kind, const std::string& place, const std::string& problem,
                       const std::string& advice) {
   std::string message;
-  put(message, Answer::Error);
-  put(message, kind);
-  for (const std::string& text : {place, problem, advice}) put(message, text);
+  putInto(message, Answer::Error);
+  putInto(message, kind);
+  for (const std::string& text : {place, problem, advice}) putInto(message, text);
   return message;
 }
 
@@ -194,12 +194,12 @@ std::string answerTo(const std::string& question, RecordingReader& reader) {
     std::vector<std::size_t> streams(cursor.number<std::uint32_t>());
     for (std::size_t& stream : streams) stream = static_cast<std::size_t>(cursor.number<std::uint64_t>());
     reader.select(streams);
-    put(answer, Answer::State);
+    putInto(answer, Answer::State);
     return answer + stateOf(reader);
   }
   Packet packet;
   if (reader.read(packet)) return messageOf(packet, reader.fractionRead());
-  put(answer, Answer::End);
+  putInto(answer, Answer::End);
   return answer + stateOf(reader);
 }
 
@@ -231,7 +231,7 @@ void beQuiet() {
   const std::string first = attempt([&] {
     reader = open();
     std::string state;
-    put(state, Answer::State);
+    putInto(state, Answer::State);
     return state + stateOf(*reader);
   });
   bool heard = sendMessage(socket, first);
@@ -312,9 +312,9 @@ void SeparateReader::takeState(std::string_view message) {
 
 void SeparateReader::select(const std::vector<std::size_t>& streams) {
   std::string question, answer;
-  put(question, Question::Select);
-  put(question, static_cast<std::uint32_t>(streams.size()));
-  for (const std::size_t stream : streams) put(question, static_cast<std::uint64_t>(stream));
+  putInto(question, Question::Select);
+  putInto(question, static_cast<std::uint32_t>(streams.size()));
+  for (const std::size_t stream : streams) putInto(question, static_cast<std::uint64_t>(stream));
   finished_ = !sendMessage(socket_, question) || !receiveMessage(socket_, answer);
   if (!finished_ && static_cast<Answer>(answer.front()) == Answer::Error)
     throwError(path_, std::string_view(answer).substr(1));
@@ -323,7 +323,7 @@ void SeparateReader::select(const std::vector<std::size_t>& streams) {
 // The next is asked for before this one is looked at, so that both processes work.
 bool SeparateReader::ask() {
   std::string question;
-  put(question, Question::Read);
+  putInto(question, Question::Read);
   return sendMessage(socket_, question);
 }
 

@@ -7,7 +7,7 @@ namespace evical {
 namespace {
 
 constexpr int kBorderModules = 2;  // as Kalibr prints them
-constexpr int kSide = kTagSide_bits + 2 * kBorderModules;
+constexpr int kTagSide_modules = kTagSide_bits + 2 * kBorderModules;
 
 }  // namespace
 
@@ -89,7 +89,8 @@ bool BoardPattern::inTag(const Eigen::Vector2f& p) const {
   if (right) return true;            // where two gaps cross
   if (row < 0 || col < 0 || row >= board_.rows || col >= board_.cols) return false;
   const auto at = [&](float place) {
-    return std::clamp(static_cast<int>(place / tag_m_ * kSide), 0, kSide - 1) - kBorderModules;
+    return std::clamp(static_cast<int>(place / tag_m_ * kTagSide_modules), 0, kTagSide_modules - 1) -
+           kBorderModules;
   };
   const int x = at(within.x()), y = at(within.y());
   if (x < 0 || y < 0 || x >= kTagSide_bits || y >= kTagSide_bits) return true;

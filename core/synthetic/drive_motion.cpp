@@ -1,6 +1,7 @@
 #include "core/synthetic/drive_motion.h"
 
 #include "core/geometry/so3.h"
+#include "core/numerics/angles.h"
 #include "core/synthetic/random.h"
 
 #include <algorithm>
@@ -10,7 +11,6 @@
 namespace evical {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kRamp_s = 1.0;  // in which the envelope comes and goes
 
 // From 0 to 1 over u = 0 to 1, flat to the second order at both ends; with derivatives by u.

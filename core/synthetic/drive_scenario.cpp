@@ -58,7 +58,7 @@ void readShake(const YamlNode& map, MountShake& shake) {
   get(map, "correlation_s", shake.correlation_s, 1e-3, 1000.0, "s");
 }
 
-void readImu(const YamlNode& map, SimulatedImu& imu) {
+void readDriveImu(const YamlNode& map, SimulatedImu& imu) {
   map.allowOnly({"name", "stream", "rate_hz", "gyroscope_noise_density", "accelerometer_noise_density",
                  "gyroscope_walk_density", "accelerometer_walk_density", "gyroscope_bias_rad_s",
                  "accelerometer_bias_m_s2", "time_offset_s", "reference_from_imu", "lost_packets", "shake"});
@@ -83,7 +83,7 @@ void readImus(const YamlNode& node, DriveScenario& scenario) {
   scenario.imus.resize(items.size());
   std::set<std::string> names, streams;
   for (std::size_t i = 0; i < items.size(); ++i) {
-    readImu(items[i], scenario.imus[i]);
+    readDriveImu(items[i], scenario.imus[i]);
     if (!names.insert(scenario.imus[i].name).second || !streams.insert(scenario.imus[i].stream).second)
       throw items[i].error("has the name or the stream of another IMU");
   }
@@ -98,12 +98,12 @@ void readTrajectory(const YamlNode& map, DriveScenario& scenario) {
   scenario.trajectory_noise_rad = noise_deg * kRadPerDeg;
 }
 
-DriveScenario readFrom(const std::filesystem::path& path, int depth) {
+DriveScenario readDriveFrom(const std::filesystem::path& path, int depth) {
   const YamlNode root = YamlNode::load(path);
   root.allowOnly(
       {"base", "description", "seed", "duration_s", "gravity_m_s2", "drive", "imus", "steps", "trajectory"});
   DriveScenario scenario;
-  readBeginning(root, path, depth, readFrom, scenario);
+  readBeginning(root, path, depth, readDriveFrom, scenario);
   get(root, "duration_s", scenario.duration_s, 0.1, 20000.0, "s");
   get(root, "gravity_m_s2", scenario.gravity_m_s2, 0.1, 100.0, "m/s^2");
   if (const auto node = root.find("drive")) readDrive(*node, scenario.motion);
@@ -157,7 +157,7 @@ bool isDriveScenario(const std::filesystem::path& path) {
 }
 
 DriveScenario readDriveScenario(const std::filesystem::path& path) {
-  DriveScenario scenario = readFrom(path, 0);
+  DriveScenario scenario = readDriveFrom(path, 0);
   if (scenario.imus.empty()) throw badInput(path.string(), "has no IMUs", "Give it a list `imus`");
   return scenario;
 }

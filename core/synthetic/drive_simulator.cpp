@@ -14,11 +14,6 @@
 namespace evical {
 namespace {
 
-Eigen::Vector3d normalVector(Random& random) {
-  const double x = random.normal(), y = random.normal(), z = random.normal();
-  return {x, y, z};
-}
-
 struct Measured {
   Eigen::Vector3d rate_rad_s, force_m_s2;
 };
@@ -36,8 +31,8 @@ class ShakenMount {
 
  private:
   void next(double share) {
-    rate_ = kept_ * rate_ + share * normalVector(random_);
-    force_ = kept_ * force_ + share * normalVector(random_);
+    rate_ = kept_ * rate_ + share * random_.normalVector();
+    force_ = kept_ * force_ + share * random_.normalVector();
   }
 
   MountShake shake_;
@@ -89,13 +84,13 @@ std::vector<ImuSample> simulateDriveImu(const DriveScenario& scenario, std::size
     ImuSample sample;
     sample.time_ns = scenario.start_ns + nanosecondsFrom(sensorTime_s(imu, time_s));
     sample.angular_rate_rad_s = now.rate_rad_s + shaken.rate_rad_s + imu.gyroscope_bias_rad_s +
-                                gyroscope_walked + imu.gyroscope_density * root_rate * normalVector(random);
+                                gyroscope_walked + imu.gyroscope_density * root_rate * random.normalVector();
     sample.specific_force_m_s2 = now.force_m_s2 + shaken.force_m_s2 + imu.accelerometer_bias_m_s2 +
                                  accelerometer_walked +
-                                 imu.accelerometer_density * root_rate * normalVector(random);
+                                 imu.accelerometer_density * root_rate * random.normalVector();
     samples.push_back(sample);
-    gyroscope_walked += imu.gyroscope_walk / root_rate * normalVector(random);
-    accelerometer_walked += imu.accelerometer_walk / root_rate * normalVector(random);
+    gyroscope_walked += imu.gyroscope_walk / root_rate * random.normalVector();
+    accelerometer_walked += imu.accelerometer_walk / root_rate * random.normalVector();
   }
   spoil(scenario, index, samples);
   return samples;
@@ -112,9 +107,9 @@ std::string driveTrajectoryCsv(const DriveScenario& scenario) {
     const double time_s = static_cast<double>(k) / scenario.trajectory_hz;
     const MotionState state = motion.at(time_s);
     const Eigen::Vector3d p =
-        state.world_from_body.translation_m + scenario.trajectory_noise_m * normalVector(random);
+        state.world_from_body.translation_m + scenario.trajectory_noise_m * random.normalVector();
     const Eigen::Quaterniond q =
-        state.world_from_body.rotation * quaternionExp(scenario.trajectory_noise_rad * normalVector(random));
+        state.world_from_body.rotation * quaternionExp(scenario.trajectory_noise_rad * random.normalVector());
     fmt::format_to(std::back_inserter(text), "{:.6f},{:.7f},{:.7f},{:.7f},{:.9f},{:.9f},{:.9f},{:.9f}\n",
                    time_s, p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
   }

@@ -1,5 +1,6 @@
 #include "core/synthetic/hand_motion.h"
 
+#include "core/numerics/angles.h"
 #include "core/synthetic/random.h"
 
 #include <algorithm>
@@ -9,10 +10,10 @@
 namespace evical {
 namespace {
 
-constexpr double kRamp_s = 0.25;  // from full speed to none
+constexpr double kStopRamp_s = 0.25;  // from full speed to none
 
 // From 0 to 1 over u = 0 to 1, its derivative, and its integral from 0; flat to the second order at both ends.
-double smoothStep(double u) {
+double smoothFraction(double u) {
   return u * u * u * (10.0 + u * (6.0 * u - 15.0));
 }
 double smoothStepSlope(double u) {
@@ -47,14 +48,15 @@ MotionValue Jerk::at(double time_s) const {
 // Each period ends with a ramp down, a stop, and a ramp up.
 MotionValue motionTime(const HandModel& hand, double time_s) {
   if (hand.stop_every_s <= 0.0) return {time_s, 1.0, 0.0};
-  const double period_s = hand.stop_every_s, moving_s = period_s - hand.stop_s - 2.0 * kRamp_s;
+  const double period_s = hand.stop_every_s, moving_s = period_s - hand.stop_s - 2.0 * kStopRamp_s;
   const double period = std::floor(time_s / period_s), since_s = time_s - period * period_s;
-  const double before_s = period * (moving_s + kRamp_s);  // two ramps of half the speed on average
-  const double down = std::clamp((since_s - moving_s) / kRamp_s, 0.0, 1.0);
-  const double up = std::clamp((since_s - (period_s - kRamp_s)) / kRamp_s, 0.0, 1.0);
+  const double before_s = period * (moving_s + kStopRamp_s);  // two ramps of half the speed on average
+  const double down = std::clamp((since_s - moving_s) / kStopRamp_s, 0.0, 1.0);
+  const double up = std::clamp((since_s - (period_s - kStopRamp_s)) / kStopRamp_s, 0.0, 1.0);
   return {before_s + std::min(since_s, moving_s) +
-              kRamp_s * (down - smoothStepIntegral(down) + smoothStepIntegral(up)),
-          1.0 - smoothStep(down) + smoothStep(up), (smoothStepSlope(up) - smoothStepSlope(down)) / kRamp_s};
+              kStopRamp_s * (down - smoothStepIntegral(down) + smoothStepIntegral(up)),
+          1.0 - smoothFraction(down) + smoothFraction(up),
+          (smoothStepSlope(up) - smoothStepSlope(down)) / kStopRamp_s};
 }
 
 MotionValue throughTime(const MotionValue& value, const MotionValue& time) {
@@ -66,7 +68,7 @@ std::vector<MotionSinusoid> tremor(double sigma, std::uint64_t seed, std::size_t
   if (sigma <= 0.0) return {};
   constexpr std::uint64_t kStream = 0x210;
   constexpr int kSinusoids = 3;
-  constexpr double kLowest_hz = 8.0, kHighest_hz = 12.0, kTwoPi = 2.0 * std::numbers::pi;
+  constexpr double kLowest_hz = 8.0, kHighest_hz = 12.0;
   Random random(seed, kStream, quantity);
   std::vector<MotionSinusoid> all;
   for (int k = 0; k < kSinusoids; ++k) {

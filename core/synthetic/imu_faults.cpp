@@ -11,21 +11,16 @@ namespace {
 
 constexpr std::int64_t kPacket_ns = 50'000'000;
 
-Eigen::Vector3d normalVector(Random& random) {
-  const double x = random.normal(), y = random.normal(), z = random.normal();
-  return {x, y, z};
-}
-
 // Gauss-Markov: a first-order filter over white noise.
 void wander(const SimulatedImu& imu, Random random, std::vector<ImuSample>& samples) {
   const ImuFaults& faults = imu.faults;
   if (faults.gyroscope_wander_rad_s <= 0.0 && faults.accelerometer_wander_m_s2 <= 0.0) return;
   const double keeps = std::exp(-1.0 / (faults.wander_time_s * imu.rate_hz));
   const double renews = std::sqrt(1.0 - keeps * keeps);
-  Eigen::Vector3d rate = normalVector(random), force = normalVector(random);
+  Eigen::Vector3d rate = random.normalVector(), force = random.normalVector();
   for (ImuSample& sample : samples) {
-    rate = (keeps * rate + renews * normalVector(random)).eval();
-    force = (keeps * force + renews * normalVector(random)).eval();
+    rate = (keeps * rate + renews * random.normalVector()).eval();
+    force = (keeps * force + renews * random.normalVector()).eval();
     sample.angular_rate_rad_s += faults.gyroscope_wander_rad_s * rate;
     sample.specific_force_m_s2 += faults.accelerometer_wander_m_s2 * force;
   }
@@ -47,7 +42,7 @@ void addSpikes(int count, Random random, std::vector<ImuSample>& samples) {
   constexpr double kForce_m_s2 = 150.0, kRate_rad_s = 30.0;
   for (int k = 0; k < count; ++k) {
     ImuSample& sample = samples[anyOf(samples, random)];
-    const Eigen::Vector3d direction = normalVector(random).normalized();
+    const Eigen::Vector3d direction = random.normalVector().normalized();
     sample.specific_force_m_s2 += kForce_m_s2 * direction;
     sample.angular_rate_rad_s += kRate_rad_s * direction;
   }

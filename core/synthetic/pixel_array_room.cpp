@@ -7,7 +7,7 @@
 namespace evical {
 namespace {
 
-constexpr int kMostSteps = 256;  // in one stretch
+constexpr int kMostRoomSteps = 256;  // in one stretch
 
 }  // namespace
 
@@ -42,7 +42,7 @@ void PixelArray::beginInRoom(const std::function<RigidTransform(double)>& world_
       travel_px = std::max(travel_px, view.travel_px);
     }
   int steps = leastSteps(end_s_ - begin_s_);
-  while (steps < kMostSteps && static_cast<float>(steps) * step_travel_px_ < travel_px) steps *= 2;
+  while (steps < kMostRoomSteps && static_cast<float>(steps) * step_travel_px_ < travel_px) steps *= 2;
   room_instants_.clear();
   for (int k = 0; k <= steps; ++k) room_instants_.push_back(instantAt(static_cast<double>(k) / steps));
 }

@@ -3,6 +3,8 @@
 // S. Vigna, "splitmix64" (public domain algorithm).
 #pragma once
 
+#include <Eigen/Core>
+
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -19,6 +21,10 @@ class Random {
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }  // [0, 1)
   double normal() {
     return std::sqrt(-2.0 * std::log(1.0 - uniform())) * std::cos(2.0 * std::numbers::pi * uniform());
+  }
+  Eigen::Vector3d normalVector() {
+    const double x = normal(), y = normal(), z = normal();
+    return {x, y, z};
   }
   double exponential(double mean) { return -mean * std::log(1.0 - uniform()); }
 

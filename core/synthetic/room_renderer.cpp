@@ -15,11 +15,6 @@ namespace {
 constexpr int kBlurs = 5;
 constexpr double kSharpest_texels = 0.5;
 
-// The optics' point spread, and the pixel's own area: a square of side 1 has the variance 1/12.
-double effectiveBlur_px(const EventPixelModel& pixel) {
-  return std::sqrt(pixel.blur_px * pixel.blur_px + 1.0 / 12.0);
-}
-
 // Of a step that a Gaussian blurs, nearly: a cubic of as much variance, 0 to 1 within so many sigmas to either side.
 constexpr float kStepReach = 2.236f;
 
@@ -40,7 +35,7 @@ Eigen::Matrix3f sideFromRay(const RoomSide& side, const RigidTransform& camera_f
 RoomRenderer::RoomRenderer(const Scenario& scenario, std::size_t index)
     : room_(furnishedRoom(scenario)),
       width_px_(scenario.cameras[index].intrinsics.resolution_px.width_px),
-      blur_px_(static_cast<float>(effectiveBlur_px(scenario.cameras[index].pixel))),
+      blur_px_(static_cast<float>(scenario.cameras[index].pixel.effectiveBlur_px())),
       texels_per_m_(static_cast<float>(1.0 / scenario.room.texel_m)),
       focal_px_(static_cast<float>(idealFocalLength_px(scenario.cameras[index].intrinsics).mean())),
       sharpest_texels_(kSharpest_texels) {

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -40,6 +41,9 @@ struct EventPixelModel {
   // Of the arbiter: events wait for their turn, and are stamped at it; those that would wait longer are lost.
   double readout_rate_hz = 0.0;  // 0: without limit
   double longest_wait_s = 1e-3;
+
+  // Sigma of the image's blur: the optics' point spread with the pixel's area.
+  double effectiveBlur_px() const { return std::sqrt(blur_px * blur_px + 1.0 / 12.0); }
 
   // By how much an event's stamp is late for a slow edge: latency, the low-pass filter's group
   // delay, and the jitter's mean.

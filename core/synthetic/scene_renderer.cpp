@@ -14,11 +14,6 @@ namespace {
 
 constexpr int kEdgeSteps = 512;  // of the tabulated error function
 
-// The optics' point spread, and the pixel's own area: a square of side 1 has the variance 1/12.
-double effectiveBlur_px(const EventPixelModel& pixel) {
-  return std::sqrt(pixel.blur_px * pixel.blur_px + 1.0 / 12.0);
-}
-
 // Texels of the clutter a pixel, at the motion's mean distance.
 double texelsPerPixel(const Scenario& scenario) {
   constexpr double kTexelsOfDetail = 2.0;
@@ -29,7 +24,7 @@ ClutterTextureOptions textureOptions(const Scenario& scenario, std::size_t camer
   // In a room this picture is not seen, and an even one costs nothing.
   const double contrast = scenario.room.isThere() ? 0.0 : scenario.scene.clutter_contrast;
   return {scenario.seed, contrast, scenario.scene.clutter_object_share,
-          effectiveBlur_px(scenario.cameras[camera].pixel) * texelsPerPixel(scenario)};
+          scenario.cameras[camera].pixel.effectiveBlur_px() * texelsPerPixel(scenario)};
 }
 
 // The matrix's largest singular value.
@@ -56,7 +51,7 @@ SceneRenderer::SceneRenderer(const Scenario& scenario, std::size_t index)
       is_visited_(scene_.gloss.strength > 0.0 || scene_.hand.every_s > 0.0 || scene_.people.every_s > 0.0),
       width_px_(scenario.cameras[index].intrinsics.resolution_px.width_px),
       height_px_(scenario.cameras[index].intrinsics.resolution_px.height_px),
-      blur_px_(static_cast<float>(effectiveBlur_px(scenario.cameras[index].pixel))),
+      blur_px_(static_cast<float>(scenario.cameras[index].pixel.effectiveBlur_px())),
       texture_(textureOptions(scenario, index)) {
   const CameraIntrinsics& camera = scenario.cameras[index].intrinsics;
   const bool dark = board_.circles == CircleShade::Dark;

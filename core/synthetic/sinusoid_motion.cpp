@@ -1,4 +1,5 @@
 #include "core/synthetic/sinusoid_motion.h"
+#include "core/numerics/angles.h"
 #include "core/synthetic/scenario_boards.h"
 
 #include "core/geometry/camera_model.h"
@@ -12,7 +13,6 @@
 namespace evical {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kWalkSpread = 3.0;  // of its frequencies, about one in its period
 
 // Whatever the standard library: the same numbers from the same seed.

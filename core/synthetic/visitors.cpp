@@ -1,5 +1,6 @@
 #include "core/synthetic/visitors.h"
 
+#include "core/numerics/angles.h"
 #include "core/synthetic/random.h"
 
 #include <Eigen/Geometry>
@@ -9,8 +10,6 @@
 
 namespace evical {
 namespace {
-
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 Eigen::Vector2d middle_m(const Scenario& scenario) {
   return 0.5 * scenario.board.extent_m();

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <QByteArray>
+#include <QRegularExpression>
 #include <QString>
 #include <QStringList>
+#include <QtTest>
 
 #include <functional>
 
@@ -42,3 +44,15 @@ void writeFile(const QString& path, const QByteArray& content);
 QStringList filesIn(const QString& folder);
 
 }  // namespace evical::test
+
+// With what the program has printed, if it ended otherwise.
+#define VERIFY_OUTCOME(outcome, code)                                                                \
+  QVERIFY2((outcome).exit_code == (code),                                                            \
+           qPrintable(QStringLiteral("exit code %1\n").arg((outcome).exit_code) + (outcome).output + \
+                      (outcome).errors))
+// The last line on stderr.
+#define VERIFY_SAYS(outcome, part) \
+  QVERIFY2((outcome).reason().contains(QRegularExpression(part)), qPrintable("reason: " + (outcome).reason()))
+// Any text.
+#define VERIFY_TEXT(text, part) \
+  QVERIFY2(QString(text).contains(QRegularExpression(part)), qPrintable("it says: " + QString(text)))

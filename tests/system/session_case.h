@@ -69,12 +69,6 @@ class SessionCase {
 
 }  // namespace evical::test
 
-#define VERIFY_OUTCOME(outcome, code)     \
-  QVERIFY2((outcome).exit_code == (code), \
-           qPrintable(QStringLiteral("exit code %1\n").arg((outcome).exit_code) + (outcome).errors))
-#define VERIFY_SAYS(outcome, part) \
-  QVERIFY2((outcome).reason().contains(QRegularExpression(part)), qPrintable("reason: " + (outcome).reason()))
-
 // Rejected before anything is written.
 #define VERIFY_REJECTED(test, outcome, part) \
   VERIFY_OUTCOME(outcome, 2);                \

@@ -12,12 +12,6 @@ using namespace evical::test;
 
 namespace {
 
-#define VERIFY_OUTCOME(outcome, code)     \
-  QVERIFY2((outcome).exit_code == (code), \
-           qPrintable(QStringLiteral("exit code %1\n").arg((outcome).exit_code) + (outcome).errors))
-#define VERIFY_SAYS(outcome, part) \
-  QVERIFY2((outcome).reason().contains(QRegularExpression(part)), qPrintable("reason: " + (outcome).reason()))
-
 // A short recording tells little: what matters here is that much.
 const QStringList kCoarse = {
     "--set", "check.matters_rotation_deg=5",    "--set", "check.matters_translation_mm=500",

@@ -13,15 +13,7 @@
 
 using namespace evical::test;
 
-namespace {
-
-#define VERIFY_OUTCOME(outcome, code)     \
-  QVERIFY2((outcome).exit_code == (code), \
-           qPrintable(QStringLiteral("exit code %1\n").arg((outcome).exit_code) + (outcome).errors))
-#define VERIFY_SAYS(outcome, part) \
-  QVERIFY2((outcome).reason().contains(QRegularExpression(part)), qPrintable("reason: " + (outcome).reason()))
-
-}  // namespace
+namespace {}  // namespace
 
 class TestRepeatCommand : public QObject {
   Q_OBJECT

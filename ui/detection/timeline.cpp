@@ -16,7 +16,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr double kZoomStep = 1.3;
+constexpr double kTimeZoomStep = 1.3;
 constexpr double kShortestVisible_s = 0.05;
 constexpr double kBlindStep_s = 0.01;
 
@@ -205,7 +205,7 @@ void Timeline::wheelEvent(QWheelEvent* event) {
     const int steps = turn.y() != 0 ? turn.y() : turn.x();
     scrollBy(-0.1 * length_s * steps / 120.0);
   } else {
-    zoomBy(std::pow(kZoomStep, turn.y() / 120.0), timeOf(event->position().x()));
+    zoomBy(std::pow(kTimeZoomStep, turn.y() / 120.0), timeOf(event->position().x()));
   }
   event->accept();
 }
@@ -251,10 +251,10 @@ void Timeline::keyPressEvent(QKeyEvent* event) {
       return;
     case Qt::Key_Plus:
     case Qt::Key_Equal:
-      zoomBy(kZoomStep, time_s_);
+      zoomBy(kTimeZoomStep, time_s_);
       return;
     case Qt::Key_Minus:
-      zoomBy(1.0 / kZoomStep, time_s_);
+      zoomBy(1.0 / kTimeZoomStep, time_s_);
       return;
     default:
       QWidget::keyPressEvent(event);

@@ -14,7 +14,7 @@ namespace evical::ui {
 namespace {
 
 constexpr double kHeader_px = 25.0, kFooter_px = 18.0, kTicks_px = 14.0, kSide_px = 62.0;
-constexpr double kFoundHeight = 0.7;  // of the row
+constexpr double kFoundMarkHeight = 0.7;  // of the row
 
 QString rateText(double events_s) {
   if (events_s >= 1e6) return QStringLiteral("%1 Mev/s").arg(1e-6 * events_s, 0, 'g', 3);
@@ -248,7 +248,7 @@ void Timeline::paintTicks(QPainter& painter) const {
     if (sum == 0) continue;
     double bottom = area.bottom();
     const bool missed = columns[column][static_cast<std::size_t>(WindowClass::Missed)] > 0;
-    const double whole = area.height() * (missed ? 1.0 : kFoundHeight);
+    const double whole = area.height() * (missed ? 1.0 : kFoundMarkHeight);
     for (std::size_t k = 0; k < kWindowClassCount; ++k) {
       const double height = whole * columns[column][k] / sum;
       painter.fillRect(QRectF(area.left() + static_cast<double>(column), bottom - height, 1.0, height),

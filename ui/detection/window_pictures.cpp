@@ -33,7 +33,7 @@ int mixed(int from, int to, double share) {
   return static_cast<int>(from + share * (to - from));
 }
 
-QRgb colourOf(const Cell& cell, double usual, const SurfaceStyle& style) {
+QRgb pictureColour(const Cell& cell, double usual, const SurfaceStyle& style) {
   const double brighter = static_cast<double>(cell.brighter) / cell.sum();
   const double strength = cell.sum() / (cell.sum() + kStrongShare * usual);
   const auto channel = [&](int (*of)(QRgb)) {
@@ -55,7 +55,7 @@ QImage painted(const std::vector<Cell>& cells, const QSize& size_px, const Surfa
   for (int y = 0; y < size_px.height(); ++y) {
     auto* const line = reinterpret_cast<QRgb*>(image.scanLine(y));
     for (int x = 0; x < size_px.width(); ++x, ++cell)
-      if (cell->sum() > 0) line[x] = colourOf(*cell, usual, style);
+      if (cell->sum() > 0) line[x] = pictureColour(*cell, usual, style);
   }
   return image;
 }

@@ -15,19 +15,19 @@ constexpr int kPositions = 200;
 constexpr double kPowersFrom = 50.0;  // of the maximum to the minimum
 constexpr int kDigits = 3;
 
-QString text(const std::string& utf8) {
+QString sliderText(const std::string& utf8) {
   return QString::fromStdString(utf8);
 }
 
 bool isWhole(const std::string& number) {
   bool is_whole = false;
-  QLocale::c().toLongLong(text(number), &is_whole);
+  QLocale::c().toLongLong(sliderText(number), &is_whole);
   return is_whole;
 }
 
 bool isNumber(const std::string& number) {
   bool is_number = false;
-  return std::isfinite(QLocale::c().toDouble(text(number), &is_number)) && is_number;
+  return std::isfinite(QLocale::c().toDouble(sliderText(number), &is_number)) && is_number;
 }
 
 }  // namespace
@@ -38,8 +38,8 @@ bool OptionSlider::fits(const OptionRow& row) {
 
 OptionSlider::OptionSlider(const OptionRow& row, QWidget* parent)
     : QSlider(Qt::Horizontal, parent),
-      minimum_(QLocale::c().toDouble(text(row.minimum))),
-      maximum_(QLocale::c().toDouble(text(row.maximum))),
+      minimum_(QLocale::c().toDouble(sliderText(row.minimum))),
+      maximum_(QLocale::c().toDouble(sliderText(row.maximum))),
       whole_(isWhole(row.minimum) && isWhole(row.maximum) && isWhole(row.default_value)),
       powers_(minimum_ > 0.0 && maximum_ > kPowersFrom * minimum_) {
   setRange(0, whole_ ? static_cast<int>(std::min<double>(kPositions, maximum_ - minimum_)) : kPositions);

@@ -23,7 +23,7 @@ std::vector<JobStage> jobStages(RunStart start) {
   return stages;
 }
 
-QString textOf(std::string_view text) {
+QString stepText(std::string_view text) {
   return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
 }
 
@@ -46,7 +46,7 @@ class CalibrationJob::LiveView final : public CalibrationObserver {
   }
   void detectionDone(const CalibrationInput&) override { detection_done = true; }
   void initialisationStepDone(std::string_view step, std::string_view result, double duration_s) override {
-    notes_.push_back({textOf(step), textOf(result), duration_s});
+    notes_.push_back({stepText(step), stepText(result), duration_s});
     notes.put(std::make_shared<Notes>(notes_));
   }
   void iterationDone(const IterationRecord& iteration, const CalibrationState& state) override {

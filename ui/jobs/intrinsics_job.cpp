@@ -13,7 +13,7 @@ namespace evical::ui {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr auto kBetweenDetections = std::chrono::milliseconds(150);
+constexpr auto kBetweenLensDetections = std::chrono::milliseconds(150);
 
 // Of an everyday recording's time. Nobody knows how many passes there will be: most lenses settle in one or two.
 std::vector<JobStage> lensStages(int most_passes) {
@@ -84,7 +84,7 @@ class IntrinsicsJob::LiveView final : public CalibrationObserver {
   }
   void windowsDetected(std::size_t, const BoardObservations& so_far) override {
     if (Clock::now() < next_copy_) return;
-    next_copy_ = Clock::now() + kBetweenDetections;
+    next_copy_ = Clock::now() + kBetweenLensDetections;
     detections_.at(camera_) = so_far;
     detections.put(std::make_shared<LiveDetections>(detections_));
   }

@@ -11,7 +11,7 @@ namespace evical::ui {
 namespace {
 
 // The lens is given by the old result; the second run starts from what the first one detected.
-std::vector<JobStage> checkStages() {
+std::vector<JobStage> resultCheckStages() {
   constexpr double kTogether = 0.4;  // of the first run's time
   std::vector<JobStage> stages;
   for (const StageRow& row : kCalibrationStages)
@@ -38,7 +38,7 @@ bool ResultCheckJob::start(std::function<CheckInput()> read, const QString& vers
     found->run = checkCalibration(found->input, context);
     found->run.check.version = version;
   };
-  if (!runner_.start(tr("Check the result"), checkStages(), job)) {
+  if (!runner_.start(tr("Check the result"), resultCheckStages(), job)) {
     found_.reset();
     return false;
   }

@@ -13,9 +13,9 @@ namespace {
 
 using Kind = PlotPanel::SeriesKind;
 
-constexpr PlotColour kAxisColours[] = {PlotColour::X, PlotColour::Y, PlotColour::Z};
-const QString kAxisNames[] = {"x", "y", "z"};
-constexpr double kMillisecondsPerSecond = 1e3;
+constexpr PlotColour kSignalColours[] = {PlotColour::X, PlotColour::Y, PlotColour::Z};
+const QString kSignalNames[] = {"x", "y", "z"};
+constexpr double kSignalMsPerS = 1e3;
 constexpr double kNineteenOfTwenty_sigmas = 1.96;
 
 // After a panel's own series: what the noise as given would leave.
@@ -26,7 +26,8 @@ void addBounds(PlotPanel& panel) {
 
 void addAxes(PlotPanel& panel) {
   for (std::size_t axis = 0; axis < 3; ++axis)
-    panel.addSeries(Kind::Line, {.name = kAxisNames[axis], .colour = kAxisColours[axis], .width_px = 1.4});
+    panel.addSeries(Kind::Line,
+                    {.name = kSignalNames[axis], .colour = kSignalColours[axis], .width_px = 1.4});
   addBounds(panel);
 }
 
@@ -59,8 +60,8 @@ void SignalTab::lookAt(int look) {
 void SignalTab::makeSignal(const QString& name) {
   signal_ = timePanel(name, unit_, false);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    signal_->addSeries(Kind::Line, {.name = kAxisNames[axis] + tr(" measured"),
-                                    .colour = kAxisColours[axis],
+    signal_->addSeries(Kind::Line, {.name = kSignalNames[axis] + tr(" measured"),
+                                    .colour = kSignalColours[axis],
                                     .width_px = 5.0,
                                     .opacity = 0.3,
                                     .in_legend = false});
@@ -68,8 +69,8 @@ void SignalTab::makeSignal(const QString& name) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const PlotPanel::Series predicted = signal_->addSeries(
         Kind::Line,
-        {.name = kAxisNames[axis] + tr(" predicted"), .colour = kAxisColours[axis], .width_px = 1.2});
-    signal_->setLegendText(predicted, kAxisNames[axis]);
+        {.name = kSignalNames[axis] + tr(" predicted"), .colour = kSignalColours[axis], .width_px = 1.2});
+    signal_->setLegendText(predicted, kSignalNames[axis]);
   }
   signal_->setNote(tr("broad: measured, thin: predicted by the trajectory"));
 }
@@ -81,8 +82,10 @@ QWidget* SignalTab::makeResiduals() {
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(4);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    PlotPanel* const row = timePanel(tr("Measured - predicted, %1").arg(kAxisNames[axis]), unit_, axis == 2);
-    row->addSeries(Kind::Line, {.name = kAxisNames[axis], .colour = kAxisColours[axis], .in_legend = false});
+    PlotPanel* const row =
+        timePanel(tr("Measured - predicted, %1").arg(kSignalNames[axis]), unit_, axis == 2);
+    row->addSeries(Kind::Line,
+                   {.name = kSignalNames[axis], .colour = kSignalColours[axis], .in_legend = false});
     addBounds(*row);
     layout->addWidget(row, axis == 2 ? 6 : 5);
     residuals_[axis] = row;
@@ -133,7 +136,7 @@ void SignalTab::setLines(const SignalLines& lines) {
 void SignalTab::showStatistics(const SignalLines& lines) {
   std::vector<double> apart_ms;
   for (int lag = 0; lag <= kShownLags; ++lag)
-    apart_ms.push_back(lines.rate_hz > 0.0 ? kMillisecondsPerSecond * lag / lines.rate_hz : 0.0);
+    apart_ms.push_back(lines.rate_hz > 0.0 ? kSignalMsPerS * lag / lines.rate_hz : 0.0);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const AxisStatistics& own = lines.statistics[axis];
     spectrum_->setData(axis, own.spectrum.frequency_hz, own.spectrum.density);

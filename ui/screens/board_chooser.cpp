@@ -12,7 +12,7 @@ namespace evical::ui {
 namespace {
 
 // A field whose text is not taken yet gives it before a click here does something: so it must lose the focus.
-QToolButton* button(const char* icon_name, const QString& tip, QWidget* parent) {
+QToolButton* toolButton(const char* icon_name, const QString& tip, QWidget* parent) {
   auto* const made = new QToolButton(parent);
   made->setIcon(icon(icon_name));
   made->setFocusPolicy(Qt::StrongFocus);
@@ -31,9 +31,9 @@ QString addTip() {
 BoardChooser::BoardChooser(QWidget* parent)
     : QWidget(parent),
       tabs_(new QTabBar(this)),
-      add_(button("add", addTip(), this)),
-      remove_(
-          button("remove", tr("Remove this board; cameras that see it see the world's board then"), this)) {
+      add_(toolButton("add", addTip(), this)),
+      remove_(toolButton("remove", tr("Remove this board; cameras that see it see the world's board then"),
+                         this)) {
   tabs_->setObjectName("boards");
   add_->setObjectName("add_board");
   remove_->setObjectName("remove_board");

@@ -11,7 +11,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr double kMargin_px = 34.0;  // for axes and measures
+constexpr double kMeasureMargin_px = 34.0;  // for axes and measures
 constexpr QColor kInk(0x22, 0x22, 0x22);
 
 // Corners are between dark squares on bright paper, whatever circles once were.
@@ -25,7 +25,7 @@ double sheetBeyond_m(const Board& board) {
   return board.printBeyond_m() + kRim * board.spacing_m;
 }
 
-QString millimetres(double length_m) {
+QString boardMillimetres(double length_m) {
   return QObject::tr("%1 mm").arg(1e3 * length_m, 0, 'g', 4);
 }
 
@@ -62,8 +62,8 @@ void BoardDrawing::paintEvent(QPaintEvent*) {
   const Eigen::Vector2d extent_m = board_.extent_m();
   const double around_m = sheetBeyond_m(board_);
   const double width_m = extent_m.x() + 2.0 * around_m, height_m = extent_m.y() + 2.0 * around_m;
-  const double px_per_m =
-      std::min((width() - 2.0 * kMargin_px) / width_m, (height() - 2.0 * kMargin_px) / height_m);
+  const double px_per_m = std::min((width() - 2.0 * kMeasureMargin_px) / width_m,
+                                   (height() - 2.0 * kMeasureMargin_px) / height_m);
   const QPointF corner(0.5 * (width() - width_m * px_per_m) + around_m * px_per_m,
                        0.5 * (height() - height_m * px_per_m) + around_m * px_per_m);
   const QPointF origin = corner - px_per_m * QPointF(board_.corner_m().x(), board_.corner_m().y());
@@ -108,16 +108,17 @@ void BoardDrawing::paintMeasures(QPainter& painter, double px_per_m, QPointF ori
   const QPointF begin(begin_px, above_px), end(begin_px + px_per_m * neighbour_m.x(), above_px);
   painter.drawLine(begin, end);
   for (const QPointF& tick : {begin, end}) painter.drawLine(tick - QPointF(0, 3), tick + QPointF(0, 3));
-  painter.drawText(QPointF(begin.x(), above_px - 7.0), millimetres(neighbour_m.x()));
+  painter.drawText(QPointF(begin.x(), above_px - 7.0), boardMillimetres(neighbour_m.x()));
 
   painter.setPen(theme().faint_text);
   const double below_px = origin.y() + px_per_m * last_m.y() + edge_px + 4.0;
   painter.drawText(
-      QRectF(0.0, below_px, width(), kMargin_px), Qt::AlignHCenter | Qt::AlignTop | Qt::TextWordWrap,
-      board_.hasCircles()
-          ? tr("%1 circles, diameter %2").arg(board_.pointCount()).arg(millimetres(2.0 * board_.radius_m))
+      QRectF(0.0, below_px, width(), kMeasureMargin_px), Qt::AlignHCenter | Qt::AlignTop | Qt::TextWordWrap,
+      board_.hasCircles() ? tr("%1 circles, diameter %2")
+                                .arg(board_.pointCount())
+                                .arg(boardMillimetres(2.0 * board_.radius_m))
       : board_.type == BoardType::AprilGrid
-          ? tr("%1 tags of %2").arg(board_.rows * board_.cols).arg(millimetres(board_.tag_size_m))
+          ? tr("%1 tags of %2").arg(board_.rows * board_.cols).arg(boardMillimetres(board_.tag_size_m))
           : tr(board_.hasPattern() ? "%1 inner corners" : "%1 points").arg(board_.pointCount()));
 }
 

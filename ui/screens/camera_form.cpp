@@ -26,7 +26,7 @@ constexpr int kNotKnown =
     static_cast<int>(kCameraModelNames.size());  // in the list of models, after all of them
 constexpr double kMostPixels = 30'000.0, kMostDistortion = 100.0;
 
-QLabel* problemLabel(QWidget* parent) {
+QLabel* hiddenProblemLabel(QWidget* parent) {
   auto* const label = new QLabel(parent);
   label->setProperty("role", "problem");
   label->setWordWrap(true);
@@ -58,8 +58,8 @@ CameraForm::CameraForm(QWidget* parent)
       centre_y_px_(new NumberField(-kMostPixels, kMostPixels, this)),
       coefficient_names_(new QLabel(this)),
       take_over_(new QPushButton(tr("Take over what the last run found"), this)),
-      file_problem_(problemLabel(this)),
-      problem_(problemLabel(this)) {
+      file_problem_(hiddenProblemLabel(this)),
+      problem_(hiddenProblemLabel(this)) {
   for (int model = 0; model < kNotKnown; ++model)
     model_->addItem(QString::fromUtf8(cameraModelTitle(static_cast<CameraModel>(model))));
   model_->addItem(tr("Not known: from this recording"));

@@ -21,7 +21,7 @@
 namespace evical::ui {
 namespace {
 
-QLabel* label(const QString& text, const char* role, QWidget* parent) {
+QLabel* cardLabel(const QString& text, const char* role, QWidget* parent) {
   auto* const made = new QLabel(text, parent);
   made->setProperty("role", role);
   made->setWordWrap(true);
@@ -42,9 +42,9 @@ bool hasSeveralSensors(const RecordingAssessment& assessment) {
 CheckCard::CheckCard(QWidget* parent)
     : QFrame(parent),
       mark_(new LightMark(this)),
-      summary_(label({}, "heading", this)),
-      advice_(label({}, "hint", this)),
-      board_(label({}, "hint", this)),
+      summary_(cardLabel({}, "heading", this)),
+      advice_(cardLabel({}, "hint", this)),
+      board_(cardLabel({}, "hint", this)),
       progress_(new QProgressBar(this)),
       more_(new QToolButton(this)),
       details_(new QScrollArea(this)),
@@ -121,7 +121,7 @@ QWidget* CheckCard::makeFollowLine() {
   connect(follow_, &QCheckBox::toggled, this, &CheckCard::followingWanted);
   auto* const layout = new QHBoxLayout(line);
   layout->setContentsMargins(0, 0, 0, 0);
-  layout->addWidget(label(tr("The recording is growing."), "hint", line));
+  layout->addWidget(cardLabel(tr("The recording is growing."), "hint", line));
   layout->addWidget(follow_);
   layout->addStretch(1);
   line->hide();
@@ -227,10 +227,10 @@ void CheckCard::showLights(const RecordingAssessment& assessment) {
     mark->setLight(one.light);
     const QString sensor = QString::fromStdString(one.sensor);
     const QString title = titleOf(one.thing);
-    auto* const name =
-        label(named && !sensor.isEmpty() ? tr("%1, %2").arg(title, sensor) : title, "", details_->widget());
-    auto* const measured = label(QString::fromStdString(one.measured), "", details_->widget());
-    auto* const advice = label(sentence(QString::fromStdString(one.advice)), "hint", details_->widget());
+    auto* const name = cardLabel(named && !sensor.isEmpty() ? tr("%1, %2").arg(title, sensor) : title, "",
+                                 details_->widget());
+    auto* const measured = cardLabel(QString::fromStdString(one.measured), "", details_->widget());
+    auto* const advice = cardLabel(sentence(QString::fromStdString(one.advice)), "hint", details_->widget());
     name->setWordWrap(false);
     measured->setWordWrap(one.thing == AssessedThing::Obstacle);
     measured->setAccessibleName(tr("%1: %2, %3").arg(title, measured->text(), lightWord(one.light)));

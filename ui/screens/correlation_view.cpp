@@ -20,7 +20,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr int kScale_px = 34;  // the colour scale and its numbers, below
+constexpr int kColourScale_px = 34;  // the colour scale and its numbers, below
 
 QColor mixed(const QColor& a, const QColor& b, double share_of_b) {
   const auto mix = [&](int from, int to) { return static_cast<int>(from + share_of_b * (to - from)); };
@@ -80,7 +80,8 @@ double CorrelationView::longestLabel_px() const {
 
 double CorrelationView::cellSize_px() const {
   const auto count = static_cast<double>(std::max<Eigen::Index>(1, correlation_.rows()));
-  return std::max(1.0, std::min(width() - origin().x() - 4.0, height() - origin().y() - kScale_px) / count);
+  return std::max(1.0,
+                  std::min(width() - origin().x() - 4.0, height() - origin().y() - kColourScale_px) / count);
 }
 
 // Names stand left of the rows and, upright, above the columns.

@@ -14,9 +14,9 @@
 namespace evical::ui {
 namespace {
 
-constexpr double kScale_px = 40.0, kBar_px = 10.0, kMargin_px = 4.0;
+constexpr double kMapScale_px = 40.0, kBar_px = 10.0, kMapMargin_px = 4.0;
 
-QColor mixed(const QColor& a, const QColor& b, double share_of_b) {
+QColor mixedColour(const QColor& a, const QColor& b, double share_of_b) {
   const auto mix = [&](int from, int to) { return static_cast<int>(from + share_of_b * (to - from)); };
   return {mix(a.red(), b.red()), mix(a.green(), b.green()), mix(a.blue(), b.blue())};
 }
@@ -37,7 +37,7 @@ void ImageMapView::setCells(ImageMapCells cells) {
 }
 
 QRectF ImageMapView::imageRect() const {
-  const QRectF room = QRectF(rect()).adjusted(kMargin_px, kMargin_px, -kMargin_px, -kScale_px);
+  const QRectF room = QRectF(rect()).adjusted(kMapMargin_px, kMapMargin_px, -kMapMargin_px, -kMapScale_px);
   const Resolution size = cells_.resolution_px;
   if (!size.known()) return room;
   const double scale = std::min(room.width() / size.width_px, room.height() / size.height_px);
@@ -48,7 +48,7 @@ QRectF ImageMapView::imageRect() const {
 // From the panel's colour to one that everybody tells from it, in lightness too.
 QColor ImageMapView::colourOf(double value) const {
   const QColor& end = cells_.more_is_better ? theme().accent : theme().warning;
-  return mixed(theme().panel, end, 0.06 + 0.94 * std::clamp(value / most_, 0.0, 1.0));
+  return mixedColour(theme().panel, end, 0.06 + 0.94 * std::clamp(value / most_, 0.0, 1.0));
 }
 
 QString ImageMapView::textOf(double value) const {
@@ -91,7 +91,7 @@ void ImageMapView::paintScale(QPainter& painter) const {
   painter.fillRect(bar, gradient);
   painter.drawRect(bar);
   painter.setPen(theme().faint_text);
-  const QRectF text(bar.left(), bar.bottom() + 2.0, bar.width(), kScale_px - kBar_px - 10.0);
+  const QRectF text(bar.left(), bar.bottom() + 2.0, bar.width(), kMapScale_px - kBar_px - 10.0);
   painter.drawText(text, Qt::AlignLeft | Qt::AlignTop, "0");
   if (most_ >= 2.0 || !cells_.unit.isEmpty())
     painter.drawText(text, Qt::AlignHCenter | Qt::AlignTop, textOf(0.5 * most_));

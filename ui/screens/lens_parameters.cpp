@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kPixelNumbers = 4;  // fx fy cx cy; distortion has no unit
 
 // As many decimals as the sigma's second digit.
-QString text(double value, double sigma) {
+QString lensText(double value, double sigma) {
   constexpr int kWithout = 4, kMost = 8;
   const bool known = sigma > 0.0 && std::isfinite(sigma);
   const int decimals =
@@ -28,10 +28,10 @@ QString pixels(double value) {
 }
 
 QString sigmaText(double sigma) {
-  return sigma > 0.0 ? text(sigma, sigma) : QObject::tr("held");
+  return sigma > 0.0 ? lensText(sigma, sigma) : QObject::tr("held");
 }
 
-QString nameOf(std::size_t number, CameraModel model) {
+QString lensNameOf(std::size_t number, CameraModel model) {
   const std::array names = {QObject::tr("Focal length x"), QObject::tr("Focal length y"),
                             QObject::tr("Principal point x"), QObject::tr("Principal point y")};
   if (number < kPixelNumbers) return names[number];
@@ -40,7 +40,7 @@ QString nameOf(std::size_t number, CameraModel model) {
 
 void addDifference(const LensComparison::Number& number, double shown_sigma, LensRow& row) {
   constexpr double kFar = 3.0;
-  row.difference = (number.difference < 0.0 ? "" : "+") + text(number.difference, shown_sigma);
+  row.difference = (number.difference < 0.0 ? "" : "+") + lensText(number.difference, shown_sigma);
   if (!(number.sigma > 0.0)) return;
   const double sigmas = std::abs(number.difference) / number.sigma;
   row.sigmas = QString::number(sigmas, 'f', 1);
@@ -60,8 +60,8 @@ LensGroup numbersOf(const IntrinsicsResult& result, const std::optional<LensComp
   const auto count = kPixelNumbers + static_cast<std::size_t>(distortionCount(lens));
   for (std::size_t k = 0; k < count; ++k) {
     const double sigma = sigmas[static_cast<Eigen::Index>(k)];
-    LensRow row{nameOf(k, lens.model),
-                text(values[k], sigma),
+    LensRow row{lensNameOf(k, lens.model),
+                lensText(values[k], sigma),
                 sigmaText(sigma),
                 k < kPixelNumbers ? "px" : "",
                 {},
@@ -71,7 +71,7 @@ LensGroup numbersOf(const IntrinsicsResult& result, const std::optional<LensComp
   }
   if (result.edge_lead_std_px > 0.0)
     group.rows.push_back({QObject::tr("Edge localisation bias"),
-                          text(result.edge_lead_px, result.edge_lead_std_px),
+                          lensText(result.edge_lead_px, result.edge_lead_std_px),
                           sigmaText(result.edge_lead_std_px),
                           "px",
                           {},

@@ -15,34 +15,36 @@
 namespace evical::ui {
 namespace {
 
-QString text(const std::string& of_core) {
+QString maintainText(const std::string& of_core) {
   return QString::fromStdString(of_core);
 }
 
-QString unitOf(const std::string& unit) {
-  return unit.empty() || unit == "1" ? QString() : " " + text(unit);
+QString unitSuffix(const std::string& unit) {
+  return unit.empty() || unit == "1" ? QString() : " " + maintainText(unit);
 }
 
-QString size(double value, const std::string& unit) {
+QString maintainSize(double value, const std::string& unit) {
   if (!std::isfinite(value)) return QChar(0x2013);
-  return text(html::significant(value, 2)) + unitOf(unit);
+  return maintainText(html::significant(value, 2)) + unitSuffix(unit);
 }
 
 QString sizeWithSigma(double value, double sigma, const std::string& unit) {
   if (!std::isfinite(sigma)) return QChar(0x2013);
-  return QString("%1 %2 %3").arg(text(html::significant(value, 2)), QChar(0xb1), size(sigma, unit));
+  return QString("%1 %2 %3")
+      .arg(maintainText(html::significant(value, 2)), QChar(0xb1), maintainSize(sigma, unit));
 }
 
 QString sensorText(const std::string& sensor, const std::string& against) {
-  return against.empty() ? text(sensor) : QObject::tr("%1 against %2").arg(text(sensor), text(against));
+  return against.empty() ? maintainText(sensor)
+                         : QObject::tr("%1 against %2").arg(maintainText(sensor), maintainText(against));
 }
 
-QString verdictOf(const MaintainedQuantity& quantity) {
+QString maintainVerdictOf(const MaintainedQuantity& quantity) {
   if (quantity.changed) return QObject::tr("changed");
   return quantity.told() ? QObject::tr("unchanged") : QObject::tr("not told");
 }
 
-QIcon iconOf(const MaintainedQuantity& quantity) {
+QIcon maintainIconOf(const MaintainedQuantity& quantity) {
   if (quantity.changed) return icon("error", theme().bad);
   return quantity.told() ? icon("done", theme().good) : icon("warning", theme().warning);
 }
@@ -59,7 +61,7 @@ QString sourceOf(MaintenanceSource source) {
   return QObject::tr("pair");
 }
 
-QString wordsOf(const MaintainedQuantity& quantity) {
+QString maintainWordsOf(const MaintainedQuantity& quantity) {
   if (quantity.changed)
     return QObject::tr(
                "It is further from the old value than chance explains (chi squared %1; %2 is allowed)")
@@ -69,10 +71,10 @@ QString wordsOf(const MaintainedQuantity& quantity) {
   return QObject::tr("No change is seen, but this log would not have shown one that matters");
 }
 
-QTreeWidgetItem* itemOf(const MaintainedNumber& number) {
-  const QString unit = unitOf(number.unit).trimmed();
+QTreeWidgetItem* maintainItemOf(const MaintainedNumber& number) {
+  const QString unit = unitSuffix(number.unit).trimmed();
   auto* const item = new QTreeWidgetItem(
-      {unit.isEmpty() ? text(number.name) : QString("%1 [%2]").arg(text(number.name), unit)});
+      {unit.isEmpty() ? maintainText(number.name) : QString("%1 [%2]").arg(maintainText(number.name), unit)});
   item->setText(MaintainTable::kBefore, withSigma(number.before, number.before_sigma));
   item->setText(MaintainTable::kNow, withSigma(number.now, number.now_sigma));
   return item;
@@ -81,21 +83,21 @@ QTreeWidgetItem* itemOf(const MaintainedNumber& number) {
 QString noticeText(const MaintainedQuantity& quantity) {
   if (!std::isfinite(quantity.would_notice)) return QChar(0x2013);
   return QString("%1 (%2)%3")
-      .arg(text(html::significant(quantity.would_notice, 2)), text(html::significant(quantity.matters, 2)),
-           unitOf(quantity.unit));
+      .arg(maintainText(html::significant(quantity.would_notice, 2)),
+           maintainText(html::significant(quantity.matters, 2)), unitSuffix(quantity.unit));
 }
 
-QTreeWidgetItem* itemOf(const MaintainedQuantity& quantity) {
+QTreeWidgetItem* maintainItemOf(const MaintainedQuantity& quantity) {
   auto* const item = new QTreeWidgetItem(
-      {QString("%1: %2").arg(sensorText(quantity.sensor, quantity.against), text(quantity.title))});
-  item->setIcon(MaintainTable::kVerdict, iconOf(quantity));
-  item->setText(MaintainTable::kVerdict, verdictOf(quantity));
+      {QString("%1: %2").arg(sensorText(quantity.sensor, quantity.against), maintainText(quantity.title))});
+  item->setIcon(MaintainTable::kVerdict, maintainIconOf(quantity));
+  item->setText(MaintainTable::kVerdict, maintainVerdictOf(quantity));
   item->setText(MaintainTable::kSource, sourceOf(quantity.source));
   item->setText(MaintainTable::kChange, sizeWithSigma(quantity.change, quantity.change_sigma, quantity.unit));
   item->setText(MaintainTable::kNotice, noticeText(quantity));
   for (int column = 0; column < MaintainTable::kColumns; ++column)
-    item->setToolTip(column, wordsOf(quantity));
-  for (const MaintainedNumber& number : quantity.numbers) item->addChild(itemOf(number));
+    item->setToolTip(column, maintainWordsOf(quantity));
+  for (const MaintainedNumber& number : quantity.numbers) item->addChild(maintainItemOf(number));
   return item;
 }
 
@@ -123,7 +125,7 @@ void MaintainTable::setQuantities(std::vector<MaintainedQuantity> quantities) {
 void MaintainTable::fill() {
   QList<QTreeWidgetItem*> items;
   for (const MaintainedQuantity& quantity : quantities_) {
-    items << itemOf(quantity);
+    items << maintainItemOf(quantity);
     alignNumbers(*items.back(), kChange, kColumns);
   }
   clear();
@@ -159,16 +161,16 @@ void StepTable::setSteps(const std::vector<MaintenanceStep>& steps) {
   clear();
   for (const MaintenanceStep& step : steps) {
     QStringList others;
-    for (const std::string& other : step.or_else) others << text(other);
+    for (const std::string& other : step.or_else) others << maintainText(other);
     auto* const item = new QTreeWidgetItem(
-        {QString("%1: %2").arg(sensorText(step.sensor, step.against), text(step.title)),
+        {QString("%1: %2").arg(sensorText(step.sensor, step.against), maintainText(step.title)),
          QString("%1 s").arg(step.at_s, 0, 'f', 1), QString("%1 s").arg(step.noticed_s, 0, 'f', 1),
          sizeWithSigma(step.size, step.size_sigma, step.unit), others.join(", ")});
     alignNumbers(*item, kAt, kOrElse);
     for (const MaintainedNumber& number : step.numbers)
       item->setToolTip(kBy, QString("%1\n%2: %3")
-                                .arg(item->toolTip(kBy), text(number.name),
-                                     withSigma(number.now, number.now_sigma) + unitOf(number.unit))
+                                .arg(item->toolTip(kBy), maintainText(number.name),
+                                     withSigma(number.now, number.now_sigma) + unitSuffix(number.unit))
                                 .trimmed());
     addTopLevelItem(item);
   }

@@ -14,7 +14,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr double kMmPerM = 1e3;
+constexpr double kMeasuredMmPerM = 1e3;
 
 // In a line of a staggered board there are two from circle to circle.
 int spacingsBetween(const Board& board) {
@@ -61,7 +61,7 @@ MeasuredForm::MeasuredForm(QWidget* parent)
   connect(length_std_mm_, &NumberField::valueEdited, this, &MeasuredForm::changed);
   // As long as it was to be, over as many as are chosen.
   connect(circles_, &QSpinBox::valueChanged, this, [this](int count) {
-    length_mm_->setValue(kMmPerM * board_.spacing_m * spacingsBetween(board_) * (count - 1));
+    length_mm_->setValue(kMeasuredMmPerM * board_.spacing_m * spacingsBetween(board_) * (count - 1));
     emit changed();
   });
   setBoard({});
@@ -74,7 +74,7 @@ void MeasuredForm::setBoard(const Board& board) {
   is_measured_->setChecked(false);
   circles_->setRange(2, std::max(2, mostInLine(board)));
   circles_->setValue(circles_->maximum());
-  length_mm_->setValue(kMmPerM * board.spacing_m * spacingsBetween(board) * (circles_->value() - 1));
+  length_mm_->setValue(kMeasuredMmPerM * board.spacing_m * spacingsBetween(board) * (circles_->value() - 1));
   length_std_mm_->setValue(kRuler_mm);
 }
 
@@ -82,8 +82,8 @@ std::optional<MeasuredLength> MeasuredForm::measured() const {
   if (!is_measured_->isChecked()) return std::nullopt;
   MeasuredLength length;
   length.spacings = spacingsBetween(board_) * (circles_->value() - 1);
-  length.length_m = length_mm_->value() / kMmPerM;
-  length.std_m = length_std_mm_->value() / kMmPerM;
+  length.length_m = length_mm_->value() / kMeasuredMmPerM;
+  length.std_m = length_std_mm_->value() / kMeasuredMmPerM;
   return length;
 }
 

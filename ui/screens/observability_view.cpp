@@ -17,7 +17,7 @@ namespace evical::ui {
 
 namespace {
 
-constexpr double kLeastRatio = 0.03, kScale_px = 96.0;  // the scale, and the words below it
+constexpr double kLeastRatio = 0.03, kRatioScale_px = 96.0;  // the scale, and the words below it
 constexpr int kLeastRow_px = 26, kMostRow_px = 40;
 
 }  // namespace
@@ -58,7 +58,7 @@ QString ObservabilityView::nameOf(std::size_t bar) const {
 QSize ObservabilityView::minimumSizeHint() const {
   constexpr int kLeastWidth_px = 260;
   const auto bars = static_cast<int>(needed_over_sigma_.size());
-  return {kLeastWidth_px, static_cast<int>(kScale_px) + bars * kLeastRow_px};
+  return {kLeastWidth_px, static_cast<int>(kRatioScale_px) + bars * kLeastRow_px};
 }
 
 // A factor of ten is as wide everywhere.
@@ -82,7 +82,7 @@ void ObservabilityView::paintEvent(QPaintEvent*) {
 
 double ObservabilityView::rowHeight_px() const {
   const auto bars = static_cast<double>(needed_over_sigma_.size());
-  return std::min<double>(kMostRow_px, (height() - kScale_px) / bars);
+  return std::min<double>(kMostRow_px, (height() - kRatioScale_px) / bars);
 }
 
 // Its name and value above it.
@@ -118,7 +118,8 @@ void ObservabilityView::paintScale(QPainter& painter) const {
   }
   painter.setPen(theme().faint_text);
   painter.drawText(
-      QRectF(0.0, bottom + 22.0, width(), kScale_px - 22.0), Qt::AlignLeft | Qt::AlignTop | Qt::TextWordWrap,
+      QRectF(0.0, bottom + 22.0, width(), kRatioScale_px - 22.0),
+      Qt::AlignLeft | Qt::AlignTop | Qt::TextWordWrap,
       tr("A bar says how many times better than needed a direction is known (need over sigma), on a "
          "logarithmic scale. The mark: just as well as needed. Directions mix rotation, translation "
          "and time offset; each is named by its largest part, the weakest first."));

@@ -25,7 +25,7 @@
 namespace evical::ui {
 namespace {
 
-constexpr double kMillimetresPerMetre = 1e3, kMillisecondsPerSecond = 1e3;
+constexpr double kPoseMmPerM = 1e3, kMillisecondsPerSecond = 1e3;
 
 QLabel* words(const char* role, QWidget* parent) {
   auto* const label = new QLabel(parent);
@@ -211,7 +211,7 @@ void PosePanel::showPose() {
   QString direction = QString::fromStdString(directionWords(pose));
   direction[0] = direction[0].toUpper();
   direction_->setText(direction);
-  translation_->setText(row(Eigen::Vector3d(kMillimetresPerMetre * place.translation_m), 4, 11));
+  translation_->setText(row(Eigen::Vector3d(kPoseMmPerM * place.translation_m), 4, 11));
   vector_->setText(row(Eigen::Vector3d(kDegPerRad * quaternionLog(place.rotation)), 4, 11));
   const Eigen::Vector3d angles_deg = rollPitchYaw_deg(place.rotation);
   angles_->setText(row(angles_deg, 4, 11));

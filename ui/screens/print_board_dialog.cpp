@@ -39,8 +39,8 @@
 namespace evical::ui {
 namespace {
 
-constexpr double kMmPerM = 1e3, kMmPerInch = 25.4;
-const char* const kFolderKey = "board_folder";
+constexpr double kSheetMmPerM = 1e3, kMmPerInch = 25.4;
+const char* const kBoardFolderKey = "board_folder";
 
 // In the window's words: keys of files and commands are not there.
 QString textOf(const CalibrationError& error) {
@@ -56,7 +56,7 @@ QLabel* wrapped(const QString& text, const char* role, QWidget* parent) {
   return label;
 }
 
-QPushButton* button(const QString& icon_name, const QString& text, const QString& tip, QWidget* parent) {
+QPushButton* sheetButton(const QString& icon_name, const QString& text, const QString& tip, QWidget* parent) {
   auto* const made = new QPushButton(icon(icon_name), text, parent);
   made->setToolTip(tip);
   made->setAutoDefault(false);  // Enter ends an edit
@@ -148,7 +148,7 @@ QWidget* PrintBoardDialog::makePaper() {
   paper_->addItem(tr("As large as the board needs"));
   for (const Paper& paper : papers()) paper_->addItem(QString::fromStdString(paper.name));
   paper_->setToolTip(tr("The board is in the middle of the sheet, upright or lying"));
-  margin_mm_->setValue(kMmPerM * SheetOptions{}.margin_m);
+  margin_mm_->setValue(kSheetMmPerM * SheetOptions{}.margin_m);
   margin_mm_->setToolTip(tr("White around the board, at least"));
   border_bits_->addItems({tr("1 bit"), tr("2 bits, as Kalibr's")});
   border_bits_->setCurrentIndex(TagPrint{}.border_bits - 1);
@@ -189,17 +189,19 @@ QWidget* PrintBoardDialog::makeMeasure() {
 }
 
 void PrintBoardDialog::makeButtons() {
-  print_ = button("board", tr("&Print..."), tr("Straight to a printer, at 100 %"), this);
-  save_ = button("save", tr("&Save..."), tr("To a PDF, SVG or PNG file, true to scale"), this);
-  blink_ = button("demo", tr("Page that &blinks..."),
+  print_ = sheetButton("board", tr("&Print..."), tr("Straight to a printer, at 100 %"), this);
+  save_ = sheetButton("save", tr("&Save..."), tr("To a PDF, SVG or PNG file, true to scale"), this);
+  blink_ =
+      sheetButton("demo", tr("Page that &blinks..."),
                   tr("For the browser: flashes the board on a screen, for the lens of an event camera that "
                      "stands still"),
                   this);
-  open_ = button("open", tr("&Open"), tr("Shows the file that was written"), this);
-  take_ = button("done", tr("&Use this board"),
-                 tr("The session's board from now on, with what was measured; without a session, that of the "
-                    "next recording that is opened"),
-                 this);
+  open_ = sheetButton("open", tr("&Open"), tr("Shows the file that was written"), this);
+  take_ = sheetButton(
+      "done", tr("&Use this board"),
+      tr("The session's board from now on, with what was measured; without a session, that of the "
+         "next recording that is opened"),
+      this);
   save_->setObjectName("save_board");
   take_->setObjectName("take_board");
   open_->setObjectName("open_board");
@@ -221,7 +223,7 @@ void PrintBoardDialog::makeButtons() {
 
 SheetOptions PrintBoardDialog::sheetOptions() const {
   SheetOptions options;
-  options.margin_m = margin_mm_->value() / kMmPerM;
+  options.margin_m = margin_mm_->value() / kSheetMmPerM;
   if (const int index = paper_->currentIndex(); index > 0)
     options.paper = papers()[static_cast<std::size_t>(index - 1)];
   return options;
@@ -252,7 +254,7 @@ void PrintBoardDialog::showBoard() {
 }
 
 void PrintBoardDialog::chooseFile() {
-  const QString folder = QSettings().value(kFolderKey, QDir::homePath()).toString();
+  const QString folder = QSettings().value(kBoardFolderKey, QDir::homePath()).toString();
   const QString file =
       QFileDialog::getSaveFileName(this, tr("Save the board"), QDir(folder).filePath("board.pdf"),
                                    tr("PDF (*.pdf);;SVG (*.svg);;PNG (*.png)"));
@@ -260,7 +262,7 @@ void PrintBoardDialog::chooseFile() {
 }
 
 void PrintBoardDialog::chooseBlinkFile() {
-  const QString folder = QSettings().value(kFolderKey, QDir::homePath()).toString();
+  const QString folder = QSettings().value(kBoardFolderKey, QDir::homePath()).toString();
   const QString file = QFileDialog::getSaveFileName(
       this, tr("Save the page that blinks"), QDir(folder).filePath("board.html"), tr("Pages (*.html)"));
   if (!file.isEmpty()) saveTo(file);
@@ -271,7 +273,7 @@ void PrintBoardDialog::saveTo(const QString& file) {
   if (!QStringList{"pdf", "svg", "png", "html"}.contains(ending))
     return say(tr("%1 is not written: name it .pdf, .svg or .png").arg(QFileInfo(file).fileName()), true);
   say(tr("Writing %1...").arg(QFileInfo(file).fileName()), false);
-  QSettings().setValue(kFolderKey, QFileInfo(file).path());
+  QSettings().setValue(kBoardFolderKey, QFileInfo(file).path());
   emit fileRequested(
       {file, board_, sheetOptions(), tagPrint(), static_cast<double>(resolution_dpi_->value())});
 }

@@ -35,7 +35,7 @@ bool isOfUnfinishedFile(FaultKind kind) {
   return kind == FaultKind::Truncated || kind == FaultKind::NoIndex;
 }
 
-QLabel* label(const QString& text, const char* role, QWidget* parent) {
+QLabel* recordingLabel(const QString& text, const char* role, QWidget* parent) {
   auto* const made = new QLabel(text, parent);
   made->setProperty("role", role);
   made->setWordWrap(true);
@@ -49,7 +49,7 @@ QFrame* card(const QString& heading, QWidget* content, QWidget* parent, QWidget*
   auto* const layout = new QVBoxLayout(frame);
   layout->setContentsMargins(14, 10, 14, 12);
   auto* const line = new QHBoxLayout;
-  line->addWidget(label(heading, "heading", frame), beside == nullptr ? 1 : 0);
+  line->addWidget(recordingLabel(heading, "heading", frame), beside == nullptr ? 1 : 0);
   if (beside != nullptr) line->addWidget(beside, 1);
   layout->addLayout(line);
   layout->addWidget(content, 1);
@@ -80,7 +80,7 @@ std::optional<double> duration_s(const Inspection& inspection) {
   return 1e-9 * static_cast<double>(last_ns - first_ns);
 }
 
-void showText(QLabel* shown, const QString& text) {
+void showOrHide(QLabel* shown, const QString& text) {
   shown->setText(text);
   shown->setVisible(!text.isEmpty());
 }
@@ -90,12 +90,12 @@ void showText(QLabel* shown, const QString& text) {
 RecordingScreen::RecordingScreen(QWidget* parent)
     : QWidget(parent),
       stack_(new QStackedWidget(this)),
-      title_(label({}, "title", this)),
-      path_(label({}, "hint", this)),
-      verdict_(label({}, "heading", this)),
-      looking_text_(label({}, "hint", this)),
-      stream_problem_(label({}, "problem", this)),
-      file_faults_(label({}, "problem", this)),
+      title_(recordingLabel({}, "title", this)),
+      path_(recordingLabel({}, "hint", this)),
+      verdict_(recordingLabel({}, "heading", this)),
+      looking_text_(recordingLabel({}, "hint", this)),
+      stream_problem_(recordingLabel({}, "problem", this)),
+      file_faults_(recordingLabel({}, "problem", this)),
       looking_(new QProgressBar(this)),
       streams_(new StreamTable(this)),
       time_range_(new TimeRangeForm(this)),
@@ -129,7 +129,7 @@ RecordingScreen::RecordingScreen(QWidget* parent)
 QWidget* RecordingScreen::makeEmpty() {
   auto* const empty = new QWidget(this);
   auto* const layout = new QVBoxLayout(empty);
-  auto* const text = label(tr("No recording yet."), "heading", empty);
+  auto* const text = recordingLabel(tr("No recording yet."), "heading", empty);
   text->setAlignment(Qt::AlignCenter);
   auto* const open = new QPushButton(icon("recording"), tr("Open a recording..."), empty);
   connect(open, &QPushButton::clicked, this, &RecordingScreen::openRecordingRequested);
@@ -309,7 +309,7 @@ void RecordingScreen::setProblems(const std::vector<std::pair<QString, QString>>
   }
   for (std::size_t i = 0; i < cameras_.size(); ++i) cameras_[i]->setProblem(at_cameras[i]);
   boards_->setProblems(field_and_text);
-  showText(stream_problem_, at_streams.join('\n'));
+  showOrHide(stream_problem_, at_streams.join('\n'));
   problems_ = field_and_text.size();
   showVerdict();
 }
@@ -346,11 +346,11 @@ void RecordingScreen::clearInspections() {
   inspected_.clear();
   time_range_->setDuration({});
   streams_->clearStreams();
-  showText(file_faults_, {});
+  showOrHide(file_faults_, {});
 }
 
 void RecordingScreen::setInspecting(const QString& recording) {
-  showText(looking_text_, tr("Looking through %1...").arg(recording));
+  showOrHide(looking_text_, tr("Looking through %1...").arg(recording));
   looking_->setValue(0);
   looking_->show();
 }
@@ -393,13 +393,13 @@ void RecordingScreen::showFileFaults() {
     for (const RecordingFault& fault : one.inspection->faults)
       if (fault.stream.empty() && !(being_written_ && isOfUnfinishedFile(fault.kind)))
         faults << QString::fromStdString(fault.text);
-  showText(file_faults_, faults.join('\n'));
+  showOrHide(file_faults_, faults.join('\n'));
 }
 
 void RecordingScreen::setInspectionFailed(const QString& why) {
   looking_->hide();
   looking_text_->hide();
-  showText(file_faults_, why);
+  showOrHide(file_faults_, why);
 }
 
 void RecordingScreen::chooseRole(int row, int role) {

@@ -28,15 +28,15 @@ namespace {
 
 constexpr int kFewest = 2;
 
-QPushButton* button(const char* object_name, const char* icon_name, const QString& text, const QString& tip,
-                    QWidget* parent) {
+QPushButton* repeatButton(const char* object_name, const char* icon_name, const QString& text,
+                          const QString& tip, QWidget* parent) {
   auto* const made = new QPushButton(icon(icon_name), text, parent);
   made->setObjectName(object_name);
   made->setToolTip(tip);
   return made;
 }
 
-QString titleOf(RepeatVerdict verdict) {
+QString repeatTitleOf(RepeatVerdict verdict) {
   switch (verdict) {
     case RepeatVerdict::Agree:
       return QObject::tr("They agree");
@@ -71,8 +71,8 @@ RepeatScreen::RepeatScreen(QWidget* parent)
           tr("Sessions or recordings of the same rig before the same board. Recordings have the\n"
              "sensors and the board of the session that is open, else of the first in the list"),
           this)),
-      add_open_(
-          button("add_open", "add", tr("Add the open one"), tr("Add what is open in this window"), this)),
+      add_open_(repeatButton("add_open", "add", tr("Add the open one"), tr("Add what is open in this window"),
+                             this)),
       stack_(new QStackedWidget(this)),
       verdict_(new VerdictLine("repeat", this)),
       ratio_(selectableLabel("hint", {}, this)),
@@ -81,9 +81,9 @@ RepeatScreen::RepeatScreen(QWidget* parent)
       numbers_(new RepeatTable(this)),
       recordings_(new RepeatedList(this)),
       notes_(new QListWidget(this)),
-      open_result_(button("open_recording_result", "result", tr("Show on all pages"),
-                          tr("Open the chosen recording's result, or that of all together where none is"),
-                          this)) {
+      open_result_(repeatButton(
+          "open_recording_result", "result", tr("Show on all pages"),
+          tr("Open the chosen recording's result, or that of all together where none is"), this)) {
   files_->insertButton(add_open_);
   connect(add_open_, &QPushButton::clicked, this, [this] { files_->add({open_file_}); });
   connect(files_, &FileList::changed, this, &RepeatScreen::offer);
@@ -108,10 +108,10 @@ QWidget* RepeatScreen::makeForm() {
   grid->setColumnStretch(1, 1);
   work_ = new WorkBar("repeat", "calibrate", tr("Calibrate all"),
                       tr("Calibrate each recording, then all together, and compare them"), card);
-  QPushButton* const report =
-      button("repeat_report", "report", tr("Open report"), tr("A page with plots, in the browser"), card);
-  QPushButton* const place = button("repeat_open_folder", "folder", tr("Open folder"),
-                                    tr("Show the files in the desktop's file manager"), card);
+  QPushButton* const report = repeatButton("repeat_report", "report", tr("Open report"),
+                                           tr("A page with plots, in the browser"), card);
+  QPushButton* const place = repeatButton("repeat_open_folder", "folder", tr("Open folder"),
+                                          tr("Show the files in the desktop's file manager"), card);
   for (QPushButton* const each : {report, place}) work_->addButton(each);
   connect(report, &QPushButton::clicked, this, &RepeatScreen::reportRequested);
   connect(place, &QPushButton::clicked, this, &RepeatScreen::openFolderRequested);
@@ -233,7 +233,7 @@ void RepeatScreen::setRepeat(std::optional<Repeatability> repeat) {
 }
 
 void RepeatScreen::showVerdict() {
-  verdict_->setVerdict(toneOf(repeat_->verdict), titleOf(repeat_->verdict),
+  verdict_->setVerdict(toneOf(repeat_->verdict), repeatTitleOf(repeat_->verdict),
                        sentence(QString::fromStdString(repeat_->reason)));
   ratio_->setVisible(repeat_->rms_ratio > 0.0);
   ratio_->setText(

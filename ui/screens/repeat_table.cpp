@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kFar_sigmas = 3.0;
 
-QString text(const std::string& of_core) {
+QString repeatText(const std::string& of_core) {
   return QString::fromStdString(of_core);
 }
 
@@ -36,20 +36,20 @@ QString outcomeOf(const RepeatedRecording& recording) {
   return QObject::tr("failed");
 }
 
-QIcon iconOf(const RepeatedRecording& recording) {
+QIcon repeatIconOf(const RepeatedRecording& recording) {
   if (recording.outcome == RepeatOutcome::Failed) return icon("error", theme().bad);
   if (recording.outcome == RepeatOutcome::DoesNotFit) return icon("warning", theme().warning);
   return icon("done", theme().good);
 }
 
-QString wordsOf(const RepeatedRecording& recording) {
+QString repeatWordsOf(const RepeatedRecording& recording) {
   QStringList parts;
   for (const CheckedQuantity& quantity : recording.differs)
     parts << QObject::tr("%1 of %2 differs by %3 %4 %5 %6")
-                 .arg(text(quantity.title), text(quantity.sensor),
-                      text(html::significant(quantity.change, 2)), QChar(0xb1),
-                      text(html::significant(quantity.change_sigma, 2)), text(quantity.unit));
-  if (!recording.reason.empty()) parts << text(recording.reason);
+                 .arg(repeatText(quantity.title), repeatText(quantity.sensor),
+                      repeatText(html::significant(quantity.change, 2)), QChar(0xb1),
+                      repeatText(html::significant(quantity.change_sigma, 2)), repeatText(quantity.unit));
+  if (!recording.reason.empty()) parts << repeatText(recording.reason);
   return parts.isEmpty() ? QObject::tr("nothing against it") : parts.join("; ");
 }
 
@@ -103,16 +103,16 @@ void RepeatTable::fillPair(const RepeatedNumber& number, QTreeWidgetItem& item) 
 }
 
 QTreeWidgetItem* RepeatTable::itemOf(const RepeatedNumber& number) const {
-  const QString unit = number.unit.empty() ? QString() : QString(" [%1]").arg(text(number.unit));
-  auto* const item = new QTreeWidgetItem({text(number.name) + unit});
+  const QString unit = number.unit.empty() ? QString() : QString(" [%1]").arg(repeatText(number.unit));
+  auto* const item = new QTreeWidgetItem({repeatText(number.name) + unit});
   // As many decimals as its spread has.
   const double spread = number.deviation > 0.0 ? number.deviation : number.mean_sigma;
   item->setText(kMean, withSigma(number.mean, spread).section(' ', 0, 0));
   if (number.count > 1) {
-    item->setText(kDeviation, text(html::significant(number.deviation, 2)));
+    item->setText(kDeviation, repeatText(html::significant(number.deviation, 2)));
     item->setText(kRatio, QString::number(number.ratio(), 'f', 2));
   }
-  item->setText(kMeanSigma, text(html::significant(number.mean_sigma, 2)));
+  item->setText(kMeanSigma, repeatText(html::significant(number.mean_sigma, 2)));
   item->setText(kTogether, shownNumber(numberOf(number, kAllTogether)));
   if (pair_) fillPair(number, *item);
   alignNumbers(*item, kMean, kColumns);
@@ -123,8 +123,8 @@ void RepeatTable::fill() {
   QList<QTreeWidgetItem*> headings;
   for (const RepeatedQuantity& quantity : repeat_.quantities) {
     const QString own = quantity.common ? QString() : tr(" (each recording has its own)");
-    auto* const heading =
-        new QTreeWidgetItem({QString("%1: %2%3").arg(text(quantity.sensor), text(quantity.title), own)});
+    auto* const heading = new QTreeWidgetItem(
+        {QString("%1: %2%3").arg(repeatText(quantity.sensor), repeatText(quantity.title), own)});
     QFont bold = font();
     bold.setWeight(QFont::DemiBold);
     heading->setFont(kNumber, bold);
@@ -175,9 +175,9 @@ void RepeatedList::fill() {
         recording.freedom > 0
             ? tr("%1 of %2").arg(recording.chi_square, 0, 'f', 1).arg(recording.limit, 0, 'f', 1)
             : QString();
-    auto* const item = new QTreeWidgetItem(
-        {text(recording.name), outcomeOf(recording), distance, wordsOf(recording), text(recording.file)});
-    item->setIcon(kOutcome, iconOf(recording));
+    auto* const item = new QTreeWidgetItem({repeatText(recording.name), outcomeOf(recording), distance,
+                                            repeatWordsOf(recording), repeatText(recording.file)});
+    item->setIcon(kOutcome, repeatIconOf(recording));
     alignNumbers(*item, kDistance, kDistance + 1);
     for (const int column : {kName, kWhat, kFile}) item->setToolTip(column, item->text(column));
     items << item;

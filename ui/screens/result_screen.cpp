@@ -39,7 +39,7 @@ QString verdictWords(CalibrationStatus status) {
   return {};
 }
 
-QString sentence(QString text) {
+QString resultSentence(QString text) {
   if (!text.isEmpty()) text[0] = text[0].toUpper();
   return text.isEmpty() || text.endsWith('.') ? text : text + '.';
 }
@@ -272,7 +272,7 @@ void ResultScreen::showVerdict() {
   icon_->setPixmap(verdictIcon(result.status).pixmap(QSize(34, 34), devicePixelRatioF()));
   verdict_->setText(verdictWords(result.status));
   reason_->setText(ok ? tr("The recording determines every quantity as well as needed.")
-                      : sentence(QString::fromStdString(result.reason)));
+                      : resultSentence(QString::fromStdString(result.reason)));
   repair_->setRepair(result.repair);
   fit_->setText(fitText(*result_));
 }
@@ -286,7 +286,7 @@ void ResultScreen::showParameters() {
     try {
       compare(groups, *result_, *other);
     } catch (const CalibrationError& error) {
-      remark = tr("These cannot be compared. %1").arg(sentence(QString::fromStdString(error.what())));
+      remark = tr("These cannot be compared. %1").arg(resultSentence(QString::fromStdString(error.what())));
     }
   }
   comparison_->setText(remark);
@@ -310,7 +310,7 @@ void ResultScreen::showDetails() {
   pairs_->setText(pairs.isEmpty() ? QString() : tr("Hardest to tell apart: %1.").arg(pairs.join("; ")));
   notes_->clear();
   for (const std::string& note : result_->result->notes)
-    notes_->addItem(sentence(QString::fromStdString(note)));
+    notes_->addItem(resultSentence(QString::fromStdString(note)));
 }
 
 void ResultScreen::changeEvent(QEvent* event) {

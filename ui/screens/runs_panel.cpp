@@ -22,7 +22,7 @@
 namespace evical::ui {
 namespace {
 
-enum Column { kName, kMade, kVerdict, kRejected, kTook, kDiffers, kColumns };
+enum RunColumn { kName, kMade, kVerdict, kRejected, kTook, kDiffers, kColumns };
 
 QString pathText(const std::filesystem::path& path) {
   return QString::fromStdString(path.string());

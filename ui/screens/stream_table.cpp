@@ -15,10 +15,10 @@
 namespace evical::ui {
 namespace {
 
-enum Column { kRole, kStream, kContent, kCount, kRate, kRange, kFaults, kColumns };
+enum StreamColumn { kRole, kStream, kContent, kCount, kRate, kRange, kFaults, kStreamColumns };
 constexpr int kNameRole = Qt::UserRole, kRecordingRole = Qt::UserRole + 1;
 
-QString text(const std::string& utf8) {
+QString streamText(const std::string& utf8) {
   return QString::fromStdString(utf8);
 }
 
@@ -34,8 +34,8 @@ QString rateText(const StreamSummary& stream) {
   return QString("%1 %2").arg(stream.rate_hz, 0, 'f', 1).arg(unit);
 }
 
-QString unitText(const std::string& unit) {
-  return text(unit).replace("^2", QChar(0xb2));
+QString streamUnitText(const std::string& unit) {
+  return streamText(unit).replace("^2", QChar(0xb2));
 }
 
 QString contentText(const StreamSummary& stream) {
@@ -46,18 +46,18 @@ QString contentText(const StreamSummary& stream) {
     }
     case StreamType::Imu:
       return QObject::tr("IMU, %1, %2")
-          .arg(unitText(stream.acceleration_unit), unitText(stream.angular_rate_unit));
+          .arg(streamUnitText(stream.acceleration_unit), streamUnitText(stream.angular_rate_unit));
     case StreamType::Frames:
-      if (!stream.info.readable) return text(stream.info.message);
+      if (!stream.info.readable) return streamText(stream.info.message);
       if (!stream.info.resolution_px.known())
-        return QObject::tr("frames (%1)").arg(text(stream.info.message));
+        return QObject::tr("frames (%1)").arg(streamText(stream.info.message));
       return QObject::tr("frames, %1 x %2 px")
           .arg(stream.info.resolution_px.width_px)
           .arg(stream.info.resolution_px.height_px);
     case StreamType::Points:
       return QObject::tr("points of the board");
     default:
-      return text(stream.info.message);
+      return streamText(stream.info.message);
   }
 }
 
@@ -93,7 +93,7 @@ QTableWidgetItem* readOnlyItem(const QString& shown) {
 
 }  // namespace
 
-StreamTable::StreamTable(QWidget* parent) : QTableWidget(0, kColumns, parent) {
+StreamTable::StreamTable(QWidget* parent) : QTableWidget(0, kStreamColumns, parent) {
   constexpr int kRow_px = 34;
   setHorizontalHeaderLabels(
       {tr("Role"), tr("Stream"), tr("Content"), tr("Count"), tr("Rate"), tr("Duration"), tr("Faults")});
@@ -132,7 +132,7 @@ void StreamTable::addStream(const StreamSummary& stream, const std::vector<Recor
   const int row = rowCount();
   insertRow(row);
   QComboBox* const box = roleBox(stream.info, this);
-  box->setAccessibleName(tr("Role of %1").arg(text(stream.info.name)));
+  box->setAccessibleName(tr("Role of %1").arg(streamText(stream.info.name)));
   // In the row's middle, at its own height.
   auto* const cell = new QWidget(this);
   auto* const layout = new QHBoxLayout(cell);
@@ -142,18 +142,18 @@ void StreamTable::addStream(const StreamSummary& stream, const std::vector<Recor
   constexpr int kPadding_px = 24;
   setColumnWidth(kRole, std::max(columnWidth(kRole), box->sizeHint().width() + kPadding_px));
   connect(box, &QComboBox::activated, this, [this, row] { emit roleChosen(row, role(row)); });
-  const QString name = text(stream.info.name), file = text(own_recording.filename().string());
+  const QString name = streamText(stream.info.name), file = streamText(own_recording.filename().string());
   setItem(row, kStream, readOnlyItem(file.isEmpty() || file == name ? name : file + ": " + name));
   item(row, kStream)->setData(kNameRole, name);
-  item(row, kStream)->setData(kRecordingRole, text(own_recording.string()));
-  if (!own_recording.empty()) item(row, kStream)->setToolTip(text(own_recording.string()));
+  item(row, kStream)->setData(kRecordingRole, streamText(own_recording.string()));
+  if (!own_recording.empty()) item(row, kStream)->setToolTip(streamText(own_recording.string()));
   setItem(row, kContent, readOnlyItem(contentText(stream)));
   setItem(row, kCount, readOnlyItem(stream.count == 0 ? QString() : QLocale().toString(stream.count)));
   setItem(row, kRate, readOnlyItem(rateText(stream)));
   setItem(row, kRange, readOnlyItem(rangeText(stream)));
   QStringList own;
   for (const RecordingFault& fault : faults)
-    if (fault.stream == stream.info.name) own << text(fault.text);
+    if (fault.stream == stream.info.name) own << streamText(fault.text);
   setItem(row, kFaults,
           readOnlyItem(own.isEmpty()     ? (stream.count == 0 ? QString() : tr("none found"))
                        : own.size() == 1 ? own.front()

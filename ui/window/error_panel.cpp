@@ -13,7 +13,7 @@
 namespace evical::ui {
 namespace {
 
-QLabel* wrappedLabel(QWidget* parent) {
+QLabel* errorLabel(QWidget* parent) {
   auto* const label = new QLabel(parent);
   label->setWordWrap(true);
   label->setTextFormat(Qt::PlainText);
@@ -32,9 +32,9 @@ QString sentence(QString text) {
 ErrorPanel::ErrorPanel(QWidget* parent)
     : QFrame(parent),
       icon_(new QLabel(this)),
-      title_(wrappedLabel(this)),
-      problem_(wrappedLabel(this)),
-      advice_(wrappedLabel(this)),
+      title_(errorLabel(this)),
+      problem_(errorLabel(this)),
+      advice_(errorLabel(this)),
       repair_(new RepairButton(this)) {
   setProperty("card", "bad");
   setAccessibleName(tr("What went wrong"));

@@ -16,7 +16,7 @@
 namespace evical::ui {
 namespace {
 
-QLabel* wrappedLabel(QWidget* parent) {
+QLabel* noticeLabel(QWidget* parent) {
   auto* const label = new QLabel(parent);
   label->setWordWrap(true);
   label->setTextFormat(Qt::PlainText);
@@ -29,9 +29,9 @@ QLabel* wrappedLabel(QWidget* parent) {
 ExportNotice::ExportNotice(QWidget* parent)
     : QFrame(parent),
       icon_(new QLabel(this)),
-      title_(wrappedLabel(this)),
-      place_(wrappedLabel(this)),
-      details_(wrappedLabel(this)) {
+      title_(noticeLabel(this)),
+      place_(noticeLabel(this)),
+      details_(noticeLabel(this)) {
   setProperty("card", "true");
   setAccessibleName(tr("Where files went"));
   title_->setProperty("role", "heading");

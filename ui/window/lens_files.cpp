@@ -16,10 +16,10 @@
 namespace evical::ui {
 namespace {
 
-const char* const kFolderKey = "last_folder";
+const char* const kLensFolderKey = "last_folder";
 
-std::vector<FileContent> filesOf(const LensRecord& record, const QString& version,
-                                 const std::filesystem::path& folder) {
+std::vector<FileContent> lensFilesOf(const LensRecord& record, const QString& version,
+                                     const std::filesystem::path& folder) {
   std::vector<FileContent> files =
       intrinsicsFiles(folder, namedLens(record, version), record.run->pass.cameras);
   files.push_back({folder / "log.txt", record.log.toStdString()});
@@ -37,7 +37,7 @@ LensFiles::LensFiles(Workbench& workbench, QWidget* window)
     : QObject(window), workbench_(workbench), window_(window) {}
 
 QString LensFiles::lastFolder() const {
-  return QSettings().value(kFolderKey, QDir::homePath()).toString();
+  return QSettings().value(kLensFolderKey, QDir::homePath()).toString();
 }
 
 void LensFiles::chooseOther() {
@@ -78,7 +78,7 @@ void LensFiles::saveTo(int file, const QString& path) {
   const std::string name = kLensFiles.at(static_cast<std::size_t>(file)).name;
   write(path, {}, [record = workbench_.lens.last(), version = workbench_.version, name, path] {
     ExportedFiles made;
-    for (FileContent& each : filesOf(record, version, {}))
+    for (FileContent& each : lensFilesOf(record, version, {}))
       if (each.path == name) made.files.push_back({path.toStdString(), std::move(each.content)});
     return made;
   });
@@ -87,7 +87,7 @@ void LensFiles::saveTo(int file, const QString& path) {
 void LensFiles::saveAllTo(const QString& folder) {
   write(folder, folder, [record = workbench_.lens.last(), version = workbench_.version, folder] {
     ExportedFiles made;
-    made.files = filesOf(record, version, folder.toStdString());
+    made.files = lensFilesOf(record, version, folder.toStdString());
     return made;
   });
 }
@@ -126,7 +126,7 @@ void LensFiles::write(const QString& path, const QString& folder, Make make) {
       &workbench_.runner, &JobRunner::finished, this,
       [this, path, folder](JobOutcome outcome) {
         if (outcome != JobOutcome::Done) return;
-        QSettings().setValue(kFolderKey, folder.isEmpty() ? QFileInfo(path).path() : folder);
+        QSettings().setValue(kLensFolderKey, folder.isEmpty() ? QFileInfo(path).path() : folder);
         emit saved(path);
       },
       Qt::SingleShotConnection);

@@ -57,7 +57,7 @@ void wireRigPages(const Pages& pages, Workbench& workbench) {
   });
 }
 
-void wireRecording(RecordingScreen& screen, Workbench& workbench) {
+void wireLensRecording(RecordingScreen& screen, Workbench& workbench) {
   LensDocument& lens = workbench.lens;
   QObject::connect(&lens, &LensDocument::runChanged, &screen, [&screen, &lens] {
     if (!lens.last().run) return;
@@ -68,7 +68,7 @@ void wireRecording(RecordingScreen& screen, Workbench& workbench) {
 }
 
 // The run of what is calibrated; events and windows are the same.
-void wireDetection(DetectionScreen& screen, Workbench& workbench) {
+void wireLensDetection(DetectionScreen& screen, Workbench& workbench) {
   IntrinsicsJob& job = workbench.intrinsics;
   LensDocument& lens = workbench.lens;
   const CalibrationDocument& document = workbench.document;
@@ -127,8 +127,8 @@ void wireLensPages(const Pages& pages, Workbench& workbench, LensFiles& files) {
   wireAim(pages.start->aim(), workbench);
   wireAim(pages.recording->aim(), workbench);
   wireRigPages(pages, workbench);
-  wireRecording(*pages.recording, workbench);
-  wireDetection(*pages.detection, workbench);
+  wireLensRecording(*pages.recording, workbench);
+  wireLensDetection(*pages.detection, workbench);
   wireLens(*pages.lens, workbench, files);
 }
 

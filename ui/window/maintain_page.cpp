@@ -22,7 +22,7 @@ namespace {
 
 using Maintained = std::shared_ptr<const MaintainedLogs>;
 
-void start(MaintainScreen& screen, Workbench& workbench, SessionFiles& files) {
+void startMaintain(MaintainScreen& screen, Workbench& workbench, SessionFiles& files) {
   std::vector<std::filesystem::path> logs;
   for (const QString& log : screen.logs().files()) logs.emplace_back(log.toStdString());
   try {
@@ -41,7 +41,7 @@ void start(MaintainScreen& screen, Workbench& workbench, SessionFiles& files) {
   }
 }
 
-void chooseFiles(MaintainScreen& screen) {
+void chooseFilesMaintain(MaintainScreen& screen) {
   QObject::connect(&screen.logs(), &FileList::addRequested, &screen, [&screen] {
     screen.logs().add(QFileDialog::getOpenFileNames(&screen, QObject::tr("Logs of the IMUs"),
                                                     lastUsedFolder(), recordingsFilter(false)));
@@ -54,7 +54,8 @@ void chooseFiles(MaintainScreen& screen) {
   });
 }
 
-void save(MaintainScreen& screen, const Maintained& maintained, Workbench& workbench, SessionFiles& files) {
+void saveMaintain(MaintainScreen& screen, const Maintained& maintained, Workbench& workbench,
+                  SessionFiles& files) {
   const auto write = [maintained](const std::filesystem::path& folder) {
     writeMaintenanceFiles(folder, maintained->maintenance, maintained->log.toStdString());
   };
@@ -68,11 +69,11 @@ void save(MaintainScreen& screen, const Maintained& maintained, Workbench& workb
 void wireMaintain(MaintainScreen& screen, MaintenanceCharts& charts, Workbench& workbench,
                   SessionFiles& files) {
   MaintainJob& job = workbench.maintain;
-  chooseFiles(screen);
+  chooseFilesMaintain(screen);
   wireOldResult(screen.result(), screen, workbench);
   wireWork(screen.work(), workbench.runner, [&job] { return job.running(); });
   QObject::connect(&screen, &MaintainScreen::maintainRequested, &screen,
-                   [&screen, &workbench, &files] { start(screen, workbench, files); });
+                   [&screen, &workbench, &files] { startMaintain(screen, workbench, files); });
   QObject::connect(&screen, &MaintainScreen::cancelRequested, &workbench.runner, &JobRunner::cancel);
   const auto kept = std::make_shared<Maintained>();
   QObject::connect(&job, &MaintainJob::maintained, &screen,
@@ -82,7 +83,7 @@ void wireMaintain(MaintainScreen& screen, MaintenanceCharts& charts, Workbench& 
                      charts.setMaintenance(maintained->maintenance);
                    });
   QObject::connect(&screen, &MaintainScreen::saveRequested, &screen, [&screen, kept, &workbench, &files] {
-    if (*kept) save(screen, *kept, workbench, files);
+    if (*kept) saveMaintain(screen, *kept, workbench, files);
   });
 }
 

@@ -34,7 +34,7 @@ RepeatInput inputOf(const QStringList& files, const CalibrationDocument& documen
   return readRepeat(paths, document.hasSession() ? std::optional(document.session()) : std::nullopt);
 }
 
-void start(RepeatScreen& screen, Workbench& workbench, SessionFiles& files) {
+void startRepeat(RepeatScreen& screen, Workbench& workbench, SessionFiles& files) {
   const QString folder = screen.folder().path();
   try {
     checkRepeatFolder(folder.toStdString());
@@ -44,12 +44,12 @@ void start(RepeatScreen& screen, Workbench& workbench, SessionFiles& files) {
   }
 }
 
-void propose(RepeatScreen& screen) {
+void proposeRepeat(RepeatScreen& screen) {
   const QStringList files = screen.files().files();
   screen.folder().proposePath(files.isEmpty() ? QString() : newResultFolder(files.front(), "repeat"));
 }
 
-void chooseFiles(RepeatScreen& screen) {
+void chooseFilesRepeat(RepeatScreen& screen) {
   QObject::connect(&screen.files(), &FileList::addRequested, &screen, [&screen] {
     screen.files().add(QFileDialog::getOpenFileNames(
         &screen, QObject::tr("Recordings or sessions of one rig"), lastUsedFolder(), recordingsFilter(true)));
@@ -71,14 +71,14 @@ void show(const QString& path, SessionFiles& files) {
 
 void wireRepeat(RepeatScreen& screen, Workbench& workbench, SessionFiles& files) {
   RepeatJob& job = workbench.repeat;
-  chooseFiles(screen);
+  chooseFilesRepeat(screen);
   wireWork(screen.work(), workbench.runner, [&job] { return job.running(); });
   const auto show_open = [&screen, &workbench] { screen.setOpenFile(openFileOf(workbench.document)); };
   QObject::connect(&workbench.document, &CalibrationDocument::sessionReplaced, &screen, show_open);
   QObject::connect(&workbench.document, &CalibrationDocument::fileChanged, &screen, show_open);
-  QObject::connect(&screen.files(), &FileList::changed, &screen, [&screen] { propose(screen); });
+  QObject::connect(&screen.files(), &FileList::changed, &screen, [&screen] { proposeRepeat(screen); });
   QObject::connect(&screen, &RepeatScreen::repeatRequested, &screen,
-                   [&screen, &workbench, &files] { start(screen, workbench, files); });
+                   [&screen, &workbench, &files] { startRepeat(screen, workbench, files); });
   QObject::connect(&screen, &RepeatScreen::cancelRequested, &workbench.runner, &JobRunner::cancel);
   const auto kept = std::make_shared<Repeated>();
   QObject::connect(&job, &RepeatJob::repeated, &screen, [&screen, kept](const Repeated& repeated) {

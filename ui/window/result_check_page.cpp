@@ -26,7 +26,7 @@ bool isOpen(const QString& path, const CalibrationDocument& document) {
          info == QFileInfo(QString::fromStdString(document.session().recording.string()));
 }
 
-void start(ResultCheckScreen& screen, Workbench& workbench) {
+void startResultCheck(ResultCheckScreen& screen, Workbench& workbench) {
   const std::filesystem::path result = screen.result().path().toStdString();
   const QString recording = screen.recording().path();
   std::function<CheckInput()> read = [result, path = recording.toStdString()] {
@@ -38,7 +38,7 @@ void start(ResultCheckScreen& screen, Workbench& workbench) {
 }
 
 // What is open and has no result yet is the new one.
-void propose(ResultCheckScreen& screen, const CalibrationDocument& document) {
+void proposeResultCheck(ResultCheckScreen& screen, const CalibrationDocument& document) {
   screen.recording().proposePath(document.hasSession() && !document.last().run ? openFileOf(document)
                                                                                : QString());
 }
@@ -50,8 +50,8 @@ void chooseRecording(ResultCheckScreen& screen) {
   if (!file.isEmpty()) screen.recording().setPath(file);
 }
 
-void save(ResultCheckScreen& screen, const std::shared_ptr<const CheckedResult>& checked,
-          Workbench& workbench, SessionFiles& files) {
+void saveResultCheck(ResultCheckScreen& screen, const std::shared_ptr<const CheckedResult>& checked,
+                     Workbench& workbench, SessionFiles& files) {
   const auto write = [checked, version = workbench.version](const std::filesystem::path& folder) {
     writeCheckFiles(folder, checked->input, checked->run, version.toStdString(), checked->log.toStdString());
   };
@@ -66,14 +66,14 @@ void wireResultCheck(ResultCheckScreen& screen, Workbench& workbench, SessionFil
   wireOldResult(screen.result(), screen, workbench);
   wireWork(screen.work(), workbench.runner, [&job] { return job.running(); });
   const CalibrationDocument& document = workbench.document;
-  const auto suggest = [&screen, &document] { propose(screen, document); };
+  const auto suggest = [&screen, &document] { proposeResultCheck(screen, document); };
   QObject::connect(&document, &CalibrationDocument::runsChanged, &screen, suggest);
   QObject::connect(&document, &CalibrationDocument::sessionReplaced, &screen, suggest);
   QObject::connect(&document, &CalibrationDocument::fileChanged, &screen, suggest);
   QObject::connect(&screen.recording(), &PathRow::chooseRequested, &screen,
                    [&screen] { chooseRecording(screen); });
   QObject::connect(&screen, &ResultCheckScreen::checkRequested, &screen,
-                   [&screen, &workbench] { start(screen, workbench); });
+                   [&screen, &workbench] { startResultCheck(screen, workbench); });
   QObject::connect(&screen, &ResultCheckScreen::cancelRequested, &workbench.runner, &JobRunner::cancel);
   const auto kept = std::make_shared<std::shared_ptr<const CheckedResult>>();
   QObject::connect(&job, &ResultCheckJob::checked, &screen,
@@ -82,7 +82,7 @@ void wireResultCheck(ResultCheckScreen& screen, Workbench& workbench, SessionFil
                      screen.setCheck(checked->run.check);
                    });
   QObject::connect(&screen, &ResultCheckScreen::saveRequested, &screen, [&screen, kept, &workbench, &files] {
-    if (*kept) save(screen, *kept, workbench, files);
+    if (*kept) saveResultCheck(screen, *kept, workbench, files);
   });
 }
 

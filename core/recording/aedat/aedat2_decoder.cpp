@@ -5,7 +5,6 @@
 namespace evical::aedat {
 namespace {
 
-constexpr std::int64_t kMicrosecond_ns = 1000;
 constexpr std::int64_t kHalfRange_us = std::int64_t{1} << 31;
 constexpr std::int64_t kLargestWrapped_us = kLatestTime_ns / kMicrosecond_ns - 4 * kHalfRange_us;
 // The MPU-6150's at the full scales that jAER sets: 4 g and 500 deg/s.

@@ -17,7 +17,7 @@ namespace {
 
 using aedat::AddressLayout;
 
-constexpr std::size_t kLargestHeader_bytes = std::size_t{1} << 24;
+constexpr std::size_t kLargestAedat2Header_bytes = std::size_t{1} << 24;
 constexpr std::size_t kLooked_bytes = std::size_t{1} << 23;  // for what the header does not say
 constexpr Resolution kDavisSizes[] = {{240, 180}, {346, 260}, {640, 480}};
 
@@ -36,7 +36,7 @@ bool isHeaderLine(std::string_view line) {
 }
 
 // `bytes` are the file's first.
-Header readHeader(std::string_view bytes) {
+Header readAedat2Header(std::string_view bytes) {
   constexpr std::string_view kChip = "# AEChip: ", kEnd = "#End Of ASCII Header";
   Header header;
   for (;;) {
@@ -95,7 +95,7 @@ Resolution smallestDavis(const Resolution& reach_px) {
   return kDavisSizes[std::size(kDavisSizes) - 1];
 }
 
-StreamInfo streamOf(const char* name, StreamType type, const std::string& chip) {
+StreamInfo aedat2Stream(const char* name, StreamType type, const std::string& chip) {
   StreamInfo stream;
   stream.name = name;
   stream.type = type;
@@ -122,7 +122,7 @@ void guessChip(const Look& look, std::string& chip, Resolution& size_px, BlockFo
 std::unique_ptr<RecordingReader> openAedat2(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw badInput(path.string(), "the file cannot be opened", "Check its permissions");
-  const Header header = readHeader(bytesAt(file, 0, kLargestHeader_bytes));
+  const Header header = readAedat2Header(bytesAt(file, 0, kLargestAedat2Header_bytes));
   const Look look = lookAt(bytesAt(file, header.size, kLooked_bytes));
   BlockFormat format;
   format.name = "aedat2";
@@ -135,20 +135,20 @@ std::unique_ptr<RecordingReader> openAedat2(const std::filesystem::path& path) {
                    "Readable are those of DVS128 and DAVIS sensors; convert it with jAER or DV");
   }
   const AddressLayout layout = chip.starts_with("DVS128") ? AddressLayout::Dvs128 : AddressLayout::Davis;
-  format.streams.push_back(streamOf("events", StreamType::Events, chip));
+  format.streams.push_back(aedat2Stream("events", StreamType::Events, chip));
   format.streams.back().resolution_px = size_px;
   if (layout == AddressLayout::Davis && look.imu) {
-    format.streams.push_back(streamOf("imu", StreamType::Imu, "MPU-6150"));
+    format.streams.push_back(aedat2Stream("imu", StreamType::Imu, "MPU-6150"));
     format.notes.push_back(
         {"imu", FaultKind::Guess, 0.0,
          "The numbers are taken for those of the full scales 4 g and 500 deg/s, which jAER "
          "sets; at rest the norm of the acceleration must be 1 g."});
   }
   if (layout == AddressLayout::Davis && look.frames) {
-    format.streams.push_back(streamOf("frames", StreamType::Frames, chip));
+    format.streams.push_back(aedat2Stream("frames", StreamType::Frames, chip));
     format.streams.back().resolution_px = size_px;
   }
-  format.streams.push_back(streamOf("triggers", StreamType::Triggers, chip));
+  format.streams.push_back(aedat2Stream("triggers", StreamType::Triggers, chip));
   return std::make_unique<BlockReader>(path, std::move(format),
                                        std::make_unique<aedat::Aedat2Decoder>(layout, size_px));
 }

@@ -1,6 +1,7 @@
 #include "core/recording/aedat/aedat3_packets.h"
 
 #include "core/base/time.h"
+#include "core/data/recording.h"
 #include "core/recording/byte_cursor.h"
 
 #include <fmt/format.h>
@@ -10,21 +11,19 @@
 namespace evical::aedat3 {
 namespace {
 
-constexpr std::int64_t kMicrosecond_ns = 1000;
 constexpr std::uint64_t kLargestPacket_bytes = std::uint64_t{1} << 30;
 constexpr std::uint64_t kFrameHeader_bytes = 36;
 constexpr std::int32_t kSmallestEvent_bytes = 8;
 constexpr std::int32_t kTimeOffset_bytes = 4;  // of the types whose size is known
 constexpr std::int16_t kLastType = 12;
 constexpr std::int16_t kMostSources = 256;
-constexpr std::int32_t kLargestSide_px = 65536;
 
 Type typeOf(std::int16_t number) {
   return number <= static_cast<std::int16_t>(Type::Imu9) ? static_cast<Type>(number) : Type::Other;
 }
 
 // Of one event; 0: any.
-std::uint64_t sizeOf(Type type) {
+std::uint64_t elementSize(Type type) {
   switch (type) {
     case Type::Special:
     case Type::Polarity:
@@ -59,7 +58,7 @@ struct FrameFields {
   std::int32_t width = 0, height = 0, left = 0, top = 0;
 };
 
-FrameFields takeFields(ByteCursor& cursor) {
+FrameFields takeFrameFields(ByteCursor& cursor) {
   FrameFields fields;
   fields.channels = cursor.number<std::uint32_t>() >> 1 & 7;
   cursor.take(8);  // begin and end of the reading
@@ -89,7 +88,7 @@ void takePixels(std::string_view values, unsigned channels, Frame& frame) {
 bool decodeFrame(const PacketHeader& header, std::string_view bytes, std::vector<Frame>& frames,
                  std::string& unusable) {
   ByteCursor cursor(bytes);
-  const FrameFields fields = takeFields(cursor);
+  const FrameFields fields = takeFrameFields(cursor);
   Frame frame;
   std::int64_t end_ns = 0;
   const auto isSide = [](std::int32_t side_px) { return side_px >= 1 && side_px <= kLargestSide_px; };
@@ -139,7 +138,7 @@ std::optional<PacketHeader> decodeHeader(std::string_view bytes) {
   header.overflow = overflow;
   header.events = static_cast<std::uint64_t>(events);
   header.valid = static_cast<std::uint64_t>(valid);
-  const std::uint64_t known = sizeOf(header.type);
+  const std::uint64_t known = elementSize(header.type);
   const bool fits = (known == 0 || (known == header.event_bytes && time_offset == kTimeOffset_bytes)) &&
                     (header.type != Type::Frame || header.event_bytes >= kFrameHeader_bytes);
   if (!fits || header.dataBytes() > kLargestPacket_bytes) return std::nullopt;

@@ -15,8 +15,7 @@ namespace {
 using aedat3::PacketHeader;
 using aedat3::Type;
 
-constexpr std::uint64_t kLargestHeader_bytes = std::uint64_t{1} << 20;
-constexpr std::ptrdiff_t kMostAlikeFaults = 10;
+constexpr std::uint64_t kLargestAedat3Header_bytes = std::uint64_t{1} << 20;
 
 StreamType streamTypeOf(Type type) {
   switch (type) {
@@ -35,7 +34,7 @@ StreamType streamTypeOf(Type type) {
   return StreamType::Other;
 }
 
-std::string_view withoutEnd(std::string_view line) {
+std::string_view withoutLineEnd(std::string_view line) {
   while (!line.empty() && line.back() <= ' ') line.remove_suffix(1);
   return line;
 }
@@ -62,11 +61,11 @@ Aedat3Reader::Aedat3Reader(const std::filesystem::path& path) : path_(path.strin
 void Aedat3Reader::readFileHeader() {
   constexpr std::string_view kFormat = "#Format: ", kEnd = "#!END-HEADER";
   std::string_view bytes;
-  file_.read(0, std::min(file_.size(), kLargestHeader_bytes), bytes);
+  file_.read(0, std::min(file_.size(), kLargestAedat3Header_bytes), bytes);
   for (std::size_t at = 0; at < bytes.size();) {
     const std::size_t end = bytes.find('\n', at);
     const std::string_view line =
-        withoutEnd(bytes.substr(at, end == std::string_view::npos ? end : end - at));
+        withoutLineEnd(bytes.substr(at, end == std::string_view::npos ? end : end - at));
     if (end == std::string_view::npos || !line.starts_with('#')) break;
     at = end + 1;
     takeSource(line, sources_);

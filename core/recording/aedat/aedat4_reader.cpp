@@ -11,10 +11,9 @@
 namespace evical {
 namespace {
 
-constexpr std::uint64_t kLargestHeader_bytes = std::uint64_t{1} << 26;
+constexpr std::uint64_t kLargestAedat4Header_bytes = std::uint64_t{1} << 26;
 constexpr std::uint64_t kLargestTable_bytes = std::uint64_t{1} << 28;
 constexpr std::int32_t kLargestId = 9999;
-constexpr std::ptrdiff_t kMostAlikeFaults = 10;
 
 struct PacketType {
   std::string_view id;
@@ -50,7 +49,7 @@ aedat::FileHeader Aedat4Reader::readFileHeader() {
   std::string_view bytes;
   const bool has_size = file_.read(at, 4, bytes);
   const std::uint64_t size = has_size ? std::uint64_t{ByteCursor(bytes).number<std::uint32_t>()} + 4 : 4;
-  if (!has_size || size > kLargestHeader_bytes || !file_.read(at, size, bytes)) {
+  if (!has_size || size > kLargestAedat4Header_bytes || !file_.read(at, size, bytes)) {
     throw badInput(path_, fmt::format("the header at byte {} is cut off or damaged", at), advice);
   }
   const std::optional<aedat::FileHeader> header = aedat::decodeHeader(bytes);
@@ -139,7 +138,7 @@ void Aedat4Reader::addStreams(std::vector<aedat::StreamDescription> described,
     if (found != listed.end()) {
       info.messages = std::max(found->second.packets, found->second.elements);
     }
-    info.time_unit_ns = aedat::kMicrosecond_ns;
+    info.time_unit_ns = kMicrosecond_ns;
     info.acceleration_unit = AccelerationUnit::Gravity;
     info.angular_rate_unit = AngularRateUnit::DegreesPerSecond;
     stream_of_id_[described[i].id] = i;

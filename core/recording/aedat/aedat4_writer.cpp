@@ -13,12 +13,12 @@
 namespace evical {
 namespace {
 
-constexpr std::int64_t kPacketSpan_ns = 10'000'000;  // as DV's cameras
-constexpr std::size_t kPacketEvents = 65'536;
-constexpr std::size_t kPacketSamples = 1'000;
+constexpr std::int64_t kAedat4PacketSpan_ns = 10'000'000;  // as DV's cameras
+constexpr std::size_t kAedat4PacketEvents = 65'536;
+constexpr std::size_t kAedat4PacketSamples = 1'000;
 
 template <class Number>
-std::string bytesOf(Number value) {
+std::string fieldBytes(Number value) {
   return std::string(reinterpret_cast<const char*>(&value), sizeof(Number));
 }
 
@@ -43,7 +43,7 @@ class Aedat4Writer : public RecordingWriter {
   void write(std::size_t stream, EventSpan events) override {
     Stream& target = checked(stream, StreamType::Events);
     for (const Event& event : events) {
-      if (isFull(target.events, event.time_ns, kPacketEvents)) flush(stream);
+      if (isFull(target.events, event.time_ns, kAedat4PacketEvents)) flush(stream);
       target.events.push_back(event);
     }
   }
@@ -51,7 +51,7 @@ class Aedat4Writer : public RecordingWriter {
   void write(std::size_t stream, std::span<const ImuSample> samples) override {
     Stream& target = checked(stream, StreamType::Imu);
     for (const ImuSample& sample : samples) {
-      if (isFull(target.samples, sample.time_ns, kPacketSamples)) flush(stream);
+      if (isFull(target.samples, sample.time_ns, kAedat4PacketSamples)) flush(stream);
       target.samples.push_back(fromSi(sample, AccelerationUnit::Gravity, AngularRateUnit::DegreesPerSecond));
     }
   }
@@ -61,7 +61,7 @@ class Aedat4Writer : public RecordingWriter {
     const auto table_position = static_cast<std::int64_t>(file_.size());
     aedat::pack(compression_, aedat::encodeTable(table_), packed_);
     file_.append(packed_);
-    file_.overwrite(table_position_at_, bytesOf(table_position));
+    file_.overwrite(table_position_at_, fieldBytes(table_position));
     file_.finish();
   }
 
@@ -77,7 +77,7 @@ class Aedat4Writer : public RecordingWriter {
   template <class Element>
   static bool isFull(const std::vector<Element>& elements, std::int64_t time_ns, std::size_t most) {
     if (elements.empty()) return false;
-    return elements.size() >= most || time_ns - elements.front().time_ns >= kPacketSpan_ns;
+    return elements.size() >= most || time_ns - elements.front().time_ns >= kAedat4PacketSpan_ns;
   }
 
   aedat::StreamDescription describe(const StreamInfo& stream, const aedat::DeviceName& name) {
@@ -131,7 +131,7 @@ class Aedat4Writer : public RecordingWriter {
     entry.first_us = aedat::nearestMicrosecond(first_ns);
     entry.last_us = aedat::nearestMicrosecond(last_ns);
     table_.push_back(entry);
-    file_.append(bytesOf(entry.stream) + bytesOf(entry.size));
+    file_.append(fieldBytes(entry.stream) + fieldBytes(entry.size));
     file_.append(packed_);
   }
 

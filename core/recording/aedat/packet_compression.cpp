@@ -13,8 +13,8 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr std::size_t kFirstBuffer_bytes = std::size_t{1} << 16;
-constexpr std::size_t kLargestPacket_bytes = std::size_t{1} << 27;
-constexpr int kZstdLevel = 3;
+constexpr std::size_t kLargestUnpacked_bytes = std::size_t{1} << 27;
+constexpr int kPacketZstdLevel = 3;
 
 bool isLz4(Compression compression) {
   return compression == Compression::Lz4 || compression == Compression::Lz4High;
@@ -72,9 +72,9 @@ bool Unpacker::step(const char*& in, std::size_t& in_bytes, char* out, std::size
 }
 
 bool Unpacker::grow(std::size_t packed_bytes) {
-  if (buffer_.size() >= kLargestPacket_bytes) return false;
+  if (buffer_.size() >= kLargestUnpacked_bytes) return false;
   buffer_.resize(
-      std::min(kLargestPacket_bytes, std::max({2 * buffer_.size(), 4 * packed_bytes, kFirstBuffer_bytes})));
+      std::min(kLargestUnpacked_bytes, std::max({2 * buffer_.size(), 4 * packed_bytes, kFirstBuffer_bytes})));
   return true;
 }
 
@@ -111,7 +111,7 @@ void pack(Compression compression, std::string_view content, std::string& packed
   packed.resize(lz4 ? LZ4F_compressFrameBound(content.size(), nullptr) : ZSTD_compressBound(content.size()));
   const std::size_t size =
       lz4 ? LZ4F_compressFrame(packed.data(), packed.size(), content.data(), content.size(), nullptr)
-          : ZSTD_compress(packed.data(), packed.size(), content.data(), content.size(), kZstdLevel);
+          : ZSTD_compress(packed.data(), packed.size(), content.data(), content.size(), kPacketZstdLevel);
   // The bound leaves no other reason.
   if (lz4 ? LZ4F_isError(size) != 0 : ZSTD_isError(size) != 0) throw std::bad_alloc();
   packed.resize(size);

@@ -2,6 +2,7 @@
 // back. Times in the file are us. Source: inivation-docs "AEDAT_file_formats.md", dv-processing (fbs files).
 #pragma once
 
+#include "core/base/time.h"
 #include "core/data/event.h"
 #include "core/data/frame.h"
 #include "core/data/imu_units.h"
@@ -16,7 +17,6 @@
 namespace evical::aedat {
 
 inline constexpr std::string_view kMagic = "#!AER-DAT4.0\r\n";
-inline constexpr std::int64_t kMicrosecond_ns = 1000;
 inline constexpr std::size_t kPacketHeader_bytes = 8;  // i32 stream, i32 size
 
 struct FileHeader {

@@ -1,4 +1,5 @@
 #include "core/recording/aedat/stream_description.h"
+#include "core/data/recording.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +10,6 @@
 
 namespace evical::aedat {
 namespace {
-
-constexpr int kLargestSide_px = 65536;
 
 struct Entity {
   char letter;

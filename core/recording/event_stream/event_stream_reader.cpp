@@ -1,6 +1,7 @@
 #include "core/recording/event_stream/event_stream_reader.h"
 
 #include "core/base/error.h"
+#include "core/base/time.h"
 #include "core/recording/block_reader.h"
 #include "core/recording/byte_cursor.h"
 
@@ -13,7 +14,6 @@
 namespace evical {
 namespace {
 
-constexpr std::int64_t kMicrosecond_ns = 1000;
 constexpr std::size_t kHeader_bytes = 20;
 enum : unsigned { kGeneric = 0, kDvs = 1, kAtis = 2, kColor = 4 };
 
@@ -62,7 +62,7 @@ class EventStreamDecoder : public BlockDecoder {
   std::int64_t time_us_ = 0;
 };
 
-const char* nameOf(unsigned kind) {
+const char* kindName(unsigned kind) {
   switch (kind) {
     case kGeneric:
       return "generic";
@@ -95,7 +95,7 @@ std::unique_ptr<RecordingReader> openEventStream(const std::filesystem::path& pa
   }
   if (cursor.ok() && kind != kDvs && kind != kAtis) {
     throw badInput(path.string(),
-                   fmt::format("this is an Event Stream of {} events (type {})", nameOf(kind), kind),
+                   fmt::format("this is an Event Stream of {} events (type {})", kindName(kind), kind),
                    "Readable are DVS and ATIS events");
   }
   const int width_px = cursor.number<std::uint16_t>(), height_px = cursor.number<std::uint16_t>();
@@ -112,7 +112,7 @@ std::unique_ptr<RecordingReader> openEventStream(const std::filesystem::path& pa
   StreamInfo stream;
   stream.name = "events";
   stream.type = StreamType::Events;
-  stream.message = nameOf(kind);
+  stream.message = kindName(kind);
   stream.resolution_px = {width_px, height_px};
   stream.time_unit_ns = kMicrosecond_ns;
   BlockFormat format;

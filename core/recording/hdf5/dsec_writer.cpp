@@ -2,6 +2,7 @@
 // millisecond; Blosc with zstd. DSEC keeps its IMU elsewhere; here it is a group as in M3ED, imu/{ts, omega,
 // accel}: us of the same clock, t_offset included.
 #include "core/base/error.h"
+#include "core/base/time.h"
 #include "core/recording/hdf5/hdf5_filters.h"
 #include "core/recording/part_file.h"
 #include "core/recording/recording_writer.h"
@@ -17,7 +18,6 @@ namespace evical {
 namespace {
 
 constexpr hsize_t kEventChunk = 65'536, kImuChunk = 1'024;
-constexpr std::int64_t kMicrosecond_ns = 1000;
 
 std::int64_t nearestMicrosecond(std::int64_t time_ns) {
   const std::int64_t floor_us = time_ns / kMicrosecond_ns - (time_ns % kMicrosecond_ns < 0 ? 1 : 0);

@@ -12,9 +12,9 @@
 namespace evical::hdf5 {
 namespace {
 
-constexpr std::uint64_t kPacketRows = 32'768;
-constexpr std::int64_t kNanoseconds = 100'000'000'000'000'000;  // us would be 3000 years
-constexpr double kSecondsSpan_s = 1e6;                          // no recording is 12 days long
+constexpr std::uint64_t kTablePacketRows = 32'768;
+constexpr std::int64_t kEarliestNanoseconds = 100'000'000'000'000'000;  // us would be 3000 years
+constexpr double kSecondsSpan_s = 1e6;                                  // no recording is 12 days long
 constexpr std::uint16_t kOutside_px = 65'535;
 
 std::uint16_t pixel(std::int32_t value) {
@@ -30,7 +30,7 @@ void chooseUnit(double first, double last, TimeScale& time) {
   if (time.is_real) {
     if (std::abs(last - first) > kSecondsSpan_s) time.factor_ns = 1000.0;
     time.unit_ns = 1;
-  } else if (std::abs(first) > static_cast<double>(kNanoseconds)) {
+  } else if (std::abs(first) > static_cast<double>(kEarliestNanoseconds)) {
     time.unit_ns = 1;
   }
 }
@@ -90,7 +90,7 @@ class Columns : public EventTable {
     const auto ts = t.numbersFrom(row);
     const auto ps = p_.numbersFrom(row);
     const auto count = static_cast<std::size_t>(
-        std::min<std::uint64_t>({xs.size(), ys.size(), ts.size(), ps.size(), kPacketRows, rows_ - row}));
+        std::min<std::uint64_t>({xs.size(), ys.size(), ts.size(), ps.size(), kTablePacketRows, rows_ - row}));
     const std::size_t begin = events.size();
     events.resize(begin + count);
     std::size_t used = begin, bad = 0;
@@ -136,7 +136,7 @@ class EventRows : public EventTable {
       problem_ = values_.problem();
       return values_.blockEnd(row);
     }
-    const std::size_t count = std::min<std::size_t>(values.size() / 4, kPacketRows);
+    const std::size_t count = std::min<std::size_t>(values.size() / 4, kTablePacketRows);
     for (std::size_t i = 0; i < count; ++i) {
       Event event{};
       if (!time_.convert(values[4 * i + 2], event.time_ns)) {
@@ -177,7 +177,7 @@ class Compound : public EventTable {
       problem_ = values_.problem();
       return values_.blockEnd(row);
     }
-    const std::size_t count = std::min<std::size_t>(values.size(), kPacketRows);
+    const std::size_t count = std::min<std::size_t>(values.size(), kTablePacketRows);
     for (std::size_t i = 0; i < count; ++i) {
       Event event{0, values[i].x, values[i].y, values[i].p > 0};
       if (time_.convert(values[i].t, event.time_ns)) {

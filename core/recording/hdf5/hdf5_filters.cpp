@@ -16,7 +16,7 @@
 namespace evical::hdf5 {
 namespace {
 
-constexpr std::size_t kLargestChunk_bytes = std::size_t{1} << 30;
+constexpr std::size_t kLargestFilteredChunk_bytes = std::size_t{1} << 30;
 constexpr std::size_t kLzfLargestRatio = 100;  // 264 bytes out of 3
 constexpr unsigned kBloscZstd = 5;
 constexpr unsigned kBloscLevel = 1;
@@ -63,7 +63,7 @@ std::size_t blosc(unsigned flags, std::size_t parameters, const unsigned* values
   if ((flags & H5Z_FLAG_REVERSE) == 0) return packBlosc(parameters, values, bytes, buffer_bytes, buffer);
   std::size_t size = 0;
   if (blosc_cbuffer_validate(*buffer, bytes, &size) != 0) return 0;
-  if (size == 0 || size < expected_bytes || size > kLargestChunk_bytes) return 0;
+  if (size == 0 || size < expected_bytes || size > kLargestFilteredChunk_bytes) return 0;
   Memory content(size);
   if (!content.data()) return 0;
   const int unpacked = blosc_decompress_ctx(*buffer, content.data(), size, 1);
@@ -73,8 +73,8 @@ std::size_t blosc(unsigned flags, std::size_t parameters, const unsigned* values
 
 std::size_t lzf(unsigned flags, std::size_t parameters, const unsigned* values, std::size_t bytes,
                 std::size_t* buffer_bytes, void** buffer) {
-  if ((flags & H5Z_FLAG_REVERSE) == 0 || bytes > kLargestChunk_bytes) return 0;
-  const std::size_t largest = std::min(kLargestChunk_bytes, bytes * kLzfLargestRatio);
+  if ((flags & H5Z_FLAG_REVERSE) == 0 || bytes > kLargestFilteredChunk_bytes) return 0;
+  const std::size_t largest = std::min(kLargestFilteredChunk_bytes, bytes * kLzfLargestRatio);
   std::size_t room = std::max<std::size_t>({parameters > 2 ? values[2] : 0, expected_bytes, bytes});
   if (expected_bytes > largest) return 0;
   for (room = std::min(room, largest); room > 0; room = std::min(2 * room, largest)) {
@@ -97,7 +97,7 @@ std::size_t ecf(unsigned flags, std::size_t, const unsigned*, std::size_t bytes,
   if (!decodeEcf({static_cast<const char*>(*buffer), bytes}, events)) return 0;
   const std::size_t used = events.size() * sizeof(EcfEvent);
   const std::size_t room = std::max(used, expected_bytes);
-  if (room == 0 || room > kLargestChunk_bytes) return 0;
+  if (room == 0 || room > kLargestFilteredChunk_bytes) return 0;
   Memory content(room);
   if (!content.data()) return 0;
   EcfEvent none;

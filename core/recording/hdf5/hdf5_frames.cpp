@@ -1,6 +1,7 @@
 #include "core/recording/hdf5/hdf5_frames.h"
 
 #include "core/base/error.h"
+#include "core/data/recording.h"
 #include "core/recording/hdf5/hdf5_filters.h"
 
 #include <fmt/format.h>
@@ -11,10 +12,10 @@
 namespace evical::hdf5 {
 namespace {
 
-constexpr std::uint64_t kLargestSide_px = 65536;
-constexpr std::size_t kLargestChunk_bytes = std::size_t{1} << 28;
-constexpr std::uint64_t kLargestPicture_bytes = std::uint64_t{1} << 28;
-constexpr std::size_t kLeastCache_bytes = std::size_t{1} << 20, kLargestCache_bytes = std::size_t{1} << 28;
+constexpr std::size_t kLargestFrameChunk_bytes = std::size_t{1} << 28;
+constexpr std::uint64_t kLargestFrame_bytes = std::uint64_t{1} << 28;
+constexpr std::size_t kLeastFrameCache_bytes = std::size_t{1} << 20,
+                      kLargestFrameCache_bytes = std::size_t{1} << 28;
 
 }  // namespace
 
@@ -26,7 +27,7 @@ FrameTable::FrameTable(hid_t file, const DatasetInfo& pictures, const DatasetInf
   channels_ = rank_ == 4 ? extent[3] : 1;
   const bool good = rank_ >= 3 && rank_ <= 4 && extent[1] > 0 && extent[1] <= kLargestSide_px &&
                     extent[2] > 0 && extent[2] <= kLargestSide_px && (channels_ == 1 || channels_ == 3) &&
-                    extent[1] * extent[2] * channels_ <= kLargestPicture_bytes;
+                    extent[1] * extent[2] * channels_ <= kLargestFrame_bytes;
   if (!good) throw badInput(place, path_ + " has no extent of pictures in grey or RGB");
   size_px_ = {static_cast<int>(extent[2]), static_cast<int>(extent[1])};
   rows_ = std::min(extent[0], times_.rows().rows());
@@ -38,10 +39,10 @@ FrameTable::FrameTable(hid_t file, const DatasetInfo& pictures, const DatasetInf
   // With room for the chunks of one picture, so that none is unpacked twice.
   const std::uint64_t picture_bytes = extent[1] * extent[2] * channels_;
   const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
-  H5Pset_chunk_cache(
-      access, 521,
-      std::clamp<std::size_t>(2 * (chunk_bytes_ + picture_bytes), kLeastCache_bytes, kLargestCache_bytes),
-      1.0);
+  H5Pset_chunk_cache(access, 521,
+                     std::clamp<std::size_t>(2 * (chunk_bytes_ + picture_bytes), kLeastFrameCache_bytes,
+                                             kLargestFrameCache_bytes),
+                     1.0);
   dataset_ = Handle(H5Dopen2(file, path_.c_str(), access), H5Dclose);
 }
 
@@ -60,7 +61,7 @@ void FrameTable::checkLayout(const std::string& place) {
   H5Pget_chunk(creation, rank_, chunk_.data());
   std::uint64_t bytes = 1;
   for (const hsize_t side : chunk_) {
-    if (side == 0 || side > kLargestChunk_bytes / bytes)
+    if (side == 0 || side > kLargestFrameChunk_bytes / bytes)
       throw badInput(place, fmt::format("the chunks of {} are too large", path_));
     bytes *= side;
   }

@@ -12,7 +12,7 @@
 namespace evical::hdf5 {
 namespace {
 
-constexpr std::size_t kPacketSamples = 10;
+constexpr std::size_t kTablePacketSamples = 10;
 constexpr double kGravity_m_s2 = 9.80665;
 constexpr std::size_t kSamplesForGravity = 1000;
 
@@ -33,7 +33,7 @@ class ImuDatasets : public ImuTable {
   }
 
   void load(std::vector<RawImuSample>& samples) override {
-    while (row_ < rows_ && samples.size() < kPacketSamples) {
+    while (row_ < rows_ && samples.size() < kTablePacketSamples) {
       if (skipDamage()) continue;
       const auto first = first_.numbersFrom(row_);
       const double* rate = first.data() + rate_column_;
@@ -88,7 +88,7 @@ class ImuText : public ImuTable {
 
   void load(std::vector<RawImuSample>& samples) override {
     std::string_view line;
-    while (samples.size() < kPacketSamples && lines_.next(line)) {
+    while (samples.size() < kTablePacketSamples && lines_.next(line)) {
       RawImuSample sample;
       if (parse(line, sample)) {
         samples.push_back(sample);

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
+#include "core/data/recording.h"
 
 #include <fmt/format.h>
 
@@ -14,8 +15,7 @@
 namespace evical::hdf5 {
 namespace {
 
-constexpr int kLargestSide_px = 65536;
-constexpr std::size_t kMostNamed = 12;
+constexpr std::size_t kMostNamedTables = 12;
 
 std::string withoutSlash(std::string folder) {
   if (!folder.empty()) folder.pop_back();
@@ -75,9 +75,9 @@ Resolution parseGeometry(const std::string& text) {
   return good ? size_px : Resolution{};
 }
 
-class LayoutFinder {
+class TableLayoutFinder {
  public:
-  LayoutFinder(hid_t file, const std::string& place)
+  TableLayoutFinder(hid_t file, const std::string& place)
       : file_(file), place_(place), list_(listDatasets(file, place)), datasets_(list_.datasets) {}
 
   FoundStreams run() {
@@ -250,12 +250,13 @@ class LayoutFinder {
   [[noreturn]] void failWithNames() const {
     std::vector<std::string> names;
     for (const DatasetInfo& dataset : datasets_)
-      if (names.size() < kMostNamed) names.push_back(dataset.path);
+      if (names.size() < kMostNamedTables) names.push_back(dataset.path);
     throw badInput(place_,
-                   names.empty() ? "the HDF5 file has no datasets; was the recording finished?"
-                                 : fmt::format("the HDF5 file has no events and no IMU in a layout that is "
-                                               "known; its datasets: {}{}",
-                                               joined(names), datasets_.size() > kMostNamed ? ", ..." : ""),
+                   names.empty()
+                       ? "the HDF5 file has no datasets; was the recording finished?"
+                       : fmt::format("the HDF5 file has no events and no IMU in a layout that is "
+                                     "known; its datasets: {}{}",
+                                     joined(names), datasets_.size() > kMostNamedTables ? ", ..." : ""),
                    "Known are DSEC, VECtor, TUM-VIE, e2calib, M3ED, MVSEC, evlib and Metavision");
   }
 
@@ -271,7 +272,7 @@ class LayoutFinder {
 }  // namespace
 
 FoundStreams findStreams(hid_t file, const std::string& place) {
-  return LayoutFinder(file, place).run();
+  return TableLayoutFinder(file, place).run();
 }
 
 }  // namespace evical::hdf5

@@ -12,7 +12,6 @@
 namespace evical {
 namespace {
 
-constexpr std::ptrdiff_t kMostAlikeFaults = 10;
 constexpr const char* kImuText = "imu_data.txt";
 
 // "events_left" of "mocap-desk-events_left.h5"; empty for other files.

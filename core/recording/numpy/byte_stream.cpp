@@ -14,7 +14,7 @@
 namespace evical::numpy {
 namespace {
 
-constexpr std::size_t kBlock_bytes = std::size_t{1} << 16;
+constexpr std::size_t kStreamBlock_bytes = std::size_t{1} << 16;
 constexpr std::uint64_t kMostDeflated = 1032;  // zlib.net, "zlib technical details"
 
 std::ifstream opened(const ByteRange& range) {
@@ -59,7 +59,7 @@ class StoredBytes : public ByteStream {
 
   bool skip(std::uint64_t count) override {
     if (count > rest_) return false;
-    if (count <= kBlock_bytes) return readPast(static_cast<std::size_t>(count));
+    if (count <= kStreamBlock_bytes) return readPast(static_cast<std::size_t>(count));
     checksum_.giveUp();
     file_.seekg(static_cast<std::streamoff>(count), std::ios::cur);
     rest_ -= count;
@@ -105,7 +105,7 @@ class InflatedBytes : public ByteStream {
   }
 
   bool skip(std::uint64_t count) override {
-    std::vector<char> passed(kBlock_bytes);
+    std::vector<char> passed(kStreamBlock_bytes);
     while (count > 0) {
       const std::size_t got =
           read(passed.data(), static_cast<std::size_t>(std::min<std::uint64_t>(count, passed.size())));
@@ -143,7 +143,7 @@ class InflatedBytes : public ByteStream {
   std::ifstream file_;
   std::uint64_t packed_rest_, rest_;
   Checksum checksum_;
-  std::array<char, kBlock_bytes> packed_{};
+  std::array<char, kStreamBlock_bytes> packed_{};
   z_stream state_{};
   bool ended_ = false;
   std::string problem_;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kLongestHeader_bytes = std::size_t{1} << 18;
 constexpr std::size_t kLargestElement_bytes = std::size_t{1} << 16;
-constexpr int kDeepest = 8;  // structures within structures
+constexpr int kDeepestStructure = 8;  // structures within structures
 
 class HeaderReader {
  public:
@@ -74,7 +74,7 @@ class HeaderReader {
 
   // Appends the fields of a type that stands at `offset`; returns its size.
   std::size_t addType(const Literal& type, const std::string& name, std::size_t offset, int depth) {
-    if (depth > kDeepest) fail("the array's type is nested too deeply");
+    if (depth > kDeepestStructure) fail("the array's type is nested too deeply");
     if (type.kind == Literal::Kind::Text) return addPlain(type.text, name, offset);
     if (type.kind != Literal::Kind::List) fail("the array's type is not understood");
     std::size_t size = 0;

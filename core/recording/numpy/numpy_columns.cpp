@@ -5,7 +5,7 @@
 namespace evical::numpy {
 namespace {
 
-constexpr std::size_t kBlock_bytes = std::size_t{1} << 20;
+constexpr std::size_t kColumnBlock_bytes = std::size_t{1} << 20;
 
 }  // namespace
 
@@ -39,7 +39,7 @@ ColumnBlocks::ColumnBlocks(std::span<const Column> columns, std::uint64_t rows) 
 
 std::size_t ColumnBlocks::next(std::size_t most) {
   const std::size_t rows = static_cast<std::size_t>(std::min<std::uint64_t>(
-      {most, rows_ - read_, std::max<std::size_t>(1, kBlock_bytes / largest_stride_)}));
+      {most, rows_ - read_, std::max<std::size_t>(1, kColumnBlock_bytes / largest_stride_)}));
   in_block_ = rows;
   if (rows == 0) return 0;
   for (Source& source : sources_) {

@@ -1,6 +1,7 @@
 #include "core/recording/numpy/numpy_layouts.h"
 
 #include "core/base/time.h"
+#include "core/data/recording.h"
 #include "core/recording/column_guess.h"
 #include "core/recording/numpy/numpy_names.h"
 
@@ -16,10 +17,9 @@ namespace evical::numpy {
 namespace {
 
 constexpr std::size_t kHeadRows = 2000;
-constexpr std::size_t kEnoughRows = 100;
-constexpr double kFewestEventsPerS = 50.0;  // as seconds; slower ones are us with fractions
-constexpr std::size_t kFewestRows = 5;      // of a table that is told by its numbers: a matrix has four
-constexpr int kLargestSide_px = 65'536;
+constexpr std::size_t kEnoughArrayRows = 100;
+constexpr double kFewestArrayEventsPerS = 50.0;  // as seconds; slower ones are us with fractions
+constexpr std::size_t kFewestRows = 5;           // of a table that is told by its numbers: a matrix has four
 constexpr double kCoarse_ns = 1000.0;
 
 // Numbers of one kind, one a row, and how many rows are claimed and there.
@@ -119,8 +119,8 @@ std::vector<ColumnNumbers> headOf(std::span<const Column> columns, std::uint64_t
 
 // The unit that the first times are in, where no name and no type tells it.
 std::int64_t unitOfTimes(const ColumnNumbers& times, std::size_t rows) {
-  const bool slow =
-      rows >= kEnoughRows && static_cast<double>(rows) < kFewestEventsPerS * (times.last - times.first);
+  const bool slow = rows >= kEnoughArrayRows &&
+                    static_cast<double>(rows) < kFewestArrayEventsPerS * (times.last - times.first);
   return !times.whole && slow ? 1000 : guessTimeUnit_ns(times, rows);
 }
 
@@ -163,9 +163,9 @@ EventLayout layoutOf(const std::array<Numbers, 4>& numbers, std::optional<std::i
   return layout;
 }
 
-class LayoutFinder {
+class ArrayLayoutFinder {
  public:
-  explicit LayoutFinder(const std::vector<Array>& arrays) : arrays_(arrays) {}
+  explicit ArrayLayoutFinder(const std::vector<Array>& arrays) : arrays_(arrays) {}
 
   FoundArrays run() {
     for (const Array& array : arrays_) {
@@ -355,7 +355,7 @@ class LayoutFinder {
 }  // namespace
 
 FoundArrays findEvents(const std::vector<Array>& arrays) {
-  return LayoutFinder(arrays).run();
+  return ArrayLayoutFinder(arrays).run();
 }
 
 bool nameEvents(const std::vector<std::string>& arrays) {

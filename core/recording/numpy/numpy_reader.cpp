@@ -13,8 +13,7 @@ namespace evical {
 namespace {
 
 constexpr std::size_t kMostNamed = 20;
-constexpr std::ptrdiff_t kMostAlikeFaults = 10;
-constexpr const char* kReadable =
+constexpr const char* kReadableArrays =
     "Readable are structured arrays with fields x, y, t, p, arrays of these names (also xy, timestamps, "
     "polarity and "
     "the like), and rows of four numbers that are t, x, y, p in some order";
@@ -67,7 +66,7 @@ NumpyReader::NumpyReader(const std::filesystem::path& path) : path_(path) {
     files_ = numpy::numberedFiles(path);
     first_file = firstWithEvents(files_);
     if (first_file == files_.size())
-      throw badInput(path.string(), "the folder has no arrays of events", kReadable);
+      throw badInput(path.string(), "the folder has no arrays of events", kReadableArrays);
     found = numpy::arraysIn(files_[first_file]);
   }
   for (const std::string& problem : found.problems) addFault("", FaultKind::Corrupt, problem);
@@ -150,7 +149,7 @@ void NumpyReader::failWithNames(const std::vector<numpy::Array>& arrays,
   if (arrays.size() == 1 && arrays.front().range.path == path_ && !objects &&
       !arrays.front().header.isStructured())
     problem += ". Where each field has a file of its own, give the folder";
-  throw badInput(path_.string(), problem, kReadable);
+  throw badInput(path_.string(), problem, kReadableArrays);
 }
 
 void NumpyReader::select(const std::vector<std::size_t>& streams) {

@@ -6,7 +6,7 @@
 namespace evical::numpy {
 namespace {
 
-constexpr int kDeepest = 32;
+constexpr int kDeepestLiteral = 32;
 
 class Parser {
  public:
@@ -36,7 +36,7 @@ class Parser {
 
   bool parse(Literal& literal, int depth) {
     skipBlanks();
-    if (rest_.empty() || depth > kDeepest) return false;
+    if (rest_.empty() || depth > kDeepestLiteral) return false;
     const char first = rest_.front();
     if (take('[')) return parseItems(literal, Literal::Kind::List, ']', depth);
     if (take('(')) return parseItems(literal, Literal::Kind::List, ')', depth);

@@ -37,7 +37,7 @@ PictureList newList(std::string name, const char* layout, fs::path folder) {
   return list;
 }
 
-std::string nameOf(const fs::path& folder) {
+std::string folderName(const fs::path& folder) {
   const fs::path plain = folder.filename().empty() ? folder.parent_path() : folder;
   const std::string name = plain.filename().string();
   return name.empty() || name == "." || name == ".." ? "pictures" : name;
@@ -55,7 +55,7 @@ bool isImuTable(const fs::path& path) {
 
 void addEurocCamera(const fs::path& folder, PictureFolder& found) {
   if (!isFile(folder / "data.csv") || !isFolder(folder / "data")) return;
-  PictureList list = newList(nameOf(folder), "EuRoC", folder / "data");
+  PictureList list = newList(folderName(folder), "EuRoC", folder / "data");
   readNamedTimes(folder / "data.csv", kNanoseconds, list);
   found.lists.push_back(std::move(list));
 }

@@ -12,10 +12,9 @@
 namespace evical {
 namespace {
 
-constexpr std::ptrdiff_t kMostAlikeFaults = 10;
 constexpr std::uintmax_t kLargestPicture_bytes = std::uintmax_t{1} << 28;
 
-std::string bytesOf(const std::filesystem::path& path, std::uintmax_t most) {
+std::string fileContent(const std::filesystem::path& path, std::uintmax_t most) {
   std::ifstream file(path, std::ios::binary);
   std::string bytes(static_cast<std::size_t>(most), '\0');
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
@@ -24,14 +23,14 @@ std::string bytesOf(const std::filesystem::path& path, std::uintmax_t most) {
 }
 
 // Of the first picture that is there.
-Resolution sizeOf(const pictures::PictureList& list) {
+Resolution firstPictureSize(const pictures::PictureList& list) {
   constexpr std::size_t kMostTried = 10;
   constexpr std::uintmax_t kHead_bytes = 1 << 16;
   for (std::size_t i = 0; i < std::min(list.pictures.size(), kMostTried); ++i) {
     const std::filesystem::path path = list.folder / list.pictures[i].name;
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored)) continue;
-    const Resolution size_px = pictureSize(bytesOf(path, kHead_bytes));
+    const Resolution size_px = pictureSize(fileContent(path, kHead_bytes));
     if (size_px.known()) return size_px;
   }
   return {};
@@ -45,7 +44,7 @@ PictureReader::PictureReader(std::vector<pictures::PictureList> lists) {
     stream.name = list.name;
     stream.type = StreamType::Frames;
     stream.message = list.layout;
-    stream.resolution_px = sizeOf(list);
+    stream.resolution_px = firstPictureSize(list);
     stream.messages = list.pictures.size();
     stream.timed = list.timed;
     streams_.push_back(std::move(stream));
@@ -91,7 +90,7 @@ bool PictureReader::load(std::size_t stream, const pictures::Picture& picture, F
                                      : fmt::format("has {} bytes, more than a picture", size)));
     return false;
   }
-  const std::string bytes = bytesOf(path, size);
+  const std::string bytes = fileContent(path, size);
   if (pictureKind(bytes) == PictureKind::None) {
     addFault(stream, bytes.empty() ? FaultKind::Unreadable : FaultKind::Corrupt,
              fmt::format("{} {}; it is left out.", picture.name,

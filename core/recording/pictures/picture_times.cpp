@@ -11,8 +11,7 @@
 namespace evical::pictures {
 namespace {
 
-constexpr std::ptrdiff_t kMostAlikeFaults = 10;
-constexpr int kMicroseconds = 3;  // digits
+constexpr int kMicrosecondDigits = 3;  // digits
 constexpr double kLongestExposure_s = 1.0;
 
 // Hands each line that may be a row to `take`, which is false where it is none.
@@ -86,7 +85,7 @@ void pairWithTimes(const std::vector<TimeRow>& rows, bool two_columns, PictureLi
 }
 
 void readExposures(const std::filesystem::path& table, PictureList& list) {
-  const std::vector<TimeRow> rows = readTimes(table, kMicroseconds, false, list);
+  const std::vector<TimeRow> rows = readTimes(table, kMicrosecondDigits, false, list);
   if (rows.size() != list.pictures.size()) {
     addFault(list, FaultKind::Metadata,
              fmt::format("There are {} pictures and {} exposures in {}; the exposures are left out.",

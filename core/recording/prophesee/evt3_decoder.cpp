@@ -12,7 +12,7 @@ constexpr std::int64_t kWrap_us = std::int64_t{1} << 24;
 constexpr std::uint32_t kHalfHigh = 1U << 11;  // a step back by so much is a wrap, a smaller one disorder
 constexpr std::uint32_t kNearWrap = 1U << 6;   // a late word from before a wrap lies so close to it
 constexpr std::uint32_t kLargestHigh = 0xFFF;
-constexpr std::uint32_t kLargestSide_px = 1U << 11;
+constexpr std::uint32_t kEvt3Side_px = 1U << 11;
 
 enum class Code : unsigned {
   Y = 0x0,
@@ -29,8 +29,8 @@ enum class Code : unsigned {
 
 void Evt3Decoder::setResolution(Resolution resolution_px) {
   const auto side = [&](int length_px) {
-    return resolution_px.known() ? std::min(static_cast<std::uint32_t>(length_px), kLargestSide_px)
-                                 : kLargestSide_px;
+    return resolution_px.known() ? std::min(static_cast<std::uint32_t>(length_px), kEvt3Side_px)
+                                 : kEvt3Side_px;
   };
   width_px_ = side(resolution_px.width_px);
   height_px_ = side(resolution_px.height_px);

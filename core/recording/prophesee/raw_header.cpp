@@ -14,9 +14,10 @@
 namespace evical::prophesee {
 namespace {
 
-constexpr int kLargestSide_px = 16384;  // DAT has 14 bits
+constexpr int kLargestSensorSide_px = 16384;  // DAT has 14 bits
 constexpr unsigned char kDatEventBytes = 8;
-constexpr const char* kEncodings = "Readable are EVT2, EVT2.1 and EVT3; convert it with Metavision's tools";
+constexpr const char* kReadableEncodings =
+    "Readable are EVT2, EVT2.1 and EVT3; convert it with Metavision's tools";
 
 struct Field {
   std::string key, value;
@@ -40,15 +41,15 @@ constexpr KnownSystem kSystems[] = {
 constexpr int kSystemMask = 0x7F;
 constexpr int kFirstPlainSystem = 55;  // from which EVT 2.1 has its halves in order
 
-std::string_view trimmed(std::string_view text) {
+std::string_view trimmedValue(std::string_view text) {
   const std::size_t begin = std::min(text.find_first_not_of(" \t\r"), text.size());
   const std::size_t end = text.find_last_not_of(" \t\r");
   return end == std::string_view::npos ? std::string_view{} : text.substr(begin, end + 1 - begin);
 }
 
-std::optional<int> numberIn(std::string_view text) {
+std::optional<int> headerNumber(std::string_view text) {
   int number = 0;
-  text = trimmed(text);
+  text = trimmedValue(text);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return number;
@@ -61,8 +62,8 @@ bool isText(std::string_view line) {
 }
 
 // Takes the lines off; `offset` is where the data begin.
-std::vector<Field> takeFields(const std::filesystem::path& path, std::string_view start,
-                              std::uint64_t& offset) {
+std::vector<Field> takeHeaderFields(const std::filesystem::path& path, std::string_view start,
+                                    std::uint64_t& offset) {
   std::vector<Field> fields;
   offset = 0;
   while (start.substr(offset).starts_with("% ")) {
@@ -74,15 +75,16 @@ std::vector<Field> takeFields(const std::filesystem::path& path, std::string_vie
                      "Copy the file again");
     }
     offset = end + 1;
-    const std::string_view content = trimmed(line.substr(2));
+    const std::string_view content = trimmedValue(line.substr(2));
     if (content == "end") break;
     const std::size_t blank = std::min(content.find(' '), content.size());
-    fields.push_back({std::string(content.substr(0, blank)), std::string(trimmed(content.substr(blank)))});
+    fields.push_back(
+        {std::string(content.substr(0, blank)), std::string(trimmedValue(content.substr(blank)))});
   }
   return fields;
 }
 
-const std::string* find(const std::vector<Field>& fields, std::string_view key) {
+const std::string* fieldNamed(const std::vector<Field>& fields, std::string_view key) {
   const auto found =
       std::find_if(fields.begin(), fields.end(), [&](const Field& field) { return field.key == key; });
   return found == fields.end() ? nullptr : &found->value;
@@ -103,33 +105,33 @@ void addOptions(std::vector<Field>& fields, std::string_view format) {
 Resolution resolutionIn(const std::vector<Field>& fields) {
   std::optional<int> width, height;
   for (const Field& field : fields) {
-    if (field.key == "width" || field.key == "Width") width = numberIn(field.value);
-    if (field.key == "height" || field.key == "Height") height = numberIn(field.value);
+    if (field.key == "width" || field.key == "Width") width = headerNumber(field.value);
+    if (field.key == "height" || field.key == "Height") height = headerNumber(field.value);
     const std::size_t cross = field.value.find('x');
     if (field.key == "geometry" && cross != std::string::npos) {
-      width = numberIn(std::string_view(field.value).substr(0, cross));
-      height = numberIn(std::string_view(field.value).substr(cross + 1));
+      width = headerNumber(std::string_view(field.value).substr(0, cross));
+      height = headerNumber(std::string_view(field.value).substr(cross + 1));
     }
   }
   const auto good = [](const std::optional<int>& side) {
-    return side && *side > 0 && *side <= kLargestSide_px;
+    return side && *side > 0 && *side <= kLargestSensorSide_px;
   };
   return good(width) && good(height) ? Resolution{*width, *height} : Resolution{};
 }
 
 std::optional<Encoding> encodingIn(const std::filesystem::path& path, const std::vector<Field>& fields) {
-  const std::string *format = find(fields, "format"), *old = find(fields, "evt");
+  const std::string *format = fieldNamed(fields, "format"), *old = fieldNamed(fields, "evt");
   if (!format && !old) return std::nullopt;
   const std::string name = format ? format->substr(0, format->find(';')) : *old;
   if (name == "EVT2" || name == "2.0") return Encoding::Evt2;
   if (name == "EVT21" || name == "2.1") return Encoding::Evt21;
   if (name == "EVT3" || name == "3.0") return Encoding::Evt3;
   throw badInput(path.string(), fmt::format("the header says encoding \"{}\", which cannot be read", name),
-                 kEncodings);
+                 kReadableEncodings);
 }
 
 HalfOrder halfOrderIn(const std::vector<Field>& fields, const std::optional<int>& system) {
-  if (const std::string* endianness = find(fields, "endianness")) {
+  if (const std::string* endianness = fieldNamed(fields, "endianness")) {
     if (*endianness == "little") return HalfOrder::Plain;
     if (*endianness == "legacy") return HalfOrder::Exchanged;
   }
@@ -156,18 +158,18 @@ bool takeDatBytes(std::string_view start, FileHeader& header) {
 
 FileHeader parseHeader(const std::filesystem::path& path, std::string_view start) {
   FileHeader header;
-  std::vector<Field> fields = takeFields(path, start, header.data_offset);
-  if (const std::string* format = find(fields, "format")) addOptions(fields, std::string(*format));
+  std::vector<Field> fields = takeHeaderFields(path, start, header.data_offset);
+  if (const std::string* format = fieldNamed(fields, "format")) addOptions(fields, std::string(*format));
   header.resolution_px = resolutionIn(fields);
-  const std::string* version = find(fields, "Version");
-  header.version = version ? numberIn(*version).value_or(0) : 0;
+  const std::string* version = fieldNamed(fields, "Version");
+  header.version = version ? headerNumber(*version).value_or(0) : 0;
   const std::optional<Encoding> encoding = encodingIn(path, fields);
   if (!encoding && takeDatBytes(start, header)) {
     if (fields.empty()) header.version = 2;  // what all files of the last ten years are
     return header;
   }
-  const std::string* system_text = find(fields, "system_ID");
-  const std::optional<int> system = system_text ? numberIn(*system_text) : std::nullopt;
+  const std::string* system_text = fieldNamed(fields, "system_ID");
+  const std::optional<int> system = system_text ? headerNumber(*system_text) : std::nullopt;
   const auto known = std::find_if(std::begin(kSystems), std::end(kSystems), [&](const KnownSystem& entry) {
     return system && entry.id == (*system & kSystemMask);
   });

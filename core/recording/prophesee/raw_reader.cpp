@@ -1,5 +1,6 @@
 #include "core/recording/prophesee/raw_reader.h"
 
+#include "core/base/time.h"
 #include "core/recording/block_reader.h"
 #include "core/recording/prophesee/raw_header.h"
 #include "core/recording/prophesee/word_decoders.h"
@@ -14,9 +15,7 @@ namespace {
 using prophesee::Encoding;
 using prophesee::FileHeader;
 
-constexpr std::int64_t kMicrosecond_ns = 1000;
-
-std::string firstBytes(const std::filesystem::path& path) {
+std::string headerBytes(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::string bytes(prophesee::kLargestHeader_bytes, '\0');
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
@@ -24,7 +23,7 @@ std::string firstBytes(const std::filesystem::path& path) {
   return bytes;
 }
 
-const char* nameOf(Encoding encoding) {
+const char* encodingName(Encoding encoding) {
   switch (encoding) {
     case Encoding::Evt2:
       return "EVT2";
@@ -56,11 +55,11 @@ std::unique_ptr<BlockDecoder> decoderFor(const FileHeader& header, std::string_v
   return std::make_unique<prophesee::DatDecoder>(header);
 }
 
-StreamInfo streamOf(StreamType type, const FileHeader& header) {
+StreamInfo rawStream(StreamType type, const FileHeader& header) {
   StreamInfo stream;
   stream.name = type == StreamType::Events ? "events" : "triggers";
   stream.type = type;
-  stream.message = nameOf(header.encoding);
+  stream.message = encodingName(header.encoding);
   if (type == StreamType::Events) stream.resolution_px = header.resolution_px;
   stream.time_unit_ns = kMicrosecond_ns;
   return stream;
@@ -69,15 +68,15 @@ StreamInfo streamOf(StreamType type, const FileHeader& header) {
 }  // namespace
 
 std::unique_ptr<RecordingReader> openProphesee(const std::filesystem::path& path) {
-  const std::string start = firstBytes(path);
+  const std::string start = headerBytes(path);
   const FileHeader header = prophesee::parseHeader(path, start);
   const bool dat = header.encoding == Encoding::Dat;
   const bool only_triggers = dat && header.event_type == 14;
   BlockFormat format;
   format.name = dat ? "prophesee_dat" : "prophesee_raw";
   format.data_offset = header.data_offset;
-  if (!only_triggers) format.streams.push_back(streamOf(StreamType::Events, header));
-  if (only_triggers || !dat) format.streams.push_back(streamOf(StreamType::Triggers, header));
+  if (!only_triggers) format.streams.push_back(rawStream(StreamType::Events, header));
+  if (only_triggers || !dat) format.streams.push_back(rawStream(StreamType::Triggers, header));
   if (!only_triggers && !header.resolution_px.known()) {
     format.notes.push_back({"events", FaultKind::NoResolution, 0.0,
                             "The header does not tell the sensor's size; the session must."});

@@ -1,4 +1,5 @@
 #include "core/recording/prophesee/word_decoders.h"
+#include "core/base/time.h"
 
 #include <bit>
 #include <cstring>
@@ -6,7 +7,6 @@
 namespace evical::prophesee {
 namespace {
 
-constexpr std::int64_t kMicrosecond_ns = 1000;
 constexpr int kLowBits = 6;  // of the time, in the words of events
 
 // Kinds of words in EVT 2.0 and 2.1.
@@ -21,7 +21,7 @@ enum : unsigned {
 };
 
 template <class Word>
-Word wordAt(std::string_view bytes, std::size_t index) {
+Word packedWordAt(std::string_view bytes, std::size_t index) {
   Word word;
   std::memcpy(&word, bytes.data() + index * sizeof(Word), sizeof(Word));
   return word;
@@ -45,7 +45,7 @@ std::size_t Evt2Decoder::decode(std::string_view bytes, std::uint64_t offset, st
   EventAppender appender(events);
   appender.reserve(words);
   for (std::size_t i = 0; i < words; ++i) {
-    const auto word = wordAt<std::uint32_t>(bytes, i);
+    const auto word = packedWordAt<std::uint32_t>(bytes, i);
     const unsigned kind = word >> 28;
     if (kind > kOn) {
       other(word, offset + i * sizeof word);
@@ -88,7 +88,7 @@ std::size_t Evt21Decoder::decode(std::string_view bytes, std::uint64_t offset, s
   const std::size_t words = bytes.size() / sizeof(std::uint64_t);
   EventAppender appender(events);
   for (std::size_t i = 0; i < words; ++i) {
-    const std::uint64_t word = inOrder(wordAt<std::uint64_t>(bytes, i), halves_exchanged_);
+    const std::uint64_t word = inOrder(packedWordAt<std::uint64_t>(bytes, i), halves_exchanged_);
     if (word >> 60 > kOn) {
       other(word, offset + i * sizeof word);
       continue;
@@ -143,7 +143,7 @@ bool looksExchanged(std::string_view data) {
     return kind == kOff || kind == kOn || kind == kTimeHigh || kind == kTrigger;
   };
   for (std::size_t i = 0; i < data.size() / sizeof(std::uint64_t); ++i) {
-    const auto word = wordAt<std::uint64_t>(data, i);
+    const auto word = packedWordAt<std::uint64_t>(data, i);
     // Masks of single events make 0 of the kind of a plain word often: times tell.
     plain += isKnown(word) && word >> 60 == kTimeHigh;
     exchanged += isKnown(std::rotl(word, 32)) && std::rotl(word, 32) >> 60 == kTimeHigh;
@@ -174,7 +174,7 @@ std::size_t DatDecoder::decode(std::string_view bytes, std::uint64_t offset, std
   EventAppender appender(events);
   appender.reserve(records);
   for (std::size_t i = 0; i < records; ++i) {
-    const auto record = wordAt<std::uint64_t>(bytes, i);
+    const auto record = packedWordAt<std::uint64_t>(bytes, i);
     bool wrapped = false;
     const std::uint64_t time_us = time_.unwrap(record & 0xFFFFFFFF, wrapped);
     if (wrapped) findings_.wraps.add(offset + i * sizeof record);

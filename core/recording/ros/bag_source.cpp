@@ -14,20 +14,20 @@
 namespace evical::ros {
 namespace {
 
-constexpr std::uint32_t kLargestHeader_bytes = 1 << 20;  // real ones have below 100 bytes
+constexpr std::uint32_t kLargestRecordHeader_bytes = 1 << 20;  // real ones have below 100 bytes
 
 // Packed data are hardly ever longer than the plain ones.
 std::uint64_t largestPacked(std::uint32_t plain_bytes) {
   return std::uint64_t{plain_bytes} + plain_bytes / 64 + 4096;
 }
 
-struct ChunkRecord {
+struct BagRecord {
   rosbag::RecordHeader header;
   std::string_view data;
 };
 
 // Takes the first of the records; false, and they stay, if it is damaged.
-bool takeRecord(std::string_view& records, ChunkRecord& record) {
+bool takeBagRecord(std::string_view& records, BagRecord& record) {
   ByteCursor cursor(records);
   const std::string_view header = cursor.sized();
   record.data = cursor.sized();
@@ -120,7 +120,7 @@ BagSource::RecordState BagSource::readRecord(std::uint64_t position, FileRecord&
   std::string_view bytes;
   if (!file_.read(position, 4, bytes)) return RecordState::Damaged;
   const auto header_size = ByteCursor(bytes).number<std::uint32_t>();
-  if (header_size > kLargestHeader_bytes) return RecordState::Damaged;
+  if (header_size > kLargestRecordHeader_bytes) return RecordState::Damaged;
   if (!file_.read(position + 4, std::uint64_t{header_size} + 4, bytes)) return RecordState::Damaged;
   header_bytes_ = bytes;  // reading the data moves the file's block
   ByteCursor cursor(header_bytes_);
@@ -258,8 +258,8 @@ void BagSource::listFromChunk(std::uint64_t position) {
   const FaultSink sink = std::exchange(sink_, [](FaultKind, const std::string&) {});
   loadChunk(position, record);  // reading will report its damage
   sink_ = sink;
-  ChunkRecord part;
-  while (!chunk_.empty() && takeRecord(chunk_, part)) {
+  BagRecord part;
+  while (!chunk_.empty() && takeBagRecord(chunk_, part)) {
     if (part.header.is(rosbag::Op::Connection))
       addConnection(part.header, rosbag::parseConnectionData(part.data));
   }
@@ -349,10 +349,10 @@ void BagSource::reportDamage(std::uint64_t position, RecordState state) {
 }
 
 bool BagSource::nextOfChunk(SourceMessage& message) {
-  ChunkRecord record;
+  BagRecord record;
   while (!chunk_.empty()) {
     const std::size_t at = chunk_size_ - chunk_.size();
-    if (!takeRecord(chunk_, record)) {
+    if (!takeBagRecord(chunk_, record)) {
       if (!chunk_is_cut_)
         sink_(FaultKind::Corrupt,
               fmt::format("The chunk at byte {} is damaged from its byte {} on; the rest is left out.",

@@ -1,6 +1,7 @@
 #include "core/recording/ros/image_messages.h"
 
 #include "core/data/picture_header.h"
+#include "core/data/recording.h"
 #include "core/recording/ros/message_bytes.h"
 
 #include <algorithm>
@@ -9,31 +10,29 @@
 namespace evical::ros {
 namespace {
 
-constexpr std::uint32_t kLargest_px = 65536;
-
 // Names of sensor_msgs/image_encodings.h.
 struct ImageEncoding {
   std::string_view name;
   FrameFormat format;
   std::size_t pixel_bytes;
 };
-constexpr ImageEncoding kEncodings[] = {{"mono8", FrameFormat::Gray8, 1},
-                                        {"8UC1", FrameFormat::Gray8, 1},
-                                        {"mono16", FrameFormat::Gray16, 2},
-                                        {"16UC1", FrameFormat::Gray16, 2},
-                                        {"rgb8", FrameFormat::Rgb8, 3},
-                                        {"bgr8", FrameFormat::Bgr8, 3},
-                                        {"rgba8", FrameFormat::Rgba8, 4},
-                                        {"bgra8", FrameFormat::Bgra8, 4},
-                                        {"bayer_rggb8", FrameFormat::BayerRggb8, 1},
-                                        {"bayer_bggr8", FrameFormat::BayerBggr8, 1},
-                                        {"bayer_gbrg8", FrameFormat::BayerGbrg8, 1},
-                                        {"bayer_grbg8", FrameFormat::BayerGrbg8, 1}};
+constexpr ImageEncoding kImageEncodings[] = {{"mono8", FrameFormat::Gray8, 1},
+                                             {"8UC1", FrameFormat::Gray8, 1},
+                                             {"mono16", FrameFormat::Gray16, 2},
+                                             {"16UC1", FrameFormat::Gray16, 2},
+                                             {"rgb8", FrameFormat::Rgb8, 3},
+                                             {"bgr8", FrameFormat::Bgr8, 3},
+                                             {"rgba8", FrameFormat::Rgba8, 4},
+                                             {"bgra8", FrameFormat::Bgra8, 4},
+                                             {"bayer_rggb8", FrameFormat::BayerRggb8, 1},
+                                             {"bayer_bggr8", FrameFormat::BayerBggr8, 1},
+                                             {"bayer_gbrg8", FrameFormat::BayerGbrg8, 1},
+                                             {"bayer_grbg8", FrameFormat::BayerGrbg8, 1}};
 
-const ImageEncoding* find(std::string_view name) {
+const ImageEncoding* encodingNamed(std::string_view name) {
   const auto same = [&](const ImageEncoding& encoding) { return encoding.name == name; };
-  const auto* const found = std::find_if(std::begin(kEncodings), std::end(kEncodings), same);
-  return found == std::end(kEncodings) ? nullptr : found;
+  const auto* const found = std::find_if(std::begin(kImageEncodings), std::end(kImageEncodings), same);
+  return found == std::end(kImageEncodings) ? nullptr : found;
 }
 
 bool has(std::string_view text, std::string_view part) {
@@ -49,7 +48,7 @@ void assign(const ImageMessage& image, Frame& frame) {
 }  // namespace
 
 bool isReadableImage(std::string_view encoding) {
-  return find(encoding) != nullptr;
+  return encodingNamed(encoding) != nullptr;
 }
 
 // compressed_image_transport writes "bgr8; jpeg compressed bgr8", compressed_depth_image_transport "16UC1;
@@ -68,7 +67,7 @@ bool parseImage(std::string_view message, Serialization serialization, ImageMess
   image.big_endian = cursor.number<std::uint8_t>() != 0;
   image.row_bytes = cursor.number<std::uint32_t>();
   image.bytes = cursor.sequence();
-  if (!cursor.wellEnded() || width == 0 || height == 0 || width > kLargest_px || height > kLargest_px)
+  if (!cursor.wellEnded() || width == 0 || height == 0 || width > kLargestSide_px || height > kLargestSide_px)
     return false;
   image.size_px = {static_cast<int>(width), static_cast<int>(height)};
   return true;
@@ -86,7 +85,7 @@ bool parsePackedImage(std::string_view message, Serialization serialization, Ima
 }
 
 bool toFrame(const ImageMessage& image, Frame& frame) {
-  const ImageEncoding* const encoding = find(image.encoding);
+  const ImageEncoding* const encoding = encodingNamed(image.encoding);
   const auto width = static_cast<std::uint64_t>(image.size_px.width_px);
   const auto height = static_cast<std::uint64_t>(image.size_px.height_px);
   const std::uint64_t row_bytes = image.row_bytes;
@@ -111,9 +110,9 @@ bool toPackedFrame(const ImageMessage& image, Frame& frame) {
 bool encodeImage(const Frame& frame, std::uint32_t sequence, Serialization serialization,
                  std::string& message) {
   const auto* const encoding =
-      std::find_if(std::begin(kEncodings), std::end(kEncodings),
+      std::find_if(std::begin(kImageEncodings), std::end(kImageEncodings),
                    [&](const ImageEncoding& known) { return known.format == frame.format; });
-  if (encoding == std::end(kEncodings)) return false;
+  if (encoding == std::end(kImageEncodings)) return false;
   MessageBytes bytes(message, serialization);
   bytes.appendHeader(sequence, frame.time_ns);
   bytes.append(static_cast<std::uint32_t>(frame.size_px.height_px));

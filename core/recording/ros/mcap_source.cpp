@@ -12,16 +12,16 @@
 namespace evical::ros {
 namespace {
 
-constexpr std::uint64_t kLargestChunk_bytes = std::uint64_t{1} << 31;  // real ones have some MB
+constexpr std::uint64_t kLargestMcapChunk_bytes = std::uint64_t{1} << 31;  // real ones have some MB
 
-struct ChunkRecord {
+struct McapRecord {
   std::uint8_t op = 0;
   std::string_view content;
   bool is(mcap::Op other) const { return op == static_cast<std::uint8_t>(other); }
 };
 
 // Takes the first of the records; false, and they stay, if it is damaged.
-bool takeRecord(std::string_view& records, ChunkRecord& record) {
+bool takeMcapRecord(std::string_view& records, McapRecord& record) {
   ByteCursor cursor(records);
   record.op = cursor.number<std::uint8_t>();
   record.content = cursor.take(cursor.number<std::uint64_t>());
@@ -172,8 +172,8 @@ void McapSource::countPending(PendingChunk& chunk) {
   } else if (Record record; readHead(chunk.position, record)) {
     const FaultSink sink = std::exchange(sink_, [](FaultKind, const std::string&) {});
     if (loadChunk(record)) {  // reading will report its damage
-      ChunkRecord part;
-      while (takeRecord(chunk_, part)) {
+      McapRecord part;
+      while (takeMcapRecord(chunk_, part)) {
         if (part.is(mcap::Op::Schema)) addSchema(part.content);
         if (part.is(mcap::Op::Channel)) addChannel(part.content);
         if (part.is(mcap::Op::Message)) countMessage(part.content);
@@ -228,9 +228,9 @@ bool McapSource::next(SourceMessage& message) {
 }
 
 bool McapSource::nextOfChunk(SourceMessage& message) {
-  ChunkRecord record;
+  McapRecord record;
   const std::size_t at = chunk_size_ - chunk_.size();
-  if (!takeRecord(chunk_, record)) {
+  if (!takeMcapRecord(chunk_, record)) {
     if (!chunk_is_cut_)
       sink_(FaultKind::Corrupt,
             fmt::format("The chunk at byte {} is damaged from its byte {} on; the rest is left out.",
@@ -308,7 +308,7 @@ bool McapSource::loadChunk(const Record& record) {
   const std::string compression(head.compression);
   const std::uint64_t records_bytes = has_head ? std::min(head.records_bytes, available - head.size) : 0;
   Unpacked result = Unpacked::Damaged;
-  if (has_head && head.uncompressed_bytes <= kLargestChunk_bytes &&
+  if (has_head && head.uncompressed_bytes <= kLargestMcapChunk_bytes &&
       file_.read(record.content + head.size, records_bytes, bytes)) {
     if (compression.empty() && bytes.size() == head.uncompressed_bytes) {
       chunk_ = bytes;  // where they are

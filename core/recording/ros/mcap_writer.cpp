@@ -2,6 +2,7 @@
 
 #include "core/recording/ros/compression.h"
 #include "core/recording/ros/mcap_records.h"
+#include "core/recording/ros/message_bytes.h"
 
 #include <zlib.h>
 
@@ -11,17 +12,10 @@
 namespace evical {
 namespace {
 
+using ros::bytesOf, ros::sized;
+
 constexpr std::size_t kChunk_bytes = 1 << 20;
-constexpr std::int64_t kSecondsEnd = std::int64_t{1} << 31;  // int32 sec
-
-template <class Number>
-std::string bytesOf(Number value) {
-  return {reinterpret_cast<const char*>(&value), sizeof value};
-}
-
-std::string sized(std::string_view bytes) {
-  return bytesOf(static_cast<std::uint32_t>(bytes.size())).append(bytes);
-}
+constexpr std::int64_t kMcapSecondsEnd = std::int64_t{1} << 31;  // int32 sec
 
 std::string record(mcap::Op op, std::string_view content) {
   std::string bytes = bytesOf(op) + bytesOf(std::uint64_t{content.size()});
@@ -40,7 +34,7 @@ std::uint16_t idOf(std::size_t stream) {
 
 McapWriter::McapWriter(const std::filesystem::path& path, const std::vector<StreamInfo>& streams,
                        McapCompression compression)
-    : RosWriter(path, streams, ros::Serialization::Cdr, kSecondsEnd),
+    : RosWriter(path, streams, ros::Serialization::Cdr, kMcapSecondsEnd),
       file_(path),
       compression_(compression),
       channels_(streams.size()) {

@@ -1,6 +1,7 @@
 // The fields of a ROS message one after the other, as ROS 1 or CDR serialises them: the counterpart of MessageCursor.
 #pragma once
 
+#include "core/base/time.h"
 #include "core/recording/ros/message_cursor.h"
 
 #include <cstdint>
@@ -9,6 +10,17 @@
 #include <string_view>
 
 namespace evical::ros {
+
+// A number's bytes in the machine's order, which is that of the files: little endian.
+template <class Number>
+std::string bytesOf(Number value) {
+  return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+// Bytes with their length in front, as records of both kinds of bags hold them.
+inline std::string sized(std::string_view bytes) {
+  return bytesOf(static_cast<std::uint32_t>(bytes.size())).append(bytes);
+}
 
 // Appends to `bytes`. Times must be what a ROS time can hold.
 class MessageBytes {
@@ -26,7 +38,6 @@ class MessageBytes {
   }
 
   void appendTime(std::int64_t time_ns) {
-    constexpr std::int64_t kSecond_ns = 1'000'000'000;
     append(static_cast<std::uint32_t>(time_ns / kSecond_ns));
     append(static_cast<std::uint32_t>(time_ns % kSecond_ns));
   }

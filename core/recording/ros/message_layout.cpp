@@ -10,10 +10,6 @@ namespace {
 constexpr int kDeepestNesting = 8;            // of types; a definition that names itself stops here
 constexpr std::size_t kLongestLayout = 8192;  // characters; nesting may make it explode
 
-std::string_view lastPart(std::string_view type) {
-  return type.substr(type.rfind('/') + 1);
-}
-
 std::string_view trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(" \t\r");
   if (begin == std::string_view::npos) return {};

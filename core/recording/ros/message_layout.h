@@ -7,6 +7,11 @@
 
 namespace evical::ros {
 
+// The name of a type without its package: "Imu" of "sensor_msgs/Imu".
+inline std::string_view lastPart(std::string_view type) {
+  return type.substr(type.rfind('/') + 1);
+}
+
 // The fields in order with nested types expanded and their names gone: "(uint32 seq,...) header,uint32
 // height,...". Nothing if the definition names a type that it does not define; empty for an empty one.
 std::optional<std::string> messageLayout(std::string_view definition);

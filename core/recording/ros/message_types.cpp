@@ -118,10 +118,6 @@ constexpr std::array kKnownNames = {
     KnownName{"sensor_msgs/Image", Content::Image},
     KnownName{"sensor_msgs/CompressedImage", Content::PackedImage}};
 
-std::string_view lastPart(std::string_view type) {
-  return type.substr(type.rfind('/') + 1);
-}
-
 Content contentByLastPart(std::string_view type) {
   const std::string_view last = lastPart(type);
   if (last == "EventArray") return Content::EventArray;

@@ -55,7 +55,7 @@ fs::path existing(const fs::path& path) {
   return fs::exists(packed) ? packed : path;
 }
 
-std::string firstBytes(const fs::path& path) {
+std::string magicBytes(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw badInput(path.string(), "the file cannot be opened", "Check its permissions");
   std::string bytes(16, '\0');
@@ -116,7 +116,7 @@ bool isRos2Folder(const fs::path& folder) {
 }
 
 std::unique_ptr<MessageSource> openRosFile(const fs::path& path, const FaultSink& sink) {
-  const std::string start = firstBytes(path);
+  const std::string start = magicBytes(path);
   if (start.starts_with(rosbag::kMagic)) return std::make_unique<BagSource>(path, sink);
   if (start.starts_with(mcap::kMagic.substr(0, 5))) return std::make_unique<McapSource>(path, sink);
   if (start.starts_with(kSqliteMagic)) return std::make_unique<SqliteSource>(path, sink);

@@ -1,5 +1,7 @@
 #include "core/recording/ros/ros_messages.h"
 
+#include "core/base/time.h"
+#include "core/data/recording.h"
 #include "core/recording/ros/message_bytes.h"
 
 #include <algorithm>
@@ -10,8 +12,6 @@ namespace evical::ros {
 namespace {
 
 constexpr std::size_t kEventBytes = 13;  // u16 x, u16 y, u32 s, u32 ns, u8 polarity
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
-constexpr std::uint32_t kLargest_px = 65536;  // coordinates have 16 bits
 
 template <class Number>
 Number numberAt(const char* bytes) {
@@ -22,7 +22,7 @@ Number numberAt(const char* bytes) {
 
 void takeResolution(MessageCursor& cursor, Resolution& resolution_px) {
   const auto height = cursor.number<std::uint32_t>(), width = cursor.number<std::uint32_t>();
-  if (width > 0 && height > 0 && width <= kLargest_px && height <= kLargest_px)
+  if (width > 0 && height > 0 && width <= kLargestSide_px && height <= kLargestSide_px)
     resolution_px = {static_cast<int>(width), static_cast<int>(height)};
 }
 

@@ -1,6 +1,7 @@
 #include "core/recording/ros/ros_writer.h"
 
 #include "core/base/error.h"
+#include "core/base/time.h"
 #include "core/recording/ros/image_messages.h"
 #include "core/recording/ros/ros_messages.h"
 
@@ -11,7 +12,6 @@ namespace {
 
 constexpr std::int64_t kMessageSpan_ns = 10'000'000;
 constexpr std::size_t kMessageEvents = 200'000;
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
 }  // namespace
 

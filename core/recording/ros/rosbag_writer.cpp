@@ -1,6 +1,8 @@
 #include "core/recording/ros/rosbag_writer.h"
 
+#include "core/base/time.h"
 #include "core/recording/ros/bag_records.h"
+#include "core/recording/ros/message_bytes.h"
 #include "core/recording/ros/message_types.h"
 
 #include <algorithm>
@@ -9,26 +11,17 @@
 namespace evical {
 namespace {
 
+using ros::bytesOf, ros::sized;
+
 constexpr std::size_t kChunkBytes = 768 * 1024;  // what rosbag record uses
 constexpr std::size_t kBagHeaderBytes = 4096;    // of the whole record, by the format
-constexpr std::int64_t kSecondsEnd = std::int64_t{1} << 32;
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
-
-template <class Number>
-std::string bytesOf(Number value) {
-  return {reinterpret_cast<const char*>(&value), sizeof value};
-}
+constexpr std::int64_t kBagSecondsEnd = std::int64_t{1} << 32;
 
 std::string bytesOfTime(std::int64_t time_ns) {
   // rosbag takes a record time of zero for "not set".
   const std::int64_t time = std::max<std::int64_t>(1, time_ns);
   return bytesOf(static_cast<std::uint32_t>(time / kSecond_ns)) +
          bytesOf(static_cast<std::uint32_t>(time % kSecond_ns));
-}
-
-std::string sized(std::string_view bytes) {
-  std::string result = bytesOf(static_cast<std::uint32_t>(bytes.size()));
-  return result.append(bytes);
 }
 
 std::string field(std::string_view name, std::string_view value) {
@@ -43,7 +36,7 @@ std::string opField(rosbag::Op op) {
 
 RosbagWriter::RosbagWriter(const std::filesystem::path& path, const std::vector<StreamInfo>& streams,
                            bool lz4)
-    : RosWriter(path, streams, ros::Serialization::Ros1, kSecondsEnd),
+    : RosWriter(path, streams, ros::Serialization::Ros1, kBagSecondsEnd),
       file_(path),
       lz4_(lz4),
       connections_(streams.size()) {

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/time.h"
+#include "core/recording/event_order.h"
 #include "core/recording/ros/image_messages.h"
 #include "core/recording/ros/ros_messages.h"
 
@@ -13,10 +14,8 @@
 namespace evical::ros {
 namespace {
 
-constexpr int kMostAlikeFaults = 10;  // of one kind and stream; a broken file has thousands
 constexpr int kEnoughMessages = 50;
 constexpr std::uint64_t kEnoughStamps = 1000;
-constexpr std::int64_t kLargestSorted_ns = 10'000'000;
 
 bool parse(Content content, std::string_view message, Serialization serialization, ImageMessage& image) {
   return content == Content::Image ? parseImage(message, serialization, image)
@@ -341,7 +340,8 @@ void TopicStreams::finishEventPackets(std::size_t stream) {
 }
 
 void TopicStreams::addFault(const std::string& stream, FaultKind kind, const std::string& text) {
-  const int limit = kind == FaultKind::Corrupt || kind == FaultKind::Unreadable ? kMostAlikeFaults : 1;
+  const std::ptrdiff_t limit =
+      kind == FaultKind::Corrupt || kind == FaultKind::Unreadable ? kMostAlikeFaults : 1;
   const auto alike = [&](const RecordingFault& fault) {
     return fault.stream == stream && fault.kind == kind;
   };

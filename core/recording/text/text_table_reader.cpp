@@ -11,9 +11,9 @@
 namespace evical {
 namespace {
 
-constexpr std::size_t kPacketEvents = 10'000;
-constexpr std::int64_t kPacketSpan_ns = 10'000'000;
-constexpr std::size_t kPacketSamples = 10;
+constexpr std::size_t kTextPacketEvents = 10'000;
+constexpr std::int64_t kTextPacketSpan_ns = 10'000'000;
+constexpr std::size_t kTextPacketSamples = 10;
 constexpr int kMostBadLines = 10;  // reported one by one
 constexpr std::size_t kHead_bytes = std::size_t{1} << 16;
 constexpr const char* kFiles[] = {"events.txt", "imu.txt", "events.csv", "imu.csv"};
@@ -51,7 +51,7 @@ bool parseVector(const std::vector<std::string_view>& parts, std::size_t first, 
          parseNumber(parts[first + 2], vector.z());
 }
 
-const char* messageOf(StreamType type) {
+const char* progressMessage(StreamType type) {
   return type == StreamType::Events   ? "t x y p"
          : type == StreamType::Points ? "t point x y"
                                       : "t ax ay az gx gy gz";
@@ -99,7 +99,7 @@ void TextTableReader::addSource(const std::filesystem::path& path) {
   StreamInfo stream;
   stream.name = name;
   stream.type = columns.type;
-  stream.message = messageOf(columns.type);
+  stream.message = progressMessage(columns.type);
   stream.resolution_px = columns.resolution_px;
   stream.time_unit_ns = columns.time_unit_ns == 1000 ? 1000 : 1;
   stream.acceleration_unit = columns.acceleration_unit;
@@ -150,8 +150,8 @@ void TextTableReader::fillEvents(Source& source, std::size_t stream, std::vector
       addBadLine(source, stream);
       continue;
     }
-    if (!events.empty() && (event.time_ns < events.back().time_ns || events.size() >= kPacketEvents ||
-                            event.time_ns - events.front().time_ns >= kPacketSpan_ns)) {
+    if (!events.empty() && (event.time_ns < events.back().time_ns || events.size() >= kTextPacketEvents ||
+                            event.time_ns - events.front().time_ns >= kTextPacketSpan_ns)) {
       source.next_event = event;
       source.has_next_event = true;
       source.last_ns = event.time_ns;
@@ -165,7 +165,7 @@ void TextTableReader::fillEvents(Source& source, std::size_t stream, std::vector
 void TextTableReader::fillImu(Source& source, std::size_t stream, std::vector<RawImuSample>& samples) {
   std::string_view line;
   RawImuSample sample;
-  while (samples.size() < kPacketSamples) {
+  while (samples.size() < kTextPacketSamples) {
     if (!source.lines.next(line)) return finish(source, stream);
     if (parseImu(source, line, sample)) {
       samples.push_back(sample);

@@ -1,4 +1,5 @@
 #include "core/base/error.h"
+#include "core/base/time.h"
 #include "core/recording/part_file.h"
 #include "core/recording/recording_writer.h"
 
@@ -8,8 +9,6 @@
 
 namespace evical {
 namespace {
-
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
 // What the kinds of text differ in.
 struct TextStyle {

@@ -14,10 +14,10 @@
 namespace evical {
 namespace {
 
-constexpr const char* kProgram = "Basalt";
-constexpr KnownModels kModels{kProgram, false, false, true, true, true, false};
+constexpr const char* kBasaltProgram = "Basalt";
+constexpr KnownModels kBasaltModels{kBasaltProgram, false, false, true, true, true, false};
 
-std::string poseText(const RigidTransform& pose) {
+std::string basaltPoseText(const RigidTransform& pose) {
   const Eigen::Vector3d& p = pose.translation_m;
   const Eigen::Quaterniond& q = pose.rotation;
   return fmt::format(R"({{"px": {}, "py": {}, "pz": {}, "qx": {}, "qy": {}, "qz": {}, "qw": {}}})",
@@ -25,7 +25,7 @@ std::string poseText(const RigidTransform& pose) {
                      real(q.w()));
 }
 
-std::string cameraText(const CameraIntrinsics& own) {
+std::string basaltCameraText(const CameraIntrinsics& own) {
   const char* type = own.model == CameraModel::DoubleSphere ? "ds"
                      : own.model == CameraModel::Eucm       ? "eucm"
                                                             : "kb4";
@@ -61,7 +61,7 @@ std::string correctionText(const RigImu& imu, const LowerTriangularImu& lower) {
                      realList(gyroscope_bias), rowMajor(g.transpose()));
 }
 
-std::string noiseText(const RigImu& imu, ExportNotes& notes) {
+std::string basaltNoiseText(const RigImu& imu, ExportNotes& notes) {
   const StatedNoise noise = statedNoise(imu, notes);
   const auto line = [](const char* key, double value) {
     return fmt::format("    \"{}\": [{}],\n", key, realList(std::vector<double>(3, value)));
@@ -83,15 +83,15 @@ std::string basaltCalibration(const Rig& rig, const char* program, ExportNotes& 
   const LowerTriangularImu lower = lowerTriangular(imu.state);
   std::string text = "{\n  \"value0\": {\n    \"T_imu_cam\": ";
   text += perCamera(rig, [&](const RigCamera& camera) {
-    return poseText(turnOf(lower.other_from_imu) * camera.reference_from_camera);
+    return basaltPoseText(turnOf(lower.other_from_imu) * camera.reference_from_camera);
   });
   text += ",\n    \"intrinsics\": " +
-          perCamera(rig, [](const RigCamera& camera) { return cameraText(camera.intrinsics); });
+          perCamera(rig, [](const RigCamera& camera) { return basaltCameraText(camera.intrinsics); });
   text += ",\n    \"resolution\": " + perCamera(rig, [](const RigCamera& camera) {
             return fmt::format("[{}, {}]", camera.intrinsics.resolution_px.width_px,
                                camera.intrinsics.resolution_px.height_px);
           });
-  text += ",\n" + correctionText(imu, lower) + noiseText(imu, notes);
+  text += ",\n" + correctionText(imu, lower) + basaltNoiseText(imu, notes);
   return text + fmt::format("    \"cam_time_offset_ns\": {},\n    \"vignette\": []{}\n  }}\n}}\n",
                             std::llround(1e9 * rig.cameras[0].time_offset_s), more);
 }
@@ -111,9 +111,9 @@ std::vector<std::string> basaltMeanings(const RigImu& imu) {
 ExportedFiles exportBasalt(const NamedResult& result) {
   ExportedFiles exported;
   Rig rig = rigOf(result);
-  neededImu(rig, kProgram);
-  for (RigCamera& camera : rig.cameras) camera.intrinsics = cameraFor(camera, kModels, exported.notes);
-  exported.files.push_back({"calibration.json", basaltCalibration(rig, kProgram, exported.notes)});
+  neededImu(rig, kBasaltProgram);
+  for (RigCamera& camera : rig.cameras) camera.intrinsics = cameraFor(camera, kBasaltModels, exported.notes);
+  exported.files.push_back({"calibration.json", basaltCalibration(rig, kBasaltProgram, exported.notes)});
   std::vector<std::string> lines = basaltMeanings(rig.imus.front());
   lines.insert(lines.end(), exported.notes.begin(), exported.notes.end());
   exported.files.push_back({"README.txt", readMe(rig, lines)});

@@ -16,8 +16,8 @@ Rig rigOfKind(const Rig& rig, bool frames) {
   return own;
 }
 
-void place(const Rig& rig, const char* program, std::optional<RigCamera>& left,
-           std::optional<RigCamera>& right) {
+void dataSetCamerasPlace(const Rig& rig, const char* program, std::optional<RigCamera>& left,
+                         std::optional<RigCamera>& right) {
   if (rig.cameras.size() == 1) left = rig.cameras.front();
   if (rig.cameras.size() < 2) return;
   StereoPair pair = stereoPair(rig, program);
@@ -25,7 +25,7 @@ void place(const Rig& rig, const char* program, std::optional<RigCamera>& left,
   right = std::move(pair.right);
 }
 
-std::string placeText(const char* name, const std::optional<RigCamera>& camera) {
+std::string placeDataSetCamerasText(const char* name, const std::optional<RigCamera>& camera) {
   return fmt::format("{}: {}", name, camera ? camera->name : "none");
 }
 
@@ -37,13 +37,13 @@ DataSetCameras dataSetCameras(const Rig& rig, const char* program, ExportNotes& 
     throw badInput("result", fmt::format("has no event camera, and {} is of event cameras", program),
                    fmt::format("Leave {} out", program));
   DataSetCameras placed;
-  place(events, program, placed.left_event, placed.right_event);
-  place(frames, program, placed.left_frame, placed.right_frame);
+  dataSetCamerasPlace(events, program, placed.left_event, placed.right_event);
+  dataSetCamerasPlace(frames, program, placed.left_frame, placed.right_frame);
   notes.push_back(fmt::format("{} names cameras by their places; {}, {}, {}, {}", program,
-                              placeText("left event camera", placed.left_event),
-                              placeText("right event camera", placed.right_event),
-                              placeText("left frame camera", placed.left_frame),
-                              placeText("right frame camera", placed.right_frame)));
+                              placeDataSetCamerasText("left event camera", placed.left_event),
+                              placeDataSetCamerasText("right event camera", placed.right_event),
+                              placeDataSetCamerasText("left frame camera", placed.left_frame),
+                              placeDataSetCamerasText("right frame camera", placed.right_frame)));
   constexpr std::size_t kMostOfAKind = 2;
   for (const Rig* const kind : {&events, &frames})
     for (std::size_t i = kMostOfAKind; i < kind->cameras.size(); ++i)

@@ -11,8 +11,8 @@
 namespace evical {
 namespace {
 
-constexpr const char* kProgram = "DM-VIO";
-constexpr KnownModels kModels{kProgram, true, false, true};
+constexpr const char* kDmVioProgram = "DM-VIO";
+constexpr KnownModels kDmVioModels{kDmVioProgram, true, false, true};
 
 // The image that DSO makes of each: a pinhole's, without distortion.
 struct Rectified {
@@ -82,7 +82,7 @@ Rectified rectifiedImage(const CameraIntrinsics& camera) {
 }
 
 // Four lines, which DSO reads too: lens, size, the rectified camera in shares of its image's size, that size.
-std::string cameraText(const CameraIntrinsics& own) {
+std::string dmVioCameraText(const CameraIntrinsics& own) {
   const Rectified image = rectifiedImage(own);
   const Eigen::Vector2d size(image.size_px.width_px, image.size_px.height_px);
   const Eigen::Vector2d f = (size.array() - 1.0) / (image.most - image.least).array();
@@ -98,7 +98,7 @@ std::string cameraText(const CameraIntrinsics& own) {
                      image.size_px.height_px);
 }
 
-std::string noiseText(const Rig& rig, ExportNotes& notes) {
+std::string dmVioNoiseText(const Rig& rig, ExportNotes& notes) {
   const StatedNoise noise = statedNoise(rig.imus[0], notes);
   return headerComment(rig,
                        {"Noise densities and random walks for DM-VIO: settingsFile=noise.yaml, or pasted "
@@ -117,16 +117,16 @@ ExportedFiles exportDmVio(const NamedResult& result) {
   ExportedFiles exported;
   const Rig rig = rigOf(result);
   const RigCamera& camera = rig.cameras[0];
-  noteLostCameras(rig, 1, kProgram, exported.notes);
-  exported.files.push_back({"camera.txt", cameraText(cameraFor(camera, kModels, exported.notes))});
+  noteLostCameras(rig, 1, kDmVioProgram, exported.notes);
+  exported.files.push_back({"camera.txt", dmVioCameraText(cameraFor(camera, kDmVioModels, exported.notes))});
   std::vector<std::string> lines{
       "camera.txt (calib=) is read by DM-VIO and by DSO: lens, size of the images, then the rectified camera "
       "in "
       "shares of its size, and that size. Its third line may be crop or none instead.",
       "There is no photometric calibration (gamma=, vignette=) here: without one, mode=1."};
   if (!rig.imus.empty()) {
-    noteLostImus(rig, kProgram, exported.notes);
-    noteLostMapping(rig.imus[0], kProgram, exported.notes);
+    noteLostImus(rig, kDmVioProgram, exported.notes);
+    noteLostMapping(rig.imus[0], kDmVioProgram, exported.notes);
     exported.files.push_back(
         {"camchain.yaml",
          headerComment(rig,
@@ -134,7 +134,7 @@ ExportedFiles exportDmVio(const NamedResult& result) {
                         stampShifts(rig)}) +
              fmt::format("cam0:  # {}\n  T_cam_imu:\n{}", camera.file_name,
                          rowsYaml(matrixOf(inverse(camera.reference_from_camera)), 4))});
-    exported.files.push_back({"noise.yaml", noiseText(rig, exported.notes)});
+    exported.files.push_back({"noise.yaml", dmVioNoiseText(rig, exported.notes)});
     exported.notes.push_back(stampShifts(rig));
   }
   lines.insert(lines.end(), exported.notes.begin(), exported.notes.end());

@@ -15,8 +15,8 @@
 namespace evical {
 namespace {
 
-constexpr const char* kProgram = "DSEC";
-constexpr KnownModels kModels{kProgram, true, false, false};
+constexpr const char* kDsecProgram = "DSEC";
+constexpr KnownModels kDsecModels{kDsecProgram, true, false, false};
 
 // DSEC's places: 0 and 3 are the event cameras, left and right, 1 and 2 the frame cameras.
 struct Place {
@@ -33,7 +33,7 @@ Places placesOf(const DataSetCameras& cameras, ExportNotes& notes) {
   Places places{Place{"event", "left", cameras.left_event}, Place{"frame", "left", cameras.left_frame},
                 Place{"frame", "right", cameras.right_frame}, Place{"event", "right", cameras.right_event}};
   for (Place& place : places)
-    if (place.camera) place.lens = cameraFor(*place.camera, kModels, notes);
+    if (place.camera) place.lens = cameraFor(*place.camera, kDsecModels, notes);
   return places;
 }
 
@@ -67,15 +67,15 @@ std::string headText(const Place& place, std::size_t i, bool rectified) {
 }
 
 // Of a place that has no camera, and of a first one, there is none.
-std::string chainText(const Places& places, std::size_t i) {
+std::string dsecChainText(const Places& places, std::size_t i) {
   if (i == 0 || !places[i - 1].camera) return "";
   return "    T_cn_cnm1:\n" + rowsYaml(matrixOf(fromTo(*places[i - 1].camera, *places[i].camera)), 4);
 }
 
-std::string cameraText(const Places& places, std::size_t i) {
+std::string dsecCameraText(const Places& places, std::size_t i) {
   const Place& place = places[i];
   return headText(place, i, false) + fmt::format("    camera_name: {}\n", yamlText(place.camera->name)) +
-         chainText(places, i) +
+         dsecChainText(places, i) +
          fmt::format("    distortion_model: radtan\n    distortion_coeffs: [{}]\n    camera_matrix: [{}]\n",
                      realList(distortionOf(place.lens, 4)), matrixList(cameraMatrix(place.lens))) +
          headText(place, i, true) + fmt::format("    camera_matrix: [{}]\n", matrixList(place.rectified));
@@ -117,13 +117,13 @@ std::string disparityText(const char* key, const Place& left, const Place& right
 ExportedFiles exportDsec(const NamedResult& result) {
   ExportedFiles exported;
   const Rig rig = rigOf(result);
-  Places places = placesOf(dataSetCameras(rig, kProgram, exported.notes), exported.notes);
+  Places places = placesOf(dataSetCameras(rig, kDsecProgram, exported.notes), exported.notes);
   rectifyPair(places[0], places[3]);
   rectifyPair(places[1], places[2]);
-  noteNoOffsets(rig, kProgram, exported.notes);
+  noteNoOffsets(rig, kDsecProgram, exported.notes);
   if (!rig.imus.empty())
-    exported.notes.push_back(fmt::format("{} says nothing of IMUs: {} is in other targets' files", kProgram,
-                                         rig.imus.front().name));
+    exported.notes.push_back(fmt::format("{} says nothing of IMUs: {} is in other targets' files",
+                                         kDsecProgram, rig.imus.front().name));
   std::vector<std::string> comment{
       "DSEC's cam_to_cam.yaml. T_XY takes points of camera Y to camera X, R_rectX points of camera X to "
       "camRectX.",
@@ -131,7 +131,7 @@ ExportedFiles exportDsec(const NamedResult& result) {
   comment.insert(comment.end(), exported.notes.begin(), exported.notes.end());
   std::string text = headerComment(rig, comment) + "intrinsics:\n";
   for (std::size_t i = 0; i < places.size(); ++i)
-    if (places[i].camera) text += cameraText(places, i);
+    if (places[i].camera) text += dsecCameraText(places, i);
   text += extrinsicsText(places);
   const std::string disparity =
       disparityText("cams_03", places[0], places[3]) + disparityText("cams_12", places[1], places[2]);

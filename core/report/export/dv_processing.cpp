@@ -10,8 +10,8 @@
 namespace evical {
 namespace {
 
-constexpr const char* kProgram = "dv-processing";
-constexpr KnownModels kModels{kProgram, true, true, true};
+constexpr const char* kDvProcessingProgram = "dv-processing";
+constexpr KnownModels kDvProcessingModels{kDvProcessingProgram, true, true, true};
 
 // boost::property_tree writes every scalar as a string.
 std::string quoted(double value) {
@@ -40,9 +40,9 @@ std::string lastField(const char* key, const std::string& value) {
   return fmt::format("      \"{}\": {}\n    }}", key, value);
 }
 
-std::string cameraText(const Rig& rig, std::size_t i, ExportNotes& notes) {
+std::string dvProcessingCameraText(const Rig& rig, std::size_t i, ExportNotes& notes) {
   const RigCamera& camera = rig.cameras[i];
-  const CameraIntrinsics own = cameraFor(camera, kModels, notes);
+  const CameraIntrinsics own = cameraFor(camera, kDvProcessingModels, notes);
   const bool radtan = own.model == CameraModel::PinholeRadtan;
   const std::vector<double> d = distortionOf(own, radtan && own.distortion[4] != 0.0 ? 5 : 4);
   const RigidTransform this_from_first =
@@ -61,7 +61,7 @@ std::string cameraText(const Rig& rig, std::size_t i, ExportNotes& notes) {
 }
 
 // It is looked up by its camera's name. The sensor's limits are on its data sheet, not in a calibration: 0 means not known.
-std::string imuText(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
+std::string dvProcessingImuText(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
   const StatedNoise noise = statedNoise(imu, notes);
   const auto number = [](const char* key, double value) { return field(key, quoted(value), 6); };
   return "    \"S0\": {\n" + field("name", jsonText(rig.cameras[0].file_name), 6) + number("omegaMax", 0.0) +
@@ -80,7 +80,7 @@ std::string imuText(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
              rig.program + ", " + rig.status);
 }
 
-std::string stereoText(const Rig& rig) {
+std::string dvProcessingStereoText(const Rig& rig) {
   const RigidTransform right_from_left =
       inverse(rig.cameras[1].reference_from_camera) * rig.cameras[0].reference_from_camera;
   const Eigen::Matrix3d essential = essentialMatrix(right_from_left);
@@ -100,16 +100,16 @@ ExportedFiles exportDvProcessing(const NamedResult& result) {
   const Rig rig = rigOf(result);
   std::string text = "{\n  \"version\": \"2.0\",\n  \"cameras\": {\n";
   for (std::size_t i = 0; i < rig.cameras.size(); ++i)
-    text += (i == 0 ? "" : ",\n") + cameraText(rig, i, exported.notes);
+    text += (i == 0 ? "" : ",\n") + dvProcessingCameraText(rig, i, exported.notes);
   text += "\n  }";
   if (!rig.imus.empty()) {
-    noteLostImus(rig, kProgram, exported.notes);
-    noteLostOffsets(rig, kProgram, exported.notes);
-    noteLostMapping(rig.imus[0], kProgram, exported.notes);
-    text += ",\n  \"imus\": {\n" + imuText(rig, rig.imus[0], exported.notes) + "\n  }";
+    noteLostImus(rig, kDvProcessingProgram, exported.notes);
+    noteLostOffsets(rig, kDvProcessingProgram, exported.notes);
+    noteLostMapping(rig.imus[0], kDvProcessingProgram, exported.notes);
+    text += ",\n  \"imus\": {\n" + dvProcessingImuText(rig, rig.imus[0], exported.notes) + "\n  }";
   }
-  if (rig.imus.empty()) noteNoOffsets(rig, kProgram, exported.notes);
-  if (rig.cameras.size() > 1) text += ",\n  \"stereo\": {\n" + stereoText(rig) + "\n  }";
+  if (rig.imus.empty()) noteNoOffsets(rig, kDvProcessingProgram, exported.notes);
+  if (rig.cameras.size() > 1) text += ",\n  \"stereo\": {\n" + dvProcessingStereoText(rig) + "\n  }";
   exported.files.push_back({"calibration.json", text + "\n}\n"});
   exported.notes.emplace_back(
       "the cameras' names must be the devices' (DAVIS346_00000002, as a recording says), and the IMU's that "

@@ -9,10 +9,10 @@
 namespace evical {
 namespace {
 
-constexpr KnownModels kModels{"eKalibr", true, true, true};
+constexpr KnownModels kEkalibrModels{"eKalibr", true, true, true};
 
 // cereal marks the first appearance of a shared pointer or type with the highest bit.
-constexpr unsigned kFirst = 0x80000000U;
+constexpr unsigned kEkalibrFirst = 0x80000000U;
 
 std::string key(const std::string& stream, const std::string& file_name) {
   return yamlText(stream.empty() ? "/" + file_name : stream);
@@ -40,8 +40,8 @@ std::string mapText(const char* name, const std::vector<Sensor>& sensors, Value&
 }
 
 // Its order of radial-tangential coefficients: k1 k2 k3 t1 t2. Since the end of 2024 it refuses a camera without notes.
-std::string cameraText(const CameraIntrinsics& camera, unsigned pointer_id, const std::string& polymorphic,
-                       const std::string& blanks) {
+std::string ekalibrCameraText(const CameraIntrinsics& camera, unsigned pointer_id,
+                              const std::string& polymorphic, const std::string& blanks) {
   const auto& d = camera.distortion;
   const bool radtan = camera.model == CameraModel::PinholeRadtan;
   const std::vector<double> distortion =
@@ -51,9 +51,9 @@ std::string cameraText(const CameraIntrinsics& camera, unsigned pointer_id, cons
       "{0}    focal_length: [{5}, {6}]\n{0}    focal_length_note: \"fx, fy\"\n"
       "{0}    principal_point: [{7}, {8}]\n{0}    principal_point_note: \"cx, cy\"\n"
       "{0}    disto_param: [{9}]\n{0}    disto_param_note: \"{10}\"\n",
-      blanks, polymorphic, kFirst | pointer_id, camera.resolution_px.width_px, camera.resolution_px.height_px,
-      real(camera.focal_length_px.x()), real(camera.focal_length_px.y()), real(camera.principal_point_px.x()),
-      real(camera.principal_point_px.y()), realList(distortion),
+      blanks, polymorphic, kEkalibrFirst | pointer_id, camera.resolution_px.width_px,
+      camera.resolution_px.height_px, real(camera.focal_length_px.x()), real(camera.focal_length_px.y()),
+      real(camera.principal_point_px.x()), real(camera.principal_point_px.y()), realList(distortion),
       radtan ? "k1, k2, k3, t1, t2" : "k1, k2, k3, k4");
 }
 
@@ -62,7 +62,7 @@ const char* polymorphicName(CameraModel model) {
 }
 
 std::string firstOfType(unsigned type_id, CameraModel model, const std::string& blanks) {
-  return fmt::format("polymorphic_id: {}\n{}polymorphic_name: {}", kFirst | type_id, blanks,
+  return fmt::format("polymorphic_id: {}\n{}polymorphic_name: {}", kEkalibrFirst | type_id, blanks,
                      polymorphicName(model));
 }
 
@@ -75,14 +75,14 @@ std::string sensorText(const char* name, const Eigen::Vector3d& bias, const Eige
                      vectorText(coefficients));
 }
 
-std::string imuText(const RigImu& imu, unsigned pointer_id) {
+std::string ekalibrImuText(const RigImu& imu, unsigned pointer_id) {
   const std::string blanks(14, ' ');
   const TriangularTimesRotation gyroscope = splitUpper(imu.state.gyroscopeMatrix());
   const bool mapped = hasMapping(imu.state);
   return fmt::format(
              "      - key: {}\n        value:\n          ptr_wrapper:\n            id: {}\n            "
              "data:\n",
-             key(imu.stream, imu.file_name), kFirst | pointer_id) +
+             key(imu.stream, imu.file_name), kEkalibrFirst | pointer_id) +
          sensorText("ACCE", imu.state.accelerometer_bias_m_s2, imu.state.accelerometer_mapping, blanks) +
          sensorText("GYRO", imu.state.gyroscope_bias_rad_s,
                     mapped ? gyroscope.triangular : Eigen::Matrix3d(Eigen::Matrix3d::Identity()), blanks) +
@@ -94,7 +94,7 @@ std::string imuText(const RigImu& imu, unsigned pointer_id) {
 std::string intrinsicsText(const Rig& rig) {
   std::string text = fmt::format("  INTRI:\n    IMU:{}\n", rig.imus.empty() ? " []" : "");
   unsigned pointer_id = 0, types = 0;
-  for (const RigImu& imu : rig.imus) text += imuText(imu, ++pointer_id);
+  for (const RigImu& imu : rig.imus) text += ekalibrImuText(imu, ++pointer_id);
   text += "    Camera:\n";
   std::vector<unsigned> type_ids(2, 0);  // by model; 0: not met yet
   for (const RigCamera& camera : rig.cameras) {
@@ -105,7 +105,7 @@ std::string intrinsicsText(const Rig& rig) {
         type_id == 0 ? firstOfType(++types, model, blanks) : fmt::format("polymorphic_id: {}", type_id);
     if (type_id == 0) type_id = types;
     text += fmt::format("      - key: {}\n        value:\n", key(camera.stream, camera.file_name)) +
-            cameraText(camera.intrinsics, ++pointer_id, polymorphic, blanks);
+            ekalibrCameraText(camera.intrinsics, ++pointer_id, polymorphic, blanks);
   }
   return text;
 }
@@ -142,7 +142,7 @@ std::string parameterFile(const Rig& rig) {
 ExportedFiles exportEkalibr(const NamedResult& result) {
   ExportedFiles exported;
   Rig rig = rigOf(result);
-  for (RigCamera& camera : rig.cameras) camera.intrinsics = cameraFor(camera, kModels, exported.notes);
+  for (RigCamera& camera : rig.cameras) camera.intrinsics = cameraFor(camera, kEkalibrModels, exported.notes);
   exported.files.push_back({"ekalibr_param.yaml", parameterFile(rig)});
   for (const RigCamera& camera : rig.cameras)
     exported.files.push_back(
@@ -151,7 +151,7 @@ ExportedFiles exportEkalibr(const NamedResult& result) {
              rig, {"Intrinsics as eKalibr's configuration takes them. Distortion: k1 k2 k3 t1 t2, or fisheye "
                    "k1..k4."}) +
              "Intrinsics:\n" +
-             cameraText(camera.intrinsics, 1, firstOfType(1, camera.intrinsics.model, "  "), "  ")});
+             ekalibrCameraText(camera.intrinsics, 1, firstOfType(1, camera.intrinsics.model, "  "), "  ")});
   return exported;
 }
 

@@ -27,9 +27,9 @@ CameraIntrinsics rightCamera(const RigCamera& camera, const CameraIntrinsics& le
   return cameraFor(camera, {program, radtan, false, !radtan}, notes);
 }
 
-std::string cameraFile(const Rig& rig, const RigCamera& camera, const CameraIntrinsics& own,
-                       const std::vector<std::string>& comment, const Eigen::Matrix3d& rectification,
-                       const Eigen::Matrix<double, 3, 4>& projection, const StereoPair& pair) {
+std::string esvoCameraFile(const Rig& rig, const RigCamera& camera, const CameraIntrinsics& own,
+                           const std::vector<std::string>& comment, const Eigen::Matrix3d& rectification,
+                           const Eigen::Matrix<double, 3, 4>& projection, const StereoPair& pair) {
   return headerComment(rig, comment) + cameraInfoBody(camera.file_name, own, 4) + "rectification_matrix:\n" +
          dataMatrix(rectification, 2) + "projection_matrix:\n" + dataMatrix(projection, 2) +
          "T_right_left:\n" + dataMatrix(matrixOf(pair.right_from_left).topRows<3>(), 2);
@@ -60,12 +60,12 @@ ExportedFiles exportPair(const NamedResult& result, const char* program, bool wi
                   program, with_imu ? ", T_b_c points of the left camera to the IMU" : ""),
       offsets + "."};
   exported.files.push_back(
-      {"left.yaml", cameraFile(rig, pair.left, left, comment, rectified.rectified_from_left,
-                               rectified.left_projection, pair) +
+      {"left.yaml", esvoCameraFile(rig, pair.left, left, comment, rectified.rectified_from_left,
+                                   rectified.left_projection, pair) +
                         imu_pose});
   exported.files.push_back(
-      {"right.yaml", cameraFile(rig, pair.right, right, comment, rectified.rectified_from_right,
-                                rectified.right_projection, pair) +
+      {"right.yaml", esvoCameraFile(rig, pair.right, right, comment, rectified.rectified_from_right,
+                                    rectified.right_projection, pair) +
                          imu_pose});
   exported.notes.push_back(std::move(offsets));
   return exported;

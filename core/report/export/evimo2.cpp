@@ -8,8 +8,8 @@
 namespace evical {
 namespace {
 
-constexpr const char* kProgram = "EVIMO2";
-constexpr KnownModels kModels{kProgram, true, false, true};
+constexpr const char* kEvimo2Program = "EVIMO2";
+constexpr KnownModels kEvimo2Models{kEvimo2Program, true, false, true};
 
 // res_x is the number of rows there, res_y that of columns.
 std::string parametersText(const RigCamera& camera, const CameraIntrinsics& own) {
@@ -26,7 +26,7 @@ std::string numbersLine(const std::vector<double>& numbers) {
   return line + "\n";
 }
 
-std::string lensText(const CameraIntrinsics& own) {
+std::string evimo2LensText(const CameraIntrinsics& own) {
   std::vector<double> numbers{own.focal_length_px.x(), own.focal_length_px.y(), own.principal_point_px.x(),
                               own.principal_point_px.y()};
   for (const double coefficient : distortionOf(own, 4)) numbers.push_back(coefficient);
@@ -35,7 +35,7 @@ std::string lensText(const CameraIntrinsics& own) {
 
 // The camera in the rig; a scan of the room, of which there is none; what takes times of the rig to those of the camera;
 // what takes times of images to those of events, which are one here.
-std::string placeText(const RigCamera& camera) {
+std::string placeEvimo2Text(const RigCamera& camera) {
   const RigidTransform& place = camera.reference_from_camera;
   const Eigen::Vector3d rpy = rollPitchYaw(place.rotation.toRotationMatrix());
   const Eigen::Vector3d& p = place.translation_m;
@@ -52,17 +52,17 @@ ExportedFiles exportEvimo2(const NamedResult& result) {
   const std::string reference =
       rig.imus.empty() ? "the reference camera's" : fmt::format("that of {}", rig.imus.front().name);
   for (const RigCamera& camera : rig.cameras) {
-    const CameraIntrinsics own = cameraFor(camera, kModels, exported.notes);
+    const CameraIntrinsics own = cameraFor(camera, kEvimo2Models, exported.notes);
     const std::filesystem::path folder = camera.file_name;
     exported.files.push_back({folder / "params.txt", parametersText(camera, own)});
-    exported.files.push_back({folder / "calib.txt", lensText(own)});
-    exported.files.push_back({folder / "extrinsics.txt", placeText(camera)});
+    exported.files.push_back({folder / "calib.txt", evimo2LensText(own)});
+    exported.files.push_back({folder / "extrinsics.txt", placeEvimo2Text(camera)});
   }
-  noteLostImus(rig, kProgram, exported.notes);
-  for (const RigImu& imu : rig.imus) noteLostMapping(imu, kProgram, exported.notes);
+  noteLostImus(rig, kEvimo2Program, exported.notes);
+  for (const RigImu& imu : rig.imus) noteLostMapping(imu, kEvimo2Program, exported.notes);
   exported.notes.push_back(fmt::format(
       "{}'s rig has the frame of its motion capture markers; here it is {}: put the markers' pose before it",
-      kProgram, reference));
+      kEvimo2Program, reference));
   std::vector<std::string> lines{
       "A folder each camera. extrinsics.txt: x y z roll pitch yaw take points of the camera to the rig; its "
       "third "

@@ -11,9 +11,9 @@
 namespace evical {
 namespace {
 
-constexpr KnownModels kModels{"Kalibr", true, false, true, true, true, true};
+constexpr KnownModels kKalibrModels{"Kalibr", true, false, true, true, true, true};
 
-std::string cameraText(const Rig& rig, std::size_t i, const CameraIntrinsics& own) {
+std::string kalibrCameraText(const Rig& rig, std::size_t i, const CameraIntrinsics& own) {
   const RigCamera& camera = rig.cameras[i];
   std::string overlaps;
   for (std::size_t other = 0; other < rig.cameras.size(); ++other)
@@ -25,7 +25,7 @@ std::string cameraText(const Rig& rig, std::size_t i, const CameraIntrinsics& ow
 
 // Rows are indented further than their key, or OpenCV's parser (OpenVINS) fails.
 // What camera N - 1 sees at p, camera N sees at T_cn_cnm1 p.
-std::string chainText(const Rig& rig, std::size_t i) {
+std::string kalibrChainText(const Rig& rig, std::size_t i) {
   const RigidTransform step =
       inverse(rig.cameras[i].reference_from_camera) * rig.cameras[i - 1].reference_from_camera;
   return "  T_cn_cnm1:\n" + rowsYaml(matrixOf(step), 4);
@@ -36,8 +36,8 @@ std::string camchain(const Rig& rig, const std::vector<CameraIntrinsics>& lenses
                                          "to this camera."});
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     text += fmt::format("cam{}:  # {}\n", i, rig.cameras[i].file_name);
-    if (i > 0) text += chainText(rig, i);
-    text += cameraText(rig, i, lenses[i]);
+    if (i > 0) text += kalibrChainText(rig, i);
+    text += kalibrCameraText(rig, i, lenses[i]);
   }
   return text;
 }
@@ -79,9 +79,9 @@ std::string kalibrChain(const Rig& rig, const std::vector<CameraIntrinsics>& len
     const RigidTransform camera_from_imu = inverse(turnOf(other_from_imu) * camera.reference_from_camera);
     text += fmt::format("cam{}:  # {}\n  T_cam_imu:\n{}", i, camera.file_name,
                         rowsYaml(matrixOf(camera_from_imu), 4));
-    if (i > 0) text += chainText(rig, i);
-    text +=
-        cameraText(rig, i, lenses[i]) + fmt::format("  timeshift_cam_imu: {}\n", real(camera.time_offset_s));
+    if (i > 0) text += kalibrChainText(rig, i);
+    text += kalibrCameraText(rig, i, lenses[i]) +
+            fmt::format("  timeshift_cam_imu: {}\n", real(camera.time_offset_s));
   }
   return text;
 }
@@ -117,7 +117,7 @@ std::string biasComment(const RigImu& imu) {
 
 namespace {
 
-std::string mappingText(const RigImu& imu) {
+std::string kalibrMappingText(const RigImu& imu) {
   if (!hasMapping(imu.state)) return "  model: calibrated\n";
   const LowerTriangularImu lower = lowerTriangular(imu.state);
   return fmt::format(
@@ -127,7 +127,7 @@ std::string mappingText(const RigImu& imu) {
       rowsYaml(lower.gyroscope_rotation, 6));
 }
 
-std::string imuFile(const Rig& rig, ExportNotes& notes) {
+std::string kalibrImuFile(const Rig& rig, ExportNotes& notes) {
   std::string text = headerComment(
       rig,
       {"Kalibr IMU chain. T_i_b takes points of imu0 to this IMU; time of imu0 = time of this IMU + "
@@ -137,7 +137,7 @@ std::string imuFile(const Rig& rig, ExportNotes& notes) {
   for (std::size_t i = 0; i < rig.imus.size(); ++i) {
     const RigImu& imu = rig.imus[i];
     text += fmt::format("imu{}:  # {}\n", i, imu.file_name) + kalibrNoise(imu, 2, notes) +
-            kalibrPlacing(rig, imu) + biasComment(imu) + mappingText(imu);
+            kalibrPlacing(rig, imu) + biasComment(imu) + kalibrMappingText(imu);
   }
   return text;
 }
@@ -147,7 +147,7 @@ std::string imuFile(const Rig& rig, ExportNotes& notes) {
 ExportedFiles exportKalibr(const NamedResult& result) {
   ExportedFiles exported;
   const Rig rig = rigOf(result);
-  const std::vector<CameraIntrinsics> lenses = lensesFor(kModels, rig, exported.notes);
+  const std::vector<CameraIntrinsics> lenses = lensesFor(kKalibrModels, rig, exported.notes);
   exported.files.push_back({"camchain.yaml", camchain(rig, lenses)});
   if (rig.imus.empty()) {
     noteNoOffsets(rig, "Kalibr's camchain.yaml", exported.notes);
@@ -163,7 +163,7 @@ ExportedFiles exportKalibr(const NamedResult& result) {
         "against "
         "Evical's.");
   exported.files.push_back({"camchain-imucam.yaml", kalibrChain(rig, lenses, turn, comment)});
-  exported.files.push_back({"imu.yaml", imuFile(rig, exported.notes)});
+  exported.files.push_back({"imu.yaml", kalibrImuFile(rig, exported.notes)});
   ExportNotes said;  // with imu.yaml
   for (const RigImu& imu : rig.imus)
     exported.files.push_back(

@@ -11,7 +11,7 @@
 namespace evical {
 namespace {
 
-constexpr const char* kProgram = "Kimera-VIO";
+constexpr const char* kKimeraProgram = "Kimera-VIO";
 
 // Its YamlParser demands each of them, or says nothing of the calibration; values are those of its EuRoC parameters.
 // Later versions align clocks by rotation rates where --do_fine_imu_camera_temporal_sync asks for it.
@@ -22,11 +22,11 @@ constexpr const char* kOwnImuKeys =
 constexpr int kFrameRate_hz = 20;  // an integer above 0, as its EuRoC parameters have it
 
 // A map, which its parser insists on.
-std::string poseText(const Eigen::Matrix4d& pose) {
+std::string kimeraPoseText(const Eigen::Matrix4d& pose) {
   return "T_BS:\n" + dataMatrix(pose, 2);
 }
 
-std::string cameraFile(const Rig& rig, const RigCamera& camera, const CameraIntrinsics& own) {
+std::string kimeraCameraFile(const Rig& rig, const RigCamera& camera, const CameraIntrinsics& own) {
   const bool radtan = own.model == CameraModel::PinholeRadtan;
   const int coefficients = radtan && own.distortion[4] != 0.0 ? 5 : 4;
   return "%YAML:1.0\n---\n" +
@@ -34,7 +34,7 @@ std::string cameraFile(const Rig& rig, const RigCamera& camera, const CameraIntr
              rig, {"Camera of Kimera-VIO. T_BS takes points of the camera to the IMU, which is the body.",
                    "rate_hz is that of your images: put it."}) +
          fmt::format("camera_id: \"{}\"\n", camera.file_name) +
-         poseText(matrixOf(camera.reference_from_camera)) +
+         kimeraPoseText(matrixOf(camera.reference_from_camera)) +
          fmt::format(
              "rate_hz: {}\nresolution: [{}, {}]\ncamera_model: pinhole\n"
              "intrinsics: [{}, {}, {}, {}]\ndistortion_model: {}\ndistortion_coefficients: [{}]\n",
@@ -44,12 +44,12 @@ std::string cameraFile(const Rig& rig, const RigCamera& camera, const CameraIntr
              realList(distortionOf(own, coefficients)));
 }
 
-std::string imuFile(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
+std::string kimeraImuFile(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
   const StatedNoise noise = statedNoise(imu, notes);
   return "%YAML:1.0\n---\n" +
          headerComment(rig, {"IMU of Kimera-VIO. It is the body, which T_BS must say.",
                              "t_imu = t_cam + imu_time_shift; n_gravity is in a world whose z is up."}) +
-         poseText(Eigen::Matrix4d::Identity()) +
+         kimeraPoseText(Eigen::Matrix4d::Identity()) +
          fmt::format(
              "rate_hz: {}\ngyroscope_noise_density: {}\ngyroscope_random_walk: {}\n"
              "accelerometer_noise_density: {}\naccelerometer_random_walk: {}\nimu_time_shift: {}\n"
@@ -88,20 +88,21 @@ std::size_t sortCameras(Rig& rig, ExportNotes& notes) {
 ExportedFiles exportKimera(const NamedResult& result) {
   ExportedFiles exported;
   Rig rig = rigOf(result);
-  const RigImu& imu = neededImu(rig, kProgram);
+  const RigImu& imu = neededImu(rig, kKimeraProgram);
   const std::size_t count = sortCameras(rig, exported.notes);
-  noteLostImus(rig, kProgram, exported.notes);
-  noteLostCameras(rig, count, kProgram, exported.notes);
-  noteLostOffsets(rig, kProgram, exported.notes);
-  noteLostMapping(imu, kProgram, exported.notes);
+  noteLostImus(rig, kKimeraProgram, exported.notes);
+  noteLostCameras(rig, count, kKimeraProgram, exported.notes);
+  noteLostOffsets(rig, kKimeraProgram, exported.notes);
+  noteLostMapping(imu, kKimeraProgram, exported.notes);
   // It rectifies both as the left one's distortion_model says.
   const bool radtan = rig.cameras[0].intrinsics.model == CameraModel::PinholeRadtan;
-  const KnownModels models{kProgram, radtan, true, !radtan};
+  const KnownModels models{kKimeraProgram, radtan, true, !radtan};
   constexpr const char* kNames[] = {"LeftCameraParams.yaml", "RightCameraParams.yaml"};
   for (std::size_t i = 0; i < count; ++i)
     exported.files.push_back(
-        {kNames[i], cameraFile(rig, rig.cameras[i], cameraFor(rig.cameras[i], models, exported.notes))});
-  exported.files.push_back({"ImuParams.yaml", imuFile(rig, imu, exported.notes)});
+        {kNames[i],
+         kimeraCameraFile(rig, rig.cameras[i], cameraFor(rig.cameras[i], models, exported.notes))});
+  exported.files.push_back({"ImuParams.yaml", kimeraImuFile(rig, imu, exported.notes)});
   exported.files.push_back({"PipelineParams.yaml", pipelineFile(rig, count)});
   return exported;
 }

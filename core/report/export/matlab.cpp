@@ -11,9 +11,9 @@ namespace evical {
 namespace {
 
 // Its objects hold radial-tangential distortion only; equidistant coefficients are numbers there.
-constexpr KnownModels kModels{"MATLAB", true, true, true};
+constexpr KnownModels kMatlabModels{"MATLAB", true, true, true};
 
-std::string matrixText(const Eigen::MatrixXd& matrix) {
+std::string matlabMatrixText(const Eigen::MatrixXd& matrix) {
   std::string text;
   for (Eigen::Index row = 0; row < matrix.rows(); ++row)
     text += (row == 0 ? "" : "; ") + rowMajor(matrix.row(row));
@@ -32,7 +32,7 @@ std::string comment(const Rig& rig, const std::vector<std::string>& lines) {
   return commented;
 }
 
-std::string cameraText(const RigCamera& camera, const CameraIntrinsics& own, std::size_t number) {
+std::string matlabCameraText(const RigCamera& camera, const CameraIntrinsics& own, std::size_t number) {
   const std::string owner = fmt::format("rig.cameras({})", number);
   const auto& d = own.distortion;
   const bool radtan = own.model == CameraModel::PinholeRadtan;
@@ -40,27 +40,27 @@ std::string cameraText(const RigCamera& camera, const CameraIntrinsics& own, std
   std::string text = line(owner, "Name", fmt::format("'{}'", camera.file_name)) +
                      line(owner, "ImageSize",
                           fmt::format("[{}, {}]", own.resolution_px.height_px, own.resolution_px.width_px)) +
-                     line(owner, "FocalLength", matrixText(own.focal_length_px.transpose())) +
-                     line(owner, "PrincipalPoint", matrixText(from_one.transpose())) +
+                     line(owner, "FocalLength", matlabMatrixText(own.focal_length_px.transpose())) +
+                     line(owner, "PrincipalPoint", matlabMatrixText(from_one.transpose())) +
                      line(owner, "Model", radtan ? "'RadialTangential'" : "'KannalaBrandt'");
-  text += radtan
-              ? line(owner, "RadialDistortion", matrixText(Eigen::RowVector3d(d[0], d[1], d[4]))) +
-                    line(owner, "TangentialDistortion", matrixText(Eigen::RowVector2d(d[2], d[3])))
-              : line(owner, "DistortionCoefficients", matrixText(Eigen::RowVector4d(d[0], d[1], d[2], d[3])));
-  return text + line(owner, "ReferenceFromCamera", matrixText(matrixOf(camera.reference_from_camera))) +
+  text += radtan ? line(owner, "RadialDistortion", matlabMatrixText(Eigen::RowVector3d(d[0], d[1], d[4]))) +
+                       line(owner, "TangentialDistortion", matlabMatrixText(Eigen::RowVector2d(d[2], d[3])))
+                 : line(owner, "DistortionCoefficients",
+                        matlabMatrixText(Eigen::RowVector4d(d[0], d[1], d[2], d[3])));
+  return text + line(owner, "ReferenceFromCamera", matlabMatrixText(matrixOf(camera.reference_from_camera))) +
          line(owner, "TimeOffset", real(camera.time_offset_s));
 }
 
-std::string imuText(const RigImu& imu, std::size_t number, ExportNotes& notes) {
+std::string matlabImuText(const RigImu& imu, std::size_t number, ExportNotes& notes) {
   const std::string owner = fmt::format("rig.imus({})", number);
   const StatedNoise noise = statedNoise(imu, notes);
   return line(owner, "Name", fmt::format("'{}'", imu.file_name)) +
-         line(owner, "ReferenceFromImu", matrixText(matrixOf(imu.state.reference_from_imu))) +
+         line(owner, "ReferenceFromImu", matlabMatrixText(matrixOf(imu.state.reference_from_imu))) +
          line(owner, "TimeOffset", real(imu.state.time_offset_s)) +
-         line(owner, "AccelerometerMatrix", matrixText(imu.state.accelerometer_mapping)) +
-         line(owner, "GyroscopeMatrix", matrixText(imu.state.gyroscopeMatrix())) +
-         line(owner, "AccelerometerBias", matrixText(imu.state.accelerometer_bias_m_s2)) +
-         line(owner, "GyroscopeBias", matrixText(imu.state.gyroscope_bias_rad_s)) +
+         line(owner, "AccelerometerMatrix", matlabMatrixText(imu.state.accelerometer_mapping)) +
+         line(owner, "GyroscopeMatrix", matlabMatrixText(imu.state.gyroscopeMatrix())) +
+         line(owner, "AccelerometerBias", matlabMatrixText(imu.state.accelerometer_bias_m_s2)) +
+         line(owner, "GyroscopeBias", matlabMatrixText(imu.state.gyroscope_bias_rad_s)) +
          line(owner, "SampleRate", real(statedRate_hz(imu, notes))) +
          line(owner, "AccelerometerNoiseDensity", real(noise.accelerometer_density)) +
          line(owner, "GyroscopeNoiseDensity", real(noise.gyroscope_density)) +
@@ -69,7 +69,7 @@ std::string imuText(const RigImu& imu, std::size_t number, ExportNotes& notes) {
 }
 
 // stereoParameters wants the rotation of row vectors: the transpose of what takes columns.
-std::string stereoText(const Rig& rig) {
+std::string matlabStereoText(const Rig& rig) {
   const std::optional<StereoPair> level = sideBySide(rig);
   const bool swapped = level && level->left.name != rig.cameras[0].name;
   const RigCamera& first = rig.cameras[swapped ? 1 : 0];
@@ -78,8 +78,9 @@ std::string stereoText(const Rig& rig) {
       inverse(second.reference_from_camera) * first.reference_from_camera;
   return line("rig.stereo", "Cameras", swapped ? "[2, 1]" : "[1, 2]") +
          line("rig.stereo", "RotationOfCamera2",
-              matrixText(second_from_first.rotation.toRotationMatrix().transpose())) +
-         line("rig.stereo", "TranslationOfCamera2", matrixText(second_from_first.translation_m.transpose()));
+              matlabMatrixText(second_from_first.rotation.toRotationMatrix().transpose())) +
+         line("rig.stereo", "TranslationOfCamera2",
+              matlabMatrixText(second_from_first.translation_m.transpose()));
 }
 
 // Objects of the Computer Vision Toolbox where it is there; Octave has none of them.
@@ -126,19 +127,19 @@ ExportedFiles exportMatlab(const NamedResult& result) {
   text += line("rig", "Reference",
                fmt::format("'{}'", inertial ? rig.imus[0].file_name : rig.cameras[0].file_name));
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
-    const CameraIntrinsics own = cameraFor(rig.cameras[i], kModels, exported.notes);
+    const CameraIntrinsics own = cameraFor(rig.cameras[i], kMatlabModels, exported.notes);
     if (own.model != CameraModel::PinholeRadtan)
       exported.notes.push_back(fmt::format(
           "{}: cameraParameters and cameraIntrinsics have no place for equidistant distortion: its "
           "numbers are there without an object (cameraIntrinsicsKB is made by cameraIntrinsicsFromOpenCV, "
           "from R2024a on, of the principal point - 1)",
           rig.cameras[i].name));
-    text += cameraText(rig.cameras[i], own, i + 1);
+    text += matlabCameraText(rig.cameras[i], own, i + 1);
   }
-  for (std::size_t i = 0; i < rig.imus.size(); ++i) text += imuText(rig.imus[i], i + 1, exported.notes);
+  for (std::size_t i = 0; i < rig.imus.size(); ++i) text += matlabImuText(rig.imus[i], i + 1, exported.notes);
   if (inertial) text += line("rig", "Gravity", real(rig.gravity_m_s2.norm()));
   text += kCameraObjects;
-  if (rig.cameras.size() > 1) text += stereoText(rig) + kStereoObject;
+  if (rig.cameras.size() > 1) text += matlabStereoText(rig) + kStereoObject;
   exported.files.push_back({"evical_rig.m", text + "end\n"});
   return exported;
 }

@@ -52,8 +52,8 @@ void addTiming(const State& state, Arrays& arrays) {
   arrays.add("time_offset_at_s", npyNumber(state.time_offset_at_s));
 }
 
-void addCamera(const RigCamera& camera, const CameraState& state, const CameraUncertainty& uncertainty,
-               Arrays& arrays) {
+void addNumpyCamera(const RigCamera& camera, const CameraState& state, const CameraUncertainty& uncertainty,
+                    Arrays& arrays) {
   const CameraIntrinsics& own = camera.intrinsics;
   arrays.setSensor(camera.file_name);
   arrays.add("stream", npyText(camera.stream));
@@ -94,7 +94,7 @@ void addCovariance(const UncertaintyReport& uncertainty, Arrays& arrays) {
 }
 
 template <class Sensors>
-std::string namesOf(const Sensors& sensors) {
+std::string numpyNamesOf(const Sensors& sensors) {
   std::vector<std::string> names;
   for (const auto& sensor : sensors) names.push_back(sensor.file_name);
   return npyList(names);
@@ -110,8 +110,8 @@ ExportedFiles exportNumpy(const NamedResult& result) {
   arrays.add("program", npyText(rig.program));
   arrays.add("status", npyText(rig.status));
   arrays.add("notes", npyList(rig.timing));
-  arrays.add("cameras", namesOf(rig.cameras));
-  arrays.add("imus", namesOf(rig.imus));
+  arrays.add("cameras", numpyNamesOf(rig.cameras));
+  arrays.add("imus", numpyNamesOf(rig.imus));
   std::string reference = inertial ? rig.imus.front().file_name : rig.cameras.front().file_name;
   for (const RigCamera& camera : rig.cameras)
     if (!inertial && camera.name == result.reference) reference = camera.file_name;
@@ -119,7 +119,8 @@ ExportedFiles exportNumpy(const NamedResult& result) {
   if (inertial) arrays.add("gravity_m_s2", rig.gravity_m_s2);
   addCovariance(uncertainty, arrays);
   for (std::size_t i = 0; i < rig.cameras.size(); ++i)
-    addCamera(rig.cameras[i], result.result->state.cameras[i], elementOrNone(uncertainty.cameras, i), arrays);
+    addNumpyCamera(rig.cameras[i], result.result->state.cameras[i], elementOrNone(uncertainty.cameras, i),
+                   arrays);
   for (const RigImu& imu : rig.imus) {
     const auto named = std::find_if(result.imus.begin(), result.imus.end(),
                                     [&](const SensorDescription& each) { return each.name == imu.name; });

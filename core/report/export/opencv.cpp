@@ -10,10 +10,10 @@ namespace evical {
 namespace {
 
 // Fisheyes are cv::fisheye's, omni is cv::omnidir's (opencv_contrib).
-constexpr KnownModels kModels{"OpenCV", true, true, true, false, false, true};
+constexpr KnownModels kOpencvModels{"OpenCV", true, true, true, false, false, true};
 
 // In the order of OpenCV's functions for the model, as a column: k1 k2 p1 p2 k3, k1 k2 k3 k4, or k1 k2 p1 p2 beside xi.
-Eigen::VectorXd coefficients(const CameraIntrinsics& own) {
+Eigen::VectorXd opencvCoefficients(const CameraIntrinsics& own) {
   const auto& d = own.distortion;
   switch (own.model) {
     case CameraModel::PinholeEquidistant:
@@ -25,20 +25,21 @@ Eigen::VectorXd coefficients(const CameraIntrinsics& own) {
   }
 }
 
-std::string matrixText(const std::string& key, const Eigen::MatrixXd& matrix) {
+std::string opencvMatrixText(const std::string& key, const Eigen::MatrixXd& matrix) {
   return opencvMatrix(key.c_str(), matrix, 'd');
 }
 
-std::string lensText(const std::string& k_key, const std::string& d_key, const std::string& xi_key,
-                     const CameraIntrinsics& own) {
-  std::string text = matrixText(k_key, cameraMatrix(own)) + matrixText(d_key, coefficients(own));
+std::string opencvLensText(const std::string& k_key, const std::string& d_key, const std::string& xi_key,
+                           const CameraIntrinsics& own) {
+  std::string text =
+      opencvMatrixText(k_key, cameraMatrix(own)) + opencvMatrixText(d_key, opencvCoefficients(own));
   if (own.model == CameraModel::OmniRadtan)
-    text += matrixText(xi_key, Eigen::MatrixXd::Constant(1, 1, own.distortion[0]));
+    text += opencvMatrixText(xi_key, Eigen::MatrixXd::Constant(1, 1, own.distortion[0]));
   return text;
 }
 
 // What its calibration samples write, and where the camera is.
-std::string cameraFile(const Rig& rig, const RigCamera& camera, const CameraIntrinsics& own) {
+std::string opencvCameraFile(const Rig& rig, const RigCamera& camera, const CameraIntrinsics& own) {
   const std::string reference = rig.imus.empty() ? rig.cameras[0].file_name : rig.imus[0].file_name;
   return "%YAML:1.0\n---\n" +
          headerComment(
@@ -51,13 +52,13 @@ std::string cameraFile(const Rig& rig, const RigCamera& camera, const CameraIntr
                                reference)}) +
          fmt::format("image_width: {}\nimage_height: {}\nfisheye_model: {}\n", own.resolution_px.width_px,
                      own.resolution_px.height_px, own.model == CameraModel::PinholeEquidistant ? 1 : 0) +
-         lensText("camera_matrix", "distortion_coefficients", "xi", own) +
+         opencvLensText("camera_matrix", "distortion_coefficients", "xi", own) +
          fmt::format("avg_reprojection_error: {}\n", real(camera.fit.reprojection_rms_px)) +
-         matrixText("reference_from_camera", matrixOf(camera.reference_from_camera)) +
+         opencvMatrixText("reference_from_camera", matrixOf(camera.reference_from_camera)) +
          fmt::format("time_offset_s: {}\n", real(camera.time_offset_s));
 }
 
-std::string imuFile(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
+std::string opencvImuFile(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
   const StatedNoise noise = statedNoise(imu, notes);
   return "%YAML:1.0\n---\n" +
          headerComment(
@@ -66,12 +67,12 @@ std::string imuFile(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
                                imu.name, rig.imus[0].name),
                    "measured force = accelerometer_matrix f + accelerometer_bias [m/s^2], measured rate = "
                    "gyroscope_matrix w + gyroscope_bias [rad/s]."}) +
-         matrixText("reference_from_imu", matrixOf(imu.state.reference_from_imu)) +
+         opencvMatrixText("reference_from_imu", matrixOf(imu.state.reference_from_imu)) +
          fmt::format("time_offset_s: {}\n", real(imu.state.time_offset_s)) +
-         matrixText("accelerometer_matrix", imu.state.accelerometer_mapping) +
-         matrixText("gyroscope_matrix", imu.state.gyroscopeMatrix()) +
-         matrixText("accelerometer_bias", imu.state.accelerometer_bias_m_s2) +
-         matrixText("gyroscope_bias", imu.state.gyroscope_bias_rad_s) +
+         opencvMatrixText("accelerometer_matrix", imu.state.accelerometer_mapping) +
+         opencvMatrixText("gyroscope_matrix", imu.state.gyroscopeMatrix()) +
+         opencvMatrixText("accelerometer_bias", imu.state.accelerometer_bias_m_s2) +
+         opencvMatrixText("gyroscope_bias", imu.state.gyroscope_bias_rad_s) +
          fmt::format(
              "rate_hz: {}\naccelerometer_noise_density: {}\ngyroscope_noise_density: {}\n"
              "accelerometer_random_walk: {}\ngyroscope_random_walk: {}\n",
@@ -92,8 +93,8 @@ Eigen::Matrix4d depthFromDisparity(const Rectification& rectified) {
 }
 
 // intrinsics.yml and extrinsics.yml of OpenCV's stereo_calib sample, and E and F.
-void addPair(const Rig& rig, const StereoPair& pair, const CameraIntrinsics& left,
-             const CameraIntrinsics& right, std::vector<FileContent>& files) {
+void addOpencvPair(const Rig& rig, const StereoPair& pair, const CameraIntrinsics& left,
+                   const CameraIntrinsics& right, std::vector<FileContent>& files) {
   const std::vector<std::string> comment{
       fmt::format(
           "Camera 1 is {} (left), camera 2 {} (right), as OpenCV's stereo_calib sample writes them. R and T "
@@ -101,18 +102,19 @@ void addPair(const Rig& rig, const StereoPair& pair, const CameraIntrinsics& lef
           pair.left.name, pair.right.name),
       "x2^T E x1 = 0 in normalised coordinates, x2^T F x1 = 0 in undistorted pixels."};
   const std::string beginning = "%YAML:1.0\n---\n" + headerComment(rig, comment);
-  files.push_back(
-      {"intrinsics.yml", beginning + lensText("M1", "D1", "xi1", left) + lensText("M2", "D2", "xi2", right)});
+  files.push_back({"intrinsics.yml", beginning + opencvLensText("M1", "D1", "xi1", left) +
+                                         opencvLensText("M2", "D2", "xi2", right)});
   const Rectification rectified = rectify(left, right, pair.right_from_left);
   files.push_back(
-      {"extrinsics.yml",
-       beginning + matrixText("R", pair.right_from_left.rotation.toRotationMatrix()) +
-           matrixText("T", pair.right_from_left.translation_m) +
-           matrixText("E", essentialMatrix(pair.right_from_left)) +
-           matrixText("F", fundamentalMatrix(left, right, pair.right_from_left)) +
-           matrixText("R1", rectified.rectified_from_left) +
-           matrixText("R2", rectified.rectified_from_right) + matrixText("P1", rectified.left_projection) +
-           matrixText("P2", rectified.right_projection) + matrixText("Q", depthFromDisparity(rectified))});
+      {"extrinsics.yml", beginning + opencvMatrixText("R", pair.right_from_left.rotation.toRotationMatrix()) +
+                             opencvMatrixText("T", pair.right_from_left.translation_m) +
+                             opencvMatrixText("E", essentialMatrix(pair.right_from_left)) +
+                             opencvMatrixText("F", fundamentalMatrix(left, right, pair.right_from_left)) +
+                             opencvMatrixText("R1", rectified.rectified_from_left) +
+                             opencvMatrixText("R2", rectified.rectified_from_right) +
+                             opencvMatrixText("P1", rectified.left_projection) +
+                             opencvMatrixText("P2", rectified.right_projection) +
+                             opencvMatrixText("Q", depthFromDisparity(rectified))});
 }
 
 }  // namespace
@@ -122,19 +124,19 @@ ExportedFiles exportOpenCv(const NamedResult& result) {
   const Rig rig = rigOf(result);
   std::vector<CameraIntrinsics> lenses;
   for (const RigCamera& camera : rig.cameras) {
-    lenses.push_back(cameraFor(camera, kModels, exported.notes));
-    exported.files.push_back({camera.file_name + ".yaml", cameraFile(rig, camera, lenses.back())});
+    lenses.push_back(cameraFor(camera, kOpencvModels, exported.notes));
+    exported.files.push_back({camera.file_name + ".yaml", opencvCameraFile(rig, camera, lenses.back())});
   }
   if (const std::optional<StereoPair> pair = sideBySide(rig)) {
     const bool swapped = pair->left.name != rig.cameras[0].name;
-    addPair(rig, *pair, lenses[swapped ? 1 : 0], lenses[swapped ? 0 : 1], exported.files);
+    addOpencvPair(rig, *pair, lenses[swapped ? 1 : 0], lenses[swapped ? 0 : 1], exported.files);
   } else if (rig.cameras.size() > 1) {
     exported.notes.push_back(fmt::format(
         "{} and {} do not sit side by side: there are no intrinsics.yml and extrinsics.yml of a pair",
         rig.cameras[0].name, rig.cameras[1].name));
   }
   for (const RigImu& imu : rig.imus)
-    exported.files.push_back({imu.file_name + ".yaml", imuFile(rig, imu, exported.notes)});
+    exported.files.push_back({imu.file_name + ".yaml", opencvImuFile(rig, imu, exported.notes)});
   return exported;
 }
 

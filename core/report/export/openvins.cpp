@@ -9,7 +9,7 @@ namespace evical {
 namespace {
 
 // `rpng` takes upper triangular matrices, as ours are, so no frame has to turn.
-std::string mappingText(const RigImu& imu) {
+std::string openvinsMappingText(const RigImu& imu) {
   const TriangularTimesRotation gyroscope = splitUpper(imu.state.gyroscopeMatrix());
   const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
   const bool mapped = hasMapping(imu.state);
@@ -42,7 +42,7 @@ ExportedFiles exportOpenVins(const NamedResult& result) {
                rig, {"OpenVINS. measured force = Ta R_IMUtoACC f + bias, measured rate = Tw R_IMUtoGYRO w "
                      "+ Tg f + bias."}) +
            fmt::format("imu0:  # {}\n", imu.file_name) + kalibrNoise(imu, 2, exported.notes) +
-           kalibrPlacing(rig, imu) + biasComment(imu) + mappingText(imu)});
+           kalibrPlacing(rig, imu) + biasComment(imu) + openvinsMappingText(imu)});
   return exported;
 }
 

@@ -11,11 +11,11 @@
 namespace evical {
 namespace {
 
-constexpr const char* kProgram = "ORB-SLAM3";
-constexpr std::size_t kMostCameras = 2;
+constexpr const char* kOrbSlam3Program = "ORB-SLAM3";
+constexpr std::size_t kOrbSlam3MostCameras = 2;
 
 // Keys that say nothing of a calibration, without which the program does not start (Settings.cc); real ones must look so.
-constexpr const char* kOwnKeys =
+constexpr const char* kOrbSlam3OwnKeys =
     "Camera.fps: 20\nCamera.RGB: 1\n"
     "ORBextractor.nFeatures: 1000\nORBextractor.scaleFactor: 1.2\nORBextractor.nLevels: 8\n"
     "ORBextractor.iniThFAST: 20\nORBextractor.minThFAST: 7\n"
@@ -24,7 +24,7 @@ constexpr const char* kOwnKeys =
     "Viewer.CameraSize: 0.08\nViewer.CameraLineWidth: 3.0\nViewer.ViewpointX: 0.0\nViewer.ViewpointY: -0.7\n"
     "Viewer.ViewpointZ: -3.5\nViewer.ViewpointF: 500.0\nViewer.imageViewScale: 1.0\n";
 
-std::string cameraText(const CameraIntrinsics& camera, std::size_t number, bool stereo) {
+std::string orbSlam3CameraText(const CameraIntrinsics& camera, std::size_t number, bool stereo) {
   const std::string prefix = fmt::format("Camera{}.", number);
   const auto line = [&](const char* key, double value) {
     return fmt::format("{}{}: {}\n", prefix, key, real(value));
@@ -46,9 +46,9 @@ std::string cameraText(const CameraIntrinsics& camera, std::size_t number, bool 
 // Both cameras of one kind: the settings have one Camera.type.
 std::vector<CameraIntrinsics> camerasOf(const Rig& rig, ExportNotes& notes) {
   std::vector<CameraIntrinsics> cameras;
-  for (std::size_t i = 0; i < std::min(rig.cameras.size(), kMostCameras); ++i) {
+  for (std::size_t i = 0; i < std::min(rig.cameras.size(), kOrbSlam3MostCameras); ++i) {
     const bool radtan = rig.cameras[0].intrinsics.model == CameraModel::PinholeRadtan;
-    cameras.push_back(cameraFor(rig.cameras[i], {kProgram, radtan, true, !radtan}, notes));
+    cameras.push_back(cameraFor(rig.cameras[i], {kOrbSlam3Program, radtan, true, !radtan}, notes));
     if (cameras[i].resolution_px != cameras[0].resolution_px)
       throw badInput(fmt::format("result: cameras.{}", rig.cameras[i].name),
                      "has another resolution than the first camera, and ORB-SLAM3 takes one for both",
@@ -57,7 +57,7 @@ std::vector<CameraIntrinsics> camerasOf(const Rig& rig, ExportNotes& notes) {
   return cameras;
 }
 
-std::string imuText(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
+std::string orbSlam3ImuText(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
   const StatedNoise noise = statedNoise(imu, notes);
   return opencvMatrix("IMU.T_b_c1", matrixOf(rig.cameras[0].reference_from_camera), 'f') +
          fmt::format(
@@ -86,7 +86,7 @@ std::string secondLensNote(const std::vector<CameraIntrinsics>& cameras) {
 ExportedFiles exportOrbSlam3(const NamedResult& result) {
   ExportedFiles exported;
   const Rig rig = rigOf(result);
-  noteLostCameras(rig, kMostCameras, kProgram, exported.notes);
+  noteLostCameras(rig, kOrbSlam3MostCameras, kOrbSlam3Program, exported.notes);
   const std::vector<CameraIntrinsics> cameras = camerasOf(rig, exported.notes);
   const bool stereo = cameras.size() > 1;
   std::string text =
@@ -99,7 +99,7 @@ ExportedFiles exportOrbSlam3(const NamedResult& result) {
                      stampShifts(rig)}) +
       fmt::format("File.version: \"1.0\"\nCamera.type: \"{}\"\n",
                   cameras[0].model == CameraModel::PinholeRadtan ? "PinHole" : "KannalaBrandt8");
-  for (std::size_t i = 0; i < cameras.size(); ++i) text += cameraText(cameras[i], i + 1, stereo);
+  for (std::size_t i = 0; i < cameras.size(); ++i) text += orbSlam3CameraText(cameras[i], i + 1, stereo);
   text += fmt::format("Camera.width: {}\nCamera.height: {}\n", cameras[0].resolution_px.width_px,
                       cameras[0].resolution_px.height_px);
   if (stereo)
@@ -108,11 +108,11 @@ ExportedFiles exportOrbSlam3(const NamedResult& result) {
                                                              rig.cameras[1].reference_from_camera),
                                                     'f');
   if (!rig.imus.empty()) {
-    noteLostImus(rig, kProgram, exported.notes);
-    noteLostMapping(rig.imus[0], kProgram, exported.notes);
-    text += imuText(rig, rig.imus[0], exported.notes);
+    noteLostImus(rig, kOrbSlam3Program, exported.notes);
+    noteLostMapping(rig.imus[0], kOrbSlam3Program, exported.notes);
+    text += orbSlam3ImuText(rig, rig.imus[0], exported.notes);
   }
-  text += kOwnKeys;
+  text += kOrbSlam3OwnKeys;
   if (stereo) exported.notes.push_back(secondLensNote(cameras));
   if (!rig.imus.empty() || stereo) exported.notes.push_back(stampShifts(rig));
   exported.files.push_back({"settings.yaml", text});

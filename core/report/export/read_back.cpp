@@ -247,7 +247,7 @@ class Comparison {
   ReadBackDifference difference_;
 };
 
-std::string textOf(const ReadBackDifference& difference) {
+std::string checkTextOf(const ReadBackDifference& difference) {
   std::vector<std::string> parts;
   const auto plural = [](std::size_t count, const char* what) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
@@ -279,7 +279,7 @@ ExportCheck checkExport(const NamedResult& result, const ExportTarget& target,
   try {
     const ReadBackDifference difference = differenceOf(result, target.read(folder / target.name));
     if (difference.problems.empty())
-      return {true, fmt::format("{}: reads back: {}", target.name, textOf(difference))};
+      return {true, fmt::format("{}: reads back: {}", target.name, checkTextOf(difference))};
     return {false,
             fmt::format("{}: does not read back: {}", target.name, fmt::join(difference.problems, "; "))};
   } catch (const CalibrationError& error) {

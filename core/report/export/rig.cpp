@@ -43,7 +43,7 @@ void checkNumbers(const std::string& place, const Rows& rows, const State& state
   if (!finite) throwNotFinite(place);
 }
 
-RigCamera cameraOf(const NamedResult& result, std::size_t i, std::set<std::string>& taken) {
+RigCamera rigCameraOf(const NamedResult& result, std::size_t i, std::set<std::string>& taken) {
   const std::string& name = result.cameras[i].name;
   const CameraState& state = result.result->state.cameras.at(i);
   const std::optional<CameraIntrinsics>& intrinsics = state.lens.inUse();
@@ -63,7 +63,7 @@ RigCamera cameraOf(const NamedResult& result, std::size_t i, std::set<std::strin
           elementOrNone(result.result->cameras, i)};
 }
 
-RigImu imuOf(const NamedResult& result, std::size_t i, std::set<std::string>& taken) {
+RigImu rigImuOf(const NamedResult& result, std::size_t i, std::set<std::string>& taken) {
   const std::string& name = result.imus[i].name;
   const SensorDescription& known = result.imus[i];
   const ImuState& state = result.result->state.imus.at(i);
@@ -140,8 +140,9 @@ Rig rigOf(const NamedResult& result) {
   rig.gravity_m_s2 = result.result->state.gravity_in_world_m_s2;
   if (!rig.gravity_m_s2.allFinite()) throwNotFinite("result: gravity_m_s2");
   std::set<std::string> taken;
-  for (std::size_t i = 0; i < result.cameras.size(); ++i) rig.cameras.push_back(cameraOf(result, i, taken));
-  for (std::size_t i = 0; i < result.imus.size(); ++i) rig.imus.push_back(imuOf(result, i, taken));
+  for (std::size_t i = 0; i < result.cameras.size(); ++i)
+    rig.cameras.push_back(rigCameraOf(result, i, taken));
+  for (std::size_t i = 0; i < result.imus.size(); ++i) rig.imus.push_back(rigImuOf(result, i, taken));
   std::stable_partition(rig.imus.begin(), rig.imus.end(),
                         [&](const RigImu& imu) { return imu.name == result.reference; });
   rig.timing = timingRemarks(result);

@@ -72,7 +72,7 @@ Rectification rectify(const CameraIntrinsics& left, const CameraIntrinsics& righ
   const Eigen::Matrix3d half = so3Exp(0.5 * so3Log(right_from_left.rotation.toRotationMatrix()));
   const Eigen::Vector3d baseline = half.transpose() * right_from_left.translation_m;
   const Eigen::Vector3d axis(baseline.x() < 0.0 ? -1.0 : 1.0, 0.0, 0.0);
-  const Eigen::Matrix3d level = Eigen::Quaterniond::FromTwoVectors(baseline, axis).toRotationMatrix();
+  const Eigen::Matrix3d level = rotationBetween(baseline, axis).toRotationMatrix();
   Rectification result;
   result.rectified_from_left = level * half;
   result.rectified_from_right = level * half.transpose();

@@ -10,8 +10,8 @@
 namespace evical {
 namespace {
 
-std::string cameraText(const RigCamera& camera, const std::string& label, std::size_t number,
-                       const CameraIntrinsics& own) {
+std::string svoCameraText(const RigCamera& camera, const std::string& label, std::size_t number,
+                          const CameraIntrinsics& own) {
   const Eigen::Vector4d intrinsics(own.focal_length_px.x(), own.focal_length_px.y(),
                                    own.principal_point_px.x(), own.principal_point_px.y());
   const std::vector<double> d = distortionOf(own, 4);
@@ -32,8 +32,8 @@ std::string rigText(const Rig& rig, const char* program, const std::string& firs
   std::string text = "label: \"rig\"\ncameras:\n";
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     const bool named = i == 0 && !first_label.empty();
-    text += cameraText(rig.cameras[i], named ? first_label : rig.cameras[i].file_name, i,
-                       cameraFor(rig.cameras[i], models, notes));
+    text += svoCameraText(rig.cameras[i], named ? first_label : rig.cameras[i].file_name, i,
+                          cameraFor(rig.cameras[i], models, notes));
   }
   return text;
 }

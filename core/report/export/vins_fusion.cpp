@@ -11,12 +11,12 @@
 namespace evical {
 namespace {
 
-constexpr const char* kProgram = "VINS-Fusion";
-constexpr KnownModels kModels{kProgram, true, false, true, false, false, true};
-constexpr std::size_t kMostCameras = 2;
+constexpr const char* kVinsFusionProgram = "VINS-Fusion";
+constexpr KnownModels kVinsFusionModels{kVinsFusionProgram, true, false, true, false, false, true};
+constexpr std::size_t kVinsFusionMostCameras = 2;
 
 // Keys that say nothing of a calibration: where they are missing the program takes 0, and finds nothing.
-constexpr const char* kOwnKeys =
+constexpr const char* kVinsFusionOwnKeys =
     "output_path: \"/tmp/\"\nmultiple_thread: 1\nmax_cnt: 150\nmin_dist: 30\nfreq: 10\nF_threshold: 1.0\n"
     "show_track: 1\nflow_back: 1\nmax_solver_time: 0.04\nmax_num_iterations: 8\nkeyframe_parallax: 10.0\n"
     "load_previous_pose_graph: 0\npose_graph_save_path: \"/tmp/\"\nsave_image: 0\n";
@@ -32,8 +32,8 @@ std::string omniText(const CameraIntrinsics& own) {
 }
 
 // camodocal's camera file. Its Kannala-Brandt k2..k5 are k1..k4 elsewhere.
-std::string cameraFile(const Rig& rig, const RigCamera& camera, ExportNotes& notes) {
-  const CameraIntrinsics own = cameraFor(camera, kModels, notes);
+std::string vinsFusionCameraFile(const Rig& rig, const RigCamera& camera, ExportNotes& notes) {
+  const CameraIntrinsics own = cameraFor(camera, kVinsFusionModels, notes);
   const bool radtan = own.model == CameraModel::PinholeRadtan;
   const bool omni = own.model == CameraModel::OmniRadtan;
   const std::vector<double> d = distortionOf(own, 4);
@@ -58,7 +58,7 @@ std::string cameraFile(const Rig& rig, const RigCamera& camera, ExportNotes& not
 }
 
 std::string configuration(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
-  const std::size_t count = std::min(rig.cameras.size(), kMostCameras);
+  const std::size_t count = std::min(rig.cameras.size(), kVinsFusionMostCameras);
   const StatedNoise noise = statedNoise(imu, notes);
   std::string text =
       "%YAML:1.0\n---\n" +
@@ -87,7 +87,7 @@ std::string configuration(const Rig& rig, const RigImu& imu, ExportNotes& notes)
                      real(of_sample * noise.accelerometer_random_walk),
                      real(of_sample * noise.gyroscope_random_walk), real(rig.gravity_m_s2.norm()),
                      real(rig.cameras[0].time_offset_s)) +
-         kOwnKeys;
+         kVinsFusionOwnKeys;
 }
 
 }  // namespace
@@ -95,15 +95,15 @@ std::string configuration(const Rig& rig, const RigImu& imu, ExportNotes& notes)
 ExportedFiles exportVinsFusion(const NamedResult& result) {
   ExportedFiles exported;
   const Rig rig = rigOf(result);
-  const RigImu& imu = neededImu(rig, kProgram);
-  noteLostImus(rig, kProgram, exported.notes);
-  noteLostCameras(rig, kMostCameras, kProgram, exported.notes);
-  noteLostOffsets(rig, kProgram, exported.notes);
-  noteLostMapping(imu, kProgram, exported.notes);
+  const RigImu& imu = neededImu(rig, kVinsFusionProgram);
+  noteLostImus(rig, kVinsFusionProgram, exported.notes);
+  noteLostCameras(rig, kVinsFusionMostCameras, kVinsFusionProgram, exported.notes);
+  noteLostOffsets(rig, kVinsFusionProgram, exported.notes);
+  noteLostMapping(imu, kVinsFusionProgram, exported.notes);
   exported.files.push_back({"vins.yaml", configuration(rig, imu, exported.notes)});
-  for (std::size_t i = 0; i < std::min(rig.cameras.size(), kMostCameras); ++i)
+  for (std::size_t i = 0; i < std::min(rig.cameras.size(), kVinsFusionMostCameras); ++i)
     exported.files.push_back(
-        {rig.cameras[i].file_name + ".yaml", cameraFile(rig, rig.cameras[i], exported.notes)});
+        {rig.cameras[i].file_name + ".yaml", vinsFusionCameraFile(rig, rig.cameras[i], exported.notes)});
   return exported;
 }
 

@@ -10,7 +10,7 @@
 namespace evical::html {
 namespace {
 
-constexpr std::array<const char*, 3> kColours = {"c0", "c1", "c2"};
+constexpr std::array<const char*, 3> kAxisColours = {"c0", "c1", "c2"};
 
 // One sensor's biases at the knots, less their means.
 struct Drift {
@@ -19,7 +19,7 @@ struct Drift {
   const std::vector<Eigen::Vector3d>&values, &sigmas;
 };
 
-PlotTable tableOf(const Drift& drift) {
+PlotTable biasTable(const Drift& drift) {
   PlotTable table("plots/" + drift.file + ".csv",
                   {"time_s", "x [" + drift.unit + "]", "y [" + drift.unit + "]", "z [" + drift.unit + "]",
                    "std_x", "std_y", "std_z"});
@@ -32,7 +32,7 @@ PlotTable tableOf(const Drift& drift) {
 }
 
 void writeDrift(const Drift& drift, ReportPage& page) {
-  const PlotTable table = tableOf(drift);
+  const PlotTable table = biasTable(drift);
   PlotFrame frame;
   frame.title = drift.title + ": bias less its mean";
   frame.x_label = "time [s]";
@@ -49,11 +49,11 @@ void writeDrift(const Drift& drift, ReportPage& page) {
   }
   SvgPlot plot(frame);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    plot.line(table.values[0], table.values[axis + 1], kColours[axis]);
+    plot.line(table.values[0], table.values[axis + 1], kAxisColours[axis]);
     for (std::size_t k = 0; k < table.rows(); ++k) {
       const double time_s = table.values[0][k], value = table.values[axis + 1][k];
       const double sigma = table.values[axis + 4][k];
-      plot.segment(time_s, value - sigma, time_s, value + sigma, kColours[axis]);
+      plot.segment(time_s, value - sigma, time_s, value + sigma, kAxisColours[axis]);
     }
   }
   plot.legend({{"c0", "x"}, {"c1", "y"}, {"c2", "z"}});

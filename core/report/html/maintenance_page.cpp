@@ -19,10 +19,10 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-constexpr std::array<const char*, 3> kColours = {"c0", "c1", "c2"};
+constexpr std::array<const char*, 3> kPartColours = {"c0", "c1", "c2"};
 constexpr std::size_t kMostPoints = 2000;  // of a plot; maintenance's own CSV has all
 
-const char* cssClass(MaintenanceVerdict verdict) {
+const char* maintenanceClass(MaintenanceVerdict verdict) {
   switch (verdict) {
     case MaintenanceVerdict::Unchanged:
       return "ok";
@@ -34,7 +34,7 @@ const char* cssClass(MaintenanceVerdict verdict) {
   return "doubtful";
 }
 
-std::string ofText(const std::string& sensor, const std::string& against) {
+std::string ofSensorText(const std::string& sensor, const std::string& against) {
   return escaped(against.empty() ? sensor : sensor + " against " + against);
 }
 
@@ -46,7 +46,7 @@ void writeVerdictOf(const Maintenance& maintenance, ReportPage& page) {
   std::string advice;
   for (const std::string& text : maintenance.advice) advice += paragraph("", escaped(text) + ".");
   page.text(fmt::format("<div class=\"verdict {}\"><b>{}</b><div><p>{}</p>{}{}</div></div>\n",
-                        cssClass(maintenance.verdict), verdictWords(maintenance.verdict),
+                        maintenanceClass(maintenance.verdict), verdictWords(maintenance.verdict),
                         "Are the IMUs still as they were calibrated?",
                         paragraph("reason", escaped(maintenance.reason) + "."), advice));
 }
@@ -62,13 +62,13 @@ void writeQuantities(const Maintenance& maintenance, ReportPage& page) {
   Rows rows, numbers;
   for (const MaintainedQuantity& quantity : maintenance.quantities) {
     rows.push_back(
-        {ofText(quantity.sensor, quantity.against), escaped(quantity.title),
+        {ofSensorText(quantity.sensor, quantity.against), escaped(quantity.title),
          sourceName(quantity.source) == std::string("other_imu") ? "other IMU" : sourceName(quantity.source),
          withSigma(quantity.change, quantity.change_sigma),
          std::isfinite(quantity.would_notice) ? significant(quantity.would_notice) : "&ndash;",
          unitText(quantity.unit), outcomeText(quantity)});
     for (const MaintainedNumber& each : quantity.numbers)
-      numbers.push_back({ofText(quantity.sensor, quantity.against), escaped(each.name),
+      numbers.push_back({ofSensorText(quantity.sensor, quantity.against), escaped(each.name),
                          withSigma(each.before, each.before_sigma), withSigma(each.now, each.now_sigma),
                          unitText(each.unit)});
   }
@@ -90,7 +90,7 @@ void writeSteps(const Maintenance& maintenance, ReportPage& page) {
   for (const MaintenanceStep& step : maintenance.steps) {
     std::string others;
     for (const std::string& other : step.or_else) others += (others.empty() ? "" : ", ") + escaped(other);
-    rows.push_back({number(step.at_s, 1), number(step.noticed_s, 1), ofText(step.sensor, step.against),
+    rows.push_back({number(step.at_s, 1), number(step.noticed_s, 1), ofSensorText(step.sensor, step.against),
                     escaped(step.title), withSigma(step.size, step.size_sigma), unitText(step.unit), others});
   }
   page.text(table({"at, s", "noticed at, s", "", "what", "by", "unit", "or else"}, rows));
@@ -135,7 +135,7 @@ void drawPart(const MaintenanceTrack& track, const TrackPart& part, const std::s
     if (isIn(step, track)) plot.segment(step.at_s, frame.y.low, step.at_s, frame.y.high, "ink");
   std::vector<LegendEntry> legend;
   for (std::size_t c = 0; c < count; ++c) {
-    const char* const colour = kColours[c % kColours.size()];
+    const char* const colour = kPartColours[c % kPartColours.size()];
     const std::vector<double>&values = plotted.values[1 + 2 * c], &sigmas = plotted.values[2 + 2 * c];
     std::vector<double> low, high;
     for (std::size_t k = 0; k < values.size(); ++k) {

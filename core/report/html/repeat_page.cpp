@@ -19,9 +19,9 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-constexpr std::array<const char*, 6> kColours = {"c0", "c1", "c2", "o3", "o6", "o8"};
+constexpr std::array<const char*, 6> kRecordingColours = {"c0", "c1", "c2", "o3", "o6", "o8"};
 
-const char* cssClass(RepeatVerdict verdict) {
+const char* repeatClass(RepeatVerdict verdict) {
   switch (verdict) {
     case RepeatVerdict::Agree:
       return "ok";
@@ -35,7 +35,7 @@ const char* cssClass(RepeatVerdict verdict) {
 
 void writeAgreement(const Repeatability& repeat, ReportPage& page) {
   page.text(fmt::format("<div class=\"verdict {}\"><b>{}</b><div><p>{}</p>{}</div></div>\n",
-                        cssClass(repeat.verdict), verdictWords(repeat.verdict),
+                        repeatClass(repeat.verdict), verdictWords(repeat.verdict),
                         escaped(fmt::format("Does the calibration come out the same from {} recordings?",
                                             repeat.recordings.size())),
                         paragraph("reason", escaped(repeat.reason) + ".")));
@@ -152,7 +152,7 @@ double middleOf(const RepeatedQuantity& quantity, const RepeatedNumber& number) 
   return quantity.common && number.joint_sigma > 0.0 ? number.joint : number.mean;
 }
 
-PlotTable tableOf(const Panel& panel, const std::vector<std::string>& columns, const std::string& file) {
+PlotTable repeatTable(const Panel& panel, const std::vector<std::string>& columns, const std::string& file) {
   std::vector<std::string> names;
   for (const RepeatedNumber* each : panel.numbers) {
     names.push_back(each->name);
@@ -174,7 +174,7 @@ PlotTable tableOf(const Panel& panel, const std::vector<std::string>& columns, c
 
 void drawPanel(const Panel& panel, const std::vector<std::string>& columns, const std::string& file,
                ReportPage& page) {
-  const PlotTable table = tableOf(panel, columns, file);
+  const PlotTable table = repeatTable(panel, columns, file);
   PlotFrame frame;
   frame.title = fmt::format("{} of {}", panel.quantity->title, panel.quantity->sensor);
   frame.y_label = panel.numbers.front()->unit.empty() ? "1" : panel.numbers.front()->unit;
@@ -192,7 +192,7 @@ void drawPanel(const Panel& panel, const std::vector<std::string>& columns, cons
   std::vector<LegendEntry> legend;
   const auto count = static_cast<double>(panel.numbers.size());
   for (std::size_t n = 0; n < panel.numbers.size(); ++n) {
-    const std::string colour = kColours[n % kColours.size()];
+    const std::string colour = kRecordingColours[n % kRecordingColours.size()];
     legend.push_back({colour, panel.numbers[n]->name});
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const double x = static_cast<double>(k) + 0.2 + 0.6 * (static_cast<double>(n) + 0.5) / count;

@@ -20,7 +20,7 @@ using namespace evical;
 
 namespace {
 
-std::string contentOf(const std::filesystem::path& path) {
+std::string contentOfAtomicFile(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
@@ -43,9 +43,9 @@ class TestAtomicFile : public QObject {
     const auto path = folder() / "a.yaml";
     const std::string large(3'000'000, 'x');
     writeFileWhole(path, large);
-    QCOMPARE(contentOf(path), large);
+    QCOMPARE(contentOfAtomicFile(path), large);
     writeFileWhole(path, "short");
-    QCOMPARE(contentOf(path), std::string("short"));
+    QCOMPARE(contentOfAtomicFile(path), std::string("short"));
     QCOMPARE(entriesIn(folder()), std::ptrdiff_t(1));
     std::filesystem::remove(path);
   }
@@ -76,7 +76,7 @@ class TestAtomicFile : public QObject {
   void write_belowAFile_throws() {
     writeFileWhole(folder() / "file", "x");
     QVERIFY_EXCEPTION_THROWN(writeFileWhole(folder() / "file" / "a.yaml", "y"), CalibrationError);
-    QCOMPARE(contentOf(folder() / "file"), std::string("x"));
+    QCOMPARE(contentOfAtomicFile(folder() / "file"), std::string("x"));
     std::filesystem::remove(folder() / "file");
   }
 
@@ -91,7 +91,7 @@ class TestAtomicFile : public QObject {
     writeFileWhole(folder() / "old", "before");
     const std::vector<FileContent> files{{folder() / "old", "after"}, {folder() / "missing" / "b", "x"}};
     QVERIFY_EXCEPTION_THROWN(writeFilesWhole(files), CalibrationError);
-    QCOMPARE(contentOf(folder() / "old"), std::string("before"));
+    QCOMPARE(contentOfAtomicFile(folder() / "old"), std::string("before"));
     QCOMPARE(entriesIn(folder()), std::ptrdiff_t(1));
     std::filesystem::remove(folder() / "old");
   }
@@ -115,14 +115,14 @@ class TestAtomicFile : public QObject {
     for (const std::string name : {"old", "mark"}) writeFileWhole(folder() / name, "before");
     std::filesystem::create_directory(folder() / "barred");
     QVERIFY_EXCEPTION_THROWN(moveFilesWhole(moves), CalibrationError);
-    QCOMPARE(contentOf(folder() / "old"), std::string("before"));
-    QCOMPARE(contentOf(folder() / "mark"), std::string("before"));
+    QCOMPARE(contentOfAtomicFile(folder() / "old"), std::string("before"));
+    QCOMPARE(contentOfAtomicFile(folder() / "mark"), std::string("before"));
     QVERIFY(!std::filesystem::exists(folder() / "new"));
     QCOMPARE(entriesIn(folder() / "from"), std::ptrdiff_t(4));
-    QCOMPARE(contentOf(folder() / "from" / "old"), std::string("after"));
+    QCOMPARE(contentOfAtomicFile(folder() / "from" / "old"), std::string("after"));
     std::filesystem::remove(folder() / "barred");
     moveFilesWhole(moves);
-    for (const FileMove& move : moves) QCOMPARE(contentOf(move.to), std::string("after"));
+    for (const FileMove& move : moves) QCOMPARE(contentOfAtomicFile(move.to), std::string("after"));
     QCOMPARE(entriesIn(folder()), std::ptrdiff_t(5));
     for (const auto& entry : std::filesystem::directory_iterator(folder()))
       std::filesystem::remove_all(entry.path());
@@ -136,11 +136,11 @@ class TestAtomicFile : public QObject {
     writeFileWhole(to / "frames" / "2.png", "before");
     const std::vector<FileMove> moves = {{from / "frames", to / "frames"}, {from / "mark", to / "mark"}};
     QVERIFY_EXCEPTION_THROWN(moveFilesWhole(moves), CalibrationError);  // there is no mark
-    QCOMPARE(contentOf(to / "frames" / "1.png"), std::string("before"));
+    QCOMPARE(contentOfAtomicFile(to / "frames" / "1.png"), std::string("before"));
     QCOMPARE(entriesIn(to / "frames"), std::ptrdiff_t(2));
     writeFileWhole(from / "mark", "after");
     moveFilesWhole(moves);
-    QCOMPARE(contentOf(to / "frames" / "1.png"), std::string("after"));
+    QCOMPARE(contentOfAtomicFile(to / "frames" / "1.png"), std::string("after"));
     QCOMPARE(entriesIn(to / "frames"), std::ptrdiff_t(1));
     QCOMPARE(entriesIn(from), std::ptrdiff_t(0));
     for (const auto& entry : std::filesystem::directory_iterator(folder()))
@@ -171,7 +171,7 @@ class TestAtomicFile : public QObject {
       if (!std::filesystem::exists(folder() / "mark")) continue;
       ++marked;
       for (int file = 0; file < kFiles; ++file)
-        QCOMPARE(contentOf(nameOf(file)), contentOf(folder() / "mark"));
+        QCOMPARE(contentOfAtomicFile(nameOf(file)), contentOfAtomicFile(folder() / "mark"));
     }
     QVERIFY(marked > 0);
     for (const auto& entry : std::filesystem::directory_iterator(folder()))

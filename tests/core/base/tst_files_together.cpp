@@ -13,7 +13,7 @@ using namespace evical;
 
 namespace {
 
-std::string contentOf(const std::filesystem::path& path) {
+std::string contentOfFilesTogether(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
@@ -36,8 +36,8 @@ class TestFilesTogether : public QObject {
     QVERIFY(!std::filesystem::exists(place / "plots" / "a.csv"));
     QVERIFY(!std::filesystem::exists(place / "result.yaml"));
     files.place();
-    QCOMPARE(contentOf(place / "plots" / "a.csv"), std::string("1"));
-    QCOMPARE(contentOf(place / "result.yaml"), std::string("2"));
+    QCOMPARE(contentOfFilesTogether(place / "plots" / "a.csv"), std::string("1"));
+    QCOMPARE(contentOfFilesTogether(place / "result.yaml"), std::string("2"));
   }
 
   void files_thatWereNotPlaced_leaveNeitherThemselvesNorFolders() {
@@ -63,7 +63,7 @@ class TestFilesTogether : public QObject {
       std::filesystem::create_directories(place / "folder");
       QVERIFY_THROWS_EXCEPTION(CalibrationError, files.write({place / "folder", "x"}));
     }
-    QCOMPARE(contentOf(place / "kept.yaml"), std::string("old"));
+    QCOMPARE(contentOfFilesTogether(place / "kept.yaml"), std::string("old"));
     const std::filesystem::directory_iterator entries(place);
     QCOMPARE(std::distance(begin(entries), end(entries)), std::ptrdiff_t(2));
   }

@@ -19,7 +19,7 @@ using namespace evical;
 
 constexpr double kRate_hz = 20.0;
 
-CameraIntrinsics aCamera() {
+CameraIntrinsics aCameraForBlinkTracker() {
   CameraIntrinsics camera;
   camera.resolution_px = {240, 180};
   camera.focal_length_px = {200.0, 199.0};
@@ -28,8 +28,8 @@ CameraIntrinsics aCamera() {
   return camera;
 }
 
-PrintedBoard boardOf(BoardType type, int rows, int cols, double spacing_m, double radius_m,
-                     double tag_size_m) {
+PrintedBoard boardOfBlinkTracker(BoardType type, int rows, int cols, double spacing_m, double radius_m,
+                                 double tag_size_m) {
   PrintedBoard printed;
   printed.board.type = type;
   printed.board.rows = rows;
@@ -41,8 +41,8 @@ PrintedBoard boardOf(BoardType type, int rows, int cols, double spacing_m, doubl
   return printed;
 }
 
-PrintedBoard checkerboard() {
-  return boardOf(BoardType::Checkerboard, 6, 9, 0.06, 0.0, 0.0);
+PrintedBoard checkerboardForBlinkTracker() {
+  return boardOfBlinkTracker(BoardType::Checkerboard, 6, 9, 0.06, 0.0, 0.0);
 }
 
 // Pixels fire at steps of log intensity whose size is their own, in bursts as the light turns.
@@ -50,7 +50,7 @@ class Flashes {
  public:
   Flashes(const PrintedBoard& printed, Flashing flashing) : printed_(printed), flashing_(flashing) {
     std::normal_distribution<double> normal;
-    const int pixels = aCamera().resolution_px.pixelCount();
+    const int pixels = aCameraForBlinkTracker().resolution_px.pixelCount();
     for (int k = 0; k < pixels; ++k) steps_.push_back(0.3 * (1.0 + 0.1 * normal(random_)));
   }
 
@@ -58,7 +58,7 @@ class Flashes {
   void show(const RigidTransform& camera_from_board, int half_periods, std::vector<Event>& events) {
     Exposure exposure;
     exposure.noise = 0.0;
-    const CameraIntrinsics camera = aCamera();
+    const CameraIntrinsics camera = aCameraForBlinkTracker();
     const GrayImage seen = renderBoard(printed_, camera, camera_from_board, exposure);
     const double plain = flashing_ == Flashing::Ink ? exposure.bright : exposure.dark;
     std::uniform_real_distribution<double> part(0.0, 1.0);
@@ -86,7 +86,7 @@ class Flashes {
   int half_periods_ = 0;
 };
 
-struct Errors {
+struct BlinkTrackerErrors {
   int found = 0, wrong = 0;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   double squares = 0.0, stated = 0.0;
@@ -95,11 +95,12 @@ struct Errors {
 };
 
 // Points of a view are told by their places: what looks the same turned may be counted from any end.
-void compare(const BoardView& view, const Board& board, const RigidTransform& pose, Errors& errors) {
+void compareForBlinkTracker(const BoardView& view, const Board& board, const RigidTransform& pose,
+                            BlinkTrackerErrors& errors) {
   for (const CircleObservation& point : view.circles) {
     Eigen::Vector2d nearest = Eigen::Vector2d::Constant(1e9);
     for (int k = 0; k < board.pointCount(); ++k)
-      if (const auto truth = truePoint(board, k, aCamera(), pose))
+      if (const auto truth = truePoint(board, k, aCameraForBlinkTracker(), pose))
         if ((*truth - point.centre_px).norm() < nearest.norm()) nearest = *truth - point.centre_px;
     if (nearest.norm() > 1.5) {
       ++errors.wrong;
@@ -113,7 +114,8 @@ void compare(const BoardView& view, const Board& board, const RigidTransform& po
 }
 
 BoardObservations track(const Board& board, const std::vector<Event>& events) {
-  BlinkTracker tracker("camera", board, aCamera().resolution_px, FrameOptions{}, BlinkOptions{}, 0);
+  BlinkTracker tracker("camera", board, aCameraForBlinkTracker().resolution_px, FrameOptions{},
+                       BlinkOptions{}, 0);
   for (std::size_t k = 0; k < events.size(); k += 5000)
     tracker.add(EventSpan(events).subspan(k, std::min<std::size_t>(5000, events.size() - k)));
   return tracker.finish();
@@ -139,12 +141,13 @@ void TestBlinkTracker::boardOfAnyKind_isFoundWithoutBias_data() {
   QTest::addColumn<PrintedBoard>("printed");
   QTest::addColumn<double>("distance_m");
   QTest::addColumn<Flashing>("flashing");
-  const PrintedBoard circles = boardOf(BoardType::AsymmetricCircles, 7, 4, 0.05, 0.02, 0.0),
-                     grid = boardOf(BoardType::AprilGrid, 2, 3, 0.13, 0.0, 0.1),
-                     charuco = boardOf(BoardType::Charuco, 4, 6, 0.08, 0.0, 0.05);
+  const PrintedBoard circles = boardOfBlinkTracker(BoardType::AsymmetricCircles, 7, 4, 0.05, 0.02, 0.0),
+                     grid = boardOfBlinkTracker(BoardType::AprilGrid, 2, 3, 0.13, 0.0, 0.1),
+                     charuco = boardOfBlinkTracker(BoardType::Charuco, 4, 6, 0.08, 0.0, 0.05);
   for (const auto& [flashing, name] :
        {std::pair{Flashing::Ink, "ink"}, std::pair{Flashing::Paper, "paper"}}) {
-    QTest::addRow("checkerboard, %s", name) << checkerboard() << 0.75 << flashing;
+    QTest::addRow("checkerboardForBlinkTracker, %s", name)
+        << checkerboardForBlinkTracker() << 0.75 << flashing;
     QTest::addRow("circles, %s", name) << circles << 0.55 << flashing;
     QTest::addRow("aprilgrid, %s", name) << grid << 0.5 << flashing;
     QTest::addRow("charuco, %s", name) << charuco << 0.6 << flashing;
@@ -155,7 +158,7 @@ void TestBlinkTracker::boardOfAnyKind_isFoundWithoutBias() {
   QFETCH(const PrintedBoard, printed);
   QFETCH(const double, distance_m);
   QFETCH(const Flashing, flashing);
-  Errors errors;
+  BlinkTrackerErrors errors;
   int views = 0;
   for (const Eigen::Vector3d& turn : {Eigen::Vector3d(0.2, -0.1, 0.05), Eigen::Vector3d(-0.3, 0.2, -0.2),
                                       Eigen::Vector3d(0.1, 0.35, 0.3)}) {
@@ -164,7 +167,7 @@ void TestBlinkTracker::boardOfAnyKind_isFoundWithoutBias() {
     Flashes(printed, flashing).show(pose, 16, events);
     const BoardObservations seen = track(printed.board, events);
     views += static_cast<int>(seen.views.size());
-    for (const BoardView& view : seen.views) compare(view, printed.board, pose, errors);
+    for (const BoardView& view : seen.views) compareForBlinkTracker(view, printed.board, pose, errors);
   }
   QCOMPARE(views, 3);
   QVERIFY(errors.wrong == 0);
@@ -180,10 +183,10 @@ void TestBlinkTracker::boardOfAnyKind_isFoundWithoutBias() {
 
 void TestBlinkTracker::boardThatStandsStill_isOneView() {
   std::vector<Event> events;
-  Flashes flashes(checkerboard(), Flashing::Ink);
-  flashes.show(lookAt(checkerboard().board, 0.75, {0.2, 0.1, 0.0}), 30, events);
-  flashes.show(lookAt(checkerboard().board, 0.75, {-0.2, 0.1, 0.0}), 30, events);
-  const BoardObservations seen = track(checkerboard().board, events);
+  Flashes flashes(checkerboardForBlinkTracker(), Flashing::Ink);
+  flashes.show(lookAt(checkerboardForBlinkTracker().board, 0.75, {0.2, 0.1, 0.0}), 30, events);
+  flashes.show(lookAt(checkerboardForBlinkTracker().board, 0.75, {-0.2, 0.1, 0.0}), 30, events);
+  const BoardObservations seen = track(checkerboardForBlinkTracker().board, events);
   QCOMPARE(static_cast<int>(seen.views.size()), 2);
   QVERIFY(seen.windows.size() > 10);
   QVERIFY(std::abs(seen.views.front().time_s - 0.375) < 0.1);
@@ -191,19 +194,19 @@ void TestBlinkTracker::boardThatStandsStill_isOneView() {
 
 // 8 px/s: a slot of two half periods sees 0.8 px of it, and only one of them may be used.
 void TestBlinkTracker::boardThatMoves_isSeenWhereItIsAtTheTime() {
-  const Board board = checkerboard().board;
+  const Board board = checkerboardForBlinkTracker().board;
   constexpr double kSpeed_m_s = 0.03, kDistance_m = 0.75;
   const auto poseAt = [&](double time_s) {
     return lookAt(board, kDistance_m, {0.2, 0.1, 0.0}, {kSpeed_m_s * time_s, 0.0});
   };
   std::vector<Event> events;
-  Flashes flashes(checkerboard(), Flashing::Ink);
+  Flashes flashes(checkerboardForBlinkTracker(), Flashing::Ink);
   for (int half = 0; half < 60; ++half) flashes.show(poseAt(0.5 * half / kRate_hz), 1, events);
   const BoardObservations seen = track(board, events);
   QVERIFY2(seen.views.size() >= 10, QByteArray::number(static_cast<int>(seen.views.size())));
   for (const BoardView& view : seen.views) {
-    Errors errors;
-    compare(view, board, poseAt(view.time_s), errors);
+    BlinkTrackerErrors errors;
+    compareForBlinkTracker(view, board, poseAt(view.time_s), errors);
     QVERIFY(errors.found > 40);
     // Flashes are a few ms long and lie at a half period's beginning: it is seen up to half of one earlier.
     QVERIFY2(std::abs(errors.sum.x() / errors.found) < 8.0 * 0.5 / kRate_hz,
@@ -223,17 +226,18 @@ void TestBlinkTracker::partOfACheckerboard_isEnough_data() {
 void TestBlinkTracker::partOfACheckerboard_isEnough() {
   QFETCH(const int, rows);
   QFETCH(const int, cols);
-  const RigidTransform pose = lookAt(checkerboard().board, 0.75, {0.2, 0.1, 0.1});
+  const RigidTransform pose = lookAt(checkerboardForBlinkTracker().board, 0.75, {0.2, 0.1, 0.1});
   std::vector<Event> events;
-  Flashes(checkerboard(), Flashing::Ink).show(pose, 16, events);
-  Board said = checkerboard().board;
+  Flashes(checkerboardForBlinkTracker(), Flashing::Ink).show(pose, 16, events);
+  Board said = checkerboardForBlinkTracker().board;
   said.rows = rows;
   said.cols = cols;
   const BoardObservations seen = track(said, events);
   QCOMPARE(static_cast<int>(seen.views.size()), 1);
-  Errors errors;
-  compare(seen.views.front(), checkerboard().board, pose, errors);
-  QVERIFY2(errors.found >= 0.9 * checkerboard().board.pointCount(), QByteArray::number(errors.found));
+  BlinkTrackerErrors errors;
+  compareForBlinkTracker(seen.views.front(), checkerboardForBlinkTracker().board, pose, errors);
+  QVERIFY2(errors.found >= 0.9 * checkerboardForBlinkTracker().board.pointCount(),
+           QByteArray::number(errors.found));
   QCOMPARE(errors.wrong, 0);
   // Neighbours are neighbours on the board as well, in squares of its size.
   const auto& points = seen.views.front().circles;
@@ -247,12 +251,13 @@ void TestBlinkTracker::partOfACheckerboard_isEnough() {
 
 void TestBlinkTracker::largerCheckerboardThanSaid_isDoubted() {
   std::vector<Event> events;
-  Flashes(checkerboard(), Flashing::Ink)
-      .show(lookAt(checkerboard().board, 0.75, {0.2, 0.1, 0.1}), 16, events);
-  Board said = checkerboard().board;
+  Flashes(checkerboardForBlinkTracker(), Flashing::Ink)
+      .show(lookAt(checkerboardForBlinkTracker().board, 0.75, {0.2, 0.1, 0.1}), 16, events);
+  Board said = checkerboardForBlinkTracker().board;
   said.rows = 4;
   said.cols = 5;
-  BlinkTracker tracker("camera", said, aCamera().resolution_px, FrameOptions{}, BlinkOptions{}, 0);
+  BlinkTracker tracker("camera", said, aCameraForBlinkTracker().resolution_px, FrameOptions{}, BlinkOptions{},
+                       0);
   tracker.add(events);
   tracker.finish();
   const QString doubt = QString::fromStdString(tracker.doubt());
@@ -266,7 +271,7 @@ void TestBlinkTracker::sceneThatDoesNotBlink_isRefused() {
     events.push_back({k * 20'000, static_cast<std::uint16_t>(random() % 240),
                       static_cast<std::uint16_t>(random() % 180), random() % 2 == 0});
   try {
-    track(checkerboard().board, events);
+    track(checkerboardForBlinkTracker().board, events);
     QFAIL("taken");
   } catch (const CalibrationError& error) {
     QVERIFY(error.kind() == ErrorKind::CalibrationFailed);
@@ -276,20 +281,21 @@ void TestBlinkTracker::sceneThatDoesNotBlink_isRefused() {
 }
 
 void TestBlinkTracker::fewEvents_showNothing() {
-  QVERIFY_EXCEPTION_THROWN(track(checkerboard().board, {}), CalibrationError);
-  QVERIFY_EXCEPTION_THROWN(track(checkerboard().board, {Event{0, 1, 1, true}}), CalibrationError);
+  QVERIFY_EXCEPTION_THROWN(track(checkerboardForBlinkTracker().board, {}), CalibrationError);
+  QVERIFY_EXCEPTION_THROWN(track(checkerboardForBlinkTracker().board, {Event{0, 1, 1, true}}),
+                           CalibrationError);
 }
 
 void TestBlinkTracker::saddle_isAtTheCornerWhateverTheTones() {
-  const PrintedBoard printed = checkerboard();
+  const PrintedBoard printed = checkerboardForBlinkTracker();
   const RigidTransform pose = lookAt(printed.board, 0.75, {0.1, -0.2, 0.1});
   Exposure exposure;
   exposure.noise = 0.0;
-  GrayImage image = renderBoard(printed, aCamera(), pose, exposure);
+  GrayImage image = renderBoard(printed, aCameraForBlinkTracker(), pose, exposure);
   for (std::uint8_t& pixel : image.pixels)  // as the logarithm bends them
     pixel = static_cast<std::uint8_t>(std::lround(255.0 * std::log(pixel / 30.0) / std::log(230.0 / 30.0)));
   for (int k = 0; k < printed.board.pointCount(); ++k) {
-    const Eigen::Vector2d truth = *truePoint(printed.board, k, aCamera(), pose);
+    const Eigen::Vector2d truth = *truePoint(printed.board, k, aCameraForBlinkTracker(), pose);
     const auto corner = measureSaddle(image, truth + Eigen::Vector2d(0.6, -0.4), 1.5, 3.0, 3.0, 1.0);
     QVERIFY(corner);
     QVERIFY2((corner->at_px - truth).norm() < 0.08, QByteArray::number((corner->at_px - truth).norm()));

@@ -20,7 +20,7 @@ namespace {
 
 using namespace evical;
 
-CameraIntrinsics aCamera() {
+CameraIntrinsics aCameraForBoardFinder() {
   CameraIntrinsics camera;
   camera.resolution_px = {752, 480};
   camera.focal_length_px = {460.0, 458.0};
@@ -29,7 +29,8 @@ CameraIntrinsics aCamera() {
   return camera;
 }
 
-Board boardOf(BoardType type, int rows, int cols, double spacing_m, double radius_m, double tag_size_m) {
+Board boardOfBoardFinder(BoardType type, int rows, int cols, double spacing_m, double radius_m,
+                         double tag_size_m) {
   Board board;
   board.type = type;
   board.rows = rows;
@@ -41,27 +42,27 @@ Board boardOf(BoardType type, int rows, int cols, double spacing_m, double radiu
 }
 
 PrintedBoard asymmetricCircles() {
-  return {boardOf(BoardType::AsymmetricCircles, 11, 4, 0.05, 0.02, 0.0), 2, 0, false};
+  return {boardOfBoardFinder(BoardType::AsymmetricCircles, 11, 4, 0.05, 0.02, 0.0), 2, 0, false};
 }
 PrintedBoard brightCircles() {
-  PrintedBoard printed{boardOf(BoardType::SymmetricCircles, 6, 9, 0.05, 0.018, 0.0), 2, 0, false};
+  PrintedBoard printed{boardOfBoardFinder(BoardType::SymmetricCircles, 6, 9, 0.05, 0.018, 0.0), 2, 0, false};
   printed.board.circles = CircleShade::Bright;
   return printed;
 }
-PrintedBoard checkerboard() {
-  return {boardOf(BoardType::Checkerboard, 6, 9, 0.05, 0.0, 0.0), 2, 0, false};
+PrintedBoard checkerboardForBoardFinder() {
+  return {boardOfBoardFinder(BoardType::Checkerboard, 6, 9, 0.05, 0.0, 0.0), 2, 0, false};
 }
 PrintedBoard kalibrGrid() {
-  return {boardOf(BoardType::AprilGrid, 6, 6, 0.088 * 1.3, 0.0, 0.088), 2, 0, false};
+  return {boardOfBoardFinder(BoardType::AprilGrid, 6, 6, 0.088 * 1.3, 0.0, 0.088), 2, 0, false};
 }
 PrintedBoard plainGrid() {
-  return {boardOf(BoardType::AprilGrid, 4, 5, 0.088 * 1.3, 0.0, 0.088), 1, 0, false};
+  return {boardOfBoardFinder(BoardType::AprilGrid, 4, 5, 0.088 * 1.3, 0.0, 0.088), 1, 0, false};
 }
 PrintedBoard charuco() {
-  return {boardOf(BoardType::Charuco, 7, 10, 0.05, 0.0, 0.037), 2, cv::aruco::DICT_5X5_250, false};
+  return {boardOfBoardFinder(BoardType::Charuco, 7, 10, 0.05, 0.0, 0.037), 2, cv::aruco::DICT_5X5_250, false};
 }
 PrintedBoard legacyCharuco() {
-  return {boardOf(BoardType::Charuco, 6, 9, 0.05, 0.0, 0.037), 2, cv::aruco::DICT_4X4_50, true};
+  return {boardOfBoardFinder(BoardType::Charuco, 6, 9, 0.05, 0.0, 0.037), 2, cv::aruco::DICT_4X4_50, true};
 }
 
 // The board fills most of the picture.
@@ -69,7 +70,7 @@ double distanceFor(const Board& board) {
   return 1.15 * std::max(board.extent_m().x() * 460.0 / 600.0, board.extent_m().y() * 460.0 / 400.0);
 }
 
-struct Errors {
+struct BoardFinderErrors {
   int found = 0, wrong = 0;
   double squares = 0.0, normalised = 0.0, stated = 0.0;
 
@@ -84,8 +85,8 @@ std::optional<CircleObservation> undistorted(const FoundPoint& point, const Came
   return inIdealPixels(views.front().view.circles.front(), camera);
 }
 
-void compare(const FoundPoints& points, const Board& board, const CameraIntrinsics& camera,
-             const RigidTransform& camera_from_board, Errors& errors) {
+void compareForBoardFinder(const FoundPoints& points, const Board& board, const CameraIntrinsics& camera,
+                           const RigidTransform& camera_from_board, BoardFinderErrors& errors) {
   for (const FoundPoint& point : asTrue(points, board, camera, camera_from_board)) {
     const auto truth = truePoint(board, point.point, camera, camera_from_board);
     const auto ideal = undistorted(point, camera);
@@ -137,7 +138,7 @@ void TestBoardFinder::rendered_isFoundWithErrorsAsStated_data() {
   QTest::addColumn<PrintedBoard>("printed");
   QTest::newRow("asymmetric circles") << asymmetricCircles();
   QTest::newRow("bright circles") << brightCircles();
-  QTest::newRow("checkerboard") << checkerboard();
+  QTest::newRow("checkerboard") << checkerboardForBoardFinder();
   QTest::newRow("Kalibr's grid") << kalibrGrid();
   QTest::newRow("grid with a border of 1 bit") << plainGrid();
   QTest::newRow("ChArUco") << charuco();
@@ -149,11 +150,11 @@ void TestBoardFinder::rendered_isFoundWithErrorsAsStated_data() {
 void TestBoardFinder::rendered_isFoundWithErrorsAsStated() {
   QFETCH(const PrintedBoard, printed);
   const Board& board = printed.board;
-  const CameraIntrinsics camera = aCamera();
+  const CameraIntrinsics camera = aCameraForBoardFinder();
   FrameOptions options;
   options.smallest_sigma_px = 0.005;
   BoardFinder finder(board, options);
-  Errors errors;
+  BoardFinderErrors errors;
   int possible = 0;
   double seconds = 0.0;
   unsigned seed = 0;
@@ -164,7 +165,7 @@ void TestBoardFinder::rendered_isFoundWithErrorsAsStated() {
     const std::clock_t begin = std::clock();
     const FoundPoints points = finder.find(image);
     seconds += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-    compare(points, board, camera, pose, errors);
+    compareForBoardFinder(points, board, camera, pose, errors);
     possible += pointsInView(board, camera, pose);
   }
   qInfo("%d of %d, %d wrong, %.3f px RMS a coordinate for %.3f stated, ratio %.2f, %.1f ms a frame",
@@ -179,7 +180,7 @@ void TestBoardFinder::rendered_isFoundWithErrorsAsStated() {
 void TestBoardFinder::point0_isTheSameCornerHoweverTheBoardIsHeld_data() {
   QTest::addColumn<PrintedBoard>("printed");
   QTest::newRow("asymmetric circles") << asymmetricCircles();
-  QTest::newRow("checkerboard") << checkerboard();
+  QTest::newRow("checkerboard") << checkerboardForBoardFinder();
 }
 
 void TestBoardFinder::point0_isTheSameCornerHoweverTheBoardIsHeld() {
@@ -188,8 +189,9 @@ void TestBoardFinder::point0_isTheSameCornerHoweverTheBoardIsHeld() {
   for (const double turn : {0.0, 1.57, 3.14, -1.57}) {
     BoardFinder finder(printed.board, FrameOptions{});
     const RigidTransform pose = lookAt(printed.board, 1.6 * distanceFor(printed.board), {0.1, 0.1, turn});
-    Errors errors;
-    compare(finder.find(renderBoard(printed, aCamera(), pose, {})), printed.board, aCamera(), pose, errors);
+    BoardFinderErrors errors;
+    compareForBoardFinder(finder.find(renderBoard(printed, aCameraForBoardFinder(), pose, {})), printed.board,
+                          aCameraForBoardFinder(), pose, errors);
     QCOMPARE(errors.wrong, 0);
     QCOMPARE(errors.found, printed.board.pointCount());
   }
@@ -209,14 +211,14 @@ void TestBoardFinder::part_isFoundWhereItSaysWhichPartItIs() {
   QFETCH(const PrintedBoard, printed);
   QFETCH(const bool, says);
   const Board& board = printed.board;
-  CameraIntrinsics camera = aCamera();
+  CameraIntrinsics camera = aCameraForBoardFinder();
   camera.distortion = {};
   const double beside = 0.6 * board.extent_m().x();
   const RigidTransform pose =
       lookAt(board, (says ? 0.7 : 0.5) * distanceFor(board), {0.1, 0.2, 0.1}, {says ? -beside : 0.0, 0.0});
   BoardFinder finder(board, FrameOptions{});
-  Errors errors;
-  compare(finder.find(renderBoard(printed, camera, pose, {})), board, camera, pose, errors);
+  BoardFinderErrors errors;
+  compareForBoardFinder(finder.find(renderBoard(printed, camera, pose, {})), board, camera, pose, errors);
   const int in_view = pointsInView(board, camera, pose);
   QCOMPARE(errors.wrong, 0);
   QVERIFY(in_view < 0.8 * board.pointCount());
@@ -226,7 +228,7 @@ void TestBoardFinder::part_isFoundWhereItSaysWhichPartItIs() {
 void TestBoardFinder::pictureWithoutBoard_showsNothing_data() {
   QTest::addColumn<PrintedBoard>("printed");
   QTest::newRow("asymmetric circles") << asymmetricCircles();
-  QTest::newRow("checkerboard") << checkerboard();
+  QTest::newRow("checkerboard") << checkerboardForBoardFinder();
   QTest::newRow("Kalibr's grid") << kalibrGrid();
   QTest::newRow("ChArUco") << charuco();
 }
@@ -235,9 +237,13 @@ void TestBoardFinder::pictureWithoutBoard_showsNothing_data() {
 void TestBoardFinder::pictureWithoutBoard_showsNothing() {
   QFETCH(const PrintedBoard, printed);
   BoardFinder finder(printed.board, FrameOptions{});
-  const PrintedBoard other = printed.board.hasCircles() ? checkerboard() : asymmetricCircles();
-  QVERIFY(finder.find(renderBoard(other, aCamera(), wholeBoard(other.board, {0.1, 0.1, 0.1}), {})).empty());
-  QVERIFY(finder.find(renderBoard(other, aCamera(), wholeBoard(other.board, {}), {128, 128, 0.7, 20.0, 1}))
+  const PrintedBoard other = printed.board.hasCircles() ? checkerboardForBoardFinder() : asymmetricCircles();
+  QVERIFY(
+      finder.find(renderBoard(other, aCameraForBoardFinder(), wholeBoard(other.board, {0.1, 0.1, 0.1}), {}))
+          .empty());
+  QVERIFY(finder
+              .find(renderBoard(other, aCameraForBoardFinder(), wholeBoard(other.board, {}),
+                                {128, 128, 0.7, 20.0, 1}))
               .empty());
   QVERIFY(finder.find({{640, 480}, std::vector<std::uint8_t>(640 * 480, 90)}).empty());
   QVERIFY(finder.find({{1, 1}, {0}}).empty());
@@ -251,10 +257,10 @@ void TestBoardFinder::wrongNumbers_areDoubted_data() {
   QTest::addColumn<QString>("doubt");
   const PrintedBoard grid = kalibrGrid();
   QTest::newRow("too few tags")
-      << grid << boardOf(BoardType::AprilGrid, 5, 6, 0.1144, 0.0, 0.088) << TagBorder::Automatic
+      << grid << boardOfBoardFinder(BoardType::AprilGrid, 5, 6, 0.1144, 0.0, 0.088) << TagBorder::Automatic
       << "a tag of number 35 was seen, and a board of 5 x 6 tags has 0 to 29: rows and cols";
   QTest::newRow("rows for columns")
-      << grid << boardOf(BoardType::AprilGrid, 4, 9, 0.1144, 0.0, 0.088) << TagBorder::Automatic
+      << grid << boardOfBoardFinder(BoardType::AprilGrid, 4, 9, 0.1144, 0.0, 0.088) << TagBorder::Automatic
       << "the tags that were seen do not lie as on a board of 4 x 9 tags: rows and cols";
   QTest::newRow("border") << grid << grid.board << TagBorder::One
                           << "the border of 2 bits fits, not that of 1";
@@ -270,7 +276,8 @@ void TestBoardFinder::wrongNumbers_areDoubted() {
   options.tag_border = border;
   BoardFinder finder(said, options);
   for (const double turn : {0.0, 0.1, 0.2})
-    finder.find(renderBoard(printed, aCamera(), wholeBoard(printed.board, {0.1, 0.1, turn}), {}));
+    finder.find(
+        renderBoard(printed, aCameraForBoardFinder(), wholeBoard(printed.board, {0.1, 0.1, turn}), {}));
   QCOMPARE(QString::fromStdString(finder.doubt()), doubt);
 }
 
@@ -284,7 +291,7 @@ void TestBoardFinder::drawingOfOpenCv_isFound() {
     cv::copyMakeBorder(picture, picture, 40, 40, 40, 40, cv::BORDER_CONSTANT, 255);
     GrayImage image{{picture.cols, picture.rows}, {}};
     image.pixels.assign(picture.datastart, picture.dataend);
-    BoardFinder finder(boardOf(BoardType::Charuco, rows, 8, 0.04, 0.0, 0.03), FrameOptions{});
+    BoardFinder finder(boardOfBoardFinder(BoardType::Charuco, rows, 8, 0.04, 0.0, 0.03), FrameOptions{});
     const FoundPoints points = finder.find(image);
     QCOMPARE(points.size(), static_cast<std::size_t>(7 * (rows - 1)));
     for (const FoundPoint& point : points) {
@@ -295,18 +302,19 @@ void TestBoardFinder::drawingOfOpenCv_isFound() {
   }
 }
 
-// A sensor of few pixels: the checkerboard is searched in an enlarged picture.
+// A sensor of few pixels: the checkerboardForBoardFinder is searched in an enlarged picture.
 void TestBoardFinder::coarsePicture_isFound() {
-  CameraIntrinsics camera = aCamera();
+  CameraIntrinsics camera = aCameraForBoardFinder();
   camera.resolution_px = {128, 128};
   camera.focal_length_px = {90.0, 90.0};
   camera.principal_point_px = {64.0, 64.0};
-  const Board board = checkerboard().board;
+  const Board board = checkerboardForBoardFinder().board;
   const RigidTransform pose = lookAt(board, 0.4, {0.1, 0.1, 0.1});
   BoardFinder finder(board, FrameOptions{});
-  Errors errors;
-  compare(finder.find(renderBoard(checkerboard(), camera, pose, {40, 200, 0.5, 2.0, 1})), board, camera, pose,
-          errors);
+  BoardFinderErrors errors;
+  compareForBoardFinder(
+      finder.find(renderBoard(checkerboardForBoardFinder(), camera, pose, {40, 200, 0.5, 2.0, 1})), board,
+      camera, pose, errors);
   QCOMPARE(errors.wrong, 0);
   QCOMPARE(errors.found, board.pointCount());
 }

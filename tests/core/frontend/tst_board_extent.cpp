@@ -9,7 +9,7 @@ namespace {
 using namespace evical;
 using namespace evical::test;
 
-constexpr double kHalfWindow_s = 0.02;
+constexpr double kBoardExtentHalfWindow_s = 0.02;
 
 // What a session claims of the board that is there: as many rows and columns, from this row and column on.
 struct Claim {
@@ -18,8 +18,8 @@ struct Claim {
 
 BoardExtent judge(const MovingBoard& moving, const Claim& claim, int random_bursts = 0) {
   std::mt19937 random(7);
-  std::vector<EdgeBurst> bursts = burstsOf(moving, kHalfWindow_s, 0.1, random);
-  addRandomBursts(random_bursts, kHalfWindow_s, random, bursts);
+  std::vector<EdgeBurst> bursts = burstsOf(moving, kBoardExtentHalfWindow_s, 0.1, random);
+  addRandomBursts(random_bursts, kBoardExtentHalfWindow_s, random, bursts);
   const SyntheticWindow synthetic(bursts, moving.board.circles);
   Board claimed = moving.board;
   claimed.rows = claim.rows;
@@ -34,8 +34,9 @@ BoardExtent judge(const MovingBoard& moving, const Claim& claim, int random_burs
   const BoardScene scene(claimed, kDavis_px, std::nullopt);
   WindowTrace trace;
   trace.motion = motion;
-  trace.circles = measureCircles(synthetic.window, motion, scene, {kHalfWindow_s}, options.tracking);
-  trace.report.half_width_s = kHalfWindow_s;
+  trace.circles =
+      measureCircles(synthetic.window, motion, scene, {kBoardExtentHalfWindow_s}, options.tracking);
+  trace.report.half_width_s = kBoardExtentHalfWindow_s;
   BoardExtent extent;
   judgeExtent(synthetic.window, trace, scene, options, extent);
   return extent;

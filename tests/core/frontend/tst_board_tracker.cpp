@@ -15,7 +15,7 @@ namespace {
 using namespace evical;
 
 // A DAVIS346 that looks at the usual board, with clutter behind it.
-Scenario davis346() {
+Scenario davis346ForBoardTracker() {
   Scenario scenario;
   scenario.seed = 11;
   scenario.duration_s = 2.0;
@@ -31,7 +31,7 @@ Scenario davis346() {
 }
 
 struct Detected {
-  Scenario scenario = davis346();
+  Scenario scenario = davis346ForBoardTracker();
   BoardObservations observations;
 };
 
@@ -39,7 +39,7 @@ struct Detected {
 const std::vector<Event>& events() {
   static const std::vector<Event> all = [] {
     std::vector<Event> collected;
-    simulateEvents(davis346(), 0,
+    simulateEvents(davis346ForBoardTracker(), 0,
                    [&](EventSpan span) { collected.insert(collected.end(), span.begin(), span.end()); });
     return collected;
   }();
@@ -133,7 +133,7 @@ void TestBoardTracker::packets_doNotMatter() {
 }
 
 void TestBoardTracker::noEvents_giveNothing() {
-  BoardTracker tracker(davis346().board, {346, 260}, std::nullopt, FrontEndOptions{}, 0);
+  BoardTracker tracker(davis346ForBoardTracker().board, {346, 260}, std::nullopt, FrontEndOptions{}, 0);
   tracker.add({});
   const BoardObservations observations = tracker.finish();
   QVERIFY(observations.views.empty() && observations.windows.empty());
@@ -141,7 +141,7 @@ void TestBoardTracker::noEvents_giveNothing() {
 
 // Near, so that its long side fills the image's: laid a quarter turn wrongly, it ends above and below the image.
 Scenario landscape(std::uint64_t seed) {
-  Scenario scenario = davis346();
+  Scenario scenario = davis346ForBoardTracker();
   scenario.seed = seed;
   scenario.duration_s = 1.5;
   scenario.motion.distance_m = 0.29;

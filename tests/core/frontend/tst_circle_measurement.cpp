@@ -10,7 +10,7 @@ namespace {
 using namespace evical;
 using namespace evical::test;
 
-constexpr double kHalfWindow_s = 0.02;
+constexpr double kCircleMeasurementHalfWindow_s = 0.02;
 
 std::vector<CircleObservation> measure(const MovingBoard& moving, const std::vector<EdgeBurst>& bursts,
                                        double half_slot_s) {
@@ -35,8 +35,8 @@ class TestCircleMeasurement : public QObject {
 void TestCircleMeasurement::withoutNoise_centresAreExact() {
   std::mt19937 random(30);
   const MovingBoard moving;
-  const std::vector<CircleObservation> circles =
-      measure(moving, burstsOf(moving, kHalfWindow_s, 0.0, random), kHalfWindow_s);
+  const std::vector<CircleObservation> circles = measure(
+      moving, burstsOf(moving, kCircleMeasurementHalfWindow_s, 0.0, random), kCircleMeasurementHalfWindow_s);
   QCOMPARE(static_cast<int>(circles.size()), moving.board.pointCount());
   for (const CircleObservation& circle : circles) {
     const CircleImage truth = moving.imageAt(circle.circle, circle.time_s);
@@ -56,7 +56,8 @@ void TestCircleMeasurement::errors_matchCovariance() {
     MovingBoard moving;
     moving.angles_rad.z() = 0.5 * seed;
     const std::vector<CircleObservation> circles =
-        measure(moving, burstsOf(moving, kHalfWindow_s, 0.15, random), kHalfWindow_s);
+        measure(moving, burstsOf(moving, kCircleMeasurementHalfWindow_s, 0.15, random),
+                kCircleMeasurementHalfWindow_s);
     for (const CircleObservation& circle : circles) {
       const Eigen::Vector2d error = circle.centre_px - moving.imageAt(circle.circle, circle.time_s).centre_px;
       chi2 += error.dot(circle.covariance_px2.inverse() * error);
@@ -72,21 +73,21 @@ void TestCircleMeasurement::errors_matchCovariance() {
 void TestCircleMeasurement::burstsOutsideTheSlot_doNotCount() {
   std::mt19937 random(31);
   const MovingBoard moving;
-  const std::vector<EdgeBurst> bursts = burstsOf(moving, kHalfWindow_s, 0.1, random);
+  const std::vector<EdgeBurst> bursts = burstsOf(moving, kCircleMeasurementHalfWindow_s, 0.1, random);
   const auto sum = [](const std::vector<CircleObservation>& circles) {
     int events = 0;
     for (const CircleObservation& circle : circles) events += circle.events;
     return events;
   };
-  const int whole = sum(measure(moving, bursts, kHalfWindow_s)),
-            half = sum(measure(moving, bursts, 0.5 * kHalfWindow_s));
+  const int whole = sum(measure(moving, bursts, kCircleMeasurementHalfWindow_s)),
+            half = sum(measure(moving, bursts, 0.5 * kCircleMeasurementHalfWindow_s));
   QVERIFY2(half > 0.4 * whole && half < 0.6 * whole, qPrintable(QString("%1 of %2").arg(half).arg(whole)));
 }
 
 void TestCircleMeasurement::circlesWithoutBursts_areLeftOut() {
   std::mt19937 random(32);
   const MovingBoard moving;
-  std::vector<EdgeBurst> bursts = burstsOf(moving, kHalfWindow_s, 0.1, random);
+  std::vector<EdgeBurst> bursts = burstsOf(moving, kCircleMeasurementHalfWindow_s, 0.1, random);
   const std::set<int> hidden = {0, 17, 43};
   std::erase_if(bursts, [&](const EdgeBurst& burst) {
     return std::any_of(hidden.begin(), hidden.end(), [&](int i) {
@@ -96,7 +97,8 @@ void TestCircleMeasurement::circlesWithoutBursts_areLeftOut() {
     });
   });
   std::set<int> found;
-  for (const CircleObservation& circle : measure(moving, bursts, kHalfWindow_s)) found.insert(circle.circle);
+  for (const CircleObservation& circle : measure(moving, bursts, kCircleMeasurementHalfWindow_s))
+    found.insert(circle.circle);
   QCOMPARE(static_cast<int>(found.size()), moving.board.pointCount() - 3);
   for (const int i : hidden) QVERIFY(!found.contains(i));
 }
@@ -104,9 +106,9 @@ void TestCircleMeasurement::circlesWithoutBursts_areLeftOut() {
 void TestCircleMeasurement::time_isThatOfTheBursts() {
   std::mt19937 random(33);
   const MovingBoard moving;
-  std::vector<EdgeBurst> bursts = burstsOf(moving, kHalfWindow_s, 0.1, random);
+  std::vector<EdgeBurst> bursts = burstsOf(moving, kCircleMeasurementHalfWindow_s, 0.1, random);
   std::erase_if(bursts, [](const EdgeBurst& burst) { return burst.time_ns < -5'000'000; });
-  const std::vector<CircleObservation> circles = measure(moving, bursts, kHalfWindow_s);
+  const std::vector<CircleObservation> circles = measure(moving, bursts, kCircleMeasurementHalfWindow_s);
   QVERIFY(circles.size() > 30);
   for (const CircleObservation& circle : circles) QVERIFY(circle.time_s > 0.002 && circle.time_s < 0.015);
 }

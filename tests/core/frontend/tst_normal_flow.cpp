@@ -8,7 +8,7 @@ namespace {
 using namespace evical;
 using namespace evical::test;
 
-constexpr double kHalfWindow_s = 0.2;
+constexpr double kNormalFlowHalfWindow_s = 0.2;
 
 // A straight edge that moves along `normal` at `speed_px_s` through a patch of the image.
 std::vector<EdgeBurst> straightEdge(const Eigen::Vector2d& normal, double speed_px_s, double noise_s,
@@ -19,7 +19,7 @@ std::vector<EdgeBurst> straightEdge(const Eigen::Vector2d& normal, double speed_
     for (int x = 80; x < 120; ++x) {
       const double time_s =
           normal.dot(Eigen::Vector2d(x - 100, y - 100)) / speed_px_s + noise_s * gauss(random);
-      if (std::abs(time_s) < kHalfWindow_s) bursts.push_back(burstAt(x, y, time_s, false));
+      if (std::abs(time_s) < kNormalFlowHalfWindow_s) bursts.push_back(burstAt(x, y, time_s, false));
     }
   }
   return bursts;

@@ -8,7 +8,7 @@ namespace {
 using namespace evical;
 using namespace evical::test;
 
-constexpr double kHalfWindow_s = 0.015;
+constexpr double kRingVoteHalfWindow_s = 0.015;
 
 class TestRingVote : public QObject {
   Q_OBJECT
@@ -36,8 +36,8 @@ void TestRingVote::circle_isFoundAtItsPlace() {
   std::mt19937 random(6);
   const SyntheticCircle circle = {{160.3, 121.8}, {70.0, -45.0}, radius_px};
   std::vector<EdgeBurst> bursts;
-  addBursts(circle, kHalfWindow_s, shade, 0.15, random, bursts);
-  addRandomBursts(100, kHalfWindow_s, random, bursts);
+  addBursts(circle, kRingVoteHalfWindow_s, shade, 0.15, random, bursts);
+  addRandomBursts(100, kRingVoteHalfWindow_s, random, bursts);
   const SyntheticWindow synthetic(bursts, shade);
   const std::vector<CircleCandidate> candidates = voteForCircles(synthetic.window, RingVoteOptions{});
   QVERIFY(!candidates.empty());
@@ -54,7 +54,7 @@ void TestRingVote::wrongShade_pointsBackwards() {
   std::mt19937 random(7);
   const SyntheticCircle circle = {{160.0, 120.0}, {80.0, 0.0}, 10.0};
   std::vector<EdgeBurst> bursts;
-  addBursts(circle, kHalfWindow_s, CircleShade::Bright, 0.1, random, bursts);
+  addBursts(circle, kRingVoteHalfWindow_s, CircleShade::Bright, 0.1, random, bursts);
   const SyntheticWindow synthetic(bursts, CircleShade::Dark);
   const std::vector<CircleCandidate> candidates = voteForCircles(synthetic.window, RingVoteOptions{});
   QVERIFY(!candidates.empty());
@@ -64,7 +64,7 @@ void TestRingVote::wrongShade_pointsBackwards() {
 void TestRingVote::noise_givesFewCandidates() {
   std::mt19937 random(8);
   std::vector<EdgeBurst> bursts;
-  addRandomBursts(2000, kHalfWindow_s, random, bursts);  // 2 % of the pixels
+  addRandomBursts(2000, kRingVoteHalfWindow_s, random, bursts);  // 2 % of the pixels
   keepSupported(kDavis_px, RingVoteOptions{}.least_support, bursts);
   const SyntheticWindow synthetic(bursts);
   QVERIFY(voteForCircles(synthetic.window, RingVoteOptions{}).size() < 20u);

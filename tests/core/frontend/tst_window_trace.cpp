@@ -16,7 +16,7 @@ using namespace evical::test;
 
 constexpr double kHalfSlot_s = 0.02;
 
-Scenario davis346() {
+Scenario davis346ForWindowTrace() {
   Scenario scenario;
   scenario.seed = 11;
   scenario.duration_s = 2.0;
@@ -111,7 +111,7 @@ void TestWindowTrace::slot_aroundAMiddleHasItsWidth() {
 }
 
 void TestWindowTrace::trace_saysWhatTheTrackerDid() {
-  const Scenario scenario = davis346();
+  const Scenario scenario = davis346ForWindowTrace();
   const FrontEndOptions options;
   BoardTracker tracker(scenario.board, kDavis_px, scenario.cameras[0].intrinsics, options, scenario.start_ns);
   Recorder recorder;

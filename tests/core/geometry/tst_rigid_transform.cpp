@@ -15,7 +15,7 @@ using std::numbers::pi;
 const RigidTransform kQuarter{quaternionExp({0.0, 0.0, pi / 2.0}), {1.0, 2.0, 3.0}};
 const RigidTransform kAny{quaternionExp({0.4, -1.1, 0.7}), {-0.3, 0.2, 0.9}};
 
-bool same(const RigidTransform& one, const RigidTransform& other) {
+bool sameForRigidTransform(const RigidTransform& one, const RigidTransform& other) {
   return rotationAngleBetween_rad(one.rotation, other.rotation) < 1e-14 &&
          (one.translation_m - other.translation_m).norm() < 1e-14;
 }
@@ -46,10 +46,10 @@ class TestRigidTransform : public QObject {
   }
 
   void inverse_undoesIt() {
-    QVERIFY(same(kAny * inverse(kAny), {}));
-    QVERIFY(same(inverse(kAny) * kAny, {}));
-    QVERIFY(same(inverse(inverse(kAny)), kAny));
-    QVERIFY(same(inverse(kQuarter * kAny), inverse(kAny) * inverse(kQuarter)));
+    QVERIFY(sameForRigidTransform(kAny * inverse(kAny), {}));
+    QVERIFY(sameForRigidTransform(inverse(kAny) * kAny, {}));
+    QVERIFY(sameForRigidTransform(inverse(inverse(kAny)), kAny));
+    QVERIFY(sameForRigidTransform(inverse(kQuarter * kAny), inverse(kAny) * inverse(kQuarter)));
     QVERIFY((inverse(kQuarter).translation_m - Vector3d(-2.0, 1.0, -3.0)).norm() < 1e-14);
   }
 

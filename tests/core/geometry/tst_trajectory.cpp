@@ -37,7 +37,7 @@ Vector3d derivative(const Function& value, double time_s) {
       [&](const Eigen::VectorXd& d) -> Eigen::VectorXd { return value(time_s + d[0]); }, 1, 1e-3);
 }
 
-bool same(const RigidTransform& one, const RigidTransform& other) {
+bool sameForTrajectory(const RigidTransform& one, const RigidTransform& other) {
   return rotationAngleBetween_rad(one.rotation, other.rotation) < 1e-13 &&
          (one.translation_m - other.translation_m).norm() < 1e-13;
 }
@@ -53,9 +53,9 @@ class TestTrajectory : public QObject {
     const So3Spline rotation = makeUniformSo3Spline(kBegin_s, kEnd_s, kKnot_s, pose.rotation);
     const VectorSpline position = makeUniformVectorSpline(kBegin_s, kEnd_s, kKnot_s, pose.translation_m);
     for (const double time_s : {kBegin_s, 2.345, kEnd_s}) {
-      QVERIFY(same(worldFromImu(rotation, position, time_s), pose));
+      QVERIFY(sameForTrajectory(worldFromImu(rotation, position, time_s), pose));
       const MotionSample motion = motionAt(rotation, position, time_s);
-      QVERIFY(same(motion.world_from_imu, pose));
+      QVERIFY(sameForTrajectory(motion.world_from_imu, pose));
       for (const Vector3d& rate : {motion.velocity_m_s, motion.acceleration_m_s2,
                                    motion.angular_velocity_rad_s, motion.angular_acceleration_rad_s2})
         QVERIFY(rate.norm() < 1e-11);
@@ -63,7 +63,7 @@ class TestTrajectory : public QObject {
   }
 
   void steadyMotion_hasItsRatesByHand() {
-    // Control points move by the same step from knot to knot: 0.2 rad about z and 0.05 m along x in 0.1 s.
+    // Control points move by the sameForTrajectory step from knot to knot: 0.2 rad about z and 0.05 m along x in 0.1 s.
     So3Spline rotation = makeUniformSo3Spline(kBegin_s, kEnd_s, kKnot_s);
     VectorSpline position = makeUniformVectorSpline(kBegin_s, kEnd_s, kKnot_s);
     for (std::size_t k = 0; k < rotation.control_points.size(); ++k) {
@@ -105,7 +105,7 @@ class TestTrajectory : public QObject {
     QVERIFY((derivative([&](double t) { return at(t).angular_velocity_rad_s; }, time_s) -
              motion.angular_acceleration_rad_s2)
                 .norm() < 1e-6);
-    QVERIFY(same(worldFromImu(m.rotation, m.position, time_s), motion.world_from_imu));
+    QVERIFY(sameForTrajectory(worldFromImu(m.rotation, m.position, time_s), motion.world_from_imu));
   }
 
   void camera_isWhereItsReferenceCarriesIt() {
@@ -116,7 +116,7 @@ class TestTrajectory : public QObject {
         worldFromImu(m.rotation, m.position, kCamera_s + kOffset_s) * imu_from_camera;
     const RigidTransform camera_from_world =
         cameraFromWorld(m.rotation, m.position, imu_from_camera, kOffset_s, kCamera_s);
-    QVERIFY(same(camera_from_world * world_from_camera, {}));
+    QVERIFY(sameForTrajectory(camera_from_world * world_from_camera, {}));
     QVERIFY((camera_from_world * world_from_camera.translation_m).norm() < 1e-14);
   }
 };

@@ -14,7 +14,7 @@ struct PoseErrors {
   double rotation_rad = 0.0, translation_m = 0.0;  // RMS
 };
 
-PoseErrors errorsOf(const std::vector<CameraPose>& poses, const SimulatedInput& simulated) {
+PoseErrors errorsOfCameraPoses(const std::vector<CameraPose>& poses, const SimulatedInput& simulated) {
   const SinusoidMotion motion(simulated.truth);
   PoseErrors errors;
   for (const CameraPose& pose : poses) {
@@ -44,7 +44,7 @@ class TestCameraPoses : public QObject {
     QCOMPARE(found.poses.size(), simulated.input.cameras[0].observations.views.size());
     QCOMPARE(found.rejected, 0);
     QVERIFY(found.median_reprojection_px < 1e-3);
-    const PoseErrors errors = errorsOf(found.poses, simulated);
+    const PoseErrors errors = errorsOfCameraPoses(found.poses, simulated);
     QVERIFY(errors.rotation_rad < 1e-5);
     QVERIFY(errors.translation_m < 1e-5);
   }
@@ -54,7 +54,7 @@ class TestCameraPoses : public QObject {
     options.duration_s = 6.0;
     const SimulatedInput simulated = simulateInput(options);
     const CameraPoses found = estimateCameraPoses(simulated.input.cameras[0], simulated.input.board, {});
-    const PoseErrors errors = errorsOf(found.poses, simulated);
+    const PoseErrors errors = errorsOfCameraPoses(found.poses, simulated);
     QVERIFY(errors.rotation_rad < 0.006);  // 0.15 px over an image of 150 px, tilt three times worse
     QVERIFY(errors.translation_m < 0.004);
   }

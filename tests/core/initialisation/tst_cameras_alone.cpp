@@ -42,8 +42,8 @@ struct Errors {
 };
 
 // Of camera `k` against the reference.
-Errors errorsOf(const CameraState& camera, const SimulatedInput& simulated, std::size_t reference,
-                std::size_t k) {
+Errors errorsOfCamerasAlone(const CameraState& camera, const SimulatedInput& simulated, std::size_t reference,
+                            std::size_t k) {
   const SimulatedCamera &from = simulated.truth.cameras[k], &to = simulated.truth.cameras[reference];
   const RigidTransform truth = inverse(to.imu_from_camera) * from.imu_from_camera;
   return {kDegPerRad * rotationAngleBetween_rad(camera.reference_from_camera.rotation, truth.rotation),
@@ -52,9 +52,9 @@ Errors errorsOf(const CameraState& camera, const SimulatedInput& simulated, std:
 }
 
 // Good enough that the batch converges.
-void verifyRoughly(const Initialisation& found, const SimulatedInput& simulated, std::size_t reference,
-                   std::size_t k, std::size_t state) {
-  const Errors errors = errorsOf(found.state.cameras[state], simulated, reference, k);
+void verifyRoughlyForCamerasAlone(const Initialisation& found, const SimulatedInput& simulated,
+                                  std::size_t reference, std::size_t k, std::size_t state) {
+  const Errors errors = errorsOfCamerasAlone(found.state.cameras[state], simulated, reference, k);
   QVERIFY(errors.rotation_deg < 0.2);
   QVERIFY(errors.translation_m < 0.005);
   QVERIFY(errors.time_offset_s < 2e-3);
@@ -64,7 +64,7 @@ void verifyRoughly(const Initialisation& found, const SimulatedInput& simulated,
 void verifyBatch(const SimulatedInput& simulated, const Initialisation& found) {
   const BatchSolution solution = optimiseBatch(simulated.input, found.state, {}, {});
   const UncertaintyEstimate estimate = estimateUncertainty(simulated.input, solution, {}, {});
-  const Errors errors = errorsOf(solution.state.cameras[1], simulated, 0, 1);
+  const Errors errors = errorsOfCamerasAlone(solution.state.cameras[1], simulated, 0, 1);
   const CameraUncertainty& sigma = estimate.report.cameras[1];
   const double rotation_std_deg = kDegPerRad * sigma.rotation_std_rad.norm(),
                translation_std_m = sigma.translation_std_m.norm();
@@ -92,19 +92,19 @@ class TestCamerasAlone : public QObject {
     QCOMPARE(found.state.cameras.size(), std::size_t{2});
     QCOMPARE(found.state.cameras[0].time_offset_s, 0.0);
     QCOMPARE(found.state.cameras[0].reference_from_camera.translation_m.norm(), 0.0);
-    verifyRoughly(found, simulated, 0, 1, 1);
+    verifyRoughlyForCamerasAlone(found, simulated, 0, 1, 1);
   }
 
   void referenceBehindTheOther_isUsed() {
     SimulatedInput simulated = twoCameras();
     simulated.input.reference_camera = 1;
-    verifyRoughly(initialise(simulated.input, {}, RunContext{}), simulated, 1, 0, 0);
+    verifyRoughlyForCamerasAlone(initialise(simulated.input, {}, RunContext{}), simulated, 1, 0, 0);
   }
 
   void camerasThatSeeTheBoardInTurns_areFoundByTheMomentsBetween() {
     const SimulatedInput simulated = camerasInTurns(1.0, 0.02);
     const Initialisation found = initialise(simulated.input, {}, RunContext{});
-    const Errors errors = errorsOf(found.state.cameras[1], simulated, 0, 1);
+    const Errors errors = errorsOfCamerasAlone(found.state.cameras[1], simulated, 0, 1);
     qInfo("off by %.3f deg, %.1f mm, %.1f ms", errors.rotation_deg, errors.translation_m * 1e3,
           errors.time_offset_s * 1e3);
     QVERIFY(errors.rotation_deg < 2.0);
@@ -121,7 +121,7 @@ class TestCamerasAlone : public QObject {
     simulated.input.cameras[1].prior.time_offset = KnownNumber{offset_s};
     const Initialisation found = initialise(simulated.input, {}, RunContext{});
     QCOMPARE(found.state.cameras[1].time_offset_s, offset_s);
-    const Errors errors = errorsOf(found.state.cameras[1], simulated, 0, 1);
+    const Errors errors = errorsOfCamerasAlone(found.state.cameras[1], simulated, 0, 1);
     qInfo("off by %.3f deg, %.1f mm", errors.rotation_deg, errors.translation_m * 1e3);
     QVERIFY(errors.rotation_deg < 1.0);
     QVERIFY(errors.translation_m < 0.02);

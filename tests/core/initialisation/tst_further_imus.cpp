@@ -22,7 +22,8 @@ SimulatedInput twoImus(double offset_s) {
 }
 
 // Good enough that the batch converges.
-void verifyRoughly(const ImuState& found, const RigidTransform& reference_from_imu, double time_offset_s) {
+void verifyRoughlyForFurtherImus(const ImuState& found, const RigidTransform& reference_from_imu,
+                                 double time_offset_s) {
   QVERIFY(kDegPerRad *
               rotationAngleBetween_rad(found.reference_from_imu.rotation, reference_from_imu.rotation) <
           0.5);
@@ -49,7 +50,7 @@ class TestFurtherImus : public QObject {
     QCOMPARE(initial.state.imus.size(), std::size_t{2});
     const ImuState& found = initial.state.imus[1];
     const SimulatedImu& truth = simulated.truth.imus[1];
-    verifyRoughly(found, truth.reference_from_imu, offset_s);
+    verifyRoughlyForFurtherImus(found, truth.reference_from_imu, offset_s);
     QVERIFY((found.gyroscope_bias_rad_s - truth.gyroscope_bias_rad_s).norm() < 5e-3);
     QVERIFY((found.accelerometer_bias_m_s2 - truth.accelerometer_bias_m_s2).norm() < 0.1);
   }
@@ -60,7 +61,7 @@ class TestFurtherImus : public QObject {
     std::swap(simulated.input.imus[0], simulated.input.imus[1]);
     simulated.input.reference_imu = 1;
     const Initialisation initial = initialise(simulated.input, {}, RunContext{});
-    verifyRoughly(initial.state.imus[0], simulated.truth.imus[1].reference_from_imu, 0.03);
+    verifyRoughlyForFurtherImus(initial.state.imus[0], simulated.truth.imus[1].reference_from_imu, 0.03);
     QCOMPARE(initial.state.imus[1].time_offset_s, 0.0);
     const SimulatedCamera& camera = simulated.truth.cameras[0];
     const CameraState& found = initial.state.cameras[0];

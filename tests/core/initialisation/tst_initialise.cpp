@@ -17,7 +17,7 @@ namespace {
 
 using Change = std::function<void(SimulationOptions&)>;
 
-QString describe(const InitialErrors& e) {
+QString describeForInitialise(const InitialErrors& e) {
   return QString("rotation %1 deg, translation %2 mm, offset %3 ms, gravity %4 deg")
       .arg(e.rotation_deg)
       .arg(e.translation_m * 1e3)
@@ -140,7 +140,7 @@ class TestInitialise : public QObject {
     options.time_offset_search_s = search_s;
     const Initialisation found = initialise(simulated.input, options, RunContext{});
     const InitialErrors errors = initialErrors(found.state, simulated);
-    const QString text = describe(errors);
+    const QString text = describeForInitialise(errors);
     QVERIFY2(errors.rotation_deg < 0.5, qPrintable(text));
     QVERIFY2(errors.translation_m < 0.02, qPrintable(text));
     QVERIFY2(errors.time_offset_s < 2e-3, qPrintable(text));
@@ -174,7 +174,7 @@ class TestInitialise : public QObject {
     for (const std::size_t camera : {0, 1}) {
       const InitialErrors errors = initialErrors(found.state, simulated, camera);
       QVERIFY2(errors.rotation_deg < 0.5 && errors.translation_m < 0.02 && errors.time_offset_s < 2e-3,
-               qPrintable(describe(errors)));
+               qPrintable(describeForInitialise(errors)));
     }
   }
 
@@ -213,8 +213,8 @@ class TestInitialise : public QObject {
     const Initialisation found = initialise(simulated.input, {}, RunContext{});
     QVERIFY(mentions(found.warnings, "one axis only: rotate about two more"));
     const InitialErrors errors = initialErrors(found.state, simulated);
-    QVERIFY2(errors.rotation_deg < 2.0, qPrintable(describe(errors)));
-    QVERIFY2(errors.translation_m < 0.6, qPrintable(describe(errors)));
+    QVERIFY2(errors.rotation_deg < 2.0, qPrintable(describeForInitialise(errors)));
+    QVERIFY2(errors.translation_m < 0.6, qPrintable(describeForInitialise(errors)));
     QVERIFY(errors.time_offset_s < 2e-3);
   }
 

@@ -77,7 +77,7 @@ NoiseScales scalesAfterBatch(const CalibrationInput& input, double knot_spacing_
   return optimiseBatch(input, initial.state, {}, RunContext{}).scales;
 }
 
-QString describe(const KnotSpacing& found) {
+QString describeForKnotSpacing(const KnotSpacing& found) {
   return QString::fromStdString(describe("imu", found, found.spacing_s()));
 }
 
@@ -107,21 +107,22 @@ class TestKnotSpacing : public QObject {
     const ViewPrecision views{2e-5, 1.5e-5};  // 0.03 px, and forty circles a view
     const KnotSpacing found = spacingOf(imuIn(static_cast<Motion>(motion)), views);
     const double spacing_ms = 1e3 * found.spacing_s();
-    QVERIFY2(spacing_ms >= least_ms && spacing_ms <= most_ms, qPrintable(describe(found)));
+    QVERIFY2(spacing_ms >= least_ms && spacing_ms <= most_ms, qPrintable(describeForKnotSpacing(found)));
     // Accelerations are splines of a lower degree, which follow less.
-    QVERIFY2(found.rates.spacing_s >= found.accelerations.spacing_s, qPrintable(describe(found)));
+    QVERIFY2(found.rates.spacing_s >= found.accelerations.spacing_s,
+             qPrintable(describeForKnotSpacing(found)));
     for (const KnotDemand& demand : {found.rates, found.accelerations})
-      QVERIFY2(demand.missed <= 0.5 * demand.noise, qPrintable(describe(found)));
+      QVERIFY2(demand.missed <= 0.5 * demand.noise, qPrintable(describeForKnotSpacing(found)));
   }
 
   void noise_isWhatItIs() {
     const ImuData imu = imuIn(Motion::Fast);
     const KnotSpacing found = spacingOf(imu);
     QVERIFY2(std::abs(found.rates.noise / (imu.noise.gyroscope_density * std::sqrt(1000.0)) - 1.0) < 0.05,
-             qPrintable(describe(found)));
+             qPrintable(describeForKnotSpacing(found)));
     QVERIFY2(std::abs(found.accelerations.noise / (imu.noise.accelerometer_density * std::sqrt(1000.0)) -
                       1.0) < 0.1,
-             qPrintable(describe(found)));
+             qPrintable(describeForKnotSpacing(found)));
   }
 
   void noiseAlone_asksForNothing_data() {
@@ -136,10 +137,12 @@ class TestKnotSpacing : public QObject {
   }
   void noiseAlone_asksForNothing() {
     QFETCH(ImuData, imu);
-    QVERIFY2(spacingOf(imu).spacing_s() == kWidestKnots_s, qPrintable(describe(spacingOf(imu))));
+    QVERIFY2(spacingOf(imu).spacing_s() == kWidestKnots_s,
+             qPrintable(describeForKnotSpacing(spacingOf(imu))));
     // Nor where views are so good that noise hides what they would see.
     const ViewPrecision views{1e-6, 1e-6};
-    QVERIFY2(spacingOf(imu, views).spacing_s() > kUsualKnot_s, qPrintable(describe(spacingOf(imu, views))));
+    QVERIFY2(spacingOf(imu, views).spacing_s() > kUsualKnot_s,
+             qPrintable(describeForKnotSpacing(spacingOf(imu, views))));
   }
 
   // What views tell is less than what a poor IMU's noise would hide.
@@ -150,7 +153,8 @@ class TestKnotSpacing : public QObject {
     for (ImuSample& sample : imu.samples)
       for (int axis = 0; axis < 3; ++axis) sample.specific_force_m_s2[axis] += normal(random);
     const KnotSpacing alone = spacingOf(imu), seen = spacingOf(imu, {2e-5, 1.5e-5});
-    QVERIFY2(seen.accelerations.spacing_s < 0.8 * alone.accelerations.spacing_s, qPrintable(describe(seen)));
+    QVERIFY2(seen.accelerations.spacing_s < 0.8 * alone.accelerations.spacing_s,
+             qPrintable(describeForKnotSpacing(seen)));
   }
 
   void oddSamples_changeNothing_data() {
@@ -184,7 +188,7 @@ class TestKnotSpacing : public QObject {
     const double whole_s = spacingOf(imu).spacing_s();
     spoil(imu.samples);
     const KnotSpacing found = spacingOf(imu);
-    QVERIFY2(std::abs(found.spacing_s() / whole_s - 1.0) < 0.2, qPrintable(describe(found)));
+    QVERIFY2(std::abs(found.spacing_s() / whole_s - 1.0) < 0.2, qPrintable(describeForKnotSpacing(found)));
   }
 
   void knots_areNoCloserThanSamples_data() {
@@ -196,8 +200,8 @@ class TestKnotSpacing : public QObject {
     QFETCH(double, rate_hz);
     const KnotSpacing found = spacingOf(imuIn(Motion::Shaky, rate_hz));
     QVERIFY2(found.spacing_s() >= 2.5 / rate_hz - 1e-9 && found.spacing_s() >= kClosestKnots_s,
-             qPrintable(describe(found)));
-    QVERIFY2(found.spacing_s() <= 4.0 / rate_hz + 3e-3, qPrintable(describe(found)));
+             qPrintable(describeForKnotSpacing(found)));
+    QVERIFY2(found.spacing_s() <= 4.0 / rate_hz + 3e-3, qPrintable(describeForKnotSpacing(found)));
   }
 
   // A density with a wide margin is a habit, and no motion's measure.
@@ -207,7 +211,7 @@ class TestKnotSpacing : public QObject {
     imu.noise.gyroscope_density *= 10.0;
     imu.noise.accelerometer_density *= 10.0;
     const KnotSpacing found = spacingOf(imu);
-    QVERIFY2(found.spacing_s() < 2.5 * right_s, qPrintable(describe(found)));
+    QVERIFY2(found.spacing_s() < 2.5 * right_s, qPrintable(describeForKnotSpacing(found)));
   }
 
   void shakyHands_areFollowedByTheBatch() {

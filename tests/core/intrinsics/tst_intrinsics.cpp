@@ -51,8 +51,8 @@ BoardObservations sensorObservations(const Scenario& scenario, double lead_px = 
   return observations;
 }
 
-IntrinsicsResult estimate(const Scenario& scenario, const BoardObservations& observations,
-                          const IntrinsicsOptions& options = {}) {
+IntrinsicsResult estimateForIntrinsics(const Scenario& scenario, const BoardObservations& observations,
+                                       const IntrinsicsOptions& options = {}) {
   return estimateIntrinsics(
       {scenario.board, scenario.cameras.front().intrinsics.resolution_px, observations, {}, {}}, options, {});
 }
@@ -152,7 +152,7 @@ class TestIntrinsics : public QObject {
     const Scenario truth = scenarioOf(qPrintable(scenario));
     IntrinsicsOptions options;
     options.radtan_coefficients = coefficients;
-    const IntrinsicsResult result = estimate(truth, sensorObservations(truth), options);
+    const IntrinsicsResult result = estimateForIntrinsics(truth, sensorObservations(truth), options);
     const CameraIntrinsics& camera = truth.cameras.front().intrinsics;
     QCOMPARE(result.status, CalibrationStatus::Ok);
     QCOMPARE(result.intrinsics.model, camera.model);
@@ -175,7 +175,7 @@ class TestIntrinsics : public QObject {
       truth.duration_s = 6.0;
       IntrinsicsOptions options;
       options.model = IntrinsicsModel::PinholeRadtan;
-      const IntrinsicsResult result = estimate(truth, sensorObservations(truth), options);
+      const IntrinsicsResult result = estimateForIntrinsics(truth, sensorObservations(truth), options);
       const IntrinsicsVector error =
           parametersOf(result.intrinsics) - parametersOf(truth.cameras.front().intrinsics);
       sum2 += (error.head<8>().array() / result.standardDeviations().head<8>().array()).square().mean();
@@ -220,7 +220,7 @@ class TestIntrinsics : public QObject {
 
   void edgeLead_isFoundAndDoesNoHarm() {
     const Scenario truth = scenarioOf("intrinsics_davis346");
-    const IntrinsicsResult result = estimate(truth, sensorObservations(truth, 0.3));
+    const IntrinsicsResult result = estimateForIntrinsics(truth, sensorObservations(truth, 0.3));
     QVERIFY(std::abs(result.edge_lead_px - 0.3) < 4.0 * result.edge_lead_std_px);
     QVERIFY(result.edge_lead_std_px < 0.05);
     const IntrinsicsVector error =
@@ -233,7 +233,7 @@ class TestIntrinsics : public QObject {
     BoardObservations observations = sensorObservations(truth);
     for (std::size_t v = 0; v < observations.views.size(); v += 3)
       observations.views[v].circles[v % 7].centre_px += Eigen::Vector2d(4.0, -3.0);
-    const IntrinsicsResult result = estimate(truth, observations);
+    const IntrinsicsResult result = estimateForIntrinsics(truth, observations);
     QVERIFY(result.circles_rejected >= result.views_used / 6);
     QVERIFY(projectionDifference(truth.cameras.front().intrinsics, result.intrinsics).rms_px < 0.1);
   }
@@ -277,7 +277,7 @@ class TestIntrinsics : public QObject {
   void squareViewsOnly_areRefused() {
     Scenario truth = scenarioOf("intrinsics_davis346");
     truth.motion.angle_amplitude_rad = {0.02, 0.02, 0.3};
-    const std::string reason = failure([&] { estimate(truth, sensorObservations(truth)); });
+    const std::string reason = failure([&] { estimateForIntrinsics(truth, sensorObservations(truth)); });
     QVERIFY2(reason.find("focal length is not observable") != std::string::npos, reason.c_str());
   }
 
@@ -285,7 +285,7 @@ class TestIntrinsics : public QObject {
     const Scenario truth = scenarioOf("intrinsics_davis346");
     const auto few =
         onlyViews(sensorObservations(truth), [](const BoardView& view) { return view.time_s < 0.6; });
-    const std::string reason = failure([&] { estimate(truth, few); });
+    const std::string reason = failure([&] { estimateForIntrinsics(truth, few); });
     QVERIFY2(reason.find("views show at least 50 % of the board") != std::string::npos, reason.c_str());
     QVERIFY2(reason.find("none reaches the ") != std::string::npos, reason.c_str());
   }
@@ -296,14 +296,14 @@ class TestIntrinsics : public QObject {
       return std::none_of(view.circles.begin(), view.circles.end(),
                           [](const auto& c) { return c.centre_px.x() < 110.0; });
     });
-    const IntrinsicsResult result = estimate(truth, right);
+    const IntrinsicsResult result = estimateForIntrinsics(truth, right);
     QVERIFY(!result.advice.empty());
     QVERIFY2(result.advice[0].find("the lower left corner") != std::string::npos, result.advice[0].c_str());
     QVERIFY(result.status == CalibrationStatus::Doubtful);
     QVERIFY2(result.reason.find("no views reach the left side of the image") != std::string::npos,
              result.reason.c_str());
     // Where nothing was seen, less is known than with views there.
-    const IntrinsicsResult whole = estimate(truth, sensorObservations(truth));
+    const IntrinsicsResult whole = estimateForIntrinsics(truth, sensorObservations(truth));
     QVERIFY(whole.advice.empty());
     const auto left = static_cast<std::size_t>(whole.image.columns * (whole.image.rows / 2));
     QCOMPARE(result.image.cells[left].circles, 0);

@@ -43,7 +43,7 @@ IntrinsicsModel named(CameraModel model) {
   return static_cast<IntrinsicsModel>(static_cast<int>(model) + 1);
 }
 
-IntrinsicsResult estimate(const test::WideViews& wide, unsigned seed, IntrinsicsModel model) {
+IntrinsicsResult estimateForWideLenses(const test::WideViews& wide, unsigned seed, IntrinsicsModel model) {
   const BoardObservations observations = test::observeWide(wide, seed);
   return estimateIntrinsics({wide.board, wide.camera.resolution_px, observations, {}, {}}, optionsOf(model),
                             {});
@@ -96,7 +96,8 @@ class TestWideLenses : public QObject {
     const test::WideViews wide = wideViews(lens, radius_m);
     const double furthest_deg = furthestCorner_deg(wide, 1);
     QVERIFY2(radius_m > 0.0 || furthest_deg > 95.0, qPrintable(text(furthest_deg)));
-    const IntrinsicsResult result = estimate(wide, 1, automatic ? IntrinsicsModel::Automatic : named(lens));
+    const IntrinsicsResult result =
+        estimateForWideLenses(wide, 1, automatic ? IntrinsicsModel::Automatic : named(lens));
     QCOMPARE(result.intrinsics.model, lens);
     QVERIFY2(result.status == CalibrationStatus::Ok, result.reason.c_str());
     // Corners beyond 85 degrees, which have no ideal pixels, are used as all others are.
@@ -126,7 +127,7 @@ class TestWideLenses : public QObject {
     wide.views = 60;
     double sum2 = 0.0;
     for (unsigned seed = 1; seed <= kSeeds; ++seed) {
-      const IntrinsicsResult result = estimate(wide, seed, named(wide.camera.model));
+      const IntrinsicsResult result = estimateForWideLenses(wide, seed, named(wide.camera.model));
       const IntrinsicsVector error = errorsOf(result, wide.camera), sigmas = result.standardDeviations();
       sum2 += error.head<6>().cwiseQuotient(sigmas.head<6>()).squaredNorm() / 6.0;
       QCOMPARE(sigmas.tail<3>().norm(), 0.0);
@@ -142,7 +143,7 @@ class TestWideLenses : public QObject {
     wide.camera = {
         CameraModel::PinholeRadtan, {512, 512}, {400.0, 401.0}, {255.0, 257.0}, {-0.3, 0.1, 1e-4, 0.0, 0.0}};
     wide.furthest_deg = 30.0;
-    const IntrinsicsResult result = estimate(wide, 3, IntrinsicsModel::Automatic);
+    const IntrinsicsResult result = estimateForWideLenses(wide, 3, IntrinsicsModel::Automatic);
     QCOMPARE(result.intrinsics.model, CameraModel::PinholeRadtan);
     QVERIFY(projectionDifference(wide.camera, result.intrinsics).rms_px < 0.1);
   }

@@ -21,7 +21,7 @@ Eigen::MatrixXd rows(std::mt19937_64& generator) {
   return Eigen::MatrixXd::NullaryExpr(12, 3, [&] { return normal(generator); });
 }
 
-Eigen::VectorXd normalVector(Eigen::Index size, std::mt19937_64& generator) {
+Eigen::VectorXd normalVectorForChangeTest(Eigen::Index size, std::mt19937_64& generator) {
   std::normal_distribution<double> normal;
   return Eigen::VectorXd::NullaryExpr(size, [&] { return normal(generator); });
 }
@@ -39,9 +39,9 @@ class TestChangeTest : public QObject {
     constexpr int kRuns = 2000;
     for (int run = 0; run < kRuns; ++run) {
       const Eigen::MatrixXd j = rows(generator);
-      const Eigen::VectorXd state = sigma.cwiseProduct(normalVector(3, generator));
-      const Eigen::VectorXd measured = j * state + normalVector(12, generator);
-      const ChangeTest test(j.transpose() * j, j.transpose() * measured, sigma.cwiseAbs2().asDiagonal());
+      const Eigen::VectorXd state = sigma.cwiseProduct(normalVectorForChangeTest(3, generator));
+      const Eigen::VectorXd measured = j * state + normalVectorForChangeTest(12, generator);
+      const ChangeDetector test(j.transpose() * j, j.transpose() * measured, sigma.cwiseAbs2().asDiagonal());
       sum += test.of(kBlocks[0]).chi_square;
     }
     QVERIFY2(std::abs(sum / kRuns - 2.0) < 0.2, qPrintable(QString::number(sum / kRuns)));  // five sigmas
@@ -54,9 +54,10 @@ class TestChangeTest : public QObject {
     constexpr int kRuns = 1000;
     for (int run = 0; run < kRuns; ++run) {
       const Eigen::MatrixXd j = rows(generator);
-      const Eigen::VectorXd state = step + sigma.cwiseProduct(normalVector(3, generator));
-      const ChangeTest test(j.transpose() * j, j.transpose() * (j * state + normalVector(12, generator)),
-                            sigma.cwiseAbs2().asDiagonal());
+      const Eigen::VectorXd state = step + sigma.cwiseProduct(normalVectorForChangeTest(3, generator));
+      const ChangeDetector test(j.transpose() * j,
+                                j.transpose() * (j * state + normalVectorForChangeTest(12, generator)),
+                                sigma.cwiseAbs2().asDiagonal());
       const BlockChange found = test.of(kBlocks[0]);
       const Eigen::Vector2d error = found.step - step.head<2>();
       squares += error.dot(found.covariance.ldlt().solve(error)) / 2.0;
@@ -79,7 +80,7 @@ class TestChangeTest : public QObject {
   }
 
   void withoutInformation_nothingIsFoundAndNothingWouldBeNoticed() {
-    const ChangeTest test(Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity());
+    const ChangeDetector test(Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity());
     QCOMPARE(test.of(kBlocks[0]).chi_square, 0.0);
     QVERIFY(!std::isfinite(test.worstSigma(kBlocks[0])));
     QVERIFY(findChanges(Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity(),

@@ -16,7 +16,7 @@ using namespace evical::test;
 
 namespace {
 
-Eigen::Vector3d normalVector(Random& random) {
+Eigen::Vector3d normalVectorForTrajectoryLag(Random& random) {
   const double x = random.normal(), y = random.normal(), z = random.normal();
   return {x, y, z};
 }
@@ -32,10 +32,10 @@ std::vector<TimedPose> poses(const DriveScenario& scenario,
     const double time_s = k / scenario.trajectory_hz;
     const RigidTransform pose = motion.at(time_s).world_from_body;
     const Eigen::Vector3d place =
-        pose * imu_from_point_m + scenario.trajectory_noise_m * normalVector(random);
-    all.push_back(
-        {time_s, turned * place,
-         turned * pose.rotation * quaternionExp(scenario.trajectory_noise_rad * normalVector(random))});
+        pose * imu_from_point_m + scenario.trajectory_noise_m * normalVectorForTrajectoryLag(random);
+    all.push_back({time_s, turned * place,
+                   turned * pose.rotation *
+                       quaternionExp(scenario.trajectory_noise_rad * normalVectorForTrajectoryLag(random))});
   }
   return all;
 }
@@ -103,13 +103,13 @@ class TestTrajectoryLag : public QObject {
     std::vector<Eigen::Vector3d> body, imu;
     Random random(5);
     for (int k = 0; k < 200; ++k) {
-      body.push_back(normalVector(random));
-      imu.push_back(imu_from_body * body.back() + 0.01 * normalVector(random));
+      body.push_back(normalVectorForTrajectoryLag(random));
+      imu.push_back(imu_from_body * body.back() + 0.01 * normalVectorForTrajectoryLag(random));
     }
     const TurnAgreement same = turnAgreement(body, imu);
     QVERIFY(same.imu_from_body.angularDistance(imu_from_body) < 0.005);
     QVERIFY(same.correlation > 0.99);
-    for (Eigen::Vector3d& rate : imu) rate = normalVector(random);
+    for (Eigen::Vector3d& rate : imu) rate = normalVectorForTrajectoryLag(random);
     QVERIFY(turnAgreement(body, imu).correlation < 0.5);
   }
 };

@@ -24,23 +24,24 @@ test::RigOptions lateRig(unsigned seed = 1, double delay_s = kDelay_s) {
   return options;
 }
 
-struct Run {
+struct AccelerometerDelayRun {
   BatchSolution solution;
   UncertaintyReport report;
 
   double delay_s() const { return solution.state.imus[0].accelerometer_delay_s; }
   double delaySigma_s() const { return report.imus[0].accelerometer_delay_std_s; }
 };
-Run calibrate(const test::SimulatedRig& rig, unsigned seed = 1,
-              const OptimisationOptions& options = test::withoutPixelDelay()) {
-  Run run;
+AccelerometerDelayRun calibrateForAccelerometerDelay(
+    const test::SimulatedRig& rig, unsigned seed = 1,
+    const OptimisationOptions& options = test::withoutPixelDelay()) {
+  AccelerometerDelayRun run;
   run.solution = optimiseBatch(rig.input, test::disturbed(rig.truth, seed), options, RunContext{});
   run.report = estimateUncertainty(rig.input, run.solution, options, RunContext{}).report;
   return run;
 }
 
 // In sigmas.
-double offsetError(const Run& run, const CalibrationState& truth) {
+double offsetError(const AccelerometerDelayRun& run, const CalibrationState& truth) {
   const CameraState& camera = run.solution.state.cameras[0];
   return (camera.time_offset_s - timeOffsetAt_s(truth.cameras[0], camera.time_offset_at_s)) /
          run.report.cameras[0].time_offset_std_s;
@@ -57,7 +58,7 @@ class TestAccelerometerDelay : public QObject {
     options.imu_noise = 0.0;
     options.second_imu = true;
     const test::SimulatedRig rig = test::simulateRig(options);
-    const Run run = calibrate(rig);
+    const AccelerometerDelayRun run = calibrateForAccelerometerDelay(rig);
     for (const ImuState& imu : run.solution.state.imus)
       QVERIFY2(std::abs(imu.accelerometer_delay_s - kDelay_s) < 2e-5,
                qPrintable(QString::number(imu.accelerometer_delay_s)));
@@ -70,7 +71,7 @@ class TestAccelerometerDelay : public QObject {
     double delays = 0.0, offsets = 0.0;
     for (unsigned seed = 1; seed <= kSeeds; ++seed) {
       const test::SimulatedRig rig = test::simulateRig(lateRig(seed));
-      const Run run = calibrate(rig, seed);
+      const AccelerometerDelayRun run = calibrateForAccelerometerDelay(rig, seed);
       const double delay = (run.delay_s() - kDelay_s) / run.delaySigma_s(),
                    offset = offsetError(run, rig.truth);
       QVERIFY2(std::abs(delay) < 4.0, qPrintable(QString::number(delay)));
@@ -88,7 +89,7 @@ class TestAccelerometerDelay : public QObject {
   void delayGivenAs0_spoilsTheTimeOffsetAndIsContradicted() {
     test::SimulatedRig rig = test::simulateRig(lateRig());
     rig.input.imus[0].prior.accelerometer_delay = KnownNumber{0.0};
-    const Run run = calibrate(rig);
+    const AccelerometerDelayRun run = calibrateForAccelerometerDelay(rig);
     QCOMPARE(run.delay_s(), 0.0);
     QCOMPARE(run.report.given, std::vector<std::string>{"imu.accelerometer_delay"});
     QVERIFY2(std::abs(offsetError(run, rig.truth)) > 3.0,
@@ -102,9 +103,9 @@ class TestAccelerometerDelay : public QObject {
   // What it costs where there is none.
   void promptAccelerometer_costsLittleCertainty() {
     test::SimulatedRig rig = test::simulateRig(lateRig(1, 0.0));
-    const Run free = calibrate(rig);
+    const AccelerometerDelayRun free = calibrateForAccelerometerDelay(rig);
     rig.input.imus[0].prior.accelerometer_delay = KnownNumber{0.0};
-    const Run held = calibrate(rig);
+    const AccelerometerDelayRun held = calibrateForAccelerometerDelay(rig);
     const CameraUncertainty &with = free.report.cameras[0], &without = held.report.cameras[0];
     QVERIFY2(with.time_offset_std_s < 1.25 * without.time_offset_std_s,
              qPrintable(QString::number(with.time_offset_std_s / without.time_offset_std_s)));
@@ -117,25 +118,25 @@ class TestAccelerometerDelay : public QObject {
     test::SimulatedRig rig = test::simulateRig(lateRig());
     OptimisationOptions options;
     options.free_imu_intrinsics = false;
-    const auto isGiven = [](const Run& run) {
+    const auto isGiven = [](const AccelerometerDelayRun& run) {
       const std::vector<std::string>& given = run.report.given;
       return std::find(given.begin(), given.end(), "imu.accelerometer_delay") != given.end();
     };
-    const Run held = calibrate(rig, 1, options);
+    const AccelerometerDelayRun held = calibrateForAccelerometerDelay(rig, 1, options);
     QCOMPARE(held.delay_s(), 0.0);
     QCOMPARE(held.delaySigma_s(), 0.0);
     QVERIFY(isGiven(held));
     rig.input.imus[0].prior.accelerometer_delay = KnownNumber{2e-3, 1e-3};
-    const Run known = calibrate(rig, 1, options);
+    const AccelerometerDelayRun known = calibrateForAccelerometerDelay(rig, 1, options);
     QCOMPARE(known.delay_s(), 2e-3);
     QVERIFY(isGiven(known));
   }
 
   void weighedDelay_isBetterThanEither() {
     test::SimulatedRig rig = test::simulateRig(lateRig());
-    const double alone_s = calibrate(rig).delaySigma_s();
+    const double alone_s = calibrateForAccelerometerDelay(rig).delaySigma_s();
     rig.input.imus[0].prior.accelerometer_delay = KnownNumber{kDelay_s + 0.5 * alone_s, alone_s};
-    const Run run = calibrate(rig);
+    const AccelerometerDelayRun run = calibrateForAccelerometerDelay(rig);
     QVERIFY2(run.delaySigma_s() > 0.4 * alone_s && run.delaySigma_s() < 0.85 * alone_s,
              qPrintable(QString::number(run.delaySigma_s() / alone_s)));
     QVERIFY(std::abs(run.delay_s() - kDelay_s) < 4.0 * run.delaySigma_s());
@@ -145,7 +146,7 @@ class TestAccelerometerDelay : public QObject {
   void withoutMotion_thePriorHolds() {
     test::RigOptions simulation = lateRig();
     simulation.motion = test::Motion::HardlyMoving;
-    const Run run = calibrate(test::simulateRig(simulation));
+    const AccelerometerDelayRun run = calibrateForAccelerometerDelay(test::simulateRig(simulation));
     QVERIFY2(run.delaySigma_s() > 1e-3 && run.delaySigma_s() < 5.1e-3,
              qPrintable(QString::number(run.delaySigma_s())));
     QVERIFY2(std::abs(run.delay_s() - kDelay_s) < 4.0 * run.delaySigma_s(),

@@ -33,7 +33,7 @@ OptimisationOptions linear() {
   return options;
 }
 
-struct Run {
+struct BiasDriftRun {
   BatchSolution solution;
   Eigen::VectorXd errors;
   UncertaintyReport report;
@@ -42,8 +42,9 @@ struct Run {
     return errors.cwiseQuotient(report.standard_deviations).segment(first, count).squaredNorm();
   }
 };
-Run calibrate(const test::SimulatedRig& rig, unsigned seed, const OptimisationOptions& options) {
-  Run run;
+BiasDriftRun calibrateForBiasDrift(const test::SimulatedRig& rig, unsigned seed,
+                                   const OptimisationOptions& options) {
+  BiasDriftRun run;
   run.solution = optimiseBatch(rig.input, test::disturbed(rig.truth, seed), options, RunContext{});
   run.errors = test::reportedErrors(run.solution.state, rig.truth);
   run.report = estimateUncertainty(rig.input, run.solution, options, RunContext{}).report;
@@ -149,7 +150,8 @@ class TestBiasDrift : public QObject {
     options.bias_model = BiasModel::Linear;
     for (unsigned seed = 1; seed <= kSeeds; ++seed) {
       const test::SimulatedRig rig = test::simulateRig(walkingRig(seed));
-      const Run with = calibrate(rig, seed, options), without = calibrate(rig, seed, {});
+      const BiasDriftRun with = calibrateForBiasDrift(rig, seed, options),
+                         without = calibrateForBiasDrift(rig, seed, {});
       extrinsics2 += with.normalised2(0, 7) / 7.0;
       biases2 += with.normalised2(10, 6) / 6.0;
       const Eigen::Index count = with.errors.size();
@@ -175,7 +177,7 @@ class TestBiasDrift : public QObject {
     test::SimulatedRig rig = test::simulateRig(options);
     for (ImuData& imu : rig.input.imus)
       imu.noise.gyroscope_random_walk = imu.noise.accelerometer_random_walk = 0.0;  // not known
-    const Run run = calibrate(rig, 1, linear());
+    const BiasDriftRun run = calibrateForBiasDrift(rig, 1, linear());
     QCOMPARE(run.report.standard_deviations.size(), run.errors.size());
     for (std::size_t i = 0; i < 2; ++i) {
       const BiasDrift& drift = run.solution.state.imus[i].bias_drift;

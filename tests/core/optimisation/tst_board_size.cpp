@@ -10,7 +10,7 @@ namespace {
 using namespace evical;
 using Eigen::Vector3d;
 
-struct Run {
+struct BoardSizeRun {
   test::SimulatedRig rig;
   BatchSolution solution;
   UncertaintyEstimate estimate;
@@ -28,8 +28,9 @@ struct Run {
   }
 };
 
-Run calibrate(const test::RigOptions& simulation, const OptimisationOptions& options = {}) {
-  Run run;
+BoardSizeRun calibrateForBoardSize(const test::RigOptions& simulation,
+                                   const OptimisationOptions& options = {}) {
+  BoardSizeRun run;
   run.rig = test::simulateRig(simulation);
   CalibrationState start = test::disturbed(run.rig.truth, simulation.seed);
   start.gravity_in_world_m_s2 *= run.rig.input.gravity_norm_m_s2 / start.gravity_in_world_m_s2.norm();
@@ -58,7 +59,7 @@ class TestBoardSize : public QObject {
 
  private slots:
   void stretchedBoard_isFound() {
-    const Run run = calibrate(boardOf(1.0, 0.005));
+    const BoardSizeRun run = calibrateForBoardSize(boardOf(1.0, 0.005));
     const double sigma = run.estimate.report.board.stretch_std;
     QVERIFY2(sigma > 0.0 && sigma < 2e-4, qPrintable(QString::number(sigma)));
     QVERIFY2(std::abs(run.solution.state.board.stretch - 0.005) < 4.0 * sigma,
@@ -70,7 +71,7 @@ class TestBoardSize : public QObject {
     held.free_board_size = false;
     held.camera_intrinsics = CameraIntrinsicsChoice::Fixed;  // lens and bow would take part of it
     held.board_bow = false;
-    const Run blind = calibrate(boardOf(1.0, 0.005), held);
+    const BoardSizeRun blind = calibrateForBoardSize(boardOf(1.0, 0.005), held);
     QVERIFY2(blind.translationError_m().norm() > 5.0 * run.translationError_m().norm(),
              qPrintable(QString::number(1e3 * blind.translationError_m().norm())));
   }
@@ -78,7 +79,7 @@ class TestBoardSize : public QObject {
   // Within what a ruler leaves open: nothing to complain of, and sigmas that allow for it.
   void boardOffByTwoOfItsSigmas_isWithinTheSigmas() {
     for (const double scale : {0.996, 1.004}) {
-      const Run run = calibrate(boardOf(scale, 0.0));
+      const BoardSizeRun run = calibrateForBoardSize(boardOf(scale, 0.0));
       QVERIFY2(run.translationError_sigmas() < 4.0,
                qPrintable(QString::number(run.translationError_sigmas())));
       QVERIFY2(std::abs(run.solution.state.board.scale - scale) < 4.0 * run.estimate.report.board.scale_std,
@@ -87,7 +88,7 @@ class TestBoardSize : public QObject {
     }
     OptimisationOptions held;
     held.free_board_size = held.free_gravity_norm = false;
-    const Run wrong = calibrate(boardOf(0.99, 0.0), held);
+    const BoardSizeRun wrong = calibrateForBoardSize(boardOf(0.99, 0.0), held);
     QVERIFY2(wrong.translationError_sigmas() > 4.0,
              qPrintable(QString::number(wrong.translationError_sigmas())));
   }
@@ -101,13 +102,13 @@ class TestBoardSize : public QObject {
   void boardThatIsFarOff_isDoubted() {
     QFETCH(double, scale);
     QFETCH(QString, words);
-    const Run run = calibrate(boardOf(scale, 0.0));
+    const BoardSizeRun run = calibrateForBoardSize(boardOf(scale, 0.0));
     const QString doubt = QString::fromStdString(run.estimate.scale_doubt);
     QVERIFY2(doubt.contains(words), qPrintable(doubt));
   }
 
   void stretchBeyondWhatWasMeasured_isDoubted() {
-    const Run run = calibrate(boardOf(1.0, -0.02));
+    const BoardSizeRun run = calibrateForBoardSize(boardOf(1.0, -0.02));
     const QString doubt = QString::fromStdString(run.estimate.stretch_doubt);
     QVERIFY2(doubt.contains("shorter along its rows"), qPrintable(doubt));
     QVERIFY(run.translationError_sigmas() < 4.0);
@@ -118,7 +119,8 @@ class TestBoardSize : public QObject {
     OptimisationOptions flat;
     flat.board_bow = false;
     for (const double height_m : {1e-3, -1e-3}) {
-      const Run run = calibrate(bentBoard(height_m)), blind = calibrate(bentBoard(height_m), flat);
+      const BoardSizeRun run = calibrateForBoardSize(bentBoard(height_m)),
+                         blind = calibrateForBoardSize(bentBoard(height_m), flat);
       const BoardState &board = run.solution.state.board, truth = bentBoard(height_m).board;
       const BoardUncertainty& sigma = run.estimate.report.board;
       const double error_1_m = board.column_curvature_1_m - truth.column_curvature_1_m;
@@ -145,7 +147,7 @@ class TestBoardSize : public QObject {
     test::RigOptions simulation = boardOf(1.0, 0.0);
     simulation.board.row_curvature_1_m = simulation.board.column_curvature_1_m = 0.02;
     simulation.board.twist_1_m = -0.02;
-    const Run run = calibrate(simulation);
+    const BoardSizeRun run = calibrateForBoardSize(simulation);
     const BoardState& board = run.solution.state.board;
     const BoardUncertainty& sigma = run.estimate.report.board;
     QVERIFY2(std::abs(board.twist_1_m + 0.02) < 4.0 * sigma.twist_std_1_m,
@@ -156,11 +158,11 @@ class TestBoardSize : public QObject {
   }
 
   void boardBentBeyondWhatIsModelled_isDoubted() {
-    const std::string doubt = calibrate(bentBoard(8e-3)).estimate.bow_doubt;
+    const std::string doubt = calibrateForBoardSize(bentBoard(8e-3)).estimate.bow_doubt;
     QVERIFY2(
         doubt.starts_with("the board seems bent: over the 0.5 m of its columns the middle stands out by"),
         doubt.c_str());
-    QVERIFY(calibrate(boardOf(1.0, 0.0)).estimate.bow_doubt.empty());
+    QVERIFY(calibrateForBoardSize(boardOf(1.0, 0.0)).estimate.bow_doubt.empty());
   }
 
   // Rao's score test, with lenses free, which take part of it, and held.
@@ -169,15 +171,17 @@ class TestBoardSize : public QObject {
       OptimisationOptions options;
       options.camera_intrinsics = lens;
       options.board_bow = false;
-      const QString out = QString::fromStdString(calibrate(bentBoard(1e-3), options).estimate.bent_board);
+      const QString out =
+          QString::fromStdString(calibrateForBoardSize(bentBoard(1e-3), options).estimate.bent_board);
       QVERIFY2(
           out.startsWith("the board seems bent: over the 0.5 m of its columns the middle stands out by 1"),
           qPrintable(out));
       QVERIFY(out.contains("lay it on glass"));
-      const QString back = QString::fromStdString(calibrate(bentBoard(-1e-3), options).estimate.bent_board);
+      const QString back =
+          QString::fromStdString(calibrateForBoardSize(bentBoard(-1e-3), options).estimate.bent_board);
       QVERIFY2(back.contains("lies back by "), qPrintable(back));
-      const Run flat = calibrate(bentBoard(0.0), options),
-                stretched = calibrate(boardOf(1.0, 0.005), options);
+      const BoardSizeRun flat = calibrateForBoardSize(bentBoard(0.0), options),
+                         stretched = calibrateForBoardSize(boardOf(1.0, 0.005), options);
       QVERIFY2(flat.estimate.bent_board.empty(), flat.estimate.bent_board.c_str());
       QVERIFY2(stretched.estimate.bent_board.empty(), stretched.estimate.bent_board.c_str());
     }
@@ -186,7 +190,7 @@ class TestBoardSize : public QObject {
   void gravityOfTheTropics_isWithinTheSigmas() {
     test::RigOptions simulation = boardOf(1.0, 0.0);
     simulation.gravity_m_s2 = 9.78;
-    const Run run = calibrate(simulation);
+    const BoardSizeRun run = calibrateForBoardSize(simulation);
     QVERIFY2(run.translationError_sigmas() < 4.0, qPrintable(QString::number(run.translationError_sigmas())));
     const double error_m_s2 = run.solution.state.gravity_in_world_m_s2.norm() - 9.78;
     QVERIFY2(std::abs(error_m_s2) < 4.0 * run.estimate.report.gravity_norm_std_m_s2,
@@ -197,7 +201,8 @@ class TestBoardSize : public QObject {
   void whatTheBoardLeavesOpen_isSaidAndInTheSigmas() {
     OptimisationOptions held;
     held.free_board_size = held.free_gravity_norm = false;
-    const Run run = calibrate(boardOf(1.0, 0.0)), exact = calibrate(boardOf(1.0, 0.0), held);
+    const BoardSizeRun run = calibrateForBoardSize(boardOf(1.0, 0.0)),
+                       exact = calibrateForBoardSize(boardOf(1.0, 0.0), held);
     QVERIFY(run.estimate.report.cameras[0].translation_std_m.norm() >
             exact.estimate.report.cameras[0].translation_std_m.norm());
     QCOMPARE(run.estimate.notes.size(), std::size_t{1});

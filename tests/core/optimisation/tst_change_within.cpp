@@ -19,7 +19,7 @@ using namespace evical;
 
 constexpr double kAt_s = 5.0;
 
-test::SimulatedRig rigOf(unsigned seed, bool second_imu = false) {
+test::SimulatedRig rigOfChangeWithin(unsigned seed, bool second_imu = false) {
   test::RigOptions options = test::shortRecording(seed);
   options.duration_s = 8.0;
   options.second_imu = second_imu;
@@ -28,14 +28,15 @@ test::SimulatedRig rigOf(unsigned seed, bool second_imu = false) {
 
 // The camera's, by 2 ms.
 test::SimulatedRig rigWithSteppingClock() {
-  test::SimulatedRig rig = rigOf(1);
+  test::SimulatedRig rig = rigOfChangeWithin(1);
   for (BoardView& view : rig.input.cameras[0].observations.views)
     for (CircleObservation& circle : view.circles)
       if (circle.time_s > kAt_s) circle.time_s += 2e-3;
   return rig;
 }
 
-UncertaintyEstimate estimateOf(const test::SimulatedRig& rig, const OptimisationOptions& options = {}) {
+UncertaintyEstimate estimateOfChangeWithin(const test::SimulatedRig& rig,
+                                           const OptimisationOptions& options = {}) {
   const BatchSolution solution =
       optimiseBatch(rig.input, test::disturbed(rig.truth, 1), options, RunContext{});
   return estimateUncertainty(rig.input, solution, options, RunContext{});
@@ -47,7 +48,7 @@ class TestChangeWithin : public QObject {
  private slots:
   void whatStays_isNoChange() {
     for (unsigned seed = 1; seed <= 5; ++seed) {
-      const Doubt change = estimateOf(rigOf(seed, true)).change;
+      const Doubt change = estimateOfChangeWithin(rigOfChangeWithin(seed, true)).change;
       QVERIFY2(change.text.empty(), change.text.c_str());
     }
   }
@@ -55,7 +56,7 @@ class TestChangeWithin : public QObject {
   // With the part before it as what to calibrate.
   void clockThatSteps_isToldWithItsMoment() {
     const test::SimulatedRig rig = rigWithSteppingClock();
-    const Doubt change = estimateOf(rig).change;
+    const Doubt change = estimateOfChangeWithin(rig).change;
     QVERIFY2(change.text.find("left: its clock and that of imu seem to step by") == 0, change.text.c_str());
     QVERIFY2(std::abs(millisecondsIn(change.text) - 2.0) < 0.4, change.text.c_str());
     expectKeptBefore(change);
@@ -63,7 +64,7 @@ class TestChangeWithin : public QObject {
 
   // A second IMU that slips: its samples are turned by 0.5 deg from then on.
   void sensorThatSlips_isToldByItsName() {
-    test::SimulatedRig rig = rigOf(1, true);
+    test::SimulatedRig rig = rigOfChangeWithin(1, true);
     ImuData& imu = rig.input.imus[1];
     const Eigen::Quaterniond turn(Eigen::AngleAxisd(kRadPerDeg * 0.5, Eigen::Vector3d::UnitX()));
     for (ImuSample& sample : imu.samples) {
@@ -71,7 +72,7 @@ class TestChangeWithin : public QObject {
       sample.angular_rate_rad_s = turn * sample.angular_rate_rad_s;
       sample.specific_force_m_s2 = turn * sample.specific_force_m_s2;
     }
-    const Doubt change = estimateOf(rig).change;
+    const Doubt change = estimateOfChangeWithin(rig).change;
     QVERIFY2(change.text.find(imu.name + ": it seems to have moved against imu about") == 0,
              change.text.c_str());
     expectKeptBefore(change);
@@ -79,27 +80,27 @@ class TestChangeWithin : public QObject {
 
   // Where biases are constant by the options; where they may drift there is nothing to tell.
   void biasesThatStep_areTold() {
-    test::SimulatedRig rig = rigOf(1);
+    test::SimulatedRig rig = rigOfChangeWithin(1);
     for (ImuSample& sample : rig.input.imus[0].samples)
       if (secondsSince(rig.input.start_ns, sample.time_ns) > kAt_s)
         sample.angular_rate_rad_s += Eigen::Vector3d(5e-3, 0.0, 0.0);
     OptimisationOptions options;
-    const Doubt change = estimateOf(rig, options).change;
+    const Doubt change = estimateOfChangeWithin(rig, options).change;
     QVERIFY2(change.text.find("imu: its biases change within the recording, by 0.00") == 0,
              change.text.c_str());
     QVERIFY((change.repair == Repair{"optimisation.model.bias_model", "linear"}));
     options.bias_model = BiasModel::Linear;
-    QVERIFY(estimateOf(rig, options).change.text.empty());
+    QVERIFY(estimateOfChangeWithin(rig, options).change.text.empty());
   }
 
   void options_tellWhatIsLarge() {
     const test::SimulatedRig rig = rigWithSteppingClock();
     OptimisationOptions options;
     options.needed_time_offset_ms = 5.0;
-    QVERIFY(estimateOf(rig, options).change.text.find("clock") == std::string::npos);
+    QVERIFY(estimateOfChangeWithin(rig, options).change.text.find("clock") == std::string::npos);
     options = {};
     options.changed_sigmas = 1000.0;
-    QVERIFY(estimateOf(rig, options).change.text.empty());
+    QVERIFY(estimateOfChangeWithin(rig, options).change.text.empty());
   }
 
  private:

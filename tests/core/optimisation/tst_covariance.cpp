@@ -18,13 +18,13 @@ namespace {
 
 using namespace evical;
 
-struct Run {
+struct CovarianceRun {
   test::SimulatedRig rig;
   BatchSolution solution;
   UncertaintyEstimate estimate;
 };
-Run calibrate(const test::RigOptions& options) {
-  Run run;
+CovarianceRun calibrateForCovariance(const test::RigOptions& options) {
+  CovarianceRun run;
   run.rig = test::simulateRig(options);
   run.solution = optimiseBatch(run.rig.input, test::disturbed(run.rig.truth, options.seed), {}, RunContext{});
   run.estimate = estimateUncertainty(run.rig.input, run.solution, {}, RunContext{});
@@ -40,7 +40,7 @@ Eigen::VectorXd normalisedErrors(test::RigOptions options, unsigned seeds) {
   for (unsigned seed = 1; seed <= seeds; ++seed) {
     options.seed = seed;
     options.time_offset_drift_ppm = drift_ppm(generator);
-    const Run run = calibrate(options);
+    const CovarianceRun run = calibrateForCovariance(options);
     const Eigen::VectorXd errors = test::reportedErrors(run.solution.state, run.rig.truth)
                                        .cwiseQuotient(run.estimate.report.standard_deviations);
     if (seed == 1) sum = Eigen::VectorXd::Zero(errors.size());
@@ -138,7 +138,7 @@ class TestCovariance : public QObject {
   void report_isComplete() {
     test::RigOptions options = test::shortRecording();
     options.second_imu = true;
-    const Run run = calibrate(options);
+    const CovarianceRun run = calibrateForCovariance(options);
     const UncertaintyReport& report = run.estimate.report;
     QCOMPARE(report.standard_deviations.size(), test::reportedErrors(run.rig.truth, run.rig.truth).size());
     QCOMPARE(report.names.size(), static_cast<std::size_t>(report.standard_deviations.size()));
@@ -200,7 +200,7 @@ class TestCovariance : public QObject {
   void richMotion_isOk() {
     test::RigOptions options = test::shortRecording();
     options.duration_s = 8.0;
-    const Run run = calibrate(options);
+    const CovarianceRun run = calibrateForCovariance(options);
     QCOMPARE(run.estimate.status, CalibrationStatus::Ok);
     QVERIFY(run.estimate.reason.empty());
     QVERIFY(run.estimate.report.observability.front() > 1.0);
@@ -220,7 +220,7 @@ class TestCovariance : public QObject {
     QFETCH(QString, weakest);
     test::RigOptions options = test::shortRecording();
     options.motion = static_cast<test::Motion>(motion);
-    const Run run = calibrate(options);
+    const CovarianceRun run = calibrateForCovariance(options);
     QCOMPARE(run.estimate.status, CalibrationStatus::Doubtful);
     QVERIFY(run.estimate.report.standard_deviations.allFinite());
     QVERIFY(run.estimate.report.observability.front() < 1.0);

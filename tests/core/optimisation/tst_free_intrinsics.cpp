@@ -42,7 +42,7 @@ CameraIntrinsics roughly(CameraIntrinsics camera, unsigned seed) {
   return camera;
 }
 
-test::SimulatedRig rigOf(CameraModel model, const test::RigOptions& options) {
+test::SimulatedRig rigOfFreeIntrinsics(CameraModel model, const test::RigOptions& options) {
   test::SimulatedRig rig = test::simulateRig(options);
   test::seeThrough(trueCamera(model), roughly(trueCamera(model), options.seed), rig);
   return rig;
@@ -72,7 +72,8 @@ test::SimulatedRig rigOfKnownLens(unsigned seed) {
   return rig;
 }
 
-BatchSolution solve(const test::SimulatedRig& rig, unsigned seed, const OptimisationOptions& options = {}) {
+BatchSolution solveForFreeIntrinsics(const test::SimulatedRig& rig, unsigned seed,
+                                     const OptimisationOptions& options = {}) {
   CalibrationState start = test::disturbed(rig.truth, seed);
   start.cameras[0].lens.solved.reset();
   return optimiseBatch(rig.input, start, options, RunContext{});
@@ -100,10 +101,10 @@ class TestFreeIntrinsics : public QObject {
     test::RigOptions options = test::shortRecording();
     options.centre_sigma_px = 0.0;
     options.imu_noise = 0.0;
-    const test::SimulatedRig rig = rigOf(static_cast<CameraModel>(model), options);
+    const test::SimulatedRig rig = rigOfFreeIntrinsics(static_cast<CameraModel>(model), options);
     const CameraIntrinsics& truth = *rig.truth.cameras[0].lens.solved;
     QVERIFY(projectionDifference(truth, *rig.input.cameras[0].lens.seen_with).rms_px > 0.1);
-    const BatchSolution solution = solve(rig, 1);
+    const BatchSolution solution = solveForFreeIntrinsics(rig, 1);
     QVERIFY(solution.converged);
     const CameraState &camera = solution.state.cameras[0], &true_camera = rig.truth.cameras[0];
     const double difference_px = projectionDifference(truth, camera.lens.solved.value()).rms_px;
@@ -127,8 +128,9 @@ class TestFreeIntrinsics : public QObject {
     constexpr unsigned kSeeds = 12;
     Eigen::VectorXd sum;
     for (unsigned seed = 1; seed <= kSeeds; ++seed) {
-      const test::SimulatedRig rig = rigOf(static_cast<CameraModel>(model), test::shortRecording(seed));
-      const BatchSolution solution = solve(rig, seed);
+      const test::SimulatedRig rig =
+          rigOfFreeIntrinsics(static_cast<CameraModel>(model), test::shortRecording(seed));
+      const BatchSolution solution = solveForFreeIntrinsics(rig, seed);
       const UncertaintyReport report = estimateUncertainty(rig.input, solution, {}, RunContext{}).report;
       const Eigen::VectorXd normalised =
           test::reportedErrors(solution.state, rig.truth).cwiseQuotient(report.standard_deviations);
@@ -148,8 +150,8 @@ class TestFreeIntrinsics : public QObject {
   }
 
   void report_namesThemWithTheirSigmas() {
-    const test::SimulatedRig rig = rigOf(CameraModel::PinholeRadtan, test::shortRecording());
-    const BatchSolution solution = solve(rig, 1);
+    const test::SimulatedRig rig = rigOfFreeIntrinsics(CameraModel::PinholeRadtan, test::shortRecording());
+    const BatchSolution solution = solveForFreeIntrinsics(rig, 1);
     const UncertaintyEstimate estimate = estimateUncertainty(rig.input, solution, {}, RunContext{});
     const UncertaintyReport& report = estimate.report;
     QCOMPARE(QString::fromStdString(report.names[10]), QString("left.focal_length.x [px]"));
@@ -171,10 +173,11 @@ class TestFreeIntrinsics : public QObject {
     recording.duration_s = 6.0;  // of less, residuals' correlation is hardly known, and sigmas scatter
     test::SimulatedRig rig = test::simulateRig(recording);
     test::seeThrough(truth, truth, rig);
-    const UncertaintyReport free = estimateUncertainty(rig.input, solve(rig, 1), {}, RunContext{}).report;
+    const UncertaintyReport free =
+        estimateUncertainty(rig.input, solveForFreeIntrinsics(rig, 1), {}, RunContext{}).report;
     OptimisationOptions options;
     options.camera_intrinsics = CameraIntrinsicsChoice::Fixed;
-    const BatchSolution fixed = solve(rig, 1, options);
+    const BatchSolution fixed = solveForFreeIntrinsics(rig, 1, options);
     QVERIFY(!fixed.state.cameras[0].lens.solved);
     const UncertaintyReport held = estimateUncertainty(rig.input, fixed, options, RunContext{}).report;
     QVERIFY(!held.cameras[0].intrinsics_std);
@@ -185,27 +188,31 @@ class TestFreeIntrinsics : public QObject {
   }
 
   void found_areHeldWhereAsked() {
-    const test::SimulatedRig rig = rigOf(CameraModel::PinholeRadtan, test::shortRecording());
+    const test::SimulatedRig rig = rigOfFreeIntrinsics(CameraModel::PinholeRadtan, test::shortRecording());
     OptimisationOptions options;
     options.camera_intrinsics = CameraIntrinsicsChoice::Fixed;
-    QVERIFY(!solve(rig, 1, options).state.cameras[0].lens.solved);
+    QVERIFY(!solveForFreeIntrinsics(rig, 1, options).state.cameras[0].lens.solved);
   }
 
   void givenIntrinsics_areSolvedFor_withinTheirPrior() {
-    test::SimulatedRig rig = rigOf(CameraModel::PinholeRadtan, test::shortRecording());
+    test::SimulatedRig rig = rigOfFreeIntrinsics(CameraModel::PinholeRadtan, test::shortRecording());
     rig.input.cameras[0].lens.given = rig.input.cameras[0].lens.seen_with;
     OptimisationOptions options;
     const CameraIntrinsics &given = *rig.input.cameras[0].lens.seen_with,
                            &truth = *rig.truth.cameras[0].lens.solved;
     const double before_px = projectionDifference(truth, given).rms_px;
     const double after_px =
-        projectionDifference(truth, solve(rig, 1, options).state.cameras[0].lens.solved.value()).rms_px;
+        projectionDifference(truth,
+                             solveForFreeIntrinsics(rig, 1, options).state.cameras[0].lens.solved.value())
+            .rms_px;
     QVERIFY2(after_px < 0.2 * before_px, qPrintable(text(after_px / before_px)));
     options.camera_focal_length_sigma = 1e-6;
     options.camera_principal_point_sigma_px = 1e-4;
     options.camera_distortion_sigma = 1e-6;
     const double held_px =
-        projectionDifference(given, solve(rig, 1, options).state.cameras[0].lens.solved.value()).rms_px;
+        projectionDifference(given,
+                             solveForFreeIntrinsics(rig, 1, options).state.cameras[0].lens.solved.value())
+            .rms_px;
     QVERIFY2(held_px < 0.01, qPrintable(text(held_px)));
   }
 
@@ -216,7 +223,7 @@ class TestFreeIntrinsics : public QObject {
     double sum = 0.0, count = 0.0;
     for (unsigned seed = 1; seed <= kSeeds; ++seed) {
       const test::SimulatedRig rig = rigOfKnownLens(seed);
-      const BatchSolution solution = solve(rig, seed);
+      const BatchSolution solution = solveForFreeIntrinsics(rig, seed);
       const UncertaintyReport report = estimateUncertainty(rig.input, solution, {}, RunContext{}).report;
       const std::array<double, 9> sigmas = report.cameras[0].intrinsics_std.value();
       const IntrinsicsVector& stated = rig.input.cameras[0].lens.given_with->std;
@@ -230,7 +237,7 @@ class TestFreeIntrinsics : public QObject {
       if (seed > 1) continue;
       test::SimulatedRig weak = rig;
       weak.input.cameras[0].lens.given_with.reset();
-      const BatchSolution by_weak = solve(weak, seed);
+      const BatchSolution by_weak = solveForFreeIntrinsics(weak, seed);
       const UncertaintyReport weak_report = estimateUncertainty(weak.input, by_weak, {}, RunContext{}).report;
       QVERIFY2(sigmas[0] < 0.8 * weak_report.cameras[0].intrinsics_std.value()[0],
                qPrintable(text(sigmas[0] / weak_report.cameras[0].intrinsics_std.value()[0])));
@@ -242,7 +249,7 @@ class TestFreeIntrinsics : public QObject {
   // A lens that was turned since its file was written.
   void statedSigmas_thatContradictTheRecording_areDoubted() {
     test::SimulatedRig rig = rigOfKnownLens(1);
-    const BatchSolution right = solve(rig, 1);
+    const BatchSolution right = solveForFreeIntrinsics(rig, 1);
     const std::string none = checkPriors(rig.input, right, {}, RunContext{}).doubt;
     QVERIFY2(none.empty(), none.c_str());
     const auto uncertainty = rig.input.cameras[0].lens.given_with;
@@ -252,8 +259,8 @@ class TestFreeIntrinsics : public QObject {
     rig = test::simulateRig(test::shortRecording(1));
     test::seeThrough(truth, wrong, rig);
     rig.input.cameras[0].lens = givenLens(wrong, uncertainty);
-    const QString doubt =
-        QString::fromStdString(checkPriors(rig.input, solve(rig, 1), {}, RunContext{}).doubt);
+    const QString doubt = QString::fromStdString(
+        checkPriors(rig.input, solveForFreeIntrinsics(rig, 1), {}, RunContext{}).doubt);
     QVERIFY2(doubt.startsWith("left.focal_length"), qPrintable(doubt));
   }
 
@@ -276,7 +283,8 @@ class TestFreeIntrinsics : public QObject {
     options.camera_intrinsics = CameraIntrinsicsChoice::Fixed;
     const auto doubtOf = [&](const CameraIntrinsics& lens) {
       rig.input.cameras[0].lens = givenLens(lens);
-      return estimateUncertainty(rig.input, solve(rig, 1, options), options, RunContext{}).wrong_lenses;
+      return estimateUncertainty(rig.input, solveForFreeIntrinsics(rig, 1, options), options, RunContext{})
+          .wrong_lenses;
     };
     QCOMPARE(doubtOf(given), std::string());
     CameraIntrinsics longer = given, aside = given;
@@ -298,7 +306,7 @@ class TestFreeIntrinsics : public QObject {
     test::seeThrough(truth, seen, rig);
     OptimisationOptions options;
     options.board_bow = false;  // with it this lens of 3 s comes out 0.059 px off
-    const BatchSolution solution = solve(rig, 1, options);
+    const BatchSolution solution = solveForFreeIntrinsics(rig, 1, options);
     QVERIFY(solution.state.cameras[0].lens.solved->distortion[4] != 0.01);
     const UncertaintyReport report = estimateUncertainty(rig.input, solution, options, RunContext{}).report;
     QCOMPARE(QString::fromStdString(report.names[18]), QString("left.distortion.k3 [1]"));
@@ -307,14 +315,14 @@ class TestFreeIntrinsics : public QObject {
   }
 
   void lastStage_releasesThem_whicheverItIs() {
-    const test::SimulatedRig rig = rigOf(CameraModel::PinholeRadtan, test::shortRecording());
+    const test::SimulatedRig rig = rigOfFreeIntrinsics(CameraModel::PinholeRadtan, test::shortRecording());
     const CameraIntrinsics& seen = *rig.input.cameras[0].lens.seen_with;
     OptimisationOptions options;
     options.free_imu_intrinsics = false;
-    const BatchSolution without = solve(rig, 1, options);
+    const BatchSolution without = solveForFreeIntrinsics(rig, 1, options);
     QVERIFY(projectionDifference(seen, without.state.cameras[0].lens.solved.value()).rms_px > 0.1);
     QVERIFY(without.state.imus[0].gyroscope_mapping == Eigen::Matrix3d::Identity());
-    const BatchSolution solution = solve(rig, 1);
+    const BatchSolution solution = solveForFreeIntrinsics(rig, 1);
     for (const IterationRecord& iteration : solution.iterations)
       if (iteration.stage == 1) QVERIFY(*iteration.cameras[0].lens.solved == seen);
   }

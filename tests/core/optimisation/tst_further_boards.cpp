@@ -10,14 +10,14 @@ namespace {
 
 using namespace evical;
 
-test::SimulatedRig rigOf(unsigned seed) {
+test::SimulatedRig rigOfFurtherBoards(unsigned seed) {
   test::RigOptions options = test::shortRecording(seed);
   options.further_board = true;
   return test::simulateRig(options);
 }
 
-Estimate estimateOf(const test::SimulatedRig& rig, const CalibrationState& state,
-                    const UncertaintyReport& uncertainty) {
+Estimate estimateOfFurtherBoards(const test::SimulatedRig& rig, const CalibrationState& state,
+                                 const UncertaintyReport& uncertainty) {
   Estimate estimate;
   estimate.reference = rig.input.imus[0].name;
   for (const CameraData& camera : rig.input.cameras) estimate.camera_names.push_back(camera.name);
@@ -49,13 +49,14 @@ class TestFurtherBoards : public QObject {
     double squares = 0.0, of_board = 0.0;
     int count = 0, board_count = 0;
     for (unsigned seed = 1; seed <= kSeeds; ++seed) {
-      const test::SimulatedRig rig = rigOf(seed);
+      const test::SimulatedRig rig = rigOfFurtherBoards(seed);
       const test::SolvedRig solved = solve(rig, seed, test::withoutPixelDelay());
       UncertaintyReport nothing;
       nothing.cameras.resize(2);
       nothing.imus.resize(1);
-      const auto differences = difference(estimateOf(rig, solved.solution.state, solved.estimate.report),
-                                          estimateOf(rig, rig.truth, nothing));
+      const auto differences =
+          difference(estimateOfFurtherBoards(rig, solved.solution.state, solved.estimate.report),
+                     estimateOfFurtherBoards(rig, rig.truth, nothing));
       for (const QuantityDifference& quantity : differences) {
         if (!isOfPlace(quantity)) continue;
         QVERIFY2(quantity.sigma > 0.0, quantity.name.c_str());
@@ -72,7 +73,7 @@ class TestFurtherBoards : public QObject {
   }
 
   void theWorldsBoard_hasNoPlaceOfItsOwn() {
-    const test::SimulatedRig rig = rigOf(1);
+    const test::SimulatedRig rig = rigOfFurtherBoards(1);
     const test::SolvedRig solved = solve(rig, 1, test::withoutPixelDelay());
     QCOMPARE(solved.solution.state.board.world_from_board.translation_m, Eigen::Vector3d::Zero().eval());
     const std::vector<std::string>& names = solved.estimate.report.names;
@@ -84,7 +85,7 @@ class TestFurtherBoards : public QObject {
   }
 
   void sizesThatContradictEachOther_areToldOf() {
-    test::SimulatedRig rig = rigOf(2);
+    test::SimulatedRig rig = rigOfFurtherBoards(2);
     QVERIFY(solve(rig, 2, test::withoutPixelDelay()).estimate.scale_doubt.empty());
     Board& board = rig.input.further_boards[0].board;
     board.spacing_m *= 1.02;

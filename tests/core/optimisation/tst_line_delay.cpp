@@ -12,7 +12,7 @@ using namespace evical;
 
 constexpr double kLineDelay_us = 30.0;
 
-test::SimulatedRig rigOf(unsigned seed, double line_delay_us) {
+test::SimulatedRig rigOfLineDelay(unsigned seed, double line_delay_us) {
   test::RigOptions options = test::shortRecording(seed);
   options.duration_s = 6.0;
   options.frames = true;
@@ -26,7 +26,7 @@ OptimisationOptions heldLens() {
   return options;
 }
 
-BatchSolution solve(const test::SimulatedRig& rig, unsigned seed) {
+BatchSolution solveForLineDelay(const test::SimulatedRig& rig, unsigned seed) {
   return optimiseBatch(rig.input, test::disturbed(rig.truth, seed), heldLens(), RunContext{});
 }
 
@@ -40,8 +40,8 @@ class TestLineDelay : public QObject {
     constexpr unsigned kSeeds = 12;
     double delay = 0.0, extrinsics = 0.0;
     for (unsigned seed = 1; seed <= kSeeds; ++seed) {
-      const test::SimulatedRig rig = rigOf(seed, kLineDelay_us);
-      const BatchSolution solution = solve(rig, seed);
+      const test::SimulatedRig rig = rigOfLineDelay(seed, kLineDelay_us);
+      const BatchSolution solution = solveForLineDelay(rig, seed);
       const UncertaintyReport report =
           estimateUncertainty(rig.input, solution, heldLens(), RunContext{}).report;
       const double error_us = solution.state.cameras[0].line_delay_us - kLineDelay_us;
@@ -71,7 +71,7 @@ class TestLineDelay : public QObject {
       rig_options.frames = true;
       rig_options.exposure_share = kShare;
       const test::SimulatedRig rig = test::simulateRig(rig_options);
-      const BatchSolution solution = solve(rig, seed);
+      const BatchSolution solution = solveForLineDelay(rig, seed);
       const UncertaintyReport report =
           estimateUncertainty(rig.input, solution, heldLens(), RunContext{}).report;
       const double error = solution.state.cameras[0].exposure_share - kShare;
@@ -84,8 +84,8 @@ class TestLineDelay : public QObject {
   }
 
   void exposuresThatDoNotVary_leaveTheShareAt0() {
-    const test::SimulatedRig rig = rigOf(1, 0.0);
-    const BatchSolution solution = solve(rig, 1);
+    const test::SimulatedRig rig = rigOfLineDelay(1, 0.0);
+    const BatchSolution solution = solveForLineDelay(rig, 1);
     QCOMPARE(solution.state.cameras[0].exposure_share, 0.0);
     QCOMPARE(estimateUncertainty(rig.input, solution, heldLens(), RunContext{})
                  .report.cameras[0]
@@ -94,10 +94,10 @@ class TestLineDelay : public QObject {
   }
 
   void shutterCalledGlobal_isToldOfWhereItRolls() {
-    test::SimulatedRig rig = rigOf(1, kLineDelay_us);
+    test::SimulatedRig rig = rigOfLineDelay(1, kLineDelay_us);
     rig.input.cameras[0].shutter = Shutter::Global;
     const UncertaintyEstimate estimate =
-        estimateUncertainty(rig.input, solve(rig, 1), heldLens(), RunContext{});
+        estimateUncertainty(rig.input, solveForLineDelay(rig, 1), heldLens(), RunContext{});
     QVERIFY2(estimate.rolling_shutters.find("its shutter rolls") != std::string::npos,
              estimate.rolling_shutters.c_str());
     QCOMPARE(estimate.report.cameras[0].line_delay_std_us, 0.0);
@@ -105,9 +105,9 @@ class TestLineDelay : public QObject {
 
   void globalShutter_isNot() {
     for (unsigned seed = 1; seed <= 3; ++seed) {
-      const test::SimulatedRig rig = rigOf(seed, 0.0);
+      const test::SimulatedRig rig = rigOfLineDelay(seed, 0.0);
       const UncertaintyEstimate estimate =
-          estimateUncertainty(rig.input, solve(rig, seed), heldLens(), RunContext{});
+          estimateUncertainty(rig.input, solveForLineDelay(rig, seed), heldLens(), RunContext{});
       QVERIFY2(estimate.rolling_shutters.empty(), estimate.rolling_shutters.c_str());
     }
   }

@@ -1,6 +1,7 @@
 // What covariances given by hand mean in words: which need is not met, along which direction.
 #include "core/optimisation/uncertainty/observability.h"
 
+#include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
 #include "core/optimisation/uncertainty/scale_check.h"
 #include "tests/support/test_program.h"
@@ -74,7 +75,7 @@ class TestObservability : public QObject {
     Rig rig;
     // The camera's z axis is the reference's x axis.
     rig.state.cameras[0].reference_from_camera.rotation =
-        Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), Vector3d::UnitX());
+        rotationBetween(Vector3d::UnitZ(), Vector3d::UnitX());
     rig.stretch(3, Vector3d::UnitX(), 6e-3);
     const Observability seen = rig.judge();
     QCOMPARE(seen.status, CalibrationStatus::Doubtful);

@@ -13,7 +13,7 @@ namespace {
 using namespace evical;
 using Eigen::Vector3d;
 
-test::RigOptions shortRecording() {
+test::RigOptions shortPriorRecording() {
   test::RigOptions options;
   options.duration_s = 4.0;
   options.imu_rate_hz = 200.0;
@@ -21,13 +21,13 @@ test::RigOptions shortRecording() {
   return options;
 }
 
-struct Run {
+struct PriorsRun {
   BatchSolution solution;
   UncertaintyEstimate estimate;
   PriorCheck check;
 };
-Run calibrate(const test::SimulatedRig& rig, const OptimisationOptions& options = {}) {
-  Run run;
+PriorsRun calibrateForPriors(const test::SimulatedRig& rig, const OptimisationOptions& options = {}) {
+  PriorsRun run;
   CalibrationState start = test::disturbed(rig.truth, 1);
   for (std::size_t i = 0; i < start.imus.size(); ++i)  // as initialisation does
     if (const auto& known = rig.input.imus[i].prior.gyroscope_rotation)
@@ -64,16 +64,16 @@ class TestPriors : public QObject {
 
  private slots:
   void withoutPriors_nothingIsSaid() {
-    const Run run = calibrate(test::simulateRig(shortRecording()));
+    const PriorsRun run = calibrateForPriors(test::simulateRig(shortPriorRecording()));
     QVERIFY(run.check.notes.empty() && run.check.doubt.empty());
     QVERIFY(run.estimate.report.given.empty());
   }
 
   void timeOffsetGivenAtTheTruth_isHeld() {
-    test::SimulatedRig rig = test::simulateRig(shortRecording());
+    test::SimulatedRig rig = test::simulateRig(shortPriorRecording());
     const double offset_s = rig.truth.cameras[0].time_offset_s;
     rig.input.cameras[0].prior.time_offset = KnownNumber{offset_s};
-    const Run run = calibrate(rig);
+    const PriorsRun run = calibrateForPriors(rig);
     QCOMPARE(run.solution.state.cameras[0].time_offset_s, offset_s);
     QCOMPARE(run.estimate.report.cameras[0].time_offset_std_s, 0.0);
     QVERIFY(!says(run.estimate.report.names, "time_offset"));
@@ -87,28 +87,28 @@ class TestPriors : public QObject {
 
   // Held at 0 while it is not, the result must not pretend.
   void timeOffsetsThatAreNotFree_stayAt0AndAreDoubted() {
-    test::RigOptions simulation = shortRecording();
+    test::RigOptions simulation = shortPriorRecording();
     simulation.seed = 3;
     const test::SimulatedRig rig = test::simulateRig(simulation);
     QVERIFY2(std::abs(rig.truth.cameras[0].time_offset_s) > 1e-3,
              qPrintable(QString::number(rig.truth.cameras[0].time_offset_s)));
     OptimisationOptions options;
     options.free_time_offsets = false;
-    const Run run = calibrate(rig, options);
+    const PriorsRun run = calibrateForPriors(rig, options);
     QCOMPARE(run.solution.state.cameras[0].time_offset_s, 0.0);
     QCOMPARE(run.estimate.report.given, std::vector<std::string>{"left.time_offset"});
     QVERIFY2(run.check.doubt.find("left.time_offset") != std::string::npos, run.check.doubt.c_str());
   }
 
   void imuIntrinsicsThatAreNotFree_stayAtTheirPriors() {
-    test::SimulatedRig rig = test::simulateRig(shortRecording());
+    test::SimulatedRig rig = test::simulateRig(shortPriorRecording());
     const ImuState& truth = rig.truth.imus[0];
     rig.input.imus[0].prior.gyroscope_mapping = KnownMapping{truth.gyroscope_mapping};
     rig.input.imus[0].prior.accelerometer_mapping =
         KnownMapping{truth.accelerometer_mapping, Eigen::Matrix3d::Constant(0.01)};
     OptimisationOptions options;
     options.free_imu_intrinsics = false;
-    const Run run = calibrate(rig, options);
+    const PriorsRun run = calibrateForPriors(rig, options);
     const ImuState& imu = run.solution.state.imus[0];
     QVERIFY(imu.gyroscope_mapping == truth.gyroscope_mapping);
     QVERIFY(imu.accelerometer_mapping == truth.accelerometer_mapping);
@@ -125,10 +125,10 @@ class TestPriors : public QObject {
 
   // The recording wins over such a prior; but one of the two is wrong.
   void weighedPriorThatIsFarOff_isDoubted() {
-    test::SimulatedRig rig = test::simulateRig(shortRecording());
+    test::SimulatedRig rig = test::simulateRig(shortPriorRecording());
     const double truth_s = rig.truth.cameras[0].time_offset_s;
     rig.input.cameras[0].prior.time_offset = KnownNumber{truth_s + 0.02, 1e-3};
-    const Run run = calibrate(rig, {});
+    const PriorsRun run = calibrateForPriors(rig, {});
     QVERIFY(std::abs(run.solution.state.cameras[0].time_offset_s - truth_s) < 1e-3);
     QVERIFY2(run.check.doubt.find("left.time_offset") != std::string::npos, run.check.doubt.c_str());
   }
@@ -136,13 +136,13 @@ class TestPriors : public QObject {
   void mappingsHeldAtTheIdentity_areContradicted() {
     OptimisationOptions options;
     options.free_imu_intrinsics = false;
-    const Run run = calibrate(test::simulateRig(shortRecording()), options);
+    const PriorsRun run = calibrateForPriors(test::simulateRig(shortPriorRecording()), options);
     QVERIFY(says(run.check.notes, "imu.gyroscope_mapping"));
     QVERIFY(run.check.doubt.empty());  // it is nobody's need
   }
 
   void gravitysNorm_isFoundWhereItIsFree() {
-    test::RigOptions simulation = shortRecording();
+    test::RigOptions simulation = shortPriorRecording();
     simulation.gravity_m_s2 = 9.79;
     test::SimulatedRig rig = test::simulateRig(simulation);
     // Scale and gravity say nearly the same of a resting accelerometer.
@@ -164,12 +164,12 @@ class TestPriors : public QObject {
 
   // Where nothing tells it apart from the accelerometer's scale and bias, the norm is the prior's.
   void gravitysNorm_withoutMotion_hasThePriorsSigma() {
-    test::RigOptions simulation = shortRecording();
+    test::RigOptions simulation = shortPriorRecording();
     simulation.motion = test::Motion::HardlyMoving;
     OptimisationOptions options;
     options.free_gravity_norm = true;
     options.gravity_norm_sigma_m_s2 = 0.03;
-    const Run run = calibrate(test::simulateRig(simulation), options);
+    const PriorsRun run = calibrateForPriors(test::simulateRig(simulation), options);
     const double sigma_m_s2 = run.estimate.report.gravity_norm_std_m_s2;
     QVERIFY2(std::abs(sigma_m_s2 - 0.03) < 0.005, qPrintable(QString::number(sigma_m_s2)));
     QVERIFY(std::abs(run.solution.state.gravity_in_world_m_s2.norm() - 9.81) < 0.03);
@@ -182,14 +182,14 @@ class TestPriors : public QObject {
   }
   void weightedPrior_decidesWhatTheMotionLeavesOpen() {
     QFETCH(int, motion);
-    test::RigOptions simulation = shortRecording();
+    test::RigOptions simulation = shortPriorRecording();
     simulation.motion = static_cast<test::Motion>(motion);
     test::SimulatedRig rig = test::simulateRig(simulation);
     const Vector3d axis = rig.truth.cameras[0].reference_from_camera.rotation * Vector3d::UnitZ();
     constexpr double kSigma_m = 0.5e-3;
     const Vector3d mean_m = lever(rig.truth) + 0.3e-3 * axis;
     rig.input.cameras[0].prior.translation = KnownVector{mean_m, Vector3d::Constant(kSigma_m)};
-    const Run run = calibrate(rig);
+    const PriorsRun run = calibrateForPriors(rig);
     const double along_m = axis.dot(lever(run.solution.state) - mean_m);
     QVERIFY2(std::abs(along_m) < 0.1e-3, qPrintable(QString::number(along_m)));
     const double sigma_m = translationSigma_m(run.estimate.report, axis);
@@ -199,9 +199,9 @@ class TestPriors : public QObject {
   }
 
   void translationGivenAtTheTruth_isHeld() {
-    test::SimulatedRig rig = test::simulateRig(shortRecording());
+    test::SimulatedRig rig = test::simulateRig(shortPriorRecording());
     rig.input.cameras[0].prior.translation = KnownVector{lever(rig.truth)};
-    const Run run = calibrate(rig);
+    const PriorsRun run = calibrateForPriors(rig);
     QVERIFY(lever(run.solution.state) == lever(rig.truth));
     QVERIFY(run.estimate.report.cameras[0].translation_std_m.norm() == 0.0);
     QVERIFY(run.check.doubt.empty());
@@ -212,36 +212,36 @@ class TestPriors : public QObject {
   }
 
   void givenValueThatIsWrong_isDoubted() {
-    test::SimulatedRig rig = test::simulateRig(shortRecording());
+    test::SimulatedRig rig = test::simulateRig(shortPriorRecording());
     rig.input.cameras[0].prior.translation = KnownVector{lever(rig.truth) + Vector3d(0.02, 0.0, 0.0)};
-    const Run run = calibrate(rig);
+    const PriorsRun run = calibrateForPriors(rig);
     QVERIFY2(run.check.doubt.find("left.translation x") != std::string::npos, run.check.doubt.c_str());
     QVERIFY(says(run.check.notes, "given as"));
   }
 
   // Tight enough that the solution stays with it: the recording alone says otherwise all the same.
   void weightedPriorThatIsWrong_isSaid() {
-    test::SimulatedRig rig = test::simulateRig(shortRecording());
+    test::SimulatedRig rig = test::simulateRig(shortPriorRecording());
     rig.input.cameras[0].prior.translation =
         KnownVector{lever(rig.truth) + Vector3d(0.0, 0.03, 0.0), Vector3d::Constant(1e-4)};
-    const Run tight = calibrate(rig);
+    const PriorsRun tight = calibrateForPriors(rig);
     QVERIFY(says(tight.check.notes, "left.translation y"));
     QVERIFY(tight.check.doubt.find("left.translation y") != std::string::npos);
     rig.input.cameras[0].prior.translation =
         KnownVector{lever(rig.truth) + Vector3d(0.0, 0.03, 0.0), Vector3d::Constant(0.05)};
-    const Run loose = calibrate(rig);
+    const PriorsRun loose = calibrateForPriors(rig);
     QVERIFY(loose.check.notes.empty());
     QVERIFY(std::abs((lever(loose.solution.state) - lever(rig.truth)).y()) <
             4.0 * loose.estimate.report.cameras[0].translation_std_m.y());
   }
 
   void weightedRotation_isBetterThanEither() {
-    test::SimulatedRig rig = test::simulateRig(shortRecording());
-    const Run alone = calibrate(rig);
+    test::SimulatedRig rig = test::simulateRig(shortPriorRecording());
+    const PriorsRun alone = calibrateForPriors(rig);
     const Vector3d sigma_rad = alone.estimate.report.cameras[0].rotation_std_rad;
     const Eigen::Quaterniond& truth = rig.truth.cameras[0].reference_from_camera.rotation;
     rig.input.cameras[0].prior.rotation = KnownRotation{quaternionExp(0.5 * sigma_rad) * truth, sigma_rad};
-    const Run run = calibrate(rig);
+    const PriorsRun run = calibrateForPriors(rig);
     const Vector3d error_rad =
         quaternionLog(run.solution.state.cameras[0].reference_from_camera.rotation * truth.conjugate());
     for (int axis = 0; axis < 3; ++axis) {
@@ -253,7 +253,7 @@ class TestPriors : public QObject {
   }
 
   void furtherImu_takesItsPriorsToo() {
-    test::RigOptions simulation = shortRecording();
+    test::RigOptions simulation = shortPriorRecording();
     simulation.second_imu = true;
     test::SimulatedRig rig = test::simulateRig(simulation);
     const ImuState& truth = rig.truth.imus[1];
@@ -261,7 +261,7 @@ class TestPriors : public QObject {
     prior.time_offset = KnownNumber{truth.time_offset_s};
     prior.rotation = KnownRotation{truth.reference_from_imu.rotation};
     prior.gyroscope_bias = KnownVector{truth.gyroscope_bias_rad_s, Vector3d::Constant(1e-3)};
-    const Run run = calibrate(rig);
+    const PriorsRun run = calibrateForPriors(rig);
     const ImuState& imu = run.solution.state.imus[1];
     QCOMPARE(imu.time_offset_s, truth.time_offset_s);
     QVERIFY(imu.reference_from_imu.rotation.coeffs() == truth.reference_from_imu.rotation.coeffs());
@@ -282,18 +282,18 @@ class TestPriors : public QObject {
   }
   void knownGyroscopeRotation_isHeldOrWeighed() {
     QFETCH(bool, option);
-    test::RigOptions simulation = shortRecording();
+    test::RigOptions simulation = shortPriorRecording();
     simulation.gyroscope_turn_rad = 10.0 * M_PI / 180.0;
     test::SimulatedRig rig = test::simulateRig(simulation);
     const Eigen::Quaterniond truth = rig.truth.imus[0].gyroscope_from_accelerometer;
     OptimisationOptions options;
     options.gyroscope_rotation = option;
     std::optional<KnownRotation>& prior = rig.input.imus[0].prior.gyroscope_rotation;
-    const auto error_rad = [&](const Run& run) {
+    const auto error_rad = [&](const PriorsRun& run) {
       return quaternionLog(truth.conjugate() * run.solution.state.imus[0].gyroscope_from_accelerometer);
     };
     prior = KnownRotation{truth};
-    const Run given = calibrate(rig, options);
+    const PriorsRun given = calibrateForPriors(rig, options);
     QVERIFY(error_rad(given).norm() < 1e-12);
     QCOMPARE(given.estimate.report.given, std::vector<std::string>{"imu.gyroscope_rotation"});
     QVERIFY(given.estimate.report.imus[0].gyroscope_rotation_std_rad.norm() == 0.0);
@@ -305,7 +305,7 @@ class TestPriors : public QObject {
     constexpr double kSigma_rad = 5e-4;
     prior =
         KnownRotation{truth * quaternionExp({kSigma_rad, 0.0, -kSigma_rad}), Vector3d::Constant(kSigma_rad)};
-    const Run weighed = calibrate(rig, options);
+    const PriorsRun weighed = calibrateForPriors(rig, options);
     const Vector3d sigma_rad = weighed.estimate.report.imus[0].gyroscope_rotation_std_rad;
     for (int axis = 0; axis < 3; ++axis) {
       QVERIFY2(sigma_rad[axis] > 0.0 && sigma_rad[axis] < 1.05 * kSigma_rad,
@@ -316,13 +316,13 @@ class TestPriors : public QObject {
   }
 
   void everythingGiven_leavesNothingToJudge() {
-    test::SimulatedRig rig = test::simulateRig(shortRecording());
+    test::SimulatedRig rig = test::simulateRig(shortPriorRecording());
     const CameraState& truth = rig.truth.cameras[0];
     rig.input.cameras[0].prior = {KnownRotation{truth.reference_from_camera.rotation},
                                   KnownVector{truth.reference_from_camera.translation_m},
                                   KnownNumber{truth.time_offset_s},
                                   {}};
-    const Run run = calibrate(rig);
+    const PriorsRun run = calibrateForPriors(rig);
     QVERIFY(run.estimate.report.observability.empty());
     QCOMPARE(run.estimate.status, CalibrationStatus::Ok);
     QVERIFY(run.check.doubt.empty());

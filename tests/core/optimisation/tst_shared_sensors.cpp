@@ -10,7 +10,8 @@ namespace {
 
 using namespace evical;
 
-test::SimulatedRig rigOf(unsigned seed, const Eigen::Vector3d& apart_m = Eigen::Vector3d::Zero()) {
+test::SimulatedRig rigOfSharedSensors(unsigned seed,
+                                      const Eigen::Vector3d& apart_m = Eigen::Vector3d::Zero()) {
   test::RigOptions options = test::shortRecording(seed);
   options.frames_too = true;
   options.frames_apart_m = apart_m;
@@ -31,7 +32,7 @@ class TestSharedSensors : public QObject {
     constexpr unsigned kSeeds = 12;
     double squares = 0.0;
     for (unsigned seed = 1; seed <= kSeeds; ++seed) {
-      const test::SimulatedRig rig = rigOf(seed);
+      const test::SimulatedRig rig = rigOfSharedSensors(seed);
       const test::SolvedRig solved = solve(rig, seed, test::withoutPixelDelay());
       const std::vector<SensorLatency> latencies =
           sensorLatencies(rig.input, solved.solution.state, solved.estimate.report);
@@ -47,7 +48,7 @@ class TestSharedSensors : public QObject {
   }
 
   void poseAndLens_areOne_andNoLessCertainThanOfEventsAlone() {
-    const test::SimulatedRig rig = rigOf(1);
+    const test::SimulatedRig rig = rigOfSharedSensors(1);
     const test::SolvedRig both = solve(rig, 1);
     const auto& cameras = both.solution.state.cameras;
     QCOMPARE(cameras[0].reference_from_camera.translation_m, cameras[1].reference_from_camera.translation_m);
@@ -73,7 +74,7 @@ class TestSharedSensors : public QObject {
     constexpr Eigen::Index kExtrinsics = 6;
     double squares = 0.0;
     for (unsigned seed = 1; seed <= kSeeds; ++seed) {
-      test::SimulatedRig rig = rigOf(seed);
+      test::SimulatedRig rig = rigOfSharedSensors(seed);
       const test::SolvedRig solved = solve(rig, seed);
       CalibrationState state = solved.solution.state;
       state.cameras.pop_back();  // whose quantities come in between
@@ -88,7 +89,7 @@ class TestSharedSensors : public QObject {
   }
 
   void anotherSensor_isToldOf() {
-    const std::string doubt = solve(rigOf(1, {0.0, 0.02, 0.0}), 1).estimate.other_sensors;
+    const std::string doubt = solve(rigOfSharedSensors(1, {0.0, 0.02, 0.0}), 1).estimate.other_sensors;
     QVERIFY2(doubt.find("frames is not the same sensor as left") == 0, doubt.c_str());
   }
 
@@ -96,9 +97,9 @@ class TestSharedSensors : public QObject {
     OptimisationOptions apart;
     apart.share_sensors = false;
     for (unsigned seed = 1; seed <= 4; ++seed) {
-      const std::string doubt = solve(rigOf(seed), seed).estimate.other_sensors;
+      const std::string doubt = solve(rigOfSharedSensors(seed), seed).estimate.other_sensors;
       QVERIFY2(doubt.empty(), doubt.c_str());
-      const std::string compared = solve(rigOf(seed), seed, apart).estimate.other_sensors;
+      const std::string compared = solve(rigOfSharedSensors(seed), seed, apart).estimate.other_sensors;
       QVERIFY2(compared.empty(), compared.c_str());
     }
   }
@@ -106,11 +107,11 @@ class TestSharedSensors : public QObject {
   void sensorsThatAreOnlyCompared_haveTheirOwn() {
     OptimisationOptions options;
     options.share_sensors = false;
-    const test::SolvedRig same = solve(rigOf(1), 1, options);
+    const test::SolvedRig same = solve(rigOfSharedSensors(1), 1, options);
     QVERIFY(reports(same.estimate.report, "frames.translation.x [m]"));
     const auto& cameras = same.solution.state.cameras;
     QVERIFY(cameras[0].reference_from_camera.translation_m != cameras[1].reference_from_camera.translation_m);
-    const test::SolvedRig other = solve(rigOf(1, {0.0, 0.02, 0.0}), 1, options);
+    const test::SolvedRig other = solve(rigOfSharedSensors(1, {0.0, 0.02, 0.0}), 1, options);
     const auto& apart = other.solution.state.cameras;
     const Eigen::Vector3d between_m =
         apart[1].reference_from_camera.translation_m - apart[0].reference_from_camera.translation_m;

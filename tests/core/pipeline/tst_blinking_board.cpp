@@ -22,7 +22,7 @@ namespace {
 
 using namespace evical;
 
-QByteArray text(double number) {
+QByteArray textForBlinkingBoard(double number) {
   return QByteArray::number(number);
 }
 
@@ -75,11 +75,12 @@ class TestBlinkingBoard : public QObject {
         run.result.image.rms_px);
     constexpr double kSigmas = 4.0;
     for (int k = 0; k < 4; ++k)
-      QVERIFY2(std::abs(errors[k]) < kSigmas * sigma[k], text(errors[k]) + " against " + text(sigma[k]));
-    QVERIFY2(sigma[0] < 0.01 * truth.focal_length_px.x(), text(sigma[0]));
+      QVERIFY2(std::abs(errors[k]) < kSigmas * sigma[k],
+               textForBlinkingBoard(errors[k]) + " against " + textForBlinkingBoard(sigma[k]));
+    QVERIFY2(sigma[0] < 0.01 * truth.focal_length_px.x(), textForBlinkingBoard(sigma[0]));
     QVERIFY2(projectionDifference(truth, found).rms_px < 0.5,
-             text(projectionDifference(truth, found).rms_px));
-    QVERIFY2(run.result.reprojection_rms_px < 0.3, text(run.result.reprojection_rms_px));
+             textForBlinkingBoard(projectionDifference(truth, found).rms_px));
+    QVERIFY2(run.result.reprojection_rms_px < 0.3, textForBlinkingBoard(run.result.reprojection_rms_px));
     QCOMPARE(run.result.passes, 1);
   }
 
@@ -150,13 +151,13 @@ class TestBlinkingBoard : public QObject {
       const RecordingPass pass = readAndDetect(one, {CameraLens{}}, RunContext{});
       found += !pass.cameras.front().views.empty();
     }
-    QVERIFY2(found >= 8, text(found));
+    QVERIFY2(found >= 8, textForBlinkingBoard(found));
     const IntrinsicsRun run = calibrateIntrinsics(all, 0, RunContext{});
     const double f = run.result.intrinsics.focal_length_px.mean(), sigma = run.result.standardDeviations()[0];
     qInfo("%d of 9 found, f %.2f +- %.2f, %.3f px RMS", found, f, sigma, run.result.reprojection_rms_px);
-    QVERIFY2(run.result.reprojection_rms_px < 0.2, text(run.result.reprojection_rms_px));
-    QVERIFY2(sigma < 2.0, text(sigma));
-    QVERIFY2(std::abs(f - 89.8) < 2.0 * std::hypot(sigma, 0.5), text(f));
+    QVERIFY2(run.result.reprojection_rms_px < 0.2, textForBlinkingBoard(run.result.reprojection_rms_px));
+    QVERIFY2(sigma < 2.0, textForBlinkingBoard(sigma));
+    QVERIFY2(std::abs(f - 89.8) < 2.0 * std::hypot(sigma, 0.5), textForBlinkingBoard(f));
   }
 
  private:

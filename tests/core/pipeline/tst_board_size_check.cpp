@@ -25,7 +25,8 @@ BoardObservations observe(const Board& board, int rows_seen, int cols_seen, cons
   return observations;
 }
 
-std::string failureOf(const Board& board, int rows_seen, int cols_seen, const BoardExtent& extent) {
+std::string failureOfBoardSizeCheck(const Board& board, int rows_seen, int cols_seen,
+                                    const BoardExtent& extent) {
   try {
     checkBoardSize(observe(board, rows_seen, cols_seen, extent), board, ExtentOptions{});
   } catch (const CalibrationError& error) {
@@ -51,39 +52,40 @@ class TestBoardSizeCheck : public QObject {
 
 void TestBoardSizeCheck::rightBoard_passes() {
   const BoardExtent extent{{3, 0, 80, 0}, {80, 5, 80, 4}};
-  QCOMPARE(failureOf({}, 11, 4, extent), std::string());
+  QCOMPARE(failureOfBoardSizeCheck({}, 11, 4, extent), std::string());
 }
 
 void TestBoardSizeCheck::fewViews_sayNothing() {
   const BoardExtent extent{{14, 14, 14, 14}, {0, 0, 0, 0}};
-  QCOMPARE(failureOf({}, 11, 4, extent), std::string());
+  QCOMPARE(failureOfBoardSizeCheck({}, 11, 4, extent), std::string());
 }
 
 void TestBoardSizeCheck::largerBoard_isNamedWithItsSide() {
   Board board;
   board.rows = 9;
-  const std::string rows = failureOf(board, 9, 4, {{80, 76, 80, 0}, {80, 0, 80, 0}});
+  const std::string rows = failureOfBoardSizeCheck(board, 9, 4, {{80, 76, 80, 0}, {80, 0, 80, 0}});
   VERIFY_SAYS(rows, "left: .*seems larger than 9 x 4: .*beyond its first or last row in 95 % of 80 views");
   VERIFY_SAYS(rows, "Check rows and cols in the session");
-  VERIFY_SAYS(failureOf(board, 9, 4, {{80, 0, 80, 0}, {80, 80, 80, 0}}), "beyond its first or last column");
+  VERIFY_SAYS(failureOfBoardSizeCheck(board, 9, 4, {{80, 0, 80, 0}, {80, 80, 80, 0}}),
+              "beyond its first or last column");
 }
 
 void TestBoardSizeCheck::smallerBoard_isNamedWithWhatWasNeverSeen() {
   Board board;
   board.rows = 13;
-  VERIFY_SAYS(failureOf(board, 11, 4, {{80, 0, 80, 75}, {80, 0, 80, 0}}),
+  VERIFY_SAYS(failureOfBoardSizeCheck(board, 11, 4, {{80, 0, 80, 75}, {80, 0, 80, 0}}),
               "seems smaller than 13 x 4: the last 2 of 13 rows were never seen in 800 views");
-  VERIFY_SAYS(failureOf(board, 13, 3, {{80, 0, 80, 0}, {80, 0, 80, 75}}),
+  VERIFY_SAYS(failureOfBoardSizeCheck(board, 13, 3, {{80, 0, 80, 0}, {80, 0, 80, 75}}),
               "the last 1 of 4 columns was never seen in 800 views");
 }
 
 void TestBoardSizeCheck::smallerBoard_seenAtEitherEnd_isNamed() {
-  VERIFY_SAYS(failureOf({}, 11, 4, {{80, 0, 80, 72}, {80, 0, 80, 0}}),
+  VERIFY_SAYS(failureOfBoardSizeCheck({}, 11, 4, {{80, 0, 80, 72}, {80, 0, 80, 0}}),
               "smaller than 11 x 4: its first or last row is missing in 90 % of the 80 views");
 }
 
 void TestBoardSizeCheck::otherBoard_isBoth() {
-  VERIFY_SAYS(failureOf({}, 11, 4, {{80, 0, 80, 72}, {80, 79, 80, 0}}),
+  VERIFY_SAYS(failureOfBoardSizeCheck({}, 11, 4, {{80, 0, 80, 72}, {80, 79, 80, 0}}),
               "seems other than 11 x 4: .*missing in 90 %.*, and circles.*beyond its first or last column");
 }
 

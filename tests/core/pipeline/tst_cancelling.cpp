@@ -4,13 +4,12 @@
 #include "core/pipeline/calibration_pipeline.h"
 #include "core/pipeline/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
+#include "tests/support/processor_time.h"
 #include "tests/support/scenario_session.h"
 #include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
 #include <QTemporaryDir>
-
-#include <time.h>
 
 #include <algorithm>
 #include <atomic>
@@ -25,12 +24,6 @@
 namespace {
 
 using namespace evical;
-
-double computingTime_s() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 class StageRecorder final : public ProgressSink {
  public:
@@ -64,7 +57,7 @@ Stop stopAfter(const Work& work, double after_s) {
   StageRecorder recorder;
   std::stop_source source;
   std::atomic<bool> done = false;
-  const double begin_s = computingTime_s();
+  const double begin_s = test::processCpu_s();
   std::jthread worker([&] {
     try {
       work(RunContext{recorder, source.get_token()});
@@ -73,13 +66,13 @@ Stop stopAfter(const Work& work, double after_s) {
     }
     done = true;
   });
-  while (!done && computingTime_s() - begin_s < after_s)
+  while (!done && test::processCpu_s() - begin_s < after_s)
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   result.stage = recorder.stage();
-  const double asked_s = computingTime_s();
+  const double asked_s = test::processCpu_s();
   source.request_stop();
   worker.join();
-  result.latency_s = computingTime_s() - asked_s;
+  result.latency_s = test::processCpu_s() - asked_s;
   return result;
 }
 
@@ -87,9 +80,9 @@ Stop stopAfter(const Work& work, double after_s) {
 double wholeTime_s(const Work& work) {
   double shortest_s = std::numeric_limits<double>::infinity();
   for (int run = 0; run < 3; ++run) {
-    const double begin_s = computingTime_s();
+    const double begin_s = test::processCpu_s();
     work(RunContext{});
-    shortest_s = std::min(shortest_s, computingTime_s() - begin_s);
+    shortest_s = std::min(shortest_s, test::processCpu_s() - begin_s);
   }
   return shortest_s;
 }

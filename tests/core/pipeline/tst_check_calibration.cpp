@@ -22,14 +22,14 @@ using namespace evical::test;
 namespace {
 
 // Moved briskly, so that a few seconds tell much.
-Scenario brisk(std::uint64_t seed) {
+Scenario briskForCheckCalibration(std::uint64_t seed) {
   Scenario scenario = simulatePass(2.0).truth;
   scenario.motion.image_speed_px_s = 150.0;
   scenario.seed = seed;
   return scenario;
 }
 
-const CheckedQuantity* changedOne(const CalibrationCheck& check) {
+const CheckedQuantity* changedOneForCheckCalibration(const CalibrationCheck& check) {
   const auto found = std::find_if(check.quantities.begin(), check.quantities.end(),
                                   [](const CheckedQuantity& each) { return each.changed; });
   return found == check.quantities.end() ? nullptr : &*found;
@@ -46,7 +46,7 @@ class TestCheckCalibration : public QObject {
   // What has become of the camera since.
   CheckRun check(double duration_s, const std::function<void(SimulatedCamera&)>& change = {},
                  const std::function<void(RecordingPass&)>& spoil = {}, std::uint64_t seed = 11) const {
-    Scenario scenario = brisk(seed);
+    Scenario scenario = briskForCheckCalibration(seed);
     if (change) change(scenario.cameras.front());
     SimulatedPass now = simulatePass(duration_s, scenario);
     const CheckInput input = checkInputOf(before_, session_);
@@ -72,7 +72,7 @@ class TestCheckCalibration : public QObject {
 
  private slots:
   void initTestCase() {
-    SimulatedPass first = simulatePass(20.0, brisk(3));
+    SimulatedPass first = simulatePass(20.0, briskForCheckCalibration(3));
     session_ = first.session;
     session_.options.report.cross_validation = false;
     const CalibrationRun run = calibrate(session_, first.pass, {});
@@ -114,7 +114,7 @@ class TestCheckCalibration : public QObject {
       if (quantity == "intrinsics") camera.intrinsics.focal_length_px *= 1.0 + size / 125.0;
     });
     QVERIFY2(checked.check.verdict == CheckVerdict::Changed, checked.check.reason.c_str());
-    const CheckedQuantity* const changed = changedOne(checked.check);
+    const CheckedQuantity* const changed = changedOneForCheckCalibration(checked.check);
     QVERIFY(changed != nullptr);
     QCOMPARE(QString::fromStdString(changed->name), quantity);
     QVERIFY2(std::abs(changed->change - size) < 0.3 * size, qPrintable(QString::number(changed->change)));
@@ -200,7 +200,7 @@ class TestCheckCalibration : public QObject {
   void cancelled_isNoVerdict() {
     std::stop_source source;
     source.request_stop();
-    SimulatedPass now = simulatePass(5.0, brisk(5));
+    SimulatedPass now = simulatePass(5.0, briskForCheckCalibration(5));
     const RunContext context{silentProgress(), source.get_token()};
     const CheckInput input = checkInputOf(before_, session_);
     try {

@@ -104,7 +104,7 @@ CalibrationCheck checkOf(const Scenario& before, BoardlessPass pass) {
   return checkWithoutBoard(input, std::move(pass)).check;
 }
 
-const CheckedQuantity* changedOne(const CalibrationCheck& check) {
+const CheckedQuantity* changedOneForCheckWithoutBoard(const CalibrationCheck& check) {
   const auto found = std::find_if(check.quantities.begin(), check.quantities.end(),
                                   [](const CheckedQuantity& each) { return each.changed; });
   return found == check.quantities.end() ? nullptr : &*found;
@@ -157,7 +157,7 @@ class TestCheckWithoutBoard : public QObject {
     camera.time_offset_s += 1e-3 * late_ms;
     const CalibrationCheck check = checkOf(before, passOf(now, turningCamera(now)));
     QVERIFY2(check.verdict == CheckVerdict::Changed, check.reason.c_str());
-    const CheckedQuantity* const changed = changedOne(check);
+    const CheckedQuantity* const changed = changedOneForCheckWithoutBoard(check);
     QVERIFY(changed != nullptr);
     QCOMPARE(changed->name, std::string(turn_deg > 0.0 ? "rotation" : "time_offset"));
     const double size = turn_deg + late_ms;

@@ -27,7 +27,7 @@ std::vector<Eigen::Vector2d> scattered_m() {
   return points_m;
 }
 
-void write(const QString& path, const QString& text) {
+void writeForGivenPoints(const QString& path, const QString& text) {
   QFile file(path);
   QVERIFY(file.open(QIODevice::WriteOnly));
   file.write(text.toUtf8());
@@ -63,10 +63,11 @@ QString asSeen(const std::vector<Eigen::Vector2d>& points_m) {
 }
 
 Session sessionWith(const QTemporaryDir& folder, const QString& points_m) {
-  write(folder.filePath("seen.csv"), asSeen(scattered_m()));
+  writeForGivenPoints(folder.filePath("seen.csv"), asSeen(scattered_m()));
   const QString path = folder.filePath("session.yaml");
-  write(path, "evical_session: 1\nrecording: seen.csv\nboard: {type: points, points_m: " + points_m +
-                  "}\ncameras: {cam: {points: seen.csv, resolution_px: [640, 480]}}\n");
+  writeForGivenPoints(path,
+                      "evical_session: 1\nrecording: seen.csv\nboard: {type: points, points_m: " + points_m +
+                          "}\ncameras: {cam: {points: seen.csv, resolution_px: [640, 480]}}\n");
   return readSession(path.toStdString());
 }
 
@@ -78,13 +79,14 @@ class TestGivenPoints : public QObject {
  private slots:
   void table_isReadByItsNames_inAnyOrder() {
     const QTemporaryDir folder;
-    write(folder.filePath("board.csv"), asTable(scattered_m()));
+    writeForGivenPoints(folder.filePath("board.csv"), asTable(scattered_m()));
     QVERIFY(loadPoints(folder.filePath("board.csv").toStdString()) == scattered_m());
   }
 
   void tableWithoutNames_isIndexAndPlace() {
     const QTemporaryDir folder;
-    write(folder.filePath("board.csv"), "# mm would be wrong\n1 0.1 0 0.5\n0,0,0,0.5\n2 0 0.1 0.5\n");
+    writeForGivenPoints(folder.filePath("board.csv"),
+                        "# mm would be wrong\n1 0.1 0 0.5\n0,0,0,0.5\n2 0 0.1 0.5\n");
     const std::vector<Eigen::Vector2d> points_m = loadPoints(folder.filePath("board.csv").toStdString());
     QCOMPARE(points_m.size(), std::size_t{3});
     QVERIFY(points_m[1] == Eigen::Vector2d(0.1, 0.0));
@@ -111,7 +113,7 @@ class TestGivenPoints : public QObject {
     QFETCH(QString, text);
     QFETCH(QStringList, said);
     const QTemporaryDir folder;
-    write(folder.filePath("board.csv"), text);
+    writeForGivenPoints(folder.filePath("board.csv"), text);
     try {
       sessionWith(folder, "board.csv");
       QFAIL("taken");
@@ -133,21 +135,21 @@ class TestGivenPoints : public QObject {
 
   void sessionKeepsThem() {
     const QTemporaryDir folder;
-    write(folder.filePath("board.csv"), asTable(scattered_m()));
+    writeForGivenPoints(folder.filePath("board.csv"), asTable(scattered_m()));
     const Session session = sessionWith(folder, "board.csv");
     QCOMPARE(session.board.pointCount(), 40);
     const QTemporaryDir other;
     const QString saved = boardsYaml(session).c_str();
-    write(other.filePath("session.yaml"),
-          "evical_session: 1\nrecording: seen.csv\n" + saved +
-              "cameras: {cam: {points: seen.csv, resolution_px: [640, 480]}}\n");
-    write(other.filePath("seen.csv"), asSeen(scattered_m()));
+    writeForGivenPoints(other.filePath("session.yaml"),
+                        "evical_session: 1\nrecording: seen.csv\n" + saved +
+                            "cameras: {cam: {points: seen.csv, resolution_px: [640, 480]}}\n");
+    writeForGivenPoints(other.filePath("seen.csv"), asSeen(scattered_m()));
     QVERIFY(readSession(other.filePath("session.yaml").toStdString()).board == session.board);
   }
 
   void lensIsFoundFromThem() {
     const QTemporaryDir folder;
-    write(folder.filePath("board.csv"), asTable(scattered_m()));
+    writeForGivenPoints(folder.filePath("board.csv"), asTable(scattered_m()));
     const IntrinsicsRun run = calibrateIntrinsics(sessionWith(folder, "board.csv"), 0, RunContext{});
     QVERIFY((run.result.intrinsics.focal_length_px - Eigen::Vector2d(400.0, 400.0)).norm() < 0.05);
     QVERIFY((run.result.intrinsics.principal_point_px - Eigen::Vector2d(319.5, 239.5)).norm() < 0.05);

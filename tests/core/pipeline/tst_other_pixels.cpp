@@ -18,7 +18,7 @@ namespace {
 
 using namespace evical;
 
-constexpr double kSigmas = 3.0;
+constexpr double kOtherPixelsSigmas = 3.0;
 
 class TestOtherPixels : public QObject {
   Q_OBJECT
@@ -49,15 +49,15 @@ class TestOtherPixels : public QObject {
       const double error_ms = 1e3 * camera.time_offset_s - (kClock_ms - delay_ms);
       sigmas = std::min(sigmas, std::abs(error_ms) / (1e3 * sigma.time_offset_std_s));
     }
-    QVERIFY2(sigmas < kSigmas, qPrintable(QString::number(sigmas)));
+    QVERIFY2(sigmas < kOtherPixelsSigmas, qPrintable(QString::number(sigmas)));
 
     const Eigen::Quaterniond truth(0.718680715156, 0.00610162138709, -0.695273307691, 0.00747177977426);
     const Eigen::Vector3d turn =
         quaternionLog(camera.reference_from_camera.rotation * truth.normalized().conjugate());
     const Eigen::Vector3d shift =
         camera.reference_from_camera.translation_m - Eigen::Vector3d(0.022, -0.041, 0.016);
-    QVERIFY((turn.cwiseAbs().array() < kSigmas * sigma.rotation_std_rad.array()).all());
-    QVERIFY((shift.cwiseAbs().array() < kSigmas * sigma.translation_std_m.array()).all());
+    QVERIFY((turn.cwiseAbs().array() < kOtherPixelsSigmas * sigma.rotation_std_rad.array()).all());
+    QVERIFY((shift.cwiseAbs().array() < kOtherPixelsSigmas * sigma.translation_std_m.array()).all());
     QVERIFY(sigma.rotation_std_rad.maxCoeff() < 0.1 * kRadPerDeg);
     const std::vector<std::string>& notes = run.result.notes;
     QCOMPARE(std::any_of(

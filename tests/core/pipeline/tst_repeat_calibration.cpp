@@ -23,9 +23,9 @@ using namespace evical::test;
 
 namespace {
 
-constexpr double kDuration_s = 6.0;
+constexpr double kRepeatCalibrationDuration_s = 6.0;
 
-Scenario brisk(std::uint64_t seed, const std::string& name = "davis346") {
+Scenario briskForRepeatCalibration(std::uint64_t seed, const std::string& name = "davis346") {
   Scenario scenario = simulatePass(2.0, name).truth;
   scenario.motion.image_speed_px_s = 150.0;
   scenario.seed = seed;
@@ -44,10 +44,10 @@ RepeatRun repeatOf(std::size_t count, const Spoil& spoil = {}, const std::string
   std::vector<Session> sessions;
   std::vector<RecordingPass> passes;
   for (std::size_t k = 0; k < count; ++k) {
-    Scenario scenario = brisk(k + 1, name);
+    Scenario scenario = briskForRepeatCalibration(k + 1, name);
     Session session = simulatePass(2.0, scenario).session;  // what people say of the rig
     if (spoil.rig) spoil.rig(k, scenario);
-    SimulatedPass simulated = simulatePass(kDuration_s, scenario);
+    SimulatedPass simulated = simulatePass(kRepeatCalibrationDuration_s, scenario);
     if (spoil.pass) spoil.pass(k, simulated.pass);
     session.recording = "recording" + std::to_string(k + 1) + ".bag";
     session.source = "session" + std::to_string(k + 1) + ".yaml";
@@ -114,7 +114,7 @@ class TestRepeatCalibration : public QObject {
 
   void joint_isNearerTheTruthThanItsSigmasSay_andSurerThanEachAlone() {
     QVERIFY(good_.joint.has_value());
-    const TruthComparison comparison = compareWithTruth(*good_.joint, truthOf(brisk(3)));
+    const TruthComparison comparison = compareWithTruth(*good_.joint, truthOf(briskForRepeatCalibration(3)));
     for (const QuantityDifference& each : comparison.quantities)
       QVERIFY2(std::abs(each.normalised()) < 4.0,
                (each.name + ": " + std::to_string(each.normalised()) + " sigmas").c_str());
@@ -168,7 +168,8 @@ class TestRepeatCalibration : public QObject {
     QVERIFY2(repeat.reason.find("recording2: rotation of left by ") != std::string::npos,
              repeat.reason.c_str());
     // The solution is that of the other two.
-    for (const QuantityDifference& each : compareWithTruth(*run.joint, truthOf(brisk(3))).quantities)
+    for (const QuantityDifference& each :
+         compareWithTruth(*run.joint, truthOf(briskForRepeatCalibration(3))).quantities)
       QVERIFY2(std::abs(each.normalised()) < 4.0, each.name.c_str());
   }
 
@@ -203,7 +204,7 @@ class TestRepeatCalibration : public QObject {
   // Under another name: its file cannot tell.
   void copyOfARecording_saysNothingNew() {
     const RepeatRun run = repeatOf(3, {[](std::size_t k, Scenario& scenario) {
-                                         if (k == 2) scenario = brisk(1);
+                                         if (k == 2) scenario = briskForRepeatCalibration(1);
                                        },
                                        {}});
     QVERIFY(run.repeatability.recordings[2].outcome == RepeatOutcome::Failed);
@@ -225,7 +226,7 @@ class TestRepeatCalibration : public QObject {
     QVERIFY(offsets == 1);
     QVERIFY2(good.repeatability.verdict == RepeatVerdict::Agree, good.repeatability.reason.c_str());
     for (const QuantityDifference& each :
-         compareWithTruth(*good.joint, truthOf(brisk(3, "stereo"))).quantities)
+         compareWithTruth(*good.joint, truthOf(briskForRepeatCalibration(3, "stereo"))).quantities)
       QVERIFY2(std::abs(each.normalised()) < 4.0, each.name.c_str());
     const RepeatRun turned = repeatOf(
         3, {[](std::size_t k, Scenario& scenario) { turnCamera(0, 1.0, k, scenario); }, {}}, "stereo");

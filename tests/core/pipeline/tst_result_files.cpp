@@ -19,7 +19,7 @@ namespace {
 
 const char* const kHostile = "<script>alert(\"1\")</script>&'x";
 
-QString readFile(const QString& path) {
+QString readFileForResultFiles(const QString& path) {
   QFile file(path);
   return file.open(QIODevice::ReadOnly) ? QString::fromUtf8(file.readAll()) : QString();
 }
@@ -65,7 +65,7 @@ class TestResultFiles : public QObject {
     simulated_ = simulatePass(6.0);
     run_ = calibrate(simulated_.session, simulated_.pass, {});
     writeResultFiles(folder_.path().toStdString(), simulated_.session, shared(run_), "test", "log");
-    page_ = readFile(path("report.html"));
+    page_ = readFileForResultFiles(path("report.html"));
     text_ = checkedText(page_);
   }
 
@@ -114,7 +114,7 @@ class TestResultFiles : public QObject {
     for (auto it = link.globalMatch(page_); it.hasNext();) linked.insert(it.next().captured(1));
     QVERIFY(linked.size() >= 15);
     for (const QString& name : linked) {
-      const QStringList lines = readFile(folder_.filePath(name)).trimmed().split('\n');
+      const QStringList lines = readFileForResultFiles(folder_.filePath(name)).trimmed().split('\n');
       QVERIFY2(lines.size() > 1, qPrintable(name));
       const auto commas = lines[0].count(',');
       for (const QString& line : lines)
@@ -127,7 +127,8 @@ class TestResultFiles : public QObject {
 
   void csvFiles_areWhatIsPlotted() {
     // As many dots as lines, and the first dot where the first line puts it.
-    const QStringList lines = readFile(folder_.filePath("plots/camera1_centres.csv")).trimmed().split('\n');
+    const QStringList lines =
+        readFileForResultFiles(folder_.filePath("plots/camera1_centres.csv")).trimmed().split('\n');
     const auto begin = page_.indexOf("aria-label=\"circle centres over the image\"");
     QVERIFY(begin > 0);
     const QString svg = page_.mid(begin, page_.indexOf("</svg>", begin) - begin);
@@ -152,7 +153,7 @@ class TestResultFiles : public QObject {
     run.pass.faults.push_back({"<s>", FaultKind::Gap, 0.0, "<u>gap</u>"});
     QTemporaryDir folder;
     writeResultFiles(folder.path().toStdString(), session, shared(run), "1<2", "log");
-    const QString page = readFile(folder.filePath("report.html"));
+    const QString page = readFileForResultFiles(folder.filePath("report.html"));
     const QString text = checkedText(page);
     QVERIFY2(text.contains(kHostile), qPrintable(text.left(300)));
     QVERIFY(!page.contains("<script") && !page.contains("<img") && !page.contains("<u>gap"));
@@ -171,7 +172,7 @@ class TestResultFiles : public QObject {
     for (const char* const file : {"kalibr/imu.yaml", "openvins/kalibr_imu_chain.yaml", "result.yaml"})
       QVERIFY2(QFile::exists(folder.filePath(file)), file);
     QVERIFY(!QFile::exists(folder.filePath("esvo")));
-    const QString log = readFile(folder.filePath("log.txt"));
+    const QString log = readFileForResultFiles(folder.filePath("log.txt"));
     QVERIFY(log.startsWith("the log\n") && log.contains("esvo: not exported"));
     QVERIFY(log.contains("random walks are not measured"));
   }
@@ -215,7 +216,7 @@ class TestResultFiles : public QObject {
     run.result.cross_validation->quantities[0].difference = nan;
     QTemporaryDir folder;
     writeResultFiles(folder.path().toStdString(), simulated_.session, shared(run), "test", "log");
-    const QString text = checkedText(readFile(folder.filePath("report.html")));
+    const QString text = checkedText(readFileForResultFiles(folder.filePath("report.html")));
     QVERIFY2(text.contains("Calibration of"), qPrintable(text.left(400)));
   }
 
@@ -238,15 +239,15 @@ class TestResultFiles : public QObject {
                          {{259.5, 129.5}, 1234, 0.021}};
     QTemporaryDir folder;
     writeResultFiles(folder.path().toStdString(), simulated_.session, shared(run), "test", "log");
-    const QString page = readFile(folder.filePath("report.html")), text = checkedText(page);
+    const QString page = readFileForResultFiles(folder.filePath("report.html")), text = checkedText(page);
     QVERIFY2(page.contains("<section id=\"intrinsics\">"), qPrintable(text.left(400)));
     for (const char* said : {"Intrinsics as calibrated first", "no views reach the <left> side",
                              "No views in the left edge", "1234"})
       QVERIFY2(text.contains(said), said);
     QVERIFY(page.contains("correlation of the intrinsics"));
-    const QString cells = readFile(folder.filePath("plots/camera1_intrinsics.csv"));
+    const QString cells = readFileForResultFiles(folder.filePath("plots/camera1_intrinsics.csv"));
     QCOMPARE(cells.count('\n'), 3);
-    QVERIFY(readFile(folder.filePath("result.yaml")).contains("intrinsics_std:"));
+    QVERIFY(readFileForResultFiles(folder.filePath("result.yaml")).contains("intrinsics_std:"));
   }
 
   void repair_isSaidWithTheVerdict() {
@@ -256,13 +257,13 @@ class TestResultFiles : public QObject {
     run.result.repair = Repair{"imus.imu.acceleration_unit", "<g> 1"};
     QTemporaryDir folder;
     writeResultFiles(folder.path().toStdString(), simulated_.session, shared(run), "test", "log");
-    const QString text = checkedText(readFile(folder.filePath("report.html")));
+    const QString text = checkedText(readFileForResultFiles(folder.filePath("report.html")));
     QVERIFY2(text.contains("--set 'imus.imu.acceleration_unit=<g> 1'"), qPrintable(text.left(600)));
   }
 
   // Data sets' layouts have places of their own for either.
   void frameCamera_isNamedAsOne() {
-    QVERIFY(!readFile(path("result.yaml")).contains("kind:"));
+    QVERIFY(!readFileForResultFiles(path("result.yaml")).contains("kind:"));
     CalibrationRun run = run_;
     run.pass.cameras[0].kind = CameraKind::Frames;
     QTemporaryDir folder;
@@ -278,7 +279,7 @@ class TestResultFiles : public QObject {
     for (WindowReport& window : pass.cameras[0].windows) window.outcome = WindowOutcome::NoLattice;
     writeFailure(folder.path().toStdString(), simulated_.session, Doubt{"the board was <never> found"},
                  "test", "log", pass);
-    const QString page = readFile(folder.filePath("report.html"));
+    const QString page = readFileForResultFiles(folder.filePath("report.html"));
     const QString text = checkedText(page);
     QVERIFY2(text.contains("the board was <never> found") && text.contains("failed"),
              qPrintable(text.left(300)));
@@ -290,7 +291,7 @@ class TestResultFiles : public QObject {
   void failureBeforeAnythingWasRead_isAReportToo() {
     QTemporaryDir folder;
     writeFailure(folder.path().toStdString(), simulated_.session, Doubt{"nothing there"}, "test", "log");
-    const QString text = checkedText(readFile(folder.filePath("report.html")));
+    const QString text = checkedText(readFileForResultFiles(folder.filePath("report.html")));
     QVERIFY2(text.contains("nothing there"), qPrintable(text.left(300)));
     QVERIFY(QFile::exists(folder.filePath("result.yaml")) && QFile::exists(folder.filePath("log.txt")));
   }
@@ -304,7 +305,7 @@ class TestResultFiles : public QObject {
       std::erase_if(view.circles, [](const CircleObservation& c) { return c.centre_px.x() > 120.0; });
     QTemporaryDir folder;
     writeResultFiles(folder.path().toStdString(), simulated_.session, shared(run), "test", "log");
-    const QString text = checkedText(readFile(folder.filePath("report.html")));
+    const QString text = checkedText(readFileForResultFiles(folder.filePath("report.html")));
     for (const char* said : {"gap of 0.3 s", "without losses", "Turn about the z axis", "top right"})
       QVERIFY2(text.contains(said), said);
   }

@@ -20,12 +20,12 @@ using namespace evical::test;
 
 namespace {
 
-QByteArray readFile(const std::filesystem::path& path) {
+QByteArray readFileForSavedRun(const std::filesystem::path& path) {
   QFile file(QString::fromStdString(path.string()));
   return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
 }
 
-void write(const std::filesystem::path& path, const QByteArray& content) {
+void writeForSavedRun(const std::filesystem::path& path, const QByteArray& content) {
   QFile file(QString::fromStdString(path.string()));
   QVERIFY(file.open(QIODevice::WriteOnly));
   file.write(content);
@@ -57,7 +57,7 @@ class TestSavedRun : public QObject {
  private slots:
   void initTestCase() {
     simulated_ = simulatePass(5.0);
-    write(scratch() / "recording.bag", "a recording");
+    writeForSavedRun(scratch() / "recording.bag", "a recording");
     simulated_.session.recording = scratch() / "recording.bag";
     simulated_.session.options.optimisation.max_iterations += 1;
     const RecordingPass pass = withoutViews(simulated_.pass, 0, std::vector{7, 20, 21, 40, 60});
@@ -97,7 +97,7 @@ class TestSavedRun : public QObject {
 
     QMap<QString, int> outcomes;
     QStringList times;
-    for (const QByteArray& line : readFile(result() / "windows.csv").split('\n')) {
+    for (const QByteArray& line : readFileForSavedRun(result() / "windows.csv").split('\n')) {
       const QStringList words = QString::fromUtf8(line).split(',');
       if (words.size() < 4) continue;
       ++outcomes[words[3]];
@@ -119,7 +119,7 @@ class TestSavedRun : public QObject {
       return QString::fromStdString(note).contains("a person rejected 5 windows with the board, at");
     };
     QVERIFY(std::any_of(read.result->notes.begin(), read.result->notes.end(), says));
-    const QByteArray report = readFile(result() / "report.html");
+    const QByteArray report = readFileForSavedRun(result() / "report.html");
     QVERIFY(report.contains("rejected by hand") && report.contains("a person rejected 5 windows"));
   }
 
@@ -151,13 +151,13 @@ class TestSavedRun : public QObject {
     QFETCH(const bool, has_trajectory);
     QFETCH(const bool, has_samples);
     const std::filesystem::path folder = copy(QTest::currentDataTag());
-    QByteArray data = readFile(folder / "run.data");
+    QByteArray data = readFileForSavedRun(folder / "run.data");
     const qsizetype at = data.size() * at_percent / 100;
     if (cut)
       data.truncate(at);
     else
       data[at] = static_cast<char>(data[at] ^ 0x10);
-    write(folder / "run.data", data);
+    writeForSavedRun(folder / "run.data", data);
     const SavedRun saved = readSavedRun(folder);
     QVERIFY2(missingIn(saved).contains(said), qPrintable(missingIn(saved)));
     const CalibrationResult& result = saved.run->result;
@@ -204,7 +204,7 @@ class TestSavedRun : public QObject {
     other.cameras.push_back(other.cameras[0]);
     other.cameras.back().name = "another";
     other.cameras.back().stream = "/another";
-    write(folder / "run_session.yaml", QByteArray::fromStdString(sessionYaml(other, folder)));
+    writeForSavedRun(folder / "run_session.yaml", QByteArray::fromStdString(sessionYaml(other, folder)));
     try {
       readSavedRun(folder);
       QFAIL("taken");
@@ -227,7 +227,7 @@ class TestSavedRun : public QObject {
 
   void recordingThatIsGone_leavesTheRest() {
     const std::filesystem::path folder = scratch() / "gone";
-    write(scratch() / "short_lived.bag", "a recording");
+    writeForSavedRun(scratch() / "short_lived.bag", "a recording");
     Session session = simulated_.session;
     session.recording = scratch() / "short_lived.bag";
     keepRun(folder, session, run_, "test", "", 100);
@@ -256,7 +256,7 @@ class TestSavedRun : public QObject {
     QCOMPARE(differing.size(), std::size_t{1});
     QVERIFY2(differing[0].find("least_circles 9 (was ") != std::string::npos, differing[0].c_str());
 
-    write(place / "2" / "run.yaml", "evical_run: 7\n");
+    writeForSavedRun(place / "2" / "run.yaml", "evical_run: 7\n");
     QCOMPARE(listRuns(place).size(), std::size_t{3});
     removeOldRuns(listRuns(place), 2, 1'000'000'000);  // the one with a name stays before the older one
     runs = listRuns(place);

@@ -13,7 +13,7 @@ using namespace evical;
 
 namespace {
 
-const char* const kGood = R"(evical_session: 1
+const char* const kGoodSession = R"(evical_session: 1
 recording: recording.bag
 time_range_s: [1, 30]
 board:
@@ -47,7 +47,7 @@ options:
   bursts.least_events: 3
 )";
 
-const char* const kCamchain = R"(cam0:
+const char* const kSessionCamchain = R"(cam0:
   camera_model: pinhole
   intrinsics: [300, 301, 170, 131]
   distortion_model: radtan
@@ -92,7 +92,7 @@ class TestSession : public QObject {
     return folder() / name;
   }
   Session sessionWith(const QString& from, const QString& to) const {
-    QString text = kGood;
+    QString text = kGoodSession;
     if (!from.isEmpty() && !text.contains(from)) qFatal("the good session lacks %s", qPrintable(from));
     if (!from.isEmpty()) text.replace(from, to);
     return readSession(write("session.yaml", text.toStdString()));
@@ -260,7 +260,7 @@ class TestSession : public QObject {
 
   void severalBoards_areReadAndWritten() {
     const QString text =
-        QString(kGood)
+        QString(kGoodSession)
             .replace(kCircles,
                      "boards:\n"
                      "  tags: {type: aprilgrid, rows: 6, cols: 6, tag_size_m: 0.088, tag_spacing: 0.3, "
@@ -315,7 +315,7 @@ class TestSession : public QObject {
     QFETCH(QStringList, said);
     const QString resolution = "    resolution_px: [346, 260]\n";
     const QString text =
-        QString(kGood)
+        QString(kGoodSession)
             .replace(kCircles, boards)
             .replace(resolution, resolution + (of_left.isEmpty() ? "" : "    " + of_left + "\n"));
     try {
@@ -379,7 +379,7 @@ class TestSession : public QObject {
   }
 
   void intrinsics_ofKalibr_areThoseOfTheStream() {
-    const CameraIntrinsics camera = *sessionWithIntrinsicsFile(kCamchain).cameras[0].intrinsics;
+    const CameraIntrinsics camera = *sessionWithIntrinsicsFile(kSessionCamchain).cameras[0].intrinsics;
     QVERIFY(camera.model == CameraModel::PinholeEquidistant);
     QCOMPARE(camera.focal_length_px.y(), 261.0);
   }
@@ -391,7 +391,7 @@ class TestSession : public QObject {
   }
 
   void session_withoutImu_mayHaveAnyBoard() {
-    const QString text = QString(kGood).section("imus:", 0, 0).replace("rows: 11", "rows: 10");
+    const QString text = QString(kGoodSession).section("imus:", 0, 0).replace("rows: 11", "rows: 10");
     const Session session = readSession(write("session.yaml", text.toStdString()));
     QCOMPARE(session.reference, std::string("left"));
   }

@@ -20,7 +20,7 @@ using namespace evical::test;
 
 namespace {
 
-constexpr double kDuration_s = 8.0;
+constexpr double kSeveralBoardsDuration_s = 8.0;
 
 NamedResult truthOf(const Scenario& scenario, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "truth.yaml";
@@ -42,7 +42,7 @@ void keepViews(double begin_s, double end_s, BoardObservations& camera) {
                 [&](const BoardView& view) { return view.time_s < begin_s || view.time_s > end_s; });
 }
 
-QString failureOf(const SimulatedPass& simulated) {
+QString failureOfSeveralBoards(const SimulatedPass& simulated) {
   try {
     return QString::fromStdString(calibrate(simulated.session, simulated.pass, {}).result.reason);
   } catch (const CalibrationError& error) {
@@ -61,7 +61,7 @@ class TestSeveralBoards : public QObject {
   std::filesystem::path path() const { return folder_.path().toStdString(); }
 
  private slots:
-  void initTestCase() { simulated_ = simulatePass(kDuration_s, "two_boards"); }
+  void initTestCase() { simulated_ = simulatePass(kSeveralBoardsDuration_s, "two_boards"); }
 
   void rigAndBoards_areAsTheyAre() {
     const auto run =
@@ -104,9 +104,9 @@ class TestSeveralBoards : public QObject {
 
   void boardsThatAreNeverSeenTogether_areToldOf() {
     SimulatedPass apart = simulated_;
-    keepViews(0.0, 0.45 * kDuration_s, apart.pass.cameras[0]);
-    keepViews(0.55 * kDuration_s, kDuration_s, apart.pass.cameras[1]);
-    const QString said = failureOf(apart);
+    keepViews(0.0, 0.45 * kSeveralBoardsDuration_s, apart.pass.cameras[0]);
+    keepViews(0.55 * kSeveralBoardsDuration_s, kSeveralBoardsDuration_s, apart.pass.cameras[1]);
+    const QString said = failureOfSeveralBoards(apart);
     QVERIFY2(said.contains("tags: fewer than") && said.contains("nobody knows where one stands"),
              qPrintable(said));
   }
@@ -115,12 +115,12 @@ class TestSeveralBoards : public QObject {
     SimulatedPass moved = simulated_;
     SimulatedPass other = simulated_;
     other.truth.further_boards[0].world_from_board.translation_m.x() += 0.3;
-    other = simulatePass(kDuration_s, other.truth);
-    keepViews(0.0, 0.5 * kDuration_s, moved.pass.cameras[1]);
-    keepViews(0.5 * kDuration_s, kDuration_s, other.pass.cameras[1]);
+    other = simulatePass(kSeveralBoardsDuration_s, other.truth);
+    keepViews(0.0, 0.5 * kSeveralBoardsDuration_s, moved.pass.cameras[1]);
+    keepViews(0.5 * kSeveralBoardsDuration_s, kSeveralBoardsDuration_s, other.pass.cameras[1]);
     std::vector<BoardView>& views = moved.pass.cameras[1].views;
     views.insert(views.end(), other.pass.cameras[1].views.begin(), other.pass.cameras[1].views.end());
-    const QString said = failureOf(moved);
+    const QString said = failureOfSeveralBoards(moved);
     QVERIFY2(said.contains("of its views agree on where it stands"), qPrintable(said));
   }
 

@@ -1,6 +1,8 @@
 #include "core/pipeline/single_changes.h"
 #include "tests/support/test_program.h"
 
+#include <Eigen/Cholesky>
+
 #include <array>
 #include <cmath>
 #include <random>
@@ -62,7 +64,7 @@ class TestSingleChanges : public QObject {
       truth[0] = truth[3] = 0.5 * stability;
       int alarms = 0;
       for (int k = 0; k < kDraws; ++k) {
-        const ChangeTests tests = testSingleChanges(draws.next(truth), all, kFalseAlarms);
+        const GroupTestResults tests = testSingleChanges(draws.next(truth), all, kFalseAlarms);
         alarms += tests.groups[0].changed || tests.groups[1].changed;
       }
       QVERIFY2(alarms < 1.2 * kFalseAlarms * kDraws, qPrintable(QString::number(alarms)));
@@ -91,7 +93,7 @@ class TestSingleChanges : public QObject {
   void changedGroup_isNamedAndSizedAlone() {
     Draws draws;
     const auto all = groups(0.1);
-    const ChangeTests tests =
+    const GroupTestResults tests =
         testSingleChanges(draws.next(20.0 * Eigen::VectorXd::Unit(kNumbers, 1)), all, 0.01);
     QVERIFY(tests.groups[0].changed);
     QVERIFY(!tests.groups[1].changed);
@@ -104,7 +106,7 @@ class TestSingleChanges : public QObject {
     Eigen::VectorXd truth = Eigen::VectorXd::Zero(kNumbers);
     truth[0] = 15.0;
     truth[5] = -25.0;
-    const ChangeTests tests = testSingleChanges(draws.next(truth), groups(0.1), 0.01);
+    const GroupTestResults tests = testSingleChanges(draws.next(truth), groups(0.1), 0.01);
     QVERIFY(tests.groups[0].changed && tests.groups[1].changed);
     QVERIFY(std::abs(tests.groups[0].change[0] - 15.0) < 4.0);
     QVERIFY(std::abs(tests.groups[1].change[2] + 25.0) < 6.0);
@@ -113,7 +115,7 @@ class TestSingleChanges : public QObject {
   void changeWithinTheStability_isNone() {
     const auto all = groups(5.0);
     const EstimatedChange sharp{4.9 * Eigen::VectorXd::Unit(kNumbers, 0), 1e-4 * covariance()};
-    const ChangeTests tests = testSingleChanges(sharp, all, 0.01);
+    const GroupTestResults tests = testSingleChanges(sharp, all, 0.01);
     QVERIFY(!tests.groups[0].changed);
     QCOMPARE(tests.groups[0].beyond, 0.0);
     QVERIFY(tests.groups[0].sigmas > 100.0);

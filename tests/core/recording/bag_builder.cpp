@@ -8,7 +8,7 @@
 namespace evical::test {
 namespace {
 
-constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
+constexpr std::string_view kBagBuilderMagic = "#ROSBAG V2.0\n";
 constexpr std::size_t kBagHeaderSize = 4096;
 
 std::string op(std::uint8_t code) {
@@ -37,7 +37,8 @@ std::string bagHeader(std::uint64_t index_position, std::size_t connections, std
   const std::string header = op(3) + field("index_pos", bytesOf(index_position)) +
                              field("conn_count", bytesOf(static_cast<std::uint32_t>(connections))) +
                              field("chunk_count", bytesOf(static_cast<std::uint32_t>(chunks)));
-  return std::string(kMagic) + sized(header) + sized(std::string(kBagHeaderSize - 8 - header.size(), ' '));
+  return std::string(kBagBuilderMagic) + sized(header) +
+         sized(std::string(kBagHeaderSize - 8 - header.size(), ' '));
 }
 
 std::string messageHeader(std::int64_t stamp_ns) {
@@ -94,7 +95,7 @@ void BagBuilder::record(const std::string& header, const std::string& data) {
 
 void BagBuilder::endChunk() {
   if (chunk_.empty()) return;
-  const std::size_t position = kMagic.size() + kBagHeaderSize + chunks_.size();
+  const std::size_t position = kBagBuilderMagic.size() + kBagHeaderSize + chunks_.size();
   chunk_positions_.push_back(position);
   chunks_ += sized(op(5) + field("compression", compression_) +
                    field("size", bytesOf(static_cast<std::uint32_t>(chunk_.size())))) +
@@ -134,7 +135,7 @@ std::string BagBuilder::finished() {
     index += sized(connection.header) + sized(connection.data);
     ++used;
   }
-  const std::size_t index_position = kMagic.size() + kBagHeaderSize + chunks_.size();
+  const std::size_t index_position = kBagBuilderMagic.size() + kBagHeaderSize + chunks_.size();
   return bagHeader(index_position, used, chunk_positions_.size()) + chunks_ + index + infos_;
 }
 

@@ -15,8 +15,8 @@ using namespace evical::test;
 
 namespace {
 
-constexpr Resolution kSize_px = {64, 48};
-constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
+constexpr Resolution kRosbagDamageSize_px = {64, 48};
+constexpr std::int64_t kRosbagDamageStart_ns = 1'700'000'000'000'000'000;
 constexpr std::size_t kMessages = 12, kEventsEach = 20;
 
 // 3 chunks of 4 event messages and 4 IMU messages each.
@@ -26,7 +26,8 @@ BagBuilder smallBag(const std::string& compression) {
   const std::vector<ImuSample> samples = someSamples(kMessages);
   for (std::size_t i = 0; i < kMessages; ++i) {
     const std::int64_t time_ns = samples[i].time_ns;
-    bag.message(events, time_ns, eventMessage(time_ns, kSize_px, someEvents(kEventsEach, time_ns)));
+    bag.message(events, time_ns,
+                eventMessage(time_ns, kRosbagDamageSize_px, someEvents(kEventsEach, time_ns)));
     bag.message(imu, time_ns, imuMessage(samples[i]));
     if (i % 4 == 3) bag.endChunk();
   }
@@ -267,9 +268,9 @@ void TestRosbagDamage::messageWithAFalseCount_isLeftOut() {
   BagBuilder bag;
   const std::uint32_t events = bag.addEvents("/events");
   for (const std::uint32_t count : {20U, 0xFFFFFFFFU, 20U, 21U, 20U}) {
-    std::string message = eventMessage(kStart_ns, kSize_px, someEvents(kEventsEach));
+    std::string message = eventMessage(kRosbagDamageStart_ns, kRosbagDamageSize_px, someEvents(kEventsEach));
     replaceNumber(message, message.size() - 13 * kEventsEach - 4, count);
-    bag.message(events, kStart_ns, message);
+    bag.message(events, kRosbagDamageStart_ns, message);
   }
   const Contents contents = readAll(folder_.write("count.bag", bag.finished()));
   QCOMPARE(contents.eventCount(), 3 * kEventsEach);
@@ -301,10 +302,10 @@ void TestRosbagDamage::lyingLengths_takeNoMemory() {
 void TestRosbagDamage::stampBeyondASecond_isLeftOut() {
   BagBuilder bag;
   const std::uint32_t events = bag.addEvents("/events");
-  std::string message = eventMessage(kStart_ns, kSize_px, someEvents(kEventsEach));
-  bag.message(events, kStart_ns, message);
+  std::string message = eventMessage(kRosbagDamageStart_ns, kRosbagDamageSize_px, someEvents(kEventsEach));
+  bag.message(events, kRosbagDamageStart_ns, message);
   replaceNumber(message, message.size() - 5, 3'000'000'000U);  // nanoseconds of the last event
-  bag.message(events, kStart_ns, message);
+  bag.message(events, kRosbagDamageStart_ns, message);
   const Contents contents = readAll(folder_.write("stamp.bag", bag.finished()));
   QCOMPARE(contents.eventCount(), kEventsEach);
   QVERIFY(contents.hasFault(FaultKind::Corrupt));

@@ -13,9 +13,9 @@ using namespace evical::test;
 
 namespace {
 
-const std::filesystem::path kData = test::sourcePath("tests/data/recordings");
-constexpr Resolution kSize_px = {64, 48};
-constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
+const std::filesystem::path kRosbagReaderData = test::sourcePath("tests/data/recordings");
+constexpr Resolution kRosbagReaderSize_px = {64, 48};
+constexpr std::int64_t kRosbagReaderStart_ns = 1'700'000'000'000'000'000;
 
 const char* const kEventDefinition =
     "# a private copy\nstd_msgs/Header header\nuint32 height\nuint32   width\nour_msgs/Event[] events\n"
@@ -25,7 +25,8 @@ const char* const kEventDefinition =
 std::string bagWith(const std::string& type, const std::string& md5, const std::string& definition) {
   BagBuilder bag;
   const std::uint32_t connection = bag.addConnection("/events", type, md5, definition);
-  bag.message(connection, kStart_ns, eventMessage(kStart_ns, kSize_px, someEvents(5)));
+  bag.message(connection, kRosbagReaderStart_ns,
+              eventMessage(kRosbagReaderStart_ns, kRosbagReaderSize_px, someEvents(5)));
   return bag.finished();
 }
 
@@ -77,7 +78,7 @@ void TestRosbagReader::chunks_ofEachCompression_giveTheSame() {
   for (std::size_t i = 0; i < 30; ++i) {
     const auto begin = events.begin() + static_cast<std::ptrdiff_t>(100 * i);
     const std::vector<Event> part(begin, begin + 100);
-    bag.message(left, part.back().time_ns, eventMessage(part.front().time_ns, kSize_px, part));
+    bag.message(left, part.back().time_ns, eventMessage(part.front().time_ns, kRosbagReaderSize_px, part));
     bag.message(right, part.back().time_ns, eventMessage(part.front().time_ns, {32, 24}, {part[0]}));
     bag.message(imu, samples[i].time_ns, imuMessage(samples[i]));
     if (i % 10 == 9) bag.endChunk();
@@ -90,14 +91,14 @@ void TestRosbagReader::chunks_ofEachCompression_giveTheSame() {
   const std::size_t imu_stream = findStream(*openRecording(folder_ / "a.bag"), "/imu", StreamType::Imu);
   QVERIFY(sameEvents(contents.events.at(left_stream), events));
   QVERIFY(sameSamples(contents.imu.at(imu_stream), samples));
-  QCOMPARE(contents.streams[left_stream].resolution_px, kSize_px);
+  QCOMPARE(contents.streams[left_stream].resolution_px, kRosbagReaderSize_px);
   QCOMPARE(contents.streams[left_stream].messages, std::uint64_t{30});
   QCOMPARE(contents.eventCount(), std::size_t{3030});
 }
 
 // Numbers from the script that wrote it.
 void TestRosbagReader::bagOfPythonRosbag_isReadExactly() {
-  const Contents contents = readAll(kData / "rosbag_python_bz2.bag");
+  const Contents contents = readAll(kRosbagReaderData / "rosbag_python_bz2.bag");
   QVERIFY(contents.faults.empty());
   QCOMPARE(contents.eventCount(), std::size_t{1000});
   QCOMPARE(contents.sampleCount(), std::size_t{100});
@@ -123,7 +124,7 @@ void TestRosbagReader::bagOfPythonRosbag_isReadExactly() {
 }
 
 void TestRosbagReader::bagWithoutEvents_listsItsTopics() {
-  const Contents contents = readAll(kData / "no_event_topics_lz4.bag");
+  const Contents contents = readAll(kRosbagReaderData / "no_event_topics_lz4.bag");
   QCOMPARE(contents.streams.size(), std::size_t{9});
   QVERIFY(contents.faults.empty());
   QCOMPARE(contents.eventCount() + contents.sampleCount(), std::size_t{0});
@@ -171,7 +172,7 @@ void TestRosbagReader::type_isToldByMd5NameOrDefinition() {
 }
 
 void TestRosbagReader::select_leavesOutTheOthers() {
-  const std::unique_ptr<RecordingReader> reader = openRecording(kData / "rosbag_python_bz2.bag");
+  const std::unique_ptr<RecordingReader> reader = openRecording(kRosbagReaderData / "rosbag_python_bz2.bag");
   reader->select({findStream(*reader, "/dvs/imu", StreamType::Imu)});
   const Contents contents = readAll(*reader);
   QCOMPARE(contents.eventCount(), std::size_t{0});
@@ -181,7 +182,8 @@ void TestRosbagReader::select_leavesOutTheOthers() {
 void TestRosbagReader::twoConnectionsOfATopic_areOneStream() {
   BagBuilder bag;
   for (int i = 0; i < 2; ++i)
-    bag.message(bag.addEvents("/events"), kStart_ns, eventMessage(kStart_ns, kSize_px, someEvents(4)));
+    bag.message(bag.addEvents("/events"), kRosbagReaderStart_ns,
+                eventMessage(kRosbagReaderStart_ns, kRosbagReaderSize_px, someEvents(4)));
   const Contents contents = readAll(folder_.write("two.bag", bag.finished()));
   QCOMPARE(contents.streams.size(), std::size_t{1});
   QCOMPARE(contents.eventCount(), std::size_t{8});
@@ -223,20 +225,21 @@ void TestRosbagReader::topicsOfBagWrite_areThoseOfTheRecords() {
 void TestRosbagReader::lateTopic_isDescribedAtOpening() {
   BagBuilder bag;
   const std::uint32_t early = bag.addEvents("/early"), late = bag.addEvents("/late");
-  const std::string message = eventMessage(kStart_ns, {32, 24}, someEvents(1));
+  const std::string message = eventMessage(kRosbagReaderStart_ns, {32, 24}, someEvents(1));
   for (int i = 0; i < 30'000; ++i) {
-    bag.message(early, kStart_ns, message);
+    bag.message(early, kRosbagReaderStart_ns, message);
     if (i % 500 == 0) bag.endChunk();
   }
-  bag.message(late, kStart_ns, eventMessage(kStart_ns, kSize_px, someEvents(1)));
+  bag.message(late, kRosbagReaderStart_ns,
+              eventMessage(kRosbagReaderStart_ns, kRosbagReaderSize_px, someEvents(1)));
   const std::unique_ptr<RecordingReader> reader = openRecording(folder_.write("late.bag", bag.finished()));
-  QCOMPARE(reader->streams().at(1).resolution_px, kSize_px);
+  QCOMPARE(reader->streams().at(1).resolution_px, kRosbagReaderSize_px);
 }
 
 void TestRosbagReader::sizeOfZero_isTolerated() {
   BagBuilder bag;
   const std::uint32_t events = bag.addEvents("/events");
-  bag.message(events, kStart_ns, eventMessage(kStart_ns, {0, 0}, someEvents(4)));
+  bag.message(events, kRosbagReaderStart_ns, eventMessage(kRosbagReaderStart_ns, {0, 0}, someEvents(4)));
   const Contents contents = readAll(folder_.write("size.bag", bag.finished()));
   QVERIFY(!contents.streams.at(0).resolution_px.known());
   QCOMPARE(contents.eventCount(), std::size_t{4});
@@ -251,7 +254,8 @@ void TestRosbagReader::emptyBag_hasNoStreams() {
 void TestRosbagReader::bagWithoutIndex_isReadInSequence() {
   BagBuilder bag("lz4");
   const std::uint32_t events = bag.addEvents("/events");
-  bag.message(events, kStart_ns, eventMessage(kStart_ns, kSize_px, someEvents(40)));
+  bag.message(events, kRosbagReaderStart_ns,
+              eventMessage(kRosbagReaderStart_ns, kRosbagReaderSize_px, someEvents(40)));
   bag.endChunk();
   const std::uint32_t imu = bag.addImu("/imu");
   for (const ImuSample& sample : someSamples(7)) bag.message(imu, sample.time_ns, imuMessage(sample));
@@ -260,7 +264,7 @@ void TestRosbagReader::bagWithoutIndex_isReadInSequence() {
   QCOMPARE(contents.eventCount(), std::size_t{40});
   QCOMPARE(contents.sampleCount(), std::size_t{7});
   QCOMPARE(contents.faults.size(), std::size_t{1});
-  QCOMPARE(contents.streams[0].resolution_px, kSize_px);
+  QCOMPARE(contents.streams[0].resolution_px, kRosbagReaderSize_px);
 }
 
 void TestRosbagReader::zeroStamps_areReplacedByRecordTimes() {
@@ -269,14 +273,14 @@ void TestRosbagReader::zeroStamps_areReplacedByRecordTimes() {
   for (std::int64_t i = 0; i < 5; ++i) {
     std::vector<Event> stampless = someEvents(3);
     for (Event& event : stampless) event.time_ns = 0;
-    bag.message(events, kStart_ns + i, eventMessage(0, kSize_px, stampless));
-    bag.message(imu, kStart_ns + i, imuMessage(ImuSample()));
+    bag.message(events, kRosbagReaderStart_ns + i, eventMessage(0, kRosbagReaderSize_px, stampless));
+    bag.message(imu, kRosbagReaderStart_ns + i, imuMessage(ImuSample()));
   }
   const Contents contents = readAll(folder_.write("stampless.bag", bag.finished()));
   QVERIFY(contents.hasFault(FaultKind::NoStamps));
-  QCOMPARE(contents.events.at(0).front().time_ns, kStart_ns);
-  QCOMPARE(contents.events.at(0).back().time_ns, kStart_ns + 4);
-  QCOMPARE(contents.imu.at(1).back().time_ns, kStart_ns + 4);
+  QCOMPARE(contents.events.at(0).front().time_ns, kRosbagReaderStart_ns);
+  QCOMPARE(contents.events.at(0).back().time_ns, kRosbagReaderStart_ns + 4);
+  QCOMPARE(contents.imu.at(1).back().time_ns, kRosbagReaderStart_ns + 4);
 }
 
 // A simulator's clock may start at zero; its first stamp is then no missing one.
@@ -284,9 +288,10 @@ void TestRosbagReader::recordingThatBeginsAtZero_keepsItsTimes() {
   BagBuilder bag;
   const std::uint32_t events = bag.addEvents("/events"), imu = bag.addImu("/imu");
   const std::vector<ImuSample> samples = someSamples(5, 0);
-  bag.message(events, kStart_ns, eventMessage(0, kSize_px, someEvents(1, 0)));
-  bag.message(events, kStart_ns, eventMessage(10'000, kSize_px, someEvents(50, 10'000)));
-  for (const ImuSample& sample : samples) bag.message(imu, kStart_ns, imuMessage(sample));
+  bag.message(events, kRosbagReaderStart_ns, eventMessage(0, kRosbagReaderSize_px, someEvents(1, 0)));
+  bag.message(events, kRosbagReaderStart_ns,
+              eventMessage(10'000, kRosbagReaderSize_px, someEvents(50, 10'000)));
+  for (const ImuSample& sample : samples) bag.message(imu, kRosbagReaderStart_ns, imuMessage(sample));
   const Contents contents = readAll(folder_.write("zero.bag", bag.finished()));
   QVERIFY(!contents.hasFault(FaultKind::NoStamps));
   QVERIFY(sameSamples(contents.imu.at(1), samples));
@@ -300,7 +305,8 @@ void TestRosbagReader::unorderedEvents_areSortedInThePacket() {
   std::swap(events[50], events[52]);
   BagBuilder bag;
   const std::uint32_t connection = bag.addEvents("/events");
-  bag.message(connection, kStart_ns, eventMessage(kStart_ns, kSize_px, events));
+  bag.message(connection, kRosbagReaderStart_ns,
+              eventMessage(kRosbagReaderStart_ns, kRosbagReaderSize_px, events));
   const Contents contents = readAll(folder_.write("unordered.bag", bag.finished()));
   QVERIFY(sameEvents(contents.events.at(0), ordered));
   QCOMPARE(contents.faults.size(), std::size_t{1});
@@ -313,7 +319,8 @@ void TestRosbagReader::clockResetWithinAMessage_isNotSortedAway() {
   for (std::size_t i = 30; i < events.size(); ++i) events[i].time_ns -= 5'000'000'000;
   BagBuilder bag;
   const std::uint32_t connection = bag.addEvents("/events");
-  bag.message(connection, kStart_ns, eventMessage(kStart_ns, kSize_px, events));
+  bag.message(connection, kRosbagReaderStart_ns,
+              eventMessage(kRosbagReaderStart_ns, kRosbagReaderSize_px, events));
   const std::unique_ptr<RecordingReader> reader = openRecording(folder_.write("reset.bag", bag.finished()));
   Packet packet;
   for (const std::size_t first : {0, 30}) {
@@ -354,13 +361,14 @@ void TestRosbagReader::longMessage_isReadWhole() {
   const std::vector<Event> events = someEvents(300'000);
   BagBuilder bag("lz4");
   const std::uint32_t connection = bag.addEvents("/events");
-  bag.message(connection, kStart_ns, eventMessage(kStart_ns, kSize_px, events));
+  bag.message(connection, kRosbagReaderStart_ns,
+              eventMessage(kRosbagReaderStart_ns, kRosbagReaderSize_px, events));
   const Contents contents = readAll(folder_.write("long.bag", bag.finished()));
   QVERIFY(sameEvents(contents.events.at(0), events));
 }
 
 void TestRosbagReader::fractionRead_growsToOne() {
-  const std::unique_ptr<RecordingReader> reader = openRecording(kData / "rosbag_python_bz2.bag");
+  const std::unique_ptr<RecordingReader> reader = openRecording(kRosbagReaderData / "rosbag_python_bz2.bag");
   Packet packet;
   double last = reader->fractionRead();
   while (reader->read(packet)) {
@@ -371,7 +379,7 @@ void TestRosbagReader::fractionRead_growsToOne() {
 }
 
 void TestRosbagReader::findStream_ofAWrongTopic_namesThoseThereAre() {
-  const std::unique_ptr<RecordingReader> reader = openRecording(kData / "rosbag_python_bz2.bag");
+  const std::unique_ptr<RecordingReader> reader = openRecording(kRosbagReaderData / "rosbag_python_bz2.bag");
   try {
     findStream(*reader, "/davis/events", StreamType::Events);
     QFAIL("nothing was thrown");

@@ -11,14 +11,14 @@ namespace {
 
 using namespace evical;
 
-struct Sums {
+struct SampleDataSums {
   quint64 events = 0, on = 0, x = 0, y = 0;
 
-  bool operator==(const Sums&) const = default;
+  bool operator==(const SampleDataSums&) const = default;
 };
 
-Sums sumsOf(const test::Contents& contents) {
-  Sums sums;
+SampleDataSums sumsOfSampleData(const test::Contents& contents) {
+  SampleDataSums sums;
   for (const auto& [stream, events] : contents.events) {
     for (const Event& event : events) {
       ++sums.events;
@@ -58,7 +58,7 @@ class TestSampleData : public QObject {
     QFETCH(int, samples);
     const std::filesystem::path path = (folder + "/formats/" + file).toStdString();
     const test::Contents contents = test::readAll(*openRecording(path));
-    const Sums found = sumsOf(contents);
+    const SampleDataSums found = sumsOfSampleData(contents);
     QCOMPARE((QList<quint64>{found.events, found.on, found.x, found.y}), sums);
     QCOMPARE(static_cast<int>(contents.sampleCount()), samples);
   }

@@ -1,5 +1,6 @@
 #include "core/recording/stray_stamps.h"
 
+#include "core/base/time.h"
 #include "core/data/event.h"
 #include "tests/support/test_program.h"
 
@@ -11,11 +12,10 @@ using namespace evical;
 
 using Events = std::vector<Event>;
 
-constexpr std::int64_t kStart_ns = 1'600'000'000'000'000'000, kSecond_ns = 1'000'000'000,
-                       kDay_ns = 86'400 * kSecond_ns;
+constexpr std::int64_t kStrayStampsStart_ns = 1'600'000'000'000'000'000, kDay_ns = 86'400 * kSecond_ns;
 
 // One each 10 us.
-Events steadyEvents(std::size_t count, std::int64_t start_ns = kStart_ns) {
+Events steadyEvents(std::size_t count, std::int64_t start_ns = kStrayStampsStart_ns) {
   Events events;
   for (std::size_t i = 0; i < count; ++i)
     events.push_back(
@@ -83,14 +83,14 @@ void TestStrayStamps::strayStamps_areDropped_data() {
   QTest::addColumn<qint64>("stamp_ns");
   const QList<qsizetype> middle = {10'000}, last = {19'999}, first = {0},
                          several = {5000, 5003, 9000, 15'000};
-  QTest::newRow("20 s ahead") << middle << qint64(kStart_ns + 20 * kSecond_ns);
-  QTest::newRow("half a second ahead") << middle << qint64(kStart_ns + kSecond_ns / 2);
-  QTest::newRow("a day ahead") << middle << qint64(kStart_ns + kDay_ns);
-  QTest::newRow("the last a day ahead") << last << qint64(kStart_ns + kDay_ns);
+  QTest::newRow("20 s ahead") << middle << qint64(kStrayStampsStart_ns + 20 * kSecond_ns);
+  QTest::newRow("half a second ahead") << middle << qint64(kStrayStampsStart_ns + kSecond_ns / 2);
+  QTest::newRow("a day ahead") << middle << qint64(kStrayStampsStart_ns + kDay_ns);
+  QTest::newRow("the last a day ahead") << last << qint64(kStrayStampsStart_ns + kDay_ns);
   QTest::newRow("the first 0") << first << qint64(0);
-  QTest::newRow("the first a day ahead") << first << qint64(kStart_ns + kDay_ns);
+  QTest::newRow("the first a day ahead") << first << qint64(kStrayStampsStart_ns + kDay_ns);
   QTest::newRow("0 in between") << middle << qint64(0);
-  QTest::newRow("several") << several << qint64(kStart_ns + kDay_ns);
+  QTest::newRow("several") << several << qint64(kStrayStampsStart_ns + kDay_ns);
 }
 
 void TestStrayStamps::strayStamps_areDropped() {
@@ -106,7 +106,7 @@ void TestStrayStamps::strayStamps_areDropped() {
     QVERIFY(sameTimes(result.kept, good));
     QCOMPARE(result.strays, static_cast<std::uint64_t>(where.size()));
     QCOMPARE(qint64(result.stray_ns), stamp_ns);
-    QVERIFY(std::abs(result.from_ns - kStart_ns) < kSecond_ns);
+    QVERIFY(std::abs(result.from_ns - kStrayStampsStart_ns) < kSecond_ns);
   }
 }
 
@@ -122,7 +122,7 @@ void TestStrayStamps::packetWithAWrongStamp_isDropped() {
 // The lens was covered: what comes after is borne out by more of the same.
 void TestStrayStamps::pause_isNoStray() {
   Events events = steadyEvents(20'000);
-  const Events after = steadyEvents(20'000, kStart_ns + 3600 * kSecond_ns);
+  const Events after = steadyEvents(20'000, kStrayStampsStart_ns + 3600 * kSecond_ns);
   events.insert(events.end(), after.begin(), after.end());
   const Filtered result = filtered(events, 700);
   QVERIFY(sameTimes(result.kept, events));
@@ -131,7 +131,7 @@ void TestStrayStamps::pause_isNoStray() {
 
 void TestStrayStamps::clockThatGoesBackForGood_isFollowed() {
   Events events = steadyEvents(20'000);
-  const Events after = steadyEvents(20'000, kStart_ns - 3600 * kSecond_ns);
+  const Events after = steadyEvents(20'000, kStrayStampsStart_ns - 3600 * kSecond_ns);
   events.insert(events.end(), after.begin(), after.end());
   QVERIFY(sameTimes(filtered(events, 700).kept, events));
 }

@@ -30,7 +30,7 @@ CircleObservation circleAt(int index, double time_s) {
   return circle;
 }
 
-std::vector<BoardObservations> sample() {
+std::vector<BoardObservations> sampleForDetectionsCsv() {
   std::vector<BoardObservations> cameras(2);
   cameras[0].camera = "left, \"upper\"";
   cameras[0].views = {{0.1 / 3.0, ViewKind::Complete, {circleAt(0, 0.0), circleAt(1, 0.0)}},
@@ -71,7 +71,7 @@ class TestDetectionsCsv : public QObject {
 
  private slots:
   void detections_readBackToTheLastBit() {
-    const std::vector<BoardObservations> written = sample();
+    const std::vector<BoardObservations> written = sampleForDetectionsCsv();
     write(detectionsCsv(written), windowsCsv(written));
     const std::vector<BoardObservations> read = readDetections(folder(), 2);
     QCOMPARE(read.size(), written.size());
@@ -118,10 +118,11 @@ class TestDetectionsCsv : public QObject {
     QFETCH(const QByteArray, what);
     QFETCH(const QByteArray, by);
     QFETCH(const QByteArray, said);
-    QByteArray text = what.isEmpty() ? QByteArray() : QByteArray::fromStdString(detectionsCsv(sample()));
+    QByteArray text =
+        what.isEmpty() ? QByteArray() : QByteArray::fromStdString(detectionsCsv(sampleForDetectionsCsv()));
     QVERIFY(what.isEmpty() || text.contains(what));
     if (!what.isEmpty()) text.replace(text.indexOf(what), what.size(), by);
-    write(text.toStdString(), windowsCsv(sample()));
+    write(text.toStdString(), windowsCsv(sampleForDetectionsCsv()));
     try {
       readDetections(folder(), 2);
       QFAIL("read");
@@ -132,7 +133,7 @@ class TestDetectionsCsv : public QObject {
   }
 
   void missingTables_areSaid() {
-    write(detectionsCsv(sample()), windowsCsv(sample()));
+    write(detectionsCsv(sampleForDetectionsCsv()), windowsCsv(sampleForDetectionsCsv()));
     std::filesystem::remove(folder() / "windows.csv");
     QVERIFY_EXCEPTION_THROWN(readDetections(folder(), 2), CalibrationError);
   }

@@ -19,7 +19,7 @@ using namespace evical::test;
 
 namespace {
 
-constexpr double kSame_px = 1e-9;
+constexpr double kExportCamerasSame_px = 1e-9;
 
 std::vector<double> fromMatrix(const std::vector<double>& k) {
   return {k[0], k[4], k[2], k[5]};
@@ -49,7 +49,7 @@ QStringList ros1Arguments(const std::string& launch) {
   return xml.hasError() ? QStringList() : arguments;
 }
 
-Eigen::Matrix4d poseOf(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation) {
+Eigen::Matrix4d poseOfExportCameras(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation) {
   Eigen::Isometry3d full = Eigen::Isometry3d::Identity();
   full.linear() = rotation.toRotationMatrix();
   full.translation() = translation;
@@ -86,9 +86,10 @@ class TestExportCameras : public QObject {
     const auto number = [](const QRegularExpressionMatch& match, int i) {
       return match.captured(i).toDouble();
     };
-    const Eigen::Matrix4d by_tf = poseOf({number(tf, 7), number(tf, 4), number(tf, 5), number(tf, 6)},
-                                         {number(tf, 1), number(tf, 2), number(tf, 3)});
-    QVERIFY(worstDifference_px(result, 0, {by_tf.inverse(), offset_s, lens}) < kSame_px);
+    const Eigen::Matrix4d by_tf =
+        poseOfExportCameras({number(tf, 7), number(tf, 4), number(tf, 5), number(tf, 6)},
+                            {number(tf, 1), number(tf, 2), number(tf, 3)});
+    QVERIFY(worstDifference_px(result, 0, {by_tf.inverse(), offset_s, lens}) < kExportCamerasSame_px);
     const auto joint =
         QRegularExpression(
             "left_optical_frame\"/>\\s*<origin xyz=\"(\\S+) (\\S+) (\\S+)\" rpy=\"(\\S+) (\\S+) (\\S+)\"")
@@ -98,8 +99,9 @@ class TestExportCameras : public QObject {
     const Eigen::Quaterniond rotation = Axis(number(joint, 6), Eigen::Vector3d::UnitZ()) *
                                         Axis(number(joint, 5), Eigen::Vector3d::UnitY()) *
                                         Axis(number(joint, 4), Eigen::Vector3d::UnitX());
-    const Eigen::Matrix4d by_urdf = poseOf(rotation, {number(joint, 1), number(joint, 2), number(joint, 3)});
-    QVERIFY(worstDifference_px(result, 0, {by_urdf.inverse(), offset_s, lens}) < kSame_px);
+    const Eigen::Matrix4d by_urdf =
+        poseOfExportCameras(rotation, {number(joint, 1), number(joint, 2), number(joint, 3)});
+    QVERIFY(worstDifference_px(result, 0, {by_urdf.inverse(), offset_s, lens}) < kExportCamerasSame_px);
     QVERIFY(script.contains("--child-frame-id far_imu"));
     // tf2_ros' static_transform_publisher: ROS 1 takes nine words, ROS 2 flags; the numbers are the script's.
     QStringList words = tf.capturedTexts().mid(1);
@@ -158,11 +160,12 @@ class TestExportCameras : public QObject {
     const Eigen::Matrix4d imu_from_left = pose(dataMatrix(left["T_b_c"]));
     const Eigen::Matrix4d right_from_left = pose(dataMatrix(right["T_right_left"]));
     const auto& cameras = result.result->state.cameras;
-    QVERIFY(worstDifference_px(
-                result, 0, {imu_from_left.inverse(), cameras[0].time_offset_s, rosLens(left)}) < kSame_px);
+    QVERIFY(
+        worstDifference_px(result, 0, {imu_from_left.inverse(), cameras[0].time_offset_s, rosLens(left)}) <
+        kExportCamerasSame_px);
     QVERIFY(worstDifference_px(result, 1,
                                {right_from_left * imu_from_left.inverse(), cameras[1].time_offset_s,
-                                rosLens(right)}) < kSame_px);
+                                rosLens(right)}) < kExportCamerasSame_px);
     // A point's rectified pixels lie in one row, and their distance in x is f B / z.
     const Eigen::Vector3d in_left(0.2, -0.3, 1.5),
         in_right = (right_from_left * in_left.homogeneous()).head<3>();
@@ -174,8 +177,8 @@ class TestExportCameras : public QObject {
         (dataMatrix(right["projection_matrix"]) * level_left.homogeneous()).hnormalized();
     const Eigen::Matrix<double, 3, 4> p = dataMatrix(right["projection_matrix"]);
     const Eigen::Vector2d direct = (p.leftCols<3>() * level_right).hnormalized();
-    QVERIFY((b - direct).norm() < kSame_px);
-    QVERIFY(std::abs(a.y() - b.y()) < kSame_px);
+    QVERIFY((b - direct).norm() < kExportCamerasSame_px);
+    QVERIFY(std::abs(a.y() - b.y()) < kExportCamerasSame_px);
     QVERIFY(a.x() - b.x() > 5.0);
     QVERIFY(!yamlOf(exportTo(result, "esvo"), "esvo/left.yaml")["T_b_c"]);
   }
@@ -208,10 +211,11 @@ class TestExportCameras : public QObject {
       const auto f = numbers(camera["focalLength"]), c = numbers(camera["principalPoint"]);
       const Eigen::Matrix4d this_from_first = matrix(numbers(camera["transformationToC0"]), 4, 4);
       const double offset_s = i == 0 ? 1e-6 * imu["timeOffsetMicros"].as<double>() : -0.0021;  // one for all
-      QVERIFY(worstDifference_px(result, i,
-                                 {this_from_first * first_from_imu, offset_s,
-                                  radtanLens({f[0], f[1], c[0], c[1]},
-                                             numbers(camera["distortionCoefficients"]))}) < kSame_px);
+      QVERIFY(worstDifference_px(
+                  result, i,
+                  {this_from_first * first_from_imu, offset_s,
+                   radtanLens({f[0], f[1], c[0], c[1]}, numbers(camera["distortionCoefficients"]))}) <
+              kExportCamerasSame_px);
     }
     QCOMPARE(numbers(imu["omegaOffsetAvg"])[1], -0.02);
     // Metadata of a camera must have four more keys, or is not there; an IMU is looked up by its camera's name.
@@ -247,10 +251,10 @@ class TestExportCameras : public QObject {
         radtanLens({k.at<double>(0, 0), k.at<double>(1, 1), k.at<double>(0, 2), k.at<double>(1, 2)},
                    std::vector<double>(distortion.begin<double>(), distortion.end<double>()));
     const CameraState& camera = result.result->state.cameras[0];
-    const Eigen::Matrix4d reference_from_camera =
-        poseOf(camera.reference_from_camera.rotation, camera.reference_from_camera.translation_m);
+    const Eigen::Matrix4d reference_from_camera = poseOfExportCameras(
+        camera.reference_from_camera.rotation, camera.reference_from_camera.translation_m);
     QVERIFY(worstDifference_px(result, 0, {reference_from_camera.inverse(), camera.time_offset_s, lens}) <
-            kSame_px);
+            kExportCamerasSame_px);
     QCOMPARE(static_cast<int>(file["image_size"][0]), 346);
     QCOMPARE(static_cast<double>(file["overall_rms_reprojection_error"]), 0.125);
   }
@@ -296,10 +300,11 @@ class TestExportCameras : public QObject {
       const std::vector<double> k{f[0], f[1], c[0], c[1]};
       const Lens lens = fisheye ? fisheyeLens(k, d) : radtanLens(k, {d[0], d[1], d[3], d[4], d[2]});
       const Eigen::Matrix4d reference_from_camera =
-          poseOf(rotation(place["value"]), vector(root["EXTRI"]["POS_CjInBr"][i]["value"]));
+          poseOfExportCameras(rotation(place["value"]), vector(root["EXTRI"]["POS_CjInBr"][i]["value"]));
       QVERIFY(worstDifference_px(result, i,
                                  {reference_from_camera.inverse(),
-                                  root["TEMPORAL"]["TO_CjToBr"][i]["value"].as<double>(), lens}) < kSame_px);
+                                  root["TEMPORAL"]["TO_CjToBr"][i]["value"].as<double>(), lens}) <
+              kExportCamerasSame_px);
     }
     // A type's name stands at its first appearance only, and pointers count on.
     const YAML::Node cameras = root["INTRI"]["Camera"];

@@ -18,9 +18,9 @@ using namespace evical::test;
 
 namespace {
 
-constexpr double kSame_px = 1e-9;
+constexpr double kExportDataSetsSame_px = 1e-9;
 
-Eigen::Matrix4d poseOf(const RigidTransform& pose) {
+Eigen::Matrix4d poseOfExportDataSets(const RigidTransform& pose) {
   Eigen::Isometry3d full = Eigen::Isometry3d::Identity();
   full.linear() = pose.rotation.toRotationMatrix();
   full.translation() = pose.translation_m;
@@ -28,7 +28,7 @@ Eigen::Matrix4d poseOf(const RigidTransform& pose) {
 }
 
 Eigen::Matrix4d imuFromCamera(const NamedResult& result, std::size_t camera) {
-  return poseOf(result.result->state.cameras.at(camera).reference_from_camera);
+  return poseOfExportDataSets(result.result->state.cameras.at(camera).reference_from_camera);
 }
 
 double offset_s(const NamedResult& result, std::size_t camera) {
@@ -69,7 +69,7 @@ Lens dsecLens(const YAML::Node& camera, const std::string& type) {
   return radtanLens(k, d);
 }
 
-Eigen::Matrix4d poseOf(const cv::FileNode& pose) {
+Eigen::Matrix4d poseOfExportDataSets(const cv::FileNode& pose) {
   Eigen::Isometry3d full = Eigen::Isometry3d::Identity();
   full.linear() = Eigen::Quaterniond(static_cast<double>(pose["qw"]), static_cast<double>(pose["qx"]),
                                      static_cast<double>(pose["qy"]), static_cast<double>(pose["qz"]))
@@ -146,7 +146,7 @@ Eigen::Matrix4d evimoPose(const std::vector<double>& place) {
   return full.matrix();
 }
 
-NamedResult eventsAndFrames(bool fisheye = false) {
+NamedResult eventsAndFramesForExportDataSets(bool fisheye = false) {
   RigKind kind;
   kind.frames = 2;
   kind.fisheye = fisheye;
@@ -161,7 +161,7 @@ class TestExportDataSets : public QObject {
  private slots:
   // Names and directions: uzh-rpg/DSEC, README.md (0df8d87).
   void dsec_reprojects() {
-    const NamedResult result = eventsAndFrames();
+    const NamedResult result = eventsAndFramesForExportDataSets();
     const YAML::Node root = yamlOf(exportTo(result, "dsec"), "dsec/cam_to_cam.yaml");
     const YAML::Node cameras = root["intrinsics"], places = root["extrinsics"];
     Eigen::Matrix4d this_from_first = Eigen::Matrix4d::Identity();
@@ -176,7 +176,7 @@ class TestExportDataSets : public QObject {
       QVERIFY(
           worstDifference_px(result, ours[i],
                              {this_from_first * imuFromCamera(result, 0).inverse(), offset_s(result, ours[i]),
-                              dsecLens(camera, i % 3 == 0 ? "event" : "frame")}) < kSame_px);
+                              dsecLens(camera, i % 3 == 0 ? "event" : "frame")}) < kExportDataSetsSame_px);
       QCOMPARE(camera["camera_location"].as<std::string>(), std::string(i < 2 ? "left" : "right"));
       QCOMPARE(camera["camera_model"].as<std::string>(), std::string("pinhole"));
       QVERIFY(!camera["is_rectified"].as<bool>() && level["is_rectified"].as<bool>());
@@ -197,7 +197,7 @@ class TestExportDataSets : public QObject {
     QFETCH(int, left);
     QFETCH(int, right);
     QFETCH(QString, key);
-    const NamedResult result = eventsAndFrames();
+    const NamedResult result = eventsAndFramesForExportDataSets();
     const YAML::Node root = yamlOf(exportTo(result, "dsec"), "dsec/cam_to_cam.yaml");
     const auto leveled = [&](int i) -> Eigen::Matrix3d {
       return rowsMatrix(root["extrinsics"][numbered("R_rect", i)]);
@@ -212,7 +212,7 @@ class TestExportDataSets : public QObject {
     const Eigen::Vector3d in_left = leveled(left).transpose() * on_left;
     const Eigen::Vector3d on_right = leveled(right) * (right_from_left * in_left.homogeneous()).head<3>();
     const Eigen::Vector2d a = (k(left) * on_left).hnormalized(), b = (k(right) * on_right).hnormalized();
-    QVERIFY(std::abs(a.y() - b.y()) < kSame_px && a.x() - b.x() > 5.0);
+    QVERIFY(std::abs(a.y() - b.y()) < kExportDataSetsSame_px && a.x() - b.x() > 5.0);
     const Eigen::Matrix4d q = rowsMatrix(root["disparity_to_depth"][key.toStdString()]);
     const Eigen::Vector3d back = (q * Eigen::Vector4d(a.x(), a.y(), a.x() - b.x(), 1.0)).hnormalized();
     QVERIFY((back - on_left).norm() < 1e-12);
@@ -223,7 +223,7 @@ class TestExportDataSets : public QObject {
 
   // compute_remapping of uzh-rpg/dsec-det (src/dsec_det/remapping.py, db941c2), of points far away.
   void dsec_mapsFramesToEvents() {
-    const NamedResult result = eventsAndFrames();
+    const NamedResult result = eventsAndFramesForExportDataSets();
     const YAML::Node root = yamlOf(exportTo(result, "dsec"), "dsec/cam_to_cam.yaml");
     const Eigen::Matrix3d k0 = threeByThree(root["intrinsics"]["camRect0"]["camera_matrix"]),
                           k1 = threeByThree(root["intrinsics"]["camRect1"]["camera_matrix"]),
@@ -236,7 +236,7 @@ class TestExportDataSets : public QObject {
         (imuFromCamera(result, 2).inverse() * imuFromCamera(result, 0)).topLeftCorner<3, 3>() * in_event;
     const Eigen::Vector2d event_px = (k0 * r0 * in_event).hnormalized(),
                           frame_px = (k1 * r1 * in_frame).hnormalized();
-    QVERIFY(((p_r0_r1 * frame_px.homogeneous()).hnormalized() - event_px).norm() < kSame_px);
+    QVERIFY(((p_r0_r1 * frame_px.homogeneous()).hnormalized() - event_px).norm() < kExportDataSetsSame_px);
   }
 
   void dsec_ofEventsAlone_goesFromCamera0To3() {
@@ -247,7 +247,7 @@ class TestExportDataSets : public QObject {
         rowsMatrix(places["T_32"]) * rowsMatrix(places["T_21"]) * rowsMatrix(places["T_10"]);
     QVERIFY(worstDifference_px(result, 1,
                                {right_from_left * imuFromCamera(result, 0).inverse(), offset_s(result, 1),
-                                dsecLens(root["intrinsics"]["cam3"], "event")}) < kSame_px);
+                                dsecLens(root["intrinsics"]["cam3"], "event")}) < kExportDataSetsSame_px);
     QVERIFY(!root["intrinsics"]["cam1"] && !places["R_rect1"] && !root["disparity_to_depth"]["cams_12"]);
     QVERIFY(isSaid(exported, "left event camera: left, right event camera: right, left frame camera: none"));
     QVERIFY(isSaid(exported, "add to the stamps of left 0.007301 s, right -0.0021 s"));
@@ -266,7 +266,7 @@ class TestExportDataSets : public QObject {
 
   // Whichever of them comes first.
   void dsec_findsTheLeftCamera() {
-    const NamedResult result = eventsAndFrames();
+    const NamedResult result = eventsAndFramesForExportDataSets();
     NamedResult swapped = result;
     CalibrationState& state = ownResult(swapped).state;
     std::swap(swapped.cameras[0], swapped.cameras[3]);
@@ -279,7 +279,7 @@ class TestExportDataSets : public QObject {
   }
 
   void dsec_refusesWhatItCannotHold() {
-    NamedResult frames = eventsAndFrames();
+    NamedResult frames = eventsAndFramesForExportDataSets();
     for (SensorDescription& camera : frames.cameras) camera.kind = CameraKind::Frames;
     QVERIFY(refusal(frames, "dsec").find("has no event camera") != std::string::npos);
     RigKind wide;
@@ -307,7 +307,7 @@ class TestExportDataSets : public QObject {
     QFETCH(bool, frames);
     RigKind kind;
     kind.fisheye = true;
-    NamedResult result = frames ? eventsAndFrames(true) : rig(kind);
+    NamedResult result = frames ? eventsAndFramesForExportDataSets(true) : rig(kind);
     for (CameraState& camera : ownResult(result).state.cameras)
       camera.time_offset_s = 0.007301;  // one for all
     const ExportedFiles exported = exportTo(result, "tum-vie");
@@ -318,23 +318,23 @@ class TestExportDataSets : public QObject {
         frames ? std::vector<std::size_t>{2, 3, 0, 1} : std::vector<std::size_t>{0, 1, 0, 1};
     const ImuState& imu = result.result->state.imus[0];
     for (int i = 0; i < 4; ++i) {
-      ReadCamera read{poseOf(root["T_imu_cam"][i]).inverse(),
+      ReadCamera read{poseOfExportDataSets(root["T_imu_cam"][i]).inverse(),
                       1e-9 * static_cast<double>(root["cam_time_offset_ns"]), tumVieLens(root, i)};
       // Its IMU's frame is the one in which the accelerometer's matrix is lower triangular.
-      const Eigen::Matrix4d turn =
-          poseOf(root["T_imu_cam"][i]) * imuFromCamera(result, ours[static_cast<std::size_t>(i)]).inverse();
+      const Eigen::Matrix4d turn = poseOfExportDataSets(root["T_imu_cam"][i]) *
+                                   imuFromCamera(result, ours[static_cast<std::size_t>(i)]).inverse();
       QVERIFY((turn.topRightCorner<3, 1>().norm()) < 1e-12);
       const Eigen::Matrix3d theirs = imu.accelerometer_mapping * turn.topLeftCorner<3, 3>().transpose();
       QVERIFY(Eigen::Matrix3d(theirs.triangularView<Eigen::StrictlyUpper>()).norm() < 1e-12);
       read.their_imu_from_ours = turn.topLeftCorner<3, 3>();
-      QVERIFY(worstDifference_px(result, ours[static_cast<std::size_t>(i)], read) < kSame_px);
+      QVERIFY(worstDifference_px(result, ours[static_cast<std::size_t>(i)], read) < kExportDataSetsSame_px);
     }
     QCOMPARE(isSaid(exported, "TUM-VIE expects four cameras"), !frames);
     QVERIFY(contentOf(exported, "tum-vie/README.txt").find("right event camera: right") != std::string::npos);
   }
 
   void tumVie_holdsItsOneLensOnly() {
-    const ExportedFiles exported = exportTo(eventsAndFrames(), "tum-vie");
+    const ExportedFiles exported = exportTo(eventsAndFramesForExportDataSets(), "tum-vie");
     QVERIFY(isSaid(exported, "frame1: TUM-VIE has no place for radial-tangential distortion: refitted"));
     QVERIFY(isSaid(exported, "TUM-VIE takes one time offset for all cameras: that of frame0"));
     RigKind one;
@@ -349,7 +349,7 @@ class TestExportDataSets : public QObject {
   }
   void evimo2_reprojects() {
     QFETCH(bool, fisheye);
-    const NamedResult result = eventsAndFrames(fisheye);
+    const NamedResult result = eventsAndFramesForExportDataSets(fisheye);
     const ExportedFiles exported = exportTo(result, "evimo2");
     for (std::size_t i = 0; i < result.cameras.size(); ++i) {
       const EvimoCamera camera = evimoCamera(exported, result.cameras[i].name);
@@ -358,7 +358,7 @@ class TestExportDataSets : public QObject {
       // A pose's stamp becomes the events' time by pose_to_event: t_imu + that = t_camera.
       QVERIFY(worstDifference_px(result, i,
                                  {evimoPose(camera.place).inverse(), -camera.pose_to_event_s,
-                                  fisheye ? fisheyeLens(k, d) : radtanLens(k, d)}) < kSame_px);
+                                  fisheye ? fisheyeLens(k, d) : radtanLens(k, d)}) < kExportDataSetsSame_px);
       QCOMPARE(camera.parameters.at("dist_model"), std::string(fisheye ? "equidistant" : "radtan"));
       QCOMPARE(std::stoi(camera.parameters.at("res_x")), 260);  // rows
       QCOMPARE(std::stoi(camera.parameters.at("res_y")), 346);

@@ -16,8 +16,8 @@ using namespace evical::test;
 
 namespace {
 
-constexpr double kSame_px = 1e-9;
-constexpr double kSame = 1e-12;  // of measured rad/s and m/s^2
+constexpr double kExportInertialSame_px = 1e-9;
+constexpr double kExportInertialSame = 1e-12;  // of measured rad/s and m/s^2
 
 Lens kalibrLens(const YAML::Node& camera) {
   const auto intrinsics = numbers(camera["intrinsics"]), distortion = numbers(camera["distortion_coeffs"]);
@@ -47,7 +47,7 @@ double worstMeasured(const ImuState& imu,
   return worst;
 }
 
-bool isRotation(const Eigen::Matrix3d& r) {
+bool isRotationForExportInertial(const Eigen::Matrix3d& r) {
   return (r * r.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-12 && r.determinant() > 0.0;
 }
 
@@ -87,17 +87,17 @@ class TestExportInertial : public QObject {
       QVERIFY(Eigen::Matrix3d(lower.triangularView<Eigen::StrictlyUpper>()).norm() < 1e-15);
       QVERIFY(Eigen::Matrix3d(gyro.triangularView<Eigen::StrictlyUpper>()).norm() < 1e-15);
       turns[i] = lower.inverse() * state.accelerometer_mapping;  // Kalibr's IMU frame from ours
-      QVERIFY(isRotation(turns[i]) && isRotation(gyro_from_imu));
+      QVERIFY(isRotationForExportInertial(turns[i]) && isRotationForExportInertial(gyro_from_imu));
       QVERIFY(worstMeasured(state, [&](const Eigen::Vector3d& force, const Eigen::Vector3d& rate) {
                 return Measured{lower * (turns[i] * force) + state.accelerometer_bias_m_s2,
                                 gyro * gyro_from_imu * (turns[i] * rate) + state.gyroscope_bias_rad_s};
-              }) < kSame);
+              }) < kExportInertialSame);
     }
     for (std::size_t i = 0; i < 2; ++i) {
       const YAML::Node camera = chain[numbered("cam", static_cast<Eigen::Index>(i))];
       const ReadCamera read{rowsMatrix(camera["T_cam_imu"]), camera["timeshift_cam_imu"].as<double>(),
                             kalibrLens(camera), turns[0]};
-      QVERIFY(worstDifference_px(result, i, read) < kSame_px);
+      QVERIFY(worstDifference_px(result, i, read) < kExportInertialSame_px);
     }
     const Eigen::Matrix4d step = rowsMatrix(chain["cam1"]["T_cn_cnm1"]);
     const Eigen::Matrix4d direct = rowsMatrix(chain["cam1"]["T_cam_imu"]) *
@@ -144,7 +144,7 @@ class TestExportInertial : public QObject {
         worstDifference_px(result, 0,
                            {rowsMatrix(camera["T_cam_imu"]), camera["timeshift_cam_imu"].as<double>(),
                             kalibrLens(camera), turn});
-    QVERIFY(worst_px <= fitted.worst_px + kSame_px);
+    QVERIFY(worst_px <= fitted.worst_px + kExportInertialSame_px);
     QCOMPARE(exported.notes.size(), 2U);  // one a camera
     QVERIFY(QString::fromStdString(exported.notes[0])
                 .contains("left: Kalibr has no place for radial-tangential distortion with k3"));
@@ -161,7 +161,7 @@ class TestExportInertial : public QObject {
       const YAML::Node camera = chain[numbered("cam", static_cast<Eigen::Index>(i))];
       QVERIFY(worstDifference_px(result, i,
                                  {rowsMatrix(camera["T_cam_imu"]), camera["timeshift_cam_imu"].as<double>(),
-                                  kalibrLens(camera)}) < kSame_px);
+                                  kalibrLens(camera)}) < kExportInertialSame_px);
     }
     QCOMPARE(imu["model"].as<std::string>(), std::string("rpng"));
     const ImuState& state = result.result->state.imus[0];
@@ -173,7 +173,7 @@ class TestExportInertial : public QObject {
     QVERIFY(worstMeasured(state, [&](const Eigen::Vector3d& force, const Eigen::Vector3d& rate) {
               return Measured{da.inverse() * to_acc * force + state.accelerometer_bias_m_s2,
                               dw.inverse() * to_gyro * rate + state.gyroscope_bias_rad_s};
-            }) < kSame);
+            }) < kExportInertialSame);
     const QString notes = QString::fromStdString(exported.notes[0] + exported.notes[1]);
     QVERIFY(notes.contains("only left imu is written") && notes.contains("differ by up to 9.401 ms"));
   }
@@ -213,7 +213,7 @@ class TestExportInertial : public QObject {
              std::string(fisheye ? "KANNALA_BRANDT" : "PINHOLE"));
     QVERIFY(worstDifference_px(result, 0,
                                {reference_from_camera.inverse(), static_cast<double>(vins["td"]), lens}) <
-            kSame_px);
+            kExportInertialSame_px);
     // Per sample; and without these keys the program finds no features, and solves nothing.
     const auto off = [&](const char* key, double value) {
       return std::abs(static_cast<double>(vins[key]) / value - 1.0);
@@ -257,10 +257,10 @@ class TestExportInertial : public QObject {
     // The stamps are to be shifted by what the comment and the note say.
     QVERIFY(QString::fromStdString(exported.notes.back()).contains("0.007301 s (left) -0.0021 s (right)"));
     QVERIFY(worstDifference_px(result, 0, {imu_from_first.inverse(), cameras[0].time_offset_s, lens(1)}) <
-            kSame_px);
+            kExportInertialSame_px);
     QVERIFY(worstDifference_px(result, 1,
                                {(imu_from_first * first_from_second).inverse(), cameras[1].time_offset_s,
-                                lens(2)}) < kSame_px);
+                                lens(2)}) < kExportInertialSame_px);
     QCOMPARE(settings["IMU.Frequency"].as<double>(), 997.5);
     cv::FileStorage opened(contentOf(exported, "orb-slam3/settings.yaml"),
                            cv::FileStorage::READ | cv::FileStorage::MEMORY);
@@ -310,10 +310,10 @@ class TestExportInertial : public QObject {
     const Eigen::Vector3d a_bias(accelerometer.data()), g_bias(gyroscope.data());
     const ImuState& state = result.result->state.imus[0];
     const Eigen::Matrix3d turn = a * state.accelerometer_mapping;  // Basalt's IMU frame from ours
-    QVERIFY(isRotation(turn));
+    QVERIFY(isRotationForExportInertial(turn));
     QVERIFY(worstMeasured(state, [&](const Eigen::Vector3d& force, const Eigen::Vector3d& rate) {
               return Measured{a.inverse() * (turn * force + a_bias), g.inverse() * (turn * rate + g_bias)};
-            }) < kSame);
+            }) < kExportInertialSame);
     for (std::size_t i = 0; i < 2; ++i) {
       const YAML::Node p = value["T_imu_cam"][i], lens = value["intrinsics"][i]["intrinsics"];
       QCOMPARE(value["intrinsics"][i]["camera_type"].as<std::string>(), std::string("kb4"));
@@ -331,7 +331,7 @@ class TestExportInertial : public QObject {
               {reference_from_camera.inverse().matrix(), offset_s,
                fisheyeLens({number(lens, "fx"), number(lens, "fy"), number(lens, "cx"), number(lens, "cy")},
                            {number(lens, "k1"), number(lens, "k2"), number(lens, "k3"), number(lens, "k4")}),
-               turn}) < kSame_px);
+               turn}) < kExportInertialSame_px);
     }
   }
 
@@ -356,7 +356,7 @@ class TestExportInertial : public QObject {
                             fisheyeLens({number("fx"), number("fy"), number("cx"), number("cy")},
                                         {number("k1"), number("k2"), number("k3"), number("k4")})});
     QVERIFY(fitted.worst_px < 2.0);
-    QVERIFY(worst_px <= fitted.worst_px + kSame_px);
+    QVERIFY(worst_px <= fitted.worst_px + kExportInertialSame_px);
     const QString readme = QString::fromStdString(contentOf(exported, "basalt/README.txt"));
     QVERIFY(readme.contains("left: Basalt has no place for radial-tangential distortion: refitted"));
   }
@@ -392,7 +392,7 @@ class TestExportInertial : public QObject {
                                  {reference_from_camera.inverse(), offset_s,
                                   radtanLens(numbers(camera["intrinsics"]["data"]),
                                              numbers(camera["distortion"]["parameters"]["data"]))}) <
-              kSame_px);
+              kExportInertialSame_px);
     }
   }
 };

@@ -20,7 +20,7 @@ ExportedFiles exported(const NamedResult& result) {
   return exportResult(result, std::vector<std::string>{"m3ed"});
 }
 
-NamedResult eventsAndFrames() {
+NamedResult eventsAndFramesForExportM3ed() {
   RigKind kind;
   kind.frames = 2;
   return rig(kind);
@@ -111,7 +111,7 @@ class TestExportM3ed : public QObject {
 
  private slots:
   void sensors_reproject() {
-    const NamedResult result = eventsAndFrames();
+    const NamedResult result = eventsAndFramesForExportM3ed();
     const File file(contentOf(exported(result), "m3ed/calibration.h5"));
     const Eigen::Matrix4d left_from_imu = file.place("/ovc/imu");
     const char* const groups[] = {"/prophesee/left", "/prophesee/right", "/ovc/left", "/ovc/right"};
@@ -140,7 +140,7 @@ class TestExportM3ed : public QObject {
   }
 
   void bytes_areTheSameAgain() {
-    const NamedResult result = eventsAndFrames();
+    const NamedResult result = eventsAndFramesForExportM3ed();
     const std::string content = contentOf(exported(result), "m3ed/calibration.h5");
     QTest::qSleep(1100);  // stamps of HDF5 are seconds
     QVERIFY(contentOf(exported(result), "m3ed/calibration.h5") == content);
@@ -150,7 +150,7 @@ class TestExportM3ed : public QObject {
     if (QProcess::execute("/usr/bin/python3", {"-c", "import h5py"}) != 0)
       QSKIP("python3-h5py is not installed");
     QTemporaryDir folder;
-    const std::string content = contentOf(exported(eventsAndFrames()), "m3ed/calibration.h5");
+    const std::string content = contentOf(exported(eventsAndFramesForExportM3ed()), "m3ed/calibration.h5");
     const QString path = folder.filePath("calibration.h5");
     std::ofstream(path.toStdString(), std::ios::binary) << content;
     QProcess python;

@@ -22,7 +22,7 @@ namespace {
 using namespace evical;
 using namespace evical::test;
 
-constexpr double kSame_px = 1e-9;
+constexpr double kExportNumbersSame_px = 1e-9;
 
 cv::FileStorage openCvFile(const ExportedFiles& exported, const std::string& path) {
   return {contentOf(exported, "opencv/" + path), cv::FileStorage::READ | cv::FileStorage::MEMORY};
@@ -94,7 +94,7 @@ class TestExportNumbers : public QObject {
       const Eigen::Matrix4d imu_from_camera = fromMat(matAt(camera, "reference_from_camera"));
       QVERIFY(worstDifference_px(result, i,
                                  {imu_from_camera.inverse(), static_cast<double>(camera["time_offset_s"]),
-                                  openCvLens(camera)}) < kSame_px);
+                                  openCvLens(camera)}) < kExportNumbersSame_px);
       QCOMPARE(static_cast<double>(camera["avg_reprojection_error"]), 0.125);
     }
     for (std::size_t i = 0; i < 2; ++i) {
@@ -195,7 +195,7 @@ class TestExportNumbers : public QObject {
       const Eigen::Matrix4d imu_from_camera = matrix(of("ReferenceFromCamera"), 4, 4);
       QVERIFY(worstDifference_px(result, static_cast<std::size_t>(i),
                                  {imu_from_camera.inverse(), of("TimeOffset").at(0), lenses.back()}) <
-              kSame_px);
+              kExportNumbersSame_px);
     }
     const Eigen::Matrix3d rotation = matrix(assigned(script, "rig.stereo.RotationOfCamera2"), 3, 3);
     const Eigen::RowVector3d translation = matrix(assigned(script, "rig.stereo.TranslationOfCamera2"), 1, 3);
@@ -206,8 +206,9 @@ class TestExportNumbers : public QObject {
     const Eigen::Matrix4d imu_from_first =
         matrix(assigned(script, "rig.cameras(1).ReferenceFromCamera"), 4, 4);
     const double offset_s = result.result->state.cameras[1].time_offset_s;
-    QVERIFY(worstDifference_px(
-                result, 1, {second_from_first * imu_from_first.inverse(), offset_s, lenses[1]}) < kSame_px);
+    QVERIFY(
+        worstDifference_px(result, 1, {second_from_first * imu_from_first.inverse(), offset_s, lenses[1]}) <
+        kExportNumbersSame_px);
     QCOMPARE(matrix(assigned(script, "rig.imus(2).GyroscopeMatrix"), 3, 3)(1, 1),
              result.result->state.imus[1].gyroscopeMatrix()(1, 1));
   }
@@ -226,7 +227,7 @@ class TestExportNumbers : public QObject {
                                   assigned(script, "rig.cameras(1).DistortionCoefficients"));
     QVERIFY(worstDifference_px(
                 result, 0, {imu_from_camera.inverse(), result.result->state.cameras[0].time_offset_s, lens}) <
-            kSame_px);
+            kExportNumbersSame_px);
   }
 
   // The toolbox is not there: functions of its names take the same arguments, and hand them back.

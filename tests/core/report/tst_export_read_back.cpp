@@ -17,7 +17,8 @@ using namespace evical::test;
 
 namespace {
 
-constexpr double kSame_px = 1e-9, kSame_deg = 1e-11, kSame_mm = 1e-11, kSame = 1e-12;
+constexpr double kExportReadBackSame_px = 1e-9, kSame_deg = 1e-11, kSame_mm = 1e-11,
+                 kExportReadBackSame = 1e-12;
 
 // The target's files below the folder; nothing where the target cannot hold the result.
 bool exportInto(const QTemporaryDir& folder, const NamedResult& result, const std::string& target) {
@@ -120,13 +121,13 @@ class TestExportReadBack : public QObject {
       rounding = std::max(rounding, file.rounding);
       step_s = std::max(step_s, file.time_step_s);
     }
-    const bool exact = rounding <= kSame;
-    QVERIFY(difference.lens_px.value_or(0.0) < (exact ? kSame_px : 1e-3));
+    const bool exact = rounding <= kExportReadBackSame;
+    QVERIFY(difference.lens_px.value_or(0.0) < (exact ? kExportReadBackSame_px : 1e-3));
     QVERIFY(difference.refitted_px.value_or(0.0) < 2.0);
     QVERIFY(difference.rotation_deg.value_or(0.0) < (exact ? kSame_deg : 1e-4));
     QVERIFY(difference.translation_mm.value_or(0.0) < (exact ? kSame_mm : 1e-3));
-    QVERIFY(difference.time_ms.value_or(0.0) <= 500.0 * step_s + kSame);
-    QVERIFY(difference.numbers.value_or(0.0) < (exact ? kSame : 1e-6));
+    QVERIFY(difference.time_ms.value_or(0.0) <= 500.0 * step_s + kExportReadBackSame);
+    QVERIFY(difference.numbers.value_or(0.0) < (exact ? kExportReadBackSame : 1e-6));
     const ExportCheck check = checkExport(result, row, folder.path().toStdString());
     QVERIFY2(check.same, check.text.c_str());
     QVERIFY(QString::fromStdString(check.text).startsWith(target + ": reads back: "));
@@ -359,7 +360,8 @@ class TestExportReadBack : public QObject {
         differenceOf(result, row.read((folder.path() + "/" + target).toStdString()));
     QVERIFY2(difference.problems.empty(), difference.problems.empty() ? "" : difference.problems[0].c_str());
     QCOMPARE(difference.cameras, 4U);
-    QVERIFY(difference.lens_px.value_or(1.0) < kSame_px && difference.rotation_deg.value_or(1.0) < kSame_deg);
+    QVERIFY(difference.lens_px.value_or(1.0) < kExportReadBackSame_px &&
+            difference.rotation_deg.value_or(1.0) < kSame_deg);
   }
 
   void damage_isFoundAndNamed() {

@@ -19,7 +19,7 @@ namespace {
 using namespace evical;
 using namespace evical::test;
 
-constexpr double kSame_px = 1e-9;
+constexpr double kExportSlamSame_px = 1e-9;
 
 // MIT-SPARK/Kimera-VIO, include/kimera-vio/utils/YamlParser.h at decef91: a key that is not there ends the program, and so
 // does a nested one of what is no map; values go by OpenCV's >>, which leaves what is of another kind as it was.
@@ -229,9 +229,9 @@ class TestExportSlam : public QObject {
     const KimeraFile left = kimeraFile(exported, "LeftCameraParams.yaml"),
                      right = kimeraFile(exported, "RightCameraParams.yaml");
     QVERIFY(worstDifference_px(result, 0, {kimeraPose(left).inverse(), shift_s, kimeraLens(left)}) <
-            kSame_px);
+            kExportSlamSame_px);
     QVERIFY(worstDifference_px(result, 1, {kimeraPose(right).inverse(), -0.0021, kimeraLens(right)}) <
-            kSame_px);
+            kExportSlamSame_px);
     QVERIFY(left.isInt("rate_hz"));
     QVERIFY(hasNote(exported, "others differ by up to 9.401 ms"));
     QVERIFY(hasNote(exported, "no place for scales and misalignment"));
@@ -280,7 +280,7 @@ class TestExportSlam : public QObject {
     QVERIFY(chain.IsSequence() && chain.size() == 4 && chain[0].IsSequence());
     const double offset_s = result.result->state.cameras[0].time_offset_s;  // said in a comment and a note
     QVERIFY(hasNote(exported, "0.007301 s (left)"));
-    QVERIFY(worstDifference_px(result, 0, {rowsMatrix(chain), offset_s, camera.lens}) < kSame_px);
+    QVERIFY(worstDifference_px(result, 0, {rowsMatrix(chain), offset_s, camera.lens}) < kExportSlamSame_px);
     // SettingsUtil::tryReadFromYaml at fcc306b takes them at the top.
     const YAML::Node noise = yamlOf(exported, "dm-vio/noise.yaml");
     QCOMPARE(noise["accelerometer_noise_density"].as<double>(), 1.75e-3);
@@ -334,7 +334,7 @@ class TestExportSlam : public QObject {
       const RtabmapCamera camera = rtabmapCamera(exported, "", result.cameras[i].name);
       QVERIFY(worstDifference_px(result, i,
                                  {camera.base_from_camera.inverse() * base_from_imu, cameras[i].time_offset_s,
-                                  camera.lens}) < kSame_px);
+                                  camera.lens}) < kExportSlamSame_px);
       QVERIFY(camera.rectification == Eigen::Matrix3d::Identity());
     }
     QVERIFY(hasNote(exported, "0.007301 s (left) -0.0021 s (right)"));
@@ -353,7 +353,7 @@ class TestExportSlam : public QObject {
     right_from_left.topRightCorner<3, 1>() = pair.matrixAt("translation_matrix", 3, 1);
     QVERIFY(worstDifference_px(result, 1,
                                {right_from_left * left.base_from_camera.inverse() * base_from_imu,
-                                cameras[1].time_offset_s, right.lens}) < kSame_px);
+                                cameras[1].time_offset_s, right.lens}) < kExportSlamSame_px);
     const Eigen::Vector3d in_left(0.1, 0.2, 1.2),
         in_right = (right_from_left * in_left.homogeneous()).head<3>();
     QVERIFY(std::abs(in_right.dot(pair.matrixAt("essential_matrix", 3, 3) * in_left)) < 1e-12);
@@ -366,7 +366,7 @@ class TestExportSlam : public QObject {
     const Eigen::Vector2d b = (right.projection * level.homogeneous()).hnormalized();
     const Eigen::Vector2d direct =
         (right.projection.leftCols<3>() * (right.rectification * in_right)).hnormalized();
-    QVERIFY(std::abs(a.y() - b.y()) < kSame_px && (b - direct).norm() < kSame_px);
+    QVERIFY(std::abs(a.y() - b.y()) < kExportSlamSame_px && (b - direct).norm() < kExportSlamSame_px);
   }
 
   void rtabmap_imusHaveTheirOwnTransform() {

@@ -16,7 +16,7 @@ namespace {
 using namespace evical;
 using namespace evical::test;
 
-constexpr double kSame_px = 1e-9;
+constexpr double kExportWideSame_px = 1e-9;
 
 CameraIntrinsics wideCamera(CameraModel model) {
   CameraIntrinsics camera{
@@ -95,7 +95,7 @@ class TestExportWide : public QObject {
                                      : angleLens(from(k, 2), 0.0, k[0], k[1]);
     const CameraIntrinsics own = wideCamera(static_cast<CameraModel>(model));
     for (const Eigen::Vector3d& point : {Eigen::Vector3d(0.3, -0.2, 1.0), Eigen::Vector3d(-1.0, 0.4, 0.3)})
-      QVERIFY((lens(point) - project(own, point).value()).norm() < kSame_px);
+      QVERIFY((lens(point) - project(own, point).value()).norm() < kExportWideSame_px);
     // And back.
     const YamlNode chain = YamlNode::parse(contentOf(exported, "kalibr/camchain.yaml"), "camchain.yaml");
     QVERIFY(readIntrinsics(chain["cam0"]) == own);
@@ -126,7 +126,7 @@ class TestExportWide : public QObject {
       const Lens lens = sphere ? angleLens(k, number("xi"), number("alpha"), 1.0)
                                : angleLens(k, 0.0, number("alpha"), number("beta"));
       const Eigen::Vector3d point(-1.0, 0.4, 0.3);
-      QVERIFY((lens(point) - project(wideCamera(model), point).value()).norm() < kSame_px);
+      QVERIFY((lens(point) - project(wideCamera(model), point).value()).norm() < kExportWideSame_px);
     }
   }
 

@@ -13,7 +13,7 @@ using namespace evical;
 
 namespace {
 
-NamedIntrinsics sample(CameraModel model) {
+NamedIntrinsics sampleForIntrinsicsReport(CameraModel model) {
   NamedIntrinsics named;
   named.camera = "left";
   named.stream = "/davis/events";
@@ -49,7 +49,7 @@ class TestIntrinsicsReport : public QObject {
   void files_readBackAsIntrinsics() {
     QFETCH(bool, fisheye);
     const NamedIntrinsics named =
-        sample(fisheye ? CameraModel::PinholeEquidistant : CameraModel::PinholeRadtan);
+        sampleForIntrinsicsReport(fisheye ? CameraModel::PinholeEquidistant : CameraModel::PinholeRadtan);
     const CameraIntrinsics& camera = named.result.intrinsics;
     for (const std::string& text : {intrinsicsResultYaml(named), cameraInfoYaml("left", camera),
                                     camchainYaml("/davis/events", camera)}) {
@@ -73,7 +73,7 @@ class TestIntrinsicsReport : public QObject {
   void wideModels_readBackButFromRos() {
     QFETCH(int, model);
     QFETCH(QString, distortion);
-    NamedIntrinsics named = sample(static_cast<CameraModel>(model));
+    NamedIntrinsics named = sampleForIntrinsicsReport(static_cast<CameraModel>(model));
     CameraIntrinsics& camera = named.result.intrinsics;
     camera.distortion = {1.2, -0.1, 0.01, 0.001, 0.002};
     if (camera.model == CameraModel::DoubleSphere) camera.distortion = {-0.2, 0.6, 0.0, 0.0, 0.0};
@@ -96,7 +96,8 @@ class TestIntrinsicsReport : public QObject {
   }
 
   void map_hasSigmasAndCorrelations() {
-    const YamlNode root = YamlNode::parse(intrinsicsResultYaml(sample(CameraModel::PinholeRadtan)), "x.yaml");
+    const YamlNode root = YamlNode::parse(
+        intrinsicsResultYaml(sampleForIntrinsicsReport(CameraModel::PinholeRadtan)), "x.yaml");
     QCOMPARE(root["status"].text(), std::string("ok"));
     QCOMPARE(root["intrinsics_std"]["focal_length_px"].reals(2)[0], 0.05);
     QCOMPARE(root["intrinsics_std"]["distortion"].reals(4)[3], 0.05);
@@ -107,7 +108,7 @@ class TestIntrinsicsReport : public QObject {
   }
 
   void table_showsSigmasCoverageAndAdvice() {
-    const std::string text = intrinsicsTable(sample(CameraModel::PinholeRadtan));
+    const std::string text = intrinsicsTable(sampleForIntrinsicsReport(CameraModel::PinholeRadtan));
     for (const char* part :
          {"+- 0.05", "k1", "p2", ". # ", "Advice: No views in the left edge", "Verdict: ok"})
       QVERIFY2(text.find(part) != std::string::npos, part);
@@ -115,7 +116,7 @@ class TestIntrinsicsReport : public QObject {
   }
 
   void imageMap_hasARowForEachCell() {
-    const std::string text = imageMapCsv(sample(CameraModel::PinholeRadtan).result.image);
+    const std::string text = imageMapCsv(sampleForIntrinsicsReport(CameraModel::PinholeRadtan).result.image);
     QCOMPARE(std::count(text.begin(), text.end(), '\n'), std::ptrdiff_t{3});
     QVERIFY(text.find("1,0,259.5,129.5,30,0.02000") != std::string::npos);
   }

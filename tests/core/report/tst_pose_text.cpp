@@ -27,7 +27,7 @@ const PoseForm& form(const std::string& name) {
   throw std::runtime_error("no form " + name);
 }
 
-const SensorPose& poseOf(const std::vector<SensorPose>& poses, const std::string& sensor) {
+const SensorPose& poseOfPoseText(const std::vector<SensorPose>& poses, const std::string& sensor) {
   for (const SensorPose& pose : poses)
     if (pose.sensor == sensor) return pose;
   throw std::runtime_error("no sensor " + sensor);
@@ -48,7 +48,7 @@ std::string behind(const std::string& text, const std::string& words) {
   return text.substr(at + words.size());
 }
 
-bool isRotation(const Eigen::Matrix4d& matrix) {
+bool isRotationForPoseText(const Eigen::Matrix4d& matrix) {
   const Eigen::Matrix3d r = matrix.topLeftCorner<3, 3>();
   return (r * r.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-14 && r.determinant() > 0.0 &&
          matrix.row(3) == Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0);
@@ -100,7 +100,7 @@ class TestPoseText : public QObject {
       QVERIFY(vector4(numbers(node["rotation_xyzw"])) == xyzw(pose));
       QCOMPARE(node["time_offset_s"].as<double>(), pose.time_offset_s);
       const Eigen::Matrix4d matrix = rowsMatrix(node["matrix"]);
-      QVERIFY(isRotation(matrix));
+      QVERIFY(isRotationForPoseText(matrix));
       QVERIFY(matrix == matrixOf(pose.reference_from_sensor));
       const std::vector<double> t = numbers(node["translation_m"]);
       QVERIFY(Eigen::Vector3d(t[0], t[1], t[2]) == pose.reference_from_sensor.translation_m);
@@ -108,12 +108,12 @@ class TestPoseText : public QObject {
   }
 
   void numpyArray_isTheMatrix() {
-    const SensorPose& pose = poseOf(poses_, "far_imu");
+    const SensorPose& pose = poseOfPoseText(poses_, "far_imu");
     const std::string text = form("numpy").write(pose);
     const std::vector<double> values = decimals(behind(text, "left_imu_from_far_imu = np.array("));
     const Eigen::Matrix4d matrix =
         test::matrix(std::vector<double>(values.begin(), values.begin() + 16), 4, 4);
-    QVERIFY(isRotation(matrix));
+    QVERIFY(isRotationForPoseText(matrix));
     QVERIFY(matrix == matrixOf(pose.reference_from_sensor));
     QCOMPARE(decimals(behind(text, "far_imu_time_offset_s = ")), std::vector<double>{pose.time_offset_s});
   }
@@ -149,7 +149,7 @@ class TestPoseText : public QObject {
   void kalibr_isTheInverse_belowItsSensor() {
     const YAML::Node chain = YAML::Load(poseText(form("kalibr"), poses_));
     const Eigen::Matrix4d camera_from_imu = rowsMatrix(chain["cam1"]["T_cam_imu"]);
-    QVERIFY(isRotation(camera_from_imu));
+    QVERIFY(isRotationForPoseText(camera_from_imu));
     QVERIFY(
         (camera_from_imu * matrixOf(poses_[1].reference_from_sensor) - Eigen::Matrix4d::Identity()).norm() <
         1e-14);

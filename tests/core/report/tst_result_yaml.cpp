@@ -16,7 +16,7 @@ using namespace evical;
 
 namespace {
 
-NamedResult sample() {
+NamedResult sampleForResultYaml() {
   NamedResult named;
   named.reference = "left_imu";
   named.cameras = {{"left", "/left/events"}, {"1 odd: name"}};
@@ -111,13 +111,13 @@ class TestResultYaml : public QObject {
 
  private slots:
   void result_writtenAndRead_isTheSameText() {
-    const std::string text = resultYaml(sample());
+    const std::string text = resultYaml(sampleForResultYaml());
     QCOMPARE(resultYaml(readBack(text)), text);
   }
 
   // Of frames and points there is none: it is held at 0.
   void edgeLead_isShownWhereItIsEstimated() {
-    NamedResult named = sample();
+    NamedResult named = sampleForResultYaml();
     QCOMPARE(QString::fromStdString(resultTable(named)).count("edge lead"), 2);
     CalibrationResult& result = test::ownResult(named);
     result.state.cameras[1].edge_lead_px = result.state.cameras[1].slow_edge_lead_px = 0.0;
@@ -127,7 +127,7 @@ class TestResultYaml : public QObject {
   }
 
   void estimates_readBackToTheLastBit() {
-    const NamedResult written = sample(), read = readBack(resultYaml(written));
+    const NamedResult written = sampleForResultYaml(), read = readBack(resultYaml(written));
     QVERIFY(read.cameras == written.cameras && read.cameras[1].kind == CameraKind::Frames);
     QVERIFY(read.imus == written.imus);
     QVERIFY(read.imus[0].stream == "/left/imu" && read.imus[1].stream == "/far imu: odd");
@@ -163,7 +163,7 @@ class TestResultYaml : public QObject {
 
   // Names that interfaces of other programs rest on stand beside ours, in their units.
   void secondNames_sayTheSame() {
-    NamedResult named = sample();
+    NamedResult named = sampleForResultYaml();
     CalibrationResult& result = test::ownResult(named);
     result.state.cameras[1].line_delay_us = 31.25;
     result.uncertainty.cameras[1].line_delay_std_us = 0.5;
@@ -182,7 +182,7 @@ class TestResultYaml : public QObject {
   }
 
   void causes_areListedWithWhatMendsThem() {
-    const std::string text = resultYaml(sample());
+    const std::string text = resultYaml(sampleForResultYaml());
     const NamedResult read = readBack(text);
     const std::vector<Doubt>& causes = read.result->causes;
     QCOMPARE(causes.size(), std::size_t{2});
@@ -193,7 +193,7 @@ class TestResultYaml : public QObject {
   }
 
   void biasesCsv_hasALineForEveryKnot() {
-    NamedResult named = sample();
+    NamedResult named = sampleForResultYaml();
     QVERIFY(biasesCsv(named).empty());
     CalibrationResult& result = test::ownResult(named);
     ImuState& imu = result.state.imus[1];
@@ -249,20 +249,20 @@ class TestResultYaml : public QObject {
   }
 
   void table_hasVerdictAndSigmas() {
-    const QString table = QString::fromStdString(resultTable(sample()));
+    const QString table = QString::fromStdString(resultTable(sampleForResultYaml()));
     for (const char* part :
          {"Verdict: doubtful - planar motion", "33.333 +- 0.012", "Weakest: translation", "1500"})
       QVERIFY2(table.contains(part), qPrintable(table));
   }
 
   void comparison_withItself_hasNoErrors() {
-    const TruthComparison comparison = compareWithTruth(sample(), sample());
+    const TruthComparison comparison = compareWithTruth(sampleForResultYaml(), sampleForResultYaml());
     for (const QuantityDifference& q : comparison.quantities)
       QVERIFY2(std::abs(q.difference) < 1e-12, q.name.c_str());
   }
 
   void comparison_givesErrorsInReferenceAxesAndSigmas() {
-    const NamedResult truth = sample();
+    const NamedResult truth = sampleForResultYaml();
     NamedResult result = truth;
     CameraState& camera = test::ownResult(result).state.cameras[0];
     RigidTransform& pose = camera.reference_from_camera;

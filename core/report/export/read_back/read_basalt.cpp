@@ -14,7 +14,7 @@
 namespace evical {
 namespace {
 
-RigidTransform poseOf(const JsonNode& node) {
+RigidTransform basaltPoseOf(const JsonNode& node) {
   const auto number = [&](const char* key) { return node[key].number(); };
   const RigidTransform pose{{number("qw"), number("qx"), number("qy"), number("qz")},
                             {number("px"), number("py"), number("pz")}};
@@ -23,7 +23,7 @@ RigidTransform poseOf(const JsonNode& node) {
   return pose;
 }
 
-CameraIntrinsics lensOf(const JsonNode& node, const JsonNode& resolution) {
+CameraIntrinsics basaltLensOf(const JsonNode& node, const JsonNode& resolution) {
   const std::string type = node["camera_type"].text();
   if (type != "kb4" && type != "ds" && type != "eucm") node["camera_type"].fail("must be kb4, ds or eucm");
   const CameraModel model = type == "kb4"  ? CameraModel::PinholeEquidistant
@@ -48,7 +48,7 @@ double oneOfThree(const JsonNode& node) {
 }
 
 // corrected = (I + S) raw - b: measured = (I + S)^-1 (true + b).
-ReadImu imuOf(const JsonNode& value) {
+ReadImu basaltImuOf(const JsonNode& value) {
   const std::vector<double> a = value["calib_accel_bias"].numbers(9),
                             g = value["calib_gyro_bias"].numbers(12);
   Eigen::Matrix3d accelerometer = Eigen::Matrix3d::Identity(), gyroscope = Eigen::Matrix3d::Identity();
@@ -77,13 +77,13 @@ ReadFile basaltFile(const std::filesystem::path& path) {
     value["intrinsics"].fail("is not as long as T_imu_cam and resolution");
   for (std::size_t i = 0; i < poses.size(); ++i) {
     ReadCamera camera;
-    camera.lens = lensOf(lenses[i], sizes[i]);
-    camera.frame_from_camera = poseOf(poses[i]);
+    camera.lens = basaltLensOf(lenses[i], sizes[i]);
+    camera.frame_from_camera = basaltPoseOf(poses[i]);
     if (i == 0) camera.time_offset_s = 1e-9 * static_cast<double>(value["cam_time_offset_ns"].integer());
     file.cameras.push_back(camera);
   }
   file.time_step_s = 1e-9;
-  file.imus = {imuOf(value)};
+  file.imus = {basaltImuOf(value)};
   value["vignette"].items();
   return file;
 }

@@ -38,7 +38,7 @@ struct CameraLines {
   }
 };
 
-CameraLines linesOf(const std::filesystem::path& path) {
+CameraLines dmVioLinesOf(const std::filesystem::path& path) {
   CameraLines read{{}, path.string()};
   std::istringstream text(textOf(path));
   for (std::string& line : read.lines)
@@ -46,8 +46,8 @@ CameraLines linesOf(const std::filesystem::path& path) {
   return read;
 }
 
-ReadFile readCamera(const std::filesystem::path& path) {
-  CameraLines read = linesOf(path);
+ReadFile readDmVioCamera(const std::filesystem::path& path) {
+  CameraLines read = dmVioLinesOf(path);
   const std::size_t name_end = read.lines[0].find(' ');
   const std::string name = read.lines[0].substr(0, name_end);
   if (name != "RadTan" && name != "EquiDistant")
@@ -89,7 +89,7 @@ ReadFile readNoise(const std::filesystem::path& path) {
 }  // namespace
 
 ReadBack readDmVio(const std::filesystem::path& folder) {
-  ReadBack read{{readCamera(folder / "camera.txt")}, 1, 1};
+  ReadBack read{{readDmVioCamera(folder / "camera.txt")}, 1, 1};
   std::error_code ignored;
   // DSO alone takes no more than the camera.
   if (!std::filesystem::exists(folder / "camchain.yaml", ignored) &&

@@ -17,7 +17,7 @@ namespace {
 constexpr int kLargest_px = 100000;
 constexpr double kSame = 1e-9;
 
-Resolution sizeOf(const YamlNode& camera) {
+Resolution dsecSizeOf(const YamlNode& camera) {
   const std::vector<YamlNode> size = camera["resolution"].items();
   if (size.size() != 2) throw camera["resolution"].error("must have two numbers");
   return {size[0].integer(1, kLargest_px), size[1].integer(1, kLargest_px)};
@@ -60,19 +60,19 @@ void checkPair(const YamlNode& root, std::size_t left, std::size_t right,
     throw node.error("does not give back a point from its disparity");
 }
 
-ReadCamera cameraOf(const YamlNode& root, std::size_t place) {
+ReadCamera dsecCameraOf(const YamlNode& root, std::size_t place) {
   const YamlNode own = root["intrinsics"][fmt::format("cam{}", place)],
                  level = root["intrinsics"][fmt::format("camRect{}", place)];
   checkKind(own, place, "false");
   checkKind(level, place, "true");
-  if (sizeOf(own) != sizeOf(level)) throw level["resolution"].error("is another than the camera's");
+  if (dsecSizeOf(own) != dsecSizeOf(level)) throw level["resolution"].error("is another than the camera's");
   static_cast<void>(own["distortion_model"].choice({"radtan"}));
   static_cast<void>(matrixOf(level));
   static_cast<void>(turnOfRow(root["extrinsics"], place));
   ReadCamera camera;
   camera.name = own["camera_name"].text();
   camera.lens = lensFrom(CameraModel::PinholeRadtan, own["camera_matrix"].reals(4),
-                         own["distortion_coeffs"].reals(4), sizeOf(own));
+                         own["distortion_coeffs"].reals(4), dsecSizeOf(own));
   return camera;
 }
 
@@ -95,7 +95,7 @@ ReadBack readDsec(const std::filesystem::path& folder) {
       here = rigidFrom(rowsOf(step, 4, 4), step.place()) * here;
     }
     this_from_first[i] = here;
-    file.cameras.push_back(cameraOf(root, i));
+    file.cameras.push_back(dsecCameraOf(root, i));
     file.cameras.back().frame_from_camera = inverse(here);
   }
   if (this_from_first[3]) checkPair(root, 0, 3, *this_from_first[3]);

@@ -11,7 +11,7 @@
 namespace evical {
 namespace {
 
-double asFloat(const JsonNode& node) {
+double dvProcessingAsFloat(const JsonNode& node) {
   return static_cast<double>(static_cast<float>(node.treeNumber()));
 }
 
@@ -21,12 +21,12 @@ std::vector<double> floats(const JsonNode& node, std::size_t count) {
   return values;
 }
 
-RigidTransform poseOf(const JsonNode& sensor) {
+RigidTransform dvProcessingPoseOf(const JsonNode& sensor) {
   const JsonNode node = sensor["transformationToC0"];
   return rigidFrom(matrixFrom(floats(node, 16), 4, 4), node.place());
 }
 
-ReadCamera cameraOf(const JsonNode& node) {
+ReadCamera dvProcessingCameraOf(const JsonNode& node) {
   node["name"].treeText();
   node["position"].treeText();
   const std::string master = node["master"].treeText();
@@ -52,20 +52,21 @@ ReadCamera cameraOf(const JsonNode& node) {
   return camera;
 }
 
-Eigen::Vector3d vectorOf(const JsonNode& node) {
+Eigen::Vector3d dvProcessingVectorOf(const JsonNode& node) {
   const std::vector<double> three = floats(node, 3);
   return {three[0], three[1], three[2]};
 }
 
-ReadImu imuOf(const JsonNode& node) {
+ReadImu dvProcessingImuOf(const JsonNode& node) {
   for (const char* key : {"omegaMax", "accMax", "omegaOffsetVar", "accOffsetVar"}) node[key].treeNumber();
   for (const char* key : {"calibrationTime", "comment"})
     if (node.has("metadata")) node["metadata"][key].treeText();
   ReadImu imu;
-  imu.noise = {asFloat(node["omegaNoiseDensity"]), asFloat(node["accNoiseDensity"]),
-               asFloat(node["omegaNoiseRandomWalk"]), asFloat(node["accNoiseRandomWalk"])};
-  imu.gyroscope_bias_rad_s = vectorOf(node["omegaOffsetAvg"]);
-  imu.accelerometer_bias_m_s2 = vectorOf(node["accOffsetAvg"]);
+  imu.noise = {dvProcessingAsFloat(node["omegaNoiseDensity"]), dvProcessingAsFloat(node["accNoiseDensity"]),
+               dvProcessingAsFloat(node["omegaNoiseRandomWalk"]),
+               dvProcessingAsFloat(node["accNoiseRandomWalk"])};
+  imu.gyroscope_bias_rad_s = dvProcessingVectorOf(node["omegaOffsetAvg"]);
+  imu.accelerometer_bias_m_s2 = dvProcessingVectorOf(node["accOffsetAvg"]);
   return imu;
 }
 
@@ -90,17 +91,18 @@ ReadBack readDvProcessing(const std::filesystem::path& folder) {
   file.about_first_camera = true;
   std::vector<std::string> names;
   for (const auto& [key, node] : root["cameras"].entries()) {
-    file.cameras.push_back(cameraOf(node));
-    file.cameras.back().frame_from_camera = inverse(poseOf(node));  // camera 0 to this one, in the file
+    file.cameras.push_back(dvProcessingCameraOf(node));
+    file.cameras.back().frame_from_camera =
+        inverse(dvProcessingPoseOf(node));  // camera 0 to this one, in the file
     names.push_back(node["name"].treeText());
   }
   if (root.has("imus"))
     for (const auto& [key, node] : root["imus"].entries()) {
-      file.imus.push_back(imuOf(node));
+      file.imus.push_back(dvProcessingImuOf(node));
       // getImuCalibrationByName is asked for the camera's name.
       if (std::find(names.begin(), names.end(), node["name"].treeText()) == names.end())
         node["name"].fail("is the name of no camera, by which it is looked up");
-      const RigidTransform imu_from_first = inverse(poseOf(node));
+      const RigidTransform imu_from_first = inverse(dvProcessingPoseOf(node));
       for (ReadCamera& camera : file.cameras)
         camera.frame_from_camera = imu_from_first * *camera.frame_from_camera;
       file.about_first_camera = false;

@@ -1,4 +1,4 @@
-// After Unsigned-Long/eKalibr: include/calib/calib_param_mgr.h (at d9e93fd: CalibParamManager::load), and its library
+// After Unsigned-Long/eKalibr: include/calib/calib_param_mgr.h (ekalibrAt d9e93fd: CalibParamManager::load), and its library
 // veta's camera/pinhole*.h, which since 29195b0 asks for the notes. cereal's YAML archive searches each name and throws
 // where it is missing; a std::map is a list of {key, value}, a pointer has an id, marked by the highest bit where it is
 // met first.
@@ -13,7 +13,7 @@
 namespace evical {
 namespace {
 
-constexpr std::int64_t kFirst = 0x80000000;
+constexpr std::int64_t kEkalibrFirst = 0x80000000;
 
 // A std::map keeps one of two entries of one key.
 std::map<std::string, YamlNode> mapOf(const YamlNode& list) {
@@ -23,7 +23,7 @@ std::map<std::string, YamlNode> mapOf(const YamlNode& list) {
   return map;
 }
 
-Eigen::VectorXd vectorOf(const YamlNode& node, Eigen::Index size) {
+Eigen::VectorXd ekalibrVectorOf(const YamlNode& node, Eigen::Index size) {
   Eigen::VectorXd vector(size);
   for (Eigen::Index i = 0; i < size; ++i) vector[i] = node[fmt::format("r{}c0", i)].real();
   return vector;
@@ -36,9 +36,10 @@ Eigen::Quaterniond rotationOf(const YamlNode& node) {
   return q;
 }
 
-YamlNode dataOf(const YamlNode& value) {
+YamlNode ekalibrDataOf(const YamlNode& value) {
   const YamlNode wrapper = value["ptr_wrapper"];
-  if ((wrapper["id"].nanoseconds() & kFirst) == 0) throw wrapper["id"].error("has no highest bit, and data");
+  if ((wrapper["id"].nanoseconds() & kEkalibrFirst) == 0)
+    throw wrapper["id"].error("has no highest bit, and data");
   return wrapper["data"];
 }
 
@@ -47,8 +48,8 @@ class Types {
  public:
   std::string nameOf(const YamlNode& value) {
     const std::int64_t id = value["polymorphic_id"].nanoseconds();
-    if ((id & kFirst) != 0) names_[id & ~kFirst] = value["polymorphic_name"].text();
-    const auto found = names_.find(id & ~kFirst);
+    if ((id & kEkalibrFirst) != 0) names_[id & ~kEkalibrFirst] = value["polymorphic_name"].text();
+    const auto found = names_.find(id & ~kEkalibrFirst);
     if (found == names_.end()) throw value["polymorphic_id"].error("has not been met before");
     return found->second;
   }
@@ -57,12 +58,12 @@ class Types {
   std::map<std::int64_t, std::string> names_;
 };
 
-CameraIntrinsics lensOf(const YamlNode& value, Types& types) {
+CameraIntrinsics ekalibrLensOf(const YamlNode& value, Types& types) {
   const std::string type = types.nameOf(value);
   const bool radtan = type == "pinhole_brown_t2";
   if (!radtan && type != "pinhole_fisheye")
     throw value["polymorphic_id"].error("must be of pinhole_brown_t2 or pinhole_fisheye");
-  const YamlNode data = dataOf(value);
+  const YamlNode data = ekalibrDataOf(value);
   for (const char* key : {"focal_length_note", "principal_point_note", "disto_param_note"}) data[key].text();
   std::vector<double> k = data["focal_length"].reals(2);
   const std::vector<double> principal = data["principal_point"].reals(2);
@@ -76,21 +77,22 @@ CameraIntrinsics lensOf(const YamlNode& value, Types& types) {
 
 // measured = MAP true + BIAS; diagonal first, then 01, 02, 12.
 Eigen::Matrix3d mappingOf(const YamlNode& sensor) {
-  const Eigen::VectorXd m = vectorOf(sensor["MAP_COEFF"], 6);
+  const Eigen::VectorXd m = ekalibrVectorOf(sensor["MAP_COEFF"], 6);
   Eigen::Matrix3d matrix;
   matrix << m[0], m[3], m[4], 0.0, m[1], m[5], 0.0, 0.0, m[2];
   return matrix;
 }
 
 void readIntrinsics(const YamlNode& imu_value, ReadImu& imu) {
-  const YamlNode data = dataOf(imu_value);
+  const YamlNode data = ekalibrDataOf(imu_value);
   imu.accelerometer = mappingOf(data["ACCE"]);
   imu.gyroscope = mappingOf(data["GYRO"]) * rotationOf(data["SO3_AtoG"]).toRotationMatrix();
-  imu.accelerometer_bias_m_s2 = vectorOf(data["ACCE"]["BIAS"], 3);
-  imu.gyroscope_bias_rad_s = vectorOf(data["GYRO"]["BIAS"], 3);
+  imu.accelerometer_bias_m_s2 = ekalibrVectorOf(data["ACCE"]["BIAS"], 3);
+  imu.gyroscope_bias_rad_s = ekalibrVectorOf(data["GYRO"]["BIAS"], 3);
 }
 
-const YamlNode& at(const std::map<std::string, YamlNode>& map, const std::string& topic, const YamlNode& of) {
+const YamlNode& ekalibrAt(const std::map<std::string, YamlNode>& map, const std::string& topic,
+                          const YamlNode& of) {
   const auto found = map.find(topic);
   if (found == map.end()) throw of.error(fmt::format("has no entry for {}", topic));
   return found->second;
@@ -102,11 +104,12 @@ ReadFile readParameters(const std::filesystem::path& path) {
   ReadFile file{path};
   // A topic's entry in each of the maps.
   const auto pose = [&](const char* rotations, const char* positions, const std::string& topic) {
-    return RigidTransform{rotationOf(at(mapOf(extrinsics[rotations]), topic, extrinsics[rotations])),
-                          vectorOf(at(mapOf(extrinsics[positions]), topic, extrinsics[positions]), 3)};
+    return RigidTransform{
+        rotationOf(ekalibrAt(mapOf(extrinsics[rotations]), topic, extrinsics[rotations])),
+        ekalibrVectorOf(ekalibrAt(mapOf(extrinsics[positions]), topic, extrinsics[positions]), 3)};
   };
   const auto time = [&](const char* key, const std::string& topic) {
-    return at(mapOf(times[key]), topic, times[key]).real();
+    return ekalibrAt(mapOf(times[key]), topic, times[key]).real();
   };
   for (const auto& [topic, value] : mapOf(intrinsics["IMU"])) {
     ReadImu imu;
@@ -121,12 +124,12 @@ ReadFile readParameters(const std::filesystem::path& path) {
   for (const YamlNode& entry : intrinsics["Camera"].items()) {  // in the file's order, by which types are met
     ReadCamera camera;
     camera.name = entry["key"].text();
-    camera.lens = lensOf(entry["value"], types);
+    camera.lens = ekalibrLensOf(entry["value"], types);
     camera.frame_from_camera = pose("SO3_CjToBr", "POS_CjInBr", camera.name);
     camera.time_offset_s = time("TO_CjToBr", camera.name);
     file.cameras.push_back(camera);
   }
-  file.gravity_m_s2 = vectorOf(root["GRAVITY"], 3).norm();
+  file.gravity_m_s2 = ekalibrVectorOf(root["GRAVITY"], 3).norm();
   return file;
 }
 
@@ -144,7 +147,7 @@ ReadBack readEkalibr(const std::filesystem::path& folder) {
     Types types;
     ReadCamera camera;
     camera.name = path.stem().string().substr(kBeginning.size());
-    camera.lens = lensOf(YamlNode::load(path)["Intrinsics"], types);
+    camera.lens = ekalibrLensOf(YamlNode::load(path)["Intrinsics"], types);
     read.files.push_back({path, {camera}});
   }
   return read;

@@ -12,20 +12,20 @@
 namespace evical {
 namespace {
 
-Eigen::MatrixXd dataOf(const YamlNode& root, const char* key, Eigen::Index rows, Eigen::Index cols) {
+Eigen::MatrixXd esvoDataOf(const YamlNode& root, const char* key, Eigen::Index rows, Eigen::Index cols) {
   return matrixFrom(root[key]["data"].reals(static_cast<std::size_t>(rows * cols)), rows, cols);
 }
 
-RigidTransform poseOf(const YamlNode& root, const char* key) {
-  return rigidFrom(dataOf(root, key, 3, 4), root[key].place());
+RigidTransform esvoPoseOf(const YamlNode& root, const char* key) {
+  return rigidFrom(esvoDataOf(root, key, 3, 4), root[key].place());
 }
 
-ReadCamera cameraOf(const YamlNode& left, const YamlNode& root) {
+ReadCamera esvoCameraOf(const YamlNode& left, const YamlNode& root) {
   const bool radtan = left["distortion_model"].choice({"plumb_bob", "equidistant"}) == 0;
   constexpr int kLargest_px = 100000;
   const std::vector<double> all = root["distortion_coefficients"]["data"].reals();
   if (all.size() < 4) throw root["distortion_coefficients"]["data"].error("must have four numbers");
-  const Eigen::Matrix3d k = dataOf(root, "camera_matrix", 3, 3);
+  const Eigen::Matrix3d k = esvoDataOf(root, "camera_matrix", 3, 3);
   ReadCamera camera;
   camera.name = root["camera_name"].text();
   camera.lens =
@@ -38,10 +38,10 @@ ReadCamera cameraOf(const YamlNode& left, const YamlNode& root) {
 // Rectified, the right camera is beside the left one, and what projection_matrix says of how far is true.
 void checkRectification(const YamlNode& left, const YamlNode& right, const RigidTransform& right_from_left) {
   constexpr double kSame = 1e-9;
-  const Eigen::Matrix3d of_left = dataOf(left, "rectification_matrix", 3, 3),
-                        of_right = dataOf(right, "rectification_matrix", 3, 3);
-  const Eigen::Matrix<double, 3, 4> p_left = dataOf(left, "projection_matrix", 3, 4),
-                                    p_right = dataOf(right, "projection_matrix", 3, 4);
+  const Eigen::Matrix3d of_left = esvoDataOf(left, "rectification_matrix", 3, 3),
+                        of_right = esvoDataOf(right, "rectification_matrix", 3, 3);
+  const Eigen::Matrix<double, 3, 4> p_left = esvoDataOf(left, "projection_matrix", 3, 4),
+                                    p_right = esvoDataOf(right, "projection_matrix", 3, 4);
   const Eigen::Matrix3d turn = of_right * right_from_left.rotation.toRotationMatrix() * of_left.transpose();
   const Eigen::Vector3d baseline = of_right * right_from_left.translation_m;
   const Eigen::Vector3d said = p_right.leftCols<3>().inverse() * p_right.col(3);
@@ -51,12 +51,12 @@ void checkRectification(const YamlNode& left, const YamlNode& right, const Rigid
     throw left["projection_matrix"].error("is of another camera than the right one's");
 }
 
-ReadBack readPair(const std::filesystem::path& folder, bool with_imu) {
+ReadBack readEsvoPair(const std::filesystem::path& folder, bool with_imu) {
   const std::filesystem::path left_path = folder / "left.yaml", right_path = folder / "right.yaml";
   const YamlNode left = YamlNode::load(left_path), right = YamlNode::load(right_path);
-  const RigidTransform right_from_left = poseOf(left, "T_right_left");
+  const RigidTransform right_from_left = esvoPoseOf(left, "T_right_left");
   checkRectification(left, right, right_from_left);
-  ReadFile pair{left_path, {cameraOf(left, left), cameraOf(left, right)}, {}, true};
+  ReadFile pair{left_path, {esvoCameraOf(left, left), esvoCameraOf(left, right)}, {}, true};
   pair.cameras[0].frame_from_camera = RigidTransform{};
   pair.cameras[1].frame_from_camera = inverse(right_from_left);
   ReadBack read;
@@ -66,8 +66,8 @@ ReadBack readPair(const std::filesystem::path& folder, bool with_imu) {
   if (with_imu) {
     ReadCamera camera;
     camera.name = pair.cameras[0].name;
-    camera.frame_from_camera = poseOf(left, "T_b_c");
-    for (const char* key : {"T_right_left", "T_b_c"}) poseOf(right, key);
+    camera.frame_from_camera = esvoPoseOf(left, "T_b_c");
+    for (const char* key : {"T_right_left", "T_b_c"}) esvoPoseOf(right, key);
     read.files.push_back({left_path, {camera}});
   }
   return read;
@@ -76,11 +76,11 @@ ReadBack readPair(const std::filesystem::path& folder, bool with_imu) {
 }  // namespace
 
 ReadBack readEsvo(const std::filesystem::path& folder) {
-  return readPair(folder, false);
+  return readEsvoPair(folder, false);
 }
 
 ReadBack readEsvo2(const std::filesystem::path& folder) {
-  return readPair(folder, true);
+  return readEsvoPair(folder, true);
 }
 
 }  // namespace evical

@@ -17,11 +17,11 @@
 namespace evical {
 namespace {
 
-CalibrationError broken(const std::filesystem::path& file, const std::string& what) {
+CalibrationError evimo2Broken(const std::filesystem::path& file, const std::string& what) {
   return badInput(file.string(), what, "Export again");
 }
 
-std::vector<std::vector<double>> linesOf(const std::filesystem::path& file) {
+std::vector<std::vector<double>> evimo2LinesOf(const std::filesystem::path& file) {
   std::vector<std::vector<double>> lines;
   std::istringstream text(textOf(file));
   for (std::string line; std::getline(text, line);) {
@@ -31,7 +31,7 @@ std::vector<std::vector<double>> linesOf(const std::filesystem::path& file) {
       double& number = numbers.emplace_back();
       const auto end = std::from_chars(word.data(), word.data() + word.size(), number);
       if (end.ec != std::errc{} || end.ptr != word.data() + word.size())
-        throw broken(file, fmt::format("'{}' is no number", word));
+        throw evimo2Broken(file, fmt::format("'{}' is no number", word));
     }
   }
   return lines;
@@ -52,48 +52,49 @@ std::map<std::string, std::string> parametersOf(const std::filesystem::path& fil
   return parameters;
 }
 
-CameraIntrinsics lensOf(const std::filesystem::path& folder) {
+CameraIntrinsics evimo2LensOf(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "params.txt";
   const auto parameters = parametersOf(file);
   const auto text = [&](const char* key) {
     const auto found = parameters.find(key);
-    if (found == parameters.end()) throw broken(file, fmt::format("has no {}", key));
+    if (found == parameters.end()) throw evimo2Broken(file, fmt::format("has no {}", key));
     return found->second;
   };
   const auto size_px = [&](const char* key) {
     const std::string word = text(key);
     int size = 0;
     const auto end = std::from_chars(word.data(), word.data() + word.size(), size);
-    if (end.ec != std::errc{} || size <= 0) throw broken(file, fmt::format("{} must be a whole number", key));
+    if (end.ec != std::errc{} || size <= 0)
+      throw evimo2Broken(file, fmt::format("{} must be a whole number", key));
     return size;
   };
   const bool radtan = text("dist_model") == "radtan";
   if (!radtan && text("dist_model") != "equidistant")
-    throw broken(file, "dist_model must be radtan or equidistant");
+    throw evimo2Broken(file, "dist_model must be radtan or equidistant");
   if (!parameters.contains("ros_event_topic") && !parameters.contains("ros_image_topic"))
-    throw broken(file, "has no topic");
-  const auto lines = linesOf(folder / "calib.txt");
+    throw evimo2Broken(file, "has no topic");
+  const auto lines = evimo2LinesOf(folder / "calib.txt");
   if (lines.size() != 1 || lines[0].size() != 8)
-    throw broken(folder / "calib.txt", "must have one line of eight numbers");
+    throw evimo2Broken(folder / "calib.txt", "must have one line of eight numbers");
   // res_x counts rows.
   return lensFrom(radtan ? CameraModel::PinholeRadtan : CameraModel::PinholeEquidistant,
                   {lines[0].begin(), lines[0].begin() + 4}, {lines[0].begin() + 4, lines[0].end()},
                   {size_px("res_y"), size_px("res_x")});
 }
 
-ReadFile cameraOf(const std::filesystem::path& folder) {
+ReadFile evimo2CameraOf(const std::filesystem::path& folder) {
   ReadFile file{folder / "extrinsics.txt"};
-  const auto lines = linesOf(file.path);
+  const auto lines = evimo2LinesOf(file.path);
   constexpr std::size_t kNumbers[] = {6, 7, 1, 1};
   for (std::size_t i = 0; i < std::size(kNumbers); ++i)
     if (lines.size() != std::size(kNumbers) || lines[i].size() != kNumbers[i])
-      throw broken(file.path, "must have lines of 6, 7, 1 and 1 numbers");
-  if (lines[3][0] != 0.0) throw broken(file.path, "the fourth line must be 0");
+      throw evimo2Broken(file.path, "must have lines of 6, 7, 1 and 1 numbers");
+  if (lines[3][0] != 0.0) throw evimo2Broken(file.path, "the fourth line must be 0");
   const std::vector<double>& place = lines[0];
   using Axis = Eigen::AngleAxisd;
   ReadCamera camera;
   camera.name = folder.filename().string();
-  camera.lens = lensOf(folder);
+  camera.lens = evimo2LensOf(folder);
   camera.frame_from_camera = RigidTransform{
       Eigen::Quaterniond(Axis(place[5], Eigen::Vector3d::UnitZ()) * Axis(place[4], Eigen::Vector3d::UnitY()) *
                          Axis(place[3], Eigen::Vector3d::UnitX())),
@@ -113,7 +114,7 @@ ReadBack readEvimo2(const std::filesystem::path& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder, problem))
     if (entry.is_directory(problem)) cameras.push_back(entry.path());
   std::sort(cameras.begin(), cameras.end());
-  for (const std::filesystem::path& camera : cameras) read.files.push_back(cameraOf(camera));
+  for (const std::filesystem::path& camera : cameras) read.files.push_back(evimo2CameraOf(camera));
   return read;
 }
 

@@ -58,7 +58,7 @@ struct Model {
   std::size_t own;  // coefficients in front of the intrinsics
 };
 
-Model modelOf(const YamlNode& camera) {
+Model kalibrModelOf(const YamlNode& camera) {
   const std::size_t model = camera["camera_model"].choice({"pinhole", "omni", "eucm", "ds"});
   const std::size_t distortion = camera["distortion_model"].choice({"radtan", "equidistant", "none"});
   const bool fits = model == 0 ? distortion < 2 : model == 1 ? distortion == 0 : distortion == 2;
@@ -68,8 +68,8 @@ Model modelOf(const YamlNode& camera) {
   return {model == 2 ? CameraModel::Eucm : CameraModel::DoubleSphere, 2};
 }
 
-CameraIntrinsics lensOf(const YamlNode& camera) {
-  const Model model = modelOf(camera);
+CameraIntrinsics kalibrLensOf(const YamlNode& camera) {
+  const Model model = kalibrModelOf(camera);
   const YamlNode node = camera["intrinsics"];
   const std::vector<double> all = pythonNumbers(node, 4 + model.own);
   for (std::size_t i = model.own; i < all.size(); ++i) {
@@ -93,14 +93,14 @@ CameraIntrinsics lensOf(const YamlNode& camera) {
 }
 
 // `inertial`: also what Kalibr adds in a calibration with IMUs.
-ReadFile readChain(const std::filesystem::path& path, bool inertial) {
+ReadFile readKalibrChain(const std::filesystem::path& path, bool inertial) {
   const YamlNode root = YamlNode::load(path);
   ReadFile file{path, {}, {}, !inertial};
   const std::size_t count = root.keys().size();
   for (std::size_t i = 0; i < count; ++i) {
     const YamlNode node = root[fmt::format("cam{}", i)];
     ReadCamera camera;
-    camera.lens = lensOf(node);
+    camera.lens = kalibrLensOf(node);
     node["rostopic"].text();
     for (const YamlNode& other : node["cam_overlaps"].items()) other.integer(0, static_cast<int>(count) - 1);
     if (inertial) {
@@ -128,7 +128,7 @@ ReadImu noiseOf(const YamlNode& node) {
   return imu;
 }
 
-ReadImu imuOf(const YamlNode& node) {
+ReadImu kalibrImuOf(const YamlNode& node) {
   ReadImu imu = noiseOf(node);
   imu.reference_from_imu = inverse(rigidFrom(pythonRows(node["T_i_b"], 4), node["T_i_b"].place()));
   imu.time_offset_s = pythonFloat(node["time_offset"]);
@@ -156,14 +156,14 @@ ReadImu imuOf(const YamlNode& node) {
 
 ReadBack readKalibr(const std::filesystem::path& folder) {
   ReadBack read;
-  read.files.push_back(readChain(folder / "camchain.yaml", false));
+  read.files.push_back(readKalibrChain(folder / "camchain.yaml", false));
   std::error_code ignored;
   if (!std::filesystem::exists(folder / "imu.yaml", ignored)) return read;
-  read.files.push_back(readChain(folder / "camchain-imucam.yaml", true));
+  read.files.push_back(readKalibrChain(folder / "camchain-imucam.yaml", true));
   ReadFile imus{folder / "imu.yaml"};
   const YamlNode root = YamlNode::load(imus.path);
   for (std::size_t i = 0; i < root.keys().size(); ++i)
-    imus.imus.push_back(imuOf(root[fmt::format("imu{}", i)]));
+    imus.imus.push_back(kalibrImuOf(root[fmt::format("imu{}", i)]));
   const std::vector<std::filesystem::path> inputs = filesLike(folder, "input-", ".yaml");
   if (inputs.size() < imus.imus.size())
     throw badInput(folder.string(),

@@ -7,12 +7,12 @@
 namespace evical {
 namespace {
 
-RigidTransform poseOf(const OpencvFile& file) {
+RigidTransform kimeraPoseOf(const OpencvFile& file) {
   const OpencvNode data = file["T_BS"]["data"];
   return rigidFrom(matrixFrom(data.numbers(16), 4, 4), data.place());
 }
 
-ReadFile readCamera(const std::filesystem::path& path) {
+ReadFile readKimeraCamera(const std::filesystem::path& path) {
   const OpencvFile file(path);
   if (file["camera_model"].text() != "pinhole") file["camera_model"].fail("must be pinhole");
   const std::string model = file["distortion_model"].text();
@@ -27,12 +27,12 @@ ReadFile readCamera(const std::filesystem::path& path) {
   camera.lens = lensFrom(model == "radtan" ? CameraModel::PinholeRadtan : CameraModel::PinholeEquidistant,
                          file["intrinsics"].numbers(4), distortion.numbers(third_radial ? 5 : 4),
                          {static_cast<int>(size[0]), static_cast<int>(size[1])});
-  camera.frame_from_camera = poseOf(file);
+  camera.frame_from_camera = kimeraPoseOf(file);
   return {path, {camera}};
 }
 
 // One shift for all: it goes to the left camera.
-ReadFile readImu(const std::filesystem::path& path, ReadFile& left) {
+ReadFile readKimeraImu(const std::filesystem::path& path, ReadFile& left) {
   const OpencvFile file(path);
   const auto positive = [&](const char* key) {
     const double value = file[key].number();
@@ -40,7 +40,7 @@ ReadFile readImu(const std::filesystem::path& path, ReadFile& left) {
     return value;
   };
   file["imu_preintegration_type"].integer();
-  const RigidTransform body_from_imu = poseOf(file);
+  const RigidTransform body_from_imu = kimeraPoseOf(file);
   constexpr double kSame = 1e-9;  // gtsam's equals
   if (body_from_imu.translation_m.norm() > kSame || body_from_imu.rotation.vec().norm() > kSame)
     file["T_BS"].fail("must be the identity: the IMU is the body");
@@ -63,9 +63,9 @@ ReadBack readKimera(const std::filesystem::path& folder) {
   const OpencvFile pipeline(folder / "PipelineParams.yaml");
   for (const char* const key : {"backend_type", "display_type", "parallel_run"}) pipeline[key].integer();
   const bool stereo = pipeline["frontend_type"].integer() == 1;  // StereoImu
-  ReadBack read{{readCamera(folder / "LeftCameraParams.yaml")}, stereo ? 2U : 1U, 1};
-  if (stereo) read.files.push_back(readCamera(folder / "RightCameraParams.yaml"));
-  ReadFile imu = readImu(folder / "ImuParams.yaml", read.files[0]);
+  ReadBack read{{readKimeraCamera(folder / "LeftCameraParams.yaml")}, stereo ? 2U : 1U, 1};
+  if (stereo) read.files.push_back(readKimeraCamera(folder / "RightCameraParams.yaml"));
+  ReadFile imu = readKimeraImu(folder / "ImuParams.yaml", read.files[0]);
   read.files.push_back(std::move(imu));
   return read;
 }

@@ -66,7 +66,7 @@ class Groups {
   std::vector<Hdf5Dataset> datasets_;
 };
 
-ReadCamera cameraOf(const Groups& groups, const std::string& group) {
+ReadCamera m3edCameraOf(const Groups& groups, const std::string& group) {
   groups.demand(group + "/calib/camera_model", "pinhole");
   groups.demand(group + "/calib/distortion_model", "radtan");
   const auto size = groups.get<std::vector<std::int64_t>>(group + "/calib/resolution", {2});
@@ -87,7 +87,8 @@ ReadBack readM3ed(const std::filesystem::path& folder) {
   const Groups groups(path);
   ReadFile file{path, {}, {}, true};
   for (const char* const group : kCameraGroups)
-    if (group == kCameraGroups.front() || groups.has(group)) file.cameras.push_back(cameraOf(groups, group));
+    if (group == kCameraGroups.front() || groups.has(group))
+      file.cameras.push_back(m3edCameraOf(groups, group));
   const RigidTransform& first = *file.cameras.front().frame_from_camera;
   if (!first.rotation.toRotationMatrix().isIdentity(0.0) || !first.translation_m.isZero(0.0))
     throw badInput(fmt::format("{}: {}{}", path.string(), kCameraGroups.front(), kPlace),

@@ -82,7 +82,7 @@ class Assignments {
   std::map<std::string, std::string> values_;
 };
 
-CameraIntrinsics lensOf(const Assignments& read, const std::string& owner) {
+CameraIntrinsics matlabLensOf(const Assignments& read, const std::string& owner) {
   const auto field = [&](const char* name) { return owner + name; };
   const std::vector<double> f = read.row(field(".FocalLength"), 2), c = read.row(field(".PrincipalPoint"), 2);
   const std::vector<double> size = read.row(field(".ImageSize"), 2);  // rows, columns
@@ -99,17 +99,17 @@ CameraIntrinsics lensOf(const Assignments& read, const std::string& owner) {
                   {radial[0], radial[1], tangential[0], tangential[1], radial[2]}, resolution);
 }
 
-ReadCamera cameraOf(const Assignments& read, const std::string& owner) {
+ReadCamera matlabCameraOf(const Assignments& read, const std::string& owner) {
   const std::string pose = owner + ".ReferenceFromCamera";
   ReadCamera camera;
   camera.name = read.text(owner + ".Name");
-  camera.lens = lensOf(read, owner);
+  camera.lens = matlabLensOf(read, owner);
   camera.frame_from_camera = rigidFrom(read.matrix(pose, 4, 4), read.place(pose));
   camera.time_offset_s = read.number(owner + ".TimeOffset");
   return camera;
 }
 
-ReadImu imuOf(const Assignments& read, const std::string& owner) {
+ReadImu matlabImuOf(const Assignments& read, const std::string& owner) {
   const std::string pose = owner + ".ReferenceFromImu";
   const auto number = [&](const char* name) { return read.number(owner + name); };
   ReadImu imu;
@@ -159,9 +159,9 @@ ReadBack readMatlab(const std::filesystem::path& folder) {
     return fmt::format("rig.{}({})", list, before + 1);
   };
   while (read.has(owner("cameras", file.cameras.size()) + ".Name"))
-    file.cameras.push_back(cameraOf(read, owner("cameras", file.cameras.size())));
+    file.cameras.push_back(matlabCameraOf(read, owner("cameras", file.cameras.size())));
   while (read.has(owner("imus", file.imus.size()) + ".Name"))
-    file.imus.push_back(imuOf(read, owner("imus", file.imus.size())));
+    file.imus.push_back(matlabImuOf(read, owner("imus", file.imus.size())));
   if (!file.imus.empty()) file.gravity_m_s2 = read.number("rig.Gravity");
   ReadBack back{{file}};
   if (file.cameras.size() > 1 || read.has("rig.stereo.Cameras"))

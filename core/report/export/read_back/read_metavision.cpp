@@ -12,7 +12,7 @@
 namespace evical {
 namespace {
 
-ReadFile readCamera(const std::filesystem::path& path, const std::string& name) {
+ReadFile readMetavisionCamera(const std::filesystem::path& path, const std::string& name) {
   const OpencvFile file(path);
   const std::vector<double> size = file["image_size"].numbers(2);
   const Eigen::Matrix3d k = file["camera_matrix"].matrix(3, 3, CV_64F);
@@ -34,10 +34,11 @@ ReadBack readMetavision(const std::filesystem::path& folder) {
   ReadBack read;
   read.most_imus = 0;
   std::error_code ignored;
-  if (std::filesystem::exists(folder / kFile, ignored)) read.files.push_back(readCamera(folder / kFile, ""));
+  if (std::filesystem::exists(folder / kFile, ignored))
+    read.files.push_back(readMetavisionCamera(folder / kFile, ""));
   for (const std::filesystem::path& below : filesLike(folder, "", ""))
     if (std::filesystem::exists(below / kFile, ignored))
-      read.files.push_back(readCamera(below / kFile, below.filename().string()));
+      read.files.push_back(readMetavisionCamera(below / kFile, below.filename().string()));
   if (read.files.empty()) throw badInput(folder.string(), "has no " + kFile);
   return read;
 }

@@ -12,13 +12,13 @@
 namespace evical {
 namespace {
 
-Eigen::Vector3d vectorOf(const NpzArrays& arrays, const std::string& name) {
+Eigen::Vector3d numpyVectorOf(const NpzArrays& arrays, const std::string& name) {
   const std::vector<double> numbers = arrays.numbers(name);
   if (numbers.size() != 3) throw badInput(arrays.place(name), "must have three numbers");
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-CameraIntrinsics lensOf(const NpzArrays& arrays, const std::string& sensor) {
+CameraIntrinsics numpyLensOf(const NpzArrays& arrays, const std::string& sensor) {
   const std::string name = arrays.text(sensor + "model");
   const auto model = std::find(kCameraModelNames.begin(), kCameraModelNames.end(), name);
   if (model == kCameraModelNames.end())
@@ -32,17 +32,17 @@ CameraIntrinsics lensOf(const NpzArrays& arrays, const std::string& sensor) {
                   {static_cast<int>(size[0]), static_cast<int>(size[1])});
 }
 
-ReadCamera cameraOf(const NpzArrays& arrays, const std::string& name) {
+ReadCamera numpyCameraOf(const NpzArrays& arrays, const std::string& name) {
   ReadCamera camera;
   camera.name = name;
-  camera.lens = lensOf(arrays, name + ".");
+  camera.lens = numpyLensOf(arrays, name + ".");
   camera.frame_from_camera =
       rigidFrom(arrays.matrix(name + ".T_ref_cam", 4, 4), arrays.place(name + ".T_ref_cam"));
   camera.time_offset_s = arrays.number(name + ".time_offset_s");
   return camera;
 }
 
-ReadImu imuOf(const NpzArrays& arrays, const std::string& name) {
+ReadImu numpyImuOf(const NpzArrays& arrays, const std::string& name) {
   ReadImu imu;
   imu.name = name;
   imu.reference_from_imu =
@@ -50,8 +50,8 @@ ReadImu imuOf(const NpzArrays& arrays, const std::string& name) {
   imu.time_offset_s = arrays.number(name + ".time_offset_s");
   imu.accelerometer = arrays.matrix(name + ".accelerometer_M", 3, 3);
   imu.gyroscope = arrays.matrix(name + ".gyroscope_M", 3, 3);
-  imu.accelerometer_bias_m_s2 = vectorOf(arrays, name + ".accelerometer_bias_m_s2");
-  imu.gyroscope_bias_rad_s = vectorOf(arrays, name + ".gyroscope_bias_rad_s");
+  imu.accelerometer_bias_m_s2 = numpyVectorOf(arrays, name + ".accelerometer_bias_m_s2");
+  imu.gyroscope_bias_rad_s = numpyVectorOf(arrays, name + ".gyroscope_bias_rad_s");
   if (arrays.has(name + ".rate_hz")) imu.rate_hz = arrays.number(name + ".rate_hz");
   const std::string keys[] = {name + ".gyroscope_noise_density", name + ".accelerometer_noise_density",
                               name + ".gyroscope_random_walk", name + ".accelerometer_random_walk"};
@@ -66,9 +66,9 @@ ReadImu imuOf(const NpzArrays& arrays, const std::string& name) {
 ReadBack readNumpy(const std::filesystem::path& folder) {
   ReadFile file{folder / "calibration.npz"};
   const NpzArrays arrays = NpzArrays::load(file.path);
-  for (const std::string& name : arrays.texts("cameras")) file.cameras.push_back(cameraOf(arrays, name));
-  for (const std::string& name : arrays.texts("imus")) file.imus.push_back(imuOf(arrays, name));
-  if (!file.imus.empty()) file.gravity_m_s2 = vectorOf(arrays, "gravity_m_s2").norm();
+  for (const std::string& name : arrays.texts("cameras")) file.cameras.push_back(numpyCameraOf(arrays, name));
+  for (const std::string& name : arrays.texts("imus")) file.imus.push_back(numpyImuOf(arrays, name));
+  if (!file.imus.empty()) file.gravity_m_s2 = numpyVectorOf(arrays, "gravity_m_s2").norm();
   ReadBack read;
   read.files = {file};
   return read;

@@ -16,8 +16,8 @@ namespace evical {
 namespace {
 
 // A column of 5 for cv::projectPoints, of 4 for cv::fisheye's and, beside xi, for cv::omnidir's.
-CameraIntrinsics lensOf(const OpencvFile& file, const char* k_key, const char* d_key, const char* xi_key,
-                        Resolution size) {
+CameraIntrinsics opencvLensOf(const OpencvFile& file, const char* k_key, const char* d_key,
+                              const char* xi_key, Resolution size) {
   const Eigen::Matrix3d k = file[k_key].matrix(3, 3, CV_64F);
   const std::vector<double> intrinsics{k(0, 0), k(1, 1), k(0, 2), k(1, 2)};
   const bool omni = file.has(xi_key);
@@ -33,11 +33,11 @@ RigidTransform poseAt(const OpencvFile& file, const char* key) {
   return rigidFrom(file[key].matrix(4, 4, CV_64F), file[key].place());
 }
 
-ReadCamera cameraOf(const OpencvFile& file, const std::string& name) {
+ReadCamera opencvCameraOf(const OpencvFile& file, const std::string& name) {
   ReadCamera camera;
   camera.name = name;
-  camera.lens = lensOf(file, "camera_matrix", "distortion_coefficients", "xi",
-                       {file["image_width"].integer(), file["image_height"].integer()});
+  camera.lens = opencvLensOf(file, "camera_matrix", "distortion_coefficients", "xi",
+                             {file["image_width"].integer(), file["image_height"].integer()});
   if ((file["fisheye_model"].integer() != 0) != (camera.lens->model == CameraModel::PinholeEquidistant))
     file["fisheye_model"].fail("does not go with the distortion_coefficients");
   file["avg_reprojection_error"].number();
@@ -46,7 +46,7 @@ ReadCamera cameraOf(const OpencvFile& file, const std::string& name) {
   return camera;
 }
 
-ReadImu imuOf(const OpencvFile& file, const std::string& name) {
+ReadImu opencvImuOf(const OpencvFile& file, const std::string& name) {
   ReadImu imu;
   imu.name = name;
   imu.reference_from_imu = poseAt(file, "reference_from_imu");
@@ -61,11 +61,11 @@ ReadImu imuOf(const OpencvFile& file, const std::string& name) {
   return imu;
 }
 
-PairAsRead readPair(const std::filesystem::path& folder) {
+PairAsRead readOpencvPair(const std::filesystem::path& folder) {
   const OpencvFile in(folder / "intrinsics.yml"), ex(folder / "extrinsics.yml");
   const Eigen::MatrixXd rotation = ex["R"].matrix(3, 3, CV_64F), translation = ex["T"].matrix(3, 1, CV_64F);
   const Eigen::MatrixXd pose = (Eigen::MatrixXd(3, 4) << rotation, translation).finished();
-  const PairAsRead pair{lensOf(in, "M1", "D1", "xi1", {}), lensOf(in, "M2", "D2", "xi2", {}),
+  const PairAsRead pair{opencvLensOf(in, "M1", "D1", "xi1", {}), opencvLensOf(in, "M2", "D2", "xi2", {}),
                         rigidFrom(pose, ex["R"].place())};
   for (const char* const key : {"E", "F"}) ex[key].matrix(3, 3, CV_64F);
   ex["Q"].matrix(4, 4, CV_64F);
@@ -90,16 +90,16 @@ ReadBack readOpenCv(const std::filesystem::path& folder) {
     const OpencvFile file(path);
     ReadFile one{path};
     if (file.has("reference_from_imu"))
-      one.imus.push_back(imuOf(file, path.stem().string()));
+      one.imus.push_back(opencvImuOf(file, path.stem().string()));
     else
-      one.cameras.push_back(cameraOf(file, path.stem().string()));
+      one.cameras.push_back(opencvCameraOf(file, path.stem().string()));
     cameras.insert(cameras.end(), one.cameras.begin(), one.cameras.end());
     read.files.push_back(std::move(one));
   }
   std::error_code ignored;
   if (std::filesystem::exists(folder / "intrinsics.yml", ignored) ||
       std::filesystem::exists(folder / "extrinsics.yml", ignored))
-    read.files.push_back(pairAmong(cameras, readPair(folder), folder / "extrinsics.yml"));
+    read.files.push_back(pairAmong(cameras, readOpencvPair(folder), folder / "extrinsics.yml"));
   return read;
 }
 

@@ -11,7 +11,7 @@
 namespace evical {
 namespace {
 
-ReadFile readChain(const std::filesystem::path& path) {
+ReadFile readOpenvinsChain(const std::filesystem::path& path) {
   const OpencvFile chain(path);
   ReadFile file{path};
   for (std::size_t i = 0; i == 0 || chain.has(fmt::format("cam{}", i)); ++i) {
@@ -45,7 +45,7 @@ Eigen::Matrix3d triangleOf(const Eigen::Matrix3d& inverse_of, bool upper) {
   return whole.triangularView<Eigen::Lower>();
 }
 
-ReadFile readImu(const std::filesystem::path& path) {
+ReadFile readOpenvinsImu(const std::filesystem::path& path) {
   const OpencvFile chain(path);
   const OpencvNode node = chain["imu0"];
   ReadImu imu;
@@ -70,7 +70,8 @@ ReadFile readImu(const std::filesystem::path& path) {
 ReadBack readOpenVins(const std::filesystem::path& folder) {
   ReadBack read;
   read.most_imus = 1;
-  read.files = {readChain(folder / "kalibr_imucam_chain.yaml"), readImu(folder / "kalibr_imu_chain.yaml")};
+  read.files = {readOpenvinsChain(folder / "kalibr_imucam_chain.yaml"),
+                readOpenvinsImu(folder / "kalibr_imu_chain.yaml")};
   return read;
 }
 

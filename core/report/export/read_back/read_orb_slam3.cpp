@@ -11,39 +11,41 @@
 namespace evical {
 namespace {
 
-double asFloat(const OpencvNode& node) {
+double orbSlam3AsFloat(const OpencvNode& node) {
   return static_cast<double>(static_cast<float>(node.number()));
 }
 
-std::vector<double> numbersOf(const OpencvFile& file, int camera, std::initializer_list<const char*> keys) {
+std::vector<double> orbSlam3NumbersOf(const OpencvFile& file, int camera,
+                                      std::initializer_list<const char*> keys) {
   std::vector<double> values;
-  for (const char* key : keys) values.push_back(asFloat(file[fmt::format("Camera{}.{}", camera, key)]));
+  for (const char* key : keys)
+    values.push_back(orbSlam3AsFloat(file[fmt::format("Camera{}.{}", camera, key)]));
   return values;
 }
 
-CameraIntrinsics lensOf(const OpencvFile& file, int camera, bool stereo) {
+CameraIntrinsics orbSlam3LensOf(const OpencvFile& file, int camera, bool stereo) {
   const std::string type = file["Camera.type"].text();
   const Resolution size{file["Camera.width"].integer(), file["Camera.height"].integer()};
-  const std::vector<double> k = numbersOf(file, camera, {"fx", "fy", "cx", "cy"});
+  const std::vector<double> k = orbSlam3NumbersOf(file, camera, {"fx", "fy", "cx", "cy"});
   if (type == "KannalaBrandt8") {
     for (const char* key : {"overlappingBegin", "overlappingEnd"})
       if (stereo) file[fmt::format("Camera{}.{}", camera, key)].integer();
-    return lensFrom(CameraModel::PinholeEquidistant, k, numbersOf(file, camera, {"k1", "k2", "k3", "k4"}),
-                    size);
+    return lensFrom(CameraModel::PinholeEquidistant, k,
+                    orbSlam3NumbersOf(file, camera, {"k1", "k2", "k3", "k4"}), size);
   }
   if (type != "PinHole") file["Camera.type"].fail("must be PinHole or KannalaBrandt8");
-  std::vector<double> distortion = numbersOf(file, camera, {"k1", "k2", "p1", "p2"});
+  std::vector<double> distortion = orbSlam3NumbersOf(file, camera, {"k1", "k2", "p1", "p2"});
   const std::string third = fmt::format("Camera{}.k3", camera);
-  if (file.has(third)) distortion.push_back(asFloat(file[third]));
+  if (file.has(third)) distortion.push_back(orbSlam3AsFloat(file[third]));
   return lensFrom(CameraModel::PinholeRadtan, k, distortion, size);
 }
 
-RigidTransform poseOf(const OpencvFile& file, const char* key) {
+RigidTransform orbSlam3PoseOf(const OpencvFile& file, const char* key) {
   const OpencvNode node = file[key];
   return rigidFrom(node.matrix(4, 4, CV_32F), node.place());
 }
 
-void askForOwnKeys(const OpencvFile& file) {
+void askOrbSlam3ForOwnKeys(const OpencvFile& file) {
   for (const char* key : {"Camera.fps", "Camera.RGB", "ORBextractor.nFeatures", "ORBextractor.nLevels",
                           "ORBextractor.iniThFAST", "ORBextractor.minThFAST"})
     file[key].integer();
@@ -55,11 +57,11 @@ void askForOwnKeys(const OpencvFile& file) {
   if (file.has("IMU.InsertKFsWhenLost")) file["IMU.InsertKFsWhenLost"].integer();
 }
 
-ReadImu imuOf(const OpencvFile& file) {
+ReadImu orbSlam3ImuOf(const OpencvFile& file) {
   ReadImu imu;
-  imu.noise = {asFloat(file["IMU.NoiseGyro"]), asFloat(file["IMU.NoiseAcc"]), asFloat(file["IMU.GyroWalk"]),
-               asFloat(file["IMU.AccWalk"])};
-  imu.rate_hz = asFloat(file["IMU.Frequency"]);
+  imu.noise = {orbSlam3AsFloat(file["IMU.NoiseGyro"]), orbSlam3AsFloat(file["IMU.NoiseAcc"]),
+               orbSlam3AsFloat(file["IMU.GyroWalk"]), orbSlam3AsFloat(file["IMU.AccWalk"])};
+  imu.rate_hz = orbSlam3AsFloat(file["IMU.Frequency"]);
   return imu;
 }
 
@@ -75,23 +77,23 @@ ReadBack readOrbSlam3(const std::filesystem::path& folder) {
   settings.rounding = kFloatRounding;
   if (file["File.version"].text() != "1.0")
     file["File.version"].fail("must be 1.0, or older settings are expected");
-  askForOwnKeys(file);
+  askOrbSlam3ForOwnKeys(file);
   // Which of its modes there are data for.
   const bool stereo = file.has("Camera2.fx"), inertial = file.has("IMU.NoiseGyro");
   settings.about_first_camera = !inertial;
   ReadCamera first;
-  first.lens = lensOf(file, 1, stereo);
+  first.lens = orbSlam3LensOf(file, 1, stereo);
   first.frame_from_camera = RigidTransform{};
   if (inertial) {
-    first.frame_from_camera = poseOf(file, "IMU.T_b_c1");
-    settings.imus.push_back(imuOf(file));
+    first.frame_from_camera = orbSlam3PoseOf(file, "IMU.T_b_c1");
+    settings.imus.push_back(orbSlam3ImuOf(file));
   }
   settings.cameras.push_back(first);
   if (stereo) {
     file["Stereo.ThDepth"].number();
     ReadCamera second;
-    second.lens = lensOf(file, 2, stereo);
-    second.frame_from_camera = *first.frame_from_camera * poseOf(file, "Stereo.T_c1_c2");
+    second.lens = orbSlam3LensOf(file, 2, stereo);
+    second.frame_from_camera = *first.frame_from_camera * orbSlam3PoseOf(file, "Stereo.T_c1_c2");
     settings.cameras.push_back(second);
   }
   read.files.push_back(std::move(settings));

@@ -31,7 +31,7 @@ struct CameraModelFile {
   Eigen::MatrixXd projection;
 };
 
-CameraModelFile readCamera(const std::filesystem::path& path) {
+CameraModelFile readRtabmapCamera(const std::filesystem::path& path) {
   const OpencvFile file(path);
   CameraModelFile read;
   read.camera.name = file["camera_name"].text();
@@ -69,9 +69,9 @@ std::vector<ReadImu> readImus(const std::filesystem::path& path) {
   return imus;
 }
 
-PairAsRead readPair(const std::filesystem::path& folder) {
-  const CameraModelFile left = readCamera(folder / "stereo_left.yaml"),
-                        right = readCamera(folder / "stereo_right.yaml");
+PairAsRead readRtabmapPair(const std::filesystem::path& folder) {
+  const CameraModelFile left = readRtabmapCamera(folder / "stereo_left.yaml"),
+                        right = readRtabmapCamera(folder / "stereo_right.yaml");
   const OpencvFile file(folder / "stereo_pose.yaml");
   file["camera_name"].text();
   matrixAt(file, "essential_matrix", 3, 3);
@@ -99,7 +99,7 @@ ReadBack readRtabmap(const std::filesystem::path& folder) {
   std::vector<ReadCamera> cameras;
   ReadBack read;
   for (const std::filesystem::path& path : filesLike(folder, "", ".yaml")) {
-    cameras.push_back(readCamera(path).camera);
+    cameras.push_back(readRtabmapCamera(path).camera);
     if (path.stem() != cameras.back().name) throw badInput(path.string(), "has another camera_name");
     read.files.push_back({path, {cameras.back()}});
   }
@@ -116,7 +116,7 @@ ReadBack readRtabmap(const std::filesystem::path& folder) {
   }
   const std::filesystem::path stereo = folder / "stereo";
   if (std::filesystem::exists(stereo, ignored))
-    read.files.push_back(pairAmong(cameras, readPair(stereo), stereo / "stereo_pose.yaml"));
+    read.files.push_back(pairAmong(cameras, readRtabmapPair(stereo), stereo / "stereo_pose.yaml"));
   // Poses to the base become poses to the reference IMU, or in the first camera.
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     ReadFile& file = read.files[i];

@@ -20,7 +20,7 @@ std::vector<double> columnOf(const YamlNode& node) {
   return {column.data(), column.data() + 4};
 }
 
-CameraIntrinsics lensOf(const YamlNode& camera) {
+CameraIntrinsics svoLensOf(const YamlNode& camera) {
   camera["type"].choice({"pinhole"});
   const YamlNode distortion = camera["distortion"];
   const bool radtan = distortion["type"].choice({"radial-tangential", "equidistant"}) == 0;
@@ -36,7 +36,7 @@ ReadFile readRig(const std::filesystem::path& path, const YamlNode& root) {
   root["label"].text();
   for (const YamlNode& entry : root["cameras"].items()) {
     ReadCamera camera;
-    camera.lens = lensOf(entry["camera"]);
+    camera.lens = svoLensOf(entry["camera"]);
     entry["camera"]["label"].text();
     camera.frame_from_camera = rigidFrom(matrixOf(entry["T_B_C"], 4, 4), entry["T_B_C"].place());
     file.cameras.push_back(camera);
@@ -45,7 +45,7 @@ ReadFile readRig(const std::filesystem::path& path, const YamlNode& root) {
   return file;
 }
 
-Eigen::Vector3d vectorOf(const YamlNode& node) {
+Eigen::Vector3d svoVectorOf(const YamlNode& node) {
   const std::vector<double> three = node.reals(3);
   return {three[0], three[1], three[2]};
 }
@@ -92,9 +92,9 @@ ReadBack readSvo(const std::filesystem::path& folder) {
   imu.noise = {node["sigma_omega_c"].real(), node["sigma_acc_c"].real(), node["sigma_omega_bias_c"].real(),
                node["sigma_acc_bias_c"].real()};
   imu.rate_hz = node["imu_rate"].real();
-  imu.gyroscope_bias_rad_s = vectorOf(start["omega_bias"]);
-  imu.accelerometer_bias_m_s2 = vectorOf(start["acc_bias"]);
-  vectorOf(start["velocity"]);
+  imu.gyroscope_bias_rad_s = svoVectorOf(start["omega_bias"]);
+  imu.accelerometer_bias_m_s2 = svoVectorOf(start["acc_bias"]);
+  svoVectorOf(start["velocity"]);
   for (const char* key : {"velocity_sigma", "omega_bias_sigma", "acc_bias_sigma"}) start[key].real();
   file.imus = {imu};
   file.gravity_m_s2 = node["g"].real();

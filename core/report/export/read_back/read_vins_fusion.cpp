@@ -14,37 +14,40 @@
 namespace evical {
 namespace {
 
-std::vector<double> numbersOf(const OpencvNode& node, std::initializer_list<const char*> keys) {
+std::vector<double> vinsFusionNumbersOf(const OpencvNode& node, std::initializer_list<const char*> keys) {
   std::vector<double> values;
   for (const char* key : keys) values.push_back(node[key].number());
   return values;
 }
 
 // It does not look whether letters are large or small.
-std::string modelOf(const OpencvFile& file) {
+std::string vinsFusionModelOf(const OpencvFile& file) {
   std::string name = file["model_type"].text();
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::toupper(c); });
   return name;
 }
 
-ReadFile readCamera(const std::filesystem::path& path, std::size_t number) {
+ReadFile readVinsFusionCamera(const std::filesystem::path& path, std::size_t number) {
   const OpencvFile file(path);
-  const std::string model = modelOf(file);
+  const std::string model = vinsFusionModelOf(file);
   const Resolution size{file["image_width"].integer(), file["image_height"].integer()};
   file["camera_name"].text();
   const OpencvNode projection = file["projection_parameters"];
   ReadCamera camera;
   if (model == "KANNALA_BRANDT") {
-    camera.lens = lensFrom(CameraModel::PinholeEquidistant, numbersOf(projection, {"mu", "mv", "u0", "v0"}),
-                           numbersOf(projection, {"k2", "k3", "k4", "k5"}), size);
+    camera.lens =
+        lensFrom(CameraModel::PinholeEquidistant, vinsFusionNumbersOf(projection, {"mu", "mv", "u0", "v0"}),
+                 vinsFusionNumbersOf(projection, {"k2", "k3", "k4", "k5"}), size);
   } else if (model == "PINHOLE" || model == "MEI") {
-    std::vector<double> distortion = numbersOf(file["distortion_parameters"], {"k1", "k2", "p1", "p2"});
+    std::vector<double> distortion =
+        vinsFusionNumbersOf(file["distortion_parameters"], {"k1", "k2", "p1", "p2"});
     const bool mei = model == "MEI";
     if (mei) distortion.insert(distortion.begin(), file["mirror_parameters"]["xi"].number());
-    camera.lens = mei ? lensFrom(CameraModel::OmniRadtan,
-                                 numbersOf(projection, {"gamma1", "gamma2", "u0", "v0"}), distortion, size)
-                      : lensFrom(CameraModel::PinholeRadtan, numbersOf(projection, {"fx", "fy", "cx", "cy"}),
-                                 distortion, size);
+    camera.lens =
+        mei ? lensFrom(CameraModel::OmniRadtan,
+                       vinsFusionNumbersOf(projection, {"gamma1", "gamma2", "u0", "v0"}), distortion, size)
+            : lensFrom(CameraModel::PinholeRadtan, vinsFusionNumbersOf(projection, {"fx", "fy", "cx", "cy"}),
+                       distortion, size);
   } else {
     file["model_type"].fail("must be PINHOLE, KANNALA_BRANDT or MEI");
   }
@@ -54,7 +57,7 @@ ReadFile readCamera(const std::filesystem::path& path, std::size_t number) {
   return read;
 }
 
-ReadImu imuOf(const OpencvFile& file) {
+ReadImu vinsFusionImuOf(const OpencvFile& file) {
   ReadImu imu;
   file["imu_topic"].text();
   imu.noise = {file["gyr_n"].number(), file["acc_n"].number(), file["gyr_w"].number(),
@@ -63,7 +66,7 @@ ReadImu imuOf(const OpencvFile& file) {
   return imu;
 }
 
-void askForOwnKeys(const OpencvFile& file) {
+void askVinsFusionForOwnKeys(const OpencvFile& file) {
   for (const char* key :
        {"max_cnt", "min_dist", "show_track", "flow_back", "multiple_thread", "max_num_iterations"})
     file[key].integer();
@@ -81,13 +84,13 @@ ReadBack readVinsFusion(const std::filesystem::path& folder) {
   read.most_imus = 1;
   const std::filesystem::path path = folder / "vins.yaml";
   const OpencvFile file(path);
-  askForOwnKeys(file);
+  askVinsFusionForOwnKeys(file);
   if (file["imu"].integer() != 1) file["imu"].fail("must be 1");
   if (file["estimate_extrinsic"].integer() != 0)
     file["estimate_extrinsic"].fail("must be 0, or the poses are changed");
   const int count = file["num_of_cam"].integer();
   if (count != 1 && count != 2) file["num_of_cam"].fail("must be 1 or 2");
-  ReadFile vins{path, {}, {imuOf(file)}};
+  ReadFile vins{path, {}, {vinsFusionImuOf(file)}};
   vins.gravity_m_s2 = file["g_norm"].number();
   file["estimate_td"].integer();
   for (int i = 0; i < count; ++i) {
@@ -97,8 +100,8 @@ ReadBack readVinsFusion(const std::filesystem::path& folder) {
     if (i == 0) camera.time_offset_s = file["td"].number();
     file[fmt::format("image{}_topic", i)].text();
     vins.cameras.push_back(camera);
-    read.files.push_back(
-        readCamera(folder / file[fmt::format("cam{}_calib", i)].text(), static_cast<std::size_t>(i)));
+    read.files.push_back(readVinsFusionCamera(folder / file[fmt::format("cam{}_calib", i)].text(),
+                                              static_cast<std::size_t>(i)));
   }
   const CameraIntrinsics& first = *read.files.front().cameras.front().lens;
   if (file["image_width"].integer() != first.resolution_px.width_px ||

@@ -13,7 +13,7 @@ using namespace evical::test;
 
 namespace {
 
-std::string bytesOf(std::int32_t value) {
+std::string bytesOfAedat4(std::int32_t value) {
   return std::string(reinterpret_cast<const char*>(&value), sizeof(value));
 }
 
@@ -38,7 +38,7 @@ class FileBuilder {
     std::string packed;
     aedat::pack(compression_, content, packed);
     starts_.push_back(bytes_.size());
-    bytes_ += bytesOf(stream) + bytesOf(static_cast<std::int32_t>(packed.size())) + packed;
+    bytes_ += bytesOfAedat4(stream) + bytesOfAedat4(static_cast<std::int32_t>(packed.size())) + packed;
   }
 
   std::string& bytes() { return bytes_; }
@@ -299,7 +299,7 @@ void TestAedat4::lyingSize_isReportedAndReadingGoesOn() {
   QFETCH(int, compression);
   QFETCH(int, size);
   FileBuilder file = smallFile(static_cast<aedat::Compression>(compression));
-  file.bytes().replace(file.starts()[4] + 4, 4, bytesOf(size));
+  file.bytes().replace(file.starts()[4] + 4, 4, bytesOfAedat4(size));
   const Contents contents = readAll(folder_.write("lying.aedat4", file.bytes()));
   QVERIFY(contents.hasFault(FaultKind::Corrupt));
   QVERIFY(contents.eventCount() == 500u || contents.eventCount() == 600u);
@@ -310,12 +310,12 @@ void TestAedat4::lyingCounts_loseThePacketOnly() {
   FileBuilder file(aedat::Compression::None, cameraAndImu());
   std::string events = aedat::encodeEvents(eventsAt(0, 10));
   file.add(0, events);
-  events.replace(28, 4, bytesOf(11));  // one more than there are
+  events.replace(28, 4, bytesOfAedat4(11));  // one more than there are
   file.add(0, events);
-  events.replace(28, 4, bytesOf(-1));
+  events.replace(28, 4, bytesOfAedat4(-1));
   file.add(0, events);
   std::string samples = aedat::encodeImu(rawSamples(4, 0));
-  samples.replace(32, 4, bytesOf(2'000'000'000));  // where the first sample is
+  samples.replace(32, 4, bytesOfAedat4(2'000'000'000));  // where the first sample is
   file.add(1, samples);
   file.add(0, aedat::encodeEvents(eventsAt(1'000'000, 10)));
   const Contents contents = readAll(folder_.write("counts.aedat4", file.bytes()));
@@ -384,8 +384,8 @@ void TestAedat4::smallStepsBack_areSorted() {
 void TestAedat4::noHeader_isBadInput() {
   const std::string magic(aedat::kMagic);
   for (const std::string& header :
-       {std::string(), std::string(4, '\0'), std::string(4, '\xFF'), bytesOf(20) + std::string(20, '\xFF'),
-        bytesOf(8) + bytesOf(4) + "IOHE"}) {
+       {std::string(), std::string(4, '\0'), std::string(4, '\xFF'),
+        bytesOfAedat4(20) + std::string(20, '\xFF'), bytesOfAedat4(8) + bytesOfAedat4(4) + "IOHE"}) {
     try {
       openRecording(folder_.write("header.aedat4", magic + header));
       QFAIL("a file without a header was opened");

@@ -53,12 +53,12 @@ void compareWithArrays(const std::vector<Event>& events, std::int64_t offset_ns 
   }
 }
 
-struct Sums {
+struct Hdf5Sums {
   std::uint64_t events = 0, on = 0, x = 0, y = 0, t_us = 0, t_ns = 0;
 };
 
-Sums sumsOf(const std::vector<Event>& events) {
-  Sums sums;
+Hdf5Sums sumsOfHdf5(const std::vector<Event>& events) {
+  Hdf5Sums sums;
   for (const Event& event : events) {
     ++sums.events;
     sums.on += event.brighter ? 1 : 0;
@@ -105,7 +105,7 @@ void TestHdf5::evlibSample_matchesItsManifest() {
   QCOMPARE(contents.streams.size(), 1u);
   QCOMPARE(contents.streams[0].name, std::string("raw_events"));
   QCOMPARE(contents.streams[0].time_unit_ns, std::int64_t{1});
-  const Sums sums = sumsOf(contents.events.at(0));
+  const Hdf5Sums sums = sumsOfHdf5(contents.events.at(0));
   QCOMPARE(sums.events, 17u);
   QCOMPARE(sums.on, 0u);
   QCOMPARE(sums.x, 1103u);
@@ -120,7 +120,7 @@ void TestHdf5::metavisionSample_matchesItsManifest() {
   QCOMPARE(contents.streams[0].resolution_px.width_px, 640);
   QVERIFY(contents.streams[1].type == StreamType::Triggers);
   QCOMPARE(contents.streams[1].messages, 1534u);
-  const Sums sums = sumsOf(contents.events.at(0));
+  const Hdf5Sums sums = sumsOfHdf5(contents.events.at(0));
   QCOMPARE(sums.events, 60'000u);
   QCOMPARE(sums.on, 18'663u);
   QCOMPARE(sums.x, 19'316'943u);

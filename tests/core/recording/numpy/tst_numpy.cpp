@@ -3,7 +3,7 @@
 //   82magnolia/n_imagenet, real_cnn_model/data/imagenet.py (a0b1f73): event_data of x, y, t, p in archives;
 //   open-neuromorphic/expelliarmus, README.md: structured t, x, y, p in us;
 //   uzh-rpg/rpg_vid2e, esim_torch/scripts/generate_events.py (ecbb11a): numbered archives of x, y, t, p in ns;
-//   better-flow/evimo, docs_sphinx/source/ground-truth-format.md (6800ea9): EVIMO's rows of t, x, y, p and pickled meta,
+//   better-flow/evimo, docs_sphinx/source/ground-truth-format.md (6800ea9): EVIMO's rowsForNumpy of t, x, y, p and pickled meta,
 //   EVIMO2's dataset_events_t, _xy and _p;
 //   dv's Python package hands out timestamp, x, y, polarity with padding (seen in programs that use it, not in its source).
 #include "core/base/error.h"
@@ -24,11 +24,11 @@ using namespace evical::test;
 
 namespace {
 
-constexpr std::int64_t kStart_ns = 5'000'000'000;
+constexpr std::int64_t kNumpyStart_ns = 5'000'000'000;
 constexpr std::size_t kCount = 3000;
 
 std::vector<Event> theEvents() {
-  return someEvents(kCount, kStart_ns);
+  return someEvents(kCount, kNumpyStart_ns);
 }
 
 // A number of an event in some type of NumPy's: "<i8"; times in `unit_ns`.
@@ -67,8 +67,8 @@ double number(const Event& event, char part, double unit_ns, double off) {
   }
 }
 
-std::string rows(const std::vector<Spelling>& parts, double unit_ns, double off = 0.0,
-                 const std::vector<Event>& events = theEvents()) {
+std::string rowsForNumpy(const std::vector<Spelling>& parts, double unit_ns, double off = 0.0,
+                         const std::vector<Event>& events = theEvents()) {
   std::string bytes;
   for (const Event& event : events)
     for (const Spelling& part : parts) bytes += value(number(event, part.part, unit_ns, off), part.type);
@@ -77,7 +77,7 @@ std::string rows(const std::vector<Spelling>& parts, double unit_ns, double off 
 
 std::string columns(const std::vector<Spelling>& parts, double unit_ns, double off = 0.0) {
   std::string bytes;
-  for (const Spelling& part : parts) bytes += rows({part}, unit_ns, off);
+  for (const Spelling& part : parts) bytes += rowsForNumpy({part}, unit_ns, off);
   return bytes;
 }
 
@@ -87,7 +87,7 @@ std::string shape(std::size_t count = kCount, const std::string& rest = "") {
 
 // One column, of `unit_ns` if it is the time.
 std::string column(char part, const std::string& type, double unit_ns = 1000.0, double off = 0.0) {
-  return npyArray("'" + type + "'", shape(), rows({{part, type}}, unit_ns, off));
+  return npyArray("'" + type + "'", shape(), rowsForNumpy({{part, type}}, unit_ns, off));
 }
 
 // x, y, t, p, each an array, with something before and behind their names.
@@ -103,7 +103,7 @@ const std::vector<Spelling> kTonic = {{'x', "<i2"}, {'y', "<i2"}, {'p', "|b1"}, 
 constexpr const char* kTonicDescr = "[('x', '<i2'), ('y', '<i2'), ('p', '|b1'), ('t', '<i8')]";
 
 std::string tonic(std::size_t claimed = kCount) {
-  return npyArray(kTonicDescr, shape(claimed), rows(kTonic, 1000.0));
+  return npyArray(kTonicDescr, shape(claimed), rowsForNumpy(kTonic, 1000.0));
 }
 
 std::string errorOf(const std::function<void()>& run) {
@@ -158,7 +158,7 @@ void addRow(const char* name, const std::string& bytes, const char* guess = "us"
 
 void addStructured() {
   const auto npy = [](const std::string& descr, const std::vector<Spelling>& parts, double unit_ns = 1000.0) {
-    return npyArray(descr, shape(), rows(parts, unit_ns));
+    return npyArray(descr, shape(), rowsForNumpy(parts, unit_ns));
   };
   addRow("tonic", tonic());
   addRow("Metavision", npy("[('x', '<u2'), ('y', '<u2'), ('p', '<i2'), ('t', '<i8')]",
@@ -187,11 +187,12 @@ void addStructured() {
              {{' ', "<i4"}, {'t', "<i8"}, {'x', "<u2"}, {'y', "<u2"}, {'p', "|u1"}, {' ', "<i4"}}));
   for (const int version : {2, 3})
     QTest::addRow("version %d", version)
-        << QByteArray::fromStdString(npyFile(npyHeader(kTonicDescr, shape()), rows(kTonic, 1000.0), version))
+        << QByteArray::fromStdString(
+               npyFile(npyHeader(kTonicDescr, shape()), rowsForNumpy(kTonic, 1000.0), version))
         << "us";
   addRow("Python 2",
          npyFile("{'descr': " + std::string(kTonicDescr) + ", \"fortran_order\": False, 'shape': (3000L,)}",
-                 rows(kTonic, 1000.0)));
+                 rowsForNumpy(kTonic, 1000.0)));
 }
 
 void addTables() {
@@ -199,14 +200,15 @@ void addTables() {
   const std::vector<Spelling> xytp = {{'x', "<i8"}, {'y', "<i8"}, {'t', "<i8"}, {'p', "<i8"}};
   const std::vector<Spelling> xypt = {{'x', "<f8"}, {'y', "<f8"}, {'p', "<f8"}, {'t', "<f8"}};
   const std::string n_by_4 = shape(kCount, " 4"), four_by_n = "(4, " + std::to_string(kCount) + ")";
-  addRow("t x y p in s", npyArray("'<f8'", n_by_4, rows(txyp, 1e9, -1.0)), "");
-  addRow("x y t p in us", npyArray("'<i8'", n_by_4, rows(xytp, 1e3)), "x,y,t,p, t in us");
-  addRow("x y p t, whole reals", npyArray("'<f8'", n_by_4, rows(xypt, 1e3)), "x,y,p,t, t in us");
+  addRow("t x y p in s", npyArray("'<f8'", n_by_4, rowsForNumpy(txyp, 1e9, -1.0)), "");
+  addRow("x y t p in us", npyArray("'<i8'", n_by_4, rowsForNumpy(xytp, 1e3)), "x,y,t,p, t in us");
+  addRow("x y p t, whole reals", npyArray("'<f8'", n_by_4, rowsForNumpy(xypt, 1e3)), "x,y,p,t, t in us");
   addRow("in columns", npyArray("'<i8'", n_by_4, columns(xytp, 1e3), true), "x,y,t,p, t in us");
   addRow("lying", npyArray("'<i8'", four_by_n, columns(xytp, 1e3)), "x,y,t,p, t in us");
-  addRow("lying, in columns", npyArray("'<i8'", four_by_n, rows(xytp, 1e3), true), "x,y,t,p, t in us");
+  addRow("lying, in columns", npyArray("'<i8'", four_by_n, rowsForNumpy(xytp, 1e3), true),
+         "x,y,t,p, t in us");
   addRow("EVIMO",
-         zipArchive({{"events.npy", npyArray("'<f8'", n_by_4, rows(txyp, 1e9)), true},
+         zipArchive({{"events.npy", npyArray("'<f8'", n_by_4, rowsForNumpy(txyp, 1e9)), true},
                      {"K.npy", npyArray("'<f8'", "(3, 3)", std::string(72, '\0')), true},
                      {"pose.npy", npyArray("'<f8'", "(4, 4)", std::string(128, '\0')), true}}),
          "");
@@ -226,19 +228,20 @@ void addArchives() {
     row("in a folder", zipArchive(fourArrays(deflate, "events/")));
     row("N-ImageNet", zipArchive({{"event_data.npy", tonic(), deflate}}));
     row("EVIMO2",
-        zipArchive(
-            {{"dataset_events_t.npy", column('t', "<f8", 1e9), deflate},
-             {"dataset_events_xy.npy",
-              npyArray("'<u2'", shape(kCount, " 2"), rows({{'x', "<u2"}, {'y', "<u2"}}, 1.0)), deflate},
-             {"dataset_events_p.npy", npyArray("'|u1'", shape(kCount, " 1"), rows({{'p', "|u1"}}, 1.0)),
-              deflate}}),
+        zipArchive({{"dataset_events_t.npy", column('t', "<f8", 1e9), deflate},
+                    {"dataset_events_xy.npy",
+                     npyArray("'<u2'", shape(kCount, " 2"), rowsForNumpy({{'x', "<u2"}, {'y', "<u2"}}, 1.0)),
+                     deflate},
+                    {"dataset_events_p.npy",
+                     npyArray("'|u1'", shape(kCount, " 1"), rowsForNumpy({{'p', "|u1"}}, 1.0)), deflate}}),
         "");
     row("xyp",
-        zipArchive({{"t.npy", npyArray("'<f8'", shape(kCount, " 1"), rows({{'t', "<f8"}}, 1e9)), deflate},
-                    {"xyp.npy",
-                     npyArray("'<i2'", shape(kCount, " 3"),
-                              columns({{'x', "<i2"}, {'y', "<i2"}, {'p', "<i2"}}, 1.0), true),
-                     deflate}}),
+        zipArchive(
+            {{"t.npy", npyArray("'<f8'", shape(kCount, " 1"), rowsForNumpy({{'t', "<f8"}}, 1e9)), deflate},
+             {"xyp.npy",
+              npyArray("'<i2'", shape(kCount, " 3"), columns({{'x', "<i2"}, {'y', "<i2"}, {'p', "<i2"}}, 1.0),
+                       true),
+              deflate}}),
         "");
     std::vector<ZipFile> large = fourArrays(deflate), images = fourArrays(deflate);
     for (ZipFile& file : large) file.in_64 = true;
@@ -339,7 +342,7 @@ void TestNumpy::offsetAndSize_areTaken() {
   files.push_back({"height.npy", npyArray("'<i4'", "(1,)", numberBytes(std::int32_t{48}))});
   const Contents contents = read(zipArchive(files));
   QCOMPARE(contents.streams[0].resolution_px, (Resolution{64, 48}));
-  QCOMPARE(contents.events.at(0).front().time_ns, kStart_ns + 1000 * kOffset_us);
+  QCOMPARE(contents.events.at(0).front().time_ns, kNumpyStart_ns + 1000 * kOffset_us);
 }
 
 void TestNumpy::folderOfArrays_isOneRecording() {
@@ -347,7 +350,7 @@ void TestNumpy::folderOfArrays_isOneRecording() {
   scratch_.write("evimo2/dataset_events_p.npy", column('p', "|u1"));
   const std::filesystem::path xy =
       scratch_.write("evimo2/dataset_events_xy.npy",
-                     npyArray("'<u2'", shape(kCount, " 2"), rows({{'x', "<u2"}, {'y', "<u2"}}, 1.0)));
+                     npyArray("'<u2'", shape(kCount, " 2"), rowsForNumpy({{'x', "<u2"}, {'y', "<u2"}}, 1.0)));
   scratch_.write("evimo2/dataset_depth.npz", zipArchive({{"depth_0.npy", tonic()}}));
   const Contents contents = readAll(xy.parent_path());
   QVERIFY(sameEvents(contents.events.at(0), theEvents()));
@@ -367,9 +370,9 @@ void TestNumpy::numberedFiles_areReadOneAfterAnother() {
     begin += 700;
     std::vector<ZipFile> files;
     for (const char name : {'x', 'y', 't', 'p'})
-      files.push_back({std::string(1, name) + ".npy",
-                       npyArray("'<i8'", shape(part.size()), rows({{name, "<i8"}}, 1000.0, 0.0, part)),
-                       true});
+      files.push_back(
+          {std::string(1, name) + ".npy",
+           npyArray("'<i8'", shape(part.size()), rowsForNumpy({{name, "<i8"}}, 1000.0, 0.0, part)), true});
     scratch_.write("numbered/" + std::to_string(file) + ".npz", zipArchive(files));
   }
   scratch_.write("numbered/8.npz", "not an archive");
@@ -426,8 +429,10 @@ void TestNumpy::rowsThatAreNoEvents_areLeftOut() {
       read(npyArray("[('t_s', '<f8'), ('x', '<f8'), ('y', '<f8'), ('p', '<f8')]", "(8,)", bytes));
   QVERIFY(sameEvents(contents.events.at(0), {{1'500'000'000, 1, 2, true}, {2'000'000'000, 3, 65535, false}}));
   QCOMPARE(contents.faults.size(), std::size_t{2});
-  QVERIFY2(contents.faults[0].text.starts_with("2 rows have no time"), contents.faults[0].text.c_str());
-  QVERIFY2(contents.faults[1].text.starts_with("4 rows have coordinates"), contents.faults[1].text.c_str());
+  QVERIFY2(contents.faults[0].text.starts_with("2 rowsForNumpy have no time"),
+           contents.faults[0].text.c_str());
+  QVERIFY2(contents.faults[1].text.starts_with("4 rowsForNumpy have coordinates"),
+           contents.faults[1].text.c_str());
   QVERIFY(contents.faults[1].text.ends_with("from row 2 on."));
 }
 
@@ -435,7 +440,8 @@ void TestNumpy::stepsBack_areSortedOrEndAPacket() {
   std::vector<Event> events = theEvents();
   std::swap(events[5].time_ns, events[6].time_ns);
   for (std::size_t i = 1000; i < events.size(); ++i) events[i].time_ns -= 1'000'000'000;
-  const std::filesystem::path path = write(npyArray(kTonicDescr, shape(), rows(kTonic, 1000.0, 0.0, events)));
+  const std::filesystem::path path =
+      write(npyArray(kTonicDescr, shape(), rowsForNumpy(kTonic, 1000.0, 0.0, events)));
   const std::unique_ptr<RecordingReader> reader = openRecording(path);
   Packet packet;
   std::vector<std::size_t> sizes;
@@ -515,7 +521,7 @@ void TestNumpy::lies_areRefused_data() {
   row("huge list", npyFile(npyHeader("[('x', '<u2', (4294967296, 4294967296))]", shape()), ""),
       "not understood");
   row("nothing", npyFile(npyHeader("'|V0'", shape()), ""), "no bytes");
-  row("one column", npyArray("'<u2'", shape(), rows({{'x', "<u2"}}, 1.0)), "give the folder");
+  row("one column", npyArray("'<u2'", shape(), rowsForNumpy({{'x', "<u2"}}, 1.0)), "give the folder");
   row("boxes", npyArray("[('t', '<u8'), ('x', '<f4'), ('y', '<f4'), ('w', '<f4')]", "(0,)", ""), "no events");
   row("quaternions", npyArray("'<f8'", "(2, 4)", std::string(16, '?') + std::string(48, '\x3F')),
       "no events");
@@ -550,7 +556,7 @@ void TestNumpy::damage_isSaid_data() {
                         << said;
   };
   row("a million million rows", tonic(1'000'000'000'000), kCount, FaultKind::Truncated,
-      "claims 1000000000000 rows and has 3000");
+      "claims 1000000000000 rowsForNumpy and has 3000");
   std::vector<ZipFile> files = fourArrays(false);
   files[3].content = npyArray("'|i1'", "(10,)", "0123456789");
   row("one is shorter", zipArchive(files), 10, FaultKind::Truncated, "the first 10 are read");
@@ -563,7 +569,7 @@ void TestNumpy::damage_isSaid_data() {
   files = {{"events.npy", tonic(2 * kCount), true}};
   files[0].claimed_bytes = std::uint64_t{1} << 31;
   row("fewer bytes than claimed", zipArchive(files), kCount, FaultKind::Truncated,
-      "fewer rows than it claims");
+      "fewer rowsForNumpy than it claims");
   files = {{"events.npy", tonic(), true}};
   files[0].left_out_bytes = 500;
   QTest::newRow("packed bytes end early")
@@ -660,7 +666,7 @@ np.save('record.npy', a.view(np.recarray))
 aligned = np.zeros(3000, dtype=np.dtype([('p', '?'), ('t', '>f8'), ('x', '<f2'), ('y', '<u4')], align=True))
 aligned['t'], aligned['x'], aligned['y'], aligned['p'] = t * 1e-6, x, y, p
 np.save('aligned.npy', aligned)
-np.save('rows.npy', np.stack([t * 1e-6, x, y, p], axis=1))
+np.save('rowsForNumpy.npy', np.stack([t * 1e-6, x, y, p], axis=1))
 np.save('fortran.npy', np.asfortranarray(np.stack([x, y, t, p], axis=1)))
 np.savez('arrays.npz', x=x, y=y, t=t, p=p, more=np.array({'a': 1}))
 np.savez_compressed('packed.npz', x=x, y=y, timestamps=t, polarity=p.astype(np.int8) * 2 - 1, t_offset=0)
@@ -670,7 +676,7 @@ np.savez_compressed('events.npz', a)
   python.setWorkingDirectory(QString::fromStdString(scratch_.path().string()));
   python.start("/usr/bin/python3", {"-c", kScript});
   if (!python.waitForFinished(60'000) || python.exitCode() != 0) QSKIP("NumPy is not installed");
-  for (const char* file : {"structured.npy", "record.npy", "aligned.npy", "rows.npy", "fortran.npy",
+  for (const char* file : {"structured.npy", "record.npy", "aligned.npy", "rowsForNumpy.npy", "fortran.npy",
                            "arrays.npz", "packed.npz", "events.npz"})
     QVERIFY2(sameEvents(readAll(scratch_ / file).events.at(0), theEvents()), file);
 }

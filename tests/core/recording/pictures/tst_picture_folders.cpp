@@ -14,7 +14,7 @@ using namespace evical::test;
 
 namespace {
 
-constexpr std::int64_t kStart_ns = 1'403'636'579'763'555'584;
+constexpr std::int64_t kPictureFoldersStart_ns = 1'403'636'579'763'555'584;
 
 std::string nameAt(std::int64_t time_ns) {
   return std::to_string(time_ns) + ".png";
@@ -65,7 +65,7 @@ class TestPictureFolders : public QObject {
   void addEurocCamera(const std::string& folder, int count) const {
     std::string list = "#timestamp [ns],filename\r\n";
     for (int i = 0; i < count; ++i) {
-      const std::int64_t time_ns = kStart_ns + i * std::int64_t{50'000'000};
+      const std::int64_t time_ns = kPictureFoldersStart_ns + i * std::int64_t{50'000'000};
       list += std::to_string(time_ns) + "," + nameAt(time_ns) + "\r\n";
       scratch_->write(folder + "/data/" + nameAt(time_ns), pngBytes(752, 480) + std::to_string(i));
     }
@@ -105,7 +105,7 @@ void TestPictureFolders::euroc_isOneRecording() {
   QVERIFY(contents.streams[0].timed);
   const std::vector<Frame>& frames = contents.frames.at(1);
   QCOMPARE(frames.size(), std::size_t{3});
-  QCOMPARE(frames[2].time_ns, kStart_ns + 100'000'000);
+  QCOMPARE(frames[2].time_ns, kPictureFoldersStart_ns + 100'000'000);
   QVERIFY(frames[2].format == FrameFormat::Encoded);
   QCOMPARE(lastLetter(frames[2]), std::string("2"));
   QCOMPARE(contents.imu.at(2).size(), std::size_t{2});
@@ -134,7 +134,8 @@ void TestPictureFolders::eurocLists_sayBadLines() {
 void TestPictureFolders::kalibr_hasAStreamAFolder() {
   for (const char* camera : {"cam0", "cam1"})
     for (int i = 0; i < 3; ++i)
-      scratch_->write(std::string(camera) + "/" + nameAt(kStart_ns + i * 50'000'000), pngBytes(8, 6));
+      scratch_->write(std::string(camera) + "/" + nameAt(kPictureFoldersStart_ns + i * 50'000'000),
+                      pngBytes(8, 6));
   scratch_->write("cam1/notes.png", pngBytes(8, 6));
   scratch_->write(
       "imu0.csv",
@@ -142,7 +143,7 @@ void TestPictureFolders::kalibr_hasAStreamAFolder() {
   const Contents contents = readEverything(scratch_->path());
   QCOMPARE(contents.streams.size(), std::size_t{3});
   QCOMPARE(QString::fromStdString(contents.streams[1].name), QString("cam1"));
-  QCOMPARE(contents.frames.at(1)[2].time_ns, kStart_ns + 100'000'000);
+  QCOMPARE(contents.frames.at(1)[2].time_ns, kPictureFoldersStart_ns + 100'000'000);
   QCOMPARE(contents.frames.at(1).size(), std::size_t{3});
   QVERIFY(contents.hasFault(FaultKind::Untimed));  // notes.png
   QCOMPARE(contents.imu.at(2).size(), std::size_t{1});
@@ -244,13 +245,15 @@ void TestPictureFolders::names_areSortedNaturally() {
 
 void TestPictureFolders::missingAndBrokenPictures_areSaid() {
   addEurocCamera("cam0", 5);
-  const auto path = [&](int i) { return *scratch_ / ("cam0/data/" + nameAt(kStart_ns + i * 50'000'000)); };
+  const auto path = [&](int i) {
+    return *scratch_ / ("cam0/data/" + nameAt(kPictureFoldersStart_ns + i * 50'000'000));
+  };
   std::filesystem::remove(path(1));
-  scratch_->write("cam0/data/" + nameAt(kStart_ns + 2 * 50'000'000), "");
-  scratch_->write("cam0/data/" + nameAt(kStart_ns + 3 * 50'000'000), "no picture");
+  scratch_->write("cam0/data/" + nameAt(kPictureFoldersStart_ns + 2 * 50'000'000), "");
+  scratch_->write("cam0/data/" + nameAt(kPictureFoldersStart_ns + 3 * 50'000'000), "no picture");
   const Contents contents = readEverything(*scratch_ / "cam0");
   QCOMPARE(contents.frameCount(), 2u);
-  QCOMPARE(contents.frames.at(0)[1].time_ns, kStart_ns + 200'000'000);
+  QCOMPARE(contents.frames.at(0)[1].time_ns, kPictureFoldersStart_ns + 200'000'000);
   QCOMPARE(contents.faults.size(), std::size_t{3});
   QVERIFY(contents.hasFault(FaultKind::Unreadable));
   QVERIFY(contents.hasFault(FaultKind::Corrupt));
@@ -405,7 +408,7 @@ void TestPictureFolders::sizes_ofCutFiles_areUnknown() {
 // A pipe would be waited for.
 void TestPictureFolders::specialFiles_areNotOpened() {
   addEurocCamera("cam0", 2);
-  const std::filesystem::path path = *scratch_ / ("cam0/data/" + nameAt(kStart_ns));
+  const std::filesystem::path path = *scratch_ / ("cam0/data/" + nameAt(kPictureFoldersStart_ns));
   std::filesystem::remove(path);
   QCOMPARE(::mkfifo(path.c_str(), 0600), 0);
   const Contents contents = readEverything(*scratch_ / "cam0");

@@ -29,7 +29,7 @@ std::vector<std::int64_t> times_us(const std::vector<Event>& events) {
   return times;
 }
 
-bool same(const Event& event, std::int64_t time_us, int x_px, int y_px, bool brighter) {
+bool sameForEvt3Decoder(const Event& event, std::int64_t time_us, int x_px, int y_px, bool brighter) {
   return event.time_ns == 1000 * time_us && event.x_px == x_px && event.y_px == y_px &&
          event.brighter == brighter;
 }
@@ -57,12 +57,12 @@ void TestEvt3Decoder::words_becomeEvents() {
                  events);
   const std::int64_t time_us = 3 * 4096 + 5;
   QCOMPARE(events.size(), std::size_t{6});
-  QVERIFY(same(events[0], time_us, 9, 7, false));
-  QVERIFY(same(events[1], time_us, 10, 7, true));
-  QVERIFY(same(events[2], time_us, 100, 7, true));
-  QVERIFY(same(events[3], time_us, 111, 7, true));
-  QVERIFY(same(events[4], time_us, 113, 7, true));
-  QVERIFY(same(events[5], time_us, 119, 7, true));
+  QVERIFY(sameForEvt3Decoder(events[0], time_us, 9, 7, false));
+  QVERIFY(sameForEvt3Decoder(events[1], time_us, 10, 7, true));
+  QVERIFY(sameForEvt3Decoder(events[2], time_us, 100, 7, true));
+  QVERIFY(sameForEvt3Decoder(events[3], time_us, 111, 7, true));
+  QVERIFY(sameForEvt3Decoder(events[4], time_us, 113, 7, true));
+  QVERIFY(sameForEvt3Decoder(events[5], time_us, 119, 7, true));
   QCOMPARE(decoder.counts().triggers, std::uint64_t{1});
 }
 
@@ -74,9 +74,10 @@ void TestEvt3Decoder::state_livesOnBetweenBlocks() {
   whole_decoder.decode(all, whole);
   for (std::size_t i = 0; i < all.size(); i += 2) decoder.decode(all.substr(i, 2), events);
   QCOMPARE(whole.size(), std::size_t{21});
-  QVERIFY(std::equal(
-      whole.begin(), whole.end(), events.begin(), events.end(),
-      [](const Event& a, const Event& b) { return same(a, b.time_ns / 1000, b.x_px, b.y_px, b.brighter); }));
+  QVERIFY(std::equal(whole.begin(), whole.end(), events.begin(), events.end(),
+                     [](const Event& a, const Event& b) {
+                       return sameForEvt3Decoder(a, b.time_ns / 1000, b.x_px, b.y_px, b.brighter);
+                     }));
 }
 
 void TestEvt3Decoder::wordsBeforeTimeAndPlace_areCounted() {
@@ -96,7 +97,7 @@ void TestEvt3Decoder::lostWords_takeThePosition() {
   decoder.forgetPosition();
   decoder.decode(words({kEvent | 1, kVector8 | 1, kY | 2, kVector8 | 1, kEvent | 4}), events);
   QCOMPARE(events.size(), std::size_t{1});
-  QVERIFY(same(events[0], 4101, 4, 2, false));
+  QVERIFY(sameForEvt3Decoder(events[0], 4101, 4, 2, false));
 }
 
 void TestEvt3Decoder::time_wrapsAndGoesOn() {

@@ -1,4 +1,5 @@
 #include "core/base/error.h"
+#include "core/base/time.h"
 #include "tests/core/recording/recording_contents.h"
 #include "tests/support/packed_events.h"
 #include "tests/support/test_program.h"
@@ -10,11 +11,10 @@ using namespace evical::test;
 
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
 const std::string kEvt2Header = "% evt 2.0\n% format EVT2;height=480;width=640\n% geometry 640x480\n% end\n";
 
 // Rows of neighbours, some apart, over blocks of many sizes; whole us.
-std::vector<Event> rows(std::size_t count, std::int64_t start_ns) {
+std::vector<Event> rowsForPropheseeFiles(std::size_t count, std::int64_t start_ns) {
   std::vector<Event> events;
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t row = i / 5;
@@ -79,7 +79,7 @@ void TestPropheseeFiles::roundTrip_isExact_data() {
 
 void TestPropheseeFiles::roundTrip_isExact() {
   QFETCH(QString, format);
-  const std::vector<Event> events = rows(300'000, 2 * kSecond_ns);  // several blocks
+  const std::vector<Event> events = rowsForPropheseeFiles(300'000, 2 * kSecond_ns);  // several blocks
   const Contents contents = read(encoded(format, events));
   QVERIFY(contents.streams[0].type == StreamType::Events);
   QCOMPARE(contents.streams[0].time_unit_ns, std::int64_t{1000});
@@ -89,14 +89,14 @@ void TestPropheseeFiles::roundTrip_isExact() {
 
 void TestPropheseeFiles::size_isThatOfTheHeader() {
   for (const char* format : {"EVT2", "EVT2 old", "EVT2.1 legacy", "EVT3", "DAT"}) {
-    const Contents contents = read(encoded(format, rows(10, kSecond_ns)));
+    const Contents contents = read(encoded(format, rowsForPropheseeFiles(10, kSecond_ns)));
     QCOMPARE(contents.streams[0].resolution_px.width_px, 640);
     QCOMPARE(contents.streams[0].resolution_px.height_px, 480);
   }
 }
 
 void TestPropheseeFiles::everyCut_keepsWhatIsWhole() {
-  const std::vector<Event> events = rows(20, kSecond_ns);
+  const std::vector<Event> events = rowsForPropheseeFiles(20, kSecond_ns);
   for (const char* format : {"EVT2", "EVT2.1 little", "EVT3", "DAT"}) {
     const std::string header = encoded(format, {}), whole = encoded(format, events);
     for (std::size_t size = header.size(); size < whole.size(); ++size) {
@@ -130,15 +130,15 @@ void TestPropheseeFiles::time_wraps_data() {
 void TestPropheseeFiles::time_wraps() {
   QFETCH(QString, format);
   QFETCH(qlonglong, period_us);
-  const std::vector<Event> events = rows(5000, (period_us - 1000) * 1000);
+  const std::vector<Event> events = rowsForPropheseeFiles(5000, (period_us - 1000) * 1000);
   const Contents contents = read(encoded(format, events));
   QVERIFY(sameEvents(contents.events.at(0), events));
   if (format != "EVT3") QVERIFY(contents.hasFault(FaultKind::TimeWrap));
 }
 
 void TestPropheseeFiles::clockReset_startsAPacket() {
-  std::vector<Event> events = rows(100, 100 * kSecond_ns);
-  const std::vector<Event> later = rows(100, kSecond_ns);
+  std::vector<Event> events = rowsForPropheseeFiles(100, 100 * kSecond_ns);
+  const std::vector<Event> later = rowsForPropheseeFiles(100, kSecond_ns);
   events.insert(events.end(), later.begin(), later.end());
   const auto reader = openRecording(scratch_.write("reset.raw", kEvt2Header + encodeEvt2(events)));
   Packet packet;
@@ -150,7 +150,7 @@ void TestPropheseeFiles::clockReset_startsAPacket() {
 }
 
 void TestPropheseeFiles::disorder_isSortedAndSaid() {
-  std::vector<Event> events = rows(100, kSecond_ns);
+  std::vector<Event> events = rowsForPropheseeFiles(100, kSecond_ns);
   std::swap(events[50], events[60]);
   const Contents contents = read(kEvt2Header + encodeEvt2(events));
   QVERIFY(std::is_sorted(contents.events.at(0).begin(), contents.events.at(0).end(),
@@ -160,7 +160,7 @@ void TestPropheseeFiles::disorder_isSortedAndSaid() {
 }
 
 void TestPropheseeFiles::eventsOutside_areLeftOutWithTheirByte() {
-  std::vector<Event> events = rows(10, kSecond_ns);
+  std::vector<Event> events = rowsForPropheseeFiles(10, kSecond_ns);
   events[3].x_px = 640;
   events[4].y_px = 480;
   for (const char* format : {"EVT2", "EVT2.1 little", "EVT3", "DAT"}) {
@@ -175,14 +175,14 @@ void TestPropheseeFiles::eventsOutside_areLeftOutWithTheirByte() {
 }
 
 void TestPropheseeFiles::eventsBeforeTheFirstTime_areLeftOut() {
-  const std::string data = encodeEvt2(rows(10, kSecond_ns));
+  const std::string data = encodeEvt2(rowsForPropheseeFiles(10, kSecond_ns));
   const Contents contents = read(kEvt2Header + data.substr(4, 8) + data);
   QCOMPARE(contents.eventCount(), 10u);
   QVERIFY(contents.hasFault(FaultKind::Untimed));
 }
 
 void TestPropheseeFiles::strangeWords_areCounted() {
-  std::string data = encodeEvt2(rows(10, kSecond_ns));
+  std::string data = encodeEvt2(rowsForPropheseeFiles(10, kSecond_ns));
   appendWord(data, std::uint32_t{0x50000000});
   appendWord(data, std::uint32_t{0xD0000002});
   appendWord(data, std::uint32_t{0xE0000000});
@@ -193,7 +193,7 @@ void TestPropheseeFiles::strangeWords_areCounted() {
 }
 
 void TestPropheseeFiles::triggers_areCounted() {
-  std::string data = encodeEvt2(rows(10, kSecond_ns));
+  std::string data = encodeEvt2(rowsForPropheseeFiles(10, kSecond_ns));
   appendWord(data, std::uint32_t{0xA0000001});
   appendWord(data, std::uint32_t{0xA0000000});
   const Contents contents = read(kEvt2Header + data);
@@ -240,7 +240,8 @@ void TestPropheseeFiles::badHeaders_areRefused() {
 }
 
 void TestPropheseeFiles::unknownSize_isSaid() {
-  const Contents contents = read("% evt 2.0\n% geometry 0x99999\n% end\n" + encodeEvt2(rows(10, kSecond_ns)));
+  const Contents contents =
+      read("% evt 2.0\n% geometry 0x99999\n% end\n" + encodeEvt2(rowsForPropheseeFiles(10, kSecond_ns)));
   QVERIFY(!contents.streams[0].resolution_px.known());
   QVERIFY(contents.hasFault(FaultKind::NoResolution));
   QCOMPARE(contents.eventCount(), 10u);

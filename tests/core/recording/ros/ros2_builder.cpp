@@ -1,4 +1,5 @@
 #include "tests/core/recording/ros/ros2_builder.h"
+#include "core/base/time.h"
 
 #include <sqlite3.h>
 
@@ -8,16 +9,15 @@
 namespace evical::test {
 namespace {
 
-constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::string_view kRos2BuilderMagic("\x89MCAP0\r\n", 8);
 
 template <class Number>
-std::string bytesOf(Number value) {
+std::string bytesOfRos2Builder(Number value) {
   return std::string(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
 std::string sized(std::string_view content) {
-  return bytesOf(static_cast<std::uint32_t>(content.size())) + std::string(content);
+  return bytesOfRos2Builder(static_cast<std::uint32_t>(content.size())) + std::string(content);
 }
 
 class Cdr {
@@ -27,7 +27,7 @@ class Cdr {
   template <class Number>
   void add(Number value) {
     while (body_.size() % sizeof value != 0) body_.push_back('\0');
-    std::string bytes = bytesOf(value);
+    std::string bytes = bytesOfRos2Builder(value);
     if (big_endian_) std::reverse(bytes.begin(), bytes.end());
     body_ += bytes;
   }
@@ -48,9 +48,10 @@ class Cdr {
 };
 
 std::string chunkRecord(const std::string& records) {
-  const std::string content = bytesOf(std::uint64_t{0}) + bytesOf(std::uint64_t{0}) +
-                              bytesOf(std::uint64_t{records.size()}) + bytesOf(std::uint32_t{0}) + sized("") +
-                              bytesOf(std::uint64_t{records.size()}) + records;
+  const std::string content = bytesOfRos2Builder(std::uint64_t{0}) + bytesOfRos2Builder(std::uint64_t{0}) +
+                              bytesOfRos2Builder(std::uint64_t{records.size()}) +
+                              bytesOfRos2Builder(std::uint32_t{0}) + sized("") +
+                              bytesOfRos2Builder(std::uint64_t{records.size()}) + records;
   return mcapRecord(0x06, content);
 }
 
@@ -94,33 +95,36 @@ std::string cdrImu(const ImuSample& sample) {
 }
 
 std::string mcapRecord(std::uint8_t op, std::string_view content) {
-  return bytesOf(op) + bytesOf(std::uint64_t{content.size()}) + std::string(content);
+  return bytesOfRos2Builder(op) + bytesOfRos2Builder(std::uint64_t{content.size()}) + std::string(content);
 }
 
 std::string mcapFile(const std::vector<RosTopic>& topics, const std::vector<RosMessage>& messages,
                      std::size_t chunk_messages) {
-  std::string file = std::string(kMagic) + mcapRecord(0x01, sized("ros2") + sized("test"));
+  std::string file = std::string(kRos2BuilderMagic) + mcapRecord(0x01, sized("ros2") + sized("test"));
   std::string records;
   for (std::size_t i = 0; i < topics.size(); ++i) {
     const auto id = static_cast<std::uint16_t>(i + 1);
-    records += mcapRecord(0x03, bytesOf(id) + sized(topics[i].type) + sized("ros2msg") + sized(""));
-    records += mcapRecord(
-        0x04, bytesOf(id) + bytesOf(id) + sized(topics[i].name) + sized(topics[i].encoding) + sized(""));
+    records +=
+        mcapRecord(0x03, bytesOfRos2Builder(id) + sized(topics[i].type) + sized("ros2msg") + sized(""));
+    records += mcapRecord(0x04, bytesOfRos2Builder(id) + bytesOfRos2Builder(id) + sized(topics[i].name) +
+                                    sized(topics[i].encoding) + sized(""));
   }
   std::size_t gathered = 0;
   for (const RosMessage& message : messages) {
     records +=
-        mcapRecord(0x05, bytesOf(static_cast<std::uint16_t>(message.topic + 1)) + bytesOf(std::uint32_t{0}) +
-                             bytesOf(message.time_ns) + bytesOf(message.time_ns) + message.bytes);
+        mcapRecord(0x05, bytesOfRos2Builder(static_cast<std::uint16_t>(message.topic + 1)) +
+                             bytesOfRos2Builder(std::uint32_t{0}) + bytesOfRos2Builder(message.time_ns) +
+                             bytesOfRos2Builder(message.time_ns) + message.bytes);
     if (chunk_messages == 0 || ++gathered < chunk_messages) continue;
     file += chunkRecord(records);
     records.clear();
     gathered = 0;
   }
   file += chunk_messages != 0 && !records.empty() ? chunkRecord(records) : records;
-  const std::string footer =
-      bytesOf(std::uint64_t{0}) + bytesOf(std::uint64_t{0}) + bytesOf(std::uint32_t{0});
-  return file + mcapRecord(0x0F, bytesOf(std::uint32_t{0})) + mcapRecord(0x02, footer) + std::string(kMagic);
+  const std::string footer = bytesOfRos2Builder(std::uint64_t{0}) + bytesOfRos2Builder(std::uint64_t{0}) +
+                             bytesOfRos2Builder(std::uint32_t{0});
+  return file + mcapRecord(0x0F, bytesOfRos2Builder(std::uint32_t{0})) + mcapRecord(0x02, footer) +
+         std::string(kRos2BuilderMagic);
 }
 
 void writeSqliteBag(const std::filesystem::path& path, const std::vector<RosTopic>& topics,

@@ -14,7 +14,7 @@ using namespace evical::test;
 namespace {
 
 constexpr const char* kMd5 = "8a6101b351a64529ac77bd8b71074e52";
-constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
+constexpr std::int64_t kEventPacketsStart_ns = 1'700'000'000'000'000'000;
 
 template <class Word>
 std::string words(std::initializer_list<std::uint64_t> list) {
@@ -25,8 +25,8 @@ std::string words(std::initializer_list<std::uint64_t> list) {
 
 struct PacketFields {
   std::string encoding, events;
-  std::int64_t stamp_ns = kStart_ns;
-  std::uint64_t sequence = 0, time_base_ns = kStart_ns;
+  std::int64_t stamp_ns = kEventPacketsStart_ns;
+  std::uint64_t sequence = 0, time_base_ns = kEventPacketsStart_ns;
   bool big_endian = false;
 };
 
@@ -49,7 +49,7 @@ std::string evt3(std::initializer_list<std::uint64_t> list) {
   return words<std::uint16_t>(list);
 }
 
-bool same(const Event& event, std::int64_t time_ns, int x_px, int y_px, bool brighter) {
+bool sameForEventPackets(const Event& event, std::int64_t time_ns, int x_px, int y_px, bool brighter) {
   return event.time_ns == time_ns && event.x_px == x_px && event.y_px == y_px && event.brighter == brighter;
 }
 
@@ -112,8 +112,8 @@ void TestEventPackets::mono_isDecoded() {
   const Contents contents = contentsOf(bagOf({{"mono", words<std::uint64_t>({first, 4'000'000'000})}}));
   const std::vector<Event>& events = contents.events.at(0);
   QCOMPARE(events.size(), std::size_t{2});
-  QVERIFY(same(events[0], kStart_ns + 5, 63, 47, true));
-  QVERIFY(same(events[1], kStart_ns + 4'000'000'000, 0, 0, false));
+  QVERIFY(sameForEventPackets(events[0], kEventPacketsStart_ns + 5, 63, 47, true));
+  QVERIFY(sameForEventPackets(events[1], kEventPacketsStart_ns + 4'000'000'000, 0, 0, false));
   QCOMPARE(contents.streams.at(0).resolution_px, (Resolution{64, 48}));
   QVERIFY(contents.faults.empty());
 }
@@ -124,8 +124,8 @@ void TestEventPackets::libcaer_isDecoded() {
       contentsOf(bagOf({{"libcaer", words<std::uint32_t>({address, 12, invalid, 13, address & ~2U, 14})}}));
   const std::vector<Event>& events = contents.events.at(0);
   QCOMPARE(events.size(), std::size_t{2});
-  QVERIFY(same(events[0], kStart_ns + 12'000, 63, 47, true));
-  QVERIFY(same(events[1], kStart_ns + 14'000, 63, 47, false));
+  QVERIFY(sameForEventPackets(events[0], kEventPacketsStart_ns + 12'000, 63, 47, true));
+  QVERIFY(sameForEventPackets(events[1], kEventPacketsStart_ns + 14'000, 63, 47, false));
 }
 
 void TestEventPackets::libcaer_wrapsWithinAMessage() {
@@ -138,27 +138,30 @@ void TestEventPackets::libcaer_wrapsWithinAMessage() {
 void TestEventPackets::libcaerCmp_isDecodedAndWarnedOf() {
   const Contents contents =
       contentsOf(bagOf({{"libcaer_cmp", evt3({0x0001, 0x1002, 0x203F, 0x382F, 0x4008, 0x5081, 0x5001})},
-                        {"libcaer_cmp", evt3({0x2001, 0x3002}), kStart_ns + 1, 1, kStart_ns + 10'000'000}}));
+                        {"libcaer_cmp", evt3({0x2001, 0x3002}), kEventPacketsStart_ns + 1, 1,
+                         kEventPacketsStart_ns + 10'000'000}}));
   const std::vector<Event>& events = contents.events.at(0);
   QCOMPARE(events.size(), std::size_t{5});
-  QVERIFY(same(events[0], kStart_ns + 4'098'000, 63, 47, true));
-  QVERIFY(same(events[1], kStart_ns + 4'098'000, 63, 8, false));
-  QVERIFY(same(events[2], kStart_ns + 4'098'000, 63, 15, false));
-  QVERIFY(same(events[3], kStart_ns + 4'098'000, 63, 16, false));
-  QVERIFY(same(events[4], kStart_ns + 10'000'000, 1, 2, false));  // time starts anew
+  QVERIFY(sameForEventPackets(events[0], kEventPacketsStart_ns + 4'098'000, 63, 47, true));
+  QVERIFY(sameForEventPackets(events[1], kEventPacketsStart_ns + 4'098'000, 63, 8, false));
+  QVERIFY(sameForEventPackets(events[2], kEventPacketsStart_ns + 4'098'000, 63, 15, false));
+  QVERIFY(sameForEventPackets(events[3], kEventPacketsStart_ns + 4'098'000, 63, 16, false));
+  QVERIFY(
+      sameForEventPackets(events[4], kEventPacketsStart_ns + 10'000'000, 1, 2, false));  // time starts anew
   QVERIFY(faultOf(contents, FaultKind::Encoding) != nullptr);
 }
 
 void TestEventPackets::evt3_livesOnFromMessageToMessage() {
-  const Contents contents = contentsOf(bagOf({{"evt3", evt3({0x8001, 0x6002, 0x0003, 0x3004})},
-                                              {"evt3", evt3({0x4801}), kStart_ns, 1},
-                                              {"evt3", evt3({0x5001, 0x2030, 0x2041}), kStart_ns, 2}}));
+  const Contents contents =
+      contentsOf(bagOf({{"evt3", evt3({0x8001, 0x6002, 0x0003, 0x3004})},
+                        {"evt3", evt3({0x4801}), kEventPacketsStart_ns, 1},
+                        {"evt3", evt3({0x5001, 0x2030, 0x2041}), kEventPacketsStart_ns, 2}}));
   const std::vector<Event>& events = contents.events.at(0);
   QCOMPARE(events.size(), std::size_t{4});
-  QVERIFY(same(events[0], 4'098'000, 4, 3, false));
-  QVERIFY(same(events[1], 4'098'000, 15, 3, false));
-  QVERIFY(same(events[2], 4'098'000, 16, 3, false));
-  QVERIFY(same(events[3], 4'098'000, 48, 3, false));  // x 65 is outside
+  QVERIFY(sameForEventPackets(events[0], 4'098'000, 4, 3, false));
+  QVERIFY(sameForEventPackets(events[1], 4'098'000, 15, 3, false));
+  QVERIFY(sameForEventPackets(events[2], 4'098'000, 16, 3, false));
+  QVERIFY(sameForEventPackets(events[3], 4'098'000, 48, 3, false));  // x 65 is outside
   QVERIFY(faultOf(contents, FaultKind::Outside) != nullptr);
 }
 
@@ -167,8 +170,8 @@ void TestEventPackets::evt3_offsetToTheHost_isTheLeastDelay() {
   constexpr std::int64_t kDelays_ns[] = {900'000, 250'000, 400'000};
   for (std::uint64_t i = 0; i < 3; ++i) {
     const std::int64_t sensor_ns = 1000 * static_cast<std::int64_t>(4096 * (i + 1));
-    packets.push_back(
-        {"evt3", evt3({0x8001 + i, 0x6000, 0x0003, 0x2004}), kStart_ns + sensor_ns + kDelays_ns[i], i});
+    packets.push_back({"evt3", evt3({0x8001 + i, 0x6000, 0x0003, 0x2004}),
+                       kEventPacketsStart_ns + sensor_ns + kDelays_ns[i], i});
   }
   const Contents contents = contentsOf(bagOf(packets));
   const std::optional<double> offset_s = contents.streams.at(0).host_clock_offset_s;
@@ -178,18 +181,19 @@ void TestEventPackets::evt3_offsetToTheHost_isTheLeastDelay() {
 }
 
 void TestEventPackets::lostMessage_takesThePosition() {
-  const Contents contents = contentsOf(bagOf({{"evt3", evt3({0x8001, 0x6002, 0x0003, 0x2004})},
-                                              {"evt3", evt3({0x2005, 0x0009, 0x2006}), kStart_ns, 3}}));
+  const Contents contents =
+      contentsOf(bagOf({{"evt3", evt3({0x8001, 0x6002, 0x0003, 0x2004})},
+                        {"evt3", evt3({0x2005, 0x0009, 0x2006}), kEventPacketsStart_ns, 3}}));
   const std::vector<Event>& events = contents.events.at(0);
   QCOMPARE(events.size(), std::size_t{2});
-  QVERIFY(same(events[1], 4'098'000, 6, 9, false));
+  QVERIFY(sameForEventPackets(events[1], 4'098'000, 6, 9, false));
   const RecordingFault* fault = faultOf(contents, FaultKind::LostMessages);
   QVERIFY(fault != nullptr && fault->text.starts_with("2 messages"));
 }
 
 void TestEventPackets::triggers_areListed() {
   const Contents contents = contentsOf(bagOf({{"evt3", evt3({0x8001, 0x6002, 0x0003, 0x2004, 0xA101})},
-                                              {"evt3", evt3({0xA100, 0xA101}), kStart_ns, 1}}));
+                                              {"evt3", evt3({0xA100, 0xA101}), kEventPacketsStart_ns, 1}}));
   QCOMPARE(contents.streams.size(), std::size_t{2});
   QCOMPARE(contents.streams[1].type, StreamType::Triggers);
   QCOMPARE(contents.streams[1].messages, std::uint64_t{3});
@@ -201,8 +205,8 @@ void TestEventPackets::triggers_areListedWhereverTheyOccur() {
   for (const std::uint64_t triggers : {0, 2}) {
     std::vector<PacketFields> packets;
     for (std::uint64_t i = 0; i < kMessages; ++i)
-      packets.push_back({"evt3", evt3({0x8001, 0x6000 + i, 0x0003, 0x2004}), kStart_ns, i});
-    if (triggers > 0) packets.push_back({"evt3", evt3({0xA101, 0xA100}), kStart_ns, kMessages});
+      packets.push_back({"evt3", evt3({0x8001, 0x6000 + i, 0x0003, 0x2004}), kEventPacketsStart_ns, i});
+    if (triggers > 0) packets.push_back({"evt3", evt3({0xA101, 0xA100}), kEventPacketsStart_ns, kMessages});
     const std::filesystem::path path = folder_.write("late.bag", bagOf(packets));
     const std::unique_ptr<RecordingReader> reader = openRecording(path);
     QCOMPARE(reader->streams().size(), std::size_t{2});
@@ -236,8 +240,8 @@ void TestEventPackets::unknownEncoding_isNamed() {
 }
 
 void TestEventPackets::bigEndian_isRefused() {
-  const Contents contents =
-      contentsOf(bagOf({{"mono", words<std::uint64_t>({7}), kStart_ns, 0, kStart_ns, true}}));
+  const Contents contents = contentsOf(
+      bagOf({{"mono", words<std::uint64_t>({7}), kEventPacketsStart_ns, 0, kEventPacketsStart_ns, true}}));
   QCOMPARE(contents.eventCount(), std::size_t{0});
   QVERIFY(faultOf(contents, FaultKind::Corrupt) != nullptr);
 }
@@ -245,8 +249,8 @@ void TestEventPackets::bigEndian_isRefused() {
 void TestEventPackets::baseThatIsNoTime_isRefused() {
   for (const char* encoding : {"mono", "libcaer", "libcaer_cmp"}) {
     for (const std::uint64_t base_ns : {std::uint64_t{1} << 62, ~std::uint64_t{0}}) {
-      const Contents contents = contentsOf(
-          bagOf({{encoding, words<std::uint64_t>({7, ~std::uint64_t{0}}), kStart_ns, 0, base_ns}}));
+      const Contents contents = contentsOf(bagOf(
+          {{encoding, words<std::uint64_t>({7, ~std::uint64_t{0}}), kEventPacketsStart_ns, 0, base_ns}}));
       QCOMPARE(contents.eventCount(), std::size_t{0});
       QVERIFY(faultOf(contents, FaultKind::Corrupt) != nullptr);
     }

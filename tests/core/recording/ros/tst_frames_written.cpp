@@ -13,11 +13,11 @@ using namespace evical::test;
 
 namespace {
 
-constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
+constexpr std::int64_t kFramesWrittenStart_ns = 1'700'000'000'000'000'000;
 
 Frame plainFrame(FrameFormat format, std::size_t pixel_bytes, int number = 0) {
   Frame frame;
-  frame.time_ns = kStart_ns + number * 50'000'000LL;
+  frame.time_ns = kFramesWrittenStart_ns + number * 50'000'000LL;
   frame.format = format;
   frame.size_px = {3, 2};
   frame.row_bytes = 3 * pixel_bytes + 1;  // rows with a gap
@@ -29,13 +29,13 @@ Frame plainFrame(FrameFormat format, std::size_t pixel_bytes, int number = 0) {
 
 Frame encodedFrame(const std::string& bytes, int number = 0) {
   Frame frame;
-  frame.time_ns = kStart_ns + number * 50'000'000LL;
+  frame.time_ns = kFramesWrittenStart_ns + number * 50'000'000LL;
   frame.format = FrameFormat::Encoded;
   frame.bytes.assign(bytes.begin(), bytes.end());
   return frame;
 }
 
-bool same(const Frame& a, const Frame& b) {
+bool sameForFramesWritten(const Frame& a, const Frame& b) {
   const bool layout = a.format == FrameFormat::Encoded ||
                       (a.size_px == b.size_px && a.row_bytes == b.row_bytes && a.big_endian == b.big_endian);
   return a.time_ns == b.time_ns && a.format == b.format && a.bytes == b.bytes && layout;
@@ -89,8 +89,8 @@ void TestFramesWritten::roundTrip_isExact() {
       plain.push_back(plainFrame(kind, pixel_bytes, i));
       packed.push_back(encodedFrame(i == 1 ? jpegBytes(8, 6) : pngBytes(8, 6), i));
     }
-    const auto samples = someSamples(150, kStart_ns);
-    const auto events = someEvents(2000, kStart_ns);
+    const auto samples = someSamples(150, kFramesWrittenStart_ns);
+    const auto events = someEvents(2000, kFramesWrittenStart_ns);
     const auto written = writer(format);
     for (std::size_t i = 0; i < 3; ++i) {
       written->write(2, std::span(samples).subspan(50 * i, 50));
@@ -108,7 +108,8 @@ void TestFramesWritten::roundTrip_isExact() {
     for (const auto& [stream, frames] : contents.frames) {
       const std::vector<Frame>& expected =
           contents.streams[stream].name == "/camera/image_raw" ? plain : packed;
-      QVERIFY(std::equal(frames.begin(), frames.end(), expected.begin(), expected.end(), same));
+      QVERIFY(
+          std::equal(frames.begin(), frames.end(), expected.begin(), expected.end(), sameForFramesWritten));
     }
   }
 }
@@ -170,7 +171,7 @@ void TestFramesWritten::rosReadsThem() {
       QString("sensor_msgs/Image bgr8 3 2 10 %1\nsensor_msgs/CompressedImage jpeg %2 %3\n")
           .arg(sum)
           .arg(jpegBytes(8, 6).size())
-          .arg(kStart_ns + 50'000'000);
+          .arg(kFramesWrittenStart_ns + 50'000'000);
   const QString printed = process.readAllStandardOutput();
   QVERIFY2(process.exitCode() == 0 && printed == expected,
            qPrintable(printed + process.readAllStandardError()));

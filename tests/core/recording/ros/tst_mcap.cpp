@@ -16,17 +16,17 @@ using namespace evical::test;
 
 namespace {
 
-constexpr Resolution kSize_px = {64, 48};
+constexpr Resolution kMcapSize_px = {64, 48};
 
-const std::vector<RosTopic> kTopics = {{"/events", "dvs_msgs/msg/EventArray"},
-                                       {"/imu", "sensor_msgs/msg/Imu"}};
+const std::vector<RosTopic> kMcapTopics = {{"/events", "dvs_msgs/msg/EventArray"},
+                                           {"/imu", "sensor_msgs/msg/Imu"}};
 
 // 30 messages of 100 events, and as many samples.
 std::vector<RosMessage> someMessages() {
   std::vector<RosMessage> messages;
   const std::vector<ImuSample> samples = someSamples(30);
   for (const ImuSample& sample : samples) {
-    messages.push_back({0, sample.time_ns, cdrEvents(kSize_px, someEvents(100, sample.time_ns))});
+    messages.push_back({0, sample.time_ns, cdrEvents(kMcapSize_px, someEvents(100, sample.time_ns))});
     messages.push_back({1, sample.time_ns, cdrImu(sample)});
   }
   return messages;
@@ -74,7 +74,7 @@ class TestMcap : public QObject {
  private:
   std::filesystem::path write(McapCompression compression, const std::vector<Event>& events,
                               const std::vector<ImuSample>& samples) const {
-    const std::vector<StreamInfo> streams = {{"/events", StreamType::Events, "", kSize_px},
+    const std::vector<StreamInfo> streams = {{"/events", StreamType::Events, "", kMcapSize_px},
                                              {"/imu", StreamType::Imu, "", {}}};
     const auto writer = createMcap(folder_ / "a.mcap", streams, compression);
     std::size_t event = 0;
@@ -106,7 +106,7 @@ void TestMcap::roundTrip_isExact() {
   QVERIFY(contents.faults.empty());
   QCOMPARE(contents.streams.size(), std::size_t{2});
   QCOMPARE(contents.streams[0].message, "dvs_msgs/msg/EventArray");
-  QCOMPARE(contents.streams[0].resolution_px, kSize_px);
+  QCOMPARE(contents.streams[0].resolution_px, kMcapSize_px);
   QCOMPARE(contents.streams[1].messages, std::uint64_t{2000});
   QVERIFY(sameEvents(contents.events.at(0), events));
   QVERIFY(sameSamples(contents.imu.at(1), samples));
@@ -132,8 +132,8 @@ void TestMcap::filesOfOthers_areRead_data() {
 
 void TestMcap::filesOfOthers_areRead() {
   QFETCH(int, chunk_messages);
-  const Contents contents = readAll(
-      folder_.write("b.mcap", mcapFile(kTopics, someMessages(), static_cast<std::size_t>(chunk_messages))));
+  const Contents contents = readAll(folder_.write(
+      "b.mcap", mcapFile(kMcapTopics, someMessages(), static_cast<std::size_t>(chunk_messages))));
   QVERIFY(contents.faults.empty());
   QCOMPARE(contents.streams.at(0).messages, std::uint64_t{30});
   QVERIFY(sameEvents(contents.events.at(0), eventsOfMessages(30)));
@@ -143,7 +143,7 @@ void TestMcap::filesOfOthers_areRead() {
 void TestMcap::bigEndianMessages_areRead() {
   const std::vector<Event> events = someEvents(10);
   const Contents contents = readAll(folder_.write(
-      "be.mcap", mcapFile(kTopics, {{0, events[0].time_ns, cdrEvents(kSize_px, events, true)}})));
+      "be.mcap", mcapFile(kMcapTopics, {{0, events[0].time_ns, cdrEvents(kMcapSize_px, events, true)}})));
   QVERIFY(sameEvents(contents.events.at(0), events));
 }
 
@@ -193,7 +193,7 @@ void TestMcap::truncation_givesWhatIsWhole() {
 void TestMcap::truncationAtEveryByte_ofAPlainFile_isSurvived() {
   std::vector<RosMessage> messages = someMessages();
   messages.resize(4);
-  const std::string whole = mcapFile(kTopics, messages, 3);
+  const std::string whole = mcapFile(kMcapTopics, messages, 3);
   for (std::size_t size = 8; size < whole.size(); size += size % 3 + 1) {
     const Contents contents = readAll(folder_.write("cut.mcap", whole.substr(0, size)));
     QVERIFY2(contents.hasFault(FaultKind::NoIndex), qPrintable(QString("cut at %1").arg(size)));
@@ -224,7 +224,7 @@ void TestMcap::bytesMissingFromTheBeginning_areSaid_data() {
 // Of the first records: everything comes out, or there is a fault.
 void TestMcap::bytesMissingFromTheBeginning_areSaid() {
   QFETCH(int, chunk_messages);
-  const std::string whole = mcapFile(kTopics, someMessages(), static_cast<std::size_t>(chunk_messages));
+  const std::string whole = mcapFile(kMcapTopics, someMessages(), static_cast<std::size_t>(chunk_messages));
   for (std::size_t at = 8; at < 160; at += 3) {
     for (const std::size_t count : {1, 2, 5, 8, 9, 17, 27, 40, 64}) {
       std::string bytes = whole;
@@ -237,7 +237,7 @@ void TestMcap::bytesMissingFromTheBeginning_areSaid() {
 }
 
 void TestMcap::missingSchema_isSaid() {
-  std::string bytes = mcapFile(kTopics, someMessages());
+  std::string bytes = mcapFile(kMcapTopics, someMessages());
   std::size_t second = bytes.find('\3');  // the record's kind; its id stands behind the length
   while (bytes.compare(second + 9, 2, std::string("\2\0", 2)) != 0) second = bytes.find('\3', second + 1);
   bytes[second] = '\x0C';  // metadata, which readers pass over

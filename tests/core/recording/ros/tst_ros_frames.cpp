@@ -14,11 +14,11 @@ using namespace evical::test;
 
 namespace {
 
-constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
+constexpr std::int64_t kRosFramesStart_ns = 1'700'000'000'000'000'000;
 constexpr const char* kImageMd5 = "060021388200f6f0f447d0fcd9c64743";
 
 TestImage someImage(const std::string& encoding, std::uint32_t pixel_bytes, std::uint32_t padding = 0) {
-  TestImage image{kStart_ns, 3, 2, encoding, false, 3 * pixel_bytes + padding, ""};
+  TestImage image{kRosFramesStart_ns, 3, 2, encoding, false, 3 * pixel_bytes + padding, ""};
   for (std::uint32_t i = 0; i < image.step * image.height; ++i)
     image.bytes.push_back(static_cast<char>(i + 1));
   return image;
@@ -57,7 +57,7 @@ class TestRosFrames : public QObject {
     BagBuilder builder;
     const std::uint32_t topic =
         builder.addConnection("/camera", type, type == "sensor_msgs/Image" ? kImageMd5 : "*");
-    std::int64_t time_ns = kStart_ns;
+    std::int64_t time_ns = kRosFramesStart_ns;
     for (const std::string& message : messages) builder.message(topic, time_ns += 50'000'000, message);
     return scratch_.write("a.bag", builder.finished());
   }
@@ -95,7 +95,7 @@ void TestRosFrames::encodings_comeAsTheyAre() {
     const Contents contents = readEverything(bag({imageMessage(image, false)}));
     QCOMPARE(contents.frameCount(), 1u);
     const Frame& frame = contents.frames.at(0).front();
-    QCOMPARE(frame.time_ns, kStart_ns);
+    QCOMPARE(frame.time_ns, kRosFramesStart_ns);
     QCOMPARE(static_cast<int>(frame.format), format);
     QCOMPARE(frame.big_endian, big_endian);
     QCOMPARE(frame.size_px.width_px, 3);
@@ -136,7 +136,7 @@ void TestRosFrames::containers_areAlike() {
   QCOMPARE(contents.frames.size(), std::size_t{2});
   for (const auto& [stream, frames] : contents.frames) {
     QCOMPARE(frames.size(), std::size_t{5});
-    QCOMPARE(frames[4].time_ns, kStart_ns + 200'000'000);
+    QCOMPARE(frames[4].time_ns, kRosFramesStart_ns + 200'000'000);
     const bool packed = contents.streams[stream].name == "/packed";
     QCOMPARE(contents.streams[stream].resolution_px.width_px, packed ? 8 : 3);
     QCOMPARE(frames[0].format == FrameFormat::Encoded, packed);
@@ -213,13 +213,14 @@ void TestRosFrames::packedImages_comeAsTheyAre() {
   QFETCH(QString, format);
   QFETCH(bool, png);
   const std::string bytes = png ? pngBytes(640, 480) : jpegBytes(640, 480);
-  const Contents contents = readEverything(
-      bag({compressedMessage(kStart_ns, format.toStdString(), bytes, false)}, "sensor_msgs/CompressedImage"));
+  const Contents contents =
+      readEverything(bag({compressedMessage(kRosFramesStart_ns, format.toStdString(), bytes, false)},
+                         "sensor_msgs/CompressedImage"));
   QCOMPARE(contents.frameCount(), 1u);
   const Frame& frame = contents.frames.at(0).front();
   QVERIFY(frame.format == FrameFormat::Encoded);
   QVERIFY(frame.bytes == asBytes(bytes));
-  QCOMPARE(frame.time_ns, kStart_ns);
+  QCOMPARE(frame.time_ns, kRosFramesStart_ns);
   QCOMPARE(contents.streams[0].resolution_px.width_px, 640);
   QCOMPARE(contents.streams[0].resolution_px.height_px, 480);
 }
@@ -233,7 +234,7 @@ void TestRosFrames::otherTransports_areRefusedByName_data() {
 void TestRosFrames::otherTransports_areRefusedByName() {
   QFETCH(QString, format);
   const auto reader =
-      openRecording(bag({compressedMessage(kStart_ns, format.toStdString(), pngBytes(8, 6), false)},
+      openRecording(bag({compressedMessage(kRosFramesStart_ns, format.toStdString(), pngBytes(8, 6), false)},
                         "sensor_msgs/CompressedImage"));
   QVERIFY(!reader->streams()[0].readable);
   try {
@@ -246,10 +247,11 @@ void TestRosFrames::otherTransports_areRefusedByName() {
 }
 
 void TestRosFrames::packedBytesThatAreNoPicture_areSaid() {
-  const Contents contents = readEverything(bag({compressedMessage(kStart_ns, "png", "no picture", false),
-                                                compressedMessage(kStart_ns, "png", "", false),
-                                                compressedMessage(kStart_ns, "png", pngBytes(8, 6), false)},
-                                               "sensor_msgs/CompressedImage"));
+  const Contents contents =
+      readEverything(bag({compressedMessage(kRosFramesStart_ns, "png", "no picture", false),
+                          compressedMessage(kRosFramesStart_ns, "png", "", false),
+                          compressedMessage(kRosFramesStart_ns, "png", pngBytes(8, 6), false)},
+                         "sensor_msgs/CompressedImage"));
   QCOMPARE(contents.frameCount(), 1u);
   QVERIFY(contents.hasFault(FaultKind::Corrupt));
 }
@@ -260,7 +262,7 @@ void TestRosFrames::zeroStamps_giveWayToTheRecordsTimes() {
   const std::string message = imageMessage(image, false);
   const Contents contents = readEverything(bag({message, message, message}));
   QCOMPARE(contents.frameCount(), 3u);
-  QCOMPARE(contents.frames.at(0)[1].time_ns, kStart_ns + 100'000'000);
+  QCOMPARE(contents.frames.at(0)[1].time_ns, kRosFramesStart_ns + 100'000'000);
   QVERIFY(contents.hasFault(FaultKind::NoStamps));
 }
 

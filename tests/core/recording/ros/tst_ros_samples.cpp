@@ -12,10 +12,10 @@ using namespace evical;
 
 namespace {
 
-const std::filesystem::path kData = test::sourcePath("tests/data/recordings");
+const std::filesystem::path kRosSamplesData = test::sourcePath("tests/data/recordings");
 
 Inspection inspect(const char* name) {
-  const std::unique_ptr<RecordingReader> reader = openRecording(kData / name);
+  const std::unique_ptr<RecordingReader> reader = openRecording(kRosSamplesData / name);
   return inspectRecording(*reader);
 }
 

@@ -15,11 +15,11 @@ using namespace evical::test;
 
 namespace {
 
-constexpr Resolution kSize_px = {64, 48};
+constexpr Resolution kSqliteBagSize_px = {64, 48};
 
-const std::vector<RosTopic> kTopics = {{"/events", "dvs_msgs/msg/EventArray"},
-                                       {"/imu", "sensor_msgs/msg/Imu"},
-                                       {"/text", "std_msgs/msg/String"}};
+const std::vector<RosTopic> kSqliteBagTopics = {{"/events", "dvs_msgs/msg/EventArray"},
+                                                {"/imu", "sensor_msgs/msg/Imu"},
+                                                {"/text", "std_msgs/msg/String"}};
 
 // Messages `first` to `first + count` of a recording with one event message and one sample each ms.
 std::vector<RosMessage> messagesFrom(std::size_t first, std::size_t count) {
@@ -27,7 +27,7 @@ std::vector<RosMessage> messagesFrom(std::size_t first, std::size_t count) {
   const std::vector<ImuSample> samples = someSamples(first + count);
   for (std::size_t i = first; i < first + count; ++i) {
     const std::int64_t time_ns = samples[i].time_ns;
-    messages.push_back({0, time_ns, cdrEvents(kSize_px, someEvents(100, time_ns))});
+    messages.push_back({0, time_ns, cdrEvents(kSqliteBagSize_px, someEvents(100, time_ns))});
     messages.push_back({1, time_ns, cdrImu(samples[i])});
   }
   return messages;
@@ -62,7 +62,7 @@ class TestSqliteBag : public QObject {
 
  private:
   std::filesystem::path fill(const std::filesystem::path& name, std::size_t first, std::size_t count) const {
-    writeSqliteBag(folder_.path() / name, kTopics, messagesFrom(first, count));
+    writeSqliteBag(folder_.path() / name, kSqliteBagTopics, messagesFrom(first, count));
     return folder_.path() / name;
   }
   std::filesystem::path makeFolder(const char* name) const {
@@ -82,7 +82,7 @@ void TestSqliteBag::file_isReadInOrderOfTime() {
   QFETCH(bool, with_index);
   std::vector<RosMessage> messages = messagesFrom(0, 50);
   if (with_index) std::swap(messages[10], messages[40]);  // stored later than it was received
-  writeSqliteBag(folder_ / "a.db3", kTopics, messages, with_index);
+  writeSqliteBag(folder_ / "a.db3", kSqliteBagTopics, messages, with_index);
   const Contents contents = readAll(folder_ / "a.db3");
   QVERIFY(contents.faults.empty());
   QCOMPARE(contents.streams.size(), std::size_t{3});
@@ -105,9 +105,9 @@ void TestSqliteBag::folder_isOneRecording() {
   const bool listed = yaml.contains("second");
   const std::filesystem::path folder = makeFolder(QTest::currentDataTag());
   const auto messages = [](std::size_t first) { return messagesFrom(first, 20); };
-  writeSqliteBag(folder / (listed ? "second.db3" : "a_2.db3"), kTopics, messages(0));
-  writeSqliteBag(folder / (listed ? "a_10.db3" : "a_9.db3"), kTopics, messages(20));
-  writeSqliteBag(folder / (listed ? "a_9.db3" : "a_10.db3"), kTopics, messages(40));
+  writeSqliteBag(folder / (listed ? "second.db3" : "a_2.db3"), kSqliteBagTopics, messages(0));
+  writeSqliteBag(folder / (listed ? "a_10.db3" : "a_9.db3"), kSqliteBagTopics, messages(20));
+  writeSqliteBag(folder / (listed ? "a_9.db3" : "a_10.db3"), kSqliteBagTopics, messages(40));
   if (!yaml.isEmpty()) std::ofstream(folder / "metadata.yaml") << yaml.toStdString();
   const Contents contents = readAll(folder);
   QVERIFY(sameEvents(contents.events.at(0), eventsOfMessages(60)));
@@ -141,7 +141,7 @@ void TestSqliteBag::messagesPackedWithZstd_areRead() {
     ros::packZstd(plain, message.bytes);
   }
   messages[6].bytes.resize(messages[6].bytes.size() / 2);
-  writeSqliteBag(folder_ / "m.db3", kTopics, messages);
+  writeSqliteBag(folder_ / "m.db3", kSqliteBagTopics, messages);
   const Contents contents = readAll(folder_ / "m.db3");
   QCOMPARE(contents.eventCount(), std::size_t{1900});
   QCOMPARE(contents.sampleCount(), std::size_t{20});
@@ -150,7 +150,7 @@ void TestSqliteBag::messagesPackedWithZstd_areRead() {
 
 void TestSqliteBag::missingFile_isSaid() {
   const std::filesystem::path folder = makeFolder("missing");
-  writeSqliteBag(folder / "b_0.db3", kTopics, messagesFrom(0, 5));
+  writeSqliteBag(folder / "b_0.db3", kSqliteBagTopics, messagesFrom(0, 5));
   std::ofstream(folder / "b_2.db3") << "no database";
   std::ofstream(folder / "metadata.yaml") << metadata("    - b_0.db3\n    - b_1.db3\n    - b_2.db3\n");
   const Contents contents = readAll(folder);
@@ -204,7 +204,7 @@ void TestSqliteBag::pageOutOfPlace_endsTheReading() {
   constexpr std::size_t kPage_bytes = 4096, kEvents = 200 * 100;
   std::vector<RosMessage> messages = messagesFrom(0, 200);
   for (const bool with_index : {true, false}) {
-    writeSqliteBag(folder_ / "whole.db3", kTopics, messages, with_index);
+    writeSqliteBag(folder_ / "whole.db3", kSqliteBagTopics, messages, with_index);
     const std::string whole = fileContent(folder_ / "whole.db3");
     for (std::size_t at = 4 * kPage_bytes; at + kPage_bytes < whole.size(); at += kPage_bytes + 1021) {
       const std::string twice = whole.substr(0, at + kPage_bytes) + whole.substr(at);
