@@ -6,7 +6,9 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
-set(CMAKE_CXX_FLAGS_RELEASE "-O3 -fno-math-errno -fno-trapping-math")
+# Release builds: -O1, and -O3 for what processes recordings (evical_optimise). Reports, commands and windows gain nothing from
+# -O3 and take longer to compile.
+set(CMAKE_CXX_FLAGS_RELEASE "-O1 -fno-math-errno -fno-trapping-math")
 
 find_program(EVICAL_CCACHE ccache)
 if(EVICAL_CCACHE)
@@ -29,18 +31,49 @@ find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED)
 
 add_library(evical_warnings INTERFACE)
-target_compile_options(evical_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion)
+target_compile_options(evical_warnings INTERFACE -Wall -Wextra -Wconversion -Wno-sign-conversion)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # Out of precompiled headers GCC 12 raises these falsely inside std::string (its bugs 105329 and 105651).
   target_compile_options(evical_warnings INTERFACE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow)
+  # At -O1 it loses sight of what std::optional and Eigen's small matrices hold.
+  target_compile_options(evical_warnings INTERFACE $<$<CONFIG:Release>:-Wno-maybe-uninitialized>)
+endif()
+if(EVICAL_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(evical_warnings INTERFACE -Wshadow=local  # a local name may be one of a neighbouring source
+                         -Wno-subobject-linkage)  # sources count as headers
+elseif(NOT EVICAL_UNITY)
+  target_compile_options(evical_warnings INTERFACE -Wshadow)
 endif()
 if(EVICAL_WARNINGS_AS_ERRORS)
   target_compile_options(evical_warnings INTERFACE -Werror)
 endif()
 
+# evical_optimise(TARGET): -O3 in release builds, for loops over events, samples, pixels and knots.
+function(evical_optimise target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O3>)
+endfunction()
+
+# evical_unite(TARGET [BATCH]): with EVICAL_UNITY several sources are compiled as one unit, since most of a source's compile time
+# goes into headers and templates that its neighbours need, too. No two sources of a folder may therefore define the same name,
+# not even in unnamed namespaces. Larger batches than 12 sources gain nothing: the more templates there are, the longer GCC takes
+# for each. Where most of them are Eigen's, 7 is better.
+function(evical_unite target)
+  if(EVICAL_UNITY)
+    set(batch 12)
+    if(ARGC GREATER 1)
+      set(batch ${ARGV1})
+    endif()
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
+  endif()
+endfunction()
+
 # evical_precompile(NAME HEADERS... [LIBS...]): headers that many sources of one kind begin with, compiled once. What
-# uses them says so by evical_use_precompiled(TARGET NAME), with the same libraries, whose macros must agree.
+# uses them says so by evical_use_precompiled(TARGET NAME), with the same libraries, whose macros must agree. Unity units
+# need none: they read each header once for many sources.
 function(evical_precompile name)
+  if(EVICAL_UNITY)
+    return()
+  endif()
   cmake_parse_arguments(ARG "" "" "HEADERS;LIBS" ${ARGN})
   file(WRITE "${CMAKE_BINARY_DIR}/precompiled/${name}.cpp" "")
   add_library(${name} OBJECT "${CMAKE_BINARY_DIR}/precompiled/${name}.cpp")
@@ -50,7 +83,7 @@ function(evical_precompile name)
 endfunction()
 
 function(evical_use_precompiled target name)
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  if(NOT EVICAL_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_precompile_headers(${target} REUSE_FROM ${name})
   endif()
 endfunction()
@@ -72,12 +105,15 @@ evical_precompile(evical_headers_ceres HEADERS <fmt/format.h> <Eigen/Cholesky> <
                   <ceres/problem.h> <ceres/sized_cost_function.h> <ceres/solver.h> <ceres/sphere_manifold.h>
                   LIBS Ceres::ceres fmt::fmt)
 foreach(headers evical_headers evical_headers_fmt evical_headers_ceres)
-  evical_make_shareable(${headers})
+  if(TARGET ${headers})
+    evical_make_shareable(${headers})
+  endif()
 endforeach()
 
-# evical_add_layer(NAME SOURCES... [PUBLIC libs...] [PRIVATE libs...] [HEADERS precompiled]): one library a folder of core.
+# evical_add_layer(NAME [FAST] SOURCES... [PUBLIC libs...] [PRIVATE libs...] [HEADERS precompiled]): one library a folder of core.
+# FAST: it processes recordings.
 function(evical_add_layer name)
-  cmake_parse_arguments(ARG "" "HEADERS" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "FAST" "HEADERS" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(evical_${name} STATIC ${ARG_SOURCES})
   add_library(evical::${name} ALIAS evical_${name})
   set_target_properties(evical_${name} PROPERTIES EXPORT_NAME ${name})
@@ -97,6 +133,12 @@ function(evical_add_layer name)
     set(ARG_HEADERS evical_headers)
   endif()
   evical_use_precompiled(evical_${name} ${ARG_HEADERS})
+  if(ARG_FAST)
+    evical_optimise(evical_${name})
+    evical_unite(evical_${name} 7)
+  else()
+    evical_unite(evical_${name})
+  endif()
 endfunction()
 
 # evical_add_ui_layer(NAME SOURCES... [PUBLIC libs...] [PRIVATE libs...]): one library a folder of ui, with Qt's moc.
@@ -119,6 +161,7 @@ function(evical_add_test_program name)
   else()
     evical_use_precompiled(${name} evical_headers_test)
   endif()
+  evical_unite(${name})
   foreach(source IN LISTS ARG_SOURCES)
     cmake_path(GET source STEM test)
     if(test MATCHES "^tst_")
