@@ -1,4 +1,5 @@
 #include "app/batch_lines.h"
+#include "app/command_line.h"
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/output.h"
@@ -8,8 +9,6 @@
 #include "core/base/nearest_name.h"
 #include "core/pipeline/batch_run.h"
 #include "core/pipeline/batch_table.h"
-
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -88,45 +87,44 @@ int run(const BatchArguments& arguments) {
   return exit_code;
 }
 
-void addPlaces(CLI::App& command, BatchArguments& arguments) {
-  command.add_option("JOBS", arguments.jobs, "File that lists the jobs (docs/clusters.md)")->required();
-  command.add_option("-o,--output", arguments.output, "Folder for the results, one in it for each job")
-      ->required();
+void addPlaces(Command& command, BatchArguments& arguments) {
+  command.option("JOBS", arguments.jobs, "File that lists the jobs (docs/clusters.md)").required();
+  command.option("-o,--output", arguments.output, "Folder for the results, one in it for each job")
+      .required();
   command
-      .add_option("--jobs,--at-once", arguments.at_once,
-                  "Jobs that run at the same time; default: at_once of JOBS")
-      ->check(CLI::Range(1, 1024));
+      .option("--jobs,--at-once", arguments.at_once,
+              "Jobs that run at the same time; default: at_once of JOBS")
+      .between(1, 1024);
   command
-      .add_option("--memory-limit", arguments.memory_limit_mb,
-                  "MB that a job may use; default: memory_limit_mb of JOBS")
-      ->check(CLI::Range(1, 1 << 24));
-  command.add_flag("--quiet", arguments.quiet, "Only the table and errors");
+      .option("--memory-limit", arguments.memory_limit_mb,
+              "MB that a job may use; default: memory_limit_mb of JOBS")
+      .between(1, 1 << 24);
+  command.flag("--quiet", arguments.quiet, "Only the table and errors");
 }
 
 }  // namespace
 
-void addBatchCommand(CLI::App& app, int& exit_code) {
+void addBatchCommand(Command& app, int& exit_code) {
   auto arguments = std::make_shared<BatchArguments>();
-  CLI::App* const command = app.add_subcommand(
+  Command command = app.command(
       "batch", "Many recordings, each calibrated alone, over the cores of one machine or a cluster");
-  addPlaces(*command, *arguments);
-  CLI::Option* const job =
-      command->add_option("--job", arguments->job, "Only the job of this name, as an array's task does");
-  CLI::Option* const slurm = command->add_flag("--slurm", arguments->slurm,
-                                               "Write FOLDER/slurm.sh and submit it: a task for each job");
+  addPlaces(command, *arguments);
+  Argument job =
+      command.option("--job", arguments->job, "Only the job of this name, as an array's task does");
+  Argument slurm =
+      command.flag("--slurm", arguments->slurm, "Write FOLDER/slurm.sh and submit it: a task for each job");
   command
-      ->add_option("--slurm-options", arguments->slurm_options,
-                   "More options of sbatch, in one string: \"--partition=short --time=30\"")
-      ->needs(slurm);
-  CLI::Option* const collect =
-      command->add_flag("--collect", arguments->collect, "Only the table of what has ended so far");
-  slurm->excludes(job)->excludes(collect);
-  collect->excludes(job);
-  command->footer(
+      .option("--slurm-options", arguments->slurm_options,
+              "More options of sbatch, in one string: \"--partition=short --time=30\"")
+      .needs(slurm);
+  Argument collect = command.flag("--collect", arguments->collect, "Only the table of what has ended so far");
+  slurm.excludes(job).excludes(collect);
+  collect.excludes(job);
+  command.footer(
       "Run again, it goes on where it was stopped. Exit codes: 0 all have a result; 1 some have not, the "
       "table "
       "says why, or cancelled; 2 bad usage or file of jobs.");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
 }  // namespace evical

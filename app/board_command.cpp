@@ -1,3 +1,4 @@
+#include "app/command_line.h"
 #include "app/commands.h"
 #include "app/output.h"
 #include "core/base/atomic_file.h"
@@ -6,7 +7,6 @@
 #include "core/report/board_drawing.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <filesystem>
@@ -14,11 +14,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace evical {
 namespace {
 
-struct Arguments {
+struct BoardArguments {
   Board board;
   BoardType type = BoardType::AsymmetricCircles;
   std::string circles = "dark";
@@ -31,7 +32,7 @@ struct Arguments {
 };
 
 // What is not said is what suits the board: Kalibr's gaps between tags, and markers with some room.
-Board completeBoard(const Arguments& arguments) {
+Board completeBoard(const BoardArguments& arguments) {
   Board board = arguments.board;
   board.type = arguments.type;
   board.circles = arguments.circles == "bright" ? CircleShade::Bright : CircleShade::Dark;
@@ -46,7 +47,7 @@ Board completeBoard(const Arguments& arguments) {
   return board;
 }
 
-void writeBlinkPage(const Board& board, const Arguments& arguments) {
+void writeBlinkPage(const Board& board, const BoardArguments& arguments) {
   if (arguments.output.extension() != ".html")
     throw badInput(arguments.output.string(), "is no .html file, as a page that blinks must be",
                    "Name the file board.html");
@@ -58,7 +59,7 @@ void writeBlinkPage(const Board& board, const Arguments& arguments) {
       arguments.output.string());
 }
 
-void drawBoard(const Arguments& arguments) {
+void drawBoard(const BoardArguments& arguments) {
   const Board board = completeBoard(arguments);
   const std::string extension = arguments.output.extension().string();
   if (arguments.blink) return writeBlinkPage(board, arguments);
@@ -95,56 +96,56 @@ std::map<std::string, BoardType> typesByName() {
   return types;
 }
 
+template <class Value>
+std::vector<std::string> namesOf(const std::map<std::string, Value>& by_name) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : by_name) names.push_back(name);
+  return names;
+}
+
 }  // namespace
 
-void addBoardCommand(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("board", "A printable target, true to scale");
+void addBoardCommand(Command& app, int& exit_code) {
+  const auto arguments = std::make_shared<BoardArguments>();
+  Command command = app.command("board", "A printable target, true to scale");
   command
-      ->add_option("--rows", arguments->board.rows,
-                   "Of circles, of a checkerboard's inner corners, of tags, of a ChArUco board's squares")
-      ->capture_default_str();
-  command->add_option("--cols", arguments->board.cols, "Circles, corners, tags or squares in a row")
-      ->capture_default_str();
+      .option("--rows", arguments->board.rows,
+              "Of circles, of a checkerboard's inner corners, of tags, of a ChArUco board's squares")
+      .showDefault();
+  command.option("--cols", arguments->board.cols, "Circles, corners, tags or squares in a row").showDefault();
   command
-      ->add_option("--spacing-m", arguments->board.spacing_m,
-                   "Between two rows of circles; a square's edge; from one tag to the next. Metres")
-      ->capture_default_str();
-  command->add_option("--radius-m", arguments->radius_m, "Of a circle, metres (0.02)");
-  command->add_option("--tag-size-m", arguments->tag_size_m,
-                      "Black edge of a tag, metres (aprilgrid: spacing / 1.3; charuco: 0.75 spacing)");
+      .option("--spacing-m", arguments->board.spacing_m,
+              "Between two rows of circles; a square's edge; from one tag to the next. Metres")
+      .showDefault();
+  command.option("--radius-m", arguments->radius_m, "Of a circle, metres (0.02)");
+  command.option("--tag-size-m", arguments->tag_size_m,
+                 "Black edge of a tag, metres (aprilgrid: spacing / 1.3; charuco: 0.75 spacing)");
+  command.option("--tag-border", arguments->print.border_bits, "Of an AprilGrid's tags, bits: Kalibr's is 2")
+      .between(1, 2)
+      .showDefault();
+  command.option("--markers", arguments->print.markers, "ArUco dictionary of a ChArUco board, by its bits")
+      .oneOf(markerNames())
+      .showDefault();
   command
-      ->add_option("--tag-border", arguments->print.border_bits,
-                   "Of an AprilGrid's tags, bits: Kalibr's is 2")
-      ->check(CLI::Range(1, 2))
-      ->capture_default_str();
-  command
-      ->add_option("--markers", arguments->print.markers, "ArUco dictionary of a ChArUco board, by its bits")
-      ->check(CLI::IsMember(markerNames()))
-      ->capture_default_str();
-  command
-      ->add_option_function<std::string>(
+      .option(
           "--type", [arguments](const std::string& name) { arguments->type = typesByName().at(name); },
           "Pattern")
-      ->check(CLI::IsMember(typesByName()))
-      ->default_str(boardTypeName(arguments->type));
-  command->add_option("--circles", arguments->circles, "Their shade")
-      ->check(CLI::IsMember({"dark", "bright"}))
-      ->capture_default_str();
-  command->add_option("--margin-m", arguments->sheet.margin_m, "Around the outermost edges, metres")
-      ->capture_default_str();
+      .oneOf(namesOf(typesByName()))
+      .defaultText(boardTypeName(arguments->type));
+  command.option("--circles", arguments->circles, "Their shade").oneOf({"dark", "bright"}).showDefault();
+  command.option("--margin-m", arguments->sheet.margin_m, "Around the outermost edges, metres").showDefault();
   command
-      ->add_option_function<std::string>(
+      .option(
           "--paper",
           [arguments](const std::string& name) { arguments->sheet.paper = papersByName().at(name); },
           "Sheet of this size with the board in its middle; else as large as the board needs")
-      ->check(CLI::IsMember(papersByName()));
-  command->add_option("--dpi", arguments->resolution_dpi, "Of a .png, pixels an inch")->capture_default_str();
-  command->add_flag("--blink", arguments->blink,
-                    "A page that flashes the board on a screen, for the intrinsics of event cameras: .html");
-  command->add_option("-o,--output", arguments->output, "The file: .pdf, .svg or .png, or .html with --blink")
-      ->required();
-  command->callback([arguments, &exit_code] {
+      .oneOf(namesOf(papersByName()));
+  command.option("--dpi", arguments->resolution_dpi, "Of a .png, pixels an inch").showDefault();
+  command.flag("--blink", arguments->blink,
+               "A page that flashes the board on a screen, for the intrinsics of event cameras: .html");
+  command.option("-o,--output", arguments->output, "The file: .pdf, .svg or .png, or .html with --blink")
+      .required();
+  command.action([arguments, &exit_code] {
     drawBoard(*arguments);
     exit_code = kDone;
   });

@@ -1,3 +1,4 @@
+#include "app/command_line.h"
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/output.h"
@@ -15,7 +16,6 @@
 #include "core/report/result_table.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <memory>
 #include <string>
@@ -75,19 +75,19 @@ int run(const SessionArguments& arguments) {
 
 }  // namespace
 
-void addCalibrateCommand(CLI::App& app, int& exit_code) {
+void addCalibrateCommand(Command& app, int& exit_code) {
   auto arguments = std::make_shared<SessionArguments>();
-  CLI::App* const command = app.add_subcommand("calibrate", "Calibrate cameras and IMUs of a session");
-  addSessionArguments(*command, *arguments);
-  command->add_option(
+  Command command = app.command("calibrate", "Calibrate cameras and IMUs of a session");
+  addSessionArguments(command, *arguments);
+  command.option(
       "--detections", arguments->detections,
       "Result folder of an earlier run of this session: what cameras saw is taken from it, only IMUs "
       "are read again");
-  command->add_option(
+  command.option(
       "--profile", arguments->profile,
       "File for where the run's time goes: stages, threads, processors and memory, as a trace that "
       "ui.perfetto.dev and chrome://tracing open");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
 }  // namespace evical

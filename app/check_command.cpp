@@ -1,3 +1,4 @@
+#include "app/command_line.h"
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/output.h"
@@ -10,7 +11,6 @@
 #include "core/report/check_report.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <array>
 #include <memory>
@@ -78,37 +78,30 @@ int run(const CheckArguments& arguments) {
 
 }  // namespace
 
-void addCheckCommand(CLI::App& app, int& exit_code) {
+void addCheckCommand(Command& app, int& exit_code) {
   auto arguments = std::make_shared<CheckArguments>();
-  CLI::App* const command = app.add_subcommand(
+  Command command = app.command(
       "check",
       "Is an old calibration still good? A few seconds before the board tell, or a walk without one");
-  command->add_option("RESULT", arguments->result, "Folder of the old calibration, or its result.yaml")
-      ->required();
-  command->add_option("RECORDING", arguments->recording, "The new recording, or a session of it")->required();
-  command->add_option("-o,--output", arguments->output, "Folder for check.yaml and report.html");
-  command->add_option(
-      "--session", arguments->session,
-      "Session that says board and sensors; without it the one that is kept beside the result");
+  command.option("RESULT", arguments->result, "Folder of the old calibration, or its result.yaml").required();
+  command.option("RECORDING", arguments->recording, "The new recording, or a session of it").required();
+  command.option("-o,--output", arguments->output, "Folder for check.yaml and report.html");
+  command.option("--session", arguments->session,
+                 "Session that says board and sensors; without it the one that is kept beside the result");
   for (std::size_t k = 0; k < kStabilities.size(); ++k)
-    command->add_option(kStabilities[k].flag, arguments->stabilities[k], kStabilities[k].help);
-  command
-      ->add_option("--set", arguments->settings,
-                   "group.option=value, see 'evical options': the group is check")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_option("--threads", arguments->threads, "Threads of the optimisation")
-      ->check(CLI::Range(1, 256));
-  command->add_flag(
-      "--no-board", arguments->no_board,
-      "The recording shows no board: check rotation and time offset by how camera and IMU turn");
-  command->add_flag("--json", arguments->json, "Print JSON instead of tables, and nothing else");
-  command->add_flag("--quiet", arguments->quiet, "Only the tables and errors");
-  command->footer(
+    command.option(kStabilities[k].flag, arguments->stabilities[k], kStabilities[k].help);
+  command.option("--set", arguments->settings, "group.option=value, see 'evical options': the group is check")
+      .repeated();
+  command.option("--threads", arguments->threads, "Threads of the optimisation").between(1, 256);
+  command.flag("--no-board", arguments->no_board,
+               "The recording shows no board: check rotation and time offset by how camera and IMU turn");
+  command.flag("--json", arguments->json, "Print JSON instead of tables, and nothing else");
+  command.flag("--quiet", arguments->quiet, "Only the tables and errors");
+  command.footer(
       "Exit codes: 0 still good; 3 changed; 4 cannot tell, the last lines say what to do; 1 cancelled; 2 bad "
       "usage, "
       "result or recording.");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
 }  // namespace evical

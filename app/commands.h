@@ -3,11 +3,9 @@
 // turns into an exit code.
 #pragma once
 
-namespace CLI {
-class App;
-}
-
 namespace evical {
+
+class Command;
 
 inline constexpr int kDone = 0;
 inline constexpr int kFailed = 1;    // failed or cancelled
@@ -16,21 +14,21 @@ inline constexpr int kChanged =
     3;  // of a check: the old result does not hold; of a repeat: recordings differ
 inline constexpr int kCannotTell = 4;  // of a check: this recording does not say
 
-void addBatchCommand(CLI::App& app, int& exit_code);
-void addBoardCommand(CLI::App& app, int& exit_code);
-void addCalibrateCommand(CLI::App& app, int& exit_code);
-void addCheckCommand(CLI::App& app, int& exit_code);
-void addCompareCommand(CLI::App& app, int& exit_code);
-void addConvertCommand(CLI::App& app, int& exit_code);
-void addDetectCommand(CLI::App& app, int& exit_code);
-void addExportCommand(CLI::App& app, int& exit_code);
-void addImportCommand(CLI::App& app, int& exit_code);
-void addInitCommand(CLI::App& app, int& exit_code);
-void addIntrinsicsCommand(CLI::App& app, int& exit_code);
-void addMaintainCommand(CLI::App& app, int& exit_code);
-void addManualCommand(CLI::App& app, int& exit_code);
-void addOptionsCommand(CLI::App& app, int& exit_code);
-void addRepeatCommand(CLI::App& app, int& exit_code);
-void addSimulateCommand(CLI::App& app, int& exit_code);
+void addBatchCommand(Command& app, int& exit_code);
+void addBoardCommand(Command& app, int& exit_code);
+void addCalibrateCommand(Command& app, int& exit_code);
+void addCheckCommand(Command& app, int& exit_code);
+void addCompareCommand(Command& app, int& exit_code);
+void addConvertCommand(Command& app, int& exit_code);
+void addDetectCommand(Command& app, int& exit_code);
+void addExportCommand(Command& app, int& exit_code);
+void addImportCommand(Command& app, int& exit_code);
+void addInitCommand(Command& app, int& exit_code);
+void addIntrinsicsCommand(Command& app, int& exit_code);
+void addMaintainCommand(Command& app, int& exit_code);
+void addManualCommand(Command& app, int& exit_code);
+void addOptionsCommand(Command& app, int& exit_code);
+void addRepeatCommand(Command& app, int& exit_code);
+void addSimulateCommand(Command& app, int& exit_code);
 
 }  // namespace evical

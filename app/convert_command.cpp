@@ -1,3 +1,4 @@
+#include "app/command_line.h"
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/output.h"
@@ -6,7 +7,6 @@
 #include "core/recording/recording_writer.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <charconv>
 #include <memory>
@@ -38,7 +38,7 @@ void printSummary(const ConversionRequest& request, const ConversionSummary& mad
 
 }  // namespace
 
-void addConvertCommand(CLI::App& app, int& exit_code) {
+void addConvertCommand(Command& app, int& exit_code) {
   struct Arguments {
     ConversionRequest request;
     std::string resolution;
@@ -46,19 +46,18 @@ void addConvertCommand(CLI::App& app, int& exit_code) {
   };
   const auto arguments = std::make_shared<Arguments>();
   ConversionRequest& request = arguments->request;
-  CLI::App* command = app.add_subcommand("convert", "A recording in another format");
-  command->add_option("recording", request.input, "Any that `evical inspect` can read")->required();
-  command->add_option("-o,--output", request.output, "File or folder to write")->required();
+  Command command = app.command("convert", "A recording in another format");
+  command.option("recording", request.input, "Any that `evical inspect` can read").required();
+  command.option("-o,--output", request.output, "File or folder to write").required();
   std::string formats;
   for (const RecordingFormat& format : recordingFormats())
     formats += fmt::format("{}{} ({})", formats.empty() ? "" : ", ", format.name, format.description);
-  command->add_option("--to", request.format, "By default what the output's extension says: " + formats);
-  command->add_option("--stream", request.streams,
-                      "Name of a stream to write, of several each; by default all");
-  command->add_option("--resolution", arguments->resolution,
-                      "Sensor's size, e.g. 346x260, where the recording does not tell it");
-  command->add_flag("--quiet", arguments->quiet, "No progress");
-  command->callback([arguments, &exit_code] {
+  command.option("--to", request.format, "By default what the output's extension says: " + formats);
+  command.option("--stream", request.streams, "Name of a stream to write, of several each; by default all");
+  command.option("--resolution", arguments->resolution,
+                 "Sensor's size, e.g. 346x260, where the recording does not tell it");
+  command.flag("--quiet", arguments->quiet, "No progress");
+  command.action([arguments, &exit_code] {
     if (!arguments->resolution.empty())
       arguments->request.resolution_px = resolutionIn(arguments->resolution);
     Console console(arguments->quiet);

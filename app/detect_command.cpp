@@ -1,3 +1,4 @@
+#include "app/command_line.h"
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/output.h"
@@ -13,7 +14,6 @@
 #include "core/pipeline/result_files.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <map>
@@ -101,14 +101,13 @@ int run(const DetectArguments& arguments) {
 
 }  // namespace
 
-void addDetectCommand(CLI::App& app, int& exit_code) {
+void addDetectCommand(Command& app, int& exit_code) {
   auto arguments = std::make_shared<DetectArguments>();
-  CLI::App* const command = app.add_subcommand("detect", "Find the board only: detections, no estimate");
-  addSessionArguments(*command, *arguments);
-  command->add_flag("--images", arguments->images, "Draw the stages of windows as PNG");
-  command->add_option("--every", arguments->every_nth, "Draw every N-th window")
-      ->check(CLI::Range(1, 1000000));
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  Command command = app.command("detect", "Find the board only: detections, no estimate");
+  addSessionArguments(command, *arguments);
+  command.flag("--images", arguments->images, "Draw the stages of windows as PNG");
+  command.option("--every", arguments->every_nth, "Draw every N-th window").between(1, 1000000);
+  command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
 }  // namespace evical

@@ -1,6 +1,6 @@
 // The command line: parses, runs one command, and says how it went by the exit code.
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
+#include "app/command_line.h"
 #include "app/commands.h"
 #include "app/inspect_command.h"
 #include "app/output.h"
@@ -24,7 +24,7 @@ int fail(int exit_code, std::string_view reason) {
   return exit_code;
 }
 
-void addCommands(CLI::App& app, int& exit_code) {
+void addCommands(Command& app, int& exit_code) {
   addInitCommand(app, exit_code);
   addCalibrateCommand(app, exit_code);
   addCheckCommand(app, exit_code);
@@ -45,9 +45,9 @@ void addCommands(CLI::App& app, int& exit_code) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Calibrates event cameras and IMUs from one recording of a printed circle grid.", "evical");
-  app.set_version_flag("--version", std::string("evical ") + kVersion);
-  app.require_subcommand(1);
+  CommandLine app("Calibrates event cameras and IMUs from one recording of a printed circle grid.", "evical");
+  app.version(std::string("evical ") + kVersion);
+  app.requireCommand();
   int exit_code = kDone;
   addCommands(app, exit_code);
   // Later than the commands, which would inherit it.
@@ -56,10 +56,8 @@ int run(int argc, char** argv) {
       "nothing "
       "was written. Further ones are told by a command's own help: evical COMMAND --help");
   try {
-    app.parse(argc, argv);
-    return exit_code;
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    return app.parse(argc, argv) ? exit_code : kDone;
+  } catch (const UsageError& error) {
     return fail(kBadInput, fmt::format("{}. See `evical --help` and `evical COMMAND --help`", error.what()));
   }
 }

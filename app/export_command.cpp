@@ -1,3 +1,4 @@
+#include "app/command_line.h"
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/output.h"
@@ -6,7 +7,6 @@
 #include "core/report/export/read_back.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -18,7 +18,7 @@
 namespace evical {
 namespace {
 
-struct Arguments {
+struct ExportArguments {
   std::filesystem::path result, output, checked;  // checked: files of an earlier run
   std::vector<std::string> targets;
   bool check = false;
@@ -64,7 +64,7 @@ bool checkAll(const NamedResult& result, const std::vector<std::string>& targets
 }
 
 // Those that somebody has exported before; all that are there, where none are named.
-int checkEarlier(const Arguments& arguments, const NamedResult& result, const std::stop_token& stop) {
+int checkEarlier(const ExportArguments& arguments, const NamedResult& result, const std::stop_token& stop) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(arguments.checked, ignored))
     throw badInput(arguments.checked.string(), "is no folder of exported files",
@@ -80,7 +80,7 @@ int checkEarlier(const Arguments& arguments, const NamedResult& result, const st
   return checkAll(result, targets, arguments.checked, stop) ? kDone : kFailed;
 }
 
-int writeAndCheck(const Arguments& arguments, const NamedResult& result, const std::stop_token& stop) {
+int writeAndCheck(const ExportArguments& arguments, const NamedResult& result, const std::stop_token& stop) {
   const ExportedFiles exported = exportResult(result, namedTargets(arguments.targets));
   if (stop.stop_requested()) throw Cancelled{};
   writeExportedFiles(arguments.output, exported.files);
@@ -97,7 +97,7 @@ int writeAndCheck(const Arguments& arguments, const NamedResult& result, const s
   return same && (expected || exported.refused.empty()) ? kDone : kFailed;
 }
 
-int run(const Arguments& arguments) {
+int run(const ExportArguments& arguments) {
   const std::stop_token stop = stopOnSignals();  // files appear whole, or not at all
   namedTargets(arguments.targets);
   std::error_code ignored;
@@ -108,31 +108,31 @@ int run(const Arguments& arguments) {
 }
 
 // What is written needs targets and a folder; what is only checked has its own.
-void checkTogether(const Arguments& arguments) {
+void checkTogether(const ExportArguments& arguments) {
   if (!arguments.checked.empty()) {
-    if (!arguments.output.empty()) throw CLI::ExcludesError("--check FOLDER", "--output");
+    if (!arguments.output.empty()) throw excludedOption("--check FOLDER", "--output");
     return;
   }
-  if (arguments.targets.empty()) throw CLI::RequiredError("--to");
-  if (arguments.output.empty()) throw CLI::RequiredError("--output");
+  if (arguments.targets.empty()) throw missingOption("--to");
+  if (arguments.output.empty()) throw missingOption("--output");
 }
 
 }  // namespace
 
-void addExportCommand(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
-  CLI::App* const command = app.add_subcommand("export", "A result in other programs' formats");
-  command->add_option("RESULT", arguments->result, "result.yaml, or the folder that has it")->required();
-  command->add_option("--to", arguments->targets, "Targets, separated by commas, or all")->delimiter(',');
-  command->add_option("-o,--output", arguments->output, "Folder for the targets' folders");
-  CLI::Option* const check =
-      command->add_option("--check", arguments->checked,
-                          "Read the written files back as each target's program does, and tell how far they "
-                          "are from RESULT; with a FOLDER in the place of -o, those written there before");
-  check->expected(0, 1)->type_name("[FOLDER]");
-  command->footer(targetList());
-  command->callback([arguments, check, &exit_code] {
-    arguments->check = check->count() > 0;
+void addExportCommand(Command& app, int& exit_code) {
+  const auto arguments = std::make_shared<ExportArguments>();
+  Command command = app.command("export", "A result in other programs' formats");
+  command.option("RESULT", arguments->result, "result.yaml, or the folder that has it").required();
+  command.option("--to", arguments->targets, "Targets, separated by commas, or all").separatedBy(',');
+  command.option("-o,--output", arguments->output, "Folder for the targets' folders");
+  Argument check =
+      command.option("--check", arguments->checked,
+                     "Read the written files back as each target's program does, and tell how far they "
+                     "are from RESULT; with a FOLDER in the place of -o, those written there before");
+  check.valueOptional("[FOLDER]");
+  command.footer(targetList());
+  command.action([arguments, check, &exit_code] {
+    arguments->check = check.isGiven();
     checkTogether(*arguments);
     exit_code = run(*arguments);
   });

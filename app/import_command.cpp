@@ -1,3 +1,4 @@
+#include "app/command_line.h"
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/output.h"
@@ -6,7 +7,6 @@
 #include "core/pipeline/import_session.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <memory>
@@ -16,12 +16,12 @@
 namespace evical {
 namespace {
 
-struct Arguments {
+struct ImportArguments {
   ImportRequest request;
   std::filesystem::path output;
 };
 
-int run(const Arguments& arguments) {
+int run(const ImportArguments& arguments) {
   const std::stop_token stop = stopOnSignals();  // files appear whole, or not at all
   const ImportedFiles imported = importFiles(arguments.request, arguments.output);
   if (stop.stop_requested()) throw Cancelled{};
@@ -33,23 +33,23 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void addImportCommand(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
-  CLI::App* const command = app.add_subcommand("import", "A session from eKalibr's or Kalibr's files");
+void addImportCommand(Command& app, int& exit_code) {
+  const auto arguments = std::make_shared<ImportArguments>();
+  Command command = app.command("import", "A session from eKalibr's or Kalibr's files");
   command
-      ->add_option(
+      .option(
           "FILES", arguments->request.files,
           "An eKalibr configuration; or Kalibr's target, imu and camchain files in any order; or files with "
           "camera intrinsics alone, which become Evical's")
-      ->required();
-  command->add_option("-o,--output", arguments->output, "The session, or the intrinsics")->required();
-  command->add_option("--from", arguments->request.from,
-                      "Take the files for this program's: kalibr, ekalibr, ros");
-  command->add_option("--recording", arguments->request.recording,
-                      "The recording, where the files do not name it");
-  command->add_option("--radius-m", arguments->request.radius_m,
-                      "Of the board's circles, where the files do not say it");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+      .required();
+  command.option("-o,--output", arguments->output, "The session, or the intrinsics").required();
+  command.option("--from", arguments->request.from,
+                 "Take the files for this program's: kalibr, ekalibr, ros");
+  command.option("--recording", arguments->request.recording,
+                 "The recording, where the files do not name it");
+  command.option("--radius-m", arguments->request.radius_m,
+                 "Of the board's circles, where the files do not say it");
+  command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
 }  // namespace evical

@@ -1,3 +1,4 @@
+#include "app/command_line.h"
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/output.h"
@@ -7,7 +8,6 @@
 #include "core/recording/recording_reader.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <memory>
@@ -54,18 +54,16 @@ int run(const InitArguments& arguments) {
 
 }  // namespace
 
-void addInitCommand(CLI::App& app, int& exit_code) {
+void addInitCommand(Command& app, int& exit_code) {
   const auto arguments = std::make_shared<InitArguments>();
-  CLI::App* const command = app.add_subcommand("init", "A session to fill in, from what recordings hold");
+  Command command = app.command("init", "A session to fill in, from what recordings hold");
   command
-      ->add_option(
-          "RECORDING", arguments->recordings,
-          "Any that `evical inspect` can read; further ones for sensors that have files of their own")
-      ->required();
-  command->add_option("-o,--output", arguments->output, "The session; never one that is there already")
-      ->required();
-  command->add_flag("--quiet", arguments->quiet, "Only the file's name and errors");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+      .option("RECORDING", arguments->recordings,
+              "Any that `evical inspect` can read; further ones for sensors that have files of their own")
+      .required();
+  command.option("-o,--output", arguments->output, "The session; never one that is there already").required();
+  command.flag("--quiet", arguments->quiet, "Only the file's name and errors");
+  command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
 }  // namespace evical

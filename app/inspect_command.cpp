@@ -1,4 +1,5 @@
 #include "app/inspect_command.h"
+#include "app/command_line.h"
 #include "app/output.h"
 
 #include "core/base/time.h"
@@ -7,7 +8,6 @@
 #include "core/recording/recording_reader.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <memory>
 #include <string>
@@ -106,18 +106,17 @@ void inspect(const InspectArguments& arguments) {
 
 }  // namespace
 
-void addInspectCommand(CLI::App& app, int& exit_code) {
+void addInspectCommand(Command& app, int& exit_code) {
   const auto arguments = std::make_shared<InspectArguments>();
-  CLI::App* command =
-      app.add_subcommand("inspect", "Show what a recording holds, and what is wrong with it.");
+  Command command = app.command("inspect", "Show what a recording holds, and what is wrong with it.");
   command
-      ->add_option(
+      .option(
           "recording", arguments->recording,
           "A file or folder of any format that can be read: a bag, AEDAT, RAW, HDF5, NumPy, text, pictures.")
-      ->required();
-  command->add_flag("--json", arguments->json, "Print JSON instead of text.");
-  command->add_flag("--checksum", arguments->checksum, "Add sums over all events, to compare readers.");
-  command->callback([arguments, &exit_code] {
+      .required();
+  command.flag("--json", arguments->json, "Print JSON instead of text.");
+  command.flag("--checksum", arguments->checksum, "Add sums over all events, to compare readers.");
+  command.action([arguments, &exit_code] {
     inspect(*arguments);
     exit_code = 0;
   });

@@ -1,3 +1,4 @@
+#include "app/command_line.h"
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/output.h"
@@ -12,7 +13,6 @@
 #include "core/report/intrinsics_report.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <memory>
@@ -93,13 +93,12 @@ int run(const IntrinsicsArguments& arguments) {
 
 }  // namespace
 
-void addIntrinsicsCommand(CLI::App& app, int& exit_code) {
+void addIntrinsicsCommand(Command& app, int& exit_code) {
   auto arguments = std::make_shared<IntrinsicsArguments>();
-  CLI::App* const command =
-      app.add_subcommand("intrinsics", "Calibrate the intrinsics of a session's cameras");
-  addSessionArguments(*command, *arguments);
-  command->add_option("--camera", arguments->camera, "Only this one of the session's cameras");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  Command command = app.command("intrinsics", "Calibrate the intrinsics of a session's cameras");
+  addSessionArguments(command, *arguments);
+  command.option("--camera", arguments->camera, "Only this one of the session's cameras");
+  command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
 }  // namespace evical

@@ -1,3 +1,4 @@
+#include "app/command_line.h"
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/output.h"
@@ -10,7 +11,6 @@
 #include "core/report/maintenance_report.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -87,54 +87,48 @@ int run(const MaintainArguments& arguments) {
   return exitCodeOf(maintenance.verdict);
 }
 
-void addUnits(CLI::App& command, MaintainArguments& arguments) {
+void addUnits(Command& command, MaintainArguments& arguments) {
   command
-      .add_option("--acceleration-unit", arguments.acceleration_unit,
-                  "What specific forces are in, where logs do not say: m/s^2, g or -g")
-      ->check(CLI::IsMember(std::vector<std::string>(kAccelerationUnits.begin(), kAccelerationUnits.end())));
+      .option("--acceleration-unit", arguments.acceleration_unit,
+              "What specific forces are in, where logs do not say: m/s^2, g or -g")
+      .oneOf(std::vector<std::string>(kAccelerationUnits.begin(), kAccelerationUnits.end()));
   command
-      .add_option("--angular-rate-unit", arguments.angular_rate_unit,
-                  "What angular rates are in, where logs do not say: rad/s or deg/s")
-      ->check(CLI::IsMember(std::vector<std::string>(kAngularRateUnits.begin(), kAngularRateUnits.end())));
+      .option("--angular-rate-unit", arguments.angular_rate_unit,
+              "What angular rates are in, where logs do not say: rad/s or deg/s")
+      .oneOf(std::vector<std::string>(kAngularRateUnits.begin(), kAngularRateUnits.end()));
 }
 
 }  // namespace
 
-void addMaintainCommand(CLI::App& app, int& exit_code) {
+void addMaintainCommand(Command& app, int& exit_code) {
   auto arguments = std::make_shared<MaintainArguments>();
-  CLI::App* const command = app.add_subcommand(
+  Command command = app.command(
       "maintain",
       "IMUs over time: have they changed since the calibration, what, and when? No board is needed");
   command
-      ->add_option(
-          "LOG", arguments->logs,
-          "Logs or recordings with IMU samples, in any format: of several IMUs, or following each other")
-      ->required();
-  command->add_option("--result", arguments->result, "Folder of the old calibration, or its result.yaml")
-      ->required();
-  command->add_option("-o,--output", arguments->output, "Folder for maintenance.yaml and report.html")
-      ->required();
+      .option("LOG", arguments->logs,
+              "Logs or recordings with IMU samples, in any format: of several IMUs, or following each other")
+      .required();
+  command.option("--result", arguments->result, "Folder of the old calibration, or its result.yaml")
+      .required();
+  command.option("-o,--output", arguments->output, "Folder for maintenance.yaml and report.html").required();
   command
-      ->add_option(
-          "--imu", arguments->imus,
-          "NAME=STREAM: which stream or log is of which IMU of the old result, where names do not tell")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_option(
+      .option("--imu", arguments->imus,
+              "NAME=STREAM: which stream or log is of which IMU of the old result, where names do not tell")
+      .repeated();
+  command.option(
       "--trajectory", arguments->trajectory,
       "Poses of the reference IMU from elsewhere: trajectory.csv of a calibration, or TUM's format");
-  addUnits(*command, *arguments);
+  addUnits(command, *arguments);
   command
-      ->add_option("--set", arguments->settings,
-                   "group.option=value, see 'evical options': the group is maintain")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_flag("--json", arguments->json, "Print JSON instead of tables, and nothing else");
-  command->add_flag("--quiet", arguments->quiet, "Only the tables and errors");
-  command->footer(
+      .option("--set", arguments->settings, "group.option=value, see 'evical options': the group is maintain")
+      .repeated();
+  command.flag("--json", arguments->json, "Print JSON instead of tables, and nothing else");
+  command.flag("--quiet", arguments->quiet, "Only the tables and errors");
+  command.footer(
       "Exit codes: 0 nothing has changed; 3 something has; 4 cannot tell, the last lines say what to do; 1 "
       "cancelled; 2 bad usage, result or log.");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
 }  // namespace evical

@@ -1,6 +1,7 @@
 // The manual: a page for the program and one for each command, and the completion of words in bash, all made from
 // what --help says. The build calls it; people have no use for it, so that help does not name it.
 #include "app/bash_completion.h"
+#include "app/command_line.h"
 #include "app/commands.h"
 #include "app/manual_page.h"
 #include "app/option_value.h"
@@ -109,12 +110,13 @@ std::vector<FileContent> manual(const CLI::App& program) {
 
 }  // namespace
 
-void addManualCommand(CLI::App& app, int& exit_code) {
+void addManualCommand(Command& app, int& exit_code) {
   const auto folder = std::make_shared<std::filesystem::path>();
-  CLI::App* const command = app.add_subcommand("manual", "Manual pages and bash completion")->group("");
-  command->add_option("-o,--output", *folder, "Folder to write")->required();
-  command->callback([&app, folder, &exit_code] {
-    std::vector<FileContent> files = manual(app);
+  Command command = app.command("manual", "Manual pages and bash completion");
+  command.hide();
+  command.option("-o,--output", *folder, "Folder to write").required();
+  command.action([app, folder, &exit_code] {
+    std::vector<FileContent> files = manual(app.app());
     for (FileContent& file : files) {
       file.path = *folder / file.path;
       makeOutputFolder(file.path.parent_path());

@@ -1,3 +1,4 @@
+#include "app/command_line.h"
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/output.h"
@@ -8,7 +9,6 @@
 #include "core/report/repeat_report.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <memory>
@@ -63,31 +63,27 @@ int run(const RepeatArguments& arguments) {
 
 }  // namespace
 
-void addRepeatCommand(CLI::App& app, int& exit_code) {
+void addRepeatCommand(Command& app, int& exit_code) {
   auto arguments = std::make_shared<RepeatArguments>();
-  CLI::App* const command =
-      app.add_subcommand("repeat", "Several recordings of one rig: each alone, then all together");
+  Command command = app.command("repeat", "Several recordings of one rig: each alone, then all together");
   command
-      ->add_option("SESSION", arguments->sessions,
-                   "Sessions of the same sensors and board, or one that lists recordings")
-      ->required();
-  command->add_option("-o,--output", arguments->output, "Folder for the results")->required();
+      .option("SESSION", arguments->sessions,
+              "Sessions of the same sensors and board, or one that lists recordings")
+      .required();
+  command.option("-o,--output", arguments->output, "Folder for the results").required();
   command
-      ->add_option(
-          "--set", arguments->settings,
-          "group.option=value of all sessions, see 'evical options'; the groups are those of calibrate, "
-          "and check")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_option("--threads", arguments->threads, "Threads of the optimisation")
-      ->check(CLI::Range(1, 256));
-  command->add_flag("--json", arguments->json, "Print JSON instead of tables, and nothing else");
-  command->add_flag("--quiet", arguments->quiet, "Only the tables and errors");
-  command->footer(
+      .option("--set", arguments->settings,
+              "group.option=value of all sessions, see 'evical options'; the groups are those of calibrate, "
+              "and check")
+      .repeated();
+  command.option("--threads", arguments->threads, "Threads of the optimisation").between(1, 256);
+  command.flag("--json", arguments->json, "Print JSON instead of tables, and nothing else");
+  command.flag("--quiet", arguments->quiet, "Only the tables and errors");
+  command.footer(
       "Exit codes: 0 they agree; 3 they do not, the last line says which; 1 cancelled, or fewer than two "
       "could be "
       "calibrated; 2 bad usage, session or recording.");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  command.action([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
 }  // namespace evical

@@ -1,25 +1,23 @@
 #include "app/session_arguments.h"
+#include "app/command_line.h"
 
 #include "core/base/error.h"
 #include "core/base/shell_word.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 namespace evical {
 
-void addSessionArguments(CLI::App& command, SessionArguments& arguments) {
-  command.add_option("SESSION", arguments.session, "Session file")->required();
-  command.add_option("-o,--output", arguments.output, "Folder for the results")->required();
+void addSessionArguments(Command& command, SessionArguments& arguments) {
+  command.option("SESSION", arguments.session, "Session file").required();
+  command.option("-o,--output", arguments.output, "Folder for the results").required();
   command
-      .add_option("--set", arguments.settings,
-                  "group.option=value, see 'evical options'; imus.NAME.KEY=value of units and axes; or "
-                  "time_range_s=[begin,end]")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("--threads", arguments.threads, "Threads of the optimisation")
-      ->check(CLI::Range(1, 256));
-  command.add_flag("--quiet", arguments.quiet, "Only the result and errors");
+      .option("--set", arguments.settings,
+              "group.option=value, see 'evical options'; imus.NAME.KEY=value of units and axes; or "
+              "time_range_s=[begin,end]")
+      .repeated();
+  command.option("--threads", arguments.threads, "Threads of the optimisation").between(1, 256);
+  command.flag("--quiet", arguments.quiet, "Only the result and errors");
 }
 
 void applySettings(const std::vector<std::string>& settings, Session& session) {

@@ -7,11 +7,9 @@
 #include <string>
 #include <vector>
 
-namespace CLI {
-class App;
-}
-
 namespace evical {
+
+class Command;
 
 struct SessionArguments {
   std::string session, output;
@@ -23,7 +21,7 @@ struct SessionArguments {
   std::string profile;  // of calibrate: a file for where its time goes; empty: none
 };
 
-void addSessionArguments(CLI::App& command, SessionArguments& arguments);
+void addSessionArguments(Command& command, SessionArguments& arguments);
 
 // Each group.option=value into the session.
 void applySettings(const std::vector<std::string>& settings, Session& session);

@@ -1,3 +1,4 @@
+#include "app/command_line.h"
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/output.h"
@@ -8,7 +9,6 @@
 #include "core/synthetic/scenario_yaml.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <filesystem>
@@ -17,25 +17,23 @@
 
 namespace evical {
 
-void addSimulateCommand(CLI::App& app, int& exit_code) {
+void addSimulateCommand(Command& app, int& exit_code) {
   struct Arguments {
     std::filesystem::path scenario, folder;
     std::string format;
     bool quiet = false;
   };
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      app.add_subcommand("simulate", "A recording with known truth, and a session file that fits it");
-  command
-      ->add_option("scenario", arguments->scenario, "What to simulate, e.g. config/scenarios/davis346.yaml")
-      ->required();
-  command->add_option("-o,--output", arguments->folder, "Folder to write")->required();
+  Command command = app.command("simulate", "A recording with known truth, and a session file that fits it");
+  command.option("scenario", arguments->scenario, "What to simulate, e.g. config/scenarios/davis346.yaml")
+      .required();
+  command.option("-o,--output", arguments->folder, "Folder to write").required();
   std::string formats;
   for (const RecordingFormat& format : recordingFormats())
     formats += fmt::format("{}{}", formats.empty() ? "" : ", ", format.name);
-  command->add_option("--format", arguments->format, "By default the scenario's; one of " + formats);
-  command->add_flag("--quiet", arguments->quiet, "No progress");
-  command->callback([arguments, &exit_code] {
+  command.option("--format", arguments->format, "By default the scenario's; one of " + formats);
+  command.flag("--quiet", arguments->quiet, "No progress");
+  command.action([arguments, &exit_code] {
     const bool drive = isDriveScenario(arguments->scenario);
     const Scenario scenario = drive ? Scenario{} : readScenario(arguments->scenario);
     const DriveScenario imus = drive ? readDriveScenario(arguments->scenario) : DriveScenario{};
